@@ -1,0 +1,30 @@
+#pragma once
+
+// What each command does. They print what there is to say and return the exit status.
+
+#include "coordinator/cli/console.h"
+#include "coordinator/cli/exit_code.h"
+#include "coordinator/cli/interrupts.h"
+#include "coordinator/cli/options.h"
+
+namespace bandsaw::coordinator {
+
+/// What commands may use of the process.
+struct Process {
+  const Console& console;
+  Interrupts& interrupts;
+};
+
+ExitCode run(const ServeOptions& options, Process& process);
+ExitCode run(const SubmitOptions& options, Process& process);
+ExitCode run(const WatchOptions& options, Process& process);
+ExitCode run(const JobsOptions& options, Process& process);
+ExitCode run(const WorkersOptions& options, Process& process);
+ExitCode run(const CancelOptions& options, Process& process);
+ExitCode run(const RenderOptions& options, Process& process);
+ExitCode run(const InfoOptions& options, Process& process);
+ExitCode run(const StitchOptions& options, Process& process);
+ExitCode run(const CompareOptions& options, Process& process);
+ExitCode run(const ShowText& options, Process& process);
+
+}  // namespace bandsaw::coordinator

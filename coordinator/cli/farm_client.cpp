@@ -1,0 +1,209 @@
+#include "coordinator/cli/farm_client.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "proto/wire/limits.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kConnectTimeout{5'000};
+constexpr milliseconds kCallTimeout{10'000};
+constexpr milliseconds kRetryPause{500};
+constexpr int kTries = 4;
+// No deadline: what ends a dead stream is keepalive.
+constexpr milliseconds kStreamTimeout{0};
+
+bool outcome_unknown(const absl::Status& status) {
+  return absl::IsUnavailable(status) || absl::IsDeadlineExceeded(status);
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<FarmClient>> FarmClient::connect(const link::JoinString& join) {
+  ASSIGN_OR_RETURN(link::Connected connected, link::connect(join, kConnectTimeout));
+  return std::unique_ptr<FarmClient>(new FarmClient(join, std::move(connected)));
+}
+
+FarmClient::FarmClient(link::JoinString join, link::Connected connected)
+    : join_(std::move(join)),
+      connected_(std::move(connected)),
+      control_(farm::Farm::NewStub(connected_.control)),
+      bulk_(farm::Farm::NewStub(connected_.bulk)) {}
+
+void FarmClient::stop() {
+  MutexLock lock(mutex_);
+  stopped_ = true;
+  if (running_ != nullptr) {
+    running_->TryCancel();
+  }
+  changed_.notify_all();
+}
+
+bool FarmClient::stopped() const {
+  MutexLock lock(mutex_);
+  return stopped_;
+}
+
+void FarmClient::pause(milliseconds time) {
+  MutexLock lock(mutex_);
+  if (!stopped_) {
+    changed_.wait_for(mutex_, time);
+  }
+}
+
+absl::Status FarmClient::try_once(milliseconds deadline,
+                                  const std::function<grpc::Status(grpc::ClientContext&)>& body) {
+  grpc::ClientContext context;
+  link::prepare(context, join_, deadline);
+  {
+    MutexLock lock(mutex_);
+    if (stopped_) {
+      return absl::CancelledError("interrupted");
+    }
+    running_ = &context;
+  }
+  const grpc::Status status = body(context);
+  MutexLock lock(mutex_);
+  running_ = nullptr;
+  return stopped_ && !status.ok() ? absl::CancelledError("interrupted") : link::from_grpc(status);
+}
+
+absl::Status FarmClient::call(milliseconds deadline,
+                              const std::function<grpc::Status(grpc::ClientContext&)>& body) {
+  absl::Status status = try_once(deadline, body);
+  for (int tries = 1; tries < kTries && outcome_unknown(status); ++tries) {
+    pause(kRetryPause);
+    status = try_once(deadline, body);
+  }
+  if (outcome_unknown(status)) {
+    return absl::UnavailableError(
+        absl::StrCat("the farm at ", connected_.address, " does not answer: ", status.message()));
+  }
+  return status;
+}
+
+absl::StatusOr<std::vector<wire::Digest>> FarmClient::missing_blobs(
+    const std::vector<wire::Digest>& digests) {
+  std::vector<wire::Digest> missing;
+  for (std::size_t first = 0; first < digests.size(); first += wire::kDigestsPerMessage) {
+    farm::MissingBlobsRequest request;
+    const std::size_t last = std::min(first + wire::kDigestsPerMessage, digests.size());
+    for (std::size_t i = first; i < last; ++i) {
+      request.add_sha256(digests[i].raw());
+    }
+    farm::MissingBlobsReply reply;
+    RETURN_IF_ERROR(call(kCallTimeout, [&](grpc::ClientContext& context) {
+      return control_->MissingBlobs(&context, request, &reply);
+    }));
+    for (const std::string& raw : reply.sha256()) {
+      ASSIGN_OR_RETURN(missing.emplace_back(), wire::digest_from_raw(raw));
+    }
+  }
+  return missing;
+}
+
+absl::Status FarmClient::put_blob(const wire::Digest& digest, absl::Span<const std::byte> bytes,
+                                  const std::function<void(std::uint64_t)>& sent) {
+  return call(kStreamTimeout, [&](grpc::ClientContext& context) {
+    farm::PutBlobReply reply;
+    const auto stream = bulk_->PutBlob(&context, &reply);
+    std::uint64_t offset = 0;
+    bool first = true;
+    while (first || offset < bytes.size()) {
+      farm::BlobChunk chunk;
+      if (first) {
+        chunk.set_sha256(digest.raw());
+        chunk.set_size(bytes.size());
+        first = false;
+      }
+      const auto piece = bytes.subspan(offset, wire::kChunkBytes);
+      chunk.set_offset(offset);
+      chunk.set_data(piece.data(), piece.size());
+      if (!stream->Write(chunk)) {
+        break;  // Finish tells why.
+      }
+      offset += piece.size();
+      sent(offset);
+    }
+    stream->WritesDone();
+    return stream->Finish();
+  });
+}
+
+absl::StatusOr<JobId> FarmClient::submit(const farm::SubmitRequest& request) {
+  farm::SubmitReply reply;
+  RETURN_IF_ERROR(call(kCallTimeout, [&](grpc::ClientContext& context) {
+    return control_->Submit(&context, request, &reply);
+  }));
+  return reply.job();
+}
+
+absl::Status FarmClient::watch(JobId job, const std::function<void(const Progress&)>& changed) {
+  bool ended = false;
+  const absl::Status status = try_once(kStreamTimeout, [&](grpc::ClientContext& context) {
+    farm::WatchRequest request;
+    request.set_job(job);
+    const auto stream = control_->Watch(&context, request);
+    farm::JobStatus message;
+    while (stream->Read(&message)) {
+      const Progress progress = progress_of(message);
+      ended = is_final(progress.job.state);
+      changed(progress);
+    }
+    return stream->Finish();
+  });
+  if (ended) {
+    return absl::OkStatus();
+  }
+  return status.ok() ? absl::UnavailableError("the farm ended the stream before the job was over")
+                     : status;
+}
+
+bool FarmClient::wait_for_farm(milliseconds timeout) {
+  constexpr milliseconds kSlice{100};  // how late stop() may be noticed
+  const auto end = std::chrono::system_clock::now() + timeout;
+  while (!stopped() && std::chrono::system_clock::now() < end) {
+    if (connected_.control->WaitForConnected(std::chrono::system_clock::now() + kSlice)) {
+      return true;
+    }
+  }
+  return false;
+}
+
+absl::StatusOr<std::vector<Progress>> FarmClient::jobs() {
+  farm::ListJobsReply reply;
+  RETURN_IF_ERROR(call(kCallTimeout, [&](grpc::ClientContext& context) {
+    return control_->ListJobs(&context, farm::ListJobsRequest(), &reply);
+  }));
+  std::vector<Progress> out;
+  for (const farm::JobStatus& status : reply.job()) {
+    out.push_back(progress_of(status));
+  }
+  return out;
+}
+
+absl::StatusOr<farm::ListWorkersReply> FarmClient::workers() {
+  farm::ListWorkersReply reply;
+  RETURN_IF_ERROR(call(kCallTimeout, [&](grpc::ClientContext& context) {
+    return control_->ListWorkers(&context, farm::ListWorkersRequest(), &reply);
+  }));
+  return reply;
+}
+
+absl::StatusOr<Progress> FarmClient::cancel(JobId job) {
+  farm::CancelRequest request;
+  request.set_job(job);
+  farm::JobStatus reply;
+  RETURN_IF_ERROR(call(kCallTimeout, [&](grpc::ClientContext& context) {
+    return control_->Cancel(&context, request, &reply);
+  }));
+  return progress_of(reply);
+}
+
+}  // namespace bandsaw::coordinator

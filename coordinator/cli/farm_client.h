@@ -1,0 +1,83 @@
+#pragma once
+
+// The farm as a person's program sees it: typed calls over the gRPC stub. A call whose outcome is
+// unknown is tried again with the same arguments (farm.proto: every call is idempotent). Blocking;
+// one call at a time, `stop` from any thread.
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/types/span.h"
+#include "coordinator/cli/progress.h"
+#include "proto/farm.grpc.pb.h"
+#include "proto/link/channel.h"
+#include "proto/wire/digest.h"
+#include "renderlib/base/mutex.h"
+#include "renderlib/image/image.h"
+
+namespace bandsaw::coordinator {
+
+class FarmClient {
+ public:
+  /// UNAVAILABLE: no address answered. UNAUTHENTICATED: another farm answered.
+  static absl::StatusOr<std::unique_ptr<FarmClient>> connect(const link::JoinString& join);
+  FarmClient(const FarmClient&) = delete;
+  FarmClient& operator=(const FarmClient&) = delete;
+
+  /// Those of the digests whose blobs the farm lacks.
+  absl::StatusOr<std::vector<wire::Digest>> missing_blobs(const std::vector<wire::Digest>& digests);
+
+  /// Sends one blob on the bulk channel; `sent` hears of bytes handed over, in all of this try.
+  absl::Status put_blob(const wire::Digest& digest, absl::Span<const std::byte> bytes,
+                        const std::function<void(std::uint64_t)>& sent);
+
+  absl::StatusOr<JobId> submit(const farm::SubmitRequest& request);
+
+  /// Calls `changed` with each state until the last; OK after a final state. UNAVAILABLE: the farm
+  /// went away before it.
+  absl::Status watch(JobId job, const std::function<void(const Progress&)>& changed);
+
+  /// Waits until the connection is there again. False: the time passed, or stop() was called.
+  bool wait_for_farm(std::chrono::milliseconds timeout);
+
+  /// Waits that long, or until stop() is called.
+  void pause(std::chrono::milliseconds time) EXCLUDES(mutex_);
+
+  /// The finished image, its digest checked. DATA_LOSS: it does not match.
+  absl::StatusOr<Image> result(JobId job);
+
+  absl::StatusOr<std::vector<Progress>> jobs();
+  absl::StatusOr<farm::ListWorkersReply> workers();
+  absl::StatusOr<Progress> cancel(JobId job);
+
+  const std::string& address() const { return connected_.address; }
+
+  /// Ends the call that runs, and every later one, with CANCELLED. For an interrupt.
+  void stop() EXCLUDES(mutex_);
+  bool stopped() const EXCLUDES(mutex_);
+
+ private:
+  FarmClient(link::JoinString join, link::Connected connected);
+
+  /// Makes a context for each try, and tries again while the farm does not answer.
+  absl::Status call(std::chrono::milliseconds deadline,
+                    const std::function<grpc::Status(grpc::ClientContext&)>& body) EXCLUDES(mutex_);
+  absl::Status try_once(std::chrono::milliseconds deadline,
+                        const std::function<grpc::Status(grpc::ClientContext&)>& body)
+      EXCLUDES(mutex_);
+
+  link::JoinString join_;
+  link::Connected connected_;
+  std::unique_ptr<farm::Farm::Stub> control_;
+  std::unique_ptr<farm::Farm::Stub> bulk_;
+  mutable Mutex mutex_;
+  CondVar changed_;
+  grpc::ClientContext* running_ GUARDED_BY(mutex_) = nullptr;
+  bool stopped_ GUARDED_BY(mutex_) = false;
+};
+
+}  // namespace bandsaw::coordinator

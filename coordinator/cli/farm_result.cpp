@@ -1,0 +1,76 @@
+// FarmClient::result: a finished image in chunks, checked before anybody sees it.
+
+#include <bit>
+#include <cstring>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/cli/farm_client.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/render/settings.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+// No deadline: keepalive ends a dead stream, and a big image takes its time.
+constexpr std::chrono::milliseconds kTransferTimeout{0};
+
+struct Received {
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::string sha256;
+  std::string bytes;
+
+  std::uint64_t size() const { return std::uint64_t{width} * height * sizeof(Rgb); }
+};
+
+absl::StatusOr<Image> image_of(const Received& received) {
+  const auto span = absl::MakeConstSpan(reinterpret_cast<const std::byte*>(received.bytes.data()),
+                                        received.bytes.size());
+  if (received.bytes.size() != received.size() || wire::sha256(span).raw() != received.sha256) {
+    return absl::DataLossError(
+        "the image came damaged over the network; try again with: bandsaw watch");
+  }
+  static_assert(std::endian::native == std::endian::little && sizeof(Rgb) == 3 * sizeof(float),
+                "the wire's form is the memory's");
+  Image image{.width = received.width, .height = received.height, .pixels = {}};
+  image.pixels.resize(std::size_t{received.width} * received.height);
+  std::memcpy(static_cast<void*>(image.pixels.data()), received.bytes.data(),
+              received.bytes.size());
+  return image;
+}
+
+}  // namespace
+
+absl::StatusOr<Image> FarmClient::result(JobId job) {
+  Received received;
+  bool too_much = false;
+  farm::GetResultRequest request;
+  request.set_job(job);
+  RETURN_IF_ERROR(call(kTransferTimeout, [&](grpc::ClientContext& context) {
+    received = Received();
+    const auto stream = bulk_->GetResult(&context, request);
+    farm::ResultChunk chunk;
+    for (bool first = true; stream->Read(&chunk); first = false) {
+      if (first) {
+        received.width = chunk.width();
+        received.height = chunk.height();
+        received.sha256 = chunk.sha256();
+        too_much = std::uint64_t{received.width} * received.height > kMaxPixels;
+      }
+      too_much = too_much || received.bytes.size() + chunk.data().size() > received.size();
+      if (too_much) {
+        context.TryCancel();
+        break;
+      }
+      received.bytes += chunk.data();
+    }
+    const grpc::Status status = stream->Finish();
+    return too_much ? grpc::Status::OK : status;
+  }));
+  if (too_much) {
+    return absl::DataLossError(absl::StrCat("job ", job, ": the farm sent more than an image"));
+  }
+  return image_of(received);
+}
+
+}  // namespace bandsaw::coordinator

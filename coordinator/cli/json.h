@@ -1,0 +1,35 @@
+#pragma once
+
+// One JSON object a line (RFC 8259), for --json.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "absl/strings/string_view.h"
+
+namespace bandsaw::coordinator {
+
+/// Fields in the order they are added. Numbers are written so that reading them gives the same
+/// double; a number that is not finite becomes null. Text that is not UTF-8 keeps its valid parts;
+/// each other byte becomes U+FFFD.
+class JsonObject {
+ public:
+  JsonObject& text(absl::string_view key, absl::string_view value);
+  JsonObject& number(absl::string_view key, double value);
+  JsonObject& whole(absl::string_view key, std::uint64_t value);
+  JsonObject& flag(absl::string_view key, bool value);
+  /// Negative means "not known": null.
+  JsonObject& known_number(absl::string_view key, double value);
+  JsonObject& texts(absl::string_view key, const std::vector<std::string>& values);
+  JsonObject& objects(absl::string_view key, const std::vector<JsonObject>& values);
+
+  /// "{…}" without a line end.
+  std::string str() const { return "{" + fields_ + "}"; }
+
+ private:
+  JsonObject& raw(absl::string_view key, absl::string_view value);
+  std::string fields_;
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,30 @@
+#pragma once
+
+// The passes of a render on this machine: what the coordinator's core does for a farm, for one
+// image and one stop rule.
+
+#include <deque>
+#include <optional>
+
+#include "absl/functional/function_ref.h"
+#include "coordinator/core/types.h"
+#include "renderlib/render/band.h"
+
+namespace bandsaw::coordinator {
+
+class LocalPlan {
+ public:
+  explicit LocalPlan(const StopRule& stop) : stop_(stop) {}
+
+  /// The next pass, after samples [0, samples) were rendered in `seconds`; `error` is their
+  /// estimated relative RMSE, negative when it is not known. Nothing: the image is done.
+  std::optional<SampleRange> next(std::uint64_t samples, double error, double seconds);
+
+ private:
+  std::optional<SampleRange> first_of(std::uint64_t from, std::uint64_t to);
+
+  StopRule stop_;
+  std::deque<SampleRange> passes_;  ///< planned, not begun
+};
+
+}  // namespace bandsaw::coordinator

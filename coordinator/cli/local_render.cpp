@@ -1,0 +1,84 @@
+#include "coordinator/cli/local_render.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/functional/function_ref.h"
+#include "coordinator/cli/local_plan.h"
+#include "coordinator/cli/steady_time.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/render/render_band.h"
+#include "renderlib/render/render_image.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+// `done`: pixel samples before this pass; grows by those of the pass.
+absl::Status render_pass(const LocalJob& job, const SampleRange& pass, const RowRange& rows,
+                         std::uint64_t& done, absl::FunctionRef<absl::Status(BandPixels)> take) {
+  const auto most =
+      static_cast<std::uint32_t>(std::max<std::uint64_t>(1, kBandPixels / job.settings.width));
+  const std::uint64_t row_samples = pass.samples() * job.settings.width;
+  for (RowRange part{rows.first, rows.first}; part.last < rows.last; part.first = part.last) {
+    part.last = part.first + std::min(most, rows.last - part.first);
+    const auto advanced = [&job, done, row_samples](std::uint32_t count) {
+      job.meter.reached(done + count * row_samples);
+    };
+    ASSIGN_OR_RETURN(BandPixels pixels, render_band(job.scene, job.settings, {pass, part}, job.pool,
+                                                    job.stop, advanced));
+    done += part.count() * row_samples;
+    job.meter.add(pixels.counters);
+    RETURN_IF_ERROR(take(std::move(pixels)));
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<Image> render_whole(const LocalJob& job, const StopRule& stop) {
+  ASSIGN_OR_RETURN(Film film, Film::create(job.settings.width, job.settings.height, ""));
+  LocalPlan plan(stop);
+  std::uint64_t done = 0;
+  std::uint64_t samples = 0;
+  double error = -1;
+  while (const auto pass = plan.next(samples, error, job.meter.seconds(steady_seconds()))) {
+    RETURN_IF_ERROR(render_pass(job, *pass, {0, job.settings.height}, done,
+                                [&](const BandPixels& pixels) { return film.add(pixels); }));
+    samples = pass->last;
+    const auto estimate = film.error();
+    error = estimate ? estimate->relative_rmse : -1;
+    job.meter.passed(samples, error);
+  }
+  return film.snapshot().image;
+}
+
+absl::StatusOr<std::vector<BandPixels>> render_part(const LocalJob& job, const RowRange& rows,
+                                                    std::uint64_t samples) {
+  std::vector<BandPixels> bands;
+  std::uint64_t done = 0;
+  for (const SampleRange& node : maximal_nodes(samples)) {
+    RETURN_IF_ERROR(render_pass(job, node, rows, done, [&](BandPixels pixels) {
+      bands.push_back(std::move(pixels));
+      return absl::OkStatus();
+    }));
+  }
+  job.meter.passed(samples, -1);
+  return bands;
+}
+
+absl::StatusOr<Image> image_of_part(const std::vector<BandPixels>& bands,
+                                    const RenderSettings& settings, const RowRange& rows) {
+  ASSIGN_OR_RETURN(Film film, Film::create(settings.width, settings.height, ""));
+  for (const BandPixels& band : bands) {
+    RETURN_IF_ERROR(film.add(band));
+  }
+  const Image whole = film.snapshot().image;
+  Image part{.width = whole.width, .height = rows.count(), .pixels = {}};
+  const auto at = [&](std::uint32_t row) {
+    return whole.pixels.begin() + static_cast<std::ptrdiff_t>(std::size_t{row} * whole.width);
+  };
+  part.pixels.assign(at(rows.first), at(rows.last));
+  return part;
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,21 @@
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "coordinator/cli/command_line.h"
+#include "coordinator/cli/commands.h"
+
+int main(int argc, char** argv) {
+  using namespace bandsaw::coordinator;
+  const Console console = Console::standard();
+  const auto command =
+      parse_command_line(std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc));
+  if (!command.ok()) {
+    return static_cast<int>(
+        console.fail(ExitCode::kWrong, std::string(command.status().message())));
+  }
+  Interrupts interrupts;
+  Process process{console, interrupts};
+  return static_cast<int>(
+      std::visit([&](const auto& options) { return run(options, process); }, *command));
+}

@@ -1,0 +1,129 @@
+#pragma once
+
+// What each command was asked to do: plain values, checked.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "coordinator/core/types.h"
+#include "renderlib/image/display.h"
+#include "renderlib/render/band.h"
+
+namespace bandsaw::coordinator {
+
+/// How much a command says.
+struct Verbosity {
+  bool quiet = false;  ///< only the last line and errors
+  bool json = false;   ///< one JSON object a line instead of text
+};
+
+/// Everything beside the scene that decides an image, as far as it was given.
+struct ImageOptions {
+  StopRule stop = StopAtSamples{64};
+  std::uint64_t seed = 0;
+  std::optional<std::uint32_t> width;   ///< alone: the height keeps the scene's aspect ratio
+  std::optional<std::uint32_t> height;  ///< alone: the width does
+  std::optional<std::uint32_t> depth;
+  std::optional<Integrator> integrator;
+};
+
+/// How pictures are written, as far as it was given.
+struct DisplayOptions {
+  std::optional<double> exposure;  ///< stops
+  std::optional<Tone> tone;
+  bool half = false;  ///< EXR with 16 bits a channel
+
+  /// With what was not given from `standard`.
+  Display over(const Display& standard) const {
+    return {exposure.value_or(standard.exposure), tone.value_or(standard.tone), half};
+  }
+};
+
+/// Where the farm is, as given: a join string, a file, "-", or nothing (then environment and
+/// default folder are asked).
+struct FarmOption {
+  std::string farm;
+};
+
+struct ServeOptions {
+  std::string data;  ///< empty: the default data folder
+  std::string listen = "0.0.0.0:7878";
+  bool insecure = false;
+};
+
+struct SubmitOptions {
+  std::string scene;
+  std::vector<std::string> outputs;  ///< empty: the scene's name as PNG
+  ImageOptions image;
+  FarmOption farm;
+  DisplayOptions display;
+  Verbosity verbosity;
+  bool detach = false;  ///< do not watch
+};
+
+struct WatchOptions {
+  JobId job = 0;
+  std::vector<std::string> outputs;  ///< empty: the image is not fetched
+  FarmOption farm;
+  DisplayOptions display;
+  Verbosity verbosity;
+};
+
+struct JobsOptions {
+  FarmOption farm;
+  Verbosity verbosity;
+};
+
+struct WorkersOptions {
+  FarmOption farm;
+  Verbosity verbosity;
+};
+
+struct CancelOptions {
+  JobId job = 0;
+  FarmOption farm;
+  Verbosity verbosity;
+};
+
+struct RenderOptions {
+  std::string scene;
+  std::vector<std::string>
+      outputs;  ///< empty: the scene's name as PNG, or as .band when rows are given
+  ImageOptions image;
+  DisplayOptions display;
+  Verbosity verbosity;
+  int threads = 0;               ///< 0: one for each CPU
+  std::optional<RowRange> rows;  ///< a part of the image
+};
+
+struct InfoOptions {
+  std::string scene;
+  Verbosity verbosity;
+};
+
+struct StitchOptions {
+  std::vector<std::string> parts;
+  std::vector<std::string> outputs;
+  DisplayOptions display;
+  Verbosity verbosity;
+};
+
+struct CompareOptions {
+  std::string image;
+  std::string reference;
+  Verbosity verbosity;
+};
+
+/// --help and --version: print and leave.
+struct ShowText {
+  std::string text;
+};
+
+using Command = std::variant<ServeOptions, SubmitOptions, WatchOptions, JobsOptions, WorkersOptions,
+                             CancelOptions, RenderOptions, InfoOptions, StitchOptions,
+                             CompareOptions, ShowText>;
+
+}  // namespace bandsaw::coordinator

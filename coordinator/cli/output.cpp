@@ -1,0 +1,39 @@
+#include "coordinator/cli/output.h"
+
+#include <filesystem>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_join.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/image/write_image.h"
+
+namespace bandsaw::coordinator {
+
+bool is_part_name(const std::string& path) { return absl::EndsWithIgnoreCase(path, ".band"); }
+
+std::string default_output(const std::string& scene, const std::string& suffix) {
+  return std::filesystem::path(scene).stem().string() + suffix;
+}
+
+absl::Status check_outputs_writable(const std::vector<std::string>& outputs) {
+  for (const std::string& output : outputs) {
+    // Of a part only the folder is checked, through a picture's name beside it.
+    RETURN_IF_ERROR(check_writable(
+        is_part_name(output) ? output.substr(0, output.size() - 4) + "pfm" : output));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status write_outputs(const Image& image, const std::vector<std::string>& outputs,
+                           const Display& display) {
+  for (const std::string& output : outputs) {
+    RETURN_IF_ERROR(write_image(image, output, display));
+  }
+  return absl::OkStatus();
+}
+
+std::string names_of(const std::vector<std::string>& outputs) {
+  return absl::StrJoin(outputs, ", ");
+}
+
+}  // namespace bandsaw::coordinator

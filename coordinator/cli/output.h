@@ -1,0 +1,30 @@
+#pragma once
+
+// The files that an image goes to.
+
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "renderlib/image/display.h"
+#include "renderlib/image/image.h"
+
+namespace bandsaw::coordinator {
+
+/// Whether the name ends in .band (any case): the sums of some rows rather than a picture.
+bool is_part_name(const std::string& path);
+
+/// "scenes/cornell.textproto", ".png" -> "cornell.png": the file's stem, in the current folder.
+std::string default_output(const std::string& scene, const std::string& suffix);
+
+/// Whether every output can be written, before any work. The error names the file.
+absl::Status check_outputs_writable(const std::vector<std::string>& outputs);
+
+/// Writes the image to every output, each whole or not at all; stops at the first error.
+absl::Status write_outputs(const Image& image, const std::vector<std::string>& outputs,
+                           const Display& display);
+
+/// "cornell.png, cornell.pfm".
+std::string names_of(const std::vector<std::string>& outputs);
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,16 @@
+#pragma once
+
+// Progress for programs. The events are documented in coordinator/README.md.
+
+#include <string>
+#include <vector>
+
+#include "coordinator/cli/json.h"
+#include "coordinator/cli/progress.h"
+
+namespace bandsaw::coordinator {
+
+/// What every event about a render holds. `event`: "job", "progress", "done", …
+JsonObject progress_json(const Progress& progress, const std::string& event);
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,181 @@
+// bandsaw render: the image on this machine, without a farm.
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/cli/commands.h"
+#include "coordinator/cli/image_settings.h"
+#include "coordinator/cli/import_scene_file.h"
+#include "coordinator/cli/local_render.h"
+#include "coordinator/cli/output.h"
+#include "coordinator/cli/part_file.h"
+#include "coordinator/cli/progress_display.h"
+#include "coordinator/cli/steady_time.h"
+#include "coordinator/cli/ticker.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+std::vector<std::string> outputs_of(const RenderOptions& options) {
+  if (!options.outputs.empty()) {
+    return options.outputs;
+  }
+  return {default_output(options.scene, options.rows ? absl::StrCat("-", options.rows->first, "-",
+                                                                    options.rows->last, ".band")
+                                                     : ".png")};
+}
+
+// The package, ready to render.
+struct Prepared {
+  PackageInfo info;
+  DigestHex digest;
+  SceneDescription scene;
+};
+
+absl::StatusOr<Prepared> prepare(const RenderOptions& options, Process& process) {
+  ASSIGN_OR_RETURN(ImportedPackage package,
+                   import_scene_file(options.scene, options.verbosity, process));
+  ASSIGN_OR_RETURN(SceneDescription scene, decode_package(package.manifest(), package.blobs()));
+  return Prepared{package.info(), wire::sha256(package.manifest()).hex(), std::move(scene)};
+}
+
+absl::Status write_part_outputs(const std::vector<BandPixels>& bands, const JobSpec& spec,
+                                const RowRange& rows, const std::vector<std::string>& outputs,
+                                const Display& display) {
+  std::vector<std::string> pictures;
+  for (const std::string& output : outputs) {
+    if (!is_part_name(output)) {
+      pictures.push_back(output);
+      continue;
+    }
+    std::vector<BandRecord> records;
+    for (const BandPixels& band : bands) {
+      records.push_back({spec.manifest, spec.settings, band});
+    }
+    RETURN_IF_ERROR(write_part(output, records));
+  }
+  if (pictures.empty()) {
+    return absl::OkStatus();
+  }
+  ASSIGN_OR_RETURN(const Image image, image_of_part(bands, spec.settings, rows));
+  return write_outputs(image, pictures, display);
+}
+
+class LocalRun {
+ public:
+  LocalRun(const RenderOptions& options, Process& process, JobSpec spec, const Display& picture,
+           int threads)
+      : options_(options),
+        process_(process),
+        spec_(std::move(spec)),
+        rows_(options.rows.value_or(RowRange{0, spec_.settings.height})),
+        pool_(threads),
+        meter_(spec_, rows_, threads, steady_seconds()),
+        display_(process.console, options.verbosity),
+        picture_(picture) {}
+
+  ExitCode run(SceneDescription description, const std::vector<std::string>& outputs) {
+    const Interrupts::Listener listener(process_.interrupts, [this] { stop_ = true; });
+    const absl::Status rendered = render(std::move(description));
+    Progress progress = progress_at(steady_seconds());
+    if (!rendered.ok()) {
+      display_.clear();
+      const ExitCode code = absl::IsCancelled(rendered)         ? ExitCode::kInterrupted
+                            : absl::IsInvalidArgument(rendered) ? ExitCode::kWrong
+                                                                : ExitCode::kFailed;
+      return process_.console.fail(code, code == ExitCode::kInterrupted
+                                             ? "interrupted; nothing was written"
+                                             : std::string(rendered.message()));
+    }
+    if (const absl::Status written = write(outputs); !written.ok()) {
+      display_.clear();
+      return process_.console.fail(ExitCode::kFailed, std::string(written.message()));
+    }
+    progress.job.state = JobState::kDone;
+    progress.job.fraction = 1;
+    progress.job.remaining_s = 0;
+    display_.done(progress, outputs);
+    return ExitCode::kDone;
+  }
+
+ private:
+  absl::Status render(SceneDescription description) {
+    constexpr std::chrono::milliseconds kInterval{100};
+    const Ticker ticker(kInterval, [this] {
+      const double now = steady_seconds();
+      display_.update(progress_at(now), now);
+    });
+    ASSIGN_OR_RETURN(const std::shared_ptr<const Scene> scene,
+                     Scene::build(std::move(description), pool_));
+    const LocalJob job{*scene, spec_.settings, pool_, stop_, meter_};
+    if (options_.rows) {
+      ASSIGN_OR_RETURN(bands_,
+                       render_part(job, rows_, std::get<StopAtSamples>(spec_.stop).samples));
+    } else {
+      ASSIGN_OR_RETURN(image_, render_whole(job, spec_.stop));
+    }
+    return absl::OkStatus();
+  }
+
+  Progress progress_at(double now) const {
+    Progress progress = meter_.progress(now);
+    progress.job.cpu_s = process_cpu_seconds() - cpu_at_start_;
+    return progress;
+  }
+
+  absl::Status write(const std::vector<std::string>& outputs) const {
+    return options_.rows ? write_part_outputs(bands_, spec_, rows_, outputs, picture_)
+                         : write_outputs(image_, outputs, picture_);
+  }
+
+  const RenderOptions& options_;
+  Process& process_;
+  const JobSpec spec_;
+  const RowRange rows_;
+  Pool pool_;
+  LocalMeter meter_;
+  const double cpu_at_start_ = process_cpu_seconds();
+  ProgressDisplay display_;
+  const Display picture_;
+  std::atomic<bool> stop_{false};
+  Image image_;
+  std::vector<BandPixels> bands_;
+};
+
+}  // namespace
+
+ExitCode run(const RenderOptions& options, Process& process) {
+  const Console& console = process.console;
+  const std::vector<std::string> outputs = outputs_of(options);
+  if (const auto status = check_outputs_writable(outputs); !status.ok()) {
+    return console.fail(ExitCode::kWrong, std::string(status.message()));
+  }
+  auto prepared = prepare(options, process);
+  if (!prepared.ok()) {
+    return console.fail(import_exit_code(prepared.status()),
+                        std::string(prepared.status().message()));
+  }
+  const auto settings = image_settings(options.image, prepared->info);
+  if (!settings.ok()) {
+    return console.fail(ExitCode::kWrong, std::string(settings.status().message()));
+  }
+  if (options.rows && options.rows->last > settings->height) {
+    return console.fail(ExitCode::kWrong,
+                        absl::StrCat("--rows: must end at or before ", settings->height,
+                                     ", the image's height, is ", options.rows->last));
+  }
+  JobSpec spec;
+  spec.name = prepared->info.name;
+  spec.manifest = prepared->digest;
+  spec.settings = *settings;
+  spec.stop = options.image.stop;
+  const auto cpus = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  return LocalRun(options, process, spec, options.display.over(prepared->info.display),
+                  options.threads > 0 ? options.threads : cpus)
+      .run(std::move(prepared->scene), outputs);
+}
+
+}  // namespace bandsaw::coordinator

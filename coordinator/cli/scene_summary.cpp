@@ -1,0 +1,180 @@
+#include "coordinator/cli/scene_summary.h"
+
+#include <algorithm>
+
+#include "absl/strings/str_cat.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+/// Counts by name, in the order the names first came.
+class Tally {
+ public:
+  void add(const std::string& what, std::uint64_t count = 1) {
+    const auto same = [&](const Count& c) { return c.what == what; };
+    const auto found = std::find_if(counts_.begin(), counts_.end(), same);
+    if (found != counts_.end()) {
+      found->count += count;
+    } else if (count > 0) {
+      counts_.push_back({what, count});
+    }
+  }
+  std::vector<Count> take() { return std::move(counts_); }
+
+ private:
+  std::vector<Count> counts_;
+};
+
+std::string text(const Vec3& v) { return absl::StrCat("[", v.x, ", ", v.y, ", ", v.z, "]"); }
+
+std::string camera_text(const Camera& camera) {
+  const View view = view_of(camera);
+  const std::string place =
+      absl::StrCat(" at ", text(view.position), ", looking at ", text(view.look_at));
+  if (const auto* flat = std::get_if<OrthographicCamera>(&camera)) {
+    return absl::StrCat("orthographic, ", flat->height, " high,", place);
+  }
+  const auto& perspective = std::get<PerspectiveCamera>(camera);
+  const std::string lens = perspective.aperture > 0
+                               ? absl::StrCat(", lens of ", perspective.aperture, " sharp at ",
+                                              perspective.focus_distance)
+                               : "";
+  return absl::StrCat("perspective, ", perspective.vertical_fov, "° high", lens, ",", place);
+}
+
+std::string filter_text(const PixelFilter& filter) {
+  constexpr const char* kNames[] = {"box", "tent", "Gaussian"};
+  return absl::StrCat(kNames[static_cast<int>(filter.kind)], " of radius ", filter.radius);
+}
+
+std::string kind_of(const Material& material) {
+  if (std::holds_alternative<Diffuse>(material)) {
+    return "diffuse";
+  }
+  if (std::holds_alternative<Metal>(material)) {
+    return "metal";
+  }
+  if (std::holds_alternative<Dielectric>(material)) {
+    return "dielectric";
+  }
+  if (std::holds_alternative<Principled>(material)) {
+    return "glTF";
+  }
+  return std::holds_alternative<Emissive>(material) ? "emissive" : "other";
+}
+
+std::string kind_of(const Texture& texture) {
+  const auto* image = std::get_if<ImageTexture>(&texture);
+  if (std::holds_alternative<ConstantTexture>(texture)) {
+    return "colour";
+  }
+  if (image == nullptr) {
+    return "computed texture";
+  }
+  const bool floats = image->format == ImageTexture::Format::kFloat32;
+  return absl::StrCat(floats ? "float" : "8-bit", " image of ", image->width, "×", image->height);
+}
+
+std::uint64_t bytes_of(const Texture& texture) {
+  const auto* image = std::get_if<ImageTexture>(&texture);
+  return image == nullptr ? 0 : image->texels.size();
+}
+
+void add_box(Box& bounds, const Box& box, const Transform& to_world) {
+  if (box.empty()) {
+    return;
+  }
+  for (int corner = 0; corner < 8; ++corner) {
+    bounds.add(to_world.point({(corner & 1) != 0 ? box.hi.x : box.lo.x,
+                               (corner & 2) != 0 ? box.hi.y : box.lo.y,
+                               (corner & 4) != 0 ? box.hi.z : box.lo.z}));
+  }
+}
+
+Box bounds_of(const Geometry& geometry) {
+  Box bounds;
+  for (const Sphere& s : geometry.spheres) {
+    const Vec3 r{s.radius, s.radius, s.radius};
+    bounds.add(s.center - r);
+    bounds.add(s.center + r);
+  }
+  for (const Quad& q : geometry.quads) {
+    for (const Vec3& p : {q.corner, q.corner + q.u, q.corner + q.v, q.corner + q.u + q.v}) {
+      bounds.add(p);
+    }
+  }
+  for (const Triangle& t : geometry.triangles) {
+    for (const Vec3& p : {t.a, t.b, t.c}) {
+      bounds.add(p);
+    }
+  }
+  std::vector<Box> boxes(geometry.meshes.size());
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    for (const auto& p : geometry.meshes[i].positions) {
+      boxes[i].add({p[0], p[1], p[2]});
+    }
+  }
+  for (const Instance& instance : geometry.instances) {
+    add_box(bounds, boxes[index_of(instance.mesh)], instance.to_world);
+  }
+  return bounds;
+}
+
+std::uint64_t lights_in(const SceneDescription& scene) {
+  const auto emits = [&](MaterialId id) {
+    return std::holds_alternative<Emissive>(scene.materials[index_of(id)]);
+  };
+  const Geometry& g = scene.geometry;
+  std::uint64_t lights = 0;
+  const auto count = [&](const auto& shapes) {
+    for (const auto& shape : shapes) {
+      lights += emits(shape.material) ? 1 : 0;
+    }
+  };
+  count(g.spheres);
+  count(g.quads);
+  count(g.triangles);
+  for (const Instance& instance : g.instances) {
+    lights += emits(instance.material) ? g.meshes[index_of(instance.mesh)].triangles.size() : 0;
+  }
+  return lights;
+}
+
+}  // namespace
+
+SceneSummary summary_of(const SceneDescription& scene, const PackageInfo& info,
+                        std::uint64_t package_bytes) {
+  const Geometry& g = scene.geometry;
+  SceneSummary summary;
+  summary.info = info;
+  summary.camera = camera_text(scene.camera);
+  summary.filter = filter_text(scene.filter);
+  Tally shapes;
+  shapes.add("sphere", g.spheres.size());
+  shapes.add("quad", g.quads.size());
+  shapes.add("triangle", g.triangles.size());
+  shapes.add("mesh", g.meshes.size());
+  shapes.add("instance", g.instances.size());
+  summary.shapes = shapes.take();
+  summary.triangles = g.triangles.size();
+  for (const Instance& instance : g.instances) {
+    summary.triangles += g.meshes[index_of(instance.mesh)].triangles.size();
+  }
+  Tally materials;
+  for (const Material& material : scene.materials) {
+    materials.add(kind_of(material));
+  }
+  summary.materials = materials.take();
+  Tally textures;
+  for (const Texture& texture : scene.textures) {
+    textures.add(kind_of(texture));
+    summary.texture_bytes += bytes_of(texture);
+  }
+  summary.textures = textures.take();
+  summary.lights = lights_in(scene);
+  summary.bounds = bounds_of(g);
+  summary.package_bytes = package_bytes;
+  return summary;
+}
+
+}  // namespace bandsaw::coordinator

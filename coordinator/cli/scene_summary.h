@@ -1,0 +1,43 @@
+#pragma once
+
+// What is in a scene or model, for `bandsaw info`.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "renderlib/geometry/box.h"
+#include "renderlib/package/package.h"
+
+namespace bandsaw::coordinator {
+
+/// Something and how often it occurs.
+struct Count {
+  std::string what;  ///< "sphere", "8-bit sRGB image"
+  std::uint64_t count = 0;
+};
+
+struct SceneSummary {
+  PackageInfo info;
+  std::string camera;  ///< a sentence without its full stop
+  std::string filter;  ///< "box of radius 0.5"
+  std::vector<Count> shapes;
+  std::uint64_t triangles = 0;  ///< of all meshes as often as they are placed, and loose ones
+  std::vector<Count> materials;
+  std::vector<Count> textures;
+  std::uint64_t texture_bytes = 0;
+  std::uint64_t lights = 0;  ///< spheres, quads and triangles that emit
+  Box bounds;                ///< of instances: of their meshes' boxes, so they may be smaller
+  std::uint64_t package_bytes = 0;  ///< of manifest and blobs
+};
+
+/// Counts of kinds that do not occur are left out.
+SceneSummary summary_of(const SceneDescription& scene, const PackageInfo& info,
+                        std::uint64_t package_bytes);
+
+/// Lines for people; the last ones say what was left out or mended.
+std::vector<std::string> summary_text(const SceneSummary& summary);
+/// One JSON object.
+std::string summary_json(const SceneSummary& summary);
+
+}  // namespace bandsaw::coordinator

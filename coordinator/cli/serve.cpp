@@ -1,0 +1,107 @@
+// bandsaw serve: the coordinator, until a signal asks it to leave.
+
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/cli/commands.h"
+#include "coordinator/cli/data_folder.h"
+#include "coordinator/cli/join_addresses.h"
+#include "coordinator/engine/engine.h"
+#include "coordinator/rpc/server.h"
+#include "proto/link/identity.h"
+#include "renderlib/base/atomic_file.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+struct Serving {
+  std::unique_ptr<Engine> engine;
+  std::unique_ptr<Server> server;  // after the engine: it goes first
+  std::string join;                // of workers
+  std::string address;             // host:port
+};
+
+absl::Status make_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  return error ? errno_status(error.value(), absl::StrCat("the data folder ", folder))
+               : absl::OkStatus();
+}
+
+absl::StatusOr<std::string> write_join_string(const std::string& file, link::Role role,
+                                              const link::Identity& identity,
+                                              const std::vector<std::string>& addresses,
+                                              bool insecure) {
+  link::JoinString join;
+  join.role = role;
+  join.addresses = addresses;
+  if (!insecure) {
+    join.certificate = identity.certificate_digest;
+  }
+  join.secret = role == link::Role::kWorker ? identity.worker_secret : identity.farm_secret;
+  const std::string line = join.text() + "\n";
+  RETURN_IF_ERROR(write_file_atomically(
+      file, absl::MakeConstSpan(reinterpret_cast<const std::byte*>(line.data()), line.size())));
+  return join.text();
+}
+
+absl::StatusOr<Serving> start(const ServeOptions& options) {
+  Serving serving;
+  std::string folder = options.data;
+  if (folder.empty()) {
+    ASSIGN_OR_RETURN(folder, default_data_folder());
+  }
+  // Secrets, scenes and images are nobody else's: every file that is made from here on is 0600.
+  umask(S_IRWXG | S_IRWXO);
+  RETURN_IF_ERROR(make_folder(folder));
+  // The engine first: it locks the folder.
+  EngineOptions engine_options;
+  engine_options.data_folder = folder;
+  ASSIGN_OR_RETURN(serving.engine, Engine::start(engine_options));
+  ASSIGN_OR_RETURN(const link::Identity identity, link::load_or_make_identity(folder));
+  ASSIGN_OR_RETURN(serving.server,
+                   Server::start(*serving.engine, identity,
+                                 {.listen = options.listen, .insecure = options.insecure}));
+  const std::string host = options.listen.substr(0, options.listen.rfind(':'));
+  ASSIGN_OR_RETURN(const std::vector<LocalAddress> local, local_addresses());
+  const std::vector<std::string> addresses = join_addresses(host, serving.server->port(), local);
+  ASSIGN_OR_RETURN(serving.join, write_join_string(worker_join_file(folder), link::Role::kWorker,
+                                                   identity, addresses, options.insecure));
+  RETURN_IF_ERROR(write_join_string(farm_join_file(folder), link::Role::kFarm, identity, addresses,
+                                    options.insecure)
+                      .status());
+  serving.address = absl::StrCat(host, ":", serving.server->port());
+  return serving;
+}
+
+}  // namespace
+
+ExitCode run(const ServeOptions& options, Process& process) {
+  // Standard output is for people and scripts; the log goes beside it.
+  spdlog::set_default_logger(
+      std::make_shared<spdlog::logger>("", std::make_shared<spdlog::sinks::stderr_sink_mt>()));
+  auto serving = start(options);
+  if (!serving.ok()) {
+    return process.console.fail(ExitCode::kFailed, std::string(serving.status().message()));
+  }
+  const Interrupts::Listener listener(process.interrupts, [] {});
+  process.console.line(
+      absl::StrCat("bandsaw ", BANDSAW_VERSION, " · coordinator on ", serving->address));
+  if (options.insecure) {
+    process.console.complain(
+        "warning: --insecure: nothing is encrypted, and whoever reads the network has the secrets");
+  }
+  process.console.line(absl::StrCat("join with:  bandsaw-worker --join ", serving->join));
+  process.interrupts.wait();
+  process.console.line("stopping; jobs go on when the coordinator is started again");
+  serving->server.reset();
+  serving->engine.reset();
+  return ExitCode::kDone;
+}
+
+}  // namespace bandsaw::coordinator

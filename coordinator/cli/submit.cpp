@@ -1,0 +1,105 @@
+// bandsaw submit: a scene file to the farm, and its image back.
+
+#include <sys/random.h>
+
+#include <array>
+#include <atomic>
+
+#include "absl/strings/escaping.h"
+#include "absl/strings/str_cat.h"
+#include "coordinator/cli/commands.h"
+#include "coordinator/cli/farm_errors.h"
+#include "coordinator/cli/image_settings.h"
+#include "coordinator/cli/import_scene_file.h"
+#include "coordinator/cli/json.h"
+#include "coordinator/cli/output.h"
+#include "coordinator/cli/upload.h"
+#include "coordinator/cli/watch_job.h"
+#include "renderlib/base/check.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+// 32 hexadecimal digits that nobody else chooses.
+std::string new_request_id() {
+  std::array<char, 16> bytes{};
+  BANDSAW_CHECK(getentropy(bytes.data(), bytes.size()) == 0,
+                "Linux gives up to 256 random bytes at any time");
+  return absl::BytesToHexString({bytes.data(), bytes.size()});
+}
+
+farm::SubmitRequest request_for(const SubmitOptions& options, const ImportedPackage& package,
+                                const RenderSettings& settings) {
+  farm::SubmitRequest request;
+  request.set_request_id(new_request_id());
+  request.set_name(package.info().name);
+  request.set_manifest_sha256(wire::sha256(package.manifest()).raw());
+  *request.mutable_settings() = to_proto(settings);
+  *request.mutable_stop() = to_proto(options.image.stop);
+  return request;
+}
+
+// A blob may be dropped by the farm between its upload and the job that needs it: then all is sent
+// once more.
+absl::StatusOr<JobId> send(FarmClient& client, ImportedPackage& package,
+                           const farm::SubmitRequest& request, Verbosity verbosity,
+                           Process& process) {
+  const Interrupts::Listener listener(process.interrupts, [&] { client.stop(); });
+  ProgressDisplay display(process.console, verbosity);
+  RETURN_IF_ERROR(upload(client, package, display));
+  auto job = client.submit(request);
+  if (absl::IsFailedPrecondition(job.status())) {
+    RETURN_IF_ERROR(upload(client, package, display));
+    job = client.submit(request);
+  }
+  return job;
+}
+
+void say_detached(JobId job, Verbosity verbosity, const Console& console) {
+  if (verbosity.json) {
+    console.line(JsonObject().text("event", "submitted").whole("job", job).str());
+  } else {
+    console.line(absl::StrCat("job ", job));
+  }
+}
+
+}  // namespace
+
+ExitCode run(const SubmitOptions& options, Process& process) {
+  const Console& console = process.console;
+  std::vector<std::string> outputs = options.outputs;
+  if (outputs.empty() && !options.detach) {
+    outputs = {default_output(options.scene, ".png")};
+  }
+  if (const auto status = check_outputs_writable(outputs); !status.ok()) {
+    return console.fail(ExitCode::kWrong, std::string(status.message()));
+  }
+  // The farm first: a big scene takes long to read, and a farm that is not there makes that vain.
+  const auto client = connect_to_farm(options.farm);
+  if (!client.ok()) {
+    return console.fail(exit_code_of(client.status()), std::string(client.status().message()));
+  }
+  auto package = import_scene_file(options.scene, options.verbosity, process);
+  if (!package.ok()) {
+    return console.fail(import_exit_code(package.status()),
+                        std::string(package.status().message()));
+  }
+  const auto settings = image_settings(options.image, package->info());
+  if (!settings.ok()) {
+    return console.fail(ExitCode::kWrong, std::string(settings.status().message()));
+  }
+  const auto job = send(**client, *package, request_for(options, *package, *settings),
+                        options.verbosity, process);
+  if (!job.ok()) {
+    return console.fail(exit_code_of(job.status()), std::string(job.status().message()));
+  }
+  if (options.detach) {
+    say_detached(*job, options.verbosity, console);
+    return ExitCode::kDone;
+  }
+  return watch_job(**client, *job, outputs, options.display.over(package->info().display),
+                   options.verbosity, process);
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,31 @@
+#pragma once
+
+// Calls a function again and again from a thread of its own, until it goes out of scope.
+
+#include <chrono>
+#include <functional>
+#include <thread>
+
+#include "renderlib/base/mutex.h"
+
+namespace bandsaw::coordinator {
+
+class Ticker {
+ public:
+  /// The first call comes at once, the next one `interval` after the last has returned.
+  Ticker(std::chrono::milliseconds interval, std::function<void()> tick);
+  /// Waits for a running call.
+  ~Ticker();
+  Ticker(const Ticker&) = delete;
+  Ticker& operator=(const Ticker&) = delete;
+
+ private:
+  void run(std::chrono::milliseconds interval, const std::function<void()>& tick) EXCLUDES(mutex_);
+
+  Mutex mutex_;
+  CondVar changed_;
+  bool stopping_ GUARDED_BY(mutex_) = false;
+  std::thread thread_;
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,62 @@
+#include "coordinator/cli/upload.h"
+
+#include <algorithm>
+#include <set>
+
+#include "coordinator/cli/steady_time.h"
+#include "proto/wire/digest.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+// Tells the display of bytes sent, over all blobs.
+class Meter {
+ public:
+  Meter(ProgressDisplay& display, std::uint64_t all) : display_(display), all_(all) {}
+  void sent(std::uint64_t of_this_blob) {
+    display_.preparing("sending the scene", before_ + of_this_blob, all_, steady_seconds());
+  }
+  void finished(std::uint64_t blob) { before_ += blob; }
+
+ private:
+  ProgressDisplay& display_;
+  std::uint64_t all_;
+  std::uint64_t before_ = 0;
+};
+
+absl::Span<const std::byte> bytes_of(const std::string& text) {
+  return absl::MakeConstSpan(reinterpret_cast<const std::byte*>(text.data()), text.size());
+}
+
+}  // namespace
+
+absl::Status upload(FarmClient& client, ImportedPackage& package, ProgressDisplay& display) {
+  ASSIGN_OR_RETURN(std::vector<BlobRef> blobs, package_blobs(package.manifest()));
+  const wire::Digest manifest = wire::sha256(package.manifest());
+  std::vector<wire::Digest> digests = {manifest};
+  for (const BlobRef& blob : blobs) {
+    digests.push_back(blob.digest);
+  }
+  ASSIGN_OR_RETURN(const std::vector<wire::Digest> lacking, client.missing_blobs(digests));
+  const std::set<wire::Digest> missing(lacking.begin(), lacking.end());
+  std::erase_if(blobs, [&](const BlobRef& blob) { return !missing.contains(blob.digest); });
+  std::uint64_t all = package.manifest().size();
+  for (const BlobRef& blob : blobs) {
+    all += blob.size;
+  }
+  Meter meter(display, all);
+  for (const BlobRef& blob : blobs) {
+    ASSIGN_OR_RETURN(const std::unique_ptr<BlobBytes> bytes, package.blobs().get(blob.digest));
+    RETURN_IF_ERROR(client.put_blob(blob.digest, bytes->bytes(),
+                                    [&](std::uint64_t sent) { meter.sent(sent); }));
+    meter.finished(blob.size);
+  }
+  if (missing.contains(manifest)) {
+    RETURN_IF_ERROR(client.put_blob(manifest, bytes_of(package.manifest()),
+                                    [&](std::uint64_t sent) { meter.sent(sent); }));
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,23 @@
+// bandsaw watch: takes up a job again.
+
+#include "coordinator/cli/commands.h"
+#include "coordinator/cli/farm_errors.h"
+#include "coordinator/cli/output.h"
+#include "coordinator/cli/watch_job.h"
+
+namespace bandsaw::coordinator {
+
+ExitCode run(const WatchOptions& options, Process& process) {
+  if (const auto status = check_outputs_writable(options.outputs); !status.ok()) {
+    return process.console.fail(ExitCode::kWrong, std::string(status.message()));
+  }
+  const auto client = connect_to_farm(options.farm);
+  if (!client.ok()) {
+    return process.console.fail(exit_code_of(client.status()),
+                                std::string(client.status().message()));
+  }
+  return watch_job(**client, options.job, options.outputs, options.display.over({}),
+                   options.verbosity, process);
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,126 @@
+#include "coordinator/cli/watch_job.h"
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/cli/farm_errors.h"
+#include "coordinator/cli/output.h"
+#include "coordinator/cli/progress_display.h"
+#include "coordinator/cli/steady_time.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+constexpr double kPatience = 60;  // seconds that a farm may be gone
+constexpr std::chrono::milliseconds kPause{200};
+
+std::string come_back(JobId job, const std::vector<std::string>& outputs) {
+  return absl::StrCat("Come back with: bandsaw watch ", job, " -o ",
+                      outputs.empty() ? "FILE" : outputs.front());
+}
+
+class Watch {
+ public:
+  Watch(FarmClient& client, JobId job, ProgressDisplay& display)
+      : client_(client), job_(job), display_(display) {}
+
+  // The last state. UNAVAILABLE: the farm was gone too long. CANCELLED: stopped.
+  absl::StatusOr<Progress> to_the_end() {
+    for (;;) {
+      const absl::Status status =
+          client_.watch(job_, [this](const Progress& progress) { heard(progress); });
+      if (status.ok()) {
+        return last_;
+      }
+      if (!absl::IsUnavailable(status) && !absl::IsDeadlineExceeded(status)) {
+        return status;
+      }
+      RETURN_IF_ERROR(wait_for_farm(status));
+    }
+  }
+
+ private:
+  void heard(const Progress& progress) {
+    if (gone_since_) {
+      display_.note("the farm is back");
+      gone_since_.reset();
+    }
+    last_ = progress;
+    display_.update(progress, steady_seconds());
+  }
+
+  absl::Status wait_for_farm(const absl::Status& why) {
+    const double now = steady_seconds();
+    if (!gone_since_) {
+      gone_since_ = now;
+      display_.note(absl::StrCat("lost the farm at ", client_.address(), " (", why.message(),
+                                 "); trying again for ", kPatience, " s"));
+    }
+    const double left = *gone_since_ + kPatience - now;
+    const auto milliseconds = std::chrono::milliseconds(static_cast<std::int64_t>(left * 1000));
+    if (left <= 0 || !client_.wait_for_farm(milliseconds)) {
+      return client_.stopped() ? absl::CancelledError("interrupted")
+                               : absl::UnavailableError(
+                                     absl::StrCat("the farm at ", client_.address(), " is gone"));
+    }
+    client_.pause(kPause);
+    return absl::OkStatus();
+  }
+
+  FarmClient& client_;
+  JobId job_;
+  ProgressDisplay& display_;
+  Progress last_;
+  std::optional<double> gone_since_;
+};
+
+// What is said when a job is not followed to its image.
+ExitCode left_early(const absl::Status& status, JobId job, const std::vector<std::string>& outputs,
+                    const Console& console) {
+  const ExitCode code = exit_code_of(status);
+  if (code == ExitCode::kInterrupted) {
+    return console.fail(code,
+                        absl::StrCat("detached; job ", job, " goes on. ", come_back(job, outputs)));
+  }
+  if (code == ExitCode::kNoFarm) {
+    return console.fail(
+        code, absl::StrCat(status.message(), "; job ", job, " goes on when it is started again. ",
+                           come_back(job, outputs)));
+  }
+  return console.fail(code, std::string(status.message()));
+}
+
+}  // namespace
+
+ExitCode watch_job(FarmClient& client, JobId job, const std::vector<std::string>& outputs,
+                   const Display& picture, Verbosity verbosity, Process& process) {
+  const Interrupts::Listener listener(process.interrupts, [&] { client.stop(); });
+  ProgressDisplay display(process.console, verbosity);
+  const auto last = Watch(client, job, display).to_the_end();
+  if (!last.ok()) {
+    display.clear();
+    return left_early(last.status(), job, outputs, process.console);
+  }
+  if (last->job.state != JobState::kDone) {
+    display.ended(*last);
+    const std::string reason = last->job.reason.empty() ? "" : absl::StrCat(": ", last->job.reason);
+    return process.console.fail(
+        ExitCode::kFailed, absl::StrCat("job ", job, " ", state_name(last->job.state), reason));
+  }
+  if (!outputs.empty()) {
+    const auto image = client.result(job);
+    if (!image.ok()) {
+      display.clear();
+      return left_early(image.status(), job, outputs, process.console);
+    }
+    if (const auto status = write_outputs(*image, outputs, picture); !status.ok()) {
+      display.clear();
+      return process.console.fail(
+          ExitCode::kFailed,
+          absl::StrCat(status.message(), "; the farm keeps the image. ", come_back(job, {})));
+    }
+  }
+  display.done(*last, outputs);
+  return ExitCode::kDone;
+}
+
+}  // namespace bandsaw::coordinator

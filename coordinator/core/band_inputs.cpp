@@ -1,0 +1,121 @@
+// A band's pixels are on disk, or a worker could not make them.
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/core/state.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+/// A worker's pace changes less from band to band than what the rows cost.
+constexpr double kNewestPace = 0.15;
+
+}  // namespace
+
+std::optional<std::vector<RowRange>> Core::State::wanted(JobId id, const Band& band) const {
+  const Job* job = find(id);
+  const Pass* pass = job == nullptr || is_final(job->state) ? nullptr : job->pass_of(band);
+  if (pass == nullptr) {
+    return std::nullopt;
+  }
+  return pass->coverage.wanted(band);
+}
+
+void Core::State::on(const input::BandStored& in) {
+  Job* job = find(in.job);
+  Pass* pass = job == nullptr || is_final(job->state) ? nullptr : job->pass_of(in.band);
+  if (pass == nullptr) {
+    return;
+  }
+  if (in.row_digests.size() != in.band.rows.count()) {
+    step_.status = absl::InternalError("a stored band needs one digest a row");
+    return;
+  }
+  Worker* worker = workers_.by_instance(in.instance);
+  if (const auto row = pass->digests.first_difference(in.band, in.row_digests)) {
+    returned_other_pixels(*job, in, *row);
+    return;
+  }
+  if (worker != nullptr) {
+    measure(*worker, *job, in);
+  }
+  const Coverage::Change change = store(*job, *pass, in);
+  if (worker != nullptr) {
+    end_own(*worker, in);
+  }
+  end_overtaken(change.overtaken);
+  end_useless_copies(*job);
+  if (!change.rows.empty()) {
+    act(action::AddToFilm{job->id, in.band, change.rows});
+  }
+  settle(*job);
+}
+
+Coverage::Change Core::State::store(Job& job, Pass& pass, const input::BandStored& in) {
+  Coverage::Change change = pass.coverage.assign(in.band, kStored);
+  job.bands_on_disk = true;
+  if (change.rows.empty()) {
+    return change;
+  }
+  pass.digests.keep(in.band, change.rows, in.row_digests);
+  pass.counters.add(in.counters);
+  pass.cpu_s += in.cpu_s;
+  std::uint64_t rows = 0;
+  for (const RowRange& range : change.rows) {
+    rows += range.count();
+  }
+  job.throughput.add(clock_.wall(), static_cast<double>(rows * in.band.samples.samples() *
+                                                        job.spec.settings.width));
+  if (!in.instance.empty() && job.used.size() < Job::kUsedKept) {
+    job.used.insert(in.instance);
+  }
+  job.advance();
+  touch(job);
+  return change;
+}
+
+void Core::State::measure(Worker& worker, Job& job, const input::BandStored& in) {
+  if (in.render_s <= 0) {
+    return;
+  }
+  const double columns = static_cast<double>(in.band.samples.samples()) * job.spec.settings.width;
+  const double speed = columns * in.band.rows.count() / in.render_s;
+  worker.speed.measure(speed);
+  Worker::OnJob& on_job = worker.on_job[job.id];
+  on_job.speed.measure(speed);
+  const double work = columns * job.cost.of(in.band.rows);  // as was expected
+  // Of a worker that is new to the job, what others of as many threads do is as good a guess.
+  if (job.per_thread.measured()) {
+    const double expected = pace(worker, job);
+    job.cost.learn(in.band.rows, in.render_s * expected / work);
+    if (!on_job.pace.measured()) {
+      on_job.pace.measure(expected);
+    }
+  }
+  on_job.pace.measure(work / in.render_s, std::max(kNewestPace, 1.0 / (2 + on_job.bands++)));
+  job.per_thread.measure(on_job.pace.mean() / worker.threads);
+}
+
+void Core::State::end_own(const Worker& worker, const input::BandStored& in) {
+  for (const LeaseId id : worker.leases) {
+    if (const Lease& lease = *leases_.find(id); lease.job == in.job && lease.band == in.band) {
+      // The answer to a Hello may reach the worker after it has dropped this band as stored.
+      end_lease(id, lease.taken_up ? Revoke::kYes : Revoke::kNo);
+      return;
+    }
+  }
+}
+
+void Core::State::on(const input::BandFailed& in) {
+  Worker* worker = workers_.by_session(in.session);
+  const Lease* lease = leases_.find(in.lease);
+  if (worker == nullptr || lease == nullptr || lease->worker != worker->id) {
+    return;
+  }
+  Job& job = jobs_.at(lease->job);
+  const Band band = lease->band;
+  worker->heard_at = clock_.patience();
+  end_lease(in.lease, Revoke::kNo);
+  add_fault(job, *worker, band, in.reason);
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,140 @@
+// What goes wrong: bands that cannot be rendered, workers that are silent, stuck, or wrong.
+
+#include <algorithm>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "coordinator/core/state.h"
+#include "proto/wire/limits.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+/// Faults after which a worker is not given that job again, and after which a band is given up.
+constexpr std::uint32_t kFaultsPerWorker = 3;
+constexpr std::size_t kFaultsPerBand = 3;
+
+bool meet(const Band& a, const Band& b) {
+  return a.samples.first < b.samples.last && b.samples.first < a.samples.last &&
+         a.rows.first < b.rows.last && b.rows.first < a.rows.last;
+}
+
+std::string name_of(const Band& band) {
+  return absl::StrCat("rows ", band.rows.first, "–", band.rows.last, " of samples ",
+                      band.samples.first, "–", band.samples.last);
+}
+
+}  // namespace
+
+bool Core::State::may_render(const Worker& worker, const Job& job) const {
+  const auto on_job = worker.on_job.find(job.id);
+  return on_job == worker.on_job.end() || on_job->second.faults < kFaultsPerWorker;
+}
+
+bool Core::State::someone_else(const Job& job, const Band& band) const {
+  return std::any_of(workers_.all().begin(), workers_.all().end(), [&](const auto& entry) {
+    const Worker& worker = entry.second;
+    return worker.eligible() && may_render(worker, job) &&
+           std::none_of(job.faults.begin(), job.faults.end(), [&](const Fault& fault) {
+             return fault.instance == worker.instance && meet(fault.band, band);
+           });
+  });
+}
+
+std::vector<Band> Core::State::left_to_others(const Job& job, const Worker& worker) const {
+  std::vector<Band> avoid;
+  for (const Fault& fault : job.faults) {
+    if (fault.instance == worker.instance && someone_else(job, fault.band)) {
+      avoid.push_back(fault.band);
+    }
+  }
+  return avoid;
+}
+
+bool Core::State::left_to_others(const Job& job, const Worker& worker, const Band& band) const {
+  const std::vector<Band> avoid = left_to_others(job, worker);
+  return std::any_of(avoid.begin(), avoid.end(), [&](const Band& a) { return meet(a, band); });
+}
+
+void Core::State::add_fault(Job& job, Worker& worker, const Band& band, const std::string& reason) {
+  ++worker.on_job[job.id].faults;
+  job.faults.push_back({band, worker.instance, reason.substr(0, wire::kReasonBytes)});
+  if (job.faults.size() > Job::kFaultsKept) {
+    job.faults.pop_front();
+  }
+  std::set<std::string> names;
+  std::size_t count = 0;
+  for (const Fault& fault : job.faults) {
+    if (meet(fault.band, band)) {
+      const Worker* known = workers_.by_instance(fault.instance);
+      names.insert(known == nullptr ? fault.instance : known->name);
+      ++count;
+    }
+  }
+  job.notice = absl::StrCat(worker.name, " could not render ", name_of(band), ": ", reason);
+  if (names.size() >= kFaultsPerBand || (count >= kFaultsPerBand && !someone_else(job, band))) {
+    end(job, JobState::kFailed,
+        absl::StrCat(name_of(band), " failed ", count, " times, on ", absl::StrJoin(names, ", "),
+                     ": ", reason));
+  }
+}
+
+void Core::State::check_silence() {
+  std::vector<WorkerId> silent;
+  for (const auto& [id, worker] : workers_.all()) {
+    if (worker.session && clock_.patience() - worker.heard_at > options_.heartbeat_timeout_s) {
+      silent.push_back(id);
+    }
+  }
+  for (const WorkerId id : silent) {
+    Worker& worker = *workers_.by_id(id);
+    const std::string reason =
+        absl::StrCat("not heard of for ", options_.heartbeat_timeout_s, " s");
+    act(action::Close{*worker.session, reason});
+    lose(worker, reason);
+  }
+}
+
+void Core::State::check_progress() {
+  std::vector<LeaseId> stuck;
+  for (const auto& [id, lease] : leases_.all()) {
+    if (jobs_.at(lease.job).state == JobState::kRunning &&
+        clock_.patience() - lease.advanced_at > options_.progress_timeout_s) {
+      stuck.push_back(id);
+    }
+  }
+  for (const LeaseId id : stuck) {
+    const Lease* lease = leases_.find(id);
+    // One that waited behind a stuck one has its turn now; a job that has failed has no leases.
+    if (lease == nullptr || clock_.patience() - lease->advanced_at <= options_.progress_timeout_s) {
+      continue;
+    }
+    const Band band = lease->band;
+    Job& job = jobs_.at(lease->job);
+    Worker& worker = *workers_.by_id(lease->worker);
+    end_lease(id, Revoke::kYes);
+    add_fault(job, worker, band,
+              absl::StrCat("no progress for ", options_.progress_timeout_s, " s"));
+  }
+}
+
+void Core::State::returned_other_pixels(Job& job, const input::BandStored& in, std::uint32_t row) {
+  Band where = in.band;
+  where.rows = {row, row + 1};
+  Worker* worker = workers_.by_instance(in.instance);
+  const std::string reason = absl::StrCat("returned different pixels than another worker for ",
+                                          name_of(where), " of job ", job.id);
+  job.notice = absl::StrCat(worker == nullptr ? "a worker that has left" : worker->name, " ",
+                            reason, "; it gets no more work");
+  if (worker == nullptr) {
+    return;
+  }
+  worker->faulty = true;
+  worker->reason = absl::StrCat(reason, "; check the machine and restart the worker");
+  if (worker->session) {
+    act(action::Close{*worker->session, worker->reason});
+    lose(*worker, worker->reason);
+  }
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,118 @@
+#include "coordinator/core/job.h"
+
+#include <algorithm>
+
+#include "renderlib/base/check.h"
+
+namespace bandsaw::coordinator {
+
+Job::Job(JobId job, JobSpec job_spec)
+    : id(job), spec(std::move(job_spec)), cost(spec.settings.height) {}
+
+Pass* Job::pass_of(const Band& band) {
+  return const_cast<Pass*>(std::as_const(*this).pass_of(band));
+}
+
+const Pass* Job::pass_of(const Band& band) const {
+  const bool rows_exist =
+      band.rows.first < band.rows.last && band.rows.last <= spec.settings.height;
+  if (!rows_exist || band.samples.first >= band.samples.last) {
+    return nullptr;
+  }
+  const auto after =
+      std::upper_bound(passes.begin(), passes.end(), band.samples.first,
+                       [](std::uint64_t first, const Pass& p) { return first < p.samples.first; });
+  if (after == passes.begin()) {
+    return nullptr;
+  }
+  const Pass& pass = *std::prev(after);
+  // A range that ends inside its last block is a node only at the job's last sample.
+  const bool whole_blocks = band.samples.last % kBlockSamples == 0;
+  const bool node = band.samples.last <= pass.samples.last && is_node(band.samples) &&
+                    (whole_blocks || band.samples.last == pass.samples.last);
+  return node ? &pass : nullptr;
+}
+
+void Job::add_pass(const SampleRange& samples) {
+  BANDSAW_CHECK(samples.first == planned_samples(), "passes follow each other");
+  passes.push_back({samples, Coverage(samples, spec.settings.height), {}, {}, 0, {}});
+}
+
+void Job::fix(std::uint64_t samples) {
+  fixed = samples;
+  while (!passes.empty() && passes.back().samples.first >= samples) {
+    passes.pop_back();
+  }
+  complete_passes_ = std::min(complete_passes_, passes.size());
+}
+
+void Job::advance() {
+  while (complete_passes_ < passes.size() && passes[complete_passes_].coverage.complete()) {
+    passes[complete_passes_].returned.clear();
+    ++complete_passes_;
+    if (complete_passes_ > kPassesWithDigests) {
+      passes[complete_passes_ - kPassesWithDigests - 1].digests.clear();
+    }
+  }
+}
+
+void Job::finish() {
+  final_totals_ = totals();
+  final_samples_ = complete_samples();
+  passes.clear();
+  faults.clear();
+  cost = {};
+  complete_passes_ = 0;
+}
+
+std::uint64_t Job::planned_samples() const {
+  return passes.empty() ? 0 : passes.back().samples.last;
+}
+
+std::uint64_t Job::complete_samples() const {
+  if (is_final(state)) {
+    return state == JobState::kDone ? fixed.value_or(0) : final_samples_;
+  }
+  return complete_passes_ == 0 ? 0 : passes[complete_passes_ - 1].samples.last;
+}
+
+bool Job::any_free() const {
+  return std::any_of(passes.begin() + static_cast<std::ptrdiff_t>(complete_passes_), passes.end(),
+                     [](const Pass& pass) { return pass.coverage.any_free(); });
+}
+
+std::uint64_t Job::free_samples() const {
+  std::uint64_t sum = 0;
+  for (std::size_t i = complete_passes_; i < passes.size(); ++i) {
+    sum += passes[i].coverage.free_samples();
+  }
+  return sum * spec.settings.width;
+}
+
+std::uint64_t Job::pixels() const {
+  return std::uint64_t{spec.settings.width} * spec.settings.height;
+}
+
+Totals Job::totals() const {
+  Totals sum = final_totals_;
+  for (const Pass& pass : passes) {
+    sum.samples += pass.coverage.stored_samples() * spec.settings.width;
+    sum.counters.add(pass.counters);
+    sum.cpu_s += pass.cpu_s;
+  }
+  if (state == JobState::kDone) {
+    sum.samples = fixed.value_or(0) * pixels();
+  }
+  return sum;
+}
+
+std::uint64_t Job::max_samples() const {
+  struct Most {
+    std::uint64_t operator()(const StopAtSamples& rule) const { return rule.samples; }
+    std::uint64_t operator()(const StopAtError& rule) const { return rule.max_samples; }
+    std::uint64_t operator()(const StopAtTime& rule) const { return rule.max_samples; }
+  };
+  return std::visit(Most{}, spec.stop);
+}
+
+}  // namespace bandsaw::coordinator

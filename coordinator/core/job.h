@@ -1,0 +1,113 @@
+#pragma once
+
+// One job: its passes, what is there of them, and what went wrong.
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "coordinator/core/cost_map.h"
+#include "coordinator/core/coverage.h"
+#include "coordinator/core/row_digests.h"
+#include "coordinator/core/speed.h"
+#include "coordinator/core/types.h"
+
+namespace bandsaw::coordinator {
+
+/// What was stored, of a pass or of a job. Each band is counted once, by its first valid result.
+struct Totals {
+  std::uint64_t samples = 0;  ///< pixel samples
+  Counters counters;
+  double cpu_s = 0;
+};
+
+struct Pass {
+  SampleRange samples;
+  Coverage coverage;
+  RowDigests digests;
+  Counters counters;
+  double cpu_s = 0;
+  /// How often a band that begins at this sample and row came back unfinished. For the logs.
+  std::map<std::pair<std::uint64_t, std::uint32_t>, std::uint32_t> returned;
+};
+
+/// The reason of a job that a person paused.
+inline constexpr char kPausedByAPerson[] = "paused by a person; it goes on with: bandsaw resume";
+
+/// A worker could not render a band, or made no progress on it.
+struct Fault {
+  Band band;
+  std::string instance;
+  std::string reason;
+};
+
+class Job {
+ public:
+  Job(JobId id, JobSpec spec);
+
+  /// The pass that a band's samples are a node of, when its rows are in the image; else nothing.
+  Pass* pass_of(const Band& band);
+  const Pass* pass_of(const Band& band) const;
+
+  /// Follows the last pass.
+  void add_pass(const SampleRange& samples);
+  /// The job ends after this many samples: passes beyond are forgotten.
+  void fix(std::uint64_t samples);
+  /// Counts complete passes on; digests of all but the last few are forgotten.
+  void advance();
+  /// Passes, faults and digests are not needed any more; the totals stay.
+  void finish();
+
+  std::uint64_t planned_samples() const;   ///< of all passes
+  std::uint64_t complete_samples() const;  ///< of the passes that are complete from the first
+  bool complete() const { return fixed && complete_samples() >= *fixed; }
+  bool any_free() const;
+  /// Pixel samples of its passes that nobody has.
+  std::uint64_t free_samples() const;
+  Totals totals() const;
+  std::uint64_t pixels() const;
+  std::uint64_t max_samples() const;
+  bool timed() const { return std::holds_alternative<StopAtTime>(spec.stop); }
+
+  JobId id = 0;
+  JobSpec spec;
+  JobState state = JobState::kRunning;
+  std::int32_t priority = 0;
+  bool held = false;                   ///< a person paused it
+  std::string reason;                  ///< of the state
+  std::string notice;                  ///< what people should know though the job goes on
+  std::optional<std::uint64_t> fixed;  ///< the job ends after this many samples a pixel
+  std::vector<Pass> passes;            ///< from sample 0 on, without gaps
+  bool bands_on_disk = false;          ///< bands were stored and not dropped
+
+  double error = -1;  ///< of `error_at` samples; negative: not known
+  std::uint64_t error_at = 0;
+
+  std::set<LeaseId> leases;
+  std::set<LeaseId> copies;        ///< of `leases`, those that own nothing (Lease::copy_of)
+  std::uint64_t bands_copied = 0;  ///< leases given to idle workers though others had them
+  std::deque<Fault> faults;        ///< the newest kFaultsKept
+  std::set<std::string> used;      ///< instances whose bands are in the image, at most kUsedKept
+
+  std::optional<Time> first_lease_at;  ///< in this life of the coordinator
+  std::optional<Time> final_at;
+  Throughput throughput;  ///< pixel samples
+  CostMap cost;           ///< of its rows
+  Speed per_thread;       ///< pace of all its workers, in work a second and thread
+
+  static constexpr std::size_t kFaultsKept = 1'000;
+  static constexpr std::size_t kUsedKept = 65'536;
+
+ private:
+  static constexpr std::size_t kPassesWithDigests = 8;
+  std::size_t complete_passes_ = 0;
+  Totals final_totals_;
+  std::uint64_t final_samples_ = 0;
+};
+
+}  // namespace bandsaw::coordinator

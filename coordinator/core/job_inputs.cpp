@@ -1,0 +1,289 @@
+// Submitting, cancelling, deciding how many samples, pausing, finishing.
+
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/core/pass_plan.h"
+#include "coordinator/core/state.h"
+#include "proto/wire/limits.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+/// Jobs that are known, final ones included: what keeps memory bounded.
+constexpr std::size_t kJobsKept = 100'000;
+
+bool in_range(const StopRule& stop) {
+  struct InRange {
+    static bool samples(std::uint64_t n) { return n >= 1 && n <= kMaxSamples; }
+    bool operator()(const StopAtSamples& rule) const { return samples(rule.samples); }
+    bool operator()(const StopAtError& rule) const {
+      return rule.relative_rmse > 0 && samples(rule.max_samples);
+    }
+    bool operator()(const StopAtTime& rule) const {
+      return rule.seconds > 0 && samples(rule.max_samples);
+    }
+  };
+  return std::visit(InRange{}, stop);
+}
+
+}  // namespace
+
+void Core::State::on(const input::Submit& in) {
+  if (const auto known = by_request_.find(in.spec.request_id); known != by_request_.end()) {
+    step_.job = known->second;
+    if (find(known->second)->spec != in.spec) {
+      step_.status = absl::AlreadyExistsError(
+          absl::StrCat("request id ", in.spec.request_id, " is job ", known->second,
+                       " with another scene or other settings; submit with a new request id"));
+    }
+    return;
+  }
+  if (in.priority < -kMostPriority || in.priority > kMostPriority) {
+    step_.status = absl::InvalidArgumentError(absl::StrCat(
+        "a priority lies in [", -kMostPriority, ", ", kMostPriority, "], is ", in.priority));
+    return;
+  }
+  if (!in_range(in.spec.stop) || in.spec.settings.width == 0 || in.spec.settings.height == 0) {
+    step_.status = absl::InvalidArgumentError(
+        absl::StrCat("the stop rule or the image size is out of range: samples are [1, ",
+                     kMaxSamples, "], error and time are above 0, width and height at least 1"));
+    return;
+  }
+  if (active_.size() >= wire::kActiveJobs || jobs_.size() >= kJobsKept) {
+    step_.status = absl::ResourceExhaustedError(
+        absl::StrCat(active_.size(), " jobs are not done yet (at most ", wire::kActiveJobs, "), ",
+                     jobs_.size(), " are known (at most ", kJobsKept,
+                     "); wait for a job, cancel one, or start with a new data folder"));
+    return;
+  }
+  step_.job = next_job_;
+  emit(record::JobAdded{step_.job, in.spec});
+  if (in.priority != 0) {
+    emit(record::PriorityChanged{step_.job, in.priority});
+  }
+  plan_first(*find(step_.job));
+}
+
+void Core::State::on(const input::Cancel& in) {
+  Job* job = find(in.job);
+  if (job == nullptr) {
+    step_.status = absl::NotFoundError(absl::StrCat("there is no job ", in.job));
+    return;
+  }
+  if (!is_final(job->state)) {
+    end(*job, JobState::kCancelled, "");
+  }
+}
+
+/// A job that can be told something; else the step's status says why not.
+Job* Core::State::asked_of(JobId id) {
+  Job* job = find(id);
+  if (job == nullptr) {
+    step_.status = absl::NotFoundError(absl::StrCat("there is no job ", id));
+    return nullptr;
+  }
+  if (is_final(job->state)) {
+    step_.status = absl::FailedPreconditionError(absl::StrCat("job ", id, " is over"));
+    return nullptr;
+  }
+  return job;
+}
+
+void Core::State::on(const input::Pause& in) {
+  Job* job = asked_of(in.job);
+  if (job == nullptr || job->held) {
+    return;
+  }
+  if (job->state == JobState::kFinishing) {
+    step_.status = absl::FailedPreconditionError(
+        absl::StrCat("job ", in.job, " is finishing: all of it is rendered"));
+    return;
+  }
+  emit(record::HoldChanged{job->id, true});
+  emit(record::StateChanged{job->id, JobState::kPaused, kPausedByAPerson});
+  std::vector<LeaseId> waiting;
+  for (const LeaseId id : job->leases) {
+    if (workers_.by_id(leases_.find(id)->worker)->leases.front() != id) {
+      waiting.push_back(id);
+    }
+  }
+  end_all(waiting, Revoke::kYes);
+}
+
+void Core::State::on(const input::Resume& in) {
+  Job* job = asked_of(in.job);
+  if (job == nullptr) {
+    return;
+  }
+  if (job->held) {
+    emit(record::HoldChanged{job->id, false});
+  }
+  if (job->state == JobState::kPaused) {
+    resume(*job);
+  }
+}
+
+void Core::State::on(const input::SetPriority& in) {
+  Job* job = asked_of(in.job);
+  if (job == nullptr || job->priority == in.priority) {
+    return;
+  }
+  if (in.priority < -kMostPriority || in.priority > kMostPriority) {
+    step_.status = absl::InvalidArgumentError(absl::StrCat(
+        "a priority lies in [", -kMostPriority, ", ", kMostPriority, "], is ", in.priority));
+    return;
+  }
+  emit(record::PriorityChanged{job->id, in.priority});
+}
+
+void Core::State::plan_first(Job& job) {
+  if (const auto* rule = std::get_if<StopAtSamples>(&job.spec.stop)) {
+    if (!job.fixed) {
+      fix(job, rule->samples);
+    }
+    plan_until(job, rule->samples);
+  } else if (job.passes.empty()) {
+    plan_until(job, job.timed() ? std::min(kBlockSamples, job.max_samples())
+                                : next_look(0, -1, 0, job.max_samples()));
+  }
+}
+
+void Core::State::plan_until(Job& job, std::uint64_t samples) {
+  if (job.planned_samples() >= samples) {
+    return;
+  }
+  for (const SampleRange& pass : passes_between(job.planned_samples(), samples)) {
+    emit(record::PassPlanned{job.id, pass});
+  }
+  touch(job);
+}
+
+bool Core::State::plan_timed(Job& job) {
+  const auto* rule = std::get_if<StopAtTime>(&job.spec.stop);
+  if (rule == nullptr || job.fixed || job.planned_samples() >= rule->max_samples) {
+    return false;
+  }
+  const double left = rule->seconds - elapsed(job);
+  const std::size_t begun = static_cast<std::size_t>(
+      std::count_if(job.passes.begin(), job.passes.end(),
+                    [](const Pass& pass) { return !pass.coverage.complete(); }));
+  if (left <= 0 || begun >= 3) {
+    return false;
+  }
+  const double fits =
+      left * job.throughput.per_second(clock_.wall()) / static_cast<double>(job.pixels());
+  emit(
+      record::PassPlanned{job.id, next_timed_pass(job.planned_samples(), fits, rule->max_samples)});
+  return true;
+}
+
+void Core::State::on(const input::PassMerged& in) {
+  Job* job = find(in.job);
+  if (job == nullptr || is_final(job->state) || in.samples < job->error_at) {
+    return;
+  }
+  const bool known = in.error >= 0 && std::isfinite(in.error);
+  if (known) {
+    job->error = in.error;
+    job->error_at = in.samples;
+  }
+  look_at_error(*job, in.samples, known ? in.error : -1);
+}
+
+void Core::State::look_at_error(Job& job, std::uint64_t samples, double error) {
+  const auto* rule = std::get_if<StopAtError>(&job.spec.stop);
+  // Only where it was planned to be looked at: what is measured on the way depends on who was fast.
+  if (rule == nullptr || job.fixed || samples != job.planned_samples() ||
+      samples != job.complete_samples()) {
+    return;
+  }
+  const bool reached = error >= 0 && error <= rule->relative_rmse;
+  if (reached || samples >= rule->max_samples) {
+    fix(job, samples);
+    settle(job);
+    return;
+  }
+  plan_until(job, next_look(samples, error, rule->relative_rmse, rule->max_samples));
+}
+
+void Core::State::fix(Job& job, std::uint64_t samples) {
+  std::vector<LeaseId> beyond;
+  for (const LeaseId id : job.leases) {
+    if (leases_.find(id)->band.samples.first >= samples) {
+      beyond.push_back(id);
+    }
+  }
+  end_all(beyond, Revoke::kYes);
+  emit(record::SamplesFixed{job.id, samples});
+}
+
+void Core::State::settle(Job& job) {
+  if (job.state != JobState::kRunning) {
+    return;
+  }
+  if (const auto* rule = std::get_if<StopAtTime>(&job.spec.stop); rule != nullptr && !job.fixed) {
+    const std::uint64_t there = job.complete_samples();
+    if (there > 0 && (elapsed(job) >= rule->seconds || there >= rule->max_samples)) {
+      fix(job, there);
+    }
+  }
+  if (job.complete()) {
+    emit(record::StateChanged{job.id, JobState::kFinishing, ""});
+    act(action::WriteResult{job.id, *job.fixed});
+  }
+}
+
+void Core::State::end(Job& job, JobState state, const std::string& reason) {
+  end_all({job.leases.begin(), job.leases.end()}, Revoke::kYes);
+  emit(record::StateChanged{job.id, state, reason.substr(0, wire::kReasonBytes)});
+  act(action::DropBands{job.id});
+}
+
+void Core::State::on(const input::ResultWritten& in) {
+  if (Job* job = find(in.job); job != nullptr && job->state == JobState::kFinishing) {
+    end(*job, JobState::kDone, "");
+  }
+}
+
+void Core::State::on(const input::StorageFailed& in) {
+  Job* job = find(in.job);
+  if (job != nullptr && (job->state == JobState::kRunning || job->state == JobState::kFinishing)) {
+    emit(record::StateChanged{job->id, JobState::kPaused, in.reason.substr(0, wire::kReasonBytes)});
+  }
+}
+
+void Core::State::on(const input::StorageBack&) {
+  const std::set<JobId> active = active_;
+  for (const JobId id : active) {
+    if (Job& job = jobs_.at(id); job.state == JobState::kPaused && !job.held) {
+      resume(job);
+    }
+  }
+}
+
+void Core::State::resume(Job& job) {
+  emit(record::StateChanged{job.id, JobState::kRunning, ""});
+  for (const LeaseId id : job.leases) {
+    leases_.find(id)->advanced_at = clock_.patience();
+  }
+  touch(job);
+  settle(job);
+}
+
+void Core::State::on(const input::Tick&) {
+  give_up_on_former();
+  forget_refusals();
+  check_silence();
+  check_progress();
+  const std::set<JobId> active = active_;
+  for (const JobId id : active) {
+    settle(jobs_.at(id));
+  }
+}
+
+double Core::State::elapsed(const Job& job) const {
+  return job.first_lease_at ? clock_.wall() - *job.first_lease_at : 0;
+}
+
+}  // namespace bandsaw::coordinator

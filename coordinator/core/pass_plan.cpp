@@ -1,0 +1,66 @@
+#include "coordinator/core/pass_plan.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace bandsaw::coordinator {
+namespace {
+
+std::uint64_t blocks_of(std::uint64_t samples) {
+  return (samples + kBlockSamples - 1) / kBlockSamples;
+}
+
+/// The longest node that begins at a block, in blocks.
+std::uint64_t alignment(std::uint64_t block) { return block == 0 ? 1 : block & (~block + 1); }
+
+SampleRange pass_at(std::uint64_t block, std::uint64_t blocks, std::uint64_t end) {
+  return {block * kBlockSamples, std::min((block + blocks) * kBlockSamples, end)};
+}
+
+/// x rounded down to a power of two times 4, 5, 6 or 7 quarters.
+std::uint64_t quarters(std::uint64_t x) {
+  const std::uint64_t step = std::max<std::uint64_t>(1, std::bit_floor(x) / 4);
+  return x / step * step;
+}
+
+}  // namespace
+
+std::vector<SampleRange> passes_between(std::uint64_t from, std::uint64_t to) {
+  const std::uint64_t end = blocks_of(to);
+  const std::uint64_t longest = std::bit_floor(std::max<std::uint64_t>(1, end / 4));
+  std::vector<SampleRange> passes;
+  for (std::uint64_t block = from / kBlockSamples; block < end;
+       block += blocks_of(passes.back().samples())) {
+    passes.push_back(
+        pass_at(block, std::min({alignment(block), std::bit_floor(end - block), longest}), to));
+  }
+  return passes;
+}
+
+std::uint64_t next_look(std::uint64_t samples, double error, double target,
+                        std::uint64_t max_samples) {
+  const std::uint64_t now = blocks_of(samples);
+  std::uint64_t next = std::max<std::uint64_t>(2, now + std::max<std::uint64_t>(1, now / 4));
+  if (!(error >= 0)) {
+    next = std::max<std::uint64_t>(2, 2 * now);
+  } else if (error > target) {
+    const double soonest = std::min(static_cast<double>(now) * (error / target),
+                                    static_cast<double>(blocks_of(max_samples)));
+    next = std::max(next, static_cast<std::uint64_t>(soonest));
+  }
+  return std::min(quarters(next) * kBlockSamples, max_samples);
+}
+
+SampleRange next_timed_pass(std::uint64_t from, double fits, std::uint64_t max_samples) {
+  const std::uint64_t block = from / kBlockSamples;
+  const std::uint64_t end = blocks_of(max_samples);
+  std::uint64_t blocks = std::min(alignment(block), std::bit_floor(end - block));
+  if (block >= 4) {
+    blocks = std::min(blocks, std::bit_floor(block / 4));
+  }
+  const double fitting = std::clamp(fits / static_cast<double>(kBlockSamples), 1.0, 1e9);
+  blocks = std::min(blocks, std::bit_floor(static_cast<std::uint64_t>(fitting)));
+  return pass_at(block, blocks, max_samples);
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,31 @@
+#pragma once
+
+// Which passes a job is sawn into: pure functions of the stop rule and of what was measured, so
+// that the same job has the same passes on every farm.
+
+#include <cstdint>
+#include <vector>
+
+#include "renderlib/render/band.h"
+
+namespace bandsaw::coordinator {
+
+/// Passes that follow each other and cover samples [from, to): each a node, beginning small so that
+/// a first image comes soon, then doubling, none longer than about a quarter of `to`. `from`: 0 or
+/// a multiple of 16; to > from.
+std::vector<SampleRange> passes_between(std::uint64_t from, std::uint64_t to);
+
+/// When the error is looked at next, in samples a pixel: up to there the passes run on without
+/// waiting for each other. `samples`: where it was measured as `error` (not known: negative or not
+/// a number); 0 at the beginning. The error of an image falls between n^-1/2 (random samples) and
+/// n^-1 (well stratified ones). Before n^-1 could have reached the target there is no use in
+/// looking; then it is looked at after each quarter more, so that a job renders at most about a
+/// quarter too much. Never above max_samples.
+std::uint64_t next_look(std::uint64_t samples, double error, double target,
+                        std::uint64_t max_samples);
+
+/// The next pass of a job with a time limit, after samples [0, from): at most a quarter of what is
+/// there, and no more than `fits` samples where that is not less than a block. from < max_samples.
+SampleRange next_timed_pass(std::uint64_t from, double fits, std::uint64_t max_samples);
+
+}  // namespace bandsaw::coordinator

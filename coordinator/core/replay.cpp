@@ -1,0 +1,118 @@
+// Durable facts: new ones, and those of earlier lives.
+
+#include "coordinator/core/pass_plan.h"
+#include "coordinator/core/state.h"
+
+namespace bandsaw::coordinator {
+
+void Core::State::apply(const Record& record) {
+  std::visit([this](const auto& r) { apply(r); }, record);
+}
+
+void Core::State::apply(const record::JobAdded& r) {
+  jobs_.emplace(r.job, Job(r.job, r.spec));
+  by_request_[r.spec.request_id] = r.job;
+  active_.insert(r.job);
+  next_job_ = std::max(next_job_, r.job + 1);
+}
+
+void Core::State::apply(const record::PassPlanned& r) {
+  Job* job = find(r.job);
+  if (job != nullptr && !is_final(job->state)) {
+    job->add_pass(r.samples);
+    touch(*job);
+  }
+}
+
+void Core::State::apply(const record::SamplesFixed& r) {
+  if (Job* job = find(r.job)) {
+    job->fix(r.samples);
+  }
+}
+
+void Core::State::apply(const record::StateChanged& r) {
+  Job* job = find(r.job);
+  if (job == nullptr || is_final(job->state)) {
+    return;
+  }
+  if (is_final(r.state)) {
+    job->finish();
+    job->final_at = clock_.wall();
+    active_.erase(r.job);
+    for (auto& [id, worker] : workers_.all()) {
+      worker.on_job.erase(r.job);
+    }
+  }
+  job->state = r.state;
+  job->reason = r.reason;
+  if (r.state != JobState::kRunning) {
+    leasable_.erase(rank(*job));
+  }
+}
+
+void Core::State::apply(const record::PriorityChanged& r) {
+  Job* job = find(r.job);
+  if (job == nullptr) {
+    return;
+  }
+  const bool leasable = leasable_.erase(rank(*job)) > 0;
+  job->priority = r.priority;
+  if (leasable) {
+    leasable_.insert(rank(*job));
+  }
+}
+
+void Core::State::apply(const record::HoldChanged& r) {
+  if (Job* job = find(r.job)) {
+    job->held = r.held;
+  }
+}
+
+void Core::State::apply(const record::WorkerJoined& r) { joined_.insert(r.instance); }
+void Core::State::apply(const record::WorkerLeft& r) { joined_.erase(r.instance); }
+
+void Core::State::restore(const input::BandStored& band) {
+  Job* job = find(band.job);
+  if (job == nullptr) {
+    return;
+  }
+  job->bands_on_disk = true;
+  Pass* pass = is_final(job->state) ? nullptr : job->pass_of(band.band);
+  if (pass == nullptr || band.row_digests.size() != band.band.rows.count() ||
+      pass->digests.first_difference(band.band, band.row_digests)) {
+    return;
+  }
+  store(*job, *pass, band);
+}
+
+Step Core::State::replayed(Time now) {
+  clock_.advance(now);
+  former_ = joined_;
+  awaited_until_ = clock_.patience() + options_.reattach_grace_s;
+  for (auto& [id, job] : jobs_) {
+    if (is_final(job.state)) {
+      if (job.bands_on_disk) {
+        act(action::DropBands{id});
+      }
+      continue;
+    }
+    plan_first(job);
+    job.throughput = {};
+    if (job.held) {
+      if (job.state != JobState::kPaused) {
+        emit(record::StateChanged{id, JobState::kPaused, kPausedByAPerson});
+      }
+      continue;
+    }
+    if (job.state != JobState::kRunning) {
+      // Paused: whether the disk refuses still is found out by trying. Finishing: the result was
+      // not written yet.
+      emit(record::StateChanged{id, JobState::kRunning, ""});
+    }
+    touch(job);
+    settle(job);
+  }
+  return finish_step();
+}
+
+}  // namespace bandsaw::coordinator

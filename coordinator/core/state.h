@@ -1,0 +1,211 @@
+#pragma once
+
+// All that the core knows, and what each input does to it. Durable facts change in apply(record)
+// only, whether they are new or replayed; sessions, leases and measurements live as long as the
+// process and are changed where they happen.
+//
+// Where to look: job_inputs.cpp, worker_inputs.cpp, band_inputs.cpp (one function an input),
+// replay.cpp (durable facts), leasing.cpp (who renders what), faults.cpp (what goes wrong),
+// views.cpp (what is shown), invariants.cpp.
+
+#include <deque>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "coordinator/core/core.h"
+#include "coordinator/core/core_clock.h"
+#include "coordinator/core/hunger.h"
+#include "coordinator/core/job.h"
+#include "coordinator/core/leases.h"
+#include "coordinator/core/workers.h"
+
+namespace bandsaw::coordinator {
+
+class Core::State {
+ public:
+  explicit State(CoreOptions options);
+
+  Step step(const Input& input, Time now);
+  void apply(const Record& record);
+  void restore(const input::BandStored& band);
+  Step replayed(Time now);
+
+  std::optional<std::vector<RowRange>> wanted(JobId job, const Band& band) const;
+  std::vector<std::string> why(JobId id, Time now) const;
+  std::optional<JobView> view(JobId id, Time now) const;
+  std::vector<JobView> job_views(Time now) const;
+  std::vector<WorkerView> worker_views(Time now) const;
+  std::optional<std::string> broken_invariant() const;
+
+ private:
+  void on(const input::Submit& in);
+  void on(const input::Cancel& in);
+  void on(const input::Pause& in);
+  void on(const input::Resume& in);
+  void on(const input::SetPriority& in);
+  void on(const input::Hello& in);
+  void on(const input::Heartbeat& in);
+  void on(const input::Draining& in);
+  void on(const input::Lost& in);
+  void on(const input::BandFailed& in);
+  void on(const input::BandStored& in);
+  void on(const input::PassMerged& in);
+  void on(const input::ResultWritten& in);
+  void on(const input::StorageFailed& in);
+  void on(const input::StorageBack& in);
+  void on(const input::Tick& in);
+
+  void apply(const record::JobAdded& r);
+  void apply(const record::PassPlanned& r);
+  void apply(const record::SamplesFixed& r);
+  void apply(const record::StateChanged& r);
+  void apply(const record::PriorityChanged& r);
+  void apply(const record::HoldChanged& r);
+  void apply(const record::WorkerJoined& r);
+  void apply(const record::WorkerLeft& r);
+
+  /// Who comes first: the highest priority, then the oldest.
+  using Rank = std::pair<std::int32_t, JobId>;
+  static Rank rank(const Job& job) { return {-job.priority, job.id}; }
+
+  /// Applies a new fact and puts it into the step's records.
+  template <class R>
+  void emit(R record) {
+    apply(record);
+    step_.records.emplace_back(std::in_place_type<R>, std::move(record));
+  }
+  /// In place: g++ 12 warns of a moved variant's other alternatives.
+  template <class A>
+  void act(A action) {
+    step_.actions.emplace_back(std::in_place_type<A>, std::move(action));
+  }
+  Step finish_step();
+  void say_revoked();
+
+  Job* find(JobId id);
+  const Job* find(JobId id) const;
+  std::optional<std::string> refusal(const JobSpec& spec) const;
+
+  // Jobs.
+  void plan_first(Job& job);
+  void plan_until(Job& job, std::uint64_t samples);
+  bool plan_timed(Job& job);
+  void look_at_error(Job& job, std::uint64_t samples, double error);
+  void fix(Job& job, std::uint64_t samples);
+  /// Ends the job's work once every pass is there, or its time is up.
+  void settle(Job& job);
+  void end(Job& job, JobState state, const std::string& reason);
+  Job* asked_of(JobId id);
+  void resume(Job& job);
+  void touch(const Job& job);
+  double elapsed(const Job& job) const;
+
+  // Workers.
+  void welcome(Worker& worker, const input::Hello& in);
+  void take_up(Worker& worker, const std::vector<WorkerHello::Held>& held);
+  bool take_up_one(Worker& worker, const WorkerHello::Held& held);
+  void lose(Worker& worker, const std::string& reason);
+  void forget_refusals();
+  void give_up_on_former();
+  bool waits_for_former() const;
+
+  // Leases.
+  void lease_out();
+  void hand_out();
+  bool lease_to(Worker& worker);
+  std::optional<Band> free_for(const Job& job, const Worker& worker) const;
+  Band sized(const Job& job, const Worker& worker, const Band& free) const;
+  double per_thread(const Job& job) const;
+  double pace(const Worker& worker, const Job& job) const;
+  double work(const Job& job, const Band& band) const;
+  double work_left(const Job& job, const Band& free) const;
+  void grant(Worker& worker, Job& job, Pass& pass, const Band& band, LeaseId id);
+  void hand_over(Worker& worker, Job& job, const Pass& pass, Lease lease);
+  enum class Revoke { kNo, kYes };
+  void end_lease(LeaseId id, Revoke revoke);
+  void end_overtaken(const std::vector<LeaseId>& leases);
+  void end_all(const std::vector<LeaseId>& leases, Revoke revoke);
+  void advanced(const Worker& worker, std::size_t from);
+
+  // The tail: nothing is free, and workers are idle.
+  struct Late;
+  bool share_the_tail();
+  std::vector<Worker*> idle_workers();
+  std::vector<Late> late_leases() const;
+  double rest_of(const Lease& lease) const;
+  bool steal(const Late& late, std::vector<Worker*>& idle);
+  bool copy(const Late& late, std::vector<Worker*>& idle);
+  std::vector<Worker*> helpers(const Job& job, const Lease& lease,
+                               const std::vector<Worker*>& idle) const;
+  RowRange not_copied(const Job& job, const Lease& lease) const;
+  void promote_copies(Job& job, LeaseId ended);
+  void end_useless_copies(Job& job);
+
+  // Bands.
+  void measure(Worker& worker, Job& job, const input::BandStored& in);
+  /// Ends the lease that this is the result of, if its worker still has it.
+  void end_own(const Worker& worker, const input::BandStored& in);
+  Coverage::Change store(Job& job, Pass& pass, const input::BandStored& in);
+
+  // What goes wrong.
+  void add_fault(Job& job, Worker& worker, const Band& band, const std::string& reason);
+  std::vector<Band> left_to_others(const Job& job, const Worker& worker) const;
+  bool left_to_others(const Job& job, const Worker& worker, const Band& band) const;
+  bool may_render(const Worker& worker, const Job& job) const;
+  bool someone_else(const Job& job, const Band& band) const;
+  void check_silence();
+  void check_progress();
+  void returned_other_pixels(Job& job, const input::BandStored& in, std::uint32_t row);
+
+  // Views.
+  std::string waiting_reason(const Job& job) const;
+  std::string busy_with(const Job& job) const;
+  std::vector<std::string> working_on(const Job& job) const;
+  std::vector<std::string> not_working_on(const Job& job) const;
+  void remember_refusal(const WorkerHello& worker, const std::string& reason);
+  double fraction(const Job& job, Time now) const;
+  double remaining(const Job& job, Time now) const;
+  double expected_samples(const Job& job) const;
+  std::vector<JobWorkerView> lines(const Job& job) const;
+
+  // Invariants, each a sentence when it does not hold.
+  std::optional<std::string> broken_leases() const;
+  std::optional<std::string> broken_workers() const;
+  std::optional<std::string> broken_job(const Job& job) const;
+  std::optional<std::string> broken_pass(const Job& job, const Pass& pass) const;
+
+  CoreOptions options_;
+  CoreClock clock_;
+  Step step_;  ///< being made
+
+  std::map<JobId, Job> jobs_;
+  std::map<std::string, JobId> by_request_;
+  std::set<JobId> active_;   ///< not final
+  std::set<Rank> leasable_;  ///< running and perhaps with free rows; the others have none
+  JobId next_job_ = 1;
+
+  Workers workers_;
+  Hunger hunger_;
+  Leases leases_;
+  Time tail_again_at_ = 0;                             ///< wall clock
+  std::map<SessionId, std::vector<LeaseId>> revoked_;  ///< in this step
+
+  /// Workers that were sent away, the newest kRefusalsKept.
+  struct Refusal {
+    std::string instance;
+    WorkerView worker;
+    Time at = 0;  ///< wall clock
+  };
+  static constexpr std::size_t kRefusalsKept = 32;
+  std::deque<Refusal> refusals_;
+
+  std::set<std::string> joined_;  ///< instances, as journalled
+  std::set<std::string> former_;  ///< of those, who were there before the restart and are awaited
+  Time awaited_until_ = 0;        ///< patience clock
+};
+
+}  // namespace bandsaw::coordinator

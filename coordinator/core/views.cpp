@@ -1,0 +1,148 @@
+// What is shown of jobs and workers.
+
+#include <algorithm>
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/core/state.h"
+
+namespace bandsaw::coordinator {
+
+std::optional<JobView> Core::State::view(JobId id, Time now) const {
+  const Job* job = find(id);
+  if (job == nullptr) {
+    return std::nullopt;
+  }
+  const Totals totals = job->totals();
+  JobView view;
+  view.id = id;
+  view.spec = job->spec;
+  view.state = job->state;
+  view.reason = !job->reason.empty() ? job->reason : waiting_reason(*job);
+  view.elapsed_s = job->first_lease_at
+                       ? std::max(0.0, job->final_at.value_or(std::max(now, clock_.wall())) -
+                                           *job->first_lease_at)
+                       : 0;
+  view.fraction = fraction(*job, now);
+  view.remaining_s = remaining(*job, now);
+  view.samples_per_s = is_final(job->state) ? 0 : job->throughput.per_second(now);
+  view.samples_done = totals.samples;
+  view.samples_per_pixel = job->complete_samples();
+  view.error = job->error;
+  view.counters = totals.counters;
+  view.cpu_s = totals.cpu_s;
+  view.workers_used = static_cast<std::uint32_t>(job->used.size());
+  view.priority = job->priority;
+  view.bands_copied = job->bands_copied;
+  view.workers = lines(*job);
+  return view;
+}
+
+std::vector<JobView> Core::State::job_views(Time now) const {
+  std::vector<JobView> views;
+  for (const auto& [id, job] : jobs_) {
+    views.push_back(*view(id, now));
+  }
+  return views;
+}
+
+std::vector<JobWorkerView> Core::State::lines(const Job& job) const {
+  std::map<WorkerId, const Lease*> oldest;
+  for (const LeaseId id : job.leases) {
+    const Lease* lease = leases_.find(id);
+    const Worker& worker = *workers_.by_id(lease->worker);
+    const auto first = std::find_if(worker.leases.begin(), worker.leases.end(), [&](LeaseId held) {
+      return leases_.find(held)->job == job.id;
+    });
+    oldest[worker.id] = leases_.find(*first);
+  }
+  std::vector<JobWorkerView> lines;
+  for (const auto& [id, lease] : oldest) {
+    const Worker& worker = *workers_.by_id(id);
+    const auto on_job = worker.on_job.find(job.id);
+    lines.push_back({worker.name, worker.threads,
+                     on_job == worker.on_job.end() ? 0 : on_job->second.speed.mean(),
+                     lease->band.rows, worker.doing.empty() ? "rendering" : worker.doing});
+  }
+  std::sort(lines.begin(), lines.end(),
+            [](const JobWorkerView& a, const JobWorkerView& b) { return a.name < b.name; });
+  return lines;
+}
+
+double Core::State::expected_samples(const Job& job) const {
+  if (job.fixed) {
+    return static_cast<double>(*job.fixed);
+  }
+  const auto most = static_cast<double>(job.max_samples());
+  const auto* rule = std::get_if<StopAtError>(&job.spec.stop);
+  if (rule == nullptr || job.error < 0) {
+    return most;
+  }
+  // Random samples: the error falls with the square root of their number.
+  const double ratio = job.error / rule->relative_rmse;
+  const double needed = static_cast<double>(job.error_at) * std::max(1.0, ratio * ratio);
+  return std::clamp(needed, static_cast<double>(job.planned_samples()), most);
+}
+
+double Core::State::fraction(const Job& job, Time now) const {
+  if (job.state == JobState::kDone) {
+    return 1;
+  }
+  const auto* error = std::get_if<StopAtError>(&job.spec.stop);
+  if (const auto* rule = std::get_if<StopAtTime>(&job.spec.stop); rule && !job.fixed) {
+    const double elapsed = job.first_lease_at ? now - *job.first_lease_at : 0;
+    return std::clamp(elapsed / rule->seconds, 0.0, 1.0);
+  }
+  if (error != nullptr && !job.fixed && job.error < 0) {
+    return 0;
+  }
+  const double all = expected_samples(job) * static_cast<double>(job.pixels());
+  return std::clamp(static_cast<double>(job.totals().samples) / all, 0.0, 1.0);
+}
+
+double Core::State::remaining(const Job& job, Time now) const {
+  if (is_final(job.state)) {
+    return 0;
+  }
+  if (const auto* rule = std::get_if<StopAtTime>(&job.spec.stop); rule && !job.fixed) {
+    return job.first_lease_at ? std::max(0.0, rule->seconds - (now - *job.first_lease_at)) : -1;
+  }
+  const bool unknown =
+      std::holds_alternative<StopAtError>(job.spec.stop) && !job.fixed && job.error < 0;
+  const double speed = job.throughput.per_second(now);
+  if (unknown || speed <= 0) {
+    return -1;
+  }
+  const double all = expected_samples(job) * static_cast<double>(job.pixels());
+  return std::max(0.0, all - static_cast<double>(job.totals().samples)) / speed;
+}
+
+std::vector<WorkerView> Core::State::worker_views(Time now) const {
+  std::vector<WorkerView> views;
+  for (const auto& [id, worker] : workers_.all()) {
+    const char* const state = worker.faulty           ? "refused"
+                              : !worker.session       ? "lost"
+                              : worker.draining       ? "draining"
+                              : worker.leases.empty() ? "idle"
+                                                      : "rendering";
+    WorkerView view;
+    view.name = worker.name;
+    view.state = state;
+    view.reason = worker.reason;
+    view.address = worker.address;
+    view.build = worker.build;
+    view.threads = worker.threads;
+    view.samples_per_s = worker.speed.mean();
+    view.job = worker.leases.empty() ? 0 : leases_.find(worker.leases.front())->job;
+    view.connected_s = worker.session ? std::max(0.0, now - worker.connected_at) : 0;
+    views.push_back(std::move(view));
+  }
+  for (const Refusal& refusal : refusals_) {
+    views.push_back(refusal.worker);
+  }
+  std::sort(views.begin(), views.end(),
+            [](const WorkerView& a, const WorkerView& b) { return a.name < b.name; });
+  return views;
+}
+
+}  // namespace bandsaw::coordinator

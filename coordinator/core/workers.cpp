@@ -1,0 +1,75 @@
+#include "coordinator/core/workers.h"
+
+#include <algorithm>
+
+namespace bandsaw::coordinator {
+
+Worker* Workers::by_id(WorkerId id) {
+  const auto it = all_.find(id);
+  return it == all_.end() ? nullptr : &it->second;
+}
+
+const Worker* Workers::by_id(WorkerId id) const {
+  const auto it = all_.find(id);
+  return it == all_.end() ? nullptr : &it->second;
+}
+
+Worker* Workers::by_session(SessionId session) {
+  const auto it = by_session_.find(session);
+  return it == by_session_.end() ? nullptr : by_id(it->second);
+}
+
+Worker* Workers::by_instance(const std::string& instance) {
+  const auto it = by_instance_.find(instance);
+  return it == by_instance_.end() ? nullptr : by_id(it->second);
+}
+
+const Worker* Workers::by_instance(const std::string& instance) const {
+  const auto it = by_instance_.find(instance);
+  return it == by_instance_.end() ? nullptr : by_id(it->second);
+}
+
+Worker& Workers::add(const std::string& instance, const std::string& name) {
+  std::string unique = name;
+  for (std::uint32_t number = 2; by_name_.contains(unique); ++number) {
+    unique = name + "-" + std::to_string(number);
+  }
+  Worker& worker = all_[next_];
+  worker.id = next_++;
+  worker.instance = instance;
+  worker.name = unique;
+  by_instance_[instance] = worker.id;
+  by_name_[unique] = worker.id;
+  gone_.push_back(worker.id);
+  return worker;
+}
+
+void Workers::connect(Worker& worker, SessionId session) {
+  if (worker.session) {
+    by_session_.erase(*worker.session);
+  }
+  worker.session = session;
+  by_session_[session] = worker.id;
+  std::erase(gone_, worker.id);
+}
+
+void Workers::disconnect(Worker& worker) {
+  if (worker.session) {
+    by_session_.erase(*worker.session);
+    worker.session.reset();
+    gone_.push_back(worker.id);
+  }
+  forget_gone();
+}
+
+void Workers::forget_gone() {
+  while (gone_.size() > kGoneKept) {
+    const auto it = all_.find(gone_.front());
+    by_instance_.erase(it->second.instance);
+    by_name_.erase(it->second.name);
+    all_.erase(it);
+    gone_.erase(gone_.begin());
+  }
+}
+
+}  // namespace bandsaw::coordinator

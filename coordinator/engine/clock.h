@@ -1,0 +1,27 @@
+#pragma once
+
+// The engine's time. One of the four open doors.
+
+#include <chrono>
+
+#include "coordinator/core/types.h"
+
+namespace bandsaw::coordinator {
+
+/// Thread-safe.
+class Clock {
+ public:
+  virtual ~Clock() = default;
+  /// Never goes back.
+  virtual Time now() const = 0;
+};
+
+class SteadyClock : public Clock {
+ public:
+  Time now() const override {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
+  }
+};
+
+}  // namespace bandsaw::coordinator

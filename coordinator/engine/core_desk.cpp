@@ -1,0 +1,164 @@
+#include "coordinator/engine/core_desk.h"
+
+#include <spdlog/spdlog.h>
+
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/engine/job_log.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+constexpr double kTick_s = 0.1;
+
+}  // namespace
+
+CoreDesk::CoreDesk(CoreOptions options, Journal& journal, const Clock& clock, Hooks hooks)
+    : core_(options),
+      journal_(journal),
+      clock_(clock),
+      hooks_(std::move(hooks)),
+      outbox_(journal),
+      links_(options.epoch) {}
+
+Step CoreDesk::run(const Input& input, PutBand* put) {
+  Step step = core_.step(input, clock_.now());
+  absorb(step, put);
+  return step;
+}
+
+void CoreDesk::absorb(const Step& step, PutBand* put) {
+  for (const Record& record : step.records) {
+    note(record);
+    log_record(record);
+    outbox_.record(record);
+    outbox_.deed([this, record] { tell_others(record); });
+  }
+  for (const Action& action : step.actions) {
+    const auto* add = std::get_if<action::AddToFilm>(&action);
+    if (add != nullptr && put != nullptr) {
+      PutBand band;
+      band.job = put->job;
+      band.pixels = std::move(put->pixels);
+      band.share = std::move(put->share);
+      band.offset = put->offset;
+      outbox_.deed([this, rows = add->rows, band = std::move(band)]() mutable {
+        hooks_.add_to_film(std::move(band), std::move(rows));
+      });
+    } else {
+      outbox_.deed([this, action] { perform(action); });
+    }
+  }
+  if (absl::IsInternal(step.status)) {
+    spdlog::error("the core: {}", step.status.ToString());
+  }
+}
+
+void CoreDesk::perform(const Action& action) {
+  if (const auto* result = std::get_if<action::WriteResult>(&action)) {
+    if (results_on_the_way_.insert(result->job).second) {
+      hooks_.make_result(result->job, result->samples);
+    }
+  } else if (const auto* drop = std::get_if<action::DropBands>(&action)) {
+    results_on_the_way_.erase(drop->job);
+    hooks_.drop_bands(drop->job);
+  } else if (const auto* shared = std::get_if<action::Shared>(&action)) {
+    log_shared(*shared);
+  } else {
+    std::visit(
+        [this](const auto& one) {
+          if constexpr (requires { links_.perform(one); }) {
+            links_.perform(one);
+          }
+        },
+        action);
+  }
+}
+
+void CoreDesk::note(const Record& record) {
+  if (const auto* added = std::get_if<record::JobAdded>(&record)) {
+    known_[added->job].spec = added->spec;
+  } else if (const auto* pass = std::get_if<record::PassPlanned>(&record)) {
+    known_[pass->job].pass_ends.push_back(pass->samples.last);
+  } else if (const auto* changed = std::get_if<record::StateChanged>(&record)) {
+    known_[changed->job].state = changed->state;
+  }
+}
+
+void CoreDesk::tell_others(const Record& record) {
+  if (const auto* added = std::get_if<record::JobAdded>(&record)) {
+    hooks_.add_job(added->job, added->spec);
+  } else if (const auto* pass = std::get_if<record::PassPlanned>(&record)) {
+    hooks_.plan_pass(pass->job, pass->samples.last);
+  }
+}
+
+bool CoreDesk::over(JobId id) const {
+  const auto known = known_.find(id);
+  return known == known_.end() || is_final(known->second.state);
+}
+
+void CoreDesk::settle() {
+  if (const Time now = clock_.now(); now - ticked_at_ >= kTick_s) {
+    ticked_at_ = now;
+    run(input::Tick{});
+  }
+  if (journal_status_.ok()) {
+    flush();
+  } else {
+    outbox_.fail_replies(journal_status_);
+  }
+  const auto view_of = [this](JobId id) { return job(id); };
+  watchers_.update(view_of, !journal_status_.ok(), clock_.now());
+}
+
+bool CoreDesk::flush() {
+  const absl::Status flushed = outbox_.flush();
+  if (flushed.ok()) {
+    journal_status_ = flushed;
+    return true;
+  }
+  journal_failed(flushed);
+  return false;
+}
+
+void CoreDesk::journal_failed(const absl::Status& status) {
+  hooks_.expect_trouble();
+  if (!journal_status_.ok()) {
+    return;
+  }
+  journal_status_ = absl::ResourceExhaustedError(
+      absl::StrCat("the coordinator cannot write its journal: ", status.message()));
+  spdlog::error("{}", journal_status_.ToString());
+  for (const auto& [id, known] : known_) {
+    if (!is_final(known.state)) {
+      storage_failed(id, journal_status_);
+    }
+  }
+}
+
+void CoreDesk::storage_failed(JobId job, const absl::Status& status) {
+  spdlog::warn("job={} storage failed: {}", job, status.ToString());
+  run(input::StorageFailed{.job = job, .reason = std::string(status.message())});
+}
+
+void CoreDesk::disk_is_back() {
+  if (!flush()) {
+    return;
+  }
+  spdlog::info("the disk takes data again");
+  run(input::StorageBack{});
+  hooks_.retry_film();
+}
+
+void CoreDesk::result_written(JobId job, const absl::Status& status) {
+  results_on_the_way_.erase(job);
+  if (status.ok()) {
+    run(input::ResultWritten{.job = job});
+  } else {
+    storage_failed(job, status);  // the core asks again when the disk is back
+  }
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,47 @@
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/engine/core_desk.h"
+
+namespace bandsaw::coordinator {
+
+void CoreDesk::submit(JobSpec spec, Answer<JobId> answer) {
+  if (!journal_status_.ok()) {
+    answer(journal_status_);
+    return;
+  }
+  const Step step = run(input::Submit{.spec = std::move(spec)});
+  outbox_.reply([this, job = step.job, decided = step.status,
+                 answer = std::move(answer)](const absl::Status& journalled) mutable {
+    if (!decided.ok()) {
+      answer(decided);
+    } else if (!journalled.ok()) {
+      // Its submitter hears that it failed, so it must not begin by itself when the disk is back.
+      run(input::Cancel{.job = job});
+      answer(absl::ResourceExhaustedError(journalled.message()));
+    } else {
+      answer(job);
+    }
+  });
+}
+
+void CoreDesk::tell(JobId id, const Input& input, Answer<JobView> answer) {
+  const Step step = run(input);
+  outbox_.reply([this, id, decided = step.status,
+                 answer = std::move(answer)](const absl::Status& journalled) mutable {
+    const std::optional<JobView> view = job(id);
+    if (!decided.ok() || !journalled.ok()) {
+      answer(decided.ok() ? journalled : decided);
+    } else if (!view) {
+      answer(absl::NotFoundError(absl::StrCat("there is no job ", id)));
+    } else {
+      answer(*view);
+    }
+  });
+}
+
+void CoreDesk::watch(JobId id, Watchers::Changed changed) {
+  watchers_.add(id, job(id), std::move(changed), clock_.now());
+}
+
+}  // namespace bandsaw::coordinator

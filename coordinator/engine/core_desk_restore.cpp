@@ -1,0 +1,68 @@
+#include <spdlog/spdlog.h>
+
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/engine/core_desk.h"
+#include "coordinator/engine/film_desk.h"
+#include "coordinator/engine/store_desk.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+
+absl::Status CoreDesk::restore(StoreDesk& store, FilmDesk& film) {
+  RETURN_IF_ERROR(journal_.replay([this](const Record& record) {
+    core_.replay(record);
+    note(record);
+  }));
+  for (const auto& [id, known] : known_) {
+    if (is_final(known.state)) {
+      store.drop_bands(id);
+    } else {
+      RETURN_IF_ERROR(restore_job(id, known, store, film));
+    }
+  }
+  absorb(core_.replayed(clock_.now()), nullptr);
+  return absl::OkStatus();
+}
+
+absl::Status CoreDesk::restore_job(JobId id, const Known& known, StoreDesk& store, FilmDesk& film) {
+  film.add_job(id, known.spec.settings);
+  for (const std::uint64_t samples : known.pass_ends) {
+    film.plan(id, samples);
+  }
+  absl::Status filmed;
+  const auto take = [&](BandPixels pixels, std::uint64_t offset) {
+    std::optional<std::vector<RowRange>> rows = core_.wanted(id, pixels.band);
+    if (!rows || rows->empty() || !filmed.ok()) {
+      return;
+    }
+    const Band band = pixels.band;
+    core_.replay(input::BandStored{.job = id,
+                                   .band = pixels.band,
+                                   .row_digests = row_digests(pixels),
+                                   .instance = {},
+                                   .counters = pixels.counters});
+    // A band whose other rows had other pixels is refused now as it was then.
+    if (const auto left = core_.wanted(id, band); left && left->empty()) {
+      PutBand put;
+      put.pixels = std::move(pixels);
+      put.offset = offset;
+      filmed = film.add(id, std::move(put), *std::move(rows));
+    }
+  };
+  ASSIGN_OR_RETURN(const BandLogReport report, store.open_job(id, known.spec, take));
+  if (!filmed.ok()) {
+    return absl::Status(
+        filmed.code(), absl::StrCat("cannot rebuild the film of job ", id, ": ", filmed.message()));
+  }
+  if (report.damaged_bytes > 0) {
+    spdlog::warn(
+        "job={} {} damaged bytes in its bands were left out; their rows are rendered again", id,
+        report.damaged_bytes);
+  }
+  spdlog::info("job={} taken up again, {} bands on disk", id, report.records);
+  return absl::OkStatus();
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,132 @@
+#include "coordinator/engine/film_desk.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "coordinator/store/band_log.h"
+#include "renderlib/base/check.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+
+void FilmDesk::add_job(JobId job, const RenderSettings& settings) {
+  jobs_[job].settings = settings;
+}
+
+void FilmDesk::plan(JobId id, std::uint64_t samples) {
+  if (const auto job = jobs_.find(id); job != jobs_.end()) {
+    job->second.pass_ends.insert(samples);
+  }
+}
+
+absl::Status FilmDesk::add(JobId id, PutBand put, std::vector<RowRange> rows) {
+  const auto job = jobs_.find(id);
+  if (job == jobs_.end() || rows.empty()) {
+    return absl::OkStatus();
+  }
+  job->second.waiting.push_back({std::move(put), std::move(rows)});
+  return work(id, job->second);
+}
+
+void FilmDesk::want_image(JobId id, std::uint64_t samples) {
+  if (const auto job = jobs_.find(id); job != jobs_.end()) {
+    job->second.image_of = samples;
+    work(id, job->second).IgnoreError();  // the hook has heard of it
+  }
+}
+
+void FilmDesk::retry() {
+  for (auto& [id, job] : jobs_) {
+    if (!job.waiting.empty() || job.image_of) {
+      work(id, job).IgnoreError();  // the hook has heard of it
+    }
+  }
+}
+
+void FilmDesk::drop(JobId job) { jobs_.erase(job); }
+
+absl::Status FilmDesk::work(JobId id, OneJob& job) {
+  absl::Status status;
+  while (status.ok() && !job.waiting.empty()) {
+    status = merge(id, job, job.waiting.front());
+    if (status.ok()) {
+      job.waiting.pop_front();
+      tell_passes(id, job);
+    }
+  }
+  if (status.ok()) {
+    status = give_image(id, job);
+  }
+  if (!status.ok()) {
+    hooks_.failed(id, status);
+  }
+  return status;
+}
+
+absl::Status FilmDesk::merge(JobId id, OneJob& job, Waiting& waiting) {
+  if (!job.film) {
+    ASSIGN_OR_RETURN(job.film,
+                     Film::create(job.settings.width, job.settings.height, folder_.job(id)));
+  }
+  const BandPixels& pixels = waiting.put.pixels;
+  while (!waiting.rows.empty()) {
+    const RowRange rows = waiting.rows.back();
+    RETURN_IF_ERROR(job.film->add(rows == pixels.band.rows ? pixels : slice(pixels, rows)));
+    job.added.push_back({waiting.put.offset, pixels.band.samples.last, rows});
+    waiting.rows.pop_back();
+  }
+  return absl::OkStatus();
+}
+
+void FilmDesk::tell_passes(JobId id, OneJob& job) {
+  while (!job.pass_ends.empty() && job.film->complete(*job.pass_ends.begin())) {
+    const std::uint64_t samples = *job.pass_ends.begin();
+    job.pass_ends.erase(job.pass_ends.begin());
+    const std::optional<ErrorEstimate> error = job.film->error();
+    hooks_.merged({.job = id, .samples = samples, .error = error ? error->relative_rmse : -1});
+  }
+}
+
+absl::Status FilmDesk::give_image(JobId id, OneJob& job) {
+  if (!job.image_of || !job.film || !job.film->complete(*job.image_of)) {
+    return absl::OkStatus();
+  }
+  const std::uint64_t samples = *job.image_of;
+  const bool beyond = std::any_of(job.added.begin(), job.added.end(),
+                                  [&](const Added& added) { return added.last_sample > samples; });
+  if (beyond) {
+    ASSIGN_OR_RETURN(job.film, film_until(id, job, samples));
+    std::erase_if(job.added, [&](const Added& added) { return added.last_sample > samples; });
+  }
+  job.image_of.reset();
+  hooks_.image(id, job.film->snapshot().image);
+  return absl::OkStatus();
+}
+
+// Nodes that met have become one sum, from which a part cannot be taken out again.
+absl::StatusOr<Film> FilmDesk::film_until(JobId id, const OneJob& job,
+                                          std::uint64_t samples) const {
+  ASSIGN_OR_RETURN(Film film,
+                   Film::create(job.settings.width, job.settings.height, folder_.job(id)));
+  for (const Added& added : job.added) {
+    if (added.last_sample <= samples) {
+      ASSIGN_OR_RETURN(const BandRecord band, read_band(folder_.bands(id), added.offset));
+      RETURN_IF_ERROR(film.add(slice(band.pixels, added.rows)));
+    }
+  }
+  return film;
+}
+
+BandPixels slice(const BandPixels& pixels, const RowRange& rows) {
+  const RowRange& all = pixels.band.rows;
+  BANDSAW_CHECK(all.first <= rows.first && rows.last <= all.last, "the rows are some of the band");
+  const std::size_t row = std::size_t{pixels.width} * 3;
+  const auto first =
+      pixels.sums.begin() + static_cast<std::ptrdiff_t>((rows.first - all.first) * row);
+  return {.band = {.samples = pixels.band.samples, .rows = rows},
+          .width = pixels.width,
+          .sums = {first, first + static_cast<std::ptrdiff_t>(rows.count() * row)},
+          .counters = {}};
+}
+
+}  // namespace bandsaw::coordinator

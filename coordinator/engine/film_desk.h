@@ -1,0 +1,79 @@
+#pragma once
+
+// What the film thread does: a film a job, its passes as they become whole, and the image at the
+// end.
+
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "coordinator/core/messages.h"
+#include "coordinator/engine/put_band.h"
+#include "coordinator/store/data_folder.h"
+#include "renderlib/image/image.h"
+#include "renderlib/render/film.h"
+
+namespace bandsaw::coordinator {
+
+/// Used by one thread at a time.
+class FilmDesk {
+ public:
+  /// Called on the film's thread.
+  struct Hooks {
+    std::function<void(input::PassMerged)> merged;
+    std::function<void(JobId, Image)> image;
+    /// The film could not take a band: it is kept in memory until retry.
+    std::function<void(JobId, absl::Status)> failed;
+  };
+  FilmDesk(const DataFolder& folder, Hooks hooks) : folder_(folder), hooks_(std::move(hooks)) {}
+
+  void add_job(JobId job, const RenderSettings& settings);
+  /// A pass that ends at `samples` was begun: it is told when it is whole.
+  void plan(JobId job, std::uint64_t samples);
+  /// These rows of the band are new. OK: they are in the film; otherwise they wait for retry, which
+  /// `failed` says too.
+  absl::Status add(JobId job, PutBand put, std::vector<RowRange> rows);
+  /// The image of samples [0, samples) goes to the hook as soon as the film has them.
+  void want_image(JobId job, std::uint64_t samples);
+  void retry();
+  void drop(JobId job);
+
+ private:
+  struct Waiting {
+    PutBand put;
+    std::vector<RowRange> rows;
+  };
+  /// What was added: enough to add it again from the job's log.
+  struct Added {
+    std::uint64_t offset = 0;  ///< of the band's record
+    std::uint64_t last_sample = 0;
+    RowRange rows;
+  };
+  struct OneJob {
+    RenderSettings settings;
+    std::optional<Film> film;  ///< from the first band on
+    std::deque<Waiting> waiting;
+    std::vector<Added> added;
+    std::set<std::uint64_t> pass_ends;  ///< not whole yet
+    std::optional<std::uint64_t> image_of;
+  };
+  absl::Status work(JobId id, OneJob& job);
+  absl::Status merge(JobId id, OneJob& job, Waiting& waiting);
+  void tell_passes(JobId id, OneJob& job);
+  absl::Status give_image(JobId id, OneJob& job);
+  absl::StatusOr<Film> film_until(JobId id, const OneJob& job, std::uint64_t samples) const;
+
+  const DataFolder& folder_;
+  Hooks hooks_;
+  std::map<JobId, OneJob> jobs_;
+};
+
+/// The part of a band that these rows are.
+BandPixels slice(const BandPixels& pixels, const RowRange& rows);
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,174 @@
+#include "coordinator/engine/impl.h"
+
+#include <spdlog/spdlog.h>
+
+#include <random>
+#include <utility>
+
+#include "absl/strings/str_format.h"
+#include "coordinator/engine/apart.h"
+#include "coordinator/store/sqlite_journal.h"
+#include "proto/wire/versions.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/render/canary.h"
+#include "renderlib/render/pixel_version.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr std::uint64_t kBandBudgetBytes = 2ull << 30;
+
+std::string new_epoch() {
+  std::random_device random;
+  std::string epoch;
+  for (int i = 0; i < 4; ++i) {
+    absl::StrAppendFormat(&epoch, "%08x", random());
+  }
+  return epoch;
+}
+
+CoreOptions core_options(const EngineOptions& options, const std::string& epoch) {
+  CoreOptions core;
+  core.fitness = {.protocol = wire::kProtocol, .pixel_version = kPixelVersion, .canary = canary()};
+  core.heartbeat_timeout_s = options.heartbeat_timeout_s;
+  core.progress_timeout_s = options.progress_timeout_s;
+  core.reattach_grace_s = options.reattach_grace_s;
+  core.epoch = epoch;
+  return core;
+}
+
+}  // namespace
+
+Engine::Impl::Impl(const EngineOptions& options, EngineDoors doors, DataFolder folder,
+                   std::unique_ptr<BlobStore> blobs)
+    : folder_(std::move(folder)),
+      blobs_(std::move(blobs)),
+      journal_(std::move(doors.journal)),
+      clock_(std::move(doors.clock)),
+      epoch_(new_epoch()),
+      budget_(kBandBudgetBytes),
+      core_(core_options(options, epoch_), *journal_, *clock_, core_hooks()),
+      store_(folder_, *clock_, store_hooks()),
+      film_(folder_, film_hooks()),
+      core_thread_([this] { core_.settle(); }, milliseconds(100)),
+      store_thread_([this] { store_.settle(); }, milliseconds(100)),
+      film_thread_([] {}, milliseconds(1000)) {}
+
+absl::StatusOr<std::unique_ptr<Engine::Impl>> Engine::Impl::start(EngineOptions options,
+                                                                  EngineDoors doors) {
+  ASSIGN_OR_RETURN(DataFolder folder, DataFolder::open(options.data_folder));
+  ASSIGN_OR_RETURN(std::unique_ptr<BlobStore> blobs, BlobStore::open(folder.blobs()));
+  if (doors.journal == nullptr) {
+    ASSIGN_OR_RETURN(doors.journal, SqliteJournal::open(folder.journal()));
+  }
+  if (doors.clock == nullptr) {
+    doors.clock = std::make_unique<SteadyClock>();
+  }
+  std::unique_ptr<Impl> impl(
+      new Impl(options, std::move(doors), std::move(folder), std::move(blobs)));
+  RETURN_IF_ERROR(impl->core_.restore(impl->store_, impl->film_));
+  impl->film_thread_.start();
+  impl->store_thread_.start();
+  impl->core_thread_.start();
+  return impl;
+}
+
+Engine::Impl::~Impl() {
+  core_thread_.stop();
+  store_thread_.stop();
+  film_thread_.stop();
+}
+
+CoreDesk::Hooks Engine::Impl::core_hooks() {
+  return {.add_job =
+              [this](JobId job, const JobSpec& spec) {
+                on_store([job, spec](StoreDesk& store) {
+                  store.add_job(job, spec).IgnoreError();  // tried again at its first band
+                });
+                on_film([job, settings = spec.settings](FilmDesk& film) {
+                  film.add_job(job, settings);
+                });
+              },
+          .plan_pass =
+              [this](JobId job, std::uint64_t samples) {
+                on_film([job, samples](FilmDesk& film) { film.plan(job, samples); });
+              },
+          .store_band =
+              [this](PutBand put) {
+                on_store([put = std::move(put)](StoreDesk& store) mutable {
+                  store.append(std::move(put));
+                });
+              },
+          .compare_band =
+              [this](PutBand put) {
+                on_store([put = std::move(put)](StoreDesk& store) mutable {
+                  store.compare(std::move(put));
+                });
+              },
+          .add_to_film =
+              [this](PutBand put, std::vector<RowRange> rows) {
+                on_film([put = std::move(put), rows = std::move(rows)](FilmDesk& film) mutable {
+                  const JobId job = put.job;
+                  film.add(job, std::move(put), std::move(rows))
+                      .IgnoreError();  // the hook has told the core
+                });
+              },
+          .make_result =
+              [this](JobId job, std::uint64_t samples) {
+                on_film([job, samples](FilmDesk& film) { film.want_image(job, samples); });
+              },
+          .drop_bands =
+              [this](JobId job) {
+                on_store([job](StoreDesk& store) { store.drop_bands(job); });
+                on_film([job](FilmDesk& film) { film.drop(job); });
+              },
+          .expect_trouble = [this] { on_store([](StoreDesk& store) { store.expect_trouble(); }); },
+          .retry_film = [this] { on_film([](FilmDesk& film) { film.retry(); }); }};
+}
+
+StoreDesk::Hooks Engine::Impl::store_hooks() {
+  return {
+      .stored =
+          [this](PutBand put, std::vector<std::uint64_t> digests) {
+            on_core([put = std::move(put), digests = std::move(digests)](CoreDesk& core) mutable {
+              core.band_stored(std::move(put), std::move(digests));
+            });
+          },
+      .failed =
+          [this](PutBand put, absl::Status status) {
+            on_core([put = std::move(put), status = apart(status)](CoreDesk& core) mutable {
+              core.band_failed(std::move(put), status);
+            });
+          },
+      .result_written =
+          [this](JobId job, absl::Status status) {
+            on_core([job, status = apart(status)](CoreDesk& core) {
+              core.result_written(job, status);
+            });
+          },
+      .disk_is_back = [this] { on_core([](CoreDesk& core) { core.disk_is_back(); }); }};
+}
+
+FilmDesk::Hooks Engine::Impl::film_hooks() {
+  return {.merged =
+              [this](input::PassMerged merged) {
+                on_core([merged](CoreDesk& core) { core.hear(merged); });
+              },
+          .image =
+              [this](JobId job, Image image) {
+                on_store([job, image = std::move(image)](StoreDesk& store) {
+                  store.write_result(job, image);
+                });
+              },
+          .failed =
+              [this](JobId job, absl::Status status) {
+                on_store([](StoreDesk& store) { store.expect_trouble(); });
+                on_core([job, status = apart(status)](CoreDesk& core) {
+                  core.storage_failed(job, status);
+                });
+              }};
+}
+
+}  // namespace bandsaw::coordinator

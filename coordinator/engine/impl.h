@@ -1,0 +1,79 @@
+#pragma once
+
+// The three threads of the engine and how they hand work to each other:
+//
+//   any thread -> core (decides, journals) -> store (files) -> core -> film (pixels) -> store
+//   (result) -> core
+//
+// Each desk is used by its own thread alone; a thread reaches another desk only by posting to its
+// mailbox.
+
+#include <atomic>
+#include <memory>
+#include <string>
+
+#include "coordinator/engine/clock.h"
+#include "coordinator/engine/core_desk.h"
+#include "coordinator/engine/doors.h"
+#include "coordinator/engine/engine.h"
+#include "coordinator/engine/film_desk.h"
+#include "coordinator/engine/mailbox.h"
+#include "coordinator/engine/put_band.h"
+#include "coordinator/engine/store_desk.h"
+#include "coordinator/store/blob_store.h"
+#include "coordinator/store/data_folder.h"
+#include "coordinator/store/journal.h"
+
+namespace bandsaw::coordinator {
+
+class Engine::Impl {
+ public:
+  static absl::StatusOr<std::unique_ptr<Impl>> start(EngineOptions options, EngineDoors doors);
+  ~Impl();
+
+  template <class Task>
+  void on_core(Task task) {
+    core_thread_.post([this, task = std::move(task)]() mutable { task(core_); });
+  }
+  template <class Task>
+  void on_store(Task task) {
+    store_thread_.post([this, task = std::move(task)]() mutable { task(store_); });
+  }
+  template <class Task>
+  void on_film(Task task) {
+    film_thread_.post([this, task = std::move(task)]() mutable { task(film_); });
+  }
+
+  void tell(JobId job, Input input, std::function<void(absl::StatusOr<JobView>)> done) {
+    on_core([job, input = std::move(input), answer = Answer<JobView>(std::move(done))](
+                CoreDesk& core) mutable { core.tell(job, input, std::move(answer)); });
+  }
+
+  BlobStore& blobs() { return *blobs_; }
+  BandBudget& budget() { return budget_; }
+  SessionId next_session() { return ++last_session_; }
+  const std::string& epoch() const { return epoch_; }
+
+ private:
+  Impl(const EngineOptions& options, EngineDoors doors, DataFolder folder,
+       std::unique_ptr<BlobStore> blobs);
+  CoreDesk::Hooks core_hooks();
+  StoreDesk::Hooks store_hooks();
+  FilmDesk::Hooks film_hooks();
+
+  const DataFolder folder_;
+  const std::unique_ptr<BlobStore> blobs_;
+  const std::unique_ptr<Journal> journal_;
+  const std::unique_ptr<Clock> clock_;
+  const std::string epoch_;
+  std::atomic<SessionId> last_session_{0};
+  BandBudget budget_;
+  CoreDesk core_;
+  StoreDesk store_;
+  FilmDesk film_;
+  Mailbox core_thread_;
+  Mailbox store_thread_;
+  Mailbox film_thread_;
+};
+
+}  // namespace bandsaw::coordinator

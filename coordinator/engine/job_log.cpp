@@ -1,0 +1,52 @@
+#include "coordinator/engine/job_log.h"
+
+#include <spdlog/spdlog.h>
+
+#include <array>
+
+namespace bandsaw::coordinator {
+namespace {
+
+constexpr std::array<const char*, 6> kStateNames = {"running", "paused", "finishing",
+                                                    "done",    "failed", "cancelled"};
+
+struct Line {
+  void operator()(const record::JobAdded& r) const {
+    spdlog::info("job={} added name='{}' size={}x{} manifest={}", r.job, r.spec.name,
+                 r.spec.settings.width, r.spec.settings.height, r.spec.manifest);
+  }
+  void operator()(const record::PassPlanned& r) const {
+    spdlog::debug("job={} pass samples=[{},{})", r.job, r.samples.first, r.samples.last);
+  }
+  void operator()(const record::SamplesFixed& r) const {
+    spdlog::info("job={} ends after samples={}", r.job, r.samples);
+  }
+  void operator()(const record::StateChanged& r) const {
+    spdlog::info("job={} {} {}", r.job, kStateNames[static_cast<std::size_t>(r.state)], r.reason);
+  }
+  void operator()(const record::PriorityChanged& r) const {
+    spdlog::info("job={} priority={}", r.job, r.priority);
+  }
+  void operator()(const record::HoldChanged& r) const {
+    spdlog::info("job={} {} by a person", r.job, r.held ? "held" : "let go");
+  }
+  void operator()(const record::WorkerJoined& r) const {
+    spdlog::debug("worker instance={} joined", r.instance);
+  }
+  void operator()(const record::WorkerLeft& r) const {
+    spdlog::debug("worker instance={} left", r.instance);
+  }
+};
+
+}  // namespace
+
+void log_record(const Record& record) { std::visit(Line{}, record); }
+
+void log_shared(const action::Shared& shared) {
+  spdlog::info("{} job={} rows={}:{} samples={}:{} from={} to={}",
+               shared.begun ? "copied" : "moved", shared.job, shared.band.rows.first,
+               shared.band.rows.last, shared.band.samples.first, shared.band.samples.last,
+               shared.from, shared.to);
+}
+
+}  // namespace bandsaw::coordinator

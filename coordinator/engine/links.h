@@ -1,0 +1,41 @@
+#pragma once
+
+// The ways to the workers that are connected, by session.
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "coordinator/core/messages.h"
+#include "coordinator/engine/worker_link.h"
+
+namespace bandsaw::coordinator {
+
+/// Used by one thread. What is meant for a session that has gone is swallowed.
+class Links {
+ public:
+  explicit Links(std::string epoch) : epoch_(std::move(epoch)) {}
+
+  void add(SessionId session, std::shared_ptr<WorkerLink> link, const WorkerHello& hello);
+  /// The stream ended by itself.
+  void lost(SessionId session, const std::string& reason);
+
+  void perform(const action::Welcome& welcome);
+  void perform(const action::Refuse& refuse);
+  void perform(const action::Close& close);
+  void perform(const action::Lease& lease);
+  void perform(const action::Revoke& revoke);
+
+ private:
+  struct One {
+    std::shared_ptr<WorkerLink> link;
+    std::string name;  ///< for the log
+    std::string address;
+  };
+  One* find(SessionId session);
+
+  std::string epoch_;
+  std::map<SessionId, One> sessions_;
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,142 @@
+#include "coordinator/engine/store_desk.h"
+
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+constexpr double kAskEvery_s = 2;
+
+bool belongs(const BandRecord& record, const JobSpec& spec) {
+  return record.package_digest == spec.manifest && record.settings == spec.settings;
+}
+
+}  // namespace
+
+absl::StatusOr<BandLogReport> StoreDesk::open_job(
+    JobId id, const JobSpec& spec, absl::FunctionRef<void(BandPixels, std::uint64_t)> each) {
+  RETURN_IF_ERROR(add_job(id, spec));
+  OpenJob& job = jobs_[id];
+  BandLogReport report;
+  const auto hand_on = [&](BandRecord record, std::uint64_t offset) {
+    if (belongs(record, spec)) {
+      each(std::move(record.pixels), offset);
+    } else {
+      report.damaged_bytes += band_record_size(record.pixels.band, record.settings.width);
+    }
+  };
+  ASSIGN_OR_RETURN(job.log, BandLog::open(folder_.job(id), folder_.bands(id), hand_on, report));
+  return report;
+}
+
+absl::Status StoreDesk::add_job(JobId id, const JobSpec& spec) {
+  jobs_[id].spec = spec;
+  RETURN_IF_ERROR(make_folder(folder_.job(id)));
+  return sync_folder(folder_.jobs());
+}
+
+void StoreDesk::append(PutBand put) {
+  const auto job = jobs_.find(put.job);
+  if (job == jobs_.end()) {
+    hooks_.failed(std::move(put), absl::CancelledError("the job is over"));
+    return;
+  }
+  const absl::Status written = write(job->second, put);
+  if (!written.ok()) {
+    expect_trouble();
+    hooks_.failed(std::move(put), written);
+    return;
+  }
+  job->second.written.push_back(std::move(put));
+}
+
+absl::Status StoreDesk::write(OpenJob& job, PutBand& put) {
+  RETURN_IF_ERROR(open_log(put.job, job));
+  BandRecord record{.package_digest = job.spec.manifest,
+                    .settings = job.spec.settings,
+                    .pixels = std::move(put.pixels)};
+  const absl::StatusOr<std::uint64_t> offset = job.log->append(record);
+  put.pixels = std::move(record.pixels);
+  RETURN_IF_ERROR(offset.status());
+  put.offset = *offset;
+  return absl::OkStatus();
+}
+
+absl::Status StoreDesk::open_log(JobId id, OpenJob& job) {
+  if (!job.log) {
+    RETURN_IF_ERROR(add_job(id, job.spec));
+    BandLogReport report;
+    ASSIGN_OR_RETURN(
+        job.log, BandLog::open(
+                     folder_.job(id), folder_.bands(id), [](BandRecord, std::uint64_t) {}, report));
+  }
+  return absl::OkStatus();
+}
+
+void StoreDesk::compare(PutBand put) {
+  std::vector<std::uint64_t> digests = row_digests(put.pixels);
+  hooks_.stored(std::move(put), std::move(digests));
+}
+
+void StoreDesk::settle() {
+  for (auto& [id, job] : jobs_) {
+    if (!job.written.empty()) {
+      settle(job);
+    }
+  }
+  if (!trouble_ || clock_.now() - asked_at_ < kAskEvery_s) {
+    return;
+  }
+  asked_at_ = clock_.now();
+  if (probe_disk(folder_.path()).ok()) {
+    trouble_ = false;
+    hooks_.disk_is_back();
+  }
+}
+
+void StoreDesk::settle(OpenJob& job) {
+  const absl::Status synced = job.log->sync();
+  for (PutBand& put : std::exchange(job.written, {})) {
+    if (synced.ok()) {
+      compare(std::move(put));
+    } else {
+      expect_trouble();
+      hooks_.failed(std::move(put), synced);
+    }
+  }
+}
+
+void StoreDesk::write_result(JobId id, const Image& image) {
+  const absl::Status written =
+      coordinator::write_result(image, folder_.job(id), folder_.result(id));
+  if (!written.ok()) {
+    expect_trouble();
+  }
+  hooks_.result_written(id, written);
+}
+
+absl::StatusOr<StoredResult> StoreDesk::read_result(JobId id) const {
+  absl::StatusOr<StoredResult> result = coordinator::read_result(folder_.result(id));
+  if (absl::IsNotFound(result.status())) {
+    return absl::DataLossError(absl::StrCat("the result of job ", id, " is missing (",
+                                            folder_.result(id), "); submit the job again"));
+  }
+  return result;
+}
+
+void StoreDesk::drop_bands(JobId id) {
+  jobs_.erase(id);
+  remove_file(folder_.bands(id)).IgnoreError();  // what is left is removed at the next start
+}
+
+void StoreDesk::expect_trouble() {
+  if (!trouble_) {
+    trouble_ = true;
+    asked_at_ = clock_.now();
+  }
+}
+
+}  // namespace bandsaw::coordinator

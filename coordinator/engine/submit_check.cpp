@@ -1,0 +1,94 @@
+#include "coordinator/engine/submit_check.h"
+
+#include <cmath>
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "proto/wire/digest.h"
+#include "proto/wire/limits.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/package/package.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+constexpr std::size_t kShortestRequestId = 16;
+constexpr std::size_t kLongestRequestId = 64;
+
+absl::Status check_samples(const char* name, std::uint64_t samples) {
+  if (samples < 1 || samples > kMaxSamples) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("stop.", name, " must be in [1, ", kMaxSamples, "], found ", samples));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status check_positive(const char* name, double value) {
+  if (!std::isfinite(value) || value <= 0) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("stop.", name, " must be finite and greater than 0, found ", value));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status check_stop(const StopRule& stop) {
+  if (const auto* samples = std::get_if<StopAtSamples>(&stop)) {
+    return check_samples("samples", samples->samples);
+  }
+  if (const auto* error = std::get_if<StopAtError>(&stop)) {
+    RETURN_IF_ERROR(check_positive("error", error->relative_rmse));
+    return check_samples("max_samples", error->max_samples);
+  }
+  const auto& time = std::get<StopAtTime>(stop);
+  RETURN_IF_ERROR(check_positive("time_s", time.seconds));
+  return check_samples("max_samples", time.max_samples);
+}
+
+absl::Status check_words(const JobSpec& spec) {
+  if (spec.request_id.size() < kShortestRequestId || spec.request_id.size() > kLongestRequestId) {
+    return absl::InvalidArgumentError(absl::StrCat("request_id must have ", kShortestRequestId,
+                                                   " to ", kLongestRequestId, " characters, found ",
+                                                   spec.request_id.size()));
+  }
+  if (spec.name.size() > wire::kJobNameBytes) {
+    return absl::InvalidArgumentError(absl::StrCat("name must have at most ", wire::kJobNameBytes,
+                                                   " bytes, found ", spec.name.size()));
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<std::string> read_manifest(const DigestHex& hex, BlobStore& blobs) {
+  ASSIGN_OR_RETURN(const wire::Digest digest, wire::digest_from_hex(hex));
+  const absl::StatusOr<std::unique_ptr<BlobBytes>> blob = blobs.get(digest);
+  if (absl::IsNotFound(blob.status())) {
+    return absl::FailedPreconditionError(
+        absl::StrCat("the package's manifest, blob ", hex, ", is missing; send it first"));
+  }
+  RETURN_IF_ERROR(blob.status());
+  const absl::Span<const std::byte> bytes = (*blob)->bytes();
+  if (bytes.size() > wire::kManifestBytes) {
+    return absl::InvalidArgumentError(absl::StrCat("a manifest has at most ", wire::kManifestBytes,
+                                                   " bytes, found ", bytes.size()));
+  }
+  return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+}
+
+}  // namespace
+
+absl::Status check_submit(const JobSpec& spec, BlobStore& blobs) {
+  RETURN_IF_ERROR(check_words(spec));
+  RETURN_IF_ERROR(validate(spec.settings));
+  RETURN_IF_ERROR(check_stop(spec.stop));
+  ASSIGN_OR_RETURN(const std::string manifest, read_manifest(spec.manifest, blobs));
+  RETURN_IF_ERROR(package_info(manifest).status());
+  ASSIGN_OR_RETURN(const std::vector<BlobRef> refs, package_blobs(manifest));
+  for (const BlobRef& ref : refs) {
+    if (!blobs.has(ref.digest)) {
+      return absl::FailedPreconditionError(absl::StrCat(
+          "blob ", ref.digest.hex(), " of the package is missing; send it, then submit again"));
+    }
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,16 @@
+#pragma once
+
+// What must hold of a job before the core hears of it.
+
+#include "absl/status/status.h"
+#include "coordinator/core/types.h"
+#include "coordinator/store/blob_store.h"
+
+namespace bandsaw::coordinator {
+
+/// INVALID_ARGUMENT: a field out of range, or a package that is none. FAILED_PRECONDITION: a blob
+/// of the package is missing; the first is named. DATA_LOSS: the manifest's file is damaged. Reads
+/// the disk.
+absl::Status check_submit(const JobSpec& spec, BlobStore& blobs);
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,67 @@
+#include "coordinator/engine/watchers.h"
+
+#include <utility>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+constexpr double kShortest_s = 0.1;
+/// A little less than a second, because time is looked at every tenth of one.
+constexpr double kLongest_s = 0.9;
+
+/// Whether something changed that does not change by itself as time goes by.
+bool changed(const JobView& a, const JobView& b) {
+  return a.state != b.state || a.reason != b.reason || a.samples_done != b.samples_done ||
+         a.samples_per_pixel != b.samples_per_pixel || a.error != b.error ||
+         a.counters != b.counters || a.workers_used != b.workers_used ||
+         !std::equal(a.workers.begin(), a.workers.end(), b.workers.begin(), b.workers.end(),
+                     [](const JobWorkerView& v, const JobWorkerView& w) {
+                       return v.name == w.name && v.rows == w.rows && v.state == w.state;
+                     });
+}
+
+}  // namespace
+
+void Watchers::add(JobId job, const std::optional<JobView>& view, Changed changed, Time now) {
+  if (!view) {
+    changed(absl::NotFoundError(absl::StrCat("there is no job ", job)));
+    return;
+  }
+  if (!changed(*view) || is_final(view->state)) {
+    return;
+  }
+  const auto [entry, is_new] = jobs_.try_emplace(job);
+  if (is_new) {
+    entry->second.told = *view;
+    entry->second.told_at = now;
+    entry->second.looked_at = now;
+  }
+  entry->second.watchers.push_back(std::move(changed));
+}
+
+void Watchers::update(ViewOf view_of, bool hold_final, Time now) {
+  for (auto it = jobs_.begin(); it != jobs_.end();) {
+    Watched& watched = it->second;
+    if (now - watched.looked_at < kShortest_s) {
+      ++it;
+      continue;
+    }
+    watched.looked_at = now;
+    const std::optional<JobView> view = view_of(it->first);
+    const bool final = view && is_final(view->state);
+    const bool due = view && (changed(*view, watched.told) || now - watched.told_at >= kLongest_s);
+    if (!due || (final && hold_final)) {
+      ++it;
+      continue;
+    }
+    watched.told = *view;
+    watched.told_at = now;
+    std::erase_if(watched.watchers, [&](const Changed& tell) { return !tell(*view); });
+    it = final || watched.watchers.empty() ? jobs_.erase(it) : std::next(it);
+  }
+}
+
+}  // namespace bandsaw::coordinator

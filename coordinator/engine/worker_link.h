@@ -1,0 +1,21 @@
+#pragma once
+
+// The way to one worker: the gRPC stream, or a fake in tests. One of the four open doors. Calls
+// never block and never fail; a link that is gone swallows what is sent.
+
+#include "coordinator/core/messages.h"
+
+namespace bandsaw::coordinator {
+
+class WorkerLink {
+ public:
+  virtual ~WorkerLink() = default;
+  virtual void welcome(const action::Welcome& welcome, const std::string& epoch) = 0;
+  virtual void refuse(const action::Refuse& refuse) = 0;
+  virtual void lease(const action::Lease& lease) = 0;
+  virtual void revoke(const action::Revoke& revoke) = 0;
+  /// Ends the stream.
+  virtual void close(const std::string& reason) = 0;
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,36 @@
+#pragma once
+
+// Messages <-> the core's words. What comes from the wire is checked here, field by field, against
+// proto/wire/limits.h and render/settings.h: INVALID_ARGUMENT names the field, its range and what
+// was found.
+
+#include "absl/status/statusor.h"
+#include "coordinator/core/messages.h"
+#include "proto/farm.pb.h"
+#include "proto/wire/digest.h"
+
+namespace bandsaw::coordinator {
+
+// ---- from the wire ----
+
+absl::StatusOr<wire::Digest> digest_field(const char* field, const std::string& raw);
+absl::StatusOr<JobSpec> job_spec(const farm::SubmitRequest& request);
+/// Its form only: whether it is a band of its job is known to the engine.
+absl::StatusOr<Band> band(const char* field, const farm::Band& message);
+/// `address`: of the peer, for people.
+absl::StatusOr<WorkerHello> worker_hello(const farm::Hello& message, std::string address);
+absl::StatusOr<input::Heartbeat> heartbeat(const farm::Heartbeat& message);
+absl::StatusOr<input::BandFailed> band_failed(const farm::BandFailed& message);
+absl::StatusOr<std::string> reason_field(const char* field, const std::string& text);
+
+// ---- to the wire ----
+
+farm::JobStatus to_message(const JobView& job);
+farm::WorkerStatus to_message(const WorkerView& worker);
+farm::ToWorker to_message(const action::Welcome& welcome, const std::string& epoch);
+farm::ToWorker to_message(const action::Refuse& refuse);
+/// INVALID_ARGUMENT: the manifest is not a digest.
+absl::StatusOr<farm::ToWorker> to_message(const action::Lease& lease);
+farm::ToWorker to_message(const action::Revoke& revoke);
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,46 @@
+#include "coordinator/rpc/executor.h"
+
+namespace bandsaw::coordinator {
+
+FileExecutor::FileExecutor(int threads) {
+  for (int i = 0; i < threads; ++i) {
+    threads_.emplace_back([this] { run(); });
+  }
+}
+
+FileExecutor::~FileExecutor() {
+  {
+    MutexLock lock(mutex_);
+    stopping_ = true;
+  }
+  work_.notify_all();
+  for (std::thread& thread : threads_) {
+    thread.join();
+  }
+}
+
+void FileExecutor::post(std::function<void()> task) {
+  MutexLock lock(mutex_);
+  tasks_.push_back(std::move(task));
+  work_.notify_one();
+}
+
+void FileExecutor::run() {
+  MutexLock lock(mutex_);
+  while (true) {
+    while (tasks_.empty() && !stopping_) {
+      work_.wait(mutex_);
+    }
+    if (tasks_.empty()) {
+      return;
+    }
+    std::function<void()> task = std::move(tasks_.front());
+    tasks_.pop_front();
+    mutex_.unlock();
+    task();
+    task = nullptr;  // what it holds may take the queue's lock when it goes
+    mutex_.lock();
+  }
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,155 @@
+#include "absl/strings/str_cat.h"
+#include "coordinator/rpc/convert.h"
+#include "coordinator/rpc/downloads.h"
+#include "coordinator/rpc/gate.h"
+#include "coordinator/rpc/services.h"
+#include "coordinator/rpc/uploads.h"
+#include "coordinator/rpc/watch_call.h"
+#include "proto/wire/limits.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+using Unary = grpc::ServerUnaryReactor;
+
+Unary* finished(grpc::CallbackServerContext* context, const absl::Status& status) {
+  Unary* reactor = context->DefaultReactor();
+  reactor->Finish(link::to_grpc(status));
+  return reactor;
+}
+
+absl::StatusOr<std::vector<wire::Digest>> digests(const farm::MissingBlobsRequest& request) {
+  if (static_cast<std::size_t>(request.sha256_size()) > wire::kDigestsPerMessage) {
+    return absl::InvalidArgumentError(absl::StrCat("sha256: at most ", wire::kDigestsPerMessage,
+                                                   " digests, has ", request.sha256_size()));
+  }
+  std::vector<wire::Digest> digests;
+  for (const std::string& raw : request.sha256()) {
+    ASSIGN_OR_RETURN(const wire::Digest digest, digest_field("sha256", raw));
+    digests.push_back(digest);
+  }
+  return digests;
+}
+
+}  // namespace
+
+Unary* FarmService::MissingBlobs(grpc::CallbackServerContext* context,
+                                 const farm::MissingBlobsRequest* request,
+                                 farm::MissingBlobsReply* reply) {
+  if (const auto status = check_caller(*context, doors_.identity, link::Role::kFarm);
+      !status.ok()) {
+    return finished(context, status);
+  }
+  absl::StatusOr<std::vector<wire::Digest>> asked = digests(*request);
+  if (!asked.ok()) {
+    return finished(context, asked.status());
+  }
+  Unary* reactor = context->DefaultReactor();
+  doors_.files.post([this, reply, reactor, asked = *std::move(asked)] {
+    for (const wire::Digest& digest : asked) {
+      if (!doors_.engine.has_blob(digest)) {
+        reply->add_sha256(digest.raw());
+      }
+    }
+    reactor->Finish(grpc::Status::OK);
+  });
+  return reactor;
+}
+
+grpc::ServerReadReactor<farm::BlobChunk>* FarmService::PutBlob(grpc::CallbackServerContext* context,
+                                                               farm::PutBlobReply*) {
+  if (const auto status = check_caller(*context, doors_.identity, link::Role::kFarm);
+      !status.ok()) {
+    return new RefusedCall<grpc::ServerReadReactor<farm::BlobChunk>>(status);
+  }
+  return PutBlobCall::make(doors_, context);
+}
+
+Unary* FarmService::Submit(grpc::CallbackServerContext* context, const farm::SubmitRequest* request,
+                           farm::SubmitReply* reply) {
+  if (const auto status = check_caller(*context, doors_.identity, link::Role::kFarm);
+      !status.ok()) {
+    return finished(context, status);
+  }
+  absl::StatusOr<JobSpec> spec = job_spec(*request);
+  if (!spec.ok()) {
+    return finished(context, spec.status());
+  }
+  Unary* reactor = context->DefaultReactor();
+  doors_.engine.submit(*std::move(spec), [reactor, reply](const absl::StatusOr<JobId>& job) {
+    if (job.ok()) {
+      reply->set_job(*job);
+    }
+    reactor->Finish(link::to_grpc(job.status()));
+  });
+  return reactor;
+}
+
+grpc::ServerWriteReactor<farm::JobStatus>* FarmService::Watch(grpc::CallbackServerContext* context,
+                                                              const farm::WatchRequest* request) {
+  if (const auto status = check_caller(*context, doors_.identity, link::Role::kFarm);
+      !status.ok()) {
+    return new RefusedCall<grpc::ServerWriteReactor<farm::JobStatus>>(status);
+  }
+  return WatchCall::make(doors_, request->job());
+}
+
+grpc::ServerWriteReactor<farm::ResultChunk>* FarmService::GetResult(
+    grpc::CallbackServerContext* context, const farm::GetResultRequest* request) {
+  if (const auto status = check_caller(*context, doors_.identity, link::Role::kFarm);
+      !status.ok()) {
+    return new RefusedCall<grpc::ServerWriteReactor<farm::ResultChunk>>(status);
+  }
+  return GetResultCall::make(doors_, request->job());
+}
+
+Unary* FarmService::ListJobs(grpc::CallbackServerContext* context, const farm::ListJobsRequest*,
+                             farm::ListJobsReply* reply) {
+  if (const auto status = check_caller(*context, doors_.identity, link::Role::kFarm);
+      !status.ok()) {
+    return finished(context, status);
+  }
+  Unary* reactor = context->DefaultReactor();
+  doors_.engine.jobs([reactor, reply](const std::vector<JobView>& jobs) {
+    for (const JobView& job : jobs) {
+      *reply->add_job() = to_message(job);
+    }
+    reactor->Finish(grpc::Status::OK);
+  });
+  return reactor;
+}
+
+Unary* FarmService::ListWorkers(grpc::CallbackServerContext* context,
+                                const farm::ListWorkersRequest*, farm::ListWorkersReply* reply) {
+  if (const auto status = check_caller(*context, doors_.identity, link::Role::kFarm);
+      !status.ok()) {
+    return finished(context, status);
+  }
+  Unary* reactor = context->DefaultReactor();
+  doors_.engine.workers([reactor, reply](const std::vector<WorkerView>& workers) {
+    for (const WorkerView& worker : workers) {
+      *reply->add_worker() = to_message(worker);
+    }
+    reactor->Finish(grpc::Status::OK);
+  });
+  return reactor;
+}
+
+Unary* FarmService::Cancel(grpc::CallbackServerContext* context, const farm::CancelRequest* request,
+                           farm::JobStatus* reply) {
+  if (const auto status = check_caller(*context, doors_.identity, link::Role::kFarm);
+      !status.ok()) {
+    return finished(context, status);
+  }
+  Unary* reactor = context->DefaultReactor();
+  doors_.engine.cancel(request->job(), [reactor, reply](const absl::StatusOr<JobView>& job) {
+    if (job.ok()) {
+      *reply = to_message(*job);
+    }
+    reactor->Finish(link::to_grpc(job.status()));
+  });
+  return reactor;
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,83 @@
+#include "coordinator/rpc/server.h"
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/rpc/port_check.h"
+#include "coordinator/rpc/services.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+constexpr int kFileThreads = 4;  // they wait for the disk more than they work
+constexpr auto kShutdownTime = std::chrono::seconds(4);
+
+std::shared_ptr<grpc::ServerCredentials> credentials(const link::Identity& identity,
+                                                     bool insecure) {
+  if (insecure) {
+    return grpc::InsecureServerCredentials();
+  }
+  grpc::SslServerCredentialsOptions
+      options;  // who may call is decided by secrets, not by client certificates
+  options.pem_key_cert_pairs.push_back(
+      {.private_key = identity.key_pem, .cert_chain = identity.certificate_pem});
+  return grpc::SslServerCredentials(options);
+}
+
+}  // namespace
+
+class Server::Impl {
+ public:
+  Impl(Engine& engine, const link::Identity& identity)
+      : identity_(identity),
+        files_(kFileThreads),
+        farm_({engine, identity_, files_, streams_}),
+        work_({engine, identity_, files_, streams_}) {}
+
+  absl::Status start(const ServerOptions& options) {
+    RETURN_IF_ERROR(check_can_listen(options.listen));
+    grpc::ServerBuilder builder;
+    link::configure_server(builder);
+    builder.AddListeningPort(options.listen, credentials(identity_, options.insecure), &port_);
+    builder.RegisterService(&farm_);
+    builder.RegisterService(&work_);
+    server_ = builder.BuildAndStart();
+    if (server_ == nullptr || port_ == 0) {
+      return absl::FailedPreconditionError(
+          absl::StrCat("cannot listen on ", options.listen, ": its port was taken just now"));
+    }
+    return absl::OkStatus();
+  }
+
+  ~Impl() {
+    if (server_ != nullptr) {
+      streams_.stop_all(absl::UnavailableError("the coordinator is being stopped"));
+      server_->Shutdown(std::chrono::system_clock::now() + kShutdownTime);
+      server_->Wait();
+    }
+  }
+
+  int port() const { return port_; }
+
+ private:
+  const link::Identity identity_;
+  FileExecutor files_;  // before the server: calls that end post to it
+  LongStreams streams_;
+  FarmService farm_;
+  WorkService work_;
+  std::unique_ptr<grpc::Server> server_;
+  int port_ = 0;
+};
+
+Server::Server(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Server::~Server() = default;
+int Server::port() const { return impl_->port(); }
+
+absl::StatusOr<std::unique_ptr<Server>> Server::start(Engine& engine,
+                                                      const link::Identity& identity,
+                                                      const ServerOptions& options) {
+  auto impl = std::make_unique<Impl>(engine, identity);
+  RETURN_IF_ERROR(impl->start(options));
+  return std::unique_ptr<Server>(new Server(std::move(impl)));
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,55 @@
+#pragma once
+
+// The two services of proto/farm.proto: who may call, and which call is made of it.
+
+#include "coordinator/rpc/streams.h"
+#include "proto/farm.grpc.pb.h"
+
+namespace bandsaw::coordinator {
+
+class FarmService final : public farm::Farm::CallbackService {
+ public:
+  explicit FarmService(const Doors& doors) : doors_(doors) {}
+
+  grpc::ServerUnaryReactor* MissingBlobs(grpc::CallbackServerContext* context,
+                                         const farm::MissingBlobsRequest* request,
+                                         farm::MissingBlobsReply* reply) override;
+  grpc::ServerReadReactor<farm::BlobChunk>* PutBlob(grpc::CallbackServerContext* context,
+                                                    farm::PutBlobReply* reply) override;
+  grpc::ServerUnaryReactor* Submit(grpc::CallbackServerContext* context,
+                                   const farm::SubmitRequest* request,
+                                   farm::SubmitReply* reply) override;
+  grpc::ServerWriteReactor<farm::JobStatus>* Watch(grpc::CallbackServerContext* context,
+                                                   const farm::WatchRequest* request) override;
+  grpc::ServerWriteReactor<farm::ResultChunk>* GetResult(
+      grpc::CallbackServerContext* context, const farm::GetResultRequest* request) override;
+  grpc::ServerUnaryReactor* ListJobs(grpc::CallbackServerContext* context,
+                                     const farm::ListJobsRequest* request,
+                                     farm::ListJobsReply* reply) override;
+  grpc::ServerUnaryReactor* ListWorkers(grpc::CallbackServerContext* context,
+                                        const farm::ListWorkersRequest* request,
+                                        farm::ListWorkersReply* reply) override;
+  grpc::ServerUnaryReactor* Cancel(grpc::CallbackServerContext* context,
+                                   const farm::CancelRequest* request,
+                                   farm::JobStatus* reply) override;
+
+ private:
+  const Doors doors_;
+};
+
+class WorkService final : public farm::Work::CallbackService {
+ public:
+  explicit WorkService(const Doors& doors) : doors_(doors) {}
+
+  grpc::ServerBidiReactor<farm::FromWorker, farm::ToWorker>* Session(
+      grpc::CallbackServerContext* context) override;
+  grpc::ServerWriteReactor<farm::BlobChunk>* GetBlob(grpc::CallbackServerContext* context,
+                                                     const farm::GetBlobRequest* request) override;
+  grpc::ServerReadReactor<farm::BandChunk>* PutBand(grpc::CallbackServerContext* context,
+                                                    farm::PutBandReply* reply) override;
+
+ private:
+  const Doors doors_;
+};
+
+}  // namespace bandsaw::coordinator

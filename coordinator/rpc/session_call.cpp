@@ -1,0 +1,149 @@
+#include "coordinator/rpc/session_call.h"
+
+#include "coordinator/rpc/convert.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+
+void SessionCall::begin() {
+  if (const absl::Status status = doors_.streams.add(weak_from_this()); !status.ok()) {
+    stop(status);
+    return;
+  }
+  StartRead(&incoming_);
+}
+
+void SessionCall::done() {
+  if (!session_) {
+    return;
+  }
+  std::string reason = "it left";
+  {
+    MutexLock lock(mutex_);
+    if (end_ && !end_->ok()) {
+      reason = std::string(end_->message());
+    }
+  }
+  doors_.engine.lost(*session_, std::move(reason));
+}
+
+void SessionCall::OnReadDone(bool ok) {
+  if (!ok) {
+    end_with(absl::OkStatus());
+    return;
+  }
+  if (const absl::Status status = receive(incoming_); !status.ok()) {
+    end_with(status);
+    return;
+  }
+  MutexLock lock(mutex_);
+  if (!finished_) {
+    StartRead(&incoming_);
+  }
+}
+
+absl::Status SessionCall::receive(const farm::FromWorker& message) {
+  if (message.has_hello() == session_.has_value()) {
+    return absl::InvalidArgumentError("hello: must be the first message, and only the first");
+  }
+  switch (message.kind_case()) {
+    case farm::FromWorker::kHello: {
+      ASSIGN_OR_RETURN(WorkerHello hello, worker_hello(message.hello(), peer_));
+      session_ = doors_.engine.hello(shared_from_this(), std::move(hello));
+      return absl::OkStatus();
+    }
+    case farm::FromWorker::kHeartbeat: {
+      ASSIGN_OR_RETURN(input::Heartbeat beat, heartbeat(message.heartbeat()));
+      doors_.engine.heartbeat(*session_, std::move(beat.leases), std::move(beat.doing));
+      return absl::OkStatus();
+    }
+    case farm::FromWorker::kFailed: {
+      ASSIGN_OR_RETURN(input::BandFailed failed, band_failed(message.failed()));
+      doors_.engine.band_failed(*session_, failed.lease, std::move(failed.reason),
+                                std::move(failed.log));
+      return absl::OkStatus();
+    }
+    case farm::FromWorker::kDraining: {
+      ASSIGN_OR_RETURN(std::string reason,
+                       reason_field("draining.reason", message.draining().reason()));
+      doors_.engine.draining(*session_, std::move(reason));
+      return absl::OkStatus();
+    }
+    case farm::FromWorker::KIND_NOT_SET:
+      break;
+  }
+  return absl::InvalidArgumentError("kind: unknown; this worker is newer than the coordinator");
+}
+
+void SessionCall::OnWriteDone(bool ok) {
+  MutexLock lock(mutex_);
+  writing_ = false;
+  outgoing_.pop_front();
+  if (!ok) {
+    outgoing_.clear();
+    if (!end_) {
+      end_ = absl::CancelledError("the connection broke");
+    }
+  }
+  advance();
+}
+
+void SessionCall::welcome(const action::Welcome& welcome, const std::string& epoch) {
+  send(to_message(welcome, epoch));
+}
+
+void SessionCall::refuse(const action::Refuse& refuse) {
+  send(to_message(refuse));
+  end_with(absl::OkStatus());
+}
+
+void SessionCall::lease(const action::Lease& lease) {
+  absl::StatusOr<farm::ToWorker> message = to_message(lease);
+  if (message.ok()) {
+    send(*std::move(message));
+  } else {
+    stop(absl::InternalError(message.status().message()));
+  }
+}
+
+void SessionCall::revoke(const action::Revoke& revoke) { send(to_message(revoke)); }
+
+void SessionCall::send(farm::ToWorker message) {
+  MutexLock lock(mutex_);
+  if (!end_) {
+    outgoing_.push_back(std::move(message));
+    advance();
+  }
+}
+
+void SessionCall::end_with(const absl::Status& status) {
+  MutexLock lock(mutex_);
+  if (!end_) {
+    end_ = status;
+  }
+  advance();
+}
+
+void SessionCall::stop(const absl::Status& why) {
+  MutexLock lock(mutex_);
+  if (!end_) {
+    end_ = why;
+  }
+  outgoing_.resize(writing_ ? 1 : 0);
+  advance();
+}
+
+void SessionCall::advance() {
+  if (writing_ || finished_) {
+    return;
+  }
+  if (!outgoing_.empty()) {
+    writing_ = true;
+    StartWrite(&outgoing_.front());
+  } else if (end_) {
+    finished_ = true;
+    Finish(link::to_grpc(*end_));
+  }
+}
+
+}  // namespace bandsaw::coordinator

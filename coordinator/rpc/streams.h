@@ -1,0 +1,115 @@
+#pragma once
+
+// How a reactor of gRPC's callback API lives, and the register of the long ones, which a stopping
+// server must end.
+
+#include <grpcpp/grpcpp.h>
+
+#include <memory>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "coordinator/engine/engine.h"
+#include "coordinator/rpc/executor.h"
+#include "proto/link/channel.h"
+#include "proto/link/identity.h"
+#include "renderlib/base/mutex.h"
+
+namespace bandsaw::coordinator {
+
+/// A stream without an end of its own: a worker's session, a watched job.
+class LongStream {
+ public:
+  virtual ~LongStream() = default;
+  /// Ends the call with this status once what is being written is out. Any thread; more than once
+  /// does nothing.
+  virtual void stop(const absl::Status& why) = 0;
+};
+
+class LongStreams {
+ public:
+  /// UNAVAILABLE once stopped; RESOURCE_EXHAUSTED when there are too many.
+  absl::Status add(std::weak_ptr<LongStream> stream) EXCLUDES(mutex_);
+  void stop_all(const absl::Status& why) EXCLUDES(mutex_);
+
+ private:
+  Mutex mutex_;
+  bool stopped_ GUARDED_BY(mutex_) = false;
+  std::vector<std::weak_ptr<LongStream>> streams_ GUARDED_BY(mutex_);
+};
+
+/// What the services share. All of it outlives every call.
+struct Doors {
+  Engine& engine;
+  const link::Identity& identity;
+  FileExecutor& files;
+  LongStreams& streams;
+};
+
+/// A reactor that keeps itself until OnDone, which is gRPC's last word. Whatever may come later
+/// than that (an answer of the engine, a task of the file executor) holds it by shared_from_this().
+template <class Base, class Derived>
+class SelfOwned : public Base, public std::enable_shared_from_this<Derived> {
+ public:
+  template <class... Args>
+  static Derived* make(Args&&... args) {
+    auto made = std::make_shared<Derived>(std::forward<Args>(args)...);
+    made->self_ = made;
+    made->begin();
+    return made.get();
+  }
+  void OnDone() final {
+    const std::shared_ptr<Derived> last = std::move(self_);
+    last->done();
+  }
+
+ protected:
+  void done() {}
+
+ private:
+  std::shared_ptr<Derived> self_;
+};
+
+/// A call that ends before it began.
+template <class Base>
+class RefusedCall final : public Base {
+ public:
+  explicit RefusedCall(const absl::Status& why) { this->Finish(link::to_grpc(why)); }
+  void OnDone() override { delete this; }
+};
+
+/// Reads a client's stream chunk by chunk on the file executor: one chunk is read only when the one
+/// before is dealt with. Derived has: absl::Status add(const Chunk&); void end() (all chunks came;
+/// MUST Finish).
+template <class Chunk, class Derived>
+class ChunkReader : public SelfOwned<grpc::ServerReadReactor<Chunk>, Derived> {
+ public:
+  ChunkReader(const Doors& doors, grpc::CallbackServerContext* context)
+      : doors_(doors), context_(context) {}
+
+  void begin() { this->StartRead(&chunk_); }
+  void OnReadDone(bool ok) override {
+    doors_.files.post([self = this->shared_from_this(), ok] { self->take(ok); });
+  }
+  void take(bool ok) {
+    auto& derived = static_cast<Derived&>(*this);
+    if (!ok && context_->IsCancelled()) {
+      this->Finish(grpc::Status::CANCELLED);
+    } else if (!ok) {
+      derived.end();
+    } else if (const absl::Status status = derived.add(chunk_); !status.ok()) {
+      this->Finish(link::to_grpc(status));
+    } else {
+      this->StartRead(&chunk_);
+    }
+  }
+
+ protected:
+  const Doors doors_;
+
+ private:
+  grpc::CallbackServerContext* const context_;
+  Chunk chunk_;
+};
+
+}  // namespace bandsaw::coordinator

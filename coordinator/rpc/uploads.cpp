@@ -1,0 +1,156 @@
+#include "coordinator/rpc/uploads.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/rpc/convert.h"
+#include "proto/wire/limits.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+constexpr std::uint64_t kPixelBytes = 3 * sizeof(double);
+
+absl::Span<const std::byte> bytes_of(const std::string& data) {
+  return absl::MakeConstSpan(reinterpret_cast<const std::byte*>(data.data()), data.size());
+}
+
+/// A chunk must fit what was announced.
+absl::Status check_chunk(const std::string& data, std::uint64_t received, std::uint64_t size) {
+  if (data.size() > wire::kChunkBytes) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("data: at most ", wire::kChunkBytes, " bytes a chunk, has ", data.size()));
+  }
+  if (data.size() > size - received) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("data: more bytes came than the announced size of ", size));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status cut_short(std::uint64_t received, std::uint64_t size) {
+  return absl::InvalidArgumentError(
+      absl::StrCat("data: the stream ended after ", received, " of ", size, " bytes"));
+}
+
+bool is_sum(double value) { return std::isfinite(value) && value >= 0; }
+
+}  // namespace
+
+absl::Status PutBlobCall::add(const farm::BlobChunk& chunk) {
+  if (writer_ == nullptr) {
+    ASSIGN_OR_RETURN(const wire::Digest digest, digest_field("sha256", chunk.sha256()));
+    if (chunk.size() > wire::kBlobBytes) {
+      return absl::ResourceExhaustedError(absl::StrCat(
+          "size: a blob has at most ", wire::kBlobBytes, " bytes, not ", chunk.size()));
+    }
+    size_ = chunk.size();
+    ASSIGN_OR_RETURN(writer_, doors_.engine.write_blob(digest, size_));
+  } else if (!chunk.sha256().empty() || chunk.size() != 0) {
+    return absl::InvalidArgumentError("sha256, size: belong in the first chunk only");
+  }
+  if (chunk.offset() != received_) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("offset: must be ", received_, " now, is ", chunk.offset()));
+  }
+  RETURN_IF_ERROR(check_chunk(chunk.data(), received_, size_));
+  received_ += chunk.data().size();
+  return writer_->append(bytes_of(chunk.data()));
+}
+
+void PutBlobCall::end() {
+  if (writer_ == nullptr) {
+    Finish(link::to_grpc(absl::InvalidArgumentError("the stream holds no chunk")));
+  } else if (received_ != size_) {
+    Finish(link::to_grpc(cut_short(received_, size_)));
+  } else {
+    Finish(link::to_grpc(writer_->commit()));
+  }
+}
+
+absl::Status PutBandCall::take_header(const farm::BandHeader& header) {
+  ASSIGN_OR_RETURN(pixels_.band, band("header.band", header.band()));
+  RETURN_IF_ERROR(digest_field("header.sha256", header.sha256()).status());
+  RETURN_IF_ERROR(reason_field("header.instance", header.instance()).status());
+  if (header.size() > wire::kBandBytes) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "header.size: a band has at most ", wire::kBandBytes, " bytes, not ", header.size()));
+  }
+  const std::uint64_t row_bytes = header.size() / pixels_.band.rows.count();
+  if (row_bytes == 0 || row_bytes * pixels_.band.rows.count() != header.size() ||
+      row_bytes % kPixelBytes != 0 || row_bytes / kPixelBytes > kMaxSide) {
+    return absl::InvalidArgumentError(absl::StrCat("header.size: ", header.size(),
+                                                   " bytes are not ", pixels_.band.rows.count(),
+                                                   " rows of pixels of ", kPixelBytes, " bytes"));
+  }
+  if (!is_sum(header.counters().render_s()) || !is_sum(header.counters().cpu_s())) {
+    return absl::InvalidArgumentError("header.counters: times must be finite and >= 0");
+  }
+  pixels_.width = static_cast<std::uint32_t>(row_bytes / kPixelBytes);
+  pixels_.sums.resize(header.size() / sizeof(double));
+  pixels_.counters = {.rays = header.counters().rays(),
+                      .bad_samples = header.counters().bad_samples(),
+                      .bad_x = header.counters().bad_x(),
+                      .bad_y = header.counters().bad_y(),
+                      .bad_sample = header.counters().bad_sample()};
+  header_ = header;
+  has_header_ = true;
+  return absl::OkStatus();
+}
+
+absl::Status PutBandCall::add(const farm::BandChunk& chunk) {
+  if (!has_header_) {
+    if (!chunk.has_header()) {
+      return absl::InvalidArgumentError("header: must be in the first chunk");
+    }
+    RETURN_IF_ERROR(take_header(chunk.header()));
+  } else if (chunk.has_header()) {
+    return absl::InvalidArgumentError("header: belongs in the first chunk only");
+  }
+  RETURN_IF_ERROR(check_chunk(chunk.data(), received_, header_.size()));
+  std::memcpy(reinterpret_cast<char*>(pixels_.sums.data()) + received_, chunk.data().data(),
+              chunk.data().size());
+  received_ += chunk.data().size();
+  hasher_.update(bytes_of(chunk.data()));
+  return absl::OkStatus();
+}
+
+absl::Status PutBandCall::check_pixels() {
+  if (!has_header_) {
+    return absl::InvalidArgumentError("header: the stream holds no chunk");
+  }
+  if (received_ != header_.size()) {
+    return cut_short(received_, header_.size());
+  }
+  if (hasher_.finish().raw() != header_.sha256()) {
+    return absl::InvalidArgumentError("header.sha256: the bytes that came do not have it");
+  }
+  if (!std::all_of(pixels_.sums.begin(), pixels_.sums.end(), is_sum)) {
+    return absl::InvalidArgumentError("data: a pixel's sum is not a finite number >= 0");
+  }
+  return absl::OkStatus();
+}
+
+void PutBandCall::end() {
+  if (const absl::Status status = check_pixels(); !status.ok()) {
+    Finish(link::to_grpc(status));
+    return;
+  }
+  doors_.engine.put_band(header_.job(), header_.instance(), std::move(pixels_),
+                         header_.counters().render_s(), header_.counters().cpu_s(),
+                         [self = shared_from_this()](const absl::StatusOr<BandOutcome>& outcome) {
+                           if (outcome.ok()) {
+                             self->reply_->set_outcome(*outcome == BandOutcome::kStored
+                                                           ? farm::PutBandReply::OUTCOME_STORED
+                                                       : *outcome == BandOutcome::kDuplicate
+                                                           ? farm::PutBandReply::OUTCOME_DUPLICATE
+                                                           : farm::PutBandReply::OUTCOME_UNWANTED);
+                           }
+                           self->Finish(link::to_grpc(outcome.status()));
+                         });
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,44 @@
+#pragma once
+
+// What comes in chunks: blobs from people, pixels from workers.
+
+#include "coordinator/rpc/streams.h"
+#include "proto/farm.pb.h"
+#include "renderlib/render/band.h"
+
+namespace bandsaw::coordinator {
+
+/// Farm.PutBlob.
+class PutBlobCall final : public ChunkReader<farm::BlobChunk, PutBlobCall> {
+ public:
+  using ChunkReader::ChunkReader;
+  absl::Status add(const farm::BlobChunk& chunk);
+  void end();
+
+ private:
+  std::unique_ptr<Engine::BlobWriter> writer_;
+  std::uint64_t size_ = 0;
+  std::uint64_t received_ = 0;
+};
+
+/// Work.PutBand.
+class PutBandCall final : public ChunkReader<farm::BandChunk, PutBandCall> {
+ public:
+  PutBandCall(const Doors& doors, grpc::CallbackServerContext* context, farm::PutBandReply* reply)
+      : ChunkReader(doors, context), reply_(reply) {}
+  absl::Status add(const farm::BandChunk& chunk);
+  void end();
+
+ private:
+  absl::Status take_header(const farm::BandHeader& header);
+  absl::Status check_pixels();
+
+  farm::PutBandReply* const reply_;
+  farm::BandHeader header_;
+  bool has_header_ = false;
+  BandPixels pixels_;
+  std::uint64_t received_ = 0;
+  wire::Hasher hasher_;
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <optional>
+
+#include "coordinator/rpc/streams.h"
+#include "proto/farm.pb.h"
+
+namespace bandsaw::coordinator {
+
+/// Farm.Watch. Holds at most one state that is not sent yet: a slow reader sees fewer states, never
+/// old ones.
+class WatchCall final : public SelfOwned<grpc::ServerWriteReactor<farm::JobStatus>, WatchCall>,
+                        public LongStream {
+ public:
+  WatchCall(const Doors& doors, JobId job) : doors_(doors), job_(job) {}
+  void begin();
+  void OnWriteDone(bool ok) override;
+  void OnCancel() override { stop(absl::CancelledError("the watcher left")); }
+  void stop(const absl::Status& why) override EXCLUDES(mutex_);
+
+ private:
+  /// False: nothing more is wanted.
+  bool changed(const absl::StatusOr<JobView>& job) EXCLUDES(mutex_);
+  void advance() REQUIRES(mutex_);
+
+  const Doors doors_;
+  const JobId job_;
+  Mutex mutex_;
+  bool writing_ GUARDED_BY(mutex_) = false;
+  bool finished_ GUARDED_BY(mutex_) = false;
+  std::optional<farm::JobStatus> next_ GUARDED_BY(mutex_);
+  std::optional<absl::Status> end_ GUARDED_BY(mutex_);  ///< after `next_` is sent
+  farm::JobStatus sending_;                             ///< untouched while writing_
+};
+
+}  // namespace bandsaw::coordinator

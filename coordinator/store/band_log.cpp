@@ -1,0 +1,109 @@
+#include "coordinator/store/band_log.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "coordinator/store/mapped_file.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+constexpr std::array<char, 8> kMagic = {'B', 'S', 'W', 'B', 'A', 'N', 'D', '1'};
+
+/// Where the next record may begin at or after `offset`; the end when none does.
+std::uint64_t next_magic(absl::Span<const std::byte> bytes, std::uint64_t offset) {
+  const auto* magic = reinterpret_cast<const std::byte*>(kMagic.data());
+  const auto found = std::search(bytes.begin() + static_cast<std::ptrdiff_t>(offset), bytes.end(),
+                                 magic, magic + kMagic.size());
+  return static_cast<std::uint64_t>(found - bytes.begin());
+}
+
+/// Hands on every whole record; the end of the last one.
+std::uint64_t read_records(absl::Span<const std::byte> bytes,
+                           absl::FunctionRef<void(BandRecord, std::uint64_t)> each,
+                           BandLogReport& report) {
+  std::uint64_t offset = 0;
+  std::uint64_t sound_end = 0;
+  while (offset < bytes.size()) {
+    absl::StatusOr<DecodedBandRecord> decoded = decode_band_record(bytes, offset);
+    if (!decoded.ok()) {
+      const std::uint64_t next = next_magic(bytes, offset + 1);
+      report.damaged_bytes += next - offset;
+      offset = next;
+      continue;
+    }
+    ++report.records;
+    each(std::move(decoded->record), offset);
+    offset += decoded->size;
+    sound_end = offset;
+  }
+  return sound_end;
+}
+
+}  // namespace
+
+absl::StatusOr<BandLog> BandLog::open(const std::string& folder, const std::string& path,
+                                      absl::FunctionRef<void(BandRecord, std::uint64_t)> each,
+                                      BandLogReport& report) {
+  ASSIGN_OR_RETURN(File file, File::open(path, O_RDWR | O_CREAT | O_APPEND));
+  RETURN_IF_ERROR(sync_folder(folder));
+  std::uint64_t sound_end = 0;
+  std::uint64_t size = 0;
+  {
+    ASSIGN_OR_RETURN(const MappedFile mapped, MappedFile::open(path));
+    size = mapped.bytes().size();
+    sound_end = read_records(mapped.bytes(), each, report);
+  }
+  if (size != sound_end) {
+    RETURN_IF_ERROR(file.truncate(sound_end));
+    RETURN_IF_ERROR(file.sync());
+  }
+  return BandLog(std::move(file), sound_end);
+}
+
+absl::StatusOr<std::uint64_t> BandLog::append(const BandRecord& record) {
+  if (torn_) {
+    RETURN_IF_ERROR(take_back(size_));
+  }
+  ASSIGN_OR_RETURN(const std::vector<std::byte> bytes, encode_band_record(record));
+  const absl::Status written = file_.write(bytes);
+  if (!written.ok()) {
+    torn_ = true;
+    take_back(size_).IgnoreError();  // otherwise tried again before the next append
+    return written;
+  }
+  return std::exchange(size_, size_ + bytes.size());
+}
+
+absl::Status BandLog::sync() {
+  if (size_ == synced_) {
+    return absl::OkStatus();
+  }
+  const absl::Status synced = file_.sync();
+  if (!synced.ok()) {
+    // After a failed fdatasync the kernel may call the pages clean though they never reached the
+    // disk. So they are given up and written again by whoever still has them.
+    size_ = synced_;
+    torn_ = true;
+    take_back(synced_).IgnoreError();
+    return synced;
+  }
+  synced_ = size_;
+  return absl::OkStatus();
+}
+
+absl::Status BandLog::take_back(std::uint64_t size) {
+  RETURN_IF_ERROR(file_.truncate(size));
+  torn_ = false;
+  return absl::OkStatus();
+}
+
+absl::StatusOr<BandRecord> read_band(const std::string& path, std::uint64_t offset) {
+  ASSIGN_OR_RETURN(const MappedFile mapped, MappedFile::open(path));
+  ASSIGN_OR_RETURN(DecodedBandRecord decoded, decode_band_record(mapped.bytes(), offset));
+  return std::move(decoded.record);
+}
+
+}  // namespace bandsaw::coordinator

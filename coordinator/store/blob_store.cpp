@@ -1,0 +1,111 @@
+#include "coordinator/store/blob_store.h"
+
+#include <filesystem>
+#include <system_error>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/store/file.h"
+#include "coordinator/store/mapped_file.h"
+#include "proto/wire/limits.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+constexpr char kStaging[] = "/incoming";
+
+/// 256 folders, so that none holds very many files.
+std::string folder_of(const std::string& root, const wire::Digest& digest) {
+  return absl::StrCat(root, "/", digest.hex().substr(0, 2));
+}
+std::string path_of(const std::string& root, const wire::Digest& digest) {
+  return absl::StrCat(folder_of(root, digest), "/", digest.hex());
+}
+
+class MappedBlob : public BlobBytes {
+ public:
+  explicit MappedBlob(MappedFile file) : file_(std::move(file)) {}
+  absl::Span<const std::byte> bytes() const override { return file_.bytes(); }
+
+ private:
+  MappedFile file_;
+};
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<BlobStore>> BlobStore::open(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::remove_all(folder + kStaging, error);
+  RETURN_IF_ERROR(make_folder(folder + kStaging));
+  return std::unique_ptr<BlobStore>(new BlobStore(folder));
+}
+
+bool BlobStore::has(const wire::Digest& digest) const {
+  return file_exists(path_of(folder_, digest));
+}
+
+absl::StatusOr<std::unique_ptr<BlobBytes>> BlobStore::get(const wire::Digest& digest) {
+  absl::StatusOr<MappedFile> file = MappedFile::open(path_of(folder_, digest));
+  if (absl::IsNotFound(file.status())) {
+    return absl::NotFoundError(absl::StrCat("there is no blob ", digest.hex()));
+  }
+  RETURN_IF_ERROR(file.status());
+  RETURN_IF_ERROR(check(digest, file->bytes()));
+  return std::make_unique<MappedBlob>(*std::move(file));
+}
+
+absl::Status BlobStore::check(const wire::Digest& digest, absl::Span<const std::byte> bytes) {
+  {
+    MutexLock lock(mutex_);
+    if (checked_.contains(digest)) {
+      return absl::OkStatus();
+    }
+  }
+  if (wire::sha256(bytes) != digest) {
+    RETURN_IF_ERROR(remove_file(path_of(folder_, digest)));
+    return absl::DataLossError(
+        absl::StrCat("the file of blob ", digest.hex(),
+                     " was damaged and has been removed; submit the scene again"));
+  }
+  MutexLock lock(mutex_);
+  checked_.insert(digest);
+  return absl::OkStatus();
+}
+
+absl::StatusOr<BlobStore::Writer> BlobStore::write(const wire::Digest& digest, std::uint64_t size) {
+  if (size > wire::kBlobBytes) {
+    return absl::ResourceExhaustedError(absl::StrCat("blob ", digest.hex(), " has ", size,
+                                                     " bytes; at most ", wire::kBlobBytes,
+                                                     " are allowed"));
+  }
+  RETURN_IF_ERROR(make_folder(folder_of(folder_, digest)));
+  RETURN_IF_ERROR(sync_folder(folder_));
+  ASSIGN_OR_RETURN(StagedFile file,
+                   StagedFile::create(absl::StrCat(folder_, kStaging, "/", ++uploads_), size));
+  return Writer(folder_, digest, size, std::move(file));
+}
+
+absl::Status BlobStore::Writer::append(absl::Span<const std::byte> bytes) {
+  if (bytes.size() > size_ - written_) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("blob ", digest_.hex(), " is longer than the ", size_, " bytes announced"));
+  }
+  hasher_.update(bytes);
+  RETURN_IF_ERROR(file_.append(bytes));
+  written_ += bytes.size();
+  return absl::OkStatus();
+}
+
+absl::Status BlobStore::Writer::commit() {
+  if (written_ != size_) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "blob ", digest_.hex(), " ended after ", written_, " of the ", size_, " bytes announced"));
+  }
+  if (hasher_.finish() != digest_) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("the bytes sent for blob ", digest_.hex(), " have another digest"));
+  }
+  return file_.commit(folder_of(folder_, digest_), path_of(folder_, digest_));
+}
+
+}  // namespace bandsaw::coordinator

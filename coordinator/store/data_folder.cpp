@@ -1,0 +1,96 @@
+#include "coordinator/store/data_folder.h"
+
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <vector>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "coordinator/store/staged_file.h"
+#include "proto/wire/limits.h"
+#include "renderlib/base/atomic_file.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+constexpr char kFormat[] = "bandsaw data 1\n";
+constexpr std::size_t kProbeBytes = 1 << 16;
+
+/// A small file's text, at most `limit` bytes of it.
+absl::StatusOr<std::string> read_text(const File& file, std::uint64_t limit) {
+  ASSIGN_OR_RETURN(const std::uint64_t size, file.size());
+  std::string text(std::min(size, limit), '\0');
+  RETURN_IF_ERROR(
+      file.read(0, absl::MakeSpan(reinterpret_cast<std::byte*>(text.data()), text.size())));
+  return text;
+}
+
+absl::Span<const std::byte> bytes_of(const std::string& text) {
+  return {reinterpret_cast<const std::byte*>(text.data()), text.size()};
+}
+
+absl::StatusOr<File> take_lock(const std::string& path) {
+  ASSIGN_OR_RETURN(File lock, File::open(path + "/lock", O_RDWR | O_CREAT));
+  if (::flock(lock.fd(), LOCK_EX | LOCK_NB) != 0) {
+    if (errno != EWOULDBLOCK) {
+      return errno_status(errno, absl::StrCat("cannot lock ", lock.path()));
+    }
+    const absl::StatusOr<std::string> holder = read_text(lock, 32);
+    return absl::FailedPreconditionError(absl::StrCat(
+        "another coordinator (process ", holder.ok() ? absl::StripAsciiWhitespace(*holder) : "?",
+        ") uses the data folder ", path, "; stop it, or give this one its own with --data"));
+  }
+  RETURN_IF_ERROR(lock.truncate(0));
+  RETURN_IF_ERROR(lock.write(bytes_of(absl::StrCat(::getpid(), "\n"))));
+  return lock;
+}
+
+/// Marks a new folder with the format, and refuses one that has another.
+absl::Status check_format(const std::string& path) {
+  const std::string name = path + "/format";
+  if (!file_exists(name)) {
+    if (file_exists(path + "/journal.sqlite")) {
+      return absl::DataLossError(absl::StrCat(
+          name, " is missing beside a journal; restore it, or choose another folder with --data"));
+    }
+    return write_file_atomically(name, bytes_of(kFormat));
+  }
+  ASSIGN_OR_RETURN(const File file, File::open(name, O_RDONLY));
+  ASSIGN_OR_RETURN(const std::string found, read_text(file, 100));
+  if (found != kFormat) {
+    return absl::FailedPreconditionError(absl::StrCat(
+        "the data folder ", path, " has the format '", absl::StripAsciiWhitespace(found),
+        "', this program knows '", absl::StripAsciiWhitespace(kFormat),
+        "'; use the version that wrote it, or another folder with --data"));
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<DataFolder> DataFolder::open(const std::string& path) {
+  RETURN_IF_ERROR(make_folder(path));
+  ASSIGN_OR_RETURN(File lock, take_lock(path));
+  RETURN_IF_ERROR(check_format(path));
+  DataFolder folder(path, std::move(lock));
+  RETURN_IF_ERROR(make_folder(folder.blobs()));
+  RETURN_IF_ERROR(make_folder(folder.jobs()));
+  RETURN_IF_ERROR(sync_folder(path));
+  return folder;
+}
+
+std::string DataFolder::job(JobId id) const { return absl::StrCat(jobs(), "/", id); }
+
+absl::Status probe_disk(const std::string& folder) {
+  const std::string name = folder + "/probe";
+  RETURN_IF_ERROR(remove_file(name));
+  ASSIGN_OR_RETURN(StagedFile file, StagedFile::create(name, wire::kBandBytes));
+  RETURN_IF_ERROR(file.append(std::vector<std::byte>(kProbeBytes)));
+  return file.sync();
+}
+
+}  // namespace bandsaw::coordinator

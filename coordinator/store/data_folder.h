@@ -1,0 +1,38 @@
+#pragma once
+
+// The coordinator's folder: where everything lies in it, and that only one coordinator uses it.
+
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "coordinator/core/types.h"
+#include "coordinator/store/file.h"
+
+namespace bandsaw::coordinator {
+
+/// Holds the folder's lock while it lives. Layout: README.md of this folder.
+class DataFolder {
+ public:
+  /// Makes the folder (0700) if it does not exist; its parent MUST. FAILED_PRECONDITION: another
+  /// coordinator uses it (its process id is named), or it was written by another version of the
+  /// format, or it is something else's folder.
+  static absl::StatusOr<DataFolder> open(const std::string& path);
+
+  const std::string& path() const { return path_; }
+  std::string journal() const { return path_ + "/journal.sqlite"; }
+  std::string blobs() const { return path_ + "/blobs"; }
+  std::string jobs() const { return path_ + "/jobs"; }
+  std::string job(JobId id) const;
+  std::string bands(JobId id) const { return job(id) + "/bands"; }
+  std::string result(JobId id) const { return job(id) + "/result"; }
+
+ private:
+  DataFolder(std::string path, File lock) : path_(std::move(path)), lock_(std::move(lock)) {}
+  std::string path_;
+  File lock_;
+};
+
+/// Whether the disk has room for a band and takes data: reserves, writes, syncs, removes.
+absl::Status probe_disk(const std::string& folder);
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,37 @@
+#include "coordinator/store/mapped_file.h"
+
+#include <sys/mman.h>
+
+#include <cerrno>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/store/file.h"
+#include "renderlib/base/atomic_file.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+
+absl::StatusOr<MappedFile> MappedFile::open(const std::string& path) {
+  ASSIGN_OR_RETURN(const File file, File::open(path, O_RDONLY));
+  ASSIGN_OR_RETURN(const std::uint64_t size, file.size());
+  if (size == 0) {
+    return MappedFile(nullptr, 0);
+  }
+  void* data = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file.fd(), 0);
+  if (data == MAP_FAILED) {
+    return errno_status(errno, absl::StrCat("cannot map ", path));
+  }
+  return MappedFile(static_cast<const std::byte*>(data), size);
+}
+
+MappedFile::MappedFile(MappedFile&& other) noexcept
+    : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+
+MappedFile::~MappedFile() {
+  if (data_ != nullptr) {
+    ::munmap(const_cast<std::byte*>(data_), size_);
+  }
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,30 @@
+#pragma once
+
+// A whole file as bytes, read-only.
+
+#include <cstddef>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "absl/types/span.h"
+
+namespace bandsaw::coordinator {
+
+/// The file MUST NOT be cut while it is mapped: files of the data folder are only ever replaced or
+/// removed.
+class MappedFile {
+ public:
+  /// NOT_FOUND: no such file.
+  static absl::StatusOr<MappedFile> open(const std::string& path);
+  MappedFile(MappedFile&& other) noexcept;
+  MappedFile& operator=(MappedFile&&) = delete;
+  ~MappedFile();
+  absl::Span<const std::byte> bytes() const { return {data_, size_}; }
+
+ private:
+  MappedFile(const std::byte* data, std::size_t size) : data_(data), size_(size) {}
+  const std::byte* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,212 @@
+#include "coordinator/store/record_text.h"
+
+#include <array>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/string_view.h"
+#include "coordinator/store/fields.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+template <class... F>
+struct Overloaded : F... {
+  using F::operator()...;
+};
+template <class... F>
+Overloaded(F...) -> Overloaded<F...>;
+
+struct StateName {
+  JobState state;
+  absl::string_view name;
+};
+constexpr std::array<StateName, 6> kStates = {{{JobState::kRunning, "running"},
+                                               {JobState::kPaused, "paused"},
+                                               {JobState::kFinishing, "finishing"},
+                                               {JobState::kDone, "done"},
+                                               {JobState::kFailed, "failed"},
+                                               {JobState::kCancelled, "cancelled"}}};
+
+absl::string_view name_of(JobState state) {
+  for (const StateName& s : kStates) {
+    if (s.state == state) {
+      return s.name;
+    }
+  }
+  return "";
+}
+
+JobState state_field(FieldReader& in, absl::string_view name) {
+  const std::string found = in.text(name);
+  for (const StateName& s : kStates) {
+    if (s.name == found) {
+      return s.state;
+    }
+  }
+  in.refuse(absl::StrCat("field '", name, "': unknown state '", found, "'"));
+  return JobState::kFailed;
+}
+
+void write_stop(FieldWriter& out, const StopRule& stop) {
+  std::visit(Overloaded{[&](const StopAtSamples& s) {
+                          out.text("stop", "samples");
+                          out.number("samples", s.samples);
+                        },
+                        [&](const StopAtError& s) {
+                          out.text("stop", "error");
+                          out.real("relative_rmse", s.relative_rmse);
+                          out.number("max_samples", s.max_samples);
+                        },
+                        [&](const StopAtTime& s) {
+                          out.text("stop", "time");
+                          out.real("seconds", s.seconds);
+                          out.number("max_samples", s.max_samples);
+                        }},
+             stop);
+}
+
+// Braced initialisers are evaluated in the order they are written, which is the order of the
+// fields.
+
+StopRule read_stop(FieldReader& in) {
+  const std::string kind = in.text("stop");
+  if (kind == "samples") {
+    return StopAtSamples{.samples = in.number("samples")};
+  }
+  if (kind == "error") {
+    return StopAtError{.relative_rmse = in.real("relative_rmse"),
+                       .max_samples = in.number("max_samples")};
+  }
+  if (kind == "time") {
+    return StopAtTime{.seconds = in.real("seconds"), .max_samples = in.number("max_samples")};
+  }
+  in.refuse(absl::StrCat("field 'stop': unknown rule '", kind, "'"));
+  return {};
+}
+
+void write_job(FieldWriter& out, const record::JobAdded& added) {
+  out.number("job", added.job);
+  out.text("request_id", added.spec.request_id);
+  out.text("name", added.spec.name);
+  out.text("manifest", added.spec.manifest);
+  out.number("width", added.spec.settings.width);
+  out.number("height", added.spec.settings.height);
+  out.number("max_depth", added.spec.settings.max_depth);
+  out.number("seed", added.spec.settings.seed);
+  out.number("integrator", static_cast<std::uint64_t>(added.spec.settings.integrator));
+  write_stop(out, added.spec.stop);
+}
+
+RenderSettings read_settings(FieldReader& in) {
+  return {.width = static_cast<std::uint32_t>(in.number("width", kMaxSide)),
+          .height = static_cast<std::uint32_t>(in.number("height", kMaxSide)),
+          .max_depth = static_cast<std::uint32_t>(in.number("max_depth", kMaxDepth)),
+          .seed = in.number("seed"),
+          // Journals written before there was a choice do not say.
+          .integrator = in.next_is("integrator")
+                            ? static_cast<Integrator>(in.number("integrator", kLastIntegrator))
+                            : Integrator::kPath};
+}
+
+Record read_job(FieldReader& in) {
+  return record::JobAdded{.job = in.number("job"),
+                          .spec = {.request_id = in.text("request_id"),
+                                   .name = in.text("name"),
+                                   .manifest = in.text("manifest"),
+                                   .settings = read_settings(in),
+                                   .stop = read_stop(in)}};
+}
+
+Record read_record(absl::string_view kind, FieldReader& in) {
+  if (kind == "job_added") {
+    return read_job(in);
+  }
+  if (kind == "pass_planned") {
+    return record::PassPlanned{.job = in.number("job"),
+                               .samples = {.first = in.number("first"), .last = in.number("last")}};
+  }
+  if (kind == "samples_fixed") {
+    return record::SamplesFixed{.job = in.number("job"), .samples = in.number("samples")};
+  }
+  if (kind == "state_changed") {
+    return record::StateChanged{
+        .job = in.number("job"), .state = state_field(in, "state"), .reason = in.text("reason")};
+  }
+  if (kind == "priority_changed") {
+    // Written from 0 to twice the most: fields hold no signed numbers.
+    return record::PriorityChanged{
+        .job = in.number("job"),
+        .priority = static_cast<std::int32_t>(in.number("priority_plus_most", 2 * kMostPriority)) -
+                    kMostPriority};
+  }
+  if (kind == "hold_changed") {
+    return record::HoldChanged{.job = in.number("job"), .held = in.number("held", 1) == 1};
+  }
+  if (kind == "worker_joined") {
+    return record::WorkerJoined{.instance = in.text("instance")};
+  }
+  if (kind == "worker_left") {
+    return record::WorkerLeft{.instance = in.text("instance")};
+  }
+  in.refuse(absl::StrCat("unknown kind '", kind, "'"));
+  return {};
+}
+
+}  // namespace
+
+RecordText to_text(const Record& record) {
+  FieldWriter out;
+  const char* kind =
+      std::visit(Overloaded{[&](const record::JobAdded& r) {
+                              write_job(out, r);
+                              return "job_added";
+                            },
+                            [&](const record::PassPlanned& r) {
+                              out.number("job", r.job);
+                              out.number("first", r.samples.first);
+                              out.number("last", r.samples.last);
+                              return "pass_planned";
+                            },
+                            [&](const record::SamplesFixed& r) {
+                              out.number("job", r.job);
+                              out.number("samples", r.samples);
+                              return "samples_fixed";
+                            },
+                            [&](const record::StateChanged& r) {
+                              out.number("job", r.job);
+                              out.text("state", name_of(r.state));
+                              out.text("reason", r.reason);
+                              return "state_changed";
+                            },
+                            [&](const record::PriorityChanged& r) {
+                              out.number("job", r.job);
+                              out.number("priority_plus_most",
+                                         static_cast<std::uint64_t>(r.priority + kMostPriority));
+                              return "priority_changed";
+                            },
+                            [&](const record::HoldChanged& r) {
+                              out.number("job", r.job);
+                              out.number("held", r.held ? 1 : 0);
+                              return "hold_changed";
+                            },
+                            [&](const record::WorkerJoined& r) {
+                              out.text("instance", r.instance);
+                              return "worker_joined";
+                            },
+                            [&](const record::WorkerLeft& r) {
+                              out.text("instance", r.instance);
+                              return "worker_left";
+                            }},
+                 record);
+  return {.kind = kind, .fields = out.take()};
+}
+
+absl::StatusOr<Record> from_text(const RecordText& text) {
+  FieldReader in(text.fields);
+  Record record = read_record(text.kind, in);
+  RETURN_IF_ERROR(in.finish());
+  return record;
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,27 @@
+#pragma once
+
+// A finished image on disk: a header, then linear RGB float32, rows from the top. The form is in
+// this folder's README.
+
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "proto/wire/digest.h"
+#include "renderlib/image/image.h"
+
+namespace bandsaw::coordinator {
+
+/// A finished image as it is kept: linear RGB float.
+struct StoredResult {
+  Image image;
+  wire::Digest digest;  ///< of the pixels' bytes
+};
+
+/// Whole or not at all: OK means on disk in `folder` as `path`.
+absl::Status write_result(const Image& image, const std::string& folder, const std::string& path);
+
+/// NOT_FOUND: no such file. DATA_LOSS: damaged, saying how.
+absl::StatusOr<StoredResult> read_result(const std::string& path);
+
+}  // namespace bandsaw::coordinator

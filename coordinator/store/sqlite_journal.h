@@ -1,0 +1,54 @@
+#pragma once
+
+// The journal in an SQLite file: write-ahead log, every append one transaction that is on disk when
+// it returns.
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "coordinator/store/journal.h"
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace bandsaw::coordinator {
+
+class SqliteJournal : public Journal {
+ public:
+  /// Makes the file if it does not exist. DATA_LOSS: it is damaged. FAILED_PRECONDITION: another
+  /// version of the schema, or the file system cannot hold a write-ahead log.
+  static absl::StatusOr<std::unique_ptr<SqliteJournal>> open(const std::string& path);
+  ~SqliteJournal() override = default;
+
+  absl::Status append(absl::Span<const Record> records) override;
+  absl::Status replay(absl::FunctionRef<void(const Record&)> each) override;
+
+ private:
+  struct CloseDatabase {
+    void operator()(sqlite3* database) const;
+  };
+  struct CloseStatement {
+    void operator()(sqlite3_stmt* statement) const;
+  };
+  using Statement = std::unique_ptr<sqlite3_stmt, CloseStatement>;
+
+  SqliteJournal(sqlite3* database, std::string path)
+      : database_(database), path_(std::move(path)) {}
+  absl::Status prepare_file();
+  absl::Status check_version();
+  absl::Status execute(const char* sql);
+  absl::StatusOr<Statement> prepare(const char* sql);
+  /// The first column of the first row, as text.
+  absl::StatusOr<std::string> ask(const char* sql);
+  absl::Status insert(const Record& record, std::uint64_t sequence);
+  absl::Status error(const std::string& what) const;
+
+  std::unique_ptr<sqlite3, CloseDatabase> database_;
+  std::string path_;
+  std::uint64_t last_ = 0;  ///< the highest sequence number in the file
+  Statement insert_;
+};
+
+}  // namespace bandsaw::coordinator

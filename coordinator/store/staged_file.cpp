@@ -1,0 +1,53 @@
+#include "coordinator/store/staged_file.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "renderlib/base/atomic_file.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+/// A file system that cannot reserve says so at the first write instead.
+absl::Status reserve(const File& file, std::uint64_t size) {
+  if (size == 0 || ::fallocate(file.fd(), 0, 0, static_cast<off_t>(size)) == 0 ||
+      errno == EOPNOTSUPP || errno == ENOSYS) {
+    return absl::OkStatus();
+  }
+  return errno_status(errno, absl::StrCat("no room for the ", size, " bytes of ", file.path()));
+}
+
+}  // namespace
+
+absl::StatusOr<StagedFile> StagedFile::create(const std::string& staging, std::uint64_t size) {
+  ASSIGN_OR_RETURN(File file, File::open(staging, O_WRONLY | O_CREAT | O_EXCL));
+  StagedFile staged(std::move(file));
+  RETURN_IF_ERROR(reserve(staged.file_, size));
+  return staged;
+}
+
+StagedFile::StagedFile(StagedFile&& other) noexcept
+    : file_(std::move(other.file_)), staged_(std::exchange(other.staged_, false)) {}
+
+StagedFile::~StagedFile() {
+  if (staged_) {
+    ::unlink(file_.path().c_str());
+  }
+}
+
+absl::Status StagedFile::commit(const std::string& folder, const std::string& target) {
+  RETURN_IF_ERROR(file_.sync());
+  if (::rename(file_.path().c_str(), target.c_str()) != 0) {
+    return errno_status(errno, absl::StrCat("cannot rename ", file_.path(), " to ", target));
+  }
+  staged_ = false;
+  return sync_folder(folder);
+}
+
+}  // namespace bandsaw::coordinator

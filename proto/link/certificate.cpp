@@ -1,0 +1,134 @@
+#include "proto/link/certificate.h"
+
+#include <openssl/bio.h>
+#include <openssl/evp.h>
+#include <openssl/pem.h>
+#include <openssl/rand.h>
+#include <openssl/x509.h>
+#include <openssl/x509v3.h>
+
+#include <memory>
+
+#include "absl/strings/escaping.h"
+#include "absl/strings/str_cat.h"
+
+namespace bandsaw::link {
+namespace {
+
+using Bio = std::unique_ptr<BIO, decltype(&BIO_free_all)>;
+using Key = std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)>;
+using Certificate = std::unique_ptr<X509, decltype(&X509_free)>;
+using Extension = std::unique_ptr<X509_EXTENSION, decltype(&X509_EXTENSION_free)>;
+
+constexpr long kDay = 24 * 60 * 60;  // seconds; `long` is what OpenSSL takes
+constexpr long kTwentyYears = 20 * 365 * kDay;
+
+absl::Status failed(absl::string_view what) {
+  return absl::InternalError(absl::StrCat("OpenSSL cannot ", what));
+}
+
+Bio memory() { return {BIO_new(BIO_s_mem()), &BIO_free_all}; }
+Bio memory_of(const std::string& text) {
+  return {BIO_new_mem_buf(text.data(), static_cast<int>(text.size())), &BIO_free_all};
+}
+std::string text_of(const Bio& bio) {
+  char* data = nullptr;
+  const long size = BIO_get_mem_data(bio.get(), &data);
+  return {data, static_cast<std::size_t>(size)};
+}
+
+Certificate parse_certificate(const std::string& pem) {
+  const Bio bio = memory_of(pem);
+  return {PEM_read_bio_X509(bio.get(), nullptr, nullptr, nullptr), &X509_free};
+}
+
+bool add_extension(X509* certificate, int nid, const std::string& value) {
+  const Extension extension(X509V3_EXT_conf_nid(nullptr, nullptr, nid, value.c_str()),
+                            &X509_EXTENSION_free);
+  return extension != nullptr && X509_add_ext(certificate, extension.get(), -1) == 1;
+}
+
+bool set_serial(X509* certificate) {
+  unsigned char bytes[8];
+  if (RAND_bytes(bytes, sizeof(bytes)) != 1) {
+    return false;
+  }
+  std::uint64_t serial = 1;
+  for (const unsigned char byte : bytes) {
+    serial = (serial << 8 | byte) & 0x7fffffffffffffff;
+  }
+  return ASN1_INTEGER_set_uint64(X509_get_serialNumber(certificate), serial) == 1;
+}
+
+bool fill_and_sign(X509* certificate, EVP_PKEY* key, const std::string& name) {
+  X509_NAME* subject = X509_get_subject_name(certificate);
+  const auto* text = reinterpret_cast<const unsigned char*>(name.c_str());
+  return X509_set_version(certificate, 2) == 1 &&  // v3
+         set_serial(certificate) &&
+         X509_gmtime_adj(X509_getm_notBefore(certificate), -kDay) != nullptr &&
+         X509_gmtime_adj(X509_getm_notAfter(certificate), kTwentyYears) != nullptr &&
+         X509_set_pubkey(certificate, key) == 1 &&
+         X509_NAME_add_entry_by_txt(subject, "CN", MBSTRING_ASC, text, -1, -1, 0) == 1 &&
+         X509_set_issuer_name(certificate, subject) == 1 &&
+         add_extension(certificate, NID_subject_alt_name, "DNS:" + name) &&
+         add_extension(certificate, NID_basic_constraints, "critical,CA:TRUE") &&
+         X509_sign(certificate, key, EVP_sha256()) > 0;
+}
+
+}  // namespace
+
+absl::StatusOr<KeyAndCertificate> make_certificate(const std::string& name) {
+  const Key key(EVP_EC_gen("P-256"), &EVP_PKEY_free);
+  const Certificate certificate(X509_new(), &X509_free);
+  if (key == nullptr || certificate == nullptr ||
+      !fill_and_sign(certificate.get(), key.get(), name)) {
+    return failed("make a certificate");
+  }
+  const Bio key_text = memory();
+  const Bio certificate_text = memory();
+  if (PEM_write_bio_PrivateKey(key_text.get(), key.get(), nullptr, nullptr, 0, nullptr, nullptr) !=
+          1 ||
+      PEM_write_bio_X509(certificate_text.get(), certificate.get()) != 1) {
+    return failed("write a certificate");
+  }
+  return KeyAndCertificate{text_of(key_text), text_of(certificate_text)};
+}
+
+absl::StatusOr<wire::Digest> certificate_digest(const std::string& certificate_pem) {
+  const Certificate certificate = parse_certificate(certificate_pem);
+  if (certificate == nullptr) {
+    return absl::InvalidArgumentError("the certificate cannot be read");
+  }
+  unsigned char* der = nullptr;
+  const int size = i2d_X509(certificate.get(), &der);
+  if (size <= 0) {
+    return failed("write a certificate as DER");
+  }
+  const std::string bytes(reinterpret_cast<const char*>(der), static_cast<std::size_t>(size));
+  OPENSSL_free(der);
+  return wire::sha256(bytes);
+}
+
+absl::Status check_key(const std::string& key_pem, const std::string& certificate_pem) {
+  const Bio bio = memory_of(key_pem);
+  const Key key(PEM_read_bio_PrivateKey(bio.get(), nullptr, nullptr, nullptr), &EVP_PKEY_free);
+  const Certificate certificate = parse_certificate(certificate_pem);
+  if (key == nullptr || certificate == nullptr) {
+    return absl::InvalidArgumentError("its key or certificate cannot be read");
+  }
+  if (X509_check_private_key(certificate.get(), key.get()) != 1) {
+    return absl::InvalidArgumentError("its key is not that of its certificate");
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<std::string> make_secret() {
+  std::string bytes(16, '\0');
+  if (RAND_bytes(reinterpret_cast<unsigned char*>(bytes.data()), static_cast<int>(bytes.size())) !=
+      1) {
+    return failed("make random bytes");
+  }
+  return absl::WebSafeBase64Escape(bytes);
+}
+
+}  // namespace bandsaw::link

@@ -1,0 +1,30 @@
+#pragma once
+
+// What OpenSSL makes and reads: keys, self-signed certificates, random secrets.
+
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "proto/wire/digest.h"
+
+namespace bandsaw::link {
+
+struct KeyAndCertificate {
+  std::string key_pem;
+  std::string certificate_pem;
+};
+
+/// An EC P-256 key and its self-signed certificate for `name`, valid for 20 years, beginning a day
+/// ago because clocks differ.
+absl::StatusOr<KeyAndCertificate> make_certificate(const std::string& name);
+
+/// SHA-256 of the DER form. INVALID_ARGUMENT: not a certificate.
+absl::StatusOr<wire::Digest> certificate_digest(const std::string& certificate_pem);
+
+/// INVALID_ARGUMENT: not a private key, or not this certificate's.
+absl::Status check_key(const std::string& key_pem, const std::string& certificate_pem);
+
+/// 128 random bits as 22 characters of base64url.
+absl::StatusOr<std::string> make_secret();
+
+}  // namespace bandsaw::link

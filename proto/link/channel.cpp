@@ -1,0 +1,132 @@
+#include "proto/link/channel.h"
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "proto/link/certificate.h"
+#include "proto/link/identity.h"
+#include "proto/link/socket.h"
+#include "proto/wire/limits.h"
+
+namespace bandsaw::link {
+namespace {
+
+// A frozen machine or a pulled cable is noticed after time plus timeout.
+constexpr int kKeepaliveMs = 2000;
+constexpr int kKeepaliveTimeoutMs = 4000;
+
+grpc::ChannelArguments channel_arguments(bool own_connection) {
+  grpc::ChannelArguments args;
+  args.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMs);
+  args.SetInt(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);
+  args.SetInt(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);  // as many as it takes
+  args.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
+  args.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 200);
+  // Also the least time that one attempt is given: a handshake with a busy machine takes longer
+  // than the first backoff.
+  args.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 2000);
+  args.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 5000);
+  args.SetMaxReceiveMessageSize(static_cast<int>(wire::kMessageBytes));
+  // Channels with equal arguments would share one connection, and a big scene would delay
+  // heartbeats.
+  args.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, own_connection ? 1 : 0);
+  return args;
+}
+
+Connected open_channels(const std::string& address,
+                        const std::shared_ptr<grpc::ChannelCredentials>& credentials, bool tls) {
+  Connected connected{.address = address, .control = nullptr, .bulk = nullptr};
+  for (const bool bulk : {false, true}) {
+    grpc::ChannelArguments args = channel_arguments(bulk);
+    if (tls) {
+      args.SetSslTargetNameOverride(kServerName);
+    }
+    (bulk ? connected.bulk : connected.control) =
+        grpc::CreateCustomChannel(address, credentials, args);
+  }
+  return connected;
+}
+
+absl::StatusOr<Connected> connect_tls(const std::string& address, const wire::Digest& expected,
+                                      std::chrono::milliseconds timeout) {
+  absl::StatusOr<std::string> pem = fetch_certificate_pem(address, timeout);
+  if (!pem.ok()) {
+    return pem.status();
+  }
+  absl::StatusOr<wire::Digest> digest = certificate_digest(*pem);
+  if (!digest.ok()) {
+    return absl::UnavailableError(digest.status().message());
+  }
+  if (*digest != expected) {
+    return absl::UnauthenticatedError(
+        "it shows another certificate than the join string names: another farm, or one whose data "
+        "folder was made anew");
+  }
+  grpc::SslCredentialsOptions options;
+  options.pem_root_certs = *std::move(pem);
+  return open_channels(address, grpc::SslCredentials(options), true);
+}
+
+absl::StatusOr<Connected> connect_plain(const std::string& address,
+                                        std::chrono::milliseconds timeout) {
+  const Deadline deadline = std::chrono::steady_clock::now() + timeout;
+  if (absl::StatusOr<Socket> socket = Socket::connect(address, deadline); !socket.ok()) {
+    return socket.status();
+  }
+  Connected connected = open_channels(address, grpc::InsecureChannelCredentials(), false);
+  if (!connected.control->WaitForConnected(std::chrono::system_clock::now() + timeout)) {
+    return absl::UnavailableError(
+        "what answers there does not speak plaintext gRPC: was the coordinator started with "
+        "--insecure?");
+  }
+  return connected;
+}
+
+}  // namespace
+
+absl::StatusOr<Connected> connect(const JoinString& join, std::chrono::milliseconds timeout) {
+  std::vector<std::string> reasons;
+  bool wrong_certificate = false;
+  for (const std::string& address : join.addresses) {
+    absl::StatusOr<Connected> connected = join.certificate
+                                              ? connect_tls(address, *join.certificate, timeout)
+                                              : connect_plain(address, timeout);
+    if (connected.ok()) {
+      return connected;
+    }
+    wrong_certificate |= absl::IsUnauthenticated(connected.status());
+    reasons.push_back(absl::StrCat(address, ": ", connected.status().message()));
+  }
+  const std::string all = absl::StrJoin(reasons, "; ");
+  return wrong_certificate
+             ? absl::UnauthenticatedError(absl::StrCat("not this farm at ", all))
+             : absl::UnavailableError(absl::StrCat("no coordinator answers at ", all));
+}
+
+void prepare(grpc::ClientContext& context, const JoinString& join,
+             std::chrono::milliseconds deadline) {
+  context.AddMetadata(kSecretKey, join.secret);
+  if (deadline.count() > 0) {
+    context.set_deadline(std::chrono::system_clock::now() + deadline);
+  }
+}
+
+grpc::Status to_grpc(const absl::Status& status) {
+  return {static_cast<grpc::StatusCode>(status.code()), std::string(status.message())};
+}
+
+absl::Status from_grpc(const grpc::Status& status) {
+  return {static_cast<absl::StatusCode>(status.error_code()), status.error_message()};
+}
+
+void configure_server(grpc::ServerBuilder& builder) {
+  builder.AddChannelArgument(GRPC_ARG_ALLOW_REUSEPORT, 0);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMs);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);
+  builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 1000);
+  builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PING_STRIKES, 0);
+  builder.SetMaxReceiveMessageSize(static_cast<int>(wire::kMessageBytes));
+}
+
+}  // namespace bandsaw::link

@@ -1,0 +1,137 @@
+#include "proto/link/socket.h"
+
+#include <fcntl.h>
+#include <netdb.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <memory>
+#include <utility>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+
+namespace bandsaw::link {
+namespace {
+
+absl::Status unavailable(int error) {
+  return absl::UnavailableError(absl::AsciiStrToLower(std::strerror(error)));
+}
+
+absl::Status wait_for(int fd, short events, Deadline deadline) {
+  while (true) {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
+        deadline - std::chrono::steady_clock::now());
+    pollfd watched{.fd = fd, .events = events, .revents = 0};
+    const int ready = poll(&watched, 1, static_cast<int>(std::max<std::int64_t>(0, left.count())));
+    if (ready > 0) {
+      return absl::OkStatus();
+    }
+    if (ready == 0) {
+      return absl::UnavailableError("no answer in time");
+    }
+    if (errno != EINTR) {
+      return unavailable(errno);
+    }
+  }
+}
+
+absl::Status connect_one(int fd, const addrinfo& info, Deadline deadline) {
+  if (::connect(fd, info.ai_addr, info.ai_addrlen) == 0) {
+    return absl::OkStatus();
+  }
+  if (errno != EINPROGRESS) {
+    return unavailable(errno);
+  }
+  if (absl::Status status = wait_for(fd, POLLOUT, deadline); !status.ok()) {
+    return status;
+  }
+  int error = 0;
+  socklen_t size = sizeof(error);
+  if (getsockopt(fd, SOL_SOCKET, SO_ERROR, &error, &size) != 0 || error != 0) {
+    return unavailable(error != 0 ? error : errno);
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::StatusOr<Socket> Socket::connect(const std::string& address, Deadline deadline) {
+  const std::size_t colon = address.rfind(':');
+  if (colon == std::string::npos) {
+    return absl::InvalidArgumentError(absl::StrCat("'", address, "' is not HOST:PORT"));
+  }
+  std::string host = address.substr(0, colon);
+  if (host.size() >= 2 && host.front() == '[' && host.back() == ']') {
+    host = host.substr(1, host.size() - 2);
+  }
+  addrinfo hints{};
+  hints.ai_socktype = SOCK_STREAM;
+  addrinfo* found = nullptr;
+  const int error = getaddrinfo(host.c_str(), address.substr(colon + 1).c_str(), &hints, &found);
+  if (error != 0) {
+    return absl::UnavailableError(absl::AsciiStrToLower(gai_strerror(error)));
+  }
+  const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> list(found, &freeaddrinfo);
+  absl::Status last = absl::UnavailableError("no such host");
+  for (const addrinfo* info = list.get(); info != nullptr; info = info->ai_next) {
+    Socket socket(::socket(info->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0));
+    last = socket.fd_ < 0 ? unavailable(errno) : connect_one(socket.fd_, *info, deadline);
+    if (last.ok()) {
+      return socket;
+    }
+  }
+  return last;
+}
+
+Socket::Socket(Socket&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
+
+Socket::~Socket() {
+  if (fd_ >= 0) {
+    close(fd_);
+  }
+}
+
+absl::Status Socket::send(const std::string& bytes, Deadline deadline) {
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t sent = ::send(fd_, bytes.data() + done, bytes.size() - done, MSG_NOSIGNAL);
+    if (sent >= 0) {
+      done += static_cast<std::size_t>(sent);
+    } else if (errno == EAGAIN) {
+      if (absl::Status status = wait_for(fd_, POLLOUT, deadline); !status.ok()) {
+        return status;
+      }
+    } else if (errno != EINTR) {
+      return unavailable(errno);
+    }
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<std::string> Socket::receive(Deadline deadline) {
+  std::string bytes(16 << 10, '\0');
+  while (true) {
+    const ssize_t got = recv(fd_, bytes.data(), bytes.size(), 0);
+    if (got > 0) {
+      bytes.resize(static_cast<std::size_t>(got));
+      return bytes;
+    }
+    if (got == 0) {
+      return absl::UnavailableError("the connection was closed");
+    }
+    if (errno == EAGAIN) {
+      if (absl::Status status = wait_for(fd_, POLLIN, deadline); !status.ok()) {
+        return status;
+      }
+    } else if (errno != EINTR) {
+      return unavailable(errno);
+    }
+  }
+}
+
+}  // namespace bandsaw::link

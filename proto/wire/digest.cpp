@@ -1,0 +1,88 @@
+#include "proto/wire/digest.h"
+
+#include <openssl/evp.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <utility>
+
+#include "absl/status/status.h"
+#include "absl/strings/escaping.h"
+#include "absl/strings/str_cat.h"
+
+namespace bandsaw::wire {
+namespace {
+
+// Hashing memory with a digest that OpenSSL always has cannot fail, short of a broken installation.
+void require(int openssl_result) {
+  if (openssl_result != 1) {
+    std::abort();
+  }
+}
+
+}  // namespace
+
+struct Hasher::Context {
+  EVP_MD_CTX* md = EVP_MD_CTX_new();
+  Context() = default;
+  ~Context() { EVP_MD_CTX_free(md); }
+  Context(const Context&) = delete;
+  Context& operator=(const Context&) = delete;
+};
+
+Hasher::Hasher() : context_(std::make_unique<Context>()) {
+  require(EVP_DigestInit_ex(context_->md, EVP_sha256(), nullptr));
+}
+
+Hasher::~Hasher() = default;
+Hasher::Hasher(Hasher&&) noexcept = default;
+Hasher& Hasher::operator=(Hasher&&) noexcept = default;
+
+void Hasher::update(absl::Span<const std::byte> bytes) {
+  require(EVP_DigestUpdate(context_->md, bytes.data(), bytes.size()));
+}
+
+Digest Hasher::finish() {
+  Digest digest;
+  require(EVP_DigestFinal_ex(context_->md, digest.bytes.data(), nullptr));
+  return digest;
+}
+
+Digest sha256(absl::Span<const std::byte> bytes) {
+  Hasher hasher;
+  hasher.update(bytes);
+  return hasher.finish();
+}
+
+Digest sha256(const std::string& bytes) {
+  return sha256(
+      absl::MakeConstSpan(reinterpret_cast<const std::byte*>(bytes.data()), bytes.size()));
+}
+
+std::string Digest::raw() const {
+  return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+}
+
+std::string Digest::hex() const { return absl::BytesToHexString(raw()); }
+
+absl::StatusOr<Digest> digest_from_raw(const std::string& raw) {
+  Digest digest;
+  if (raw.size() != digest.bytes.size()) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("a SHA-256 digest must have 32 bytes, has ", raw.size()));
+  }
+  std::copy(raw.begin(), raw.end(), digest.bytes.begin());
+  return digest;
+}
+
+absl::StatusOr<Digest> digest_from_hex(const std::string& hex) {
+  const auto is_hex = [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F');
+  };
+  if (hex.size() != 64 || !std::all_of(hex.begin(), hex.end(), is_hex)) {
+    return absl::InvalidArgumentError("a SHA-256 digest must be written as 64 hexadecimal digits");
+  }
+  return digest_from_raw(absl::HexStringToBytes(hex));
+}
+
+}  // namespace bandsaw::wire

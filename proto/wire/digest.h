@@ -1,0 +1,46 @@
+#pragma once
+
+// SHA-256: the name of a blob and the seal of a band.
+
+#include <array>
+#include <compare>
+#include <cstddef>
+#include <memory>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "absl/types/span.h"
+
+namespace bandsaw::wire {
+
+struct Digest {
+  std::array<unsigned char, 32> bytes{};
+  friend auto operator<=>(const Digest&, const Digest&) = default;
+
+  std::string hex() const;  ///< 64 lower-case hexadecimal digits
+  std::string raw() const;  ///< 32 bytes, as protobuf carries them
+};
+
+Digest sha256(absl::Span<const std::byte> bytes);
+Digest sha256(const std::string& bytes);
+
+/// INVALID_ARGUMENT when not 32 bytes / 64 hexadecimal digits.
+absl::StatusOr<Digest> digest_from_raw(const std::string& raw);
+absl::StatusOr<Digest> digest_from_hex(const std::string& hex);
+
+/// For bytes that come in pieces.
+class Hasher {
+ public:
+  Hasher();
+  ~Hasher();
+  Hasher(Hasher&&) noexcept;
+  Hasher& operator=(Hasher&&) noexcept;
+  void update(absl::Span<const std::byte> bytes);
+  Digest finish();
+
+ private:
+  struct Context;
+  std::unique_ptr<Context> context_;
+};
+
+}  // namespace bandsaw::wire

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <cstdint>
+
+namespace bandsaw::wire {
+
+/// Raised when an old worker and a new coordinator, or the reverse, would misunderstand each other.
+inline constexpr std::uint32_t kProtocol = 1;
+/// Manifest.format.
+inline constexpr std::uint32_t kPackageFormat = 1;
+
+}  // namespace bandsaw::wire

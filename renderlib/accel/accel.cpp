@@ -1,0 +1,78 @@
+#include "renderlib/accel/accel.h"
+
+#include <utility>
+#include <vector>
+
+#include "renderlib/accel/query.h"
+#include "renderlib/accel/top_tree.h"
+#include "renderlib/accel/trace.h"
+
+namespace bandsaw {
+namespace {
+
+/// Meshes from this size on are built by all threads one after another, smaller ones one a thread.
+constexpr std::size_t kLargeMesh = std::size_t{1} << 15;
+
+std::vector<MeshTree> build_meshes(const std::vector<Mesh>& meshes, Pool& pool) {
+  std::vector<MeshTree> trees(meshes.size());
+  pool.parallel_for(static_cast<std::int64_t>(meshes.size()), [&](std::int64_t i) {
+    const auto mesh = static_cast<std::size_t>(i);
+    if (meshes[mesh].triangles.size() < kLargeMesh) {
+      trees[mesh] = build_mesh_tree(meshes[mesh], nullptr);
+    }
+  });
+  for (std::size_t mesh = 0; mesh < meshes.size(); ++mesh) {
+    if (meshes[mesh].triangles.size() >= kLargeMesh) {
+      trees[mesh] = build_mesh_tree(meshes[mesh], &pool);
+    }
+  }
+  return trees;
+}
+
+}  // namespace
+
+struct Accel::Trees {
+  const Geometry* geometry = nullptr;
+  std::vector<MeshTree> meshes;
+  TopTree top;
+};
+
+Accel::Accel(std::unique_ptr<Trees> trees) : trees_(std::move(trees)) {}
+Accel::Accel(Accel&&) noexcept = default;
+Accel& Accel::operator=(Accel&&) noexcept = default;
+Accel::~Accel() = default;
+
+Accel Accel::build(const Geometry& geometry, Pool& pool) {
+  auto trees = std::make_unique<Trees>();
+  trees->geometry = &geometry;
+  trees->meshes = build_meshes(geometry.meshes, pool);
+  trees->top = build_top_tree(geometry, trees->meshes, &pool);
+  return Accel(std::move(trees));
+}
+
+Hit Accel::closest(const Ray& ray) const {
+  ClosestQuery query(ray);
+  trace(trees_->top, *trees_->geometry, ray, query);
+  return query.result();
+}
+
+Hit Accel::closest_after(const Ray& ray, const Hit& after) const {
+  AfterQuery query(ray, after, trees_->geometry->spheres);
+  trace(trees_->top, *trees_->geometry, ray, query);
+  return query.result();
+}
+
+bool Accel::occluded(const Ray& ray) const {
+  AnyQuery query(ray);
+  return trace(trees_->top, *trees_->geometry, ray, query);
+}
+
+std::size_t Accel::bytes() const {
+  std::size_t sum = trees_->top.bytes();
+  for (const MeshTree& mesh : trees_->meshes) {
+    sum += mesh.bytes();
+  }
+  return sum;
+}
+
+}  // namespace bandsaw

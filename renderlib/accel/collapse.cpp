@@ -1,0 +1,146 @@
+#include "renderlib/accel/collapse.h"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace bandsaw {
+namespace {
+
+constexpr std::size_t kSlots = WideNode::kChildren;
+/// What a visit costs, relative to each other; measured (README.md).
+constexpr float kNodeCost = 1.0f;
+constexpr float kPackCost = 1.5f;
+
+/// Of a subtree: the least cost with 1 to 8 slots of its parent; the eighth is what its own node's
+/// children cost.
+struct Costs {
+  std::array<float, kSlots> slots;
+};
+
+class Collapse {
+ public:
+  Collapse(const BinaryTree& tree, absl::FunctionRef<ChildRef(const BinaryNode&)> make_leaf)
+      : tree_(tree), make_leaf_(make_leaf), costs_(tree.nodes.size()) {
+    // Children come after their parents.
+    for (std::size_t i = tree.nodes.size(); i-- > 0;) {
+      set_costs(i);
+    }
+  }
+
+  ChildRef build(std::uint32_t index, std::size_t depth, WideTree& wide);
+
+ private:
+  struct Members {
+    std::array<std::uint32_t, kSlots> index;
+    std::size_t count = 0;
+  };
+  void set_costs(std::size_t index);
+  /// How many of `slots` >= 2 the left child gets.
+  std::size_t left_share(const BinaryNode& node, std::size_t slots, float& cost) const;
+  void choose(std::uint32_t index, std::size_t slots, Members& members) const;
+  float cost(std::uint32_t index, std::size_t slots) const {
+    return costs_[index].slots[slots - 1];
+  }
+
+  const BinaryTree& tree_;
+  absl::FunctionRef<ChildRef(const BinaryNode&)> make_leaf_;
+  std::vector<Costs> costs_;
+  ChildRef any_leaf_;  // the first one, once there is one
+};
+
+std::size_t Collapse::left_share(const BinaryNode& node, std::size_t slots, float& least) const {
+  std::size_t share = 1;
+  least = cost(node.left, 1) + cost(node.right, slots - 1);
+  for (std::size_t left = 2; left < slots; ++left) {
+    const float sum = cost(node.left, left) + cost(node.right, slots - left);
+    if (sum < least) {
+      least = sum;
+      share = left;
+    }
+  }
+  return share;
+}
+
+void Collapse::set_costs(std::size_t index) {
+  const BinaryNode& node = tree_.nodes[index];
+  // Relative to the root, so that float has room.
+  const auto area =
+      static_cast<float>(node.box.area() / std::max(tree_.nodes[0].box.area(), 1e-300));
+  Costs& costs = costs_[index];
+  if (node.count > 0) {
+    costs.slots.fill(area * kPackCost);
+    return;
+  }
+  for (std::size_t slots = 2; slots <= kSlots; ++slots) {
+    left_share(node, slots, costs.slots[slots - 1]);
+  }
+  costs.slots[0] = area * kNodeCost + costs.slots[kSlots - 1];
+  for (std::size_t slots = 1; slots + 1 < kSlots; ++slots) {
+    costs.slots[slots] = std::min(costs.slots[slots], costs.slots[slots - 1]);
+  }
+}
+
+/// The subtrees that take `slots` >= 1 slots in place of node `index`.
+void Collapse::choose(std::uint32_t index, std::size_t slots, Members& members) const {
+  const BinaryNode& node = tree_.nodes[index];
+  while (slots > 1 && slots < kSlots && cost(index, slots) == cost(index, slots - 1)) {
+    --slots;
+  }
+  if (slots == 1 || node.count > 0) {
+    members.index[members.count++] = index;
+    return;
+  }
+  float ignored = 0;
+  const std::size_t left = left_share(node, slots, ignored);
+  choose(node.left, left, members);
+  choose(node.right, slots - left, members);
+}
+
+ChildRef Collapse::build(std::uint32_t index, std::size_t depth, WideTree& wide) {
+  const BinaryNode& binary = tree_.nodes[index];
+  if (binary.count > 0) {
+    const ChildRef leaf = make_leaf_(binary);
+    any_leaf_ = any_leaf_.is_leaf() ? any_leaf_ : leaf;
+    return leaf;
+  }
+  wide.depth = std::max(wide.depth, depth);
+  Members members;
+  choose(index, kSlots, members);
+  const auto place = static_cast<std::uint32_t>(wide.nodes.size());
+  wide.nodes.emplace_back();
+  std::array<ChildRef, kSlots> child;
+  for (std::size_t i = 0; i < members.count; ++i) {
+    child[i] = build(members.index[i], depth + 1, wide);
+  }
+  WideNode& node = wide.nodes[place];
+  for (std::size_t i = 0; i < kSlots; ++i) {
+    const bool used = i < members.count;
+    const FloatBox box = used ? tree_.nodes[members.index[i]].box : FloatBox{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      node.bounds[k][i] = box.lo[k];
+      node.bounds[k + 3][i] = box.hi[k];
+    }
+    node.child[i] = used ? child[i] : any_leaf_;
+  }
+  return ChildRef::node(place);
+}
+
+}  // namespace
+
+WideTree collapse(const BinaryTree& tree,
+                  absl::FunctionRef<ChildRef(const BinaryNode&)> make_leaf) {
+  WideTree wide;
+  if (tree.nodes.empty()) {
+    return wide;
+  }
+  wide.empty = false;
+  wide.reach = tree.nodes[0].box.reach();
+  wide.nodes.reserve(tree.nodes.size() / 8);
+  wide.root = Collapse(tree, make_leaf).build(0, 1, wide);
+  wide.nodes.shrink_to_fit();
+  return wide;
+}
+
+}  // namespace bandsaw

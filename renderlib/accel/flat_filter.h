@@ -1,0 +1,101 @@
+#pragma once
+
+// Which of eight triangles a ray may hit, in float with a bound on the error: what is left out, the
+// double test would leave out as well. README.md, "Triangles", derives the bounds.
+
+#include "renderlib/accel/flat_pack.h"
+#include "renderlib/accel/float_ray.h"
+#include "renderlib/base/simd.h"
+
+namespace bandsaw {
+
+/// Bounds of rounding, in units of 2^-24: of the weights of the corners, and of volume and
+/// distance.
+inline constexpr float kWeightError = 26 * 0x1p-24f;
+inline constexpr float kDistanceError = 24 * 0x1p-24f;
+/// The part of a length that stands for the rounding of the double test.
+inline constexpr float kDoubleError = 0x1p-27f;
+
+template <class Float>
+struct Vector8 {
+  Float x;
+  Float y;
+  Float z;
+
+  friend Vector8 operator-(const Vector8& a, const Vector8& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+  }
+  friend Vector8 cross(const Vector8& a, const Vector8& b) {
+    return {fused_minus(a.y, b.z, a.z * b.y), fused_minus(a.z, b.x, a.x * b.z),
+            fused_minus(a.x, b.y, a.y * b.x)};
+  }
+  friend Float dot(const Vector8& a, const Vector8& b) {
+    return fused(a.x, b.x, fused(a.y, b.y, a.z * b.z));
+  }
+};
+
+/// The lanes that may be hit before `bound` (in the ray's units, rounded up), and of them those
+/// that surely are hit, at a t that is surely in (0, sure_bound) (rounded down; 0: not asked).
+struct FlatLanes {
+  unsigned maybe = 0;
+  unsigned surely = 0;
+};
+
+template <class Float = Float8>
+[[gnu::always_inline]] inline FlatLanes filter_flats(const FlatPack& pack, const FloatRay& ray,
+                                                     float bound, float sure_bound) {
+  const auto corner = [&pack](std::size_t which) {
+    return Vector8<Float>{Float::load(pack.corner[3 * which].data()),
+                          Float::load(pack.corner[3 * which + 1].data()),
+                          Float::load(pack.corner[3 * which + 2].data())};
+  };
+  const Vector8<Float> d = {Float(ray.direction[0]), Float(ray.direction[1]),
+                            Float(ray.direction[2])};
+  const Vector8<Float> o = {Float(ray.origin[0]), Float(ray.origin[1]), Float(ray.origin[2])};
+  const Vector8<Float> a = corner(0);
+  const Vector8<Float> e1 = corner(1) - a;
+  const Vector8<Float> e2 = corner(2) - a;
+  const Vector8<Float> c = a - o;
+  const Vector8<Float> n = cross(e1, e2);
+  const Vector8<Float> r = cross(c, d);
+  const Float volume = dot(n, d);
+  const Float weight_b = dot(r, e2);
+  const Float weight_c = Float(0.0f) - dot(r, e1);
+  const Float weight_a = volume - weight_b - weight_c;
+
+  const Float size(pack.size);
+  const Float reach = abs(c.x) + abs(c.y) + abs(c.z) + Float(ray.origin_size) + size;
+  const Float error = fused(Float(kWeightError * ray.direction_size) * reach,
+                            fused(Float(kDoubleError), reach, size), Float(ray.floor));
+  const Float minus_error = Float(0.0f) - error;
+  // weight_a is NaN when any of them is, and then the result of min and max as their second
+  // operand.
+  const Float least = min(min(weight_b, weight_c), weight_a);
+  const Float most = max(max(weight_b, weight_c), weight_a);
+  const unsigned outside = ((least < minus_error) & (error < most)).bits();
+  const unsigned left = pack.lanes & ~outside;
+  if (left == 0) {
+    return {};
+  }
+  const unsigned inside = ((error < least) | (most < minus_error)).bits();
+
+  // t = volume_t / volume; its sign and size are trusted only where the weights are certain.
+  const Float volume_t = flip_by_sign(dot(n, c), volume);
+  const Float positive = abs(volume);
+  const Float per_length =
+      Float(kDistanceError) * fused(Float(kDoubleError) * reach, reach, size * size);
+  const Float error_t = fused(per_length, reach, Float(ray.floor));
+  const Float error_volume = fused(per_length, Float(ray.direction_size), Float(ray.floor));
+  const Float far = volume_t + error_t;
+  const Float near = volume_t - error_t;
+  const unsigned beyond =
+      ((far < Float(0.0f)) | (Float(bound) * (positive + error_volume) < near)).bits();
+  if (sure_bound == 0) {
+    return {left & ~(inside & beyond), 0};
+  }
+  const unsigned between =
+      ((Float(0.0f) < near) & (far < Float(sure_bound) * (positive - error_volume))).bits();
+  return {left & ~(inside & beyond), left & inside & between};
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,85 @@
+#include "renderlib/accel/float_ray.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include "renderlib/accel/wide_tree.h"
+
+namespace bandsaw {
+namespace {
+
+constexpr float kInf = std::numeric_limits<float>::infinity();
+constexpr double kUnit = 0x1p-24;
+/// Beyond this, products of four lengths may leave float's range.
+constexpr double kLargest = 0x1p30;
+/// The largest factor: directions that are flatter against an axis get this, so that it is finite.
+constexpr double kSteepest = 0x1p60;
+/// Bytes of a row of WideNode::bounds.
+constexpr std::size_t kRow = sizeof(WideNode::bounds[0]);
+/// Far above what is lost where floats underflow.
+constexpr double kTiny = 0x1p-100;
+/// Rounds up what was rounded to float.
+constexpr double kUp = 1 + 0x1p-22;
+
+}  // namespace
+
+FloatRay::FloatRay(const TracedRay& ray, float reach) {
+  const double longest = std::abs(ray.direction[static_cast<std::size_t>(ray.kz)]);
+  const std::uint64_t exponent = std::bit_cast<std::uint64_t>(longest) & 0x7ff0000000000000u;
+  scale = std::bit_cast<double>(exponent);
+  const double unscale = std::bit_cast<double>((std::uint64_t{2046} << 52) - exponent);
+  double o1 = 0;
+  double d1 = 0;
+  double steepest = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double d = ray.direction[k] * unscale;
+    const double inverse = ray.inverse[k] * scale;
+    origin[k] = static_cast<float>(ray.origin[k]);
+    direction[k] = static_cast<float>(d);
+    o1 += std::abs(ray.origin[k]);
+    d1 += std::abs(d);
+    steepest = std::max(steepest, std::abs(inverse));
+    set_planes(k, ray.origin[k], static_cast<float>(inverse), kTiny);
+  }
+  origin_size = static_cast<float>(o1 * kUp);
+  direction_size = static_cast<float>(d1 * kUp);
+  floor = static_cast<float>(kTiny);
+  const bool large = !(std::max(o1, double{reach}) < kLargest);
+  if (large) [[unlikely]] {
+    decide_nothing();
+  } else if (!(steepest <= kSteepest)) [[unlikely]] {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (!(std::abs(ray.inverse[k] * scale) <= kSteepest)) {
+        const double factor = std::copysign(kSteepest, ray.inverse[k]);
+        set_planes(k, ray.origin[k], static_cast<float>(factor), 4 * (o1 + double{reach}));
+      }
+    }
+  }
+}
+
+void FloatRay::set_planes(std::size_t k, double from, float factor, double slack) {
+  const std::size_t backwards = std::signbit(factor) ? 3 * kRow : 0;
+  near[k] = k * kRow + backwards;
+  far[k] = (k + 3) * kRow - backwards;
+  near_factor[k] = factor;
+  far_factor[k] = factor * static_cast<float>(1 + 8 * kUnit);
+  const double near_at = from * double{near_factor[k]};
+  const double far_at = from * double{far_factor[k]};
+  const double room = 5 * kUnit * std::abs(near_at) + slack;
+  near_offset[k] = static_cast<float>(-near_at - room);
+  far_offset[k] = static_cast<float>(-far_at + room);
+}
+
+void FloatRay::decide_nothing() {
+  floor = kInf;
+  for (std::size_t k = 0; k < 3; ++k) {
+    near_factor[k] = 0;
+    far_factor[k] = 0;
+    near_offset[k] = -kInf;
+    far_offset[k] = kInf;
+  }
+}
+
+}  // namespace bandsaw

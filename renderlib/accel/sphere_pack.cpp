@@ -1,0 +1,23 @@
+#include "renderlib/accel/sphere_pack.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "renderlib/accel/float_box.h"
+
+namespace bandsaw {
+
+void SpherePack::add(const Sphere& sphere, std::uint32_t index) {
+  const auto lane = static_cast<std::size_t>(std::popcount(lanes));
+  double size = sphere.radius;
+  for (int k = 0; k < 3; ++k) {
+    center[static_cast<std::size_t>(k)][lane] = static_cast<float>(sphere.center[k]);
+    size += std::abs(sphere.center[k]);
+  }
+  radius[lane] = round_up(sphere.radius);
+  primitive[lane] = index;
+  reach = std::max(reach, round_up(size));
+  lanes |= 1u << lane;
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,52 @@
+#pragma once
+
+// Eight spheres side by side in float, and which of them a ray may hit: what is left out, the
+// double test would leave out as well. README.md, "Spheres", derives the bounds.
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "renderlib/accel/flat_filter.h"
+#include "renderlib/geometry/shapes.h"
+
+namespace bandsaw {
+
+struct SpherePack {
+  std::array<std::array<float, kPackSize>, 3> center;
+  std::array<float, kPackSize> radius;  ///< rounded up
+  std::array<std::uint32_t, kPackSize> primitive;
+  float reach = 0;          ///< at least |center|_1 + radius of each
+  std::uint32_t lanes = 0;  ///< bit i: lane i is a sphere
+
+  void add(const Sphere& sphere, std::uint32_t index);
+};
+
+/// `bound`: in the ray's units, rounded up.
+template <class Float = Float8>
+inline unsigned filter_spheres(const SpherePack& pack, const FloatRay& ray, float bound) {
+  constexpr float kError = 16 * 0x1p-24f;
+  const Vector8<Float> d = {Float(ray.direction[0]), Float(ray.direction[1]),
+                            Float(ray.direction[2])};
+  const float length =
+      std::sqrt(ray.direction[0] * ray.direction[0] + ray.direction[1] * ray.direction[1] +
+                ray.direction[2] * ray.direction[2]) *
+      (1 + 0x1p-20f);
+  const Vector8<Float> c = {Float::load(pack.center[0].data()) - Float(ray.origin[0]),
+                            Float::load(pack.center[1].data()) - Float(ray.origin[1]),
+                            Float::load(pack.center[2].data()) - Float(ray.origin[2])};
+  const Vector8<Float> off = cross(c, d);
+  const Float along = dot(c, d);
+  const Float reach = abs(c.x) + abs(c.y) + abs(c.z) + Float(ray.origin_size) + Float(pack.reach);
+  const Float slack = fused(Float(kError * ray.direction_size), reach, Float(0x1p20f * ray.floor));
+  const Float radius = fused(Float::load(pack.radius.data()), Float(length), slack);
+  const Float square = radius * radius * Float(1 + 0x1p-20f);
+  // The corners of a sphere's box, where hits are confined to, lie up to sqrt(3) radii out.
+  const Float half = Float(1.8f) * radius;
+  const Float limit(bound * length * length * (1 + 0x1p-20f));
+  const unsigned missed =
+      ((square < dot(off, off)) | (along + half < Float(0.0f)) | (limit < along - half)).bits();
+  return pack.lanes & ~missed;
+}
+
+}  // namespace bandsaw

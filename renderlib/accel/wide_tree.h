@@ -1,0 +1,66 @@
+#pragma once
+
+// A tree over boxes, eight children a node; bounds in float, rounded outwards.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "renderlib/base/huge_vector.h"
+
+namespace bandsaw {
+
+/// What a leaf holds. A leaf holds one kind.
+enum class LeafKind : std::uint32_t { kFlats, kSpheres, kInstance };
+
+/// What a node points to: another node, or a leaf: one pack of primitives, or one instance.
+class ChildRef {
+ public:
+  static constexpr std::uint32_t kMaxLeaves = 1u << 29;
+
+  static ChildRef node(std::uint32_t index) { return ChildRef(index); }
+  static ChildRef leaf(LeafKind kind, std::uint32_t index) {
+    return ChildRef(kLeafBit | (static_cast<std::uint32_t>(kind) << 29) | index);
+  }
+  explicit ChildRef(std::uint32_t bits = 0) : bits_(bits) {}
+
+  std::uint32_t bits() const { return bits_; }
+  bool is_leaf() const { return (bits_ & kLeafBit) != 0; }
+  std::uint32_t node_index() const { return bits_; }
+  std::uint32_t leaf_index() const { return bits_ & (kMaxLeaves - 1); }
+  LeafKind kind() const { return static_cast<LeafKind>((bits_ >> 29) & 3u); }
+
+ private:
+  static constexpr std::uint32_t kLeafBit = 1u << 31;
+  std::uint32_t bits_;
+};
+
+/// Four cache lines. A child that is not used has bounds that no ray meets (lo = infinity, hi =
+/// -infinity) and refers to a leaf, so that even a walk that enters it ends.
+struct alignas(64) WideNode {
+  static constexpr std::size_t kChildren = 8;
+  /// lo x, y, z, hi x, y, z, each for the eight children.
+  std::array<std::array<float, kChildren>, 6> bounds;
+  std::array<ChildRef, kChildren> child;
+
+  /// A row of `bounds` by its place in bytes, which saves a walk the multiplication.
+  const float* plane(std::size_t bytes) const {
+    return reinterpret_cast<const float*>(reinterpret_cast<const char*>(this) + bytes);
+  }
+};
+
+struct WideTree {
+  HugeVector<WideNode> nodes;
+  ChildRef root;          ///< a node or a leaf; meaningless when `empty`
+  bool empty = true;      ///< nothing to hit
+  std::size_t depth = 0;  ///< nodes on the longest way down
+  float reach = 0;        ///< the largest absolute coordinate of any bound
+
+  std::size_t bytes() const { return nodes.capacity() * sizeof(WideNode); }
+};
+
+/// No tree is deeper, whatever it is built from (accel/binary_tree.h); a walk reserves its stack by
+/// it.
+inline constexpr std::size_t kMaxDepth = 64;
+
+}  // namespace bandsaw

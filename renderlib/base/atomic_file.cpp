@@ -1,0 +1,117 @@
+#include "renderlib/base/atomic_file.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw {
+namespace {
+
+constexpr int kAttempts = 1000;
+
+/// "a/b" -> "a", "b" -> ".", "/b" -> "/".
+std::string folder_of(const std::string& path) {
+  const std::size_t slash = path.rfind('/');
+  if (slash == std::string::npos) {
+    return ".";
+  }
+  return slash == 0 ? "/" : path.substr(0, slash);
+}
+
+absl::Status write_all(int file, absl::Span<const std::byte> bytes, const std::string& what) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(file, bytes.data(), bytes.size());
+    if (written < 0) {
+      if (errno == EINTR) {
+        continue;
+      }
+      return errno_status(errno, what);
+    }
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return absl::OkStatus();
+}
+
+/// A new file beside `path`. (Not mkstemp: its mode ignores the umask, which cannot be asked for
+/// without changing it.)
+struct Temporary {
+  int file = -1;
+  std::string path;
+};
+
+absl::StatusOr<Temporary> make_temporary(const std::string& path, const std::string& what) {
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    std::string name = absl::StrCat(path, ".", ::getpid(), ".", attempt, ".part");
+    const int file = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (file >= 0) {
+      return Temporary{file, std::move(name)};
+    }
+    if (errno != EEXIST) {
+      return errno_status(errno, what);
+    }
+  }
+  return errno_status(EEXIST, absl::StrCat(what, ": too many files named *.part beside it"));
+}
+
+absl::Status fill(int file, absl::Span<const std::byte> bytes, const std::string& what) {
+  absl::Status status = write_all(file, bytes, what);
+  if (status.ok() && ::fsync(file) != 0) {
+    status = errno_status(errno, what);
+  }
+  // Network file systems report a full disk only here.
+  if (::close(file) != 0 && status.ok()) {
+    status = errno_status(errno, what);
+  }
+  return status;
+}
+
+absl::Status sync_folder(const std::string& folder) {
+  const int handle = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (handle < 0) {
+    return errno_status(errno, absl::StrCat("cannot open folder ", folder));
+  }
+  const int result = ::fsync(handle);
+  const int error = errno;
+  ::close(handle);
+  // Some file systems cannot sync folders; they have nothing to lose then.
+  if (result != 0 && error != EINVAL && error != EROFS) {
+    return errno_status(error, absl::StrCat("cannot sync folder ", folder));
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::Status errno_status(int error, const std::string& what) {
+  if (error == EFBIG) {  // a limit on the size of files is as much "no room" as a full disk
+    return absl::ResourceExhaustedError(absl::ErrnoToStatus(error, what).message());
+  }
+  return absl::ErrnoToStatus(error, what);
+}
+
+absl::Status write_file_atomically(const std::string& path, absl::Span<const std::byte> bytes) {
+  const std::string what = absl::StrCat("cannot write ", path);
+  struct stat target {};
+  if (::stat(path.c_str(), &target) == 0 && !S_ISREG(target.st_mode)) {
+    return absl::FailedPreconditionError(
+        absl::StrCat(what, ": it exists and is not a regular file; choose another path"));
+  }
+  ASSIGN_OR_RETURN(const Temporary temporary, make_temporary(path, what));
+  absl::Status status = fill(temporary.file, bytes, what);
+  if (status.ok() && ::rename(temporary.path.c_str(), path.c_str()) != 0) {
+    status = errno_status(errno, what);
+  }
+  if (!status.ok()) {
+    ::unlink(temporary.path.c_str());
+    return status;
+  }
+  return sync_folder(folder_of(path));
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,20 @@
+#pragma once
+
+// Whole files or none: temporary file in the same folder, fsync, rename, fsync of the folder.
+
+#include <cstddef>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/types/span.h"
+
+namespace bandsaw {
+
+/// The canonical status for an errno: ENOENT NOT_FOUND, EACCES PERMISSION_DENIED, ENOSPC
+/// RESOURCE_EXHAUSTED, …; the message is "what: strerror".
+absl::Status errno_status(int error, const std::string& what);
+
+/// On any error nothing is left behind and the target is unchanged.
+absl::Status write_file_atomically(const std::string& path, absl::Span<const std::byte> bytes);
+
+}  // namespace bandsaw

@@ -1,0 +1,43 @@
+#pragma once
+
+// std::vector for tables of megabytes that are read at random: from 2 MiB on it lies on huge pages
+// where the system gives them, so that a read seldom misses the address cache.
+
+#include <sys/mman.h>
+
+#include <cstddef>
+#include <new>
+#include <vector>
+
+namespace bandsaw {
+
+template <class T>
+struct HugePages {
+  using value_type = T;
+  static constexpr std::size_t kPage = std::size_t{2} << 20;
+
+  HugePages() = default;
+  template <class U>
+  explicit HugePages(const HugePages<U>&) {}
+
+  static std::align_val_t alignment(std::size_t bytes) {
+    return std::align_val_t{bytes >= kPage ? kPage : std::size_t{64}};
+  }
+  T* allocate(std::size_t count) {
+    const std::size_t bytes = count * sizeof(T);
+    void* memory = ::operator new(bytes, alignment(bytes));
+    if (bytes >= kPage) {
+      ::madvise(memory, bytes, MADV_HUGEPAGE);  // a hint: refused, pages are small
+    }
+    return static_cast<T*>(memory);
+  }
+  void deallocate(T* memory, std::size_t count) {
+    ::operator delete(memory, alignment(count * sizeof(T)));
+  }
+  friend bool operator==(const HugePages&, const HugePages&) { return true; }
+};
+
+template <class T>
+using HugeVector = std::vector<T, HugePages<T>>;
+
+}  // namespace bandsaw

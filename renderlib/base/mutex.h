@@ -1,0 +1,70 @@
+#pragma once
+
+// std::mutex with the names that clang's thread-safety analysis understands. (absl::Mutex from Debian is not instrumented
+// for ThreadSanitizer and makes it report races that are none.)
+
+#include <condition_variable>
+#include <mutex>
+
+#include "absl/base/thread_annotations.h"  // comes with gRPC's headers too, and defines GUARDED_BY itself
+
+#if defined(__clang__)
+#define BANDSAW_TSA(x) __attribute__((x))
+#else
+#define BANDSAW_TSA(x)
+#endif
+#ifndef GUARDED_BY
+#define GUARDED_BY(x) BANDSAW_TSA(guarded_by(x))
+#endif
+#define REQUIRES(x) BANDSAW_TSA(requires_capability(x))
+#define EXCLUDES(x) BANDSAW_TSA(locks_excluded(x))
+
+namespace bandsaw {
+
+class BANDSAW_TSA(capability("mutex")) Mutex {
+ public:
+  void lock() BANDSAW_TSA(acquire_capability()) { mutex_.lock(); }
+  void unlock() BANDSAW_TSA(release_capability()) { mutex_.unlock(); }
+
+ private:
+  friend class CondVar;
+  std::mutex mutex_;
+};
+
+class BANDSAW_TSA(scoped_lockable) MutexLock {
+ public:
+  explicit MutexLock(Mutex& mutex) BANDSAW_TSA(acquire_capability(mutex)) : mutex_(mutex) {
+    mutex_.lock();
+  }
+  ~MutexLock() BANDSAW_TSA(release_capability()) { mutex_.unlock(); }
+  MutexLock(const MutexLock&) = delete;
+  MutexLock& operator=(const MutexLock&) = delete;
+
+ private:
+  Mutex& mutex_;
+};
+
+/// Waits with the mutex held by the caller; spurious wake-ups happen, so wait in a loop over the condition.
+class CondVar {
+ public:
+  void wait(Mutex& mutex) REQUIRES(mutex) {
+    std::unique_lock<std::mutex> lock(mutex.mutex_, std::adopt_lock);
+    condition_.wait(lock);
+    lock.release();
+  }
+  /// False: the time passed.
+  template <class Rep, class Period>
+  bool wait_for(Mutex& mutex, std::chrono::duration<Rep, Period> time) REQUIRES(mutex) {
+    std::unique_lock<std::mutex> lock(mutex.mutex_, std::adopt_lock);
+    const bool woken = condition_.wait_for(lock, time) == std::cv_status::no_timeout;
+    lock.release();
+    return woken;
+  }
+  void notify_one() { condition_.notify_one(); }
+  void notify_all() { condition_.notify_all(); }
+
+ private:
+  std::condition_variable condition_;
+};
+
+}  // namespace bandsaw

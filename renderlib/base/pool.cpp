@@ -1,0 +1,68 @@
+#include "renderlib/base/pool.h"
+
+#include <algorithm>
+
+namespace bandsaw {
+
+struct Pool::Range {
+  std::int64_t next = 0;     // guarded by Pool::mutex_
+  std::int64_t running = 0;  // guarded by Pool::mutex_
+  std::int64_t count = 0;
+  absl::FunctionRef<void(std::int64_t)> body;
+};
+
+Pool::Pool(int threads) {
+  for (int i = 0; i < std::max(1, threads); ++i) {
+    threads_.emplace_back([this] { run(); });
+  }
+}
+
+Pool::~Pool() {
+  {
+    MutexLock lock(mutex_);
+    stopping_ = true;
+  }
+  work_.notify_all();
+  for (std::thread& thread : threads_) {
+    thread.join();
+  }
+}
+
+void Pool::parallel_for(std::int64_t count, absl::FunctionRef<void(std::int64_t)> body) {
+  if (count <= 0) {
+    return;
+  }
+  Range range{.count = count, .body = body};
+  MutexLock lock(mutex_);
+  ranges_.push_back(&range);
+  work_.notify_all();
+  while (range.next < range.count || range.running > 0) {
+    done_.wait(mutex_);
+  }
+}
+
+void Pool::run() {
+  MutexLock lock(mutex_);
+  while (true) {
+    while (ranges_.empty() && !stopping_) {
+      work_.wait(mutex_);
+    }
+    if (ranges_.empty()) {
+      return;
+    }
+    Range& range = *ranges_.front();
+    const std::int64_t index = range.next++;
+    ++range.running;
+    if (range.next == range.count) {
+      ranges_.pop_front();
+    }
+    mutex_.unlock();
+    range.body(index);
+    mutex_.lock();
+    if (--range.running == 0 && range.next == range.count) {
+      done_.notify_all();
+    }
+  }
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,115 @@
+#pragma once
+
+// Eight floats side by side, in plain C++: what Float8 means. Another instruction set is another
+// file like this one, equal to the bit (tests/unit/base/simd_test.cpp); renderlib/base/simd.h
+// picks.
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace bandsaw::simd_plain {
+
+inline constexpr std::size_t kLanes = 8;
+
+/// a b + c, rounded once, without a fused instruction. The product of two floats is exact in
+/// double; the sum is rounded to odd in double, which makes the rounding to float right (Boldo,
+/// Melquiond 2008, "Emulation of FMA and correctly rounded sums: proved algorithms using rounding
+/// to odd").
+inline float fused(float a, float b, float c) {
+  const double product = double{a} * double{b};
+  const double sum = product + double{c};
+  const double part = sum - product;
+  const double error = (product - (sum - part)) + (double{c} - part);
+  auto bits = std::bit_cast<std::uint64_t>(sum);
+  if (error != 0 && std::isfinite(sum) && (bits & 1) == 0) {
+    // Toward the exact sum: away from zero when the error has the sign of the sum.
+    bits += (error > 0) == (sum > 0) ? std::uint64_t{1} : ~std::uint64_t{0};
+  }
+  return static_cast<float>(std::bit_cast<double>(bits));
+}
+
+class Mask8 {
+ public:
+  explicit Mask8(unsigned bits) : bits_(bits) {}
+  /// Bit i: lane i.
+  unsigned bits() const { return bits_; }
+  friend Mask8 operator&(Mask8 a, Mask8 b) { return Mask8(a.bits_ & b.bits_); }
+  friend Mask8 operator|(Mask8 a, Mask8 b) { return Mask8(a.bits_ | b.bits_); }
+
+ private:
+  unsigned bits_;
+};
+
+class Float8 {
+ public:
+  Float8() = default;
+  explicit Float8(float all) { v_.fill(all); }
+  /// Eight floats from any address.
+  static Float8 load(const float* from) {
+    return lanes([from](std::size_t i) { return from[i]; });
+  }
+  void store(float* to) const { std::copy(v_.begin(), v_.end(), to); }
+
+  friend Float8 operator+(const Float8& a, const Float8& b) {
+    return lanes([&](std::size_t i) { return a.v_[i] + b.v_[i]; });
+  }
+  friend Float8 operator-(const Float8& a, const Float8& b) {
+    return lanes([&](std::size_t i) { return a.v_[i] - b.v_[i]; });
+  }
+  friend Float8 operator*(const Float8& a, const Float8& b) {
+    return lanes([&](std::size_t i) { return a.v_[i] * b.v_[i]; });
+  }
+  /// a b + c and a b - c, rounded once.
+  friend Float8 fused(const Float8& a, const Float8& b, const Float8& c) {
+    return lanes([&](std::size_t i) { return simd_plain::fused(a.v_[i], b.v_[i], c.v_[i]); });
+  }
+  friend Float8 fused_minus(const Float8& a, const Float8& b, const Float8& c) {
+    return lanes([&](std::size_t i) { return simd_plain::fused(a.v_[i], b.v_[i], -c.v_[i]); });
+  }
+  /// b where either is NaN.
+  friend Float8 min(const Float8& a, const Float8& b) {
+    return lanes([&](std::size_t i) { return a.v_[i] < b.v_[i] ? a.v_[i] : b.v_[i]; });
+  }
+  friend Float8 max(const Float8& a, const Float8& b) {
+    return lanes([&](std::size_t i) { return a.v_[i] > b.v_[i] ? a.v_[i] : b.v_[i]; });
+  }
+  friend Float8 abs(const Float8& a) {
+    return lanes([&](std::size_t i) { return std::abs(a.v_[i]); });
+  }
+  /// -a in the lanes where `sign` has its sign bit set, else a.
+  friend Float8 flip_by_sign(const Float8& a, const Float8& sign) {
+    return lanes([&](std::size_t i) { return std::signbit(sign.v_[i]) ? -a.v_[i] : a.v_[i]; });
+  }
+  /// False where either is NaN.
+  friend Mask8 operator<(const Float8& a, const Float8& b) {
+    return mask([&](std::size_t i) { return a.v_[i] < b.v_[i]; });
+  }
+  friend Mask8 operator<=(const Float8& a, const Float8& b) {
+    return mask([&](std::size_t i) { return a.v_[i] <= b.v_[i]; });
+  }
+
+ private:
+  template <class Lane>
+  static Float8 lanes(Lane lane) {
+    Float8 result;
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      result.v_[i] = lane(i);
+    }
+    return result;
+  }
+  template <class Lane>
+  static Mask8 mask(Lane lane) {
+    unsigned bits = 0;
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      bits |= (lane(i) ? 1u : 0u) << i;
+    }
+    return Mask8(bits);
+  }
+  std::array<float, kLanes> v_;
+};
+
+}  // namespace bandsaw::simd_plain

@@ -1,0 +1,29 @@
+#pragma once
+
+// Early return on error: the two macros that make absl::Status read like straight code.
+
+#include <utility>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+
+#define BANDSAW_CONCAT_INNER(a, b) a##b
+#define BANDSAW_CONCAT(a, b) BANDSAW_CONCAT_INNER(a, b)
+
+/// Returns from the enclosing function when `expression` is an error.
+#define RETURN_IF_ERROR(expression)                      \
+  do {                                                   \
+    if (absl::Status status_ = (expression); !status_.ok()) { \
+      return status_;                                    \
+    }                                                    \
+  } while (false)
+
+/// `ASSIGN_OR_RETURN(auto x, f());`: the value of f(), or returns its error.
+#define ASSIGN_OR_RETURN(target, expression) \
+  ASSIGN_OR_RETURN_INNER(BANDSAW_CONCAT(status_or_, __LINE__), target, expression)
+#define ASSIGN_OR_RETURN_INNER(temporary, target, expression) \
+  auto temporary = (expression);                              \
+  if (!temporary.ok()) {                                      \
+    return std::move(temporary).status();                     \
+  }                                                           \
+  target = *std::move(temporary)

@@ -1,0 +1,131 @@
+#include "renderlib/camera/camera.h"
+
+#include "absl/strings/str_cat.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/math/elementary.h"
+#include "renderlib/sampling/warp.h"
+
+namespace bandsaw {
+namespace {
+
+/// Sine of the least angle between view direction and `up` that still gives a sideways direction
+/// with ten digits.
+constexpr double kLeastUpSine = 1e-6;
+
+absl::Status invalid(absl::string_view field, absl::string_view why) {
+  return absl::InvalidArgumentError(absl::StrCat("camera.", field, ": ", why));
+}
+
+absl::Status validate_view(const View& camera) {
+  if (!is_finite(camera.position)) {
+    return invalid("position", "must be finite");
+  }
+  if (!is_finite(camera.look_at)) {
+    return invalid("look_at", "must be finite");
+  }
+  if (!is_finite(camera.up)) {
+    return invalid("up", "must be finite");
+  }
+  const Vec3 view = camera.look_at - camera.position;
+  const double distance = length(view);
+  if (!(distance > 0 && distance < kInfinity)) {
+    return invalid("look_at", "must differ from position, by a distance that is a finite number");
+  }
+  const double up_length = length(camera.up);
+  if (!(up_length > 0 && up_length < kInfinity)) {
+    return invalid("up", "must have a length that is finite and not zero");
+  }
+  if (length(cross(view / distance, camera.up / up_length)) < kLeastUpSine) {
+    return invalid("up", "must not be parallel to the view direction");
+  }
+  return absl::OkStatus();
+}
+
+absl::Status validate_kind(const PerspectiveCamera& camera) {
+  if (!(camera.vertical_fov > 0 && camera.vertical_fov < 180)) {
+    return invalid("vertical_fov",
+                   absl::StrCat("must be in (0, 180) degrees, is ", camera.vertical_fov));
+  }
+  if (!(camera.aperture >= 0 && camera.aperture <= kMostLens)) {
+    return invalid("aperture", absl::StrCat("must be in [0, 1e30], is ", camera.aperture));
+  }
+  if (!(camera.focus_distance >= kLeastFocus && camera.focus_distance <= kMostLens)) {
+    return invalid("focus_distance",
+                   absl::StrCat("must be in [1e-9, 1e30], is ", camera.focus_distance));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status validate_kind(const OrthographicCamera& camera) {
+  if (!(camera.height > 0 && camera.height <= kMostLens)) {
+    return invalid("orthographic.height",
+                   absl::StrCat("must be > 0 and at most 1e30, is ", camera.height));
+  }
+  return absl::OkStatus();
+}
+
+/// Unit vectors.
+struct Axes {
+  explicit Axes(const View& view)
+      : forward(normalize(view.look_at - view.position)),
+        right(normalize(cross(forward, normalize(view.up)))),
+        up(cross(right, forward)) {}
+  Vec3 forward;
+  Vec3 right;
+  Vec3 up;
+};
+
+}  // namespace
+
+View view_of(const Camera& camera) {
+  return std::visit([](const auto& c) { return View{c.position, c.look_at, c.up}; }, camera);
+}
+
+absl::Status validate(const Camera& camera) {
+  RETURN_IF_ERROR(validate_view(view_of(camera)));
+  return std::visit([](const auto& c) { return validate_kind(c); }, camera);
+}
+
+RayGenerator::RayGenerator(const Camera& camera, int width, int height) {
+  std::visit([&](const auto& c) { prepare(c, width, height); }, camera);
+}
+
+void RayGenerator::prepare(const PerspectiveCamera& camera, int width, int height) {
+  const Axes axes(view_of(camera));
+  kind_ = camera.aperture > 0 ? Kind::kLens : Kind::kPinhole;
+  origin_ = camera.position;
+  // The image plane at distance 1 is 2 tan(fov / 2) high; pixels are square.
+  const double pixel = 2 * tan_degrees(camera.vertical_fov / 2) / height;
+  dx_ = axes.right * pixel;
+  dy_ = axes.up * -pixel;
+  corner_ = axes.forward - dx_ * (width / 2.0) - dy_ * (height / 2.0);
+  lens_x_ = axes.right * (camera.aperture / 2);
+  lens_y_ = axes.up * (camera.aperture / 2);
+  focus_distance_ = camera.focus_distance;
+}
+
+void RayGenerator::prepare(const OrthographicCamera& camera, int width, int height) {
+  const Axes axes(view_of(camera));
+  kind_ = Kind::kParallel;
+  origin_ = axes.forward;
+  const double pixel = camera.height / height;
+  dx_ = axes.right * (camera.mirrored ? -pixel : pixel);
+  dy_ = axes.up * -pixel;
+  corner_ = camera.position - dx_ * (width / 2.0) - dy_ * (height / 2.0);
+}
+
+Ray RayGenerator::ray(double x, double y, double lens_u, double lens_v) const {
+  const Vec3 at = corner_ + dx_ * x + dy_ * y;
+  if (kind_ == Kind::kPinhole) {
+    return {.origin = origin_, .direction = normalize(at)};
+  }
+  if (kind_ == Kind::kParallel) {
+    return {.origin = at, .direction = origin_};
+  }
+  const Vec2 on_lens = sample_disk(lens_u, lens_v);
+  const Vec3 from = lens_x_ * on_lens.x + lens_y_ * on_lens.y;
+  // To the point at `at` times the distance of focus, in units of that distance: it may be any.
+  return {.origin = origin_ + from, .direction = normalize(at - from / focus_distance_)};
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,48 @@
+#pragma once
+
+// Axis-aligned boxes in double, and where a ray is inside one.
+
+#include <algorithm>
+
+#include "renderlib/geometry/traced_ray.h"
+
+namespace bandsaw {
+
+struct Box {
+  Vec3 lo{kInfinity, kInfinity, kInfinity};
+  Vec3 hi{-kInfinity, -kInfinity, -kInfinity};
+
+  void add(const Vec3& p) {
+    lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
+    hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
+  }
+  bool empty() const { return !(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z); }
+};
+
+/// Part of the contract of every primitive test: a hit lies where the ray is inside the primitive's
+/// own box. A test whose t is mostly rounding noise (a triangle seen edge-on) would otherwise
+/// report hits outside the boxes of a tree, and which of them are found would depend on the tree.
+/// Moves t into the box; false: the ray misses the box by more than rounding. The slack, 2^-40 of
+/// t, is far above the rounding of the tests and far below the slack of the trees' boxes.
+inline bool clip_to_box(const TracedRay& ray, const double (&lo)[3], const double (&hi)[3],
+                        double& t) {
+  constexpr double kGrow = 1 + 0x1p-40;
+  double enter = 0;
+  double leave = kInfinity;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double a = (lo[k] - ray.origin[k]) * ray.inverse[k];
+    const double b = (hi[k] - ray.origin[k]) * ray.inverse[k];
+    // 0 times infinity, a ray that runs within a face, is NaN and bounds nothing.
+    const double first = ray.inverse[k] < 0 ? b : a;
+    const double last = ray.inverse[k] < 0 ? a : b;
+    enter = first > enter ? first : enter;
+    leave = last < leave ? last : leave;
+  }
+  if (!(enter <= leave * kGrow)) {
+    return false;
+  }
+  t = t < enter ? enter : t > leave ? leave : t;
+  return true;
+}
+
+}  // namespace bandsaw

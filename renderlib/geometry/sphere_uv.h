@@ -1,0 +1,12 @@
+#pragma once
+
+#include "renderlib/math/vec.h"
+
+namespace bandsaw {
+
+/// Where a unit vector lies on a globe: u = (pi + atan2(-z, x)) / 2 pi in [0, 1), v = the angle
+/// from the pole -y / pi in [0, 1]. Images of the earth with north up appear as in "Ray Tracing:
+/// The Next Week", chapter 4.
+Vec2 sphere_uv(const Vec3& unit);
+
+}  // namespace bandsaw

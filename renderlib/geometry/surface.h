@@ -1,0 +1,60 @@
+#pragma once
+
+// The surface at a hit, in world space, to full double precision.
+
+#include "renderlib/geometry/ray.h"
+#include "renderlib/geometry/shapes.h"
+#include "renderlib/math/rgb.h"
+
+namespace bandsaw {
+
+struct SurfacePoint {
+  Vec3 position;  ///< on the primitive: from barycentrics, or projected back onto the sphere
+  Vec3 geometric_normal;  ///< unit; to the outside as geometry/shapes.h defines it (mirrored
+                          ///< instances keep it outside)
+  Vec3 shading_normal;  ///< unit; interpolated where the mesh has normals, else the geometric one;
+                        ///< same hemisphere
+  /// Spheres: as a globe with the seam at -x and v = 0 at the pole -y, u in [0, 1), u = 1/2 at +x,
+  /// 3/4 at -z. Quads: (a, b). Triangles: the weights of b and c. Meshes: their own uv, else
+  /// weights.
+  Vec2 uv;
+  Vec2 uv2;              ///< a mesh's second set; uv where there is none
+  Vec3 object_position;  ///< meshes: before their placement; spheres: from their centre; else the
+                         ///< position
+  Rgb color{1, 1, 1};  ///< of the vertices, interpolated; white where there is none
+  /// Where uv.x and uv.y grow, of any length; zero unless set by add_uv_directions.
+  Vec3 along_u;
+  Vec3 along_v;
+  MaterialId material{};
+  PrimitiveId id;
+  /// How far apart ray origins and surface must lie to be told apart: 2^-40 max(|position|, size of
+  /// the primitive), in the larger of object and world space scale; more for instances that squash
+  /// space so much that rounding is larger.
+  double offset = 0;
+};
+
+SurfacePoint surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit);
+
+/// Sets along_u and along_v; they stay zero where the uvs of a triangle have no area.
+void add_uv_directions(const Geometry& geometry, SurfacePoint& point);
+
+/// A ray that leaves the surface: starts `offset` off it on the side of `direction` and cannot hit
+/// the flat primitive again.
+Ray leave(const SurfacePoint& from, const Vec3& direction, double t_max = kInfinity);
+
+/// A ray from `from` to `target`, for asking whether anything lies between; t is in (0, 1), ends
+/// short of the target surface by `target_offset` (its SurfacePoint::offset; 0 for a point in
+/// space).
+Ray toward(const SurfacePoint& from, const Vec3& target, double target_offset);
+
+/// The same to a point of a surface with unit normal `target_normal`: ends `target_offset` off the
+/// surface, on the side that faces `from`, so that the surface itself is never between, however
+/// edge-on it is seen. For a sample on a light use this.
+Ray toward(const SurfacePoint& from, const Vec3& target, double target_offset,
+           const Vec3& target_normal);
+
+/// SurfacePoint::offset of a point at `position` on a primitive of `size`, in world space without
+/// instances.
+double surface_offset(const Vec3& position, double size);
+
+}  // namespace bandsaw

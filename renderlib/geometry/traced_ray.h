@@ -1,0 +1,63 @@
+#pragma once
+
+// A ray with what the primitive tests need computed once: the axes and shear of the triangle test
+// and reciprocals for boxes.
+
+#include <array>
+#include <cmath>
+
+#include "renderlib/geometry/ray.h"
+
+namespace bandsaw {
+
+struct TracedRay {
+  std::array<double, 3> origin;
+  std::array<double, 3> direction;
+  std::array<double, 3> inverse;  ///< 1 / direction; infinite where that is 0
+  double t_max;
+  /// kz: the axis along which the direction is longest; (kx, ky, kz) is right-handed as seen along
+  /// the ray.
+  int kx;
+  int ky;
+  int kz;
+  double shear_x;
+  double shear_y;
+  double shear_z;
+};
+
+/// `ray` MUST be finite with a direction that is not zero (is_traceable).
+inline TracedRay trace_setup(const Vec3& origin, const Vec3& direction, double t_max) {
+  TracedRay r;
+  r.origin = {origin.x, origin.y, origin.z};
+  r.direction = {direction.x, direction.y, direction.z};
+  for (std::size_t k = 0; k < 3; ++k) {
+    r.inverse[k] = 1 / r.direction[k];
+  }
+  r.t_max = t_max;
+  const double ax = std::abs(direction.x);
+  const double ay = std::abs(direction.y);
+  const double az = std::abs(direction.z);
+  r.kz = ax > ay ? (ax > az ? 0 : 2) : (ay > az ? 1 : 2);
+  r.kx = r.kz == 2 ? 0 : r.kz + 1;
+  r.ky = r.kx == 2 ? 0 : r.kx + 1;
+  if (r.direction[static_cast<std::size_t>(r.kz)] < 0) {
+    const int swapped = r.kx;  // keeps the winding
+    r.kx = r.ky;
+    r.ky = swapped;
+  }
+  r.shear_z = r.inverse[static_cast<std::size_t>(r.kz)];
+  r.shear_x = r.direction[static_cast<std::size_t>(r.kx)] * r.shear_z;
+  r.shear_y = r.direction[static_cast<std::size_t>(r.ky)] * r.shear_z;
+  return r;
+}
+
+/// Whether anything can be hit at all: rays with NaN or infinite parts hit nothing, nor do those
+/// whose direction is zero or so near the ends of the range of double (2^-500, 2^500) that its
+/// square has no meaning.
+inline bool is_traceable(const Ray& ray) {
+  const double size = max_abs(ray.direction);
+  return is_finite(ray.origin) && is_finite(ray.direction) && size > 0x1p-500 && size < 0x1p500 &&
+         ray.t_max > 0;
+}
+
+}  // namespace bandsaw

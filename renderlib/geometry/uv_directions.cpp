@@ -1,0 +1,68 @@
+#include <algorithm>
+#include <cmath>
+
+#include "renderlib/geometry/surface.h"
+
+namespace bandsaw {
+namespace {
+
+Vec3 vec(const std::array<float, 3>& p) { return {p[0], p[1], p[2]}; }
+
+/// dp/du and dp/dv of the affine map that takes the triangle's uvs to its corners.
+void along_mesh(const Geometry& geometry, SurfacePoint& point) {
+  const Instance& instance = geometry.instances[point.id.instance - 1];
+  const Mesh& mesh = geometry.meshes[index_of(instance.mesh)];
+  const auto& corner = mesh.triangles[point.id.primitive];
+  const Vec3 a = vec(mesh.positions[corner[0]]);
+  const Vec3 e1 = instance.to_world.direction(vec(mesh.positions[corner[1]]) - a);
+  const Vec3 e2 = instance.to_world.direction(vec(mesh.positions[corner[2]]) - a);
+  if (mesh.uvs.empty()) {
+    point.along_u = e1;
+    point.along_v = e2;
+    return;
+  }
+  const auto uv = [&](std::size_t i, std::size_t axis) {
+    return double{mesh.uvs[corner[i]][axis]} - double{mesh.uvs[corner[0]][axis]};
+  };
+  const double du1 = uv(1, 0);
+  const double dv1 = uv(1, 1);
+  const double du2 = uv(2, 0);
+  const double dv2 = uv(2, 1);
+  const double area = du1 * dv2 - du2 * dv1;
+  const double size = std::max({std::abs(du1), std::abs(dv1), std::abs(du2), std::abs(dv2)});
+  if (!(std::abs(area) > 1e-12 * size * size)) {
+    return;
+  }
+  const Vec3 u = (e1 * dv2 - e2 * dv1) / area;
+  const Vec3 v = (e2 * du1 - e1 * du2) / area;
+  if (is_finite(u) && is_finite(v)) {
+    point.along_u = u;
+    point.along_v = v;
+  }
+}
+
+}  // namespace
+
+void add_uv_directions(const Geometry& geometry, SurfacePoint& point) {
+  if (point.id.instance != 0) {
+    along_mesh(geometry, point);
+    return;
+  }
+  std::size_t i = point.id.primitive;
+  if (i < geometry.spheres.size()) {
+    point.along_u = cross({0, 1, 0}, point.geometric_normal);
+    point.along_v = cross(point.geometric_normal, point.along_u);
+    return;
+  }
+  i -= geometry.spheres.size();
+  if (i < geometry.quads.size()) {
+    point.along_u = geometry.quads[i].u;
+    point.along_v = geometry.quads[i].v;
+    return;
+  }
+  const Triangle& triangle = geometry.triangles[i - geometry.quads.size()];
+  point.along_u = triangle.b - triangle.a;
+  point.along_v = triangle.c - triangle.a;
+}
+
+}  // namespace bandsaw

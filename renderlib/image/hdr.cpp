@@ -1,0 +1,115 @@
+#include "renderlib/image/hdr.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include "absl/strings/str_cat.h"
+
+namespace bandsaw {
+namespace {
+
+using Rgbe = std::array<std::uint8_t, 4>;
+
+/// Beyond this the shared exponent would not fit.
+constexpr float kMost = 0x1.fep126f;
+
+float mendable(float v) { return v > 0 ? std::min(v, kMost) : 0; }
+
+Rgbe rgbe(const Rgb& pixel) {
+  const Rgb p = {mendable(pixel.r), mendable(pixel.g), mendable(pixel.b)};
+  const float largest = max_component(p);
+  if (largest < 0x1p-127f) {
+    return {};
+  }
+  int exponent = 0;
+  (void)std::frexp(largest, &exponent);
+  if (std::floor(std::ldexp(largest, 8 - exponent) + 0.5f) > 255) {
+    ++exponent;  // Rounding makes it the next power of two.
+  }
+  const auto mantissa = [&](float v) {
+    return static_cast<std::uint8_t>(std::floor(std::ldexp(v, 8 - exponent) + 0.5f));
+  };
+  return {mantissa(p.r), mantissa(p.g), mantissa(p.b), static_cast<std::uint8_t>(exponent + 128)};
+}
+
+class RowWriter {
+ public:
+  explicit RowWriter(std::vector<std::byte>& out) : out_(out) {}
+
+  void put(std::size_t value) { out_.push_back(static_cast<std::byte>(value)); }
+
+  /// One channel of a row: runs of three and more as (128 + length, value), the rest as (length,
+  /// values).
+  void channel(const std::vector<Rgbe>& row, std::size_t c) {
+    std::size_t plain = 0;  // begin of what is not written yet
+    for (std::size_t at = 0; at < row.size();) {
+      std::size_t run = 1;
+      while (run < 127 && at + run < row.size() && row[at + run][c] == row[at][c]) {
+        ++run;
+      }
+      if (run >= 3) {
+        literal(row, c, plain, at);
+        put(128 + run);
+        put(row[at][c]);
+        plain = at + run;
+      }
+      at += run;
+    }
+    literal(row, c, plain, row.size());
+  }
+
+ private:
+  void literal(const std::vector<Rgbe>& row, std::size_t c, std::size_t from, std::size_t to) {
+    while (from < to) {
+      const std::size_t count = std::min<std::size_t>(to - from, 128);
+      put(count);
+      for (std::size_t i = 0; i < count; ++i) {
+        put(row[from + i][c]);
+      }
+      from += count;
+    }
+  }
+
+  std::vector<std::byte>& out_;
+};
+
+}  // namespace
+
+std::vector<std::byte> encode_hdr(const Image& image) {
+  const std::string header = absl::StrCat("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y ", image.height,
+                                          " +X ", image.width, "\n");
+  std::vector<std::byte> out;
+  for (const char c : header) {
+    out.push_back(static_cast<std::byte>(c));
+  }
+  RowWriter writer(out);
+  // Readers take other widths for the old form, without runs.
+  const bool runs = image.width >= 8 && image.width < 32768;
+  std::vector<Rgbe> row(image.width);
+  for (std::uint32_t y = 0; y < image.height; ++y) {
+    for (std::uint32_t x = 0; x < image.width; ++x) {
+      row[x] = rgbe(image.at(x, y));
+    }
+    if (runs) {
+      for (const std::size_t byte :
+           {std::size_t{2}, std::size_t{2}, row.size() >> 8, row.size() & 255}) {
+        writer.put(byte);
+      }
+      for (std::size_t c = 0; c < 4; ++c) {
+        writer.channel(row, c);
+      }
+      continue;
+    }
+    for (const Rgbe& pixel : row) {
+      for (const std::uint8_t byte : pixel) {
+        writer.put(byte);
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,39 @@
+#include "renderlib/image/srgb.h"
+
+#include <cmath>
+
+#include "renderlib/math/elementary.h"
+
+namespace bandsaw {
+namespace {
+
+std::array<float, 256> make_table() {
+  std::array<float, 256> table{};
+  for (int code = 0; code < 256; ++code) {
+    const double v = code / 255.0;
+    const double linear = v <= 0.04045 ? v / 12.92 : bandsaw::pow((v + 0.055) / 1.055, 2.4);
+    table[static_cast<std::size_t>(code)] = static_cast<float>(linear);
+  }
+  return table;
+}
+
+}  // namespace
+
+const std::array<float, 256>& srgb_table() {
+  static const std::array<float, 256> table = make_table();
+  return table;
+}
+
+std::uint8_t srgb_encode(float linear) {
+  if (!(linear > 0)) {
+    return 0;
+  }
+  if (linear >= 1) {
+    return 255;
+  }
+  const double x = linear;
+  const double v = x <= 0.0031308 ? 12.92 * x : 1.055 * bandsaw::pow(x, 1 / 2.4) - 0.055;
+  return static_cast<std::uint8_t>(std::floor(255 * v + 0.5));
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,17 @@
+#pragma once
+
+// The sRGB transfer function (IEC 61966-2-1), between 8-bit codes and linear values.
+
+#include <array>
+#include <cstdint>
+
+namespace bandsaw {
+
+/// The linear value of each code.
+const std::array<float, 256>& srgb_table();
+
+/// The code of a linear value: round(255 f(x)). Below 0 and NaN: 0; above 1: 255. Gives back every
+/// code of srgb_table().
+std::uint8_t srgb_encode(float linear);
+
+}  // namespace bandsaw

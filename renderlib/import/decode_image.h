@@ -1,0 +1,35 @@
+#pragma once
+
+// Image files to texels, by stb_image.
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "renderlib/image/image.h"
+#include "renderlib/texture/texture.h"
+
+namespace bandsaw {
+
+/// Largest image file that is read.
+inline constexpr std::uint64_t kMaxImageFileBytes = std::uint64_t{2} << 30;
+
+/// What becomes of an image of one channel.
+enum class Gray { kExpanded, kKept };
+
+/// PNG, JPEG, TGA, BMP, PNM: 8-bit sRGB of three channels (or one: `gray`), alpha and a second byte
+/// of depth left out with a warning. HDR, EXR: linear floats. The texels are what the decoder made,
+/// uncopied. Sizes are checked before anything is decoded. INVALID_ARGUMENT: the reason, without
+/// the file's name.
+absl::StatusOr<ImageTexture> decode_image(absl::string_view bytes,
+                                          std::vector<std::string>& warnings,
+                                          Gray gray = Gray::kExpanded);
+
+/// The alpha of an 8-bit image as a linear one of one channel; all 255 where it has none.
+absl::StatusOr<ImageTexture> decode_alpha(absl::string_view bytes);
+
+/// The same as a linear picture; PFM too.
+absl::StatusOr<Image> decode_picture(absl::string_view bytes);
+
+}  // namespace bandsaw

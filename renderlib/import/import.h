@@ -1,0 +1,23 @@
+#pragma once
+
+// Scene files and models to a scene package. Runs in its own confined process (import/main.cpp);
+// coordinator and workers never do this.
+
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "renderlib/package/package.h"
+
+namespace bandsaw {
+
+struct ImportedScene {
+  SceneDescription scene;
+  PackageInfo info;
+};
+
+/// Reads a scene file (*.textproto, *.json) or a model alone (then framed under a default sky).
+/// Files are read only below the folder of `path`. INVALID_ARGUMENT: "cornell.textproto:12:3:
+/// shape[4].sphere.radius: must be > 0, is -1". NOT_FOUND, PERMISSION_DENIED: naming the file.
+absl::StatusOr<ImportedScene> import_scene(const std::string& path);
+
+}  // namespace bandsaw

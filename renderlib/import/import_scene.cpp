@@ -1,0 +1,116 @@
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+#include <variant>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "proto/wire/limits.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/import/framing.h"
+#include "renderlib/import/import.h"
+#include "renderlib/import/model.h"
+#include "renderlib/import/parse_scene.h"
+#include "renderlib/import/read_materials.h"
+#include "renderlib/import/read_models.h"
+#include "renderlib/import/read_shapes.h"
+#include "renderlib/import/read_textures.h"
+#include "renderlib/import/read_view.h"
+#include "renderlib/import/scene_draft.h"
+#include "renderlib/package/check.h"
+
+namespace bandsaw {
+namespace {
+
+constexpr std::uint64_t kMaxSceneFileBytes = std::uint64_t{64} << 20;
+
+bool has_light(const SceneDescription& scene) {
+  return std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& material) {
+    return std::holds_alternative<Emissive>(material);
+  });
+}
+
+Camera framed(const ImportedScene& out) {
+  const Geometry& geometry = out.scene.geometry;
+  return frame(geometry, geometry.instances, static_cast<double>(out.info.width) / out.info.height);
+}
+
+absl::Status read_scene(const Field& root, const scene::Scene& from, SceneDraft& draft) {
+  SceneDescription& scene = draft.out.scene;
+  RETURN_IF_ERROR(read_settings(root, from, draft.out.info));
+  // What is cheap to check comes before what takes time.
+  if (from.has_camera()) {
+    ASSIGN_OR_RETURN(scene.camera, read_camera(root, from));
+  }
+  ASSIGN_OR_RETURN(scene.filter, read_filter(root, from));
+  ASSIGN_OR_RETURN(scene.local_shading, read_local_shading(root, from));
+  if (from.has_background()) {
+    ASSIGN_OR_RETURN(scene.background, read_background(root, from));
+  }
+  RETURN_IF_ERROR(read_textures(root, from, draft));
+  RETURN_IF_ERROR(read_materials(root, from, draft));
+  RETURN_IF_ERROR(read_shapes(root, from, draft));
+  ASSIGN_OR_RETURN(const auto model_camera, read_models(root, from, draft));
+  if (!from.has_camera()) {
+    if (!model_camera && from.model_size() != 1) {
+      return root.error(
+          "camera", "is required, for example camera { position: [0, 1, 5] look_at: [0, 0, 0] }");
+    }
+    scene.camera = model_camera ? Camera(*model_camera) : framed(draft.out);
+  }
+  if (!from.has_background() && !has_light(scene)) {
+    scene.background = default_sky();
+  }
+  return absl::OkStatus();
+}
+
+absl::Status read_scene_file(const std::string& path, bool json, SceneDraft& draft) {
+  ASSIGN_OR_RETURN(const std::string text, read_whole_file(path, kMaxSceneFileBytes));
+  auto parsed = json ? parse_json(text, draft.file) : parse_textproto(text, draft.file);
+  if (!parsed.ok()) {
+    return parsed.status();
+  }
+  const Field root(draft.file, parsed->scene, parsed->locations.get());
+  return read_scene(root, parsed->scene, draft);
+}
+
+absl::Status read_model_alone(const std::string& path, SceneDraft& draft) {
+  ASSIGN_OR_RETURN(const auto real, draft.folder.resolve(name_of(path), draft.folder.path()));
+  ASSIGN_OR_RETURN(const Model model, read_model(real, true, draft));
+  draft.out.scene.geometry.instances = model.instances;
+  draft.out.scene.camera = model.camera ? Camera(*model.camera) : framed(draft.out);
+  if (!has_light(draft.out.scene)) {
+    draft.out.scene.background = default_sky();
+  }
+  return absl::OkStatus();
+}
+
+absl::Status read_any(const std::string& path, SceneDraft& draft) {
+  const std::string lower = absl::AsciiStrToLower(path);
+  if (absl::EndsWith(lower, ".textproto") || absl::EndsWith(lower, ".json")) {
+    return read_scene_file(path, absl::EndsWith(lower, ".json"), draft);
+  }
+  if (is_model_file(path)) {
+    return read_model_alone(path, draft);
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat(draft.file,
+                   ": is of a kind that is not read; a scene is .textproto or .json, a "
+                   "model .gltf, .glb or .obj"));
+}
+
+}  // namespace
+
+absl::StatusOr<ImportedScene> import_scene(const std::string& path) {
+  ASSIGN_OR_RETURN(SceneFolder folder, SceneFolder::of(path));
+  SceneDraft draft(std::move(folder), name_of(path));
+  draft.out.info.name = std::filesystem::path(path).stem().string();
+  RETURN_IF_ERROR(read_any(path, draft));
+  if (const absl::Status good = check_description(draft.out.scene); !good.ok()) {
+    return absl::InvalidArgumentError(absl::StrCat(draft.file, ": ", good.message()));
+  }
+  return std::move(draft.out);
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,130 @@
+// bandsaw-import: reads one foreign file and leaves it in a folder in a form that needs no parser,
+// or one error on standard output. Started by the client commands
+// (coordinator/cli/import_process.h); can be run by hand.
+//
+//   bandsaw-import scene FILE FOLDER SECONDS BYTES   FOLDER/manifest and FOLDER/<digest> for each
+//   blob bandsaw-import image FILE FOLDER SECONDS BYTES   FOLDER/image: width and height as uint32,
+//   then float RGB, rows from the top
+//
+// Exit 0: done. Exit 1: "CODE: message" on standard output, CODE as absl::StatusCodeToString writes
+// it.
+
+#include <sys/prctl.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <initializer_list>
+#include <new>
+#include <string>
+
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "proto/wire/limits.h"
+#include "renderlib/base/atomic_file.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/import/confine.h"
+#include "renderlib/import/decode_image.h"
+#include "renderlib/import/import.h"
+#include "renderlib/import/scene_folder.h"
+#include "renderlib/package/blob_folder.h"
+#include "renderlib/package/clean_text.h"
+
+namespace bandsaw {
+namespace {
+
+// No fsync: what is written here is read once and removed.
+absl::Status write_file(const std::string& path,
+                        std::initializer_list<absl::Span<const std::byte>> parts) {
+  std::FILE* file = std::fopen(path.c_str(), "wb");
+  if (file == nullptr) {
+    return errno_status(errno, path);
+  }
+  bool good = true;
+  for (const auto part : parts) {
+    good = good && std::fwrite(part.data(), 1, part.size(), file) == part.size();
+  }
+  const int error = errno;
+  good = std::fclose(file) == 0 && good;
+  return good ? absl::OkStatus() : errno_status(error, path);
+}
+
+template <class T>
+absl::Span<const std::byte> bytes_of(const T* data, std::size_t count) {
+  return absl::MakeConstSpan(reinterpret_cast<const std::byte*>(data), count * sizeof(T));
+}
+
+absl::Status import_to(const std::string& path, const std::string& folder) {
+  ASSIGN_OR_RETURN(const ImportedScene imported, import_scene(path));
+  BlobMap blobs;
+  const std::string manifest = encode_package(imported.scene, imported.info, blobs);
+  // The bounds that a coordinator would hold it to.
+  RETURN_IF_ERROR(package_blobs(manifest).status());
+  const BlobFolder out(folder);
+  for (const auto& [digest, bytes] : blobs.all()) {
+    RETURN_IF_ERROR(write_file(out.path_of(digest), {absl::MakeConstSpan(bytes)}));
+  }
+  return write_file(folder + "/manifest", {bytes_of(manifest.data(), manifest.size())});
+}
+
+absl::Status read_picture_to(const std::string& path, const std::string& folder) {
+  ASSIGN_OR_RETURN(const std::string bytes, read_whole_file(path, kMaxImageFileBytes));
+  const auto picture = decode_picture(bytes);
+  if (!picture.ok()) {
+    return absl::Status(picture.status().code(),
+                        absl::StrCat(path, ": ", picture.status().message()));
+  }
+  return write_file(folder + "/image", {bytes_of(&picture->width, 1), bytes_of(&picture->height, 1),
+                                        bytes_of(picture->pixels.data(), picture->pixels.size())});
+}
+
+absl::Status run(int argc, char** argv) {
+  Confinement limits;
+  const std::string what = argc == 6 ? argv[1] : "";
+  if ((what != "scene" && what != "image") || !absl::SimpleAtoi(argv[4], &limits.cpu_seconds) ||
+      !absl::SimpleAtoi(argv[5], &limits.memory_bytes)) {
+    return absl::InvalidArgumentError(
+        "usage: bandsaw-import scene|image FILE FOLDER SECONDS BYTES");
+  }
+  const std::string path = argv[2];
+  ASSIGN_OR_RETURN(const SceneFolder folder, SceneFolder::of(path));
+  limits.read_folder = folder.path();
+  limits.write_folder = argv[3];
+  limits.file_bytes = wire::kBlobBytes;
+  RETURN_IF_ERROR(confine_this_process(limits));
+  return what == "scene" ? import_to(path, argv[3]) : read_picture_to(path, argv[3]);
+}
+
+// Foreign code throws.
+absl::Status run_without_exceptions(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    return absl::ResourceExhaustedError(absl::StrCat(name_of(argv[2]),
+                                                     ": needs more memory than the ", argv[5],
+                                                     " bytes that reading a file may take"));
+  } catch (const std::exception& error) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(name_of(argv[2]), ": cannot be read: ", error.what()));
+  }
+}
+
+}  // namespace
+}  // namespace bandsaw
+
+int main(int argc, char** argv) {
+  // Without a parent there is nobody to tell the result to.
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  const absl::Status status = bandsaw::run_without_exceptions(argc, argv);
+  if (!status.ok()) {
+    const std::string message =
+        absl::StrCat(absl::StatusCodeToString(status.code()), ": ",
+                     bandsaw::clean_text(std::string(status.message()), 4000));
+    std::puts(message.c_str());
+  }
+  std::fflush(stdout);
+  // Gigabytes of arrays need not be taken apart.
+  std::_Exit(status.ok() ? 0 : 1);
+}

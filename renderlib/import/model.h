@@ -1,0 +1,32 @@
+#pragma once
+
+// Model files (glTF, GLB, OBJ), read by Assimp, as meshes, materials and placements of the scene.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "renderlib/camera/camera.h"
+#include "renderlib/geometry/shapes.h"
+#include "renderlib/import/scene_draft.h"
+
+namespace bandsaw {
+
+/// A model in the draft: its meshes, materials and textures have been added there, its placements
+/// have not.
+struct Model {
+  std::vector<Instance> instances;  ///< in the model's own space
+  std::optional<PerspectiveCamera> camera;
+};
+
+/// Whether the suffix is that of a model that is read: .gltf, .glb, .obj.
+bool is_model_file(const std::string& path);
+
+/// `path` is real and below the draft's folder. Without `with_materials` no texture is read, and
+/// the placements' materials mean nothing. What is left out or mended is a warning of the draft.
+/// Messages begin with the file's name: INVALID_ARGUMENT: broken, or without triangles. NOT_FOUND,
+/// PERMISSION_DENIED: a file that it needs.
+absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, SceneDraft& draft);
+
+}  // namespace bandsaw

@@ -1,0 +1,113 @@
+#include "renderlib/import/scene_folder.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+
+#include "absl/cleanup/cleanup.h"
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "renderlib/base/atomic_file.h"
+
+namespace bandsaw {
+namespace fs = std::filesystem;
+
+std::string folder_of(const std::string& path) { return fs::path(path).parent_path().string(); }
+
+std::string name_of(const std::string& path) { return fs::path(path).filename().string(); }
+
+absl::StatusOr<SceneFolder> SceneFolder::of(const std::string& scene_path) {
+  std::error_code error;
+  const fs::path real = fs::canonical(scene_path, error);
+  if (error) {
+    return errno_status(error.value(), scene_path);
+  }
+  if (fs::is_directory(real, error)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(scene_path, " is a folder; name a scene file or a model"));
+  }
+  return SceneFolder(real.parent_path().string());
+}
+
+bool SceneFolder::holds(const std::string& real_path) const {
+  return path_ == "/" || absl::StartsWith(real_path, path_ + "/");
+}
+
+absl::StatusOr<std::string> SceneFolder::resolve(const std::string& name,
+                                                 const std::string& folder) const {
+  if (name.empty() || name.find('\0') != std::string::npos) {
+    return absl::InvalidArgumentError("a file name must not be empty or hold a zero byte");
+  }
+  const fs::path asked(name);
+  if (asked.is_absolute()) {
+    return absl::PermissionDeniedError(absl::StrCat(
+        "\"", name, "\" is an absolute path; files are named relative to the scene's folder"));
+  }
+  const auto outside = [&] {
+    return absl::PermissionDeniedError(absl::StrCat("\"", name,
+                                                    "\" lies outside of the scene's folder ", path_,
+                                                    "; files are read only below it"));
+  };
+  const fs::path whole = (fs::path(folder) / asked).lexically_normal();
+  if (!holds(whole.string())) {
+    return outside();
+  }
+  std::error_code error;
+  const fs::path real = fs::canonical(whole, error);
+  if (error == std::errc::permission_denied) {
+    return absl::PermissionDeniedError(absl::StrCat("\"", name, "\" must not be read"));
+  }
+  if (error) {
+    return absl::NotFoundError(
+        absl::StrCat("\"", name, "\" is missing (looked for ", whole.string(), ")"));
+  }
+  if (!holds(real.string())) {
+    return outside();
+  }
+  if (!fs::is_regular_file(real, error)) {
+    return absl::InvalidArgumentError(absl::StrCat("\"", name, "\" is not a file"));
+  }
+  return real.string();
+}
+
+absl::StatusOr<std::string> read_whole_file(const std::string& path, std::uint64_t most_bytes) {
+  const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (fd < 0) {
+    return errno_status(errno, path);
+  }
+  const absl::Cleanup close_file = [fd] { close(fd); };
+  struct stat info {};
+  if (fstat(fd, &info) != 0) {
+    return errno_status(errno, path);
+  }
+  if (!S_ISREG(info.st_mode)) {
+    return absl::InvalidArgumentError(absl::StrCat(path, ": is not a file"));
+  }
+  const auto size = static_cast<std::uint64_t>(info.st_size);
+  if (size > most_bytes) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat(path, ": has ", size, " bytes, at most ", most_bytes, " are read"));
+  }
+  std::string bytes(size, '\0');
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t got = read(fd, bytes.data() + done, bytes.size() - done);
+    if (got < 0 && errno == EINTR) {
+      continue;
+    }
+    if (got < 0) {
+      return errno_status(errno, path);
+    }
+    if (got == 0) {
+      bytes.resize(done);
+    }
+    done += static_cast<std::size_t>(got);
+  }
+  return bytes;
+}
+
+}  // namespace bandsaw

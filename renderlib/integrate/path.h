@@ -1,0 +1,42 @@
+#pragma once
+
+// The radiance along a camera ray by path tracing: at every surface with a density of directions
+// one light is asked for light and one direction is followed; what both could find is weighed by
+// the power heuristic (Veach 1997, "Robust Monte Carlo Methods for Light Transport Simulation",
+// sections 9.2 and 10.2).
+
+#include <cstdint>
+
+#include "renderlib/geometry/ray.h"
+#include "renderlib/math/rgb.h"
+#include "renderlib/sampling/sampler.h"
+#include "renderlib/scene/scene.h"
+
+namespace bandsaw {
+
+/// How light is looked for. All have the same mean; all but the first exist to be compared with it.
+enum class Technique {
+  kBoth,            ///< both, weighed
+  kLightsOnly,      ///< asking lights alone, where there is a density
+  kScatteringOnly,  ///< following directions alone
+};
+
+struct PathOptions {
+  std::uint32_t max_depth = 32;  ///< most surfaces a path scatters at
+  Technique technique = Technique::kBoth;
+  bool russian_roulette = true;
+  /// Local shading: what surfaces with a density scatter of the lights and of the scene's ambient
+  /// term, nothing of each other; only mirrors, glass and fuzzy metal are followed.
+  bool local = false;
+};
+
+/// Scattering from this one on may end by Russian roulette.
+inline constexpr std::uint32_t kRouletteDepth = 3;
+
+/// The radiance that comes back along `camera_ray`, whose direction is a unit vector, by sample
+/// number `sample` of the pixel. Adds the rays it traced to `rays`. Deterministic, allocates
+/// nothing.
+Rgb path_radiance(const Scene& scene, const Ray& camera_ray, const PixelSampler& sampler,
+                  std::uint64_t sample, const PathOptions& options, std::uint64_t& rays);
+
+}  // namespace bandsaw

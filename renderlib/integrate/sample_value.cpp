@@ -1,0 +1,62 @@
+#include "renderlib/integrate/sample_value.h"
+
+#include "renderlib/geometry/surface.h"
+#include "renderlib/material/albedo.h"
+#include "renderlib/sampling/basis.h"
+#include "renderlib/sampling/warp.h"
+
+namespace bandsaw {
+namespace {
+
+/// A direction as a colour, each channel in [0, 1].
+Rgb as_color(const Vec3& n) {
+  const auto channel = [](double v) { return static_cast<float>((v + 1) / 2); };
+  return {channel(n.x), channel(n.y), channel(n.z)};
+}
+
+/// 1 where a cosine-weighted direction on the viewer's side meets nothing near, else 0.
+float openness(const Scene& scene, const SurfacePoint& point, const Vec3& wo, double u, double v) {
+  const bool outside = dot(wo, point.geometric_normal) >= 0;
+  const Vec3 normal = outside ? point.geometric_normal : -point.geometric_normal;
+  const Vec3 direction = orthonormal_basis(normal).to_world(sample_cosine_hemisphere(u, v));
+  if (!(dot(direction, normal) > 0)) {
+    return 0;
+  }
+  const double distance = scene.local_shading().occlusion_distance;
+  return scene.accel().occluded(leave(point, normalize(direction), distance)) ? 0.0f : 1.0f;
+}
+
+Rgb value_at(const Scene& scene, Integrator integrator, const Ray& ray, const PixelSampler& sampler,
+             std::uint64_t sample, std::uint64_t& rays) {
+  ++rays;
+  const Hit hit = scene.accel().closest(ray);
+  if (!hit) {
+    return gray(integrator == Integrator::kAmbientOcclusion ? 1.0f : 0.0f);
+  }
+  if (integrator == Integrator::kDepth) {
+    return gray(static_cast<float>(hit.t));
+  }
+  const SurfacePoint point = surface_at(scene.geometry(), ray, hit);
+  if (integrator == Integrator::kNormals) {
+    return as_color(point.shading_normal);
+  }
+  if (integrator == Integrator::kAlbedo) {
+    return albedo_at(scene.material(point.material), scene.textures(), point);
+  }
+  ++rays;
+  const Sample4 numbers = sampler.group(sample, group_bsdf(0));
+  return gray(openness(scene, point, -ray.direction, numbers[0], numbers[1]));
+}
+
+}  // namespace
+
+Rgb sample_value(const Scene& scene, Integrator integrator, const Ray& camera_ray,
+                 const PixelSampler& sampler, std::uint64_t sample, const PathOptions& options,
+                 std::uint64_t& rays) {
+  if (integrator == Integrator::kPath || integrator == Integrator::kDirect) {
+    return path_radiance(scene, camera_ray, sampler, sample, options, rays);
+  }
+  return value_at(scene, integrator, camera_ray, sampler, sample, rays);
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,27 @@
+#pragma once
+
+// Rays through what is not there: surfaces that alpha makes holes in, and boundaries of glass
+// inside a glass of higher priority.
+
+#include <cstdint>
+#include <optional>
+
+#include "renderlib/geometry/surface.h"
+#include "renderlib/material/interiors.h"
+#include "renderlib/sampling/sampler.h"
+#include "renderlib/scene/scene.h"
+
+namespace bandsaw {
+
+/// The first surface along the ray that is there for this sample: (t, instance, primitive) still
+/// decides between those that are. Keeps account of boundaries that are passed unseen. uv
+/// directions are set where the material needs them.
+std::optional<SurfacePoint> first_surface(const Scene& scene, const Ray& ray,
+                                          const PixelSampler& sampler, std::uint64_t sample,
+                                          std::uint32_t bounce, Interiors& interiors,
+                                          std::uint64_t& rays);
+
+/// The share of light that passes along the ray: 0 or 1 but for blended surfaces.
+float unoccluded(const Scene& scene, const Ray& ray, std::uint64_t& rays);
+
+}  // namespace bandsaw

@@ -1,0 +1,12 @@
+#include "renderlib/light/background.h"
+
+namespace bandsaw {
+
+Rgb radiance(const Background& background, const Vec3& unit_direction) {
+  if (background.bottom == background.top) {
+    return background.top;  // Exactly: a lerp between equal ends may round.
+  }
+  return lerp(background.bottom, background.top, static_cast<float>((unit_direction.y + 1) / 2));
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,196 @@
+#include "renderlib/material/bsdf.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "renderlib/material/fresnel.h"
+#include "renderlib/material/look_up.h"
+#include "renderlib/material/ggx.h"
+#include "renderlib/material/shading_normal.h"
+#include "renderlib/math/constants.h"
+#include "renderlib/sampling/basis.h"
+#include "renderlib/sampling/warp.h"
+
+namespace bandsaw {
+namespace {
+
+template <class... Cases>
+struct Overloaded : Cases... {
+  using Cases::operator()...;
+};
+template <class... Cases>
+Overloaded(Cases...) -> Overloaded<Cases...>;
+
+/// Whether light can come from wi to the side that the normals are on.
+bool reflects(const SidedNormals& normal, const Vec3& wi) {
+  return dot(wi, normal.geometric) > 0 && dot(wi, normal.shading) > 0;
+}
+
+/// For mirrors and glass: the geometric normal stands in where the interpolated one would have wo,
+/// or its mirror image, on the wrong side. Nothing is lost at the silhouettes of coarse meshes
+/// then.
+SidedNormals for_mirror(const SidedNormals& normal, const Vec3& wo) {
+  const bool usable =
+      dot(wo, normal.shading) > 0 && dot(mirrored(wo, normal.shading), normal.geometric) > 0;
+  return {normal.geometric, usable ? normal.shading : normal.geometric};
+}
+
+/// The same for glass, where the refracted direction has to be beyond the surface as well.
+SidedNormals for_glass(const SidedNormals& normal, const Vec3& wo, double eta) {
+  const SidedNormals sided = for_mirror(normal, wo);
+  const std::optional<double> cos_t = refracted_cos(dot(wo, sided.shading), eta);
+  if (cos_t && dot(refracted(wo, sided.shading, *cos_t, eta), normal.geometric) >= 0) {
+    return {normal.geometric, normal.geometric};
+  }
+  return sided;
+}
+
+std::optional<BsdfSample> sample_diffuse(const DiffuseBsdf& bsdf, double u, double v) {
+  const Vec3 local = sample_cosine_hemisphere(u, v);
+  BsdfSample sample;
+  sample.wi = normalize(orthonormal_basis(bsdf.normal.shading).to_world(local));
+  sample.pdf = cosine_hemisphere_pdf(dot(sample.wi, bsdf.normal.shading));
+  sample.weight = bsdf.reflectance;
+  return reflects(bsdf.normal, sample.wi) ? std::optional(sample) : std::nullopt;
+}
+
+/// The density of the direction of mirror + fuzz * (a uniform point of the unit ball): the ball's
+/// density, integrated with t^2 along the chord that the direction cuts out of the ball around the
+/// mirror direction: (t1^3 - t0^3) / (4 pi fuzz^3).
+double fuzz_pdf(const Vec3& mirror, double fuzz, const Vec3& wi) {
+  const double c = dot(mirror, wi);
+  const double half_chord2 = fuzz * fuzz - length_squared(cross(mirror, wi));
+  if (c <= 0 || half_chord2 <= 0) {
+    return 0;
+  }
+  const double half_chord = std::sqrt(half_chord2);
+  return half_chord * (4 * c * c - 1 + fuzz * fuzz) / (2 * kPi * fuzz * fuzz * fuzz);
+}
+
+std::optional<BsdfSample> sample_fuzzy(const FuzzyMetalBsdf& bsdf, double u, double v, double w) {
+  const Vec3 way = bsdf.mirror + bsdf.fuzz * sample_ball(u, v, w);
+  const double size = length(way);
+  if (size < 1e-100) {
+    return std::nullopt;
+  }
+  BsdfSample sample;
+  sample.wi = way / size;
+  sample.pdf = fuzz_pdf(bsdf.mirror, bsdf.fuzz, sample.wi);
+  sample.weight = bsdf.reflectance;
+  if (sample.pdf <= 0 || !reflects(bsdf.normal, sample.wi)) {
+    return std::nullopt;
+  }
+  return sample;
+}
+
+std::optional<BsdfSample> sample_dielectric(const DielectricBsdf& bsdf, double lobe) {
+  const Vec3& n = bsdf.normal.shading;
+  const double cos_i = std::min(1.0, dot(bsdf.wo, n));
+  BsdfSample sample;
+  sample.delta = true;
+  sample.weight = gray(1);
+  if (lobe < fresnel(cos_i, bsdf.eta)) {
+    sample.wi = normalize(mirrored(bsdf.wo, n));
+    return sample;
+  }
+  const std::optional<double> cos_t = refracted_cos(cos_i, bsdf.eta);
+  if (!cos_t) {
+    return std::nullopt;
+  }
+  sample.wi = normalize(refracted(bsdf.wo, n, *cos_t, bsdf.eta));
+  sample.compression = 1 / (bsdf.eta * bsdf.eta);
+  sample.weight = gray(static_cast<float>(sample.compression));
+  return sample;
+}
+
+Bsdf metal_at(const Metal& metal, const Rgb& reflectance, const SidedNormals& normal,
+              const Vec3& wo) {
+  const SidedNormals sided = for_mirror(normal, wo);
+  const Vec3 mirror = normalize(mirrored(wo, sided.shading));
+  if (metal.fuzz < kLeastFuzz) {
+    return MirrorBsdf{reflectance, mirror};
+  }
+  return FuzzyMetalBsdf{sided, reflectance, mirror, metal.fuzz};
+}
+
+Bsdf glass_at(const Dielectric& glass, const SidedNormals& normal, bool outside, const Vec3& wo,
+              double outside_index) {
+  const double index =
+      outside_index == 1 ? glass.index_of_refraction : glass.index_of_refraction / outside_index;
+  const double eta = outside ? index : 1 / index;
+  const double alpha = glass.roughness * glass.roughness;
+  if (alpha < kLeastAlpha || std::abs(eta - 1) < 1e-6) {
+    return DielectricBsdf{for_glass(normal, wo, eta), wo, eta};
+  }
+  const Vec3 shading = visible_normal(normal.shading, normal.geometric, wo);
+  return RoughDielectricBsdf{{normal.geometric, shading}, wo, eta, alpha};
+}
+
+}  // namespace
+
+Bsdf bsdf_at(const Material& material, absl::Span<const Texture> textures,
+             const SurfacePoint& point, const Vec3& wo, double outside_index) {
+  const bool outside = dot(wo, point.geometric_normal) >= 0;
+  const SidedNormals normal = outside
+                                  ? SidedNormals{point.geometric_normal, point.shading_normal}
+                                  : SidedNormals{-point.geometric_normal, -point.shading_normal};
+  const auto color = [&](TextureId id) { return look_up(textures, id, point); };
+  return std::visit(
+      Overloaded{
+          [&](const Diffuse& m) -> Bsdf {
+            return DiffuseBsdf{normal, color(m.reflectance)};
+          },
+          [&](const Metal& m) { return metal_at(m, color(m.reflectance), normal, wo); },
+          [&](const Dielectric& m) { return glass_at(m, normal, outside, wo, outside_index); },
+          [&](const Principled& m) -> Bsdf {
+            return principled_at(m, textures, point, normal, wo);
+          },
+          [](const Emissive&) -> Bsdf { return BlackBsdf{}; }},
+      material);
+}
+
+std::optional<BsdfSample> sample(const Bsdf& bsdf, double u, double v, double lobe) {
+  using Result = std::optional<BsdfSample>;
+  return std::visit(Overloaded{[](const BlackBsdf&) -> Result { return std::nullopt; },
+                               [&](const DiffuseBsdf& b) { return sample_diffuse(b, u, v); },
+                               [&](const FuzzyMetalBsdf& b) { return sample_fuzzy(b, u, v, lobe); },
+                               [](const MirrorBsdf& b) -> Result {
+                                 return BsdfSample{
+                                     .wi = b.mirror, .weight = b.reflectance, .delta = true};
+                               },
+                               [&](const DielectricBsdf& b) { return sample_dielectric(b, lobe); },
+                               [&](const RoughDielectricBsdf& b) { return sample(b, u, v, lobe); },
+                               [&](const PrincipledBsdf& b) { return sample(b, u, v, lobe); }},
+                    bsdf);
+}
+
+BsdfValue evaluate(const Bsdf& bsdf, const Vec3& wi) {
+  if (const auto* diffuse = std::get_if<DiffuseBsdf>(&bsdf); diffuse != nullptr) {
+    if (!reflects(diffuse->normal, wi)) {
+      return {};
+    }
+    const double pdf = cosine_hemisphere_pdf(dot(wi, diffuse->normal.shading));
+    return {diffuse->reflectance * static_cast<float>(pdf), pdf};
+  }
+  if (const auto* metal = std::get_if<FuzzyMetalBsdf>(&bsdf); metal != nullptr) {
+    if (!reflects(metal->normal, wi)) {
+      return {};
+    }
+    const double pdf = fuzz_pdf(metal->mirror, metal->fuzz, wi);
+    return {metal->reflectance * static_cast<float>(pdf), pdf};
+  }
+  if (const auto* glass = std::get_if<RoughDielectricBsdf>(&bsdf); glass != nullptr) {
+    return evaluate(*glass, wi);
+  }
+  if (const auto* principled = std::get_if<PrincipledBsdf>(&bsdf); principled != nullptr) {
+    return evaluate(*principled, wi);
+  }
+  return {};
+}
+
+bool has_density(const Bsdf& bsdf) {
+  return !std::holds_alternative<BlackBsdf>(bsdf) && !std::holds_alternative<MirrorBsdf>(bsdf) &&
+         !std::holds_alternative<DielectricBsdf>(bsdf);
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,65 @@
+#pragma once
+
+// The GGX distribution of microfacet normals with height-correlated Smith shadowing (Walter et al.
+// 2007, "Microfacet Models for Refraction through Rough Surfaces"; Heitz 2014, "Understanding the
+// Masking-Shadowing Function", JCGT 3(2), section 6.3), in the surface's own frame: z is the
+// normal, directions are unit vectors with z > 0. alpha in [kLeastAlpha, 1].
+
+#include <algorithm>
+#include <cmath>
+
+#include "renderlib/math/constants.h"
+#include "renderlib/math/elementary.h"
+#include "renderlib/math/vec.h"
+
+namespace bandsaw {
+
+/// Smoother surfaces count as this smooth: it spreads light by a hundredth of a degree.
+inline constexpr double kLeastAlpha = 1e-4;
+
+/// The density of normals. In x and y, which stay exact where z is nearly 1: no cancellation
+/// however small alpha is.
+inline double ggx_distribution(const Vec3& h, double alpha) {
+  const double t = (h.x * h.x + h.y * h.y) / (alpha * alpha) + h.z * h.z;
+  return 1 / (kPi * alpha * alpha * t * t);
+}
+
+/// z times the stretch that masking makes of it: G1 = 2 z / (z + ggx_stretched(w)).
+inline double ggx_stretched(const Vec3& w, double alpha) {
+  return std::sqrt(alpha * alpha * (w.x * w.x + w.y * w.y) + w.z * w.z);
+}
+
+/// The share of facets that `o` sees.
+inline double ggx_masking(const Vec3& o, double alpha) {
+  const double z = std::abs(o.z);
+  return z > 0 ? 2 * z / (z + ggx_stretched(o, alpha)) : 0;
+}
+
+/// G2 / G1(o): of the facets that o sees, the share that i sees too, in [0, 1]. For transmission
+/// i.z is negative.
+inline double ggx_shadowing(const Vec3& o, const Vec3& i, double alpha) {
+  const double zo = std::abs(o.z);
+  const double zi = std::abs(i.z);
+  const double so = ggx_stretched(o, alpha);
+  const double below = zo * ggx_stretched(i, alpha) + zi * so;
+  return below > 0 ? zi * (zo + so) / below : 0;
+}
+
+/// The density of facet normals h as o sees them, divided by |dot(o, h)|; finite at grazing angles.
+inline double ggx_visible_over_cos(const Vec3& o, const Vec3& h, double alpha) {
+  return 2 * ggx_distribution(h, alpha) / (std::abs(o.z) + ggx_stretched(o, alpha));
+}
+
+/// A facet normal as o sees them: density ggx_visible_over_cos(o, h) dot(o, h). u, v in [0, 1).
+/// Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", listing 3.
+inline Vec3 sample_ggx_visible(const Vec3& o, double alpha, double u, double v) {
+  const Vec3 stretched = normalize({alpha * o.x, alpha * o.y, o.z});
+  const SinCos phi = sincos_turns(u);
+  const double z = (1 - v) * (1 + stretched.z) - stretched.z;
+  const double r = std::sqrt(std::max(0.0, 1 - z * z));
+  const Vec3 h = Vec3{r * phi.cos, r * phi.sin, z} + stretched;
+  const Vec3 facet{alpha * h.x, alpha * h.y, std::max(h.z, 1e-300)};
+  return normalize(facet);
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,20 @@
+#pragma once
+
+// The normal that a surface is shaded with.
+
+#include "renderlib/geometry/surface.h"
+#include "renderlib/math/rgb.h"
+
+namespace bandsaw {
+
+/// The shading normal bent by a texel of a normal map (0.5 + 0.5 n in the frame along_u, along_v,
+/// shading normal; glTF 2.0, 3.9.3), on the outside. Where the uvs give no frame, any frame around
+/// the normal. Unit.
+Vec3 mapped_normal(const SurfacePoint& point, const Rgb& texel, double scale);
+
+/// `n`, bent just so far towards `geometric` that both wo and its mirror image lie above the
+/// surface: no black rims and no light from behind. All are unit vectors, dot(wo, geometric) >= 0.
+/// Continuous in all of them.
+Vec3 visible_normal(const Vec3& n, const Vec3& geometric, const Vec3& wo);
+
+}  // namespace bandsaw

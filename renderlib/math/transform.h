@@ -1,0 +1,37 @@
+#pragma once
+
+// An affine map of space, in double: p -> M p + t.
+
+#include <array>
+#include <optional>
+
+#include "renderlib/math/vec.h"
+
+namespace bandsaw {
+
+struct Transform {
+  /// Rows of the 3 x 4 matrix (M | t).
+  std::array<std::array<double, 4>, 3> m = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+
+  Vec3 point(const Vec3& p) const;
+  Vec3 direction(const Vec3& d) const;
+  friend bool operator==(const Transform&, const Transform&) = default;
+};
+
+/// a after b.
+Transform operator*(const Transform& a, const Transform& b);
+
+Transform translation(const Vec3& by);
+Transform scaling(const Vec3& by);
+/// Counter-clockwise about axis (not zero), looking against it. Angle in degrees.
+Transform rotation(const Vec3& axis, double degrees);
+
+double determinant(const Transform& t);
+
+/// Nothing when the map is singular to working precision: a non-finite entry, determinant 0, or a condition number above 1e12.
+std::optional<Transform> inverse(const Transform& t);
+
+/// How normals go under a map whose inverse is `inverse`: the transpose of its linear part times n, not normalised.
+Vec3 normal_to_world(const Transform& inverse, const Vec3& n);
+
+}  // namespace bandsaw

@@ -1,0 +1,174 @@
+#include "renderlib/package/check.h"
+
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/package/manifest.h"
+
+namespace bandsaw {
+namespace {
+
+std::string text(const Vec3& v) { return absl::StrCat("[", v.x, ", ", v.y, ", ", v.z, "]"); }
+
+absl::Status check_finite(const Vec3& v, const std::string& field) {
+  return is_finite(v) ? absl::OkStatus()
+                      : manifest_error(field, absl::StrCat("must be finite, is ", text(v)));
+}
+
+absl::Status check_background(const Background& background) {
+  for (const Rgb& c : {background.bottom, background.top}) {
+    if (!is_finite(c) || c.r < 0 || c.g < 0 || c.b < 0) {
+      return manifest_error("background", absl::StrCat("must be finite and >= 0, has [", c.r, ", ",
+                                                       c.g, ", ", c.b, "]"));
+    }
+  }
+  return absl::OkStatus();
+}
+
+absl::Status check_local_shading(const LocalShading& local) {
+  const Rgb& c = local.ambient;
+  if (!is_finite(c) || c.r < 0 || c.g < 0 || c.b < 0) {
+    return manifest_error(
+        "ambient", absl::StrCat("must be finite and >= 0, has [", c.r, ", ", c.g, ", ", c.b, "]"));
+  }
+  if (!(local.occlusion_distance > 0)) {
+    return manifest_error("occlusion_distance",
+                          absl::StrCat("must be > 0, is ", local.occlusion_distance));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status check_material_id(MaterialId id, std::size_t count, const std::string& field) {
+  if (index_of(id) < count) {
+    return absl::OkStatus();
+  }
+  return manifest_error(field,
+                        absl::StrCat("is ", index_of(id), ", there are ", count, " materials"));
+}
+
+absl::Status check_shapes(const Geometry& geometry, std::size_t materials) {
+  for (std::size_t i = 0; i < geometry.spheres.size(); ++i) {
+    const Sphere& s = geometry.spheres[i];
+    RETURN_IF_ERROR(check_finite(s.center, absl::StrCat("spheres.centers[", i, "]")));
+    if (!(std::isfinite(s.radius) && s.radius > 0)) {
+      return manifest_error(absl::StrCat("spheres.radii[", i, "]"),
+                            absl::StrCat("must be finite and > 0, is ", s.radius));
+    }
+    RETURN_IF_ERROR(
+        check_material_id(s.material, materials, absl::StrCat("spheres.material[", i, "]")));
+  }
+  for (std::size_t i = 0; i < geometry.quads.size(); ++i) {
+    const Quad& q = geometry.quads[i];
+    RETURN_IF_ERROR(check_finite(q.corner, absl::StrCat("quads.corners[", i, "]")));
+    RETURN_IF_ERROR(check_finite(q.u, absl::StrCat("quads.u[", i, "]")));
+    RETURN_IF_ERROR(check_finite(q.v, absl::StrCat("quads.v[", i, "]")));
+    RETURN_IF_ERROR(
+        check_material_id(q.material, materials, absl::StrCat("quads.material[", i, "]")));
+  }
+  for (std::size_t i = 0; i < geometry.triangles.size(); ++i) {
+    const Triangle& t = geometry.triangles[i];
+    for (const Vec3& vertex : {t.a, t.b, t.c}) {
+      RETURN_IF_ERROR(check_finite(vertex, absl::StrCat("triangles.vertices[", i, "]")));
+    }
+    RETURN_IF_ERROR(
+        check_material_id(t.material, materials, absl::StrCat("triangles.material[", i, "]")));
+  }
+  return absl::OkStatus();
+}
+
+// Per-vertex arrays: positions, normals, uvs.
+template <std::size_t N>
+absl::Status check_floats(const std::vector<std::array<float, N>>& values,
+                          const std::string& field) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    for (const float value : values[i]) {
+      if (!std::isfinite(value)) {
+        return manifest_error(absl::StrCat(field, "[", i, "]"),
+                              absl::StrCat("must be finite, is ", value));
+      }
+    }
+  }
+  return absl::OkStatus();
+}
+
+absl::Status check_mesh(const Mesh& mesh, const std::string& field) {
+  const std::size_t vertices = mesh.positions.size();
+  RETURN_IF_ERROR(check_floats(mesh.positions, field + ".positions"));
+  RETURN_IF_ERROR(check_floats(mesh.normals, field + ".normals"));
+  RETURN_IF_ERROR(check_floats(mesh.uvs, field + ".uvs"));
+  RETURN_IF_ERROR(check_floats(mesh.uvs2, field + ".uvs2"));
+  RETURN_IF_ERROR(check_floats(mesh.colors, field + ".colors"));
+  for (const std::array<float, 3>& color : mesh.colors) {
+    if (color[0] < 0 || color[1] < 0 || color[2] < 0) {
+      return manifest_error(field + ".colors", "must not be negative");
+    }
+  }
+  if (!mesh.colors.empty() && mesh.colors.size() != vertices) {
+    return manifest_error(field + ".colors", absl::StrCat("has ", mesh.colors.size(),
+                                                          " entries for ", vertices, " vertices"));
+  }
+  if (!mesh.normals.empty() && mesh.normals.size() != vertices) {
+    return manifest_error(field + ".normals", absl::StrCat("has ", mesh.normals.size(),
+                                                           " entries for ", vertices, " vertices"));
+  }
+  if (!mesh.uvs.empty() && mesh.uvs.size() != vertices) {
+    return manifest_error(field + ".uvs", absl::StrCat("has ", mesh.uvs.size(), " entries for ",
+                                                       vertices, " vertices"));
+  }
+  if (!mesh.uvs2.empty() && mesh.uvs2.size() != vertices) {
+    return manifest_error(field + ".uvs2", absl::StrCat("has ", mesh.uvs2.size(), " entries for ",
+                                                        vertices, " vertices"));
+  }
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    for (const std::uint32_t index : mesh.triangles[i]) {
+      if (index >= vertices) {
+        return manifest_error(absl::StrCat(field, ".indices[", i, "]"),
+                              absl::StrCat("is ", index, ", the mesh has ", vertices, " vertices"));
+      }
+    }
+  }
+  return absl::OkStatus();
+}
+
+absl::Status check_instance(const Instance& instance, const SceneDescription& scene,
+                            const std::string& field) {
+  if (index_of(instance.mesh) >= scene.geometry.meshes.size()) {
+    return manifest_error(field + ".mesh",
+                          absl::StrCat("is ", index_of(instance.mesh), ", there are ",
+                                       scene.geometry.meshes.size(), " meshes"));
+  }
+  RETURN_IF_ERROR(
+      check_material_id(instance.material, scene.materials.size(), field + ".material"));
+  if (!inverse(instance.to_world)) {
+    return manifest_error(field + ".transform",
+                          "must be finite and regular: it flattens the mesh or is not a number");
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::Status check_description(const SceneDescription& scene) {
+  if (const absl::Status camera = validate(scene.camera); !camera.ok()) {
+    return manifest_error("camera", std::string(camera.message()));
+  }
+  if (const absl::Status filter = validate(scene.filter); !filter.ok()) {
+    return manifest_error("filter", std::string(filter.message()));
+  }
+  RETURN_IF_ERROR(check_local_shading(scene.local_shading));
+  RETURN_IF_ERROR(check_background(scene.background));
+  RETURN_IF_ERROR(check_materials(scene));
+  const Geometry& geometry = scene.geometry;
+  RETURN_IF_ERROR(check_shapes(geometry, scene.materials.size()));
+  for (std::size_t i = 0; i < geometry.meshes.size(); ++i) {
+    RETURN_IF_ERROR(check_mesh(geometry.meshes[i], absl::StrCat("mesh[", i, "]")));
+  }
+  for (std::size_t i = 0; i < geometry.instances.size(); ++i) {
+    RETURN_IF_ERROR(
+        check_instance(geometry.instances[i], scene, absl::StrCat("instance[", i, "]")));
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace bandsaw

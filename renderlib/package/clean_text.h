@@ -1,0 +1,15 @@
+#pragma once
+
+// Names that come out of foreign files, made fit for a message and a terminal.
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace bandsaw {
+
+/// `text` as valid UTF-8 without control characters (each offending byte becomes '?'), cut between
+/// characters to at most `most_bytes`.
+std::string clean_text(std::string_view text, std::size_t most_bytes);
+
+}  // namespace bandsaw

@@ -1,0 +1,108 @@
+#include "renderlib/package/decode_surface.h"
+
+#include "absl/strings/str_cat.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/package/decode_enum.h"
+#include "renderlib/package/manifest.h"
+#include "renderlib/package/principled.h"
+
+namespace bandsaw {
+namespace {
+
+template <class List>
+absl::Status check_length(const List& list, int length, const std::string& field) {
+  if (list.size() == length) {
+    return absl::OkStatus();
+  }
+  return manifest_error(field, absl::StrCat("must have ", length, " numbers, has ", list.size()));
+}
+
+absl::StatusOr<Vec3> decode_vec3(const google::protobuf::RepeatedField<double>& list,
+                                 const std::string& field) {
+  RETURN_IF_ERROR(check_length(list, 3, field));
+  return Vec3{list[0], list[1], list[2]};
+}
+
+}  // namespace
+
+absl::StatusOr<Rgb> decode_rgb(const google::protobuf::RepeatedField<float>& list,
+                               const std::string& field) {
+  RETURN_IF_ERROR(check_length(list, 3, field));
+  return Rgb{list[0], list[1], list[2]};
+}
+
+absl::StatusOr<Camera> decode_camera(const package::Manifest& manifest) {
+  if (!manifest.has_camera()) {
+    return manifest_error("camera", "is missing");
+  }
+  const package::Camera& from = manifest.camera();
+  View view;
+  ASSIGN_OR_RETURN(view.position, decode_vec3(from.position(), "camera.position"));
+  ASSIGN_OR_RETURN(view.look_at, decode_vec3(from.look_at(), "camera.look_at"));
+  ASSIGN_OR_RETURN(view.up, decode_vec3(from.up(), "camera.up"));
+  if (from.orthographic_height() != 0) {
+    return Camera(OrthographicCamera{view.position, view.look_at, view.up,
+                                     from.orthographic_height(), from.mirrored()});
+  }
+  PerspectiveCamera camera{.position = view.position, .look_at = view.look_at, .up = view.up};
+  camera.vertical_fov = from.vertical_fov();
+  camera.aperture = from.aperture();
+  camera.focus_distance = from.aperture() == 0 ? camera.focus_distance : from.focus_distance();
+  return Camera(camera);
+}
+
+absl::StatusOr<PixelFilter> decode_filter(const package::Manifest& manifest) {
+  PixelFilter filter;
+  if (manifest.has_filter()) {
+    ASSIGN_OR_RETURN(filter.kind,
+                     decode_enum<PixelFilter::Kind>(manifest.filter().kind(), 3, "filter.kind"));
+    filter.radius = manifest.filter().radius();
+  }
+  return filter;
+}
+
+absl::StatusOr<LocalShading> decode_local_shading(const package::Manifest& manifest) {
+  LocalShading local;
+  if (manifest.has_ambient()) {
+    ASSIGN_OR_RETURN(local.ambient, decode_rgb(manifest.ambient().rgb(), "ambient.rgb"));
+  }
+  if (manifest.occlusion_distance() != 0) {
+    local.occlusion_distance = manifest.occlusion_distance();
+  }
+  return local;
+}
+
+absl::StatusOr<Background> decode_background(const package::Manifest& manifest) {
+  if (!manifest.has_background()) {
+    return manifest_error("background", "is missing");
+  }
+  Background background;
+  ASSIGN_OR_RETURN(background.bottom,
+                   decode_rgb(manifest.background().bottom(), "background.bottom"));
+  ASSIGN_OR_RETURN(background.top, decode_rgb(manifest.background().top(), "background.top"));
+  return background;
+}
+
+absl::StatusOr<Material> decode_material(const package::Material& material,
+                                         const std::string& field) {
+  switch (material.kind_case()) {
+    case package::Material::kDiffuse:
+      return Diffuse{TextureId{material.diffuse().reflectance()}};
+    case package::Material::kMetal:
+      return Metal{TextureId{material.metal().reflectance()}, material.metal().fuzz()};
+    case package::Material::kDielectric:
+      return Dielectric{material.dielectric().index_of_refraction(),
+                        material.dielectric().roughness(), material.dielectric().priority()};
+    case package::Material::kEmissive:
+      return Emissive{TextureId{material.emissive().radiance()}, material.emissive().one_sided()};
+    case package::Material::kGltf: {
+      ASSIGN_OR_RETURN(Principled principled, decode_principled(material.gltf(), field + ".gltf"));
+      return Material(principled);
+    }
+    case package::Material::KIND_NOT_SET:
+      break;
+  }
+  return manifest_error(field, "is of no kind that this program knows");
+}
+
+}  // namespace bandsaw

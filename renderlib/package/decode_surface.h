@@ -1,0 +1,25 @@
+#pragma once
+
+// The parts of a manifest that are not geometry, as values. Form only: check_description judges the
+// values.
+
+#include "absl/status/statusor.h"
+#include "proto/package.pb.h"
+#include "renderlib/scene/description.h"
+
+namespace bandsaw {
+
+/// INVALID_ARGUMENT: missing, or a list of the wrong length.
+absl::StatusOr<Camera> decode_camera(const package::Manifest& manifest);
+/// The default where there is none.
+absl::StatusOr<PixelFilter> decode_filter(const package::Manifest& manifest);
+absl::StatusOr<LocalShading> decode_local_shading(const package::Manifest& manifest);
+absl::StatusOr<Background> decode_background(const package::Manifest& manifest);
+absl::StatusOr<Rgb> decode_rgb(const google::protobuf::RepeatedField<float>& list,
+                               const std::string& field);
+
+/// INVALID_ARGUMENT: of no kind.
+absl::StatusOr<Material> decode_material(const package::Material& material,
+                                         const std::string& field);
+
+}  // namespace bandsaw

@@ -1,0 +1,205 @@
+#include "renderlib/package/package.h"
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+#include "proto/package.pb.h"
+#include "proto/wire/limits.h"
+#include "proto/wire/versions.h"
+#include "renderlib/package/arrays.h"
+#include "renderlib/package/clean_text.h"
+#include "renderlib/package/encode_texture.h"
+#include "renderlib/package/limits.h"
+#include "renderlib/package/principled.h"
+
+namespace bandsaw {
+namespace {
+
+class Encoder {
+ public:
+  explicit Encoder(BlobMap& blobs) : blobs_(blobs) {}
+
+  void put(SharedBytes bytes, package::Blob& ref) {
+    ref.set_size(bytes.size());
+    ref.set_sha256(blobs_.put(std::move(bytes)).raw());
+  }
+
+  // One array out of a list of shapes: `Value` is what an entry of the blob holds.
+  template <class Value, class Shape, class Of>
+  void put_each(const std::vector<Shape>& shapes, package::Blob& ref, Of of) {
+    std::vector<Value> values(shapes.size());
+    std::transform(shapes.begin(), shapes.end(), values.begin(),
+                   [&](const Shape& shape) { return std::invoke(of, shape); });
+    put(to_bytes(values), ref);
+  }
+
+  void put_shapes(const Geometry& geometry, package::Manifest& manifest) {
+    if (!geometry.spheres.empty()) {
+      auto& to = *manifest.mutable_spheres();
+      put_each<Vec3>(geometry.spheres, *to.mutable_centers(), &Sphere::center);
+      put_each<double>(geometry.spheres, *to.mutable_radii(), &Sphere::radius);
+      put_each<MaterialId>(geometry.spheres, *to.mutable_material(), &Sphere::material);
+    }
+    if (!geometry.quads.empty()) {
+      auto& to = *manifest.mutable_quads();
+      put_each<Vec3>(geometry.quads, *to.mutable_corners(), &Quad::corner);
+      put_each<Vec3>(geometry.quads, *to.mutable_u(), &Quad::u);
+      put_each<Vec3>(geometry.quads, *to.mutable_v(), &Quad::v);
+      put_each<MaterialId>(geometry.quads, *to.mutable_material(), &Quad::material);
+    }
+    if (!geometry.triangles.empty()) {
+      auto& to = *manifest.mutable_triangles();
+      put_each<std::array<Vec3, 3>>(geometry.triangles, *to.mutable_vertices(),
+                                    [](const Triangle& t) {
+                                      return std::array<Vec3, 3>{t.a, t.b, t.c};
+                                    });
+      put_each<MaterialId>(geometry.triangles, *to.mutable_material(), &Triangle::material);
+    }
+  }
+
+  void put_mesh(const Mesh& mesh, package::Mesh& to) {
+    put(to_bytes(mesh.positions), *to.mutable_positions());
+    put(to_bytes(mesh.triangles), *to.mutable_indices());
+    if (!mesh.normals.empty()) {
+      put(to_bytes(mesh.normals), *to.mutable_normals());
+    }
+    if (!mesh.uvs.empty()) {
+      put(to_bytes(mesh.uvs), *to.mutable_uvs());
+    }
+    if (!mesh.uvs2.empty()) {
+      put(to_bytes(mesh.uvs2), *to.mutable_uvs2());
+    }
+    if (!mesh.colors.empty()) {
+      put(to_bytes(mesh.colors), *to.mutable_colors());
+    }
+  }
+
+ private:
+  BlobMap& blobs_;
+};
+
+template <class Field>
+void add_vector(const Vec3& v, Field& field) {
+  field.Add(v.x);
+  field.Add(v.y);
+  field.Add(v.z);
+}
+
+void encode(const Camera& camera, package::Camera& to) {
+  const View view = view_of(camera);
+  add_vector(view.position, *to.mutable_position());
+  add_vector(view.look_at, *to.mutable_look_at());
+  add_vector(view.up, *to.mutable_up());
+  if (const auto* perspective = std::get_if<PerspectiveCamera>(&camera)) {
+    to.set_vertical_fov(perspective->vertical_fov);
+    to.set_aperture(perspective->aperture);
+    to.set_focus_distance(perspective->focus_distance);
+  } else {
+    const auto& orthographic = std::get<OrthographicCamera>(camera);
+    to.set_orthographic_height(orthographic.height);
+    to.set_mirrored(orthographic.mirrored);
+  }
+}
+
+void encode(const PixelFilter& filter, package::Manifest& manifest) {
+  if (filter != PixelFilter{}) {
+    // The enums are declared in the same order, after the protocol's zero.
+    const int kind = static_cast<int>(filter.kind) + 1;
+    manifest.mutable_filter()->set_kind(static_cast<package::PixelFilter::Kind>(kind));
+    manifest.mutable_filter()->set_radius(filter.radius);
+  }
+}
+
+void encode(const Background& background, package::Background& to) {
+  for (const auto& [colour, field] : {std::pair(background.bottom, to.mutable_bottom()),
+                                      std::pair(background.top, to.mutable_top())}) {
+    field->Add(colour.r);
+    field->Add(colour.g);
+    field->Add(colour.b);
+  }
+}
+
+void encode(const LocalShading& local, package::Manifest& manifest) {
+  if (!is_black(local.ambient)) {
+    for (const float channel : {local.ambient.r, local.ambient.g, local.ambient.b}) {
+      manifest.mutable_ambient()->add_rgb(channel);
+    }
+  }
+  if (local.occlusion_distance < kInfinity) {
+    manifest.set_occlusion_distance(local.occlusion_distance);
+  }
+}
+
+struct EncodeMaterial {
+  package::Material& to;
+
+  void operator()(const Diffuse& m) const {
+    to.mutable_diffuse()->set_reflectance(static_cast<std::uint32_t>(m.reflectance));
+  }
+  void operator()(const Metal& m) const {
+    to.mutable_metal()->set_reflectance(static_cast<std::uint32_t>(m.reflectance));
+    to.mutable_metal()->set_fuzz(m.fuzz);
+  }
+  void operator()(const Dielectric& m) const {
+    to.mutable_dielectric()->set_index_of_refraction(m.index_of_refraction);
+    to.mutable_dielectric()->set_roughness(m.roughness);
+    to.mutable_dielectric()->set_priority(m.priority);
+  }
+  void operator()(const Emissive& m) const {
+    to.mutable_emissive()->set_radiance(static_cast<std::uint32_t>(m.radiance));
+    to.mutable_emissive()->set_one_sided(m.one_sided);
+  }
+  void operator()(const Principled& m) const { encode_principled(m, *to.mutable_gltf()); }
+};
+
+void encode(const PackageInfo& info, package::Manifest& manifest) {
+  manifest.set_format(wire::kPackageFormat);
+  manifest.set_name(clean_text(info.name, wire::kJobNameBytes));
+  manifest.set_width(info.width);
+  manifest.set_height(info.height);
+  manifest.set_max_depth(info.max_depth);
+  manifest.set_integrator(static_cast<std::uint32_t>(info.integrator));
+  manifest.set_exposure(info.display.exposure);
+  manifest.set_tone(static_cast<std::uint32_t>(info.display.tone));
+  const std::size_t shown = std::min(info.warnings.size(), kMaxWarnings - 1);
+  for (std::size_t i = 0; i < shown; ++i) {
+    manifest.add_warning(clean_text(info.warnings[i], kMaxWarningBytes));
+  }
+  if (info.warnings.size() > shown) {
+    manifest.add_warning("and " + std::to_string(info.warnings.size() - shown) + " more warnings");
+  }
+}
+
+}  // namespace
+
+std::string encode_package(const SceneDescription& scene, const PackageInfo& info, BlobMap& blobs) {
+  package::Manifest manifest;
+  Encoder encoder(blobs);
+  encode(info, manifest);
+  encode(scene.camera, *manifest.mutable_camera());
+  encode(scene.filter, manifest);
+  encode(scene.local_shading, manifest);
+  encode(scene.background, *manifest.mutable_background());
+  for (const Texture& texture : scene.textures) {
+    encode_texture(texture, blobs, *manifest.add_texture());
+  }
+  for (const Material& material : scene.materials) {
+    std::visit(EncodeMaterial{*manifest.add_material()}, material);
+  }
+  encoder.put_shapes(scene.geometry, manifest);
+  for (const Mesh& mesh : scene.geometry.meshes) {
+    encoder.put_mesh(mesh, *manifest.add_mesh());
+  }
+  for (const Instance& instance : scene.geometry.instances) {
+    auto& to = *manifest.add_instance();
+    to.set_mesh(static_cast<std::uint32_t>(instance.mesh));
+    to.set_material(static_cast<std::uint32_t>(instance.material));
+    for (const auto& row : instance.to_world.m) {
+      to.mutable_transform()->Add(row.begin(), row.end());
+    }
+  }
+  return manifest.SerializeAsString();
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,15 @@
+#pragma once
+
+// Bounds of a manifest that are nobody else's; the others are in proto/wire/limits.h and
+// renderlib/render/settings.h.
+
+#include <cstddef>
+#include <cstdint>
+
+namespace bandsaw {
+
+inline constexpr std::size_t kMaxWarnings = 100;
+inline constexpr std::size_t kMaxWarningBytes = 1'000;
+inline constexpr std::uint32_t kMaxTextureSide = 65536;  ///< texels
+
+}  // namespace bandsaw

@@ -1,0 +1,185 @@
+#include "renderlib/package/manifest.h"
+
+#include <cmath>
+#include <map>
+
+#include "absl/strings/str_cat.h"
+#include "proto/wire/limits.h"
+#include "proto/wire/versions.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/package/limits.h"
+#include "renderlib/render/settings.h"
+
+namespace bandsaw {
+namespace {
+
+absl::Status check_range(const std::string& field, std::uint64_t value, std::uint64_t most) {
+  if (value >= 1 && value <= most) {
+    return absl::OkStatus();
+  }
+  return manifest_error(field, absl::StrCat("must lie in [1, ", most, "], is ", value));
+}
+
+absl::Status check_head(const package::Manifest& manifest) {
+  if (manifest.format() != wire::kPackageFormat) {
+    return manifest_error("format", absl::StrCat("is ", manifest.format(), ", this program reads ",
+                                                 wire::kPackageFormat));
+  }
+  if (manifest.name().size() > wire::kJobNameBytes) {
+    return manifest_error("name", absl::StrCat("has ", manifest.name().size(), " bytes, at most ",
+                                               wire::kJobNameBytes, " are allowed"));
+  }
+  RETURN_IF_ERROR(check_range("width", manifest.width(), kMaxSide));
+  RETURN_IF_ERROR(check_range("height", manifest.height(), kMaxSide));
+  const std::uint64_t pixels = std::uint64_t{manifest.width()} * manifest.height();
+  RETURN_IF_ERROR(check_range("width x height", pixels, kMaxPixels));
+  RETURN_IF_ERROR(check_range("max_depth", manifest.max_depth(), kMaxDepth));
+  if (manifest.integrator() > static_cast<std::uint32_t>(kLastIntegrator)) {
+    return manifest_error("integrator", absl::StrCat("must lie in [0, ", kLastIntegrator, "], is ",
+                                                     manifest.integrator()));
+  }
+  if (!(std::abs(manifest.exposure()) <= kMostExposure)) {
+    return manifest_error("exposure", absl::StrCat("must lie in [-", kMostExposure, ", ",
+                                                   kMostExposure, "], is ", manifest.exposure()));
+  }
+  if (manifest.tone() > static_cast<std::uint32_t>(kLastTone)) {
+    return manifest_error("tone",
+                          absl::StrCat("must lie in [0, ", kLastTone, "], is ", manifest.tone()));
+  }
+  if (manifest.warning_size() > static_cast<int>(kMaxWarnings)) {
+    return manifest_error("warning", absl::StrCat("has ", manifest.warning_size(),
+                                                  " entries, at most ", kMaxWarnings));
+  }
+  for (const std::string& warning : manifest.warning()) {
+    if (warning.size() > kMaxWarningBytes) {
+      return manifest_error(
+          "warning", absl::StrCat("has ", warning.size(), " bytes, at most ", kMaxWarningBytes));
+    }
+  }
+  return absl::OkStatus();
+}
+
+// Every blob field of a manifest with its path, in one order.
+template <class Visit>
+absl::Status for_each_blob(const package::Manifest& m, Visit visit) {
+  for (int i = 0; i < m.texture_size(); ++i) {
+    if (m.texture(i).has_image()) {
+      RETURN_IF_ERROR(
+          visit(m.texture(i).image().texels(), absl::StrCat("texture[", i, "].image.texels")));
+    }
+  }
+  if (m.has_spheres()) {
+    RETURN_IF_ERROR(visit(m.spheres().centers(), "spheres.centers"));
+    RETURN_IF_ERROR(visit(m.spheres().radii(), "spheres.radii"));
+    RETURN_IF_ERROR(visit(m.spheres().material(), "spheres.material"));
+  }
+  if (m.has_quads()) {
+    RETURN_IF_ERROR(visit(m.quads().corners(), "quads.corners"));
+    RETURN_IF_ERROR(visit(m.quads().u(), "quads.u"));
+    RETURN_IF_ERROR(visit(m.quads().v(), "quads.v"));
+    RETURN_IF_ERROR(visit(m.quads().material(), "quads.material"));
+  }
+  if (m.has_triangles()) {
+    RETURN_IF_ERROR(visit(m.triangles().vertices(), "triangles.vertices"));
+    RETURN_IF_ERROR(visit(m.triangles().material(), "triangles.material"));
+  }
+  for (int i = 0; i < m.mesh_size(); ++i) {
+    const package::Mesh& mesh = m.mesh(i);
+    const std::string path = absl::StrCat("mesh[", i, "].");
+    RETURN_IF_ERROR(visit(mesh.positions(), path + "positions"));
+    RETURN_IF_ERROR(visit(mesh.indices(), path + "indices"));
+    if (mesh.has_normals()) {
+      RETURN_IF_ERROR(visit(mesh.normals(), path + "normals"));
+    }
+    if (mesh.has_uvs()) {
+      RETURN_IF_ERROR(visit(mesh.uvs(), path + "uvs"));
+    }
+    if (mesh.has_uvs2()) {
+      RETURN_IF_ERROR(visit(mesh.uvs2(), path + "uvs2"));
+    }
+    if (mesh.has_colors()) {
+      RETURN_IF_ERROR(visit(mesh.colors(), path + "colors"));
+    }
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::Status manifest_error(const std::string& field, const std::string& what) {
+  return absl::InvalidArgumentError(absl::StrCat("scene package: ", field, ": ", what));
+}
+
+absl::StatusOr<package::Manifest> parse_manifest(const std::string& bytes) {
+  if (bytes.size() > wire::kManifestBytes) {
+    return absl::InvalidArgumentError(absl::StrCat("scene package: the manifest has ", bytes.size(),
+                                                   " bytes, at most ", wire::kManifestBytes,
+                                                   " are allowed"));
+  }
+  package::Manifest manifest;
+  if (!manifest.ParseFromString(bytes)) {
+    return absl::InvalidArgumentError("scene package: the manifest is damaged: it cannot be read");
+  }
+  RETURN_IF_ERROR(check_head(manifest));
+  return manifest;
+}
+
+absl::StatusOr<BlobRef> blob_ref(const package::Blob& blob, const std::string& field) {
+  const auto digest = wire::digest_from_raw(blob.sha256());
+  if (!digest.ok()) {
+    return manifest_error(field + ".sha256", std::string(digest.status().message()));
+  }
+  if (blob.size() > wire::kBlobBytes) {
+    return manifest_error(field + ".size", absl::StrCat("is ", blob.size(), " bytes, at most ",
+                                                        wire::kBlobBytes, " are allowed"));
+  }
+  return BlobRef{*digest, blob.size()};
+}
+
+absl::StatusOr<PackageInfo> package_info(const std::string& manifest_bytes) {
+  ASSIGN_OR_RETURN(const package::Manifest manifest, parse_manifest(manifest_bytes));
+  PackageInfo info;
+  info.name = manifest.name();
+  info.width = manifest.width();
+  info.height = manifest.height();
+  info.max_depth = manifest.max_depth();
+  info.integrator = static_cast<Integrator>(manifest.integrator());
+  info.display = {manifest.exposure(), static_cast<Tone>(manifest.tone())};
+  info.warnings.assign(manifest.warning().begin(), manifest.warning().end());
+  return info;
+}
+
+absl::StatusOr<std::vector<BlobRef>> package_blobs(const std::string& manifest_bytes) {
+  ASSIGN_OR_RETURN(const package::Manifest manifest, parse_manifest(manifest_bytes));
+  std::vector<BlobRef> blobs;
+  std::map<wire::Digest, std::uint64_t> sizes;
+  std::uint64_t total = 0;
+  RETURN_IF_ERROR(for_each_blob(manifest, [&](const package::Blob& blob, const std::string& field) {
+    auto ref = blob_ref(blob, field);
+    if (!ref.ok()) {
+      return ref.status();
+    }
+    // Counted each time it is named: a reader copies it each time.
+    total += ref->size;
+    if (total > wire::kPackageBytes) {
+      return manifest_error(field, absl::StrCat("passes the bound of ", wire::kPackageBytes,
+                                                " bytes for all blobs of a package"));
+    }
+    const auto [known, is_new] = sizes.try_emplace(ref->digest, ref->size);
+    if (known->second != ref->size) {
+      return manifest_error(field + ".size", absl::StrCat("is ", ref->size, ", elsewhere ",
+                                                          known->second, " for the same digest"));
+    }
+    if (is_new) {
+      blobs.push_back(*ref);
+    }
+    if (blobs.size() > wire::kBlobsPerPackage) {
+      return manifest_error(
+          field, absl::StrCat("is one blob more than the ", wire::kBlobsPerPackage, " allowed"));
+    }
+    return absl::OkStatus();
+  }));
+  return blobs;
+}
+
+}  // namespace bandsaw

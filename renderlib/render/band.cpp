@@ -1,0 +1,68 @@
+#include "renderlib/render/band.h"
+
+#include <bit>
+#include <tuple>
+
+#include "absl/strings/str_cat.h"
+#include "renderlib/base/check.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw {
+
+bool is_node(const SampleRange& range) {
+  // The upper bound keeps blocks() from wrapping; no job comes near it.
+  if (range.first >= range.last || range.last > (std::uint64_t{1} << 62)) {
+    return false;
+  }
+  return range.first % kBlockSamples == 0 && std::has_single_bit(range.blocks()) &&
+         range.first_block() % range.blocks() == 0;
+}
+
+std::vector<SampleRange> maximal_nodes(std::uint64_t samples) {
+  std::vector<SampleRange> nodes;
+  std::uint64_t first = 0;
+  while (first < samples) {
+    // What was taken so far is a multiple of every smaller power of two, so the largest one that
+    // fits is aligned.
+    const std::uint64_t blocks = std::bit_floor(SampleRange{first, samples}.blocks());
+    const std::uint64_t last = std::min(first + blocks * kBlockSamples, samples);
+    nodes.push_back({first, last});
+    first = last;
+  }
+  return nodes;
+}
+
+Halves split(const SampleRange& node) {
+  BANDSAW_CHECK(is_node(node) && node.blocks() >= 2, "only nodes above the leaves have halves");
+  // The cut-off lies in the last block, so the right half is never empty.
+  const std::uint64_t middle = node.first + node.blocks() / 2 * kBlockSamples;
+  return {{node.first, middle}, {middle, node.last}};
+}
+
+absl::Status validate(const Band& band, const RenderSettings& settings) {
+  RETURN_IF_ERROR(validate(settings));
+  if (band.rows.first >= band.rows.last || band.rows.last > settings.height) {
+    return absl::InvalidArgumentError(absl::StrCat("rows: must be a range within [0, ",
+                                                   settings.height, "), are [", band.rows.first,
+                                                   ", ", band.rows.last, ")"));
+  }
+  if (!is_node(band.samples) || band.samples.last > kMaxSamples) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "samples: must be a power of two of blocks of ", kBlockSamples, ", aligned, below ",
+        kMaxSamples, ", are [", band.samples.first, ", ", band.samples.last, ")"));
+  }
+  return absl::OkStatus();
+}
+
+void Counters::add(const Counters& other) {
+  rays += other.rays;
+  const auto place = [](const Counters& c) { return std::tie(c.bad_y, c.bad_x, c.bad_sample); };
+  if (other.bad_samples > 0 && (bad_samples == 0 || place(other) < place(*this))) {
+    bad_x = other.bad_x;
+    bad_y = other.bad_y;
+    bad_sample = other.bad_sample;
+  }
+  bad_samples += other.bad_samples;
+}
+
+}  // namespace bandsaw

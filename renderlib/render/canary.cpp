@@ -1,0 +1,140 @@
+#include "renderlib/render/canary.h"
+
+#include <atomic>
+#include <cstring>
+
+#include "renderlib/base/check.h"
+#include "renderlib/base/pool.h"
+#include "renderlib/math/elementary.h"
+#include "renderlib/render/hash64.h"
+#include "renderlib/render/pixel_version.h"
+#include "renderlib/render/render_band.h"
+#include "renderlib/scene/scene.h"
+
+namespace bandsaw {
+namespace {
+
+void add_elementary_functions(Hash64& hash) {
+  constexpr int kPoints = 200;
+  for (int i = 0; i < kPoints; ++i) {
+    const double x = (i + 0.5) / kPoints;
+    const SinCos turns = sincos_turns(x * 3 - 1);
+    const SinCos degrees = sincos_degrees(x * 1000 - 500);
+    for (const double value :
+         {turns.sin, turns.cos, degrees.sin, degrees.cos, tan_degrees(x * 178 - 89),
+          bandsaw::atan2(x - 0.5, x * x - 0.2), bandsaw::asin(2 * x - 1), bandsaw::acos(2 * x - 1),
+          bandsaw::exp(x * 80 - 40), bandsaw::expm1(x * 4 - 2), bandsaw::log(x * 1000),
+          bandsaw::log1p(x * 4 - 0.9), bandsaw::pow(x * 3, 2.4)}) {
+      hash.add(value);
+    }
+  }
+}
+
+Texture checked_image() {
+  ImageTexture image;
+  image.width = 4;
+  image.height = 3;
+  std::vector<std::byte> texels;
+  for (int i = 0; i < 4 * 3 * 3; ++i) {
+    texels.push_back(static_cast<std::byte>(40 + 37 * i % 211));
+  }
+  image.texels = std::move(texels);
+  return image;
+}
+
+Mesh pyramid() {
+  return {.positions = {{-1, 0, -1}, {1, 0, -1}, {1, 0, 1}, {-1, 0, 1}, {0, 1.5f, 0}},
+          .triangles = {{0, 4, 1}, {1, 4, 2}, {2, 4, 3}, {3, 4, 0}},
+          .normals = {{-1, .5f, -1}, {1, .5f, -1}, {1, .5f, 1}, {-1, .5f, 1}, {0, 1, 0}},
+          .uvs = {{0, 0}, {2, 0}, {2, 2}, {0, 2}, {1, 1}}};
+}
+
+/// Every kind of shape, material, light and texture, in a room small enough that most paths meet
+/// several.
+SceneDescription every_feature() {
+  SceneDescription scene;
+  scene.camera = PerspectiveCamera{.position = {0.3, 1.7, 5.1}, .look_at = {0, 1, 0}};
+  scene.background = {{0.1f, 0.08f, 0.05f}, {0.4f, 0.5f, 0.7f}};
+  scene.textures = {
+      ConstantTexture{{0.7f, 0.6f, 0.5f}},
+      checked_image(),
+      ConstantTexture{{9, 8, 7}},
+      ConstantTexture{{0.9f, 0.9f, 0.8f}},
+      NoiseTexture{.kind = NoiseTexture::Kind::kMarble, .scale = 3, .high = {0.8f, 0.7f, 0.9f}},
+      NoiseTexture{.space = Space::kObject, .scale = 5},
+      RampTexture{.texture = TextureId{5}, .stops = {{0.3, {}}, {0.7, {0.9f, 0.5f, 0}}}},
+      CheckerTexture{
+          .even = TextureId{6}, .odd = TextureId{4}, .mapping = CheckerTexture::Mapping::kPosition},
+      MixTexture{TextureId{7}, TextureId{1}, TextureId{5}}};
+  const auto texture = [](std::uint32_t i) { return TextureId{i}; };
+  scene.materials = {Diffuse{texture(0)},         Diffuse{texture(1)}, Metal{texture(3), 0},
+                     Metal{texture(3), 0.3},      Dielectric{1.5},     Emissive{texture(2), true},
+                     Emissive{texture(1), false}, Diffuse{texture(8)}};
+  Geometry& g = scene.geometry;
+  g.spheres = {{{-1.2, 0.6, 1.0}, 0.6, MaterialId{4}},
+               {{1.4, 0.5, 1.2}, 0.5, MaterialId{2}},
+               {{0.2, 0.35, 1.9}, 0.35, MaterialId{3}},
+               {{-0.4, 2.4, 0.4}, 0.15, MaterialId{5}}};
+  g.quads = {{{-3, 0, -2}, {0, 0, 5}, {6, 0, 0}, MaterialId{1}},
+             {{-3, 0, -2}, {6, 0, 0}, {0, 4, 0}, MaterialId{7}},
+             {{0.5, 3, 0}, {1, 0, 0}, {0.1, 0, 0.8}, MaterialId{5}}};
+  g.triangles = {{{2, 0.1, -1}, {2.8, 0.1, -0.6}, {2.2, 1, -1}, MaterialId{6}}};
+  g.meshes = {pyramid()};
+  g.instances = {
+      {MeshId{0}, MaterialId{7}, translation({0.2, 0, -0.6}) * rotation({0, 1, 0.1}, 25)},
+      {MeshId{0}, MaterialId{6}, translation({-1.9, 0, -0.8}) * scaling({-0.3, 0.5, 0.3})}};
+  return scene;
+}
+
+/// The same seen through a lens and a wide filter.
+SceneDescription through_a_lens() {
+  SceneDescription scene = every_feature();
+  auto& camera = std::get<PerspectiveCamera>(scene.camera);
+  camera.aperture = 0.2;
+  camera.focus_distance = 4.5;
+  scene.filter = {PixelFilter::Kind::kGaussian, 1.5};
+  return scene;
+}
+
+/// The same without perspective.
+SceneDescription flat_view() {
+  SceneDescription scene = every_feature();
+  scene.camera =
+      OrthographicCamera{.position = {1.3, 2.2, 5.1}, .look_at = {0, 1, 0}, .height = 4.1};
+  scene.filter = {PixelFilter::Kind::kTent, 1};
+  scene.local_shading = {{0.1f, 0.2f, 0.3f}, 1.5};
+  return scene;
+}
+
+void add_render(Hash64& hash, const SceneDescription& description, const RenderSettings& settings) {
+  Pool pool(1);
+  const auto scene = Scene::build(description, pool);
+  BANDSAW_CHECK(scene.ok(), "the built-in scene is valid");
+  const std::atomic<bool> stop = false;
+  const auto pixels = render_band(**scene, settings, {{0, 2 * kBlockSamples}, {0, settings.height}},
+                                  pool, stop, {});
+  BANDSAW_CHECK(pixels.ok(), "the built-in band is valid");
+  for (const double sum : pixels->sums) {
+    hash.add(sum);
+  }
+  hash.add(pixels->counters.rays);
+}
+
+}  // namespace
+
+std::uint64_t canary() {
+  Hash64 hash;
+  hash.add(std::uint64_t{kPixelVersion});
+  add_elementary_functions(hash);
+  add_render(hash, every_feature(), {.width = 12, .height = 9, .max_depth = 8, .seed = 20260});
+  add_render(hash, through_a_lens(), {.width = 4, .height = 3, .max_depth = 3, .seed = 1});
+  add_render(hash, flat_view(), {.width = 4, .height = 3, .max_depth = 3, .seed = 2});
+  for (const Integrator integrator : {Integrator::kDirect, Integrator::kNormals, Integrator::kDepth,
+                                      Integrator::kAlbedo, Integrator::kAmbientOcclusion}) {
+    add_render(hash, flat_view(),
+               {.width = 4, .height = 3, .max_depth = 3, .seed = 3, .integrator = integrator});
+  }
+  return hash.value();
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,65 @@
+#pragma once
+
+// The accumulators of an image: takes bands in any order, holds every row's sums as nodes of the
+// summation tree (render/band.h), merges siblings as they meet, and gives the image.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "renderlib/image/image.h"
+#include "renderlib/render/band.h"
+
+namespace bandsaw {
+
+/// The estimated error of an image, from the two halves of its samples.
+struct ErrorEstimate {
+  double relative_rmse = 0;  ///< sqrt(mean((A - B)^2 / 4)) / mean, over all pixels and channels, A
+                             ///< and B the halves' means
+  double mean = 0;
+};
+
+class Film {
+ public:
+  /// Memory grows as rows arrive: 24 bytes a pixel for each node that is not merged yet; at the end
+  /// two halves. `spill_folder`: where to put the (unlinked) files the sums are mapped from; empty:
+  /// plain memory. RESOURCE_EXHAUSTED: no memory or disk.
+  static absl::StatusOr<Film> create(std::uint32_t width, std::uint32_t height,
+                                     std::string spill_folder);
+  Film(Film&&) noexcept;
+  Film& operator=(Film&&) noexcept;
+  ~Film();
+
+  /// Adds rows that are not covered yet. FAILED_PRECONDITION: a row's samples, or some of them, are
+  /// there already; then nothing was changed. RESOURCE_EXHAUSTED: no memory or disk.
+  absl::Status add(const BandPixels& pixels);
+
+  /// Whether samples [0, samples) of every row are there.
+  bool complete(std::uint64_t samples) const;
+
+  /// The image so far: mean of the samples [0, n) of each row, n the largest count whose maximal
+  /// nodes are all there, as the fixed tree adds them, rounded to float once. Rows with none are
+  /// `missing`, black.
+  struct Snapshot {
+    Image image;
+    std::uint64_t least_samples = 0;  ///< over the rows
+    std::uint32_t missing_rows = 0;
+  };
+  Snapshot snapshot() const;
+
+  /// Nothing until two halves of equal size are there for every row.
+  std::optional<ErrorEstimate> error() const;
+
+  std::uint32_t width() const;
+  std::uint32_t height() const;
+
+ private:
+  struct Rows;
+  explicit Film(std::unique_ptr<Rows> rows);
+  std::unique_ptr<Rows> rows_;
+};
+
+}  // namespace bandsaw

@@ -1,0 +1,52 @@
+#pragma once
+
+// A 64-bit hash of bytes: finds damage and differences, resists no attacker. Each word is folded in
+// by multiply and rotate and the end is finished with the mixer of Steele, Lea, Flood 2014, "Fast
+// Splittable Pseudorandom Number Generators", section 3. Its values are part of the band file
+// format and of the canary: they never change.
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+#include "absl/types/span.h"
+
+namespace bandsaw {
+
+class Hash64 {
+ public:
+  void add(std::uint64_t word) {
+    state_ = std::rotl(state_ ^ (word * 0x9e3779b97f4a7c15u), 29) * 0xbf58476d1ce4e5b9u + 1;
+  }
+  void add(double value) { add(std::bit_cast<std::uint64_t>(value)); }
+  /// The bytes as little-endian words, the last filled up with zeros, then their number.
+  void add(absl::Span<const std::byte> bytes) {
+    std::size_t done = 0;
+    for (; done + 8 <= bytes.size(); done += 8) {
+      std::uint64_t word;
+      std::memcpy(&word, bytes.data() + done, 8);
+      add(word);
+    }
+    std::uint64_t rest = 0;
+    if (done < bytes.size()) {
+      std::memcpy(&rest, bytes.data() + done, bytes.size() - done);
+      add(rest);
+    }
+    add(static_cast<std::uint64_t>(bytes.size()));
+  }
+
+  std::uint64_t value() const {
+    std::uint64_t z = state_;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return z ^ (z >> 31);
+  }
+
+ private:
+  std::uint64_t state_ = 0x2545f4914f6cdd1du;
+};
+
+static_assert(std::endian::native == std::endian::little, "words are read as they lie in memory");
+
+}  // namespace bandsaw

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <cstdint>
+
+namespace bandsaw {
+
+/// Raised by hand with every change that alters pixels. A worker renders for a farm only when it is
+/// equal.
+inline constexpr std::uint32_t kPixelVersion = 1;
+
+}  // namespace bandsaw

@@ -1,0 +1,118 @@
+#include "renderlib/sampling/sampler.h"
+
+#include <cstddef>
+
+namespace bandsaw {
+namespace {
+
+/// The finaliser of SplitMix64 (Steele, Lea, Flood 2014; constants of Stafford's variant 13).
+std::uint64_t mix(std::uint64_t x) {
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+  return x ^ (x >> 31);
+}
+
+constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15u;
+
+constexpr std::uint32_t reverse_bits(std::uint32_t x) {
+  x = __builtin_bswap32(x);
+  x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
+  x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
+  return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
+}
+
+/// Owen scrambling of a number whose bits are reversed: every step lets a bit depend on lower bits
+/// alone (Laine and Karras 2011; constants of Vegdahl 2021).
+std::uint32_t scramble_reversed(std::uint32_t x, std::uint32_t seed) {
+  x ^= x * 0x3d20adeau;
+  x += seed;
+  x *= (seed >> 16) | 1u;
+  x ^= x * 0x05526c56u;
+  x ^= x * 0x53a22864u;
+  return x;
+}
+
+/// A Sobol' dimension by its recurrence (Joe and Kuo 2008): v[i] from the `degree` before it.
+struct Polynomial {
+  int degree;
+  std::uint32_t coefficients;
+  std::array<std::uint32_t, 3> initial;
+};
+constexpr std::array<Polynomial, 3> kPolynomials = {{
+    {1, 0, {1, 0, 0}},
+    {2, 1, {1, 3, 0}},
+    {3, 1, {1, 3, 1}},
+}};
+
+using ByteTable = std::array<std::array<std::uint32_t, 256>, 4>;
+
+/// For each byte of an index, the xor of its direction numbers, bits reversed.
+constexpr ByteTable make_table(const Polynomial& p) {
+  std::array<std::uint32_t, 32> direction{};
+  for (int i = 0; i < 32; ++i) {
+    const auto n = static_cast<std::size_t>(i);
+    if (i < p.degree) {
+      direction[n] = p.initial[n] << (31 - i);
+      continue;
+    }
+    const auto s = static_cast<std::size_t>(p.degree);
+    direction[n] = direction[n - s] ^ (direction[n - s] >> p.degree);
+    for (std::size_t k = 1; k < s; ++k) {
+      if ((p.coefficients >> (s - 1 - k)) & 1u) {
+        direction[n] ^= direction[n - k];
+      }
+    }
+  }
+  ByteTable table{};
+  for (std::size_t byte = 0; byte < 4; ++byte) {
+    for (std::size_t value = 0; value < 256; ++value) {
+      for (std::size_t bit = 0; bit < 8; ++bit) {
+        if ((value >> bit) & 1u) {
+          table[byte][value] ^= reverse_bits(direction[8 * byte + bit]);
+        }
+      }
+    }
+  }
+  return table;
+}
+
+constexpr std::array<ByteTable, 3> kTables = {
+    {make_table(kPolynomials[0]), make_table(kPolynomials[1]), make_table(kPolynomials[2])}};
+
+/// Sobol' dimension `dimension` + 1 of an index, bits reversed.
+std::uint32_t sobol_reversed(std::uint32_t index, std::size_t dimension) {
+  const ByteTable& t = kTables[dimension];
+  return t[0][index & 255u] ^ t[1][(index >> 8) & 255u] ^ t[2][(index >> 16) & 255u] ^
+         t[3][index >> 24];
+}
+
+double to_unit(std::uint32_t reversed) { return reverse_bits(reversed) * 0x1p-32; }
+
+}  // namespace
+
+PixelSampler::PixelSampler(std::uint64_t seed, std::uint32_t x, std::uint32_t y)
+    : pixel_hash_(mix(mix(seed + kGolden) + ((std::uint64_t{y} << 32) | x))) {}
+
+Sample4 PixelSampler::group(std::uint64_t sample, std::uint32_t group) const {
+  // A sequence has 2^32 points; sample numbers beyond go on with another one.
+  const std::uint64_t sequence = ((sample >> 32) << 32) | group;
+  const std::uint64_t base = mix(pixel_hash_ + sequence * kGolden);
+  const std::uint64_t seeds01 = mix(base + kGolden);
+  const std::uint64_t seeds23 = mix(base + 2 * kGolden);
+  const std::uint32_t index = reverse_bits(scramble_reversed(
+      reverse_bits(static_cast<std::uint32_t>(sample)), static_cast<std::uint32_t>(base >> 32)));
+  return {
+      to_unit(scramble_reversed(index, static_cast<std::uint32_t>(seeds01))),
+      to_unit(
+          scramble_reversed(sobol_reversed(index, 0), static_cast<std::uint32_t>(seeds01 >> 32))),
+      to_unit(scramble_reversed(sobol_reversed(index, 1), static_cast<std::uint32_t>(seeds23))),
+      to_unit(
+          scramble_reversed(sobol_reversed(index, 2), static_cast<std::uint32_t>(seeds23 >> 32))),
+  };
+}
+
+Sample4 sample4(const SampleKey& key, std::uint32_t group) {
+  return PixelSampler(key.seed, key.x, key.y).group(key.sample, group);
+}
+
+}  // namespace bandsaw

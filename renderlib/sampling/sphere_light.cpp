@@ -1,0 +1,65 @@
+#include "renderlib/sampling/sphere_light.h"
+
+#include <cmath>
+
+#include "renderlib/sampling/basis.h"
+#include "renderlib/sampling/warp.h"
+
+namespace bandsaw {
+namespace {
+
+/// Below this distance from the surface, relative to the radius, the cone is so wide that area
+/// sampling is no worse; both the sample and its density decide by it.
+constexpr double kNear = 1 + 0x1p-20;
+
+bool sees_cone(double distance2, double radius) {
+  return distance2 > radius * radius * (kNear * kNear);
+}
+
+double area_pdf(double radius) { return kSpherePdf / (radius * radius); }
+
+}  // namespace
+
+std::optional<SphereSample> sample_sphere_light(const Vec3& center, double radius,
+                                                const Vec3& point, double u, double v) {
+  const Vec3 axis = center - point;
+  const double distance2 = length_squared(axis);
+  if (!sees_cone(distance2, radius)) {
+    SphereSample sample;
+    sample.normal = sample_sphere(u, v);
+    sample.position = center + radius * sample.normal;
+    sample.pdf = solid_angle_pdf(area_pdf(radius), point, sample.position, sample.normal);
+    return std::isfinite(sample.pdf) && sample.pdf > 0 ? std::optional(sample) : std::nullopt;
+  }
+  const double distance = std::sqrt(distance2);
+  const double sin2_max = radius * radius / distance2;
+  const double spread = one_minus_cos_from_sin2(sin2_max);
+  const Vec3 local = sample_cone(u, v, spread);
+  // The angle alpha at the center, between the axis to the point and the normal where the direction
+  // (angle theta to the axis) meets the sphere first: cos alpha = (d sin^2 theta + cos theta
+  // sqrt(r^2 - d^2 sin^2 theta)) / r.
+  const double sin2 = local.x * local.x + local.y * local.y;
+  const double chord2 = std::max(0.0, 1 - sin2 / sin2_max);
+  const double sin_max = radius / distance;
+  const double cos_alpha = std::min(1.0, sin2 / sin_max + local.z * std::sqrt(chord2));
+  // sin alpha = (d cos theta - sqrt(r^2 - d^2 sin^2 theta)) sin theta / r.
+  const double along = local.z / sin_max - std::sqrt(chord2);
+  const Basis frame = orthonormal_basis(axis / distance);
+  SphereSample sample;
+  sample.normal = normalize(frame.to_world({along * local.x, along * local.y, -cos_alpha}));
+  sample.position = center + radius * sample.normal;
+  sample.pdf = cone_pdf(spread);
+  return sample;
+}
+
+double sphere_light_pdf(const Vec3& center, double radius, const Vec3& point, const Vec3& position,
+                        const Vec3& normal) {
+  const double distance2 = length_squared(center - point);
+  if (sees_cone(distance2, radius)) {
+    return cone_pdf(one_minus_cos_from_sin2(radius * radius / distance2));
+  }
+  const double pdf = solid_angle_pdf(area_pdf(radius), point, position, normal);
+  return std::isfinite(pdf) ? pdf : 0;
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,26 @@
+#include "renderlib/scene/integrator.h"
+
+#include <array>
+
+namespace bandsaw {
+namespace {
+
+constexpr std::array<absl::string_view, kLastIntegrator + 1> kNames = {
+    "path", "direct", "normals", "depth", "albedo", "ambient_occlusion"};
+
+}  // namespace
+
+absl::string_view integrator_name(Integrator integrator) {
+  return kNames[static_cast<std::size_t>(integrator)];
+}
+
+std::optional<Integrator> integrator_named(absl::string_view name) {
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    if (kNames[i] == name) {
+      return static_cast<Integrator>(i);
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,19 @@
+#pragma once
+
+// The set of features that a scene really uses: what it does not need costs it nothing.
+
+namespace bandsaw {
+
+struct Needs {
+  bool lights = false;      ///< surfaces that emit: next-event estimation
+  bool background = false;  ///< a background that is not black
+  bool specular = false;    ///< smooth metal or dielectric
+  bool image_textures = false;
+  bool instances = false;
+  bool alpha = false;          ///< surfaces that are not there everywhere
+  bool nested_glass = false;   ///< dielectrics with a priority
+  bool uv_directions = false;  ///< normal maps
+  friend bool operator==(const Needs&, const Needs&) = default;
+};
+
+}  // namespace bandsaw

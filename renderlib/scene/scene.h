@@ -1,0 +1,50 @@
+#pragma once
+
+// The immutable scene that is rendered. Shared by the threads that render it; the only object of
+// renderlib that is.
+
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "renderlib/accel/accel.h"
+#include "renderlib/base/pool.h"
+#include "renderlib/light/lights.h"
+#include "renderlib/scene/description.h"
+#include "renderlib/scene/needs.h"
+
+namespace bandsaw {
+
+class Scene {
+ public:
+  /// Checks the description (indices, ranges, finiteness), drops what cannot be hit or cannot shine
+  /// (degenerate triangles, triangles with non-finite vertices) and counts it, and builds the trees
+  /// and lights. INVALID_ARGUMENT: "spheres[3].radius: must be > 0, is -1".
+  static absl::StatusOr<std::shared_ptr<const Scene>> build(SceneDescription description,
+                                                            Pool& pool);
+
+  const Geometry& geometry() const { return description_.geometry; }
+  const Accel& accel() const { return *accel_; }
+  const Lights& lights() const { return lights_; }
+  const Background& background() const { return description_.background; }
+  const Camera& camera() const { return description_.camera; }
+  const PixelFilter& filter() const { return description_.filter; }
+  const LocalShading& local_shading() const { return description_.local_shading; }
+  const Material& material(MaterialId id) const { return description_.materials[index_of(id)]; }
+  const Texture& texture(TextureId id) const { return description_.textures[index_of(id)]; }
+  const std::vector<Texture>& textures() const { return description_.textures; }
+  const Needs& needs() const { return needs_; }
+  /// Primitives that were left out because no ray can hit them.
+  std::size_t dropped_primitives() const { return dropped_; }
+
+ private:
+  explicit Scene(SceneDescription description) : description_(std::move(description)) {}
+  SceneDescription description_;
+  std::unique_ptr<Accel> accel_;
+  Lights lights_;
+  Needs needs_;
+  std::size_t dropped_ = 0;
+};
+
+}  // namespace bandsaw

@@ -1,0 +1,20 @@
+#pragma once
+
+// Gradient noise in space: Perlin 1985, "An Image Synthesizer", with Hermite weights and unit
+// gradients as in Shirley et al., "Ray Tracing: The Next Week", chapter 5. Gradients are chosen by
+// a hash of the lattice point instead of a permutation: the noise does not repeat.
+
+#include <cstdint>
+
+#include "renderlib/math/vec.h"
+
+namespace bandsaw {
+
+/// In [-0.87, 0.87], zero at lattice points, once differentiable. Zero where |p| leaves no fraction
+/// (2^51 and beyond, or not finite).
+double noise(const Vec3& p);
+
+/// |sum of noise(2^i p) / 2^i, i < octaves|, in [0, 1.74].
+double turbulence(const Vec3& p, std::uint32_t octaves);
+
+}  // namespace bandsaw

@@ -1,0 +1,96 @@
+#include "renderlib/texture/procedural.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "renderlib/math/constants.h"
+#include "renderlib/math/elementary.h"
+#include "renderlib/texture/blend.h"
+#include "renderlib/texture/noise.h"
+
+namespace bandsaw {
+namespace {
+
+/// 0 or 1, in turn from cell to cell. `slack` is how much nearer the next cell begins.
+double parity(double x, double slack) {
+  const double cell = std::floor(x + slack);
+  const double bit = cell - 2 * std::floor(cell / 2);
+  return std::isfinite(bit) ? bit : 0;
+}
+
+/// What is left of rounding in a coordinate, in cells, and more than that.
+double slack_of(double largest) { return 0x1p-20 + 0x1p-40 * largest; }
+
+/// t of NoiseTexture, before it is brought into [0, 1].
+double strength_at(const NoiseTexture& texture, const Vec3& p) {
+  switch (texture.kind) {
+    case NoiseTexture::Kind::kNoise:
+      return 0.5 * (1 + noise(texture.scale * p));
+    case NoiseTexture::Kind::kTurbulence:
+      return turbulence(texture.scale * p, texture.octaves);
+    case NoiseTexture::Kind::kMarble:
+      break;
+  }
+  const double veins = texture.strength * turbulence(texture.turbulence_scale * p, texture.octaves);
+  const double phase = texture.scale * dot(texture.axis, p) + veins;
+  return std::isfinite(phase) ? 0.5 * (1 + sincos_turns(phase * (0.5 * kInvPi)).sin) : 0.5;
+}
+
+}  // namespace
+
+bool is_even(const CheckerTexture& checker, const TextureCoordinates& at) {
+  if (checker.mapping == CheckerTexture::Mapping::kUv) {
+    const Vec2& uv = at.of(checker.uv_set);
+    const double u = uv.x / checker.size.x;
+    const double v = uv.y / checker.size.y;
+    const double slack = slack_of(std::max(std::abs(u), std::abs(v)));
+    return parity(u, slack) == parity(v, slack);
+  }
+  const Vec3& p = at.of(checker.space);
+  const Vec3 cells{p.x / checker.size.x, p.y / checker.size.y, p.z / checker.size.z};
+  const double slack = slack_of(max_abs(cells));
+  const double sum = parity(cells.x, slack) + parity(cells.y, slack) + parity(cells.z, slack);
+  return sum == 0 || sum == 2;
+}
+
+Rgb evaluate(const NoiseTexture& texture, const TextureCoordinates& at) {
+  const double t = std::clamp(strength_at(texture, at.of(texture.space)), 0.0, 1.0);
+  return blend(texture.low, texture.high, static_cast<float>(t));
+}
+
+double coordinate(const RampTexture& ramp, const TextureCoordinates& at) {
+  const Vec2& uv = at.of(ramp.uv_set);
+  const Vec3& p = at.of(ramp.space);
+  switch (ramp.over) {
+    case RampTexture::Over::kU:
+      return uv.x;
+    case RampTexture::Over::kV:
+      return uv.y;
+    case RampTexture::Over::kX:
+      return p.x;
+    case RampTexture::Over::kY:
+      return p.y;
+    case RampTexture::Over::kZ:
+      return p.z;
+    case RampTexture::Over::kTexture:
+      break;
+  }
+  return 0;
+}
+
+Rgb evaluate(const RampTexture& ramp, double value) {
+  const auto next =
+      std::find_if(ramp.stops.begin(), ramp.stops.end(),
+                   [&](const RampTexture::Stop& stop) { return !(stop.at <= value); });
+  if (next == ramp.stops.begin()) {
+    return next->color;
+  }
+  const RampTexture::Stop& before = *(next - 1);
+  if (next == ramp.stops.end() || ramp.steps) {
+    return before.color;
+  }
+  const double t = (value - before.at) / (next->at - before.at);
+  return blend(before.color, next->color, static_cast<float>(t));
+}
+
+}  // namespace bandsaw

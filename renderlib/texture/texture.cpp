@@ -1,0 +1,86 @@
+#include "renderlib/texture/texture.h"
+
+#include <algorithm>
+
+#include "renderlib/texture/blend.h"
+#include "renderlib/texture/image_texture.h"
+#include "renderlib/texture/procedural.h"
+
+namespace bandsaw {
+namespace {
+
+struct Evaluate {
+  absl::Span<const Texture> textures;
+  const TextureCoordinates& at;
+
+  Rgb of(TextureId id) const { return std::visit(*this, textures[index_of(id)]); }
+
+  Rgb operator()(const ConstantTexture& t) const { return t.value; }
+  Rgb operator()(const ImageTexture& t) const { return evaluate(t, at); }
+  Rgb operator()(const CheckerTexture& t) const { return of(is_even(t, at) ? t.even : t.odd); }
+  Rgb operator()(const NoiseTexture& t) const { return evaluate(t, at); }
+  Rgb operator()(const RampTexture& t) const {
+    const bool inner = t.over == RampTexture::Over::kTexture;
+    return evaluate(t, inner ? luminance(of(t.texture)) : coordinate(t, at));
+  }
+  Rgb operator()(const MixTexture& t) const {
+    const float amount = std::clamp(luminance(of(t.amount)), 0.0f, 1.0f);
+    return blend(of(t.a), of(t.b), amount);
+  }
+  Rgb operator()(const ProductTexture& t) const { return of(t.a) * of(t.b); }
+};
+
+struct Most {
+  absl::Span<const Texture> textures;
+
+  float of(TextureId id) const { return std::visit(*this, textures[index_of(id)]); }
+
+  float operator()(const ConstantTexture& t) const { return max_component(t.value); }
+  float operator()(const ImageTexture& t) const { return max_value(t); }
+  float operator()(const CheckerTexture& t) const { return std::max(of(t.even), of(t.odd)); }
+  float operator()(const NoiseTexture& t) const {
+    return std::max(max_component(t.low), max_component(t.high));
+  }
+  float operator()(const RampTexture& t) const {
+    float most = 0;
+    for (const RampTexture::Stop& stop : t.stops) {
+      most = std::max(most, max_component(stop.color));
+    }
+    return most;
+  }
+  float operator()(const MixTexture& t) const { return std::max(of(t.a), of(t.b)); }
+  float operator()(const ProductTexture& t) const { return of(t.a) * of(t.b); }
+};
+
+struct Mean {
+  absl::Span<const Texture> textures;
+
+  Rgb of(TextureId id) const { return std::visit(*this, textures[index_of(id)]); }
+  static Rgb half(const Rgb& a, const Rgb& b) { return (a + b) * 0.5f; }
+
+  Rgb operator()(const ConstantTexture& t) const { return t.value; }
+  Rgb operator()(const ImageTexture& t) const { return mean(t); }
+  Rgb operator()(const CheckerTexture& t) const { return half(of(t.even), of(t.odd)); }
+  Rgb operator()(const NoiseTexture& t) const { return half(t.low, t.high); }
+  Rgb operator()(const RampTexture& t) const {
+    Rgb sum;
+    for (const RampTexture::Stop& stop : t.stops) {
+      sum += stop.color;
+    }
+    return sum * (1 / static_cast<float>(t.stops.size()));
+  }
+  Rgb operator()(const MixTexture& t) const { return half(of(t.a), of(t.b)); }
+  Rgb operator()(const ProductTexture& t) const { return of(t.a) * of(t.b); }
+};
+
+}  // namespace
+
+Rgb evaluate(absl::Span<const Texture> textures, TextureId id, const TextureCoordinates& at) {
+  return Evaluate{textures, at}.of(id);
+}
+
+float max_value(absl::Span<const Texture> textures, TextureId id) { return Most{textures}.of(id); }
+
+Rgb mean(absl::Span<const Texture> textures, TextureId id) { return Mean{textures}.of(id); }
+
+}  // namespace bandsaw

@@ -1,0 +1,29 @@
+#pragma once
+
+// Embree behind the two questions that Accel answers. Without it (BANDSAW_EMBREE) there is none.
+
+#include <memory>
+
+#include "renderlib/geometry/ray.h"
+#include "renderlib/geometry/shapes.h"
+
+namespace bandsaw::bench {
+
+class EmbreeKernel {
+ public:
+  /// Null: built without Embree. `config`: of the device, "isa=avx2,threads=2".
+  static std::unique_ptr<EmbreeKernel> create(const Mesh& mesh, bool robust, const char* config);
+  ~EmbreeKernel();
+
+  bool closest(const Ray& ray) const;
+  bool occluded(const Ray& ray) const;
+  double build_seconds() const;
+  long long bytes() const;
+
+ private:
+  struct State;
+  explicit EmbreeKernel(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace bandsaw::bench

@@ -1,0 +1,166 @@
+// kernel_bench [MESH...]: rays a second of Accel and of Embree on the same rays (README.md). A mesh
+// is a name (tests/bench/kernel_meshes.h) or a file.
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "tests/bench/embree_kernel.h"
+#include "tests/bench/kernel_meshes.h"
+#include "tests/bench/kernel_rays.h"
+
+namespace bandsaw::bench {
+namespace {
+
+constexpr std::size_t kChunk = std::size_t{1} << 16;
+constexpr int kPasses = 5;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+struct Kernel {
+  std::string name;
+  std::function<std::size_t(const Ray*, const Ray*)> trace;  ///< how many of the rays hit
+  double seconds = 0;  ///< sum over chunks of the least time of any pass
+  std::size_t hits = 0;
+};
+
+/// The kernels take turns chunk by chunk, so that all see the same machine; of each chunk the best
+/// of several passes counts. Each begins a chunk in another place of the row in every pass.
+void race(const std::vector<Ray>& rays, std::vector<Kernel>& kernels) {
+  for (std::size_t first = 0; first < rays.size(); first += kChunk) {
+    const Ray* begin = rays.data() + first;
+    const Ray* end = begin + std::min(kChunk, rays.size() - first);
+    std::vector<double> least(kernels.size(), 1e9);
+    for (std::size_t pass = 0; pass < kPasses; ++pass) {
+      for (std::size_t k = 0; k < kernels.size(); ++k) {
+        const std::size_t kernel = (k + pass) % kernels.size();
+        const auto start = std::chrono::steady_clock::now();
+        const std::size_t hits = kernels[kernel].trace(begin, end);
+        least[kernel] = std::min(least[kernel], seconds_since(start));
+        kernels[kernel].hits += pass == 0 ? hits : 0;
+      }
+    }
+    for (std::size_t k = 0; k < kernels.size(); ++k) {
+      kernels[k].seconds += least[k];
+    }
+  }
+}
+
+template <class Traced>
+Kernel closest_kernel(const std::string& name, const Traced& traced) {
+  return {name, [&traced](const Ray* ray, const Ray* end) {
+            std::size_t hits = 0;
+            for (; ray != end; ++ray) {
+              hits += traced.closest(*ray) ? 1 : 0;
+            }
+            return hits;
+          }};
+}
+
+template <class Traced>
+Kernel any_kernel(const std::string& name, const Traced& traced) {
+  return {name, [&traced](const Ray* ray, const Ray* end) {
+            std::size_t hits = 0;
+            for (; ray != end; ++ray) {
+              hits += traced.occluded(*ray) ? 1 : 0;
+            }
+            return hits;
+          }};
+}
+
+/// One line: millions of rays a second, and how many times those of each Embree ours are.
+void report(const char* set, const std::vector<Ray>& rays, std::vector<Kernel> kernels) {
+  race(rays, kernels);
+  std::printf("%-8s", set);
+  for (const Kernel& kernel : kernels) {
+    std::printf("  %s %.2f", kernel.name.c_str(),
+                static_cast<double>(rays.size()) / kernel.seconds * 1e-6);
+  }
+  for (std::size_t k = 1; k < kernels.size(); ++k) {
+    std::printf("  x %s %.2f", kernels[k].name.c_str(), kernels[k].seconds / kernels[0].seconds);
+  }
+  for (const Kernel& kernel : kernels) {
+    std::printf("  %zu", kernel.hits);
+  }
+  std::printf(" hits of %zu\n", rays.size());
+}
+
+/// The least of several builds.
+double build_seconds(const Geometry& geometry, Pool& pool) {
+  double least = 1e9;
+  for (int pass = 0; pass < 3; ++pass) {
+    const auto start = std::chrono::steady_clock::now();
+    const Accel accel = Accel::build(geometry, pool);
+    least = std::min(least, seconds_since(start));
+  }
+  return least;
+}
+
+int measure(const std::string& name) {
+  Geometry geometry;
+  geometry.meshes.push_back(bench_mesh(name));
+  geometry.instances.push_back({MeshId{0}, MaterialId{0}, {}});
+  const Mesh& mesh = geometry.meshes.front();
+  if (mesh.triangles.empty()) {
+    std::fprintf(stderr, "%s: no such mesh, and no file with triangles\n", name.c_str());
+    return 2;
+  }
+  Pool pool(2);
+  const double seconds = build_seconds(geometry, pool);
+  const Accel accel = Accel::build(geometry, pool);
+  const auto triangles = static_cast<double>(mesh.triangles.size());
+  std::printf("%s: %zu triangles\n", name.c_str(), mesh.triangles.size());
+  std::printf("build     bandsaw %.0f ms, %.1f bytes a triangle", seconds * 1e3,
+              static_cast<double>(accel.bytes()) / triangles);
+  const char* config = "threads=2,set_affinity=0";
+  auto robust = EmbreeKernel::create(mesh, true, config);
+  auto fast = EmbreeKernel::create(mesh, false, config);
+  if (fast) {
+    double least = fast->build_seconds();
+    for (int pass = 0; pass < 2; ++pass) {
+      least = std::min(least, EmbreeKernel::create(mesh, false, config)->build_seconds());
+    }
+    std::printf("; embree %.0f ms, %.1f bytes; time x %.2f", least * 1e3,
+                static_cast<double>(fast->bytes()) / triangles, seconds / least);
+  }
+  std::printf("\n");
+  const RaySets sets = make_rays(mesh, accel, name == "room");
+  const auto kernels = [&](auto make) {
+    std::vector<Kernel> result = {make("bandsaw", accel)};
+    if (fast) {
+      result.push_back(make("robust", *robust));
+      result.push_back(make("fast", *fast));
+    }
+    return result;
+  };
+  const auto closest = [](const char* kernel, const auto& traced) {
+    return closest_kernel(kernel, traced);
+  };
+  const auto any = [](const char* kernel, const auto& traced) {
+    return any_kernel(kernel, traced);
+  };
+  report("primary", sets.primary, kernels(closest));
+  report("bounce", sets.bounce, kernels(closest));
+  report("shadow", sets.shadow, kernels(any));
+  return 0;
+}
+
+}  // namespace
+}  // namespace bandsaw::bench
+
+int main(int argc, char** argv) {
+  std::vector<std::string> meshes(argv + 1, argv + argc);
+  if (meshes.empty()) {
+    meshes = {"icosphere", "needles", "soup", "room"};
+  }
+  int result = 0;
+  for (const std::string& mesh : meshes) {
+    result = std::max(result, bandsaw::bench::measure(mesh));
+  }
+  return result;
+}

@@ -1,0 +1,27 @@
+#pragma once
+
+// What a worker's log says of bands: "rendered job=7 rows=0:12 samples=0:16", "stored job=7 …".
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace bandsaw::test {
+
+struct LoggedBand {
+  std::uint64_t job = 0;
+  std::uint32_t first_row = 0;
+  std::uint32_t last_row = 0;
+  std::uint64_t first_sample = 0;
+  std::uint64_t last_sample = 0;
+
+  bool overlaps(const LoggedBand& other) const {
+    return job == other.job && first_row < other.last_row && other.first_row < last_row &&
+           first_sample < other.last_sample && other.first_sample < last_sample;
+  }
+};
+
+/// `verb`: "rendered" (all pixels computed) or "stored" (the coordinator has them on disk).
+std::vector<LoggedBand> logged_bands(const std::string& log, const std::string& verb);
+
+}  // namespace bandsaw::test

@@ -1,0 +1,60 @@
+#include "tests/farm/farm_processes.h"
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <fstream>
+#include <sstream>
+
+#include "proto/link/join.h"
+#include "renderlib/base/check.h"
+
+namespace bandsaw::test {
+
+FarmProcesses::FarmProcesses() { start_coordinator(); }
+
+void FarmProcesses::start_coordinator() {
+  coordinator_ = std::make_unique<Process>(
+      Process::start({BANDSAW_BIN, "serve", "--data", folder_ / "data", "--listen", listen_}));
+  BANDSAW_CHECK(coordinator_->wait_for("join with:"), coordinator_->err().c_str());
+  const auto join = link::join_string_from(join_file());
+  BANDSAW_CHECK(join.ok(), join.status().ToString().c_str());
+  listen_ = join->addresses.front();
+}
+
+void FarmProcesses::restart_coordinator() {
+  earlier_log_ += coordinator_->err();
+  start_coordinator();
+}
+
+Process& FarmProcesses::add_worker(const std::string& name, int threads) {
+  Process process =
+      Process::start({BANDSAW_WORKER_BIN, "--join", join_file(), "--name", name, "--threads",
+                      std::to_string(threads), "--cache", folder_ / ("cache-" + name)});
+  EXPECT_TRUE(process.wait_for("joined")) << process.err();
+  return workers_.insert_or_assign(name, std::move(process)).first->second;
+}
+
+std::vector<std::string> FarmProcesses::worker_names() const {
+  std::vector<std::string> names;
+  for (const auto& [name, process] : workers_) {
+    names.push_back(name);
+  }
+  return names;
+}
+
+std::vector<std::string> FarmProcesses::command(std::vector<std::string> arguments) const {
+  arguments.insert(arguments.begin(), BANDSAW_BIN);
+  arguments.insert(arguments.end(), {"--farm", farm_file()});
+  return arguments;
+}
+
+std::string file_bytes(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  EXPECT_TRUE(file.good()) << path << " cannot be read";
+  std::ostringstream bytes;
+  bytes << file.rdbuf();
+  return bytes.str();
+}
+
+}  // namespace bandsaw::test

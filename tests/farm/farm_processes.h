@@ -1,0 +1,51 @@
+#pragma once
+
+// A real farm on loopback for one test: a coordinator on a port of its own, workers, and the
+// command.
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tests/support/process.h"
+#include "tests/support/temp_dir.h"
+
+namespace bandsaw::test {
+
+class FarmProcesses {
+ public:
+  /// Starts the coordinator.
+  FarmProcesses();
+
+  /// Starts a worker and waits until it has joined.
+  Process& add_worker(const std::string& name, int threads);
+  Process& worker(const std::string& name) { return workers_.at(name); }
+  /// Everything the worker has logged.
+  std::string worker_log(const std::string& name) { return worker(name).err(); }
+  std::vector<std::string> worker_names() const;
+
+  Process& coordinator() { return *coordinator_; }
+  /// Everything that it has logged, in all its lives.
+  std::string coordinator_log() const { return earlier_log_ + coordinator_->err(); }
+  /// Starts the coordinator again, on the same data and port.
+  void restart_coordinator();
+
+  /// `bandsaw ARGUMENTS --farm …`
+  std::vector<std::string> command(std::vector<std::string> arguments) const;
+  std::string path(const std::string& name) const { return folder_ / name; }
+  std::string join_file() const { return folder_ / "data/join"; }
+  std::string farm_file() const { return folder_ / "data/farm"; }
+
+ private:
+  void start_coordinator();
+  TempDir folder_;
+  std::string listen_ = "127.0.0.1:0";
+  std::unique_ptr<Process> coordinator_;
+  std::string earlier_log_;
+  std::map<std::string, Process> workers_;
+};
+
+/// The bytes of a file; the test fails when it cannot be read.
+std::string file_bytes(const std::string& path);
+
+}  // namespace bandsaw::test

@@ -1,0 +1,105 @@
+// The pixels depend on the scene and the settings alone: `render`, a farm of any size, and parts
+// put together by `stitch` give PFM files equal to the byte.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "tests/farm/farm_processes.h"
+
+namespace bandsaw::test {
+namespace {
+
+constexpr char kModel[] = "/usr/share/assimp/models/glTF2/BoxTextured-glTF-Binary/BoxTextured.glb";
+
+std::vector<std::string> scenes() {
+  std::vector<std::string> out = {kModel};
+  for (const auto& entry : std::filesystem::directory_iterator(BANDSAW_GALLERY)) {
+    if (entry.path().extension() == ".textproto") {
+      out.push_back(entry.path());
+    }
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+// 72 samples: four nodes of the summation tree, the last of them half a block.
+const std::vector<std::string> kSettings = {"--width", "64", "--samples", "72", "--quiet"};
+
+std::vector<std::string> with_settings(std::vector<std::string> arguments) {
+  arguments.insert(arguments.end(), kSettings.begin(), kSettings.end());
+  return arguments;
+}
+
+void expect_success(const Finished& finished) { ASSERT_EQ(finished.code, 0) << finished.err; }
+
+class SameBytes : public testing::Test {
+ protected:
+  // The image that every other way must equal.
+  std::string rendered(const std::string& scene) {
+    const std::string& file = rendered_[scene];
+    if (file.empty()) {
+      rendered_[scene] = farm_.path("r" + std::to_string(rendered_.size()) + ".pfm");
+      expect_success(run(with_settings({BANDSAW_BIN, "render", scene, "-o", file})));
+    }
+    return file_bytes(file);
+  }
+
+  void expect_farm_gives_the_same() {
+    for (const std::string& scene : scenes()) {
+      const std::string file = farm_.path("farm.pfm");
+      expect_success(run(farm_.command(with_settings({"submit", scene, "-o", file}))));
+      EXPECT_TRUE(file_bytes(file) == rendered(scene)) << scene;
+    }
+  }
+
+  FarmProcesses farm_;
+  std::map<std::string, std::string> rendered_;
+};
+
+TEST_F(SameBytes, OnFarmsOfOneTwoAndFiveWorkers) {
+  ASSERT_GE(scenes().size(), 5u);
+  farm_.add_worker("one", 1);
+  expect_farm_gives_the_same();
+  farm_.add_worker("two", 2);
+  expect_farm_gives_the_same();
+  farm_.add_worker("three", 1);
+  farm_.add_worker("four", 2);
+  farm_.add_worker("five", 1);
+  expect_farm_gives_the_same();
+}
+
+TEST_F(SameBytes, WhenPartsAreStitched) {
+  for (const std::string& scene : scenes()) {
+    const std::string whole = rendered(scene);
+    // PFM's second line: width and height.
+    const std::size_t height_at = whole.find(' ', 3) + 1;
+    const int height = std::stoi(whole.substr(height_at));
+    const std::vector<int> cuts = {0, height / 5, height / 2 + 1, height};
+    std::vector<std::string> stitch = {BANDSAW_BIN, "stitch"};
+    for (int part = 0; part < 3; ++part) {
+      const std::string file = farm_.path("part" + std::to_string(part) + ".band");
+      const std::string rows = std::to_string(cuts[part]) + ":" + std::to_string(cuts[part + 1]);
+      expect_success(
+          run(with_settings({BANDSAW_BIN, "render", scene, "--rows", rows, "-o", file})));
+      stitch.insert(stitch.begin() + 2, file);  // last part first: the order does not matter
+    }
+    stitch.insert(stitch.end(), {"-o", farm_.path("stitched.pfm")});
+    expect_success(run(stitch));
+    EXPECT_TRUE(file_bytes(farm_.path("stitched.pfm")) == whole) << scene;
+  }
+}
+
+TEST_F(SameBytes, WithAnyNumberOfThreads) {
+  const std::string scene = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
+  for (const char* threads : {"1", "2", "3", "8"}) {
+    const std::string file = farm_.path("threads.pfm");
+    expect_success(
+        run(with_settings({BANDSAW_BIN, "render", scene, "--threads", threads, "-o", file})));
+    EXPECT_TRUE(file_bytes(file) == rendered(scene)) << threads << " threads";
+  }
+}
+
+}  // namespace
+}  // namespace bandsaw::test

@@ -1,0 +1,157 @@
+// Holds the house's arrows: which folder may include which (the README of each part draws them).
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// A folder may include itself and everything that the folders named here may include.
+const std::map<std::string, std::set<std::string>> kMayInclude = {
+    {"proto/wire", {}},
+    {"proto/link", {"proto/wire", "renderlib/base"}},
+    {"renderlib/base", {}},
+    {"renderlib/math", {"renderlib/base"}},
+    {"renderlib/sampling", {"renderlib/math"}},
+    {"renderlib/geometry", {"renderlib/math"}},
+    {"renderlib/accel", {"renderlib/geometry"}},
+    {"renderlib/image", {"renderlib/math"}},
+    {"renderlib/texture", {"renderlib/image"}},
+    {"renderlib/material", {"renderlib/texture", "renderlib/sampling", "renderlib/geometry"}},
+    {"renderlib/camera", {"renderlib/geometry", "renderlib/sampling"}},
+    {"renderlib/light", {"renderlib/material", "renderlib/geometry", "renderlib/sampling"}},
+    {"renderlib/scene", {"renderlib/accel", "renderlib/light", "renderlib/camera"}},
+    {"renderlib/integrate", {"renderlib/scene"}},
+    {"renderlib/render", {"renderlib/integrate"}},
+    {"renderlib/package", {"renderlib/render", "proto/wire"}},
+    {"renderlib/import", {"renderlib/package"}},
+    {"coordinator/core", {"renderlib/render", "proto/wire"}},
+    {"coordinator/store", {"coordinator/core", "renderlib/package"}},
+    {"coordinator/engine", {"coordinator/store"}},
+    {"coordinator/rpc", {"coordinator/engine", "proto/link"}},
+    {"coordinator/cli", {"coordinator/rpc"}},
+    {"worker/cache", {"renderlib/package"}},
+    {"worker/executor", {"worker/cache", "renderlib/render"}},
+    {"worker/session", {"worker/executor", "proto/link"}},
+    {"worker", {"worker/session"}},
+};
+
+std::set<std::string> reachable(const std::string& folder) {
+  std::set<std::string> seen = {folder};
+  std::vector<std::string> open = {folder};
+  while (!open.empty()) {
+    const std::string next = open.back();
+    open.pop_back();
+    for (const std::string& to : kMayInclude.at(next)) {
+      if (seen.insert(to).second) {
+        open.push_back(to);
+      }
+    }
+  }
+  return seen;
+}
+
+bool is_source(const fs::path& path) {
+  return path.extension() == ".h" || path.extension() == ".cpp";
+}
+
+std::vector<fs::path> sources() {
+  std::vector<fs::path> out;
+  for (const char* top : {"proto", "renderlib", "coordinator", "worker"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(BANDSAW_SOURCE) / top)) {
+      if (entry.is_regular_file() && is_source(entry.path())) {
+        out.push_back(fs::relative(entry.path(), BANDSAW_SOURCE));
+      }
+    }
+  }
+  return out;
+}
+
+std::vector<std::string> lines_of(const fs::path& source) {
+  std::ifstream file(fs::path(BANDSAW_SOURCE) / source);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(file, line);) {
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+TEST(House, EveryIncludeFollowsTheArrows) {
+  const std::regex include("^#include \"([^\"]+)/[^/\"]+\"");
+  std::size_t checked = 0;
+  for (const fs::path& source : sources()) {
+    const std::string folder = source.parent_path().string();
+    ASSERT_TRUE(kMayInclude.contains(folder)) << folder << " is not in the plan of the house";
+    const std::set<std::string> allowed = reachable(folder);
+    for (const std::string& line : lines_of(source)) {
+      std::smatch match;
+      if (!std::regex_search(line, match, include) || !kMayInclude.contains(match[1])) {
+        continue;  // third-party, or generated (proto/*.pb.h: below)
+      }
+      ++checked;
+      EXPECT_TRUE(allowed.contains(match[1])) << source << " includes from " << match[1];
+    }
+  }
+  EXPECT_GT(checked, 100u);
+}
+
+TEST(House, OnlyPackageAndImportKnowProtobufInRenderlib) {
+  for (const fs::path& source : sources()) {
+    const std::string folder = source.parent_path().string();
+    if (!folder.starts_with("renderlib/") || folder == "renderlib/package" ||
+        folder == "renderlib/import") {
+      continue;
+    }
+    for (const std::string& line : lines_of(source)) {
+      EXPECT_FALSE(line.starts_with("#include") && (line.find(".pb.h") != std::string::npos ||
+                                                    line.find("google/") != std::string::npos ||
+                                                    line.find("assimp/") != std::string::npos))
+          << source << ": " << line;
+    }
+  }
+}
+
+// Functions whose results depend on the CPU's libm, on the standard library's choice or on hidden
+// state.
+TEST(House, RenderlibCallsNothingWhoseResultDependsOnTheMachine) {
+  const std::regex banned(
+      R"(\bstd::(sin|cos|tan|asin|acos|atan|atan2|exp|exp2|expm1|log|log2|log10|log1p|pow|cbrt|hypot)\()"
+      R"(|\bstd::(uniform_\w+_distribution|normal_distribution|shuffle|reduce|random_device|mt19937\w*)\b)"
+      R"(|\b(rand|srand|drand48|time|clock|getenv)\(|_mm\w*_(rcp|rsqrt)|\blong double\b|steady_clock|system_clock)");
+  for (const fs::path& source : sources()) {
+    const std::string folder = source.parent_path().string();
+    if (!folder.starts_with("renderlib/") || folder == "renderlib/import") {
+      continue;
+    }
+    for (const std::string& line : lines_of(source)) {
+      const std::string code = line.substr(0, line.find("//"));
+      EXPECT_FALSE(std::regex_search(code, banned)) << source << ": " << line;
+    }
+  }
+}
+
+TEST(House, FilesStayReadable) {
+  for (const fs::path& source : sources()) {
+    EXPECT_LE(lines_of(source).size(), 300u) << source << " wants to be two files";
+  }
+}
+
+TEST(House, TheTopLevelHoldsWhatWasAgreed) {
+  const std::set<std::string> agreed = {
+      "CMakeLists.txt", "CMakePresets.json", "LICENSE", "README.md", "proto", "coordinator",
+      "worker",         "renderlib",         "deploy",  "tests",     "build", "out"};
+  for (const auto& entry : fs::directory_iterator(BANDSAW_SOURCE)) {
+    const std::string name = entry.path().filename();
+    EXPECT_TRUE(name.starts_with(".") || agreed.contains(name)) << name;
+  }
+}
+
+}  // namespace

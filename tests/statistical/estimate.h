@@ -1,0 +1,27 @@
+#pragma once
+
+// The mean radiance along one ray, with an honest standard error: Owen-scrambled samples of one
+// seed are correlated, so the mean of each of many seeds counts as one observation.
+
+#include "renderlib/integrate/path.h"
+#include "tests/support/statistics.h"
+
+namespace bandsaw::test {
+
+/// Green channel, seeds [0, seeds), samples [0, samples) of each; `samples` a power of two.
+inline Moments radiance_along(const Scene& scene, const Ray& ray, const PathOptions& options,
+                              std::uint64_t samples, std::uint64_t seeds = 32) {
+  Moments means;
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    const PixelSampler sampler(seed, 11, 7);
+    double sum = 0;
+    std::uint64_t rays = 0;
+    for (std::uint64_t sample = 0; sample < samples; ++sample) {
+      sum += path_radiance(scene, ray, sampler, sample, options, rays).g;
+    }
+    means.add(sum / static_cast<double>(samples));
+  }
+  return means;
+}
+
+}  // namespace bandsaw::test

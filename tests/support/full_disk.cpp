@@ -1,0 +1,27 @@
+#include "tests/support/full_disk.h"
+
+#include <sys/resource.h>
+
+#include <csignal>
+
+#include "renderlib/base/check.h"
+
+namespace bandsaw::test {
+
+FullDisk::FullDisk(std::uint64_t bytes) {
+  std::signal(SIGXFSZ, SIG_IGN);  // so that the call fails instead
+  rlimit limit{};
+  BANDSAW_CHECK(::getrlimit(RLIMIT_FSIZE, &limit) == 0, "a process may read its limits");
+  before_ = limit.rlim_cur;
+  limit.rlim_cur = bytes;
+  BANDSAW_CHECK(::setrlimit(RLIMIT_FSIZE, &limit) == 0, "a process may lower its soft limits");
+}
+
+void FullDisk::release() {
+  rlimit limit{};
+  BANDSAW_CHECK(::getrlimit(RLIMIT_FSIZE, &limit) == 0, "a process may read its limits");
+  limit.rlim_cur = before_;
+  BANDSAW_CHECK(::setrlimit(RLIMIT_FSIZE, &limit) == 0, "a soft limit may be raised again");
+}
+
+}  // namespace bandsaw::test

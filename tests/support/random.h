@@ -1,0 +1,33 @@
+#pragma once
+
+// Random numbers for tests: the same for every library and compiler (distributions of the standard
+// library are not).
+
+#include <cstdint>
+
+namespace bandsaw::test {
+
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+
+  /// SplitMix64.
+  std::uint64_t bits() {
+    std::uint64_t x = state_ += 0x9e3779b97f4a7c15u;
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+    return x ^ (x >> 31);
+  }
+  /// [0, 1)
+  double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
+  double uniform(double lo, double hi) { return lo + (hi - lo) * uniform(); }
+  /// [0, n)
+  std::uint32_t below(std::uint32_t n) {
+    return static_cast<std::uint32_t>((bits() >> 32) * n >> 32);
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+}  // namespace bandsaw::test

@@ -1,0 +1,40 @@
+#pragma once
+
+// Scenes for tests, put together a line a shape.
+
+#include <memory>
+
+#include "renderlib/base/pool.h"
+#include "renderlib/scene/scene.h"
+
+namespace bandsaw::test {
+
+class SceneMaker {
+ public:
+  TextureId texture(Texture texture);
+  MaterialId diffuse(float reflectance);
+  MaterialId diffuse(const Rgb& reflectance);
+  MaterialId metal(float reflectance, double fuzz);
+  MaterialId glass(double index_of_refraction);
+  MaterialId lamp(float radiance, bool one_sided = false);
+
+  void sphere(const Vec3& center, double radius, MaterialId material);
+  void quad(const Vec3& corner, const Vec3& u, const Vec3& v, MaterialId material);
+  void triangle(const Vec3& a, const Vec3& b, const Vec3& c, MaterialId material);
+  void instance(Mesh mesh, const Transform& to_world, MaterialId material);
+  void camera(const Vec3& position, const Vec3& look_at, double vertical_fov);
+  void background(const Rgb& bottom, const Rgb& top);
+
+  SceneDescription scene;
+
+  /// The scene MUST be valid.
+  std::shared_ptr<const Scene> build() const;
+};
+
+/// The Cornell box, 555 units wide: a quad that shines down and two boxes of diffuse quads.
+SceneMaker cornell_box();
+
+/// A grid of n x n squares in z = 0 over [-1, 1]^2, two triangles each, normal +z.
+Mesh grid(int n);
+
+}  // namespace bandsaw::test

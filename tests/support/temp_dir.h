@@ -1,0 +1,22 @@
+#pragma once
+
+// A folder that is gone with everything in it when the test ends.
+
+#include <string>
+
+namespace bandsaw::test {
+
+class TempDir {
+ public:
+  TempDir();
+  ~TempDir();
+  TempDir(const TempDir&) = delete;
+  TempDir& operator=(const TempDir&) = delete;
+  const std::string& path() const { return path_; }
+  std::string operator/(const std::string& name) const { return path_ + "/" + name; }
+
+ private:
+  std::string path_;
+};
+
+}  // namespace bandsaw::test

@@ -1,0 +1,74 @@
+// The floating-point contract that the build settings are there for.
+
+#include <gtest/gtest.h>
+#include <immintrin.h>
+
+#include <cmath>
+
+#include "renderlib/base/pool.h"
+
+namespace bandsaw {
+namespace {
+
+struct FloatPair {
+  float x;
+  float y;
+};
+struct DoublePair {
+  double x;
+  double y;
+};
+
+/// g++ 12.2 -O2 stores the doubles it read, unless -fno-tree-slp-vectorize is given.
+[[gnu::noinline]] void round_to_float(const double* in, DoublePair* out) {
+  const FloatPair f{static_cast<float>(in[0]), static_cast<float>(in[1])};
+  *out = DoublePair{f.x, f.y};
+}
+
+TEST(Compiler, KeepsTheRoundingOfNeighbouringFloats) {
+  const double in[2] = {15.123456789, -3.0000000001};
+  DoublePair out;
+  // The compiler must not know the numbers, or it rounds them itself, and well.
+  const double* volatile unknown = in;
+  round_to_float(unknown, &out);
+  EXPECT_EQ(out.x, 15.123456954956055);
+  EXPECT_EQ(out.y, -3.0);
+}
+
+[[gnu::noinline]] double multiply_add(double a, double b, double c) { return a * b + c; }
+
+TEST(Compiler, RoundsProductsBeforeItAdds) {
+  volatile double unknown = 1 + 0x1p-30;
+  const double a = unknown;
+  EXPECT_EQ(multiply_add(a, a, -(1 + 0x1p-29)), 0);
+  EXPECT_EQ(std::fma(a, a, -(1 + 0x1p-29)), 0x1p-60);
+}
+
+[[gnu::noinline]] double sum_of_three(double a, double b, double c) { return (a + b) + c; }
+
+TEST(Compiler, DoesNotReorderSums) {
+  volatile double unknown = 1e100;
+  const double large = unknown;
+  EXPECT_EQ(sum_of_three(large, -large, 1), 1);
+  EXPECT_EQ(sum_of_three(1, large, -large), 0);
+}
+
+/// Default rounding, exceptions masked, no flush to zero; the low six bits are sticky flags.
+constexpr unsigned kDefaultMxcsr = 0x1f80;
+constexpr unsigned kFlags = 0x3f;
+
+TEST(FloatingPointState, IsTheDefaultInEveryThread) {
+  EXPECT_EQ(_mm_getcsr() & ~kFlags, kDefaultMxcsr);
+  Pool pool(3);
+  pool.parallel_for(30, [](std::int64_t) { EXPECT_EQ(_mm_getcsr() & ~kFlags, kDefaultMxcsr); });
+}
+
+TEST(FloatingPointState, KeepsDenormals) {
+  volatile double least = 0x1p-1022;
+  const double half = least / 2;
+  EXPECT_GT(half, 0);
+  EXPECT_EQ(half * 2, least);
+}
+
+}  // namespace
+}  // namespace bandsaw

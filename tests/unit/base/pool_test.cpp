@@ -1,0 +1,66 @@
+#include "renderlib/base/pool.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <numeric>
+#include <thread>
+#include <vector>
+
+namespace bandsaw {
+namespace {
+
+TEST(Pool, CallsEachIndexOnce) {
+  Pool pool(3);
+  std::vector<std::atomic<int>> calls(1000);
+  pool.parallel_for(1000, [&](std::int64_t i) { ++calls[static_cast<std::size_t>(i)]; });
+  for (const std::atomic<int>& count : calls) {
+    EXPECT_EQ(count, 1);
+  }
+}
+
+TEST(Pool, HasNothingToDoForAnEmptyRange) {
+  Pool pool(1);
+  pool.parallel_for(0, [](std::int64_t) { FAIL(); });
+  pool.parallel_for(-3, [](std::int64_t) { FAIL(); });
+}
+
+TEST(Pool, RunsRangesOfSeveralCallersAtOnce) {
+  Pool pool(2);
+  std::atomic<int> sum = 0;
+  std::vector<std::thread> callers;
+  for (int caller = 0; caller < 4; ++caller) {
+    callers.emplace_back([&] {
+      for (int round = 0; round < 50; ++round) {
+        pool.parallel_for(7, [&](std::int64_t i) { sum += static_cast<int>(i); });
+      }
+    });
+  }
+  for (std::thread& caller : callers) {
+    caller.join();
+  }
+  EXPECT_EQ(sum, 4 * 50 * 21);
+}
+
+TEST(Pool, FinishesOneRangeWhileAnotherIsHeldUp) {
+  Pool pool(2);
+  std::atomic<bool> release = false;
+  std::atomic<bool> held = false;
+  std::thread slow([&] {
+    pool.parallel_for(1, [&](std::int64_t) {
+      held = true;
+      held.notify_all();
+      release.wait(false);
+    });
+  });
+  held.wait(false);
+  int done = 0;
+  pool.parallel_for(10, [&](std::int64_t) { ++done; });  // by the one thread that is free
+  EXPECT_EQ(done, 10);
+  release = true;
+  release.notify_all();
+  slow.join();
+}
+
+}  // namespace
+}  // namespace bandsaw

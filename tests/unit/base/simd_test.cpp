@@ -1,0 +1,103 @@
+#include "renderlib/base/simd.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "renderlib/base/simd_plain.h"
+#include "tests/support/random.h"
+
+namespace bandsaw {
+namespace {
+
+using Lanes = std::array<float, 8>;
+
+/// Any float: all exponents, zeros, infinities, NaN, and pairs that nearly cancel.
+float any_float(test::Random& random) {
+  const float special[] = {0.0f,
+                           -0.0f,
+                           1.0f,
+                           HUGE_VALF,
+                           -HUGE_VALF,
+                           std::nanf(""),
+                           std::numeric_limits<float>::denorm_min()};
+  switch (random.below(8)) {
+    case 0:
+      return special[random.below(7)];
+    case 1:
+      return std::bit_cast<float>(static_cast<std::uint32_t>(random.bits() >> 32));
+    default:
+      return static_cast<float>(random.uniform(-2, 2));
+  }
+}
+
+Lanes any_lanes(test::Random& random) {
+  Lanes lanes;
+  for (float& x : lanes) {
+    x = any_float(random);
+  }
+  return lanes;
+}
+
+/// The same bits; NaN is NaN.
+void expect_same(const Lanes& a, const Lanes& b) {
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (!std::isnan(a[i]) || !std::isnan(b[i])) {
+      ASSERT_EQ(std::bit_cast<std::uint32_t>(a[i]), std::bit_cast<std::uint32_t>(b[i])) << i;
+    }
+  }
+}
+
+template <class Float>
+Lanes stored(const Float& x) {
+  Lanes lanes;
+  x.store(lanes.data());
+  return lanes;
+}
+
+TEST(Simd, PlainFusedMultiplyAddRoundsOnce) {
+  test::Random random(1);
+  for (int i = 0; i < 2'000'000; ++i) {
+    const float a = any_float(random);
+    const float b = any_float(random);
+    // Half of them next to -a b, where nearly all cancels.
+    const float c = i % 2 == 0 ? any_float(random) : std::nextafter(-a * b, any_float(random));
+    expect_same(Lanes{simd_plain::fused(a, b, c)}, Lanes{std::fma(a, b, c)});
+  }
+}
+
+TEST(Simd, EveryOperationIsEqualToPlain) {
+  test::Random random(2);
+  using simd_plain::Float8;
+  using Fast = bandsaw::Float8;
+  for (int i = 0; i < 100'000; ++i) {
+    const Lanes a = any_lanes(random);
+    const Lanes b = any_lanes(random);
+    const Lanes c = any_lanes(random);
+    const auto fast = [](const Lanes& x) { return Fast::load(x.data()); };
+    const auto plain = [](const Lanes& x) { return Float8::load(x.data()); };
+    expect_same(stored(fast(a) + fast(b)), stored(plain(a) + plain(b)));
+    expect_same(stored(fast(a) - fast(b)), stored(plain(a) - plain(b)));
+    expect_same(stored(fast(a) * fast(b)), stored(plain(a) * plain(b)));
+    expect_same(stored(fused(fast(a), fast(b), fast(c))),
+                stored(fused(plain(a), plain(b), plain(c))));
+    expect_same(stored(fused_minus(fast(a), fast(b), fast(c))),
+                stored(fused_minus(plain(a), plain(b), plain(c))));
+    expect_same(stored(min(fast(a), fast(b))), stored(min(plain(a), plain(b))));
+    expect_same(stored(max(fast(a), fast(b))), stored(max(plain(a), plain(b))));
+    expect_same(stored(abs(fast(a))), stored(abs(plain(a))));
+    expect_same(stored(flip_by_sign(fast(a), fast(b))), stored(flip_by_sign(plain(a), plain(b))));
+    ASSERT_EQ((fast(a) < fast(b)).bits(), (plain(a) < plain(b)).bits());
+    ASSERT_EQ((fast(a) <= fast(b)).bits(), (plain(a) <= plain(b)).bits());
+    ASSERT_EQ(((fast(a) < fast(b)) & (fast(b) < fast(c))).bits(),
+              ((plain(a) < plain(b)) & (plain(b) < plain(c))).bits());
+    ASSERT_EQ(((fast(a) < fast(b)) | (fast(b) < fast(c))).bits(),
+              ((plain(a) < plain(b)) | (plain(b) < plain(c))).bits());
+  }
+}
+
+}  // namespace
+}  // namespace bandsaw

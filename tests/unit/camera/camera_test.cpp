@@ -1,0 +1,183 @@
+#include "renderlib/camera/camera.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace bandsaw {
+namespace {
+
+using ::testing::StartsWith;
+
+void expect_near(const Vec3& a, const Vec3& b, double tolerance) {
+  EXPECT_NEAR(a.x, b.x, tolerance);
+  EXPECT_NEAR(a.y, b.y, tolerance);
+  EXPECT_NEAR(a.z, b.z, tolerance);
+}
+
+PerspectiveCamera camera(double fov) {
+  PerspectiveCamera camera;
+  camera.vertical_fov = fov;
+  return camera;
+}
+
+TEST(Camera, TheMiddleLooksAheadAndTheEdgesAreHalfTheAngleOff) {
+  const RayGenerator rays(camera(90), 200, 100);
+  expect_near(rays.ray(100, 50, 0, 0).direction, {0, 0, -1}, 1e-15);
+  const double s = std::sqrt(0.5);
+  expect_near(rays.ray(100, 0, 0, 0).direction, {0, s, -s}, 1e-15);
+  expect_near(rays.ray(100, 100, 0, 0).direction, {0, -s, -s}, 1e-15);
+  expect_near(rays.ray(200, 50, 0, 0).direction, Vec3{2, 0, -1} / std::sqrt(5.0), 1e-15);
+  expect_near(rays.ray(0, 50, 0, 0).direction, Vec3{-2, 0, -1} / std::sqrt(5.0), 1e-15);
+}
+
+TEST(Camera, FarFromTheOriginDirectionsAreTheSame) {
+  PerspectiveCamera near = camera(60);
+  near.look_at = {0.1, -0.2, -1};
+  PerspectiveCamera far = near;
+  const Vec3 away{1e6, -1e6, 1e6};
+  far.position = far.position + away;
+  far.look_at = far.look_at + away;
+  const RayGenerator a(near, 1920, 1080);
+  const RayGenerator b(far, 1920, 1080);
+  const double pixel = 1.0 / 1080;
+  for (const double x : {0.5, 300.25, 1919.5}) {
+    expect_near(a.ray(x, 777, 0, 0).direction, b.ray(x, 777, 0, 0).direction, 1e-6 * pixel);
+  }
+}
+
+TEST(Camera, ExtremeAnglesGiveFiniteUnitDirections) {
+  for (const double fov : {1e-6, 179.9}) {
+    const RayGenerator rays(camera(fov), 3, 3);
+    const Vec3 d = rays.ray(0, 0, 0, 0).direction;
+    EXPECT_NEAR(length(d), 1, 1e-15);
+  }
+}
+
+TEST(Camera, WhatMakesNoRaysIsRefusedWithTheField) {
+  const auto message = [](auto change) {
+    PerspectiveCamera c = camera(40);
+    change(c);
+    return std::string(validate(Camera(c)).message());
+  };
+  EXPECT_EQ(message([](auto&) {}), "");
+  EXPECT_THAT(message([](auto& c) { c.look_at = c.position; }), StartsWith("camera.look_at: "));
+  EXPECT_THAT(message([](auto& c) { c.up = {0, 0, 3}; }), StartsWith("camera.up: "));
+  EXPECT_THAT(message([](auto& c) { c.up = {0, 0, 0}; }), StartsWith("camera.up: "));
+  EXPECT_THAT(message([](auto& c) { c.position.x = std::nan(""); }),
+              StartsWith("camera.position: "));
+  EXPECT_EQ(message([](auto& c) { c.vertical_fov = 180; }),
+            "camera.vertical_fov: must be in (0, 180) degrees, is 180");
+  EXPECT_EQ(message([](auto& c) { c.vertical_fov = 0; }),
+            "camera.vertical_fov: must be in (0, 180) degrees, is 0");
+}
+
+TEST(Camera, OrthographicPixelsAreSceneUnitsExactly) {
+  const OrthographicCamera study{
+      .position = {250, 250, 0}, .look_at = {250, 250, -1}, .height = 500};
+  const RayGenerator up(study, 500, 500);
+  OrthographicCamera mirrored = study;
+  mirrored.up = {0, -1, 0};
+  mirrored.mirrored = true;
+  const RayGenerator down(mirrored, 500, 500);
+  for (const double x : {0.0, 0.5, 17.25, 249.5, 499.5}) {
+    for (const double y : {0.0, 3.5, 250.0, 499.75}) {
+      EXPECT_EQ(up.ray(x, y, 0.3, 0.9).origin, (Vec3{x, 500 - y, 0}));
+      EXPECT_EQ(up.ray(x, y, 0.3, 0.9).direction, (Vec3{0, 0, -1}));
+      EXPECT_EQ(down.ray(x, y, 0.3, 0.9).origin, (Vec3{x, y, 0}));
+      EXPECT_EQ(down.ray(x, y, 0.3, 0.9).direction, (Vec3{0, 0, -1}));
+    }
+  }
+}
+
+TEST(Camera, AllRaysOfAPixelMeetOnThePlaneOfFocus) {
+  PerspectiveCamera lens = camera(50);
+  lens.position = {1, 2, 3};
+  lens.look_at = {4, 1, -6};
+  lens.aperture = 0.5;
+  lens.focus_distance = 7;
+  PerspectiveCamera pinhole = lens;
+  pinhole.aperture = 0;
+  const RayGenerator rays(lens, 80, 60);
+  const Vec3 forward = normalize(lens.look_at - lens.position);
+  const Ray middle = RayGenerator(pinhole, 80, 60).ray(70.5, 11, 0, 0);
+  const Vec3 focus = middle.origin + middle.direction * (7 / dot(middle.direction, forward));
+  for (const double u : {0.0, 0.1, 0.77, 0.999}) {
+    for (const double v : {0.0, 0.4, 0.9}) {
+      const Ray ray = rays.ray(70.5, 11, u, v);
+      EXPECT_LE(length(ray.origin - lens.position), 0.25 * (1 + 1e-12));
+      EXPECT_NEAR(dot(ray.origin - lens.position, forward), 0, 1e-14);
+      EXPECT_NEAR(length(ray.direction), 1, 1e-15);
+      const double t = dot(focus - ray.origin, forward) / dot(ray.direction, forward);
+      expect_near(ray.origin + ray.direction * t, focus, 1e-13);
+    }
+  }
+}
+
+TEST(Camera, APointOutOfFocusSpreadsOverADiskOfTheRightRadius) {
+  PerspectiveCamera lens = camera(40);
+  lens.aperture = 0.3;
+  lens.focus_distance = 5;
+  for (const double z : {1.0, 2.5, 4.9, 8.0, 100.0}) {
+    // The image positions whose ray through a place on the lens goes through the point (0, 0, -z):
+    // the plane of focus carries the image, so where that ray meets it tells the position.
+    const RayGenerator rays(lens, 1000, 1000);
+    const double pixel = 2 * std::tan(20 * 3.14159265358979 / 180) / 1000;
+    double largest = 0;
+    double squares = 0;
+    constexpr int kSteps = 200;
+    for (int i = 0; i < kSteps; ++i) {
+      for (int j = 0; j < kSteps; ++j) {
+        const double u = (i + 0.5) / kSteps;
+        const double v = (j + 0.5) / kSteps;
+        const Vec3 on_lens = rays.ray(500, 500, u, v).origin;
+        const double scale = (z - 5) / z;
+        const double x = 500 + on_lens.x * scale / 5 / pixel;
+        const double y = 500 - on_lens.y * scale / 5 / pixel;
+        const Ray ray = rays.ray(x, y, u, v);
+        expect_near(ray.origin + ray.direction * (z / -ray.direction.z), {0, 0, -z}, 1e-11 * z);
+        const double r = std::hypot(x - 500, y - 500) * pixel * 5;
+        largest = std::max(largest, r);
+        squares += r * r / (kSteps * kSteps);
+      }
+    }
+    const double expected = 0.15 * std::abs(z - 5) / z;
+    EXPECT_NEAR(largest, expected, 0.01 * expected) << z;
+    // Uniform on a disk: the mean square radius is half the radius' square.
+    EXPECT_NEAR(std::sqrt(2 * squares), expected, 0.01 * expected) << z;
+  }
+}
+
+TEST(Camera, FocusAtAnyDistanceGivesFiniteUnitDirections) {
+  PerspectiveCamera lens = camera(40);
+  for (const double aperture : {1e-300, 1.0, 1e30}) {
+    for (const double focus : {kLeastFocus, 1e-6, 1e30}) {
+      lens.aperture = aperture;
+      lens.focus_distance = focus;
+      const Ray ray = RayGenerator(lens, 8, 8).ray(1, 2, 0.9, 0.1);
+      EXPECT_NEAR(length(ray.direction), 1, 1e-15) << aperture << ' ' << focus;
+      EXPECT_TRUE(is_finite(ray.origin));
+    }
+  }
+  lens.aperture = 0;
+  const Ray sharp = RayGenerator(lens, 8, 8).ray(1, 2, 0.9, 0.1);
+  EXPECT_EQ(sharp.origin, (Vec3{0, 0, 0}));
+}
+
+TEST(Camera, LensAndHeightOutOfRangeAreRefused) {
+  PerspectiveCamera lens = camera(40);
+  lens.aperture = -1;
+  EXPECT_THAT(std::string(validate(Camera(lens)).message()), StartsWith("camera.aperture: "));
+  lens.aperture = 1;
+  lens.focus_distance = 0;
+  EXPECT_THAT(std::string(validate(Camera(lens)).message()), StartsWith("camera.focus_distance: "));
+  EXPECT_THAT(std::string(validate(Camera(OrthographicCamera{.height = 0})).message()),
+              StartsWith("camera.orthographic.height: "));
+  EXPECT_THAT(std::string(validate(Camera(OrthographicCamera{.up = {0, 0, 1}})).message()),
+              StartsWith("camera.up: "));
+}
+
+}  // namespace
+}  // namespace bandsaw

@@ -1,0 +1,174 @@
+#include "coordinator/cli/command_line.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "absl/strings/str_split.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+absl::StatusOr<Command> parse(const std::string& line) {
+  return parse_command_line(absl::StrSplit(line, ' ', absl::SkipEmpty()));
+}
+
+template <class T>
+T parsed(const std::string& line) {
+  const auto command = parse(line);
+  EXPECT_TRUE(command.ok()) << line << ": " << command.status();
+  EXPECT_TRUE(command.ok() && std::holds_alternative<T>(*command)) << line;
+  return command.ok() && std::holds_alternative<T>(*command) ? std::get<T>(*command) : T();
+}
+
+void expect_wrong(const std::string& line, const std::string& says) {
+  const auto command = parse(line);
+  ASSERT_FALSE(command.ok()) << line;
+  EXPECT_EQ(command.status().code(), absl::StatusCode::kInvalidArgument) << line;
+  EXPECT_THAT(std::string(command.status().message()), HasSubstr(says)) << line;
+  EXPECT_EQ(command.status().message().find('\n'), absl::string_view::npos) << line;
+}
+
+TEST(CommandLine, SubmitTakesItsOptions) {
+  const auto options = parsed<SubmitOptions>(
+      "submit cornell.textproto -o a.png -o b.pfm --error 1% --seed 7 --width 320 --depth 5 --farm "
+      "/x/farm --quiet");
+  EXPECT_EQ(options.scene, "cornell.textproto");
+  EXPECT_THAT(options.outputs, ElementsAre("a.png", "b.pfm"));
+  EXPECT_EQ(std::get<StopAtError>(options.image.stop).relative_rmse, 0.01);
+  EXPECT_EQ(options.image.seed, 7u);
+  EXPECT_EQ(options.image.width, 320u);
+  EXPECT_EQ(options.image.height, std::nullopt);
+  EXPECT_EQ(options.image.depth, 5u);
+  EXPECT_EQ(options.farm.farm, "/x/farm");
+  EXPECT_TRUE(options.verbosity.quiet);
+  EXPECT_FALSE(options.detach);
+}
+
+TEST(CommandLine, SaysWhatIsShownAndHow) {
+  const auto options = parsed<RenderOptions>(
+      "render a.textproto --integrator ambient_occlusion --exposure -1.5 --tone filmic --half "
+      "-o a.exr -o a.hdr");
+  EXPECT_EQ(options.image.integrator, Integrator::kAmbientOcclusion);
+  EXPECT_EQ(options.display.over({}),
+            (Display{.exposure = -1.5, .tone = Tone::kFilmic, .half = true}));
+  const Display scene{.exposure = 2, .tone = Tone::kFilmic};
+  EXPECT_EQ(parsed<SubmitOptions>("submit a.textproto --exposure 3").display.over(scene),
+            (Display{.exposure = 3, .tone = Tone::kFilmic}));
+  EXPECT_EQ(parsed<WatchOptions>("watch 3 -o a.png --tone none").display.tone, Tone::kNone);
+  expect_wrong("render a.textproto --integrator paths", "ambient_occlusion");
+  expect_wrong("render a.textproto --exposure bright", "--exposure");
+  expect_wrong("render a.textproto --exposure nan", "--exposure");
+  expect_wrong("stitch a.band -o a.png --tone aces", "--tone");
+}
+
+TEST(CommandLine, InfoTakesOneFile) {
+  EXPECT_EQ(parsed<InfoOptions>("info model.glb").scene, "model.glb");
+  EXPECT_TRUE(parsed<InfoOptions>("info model.glb --json").verbosity.json);
+  expect_wrong("info", "missing");
+}
+
+TEST(CommandLine, TheSceneMayComeLastAndOptionsMayBeJoinedWithEquals) {
+  const auto options =
+      parsed<RenderOptions>("render -o a.png --samples=100 --threads=3 cornell.textproto");
+  EXPECT_EQ(options.scene, "cornell.textproto");
+  EXPECT_THAT(options.outputs, ElementsAre("a.png"));
+  EXPECT_EQ(std::get<StopAtSamples>(options.image.stop).samples, 100u);
+  EXPECT_EQ(options.threads, 3);
+}
+
+TEST(CommandLine, WithoutAStopRuleThereAre64Samples) {
+  EXPECT_EQ(parsed<RenderOptions>("render a.glb").image.stop, StopRule(StopAtSamples{64}));
+}
+
+TEST(CommandLine, ServeTakesItsOptions) {
+  const auto options = parsed<ServeOptions>("serve --data /d --listen [::]:0 --insecure");
+  EXPECT_EQ(options.data, "/d");
+  EXPECT_EQ(options.listen, "[::]:0");
+  EXPECT_TRUE(options.insecure);
+  EXPECT_EQ(parsed<ServeOptions>("serve").listen, "0.0.0.0:7878");
+}
+
+TEST(CommandLine, TheOtherCommandsTakeTheirOptions) {
+  EXPECT_EQ(parsed<WatchOptions>("watch 7 -o a.png").job, 7u);
+  EXPECT_EQ(parsed<CancelOptions>("cancel 12").job, 12u);
+  EXPECT_TRUE(parsed<JobsOptions>("jobs --json").verbosity.json);
+  EXPECT_EQ(parsed<WorkersOptions>("workers --farm x").farm.farm, "x");
+  EXPECT_THAT(parsed<StitchOptions>("stitch a.band b.band -o c.png").parts,
+              ElementsAre("a.band", "b.band"));
+  EXPECT_THAT(parsed<StitchOptions>("stitch -o c.png a.band b.band").parts,
+              ElementsAre("a.band", "b.band"));
+  EXPECT_EQ(parsed<CompareOptions>("compare a.png b.png").reference, "b.png");
+  EXPECT_EQ(parsed<RenderOptions>("render a.glb --rows 3:9").rows, (RowRange{3, 9}));
+}
+
+TEST(CommandLine, StandardInputCanBeTheFarm) {
+  EXPECT_EQ(parsed<JobsOptions>("jobs --farm -").farm.farm, "-");
+}
+
+TEST(CommandLine, HelpAndVersionAreTexts) {
+  EXPECT_THAT(parsed<ShowText>("--help").text, HasSubstr("submit"));
+  EXPECT_THAT(parsed<ShowText>("submit --help").text, HasSubstr("--error"));
+  EXPECT_THAT(parsed<ShowText>("--version").text, HasSubstr("bandsaw 0."));
+}
+
+TEST(CommandLine, WrongUseIsOneLineThatNamesTheWord) {
+  expect_wrong("", "no command");
+  expect_wrong("rendr a.textproto", "'rendr'; did you mean render?");
+  expect_wrong("xyzzy", "bandsaw --help");
+  expect_wrong("--quiet jobs", "--quiet");
+  expect_wrong("render a.textproto --sample 4", "'--sample'; did you mean --samples?");
+  expect_wrong("render a.textproto --bogus=4", "'--bogus'");
+  expect_wrong("render a.textproto b.textproto", "b.textproto");
+  expect_wrong("render", "scene");
+  expect_wrong("submit", "scene");
+  expect_wrong("render a.textproto --samples", "samples");
+  expect_wrong("watch", "number");
+  expect_wrong("watch seven", "'seven'");
+  expect_wrong("cancel 0", "'0'");
+  expect_wrong("stitch -o a.png", "parts");
+  expect_wrong("stitch a.band", "output");
+  expect_wrong("compare a.png", "two images");
+  expect_wrong("serve --listen 7878", "HOST:PORT");
+  expect_wrong("serve --listen localhost:70000", "70000");
+}
+
+TEST(CommandLine, ValuesOutOfRangeAreWrong) {
+  expect_wrong("render a.textproto --samples 0", "--samples");
+  expect_wrong("render a.textproto --samples 1.5", "--samples");
+  expect_wrong("render a.textproto --samples -4", "samples");
+  expect_wrong("render a.textproto --samples 99999999999999999999", "--samples");
+  expect_wrong("render a.textproto --error 0.01", "--error");
+  expect_wrong("render a.textproto --error 0%", "--error");
+  expect_wrong("render a.textproto --error 101%", "--error");
+  expect_wrong("render a.textproto --time soon", "--time");
+  expect_wrong("render a.textproto --time 0s", "--time");
+  expect_wrong("render a.textproto --width 0", "--width");
+  expect_wrong("render a.textproto --height 70000", "--height");
+  expect_wrong("render a.textproto --depth 1025", "--depth");
+  expect_wrong("render a.textproto --threads 0", "--threads");
+  expect_wrong("render a.textproto --rows 9:2", "--rows");
+  expect_wrong("render a.textproto --rows 9", "--rows");
+}
+
+TEST(CommandLine, OptionsThatExcludeEachOtherAreWrong) {
+  expect_wrong("render a.textproto --samples 4 --error 1%", "exclude");
+  expect_wrong("render a.textproto --samples 4 --samples 5", "samples");
+  expect_wrong("submit a.textproto --time 5s --error 1%", "exclude");
+  expect_wrong("submit a.textproto --quiet --json", "exclude");
+  expect_wrong("submit a.textproto --detach -o a.png", "--detach");
+  expect_wrong("render a.textproto --rows 0:4 --time 5s", "--samples");
+}
+
+TEST(CommandLine, OutputsHaveAKnownSuffix) {
+  expect_wrong("render a.textproto -o a.jpeg", "pfm");
+  expect_wrong("submit a.textproto -o a", "pfm");
+  expect_wrong("submit a.textproto -o a.band", "--rows");
+  expect_wrong("render a.textproto -o a.band", "--rows");
+  EXPECT_TRUE(parse("render a.textproto --rows 0:4 -o a.band").ok());
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,64 @@
+#include "coordinator/cli/image_settings.h"
+
+#include <gtest/gtest.h>
+
+#include "coordinator/cli/output.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+RenderSettings settings_for(std::optional<std::uint32_t> width,
+                            std::optional<std::uint32_t> height) {
+  PackageInfo scene;
+  scene.width = 600;
+  scene.height = 400;
+  scene.max_depth = 9;
+  ImageOptions options;
+  options.width = width;
+  options.height = height;
+  return image_settings(options, scene).value();
+}
+
+TEST(ImageSettings, AreTheScenesUnlessTold) {
+  EXPECT_EQ(settings_for({}, {}),
+            (RenderSettings{.width = 600, .height = 400, .max_depth = 9, .seed = 0}));
+}
+
+TEST(ImageSettings, TheIntegratorIsTheScenesUnlessTold) {
+  PackageInfo scene;
+  scene.integrator = Integrator::kDirect;
+  ImageOptions options;
+  EXPECT_EQ(image_settings(options, scene)->integrator, Integrator::kDirect);
+  options.integrator = Integrator::kDepth;
+  EXPECT_EQ(image_settings(options, scene)->integrator, Integrator::kDepth);
+}
+
+TEST(ImageSettings, OneSideAloneKeepsTheAspectRatio) {
+  EXPECT_EQ(settings_for(64, {}).height, 43u);
+  EXPECT_EQ(settings_for({}, 100).width, 150u);
+  EXPECT_EQ(settings_for(1, {}).height, 1u);
+  EXPECT_EQ(settings_for(300, 300).width, 300u);
+}
+
+TEST(ImageSettings, TooLargeIsAnError) {
+  ImageOptions options;
+  options.width = 65536;
+  options.height = 65536;
+  EXPECT_FALSE(image_settings(options, PackageInfo()).ok());
+  PackageInfo tall;
+  tall.width = 1;
+  tall.height = 65536;
+  options.height = {};
+  EXPECT_FALSE(image_settings(options, tall).ok());
+}
+
+TEST(Output, TheDefaultIsTheScenesNameHere) {
+  EXPECT_EQ(default_output("scenes/cornell.textproto", ".png"), "cornell.png");
+  EXPECT_EQ(default_output("helmet.glb", ".png"), "helmet.png");
+  EXPECT_EQ(names_of({"a.png", "b.pfm"}), "a.png, b.pfm");
+  EXPECT_TRUE(is_part_name("x.BAND"));
+  EXPECT_FALSE(is_part_name("x.band.png"));
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

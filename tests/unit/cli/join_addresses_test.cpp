@@ -1,0 +1,46 @@
+#include "coordinator/cli/join_addresses.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace bandsaw::coordinator {
+namespace {
+
+using testing::ElementsAre;
+
+const std::vector<LocalAddress> kLocal = {
+    {"lo", "127.0.0.1", false, true},      {"docker0", "172.17.0.1", false, false},
+    {"eth0", "192.168.1.5", false, false}, {"lo", "::1", true, true},
+    {"eth0", "2001:db8::5", true, false},
+};
+
+TEST(JoinAddresses, ANamedHostIsItself) {
+  EXPECT_THAT(join_addresses("127.0.0.1", 7878, kLocal), ElementsAre("127.0.0.1:7878"));
+  EXPECT_THAT(join_addresses("farm.example", 1, kLocal), ElementsAre("farm.example:1"));
+}
+
+TEST(JoinAddresses, EveryAddressIsTheLansFirstAndLoopbackLast) {
+  EXPECT_THAT(join_addresses("0.0.0.0", 7, kLocal),
+              ElementsAre("192.168.1.5:7", "172.17.0.1:7", "127.0.0.1:7"));
+  EXPECT_THAT(
+      join_addresses("[::]", 7, kLocal),
+      ElementsAre("192.168.1.5:7", "[2001:db8::5]:7", "172.17.0.1:7", "127.0.0.1:7", "[::1]:7"));
+}
+
+TEST(JoinAddresses, AreAtMostEight) {
+  std::vector<LocalAddress> many(20, kLocal[2]);
+  many.push_back(kLocal[0]);
+  const auto addresses = join_addresses("0.0.0.0", 7, many);
+  ASSERT_EQ(addresses.size(), 8u);
+  EXPECT_EQ(addresses.back(), "127.0.0.1:7");
+}
+
+TEST(JoinAddresses, ThisMachineHasLoopback) {
+  const auto local = local_addresses();
+  ASSERT_TRUE(local.ok()) << local.status();
+  EXPECT_TRUE(
+      std::any_of(local->begin(), local->end(), [](const LocalAddress& a) { return a.loopback; }));
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,61 @@
+#include "coordinator/cli/lists_text.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "coordinator/cli/farm_errors.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+TEST(Lists, JobsAreATableWithEvenColumns) {
+  farm::JobStatus status;
+  status.set_job(7);
+  status.set_name("cornell");
+  status.set_state(farm::JOB_STATE_RUNNING);
+  status.mutable_settings()->set_width(600);
+  status.mutable_settings()->set_height(400);
+  status.mutable_stop()->set_samples(64);
+  status.set_fraction(0.255);
+  status.set_elapsed_s(3);
+  status.set_error(-1);
+  EXPECT_THAT(jobs_table({progress_of(status)}),
+              ElementsAre("job  scene    state    done  size     until       error  time",
+                          "7    cornell  running  25 %  600×400  64 samples         3.0 s"));
+  EXPECT_THAT(jobs_table({}), ElementsAre(HasSubstr("no jobs")));
+}
+
+TEST(Lists, WorkersAreATable) {
+  farm::ListWorkersReply reply;
+  EXPECT_THAT(workers_table(reply), ElementsAre(HasSubstr("bandsaw-worker")));
+  farm::WorkerStatus& worker = *reply.add_worker();
+  worker.set_name("anna");
+  worker.set_state("idle");
+  worker.set_threads(4);
+  EXPECT_EQ(workers_table(reply).size(), 2u);
+  EXPECT_THAT(workers_json(reply).front(), HasSubstr("\"name\":\"anna\""));
+}
+
+TEST(FarmErrors, HaveTheirExitCodes) {
+  EXPECT_EQ(exit_code_of(absl::UnavailableError("")), ExitCode::kNoFarm);
+  EXPECT_EQ(exit_code_of(absl::InvalidArgumentError("")), ExitCode::kWrong);
+  EXPECT_EQ(exit_code_of(absl::UnauthenticatedError("")), ExitCode::kWrong);
+  EXPECT_EQ(exit_code_of(absl::NotFoundError("")), ExitCode::kFailed);
+  EXPECT_EQ(exit_code_of(absl::CancelledError("")), ExitCode::kInterrupted);
+}
+
+TEST(Progress, StopRulesTravelThereAndBack) {
+  for (const StopRule& stop :
+       {StopRule(StopAtSamples{5}), StopRule(StopAtError{.relative_rmse = 0.02}),
+        StopRule(StopAtTime{.seconds = 9})}) {
+    farm::JobStatus status;
+    *status.mutable_stop() = to_proto(stop);
+    EXPECT_EQ(progress_of(status).job.spec.stop, stop);
+  }
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,86 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "coordinator/cli/local_meter.h"
+#include "coordinator/cli/local_plan.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+TEST(LocalPlan, CoversTheSamplesOnceInOrder) {
+  for (const std::uint64_t samples : {1U, 16U, 17U, 64U, 72U, 1000U}) {
+    LocalPlan plan(StopAtSamples{samples});
+    std::uint64_t done = 0;
+    while (const auto pass = plan.next(done, -1, 1)) {
+      EXPECT_EQ(pass->first, done);
+      EXPECT_TRUE(is_node(*pass)) << pass->first << ":" << pass->last;
+      done = pass->last;
+    }
+    EXPECT_EQ(done, samples);
+  }
+}
+
+TEST(LocalPlan, AnErrorRuleEndsWhereTheErrorIsReached) {
+  LocalPlan plan(StopAtError{.relative_rmse = 0.01});
+  std::uint64_t done = 0;
+  double error = -1;
+  while (const auto pass = plan.next(done, error, 1)) {
+    ASSERT_EQ(pass->first, done);
+    ASSERT_LT(done, 1U << 20);
+    done = pass->last;
+    error = done >= 32 ? 0.1 * std::sqrt(32.0 / static_cast<double>(done)) : -1;
+  }
+  EXPECT_LE(error, 0.01);
+  EXPECT_GE(done, 3200u);
+  EXPECT_LE(done, 2 * 3200u);
+}
+
+TEST(LocalPlan, AnErrorRuleEndsAtItsMostSamples) {
+  LocalPlan plan(StopAtError{.relative_rmse = 0.01, .max_samples = 100});
+  std::uint64_t done = 0;
+  while (const auto pass = plan.next(done, 0.5, 1)) {
+    done = pass->last;
+  }
+  EXPECT_EQ(done, 100u);
+}
+
+TEST(LocalPlan, ATimeRuleEndsBeforeTheTimeIsOver) {
+  LocalPlan plan(StopAtTime{.seconds = 10});
+  constexpr double kSamplesPerSecond = 100;
+  std::uint64_t done = 0;
+  while (const auto pass = plan.next(done, -1, static_cast<double>(done) / kSamplesPerSecond)) {
+    ASSERT_EQ(pass->first, done);
+    done = pass->last;
+  }
+  EXPECT_LE(done, 1000u);
+  EXPECT_GT(done, 900u);
+}
+
+TEST(LocalPlan, ATimeRuleGivesAtLeastOneBlock) {
+  LocalPlan plan(StopAtTime{.seconds = 0.1});
+  const auto first = plan.next(0, -1, 0);
+  ASSERT_TRUE(first.has_value());
+  EXPECT_EQ(first->samples(), kBlockSamples);
+  EXPECT_FALSE(plan.next(16, -1, 5).has_value());
+}
+
+TEST(LocalMeter, TellsHowFarARenderIs) {
+  JobSpec spec;
+  spec.settings = {.width = 10, .height = 10, .max_depth = 1, .seed = 0};
+  spec.stop = StopAtSamples{64};
+  LocalMeter meter(spec, {0, 5}, 2, 100);
+  meter.reached(1600);
+  meter.reached(800);
+  meter.passed(16, 0.5);
+  const Progress progress = meter.progress(102);
+  EXPECT_EQ(progress.threads, 2);
+  EXPECT_EQ(progress.job.samples_done, 1600u);
+  EXPECT_DOUBLE_EQ(progress.job.fraction, 0.5);
+  EXPECT_DOUBLE_EQ(progress.job.elapsed_s, 2);
+  EXPECT_DOUBLE_EQ(progress.job.remaining_s, 2);
+  EXPECT_DOUBLE_EQ(progress.job.samples_per_s, 800);
+  EXPECT_EQ(progress.job.error, 0.5);
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,172 @@
+#include "coordinator/cli/progress_display.h"
+
+#include <gmock/gmock.h>
+#include <google/protobuf/struct.pb.h>
+#include <google/protobuf/util/json_util.h>
+#include <gtest/gtest.h>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+#include "coordinator/cli/json.h"
+#include "coordinator/cli/progress_json.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+struct Screen {
+  std::string out;
+  std::string err;
+  Console console(bool terminal, bool colour = false) {
+    return Console([this](absl::string_view text) { absl::StrAppend(&out, text); },
+                   [this](absl::string_view text) { absl::StrAppend(&err, text); }, terminal,
+                   colour);
+  }
+};
+
+Progress sample(double fraction = 0.5) {
+  Progress progress;
+  progress.job.id = 3;
+  progress.job.spec.name = "box";
+  progress.job.spec.settings = {.width = 8, .height = 4, .max_depth = 2, .seed = 0};
+  progress.job.spec.stop = StopAtSamples{16};
+  progress.job.fraction = fraction;
+  progress.job.workers = {{"anna", 2, 10, {0, 4}, "rendering"}};
+  return progress;
+}
+
+google::protobuf::Struct parsed(const std::string& line) {
+  google::protobuf::Struct message;
+  EXPECT_TRUE(google::protobuf::util::JsonStringToMessage(line, &message).ok()) << line;
+  return message;
+}
+
+TEST(ProgressDisplay, APipeGetsOneLineASecondAndNoEscapes) {
+  Screen screen;
+  const Console console = screen.console(false);
+  ProgressDisplay display(console, {});
+  for (int i = 0; i <= 30; ++i) {
+    display.update(sample(i / 40.0), 100 + i * 0.1);
+  }
+  display.done(sample(1), {"box.png"});
+  const std::vector<std::string> lines = absl::StrSplit(screen.out, '\n', absl::SkipEmpty());
+  EXPECT_THAT(lines, ElementsAre("job 3 · box · 8×4 · until 16 samples", StartsWith("  0 %"),
+                                 StartsWith(" 25 %"), StartsWith(" 50 %"), StartsWith(" 75 %"),
+                                 "box.png · 0.00 s · 0 workers"));
+  EXPECT_THAT(screen.out, Not(HasSubstr("\x1b")));
+  EXPECT_EQ(screen.err, "");
+}
+
+TEST(ProgressDisplay, ATerminalIsRedrawnInPlaceAndLeftClean) {
+  Screen screen;
+  const Console console = screen.console(true);
+  ProgressDisplay display(console, {});
+  display.update(sample(0.25), 1);
+  EXPECT_EQ(screen.out,
+            "job 3 · box · 8×4 · until 16 samples\n"
+            " 25 % ━━━━━                0 samples\x1b[K\n"
+            "   anna      2 threads     10/s   rows 0–4\x1b[K\n\x1b[J");
+  screen.out.clear();
+  display.update(sample(0.5), 1.05);
+  EXPECT_EQ(screen.out, "") << "sooner than anybody could see";
+  display.update(sample(0.5), 2);
+  EXPECT_THAT(screen.out, StartsWith("\r\x1b[2A 50 %"));
+  screen.out.clear();
+  display.done(sample(1), {"box.png"});
+  EXPECT_EQ(screen.out, "\r\x1b[2A\x1b[Jbox.png · 0.00 s · 0 workers\n");
+}
+
+TEST(ProgressDisplay, ColoursAreOnlyUsedWhereTheyAreWanted) {
+  Screen screen;
+  const Console console = screen.console(true, true);
+  ProgressDisplay display(console, {});
+  display.update(sample(), 1);
+  EXPECT_THAT(screen.out, StartsWith("\x1b[1mjob 3"));
+}
+
+TEST(ProgressDisplay, QuietSaysTheLastLineOnly) {
+  Screen screen;
+  const Console console = screen.console(true);
+  ProgressDisplay display(console, {.quiet = true, .json = false});
+  display.update(sample(), 1);
+  display.preparing("sending", 1, 2, 1);
+  display.done(sample(1), {"box.png"});
+  EXPECT_EQ(screen.out, "box.png · 0.00 s · 0 workers\n");
+}
+
+TEST(ProgressDisplay, JsonIsOneValidObjectALine) {
+  Screen screen;
+  const Console console = screen.console(true);
+  ProgressDisplay display(console, {.quiet = false, .json = true});
+  display.preparing("sending the scene", 5, 20, 0);
+  display.preparing("sending the scene", 10, 20, 1);
+  display.update(sample(), 1);
+  display.note("gone \"away\"\n");
+  display.done(sample(1), {"a b.png"});
+  const std::vector<std::string> lines = absl::StrSplit(screen.out, '\n', absl::SkipEmpty());
+  std::vector<std::string> events;
+  for (const std::string& line : lines) {
+    events.push_back(parsed(line).fields().at("event").string_value());
+  }
+  EXPECT_THAT(events, ElementsAre("preparing", "job", "progress", "note", "done"));
+  const auto progress = parsed(lines[2]);
+  EXPECT_EQ(progress.fields().at("job").number_value(), 3);
+  EXPECT_EQ(progress.fields().at("fraction").number_value(), 0.5);
+  EXPECT_TRUE(progress.fields().at("error").has_null_value());
+  EXPECT_EQ(progress.fields()
+                .at("workers")
+                .list_value()
+                .values(0)
+                .struct_value()
+                .fields()
+                .at("name")
+                .string_value(),
+            "anna");
+  EXPECT_EQ(parsed(lines[4]).fields().at("outputs").list_value().values(0).string_value(),
+            "a b.png");
+}
+
+TEST(ProgressDisplay, BadSamplesAreAWarningOnStandardError) {
+  Screen screen;
+  const Console console = screen.console(false);
+  ProgressDisplay display(console, {.quiet = true, .json = false});
+  Progress progress = sample(1);
+  progress.job.counters.bad_samples = 1;
+  progress.bad_sample_at = "pixel (1, 2), sample 3";
+  display.done(progress, {"box.png"});
+  EXPECT_THAT(screen.err, HasSubstr("pixel (1, 2), sample 3"));
+}
+
+TEST(Painter, CutsToTheWindowAndRemembersWhatItDrew) {
+  Painter painter;
+  EXPECT_EQ(painter.frame({"abcdef", "gh", "ij"}, {.columns = 5, .rows = 3}),
+            "abc…\x1b[K\ngh\x1b[K\n\x1b[J");
+  EXPECT_EQ(painter.frame({"k"}, {.columns = 5, .rows = 3}), "\r\x1b[2Ak\x1b[K\n\x1b[J");
+  EXPECT_EQ(painter.clear(), "\r\x1b[1A\x1b[J");
+  EXPECT_EQ(painter.clear(), "");
+}
+
+TEST(Json, EscapesWhatMustBeAndMendsWhatIsNotUtf8) {
+  JsonObject object;
+  object.text("a\"b", "\\ \x01 ü \xff \xc3")
+      .number("inf", 1e308 * 10)
+      .number("x", 0.1)
+      .known_number("u", -1);
+  EXPECT_EQ(object.str(),
+            "{\"a\\\"b\":\"\\\\ \\u0001 ü \xEF\xBF\xBD "
+            "\xEF\xBF\xBD\",\"inf\":null,\"x\":0.1,\"u\":null}");
+  parsed(object.str());
+}
+
+TEST(Console, AnErrorIsOneLineWhateverItHolds) {
+  Screen screen;
+  EXPECT_EQ(screen.console(false).fail(ExitCode::kWrong, "a\nb\x1b"), ExitCode::kWrong);
+  EXPECT_EQ(screen.err, "bandsaw: a b?\n");
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

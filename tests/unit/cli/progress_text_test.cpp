@@ -1,0 +1,119 @@
+#include "coordinator/cli/progress_text.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace bandsaw::coordinator {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+Progress sample() {
+  Progress progress;
+  JobView& job = progress.job;
+  job.id = 7;
+  job.spec.name = "cornell";
+  job.spec.settings.width = 600;
+  job.spec.settings.height = 600;
+  job.spec.stop = StopAtError{.relative_rmse = 0.01};
+  job.fraction = 0.624;
+  job.error = 0.016;
+  job.samples_done = 48'200'000;
+  job.samples_per_s = 5.2e6;
+  job.remaining_s = 8.3;
+  job.elapsed_s = 12;
+  job.workers_used = 4;
+  job.workers = {{"desk", 16, 3.1e6, {320, 352}, "rendering"},
+                 {"laptop", 8, 1.4e6, {352, 368}, "rendering"}};
+  return progress;
+}
+
+TEST(ProgressText, IsWhatTheDesignShows) {
+  EXPECT_EQ(header_line(sample()), "job 7 · cornell · 600×600 · until error ≤ 1 %");
+  EXPECT_EQ(bar_line(sample(), 80),
+            " 62 % ━━━━━━━━━━━━╸        error 1.6 % · 48 Msamples · 5.2 M/s · 0:09 left");
+  EXPECT_THAT(worker_lines(sample(), 9),
+              ElementsAre("   desk     16 threads  3.1 M/s   rows 320–352",
+                          "   laptop    8 threads  1.4 M/s   rows 352–368"));
+  EXPECT_EQ(plain_line(sample()),
+            " 62 % · error 1.6 % · 48 Msamples · 5.2 M/s · 0:09 left · 2 workers");
+}
+
+TEST(ProgressText, HalfCellsOfTheBarAreShown) {
+  Progress progress = sample();
+  progress.job.fraction = 0.63;
+  EXPECT_THAT(bar_line(progress, 80), HasSubstr("━━━━━━━━━━━━╸        error"));
+  progress.job.fraction = 0;
+  EXPECT_THAT(bar_line(progress, 80), HasSubstr("  0 %                      error"));
+  progress.job.fraction = 7;
+  EXPECT_THAT(bar_line(progress, 80), HasSubstr("100 % ━━━━━━━━━━━━━━━━━━━━ error"));
+}
+
+TEST(ProgressText, ANarrowWindowHasAShorterBar) {
+  const std::string line = bar_line(sample(), 63);
+  EXPECT_EQ(line, " 62 % ━━━━━╸    error 1.6 % · 48 Msamples · 5.2 M/s · 0:09 left");
+  EXPECT_EQ(bar_line(sample(), 10), " 62 %  error 1.6 % · 48 Msamples · 5.2 M/s · 0:09 left");
+}
+
+TEST(ProgressText, WhatIsNotKnownIsNotShown) {
+  Progress progress = sample();
+  progress.job.error = -1;
+  progress.job.remaining_s = -1;
+  progress.job.samples_per_s = 0;
+  progress.job.workers.clear();
+  EXPECT_EQ(plain_line(progress), " 62 % · 48 Msamples · 0 workers");
+}
+
+TEST(ProgressText, NinetyNineAndAHalfPercentIsNotDone) {
+  Progress progress = sample();
+  progress.job.fraction = 0.9999;
+  EXPECT_THAT(plain_line(progress), HasSubstr(" 99 %"));
+}
+
+TEST(ProgressText, AJobThatWaitsSaysForWhat) {
+  Progress progress = sample();
+  progress.job.workers.clear();
+  progress.job.reason = "no worker is connected";
+  EXPECT_THAT(worker_lines(progress, 5), ElementsAre("   no worker is connected"));
+  EXPECT_THAT(plain_line(progress), HasSubstr("· no worker is connected"));
+}
+
+TEST(ProgressText, AWorkerThatDoesNotRenderSaysWhatItDoes) {
+  Progress progress = sample();
+  progress.job.workers = {{"b\x1bx", 1, 0, {0, 0}, "fetching scene"}};
+  EXPECT_THAT(worker_lines(progress, 5),
+              ElementsAre("   b?x       1 thread             fetching scene"));
+}
+
+TEST(ProgressText, ManyWorkersAreCounted) {
+  Progress progress = sample();
+  progress.job.workers.resize(10, progress.job.workers.front());
+  const auto lines = worker_lines(progress, 4);
+  ASSERT_EQ(lines.size(), 4u);
+  EXPECT_EQ(lines.back(), "   … and 7 more workers");
+  EXPECT_EQ(worker_lines(progress, 10).size(), 10u);
+}
+
+TEST(ProgressText, TheLastLineSaysWhatItCost) {
+  Progress progress = sample();
+  progress.job.elapsed_s = 21.43;
+  progress.job.error = 0.0099;
+  EXPECT_EQ(final_line(progress, "cornell.png"), "cornell.png · error 0.99 % · 21.4 s · 4 workers");
+  progress.job.error = -1;
+  progress.threads = 1;
+  EXPECT_EQ(final_line(progress, "cornell.png"), "cornell.png · 21.4 s · 1 thread");
+}
+
+TEST(ProgressText, BadSamplesAreSaidLoudly) {
+  Progress progress = sample();
+  EXPECT_THAT(bad_samples_line(progress), IsEmpty());
+  progress.job.counters = {.rays = 1, .bad_samples = 3, .bad_x = 5, .bad_y = 6, .bad_sample = 9};
+  progress.bad_sample_at = bad_sample_text(progress.job.counters);
+  EXPECT_THAT(bad_samples_line(progress), HasSubstr("warning: 3 samples"));
+  EXPECT_THAT(bad_samples_line(progress), HasSubstr("pixel (5, 6), sample 9"));
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,51 @@
+#include "coordinator/cli/scene_summary.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace bandsaw::coordinator {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+
+SceneDescription scene() {
+  SceneDescription scene;
+  scene.camera = OrthographicCamera{.position = {1, 2, 3}, .look_at = {1, 2, 0}, .height = 4};
+  scene.textures = {ConstantTexture{{1, 1, 1}}};
+  scene.materials = {Diffuse{TextureId{0}}, Emissive{TextureId{0}}, Diffuse{TextureId{0}}};
+  Geometry& g = scene.geometry;
+  g.spheres = {{{0, 0, 0}, 2, MaterialId{1}}};
+  g.triangles = {{{0, 0, 0}, {9, 0, 0}, {0, 1, 0}, MaterialId{0}}};
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
+  mesh.triangles = {{0, 1, 2}, {1, 2, 3}};
+  g.meshes = {mesh};
+  g.instances = {{MeshId{0}, MaterialId{1}, translation({0, 0, 10})},
+                 {MeshId{0}, MaterialId{2}, scaling({-7, 1, 1})}};
+  return scene;
+}
+
+TEST(SceneSummary, CountsWhatIsThere) {
+  const SceneSummary summary = summary_of(scene(), {}, 1234);
+  EXPECT_EQ(summary.triangles, 5u);
+  EXPECT_EQ(summary.lights, 3u);
+  EXPECT_EQ(summary.bounds.lo, (Vec3{-7, -2, -2}));
+  EXPECT_EQ(summary.bounds.hi, (Vec3{9, 2, 10}));
+  ASSERT_EQ(summary.materials.size(), 2u);
+  EXPECT_EQ(summary.materials[0].what, "diffuse");
+  EXPECT_EQ(summary.materials[0].count, 2u);
+  EXPECT_EQ(summary.camera, "orthographic, 4 high, at [1, 2, 3], looking at [1, 2, 0]");
+}
+
+TEST(SceneSummary, SaysWhatIsLeftOut) {
+  PackageInfo info;
+  EXPECT_THAT(summary_text(summary_of(scene(), info, 0)), Contains(HasSubstr("nothing")));
+  info.warnings = {"no bones"};
+  const auto lines = summary_text(summary_of(scene(), info, 0));
+  EXPECT_THAT(lines.back(), HasSubstr("no bones"));
+  EXPECT_THAT(summary_json(summary_of(scene(), info, 0)), HasSubstr("\"warnings\":[\"no bones\"]"));
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

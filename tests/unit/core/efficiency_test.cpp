@@ -1,0 +1,94 @@
+// How much of the workers' time is used, and how long the end drags on, in virtual time: sixteen
+// workers whose renderer sleeps by a cost map. The figures are printed.
+
+#include <cstdio>
+
+#include "gtest/gtest.h"
+#include "sim_bench.h"
+
+namespace bandsaw::coordinator::sim {
+namespace {
+
+constexpr std::uint32_t kHeight = 1080;
+double even(std::uint32_t) { return 1; }
+/// 20:1 from the top to the bottom, with the mean 1.
+double uneven(std::uint32_t row) { return row < kHeight / 2 ? 40.0 / 21 : 2.0 / 21; }
+
+std::vector<double> speeds(double seconds, bool equal) {
+  const double all = 1920.0 * kHeight * 64 / seconds;
+  std::vector<double> speeds;
+  for (int i = 0; i < 16; ++i) {
+    speeds.push_back(all / 16 * (equal ? 1 : i < 8 ? 0.4 : 1.6));
+  }
+  return speeds;
+}
+
+/// The worst of a few seeds.
+BenchResult measure(const char* name, BenchFarm farm) {
+  BenchResult worst;
+  worst.efficiency = 1;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    farm.seed = seed;
+    const BenchResult one = run_bench(farm);
+    EXPECT_EQ(one.broken, "");
+    worst.seconds = std::max(worst.seconds, one.seconds);
+    worst.efficiency = std::min(worst.efficiency, one.efficiency);
+    worst.tail = std::max(worst.tail, one.tail);
+    worst.bands = std::max(worst.bands, one.bands);
+    worst.wasted = std::max(worst.wasted, one.wasted);
+  }
+  std::printf("%-34s %6.2f s  efficiency %6.2f %%  tail %5.2f %%  %llu bands, %llu for nothing\n",
+              name, worst.seconds, 100 * worst.efficiency, 100 * worst.tail,
+              static_cast<unsigned long long>(worst.bands),
+              static_cast<unsigned long long>(worst.wasted));
+  return worst;
+}
+
+TEST(Efficiency, OfSixteenEqualWorkers) {
+  const BenchResult r = measure("equal", {.speeds = speeds(60, true), .cost_of = even});
+  EXPECT_GE(r.efficiency, 0.97);
+  EXPECT_LE(r.tail, 0.02);
+}
+
+TEST(Efficiency, OfAnUnevenImage) {
+  const BenchResult r = measure("uneven 20:1", {.speeds = speeds(60, true), .cost_of = uneven});
+  EXPECT_GE(r.efficiency, 0.95);
+  EXPECT_LE(r.tail, 0.02);
+}
+
+TEST(Efficiency, OfUnequalWorkers) {
+  const BenchResult r = measure("speeds 1:4", {.speeds = speeds(60, false), .cost_of = even});
+  EXPECT_GE(r.efficiency, 0.95);
+  EXPECT_LE(r.tail, 0.02);
+}
+
+TEST(Efficiency, OfUnequalWorkersOnAnUnevenImageThatTheyTakeUnevenTimesFor) {
+  const BenchResult r = measure("20:1, speeds 1:4, noise 30 %",
+                                {.speeds = speeds(60, false), .cost_of = uneven, .noise = 0.3});
+  EXPECT_GE(r.efficiency, 0.95);
+  EXPECT_LE(r.tail, 0.02);
+}
+
+TEST(Efficiency, OfAShortJob) {
+  const BenchResult r =
+      measure("20:1, speeds 1:4, short", {.speeds = speeds(10, false), .cost_of = uneven});
+  EXPECT_GE(r.efficiency, 0.75);
+  EXPECT_LE(r.tail, 0.05);
+}
+
+TEST(Efficiency, OfWorkersTwentyTimesSlowerThanGuessed) {
+  const BenchResult r =
+      measure("slow, 20:1, speeds 1:4", {.speeds = speeds(1200, false), .cost_of = uneven});
+  EXPECT_GE(r.efficiency, 0.95);
+  EXPECT_LE(r.tail, 0.02);
+}
+
+TEST(Efficiency, WhenAWorkerStallsNearTheEnd) {
+  const BenchResult r =
+      measure("one stalls", {.speeds = speeds(60, true), .cost_of = even, .stalls_at = 59});
+  EXPECT_GE(r.efficiency, 0.93);
+  EXPECT_LE(r.tail, 0.05);
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator::sim

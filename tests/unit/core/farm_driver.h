@@ -1,0 +1,158 @@
+#pragma once
+
+// A core with its world played by hand: inputs in, and what it said kept for looking at.
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "coordinator/core/core.h"
+#include "gtest/gtest.h"
+
+namespace bandsaw::coordinator {
+
+inline CoreOptions test_options() {
+  CoreOptions options;
+  options.fitness = {1, 2, 3};
+  options.epoch = "one";
+  return options;
+}
+
+inline JobSpec test_job(std::string request, const StopRule& stop, std::uint32_t width = 8,
+                        std::uint32_t height = 8) {
+  JobSpec spec;
+  spec.request_id = std::move(request);
+  spec.name = "test";
+  spec.manifest = std::string(64, 'a');
+  spec.settings.width = width;
+  spec.settings.height = height;
+  spec.stop = stop;
+  return spec;
+}
+
+/// What an honest worker's rows hash to.
+inline std::vector<std::uint64_t> honest_digests(const Band& band) {
+  std::vector<std::uint64_t> digests;
+  for (std::uint32_t row = band.rows.first; row < band.rows.last; ++row) {
+    digests.push_back(band.samples.first * 1'000'003 + band.samples.last * 7'919 + row + 1);
+  }
+  return digests;
+}
+
+class FarmDriver {
+ public:
+  explicit FarmDriver(CoreOptions options = test_options()) : core(std::move(options)) {}
+
+  Step say(const Input& input) {
+    Step step = core.step(input, now);
+    take(step);
+    return step;
+  }
+
+  void take(const Step& step) {
+    for (const Record& record : step.records) {
+      records.push_back(record);
+    }
+    for (const Action& action : step.actions) {
+      actions.push_back(action);
+    }
+    EXPECT_EQ(core.broken_invariant().value_or(""), "");
+  }
+
+  JobId submit(JobSpec spec) { return say(input::Submit{std::move(spec)}).job; }
+
+  Step hello(SessionId session, const std::string& instance, std::uint32_t max_bands = 2,
+             std::vector<WorkerHello::Held> held = {}) {
+    WorkerHello worker;
+    worker.instance = instance;
+    worker.name = "worker-" + instance;
+    worker.build = "test build";
+    worker.protocol = 1;
+    worker.pixel_version = 2;
+    worker.canary = 3;
+    worker.max_bands = max_bands;
+    worker.held = std::move(held);
+    return say(input::Hello{session, std::move(worker)});
+  }
+
+  Step stored(const action::Lease& lease, const std::string& instance, double render_s = 0.5) {
+    input::BandStored in;
+    in.job = lease.job;
+    in.band = lease.band;
+    in.row_digests = honest_digests(lease.band);
+    in.instance = instance;
+    in.render_s = render_s;
+    in.cpu_s = render_s;
+    in.counters.rays = lease.band.rows.count() * lease.band.samples.samples();
+    return say(in);
+  }
+
+  void heartbeat(SessionId session) { say(input::Heartbeat{session, {}, "rendering"}); }
+
+  /// Ticks of half a second; these sessions stay in touch.
+  void pass_time(double seconds, const std::vector<SessionId>& sessions = {}) {
+    for (double passed = 0; passed < seconds; passed += 0.5) {
+      now += 0.5;
+      for (const SessionId session : sessions) {
+        heartbeat(session);
+      }
+      say(input::Tick{});
+    }
+  }
+
+  /// Renders everything that one worker is given until it is given nothing more.
+  void render_all(SessionId session, const std::string& instance) {
+    for (std::size_t i = 0; i < actions.size(); ++i) {
+      if (const auto* lease = std::get_if<action::Lease>(&actions[i]);
+          lease != nullptr && lease->session == session) {
+        now += 0.1;
+        stored(action::Lease(*lease), instance);
+      }
+    }
+  }
+
+  /// All actions of a kind so far.
+  template <class A>
+  std::vector<A> all() const {
+    std::vector<A> found;
+    for (const Action& action : actions) {
+      if (const A* a = std::get_if<A>(&action)) {
+        found.push_back(*a);
+      }
+    }
+    return found;
+  }
+
+  template <class R>
+  std::vector<R> all_records() const {
+    std::vector<R> found;
+    for (const Record& record : records) {
+      if (const R* r = std::get_if<R>(&record)) {
+        found.push_back(*r);
+      }
+    }
+    return found;
+  }
+
+  JobView job(JobId id) const { return *core.job(id, now); }
+
+  Core core;
+  Time now = 1000;
+  std::vector<Record> records;
+  std::vector<Action> actions;
+};
+
+/// The actions of a kind in one step.
+template <class A>
+std::vector<A> in(const Step& step) {
+  std::vector<A> found;
+  for (const Action& action : step.actions) {
+    if (const A* a = std::get_if<A>(&action)) {
+      found.push_back(*a);
+    }
+  }
+  return found;
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,162 @@
+// Workers that go, freeze, come back, fail and lie.
+
+#include "farm_driver.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+TEST(Loss, ABandOfALostWorkerIsGivenToAnother) {
+  FarmDriver farm;
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.hello(1, "a");
+  const auto first = farm.all<action::Lease>();
+  ASSERT_EQ(first.size(), 1u);
+  farm.hello(2, "b");
+  const Step step = farm.say(input::Lost{1, "connection reset"});
+  const auto again = in<action::Lease>(step);
+  ASSERT_EQ(again.size(), 1u);
+  EXPECT_EQ(again[0].session, 2u);
+  EXPECT_EQ(again[0].band, first[0].band);
+  EXPECT_EQ(again[0].attempt, 2u);
+  farm.stored(again[0], "b");
+  EXPECT_EQ(farm.job(job).state, JobState::kFinishing);
+}
+
+TEST(Loss, ALateResultCountsAndEndsTheSecondAttempt) {
+  FarmDriver farm;
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.hello(1, "a");
+  const auto first = farm.all<action::Lease>();
+  farm.hello(2, "b");
+  farm.say(input::Lost{1, "connection reset"});
+  const Step late = farm.stored(first[0], "a");
+  ASSERT_EQ(in<action::Revoke>(late).size(), 1u);
+  EXPECT_EQ(in<action::Revoke>(late)[0].session, 2u);
+  EXPECT_EQ(farm.job(job).state, JobState::kFinishing);
+}
+
+TEST(Loss, ASilentWorkerIsClosedAndItsBandGivenToAnother) {
+  FarmDriver farm;
+  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.hello(1, "a");
+  farm.hello(2, "b");
+  farm.pass_time(6, {2});
+  EXPECT_EQ(farm.all<action::Close>().size(), 1u);
+  EXPECT_EQ(farm.all<action::Lease>().back().session, 2u);
+}
+
+TEST(Loss, AClockThatJumpsLosesNobody) {
+  FarmDriver farm;
+  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.hello(1, "a");
+  farm.now += 1e6;
+  farm.say(input::Tick{});
+  farm.now -= 2e6;
+  farm.say(input::Tick{});
+  EXPECT_TRUE(farm.all<action::Close>().empty());
+}
+
+TEST(Loss, AWorkerThatIsHeardOfButDoesNotAdvanceLosesItsBand) {
+  FarmDriver farm;
+  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.hello(1, "a");
+  farm.pass_time(20, {1});
+  const LeaseId id = farm.all<action::Lease>()[0].lease;
+  farm.say(input::Heartbeat{1, {{id, 0, true, 17}}, "fetching scene"});
+  farm.pass_time(20, {1});
+  EXPECT_TRUE(farm.all<action::Revoke>().empty());
+  farm.pass_time(20, {1});
+  EXPECT_FALSE(farm.all<action::Revoke>().empty());
+}
+
+TEST(Loss, AReconnectTakesTheSameLeaseUpAgain) {
+  FarmDriver farm;
+  farm.submit(test_job("r1", StopAtSamples{16}, 8, 2));
+  farm.hello(1, "a");
+  const auto leases = farm.all<action::Lease>();
+  const action::Lease lease = leases[0];
+  const Step step = farm.hello(2, "a", 2, {{lease.job, lease.band, lease.lease, "one", false}});
+  ASSERT_EQ(in<action::Close>(step).size(), 1u);
+  EXPECT_EQ(in<action::Close>(step)[0].session, 1u);
+  ASSERT_FALSE(in<action::Lease>(step).empty());
+  EXPECT_EQ(in<action::Lease>(step)[0].lease, lease.lease);
+  EXPECT_EQ(in<action::Lease>(step)[0].session, 2u);
+  EXPECT_EQ(in<action::Lease>(step)[0].band, lease.band);
+}
+
+TEST(Loss, ABandThatOneWorkerCannotRenderGoesToAnother) {
+  FarmDriver farm;
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.hello(1, "a");
+  const auto first = farm.all<action::Lease>();
+  farm.hello(2, "b");
+  const Step step = farm.say(input::BandFailed{1, first[0].lease, "out of memory", {}});
+  ASSERT_EQ(in<action::Lease>(step).size(), 1u);
+  EXPECT_EQ(in<action::Lease>(step)[0].session, 2u);
+  EXPECT_EQ(farm.job(job).state, JobState::kRunning);
+}
+
+TEST(Loss, ABandThatFailsThreeTimesFailsTheJobWithTheReason) {
+  FarmDriver farm;
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.hello(1, "a");
+  for (std::size_t i = 0; i < 3; ++i) {
+    ASSERT_GT(farm.all<action::Lease>().size(), i);
+    farm.say(input::BandFailed{1, farm.all<action::Lease>()[i].lease, "out of memory", {}});
+  }
+  EXPECT_EQ(farm.job(job).state, JobState::kFailed);
+  EXPECT_NE(farm.job(job).reason.find("out of memory"), std::string::npos);
+  EXPECT_EQ(farm.all<action::DropBands>().size(), 1u);
+}
+
+TEST(Loss, AWorkerThatReturnsOtherPixelsGetsNoMoreWork) {
+  FarmDriver farm;
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{32}, 8, 1));
+  farm.hello(1, "a", 1);
+  const auto first = farm.all<action::Lease>();
+  farm.say(input::Lost{1, "connection reset"});
+  farm.hello(2, "b", 1);
+  farm.stored(first[0], "b");
+  farm.hello(3, "a", 1);
+  input::BandStored wrong;
+  wrong.job = job;
+  wrong.band = first[0].band;
+  wrong.row_digests = {42};
+  wrong.instance = "a";
+  farm.say(wrong);
+  ASSERT_EQ(farm.all<action::Close>().size(), 1u);
+  EXPECT_EQ(farm.all<action::Close>()[0].session, 3u);
+  EXPECT_NE(farm.job(job).reason.find("different pixels"), std::string::npos);
+  EXPECT_EQ(in<action::Refuse>(farm.hello(4, "a")).size(), 1u);
+  EXPECT_EQ(farm.core.workers(farm.now)[0].state, "refused");
+}
+
+TEST(Loss, AWorkerThatDiffersIsRefusedWithWhatDiffers) {
+  FarmDriver farm;
+  WorkerHello worker;
+  worker.instance = "a";
+  worker.protocol = 1;
+  worker.pixel_version = 1;
+  worker.canary = 3;
+  worker.build = "old build";
+  const auto refused = in<action::Refuse>(farm.say(input::Hello{1, worker}));
+  ASSERT_EQ(refused.size(), 1u);
+  EXPECT_EQ(refused[0].reason,
+            "pixel version 1, the coordinator's is 2: build old build; update the worker");
+  EXPECT_GT(refused[0].retry_after_ms, 0u);
+}
+
+TEST(Loss, ADrainingWorkerKeepsWhatItHasAndGetsNothingMore) {
+  FarmDriver farm;
+  farm.submit(test_job("r1", StopAtSamples{64}));
+  farm.hello(1, "a");
+  farm.say(input::Draining{1, "SIGTERM"});
+  const auto leases = farm.all<action::Lease>();
+  farm.stored(leases[0], "a");
+  EXPECT_EQ(farm.all<action::Lease>().size(), leases.size());
+  EXPECT_TRUE(farm.all<action::Revoke>().empty());
+  EXPECT_EQ(farm.core.workers(farm.now)[0].state, "draining");
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,123 @@
+// Several jobs: who comes first, pausing and resuming, and why a job waits.
+
+#include "farm_driver.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+JobId submit(FarmDriver& farm, const std::string& request, std::int32_t priority) {
+  return farm.say(input::Submit{test_job(request, StopAtSamples{64}, 64, 64), priority}).job;
+}
+
+JobId next_leased(FarmDriver& farm) {
+  const action::Lease last = farm.all<action::Lease>().back();
+  farm.stored(last, "a");
+  return farm.all<action::Lease>().back().job;
+}
+
+TEST(Priority, ComesBeforeOrderAndCanChange) {
+  FarmDriver farm;
+  const JobId old = submit(farm, "r1", 0);
+  farm.hello(1, "a", 1);
+  EXPECT_EQ(farm.all<action::Lease>().back().job, old);
+  const JobId urgent = submit(farm, "r2", 10);
+  EXPECT_EQ(next_leased(farm), urgent);
+  farm.say(input::SetPriority{old, 11});
+  EXPECT_EQ(next_leased(farm), old);
+  farm.say(input::SetPriority{old, 10});
+  EXPECT_EQ(next_leased(farm), old) << "of equal priority the older one is first";
+  EXPECT_EQ(farm.job(old).priority, 10);
+}
+
+TEST(Priority, OutOfRangeOrOfNoJobIsAnError) {
+  FarmDriver farm;
+  const JobId job = submit(farm, "r1", 0);
+  EXPECT_TRUE(absl::IsInvalidArgument(farm.say(input::SetPriority{job, 1001}).status));
+  EXPECT_TRUE(absl::IsNotFound(farm.say(input::SetPriority{job + 1, 1}).status));
+  farm.say(input::Cancel{job});
+  EXPECT_TRUE(absl::IsFailedPrecondition(farm.say(input::SetPriority{job, 1}).status));
+  EXPECT_TRUE(absl::IsFailedPrecondition(farm.say(input::Pause{job}).status));
+}
+
+TEST(Pause, TakesBackWhatIsNotBegunAndKeepsWhatIs) {
+  FarmDriver farm;
+  const JobId job = submit(farm, "r1", 0);
+  farm.hello(1, "a", 2);
+  const auto leases = farm.all<action::Lease>();
+  ASSERT_EQ(leases.size(), 2u);
+  const Step step = farm.say(input::Pause{job});
+  ASSERT_EQ(in<action::Revoke>(step).size(), 1u);
+  EXPECT_EQ(in<action::Revoke>(step)[0].leases, std::vector<LeaseId>{leases[1].lease});
+  EXPECT_EQ(farm.job(job).state, JobState::kPaused);
+  const Step stored = farm.stored(leases[0], "a");
+  EXPECT_EQ(in<action::AddToFilm>(stored).size(), 1u);
+  EXPECT_TRUE(in<action::Lease>(stored).empty());
+  EXPECT_FALSE(in<action::Lease>(farm.say(input::Resume{job})).empty());
+  EXPECT_EQ(farm.job(job).state, JobState::kRunning);
+}
+
+TEST(Pause, LeavesTheWorkersToOtherJobs) {
+  FarmDriver farm;
+  const JobId first = submit(farm, "r1", 0);
+  const JobId second = submit(farm, "r2", 0);
+  farm.hello(1, "a", 2);
+  const auto leases = in<action::Lease>(farm.say(input::Pause{first}));
+  ASSERT_EQ(leases.size(), 1u);
+  EXPECT_EQ(leases[0].job, second);
+}
+
+TEST(Pause, OfAPersonIsEndedByNoDiskAndNoRestart) {
+  FarmDriver farm;
+  const JobId job = submit(farm, "r1", 7);
+  farm.say(input::Pause{job});
+  farm.say(input::StorageFailed{job, "the disk is full"});
+  farm.say(input::StorageBack{});
+  EXPECT_EQ(farm.job(job).state, JobState::kPaused);
+  FarmDriver next;
+  for (const Record& record : farm.records) {
+    next.core.replay(record);
+  }
+  next.take(next.core.replayed(next.now));
+  EXPECT_EQ(next.job(job).state, JobState::kPaused);
+  EXPECT_EQ(next.job(job).priority, 7);
+  next.say(input::Resume{job});
+  EXPECT_EQ(next.job(job).state, JobState::kRunning);
+}
+
+TEST(Why, SaysWhatAJobWaitsFor) {
+  FarmDriver farm;
+  const JobId urgent = submit(farm, "r1", 10);
+  const JobId job = submit(farm, "r2", 0);
+  EXPECT_EQ(farm.core.why(job, farm.now).at(0), "no worker is connected");
+  farm.hello(1, "a", 1);
+  EXPECT_EQ(farm.core.why(job, farm.now).at(0), "all workers are busy with job 1 (priority 10)");
+  EXPECT_EQ(farm.job(job).reason, "all workers are busy with job 1 (priority 10)");
+  EXPECT_NE(farm.core.why(urgent, farm.now).at(0).find("worker-a is at it"), std::string::npos);
+  farm.say(input::Pause{job});
+  EXPECT_NE(farm.core.why(job, farm.now).at(0).find("paused by a person"), std::string::npos);
+  farm.say(input::Cancel{job});
+  EXPECT_EQ(farm.core.why(job, farm.now).at(0), "it was cancelled");
+  EXPECT_TRUE(farm.core.why(99, farm.now).empty());
+}
+
+TEST(Why, NamesWorkersThatWereRefusedUntilTheyStayAway) {
+  FarmDriver farm;
+  const JobId job = submit(farm, "r1", 0);
+  WorkerHello worker;
+  worker.instance = "x";
+  worker.name = "desk";
+  worker.protocol = 1;
+  worker.pixel_version = 2;
+  worker.canary = 4;
+  worker.build = "1a2b";
+  farm.say(input::Hello{1, worker});
+  EXPECT_NE(farm.core.why(job, farm.now).at(0).find("desk was refused: its test render"),
+            std::string::npos);
+  ASSERT_EQ(farm.core.workers(farm.now).size(), 1u);
+  EXPECT_EQ(farm.core.workers(farm.now)[0].state, "refused");
+  farm.pass_time(200);
+  EXPECT_TRUE(farm.core.workers(farm.now).empty());
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

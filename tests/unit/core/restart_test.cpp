@@ -1,0 +1,174 @@
+// A coordinator that starts again: what was journalled and what lies on disk is all there is.
+
+#include "farm_driver.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+/// A job of eight rows of which the first lease is stored, and what a second life is told of it.
+struct Before {
+  FarmDriver farm;
+  std::vector<action::Lease> leases;
+  input::BandStored band;
+
+  Before() {
+    farm.submit(test_job("r1", StopAtSamples{16}));
+    farm.hello(1, "a", 3);
+    leases = farm.all<action::Lease>();
+    band.job = 1;
+    band.band = leases[0].band;
+    band.row_digests = honest_digests(band.band);
+  }
+
+  /// The second life, before its `replayed`.
+  FarmDriver restart(bool with_band = true) const {
+    CoreOptions options = test_options();
+    options.epoch = "two";
+    options.band_target_s = 1e-3;
+    FarmDriver next(options);
+    for (const Record& record : farm.records) {
+      next.core.replay(record);
+    }
+    if (with_band) {
+      next.core.replay(band);
+    }
+    return next;
+  }
+};
+
+/// Rows of a small image that take a worker a while: leases are of a row or two.
+CoreOptions slow() {
+  CoreOptions options = test_options();
+  options.band_target_s = 1e-3;
+  return options;
+}
+
+TEST(Restart, NothingIsLeasedBeforeTheFormerWorkersAreBack) {
+  const Before before;
+  FarmDriver next = before.restart(false);
+  next.take(next.core.replayed(next.now));
+  next.hello(1, "b");
+  EXPECT_TRUE(next.all<action::Lease>().empty());
+  EXPECT_NE(next.job(1).reason.find("waits for 1 workers"), std::string::npos);
+  next.hello(2, "a");
+  EXPECT_FALSE(next.all<action::Lease>().empty());
+}
+
+TEST(Restart, FormerWorkersThatStayAwayAreAwaitedForAWhileOnly) {
+  const Before before;
+  FarmDriver next = before.restart(false);
+  next.take(next.core.replayed(next.now));
+  next.hello(1, "b");
+  next.pass_time(5, {1});
+  EXPECT_TRUE(next.all<action::Lease>().empty());
+  next.pass_time(2, {1});
+  EXPECT_FALSE(next.all<action::Lease>().empty());
+  const auto left = next.all_records<record::WorkerLeft>();
+  ASSERT_EQ(left.size(), 1u);
+  EXPECT_EQ(left[0].instance, "a");
+}
+
+TEST(Restart, StoredRowsAreNotLeasedAgain) {
+  const Before before;
+  FarmDriver next = before.restart();
+  next.take(next.core.replayed(next.now));
+  next.hello(1, "a");
+  next.render_all(1, "a");
+  for (const auto& lease : next.all<action::Lease>()) {
+    EXPECT_GE(lease.band.rows.first, before.band.band.rows.last);
+  }
+}
+
+TEST(Restart, AHeldBandIsTakenUpUnderItsOldLeaseId) {
+  FarmDriver farm(slow());
+  farm.submit(test_job("r1", StopAtSamples{16}));
+  farm.hello(1, "a", 1);
+  const action::Lease lease = farm.all<action::Lease>()[0];
+  CoreOptions options = slow();
+  options.epoch = "two";
+  FarmDriver next(options);
+  for (const Record& record : farm.records) {
+    next.core.replay(record);
+  }
+  next.take(next.core.replayed(next.now));
+  const Step step = next.hello(7, "a", 1, {{1, lease.band, lease.lease, "one", false}});
+  ASSERT_FALSE(in<action::Lease>(step).empty());
+  EXPECT_EQ(in<action::Lease>(step)[0].lease, lease.lease);
+  EXPECT_EQ(in<action::Lease>(step)[0].band, lease.band);
+  EXPECT_TRUE(in<action::Revoke>(step).empty());
+}
+
+TEST(Restart, AHeldBandThatIsNotWantedIsRevoked) {
+  const Before before;
+  FarmDriver next = before.restart();
+  next.take(next.core.replayed(next.now));
+  const Step step = next.hello(
+      7, "a", 1,
+      {{1, before.leases[0].band, before.leases[0].lease, "one", true}, {9, {}, 5, "one", false}});
+  ASSERT_EQ(in<action::Revoke>(step).size(), 1u);
+  EXPECT_EQ(in<action::Revoke>(step)[0].leases.size(), 2u);
+}
+
+TEST(Restart, AJobOfWhichAllIsThereIsFinishedAgain) {
+  FarmDriver farm;
+  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.hello(1, "a");
+  const action::Lease lease = farm.all<action::Lease>()[0];
+  FarmDriver next;
+  for (const Record& record : farm.records) {
+    next.core.replay(record);
+  }
+  next.core.replay(input::BandStored{1, lease.band, honest_digests(lease.band), "", {}, 0, 0});
+  const Step step = next.core.replayed(next.now);
+  ASSERT_EQ(in<action::WriteResult>(step).size(), 1u);
+  EXPECT_EQ(in<action::WriteResult>(step)[0].samples, 16u);
+}
+
+TEST(Restart, AJobThatWasFinishingWithoutAllOfItsBandsRendersTheRest) {
+  FarmDriver farm;
+  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.hello(1, "a");
+  farm.stored(farm.all<action::Lease>()[0], "a");
+  ASSERT_EQ(farm.job(1).state, JobState::kFinishing);
+  FarmDriver next;
+  for (const Record& record : farm.records) {
+    next.core.replay(record);
+  }
+  next.take(next.core.replayed(next.now));
+  EXPECT_EQ(next.job(1).state, JobState::kRunning);
+  next.hello(1, "a");
+  EXPECT_EQ(next.all<action::Lease>().size(), 1u);
+}
+
+TEST(Reconnect, LeasesThatAreNotNamedAreFreeAgain) {
+  FarmDriver farm(slow());
+  farm.submit(test_job("r1", StopAtSamples{16}));
+  farm.hello(1, "a", 1);
+  farm.hello(2, "b", 8);
+  farm.render_all(2, "b");
+  EXPECT_EQ(farm.job(1).state, JobState::kRunning);
+  const Step step = farm.hello(3, "a", 1);
+  ASSERT_EQ(in<action::Lease>(step).size(), 1u);
+  farm.render_all(3, "a");
+  farm.render_all(2, "b");
+  EXPECT_EQ(farm.job(1).state, JobState::kFinishing);
+}
+
+TEST(Reconnect, AFinishedBandIsBetterThanOneThatAnotherHasBegun) {
+  FarmDriver farm(slow());
+  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.hello(1, "a", 1);
+  const action::Lease lease = farm.all<action::Lease>()[0];
+  farm.hello(2, "b", 1);
+  farm.say(input::Lost{1, "connection reset"});
+  ASSERT_EQ(farm.all<action::Lease>().back().session, 2u);
+  const Step step = farm.hello(3, "a", 1, {{1, lease.band, lease.lease, "one", true}});
+  ASSERT_EQ(in<action::Revoke>(step).size(), 1u);
+  EXPECT_EQ(in<action::Revoke>(step)[0].session, 2u);
+  EXPECT_EQ(in<action::Lease>(step)[0].session, 3u);
+  farm.stored(lease, "a");
+  EXPECT_EQ(farm.job(1).state, JobState::kFinishing);
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,258 @@
+#include "sim_coordinator.h"
+
+#include <cmath>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "farm_driver.h"
+
+namespace bandsaw::coordinator::sim {
+
+void SimCoordinator::fail(const std::string& what) {
+  if (!broken) {
+    broken = absl::StrCat("at ", agenda_.now(), " s, life ", life_, ": ", what);
+  }
+}
+
+void SimCoordinator::after(double seconds, std::function<void()> what) {
+  agenda_.in(seconds, [this, life = life_, what = std::move(what)] {
+    if (up() && life == life_) {
+      what();
+    }
+  });
+}
+
+void SimCoordinator::start() {
+  ++life_;
+  CoreOptions options = test_options();
+  options.epoch = epoch();
+  options.progress_timeout_s = 8;
+  core_ = std::make_unique<Core>(options);
+  for (const Record& record : journal_) {
+    core_->replay(record);
+    note(record);
+  }
+  for (auto& [id, disk] : disk_) {
+    disk.stored = {};
+    for (const input::BandStored& band : disk.bands) {
+      const auto rows = core_->wanted(id, band.band);
+      input::BandStored found = band;
+      found.instance.clear();
+      core_->replay(found);
+      const auto left = core_->wanted(id, band.band);
+      if (rows && left && left->empty()) {
+        for (const RowRange& range : *rows) {
+          disk.stored.add(band.band.samples, range);
+        }
+        add_to_film(id, band.band, *rows);
+      }
+    }
+  }
+  take(core_->replayed(agenda_.now() + time_skew));
+  tick();
+}
+
+void SimCoordinator::crash() {
+  if (tear_steps && !committing_.empty()) {
+    const std::vector<Record>& records = committing_.front().step.records;
+    const auto kept = static_cast<std::ptrdiff_t>(chance_.pick(0, records.size()));
+    journal_.insert(journal_.end(), records.begin(), records.begin() + kept);
+  }
+  committing_.clear();
+  links_.clear();
+  films_.clear();
+  core_.reset();
+}
+
+void SimCoordinator::tick() {
+  input(input::Tick{});
+  after(chance_.between(0.2, 0.9), [this] { tick(); });
+}
+
+SessionId SimCoordinator::open(ToWorker link) {
+  links_[next_session_] = std::move(link);
+  return next_session_++;
+}
+
+void SimCoordinator::input(const Input& input) {
+  if (!up()) {
+    return;
+  }
+  held_.clear();
+  if (const auto* hello = std::get_if<input::Hello>(&input)) {
+    for (const auto& held : hello->worker.held) {
+      held_.insert(held.lease);
+    }
+  }
+  take(core_->step(input, agenda_.now() + time_skew));
+}
+
+void SimCoordinator::take(Step step, std::function<void()> then) {
+  ++steps;
+  if (const auto invariant = core_->broken_invariant()) {
+    fail(*invariant);
+  }
+  if (absl::IsInternal(step.status)) {
+    fail(step.status.ToString());
+  }
+  for (const Record& record : step.records) {
+    note(record);
+  }
+  for (const Action& action : step.actions) {
+    if (const auto* lease = std::get_if<action::Lease>(&action)) {
+      check_lease(*lease, held_);
+    } else if (const auto* add = std::get_if<action::AddToFilm>(&action)) {
+      for (const RowRange& rows : add->rows) {
+        if (!disk_[add->job].stored.add(add->band.samples, rows)) {
+          fail(absl::StrCat("row ", rows.first, " of job ", add->job, " is in the image twice"));
+        }
+      }
+    }
+  }
+  committing_.push_back({std::move(step), {}});
+  if (then) {
+    committing_.back().then.push_back(std::move(then));
+  }
+  after(chance_.happens(0.1) ? chance_.between(0, 0.3) : 0.002, [this] { commit(); });
+}
+
+void SimCoordinator::check_lease(const action::Lease& lease, const std::set<LeaseId>& held) {
+  if (!held.contains(lease.lease) &&
+      disk_[lease.job].stored.any_of(lease.band.samples, lease.band.rows)) {
+    fail(absl::StrCat("row ", lease.band.rows.first, " of job ", lease.job,
+                      " is leased though it is stored"));
+  }
+}
+
+void SimCoordinator::commit() {
+  if (committing_.empty()) {
+    return;
+  }
+  Committing done = std::move(committing_.front());
+  committing_.pop_front();
+  journal_.insert(journal_.end(), done.step.records.begin(), done.step.records.end());
+  for (const Action& action : done.step.actions) {
+    perform(action);
+  }
+  for (const auto& then : done.then) {
+    then();
+  }
+}
+
+void SimCoordinator::note(const Record& record) {
+  if (const auto* added = std::get_if<record::JobAdded>(&record)) {
+    disk_[added->job].spec = added->spec;
+  } else if (const auto* pass = std::get_if<record::PassPlanned>(&record)) {
+    films_[pass->job].pass_ends.insert(pass->samples.last);
+  }
+}
+
+void SimCoordinator::perform(const Action& action) {
+  if (const auto* add = std::get_if<action::AddToFilm>(&action)) {
+    after(chance_.between(0, 0.2), [this, a = *add] { add_to_film(a.job, a.band, a.rows); });
+  } else if (const auto* write = std::get_if<action::WriteResult>(&action)) {
+    after(chance_.between(0.3, 1), [this, w = *write] { write_result(w); });
+  } else if (const auto* drop = std::get_if<action::DropBands>(&action)) {
+    disk_[drop->job].bands.clear();
+    films_.erase(drop->job);
+  } else {
+    std::visit(
+        [&](const auto& a) {
+          if constexpr (requires { a.session; }) {
+            if (const auto link = links_.find(a.session); link != links_.end()) {
+              link->second(action);
+            }
+          }
+        },
+        action);
+  }
+}
+
+void SimCoordinator::add_to_film(JobId job, const Band& band, const std::vector<RowRange>& rows) {
+  for (const RowRange& range : rows) {
+    if (!films_[job].film.add(band.samples, range)) {
+      fail(absl::StrCat("the film of job ", job, " refuses row ", range.first));
+    }
+  }
+  after(chance_.between(0, 0.1), [this, job] { tell_passes(job); });
+}
+
+void SimCoordinator::tell_passes(JobId job) {
+  Filming& filming = films_[job];
+  const JobSpec& spec = disk_[job].spec;
+  while (!filming.pass_ends.empty() &&
+         filming.film.least(spec.settings.height) >= *filming.pass_ends.begin()) {
+    const std::uint64_t samples = *filming.pass_ends.begin();
+    filming.pass_ends.erase(filming.pass_ends.begin());
+    const bool look = std::holds_alternative<StopAtError>(spec.stop) && filming.pass_ends.empty();
+    if (look && filming.film.last_sample() != samples) {
+      fail(absl::StrCat("the error of job ", job, " is looked at while its film has more than ",
+                        samples, " samples"));
+    }
+    const double error = samples < 32 ? -1 : 0.3 / std::pow(static_cast<double>(samples), 0.6);
+    input(input::PassMerged{job, samples, error});
+  }
+}
+
+void SimCoordinator::write_result(const action::WriteResult& write) {
+  if (agenda_.now() < disk_full_until_) {
+    input(input::StorageFailed{write.job, "the disk is full"});
+    return;
+  }
+  const OnDisk& disk = disk_[write.job];
+  if (disk.stored.least(disk.spec.settings.height) < write.samples) {
+    fail(absl::StrCat("the image of job ", write.job, " has a hole"));
+  }
+  results[write.job] = write.samples;
+  input(input::ResultWritten{write.job});
+}
+
+void SimCoordinator::put_band(const input::BandStored& band,
+                              std::function<void(PutOutcome)> reply) {
+  const auto wanted = core_->wanted(band.job, band.band);
+  if (!wanted) {
+    reply(PutOutcome::kUnwanted);
+  } else if (wanted->empty()) {
+    held_.clear();
+    take(core_->step(band, agenda_.now() + time_skew),
+         [reply = std::move(reply)] { reply(PutOutcome::kDuplicate); });
+  } else if (agenda_.now() < disk_full_until_) {
+    input(input::StorageFailed{band.job, "the disk is full"});
+    reply(PutOutcome::kTryAgain);
+  } else {
+    after(chance_.between(0.001, 0.05), [this, band, reply = std::move(reply)]() mutable {
+      write_band(std::move(band), std::move(reply));
+    });
+  }
+}
+
+void SimCoordinator::write_band(input::BandStored band, std::function<void(PutOutcome)> reply) {
+  disk_[band.job].bands.push_back(band);
+  after(chance_.between(0, 0.05), [this, band, reply = std::move(reply)] {
+    held_.clear();
+    take(core_->step(band, agenda_.now() + time_skew), [reply] { reply(PutOutcome::kStored); });
+  });
+}
+
+void SimCoordinator::fill_disk(double seconds) {
+  disk_full_until_ = agenda_.now() + seconds;
+  agenda_.in(seconds + 0.01, [this] {
+    if (agenda_.now() >= disk_full_until_) {
+      input(input::StorageBack{});
+    }
+  });
+}
+
+bool SimCoordinator::all_final() const {
+  if (core_ == nullptr) {
+    return false;
+  }
+  for (const JobView& job : core_->jobs(agenda_.now())) {
+    if (!is_final(job.state)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace bandsaw::coordinator::sim

@@ -1,0 +1,97 @@
+#pragma once
+
+// The core in a world that loses things: a journal that is synced late, bands that lie on disk
+// before the core hears of them, a film that merges late, a disk that is full at times, and crashes
+// at any moment between.
+
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "coordinator/core/core.h"
+#include "sim_film.h"
+#include "sim_time.h"
+
+namespace bandsaw::coordinator::sim {
+
+/// The other end of a worker's stream.
+using ToWorker = std::function<void(const Action&)>;
+
+enum class PutOutcome { kStored, kDuplicate, kUnwanted, kTryAgain };
+
+class SimCoordinator {
+ public:
+  SimCoordinator(Agenda& agenda, Chance& chance) : agenda_(agenda), chance_(chance) {}
+
+  void start();
+  /// What is not synced is lost, and all sessions with it.
+  void crash();
+  bool up() const { return core_ != nullptr; }
+  std::uint64_t life() const { return life_; }
+  std::string epoch() const { return std::to_string(life_); }
+
+  SessionId open(ToWorker link);
+  void input(const Input& input);
+  void put_band(const input::BandStored& band, std::function<void(PutOutcome)> reply);
+  void fill_disk(double seconds);
+
+  bool all_final() const;
+  Core& core() { return *core_; }
+
+  /// The first thing that must never happen, if it did.
+  std::optional<std::string> broken;
+  std::uint64_t steps = 0;
+  std::map<JobId, std::uint64_t> results;  ///< samples a pixel
+  double time_skew = 0;                    ///< of the coordinator's clock
+  bool tear_steps = false;                 ///< a crash may keep a part of a step's records
+
+ private:
+  struct Committing {
+    Step step;
+    std::vector<std::function<void()>> then;
+  };
+  struct OnDisk {
+    JobSpec spec;
+    std::vector<input::BandStored> bands;
+    SimFilm stored;  ///< what of the bands is in the image
+  };
+  struct Filming {
+    SimFilm film;
+    std::set<std::uint64_t> pass_ends;
+  };
+
+  void fail(const std::string& what);
+  void take(Step step, std::function<void()> then = {});
+  void commit();
+  void perform(const Action& action);
+  void check_lease(const action::Lease& lease, const std::set<LeaseId>& held);
+  void after(double seconds, std::function<void()> what);
+  void write_band(input::BandStored band, std::function<void(PutOutcome)> reply);
+  void add_to_film(JobId job, const Band& band, const std::vector<RowRange>& rows);
+  void tell_passes(JobId job);
+  void write_result(const action::WriteResult& write);
+  void note(const Record& record);
+  void tick();
+
+  Agenda& agenda_;
+  Chance& chance_;
+  std::unique_ptr<Core> core_;
+  std::uint64_t life_ = 0;
+  SessionId next_session_ = 1;
+  std::map<SessionId, ToWorker> links_;
+  std::deque<Committing> committing_;
+  std::map<JobId, Filming> films_;
+  double disk_full_until_ = 0;
+  std::set<LeaseId> held_;  ///< named in the Hello being said
+
+  // Survives a crash.
+  std::vector<Record> journal_;
+  std::map<JobId, OnDisk> disk_;
+};
+
+}  // namespace bandsaw::coordinator::sim

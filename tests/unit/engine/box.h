@@ -1,0 +1,54 @@
+#pragma once
+
+// What a callback brings, to be waited for. A wait that takes a minute is a failure of the test.
+
+#include <chrono>
+#include <functional>
+#include <optional>
+#include <utility>
+
+#include "renderlib/base/check.h"
+#include "renderlib/base/mutex.h"
+
+namespace bandsaw::coordinator {
+
+template <class T>
+class Box {
+ public:
+  void put(T value) EXCLUDES(mutex_) {
+    MutexLock lock(mutex_);
+    value_ = std::move(value);
+    changed_.notify_all();
+  }
+  /// The newest value that fits; waits for it.
+  T wait(const std::function<bool(const T&)>& fits = [](const T&) { return true; })
+      EXCLUDES(mutex_) {
+    MutexLock lock(mutex_);
+    wait_until(fits);
+    return *value_;
+  }
+  /// The next value, which is then the caller's alone (coordinator/engine/apart.h says why that
+  /// matters).
+  T take() EXCLUDES(mutex_) {
+    MutexLock lock(mutex_);
+    wait_until([](const T&) { return true; });
+    T value = *std::move(value_);
+    value_.reset();
+    return value;
+  }
+
+ private:
+  void wait_until(const std::function<bool(const T&)>& fits) REQUIRES(mutex_) {
+    const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+    while (!value_ || !fits(*value_)) {
+      BANDSAW_CHECK(std::chrono::steady_clock::now() < until, "the callback comes");
+      changed_.wait_for(mutex_, std::chrono::milliseconds(100));
+    }
+  }
+
+  Mutex mutex_;
+  CondVar changed_;
+  std::optional<T> value_ GUARDED_BY(mutex_);
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,52 @@
+#pragma once
+
+// A worker without a network: it renders what it is leased, on a thread of its own, with the real
+// renderer.
+
+#include <deque>
+#include <functional>
+#include <memory>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "coordinator/engine/engine.h"
+#include "renderlib/base/mutex.h"
+#include "renderlib/scene/scene.h"
+
+namespace bandsaw::coordinator {
+
+class FakeWorker {
+ public:
+  /// Called with each answer to a band.
+  using Answered = std::function<void(const Band&, const absl::StatusOr<BandOutcome>&)>;
+
+  FakeWorker(std::shared_ptr<const Scene> scene, std::string name, Answered answered = nullptr);
+  /// Leaves.
+  ~FakeWorker();
+
+  void join(Engine& engine);
+  /// The stream ends; what it was rendering is lost.
+  void leave();
+
+  /// All bands it was leased in its life.
+  std::vector<Band> leased() const;
+  std::string refused() const;
+
+ private:
+  class Link;
+  void work();
+  void render(const action::Lease& lease);
+
+  std::shared_ptr<const Scene> scene_;
+  std::string name_;
+  Answered answered_;
+  Engine* engine_ = nullptr;
+  SessionId session_ = 0;
+  std::shared_ptr<Link> link_;
+  std::thread thread_;
+  std::vector<Band> earlier_;  ///< leased in earlier sessions
+};
+
+}  // namespace bandsaw::coordinator

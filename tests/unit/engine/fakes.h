@@ -1,0 +1,94 @@
+#pragma once
+
+// The engine's doors, in memory: time that tests move, and a journal that can refuse.
+
+#include <atomic>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "coordinator/engine/clock.h"
+#include "coordinator/store/journal.h"
+#include "renderlib/base/mutex.h"
+
+namespace bandsaw::coordinator {
+
+/// Shared with the test, which moves it.
+class FakeTime {
+ public:
+  void advance(double seconds) { now_ = now_ + seconds; }
+  Time now() const { return now_; }
+
+ private:
+  std::atomic<double> now_{1000};
+};
+
+class FakeClock : public Clock {
+ public:
+  explicit FakeClock(std::shared_ptr<FakeTime> time) : time_(std::move(time)) {}
+  Time now() const override { return time_->now(); }
+
+ private:
+  std::shared_ptr<FakeTime> time_;
+};
+
+/// What a MemoryJournal writes on: survives it, as a disk does. Thread-safe.
+class JournalDisk {
+ public:
+  /// The next appends are refused until `mend`.
+  void break_it() EXCLUDES(mutex_) {
+    MutexLock lock(mutex_);
+    broken_ = true;
+  }
+  void mend() EXCLUDES(mutex_) {
+    MutexLock lock(mutex_);
+    broken_ = false;
+    breaks_after_ = -1;
+  }
+  /// The append after so many is refused, and all that follow.
+  void break_after(int appends) EXCLUDES(mutex_) {
+    MutexLock lock(mutex_);
+    breaks_after_ = appends;
+  }
+  std::vector<Record> records() EXCLUDES(mutex_) {
+    MutexLock lock(mutex_);
+    return records_;
+  }
+  absl::Status append(absl::Span<const Record> records) EXCLUDES(mutex_) {
+    MutexLock lock(mutex_);
+    if (breaks_after_ == 0) {
+      broken_ = true;
+    }
+    --breaks_after_;
+    if (broken_) {
+      return absl::ResourceExhaustedError("the journal's disk is full");
+    }
+    records_.insert(records_.end(), records.begin(), records.end());
+    return absl::OkStatus();
+  }
+
+ private:
+  Mutex mutex_;
+  std::vector<Record> records_ GUARDED_BY(mutex_);
+  bool broken_ GUARDED_BY(mutex_) = false;
+  int breaks_after_ GUARDED_BY(mutex_) = -1;
+};
+
+class MemoryJournal : public Journal {
+ public:
+  explicit MemoryJournal(std::shared_ptr<JournalDisk> disk) : disk_(std::move(disk)) {}
+  absl::Status append(absl::Span<const Record> records) override {
+    return records.empty() ? absl::OkStatus() : disk_->append(records);
+  }
+  absl::Status replay(absl::FunctionRef<void(const Record&)> each) override {
+    for (const Record& record : disk_->records()) {
+      each(record);
+    }
+    return absl::OkStatus();
+  }
+
+ private:
+  std::shared_ptr<JournalDisk> disk_;
+};
+
+}  // namespace bandsaw::coordinator

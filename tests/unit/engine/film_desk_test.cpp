@@ -1,0 +1,149 @@
+#include "coordinator/engine/film_desk.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+#include "coordinator/store/band_log.h"
+#include "renderlib/render/render_band.h"
+#include "renderlib/render/render_image.h"
+#include "tests/support/full_disk.h"
+#include "tests/support/scenes.h"
+#include "tests/support/temp_dir.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+class FilmDeskTest : public testing::Test {
+ protected:
+  FilmDeskTest() {
+    EXPECT_TRUE(make_folder(folder_.job(1)).ok());
+    BandLogReport report;
+    log_.emplace(*BandLog::open(
+        folder_.job(1), folder_.bands(1), [](BandRecord, std::uint64_t) {}, report));
+    desk_.add_job(1, settings_);
+  }
+
+  PutBand logged(const SampleRange& samples, const RowRange& rows) {
+    Pool pool(1);
+    const std::atomic<bool> stop{false};
+    BandRecord record{.package_digest = std::string(64, 'a'), .settings = settings_, .pixels = {}};
+    record.pixels =
+        *render_band(*scene_, settings_, {samples, rows}, pool, stop, [](std::uint32_t) {});
+    PutBand put;
+    put.offset = *log_->append(record);
+    put.pixels = std::move(record.pixels);
+    return put;
+  }
+  absl::Status add(const SampleRange& samples, const RowRange& rows,
+                   std::vector<RowRange> new_rows = {}) {
+    if (new_rows.empty()) {
+      new_rows = {rows};
+    }
+    return desk_.add(1, logged(samples, rows), std::move(new_rows));
+  }
+  std::vector<Rgb> local(std::uint64_t samples) {
+    Pool pool(1);
+    const std::atomic<bool> stop{false};
+    return render_image(
+               *scene_, settings_, samples, pool, stop, [](std::uint64_t) {}, "")
+        ->film.snapshot()
+        .image.pixels;
+  }
+
+  test::TempDir temp_;
+  const DataFolder folder_ = *DataFolder::open(temp_ / "data");
+  const std::shared_ptr<const Scene> scene_ = test::cornell_box().build();
+  const RenderSettings settings_{.width = 6, .height = 8, .max_depth = 3, .seed = 1};
+  std::optional<BandLog> log_;
+  std::vector<std::uint64_t> merged_;
+  std::vector<double> errors_;
+  std::vector<Image> images_;
+  int failed_ = 0;
+  FilmDesk desk_{folder_,
+                 {.merged =
+                      [this](input::PassMerged m) {
+                        merged_.push_back(m.samples);
+                        errors_.push_back(m.error);
+                      },
+                  .image = [this](JobId, Image image) { images_.push_back(std::move(image)); },
+                  .failed = [this](JobId, absl::Status) { ++failed_; }}};
+};
+
+TEST_F(FilmDeskTest, TellsEachPassOnceWhenItsLastRowsAreThere) {
+  desk_.plan(1, 16);
+  desk_.plan(1, 32);
+  ASSERT_TRUE(add({16, 32}, {0, 8}).ok());
+  ASSERT_TRUE(add({0, 16}, {0, 5}).ok());
+  EXPECT_TRUE(merged_.empty());
+  ASSERT_TRUE(add({0, 16}, {5, 8}).ok());
+  EXPECT_EQ(merged_, (std::vector<std::uint64_t>{16, 32}));
+  EXPECT_GT(errors_.back(), 0) << "two halves are there";
+}
+
+TEST_F(FilmDeskTest, AddsOnlyTheRowsThatAreNew) {
+  ASSERT_TRUE(add({0, 16}, {2, 5}).ok());
+  ASSERT_TRUE(add({0, 16}, {0, 8}, {{0, 2}, {5, 8}}).ok());
+  desk_.want_image(1, 16);
+  ASSERT_EQ(images_.size(), 1u);
+  EXPECT_EQ(images_[0].pixels, local(16));
+}
+
+TEST_F(FilmDeskTest, AnImageOfFewerSamplesThanSomeRowsHaveIsThatOfTheFewer) {
+  ASSERT_TRUE(add({0, 16}, {0, 8}).ok());
+  ASSERT_TRUE(add({16, 32}, {0, 3}).ok());
+  ASSERT_TRUE(add({16, 32}, {2, 5}, {{3, 5}}).ok());
+  desk_.want_image(1, 16);
+  ASSERT_EQ(images_.size(), 1u);
+  EXPECT_EQ(images_[0].pixels, local(16));
+}
+
+TEST_F(FilmDeskTest, AnImageWaitsForItsLastRows) {
+  ASSERT_TRUE(add({0, 16}, {0, 7}).ok());
+  desk_.want_image(1, 16);
+  EXPECT_TRUE(images_.empty());
+  ASSERT_TRUE(add({0, 16}, {7, 8}).ok());
+  ASSERT_EQ(images_.size(), 1u);
+  EXPECT_EQ(images_[0].pixels, local(16));
+}
+
+TEST_F(FilmDeskTest, WhatAFullDiskRefusedIsAddedLater) {
+  PutBand first = logged({0, 16}, {0, 4});
+  PutBand second = logged({0, 16}, {4, 8});
+  desk_.plan(1, 16);
+  {
+    const test::FullDisk full(0);
+    EXPECT_EQ(desk_.add(1, std::move(first), {{0, 4}}).code(),
+              absl::StatusCode::kResourceExhausted);
+    EXPECT_FALSE(desk_.add(1, std::move(second), {{4, 8}}).ok());
+    desk_.want_image(1, 16);
+    EXPECT_GE(failed_, 2);
+  }
+  EXPECT_TRUE(merged_.empty());
+  desk_.retry();
+  EXPECT_EQ(merged_, (std::vector<std::uint64_t>{16}));
+  ASSERT_EQ(images_.size(), 1u);
+  EXPECT_EQ(images_[0].pixels, local(16));
+}
+
+TEST_F(FilmDeskTest, ADroppedJobTakesNothingMore) {
+  ASSERT_TRUE(add({0, 16}, {0, 8}).ok());
+  desk_.drop(1);
+  EXPECT_TRUE(add({16, 32}, {0, 8}).ok());
+  desk_.want_image(1, 16);
+  EXPECT_TRUE(images_.empty());
+}
+
+TEST(Slice, TakesTheRowsAsked) {
+  BandPixels band{.band = {.samples = {0, 16}, .rows = {4, 7}},
+                  .width = 1,
+                  .sums = {1, 2, 3, 4, 5, 6, 7, 8, 9},
+                  .counters = {}};
+  const BandPixels middle = slice(band, {5, 6});
+  EXPECT_EQ(middle.sums, (std::vector<double>{4, 5, 6}));
+  EXPECT_EQ(middle.band.rows, (RowRange{5, 6}));
+  EXPECT_EQ(middle.width, 1u);
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,157 @@
+// A disk that takes no more, in the middle of a job, and a journal that cannot be written.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <filesystem>
+
+#include "renderlib/render/render_band.h"
+#include "tests/support/full_disk.h"
+#include "tests/unit/engine/fake_worker.h"
+#include "tests/unit/engine/fakes.h"
+#include "tests/unit/engine/test_farm.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+using testing::HasSubstr;
+
+class FullDiskTest : public testing::Test {
+ protected:
+  /// The engine's time stands still unless a test moves it; the journal is in memory.
+  FullDiskTest() {
+    EngineDoors doors;
+    doors.clock = std::make_unique<FakeClock>(time_);
+    doors.journal = std::make_unique<MemoryJournal>(disk_);
+    EXPECT_TRUE(farm_.start(std::move(doors)).ok());
+  }
+  BandPixels rendered(std::uint32_t first, std::uint32_t last) {
+    Pool pool(1);
+    const std::atomic<bool> stop{false};
+    const Band band{.samples = {0, 16}, .rows = {first, last}};
+    return *render_band(*farm_.scene(), farm_.settings(), band, pool, stop, [](std::uint32_t) {});
+  }
+  /// Moves the time on until the job is in the state.
+  JobView wait_for(JobId job, JobState state) {
+    while (true) {
+      time_->advance(0.5);
+      if (const JobView view = farm_.view(job); view.state == state) {
+        return view;
+      }
+    }
+  }
+  void expect_local_image(JobId job) {
+    EXPECT_EQ(wait_for(job, JobState::kDone).samples_per_pixel, 16u);
+    EXPECT_EQ(farm_.result(job)->image.pixels, farm_.local(16).pixels);
+  }
+
+  std::shared_ptr<FakeTime> time_ = std::make_shared<FakeTime>();
+  std::shared_ptr<JournalDisk> disk_ = std::make_shared<JournalDisk>();
+  TestFarm farm_;
+};
+
+TEST_F(FullDiskTest, ABandThatDoesNotFitIsKeptByItsWorkerAndTheJobWaits) {
+  const JobId job = farm_.begin(StopAtSamples{.samples = 16});
+  ASSERT_TRUE(farm_.put(job, rendered(0, 7)).ok());
+  {
+    const test::FullDisk full(0);
+    const absl::Status refused = farm_.put(job, rendered(7, 14)).status();
+    EXPECT_EQ(refused.code(), absl::StatusCode::kResourceExhausted);
+    EXPECT_THAT(wait_for(job, JobState::kPaused).reason, HasSubstr("File too large"));
+  }
+  wait_for(job, JobState::kRunning);
+  EXPECT_EQ(*farm_.put(job, rendered(7, 14)), BandOutcome::kStored);
+  expect_local_image(job);
+}
+
+TEST_F(FullDiskTest, AWorkerThatTriesAgainEndsTheJobWhenThereIsRoom) {
+  const JobId job = farm_.begin(StopAtSamples{.samples = 16});
+  auto full = std::make_unique<test::FullDisk>(0);
+  FakeWorker worker(farm_.scene(), "one");
+  worker.join(farm_.engine());
+  wait_for(job, JobState::kPaused);
+  full.reset();
+  expect_local_image(job);
+}
+
+TEST_F(FullDiskTest, AResultThatCannotBeWrittenIsWrittenLater) {
+  const JobId job = farm_.begin(StopAtSamples{.samples = 16});
+  const std::string in_the_way =
+      farm_.folder() + "/jobs/" + std::to_string(job) + "/result.incoming";
+  ASSERT_TRUE(farm_.put(job, rendered(0, 7)).ok());
+  ASSERT_TRUE(std::filesystem::create_directory(in_the_way));
+  ASSERT_TRUE(farm_.put(job, rendered(7, 14)).ok());
+  EXPECT_THAT(wait_for(job, JobState::kPaused).reason, HasSubstr("result"));
+  ASSERT_TRUE(std::filesystem::remove(in_the_way));
+  expect_local_image(job);
+}
+
+TEST_F(FullDiskTest, ASubmitThatCannotBeJournalledFailsAndDoesNotBeginLater) {
+  const JobSpec spec = farm_.spec(StopAtSamples{.samples = 16});
+  disk_->break_it();
+  const absl::Status refused = farm_.submit(spec).status();
+  EXPECT_EQ(refused.code(), absl::StatusCode::kResourceExhausted);
+  EXPECT_THAT(std::string(refused.message()), HasSubstr("journal"));
+  disk_->mend();
+  wait_for(1, JobState::kCancelled);
+  JobSpec again = spec;
+  again.request_id = "another request id";
+  absl::StatusOr<JobId> job = farm_.submit(again);
+  while (!job.ok()) {
+    time_->advance(1);
+    job = farm_.submit(again);
+  }
+  ASSERT_TRUE(farm_.put(*job, rendered(0, 14)).ok());
+  expect_local_image(*job);
+}
+
+TEST_F(FullDiskTest, NothingIsAcknowledgedThatTheJournalDoesNotHold) {
+  const JobId job = farm_.begin(StopAtSamples{.samples = 16});
+  disk_->break_it();
+  // The last band: that the job is finishing must be journalled before the answer.
+  EXPECT_EQ(farm_.put(job, rendered(0, 14)).status().code(), absl::StatusCode::kResourceExhausted);
+  EXPECT_EQ(farm_.result(job).status().code(), absl::StatusCode::kFailedPrecondition);
+  disk_->mend();
+  expect_local_image(job);
+}
+
+TEST(BrokenJournal, AfterEveryAppendItMayBreakAndTheNextLifeGoesOn) {
+  for (int appends = 0; appends < 6; ++appends) {
+    TestFarm farm;
+    const auto disk = std::make_shared<JournalDisk>();
+    const auto start = [&] {
+      EngineDoors doors;
+      doors.journal = std::make_unique<MemoryJournal>(disk);
+      ASSERT_TRUE(farm.start(std::move(doors)).ok());
+    };
+    start();
+    disk->break_after(appends);
+    const JobSpec spec = farm.spec(StopAtSamples{.samples = 64});
+    const absl::StatusOr<JobId> first = farm.submit(spec);
+    {
+      FakeWorker worker(farm.scene(), "one");
+      worker.join(farm.engine());
+      if (first.ok()) {
+        while (farm.view(*first).state == JobState::kRunning) {
+        }
+      }
+    }
+    farm.stop();
+    disk->mend();
+    start();
+    EXPECT_EQ(first.ok(), appends > 0);
+    const absl::StatusOr<JobId> job = farm.submit(spec);
+    ASSERT_TRUE(job.ok()) << job.status();
+    if (first.ok()) {
+      EXPECT_EQ(*job, *first) << "what was acknowledged is known";
+    }
+    FakeWorker worker(farm.scene(), "two");
+    worker.join(farm.engine());
+    ASSERT_EQ(farm.wait_final(*job).state, JobState::kDone);
+    EXPECT_EQ(farm.result(*job)->image.pixels, farm.local(64).pixels);
+  }
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

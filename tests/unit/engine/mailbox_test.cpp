@@ -1,0 +1,78 @@
+#include "coordinator/engine/mailbox.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+
+#include "coordinator/engine/answer.h"
+#include "coordinator/engine/put_band.h"
+#include "tests/unit/engine/box.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+using std::chrono::milliseconds;
+
+TEST(Mailbox, DoesTasksInOrderOnOneThread) {
+  Box<std::vector<int>> box;
+  std::vector<int> done;
+  Mailbox mailbox([&] { box.put(done); }, milliseconds(1000));
+  for (int i = 0; i < 50; ++i) {
+    mailbox.post([&done, i] { done.push_back(i); });
+  }
+  mailbox.start();
+  for (int i = 50; i < 100; ++i) {
+    mailbox.post([&done, i] { done.push_back(i); });
+  }
+  const auto all = box.wait([](const std::vector<int>& d) { return d.size() == 100; });
+  EXPECT_TRUE(std::is_sorted(all.begin(), all.end()));
+}
+
+TEST(Mailbox, AfterBatchRunsWithoutTasksToo) {
+  std::atomic<int> runs{0};
+  Box<int> box;
+  Mailbox mailbox([&] { box.put(++runs); }, milliseconds(1));
+  mailbox.start();
+  box.wait([](int n) { return n >= 3; });
+}
+
+TEST(Mailbox, WhatWaitsWhenItStopsIsDroppedAndAnswered) {
+  Box<absl::Status> box;
+  const auto answer = [&] {
+    return Answer<int>([&](absl::StatusOr<int> value) { box.put(value.status()); });
+  };
+  Mailbox mailbox([] {}, milliseconds(1));
+  mailbox.post([a = answer()]() mutable { a(1); });
+  mailbox.stop();
+  EXPECT_EQ(box.take().code(), absl::StatusCode::kUnavailable);
+  box.put(absl::OkStatus());
+  mailbox.post([a = answer()]() mutable { a(1); });
+  EXPECT_EQ(box.take().code(), absl::StatusCode::kUnavailable) << "too late";
+}
+
+TEST(Answer, IsGivenOnce) {
+  int calls = 0;
+  {
+    Answer<int> answer([&](absl::StatusOr<int> value) { calls += value.ok() ? 1 : 100; });
+    Answer<int> moved = std::move(answer);
+    moved(1);
+    moved(2);
+  }
+  EXPECT_EQ(calls, 1);
+}
+
+TEST(BandBudget, IsGivenBackWhenAShareEnds) {
+  BandBudget budget(100);
+  std::optional<BandBudget::Share> most = budget.take(80);
+  ASSERT_TRUE(most);
+  EXPECT_FALSE(budget.take(30));
+  EXPECT_TRUE(budget.take(20));
+  BandBudget::Share moved = *std::move(most);
+  most.reset();
+  EXPECT_FALSE(budget.take(30)) << "it moved, it did not end";
+  moved = {};
+  EXPECT_TRUE(budget.take(100));
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

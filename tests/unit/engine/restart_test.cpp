@@ -1,0 +1,169 @@
+// The coordinator stops, or is killed, in the middle of a job.
+
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "tests/unit/engine/fake_worker.h"
+#include "tests/unit/engine/test_farm.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+constexpr std::uint64_t kSamples = 512;
+
+bool overlap(const Band& a, const Band& b) {
+  return a.samples.first < b.samples.last && b.samples.first < a.samples.last &&
+         a.rows.first < b.rows.last && b.rows.first < a.rows.last;
+}
+
+/// How many of these leases are about pixels that were acknowledged before.
+long rendered_again(const std::vector<Band>& leased, const std::vector<Band>& acknowledged) {
+  return std::count_if(leased.begin(), leased.end(), [&](const Band& lease) {
+    return std::any_of(acknowledged.begin(), acknowledged.end(),
+                       [&](const Band& band) { return overlap(lease, band); });
+  });
+}
+
+/// Bands that were answered kStored.
+class Acknowledged {
+ public:
+  FakeWorker::Answered hook() {
+    return [this](const Band& band, const absl::StatusOr<BandOutcome>& outcome) {
+      if (outcome.ok() && *outcome == BandOutcome::kStored) {
+        MutexLock lock(mutex_);
+        bands_.push_back(band);
+      }
+    };
+  }
+  std::vector<Band> bands() {
+    MutexLock lock(mutex_);
+    return bands_;
+  }
+
+ private:
+  Mutex mutex_;
+  std::vector<Band> bands_ GUARDED_BY(mutex_);
+};
+
+void expect_local_image(TestFarm& farm, JobId job, std::uint64_t samples) {
+  const JobView view = farm.wait_final(job);
+  ASSERT_EQ(view.state, JobState::kDone) << view.reason;
+  const absl::StatusOr<StoredResult> result = farm.result(job);
+  ASSERT_TRUE(result.ok()) << result.status();
+  EXPECT_EQ(result->image.pixels, farm.local(samples).pixels);
+}
+
+TEST(Restart, NothingAcknowledgedIsLeasedAgainAndTheImageIsTheSame) {
+  TestFarm farm;
+  ASSERT_TRUE(farm.start().ok());
+  const JobId job = farm.begin(StopAtSamples{.samples = kSamples});
+  Acknowledged acknowledged;
+  {
+    FakeWorker one(farm.scene(), "one", acknowledged.hook());
+    FakeWorker two(farm.scene(), "two", acknowledged.hook());
+    one.join(farm.engine());
+    two.join(farm.engine());
+    farm.wait_until(job, [](const JobView& view) { return view.fraction > 0.1; });
+  }
+  farm.stop();
+  ASSERT_TRUE(farm.start().ok());
+  FakeWorker three(farm.scene(), "three");
+  three.join(farm.engine());
+  expect_local_image(farm, job, kSamples);
+  EXPECT_FALSE(acknowledged.bands().empty());
+  EXPECT_EQ(rendered_again(three.leased(), acknowledged.bands()), 0);
+}
+
+TEST(Restart, AFinishedJobKeepsItsResult) {
+  TestFarm farm;
+  ASSERT_TRUE(farm.start().ok());
+  const JobId job = farm.begin(StopAtSamples{.samples = 16});
+  {
+    FakeWorker one(farm.scene(), "one");
+    one.join(farm.engine());
+    expect_local_image(farm, job, 16);
+  }
+  farm.stop();
+  ASSERT_TRUE(farm.start().ok());
+  expect_local_image(farm, job, 16);
+}
+
+TEST(Restart, DamagedBandsAreRenderedAgain) {
+  TestFarm farm;
+  ASSERT_TRUE(farm.start().ok());
+  const JobId job = farm.begin(StopAtSamples{.samples = kSamples});
+  {
+    FakeWorker one(farm.scene(), "one");
+    one.join(farm.engine());
+    farm.wait_until(job, [](const JobView& view) { return view.fraction > 0.1; });
+  }
+  farm.stop();
+  {
+    std::fstream bands(farm.folder() + "/jobs/" + std::to_string(job) + "/bands",
+                       std::ios::in | std::ios::out | std::ios::binary);
+    bands.seekp(300);
+    bands.write("damage", 6);
+  }
+  ASSERT_TRUE(farm.start().ok());
+  FakeWorker two(farm.scene(), "two");
+  two.join(farm.engine());
+  expect_local_image(farm, job, kSamples);
+}
+
+/// A coordinator with its workers in a process of its own, which writes the bands it acknowledged
+/// to `out`.
+[[noreturn]] void run_farm(TestFarm& farm, int out) {
+  const auto tell = [out](const Band& band, const absl::StatusOr<BandOutcome>& outcome) {
+    if (outcome.ok() && *outcome == BandOutcome::kStored &&
+        ::write(out, &band, sizeof band) != sizeof band) {
+      ::_exit(1);
+    }
+  };
+  if (!farm.start().ok()) {
+    ::_exit(1);
+  }
+  FakeWorker one(farm.scene(), "one", tell);
+  FakeWorker two(farm.scene(), "two", tell);
+  one.join(farm.engine());
+  two.join(farm.engine());
+  farm.wait_final(farm.begin(StopAtSamples{.samples = kSamples}));
+  ::_exit(0);
+}
+
+TEST(Restart, AfterAKillNothingAcknowledgedIsLostOrLeasedAgain) {
+  TestFarm farm;
+  int ends[2];
+  ASSERT_EQ(::pipe(ends), 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    run_farm(farm, ends[1]);
+  }
+  ::close(ends[1]);
+  std::vector<Band> acknowledged;
+  Band band;
+  while (::read(ends[0], &band, sizeof band) == sizeof band) {
+    acknowledged.push_back(band);
+    if (acknowledged.size() == 3) {
+      ::kill(child, SIGKILL);
+    }
+  }
+  ::close(ends[0]);
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  ASSERT_GE(acknowledged.size(), 3u);
+  EXPECT_TRUE(WIFSIGNALED(status));
+
+  ASSERT_TRUE(farm.start().ok());
+  FakeWorker three(farm.scene(), "three");
+  three.join(farm.engine());
+  expect_local_image(farm, 1, kSamples);
+  EXPECT_EQ(rendered_again(three.leased(), acknowledged), 0);
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

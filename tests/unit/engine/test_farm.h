@@ -1,0 +1,52 @@
+#pragma once
+
+// An engine on a temporary folder, with a small scene to render.
+
+#include <memory>
+#include <string>
+
+#include "coordinator/engine/doors.h"
+#include "coordinator/engine/engine.h"
+#include "renderlib/image/image.h"
+#include "tests/support/scenes.h"
+#include "tests/support/temp_dir.h"
+#include "tests/unit/engine/box.h"
+
+namespace bandsaw::coordinator {
+
+class TestFarm {
+ public:
+  TestFarm();
+  /// Starts it, or starts it again on the same folder.
+  absl::Status start(EngineDoors doors = {});
+  void stop() { engine_.reset(); }
+  Engine& engine() { return *engine_; }
+  const std::string& folder() const { return folder_; }
+
+  /// Sends the blobs of the scene; the manifest's digest.
+  DigestHex send_package();
+  JobSpec spec(StopRule stop);
+  absl::StatusOr<JobId> submit(const JobSpec& spec);
+  /// Sends the package and submits; the test ends if that fails.
+  JobId begin(StopRule stop);
+  JobView view(JobId job);
+  JobView wait_until(JobId job, const std::function<bool(const JobView&)>& fits);
+  JobView wait_final(JobId job);
+  absl::StatusOr<StoredResult> result(JobId job);
+  absl::StatusOr<BandOutcome> put(JobId job, const BandPixels& pixels);
+
+  std::shared_ptr<const Scene> scene() const { return scene_; }
+  const RenderSettings& settings() const { return settings_; }
+  /// The same image, without an engine.
+  Image local(std::uint64_t samples) const;
+
+ private:
+  test::TempDir temp_;
+  std::string folder_ = temp_ / "data";
+  test::SceneMaker maker_;
+  std::shared_ptr<const Scene> scene_;
+  RenderSettings settings_{.width = 20, .height = 14, .max_depth = 4, .seed = 3};
+  std::unique_ptr<Engine> engine_;
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,102 @@
+#include "coordinator/engine/watchers.h"
+
+#include <gtest/gtest.h>
+
+namespace bandsaw::coordinator {
+namespace {
+
+class WatchersTest : public testing::Test {
+ protected:
+  void watch(int times = 1'000'000) {
+    watchers_.add(
+        1, view_,
+        [this, times](absl::StatusOr<JobView> view) {
+          told_.push_back(std::move(view));
+          return std::ssize(told_) < times;
+        },
+        now_);
+  }
+  /// `count` steps of a hundredth of a second, with or without news.
+  void pass(int count, bool news, bool hold_final = false) {
+    for (int i = 0; i < count; ++i) {
+      now_ += 0.01;
+      view_.samples_done += news ? 1 : 0;
+      view_.elapsed_s = now_;
+      watchers_.update([this](JobId) { return std::optional(view_); }, hold_final, now_);
+    }
+  }
+  JobView view_{.id = 1, .spec = {}, .reason = {}, .counters = {}, .workers = {}};
+  Time now_ = 50;
+  Watchers watchers_;
+  std::vector<absl::StatusOr<JobView>> told_;
+};
+
+TEST_F(WatchersTest, TheStateNowIsToldAtOnce) {
+  watch();
+  EXPECT_EQ(told_.size(), 1u);
+}
+
+TEST_F(WatchersTest, NewsComesAtMostTenTimesASecondAndTheLatest) {
+  watch();
+  pass(1000, true);
+  EXPECT_LE(told_.size(), 101u);
+  EXPECT_GE(told_.size(), 80u);
+  EXPECT_GE(told_.back()->samples_done, 980u);
+}
+
+TEST_F(WatchersTest, WithoutNewsItComesOnceASecond) {
+  watch();
+  pass(1000, false);
+  EXPECT_GE(told_.size(), 11u);
+  EXPECT_LE(told_.size(), 13u);
+}
+
+TEST_F(WatchersTest, TheFinalStateAlwaysComesAndIsTheLast) {
+  watch();
+  pass(3, true);
+  view_.state = JobState::kDone;
+  pass(100, true);
+  EXPECT_EQ(told_.back()->state, JobState::kDone);
+  EXPECT_EQ(told_.size(), 2u);
+}
+
+TEST_F(WatchersTest, AFinalStateThatIsNotDurableYetIsNotTold) {
+  watch();
+  view_.state = JobState::kDone;
+  pass(100, false, true);
+  EXPECT_EQ(told_.size(), 1u);
+  pass(100, false);
+  EXPECT_EQ(told_.size(), 2u);
+}
+
+TEST_F(WatchersTest, WatchingAFinalJobEndsWithItsState) {
+  view_.state = JobState::kCancelled;
+  watch();
+  pass(200, true);
+  EXPECT_EQ(told_.size(), 1u);
+}
+
+TEST_F(WatchersTest, WhoSaysNoIsNotToldAgainAndOthersAre) {
+  watch(2);
+  watch();
+  pass(50, true);
+  EXPECT_GE(told_.size(), 5u);
+  const std::size_t before = told_.size();
+  pass(11, true);
+  EXPECT_LE(told_.size() - before, 2u) << "one watcher is left";
+}
+
+TEST_F(WatchersTest, AnUnknownJobIsNotFound) {
+  watchers_.add(
+      9, std::nullopt,
+      [this](absl::StatusOr<JobView> view) {
+        told_.push_back(std::move(view));
+        return true;
+      },
+      now_);
+  ASSERT_EQ(told_.size(), 1u);
+  EXPECT_EQ(told_[0].status().code(), absl::StatusCode::kNotFound);
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

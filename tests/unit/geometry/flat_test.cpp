@@ -1,0 +1,219 @@
+// Triangles and quads one by one; meshes as a whole are in tests/unit/accel.
+
+#include <gtest/gtest.h>
+
+#include <optional>
+
+#include "renderlib/geometry/intersect.h"
+#include "tests/support/meshes.h"
+#include "tests/support/wide.h"
+
+namespace bandsaw {
+namespace {
+
+using test::Wide;
+using test::WideVec;
+
+template <class Shape>
+std::optional<Crossing> hit(const Vec3& origin, const Vec3& direction, const Shape& shape) {
+  Crossing crossing;
+  if (!intersect(trace_setup(origin, direction, kInfinity), shape, crossing)) {
+    return std::nullopt;
+  }
+  return crossing;
+}
+
+TEST(Triangle, HasTheWeightsOfItsSecondAndThirdCorner) {
+  const Triangle t = {{0, 0, 1}, {2, 0, 1}, {0, 4, 1}, {}};
+  const auto inside = hit({0.5, 1, 0}, {0, 0, 3}, t);
+  ASSERT_TRUE(inside);
+  EXPECT_NEAR(inside->t, 1.0 / 3, 1e-16);
+  EXPECT_EQ(inside->u, 0.25);
+  EXPECT_EQ(inside->v, 0.25);
+  EXPECT_EQ(hit({2, 0, 0}, {0, 0, 1}, t)->u, 1);
+  EXPECT_EQ(hit({0, 4, 0}, {0, 0, 1}, t)->v, 1);
+  EXPECT_EQ(hit({0.5, 1, 5}, {0, 0, -1}, t)->t, 4);  // both sides
+  EXPECT_FALSE(hit({0.5, 1, 2}, {0, 0, 1}, t));      // behind
+  EXPECT_FALSE(hit({1.5, 3, 0}, {0, 0, 1}, t));
+}
+
+TEST(Triangle, WithoutAreaIsNeverHit) {
+  test::Random random(1);
+  const Vec3 bad = {-1113.45459, -79.049614, -56.2431908};
+  const std::vector<Triangle> degenerate = {
+      {bad, bad, bad, {}},
+      {{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {}},
+      {{0, 0, 0}, {1, 1, 1}, {3, 3, 3}, {}},
+  };
+  for (const Triangle& t : degenerate) {
+    for (int i = 0; i < 5000; ++i) {
+      const Vec3 origin = 10 * test::random_point(random);
+      const Vec3 target = lerp(t.a, t.b, random.uniform());
+      const auto found = hit(origin, target - origin, t);
+      // On a line of three points rounding may leave a sliver: then the hit is on the line.
+      if (found) {
+        ASSERT_TRUE(std::isfinite(found->t) && found->u >= 0 && found->v >= 0);
+        ASSERT_LE(length(origin + found->t * (target - origin) - target), 1e-12);
+      }
+    }
+  }
+}
+
+TEST(Triangle, EdgeOnHitsAreFiniteAndInsideTheBox) {
+  test::Random random(2);
+  for (int i = 0; i < 20000; ++i) {
+    const Triangle t = {
+        test::random_point(random), test::random_point(random), test::random_point(random), {}};
+    const Vec3 in_plane = lerp(t.a, t.b, random.uniform());
+    const Vec3 origin = t.c + 5 * (in_plane - t.c) * (random.below(2) == 0 ? 1 : -1);
+    const auto found = hit(origin, in_plane - origin, t);
+    if (found) {
+      const Vec3 p = origin + found->t * (in_plane - origin);
+      const Box box = bounds(t);
+      for (int k = 0; k < 3; ++k) {
+        ASSERT_GE(p[k], box.lo[k] - 1e-11);
+        ASSERT_LE(p[k], box.hi[k] + 1e-11);
+      }
+    }
+  }
+}
+
+// An edge seen by both its triangles from anywhere: one of them at least is hit.
+TEST(Triangle, SharedEdgesDoNotLeak) {
+  test::Random random(3);
+  for (int i = 0; i < 100000; ++i) {
+    const double offset = std::pow(10, random.uniform(-3, 6));
+    const Vec3 shift = offset * test::random_direction(random);
+    const Vec3 a = shift + test::random_point(random);
+    const Vec3 b = shift + test::random_point(random);
+    const Vec3 c = shift + test::random_point(random);
+    const Vec3 d = a + b - c + 0.1 * test::random_point(random);  // across the edge from c
+    const Vec3 origin = shift + 3 * test::random_direction(random);
+    const Vec3 target = lerp(a, b, random.uniform(0.01, 0.99));
+    const bool left = hit(origin, target - origin, Triangle{a, b, c, {}}).has_value();
+    const bool right = hit(origin, target - origin, Triangle{b, a, d, {}}).has_value();
+    // Seen from where both lie on the same side of the edge, a ray may pass both.
+    const Vec3 across = cross(b - a, target - origin);
+    if (dot(across, c - a) * dot(across, d - a) < -1e-6 * length_squared(across)) {
+      ASSERT_TRUE(left || right) << offset;
+    }
+  }
+}
+
+TEST(Quad, HasTheCoordinatesAlongItsSides) {
+  const Quad q = {{1, 1, 0}, {4, 0, 0}, {0, 2, 0}, {}};
+  const auto lower = hit({4, 1.5, 7}, {0, 0, -1}, q);
+  ASSERT_TRUE(lower);
+  EXPECT_EQ(lower->t, 7);
+  EXPECT_EQ(lower->u, 0.75);
+  EXPECT_EQ(lower->v, 0.25);
+  const auto upper = hit({2, 2.5, -1}, {0, 0, 2}, q);
+  ASSERT_TRUE(upper);
+  EXPECT_EQ(upper->t, 0.5);
+  EXPECT_EQ(upper->u, 0.25);
+  EXPECT_EQ(upper->v, 0.75);
+  EXPECT_TRUE(hit({1, 1, 1}, {0, 0, -1}, q));
+  EXPECT_TRUE(hit({5, 3, 1}, {0, 0, -1}, q));
+  EXPECT_FALSE(hit({5.01, 2, 1}, {0, 0, -1}, q));
+}
+
+TEST(Quad, SharedEdgesDoNotLeak) {
+  test::Random random(4);
+  for (const double offset : {0.0, 1e2, 1e4, 1e6}) {
+    for (int i = 0; i < 20000; ++i) {
+      const Vec3 corner = offset * test::random_direction(random);
+      const Vec3 shared = test::random_direction(random);
+      const Vec3 side = normalize(cross(shared, test::random_direction(random)));
+      const Quad left = {corner, shared, side, {}};
+      const Quad right = {corner, shared, 0.3 * shared - side, {}};
+      const Vec3 up = normalize(cross(shared, side));
+      const Vec3 origin = corner + random.uniform(1, 4) * up + 0.5 * test::random_point(random);
+      const Vec3 target = corner + random.uniform(0.001, 0.999) * shared;
+      ASSERT_TRUE(hit(origin, target - origin, left) || hit(origin, target - origin, right))
+          << offset;
+    }
+  }
+}
+
+/// Coordinates of where a ray meets the plane of a quad, without rounding.
+struct Truth {
+  Wide t;
+  Wide u;
+  Wide v;
+};
+
+Truth truth(const Vec3& origin, const Vec3& direction, const Quad& q) {
+  const WideVec n = cross(WideVec(q.u), WideVec(q.v));
+  const WideVec to = WideVec(q.corner) - origin;
+  const Wide t = dot(n, to) / dot(n, direction);
+  const WideVec p = WideVec(direction) * t - to;
+  const Wide n2 = dot(n, n);
+  return {t, dot(cross(p, WideVec(q.v)), n) / n2, dot(cross(WideVec(q.u), p), n) / n2};
+}
+
+TEST(Quad, SliversKeepTheirCoordinates) {
+  test::Random random(5);
+  const std::vector<Quad> slivers = {
+      {{1, 2, 3}, {1, 0, 0}, {1, 1e-6, 0}, {}},
+      {{0, 0, 0}, {1e8, 0, 0}, {0, 0.6, 0.8}, {}},
+      {{0, 0, 0}, {0, 1e-4, 0}, {0, 0, 1e4}, {}},
+  };
+  for (const Quad& q : slivers) {
+    for (int i = 0; i < 5000; ++i) {
+      const double a = random.uniform(0.01, 0.99);
+      const double b = random.uniform(0.01, 0.99);
+      const Vec3 target = q.corner + a * q.u + b * q.v;
+      const Vec3 n = normalize(cross(q.u, q.v));
+      const Vec3 origin = target + random.uniform(1, 5) * n + 0.1 * test::random_point(random);
+      const Vec3 d = target - origin;
+      const Truth t = truth(origin, d, q);
+      const auto found = hit(origin, d, q);
+      ASSERT_TRUE(found);
+      ASSERT_NEAR(found->u, static_cast<double>(t.u), 1e-9);
+      ASSERT_NEAR(found->v, static_cast<double>(t.v), 1e-9);
+    }
+  }
+}
+
+TEST(Quad, GrazingRaysFromFarAwayHitWhatTheyShould) {
+  test::Random random(6);
+  const Quad q = {{-1, 0, -1}, {2, 0, 0}, {0, 0, 2}, {}};
+  int hits = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3 origin = {-1e6, 1e-3, 0.1 * random.uniform()};  // an angle of 1e-9
+    const Vec3 target = {random.uniform(-1.5, 1.5), 0, random.uniform(-0.5, 0.5)};
+    const Vec3 d = target - origin;
+    const Truth t = truth(origin, d, q);
+    const auto inside = [](Wide x) { return x > 1e-9 && x < 1 - 1e-9; };
+    const auto outside = [](Wide x) { return x < -1e-9 || x > 1 + 1e-9; };
+    const auto found = hit(origin, d, q);
+    if (inside(t.u) && inside(t.v)) {
+      ASSERT_TRUE(found);
+      ASSERT_NEAR(found->u, static_cast<double>(t.u), 1e-7);
+      ++hits;
+    } else if (outside(t.u) || outside(t.v)) {
+      ASSERT_FALSE(found);
+    }
+  }
+  EXPECT_GT(hits, 10000);
+}
+
+// A light that lies in the ceiling: both at the very same t, so the lower id wins and the shadow
+// ray ends before the ceiling.
+TEST(Quad, CoplanarQuadsAreHitAtTheSameDistance) {
+  test::Random random(7);
+  const Quad light = {{213, 554, 227}, {130, 0, 0}, {0, 0, 105}, {}};
+  const Quad ceiling = {{555, 554, 555}, {-555, 0, 0}, {0, 0, -555}, {}};
+  for (int i = 0; i < 10000; ++i) {
+    const Vec3 origin = {random.uniform(0, 555), random.uniform(0, 553), random.uniform(0, 555)};
+    const Vec3 target =
+        light.corner + random.uniform(0.01, 0.99) * light.u + random.uniform(0.01, 0.99) * light.v;
+    const auto a = hit(origin, target - origin, light);
+    const auto b = hit(origin, target - origin, ceiling);
+    ASSERT_TRUE(a && b);
+    ASSERT_EQ(a->t, b->t);
+  }
+}
+
+}  // namespace
+}  // namespace bandsaw

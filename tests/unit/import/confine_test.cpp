@@ -1,0 +1,107 @@
+#include "renderlib/import/confine.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <linux/landlock.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <functional>
+#include <thread>
+
+#include "tests/unit/import/files.h"
+
+namespace bandsaw {
+namespace {
+
+using test::TempDir;
+using test::write_text;
+
+struct Folders {
+  TempDir readable;
+  TempDir writable;
+  TempDir other;
+};
+
+// Runs `act` in a confined process; its result is that process's exit code.
+int confined(const Folders& folders, const std::function<int()>& act) {
+  const pid_t pid = fork();
+  if (pid == 0) {
+    const Confinement to{folders.readable.path(), folders.writable.path(), 8ull << 30, 60, 1 << 20};
+    _exit(confine_this_process(to).ok() ? act() : 200);
+  }
+  int status = 0;
+  waitpid(pid, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+}
+
+int opens(const std::string& path, int flags) {
+  return open(path.c_str(), flags, 0600) >= 0 ? 0 : errno;
+}
+
+TEST(Confine, LeavesNoNetworkNoProgramsAndNoProcesses) {
+  const Folders folders;
+  EXPECT_EQ(confined(folders, [] { return socket(AF_INET, SOCK_STREAM, 0) < 0 ? errno : 0; }),
+            EPERM);
+  EXPECT_EQ(confined(folders, [] { return socket(AF_UNIX, SOCK_DGRAM, 0) < 0 ? errno : 0; }),
+            EPERM);
+  EXPECT_EQ(confined(folders,
+                     [] {
+                       execl("/bin/true", "true", nullptr);
+                       return errno;
+                     }),
+            EPERM);
+  EXPECT_EQ(confined(folders, [] { return fork() < 0 ? errno : 0; }), EPERM);
+  EXPECT_EQ(confined(folders, [] { return kill(getppid(), 0) < 0 ? errno : 0; }), EPERM);
+}
+
+TEST(Confine, StillAllowsThreadsAndMemory) {
+  const Folders folders;
+  EXPECT_EQ(confined(folders,
+                     [] {
+                       int done = 0;
+                       std::thread([&done] {
+                         done = static_cast<int>(std::string(1 << 20, 'x')[9]);
+                       }).join();
+                       return done;
+                     }),
+            'x');
+}
+
+TEST(Confine, LimitsCoreDumpsFilesAndTime) {
+  const Folders folders;
+  EXPECT_EQ(confined(folders,
+                     [] {
+                       rlimit core{};
+                       rlimit cpu{};
+                       getrlimit(RLIMIT_CORE, &core);
+                       getrlimit(RLIMIT_CPU, &cpu);
+                       return core.rlim_max == 0 && cpu.rlim_max == 60 ? 0 : 1;
+                     }),
+            0);
+}
+
+TEST(Confine, LeavesTheTwoFoldersOnlyWhereTheKernelHasLandlock) {
+  if (syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION) < 0) {
+    GTEST_SKIP() << "this kernel has no Landlock";
+  }
+  const Folders folders;
+  const std::string inside = write_text(folders.readable, "a", "a");
+  const std::string outside = write_text(folders.other, "b", "b");
+  EXPECT_EQ(confined(folders, [&] { return opens(inside, O_RDONLY); }), 0);
+  EXPECT_EQ(confined(folders, [&] { return opens(inside, O_WRONLY); }), EACCES);
+  EXPECT_EQ(confined(folders, [&] { return opens(outside, O_RDONLY); }), EACCES);
+  EXPECT_EQ(confined(folders, [&] { return opens("/etc/passwd", O_RDONLY); }), EACCES);
+  EXPECT_EQ(confined(folders, [&] { return opens(folders.writable / "c", O_WRONLY | O_CREAT); }),
+            0);
+  EXPECT_EQ(confined(folders, [&] { return opens(folders.other / "d", O_WRONLY | O_CREAT); }),
+            EACCES);
+}
+
+}  // namespace
+}  // namespace bandsaw

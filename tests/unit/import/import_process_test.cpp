@@ -1,0 +1,192 @@
+#include "coordinator/cli/import_process.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+
+#include <filesystem>
+
+#include "coordinator/cli/child_process.h"
+#include "renderlib/import/import.h"
+#include "tests/unit/import/files.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+using test::TempDir;
+using test::write_text;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+ImportLimits limits() {
+  ImportLimits limits;
+  limits.program = BANDSAW_IMPORT_BIN;
+  return limits;
+}
+
+std::size_t entries(const std::string& folder) {
+  return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
+}
+
+TEST(ImportProcess, GivesTheBytesThatTheLibraryGives) {
+  const std::string path = std::string(BANDSAW_GALLERY) + "/mesh.textproto";
+  auto imported = import_in_process(path, limits());
+  ASSERT_TRUE(imported.ok()) << imported.status();
+  const auto here = import_scene(path);
+  ASSERT_TRUE(here.ok()) << here.status();
+  BlobMap blobs;
+  EXPECT_EQ(imported->manifest(), encode_package(here->scene, here->info, blobs));
+  EXPECT_EQ(imported->info().name, "mesh");
+  const auto refs = package_blobs(imported->manifest());
+  ASSERT_TRUE(refs.ok()) << refs.status();
+  for (const BlobRef& ref : *refs) {
+    EXPECT_TRUE(imported->blobs().get(ref.digest).ok());
+  }
+  EXPECT_TRUE(decode_package(imported->manifest(), imported->blobs()).ok());
+}
+
+TEST(ImportProcess, LeavesNothingBehind) {
+  const TempDir scratch;
+  ImportLimits in = limits();
+  in.scratch = scratch.path();
+  {
+    auto imported = import_in_process(std::string(BANDSAW_GALLERY) + "/cornell.textproto", in);
+    ASSERT_TRUE(imported.ok()) << imported.status();
+    EXPECT_EQ(entries(scratch.path()), 1u);
+    ImportedPackage moved = *std::move(imported);
+    EXPECT_TRUE(decode_package(moved.manifest(), moved.blobs()).ok());
+  }
+  EXPECT_EQ(entries(scratch.path()), 0u);
+  EXPECT_FALSE(import_in_process("/no/such.glb", in).ok());
+  EXPECT_EQ(entries(scratch.path()), 0u);
+}
+
+TEST(ImportProcess, PassesOnTheImportersError) {
+  const TempDir folder;
+  const auto wrong =
+      import_in_process(write_text(folder, "s.textproto", "\n camera { fov: 3 }"), limits());
+  EXPECT_EQ(wrong.status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(wrong.status().message()),
+              StartsWith("s.textproto:2:11: unknown field \"fov\" in Camera"));
+  EXPECT_EQ(import_in_process(folder / "no.glb", limits()).status().code(),
+            absl::StatusCode::kNotFound);
+  EXPECT_FALSE(import_in_process(folder.path(), limits()).ok());
+}
+
+TEST(ImportProcess, SaysThatTheProgramIsMissing) {
+  ImportLimits in;
+  in.program = "/no/such/bandsaw-import";
+  const auto imported = import_in_process("scene.textproto", in);
+  EXPECT_EQ(imported.status().code(), absl::StatusCode::kFailedPrecondition);
+  EXPECT_THAT(std::string(imported.status().message()), HasSubstr("/no/such/bandsaw-import"));
+}
+
+TEST(ImportProcess, EndsWhatTakesTooLong) {
+  ImportLimits in = limits();
+  in.seconds = 0;
+  const auto imported = import_in_process(std::string(BANDSAW_GALLERY) + "/mesh.textproto", in);
+  EXPECT_EQ(imported.status().code(), absl::StatusCode::kDeadlineExceeded) << imported.status();
+  EXPECT_THAT(std::string(imported.status().message()),
+              StartsWith("mesh.textproto: reading it took longer than 0 s"));
+}
+
+TEST(ImportProcess, EndsWhenItIsToldTo) {
+  const std::atomic<bool> stop{true};
+  ImportLimits in = limits();
+  in.stop = &stop;
+  const auto imported = import_in_process(std::string(BANDSAW_GALLERY) + "/mesh.textproto", in);
+  EXPECT_EQ(imported.status().code(), absl::StatusCode::kCancelled) << imported.status();
+}
+
+TEST(ImportProcess, DoesNotBlockOnAPipe) {
+  const TempDir folder;
+  ASSERT_EQ(mkfifo((folder / "pipe.textproto").c_str(), 0600), 0);
+  const auto imported = import_in_process(folder / "pipe.textproto", limits());
+  EXPECT_EQ(imported.status().code(), absl::StatusCode::kInvalidArgument) << imported.status();
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+TEST(ImportProcess, MakesOneErrorOfAFileThatWantsAllMemory) {
+  const TempDir folder;
+  ImportLimits in = limits();
+  in.memory_bytes = 256ull << 20;
+  // 20000 x 20000 texels: 1.2 GB once decoded, 400 MB of them in this file, which has holes.
+  const std::string path = write_text(folder, "sky.pgm", "P5 20000 20000 255\n");
+  std::filesystem::resize_file(path, 400'000'019);
+  const auto picture = read_image_in_process(path, in);
+  EXPECT_EQ(picture.status().code(), absl::StatusCode::kResourceExhausted) << picture.status();
+  EXPECT_THAT(std::string(picture.status().message()), StartsWith("sky.pgm: needs more memory"));
+}
+#endif
+
+TEST(ImportProcess, SurvivesEveryBrokenModelOfAssimp) {
+  if (!test::have_test_models()) {
+    GTEST_SKIP() << "needs the package assimp-testmodels";
+  }
+  ImportLimits in = limits();
+  in.seconds = 20;
+  in.memory_bytes = 2ull << 30;
+  std::size_t models = 0;
+  for (const std::string folder : {"invalid", "OBJ", "glTF2"}) {
+    for (const auto& entry :
+         std::filesystem::recursive_directory_iterator(test::test_model(folder))) {
+      const std::string suffix = entry.path().extension();
+      if (suffix != ".obj" && suffix != ".gltf" && suffix != ".glb") {
+        continue;
+      }
+      ++models;
+      auto imported = import_in_process(entry.path(), in);
+      if (!imported.ok()) {
+        EXPECT_THAT(std::string(imported.status().message()),
+                    HasSubstr(entry.path().filename().string()));
+        EXPECT_NE(imported.status().code(), absl::StatusCode::kDeadlineExceeded);
+      } else {
+        EXPECT_TRUE(decode_package(imported->manifest(), imported->blobs()).ok()) << entry.path();
+      }
+    }
+  }
+  EXPECT_GT(models, 30u);
+}
+
+TEST(ReadImageInProcess, GivesAPictureOrOneError) {
+  const TempDir folder;
+  const auto picture =
+      read_image_in_process(write_text(folder, "p.ppm", test::small_ppm()), limits());
+  ASSERT_TRUE(picture.ok()) << picture.status();
+  EXPECT_EQ(picture->width, 2u);
+  EXPECT_EQ(picture->at(1, 0), (Rgb{0, 1, 0}));
+  EXPECT_EQ(picture->at(0, 1), (Rgb{0, 0, 1}));
+  const auto broken = read_image_in_process(write_text(folder, "b.png", "no png"), limits());
+  EXPECT_EQ(broken.status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(broken.status().message()), HasSubstr("b.png: is not an image"));
+}
+
+TEST(RunChild, TellsHowAChildEnded) {
+  const auto run = [](const std::string& script) {
+    return run_child({"/bin/sh", "-c", script}, 20, nullptr).value();
+  };
+  EXPECT_EQ(WEXITSTATUS(run("exit 3").wait_status), 3);
+  EXPECT_EQ(run("echo said; echo thrown away >&2").output, "said\n");
+  EXPECT_EQ(WTERMSIG(run("kill -SEGV $$").wait_status), SIGSEGV);
+  EXPECT_EQ(run("head -c 1000000 /dev/zero").output.size(), 65536u);
+  EXPECT_EQ(run_child({"/bin/sh", "-c", "exec sleep 1000"}, 0.05, nullptr)->end,
+            ChildOutcome::End::kTimedOut);
+  EXPECT_FALSE(run_child({"/no/such/program"}, 1, nullptr).ok());
+}
+
+TEST(RunChild, GivesTheChildSignalsThatItsParentIgnores) {
+  struct sigaction before {};
+  struct sigaction ignore {};
+  ignore.sa_handler = SIG_IGN;
+  sigaction(SIGINT, &ignore, &before);
+  const auto outcome = run_child({"/bin/sh", "-c", "kill -INT $$; exit 0"}, 20, nullptr);
+  sigaction(SIGINT, &before, nullptr);
+  ASSERT_TRUE(outcome.ok());
+  EXPECT_TRUE(WIFSIGNALED(outcome->wait_status));
+  EXPECT_EQ(WTERMSIG(outcome->wait_status), SIGINT);
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

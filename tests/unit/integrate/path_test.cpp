@@ -1,0 +1,157 @@
+#include "renderlib/integrate/path.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/scenes.h"
+
+namespace bandsaw {
+namespace {
+
+using test::SceneMaker;
+
+Rgb trace(const Scene& scene, const Ray& ray, std::uint64_t sample, const PathOptions& options) {
+  std::uint64_t rays = 0;
+  return path_radiance(scene, ray, PixelSampler(1, 2, 3), sample, options, rays);
+}
+
+const Ray kAhead{.origin = {0.1, 0.2, 5}, .direction = {0, 0, -1}};
+
+/// Every sample of the ray gives this, for every technique: nothing about it is random but the way.
+void expect_always(const Scene& scene, const Ray& ray, double expected, double tolerance,
+                   std::uint32_t max_depth = 64) {
+  for (const Technique technique :
+       {Technique::kBoth, Technique::kLightsOnly, Technique::kScatteringOnly}) {
+    for (std::uint64_t sample = 0; sample < 200; ++sample) {
+      const Rgb value = trace(scene, ray, sample, {max_depth, technique});
+      ASSERT_NEAR(value.g, expected, tolerance) << sample;
+    }
+  }
+}
+
+TEST(Path, ALampIsSeenAsItIs) {
+  SceneMaker maker;
+  maker.sphere({0, 0, 0}, 1, maker.lamp(7));
+  expect_always(*maker.build(), kAhead, 7, 0);
+}
+
+TEST(Path, AOneSidedLampIsBlackFromBehind) {
+  SceneMaker front;
+  front.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, front.lamp(7, true));
+  expect_always(*front.build(), kAhead, 7, 0);
+  SceneMaker back;
+  back.quad({-1, -1, 0}, {0, 2, 0}, {2, 0, 0}, back.lamp(7, true));
+  expect_always(*back.build(), kAhead, 0, 0);
+}
+
+TEST(Path, ALampInAMirrorIsTheLampTimesTheReflectance) {
+  SceneMaker maker;
+  maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.metal(0.5f, 0));
+  maker.sphere({0.1, 0.2, 9}, 1, maker.lamp(7));
+  expect_always(*maker.build(), kAhead, 3.5, 1e-6);
+}
+
+TEST(Path, WithoutLossGlassAndMirrorsAreInvisibleInAUniformSky) {
+  for (const double x : {0.0, 0.5, 0.9, 0.99, 0.999}) {
+    const Ray ray{.origin = {x, 0, 5}, .direction = {0, 0, -1}};
+    SceneMaker glass;
+    glass.background(gray(1), gray(1));
+    glass.sphere({0, 0, 0}, 1, glass.glass(1.5));
+    expect_always(*glass.build(), ray, 1, 1e-5, 1000);
+    SceneMaker mirror;
+    mirror.background(gray(1), gray(1));
+    mirror.sphere({0, 0, 0}, 1, mirror.metal(1, 0));
+    expect_always(*mirror.build(), ray, 1, 0);
+    SceneMaker white;
+    white.background(gray(1), gray(1));
+    white.sphere({0, 0, 0}, 1, white.diffuse(1));
+    expect_always(*white.build(), ray, 1, 0);
+  }
+}
+
+TEST(Path, ATinyGlassSphereAndAThinPaneAreEnteredAndLeft) {
+  for (const double size : {1e-4, 1e-6}) {
+    SceneMaker maker;
+    maker.background(gray(1), gray(1));
+    maker.sphere({0, 0, 0}, size, maker.glass(1.5));
+    const Ray ray{.origin = {0.3 * size, 0.2 * size, 1}, .direction = {0, 0, -1}};
+    expect_always(*maker.build(), ray, 1, 1e-5, 1000);
+  }
+  for (const double thickness : {1e-3, 1e-6, 1e-9}) {
+    SceneMaker maker;
+    maker.background(gray(1), gray(1));
+    const MaterialId glass = maker.glass(1.5);
+    maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, glass);
+    maker.quad({-1, -1, -thickness}, {0, 2, 0}, {2, 0, 0}, glass);
+    expect_always(*maker.build(), kAhead, 1, 1e-5, 1000);
+  }
+}
+
+TEST(Path, InsideOfGlassRadianceIsTheSquareOfTheIndexOfWhatItIsOutside) {
+  SceneMaker maker;
+  maker.background(gray(1), gray(1));
+  maker.sphere({0, 0, 0}, 1, maker.glass(1.5));
+  const Ray ray{.origin = {0, 0, 0.2}, .direction = {0, 0, -1}};
+  expect_always(*maker.build(), ray, 2.25, 1e-5, 1000);
+}
+
+TEST(Path, MaxDepthIsTheMostSurfacesThatScatter) {
+  // Two mirrors face each other; every reflection halves what comes from the lamp around the
+  // corner. The ray is reflected three times before it meets the lamp.
+  SceneMaker maker;
+  const MaterialId mirror = maker.metal(0.5f, 0);
+  maker.quad({-9, -9, 0}, {18, 0, 0}, {0, 18, 0}, mirror);
+  maker.quad({-9, -9, 2}, {18, 0, 0}, {0, 18, 0}, mirror);
+  maker.quad({6.5, -9, -1}, {0, 18, 0}, {0, 0, 9}, maker.lamp(8));
+  const auto scene = maker.build();
+  const Ray ray{.origin = {0, 0, 1}, .direction = normalize({1, 0, -1})};
+  for (std::uint32_t depth = 1; depth <= 5; ++depth) {
+    const PathOptions options{.max_depth = depth, .russian_roulette = false};
+    EXPECT_EQ(trace(*scene, ray, 0, options).g, depth < 3 ? 0 : 1) << depth;
+  }
+}
+
+TEST(Path, AnOpaqueBlockerShadowsExactlyHoweverFarTheLamp) {
+  SceneMaker maker;
+  maker.quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}, maker.diffuse(1));
+  maker.quad({-50, 0.5, -50}, {0, 0, 100}, {100, 0, 0}, maker.diffuse(0));
+  maker.sphere({0, 1000, 0}, 10, maker.lamp(1e6f));
+  const Ray ray{.origin = {0, 0.1, 0}, .direction = {0, -1, 0}};
+  expect_always(*maker.build(), ray, 0, 0);
+}
+
+TEST(Path, ConstantColorAndConstantTextureMakeTheSameBits) {
+  SceneMaker plain;
+  const MaterialId gray_plain = plain.diffuse(1);
+  SceneMaker textured;
+  ImageTexture image;
+  image.width = 3;
+  image.height = 3;
+  image.texels = std::vector<std::byte>(27, std::byte{255});
+  textured.scene.materials.push_back(Diffuse{textured.texture(image)});
+  const auto finish = [](SceneMaker& maker, MaterialId material) {
+    maker.quad({-2, -2, 0}, {4, 0, 0}, {0, 4, 0}, material);
+    maker.sphere({0, 1, 2}, 0.5, material);
+    maker.sphere({2, 1, 2}, 0.5, maker.lamp(3));
+    maker.background({0.1f, 0.2f, 0.3f}, {0.4f, 0.5f, 0.6f});
+    return maker.build();
+  };
+  const auto a = finish(plain, gray_plain);
+  const auto b = finish(textured, MaterialId{0});
+  for (std::uint64_t sample = 0; sample < 300; ++sample) {
+    ASSERT_EQ(trace(*a, kAhead, sample, {}), trace(*b, kAhead, sample, {}));
+  }
+}
+
+TEST(Path, CountsItsRays) {
+  SceneMaker maker;
+  maker.background(gray(1), gray(1));
+  const auto scene = maker.build();
+  std::uint64_t rays = 41;
+  path_radiance(*scene, kAhead, PixelSampler(1, 2, 3), 0, {}, rays);
+  EXPECT_EQ(rays, 42u);
+}
+
+}  // namespace
+}  // namespace bandsaw

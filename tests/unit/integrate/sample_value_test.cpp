@@ -1,0 +1,150 @@
+#include "renderlib/integrate/sample_value.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/scenes.h"
+#include "tests/support/statistics.h"
+
+namespace bandsaw {
+namespace {
+
+using test::SceneMaker;
+
+Rgb value(const SceneMaker& maker, Integrator integrator, const Ray& ray,
+          std::uint64_t sample = 0) {
+  std::uint64_t rays = 0;
+  return sample_value(*maker.build(), integrator, ray, PixelSampler(1, 2, 3), sample,
+                      {.max_depth = 16, .local = integrator == Integrator::kDirect}, rays);
+}
+
+/// False alarms: 4 standard errors, 6e-5 each.
+double mean(const SceneMaker& maker, Integrator integrator, const Ray& ray, double expected) {
+  const auto scene = maker.build();
+  test::Moments moments;
+  std::uint64_t rays = 0;
+  for (std::uint32_t pixel = 0; pixel < 20'000; ++pixel) {
+    moments.add(sample_value(*scene, integrator, ray, PixelSampler(1, pixel, 3), 0,
+                             {.max_depth = 16, .local = integrator == Integrator::kDirect}, rays)
+                    .g);
+  }
+  EXPECT_LT(std::abs(moments.z(expected)), 4) << moments.mean() << " for " << expected;
+  return moments.mean();
+}
+
+const Ray kAhead{.origin = {0.1, 0.2, 5}, .direction = {0, 0, -1}};
+
+/// A wall in z = 0 that shows its front.
+void wall(SceneMaker& maker, MaterialId material, double z = 0) {
+  maker.quad({-50, -50, z}, {100, 0, 0}, {0, 100, 0}, material);
+}
+
+TEST(SampleValue, NormalsDepthAndAlbedoAreThoseOfTheFirstSurface) {
+  SceneMaker maker;
+  wall(maker, maker.diffuse({0.2f, 0.4f, 0.6f}), -2);
+  EXPECT_EQ(value(maker, Integrator::kNormals, kAhead), (Rgb{0.5f, 0.5f, 1}));
+  EXPECT_EQ(value(maker, Integrator::kDepth, kAhead), gray(7));
+  EXPECT_EQ(value(maker, Integrator::kAlbedo, kAhead), (Rgb{0.2f, 0.4f, 0.6f}));
+  maker.sphere({0.1, 0.2, 0}, 1, maker.metal(0.75f, 0.3));
+  EXPECT_EQ(value(maker, Integrator::kDepth, kAhead), gray(4));
+  EXPECT_EQ(value(maker, Integrator::kAlbedo, kAhead), gray(0.75f));
+}
+
+TEST(SampleValue, ALampsAlbedoIsCutOffAndGlassIsWhite) {
+  SceneMaker maker;
+  maker.sphere({0.1, 0.2, 0}, 1, maker.lamp(3));
+  EXPECT_EQ(value(maker, Integrator::kAlbedo, kAhead), gray(1));
+  SceneMaker glass;
+  glass.sphere({0.1, 0.2, 0}, 1, glass.glass(1.5));
+  EXPECT_EQ(value(glass, Integrator::kAlbedo, kAhead), gray(1));
+}
+
+TEST(SampleValue, TheAlbedoOfAGltfMaterialIsItsBaseColour) {
+  SceneMaker maker;
+  const TextureId gold = maker.texture(ConstantTexture{{0.8f, 0.6f, 0.4f}});
+  Principled material;
+  material.base_color = {gold, {0.5f, 1, 0.25f}};
+  material.metallic = {gold, 1};
+  material.roughness = {gold, 0.5};
+  material.alpha = {gold, 1};
+  material.coat.texture = material.coat_roughness.texture = material.transmission.texture = gold;
+  material.emissive.texture = gold;
+  maker.scene.materials.emplace_back(material);
+  wall(maker, MaterialId{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)});
+  EXPECT_EQ(value(maker, Integrator::kAlbedo, kAhead), (Rgb{0.4f, 0.6f, 0.1f}));
+}
+
+TEST(SampleValue, AMissIsBlackAndOpen) {
+  SceneMaker maker;
+  maker.sphere({50, 0, 0}, 1, maker.diffuse(0.5f));
+  maker.background(gray(3), gray(3));
+  for (const Integrator integrator :
+       {Integrator::kNormals, Integrator::kDepth, Integrator::kAlbedo}) {
+    EXPECT_EQ(value(maker, integrator, kAhead), Rgb{});
+  }
+  EXPECT_EQ(value(maker, Integrator::kAmbientOcclusion, kAhead), gray(1));
+  EXPECT_EQ(value(maker, Integrator::kDirect, kAhead), gray(3));
+}
+
+TEST(SampleValue, ABallAboveHidesItsShareOfTheSky) {
+  SceneMaker maker;
+  wall(maker, maker.diffuse(0.5f));
+  maker.sphere({0, 0, 4}, 2, maker.diffuse(0.5f));
+  const Ray below{.origin = {0, 0, 1}, .direction = {0, 0, -1}};
+  // The view factor of a ball of radius r at distance d along the normal is (r / d)^2.
+  mean(maker, Integrator::kAmbientOcclusion, below, 0.75);
+  maker.scene.local_shading.occlusion_distance = 2.5;
+  const double near = mean(maker, Integrator::kAmbientOcclusion, below,
+                           // Rays that meet the ball before 2.5: within the cone of tan^2 given by
+                           // the sphere of radius 2.5 about the point; z of the circle they share
+                           // is (2.5^2 + 4^2 - 2^2) / 8, and sin^2 of its cone 1 - (z / 2.5)^2.
+                           std::pow((2.5 * 2.5 + 12) / 8 / 2.5, 2));
+  EXPECT_GT(near, 0.75);
+  maker.scene.local_shading.occlusion_distance = 1.9;
+  EXPECT_EQ(mean(maker, Integrator::kAmbientOcclusion, below, 1), 1);
+}
+
+TEST(SampleValue, DirectIsTheLampsIrradianceAndTheAmbientTerm) {
+  SceneMaker maker;
+  wall(maker, maker.diffuse(0.5f));
+  maker.sphere({0, 0, 4}, 2, maker.lamp(3));
+  maker.scene.local_shading.ambient = gray(0.25f);
+  const Ray below{.origin = {0, 0, 1}, .direction = {0, 0, -1}};
+  // Irradiance pi L (r / d)^2 times albedo / pi, and albedo times the ambient radiance.
+  mean(maker, Integrator::kDirect, below, 0.5 * 3 * 0.25 + 0.5 * 0.25);
+}
+
+TEST(SampleValue, DirectKnowsNoLightFromSurfaceToSurface) {
+  SceneMaker maker;
+  wall(maker, maker.diffuse(0.5f));
+  wall(maker, maker.diffuse(0.9f), 20);
+  maker.background(gray(7), gray(7));
+  maker.scene.local_shading.ambient = {0.1f, 0.2f, 0.4f};
+  for (std::uint64_t sample = 0; sample < 20; ++sample) {
+    EXPECT_EQ(value(maker, Integrator::kDirect, kAhead, sample), (Rgb{0.05f, 0.1f, 0.2f}));
+  }
+}
+
+TEST(SampleValue, DirectFollowsMirrorsAndGlass) {
+  SceneMaker maker;
+  wall(maker, maker.metal(0.5f, 0));
+  wall(maker, maker.diffuse(0.5f), 20);
+  maker.scene.local_shading.ambient = gray(1);
+  EXPECT_EQ(value(maker, Integrator::kDirect, kAhead), gray(0.25f));
+  SceneMaker glass;
+  glass.sphere({0.1, 0.2, 0}, 1, glass.glass(1.5));
+  glass.background(gray(2), gray(2));
+  mean(glass, Integrator::kDirect, kAhead, 2);
+}
+
+TEST(SampleValue, NamesAreReadBack) {
+  for (int i = 0; i <= kLastIntegrator; ++i) {
+    const auto integrator = static_cast<Integrator>(i);
+    EXPECT_EQ(integrator_named(integrator_name(integrator)), integrator);
+  }
+  EXPECT_EQ(integrator_named("paths"), std::nullopt);
+}
+
+}  // namespace
+}  // namespace bandsaw

@@ -1,0 +1,175 @@
+// Alpha, nested glass and glTF's material along whole paths.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "renderlib/integrate/path.h"
+#include "renderlib/material/interiors.h"
+#include "tests/support/scenes.h"
+#include "tests/support/statistics.h"
+
+namespace bandsaw {
+namespace {
+
+using test::Moments;
+using test::SceneMaker;
+
+constexpr double kFar = 100;
+
+Principled blended(double alpha) {
+  Principled m;
+  m.base_color.factor = {0, 0, 0};
+  m.roughness.factor = 1;
+  m.alpha_mode = AlphaMode::kBlend;
+  m.alpha.factor = alpha;
+  return m;
+}
+
+MaterialId add(SceneMaker& maker, const Material& material) {
+  maker.scene.materials.push_back(material);
+  return MaterialId{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)};
+}
+
+Moments light_along(const SceneMaker& maker, const Ray& ray, int samples,
+                    Technique technique = Technique::kBoth) {
+  const auto scene = maker.build();
+  Moments sum;
+  std::uint64_t rays = 0;
+  const PathOptions options{.technique = technique};
+  for (int i = 0; i < samples; ++i) {
+    const PixelSampler sampler(5, static_cast<std::uint32_t>(i), 3);
+    sum.add(path_radiance(*scene, ray, sampler, 0, options, rays).g);
+  }
+  return sum;
+}
+
+/// White texture 0, so that factors alone say what a material is.
+SceneMaker white_sky() {
+  SceneMaker maker;
+  maker.scene.textures.insert(maker.scene.textures.begin(), ConstantTexture{{1, 1, 1}});
+  maker.background({1, 1, 1}, {1, 1, 1});
+  return maker;
+}
+
+TEST(Alpha, BlendedSurfacesInTheSamePlaceAreMetOneAfterTheOther) {
+  for (const int layers : {1, 2, 5}) {
+    SceneMaker maker = white_sky();
+    const MaterialId half = add(maker, blended(0.25));
+    for (int i = 0; i < layers; ++i) {
+      maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, half);
+      maker.triangle({-9, -9, 0}, {9, -9, 0}, {0, 9, 0}, half);
+    }
+    const Ray ray{.origin = {0.1, 0.2, 3}, .direction = {0, 0, -1}};
+    // Black where it is there, up to the reflection at the surface.
+    const double through = std::pow(0.75, 2 * layers);
+    const Moments sum = light_along(maker, ray, 20000);
+    EXPECT_NEAR(sum.mean(), through, 0.045 * (1 - through) + 4 * sum.standard_error());
+    EXPECT_GT(sum.mean(), through - 4 * sum.standard_error());
+  }
+}
+
+TEST(Alpha, BothSidesOfASphereAreMet) {
+  SceneMaker maker = white_sky();
+  const MaterialId half = add(maker, blended(0.5));
+  maker.sphere({0, 0, 0}, 1, half);
+  maker.sphere({0, 0, 0.3}, 1, half);
+  const Moments sum = light_along(maker, {.origin = {0.1, 0.2, 5}, .direction = {0, 0, -1}}, 20000);
+  EXPECT_NEAR(sum.mean(), 0.0625, 0.045 + 4 * sum.standard_error());
+  EXPECT_GT(sum.mean(), 0.0625 - 4 * sum.standard_error());
+}
+
+TEST(Alpha, AMaskIsThereOrNot) {
+  for (const double cutoff : {0.4, 0.6}) {
+    SceneMaker maker = white_sky();
+    Principled mask = blended(0.5);
+    mask.alpha_mode = AlphaMode::kMask;
+    mask.alpha_cutoff = cutoff;
+    maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, add(maker, mask));
+    const Moments sum =
+        light_along(maker, {.origin = {0.1, 0.2, 5}, .direction = {0, 0, -1}}, 2000);
+    EXPECT_NEAR(sum.mean(), cutoff > 0.5 ? 1 : 0, 0.07);
+  }
+}
+
+TEST(Alpha, ShadowsSeeItAndEveryTechniqueAgrees) {
+  SceneMaker maker;
+  maker.scene.textures.insert(maker.scene.textures.begin(), ConstantTexture{{1, 1, 1}});
+  maker.background({0, 0, 0}, {0, 0, 0});
+  Principled floor;
+  floor.roughness.factor = 0.6;
+  floor.base_color.factor = {0.7f, 0.7f, 0.7f};
+  maker.quad({-kFar, 0, -kFar}, {0, 0, 2 * kFar}, {2 * kFar, 0, 0}, add(maker, floor));
+  maker.quad({-1, 3, -1}, {2, 0, 0}, {0, 0, 2}, maker.lamp(5));
+  maker.quad({-4, 1, -4}, {8, 0, 0}, {0, 0, 8}, add(maker, blended(0.5)));
+  const Ray ray{.origin = {0.3, 0.9, 0.4}, .direction = normalize({0.1, -1, 0.05})};
+  const Moments both = light_along(maker, ray, 20000);
+  const Moments asked = light_along(maker, ray, 20000, Technique::kLightsOnly);
+  const Moments found = light_along(maker, ray, 60000, Technique::kScatteringOnly);
+  const auto agree = [](const Moments& a, const Moments& b) {
+    return std::abs(a.mean() - b.mean()) <= 4 * std::hypot(a.standard_error(), b.standard_error());
+  };
+  EXPECT_GT(both.mean(), 0.1);
+  EXPECT_TRUE(agree(both, asked)) << both.mean() << " " << asked.mean();
+  EXPECT_TRUE(agree(both, found)) << both.mean() << " " << found.mean();
+}
+
+TEST(Emission, OfAScatteringSurfaceIsAddedToWhatItReflects) {
+  SceneMaker maker = white_sky();
+  Principled glow;
+  glow.roughness.factor = 1;
+  glow.base_color.factor = {0, 0, 0};
+  glow.emissive.factor = {3, 3, 3};
+  maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, add(maker, glow));
+  const Ray front{.origin = {0.1, 0.2, 5}, .direction = {0, 0, -1}};
+  EXPECT_NEAR(light_along(maker, front, 2000).mean(), 3.02, 0.03);
+  const Ray back{.origin = {0.1, 0.2, -5}, .direction = {0, 0, 1}};
+  EXPECT_LT(light_along(maker, back, 2000).mean(), 0.1);
+}
+
+TEST(NestedGlass, RaysBendAsIfOnlyTheHigherPriorityWereWhereTheyOverlap) {
+  // Water (1) that reaches into its tumbler (2): a slab of each, overlapping by 0.1.
+  const auto stack = [](double overlap) {
+    SceneMaker maker = white_sky();
+    const MaterialId water = add(maker, Dielectric{1.33, 0, 1});
+    const MaterialId glass = add(maker, Dielectric{1.5, 0, 2});
+    const auto slab = [&](double low, double high, MaterialId material) {
+      maker.quad({-kFar, high, -kFar}, {0, 0, 2 * kFar}, {2 * kFar, 0, 0}, material);
+      maker.quad({-kFar, low, -kFar}, {2 * kFar, 0, 0}, {0, 0, 2 * kFar}, material);
+    };
+    slab(1 - overlap, 2, water);
+    slab(0, 1, glass);
+    // Bright only beside where the bent ray leaves.
+    maker.background({0, 0, 0}, {0, 0, 0});
+    const double s0 = std::sqrt(0.5);
+    const double tan_water = (s0 / 1.33) / std::sqrt(1 - s0 * s0 / 1.33 / 1.33);
+    const double tan_glass = (s0 / 1.5) / std::sqrt(1 - s0 * s0 / 2.25);
+    const double x = tan_water + tan_glass + 1;
+    maker.quad({x - 1e-6, -1, -1}, {2e-6, 0, 0}, {0, 0, 2}, maker.lamp(1));
+    const Ray ray{.origin = {-1, 3, 0}, .direction = normalize({1, -1, 0})};
+    return light_along(maker, ray, 20000).mean();
+  };
+  const double at_most = 1;
+  const double overlapping = stack(0.1);
+  EXPECT_GT(overlapping, 0.85);
+  EXPECT_LE(overlapping, at_most);
+  EXPECT_NEAR(stack(0.5), overlapping, 0.02);
+}
+
+TEST(NestedGlass, ABubbleOfAirInGlassBendsOutwards) {
+  Interiors inside;
+  const Dielectric glass{1.5, 0, 1};
+  const Dielectric air{1, 0, 2};
+  EXPECT_EQ(inside.index_without(MaterialId{0}), 1);
+  inside.pass(MaterialId{0}, glass, true);
+  EXPECT_FALSE(inside.hides(MaterialId{1}, air));
+  EXPECT_EQ(inside.index_without(MaterialId{1}), 1.5);
+  inside.pass(MaterialId{1}, air, true);
+  EXPECT_TRUE(inside.hides(MaterialId{0}, glass));
+  inside.pass(MaterialId{1}, air, false);
+  inside.pass(MaterialId{0}, glass, false);
+  EXPECT_EQ(inside.index_without(MaterialId{1}), 1);
+}
+
+}  // namespace
+}  // namespace bandsaw

@@ -1,0 +1,137 @@
+#include "proto/link/channel.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "proto/farm.grpc.pb.h"
+#include "proto/link/certificate.h"
+#include "proto/link/identity.h"
+#include "tests/support/temp_dir.h"
+
+namespace bandsaw::link {
+namespace {
+
+using std::chrono::milliseconds;
+using ::testing::HasSubstr;
+
+/// A farm that knows nothing but the secret each call came with.
+class Echo : public farm::Farm::Service {
+  grpc::Status ListJobs(grpc::ServerContext* context, const farm::ListJobsRequest*,
+                        farm::ListJobsReply* reply) override {
+    const auto& metadata = context->client_metadata();
+    const auto secret = metadata.find(kSecretKey);
+    reply->add_job()->set_name(secret == metadata.end()
+                                   ? std::string()
+                                   : std::string(secret->second.data(), secret->second.size()));
+    return grpc::Status::OK;
+  }
+};
+
+struct EchoServer {
+  Echo service;
+  int port = 0;
+  std::unique_ptr<grpc::Server> server;
+
+  EchoServer(std::shared_ptr<grpc::ServerCredentials> credentials, int wanted_port = 0) {
+    grpc::ServerBuilder builder;
+    configure_server(builder);
+    builder.AddListeningPort("127.0.0.1:" + std::to_string(wanted_port), std::move(credentials),
+                             &port);
+    builder.RegisterService(&service);
+    server = builder.BuildAndStart();
+  }
+};
+
+std::shared_ptr<grpc::ServerCredentials> tls(const Identity& identity) {
+  grpc::SslServerCredentialsOptions options;
+  options.pem_key_cert_pairs.push_back({identity.key_pem, identity.certificate_pem});
+  return grpc::SslServerCredentials(options);
+}
+
+JoinString join_to(int port, std::optional<wire::Digest> digest) {
+  JoinString join;
+  join.addresses = {"127.0.0.1:" + std::to_string(port)};
+  join.certificate = digest;
+  join.secret = "abcdefghijklmnopqrstuv";
+  return join;
+}
+
+void expect_calls_work(const Connected& connected, const JoinString& join) {
+  for (const auto& channel : {connected.control, connected.bulk}) {
+    grpc::ClientContext context;
+    prepare(context, join, milliseconds(10'000));
+    farm::ListJobsReply reply;
+    const grpc::Status status =
+        farm::Farm::NewStub(channel)->ListJobs(&context, farm::ListJobsRequest(), &reply);
+    ASSERT_TRUE(status.ok()) << status.error_message();
+    EXPECT_EQ(reply.job(0).name(), join.secret);
+  }
+}
+
+class ConnectTest : public ::testing::Test {
+ protected:
+  test::TempDir folder_;
+  Identity identity_ = *load_or_make_identity(folder_.path());
+};
+
+TEST_F(ConnectTest, TrustsTheCertificateThatTheStringNames) {
+  const EchoServer server(tls(identity_));
+  const JoinString join = join_to(server.port, identity_.certificate_digest);
+  const absl::StatusOr<Connected> connected = connect(join, milliseconds(10'000));
+  ASSERT_TRUE(connected.ok()) << connected.status();
+  expect_calls_work(*connected, join);
+}
+
+TEST_F(ConnectTest, RefusesAnotherCertificateBeforeAnyCall) {
+  const EchoServer server(tls(identity_));
+  const absl::Status status =
+      connect(join_to(server.port, wire::sha256("another")), milliseconds(10'000)).status();
+  EXPECT_EQ(status.code(), absl::StatusCode::kUnauthenticated);
+  EXPECT_THAT(std::string(status.message()), HasSubstr("another certificate"));
+}
+
+TEST_F(ConnectTest, TriesTheNextAddress) {
+  const EchoServer server(tls(identity_));
+  JoinString join = join_to(server.port, identity_.certificate_digest);
+  join.addresses.insert(join.addresses.begin(), {"127.0.0.1:1", "no-such-host.invalid:7878"});
+  const absl::StatusOr<Connected> connected = connect(join, milliseconds(10'000));
+  ASSERT_TRUE(connected.ok()) << connected.status();
+  EXPECT_EQ(connected->address, join.addresses[2]);
+}
+
+TEST_F(ConnectTest, SaysThatTheConnectionWasRefused) {
+  const absl::Status status = connect(join_to(1, wire::Digest()), milliseconds(10'000)).status();
+  EXPECT_EQ(status.code(), absl::StatusCode::kUnavailable);
+  EXPECT_EQ(status.message(), "no coordinator answers at 127.0.0.1:1: connection refused");
+}
+
+TEST_F(ConnectTest, SaysThatAPlaintextServerSpeaksNoTls) {
+  const EchoServer server(grpc::InsecureServerCredentials());
+  const absl::Status status =
+      connect(join_to(server.port, identity_.certificate_digest), milliseconds(3'000)).status();
+  EXPECT_EQ(status.code(), absl::StatusCode::kUnavailable);
+}
+
+TEST_F(ConnectTest, SpeaksPlaintextOnlyWhenTheStringSaysSo) {
+  const EchoServer server(grpc::InsecureServerCredentials());
+  const JoinString join = join_to(server.port, std::nullopt);
+  const absl::StatusOr<Connected> connected = connect(join, milliseconds(10'000));
+  ASSERT_TRUE(connected.ok()) << connected.status();
+  expect_calls_work(*connected, join);
+}
+
+TEST_F(ConnectTest, SecondServerOnAPortDoesNotStart) {
+  const EchoServer first(tls(identity_));
+  const EchoServer second(tls(identity_), first.port);
+  EXPECT_TRUE(second.server == nullptr || second.port == 0);
+}
+
+TEST(Status, KeepsCodeAndMessageBothWays) {
+  for (int code = 0; code <= 16; ++code) {
+    const absl::Status status(static_cast<absl::StatusCode>(code), code == 0 ? "" : "why");
+    EXPECT_EQ(from_grpc(to_grpc(status)), status);
+  }
+}
+
+}  // namespace
+}  // namespace bandsaw::link

@@ -1,0 +1,110 @@
+#include "proto/link/identity.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "proto/link/certificate.h"
+#include "tests/support/temp_dir.h"
+
+namespace bandsaw::link {
+namespace {
+
+using ::testing::HasSubstr;
+
+unsigned mode_of(const std::string& path) {
+  struct stat found {};
+  return stat(path.c_str(), &found) == 0 ? found.st_mode & 07777 : 0;
+}
+
+std::string slurp(const std::string& path) {
+  std::stringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+TEST(Identity, IsForItsOwnerOnly) {
+  const test::TempDir folder;
+  ASSERT_TRUE(load_or_make_identity(folder / "a/data").ok());
+  EXPECT_EQ(mode_of(folder / "a/data"), 0700U);
+  EXPECT_EQ(mode_of(folder / "a/data/identity"), 0600U);
+  const auto entries = std::filesystem::directory_iterator(folder / "a/data");
+  EXPECT_EQ(std::distance(begin(entries), end(entries)), 1) << "no temporary file is left";
+}
+
+TEST(Identity, IsTheSameTheNextTime) {
+  const test::TempDir folder;
+  const absl::StatusOr<Identity> first = load_or_make_identity(folder.path());
+  const absl::StatusOr<Identity> second = load_or_make_identity(folder.path());
+  ASSERT_TRUE(first.ok()) << first.status();
+  ASSERT_TRUE(second.ok()) << second.status();
+  EXPECT_EQ(first->key_pem, second->key_pem);
+  EXPECT_EQ(first->certificate_pem, second->certificate_pem);
+  EXPECT_EQ(first->certificate_digest, second->certificate_digest);
+  EXPECT_EQ(first->worker_secret, second->worker_secret);
+  EXPECT_EQ(first->farm_secret, second->farm_secret);
+}
+
+TEST(Identity, IsItsOwn) {
+  const test::TempDir folder;
+  const absl::StatusOr<Identity> a = load_or_make_identity(folder / "a");
+  const absl::StatusOr<Identity> b = load_or_make_identity(folder / "b");
+  ASSERT_TRUE(a.ok() && b.ok());
+  EXPECT_NE(a->certificate_digest, b->certificate_digest);
+  EXPECT_NE(a->worker_secret, b->worker_secret);
+  EXPECT_NE(a->worker_secret, a->farm_secret);
+  EXPECT_EQ(a->worker_secret.size(), 22U);
+  EXPECT_TRUE(check_key(a->key_pem, a->certificate_pem).ok());
+  EXPECT_FALSE(check_key(a->key_pem, b->certificate_pem).ok());
+}
+
+TEST(Identity, RefusesOneThatOthersCanRead) {
+  const test::TempDir folder;
+  ASSERT_TRUE(load_or_make_identity(folder.path()).ok());
+  ASSERT_EQ(chmod((folder / "identity").c_str(), 0644), 0);
+  const absl::Status status = load_or_make_identity(folder.path()).status();
+  EXPECT_EQ(status.code(), absl::StatusCode::kPermissionDenied);
+  EXPECT_THAT(std::string(status.message()), HasSubstr("chmod 600"));
+}
+
+TEST(Identity, WhenDamagedIsNotReplaced) {
+  const test::TempDir folder;
+  ASSERT_TRUE(load_or_make_identity(folder.path()).ok());
+  const std::string whole = slurp(folder / "identity");
+  for (const std::size_t size :
+       {std::size_t{0}, std::size_t{30}, std::size_t{200}, whole.size() / 2}) {
+    std::ofstream(folder / "identity") << whole.substr(0, size);
+    const absl::Status status = load_or_make_identity(folder.path()).status();
+    EXPECT_EQ(status.code(), absl::StatusCode::kDataLoss) << size;
+    EXPECT_EQ(slurp(folder / "identity"), whole.substr(0, size));
+  }
+}
+
+TEST(Identity, WhenItCannotBeWrittenSaysWhere) {
+  const test::TempDir folder;
+  std::ofstream(folder / "file") << "x";
+  const absl::Status status = load_or_make_identity(folder / "file").status();
+  EXPECT_FALSE(status.ok());
+  EXPECT_THAT(std::string(status.message()), HasSubstr(folder / "file"));
+}
+
+TEST(RoleOfSecret, TellsTheTwoApartAndRefusesOthers) {
+  const test::TempDir folder;
+  const absl::StatusOr<Identity> identity = load_or_make_identity(folder.path());
+  ASSERT_TRUE(identity.ok()) << identity.status();
+  EXPECT_EQ(*role_of_secret(*identity, identity->worker_secret), Role::kWorker);
+  EXPECT_EQ(*role_of_secret(*identity, identity->farm_secret), Role::kFarm);
+  std::string wrong = identity->farm_secret;
+  wrong.back() = wrong.back() == 'A' ? 'B' : 'A';
+  for (const std::string& secret : {std::string(), wrong, wrong + "A", std::string(5000, 'A')}) {
+    EXPECT_EQ(role_of_secret(*identity, secret).status().code(),
+              absl::StatusCode::kUnauthenticated);
+  }
+}
+
+}  // namespace
+}  // namespace bandsaw::link

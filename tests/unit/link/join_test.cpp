@@ -1,0 +1,132 @@
+#include "proto/link/join.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "absl/strings/str_cat.h"
+#include "tests/support/temp_dir.h"
+
+namespace bandsaw::link {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+const std::string kSecret = "abcdefghijklmnopqrst-_";
+const std::string kDigest43(43, 'A');
+
+JoinString example() {
+  JoinString join;
+  join.role = Role::kFarm;
+  join.addresses = {"192.168.1.5:7878", "my-host.lan:1", "[fe80::1%eth0]:65535"};
+  wire::Digest digest;
+  for (std::size_t i = 0; i < digest.bytes.size(); ++i) {
+    digest.bytes[i] = static_cast<unsigned char>(255 - i * 7);  // has - and _ in base64url
+  }
+  join.certificate = digest;
+  join.secret = kSecret;
+  return join;
+}
+
+void expect_equal(const JoinString& a, const JoinString& b) {
+  EXPECT_EQ(a.role, b.role);
+  EXPECT_EQ(a.addresses, b.addresses);
+  EXPECT_EQ(a.certificate, b.certificate);
+  EXPECT_EQ(a.secret, b.secret);
+}
+
+TEST(JoinString, ComesBackFromItsText) {
+  const JoinString join = example();
+  const absl::StatusOr<JoinString> parsed = parse_join_string(join.text() + "\n");
+  ASSERT_TRUE(parsed.ok()) << parsed.status();
+  expect_equal(*parsed, join);
+}
+
+TEST(JoinString, ComesBackForEveryDigestByte) {
+  JoinString join = example();
+  join.addresses = {"h:1"};
+  for (int byte = 0; byte < 256; ++byte) {
+    join.certificate->bytes.fill(static_cast<unsigned char>(byte));
+    const absl::StatusOr<JoinString> parsed = parse_join_string(join.text());
+    ASSERT_TRUE(parsed.ok()) << parsed.status();
+    expect_equal(*parsed, join);
+  }
+}
+
+TEST(JoinString, ComesBackWithoutACertificate) {
+  JoinString join = example();
+  join.role = Role::kWorker;
+  join.certificate.reset();
+  const absl::StatusOr<JoinString> parsed = parse_join_string(join.text());
+  ASSERT_TRUE(parsed.ok()) << parsed.status();
+  expect_equal(*parsed, join);
+}
+
+TEST(JoinString, SaysWhatIsWrongAndNeverTheSecret) {
+  const std::string tail = absl::StrCat("-", kDigest43, "-", kSecret);
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"", "does not begin with"},
+      {"bsw2-w-h:1" + tail, "does not begin with"},
+      {"bsw1-x-h:1" + tail, "role"},
+      {"bsw1-w-h:1", "secret"},
+      {"bsw1-w-h:1-" + kDigest43 + "-short", "cut off"},
+      {"bsw1-w-h:1-" + kDigest43 + "-abcdefghijklmnopqrst+/", "secret"},
+      {"bsw1-w-h:1-AAAA-" + kSecret, "digest"},
+      {"bsw1-w-h:1-" + std::string(43, '*') + "-" + kSecret, "digest"},
+      {absl::StrCat("bsw1-w-", tail.substr(1)), "digest"},
+      {"bsw1-w-" + tail, "HOST:PORT"},
+      {"bsw1-w-host" + tail, "HOST:PORT"},
+      {"bsw1-w-:7878" + tail, "HOST:PORT"},
+      {"bsw1-w-h:0" + tail, "port"},
+      {"bsw1-w-h:65536" + tail, "port"},
+      {"bsw1-w-h:78x8" + tail, "port"},
+      {"bsw1-w-a:b:1" + tail, "host"},
+      {"bsw1-w-a b:1" + tail, "host"},
+      {"bsw1-w-[]:1" + tail, "host"},
+      {"bsw1-w-h:1," + tail, "HOST:PORT"},
+      {"bsw1-w-h:1,h:1,h:1,h:1,h:1,h:1,h:1,h:1,h:1" + tail, "more than 8"},
+  };
+  for (const auto& [text, what] : cases) {
+    const absl::StatusOr<JoinString> parsed = parse_join_string(text);
+    EXPECT_EQ(parsed.status().code(), absl::StatusCode::kInvalidArgument) << text;
+    EXPECT_THAT(std::string(parsed.status().message()), HasSubstr(what)) << text;
+    EXPECT_THAT(std::string(parsed.status().message()), Not(HasSubstr(kSecret))) << text;
+  }
+}
+
+TEST(JoinStringFrom, TakesAStringOrAFile) {
+  const test::TempDir folder;
+  const std::string path = folder / "join";
+  std::ofstream(path) << example().text() << "\n";
+  for (const std::string& text : {example().text(), path}) {
+    const absl::StatusOr<JoinString> join = join_string_from(text);
+    ASSERT_TRUE(join.ok()) << join.status();
+    expect_equal(*join, example());
+  }
+}
+
+TEST(JoinStringFrom, NamesAFileThatIsNotThere) {
+  const absl::StatusOr<JoinString> join = join_string_from("/nowhere/join");
+  EXPECT_EQ(join.status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(join.status().message()), HasSubstr("/nowhere/join"));
+}
+
+TEST(JoinStringFrom, NamesAFileThatHoldsSomethingElse) {
+  const test::TempDir folder;
+  const std::string path = folder / "join";
+  std::ofstream(path) << "hello\n";
+  const absl::StatusOr<JoinString> join = join_string_from(path);
+  EXPECT_EQ(join.status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(join.status().message()), HasSubstr(path));
+}
+
+TEST(JoinStringFrom, DoesNotRepeatAMistypedSecret) {
+  const absl::StatusOr<JoinString> join = join_string_from(absl::StrCat("x", example().text()));
+  EXPECT_EQ(join.status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(join.status().message()), Not(HasSubstr(kSecret)));
+}
+
+}  // namespace
+}  // namespace bandsaw::link

@@ -1,0 +1,96 @@
+#include "renderlib/material/ggx.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "renderlib/material/fresnel.h"
+#include "renderlib/material/ggx_albedo.h"
+#include "tests/support/direction_test.h"
+#include "tests/support/random.h"
+#include "tests/support/wide.h"
+
+namespace bandsaw {
+namespace {
+
+using test::Random;
+using test::Wide;
+
+Vec3 at_cosine(double mu) { return {std::sqrt(1 - mu * mu), 0, mu}; }
+
+TEST(Ggx, TheDistributionIsExactHoweverSmoothTheSurface) {
+  Random random(3);
+  for (const double alpha : {0.5, 0.1, 0.01, 1e-3, 1e-4}) {
+    for (int i = 0; i < 1000; ++i) {
+      const double angle = random.uniform(0, 4 * alpha);
+      const Vec3 h{std::sin(angle), 0, std::cos(angle)};
+      const Wide a2 = Wide{alpha} * Wide{alpha};
+      const Wide t = Wide{h.x} * Wide{h.x} / a2 + Wide{h.z} * Wide{h.z};
+      const auto truth = static_cast<double>(1 / (Wide{kPi} * a2 * t * t));
+      ASSERT_NEAR(ggx_distribution(h, alpha) / truth, 1, 1e-13);
+    }
+  }
+}
+
+// Weak white furnace: the facets that o sees, seen by their own mirror images, are all of them.
+TEST(Ggx, VisibleNormalsAreSampledWithTheirDensity) {
+  for (const double alpha : {0.35, 0.6, 1.0}) {
+    for (const double mu : {0.1, 0.4, 1.0}) {
+      const Vec3 o = at_cosine(mu);
+      test::expect_samples_match_density(
+          [&](double u, double v) { return sample_ggx_visible(o, alpha, u, v); },
+          [&](const Vec3& h) {
+            return h.z <= 0 ? 0 : ggx_visible_over_cos(o, h, alpha) * std::max(0.0, dot(o, h));
+          },
+          static_cast<std::uint64_t>(alpha * 100 + mu * 10), 9);
+    }
+  }
+}
+
+TEST(Ggx, WeightsOfVisibleNormalsStayInTheUnitIntervalEvenAtGrazingDirections) {
+  Random random(5);
+  for (const double alpha : {1e-4, 0.01, 0.3, 1.0}) {
+    for (const double mu : {0.0, 1e-12, 1e-4, 0.5, 1.0}) {
+      for (int n = 0; n < 2000; ++n) {
+        const double u = random.uniform();
+        const Vec3 h = sample_ggx_visible(at_cosine(mu), alpha, u, random.uniform());
+        ASSERT_NEAR(length(h), 1, 1e-12);
+        const Vec3 i = mirrored(at_cosine(mu), h);
+        const double weight = ggx_shadowing(at_cosine(mu), i, alpha);
+        ASSERT_TRUE(weight >= 0 && weight <= 1 + 1e-9) << alpha << " " << mu;
+        ASSERT_TRUE(std::isfinite(ggx_visible_over_cos(at_cosine(mu), h, alpha)));
+      }
+    }
+  }
+}
+
+// Single scattering, F = 1, by quadrature elsewhere; 1 - ln 2 at alpha 1, straight on.
+TEST(Ggx, TheAlbedoTableHoldsTheIntegrals) {
+  struct Known {
+    double alpha;
+    double mu;
+    double albedo;
+  };
+  for (const Known& k :
+       {Known{0.1, 0.05, 0.91176}, Known{0.1, 0.2, 0.90456}, Known{0.1, 0.5, 0.96920},
+        Known{0.1, 1, 0.98831}, Known{0.5, 0.05, 0.91255}, Known{0.5, 0.2, 0.78993},
+        Known{0.5, 0.5, 0.69825}, Known{0.5, 1, 0.68785}, Known{1, 0.05, 0.84777},
+        Known{1, 0.2, 0.64165}, Known{1, 0.5, 0.45069}, Known{1, 1, 0.30685}}) {
+    EXPECT_NEAR(ggx_albedo_table().at(k.mu, std::sqrt(k.alpha)).white, k.albedo, 2e-3)
+        << k.alpha << " " << k.mu;
+    double sum = 0;
+    constexpr int kSide = 400;
+    for (int a = 0; a < kSide; ++a) {
+      for (int b = 0; b < kSide; ++b) {
+        const Vec3 o = at_cosine(k.mu);
+        const Vec3 h = sample_ggx_visible(o, k.alpha, (a + 0.5) / kSide, (b + 0.5) / kSide);
+        const Vec3 i = mirrored(o, h);
+        sum += i.z > 0 ? ggx_shadowing(o, i, k.alpha) : 0;
+      }
+    }
+    EXPECT_NEAR(sum / (kSide * kSide), k.albedo, 5e-4) << k.alpha << " " << k.mu;
+  }
+}
+
+}  // namespace
+}  // namespace bandsaw

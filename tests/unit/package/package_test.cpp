@@ -1,0 +1,303 @@
+#include "renderlib/package/package.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <random>
+
+#include "proto/package.pb.h"
+#include "tests/unit/package/sample_scene.h"
+
+namespace bandsaw {
+namespace {
+
+using test::sample_info;
+using test::sample_scene;
+using ::testing::HasSubstr;
+
+TEST(Package, ComesBackBitForBit) {
+  BlobMap blobs;
+  const SceneDescription scene = sample_scene();
+  const std::string manifest = encode_package(scene, sample_info(), blobs);
+  const auto decoded = decode_package(manifest, blobs);
+  ASSERT_TRUE(decoded.ok()) << decoded.status();
+
+  const auto& camera = std::get<PerspectiveCamera>(decoded->camera);
+  const auto& was = std::get<PerspectiveCamera>(scene.camera);
+  EXPECT_EQ(camera.position, was.position);
+  EXPECT_EQ(camera.look_at, was.look_at);
+  EXPECT_EQ(camera.vertical_fov, was.vertical_fov);
+  EXPECT_EQ(decoded->background.top, scene.background.top);
+  ASSERT_EQ(decoded->geometry.instances.size(), 2u);
+  EXPECT_EQ(decoded->geometry.instances[1].to_world, scene.geometry.instances[1].to_world);
+  EXPECT_EQ(decoded->geometry.meshes[0].positions, scene.geometry.meshes[0].positions);
+  EXPECT_EQ(decoded->geometry.meshes[0].normals, scene.geometry.meshes[0].normals);
+  EXPECT_EQ(decoded->geometry.meshes[0].uvs, scene.geometry.meshes[0].uvs);
+  EXPECT_EQ(decoded->geometry.meshes[0].uvs2, scene.geometry.meshes[0].uvs2);
+  EXPECT_TRUE(decoded->geometry.meshes[1].uvs.empty());
+  EXPECT_EQ(decoded->geometry.spheres[1].radius, 1e-5);
+  EXPECT_EQ(decoded->geometry.quads[0].v, scene.geometry.quads[0].v);
+  EXPECT_EQ(decoded->geometry.triangles[0].b, scene.geometry.triangles[0].b);
+  const auto& image = std::get<ImageTexture>(decoded->textures[2]);
+  EXPECT_EQ(image.texels, std::get<ImageTexture>(scene.textures[2]).texels);
+  EXPECT_EQ(image.wrap, ImageTexture::Wrap::kMirror);
+  EXPECT_EQ(image.filter, ImageTexture::Filter::kNearest);
+  EXPECT_TRUE(std::get<Emissive>(decoded->materials[3]).one_sided);
+  EXPECT_EQ(std::get<CheckerTexture>(decoded->textures[5]).space, Space::kObject);
+  EXPECT_EQ(std::get<NoiseTexture>(decoded->textures[6]).turbulence_scale, 1.5);
+  EXPECT_EQ(std::get<RampTexture>(decoded->textures[7]).stops[1].at, 0.3);
+
+  // Whatever the lines above leave out: the same scene gives the same blobs and the same bytes.
+  BlobMap again;
+  EXPECT_EQ(encode_package(*decoded, sample_info(), again), manifest);
+  EXPECT_EQ(again.all(), blobs.all());
+}
+
+TEST(Package, CarriesWhatIsShownAndHow) {
+  SceneDescription scene = sample_scene();
+  scene.local_shading = {{0.1f, 0.2f, 0.3f}, 4.5};
+  PackageInfo info = sample_info();
+  info.integrator = Integrator::kDirect;
+  info.display = {.exposure = -2.5, .tone = Tone::kFilmic};
+  BlobMap blobs;
+  const std::string manifest = encode_package(scene, info, blobs);
+  const auto back = package_info(manifest);
+  ASSERT_TRUE(back.ok()) << back.status();
+  EXPECT_EQ(back->integrator, Integrator::kDirect);
+  EXPECT_EQ(back->display, info.display);
+  const auto decoded = decode_package(manifest, blobs);
+  ASSERT_TRUE(decoded.ok()) << decoded.status();
+  EXPECT_EQ(decoded->local_shading.ambient, scene.local_shading.ambient);
+  EXPECT_EQ(decoded->local_shading.occlusion_distance, 4.5);
+  info.display.exposure = 31;
+  EXPECT_THAT(std::string(package_info(encode_package(scene, info, blobs)).status().message()),
+              HasSubstr("scene package: exposure: must lie in"));
+  info.display = {};
+  info.integrator = static_cast<Integrator>(6);
+  EXPECT_THAT(std::string(package_info(encode_package(scene, info, blobs)).status().message()),
+              HasSubstr("scene package: integrator: must lie in"));
+}
+
+TEST(Package, CarriesEveryCameraAndFilter) {
+  const auto carried = [](const Camera& camera, const PixelFilter& filter) {
+    SceneDescription scene = sample_scene();
+    scene.camera = camera;
+    scene.filter = filter;
+    BlobMap blobs;
+    return decode_package(encode_package(scene, sample_info(), blobs), blobs);
+  };
+  const auto lens =
+      carried(PerspectiveCamera{.vertical_fov = 20, .aperture = 0.1, .focus_distance = 7.5},
+              {PixelFilter::Kind::kTent, 2});
+  ASSERT_TRUE(lens.ok()) << lens.status();
+  EXPECT_EQ(std::get<PerspectiveCamera>(lens->camera).aperture, 0.1);
+  EXPECT_EQ(std::get<PerspectiveCamera>(lens->camera).focus_distance, 7.5);
+  EXPECT_EQ(lens->filter, (PixelFilter{PixelFilter::Kind::kTent, 2}));
+  const auto flat = carried(OrthographicCamera{.height = 500, .mirrored = true}, {});
+  ASSERT_TRUE(flat.ok()) << flat.status();
+  EXPECT_EQ(std::get<OrthographicCamera>(flat->camera).height, 500);
+  EXPECT_TRUE(std::get<OrthographicCamera>(flat->camera).mirrored);
+  EXPECT_EQ(flat->filter, PixelFilter{});
+  EXPECT_THAT(std::string(carried(PerspectiveCamera{.aperture = -1}, {}).status().message()),
+              HasSubstr("scene package: camera: camera.aperture"));
+  EXPECT_THAT(
+      std::string(carried(PerspectiveCamera{}, {PixelFilter::Kind::kBox, 17}).status().message()),
+      HasSubstr("scene package: filter: filter.radius"));
+}
+
+TEST(Package, KeepsWhatItSaysBesideTheScene) {
+  BlobMap blobs;
+  const auto info = package_info(encode_package(sample_scene(), sample_info(), blobs));
+  ASSERT_TRUE(info.ok()) << info.status();
+  EXPECT_EQ(info->name, "sample");
+  EXPECT_EQ(info->width, 320u);
+  EXPECT_EQ(info->height, 200u);
+  EXPECT_EQ(info->max_depth, 8u);
+  EXPECT_EQ(info->warnings, std::vector<std::string>{"a warning"});
+}
+
+TEST(Package, BoundsNamesAndWarningsOfForeignFiles) {
+  PackageInfo info = sample_info();
+  info.name = std::string(1000, 'n') + "\xff";
+  info.warnings.assign(5000, "\x1b[2J a mesh's name \xc3");
+  BlobMap blobs;
+  const auto kept = package_info(encode_package(sample_scene(), info, blobs));
+  ASSERT_TRUE(kept.ok()) << kept.status();
+  EXPECT_EQ(kept->name.size(), 200u);
+  EXPECT_EQ(kept->warnings.size(), 100u);
+  EXPECT_EQ(kept->warnings[0], "?[2J a mesh's name ?");
+  EXPECT_EQ(kept->warnings[99], "and 4901 more warnings");
+}
+
+TEST(Package, NamesEachBlobOnce) {
+  BlobMap blobs;
+  const auto refs = package_blobs(encode_package(sample_scene(), sample_info(), blobs));
+  ASSERT_TRUE(refs.ok()) << refs.status();
+  // Two meshes share positions and indices; two 8-bit images have the same texels.
+  EXPECT_EQ(refs->size(), blobs.all().size());
+  for (const BlobRef& ref : *refs) {
+    EXPECT_EQ(blobs.get(ref.digest).value()->bytes().size(), ref.size);
+  }
+}
+
+TEST(Package, SaysWhichBlobIsMissing) {
+  BlobMap blobs;
+  const std::string manifest = encode_package(sample_scene(), sample_info(), blobs);
+  BlobMap none;
+  const auto decoded = decode_package(manifest, none);
+  EXPECT_EQ(decoded.status().code(), absl::StatusCode::kNotFound) << decoded.status();
+}
+
+struct Wrong {
+  std::string name;
+  std::function<void(package::Manifest&)> spoil;
+  std::string message;
+  friend void PrintTo(const Wrong& wrong, std::ostream* out) { *out << wrong.name; }
+};
+
+class SpoiltManifest : public ::testing::TestWithParam<Wrong> {};
+
+TEST_P(SpoiltManifest, IsRefusedNamingTheField) {
+  BlobMap blobs;
+  package::Manifest manifest;
+  ASSERT_TRUE(manifest.ParseFromString(encode_package(sample_scene(), sample_info(), blobs)));
+  blobs.put(std::vector<std::byte>(7));
+  GetParam().spoil(manifest);
+  const auto decoded = decode_package(manifest.SerializeAsString(), blobs);
+  ASSERT_EQ(decoded.status().code(), absl::StatusCode::kInvalidArgument) << decoded.status();
+  EXPECT_THAT(std::string(decoded.status().message()), HasSubstr(GetParam().message));
+}
+
+const std::vector<Wrong> kWrong = {
+    {"format", [](auto& m) { m.set_format(2); }, "format: is 2"},
+    {"width", [](auto& m) { m.set_width(0); }, "width: must lie in [1, 65536], is 0"},
+    {"pixels", [](auto& m) { m.set_width(65536), m.set_height(65536); }, "width x height"},
+    {"depth", [](auto& m) { m.set_max_depth(5000); }, "max_depth: must lie in [1, 1024]"},
+    {"no_camera", [](auto& m) { m.clear_camera(); }, "camera: is missing"},
+    {"camera", [](auto& m) { m.mutable_camera()->set_vertical_fov(180); }, "camera: "},
+    {"short_list", [](auto& m) { m.mutable_camera()->mutable_up()->RemoveLast(); },
+     "camera.up: must have 3 numbers, has 2"},
+    {"no_background", [](auto& m) { m.clear_background(); }, "background: is missing"},
+    {"dark", [](auto& m) { m.mutable_background()->set_top(1, -1); }, "background: must be"},
+    {"texture_kind", [](auto& m) { m.mutable_texture(0)->clear_kind(); }, "texture[0]: is of no"},
+    {"texture_nan",
+     [](auto& m) { m.mutable_texture(0)->mutable_constant()->set_rgb(0, std::nanf("")); },
+     "texture[0].constant.rgb: must be finite"},
+    {"texels", [](auto& m) { m.mutable_texture(1)->mutable_image()->set_width(4); },
+     "texture[1].image.texels: must have 24 bytes"},
+    {"no_texels", [](auto& m) { m.mutable_texture(1)->mutable_image()->set_height(0); },
+     "texture[1].image.height: must lie in [1, 65536]"},
+    {"texel_format", [](auto& m) { m.mutable_texture(1)->mutable_image()->clear_format(); },
+     "texture[1].image.format: must lie in [1, 3], is 0"},
+    {"reflectance", [](auto& m) { m.mutable_texture(0)->mutable_constant()->set_rgb(0, 1.5f); },
+     "material[0].diffuse.reflectance: a reflectance must lie in [0, 1], texture 0 holds 1.5"},
+    {"texture_index",
+     [](auto& m) { m.mutable_material(0)->mutable_diffuse()->set_reflectance(99); },
+     "material[0].diffuse.reflectance: is 99, there are 10 textures"},
+    {"fuzz", [](auto& m) { m.mutable_material(1)->mutable_metal()->set_fuzz(std::nan("")); },
+     "material[1].metal.fuzz: must lie in [0, 1]"},
+    {"glass",
+     [](auto& m) { m.mutable_material(2)->mutable_dielectric()->set_index_of_refraction(0.5); },
+     "material[2].dielectric.index_of_refraction: must lie in [1, 5], is 0.5"},
+    {"material_kind", [](auto& m) { m.mutable_material(2)->clear_kind(); }, "material[2]: is of"},
+    {"few_materials", [](auto& m) { m.mutable_material()->RemoveLast(); },
+     "quads.material[0]: is 3, there are 3 materials"},
+    {"counts", [](auto& m) { *m.mutable_spheres()->mutable_radii() = m.quads().corners(); },
+     "spheres.radii: has 3 entries for 2 shapes"},
+    {"mesh_counts", [](auto& m) { *m.mutable_mesh(0)->mutable_normals() = m.quads().corners(); },
+     "mesh[0].normals: has 2 entries for 4 vertices"},
+    {"index", [](auto& m) { *m.mutable_mesh(0)->mutable_indices() = m.mesh(0).positions(); },
+     "mesh[0].indices[1]: is 1065353216, the mesh has 4 vertices"},
+    {"odd_size",
+     [](auto& m) {
+       m.mutable_mesh(0)->mutable_positions()->set_size(7);
+       m.mutable_mesh(0)->mutable_positions()->set_sha256(
+           wire::sha256(absl::MakeConstSpan(std::vector<std::byte>(7))).raw());
+     },
+     "mesh[0].positions.size: must be a multiple of 12"},
+    {"size", [](auto& m) { m.mutable_triangles()->mutable_vertices()->set_size(144); },
+     "triangles.vertices.size: is 144, the blob has 72"},
+    {"digest", [](auto& m) { m.mutable_mesh(0)->mutable_uvs()->set_sha256("short"); },
+     "mesh[0].uvs.sha256: a SHA-256 digest must have 32 bytes"},
+    {"too_large", [](auto& m) { m.mutable_mesh(0)->mutable_uvs()->set_size(1ull << 40); },
+     "mesh[0].uvs.size"},
+    {"mesh_index", [](auto& m) { m.mutable_instance(1)->set_mesh(2); },
+     "instance[1].mesh: is 2, there are 2 meshes"},
+    {"instance_material", [](auto& m) { m.mutable_instance(0)->set_material(99); },
+     "instance[0].material: is 99"},
+    {"transform", [](auto& m) { m.mutable_instance(0)->mutable_transform()->RemoveLast(); },
+     "instance[0].transform: must have 12 numbers, has 11"},
+    {"flat", [](auto& m) { m.mutable_instance(0)->set_transform(0, 0); },
+     "instance[0].transform: must be finite and regular"},
+};
+
+INSTANTIATE_TEST_SUITE_P(All, SpoiltManifest, ::testing::ValuesIn(kWrong),
+                         [](const auto& wrong) { return wrong.param.name; });
+
+TEST(Package, RefusesArraysThatAreNotFinite) {
+  const float nan = std::nanf("");
+  const auto decoded = [](const SceneDescription& scene) {
+    BlobMap blobs;
+    const std::string manifest = encode_package(scene, sample_info(), blobs);
+    return std::string(decode_package(manifest, blobs).status().message());
+  };
+  SceneDescription scene = sample_scene();
+  scene.geometry.meshes[0].positions[2][1] = nan;
+  EXPECT_THAT(decoded(scene), HasSubstr("mesh[0].positions[2]: must be finite"));
+  scene = sample_scene();
+  scene.geometry.spheres[1].radius = -1;
+  EXPECT_THAT(decoded(scene), HasSubstr("spheres.radii[1]: must be finite and > 0, is -1"));
+  scene = sample_scene();
+  scene.geometry.quads[0].u.z = 1.0 / 0.0;
+  EXPECT_THAT(decoded(scene), HasSubstr("quads.u[0]: must be finite"));
+  scene = sample_scene();
+  auto& image = std::get<ImageTexture>(scene.textures[2]);
+  std::vector<std::byte> texels(image.texels.begin(), image.texels.end());
+  std::memcpy(texels.data() + 16, &nan, sizeof(nan));
+  image.texels = std::move(texels);
+  EXPECT_THAT(decoded(scene), HasSubstr("texture[2].image.texels: texel (1, 0) must be finite"));
+}
+
+// Whoever sends a manifest may have made it by hand: it is read or refused, and nothing else
+// happens.
+TEST(Package, SurvivesAnyByteThatIsChanged) {
+  BlobMap blobs;
+  const std::string manifest = encode_package(sample_scene(), sample_info(), blobs);
+  std::mt19937_64 random(7);
+  std::size_t refused = 0;
+  for (std::size_t at = 0; at < manifest.size(); ++at) {
+    for (int round = 0; round < 8; ++round) {
+      std::string changed = manifest;
+      changed[at] = static_cast<char>(random());
+      refused += decode_package(changed, blobs).ok() ? 0u : 1u;
+    }
+    // Cut between two fields it may be the manifest of a smaller scene: only its digest can tell.
+    (void)decode_package(manifest.substr(0, at), blobs);
+  }
+  EXPECT_GT(refused, manifest.size());
+}
+
+TEST(Package, SurvivesManyChangesAtOnce) {
+  BlobMap blobs;
+  const std::string manifest = encode_package(sample_scene(), sample_info(), blobs);
+  std::mt19937_64 random(11);
+  for (int round = 0; round < 20'000; ++round) {
+    std::string changed = manifest;
+    for (int i = 0; i < 4; ++i) {
+      const std::size_t at = random() % changed.size();
+      const std::size_t from = random() % manifest.size();
+      const std::size_t count = random() % 9;
+      random() % 2 == 0 ? changed.replace(at, count, manifest.substr(from, count))
+                        : changed.insert(at, manifest.substr(from, count));
+    }
+    const auto decoded = decode_package(changed, blobs);
+    if (decoded.ok()) {
+      BlobMap again;
+      encode_package(*decoded, sample_info(), again);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace bandsaw

@@ -1,0 +1,93 @@
+#pragma once
+
+// A scene with one of everything that a package can hold.
+
+#include <cstring>
+
+#include "renderlib/package/package.h"
+
+namespace bandsaw::test {
+
+inline ImageTexture sample_image(ImageTexture::Format format) {
+  ImageTexture image;
+  image.width = 3;
+  image.height = 2;
+  image.format = format;
+  image.wrap = ImageTexture::Wrap::kMirror;
+  image.filter = ImageTexture::Filter::kNearest;
+  if (format == ImageTexture::Format::kFloat32) {
+    const std::vector<float> texels(18, 0.25f);
+    const auto* bytes = reinterpret_cast<const std::byte*>(texels.data());
+    image.texels = std::vector<std::byte>(bytes, bytes + texels.size() * sizeof(float));
+  } else {
+    image.texels = std::vector<std::byte>(18, std::byte{200});
+  }
+  return image;
+}
+
+inline SceneDescription sample_scene() {
+  SceneDescription scene;
+  PerspectiveCamera camera;
+  camera.position = {1.0 / 3, 2, 7};
+  camera.look_at = {0, 0.1, -1e-300};
+  camera.vertical_fov = 33.3;
+  scene.camera = camera;
+  scene.background = {{0.1f, 0.2f, 0.3f}, {1, 2, 3}};
+  scene.textures.emplace_back(ConstantTexture{{0.1f, 0.5f, 1}});
+  scene.textures.emplace_back(sample_image(ImageTexture::Format::kSrgb8));
+  scene.textures.emplace_back(sample_image(ImageTexture::Format::kFloat32));
+  scene.textures.emplace_back(sample_image(ImageTexture::Format::kLinear8));
+  auto& mapped = std::get<ImageTexture>(scene.textures[3]);
+  mapped.uv_set = UvSet::kSecond;
+  mapped.uv_transform = {{1, 2, 3, 4, 5, 1.0 / 7}};
+  mapped.wrap_v = ImageTexture::Wrap::kClamp;
+  ImageTexture grey = sample_image(ImageTexture::Format::kLinear8);
+  grey.channels = 1;
+  grey.texels = std::vector<std::byte>(6, std::byte{9});
+  scene.textures.emplace_back(grey);
+  scene.textures.emplace_back(CheckerTexture{TextureId{0},
+                                             TextureId{3},
+                                             CheckerTexture::Mapping::kPosition,
+                                             {0.1, 2, 3},
+                                             UvSet::kSecond,
+                                             Space::kObject});
+  scene.textures.emplace_back(NoiseTexture{NoiseTexture::Kind::kMarble,
+                                           Space::kObject,
+                                           3,
+                                           0.1,
+                                           -2,
+                                           1.5,
+                                           {1, 0, 0.1},
+                                           {0.1f, 0, 0},
+                                           {1, 0.5f, 0.3f}});
+  scene.textures.emplace_back(RampTexture{RampTexture::Over::kTexture,
+                                          TextureId{6},
+                                          UvSet::kSecond,
+                                          Space::kObject,
+                                          true,
+                                          {{-0.1, {1, 0, 0}}, {0.3, {0, 0.1f, 0}}}});
+  scene.textures.emplace_back(MixTexture{TextureId{0}, TextureId{7}, TextureId{4}});
+  scene.textures.emplace_back(ProductTexture{TextureId{8}, TextureId{0}});
+  scene.materials = {Diffuse{TextureId{0}}, Metal{TextureId{1}, 0.125}, Dielectric{1.3},
+                     Emissive{TextureId{2}, true}};
+  scene.geometry.spheres = {{{1, 2, 3}, 0.1, MaterialId{0}}, {{4, 5, 6}, 1e-5, MaterialId{1}}};
+  scene.geometry.quads = {{{0, 0, 0}, {1, 0, 0}, {0, 1.0 / 7, 0}, MaterialId{3}}};
+  scene.geometry.triangles = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, MaterialId{2}}};
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1.1f}};
+  mesh.triangles = {{0, 1, 2}, {1, 2, 3}};
+  mesh.normals.assign(4, {0, 0, 1});
+  mesh.uvs = {{0, 0}, {1, 0}, {0, 1}, {-3.5f, 7}};
+  mesh.uvs2 = {{5, 0}, {1, 6}, {0, 0.1f}, {2, 2}};
+  scene.geometry.meshes = {mesh, Mesh{mesh.positions, mesh.triangles, {}, {}}};
+  scene.geometry.instances = {
+      {MeshId{0}, MaterialId{0}, translation({1e9, 0, 1.0 / 3})},
+      {MeshId{1}, MaterialId{1}, rotation({1, 2, 3}, 40) * scaling({1, -2, 3})}};
+  return scene;
+}
+
+inline PackageInfo sample_info() {
+  return {.name = "sample", .width = 320, .height = 200, .max_depth = 8, .warnings = {"a warning"}};
+}
+
+}  // namespace bandsaw::test

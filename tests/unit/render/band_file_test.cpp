@@ -1,0 +1,127 @@
+#include "renderlib/render/band_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace bandsaw {
+namespace {
+
+using ::testing::StartsWith;
+
+BandRecord record() {
+  BandRecord record{.package_digest = std::string(60, 'a') + "09bf",
+                    .settings = {.width = 3,
+                                 .height = 9,
+                                 .max_depth = 5,
+                                 .seed = 77,
+                                 .integrator = Integrator::kDepth},
+                    .pixels = {.band = {{32, 60}, {4, 6}}, .width = 3, .sums = {}, .counters = {}}};
+  for (int i = 0; i < 2 * 3 * 3; ++i) {
+    record.pixels.sums.push_back(i * 0.1);
+  }
+  record.pixels.counters = {
+      .rays = 1234, .bad_samples = 2, .bad_x = 1, .bad_y = 5, .bad_sample = 40};
+  return record;
+}
+
+std::vector<std::byte> encoded() {
+  auto bytes = encode_band_record(record());
+  EXPECT_TRUE(bytes.ok()) << bytes.status();
+  return *std::move(bytes);
+}
+
+void expect_equal(const BandRecord& a, const BandRecord& b) {
+  EXPECT_EQ(a.package_digest, b.package_digest);
+  EXPECT_EQ(a.settings, b.settings);
+  EXPECT_EQ(a.pixels.band, b.pixels.band);
+  EXPECT_EQ(a.pixels.width, b.pixels.width);
+  EXPECT_EQ(a.pixels.sums, b.pixels.sums);
+  EXPECT_EQ(a.pixels.counters, b.pixels.counters);
+}
+
+TEST(BandFile, ARecordComesBackAndItsSizeIsKnownBefore) {
+  const std::vector<std::byte> bytes = encoded();
+  EXPECT_EQ(bytes.size(), band_record_size(record().pixels.band, 3));
+  const auto decoded = decode_band_record(bytes);
+  ASSERT_TRUE(decoded.ok()) << decoded.status();
+  EXPECT_EQ(decoded->size, bytes.size());
+  expect_equal(decoded->record, record());
+}
+
+TEST(BandFile, RecordsFollowEachOther) {
+  std::vector<std::byte> file = encoded();
+  const std::vector<std::byte> second = encoded();
+  file.insert(file.end(), second.begin(), second.end());
+  const auto decoded = decode_band_record(file, second.size());
+  ASSERT_TRUE(decoded.ok()) << decoded.status();
+  expect_equal(decoded->record, record());
+}
+
+TEST(BandFile, EveryTruncationIsCutOffAndSaysWhereTheRecordBegins) {
+  const std::vector<std::byte> whole = encoded();
+  std::vector<std::byte> file(11, std::byte{0});
+  file.insert(file.end(), whole.begin(), whole.end());
+  for (std::size_t size = 11; size < file.size(); ++size) {
+    const auto decoded = decode_band_record(absl::MakeSpan(file.data(), size), 11);
+    ASSERT_EQ(decoded.status().code(), absl::StatusCode::kOutOfRange) << size;
+    ASSERT_THAT(std::string(decoded.status().message()), StartsWith("byte 11: "));
+  }
+  EXPECT_FALSE(decode_band_record({}).ok());
+  EXPECT_FALSE(decode_band_record(file, file.size() + 5).ok());
+}
+
+TEST(BandFile, EveryFlippedBitIsFound) {
+  const std::vector<std::byte> whole = encoded();
+  for (std::size_t at = 0; at < whole.size(); ++at) {
+    for (int bit = 0; bit < 8; ++bit) {
+      std::vector<std::byte> damaged = whole;
+      damaged[at] ^= std::byte{1} << bit;
+      const auto decoded = decode_band_record(damaged);
+      ASSERT_FALSE(decoded.ok()) << "byte " << at << " bit " << bit;
+      ASSERT_THAT(std::string(decoded.status().message()), StartsWith("byte 0"));
+    }
+  }
+}
+
+TEST(BandFile, RecordsThatContradictThemselvesAreNotWritten) {
+  const auto refused = [](auto change) {
+    BandRecord changed = record();
+    change(changed);
+    return encode_band_record(changed).status().code() == absl::StatusCode::kInvalidArgument;
+  };
+  EXPECT_TRUE(refused([](BandRecord& r) { r.package_digest = "A"; }));
+  EXPECT_TRUE(refused([](BandRecord& r) { r.package_digest[3] = 'A'; }));
+  EXPECT_TRUE(refused([](BandRecord& r) { r.pixels.width = 4; }));
+  EXPECT_TRUE(refused([](BandRecord& r) { r.pixels.sums.pop_back(); }));
+  EXPECT_TRUE(refused([](BandRecord& r) { r.pixels.band.rows.last = 10; }));
+  EXPECT_TRUE(refused([](BandRecord& r) { r.pixels.band.samples.first = 16; }));
+  EXPECT_TRUE(refused([](BandRecord& r) { r.pixels.counters.bad_y = 6; }));
+  EXPECT_TRUE(refused([](BandRecord& r) { r.settings.max_depth = 0; }));
+}
+
+TEST(BandFile, SumsThatNoRenderGivesAreNotRead) {
+  for (const double bad : {-1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    BandRecord changed = record();
+    changed.pixels.sums[7] = bad;
+    const auto bytes = encode_band_record(changed);
+    ASSERT_TRUE(bytes.ok());
+    EXPECT_EQ(decode_band_record(*bytes).status().code(), absl::StatusCode::kDataLoss);
+  }
+}
+
+TEST(BandFile, RowDigestsTellWhichRowDiffers) {
+  BandPixels pixels = record().pixels;
+  const std::vector<std::uint64_t> before = row_digests(pixels);
+  ASSERT_EQ(before.size(), 2u);
+  EXPECT_NE(before[0], before[1]);
+  pixels.sums[9] = std::nextafter(pixels.sums[9], 1.0);
+  const std::vector<std::uint64_t> after = row_digests(pixels);
+  EXPECT_EQ(before[0], after[0]);
+  EXPECT_NE(before[1], after[1]);
+}
+
+}  // namespace
+}  // namespace bandsaw

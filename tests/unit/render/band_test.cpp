@@ -1,0 +1,119 @@
+#include "renderlib/render/band.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace bandsaw {
+namespace {
+
+/// The definition, spelled out: some level and index whose blocks the range covers, the last one
+/// perhaps cut off.
+bool is_node_by_definition(std::uint64_t first, std::uint64_t last) {
+  for (std::uint64_t blocks = 1; blocks <= 64; blocks *= 2) {
+    for (std::uint64_t index = 0; index < 64; ++index) {
+      const std::uint64_t begin = index * blocks * 16;
+      const std::uint64_t end = begin + blocks * 16;
+      if (first == begin && last <= end && last > end - 16) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+TEST(Band, ANodeIsAnAlignedPowerOfTwoOfBlocksWithTheLastPerhapsCutOff) {
+  for (std::uint64_t first = 0; first < 300; ++first) {
+    for (std::uint64_t last = 0; last < 600; ++last) {
+      ASSERT_EQ(is_node({first, last}), is_node_by_definition(first, last))
+          << "[" << first << ", " << last << ")";
+    }
+  }
+}
+
+TEST(Band, HugeRangesAreNoNodes) {
+  EXPECT_FALSE(is_node({0, ~std::uint64_t{0}}));
+  EXPECT_FALSE(is_node({~std::uint64_t{0} - 15, ~std::uint64_t{0}}));
+}
+
+TEST(Band, MaximalNodesAreNodesThatTileTheSamplesAndNoTwoNeighboursAreSiblings) {
+  EXPECT_TRUE(maximal_nodes(0).empty());
+  for (std::uint64_t samples = 1; samples < 3000; ++samples) {
+    const std::vector<SampleRange> nodes = maximal_nodes(samples);
+    std::uint64_t at = 0;
+    std::uint64_t blocks = ~std::uint64_t{0};
+    for (const SampleRange& node : nodes) {
+      ASSERT_TRUE(is_node(node));
+      ASSERT_EQ(node.first, at);
+      ASSERT_LT(node.blocks(), blocks) << samples;  // ever smaller: nothing left to merge
+      at = node.last;
+      blocks = node.blocks();
+    }
+    ASSERT_EQ(at, samples);
+  }
+}
+
+TEST(Band, HalvesOfEveryNodeAreNodesThatTileItAndTheLeftOneIsWhole) {
+  for (std::uint64_t first = 0; first < 512; first += 16) {
+    for (std::uint64_t last = first + 17; last <= 1024; ++last) {
+      if (!is_node({first, last})) {
+        continue;
+      }
+      const Halves halves = split({first, last});
+      ASSERT_TRUE(is_node(halves.left));
+      ASSERT_TRUE(is_node(halves.right)) << first << " " << last;
+      ASSERT_EQ(halves.left.first, first);
+      ASSERT_EQ(halves.left.last, halves.right.first);
+      ASSERT_EQ(halves.right.last, last);
+      ASSERT_EQ(halves.left.samples(), halves.left.blocks() * kBlockSamples);
+      ASSERT_EQ(halves.left.blocks(), halves.right.blocks());
+    }
+  }
+}
+
+TEST(Band, BandsOutsideTheImageOrOffTheTreeAreRefusedWithTheField) {
+  const RenderSettings settings{.width = 8, .height = 10};
+  EXPECT_TRUE(validate(Band{{0, 32}, {0, 10}}, settings).ok());
+  EXPECT_TRUE(validate(Band{{32, 40}, {3, 4}}, settings).ok());
+  const auto message = [&](const Band& band) {
+    return std::string(validate(band, settings).message());
+  };
+  EXPECT_EQ(message({{0, 16}, {4, 11}}), "rows: must be a range within [0, 10), are [4, 11)");
+  EXPECT_EQ(message({{0, 16}, {4, 4}}), "rows: must be a range within [0, 10), are [4, 4)");
+  EXPECT_TRUE(message({{16, 48}, {0, 1}}).starts_with("samples: "));
+  EXPECT_TRUE(message({{kMaxSamples, kMaxSamples + 16}, {0, 1}}).starts_with("samples: "));
+  EXPECT_FALSE(validate(Band{{0, 16}, {0, 1}}, {.width = 0}).ok());
+}
+
+TEST(Band, SettingsOutOfRangeAreRefusedWithTheField) {
+  EXPECT_TRUE(validate(RenderSettings{}).ok());
+  EXPECT_EQ(validate(RenderSettings{.width = 70000}).message(),
+            "width: must be in [1, 65536], is 70000");
+  EXPECT_EQ(validate(RenderSettings{.height = 0}).message(), "height: must be in [1, 65536], is 0");
+  EXPECT_EQ(validate(RenderSettings{.width = 65536, .height = 65536}).message(),
+            "width x height: must be in [1, 64000000], is 4294967296");
+  EXPECT_EQ(validate(RenderSettings{.max_depth = 1025}).message(),
+            "max_depth: must be in [1, 1024], is 1025");
+}
+
+TEST(Band, CountersKeepTheFirstBadSampleInRowColumnSampleOrderWhateverTheOrderOfAdding) {
+  std::vector<Counters> parts = {
+      {.rays = 1, .bad_samples = 1, .bad_x = 9, .bad_y = 2, .bad_sample = 0},
+      {.rays = 2},
+      {.rays = 3, .bad_samples = 2, .bad_x = 1, .bad_y = 3, .bad_sample = 0},
+      {.rays = 4, .bad_samples = 1, .bad_x = 9, .bad_y = 2, .bad_sample = 7}};
+  std::sort(parts.begin(), parts.end(),
+            [](const Counters& a, const Counters& b) { return a.rays < b.rays; });
+  do {
+    Counters sum;
+    for (const Counters& part : parts) {
+      sum.add(part);
+    }
+    EXPECT_EQ(sum, (Counters{.rays = 10, .bad_samples = 4, .bad_x = 9, .bad_y = 2}));
+  } while (
+      std::next_permutation(parts.begin(), parts.end(),
+                            [](const Counters& a, const Counters& b) { return a.rays < b.rays; }));
+}
+
+}  // namespace
+}  // namespace bandsaw

@@ -1,0 +1,206 @@
+#include "renderlib/render/render_band.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "renderlib/render/canary.h"
+#include "renderlib/render/render_image.h"
+#include "tests/support/random.h"
+#include "tests/support/scenes.h"
+
+namespace bandsaw {
+namespace {
+
+constexpr RenderSettings kSettings{.width = 13, .height = 11, .max_depth = 6, .seed = 5};
+const std::atomic<bool> kGoOn = false;
+
+/// Diffuse, metal, glass and two lights; every kernel has something to do.
+std::shared_ptr<const Scene> scene() {
+  test::SceneMaker maker = test::cornell_box();
+  maker.sphere({190, 245, 170}, 80, maker.glass(1.5));
+  maker.sphere({400, 400, 300}, 60, maker.metal(0.9f, 0.2));
+  maker.sphere({450, 60, 150}, 40, maker.lamp(3));
+  maker.background({0.2f, 0.2f, 0.2f}, {0.5f, 0.6f, 0.9f});
+  return maker.build();
+}
+
+BandPixels render(const Scene& scene, const Band& band, int threads) {
+  Pool pool(threads);
+  auto pixels = render_band(scene, kSettings, band, pool, kGoOn, {});
+  EXPECT_TRUE(pixels.ok()) << pixels.status();
+  return *std::move(pixels);
+}
+
+TEST(RenderBand, AnyNumberOfThreadsGivesTheSameBits) {
+  const auto rendered = scene();
+  const Band band{{0, 32}, {0, 11}};
+  const BandPixels one = render(*rendered, band, 1);
+  EXPECT_GT(one.counters.rays, 13u * 11 * 32);
+  EXPECT_EQ(one.counters.bad_samples, 0u);
+  EXPECT_GT(*std::max_element(one.sums.begin(), one.sums.end()), 0);
+  for (const int threads : {2, 3, 8}) {
+    const BandPixels many = render(*rendered, band, threads);
+    EXPECT_EQ(many.sums, one.sums) << threads;
+    EXPECT_EQ(many.counters, one.counters) << threads;
+  }
+}
+
+TEST(RenderBand, EveryIntegratorGivesTheSameBitsInAnyBandsAndThreads) {
+  const auto rendered = scene();
+  for (int i = 0; i <= kLastIntegrator; ++i) {
+    RenderSettings settings = kSettings;
+    settings.integrator = static_cast<Integrator>(i);
+    const auto sums = [&](const Band& band, int threads) {
+      Pool pool(threads);
+      return render_band(*rendered, settings, band, pool, kGoOn, {})->sums;
+    };
+    const std::vector<double> whole = sums({{0, 16}, {0, 11}}, 1);
+    std::vector<double> parts = sums({{0, 16}, {0, 4}}, 3);
+    const std::vector<double> rest = sums({{0, 16}, {4, 11}}, 2);
+    parts.insert(parts.end(), rest.begin(), rest.end());
+    EXPECT_EQ(parts, whole) << integrator_name(settings.integrator);
+    EXPECT_GT(*std::max_element(whole.begin(), whole.end()), 0);
+  }
+  RenderSettings settings = kSettings;
+  settings.integrator = static_cast<Integrator>(kLastIntegrator + 1);
+  EXPECT_FALSE(validate(settings).ok());
+}
+
+TEST(RenderBand, RowsAreTheSameWhicheverBandTheyComeIn) {
+  const auto rendered = scene();
+  const BandPixels whole = render(*rendered, {{0, 16}, {0, 11}}, 2);
+  for (const std::uint32_t rows : {1u, 3u, 7u}) {
+    std::vector<double> sums;
+    for (std::uint32_t y = 0; y < 11; y += rows) {
+      const BandPixels part = render(*rendered, {{0, 16}, {y, std::min(y + rows, 11u)}}, 2);
+      sums.insert(sums.end(), part.sums.begin(), part.sums.end());
+    }
+    EXPECT_EQ(sums, whole.sums) << rows;
+  }
+}
+
+TEST(RenderBand, ANodeIsTheSumOfItsHalvesToTheBit) {
+  const auto rendered = scene();
+  for (const SampleRange& node : {SampleRange{0, 64}, {64, 128}, {0, 128}, {32, 60}, {0, 24}}) {
+    const Halves halves = split(node);
+    const BandPixels whole = render(*rendered, {node, {4, 6}}, 2);
+    const BandPixels left = render(*rendered, {halves.left, {4, 6}}, 1);
+    const BandPixels right = render(*rendered, {halves.right, {4, 6}}, 1);
+    for (std::size_t k = 0; k < whole.sums.size(); ++k) {
+      ASSERT_EQ(whole.sums[k], left.sums[k] + right.sums[k]);
+    }
+    EXPECT_EQ(whole.counters.rays, left.counters.rays + right.counters.rays);
+  }
+}
+
+TEST(RenderBand, AnImageOfBandsInAnyOrderIsTheImageMadeInOneGo) {
+  const auto rendered = scene();
+  Pool pool(2);
+  const std::uint64_t samples = 88;
+  auto straight = render_image(*rendered, kSettings, samples, pool, kGoOn, {}, "");
+  ASSERT_TRUE(straight.ok()) << straight.status();
+  test::Random random(3);
+  std::vector<Band> bands;
+  for (const SampleRange& node : maximal_nodes(samples)) {
+    bands.push_back({node, {0, 5}});
+    const bool halved = node.blocks() > 1;
+    const Halves halves = halved ? split(node) : Halves{node, {}};
+    bands.push_back({halves.left, {5, 11}});
+    if (halved) {
+      bands.push_back({halves.right, {5, 11}});
+    }
+  }
+  auto film = Film::create(kSettings.width, kSettings.height, "");
+  ASSERT_TRUE(film.ok());
+  while (!bands.empty()) {
+    const std::uint32_t next = random.below(static_cast<std::uint32_t>(bands.size()));
+    ASSERT_TRUE(film->add(render(*rendered, bands[next], 1)).ok());
+    bands.erase(bands.begin() + next);
+  }
+  EXPECT_EQ(film->snapshot().image.pixels, straight->film.snapshot().image.pixels);
+  EXPECT_EQ(film->snapshot().least_samples, samples);
+}
+
+TEST(RenderBand, AnotherSeedAndAnotherPixelGiveOtherSamples) {
+  const auto rendered = scene();
+  Pool pool(1);
+  RenderSettings other = kSettings;
+  other.seed = 6;
+  const Band band{{0, 16}, {5, 6}};
+  const auto pixels = render_band(*rendered, other, band, pool, kGoOn, {});
+  ASSERT_TRUE(pixels.ok());
+  EXPECT_NE(pixels->sums, render(*rendered, band, 1).sums);
+}
+
+TEST(RenderBand, ProgressCountsEachRowOnce) {
+  const auto rendered = scene();
+  Pool pool(3);
+  Mutex mutex;
+  std::multiset<std::uint32_t> seen;
+  const auto done = [&](std::uint32_t rows) {
+    MutexLock lock(mutex);
+    seen.insert(rows);
+  };
+  ASSERT_TRUE(render_band(*rendered, kSettings, {{0, 16}, {2, 9}}, pool, kGoOn, done).ok());
+  EXPECT_EQ(seen, (std::multiset<std::uint32_t>{1, 2, 3, 4, 5, 6, 7}));
+}
+
+TEST(RenderBand, StoppingIsCancelledAndLeavesThePoolUsable) {
+  const auto rendered = scene();
+  Pool pool(2);
+  std::atomic<bool> stop = false;
+  const auto stop_at_first_row = [&](std::uint32_t) { stop = true; };
+  const auto stopped =
+      render_band(*rendered, kSettings, {{0, 16}, {0, 11}}, pool, stop, stop_at_first_row);
+  EXPECT_EQ(stopped.status().code(), absl::StatusCode::kCancelled);
+  EXPECT_TRUE(render_band(*rendered, kSettings, {{0, 16}, {0, 1}}, pool, kGoOn, {}).ok());
+}
+
+TEST(RenderBand, BandsOfNoImageAreRefused) {
+  const auto rendered = scene();
+  Pool pool(1);
+  EXPECT_EQ(render_band(*rendered, kSettings, {{0, 16}, {0, 12}}, pool, kGoOn, {}).status().code(),
+            absl::StatusCode::kInvalidArgument);
+  EXPECT_EQ(render_image(*rendered, kSettings, 0, pool, kGoOn, {}, "").status().code(),
+            absl::StatusCode::kInvalidArgument);
+}
+
+TEST(RenderBand, SamplesThatOverflowAreCountedAndLeftOut) {
+  // Inside of glass radiance is n^2 of what it is outside: 25 times this is more than a float
+  // holds.
+  test::SceneMaker maker;
+  maker.camera({0, 0, 0}, {0, 0, 1}, 20);
+  maker.background({3e38f, 1, 0}, {3e38f, 1, 0});
+  maker.sphere({0, 0, 0}, 1, maker.glass(5));
+  const auto rendered = maker.build();
+  Pool pool(1);
+  const auto pixels =
+      render_band(*rendered, {.width = 2, .height = 2}, {{16, 32}, {1, 2}}, pool, kGoOn, {});
+  ASSERT_TRUE(pixels.ok());
+  EXPECT_GT(pixels->counters.bad_samples, 0u);
+  EXPECT_EQ(pixels->counters.bad_y, 1u);
+  EXPECT_GE(pixels->counters.bad_sample, 16u);
+  for (const double sum : pixels->sums) {
+    EXPECT_TRUE(std::isfinite(sum));
+  }
+}
+
+TEST(RenderImage, PassesDoubleAndAreTheNodesOfTheWhole) {
+  EXPECT_TRUE(passes_of(0).empty());
+  EXPECT_EQ(passes_of(16), (std::vector<SampleRange>{{0, 16}}));
+  EXPECT_EQ(passes_of(128), (std::vector<SampleRange>{{0, 16}, {16, 32}, {32, 64}, {64, 128}}));
+  EXPECT_EQ(passes_of(100),
+            (std::vector<SampleRange>{{0, 16}, {16, 32}, {32, 64}, {64, 96}, {96, 100}}));
+  EXPECT_EQ(passes_of(24), (std::vector<SampleRange>{{0, 16}, {16, 24}}));
+}
+
+TEST(Canary, IsAFunctionOfTheProgramAlone) {
+  const std::uint64_t first = canary();
+  EXPECT_EQ(canary(), first);
+  EXPECT_NE(first, 0u);
+}
+
+}  // namespace
+}  // namespace bandsaw

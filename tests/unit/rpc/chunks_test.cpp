@@ -1,0 +1,204 @@
+// What comes and goes in chunks: whole or refused.
+
+#include <gmock/gmock.h>
+
+#include <cstring>
+#include <limits>
+
+#include "proto/wire/limits.h"
+#include "tests/unit/rpc/farm.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+using grpc::StatusCode;
+using ::testing::HasSubstr;
+
+class ChunksTest : public FarmTest {
+ protected:
+  static void expect(const grpc::Status& status, StatusCode code, const std::string& what) {
+    EXPECT_EQ(status.error_code(), code) << status.error_message();
+    EXPECT_THAT(status.error_message(), HasSubstr(what));
+  }
+  bool is_there(const std::string& bytes) { return engine_->has_blob(wire::sha256(bytes)); }
+
+  /// The blob from `offset` on; status of the call in `status`.
+  std::string get_blob(const wire::Digest& digest, std::uint64_t offset, grpc::Status& status) {
+    const auto call = context(link::Role::kWorker);
+    farm::GetBlobRequest request;
+    request.set_sha256(digest.raw());
+    request.set_offset(offset);
+    const auto reader = work()->GetBlob(call.get(), request);
+    std::string bytes;
+    farm::BlobChunk chunk;
+    while (reader->Read(&chunk)) {
+      EXPECT_EQ(chunk.offset(), offset + bytes.size());
+      EXPECT_LE(chunk.data().size(), wire::kChunkBytes);
+      bytes += chunk.data();
+    }
+    status = reader->Finish();
+    return bytes;
+  }
+
+  /// A good band of 2 rows of 3 pixels.
+  static farm::BandChunk band_chunk(std::vector<double> sums = std::vector<double>(18, 0.5)) {
+    const std::string bytes(reinterpret_cast<const char*>(sums.data()),
+                            sums.size() * sizeof(double));
+    farm::BandChunk chunk;
+    farm::BandHeader* header = chunk.mutable_header();
+    header->set_job(1);
+    header->mutable_band()->set_last_sample(16);
+    header->mutable_band()->set_last_row(2);
+    header->set_instance(std::string(32, 'a'));
+    header->set_size(bytes.size());
+    header->set_sha256(wire::sha256(bytes).raw());
+    chunk.set_data(bytes);
+    return chunk;
+  }
+};
+
+std::string pattern(std::size_t size) {
+  std::string bytes(size, '\0');
+  for (std::size_t i = 0; i < size; ++i) {
+    bytes[i] = static_cast<char>(i * 2654435761U >> 13);
+  }
+  return bytes;
+}
+
+TEST_F(ChunksTest, BlobArrivesInPiecesAndLeavesFromAnyOffset) {
+  const std::string bytes = pattern((2 << 20) + 12345);
+  farm::BlobChunk first = whole(bytes);
+  first.set_data(bytes.substr(0, 1000));
+  std::vector<farm::BlobChunk> chunks = {first};
+  for (std::size_t at = 1000; at < bytes.size(); at += wire::kChunkBytes) {
+    farm::BlobChunk chunk;
+    chunk.set_offset(at);
+    chunk.set_data(bytes.substr(at, wire::kChunkBytes));
+    chunks.push_back(chunk);
+  }
+  const grpc::Status put = put_blob(chunks);
+  ASSERT_TRUE(put.ok()) << put.error_message();
+  EXPECT_TRUE(is_there(bytes));
+  for (const std::size_t offset : {std::size_t{0}, std::size_t{777}, bytes.size()}) {
+    grpc::Status status;
+    EXPECT_TRUE(get_blob(wire::sha256(bytes), offset, status) == bytes.substr(offset));
+    EXPECT_TRUE(status.ok()) << status.error_message();
+  }
+  grpc::Status status;
+  get_blob(wire::sha256(bytes), bytes.size() + 1, status);
+  expect(status, StatusCode::INVALID_ARGUMENT, "offset");
+}
+
+TEST_F(ChunksTest, BlobThatIsNotThereIsNotFound) {
+  grpc::Status status;
+  get_blob(wire::Digest(), 0, status);
+  EXPECT_EQ(status.error_code(), StatusCode::NOT_FOUND);
+}
+
+TEST_F(ChunksTest, EmptyBlobIsABlob) {
+  ASSERT_TRUE(put_blob({whole("")}).ok());
+  grpc::Status status;
+  EXPECT_EQ(get_blob(wire::sha256(std::string()), 0, status), "");
+  EXPECT_TRUE(status.ok()) << status.error_message();
+}
+
+TEST_F(ChunksTest, SameBlobMayComeAgain) {
+  EXPECT_TRUE(put_blob({whole("again")}).ok());
+  EXPECT_TRUE(put_blob({whole("again")}).ok());
+}
+
+TEST_F(ChunksTest, BlobThatIsNotWhatItSaysIsRefused) {
+  farm::BlobChunk tail;
+  tail.set_offset(5);
+  tail.set_data("world");
+  farm::BlobChunk head = whole("helloworld");
+  head.set_data("hello");
+
+  expect(put_blob({}), StatusCode::INVALID_ARGUMENT, "no chunk");
+  expect(put_blob({head}), StatusCode::INVALID_ARGUMENT, "ended after 5 of 10");
+  expect(put_blob({tail}), StatusCode::INVALID_ARGUMENT, "sha256");
+  farm::BlobChunk gap = tail;
+  gap.set_offset(6);
+  expect(put_blob({head, gap}), StatusCode::INVALID_ARGUMENT, "offset: must be 5");
+  expect(put_blob({head, tail, tail}), StatusCode::INVALID_ARGUMENT, "offset: must be 10");
+  farm::BlobChunk longer = tail;
+  longer.set_data("world!");
+  expect(put_blob({head, longer}), StatusCode::INVALID_ARGUMENT, "more bytes");
+  farm::BlobChunk named = tail;
+  named.set_sha256(head.sha256());
+  expect(put_blob({head, named}), StatusCode::INVALID_ARGUMENT, "first chunk only");
+  farm::BlobChunk other = tail;
+  other.set_data("World");
+  EXPECT_EQ(put_blob({head, other}).error_code(), StatusCode::INVALID_ARGUMENT);
+  EXPECT_FALSE(is_there("helloworld"));
+  EXPECT_TRUE(put_blob({head, tail}).ok());
+  EXPECT_TRUE(is_there("helloworld"));
+}
+
+TEST_F(ChunksTest, LimitsHold) {
+  expect(put_blob({whole(pattern(wire::kChunkBytes + 1))}), StatusCode::INVALID_ARGUMENT,
+         "a chunk");
+  farm::BlobChunk huge = whole("x");
+  huge.set_size(wire::kBlobBytes + 1);
+  expect(put_blob({huge}), StatusCode::RESOURCE_EXHAUSTED, "size");
+  EXPECT_EQ(put_blob({whole(pattern(wire::kMessageBytes))}).error_code(),
+            StatusCode::RESOURCE_EXHAUSTED)
+      << "gRPC's own guard";
+  farm::BandChunk band = band_chunk();
+  band.mutable_header()->set_size(wire::kBandBytes + 1);
+  expect(put_band({band}), StatusCode::INVALID_ARGUMENT, "header.size");
+}
+
+TEST_F(ChunksTest, MissingBlobsAreNamed) {
+  ASSERT_TRUE(put_blob({whole("here")}).ok());
+  farm::MissingBlobsRequest request;
+  request.add_sha256(wire::sha256(std::string("here")).raw());
+  request.add_sha256(wire::sha256(std::string("gone")).raw());
+  farm::MissingBlobsReply reply;
+  ASSERT_TRUE(people()->MissingBlobs(context(link::Role::kFarm).get(), request, &reply).ok());
+  ASSERT_EQ(reply.sha256_size(), 1);
+  EXPECT_EQ(reply.sha256(0), wire::sha256(std::string("gone")).raw());
+  request.add_sha256("short");
+  expect(people()->MissingBlobs(context(link::Role::kFarm).get(), request, &reply),
+         StatusCode::INVALID_ARGUMENT, "32 bytes");
+}
+
+TEST_F(ChunksTest, BandThatIsNotWhatItSaysIsRefused) {
+  expect(put_band({}), StatusCode::INVALID_ARGUMENT, "no chunk");
+  farm::BandChunk bare = band_chunk();
+  bare.clear_header();
+  expect(put_band({bare}), StatusCode::INVALID_ARGUMENT, "header");
+  expect(put_band({band_chunk(), band_chunk()}), StatusCode::INVALID_ARGUMENT, "first chunk only");
+  expect(put_band({band_chunk(), bare}), StatusCode::INVALID_ARGUMENT, "more bytes");
+  farm::BandChunk half = band_chunk();
+  half.set_data(half.data().substr(0, 40));
+  expect(put_band({half}), StatusCode::INVALID_ARGUMENT, "ended after 40 of 144");
+  farm::BandChunk wrong = band_chunk();
+  wrong.mutable_header()->set_sha256(wire::Digest().raw());
+  expect(put_band({wrong}), StatusCode::INVALID_ARGUMENT, "sha256");
+  farm::BandChunk uneven = band_chunk();
+  uneven.mutable_header()->mutable_band()->set_last_row(5);
+  expect(put_band({uneven}), StatusCode::INVALID_ARGUMENT, "rows of pixels");
+  farm::BandChunk rows = band_chunk();
+  rows.mutable_header()->mutable_band()->set_last_row(0);
+  expect(put_band({rows}), StatusCode::INVALID_ARGUMENT, "header.band");
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), -1.0}) {
+    std::vector<double> sums(18, 0.5);
+    sums[17] = bad;
+    expect(put_band({band_chunk(sums)}), StatusCode::INVALID_ARGUMENT, "finite");
+  }
+}
+
+TEST_F(ChunksTest, BandOfNoJobIsNotStored) {
+  const auto call = context(link::Role::kWorker);
+  farm::PutBandReply reply;
+  const auto writer = work()->PutBand(call.get(), &reply);
+  writer->Write(band_chunk());
+  writer->WritesDone();
+  const grpc::Status status = writer->Finish();
+  EXPECT_TRUE(!status.ok() || reply.outcome() == farm::PutBandReply::OUTCOME_UNWANTED);
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,103 @@
+#include "tests/unit/rpc/farm.h"
+
+#include "renderlib/base/check.h"
+#include "tests/support/scenes.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+constexpr std::chrono::milliseconds kLong{60'000};
+
+}  // namespace
+
+FarmTest::FarmTest() : identity_(*link::load_or_make_identity(folder_ / "identity")) {
+  auto engine = Engine::start({.data_folder = folder_ / "data", .reattach_grace_s = 0.1});
+  BANDSAW_CHECK(engine.ok(), engine.status().ToString().c_str());
+  engine_ = *std::move(engine);
+  auto server = Server::start(*engine_, identity_, {.listen = "127.0.0.1:0"});
+  BANDSAW_CHECK(server.ok(), server.status().ToString().c_str());
+  server_ = *std::move(server);
+  auto connected = link::connect(join(link::Role::kFarm), kLong);
+  BANDSAW_CHECK(connected.ok(), connected.status().ToString().c_str());
+  channel_ = connected->control;
+}
+
+FarmTest::~FarmTest() {
+  server_.reset();
+  engine_.reset();
+}
+
+link::JoinString FarmTest::join(link::Role role) const {
+  link::JoinString join;
+  join.role = role;
+  join.addresses = {"127.0.0.1:" + std::to_string(server_->port())};
+  join.certificate = identity_.certificate_digest;
+  join.secret = role == link::Role::kWorker ? identity_.worker_secret : identity_.farm_secret;
+  return join;
+}
+
+std::unique_ptr<grpc::ClientContext> FarmTest::context(link::Role role) const {
+  auto context = std::make_unique<grpc::ClientContext>();
+  link::prepare(*context, join(role), kLong);
+  return context;
+}
+
+grpc::Status FarmTest::put_blob(const std::vector<farm::BlobChunk>& chunks) {
+  const auto call = context(link::Role::kFarm);
+  farm::PutBlobReply reply;
+  const auto writer = people()->PutBlob(call.get(), &reply);
+  for (const farm::BlobChunk& chunk : chunks) {
+    writer->Write(chunk);
+  }
+  writer->WritesDone();
+  return writer->Finish();
+}
+
+grpc::Status FarmTest::put_band(const std::vector<farm::BandChunk>& chunks) {
+  const auto call = context(link::Role::kWorker);
+  farm::PutBandReply reply;
+  const auto writer = work()->PutBand(call.get(), &reply);
+  for (const farm::BandChunk& chunk : chunks) {
+    writer->Write(chunk);
+  }
+  writer->WritesDone();
+  return writer->Finish();
+}
+
+farm::BlobChunk FarmTest::whole(const std::string& bytes) {
+  farm::BlobChunk chunk;
+  chunk.set_sha256(wire::sha256(bytes).raw());
+  chunk.set_size(bytes.size());
+  chunk.set_data(bytes);
+  return chunk;
+}
+
+wire::Digest FarmTest::put_cornell_box() {
+  BlobMap blobs;
+  PackageInfo info;
+  info.name = "box";
+  const std::string manifest = encode_package(test::cornell_box().scene, info, blobs);
+  for (const auto& [digest, bytes] : blobs.all()) {
+    const auto status =
+        put_blob({whole(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()))});
+    EXPECT_TRUE(status.ok()) << status.error_message();
+  }
+  const auto status = put_blob({whole(manifest)});
+  EXPECT_TRUE(status.ok()) << status.error_message();
+  return wire::sha256(manifest);
+}
+
+farm::SubmitRequest FarmTest::cornell_request(const wire::Digest& manifest) const {
+  farm::SubmitRequest request;
+  request.set_request_id("0123456789abcdef");
+  request.set_name("box");
+  request.set_manifest_sha256(manifest.raw());
+  request.mutable_settings()->set_width(24);
+  request.mutable_settings()->set_height(20);
+  request.mutable_settings()->set_max_depth(4);
+  request.mutable_settings()->set_seed(5);
+  request.mutable_stop()->set_samples(40);
+  return request;
+}
+
+}  // namespace bandsaw::coordinator

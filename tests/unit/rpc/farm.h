@@ -1,0 +1,51 @@
+#pragma once
+
+// A coordinator of its own for each test: engine on a temporary folder, server on a free port, and
+// calls to it.
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "coordinator/engine/engine.h"
+#include "coordinator/rpc/server.h"
+#include "proto/farm.grpc.pb.h"
+#include "proto/link/channel.h"
+#include "proto/link/identity.h"
+#include "renderlib/package/package.h"
+#include "tests/support/temp_dir.h"
+
+namespace bandsaw::coordinator {
+
+class FarmTest : public ::testing::Test {
+ protected:
+  FarmTest();
+  ~FarmTest() override;
+
+  link::JoinString join(link::Role role) const;
+  std::shared_ptr<grpc::Channel> channel() const { return channel_; }
+  /// A context with this role's secret and a deadline that only a bug reaches.
+  std::unique_ptr<grpc::ClientContext> context(link::Role role) const;
+  std::unique_ptr<farm::Farm::Stub> people() const { return farm::Farm::NewStub(channel_); }
+  std::unique_ptr<farm::Work::Stub> work() const { return farm::Work::NewStub(channel_); }
+
+  grpc::Status put_blob(const std::vector<farm::BlobChunk>& chunks);
+  grpc::Status put_band(const std::vector<farm::BandChunk>& chunks);
+  /// One chunk that is the whole blob.
+  static farm::BlobChunk whole(const std::string& bytes);
+
+  /// Stores the Cornell box's package; returns its manifest's digest.
+  wire::Digest put_cornell_box();
+  farm::SubmitRequest cornell_request(const wire::Digest& manifest) const;
+
+  test::TempDir folder_;
+  link::Identity identity_;
+  std::unique_ptr<Engine> engine_;
+  std::unique_ptr<Server> server_;
+  std::shared_ptr<grpc::Channel> channel_;
+};
+
+}  // namespace bandsaw::coordinator

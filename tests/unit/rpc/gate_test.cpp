@@ -1,0 +1,137 @@
+// Who may call what: every RPC with each role's secret, a wrong one, and none.
+
+#include <gmock/gmock.h>
+
+#include "tests/unit/rpc/farm.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+using Call = std::function<grpc::Status(grpc::ClientContext&)>;
+
+struct NamedCall {
+  std::string name;
+  link::Role role;  ///< whose secret opens it
+  Call call;
+};
+
+template <class Reader, class Message>
+grpc::Status drain(Reader& reader) {
+  Message message;
+  while (reader.Read(&message)) {
+  }
+  return reader.Finish();
+}
+
+class GateTest : public FarmTest {
+ protected:
+  std::vector<NamedCall> calls() {
+    const auto farm_role = link::Role::kFarm;
+    const auto work_role = link::Role::kWorker;
+    return {
+        {"MissingBlobs", farm_role,
+         [this](auto& c) {
+           farm::MissingBlobsReply reply;
+           return people()->MissingBlobs(&c, {}, &reply);
+         }},
+        {"PutBlob", farm_role,
+         [this](auto& c) {
+           farm::PutBlobReply reply;
+           const auto writer = people()->PutBlob(&c, &reply);
+           writer->WritesDone();
+           return writer->Finish();
+         }},
+        {"Submit", farm_role,
+         [this](auto& c) {
+           farm::SubmitReply reply;
+           return people()->Submit(&c, {}, &reply);
+         }},
+        {"Watch", farm_role,
+         [this](auto& c) {
+           const auto reader = people()->Watch(&c, {});
+           return drain<grpc::ClientReader<farm::JobStatus>, farm::JobStatus>(*reader);
+         }},
+        {"GetResult", farm_role,
+         [this](auto& c) {
+           const auto reader = people()->GetResult(&c, {});
+           return drain<grpc::ClientReader<farm::ResultChunk>, farm::ResultChunk>(*reader);
+         }},
+        {"ListJobs", farm_role,
+         [this](auto& c) {
+           farm::ListJobsReply reply;
+           return people()->ListJobs(&c, {}, &reply);
+         }},
+        {"ListWorkers", farm_role,
+         [this](auto& c) {
+           farm::ListWorkersReply reply;
+           return people()->ListWorkers(&c, {}, &reply);
+         }},
+        {"Cancel", farm_role,
+         [this](auto& c) {
+           farm::JobStatus reply;
+           return people()->Cancel(&c, {}, &reply);
+         }},
+        {"Session", work_role,
+         [this](auto& c) {
+           const auto stream = work()->Session(&c);
+           stream->WritesDone();
+           return drain<grpc::ClientReaderWriter<farm::FromWorker, farm::ToWorker>, farm::ToWorker>(
+               *stream);
+         }},
+        {"GetBlob", work_role,
+         [this](auto& c) {
+           const auto reader = work()->GetBlob(&c, {});
+           return drain<grpc::ClientReader<farm::BlobChunk>, farm::BlobChunk>(*reader);
+         }},
+        {"PutBand", work_role,
+         [this](auto& c) {
+           farm::PutBandReply reply;
+           const auto writer = work()->PutBand(&c, &reply);
+           writer->WritesDone();
+           return writer->Finish();
+         }},
+    };
+  }
+
+  static bool refused(const grpc::Status& status) {
+    return status.error_code() == grpc::StatusCode::UNAUTHENTICATED ||
+           status.error_code() == grpc::StatusCode::PERMISSION_DENIED;
+  }
+};
+
+TEST_F(GateTest, OpensEachCallToItsRole) {
+  for (const NamedCall& named : calls()) {
+    const grpc::Status status = named.call(*context(named.role));
+    EXPECT_FALSE(refused(status)) << named.name << ": " << status.error_message();
+  }
+}
+
+TEST_F(GateTest, ClosesEachCallToTheOtherRole) {
+  for (const NamedCall& named : calls()) {
+    const auto other = named.role == link::Role::kFarm ? link::Role::kWorker : link::Role::kFarm;
+    const grpc::Status status = named.call(*context(other));
+    EXPECT_EQ(status.error_code(), grpc::StatusCode::PERMISSION_DENIED) << named.name;
+    EXPECT_THAT(status.error_message(), ::testing::HasSubstr("join string")) << named.name;
+  }
+}
+
+TEST_F(GateTest, ClosesEachCallToAWrongSecret) {
+  for (const NamedCall& named : calls()) {
+    for (const std::string& secret :
+         {std::string(22, 'A'), std::string(), identity_.farm_secret + "A"}) {
+      grpc::ClientContext wrong;
+      wrong.AddMetadata(link::kSecretKey, secret);
+      EXPECT_EQ(named.call(wrong).error_code(), grpc::StatusCode::UNAUTHENTICATED) << named.name;
+    }
+  }
+}
+
+TEST_F(GateTest, ClosesEachCallToNoSecret) {
+  for (const NamedCall& named : calls()) {
+    grpc::ClientContext none;
+    EXPECT_EQ(named.call(none).error_code(), grpc::StatusCode::UNAUTHENTICATED) << named.name;
+  }
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

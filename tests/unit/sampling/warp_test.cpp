@@ -1,0 +1,119 @@
+#include "renderlib/sampling/warp.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "renderlib/math/elementary.h"
+#include "renderlib/sampling/basis.h"
+#include "tests/support/direction_test.h"
+#include "tests/support/meshes.h"
+#include "tests/support/statistics.h"
+
+namespace bandsaw {
+namespace {
+
+using test::expect_samples_match_density;
+
+const std::vector<double> kCorners = {0, 0x1p-32, 0.5, 1 - 0x1p-24, 1 - 0x1p-32};
+
+TEST(Warp, DiskIsUniform) {
+  std::vector<std::uint64_t> counts(64);
+  test::Random random(1);
+  for (int i = 0; i < 100000; ++i) {
+    const double u = random.uniform();
+    const Vec2 p = sample_disk(u, random.uniform());
+    const double r2 = p.x * p.x + p.y * p.y;
+    ASSERT_LE(r2, 1 + 1e-15);
+    const double turn = atan2(p.y, p.x) / (2 * kPi) + 0.5;
+    ++counts[std::min<std::size_t>(7, static_cast<std::size_t>(r2 * 8)) * 8 +
+             std::min<std::size_t>(7, static_cast<std::size_t>(turn * 8))];
+  }
+  EXPECT_GT(test::chi_squared(counts, std::vector<double>(64, 100000.0 / 64)).p_value, 0.01);
+}
+
+TEST(Warp, CosineHemisphereHasItsDensity) {
+  expect_samples_match_density([](double u, double v) { return sample_cosine_hemisphere(u, v); },
+                               [](const Vec3& d) { return cosine_hemisphere_pdf(d.z); }, 2);
+}
+
+TEST(Warp, SphereHasItsDensity) {
+  expect_samples_match_density([](double u, double v) { return sample_sphere(u, v); },
+                               [](const Vec3&) { return kSpherePdf; }, 3);
+}
+
+TEST(Warp, ConeHasItsDensity) {
+  const double spread = 0.4;
+  expect_samples_match_density(
+      [=](double u, double v) { return sample_cone(u, v, spread); },
+      [=](const Vec3& d) { return 1 - d.z < spread ? cone_pdf(spread) : 0; }, 4);
+}
+
+TEST(Warp, BallIsUniform) {
+  test::Random random(5);
+  test::Moments inside;  // half the radius holds an eighth
+  test::Moments mean_x;
+  for (int i = 0; i < 100000; ++i) {
+    const double u = random.uniform();
+    const double v = random.uniform();
+    const Vec3 p = sample_ball(u, v, random.uniform());
+    ASSERT_LE(length(p), 1 + 1e-15);
+    inside.add(length(p) < 0.5 ? 1 : 0);
+    mean_x.add(p.x);
+  }
+  EXPECT_LT(std::abs(inside.z(0.125)), 4);
+  EXPECT_LT(std::abs(mean_x.z(0)), 4);
+  EXPECT_NEAR(mean_x.variance(), 0.2, 0.005);
+}
+
+TEST(Warp, CornersOfTheUnitSquareAreFine) {
+  for (const double u : kCorners) {
+    for (const double v : kCorners) {
+      const Vec3 d = sample_cosine_hemisphere(u, v);
+      EXPECT_NEAR(length(d), 1, 1e-15);
+      EXPECT_GT(d.z, 0);
+      EXPECT_NEAR(length(sample_sphere(u, v)), 1, 1e-15);
+      EXPECT_NEAR(length(sample_cone(u, v, 1e-9)), 1, 1e-15);
+      EXPECT_TRUE(is_finite(sample_ball(u, v, u)));
+    }
+  }
+}
+
+TEST(Warp, NarrowConesKeepTheirWidth) {
+  for (const double sine : {1e-2, 1e-4, 1e-7}) {
+    const double spread = one_minus_cos_from_sin2(sine * sine);
+    EXPECT_NEAR(spread / (0.5 * sine * sine), 1, sine * sine);
+    const Vec3 rim = sample_cone(1 - 0x1p-32, 0, spread);
+    EXPECT_NEAR(rim.x / sine, 1, 1e-9);
+  }
+}
+
+TEST(Warp, BasisIsOrthonormalInEveryDirection) {
+  test::Random random(6);
+  std::vector<Vec3> normals = {{0, 0, 1},       {0, 0, -1},    {1, 0, 0},
+                               {0, -1, 0},      {1e-9, 0, -1}, normalize(Vec3{1e-5, 1e-5, -1}),
+                               {0, 0, -0.0 - 1}};
+  for (int i = 0; i < 10000; ++i) {
+    normals.push_back(test::random_direction(random));
+  }
+  for (const Vec3& n : normals) {
+    const Basis b = orthonormal_basis(n);
+    EXPECT_NEAR(dot(b.x, b.y), 0, 1e-15);
+    EXPECT_NEAR(dot(b.x, n), 0, 1e-15);
+    EXPECT_NEAR(dot(b.y, n), 0, 1e-15);
+    EXPECT_NEAR(length(b.x), 1, 1e-15);
+    EXPECT_NEAR(length(b.y), 1, 1e-15);
+    EXPECT_NEAR(dot(cross(b.x, b.y), n), 1, 1e-14);
+    EXPECT_LE(length(b.to_local(b.to_world({0.1, 0.2, 0.3})) - Vec3{0.1, 0.2, 0.3}), 1e-15);
+  }
+}
+
+TEST(Warp, PowerHeuristicDoesNotOverflow) {
+  EXPECT_EQ(power_heuristic(1, 0), 1);
+  EXPECT_EQ(power_heuristic(1e200, 1e200), 0.5);
+  EXPECT_EQ(power_heuristic(1e-200, 1e200), 0);
+  EXPECT_NEAR(power_heuristic(2, 1) + power_heuristic(1, 2), 1, 1e-16);
+}
+
+}  // namespace
+}  // namespace bandsaw

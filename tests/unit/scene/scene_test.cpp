@@ -1,0 +1,156 @@
+#include "renderlib/scene/scene.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "tests/support/scenes.h"
+
+namespace bandsaw {
+namespace {
+
+using test::SceneMaker;
+using ::testing::StartsWith;
+
+/// One of everything.
+SceneMaker valid() {
+  SceneMaker maker;
+  const MaterialId white = maker.diffuse(0.5f);
+  maker.sphere({0, 0, 0}, 1, white);
+  maker.quad({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, maker.metal(0.5f, 0.1));
+  maker.triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0}, maker.lamp(1));
+  maker.instance(test::grid(2), translation({0, 0, 3}), maker.glass(1.5));
+  return maker;
+}
+
+std::string message(const SceneDescription& scene) {
+  Pool pool(1);
+  const auto built = Scene::build(scene, pool);
+  if (!built.ok()) {
+    EXPECT_EQ(built.status().code(), absl::StatusCode::kInvalidArgument);
+  }
+  return std::string(built.status().message());
+}
+
+template <class Change>
+std::string message_after(Change change) {
+  SceneMaker maker = valid();
+  change(maker.scene);
+  return message(maker.scene);
+}
+
+TEST(Scene, WhatIsWrongIsNamedWithPlaceRangeAndValue) {
+  EXPECT_EQ(message(valid().scene), "");
+  EXPECT_EQ(message_after([](auto& s) { s.geometry.spheres[0].radius = -1; }),
+            "spheres[0].radius: must be > 0, is -1");
+  EXPECT_EQ(message_after([](auto& s) { s.geometry.spheres[0].radius = std::nan(""); }),
+            "spheres[0].radius: must be > 0, is nan");
+  EXPECT_EQ(message_after([](auto& s) { s.geometry.spheres[0].center.y = 1e31; }),
+            "spheres[0].center: must be within +-1e+30, is [0, 1e+31, 0]");
+  EXPECT_EQ(message_after([](auto& s) { s.geometry.quads[0].material = MaterialId{7}; }),
+            "quads[0].material: must be below 4, is 7");
+  EXPECT_THAT(message_after([](auto& s) { s.geometry.triangles[0].b.x = kInfinity; }),
+              StartsWith("triangles[0].b: must be within"));
+  EXPECT_EQ(message_after([](auto& s) { s.geometry.meshes[0].triangles[3][1] = 9; }),
+            "meshes[0].triangles[3]: must be indices below 9, one is 9");
+  EXPECT_EQ(message_after([](auto& s) { s.geometry.meshes[0].uvs.pop_back(); }),
+            "meshes[0].uvs: must be none or one a position (9), are 8");
+  EXPECT_EQ(message_after([](auto& s) { s.geometry.meshes[0].normals.resize(2); }),
+            "meshes[0].normals: must be none or one a position (9), are 2");
+  EXPECT_EQ(message_after([](auto& s) { s.geometry.instances[0].mesh = MeshId{1}; }),
+            "instances[0].mesh: must be below 1, is 1");
+  EXPECT_THAT(message_after([](auto& s) {
+                s.geometry.instances[0].to_world = scaling({1, 0, 1});
+              }),
+              StartsWith("instances[0].to_world: must have an inverse"));
+  EXPECT_THAT(message_after([](auto& s) { s.geometry.instances[0].to_world.m[1][3] = kInfinity; }),
+              StartsWith("instances[0].to_world: entries must be within"));
+  EXPECT_EQ(message_after([](auto& s) { s.background.top.g = -1; }),
+            "background.top: must be finite and not negative, is -1");
+  EXPECT_THAT(message_after([](auto& s) { std::get<0>(s.camera).vertical_fov = 200; }),
+              StartsWith("camera.vertical_fov: "));
+}
+
+TEST(Scene, MaterialsAndTexturesAreCheckedWithTheirRanges) {
+  EXPECT_EQ(message_after([](auto& s) {
+              s.textures[0] = ConstantTexture{{0, 1.5f, 0}};
+            }),
+            "materials[0].reflectance: must be in [0, 1], is 1.5");
+  EXPECT_EQ(message_after([](auto& s) {
+              s.textures[1] = ConstantTexture{{-0.1f, 0, 0}};
+            }),
+            "materials[1].reflectance: must be in [0, 1], is -0.1");
+  EXPECT_EQ(message_after([](auto& s) {
+              s.textures[2] = ConstantTexture{{0, 0, INFINITY}};
+            }),
+            "materials[2].radiance: must be finite and not negative, is inf");
+  EXPECT_EQ(message_after([](auto& s) { std::get<Metal>(s.materials[1]).fuzz = 2; }),
+            "materials[1].fuzz: must be in [0, 1], is 2");
+  EXPECT_EQ(message_after([](auto& s) { s.materials[3] = Dielectric{0.9}; }),
+            "materials[3].index_of_refraction: must be in [1, 5], is 0.9");
+  EXPECT_EQ(message_after([](auto& s) { s.materials[0] = Diffuse{TextureId{3}}; }),
+            "materials[0].reflectance: must be below 3, is 3");
+  ImageTexture image;
+  EXPECT_EQ(message_after([&](auto& s) { s.textures[0] = image; }),
+            "textures[0]: must have at least one texel, is 0 x 0");
+  image.width = 1;
+  image.height = 2;
+  EXPECT_EQ(message_after([&](auto& s) { s.textures[0] = image; }),
+            "textures[0].texels: must have 6 bytes, has 0");
+  image.format = ImageTexture::Format::kFloat32;
+  const float texels[6] = {0, 0, 0, 0, 0, std::numeric_limits<float>::quiet_NaN()};
+  const auto* bytes = reinterpret_cast<const std::byte*>(texels);
+  image.texels = std::vector<std::byte>(bytes, bytes + sizeof texels);
+  EXPECT_EQ(message_after([&](auto& s) { s.textures[0] = image; }),
+            "materials[0].reflectance: texel 1: must be in [0, 1], is nan");
+}
+
+TEST(Scene, WhatCannotBeHitIsDroppedAndCountedAndTheRestStaysInOrder) {
+  SceneMaker maker = valid();
+  const MaterialId white{0};
+  maker.quad({5, 0, 0}, {1, 1, 0}, {2, 2, 0}, white);
+  maker.quad({6, 0, 0}, {1e-20, 0, 0}, {0, 1e-20, 0}, white);
+  maker.triangle({0, 0, 0}, {0, 0, 0}, {0, 1, 0}, white);
+  Mesh& mesh = maker.scene.geometry.meshes[0];
+  mesh.triangles.push_back({0, 0, 1});
+  mesh.positions.push_back({std::nanf(""), 0, 0});
+  mesh.uvs.push_back({INFINITY, 0});
+  mesh.triangles.insert(mesh.triangles.begin(), {0, 1, 9});
+  maker.scene.geometry.instances.push_back(maker.scene.geometry.instances[0]);
+  const auto scene = maker.build();
+  EXPECT_EQ(scene->dropped_primitives(), 2u + 2 * 2);
+  ASSERT_EQ(scene->geometry().quads.size(), 2u);
+  EXPECT_EQ(scene->geometry().quads[1].corner.x, 6);
+  EXPECT_EQ(scene->geometry().meshes[0].triangles, test::grid(2).triangles);
+  EXPECT_EQ(scene->geometry().meshes[0].uvs.back(), (std::array<float, 2>{0, 0}));
+  const Hit hit = scene->accel().closest({.origin = {0.4, 0.3, 9}, .direction = {0, 0, -1}});
+  EXPECT_TRUE(hit);
+  EXPECT_EQ(hit.id.instance, 1u);
+}
+
+TEST(Scene, NeedsAreWhatIsThere) {
+  SceneMaker empty;
+  EXPECT_EQ(empty.build()->needs(), Needs{});
+  SceneMaker maker = valid();
+  maker.background({}, {0, 0, 1});
+  const Needs needs = maker.build()->needs();
+  EXPECT_TRUE(needs.lights && needs.background && needs.specular && needs.instances);
+  EXPECT_FALSE(needs.image_textures);
+  SceneMaker dark;
+  dark.sphere({0, 0, 0}, 1, dark.lamp(0));
+  EXPECT_FALSE(dark.build()->needs().lights) << "a lamp that is off is no light";
+}
+
+TEST(Scene, AnEmptySceneShowsItsBackground) {
+  SceneMaker maker;
+  maker.background({1, 2, 3}, {1, 2, 3});
+  const auto scene = maker.build();
+  EXPECT_FALSE(scene->accel().closest({.origin = {0, 0, 0}, .direction = {0, 0, 1}}));
+  EXPECT_EQ(radiance(scene->background(), {0, 1, 0}), (Rgb{1, 2, 3}));
+}
+
+}  // namespace
+}  // namespace bandsaw

@@ -1,0 +1,145 @@
+#include "coordinator/store/blob_store.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <thread>
+
+#include "tests/support/full_disk.h"
+#include "tests/support/temp_dir.h"
+#include "tests/unit/store/test_files.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+class BlobStoreTest : public testing::Test {
+ protected:
+  std::unique_ptr<BlobStore> open() { return *BlobStore::open(folder_.path()); }
+
+  static absl::Status put(BlobStore& store, const std::string& text) {
+    absl::StatusOr<BlobStore::Writer> writer = store.write(wire::sha256(text), text.size());
+    if (!writer.ok()) {
+      return writer.status();
+    }
+    const std::string half = text.substr(0, text.size() / 2);
+    if (absl::Status s = writer->append(bytes_of(half)); !s.ok()) {
+      return s;
+    }
+    if (absl::Status s = writer->append(bytes_of(text.substr(half.size()))); !s.ok()) {
+      return s;
+    }
+    return writer->commit();
+  }
+
+  static std::string text_of(BlobStore& store, const wire::Digest& digest) {
+    const absl::StatusOr<std::unique_ptr<BlobBytes>> blob = store.get(digest);
+    EXPECT_TRUE(blob.ok()) << blob.status();
+    const absl::Span<const std::byte> bytes = (*blob)->bytes();
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+  }
+
+  std::string file_of(const wire::Digest& digest) const {
+    return folder_ / (digest.hex().substr(0, 2) + "/" + digest.hex());
+  }
+  std::size_t files() const {
+    std::size_t count = 0;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_.path())) {
+      count += entry.is_regular_file() ? 1 : 0;
+    }
+    return count;
+  }
+
+  test::TempDir folder_;
+};
+
+TEST_F(BlobStoreTest, GivesBackWhatWasPutAlsoInItsNextLife) {
+  for (const std::string& text : {std::string(), std::string("a"), std::string(100'000, 'b')}) {
+    const wire::Digest digest = wire::sha256(text);
+    {
+      const auto store = open();
+      EXPECT_FALSE(store->has(digest));
+      ASSERT_TRUE(put(*store, text).ok());
+      ASSERT_TRUE(put(*store, text).ok()) << "again is fine";
+      EXPECT_TRUE(store->has(digest));
+      EXPECT_EQ(text_of(*store, digest), text);
+    }
+    EXPECT_EQ(text_of(*open(), digest), text);
+  }
+}
+
+TEST_F(BlobStoreTest, AnUnknownBlobIsNotFound) {
+  EXPECT_EQ(open()->get(wire::sha256("nothing")).status().code(), absl::StatusCode::kNotFound);
+}
+
+TEST_F(BlobStoreTest, WrongBytesAndWrongSizesAreRefusedAndLeaveNothing) {
+  const auto store = open();
+  const wire::Digest digest = wire::sha256("right");
+  {
+    auto writer = store->write(digest, 5);
+    ASSERT_TRUE(writer->append(bytes_of("wrong")).ok());
+    EXPECT_EQ(writer->commit().code(), absl::StatusCode::kInvalidArgument);
+  }
+  {
+    auto writer = store->write(digest, 4);
+    EXPECT_EQ(writer->append(bytes_of("right")).code(), absl::StatusCode::kInvalidArgument);
+  }
+  {
+    auto writer = store->write(digest, 6);
+    ASSERT_TRUE(writer->append(bytes_of("right")).ok());
+    EXPECT_EQ(writer->commit().code(), absl::StatusCode::kInvalidArgument);
+  }
+  { ASSERT_TRUE(store->write(digest, 5)->append(bytes_of("rig")).ok()); }
+  EXPECT_FALSE(store->has(digest));
+  EXPECT_EQ(files(), 0u);
+}
+
+TEST_F(BlobStoreTest, AnAbandonedUploadIsGoneAtTheNextStart) {
+  open();
+  write_all(folder_ / "incoming/7", "half");
+  open();
+  EXPECT_EQ(files(), 0u);
+}
+
+TEST_F(BlobStoreTest, ADamagedFileIsDataLossOnceAndCanBeSentAgain) {
+  const std::string text = "some geometry";
+  const wire::Digest digest = wire::sha256(text);
+  ASSERT_TRUE(put(*open(), text).ok());
+  write_all(file_of(digest), "some geometrY");
+  const auto store = open();
+  EXPECT_EQ(store->get(digest).status().code(), absl::StatusCode::kDataLoss);
+  EXPECT_FALSE(store->has(digest)) << "so that its sender is asked for it";
+  ASSERT_TRUE(put(*store, text).ok());
+  EXPECT_EQ(text_of(*store, digest), text);
+}
+
+TEST_F(BlobStoreTest, AFullDiskIsKnownBeforeTheBytesCome) {
+  const auto store = open();
+  const std::string text(100'000, 'x');
+  {
+    const test::FullDisk full(1000);
+    EXPECT_EQ(store->write(wire::sha256(text), text.size()).status().code(),
+              absl::StatusCode::kResourceExhausted);
+  }
+  EXPECT_EQ(files(), 0u);
+  EXPECT_TRUE(put(*store, text).ok());
+}
+
+TEST_F(BlobStoreTest, ManyThreadsMayPutAndGetTheSameBlob) {
+  const auto store = open();
+  const std::string text(10'000, 'y');
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 4; ++i) {
+    threads.emplace_back([&] {
+      EXPECT_TRUE(put(*store, text).ok());
+      EXPECT_EQ(text_of(*store, wire::sha256(text)), text);
+    });
+  }
+  for (std::thread& thread : threads) {
+    thread.join();
+  }
+  EXPECT_EQ(files(), 1u);
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,67 @@
+#include "coordinator/store/data_folder.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "tests/support/full_disk.h"
+#include "tests/support/temp_dir.h"
+#include "tests/unit/store/test_files.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(DataFolder, IsMadeForItsOwnerAlone) {
+  const test::TempDir temp;
+  const auto folder = DataFolder::open(temp / "data");
+  ASSERT_TRUE(folder.ok()) << folder.status();
+  struct stat info {};
+  ASSERT_EQ(::stat((temp / "data").c_str(), &info), 0);
+  EXPECT_EQ(info.st_mode & 0777, 0700u);
+  EXPECT_TRUE(file_exists(folder->blobs()));
+  EXPECT_TRUE(file_exists(folder->jobs()));
+}
+
+TEST(DataFolder, IsUsedByOneAtATime) {
+  const test::TempDir temp;
+  {
+    const auto first = DataFolder::open(temp / "data");
+    ASSERT_TRUE(first.ok());
+    const absl::Status second = DataFolder::open(temp / "data").status();
+    EXPECT_EQ(second.code(), absl::StatusCode::kFailedPrecondition);
+    EXPECT_THAT(std::string(second.message()), HasSubstr(temp / "data"));
+    EXPECT_THAT(std::string(second.message()), HasSubstr(std::to_string(::getpid())));
+  }
+  EXPECT_TRUE(DataFolder::open(temp / "data").ok());
+}
+
+TEST(DataFolder, OfAnotherFormatIsRefused) {
+  const test::TempDir temp;
+  ASSERT_TRUE(DataFolder::open(temp / "data").ok());
+  write_all(temp / "data/format", "bandsaw data 2\n");
+  const absl::Status status = DataFolder::open(temp / "data").status();
+  EXPECT_EQ(status.code(), absl::StatusCode::kFailedPrecondition);
+  EXPECT_THAT(std::string(status.message()), HasSubstr("bandsaw data 2"));
+}
+
+TEST(DataFolder, WithoutItsParentIsNotFound) {
+  const test::TempDir temp;
+  EXPECT_EQ(DataFolder::open(temp / "no/data").status().code(), absl::StatusCode::kNotFound);
+}
+
+TEST(DataFolder, TheProbeTellsWhetherTheDiskTakesData) {
+  const test::TempDir temp;
+  EXPECT_TRUE(probe_disk(temp.path()).ok());
+  {
+    const test::FullDisk full(1000);
+    EXPECT_FALSE(probe_disk(temp.path()).ok());
+  }
+  EXPECT_TRUE(probe_disk(temp.path()).ok());
+  EXPECT_EQ(::rmdir(temp.path().c_str()), 0) << "nothing is left behind";
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,38 @@
+#pragma once
+
+// One record of every kind, with the values that are hardest to write down.
+
+#include <limits>
+#include <vector>
+
+#include "coordinator/core/messages.h"
+
+namespace bandsaw::coordinator {
+
+inline JobSpec sample_spec(StopRule stop) {
+  return {.request_id = "0123456789abcdef",
+          .name = std::string("a \"name\"\n with\ttabs, \xc3\xa4 and a \0 inside", 39),
+          .manifest = std::string(64, 'a'),
+          .settings = {.width = kMaxSide, .height = 1, .max_depth = kMaxDepth, .seed = UINT64_MAX},
+          .stop = stop};
+}
+
+inline std::vector<Record> sample_records() {
+  return {record::JobAdded{.job = 1, .spec = sample_spec(StopAtSamples{.samples = 256})},
+          record::JobAdded{
+              .job = 2, .spec = sample_spec(StopAtError{.relative_rmse = 0.1, .max_samples = 9})},
+          record::JobAdded{.job = UINT64_MAX,
+                           .spec = sample_spec(StopAtTime{.seconds = 1e-300, .max_samples = 1})},
+          record::PassPlanned{.job = 1, .samples = {.first = 16, .last = 32}},
+          record::SamplesFixed{.job = 1, .samples = kMaxSamples},
+          record::StateChanged{.job = 1, .state = JobState::kRunning, .reason = ""},
+          record::StateChanged{.job = 1, .state = JobState::kPaused, .reason = "the disk\nis full"},
+          record::StateChanged{.job = 1, .state = JobState::kFinishing, .reason = ""},
+          record::StateChanged{.job = 1, .state = JobState::kDone, .reason = ""},
+          record::StateChanged{.job = 1, .state = JobState::kFailed, .reason = " "},
+          record::StateChanged{.job = 1, .state = JobState::kCancelled, .reason = "by\\user"},
+          record::WorkerJoined{.instance = "0123456789abcdef0123456789abcdef"},
+          record::WorkerLeft{.instance = ""}};
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,185 @@
+#include "worker/cache/blob_cache.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "tests/support/temp_dir.h"
+
+namespace bandsaw::worker {
+namespace {
+
+std::vector<std::byte> bytes_of(char fill, std::size_t size = 1000) {
+  return std::vector<std::byte>(size, static_cast<std::byte>(fill));
+}
+
+class BlobCacheTest : public ::testing::Test {
+ protected:
+  std::unique_ptr<BlobCache> open(std::uint64_t max_bytes = 1 << 30) {
+    return *BlobCache::open(folder_ / "cache", max_bytes);
+  }
+  std::string path_of(const wire::Digest& digest) { return folder_ / "cache/" + digest.hex(); }
+
+  static void put(BlobCache& cache, const std::vector<std::byte>& bytes) {
+    auto download = cache.begin(wire::sha256(bytes));
+    ASSERT_TRUE(download.ok()) << download.status();
+    ASSERT_NE(*download, nullptr);
+    ASSERT_TRUE((*download)->append(bytes).ok());
+    ASSERT_TRUE((*download)->commit().ok());
+  }
+  /// As if it had been used last so many seconds ago: no test waits for a clock.
+  void set_age(const wire::Digest& digest, int seconds) {
+    timespec times[2];
+    clock_gettime(CLOCK_REALTIME, &times[0]);
+    times[0].tv_sec -= seconds;
+    times[1] = times[0];
+    ASSERT_EQ(utimensat(AT_FDCWD, path_of(digest).c_str(), times, 0), 0);
+  }
+
+  test::TempDir folder_;
+};
+
+TEST_F(BlobCacheTest, GivesBackWhatWasPut) {
+  const auto cache = open();
+  const auto bytes = bytes_of('a');
+  EXPECT_FALSE(cache->has(wire::sha256(bytes)));
+  EXPECT_EQ(cache->get(wire::sha256(bytes)).status().code(), absl::StatusCode::kNotFound);
+  put(*cache, bytes);
+  EXPECT_TRUE(cache->has(wire::sha256(bytes)));
+  const auto blob = cache->get(wire::sha256(bytes));
+  ASSERT_TRUE(blob.ok()) << blob.status();
+  EXPECT_EQ((*blob)->bytes(), absl::MakeConstSpan(bytes));
+}
+
+TEST_F(BlobCacheTest, TakesAnEmptyBlob) {
+  const auto cache = open();
+  put(*cache, {});
+  EXPECT_TRUE(cache->get(wire::sha256(std::string())).ok());
+}
+
+TEST_F(BlobCacheTest, IsThereAfterARestart) {
+  const auto bytes = bytes_of('a');
+  put(*open(), bytes);
+  EXPECT_TRUE(open()->get(wire::sha256(bytes)).ok());
+}
+
+TEST_F(BlobCacheTest, GoesOnWhereADownloadBrokeOff) {
+  const auto bytes = bytes_of('a');
+  const auto digest = wire::sha256(bytes);
+  ASSERT_TRUE((*open()->begin(digest))->append(absl::MakeConstSpan(bytes).first(300)).ok());
+  const auto cache = open();
+  EXPECT_FALSE(cache->has(digest)) << "a part is not a blob";
+  auto download = *cache->begin(digest);
+  EXPECT_EQ(download->offset(), 300U);
+  ASSERT_TRUE(download->append(absl::MakeConstSpan(bytes).subspan(300)).ok());
+  ASSERT_TRUE(download->commit().ok());
+  EXPECT_TRUE(cache->get(digest).ok());
+}
+
+TEST_F(BlobCacheTest, ThrowsAwayBytesThatAreNotTheBlob) {
+  const auto cache = open();
+  const auto digest = wire::sha256(bytes_of('a'));
+  auto download = *cache->begin(digest);
+  ASSERT_TRUE(download->append(bytes_of('b')).ok());
+  EXPECT_EQ(download->commit().code(), absl::StatusCode::kDataLoss);
+  download.reset();
+  EXPECT_FALSE(cache->has(digest));
+  EXPECT_EQ((*cache->begin(digest))->offset(), 0U);
+}
+
+TEST_F(BlobCacheTest, RemovesADamagedBlob) {
+  const auto cache = open();
+  const auto bytes = bytes_of('a');
+  const auto digest = wire::sha256(bytes);
+  put(*cache, bytes);
+  std::ofstream(path_of(digest)) << "damaged";
+  EXPECT_EQ(cache->get(digest).status().code(), absl::StatusCode::kDataLoss);
+  EXPECT_FALSE(cache->has(digest));
+  put(*cache, bytes);
+  EXPECT_TRUE(cache->get(digest).ok());
+}
+
+TEST_F(BlobCacheTest, ThrowsAwayTheLeastRecentlyUsed) {
+  const auto cache = open(3000);
+  const auto a = wire::sha256(bytes_of('a'));
+  const auto b = wire::sha256(bytes_of('b'));
+  for (const char fill : {'a', 'b', 'c'}) {
+    put(*cache, bytes_of(fill));
+  }
+  set_age(a, 30);
+  set_age(b, 20);
+  EXPECT_TRUE(cache->get(a).ok());  // a use: b is the oldest now
+  put(*cache, bytes_of('d'));
+  EXPECT_TRUE(cache->has(a));
+  EXPECT_FALSE(cache->has(b));
+  EXPECT_TRUE(cache->has(wire::sha256(bytes_of('d'))));
+}
+
+TEST_F(BlobCacheTest, KeepsABlobThatIsLargerThanItself) {
+  const auto cache = open(500);
+  put(*cache, bytes_of('a'));
+  EXPECT_TRUE(cache->get(wire::sha256(bytes_of('a'))).ok()) << "it is needed now";
+  put(*cache, bytes_of('b'));
+  EXPECT_FALSE(cache->has(wire::sha256(bytes_of('a'))));
+}
+
+TEST_F(BlobCacheTest, LeavesFilesThatItDidNotMake) {
+  std::filesystem::create_directory(folder_ / "cache");
+  std::ofstream(folder_ / "cache/thesis.tex") << std::string(5000, 'x');
+  const auto cache = open(1500);
+  put(*cache, bytes_of('a'));
+  put(*cache, bytes_of('b'));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "cache/thesis.tex"));
+  EXPECT_TRUE(cache->has(wire::sha256(bytes_of('b'))));
+}
+
+TEST_F(BlobCacheTest, LetsOneOfTwoWorkersFetch) {
+  const auto mine = open();
+  const auto theirs = open();
+  const auto bytes = bytes_of('a');
+  auto download = *mine->begin(wire::sha256(bytes));
+  EXPECT_EQ(*theirs->begin(wire::sha256(bytes)), nullptr);
+  ASSERT_TRUE(download->append(bytes).ok());
+  ASSERT_TRUE(download->commit().ok());
+  EXPECT_TRUE(theirs->get(wire::sha256(bytes)).ok());
+}
+
+TEST_F(BlobCacheTest, IsSafeWithManyWorkersAndLittleRoom) {
+  std::vector<std::thread> workers;
+  for (int w = 0; w < 4; ++w) {
+    workers.emplace_back([&, w] {
+      const auto cache = open(4000);
+      for (int i = 0; i < 100; ++i) {
+        const auto bytes = bytes_of(static_cast<char>('a' + (i * (w + 1)) % 9));
+        const auto digest = wire::sha256(bytes);
+        if (const auto got = cache->get(digest); got.ok()) {
+          EXPECT_EQ((*got)->bytes(), absl::MakeConstSpan(bytes));
+          continue;
+        }
+        auto download = cache->begin(digest);
+        ASSERT_TRUE(download.ok()) << download.status();
+        if (*download != nullptr && (*download)->offset() == 0) {
+          ASSERT_TRUE((*download)->append(bytes).ok());
+          (void)(*download)->commit();  // another worker may have thrown the part away
+        }
+      }
+    });
+  }
+  for (std::thread& worker : workers) {
+    worker.join();
+  }
+}
+
+TEST_F(BlobCacheTest, SaysWhichFolderItCannotUse) {
+  std::ofstream(folder_ / "file") << "x";
+  const absl::Status status = BlobCache::open(folder_ / "file", 1000).status();
+  EXPECT_FALSE(status.ok());
+  EXPECT_NE(std::string(status.message()).find(folder_ / "file"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace bandsaw::worker

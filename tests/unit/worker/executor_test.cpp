@@ -1,0 +1,193 @@
+#include "worker/executor/executor.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "renderlib/render/render_band.h"
+#include "tests/support/scenes.h"
+
+namespace bandsaw::worker {
+namespace {
+
+const RenderSettings kSettings{.width = 24, .height = 24, .max_depth = 3, .seed = 1};
+
+Task task(TaskId id, std::uint32_t first_row, std::uint32_t rows, char scene = 'a') {
+  return {.id = id,
+          .job = 1,
+          .manifest = wire::sha256(std::string(1, scene)),
+          .settings = kSettings,
+          .band = {.samples = {.first = 0, .last = 16},
+                   .rows = {.first = first_row, .last = first_row + rows}}};
+}
+
+/// An executor that renders the Cornell box for every manifest, and what it told.
+class ExecutorTest : public ::testing::Test {
+ protected:
+  ~ExecutorTest() override { executor_.reset(); }
+
+  void start() {
+    executor_ = std::make_unique<Executor>(
+        pool_,
+        [this](const wire::Digest& manifest, const std::atomic<bool>& stop,
+               const Prepared& prepared) { return load(manifest, stop, prepared); },
+        ExecutorEvents{.preparing = [this](TaskId id, std::uint64_t) { prepared_.push_back(id); },
+                       .rendering = [](TaskId, std::uint32_t) {},
+                       .finished =
+                           [this](FinishedBand band) {
+                             MutexLock lock(mutex_);
+                             order_.push_back(band.task.id);
+                             const TaskId id = band.task.id;
+                             finished_.emplace(id, std::move(band));
+                             changed_.notify_all();
+                           },
+                       .failed =
+                           [this](const Task& failed, const absl::Status& status) {
+                             MutexLock lock(mutex_);
+                             failed_.emplace(failed.id, status);
+                             changed_.notify_all();
+                           }});
+  }
+
+  absl::StatusOr<std::shared_ptr<const Scene>> load(const wire::Digest& manifest,
+                                                    const std::atomic<bool>& stop,
+                                                    const Prepared& prepared) {
+    MutexLock lock(mutex_);
+    loads_.push_back(manifest);
+    changed_.notify_all();
+    while (gate_closed_ && !stop) {
+      changed_.wait_for(mutex_, std::chrono::milliseconds(1));
+    }
+    if (stop) {
+      return absl::CancelledError("stopped");
+    }
+    prepared(1);  // one scene is loaded at a time, with mutex_ held
+    if (!load_error_.ok()) {
+      return load_error_;
+    }
+    return test::cornell_box().build();
+  }
+
+  void wait_for_ended(std::size_t count) {
+    MutexLock lock(mutex_);
+    while (finished_.size() + failed_.size() < count) {
+      changed_.wait(mutex_);
+    }
+  }
+  void wait_for_loads(std::size_t count) {
+    MutexLock lock(mutex_);
+    while (loads_.size() < count) {
+      changed_.wait(mutex_);
+    }
+  }
+
+  Pool pool_{2};
+  Mutex mutex_;
+  CondVar changed_;
+  bool gate_closed_ = false;
+  absl::Status load_error_;
+  std::vector<wire::Digest> loads_;
+  std::vector<TaskId> prepared_;
+  std::vector<TaskId> order_;
+  std::map<TaskId, FinishedBand> finished_;
+  std::map<TaskId, absl::Status> failed_;
+  std::unique_ptr<Executor> executor_;
+};
+
+TEST_F(ExecutorTest, RendersWhatRenderBandRenders) {
+  start();
+  for (TaskId id = 1; id <= 4; ++id) {
+    executor_->add(task(id, static_cast<std::uint32_t>(id - 1) * 6, 6));
+  }
+  wait_for_ended(4);
+  EXPECT_TRUE(failed_.empty());
+  EXPECT_EQ(loads_.size(), 1U) << "the scene is loaded once";
+  const auto scene = test::cornell_box().build();
+  const std::atomic<bool> never{false};
+  for (const auto& [id, band] : finished_) {
+    const auto expected =
+        render_band(*scene, kSettings, band.task.band, pool_, never, [](std::uint32_t) {});
+    ASSERT_TRUE(expected.ok()) << expected.status();
+    EXPECT_EQ(band.pixels.sums, expected->sums);
+    EXPECT_EQ(band.pixels.counters, expected->counters);
+    EXPECT_GE(band.cost.render_s, 0);
+    EXPECT_GE(band.cost.cpu_s, 0);
+  }
+}
+
+TEST_F(ExecutorTest, KeepsTheLastTwoScenes) {
+  start();
+  const char scenes[] = {'a', 'b', 'a', 'c', 'a', 'b'};
+  TaskId id = 0;
+  for (const char scene : scenes) {
+    executor_->add(task(++id, 0, 1, scene));
+    wait_for_ended(id);
+  }
+  std::vector<wire::Digest> expected;
+  for (const char scene : {'a', 'b', 'c', 'b'}) {
+    expected.push_back(wire::sha256(std::string(1, scene)));
+  }
+  EXPECT_EQ(loads_, expected);
+}
+
+TEST_F(ExecutorTest, TellsWhyASceneCannotBeLoadedAndTriesAgainForTheNextBand) {
+  load_error_ = absl::InvalidArgumentError("mesh[3]: index out of range");
+  start();
+  executor_->add(task(1, 0, 1));
+  wait_for_ended(1);
+  ASSERT_TRUE(failed_.contains(1));
+  EXPECT_EQ(failed_.at(1), load_error_);
+  {
+    MutexLock lock(mutex_);
+    load_error_ = absl::OkStatus();
+  }
+  executor_->add(task(2, 0, 1));
+  wait_for_ended(2);
+  EXPECT_TRUE(finished_.contains(2));
+}
+
+TEST_F(ExecutorTest, StopsABandWhoseSceneIsLoading) {
+  gate_closed_ = true;
+  start();
+  executor_->add(task(1, 0, 1));
+  executor_->add(task(2, 1, 1));
+  executor_->add(task(3, 2, 1));
+  wait_for_loads(1);
+  executor_->stop(1);
+  executor_->stop(3);
+  wait_for_loads(2);
+  {
+    MutexLock lock(mutex_);
+    gate_closed_ = false;
+  }
+  wait_for_ended(1);
+  EXPECT_EQ(order_, std::vector<TaskId>{2});
+  EXPECT_TRUE(failed_.empty()) << "nothing is told of what was stopped";
+}
+
+TEST_F(ExecutorTest, ReportsLoadingUnderTheEarliestTask) {
+  start();
+  for (TaskId first = 1; first < 40; first += 2) {
+    const auto scene = static_cast<char>('a' + first);
+    executor_->add(task(first, 0, 1, scene));
+    executor_->add(task(first + 1, 1, 1, scene));
+    wait_for_ended(first + 1);
+    EXPECT_EQ(prepared_, std::vector<TaskId>{first});
+    prepared_.clear();
+  }
+}
+
+TEST_F(ExecutorTest, EndsWithoutFinishingWhatItHolds) {
+  gate_closed_ = true;
+  start();
+  for (TaskId id = 1; id <= 5; ++id) {
+    executor_->add(task(id, 0, 1));
+  }
+  wait_for_loads(1);
+  executor_.reset();
+  EXPECT_TRUE(finished_.empty());
+  EXPECT_TRUE(failed_.empty());
+}
+
+}  // namespace
+}  // namespace bandsaw::worker

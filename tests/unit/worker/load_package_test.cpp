@@ -1,0 +1,119 @@
+#include "worker/executor/load_package.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "renderlib/package/package.h"
+#include "tests/support/scenes.h"
+#include "tests/support/temp_dir.h"
+
+namespace bandsaw::worker {
+namespace {
+
+/// A coordinator with one package, which counts the bytes it sends and breaks off as often as it is
+/// told to.
+class LoadPackageTest : public ::testing::Test {
+ protected:
+  LoadPackageTest() {
+    const std::string manifest = encode_package(test::cornell_box().scene, {}, farm_);
+    const auto* data = reinterpret_cast<const std::byte*>(manifest.data());
+    manifest_ = farm_.put(std::vector<std::byte>(data, data + manifest.size()));
+    for (const auto& [digest, bytes] : farm_.all()) {
+      total_ += bytes.size();
+    }
+  }
+
+  absl::Status transfer(const wire::Digest& digest, std::uint64_t offset, const TakeBytes& take) {
+    const auto found = farm_.all().find(digest);
+    if (found == farm_.all().end()) {
+      return absl::NotFoundError("no such blob");
+    }
+    const auto rest = absl::MakeConstSpan(found->second).subspan(offset);
+    const bool breaks = breaks_-- > 0;
+    const auto sent = breaks ? rest.first(rest.size() / 2) : rest;
+    bytes_sent_ += sent.size();
+    if (absl::Status status = take(sent); !status.ok()) {
+      return status;
+    }
+    return breaks ? absl::UnavailableError("broke off") : absl::OkStatus();
+  }
+
+  absl::StatusOr<std::shared_ptr<const Scene>> load(BlobCache& cache,
+                                                    const wire::Digest& manifest) {
+    const TransferBlob transfer_blob = [this](const wire::Digest& digest, std::uint64_t offset,
+                                              const TakeBytes& take) {
+      return transfer(digest, offset, take);
+    };
+    const Prepared prepared = [this](std::uint64_t now) {
+      EXPECT_GT(now, prepared_);
+      prepared_ = now;
+    };
+    FetchingSource source(cache, transfer_blob, stop_, prepared);
+    return load_package(manifest, source, pool_);
+  }
+  std::unique_ptr<BlobCache> open(std::uint64_t max_bytes = 1 << 30) {
+    return *BlobCache::open(folder_ / "cache", max_bytes);
+  }
+
+  test::TempDir folder_;
+  BlobMap farm_;
+  wire::Digest manifest_;
+  std::uint64_t total_ = 0;
+  std::uint64_t bytes_sent_ = 0;
+  int breaks_ = 0;
+  std::uint64_t prepared_ = 0;
+  std::atomic<bool> stop_{false};
+  Pool pool_{1};
+};
+
+TEST_F(LoadPackageTest, FetchesEachByteOnce) {
+  const auto cache = open();
+  const auto scene = load(*cache, manifest_);
+  ASSERT_TRUE(scene.ok()) << scene.status();
+  EXPECT_EQ((*scene)->needs(), test::cornell_box().build()->needs());
+  EXPECT_EQ(bytes_sent_, total_);
+  EXPECT_GT(prepared_, 0U);
+}
+
+TEST_F(LoadPackageTest, FetchesNothingAfterARestart) {
+  ASSERT_TRUE(load(*open(), manifest_).ok());
+  bytes_sent_ = 0;
+  prepared_ = 0;
+  EXPECT_TRUE(load(*open(), manifest_).ok());
+  EXPECT_EQ(bytes_sent_, 0U);
+}
+
+TEST_F(LoadPackageTest, GoesOnWhereTheLineBroke) {
+  breaks_ = 2;
+  EXPECT_TRUE(load(*open(), manifest_).ok());
+  EXPECT_EQ(bytes_sent_, total_);
+}
+
+TEST_F(LoadPackageTest, WorksWithACacheThatHoldsNothing) {
+  EXPECT_TRUE(load(*open(1), manifest_).ok());
+}
+
+TEST_F(LoadPackageTest, FetchesADamagedBlobAgain) {
+  ASSERT_TRUE(load(*open(), manifest_).ok());
+  std::ofstream(folder_ / "cache/" + manifest_.hex()) << "damaged";
+  prepared_ = 0;
+  EXPECT_TRUE(load(*open(), manifest_).ok());
+}
+
+TEST_F(LoadPackageTest, SaysThatTheFarmHasNoSuchBlob) {
+  EXPECT_EQ(load(*open(), wire::Digest()).status().code(), absl::StatusCode::kNotFound);
+}
+
+TEST_F(LoadPackageTest, SaysThatAManifestIsNone) {
+  const wire::Digest nonsense = farm_.put(std::vector<std::byte>(100, std::byte{0xff}));
+  EXPECT_EQ(load(*open(), nonsense).status().code(), absl::StatusCode::kInvalidArgument);
+}
+
+TEST_F(LoadPackageTest, StopsWhenToldTo) {
+  stop_ = true;
+  EXPECT_EQ(load(*open(), manifest_).status().code(), absl::StatusCode::kCancelled);
+}
+
+}  // namespace
+}  // namespace bandsaw::worker

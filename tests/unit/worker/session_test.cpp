@@ -1,0 +1,267 @@
+#include "worker/session/session.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "proto/wire/limits.h"
+#include "proto/wire/versions.h"
+#include "worker/executor/backoff.h"
+
+namespace bandsaw::worker {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+Self self() {
+  return {.instance = std::string(32, 'a'),
+          .name = "desk",
+          .build = "test",
+          .threads = 4,
+          .max_bands = 3,
+          .pixel_version = 7,
+          .canary = 99};
+}
+
+farm::ToWorker welcome(const std::string& epoch) {
+  farm::ToWorker message;
+  message.mutable_welcome()->set_name("desk-2");
+  message.mutable_welcome()->set_heartbeat_ms(500);
+  message.mutable_welcome()->set_epoch(epoch);
+  return message;
+}
+
+farm::ToWorker lease(std::uint64_t id, std::uint32_t first_row, std::uint64_t job = 1) {
+  farm::ToWorker message;
+  farm::Lease* l = message.mutable_lease();
+  l->set_lease(id);
+  l->set_job(job);
+  l->set_manifest_sha256(wire::Digest().raw());
+  l->mutable_settings()->set_width(8);
+  l->mutable_settings()->set_height(80);
+  l->mutable_settings()->set_max_depth(4);
+  l->mutable_band()->set_last_sample(16);
+  l->mutable_band()->set_first_row(first_row);
+  l->mutable_band()->set_last_row(first_row + 2);
+  return message;
+}
+
+farm::ToWorker revoke(std::uint64_t id) {
+  farm::ToWorker message;
+  message.mutable_revoke()->add_lease(id);
+  return message;
+}
+
+TEST(Session, SaysWhoItIs) {
+  const farm::FromWorker message = Session(self()).hello();
+  const farm::Hello& hello = message.hello();
+  EXPECT_EQ(hello.protocol(), wire::kProtocol);
+  EXPECT_EQ(hello.pixel_version(), 7U);
+  EXPECT_EQ(hello.canary(), 99U);
+  EXPECT_EQ(hello.instance(), std::string(32, 'a'));
+  EXPECT_EQ(hello.name(), "desk");
+  EXPECT_EQ(hello.threads(), 4U);
+  EXPECT_EQ(hello.max_bands(), 3U);
+  EXPECT_EQ(hello.held_size(), 0);
+}
+
+TEST(Session, TakesItsNameAndHeartbeatFromTheWelcome) {
+  Session session(self());
+  EXPECT_FALSE(session.connected());
+  EXPECT_FALSE(session.was_welcomed());
+  session.receive(welcome("e1"));
+  EXPECT_TRUE(session.connected());
+  EXPECT_EQ(session.name(), "desk-2");
+  EXPECT_EQ(session.heartbeat_interval(), std::chrono::milliseconds(500));
+  session.disconnected();
+  EXPECT_FALSE(session.connected());
+  EXPECT_TRUE(session.was_welcomed());
+}
+
+TEST(Session, StartsLeasesAndReportsTheirRows) {
+  Session session(self());
+  session.receive(welcome("e1"));
+  const Reaction first = session.receive(lease(10, 0));
+  const Reaction second = session.receive(lease(11, 2));
+  ASSERT_EQ(first.start.size(), 1U);
+  ASSERT_EQ(second.start.size(), 1U);
+  EXPECT_NE(first.start[0].id, second.start[0].id);
+  EXPECT_EQ(second.start[0].band.rows, (RowRange{2, 4}));
+  session.preparing(first.start[0].id, 1000);
+  session.rendering(second.start[0].id, 2);
+  session.rendering(second.start[0].id, 1);  // an older report that was overtaken
+  const farm::FromWorker message = session.heartbeat();
+  const farm::Heartbeat& beat = message.heartbeat();
+  ASSERT_EQ(beat.lease_size(), 2);
+  EXPECT_EQ(beat.lease(0).lease(), 10U);
+  EXPECT_TRUE(beat.lease(0).preparing());
+  EXPECT_EQ(beat.lease(0).prepared(), 1000U);
+  EXPECT_EQ(beat.lease(1).rows_done(), 2U);
+  EXPECT_FALSE(beat.lease(1).preparing());
+  EXPECT_EQ(beat.doing(), "rendering");
+}
+
+TEST(Session, RefusesALeaseThatIsNoBand) {
+  Session session(self());
+  session.receive(welcome("e1"));
+  farm::ToWorker bad = lease(10, 0);
+  bad.mutable_lease()->mutable_band()->set_last_row(81);
+  farm::ToWorker worse = lease(11, 0);
+  worse.mutable_lease()->set_manifest_sha256("short");
+  for (const farm::ToWorker& message : {bad, worse}) {
+    const Reaction reaction = session.receive(message);
+    EXPECT_THAT(reaction.start, IsEmpty());
+    ASSERT_EQ(reaction.send.size(), 1U);
+    EXPECT_EQ(reaction.send[0].failed().lease(), message.lease().lease());
+    EXPECT_FALSE(reaction.send[0].failed().reason().empty());
+  }
+}
+
+TEST(Session, HoldsNoMoreThanTheLimit) {
+  Session session(self());
+  session.receive(welcome("e1"));
+  for (std::uint32_t i = 0; i < wire::kBandsPerWorker; ++i) {
+    EXPECT_EQ(session.receive(lease(i, 2 * i)).start.size(), 1U);
+  }
+  const Reaction reaction = session.receive(lease(100, 70));
+  EXPECT_THAT(reaction.start, IsEmpty());
+  ASSERT_EQ(reaction.send.size(), 1U);
+  EXPECT_EQ(reaction.send[0].failed().lease(), 100U);
+}
+
+TEST(Session, NamesWhatItHoldsAfterAReconnect) {
+  Session session(self());
+  session.receive(welcome("e1"));
+  const TaskId finished = session.receive(lease(10, 0)).start[0].id;
+  session.receive(lease(11, 2));
+  EXPECT_TRUE(session.finished(finished));
+  session.disconnected();
+  const farm::FromWorker message = session.hello();
+  const farm::Hello& hello = message.hello();
+  ASSERT_EQ(hello.held_size(), 2);
+  EXPECT_EQ(hello.held(0).lease(), 10U);
+  EXPECT_EQ(hello.held(0).epoch(), "e1");
+  EXPECT_TRUE(hello.held(0).finished());
+  EXPECT_FALSE(hello.held(1).finished());
+  EXPECT_EQ(hello.held(1).band().first_row(), 2U);
+}
+
+TEST(Session, GoesOnWithAHeldBandUnderItsNewName) {
+  Session session(self());
+  session.receive(welcome("e1"));
+  const TaskId task = session.receive(lease(10, 0)).start[0].id;
+  session.disconnected();
+  session.receive(welcome("e2"));
+  EXPECT_EQ(session.heartbeat().heartbeat().lease_size(), 0) << "e2 has not named it yet";
+  EXPECT_THAT(session.receive(lease(3, 0)).start, IsEmpty()) << "it renders already";
+  EXPECT_EQ(session.lease_of(task)->lease, 3U);
+  EXPECT_EQ(session.lease_of(task)->epoch, "e2");
+  EXPECT_EQ(session.heartbeat().heartbeat().lease(0).lease(), 3U);
+}
+
+TEST(Session, TakesARevokeToMeanThePresentEpochFirst) {
+  Session session(self());
+  session.receive(welcome("e1"));
+  const TaskId old = session.receive(lease(10, 0)).start[0].id;
+  session.disconnected();
+  session.receive(welcome("e2"));
+  const TaskId young = session.receive(lease(10, 20)).start[0].id;
+  EXPECT_THAT(session.receive(revoke(10)).stop, ElementsAre(young));
+  EXPECT_THAT(session.receive(revoke(10)).stop, ElementsAre(old));
+  EXPECT_THAT(session.receive(revoke(10)).stop, IsEmpty());
+}
+
+TEST(Session, ThrowsAwayWhatWasRevokedWhileItRendered) {
+  Session session(self());
+  session.receive(welcome("e1"));
+  const TaskId task = session.receive(lease(10, 0)).start[0].id;
+  EXPECT_THAT(session.receive(revoke(10)).stop, ElementsAre(task));
+  EXPECT_FALSE(session.finished(task));
+  EXPECT_FALSE(session.failed(task, "why", {}).has_value());
+}
+
+TEST(Session, TellsAFailureInWhatTheWireTakes) {
+  Session session(self());
+  session.receive(welcome("e1"));
+  const TaskId task = session.receive(lease(10, 0)).start[0].id;
+  const std::vector<std::string> log(200, std::string(1000, 'x') + "\n");
+  const auto message = session.failed(task, "two\nlines" + std::string(5000, 'y'), log);
+  ASSERT_TRUE(message.has_value());
+  EXPECT_EQ(message->failed().lease(), 10U);
+  EXPECT_EQ(message->failed().reason().size(), wire::kReasonBytes);
+  EXPECT_THAT(message->failed().reason(), HasSubstr("two lines"));
+  EXPECT_EQ(static_cast<std::size_t>(message->failed().log_size()), wire::kLogLines);
+  EXPECT_EQ(message->failed().log(0).size(), wire::kLogLineBytes);
+  EXPECT_EQ(session.hello().hello().held_size(), 0);
+}
+
+TEST(Session, SaysAFailureByNotHoldingTheBandWhereNobodyListens) {
+  Session session(self());
+  session.receive(welcome("e1"));
+  const TaskId task = session.receive(lease(10, 0)).start[0].id;
+  session.disconnected();
+  EXPECT_FALSE(session.failed(task, "why", {}).has_value());
+  EXPECT_EQ(session.hello().hello().held_size(), 0);
+}
+
+TEST(Session, DrainsWhenAllItHoldsIsAcknowledged) {
+  Session session(self());
+  session.receive(welcome("e1"));
+  const TaskId task = session.receive(lease(10, 0)).start[0].id;
+  const auto message = session.drain("SIGTERM");
+  ASSERT_TRUE(message.has_value());
+  EXPECT_EQ(message->draining().reason(), "SIGTERM");
+  EXPECT_FALSE(session.drained());
+  EXPECT_TRUE(session.finished(task));
+  EXPECT_FALSE(session.drained()) << "its pixels are not acknowledged";
+  session.settled(task);
+  EXPECT_TRUE(session.drained());
+}
+
+TEST(Session, SaysThatItDrainsAgainOnALaterStream) {
+  Session session(self());
+  session.receive(welcome("e1"));
+  session.receive(lease(10, 0));
+  session.disconnected();
+  EXPECT_FALSE(session.drain("SIGTERM").has_value());
+  const Reaction reaction = session.receive(welcome("e2"));
+  ASSERT_EQ(reaction.send.size(), 1U);
+  EXPECT_TRUE(reaction.send[0].has_draining());
+}
+
+TEST(Session, KeepsWhatItHoldsWhenRefusedAndDropsItAtGoodbye) {
+  Session session(self());
+  session.receive(welcome("e1"));
+  const TaskId task = session.receive(lease(10, 0)).start[0].id;
+  farm::ToWorker refused;
+  refused.mutable_refused()->set_reason("other pixels");
+  refused.mutable_refused()->set_retry_after_ms(700);
+  const Reaction first = session.receive(refused);
+  EXPECT_THAT(first.stop, IsEmpty());
+  ASSERT_TRUE(first.away.has_value());
+  EXPECT_EQ(first.away->reason, "other pixels");
+  EXPECT_EQ(first.away->wait, std::chrono::milliseconds(700));
+  EXPECT_FALSE(first.away->for_ever);
+  farm::ToWorker bye;
+  bye.mutable_bye()->set_reason("go home");
+  const Reaction second = session.receive(bye);
+  EXPECT_THAT(second.stop, ElementsAre(task));
+  EXPECT_TRUE(second.away->for_ever);
+}
+
+TEST(Backoff, GrowsToItsCapAndStaysWithinHalfOfIt) {
+  Backoff backoff(1);
+  std::int64_t cap = 200;
+  for (int i = 0; i < 20; ++i) {
+    const auto wait = backoff.next().count();
+    EXPECT_GE(wait, cap / 2);
+    EXPECT_LE(wait, cap);
+    cap = std::min<std::int64_t>(cap * 2, 5000);
+  }
+  backoff.reset();
+  EXPECT_LE(backoff.next().count(), 200);
+}
+
+}  // namespace
+}  // namespace bandsaw::worker

@@ -1,0 +1,186 @@
+#include "worker/cache/blob_cache.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+#include <tuple>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "renderlib/base/atomic_file.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::worker {
+namespace {
+
+struct Entry {
+  std::filesystem::file_time_type used;
+  std::string path;
+  std::uint64_t bytes = 0;
+  friend bool operator<(const Entry& a, const Entry& b) {
+    return std::tie(a.used, a.path) < std::tie(b.used, b.path);
+  }
+};
+
+/// Whether the cache made it: a folder that somebody named by mistake loses nothing else.
+bool is_ours(const std::filesystem::path& path) {
+  const bool whole_or_part = path.extension().empty() || path.extension() == ".part";
+  return whole_or_part && wire::digest_from_hex(path.stem().string()).ok();
+}
+
+/// Files that vanish meanwhile are left out.
+std::vector<Entry> entries(const std::string& folder) {
+  std::vector<Entry> found;
+  std::error_code error;
+  for (std::filesystem::directory_iterator it(folder, error), end; !error && it != end;
+       it.increment(error)) {
+    if (!is_ours(it->path())) {
+      continue;
+    }
+    std::error_code gone;
+    Entry entry{.used = it->last_write_time(gone), .path = it->path().string()};
+    entry.bytes = gone ? 0 : it->file_size(gone);
+    if (!gone) {
+      found.push_back(std::move(entry));
+    }
+  }
+  return found;
+}
+
+/// Whether `fd` is still the file of that name: another worker may have renamed it while this one
+/// waited for its lock.
+bool is_at(int fd, const std::string& path) {
+  struct stat open_file {};
+  struct stat named {};
+  return fstat(fd, &open_file) == 0 && stat(path.c_str(), &named) == 0 &&
+         open_file.st_ino == named.st_ino && open_file.st_dev == named.st_dev;
+}
+
+}  // namespace
+
+BlobCache::BlobCache(std::string folder, std::uint64_t max_bytes)
+    : folder_(std::move(folder)), max_bytes_(max_bytes), blobs_(folder_) {}
+
+absl::StatusOr<std::unique_ptr<BlobCache>> BlobCache::open(std::string folder,
+                                                           std::uint64_t max_bytes) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || access(folder.c_str(), R_OK | W_OK | X_OK) != 0) {
+    return errno_status(error ? error.value() : errno, absl::StrCat("the cache folder ", folder));
+  }
+  std::unique_ptr<BlobCache> cache(new BlobCache(std::move(folder), max_bytes));
+  std::uint64_t bytes = 0;
+  for (const Entry& entry : entries(cache->folder_)) {
+    bytes += entry.bytes;
+  }
+  cache->make_room(bytes, "");
+  return cache;
+}
+
+std::string BlobCache::part_of(const wire::Digest& digest) const {
+  return absl::StrCat(blobs_.path_of(digest), ".part");
+}
+
+bool BlobCache::has(const wire::Digest& digest) const {
+  return access(blobs_.path_of(digest).c_str(), R_OK) == 0;
+}
+
+absl::StatusOr<std::unique_ptr<BlobBytes>> BlobCache::get(const wire::Digest& digest) {
+  absl::StatusOr<std::unique_ptr<BlobBytes>> blob = blobs_.get(digest);
+  const std::string path = blobs_.path_of(digest);
+  if (blob.ok()) {
+    utimensat(AT_FDCWD, path.c_str(), nullptr, 0);  // used now
+  } else if (absl::IsDataLoss(blob.status())) {
+    unlink(path.c_str());
+  }
+  return blob;
+}
+
+absl::StatusOr<std::unique_ptr<BlobCache::Download>> BlobCache::begin(const wire::Digest& digest) {
+  const std::string path = part_of(digest);
+  const int fd = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
+  if (fd < 0) {
+    return errno_status(errno, path);
+  }
+  struct stat info {};
+  if (flock(fd, LOCK_EX | LOCK_NB) != 0 || !is_at(fd, path) || fstat(fd, &info) != 0) {
+    close(fd);
+    return std::unique_ptr<Download>();
+  }
+  return std::make_unique<Download>(*this, digest, fd, static_cast<std::uint64_t>(info.st_size));
+}
+
+void BlobCache::make_room(std::uint64_t added, const std::string& newest) {
+  MutexLock lock(mutex_);
+  bytes_ += added;
+  if (bytes_ <= max_bytes_) {
+    return;
+  }
+  std::vector<Entry> all = entries(folder_);
+  std::sort(all.begin(), all.end());
+  bytes_ = 0;
+  for (const Entry& entry : all) {
+    bytes_ += entry.bytes;
+  }
+  for (const Entry& entry : all) {
+    if (bytes_ <= max_bytes_) {
+      break;
+    }
+    if (entry.path != newest && unlink(entry.path.c_str()) == 0) {
+      bytes_ -= entry.bytes;
+    }
+  }
+}
+
+BlobCache::Download::Download(BlobCache& cache, const wire::Digest& digest, int fd,
+                              std::uint64_t offset)
+    : cache_(cache), digest_(digest), fd_(fd), offset_(offset) {}
+
+BlobCache::Download::~Download() { close(fd_); }
+
+absl::Status BlobCache::Download::append(absl::Span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = pwrite(fd_, bytes.data(), bytes.size(), static_cast<off_t>(offset_));
+    if (written < 0 && errno != EINTR) {
+      return errno_status(errno, absl::StrCat("the cache folder ", cache_.folder_));
+    }
+    if (written > 0) {
+      offset_ += static_cast<std::uint64_t>(written);
+      bytes.remove_prefix(static_cast<std::size_t>(written));
+    }
+  }
+  return absl::OkStatus();
+}
+
+absl::Status BlobCache::Download::commit() {
+  const std::string part = cache_.part_of(digest_);
+  wire::Hasher hasher;
+  std::vector<std::byte> buffer(1 << 20);
+  for (std::uint64_t at = 0; at < offset_;) {
+    const ssize_t got = pread(fd_, buffer.data(), buffer.size(), static_cast<off_t>(at));
+    if (got <= 0) {
+      return errno_status(got < 0 ? errno : EIO, part);
+    }
+    hasher.update(absl::MakeConstSpan(buffer.data(), static_cast<std::size_t>(got)));
+    at += static_cast<std::uint64_t>(got);
+  }
+  if (hasher.finish() != digest_) {
+    unlink(part.c_str());
+    return absl::DataLossError(
+        absl::StrCat("the bytes that came for blob ", digest_.hex(), " do not have that digest"));
+  }
+  const std::string path = cache_.blobs_.path_of(digest_);
+  if (rename(part.c_str(), path.c_str()) != 0) {
+    // Thrown away by a worker that made room: it is fetched again.
+    return absl::UnavailableError(errno_status(errno, part).message());
+  }
+  cache_.make_room(offset_, path);
+  return absl::OkStatus();
+}
+
+}  // namespace bandsaw::worker

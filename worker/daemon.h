@@ -1,0 +1,52 @@
+#pragma once
+
+// The worker as a whole: keeps a stream to the coordinator for ever, and binds session, cache,
+// executor and uploader together.
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "proto/link/join.h"
+#include "worker/session/session.h"
+
+namespace bandsaw::worker {
+
+struct DaemonOptions {
+  link::JoinString join;
+  Self self;  ///< threads is the size of the pool too
+  std::string cache_folder;
+  std::uint64_t cache_bytes = 16ull << 30;
+  /// The last lines of the log, for a failure's report; may be nothing.
+  std::function<std::vector<std::string>()> log_tail;
+  /// Told once, when the coordinator first took this worker in: the address, and the name it bears
+  /// there.
+  std::function<void(const std::string& address, const std::string& name)> joined;
+};
+
+class Daemon {
+ public:
+  /// Opens the cache; does not connect yet. Any error names the folder.
+  static absl::StatusOr<std::unique_ptr<Daemon>> create(DaemonOptions options);
+  ~Daemon();
+
+  /// Until it has drained or left, or the coordinator sent it away for ever: OK. UNAUTHENTICATED,
+  /// PERMISSION_DENIED: the join string is not good for this farm, and never was. Everything else
+  /// is waited out.
+  absl::Status run();
+
+  /// Finish what is held, then end run(). Any thread.
+  void drain(const std::string& reason);
+  /// End run() now; what is held is lost to this worker, and the coordinator gives it to another.
+  /// Any thread.
+  void leave();
+
+ private:
+  class Impl;
+  explicit Daemon(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace bandsaw::worker

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <random>
+
+namespace bandsaw::worker {
+
+/// Waiting times that double from 200 ms to 5 s, each shortened by a random half at most: a
+/// restarted coordinator is not met by all its workers in the same moment.
+class Backoff {
+ public:
+  explicit Backoff(std::uint64_t seed) : random_(seed) {}
+
+  std::chrono::milliseconds next() {
+    const auto wait = next_;
+    next_ = std::min(next_ * 2, kMost);
+    return std::chrono::milliseconds(
+        std::uniform_int_distribution<std::int64_t>(wait.count() / 2, wait.count())(random_));
+  }
+  void reset() { next_ = kLeast; }
+
+ private:
+  static constexpr std::chrono::milliseconds kLeast{200};
+  static constexpr std::chrono::milliseconds kMost{5000};
+  std::chrono::milliseconds next_ = kLeast;
+  std::mt19937_64 random_;
+};
+
+}  // namespace bandsaw::worker

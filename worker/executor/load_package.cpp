@@ -1,0 +1,113 @@
+#include "worker/executor/load_package.h"
+
+#include <algorithm>
+#include <thread>
+
+#include "absl/strings/str_cat.h"
+#include "proto/wire/limits.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/package/package.h"
+#include "worker/executor/backoff.h"
+
+namespace bandsaw::worker {
+namespace {
+
+constexpr auto kLook = std::chrono::milliseconds(50);
+constexpr int kWrongBytesTimes =
+    3;  // a blob that comes wrong so often is wrong where it comes from
+
+absl::Status stopped() { return absl::CancelledError("stopped"); }
+
+/// Sleeps, but not much longer than until `stop`.
+void pause(std::chrono::milliseconds time, const std::atomic<bool>& stop) {
+  const auto end = std::chrono::steady_clock::now() + time;
+  while (!stop && std::chrono::steady_clock::now() < end) {
+    std::this_thread::sleep_for(std::min(kLook, time));
+  }
+}
+
+bool is_passing(const absl::Status& status) {
+  return absl::IsUnavailable(status) || absl::IsDeadlineExceeded(status) ||
+         absl::IsCancelled(status) || absl::IsAborted(status);
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<BlobBytes>> FetchingSource::get(const wire::Digest& digest) {
+  // A blob may be damaged on the disk, or thrown away between fetching and opening: then it is
+  // fetched again.
+  for (int attempt = 0;; ++attempt) {
+    if (cache_.has(digest)) {
+      absl::StatusOr<std::unique_ptr<BlobBytes>> blob = cache_.get(digest);
+      if (blob.ok() || attempt == kWrongBytesTimes ||
+          !(absl::IsDataLoss(blob.status()) || absl::IsNotFound(blob.status()))) {
+        step(1);
+        return blob;
+      }
+    }
+    RETURN_IF_ERROR(fetch(digest));
+  }
+}
+
+absl::Status FetchingSource::fetch(const wire::Digest& digest) {
+  Backoff backoff(digest.bytes[0]);
+  int wrong = 0;
+  while (!stop_) {
+    if (cache_.has(digest)) {
+      return absl::OkStatus();
+    }
+    ASSIGN_OR_RETURN(const std::unique_ptr<BlobCache::Download> place, cache_.begin(digest));
+    if (place == nullptr) {
+      step(1);  // another worker of this machine fetches it: that is progress too
+      pause(kLook, stop_);
+      continue;
+    }
+    const std::uint64_t before = place->offset();
+    const absl::Status status = download(digest, *place);
+    if (status.ok()) {
+      return status;
+    }
+    if (absl::IsDataLoss(status) && ++wrong < kWrongBytesTimes) {
+      continue;
+    }
+    if (!is_passing(status)) {
+      return status;
+    }
+    if (place->offset() > before) {
+      backoff.reset();
+    }
+    pause(backoff.next(), stop_);
+  }
+  return stopped();
+}
+
+absl::Status FetchingSource::download(const wire::Digest& digest, BlobCache::Download& place) {
+  RETURN_IF_ERROR(
+      transfer_(digest, place.offset(), [&](absl::Span<const std::byte> bytes) -> absl::Status {
+        if (stop_) {
+          return stopped();
+        }
+        if (place.offset() + bytes.size() > wire::kBlobBytes) {
+          return absl::InvalidArgumentError(
+              absl::StrCat("blob ", digest.hex(), " has more than ", wire::kBlobBytes, " bytes"));
+        }
+        step(bytes.size());
+        return place.append(bytes);
+      }));
+  return place.commit();
+}
+
+absl::StatusOr<std::shared_ptr<const Scene>> load_package(const wire::Digest& manifest,
+                                                          FetchingSource& blobs, Pool& pool) {
+  ASSIGN_OR_RETURN(const std::unique_ptr<BlobBytes> bytes, blobs.get(manifest));
+  if (bytes->bytes().size() > wire::kManifestBytes) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("the manifest has more than ", wire::kManifestBytes, " bytes"));
+  }
+  const std::string text(reinterpret_cast<const char*>(bytes->bytes().data()),
+                         bytes->bytes().size());
+  ASSIGN_OR_RETURN(SceneDescription description, decode_package(text, blobs));
+  return Scene::build(std::move(description), pool);
+}
+
+}  // namespace bandsaw::worker

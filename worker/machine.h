@@ -1,0 +1,28 @@
+#pragma once
+
+// What a worker can say of the machine and the build it runs on.
+
+#include <string>
+
+#include "absl/status/status.h"
+
+namespace bandsaw::worker {
+
+std::string host_name();
+
+/// Version, compiler, CPU: for people, never compared.
+std::string build_description();
+
+/// Unique to this process: 32 hexadecimal digits.
+std::string new_instance();
+
+/// $XDG_CACHE_HOME/bandsaw/blobs, or ~/.cache/bandsaw/blobs: all workers of one user share it.
+/// Empty: neither is known.
+std::string default_cache_folder();
+
+/// FAILED_PRECONDITION: the processor lacks what this program was compiled for, or the
+/// floating-point unit is not in its default mode (round to nearest, nothing flushed to zero),
+/// which would change pixels.
+absl::Status check_machine();
+
+}  // namespace bandsaw::worker

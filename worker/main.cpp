@@ -1,0 +1,175 @@
+// bandsaw-worker: renders bands for a coordinator until it is told to stop.
+//
+// Exit codes: 0 drained, or sent away for good; 1 the machine or the cache folder is not fit; 2
+// wrong usage, or a join string that is wrong or not good for this farm; 130 left at once, on a
+// second signal.
+
+#include <signal.h>
+#include <spdlog/sinks/ringbuffer_sink.h>
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <thread>
+
+#include "proto/link/join.h"
+#include "proto/wire/limits.h"
+#include "renderlib/render/canary.h"
+#include "renderlib/render/pixel_version.h"
+#include "worker/daemon.h"
+#include "worker/machine.h"
+
+namespace bandsaw::worker {
+namespace {
+
+constexpr int kUnfit = 1;
+constexpr int kWrongUsage = 2;
+constexpr int kInterrupted = 130;
+
+struct Arguments {
+  std::string join;
+  unsigned threads = std::max(1U, std::thread::hardware_concurrency());
+  std::string name = host_name();
+  std::string cache = default_cache_folder();
+  double cache_gb = 16;
+  bool quiet = false;
+};
+
+void describe(CLI::App& app, Arguments& arguments) {
+  app.set_version_flag("--version", "bandsaw-worker " BANDSAW_VERSION);
+  app.add_option("--join", arguments.join,
+                 "The join string, a file that holds it, or - for standard input")
+      ->envname("BANDSAW_JOIN")
+      ->required();
+  app.add_option("--threads", arguments.threads, "Threads to render with; default: all")
+      ->check(CLI::Range(std::size_t{1}, wire::kThreadsPerWorker));
+  app.add_option("--name", arguments.name, "Its name, for people; default: the host's");
+  app.add_option("--cache", arguments.cache,
+                 "Folder for scenes; workers of one machine may share it");
+  app.add_option("--cache-size", arguments.cache_gb, "Most gigabytes to keep there")
+      ->check(CLI::Range(0.001, 1e6));
+  app.add_flag("--quiet", arguments.quiet, "Log warnings and errors only");
+}
+
+int fail(int code, const absl::Status& status) {
+  std::fprintf(stderr, "bandsaw-worker: %s\n", std::string(status.message()).c_str());
+  return code;
+}
+
+/// Logs to standard error; returns the last lines for a failure's report.
+std::function<std::vector<std::string>()> start_log(bool quiet) {
+  auto ring = std::make_shared<spdlog::sinks::ringbuffer_sink_mt>(wire::kLogLines);
+  auto err = std::make_shared<spdlog::sinks::stderr_sink_mt>();
+  err->set_level(quiet ? spdlog::level::warn : spdlog::level::info);
+  auto logger =
+      std::make_shared<spdlog::logger>("worker", spdlog::sinks_init_list{std::move(err), ring});
+  logger->set_pattern("%Y-%m-%d %H:%M:%S.%e %l %v");
+  spdlog::set_default_logger(std::move(logger));
+  return [ring] { return ring->last_formatted(); };
+}
+
+/// Signals wait for the one thread that sits in sigwait: nothing is done inside a handler.
+sigset_t watched_signals() {
+  sigset_t set{};
+  sigemptyset(&set);
+  sigaddset(&set, SIGTERM);
+  sigaddset(&set, SIGINT);
+  sigaddset(&set, SIGUSR2);  // the watch's own end
+  return set;
+}
+
+/// Drains at the first SIGTERM or SIGINT, leaves at once at the second. The signals MUST be blocked
+/// in all threads.
+class SignalWatch {
+ public:
+  explicit SignalWatch(Daemon& daemon) : thread_([&daemon] { watch(daemon); }) {}
+  ~SignalWatch() {
+    pthread_kill(thread_.native_handle(), SIGUSR2);
+    thread_.join();
+  }
+  SignalWatch(const SignalWatch&) = delete;
+  SignalWatch& operator=(const SignalWatch&) = delete;
+
+ private:
+  static void watch(Daemon& daemon) {
+    const sigset_t set = watched_signals();
+    for (int count = 0;; ++count) {
+      int signal = 0;
+      sigwait(&set, &signal);
+      if (signal == SIGUSR2) {
+        return;
+      }
+      if (count > 0) {
+        std::_Exit(kInterrupted);
+      }
+      daemon.drain(signal == SIGTERM ? "SIGTERM" : "SIGINT");
+    }
+  }
+
+  std::thread thread_;
+};
+
+int run(const Arguments& arguments) {
+  if (const absl::Status status = check_machine(); !status.ok()) {
+    return fail(kUnfit, status);
+  }
+  absl::StatusOr<link::JoinString> join = link::join_string_from(arguments.join);
+  if (!join.ok()) {
+    return fail(kWrongUsage, join.status());
+  }
+  if (join->role != link::Role::kWorker) {
+    return fail(kWrongUsage,
+                absl::InvalidArgumentError("this join string is for people: a worker needs the one "
+                                           "in the file `join` of the coordinator's data folder"));
+  }
+  if (arguments.cache.empty()) {
+    return fail(kWrongUsage, absl::InvalidArgumentError(
+                                 "neither HOME nor XDG_CACHE_HOME is set: --cache DIR is needed"));
+  }
+  if (arguments.name.empty() || arguments.name.size() > wire::kWorkerNameBytes) {
+    return fail(kWrongUsage, absl::InvalidArgumentError("--name must have 1 to 64 bytes"));
+  }
+  const sigset_t set = watched_signals();
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);  // before any thread is made: all inherit it
+  DaemonOptions options{.join = *std::move(join),
+                        .self = {.instance = new_instance(),
+                                 .name = arguments.name,
+                                 .build = build_description(),
+                                 .threads = arguments.threads,
+                                 .pixel_version = kPixelVersion,
+                                 .canary = canary()},
+                        .cache_folder = arguments.cache,
+                        .cache_bytes = static_cast<std::uint64_t>(arguments.cache_gb * 1e9),
+                        .log_tail = start_log(arguments.quiet),
+                        .joined = [&](const std::string& address, const std::string& name) {
+                          std::printf("bandsaw-worker %s · %u thread%s · joined %s as %s\n",
+                                      BANDSAW_VERSION, arguments.threads,
+                                      arguments.threads == 1 ? "" : "s", address.c_str(),
+                                      name.c_str());
+                          std::fflush(stdout);
+                        }};
+  absl::StatusOr<std::unique_ptr<Daemon>> daemon = Daemon::create(std::move(options));
+  if (!daemon.ok()) {
+    return fail(kUnfit, daemon.status());
+  }
+  const SignalWatch watch(**daemon);
+  const absl::Status status = (*daemon)->run();
+  return status.ok() ? 0 : fail(kWrongUsage, status);
+}
+
+}  // namespace
+}  // namespace bandsaw::worker
+
+int main(int argc, char** argv) {
+  bandsaw::worker::Arguments arguments;
+  CLI::App app("Renders bands for a Bandsaw coordinator.", "bandsaw-worker");
+  bandsaw::worker::describe(app, arguments);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : bandsaw::worker::kWrongUsage;
+  }
+  return bandsaw::worker::run(arguments);
+}

@@ -1,0 +1,61 @@
+#pragma once
+
+// The worker's calls on the bulk channel, and the calls under way, so that leaving need not wait
+// for them.
+
+#include <memory>
+#include <optional>
+#include <set>
+
+#include "absl/status/statusor.h"
+#include "proto/farm.grpc.pb.h"
+#include "proto/link/channel.h"
+#include "renderlib/base/mutex.h"
+#include "worker/executor/load_package.h"
+#include "worker/session/session.h"
+
+namespace bandsaw::worker {
+
+/// Where the farm is now; changes with every reconnect.
+class FarmCalls {
+ public:
+  explicit FarmCalls(link::JoinString join) : join_(std::move(join)) {}
+
+  const link::JoinString& join() const { return join_; }
+  /// Nothing: not connected; calls fail with UNAVAILABLE at once.
+  void set_channel(std::shared_ptr<grpc::Channel> bulk) EXCLUDES(mutex_);
+  /// Cancels all calls that are under way or begin later.
+  void leave() EXCLUDES(mutex_);
+
+  absl::Status get_blob(const wire::Digest& digest, std::uint64_t offset, const TakeBytes& take);
+  absl::StatusOr<farm::PutBandReply::Outcome> put_band(const FinishedBand& band,
+                                                       const std::string& instance,
+                                                       const LeaseName& lease);
+
+  /// A context for one call that leave() can cancel.
+  class Context {
+   public:
+    /// deadline zero: none
+    Context(FarmCalls& calls, std::chrono::milliseconds deadline);
+    ~Context();
+    Context(const Context&) = delete;
+    Context& operator=(const Context&) = delete;
+    grpc::ClientContext& operator*() { return context_; }
+    grpc::ClientContext* get() { return &context_; }
+
+   private:
+    FarmCalls& calls_;
+    grpc::ClientContext context_;
+  };
+
+ private:
+  absl::StatusOr<std::unique_ptr<farm::Work::Stub>> stub() EXCLUDES(mutex_);
+
+  const link::JoinString join_;
+  Mutex mutex_;
+  bool left_ GUARDED_BY(mutex_) = false;
+  std::shared_ptr<grpc::Channel> bulk_ GUARDED_BY(mutex_);
+  std::set<grpc::ClientContext*> open_ GUARDED_BY(mutex_);
+};
+
+}  // namespace bandsaw::worker

@@ -1,0 +1,268 @@
+#include "worker/session/session.h"
+
+#include <algorithm>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/str_cat.h"
+#include "proto/wire/limits.h"
+#include "proto/wire/versions.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::worker {
+namespace {
+
+/// What the coordinator takes: bounded, on one line.
+std::string plain(absl::string_view text, std::size_t most) {
+  std::string line(absl::StripAsciiWhitespace(text).substr(0, most));
+  std::replace_if(line.begin(), line.end(), absl::ascii_iscntrl, ' ');
+  return line;
+}
+
+farm::FromWorker failure(std::uint64_t lease, const std::string& reason,
+                         const std::vector<std::string>& log) {
+  farm::FromWorker message;
+  farm::BandFailed* failed = message.mutable_failed();
+  failed->set_lease(lease);
+  failed->set_reason(plain(reason, wire::kReasonBytes));
+  const std::size_t first = log.size() - std::min(log.size(), wire::kLogLines);
+  for (std::size_t i = first; i < log.size(); ++i) {
+    failed->add_log(plain(log[i], wire::kLogLineBytes));
+  }
+  return message;
+}
+
+absl::StatusOr<Task> task_of(const farm::Lease& lease) {
+  Task task{.id = 0,
+            .job = lease.job(),
+            .manifest = {},
+            .settings = {.width = lease.settings().width(),
+                         .height = lease.settings().height(),
+                         .max_depth = lease.settings().max_depth(),
+                         .seed = lease.settings().seed(),
+                         .integrator = static_cast<Integrator>(lease.settings().integrator())},
+            .band = {.samples = {.first = lease.band().first_sample(),
+                                 .last = lease.band().last_sample()},
+                     .rows = {.first = lease.band().first_row(), .last = lease.band().last_row()}}};
+  ASSIGN_OR_RETURN(task.manifest, wire::digest_from_raw(lease.manifest_sha256()));
+  RETURN_IF_ERROR(validate(task.settings));
+  RETURN_IF_ERROR(validate(task.band, task.settings));
+  return task;
+}
+
+void set_band(const Band& band, farm::Band& message) {
+  message.set_first_sample(band.samples.first);
+  message.set_last_sample(band.samples.last);
+  message.set_first_row(band.rows.first);
+  message.set_last_row(band.rows.last);
+}
+
+}  // namespace
+
+Session::Session(Self self) : self_(std::move(self)) {}
+
+farm::FromWorker Session::hello() const {
+  farm::FromWorker message;
+  farm::Hello* hello = message.mutable_hello();
+  hello->set_protocol(wire::kProtocol);
+  hello->set_pixel_version(self_.pixel_version);
+  hello->set_canary(self_.canary);
+  hello->set_instance(self_.instance);
+  hello->set_name(self_.name);
+  hello->set_threads(self_.threads);
+  hello->set_max_bands(self_.max_bands);
+  hello->set_build(self_.build);
+  for (const Held& held : held_) {
+    farm::Held* h = hello->add_held();
+    h->set_job(held.task.job);
+    set_band(held.task.band, *h->mutable_band());
+    h->set_lease(held.name.lease);
+    h->set_epoch(held.name.epoch);
+    h->set_finished(held.stage == Stage::kFinished);
+  }
+  return message;
+}
+
+Reaction Session::receive(const farm::ToWorker& message) {
+  Reaction reaction;
+  switch (message.kind_case()) {
+    case farm::ToWorker::kWelcome:
+      take_welcome(message.welcome(), reaction);
+      break;
+    case farm::ToWorker::kLease:
+      take_lease(message.lease(), reaction);
+      break;
+    case farm::ToWorker::kRevoke:
+      take_revoke(message.revoke(), reaction);
+      break;
+    case farm::ToWorker::kRefused:
+      reaction.away = Away{.reason = message.refused().reason(),
+                           .wait = std::chrono::milliseconds(message.refused().retry_after_ms())};
+      break;
+    case farm::ToWorker::kBye:
+      for (const Held& held : held_) {
+        reaction.stop.push_back(held.task.id);
+      }
+      held_.clear();
+      reaction.away = Away{.reason = message.bye().reason(),
+                           .wait = std::chrono::milliseconds(message.bye().retry_after_ms()),
+                           .for_ever = message.bye().retry_after_ms() == 0};
+      break;
+    case farm::ToWorker::KIND_NOT_SET:
+      break;  // a later coordinator's word of the same protocol: it may be left out
+  }
+  return reaction;
+}
+
+void Session::take_welcome(const farm::Welcome& welcome, Reaction& reaction) {
+  connected_ = true;
+  name_ = welcome.name().empty() ? self_.name : welcome.name();
+  epoch_ = welcome.epoch();
+  heartbeat_ =
+      std::chrono::milliseconds(std::clamp<std::uint32_t>(welcome.heartbeat_ms(), 50, 60'000));
+  if (drain_reason_) {
+    reaction.send.push_back(draining_message());
+  }
+}
+
+void Session::take_lease(const farm::Lease& lease, Reaction& reaction) {
+  absl::StatusOr<Task> task = task_of(lease);
+  if (!task.ok()) {
+    reaction.send.push_back(failure(lease.lease(), std::string(task.status().message()), {}));
+    return;
+  }
+  // The same band again is the answer to a Hello: go on, under the name it has now.
+  const auto same = std::find_if(held_.begin(), held_.end(), [&](const Held& held) {
+    return held.task.job == task->job && held.task.band == task->band;
+  });
+  if (same != held_.end()) {
+    same->name = {.lease = lease.lease(), .epoch = epoch_};
+    return;
+  }
+  if (held_.size() >= wire::kBandsPerWorker) {
+    reaction.send.push_back(failure(lease.lease(), "this worker holds too many bands", {}));
+    return;
+  }
+  task->id = ++last_task_;
+  held_.push_back(Held{.task = *task, .name = {.lease = lease.lease(), .epoch = epoch_}});
+  reaction.start.push_back(*task);
+}
+
+void Session::take_revoke(const farm::Revoke& revoke, Reaction& reaction) {
+  for (const std::uint64_t lease : revoke.lease()) {
+    // Ids are unique within an epoch; one of an earlier epoch can only be meant where the present
+    // one has none.
+    auto meant = std::find_if(held_.begin(), held_.end(), [&](const Held& held) {
+      return held.name.lease == lease && held.name.epoch == epoch_;
+    });
+    if (meant == held_.end()) {
+      meant = std::find_if(held_.begin(), held_.end(),
+                           [&](const Held& held) { return held.name.lease == lease; });
+    }
+    if (meant != held_.end()) {
+      reaction.stop.push_back(meant->task.id);
+      held_.erase(meant);
+    }
+  }
+}
+
+farm::FromWorker Session::heartbeat() const {
+  farm::FromWorker message;
+  farm::Heartbeat* beat = message.mutable_heartbeat();
+  beat->set_doing(doing());
+  for (const Held& held : held_) {
+    if (held.name.epoch != epoch_) {
+      continue;  // the present coordinator has not said yet what it calls it
+    }
+    farm::LeaseProgress* progress = beat->add_lease();
+    progress->set_lease(held.name.lease);
+    progress->set_rows_done(held.rows_done);
+    progress->set_preparing(held.stage == Stage::kPreparing);
+    progress->set_prepared(held.prepared);
+  }
+  return message;
+}
+
+std::string Session::doing() const {
+  const auto any = [this](Stage stage) {
+    return std::any_of(held_.begin(), held_.end(),
+                       [stage](const Held& held) { return held.stage == stage; });
+  };
+  return any(Stage::kRendering)   ? "rendering"
+         : any(Stage::kPreparing) ? "fetching scene"
+         : any(Stage::kFinished)  ? "sending pixels"
+         : drain_reason_          ? "draining"
+                                  : "idle";
+}
+
+Session::Held* Session::find(TaskId task) {
+  const auto found = std::find_if(held_.begin(), held_.end(),
+                                  [task](const Held& held) { return held.task.id == task; });
+  return found == held_.end() ? nullptr : &*found;
+}
+
+void Session::preparing(TaskId task, std::uint64_t prepared) {
+  if (Held* held = find(task)) {
+    held->stage = Stage::kPreparing;
+    held->prepared = std::max(held->prepared, prepared);
+  }
+}
+
+void Session::rendering(TaskId task, std::uint32_t rows_done) {
+  if (Held* held = find(task)) {
+    held->stage = Stage::kRendering;
+    held->rows_done = std::max(held->rows_done, rows_done);  // reports may overtake one another
+  }
+}
+
+bool Session::finished(TaskId task) {
+  Held* held = find(task);
+  if (held != nullptr) {
+    held->stage = Stage::kFinished;
+    held->rows_done = held->task.band.rows.count();
+  }
+  return held != nullptr;
+}
+
+std::optional<farm::FromWorker> Session::failed(TaskId task, const std::string& reason,
+                                                const std::vector<std::string>& log) {
+  const Held* held = find(task);
+  if (held == nullptr) {
+    return std::nullopt;
+  }
+  const LeaseName name = held->name;
+  settled(task);
+  if (!connected_ || name.epoch != epoch_) {
+    return std::nullopt;
+  }
+  return failure(name.lease, reason, log);
+}
+
+void Session::settled(TaskId task) {
+  std::erase_if(held_, [task](const Held& held) { return held.task.id == task; });
+}
+
+std::optional<LeaseName> Session::lease_of(TaskId task) const {
+  for (const Held& held : held_) {
+    if (held.task.id == task) {
+      return held.name;
+    }
+  }
+  return std::nullopt;
+}
+
+farm::FromWorker Session::draining_message() const {
+  farm::FromWorker message;
+  message.mutable_draining()->set_reason(plain(*drain_reason_, wire::kReasonBytes));
+  return message;
+}
+
+std::optional<farm::FromWorker> Session::drain(const std::string& reason) {
+  const bool first = !drain_reason_.has_value();
+  drain_reason_ = reason;
+  if (!first || !connected_) {
+    return std::nullopt;
+  }
+  return draining_message();
+}
+
+}  // namespace bandsaw::worker
