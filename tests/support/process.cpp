@@ -4,6 +4,8 @@
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include <algorithm>
 #include <csignal>
 #include <cstring>
 #include <thread>
@@ -61,12 +63,26 @@ std::vector<char*> pointers(std::vector<std::string>& strings) {
   return out;
 }
 
+// Adds what the test itself has and `environment` does not set: of two entries of one name, shells
+// take the later.
+void inherit(std::vector<std::string>& environment) {
+  const std::size_t given = environment.size();
+  for (char** e = environ; *e != nullptr; ++e) {
+    const std::string entry = *e;
+    const std::string name = entry.substr(0, entry.find('=') + 1);
+    const bool replaced =
+        std::any_of(environment.begin(), environment.begin() + static_cast<std::ptrdiff_t>(given),
+                    [&](const std::string& other) { return other.starts_with(name); });
+    if (!replaced) {
+      environment.push_back(entry);
+    }
+  }
+}
+
 }  // namespace
 
 Process Process::start(std::vector<std::string> argv, std::vector<std::string> environment) {
-  for (char** e = environ; *e != nullptr; ++e) {
-    environment.emplace_back(*e);
-  }
+  inherit(environment);
   int pipes[2][2];
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);

@@ -17,7 +17,8 @@ class Process {
  public:
   using Milliseconds = std::chrono::milliseconds;
 
-  /// argv[0] is a path. `environment`: "NAME=value", in addition to the test's own.
+  /// argv[0] is a path. `environment`: "NAME=value", in addition to the test's own, and in the place
+  /// of those of the same name.
   static Process start(std::vector<std::string> argv, std::vector<std::string> environment = {});
   Process(Process&&) noexcept;
   Process& operator=(Process&&) noexcept;
