@@ -255,6 +255,8 @@ absl::StatusOr<Command> checked_compare(const RawOptions& raw) {
   CompareOptions options;
   options.image = raw.image;
   options.reference = raw.reference;
+  options.outputs = raw.outputs;
+  RETURN_IF_ERROR(check_outputs(options.outputs, false));
   ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
   return options;
 }

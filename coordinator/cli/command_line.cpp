@@ -139,6 +139,11 @@ void add_stitch(CLI::App& app, RawOptions& raw) {
 void add_compare(CLI::App& app, RawOptions& raw) {
   app.add_option("image", raw.image, "The image that is judged (PNG, PPM, PFM, …)");
   app.add_option("reference", raw.reference, "The image that it is judged by");
+  app.add_option("-o,--output", raw.outputs,
+                 "File for a picture of the differences (FLIP), black for none, white for the most")
+      ->allow_extra_args(false)
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   add_verbosity(app, raw, false);
 }
 

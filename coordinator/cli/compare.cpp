@@ -3,29 +3,17 @@
 #include <atomic>
 
 #include "coordinator/cli/commands.h"
-#include "coordinator/cli/image_metrics.h"
+#include "coordinator/cli/comparison.h"
 #include "coordinator/cli/import_process.h"
-#include "coordinator/cli/json.h"
+#include "coordinator/cli/output.h"
+#include "renderlib/compare/false_color.h"
 
 namespace bandsaw::coordinator {
-namespace {
-
-std::string json_text(const ImageMetrics& metrics) {
-  return JsonObject()
-      .flag("identical", metrics.identical)
-      .number("rmse", metrics.rmse)
-      .number("relative_rmse", metrics.relative_rmse)
-      .number("relative_mse", metrics.relative_mse)
-      .number("max_difference", metrics.max_difference)
-      .whole("max_x", metrics.max_x)
-      .whole("max_y", metrics.max_y)
-      .whole("not_finite", metrics.not_finite)
-      .str();
-}
-
-}  // namespace
 
 ExitCode run(const CompareOptions& options, Process& process) {
+  if (const absl::Status status = check_outputs_writable(options.outputs); !status.ok()) {
+    return process.console.fail(ExitCode::kWrong, std::string(status.message()));
+  }
   std::atomic<bool> stop{false};
   Interrupts::Listener listener(process.interrupts, [&] { stop = true; });
   ImportLimits limits;
@@ -38,11 +26,16 @@ ExitCode run(const CompareOptions& options, Process& process) {
     return process.console.fail(interrupted ? ExitCode::kInterrupted : ExitCode::kWrong,
                                 std::string(status.message()));
   }
-  const auto metrics = compare_images(*image, *reference);
-  if (!metrics.ok()) {
-    return process.console.fail(ExitCode::kWrong, std::string(metrics.status().message()));
+  const auto comparison = compare_images(*image, *reference);
+  if (!comparison.ok()) {
+    return process.console.fail(ExitCode::kWrong, std::string(comparison.status().message()));
   }
-  process.console.line(options.verbosity.json ? json_text(*metrics) : metrics_text(*metrics));
+  const absl::Status written = write_outputs(false_color(comparison->flip), options.outputs, {});
+  if (!written.ok()) {
+    return process.console.fail(ExitCode::kFailed, std::string(written.message()));
+  }
+  process.console.line(options.verbosity.json ? comparison_json(*comparison)
+                                              : comparison_text(*comparison));
   return ExitCode::kDone;
 }
 

@@ -114,6 +114,7 @@ struct StitchOptions {
 struct CompareOptions {
   std::string image;
   std::string reference;
+  std::vector<std::string> outputs;  ///< of the picture of the differences
   Verbosity verbosity;
 };
 

@@ -1,23 +1,25 @@
 #pragma once
 
-// How far an image is from a reference.
+// How far an image is from a reference, number by number.
 
 #include <cstdint>
-#include <string>
 
-#include "absl/status/statusor.h"
 #include "renderlib/image/image.h"
 
-namespace bandsaw::coordinator {
+namespace bandsaw {
 
 /// Over all channels of all pixels where both values are finite; a is the image, b the reference,
 /// linear RGB.
-struct ImageMetrics {
+struct ErrorMetrics {
   double rmse = 0;           ///< sqrt(mean((a - b)^2))
   double relative_rmse = 0;  ///< rmse / mean(b); 0 where both are black, infinite where only b is
   double relative_mse =
       0;  ///< mean((a - b)^2 / (b^2 + 0.01)), as Rousselle et al. 2011, "Adaptive Sampling and
           ///< Reconstruction using Greedy Error Minimization", section 5
+  double trimmed_relative_mse = 0;  ///< the same without the worst 0.1 % of the pixels, rounded up
+  double mape = 0;                  ///< mean(|a - b| / (|b| + 0.01))
+  double psnr =
+      0;  ///< decibels, of the sRGB-coded values in [0, 1]; infinite where those are equal
   double max_difference = 0;  ///< largest |a - b|
   std::uint32_t max_x = 0;    ///< where that is, the first such
   std::uint32_t max_y = 0;
@@ -25,11 +27,7 @@ struct ImageMetrics {
   bool identical = false;        ///< every value is equal, and finite
 };
 
-/// INVALID_ARGUMENT: the sizes differ.
-absl::StatusOr<ImageMetrics> compare_images(const Image& image, const Image& reference);
+/// The images MUST be of one size and not empty.
+ErrorMetrics error_metrics(const Image& image, const Image& reference);
 
-/// "RMSE 0.0123 · relRMSE 1.6 % · relMSE 0.00031 · max difference 0.5 at pixel (3, 4)", or
-/// "identical".
-std::string metrics_text(const ImageMetrics& metrics);
-
-}  // namespace bandsaw::coordinator
+}  // namespace bandsaw

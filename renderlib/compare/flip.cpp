@@ -1,0 +1,111 @@
+#include "renderlib/compare/flip.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "renderlib/compare/flip_parts.h"
+#include "renderlib/compare/perceived.h"
+#include "renderlib/math/elementary.h"
+
+namespace bandsaw {
+namespace {
+
+// The film curve (k0 x^2 + k1 x) / (k3 x^2 + k4 x + k5) of Narkowicz 2016, with exposure 0.6.
+constexpr double k0 = 0.6 * 0.6 * 2.51;
+constexpr double k1 = 0.6 * 0.03;
+constexpr double k3 = 0.6 * 0.6 * 2.43;
+constexpr double k4 = 0.6 * 0.59;
+constexpr double k5 = 0.14;
+
+float filmed(double x) {
+  return static_cast<float>(
+      std::clamp((k0 * x * x + k1 * x) / (k3 * x * x + k4 * x + k5), 0.0, 1.0));
+}
+
+// The light that the curve shows as 0.85.
+double nearly_white() {
+  constexpr double kShown = 0.85;
+  const double a = k0 - kShown * k3;
+  const double b = k1 - kShown * k4;
+  const double c = -kShown * k5;
+  return (-b + std::sqrt(b * b - 4 * a * c)) / (2 * a);
+}
+
+Image exposed(const Image& image, double factor) {
+  Image out = image;
+  for (Rgb& pixel : out.pixels) {
+    pixel = {filmed(std::max(0.0, pixel.r * factor)), filmed(std::max(0.0, pixel.g * factor)),
+             filmed(std::max(0.0, pixel.b * factor))};
+  }
+  return out;
+}
+
+struct Exposures {
+  double first = 1;
+  double step = 1;
+  int count = 1;
+};
+
+double log2_of(double x) { return log(x) / log(2.0); }
+
+// Equations 2 and 3 of the second paper; a reference whose middle is black is shown from its
+// brightest alone.
+Exposures exposures_of(const Image& reference) {
+  std::vector<double> light;
+  for (const Rgb& pixel : reference.pixels) {
+    if (const double y = luminance(pixel); std::isfinite(y)) {
+      light.push_back(y);
+    }
+  }
+  if (light.empty()) {
+    return {};
+  }
+  std::sort(light.begin(), light.end());
+  const double most = light.back();
+  const double middle = light[light.size() / 2];
+  if (most <= 0) {
+    return {};
+  }
+  const double start = log2_of(nearly_white() / most);
+  const double stop = middle > 0 ? log2_of(nearly_white() / middle) : start;
+  const int count = std::max(2, static_cast<int>(std::ceil(stop - start)));
+  return {pow(2, start), pow(2, (stop - start) / (count - 1)), count};
+}
+
+}  // namespace
+
+Plane flip(const Image& image, const Image& reference, double pixels_per_degree) {
+  Image a = image;
+  Image b = reference;
+  std::transform(a.pixels.begin(), a.pixels.end(), a.pixels.begin(),
+                 [](const Rgb& pixel) { return clamped(pixel); });
+  std::transform(b.pixels.begin(), b.pixels.end(), b.pixels.begin(),
+                 [](const Rgb& pixel) { return clamped(pixel); });
+  Plane out = flip_color(a, b, pixels_per_degree);
+  const Plane features = flip_features(a, b, pixels_per_degree);
+  for (std::size_t i = 0; i < out.values.size(); ++i) {
+    out.values[i] = pow(out.values[i], 1 - features.values[i]);  // equation 13
+  }
+  return out;
+}
+
+Plane hdr_flip(const Image& image, const Image& reference, double pixels_per_degree) {
+  const Exposures exposures = exposures_of(reference);
+  Plane out(image.width, image.height);
+  double factor = exposures.first;
+  for (int i = 0; i < exposures.count; ++i) {
+    const Plane at = flip(exposed(image, factor), exposed(reference, factor), pixels_per_degree);
+    std::transform(at.values.begin(), at.values.end(), out.values.begin(), out.values.begin(),
+                   [](double a, double b) { return std::max(a, b); });
+    factor *= exposures.step;
+  }
+  return out;
+}
+
+bool beyond_screen(const Image& image) {
+  return std::any_of(image.pixels.begin(), image.pixels.end(),
+                     [](const Rgb& pixel) { return max_component(pixel) > 1; });
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,80 @@
+#include <algorithm>
+#include <cmath>
+
+#include "renderlib/compare/flip_parts.h"
+#include "renderlib/compare/perceived.h"
+#include "renderlib/math/elementary.h"
+
+namespace bandsaw {
+namespace {
+
+constexpr double kFeatureWidth = 0.082;  // w, in degrees
+constexpr double kExponent = 0.5;        // q_f
+
+struct Features {
+  Plane edges;
+  Plane points;
+};
+
+// Weights above 0 sum to 1, those below to -1: a feature's strength is in units of contrast.
+Kernel balanced(Kernel kernel, double across) {
+  double above = 0;
+  double below = 0;
+  for (const double weight : kernel) {
+    (weight > 0 ? above : below) += weight;
+  }
+  for (double& weight : kernel) {
+    weight /= (weight > 0 ? above : -below) * across;
+  }
+  return kernel;
+}
+
+Plane gray_of(const Image& image) {
+  Plane gray(image.width, image.height);
+  std::transform(image.pixels.begin(), image.pixels.end(), gray.values.begin(),
+                 [](const Rgb& pixel) { return xyz_over_white(pixel).y; });
+  return gray;
+}
+
+Plane length(const Plane& x, const Plane& y) {
+  Plane out(x.width, x.height);
+  for (std::size_t i = 0; i < out.values.size(); ++i) {
+    out.values[i] = std::sqrt(x.values[i] * x.values[i] + y.values[i] * y.values[i]);
+  }
+  return out;
+}
+
+// Equations 10 and 11: first and second derivatives of a Gaussian.
+Features features_of(const Image& image, double pixels_per_degree) {
+  const double deviation = 0.5 * kFeatureWidth * pixels_per_degree;
+  const int radius = static_cast<int>(std::ceil(3 * deviation));
+  const Kernel across = gaussian(deviation, radius);
+  Kernel edge = across;
+  Kernel point = across;
+  for (int x = -radius; x <= radius; ++x) {
+    const auto i = static_cast<std::size_t>(x + radius);
+    edge[i] *= -x;
+    point[i] *= x * x / (deviation * deviation) - 1;
+  }
+  edge = balanced(edge, sum(across));
+  point = balanced(point, sum(across));
+  const Plane gray = gray_of(image);
+  return {length(filtered(gray, edge, across), filtered(gray, across, edge)),
+          length(filtered(gray, point, across), filtered(gray, across, point))};
+}
+
+}  // namespace
+
+Plane flip_features(const Image& image, const Image& reference, double pixels_per_degree) {
+  const Features a = features_of(image, pixels_per_degree);
+  const Features b = features_of(reference, pixels_per_degree);
+  Plane out(image.width, image.height);
+  for (std::size_t i = 0; i < out.values.size(); ++i) {
+    const double edges = std::abs(a.edges.values[i] - b.edges.values[i]);
+    const double points = std::abs(a.points.values[i] - b.points.values[i]);
+    out.values[i] = pow(std::min(std::max(edges, points) / std::sqrt(2.0), 1.0), kExponent);
+  }
+  return out;
+}
+
+}  // namespace bandsaw

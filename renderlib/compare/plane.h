@@ -1,0 +1,37 @@
+#pragma once
+
+// One channel of a picture, for filters.
+
+#include <cstdint>
+#include <vector>
+
+#include "renderlib/image/image.h"
+
+namespace bandsaw {
+
+struct Plane {
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::vector<double> values;  ///< width x height, rows from the top
+
+  Plane() = default;
+  Plane(std::uint32_t w, std::uint32_t h)
+      : width(w), height(h), values(static_cast<std::size_t>(w) * h) {}
+};
+
+/// Of all values; the plane MUST NOT be empty.
+double mean(const Plane& plane);
+
+/// Weights of -radius ... radius.
+using Kernel = std::vector<double>;
+
+/// exp(-(x / deviation)^2 / 2) for |x| <= radius, not normalised.
+Kernel gaussian(double deviation, int radius);
+
+double sum(const Kernel& kernel);
+
+/// The plane filtered along x by one kernel and along y by another; beyond an edge, the edge.
+/// Kernels have an odd size.
+Plane filtered(const Plane& plane, const Kernel& along_x, const Kernel& along_y);
+
+}  // namespace bandsaw

@@ -1,0 +1,14 @@
+#pragma once
+
+// Structural similarity: Wang et al. 2004, "Image Quality Assessment: From Error Visibility to
+// Structural Similarity", IEEE TIP 13(4), section III.
+
+#include "renderlib/image/image.h"
+
+namespace bandsaw {
+
+/// The mean over all pixels, of the sRGB-coded luminance in [0, 1], with a Gaussian window of
+/// deviation 1.5 and radius 5; 1 for equal images, at least -1. The images MUST be of one size.
+double ssim(const Image& image, const Image& reference);
+
+}  // namespace bandsaw

@@ -1,0 +1,71 @@
+#include "renderlib/compare/bias.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/unit/compare/pictures.h"
+
+namespace bandsaw::test {
+namespace {
+
+constexpr std::uint64_t kSeed = 20;
+
+Image noisy(const Image& image, float strength, std::uint64_t seed) {
+  Random random(seed);
+  Image out = image;
+  for (Rgb& pixel : out.pixels) {
+    pixel += gray(strength * static_cast<float>(random.uniform() - 0.5));
+  }
+  return out;
+}
+
+TEST(Bias, NoiseAloneIsNone) {
+  const BiasTest test = test_bias(noisy(waves(128, 96), 0.1F, kSeed), waves(128, 96));
+  EXPECT_EQ(test.blocks, 48u);
+  EXPECT_LT(std::abs(test.t), 4);
+  EXPECT_EQ(test.suspicious_blocks, 0u);
+}
+
+// A thousandth of the light missing everywhere is far below the noise of any pixel.
+TEST(Bias, AHundredthOfTheNoiseIsFound) {
+  Image darker = noisy(waves(512, 512), 0.1F, kSeed);
+  for (Rgb& pixel : darker.pixels) {
+    pixel += gray(-0.001F);
+  }
+  const BiasTest test = test_bias(darker, waves(512, 512));
+  EXPECT_LT(test.t, -8);
+  EXPECT_NEAR(test.relative_bias, -0.002, 0.0005);
+}
+
+TEST(Bias, OneBadBlockIsFound) {
+  Image bad = noisy(waves(128, 96), 0.1F, kSeed);
+  for (std::uint32_t y = 32; y < 48; ++y) {
+    for (std::uint32_t x = 64; x < 80; ++x) {
+      bad.pixels[std::size_t{y} * 128 + x] += gray(0.02F);
+    }
+  }
+  const BiasTest test = test_bias(bad, waves(128, 96));
+  EXPECT_EQ(test.suspicious_blocks, 1u);
+  EXPECT_EQ(test.worst_x, 64u);
+  EXPECT_EQ(test.worst_y, 32u);
+  EXPECT_GT(test.worst_t, 5);
+}
+
+// The level that the header states: once in a hundred images of independent noise.
+TEST(Bias, FalseAlarmsAreAsRareAsStated) {
+  int alarms = 0;
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    const Image image = uniform(64, 64, 0.5F);
+    alarms += test_bias(noisy(image, 0.1F, seed), image).suspicious_blocks > 0 ? 1 : 0;
+  }
+  EXPECT_LE(alarms, 12);  // 4 expected; more than 12 has a probability below 1e-3
+}
+
+TEST(Bias, EqualImagesAndTinyOnes) {
+  EXPECT_EQ(test_bias(waves(20, 20), waves(20, 20)).t, 0);
+  EXPECT_EQ(test_bias(uniform(2, 2, 1), uniform(2, 2, 0)).blocks, 0u);
+}
+
+}  // namespace
+}  // namespace bandsaw::test

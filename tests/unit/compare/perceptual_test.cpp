@@ -1,0 +1,131 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "renderlib/compare/false_color.h"
+#include "renderlib/compare/flip.h"
+#include "renderlib/compare/flip_parts.h"
+#include "renderlib/compare/perceived.h"
+#include "renderlib/compare/ssim.h"
+#include "tests/unit/compare/pictures.h"
+
+namespace bandsaw::test {
+namespace {
+
+void expect_near(const Vec3& a, const Vec3& b, double tolerance) {
+  EXPECT_NEAR(a.x, b.x, tolerance);
+  EXPECT_NEAR(a.y, b.y, tolerance);
+  EXPECT_NEAR(a.z, b.z, tolerance);
+}
+
+// Published values of sRGB's primaries.
+TEST(Perceived, LabOfThePrimaries) {
+  expect_near(lab(xyz_over_white({1, 1, 1})), {100, 0, 0}, 1e-9);
+  expect_near(lab(xyz_over_white({1, 0, 0})), {53.24, 80.09, 67.20}, 0.05);
+  expect_near(lab(xyz_over_white({0, 1, 0})), {87.74, -86.18, 83.18}, 0.05);
+  expect_near(lab(xyz_over_white({0, 0, 1})), {32.30, 79.19, -107.86}, 0.05);
+}
+
+TEST(Perceived, ThereAndBack) {
+  const Rgb color{0.1F, 0.7F, 0.4F};
+  expect_near(linear_of(xyz_of_opponents(opponents(xyz_over_white(color)))),
+              {color.r, color.g, color.b}, 1e-12);
+}
+
+TEST(Flip, EqualImagesDoNotDiffer) {
+  EXPECT_EQ(mean(flip(waves(40, 30), waves(40, 30))), 0);
+  EXPECT_EQ(mean(hdr_flip(waves(40, 30), waves(40, 30))), 0);
+}
+
+// No features: equations 7 to 9 of the paper by hand. Black against white: HyAB 100; the largest
+// distance, green against blue, is 203.3.
+TEST(Flip, BlackAgainstWhiteInClosedForm) {
+  const double largest = std::pow(203.31, 0.7);
+  const double expected = 0.95 + 0.05 * (std::pow(100, 0.7) - 0.4 * largest) / (0.6 * largest);
+  const Plane error = flip(uniform(30, 30, 0), uniform(30, 30, 1));
+  for (const double value : error.values) {
+    EXPECT_NEAR(value, expected, 1e-4);
+  }
+  EXPECT_NEAR(expected, 0.9674, 1e-4);
+}
+
+TEST(Flip, GreenAgainstBlueIsTheMost) {
+  const Image green = uniform(30, 30, Rgb{0, 1, 0});
+  EXPECT_NEAR(mean(flip(green, uniform(30, 30, Rgb{0, 0, 1}))), 1, 1e-9);
+}
+
+TEST(Flip, IsSymmetricAndGrowsWithTheDifference) {
+  const Image a = waves(40, 30);
+  Image b = a;
+  double last = 0;
+  for (const float shift : {0.01F, 0.05F, 0.2F}) {
+    for (std::size_t i = 0; i < b.pixels.size(); ++i) {
+      b.pixels[i] = a.pixels[i] + gray(shift);
+    }
+    const double error = mean(flip(b, a));
+    EXPECT_NEAR(error, mean(flip(a, b)), 1e-12);
+    EXPECT_GT(error, last);
+    last = error;
+  }
+}
+
+// A step answers with its height, equations 11 and 12, and raises the error beside it, where
+// colours differ no more than elsewhere.
+TEST(Flip, AMissingEdgeCountsMoreThanItsColour) {
+  Image edge = uniform(60, 60, 0.3F);
+  for (std::size_t i = 0; i < edge.pixels.size(); ++i) {
+    edge.pixels[i] = i % 60 < 30 ? gray(0.3F) : gray(0.5F);
+  }
+  const Image flat = uniform(60, 60, 0.4F);
+  EXPECT_NEAR(flip_features(edge, flat, kPixelsPerDegree).values[30 * 60 + 30],
+              std::sqrt(0.2 / std::sqrt(2.0)), 1e-6);
+  const Plane error = flip(edge, flat);
+  EXPECT_GT(error.values[30 * 60 + 34], 1.1 * error.values[30 * 60 + 50]);
+}
+
+// A difference in a highlight is invisible at one exposure and seen at another.
+TEST(Flip, HighDynamicRangeSeesHighlights) {
+  Image a = uniform(40, 40, 0.1F);
+  Image b = a;
+  for (std::size_t i = 0; i < 400; ++i) {
+    a.pixels[i] = gray(50);
+    b.pixels[i] = gray(5);
+  }
+  EXPECT_LT(mean(flip(a, b)), 1e-9);
+  EXPECT_GT(mean(hdr_flip(a, b)), 0.05);
+  EXPECT_TRUE(beyond_screen(a));
+  EXPECT_FALSE(beyond_screen(uniform(2, 2, 1)));
+}
+
+TEST(Ssim, UniformImagesInClosedForm) {
+  const double a = coded(0.2F);
+  const double b = coded(0.6F);
+  EXPECT_NEAR(ssim(uniform(20, 20, 0.2F), uniform(20, 20, 0.6F)),
+              (2 * a * b + 1e-4) / (a * a + b * b + 1e-4), 1e-7);
+}
+
+TEST(Ssim, EqualIsOneAndInvertedIsBelowZero) {
+  const Image a = waves(40, 30);
+  EXPECT_NEAR(ssim(a, a), 1, 1e-12);
+  Image inverted = a;
+  for (Rgb& pixel : inverted.pixels) {
+    pixel = gray(1 - pixel.r);
+  }
+  EXPECT_LT(ssim(a, inverted), 0);
+}
+
+TEST(FalseColor, LightGrowsFromBlackToNearlyWhite) {
+  Plane ramp(101, 1);
+  for (int i = 0; i <= 100; ++i) {
+    ramp.values[static_cast<std::size_t>(i)] = i / 100.0;
+  }
+  const Image image = false_color(ramp);
+  EXPECT_EQ(image.pixels[0], gray(0));
+  EXPECT_GT(luminance(image.pixels[100]), 0.9F);
+  for (std::size_t i = 1; i < 101; ++i) {
+    EXPECT_GT(luminance(image.pixels[i]), luminance(image.pixels[i - 1])) << i;
+  }
+}
+
+}  // namespace
+}  // namespace bandsaw::test
