@@ -10,14 +10,16 @@ namespace {
 std::array<float, 256> make_table() {
   std::array<float, 256> table{};
   for (int code = 0; code < 256; ++code) {
-    const double v = code / 255.0;
-    const double linear = v <= 0.04045 ? v / 12.92 : bandsaw::pow((v + 0.055) / 1.055, 2.4);
-    table[static_cast<std::size_t>(code)] = static_cast<float>(linear);
+    table[static_cast<std::size_t>(code)] = static_cast<float>(srgb_decode(code / 255.0));
   }
   return table;
 }
 
 }  // namespace
+
+double srgb_decode(double v) {
+  return v <= 0.04045 ? v / 12.92 : bandsaw::pow((v + 0.055) / 1.055, 2.4);
+}
 
 const std::array<float, 256>& srgb_table() {
   static const std::array<float, 256> table = make_table();

@@ -10,6 +10,9 @@ namespace bandsaw {
 /// The linear value of each code.
 const std::array<float, 256>& srgb_table();
 
+/// The linear value of v in [0, 1].
+double srgb_decode(double v);
+
 /// The code of a linear value: round(255 f(x)). Below 0 and NaN: 0; above 1: 255. Gives back every
 /// code of srgb_table().
 std::uint8_t srgb_encode(float linear);

@@ -148,7 +148,7 @@ absl::StatusOr<ImageTexture> decode_image(absl::string_view bytes,
     return decode_radiance(bytes);
   }
   if (shape.channels == 2 || shape.channels == 4) {
-    warnings.emplace_back("its alpha channel is left out");
+    warnings.emplace_back(kAlphaWarning);
   }
   if (stbi_is_16_bit_from_memory(data_of(bytes), size) != 0) {
     warnings.emplace_back("its 16 bits a channel are read as 8");
@@ -186,6 +186,13 @@ absl::StatusOr<ImageTexture> decode_alpha(absl::string_view bytes) {
   alpha.channels = 1;
   alpha.texels = std::move(texels);
   return alpha;
+}
+
+bool image_has_alpha(absl::string_view bytes) {
+  const auto shape = bytes.size() < kMaxImageFileBytes && !is_exr(bytes)
+                         ? shape_of(bytes)
+                         : absl::InvalidArgumentError("");
+  return shape.ok() && (shape->channels == 2 || shape->channels == 4);
 }
 
 absl::StatusOr<Image> decode_picture(absl::string_view bytes) {

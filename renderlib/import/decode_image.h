@@ -15,6 +15,9 @@ namespace bandsaw {
 /// Largest image file that is read.
 inline constexpr std::uint64_t kMaxImageFileBytes = std::uint64_t{2} << 30;
 
+/// The warning about an image with an alpha channel.
+inline constexpr char kAlphaWarning[] = "its alpha channel is left out";
+
 /// What becomes of an image of one channel.
 enum class Gray { kExpanded, kKept };
 
@@ -28,6 +31,9 @@ absl::StatusOr<ImageTexture> decode_image(absl::string_view bytes,
 
 /// The alpha of an 8-bit image as a linear one of one channel; all 255 where it has none.
 absl::StatusOr<ImageTexture> decode_alpha(absl::string_view bytes);
+
+/// Whether the file has an alpha channel; not of one that cannot be read.
+bool image_has_alpha(absl::string_view bytes);
 
 /// The same as a linear picture; PFM too.
 absl::StatusOr<Image> decode_picture(absl::string_view bytes);

@@ -94,10 +94,10 @@ absl::Status read_any(const std::string& path, SceneDraft& draft) {
   if (is_model_file(path)) {
     return read_model_alone(path, draft);
   }
-  return absl::InvalidArgumentError(
-      absl::StrCat(draft.file,
-                   ": is of a kind that is not read; a scene is .textproto or .json, a "
-                   "model .gltf, .glb or .obj"));
+  return absl::InvalidArgumentError(absl::StrCat(
+      draft.file,
+      ": is of a kind that is not read; a scene is .textproto or .json, a "
+      "model .gltf, .glb, .obj, .fbx, .dae, .3ds, .ply, .stl or another format of Assimp"));
 }
 
 }  // namespace

@@ -50,6 +50,7 @@ void drop_unused_vertices(Mesh& mesh) {
   keep(mesh.normals, kept);
   keep(mesh.uvs, kept);
   keep(mesh.uvs2, kept);
+  keep(mesh.colors, kept);
   for (auto& triangle : mesh.triangles) {
     for (std::uint32_t& corner : triangle) {
       corner = renamed[corner];

@@ -1,11 +1,13 @@
 #include "renderlib/import/model.h"
 
+#include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
 
 #include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <set>
 
@@ -15,6 +17,8 @@
 #include "absl/strings/strip.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/import/assimp_files.h"
+#include "renderlib/import/gltf_extensions.h"
+#include "renderlib/import/model_file.h"
 #include "renderlib/import/model_material.h"
 #include "renderlib/import/model_mesh.h"
 #include "renderlib/import/model_nodes.h"
@@ -46,22 +50,62 @@ void warn_of_missing(const std::string& name, RefusedFiles refused, SceneDraft& 
   }
 }
 
-void warn_of_unused(const std::string& name, const aiScene& scene, SceneDraft& draft) {
-  const auto warn = [&](unsigned count, absl::string_view what) {
+void warn_of_unused(ModelFile& file) {
+  const auto warn = [&](std::size_t count, absl::string_view what) {
     if (count > 0) {
-      draft.out.info.warnings.push_back(absl::StrCat(name, ": ", count, " ", what, " left out"));
+      file.warn(absl::StrCat(count, " ", what, " left out"));
     }
   };
-  const auto count_meshes = [&](auto has) {
-    return static_cast<unsigned>(
-        std::count_if(scene.mMeshes, scene.mMeshes + scene.mNumMeshes, has));
+  warn(file.scene.mNumAnimations, "animations (the rest pose is shown) are");
+  warn(file.scene.mNumLights, "lights are");
+  warn(file.gltf.scenes > 1 ? file.gltf.scenes - 1 : 0, "scenes beside the default one are");
+  for (const std::string& extension : file.gltf.ignored) {
+    file.warn(absl::StrCat("the extension ", extension, " is left out"));
+  }
+}
+
+ModelKind kind_of(const std::string& path) {
+  const std::string lower = absl::AsciiStrToLower(path);
+  const auto is = [&](absl::string_view suffix) { return absl::EndsWith(lower, suffix); };
+  return is(".gltf") || is(".glb")                ? ModelKind::kGltf
+         : is(".obj")                             ? ModelKind::kObj
+         : is(".ply") || is(".stl") || is(".off") ? ModelKind::kPlain
+                                                  : ModelKind::kOther;
+}
+
+// FBX files name the axes that point up, to the viewer and to the right; Assimp 5.2 does not turn
+// the scene by them. glTF's are +y, +z and +x, as ours.
+Transform upright(const aiScene& scene) {
+  struct Axis {
+    const char* name;
+    const char* sign;
   };
-  warn(scene.mNumAnimations, "animations are");
-  warn(scene.mNumLights, "lights are");
-  warn(count_meshes([](const aiMesh* mesh) { return mesh->HasBones(); }),
-       "meshes have bones, which are");
-  warn(count_meshes([](const aiMesh* mesh) { return mesh->HasVertexColors(0); }),
-       "meshes have vertex colours, which are");
+  constexpr Axis kAxes[] = {
+      {"CoordAxis", "CoordAxisSign"}, {"UpAxis", "UpAxisSign"}, {"FrontAxis", "FrontAxisSign"}};
+  Transform turned;
+  turned.m = {};
+  for (std::size_t row = 0; row < 3; ++row) {
+    std::int32_t axis = -1;
+    std::int32_t sign = 1;
+    if (scene.mMetaData == nullptr || !scene.mMetaData->Get(kAxes[row].name, axis) || axis < 0 ||
+        axis > 2) {
+      return {};
+    }
+    scene.mMetaData->Get(kAxes[row].sign, sign);
+    turned.m[row][static_cast<std::size_t>(axis)] = sign < 0 ? -1 : 1;
+  }
+  return determinant(turned) == 1 ? turned : Transform{};
+}
+
+void turn(const Transform& by, Model& model) {
+  for (Instance& instance : model.instances) {
+    instance.to_world = by * instance.to_world;
+  }
+  if (model.camera) {
+    model.camera->position = by.point(model.camera->position);
+    model.camera->look_at = by.point(model.camera->look_at);
+    model.camera->up = by.direction(model.camera->up);
+  }
 }
 
 std::set<unsigned> used_materials(const aiScene& scene) {
@@ -77,9 +121,11 @@ std::set<unsigned> used_materials(const aiScene& scene) {
 }  // namespace
 
 bool is_model_file(const std::string& path) {
-  const std::string lower = absl::AsciiStrToLower(path);
-  return absl::EndsWith(lower, ".gltf") || absl::EndsWith(lower, ".glb") ||
-         absl::EndsWith(lower, ".obj");
+  const std::size_t dot = path.rfind('.');
+  if (dot == std::string::npos || path.find('/', dot) != std::string::npos) {
+    return false;
+  }
+  return Assimp::Importer().IsExtensionSupported(absl::AsciiStrToLower(path.substr(dot)));
 }
 
 absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, SceneDraft& draft) {
@@ -88,33 +134,41 @@ absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, S
   RefusedFiles refused;
   Assimp::Importer importer;
   importer.SetIOHandler(std::make_unique<AssimpFiles>(draft.folder, path, refused).release());
+  // No meshes that stand for the bones of files without any.
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   // Nothing that alters geometry: faces become triangles, that is all.
   const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate);
   if (scene == nullptr || scene->mRootNode == nullptr || !refused.outside.empty()) {
     return read_failure(name, refused, importer.GetErrorString());
   }
+  ModelFile file{*scene, path, kind_of(path), {}, draft};
+  if (file.kind == ModelKind::kGltf) {
+    file.gltf = read_gltf_extensions(path);
+  }
   warn_of_missing(name, refused, draft);
-  warn_of_unused(name, *scene, draft);
+  warn_of_unused(file);
 
   std::vector<ModelMaterial> materials(scene->mNumMaterials);
   if (with_materials) {
     // Assimp adds a material of its own, and files hold more than they use; what is not used is not
     // read.
     for (const unsigned used : used_materials(*scene)) {
-      ASSIGN_OR_RETURN(materials[used], read_model_material(*scene, used, path, draft));
+      ASSIGN_OR_RETURN(materials[used], read_model_material(file, used));
     }
+    file.left_out.tell(name, draft.out.info.warnings);
   } else {
     // The scene's own material may use either.
     std::fill(materials.begin(), materials.end(), ModelMaterial{.second_uv_set = 1});
   }
-  ASSIGN_OR_RETURN(const ModelMeshes meshes, add_meshes(*scene, materials, name, draft));
-  ASSIGN_OR_RETURN(Model model, read_nodes(*scene, meshes, name, draft.out.info.warnings));
+  ASSIGN_OR_RETURN(const ModelMeshes meshes, add_meshes(file, materials, with_materials));
+  ASSIGN_OR_RETURN(Model model, read_nodes(file, meshes));
   if (model.instances.empty()) {
     const auto& warnings = draft.out.info.warnings;
     return absl::InvalidArgumentError(
         absl::StrCat(name, ": holds no triangle that can be rendered",
                      warnings.size() > warnings_before ? "; " + warnings.back() : ""));
   }
+  turn(upright(*scene), model);
   return model;
 }
 

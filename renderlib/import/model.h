@@ -1,6 +1,6 @@
 #pragma once
 
-// Model files (glTF, GLB, OBJ), read by Assimp, as meshes, materials and placements of the scene.
+// Model files, of every format that Assimp reads, as meshes, materials and placements of the scene.
 
 #include <optional>
 #include <string>
@@ -20,7 +20,8 @@ struct Model {
   std::optional<PerspectiveCamera> camera;
 };
 
-/// Whether the suffix is that of a model that is read: .gltf, .glb, .obj.
+/// Whether the suffix is that of a model that is read: .gltf, .glb, .obj, .fbx, .dae, .3ds, .ply,
+/// .stl and whatever else Assimp knows.
 bool is_model_file(const std::string& path);
 
 /// `path` is real and below the draft's folder. Without `with_materials` no texture is read, and

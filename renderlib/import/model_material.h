@@ -1,13 +1,12 @@
 #pragma once
 
-#include <string>
-
 #include "absl/status/statusor.h"
-#include "renderlib/import/scene_draft.h"
-
-struct aiScene;
+#include "renderlib/base/ids.h"
 
 namespace bandsaw {
+
+struct ModelFile;
+class MaterialReader;
 
 inline constexpr unsigned kNoUvSet = ~0u;
 
@@ -19,10 +18,13 @@ struct ModelMaterial {
   unsigned second_uv_set = kNoUvSet;
 };
 
-/// Base colour or Kd with its texture, as Diffuse; Emissive where the material shines by a plain
-/// colour and has no texture. NOT_FOUND, PERMISSION_DENIED, INVALID_ARGUMENT: a texture, with the
-/// model's and the material's name.
-absl::StatusOr<ModelMaterial> read_model_material(const aiScene& scene, unsigned index,
-                                                  const std::string& model_path, SceneDraft& draft);
+/// Metallic-roughness materials, glTF's among them, become Principled; the older kinds become
+/// Diffuse, Emissive or Principled (model_classic.cpp). NOT_FOUND, PERMISSION_DENIED,
+/// INVALID_ARGUMENT: a texture, with the model's and the material's name.
+absl::StatusOr<ModelMaterial> read_model_material(ModelFile& file, unsigned index);
+
+/// The two kinds, for read_model_material.
+absl::StatusOr<ModelMaterial> read_metallic_roughness(MaterialReader& reader);
+absl::StatusOr<ModelMaterial> read_classic(MaterialReader& reader);
 
 }  // namespace bandsaw

@@ -4,7 +4,9 @@
 
 #include <cmath>
 #include <map>
+#include <set>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "renderlib/math/constants.h"
 #include "renderlib/math/elementary.h"
@@ -14,38 +16,45 @@ namespace {
 
 constexpr std::size_t kMostInstances = 1'000'000;
 
-Transform transform_of(const aiMatrix4x4& m) {
-  return {{{{m.a1, m.a2, m.a3, m.a4}, {m.b1, m.b2, m.b3, m.b4}, {m.c1, m.c2, m.c3, m.c4}}}};
-}
-
 Vec3 vector_of(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
-// Assimp keeps "half the horizontal angle times two" in radians, except that its glTF reader stores
-// the vertical angle times the aspect ratio, and the vertical angle itself where the file gives no
-// ratio. Models that are read here with a camera are glTF.
-double vertical_fov_degrees(const aiCamera& camera) {
+// Assimp's glTF reader keeps the vertical angle times the aspect ratio, and the vertical angle
+// itself where the file gives no ratio; those of other formats the horizontal angle.
+double vertical_fov_degrees(const aiCamera& camera, bool gltf) {
   const double aspect = camera.mAspect > 0 ? camera.mAspect : 1;
-  return camera.mHorizontalFOV / aspect * 180 / kPi;
+  if (gltf) {
+    return camera.mHorizontalFOV / aspect * 180 / kPi;
+  }
+  const SinCos half = sincos_turns(camera.mHorizontalFOV / (4 * kPi));
+  return atan2(half.sin, half.cos * aspect) * 360 / kPi;
 }
 
-std::optional<PerspectiveCamera> camera_of(const aiCamera& camera, const Transform& node) {
+std::optional<PerspectiveCamera> camera_of(const aiCamera& camera, const Transform& node,
+                                           bool gltf) {
   PerspectiveCamera out;
-  // Assimp 5.2 copies the node's translation into the camera of a glTF file, whose cameras stand at
-  // their node's origin.
+  // Assimp 5.2 copies the node's translation into the camera of some files; cameras stand at their
+  // node's origin.
   out.position = node.point({0, 0, 0});
   const Vec3 forward = node.direction(vector_of(camera.mLookAt));
   out.look_at = out.position + forward;
   out.up = node.direction(vector_of(camera.mUp));
-  out.vertical_fov = vertical_fov_degrees(camera);
+  out.vertical_fov = vertical_fov_degrees(camera, gltf);
   const bool orthographic = camera.mOrthographicWidth > 0;
   return !orthographic && validate(Camera(out)).ok() ? std::optional(out) : std::nullopt;
+}
+
+// Those of 3DS files and the like look at a target that Assimp does not pass on.
+bool has_usable_cameras(const ModelFile& file) {
+  return file.kind != ModelKind::kOther || absl::EndsWithIgnoreCase(file.path, ".dae") ||
+         absl::EndsWithIgnoreCase(file.path, ".fbx");
 }
 
 // The tree is walked with a stack of its own: its depth comes from the file.
 class Walk {
  public:
-  Walk(const aiScene& scene, const ModelMeshes& meshes) : meshes_(meshes) {
-    for (unsigned i = 0; i < scene.mNumCameras; ++i) {
+  Walk(const ModelFile& file, const ModelMeshes& meshes) : file_(file), meshes_(meshes) {
+    const aiScene& scene = file.scene;
+    for (unsigned i = 0; has_usable_cameras(file) && i < scene.mNumCameras; ++i) {
       cameras_.emplace(scene.mCameras[i]->mName.C_Str(), scene.mCameras[i]);
     }
     stack_.push_back({scene.mRootNode, Transform{}});
@@ -75,6 +84,13 @@ class Walk {
       if (number >= meshes_.size() || !meshes_[number]) {
         continue;
       }
+      if (meshes_[number]->skinned) {
+        if (skinned_.insert(number).second) {
+          model.instances.push_back(
+              {meshes_[number]->mesh, meshes_[number]->material, Transform{}});
+        }
+        continue;
+      }
       if (!regular) {
         ++flattened;
         continue;
@@ -83,7 +99,7 @@ class Walk {
     }
     if (const auto found = cameras_.find(node.mName.C_Str());
         found != cameras_.end() && !model.camera) {
-      model.camera = camera_of(*found->second, to_model);
+      model.camera = camera_of(*found->second, to_model, file_.kind == ModelKind::kGltf);
     }
     // Backwards, so that children are visited in the order of the file.
     for (unsigned i = node.mNumChildren; i-- > 0;) {
@@ -91,25 +107,32 @@ class Walk {
     }
   }
 
+  const ModelFile& file_;
   const ModelMeshes& meshes_;
   std::map<std::string, const aiCamera*> cameras_;
   std::vector<Entry> stack_;
+  std::set<unsigned> skinned_;  ///< those that are placed: their bones place them, not their nodes
 };
 
 }  // namespace
 
-absl::StatusOr<Model> read_nodes(const aiScene& scene, const ModelMeshes& meshes,
-                                 const std::string& model_name,
-                                 std::vector<std::string>& warnings) {
-  Walk walk(scene, meshes);
+Transform transform_of(const aiMatrix4x4& m) {
+  return {{{{m.a1, m.a2, m.a3, m.a4}, {m.b1, m.b2, m.b3, m.b4}, {m.c1, m.c2, m.c3, m.c4}}}};
+}
+
+absl::StatusOr<Model> read_nodes(ModelFile& file, const ModelMeshes& meshes) {
+  Walk walk(file, meshes);
   walk.run();
   if (walk.model.instances.size() > kMostInstances) {
     return absl::ResourceExhaustedError(
-        absl::StrCat(model_name, ": has more than ", kMostInstances, " placements of meshes"));
+        absl::StrCat(file.name(), ": has more than ", kMostInstances, " placements of meshes"));
   }
   if (walk.flattened > 0) {
-    warnings.push_back(absl::StrCat(model_name, ": ", walk.flattened,
-                                    " placements are left out: their transform flattens them"));
+    file.warn(
+        absl::StrCat(walk.flattened, " placements are left out: their transform flattens them"));
+  }
+  if (file.scene.mNumCameras > 0 && !has_usable_cameras(file)) {
+    file.warn(absl::StrCat(file.scene.mNumCameras, " cameras are left out"));
   }
   return std::move(walk.model);
 }

@@ -1,5 +1,6 @@
 #include "renderlib/import/read_materials.h"
 
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -31,6 +32,50 @@ absl::StatusOr<TextureId> read_reflectance(const Field& in, const From& from, fl
   return draft.textures.constant(gray(otherwise));
 }
 
+// The texture of a number, where it is given.
+absl::StatusOr<std::optional<TextureId>> read_map(const Field& in, const std::string& name,
+                                                  bool given, const scene::Texture& from,
+                                                  SceneDraft& draft) {
+  if (!given) {
+    return std::optional<TextureId>();
+  }
+  ASSIGN_OR_RETURN(const TextureId id, read_texture(in.child(name), from, kMostReflectance, draft));
+  return std::optional(id);
+}
+
+absl::StatusOr<Material> read_metal(const Field& in, const scene::Metal& from, SceneDraft& draft) {
+  Metal metal;
+  ASSIGN_OR_RETURN(metal.reflectance, read_reflectance(in, from, 1, draft));
+  ASSIGN_OR_RETURN(metal.fuzz_map, read_map(in, "fuzz_texture", from.has_fuzz_texture(),
+                                            from.fuzz_texture(), draft));
+  metal.fuzz = from.has_fuzz() ? from.fuzz() : metal.fuzz_map ? 1 : 0;
+  RETURN_IF_ERROR(check_range(in, "fuzz", metal.fuzz, 0, 1));
+  return metal;
+}
+
+absl::StatusOr<Material> read_dielectric(const Field& in, const scene::Dielectric& from,
+                                         SceneDraft& draft) {
+  Dielectric glass;
+  if (from.has_index_of_refraction()) {
+    glass.index_of_refraction = from.index_of_refraction();
+  }
+  RETURN_IF_ERROR(check_range(in, "index_of_refraction", glass.index_of_refraction, 1, 5));
+  ASSIGN_OR_RETURN(glass.roughness_map,
+                   read_map(in, "roughness_texture", from.has_roughness_texture(),
+                            from.roughness_texture(), draft));
+  glass.roughness = from.has_roughness() ? from.roughness() : glass.roughness_map ? 1 : 0;
+  RETURN_IF_ERROR(check_range(in, "roughness", glass.roughness, 0, 1));
+  glass.priority = from.priority();
+  ASSIGN_OR_RETURN(glass.index_map, read_map(in, "index_of_refraction_texture",
+                                             from.has_index_of_refraction_texture(),
+                                             from.index_of_refraction_texture(), draft));
+  if (glass.index_map && glass.priority > 0) {
+    return in.error("index_of_refraction_texture",
+                    "a glass with a priority has one index of refraction; leave one of them out");
+  }
+  return glass;
+}
+
 absl::StatusOr<Material> read_emissive(const Field& in, const scene::Emissive& from,
                                        SceneDraft& draft) {
   if (from.has_texture() && from.has_radiance()) {
@@ -57,24 +102,10 @@ absl::StatusOr<Material> read_material(const Field& in, const scene::Material& f
                        read_reflectance(in.child("diffuse"), from.diffuse(), 0.5f, draft));
       return Diffuse{id};
     }
-    case scene::Material::kMetal: {
-      const Field metal = in.child("metal");
-      RETURN_IF_ERROR(check_range(metal, "fuzz", from.metal().fuzz(), 0, 1));
-      ASSIGN_OR_RETURN(const TextureId id, read_reflectance(metal, from.metal(), 1, draft));
-      return Metal{id, from.metal().fuzz()};
-    }
-    case scene::Material::kDielectric: {
-      Dielectric glass;
-      if (from.dielectric().has_index_of_refraction()) {
-        glass.index_of_refraction = from.dielectric().index_of_refraction();
-      }
-      RETURN_IF_ERROR(check_range(in.child("dielectric"), "index_of_refraction",
-                                  glass.index_of_refraction, 1, 5));
-      glass.roughness = from.dielectric().roughness();
-      RETURN_IF_ERROR(check_range(in.child("dielectric"), "roughness", glass.roughness, 0, 1));
-      glass.priority = from.dielectric().priority();
-      return glass;
-    }
+    case scene::Material::kMetal:
+      return read_metal(in.child("metal"), from.metal(), draft);
+    case scene::Material::kDielectric:
+      return read_dielectric(in.child("dielectric"), from.dielectric(), draft);
     case scene::Material::kGltf:
       return read_gltf(in.child("gltf"), from.gltf(), draft);
     case scene::Material::kEmissive:

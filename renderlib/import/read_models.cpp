@@ -67,7 +67,8 @@ absl::StatusOr<Model> read_file(const Field& in, const scene::Model& from, Scene
   }
   if (!is_model_file(*path)) {
     return in.error("file", absl::StrCat("\"", from.file(),
-                                         "\" is not a model that is read: .gltf, .glb, .obj"));
+                                         "\" is not a model that is read: .gltf, .glb, .obj, "
+                                         ".fbx, .dae, .3ds, .ply, .stl …"));
   }
   auto model = read_model(*path, from.material().empty(), draft);
   if (!model.ok()) {

@@ -74,6 +74,23 @@ absl::StatusOr<std::string> SceneFolder::resolve(const std::string& name,
   return real.string();
 }
 
+absl::StatusOr<std::string> SceneFolder::resolve_any_case(const std::string& name,
+                                                          const std::string& folder) const {
+  auto exact = resolve(name, folder);
+  if (exact.ok() || name.find('/') != std::string::npos) {
+    return exact;
+  }
+  std::string found;
+  std::error_code error;
+  for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
+    const std::string other = at->path().filename().string();
+    if (absl::EqualsIgnoreCase(other, name) && (found.empty() || other < found)) {
+      found = other;
+    }
+  }
+  return found.empty() ? std::move(exact) : resolve(found, folder);
+}
+
 absl::StatusOr<std::string> read_whole_file(const std::string& path, std::uint64_t most_bytes) {
   const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   if (fd < 0) {

@@ -21,6 +21,11 @@ class SceneFolder {
   /// NOT_FOUND: there is no such file.
   absl::StatusOr<std::string> resolve(const std::string& name, const std::string& folder) const;
 
+  /// The same, where `name` lies in `folder` itself; letters of either case count as equal. Of
+  /// several, the first in the order of their bytes.
+  absl::StatusOr<std::string> resolve_any_case(const std::string& name,
+                                               const std::string& folder) const;
+
   const std::string& path() const { return path_; }
 
  private:

@@ -81,6 +81,9 @@ absl::StatusOr<TextureId> TextureStore::image(
     return absl::Status(image.status().code(), absl::StrCat(name, ": ", image.status().message()));
   }
   for (const std::string& warning : warnings) {
+    if (use.alpha_is_known && warning == kAlphaWarning) {
+      continue;
+    }
     warnings_.push_back(absl::StrCat(name, ": ", warning));
   }
   image->wrap = use.wrap;

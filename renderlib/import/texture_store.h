@@ -35,6 +35,7 @@ class TextureStore {
     UvSet uv_set = UvSet::kFirst;
     UvTransform uv_transform;
     std::optional<ImageTexture::Wrap> wrap_v = std::nullopt;  ///< where it differs from `wrap`
+    bool alpha_is_known = false;  ///< no warning: the material says what becomes of the alpha
   };
   /// `key` tells images apart, `name` is what errors and warnings call it; `read` is called when it
   /// is not here yet.

@@ -13,10 +13,10 @@ Rgb albedo_at(const Material& material, absl::Span<const Texture> textures,
     return Rgb{std::min(found.r, 1.0f), std::min(found.g, 1.0f), std::min(found.b, 1.0f)};
   };
   if (const auto* diffuse = std::get_if<Diffuse>(&material)) {
-    return value(diffuse->reflectance);
+    return value(diffuse->reflectance, point.color);
   }
   if (const auto* metal = std::get_if<Metal>(&material)) {
-    return value(metal->reflectance);
+    return value(metal->reflectance, point.color);
   }
   if (const auto* emissive = std::get_if<Emissive>(&material)) {
     return value(emissive->radiance);

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "renderlib/material/fresnel.h"
-#include "renderlib/material/look_up.h"
 #include "renderlib/material/ggx.h"
+#include "renderlib/material/look_up.h"
 #include "renderlib/material/shading_normal.h"
 #include "renderlib/math/constants.h"
 #include "renderlib/sampling/basis.h"
@@ -103,22 +103,21 @@ std::optional<BsdfSample> sample_dielectric(const DielectricBsdf& bsdf, double l
   return sample;
 }
 
-Bsdf metal_at(const Metal& metal, const Rgb& reflectance, const SidedNormals& normal,
-              const Vec3& wo) {
+Bsdf metal_at(const Rgb& reflectance, double fuzz, const SidedNormals& normal, const Vec3& wo) {
   const SidedNormals sided = for_mirror(normal, wo);
   const Vec3 mirror = normalize(mirrored(wo, sided.shading));
-  if (metal.fuzz < kLeastFuzz) {
+  if (fuzz < kLeastFuzz) {
     return MirrorBsdf{reflectance, mirror};
   }
-  return FuzzyMetalBsdf{sided, reflectance, mirror, metal.fuzz};
+  return FuzzyMetalBsdf{sided, reflectance, mirror, fuzz};
 }
 
-Bsdf glass_at(const Dielectric& glass, const SidedNormals& normal, bool outside, const Vec3& wo,
-              double outside_index) {
-  const double index =
-      outside_index == 1 ? glass.index_of_refraction : glass.index_of_refraction / outside_index;
-  const double eta = outside ? index : 1 / index;
-  const double alpha = glass.roughness * glass.roughness;
+/// `index` and `roughness` as they are at the point.
+Bsdf glass_at(double index, double roughness, const SidedNormals& normal, bool outside,
+              const Vec3& wo, double outside_index) {
+  const double relative = outside_index == 1 ? index : index / outside_index;
+  const double eta = outside ? relative : 1 / relative;
+  const double alpha = roughness * roughness;
   if (alpha < kLeastAlpha || std::abs(eta - 1) < 1e-6) {
     return DielectricBsdf{for_glass(normal, wo, eta), wo, eta};
   }
@@ -134,18 +133,28 @@ Bsdf bsdf_at(const Material& material, absl::Span<const Texture> textures,
   const SidedNormals normal = outside
                                   ? SidedNormals{point.geometric_normal, point.shading_normal}
                                   : SidedNormals{-point.geometric_normal, -point.shading_normal};
-  const auto color = [&](TextureId id) { return look_up(textures, id, point); };
+  const auto color = [&](TextureId id) {
+    return tinted(look_up(textures, id, point), point.color);
+  };
   return std::visit(
-      Overloaded{
-          [&](const Diffuse& m) -> Bsdf {
-            return DiffuseBsdf{normal, color(m.reflectance)};
-          },
-          [&](const Metal& m) { return metal_at(m, color(m.reflectance), normal, wo); },
-          [&](const Dielectric& m) { return glass_at(m, normal, outside, wo, outside_index); },
-          [&](const Principled& m) -> Bsdf {
-            return principled_at(m, textures, point, normal, wo);
-          },
-          [](const Emissive&) -> Bsdf { return BlackBsdf{}; }},
+      Overloaded{[&](const Diffuse& m) -> Bsdf {
+                   return DiffuseBsdf{normal, color(m.reflectance)};
+                 },
+                 [&](const Metal& m) {
+                   const double fuzz = mapped_number(textures, m.fuzz, m.fuzz_map, point);
+                   return metal_at(color(m.reflectance), fuzz, normal, wo);
+                 },
+                 [&](const Dielectric& m) {
+                   const double index =
+                       mapped_index(textures, m.index_of_refraction, m.index_map, point);
+                   const double roughness =
+                       mapped_number(textures, m.roughness, m.roughness_map, point);
+                   return glass_at(index, roughness, normal, outside, wo, outside_index);
+                 },
+                 [&](const Principled& m) -> Bsdf {
+                   return principled_at(m, textures, point, normal, wo);
+                 },
+                 [](const Emissive&) -> Bsdf { return BlackBsdf{}; }},
       material);
 }
 

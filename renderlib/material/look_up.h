@@ -2,6 +2,9 @@
 
 // A texture at a point of a surface.
 
+#include <algorithm>
+#include <optional>
+
 #include "absl/types/span.h"
 #include "renderlib/geometry/surface.h"
 #include "renderlib/texture/texture.h"
@@ -18,6 +21,25 @@ inline Rgb look_up(absl::Span<const Texture> textures, TextureId id, const Surfa
     return constant->value;
   }
   return evaluate(textures, id, texture_coordinates(point));
+}
+
+/// A reflectance times the colour of the vertices, each channel at most 1.
+inline Rgb tinted(const Rgb& reflectance, const Rgb& vertices) {
+  const Rgb c = reflectance * vertices;
+  return {std::min(c.r, 1.0f), std::min(c.g, 1.0f), std::min(c.b, 1.0f)};
+}
+
+/// A number of a material, times the luminance of its map where it has one, in [0, 1].
+inline double mapped_number(absl::Span<const Texture> textures, double number,
+                            const std::optional<TextureId>& map, const SurfacePoint& point) {
+  return map ? std::clamp(number * double{luminance(look_up(textures, *map, point))}, 0.0, 1.0)
+             : number;
+}
+
+/// An index of refraction: 1 where its map is black, `index` where it is white.
+inline double mapped_index(absl::Span<const Texture> textures, double index,
+                           const std::optional<TextureId>& map, const SurfacePoint& point) {
+  return map ? 1 + mapped_number(textures, 1, map, point) * (index - 1) : index;
 }
 
 }  // namespace bandsaw

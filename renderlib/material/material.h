@@ -12,7 +12,7 @@
 
 namespace bandsaw {
 
-/// Lambertian reflection.
+/// Lambertian reflection. Colours of vertices multiply the reflectance.
 struct Diffuse {
   TextureId reflectance{};
 };
@@ -20,8 +20,9 @@ struct Diffuse {
 /// The mirror direction plus a uniform point in a ball of radius `fuzz` (Shirley et al., "Ray
 /// Tracing in One Weekend", 10.6).
 struct Metal {
-  TextureId reflectance{};
-  double fuzz = 0;  ///< [0, 1]
+  TextureId reflectance{};                           ///< colours of vertices multiply it
+  double fuzz = 0;                                   ///< [0, 1]
+  std::optional<TextureId> fuzz_map = std::nullopt;  ///< its luminance multiplies `fuzz`
 };
 
 /// Clear glass.
@@ -31,6 +32,10 @@ struct Dielectric {
   /// Where glasses overlap, the one of the highest priority is there and the others are not. 0:
   /// takes no part, its outside is always empty space.
   std::uint32_t priority = 0;
+  std::optional<TextureId> roughness_map = std::nullopt;  ///< its luminance multiplies `roughness`
+  /// The index is 1 where its luminance is 0, index_of_refraction where it is 1, linear between.
+  /// None where there is a priority: what a path is inside of has one index.
+  std::optional<TextureId> index_map = std::nullopt;
 };
 
 /// Gives light, scatters none.
@@ -75,6 +80,10 @@ struct Principled {
   Channel coat;               ///< channel r; [0, 1]: a clear coat of index 1.5
   Channel coat_roughness;     ///< channel g; [0, 1]
   Channel transmission;       ///< channel r; [0, 1]: what passes instead of being diffused
+  std::optional<TextureId> index_map = std::nullopt;  ///< as Dielectric's
+  /// As `normal`, of the clear coat alone; without it the coat is as smooth as the mesh.
+  std::optional<TextureId> coat_normal = std::nullopt;
+  double coat_normal_scale = 1;  ///< finite
 };
 
 using Material = std::variant<Diffuse, Metal, Dielectric, Emissive, Principled>;

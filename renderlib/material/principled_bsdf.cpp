@@ -131,16 +131,23 @@ PrincipledBsdf principled_at(const Principled& material, absl::Span<const Textur
   bsdf.wo = wo;
   bsdf.coat_normal = visible_normal(normal.shading, normal.geometric, wo);
   bsdf.normal = {normal.geometric, bsdf.coat_normal};
-  if (material.normal) {
-    const Vec3 outside = mapped_normal(point, texel(*material.normal), material.normal_scale);
+  const auto bent = [&](TextureId map, double scale) {
+    const Vec3 outside = mapped_normal(point, texel(map), scale);
     const bool flipped = dot(point.geometric_normal, normal.geometric) < 0;
-    bsdf.normal.shading = visible_normal(flipped ? -outside : outside, normal.geometric, wo);
+    return visible_normal(flipped ? -outside : outside, normal.geometric, wo);
+  };
+  if (material.normal) {
+    bsdf.normal.shading = bent(*material.normal, material.normal_scale);
+  }
+  if (material.coat_normal && material.coat.factor > 0) {
+    bsdf.coat_normal = bent(*material.coat_normal, material.coat_normal_scale);
   }
   const Rgb color = texel(material.base_color.texture) * material.base_color.factor * point.color;
   bsdf.base = {std::min(color.r, 1.0f), std::min(color.g, 1.0f), std::min(color.b, 1.0f)};
   bsdf.metallic = number(material.metallic, &Rgb::b);
   bsdf.transmission = number(material.transmission, &Rgb::r);
-  bsdf.f0 = normal_reflectance(material.index_of_refraction);
+  bsdf.f0 = normal_reflectance(
+      mapped_index(textures, material.index_of_refraction, material.index_map, point));
   bsdf.surface = lobe_of(number(material.roughness, &Rgb::g));
   bsdf.coat = number(material.coat, &Rgb::r);
   const GgxAlbedoTable& table = ggx_albedo_table();

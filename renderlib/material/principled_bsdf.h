@@ -29,7 +29,7 @@ struct GgxLobe {
 
 struct PrincipledBsdf {
   SidedNormals normal;
-  Vec3 coat_normal;  ///< without the normal map
+  Vec3 coat_normal;  ///< without the normal map of what is below; with its own
   Vec3 wo;
   Rgb base;
   double metallic = 0;

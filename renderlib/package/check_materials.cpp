@@ -102,11 +102,18 @@ struct CheckMaterial {
   }
   absl::Status operator()(const Metal& m) const {
     RETURN_IF_ERROR(check_reflectance(scene, m.reflectance, field + ".metal.reflectance"));
+    RETURN_IF_ERROR(check_map(m.fuzz_map, field + ".metal.fuzz_texture"));
     return check_number(m.fuzz, 0, 1, field + ".metal.fuzz");
   }
   absl::Status operator()(const Dielectric& m) const {
     RETURN_IF_ERROR(
         check_number(m.index_of_refraction, 1, 5, field + ".dielectric.index_of_refraction"));
+    RETURN_IF_ERROR(check_map(m.roughness_map, field + ".dielectric.roughness_texture"));
+    RETURN_IF_ERROR(check_map(m.index_map, field + ".dielectric.index_texture"));
+    if (m.index_map && m.priority > 0) {
+      return manifest_error(field + ".dielectric.index_texture",
+                            "a glass with a priority has one index of refraction");
+    }
     return check_number(m.roughness, 0, 1, field + ".dielectric.roughness");
   }
   absl::Status operator()(const Emissive& m) const {
@@ -125,13 +132,17 @@ struct CheckMaterial {
     RETURN_IF_ERROR(check_channel(m.coat, path + ".coat"));
     RETURN_IF_ERROR(check_channel(m.coat_roughness, path + ".coat_roughness"));
     RETURN_IF_ERROR(check_channel(m.transmission, path + ".transmission"));
-    if (m.normal) {
-      RETURN_IF_ERROR(check_texture_id(scene, *m.normal, path + ".normal"));
-    }
+    RETURN_IF_ERROR(check_map(m.normal, path + ".normal"));
+    RETURN_IF_ERROR(check_map(m.coat_normal, path + ".coat_normal"));
+    RETURN_IF_ERROR(check_map(m.index_map, path + ".index_texture"));
     constexpr double kMost = 1e30;
+    RETURN_IF_ERROR(check_number(m.coat_normal_scale, -kMost, kMost, path + ".coat_normal_scale"));
     RETURN_IF_ERROR(check_number(m.normal_scale, -kMost, kMost, path + ".normal_scale"));
     RETURN_IF_ERROR(check_number(m.alpha_cutoff, 0, kMost, path + ".alpha_cutoff"));
     return check_number(m.index_of_refraction, 1, 5, path + ".index_of_refraction");
+  }
+  absl::Status check_map(const std::optional<TextureId>& map, const std::string& path) const {
+    return map ? check_texture_id(scene, *map, path) : absl::OkStatus();
   }
   absl::Status check_channel(const Channel& channel, const std::string& path) const {
     RETURN_IF_ERROR(check_number(channel.factor, 0, 1, path + ".factor"));

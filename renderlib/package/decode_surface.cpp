@@ -23,6 +23,25 @@ absl::StatusOr<Vec3> decode_vec3(const google::protobuf::RepeatedField<double>& 
   return Vec3{list[0], list[1], list[2]};
 }
 
+Metal decode_metal(const package::Metal& from) {
+  Metal to{TextureId{from.reflectance()}, from.fuzz()};
+  if (from.has_fuzz_texture()) {
+    to.fuzz_map = TextureId{from.fuzz_texture()};
+  }
+  return to;
+}
+
+Dielectric decode_dielectric(const package::Dielectric& from) {
+  Dielectric to{from.index_of_refraction(), from.roughness(), from.priority()};
+  if (from.has_roughness_texture()) {
+    to.roughness_map = TextureId{from.roughness_texture()};
+  }
+  if (from.has_index_texture()) {
+    to.index_map = TextureId{from.index_texture()};
+  }
+  return to;
+}
+
 }  // namespace
 
 absl::StatusOr<Rgb> decode_rgb(const google::protobuf::RepeatedField<float>& list,
@@ -89,10 +108,9 @@ absl::StatusOr<Material> decode_material(const package::Material& material,
     case package::Material::kDiffuse:
       return Diffuse{TextureId{material.diffuse().reflectance()}};
     case package::Material::kMetal:
-      return Metal{TextureId{material.metal().reflectance()}, material.metal().fuzz()};
+      return decode_metal(material.metal());
     case package::Material::kDielectric:
-      return Dielectric{material.dielectric().index_of_refraction(),
-                        material.dielectric().roughness(), material.dielectric().priority()};
+      return decode_dielectric(material.dielectric());
     case package::Material::kEmissive:
       return Emissive{TextureId{material.emissive().radiance()}, material.emissive().one_sided()};
     case package::Material::kGltf: {

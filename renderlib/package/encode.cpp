@@ -140,11 +140,20 @@ struct EncodeMaterial {
   void operator()(const Metal& m) const {
     to.mutable_metal()->set_reflectance(static_cast<std::uint32_t>(m.reflectance));
     to.mutable_metal()->set_fuzz(m.fuzz);
+    if (m.fuzz_map) {
+      to.mutable_metal()->set_fuzz_texture(static_cast<std::uint32_t>(*m.fuzz_map));
+    }
   }
   void operator()(const Dielectric& m) const {
     to.mutable_dielectric()->set_index_of_refraction(m.index_of_refraction);
     to.mutable_dielectric()->set_roughness(m.roughness);
     to.mutable_dielectric()->set_priority(m.priority);
+    if (m.roughness_map) {
+      to.mutable_dielectric()->set_roughness_texture(static_cast<std::uint32_t>(*m.roughness_map));
+    }
+    if (m.index_map) {
+      to.mutable_dielectric()->set_index_texture(static_cast<std::uint32_t>(*m.index_map));
+    }
   }
   void operator()(const Emissive& m) const {
     to.mutable_emissive()->set_radiance(static_cast<std::uint32_t>(m.radiance));

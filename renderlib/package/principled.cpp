@@ -47,6 +47,13 @@ void encode_principled(const Principled& from, package::Gltf& to) {
   encode(from.coat, *to.mutable_coat());
   encode(from.coat_roughness, *to.mutable_coat_roughness());
   encode(from.transmission, *to.mutable_transmission());
+  if (from.index_map) {
+    to.set_index_texture(static_cast<std::uint32_t>(*from.index_map));
+  }
+  if (from.coat_normal) {
+    to.set_coat_normal(static_cast<std::uint32_t>(*from.coat_normal));
+  }
+  to.set_coat_normal_scale(from.coat_normal_scale);
 }
 
 absl::StatusOr<Principled> decode_principled(const package::Gltf& from, const std::string& field) {
@@ -71,6 +78,13 @@ absl::StatusOr<Principled> decode_principled(const package::Gltf& from, const st
   to.coat = decode(from.coat());
   to.coat_roughness = decode(from.coat_roughness());
   to.transmission = decode(from.transmission());
+  if (from.has_index_texture()) {
+    to.index_map = TextureId{from.index_texture()};
+  }
+  if (from.has_coat_normal()) {
+    to.coat_normal = TextureId{from.coat_normal()};
+  }
+  to.coat_normal_scale = from.coat_normal_scale();
   return to;
 }
 

@@ -26,7 +26,8 @@ bool is_nested(const Material& material) {
 
 bool has_normal_map(const Material& material) {
   const auto* principled = std::get_if<Principled>(&material);
-  return principled != nullptr && principled->normal.has_value();
+  return principled != nullptr &&
+         (principled->normal.has_value() || principled->coat_normal.has_value());
 }
 
 Needs needs_of(const SceneDescription& scene, const Lights& lights) {

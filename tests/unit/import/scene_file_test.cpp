@@ -189,7 +189,8 @@ const std::vector<Wrong> kWrong = {
     {"nameless_material", R"(material { metal { } })",
      "s.textproto:3:1: material[1].name: is required"},
     {"kindless_material", R"(material { name: "x" })",
-     "s.textproto:3:1: material[1]: is of no kind: write diffuse, metal, dielectric, emissive or gltf"},
+     "s.textproto:3:1: material[1]: is of no kind: write diffuse, metal, dielectric, emissive or "
+     "gltf"},
     {"reflectance", R"(material { name: "x" diffuse { color { rgb: [0.5, 1.7, 0] } } })",
      "s.textproto:3:40: material[1].diffuse.color.rgb[1]: must lie in [0, 1], is 1.7"},
     {"two_colors", R"(material { name: "x" diffuse { color { rgb: [0, 0, 0] } texture { } } })",
@@ -322,8 +323,8 @@ material { name: "c" diffuse { texture { image { file: "small.ppm" wrap: WRAP_CL
 }
 
 TEST(SceneFile, RefusesWhatItDoesNotKnow) {
-  EXPECT_THAT(std::string(import_text("", "scene.blend").status().message()),
-              StartsWith("scene.blend: is of a kind that is not read"));
+  EXPECT_THAT(std::string(import_text("", "scene.max").status().message()),
+              StartsWith("scene.max: is of a kind that is not read"));
   EXPECT_EQ(import_scene("/no/such/scene.textproto").status().code(), absl::StatusCode::kNotFound);
 }
 

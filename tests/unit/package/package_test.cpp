@@ -44,6 +44,9 @@ TEST(Package, ComesBackBitForBit) {
   EXPECT_EQ(image.wrap, ImageTexture::Wrap::kMirror);
   EXPECT_EQ(image.filter, ImageTexture::Filter::kNearest);
   EXPECT_TRUE(std::get<Emissive>(decoded->materials[3]).one_sided);
+  EXPECT_EQ(std::get<Metal>(decoded->materials[4]).fuzz_map, TextureId{4});
+  EXPECT_EQ(std::get<Dielectric>(decoded->materials[5]).index_map, TextureId{3});
+  EXPECT_EQ(std::get<Principled>(decoded->materials[6]).coat_normal_scale, -0.5);
   EXPECT_EQ(std::get<CheckerTexture>(decoded->textures[5]).space, Space::kObject);
   EXPECT_EQ(std::get<NoiseTexture>(decoded->textures[6]).turbulence_scale, 1.5);
   EXPECT_EQ(std::get<RampTexture>(decoded->textures[7]).stops[1].at, 0.3);
@@ -200,8 +203,15 @@ const std::vector<Wrong> kWrong = {
     {"glass",
      [](auto& m) { m.mutable_material(2)->mutable_dielectric()->set_index_of_refraction(0.5); },
      "material[2].dielectric.index_of_refraction: must lie in [1, 5], is 0.5"},
+    {"fuzz_texture", [](auto& m) { m.mutable_material(4)->mutable_metal()->set_fuzz_texture(99); },
+     "material[4].metal.fuzz_texture: is 99, there are 10 textures"},
+    {"two_indices", [](auto& m) { m.mutable_material(5)->mutable_dielectric()->set_priority(1); },
+     "material[5].dielectric.index_texture: a glass with a priority has one index of refraction"},
+    {"coat_normal", [](auto& m) { m.mutable_material(6)->mutable_gltf()->set_coat_normal(99); },
+     "material[6].gltf.coat_normal: is 99, there are 10 textures"},
     {"material_kind", [](auto& m) { m.mutable_material(2)->clear_kind(); }, "material[2]: is of"},
-    {"few_materials", [](auto& m) { m.mutable_material()->RemoveLast(); },
+    {"few_materials",
+     [](auto& m) { m.mutable_material()->DeleteSubrange(3, m.material_size() - 3); },
      "quads.material[0]: is 3, there are 3 materials"},
     {"counts", [](auto& m) { *m.mutable_spheres()->mutable_radii() = m.quads().corners(); },
      "spheres.radii: has 3 entries for 2 shapes"},

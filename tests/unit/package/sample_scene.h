@@ -70,6 +70,14 @@ inline SceneDescription sample_scene() {
   scene.textures.emplace_back(ProductTexture{TextureId{8}, TextureId{0}});
   scene.materials = {Diffuse{TextureId{0}}, Metal{TextureId{1}, 0.125}, Dielectric{1.3},
                      Emissive{TextureId{2}, true}};
+  scene.materials.emplace_back(Metal{TextureId{1}, 0.5, TextureId{4}});
+  scene.materials.emplace_back(Dielectric{1.7, 0.25, 0, TextureId{4}, TextureId{3}});
+  Principled layered;
+  layered.coat = {TextureId{4}, 0.5};
+  layered.coat_normal = TextureId{3};
+  layered.coat_normal_scale = -0.5;
+  layered.index_map = TextureId{4};
+  scene.materials.emplace_back(layered);
   scene.geometry.spheres = {{{1, 2, 3}, 0.1, MaterialId{0}}, {{4, 5, 6}, 1e-5, MaterialId{1}}};
   scene.geometry.quads = {{{0, 0, 0}, {1, 0, 0}, {0, 1.0 / 7, 0}, MaterialId{3}}};
   scene.geometry.triangles = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, MaterialId{2}}};

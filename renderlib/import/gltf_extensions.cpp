@@ -1,0 +1,178 @@
+#include "renderlib/import/gltf_extensions.h"
+
+#include <google/protobuf/struct.pb.h>
+#include <google/protobuf/util/json_util.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <iterator>
+
+#include "absl/strings/match.h"
+#include "absl/strings/string_view.h"
+#include "renderlib/import/scene_folder.h"
+#include "renderlib/math/elementary.h"
+
+namespace bandsaw {
+namespace {
+
+using google::protobuf::ListValue;
+using google::protobuf::Struct;
+using google::protobuf::Value;
+
+constexpr std::uint64_t kMostBytes = std::uint64_t{8} << 30;
+/// More JSON than this is not searched: data URIs, mostly.
+constexpr std::size_t kMostJson = std::size_t{256} << 20;
+
+/// Extensions whose meaning reaches the scene, or that say nothing about how it looks.
+constexpr absl::string_view kKnown[] = {"KHR_materials_clearcoat",
+                                        "KHR_materials_emissive_strength",
+                                        "KHR_materials_ior",
+                                        "KHR_materials_transmission",
+                                        "KHR_materials_pbrSpecularGlossiness",
+                                        "KHR_materials_unlit",
+                                        "KHR_texture_transform",
+                                        "KHR_lights_punctual",
+                                        "KHR_xmp_json_ld",
+                                        "KHR_draco_mesh_compression"};
+
+const Value* find(const Struct& in, const std::string& name) {
+  const auto found = in.fields().find(name);
+  return found == in.fields().end() ? nullptr : &found->second;
+}
+const Struct* object(const Struct& in, const std::string& name) {
+  const Value* value = find(in, name);
+  return value != nullptr && value->has_struct_value() ? &value->struct_value() : nullptr;
+}
+const ListValue* list(const Struct& in, const std::string& name) {
+  const Value* value = find(in, name);
+  return value != nullptr && value->has_list_value() ? &value->list_value() : nullptr;
+}
+std::optional<double> number(const Struct& in, const std::string& name) {
+  const Value* value = find(in, name);
+  return value != nullptr && value->kind_case() == Value::kNumberValue
+             ? std::optional(value->number_value())
+             : std::nullopt;
+}
+const Struct* extension(const Struct& in, const std::string& name) {
+  const Struct* extensions = object(in, "extensions");
+  return extensions == nullptr ? nullptr : object(*extensions, name);
+}
+
+// Two numbers, or what stands there.
+void read_pair(const Struct& in, const std::string& name, double& x, double& y) {
+  const ListValue* values = list(in, name);
+  if (values != nullptr && values->values_size() == 2) {
+    x = values->values(0).number_value();
+    y = values->values(1).number_value();
+  }
+}
+
+// offset + rotation (scale uv) with the image's top at v = 0, seen from uvs whose v = 0 is the
+// bottom: v -> 1 - v before and after. The rotation is counter-clockwise as the image is seen.
+UvTransform transform_of(const Struct& from) {
+  double offset_u = 0;
+  double offset_v = 0;
+  double scale_u = 1;
+  double scale_v = 1;
+  read_pair(from, "offset", offset_u, offset_v);
+  read_pair(from, "scale", scale_u, scale_v);
+  constexpr double kTurn = 6.283185307179586;
+  const SinCos turn = sincos_turns(number(from, "rotation").value_or(0) / kTurn);
+  return {{turn.cos * scale_u, -turn.sin * scale_v, offset_u + turn.sin * scale_v,
+           turn.sin * scale_u, turn.cos * scale_v, 1 - offset_v - turn.cos * scale_v}};
+}
+
+GltfTexture texture_of(const Struct& from) {
+  GltfTexture to;
+  double uv_set = number(from, "texCoord").value_or(0);
+  if (const Struct* placed = extension(from, "KHR_texture_transform"); placed != nullptr) {
+    to.transform = transform_of(*placed);
+    uv_set = number(*placed, "texCoord").value_or(uv_set);
+  }
+  const bool finite = std::all_of(to.transform.m.begin(), to.transform.m.end(),
+                                  [](double v) { return std::isfinite(v); });
+  to.transform = finite ? to.transform : UvTransform{};
+  to.uv_set = uv_set >= 0 && uv_set < 64 ? static_cast<unsigned>(uv_set) : 0;
+  return to;
+}
+
+void read_textures_of(const Struct& from, GltfMaterial& to) {
+  for (const auto& [name, value] : from.fields()) {
+    if (absl::EndsWith(name, "Texture") && value.has_struct_value()) {
+      to.textures[name] = texture_of(value.struct_value());
+    }
+  }
+}
+
+GltfMaterial material_of(const Struct& from) {
+  GltfMaterial to;
+  read_textures_of(from, to);
+  if (const Struct* base = object(from, "pbrMetallicRoughness"); base != nullptr) {
+    read_textures_of(*base, to);
+  }
+  for (const char* name : {"KHR_materials_clearcoat", "KHR_materials_transmission",
+                           "KHR_materials_pbrSpecularGlossiness"}) {
+    if (const Struct* layer = extension(from, name); layer != nullptr) {
+      read_textures_of(*layer, to);
+    }
+  }
+  if (const Struct* coat = extension(from, "KHR_materials_clearcoat"); coat != nullptr) {
+    const Struct* normal = object(*coat, "clearcoatNormalTexture");
+    to.coat_normal_scale = normal == nullptr ? 1 : number(*normal, "scale").value_or(1);
+  }
+  if (const Struct* glow = extension(from, "KHR_materials_emissive_strength"); glow != nullptr) {
+    to.emissive_strength = number(*glow, "emissiveStrength");
+  }
+  if (const Struct* ior = extension(from, "KHR_materials_ior"); ior != nullptr) {
+    to.index_of_refraction = number(*ior, "ior").value_or(1.5);
+  }
+  return to;
+}
+
+// The JSON of a .gltf, or the first chunk of a .glb (glTF 2.0, 4.4).
+absl::string_view json_of(absl::string_view bytes) {
+  if (!absl::StartsWith(bytes, "glTF")) {
+    return bytes;
+  }
+  constexpr std::size_t kHeader = 20;
+  std::uint32_t size = 0;
+  if (bytes.size() < kHeader) {
+    return {};
+  }
+  std::memcpy(&size, bytes.data() + 12, sizeof size);
+  return bytes.substr(kHeader, size);
+}
+
+}  // namespace
+
+GltfExtensions read_gltf_extensions(const std::string& path) {
+  GltfExtensions out;
+  const auto bytes = read_whole_file(path, kMostBytes);
+  const absl::string_view json = bytes.ok() ? json_of(*bytes) : absl::string_view();
+  Struct root;
+  if (json.empty() || json.size() > kMostJson ||
+      !google::protobuf::util::JsonStringToMessage({json.data(), json.size()}, &root).ok()) {
+    return out;
+  }
+  if (const ListValue* used = list(root, "extensionsUsed"); used != nullptr) {
+    for (const Value& name : used->values()) {
+      if (std::find(std::begin(kKnown), std::end(kKnown), name.string_value()) ==
+          std::end(kKnown)) {
+        out.ignored.push_back(name.string_value());
+      }
+    }
+  }
+  if (const ListValue* materials = list(root, "materials"); materials != nullptr) {
+    for (const Value& material : materials->values()) {
+      out.materials.push_back(material_of(material.struct_value()));
+    }
+  }
+  if (const ListValue* scenes = list(root, "scenes"); scenes != nullptr) {
+    out.scenes = static_cast<std::size_t>(scenes->values_size());
+  }
+  return out;
+}
+
+}  // namespace bandsaw

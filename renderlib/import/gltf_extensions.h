@@ -1,0 +1,39 @@
+#pragma once
+
+// What a glTF file says and Assimp 5.2 does not pass on: which extensions it uses, how its textures
+// are placed, how strong its emission is, how many scenes it holds. Read from the file's JSON.
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "renderlib/texture/texture.h"
+
+namespace bandsaw {
+
+/// A textureInfo of a material, by what it is of: "baseColorTexture", "clearcoatNormalTexture".
+struct GltfTexture {
+  unsigned uv_set = 0;
+  UvTransform transform;  ///< KHR_texture_transform, for uvs whose v = 0 is the bottom row
+};
+
+struct GltfMaterial {
+  std::map<std::string, GltfTexture> textures;
+  std::optional<double> emissive_strength;    ///< KHR_materials_emissive_strength
+  std::optional<double> index_of_refraction;  ///< KHR_materials_ior
+  double coat_normal_scale = 1;               ///< of KHR_materials_clearcoat
+};
+
+struct GltfExtensions {
+  std::vector<std::string> ignored;  ///< extensions that the file uses and that change nothing here
+  std::vector<GltfMaterial> materials;  ///< as many and in the order of the file; none of glTF 1
+  std::size_t scenes = 1;
+};
+
+/// Of a .gltf or .glb. Nothing is an error: what cannot be read is left to Assimp to complain
+/// about.
+GltfExtensions read_gltf_extensions(const std::string& path);
+
+}  // namespace bandsaw

@@ -1,0 +1,55 @@
+#pragma once
+
+// What the checks of a description share: each names the field, what is allowed and what was found.
+
+#include <cmath>
+#include <string>
+
+#include "absl/status/status.h"
+#include "absl/strings/str_cat.h"
+#include "renderlib/base/ids.h"
+#include "renderlib/math/rgb.h"
+#include "renderlib/math/vec.h"
+#include "renderlib/scene/validate.h"
+
+namespace bandsaw {
+
+inline absl::Status invalid(absl::string_view field, absl::string_view why) {
+  return absl::InvalidArgumentError(absl::StrCat(field, ": ", why));
+}
+
+inline std::string item(absl::string_view list, std::size_t index) {
+  return absl::StrCat(list, "[", index, "]");
+}
+
+template <class Id>
+absl::Status check_index(const std::string& field, Id id, std::size_t count) {
+  if (index_of(id) >= count) {
+    return invalid(field, absl::StrCat("must be below ", count, ", is ", index_of(id)));
+  }
+  return absl::OkStatus();
+}
+
+inline absl::Status check_point(const std::string& field, const Vec3& p) {
+  if (!is_finite(p) || max_abs(p) > kMaxCoordinate) {
+    return invalid(field, absl::StrCat("must be within +-", kMaxCoordinate, ", is [", p.x, ", ",
+                                       p.y, ", ", p.z, "]"));
+  }
+  return absl::OkStatus();
+}
+
+inline absl::Status check_color(const std::string& field, const Rgb& color, float most) {
+  for (const float value : {color.r, color.g, color.b}) {
+    if (!(value >= 0 && value <= most) || !std::isfinite(value)) {
+      const std::string range = std::isfinite(most) ? absl::StrCat("in [0, ", most, "]")
+                                                    : std::string("finite and not negative");
+      return invalid(field, absl::StrCat("must be ", range, ", is ", value));
+    }
+  }
+  return absl::OkStatus();
+}
+
+/// Textures and materials (validate_surfaces.cpp).
+absl::Status check_surfaces(const SceneDescription& scene);
+
+}  // namespace bandsaw

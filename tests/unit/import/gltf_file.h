@@ -1,0 +1,57 @@
+#pragma once
+
+// Small glTF files that tests write themselves.
+
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "tests/unit/import/files.h"
+
+namespace bandsaw::test {
+
+/// The bytes of floats, for buffers.
+inline std::string floats(const std::vector<float>& values) {
+  std::string bytes(values.size() * sizeof(float), '\0');
+  std::memcpy(bytes.data(), values.data(), bytes.size());
+  return bytes;
+}
+
+/// One triangle (0,0,0), (1,0,0), (0,1,0) with two sets of uvs, its vertex colours red, green and
+/// blue at a half, material 0. Buffer views 0 to 3: positions, uvs, second uvs, colours.
+struct GltfTriangle {
+  std::string materials = "{}";  ///< what stands in the list
+  std::string textures;          ///< the same
+  std::string images;
+  std::string samplers;
+  bool colors = false;
+  std::string more;  ///< further members of the file, each followed by a comma
+
+  std::string write(const TempDir& folder, const std::string& name) const {
+    write_text(folder, "t.bin",
+               floats({0, 0, 0, 1, 0, 0, 0, 1, 0}) + floats({0, 0, 1, 0, 0, 1}) +
+                   floats({0, 0, 0.5f, 0, 0, 0.5f}) + floats({0.5f, 0, 0, 0, 0.5f, 0, 0, 0, 0.5f}));
+    const auto list = [](const char* what, const std::string& items) {
+      return items.empty() ? "" : absl::StrCat("\"", what, "\": [", items, "],\n");
+    };
+    return write_text(
+        folder, name,
+        absl::StrCat("{\"asset\": {\"version\": \"2.0\"}, \"scene\": 0,\n", more,
+                     list("textures", textures), list("images", images), list("samplers", samplers),
+                     list("materials", materials), R"("scenes": [{"nodes": [0]}],
+"nodes": [{"mesh": 0}],
+"meshes": [{"primitives": [{"attributes": {"POSITION": 0, "TEXCOORD_0": 1, "TEXCOORD_1": 2)",
+                     colors ? R"(, "COLOR_0": 3)" : "", R"(}, "material": 0}]}],
+"accessors": [
+{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0,0,0], "max": [1,1,0]},
+{"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"},
+{"bufferView": 2, "componentType": 5126, "count": 3, "type": "VEC2"},
+{"bufferView": 3, "componentType": 5126, "count": 3, "type": "VEC3"}],
+"bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 24},
+{"buffer": 0, "byteOffset": 60, "byteLength": 24}, {"buffer": 0, "byteOffset": 84, "byteLength": 36}],
+"buffers": [{"byteLength": 120, "uri": "t.bin"}]})"));
+  }
+};
+
+}  // namespace bandsaw::test

@@ -1,0 +1,227 @@
+// Materials of the older formats, textures by the names that files have for them, which way up.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "renderlib/image/srgb.h"
+#include "renderlib/import/import.h"
+#include "tests/unit/import/files.h"
+
+namespace bandsaw {
+namespace {
+
+using test::TempDir;
+using test::test_model;
+using test::write_text;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+const std::string kTriangle = "v 0 0 0\nv 1 0 0\nv 0 2 0\nvt 0 0\nvt 1 0\nvt 0 1\n";
+
+class Obj : public ::testing::Test {
+ protected:
+  ImportedScene read(const std::string& material) {
+    write_text(folder_, "m.mtl", "newmtl a\n" + material);
+    auto imported = import_scene(
+        write_text(folder_, "m.obj", "mtllib m.mtl\n" + kTriangle + "usemtl a\nf 1/1 2/2 3/3\n"));
+    EXPECT_TRUE(imported.ok()) << imported.status();
+    return imported.ok() ? *std::move(imported) : ImportedScene();
+  }
+  Principled principled(const std::string& material) {
+    const ImportedScene imported = read(material);
+    const auto* found = std::get_if<Principled>(&imported.scene.materials.at(0));
+    EXPECT_NE(found, nullptr) << material;
+    return found == nullptr ? Principled() : *found;
+  }
+  TempDir folder_;
+};
+
+TEST_F(Obj, AHighlightBecomesRoughness) {
+  const Principled m = principled("Kd 0.5 0.5 0.5\nKs 0.9 0.9 0.9\nNs 98\nillum 2\n");
+  EXPECT_NEAR(m.roughness.factor, std::pow(0.02, 0.25), 1e-6);
+  EXPECT_EQ(m.metallic.factor, 0);
+  EXPECT_NEAR(m.index_of_refraction, 1.5, 1e-6) << "no more than glass reflects";
+  EXPECT_EQ(
+      principled("Kd 0.5 0.5 0.5\nKs 0.9 0.9 0.9\nNs 98\nNi 2\nillum 2\n").index_of_refraction, 2);
+}
+
+TEST_F(Obj, BlackWithAHighlightIsMetal) {
+  const Principled m = principled("Kd 0 0 0\nKs 1 0.75 0.25\nNs 198\nillum 3\n");
+  EXPECT_EQ(m.metallic.factor, 1);
+  EXPECT_EQ(m.base_color.factor, (Rgb{1, 0.75f, 0.25f}));
+}
+
+TEST_F(Obj, AHighlightThatIsSwitchedOffLeavesItDiffuse) {
+  for (const char* off : {"Ks 1 1 1\nNs 0\nillum 2\n", "Ks 0 0 0\nNs 100\nillum 2\n",
+                          "Ks 1 1 1\nNs 100\nillum 1\n"}) {
+    const ImportedScene imported = read(std::string("Kd 0.5 0.5 0.5\n") + off);
+    EXPECT_TRUE(std::holds_alternative<Diffuse>(imported.scene.materials[0])) << off;
+  }
+}
+
+TEST_F(Obj, OpacityIsAlphaAndNoneAtAllAMistake) {
+  const Principled glass = principled("Kd 0.5 0.5 0.5\nd 0.25\n");
+  EXPECT_EQ(glass.alpha_mode, AlphaMode::kBlend);
+  EXPECT_EQ(glass.alpha.factor, 0.25);
+  const ImportedScene gone = read("Kd 0.5 0.5 0.5\nd 0\n");
+  EXPECT_TRUE(std::holds_alternative<Diffuse>(gone.scene.materials[0]));
+  EXPECT_THAT(gone.info.warnings,
+              Contains("m.obj: material \"a\": it is not there at all (opacity 0), which is taken "
+                       "as a mistake"));
+}
+
+TEST_F(Obj, AnOpacityMapIsItsBrightness) {
+  write_text(folder_, "mask.pgm", std::string("P5 2 1 255\n") + '\0' + "\xff");
+  const Principled m = principled("Kd 1 1 1\nmap_d mask.pgm\n");
+  EXPECT_EQ(m.alpha_mode, AlphaMode::kBlend);
+  EXPECT_EQ(m.alpha.factor, 1);
+}
+
+TEST_F(Obj, AFaintGlowIsAddedToWhatItReflects) {
+  const Principled m = principled("Kd 0.5 0.5 0.5\nKe 0.25 0.125 0\n");
+  EXPECT_EQ(m.emissive.factor, (Rgb{0.25f, 0.125f, 0}));
+  EXPECT_EQ(m.base_color.factor, gray(0.5f));
+  EXPECT_TRUE(m.double_sided);
+}
+
+std::string ppm_of(int red, int green, int blue) {
+  std::string file = "P6 1 1 255\n";
+  for (const int code : {red, green, blue}) {
+    file += static_cast<char>(code);
+  }
+  return file;
+}
+
+TEST_F(Obj, ABumpMapThatHoldsNormalsIsANormalMap) {
+  write_text(folder_, "n.ppm", ppm_of(128, 128, 255));
+  write_text(folder_, "h.ppm", ppm_of(90, 90, 90));
+  EXPECT_TRUE(principled("Kd 1 1 1\nmap_Bump n.ppm\n").normal.has_value());
+  EXPECT_TRUE(principled("Kd 1 1 1\nnorm n.ppm\n").normal.has_value());
+  const ImportedScene heights = read("Kd 1 1 1\nmap_Bump h.ppm\n");
+  EXPECT_THAT(heights.info.warnings,
+              Contains("m.obj: material \"a\": its bump map of heights is left out"));
+}
+
+TEST_F(Obj, ReadsThePbrNumbersOfNewerFiles) {
+  write_text(folder_, "r.pgm", std::string("P5 1 1 255\n") + "\x80");
+  const Principled m =
+      principled("Kd 0.5 0.25 0.125\nPm 0.75\nPr 0.5\nmap_Pr r.pgm\nPc 0.25\nPcr 0.125\n");
+  EXPECT_EQ(m.metallic.factor, 0.75);
+  EXPECT_EQ(m.roughness.factor, 0.5);
+  EXPECT_EQ(m.base_color.factor, (Rgb{0.5f, 0.25f, 0.125f}));
+  EXPECT_EQ(m.coat.factor, 0.25);
+  EXPECT_EQ(m.coat_roughness.factor, 0.125);
+}
+
+TEST_F(Obj, FindsATextureBesideItByAnyOfItsNames) {
+  write_text(folder_, "My Stone.PPM", test::small_ppm());
+  for (const char* name :
+       {"My Stone.PPM", "my stone.ppm", "My%20Stone.PPM", "C:\\art\\stones\\My Stone.ppm",
+        "..\\..\\tex\\My Stone.PPM", "/home/me/My Stone.PPM", "textures/My Stone.PPM"}) {
+    const ImportedScene imported = read(std::string("Kd 1 1 1\nmap_Kd ") + name + "\n");
+    ASSERT_EQ(imported.scene.materials.size(), 1u);
+    const auto id = std::get<Diffuse>(imported.scene.materials[0]).reflectance;
+    EXPECT_TRUE(std::holds_alternative<ImageTexture>(imported.scene.textures[index_of(id)]))
+        << name;
+    EXPECT_THAT(imported.info.warnings, IsEmpty()) << name;
+  }
+}
+
+TEST_F(Obj, VertexColoursAreSrgb) {
+  const auto imported = import_scene(
+      write_text(folder_, "c.obj", "v 0 0 0 1 0 0\nv 1 0 0 0 0.5 0\nv 0 1 0 0 0 1\nf 1 2 3\n"));
+  ASSERT_TRUE(imported.ok()) << imported.status();
+  const Mesh& mesh = imported->scene.geometry.meshes[0];
+  ASSERT_EQ(mesh.colors.size(), 3u);
+  EXPECT_EQ(mesh.colors[0], (std::array<float, 3>{1, 0, 0}));
+  EXPECT_EQ(mesh.colors[1][1], static_cast<float>(srgb_decode(0.5)));
+}
+
+TEST_F(Obj, ColoursOfVerticesGoWhereTheSceneReplacesTheMaterial) {
+  write_text(folder_, "c.obj", "v 0 0 0 1 0 0\nv 1 0 0 0 0.5 0\nv 0 1 0 0 0 1\nf 1 2 3\n");
+  const auto imported = import_scene(
+      write_text(folder_, "s.textproto",
+                 "material { name: \"w\" diffuse {} } model { file: \"c.obj\" material: \"w\" }"));
+  ASSERT_TRUE(imported.ok()) << imported.status();
+  EXPECT_THAT(imported->scene.geometry.meshes[0].colors, IsEmpty());
+}
+
+std::string ply(const std::string& properties, const std::string& vertices) {
+  return "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+         "property float z\n" +
+         properties + "element face 1\nproperty list uchar int vertex_indices\nend_header\n" +
+         vertices + "3 0 1 2\n";
+}
+
+TEST(Ply, IsGreyOrAsItsVerticesAre) {
+  const TempDir folder;
+  const auto plain = import_scene(write_text(folder, "p.ply", ply("", "0 0 0\n1 0 0\n0 1 0\n")));
+  ASSERT_TRUE(plain.ok()) << plain.status();
+  EXPECT_TRUE(std::holds_alternative<Diffuse>(plain->scene.materials[0]));
+  const auto painted =
+      import_scene(write_text(folder, "c.ply",
+                              ply("property uchar red\nproperty uchar green\nproperty uchar blue\n",
+                                  "0 0 0 255 0 0\n1 0 0 0 188 0\n0 1 0 0 0 255\n")));
+  ASSERT_TRUE(painted.ok()) << painted.status();
+  ASSERT_EQ(painted->scene.geometry.meshes[0].colors.size(), 3u);
+  EXPECT_NEAR(painted->scene.geometry.meshes[0].colors[1][1], 0.5, 0.005);
+}
+
+TEST(Stl, HasAFaceAndItsNormal) {
+  const TempDir folder;
+  const auto imported = import_scene(
+      write_text(folder, "t.stl",
+                 "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 "
+                 "0\nendloop\nendfacet\nendsolid t\n"));
+  ASSERT_TRUE(imported.ok()) << imported.status();
+  EXPECT_EQ(imported->scene.geometry.meshes[0].normals[0], (std::array<float, 3>{0, 0, 1}));
+}
+
+// A triangle whose third vertex is `up`; two units of a hundredth.
+std::string dae(const std::string& up_axis, const std::string& up) {
+  return R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit name="centimetre" meter="0.01"/><up_axis>)" +
+         up_axis + R"(</up_axis></asset>
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="a" count="9">0 0 0  1 0 0  )" +
+         up + R"(</float_array><technique_common><accessor source="#a" count="3" stride="3">
+<param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node id="n"><instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
+}
+
+TEST(Dae, StandsUprightInMetres) {
+  const TempDir folder;
+  for (const auto& [axis, up] : {std::pair("Y_UP", "0 2 0"), std::pair("Z_UP", "0 0 2")}) {
+    const auto imported = import_scene(write_text(folder, "t.dae", dae(axis, up)));
+    ASSERT_TRUE(imported.ok()) << imported.status();
+    const Instance& instance = imported->scene.geometry.instances.at(0);
+    const auto& tip = imported->scene.geometry.meshes[0].positions[2];
+    const Vec3 world = instance.to_world.point({tip[0], tip[1], tip[2]});
+    EXPECT_NEAR(length(world - Vec3{0, 0.02, 0}), 0, 1e-9) << axis;
+  }
+}
+
+TEST(Fbx, StandsUpright) {
+  if (!test::have_test_models()) {
+    GTEST_SKIP() << "needs the package assimp-testmodels";
+  }
+  // Its header says that z is up: its box stands on z = 0.
+  const auto imported = import_scene(test_model("FBX/embedded_ascii/box.FBX"));
+  ASSERT_TRUE(imported.ok()) << imported.status();
+  double lowest = 1e9;
+  const Instance& instance = imported->scene.geometry.instances.at(0);
+  for (const auto& p : imported->scene.geometry.meshes[0].positions) {
+    lowest = std::min(lowest, instance.to_world.point({p[0], p[1], p[2]}).y);
+  }
+  EXPECT_NEAR(lowest, 0, 1e-6);
+}
+
+}  // namespace
+}  // namespace bandsaw

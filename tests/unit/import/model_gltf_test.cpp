@@ -1,0 +1,200 @@
+// What of a glTF file reaches the scene: its materials, the placing of its textures, what it says
+// beyond Assimp, its rest pose.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "renderlib/import/import.h"
+#include "tests/unit/import/gltf_file.h"
+
+namespace bandsaw {
+namespace {
+
+using test::floats;
+using test::GltfTriangle;
+using test::TempDir;
+using test::write_text;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+const Principled& principled(const ImportedScene& imported) {
+  return std::get<Principled>(imported.scene.materials.at(0));
+}
+const ImageTexture& image(const ImportedScene& imported, TextureId id) {
+  return std::get<ImageTexture>(imported.scene.textures.at(index_of(id)));
+}
+
+class Gltf : public ::testing::Test {
+ protected:
+  ImportedScene read(const GltfTriangle& file) {
+    write_text(folder_, "a.ppm", test::small_ppm());
+    auto imported = import_scene(file.write(folder_, "t.gltf"));
+    EXPECT_TRUE(imported.ok()) << imported.status();
+    return imported.ok() ? *std::move(imported) : ImportedScene();
+  }
+  TempDir folder_;
+};
+
+TEST_F(Gltf, EveryParameterHasItsTextureAndItsNumber) {
+  GltfTriangle file;
+  file.textures = R"({"source": 0}, {"source": 0, "sampler": 0})";
+  file.images = R"({"uri": "a.ppm"})";
+  file.samplers = R"({"wrapS": 33071, "wrapT": 33648, "magFilter": 9728})";
+  file.more = R"("extensionsUsed": ["KHR_materials_clearcoat", "KHR_materials_transmission",
+    "KHR_materials_ior", "KHR_materials_emissive_strength"],)";
+  file.materials = R"({"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.25, 1, 0.75],
+      "baseColorTexture": {"index": 0}, "metallicFactor": 0.25, "roughnessFactor": 0.75,
+      "metallicRoughnessTexture": {"index": 1}},
+    "normalTexture": {"index": 1, "scale": 0.5}, "emissiveTexture": {"index": 0},
+    "emissiveFactor": [1, 0.5, 0.25], "alphaMode": "MASK", "alphaCutoff": 0.25, "doubleSided": true,
+    "extensions": {"KHR_materials_clearcoat": {"clearcoatFactor": 0.5, "clearcoatTexture": {"index": 1},
+        "clearcoatRoughnessFactor": 0.25, "clearcoatRoughnessTexture": {"index": 1},
+        "clearcoatNormalTexture": {"index": 1, "scale": 2}},
+      "KHR_materials_transmission": {"transmissionFactor": 0.75, "transmissionTexture": {"index": 1}},
+      "KHR_materials_ior": {"ior": 1.25}, "KHR_materials_emissive_strength": {"emissiveStrength": 8}}})";
+  const ImportedScene imported = read(file);
+  EXPECT_THAT(imported.info.warnings, IsEmpty());
+  const Principled& m = principled(imported);
+  EXPECT_EQ(m.base_color.factor, (Rgb{0.5f, 0.25f, 1}));
+  EXPECT_EQ(image(imported, m.base_color.texture).format, ImageTexture::Format::kSrgb8);
+  EXPECT_EQ(m.metallic.factor, 0.25);
+  EXPECT_EQ(m.roughness.factor, 0.75);
+  EXPECT_EQ(m.metallic.texture, m.roughness.texture);
+  const ImageTexture& rough = image(imported, m.roughness.texture);
+  EXPECT_EQ(rough.format, ImageTexture::Format::kLinear8);
+  EXPECT_EQ(rough.wrap, ImageTexture::Wrap::kClamp);
+  EXPECT_EQ(rough.v_wrap(), ImageTexture::Wrap::kMirror);
+  EXPECT_EQ(rough.filter, ImageTexture::Filter::kNearest);
+  ASSERT_TRUE(m.normal.has_value());
+  EXPECT_EQ(m.normal_scale, 0.5);
+  EXPECT_EQ(m.emissive.factor, (Rgb{8, 4, 2}));
+  EXPECT_TRUE(m.double_sided);
+  EXPECT_EQ(m.alpha_mode, AlphaMode::kMask);
+  EXPECT_EQ(m.alpha_cutoff, 0.25);
+  EXPECT_EQ(m.alpha.factor, 0.75);
+  EXPECT_EQ(m.coat.factor, 0.5);
+  EXPECT_EQ(m.coat_roughness.factor, 0.25);
+  EXPECT_EQ(m.coat.texture, m.roughness.texture) << "the same image under the same use";
+  ASSERT_TRUE(m.coat_normal.has_value());
+  EXPECT_EQ(m.coat_normal_scale, 2);
+  EXPECT_EQ(m.transmission.factor, 0.75);
+  EXPECT_EQ(m.index_of_refraction, 1.25);
+}
+
+TEST_F(Gltf, WithoutAnythingIsItsDefaults) {
+  const ImportedScene imported = read({});
+  const Principled& m = principled(imported);
+  EXPECT_EQ(m.base_color.factor, (Rgb{1, 1, 1}));
+  EXPECT_EQ(m.metallic.factor, 1);
+  EXPECT_EQ(m.roughness.factor, 1);
+  EXPECT_EQ(m.index_of_refraction, 1.5);
+  EXPECT_EQ(m.alpha_mode, AlphaMode::kOpaque);
+  EXPECT_FALSE(m.normal || m.coat_normal || m.index_map);
+}
+
+TEST_F(Gltf, TexturesAreTurnedScaledAndMovedAboutTheTopLeftCorner) {
+  GltfTriangle file;
+  file.textures = R"({"source": 0})";
+  file.images = R"({"uri": "a.ppm"})";
+  file.more = R"("extensionsUsed": ["KHR_texture_transform"],)";
+  // The specification's example: the lower left quadrant of the image, turned clockwise.
+  file.materials = R"({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "extensions":
+    {"KHR_texture_transform": {"offset": [0, 1], "rotation": 1.5707963267948966, "scale": [0.5, 0.5]}}}}})";
+  const ImportedScene imported = read(file);
+  const ImageTexture& texture = image(imported, principled(imported).base_color.texture);
+  // glTF's (0, 0), its top left corner, is our (0, 1).
+  const auto at = [&](double u, double v) {
+    const Vec2 uv = texture.uv_transform({u, 1 - v});
+    return Vec3{uv.x, 1 - uv.y, 0};
+  };
+  EXPECT_NEAR(length(at(0, 0) - Vec3{0, 1, 0}), 0, 1e-12);
+  EXPECT_NEAR(length(at(1, 0) - Vec3{0, 0.5, 0}), 0, 1e-12);
+  EXPECT_NEAR(length(at(0, 1) - Vec3{0.5, 1, 0}), 0, 1e-12);
+  EXPECT_NEAR(length(at(1, 1) - Vec3{0.5, 0.5, 0}), 0, 1e-12);
+}
+
+TEST_F(Gltf, EachTextureHasItsOwnSetOfUvs) {
+  GltfTriangle file;
+  file.textures = R"({"source": 0})";
+  file.images = R"({"uri": "a.ppm"})";
+  file.more = R"("extensionsUsed": ["KHR_texture_transform"],)";
+  file.materials = R"({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "texCoord": 1}},
+    "normalTexture": {"index": 0},
+    "emissiveTexture": {"index": 0, "extensions": {"KHR_texture_transform": {"texCoord": 1}}}})";
+  const ImportedScene imported = read(file);
+  const Principled& m = principled(imported);
+  const UvSet base = image(imported, m.base_color.texture).uv_set;
+  EXPECT_NE(image(imported, *m.normal).uv_set, base);
+  EXPECT_EQ(image(imported, m.emissive.texture).uv_set, base);
+  const Mesh& mesh = imported.scene.geometry.meshes[0];
+  const auto& uvs = base == UvSet::kFirst ? mesh.uvs : mesh.uvs2;
+  EXPECT_EQ(uvs[1][0], 0.5f) << "the base colour's are the file's second set";
+  EXPECT_EQ((base == UvSet::kFirst ? mesh.uvs2 : mesh.uvs)[1][0], 1);
+}
+
+TEST_F(Gltf, VertexColoursAreLinearAndWhiteOnesAreNone) {
+  GltfTriangle file;
+  file.colors = true;
+  const ImportedScene imported = read(file);
+  const Mesh& mesh = imported.scene.geometry.meshes[0];
+  EXPECT_THAT(mesh.colors, ElementsAre(ElementsAre(0.5f, 0, 0), ElementsAre(0, 0.5f, 0),
+                                       ElementsAre(0, 0, 0.5f)));
+  EXPECT_THAT(read({}).scene.geometry.meshes[0].colors, IsEmpty());
+}
+
+TEST_F(Gltf, WhatIsNotRenderedIsNamed) {
+  GltfTriangle file;
+  file.textures = R"({"source": 0})";
+  file.images = R"({"uri": "a.ppm"})";
+  file.more =
+      R"("extensionsUsed": ["KHR_materials_iridescence", "KHR_materials_sheen", "KHR_xmp_json_ld"],)";
+  file.materials = R"({"occlusionTexture": {"index": 0},
+    "extensions": {"KHR_materials_sheen": {"sheenColorFactor": [1, 0, 0]}}})";
+  const ImportedScene imported = read(file);
+  EXPECT_THAT(imported.info.warnings,
+              Contains("t.gltf: the extension KHR_materials_iridescence is left out"));
+  EXPECT_THAT(imported.info.warnings,
+              Contains("t.gltf: the extension KHR_materials_sheen is left out"));
+  EXPECT_THAT(imported.info.warnings, Contains(HasSubstr("its occlusion map is left out")));
+  EXPECT_THAT(imported.info.warnings, Not(Contains(HasSubstr("xmp"))));
+}
+
+// A skinned triangle: one bone that its node lifts by 2, whose inverse bind matrix lowers by 1; and
+// a morph target at weight 0.5 that moves the second vertex along z. The mesh's own node counts for
+// nothing.
+TEST_F(Gltf, StandsInItsRestPose) {
+  const std::vector<float> lowered{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1};
+  const std::string joints = std::string(12, '\0');
+  std::string weights = floats({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
+  write_text(folder_, "s.bin",
+             floats({0, 0, 0, 1, 0, 0, 0, 1, 0}) + floats(lowered) + weights +
+                 floats({0, 0, 0, 0, 0, 4, 0, 0, 0}) + joints);
+  const auto imported = import_scene(write_text(folder_, "s.gltf", R"({"asset": {"version": "2.0"},
+"scene": 0, "scenes": [{"nodes": [0, 1]}, {"nodes": [0]}],
+"nodes": [{"mesh": 0, "skin": 0, "translation": [100, 0, 0]}, {"name": "bone", "translation": [0, 2, 0]}],
+"skins": [{"joints": [1], "inverseBindMatrices": 1}],
+"meshes": [{"weights": [0.5], "primitives": [{"attributes": {"POSITION": 0, "JOINTS_0": 4, "WEIGHTS_0": 2},
+  "targets": [{"POSITION": 3}]}]}],
+"accessors": [
+{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0,0,0], "max": [1,1,0]},
+{"bufferView": 1, "componentType": 5126, "count": 1, "type": "MAT4"},
+{"bufferView": 2, "componentType": 5126, "count": 3, "type": "VEC4"},
+{"bufferView": 3, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0,0,0], "max": [0,0,4]},
+{"bufferView": 4, "componentType": 5121, "count": 3, "type": "VEC4"}],
+"bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 64},
+{"buffer": 0, "byteOffset": 100, "byteLength": 48}, {"buffer": 0, "byteOffset": 148, "byteLength": 36},
+{"buffer": 0, "byteOffset": 184, "byteLength": 12}],
+"buffers": [{"byteLength": 196, "uri": "s.bin"}]})"));
+  ASSERT_TRUE(imported.ok()) << imported.status();
+  const Geometry& geometry = imported->scene.geometry;
+  ASSERT_EQ(geometry.instances.size(), 1u);
+  EXPECT_EQ(geometry.instances[0].to_world, Transform{});
+  EXPECT_THAT(geometry.meshes[0].positions,
+              ElementsAre(ElementsAre(0, 1, 0), ElementsAre(1, 1, 2), ElementsAre(0, 2, 0)));
+  EXPECT_THAT(imported->info.warnings, Contains(HasSubstr("1 scenes beside the default one")));
+}
+
+}  // namespace
+}  // namespace bandsaw
