@@ -90,7 +90,8 @@ absl::StatusOr<ImageOptions> checked_image(const RawOptions& raw) {
     image.integrator = integrator_named(*raw.integrator);
     if (!image.integrator) {
       return wrong(absl::StrCat(
-          "--integrator: must be path, direct, normals, depth, albedo or ambient_occlusion, is '",
+          "--integrator: must be path, direct, normals, depth, albedo, ambient_occlusion, "
+          "path_lights or path_scattering, is '",
           *raw.integrator, "'"));
     }
   }

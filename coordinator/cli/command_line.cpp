@@ -55,7 +55,8 @@ void add_image(CLI::App& app, RawOptions& raw) {
 
 void add_integrator(CLI::App& app, RawOptions& raw) {
   app.add_option("--integrator", raw.integrator,
-                 "What is shown: path, direct, normals, depth, albedo or ambient_occlusion "
+                 "What is shown: path, direct, normals, depth, albedo, ambient_occlusion, "
+                 "path_lights or path_scattering "
                  "[default: the scene's]")
       ->type_name("I");
 }

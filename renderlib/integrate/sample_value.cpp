@@ -53,7 +53,7 @@ Rgb value_at(const Scene& scene, Integrator integrator, const Ray& ray, const Pi
 Rgb sample_value(const Scene& scene, Integrator integrator, const Ray& camera_ray,
                  const PixelSampler& sampler, std::uint64_t sample, const PathOptions& options,
                  std::uint64_t& rays) {
-  if (integrator == Integrator::kPath || integrator == Integrator::kDirect) {
+  if (follows_light(integrator)) {
     return path_radiance(scene, camera_ray, sampler, sample, options, rays);
   }
   return value_at(scene, integrator, camera_ray, sampler, sample, rays);

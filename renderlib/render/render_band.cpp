@@ -28,6 +28,12 @@ constexpr std::size_t kMostLevels = 64;
 /// together.
 constexpr std::uint64_t kSamplesPerUnit = 1024;
 
+Technique technique_of(Integrator integrator) {
+  return integrator == Integrator::kPathLights       ? Technique::kLightsOnly
+         : integrator == Integrator::kPathScattering ? Technique::kScatteringOnly
+                                                     : Technique::kBoth;
+}
+
 /// Renders the pixels of a band; shared by the threads.
 class BandRenderer {
  public:
@@ -37,6 +43,7 @@ class BandRenderer {
         seed_(settings.seed),
         integrator_(settings.integrator),
         options_{.max_depth = settings.max_depth,
+                 .technique = technique_of(settings.integrator),
                  .local = settings.integrator == Integrator::kDirect},
         filter_(scene.filter()),
         camera_(scene.camera(), static_cast<int>(settings.width),

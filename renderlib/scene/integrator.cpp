@@ -6,7 +6,8 @@ namespace bandsaw {
 namespace {
 
 constexpr std::array<absl::string_view, kLastIntegrator + 1> kNames = {
-    "path", "direct", "normals", "depth", "albedo", "ambient_occlusion"};
+    "path",        "direct",         "normals", "depth", "albedo", "ambient_occlusion",
+    "path_lights", "path_scattering"};
 
 }  // namespace
 

@@ -18,10 +18,19 @@ enum class Integrator {
   kDepth = 3,             ///< distance to the surface along the ray, scene units; a miss is 0
   kAlbedo = 4,            ///< colour without light (material/albedo.h); a miss is black
   kAmbientOcclusion = 5,  ///< share of cosine-weighted directions without a surface near; a miss: 1
+  kPathLights = 6,        ///< kPath that only asks lights, where a surface has a density
+  kPathScattering = 7,    ///< kPath that asks no light and waits until it meets one
 };
-inline constexpr int kLastIntegrator = 5;
+inline constexpr int kLastIntegrator = 7;
 
-/// "path", "direct", "normals", "depth", "albedo", "ambient_occlusion".
+/// Those that path_radiance (integrate/path.h) computes.
+constexpr bool follows_light(Integrator integrator) {
+  return integrator == Integrator::kPath || integrator == Integrator::kDirect ||
+         integrator == Integrator::kPathLights || integrator == Integrator::kPathScattering;
+}
+
+/// "path", "direct", "normals", "depth", "albedo", "ambient_occlusion", "path_lights",
+/// "path_scattering".
 absl::string_view integrator_name(Integrator integrator);
 std::optional<Integrator> integrator_named(absl::string_view name);
 

@@ -77,7 +77,7 @@ TEST(Package, CarriesWhatIsShownAndHow) {
   EXPECT_THAT(std::string(package_info(encode_package(scene, info, blobs)).status().message()),
               HasSubstr("scene package: exposure: must lie in"));
   info.display = {};
-  info.integrator = static_cast<Integrator>(6);
+  info.integrator = static_cast<Integrator>(8);
   EXPECT_THAT(std::string(package_info(encode_package(scene, info, blobs)).status().message()),
               HasSubstr("scene package: integrator: must lie in"));
 }

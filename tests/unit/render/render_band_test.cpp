@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 #include <set>
 
 #include "renderlib/render/canary.h"
@@ -66,6 +67,30 @@ TEST(RenderBand, EveryIntegratorGivesTheSameBitsInAnyBandsAndThreads) {
   RenderSettings settings = kSettings;
   settings.integrator = static_cast<Integrator>(kLastIntegrator + 1);
   EXPECT_FALSE(validate(settings).ok());
+}
+
+// Asking lights, meeting them by chance, and both: one mean, three noises. A path that does not ask
+// traces fewer rays.
+TEST(RenderBand, TheTechniquesOfPathTracingHaveOneMean) {
+  const auto box = test::cornell_box().build();
+  const auto pixels = [&](Integrator integrator) {
+    Pool pool(2);
+    RenderSettings settings = kSettings;
+    settings.max_depth = 2;
+    settings.integrator = integrator;
+    return *render_band(*box, settings, {{0, 1024}, {0, 11}}, pool, kGoOn, {});
+  };
+  const auto total = [](const BandPixels& band) {
+    return std::accumulate(band.sums.begin(), band.sums.end(), 0.0);
+  };
+  const BandPixels both = pixels(Integrator::kPath);
+  const BandPixels lights = pixels(Integrator::kPathLights);
+  const BandPixels scattering = pixels(Integrator::kPathScattering);
+  EXPECT_NE(both.sums, lights.sums);
+  EXPECT_LT(scattering.counters.rays, both.counters.rays);
+  EXPECT_EQ(lights.counters.rays, both.counters.rays);
+  EXPECT_NEAR(total(lights) / total(both), 1, 0.02);
+  EXPECT_NEAR(total(scattering) / total(both), 1, 0.04);
 }
 
 TEST(RenderBand, RowsAreTheSameWhicheverBandTheyComeIn) {

@@ -62,7 +62,7 @@ TEST_F(ServerTest, ChecksEachFieldOfASubmission) {
          r.mutable_stop()->set_time_s(-1);
        }},
       {"integrator",
-       [](auto& r) { r.mutable_settings()->set_integrator(static_cast<farm::Integrator>(6)); }},
+       [](auto& r) { r.mutable_settings()->set_integrator(static_cast<farm::Integrator>(8)); }},
       {"stop.max_samples", [](auto& r) { r.mutable_stop()->set_max_samples(kMaxSamples + 1); }},
   };
   const wire::Digest manifest = put_cornell_box();

@@ -1,0 +1,81 @@
+// bandsaw-gallery: makes the files of the gallery that come from formulas: globe maps, which are
+// too large to be kept, turned meshes, and scenes of hundreds of shapes.
+//
+//   bandsaw-gallery FOLDER    FOLDER/study/globe_512.png …; files that are there are replaced
+//
+// Every run on every machine makes the same bytes. Exit 0: done, 1: failed, 2: wrong usage.
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <string>
+#include <thread>
+
+#include "absl/strings/str_cat.h"
+#include "renderlib/base/atomic_file.h"
+#include "renderlib/base/pool.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/gallery/book_scenes.h"
+#include "renderlib/gallery/globe.h"
+#include "renderlib/gallery/turned.h"
+#include "renderlib/image/png.h"
+
+namespace bandsaw::gallery {
+namespace {
+
+absl::Status make_folder(const std::string& path) {
+  return mkdir(path.c_str(), 0777) == 0 || errno == EEXIST ? absl::OkStatus()
+                                                           : errno_status(errno, path);
+}
+
+absl::Status write(const std::string& path, absl::Span<const std::byte> bytes) {
+  RETURN_IF_ERROR(write_file_atomically(path, bytes));
+  std::puts(path.c_str());
+  return absl::OkStatus();
+}
+absl::Status write(const std::string& path, const std::string& text) {
+  return write(path,
+               absl::MakeConstSpan(reinterpret_cast<const std::byte*>(text.data()), text.size()));
+}
+
+absl::Status make_all(const std::string& folder) {
+  Pool pool(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
+  const std::string study = folder + "/study";
+  const std::string books = folder + "/books";
+  for (const std::string& path : {folder, study, books}) {
+    RETURN_IF_ERROR(make_folder(path));
+  }
+  RETURN_IF_ERROR(write(folder + "/vase.obj", vase()));
+  RETURN_IF_ERROR(write(folder + "/pawn.obj", pawn()));
+  RETURN_IF_ERROR(write(folder + "/lamp_foot.obj", lamp_foot()));
+  RETURN_IF_ERROR(write(folder + "/lamp_shade.obj", lamp_shade()));
+  RETURN_IF_ERROR(write(books + "/one_weekend.textproto", many_spheres(false)));
+  RETURN_IF_ERROR(write(books + "/bouncing_spheres.textproto", many_spheres(true)));
+  RETURN_IF_ERROR(write(books + "/next_week.textproto", next_week_final()));
+  for (const std::uint32_t rows : {512, 1024, 2048, 4096}) {
+    ASSIGN_OR_RETURN(const auto png, encode_png(2 * rows, rows, globe_map(rows, pool)));
+    const std::string name = absl::StrCat("/globe_", rows, ".png");
+    RETURN_IF_ERROR(write(study + name, png));
+    if (rows == 512) {
+      RETURN_IF_ERROR(write(books + name, png));
+    }
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+}  // namespace bandsaw::gallery
+
+int main(int argc, char** argv) {
+  if (argc != 2 || argv[1][0] == '-') {
+    std::fputs("usage: bandsaw-gallery FOLDER, as in: bandsaw-gallery renderlib/gallery\n", stderr);
+    return 2;
+  }
+  if (const absl::Status status = bandsaw::gallery::make_all(argv[1]); !status.ok()) {
+    std::fprintf(stderr, "bandsaw-gallery: %s\n", std::string(status.message()).c_str());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,60 @@
+// The gallery's folders, the study and the books: every scene loads, and a farm gives the bytes
+// that `render` gives.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "tests/farm/farm_processes.h"
+
+namespace bandsaw::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Copies of the scenes, beside the maps that they use and that are not kept in the repository.
+std::vector<std::string> scenes_in(const std::string& folder) {
+  const Finished made = run({BANDSAW_GALLERY_BIN, folder});
+  EXPECT_EQ(made.code, 0) << made.err;
+  std::vector<std::string> scenes;
+  for (const char* part : {"study", "books"}) {
+    const std::string from = std::string(BANDSAW_GALLERY) + "/" + part;
+    for (const auto& entry : fs::directory_iterator(from)) {
+      const fs::path copy = fs::path(folder) / part / entry.path().filename();
+      if (copy.extension() == ".textproto") {
+        fs::copy_file(entry.path(), copy, fs::copy_options::overwrite_existing);
+        scenes.push_back(copy);
+      }
+    }
+  }
+  std::sort(scenes.begin(), scenes.end());
+  return scenes;
+}
+
+TEST(GalleryFolders, RenderAndFarmGiveTheSameBytes) {
+  FarmProcesses farm;
+  farm.add_worker("one", 1);
+  farm.add_worker("two", 1);
+  const std::vector<std::string> scenes = scenes_in(farm.path("gallery"));
+  EXPECT_EQ(std::count_if(scenes.begin(), scenes.end(),
+                          [](const std::string& s) { return s.find("/study/") != s.npos; }),
+            24);  // the study's 23 images, and its first
+  for (const std::string& scene : scenes) {
+    SCOPED_TRACE(scene);
+    const std::vector<std::string> settings = {"--width", "20", "--samples", "16", "--quiet"};
+    const auto with = [&](std::vector<std::string> arguments, const std::string& file) {
+      arguments.insert(arguments.end(), {scene, "-o", farm.path(file)});
+      arguments.insert(arguments.end(), settings.begin(), settings.end());
+      return arguments;
+    };
+    const Finished here = run(with({BANDSAW_BIN, "render"}, "here.pfm"));
+    ASSERT_EQ(here.code, 0) << here.err;
+    const Finished there = run(farm.command(with({"submit"}, "there.pfm")));
+    ASSERT_EQ(there.code, 0) << there.err;
+    EXPECT_TRUE(file_bytes(farm.path("here.pfm")) == file_bytes(farm.path("there.pfm")));
+  }
+}
+
+}  // namespace
+}  // namespace bandsaw::test

@@ -1,0 +1,86 @@
+// The study's largest globe costs its texels' bytes and little else.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+
+#include "coordinator/cli/import_process.h"
+#include "renderlib/base/atomic_file.h"
+#include "renderlib/gallery/globe.h"
+#include "renderlib/image/png.h"
+#include "renderlib/render/render_image.h"
+#include "tests/support/temp_dir.h"
+
+namespace bandsaw::gallery {
+namespace {
+
+using test::TempDir;
+
+// The scene of the study and its map, alone in a folder.
+std::string scene_in(const TempDir& folder, std::uint32_t rows) {
+  Pool pool(2);
+  const auto png = encode_png(2 * rows, rows, globe_map(rows, pool));
+  EXPECT_TRUE(png.ok());
+  const std::string number = std::to_string(rows);
+  EXPECT_TRUE(write_file_atomically(folder / ("globe_" + number + ".png"), *png).ok());
+  const std::string scene = "texture_" + number + ".textproto";
+  std::filesystem::copy_file(std::string(BANDSAW_GALLERY) + "/study/" + scene, folder / scene);
+  return folder / scene;
+}
+
+// The most memory that this process has had at once since the last call of forget_peak().
+std::uint64_t peak_bytes() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with("VmHWM:")) {
+      return std::stoull(line.substr(6)) * 1024;
+    }
+  }
+  return 0;
+}
+bool forget_peak() {
+  std::ofstream file("/proc/self/clear_refs");
+  file << "5" << std::flush;
+  return file.good();
+}
+
+// Renders the scene so large that every texel is looked at, and says what it took.
+std::uint64_t peak_of_render(const std::string& scene_path) {
+  coordinator::ImportLimits limits;
+  limits.program = BANDSAW_IMPORT_BIN;
+  auto package = coordinator::import_in_process(scene_path, limits);
+  EXPECT_TRUE(package.ok()) << package.status();
+  EXPECT_TRUE(forget_peak());
+  auto description = decode_package(package->manifest(), package->blobs());
+  EXPECT_TRUE(description.ok()) << description.status();
+  Pool pool(2);
+  const auto scene = Scene::build(*std::move(description), pool);
+  EXPECT_TRUE(scene.ok()) << scene.status();
+  const RenderSettings settings{
+      .width = 400, .height = 400, .max_depth = 4, .integrator = package->info().integrator};
+  const std::atomic<bool> stop = false;
+  EXPECT_TRUE(render_image(**scene, settings, 4, pool, stop, {}, "").ok());
+  return peak_bytes();
+}
+
+TEST(GlobeMemory, IsAtMostAFifthAboveTheTexels) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "a sanitizer's own memory would be counted";
+#endif
+  const TempDir folder;
+  const std::string small = scene_in(folder, 512);
+  const std::string large = scene_in(folder, 4096);
+  const auto texels = [](std::uint64_t rows) { return rows * 2 * rows * 3; };
+  const std::uint64_t base = peak_of_render(small) - texels(512);
+  const std::uint64_t taken = peak_of_render(large) - base;
+  RecordProperty("bytes_over_texel_bytes",
+                 std::to_string(static_cast<double>(taken) / static_cast<double>(texels(4096))));
+  EXPECT_GE(taken, texels(4096));  // or nothing was measured
+  EXPECT_LE(static_cast<double>(taken), 1.2 * static_cast<double>(texels(4096)));
+}
+
+}  // namespace
+}  // namespace bandsaw::gallery

@@ -1,0 +1,120 @@
+// The files that bandsaw-gallery makes and that are kept in the repository are those that it makes.
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "renderlib/gallery/book_scenes.h"
+#include "renderlib/gallery/lathe.h"
+#include "renderlib/gallery/turned.h"
+#include "renderlib/math/vec.h"
+
+namespace bandsaw::gallery {
+namespace {
+
+std::string kept(const std::string& name) {
+  std::ifstream file(std::string(BANDSAW_GALLERY) + "/" + name, std::ios::binary);
+  EXPECT_TRUE(file.good()) << name;
+  std::ostringstream bytes;
+  bytes << file.rdbuf();
+  return bytes.str();
+}
+
+TEST(MadeFiles, AreThoseOfTheRepository) {
+  EXPECT_TRUE(kept("vase.obj") == vase());
+  EXPECT_TRUE(kept("pawn.obj") == pawn());
+  EXPECT_TRUE(kept("lamp_foot.obj") == lamp_foot());
+  EXPECT_TRUE(kept("lamp_shade.obj") == lamp_shade());
+  EXPECT_TRUE(kept("books/one_weekend.textproto") == many_spheres(false));
+  EXPECT_TRUE(kept("books/bouncing_spheres.textproto") == many_spheres(true));
+  EXPECT_TRUE(kept("books/next_week.textproto") == next_week_final());
+}
+
+struct Obj {
+  std::vector<Vec3> points, normals;
+  std::vector<std::vector<std::size_t>> faces;
+};
+
+Obj parse(const std::string& text) {
+  Obj obj;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream in(line);
+    std::string kind;
+    in >> kind;
+    Vec3 v;
+    if (kind == "v" || kind == "vn") {
+      in >> v.x >> v.y >> v.z;
+      (kind == "v" ? obj.points : obj.normals).push_back(v);
+    } else if (kind == "f") {
+      obj.faces.emplace_back();
+      for (std::string corner; in >> corner;) {
+        obj.faces.back().push_back(std::stoul(corner) - 1);
+      }
+    }
+  }
+  return obj;
+}
+
+// Of each face: the corners' normals are unit vectors on the face's own outer side.
+void expect_normals_out(const Obj& obj) {
+  for (const auto& face : obj.faces) {
+    const Vec3& a = obj.points[face[0]];
+    const Vec3 outside = cross(obj.points[face[1]] - a, obj.points[face[2]] - a);
+    for (const std::size_t corner : face) {
+      EXPECT_NEAR(length(obj.normals[corner]), 1, 2e-3);
+      EXPECT_GT(dot(obj.normals[corner], outside), 0) << "a face at height " << a.y;
+    }
+  }
+}
+
+using Place = std::array<double, 3>;
+
+// Every edge is passed once in each direction, by where its ends lie.
+void expect_closed(const Obj& obj) {
+  std::map<std::pair<Place, Place>, int> edges;
+  const auto place = [&](std::size_t i) {
+    return Place{obj.points[i].x + 0.0, obj.points[i].y + 0.0, obj.points[i].z + 0.0};
+  };
+  for (const auto& face : obj.faces) {
+    for (std::size_t i = 0; i < face.size(); ++i) {
+      ++edges[{place(face[i]), place(face[(i + 1) % face.size()])}];
+    }
+  }
+  for (const auto& [edge, times] : edges) {
+    EXPECT_EQ(times, 1);
+    EXPECT_TRUE(edges.contains({edge.second, edge.first}));
+  }
+}
+
+TEST(Lathe, TurnsClosedMeshesWithNormalsOutwards) {
+  for (const std::string& text : {vase(), pawn(), lamp_foot(), lamp_shade()}) {
+    const Obj obj = parse(text);
+    EXPECT_GT(obj.faces.size(), 100u);
+    expect_normals_out(obj);
+    expect_closed(obj);
+  }
+}
+
+// A cone of 2n + 2n faces: its edge at the foot is sharp, so that the foot's normals point down.
+TEST(Lathe, KeepsSharpEdges) {
+  const Obj cone = parse(lathe_obj(std::array<Vec2, 3>{{{0, 0}, {1, 0}, {0, 1}}}, 8));
+  EXPECT_EQ(cone.faces.size(), 16u);
+  EXPECT_EQ(cone.points.size(), 4u * 9);
+  EXPECT_EQ(cone.normals[0], (Vec3{0, -1, 0}));
+  EXPECT_NEAR(cone.normals[18].y, std::sqrt(0.5), 1e-3);
+}
+
+TEST(Lathe, ASmoothProfilePassesThroughItsCorners) {
+  const std::vector<Vec2> corners = {{1, 0}, {2, 1}, {0.5, 3}, {0, 4}};
+  const std::vector<Vec2> points = smooth_profile(corners, 4);
+  ASSERT_EQ(points.size(), 13u);
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    EXPECT_EQ(points[4 * i], corners[i]);
+  }
+}
+
+}  // namespace
+}  // namespace bandsaw::gallery
