@@ -1,7 +1,6 @@
 #include "renderlib/render/film.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -189,28 +188,19 @@ Film::Snapshot Film::snapshot() const {
 }
 
 std::optional<ErrorEstimate> Film::error() const {
-  double squares = 0;
-  double sum = 0;
+  ErrorSums sums;
+  std::vector<NodeSums> of_row;
   for (const RowNodes& nodes : rows_->nodes) {
     if (!has_halves(nodes)) {
       return std::nullopt;
     }
-    const absl::Span<const double> a = rows_->store.row(nodes[0].slot);
-    const absl::Span<const double> b = rows_->store.row(nodes[1].slot);
-    const auto n = static_cast<double>(nodes[0].range.samples());
-    double row_squares = 0;
-    double row_sum = 0;
-    for (std::size_t k = 0; k < a.size(); ++k) {
-      const double difference = (a[k] - b[k]) / n;
-      row_squares += difference * difference / 4;
-      row_sum += (a[k] + b[k]) / (2 * n);
+    of_row.clear();
+    for (std::size_t i = 0; i < prefix(nodes); ++i) {
+      of_row.push_back({nodes[i].range.samples(), rows_->store.row(nodes[i].slot)});
     }
-    squares += row_squares;
-    sum += row_sum;
+    sums.add_row(of_row);
   }
-  const double count = 3.0 * rows_->width * rows_->height;
-  const double mean = sum / count;
-  return ErrorEstimate{mean > 0 ? std::sqrt(squares / count) / mean : 0, mean};
+  return sums.estimate();
 }
 
 std::uint32_t Film::width() const { return rows_->width; }

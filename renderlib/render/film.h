@@ -12,15 +12,9 @@
 #include "absl/status/statusor.h"
 #include "renderlib/image/image.h"
 #include "renderlib/render/band.h"
+#include "renderlib/render/error_estimate.h"
 
 namespace bandsaw {
-
-/// The estimated error of an image, from the two halves of its samples.
-struct ErrorEstimate {
-  double relative_rmse = 0;  ///< sqrt(mean((A - B)^2 / 4)) / mean, over all pixels and channels, A
-                             ///< and B the halves' means
-  double mean = 0;
-};
 
 class Film {
  public:
@@ -50,7 +44,7 @@ class Film {
   };
   Snapshot snapshot() const;
 
-  /// Nothing until two halves of equal size are there for every row.
+  /// Of the samples that a snapshot shows. Nothing until every row has two halves of equal size.
   std::optional<ErrorEstimate> error() const;
 
   std::uint32_t width() const;

@@ -1,0 +1,106 @@
+#include "renderlib/render/error_estimate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numeric>
+
+#include "renderlib/base/check.h"
+
+namespace bandsaw {
+namespace {
+
+constexpr double kSmallest = 0.01;  // Keeps ratios to dark pixels from deciding all.
+
+struct Estimated {
+  double mean = 0;
+  double variance = 0;
+};
+
+Estimated of_channel(absl::Span<const NodeSums> nodes, std::size_t k) {
+  const auto half = static_cast<double>(nodes[0].samples);
+  const double a = nodes[0].sums[k];
+  const double b = nodes[1].sums[k];
+  const double first = (a + b) / (2 * half);
+  const double of_first = (a - b) * (a - b) / (4 * half * half);
+  double samples = 2 * half;
+  double sum = a + b;
+  double weighed = samples * samples * of_first;
+  for (const NodeSums& node : nodes.subspan(2)) {
+    const auto n = static_cast<double>(node.samples);
+    const double off = node.sums[k] / n - first;
+    weighed += n * n * (off * off - of_first);
+    sum += node.sums[k];
+    samples += n;
+  }
+  return {sum / samples, weighed / (samples * samples)};
+}
+
+// The value that `share` of all stay below.
+double quantile(std::vector<float>& values, double share) {
+  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), values.begin() + at, values.end());
+  return values[static_cast<std::size_t>(at)];
+}
+
+double share_of_worst(std::vector<float> variances) {
+  const double all = std::accumulate(variances.begin(), variances.end(), 0.0);
+  const auto worst = static_cast<std::ptrdiff_t>((variances.size() + 999) / 1000);
+  std::nth_element(variances.begin(), variances.begin() + worst - 1, variances.end(),
+                   std::greater<>());
+  return all > 0 ? std::accumulate(variances.begin(), variances.begin() + worst, 0.0) / all : 0;
+}
+
+}  // namespace
+
+void ErrorSums::add_row(absl::Span<const NodeSums> nodes) {
+  BANDSAW_CHECK(nodes.size() >= 2 && nodes[0].samples == nodes[1].samples,
+                "the error is told from halves");
+  for (std::size_t k = 0; k < nodes[0].sums.size(); k += 3) {
+    double variances[3];
+    double means[3];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Estimated channel = of_channel(nodes, k + c);
+      variances[c] = channel.variance;
+      means[c] = channel.mean;
+    }
+    add_pixel(variances, means);
+  }
+}
+
+void ErrorSums::add_pixel(const double (&variances)[3], const double (&means)[3]) {
+  double of_pixel = 0;
+  double value = 0;
+  for (int c = 0; c < 3; ++c) {
+    relative_squares_ += variances[c] / (means[c] * means[c] + kSmallest);
+    of_pixel += variances[c];
+    value += means[c];
+  }
+  squares_ += of_pixel;
+  sum_ += value;
+  variances_.push_back(static_cast<float>(std::max(0.0, of_pixel / 3)));
+  means_.push_back(static_cast<float>(value / 3));
+}
+
+ErrorEstimate ErrorSums::estimate() const {
+  const double count = 3 * static_cast<double>(variances_.size());
+  ErrorEstimate out;
+  out.mean = sum_ / count;
+  out.rmse = std::sqrt(std::max(0.0, squares_ / count));
+  out.relative_rmse = out.mean > 0 ? out.rmse / out.mean : 0;
+  out.relative_mse = std::max(0.0, relative_squares_ / count);
+  if (out.mean > 0) {
+    std::vector<float> relative(variances_.size());
+    for (std::size_t i = 0; i < relative.size(); ++i) {
+      relative[i] =
+          static_cast<float>(std::sqrt(double{variances_[i]}) / (means_[i] + kSmallest * out.mean));
+    }
+    out.median = quantile(relative, 0.5);
+    out.percentile_95 = quantile(relative, 0.95);
+    out.percentile_99 = quantile(relative, 0.99);
+  }
+  out.worst_share = share_of_worst(variances_);
+  return out;
+}
+
+}  // namespace bandsaw

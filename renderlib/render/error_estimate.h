@@ -1,0 +1,64 @@
+#pragma once
+
+// How wrong an image is, told without a reference: from sums of samples that are independent of
+// each other, or better than that.
+//
+// With Owen-scrambled points the spread of single samples says little (it is 3 to 54 times too
+// large); two halves of a power-of-two number of samples differ by as much as random halves of that
+// error would, or more. So the estimate is right for noise and too large, up to about 2.5 times,
+// where sampling is stratified well.
+
+#include <cstdint>
+#include <vector>
+
+#include "absl/types/span.h"
+
+namespace bandsaw {
+
+/// Errors are standard deviations of the image from the mean that more samples would give, over all
+/// channels of all pixels.
+struct ErrorEstimate {
+  double mean = 0;           ///< of the image
+  double rmse = 0;           ///< sqrt(mean variance)
+  double relative_rmse = 0;  ///< rmse / mean; 0 where the image is black
+  double relative_mse = 0;   ///< mean(variance / (value^2 + 0.01))
+  /// Of the pixels' errors, each over its value plus a hundredth of the mean: what half, 95 and 99
+  /// of a hundred pixels stay below.
+  double median = 0;
+  double percentile_95 = 0;
+  double percentile_99 = 0;
+  /// The share of the variance that the worst thousandth of the pixels (at least one) has.
+  double worst_share = 0;
+
+  /// Rare bright paths decide the error: pixels that none has met yet show nothing of theirs, and
+  /// the estimate is likely too low.
+  bool doubtful() const { return worst_share > 0.3; }
+};
+
+/// One pixel row's sums, of one node of its samples.
+struct NodeSums {
+  std::uint64_t samples = 0;
+  absl::Span<const double> sums;  ///< width x 3
+};
+
+class ErrorSums {
+ public:
+  /// A row whose first two nodes have equally many samples; all rows have equally many pixels. With
+  /// a and b their means and v = (a - b)^2 / 4 the variance of both together, the variance of a
+  /// further node of mean e is taken as (e - (a + b) / 2)^2 - v, which is right on average.
+  void add_row(absl::Span<const NodeSums> nodes);
+
+  /// At least one row MUST have been added.
+  ErrorEstimate estimate() const;
+
+ private:
+  void add_pixel(const double (&variances)[3], const double (&means)[3]);
+
+  double squares_ = 0;
+  double relative_squares_ = 0;
+  double sum_ = 0;
+  std::vector<float> variances_;  ///< mean over the channels, >= 0
+  std::vector<float> means_;
+};
+
+}  // namespace bandsaw
