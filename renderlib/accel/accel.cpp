@@ -6,6 +6,7 @@
 #include "renderlib/accel/query.h"
 #include "renderlib/accel/top_tree.h"
 #include "renderlib/accel/trace.h"
+#include "renderlib/accel/trace_moving.h"
 
 namespace bandsaw {
 namespace {
@@ -29,12 +30,29 @@ std::vector<MeshTree> build_meshes(const std::vector<Mesh>& meshes, Pool& pool) 
   return trees;
 }
 
+std::vector<ShapesTree> build_groups(const std::vector<Shapes>& groups, Pool& pool) {
+  std::vector<ShapesTree> trees(groups.size());
+  pool.parallel_for(static_cast<std::int64_t>(groups.size()), [&](std::int64_t i) {
+    const auto group = static_cast<std::size_t>(i);
+    trees[group] = build_shapes_tree(groups[group], nullptr);
+  });
+  return trees;
+}
+
 }  // namespace
 
 struct Accel::Trees {
   const Geometry* geometry = nullptr;
-  std::vector<MeshTree> meshes;
+  Prototypes prototypes;
   TopTree top;
+  MovingTree moving;
+
+  /// True: the query needs no more.
+  template <class Query>
+  bool ask(const Ray& ray, Query& query) const {
+    return trace(top, *geometry, ray, query) ||
+           (!moving.tree.empty && trace_moving(moving, *geometry, ray, query));
+  }
 };
 
 Accel::Accel(std::unique_ptr<Trees> trees) : trees_(std::move(trees)) {}
@@ -42,35 +60,41 @@ Accel::Accel(Accel&&) noexcept = default;
 Accel& Accel::operator=(Accel&&) noexcept = default;
 Accel::~Accel() = default;
 
-Accel Accel::build(const Geometry& geometry, Pool& pool) {
+Accel Accel::build(const Geometry& geometry, Pool& pool, const Interval& interval) {
   auto trees = std::make_unique<Trees>();
   trees->geometry = &geometry;
-  trees->meshes = build_meshes(geometry.meshes, pool);
-  trees->top = build_top_tree(geometry, trees->meshes, &pool);
+  Prototypes& prototypes = trees->prototypes;
+  prototypes.meshes = build_meshes(geometry.meshes, pool);
+  prototypes.groups = build_groups(geometry.groups, pool);
+  trees->top = build_top_tree(geometry, prototypes, &pool);
+  trees->moving = build_moving_tree(geometry, prototypes, interval, &pool);
   return Accel(std::move(trees));
 }
 
 Hit Accel::closest(const Ray& ray) const {
   ClosestQuery query(ray);
-  trace(trees_->top, *trees_->geometry, ray, query);
+  trees_->ask(ray, query);
   return query.result();
 }
 
 Hit Accel::closest_after(const Ray& ray, const Hit& after) const {
-  AfterQuery query(ray, after, trees_->geometry->spheres);
-  trace(trees_->top, *trees_->geometry, ray, query);
+  AfterQuery query(ray, after);
+  trees_->ask(ray, query);
   return query.result();
 }
 
 bool Accel::occluded(const Ray& ray) const {
   AnyQuery query(ray);
-  return trace(trees_->top, *trees_->geometry, ray, query);
+  return trees_->ask(ray, query);
 }
 
 std::size_t Accel::bytes() const {
-  std::size_t sum = trees_->top.bytes();
-  for (const MeshTree& mesh : trees_->meshes) {
+  std::size_t sum = trees_->top.bytes() + trees_->moving.bytes();
+  for (const MeshTree& mesh : trees_->prototypes.meshes) {
     sum += mesh.bytes();
+  }
+  for (const ShapesTree& group : trees_->prototypes.groups) {
+    sum += group.bytes();
   }
   return sum;
 }

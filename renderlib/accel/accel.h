@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <memory>
 
+#include "renderlib/geometry/moving_bounds.h"
 #include "renderlib/base/pool.h"
 #include "renderlib/geometry/ray.h"
 #include "renderlib/geometry/shapes.h"
@@ -15,8 +16,9 @@ namespace bandsaw {
 
 class Accel {
  public:
-  /// `geometry` MUST outlive the result and not change.
-  static Accel build(const Geometry& geometry, Pool& pool);
+  /// `geometry` MUST outlive the result and not change. What moves is found by rays whose time is
+  /// within `interval`.
+  static Accel build(const Geometry& geometry, Pool& pool, const Interval& interval = {});
 
   Accel(Accel&&) noexcept;
   Accel& operator=(Accel&&) noexcept;

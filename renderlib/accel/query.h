@@ -3,8 +3,6 @@
 // What is asked of the trees: the closest hit, or whether there is any. Both hear of every hit that
 // the double tests find, in any order.
 
-#include <vector>
-
 #include "renderlib/geometry/intersect.h"
 #include "renderlib/geometry/ray.h"
 
@@ -13,6 +11,8 @@ namespace bandsaw {
 class ClosestQuery {
  public:
   static constexpr bool kAny = false;
+  /// Whether far sides of spheres count beside near ones.
+  static constexpr bool kBothSides = false;
 
   explicit ClosestQuery(const Ray& ray) { best_.t = ray.t_max; }
 
@@ -35,42 +35,28 @@ class ClosestQuery {
 class AfterQuery {
  public:
   static constexpr bool kAny = false;
+  static constexpr bool kBothSides = true;
 
-  AfterQuery(const Ray& ray, const Hit& after, const std::vector<Sphere>& spheres)
-      : closest_(ray),
-        after_(after),
-        spheres_(spheres),
-        ray_(trace_setup(ray.origin, ray.direction, ray.t_max)) {}
+  AfterQuery(const Ray& ray, const Hit& after) : closest_(ray), after_(after) {}
 
   double bound() const { return closest_.bound(); }
   bool found(const PrimitiveId& id, const Crossing& crossing) {
-    consider(id, crossing);
-    // A sphere tells of its near side alone; the far one may be the next.
-    Crossing far;
-    if (id.instance == 0 && id.primitive < spheres_.size() &&
-        intersect(ray_, spheres_[id.primitive], true, far)) {
-      consider(id, far);
+    if (crossing.t > after_.t || (crossing.t == after_.t && id > after_.id)) {
+      closest_.found(id, crossing);
     }
     return false;
   }
   Hit result() const { return closest_.result(); }
 
  private:
-  void consider(const PrimitiveId& id, const Crossing& crossing) {
-    if (crossing.t > after_.t || (crossing.t == after_.t && id > after_.id)) {
-      closest_.found(id, crossing);
-    }
-  }
-
   ClosestQuery closest_;
   Hit after_;
-  const std::vector<Sphere>& spheres_;
-  TracedRay ray_;
 };
 
 class AnyQuery {
  public:
   static constexpr bool kAny = true;
+  static constexpr bool kBothSides = false;
 
   explicit AnyQuery(const Ray& ray) : t_max_(ray.t_max) {}
 

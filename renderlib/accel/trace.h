@@ -10,10 +10,19 @@
 #include "renderlib/accel/sphere_pack.h"
 #include "renderlib/accel/top_tree.h"
 #include "renderlib/accel/walk.h"
+#include "renderlib/geometry/disk.h"
 
 namespace bandsaw {
 
 inline constexpr std::uint32_t kNoneSkipped = 0xffffffffu;
+
+/// The instance whose primitives are tested, and the one of them that the ray starts on.
+struct Started {
+  Started(std::uint32_t of, const PrimitiveId& from)
+      : instance(of), on(from.instance == of ? from.primitive : kNoneSkipped) {}
+  std::uint32_t instance;
+  std::uint32_t on;
+};
 
 /// Tests the flats of a pack but `skipped`; test(lane, crossing) is the double test. Lowers `bound`
 /// with the query's. True: the query needs no more.
@@ -60,44 +69,54 @@ inline bool trace_mesh(const MeshTree& mesh, const TracedRay& ray, std::uint32_t
 }
 
 template <class Query>
-inline bool trace_instance(const PlacedMesh& placed, const TracedRay& world, const Ray& ray,
-                           Query& query) {
-  if (placed.identity) {
-    return trace_mesh(*placed.mesh, world, placed.instance, ray.from, query);
-  }
-  const Vec3 origin = placed.to_object.point(ray.origin);
-  const Vec3 direction = placed.to_object.direction(ray.direction);
-  if (!is_traceable({origin, direction, ray.t_max})) {
-    return false;
-  }
-  return trace_mesh(*placed.mesh, trace_setup(origin, direction, ray.t_max), placed.instance,
-                    ray.from, query);
-}
-
-template <class Query>
-inline bool trace_loose_flats(const FlatPack& pack, const Geometry& geometry, const TracedRay& ray,
-                              const FloatRay& floats, std::uint32_t skipped, float& bound,
+inline bool trace_loose_flats(const FlatPack& pack, const Shapes& shapes, const TracedRay& ray,
+                              const FloatRay& floats, const Started& started, float& bound,
                               Query& query) {
-  const std::size_t first_quad = geometry.spheres.size();
-  const std::size_t first_triangle = first_quad + geometry.quads.size();
-  return test_flats(
-      pack, floats, 0, skipped, bound, query, [&](std::size_t lane, Crossing& crossing) {
-        const std::size_t index = pack.primitive[lane];
-        return index < first_triangle
-                   ? intersect(ray, geometry.quads[index - first_quad], crossing)
-                   : intersect(ray, geometry.triangles[index - first_triangle], crossing);
-      });
+  const std::size_t first_quad = shapes.spheres.size();
+  const std::size_t first_triangle = first_quad + shapes.quads.size();
+  return test_flats(pack, floats, started.instance, started.on, bound, query,
+                    [&](std::size_t lane, Crossing& crossing) {
+                      const std::size_t index = pack.primitive[lane];
+                      return index < first_triangle
+                                 ? intersect(ray, shapes.quads[index - first_quad], crossing)
+                                 : intersect(ray, shapes.triangles[index - first_triangle],
+                                             crossing);
+                    });
 }
 
 template <class Query>
-inline bool trace_spheres(const SpherePack& pack, const Geometry& geometry, const TracedRay& ray,
-                          const FloatRay& floats, std::uint32_t started_on, float& bound,
+inline bool trace_spheres(const SpherePack& pack, const Shapes& shapes, const TracedRay& ray,
+                          const FloatRay& floats, const Started& started, float& bound,
                           Query& query) {
   for (unsigned left = filter_spheres(pack, floats, bound); left != 0; left &= left - 1) {
     const std::uint32_t index = pack.primitive[static_cast<std::size_t>(std::countr_zero(left))];
+    const PrimitiveId id = {started.instance, index};
     Crossing crossing;
-    if (intersect(ray, geometry.spheres[index], index == started_on, crossing)) {
-      if (query.found({0, index}, crossing)) {
+    if (intersect(ray, shapes.spheres[index], index == started.on, crossing)) {
+      if (query.found(id, crossing)) {
+        return true;
+      }
+      if constexpr (Query::kBothSides) {
+        if (intersect(ray, shapes.spheres[index], true, crossing)) {
+          query.found(id, crossing);
+        }
+      }
+      bound = floats.above(query.bound());
+    }
+  }
+  return false;
+}
+
+template <class Query>
+[[gnu::noinline]] bool trace_disks(const SpherePack& pack, const Shapes& shapes,
+                                   const TracedRay& ray, const FloatRay& floats,
+                                   const Started& started, float& bound, Query& query) {
+  const auto first = static_cast<std::uint32_t>(shapes.size() - shapes.disks.size());
+  for (unsigned left = filter_spheres(pack, floats, bound); left != 0; left &= left - 1) {
+    const std::uint32_t index = pack.primitive[static_cast<std::size_t>(std::countr_zero(left))];
+    Crossing crossing;
+    if (first + index != started.on && intersect(ray, shapes.disks[index], crossing)) {
+      if (query.found({started.instance, first + index}, crossing)) {
         return true;
       }
       bound = floats.above(query.bound());
@@ -106,7 +125,62 @@ inline bool trace_spheres(const SpherePack& pack, const Geometry& geometry, cons
   return false;
 }
 
-/// True: the query needs no more.
+/// A leaf of shapes.
+template <class Query>
+inline bool trace_leaf(ChildRef leaf, const ShapesTree& tree, const Shapes& shapes,
+                       const TracedRay& ray, const FloatRay& floats, const Started& started,
+                       float& bound, Query& query) {
+  const std::uint32_t index = leaf.leaf_index();
+  if (leaf.kind() == LeafKind::kFlats) {
+    return trace_loose_flats(tree.flats[index], shapes, ray, floats, started, bound, query);
+  }
+  if (leaf.kind() == LeafKind::kSpheres) {
+    return trace_spheres(tree.spheres[index], shapes, ray, floats, started, bound, query);
+  }
+  return trace_disks(tree.disks[index], shapes, ray, floats, started, bound, query);
+}
+
+template <class Query>
+[[gnu::noinline]] bool trace_group(const Prototype& group, const TracedRay& ray,
+                                   std::uint32_t instance, const PrimitiveId& from, Query& query) {
+  const FloatRay floats(ray, group.group->tree.reach);
+  float bound = floats.above(query.bound());
+  const Started started(instance, from);
+  return walk<!Query::kAny>(group.group->tree, floats, bound, [&](ChildRef leaf) {
+    return trace_leaf(leaf, *group.group, *group.shapes, ray, floats, started, bound, query);
+  });
+}
+
+template <class Query>
+inline bool trace_prototype(const Prototype& prototype, const TracedRay& ray,
+                            std::uint32_t instance, const PrimitiveId& from, Query& query) {
+  return prototype.mesh != nullptr ? trace_mesh(*prototype.mesh, ray, instance, from, query)
+                                   : trace_group(prototype, ray, instance, from, query);
+}
+
+/// In the space that `to_object` leads to.
+template <class Query>
+inline bool trace_placed(const Prototype& prototype, const Transform& to_object, const Ray& ray,
+                         std::uint32_t instance, Query& query) {
+  const Vec3 origin = to_object.point(ray.origin);
+  const Vec3 direction = to_object.direction(ray.direction);
+  if (!is_traceable({origin, direction, ray.t_max})) {
+    return false;
+  }
+  return trace_prototype(prototype, trace_setup(origin, direction, ray.t_max), instance, ray.from,
+                         query);
+}
+
+template <class Query>
+inline bool trace_instance(const Placed& placed, const TracedRay& world, const Ray& ray,
+                           Query& query) {
+  return placed.identity ? trace_prototype(placed.prototype, world, placed.instance, ray.from,
+                                           query)
+                         : trace_placed(placed.prototype, placed.to_object, ray, placed.instance,
+                                        query);
+}
+
+/// What does not move. True: the query needs no more.
 template <class Query>
 inline bool trace(const TopTree& top, const Geometry& geometry, const Ray& ray, Query& query) {
   if (!is_traceable(ray) || top.tree.empty) {
@@ -118,18 +192,12 @@ inline bool trace(const TopTree& top, const Geometry& geometry, const Ray& ray, 
   }
   const FloatRay floats(traced, top.tree.reach);
   float bound = floats.above(query.bound());
-  const std::uint32_t from = ray.from.instance == 0 ? ray.from.primitive : kNoneSkipped;
+  const Started started(0, ray.from);
   return walk<!Query::kAny>(top.tree, floats, bound, [&](ChildRef leaf) {
-    const std::uint32_t index = leaf.leaf_index();
-    switch (leaf.kind()) {
-      case LeafKind::kFlats:
-        return trace_loose_flats(top.flats[index], geometry, traced, floats, from, bound, query);
-      case LeafKind::kSpheres:
-        return trace_spheres(top.spheres[index], geometry, traced, floats, from, bound, query);
-      case LeafKind::kInstance:
-        break;
+    if (leaf.kind() != LeafKind::kInstance) {
+      return trace_leaf(leaf, top, geometry, traced, floats, started, bound, query);
     }
-    const bool stop = trace_instance(top.placed[index], traced, ray, query);
+    const bool stop = trace_instance(top.placed[leaf.leaf_index()], traced, ray, query);
     bound = floats.above(query.bound());
     return stop;
   });

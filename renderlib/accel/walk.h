@@ -147,9 +147,10 @@ inline ChildRef some_child(const WideNode& node, unsigned hits, WalkStack& stack
 
 /// Calls leaf(child) for the leaves that the ray meets before `bound`, a float that leaf may lower;
 /// stops when leaf returns true, and says whether it did. kSorted: nearest boxes first.
-template <bool kSorted, class Leaf>
-[[gnu::always_inline]] inline bool walk(const WideTree& tree, const FloatRay& ray,
-                                        const float& bound, Leaf&& leaf) {
+/// enter(index, at) is enter_children of a node.
+template <bool kSorted, class Enter, class Leaf>
+[[gnu::always_inline]] inline bool walk(const WideTree& tree, const float& bound,
+                                        const Enter& enter, Leaf&& leaf) {
   if (tree.empty) {
     return false;
   }
@@ -158,10 +159,10 @@ template <bool kSorted, class Leaf>
   while (true) {
     while (!next.is_leaf()) {
       const WideNode& node = tree.nodes[next.node_index()];
-      Float8 enter;
-      const unsigned hits = enter_children(node, ray, bound, enter);
+      Float8 at;
+      const unsigned hits = enter(next.node_index(), at);
       if (hits != 0) {
-        next = kSorted ? nearest_child(node, hits, enter, stack) : some_child(node, hits, stack);
+        next = kSorted ? nearest_child(node, hits, at, stack) : some_child(node, hits, stack);
       } else if (!stack.pop(bound, next)) {
         return false;
       }
@@ -173,6 +174,16 @@ template <bool kSorted, class Leaf>
       return false;
     }
   }
+}
+
+/// The same where nothing moves.
+template <bool kSorted, class Leaf>
+[[gnu::always_inline]] inline bool walk(const WideTree& tree, const FloatRay& ray,
+                                        const float& bound, Leaf&& leaf) {
+  const auto enter = [&](std::uint32_t node, Float8& at) {
+    return enter_children(tree.nodes[node], ray, bound, at);
+  };
+  return walk<kSorted>(tree, bound, enter, leaf);
 }
 
 }  // namespace bandsaw

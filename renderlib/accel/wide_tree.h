@@ -11,7 +11,7 @@
 namespace bandsaw {
 
 /// What a leaf holds. A leaf holds one kind.
-enum class LeafKind : std::uint32_t { kFlats, kSpheres, kInstance };
+enum class LeafKind : std::uint32_t { kFlats, kSpheres, kInstance, kDisks };
 
 /// What a node points to: another node, or a leaf: one pack of primitives, or one instance.
 class ChildRef {

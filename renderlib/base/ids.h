@@ -9,6 +9,8 @@ namespace bandsaw {
 enum class MaterialId : std::uint32_t {};
 enum class TextureId : std::uint32_t {};
 enum class MeshId : std::uint32_t {};
+enum class GroupId : std::uint32_t {};
+enum class FrameId : std::uint32_t {};
 
 template <class Id>
 constexpr std::size_t index_of(Id id) {

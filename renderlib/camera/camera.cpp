@@ -1,5 +1,8 @@
 #include "renderlib/camera/camera.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/math/elementary.h"
@@ -37,6 +40,20 @@ absl::Status validate_view(const View& camera) {
   }
   if (length(cross(view / distance, camera.up / up_length)) < kLeastUpSine) {
     return invalid("up", "must not be parallel to the view direction");
+  }
+  return absl::OkStatus();
+}
+
+absl::Status validate_shutter(const Shutter& shutter) {
+  for (const double time : {shutter.open, shutter.close}) {
+    if (!(std::abs(time) <= kMostTime)) {
+      return invalid("shutter_open, shutter_close",
+                     absl::StrCat("must be in [-1e9, 1e9], one is ", time));
+    }
+  }
+  if (!(shutter.open <= shutter.close)) {
+    return invalid("shutter_close", absl::StrCat("must not be before shutter_open, ", shutter.open,
+                                                 ", is ", shutter.close));
   }
   return absl::OkStatus();
 }
@@ -81,12 +98,18 @@ View view_of(const Camera& camera) {
   return std::visit([](const auto& c) { return View{c.position, c.look_at, c.up}; }, camera);
 }
 
+const Shutter& shutter_of(const Camera& camera) {
+  return std::visit([](const auto& c) -> const Shutter& { return c.shutter; }, camera);
+}
+
 absl::Status validate(const Camera& camera) {
   RETURN_IF_ERROR(validate_view(view_of(camera)));
+  RETURN_IF_ERROR(validate_shutter(shutter_of(camera)));
   return std::visit([](const auto& c) { return validate_kind(c); }, camera);
 }
 
-RayGenerator::RayGenerator(const Camera& camera, int width, int height) {
+RayGenerator::RayGenerator(const Camera& camera, int width, int height)
+    : shutter_(shutter_of(camera)) {
   std::visit([&](const auto& c) { prepare(c, width, height); }, camera);
 }
 
@@ -114,7 +137,13 @@ void RayGenerator::prepare(const OrthographicCamera& camera, int width, int heig
   corner_ = camera.position - dx_ * (width / 2.0) - dy_ * (height / 2.0);
 }
 
-Ray RayGenerator::ray(double x, double y, double lens_u, double lens_v) const {
+Ray RayGenerator::ray(double x, double y, double lens_u, double lens_v, double share) const {
+  Ray ray = ray_now(x, y, lens_u, lens_v);
+  ray.time = std::min(shutter_.open + share * (shutter_.close - shutter_.open), shutter_.close);
+  return ray;
+}
+
+Ray RayGenerator::ray_now(double x, double y, double lens_u, double lens_v) const {
   const Vec3 at = corner_ + dx_ * x + dy_ * y;
   if (kind_ == Kind::kPinhole) {
     return {.origin = origin_, .direction = normalize(at)};

@@ -17,6 +17,13 @@ struct View {
   Vec3 up{0, 1, 0};        ///< not parallel to the view direction
 };
 
+/// When the image is taken: rays have times from open to close, evenly. Equal: at one moment.
+struct Shutter {
+  double open = 0;
+  double close = 0;  ///< >= open
+  friend bool operator==(const Shutter&, const Shutter&) = default;
+};
+
 /// A pinhole, or a thin lens (Potmesil and Chakravarty 1981): a point at distance z along the view
 /// spreads on the plane of focus, at distance f, over a disk of radius aperture / 2 |z - f| / z.
 struct PerspectiveCamera {
@@ -26,8 +33,10 @@ struct PerspectiveCamera {
   double vertical_fov = 40;   ///< degrees, (0, 180)
   double aperture = 0;        ///< diameter of the lens, [0, kMostLens]; 0: a pinhole
   double focus_distance = 1;  ///< of the sharp plane, along the view, [kLeastFocus, kMostLens]
+  Shutter shutter = {};
 };
 
+inline constexpr double kMostTime = 1e9;
 inline constexpr double kLeastFocus = 1e-9;
 inline constexpr double kMostLens = 1e30;
 
@@ -38,11 +47,13 @@ struct OrthographicCamera {
   Vec3 up{0, 1, 0};
   double height = 2;      ///< of what the image shows, scene units, > 0, at most kMostLens
   bool mirrored = false;  ///< left and right are exchanged
+  Shutter shutter = {};
 };
 
 using Camera = std::variant<PerspectiveCamera, OrthographicCamera>;
 
 View view_of(const Camera& camera);
+const Shutter& shutter_of(const Camera& camera);
 
 /// INVALID_ARGUMENT with the reason when a camera cannot make rays.
 absl::Status validate(const Camera& camera);
@@ -53,10 +64,13 @@ class RayGenerator {
   /// `camera` MUST be valid; sizes in pixels, >= 1.
   RayGenerator(const Camera& camera, int width, int height);
   /// The ray through image position (x, y), in pixels from the top left corner; (lens_u, lens_v) in
-  /// [0, 1)^2. The direction is a unit vector.
-  Ray ray(double x, double y, double lens_u, double lens_v) const;
+  /// [0, 1)^2. The direction is a unit vector. It is at `share` of the time that the shutter is
+  /// open, in [0, 1].
+  Ray ray(double x, double y, double lens_u, double lens_v, double share = 0) const;
 
  private:
+  Ray ray_now(double x, double y, double lens_u, double lens_v) const;
+
   enum class Kind { kPinhole, kLens, kParallel };
 
   void prepare(const PerspectiveCamera& camera, int width, int height);
@@ -70,6 +84,7 @@ class RayGenerator {
   Vec3 lens_x_;  ///< the lens' radius to the right
   Vec3 lens_y_;  ///< and upwards
   double focus_distance_ = 1;
+  Shutter shutter_;
 };
 
 }  // namespace bandsaw

@@ -24,6 +24,7 @@ struct Ray {
   double t_max = kInfinity;  ///< hits have 0 < t < t_max
   /// A flat primitive that the ray starts on and cannot hit again. For a sphere: its near root is not taken as a hit.
   PrimitiveId from = kNoPrimitive;
+  double time = 0;  ///< when it is: moving things are where they are then
 };
 
 /// The closest hit: the lexicographically lowest (t, instance, primitive), whatever tree found it.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "renderlib/base/ids.h"
+#include "renderlib/geometry/frame.h"
 #include "renderlib/math/transform.h"
 #include "renderlib/math/vec.h"
 
@@ -35,6 +36,58 @@ struct Triangle {
   MaterialId material{};
 };
 
+/// Of the points at most `radius` from `center` in the plane across `normal`.
+struct Disk {
+  Vec3 center;
+  Vec3 normal{0, 1, 0};  ///< unit
+  double radius = 1;     ///< > 0
+  MaterialId material{};
+};
+
+/// Shapes that lie loose in one space. As primitives they are counted in this order.
+struct Shapes {
+  std::vector<Sphere> spheres;
+  std::vector<Quad> quads;
+  std::vector<Triangle> triangles;
+  std::vector<Disk> disks;
+
+  std::size_t size() const {
+    return spheres.size() + quads.size() + triangles.size() + disks.size();
+  }
+};
+
+enum class ShapeKind { kSphere, kQuad, kTriangle, kDisk };
+
+/// One of the shapes: `index` counts within its kind.
+struct ShapeRef {
+  ShapeKind kind;
+  std::size_t index;
+};
+
+/// `primitive` MUST be below shapes.size().
+inline ShapeRef shape_ref(const Shapes& shapes, std::size_t primitive) {
+  if (primitive < shapes.spheres.size()) {
+    return {ShapeKind::kSphere, primitive};
+  }
+  primitive -= shapes.spheres.size();
+  if (primitive < shapes.quads.size()) {
+    return {ShapeKind::kQuad, primitive};
+  }
+  primitive -= shapes.quads.size();
+  if (primitive < shapes.triangles.size()) {
+    return {ShapeKind::kTriangle, primitive};
+  }
+  return {ShapeKind::kDisk, primitive - shapes.triangles.size()};
+}
+
+inline MaterialId material_of(const Shapes& shapes, std::size_t primitive) {
+  const auto [kind, index] = shape_ref(shapes, primitive);
+  return kind == ShapeKind::kSphere     ? shapes.spheres[index].material
+         : kind == ShapeKind::kQuad     ? shapes.quads[index].material
+         : kind == ShapeKind::kTriangle ? shapes.triangles[index].material
+                                        : shapes.disks[index].material;
+}
+
 struct Mesh {
   std::vector<std::array<float, 3>> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into positions
@@ -44,22 +97,27 @@ struct Mesh {
   std::vector<std::array<float, 3>> colors = {};        ///< linear RGB >= 0: empty, or one a position
 };
 
-/// One placement of a mesh.
+inline constexpr GroupId kNoGroup{0xffffffffu};
+/// Of an instance of a group: each of its shapes keeps its own.
+inline constexpr MaterialId kOwnMaterial{0xffffffffu};
+
+/// One placement of a mesh or of a group.
 struct Instance {
-  MeshId mesh{};
+  MeshId mesh{};  ///< meaningless where there is a group
   MaterialId material{};
-  Transform to_world;  ///< regular (math/transform.h, inverse)
+  Transform to_world;  ///< regular (math/transform.h, inverse); within `frame` where there is one
+  GroupId group = kNoGroup;
+  FrameId frame = kNoFrame;  ///< what it moves along with (geometry/motion.h)
 };
 
-/// Everything that can be hit. In a hit, `instance` 0 is the loose shapes, whose `primitive` counts
-/// the spheres, then the quads, then the triangles; `instance` i + 1 is instances[i], whose
-/// `primitive` is the triangle of its mesh.
-struct Geometry {
-  std::vector<Sphere> spheres;
-  std::vector<Quad> quads;
-  std::vector<Triangle> triangles;
+/// Everything that can be hit. In a hit, `instance` 0 is the geometry's own loose shapes;
+/// `instance` i + 1 is instances[i], whose `primitive` is the triangle of its mesh or the shape of
+/// its group.
+struct Geometry : Shapes {
   std::vector<Mesh> meshes;
   std::vector<Instance> instances;
+  std::vector<Shapes> groups;  ///< loose shapes in spaces of their own, hit only where placed
+  std::vector<Frame> frames;   ///< what moves
 };
 
 }  // namespace bandsaw

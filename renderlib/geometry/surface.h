@@ -15,12 +15,12 @@ struct SurfacePoint {
   Vec3 shading_normal;  ///< unit; interpolated where the mesh has normals, else the geometric one;
                         ///< same hemisphere
   /// Spheres: as a globe with the seam at -x and v = 0 at the pole -y, u in [0, 1), u = 1/2 at +x,
-  /// 3/4 at -z. Quads: (a, b). Triangles: the weights of b and c. Meshes: their own uv, else
+  /// 3/4 at -z. Quads: (a, b). Disks: the square around them. Triangles: the weights of b and c. Meshes: their own uv, else
   /// weights.
   Vec2 uv;
   Vec2 uv2;              ///< a mesh's second set; uv where there is none
-  Vec3 object_position;  ///< meshes: before their placement; spheres: from their centre; else the
-                         ///< position
+  Vec3 object_position;  ///< meshes and groups: before their placement; spheres: from their
+                         ///< centre; else the position
   Rgb color{1, 1, 1};  ///< of the vertices, interpolated; white where there is none
   /// Where uv.x and uv.y grow, of any length; zero unless set by add_uv_directions.
   Vec3 along_u;
@@ -31,6 +31,7 @@ struct SurfacePoint {
   /// the primitive), in the larger of object and world space scale; more for instances that squash
   /// space so much that rounding is larger.
   double offset = 0;
+  double time = 0;  ///< of the ray that met it; rays from here are at that time too
 };
 
 SurfacePoint surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit);

@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "renderlib/geometry/disk.h"
+#include "renderlib/geometry/placement.h"
+#include "renderlib/geometry/shape_surface.h"
 #include "renderlib/geometry/surface.h"
 
 namespace bandsaw {
@@ -9,13 +12,13 @@ namespace {
 Vec3 vec(const std::array<float, 3>& p) { return {p[0], p[1], p[2]}; }
 
 /// dp/du and dp/dv of the affine map that takes the triangle's uvs to its corners.
-void along_mesh(const Geometry& geometry, SurfacePoint& point) {
+void along_mesh(const Geometry& geometry, const Transform& to_world, SurfacePoint& point) {
   const Instance& instance = geometry.instances[point.id.instance - 1];
   const Mesh& mesh = geometry.meshes[index_of(instance.mesh)];
   const auto& corner = mesh.triangles[point.id.primitive];
   const Vec3 a = vec(mesh.positions[corner[0]]);
-  const Vec3 e1 = instance.to_world.direction(vec(mesh.positions[corner[1]]) - a);
-  const Vec3 e2 = instance.to_world.direction(vec(mesh.positions[corner[2]]) - a);
+  const Vec3 e1 = to_world.direction(vec(mesh.positions[corner[1]]) - a);
+  const Vec3 e2 = to_world.direction(vec(mesh.positions[corner[2]]) - a);
   if (mesh.uvs.empty()) {
     point.along_u = e1;
     point.along_v = e2;
@@ -41,28 +44,50 @@ void along_mesh(const Geometry& geometry, SurfacePoint& point) {
   }
 }
 
+/// In the space the shapes lie in; `normal` is a sphere's there.
+void along_shape(const Shapes& shapes, const Vec3& normal, SurfacePoint& point) {
+  const auto [kind, index] = shape_ref(shapes, point.id.primitive);
+  switch (kind) {
+    case ShapeKind::kSphere:
+      point.along_u = cross({0, 1, 0}, normal);
+      point.along_v = cross(normal, point.along_u);
+      return;
+    case ShapeKind::kQuad:
+      point.along_u = shapes.quads[index].u;
+      point.along_v = shapes.quads[index].v;
+      return;
+    case ShapeKind::kTriangle: {
+      const Triangle& triangle = shapes.triangles[index];
+      point.along_u = triangle.b - triangle.a;
+      point.along_v = triangle.c - triangle.a;
+      return;
+    }
+    case ShapeKind::kDisk: {
+      const DiskAxes axes = axes_of(shapes.disks[index]);
+      point.along_u = axes.u;
+      point.along_v = axes.v;
+      return;
+    }
+  }
+}
+
 }  // namespace
 
 void add_uv_directions(const Geometry& geometry, SurfacePoint& point) {
-  if (point.id.instance != 0) {
-    along_mesh(geometry, point);
+  if (point.id.instance == 0) {
+    along_shape(geometry, point.geometric_normal, point);
     return;
   }
-  std::size_t i = point.id.primitive;
-  if (i < geometry.spheres.size()) {
-    point.along_u = cross({0, 1, 0}, point.geometric_normal);
-    point.along_v = cross(point.geometric_normal, point.along_u);
+  const Instance& instance = geometry.instances[point.id.instance - 1];
+  const Transform to_world = to_world_at(geometry, instance, point.time);
+  if (instance.group == kNoGroup) {
+    along_mesh(geometry, to_world, point);
     return;
   }
-  i -= geometry.spheres.size();
-  if (i < geometry.quads.size()) {
-    point.along_u = geometry.quads[i].u;
-    point.along_v = geometry.quads[i].v;
-    return;
-  }
-  const Triangle& triangle = geometry.triangles[i - geometry.quads.size()];
-  point.along_u = triangle.b - triangle.a;
-  point.along_v = triangle.c - triangle.a;
+  // A sphere's point from its centre is along the normal in its own space.
+  along_shape(*group_of(geometry, instance), unit_or(point.object_position, {0, 0, 1}), point);
+  point.along_u = to_world.direction(point.along_u);
+  point.along_v = to_world.direction(point.along_v);
 }
 
 }  // namespace bandsaw

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "renderlib/geometry/placement.h"
 #include "renderlib/math/elementary.h"
 
 namespace bandsaw {
@@ -16,9 +17,13 @@ template <class Visit>
 void for_each_vertex(const Geometry& geometry, const std::vector<Instance>& instances,
                      Visit visit) {
   for (const Instance& instance : instances) {
+    if (instance.group != kNoGroup) {
+      continue;
+    }
+    const Transform to_world = to_world_at(geometry, instance, 0);
     const Mesh& mesh = geometry.meshes[index_of(instance.mesh)];
     for (const auto& p : mesh.positions) {
-      visit(instance.to_world.point({p[0], p[1], p[2]}));
+      visit(to_world.point({p[0], p[1], p[2]}));
     }
   }
 }

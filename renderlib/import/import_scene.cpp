@@ -12,11 +12,13 @@
 #include "renderlib/import/import.h"
 #include "renderlib/import/model.h"
 #include "renderlib/import/parse_scene.h"
+#include "renderlib/import/read_groups.h"
 #include "renderlib/import/read_materials.h"
 #include "renderlib/import/read_models.h"
 #include "renderlib/import/read_shapes.h"
 #include "renderlib/import/read_textures.h"
 #include "renderlib/import/read_view.h"
+#include "renderlib/import/use_camera.h"
 #include "renderlib/import/scene_draft.h"
 #include "renderlib/package/check.h"
 
@@ -36,11 +38,29 @@ Camera framed(const ImportedScene& out) {
   return frame(geometry, geometry.instances, static_cast<double>(out.info.width) / out.info.height);
 }
 
+/// Where the scene file gives no view of its own.
+absl::StatusOr<Camera> camera_of_a_model(const Field& root, const scene::Scene& from,
+                                         const SceneDraft& draft) {
+  if (from.has_camera()) {
+    return use_camera(root, from, draft);
+  }
+  if (!draft.cameras.empty()) {
+    return draft.cameras.front().camera;
+  }
+  if (from.model_size() != 1) {
+    return root.error(
+        "camera", "is required, for example camera { position: [0, 1, 5] look_at: [0, 0, 0] }");
+  }
+  return framed(draft.out);
+}
+
 absl::Status read_scene(const Field& root, const scene::Scene& from, SceneDraft& draft) {
   SceneDescription& scene = draft.out.scene;
   RETURN_IF_ERROR(read_settings(root, from, draft.out.info));
   // What is cheap to check comes before what takes time.
-  if (from.has_camera()) {
+  ASSIGN_OR_RETURN(draft.shutter, read_shutter(root, from));
+  const bool own_camera = from.has_camera() && from.camera().use().empty();
+  if (own_camera) {
     ASSIGN_OR_RETURN(scene.camera, read_camera(root, from));
   }
   ASSIGN_OR_RETURN(scene.filter, read_filter(root, from));
@@ -50,14 +70,14 @@ absl::Status read_scene(const Field& root, const scene::Scene& from, SceneDraft&
   }
   RETURN_IF_ERROR(read_textures(root, from, draft));
   RETURN_IF_ERROR(read_materials(root, from, draft));
-  RETURN_IF_ERROR(read_shapes(root, from, draft));
-  ASSIGN_OR_RETURN(const auto model_camera, read_models(root, from, draft));
-  if (!from.has_camera()) {
-    if (!model_camera && from.model_size() != 1) {
-      return root.error(
-          "camera", "is required, for example camera { position: [0, 1, 5] look_at: [0, 0, 0] }");
-    }
-    scene.camera = model_camera ? Camera(*model_camera) : framed(draft.out);
+  RETURN_IF_ERROR(read_groups(root, from, draft));
+  RETURN_IF_ERROR(read_shapes(root, from.shape(), draft));
+  RETURN_IF_ERROR(read_models(root, from.model(), draft));
+  RETURN_IF_ERROR(read_instances(root, from.instance(), draft));
+  scene.geometry.frames = std::move(draft.world.frames);
+  scene.geometry.instances = std::move(draft.world.instances);
+  if (!own_camera) {
+    ASSIGN_OR_RETURN(scene.camera, camera_of_a_model(root, from, draft));
   }
   if (!from.has_background() && !has_light(scene)) {
     scene.background = default_sky();
@@ -79,7 +99,7 @@ absl::Status read_model_alone(const std::string& path, SceneDraft& draft) {
   ASSIGN_OR_RETURN(const auto real, draft.folder.resolve(name_of(path), draft.folder.path()));
   ASSIGN_OR_RETURN(const Model model, read_model(real, true, draft));
   draft.out.scene.geometry.instances = model.instances;
-  draft.out.scene.camera = model.camera ? Camera(*model.camera) : framed(draft.out);
+  draft.out.scene.camera = model.cameras.empty() ? framed(draft.out) : model.cameras.front().camera;
   if (!has_light(draft.out.scene)) {
     draft.out.scene.background = default_sky();
   }

@@ -101,10 +101,8 @@ void turn(const Transform& by, Model& model) {
   for (Instance& instance : model.instances) {
     instance.to_world = by * instance.to_world;
   }
-  if (model.camera) {
-    model.camera->position = by.point(model.camera->position);
-    model.camera->look_at = by.point(model.camera->look_at);
-    model.camera->up = by.direction(model.camera->up);
+  for (ModelCamera& camera : model.cameras) {
+    camera.camera = placed(camera.camera, by);
   }
 }
 
@@ -119,6 +117,20 @@ std::set<unsigned> used_materials(const aiScene& scene) {
 }
 
 }  // namespace
+
+Camera placed(Camera camera, const Transform& placement) {
+  if (auto* flat = std::get_if<OrthographicCamera>(&camera)) {
+    flat->height *= length(placement.direction(flat->up)) / length(flat->up);
+  }
+  std::visit(
+      [&](auto& c) {
+        c.position = placement.point(c.position);
+        c.look_at = placement.point(c.look_at);
+        c.up = placement.direction(c.up);
+      },
+      camera);
+  return camera;
+}
 
 bool is_model_file(const std::string& path) {
   const std::size_t dot = path.rfind('.');

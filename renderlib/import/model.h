@@ -2,7 +2,6 @@
 
 // Model files, of every format that Assimp reads, as meshes, materials and placements of the scene.
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,12 +12,20 @@
 
 namespace bandsaw {
 
+struct ModelCamera {
+  std::string name;
+  Camera camera;  ///< in the model's own space
+};
+
 /// A model in the draft: its meshes, materials and textures have been added there, its placements
 /// have not.
 struct Model {
-  std::vector<Instance> instances;  ///< in the model's own space
-  std::optional<PerspectiveCamera> camera;
+  std::vector<Instance> instances;   ///< in the model's own space
+  std::vector<ModelCamera> cameras;  ///< in the order of its nodes
 };
+
+/// The same camera where `placement` puts it.
+Camera placed(Camera camera, const Transform& placement);
 
 /// Whether the suffix is that of a model that is read: .gltf, .glb, .obj, .fbx, .dae, .3ds, .ply,
 /// .stl and whatever else Assimp knows.

@@ -29,18 +29,23 @@ double vertical_fov_degrees(const aiCamera& camera, bool gltf) {
   return atan2(half.sin, half.cos * aspect) * 360 / kPi;
 }
 
-std::optional<PerspectiveCamera> camera_of(const aiCamera& camera, const Transform& node,
-                                           bool gltf) {
-  PerspectiveCamera out;
+// Nothing where it makes no rays.
+std::optional<Camera> camera_of(const aiCamera& camera, const Transform& node, bool gltf) {
+  View view;
   // Assimp 5.2 copies the node's translation into the camera of some files; cameras stand at their
   // node's origin.
-  out.position = node.point({0, 0, 0});
-  const Vec3 forward = node.direction(vector_of(camera.mLookAt));
-  out.look_at = out.position + forward;
-  out.up = node.direction(vector_of(camera.mUp));
-  out.vertical_fov = vertical_fov_degrees(camera, gltf);
-  const bool orthographic = camera.mOrthographicWidth > 0;
-  return !orthographic && validate(Camera(out)).ok() ? std::optional(out) : std::nullopt;
+  view.position = node.point({0, 0, 0});
+  view.look_at = view.position + node.direction(vector_of(camera.mLookAt));
+  view.up = node.direction(vector_of(camera.mUp));
+  Camera out = PerspectiveCamera{view.position, view.look_at, view.up,
+                                 vertical_fov_degrees(camera, gltf)};
+  if (camera.mOrthographicWidth > 0) {
+    // glTF's xmag, half of the width; its aspect is xmag over ymag.
+    const double aspect = camera.mAspect > 0 ? camera.mAspect : 1;
+    out = OrthographicCamera{view.position, view.look_at, view.up,
+                             2 * camera.mOrthographicWidth / aspect};
+  }
+  return validate(out).ok() ? std::optional(out) : std::nullopt;
 }
 
 // Those of 3DS files and the like look at a target that Assimp does not pass on.
@@ -97,9 +102,11 @@ class Walk {
       }
       model.instances.push_back({meshes_[number]->mesh, meshes_[number]->material, to_model});
     }
-    if (const auto found = cameras_.find(node.mName.C_Str());
-        found != cameras_.end() && !model.camera) {
-      model.camera = camera_of(*found->second, to_model, file_.kind == ModelKind::kGltf);
+    if (const auto found = cameras_.find(node.mName.C_Str()); found != cameras_.end()) {
+      const bool gltf = file_.kind == ModelKind::kGltf;
+      if (const auto camera = camera_of(*found->second, to_model, gltf)) {
+        model.cameras.push_back({found->first, *camera});
+      }
     }
     // Backwards, so that children are visited in the order of the file.
     for (unsigned i = node.mNumChildren; i-- > 0;) {

@@ -1,17 +1,17 @@
 #pragma once
 
-#include "absl/status/statusor.h"
+#include "absl/status/status.h"
 #include "proto/scene.pb.h"
 #include "renderlib/import/field.h"
-#include "renderlib/import/model.h"
 #include "renderlib/import/scene_draft.h"
 
 namespace bandsaw {
 
-/// All model entries of a scene file, placed, and the camera of the first that brings one, in world
-/// space. A file that is named twice is read once. The scene's materials have been read.
-absl::StatusOr<std::optional<PerspectiveCamera>> read_models(const Field& root,
-                                                             const scene::Scene& from,
-                                                             SceneDraft& draft);
+using ModelList = google::protobuf::RepeatedPtrField<scene::Model>;
+
+/// All model entries of the scene or of a group, into SceneDraft::placed; what cameras they bring,
+/// into SceneDraft::cameras. A file that is named twice is read once. The scene's materials have
+/// been read.
+absl::Status read_models(const Field& parent, const ModelList& models, SceneDraft& draft);
 
 }  // namespace bandsaw

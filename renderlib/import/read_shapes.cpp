@@ -1,6 +1,7 @@
 #include "renderlib/import/read_shapes.h"
 
 #include <cmath>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
@@ -11,7 +12,7 @@ namespace bandsaw {
 namespace {
 
 absl::Status read_sphere(const Field& in, const scene::Sphere& from, MaterialId material,
-                         Geometry& geometry) {
+                         Shapes& geometry) {
   Sphere sphere;
   ASSIGN_OR_RETURN(sphere.center, read_vec3(in, "center", from.center(), Vec3{}));
   if (!from.has_radius()) {
@@ -27,7 +28,7 @@ absl::Status read_sphere(const Field& in, const scene::Sphere& from, MaterialId 
 }
 
 absl::Status read_quad(const Field& in, const scene::Quad& from, MaterialId material,
-                       Geometry& geometry) {
+                       Shapes& geometry) {
   Quad quad;
   ASSIGN_OR_RETURN(quad.corner, read_vec3(in, "corner", from.corner()));
   ASSIGN_OR_RETURN(quad.u, read_direction(in, "u", from.u()));
@@ -42,7 +43,7 @@ absl::Status read_quad(const Field& in, const scene::Quad& from, MaterialId mate
 }
 
 absl::Status read_triangle(const Field& in, const scene::Triangle& from, MaterialId material,
-                           Geometry& geometry) {
+                           Shapes& geometry) {
   Triangle triangle;
   ASSIGN_OR_RETURN(triangle.a, read_vec3(in, "a", from.a()));
   ASSIGN_OR_RETURN(triangle.b, read_vec3(in, "b", from.b()));
@@ -53,7 +54,7 @@ absl::Status read_triangle(const Field& in, const scene::Triangle& from, Materia
 }
 
 absl::Status read_box(const Field& in, const scene::Box& from, MaterialId material,
-                      Geometry& geometry) {
+                      Shapes& geometry) {
   ASSIGN_OR_RETURN(const Vec3 low, read_vec3(in, "min", from.min()));
   ASSIGN_OR_RETURN(const Vec3 high, read_vec3(in, "max", from.max()));
   if (!(high.x > low.x && high.y > low.y && high.z > low.z)) {
@@ -73,8 +74,26 @@ absl::Status read_box(const Field& in, const scene::Box& from, MaterialId materi
   return absl::OkStatus();
 }
 
+absl::Status read_disk(const Field& in, const scene::Disk& from, MaterialId material,
+                       Shapes& geometry) {
+  Disk disk;
+  ASSIGN_OR_RETURN(disk.center, read_vec3(in, "center", from.center(), Vec3{}));
+  ASSIGN_OR_RETURN(const Vec3 normal, read_direction(in, "normal", from.normal()));
+  disk.normal = normalize(normal / max_abs(normal));
+  if (!from.has_radius()) {
+    return in.error("radius", "is required and must be > 0");
+  }
+  disk.radius = from.radius();
+  if (!(std::isfinite(disk.radius) && disk.radius > 0)) {
+    return in.error("radius", absl::StrCat("must be finite and > 0, is ", disk.radius));
+  }
+  disk.material = material;
+  geometry.disks.push_back(disk);
+  return absl::OkStatus();
+}
+
 absl::Status read_shape(const Field& in, const scene::Shape& from, MaterialId material,
-                        Geometry& geometry) {
+                        Shapes& geometry) {
   switch (from.kind_case()) {
     case scene::Shape::kSphere:
       return read_sphere(in.child("sphere"), from.sphere(), material, geometry);
@@ -84,19 +103,69 @@ absl::Status read_shape(const Field& in, const scene::Shape& from, MaterialId ma
       return read_triangle(in.child("triangle"), from.triangle(), material, geometry);
     case scene::Shape::kBox:
       return read_box(in.child("box"), from.box(), material, geometry);
+    case scene::Shape::kDisk:
+      return read_disk(in.child("disk"), from.disk(), material, geometry);
     case scene::Shape::KIND_NOT_SET:
       break;
   }
-  return in.error("is of no kind: write sphere, quad, triangle or box");
+  return in.error("is of no kind: write sphere, quad, triangle, box or disk");
+}
+
+/// A shape that is seen at one moment only.
+void add_moved(const Shapes& shape, const Vec3& by, Shapes& to) {
+  for (Sphere sphere : shape.spheres) {
+    sphere.center = sphere.center + by;
+    to.spheres.push_back(sphere);
+  }
+  for (Quad quad : shape.quads) {
+    quad.corner = quad.corner + by;
+    to.quads.push_back(quad);
+  }
+  for (const Triangle& t : shape.triangles) {
+    to.triangles.push_back({t.a + by, t.b + by, t.c + by, t.material});
+  }
+  for (Disk disk : shape.disks) {
+    disk.center = disk.center + by;
+    to.disks.push_back(disk);
+  }
+}
+
+/// A shape that moves becomes a group of its own, placed in a frame of its own.
+void add_moving(Shapes shape, const Vec3& velocity, SceneDraft& draft) {
+  Geometry& geometry = draft.out.scene.geometry;
+  Placements& to = *draft.placed;
+  const Shutter& shutter = draft.shutter;
+  Frame frame;
+  frame.keys.emplace_back(shutter.open, translation(velocity * shutter.open));
+  frame.keys.emplace_back(shutter.close, translation(velocity * shutter.close));
+  to.frames.push_back(std::move(frame));
+  geometry.groups.push_back(std::move(shape));
+  Instance instance;
+  instance.group = GroupId{static_cast<std::uint32_t>(geometry.groups.size() - 1)};
+  instance.material = kOwnMaterial;
+  instance.frame = FrameId{static_cast<std::uint32_t>(to.frames.size() - 1)};
+  to.instances.push_back(instance);
 }
 
 }  // namespace
 
-absl::Status read_shapes(const Field& root, const scene::Scene& from, SceneDraft& draft) {
-  for (int i = 0; i < from.shape_size(); ++i) {
-    const Field in = root.child("shape", i);
-    ASSIGN_OR_RETURN(const MaterialId material, find_material(in, from.shape(i).material(), draft));
-    RETURN_IF_ERROR(read_shape(in, from.shape(i), material, draft.out.scene.geometry));
+absl::Status read_shapes(const Field& parent, const ShapeList& shapes, SceneDraft& draft) {
+  for (int i = 0; i < shapes.size(); ++i) {
+    const Field in = parent.child("shape", i);
+    const scene::Shape& from = shapes[i];
+    ASSIGN_OR_RETURN(const MaterialId material, find_material(in, from.material(), draft));
+    if (from.velocity().empty()) {
+      RETURN_IF_ERROR(read_shape(in, from, material, *draft.shapes));
+      continue;
+    }
+    ASSIGN_OR_RETURN(const Vec3 velocity, read_vec3(in, "velocity", from.velocity()));
+    Shapes moving;
+    RETURN_IF_ERROR(read_shape(in, from, material, moving));
+    if (draft.shutter.open == draft.shutter.close) {
+      add_moved(moving, velocity * draft.shutter.open, *draft.shapes);
+    } else {
+      add_moving(std::move(moving), velocity, draft);
+    }
   }
   return absl::OkStatus();
 }

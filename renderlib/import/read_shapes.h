@@ -7,7 +7,10 @@
 
 namespace bandsaw {
 
-/// All shapes of a scene file; its materials have been read.
-absl::Status read_shapes(const Field& root, const scene::Scene& from, SceneDraft& draft);
+using ShapeList = google::protobuf::RepeatedPtrField<scene::Shape>;
+
+/// All shapes of the scene or of a group, into SceneDraft::shapes and placed; materials and shutter
+/// have been read.
+absl::Status read_shapes(const Field& parent, const ShapeList& shapes, SceneDraft& draft);
 
 }  // namespace bandsaw

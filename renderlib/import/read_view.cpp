@@ -103,12 +103,29 @@ absl::StatusOr<Camera> read_orthographic(const Field& in, const scene::Camera& f
 
 }  // namespace
 
+absl::StatusOr<Shutter> read_shutter(const Field& root, const scene::Scene& from) {
+  const Shutter shutter = {from.camera().shutter_open(), from.camera().shutter_close()};
+  if (!from.has_camera()) {
+    return shutter;
+  }
+  const Field in = root.child("camera");
+  RETURN_IF_ERROR(check_range(in, "shutter_open", shutter.open, -kMostTime, kMostTime));
+  RETURN_IF_ERROR(check_range(in, "shutter_close", shutter.close, -kMostTime, kMostTime));
+  if (shutter.close < shutter.open) {
+    return in.error("shutter_close", absl::StrCat("must not be before shutter_open, ",
+                                                  shutter.open, ", is ", shutter.close));
+  }
+  return shutter;
+}
+
 absl::StatusOr<Camera> read_camera(const Field& root, const scene::Scene& from) {
   const Field in = root.child("camera");
   ASSIGN_OR_RETURN(const View view, read_view(in, from.camera()));
-  ASSIGN_OR_RETURN(const Camera camera, from.camera().has_orthographic()
-                                            ? read_orthographic(in, from.camera(), view)
-                                            : read_perspective(in, from.camera(), view));
+  ASSIGN_OR_RETURN(Camera camera, from.camera().has_orthographic()
+                                      ? read_orthographic(in, from.camera(), view)
+                                      : read_perspective(in, from.camera(), view));
+  ASSIGN_OR_RETURN(const Shutter shutter, read_shutter(root, from));
+  std::visit([&](auto& c) { c.shutter = shutter; }, camera);
   if (const absl::Status valid = validate(camera); !valid.ok()) {
     return in.error(valid.message());
   }

@@ -12,6 +12,8 @@ namespace bandsaw {
 
 /// The written camera; the scene MUST have one.
 absl::StatusOr<Camera> read_camera(const Field& root, const scene::Scene& from);
+/// The written shutter, or the default.
+absl::StatusOr<Shutter> read_shutter(const Field& root, const scene::Scene& from);
 /// The written filter, or the default.
 absl::StatusOr<PixelFilter> read_filter(const Field& root, const scene::Scene& from);
 absl::StatusOr<LocalShading> read_local_shading(const Field& root, const scene::Scene& from);

@@ -3,13 +3,26 @@
 // The scene while it is being imported.
 
 #include <map>
+#include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "renderlib/import/import.h"
+#include "renderlib/import/placements.h"
 #include "renderlib/import/scene_folder.h"
 #include "renderlib/import/texture_store.h"
 
 namespace bandsaw {
+
+struct Model;
+
+/// A camera that a model of the scene brings, in the world.
+struct FoundCamera {
+  std::string model;
+  std::string name;
+  Camera camera;
+};
 
 struct SceneDraft {
   SceneDraft(SceneFolder in, std::string scene_file)
@@ -23,6 +36,16 @@ struct SceneDraft {
   TextureStore textures{out.scene.textures, out.info.warnings};
   std::map<std::string, MaterialId> materials;      ///< by the names in the scene file
   std::map<std::string, TextureId> named_textures;  ///< the same
+  std::map<std::string, Placements> groups;         ///< the same
+  /// Models that have been read, by file and whether with materials.
+  std::map<std::pair<std::string, bool>, std::shared_ptr<const Model>> models;
+  std::vector<FoundCamera> cameras;
+  Shutter shutter;
+
+  Placements world;
+  /// Where what is read goes: the scene, or the group that is being read.
+  Shapes* shapes = &out.scene.geometry;
+  Placements* placed = &world;
 
   MaterialId add_material(const Material& material) {
     out.scene.materials.push_back(material);

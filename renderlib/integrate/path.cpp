@@ -22,7 +22,7 @@ struct Departure {
 
 Receiver receiver_of(const SurfacePoint& point, const Vec3& wo) {
   const bool outside = dot(wo, point.geometric_normal) >= 0;
-  return {point.position, outside ? point.geometric_normal : -point.geometric_normal};
+  return {point.position, outside ? point.geometric_normal : -point.geometric_normal, point.time};
 }
 
 /// How much of the emission that scattering found counts.

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "renderlib/base/check.h"
+#include "renderlib/geometry/placement.h"
 #include "renderlib/light/emission.h"
 #include "renderlib/material/opacity.h"
 
@@ -17,10 +18,16 @@ std::optional<Emission> emission_of(const std::vector<Material>& materials, Mate
   return bandsaw::emission_of(materials[index_of(id)]);
 }
 
+/// Whether any primitive that the instance places may give light.
+bool may_emit(const Instance& instance, const std::vector<Material>& materials) {
+  const bool own = instance.group != kNoGroup && instance.material == kOwnMaterial;
+  return own || emission_of(materials, instance.material).has_value();
+}
+
 }  // namespace
 
 Lights::Lights(const Geometry& geometry, const std::vector<Material>& materials,
-               const std::vector<Texture>& textures)
+               const std::vector<Texture>& textures, const Interval& interval)
     : geometry_(&geometry), materials_(&materials), textures_(&textures) {
   std::vector<double> radiance_means(materials.size(), 0.0);
   for (std::size_t i = 0; i < materials.size(); ++i) {
@@ -29,20 +36,17 @@ Lights::Lights(const Geometry& geometry, const std::vector<Material>& materials,
       radiance_means[i] = (double{value.r} + value.g + value.b) / 3;
     }
   }
-  const std::size_t loose =
-      geometry.spheres.size() + geometry.quads.size() + geometry.triangles.size();
   std::vector<double> powers;
   for (std::uint32_t instance = 0; instance <= geometry.instances.size(); ++instance) {
-    std::size_t primitives = loose;
+    std::size_t primitives = geometry.size();
     if (instance > 0) {
       const Instance& placed = geometry.instances[instance - 1];
-      const bool emits = emission_of(materials, placed.material).has_value();
-      primitives = emits ? geometry.meshes[index_of(placed.mesh)].triangles.size() : 0;
+      primitives = may_emit(placed, materials) ? primitives_of(geometry, placed) : 0;
     }
     first_of_instance_.push_back(primitives == 0 ? kNoLight
                                                  : static_cast<std::uint32_t>(light_of_.size()));
     for (std::uint32_t primitive = 0; primitive < primitives; ++primitive) {
-      add(geometry, {instance, primitive}, radiance_means, powers);
+      add(geometry, {instance, primitive}, radiance_means, interval, powers);
     }
   }
   if (ids_.size() > kFewLights) {
@@ -53,16 +57,17 @@ Lights::Lights(const Geometry& geometry, const std::vector<Material>& materials,
 }
 
 void Lights::add(const Geometry& geometry, PrimitiveId id,
-                 const std::vector<double>& radiance_means, std::vector<double>& powers) {
+                 const std::vector<double>& radiance_means, const Interval& interval,
+                 std::vector<double>& powers) {
   light_of_.push_back(kNoLight);
   const MaterialId material = material_of(geometry, id);
   const double radiance = radiance_means[index_of(material)];
   if (radiance == 0) {
     return;
   }
-  const ShapeView shape = shape_view(geometry, id);
+  const ShapeView shape = shape_view(geometry, id, interval.open);
   const Emission emission = *emission_of(*materials_, material);
-  const bool flat = shape.kind != ShapeView::Kind::kSphere;
+  const bool flat = is_flat(shape);
   const double sides = flat && !emission.one_sided ? 2 : 1;
   const double power = kPi * radiance * area(shape) * sides;
   if (!(power > 0) || !std::isfinite(power)) {
@@ -72,9 +77,10 @@ void Lights::add(const Geometry& geometry, PrimitiveId id,
   ids_.push_back(id);
   powers.push_back(power);
   if (bounds_.size() <= kFewLights) {
-    bounds_.push_back({.ball = bounds(shape),
+    const bool rests = id.instance == 0 || geometry.instances[id.instance - 1].frame == kNoFrame;
+    bounds_.push_back({.ball = rests ? bounds(shape) : moving_ball(geometry, id, interval),
                        .power = power,
-                       .flat = flat,
+                       .flat = flat && rests,
                        .one_sided = emission.one_sided,
                        .normal = flat ? normalize(flat_normal(shape)) : Vec3{}});
   }
@@ -178,7 +184,7 @@ std::optional<LightSample> Lights::sample(const Receiver& receiver, double choic
     return std::nullopt;
   }
   const PrimitiveId id = ids_[chosen->index];
-  const ShapeView shape = shape_view(*geometry_, id);
+  const ShapeView shape = shape_view(*geometry_, id, receiver.time);
   const std::optional<ShapeSample> on_light = bandsaw::sample(shape, receiver.position, u, v);
   if (!on_light) {
     return std::nullopt;
@@ -188,7 +194,7 @@ std::optional<LightSample> Lights::sample(const Receiver& receiver, double choic
   if (dot(way, receiver.normal) <= 0 || facing == 0) {
     return std::nullopt;
   }
-  const Ray ray{.origin = receiver.position, .direction = way};
+  const Ray ray{.origin = receiver.position, .direction = way, .time = receiver.time};
   const Hit hit{.t = 1, .id = id, .u = on_light->on_shape.x, .v = on_light->on_shape.y};
   const SurfacePoint point = surface_at(*geometry_, ray, hit);
   LightSample sample;
@@ -206,8 +212,8 @@ double Lights::pdf(const Receiver& receiver, const SurfacePoint& hit) const {
   if (chosen == 0) {
     return 0;
   }
-  return chosen * direction_pdf(shape_view(*geometry_, hit.id), receiver.position, hit.position,
-                                hit.geometric_normal);
+  return chosen * direction_pdf(shape_view(*geometry_, hit.id, receiver.time), receiver.position,
+                                hit.position, hit.geometric_normal);
 }
 
 double Lights::probability(const Receiver& receiver, PrimitiveId id) const {

@@ -11,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "renderlib/geometry/moving_bounds.h"
 #include "renderlib/geometry/shapes.h"
 #include "renderlib/geometry/surface.h"
 #include "renderlib/light/shape_light.h"
@@ -24,6 +25,7 @@ namespace bandsaw {
 struct Receiver {
   Vec3 position;
   Vec3 normal;  ///< unit; light comes only from directions with a positive cosine to it
+  double time = 0;  ///< lights are where they are then
 };
 
 struct LightSample {
@@ -43,9 +45,9 @@ class Lights {
 
   Lights() = default;
   /// Every primitive that emits, but those without area or power. The arguments MUST be valid
-  /// (scene/validate.h), outlive the result and not change.
+  /// (scene/validate.h), outlive the result and not change. Receivers' times are within `interval`.
   Lights(const Geometry& geometry, const std::vector<Material>& materials,
-         const std::vector<Texture>& textures);
+         const std::vector<Texture>& textures, const Interval& interval = {});
 
   std::size_t size() const { return ids_.size(); }
   bool empty() const { return ids_.empty(); }
@@ -78,7 +80,7 @@ class Lights {
   };
 
   void add(const Geometry& geometry, PrimitiveId id, const std::vector<double>& radiance_means,
-           std::vector<double>& powers);
+           const Interval& interval, std::vector<double>& powers);
   void choose_by_power(const std::vector<double>& powers);
   std::optional<Choice> choose(const Receiver& receiver, double choice) const;
   double probability_of(const Receiver& receiver, std::size_t index) const;

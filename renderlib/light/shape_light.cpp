@@ -1,9 +1,9 @@
 #include "renderlib/light/shape_light.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "renderlib/light/ellipsoid_light.h"
 #include "renderlib/sampling/sphere_light.h"
 #include "renderlib/sampling/spherical_rectangle.h"
 #include "renderlib/sampling/warp.h"
@@ -12,42 +12,6 @@ namespace bandsaw {
 namespace {
 
 using Kind = ShapeView::Kind;
-
-Vec3 vertex(const Mesh& mesh, std::uint32_t index) {
-  const std::array<float, 3>& p = mesh.positions[index];
-  return {p[0], p[1], p[2]};
-}
-
-ShapeView triangle_view(const Vec3& a, const Vec3& b, const Vec3& c, bool mirrored) {
-  return {.kind = Kind::kTriangle, .a = a, .u = b - a, .v = c - a, .mirrored = mirrored};
-}
-
-ShapeView mesh_view(const Geometry& geometry, PrimitiveId id) {
-  const Instance& instance = geometry.instances[id.instance - 1];
-  const Mesh& mesh = geometry.meshes[index_of(instance.mesh)];
-  const std::array<std::uint32_t, 3>& t = mesh.triangles[id.primitive];
-  const Transform& to_world = instance.to_world;
-  return triangle_view(to_world.point(vertex(mesh, t[0])), to_world.point(vertex(mesh, t[1])),
-                       to_world.point(vertex(mesh, t[2])), determinant(to_world) < 0);
-}
-
-/// Which of the loose shapes a primitive of instance 0 is.
-struct Loose {
-  Kind kind;
-  std::size_t index;
-};
-
-Loose loose_shape(const Geometry& geometry, std::uint32_t primitive) {
-  std::size_t index = primitive;
-  if (index < geometry.spheres.size()) {
-    return {Kind::kSphere, index};
-  }
-  index -= geometry.spheres.size();
-  if (index < geometry.quads.size()) {
-    return {Kind::kQuad, index};
-  }
-  return {Kind::kTriangle, index - geometry.quads.size()};
-}
 
 std::optional<SphericalRectangle> seen_rectangle(const ShapeView& shape, const Vec3& from) {
   if (shape.kind != Kind::kQuad || !is_rectangle(shape.u, shape.v)) {
@@ -62,6 +26,9 @@ std::optional<SphericalRectangle> seen_rectangle(const ShapeView& shape, const V
 Vec2 uniform_on(Kind kind, double u, double v) {
   if (kind == Kind::kQuad) {
     return {u, v};
+  }
+  if (kind == Kind::kDisk) {
+    return sample_disk(u, v);
   }
   const double far = std::sqrt(u);
   return {far * (1 - v), far * v};
@@ -82,39 +49,17 @@ std::optional<ShapeSample> sample_flat(const ShapeView& shape, const Vec3& from,
 
 }  // namespace
 
-ShapeView shape_view(const Geometry& geometry, PrimitiveId id) {
-  if (id.instance != 0) {
-    return mesh_view(geometry, id);
-  }
-  const Loose loose = loose_shape(geometry, id.primitive);
-  if (loose.kind == Kind::kSphere) {
-    const Sphere& sphere = geometry.spheres[loose.index];
-    return {.kind = Kind::kSphere, .a = sphere.center, .radius = sphere.radius};
-  }
-  if (loose.kind == Kind::kQuad) {
-    const Quad& quad = geometry.quads[loose.index];
-    return {.kind = Kind::kQuad, .a = quad.corner, .u = quad.u, .v = quad.v};
-  }
-  const Triangle& triangle = geometry.triangles[loose.index];
-  return triangle_view(triangle.a, triangle.b, triangle.c, false);
-}
-
-MaterialId material_of(const Geometry& geometry, PrimitiveId id) {
-  if (id.instance != 0) {
-    return geometry.instances[id.instance - 1].material;
-  }
-  const Loose loose = loose_shape(geometry, id.primitive);
-  return loose.kind == Kind::kSphere ? geometry.spheres[loose.index].material
-         : loose.kind == Kind::kQuad ? geometry.quads[loose.index].material
-                                     : geometry.triangles[loose.index].material;
-}
-
 double area(const ShapeView& shape) {
   if (shape.kind == Kind::kSphere) {
     return 4 * kPi * shape.radius * shape.radius;
   }
+  if (shape.kind == Kind::kEllipsoid) {
+    return ellipsoid_area(shape);
+  }
   const double parallelogram = length(cross(shape.u, shape.v));
-  return shape.kind == Kind::kQuad ? parallelogram : parallelogram / 2;
+  return shape.kind == Kind::kQuad   ? parallelogram
+         : shape.kind == Kind::kDisk ? kPi * parallelogram
+                                     : parallelogram / 2;
 }
 
 Vec3 flat_normal(const ShapeView& shape) {
@@ -124,6 +69,12 @@ Vec3 flat_normal(const ShapeView& shape) {
 Ball bounds(const ShapeView& shape) {
   if (shape.kind == Kind::kSphere) {
     return {shape.a, shape.radius};
+  }
+  if (shape.kind == Kind::kDisk || shape.kind == Kind::kEllipsoid) {
+    // No axis is longer than all three together.
+    const double square =
+        length_squared(shape.u) + length_squared(shape.v) + length_squared(shape.w);
+    return {shape.a, std::sqrt(square)};
   }
   if (shape.kind == Kind::kQuad) {
     const double diagonal = std::max(length(shape.u + shape.v), length(shape.u - shape.v));
@@ -142,6 +93,8 @@ std::optional<ShapeSample> sample(const ShapeView& shape, const Vec3& from, doub
     if (const auto on_sphere = sample_sphere_light(shape.a, shape.radius, from, u, v)) {
       sample = ShapeSample{on_sphere->position, on_sphere->normal, {}, on_sphere->pdf};
     }
+  } else if (shape.kind == Kind::kEllipsoid) {
+    sample = sample_ellipsoid(shape, from, u, v);
   } else {
     sample = sample_flat(shape, from, u, v);
   }
@@ -156,7 +109,9 @@ double direction_pdf(const ShapeView& shape, const Vec3& from, const Vec3& posit
   if (const std::optional<SphericalRectangle> rectangle = seen_rectangle(shape, from)) {
     return 1 / rectangle->solid_angle();
   }
-  const double pdf = solid_angle_pdf(1 / area(shape), from, position, normal);
+  const double by_area = shape.kind == Kind::kEllipsoid ? ellipsoid_area_pdf(shape, position)
+                                                        : 1 / area(shape);
+  const double pdf = solid_angle_pdf(by_area, from, position, normal);
   return std::isfinite(pdf) ? pdf : 0;
 }
 

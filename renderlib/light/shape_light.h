@@ -5,27 +5,35 @@
 
 #include <optional>
 
+#include "renderlib/geometry/moving_bounds.h"
 #include "renderlib/geometry/ray.h"
 #include "renderlib/geometry/shapes.h"
 
 namespace bandsaw {
 
-/// A triangle, quad or sphere of the scene in world space.
+/// A shape of the scene in world space. A disk may have become an ellipse there, a sphere an
+/// ellipsoid.
 struct ShapeView {
-  enum class Kind { kSphere, kQuad, kTriangle };
+  enum class Kind { kSphere, kQuad, kTriangle, kDisk, kEllipsoid };
   Kind kind = Kind::kTriangle;
-  Vec3 a;    ///< sphere: center; quad: corner; triangle: first vertex
-  Vec3 u{};  ///< quad, triangle: edges from a
+  Vec3 a;    ///< sphere, disk, ellipsoid: center; quad: corner; triangle: first vertex
+  Vec3 u{};  ///< quad, triangle: edges from a; disk, ellipsoid: what a unit circle or sphere in its
+             ///< own axes is mapped by
   Vec3 v{};
-  double radius = 0;
+  Vec3 w{};  ///< ellipsoid
+  double radius = 0;      ///< sphere
   bool mirrored = false;  ///< by its placement: the outward normal is v x u
 };
 
-/// `id` MUST name a primitive of the geometry.
-ShapeView shape_view(const Geometry& geometry, PrimitiveId id);
+/// `id` MUST name a primitive of the geometry; where it is at `time`.
+ShapeView shape_view(const Geometry& geometry, PrimitiveId id, double time);
 MaterialId material_of(const Geometry& geometry, PrimitiveId id);
 
-/// Of one side.
+inline bool is_flat(const ShapeView& shape) {
+  return shape.kind != ShapeView::Kind::kSphere && shape.kind != ShapeView::Kind::kEllipsoid;
+}
+
+/// Of one side. Of an ellipsoid only within a few percent: what chooses among lights needs no more.
 double area(const ShapeView& shape);
 /// u x v to the outside; not normalised. Flat shapes only.
 Vec3 flat_normal(const ShapeView& shape);
@@ -36,6 +44,8 @@ struct Ball {
   double radius = 0;
 };
 Ball bounds(const ShapeView& shape);
+/// Around a primitive of a moving instance wherever it gets to during the interval.
+Ball moving_ball(const Geometry& geometry, PrimitiveId id, const Interval& interval);
 
 struct ShapeSample {
   Vec3 position;

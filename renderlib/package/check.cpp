@@ -5,6 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/package/manifest.h"
+#include "renderlib/package/placements.h"
 
 namespace bandsaw {
 namespace {
@@ -47,32 +48,50 @@ absl::Status check_material_id(MaterialId id, std::size_t count, const std::stri
                         absl::StrCat("is ", index_of(id), ", there are ", count, " materials"));
 }
 
-absl::Status check_shapes(const Geometry& geometry, std::size_t materials) {
-  for (std::size_t i = 0; i < geometry.spheres.size(); ++i) {
-    const Sphere& s = geometry.spheres[i];
-    RETURN_IF_ERROR(check_finite(s.center, absl::StrCat("spheres.centers[", i, "]")));
+absl::Status check_disk(const Disk& disk, std::size_t i, std::size_t materials,
+                        const std::string& prefix) {
+  RETURN_IF_ERROR(check_finite(disk.center, absl::StrCat(prefix, "disks.centers[", i, "]")));
+  if (!(std::isfinite(disk.radius) && disk.radius > 0)) {
+    return manifest_error(absl::StrCat(prefix, "disks.radii[", i, "]"),
+                          absl::StrCat("must be finite and > 0, is ", disk.radius));
+  }
+  if (!(std::abs(length(disk.normal) - 1) <= 1e-6)) {
+    return manifest_error(absl::StrCat(prefix, "disks.normals[", i, "]"),
+                          absl::StrCat("must have length 1, has ", length(disk.normal)));
+  }
+  return check_material_id(disk.material, materials,
+                           absl::StrCat(prefix, "disks.material[", i, "]"));
+}
+
+absl::Status check_shapes(const Shapes& shapes, std::size_t materials, const std::string& prefix) {
+  for (std::size_t i = 0; i < shapes.spheres.size(); ++i) {
+    const Sphere& s = shapes.spheres[i];
+    RETURN_IF_ERROR(check_finite(s.center, absl::StrCat(prefix, "spheres.centers[", i, "]")));
     if (!(std::isfinite(s.radius) && s.radius > 0)) {
-      return manifest_error(absl::StrCat("spheres.radii[", i, "]"),
+      return manifest_error(absl::StrCat(prefix, "spheres.radii[", i, "]"),
                             absl::StrCat("must be finite and > 0, is ", s.radius));
     }
     RETURN_IF_ERROR(
-        check_material_id(s.material, materials, absl::StrCat("spheres.material[", i, "]")));
+        check_material_id(s.material, materials, absl::StrCat(prefix, "spheres.material[", i, "]")));
   }
-  for (std::size_t i = 0; i < geometry.quads.size(); ++i) {
-    const Quad& q = geometry.quads[i];
-    RETURN_IF_ERROR(check_finite(q.corner, absl::StrCat("quads.corners[", i, "]")));
-    RETURN_IF_ERROR(check_finite(q.u, absl::StrCat("quads.u[", i, "]")));
-    RETURN_IF_ERROR(check_finite(q.v, absl::StrCat("quads.v[", i, "]")));
+  for (std::size_t i = 0; i < shapes.quads.size(); ++i) {
+    const Quad& q = shapes.quads[i];
+    RETURN_IF_ERROR(check_finite(q.corner, absl::StrCat(prefix, "quads.corners[", i, "]")));
+    RETURN_IF_ERROR(check_finite(q.u, absl::StrCat(prefix, "quads.u[", i, "]")));
+    RETURN_IF_ERROR(check_finite(q.v, absl::StrCat(prefix, "quads.v[", i, "]")));
     RETURN_IF_ERROR(
-        check_material_id(q.material, materials, absl::StrCat("quads.material[", i, "]")));
+        check_material_id(q.material, materials, absl::StrCat(prefix, "quads.material[", i, "]")));
   }
-  for (std::size_t i = 0; i < geometry.triangles.size(); ++i) {
-    const Triangle& t = geometry.triangles[i];
+  for (std::size_t i = 0; i < shapes.triangles.size(); ++i) {
+    const Triangle& t = shapes.triangles[i];
     for (const Vec3& vertex : {t.a, t.b, t.c}) {
-      RETURN_IF_ERROR(check_finite(vertex, absl::StrCat("triangles.vertices[", i, "]")));
+      RETURN_IF_ERROR(check_finite(vertex, absl::StrCat(prefix, "triangles.vertices[", i, "]")));
     }
     RETURN_IF_ERROR(
-        check_material_id(t.material, materials, absl::StrCat("triangles.material[", i, "]")));
+        check_material_id(t.material, materials, absl::StrCat(prefix, "triangles.material[", i, "]")));
+  }
+  for (std::size_t i = 0; i < shapes.disks.size(); ++i) {
+    RETURN_IF_ERROR(check_disk(shapes.disks[i], i, materials, prefix));
   }
   return absl::OkStatus();
 }
@@ -131,22 +150,6 @@ absl::Status check_mesh(const Mesh& mesh, const std::string& field) {
   return absl::OkStatus();
 }
 
-absl::Status check_instance(const Instance& instance, const SceneDescription& scene,
-                            const std::string& field) {
-  if (index_of(instance.mesh) >= scene.geometry.meshes.size()) {
-    return manifest_error(field + ".mesh",
-                          absl::StrCat("is ", index_of(instance.mesh), ", there are ",
-                                       scene.geometry.meshes.size(), " meshes"));
-  }
-  RETURN_IF_ERROR(
-      check_material_id(instance.material, scene.materials.size(), field + ".material"));
-  if (!inverse(instance.to_world)) {
-    return manifest_error(field + ".transform",
-                          "must be finite and regular: it flattens the mesh or is not a number");
-  }
-  return absl::OkStatus();
-}
-
 }  // namespace
 
 absl::Status check_description(const SceneDescription& scene) {
@@ -160,15 +163,15 @@ absl::Status check_description(const SceneDescription& scene) {
   RETURN_IF_ERROR(check_background(scene.background));
   RETURN_IF_ERROR(check_materials(scene));
   const Geometry& geometry = scene.geometry;
-  RETURN_IF_ERROR(check_shapes(geometry, scene.materials.size()));
+  RETURN_IF_ERROR(check_shapes(geometry, scene.materials.size(), ""));
   for (std::size_t i = 0; i < geometry.meshes.size(); ++i) {
     RETURN_IF_ERROR(check_mesh(geometry.meshes[i], absl::StrCat("mesh[", i, "]")));
   }
-  for (std::size_t i = 0; i < geometry.instances.size(); ++i) {
-    RETURN_IF_ERROR(
-        check_instance(geometry.instances[i], scene, absl::StrCat("instance[", i, "]")));
+  for (std::size_t i = 0; i < geometry.groups.size(); ++i) {
+    RETURN_IF_ERROR(check_shapes(geometry.groups[i], scene.materials.size(),
+                                 absl::StrCat("group[", i, "].")));
   }
-  return absl::OkStatus();
+  return check_placements(geometry, scene.materials.size());
 }
 
 }  // namespace bandsaw

@@ -9,6 +9,7 @@
 #include "renderlib/package/decode_surface.h"
 #include "renderlib/package/decode_texture.h"
 #include "renderlib/package/manifest.h"
+#include "renderlib/package/placements.h"
 
 namespace bandsaw {
 namespace {
@@ -53,12 +54,13 @@ class Decoder {
     return values;
   }
 
-  absl::StatusOr<std::vector<Sphere>> spheres(const package::Spheres& from) {
-    ASSIGN_OR_RETURN(const auto centers, array<Vec3>(from.centers(), "spheres.centers"));
+  absl::StatusOr<std::vector<Sphere>> spheres(const package::Spheres& from,
+                                              const std::string& field) {
+    ASSIGN_OR_RETURN(const auto centers, array<Vec3>(from.centers(), field + ".centers"));
     const std::size_t count = centers.size();
-    ASSIGN_OR_RETURN(const auto radii, array_of<double>(count, from.radii(), "spheres.radii"));
+    ASSIGN_OR_RETURN(const auto radii, array_of<double>(count, from.radii(), field + ".radii"));
     ASSIGN_OR_RETURN(const auto materials,
-                     array_of<MaterialId>(count, from.material(), "spheres.material"));
+                     array_of<MaterialId>(count, from.material(), field + ".material"));
     std::vector<Sphere> spheres(count);
     for (std::size_t i = 0; i < count; ++i) {
       spheres[i] = {centers[i], radii[i], materials[i]};
@@ -66,13 +68,14 @@ class Decoder {
     return spheres;
   }
 
-  absl::StatusOr<std::vector<Quad>> quads(const package::Quads& from) {
-    ASSIGN_OR_RETURN(const auto corners, array<Vec3>(from.corners(), "quads.corners"));
+  absl::StatusOr<std::vector<Quad>> quads(const package::Quads& from,
+                                              const std::string& field) {
+    ASSIGN_OR_RETURN(const auto corners, array<Vec3>(from.corners(), field + ".corners"));
     const std::size_t count = corners.size();
-    ASSIGN_OR_RETURN(const auto us, array_of<Vec3>(count, from.u(), "quads.u"));
-    ASSIGN_OR_RETURN(const auto vs, array_of<Vec3>(count, from.v(), "quads.v"));
+    ASSIGN_OR_RETURN(const auto us, array_of<Vec3>(count, from.u(), field + ".u"));
+    ASSIGN_OR_RETURN(const auto vs, array_of<Vec3>(count, from.v(), field + ".v"));
     ASSIGN_OR_RETURN(const auto materials,
-                     array_of<MaterialId>(count, from.material(), "quads.material"));
+                     array_of<MaterialId>(count, from.material(), field + ".material"));
     std::vector<Quad> quads(count);
     for (std::size_t i = 0; i < count; ++i) {
       quads[i] = {corners[i], us[i], vs[i], materials[i]};
@@ -80,16 +83,50 @@ class Decoder {
     return quads;
   }
 
-  absl::StatusOr<std::vector<Triangle>> triangles(const package::Triangles& from) {
+  absl::StatusOr<std::vector<Triangle>> triangles(const package::Triangles& from,
+                                              const std::string& field) {
     using Corners = std::array<Vec3, 3>;
-    ASSIGN_OR_RETURN(const auto corners, array<Corners>(from.vertices(), "triangles.vertices"));
+    ASSIGN_OR_RETURN(const auto corners, array<Corners>(from.vertices(), field + ".vertices"));
     ASSIGN_OR_RETURN(const auto materials,
-                     array_of<MaterialId>(corners.size(), from.material(), "triangles.material"));
+                     array_of<MaterialId>(corners.size(), from.material(), field + ".material"));
     std::vector<Triangle> triangles(corners.size());
     for (std::size_t i = 0; i < corners.size(); ++i) {
       triangles[i] = {corners[i][0], corners[i][1], corners[i][2], materials[i]};
     }
     return triangles;
+  }
+
+  absl::StatusOr<std::vector<Disk>> disks(const package::Disks& from, const std::string& field) {
+    ASSIGN_OR_RETURN(const auto centers, array<Vec3>(from.centers(), field + ".centers"));
+    const std::size_t count = centers.size();
+    ASSIGN_OR_RETURN(const auto normals,
+                     array_of<Vec3>(count, from.normals(), field + ".normals"));
+    ASSIGN_OR_RETURN(const auto radii, array_of<double>(count, from.radii(), field + ".radii"));
+    ASSIGN_OR_RETURN(const auto materials,
+                     array_of<MaterialId>(count, from.material(), field + ".material"));
+    std::vector<Disk> disks(count);
+    for (std::size_t i = 0; i < count; ++i) {
+      disks[i] = {centers[i], normals[i], radii[i], materials[i]};
+    }
+    return disks;
+  }
+
+  // Those of the manifest or of a group.
+  template <class Message>
+  absl::Status shapes(const Message& from, const std::string& prefix, Shapes& to) {
+    if (from.has_spheres()) {
+      ASSIGN_OR_RETURN(to.spheres, spheres(from.spheres(), prefix + "spheres"));
+    }
+    if (from.has_quads()) {
+      ASSIGN_OR_RETURN(to.quads, quads(from.quads(), prefix + "quads"));
+    }
+    if (from.has_triangles()) {
+      ASSIGN_OR_RETURN(to.triangles, triangles(from.triangles(), prefix + "triangles"));
+    }
+    if (from.has_disks()) {
+      ASSIGN_OR_RETURN(to.disks, disks(from.disks(), prefix + "disks"));
+    }
+    return absl::OkStatus();
   }
 
   absl::StatusOr<Mesh> mesh(const package::Mesh& from, const std::string& field) {
@@ -128,38 +165,18 @@ class Decoder {
   BlobSource& blobs_;
 };
 
-absl::StatusOr<Instance> decode_instance(const package::Instance& from, const std::string& field) {
-  if (from.transform_size() != 12) {
-    return manifest_error(field + ".transform",
-                          absl::StrCat("must have 12 numbers, has ", from.transform_size()));
-  }
-  Instance instance{MeshId{from.mesh()}, MaterialId{from.material()}, {}};
-  for (int i = 0; i < 12; ++i) {
-    instance.to_world.m[i / 4][i % 4] = from.transform(i);
-  }
-  return instance;
-}
-
 absl::StatusOr<Geometry> decode_geometry(const package::Manifest& manifest, Decoder& decoder) {
   Geometry geometry;
-  if (manifest.has_spheres()) {
-    ASSIGN_OR_RETURN(geometry.spheres, decoder.spheres(manifest.spheres()));
-  }
-  if (manifest.has_quads()) {
-    ASSIGN_OR_RETURN(geometry.quads, decoder.quads(manifest.quads()));
-  }
-  if (manifest.has_triangles()) {
-    ASSIGN_OR_RETURN(geometry.triangles, decoder.triangles(manifest.triangles()));
-  }
+  RETURN_IF_ERROR(decoder.shapes(manifest, "", geometry));
   for (int i = 0; i < manifest.mesh_size(); ++i) {
     ASSIGN_OR_RETURN(Mesh mesh, decoder.mesh(manifest.mesh(i), absl::StrCat("mesh[", i, "]")));
     geometry.meshes.push_back(std::move(mesh));
   }
-  for (int i = 0; i < manifest.instance_size(); ++i) {
-    ASSIGN_OR_RETURN(const Instance instance,
-                     decode_instance(manifest.instance(i), absl::StrCat("instance[", i, "]")));
-    geometry.instances.push_back(instance);
+  for (int i = 0; i < manifest.group_size(); ++i) {
+    Shapes& group = geometry.groups.emplace_back();
+    RETURN_IF_ERROR(decoder.shapes(manifest.group(i), absl::StrCat("group[", i, "]."), group));
   }
+  RETURN_IF_ERROR(decode_placements(manifest, geometry));
   return geometry;
 }
 

@@ -59,11 +59,13 @@ absl::StatusOr<Camera> decode_camera(const package::Manifest& manifest) {
   ASSIGN_OR_RETURN(view.position, decode_vec3(from.position(), "camera.position"));
   ASSIGN_OR_RETURN(view.look_at, decode_vec3(from.look_at(), "camera.look_at"));
   ASSIGN_OR_RETURN(view.up, decode_vec3(from.up(), "camera.up"));
+  const Shutter shutter = {from.shutter_open(), from.shutter_close()};
   if (from.orthographic_height() != 0) {
     return Camera(OrthographicCamera{view.position, view.look_at, view.up,
-                                     from.orthographic_height(), from.mirrored()});
+                                     from.orthographic_height(), from.mirrored(), shutter});
   }
   PerspectiveCamera camera{.position = view.position, .look_at = view.look_at, .up = view.up};
+  camera.shutter = shutter;
   camera.vertical_fov = from.vertical_fov();
   camera.aperture = from.aperture();
   camera.focus_distance = from.aperture() == 0 ? camera.focus_distance : from.focus_distance();

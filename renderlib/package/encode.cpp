@@ -11,6 +11,7 @@
 #include "renderlib/package/clean_text.h"
 #include "renderlib/package/encode_texture.h"
 #include "renderlib/package/limits.h"
+#include "renderlib/package/placements.h"
 #include "renderlib/package/principled.h"
 
 namespace bandsaw {
@@ -34,7 +35,9 @@ class Encoder {
     put(to_bytes(values), ref);
   }
 
-  void put_shapes(const Geometry& geometry, package::Manifest& manifest) {
+  // Into the manifest or a group.
+  template <class Message>
+  void put_shapes(const Shapes& geometry, Message& manifest) {
     if (!geometry.spheres.empty()) {
       auto& to = *manifest.mutable_spheres();
       put_each<Vec3>(geometry.spheres, *to.mutable_centers(), &Sphere::center);
@@ -55,6 +58,13 @@ class Encoder {
                                       return std::array<Vec3, 3>{t.a, t.b, t.c};
                                     });
       put_each<MaterialId>(geometry.triangles, *to.mutable_material(), &Triangle::material);
+    }
+    if (!geometry.disks.empty()) {
+      auto& to = *manifest.mutable_disks();
+      put_each<Vec3>(geometry.disks, *to.mutable_centers(), &Disk::center);
+      put_each<Vec3>(geometry.disks, *to.mutable_normals(), &Disk::normal);
+      put_each<double>(geometry.disks, *to.mutable_radii(), &Disk::radius);
+      put_each<MaterialId>(geometry.disks, *to.mutable_material(), &Disk::material);
     }
   }
 
@@ -88,6 +98,8 @@ void add_vector(const Vec3& v, Field& field) {
 
 void encode(const Camera& camera, package::Camera& to) {
   const View view = view_of(camera);
+  to.set_shutter_open(shutter_of(camera).open);
+  to.set_shutter_close(shutter_of(camera).close);
   add_vector(view.position, *to.mutable_position());
   add_vector(view.look_at, *to.mutable_look_at());
   add_vector(view.up, *to.mutable_up());
@@ -200,14 +212,10 @@ std::string encode_package(const SceneDescription& scene, const PackageInfo& inf
   for (const Mesh& mesh : scene.geometry.meshes) {
     encoder.put_mesh(mesh, *manifest.add_mesh());
   }
-  for (const Instance& instance : scene.geometry.instances) {
-    auto& to = *manifest.add_instance();
-    to.set_mesh(static_cast<std::uint32_t>(instance.mesh));
-    to.set_material(static_cast<std::uint32_t>(instance.material));
-    for (const auto& row : instance.to_world.m) {
-      to.mutable_transform()->Add(row.begin(), row.end());
-    }
+  for (const Shapes& group : scene.geometry.groups) {
+    encoder.put_shapes(group, *manifest.add_group());
   }
+  encode_placements(scene.geometry, manifest);
   return manifest.SerializeAsString();
 }
 

@@ -59,6 +59,33 @@ absl::Status check_head(const package::Manifest& manifest) {
   return absl::OkStatus();
 }
 
+// Those of the manifest's or a group's shapes.
+template <class Message, class Visit>
+absl::Status for_each_shape_blob(const Message& m, const std::string& prefix, Visit visit) {
+  if (m.has_spheres()) {
+    RETURN_IF_ERROR(visit(m.spheres().centers(), prefix + "spheres.centers"));
+    RETURN_IF_ERROR(visit(m.spheres().radii(), prefix + "spheres.radii"));
+    RETURN_IF_ERROR(visit(m.spheres().material(), prefix + "spheres.material"));
+  }
+  if (m.has_quads()) {
+    RETURN_IF_ERROR(visit(m.quads().corners(), prefix + "quads.corners"));
+    RETURN_IF_ERROR(visit(m.quads().u(), prefix + "quads.u"));
+    RETURN_IF_ERROR(visit(m.quads().v(), prefix + "quads.v"));
+    RETURN_IF_ERROR(visit(m.quads().material(), prefix + "quads.material"));
+  }
+  if (m.has_triangles()) {
+    RETURN_IF_ERROR(visit(m.triangles().vertices(), prefix + "triangles.vertices"));
+    RETURN_IF_ERROR(visit(m.triangles().material(), prefix + "triangles.material"));
+  }
+  if (m.has_disks()) {
+    RETURN_IF_ERROR(visit(m.disks().centers(), prefix + "disks.centers"));
+    RETURN_IF_ERROR(visit(m.disks().normals(), prefix + "disks.normals"));
+    RETURN_IF_ERROR(visit(m.disks().radii(), prefix + "disks.radii"));
+    RETURN_IF_ERROR(visit(m.disks().material(), prefix + "disks.material"));
+  }
+  return absl::OkStatus();
+}
+
 // Every blob field of a manifest with its path, in one order.
 template <class Visit>
 absl::Status for_each_blob(const package::Manifest& m, Visit visit) {
@@ -68,20 +95,9 @@ absl::Status for_each_blob(const package::Manifest& m, Visit visit) {
           visit(m.texture(i).image().texels(), absl::StrCat("texture[", i, "].image.texels")));
     }
   }
-  if (m.has_spheres()) {
-    RETURN_IF_ERROR(visit(m.spheres().centers(), "spheres.centers"));
-    RETURN_IF_ERROR(visit(m.spheres().radii(), "spheres.radii"));
-    RETURN_IF_ERROR(visit(m.spheres().material(), "spheres.material"));
-  }
-  if (m.has_quads()) {
-    RETURN_IF_ERROR(visit(m.quads().corners(), "quads.corners"));
-    RETURN_IF_ERROR(visit(m.quads().u(), "quads.u"));
-    RETURN_IF_ERROR(visit(m.quads().v(), "quads.v"));
-    RETURN_IF_ERROR(visit(m.quads().material(), "quads.material"));
-  }
-  if (m.has_triangles()) {
-    RETURN_IF_ERROR(visit(m.triangles().vertices(), "triangles.vertices"));
-    RETURN_IF_ERROR(visit(m.triangles().material(), "triangles.material"));
+  RETURN_IF_ERROR(for_each_shape_blob(m, "", visit));
+  for (int i = 0; i < m.group_size(); ++i) {
+    RETURN_IF_ERROR(for_each_shape_blob(m.group(i), absl::StrCat("group[", i, "]."), visit));
   }
   for (int i = 0; i < m.mesh_size(); ++i) {
     const package::Mesh& mesh = m.mesh(i);

@@ -46,6 +46,7 @@ class BandRenderer {
                  .technique = technique_of(settings.integrator),
                  .local = settings.integrator == Integrator::kDirect},
         filter_(scene.filter()),
+        moves_(scene.needs().motion),
         camera_(scene.camera(), static_cast<int>(settings.width),
                 static_cast<int>(settings.height)),
         samples_(band.samples),
@@ -77,7 +78,8 @@ class BandRenderer {
     for (std::uint64_t sample = first; sample < last; ++sample) {
       const Sample4 at = sampler.group(sample, kGroupCamera);
       const Vec2 offset = bandsaw::sample(filter_, at[0], at[1]);
-      const Ray ray = camera_.ray(x + 0.5 + offset.x, y + 0.5 + offset.y, at[2], at[3]);
+      const double when = moves_ ? sampler.group(sample, kGroupTime)[0] : 0;
+      const Ray ray = camera_.ray(x + 0.5 + offset.x, y + 0.5 + offset.y, at[2], at[3], when);
       const Rgb value =
           sample_value(scene_, integrator_, ray, sampler, sample, options_, counters.rays);
       if (!is_finite(value) || value.r < 0 || value.g < 0 || value.b < 0) {
@@ -94,6 +96,7 @@ class BandRenderer {
   Integrator integrator_;
   PathOptions options_;
   PixelFilter filter_;
+  bool moves_;
   RayGenerator camera_;
   SampleRange samples_;
   const std::atomic<bool>& stop_;

@@ -45,19 +45,27 @@ std::size_t clean_mesh(Mesh& mesh) {
   });
 }
 
+std::size_t clean_shapes(Shapes& shapes) {
+  return std::erase_if(shapes.quads, [](const Quad& q) { return !has_area(q.u, q.v); }) +
+         std::erase_if(shapes.triangles,
+                       [](const Triangle& t) { return !has_area(t.b - t.a, t.c - t.a); });
+}
+
 }  // namespace
 
 std::size_t clean(Geometry& geometry) {
-  std::size_t dropped =
-      std::erase_if(geometry.quads, [](const Quad& q) { return !has_area(q.u, q.v); }) +
-      std::erase_if(geometry.triangles,
-                    [](const Triangle& t) { return !has_area(t.b - t.a, t.c - t.a); });
+  std::size_t dropped = clean_shapes(geometry);
+  std::vector<std::size_t> dropped_of_group;
+  for (Shapes& group : geometry.groups) {
+    dropped_of_group.push_back(clean_shapes(group));
+  }
   std::vector<std::size_t> dropped_of_mesh;
   for (Mesh& mesh : geometry.meshes) {
     dropped_of_mesh.push_back(clean_mesh(mesh));
   }
   for (const Instance& instance : geometry.instances) {
-    dropped += dropped_of_mesh[index_of(instance.mesh)];
+    dropped += instance.group == kNoGroup ? dropped_of_mesh[index_of(instance.mesh)]
+                                          : dropped_of_group[index_of(instance.group)];
   }
   return dropped;
 }

@@ -13,6 +13,7 @@ struct Needs {
   bool alpha = false;          ///< surfaces that are not there everywhere
   bool nested_glass = false;   ///< dielectrics with a priority
   bool uv_directions = false;  ///< normal maps
+  bool motion = false;         ///< something moves while the shutter is open
   friend bool operator==(const Needs&, const Needs&) = default;
 };
 

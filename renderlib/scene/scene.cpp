@@ -7,6 +7,7 @@
 #include "renderlib/material/ggx.h"
 #include "renderlib/material/opacity.h"
 #include "renderlib/scene/clean.h"
+#include "renderlib/scene/rest.h"
 #include "renderlib/scene/validate.h"
 
 namespace bandsaw {
@@ -44,6 +45,7 @@ Needs needs_of(const SceneDescription& scene, const Lights& lights) {
   needs.alpha = any(has_alpha);
   needs.nested_glass = any(is_nested);
   needs.uv_directions = any(has_normal_map);
+  needs.motion = moves(scene.geometry);
   needs.instances = !scene.geometry.instances.empty();
   return needs;
 }
@@ -57,8 +59,11 @@ absl::StatusOr<std::shared_ptr<const Scene>> Scene::build(SceneDescription descr
   std::shared_ptr<Scene> scene(new Scene(std::move(description)));
   SceneDescription& own = scene->description_;
   scene->dropped_ = clean(own.geometry);
-  scene->accel_ = std::make_unique<Accel>(Accel::build(own.geometry, pool));
-  scene->lights_ = Lights(own.geometry, own.materials, own.textures);
+  const Shutter& shutter = shutter_of(own.camera);
+  const Interval interval = {shutter.open, shutter.close};
+  rest(interval, own.geometry);
+  scene->accel_ = std::make_unique<Accel>(Accel::build(own.geometry, pool, interval));
+  scene->lights_ = Lights(own.geometry, own.materials, own.textures, interval);
   scene->needs_ = needs_of(own, scene->lights_);
   return std::shared_ptr<const Scene>(std::move(scene));
 }

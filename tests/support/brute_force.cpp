@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <optional>
 
+#include "renderlib/geometry/disk.h"
 #include "renderlib/geometry/intersect.h"
+#include "renderlib/geometry/placement.h"
 
 namespace bandsaw::test {
 namespace {
@@ -19,49 +21,54 @@ class Search {
     }
   }
 
-  void loose(const Geometry& g) {
-    const TracedRay traced = trace_setup(ray_.origin, ray_.direction, ray_.t_max);
-    PrimitiveId id = {0, 0};
+  void shapes(const Shapes& shapes, const TracedRay& ray, std::uint32_t instance) {
+    PrimitiveId id = {instance, 0};
     Crossing c;
-    for (const Sphere& sphere : g.spheres) {
-      if (intersect(traced, sphere, ray_.from == id, c)) {
+    for (const Sphere& sphere : shapes.spheres) {
+      if (intersect(ray, sphere, ray_.from == id, c)) {
         consider(id, c);
       }
       ++id.primitive;
     }
-    for (const Quad& quad : g.quads) {
-      if (ray_.from != id && intersect(traced, quad, c)) {
-        consider(id, c);
+    const auto flats = [&](const auto& list) {
+      for (const auto& flat : list) {
+        if (ray_.from != id && intersect(ray, flat, c)) {
+          consider(id, c);
+        }
+        ++id.primitive;
       }
-      ++id.primitive;
-    }
-    for (const Triangle& triangle : g.triangles) {
-      if (ray_.from != id && intersect(traced, triangle, c)) {
-        consider(id, c);
-      }
-      ++id.primitive;
-    }
+    };
+    flats(shapes.quads);
+    flats(shapes.triangles);
+    flats(shapes.disks);
   }
 
-  void instance(const Geometry& g, std::uint32_t index) {
-    const Instance& instance = g.instances[index];
-    const Mesh& mesh = g.meshes[index_of(instance.mesh)];
-    const std::optional<Transform> to_object = inverse(instance.to_world);
-    if (!to_object) {
-      return;
-    }
-    const TracedRay local = trace_setup(to_object->point(ray_.origin),
-                                        to_object->direction(ray_.direction), ray_.t_max);
+  void mesh(const Mesh& mesh, const TracedRay& ray, std::uint32_t instance) {
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-      const PrimitiveId id = {index + 1, i};
+      const PrimitiveId id = {instance, i};
       const auto& corner = mesh.triangles[i];
       const auto& a = mesh.positions[corner[0]];
       const auto& b = mesh.positions[corner[1]];
       const auto& d = mesh.positions[corner[2]];
       Crossing c;
-      if (ray_.from != id && a != b && b != d && d != a && intersect_triangle(local, a, b, d, c)) {
+      if (ray_.from != id && a != b && b != d && d != a && intersect_triangle(ray, a, b, d, c)) {
         consider(id, c);
       }
+    }
+  }
+
+  void instance(const Geometry& g, std::uint32_t index) {
+    const Instance& instance = g.instances[index];
+    const std::optional<Transform> to_object = inverse(to_world_at(g, instance, ray_.time));
+    if (!to_object) {
+      return;
+    }
+    const TracedRay local = trace_setup(to_object->point(ray_.origin),
+                                        to_object->direction(ray_.direction), ray_.t_max);
+    if (const Shapes* group = group_of(g, instance)) {
+      shapes(*group, local, index + 1);
+    } else {
+      mesh(g.meshes[index_of(instance.mesh)], local, index + 1);
     }
   }
 
@@ -79,7 +86,7 @@ Hit closest_by_brute_force(const Geometry& geometry, const Ray& ray) {
     return {};
   }
   Search search(ray);
-  search.loose(geometry);
+  search.shapes(geometry, trace_setup(ray.origin, ray.direction, ray.t_max), 0);
   for (std::uint32_t i = 0; i < geometry.instances.size(); ++i) {
     search.instance(geometry, i);
   }

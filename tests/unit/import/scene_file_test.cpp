@@ -178,7 +178,7 @@ const std::vector<Wrong> kWrong = {
      "s.textproto:3:30: shape[0].material: no material is called \"wite\"; did you mean "
      "\"white\"?"},
     {"no_kind", R"(shape { material: "white" })",
-     "s.textproto:3:1: shape[0]: is of no kind: write sphere, quad, triangle or box"},
+     "s.textproto:3:1: shape[0]: is of no kind: write sphere, quad, triangle, box or disk"},
     {"flat_quad",
      R"(shape { material: "white" quad { corner: [0, 0, 0] u: [1, 0, 0] v: [-2, 0, 0] } })",
      "s.textproto:3:65: shape[0].quad.v: must not be parallel to u"},

@@ -1,0 +1,41 @@
+#pragma once
+
+// A ray through what moves, at the ray's time. Apart from trace.h, so that scenes where nothing
+// moves run the code they would run if nothing could.
+
+#include "renderlib/accel/moving_tree.h"
+#include "renderlib/accel/trace.h"
+#include "renderlib/geometry/placement.h"
+
+namespace bandsaw {
+
+template <class Query>
+bool trace_moving_instance(const MovingInstance& moving, const Geometry& geometry, const Ray& ray,
+                           Query& query) {
+  const Instance& instance = geometry.instances[moving.instance - 1];
+  const std::optional<Transform> to_object = inverse(to_world_at(geometry, instance, ray.time));
+  return to_object && trace_placed(moving.prototype, *to_object, ray, moving.instance, query);
+}
+
+/// True: the query needs no more.
+template <class Query>
+[[gnu::noinline]] bool trace_moving(const MovingTree& tree, const Geometry& geometry,
+                                    const Ray& ray, Query& query) {
+  if (!is_traceable(ray)) {
+    return false;
+  }
+  const FloatRay floats(trace_setup(ray.origin, ray.direction, ray.t_max), tree.tree.reach);
+  float bound = floats.above(query.bound());
+  const float share = tree.share(ray.time);
+  const auto enter = [&](std::uint32_t node, Float8& at) {
+    return enter_moving_children(tree, node, share, floats, bound, at);
+  };
+  return walk<!Query::kAny>(tree.tree, bound, enter, [&](ChildRef leaf) {
+    const bool stop =
+        trace_moving_instance(tree.moving[leaf.leaf_index()], geometry, ray, query);
+    bound = floats.above(query.bound());
+    return stop;
+  });
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,200 @@
+#include "renderlib/geometry/moving_bounds.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "renderlib/geometry/placement.h"
+#include "renderlib/math/constants.h"
+
+namespace bandsaw {
+namespace {
+
+/// Between two keys corners bend by at most this part of the box, or the interval is cut in
+/// kMostPieces.
+constexpr double kBend = 0x1p-6;
+constexpr double kMostPieces = 64;
+/// Between the times that are looked at, rounding may be larger than at them.
+constexpr double kTrips = 8;
+
+/// Bounds of a point's distance from the origin, and of its first and second derivative by time.
+struct Course {
+  double distance = 0;
+  double speed = 0;
+  double bend = 0;
+};
+
+double norm(const Transform& t) {
+  double sum = 0;
+  for (const auto& row : t.m) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      sum += row[k] * row[k];
+    }
+  }
+  return std::sqrt(sum);
+}
+
+double moved(const Transform& t) { return length(Vec3{t.m[0][3], t.m[1][3], t.m[2][3]}); }
+
+Course through(const Transform& placement, const Course& c) {
+  const double n = norm(placement);
+  return {n * c.distance + moved(placement), n * c.speed, n * c.bend};
+}
+
+/// Through T + R S between two keys, with p = S q: |(R p)''| <= w^2 |p| + 2 w |p'| + |p''|, where
+/// the rotation turns at w; S and T change linearly.
+Course through(const Key& a, const Key& b, const Course& c) {
+  const double duration = b.time - a.time;
+  const double scale = std::max(max_abs(a.pose.scale), max_abs(b.pose.scale));
+  const double growth = max_abs(b.pose.scale - a.pose.scale) / duration;
+  const double turning = 2 * kPi * turn_between(a.pose.rotate, b.pose.rotate) / duration;
+  const Course p = {scale * c.distance, growth * c.distance + scale * c.speed,
+                    2 * growth * c.speed + scale * c.bend};
+  const double way = length(b.pose.translate - a.pose.translate) / duration;
+  const double far = std::max(length(a.pose.translate), length(b.pose.translate));
+  return {far + p.distance, way + turning * p.distance + p.speed,
+          turning * turning * p.distance + 2 * turning * p.speed + p.bend};
+}
+
+/// Through a frame at times that no key divides.
+Course through(const Frame& frame, double time, const Course& c) {
+  const auto after = std::upper_bound(frame.keys.begin(), frame.keys.end(), time,
+                                      [](double t, const Key& key) { return t < key.time; });
+  const bool rests = after == frame.keys.begin() || after == frame.keys.end();
+  const Course within =
+      rests ? through(motion_at(frame, time), c) : through(*(after - 1), *after, c);
+  return through(frame.placement, within);
+}
+
+/// Of the points of a box while no key is passed.
+Course course_of(const Geometry& geometry, const Instance& instance, const Box& box, double time) {
+  const Vec3 far = {std::max(std::abs(box.lo.x), std::abs(box.hi.x)),
+                    std::max(std::abs(box.lo.y), std::abs(box.hi.y)),
+                    std::max(std::abs(box.lo.z), std::abs(box.hi.z))};
+  Course course = through(instance.to_world, {length(far), 0, 0});
+  for (FrameId id = instance.frame; id != kNoFrame; id = geometry.frames[index_of(id)].parent) {
+    course = through(geometry.frames[index_of(id)], time, course);
+  }
+  return course;
+}
+
+/// The interval's ends and the keys between them, in order.
+std::vector<double> turning_points(const Geometry& geometry, const Instance& instance,
+                                   const Interval& interval) {
+  std::vector<double> times = {interval.open, interval.close};
+  for (FrameId id = instance.frame; id != kNoFrame; id = geometry.frames[index_of(id)].parent) {
+    for (const Key& key : geometry.frames[index_of(id)].keys) {
+      if (key.time > interval.open && key.time < interval.close) {
+        times.push_back(key.time);
+      }
+    }
+  }
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  return times;
+}
+
+/// What is where at `time`, and `room` around it; collects boxes.
+class Stops {
+ public:
+  Stops(const Geometry& geometry, const Instance& instance, const Box& box)
+      : geometry_(geometry), instance_(instance), box_(box) {}
+
+  /// False: the placement is singular.
+  bool add(double time, double room) {
+    const Transform to_world = to_world_at(geometry_, instance_, time);
+    const std::optional<Transform> to_object = inverse(to_world);
+    if (!to_object) {
+      return false;
+    }
+    Box there = placed_bounds(box_, to_world, *to_object, kTrips);
+    const Vec3 around = {room, room, room};
+    there = {there.lo - around, there.hi + around};
+    times_.push_back(time);
+    boxes_.push_back(there);
+    return true;
+  }
+
+  /// The ends moved out until the line between them holds every stop. Courses between stops are
+  /// within `room` of lines, so all of them are held.
+  MovingBox around(const Interval& interval) const {
+    MovingBox result = {boxes_.front(), boxes_.back()};
+    Vec3 below;
+    Vec3 above;
+    const double duration = interval.close - interval.open;
+    for (std::size_t i = 0; i < boxes_.size(); ++i) {
+      const double u = duration > 0 ? (times_[i] - interval.open) / duration : 0;
+      const Vec3 lo = lerp(result.at_open.lo, result.at_close.lo, u) - boxes_[i].lo;
+      const Vec3 hi = boxes_[i].hi - lerp(result.at_open.hi, result.at_close.hi, u);
+      below = {std::max(below.x, lo.x), std::max(below.y, lo.y), std::max(below.z, lo.z)};
+      above = {std::max(above.x, hi.x), std::max(above.y, hi.y), std::max(above.z, hi.z)};
+    }
+    for (Box* end : {&result.at_open, &result.at_close}) {
+      *end = {end->lo - below, end->hi + above};
+    }
+    return result;
+  }
+
+ private:
+  const Geometry& geometry_;
+  const Instance& instance_;
+  const Box& box_;
+  std::vector<double> times_;
+  std::vector<Box> boxes_;
+};
+
+}  // namespace
+
+Box placed_bounds(const Box& box, const Transform& to_world, const Transform& to_object,
+                  double trips) {
+  double grown = 0;
+  double shrunk = 0;
+  double moved = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      grown = std::max(grown, std::abs(to_world.m[i][j]));
+      shrunk = std::max(shrunk, std::abs(to_object.m[i][j]));
+    }
+    moved = std::max(moved, std::abs(to_world.m[i][3]));
+  }
+  const double largest = std::max(max_abs(box.lo), max_abs(box.hi));
+  const double slack = trips * 0x1p-46 * (grown * shrunk) * (3 * grown * largest + moved);
+  const Vec3 room = {slack, slack, slack};
+  Box result;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 p = to_world.point({(corner & 1) != 0 ? box.hi.x : box.lo.x,
+                                   (corner & 2) != 0 ? box.hi.y : box.lo.y,
+                                   (corner & 4) != 0 ? box.hi.z : box.lo.z});
+    result.add(p - room);
+    result.add(p + room);
+  }
+  return result;
+}
+
+std::optional<MovingBox> moving_bounds(const Geometry& geometry, const Instance& instance,
+                                       const Box& box, const Interval& interval) {
+  const std::vector<double> times = turning_points(geometry, instance, interval);
+  const double size = length(box.hi - box.lo);
+  Stops stops(geometry, instance, box);
+  if (!stops.add(times.front(), 0)) {
+    return std::nullopt;
+  }
+  for (std::size_t i = 0; i + 1 < times.size(); ++i) {
+    const double duration = times[i + 1] - times[i];
+    const Course course = course_of(geometry, instance, box, times[i] + duration / 2);
+    // A course with second derivative c leaves its chord over h by at most c h^2 / 8.
+    const double bend = course.bend * duration * duration / 8;
+    const double wanted = std::ceil(std::sqrt(bend / (kBend * size)));
+    const double pieces = wanted >= 1 && wanted <= kMostPieces ? wanted : bend > 0 ? kMostPieces : 1;
+    const double room = bend / (pieces * pieces) * (1 + 0x1p-20);
+    for (double k = 0; k <= pieces; ++k) {
+      const double time = k == pieces ? times[i + 1] : times[i] + duration * (k / pieces);
+      if (!stops.add(time, room)) {
+        return std::nullopt;
+      }
+    }
+  }
+  return stops.around(interval);
+}
+
+}  // namespace bandsaw

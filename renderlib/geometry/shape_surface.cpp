@@ -1,0 +1,128 @@
+#include "renderlib/geometry/shape_surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "renderlib/geometry/disk.h"
+#include "renderlib/geometry/sphere_uv.h"
+
+namespace bandsaw {
+namespace {
+
+constexpr double kOffset = 0x1p-40;
+
+double norm(const std::array<Vec3, 3>& m) {
+  return std::sqrt(length_squared(m[0]) + length_squared(m[1]) + length_squared(m[2]));
+}
+
+SurfacePoint on_sphere(const Sphere& sphere, const Ray& ray, const Hit& hit) {
+  const Vec3 outward = (ray.origin - sphere.center) + ray.direction * hit.t;
+  SurfacePoint p;
+  p.geometric_normal = unit_or(outward, unit_or(-ray.direction, {0, 0, 1}));
+  p.shading_normal = p.geometric_normal;
+  p.position = sphere.center + p.geometric_normal * sphere.radius;
+  p.object_position = p.geometric_normal * sphere.radius;
+  p.uv = sphere_uv(p.geometric_normal);
+  p.uv2 = p.uv;
+  p.material = sphere.material;
+  p.offset = surface_offset(p.position, sphere.radius + max_abs(sphere.center));
+  return p;
+}
+
+SurfacePoint on_flat(const Vec3& a, const Vec3& e1, const Vec3& e2, MaterialId material,
+                     const Ray& ray, const Hit& hit) {
+  SurfacePoint p;
+  p.position = a + hit.u * e1 + hit.v * e2;
+  p.geometric_normal = flat_normal(e1, e2, ray);
+  p.shading_normal = p.geometric_normal;
+  p.object_position = p.position;
+  p.uv = {hit.u, hit.v};
+  p.uv2 = p.uv;
+  p.material = material;
+  p.offset = surface_offset(p.position, max_abs(a) + std::max(max_abs(e1), max_abs(e2)));
+  return p;
+}
+
+SurfacePoint on_disk(const Disk& disk, const Hit& hit) {
+  const DiskAxes axes = axes_of(disk);
+  SurfacePoint p;
+  p.position =
+      disk.center + axes.u * (hit.u * disk.radius) + axes.v * (hit.v * disk.radius);
+  p.geometric_normal = normalize(disk.normal);
+  p.shading_normal = p.geometric_normal;
+  p.object_position = p.position;
+  p.uv = {(hit.u + 1) / 2, (hit.v + 1) / 2};
+  p.uv2 = p.uv;
+  p.material = disk.material;
+  p.offset = surface_offset(p.position, disk.radius + max_abs(disk.center));
+  return p;
+}
+
+}  // namespace
+
+Vec3 unit_or(const Vec3& v, const Vec3& otherwise) {
+  const double size = max_abs(v);
+  return size > 0 && std::isfinite(size) && is_finite(v) ? normalize(v / size) : otherwise;
+}
+
+Vec3 flat_normal(const Vec3& e1, const Vec3& e2, const Ray& ray) {
+  const double s1 = std::max(max_abs(e1), 0x1p-1000);
+  const double s2 = std::max(max_abs(e2), 0x1p-1000);
+  return unit_or(cross(e1 / s1, e2 / s2), unit_or(-ray.direction, {0, 0, 1}));
+}
+
+Placement::Placement(const Transform& t) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    rows[i] = {t.m[i][0], t.m[i][1], t.m[i][2]};
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    cofactors[i] = cross(rows[(i + 1) % 3], rows[(i + 2) % 3]);
+  }
+  determinant = dot(rows[0], cofactors[0]);
+  moved = max_abs(Vec3{t.m[0][3], t.m[1][3], t.m[2][3]});
+}
+
+double Placement::offset(const Vec3& position, double largest_in_object) const {
+  // The largest numbers that went into the position: they bound its rounding. Rays come back
+  // through the inverse, which can make rounding of the origin larger by the condition of the
+  // placement, |M| |M^-1| in Frobenius norms; the factor 2^-8 is what 2^-40 has in reserve.
+  const double condition = norm(rows) * norm(cofactors) / std::abs(determinant);
+  const double scale = std::max({max_abs(position), largest_in_object * norm(rows), moved});
+  return surface_offset({}, scale * std::max(1.0, 0x1p-8 * condition));
+}
+
+double surface_offset(const Vec3& position, double size) {
+  return kOffset * std::max(max_abs(position), size);
+}
+
+SurfacePoint on_shape(const Shapes& shapes, const Ray& ray, const Hit& hit) {
+  const auto [kind, index] = shape_ref(shapes, hit.id.primitive);
+  switch (kind) {
+    case ShapeKind::kSphere:
+      return on_sphere(shapes.spheres[index], ray, hit);
+    case ShapeKind::kQuad: {
+      const Quad& quad = shapes.quads[index];
+      return on_flat(quad.corner, quad.u, quad.v, quad.material, ray, hit);
+    }
+    case ShapeKind::kTriangle: {
+      const Triangle& t = shapes.triangles[index];
+      return on_flat(t.a, t.b - t.a, t.c - t.a, t.material, ray, hit);
+    }
+    case ShapeKind::kDisk:
+      break;
+  }
+  return on_disk(shapes.disks[index], hit);
+}
+
+SurfacePoint placed(const SurfacePoint& local, const Transform& to_world, const Ray& world_ray) {
+  const Placement placement(to_world);
+  SurfacePoint p = local;
+  p.position = to_world.point(local.position);
+  p.geometric_normal = unit_or(placement.normal(local.geometric_normal),
+                               unit_or(-world_ray.direction, {0, 0, 1}));
+  p.shading_normal = p.geometric_normal;
+  p.offset = placement.offset(p.position, local.offset / kOffset);
+  return p;
+}
+
+}  // namespace bandsaw

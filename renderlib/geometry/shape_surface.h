@@ -1,0 +1,41 @@
+#pragma once
+
+// What surface.cpp is made of: surfaces of loose shapes in their own space, and how placements
+// treat normals.
+
+#include <array>
+
+#include "renderlib/geometry/surface.h"
+
+namespace bandsaw {
+
+/// The unit vector along `v`, or `otherwise` where v has none (zero or not finite).
+Vec3 unit_or(const Vec3& v, const Vec3& otherwise);
+/// The unit normal of a triangle with these edges; a triangle without area faces the ray.
+Vec3 flat_normal(const Vec3& e1, const Vec3& e2, const Ray& ray);
+
+/// How the linear part of a placement treats normals and lengths.
+struct Placement {
+  explicit Placement(const Transform& t);
+  /// M^-T n times |det M|: normals stay outside in mirrored placements too.
+  Vec3 normal(const Vec3& n) const {
+    const Vec3 c = {dot(cofactors[0], n), dot(cofactors[1], n), dot(cofactors[2], n)};
+    return determinant < 0 ? -c : c;
+  }
+  /// SurfacePoint::offset of what lies at `position` in the world, for the largest number that went
+  /// into it in its own space.
+  double offset(const Vec3& position, double largest_in_object) const;
+
+  std::array<Vec3, 3> rows;
+  std::array<Vec3, 3> cofactors;
+  double determinant;
+  double moved;  ///< the largest component of the translation
+};
+
+/// Of a shape in the space it lies in; `ray` is in that space.
+SurfacePoint on_shape(const Shapes& shapes, const Ray& ray, const Hit& hit);
+
+/// The same point in the world.
+SurfacePoint placed(const SurfacePoint& local, const Transform& to_world, const Ray& world_ray);
+
+}  // namespace bandsaw

@@ -1,0 +1,123 @@
+// Moving frames: decomposed keys, and what is between them.
+
+#include "renderlib/geometry/frame.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "renderlib/geometry/placement.h"
+#include "tests/support/meshes.h"
+
+namespace bandsaw {
+namespace {
+
+using test::Random;
+
+double difference(const Transform& a, const Transform& b) {
+  double most = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < 4; ++k) {
+      most = std::max(most, std::abs(a.m[i][k] - b.m[i][k]));
+    }
+  }
+  return most;
+}
+
+TEST(Quaternions, AreTheRotationsTheyComeFrom) {
+  Random random(1);
+  for (int i = 0; i < 10'000; ++i) {
+    // Half turns, where the trace is least, among them.
+    const double degrees = i % 3 == 0 ? 180 : random.uniform(-360, 360);
+    const Transform turn = rotation(test::random_direction(random), degrees);
+    const Quaternion q = quaternion(turn);
+    ASSERT_NEAR(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z, 1, 1e-15);
+    ASSERT_LE(difference(rotation(q), turn), 3e-15);
+  }
+}
+
+TEST(Quaternions, TurnEvenlyByTheShorterWay) {
+  Random random(2);
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 axis = test::random_direction(random);
+    const double whole = i == 0 ? 1e-12 : random.uniform(-179, 179);
+    const Transform start = rotation(test::random_direction(random), random.uniform(0, 360));
+    const Quaternion a = quaternion(start);
+    const Quaternion b = quaternion(rotation(axis, whole) * start);
+    ASSERT_NEAR(turn_between(a, b) * 360, std::abs(whole), 1e-12);
+    for (const double u : {0.0, 0.25, 0.6, 1.0}) {
+      ASSERT_LE(difference(rotation(slerp(a, b, u)), rotation(axis, whole * u) * start), 4e-15);
+    }
+  }
+}
+
+// X7: many small turns are the whole one.
+TEST(Transforms, X7_ManySmallTurnsDoNotDrift) {
+  Transform sum;
+  for (int i = 0; i < 360; ++i) {
+    sum = rotation({1, 2, -0.5}, 1) * sum;
+  }
+  EXPECT_LE(difference(sum, {}), 1e-13);
+}
+
+// X4: eight placements within each other, far away and back.
+TEST(Transforms, X4_ChainsOfPlacementsKeepTheirDigits) {
+  Transform chain;
+  for (int i = 0; i < 8; ++i) {
+    const Vec3 away = {1e6, -1e6, 1e6};
+    chain = translation(-away) * translation(away) * chain;
+  }
+  const Vec3 p = {0.3, 0.7, -0.2};
+  EXPECT_LE(length(chain.point(p) - p), 1e-9 * 1e6);
+}
+
+TEST(Frames, DecomposeWhatIsAScaleARotationAndATranslation) {
+  Random random(3);
+  for (int i = 0; i < 2000; ++i) {
+    const double mirror = i % 2 == 0 ? 1 : -1;
+    const Transform turn = rotation(test::random_direction(random), random.uniform(0, 360));
+    const Transform whole =
+        translation(10 * test::random_point(random)) * turn *
+        scaling({mirror * random.uniform(0.01, 100), random.uniform(0.01, 100), 1});
+    const auto pose = decompose(whole);
+    ASSERT_TRUE(pose);
+    const Transform again =
+        translation(pose->translate) * rotation(pose->rotate) * scaling(pose->scale);
+    ASSERT_LE(difference(again, whole), 1e-13 * 100);
+  }
+  EXPECT_FALSE(decompose(rotation({0, 0, 1}, 45) * scaling({1, 2, 1}) * rotation({0, 0, 1}, 30)));
+  EXPECT_FALSE(decompose(scaling({1, 0, 1})));
+}
+
+TEST(Frames, ChangeScaleAndPlaceLinearlyAndTurnEvenly) {
+  const Frame frame = {kNoFrame, {},
+                       {Key(1, translation({1, 0, 0}) * rotation({0, 1, 0}, 20)),
+                        Key(3, translation({5, 2, 0}) * rotation({0, 1, 0}, 100) *
+                                   scaling({3, 1, 2}))}};
+  const Transform middle = translation({3, 1, 0}) * rotation({0, 1, 0}, 60) * scaling({2, 1, 1.5});
+  EXPECT_LE(difference(motion_at(frame, 2), middle), 1e-14);
+  EXPECT_EQ(motion_at(frame, 1), frame.keys[0].at);
+  EXPECT_EQ(motion_at(frame, 3), frame.keys[1].at);
+  EXPECT_EQ(motion_at(frame, -7), frame.keys[0].at);
+  EXPECT_EQ(motion_at(frame, 8), frame.keys[1].at);
+}
+
+// Mirrored keys go the way that the turn alone would go.
+TEST(Frames, MirroredOnesTurnAsOthersDo) {
+  const Transform mirror = scaling({-1, 1, 1});
+  const Frame frame = {
+      kNoFrame, {}, {Key(0, mirror), Key(1, rotation({0, 1, 0}, 90) * mirror)}};
+  EXPECT_LE(difference(motion_at(frame, 0.5), rotation({0, 1, 0}, 45) * mirror), 1e-15);
+}
+
+TEST(Frames, MoveWithinFramesThatMove) {
+  const std::vector<Frame> frames = {
+      {kNoFrame, translation({0, 1, 0}), {Key(0, {}), Key(1, rotation({0, 0, 1}, 90))}},
+      {FrameId{0}, translation({2, 0, 0}), {Key(0, {}), Key(1, translation({1, 0, 0}))}}};
+  // Half way: 2.5 out along a direction 45 degrees up, around (0, 1, 0).
+  const double s = 2.5 * std::sqrt(0.5);
+  EXPECT_LE(length(frame_at(frames, FrameId{1}, 0.5).point({}) - Vec3{s, 1 + s, 0}), 1e-15);
+}
+
+}  // namespace
+}  // namespace bandsaw
