@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "absl/strings/str_cat.h"
+#include "coordinator/cli/scene_bounds.h"
+#include "renderlib/geometry/placement.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -80,64 +82,31 @@ std::uint64_t bytes_of(const Texture& texture) {
   return image == nullptr ? 0 : image->texels.size();
 }
 
-void add_box(Box& bounds, const Box& box, const Transform& to_world) {
-  if (box.empty()) {
-    return;
-  }
-  for (int corner = 0; corner < 8; ++corner) {
-    bounds.add(to_world.point({(corner & 1) != 0 ? box.hi.x : box.lo.x,
-                               (corner & 2) != 0 ? box.hi.y : box.lo.y,
-                               (corner & 4) != 0 ? box.hi.z : box.lo.z}));
-  }
-}
-
-Box bounds_of(const Geometry& geometry) {
-  Box bounds;
-  for (const Sphere& s : geometry.spheres) {
-    const Vec3 r{s.radius, s.radius, s.radius};
-    bounds.add(s.center - r);
-    bounds.add(s.center + r);
-  }
-  for (const Quad& q : geometry.quads) {
-    for (const Vec3& p : {q.corner, q.corner + q.u, q.corner + q.v, q.corner + q.u + q.v}) {
-      bounds.add(p);
-    }
-  }
-  for (const Triangle& t : geometry.triangles) {
-    for (const Vec3& p : {t.a, t.b, t.c}) {
-      bounds.add(p);
-    }
-  }
-  std::vector<Box> boxes(geometry.meshes.size());
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    for (const auto& p : geometry.meshes[i].positions) {
-      boxes[i].add({p[0], p[1], p[2]});
-    }
-  }
-  for (const Instance& instance : geometry.instances) {
-    add_box(bounds, boxes[index_of(instance.mesh)], instance.to_world);
-  }
-  return bounds;
-}
-
 std::uint64_t lights_in(const SceneDescription& scene) {
   const auto emits = [&](MaterialId id) {
     return std::holds_alternative<Emissive>(scene.materials[index_of(id)]);
   };
   const Geometry& g = scene.geometry;
   std::uint64_t lights = 0;
-  const auto count = [&](const auto& shapes) {
-    for (const auto& shape : shapes) {
-      lights += emits(shape.material) ? 1 : 0;
-    }
-  };
-  count(g.spheres);
-  count(g.quads);
-  count(g.triangles);
+  for (std::size_t i = 0; i < g.size(); ++i) {
+    lights += emits(material_of(static_cast<const Shapes&>(g), i)) ? 1 : 0;
+  }
   for (const Instance& instance : g.instances) {
-    lights += emits(instance.material) ? g.meshes[index_of(instance.mesh)].triangles.size() : 0;
+    for (std::size_t i = 0; i < primitives_of(g, instance); ++i) {
+      lights += emits(material_of(g, instance, i)) ? 1 : 0;
+    }
   }
   return lights;
+}
+
+/// Of meshes and groups, once for each time that they are placed.
+std::uint64_t triangles_in(const Geometry& g) {
+  std::uint64_t triangles = g.triangles.size();
+  for (const Instance& instance : g.instances) {
+    const Shapes* group = group_of(g, instance);
+    triangles += group != nullptr ? group->triangles.size() : primitives_of(g, instance);
+  }
+  return triangles;
 }
 
 }  // namespace
@@ -153,13 +122,12 @@ SceneSummary summary_of(const SceneDescription& scene, const PackageInfo& info,
   shapes.add("sphere", g.spheres.size());
   shapes.add("quad", g.quads.size());
   shapes.add("triangle", g.triangles.size());
+  shapes.add("disk", g.disks.size());
   shapes.add("mesh", g.meshes.size());
+  shapes.add("group", g.groups.size());
   shapes.add("instance", g.instances.size());
   summary.shapes = shapes.take();
-  summary.triangles = g.triangles.size();
-  for (const Instance& instance : g.instances) {
-    summary.triangles += g.meshes[index_of(instance.mesh)].triangles.size();
-  }
+  summary.triangles = triangles_in(g);
   Tally materials;
   for (const Material& material : scene.materials) {
     materials.add(kind_of(material));
@@ -172,7 +140,7 @@ SceneSummary summary_of(const SceneDescription& scene, const PackageInfo& info,
   }
   summary.textures = textures.take();
   summary.lights = lights_in(scene);
-  summary.bounds = bounds_of(g);
+  summary.bounds = bounds_of(scene);
   summary.package_bytes = package_bytes;
   return summary;
 }

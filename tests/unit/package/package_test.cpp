@@ -29,7 +29,7 @@ TEST(Package, ComesBackBitForBit) {
   EXPECT_EQ(camera.look_at, was.look_at);
   EXPECT_EQ(camera.vertical_fov, was.vertical_fov);
   EXPECT_EQ(decoded->background.top, scene.background.top);
-  ASSERT_EQ(decoded->geometry.instances.size(), 2u);
+  ASSERT_EQ(decoded->geometry.instances.size(), 3u);
   EXPECT_EQ(decoded->geometry.instances[1].to_world, scene.geometry.instances[1].to_world);
   EXPECT_EQ(decoded->geometry.meshes[0].positions, scene.geometry.meshes[0].positions);
   EXPECT_EQ(decoded->geometry.meshes[0].normals, scene.geometry.meshes[0].normals);
@@ -152,6 +152,31 @@ TEST(Package, SaysWhichBlobIsMissing) {
   EXPECT_EQ(decoded.status().code(), absl::StatusCode::kNotFound) << decoded.status();
 }
 
+TEST(Package, CarriesGroupsAndWhatMoves) {
+  const SceneDescription scene = sample_scene();
+  BlobMap blobs;
+  const auto decoded = decode_package(encode_package(scene, sample_info(), blobs), blobs);
+  ASSERT_TRUE(decoded.ok()) << decoded.status();
+  EXPECT_EQ(shutter_of(decoded->camera), (Shutter{-0.5, 1.0 / 3}));
+  const Geometry& g = decoded->geometry;
+  ASSERT_EQ(g.disks.size(), 1u);
+  EXPECT_EQ(g.disks[0].normal, (Vec3{0, 0.6, 0.8}));
+  ASSERT_EQ(g.groups.size(), 2u);
+  EXPECT_EQ(g.groups[0].spheres[0].radius, 2);
+  EXPECT_EQ(g.groups[0].disks[0].center.y, 1.0 / 7);
+  EXPECT_EQ(g.groups[0].disks[0].material, MaterialId{2});
+  ASSERT_EQ(g.frames.size(), 2u);
+  EXPECT_EQ(g.frames[0].parent, kNoFrame);
+  EXPECT_EQ(g.frames[1].parent, FrameId{0});
+  EXPECT_EQ(g.frames[0].placement, scene.geometry.frames[0].placement);
+  EXPECT_EQ(g.frames[0].keys[1].time, 2);
+  EXPECT_EQ(g.frames[0].keys[1].at, scene.geometry.frames[0].keys[1].at);
+  EXPECT_EQ(g.instances[2].group, GroupId{0});
+  EXPECT_EQ(g.instances[2].material, kOwnMaterial);
+  EXPECT_EQ(g.instances[2].frame, FrameId{1});
+  EXPECT_EQ(g.instances[0].frame, kNoFrame);
+}
+
 struct Wrong {
   std::string name;
   std::function<void(package::Manifest&)> spoil;
@@ -240,6 +265,27 @@ const std::vector<Wrong> kWrong = {
      "instance[0].transform: must have 12 numbers, has 11"},
     {"flat", [](auto& m) { m.mutable_instance(0)->set_transform(0, 0); },
      "instance[0].transform: must be finite and regular"},
+    {"shutter", [](auto& m) { m.mutable_camera()->set_shutter_close(-3); }, "shutter_close"},
+    {"disk_normal", [](auto& m) { *m.mutable_disks()->mutable_normals() = m.disks().centers(); },
+     "disks.normals[0]: must have length 1"},
+    {"group_shape",
+     [](auto& m) {
+       *m.mutable_group(0)->mutable_disks()->mutable_radii() = m.group(0).disks().centers();
+     },
+     "group[0].disks.radii: has 3 entries for 1 shapes"},
+    {"group_index", [](auto& m) { m.mutable_instance(2)->set_group(2); },
+     "instance[2].group: is 2, there are 2 groups"},
+    {"frame_index", [](auto& m) { m.mutable_instance(2)->set_frame(2); },
+     "instance[2].frame: is 2, there are 2 frames"},
+    {"frame_parent", [](auto& m) { m.mutable_frame(1)->set_parent(1); },
+     "frame[1].parent: must be below 1, is 1"},
+    {"key_times", [](auto& m) { m.mutable_frame(0)->set_times(1, -1); },
+     "frame[0].times[1]: must rise"},
+    {"key_count", [](auto& m) { m.mutable_frame(0)->add_times(9); },
+     "frame[0].at: must have 12 numbers for each of 3 times, has 24"},
+    {"no_keys", [](auto& m) { m.mutable_frame(1)->clear_times(), m.mutable_frame(1)->clear_at(); },
+     "frame[1].times: must be one at least"},
+    {"shear", [](auto& m) { m.mutable_frame(1)->set_at(1, 0.5); }, "frame[1].at[0]: must be a scale"},
 };
 
 INSTANTIATE_TEST_SUITE_P(All, SpoiltManifest, ::testing::ValuesIn(kWrong),

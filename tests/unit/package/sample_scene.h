@@ -25,6 +25,25 @@ inline ImageTexture sample_image(ImageTexture::Format format) {
   return image;
 }
 
+/// A disk, a group, and frames in which both move.
+inline void add_motion(SceneDescription& scene) {
+  std::get<PerspectiveCamera>(scene.camera).shutter = {-0.5, 1.0 / 3};
+  Geometry& geometry = scene.geometry;
+  geometry.disks = {{{1, 2, 3}, {0, 0.6, 0.8}, 0.1, MaterialId{0}}};
+  Shapes group;
+  group.spheres = {{{0, 0, 1}, 2, MaterialId{1}}};
+  group.disks = {{{0, 1.0 / 7, 0}, {1, 0, 0}, 4, MaterialId{2}}};
+  geometry.groups = {group, Shapes{}};
+  geometry.frames = {
+      {kNoFrame, translation({1.0 / 3, 0, 0}), {Key(-1, {}), Key(2, rotation({1, 1, 0}, 40))}},
+      {FrameId{0}, {}, {Key(0.1, scaling({-1, 2, 3}))}}};
+  Instance moving;
+  moving.group = GroupId{0};
+  moving.material = kOwnMaterial;
+  moving.frame = FrameId{1};
+  geometry.instances.push_back(moving);
+}
+
 inline SceneDescription sample_scene() {
   SceneDescription scene;
   PerspectiveCamera camera;
@@ -91,6 +110,7 @@ inline SceneDescription sample_scene() {
   scene.geometry.instances = {
       {MeshId{0}, MaterialId{0}, translation({1e9, 0, 1.0 / 3})},
       {MeshId{1}, MaterialId{1}, rotation({1, 2, 3}, 40) * scaling({1, -2, 3})}};
+  add_motion(scene);
   return scene;
 }
 
