@@ -4,7 +4,6 @@
 #include "absl/strings/str_format.h"
 #include "absl/strings/string_view.h"
 #include "renderlib/gallery/numbers.h"
-#include "renderlib/math/elementary.h"
 
 namespace bandsaw::gallery {
 namespace {
@@ -32,10 +31,10 @@ std::string small_sphere(int number, const Vec3& center, bool bouncing, Numbers&
     const Vec3 a = numbers.vec(0, 1);
     const Vec3 b = numbers.vec(0, 1);
     const Vec3 product{a.x * b.x, a.y * b.y, a.z * b.z};
-    [[maybe_unused]] const std::string moves =
+    const std::string moves =
         bouncing ? absl::StrFormat("  velocity: [0, %.4g, 0]", numbers.between(0, 0.5)) : "";
     return material(name, absl::StrCat("diffuse { ", color(product), " }")) +
-           sphere(center, kRadius, name);
+           sphere(center, kRadius, name, moves);
   }
   if (choice < 0.95) {
     const Vec3 tint = numbers.vec(0.5, 1);
@@ -64,24 +63,22 @@ std::string ground_of_boxes() {
   return out;
 }
 
-/// Turned by 15 degrees and put in its place.
 std::string cube_of_spheres() {
   constexpr int kSpheres = 1000;
-  const SinCos turn = sincos_degrees(15);
   Numbers numbers(2);
-  std::string out;
+  std::string out = "group {\n  name: \"cube\"\n";
   for (int i = 0; i < kSpheres; ++i) {
-    const Vec3 p = numbers.vec(0, 165);
-    const Vec3 turned{turn.cos * p.x + turn.sin * p.z, p.y, turn.cos * p.z - turn.sin * p.x};
-    absl::StrAppend(&out, sphere(turned + Vec3{-100, 270, 395}, 10, "white"));
+    absl::StrAppend(&out, "  ", sphere(numbers.vec(0, 165), 10, "white"));
   }
-  return out;
+  return out +
+         "}\ninstance { of: \"cube\"  rotate { axis: [0, 1, 0]  degrees: 15 }  "
+         "translate: [-100, 270, 395] }\n";
 }
 
 constexpr absl::string_view kNextWeek =
     R"(# The last scene of "Ray Tracing: The Next Week" (Shirley, Black and Hollasch), chapter 10.
 # Made by bandsaw-gallery; its globe is made by the same.
-camera { position: [478, 278, -600]  look_at: [278, 278, 0]  vertical_fov: 40 }
+camera { position: [478, 278, -600]  look_at: [278, 278, 0]  vertical_fov: 40  shutter_close: 1 }
 image { width: 800  height: 800 }
 integrator { max_depth: 40 }
 background { constant { rgb: [0, 0, 0] } }
@@ -96,7 +93,7 @@ material { name: "noise"  diffuse { texture { noise { kind: KIND_MARBLE  scale: 
 material { name: "white"  diffuse { color { rgb: [0.73, 0.73, 0.73] } } }
 
 shape { quad { corner: [123, 554, 147]  u: [300, 0, 0]  v: [0, 0, 265] }  material: "light" }
-shape { sphere { center: [400, 400, 200]  radius: 50 }  material: "clay" }
+shape { sphere { center: [400, 400, 200]  radius: 50 }  material: "clay"  velocity: [30, 0, 0] }
 shape { sphere { center: [260, 150, 45]  radius: 50 }  material: "glass" }
 shape { sphere { center: [0, 150, 145]  radius: 50 }  material: "satin" }
 shape { sphere { center: [360, 150, 145]  radius: 70 }  material: "glass" }
@@ -135,7 +132,8 @@ std::string many_spheres(bool bouncing) {
   std::string out = absl::StrCat(
       bouncing ? kBouncing : kOneWeekend,
       "camera { position: [13, 2, 3]  look_at: [0, 0, 0]  vertical_fov: 20  aperture: 0.10472  "
-      "focus_distance: 10 }\n",
+      "focus_distance: 10",
+      bouncing ? "  shutter_close: 1 }\n" : " }\n",
       bouncing ? "image { width: 400  height: 225 }\n" : "image { width: 1200  height: 675 }\n",
       kOnTheGround);
   Numbers numbers(bouncing ? 4 : 3);
