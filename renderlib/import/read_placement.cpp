@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
@@ -87,18 +88,28 @@ bool same_sign(const Vec3& a, const Vec3& b) {
   return a.x * b.x > 0 && a.y * b.y > 0 && a.z * b.z > 0;
 }
 
+/// The one turn of a pose; of a pose that does not turn, none about the axis of the other.
+std::optional<Turn> only_turn(const Written& pose, const Written& other) {
+  if (pose.turns.size() == 1) {
+    return pose.turns[0];
+  }
+  const bool rests = pose.turns.empty() && other.turns.size() == 1;
+  return rests ? std::optional(Turn{other.turns[0].axis, 0}) : std::nullopt;
+}
+
 /// Keys from one after a up to b: more than one where both turn about one axis by more than the
 /// shortest way would.
 void add_keys(const WrittenKey& a, const WrittenKey& b, std::vector<Key>& keys) {
-  const bool one_axis = a.pose.turns.size() == 1 && b.pose.turns.size() == 1 &&
-                        a.pose.turns[0].axis == b.pose.turns[0].axis;
-  const double turn = one_axis ? b.pose.turns[0].degrees - a.pose.turns[0].degrees : 0;
+  const std::optional<Turn> from = only_turn(a.pose, b.pose);
+  const std::optional<Turn> to = only_turn(b.pose, a.pose);
+  const bool one_axis = from && to && from->axis == to->axis;
+  const double turn = one_axis ? to->degrees - from->degrees : 0;
   const double steps = std::clamp(std::ceil(std::abs(turn) / kMostTurn), 1.0, kMostKeys);
   for (double step = 1; step < steps; ++step) {
     const double u = step / steps;
     Written between;
     between.scale = a.pose.scale + u * (b.pose.scale - a.pose.scale);
-    between.turns = {{a.pose.turns[0].axis, a.pose.turns[0].degrees + u * turn}};
+    between.turns = {{from->axis, from->degrees + u * turn}};
     between.translate = a.pose.translate + u * (b.pose.translate - a.pose.translate);
     keys.emplace_back(a.time + u * (b.time - a.time), transform_of(between));
   }

@@ -49,6 +49,26 @@ Mesh pyramid() {
           .uvs = {{0, 0}, {2, 0}, {2, 2}, {0, 2}, {1, 1}}};
 }
 
+/// A group that turns as it goes, in a frame that moves; one more of it stands.
+void add_what_moves(SceneDescription& scene) {
+  std::get<PerspectiveCamera>(scene.camera).shutter = {0.5, 1.5};
+  Geometry& g = scene.geometry;
+  Shapes group;
+  group.spheres = {{{0, 0, 0}, 0.3, MaterialId{3}}};
+  group.disks = {{{0, 0.4, 0}, {0, 1, 0}, 0.2, MaterialId{6}}};
+  g.groups = {group};
+  g.frames = {{kNoFrame, translation({0.9, 1.4, 0.2}), {Key(0, {}), Key(2, translation({1, 0, 0}))}},
+              {FrameId{0}, {}, {Key(0, {}), Key(1, rotation({1, 0, 1}, 50) * scaling({1, 2, 1}))}}};
+  Instance placed;
+  placed.group = GroupId{0};
+  placed.material = kOwnMaterial;
+  placed.to_world = translation({-1, 2, -0.5}) * scaling({1, -0.4, 0.6});
+  g.instances.push_back(placed);
+  placed.to_world = {};
+  placed.frame = FrameId{1};
+  g.instances.push_back(placed);
+}
+
 /// Every kind of shape, material, light and texture, in a room small enough that most paths meet
 /// several.
 SceneDescription every_feature() {
@@ -83,6 +103,8 @@ SceneDescription every_feature() {
   g.instances = {
       {MeshId{0}, MaterialId{7}, translation({0.2, 0, -0.6}) * rotation({0, 1, 0.1}, 25)},
       {MeshId{0}, MaterialId{6}, translation({-1.9, 0, -0.8}) * scaling({-0.3, 0.5, 0.3})}};
+  g.disks = {{{-2.2, 1.6, 0.3}, normalize(Vec3{1, 0.3, 0.8}), 0.4, MaterialId{5}}};
+  add_what_moves(scene);
   return scene;
 }
 

@@ -33,7 +33,7 @@ Ray aimed(test::Random& random, const Vec3& center, double spread) {
 
 // A mirrored placement is the mesh mirrored by hand with its winding turned round: outside stays
 // outside.
-TEST(Instance, MirroredKeepsItsOutside) {
+TEST(Instance, X1_MirroredKeepsItsOutside) {
   const Mesh mesh = smooth_sphere(2);
   Mesh by_hand = mesh;
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
@@ -69,7 +69,7 @@ TEST(Instance, MirroredKeepsItsOutside) {
 }
 
 // Normals of an ellipsoid made by a placement are its gradient.
-TEST(Instance, StretchedHasTheNormalsOfItsShape) {
+TEST(Instance, X2_StretchedHasTheNormalsOfItsShape) {
   const Vec3 axes = {1, 1, 1e-3};
   const Transform turn = rotation({1, 2, 3}, 40);
   const Geometry g = placed(smooth_sphere(3), turn * scaling(axes));
@@ -104,7 +104,7 @@ TEST(Instance, StretchedHasTheNormalsOfItsShape) {
   EXPECT_GT(hits, 1000);
 }
 
-TEST(Instance, DistancesAreThoseOfTheWorldAtEveryScale) {
+TEST(Instance, X5_DistancesAreThoseOfTheWorldAtEveryScale) {
   Geometry g;
   g.meshes = {test::scaled(test::icosphere(1), 0x1p10), test::scaled(test::icosphere(1), 0x1p-10)};
   g.instances.push_back({MeshId{0}, {}, scaling({0x1p-10, 0x1p-10, 0x1p-10})});
@@ -129,7 +129,7 @@ TEST(Instance, DistancesAreThoseOfTheWorldAtEveryScale) {
   }
 }
 
-TEST(Instance, OfTwoInOnePlaceTheFirstIsHit) {
+TEST(Instance, X6_OfTwoInOnePlaceTheFirstIsHit) {
   Geometry g = placed(test::icosphere(2), rotation({1, 1, 0}, 30) * scaling({1, 2, 0.3}));
   for (int copies = 0; copies < 20; ++copies) {
     g.instances.push_back(g.instances[0]);
@@ -144,7 +144,7 @@ TEST(Instance, OfTwoInOnePlaceTheFirstIsHit) {
 }
 
 // The world box of a turned instance holds it: rays at its outermost corners hit it.
-TEST(Instance, BoxesHoldWhatIsInThem) {
+TEST(Instance, B11_BoxesHoldWhatIsInThem) {
   Pool pool(1);
   test::Random random(5);
   const Mesh mesh = test::icosphere(1);
@@ -166,7 +166,7 @@ TEST(Instance, BoxesHoldWhatIsInThem) {
   }
 }
 
-TEST(Instance, SingularOnesAreNeverHit) {
+TEST(Instance, X3_SingularOnesAreNeverHit) {
   Geometry g = placed(test::icosphere(1), scaling({1, 0, 1}));
   g.instances.push_back({MeshId{7}, {}, {}});  // no such mesh
   Pool pool(1);

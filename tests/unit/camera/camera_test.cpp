@@ -179,5 +179,24 @@ TEST(Camera, LensAndHeightOutOfRangeAreRefused) {
               StartsWith("camera.up: "));
 }
 
+TEST(Camera, C8_RaysHaveTimesFromOpeningToClosing) {
+  PerspectiveCamera c = camera(40);
+  EXPECT_EQ(RayGenerator(c, 8, 8).ray(1, 2, 0, 0, 0.7).time, 0);
+  c.shutter = {0.1, 0.7};
+  const RayGenerator rays(c, 8, 8);
+  EXPECT_EQ(rays.ray(1, 2, 0, 0, 0).time, 0.1);
+  EXPECT_EQ(rays.ray(1, 2, 0, 0, 1).time, 0.7);
+  EXPECT_LE(rays.ray(1, 2, 0, 0, 1 - 0x1p-32).time, 0.7);
+  EXPECT_NEAR(rays.ray(1, 2, 0, 0, 0.5).time, 0.4, 1e-15);
+  EXPECT_EQ(rays.ray(1, 2, 0, 0, 0.5).direction, rays.ray(1, 2, 0, 0, 0.1).direction);
+  c.shutter = {3, 3};
+  EXPECT_EQ(RayGenerator(c, 8, 8).ray(1, 2, 0, 0, 0.7).time, 3);
+  c.shutter = {3, 2};
+  EXPECT_EQ(std::string(validate(Camera(c)).message()),
+            "camera.shutter_close: must not be before shutter_open, 3, is 2");
+  c.shutter = {std::nan(""), 2};
+  EXPECT_THAT(std::string(validate(Camera(c)).message()), StartsWith("camera.shutter_open"));
+}
+
 }  // namespace
 }  // namespace bandsaw
