@@ -1,11 +1,13 @@
 #include "coordinator/cli/checked_options.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
+#include "coordinator/cli/layers.h"
 #include "coordinator/cli/output.h"
 #include "coordinator/cli/quantities.h"
 #include "proto/wire/limits.h"
@@ -218,6 +220,15 @@ absl::StatusOr<Command> checked_render(const RawOptions& raw) {
     ASSIGN_OR_RETURN(options.rows, parse_rows("--rows", *raw.rows));
     if (!std::holds_alternative<StopAtSamples>(options.image.stop)) {
       return wrong("--rows needs --samples: parts of one image must have equally many samples");
+    }
+  }
+  if (raw.layers) {
+    ASSIGN_OR_RETURN(options.layers, parse_layers(*raw.layers));
+    const auto is_exr = [](const std::string& name) {
+      return absl::EndsWithIgnoreCase(name, ".exr");
+    };
+    if (raw.rows || std::none_of(options.outputs.begin(), options.outputs.end(), is_exr)) {
+      return wrong("--layers: are of whole images in EXR files; add -o FILE.exr");
     }
   }
   return options;

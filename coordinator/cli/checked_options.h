@@ -18,7 +18,7 @@ struct RawOptions {
   std::optional<std::string> job, listen;
   std::vector<std::string> outputs, parts;
   std::optional<std::string> samples, error, time, seed, width, height, depth, threads, rows;
-  std::optional<std::string> integrator, exposure, tone;
+  std::optional<std::string> integrator, exposure, tone, layers;
   bool half = false, insecure = false, detach = false, quiet = false, json = false;
 };
 

@@ -96,7 +96,7 @@ void add_submit(CLI::App& app, RawOptions& raw) {
 void add_watch(CLI::App& app, RawOptions& raw) {
   app.add_option("job", raw.job, "The job's number");
   add_output(app, raw, kPictures, "");
-  add_display(app, raw, "0, none");
+  add_display(app, raw, "the scene's");
   add_farm(app, raw);
   add_verbosity(app, raw);
 }
@@ -118,6 +118,9 @@ void add_render(CLI::App& app, RawOptions& raw) {
   add_output(app, raw, ".png, .ppm, .pfm, .hdr, .exr, or .band with --rows",
              " [default: the scene's name as .png]");
   add_display(app, raw, "the scene's");
+  app.add_option("--layers", raw.layers,
+                 "What EXR files hold besides, as in albedo,normal,depth,samples")
+      ->type_name("L,L,…");
   app.add_option("--threads", raw.threads, "Threads [default: one for each CPU]")->type_name("N");
   app.add_option("--rows", raw.rows,
                  "Only rows y0 to y1 - 1, from the top; parts are joined by stitch")
@@ -133,7 +136,7 @@ void add_info(CLI::App& app, RawOptions& raw) {
 void add_stitch(CLI::App& app, RawOptions& raw) {
   app.add_option("parts", raw.parts, "Parts made by: bandsaw render --rows y0:y1 -o PART.band");
   add_output(app, raw, kPictures, "");
-  add_display(app, raw, "0, none");
+  add_display(app, raw, "the scene's");
   add_verbosity(app, raw);
 }
 

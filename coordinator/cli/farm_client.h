@@ -17,9 +17,16 @@
 #include "proto/link/channel.h"
 #include "proto/wire/digest.h"
 #include "renderlib/base/mutex.h"
+#include "renderlib/image/display.h"
 #include "renderlib/image/image.h"
 
 namespace bandsaw::coordinator {
+
+/// A finished image and how its scene wants it shown.
+struct FarmImage {
+  Image image;
+  Display display;
+};
 
 class FarmClient {
  public:
@@ -48,7 +55,7 @@ class FarmClient {
   void pause(std::chrono::milliseconds time) EXCLUDES(mutex_);
 
   /// The finished image, its digest checked. DATA_LOSS: it does not match.
-  absl::StatusOr<Image> result(JobId job);
+  absl::StatusOr<FarmImage> result(JobId job);
 
   absl::StatusOr<std::vector<Progress>> jobs();
   absl::StatusOr<farm::ListWorkersReply> workers();

@@ -1,7 +1,9 @@
 // FarmClient::result: a finished image in chunks, checked before anybody sees it.
 
 #include <bit>
+#include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/farm_client.h"
@@ -19,11 +21,20 @@ struct Received {
   std::uint32_t height = 0;
   std::string sha256;
   std::string bytes;
+  double exposure = 0;
+  std::uint32_t tone = 0;
 
   std::uint64_t size() const { return std::uint64_t{width} * height * sizeof(Rgb); }
 };
 
-absl::StatusOr<Image> image_of(const Received& received) {
+// What is out of range is as if it had not been said.
+Display display_of(const Received& received) {
+  const bool known = std::abs(received.exposure) <= kMostExposure &&
+                     received.tone <= static_cast<std::uint32_t>(kLastTone);
+  return known ? Display{received.exposure, static_cast<Tone>(received.tone), false} : Display();
+}
+
+absl::StatusOr<FarmImage> image_of(const Received& received) {
   const auto span = absl::MakeConstSpan(reinterpret_cast<const std::byte*>(received.bytes.data()),
                                         received.bytes.size());
   if (received.bytes.size() != received.size() || wire::sha256(span).raw() != received.sha256) {
@@ -36,12 +47,12 @@ absl::StatusOr<Image> image_of(const Received& received) {
   image.pixels.resize(std::size_t{received.width} * received.height);
   std::memcpy(static_cast<void*>(image.pixels.data()), received.bytes.data(),
               received.bytes.size());
-  return image;
+  return FarmImage{std::move(image), display_of(received)};
 }
 
 }  // namespace
 
-absl::StatusOr<Image> FarmClient::result(JobId job) {
+absl::StatusOr<FarmImage> FarmClient::result(JobId job) {
   Received received;
   bool too_much = false;
   farm::GetResultRequest request;
@@ -55,6 +66,8 @@ absl::StatusOr<Image> FarmClient::result(JobId job) {
         received.width = chunk.width();
         received.height = chunk.height();
         received.sha256 = chunk.sha256();
+        received.exposure = chunk.exposure();
+        received.tone = chunk.tone();
         too_much = std::uint64_t{received.width} * received.height > kMaxPixels;
       }
       too_much = too_much || received.bytes.size() + chunk.data().size() > received.size();

@@ -88,6 +88,9 @@ struct CancelOptions {
   Verbosity verbosity;
 };
 
+/// What an EXR file holds beside the image.
+enum class LayerKind { kAlbedo, kNormal, kDepth, kSamples };
+
 struct RenderOptions {
   std::string scene;
   std::vector<std::string>
@@ -95,8 +98,9 @@ struct RenderOptions {
   ImageOptions image;
   DisplayOptions display;
   Verbosity verbosity;
-  int threads = 0;               ///< 0: one for each CPU
-  std::optional<RowRange> rows;  ///< a part of the image
+  int threads = 0;                ///< 0: one for each CPU
+  std::optional<RowRange> rows;   ///< a part of the image
+  std::vector<LayerKind> layers;  ///< of EXR files
 };
 
 struct InfoOptions {

@@ -25,9 +25,9 @@ absl::Status check_outputs_writable(const std::vector<std::string>& outputs) {
 }
 
 absl::Status write_outputs(const Image& image, const std::vector<std::string>& outputs,
-                           const Display& display) {
+                           const Display& display, const Layers& layers) {
   for (const std::string& output : outputs) {
-    RETURN_IF_ERROR(write_image(image, output, display));
+    RETURN_IF_ERROR(write_image(image, output, display, layers));
   }
   return absl::OkStatus();
 }

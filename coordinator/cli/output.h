@@ -8,6 +8,7 @@
 #include "absl/status/status.h"
 #include "renderlib/image/display.h"
 #include "renderlib/image/image.h"
+#include "renderlib/image/layers.h"
 
 namespace bandsaw::coordinator {
 
@@ -20,9 +21,10 @@ std::string default_output(const std::string& scene, const std::string& suffix);
 /// Whether every output can be written, before any work. The error names the file.
 absl::Status check_outputs_writable(const std::vector<std::string>& outputs);
 
-/// Writes the image to every output, each whole or not at all; stops at the first error.
+/// Writes the image, and its layers where the format has room for them, to every output, each whole
+/// or not at all; stops at the first error.
 absl::Status write_outputs(const Image& image, const std::vector<std::string>& outputs,
-                           const Display& display);
+                           const Display& display, const Layers& layers = {});
 
 /// "cornell.png, cornell.pfm".
 std::string names_of(const std::vector<std::string>& outputs);

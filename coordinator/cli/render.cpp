@@ -8,6 +8,7 @@
 #include "coordinator/cli/commands.h"
 #include "coordinator/cli/image_settings.h"
 #include "coordinator/cli/import_scene_file.h"
+#include "coordinator/cli/layers.h"
 #include "coordinator/cli/local_render.h"
 #include "coordinator/cli/output.h"
 #include "coordinator/cli/part_file.h"
@@ -55,7 +56,7 @@ absl::Status write_part_outputs(const std::vector<BandPixels>& bands, const JobS
     for (const BandPixels& band : bands) {
       records.push_back({spec.manifest, spec.settings, band});
     }
-    RETURN_IF_ERROR(write_part(output, records));
+    RETURN_IF_ERROR(write_part(output, records, display));
   }
   if (pictures.empty()) {
     return absl::OkStatus();
@@ -116,6 +117,9 @@ class LocalRun {
                        render_part(job, rows_, std::get<StopAtSamples>(spec_.stop).samples));
     } else {
       ASSIGN_OR_RETURN(image_, render_whole(job, spec_.stop));
+      const std::uint64_t samples = progress_at(steady_seconds()).job.samples_per_pixel;
+      ASSIGN_OR_RETURN(
+          layers_, render_layers(options_.layers, *scene, spec_.settings, samples, pool_, stop_));
     }
     return absl::OkStatus();
   }
@@ -128,7 +132,7 @@ class LocalRun {
 
   absl::Status write(const std::vector<std::string>& outputs) const {
     return options_.rows ? write_part_outputs(bands_, spec_, rows_, outputs, picture_)
-                         : write_outputs(image_, outputs, picture_);
+                         : write_outputs(image_, outputs, picture_, layers_);
   }
 
   const RenderOptions& options_;
@@ -142,6 +146,7 @@ class LocalRun {
   const Display picture_;
   std::atomic<bool> stop_{false};
   Image image_;
+  Layers layers_;
   std::vector<BandPixels> bands_;
 };
 

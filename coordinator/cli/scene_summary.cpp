@@ -5,6 +5,7 @@
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/scene_bounds.h"
 #include "renderlib/geometry/placement.h"
+#include "renderlib/light/emission.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -82,9 +83,20 @@ std::uint64_t bytes_of(const Texture& texture) {
   return image == nullptr ? 0 : image->texels.size();
 }
 
+std::uint64_t bytes_of(const Geometry& geometry) {
+  const auto of = [](const auto& list) { return std::uint64_t{list.size()} * sizeof(list[0]); };
+  std::uint64_t sum =
+      of(geometry.spheres) + of(geometry.quads) + of(geometry.triangles) + of(geometry.instances);
+  for (const Mesh& mesh : geometry.meshes) {
+    sum += of(mesh.positions) + of(mesh.triangles) + of(mesh.normals) + of(mesh.uvs) +
+           of(mesh.uvs2) + of(mesh.colors);
+  }
+  return sum;
+}
+
 std::uint64_t lights_in(const SceneDescription& scene) {
   const auto emits = [&](MaterialId id) {
-    return std::holds_alternative<Emissive>(scene.materials[index_of(id)]);
+    return emission_of(scene.materials[index_of(id)]).has_value();
   };
   const Geometry& g = scene.geometry;
   std::uint64_t lights = 0;
@@ -140,6 +152,7 @@ SceneSummary summary_of(const SceneDescription& scene, const PackageInfo& info,
   }
   summary.textures = textures.take();
   summary.lights = lights_in(scene);
+  summary.geometry_bytes = bytes_of(g);
   summary.bounds = bounds_of(scene);
   summary.package_bytes = package_bytes;
   return summary;

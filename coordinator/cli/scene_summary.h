@@ -26,9 +26,11 @@ struct SceneSummary {
   std::vector<Count> materials;
   std::vector<Count> textures;
   std::uint64_t texture_bytes = 0;
-  std::uint64_t lights = 0;  ///< spheres, quads and triangles that emit
-  Box bounds;                ///< of instances: of their meshes' boxes, so they may be smaller
+  std::uint64_t lights = 0;          ///< spheres, quads and triangles that emit
+  std::uint64_t geometry_bytes = 0;  ///< of shapes, vertices and placements, in memory
+  Box bounds;  ///< of instances: of their meshes' boxes, so they may be smaller
   std::uint64_t package_bytes = 0;  ///< of manifest and blobs
+  std::uint64_t tree_bytes = 0;     ///< of what finds hits; 0: not built
 };
 
 /// Counts of kinds that do not occur are left out.

@@ -49,7 +49,10 @@ std::vector<std::string> summary_text(const SceneSummary& summary) {
       line("textures",
            absl::StrCat(text(summary.textures), "; ", bytes(summary.texture_bytes), " of texels")),
       line("lights", absl::StrCat(summary.lights, summary.lights == 1 ? " shape" : " shapes",
-                                  " with an emissive material")),
+                                  " with a material that emits")),
+      line("memory", absl::StrCat(bytes(summary.geometry_bytes), " of geometry, ",
+                                  bytes(summary.tree_bytes), " of trees, ",
+                                  bytes(summary.texture_bytes), " of texels; a pixel takes 48 B")),
       line("size", absl::StrCat(bytes(summary.package_bytes), " to send"))};
   if (info.warnings.empty()) {
     lines.push_back(line("ignored", "nothing"));
@@ -82,6 +85,8 @@ std::string summary_json(const SceneSummary& summary) {
       .objects("textures", objects(summary.textures))
       .whole("texture_bytes", summary.texture_bytes)
       .whole("lights", summary.lights)
+      .whole("geometry_bytes", summary.geometry_bytes)
+      .whole("tree_bytes", summary.tree_bytes)
       .whole("package_bytes", summary.package_bytes)
       .texts("warnings", info.warnings);
   return out.str();

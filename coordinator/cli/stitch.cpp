@@ -56,13 +56,22 @@ class Stitcher {
   std::optional<StitchCoverage> coverage_;
 };
 
-absl::StatusOr<Image> stitched(const std::vector<std::string>& parts) {
+struct Stitched {
+  Image image;
+  Display display;  ///< as the first part says
+};
+
+absl::StatusOr<Stitched> stitched(const std::vector<std::string>& parts) {
   Stitcher stitcher;
+  Stitched out;
   for (const std::string& part : parts) {
-    RETURN_IF_ERROR(
-        read_part(part, [&](const BandRecord& record) { return stitcher.add(part, record); }));
+    ASSIGN_OR_RETURN(const Display display, read_part(part, [&](const BandRecord& record) {
+                       return stitcher.add(part, record);
+                     }));
+    out.display = &part == &parts.front() ? display : out.display;
   }
-  return stitcher.image();
+  ASSIGN_OR_RETURN(out.image, stitcher.image());
+  return out;
 }
 
 }  // namespace
@@ -71,13 +80,15 @@ ExitCode run(const StitchOptions& options, Process& process) {
   if (const auto status = check_outputs_writable(options.outputs); !status.ok()) {
     return process.console.fail(ExitCode::kWrong, std::string(status.message()));
   }
-  const auto image = stitched(options.parts);
-  if (!image.ok()) {
-    const bool memory = absl::IsResourceExhausted(image.status());
+  const auto whole = stitched(options.parts);
+  if (!whole.ok()) {
+    const bool memory = absl::IsResourceExhausted(whole.status());
     return process.console.fail(memory ? ExitCode::kFailed : ExitCode::kWrong,
-                                std::string(image.status().message()));
+                                std::string(whole.status().message()));
   }
-  if (const auto status = write_outputs(*image, options.outputs, options.display.over({}));
+  const Image& image = whole->image;
+  if (const auto status =
+          write_outputs(image, options.outputs, options.display.over(whole->display));
       !status.ok()) {
     return process.console.fail(ExitCode::kFailed, std::string(status.message()));
   }
@@ -85,8 +96,8 @@ ExitCode run(const StitchOptions& options, Process& process) {
     process.console.line(
         JsonObject().text("event", "done").texts("outputs", options.outputs).str());
   } else {
-    process.console.line(absl::StrCat(names_of(options.outputs), " · ", image->width, "×",
-                                      image->height, " · ", options.parts.size(),
+    process.console.line(absl::StrCat(names_of(options.outputs), " · ", image.width, "×",
+                                      image.height, " · ", options.parts.size(),
                                       options.parts.size() == 1 ? " part" : " parts"));
   }
   return ExitCode::kDone;

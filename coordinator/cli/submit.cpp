@@ -98,8 +98,7 @@ ExitCode run(const SubmitOptions& options, Process& process) {
     say_detached(*job, options.verbosity, console);
     return ExitCode::kDone;
   }
-  return watch_job(**client, *job, outputs, options.display.over(package->info().display),
-                   options.verbosity, process);
+  return watch_job(**client, *job, outputs, options.display, options.verbosity, process);
 }
 
 }  // namespace bandsaw::coordinator

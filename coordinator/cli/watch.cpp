@@ -16,8 +16,8 @@ ExitCode run(const WatchOptions& options, Process& process) {
     return process.console.fail(exit_code_of(client.status()),
                                 std::string(client.status().message()));
   }
-  return watch_job(**client, options.job, options.outputs, options.display.over({}),
-                   options.verbosity, process);
+  return watch_job(**client, options.job, options.outputs, options.display, options.verbosity,
+                   process);
 }
 
 }  // namespace bandsaw::coordinator

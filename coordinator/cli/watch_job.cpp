@@ -92,7 +92,7 @@ ExitCode left_early(const absl::Status& status, JobId job, const std::vector<std
 }  // namespace
 
 ExitCode watch_job(FarmClient& client, JobId job, const std::vector<std::string>& outputs,
-                   const Display& picture, Verbosity verbosity, Process& process) {
+                   const DisplayOptions& display_options, Verbosity verbosity, Process& process) {
   const Interrupts::Listener listener(process.interrupts, [&] { client.stop(); });
   ProgressDisplay display(process.console, verbosity);
   const auto last = Watch(client, job, display).to_the_end();
@@ -107,12 +107,14 @@ ExitCode watch_job(FarmClient& client, JobId job, const std::vector<std::string>
         ExitCode::kFailed, absl::StrCat("job ", job, " ", state_name(last->job.state), reason));
   }
   if (!outputs.empty()) {
-    const auto image = client.result(job);
-    if (!image.ok()) {
+    const auto result = client.result(job);
+    if (!result.ok()) {
       display.clear();
-      return left_early(image.status(), job, outputs, process.console);
+      return left_early(result.status(), job, outputs, process.console);
     }
-    if (const auto status = write_outputs(*image, outputs, picture); !status.ok()) {
+    if (const auto status =
+            write_outputs(result->image, outputs, display_options.over(result->display));
+        !status.ok()) {
       display.clear();
       return process.console.fail(
           ExitCode::kFailed,

@@ -102,8 +102,13 @@ void Engine::result(JobId job, std::function<void(absl::StatusOr<StoredResult>)>
     } else if (view->state != JobState::kDone) {
       answer(absl::FailedPreconditionError(absl::StrCat("job ", job, " is not done")));
     } else {
-      impl->on_store([job, answer = std::move(answer)](StoreDesk& store) mutable {
-        answer(store.read_result(job));
+      impl->on_store([impl, job, manifest = view->spec.manifest,
+                      answer = std::move(answer)](StoreDesk& store) mutable {
+        absl::StatusOr<StoredResult> result = store.read_result(job);
+        if (result.ok()) {
+          result->display = display_of(manifest, impl->blobs());
+        }
+        answer(std::move(result));
       });
     }
   });

@@ -91,4 +91,10 @@ absl::Status check_submit(const JobSpec& spec, BlobStore& blobs) {
   return absl::OkStatus();
 }
 
+Display display_of(const DigestHex& manifest, BlobStore& blobs) {
+  const auto bytes = read_manifest(manifest, blobs);
+  const auto info = bytes.ok() ? package_info(*bytes) : bytes.status();
+  return info.ok() ? info->display : Display();
+}
+
 }  // namespace bandsaw::coordinator

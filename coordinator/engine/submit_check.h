@@ -5,6 +5,7 @@
 #include "absl/status/status.h"
 #include "coordinator/core/types.h"
 #include "coordinator/store/blob_store.h"
+#include "renderlib/image/display.h"
 
 namespace bandsaw::coordinator {
 
@@ -12,5 +13,8 @@ namespace bandsaw::coordinator {
 /// of the package is missing; the first is named. DATA_LOSS: the manifest's file is damaged. Reads
 /// the disk.
 absl::Status check_submit(const JobSpec& spec, BlobStore& blobs);
+
+/// How the package wants its image shown; the default where its manifest cannot be read any more.
+Display display_of(const DigestHex& manifest, BlobStore& blobs);
 
 }  // namespace bandsaw::coordinator

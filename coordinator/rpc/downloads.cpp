@@ -69,6 +69,8 @@ void GetResultCall::begin() {
     self->chunk_.set_width(self->result_.image.width);
     self->chunk_.set_height(self->result_.image.height);
     self->chunk_.set_sha256(self->result_.digest.raw());
+    self->chunk_.set_exposure(self->result_.display.exposure);
+    self->chunk_.set_tone(static_cast<std::uint32_t>(self->result_.display.tone));
     self->write_next();
   });
 }

@@ -8,6 +8,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "proto/wire/digest.h"
+#include "renderlib/image/display.h"
 #include "renderlib/image/image.h"
 
 namespace bandsaw::coordinator {
@@ -16,6 +17,7 @@ namespace bandsaw::coordinator {
 struct StoredResult {
   Image image;
   wire::Digest digest;  ///< of the pixels' bytes
+  Display display = {};  ///< as the scene wants it shown; not in the file
 };
 
 /// Whole or not at all: OK means on disk in `folder` as `path`.

@@ -3,64 +3,91 @@
 #include <tinyexr.h>
 
 #include <algorithm>
-#include <array>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <string>
 
 #include "absl/strings/str_cat.h"
 
 namespace bandsaw {
 namespace {
 
-constexpr std::size_t kChannels = 3;
 constexpr float kMostHalf = 65504;
 
 struct Free {
   void operator()(unsigned char* bytes) const { std::free(bytes); }
 };
 
-/// The channels one by one in the order of their names, as the format wants them: B, G, R.
-struct Planes {
-  explicit Planes(const Image& image, bool half) {
-    for (std::vector<float>& plane : values) {
-      plane.reserve(image.pixels.size());
-    }
-    for (const Rgb& pixel : image.pixels) {
-      const std::array<float, kChannels> channels = {pixel.b, pixel.g, pixel.r};
-      for (std::size_t c = 0; c < kChannels; ++c) {
-        const float value = channels[c];
-        values[c].push_back(half ? std::clamp(value, -kMostHalf, kMostHalf) : value);
-      }
+struct Channel {
+  std::string name;
+  bool half = false;
+  std::vector<float> values;
+};
+
+Channel channel(const std::string& name, const Image& image, float Rgb::*of, bool half) {
+  Channel to{name, half, {}};
+  to.values.reserve(image.pixels.size());
+  for (const Rgb& pixel : image.pixels) {
+    const float value = pixel.*of;
+    to.values.push_back(half ? std::clamp(value, -kMostHalf, kMostHalf) : value);
+  }
+  return to;
+}
+
+/// In the order of their names, as the format wants them.
+std::vector<Channel> channels_of(const Image& image, bool half, const Layers& layers) {
+  std::vector<Channel> channels;
+  const auto add = [&](const std::string& prefix, const Image& from) {
+    channels.push_back(channel(prefix + "B", from, &Rgb::b, half));
+    channels.push_back(channel(prefix + "G", from, &Rgb::g, half));
+    channels.push_back(channel(prefix + "R", from, &Rgb::r, half));
+  };
+  add("", image);
+  for (const Layer& layer : layers) {
+    if (layer.is_number) {
+      channels.push_back(channel(layer.name + ".Z", layer.image, &Rgb::r, false));
+    } else {
+      add(layer.name + ".", layer.image);
     }
   }
-  std::array<std::vector<float>, kChannels> values;
-};
+  std::sort(channels.begin(), channels.end(),
+            [](const Channel& a, const Channel& b) { return a.name < b.name; });
+  return channels;
+}
 
 }  // namespace
 
-absl::StatusOr<std::vector<std::byte>> encode_exr(const Image& image, bool half) {
-  Planes planes(image, half);
-  std::array<unsigned char*, kChannels> data{};
-  std::array<EXRChannelInfo, kChannels> channels{};
-  std::array<int, kChannels> in_memory{};
-  std::array<int, kChannels> in_file{};
-  for (std::size_t c = 0; c < kChannels; ++c) {
-    data[c] = reinterpret_cast<unsigned char*>(planes.values[c].data());
-    channels[c].name[0] = "BGR"[c];
-    in_memory[c] = TINYEXR_PIXELTYPE_FLOAT;
-    in_file[c] = half ? TINYEXR_PIXELTYPE_HALF : TINYEXR_PIXELTYPE_FLOAT;
+absl::StatusOr<std::vector<std::byte>> encode_exr(const Image& image, bool half,
+                                                  const Layers& layers) {
+  for (const Layer& layer : layers) {
+    if (layer.image.pixels.size() != image.pixels.size() || layer.name.size() > 200) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("the layer ", layer.name, " is not as large as the image"));
+    }
+  }
+  std::vector<Channel> channels = channels_of(image, half, layers);
+  std::vector<unsigned char*> data;
+  std::vector<EXRChannelInfo> infos;
+  std::vector<int> in_file;
+  std::vector<int> in_memory(channels.size(), TINYEXR_PIXELTYPE_FLOAT);
+  for (Channel& one : channels) {
+    data.push_back(reinterpret_cast<unsigned char*>(one.values.data()));
+    EXRChannelInfo info{};
+    one.name.copy(info.name, sizeof info.name - 1);
+    infos.push_back(info);
+    in_file.push_back(one.half ? TINYEXR_PIXELTYPE_HALF : TINYEXR_PIXELTYPE_FLOAT);
   }
   EXRHeader header;
   InitEXRHeader(&header);
-  header.num_channels = kChannels;
-  header.channels = channels.data();
+  header.num_channels = static_cast<int>(channels.size());
+  header.channels = infos.data();
   header.pixel_types = in_memory.data();
   header.requested_pixel_types = in_file.data();
   header.compression_type = TINYEXR_COMPRESSIONTYPE_ZIP;
   EXRImage picture;
   InitEXRImage(&picture);
-  picture.num_channels = kChannels;
+  picture.num_channels = header.num_channels;
   picture.images = data.data();
   picture.width = static_cast<int>(image.width);
   picture.height = static_cast<int>(image.height);

@@ -91,7 +91,7 @@ absl::StatusOr<ImageFormat> image_format_of(const std::string& path) {
 }
 
 absl::StatusOr<std::vector<std::byte>> encode_image(const Image& image, ImageFormat format,
-                                                    const Display& display) {
+                                                    const Display& display, const Layers& layers) {
   if (image.width == 0 || image.height == 0 ||
       image.pixels.size() != std::size_t{image.width} * image.height) {
     return absl::InvalidArgumentError(absl::StrCat("an image of ", image.width, " x ", image.height,
@@ -107,14 +107,16 @@ absl::StatusOr<std::vector<std::byte>> encode_image(const Image& image, ImageFor
     case ImageFormat::kHdr:
       return encode_hdr(image);
     case ImageFormat::kExr:
-      return encode_exr(image, display.half);
+      return encode_exr(image, display.half, layers);
   }
   return absl::InvalidArgumentError("unknown image format");
 }
 
-absl::Status write_image(const Image& image, const std::string& path, const Display& display) {
+absl::Status write_image(const Image& image, const std::string& path, const Display& display,
+                         const Layers& layers) {
   ASSIGN_OR_RETURN(const ImageFormat format, image_format_of(path));
-  ASSIGN_OR_RETURN(const std::vector<std::byte> bytes, encode_image(image, format, display));
+  ASSIGN_OR_RETURN(const std::vector<std::byte> bytes,
+                   encode_image(image, format, display, layers));
   return write_file_atomically(path, bytes);
 }
 

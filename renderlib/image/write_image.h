@@ -11,6 +11,7 @@
 #include "absl/status/statusor.h"
 #include "renderlib/image/display.h"
 #include "renderlib/image/image.h"
+#include "renderlib/image/layers.h"
 
 namespace bandsaw {
 
@@ -25,12 +26,15 @@ enum class ImageFormat {
 /// By the suffix, any case. INVALID_ARGUMENT naming the suffixes that are known.
 absl::StatusOr<ImageFormat> image_format_of(const std::string& path);
 
+/// Layers go into EXR files; the other formats hold the image alone.
 absl::StatusOr<std::vector<std::byte>> encode_image(const Image& image, ImageFormat format,
-                                                    const Display& display = {});
+                                                    const Display& display = {},
+                                                    const Layers& layers = {});
 
 /// INVALID_ARGUMENT: suffix. Otherwise the system's reason: PERMISSION_DENIED, NOT_FOUND,
 /// RESOURCE_EXHAUSTED (disk full) …
-absl::Status write_image(const Image& image, const std::string& path, const Display& display = {});
+absl::Status write_image(const Image& image, const std::string& path, const Display& display = {},
+                         const Layers& layers = {});
 
 /// Whether write_image would be able to begin: the suffix is known, the folder exists and can be
 /// written. Before any rendering.

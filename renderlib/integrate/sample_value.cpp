@@ -1,7 +1,10 @@
 #include "renderlib/integrate/sample_value.h"
 
 #include "renderlib/geometry/surface.h"
+#include "renderlib/integrate/see_through.h"
 #include "renderlib/material/albedo.h"
+#include "renderlib/material/look_up.h"
+#include "renderlib/material/shading_normal.h"
 #include "renderlib/sampling/basis.h"
 #include "renderlib/sampling/warp.h"
 
@@ -12,6 +15,16 @@ namespace {
 Rgb as_color(const Vec3& n) {
   const auto channel = [](double v) { return static_cast<float>((v + 1) / 2); };
   return {channel(n.x), channel(n.y), channel(n.z)};
+}
+
+/// The shading normal, bent by the normal map where there is one.
+Vec3 outside_normal(const Material& material, absl::Span<const Texture> textures,
+                    const SurfacePoint& point) {
+  const auto* principled = std::get_if<Principled>(&material);
+  return principled == nullptr || !principled->normal
+             ? point.shading_normal
+             : mapped_normal(point, look_up(textures, *principled->normal, point),
+                             principled->normal_scale);
 }
 
 /// 1 where a cosine-weighted direction on the viewer's side meets nothing near, else 0.
@@ -28,17 +41,17 @@ float openness(const Scene& scene, const SurfacePoint& point, const Vec3& wo, do
 
 Rgb value_at(const Scene& scene, Integrator integrator, const Ray& ray, const PixelSampler& sampler,
              std::uint64_t sample, std::uint64_t& rays) {
-  ++rays;
-  const Hit hit = scene.accel().closest(ray);
-  if (!hit) {
+  Interiors interiors;
+  const auto seen = first_surface(scene, ray, sampler, sample, 0, interiors, rays);
+  if (!seen) {
     return gray(integrator == Integrator::kAmbientOcclusion ? 1.0f : 0.0f);
   }
+  const SurfacePoint& point = *seen;
   if (integrator == Integrator::kDepth) {
-    return gray(static_cast<float>(hit.t));
+    return gray(static_cast<float>(length(point.position - ray.origin)));
   }
-  const SurfacePoint point = surface_at(scene.geometry(), ray, hit);
   if (integrator == Integrator::kNormals) {
-    return as_color(point.shading_normal);
+    return as_color(outside_normal(scene.material(point.material), scene.textures(), point));
   }
   if (integrator == Integrator::kAlbedo) {
     return albedo_at(scene.material(point.material), scene.textures(), point);

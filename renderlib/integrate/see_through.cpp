@@ -9,7 +9,7 @@ SurfacePoint point_at(const Scene& scene, const Ray& ray, const Hit& hit) {
   SurfacePoint point = surface_at(scene.geometry(), ray, hit);
   if (scene.needs().uv_directions) {
     const auto* principled = std::get_if<Principled>(&scene.material(point.material));
-    if (principled != nullptr && principled->normal) {
+    if (principled != nullptr && (principled->normal || principled->coat_normal)) {
       add_uv_directions(scene.geometry(), point);
     }
   }

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "coordinator/cli/part_file.h"
 #include "coordinator/cli/stitch_coverage.h"
 #include "tests/support/temp_dir.h"
@@ -62,26 +64,52 @@ BandRecord record() {
 
 TEST(PartFile, WhatIsWrittenIsRead) {
   const test::TempDir folder;
-  ASSERT_TRUE(write_part(folder / "a.band", {record(), record()}).ok());
+  const Display shown{-1.5, Tone::kFilmic, false};
+  ASSERT_TRUE(write_part(folder / "a.band", {record(), record()}, shown).ok());
   int records = 0;
-  const absl::Status status = read_part(folder / "a.band", [&](const BandRecord& read) {
+  const auto display = read_part(folder / "a.band", [&](const BandRecord& read) {
     EXPECT_EQ(read.pixels.sums, record().pixels.sums);
     EXPECT_EQ(read.settings, record().settings);
     ++records;
     return absl::OkStatus();
   });
-  EXPECT_TRUE(status.ok()) << status;
+  ASSERT_TRUE(display.ok()) << display.status();
+  EXPECT_EQ(*display, shown);
   EXPECT_EQ(records, 2);
+}
+
+TEST(PartFile, MayBeRecordsAlone) {
+  const test::TempDir folder;
+  const auto bytes = encode_band_record(record()).value();
+  std::ofstream(folder / "a.band", std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
+  const auto display =
+      read_part(folder / "a.band", [](const BandRecord&) { return absl::OkStatus(); });
+  ASSERT_TRUE(display.ok()) << display.status();
+  EXPECT_EQ(*display, Display());
+}
+
+TEST(PartFile, ADamagedBeginningIsFound) {
+  const test::TempDir folder;
+  ASSERT_TRUE(write_part(folder / "a.band", {record()}, {2, Tone::kNone, false}).ok());
+  std::fstream file(folder / "a.band", std::ios::binary | std::ios::in | std::ios::out);
+  file.seekp(12);
+  file.put('x');
+  file.close();
+  const auto ignore = [](const BandRecord&) { return absl::OkStatus(); };
+  EXPECT_EQ(read_part(folder / "a.band", ignore).status().code(), absl::StatusCode::kDataLoss);
 }
 
 TEST(PartFile, ErrorsNameTheFile) {
   const test::TempDir folder;
   const auto ignore = [](const BandRecord&) { return absl::OkStatus(); };
-  EXPECT_THAT(std::string(read_part(folder / "none.band", ignore).message()),
+  EXPECT_THAT(std::string(read_part(folder / "none.band", ignore).status().message()),
               HasSubstr("none.band"));
-  EXPECT_THAT(std::string(read_part(BANDSAW_SOURCE "/LICENSE", ignore).message()),
+  EXPECT_THAT(std::string(read_part(BANDSAW_SOURCE "/LICENSE", ignore).status().message()),
               HasSubstr("LICENSE"));
-  EXPECT_THAT(std::string(read_part(folder.path(), ignore).message()), HasSubstr(folder.path()));
+  EXPECT_THAT(std::string(read_part(folder.path(), ignore).status().message()),
+              HasSubstr(folder.path()));
 }
 
 }  // namespace

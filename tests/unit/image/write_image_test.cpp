@@ -40,7 +40,7 @@ std::string file(const std::string& path) {
   return out.str();
 }
 
-TEST(Srgb, EveryCodeSurvivesDecodingAndEncoding) {
+TEST(Srgb, TX5EveryCodeSurvivesDecodingAndEncoding) {
   for (int code = 0; code < 256; ++code) {
     EXPECT_EQ(srgb_encode(srgb_table()[static_cast<std::size_t>(code)]), code);
   }

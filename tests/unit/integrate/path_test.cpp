@@ -121,7 +121,7 @@ TEST(Path, AnOpaqueBlockerShadowsExactlyHoweverFarTheLamp) {
   expect_always(*maker.build(), ray, 0, 0);
 }
 
-TEST(Path, ConstantColorAndConstantTextureMakeTheSameBits) {
+TEST(Path, TX8ConstantColorAndConstantTextureMakeTheSameBits) {
   SceneMaker plain;
   const MaterialId gray_plain = plain.diffuse(1);
   SceneMaker textured;

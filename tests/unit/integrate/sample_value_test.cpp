@@ -75,6 +75,24 @@ TEST(SampleValue, TheAlbedoOfAGltfMaterialIsItsBaseColour) {
   EXPECT_EQ(value(maker, Integrator::kAlbedo, kAhead), (Rgb{0.4f, 0.6f, 0.1f}));
 }
 
+TEST(SampleValue, NormalsAreThoseOfTheNormalMapAndWhatIsNotThereIsSeenThrough) {
+  SceneMaker maker;
+  wall(maker, maker.diffuse({0.2f, 0.4f, 0.6f}), -2);
+  Principled bent;
+  bent.normal = maker.texture(ConstantTexture{{0.75f, 0.5f, 0.75f}});
+  maker.scene.materials.emplace_back(bent);
+  const MaterialId id{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)};
+  wall(maker, id);
+  const Rgb normal = value(maker, Integrator::kNormals, kAhead);
+  EXPECT_NEAR(normal.r, 0.5 + std::sqrt(0.125), 1e-6);
+  EXPECT_NEAR(normal.b, 0.5 + std::sqrt(0.125), 1e-6);
+  auto& masked = std::get<Principled>(maker.scene.materials.back());
+  masked.alpha_mode = AlphaMode::kMask;
+  masked.alpha.factor = 0.25;
+  EXPECT_EQ(value(maker, Integrator::kDepth, kAhead), gray(7));
+  EXPECT_EQ(value(maker, Integrator::kAlbedo, kAhead), (Rgb{0.2f, 0.4f, 0.6f}));
+}
+
 TEST(SampleValue, AMissIsBlackAndOpen) {
   SceneMaker maker;
   maker.sphere({50, 0, 0}, 1, maker.diffuse(0.5f));

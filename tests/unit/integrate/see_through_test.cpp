@@ -127,7 +127,7 @@ TEST(Emission, OfAScatteringSurfaceIsAddedToWhatItReflects) {
   EXPECT_LT(light_along(maker, back, 2000).mean(), 0.1);
 }
 
-TEST(NestedGlass, RaysBendAsIfOnlyTheHigherPriorityWereWhereTheyOverlap) {
+TEST(NestedGlass, M9RaysBendAsIfOnlyTheHigherPriorityWereWhereTheyOverlap) {
   // Water (1) that reaches into its tumbler (2): a slab of each, overlapping by 0.1.
   const auto stack = [](double overlap) {
     SceneMaker maker = white_sky();
@@ -156,7 +156,7 @@ TEST(NestedGlass, RaysBendAsIfOnlyTheHigherPriorityWereWhereTheyOverlap) {
   EXPECT_NEAR(stack(0.5), overlapping, 0.02);
 }
 
-TEST(NestedGlass, ABubbleOfAirInGlassBendsOutwards) {
+TEST(NestedGlass, M9ABubbleOfAirInGlassBendsOutwards) {
   Interiors inside;
   const Dielectric glass{1.5, 0, 1};
   const Dielectric air{1, 0, 2};

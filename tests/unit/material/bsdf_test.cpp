@@ -97,7 +97,7 @@ TEST(Bsdf, FuzzyMetalSamplesFollowTheirDensity) {
   }
 }
 
-TEST(Bsdf, ValuesAreTheReflectanceTimesTheDensity) {
+TEST(Bsdf, M14ValuesAreTheReflectanceTimesTheDensity) {
   const Vec3 wi = normalize({0.1, -0.3, 0.8});
   for (const Material& material : {Material(Diffuse{}), Material(Metal{{}, 0.9})}) {
     const BsdfValue value = evaluate(bsdf(material, {0.2, 0.1, 1}), wi);
@@ -108,7 +108,7 @@ TEST(Bsdf, ValuesAreTheReflectanceTimesTheDensity) {
   }
 }
 
-TEST(Bsdf, NothingPassesThroughOpaqueSurfacesWhateverTheShadingNormal) {
+TEST(Bsdf, M10NothingPassesThroughOpaqueSurfacesWhateverTheShadingNormal) {
   Random random(4);
   for (int i = 0; i < 20000; ++i) {
     const double tilt = random.uniform(0, 1.5);
@@ -160,7 +160,7 @@ TEST(Bsdf, GlassReflectsTheFresnelShare) {
   EXPECT_LT(sample(bsdf(Dielectric{1.5}, -wo), 0, 0, kOneMinusEpsilon)->wi.z, 0);
 }
 
-TEST(Bsdf, GlassOfIndexOneIsNotThere) {
+TEST(Bsdf, M6GlassOfIndexOneIsNotThere) {
   const Vec3 wo = normalize({0.3, 0.4, -0.2});
   const auto through = sample(bsdf(Dielectric{1}, wo), 0, 0, 0);
   ASSERT_TRUE(through);
@@ -168,7 +168,7 @@ TEST(Bsdf, GlassOfIndexOneIsNotThere) {
   EXPECT_EQ(through->weight, gray(1));
 }
 
-TEST(Bsdf, CornersOfTheUnitSquareGiveFiniteSamples) {
+TEST(Bsdf, M1CornersOfTheUnitSquareGiveFiniteSamples) {
   const double least = 0x1p-32;
   for (const double u : {0.0, least, 1 - least, 0.5}) {
     for (const double v : {0.0, least, 1 - least, 0.5}) {

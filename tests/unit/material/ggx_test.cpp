@@ -18,7 +18,7 @@ using test::Wide;
 
 Vec3 at_cosine(double mu) { return {std::sqrt(1 - mu * mu), 0, mu}; }
 
-TEST(Ggx, TheDistributionIsExactHoweverSmoothTheSurface) {
+TEST(Ggx, M3TheDistributionIsExactHoweverSmoothTheSurface) {
   Random random(3);
   for (const double alpha : {0.5, 0.1, 0.01, 1e-3, 1e-4}) {
     for (int i = 0; i < 1000; ++i) {
@@ -47,7 +47,7 @@ TEST(Ggx, VisibleNormalsAreSampledWithTheirDensity) {
   }
 }
 
-TEST(Ggx, WeightsOfVisibleNormalsStayInTheUnitIntervalEvenAtGrazingDirections) {
+TEST(Ggx, M5WeightsOfVisibleNormalsStayInTheUnitIntervalEvenAtGrazingDirections) {
   Random random(5);
   for (const double alpha : {1e-4, 0.01, 0.3, 1.0}) {
     for (const double mu : {0.0, 1e-12, 1e-4, 0.5, 1.0}) {

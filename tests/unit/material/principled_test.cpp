@@ -162,7 +162,7 @@ TEST(Principled, ReflectionIsReciprocal) {
   }
 }
 
-TEST(Principled, NothingOpaquePassesLightWhateverTheNormals) {
+TEST(Principled, M10NothingOpaquePassesLightWhateverTheNormals) {
   Random random(4);
   for (const double roughness : {0.05, 0.6}) {
     for (const auto& [name, material] : all_materials(roughness)) {
@@ -186,7 +186,7 @@ TEST(Principled, NothingOpaquePassesLightWhateverTheNormals) {
   }
 }
 
-TEST(Principled, EdgesOfTheirRangesGiveFiniteNumbers) {
+TEST(Principled, M2M5EdgesOfTheirRangesGiveFiniteNumbers) {
   const double least = 0x1p-32;
   for (const double roughness : {0.0, 0.01, 1.0}) {
     for (const auto& [name, material] : all_materials(roughness)) {
@@ -234,7 +234,7 @@ TEST(Principled, ChannelsAreThoseOfGltf) {
   EXPECT_NEAR(b.surface.alpha, 0.35 * 0.35, 1e-7);
 }
 
-TEST(RoughGlass, OfIndexOneIsNotThere) {
+TEST(RoughGlass, M6OfIndexOneIsNotThere) {
   const Vec3 wo = normalize({0.3, 0.4, -0.2});
   const auto through = sample(bsdf(Dielectric{1, 0.5}, wo), 0.3, 0.2, 0.1);
   ASSERT_TRUE(through && through->delta);

@@ -88,7 +88,7 @@ TEST(Warp, NarrowConesKeepTheirWidth) {
   }
 }
 
-TEST(Warp, BasisIsOrthonormalInEveryDirection) {
+TEST(Warp, M15BasisIsOrthonormalInEveryDirection) {
   test::Random random(6);
   std::vector<Vec3> normals = {{0, 0, 1},       {0, 0, -1},    {1, 0, 0},
                                {0, -1, 0},      {1e-9, 0, -1}, normalize(Vec3{1e-5, 1e-5, -1}),

@@ -48,7 +48,7 @@ TEST(Checker, TakesTurnsInUvAndInSpace) {
   EXPECT_EQ(at_point(boxes, {3, -1, -1}), kBlack);
 }
 
-TEST(Checker, APlaneBetweenTwoLayersHasOneSide) {
+TEST(Checker, TX4APlaneBetweenTwoLayersHasOneSide) {
   // Whatever rounding does to the third coordinate: also far away from the origin and for cells
   // that are no power of two.
   std::mt19937_64 numbers(7);

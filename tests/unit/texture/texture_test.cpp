@@ -74,7 +74,7 @@ TEST(Texture, UvBeginsAtTheBottomLeft) {
   EXPECT_EQ(at(texture, 0.6, 0.5), 12);
 }
 
-TEST(Texture, EdgesAndBeyondNeverLeaveTheImage) {
+TEST(Texture, TX2TX3EdgesAndBeyondNeverLeaveTheImage) {
   for (const Wrap wrap : {Wrap::kRepeat, Wrap::kClamp, Wrap::kMirror}) {
     for (const Filter filter : {Filter::kBilinear, Filter::kNearest}) {
       const Texture texture = counted(4, 3, wrap, filter);
@@ -92,7 +92,7 @@ TEST(Texture, EdgesAndBeyondNeverLeaveTheImage) {
   }
 }
 
-TEST(Texture, AtTheCornersAreTheCornerTexels) {
+TEST(Texture, TX1AtTheCornersAreTheCornerTexels) {
   const Texture texture = counted(4, 3, Wrap::kClamp, Filter::kNearest);
   EXPECT_EQ(at(texture, 0, 0), 20);
   EXPECT_EQ(at(texture, 1, 0), 23);
@@ -136,7 +136,7 @@ TEST(Texture, CodesAreDecodedByTheirFormat) {
   EXPECT_EQ(evaluate(codes(Format::kLinear8, {0, 51, 255}, 1), {0.3, 0.3}), (Rgb{0, 0.2f, 1}));
 }
 
-TEST(Texture, AnImageOfOneColorIsThatColorToTheBit) {
+TEST(Texture, TX8AnImageOfOneColorIsThatColorToTheBit) {
   const Texture image = codes(Format::kSrgb8, {77, 88, 99, 77, 88, 99, 77, 88, 99, 77, 88, 99}, 2);
   const Rgb color{srgb_table()[77], srgb_table()[88], srgb_table()[99]};
   for (double u = -2; u < 2; u += 0.0137) {
@@ -175,7 +175,7 @@ TEST(Texture, MayWrapInVUnlikeInU) {
   EXPECT_EQ(at(texture, -0.125, -5), 23);
 }
 
-TEST(Texture, HasNoSeamOnASphere) {
+TEST(Texture, TX7HasNoSeamOnASphere) {
   // A gradient that closes in u and runs from pole to pole in v, 64 x 32 texels; points close
   // together on either side of the seam and around the poles differ by less than two texel steps.
   ImageTexture image;
@@ -204,7 +204,16 @@ TEST(Texture, HasNoSeamOnASphere) {
   }
 }
 
-TEST(Texture, MayBeASinglePixelOrALine) {
+TEST(Texture, TX3FarRepetitionsAreWithinAHundredthOfATexel) {
+  const Texture texture = counted(4, 3, Wrap::kRepeat, Filter::kBilinear);
+  for (const double turns : {1e3, 1e5, 1e7}) {
+    for (const double u : {0.2, 0.45, 0.7}) {
+      EXPECT_NEAR(at(texture, u + turns, 0.5), at(texture, u, 0.5), 0.01) << turns << " " << u;
+    }
+  }
+}
+
+TEST(Texture, TX6MayBeASinglePixelOrALine) {
   EXPECT_EQ(at(codes(Format::kLinear8, {0, 51, 0}, 1), 0.3, 77.7), 0.2f);
   const Texture line = codes(Format::kLinear8, std::vector<std::uint8_t>(3 * 16384, 255), 16384);
   for (const double u : {0.0, 1.0, 0.99999, -1e-20}) {

@@ -1,0 +1,70 @@
+#include "coordinator/cli/layers.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/render/render_image.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+struct Kind {
+  const char* name;
+  Integrator integrator;  ///< not of samples
+  bool is_number;
+};
+
+/// In the order of LayerKind.
+constexpr Kind kKinds[] = {{"albedo", Integrator::kAlbedo, false},
+                           {"normal", Integrator::kNormals, false},
+                           {"depth", Integrator::kDepth, true},
+                           {"samples", Integrator::kPath, true}};
+
+Image counts(const RenderSettings& settings, std::uint64_t samples) {
+  Image image{settings.width, settings.height, {}};
+  image.pixels.assign(std::size_t{image.width} * image.height, gray(static_cast<float>(samples)));
+  return image;
+}
+
+}  // namespace
+
+absl::StatusOr<std::vector<LayerKind>> parse_layers(const std::string& list) {
+  std::vector<LayerKind> kinds;
+  for (const absl::string_view name : absl::StrSplit(list, ',')) {
+    const auto* found = std::find_if(std::begin(kKinds), std::end(kKinds),
+                                     [&](const Kind& kind) { return kind.name == name; });
+    const auto kind = static_cast<LayerKind>(found - std::begin(kKinds));
+    if (found == std::end(kKinds) || std::find(kinds.begin(), kinds.end(), kind) != kinds.end()) {
+      return absl::InvalidArgumentError(absl::StrCat(
+          "--layers: must be some of albedo, normal, depth and samples, with commas between, each "
+          "once, is '",
+          list, "'"));
+    }
+    kinds.push_back(kind);
+  }
+  return kinds;
+}
+
+absl::StatusOr<Layers> render_layers(const std::vector<LayerKind>& kinds, const Scene& scene,
+                                     RenderSettings settings, std::uint64_t samples, Pool& pool,
+                                     const std::atomic<bool>& stop) {
+  Layers layers;
+  for (const LayerKind wanted : kinds) {
+    const Kind& kind = kKinds[static_cast<std::size_t>(wanted)];
+    if (wanted == LayerKind::kSamples) {
+      layers.push_back({kind.name, counts(settings, samples), kind.is_number});
+      continue;
+    }
+    settings.integrator = kind.integrator;
+    ASSIGN_OR_RETURN(
+        const RenderedImage rendered,
+        render_image(scene, settings, std::min(samples, kMostLayerSamples), pool, stop, {}, ""));
+    layers.push_back({kind.name, rendered.film.snapshot().image, kind.is_number});
+  }
+  return layers;
+}
+
+}  // namespace bandsaw::coordinator

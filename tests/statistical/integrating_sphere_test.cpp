@@ -1,0 +1,84 @@
+// Inside a sphere each point of the wall lights every other alike: whatever the albedo's texture, a
+// lamp of flux Phi on the wall makes the irradiance Phi / (4 pi R^2 (1 - mean albedo)) everywhere.
+// Looks up textures by the sphere's uvs, asks lights and follows paths. Within 4 standard errors.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "renderlib/math/constants.h"
+#include "tests/statistical/estimate.h"
+#include "tests/support/random.h"
+#include "tests/support/scenes.h"
+
+namespace bandsaw {
+namespace {
+
+constexpr std::uint32_t kColumns = 8;
+constexpr std::uint32_t kRows = 6;
+
+/// Albedos without any order, rows from the top.
+std::vector<float> albedos() {
+  test::Random random(77);
+  std::vector<float> values(kColumns * kRows);
+  for (float& value : values) {
+    value = static_cast<float>(0.05 + 0.9 * random.uniform());
+  }
+  return values;
+}
+
+ImageTexture image_of(const std::vector<float>& values) {
+  ImageTexture image;
+  image.width = kColumns;
+  image.height = kRows;
+  image.channels = 1;
+  image.format = ImageTexture::Format::kFloat32;
+  image.filter = ImageTexture::Filter::kNearest;
+  const auto* bytes = reinterpret_cast<const std::byte*>(values.data());
+  image.texels = std::vector<std::byte>(bytes, bytes + values.size() * sizeof(float));
+  return image;
+}
+
+/// Rows of equal angle are not of equal area.
+double area_mean(const std::vector<float>& values) {
+  double sum = 0;
+  for (std::uint32_t y = 0; y < kRows; ++y) {
+    const double share = (std::cos(kPi * y / kRows) - std::cos(kPi * (y + 1) / kRows)) / 2;
+    for (std::uint32_t x = 0; x < kColumns; ++x) {
+      sum += share / kColumns * double{values[y * kColumns + x]};
+    }
+  }
+  return sum;
+}
+
+TEST(IntegratingSphere, OfAnyTextureIsAsBrightAsItsMeanAlbedoSays) {
+  const std::vector<float> values = albedos();
+  test::SceneMaker maker;
+  maker.sphere({0, 0, 0}, 1, maker.diffuse(1));
+  maker.scene.materials.back() = Diffuse{maker.texture(image_of(values))};
+  // A lamp so small that it hides nothing, just off the wall, facing the middle.
+  const double side = 0.004;
+  const float radiance = 1e5f;
+  maker.quad({-side / 2, -1 + side * side, -side / 2}, {0, 0, side}, {side, 0, 0},
+             maker.lamp(radiance, true));
+  const auto scene = maker.build();
+  const double flux = kPi * double{radiance} * side * side;
+  const double irradiance = flux / (4 * kPi * (1 - area_mean(values)));
+  for (const auto& [x, y] : {std::pair(1u, 1u), std::pair(5u, 2u), std::pair(2u, 4u)}) {
+    // The middle of a texel: u counts from -x over +z, as geometry/surface.h says of its poles.
+    const double theta = kPi * (y + 0.5) / kRows;
+    const double phi = 2 * kPi * (x + 0.5) / kColumns;
+    const Vec3 there{-std::sin(theta) * std::cos(phi), std::cos(theta),
+                     std::sin(theta) * std::sin(phi)};
+    const Ray ray{.origin = {0, 0, 0}, .direction = there};
+    const auto seen = test::radiance_along(*scene, ray, {.max_depth = 1000}, 8192);
+    const double expected = double{values[y * kColumns + x]} * irradiance / kPi;
+    EXPECT_LE(std::abs(seen.z(expected)), 4)
+        << seen.mean() << " +- " << seen.standard_error() << ", expected " << expected;
+    EXPECT_LE(seen.standard_error(), 1e-3 * expected);
+  }
+}
+
+}  // namespace
+}  // namespace bandsaw

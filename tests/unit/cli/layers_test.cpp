@@ -1,0 +1,43 @@
+#include "coordinator/cli/layers.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "renderlib/render/render_image.h"
+#include "tests/support/scenes.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+using ::testing::ElementsAre;
+
+TEST(Layers, AreNamedOnceEach) {
+  EXPECT_THAT(parse_layers("depth,albedo").value(),
+              ElementsAre(LayerKind::kDepth, LayerKind::kAlbedo));
+  EXPECT_THAT(parse_layers("albedo,normal,depth,samples").value().size(), 4u);
+  for (const char* wrong : {"", "albedo,", "albedo,albedo", "colour", "normals"}) {
+    EXPECT_FALSE(parse_layers(wrong).ok()) << wrong;
+  }
+}
+
+TEST(Layers, AreWhatTheirIntegratorsShow) {
+  test::SceneMaker maker;
+  maker.sphere({0, 0, 0}, 1, maker.diffuse({0.25f, 0.5f, 0.75f}));
+  const auto scene = maker.build();
+  Pool pool(2);
+  const std::atomic<bool> stop{false};
+  RenderSettings settings{.width = 8, .height = 6};
+  const auto layers = render_layers({LayerKind::kSamples, LayerKind::kAlbedo, LayerKind::kDepth},
+                                    *scene, settings, 16, pool, stop);
+  ASSERT_TRUE(layers.ok()) << layers.status();
+  EXPECT_EQ((*layers)[0].image.pixels, std::vector<Rgb>(48, gray(16)));
+  EXPECT_TRUE((*layers)[0].is_number);
+  EXPECT_FALSE((*layers)[1].is_number);
+  settings.integrator = Integrator::kAlbedo;
+  const auto albedo = render_image(*scene, settings, 16, pool, stop, {}, "");
+  EXPECT_EQ((*layers)[1].image.pixels, albedo->film.snapshot().image.pixels);
+  EXPECT_EQ((*layers)[2].name, "depth");
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,76 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <tinyexr.h>
+
+#include <cstring>
+#include <map>
+#include <string>
+
+#include "renderlib/image/exr.h"
+
+namespace bandsaw {
+namespace {
+
+using ::testing::ElementsAre;
+
+struct ReadChannel {
+  int type_in_file = 0;
+  std::vector<float> values;
+};
+
+/// Every channel of the file, by name.
+std::map<std::string, ReadChannel> channels_of(const std::vector<std::byte>& file) {
+  const auto* bytes = reinterpret_cast<const unsigned char*>(file.data());
+  EXRVersion version;
+  EXRHeader header;
+  EXRImage image;
+  InitEXRHeader(&header);
+  InitEXRImage(&image);
+  EXPECT_EQ(ParseEXRVersionFromMemory(&version, bytes, file.size()), TINYEXR_SUCCESS);
+  EXPECT_EQ(ParseEXRHeaderFromMemory(&header, &version, bytes, file.size(), nullptr),
+            TINYEXR_SUCCESS);
+  for (int i = 0; i < header.num_channels; ++i) {
+    header.requested_pixel_types[i] = TINYEXR_PIXELTYPE_FLOAT;
+  }
+  EXPECT_EQ(LoadEXRImageFromMemory(&image, &header, bytes, file.size(), nullptr), TINYEXR_SUCCESS);
+  std::map<std::string, ReadChannel> channels;
+  for (int i = 0; i < header.num_channels; ++i) {
+    ReadChannel& to = channels[header.channels[i].name];
+    to.type_in_file = header.pixel_types[i];
+    to.values.resize(static_cast<std::size_t>(image.width * image.height));
+    std::memcpy(to.values.data(), image.images[i], to.values.size() * sizeof(float));
+  }
+  FreeEXRImage(&image);
+  FreeEXRHeader(&header);
+  return channels;
+}
+
+const Image kImage{2, 1, {{1, 2, 3}, {4, 5, 6}}};
+const Layers kLayers = {{"albedo", {2, 1, {{0.25f, 0.5f, 0.75f}, {1, 0, 0}}}, false},
+                        {"depth", {2, 1, {gray(1e6f), gray(3)}}, true}};
+
+TEST(ExrLayers, StandBesideTheImageUnderTheirNames) {
+  const auto channels = channels_of(encode_exr(kImage, false, kLayers).value());
+  ASSERT_EQ(channels.size(), 7u);
+  EXPECT_THAT(channels.at("R").values, ElementsAre(1, 4));
+  EXPECT_THAT(channels.at("B").values, ElementsAre(3, 6));
+  EXPECT_THAT(channels.at("albedo.R").values, ElementsAre(0.25f, 1));
+  EXPECT_THAT(channels.at("albedo.G").values, ElementsAre(0.5f, 0));
+  EXPECT_THAT(channels.at("depth.Z").values, ElementsAre(1e6f, 3));
+}
+
+TEST(ExrLayers, OfNumbersStayFloatsInAFileOfHalves) {
+  const auto channels = channels_of(encode_exr(kImage, true, kLayers).value());
+  EXPECT_EQ(channels.at("R").type_in_file, TINYEXR_PIXELTYPE_HALF);
+  EXPECT_EQ(channels.at("albedo.B").type_in_file, TINYEXR_PIXELTYPE_HALF);
+  EXPECT_EQ(channels.at("depth.Z").type_in_file, TINYEXR_PIXELTYPE_FLOAT);
+  EXPECT_THAT(channels.at("depth.Z").values, ElementsAre(1e6f, 3));
+}
+
+TEST(ExrLayers, OfAnotherSizeAreRefused) {
+  const Layers wrong = {{"albedo", {1, 1, {gray(1)}}, false}};
+  EXPECT_EQ(encode_exr(kImage, false, wrong).status().code(), absl::StatusCode::kInvalidArgument);
+}
+
+}  // namespace
+}  // namespace bandsaw

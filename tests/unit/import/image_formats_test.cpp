@@ -1,0 +1,102 @@
+// One tiny file of each image format, as its specification has it.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <string>
+
+#include "renderlib/import/decode_image.h"
+
+namespace bandsaw {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+std::string bytes(std::initializer_list<int> values) {
+  std::string out;
+  for (const int value : values) {
+    out += static_cast<char>(value);
+  }
+  return out;
+}
+
+std::vector<int> codes(const ImageTexture& image) {
+  std::vector<int> out;
+  for (const std::byte b : image.texels) {
+    out.push_back(static_cast<int>(b));
+  }
+  return out;
+}
+
+ImageTexture decoded(const std::string& file, Gray gray = Gray::kKept) {
+  std::vector<std::string> warnings;
+  auto image = decode_image(file, warnings, gray);
+  EXPECT_TRUE(image.ok()) << image.status();
+  EXPECT_THAT(warnings, IsEmpty());
+  return image.ok() ? *std::move(image) : ImageTexture();
+}
+
+// Each of the pictures is 2 x 2: red, green above blue, white.
+constexpr int kRed = 250;
+
+TEST(ImageFormats, PpmGoesFromTheTopRowDown) {
+  const ImageTexture image = decoded("P6\n# a comment\n2 2\n255\n" +
+                                     bytes({kRed, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255}));
+  EXPECT_THAT(codes(image), ElementsAre(kRed, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255));
+  EXPECT_EQ(image.format, ImageTexture::Format::kSrgb8);
+}
+
+TEST(ImageFormats, PgmIsGrey) {
+  const ImageTexture image = decoded("P5 2 1 255\n" + bytes({7, 200}));
+  EXPECT_EQ(image.channels, 1);
+  EXPECT_THAT(codes(image), ElementsAre(7, 200));
+}
+
+// Truevision TGA 2.0: type 2, from the bottom row up, blue first.
+TEST(ImageFormats, TgaGoesFromTheBottomRowUp) {
+  const ImageTexture image =
+      decoded(bytes({0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 2, 0, 24, 0}) +
+              bytes({255, 0, 0, 255, 255, 255, 0, 0, kRed, 0, 255, 0}));
+  EXPECT_THAT(codes(image), ElementsAre(kRed, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255));
+}
+
+TEST(ImageFormats, TgaMayBeRunsAndBeginAtTheTop) {
+  const ImageTexture image =
+      decoded(bytes({0, 0, 10, 0, 0, 0, 0, 0, 0, 0, 0, 0, 3, 0, 1, 0, 24, 0x20}) +
+              bytes({0x81, 1, 2, 3, 0x00, 4, 5, 6}));
+  EXPECT_THAT(codes(image), ElementsAre(3, 2, 1, 3, 2, 1, 6, 5, 4));
+}
+
+// BITMAPINFOHEADER, 24 bits, rows from the bottom, each filled up to four bytes.
+TEST(ImageFormats, BmpFillsUpItsRows) {
+  const std::string header = "BM" + bytes({70, 0, 0, 0, 0, 0, 0, 0, 54, 0, 0, 0}) +
+                             bytes({40, 0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0, 1, 0, 24, 0}) +
+                             std::string(24, '\0');
+  const ImageTexture image = decoded(header + bytes({255, 0, 0, 255, 255, 255, 0, 0}) +
+                                     bytes({0, 0, kRed, 0, 255, 0, 0, 0}));
+  EXPECT_THAT(codes(image), ElementsAre(kRed, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255));
+}
+
+// Radiance: mantissas and a common exponent, (m / 256) 2^(e - 128).
+TEST(ImageFormats, HdrIsItsMantissasTimesTheirExponent) {
+  const ImageTexture image = decoded("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n" +
+                                     bytes({128, 64, 0, 131, 255, 128, 1, 120}));
+  EXPECT_EQ(image.format, ImageTexture::Format::kFloat32);
+  std::vector<float> values(6);
+  ASSERT_EQ(image.texels.size(), 24u);
+  std::memcpy(values.data(), image.texels.data(), 24);
+  EXPECT_THAT(values, ElementsAre(4, 2, 0, 255.0f / 65536, 128.0f / 65536, 1.0f / 65536));
+}
+
+TEST(ImageFormats, AlphaIsReadOfATga) {
+  const std::string file = bytes({0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 1, 0, 32, 0x28}) +
+                           bytes({1, 2, 3, 40, 5, 6, 7, 80});
+  EXPECT_TRUE(image_has_alpha(file));
+  EXPECT_THAT(codes(decode_alpha(file).value()), ElementsAre(40, 80));
+  EXPECT_FALSE(image_has_alpha("P5 1 1 255\n7"));
+}
+
+}  // namespace
+}  // namespace bandsaw

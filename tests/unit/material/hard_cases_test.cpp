@@ -1,0 +1,162 @@
+// The hard cases of materials that have no better place: M2, M7, M8, M11, M12 and the masking term
+// on its own.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "renderlib/integrate/path.h"
+#include "renderlib/material/bsdf.h"
+#include "renderlib/material/fresnel.h"
+#include "renderlib/material/ggx.h"
+#include "renderlib/math/constants.h"
+#include "tests/support/meshes.h"
+#include "tests/support/random.h"
+#include "tests/support/scenes.h"
+
+namespace bandsaw {
+namespace {
+
+using test::Random;
+using test::random_direction;
+
+const std::vector<Texture> kTextures = {ConstantTexture{{1, 1, 1}}, ConstantTexture{gray(0.5f)}};
+
+SurfacePoint point() {
+  SurfacePoint p;
+  p.geometric_normal = p.shading_normal = {0, 0, 1};
+  return p;
+}
+
+Principled layered(double roughness) {
+  Principled m;
+  m.metallic = m.transmission = m.coat_roughness = {TextureId{1}, 1};
+  m.roughness = {TextureId{0}, roughness};
+  m.coat = {TextureId{0}, 1};
+  return m;
+}
+
+// M2: nothing is 0 / 0 where a density is nearly zero, also at the edges of the numbers' range.
+TEST(MaterialHardCases, M2DensitiesNearZeroGiveFiniteNumbers) {
+  const Material materials[] = {layered(0.01), layered(1), Dielectric{1.5, 0.02},
+                                Dielectric{1.0000001, 0.5}, Metal{TextureId{0}, 1e-5}};
+  const double edges[] = {0, 0x1p-32, 0.5, 1 - 0x1p-24, 1 - 0x1p-32};
+  Random random(5);
+  for (const Material& material : materials) {
+    for (int i = 0; i < 20'000; ++i) {
+      Vec3 wo = random_direction(random);
+      wo.z *= i % 3 == 0 ? 1e-9 : 1;
+      const Bsdf bsdf = bsdf_at(material, kTextures, point(), normalize(wo));
+      const auto edge = [&] { return edges[static_cast<int>(random.uniform() * 5)]; };
+      const double u = i % 2 == 0 ? random.uniform() : edge();
+      const double v = i % 5 == 0 ? edge() : random.uniform();
+      if (const auto drawn = sample(bsdf, u, v, edge())) {
+        ASSERT_TRUE(is_finite(drawn->wi) && is_finite(drawn->weight) && std::isfinite(drawn->pdf));
+        ASSERT_TRUE(drawn->delta || drawn->pdf > 0);
+      }
+      const BsdfValue value = evaluate(bsdf, random_direction(random));
+      ASSERT_TRUE(is_finite(value.value) && std::isfinite(value.pdf) && value.pdf >= 0);
+    }
+  }
+}
+
+// Snell and Fresnel in 64 bits of mantissa (Born and Wolf, 1.5.2), from the same double cosine.
+long double exact_fresnel(double cosine, double eta) {
+  const long double c = cosine;
+  const long double n = eta;
+  const long double cos2_t = 1 - (1 - c * c) / (n * n);
+  if (cos2_t <= 0) {
+    return 1;
+  }
+  const long double t = std::sqrt(cos2_t);
+  const long double parallel = (n * c - t) / (n * c + t);
+  const long double perpendicular = (c - n * t) / (c + n * t);
+  return (parallel * parallel + perpendicular * perpendicular) / 2;
+}
+
+TEST(MaterialHardCases, M7AroundTheCriticalAngleFresnelIsExact) {
+  for (const double eta : {1 / 1.33, 1 / 1.5, 1 / 2.4}) {
+    const double critical = std::sqrt(1 - eta * eta);
+    for (int k = 2; k <= 12; ++k) {
+      for (const double sign : {-1.0, 1.0}) {
+        const double cosine = critical + sign * std::pow(10.0, -k);
+        const long double exact = exact_fresnel(cosine, eta);
+        // Just beyond the angle F falls like a square root: what the cosine's last bit is worth.
+        const double bit = 1e-15 * std::pow(10.0, k / 2.0);
+        EXPECT_NEAR(fresnel(cosine, eta), static_cast<double>(exact), 1e-12 + bit);
+        EXPECT_EQ(refracted_cos(cosine, eta).has_value(), exact < 1) << k << " " << sign;
+        if (const auto cos_t = refracted_cos(cosine, eta)) {
+          const Vec3 w{std::sqrt(1 - cosine * cosine), 0, cosine};
+          EXPECT_NEAR(length(refracted(w, {0, 0, 1}, *cos_t, eta)), 1, 1e-12);
+        }
+      }
+    }
+  }
+}
+
+TEST(MaterialHardCases, M8DirectionsStayUnitOverAThousandMirrors) {
+  Random random(2);
+  Vec3 direction = random_direction(random);
+  for (int bounce = 0; bounce < 1000; ++bounce) {
+    SurfacePoint p = point();
+    const Vec3 towards = random_direction(random);
+    p.geometric_normal = p.shading_normal = dot(towards, direction) < 0 ? towards : -towards;
+    const auto next = sample(bsdf_at(Metal{TextureId{0}}, kTextures, p, -direction), 0.5, 0.5, 0.5);
+    ASSERT_TRUE(next);
+    direction = next->wi;
+    ASSERT_LE(std::abs(length_squared(direction) - 1), 8 * 0x1p-53);
+  }
+}
+
+// M11: nothing is lost in a closed white sphere; the path ends at its longest. M12: of little
+// reflectance it ends by roulette after few surfaces.
+TEST(MaterialHardCases, M11M12PathsEnd) {
+  for (const float reflectance : {1.0f, 1e-3f}) {
+    test::SceneMaker maker;
+    maker.sphere({0, 0, 0}, 1, maker.diffuse(reflectance));
+    const auto scene = maker.build();
+    std::uint64_t rays = 0;
+    const Ray ray{.origin = {0.5, 0, 0}, .direction = {0, 1, 0}};
+    for (std::uint64_t sample = 0; sample < 64; ++sample) {
+      const Rgb seen =
+          path_radiance(*scene, ray, PixelSampler(0, 1, 2), sample, {.max_depth = 200}, rays);
+      EXPECT_TRUE(is_black(seen));
+    }
+    if (reflectance == 1) {
+      EXPECT_EQ(rays, 64u * 201);
+    } else {
+      EXPECT_LE(rays, 64u * 8);
+    }
+  }
+}
+
+// Weak white furnace (Heitz 2014, section 5.3): the facets that a direction sees, each by its
+// projected area, make up the whole of it: the integral of G1 D max(0, o.h) / |o.z| over h is 1.
+TEST(Ggx, SeenFacetsCoverTheWholeDirection) {
+  for (const double alpha : {0.05, 0.2, 0.5, 1.0}) {
+    for (const double z : {1.0, 0.7, 0.3, 0.1}) {
+      const Vec3 o{std::sqrt(1 - z * z), 0, z};
+      // Slopes tan = alpha sqrt(x / (1 - x)) make D's density uniform in x.
+      constexpr int kSide = 1200;
+      double sum = 0;
+      for (int a = 0; a < kSide; ++a) {
+        const double x = (a + 0.5) / kSide;
+        const double slope2 = alpha * alpha * x / (1 - x);
+        const double cosine = 1 / std::sqrt(1 + slope2);
+        const double sine = std::sqrt(slope2) * cosine;
+        for (int b = 0; b < kSide; ++b) {
+          const double phi = 2 * kPi * (b + 0.5) / kSide;
+          const Vec3 h{sine * std::cos(phi), sine * std::sin(phi), cosine};
+          // D cos dh is uniform: D dh = dx dphi / (2 pi cos).
+          sum += std::max(0.0, dot(o, h)) / cosine;
+        }
+      }
+      const double whole = ggx_masking(o, alpha) * sum / (double{kSide} * kSide) / z;
+      EXPECT_NEAR(whole, 1, 1e-4) << alpha << " " << z;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace bandsaw
