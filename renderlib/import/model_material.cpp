@@ -7,8 +7,6 @@
 namespace bandsaw {
 namespace {
 
-constexpr float kMostRadiance = 1e30f;
-
 // Textures of which nothing is rendered, by what they are called.
 void name_unused_textures(MaterialReader& reader) {
   constexpr struct {
@@ -28,17 +26,16 @@ void name_unused_textures(MaterialReader& reader) {
   }
 }
 
-// A plain white emission as bright as its base colour: what is unlit shows the same in any light.
+// KHR_materials_unlit: meant to show its base colour whatever the light, which no surface does.
 absl::StatusOr<ModelMaterial> read_unlit(MaterialReader& reader) {
   reader.leave_out("is unlit, which is taken as a diffuse surface");
-  ASSIGN_OR_RETURN(const TextureId texture,
-                   reader.map({aiTextureType_BASE_COLOR}, MaterialReader::As::kColor,
-                              reader.color("$clr.base", 1).value_or(Rgb{1, 1, 1})));
-  if (reader.has({aiTextureType_BASE_COLOR})) {
-    return reader.add(Diffuse{texture});
+  const Rgb base = reader.color("$clr.base", 1).value_or(Rgb{1, 1, 1});
+  if (!reader.has({aiTextureType_BASE_COLOR})) {
+    return reader.add(Diffuse{reader.draft().textures.constant(base)});
   }
-  return reader.add(Diffuse{
-      reader.draft().textures.constant(reader.color("$clr.base", 1).value_or(Rgb{1, 1, 1}))});
+  ASSIGN_OR_RETURN(const TextureId texture,
+                   reader.map({aiTextureType_BASE_COLOR}, MaterialReader::As::kColor, base));
+  return reader.add(Diffuse{texture});
 }
 
 }  // namespace
