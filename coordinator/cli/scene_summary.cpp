@@ -83,13 +83,24 @@ std::uint64_t bytes_of(const Texture& texture) {
   return image == nullptr ? 0 : image->texels.size();
 }
 
-std::uint64_t bytes_of(const Geometry& geometry) {
-  const auto of = [](const auto& list) { return std::uint64_t{list.size()} * sizeof(list[0]); };
-  std::uint64_t sum =
-      of(geometry.spheres) + of(geometry.quads) + of(geometry.triangles) + of(geometry.instances);
+template <class T>
+std::uint64_t bytes_in(const std::vector<T>& list) {
+  return std::uint64_t{list.size()} * sizeof(T);
+}
+
+std::uint64_t bytes_of(const Shapes& shapes) {
+  return bytes_in(shapes.spheres) + bytes_in(shapes.quads) + bytes_in(shapes.triangles) +
+         bytes_in(shapes.disks);
+}
+
+std::uint64_t bytes_in(const Geometry& geometry) {
+  std::uint64_t sum = bytes_of(static_cast<const Shapes&>(geometry)) + bytes_in(geometry.instances);
+  for (const Shapes& group : geometry.groups) {
+    sum += bytes_of(group);
+  }
   for (const Mesh& mesh : geometry.meshes) {
-    sum += of(mesh.positions) + of(mesh.triangles) + of(mesh.normals) + of(mesh.uvs) +
-           of(mesh.uvs2) + of(mesh.colors);
+    sum += bytes_in(mesh.positions) + bytes_in(mesh.triangles) + bytes_in(mesh.normals) +
+           bytes_in(mesh.uvs) + bytes_in(mesh.uvs2) + bytes_in(mesh.colors);
   }
   return sum;
 }
@@ -152,7 +163,7 @@ SceneSummary summary_of(const SceneDescription& scene, const PackageInfo& info,
   }
   summary.textures = textures.take();
   summary.lights = lights_in(scene);
-  summary.geometry_bytes = bytes_of(g);
+  summary.geometry_bytes = bytes_in(g);
   summary.bounds = bounds_of(scene);
   summary.package_bytes = package_bytes;
   return summary;

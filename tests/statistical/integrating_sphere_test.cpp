@@ -65,7 +65,7 @@ TEST(IntegratingSphere, OfAnyTextureIsAsBrightAsItsMeanAlbedoSays) {
   const auto scene = maker.build();
   const double flux = kPi * double{radiance} * side * side;
   const double irradiance = flux / (4 * kPi * (1 - area_mean(values)));
-  for (const auto& [x, y] : {std::pair(1u, 1u), std::pair(5u, 2u), std::pair(2u, 4u)}) {
+  for (const auto& [x, y] : {std::pair(1u, 1u), std::pair(5u, 2u)}) {
     // The middle of a texel: u counts from -x over +z, as geometry/surface.h says of its poles.
     const double theta = kPi * (y + 0.5) / kRows;
     const double phi = 2 * kPi * (x + 0.5) / kColumns;

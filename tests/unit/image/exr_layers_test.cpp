@@ -29,14 +29,14 @@ std::map<std::string, ReadChannel> channels_of(const std::vector<std::byte>& fil
   EXPECT_EQ(ParseEXRVersionFromMemory(&version, bytes, file.size()), TINYEXR_SUCCESS);
   EXPECT_EQ(ParseEXRHeaderFromMemory(&header, &version, bytes, file.size(), nullptr),
             TINYEXR_SUCCESS);
+  std::map<std::string, ReadChannel> channels;
   for (int i = 0; i < header.num_channels; ++i) {
+    channels[header.channels[i].name].type_in_file = header.pixel_types[i];
     header.requested_pixel_types[i] = TINYEXR_PIXELTYPE_FLOAT;
   }
   EXPECT_EQ(LoadEXRImageFromMemory(&image, &header, bytes, file.size(), nullptr), TINYEXR_SUCCESS);
-  std::map<std::string, ReadChannel> channels;
   for (int i = 0; i < header.num_channels; ++i) {
     ReadChannel& to = channels[header.channels[i].name];
-    to.type_in_file = header.pixel_types[i];
     to.values.resize(static_cast<std::size_t>(image.width * image.height));
     std::memcpy(to.values.data(), image.images[i], to.values.size() * sizeof(float));
   }
