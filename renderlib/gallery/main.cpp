@@ -19,7 +19,9 @@
 #include "renderlib/base/status_macros.h"
 #include "renderlib/gallery/book_scenes.h"
 #include "renderlib/gallery/globe.h"
+#include "renderlib/gallery/sky.h"
 #include "renderlib/gallery/turned.h"
+#include "renderlib/image/hdr.h"
 #include "renderlib/image/png.h"
 
 namespace bandsaw::gallery {
@@ -51,6 +53,12 @@ absl::Status make_all(const std::string& folder) {
   RETURN_IF_ERROR(write(folder + "/pawn.obj", pawn()));
   RETURN_IF_ERROR(write(folder + "/lamp_foot.obj", lamp_foot()));
   RETURN_IF_ERROR(write(folder + "/lamp_shade.obj", lamp_shade()));
+  RETURN_IF_ERROR(write(folder + "/evening.hdr", encode_hdr(evening_sky_map(64))));
+  constexpr const char* kSides[] = {"px", "nx", "py", "ny", "pz", "nz"};
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    RETURN_IF_ERROR(write(absl::StrCat(folder, "/evening_", kSides[i], ".hdr"),
+                          encode_hdr(evening_sky_side(i, 48))));
+  }
   RETURN_IF_ERROR(write(books + "/one_weekend.textproto", many_spheres(false)));
   RETURN_IF_ERROR(write(books + "/bouncing_spheres.textproto", many_spheres(true)));
   RETURN_IF_ERROR(write(books + "/next_week.textproto", next_week_final()));

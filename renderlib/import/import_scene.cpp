@@ -13,6 +13,7 @@
 #include "renderlib/import/model.h"
 #include "renderlib/import/parse_scene.h"
 #include "renderlib/import/read_groups.h"
+#include "renderlib/import/read_lights.h"
 #include "renderlib/import/read_materials.h"
 #include "renderlib/import/read_models.h"
 #include "renderlib/import/read_shapes.h"
@@ -28,9 +29,10 @@ namespace {
 constexpr std::uint64_t kMaxSceneFileBytes = std::uint64_t{64} << 20;
 
 bool has_light(const SceneDescription& scene) {
-  return std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& material) {
-    return std::holds_alternative<Emissive>(material);
-  });
+  return !scene.lights.empty() ||
+         std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& material) {
+           return std::holds_alternative<Emissive>(material);
+         });
 }
 
 Camera framed(const ImportedScene& out) {
@@ -66,12 +68,13 @@ absl::Status read_scene(const Field& root, const scene::Scene& from, SceneDraft&
   ASSIGN_OR_RETURN(scene.filter, read_filter(root, from));
   ASSIGN_OR_RETURN(scene.local_shading, read_local_shading(root, from));
   if (from.has_background()) {
-    ASSIGN_OR_RETURN(scene.background, read_background(root, from));
+    ASSIGN_OR_RETURN(scene.background, read_background(root, from, draft));
   }
   RETURN_IF_ERROR(read_textures(root, from, draft));
   RETURN_IF_ERROR(read_materials(root, from, draft));
   RETURN_IF_ERROR(read_groups(root, from, draft));
   RETURN_IF_ERROR(read_shapes(root, from.shape(), draft));
+  RETURN_IF_ERROR(read_lights(root, from, draft));
   RETURN_IF_ERROR(read_models(root, from.model(), draft));
   RETURN_IF_ERROR(read_instances(root, from.instance(), draft));
   scene.geometry.frames = std::move(draft.world.frames);
@@ -99,6 +102,7 @@ absl::Status read_model_alone(const std::string& path, SceneDraft& draft) {
   ASSIGN_OR_RETURN(const auto real, draft.folder.resolve(name_of(path), draft.folder.path()));
   ASSIGN_OR_RETURN(const Model model, read_model(real, true, draft));
   draft.out.scene.geometry.instances = model.instances;
+  draft.out.scene.lights = model.lights;
   draft.out.scene.camera = model.cameras.empty() ? framed(draft.out) : model.cameras.front().camera;
   if (!has_light(draft.out.scene)) {
     draft.out.scene.background = default_sky();

@@ -57,7 +57,6 @@ void warn_of_unused(ModelFile& file) {
     }
   };
   warn(file.scene.mNumAnimations, "animations (the rest pose is shown) are");
-  warn(file.scene.mNumLights, "lights are");
   warn(file.gltf.scenes > 1 ? file.gltf.scenes - 1 : 0, "scenes beside the default one are");
   for (const std::string& extension : file.gltf.ignored) {
     file.warn(absl::StrCat("the extension ", extension, " is left out"));
@@ -100,6 +99,9 @@ Transform upright(const aiScene& scene) {
 void turn(const Transform& by, Model& model) {
   for (Instance& instance : model.instances) {
     instance.to_world = by * instance.to_world;
+  }
+  for (DeltaLight& light : model.lights) {
+    light = placed(light, by);
   }
   for (ModelCamera& camera : model.cameras) {
     camera.camera = placed(camera.camera, by);

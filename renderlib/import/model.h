@@ -9,6 +9,7 @@
 #include "renderlib/camera/camera.h"
 #include "renderlib/geometry/shapes.h"
 #include "renderlib/import/scene_draft.h"
+#include "renderlib/light/delta_light.h"
 
 namespace bandsaw {
 
@@ -22,6 +23,7 @@ struct ModelCamera {
 struct Model {
   std::vector<Instance> instances;   ///< in the model's own space
   std::vector<ModelCamera> cameras;  ///< in the order of its nodes
+  std::vector<DeltaLight> lights = {};
 };
 
 /// The same camera where `placement` puts it.

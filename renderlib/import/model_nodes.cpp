@@ -8,6 +8,7 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "renderlib/import/model_lights.h"
 #include "renderlib/math/constants.h"
 #include "renderlib/math/elementary.h"
 
@@ -57,10 +58,13 @@ bool has_usable_cameras(const ModelFile& file) {
 // The tree is walked with a stack of its own: its depth comes from the file.
 class Walk {
  public:
-  Walk(const ModelFile& file, const ModelMeshes& meshes) : file_(file), meshes_(meshes) {
+  Walk(ModelFile& file, const ModelMeshes& meshes) : file_(file), meshes_(meshes) {
     const aiScene& scene = file.scene;
     for (unsigned i = 0; has_usable_cameras(file) && i < scene.mNumCameras; ++i) {
       cameras_.emplace(scene.mCameras[i]->mName.C_Str(), scene.mCameras[i]);
+    }
+    for (unsigned i = 0; i < scene.mNumLights; ++i) {
+      lights_.emplace(scene.mLights[i]->mName.C_Str(), scene.mLights[i]);
     }
     stack_.push_back({scene.mRootNode, Transform{}});
   }
@@ -108,15 +112,20 @@ class Walk {
         model.cameras.push_back({found->first, *camera});
       }
     }
+    const auto [first, last] = lights_.equal_range(node.mName.C_Str());
+    for (auto light = first; light != last; ++light) {
+      add_model_light(*light->second, to_model, file_, model);
+    }
     // Backwards, so that children are visited in the order of the file.
     for (unsigned i = node.mNumChildren; i-- > 0;) {
       stack_.push_back({node.mChildren[i], to_model});
     }
   }
 
-  const ModelFile& file_;
+  ModelFile& file_;
   const ModelMeshes& meshes_;
   std::map<std::string, const aiCamera*> cameras_;
+  std::multimap<std::string, const aiLight*> lights_;
   std::vector<Entry> stack_;
   std::set<unsigned> skinned_;  ///< those that are placed: their bones place them, not their nodes
 };

@@ -14,7 +14,8 @@ namespace bandsaw {
 namespace {
 
 // What may be wrong with a model's file, at the field that names it.
-absl::StatusOr<std::shared_ptr<const Model>> read_file(const Field& in, const scene::Model& from, SceneDraft& draft) {
+absl::StatusOr<std::shared_ptr<const Model>> read_file(const Field& in, const scene::Model& from,
+                                                       SceneDraft& draft) {
   if (from.file().empty()) {
     return in.error("file", "is required: the name of a model file");
   }
@@ -44,6 +45,21 @@ absl::StatusOr<std::shared_ptr<const Model>> find_file(const Field& in, const sc
   return model;
 }
 
+/// Lights without size stand still in the world: where the shutter opens, if their model moves.
+void add_lights(const std::string& file, const Model& model, const Transform& to_world,
+                SceneDraft& draft) {
+  if (draft.placed != &draft.world) {
+    if (!model.lights.empty()) {
+      draft.out.info.warnings.push_back(
+          absl::StrCat(file, ": ", model.lights.size(), " lights are left out: a group has none"));
+    }
+    return;
+  }
+  for (const DeltaLight& light : model.lights) {
+    draft.out.scene.lights.push_back(placed(light, to_world));
+  }
+}
+
 absl::Status read_model_entry(const Field& in, const scene::Model& from, SceneDraft& draft) {
   std::optional<MaterialId> material;
   if (!from.material().empty()) {
@@ -62,6 +78,7 @@ absl::Status read_model_entry(const Field& in, const scene::Model& from, SceneDr
   if (!place({{}, model->instances}, place_at, material, *draft.placed)) {
     return in.error("scale", "is too large or too small for this model");
   }
+  add_lights(from.file(), *model, to_camera, draft);
   for (const ModelCamera& camera : model->cameras) {
     draft.cameras.push_back({from.file(), camera.name, placed(camera.camera, to_camera)});
   }

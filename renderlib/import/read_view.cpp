@@ -1,11 +1,12 @@
 #include "renderlib/import/read_view.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/import/numbers.h"
+#include "renderlib/import/read_environment.h"
+#include "renderlib/import/read_rotation.h"
 #include "renderlib/math/transform.h"
 #include "renderlib/render/settings.h"
 
@@ -18,16 +19,7 @@ absl::StatusOr<View> read_turned(const Field& in, const scene::Camera& from, Vie
   if (!from.look_at().empty() || !from.up().empty()) {
     return in.error("rotate", "stands instead of look_at and up: write one or the other");
   }
-  Transform turn = rotation({0, 0, 1}, 0);
-  for (int i = 0; i < from.rotate_size(); ++i) {
-    const Field rotate = in.child("rotate", i);
-    ASSIGN_OR_RETURN(const Vec3 axis, read_direction(rotate, "axis", from.rotate(i).axis()));
-    const double degrees = from.rotate(i).degrees();
-    if (!std::isfinite(degrees)) {
-      return rotate.error("degrees", absl::StrCat("must be finite, is ", degrees));
-    }
-    turn = rotation(axis, degrees) * turn;
-  }
+  ASSIGN_OR_RETURN(const Transform turn, read_rotation(in, from.rotate()));
   // Far enough ahead that the sum keeps the direction's digits.
   const double ahead = std::max(1.0, max_abs(view.position));
   view.look_at = view.position + turn.direction({0, 0, -1}) * ahead;
@@ -205,7 +197,8 @@ absl::StatusOr<LocalShading> read_local_shading(const Field& root, const scene::
   return local;
 }
 
-absl::StatusOr<Background> read_background(const Field& root, const scene::Scene& from) {
+absl::StatusOr<Background> read_background(const Field& root, const scene::Scene& from,
+                                           SceneDraft& draft) {
   const Field in = root.child("background");
   switch (from.background().kind_case()) {
     case scene::Background::kConstant: {
@@ -225,10 +218,23 @@ absl::StatusOr<Background> read_background(const Field& root, const scene::Scene
       ASSIGN_OR_RETURN(background.top, read_color(gradient.child("top"), of.top(), kMostRadiance));
       return background;
     }
+    case scene::Background::kEnvironment: {
+      Background background;
+      ASSIGN_OR_RETURN(
+          background.environment,
+          read_environment(in.child("environment"), from.background().environment(), draft));
+      return background;
+    }
+    case scene::Background::kCubeMap: {
+      Background background;
+      ASSIGN_OR_RETURN(background.environment,
+                       read_cube_map(in.child("cube_map"), from.background().cube_map(), draft));
+      return background;
+    }
     case scene::Background::KIND_NOT_SET:
       break;
   }
-  return in.error("is empty: write constant or gradient");
+  return in.error("is empty: write constant, gradient, environment or cube_map");
 }
 
 }  // namespace bandsaw

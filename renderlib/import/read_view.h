@@ -20,6 +20,7 @@ absl::StatusOr<LocalShading> read_local_shading(const Field& root, const scene::
 /// Image and integrator, where written.
 absl::Status read_settings(const Field& root, const scene::Scene& from, PackageInfo& info);
 /// The written background; the scene MUST have one.
-absl::StatusOr<Background> read_background(const Field& root, const scene::Scene& from);
+absl::StatusOr<Background> read_background(const Field& root, const scene::Scene& from,
+                                           SceneDraft& draft);
 
 }  // namespace bandsaw

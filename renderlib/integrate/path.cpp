@@ -38,13 +38,40 @@ float scattering_weight(const Scene& scene, const Departure& departure, const Su
       power_heuristic(departure.pdf, scene.lights().pdf(departure.from, light)));
 }
 
+/// What is seen where a ray leaves the scene, as far as scattering counts for it.
+Rgb background_light(const Scene& scene, const Departure& departure, const Vec3& direction,
+                     Technique technique) {
+  const Rgb seen = radiance(scene.background(), scene.textures(), direction);
+  if (departure.delta || !scene.needs().environment || technique == Technique::kScatteringOnly) {
+    return seen;
+  }
+  const double asked = scene.lights().environment_pdf(departure.from, direction);
+  if (technique == Technique::kLightsOnly) {
+    return asked > 0 ? Rgb{} : seen;  // What is even is never asked.
+  }
+  return seen * static_cast<float>(power_heuristic(departure.pdf, asked));
+}
+
+/// What asking and following must be weighed against each other for.
+struct Asking {
+  Technique technique = Technique::kBoth;
+  bool only_distant_followed = false;  ///< local shading: directions end at the next surface
+};
+
+bool is_also_followed(const LightSample& light, const Asking& asking) {
+  return !light.delta &&
+         (asking.technique == Technique::kBoth || (asking.only_distant_followed && light.distant));
+}
+
 /// The light of one asked light that the point sends on, weighed; black when something is in
 /// between.
 Rgb asked_light(const Scene& scene, const SurfacePoint& point, const Receiver& receiver,
-                const Bsdf& bsdf, const Sample4& numbers, Technique technique,
+                const Bsdf& bsdf, const Sample4& numbers, const Asking& asking,
                 std::uint64_t& rays) {
+  // The fourth number, which surfaces do not use, gives the choice among many lights finer steps.
+  const double choice = numbers[0] + numbers[3] * 0x1p-32;
   const std::optional<LightSample> light =
-      scene.lights().sample(receiver, numbers[0], numbers[1], numbers[2]);
+      scene.lights().sample(receiver, choice, numbers[1], numbers[2]);
   if (!light) {
     return {};
   }
@@ -52,13 +79,22 @@ Rgb asked_light(const Scene& scene, const SurfacePoint& point, const Receiver& r
   if (is_black(scattered.value)) {
     return {};
   }
-  const float passing = unoccluded(scene, toward(point, light->target, 0), rays);
+  const Ray way = light->distant ? leave(point, light->direction) : toward(point, light->target, 0);
+  const float passing = unoccluded(scene, way, rays);
   if (passing == 0) {
     return {};
   }
   const double weight =
-      technique == Technique::kBoth ? power_heuristic(light->pdf, scattered.pdf) : 1;
+      is_also_followed(*light, asking) ? power_heuristic(light->pdf, scattered.pdf) : 1;
   return scattered.value * light->radiance * static_cast<float>(weight / light->pdf) * passing;
+}
+
+/// What local shading sees of an environment in a direction that scattering found.
+Rgb followed_environment(const Scene& scene, const SurfacePoint& point, const Departure& departure,
+                         const Vec3& direction, std::uint64_t& rays) {
+  const float passing = unoccluded(scene, leave(point, direction), rays);
+  return passing == 0 ? Rgb{}
+                      : background_light(scene, departure, direction, Technique::kBoth) * passing;
 }
 
 /// A glass that takes part in nesting.
@@ -85,7 +121,8 @@ Rgb path_radiance(const Scene& scene, const Ray& camera_ray, const PixelSampler&
     const std::optional<SurfacePoint> seen =
         first_surface(scene, ray, sampler, sample, depth, interiors, rays);
     if (!seen) {
-      return radiance + throughput * bandsaw::radiance(scene.background(), ray.direction);
+      return radiance +
+             throughput * background_light(scene, departure, ray.direction, options.technique);
     }
     const SurfacePoint& point = *seen;
     const Material& material = scene.material(point.material);
@@ -107,8 +144,9 @@ Rgb path_radiance(const Scene& scene, const Ray& camera_ray, const PixelSampler&
     const bool is_last = options.local && has_density(bsdf) && !is_metal(material);
     if (ask_lights && has_density(bsdf)) {
       const Sample4 numbers = sampler.group(sample, group_light(depth));
-      const Technique technique = is_last ? Technique::kLightsOnly : options.technique;
-      radiance += throughput * asked_light(scene, point, receiver, bsdf, numbers, technique, rays);
+      const Asking asking =
+          is_last ? Asking{Technique::kLightsOnly, true} : Asking{options.technique, false};
+      radiance += throughput * asked_light(scene, point, receiver, bsdf, numbers, asking, rays);
     }
     if (is_last) {
       const Rgb albedo = albedo_at(material, scene.textures(), point);
@@ -117,8 +155,17 @@ Rgb path_radiance(const Scene& scene, const Ray& camera_ray, const PixelSampler&
     const Sample4 numbers = sampler.group(sample, group_bsdf(depth));
     const std::optional<BsdfSample> next =
         bandsaw::sample(bsdf, numbers[0], numbers[1], numbers[2]);
-    if (!next || (is_last && !next->delta)) {
+    if (!next) {
       return radiance;
+    }
+    // Lights beyond the surface were not asked.
+    const bool passes = dot(next->wi, *receiver.normal) <= 0;
+    departure = {receiver, next->pdf, next->delta || passes};
+    if (is_last && !next->delta) {
+      return scene.needs().environment
+                 ? radiance + throughput * next->weight *
+                                  followed_environment(scene, point, departure, next->wi, rays)
+                 : radiance;
     }
     throughput *= next->weight;
     compression *= next->compression;
@@ -132,12 +179,9 @@ Rgb path_radiance(const Scene& scene, const Ray& camera_ray, const PixelSampler&
     if (is_black(throughput)) {
       return radiance;
     }
-    // Lights beyond the surface were not asked.
-    const bool passes = dot(next->wi, receiver.normal) <= 0;
     if (passes && nested != nullptr) {
       interiors.pass(point.material, *nested, dot(next->wi, point.geometric_normal) < 0);
     }
-    departure = {receiver, next->pdf, next->delta || passes};
     ray = leave(point, next->wi);
   }
 }

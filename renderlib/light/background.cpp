@@ -2,7 +2,11 @@
 
 namespace bandsaw {
 
-Rgb radiance(const Background& background, const Vec3& unit_direction) {
+Rgb radiance(const Background& background, absl::Span<const Texture> textures,
+             const Vec3& unit_direction) {
+  if (background.environment) {
+    return radiance(*background.environment, textures, unit_direction);
+  }
   if (background.bottom == background.top) {
     return background.top;  // Exactly: a lerp between equal ends may round.
   }

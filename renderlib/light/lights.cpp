@@ -1,173 +1,101 @@
 #include "renderlib/light/lights.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
+#include <utility>
 
-#include "renderlib/base/check.h"
 #include "renderlib/geometry/placement.h"
 #include "renderlib/light/emission.h"
+#include "renderlib/light/shape_light.h"
 #include "renderlib/material/opacity.h"
 
 namespace bandsaw {
-namespace {
-
-constexpr double kUnits = 0x1p32;
-
-std::optional<Emission> emission_of(const std::vector<Material>& materials, MaterialId id) {
-  return bandsaw::emission_of(materials[index_of(id)]);
-}
-
-/// Whether any primitive that the instance places may give light.
-bool may_emit(const Instance& instance, const std::vector<Material>& materials) {
-  const bool own = instance.group != kNoGroup && instance.material == kOwnMaterial;
-  return own || emission_of(materials, instance.material).has_value();
-}
-
-}  // namespace
 
 Lights::Lights(const Geometry& geometry, const std::vector<Material>& materials,
-               const std::vector<Texture>& textures, const Interval& interval)
-    : geometry_(&geometry), materials_(&materials), textures_(&textures) {
-  std::vector<double> radiance_means(materials.size(), 0.0);
-  for (std::size_t i = 0; i < materials.size(); ++i) {
-    if (const auto emission = bandsaw::emission_of(materials[i])) {
-      const Rgb value = mean(textures, emission->radiance.texture) * emission->radiance.factor;
-      radiance_means[i] = (double{value.r} + value.g + value.b) / 3;
+               const std::vector<Texture>& textures, const std::vector<DeltaLight>& delta_lights,
+               const Background& background, const Interval& interval)
+    : geometry_(&geometry), materials_(&materials), textures_(&textures), background_(&background) {
+  std::vector<LightBound> local = add_surfaces(interval);
+  std::vector<DistantBound> distant = add_delta_lights(delta_lights, local);
+  if (background.environment) {
+    environment_ = EnvironmentLight(*background.environment, textures);
+  }
+  if (!environment_.empty()) {
+    distant.push_back({environment_.excess(), std::nullopt});
+  }
+  choice_ = LightChoice(std::move(local), std::move(distant));
+}
+
+std::vector<LightBound> Lights::add_surfaces(const Interval& interval) {
+  std::vector<double> radiance(materials_->size(), 0.0);
+  for (std::size_t i = 0; i < materials_->size(); ++i) {
+    if (const auto emission = emission_of((*materials_)[i])) {
+      radiance[i] =
+          brightness(mean(*textures_, emission->radiance.texture) * emission->radiance.factor);
     }
   }
-  std::vector<double> powers;
+  const Geometry& geometry = *geometry_;
+  std::vector<LightBound> bounds;
   for (std::uint32_t instance = 0; instance <= geometry.instances.size(); ++instance) {
     std::size_t primitives = geometry.size();
     if (instance > 0) {
       const Instance& placed = geometry.instances[instance - 1];
-      primitives = may_emit(placed, materials) ? primitives_of(geometry, placed) : 0;
+      const bool own = placed.group != kNoGroup && placed.material == kOwnMaterial;
+      const bool may_emit = own || radiance[index_of(placed.material)] > 0;
+      primitives = may_emit ? primitives_of(geometry, placed) : 0;
     }
     first_of_instance_.push_back(primitives == 0 ? kNoLight
                                                  : static_cast<std::uint32_t>(light_of_.size()));
     for (std::uint32_t primitive = 0; primitive < primitives; ++primitive) {
-      add(geometry, {instance, primitive}, radiance_means, interval, powers);
+      add_surface({instance, primitive}, radiance, interval, bounds);
     }
   }
-  if (ids_.size() > kFewLights) {
-    bounds_.clear();
-    bounds_.shrink_to_fit();
-    choose_by_power(powers);
-  }
+  return bounds;
 }
 
-void Lights::add(const Geometry& geometry, PrimitiveId id,
-                 const std::vector<double>& radiance_means, const Interval& interval,
-                 std::vector<double>& powers) {
+void Lights::add_surface(PrimitiveId id, const std::vector<double>& radiance,
+                         const Interval& interval, std::vector<LightBound>& to) {
   light_of_.push_back(kNoLight);
-  const MaterialId material = material_of(geometry, id);
-  const double radiance = radiance_means[index_of(material)];
-  if (radiance == 0) {
+  const MaterialId material = material_of(*geometry_, id);
+  if (radiance[index_of(material)] == 0) {
     return;
   }
-  const ShapeView shape = shape_view(geometry, id, interval.open);
-  const Emission emission = *emission_of(*materials_, material);
-  const bool flat = is_flat(shape);
-  const double sides = flat && !emission.one_sided ? 2 : 1;
-  const double power = kPi * radiance * area(shape) * sides;
-  if (!(power > 0) || !std::isfinite(power)) {
+  const Emission emission = *emission_of((*materials_)[index_of(material)]);
+  LightBound bound = bound_of(shape_view(*geometry_, id, interval.open),
+                              radiance[index_of(material)], emission.one_sided);
+  if (id.instance != 0 && geometry_->instances[id.instance - 1].frame != kNoFrame) {
+    // It may be anywhere that it gets to, and face anywhere.
+    bound = {.ball = moving_ball(*geometry_, id, interval), .intensity = bound.intensity};
+  }
+  if (!(bound.intensity > 0) || !std::isfinite(bound.intensity)) {
     return;
   }
   light_of_.back() = static_cast<std::uint32_t>(ids_.size());
   ids_.push_back(id);
-  powers.push_back(power);
-  if (bounds_.size() <= kFewLights) {
-    const bool rests = id.instance == 0 || geometry.instances[id.instance - 1].frame == kNoFrame;
-    bounds_.push_back({.ball = rests ? bounds(shape) : moving_ball(geometry, id, interval),
-                       .power = power,
-                       .flat = flat && rests,
-                       .one_sided = emission.one_sided,
-                       .normal = flat ? normalize(flat_normal(shape)) : Vec3{}});
-  }
+  to.push_back(bound);
 }
 
-void Lights::choose_by_power(const std::vector<double>& powers) {
-  double total = 0;
-  for (const double power : powers) {
-    total += power;
-  }
-  // Every light gets one unit, so that none is never chosen; the rest is dealt out by power, by
-  // rounding the running sum.
-  const double to_deal = kUnits - static_cast<double>(powers.size());
-  BANDSAW_CHECK(to_deal > 0, "there are fewer lights than numbers to choose them by");
-  double sum = 0;
-  for (std::size_t i = 0; i < powers.size(); ++i) {
-    sum += powers[i];
-    const double dealt = std::floor(to_deal * std::min(1.0, sum / total));
-    ends_.push_back(static_cast<std::uint64_t>(dealt) + i + 1);
-  }
-  ends_.back() = std::uint64_t{1} << 32;
-}
-
-/// power x cosines / distance^2, each factor at its largest over the light; zero only where nothing
-/// can arrive.
-double Lights::weight(const Bound& bound, const Receiver& receiver) {
-  const Vec3 way = bound.ball.center - receiver.position;
-  const double radius = bound.ball.radius;
-  const double distance = length(way);
-  const double nearest = std::max(distance - radius, 0.0);
-  const double above = dot(receiver.normal, way) + radius;
-  if (above <= 0) {
-    return 0;
-  }
-  double cosines = nearest > above ? above / nearest : 1;
-  if (bound.flat) {
-    const double height = -dot(bound.normal, way);
-    if (height == 0 || (height < 0 && bound.one_sided)) {
-      return 0;
+std::vector<DistantBound> Lights::add_delta_lights(const std::vector<DeltaLight>& delta_lights,
+                                                   std::vector<LightBound>& local) {
+  std::vector<DistantBound> distant;
+  std::vector<DeltaLight> distant_lights;
+  for (const DeltaLight& light : delta_lights) {
+    if (const auto* directional = std::get_if<DirectionalLight>(&light)) {
+      if (!is_black(directional->irradiance)) {
+        distant.push_back({brightness(directional->irradiance), -directional->direction});
+        distant_lights.push_back(light);
+      }
+      continue;
     }
-    cosines *= nearest > std::abs(height) ? std::abs(height) / nearest : 1;
-  }
-  return bound.power * cosines / std::max(distance * distance, radius * radius);
-}
-
-std::optional<Lights::Choice> Lights::choose(const Receiver& receiver, double choice) const {
-  if (!bounds_.empty()) {
-    std::array<double, kFewLights> sums;
-    double sum = 0;
-    for (std::size_t i = 0; i < bounds_.size(); ++i) {
-      sum += weight(bounds_[i], receiver);
-      sums[i] = sum;
+    const auto* point = std::get_if<PointLight>(&light);
+    const LightBound bound =
+        point != nullptr ? bound_of(*point) : bound_of(std::get<SpotLight>(light));
+    if (bound.intensity > 0) {
+      local.push_back(bound);
+      delta_.push_back(light);
     }
-    if (!(sum > 0)) {
-      return std::nullopt;
-    }
-    std::size_t index = 0;
-    while (index + 1 < bounds_.size() && sums[index] <= choice * sum) {
-      ++index;
-    }
-    const double before = index == 0 ? 0 : sums[index - 1];
-    const double probability = (sums[index] - before) / sum;
-    return probability > 0 ? std::optional(Choice{index, probability}) : std::nullopt;
   }
-  const auto unit = static_cast<std::uint64_t>(choice * kUnits);
-  const auto end = std::upper_bound(ends_.begin(), ends_.end(), unit);
-  if (end == ends_.end()) {
-    return std::nullopt;
-  }
-  const auto index = static_cast<std::size_t>(end - ends_.begin());
-  return Choice{index, probability_of(receiver, index)};
-}
-
-double Lights::probability_of(const Receiver& receiver, std::size_t index) const {
-  if (bounds_.empty()) {
-    const std::uint64_t begin = index == 0 ? 0 : ends_[index - 1];
-    return static_cast<double>(ends_[index] - begin) / kUnits;
-  }
-  double sum = 0;
-  double before = 0;
-  double end = 0;
-  for (std::size_t i = 0; i < bounds_.size(); ++i) {
-    before = i == index ? sum : before;
-    sum += weight(bounds_[i], receiver);
-    end = i == index ? sum : end;
-  }
-  return sum > 0 ? (end - before) / sum : 0;
+  delta_.insert(delta_.end(), distant_lights.begin(), distant_lights.end());
+  return distant;
 }
 
 std::uint32_t Lights::index_of_light(PrimitiveId id) const {
@@ -179,11 +107,24 @@ std::uint32_t Lights::index_of_light(PrimitiveId id) const {
 
 std::optional<LightSample> Lights::sample(const Receiver& receiver, double choice, double u,
                                           double v) const {
-  const std::optional<Choice> chosen = choose(receiver, choice);
+  const auto chosen = choice_.choose(receiver, choice);
   if (!chosen) {
     return std::nullopt;
   }
-  const PrimitiveId id = ids_[chosen->index];
+  const std::size_t delta = chosen->light - ids_.size();
+  std::optional<LightSample> sample =
+      chosen->light < ids_.size() ? sample_surface(ids_[chosen->light], receiver, u, v)
+      : delta < delta_.size()     ? sample_delta(delta_[delta], receiver)
+                                  : sample_environment(receiver, u, v);
+  if (!sample || is_black(sample->radiance)) {
+    return std::nullopt;
+  }
+  sample->pdf *= chosen->probability;
+  return sample->pdf > 0 ? sample : std::nullopt;
+}
+
+std::optional<LightSample> Lights::sample_surface(PrimitiveId id, const Receiver& receiver,
+                                                  double u, double v) const {
   const ShapeView shape = shape_view(*geometry_, id, receiver.time);
   const std::optional<ShapeSample> on_light = bandsaw::sample(shape, receiver.position, u, v);
   if (!on_light) {
@@ -191,20 +132,48 @@ std::optional<LightSample> Lights::sample(const Receiver& receiver, double choic
   }
   const Vec3 way = on_light->position - receiver.position;
   const double facing = -dot(on_light->normal, way);
-  if (dot(way, receiver.normal) <= 0 || facing == 0) {
+  if (!receiver.faces(way) || facing == 0) {
     return std::nullopt;
   }
   const Ray ray{.origin = receiver.position, .direction = way, .time = receiver.time};
   const Hit hit{.t = 1, .id = id, .u = on_light->on_shape.x, .v = on_light->on_shape.y};
   const SurfacePoint point = surface_at(*geometry_, ray, hit);
+  const Material& material = (*materials_)[index_of(point.material)];
   LightSample sample;
   sample.direction = normalize(way);
   sample.target = on_light->position + on_light->normal * std::copysign(point.offset, facing);
-  sample.radiance =
-      emitted((*materials_)[index_of(point.material)], *textures_, point, -sample.direction) *
-      static_cast<float>(opacity((*materials_)[index_of(point.material)], *textures_, point));
-  sample.pdf = on_light->pdf * chosen->probability;
-  return sample.pdf > 0 && !is_black(sample.radiance) ? std::optional(sample) : std::nullopt;
+  sample.radiance = emitted(material, *textures_, point, -sample.direction) *
+                    static_cast<float>(opacity(material, *textures_, point));
+  sample.pdf = on_light->pdf;
+  return sample;
+}
+
+std::optional<LightSample> Lights::sample_delta(const DeltaLight& light,
+                                                const Receiver& receiver) const {
+  const Arrival arrives =
+      std::visit([&](const auto& kind) { return arrival(kind, receiver.position); }, light);
+  if (!receiver.faces(arrives.way)) {
+    return std::nullopt;
+  }
+  return LightSample{.direction = normalize(arrives.way),
+                     .target = receiver.position + arrives.way,
+                     .radiance = arrives.irradiance,
+                     .pdf = 1,
+                     .distant = std::holds_alternative<DirectionalLight>(light),
+                     .delta = true};
+}
+
+std::optional<LightSample> Lights::sample_environment(const Receiver& receiver, double u,
+                                                      double v) const {
+  const EnvironmentLight::Sample toward = environment_.sample(u, v);
+  if (!receiver.faces(toward.direction)) {
+    return std::nullopt;
+  }
+  return LightSample{.direction = toward.direction,
+                     .target = {},
+                     .radiance = bandsaw::radiance(*background_, *textures_, toward.direction),
+                     .pdf = toward.pdf,
+                     .distant = true};
 }
 
 double Lights::pdf(const Receiver& receiver, const SurfacePoint& hit) const {
@@ -216,9 +185,14 @@ double Lights::pdf(const Receiver& receiver, const SurfacePoint& hit) const {
                                 hit.position, hit.geometric_normal);
 }
 
+double Lights::environment_pdf(const Receiver& receiver, const Vec3& direction) const {
+  const double pdf = environment_.pdf(direction);
+  return pdf > 0 && receiver.faces(direction) ? pdf * choice_.probability(receiver, size() - 1) : 0;
+}
+
 double Lights::probability(const Receiver& receiver, PrimitiveId id) const {
   const std::uint32_t index = index_of_light(id);
-  return index == kNoLight ? 0 : probability_of(receiver, index);
+  return index == kNoLight ? 0 : choice_.probability(receiver, index);
 }
 
 }  // namespace bandsaw

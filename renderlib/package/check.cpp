@@ -4,6 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/light/check_lights.h"
 #include "renderlib/package/manifest.h"
 #include "renderlib/package/placements.h"
 
@@ -162,6 +163,10 @@ absl::Status check_description(const SceneDescription& scene) {
   RETURN_IF_ERROR(check_local_shading(scene.local_shading));
   RETURN_IF_ERROR(check_background(scene.background));
   RETURN_IF_ERROR(check_materials(scene));
+  if (const absl::Status lights = check_lights(scene.background, scene.textures, scene.lights);
+      !lights.ok()) {
+    return manifest_error("lights", std::string(lights.message()));
+  }
   const Geometry& geometry = scene.geometry;
   RETURN_IF_ERROR(check_shapes(geometry, scene.materials.size(), ""));
   for (std::size_t i = 0; i < geometry.meshes.size(); ++i) {

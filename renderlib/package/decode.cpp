@@ -8,6 +8,7 @@
 #include "renderlib/package/check.h"
 #include "renderlib/package/decode_surface.h"
 #include "renderlib/package/decode_texture.h"
+#include "renderlib/package/lights.h"
 #include "renderlib/package/manifest.h"
 #include "renderlib/package/placements.h"
 
@@ -203,6 +204,7 @@ absl::StatusOr<SceneDescription> decode_package(const std::string& manifest_byte
     scene.materials.push_back(material);
   }
   ASSIGN_OR_RETURN(scene.geometry, decode_geometry(manifest, decoder));
+  ASSIGN_OR_RETURN(scene.lights, decode_lights(manifest));
   RETURN_IF_ERROR(check_description(scene));
   return scene;
 }

@@ -3,6 +3,7 @@
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/package/decode_enum.h"
+#include "renderlib/package/lights.h"
 #include "renderlib/package/manifest.h"
 #include "renderlib/package/principled.h"
 
@@ -15,12 +16,6 @@ absl::Status check_length(const List& list, int length, const std::string& field
     return absl::OkStatus();
   }
   return manifest_error(field, absl::StrCat("must have ", length, " numbers, has ", list.size()));
-}
-
-absl::StatusOr<Vec3> decode_vec3(const google::protobuf::RepeatedField<double>& list,
-                                 const std::string& field) {
-  RETURN_IF_ERROR(check_length(list, 3, field));
-  return Vec3{list[0], list[1], list[2]};
 }
 
 Metal decode_metal(const package::Metal& from) {
@@ -43,6 +38,12 @@ Dielectric decode_dielectric(const package::Dielectric& from) {
 }
 
 }  // namespace
+
+absl::StatusOr<Vec3> decode_vec3(const google::protobuf::RepeatedField<double>& list,
+                                 const std::string& field) {
+  RETURN_IF_ERROR(check_length(list, 3, field));
+  return Vec3{list[0], list[1], list[2]};
+}
 
 absl::StatusOr<Rgb> decode_rgb(const google::protobuf::RepeatedField<float>& list,
                                const std::string& field) {
@@ -101,6 +102,10 @@ absl::StatusOr<Background> decode_background(const package::Manifest& manifest) 
   ASSIGN_OR_RETURN(background.bottom,
                    decode_rgb(manifest.background().bottom(), "background.bottom"));
   ASSIGN_OR_RETURN(background.top, decode_rgb(manifest.background().top(), "background.top"));
+  if (manifest.background().has_environment()) {
+    ASSIGN_OR_RETURN(background.environment,
+                     decode_environment(manifest.background().environment()));
+  }
   return background;
 }
 

@@ -15,6 +15,8 @@ absl::StatusOr<Camera> decode_camera(const package::Manifest& manifest);
 absl::StatusOr<PixelFilter> decode_filter(const package::Manifest& manifest);
 absl::StatusOr<LocalShading> decode_local_shading(const package::Manifest& manifest);
 absl::StatusOr<Background> decode_background(const package::Manifest& manifest);
+absl::StatusOr<Vec3> decode_vec3(const google::protobuf::RepeatedField<double>& list,
+                                 const std::string& field);
 absl::StatusOr<Rgb> decode_rgb(const google::protobuf::RepeatedField<float>& list,
                                const std::string& field);
 

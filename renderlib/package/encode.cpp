@@ -10,6 +10,7 @@
 #include "renderlib/package/arrays.h"
 #include "renderlib/package/clean_text.h"
 #include "renderlib/package/encode_texture.h"
+#include "renderlib/package/lights.h"
 #include "renderlib/package/limits.h"
 #include "renderlib/package/placements.h"
 #include "renderlib/package/principled.h"
@@ -130,6 +131,9 @@ void encode(const Background& background, package::Background& to) {
     field->Add(colour.g);
     field->Add(colour.b);
   }
+  if (background.environment) {
+    encode_environment(*background.environment, *to.mutable_environment());
+  }
 }
 
 void encode(const LocalShading& local, package::Manifest& manifest) {
@@ -202,6 +206,9 @@ std::string encode_package(const SceneDescription& scene, const PackageInfo& inf
   encode(scene.filter, manifest);
   encode(scene.local_shading, manifest);
   encode(scene.background, *manifest.mutable_background());
+  for (const DeltaLight& light : scene.lights) {
+    encode_light(light, *manifest.add_light());
+  }
   for (const Texture& texture : scene.textures) {
     encode_texture(texture, blobs, *manifest.add_texture());
   }

@@ -128,6 +128,22 @@ SceneDescription flat_view() {
   return scene;
 }
 
+/// The same lit from outside: by an environment, and by so many lights without size that a tree
+/// chooses among them.
+SceneDescription lit_from_outside() {
+  SceneDescription scene = every_feature();
+  Environment environment;
+  environment.images = {TextureId{1}};
+  environment.strength = 3;
+  scene.background.environment = environment;
+  scene.lights = {DirectionalLight{normalize(Vec3{1, -2, -1}), {0.5f, 0.6f, 0.7f}},
+                  SpotLight{{0, 3.5, 2}, {0, -1, 0}, {4, 3, 2}, 0.9, 0.6}};
+  for (int i = 0; i < 20; ++i) {
+    scene.lights.push_back(PointLight{{0.3 * i - 3, 2.5, 0.1 * i}, gray(0.02f * (i + 1))});
+  }
+  return scene;
+}
+
 void add_render(Hash64& hash, const SceneDescription& description, const RenderSettings& settings) {
   Pool pool(1);
   const auto scene = Scene::build(description, pool);
@@ -151,6 +167,7 @@ std::uint64_t canary() {
   add_render(hash, every_feature(), {.width = 12, .height = 9, .max_depth = 8, .seed = 20260});
   add_render(hash, through_a_lens(), {.width = 4, .height = 3, .max_depth = 3, .seed = 1});
   add_render(hash, flat_view(), {.width = 4, .height = 3, .max_depth = 3, .seed = 2});
+  add_render(hash, lit_from_outside(), {.width = 6, .height = 4, .max_depth = 4, .seed = 4});
   for (const Integrator integrator : {Integrator::kDirect, Integrator::kNormals, Integrator::kDepth,
                                       Integrator::kAlbedo, Integrator::kAmbientOcclusion}) {
     add_render(hash, flat_view(),

@@ -9,6 +9,7 @@
 #include "renderlib/camera/pixel_filter.h"
 #include "renderlib/geometry/shapes.h"
 #include "renderlib/light/background.h"
+#include "renderlib/light/delta_light.h"
 #include "renderlib/material/material.h"
 #include "renderlib/scene/integrator.h"
 #include "renderlib/texture/texture.h"
@@ -23,6 +24,7 @@ struct SceneDescription {
   Geometry geometry;
   PixelFilter filter;
   LocalShading local_shading;
+  std::vector<DeltaLight> lights;  ///< those without size; surfaces shine by their material
 };
 
 }  // namespace bandsaw

@@ -5,9 +5,10 @@
 namespace bandsaw {
 
 struct Needs {
-  bool lights = false;      ///< surfaces that emit: next-event estimation
-  bool background = false;  ///< a background that is not black
-  bool specular = false;    ///< smooth metal or dielectric
+  bool lights = false;       ///< anything to ask for light: next-event estimation
+  bool background = false;   ///< a background that is not black
+  bool environment = false;  ///< images all around: it is asked for light unless it is even
+  bool specular = false;     ///< smooth metal or dielectric
   bool image_textures = false;
   bool instances = false;
   bool alpha = false;          ///< surfaces that are not there everywhere

@@ -34,7 +34,9 @@ bool has_normal_map(const Material& material) {
 Needs needs_of(const SceneDescription& scene, const Lights& lights) {
   Needs needs;
   needs.lights = !lights.empty();
-  needs.background = !is_black(scene.background.bottom) || !is_black(scene.background.top);
+  needs.background = scene.background.environment || !is_black(scene.background.bottom) ||
+                     !is_black(scene.background.top);
+  needs.environment = scene.background.environment.has_value();
   needs.specular = std::any_of(scene.materials.begin(), scene.materials.end(), is_specular);
   needs.image_textures = std::any_of(
       scene.textures.begin(), scene.textures.end(),
@@ -63,7 +65,8 @@ absl::StatusOr<std::shared_ptr<const Scene>> Scene::build(SceneDescription descr
   const Interval interval = {shutter.open, shutter.close};
   rest(interval, own.geometry);
   scene->accel_ = std::make_unique<Accel>(Accel::build(own.geometry, pool, interval));
-  scene->lights_ = Lights(own.geometry, own.materials, own.textures, interval);
+  scene->lights_ = Lights(own.geometry, own.materials, own.textures, own.lights, own.background,
+                          interval);
   scene->needs_ = needs_of(own, scene->lights_);
   return std::shared_ptr<const Scene>(std::move(scene));
 }

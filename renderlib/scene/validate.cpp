@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/light/check_lights.h"
 #include "renderlib/scene/validate_field.h"
 #include "renderlib/scene/validate_geometry.h"
 
@@ -37,6 +38,7 @@ absl::Status validate(const SceneDescription& scene) {
   RETURN_IF_ERROR(check_color("background.bottom", scene.background.bottom, infinite));
   RETURN_IF_ERROR(check_color("background.top", scene.background.top, infinite));
   RETURN_IF_ERROR(check_surfaces(scene));
+  RETURN_IF_ERROR(check_lights(scene.background, scene.textures, scene.lights));
   return check_geometry(scene);
 }
 

@@ -21,11 +21,15 @@ float value(const ImageTexture& image, std::size_t index) {
                                                       : static_cast<float>(code) / 255.0f;
 }
 
+}  // namespace
+
 Rgb texel(const ImageTexture& image, std::uint32_t x, std::uint32_t y) {
   const std::size_t index = (std::size_t{y} * image.width + x) * image.channels;
   const std::size_t step = image.channels == 1 ? 0 : 1;
   return {value(image, index), value(image, index + step), value(image, index + 2 * step)};
 }
+
+namespace {
 
 /// A coordinate brought into [0, 1] by the wrap mode. x - floor(x) may round up to 1; the index is
 /// wrapped again later.

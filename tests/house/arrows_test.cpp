@@ -34,7 +34,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"renderlib/compare", {"renderlib/image"}},
     {"renderlib/package", {"renderlib/render", "proto/wire"}},
     {"renderlib/import", {"renderlib/package"}},
-    {"renderlib/gallery", {"renderlib/texture"}},
+    {"renderlib/gallery", {"renderlib/texture", "renderlib/light"}},
     {"coordinator/core", {"renderlib/render", "proto/wire"}},
     {"coordinator/store", {"coordinator/core", "renderlib/package"}},
     {"coordinator/engine", {"coordinator/store"}},

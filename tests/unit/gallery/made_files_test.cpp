@@ -8,7 +8,9 @@
 
 #include "renderlib/gallery/book_scenes.h"
 #include "renderlib/gallery/lathe.h"
+#include "renderlib/gallery/sky.h"
 #include "renderlib/gallery/turned.h"
+#include "renderlib/image/hdr.h"
 #include "renderlib/math/vec.h"
 
 namespace bandsaw::gallery {
@@ -22,11 +24,21 @@ std::string kept(const std::string& name) {
   return bytes.str();
 }
 
+std::string text(const std::vector<std::byte>& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
 TEST(MadeFiles, AreThoseOfTheRepository) {
   EXPECT_TRUE(kept("vase.obj") == vase());
   EXPECT_TRUE(kept("pawn.obj") == pawn());
   EXPECT_TRUE(kept("lamp_foot.obj") == lamp_foot());
   EXPECT_TRUE(kept("lamp_shade.obj") == lamp_shade());
+  EXPECT_TRUE(kept("evening.hdr") == text(encode_hdr(evening_sky_map(64))));
+  constexpr const char* kSides[] = {"px", "nx", "py", "ny", "pz", "nz"};
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    EXPECT_TRUE(kept(std::string("evening_") + kSides[i] + ".hdr") ==
+                text(encode_hdr(evening_sky_side(i, 48))));
+  }
   EXPECT_TRUE(kept("books/one_weekend.textproto") == many_spheres(false));
   EXPECT_TRUE(kept("books/bouncing_spheres.textproto") == many_spheres(true));
   EXPECT_TRUE(kept("books/next_week.textproto") == next_week_final());

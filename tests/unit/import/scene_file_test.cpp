@@ -225,7 +225,7 @@ const std::vector<Wrong> kWrong = {
     {"pixels", R"(image { width: 65536 height: 65536 })",
      "s.textproto:3:1: image: has 4294967296 pixels, at most 64000000 are allowed"},
     {"empty_background", R"(background { })",
-     "s.textproto:3:1: background: is empty: write constant or gradient"},
+     "s.textproto:3:1: background: is empty: write constant, gradient, environment or cube_map"},
     {"half_gradient", R"(background { gradient { top { rgb: [1, 1, 1] } } })",
      "s.textproto:3:14: background.gradient: needs bottom and top"},
     {"no_model_file", R"(model { })", "s.textproto:3:1: model[0].file: is required"},

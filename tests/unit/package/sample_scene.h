@@ -52,6 +52,13 @@ inline SceneDescription sample_scene() {
   camera.vertical_fov = 33.3;
   scene.camera = camera;
   scene.background = {{0.1f, 0.2f, 0.3f}, {1, 2, 3}};
+  Environment environment;
+  environment.images = {TextureId{2}};
+  environment.strength = 0.75f;
+  environment.axes = {{0, 0, -1}, {0, 1, 0}, {-1, 0, 0}};
+  scene.background.environment = environment;
+  scene.lights = {DirectionalLight{{0, 0.6, -0.8}, {1, 2, 3}}, PointLight{{1, 2, 3}, {4, 5, 6}},
+                  SpotLight{{7, 8, 9}, {1, 0, 0}, {0, 1, 0.5f}, 0.9, 0.25}};
   scene.textures.emplace_back(ConstantTexture{{0.1f, 0.5f, 1}});
   scene.textures.emplace_back(sample_image(ImageTexture::Format::kSrgb8));
   scene.textures.emplace_back(sample_image(ImageTexture::Format::kFloat32));

@@ -149,7 +149,7 @@ TEST(Scene, AnEmptySceneShowsItsBackground) {
   maker.background({1, 2, 3}, {1, 2, 3});
   const auto scene = maker.build();
   EXPECT_FALSE(scene->accel().closest({.origin = {0, 0, 0}, .direction = {0, 0, 1}}));
-  EXPECT_EQ(radiance(scene->background(), {0, 1, 0}), (Rgb{1, 2, 3}));
+  EXPECT_EQ(radiance(scene->background(), scene->textures(), {0, 1, 0}), (Rgb{1, 2, 3}));
 }
 
 }  // namespace

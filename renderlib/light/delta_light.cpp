@@ -1,0 +1,61 @@
+#include "renderlib/light/delta_light.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bandsaw {
+namespace {
+
+/// 0 at the light itself, which lights nothing there.
+float over_distance2(const Vec3& way) {
+  const double distance2 = length_squared(way);
+  return distance2 > 0 ? static_cast<float>(std::min(1 / distance2, 1e30)) : 0.0f;
+}
+
+struct Placed {
+  const Transform& to;
+
+  DeltaLight operator()(DirectionalLight light) const {
+    light.direction = normalize(to.direction(light.direction));
+    return light;
+  }
+  DeltaLight operator()(PointLight light) const {
+    light.position = to.point(light.position);
+    return light;
+  }
+  DeltaLight operator()(SpotLight light) const {
+    light.position = to.point(light.position);
+    light.direction = normalize(to.direction(light.direction));
+    return light;
+  }
+};
+
+}  // namespace
+
+DeltaLight placed(const DeltaLight& light, const Transform& to) {
+  return std::visit(Placed{to}, light);
+}
+
+Arrival arrival(const DirectionalLight& light, const Vec3&) {
+  return {-light.direction, light.irradiance};
+}
+
+Arrival arrival(const PointLight& light, const Vec3& at) {
+  const Vec3 way = light.position - at;
+  return {way, light.intensity * over_distance2(way)};
+}
+
+Arrival arrival(const SpotLight& light, const Vec3& at) {
+  const Vec3 way = light.position - at;
+  const double distance = length(way);
+  const double cosine = distance > 0 ? -dot(way, light.direction) / distance : 0;
+  if (cosine <= light.cos_outer) {
+    return {way, {}};
+  }
+  const double ramp = cosine >= light.cos_inner
+                          ? 1
+                          : (cosine - light.cos_outer) / (light.cos_inner - light.cos_outer);
+  return {way, light.intensity * (over_distance2(way) * static_cast<float>(ramp * ramp))};
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,104 @@
+#include "renderlib/light/light_bound.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace bandsaw {
+namespace {
+
+/// Beyond the cone of a spot light nothing is given; its rim has rounding.
+constexpr double kJustFacing = 1 - 0x1p-40;
+
+/// Sums and shares of such numbers are finite.
+constexpr double kMostGiven = 1e300;
+
+/// An angle in [0, 180] degrees by its sine and cosine.
+struct Angle {
+  double sin;
+  double cos;
+};
+
+Angle angle_of(double cosine) {
+  const double c = std::clamp(cosine, -1.0, 1.0);
+  return {std::sqrt((1 - c) * (1 + c)), c};
+}
+
+/// a - b, but not below 0.
+Angle reduced(const Angle& a, const Angle& b) {
+  if (a.cos >= b.cos) {
+    return {0, 1};
+  }
+  return {a.sin * b.cos - a.cos * b.sin, a.cos * b.cos + a.sin * b.sin};
+}
+
+}  // namespace
+
+LightBound bound_of(const ShapeView& shape, double radiance, bool one_sided) {
+  if (shape.kind == ShapeView::Kind::kSphere) {
+    return {.ball = bounds(shape), .intensity = radiance * kPi * shape.radius * shape.radius};
+  }
+  if (!is_flat(shape)) {
+    return {.ball = bounds(shape), .intensity = radiance * area(shape) / 2};
+  }
+  return {.ball = bounds(shape),
+          .intensity = radiance * area(shape),
+          .axis = normalize(flat_normal(shape)),
+          .cos_spread = 1,
+          .two_sided = !one_sided,
+          .flat = true};
+}
+
+LightBound bound_of(const PointLight& light) {
+  return {.ball = {light.position, 0}, .intensity = brightness(light.intensity)};
+}
+
+LightBound bound_of(const SpotLight& light) {
+  // As if it faced every direction up to its outer angle: what it gives there is not a cosine.
+  return {.ball = {light.position, 0},
+          .intensity = brightness(light.intensity),
+          .axis = light.direction,
+          .cos_spread = light.cos_outer,
+          .cos_reach = kJustFacing};
+}
+
+double importance(const LightBound& bound, const Receiver& receiver) {
+  const Vec3 way = bound.ball.center - receiver.position;
+  const double distance2 = length_squared(way);
+  const double radius = bound.ball.radius;
+  const double near2 = std::max(distance2, radius * radius);
+  if (!(near2 > 0)) {
+    return 0;  // On a light without size.
+  }
+  const double given = std::min(bound.intensity / near2, kMostGiven);
+  if (bound.flat) {
+    const double height = -dot(bound.axis, way);
+    if (height == 0 || (height < 0 && !bound.two_sided)) {
+      return 0;
+    }
+  }
+  if (distance2 <= radius * radius) {
+    return given;
+  }
+  const double distance = std::sqrt(distance2);
+  const double sin_seen = radius / distance;
+  const Angle seen{sin_seen, std::sqrt((1 - sin_seen) * (1 + sin_seen))};
+  double cosines = 1;
+  if (receiver.normal) {
+    cosines = reduced(angle_of(dot(*receiver.normal, way) / distance), seen).cos;
+    if (cosines <= 0) {
+      return 0;
+    }
+  }
+  if (bound.cos_spread > -1) {
+    const double toward = -dot(bound.axis, way) / distance;
+    const Angle off = angle_of(bound.two_sided ? std::abs(toward) : toward);
+    const double facing = reduced(reduced(off, angle_of(bound.cos_spread)), seen).cos;
+    if (facing <= bound.cos_reach) {
+      return 0;
+    }
+    cosines *= facing;
+  }
+  return given * cosines;
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,93 @@
+#include "renderlib/light/light_choice.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "renderlib/base/check.h"
+
+namespace bandsaw {
+
+double importance(const DistantBound& bound, const Receiver& receiver) {
+  if (!bound.way || !receiver.normal) {
+    return bound.irradiance;
+  }
+  return bound.irradiance * std::max(0.0, dot(*receiver.normal, *bound.way));
+}
+
+LightChoice::LightChoice(std::vector<LightBound> local, std::vector<DistantBound> distant)
+    : distant_(std::move(distant)) {
+  BANDSAW_CHECK(distant_.size() < kFewLights, "a scene has few distant lights");
+  if (local.size() + distant_.size() <= kFewLights) {
+    few_ = std::move(local);
+    return;
+  }
+  in_tree_ = local.size();
+  tree_ = LightTree(local);
+}
+
+std::size_t LightChoice::candidates() const {
+  return few_.size() + (in_tree_ > 0 ? 1 : 0) + distant_.size();
+}
+
+double LightChoice::weight(std::size_t candidate, const Receiver& receiver) const {
+  const std::size_t first_distant = candidates() - distant_.size();
+  if (candidate >= first_distant) {
+    return importance(distant_[candidate - first_distant], receiver);
+  }
+  return in_tree_ > 0 ? tree_.importance(receiver) : importance(few_[candidate], receiver);
+}
+
+std::optional<LightChoice::Choice> LightChoice::choose(const Receiver& receiver,
+                                                       double number) const {
+  std::array<double, kFewLights> sums;
+  const std::size_t count = candidates();
+  double sum = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    sum += weight(i, receiver);
+    sums[i] = sum;
+  }
+  if (!(sum > 0)) {
+    return std::nullopt;
+  }
+  std::size_t chosen = 0;
+  while (chosen + 1 < count && sums[chosen] <= number * sum) {
+    ++chosen;
+  }
+  const double before = chosen == 0 ? 0 : sums[chosen - 1];
+  const double probability = (sums[chosen] - before) / sum;
+  if (!(probability > 0)) {
+    return std::nullopt;
+  }
+  if (in_tree_ == 0) {
+    return Choice{chosen, probability};
+  }
+  if (chosen > 0) {
+    return Choice{in_tree_ + chosen - 1, probability};
+  }
+  const double rest = std::min(number * sum / sums[0], kOneMinusEpsilon);
+  const auto in_tree = tree_.choose(receiver, rest);
+  return in_tree ? std::optional(Choice{in_tree->light, probability * in_tree->probability})
+                 : std::nullopt;
+}
+
+double LightChoice::probability(const Receiver& receiver, std::size_t light) const {
+  const bool is_in_tree = light < in_tree_;
+  const std::size_t candidate = is_in_tree ? 0 : in_tree_ == 0 ? light : light - in_tree_ + 1;
+  double sum = 0;
+  double before = 0;
+  double end = 0;
+  for (std::size_t i = 0; i < candidates(); ++i) {
+    before = i == candidate ? sum : before;
+    sum += weight(i, receiver);
+    end = i == candidate ? sum : end;
+  }
+  if (!(end > before)) {
+    return 0;
+  }
+  const double probability = (end - before) / sum;
+  return is_in_tree ? probability * tree_.probability(receiver, static_cast<std::uint32_t>(light))
+                    : probability;
+}
+
+}  // namespace bandsaw

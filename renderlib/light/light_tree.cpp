@@ -1,0 +1,51 @@
+#include "renderlib/light/light_tree.h"
+
+#include <algorithm>
+#include <array>
+
+namespace bandsaw {
+
+double LightTree::importance(const Receiver& receiver) const {
+  return bandsaw::importance(nodes_.front().bound, receiver);
+}
+
+std::optional<double> LightTree::share_of_first(const Receiver& receiver, const Node& node) const {
+  const double first = bandsaw::importance(nodes_[node.first].bound, receiver);
+  const double second = bandsaw::importance(nodes_[node.first + 1].bound, receiver);
+  return first + second > 0 ? std::optional(first / (first + second)) : std::nullopt;
+}
+
+std::optional<LightTree::Choice> LightTree::choose(const Receiver& receiver, double number) const {
+  double probability = 1;
+  const Node* node = &nodes_.front();
+  while (!node->is_leaf) {
+    const std::optional<double> share = share_of_first(receiver, *node);
+    if (!share) {
+      return std::nullopt;
+    }
+    const bool first = number < *share;
+    probability *= first ? *share : 1 - *share;
+    number = std::min(first ? number / *share : (number - *share) / (1 - *share), kOneMinusEpsilon);
+    node = &nodes_[first ? node->first : node->first + 1];
+  }
+  return probability > 0 ? std::optional(Choice{node->first, probability}) : std::nullopt;
+}
+
+double LightTree::probability(const Receiver& receiver, std::uint32_t light) const {
+  std::array<std::uint32_t, kMostDepth> way;
+  std::size_t steps = 0;
+  for (std::uint32_t at = leaves_[light]; at != 0; at = nodes_[at].parent) {
+    way[steps++] = at;
+  }
+  // From the root down, as choose() multiplies.
+  double probability = 1;
+  while (steps > 0 && probability > 0) {
+    const std::uint32_t at = way[--steps];
+    const Node& parent = nodes_[nodes_[at].parent];
+    const std::optional<double> share = share_of_first(receiver, parent);
+    probability *= !share ? 0 : at == parent.first ? *share : 1 - *share;
+  }
+  return probability;
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,198 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "absl/types/span.h"
+#include "renderlib/geometry/box.h"
+#include "renderlib/light/light_cone.h"
+#include "renderlib/light/light_tree.h"
+#include "renderlib/math/elementary.h"
+
+namespace bandsaw {
+namespace {
+
+constexpr std::size_t kBins = 12;
+
+/// What the cost of a half is judged by.
+struct Group {
+  Box box = {};
+  LightCone cone = {};
+  double intensity = 0;
+  std::size_t count = 0;
+
+  void add(const Group& other) {
+    if (other.count == 0) {
+      return;
+    }
+    cone = count == 0 ? other.cone : merged(cone, other.cone);
+    box.add(other.box.lo);
+    box.add(other.box.hi);
+    intensity += other.intensity;
+    count += other.count;
+  }
+  double cost() const {
+    // Importance knows a ball around the lights, so its area counts, not that of the box.
+    return intensity * orientation_measure(cone) * length_squared(box.hi - box.lo);
+  }
+};
+
+Group group_of(const LightBound& light) {
+  const Vec3 r{light.ball.radius, light.ball.radius, light.ball.radius};
+  Group group{.cone = cone_of(light), .intensity = light.intensity, .count = 1};
+  group.box.add(light.ball.center - r);
+  group.box.add(light.ball.center + r);
+  return group;
+}
+
+struct Split {
+  int axis = -1;
+  std::size_t bin = 0;  ///< the last of the first half
+  double cost = std::numeric_limits<double>::infinity();
+};
+
+}  // namespace
+
+class LightTreeBuilder {
+ public:
+  LightTreeBuilder(const std::vector<LightBound>& lights, LightTree& tree)
+      : lights_(lights), tree_(tree), order_(lights.size()) {
+    std::iota(order_.begin(), order_.end(), 0u);
+    tree_.leaves_.resize(lights.size());
+    tree_.nodes_.reserve(2 * lights.size());
+    tree_.nodes_.emplace_back();
+    std::vector<Task> tasks{{0, 0, lights.size(), 0}};
+    while (!tasks.empty()) {
+      const Task task = tasks.back();
+      tasks.pop_back();
+      build(task, tasks);
+    }
+  }
+
+ private:
+  struct Task {
+    std::uint32_t node;
+    std::size_t begin;
+    std::size_t end;
+    std::uint32_t depth;
+  };
+
+  const Vec3& center(std::uint32_t light) const { return lights_[light].ball.center; }
+
+  void build(const Task& task, std::vector<Task>& tasks) {
+    const auto range = absl::MakeSpan(order_).subspan(task.begin, task.end - task.begin);
+    if (range.size() == 1) {
+      LightTree::Node& leaf = tree_.nodes_[task.node];
+      leaf.bound = lights_[range[0]];
+      leaf.first = range[0];
+      leaf.is_leaf = true;
+      tree_.leaves_[range[0]] = task.node;
+      return;
+    }
+    const auto first = static_cast<std::uint32_t>(tree_.nodes_.size());
+    LightTree::Node& node = tree_.nodes_[task.node];
+    node.bound = bound_around(range);
+    node.first = first;
+    const std::size_t middle = task.begin + divide(range, task.depth);
+    tree_.nodes_.resize(tree_.nodes_.size() + 2);
+    tree_.nodes_[first].parent = task.node;
+    tree_.nodes_[first + 1].parent = task.node;
+    tasks.push_back({first + 1, middle, task.end, task.depth + 1});
+    tasks.push_back({first, task.begin, middle, task.depth + 1});
+  }
+
+  LightBound bound_around(absl::Span<const std::uint32_t> range) const {
+    Group group;
+    for (const std::uint32_t light : range) {
+      group.add(group_of(lights_[light]));
+    }
+    Ball ball{(group.box.lo + group.box.hi) / 2, 0};
+    for (const std::uint32_t light : range) {
+      ball.radius =
+          std::max(ball.radius, length(center(light) - ball.center) + lights_[light].ball.radius);
+    }
+    const LightCone& cone = group.cone;
+    const auto cosine = [](double angle) { return sincos_turns(angle * (0.5 * kInvPi)).cos; };
+    return {.ball = ball,
+            .intensity = group.intensity,
+            .axis = cone.axis,
+            .cos_spread = cone.spread >= kPi ? -1 : cosine(cone.spread),
+            .cos_reach = cosine(cone.reach),
+            .two_sided = cone.two_sided};
+  }
+
+  /// Reorders the lights into two halves, neither empty; returns the size of the first.
+  std::size_t divide(absl::Span<std::uint32_t> range, std::uint32_t depth) const {
+    // Halving from here on ends in time, whatever the lights.
+    constexpr std::uint32_t kHalvings = 32;
+    const bool deep = depth + kHalvings >= LightTree::kMostDepth;
+    const Split split = deep || range.size() == 2 ? Split{} : best_split(range);
+    if (split.axis < 0) {
+      return range.size() / 2;
+    }
+    const Box box = centers(range);
+    const auto end = std::stable_partition(range.begin(), range.end(), [&](std::uint32_t light) {
+      return bin_of(light, split.axis, box) <= split.bin;
+    });
+    return static_cast<std::size_t>(end - range.begin());
+  }
+
+  Box centers(absl::Span<const std::uint32_t> range) const {
+    Box box;
+    for (const std::uint32_t light : range) {
+      box.add(center(light));
+    }
+    return box;
+  }
+
+  std::size_t bin_of(std::uint32_t light, int axis, const Box& box) const {
+    const double share = (center(light)[axis] - box.lo[axis]) / (box.hi[axis] - box.lo[axis]);
+    return std::min(kBins - 1, static_cast<std::size_t>(share * kBins));
+  }
+
+  Split best_split(absl::Span<const std::uint32_t> range) const {
+    const Box box = centers(range);
+    const double longest = max_abs(box.hi - box.lo);
+    Split best;
+    for (int axis = 0; axis < 3; ++axis) {
+      const double extent = box.hi[axis] - box.lo[axis];
+      if (!(extent > 0)) {
+        continue;
+      }
+      std::array<Group, kBins> bins;
+      for (const std::uint32_t light : range) {
+        bins[bin_of(light, axis, box)].add(group_of(lights_[light]));
+      }
+      // Thin slices are dearer: Conty Estevez and Kulla's K_r.
+      try_splits(bins, axis, longest / extent, best);
+    }
+    return best;
+  }
+
+  static void try_splits(const std::array<Group, kBins>& bins, int axis, double factor,
+                         Split& best) {
+    std::array<double, kBins> above;
+    Group group;
+    for (std::size_t i = kBins - 1; i > 0; --i) {
+      group.add(bins[i]);
+      above[i] = group.count > 0 ? group.cost() : -1;
+    }
+    group = {};
+    for (std::size_t i = 0; i + 1 < kBins; ++i) {
+      group.add(bins[i]);
+      const double cost = factor * (group.cost() + above[i + 1]);
+      if (group.count > 0 && above[i + 1] >= 0 && cost < best.cost) {
+        best = {axis, i, cost};
+      }
+    }
+  }
+
+  const std::vector<LightBound>& lights_;
+  LightTree& tree_;
+  std::vector<std::uint32_t> order_;
+};
+
+LightTree::LightTree(const std::vector<LightBound>& lights) { LightTreeBuilder(lights, *this); }
+
+}  // namespace bandsaw

@@ -1,0 +1,22 @@
+#pragma once
+
+// Environments and lights without size <-> proto/package.proto.
+
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "proto/package.pb.h"
+#include "renderlib/light/delta_light.h"
+#include "renderlib/light/environment.h"
+
+namespace bandsaw {
+
+void encode_environment(const Environment& from, package::Environment& to);
+void encode_light(const DeltaLight& from, package::Light& to);
+
+/// Form only: check_description judges the values. INVALID_ARGUMENT: of no kind, or a list of the
+/// wrong length.
+absl::StatusOr<Environment> decode_environment(const package::Environment& from);
+absl::StatusOr<std::vector<DeltaLight>> decode_lights(const package::Manifest& manifest);
+
+}  // namespace bandsaw

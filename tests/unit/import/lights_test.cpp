@@ -1,0 +1,215 @@
+// Lights without size and environments: of scene files and of models.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "renderlib/base/atomic_file.h"
+#include "renderlib/image/hdr.h"
+#include "renderlib/image/png.h"
+#include "renderlib/import/environment_image.h"
+#include "renderlib/import/import.h"
+#include "tests/support/environments.h"
+#include "tests/unit/import/files.h"
+
+namespace bandsaw {
+namespace {
+
+using test::TempDir;
+using test::write_text;
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::StartsWith;
+
+const std::string kHead = R"(camera { position: [0, 1, 5] look_at: [0, 0, 0] }
+material { name: "white" diffuse { } }
+shape { sphere { radius: 1 } material: "white" }
+)";
+
+void write_hdr(const std::string& path, std::uint32_t width, std::uint32_t height,
+               const Rgb& value) {
+  Image image{width, height, {}};
+  image.pixels.assign(std::size_t{width} * height, value);
+  EXPECT_TRUE(write_file_atomically(path, encode_hdr(image)).ok());
+}
+
+/// A folder with images of light.
+class SceneLights : public ::testing::Test {
+ protected:
+  SceneLights() {
+    write_hdr(folder_ / "sky.hdr", 8, 4, {1, 2, 4});
+    for (const char* side : {"px", "nx", "py", "ny", "pz", "nz"}) {
+      write_hdr(folder_ / (std::string(side) + ".hdr"), 4, 4, {1, 1, 1});
+    }
+    write_hdr(folder_ / "wide.hdr", 4, 3, {1, 1, 1});
+  }
+  absl::StatusOr<ImportedScene> read(const std::string& text) {
+    return import_scene(write_text(folder_, "s.textproto", kHead + text));
+  }
+  std::string error(const std::string& text) { return std::string(read(text).status().message()); }
+  TempDir folder_;
+};
+
+TEST_F(SceneLights, OfEveryKind) {
+  const auto imported = read(R"(
+light { directional { direction: [0, -2, 0] irradiance { rgb: [1, 2, 3] } } }
+light { point { position: [1, 2, 3] intensity { rgb: [4, 5, 6] } } }
+light { spot { position: [0, 5, 0] look_at: [0, 1, 0] intensity { rgb: [1, 1, 1] } outer_angle: 60 } }
+light { spot { position: [0, 5, 0] direction: [3, 0, 0] intensity { rgb: [1, 1, 1] } inner_angle: 20 } }
+)");
+  ASSERT_TRUE(imported.ok()) << imported.status();
+  const auto& lights = imported->scene.lights;
+  ASSERT_EQ(lights.size(), 4u);
+  EXPECT_EQ(std::get<DirectionalLight>(lights[0]).direction, (Vec3{0, -1, 0}));
+  EXPECT_EQ(std::get<DirectionalLight>(lights[0]).irradiance, (Rgb{1, 2, 3}));
+  EXPECT_EQ(std::get<PointLight>(lights[1]).position, (Vec3{1, 2, 3}));
+  const auto& spot = std::get<SpotLight>(lights[2]);
+  EXPECT_EQ(spot.direction, (Vec3{0, -1, 0}));
+  EXPECT_EQ(spot.cos_inner, 1);
+  EXPECT_NEAR(spot.cos_outer, 0.5, 1e-15);
+  EXPECT_EQ(std::get<SpotLight>(lights[3]).direction, (Vec3{1, 0, 0}));
+  EXPECT_NEAR(std::get<SpotLight>(lights[3]).cos_outer, std::sqrt(0.5), 1e-15);
+  EXPECT_TRUE(is_black(imported->scene.background.top)) << "no default sky beside lights";
+}
+
+TEST_F(SceneLights, WhatIsWrongIsSaidWithItsPlace) {
+  EXPECT_THAT(error("light { }"),
+              StartsWith("s.textproto:4:1: light[0]: is empty: write directional, point or spot"));
+  EXPECT_THAT(error("light { directional { irradiance { rgb: [1, 1, 1] } } }"),
+              HasSubstr("light[0].directional.direction: is required"));
+  EXPECT_THAT(error("light { point { position: [0, 0, 0] } }"),
+              HasSubstr("light[0].point.intensity: is required, for example"));
+  EXPECT_THAT(error("light { point { position: [0, 0, 0] intensity { rgb: [1, -1, 1] } } }"),
+              HasSubstr("light[0].point.intensity.rgb[1]: must"));
+  const std::string spot = "light { spot { position: [0, 0, 0] intensity { rgb: [1, 1, 1] } ";
+  EXPECT_THAT(error(spot + "} }"), HasSubstr("one of direction, look_at is required"));
+  EXPECT_THAT(error(spot + "look_at: [0, 0, 0] } }"), HasSubstr("must differ from position"));
+  EXPECT_THAT(error(spot + "direction: [1, 0, 0] outer_angle: 91 } }"),
+              HasSubstr("outer_angle: must be in (0, 90] degrees, is 91"));
+  EXPECT_THAT(error(spot + "direction: [1, 0, 0] inner_angle: 50 } }"),
+              HasSubstr("inner_angle: must lie in [0, 45], is 50"));
+  std::string many;
+  for (int i = 0; i < 9; ++i) {
+    many += "light { directional { direction: [1, 0, 0] irradiance { rgb: [1, 1, 1] } } }\n";
+  }
+  EXPECT_THAT(error(many), HasSubstr("light[8].directional: is one more than the 8"));
+}
+
+TEST_F(SceneLights, AnEnvironmentIsAnImageAllAround) {
+  const auto imported = read(R"(background { environment { file: "sky.hdr" strength: 0.5
+    rotate { axis: [0, 1, 0] degrees: 90 } } })");
+  ASSERT_TRUE(imported.ok()) << imported.status();
+  const SceneDescription& scene = imported->scene;
+  ASSERT_TRUE(scene.background.environment.has_value());
+  EXPECT_EQ(scene.background.environment->strength, 0.5f);
+  EXPECT_EQ(scene.background.environment->axes.x, (Vec3{0, 0, -1})) << "+x is turned to -z";
+  EXPECT_EQ(radiance(scene.background, scene.textures, {0, 0, 1}), (Rgb{0.5f, 1, 2}));
+  EXPECT_THAT(imported->info.warnings, IsEmpty());
+}
+
+TEST_F(SceneLights, ACubeMapIsSix) {
+  const std::string six =
+      R"(positive_x: "px.hdr" negative_x: "nx.hdr" positive_y: "py.hdr" negative_y: "ny.hdr"
+         positive_z: "pz.hdr" negative_z: "nz.hdr" )";
+  const auto imported = read("background { cube_map { " + six + "} }");
+  ASSERT_TRUE(imported.ok()) << imported.status();
+  EXPECT_EQ(imported->scene.background.environment->images.size(), 6u);
+  EXPECT_EQ(imported->scene.background.environment->axes.x, (Vec3{1, 0, 0}));
+  const auto mirrored = read("background { cube_map { " + six + " left_handed: true } }");
+  ASSERT_TRUE(mirrored.ok()) << mirrored.status();
+  EXPECT_EQ(mirrored->scene.background.environment->axes.x, (Vec3{-1, 0, 0}));
+  EXPECT_THAT(error(R"(background { cube_map { positive_x: "px.hdr" } })"),
+              HasSubstr("background.cube_map.negative_x: is required"));
+  EXPECT_THAT(error(R"(background { cube_map { positive_x: "px.hdr" negative_x: "wide.hdr" } })"),
+              HasSubstr("negative_x: images of a cube map must be square and of one size; "
+                        "\"wide.hdr\" is 4 x 3"));
+}
+
+TEST_F(SceneLights, WhatIsWrongWithAnEnvironmentIsSaidWithItsPlace) {
+  EXPECT_THAT(error("background { environment { } }"),
+              StartsWith("s.textproto:4:14: background.environment.file: is required"));
+  EXPECT_THAT(error(R"(background { environment { file: "../sky.hdr" } })"),
+              HasSubstr("background.environment.file: \"../sky.hdr\" lies outside"));
+  EXPECT_THAT(error(R"(background { environment { file: "s.textproto" } })"),
+              HasSubstr("s.textproto: is not an image"));
+  EXPECT_THAT(error(R"(background { environment { file: "sky.hdr" strength: -1 } })"),
+              HasSubstr("background.environment.strength: must lie in [0, 1e+06], is -1"));
+}
+
+TEST(MendLight, L9WhatIsNoLightIsMendedAndCounted) {
+  constexpr float kInf = std::numeric_limits<float>::infinity();
+  const float values[] = {1, -1, std::nanf(""), 7, kInf, 2e30f, -kInf, 0};
+  ImageTexture image = test::float_image(8, 1, [&](auto x, auto) { return values[x]; });
+  EXPECT_EQ(mend_light(image), 5u);
+  const float expected[] = {1, 0, 0, 7, 7, 7, 0, 0};
+  for (std::size_t i = 0; i < 8; ++i) {
+    float value = 0;
+    std::memcpy(&value, image.texels.data() + i * sizeof value, sizeof value);
+    EXPECT_EQ(value, expected[i]) << i;
+  }
+  EXPECT_EQ(mend_light(image), 0u);
+  ImageTexture bad = test::float_image(2, 2, [&](auto, auto) { return kInf; });
+  EXPECT_EQ(mend_light(bad), 4u) << "nothing is left, but nothing is infinite either";
+}
+
+/// One triangle, and lights at two nodes, one of them moved, turned and scaled.
+std::string gltf_with_lights() {
+  return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2, 3]}],
+"extensionsUsed": ["KHR_lights_punctual"],
+"extensions": {"KHR_lights_punctual": {"lights": [
+  {"type": "directional", "color": [1, 0.5, 0.25], "intensity": 3, "name": "sun"},
+  {"type": "point", "intensity": 40, "name": "bulb"},
+  {"type": "spot", "intensity": 60, "spot": {"innerConeAngle": 0.3, "outerConeAngle": 0.6}}]}},
+"nodes": [{"mesh": 0, "name": "t"},
+  {"name": "a", "rotation": [-0.7071067811865476, 0, 0, 0.7071067811865476],
+   "extensions": {"KHR_lights_punctual": {"light": 0}}},
+  {"name": "b", "translation": [1, 2, 3], "scale": [2, 2, 2],
+   "extensions": {"KHR_lights_punctual": {"light": 1}}},
+  {"name": "c", "translation": [0, 5, 0], "rotation": [0, 0.7071067811865476, 0, 0.7071067811865476],
+   "extensions": {"KHR_lights_punctual": {"light": 2}}}],
+"meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+"accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+               "min": [0, 0, 0], "max": [1, 1, 0]}],
+"bufferViews": [{"buffer": 0, "byteLength": 36}],
+"buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
+}
+
+TEST(ModelLights, OfGltfHaveItsUnitsAndStandAtTheirNodes) {
+  const TempDir folder;
+  const auto imported = import_scene(write_text(folder, "m.gltf", gltf_with_lights()));
+  ASSERT_TRUE(imported.ok()) << imported.status();
+  EXPECT_THAT(imported->info.warnings, IsEmpty());
+  const auto& lights = imported->scene.lights;
+  ASSERT_EQ(lights.size(), 3u);
+  const auto& sun = std::get<DirectionalLight>(lights[0]);
+  EXPECT_LE(length(sun.direction - Vec3{0, -1, 0}), 1e-6) << "glTF's lights look along -z";
+  EXPECT_NEAR(sun.irradiance.g, 1.5, 1e-6);
+  const auto& bulb = std::get<PointLight>(lights[1]);
+  EXPECT_EQ(bulb.position, (Vec3{1, 2, 3}));
+  EXPECT_EQ(bulb.intensity, (Rgb{40, 40, 40})) << "a node's scale leaves it as it is";
+  const auto& spot = std::get<SpotLight>(lights[2]);
+  EXPECT_LE(length(spot.direction - Vec3{-1, 0, 0}), 1e-6);
+  EXPECT_NEAR(spot.cos_inner, std::cos(0.3), 1e-6);
+  EXPECT_NEAR(spot.cos_outer, std::cos(0.6), 1e-6);
+  EXPECT_TRUE(is_black(imported->scene.background.top)) << "it brings its own light";
+}
+
+TEST(ModelLights, ArePlacedWithTheirModel) {
+  const TempDir folder;
+  write_text(folder, "m.gltf", gltf_with_lights());
+  const auto imported = import_scene(write_text(folder, "s.textproto", R"(
+camera { position: [0, 1, 5] look_at: [0, 0, 0] }
+model { file: "m.gltf" translate: [10, 0, 0] scale: 3 rotate { axis: [0, 1, 0] degrees: 90 } })"));
+  ASSERT_TRUE(imported.ok()) << imported.status();
+  const auto& bulb = std::get<PointLight>(imported->scene.lights.at(1));
+  EXPECT_LE(length(bulb.position - Vec3{19, 6, -3}), 1e-9);
+  EXPECT_EQ(bulb.intensity, (Rgb{40, 40, 40}));
+  const auto& spot = std::get<SpotLight>(imported->scene.lights.at(2));
+  EXPECT_LE(length(spot.direction - Vec3{0, 0, 1}), 1e-6);
+}
+
+}  // namespace
+}  // namespace bandsaw
