@@ -11,6 +11,7 @@ enum class TextureId : std::uint32_t {};
 enum class MeshId : std::uint32_t {};
 enum class GroupId : std::uint32_t {};
 enum class FrameId : std::uint32_t {};
+enum class MediumId : std::uint32_t {};
 
 template <class Id>
 constexpr std::size_t index_of(Id id) {

@@ -1,10 +1,11 @@
 #include "renderlib/integrate/path.h"
 
-#include <algorithm>
 #include <optional>
 
 #include "renderlib/geometry/surface.h"
+#include "renderlib/integrate/path_state.h"
 #include "renderlib/integrate/see_through.h"
+#include "renderlib/integrate/through_media.h"
 #include "renderlib/light/emission.h"
 #include "renderlib/material/albedo.h"
 #include "renderlib/material/bsdf.h"
@@ -12,13 +13,6 @@
 
 namespace bandsaw {
 namespace {
-
-/// Where the path scattered last and how it left.
-struct Departure {
-  Receiver from;
-  double pdf = 0;
-  bool delta = true;  ///< also of the camera: lights seen from there were not asked
-};
 
 Receiver receiver_of(const SurfacePoint& point, const Vec3& wo) {
   const bool outside = dot(wo, point.geometric_normal) >= 0;
@@ -35,7 +29,7 @@ float scattering_weight(const Scene& scene, const Departure& departure, const Su
     return 0;
   }
   return static_cast<float>(
-      power_heuristic(departure.pdf, scene.lights().pdf(departure.from, light)));
+      power_heuristic(departure.pdf, scene.lights().pdf(departure.from, light) * departure.asked));
 }
 
 /// What is seen where a ray leaves the scene, as far as scattering counts for it.
@@ -49,7 +43,7 @@ Rgb background_light(const Scene& scene, const Departure& departure, const Vec3&
   if (technique == Technique::kLightsOnly) {
     return asked > 0 ? Rgb{} : seen;  // What is even is never asked.
   }
-  return seen * static_cast<float>(power_heuristic(departure.pdf, asked));
+  return seen * static_cast<float>(power_heuristic(departure.pdf, asked * departure.asked));
 }
 
 /// What asking and following must be weighed against each other for.
@@ -80,8 +74,8 @@ Rgb asked_light(const Scene& scene, const SurfacePoint& point, const Receiver& r
     return {};
   }
   const Ray way = light->distant ? leave(point, light->direction) : toward(point, light->target, 0);
-  const float passing = unoccluded(scene, way, rays);
-  if (passing == 0) {
+  const Rgb passing = passing_light(scene, way, rays);
+  if (is_black(passing)) {
     return {};
   }
   const double weight =
@@ -92,9 +86,10 @@ Rgb asked_light(const Scene& scene, const SurfacePoint& point, const Receiver& r
 /// What local shading sees of an environment in a direction that scattering found.
 Rgb followed_environment(const Scene& scene, const SurfacePoint& point, const Departure& departure,
                          const Vec3& direction, std::uint64_t& rays) {
-  const float passing = unoccluded(scene, leave(point, direction), rays);
-  return passing == 0 ? Rgb{}
-                      : background_light(scene, departure, direction, Technique::kBoth) * passing;
+  const Rgb passing = passing_light(scene, leave(point, direction), rays);
+  return is_black(passing)
+             ? Rgb{}
+             : background_light(scene, departure, direction, Technique::kBoth) * passing;
 }
 
 /// A glass that takes part in nesting.
@@ -105,84 +100,92 @@ const Dielectric* nested_glass(const Scene& scene, const Material& material) {
 
 bool is_metal(const Material& material) { return std::holds_alternative<Metal>(material); }
 
+/// What happens at a surface: its light, that of an asked light, and the way on; false: there is
+/// none.
+bool scatter_at(const PathContext& context, const SurfacePoint& point, std::uint32_t depth,
+                Interiors& interiors, PathState& path) {
+  const Scene& scene = context.scene;
+  const PathOptions& options = context.options;
+  const Material& material = scene.material(point.material);
+  const Vec3 wo = -path.ray.direction;
+  if (const Rgb light = emitted(material, scene.textures(), point, wo); !is_black(light)) {
+    path.radiance += path.throughput * light *
+                     scattering_weight(scene, path.departure, point, options.technique);
+  }
+  if (std::holds_alternative<Emissive>(material) || depth == options.max_depth) {
+    return false;
+  }
+  const auto* nested = nested_glass(scene, material);
+  const double outside_index = nested != nullptr ? interiors.index_without(point.material) : 1;
+  const Bsdf bsdf = bsdf_at(material, scene.textures(), point, wo, outside_index);
+  const Receiver receiver = receiver_of(point, wo);
+  const bool is_last = options.local && has_density(bsdf) && !is_metal(material);
+  if (context.asks_lights() && has_density(bsdf)) {
+    const Sample4 numbers = context.numbers(group_light(depth));
+    const Asking asking =
+        is_last ? Asking{Technique::kLightsOnly, true} : Asking{options.technique, false};
+    path.radiance += path.throughput *
+                     asked_light(scene, point, receiver, bsdf, numbers, asking, context.rays);
+  }
+  if (is_last) {
+    const Rgb albedo = albedo_at(material, scene.textures(), point);
+    path.radiance += path.throughput * albedo * scene.local_shading().ambient;
+  }
+  const Sample4 numbers = context.numbers(group_bsdf(depth));
+  const std::optional<BsdfSample> next = sample(bsdf, numbers[0], numbers[1], numbers[2]);
+  if (!next) {
+    return false;
+  }
+  // Lights beyond the surface were not asked.
+  const bool passes = dot(next->wi, *receiver.normal) <= 0;
+  path.departure = {receiver, next->pdf, next->delta || passes};
+  path.throughput *= next->weight;
+  if (is_last && !next->delta) {
+    if (scene.needs().environment) {
+      path.radiance += path.throughput * followed_environment(scene, point, path.departure,
+                                                              next->wi, context.rays);
+    }
+    return false;
+  }
+  path.compression *= next->compression;
+  if (!survives(context, depth, numbers[3], path)) {
+    return false;
+  }
+  if (passes && nested != nullptr) {
+    interiors.pass(point.material, *nested, dot(next->wi, point.geometric_normal) < 0);
+  }
+  path.ray = leave(point, next->wi);
+  return true;
+}
+
 }  // namespace
 
 Rgb path_radiance(const Scene& scene, const Ray& camera_ray, const PixelSampler& sampler,
                   std::uint64_t sample, const PathOptions& options, std::uint64_t& rays) {
-  const bool ask_lights = scene.needs().lights && options.technique != Technique::kScatteringOnly;
-  Rgb radiance;
-  Rgb throughput = gray(1);
-  double compression =
-      1;  // What refraction did to the throughput; roulette must not mistake it for loss.
-  Ray ray = camera_ray;
-  Departure departure;
+  const PathContext context{scene, sampler, sample, options, rays};
+  PathState path{.ray = camera_ray};
   Interiors interiors;
   for (std::uint32_t depth = 0;; ++depth) {
     const std::optional<SurfacePoint> seen =
-        first_surface(scene, ray, sampler, sample, depth, interiors, rays);
-    if (!seen) {
-      return radiance +
-             throughput * background_light(scene, departure, ray.direction, options.technique);
-    }
-    const SurfacePoint& point = *seen;
-    const Material& material = scene.material(point.material);
-    const Vec3 wo = -ray.direction;
-    if (const Rgb light = emitted(material, scene.textures(), point, wo); !is_black(light)) {
-      radiance +=
-          throughput * light * scattering_weight(scene, departure, point, options.technique);
-    }
-    if (std::holds_alternative<Emissive>(material)) {
-      return radiance;
-    }
-    if (depth == options.max_depth) {
-      return radiance;
-    }
-    const auto* nested = nested_glass(scene, material);
-    const double outside_index = nested != nullptr ? interiors.index_without(point.material) : 1;
-    const Bsdf bsdf = bsdf_at(material, scene.textures(), point, wo, outside_index);
-    const Receiver receiver = receiver_of(point, wo);
-    const bool is_last = options.local && has_density(bsdf) && !is_metal(material);
-    if (ask_lights && has_density(bsdf)) {
-      const Sample4 numbers = sampler.group(sample, group_light(depth));
-      const Asking asking =
-          is_last ? Asking{Technique::kLightsOnly, true} : Asking{options.technique, false};
-      radiance += throughput * asked_light(scene, point, receiver, bsdf, numbers, asking, rays);
-    }
-    if (is_last) {
-      const Rgb albedo = albedo_at(material, scene.textures(), point);
-      radiance += throughput * albedo * scene.local_shading().ambient;
-    }
-    const Sample4 numbers = sampler.group(sample, group_bsdf(depth));
-    const std::optional<BsdfSample> next =
-        bandsaw::sample(bsdf, numbers[0], numbers[1], numbers[2]);
-    if (!next) {
-      return radiance;
-    }
-    // Lights beyond the surface were not asked.
-    const bool passes = dot(next->wi, *receiver.normal) <= 0;
-    departure = {receiver, next->pdf, next->delta || passes};
-    if (is_last && !next->delta) {
-      return scene.needs().environment
-                 ? radiance + throughput * next->weight *
-                                  followed_environment(scene, point, departure, next->wi, rays)
-                 : radiance;
-    }
-    throughput *= next->weight;
-    compression *= next->compression;
-    if (options.russian_roulette && depth + 1 >= kRouletteDepth) {
-      const double survival = std::clamp(max_component(throughput) / compression, 0.05, 1.0);
-      if (numbers[3] >= survival) {
-        return radiance;
+        first_surface(scene, path.ray, sampler, sample, depth, interiors, rays);
+    if (scene.needs().media) {
+      const double way = seen ? length(seen->position - path.ray.origin) : kInfinity;
+      const Passage passage = through_media(context, way, depth, path);
+      if (passage == Passage::kEnded) {
+        return path.radiance;
       }
-      throughput = throughput * static_cast<float>(1 / survival);
+      if (passage == Passage::kScattered) {
+        continue;
+      }
     }
-    if (is_black(throughput)) {
-      return radiance;
+    if (!seen) {
+      return path.radiance + path.throughput * background_light(scene, path.departure,
+                                                                path.ray.direction,
+                                                                options.technique);
     }
-    if (passes && nested != nullptr) {
-      interiors.pass(point.material, *nested, dot(next->wi, point.geometric_normal) < 0);
+    if (!scatter_at(context, *seen, depth, interiors, path)) {
+      return path.radiance;
     }
-    ray = leave(point, next->wi);
   }
 }
 

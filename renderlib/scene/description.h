@@ -12,6 +12,7 @@
 #include "renderlib/light/delta_light.h"
 #include "renderlib/material/material.h"
 #include "renderlib/scene/integrator.h"
+#include "renderlib/scene/media.h"
 #include "renderlib/texture/texture.h"
 
 namespace bandsaw {
@@ -22,6 +23,7 @@ struct SceneDescription {
   std::vector<Texture> textures;
   std::vector<Material> materials;
   Geometry geometry;
+  Media media;
   PixelFilter filter;
   LocalShading local_shading;
   std::vector<DeltaLight> lights;  ///< those without size; surfaces shine by their material

@@ -15,6 +15,7 @@ struct Needs {
   bool nested_glass = false;   ///< dielectrics with a priority
   bool uv_directions = false;  ///< normal maps
   bool motion = false;         ///< something moves while the shutter is open
+  bool media = false;          ///< something between the surfaces
   friend bool operator==(const Needs&, const Needs&) = default;
 };
 

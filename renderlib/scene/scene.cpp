@@ -49,6 +49,8 @@ Needs needs_of(const SceneDescription& scene, const Lights& lights) {
   needs.uv_directions = any(has_normal_map);
   needs.motion = moves(scene.geometry);
   needs.instances = !scene.geometry.instances.empty();
+  needs.media = scene.media.fog || !scene.media.boundaries.spheres.empty() ||
+                !scene.media.boundaries.instances.empty();
   return needs;
 }
 
@@ -68,6 +70,9 @@ absl::StatusOr<std::shared_ptr<const Scene>> Scene::build(SceneDescription descr
   scene->lights_ = Lights(own.geometry, own.materials, own.textures, own.lights, own.background,
                           interval);
   scene->needs_ = needs_of(own, scene->lights_);
+  if (scene->needs_.media) {
+    scene->boundary_accel_ = std::make_unique<Accel>(Accel::build(own.media.boundaries, pool));
+  }
   return std::shared_ptr<const Scene>(std::move(scene));
 }
 

@@ -27,6 +27,10 @@ class Scene {
   const Geometry& geometry() const { return description_.geometry; }
   const Accel& accel() const { return *accel_; }
   const Lights& lights() const { return lights_; }
+  const Media& media() const { return description_.media; }
+  /// Of the media's boundaries, which the scene's own trees do not hold. MUST NOT be asked without
+  /// needs().media.
+  const Accel& boundary_accel() const { return *boundary_accel_; }
   const Background& background() const { return description_.background; }
   const Camera& camera() const { return description_.camera; }
   const PixelFilter& filter() const { return description_.filter; }
@@ -42,6 +46,7 @@ class Scene {
   explicit Scene(SceneDescription description) : description_(std::move(description)) {}
   SceneDescription description_;
   std::unique_ptr<Accel> accel_;
+  std::unique_ptr<Accel> boundary_accel_;
   Lights lights_;
   Needs needs_;
   std::size_t dropped_ = 0;

@@ -39,7 +39,8 @@ absl::Status validate(const SceneDescription& scene) {
   RETURN_IF_ERROR(check_color("background.top", scene.background.top, infinite));
   RETURN_IF_ERROR(check_surfaces(scene));
   RETURN_IF_ERROR(check_lights(scene.background, scene.textures, scene.lights));
-  return check_geometry(scene);
+  RETURN_IF_ERROR(check_geometry(scene));
+  return validate(scene.media);
 }
 
 }  // namespace bandsaw

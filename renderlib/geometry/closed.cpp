@@ -1,0 +1,65 @@
+#include "renderlib/geometry/closed.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+namespace bandsaw {
+namespace {
+
+/// For each vertex, the lowest of those at its position.
+std::vector<std::uint32_t> welded(const std::vector<std::array<float, 3>>& positions) {
+  std::vector<std::uint32_t> order(positions.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return positions[a] != positions[b] ? positions[a] < positions[b] : a < b;
+  });
+  std::vector<std::uint32_t> name(positions.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const bool same = i > 0 && positions[order[i]] == positions[order[i - 1]];
+    name[order[i]] = same ? name[order[i - 1]] : order[i];
+  }
+  return name;
+}
+
+struct Edge {
+  std::uint32_t low;
+  std::uint32_t high;
+  int upwards;  ///< +1 from low to high, -1 back
+};
+
+bool same_place(const Edge& a, const Edge& b) { return a.low == b.low && a.high == b.high; }
+
+}  // namespace
+
+std::size_t open_edges(const Mesh& mesh) {
+  const std::vector<std::uint32_t> name = welded(mesh.positions);
+  std::vector<Edge> edges;
+  edges.reserve(mesh.triangles.size() * 3);
+  for (const std::array<std::uint32_t, 3>& triangle : mesh.triangles) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t from = name[triangle[i]];
+      const std::uint32_t to = name[triangle[(i + 1) % 3]];
+      if (from != to) {
+        edges.push_back({std::min(from, to), std::max(from, to), from < to ? 1 : -1});
+      }
+    }
+  }
+  std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
+    return a.low != b.low ? a.low < b.low : a.high < b.high;
+  });
+  std::size_t open = 0;
+  for (std::size_t i = 0; i < edges.size();) {
+    int sum = 0;
+    std::size_t next = i;
+    for (; next < edges.size() && same_place(edges[i], edges[next]); ++next) {
+      sum += edges[next].upwards;
+    }
+    open += sum != 0 ? 1 : 0;
+    i = next;
+  }
+  return open;
+}
+
+}  // namespace bandsaw

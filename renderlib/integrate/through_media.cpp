@@ -1,0 +1,146 @@
+#include "renderlib/integrate/through_media.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "renderlib/integrate/asked_distance.h"
+#include "renderlib/integrate/medium_walk.h"
+#include "renderlib/integrate/see_through.h"
+#include "renderlib/medium/attenuation.h"
+#include "renderlib/medium/phase.h"
+#include "renderlib/sampling/warp.h"
+
+namespace bandsaw {
+namespace {
+
+/// One stretch of medium on the way to scattering `depth`.
+struct Step {
+  const PathContext& context;
+  std::uint32_t depth;
+  std::uint32_t number;  ///< of the stretch along its ray
+  const Medium& medium;
+  Vec3 origin;  ///< where the stretch begins
+  Vec3 way;     ///< unit
+  Flight flight;
+  double chance;  ///< with which the path is scattered in it
+
+  Sample4 numbers(std::uint32_t which) const {
+    return context.numbers(group_medium(depth, number, which));
+  }
+};
+
+/// Some point of a light, as far as the stretch is concerned: only where to look for light more
+/// often depends on it. It MUST NOT depend on where the path goes on.
+std::optional<Vec3> pivot(const Step& step, double length) {
+  const Medium& m = step.medium;
+  const Rgb extinction = m.absorption + m.scattering;
+  const double mean = (double{extinction.r} + extinction.g + extinction.b) / 3;
+  constexpr double kHalf = 0.693;  // ln 2: half of the light gets that far
+  const double distance = std::min(length / 2, kHalf / mean);
+  const Sample4 at = step.numbers(1);
+  const std::optional<LightSample> light = step.context.scene.lights().sample(
+      {step.origin + step.way * distance, {}}, at[0], at[1], at[2]);
+  return light ? std::optional(light->target) : std::nullopt;
+}
+
+/// The light of one asked light that one point of the stretch sends back along it.
+Rgb asked_light(const Step& step, const AskedDistance& asked, const Sample4& at) {
+  const PathContext& context = step.context;
+  const double distance = asked.sample(at[2], at[3]);
+  const Vec3 position = step.origin + step.way * distance;
+  const Sample4 which = step.numbers(2);
+  const std::optional<LightSample> light =
+      context.scene.lights().sample({position, {}}, which[0], which[1], which[2]);
+  if (!light) {
+    return {};
+  }
+  const double turned = phase(step.medium.g, dot(step.way, light->direction));
+  const Ray ray{.origin = position, .direction = light->target - position, .t_max = 1};
+  const Rgb passing = passing_light(context.scene, ray, context.rays);
+  if (is_black(passing)) {
+    return {};
+  }
+  const double pdf = light->pdf * asked.pdf(distance);
+  const bool both = context.options.technique == Technique::kBoth && !context.options.local;
+  const double other = turned * step.chance * step.flight.pdf(distance);
+  const double weight = both ? power_heuristic(pdf, other) : 1;
+  return step.flight.scattered(distance) * light->radiance * passing *
+         static_cast<float>(turned * weight / pdf);
+}
+
+/// Scatters the path at `distance` into a new direction.
+Passage scatter(const Step& step, double distance, double asked, PathState& path) {
+  const Sample4 at = step.context.numbers(group_bsdf(step.depth));
+  path.throughput = step.flight.after_scattering(distance);
+  const Vec3 position = step.origin + step.way * distance;
+  const Vec3 direction = sample_phase(step.medium.g, step.way, at[0], at[1]);
+  const double pdf = phase(step.medium.g, dot(step.way, direction));
+  path.departure = {.from = {position, {}}, .pdf = pdf, .delta = false, .asked = asked};
+  path.ray.origin = position;
+  path.ray.direction = direction;
+  path.ray.from = kNoPrimitive;
+  return survives(step.context, step.depth, at[3], path) ? Passage::kScattered : Passage::kEnded;
+}
+
+Passage pass(const Rgb& throughput, PathState& path) {
+  path.throughput = throughput;
+  return is_black(throughput) ? Passage::kEnded : Passage::kThrough;
+}
+
+Passage through(const Step& step, double length, PathState& path) {
+  const PathOptions& options = step.context.options;
+  path.radiance += path.throughput * own_radiance(step.medium, length);
+  if (step.chance == 0) {
+    return pass(step.flight.passing(), path);
+  }
+  const bool asks = step.context.asks_lights();
+  const AskedDistance asked(step.flight, step.origin, step.way, length,
+                            asks ? pivot(step, length) : std::nullopt);
+  const Sample4 at = step.numbers(0);
+  if (asks) {
+    path.radiance += asked_light(step, asked, at);
+  }
+  if (options.local) {
+    path.radiance += step.flight.all_scattered() * step.context.scene.local_shading().ambient;
+    return pass(step.flight.passing(), path);
+  }
+  if (at[0] >= step.chance) {
+    return pass(step.flight.after_passing(), path);
+  }
+  const double distance = step.flight.sample(at[0] / step.chance, at[1]);
+  const double followed = step.chance * step.flight.pdf(distance);
+  return scatter(step, distance, asked.pdf(distance) / followed, path);
+}
+
+}  // namespace
+
+Passage through_media(const PathContext& context, double length, std::uint32_t depth,
+                      PathState& path) {
+  const Ray ray = path.ray;
+  MediumWalk walk(context.scene, ray, length, context.rays);
+  for (std::uint32_t number = 0; const std::optional<Stretch> stretch = walk.next(); ++number) {
+    const double part = stretch->end - stretch->begin;
+    const Flight flight(*stretch->medium, path.throughput, part);
+    const Step step{context,       depth,
+                    number,        *stretch->medium,
+                    ray.origin + ray.direction * stretch->begin,
+                    ray.direction, flight,
+                    depth < context.options.max_depth ? flight.chance() : 0};
+    const Passage passage = through(step, part, path);
+    if (passage != Passage::kThrough) {
+      return passage;
+    }
+  }
+  return Passage::kThrough;
+}
+
+Rgb passing_light(const Scene& scene, const Ray& ray, std::uint64_t& rays) {
+  const float share = unoccluded(scene, ray, rays);
+  if (share == 0 || !scene.needs().media) {
+    return gray(share);
+  }
+  return media_transmittance(scene, ray, rays) * share;
+}
+
+}  // namespace bandsaw

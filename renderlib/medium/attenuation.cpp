@@ -1,0 +1,58 @@
+#include "renderlib/medium/attenuation.h"
+
+#include "renderlib/math/elementary.h"
+
+namespace bandsaw {
+namespace {
+
+/// Beyond this exp(-x) is 0 in float and in double.
+constexpr double kOpaque = 800;
+
+/// 0 where there is no extinction, however long the way.
+double optical_length(double sigma, double length) {
+  if (sigma == 0) {
+    return 0;
+  }
+  return sigma * length;
+}
+
+}  // namespace
+
+double transmittance(double sigma, double length) {
+  const double depth = optical_length(sigma, length);
+  if (depth == 0) {
+    return 1;
+  }
+  return depth < kOpaque ? exp(-depth) : 0;
+}
+
+double reach(double sigma, double length) {
+  const double depth = optical_length(sigma, length);
+  // Below, expm1(-depth) / sigma is the length to the last bit, or has lost itself to underflow.
+  constexpr double kShort = 1e-17;
+  if (depth < kShort) {
+    return length;
+  }
+  return depth < kOpaque ? -expm1(-depth) / sigma : 1 / sigma;
+}
+
+Rgb transmittance(const Medium& medium, double length) {
+  const Rgb& a = medium.absorption;
+  const Rgb& s = medium.scattering;
+  return {static_cast<float>(transmittance(extinction(a.r, s.r), length)),
+          static_cast<float>(transmittance(extinction(a.g, s.g), length)),
+          static_cast<float>(transmittance(extinction(a.b, s.b), length))};
+}
+
+Rgb own_radiance(const Medium& medium, double length) {
+  const Rgb& a = medium.absorption;
+  const Rgb& s = medium.scattering;
+  const auto channel = [length](float emission, double sigma) {
+    return emission == 0 ? 0.0f : static_cast<float>(emission * reach(sigma, length));
+  };
+  return {channel(medium.emission.r, extinction(a.r, s.r)),
+          channel(medium.emission.g, extinction(a.g, s.g)),
+          channel(medium.emission.b, extinction(a.b, s.b))};
+}
+
+}  // namespace bandsaw

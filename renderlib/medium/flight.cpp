@@ -1,0 +1,80 @@
+#include "renderlib/medium/flight.h"
+
+#include <algorithm>
+
+#include "renderlib/math/elementary.h"
+#include "renderlib/medium/attenuation.h"
+
+namespace bandsaw {
+
+Flight::Flight(const Medium& medium, const Rgb& throughput, double length) : length_(length) {
+  const std::array<float, 3> weight = {throughput.r, throughput.g, throughput.b};
+  const std::array<float, 3> absorption = {medium.absorption.r, medium.absorption.g,
+                                           medium.absorption.b};
+  const std::array<float, 3> scattering = {medium.scattering.r, medium.scattering.g,
+                                           medium.scattering.b};
+  for (std::size_t c = 0; c < 3; ++c) {
+    extinction_[c] = extinction(absorption[c], scattering[c]);
+    entering_[c] = double{weight[c]} * scattering[c];
+    // Nothing, not nothing times infinity, where a channel has no extinction.
+    all_scattered_[c] = entering_[c] == 0 ? 0 : entering_[c] * reach(extinction_[c], length);
+    passing_[c] = weight[c] * transmittance(extinction_[c], length);
+  }
+}
+
+Rgb Flight::color(const Channels& c, double scale) {
+  return {static_cast<float>(c[0] * scale), static_cast<float>(c[1] * scale),
+          static_cast<float>(c[2] * scale)};
+}
+
+Flight::Channels Flight::scattered_channels(double distance) const {
+  Channels result;
+  for (std::size_t c = 0; c < 3; ++c) {
+    result[c] = entering_[c] == 0 ? 0 : entering_[c] * transmittance(extinction_[c], distance);
+  }
+  return result;
+}
+
+double Flight::chance() const {
+  const double scatters = sum(all_scattered_);
+  return scatters > 0 ? scatters / (scatters + sum(passing_)) : 0;
+}
+
+double Flight::sample(double choice, double u) const {
+  double left = choice * sum(all_scattered_);
+  std::size_t c = 0;
+  while (c < 2 && (left >= all_scattered_[c] || all_scattered_[c] == 0)) {
+    left -= all_scattered_[c];
+    ++c;
+  }
+  // Rounding may lead past the last channel that scatters.
+  while (all_scattered_[c] == 0) {
+    --c;
+  }
+  // The share that does not pass, 1 - exp(-sigma length), without cancellation.
+  const double share = std::min(1.0, extinction_[c] * reach(extinction_[c], length_));
+  return std::min(-log1p(-u * share) / extinction_[c], length_);
+}
+
+double Flight::pdf(double distance) const {
+  return sum(scattered_channels(distance)) / sum(all_scattered_);
+}
+
+Rgb Flight::scattered(double distance) const { return color(scattered_channels(distance), 1); }
+
+Rgb Flight::after_scattering(double distance) const {
+  const Channels channels = scattered_channels(distance);
+  const double all = sum(channels);
+  return all > 0 ? color(channels, (sum(all_scattered_) + sum(passing_)) / all) : Rgb{};
+}
+
+Rgb Flight::after_passing() const {
+  const double all = sum(passing_);
+  return all > 0 ? color(passing_, (sum(all_scattered_) + all) / all) : Rgb{};
+}
+
+Rgb Flight::passing() const { return color(passing_, 1); }
+
+Rgb Flight::all_scattered() const { return color(all_scattered_, 1); }
+
+}  // namespace bandsaw
