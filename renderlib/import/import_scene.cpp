@@ -15,6 +15,7 @@
 #include "renderlib/import/read_groups.h"
 #include "renderlib/import/read_lights.h"
 #include "renderlib/import/read_materials.h"
+#include "renderlib/import/read_media.h"
 #include "renderlib/import/read_models.h"
 #include "renderlib/import/read_shapes.h"
 #include "renderlib/import/read_textures.h"
@@ -29,7 +30,10 @@ namespace {
 constexpr std::uint64_t kMaxSceneFileBytes = std::uint64_t{64} << 20;
 
 bool has_light(const SceneDescription& scene) {
+  const std::vector<Medium>& media = scene.media.media;
   return !scene.lights.empty() ||
+         std::any_of(media.begin(), media.end(),
+                     [](const Medium& medium) { return !is_black(medium.emission); }) ||
          std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& material) {
            return std::holds_alternative<Emissive>(material);
          });
@@ -49,7 +53,7 @@ absl::StatusOr<Camera> camera_of_a_model(const Field& root, const scene::Scene& 
   if (!draft.cameras.empty()) {
     return draft.cameras.front().camera;
   }
-  if (from.model_size() != 1) {
+  if (from.model_size() != 1 || draft.out.scene.geometry.instances.empty()) {
     return root.error(
         "camera", "is required, for example camera { position: [0, 1, 5] look_at: [0, 0, 0] }");
   }
@@ -72,6 +76,7 @@ absl::Status read_scene(const Field& root, const scene::Scene& from, SceneDraft&
   }
   RETURN_IF_ERROR(read_textures(root, from, draft));
   RETURN_IF_ERROR(read_materials(root, from, draft));
+  RETURN_IF_ERROR(read_media(root, from, draft));
   RETURN_IF_ERROR(read_groups(root, from, draft));
   RETURN_IF_ERROR(read_shapes(root, from.shape(), draft));
   RETURN_IF_ERROR(read_lights(root, from, draft));

@@ -8,6 +8,7 @@
 #include "renderlib/base/status_macros.h"
 #include "renderlib/import/model.h"
 #include "renderlib/import/read_materials.h"
+#include "renderlib/import/read_media.h"
 #include "renderlib/import/read_placement.h"
 
 namespace bandsaw {
@@ -60,6 +61,21 @@ void add_lights(const std::string& file, const Model& model, const Transform& to
   }
 }
 
+/// What is inside of a model's meshes, each placed by itself.
+absl::Status read_interior(const Field& in, const scene::Model& from, const Model& model,
+                           const Transform& placement, SceneDraft& draft) {
+  RETURN_IF_ERROR(check_boundary_place(in, draft));
+  ASSIGN_OR_RETURN(const MediumId medium, find_medium(in, "interior", from.interior(), draft));
+  for (Instance placed : model.instances) {
+    placed.to_world = placement * placed.to_world;
+    if (!inverse(placed.to_world)) {
+      return in.error("scale", "is too large or too small for this model");
+    }
+    RETURN_IF_ERROR(add_boundary(in, placed, medium, draft));
+  }
+  return absl::OkStatus();
+}
+
 absl::Status read_model_entry(const Field& in, const scene::Model& from, SceneDraft& draft) {
   std::optional<MaterialId> material;
   if (!from.material().empty()) {
@@ -69,6 +85,17 @@ absl::Status read_model_entry(const Field& in, const scene::Model& from, SceneDr
   ASSIGN_OR_RETURN(place_at.to_frame, read_placement(in, from));
   ASSIGN_OR_RETURN(std::vector<Key> keys, read_keys(in, from));
   ASSIGN_OR_RETURN(const std::shared_ptr<const Model> model, find_file(in, from, draft));
+  if (!from.interior().empty()) {
+    if (!keys.empty()) {
+      return in.error("interior", "needs a model that rests: leave key out");
+    }
+    RETURN_IF_ERROR(read_interior(in, from, *model, place_at.to_frame, draft));
+  }
+  if (from.boundary_only()) {
+    return from.interior().empty()
+               ? in.error("boundary_only", "needs an interior: nothing would be left of the model")
+               : absl::OkStatus();
+  }
   Transform to_camera = place_at.to_frame;
   if (!keys.empty()) {
     draft.placed->frames.push_back({kNoFrame, {}, std::move(keys)});

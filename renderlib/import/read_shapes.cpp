@@ -7,6 +7,7 @@
 #include "renderlib/base/status_macros.h"
 #include "renderlib/import/numbers.h"
 #include "renderlib/import/read_materials.h"
+#include "renderlib/import/read_media.h"
 
 namespace bandsaw {
 namespace {
@@ -147,12 +148,43 @@ void add_moving(Shapes shape, const Vec3& velocity, SceneDraft& draft) {
   to.instances.push_back(instance);
 }
 
+/// What is inside of a sphere or a box.
+absl::Status read_interior(const Field& in, const scene::Shape& from, SceneDraft& draft) {
+  if (from.kind_case() != scene::Shape::kSphere && from.kind_case() != scene::Shape::kBox) {
+    return in.error("interior",
+                    "needs a closed shape, and this one encloses nothing: use a box, a sphere or a "
+                    "closed model");
+  }
+  if (!from.velocity().empty()) {
+    return in.error("interior", "needs a shape that rests: leave velocity out");
+  }
+  RETURN_IF_ERROR(check_boundary_place(in, draft));
+  ASSIGN_OR_RETURN(const MediumId medium, find_medium(in, "interior", from.interior(), draft));
+  Shapes shape;
+  RETURN_IF_ERROR(read_shape(in, from, MaterialId{}, shape));
+  if (from.kind_case() == scene::Shape::kSphere) {
+    add_boundary(shape.spheres.front(), medium, draft);
+    return absl::OkStatus();
+  }
+  const Field box = in.child("box");
+  ASSIGN_OR_RETURN(const Vec3 low, read_vec3(box, "min", from.box().min()));
+  ASSIGN_OR_RETURN(const Vec3 high, read_vec3(box, "max", from.box().max()));
+  add_boundary(low, high, medium, draft);
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 absl::Status read_shapes(const Field& parent, const ShapeList& shapes, SceneDraft& draft) {
   for (int i = 0; i < shapes.size(); ++i) {
     const Field in = parent.child("shape", i);
     const scene::Shape& from = shapes[i];
+    if (!from.interior().empty()) {
+      RETURN_IF_ERROR(read_interior(in, from, draft));
+      if (from.material().empty()) {
+        continue;  // Its surface is invisible.
+      }
+    }
     ASSIGN_OR_RETURN(const MaterialId material, find_material(in, from.material(), draft));
     if (from.velocity().empty()) {
       RETURN_IF_ERROR(read_shape(in, from, material, *draft.shapes));

@@ -37,6 +37,9 @@ struct SceneDraft {
   std::map<std::string, MaterialId> materials;      ///< by the names in the scene file
   std::map<std::string, TextureId> named_textures;  ///< the same
   std::map<std::string, Placements> groups;         ///< the same
+  std::map<std::string, MediumId> media;            ///< the same
+  /// By the meshes of the scene, those of the boundaries of media that are the same.
+  std::map<MeshId, MeshId> boundary_meshes;
   /// Models that have been read, by file and whether with materials.
   std::map<std::pair<std::string, bool>, std::shared_ptr<const Model>> models;
   std::vector<FoundCamera> cameras;

@@ -9,10 +9,10 @@ namespace bandsaw {
 /// Everything is per scene unit and channel, >= 0. An absorption and scattering of 0 is empty
 /// space.
 struct Medium {
-  Rgb absorption;  ///< share of the light that is lost on a short way, over its length
-  Rgb scattering;  ///< share of the light that is sent elsewhere, over the length
-  Rgb emission;    ///< radiance that is added on a short way, over its length
-  double g = 0;    ///< mean cosine of scattering (medium/phase.h), in [-kMostG, kMostG]
+  Rgb absorption = {};  ///< share of the light that is lost on a short way, over its length
+  Rgb scattering = {};  ///< share of the light that is sent elsewhere, over the length
+  Rgb emission = {};    ///< radiance that is added on a short way, over its length
+  double g = 0;         ///< mean cosine of scattering (medium/phase.h), in [-kMostG, kMostG]
   friend bool operator==(const Medium&, const Medium&) = default;
 };
 

@@ -176,7 +176,11 @@ absl::Status check_description(const SceneDescription& scene) {
     RETURN_IF_ERROR(check_shapes(geometry.groups[i], scene.materials.size(),
                                  absl::StrCat("group[", i, "].")));
   }
-  return check_placements(geometry, scene.materials.size());
+  RETURN_IF_ERROR(check_placements(geometry, scene.materials.size()));
+  if (const absl::Status media = validate(scene.media); !media.ok()) {
+    return absl::InvalidArgumentError(absl::StrCat("scene package: ", media.message()));
+  }
+  return absl::OkStatus();
 }
 
 }  // namespace bandsaw

@@ -10,6 +10,7 @@
 #include "renderlib/package/decode_texture.h"
 #include "renderlib/package/lights.h"
 #include "renderlib/package/manifest.h"
+#include "renderlib/package/media.h"
 #include "renderlib/package/placements.h"
 
 namespace bandsaw {
@@ -181,6 +182,21 @@ absl::StatusOr<Geometry> decode_geometry(const package::Manifest& manifest, Deco
   return geometry;
 }
 
+absl::StatusOr<Media> decode_media(const package::Manifest& manifest, Decoder& decoder) {
+  ASSIGN_OR_RETURN(Media media, decode_media(manifest));
+  const package::Boundaries& from = manifest.boundaries();
+  if (from.has_spheres()) {
+    ASSIGN_OR_RETURN(media.boundaries.spheres,
+                     decoder.spheres(from.spheres(), "boundaries.spheres"));
+  }
+  for (int i = 0; i < from.mesh_size(); ++i) {
+    ASSIGN_OR_RETURN(Mesh mesh,
+                     decoder.mesh(from.mesh(i), absl::StrCat("boundaries.mesh[", i, "]")));
+    media.boundaries.meshes.push_back(std::move(mesh));
+  }
+  return media;
+}
+
 }  // namespace
 
 absl::StatusOr<SceneDescription> decode_package(const std::string& manifest_bytes,
@@ -205,6 +221,7 @@ absl::StatusOr<SceneDescription> decode_package(const std::string& manifest_byte
   }
   ASSIGN_OR_RETURN(scene.geometry, decode_geometry(manifest, decoder));
   ASSIGN_OR_RETURN(scene.lights, decode_lights(manifest));
+  ASSIGN_OR_RETURN(scene.media, decode_media(manifest, decoder));
   RETURN_IF_ERROR(check_description(scene));
   return scene;
 }

@@ -12,6 +12,7 @@
 #include "renderlib/package/encode_texture.h"
 #include "renderlib/package/lights.h"
 #include "renderlib/package/limits.h"
+#include "renderlib/package/media.h"
 #include "renderlib/package/placements.h"
 #include "renderlib/package/principled.h"
 
@@ -36,14 +37,17 @@ class Encoder {
     put(to_bytes(values), ref);
   }
 
+  void put_spheres(const std::vector<Sphere>& spheres, package::Spheres& to) {
+    put_each<Vec3>(spheres, *to.mutable_centers(), &Sphere::center);
+    put_each<double>(spheres, *to.mutable_radii(), &Sphere::radius);
+    put_each<MaterialId>(spheres, *to.mutable_material(), &Sphere::material);
+  }
+
   // Into the manifest or a group.
   template <class Message>
   void put_shapes(const Shapes& geometry, Message& manifest) {
     if (!geometry.spheres.empty()) {
-      auto& to = *manifest.mutable_spheres();
-      put_each<Vec3>(geometry.spheres, *to.mutable_centers(), &Sphere::center);
-      put_each<double>(geometry.spheres, *to.mutable_radii(), &Sphere::radius);
-      put_each<MaterialId>(geometry.spheres, *to.mutable_material(), &Sphere::material);
+      put_spheres(geometry.spheres, *manifest.mutable_spheres());
     }
     if (!geometry.quads.empty()) {
       auto& to = *manifest.mutable_quads();
@@ -178,6 +182,17 @@ struct EncodeMaterial {
   void operator()(const Principled& m) const { encode_principled(m, *to.mutable_gltf()); }
 };
 
+void encode(const Media& media, Encoder& encoder, package::Manifest& manifest) {
+  encode_media(media, manifest);
+  if (!media.boundaries.spheres.empty()) {
+    encoder.put_spheres(media.boundaries.spheres,
+                        *manifest.mutable_boundaries()->mutable_spheres());
+  }
+  for (const Mesh& mesh : media.boundaries.meshes) {
+    encoder.put_mesh(mesh, *manifest.mutable_boundaries()->add_mesh());
+  }
+}
+
 void encode(const PackageInfo& info, package::Manifest& manifest) {
   manifest.set_format(wire::kPackageFormat);
   manifest.set_name(clean_text(info.name, wire::kJobNameBytes));
@@ -223,6 +238,7 @@ std::string encode_package(const SceneDescription& scene, const PackageInfo& inf
     encoder.put_shapes(group, *manifest.add_group());
   }
   encode_placements(scene.geometry, manifest);
+  encode(scene.media, encoder, manifest);
   return manifest.SerializeAsString();
 }
 

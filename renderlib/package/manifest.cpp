@@ -59,13 +59,42 @@ absl::Status check_head(const package::Manifest& manifest) {
   return absl::OkStatus();
 }
 
+template <class Visit>
+absl::Status for_each_sphere_blob(const package::Spheres& spheres, const std::string& path,
+                                  Visit& visit) {
+  RETURN_IF_ERROR(visit(spheres.centers(), path + ".centers"));
+  RETURN_IF_ERROR(visit(spheres.radii(), path + ".radii"));
+  return visit(spheres.material(), path + ".material");
+}
+
+template <class Meshes, class Visit>
+absl::Status for_each_mesh_blob(const Meshes& meshes, const std::string& name, Visit& visit) {
+  for (int i = 0; i < meshes.size(); ++i) {
+    const package::Mesh& mesh = meshes[i];
+    const std::string path = absl::StrCat(name, "[", i, "].");
+    RETURN_IF_ERROR(visit(mesh.positions(), path + "positions"));
+    RETURN_IF_ERROR(visit(mesh.indices(), path + "indices"));
+    if (mesh.has_normals()) {
+      RETURN_IF_ERROR(visit(mesh.normals(), path + "normals"));
+    }
+    if (mesh.has_uvs()) {
+      RETURN_IF_ERROR(visit(mesh.uvs(), path + "uvs"));
+    }
+    if (mesh.has_uvs2()) {
+      RETURN_IF_ERROR(visit(mesh.uvs2(), path + "uvs2"));
+    }
+    if (mesh.has_colors()) {
+      RETURN_IF_ERROR(visit(mesh.colors(), path + "colors"));
+    }
+  }
+  return absl::OkStatus();
+}
+
 // Those of the manifest's or a group's shapes.
 template <class Message, class Visit>
-absl::Status for_each_shape_blob(const Message& m, const std::string& prefix, Visit visit) {
+absl::Status for_each_shape_blob(const Message& m, const std::string& prefix, Visit& visit) {
   if (m.has_spheres()) {
-    RETURN_IF_ERROR(visit(m.spheres().centers(), prefix + "spheres.centers"));
-    RETURN_IF_ERROR(visit(m.spheres().radii(), prefix + "spheres.radii"));
-    RETURN_IF_ERROR(visit(m.spheres().material(), prefix + "spheres.material"));
+    RETURN_IF_ERROR(for_each_sphere_blob(m.spheres(), prefix + "spheres", visit));
   }
   if (m.has_quads()) {
     RETURN_IF_ERROR(visit(m.quads().corners(), prefix + "quads.corners"));
@@ -99,24 +128,11 @@ absl::Status for_each_blob(const package::Manifest& m, Visit visit) {
   for (int i = 0; i < m.group_size(); ++i) {
     RETURN_IF_ERROR(for_each_shape_blob(m.group(i), absl::StrCat("group[", i, "]."), visit));
   }
-  for (int i = 0; i < m.mesh_size(); ++i) {
-    const package::Mesh& mesh = m.mesh(i);
-    const std::string path = absl::StrCat("mesh[", i, "].");
-    RETURN_IF_ERROR(visit(mesh.positions(), path + "positions"));
-    RETURN_IF_ERROR(visit(mesh.indices(), path + "indices"));
-    if (mesh.has_normals()) {
-      RETURN_IF_ERROR(visit(mesh.normals(), path + "normals"));
-    }
-    if (mesh.has_uvs()) {
-      RETURN_IF_ERROR(visit(mesh.uvs(), path + "uvs"));
-    }
-    if (mesh.has_uvs2()) {
-      RETURN_IF_ERROR(visit(mesh.uvs2(), path + "uvs2"));
-    }
-    if (mesh.has_colors()) {
-      RETURN_IF_ERROR(visit(mesh.colors(), path + "colors"));
-    }
+  RETURN_IF_ERROR(for_each_mesh_blob(m.mesh(), "mesh", visit));
+  if (m.boundaries().has_spheres()) {
+    RETURN_IF_ERROR(for_each_sphere_blob(m.boundaries().spheres(), "boundaries.spheres", visit));
   }
+  RETURN_IF_ERROR(for_each_mesh_blob(m.boundaries().mesh(), "boundaries.mesh", visit));
   return absl::OkStatus();
 }
 

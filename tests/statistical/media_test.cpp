@@ -1,0 +1,299 @@
+// Media against closed forms and quadratures, within 4 standard errors; where there is no noise,
+// to the digits of a float.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "tests/statistical/estimate.h"
+#include "tests/support/media.h"
+
+namespace bandsaw {
+namespace {
+
+using test::medium;
+using test::Moments;
+using test::SceneMaker;
+
+void expect_value(const Moments& radiance, double expected, double relative_error) {
+  EXPECT_LE(std::abs(radiance.mean() - expected), 4 * radiance.standard_error() + 2e-6 * expected)
+      << "is " << radiance.mean() << " +- " << radiance.standard_error() << ", expected "
+      << expected;
+  EXPECT_LE(radiance.standard_error(), relative_error * expected);
+}
+
+double one_sample(const Scene& scene, const Ray& ray, const PathOptions& options = {}) {
+  std::uint64_t rays = 0;
+  return path_radiance(scene, ray, PixelSampler(3, 1, 2), 0, options, rays).g;
+}
+
+SceneMaker white_sky() {
+  SceneMaker maker;
+  maker.background(gray(1), gray(1));
+  return maker;
+}
+
+TEST(Media, AbsorbAsTheExponentialSays) {
+  // V6: through spheres at every distance from the middle, alone and two of them.
+  for (const double b : {0.0, 0.3, 0.9, 0.999999}) {
+    SceneMaker maker = white_sky();
+    const MediumId smoke = test::add(maker, medium(0.7f, 0));
+    test::fill_sphere(maker, {0, 0, 0}, 2, smoke);
+    const Ray ray{.origin = {-9, 2 * b, 0}, .direction = {1, 0, 0}};
+    const double chord = 4 * std::sqrt(1 - b * b);
+    EXPECT_NEAR(one_sample(*maker.build(), ray), std::exp(-0.7 * chord), 1e-6);
+    test::fill_sphere(maker, {5, 0, 0}, 2, smoke);
+    EXPECT_NEAR(one_sample(*maker.build(), ray), std::exp(-0.7 * 2 * chord), 1e-6);
+  }
+  // Each channel by itself, through a slab, at an angle.
+  SceneMaker maker = white_sky();
+  test::fill_box(maker, {-99, 0, -99}, {99, 2, 99}, test::add(maker, {.absorption = {0, 0.5f, 2}}));
+  std::uint64_t rays = 0;
+  const Ray ray{.origin = {0, 5, 0}, .direction = normalize({1, -1, 0})};
+  const Rgb seen = path_radiance(*maker.build(), ray, PixelSampler(3, 1, 2), 0, {}, rays);
+  EXPECT_EQ(seen.r, 1);
+  EXPECT_NEAR(seen.g, std::exp(-std::sqrt(2.0)), 1e-6);
+  EXPECT_NEAR(seen.b, std::exp(-4 * std::sqrt(2.0)), 1e-6);
+}
+
+/// V7: camera and lamp inside, the lamp in the boundary, and the camera in endless fog.
+TEST(Media, AroundTheCameraAbsorbOnTheWayToALamp) {
+  const Ray ray{.origin = {0, 0, 0}, .direction = {0, 0, -1}};
+  for (const double distance : {0.5, 2.0, 3.0}) {
+    const auto with_lamp = [&] {
+      SceneMaker maker;
+      maker.quad({-1, -1, -distance}, {2, 0, 0}, {0, 2, 0}, maker.lamp(5));
+      return maker;
+    };
+    SceneMaker ball = with_lamp();
+    test::fill_sphere(ball, {0, 0, 0}, 2, test::add(ball, medium(0.5f, 0)));
+    const double inside = std::min(distance, 2.0);
+    EXPECT_NEAR(one_sample(*ball.build(), ray), 5 * std::exp(-0.5 * inside), 1e-5);
+    SceneMaker everywhere = with_lamp();
+    test::fog(everywhere, medium(0.5f, 0));
+    EXPECT_NEAR(one_sample(*everywhere.build(), ray), 5 * std::exp(-0.5 * distance), 1e-5);
+  }
+}
+
+TEST(Media, ThatEmitGiveTheirReach) {
+  SceneMaker maker = white_sky();
+  const MediumId flame = test::add(maker, {.absorption = {0, 1, 0}, .emission = {0, 3, 0}});
+  test::fill_sphere(maker, {0, 0, 0}, 1, flame);
+  const Ray ray{.origin = {-9, 0, 0}, .direction = {1, 0, 0}};
+  const double passing = std::exp(-2.0);
+  EXPECT_NEAR(one_sample(*maker.build(), ray), passing + 3 * (1 - passing), 1e-5);
+}
+
+/// The integral over [0, inf) of f, by the substitution s = x / (1 - x) and Simpson's rule.
+double integral(const std::function<double(double)>& f) {
+  constexpr int kSteps = 200000;
+  double sum = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const auto at = [&](double x) { return x >= 1 ? 0 : f(x / (1 - x)) / ((1 - x) * (1 - x)); };
+    const double h = 1.0 / kSteps;
+    sum += h / 6 * (at(i * h) + 4 * at((i + 0.5) * h) + at((i + 1) * h));
+  }
+  return sum;
+}
+
+/// A ray that passes a small lamp at distance `aside`, `ahead` of its origin, in endless fog.
+void expect_single_scattering(const Medium& fog, double ahead, double aside, double error,
+                              std::uint64_t samples = 1024) {
+  constexpr double kRadius = 1e-6;  // less than the standard error of any length
+  constexpr float kRadiance = 1e12f;
+  SceneMaker maker;
+  maker.sphere({ahead, aside, 0}, kRadius, maker.lamp(kRadiance));
+  test::fog(maker, fog);
+  const double intensity = double{kRadiance} * kPi * kRadius * kRadius;
+  const double sigma = double{fog.absorption.g} + fog.scattering.g;
+  const double g = fog.g;
+  const double expected = integral([&](double s) {
+    const double along = ahead - s;
+    const double r2 = along * along + aside * aside;
+    const double r = std::sqrt(r2);
+    const double cosine = along / r;
+    const double p = (1 - g * g) / (4 * kPi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
+    return fog.scattering.g * p * std::exp(-sigma * (s + r)) * intensity / r2;
+  });
+  const Ray ray{.origin = {0, 0, 0}, .direction = {1, 0, 0}};
+  expect_value(test::radiance_along(*maker.build(), ray, {.max_depth = 1}, samples), expected,
+               error);
+}
+
+TEST(Media, ScatterOnceAsTheQuadratureSays) {
+  expect_single_scattering(medium(0.1f, 0.4f), 2, 1, 1e-3);
+  expect_single_scattering(medium(0.3f, 1, 0.7), 1, 0.5, 1e-3);
+  expect_single_scattering(medium(0, 0.05f, -0.5), 3, 0.05, 1e-3);
+  expect_single_scattering(medium(0.2f, 3), -0.4, 0.3, 1e-3);
+}
+
+/// The radiance that a half-space sends straight up under a white sky.
+void expect_half_space(float albedo, float density, double expected, double error,
+                       std::uint64_t samples) {
+  SceneMaker maker = white_sky();
+  const double far = 4000 / density;
+  test::fill_box(maker, {-far, -far, -far}, {far, 0, far},
+                 test::add(maker, medium((1 - albedo) * density, albedo * density)));
+  const Ray down{.origin = {0, 1 / density, 0}, .direction = {0, -1, 0}};
+  SCOPED_TRACE(albedo);
+  expect_value(test::radiance_along(*maker.build(), down, {.max_depth = 1000}, samples), expected,
+               error);
+}
+
+/// Chandrasekhar, "Radiative Transfer": R = 1 - H(mu) sqrt(1 - albedo). The errors are what a
+/// second of samples gives: who meets the sky and who does not is left to chance.
+TEST(Media, HalfSpaceReflectsAsItsHFunctionSays) {
+  expect_half_space(0.5f, 1, 0.11522588, 4e-3, 4096);
+  expect_half_space(0.8f, 1, 0.28525450, 4e-3, 4096);
+  expect_half_space(0.9f, 1, 0.41494748, 4e-3, 4096);
+  expect_half_space(0.99f, 1, 0.75272072, 2.5e-3, 2048);
+}
+
+/// V3: very dense, measured in units of the scene: the same, and no path goes on for ever.
+TEST(Media, HalfSpaceIsTheSameHoweverDense) {
+  for (const float density : {1e6f, 1e10f}) {
+    expect_half_space(0.8f, density, 0.28525450, 8e-3, 1024);
+  }
+}
+
+/// V3, V11: a ball of a size that is enormous in free paths ends, for its depth is counted.
+TEST(Media, OpaqueBallEndsByItsDepth) {
+  SceneMaker maker = white_sky();
+  test::fill_sphere(maker, {0, 0, 0}, 1, test::add(maker, medium(0, 1e12f)));
+  const auto scene = maker.build();
+  const Ray ray{.origin = {-2, 0, 0}, .direction = {1, 0, 0}};
+  double last = 0;
+  for (const std::uint32_t depth : {1u, 8u, 64u, 512u}) {
+    const Moments seen = test::radiance_along(*scene, ray, {.max_depth = depth}, 256);
+    EXPECT_GT(seen.mean(), last);
+    EXPECT_LE(seen.mean(), 1 + 4 * seen.standard_error());
+    last = seen.mean();
+  }
+  EXPECT_GT(last, 0.9);
+}
+
+/// Without absorption nothing of a closed shape is seen under a white sky, not even as noise.
+TEST(Media, WithoutLossAreInvisibleInAWhiteSky) {
+  for (const double g : {0.0, 0.8, -0.5}) {
+    SceneMaker ball = white_sky();
+    test::fill_sphere(ball, {0, 0, 0}, 1, test::add(ball, medium(0, 3, g)));
+    const Ray ray{.origin = {-2, 0.3, 0}, .direction = {1, 0, 0}};
+    const Moments seen = test::radiance_along(*ball.build(), ray, {.max_depth = 1000}, 256, 8);
+    EXPECT_NEAR(seen.mean(), 1, 1e-5);
+    EXPECT_LE(seen.standard_error(), 1e-5);
+  }
+  // O8: a slab thinner than any fixed step.
+  SceneMaker thin = white_sky();
+  test::fill_box(thin, {-9, 0, -9}, {9, 1e-5, 9}, test::add(thin, medium(0, 1e5f)));
+  const Ray down{.origin = {0, 4, 0}, .direction = normalize({0.3, -1, 0.1})};
+  expect_value(test::radiance_along(*thin.build(), down, {.max_depth = 1000}, 256, 8), 1, 1e-5);
+}
+
+/// O8: the same slab loses what its thickness says.
+TEST(Media, ThinSlabIsNotSteppedOver) {
+  SceneMaker maker = white_sky();
+  test::fill_box(maker, {-9, 0, -9}, {9, 1e-5, 9}, test::add(maker, medium(1e5f, 0)));
+  const Ray down{.origin = {0, 4, 0}, .direction = {0, -1, 0}};
+  EXPECT_NEAR(one_sample(*maker.build(), down), std::exp(-1.0), 1e-6);
+}
+
+/// V9: a pane whose two faces lie in the boundary of an absorbing medium, exactly.
+TEST(Media, InGlassFadeBetweenItsReflections) {
+  SceneMaker maker = white_sky();
+  const MaterialId glass = maker.glass(1.5);
+  maker.quad({-9, 1, -9}, {0, 0, 18}, {18, 0, 0}, glass);
+  maker.quad({-9, 0, -9}, {18, 0, 0}, {0, 0, 18}, glass);
+  test::fill_box(maker, {-9, 0, -9}, {9, 1, 9}, test::add(maker, medium(0.6f, 0)));
+  const double f = 0.04;
+  const double t = std::exp(-0.6);
+  const double through = (1 - f) * (1 - f) * t / (1 - f * f * t * t);
+  const double back = f + f * (1 - f) * (1 - f) * t * t / (1 - f * f * t * t);
+  const Ray up{.origin = {0.2, -3, 0.1}, .direction = {0, 1, 0}};
+  expect_value(test::radiance_along(*maker.build(), up, {.max_depth = 1000}, 4096), through + back,
+               1e-3);
+}
+
+/// V9: a glass ball that is filled, seen through its middle.
+TEST(Media, InAGlassBallFade) {
+  SceneMaker maker = white_sky();
+  maker.sphere({0, 0, 0}, 1, maker.glass(1.5));
+  test::fill_sphere(maker, {0, 0, 0}, 1, test::add(maker, medium(0.3f, 0)));
+  const double f = 0.04;
+  const double t = std::exp(-0.6);
+  const double through = (1 - f) * (1 - f) * t / (1 - f * t);
+  const Ray ray{.origin = {-3, 0, 0}, .direction = {1, 0, 0}};
+  expect_value(test::radiance_along(*maker.build(), ray, {.max_depth = 1000}, 4096), f + through,
+               1e-3);
+}
+
+/// A room with a lamp, a floor and two smokes, one inside the other, coloured and not isotropic,
+/// and fog around.
+std::shared_ptr<const Scene> smoky_room(bool with_fog) {
+  SceneMaker maker;
+  maker.quad({-4, 0, -4}, {0, 0, 8}, {8, 0, 0}, maker.diffuse(0.6f));
+  maker.quad({-0.5, 3, -0.5}, {1, 0, 0}, {0, 0, 1}, maker.lamp(8));
+  maker.sphere({1.2, 1, 0.4}, 0.4, maker.lamp(3));
+  if (with_fog) {
+    test::fog(maker, {.absorption = {0.05f, 0.02f, 0}, .scattering = {0.1f, 0.15f, 0.3f}});
+  }
+  const MediumId outer =
+      test::add(maker, {.absorption = {0, 0.3f, 1}, .scattering = {0.2f, 0.7f, 3}, .g = 0.5});
+  const MediumId inner = test::add(maker, medium(0.5f, 2, -0.3));
+  test::fill_box(maker, {-1.5, 0, -1}, {1.5, 1.5, 1}, outer);
+  test::fill_sphere(maker, {0, 1, 0}, 0.6, inner);
+  return maker.build();
+}
+
+TEST(MediaTechniques, AskingLightsFollowingDirectionsAndBothHaveTheSameMean) {
+  for (const bool with_fog : {false, true}) {
+    const auto scene = smoky_room(with_fog);
+    for (const Vec3& target : {Vec3{0, 1, 0}, Vec3{-1.2, 0.2, 0.5}, Vec3{0.7, 1.6, 0}}) {
+      const Vec3 eye{0.3, 1.4, 3.5};
+      const Ray ray{.origin = eye, .direction = normalize(target - eye)};
+      const auto mean = [&](Technique technique) {
+        return test::radiance_along(*scene, ray, {.max_depth = 4, .technique = technique}, 1024);
+      };
+      const Moments both = mean(Technique::kBoth);
+      EXPECT_LE(both.standard_error(), 8e-3 * both.mean());
+      for (const Technique technique : {Technique::kLightsOnly, Technique::kScatteringOnly}) {
+        const Moments single = mean(technique);
+        const double error = std::hypot(single.standard_error(), both.standard_error());
+        EXPECT_LE(std::abs(single.mean() - both.mean()), 4 * error)
+            << "both " << both.mean() << ", one " << single.mean() << " +- " << error;
+        EXPECT_LE(single.standard_error(), 0.08 * both.mean());
+      }
+    }
+  }
+}
+
+TEST(MediaTechniques, RouletteKeepsTheMean) {
+  const auto scene = smoky_room(true);
+  const Ray ray{.origin = {0.3, 1.4, 3.5}, .direction = normalize({-0.3, -0.4, -3.5})};
+  const Moments with = test::radiance_along(*scene, ray, {.max_depth = 20}, 512);
+  const Moments without =
+      test::radiance_along(*scene, ray, {.max_depth = 20, .russian_roulette = false}, 512);
+  const double error = std::hypot(with.standard_error(), without.standard_error());
+  EXPECT_LE(std::abs(with.mean() - without.mean()), 4 * error);
+  EXPECT_LE(error, 1e-2 * with.mean());
+}
+
+/// V8: a lamp that the ray meets in its middle.
+TEST(MediaTechniques, AgreeOnARayThroughTheMiddleOfALamp) {
+  SceneMaker maker;
+  maker.sphere({3, 0, 0}, 0.1, maker.lamp(50));
+  test::fog(maker, medium(0.05f, 0.2f));
+  const auto scene = maker.build();
+  const Ray ray{.origin = {0, 0, 0}, .direction = {1, 0, 0}};
+  const auto mean = [&](Technique technique) {
+    return test::radiance_along(*scene, ray, {.max_depth = 1, .technique = technique}, 4096);
+  };
+  const Moments both = mean(Technique::kBoth);
+  const Moments asked = mean(Technique::kLightsOnly);
+  EXPECT_LE(both.standard_error(), 1e-3 * both.mean());
+  EXPECT_LE(std::abs(both.mean() - asked.mean()),
+            4 * std::hypot(both.standard_error(), asked.standard_error()));
+}
+
+}  // namespace
+}  // namespace bandsaw

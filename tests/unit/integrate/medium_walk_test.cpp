@@ -1,0 +1,183 @@
+// Which medium a ray is in, and where: against what the shapes themselves contain.
+
+#include "renderlib/integrate/medium_walk.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "renderlib/sampling/warp.h"
+#include "tests/support/media.h"
+#include "tests/support/random.h"
+
+namespace bandsaw {
+namespace {
+
+using test::SceneMaker;
+
+/// The medium at a point; -1 for none.
+using Inside = std::function<int(const Vec3&)>;
+
+/// Stretches in order, never empty, and at every point of the ray in the medium that is there.
+/// Points nearer to a boundary than rounding are left to either side.
+void expect_walk(const Scene& scene, const Ray& ray, double length, const Inside& inside) {
+  std::uint64_t rays = 0;
+  MediumWalk walk(scene, ray, length, rays);
+  std::vector<Stretch> stretches;
+  while (const auto stretch = walk.next()) {
+    ASSERT_LT(stretch->begin, stretch->end);
+    ASSERT_GE(stretch->begin, stretches.empty() ? 0 : stretches.back().end);
+    ASSERT_LE(stretch->end, length);
+    stretches.push_back(*stretch);
+  }
+  constexpr int kPoints = 400;
+  const double far = std::min(length, 30.0);
+  for (int i = 0; i < kPoints; ++i) {
+    const double t = far * (i + 0.5) / kPoints;
+    const Vec3 at = ray.origin + ray.direction * t;
+    const int expected = inside(at);
+    if (inside(at + ray.direction * 1e-9) != expected ||
+        inside(at - ray.direction * 1e-9) != expected) {
+      continue;
+    }
+    int found = -1;
+    for (const Stretch& stretch : stretches) {
+      if (t >= stretch.begin && t < stretch.end) {
+        found = static_cast<int>(stretch.medium - scene.media().media.data());
+      }
+    }
+    ASSERT_EQ(found, expected) << t;
+  }
+}
+
+Ray random_ray(test::Random& random, double spread) {
+  const auto number = [&] { return random.uniform(-spread, spread); };
+  const double x = number();
+  const double y = number();
+  const double z = number();
+  const double u = random.uniform();
+  return {.origin = {x, y, z}, .direction = sample_sphere(u, random.uniform())};
+}
+
+/// V6, V7: overlapping, nested and disjoint balls of five media; rays begin anywhere.
+TEST(MediumWalk, OfOverlappingBallsTheMediumNamedLastIsThere) {
+  test::Random random(1);
+  for (int round = 0; round < 40; ++round) {
+    SceneMaker maker;
+    for (int i = 0; i < 5; ++i) {
+      test::add(maker, test::medium(1, 1));
+    }
+    const bool with_fog = round % 2 == 1;
+    if (with_fog) {
+      maker.scene.media.fog = MediumId{2};
+    }
+    std::vector<Sphere>& balls = maker.scene.media.boundaries.spheres;
+    for (int i = 0; i < 12; ++i) {
+      const Ray place = random_ray(random, 3);
+      balls.push_back({place.origin, random.uniform(0.2, 2.5), MaterialId{random.below(5)}});
+    }
+    const auto scene = maker.build();
+    const Inside inside = [&](const Vec3& p) {
+      int top = -1;
+      for (const Sphere& ball : balls) {
+        if (length(p - ball.center) < ball.radius) {
+          top = std::max(top, static_cast<int>(ball.material));
+        }
+      }
+      return top < 0 && with_fog ? 2 : top;
+    };
+    for (int i = 0; i < 50; ++i) {
+      expect_walk(*scene, random_ray(random, 4), i % 2 == 0 ? kInfinity : 3, inside);
+    }
+  }
+}
+
+/// A prism whose base is the letter L: the unit square without its quarter x > 0.5, y > 0.5.
+Mesh corner_prism() {
+  Mesh mesh;
+  const std::array<std::array<float, 2>, 6> base = {
+      {{0, 0}, {1, 0}, {1, 0.5f}, {0.5f, 0.5f}, {0.5f, 1}, {0, 1}}};
+  for (const float z : {0.0f, 1.0f}) {
+    for (const auto& [x, y] : base) {
+      mesh.positions.push_back({x, y, z});
+    }
+  }
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    const std::uint32_t j = (i + 1) % 6;
+    mesh.triangles.push_back({i, j, j + 6});
+    mesh.triangles.push_back({i, j + 6, i + 6});
+  }
+  for (const auto& [a, b, c] :
+       {std::array<std::uint32_t, 3>{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}}) {
+    mesh.triangles.push_back({a, c, b});
+    mesh.triangles.push_back({a + 6, b + 6, c + 6});
+  }
+  return mesh;
+}
+
+/// V6: a ray may leave and enter a mesh that is not convex several times; boxes and placements that
+/// mirror are closed shapes like others.
+TEST(MediumWalk, OfMeshesFollowsTheirInside) {
+  SceneMaker maker;
+  const MediumId smoke = test::add(maker, test::medium(1, 1));
+  const MediumId dust = test::add(maker, test::medium(1, 1));
+  const Transform placed =
+      translation({-1, 0.5, -1}) * rotation({1, 2, 3}, 50) * scaling({-2, 3, 2});
+  test::fill_mesh(maker, corner_prism(), placed, smoke);
+  test::fill_box(maker, {-0.5, -0.5, -0.5}, {2, 0.7, 0.9}, dust);
+  const auto scene = maker.build();
+  const Transform back = *inverse(placed);
+  const Inside inside = [&](const Vec3& p) {
+    const bool in_box = p.x > -0.5 && p.x < 2 && p.y > -0.5 && p.y < 0.7 && p.z > -0.5 && p.z < 0.9;
+    const Vec3 q = back.point(p);
+    const bool in_square = q.x > 0 && q.x < 1 && q.y > 0 && q.y < 1 && q.z > 0 && q.z < 1;
+    return in_box ? 1 : in_square && !(q.x > 0.5 && q.y > 0.5) ? 0 : -1;
+  };
+  test::Random random(2);
+  for (int i = 0; i < 3000; ++i) {
+    expect_walk(*scene, random_ray(random, 3), kInfinity, inside);
+  }
+}
+
+TEST(MediumWalk, AClearMediumKeepsOthersOut) {
+  SceneMaker maker;
+  test::fog(maker, test::medium(1, 0));
+  const MediumId air = test::add(maker, {});
+  test::fill_sphere(maker, {0, 0, 0}, 1, air);
+  const auto scene = maker.build();
+  std::uint64_t rays = 0;
+  const Ray ray{.origin = {-3, 0, 0}, .direction = {2, 0, 0}, .t_max = 3};
+  EXPECT_FLOAT_EQ(media_transmittance(*scene, ray, rays).g, std::exp(-4.0f));
+}
+
+/// More crossings than are kept on the first way along a ray.
+TEST(MediumWalk, OfManyBallsInARowSeesEach) {
+  SceneMaker maker;
+  const MediumId smoke = test::add(maker, test::medium(0.125f, 0));
+  for (int i = 0; i < 100; ++i) {
+    test::fill_sphere(maker, {3.0 * i, 0, 0}, 1, smoke);
+  }
+  const auto scene = maker.build();
+  std::uint64_t rays = 0;
+  const Ray ray{.origin = {-3, 0, 0}, .direction = {1, 0, 0}};
+  EXPECT_NEAR(std::log(media_transmittance(*scene, ray, rays).g), -100 * 2 * 0.125, 1e-4);
+  const Ray inside{.origin = {150, 0, 0}, .direction = {-1, 0, 0}, .t_max = 10};
+  EXPECT_FLOAT_EQ(media_transmittance(*scene, inside, rays).g, std::exp(-7 * 0.125f));
+}
+
+/// Two shapes of one medium that overlap are one: it is not twice as dense there.
+TEST(MediumWalk, OverlapOfOneMediumIsNotDenser) {
+  SceneMaker maker;
+  const MediumId smoke = test::add(maker, test::medium(1, 0));
+  test::fill_sphere(maker, {0, 0, 0}, 1, smoke);
+  test::fill_sphere(maker, {1, 0, 0}, 1, smoke);
+  test::fill_sphere(maker, {1, 0, 0}, 1, smoke);
+  const auto scene = maker.build();
+  std::uint64_t rays = 0;
+  const Ray ray{.origin = {-9, 0, 0}, .direction = {1, 0, 0}};
+  EXPECT_FLOAT_EQ(media_transmittance(*scene, ray, rays).g, std::exp(-3.0f));
+}
+
+}  // namespace
+}  // namespace bandsaw

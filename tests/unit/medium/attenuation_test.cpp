@@ -1,0 +1,58 @@
+#include "renderlib/medium/attenuation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "renderlib/math/constants.h"
+
+namespace bandsaw {
+namespace {
+
+/// V1: nothing is lost of small numbers, and where there is no extinction all light passes.
+TEST(Attenuation, OfNothingIsExactlyOneAndOfLittleIsExact) {
+  EXPECT_EQ(transmittance(0, 1), 1);
+  EXPECT_EQ(transmittance(0, kInfinity), 1);
+  EXPECT_EQ(reach(0, 7), 7);
+  EXPECT_EQ(reach(0, kInfinity), kInfinity);
+  for (const double sigma : {1e-30, 1e-15, 1e-8, 1e-3, 1.0, 30.0}) {
+    for (const double length : {1e-5, 1.0, 100.0}) {
+      const double depth = sigma * length;
+      EXPECT_NEAR(transmittance(sigma, length), std::exp(-depth), 1e-12 * std::exp(-depth));
+      const double expected = -std::expm1(-depth) / sigma;
+      EXPECT_NEAR(reach(sigma, length), expected, 1e-12 * expected);
+    }
+  }
+}
+
+/// V3: what is opaque is opaque, without overflow on the way.
+TEST(Attenuation, OfVeryDenseMediaIsZero) {
+  for (const double sigma : {1e6, 1e12, 2e12}) {
+    EXPECT_EQ(transmittance(sigma, kInfinity), 0);
+    EXPECT_EQ(transmittance(sigma, 1e30), 0);
+    EXPECT_EQ(reach(sigma, kInfinity), 1 / sigma);
+  }
+  EXPECT_EQ(transmittance(1e-30, kInfinity), 0);
+}
+
+TEST(Attenuation, GoesByChannel) {
+  const Medium medium{.absorption = {0.5f, 0, 1}, .scattering = {0.5f, 0, 2}};
+  const Rgb share = transmittance(medium, 2);
+  EXPECT_FLOAT_EQ(share.r, std::exp(-2.0f));
+  EXPECT_EQ(share.g, 1);
+  EXPECT_FLOAT_EQ(share.b, std::exp(-6.0f));
+}
+
+TEST(Attenuation, OwnRadianceIsEmissionOverTheReach) {
+  const Medium medium{.absorption = {0.5f, 0, 2}, .emission = {1, 3, 4}};
+  const Rgb along = own_radiance(medium, 2);
+  EXPECT_FLOAT_EQ(along.r, (1 - std::exp(-1.0f)) / 0.5f);
+  EXPECT_EQ(along.g, 6);
+  EXPECT_FLOAT_EQ(along.b, 2 * (1 - std::exp(-4.0f)));
+  EXPECT_FLOAT_EQ(own_radiance({.absorption = {2, 2, 2}, .emission = {3, 3, 3}}, kInfinity).g,
+                  1.5f);
+  EXPECT_TRUE(is_black(own_radiance({}, kInfinity)));
+}
+
+}  // namespace
+}  // namespace bandsaw

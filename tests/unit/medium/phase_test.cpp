@@ -1,0 +1,62 @@
+#include "renderlib/medium/phase.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "renderlib/medium/medium.h"
+#include "tests/support/direction_test.h"
+#include "tests/support/random.h"
+#include "tests/support/statistics.h"
+
+namespace bandsaw {
+namespace {
+
+TEST(Phase, IsTheDensityOfItsSamples) {
+  const std::vector<double> gs = {-0.9, -0.3, -1e-5, 0, 1e-5, 0.3, 0.9};
+  const Vec3 way = normalize({0.3, -0.8, 0.4});
+  for (std::size_t i = 0; i < gs.size(); ++i) {
+    SCOPED_TRACE(gs[i]);
+    test::expect_samples_match_density(
+        [&](double u, double v) { return sample_phase(gs[i], way, u, v); },
+        [&](const Vec3& d) { return phase(gs[i], dot(way, d)); }, 20 + i, gs.size());
+  }
+}
+
+/// V5: up to the largest |g| everything is finite and the mean cosine is g.
+TEST(Phase, MeanCosineIsG) {
+  const Vec3 way = normalize({-0.2, 0.1, -0.9});
+  for (const double g : {-kMostG, -0.9, -0.5, 0.0, 1e-4, 0.5, 0.9, kMostG}) {
+    // The midpoints of equal parts of [0, 1): a quadrature of the inverse, not an estimate.
+    constexpr int kParts = 20000;
+    double sum = 0;
+    for (int i = 0; i < kParts; ++i) {
+      const Vec3 d = sample_phase(g, way, (i + 0.5) / kParts, 0.3);
+      ASSERT_NEAR(length(d), 1, 1e-14);
+      ASSERT_GT(phase(g, dot(way, d)), 0);
+      sum += dot(way, d);
+    }
+    EXPECT_NEAR(sum / kParts, g, 1e-3) << g;
+  }
+}
+
+/// V4: near 0 the cosine is right to the last digits; u = 0 and the largest u give the two poles.
+TEST(Phase, HasNoRoughPlaceNearIsotropic) {
+  const Vec3 up{0, 0, 1};
+  test::Random random(4);
+  for (const double g : {1e-2, -1e-3, 1e-4, -1e-5, 1e-12, 0.0}) {
+    for (int i = 0; i < 2000; ++i) {
+      const double u = random.uniform();
+      const double cosine = sample_phase(g, up, u, 0.1).z;
+      // The distribution of the cosine, by Legendre polynomials up to g^2.
+      const double c = cosine;
+      const double series = 0.5 * (1 + c) + (0.75 * g + 1.25 * g * g * c) * (c * c - 1);
+      EXPECT_NEAR(series, u, 2 * std::abs(g * g * g) + 1e-14) << g;
+    }
+    EXPECT_NEAR(sample_phase(g, up, 0, 0.1).z, -1, 1e-15);
+    EXPECT_NEAR(sample_phase(g, up, 1 - 0x1p-32, 0.1).z, 1, 1e-8);
+  }
+}
+
+}  // namespace
+}  // namespace bandsaw
