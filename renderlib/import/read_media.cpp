@@ -52,17 +52,6 @@ absl::StatusOr<Medium> read_medium(const Field& in, const scene::Medium& from) {
   return medium;
 }
 
-absl::Status check_fog(const Field& root, const Medium& fog) {
-  const Rgb stopped = fog.absorption + fog.scattering;
-  if ((fog.emission.r > 0 && stopped.r == 0) || (fog.emission.g > 0 && stopped.g == 0) ||
-      (fog.emission.b > 0 && stopped.b == 0)) {
-    return root.error("fog",
-                      "must absorb or scatter where it emits: it has no end, and would be "
-                      "infinitely bright");
-  }
-  return absl::OkStatus();
-}
-
 /// Six times the volume that the mesh encloses; negative where its normals point inwards.
 double signed_volume(const Mesh& mesh) {
   const auto corner = [&](std::uint32_t index) {
@@ -97,7 +86,11 @@ absl::Status read_media(const Field& root, const scene::Scene& from, SceneDraft&
   }
   if (!from.fog().empty()) {
     ASSIGN_OR_RETURN(media.fog, find_medium(root, "fog", from.fog(), draft));
-    return check_fog(root, media.media[index_of(*media.fog)]);
+    if (is_endless_glow(media.media[index_of(*media.fog)])) {
+      return root.error("fog",
+                        "must absorb or scatter where it emits: it has no end, and would be "
+                        "infinitely bright");
+    }
   }
   return absl::OkStatus();
 }

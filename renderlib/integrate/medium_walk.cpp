@@ -42,7 +42,9 @@ MediumWalk::MediumWalk(const Scene& scene, const Ray& ray, double length, std::u
   // starts on is no boundary by its number.
   ray_.t_max = kInfinity;
   ray_.from = kNoPrimitive;
-  find_around_origin();
+  if (scene.media().has_boundaries()) {
+    find_around_origin();
+  }
 }
 
 std::optional<MediumWalk::Crossing> MediumWalk::crossing_after(const Hit& after) {

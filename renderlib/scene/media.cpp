@@ -6,7 +6,6 @@
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/geometry/closed.h"
-#include "renderlib/medium/attenuation.h"
 #include "renderlib/scene/validate.h"
 
 namespace bandsaw {
@@ -30,26 +29,21 @@ absl::Status check_medium(const std::string& field, const Medium& medium) {
   RETURN_IF_ERROR(check_rates(field + ".scattering", medium.scattering));
   RETURN_IF_ERROR(check_rates(field + ".emission", medium.emission));
   if (!(std::abs(medium.g) <= kMostG)) {
-    return invalid(field + ".g", absl::StrCat("must be in [", -kMostG, ", ", kMostG, "], is ",
-                                              medium.g));
+    return invalid(field + ".g",
+                   absl::StrCat("must be in [", -kMostG, ", ", kMostG, "], is ", medium.g));
   }
   return absl::OkStatus();
 }
 
 absl::Status check_fog(const Media& media) {
   if (index_of(*media.fog) >= media.media.size()) {
-    return invalid("fog", absl::StrCat("must be below ", media.media.size(), ", is ",
-                                       index_of(*media.fog)));
+    return invalid(
+        "fog", absl::StrCat("must be below ", media.media.size(), ", is ", index_of(*media.fog)));
   }
-  const Medium& fog = media.media[index_of(*media.fog)];
-  const auto endless = [](float emission, float absorption, float scattering) {
-    return emission > 0 && extinction(absorption, scattering) == 0;
-  };
-  if (endless(fog.emission.r, fog.absorption.r, fog.scattering.r) ||
-      endless(fog.emission.g, fog.absorption.g, fog.scattering.g) ||
-      endless(fog.emission.b, fog.absorption.b, fog.scattering.b)) {
-    return invalid("fog", "must absorb or scatter where it emits: it has no end, and would be "
-                          "infinitely bright");
+  if (is_endless_glow(media.media[index_of(*media.fog)])) {
+    return invalid("fog",
+                   "must absorb or scatter where it emits: it has no end, and would be "
+                   "infinitely bright");
   }
   return absl::OkStatus();
 }
@@ -58,17 +52,17 @@ absl::Status check_filling(const std::string& field, MaterialId medium, const Me
   if (index_of(medium) < media.media.size()) {
     return absl::OkStatus();
   }
-  return invalid(field, absl::StrCat("must be below ", media.media.size(), ", is ",
-                                     index_of(medium)));
+  return invalid(field,
+                 absl::StrCat("must be below ", media.media.size(), ", is ", index_of(medium)));
 }
 
 absl::Status check_mesh(const std::string& field, const Mesh& mesh) {
   for (const std::array<std::uint32_t, 3>& triangle : mesh.triangles) {
     for (const std::uint32_t corner : triangle) {
       if (corner >= mesh.positions.size()) {
-        return invalid(field + ".triangles", absl::StrCat("must be indices below ",
-                                                          mesh.positions.size(), ", one is ",
-                                                          corner));
+        return invalid(
+            field + ".triangles",
+            absl::StrCat("must be indices below ", mesh.positions.size(), ", one is ", corner));
       }
     }
   }
@@ -96,8 +90,8 @@ absl::Status check_boundaries(const Media& media) {
   for (std::size_t i = 0; i < geometry.spheres.size(); ++i) {
     const std::string field = absl::StrCat("boundaries.spheres[", i, "]");
     if (!is_placed_sphere(geometry.spheres[i])) {
-      return invalid(field, absl::StrCat("must have a radius > 0 and lie within +-",
-                                         kMaxCoordinate));
+      return invalid(field,
+                     absl::StrCat("must have a radius > 0 and lie within +-", kMaxCoordinate));
     }
     RETURN_IF_ERROR(check_filling(field + ".medium", geometry.spheres[i].material, media));
   }
@@ -124,8 +118,8 @@ absl::Status check_boundaries(const Media& media) {
 Mesh unit_cube() {
   Mesh cube;
   for (int i = 0; i < 8; ++i) {
-    cube.positions.push_back({static_cast<float>(i & 1), static_cast<float>(i >> 1 & 1),
-                              static_cast<float>(i >> 2)});
+    cube.positions.push_back(
+        {static_cast<float>(i & 1), static_cast<float>(i >> 1 & 1), static_cast<float>(i >> 2)});
   }
   cube.triangles = {{0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}, {0, 1, 5}, {0, 5, 4},
                     {2, 6, 7}, {2, 7, 3}, {0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}};

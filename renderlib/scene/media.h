@@ -22,7 +22,11 @@ struct Media {
   /// the medium inside, an index into `media`. What is seen of them lies in the scene's own
   /// geometry as well, or nothing is: then the boundary is invisible.
   Geometry boundaries;
-  std::optional<MediumId> fog;  ///< without end; its emission MUST fade in every channel
+  std::optional<MediumId> fog;  ///< without end; MUST NOT be is_endless_glow
+
+  bool has_boundaries() const {
+    return !boundaries.spheres.empty() || !boundaries.instances.empty();
+  }
 };
 
 /// The medium inside of a boundary.

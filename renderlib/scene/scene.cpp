@@ -49,8 +49,7 @@ Needs needs_of(const SceneDescription& scene, const Lights& lights) {
   needs.uv_directions = any(has_normal_map);
   needs.motion = moves(scene.geometry);
   needs.instances = !scene.geometry.instances.empty();
-  needs.media = scene.media.fog || !scene.media.boundaries.spheres.empty() ||
-                !scene.media.boundaries.instances.empty();
+  needs.media = scene.media.fog || scene.media.has_boundaries();
   return needs;
 }
 

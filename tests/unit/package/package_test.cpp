@@ -51,6 +51,11 @@ TEST(Package, ComesBackBitForBit) {
   EXPECT_EQ(std::get<NoiseTexture>(decoded->textures[6]).turbulence_scale, 1.5);
   EXPECT_EQ(std::get<RampTexture>(decoded->textures[7]).stops[1].at, 0.3);
 
+  EXPECT_EQ(decoded->media.media, scene.media.media);
+  EXPECT_EQ(decoded->media.fog, scene.media.fog);
+  EXPECT_EQ(decoded->media.boundaries.instances[0].to_world,
+            scene.media.boundaries.instances[0].to_world);
+
   // Whatever the lines above leave out: the same scene gives the same blobs and the same bytes.
   BlobMap again;
   EXPECT_EQ(encode_package(*decoded, sample_info(), again), manifest);
@@ -314,6 +319,29 @@ const std::vector<Wrong> kWrong = {
     {"no_keys", [](auto& m) { m.mutable_frame(1)->clear_times(), m.mutable_frame(1)->clear_at(); },
      "frame[1].times: must be one at least"},
     {"shear", [](auto& m) { m.mutable_frame(1)->set_at(1, 0.5); }, "frame[1].at[0]: must be a scale"},
+    {"medium", [](auto& m) { m.mutable_medium(0)->set_g(1); },
+     "media[0].g: must be in [-0.999, 0.999], is 1"},
+    {"medium_list",
+     [](auto& m) { m.mutable_medium(1)->mutable_scattering()->mutable_rgb()->RemoveLast(); },
+     "medium[1].scattering.rgb: must have 3 numbers, has 2"},
+    {"medium_rate", [](auto& m) { m.mutable_medium(1)->mutable_absorption()->set_rgb(2, -1); },
+     "media[1].absorption: must be in [0, 1e+12], is -1"},
+    {"fog", [](auto& m) { m.set_fog(2); }, "fog: must be below 2, is 2"},
+    {"glow", [](auto& m) { m.mutable_medium(1)->mutable_emission()->set_rgb(0, 1); },
+     "fog: must absorb or scatter where it emits"},
+    {"filling", [](auto& m) { m.mutable_boundaries()->mutable_instance(0)->set_material(2); },
+     "boundaries.instances[0].medium: must be below 2, is 2"},
+    {"boundary_mesh", [](auto& m) { m.mutable_boundaries()->mutable_instance(0)->set_mesh(1); },
+     "boundaries.instances[0].mesh: must be below 1, is 1"},
+    {"open_boundary",
+     [](auto& m) {
+       *m.mutable_boundaries()->mutable_mesh(0)->mutable_positions() = m.mesh(0).positions();
+       *m.mutable_boundaries()->mutable_mesh(0)->mutable_indices() = m.mesh(0).indices();
+     },
+     "boundaries.meshes[0]: must be closed, has 4 open edges"},
+    {"boundary_blob",
+     [](auto& m) { m.mutable_boundaries()->mutable_spheres()->mutable_radii()->set_size(7); },
+     "boundaries.spheres.radii.size: must be a multiple of 8"},
 };
 
 INSTANTIATE_TEST_SUITE_P(All, SpoiltManifest, ::testing::ValuesIn(kWrong),

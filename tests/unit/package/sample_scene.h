@@ -118,6 +118,13 @@ inline SceneDescription sample_scene() {
       {MeshId{0}, MaterialId{0}, translation({1e9, 0, 1.0 / 3})},
       {MeshId{1}, MaterialId{1}, rotation({1, 2, 3}, 40) * scaling({1, -2, 3})}};
   add_motion(scene);
+  scene.media.media = {
+      {.absorption = {0.1f, 0, 3}, .scattering = {1, 2, 0}, .emission = {0, 0, 0.5f}, .g = -0.25},
+      {}};
+  scene.media.boundaries.spheres = {{{1, 1, 1.0 / 7}, 0.5, MaterialId{1}}};
+  scene.media.boundaries.meshes = {unit_cube()};
+  scene.media.boundaries.instances = {{MeshId{0}, MaterialId{0}, translation({1.0 / 3, 0, 0})}};
+  scene.media.fog = MediumId{1};
   return scene;
 }
 

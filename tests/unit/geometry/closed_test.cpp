@@ -1,0 +1,51 @@
+#include "renderlib/geometry/closed.h"
+
+#include <gtest/gtest.h>
+
+#include "renderlib/scene/media.h"
+#include "tests/support/scenes.h"
+
+namespace bandsaw {
+namespace {
+
+TEST(Closed, ACubeIsAndStaysSoWithSplitCorners) {
+  Mesh cube = unit_cube();
+  EXPECT_EQ(open_edges(cube), 0u);
+  // Every triangle with corners of its own, as files have them; -0 is 0.
+  Mesh split;
+  for (auto& triangle : cube.triangles) {
+    for (std::uint32_t& corner : triangle) {
+      auto position = cube.positions[corner];
+      position[0] = position[0] == 0 && corner % 3 == 0 ? -0.0f : position[0];
+      split.positions.push_back(position);
+      corner = static_cast<std::uint32_t>(split.positions.size() - 1);
+    }
+  }
+  split.triangles = cube.triangles;
+  EXPECT_EQ(open_edges(split), 0u);
+}
+
+TEST(Closed, AHoleHasItsEdges) {
+  Mesh cube = unit_cube();
+  cube.triangles.pop_back();
+  EXPECT_EQ(open_edges(cube), 3u);
+  cube.triangles.pop_back();
+  EXPECT_EQ(open_edges(cube), 4u);
+  EXPECT_EQ(open_edges(test::grid(3)), 12u);
+}
+
+TEST(Closed, ATriangleThatIsTurnedOverIsNone) {
+  Mesh cube = unit_cube();
+  std::swap(cube.triangles[4][0], cube.triangles[4][1]);
+  EXPECT_EQ(open_edges(cube), 3u);
+}
+
+TEST(Closed, TrianglesWithoutAreaChangeNothing) {
+  Mesh cube = unit_cube();
+  cube.triangles.push_back({1, 1, 1});
+  cube.triangles.push_back({1, 2, 1});
+  EXPECT_EQ(open_edges(cube), 0u);
+}
+
+}  // namespace
+}  // namespace bandsaw
