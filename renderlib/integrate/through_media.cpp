@@ -33,11 +33,8 @@ struct Step {
 /// Some point of a light, as far as the stretch is concerned: only where to look for light more
 /// often depends on it. It MUST NOT depend on where the path goes on.
 std::optional<Vec3> pivot(const Step& step, double length) {
-  const Medium& m = step.medium;
-  const Rgb extinction = m.absorption + m.scattering;
-  const double mean = (double{extinction.r} + extinction.g + extinction.b) / 3;
   constexpr double kHalf = 0.693;  // ln 2: half of the light gets that far
-  const double distance = std::min(length / 2, kHalf / mean);
+  const double distance = std::min(length / 2, kHalf / mean_extinction(step.medium));
   const Sample4 at = step.numbers(1);
   const std::optional<LightSample> light = step.context.scene.lights().sample(
       {step.origin + step.way * distance, {}}, at[0], at[1], at[2]);
@@ -95,7 +92,7 @@ Passage through(const Step& step, double length, PathState& path) {
     return pass(step.flight.passing(), path);
   }
   const bool asks = step.context.asks_lights();
-  const AskedDistance asked(step.flight, step.origin, step.way, length,
+  const AskedDistance asked(step.flight, step.medium, step.origin, step.way, length,
                             asks ? pivot(step, length) : std::nullopt);
   const Sample4 at = step.numbers(0);
   if (asks) {
@@ -122,10 +119,13 @@ Passage through_media(const PathContext& context, double length, std::uint32_t d
   for (std::uint32_t number = 0; const std::optional<Stretch> stretch = walk.next(); ++number) {
     const double part = stretch->end - stretch->begin;
     const Flight flight(*stretch->medium, path.throughput, part);
-    const Step step{context,       depth,
-                    number,        *stretch->medium,
+    const Step step{context,
+                    depth,
+                    number,
+                    *stretch->medium,
                     ray.origin + ray.direction * stretch->begin,
-                    ray.direction, flight,
+                    ray.direction,
+                    flight,
                     depth < context.options.max_depth ? flight.chance() : 0};
     const Passage passage = through(step, part, path);
     if (passage != Passage::kThrough) {

@@ -3,10 +3,10 @@
 // What happens to a path between two surfaces, where there are media.
 //
 // In every stretch of medium a light is asked at one distance, and the path is scattered at another
-// one or passes. The distance for the light comes half from the light that is scattered
-// (medium/flight.h) and half from where a light seems to be (medium/equiangular.h), both by one
-// density; light that the path then finds by itself is weighed against it by the power heuristic
-// over distance and direction together.
+// one or passes. The distance for the light comes either from the light that is scattered
+// (medium/flight.h) or from where a light seems to be (medium/equiangular.h), both by one density
+// (asked_distance.h); light that the path then finds by itself is weighed against it by the power
+// heuristic over distance and direction together.
 
 #include "renderlib/integrate/path_state.h"
 

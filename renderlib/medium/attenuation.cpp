@@ -18,6 +18,11 @@ double optical_length(double sigma, double length) {
 
 }  // namespace
 
+double mean_extinction(const Medium& medium) {
+  const Rgb sum = medium.absorption + medium.scattering;
+  return (double{sum.r} + sum.g + sum.b) / 3;
+}
+
 double transmittance(double sigma, double length) {
   const double depth = optical_length(sigma, length);
   if (depth == 0) {

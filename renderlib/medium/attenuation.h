@@ -13,6 +13,9 @@ inline double extinction(float absorption, float scattering) {
   return double{absorption} + scattering;
 }
 
+/// Over the channels.
+double mean_extinction(const Medium& medium);
+
 /// The share of light that passes a length of extinction sigma; exactly 1 where there is none.
 double transmittance(double sigma, double length);
 

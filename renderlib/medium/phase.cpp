@@ -22,8 +22,8 @@ double sample_cosine(double g, double k) {
 
 double phase(double g, double cosine) {
   // (1 - g)^2 + 2 g (1 - cosine), so that nothing cancels near the peak.
-  const double base = g >= 0 ? (1 - g) * (1 - g) + 2 * g * (1 - cosine)
-                             : (1 + g) * (1 + g) - 2 * g * (1 + cosine);
+  const double base =
+      g >= 0 ? (1 - g) * (1 - g) + 2 * g * (1 - cosine) : (1 + g) * (1 + g) - 2 * g * (1 + cosine);
   return 0.25 * kInvPi * (1 - g) * (1 + g) / (base * std::sqrt(base));
 }
 

@@ -144,6 +144,21 @@ SceneDescription lit_from_outside() {
   return scene;
 }
 
+/// The same with media in a ball, in a cube and around everything.
+SceneDescription in_smoke() {
+  SceneDescription scene = every_feature();
+  Media& media = scene.media;
+  media.media = {{.absorption = {0.01f, 0.02f, 0}, .scattering = {0.05f, 0.02f, 0.1f}},
+                 {.scattering = {1, 2, 3}, .emission = {0.1f, 0, 0}, .g = 0.6},
+                 {.absorption = {3, 1, 0}, .scattering = {0, 1, 3}, .g = -0.3}};
+  media.fog = MediumId{0};
+  media.boundaries.spheres = {{{-1.2, 0.6, 1.0}, 0.6, filled_with(MediumId{1})}};
+  media.boundaries.meshes = {unit_cube()};
+  media.boundaries.instances = {
+      {MeshId{0}, filled_with(MediumId{2}), translation({-0.5, 0, -1}) * rotation({1, 1, 0}, 25)}};
+  return scene;
+}
+
 void add_render(Hash64& hash, const SceneDescription& description, const RenderSettings& settings) {
   Pool pool(1);
   const auto scene = Scene::build(description, pool);
@@ -168,6 +183,7 @@ std::uint64_t canary() {
   add_render(hash, through_a_lens(), {.width = 4, .height = 3, .max_depth = 3, .seed = 1});
   add_render(hash, flat_view(), {.width = 4, .height = 3, .max_depth = 3, .seed = 2});
   add_render(hash, lit_from_outside(), {.width = 6, .height = 4, .max_depth = 4, .seed = 4});
+  add_render(hash, in_smoke(), {.width = 6, .height = 4, .max_depth = 5, .seed = 4});
   for (const Integrator integrator : {Integrator::kDirect, Integrator::kNormals, Integrator::kDepth,
                                       Integrator::kAlbedo, Integrator::kAmbientOcclusion}) {
     add_render(hash, flat_view(),

@@ -1,0 +1,83 @@
+// Where lights are asked in a medium: what the mixture costs and gains, by quadrature.
+
+#include "renderlib/integrate/asked_distance.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "tests/support/media.h"
+
+namespace bandsaw {
+namespace {
+
+constexpr double kLength = 6;
+
+/// The integral over the stretch; steps are small where a lamp 3 ahead is near.
+double integral(double aside, const std::function<double(double)>& f) {
+  constexpr int kSteps = 20000;
+  const double low = std::atan(-3 / aside);
+  const double high = std::atan(3 / aside);
+  double sum = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double angle = low + (high - low) * (i + 0.5) / kSteps;
+    const double y = aside * std::tan(angle);
+    sum += f(3 + y) * (aside * aside + y * y) / aside * (high - low) / kSteps;
+  }
+  return sum;
+}
+
+struct Spread {
+  double flown;   ///< variance of one sample over the square of the mean
+  double angles;  ///< the same of equiangular distances
+  double both;    ///< the same of the mixture
+};
+
+/// Of the light of a small lamp, `aside` of the middle of a stretch.
+Spread spread(float sigma, double aside) {
+  const Medium smoke = test::medium(0, sigma);
+  const Flight flight(smoke, gray(1), kLength);
+  const Vec3 origin{};
+  const Vec3 way{1, 0, 0};
+  const Vec3 lamp{3, aside, 0};
+  const AskedDistance both(flight, smoke, origin, way, kLength, lamp);
+  const Equiangular angles(origin, way, kLength, lamp);
+  const auto light = [&](double s) {
+    const double r = std::hypot(3 - s, aside);
+    return flight.scattered(s).g * std::exp(-sigma * r) / (r * r);
+  };
+  const double mean = integral(aside, light);
+  const auto of = [&](const std::function<double(double)>& pdf) {
+    return integral(aside, [&](double s) { return light(s) * light(s) / pdf(s); }) / (mean * mean) -
+           1;
+  };
+  return {of([&](double s) { return flight.pdf(s); }), of([&](double s) { return angles.pdf(s); }),
+          of([&](double s) { return both.pdf(s); })};
+}
+
+TEST(AskedDistance, IsNeverFarFromTheBetterOfItsTwo) {
+  for (const float sigma : {0.01f, 0.1f, 1.0f, 10.0f}) {
+    for (const double aside : {2.0, 0.5, 0.05, 0.005}) {
+      const Spread found = spread(sigma, aside);
+      RecordProperty("sigma " + std::to_string(sigma) + " aside " + std::to_string(aside),
+                     std::to_string(found.flown) + " " + std::to_string(found.angles) + " " +
+                         std::to_string(found.both));
+      EXPECT_LE(found.both + 1, 2 * (std::min(found.flown, found.angles) + 1)) << sigma << aside;
+    }
+  }
+}
+
+/// The gains that the README of this folder states.
+TEST(AskedDistance, NearALampGainsMuch) {
+  const auto gain = [](float sigma, double aside) {
+    const Spread found = spread(sigma, aside);
+    return found.flown / found.both;
+  };
+  EXPECT_GT(gain(0.1f, 0.5), 30);
+  EXPECT_GT(gain(0.1f, 0.05), 100);
+  EXPECT_GT(gain(1, 0.05), 50);
+}
+
+}  // namespace
+}  // namespace bandsaw
