@@ -58,7 +58,7 @@ TEST(MediaIntegrators, DirectShowsLampsScatteredOnceAsPathsOfOneScatteringDo) {
     direct.add(value(*scene, Integrator::kDirect, pixel).g);
     once.add(path_radiance(*scene, kAhead, PixelSampler(2, pixel, 2), 0, {.max_depth = 1}, rays).g);
   }
-  EXPECT_GT(direct.mean(), 0.01);
+  EXPECT_GT(direct.mean(), 0.005);
   EXPECT_LE(std::abs(direct.mean() - once.mean()),
             4 * std::hypot(direct.standard_error(), once.standard_error()));
 }

@@ -338,7 +338,7 @@ const std::vector<Wrong> kWrong = {
        *m.mutable_boundaries()->mutable_mesh(0)->mutable_positions() = m.mesh(0).positions();
        *m.mutable_boundaries()->mutable_mesh(0)->mutable_indices() = m.mesh(0).indices();
      },
-     "boundaries.meshes[0]: must be closed, has 4 open edges"},
+     "boundaries.meshes[0]: must be closed, has 5 open edges"},
     {"boundary_blob",
      [](auto& m) { m.mutable_boundaries()->mutable_spheres()->mutable_radii()->set_size(7); },
      "boundaries.spheres.radii.size: must be a multiple of 8"},
