@@ -20,8 +20,8 @@
 #include "renderlib/import/read_shapes.h"
 #include "renderlib/import/read_textures.h"
 #include "renderlib/import/read_view.h"
-#include "renderlib/import/use_camera.h"
 #include "renderlib/import/scene_draft.h"
+#include "renderlib/import/use_camera.h"
 #include "renderlib/package/check.h"
 
 namespace bandsaw {
@@ -54,8 +54,8 @@ absl::StatusOr<Camera> camera_of_a_model(const Field& root, const scene::Scene& 
     return draft.cameras.front().camera;
   }
   if (from.model_size() != 1 || draft.out.scene.geometry.instances.empty()) {
-    return root.error(
-        "camera", "is required, for example camera { position: [0, 1, 5] look_at: [0, 0, 0] }");
+    return root.error("camera",
+                      "is required, for example camera { position: [0, 1, 5] look_at: [0, 0, 0] }");
   }
   return framed(draft.out);
 }

@@ -110,6 +110,12 @@ absl::StatusOr<MediumId> find_medium(const Field& in, const std::string& field,
                                known.empty() ? "; the scene has none" : did_you_mean(name, known)));
 }
 
+absl::Status check_boundary_place(const Field& in, const SceneDraft& draft) {
+  return draft.placed == &draft.world
+             ? absl::OkStatus()
+             : in.error("interior", "cannot be given within a group: write the shape in the scene");
+}
+
 void add_boundary(const Sphere& sphere, MediumId inside, SceneDraft& draft) {
   draft.out.scene.media.boundaries.spheres.push_back(sphere);
   draft.out.scene.media.boundaries.spheres.back().material = filled_with(inside);

@@ -19,6 +19,9 @@ absl::Status read_media(const Field& root, const scene::Scene& from, SceneDraft&
 absl::StatusOr<MediumId> find_medium(const Field& in, const std::string& field,
                                      const std::string& name, const SceneDraft& draft);
 
+/// INVALID_ARGUMENT, about `in`'s field "interior": what is being read is a group.
+absl::Status check_boundary_place(const Field& in, const SceneDraft& draft);
+
 void add_boundary(const Sphere& sphere, MediumId inside, SceneDraft& draft);
 /// A box from `low` to `high`.
 void add_boundary(const Vec3& low, const Vec3& high, MediumId inside, SceneDraft& draft);

@@ -72,8 +72,8 @@ absl::Status check_shapes(const Shapes& shapes, std::size_t materials, const std
       return manifest_error(absl::StrCat(prefix, "spheres.radii[", i, "]"),
                             absl::StrCat("must be finite and > 0, is ", s.radius));
     }
-    RETURN_IF_ERROR(
-        check_material_id(s.material, materials, absl::StrCat(prefix, "spheres.material[", i, "]")));
+    RETURN_IF_ERROR(check_material_id(s.material, materials,
+                                      absl::StrCat(prefix, "spheres.material[", i, "]")));
   }
   for (std::size_t i = 0; i < shapes.quads.size(); ++i) {
     const Quad& q = shapes.quads[i];
@@ -88,8 +88,8 @@ absl::Status check_shapes(const Shapes& shapes, std::size_t materials, const std
     for (const Vec3& vertex : {t.a, t.b, t.c}) {
       RETURN_IF_ERROR(check_finite(vertex, absl::StrCat(prefix, "triangles.vertices[", i, "]")));
     }
-    RETURN_IF_ERROR(
-        check_material_id(t.material, materials, absl::StrCat(prefix, "triangles.material[", i, "]")));
+    RETURN_IF_ERROR(check_material_id(t.material, materials,
+                                      absl::StrCat(prefix, "triangles.material[", i, "]")));
   }
   for (std::size_t i = 0; i < shapes.disks.size(); ++i) {
     RETURN_IF_ERROR(check_disk(shapes.disks[i], i, materials, prefix));
@@ -173,8 +173,8 @@ absl::Status check_description(const SceneDescription& scene) {
     RETURN_IF_ERROR(check_mesh(geometry.meshes[i], absl::StrCat("mesh[", i, "]")));
   }
   for (std::size_t i = 0; i < geometry.groups.size(); ++i) {
-    RETURN_IF_ERROR(check_shapes(geometry.groups[i], scene.materials.size(),
-                                 absl::StrCat("group[", i, "].")));
+    RETURN_IF_ERROR(
+        check_shapes(geometry.groups[i], scene.materials.size(), absl::StrCat("group[", i, "].")));
   }
   RETURN_IF_ERROR(check_placements(geometry, scene.materials.size()));
   if (const absl::Status media = validate(scene.media); !media.ok()) {

@@ -70,8 +70,7 @@ class Decoder {
     return spheres;
   }
 
-  absl::StatusOr<std::vector<Quad>> quads(const package::Quads& from,
-                                              const std::string& field) {
+  absl::StatusOr<std::vector<Quad>> quads(const package::Quads& from, const std::string& field) {
     ASSIGN_OR_RETURN(const auto corners, array<Vec3>(from.corners(), field + ".corners"));
     const std::size_t count = corners.size();
     ASSIGN_OR_RETURN(const auto us, array_of<Vec3>(count, from.u(), field + ".u"));
@@ -86,7 +85,7 @@ class Decoder {
   }
 
   absl::StatusOr<std::vector<Triangle>> triangles(const package::Triangles& from,
-                                              const std::string& field) {
+                                                  const std::string& field) {
     using Corners = std::array<Vec3, 3>;
     ASSIGN_OR_RETURN(const auto corners, array<Corners>(from.vertices(), field + ".vertices"));
     ASSIGN_OR_RETURN(const auto materials,
@@ -101,8 +100,7 @@ class Decoder {
   absl::StatusOr<std::vector<Disk>> disks(const package::Disks& from, const std::string& field) {
     ASSIGN_OR_RETURN(const auto centers, array<Vec3>(from.centers(), field + ".centers"));
     const std::size_t count = centers.size();
-    ASSIGN_OR_RETURN(const auto normals,
-                     array_of<Vec3>(count, from.normals(), field + ".normals"));
+    ASSIGN_OR_RETURN(const auto normals, array_of<Vec3>(count, from.normals(), field + ".normals"));
     ASSIGN_OR_RETURN(const auto radii, array_of<double>(count, from.radii(), field + ".radii"));
     ASSIGN_OR_RETURN(const auto materials,
                      array_of<MaterialId>(count, from.material(), field + ".material"));

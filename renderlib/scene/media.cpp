@@ -84,8 +84,11 @@ bool is_placed_sphere(const Sphere& sphere) {
 
 absl::Status check_boundaries(const Media& media) {
   const Geometry& geometry = media.boundaries;
-  if (!geometry.quads.empty() || !geometry.triangles.empty()) {
-    return invalid("boundaries", "must be spheres and meshes alone: quads and triangles are open");
+  if (geometry.size() != geometry.spheres.size()) {
+    return invalid("boundaries", "must be spheres and meshes alone: other shapes are open");
+  }
+  if (!geometry.groups.empty() || !geometry.frames.empty()) {
+    return invalid("boundaries", "must rest and lie in no group");
   }
   for (std::size_t i = 0; i < geometry.spheres.size(); ++i) {
     const std::string field = absl::StrCat("boundaries.spheres[", i, "]");
@@ -106,6 +109,9 @@ absl::Status check_boundaries(const Media& media) {
                                                    ", is ", index_of(instance.mesh)));
     }
     RETURN_IF_ERROR(check_filling(field + ".medium", instance.material, media));
+    if (instance.group != kNoGroup || instance.frame != kNoFrame) {
+      return invalid(field, "must be a mesh that rests");
+    }
     if (!inverse(instance.to_world)) {
       return invalid(field + ".to_world", "must be finite and have an inverse");
     }

@@ -18,9 +18,9 @@ namespace bandsaw {
 
 struct Media {
   std::vector<Medium> media;
-  /// Spheres and placements of closed meshes, nothing else. Their `material` is no material: it is
-  /// the medium inside, an index into `media`. What is seen of them lies in the scene's own
-  /// geometry as well, or nothing is: then the boundary is invisible.
+  /// Spheres and placements of closed meshes, at rest, nothing else. Their `material` is no
+  /// material: it is the medium inside, an index into `media`. What is seen of them lies in the
+  /// scene's own geometry as well, or nothing is: then the boundary is invisible.
   Geometry boundaries;
   std::optional<MediumId> fog;  ///< without end; MUST NOT be is_endless_glow
 
