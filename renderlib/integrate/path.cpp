@@ -124,8 +124,8 @@ bool scatter_at(const PathContext& context, const SurfacePoint& point, std::uint
     const Sample4 numbers = context.numbers(group_light(depth));
     const Asking asking =
         is_last ? Asking{Technique::kLightsOnly, true} : Asking{options.technique, false};
-    path.radiance += path.throughput *
-                     asked_light(scene, point, receiver, bsdf, numbers, asking, context.rays);
+    path.radiance +=
+        path.throughput * asked_light(scene, point, receiver, bsdf, numbers, asking, context.rays);
   }
   if (is_last) {
     const Rgb albedo = albedo_at(material, scene.textures(), point);
@@ -142,8 +142,8 @@ bool scatter_at(const PathContext& context, const SurfacePoint& point, std::uint
   path.throughput *= next->weight;
   if (is_last && !next->delta) {
     if (scene.needs().environment) {
-      path.radiance += path.throughput * followed_environment(scene, point, path.departure,
-                                                              next->wi, context.rays);
+      path.radiance += path.throughput *
+                       followed_environment(scene, point, path.departure, next->wi, context.rays);
     }
     return false;
   }

@@ -22,6 +22,7 @@ struct Step {
   const Medium& medium;
   Vec3 origin;  ///< where the stretch begins
   Vec3 way;     ///< unit
+  double time;
   Flight flight;
   double chance;  ///< with which the path is scattered in it
 
@@ -30,15 +31,40 @@ struct Step {
   }
 };
 
-/// Some point of a light, as far as the stretch is concerned: only where to look for light more
-/// often depends on it. It MUST NOT depend on where the path goes on.
-std::optional<Vec3> pivot(const Step& step, double length) {
+/// Looks for light where some lights are, by points of them that are chosen for a point halfway to
+/// what is scattered; evenly over all choices, that no bright light is missed. These MUST NOT
+/// depend on where the path goes on, nor on the light that is asked then.
+AskedDistance asked_distance(const Step& step, double length) {
+  AskedDistance asked(step.flight, step.medium);
+  const Lights& lights = step.context.scene.lights();
+  if (!step.context.asks_lights()) {
+    return asked;
+  }
   constexpr double kHalf = 0.693;  // ln 2: half of the light gets that far
   const double distance = std::min(length / 2, kHalf / mean_extinction(step.medium));
+  const Receiver receiver{step.origin + step.way * distance, std::nullopt, step.time};
   const Sample4 at = step.numbers(1);
-  const std::optional<LightSample> light = step.context.scene.lights().sample(
-      {step.origin + step.way * distance, {}}, at[0], at[1], at[2]);
-  return light ? std::optional(light->target) : std::nullopt;
+  const std::size_t pivots = std::min(lights.size(), AskedDistance::kMostPivots);
+  for (std::size_t i = 0; i < pivots; ++i) {
+    const double choice = (at[0] + static_cast<double>(i)) / static_cast<double>(pivots);
+    const std::optional<LightSample> light = lights.sample(receiver, choice, at[1], at[2]);
+    if (light && light->distant) {
+      asked.add_distant();
+    } else if (light) {
+      asked.add(step.origin, step.way, length, light->target);
+    }
+  }
+  return asked;
+}
+
+/// From a point of a medium to a light.
+Ray toward(const Step& step, const Vec3& position, const LightSample& light) {
+  Ray ray{.origin = position, .direction = light.direction, .time = step.time};
+  if (!light.distant) {
+    ray.direction = light.target - position;
+    ray.t_max = 1;
+  }
+  return ray;
 }
 
 /// The light of one asked light that one point of the stretch sends back along it.
@@ -47,19 +73,19 @@ Rgb asked_light(const Step& step, const AskedDistance& asked, const Sample4& at)
   const double distance = asked.sample(at[2], at[3]);
   const Vec3 position = step.origin + step.way * distance;
   const Sample4 which = step.numbers(2);
-  const std::optional<LightSample> light =
-      context.scene.lights().sample({position, {}}, which[0], which[1], which[2]);
+  const std::optional<LightSample> light = context.scene.lights().sample(
+      {position, std::nullopt, step.time}, which[0] + which[3] * 0x1p-32, which[1], which[2]);
   if (!light) {
     return {};
   }
   const double turned = phase(step.medium.g, dot(step.way, light->direction));
-  const Ray ray{.origin = position, .direction = light->target - position, .t_max = 1};
-  const Rgb passing = passing_light(context.scene, ray, context.rays);
+  const Rgb passing = passing_light(context.scene, toward(step, position, *light), context.rays);
   if (is_black(passing)) {
     return {};
   }
   const double pdf = light->pdf * asked.pdf(distance);
-  const bool both = context.options.technique == Technique::kBoth && !context.options.local;
+  const bool both =
+      context.options.technique == Technique::kBoth && !context.options.local && !light->delta;
   const double other = turned * step.chance * step.flight.pdf(distance);
   const double weight = both ? power_heuristic(pdf, other) : 1;
   return step.flight.scattered(distance) * light->radiance * passing *
@@ -73,7 +99,8 @@ Passage scatter(const Step& step, double distance, double asked, PathState& path
   const Vec3 position = step.origin + step.way * distance;
   const Vec3 direction = sample_phase(step.medium.g, step.way, at[0], at[1]);
   const double pdf = phase(step.medium.g, dot(step.way, direction));
-  path.departure = {.from = {position, {}}, .pdf = pdf, .delta = false, .asked = asked};
+  path.departure = {
+      .from = {position, std::nullopt, step.time}, .pdf = pdf, .delta = false, .asked = asked};
   path.ray.origin = position;
   path.ray.direction = direction;
   path.ray.from = kNoPrimitive;
@@ -91,11 +118,9 @@ Passage through(const Step& step, double length, PathState& path) {
   if (step.chance == 0) {
     return pass(step.flight.passing(), path);
   }
-  const bool asks = step.context.asks_lights();
-  const AskedDistance asked(step.flight, step.medium, step.origin, step.way, length,
-                            asks ? pivot(step, length) : std::nullopt);
+  const AskedDistance asked = asked_distance(step, length);
   const Sample4 at = step.numbers(0);
-  if (asks) {
+  if (step.context.asks_lights()) {
     path.radiance += asked_light(step, asked, at);
   }
   if (options.local) {
@@ -119,14 +144,10 @@ Passage through_media(const PathContext& context, double length, std::uint32_t d
   for (std::uint32_t number = 0; const std::optional<Stretch> stretch = walk.next(); ++number) {
     const double part = stretch->end - stretch->begin;
     const Flight flight(*stretch->medium, path.throughput, part);
-    const Step step{context,
-                    depth,
-                    number,
-                    *stretch->medium,
-                    ray.origin + ray.direction * stretch->begin,
-                    ray.direction,
-                    flight,
-                    depth < context.options.max_depth ? flight.chance() : 0};
+    const double chance = depth < context.options.max_depth ? flight.chance() : 0;
+    const Vec3 origin = ray.origin + ray.direction * stretch->begin;
+    const Step step{context,  depth,  number, *stretch->medium, origin, ray.direction,
+                    ray.time, flight, chance};
     const Passage passage = through(step, part, path);
     if (passage != Passage::kThrough) {
       return passage;

@@ -10,6 +10,7 @@ namespace bandsaw {
 
 class Equiangular {
  public:
+  Equiangular() = default;
   /// Over [0, length] (> 0, maybe infinite) along the unit direction `way` from `origin`, as
   /// `pivot`, a finite point, sees it. A pivot nearly on the ray counts as beside it by a millionth
   /// of the lengths around, so that the density is finite everywhere.
@@ -21,10 +22,10 @@ class Equiangular {
   double pdf(double distance) const;
 
  private:
-  double length_;
-  double start_;  ///< of the stretch, from the point nearest to the pivot
-  double aside_;  ///< distance of the pivot from the ray
-  double angle_;  ///< of the stretch, as the pivot sees it
+  double length_ = 0;
+  double start_ = 0;  ///< of the stretch, from the point nearest to the pivot
+  double aside_ = 1;  ///< distance of the pivot from the ray
+  double angle_ = 0;  ///< of the stretch, as the pivot sees it
 };
 
 }  // namespace bandsaw

@@ -41,7 +41,8 @@ Spread spread(float sigma, double aside) {
   const Vec3 origin{};
   const Vec3 way{1, 0, 0};
   const Vec3 lamp{3, aside, 0};
-  const AskedDistance both(flight, smoke, origin, way, kLength, lamp);
+  AskedDistance both(flight, smoke);
+  both.add(origin, way, kLength, lamp);
   const Equiangular angles(origin, way, kLength, lamp);
   const auto light = [&](double s) {
     const double r = std::hypot(3 - s, aside);
