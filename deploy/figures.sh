@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The comparison figures of the gallery's README, made again.
-# Usage: deploy/figures.sh samples|defocus|lights|all [FOLDER [WIDTH]]   (default: out/figures, the width of one picture 300)
+# Usage: deploy/figures.sh samples|defocus|lights|density|all [FOLDER [WIDTH]]   (default: out/figures, the width of one picture 300)
 # BANDSAW_BUILD=DIR: the build to use; otherwise build/release.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -65,8 +65,17 @@ figure_lights() {
   side_by_side lights 0 chance:0:0.5 asked:0.5:1
 }
 
+figure_density() {
+  cp $gallery/cube.obj "$work/"
+  for density in 0.0025 0.01 0.04; do
+    sed "s/density: 0.01/density: $density/" $gallery/smoke.textproto >"$work/smoke.textproto"
+    render "$work/smoke.textproto" "$density" --samples 256
+  done
+  side_by_side density 4 0.0025 0.01 0.04
+}
+
 case "$name" in
-  samples | defocus | lights) "figure_$name" ;;
-  all) for each in samples defocus lights; do "figure_$each"; done ;;
+  samples | defocus | lights | density) "figure_$name" ;;
+  all) for each in samples defocus lights density; do "figure_$each"; done ;;
   *) sed -n 's/^# Usage: /usage: /p' "$0" >&2; exit 2 ;;
 esac

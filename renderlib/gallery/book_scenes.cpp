@@ -91,12 +91,15 @@ material { name: "satin"  metal { color { rgb: [0.8, 0.8, 0.9] }  fuzz: 1 } }
 material { name: "globe"  diffuse { texture { image { file: "globe_512.png"  wrap_v: WRAP_CLAMP } } } }
 material { name: "noise"  diffuse { texture { noise { kind: KIND_MARBLE  scale: 0.1  strength: 10 } } } }
 material { name: "white"  diffuse { color { rgb: [0.73, 0.73, 0.73] } } }
+medium { name: "mist"  albedo { rgb: [1, 1, 1] }  density: 0.0001 }
+medium { name: "blue"  albedo { rgb: [0.2, 0.4, 0.9] }  density: 0.2 }
 
 shape { quad { corner: [123, 554, 147]  u: [300, 0, 0]  v: [0, 0, 265] }  material: "light" }
 shape { sphere { center: [400, 400, 200]  radius: 50 }  material: "clay"  velocity: [30, 0, 0] }
 shape { sphere { center: [260, 150, 45]  radius: 50 }  material: "glass" }
 shape { sphere { center: [0, 150, 145]  radius: 50 }  material: "satin" }
-shape { sphere { center: [360, 150, 145]  radius: 70 }  material: "glass" }
+shape { sphere { center: [360, 150, 145]  radius: 70 }  material: "glass"  interior: "blue" }
+shape { sphere { center: [0, 0, 0]  radius: 5000 }  interior: "mist" }
 shape { sphere { center: [400, 200, 400]  radius: 100 }  material: "globe" }
 shape { sphere { center: [220, 280, 300]  radius: 80 }  material: "noise" }
 )";

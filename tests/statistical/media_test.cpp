@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "tests/statistical/estimate.h"
+#include "tests/support/environments.h"
 #include "tests/support/media.h"
 
 namespace bandsaw {
@@ -97,6 +98,20 @@ double integral(const std::function<double(double)>& f) {
   return sum;
 }
 
+/// What a ray along x sees of a light of this intensity at (ahead, aside), scattered once.
+double scattered_once(const Medium& fog, double ahead, double aside, double intensity) {
+  const double sigma = double{fog.absorption.g} + fog.scattering.g;
+  const double g = fog.g;
+  return integral([&](double s) {
+    const double along = ahead - s;
+    const double r2 = along * along + aside * aside;
+    const double r = std::sqrt(r2);
+    const double cosine = along / r;
+    const double p = (1 - g * g) / (4 * kPi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
+    return fog.scattering.g * p * std::exp(-sigma * (s + r)) * intensity / r2;
+  });
+}
+
 /// A ray that passes a small lamp at distance `aside`, `ahead` of its origin, in endless fog.
 void expect_single_scattering(const Medium& fog, double ahead, double aside, double error,
                               std::uint64_t samples = 1024) {
@@ -105,17 +120,8 @@ void expect_single_scattering(const Medium& fog, double ahead, double aside, dou
   SceneMaker maker;
   maker.sphere({ahead, aside, 0}, kRadius, maker.lamp(kRadiance));
   test::fog(maker, fog);
-  const double intensity = double{kRadiance} * kPi * kRadius * kRadius;
-  const double sigma = double{fog.absorption.g} + fog.scattering.g;
-  const double g = fog.g;
-  const double expected = integral([&](double s) {
-    const double along = ahead - s;
-    const double r2 = along * along + aside * aside;
-    const double r = std::sqrt(r2);
-    const double cosine = along / r;
-    const double p = (1 - g * g) / (4 * kPi * std::pow(1 + g * g - 2 * g * cosine, 1.5));
-    return fog.scattering.g * p * std::exp(-sigma * (s + r)) * intensity / r2;
-  });
+  const double expected =
+      scattered_once(fog, ahead, aside, double{kRadiance} * kPi * kRadius * kRadius);
   const Ray ray{.origin = {0, 0, 0}, .direction = {1, 0, 0}};
   expect_value(test::radiance_along(*maker.build(), ray, {.max_depth = 1}, samples), expected,
                error);
@@ -126,6 +132,25 @@ TEST(Media, ScatterOnceAsTheQuadratureSays) {
   expect_single_scattering(medium(0.3f, 1, 0.7), 1, 0.5, 1e-3);
   expect_single_scattering(medium(0, 0.05f, -0.5), 3, 0.05, 1e-3);
   expect_single_scattering(medium(0.2f, 3), -0.4, 0.3, 1e-3);
+}
+
+TEST(Media, ScatterLightsWithoutSize) {
+  const Medium smoke = medium(0.1f, 0.4f, 0.3);
+  const Ray ray{.origin = {0, 0, 0}, .direction = {1, 0, 0}};
+  SceneMaker point;
+  test::fog(point, smoke);
+  point.scene.lights = {PointLight{{2, 0.7, 0}, gray(5)}};
+  expect_value(test::radiance_along(*point.build(), ray, {.max_depth = 1}, 1024),
+               scattered_once(smoke, 2, 0.7, 5), 1e-3);
+
+  // The sun straight above a slab that is seen from there: the light goes in and back out.
+  SceneMaker sun;
+  const MediumId inside = test::add(sun, medium(0.2f, 0.6f));
+  test::fill_box(sun, {-1e6, 0, -1e6}, {1e6, 2, 1e6}, inside);
+  sun.scene.lights = {DirectionalLight{{0, -1, 0}, gray(7)}};
+  const Ray down{.origin = {0, 5, 0}, .direction = {0, -1, 0}};
+  const double expected = 0.6 * 7 / (4 * kPi) * -std::expm1(-2 * 0.8 * 2) / (2 * 0.8);
+  expect_value(test::radiance_along(*sun.build(), down, {.max_depth = 1}, 1024), expected, 1e-3);
 }
 
 /// The radiance that a half-space sends straight up under a white sky.
@@ -276,6 +301,31 @@ TEST(MediaTechniques, RouletteKeepsTheMean) {
   const double error = std::hypot(with.standard_error(), without.standard_error());
   EXPECT_LE(std::abs(with.mean() - without.mean()), 4 * error);
   EXPECT_LE(error, 1e-2 * with.mean());
+}
+
+TEST(MediaTechniques, AgreeUnderAnUnevenSky) {
+  SceneMaker maker;
+  test::fill_sphere(maker, {0, 0, 0}, 1, test::add(maker, medium(0.1f, 1.5f, 0.6)));
+  maker.sphere({2, 0, 1}, 0.5, maker.lamp(2));
+  Environment environment;
+  environment.images = {maker.texture(test::float_image(8, 4, [](auto x, auto y) {
+    return x == 2 && y == 1 ? 20.0f : 0.1f * static_cast<float>(y);
+  }))};
+  maker.scene.background.environment = environment;
+  const auto scene = maker.build();
+  const Ray ray{.origin = {0.2, 0.3, 4}, .direction = normalize({-0.05, -0.1, -1})};
+  const auto mean = [&](Technique technique) {
+    return test::radiance_along(*scene, ray, {.max_depth = 3, .technique = technique}, 2048);
+  };
+  const Moments both = mean(Technique::kBoth);
+  EXPECT_LE(both.standard_error(), 1e-2 * both.mean());
+  for (const Technique technique : {Technique::kLightsOnly, Technique::kScatteringOnly}) {
+    const Moments single = mean(technique);
+    const double error = std::hypot(single.standard_error(), both.standard_error());
+    EXPECT_LE(std::abs(single.mean() - both.mean()), 4 * error)
+        << "both " << both.mean() << ", one " << single.mean() << " +- " << error;
+    EXPECT_LE(single.standard_error(), 0.1 * both.mean());
+  }
 }
 
 /// V8: a lamp that the ray meets in its middle.
