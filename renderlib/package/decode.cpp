@@ -180,7 +180,7 @@ absl::StatusOr<Geometry> decode_geometry(const package::Manifest& manifest, Deco
   return geometry;
 }
 
-absl::StatusOr<Media> decode_media(const package::Manifest& manifest, Decoder& decoder) {
+absl::StatusOr<Media> media_with_boundaries(const package::Manifest& manifest, Decoder& decoder) {
   ASSIGN_OR_RETURN(Media media, decode_media(manifest));
   const package::Boundaries& from = manifest.boundaries();
   if (from.has_spheres()) {
@@ -219,7 +219,7 @@ absl::StatusOr<SceneDescription> decode_package(const std::string& manifest_byte
   }
   ASSIGN_OR_RETURN(scene.geometry, decode_geometry(manifest, decoder));
   ASSIGN_OR_RETURN(scene.lights, decode_lights(manifest));
-  ASSIGN_OR_RETURN(scene.media, decode_media(manifest, decoder));
+  ASSIGN_OR_RETURN(scene.media, media_with_boundaries(manifest, decoder));
   RETURN_IF_ERROR(check_description(scene));
   return scene;
 }
