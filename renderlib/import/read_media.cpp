@@ -32,7 +32,7 @@ absl::StatusOr<Medium> read_medium(const Field& in, const scene::Medium& from) {
                     "stands instead of absorption and scattering: write one or the other");
   }
   const double density = from.has_density() ? from.density() : 1;
-  RETURN_IF_ERROR(check_range(in, "density", density, 0, kMostPerUnit));
+  RETURN_IF_ERROR(check_range(in, "density", density, 0, 1e12));
   RETURN_IF_ERROR(check_range(in, "anisotropy", from.anisotropy(), -kMostG, kMostG));
   Medium medium;
   medium.g = from.anisotropy();
