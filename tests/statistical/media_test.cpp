@@ -35,8 +35,8 @@ SceneMaker white_sky() {
   return maker;
 }
 
-TEST(Media, AbsorbAsTheExponentialSays) {
-  // V6: through spheres at every distance from the middle, alone and two of them.
+TEST(Media, V6AbsorbAsTheExponentialSays) {
+  // Through spheres at every distance from the middle, alone and two of them.
   for (const double b : {0.0, 0.3, 0.9, 0.999999}) {
     SceneMaker maker = white_sky();
     const MediumId smoke = test::add(maker, medium(0.7f, 0));
@@ -58,8 +58,8 @@ TEST(Media, AbsorbAsTheExponentialSays) {
   EXPECT_NEAR(seen.b, std::exp(-4 * std::sqrt(2.0)), 1e-6);
 }
 
-/// V7: camera and lamp inside, the lamp in the boundary, and the camera in endless fog.
-TEST(Media, AroundTheCameraAbsorbOnTheWayToALamp) {
+/// Camera and lamp inside, the lamp in the boundary, and the camera in endless fog.
+TEST(Media, V7AroundTheCameraAbsorbOnTheWayToALamp) {
   const Ray ray{.origin = {0, 0, 0}, .direction = {0, 0, -1}};
   for (const double distance : {0.5, 2.0, 3.0}) {
     const auto with_lamp = [&] {
@@ -175,15 +175,15 @@ TEST(Media, HalfSpaceReflectsAsItsHFunctionSays) {
   expect_half_space(0.99f, 1, 0.75272072, 2.5e-3, 2048);
 }
 
-/// V3: very dense, measured in units of the scene: the same, and no path goes on for ever.
-TEST(Media, HalfSpaceIsTheSameHoweverDense) {
+/// Very dense, measured in units of the scene: the same, and no path goes on for ever.
+TEST(Media, V3HalfSpaceIsTheSameHoweverDense) {
   for (const float density : {1e6f, 1e10f}) {
     expect_half_space(0.8f, density, 0.28525450, 8e-3, 1024);
   }
 }
 
-/// V3, V11: a ball of a size that is enormous in free paths ends, for its depth is counted.
-TEST(Media, OpaqueBallEndsByItsDepth) {
+/// A ball of a size that is enormous in free paths ends, for its depth is counted.
+TEST(Media, V3V11OpaqueBallEndsByItsDepth) {
   SceneMaker maker = white_sky();
   test::fill_sphere(maker, {0, 0, 0}, 1, test::add(maker, medium(0, 1e12f)));
   const auto scene = maker.build();
@@ -199,7 +199,7 @@ TEST(Media, OpaqueBallEndsByItsDepth) {
 }
 
 /// Without absorption nothing of a closed shape is seen under a white sky, not even as noise.
-TEST(Media, WithoutLossAreInvisibleInAWhiteSky) {
+TEST(Media, O8WithoutLossAreInvisibleInAWhiteSky) {
   for (const double g : {0.0, 0.8, -0.5}) {
     SceneMaker ball = white_sky();
     test::fill_sphere(ball, {0, 0, 0}, 1, test::add(ball, medium(0, 3, g)));
@@ -208,23 +208,23 @@ TEST(Media, WithoutLossAreInvisibleInAWhiteSky) {
     EXPECT_NEAR(seen.mean(), 1, 1e-5);
     EXPECT_LE(seen.standard_error(), 1e-5);
   }
-  // O8: a slab thinner than any fixed step.
+  // A slab thinner than any fixed step.
   SceneMaker thin = white_sky();
   test::fill_box(thin, {-9, 0, -9}, {9, 1e-5, 9}, test::add(thin, medium(0, 1e5f)));
   const Ray down{.origin = {0, 4, 0}, .direction = normalize({0.3, -1, 0.1})};
   expect_value(test::radiance_along(*thin.build(), down, {.max_depth = 1000}, 256, 8), 1, 1e-5);
 }
 
-/// O8: the same slab loses what its thickness says.
-TEST(Media, ThinSlabIsNotSteppedOver) {
+/// The same slab loses what its thickness says.
+TEST(Media, O8ThinSlabIsNotSteppedOver) {
   SceneMaker maker = white_sky();
   test::fill_box(maker, {-9, 0, -9}, {9, 1e-5, 9}, test::add(maker, medium(1e5f, 0)));
   const Ray down{.origin = {0, 4, 0}, .direction = {0, -1, 0}};
   EXPECT_NEAR(one_sample(*maker.build(), down), std::exp(-1.0), 1e-6);
 }
 
-/// V9: a pane whose two faces lie in the boundary of an absorbing medium, exactly.
-TEST(Media, InGlassFadeBetweenItsReflections) {
+/// A pane whose two faces lie in the boundary of an absorbing medium, exactly.
+TEST(Media, V9InGlassFadeBetweenItsReflections) {
   SceneMaker maker = white_sky();
   const MaterialId glass = maker.glass(1.5);
   maker.quad({-9, 1, -9}, {0, 0, 18}, {18, 0, 0}, glass);
@@ -239,8 +239,8 @@ TEST(Media, InGlassFadeBetweenItsReflections) {
                1e-3);
 }
 
-/// V9: a glass ball that is filled, seen through its middle.
-TEST(Media, InAGlassBallFade) {
+/// A glass ball that is filled, seen through its middle.
+TEST(Media, V9InAGlassBallFade) {
   SceneMaker maker = white_sky();
   maker.sphere({0, 0, 0}, 1, maker.glass(1.5));
   test::fill_sphere(maker, {0, 0, 0}, 1, test::add(maker, medium(0.3f, 0)));
@@ -328,8 +328,8 @@ TEST(MediaTechniques, AgreeUnderAnUnevenSky) {
   }
 }
 
-/// V8: a lamp that the ray meets in its middle.
-TEST(MediaTechniques, AgreeOnARayThroughTheMiddleOfALamp) {
+/// A lamp that the ray meets in its middle.
+TEST(MediaTechniques, V8AgreeOnARayThroughTheMiddleOfALamp) {
   SceneMaker maker;
   maker.sphere({3, 0, 0}, 0.1, maker.lamp(50));
   test::fog(maker, medium(0.05f, 0.2f));

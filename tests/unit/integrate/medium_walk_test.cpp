@@ -60,8 +60,8 @@ Ray random_ray(test::Random& random, double spread) {
   return {.origin = {x, y, z}, .direction = sample_sphere(u, random.uniform())};
 }
 
-/// V6, V7: overlapping, nested and disjoint balls of five media; rays begin anywhere.
-TEST(MediumWalk, OfOverlappingBallsTheMediumNamedLastIsThere) {
+/// Overlapping, nested and disjoint balls of five media; rays begin anywhere.
+TEST(MediumWalk, V6V7OfOverlappingBallsTheMediumNamedLastIsThere) {
   test::Random random(1);
   for (int round = 0; round < 40; ++round) {
     SceneMaker maker;
@@ -116,9 +116,9 @@ Mesh corner_prism() {
   return mesh;
 }
 
-/// V6: a ray may leave and enter a mesh that is not convex several times; boxes and placements that
+/// A ray may leave and enter a mesh that is not convex several times; boxes and placements that
 /// mirror are closed shapes like others.
-TEST(MediumWalk, OfMeshesFollowsTheirInside) {
+TEST(MediumWalk, V6OfMeshesFollowsTheirInside) {
   SceneMaker maker;
   const MediumId smoke = test::add(maker, test::medium(1, 1));
   const MediumId dust = test::add(maker, test::medium(1, 1));

@@ -9,8 +9,8 @@
 namespace bandsaw {
 namespace {
 
-/// V1: nothing is lost of small numbers, and where there is no extinction all light passes.
-TEST(Attenuation, OfNothingIsExactlyOneAndOfLittleIsExact) {
+/// Nothing is lost of small numbers, and where there is no extinction all light passes.
+TEST(Attenuation, V1OfNothingIsExactlyOneAndOfLittleIsExact) {
   EXPECT_EQ(transmittance(0, 1), 1);
   EXPECT_EQ(transmittance(0, kInfinity), 1);
   EXPECT_EQ(reach(0, 7), 7);
@@ -25,8 +25,8 @@ TEST(Attenuation, OfNothingIsExactlyOneAndOfLittleIsExact) {
   }
 }
 
-/// V3: what is opaque is opaque, without overflow on the way.
-TEST(Attenuation, OfVeryDenseMediaIsZero) {
+/// What is opaque is opaque, without overflow on the way.
+TEST(Attenuation, V3OfVeryDenseMediaIsZero) {
   for (const double sigma : {1e6, 1e12, 2e12}) {
     EXPECT_EQ(transmittance(sigma, kInfinity), 0);
     EXPECT_EQ(transmittance(sigma, 1e30), 0);

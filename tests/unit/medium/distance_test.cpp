@@ -95,9 +95,9 @@ TEST(Flight, ChanceIsTheShareThatIsScattered) {
   EXPECT_EQ(Flight({.scattering = gray(1)}, gray(1), kInfinity).chance(), 1);
 }
 
-/// V10: however different the channels, no weight grows by more than 3, and the sum of the channels
+/// However different the channels, no weight grows by more than 3, and the sum of the channels
 /// does not depend on what was chosen.
-TEST(Flight, WeightsStayBounded) {
+TEST(Flight, V10WeightsStayBounded) {
   test::Random random(9);
   const std::vector<Medium> media = {
       {.scattering = {0, 1, 1000}},
@@ -137,8 +137,8 @@ TEST(Flight, WeightsStayBounded) {
   }
 }
 
-/// V2: the ends of the range of u give finite distances.
-TEST(Flight, EndsOfTheNumbersAreFinite) {
+/// The ends of the range of u give finite distances.
+TEST(Flight, V2EndsOfTheNumbersAreFinite) {
   for (const double sigma : {1e-30, 1e-8, 1.0, 1e12}) {
     for (const double length : {1e-3, 1.0, kInfinity}) {
       const Flight flight({.scattering = gray(static_cast<float>(sigma))}, gray(1), length);
@@ -166,8 +166,8 @@ TEST(Equiangular, DistancesHaveTheirDensity) {
   }
 }
 
-/// V8: a light on the ray itself, at its start, and far away.
-TEST(Equiangular, OfALightOnTheRayIsFinite) {
+/// A light on the ray itself, at its start, and far away.
+TEST(Equiangular, V8OfALightOnTheRayIsFinite) {
   const Vec3 way{0, 0, 1};
   for (const double length : {1e-3, 1.0, kInfinity}) {
     for (const Vec3& pivot : {Vec3{0, 0, 0.5}, Vec3{0, 0, 0}, Vec3{0, 0, -4}, Vec3{0, 0, 1e9},

@@ -23,8 +23,8 @@ TEST(Phase, IsTheDensityOfItsSamples) {
   }
 }
 
-/// V5: up to the largest |g| everything is finite and the mean cosine is g.
-TEST(Phase, MeanCosineIsG) {
+/// Up to the largest |g| everything is finite and the mean cosine is g.
+TEST(Phase, V5MeanCosineIsG) {
   const Vec3 way = normalize({-0.2, 0.1, -0.9});
   for (const double g : {-kMostG, -0.9, -0.5, 0.0, 1e-4, 0.5, 0.9, kMostG}) {
     // The midpoints of equal parts of [0, 1): a quadrature of the inverse, not an estimate.
@@ -40,8 +40,8 @@ TEST(Phase, MeanCosineIsG) {
   }
 }
 
-/// V4: near 0 the cosine is right to the last digits; u = 0 and the largest u give the two poles.
-TEST(Phase, HasNoRoughPlaceNearIsotropic) {
+/// Near 0 the cosine is right to the last digits; u = 0 and the largest u give the two poles.
+TEST(Phase, V4HasNoRoughPlaceNearIsotropic) {
   const Vec3 up{0, 0, 1};
   test::Random random(4);
   for (const double g : {1e-2, -1e-3, 1e-4, -1e-5, 1e-12, 0.0}) {
