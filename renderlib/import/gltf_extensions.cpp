@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <cstring>
 #include <iterator>
+#include <set>
+#include <utility>
 
 #include "absl/strings/match.h"
 #include "absl/strings/string_view.h"
@@ -108,6 +110,8 @@ void read_textures_of(const Struct& from, GltfMaterial& to) {
 
 GltfMaterial material_of(const Struct& from) {
   GltfMaterial to;
+  const Value* called = find(from, "name");
+  to.name = called == nullptr ? "" : called->string_value();
   read_textures_of(from, to);
   if (const Struct* base = object(from, "pbrMetallicRoughness"); base != nullptr) {
     read_textures_of(*base, to);
@@ -130,6 +134,63 @@ GltfMaterial material_of(const Struct& from) {
   }
   return to;
 }
+
+// An item of a list of the file, by a number that the file gives.
+const Struct* item(const Struct& root, const std::string& name, double index) {
+  const ListValue* items = list(root, name);
+  return items != nullptr && index >= 0 && index < items->values_size() &&
+                 items->values(static_cast<int>(index)).has_struct_value()
+             ? &items->values(static_cast<int>(index)).struct_value()
+             : nullptr;
+}
+
+// The materials of the default scene's meshes, in the order in which Assimp loads them. The tree is
+// walked with a stack of its own; a node that is met again is not entered.
+class LoadOrder {
+ public:
+  explicit LoadOrder(const Struct& root) : root_(root) {}
+
+  std::vector<const Struct*> materials() {
+    const Struct* scene = item(root_, "scenes", number(root_, "scene").value_or(0));
+    push_all(scene == nullptr ? nullptr : list(*scene, "nodes"));
+    while (!stack_.empty()) {
+      const auto [node, is_entered] = stack_.back();
+      stack_.pop_back();
+      if (is_entered) {
+        add_mesh(item(root_, "meshes", number(*node, "mesh").value_or(-1)));
+      } else if (nodes_.insert(node).second) {
+        stack_.emplace_back(node, true);
+        push_all(list(*node, "children"));
+      }
+    }
+    return std::move(order_);
+  }
+
+ private:
+  void push_all(const ListValue* nodes) {
+    for (int i = nodes == nullptr ? 0 : nodes->values_size(); i-- > 0;) {
+      if (const Struct* node = item(root_, "nodes", nodes->values(i).number_value())) {
+        stack_.emplace_back(node, false);
+      }
+    }
+  }
+  void add_mesh(const Struct* mesh) {
+    const ListValue* primitives = mesh == nullptr ? nullptr : list(*mesh, "primitives");
+    for (int i = 0; primitives != nullptr && i < primitives->values_size(); ++i) {
+      const Struct& primitive = primitives->values(i).struct_value();
+      const Struct* material = item(root_, "materials", number(primitive, "material").value_or(-1));
+      if (material != nullptr && seen_.insert(material).second) {
+        order_.push_back(material);
+      }
+    }
+  }
+
+  const Struct& root_;
+  std::vector<std::pair<const Struct*, bool>> stack_;  ///< and whether its children are done
+  std::set<const Struct*> nodes_;
+  std::set<const Struct*> seen_;
+  std::vector<const Struct*> order_;
+};
 
 // The JSON of a .gltf, or the first chunk of a .glb (glTF 2.0, 4.4).
 absl::string_view json_of(absl::string_view bytes) {
@@ -164,10 +225,8 @@ GltfExtensions read_gltf_extensions(const std::string& path) {
       }
     }
   }
-  if (const ListValue* materials = list(root, "materials"); materials != nullptr) {
-    for (const Value& material : materials->values()) {
-      out.materials.push_back(material_of(material.struct_value()));
-    }
+  for (const Struct* material : LoadOrder(root).materials()) {
+    out.materials.push_back(material_of(*material));
   }
   if (const ListValue* scenes = list(root, "scenes"); scenes != nullptr) {
     out.scenes = static_cast<std::size_t>(scenes->values_size());

@@ -20,6 +20,7 @@ struct GltfTexture {
 };
 
 struct GltfMaterial {
+  std::string name;
   std::map<std::string, GltfTexture> textures;
   std::optional<double> emissive_strength;    ///< KHR_materials_emissive_strength
   std::optional<double> index_of_refraction;  ///< KHR_materials_ior
@@ -28,7 +29,9 @@ struct GltfMaterial {
 
 struct GltfExtensions {
   std::vector<std::string> ignored;  ///< extensions that the file uses and that change nothing here
-  std::vector<GltfMaterial> materials;  ///< as many and in the order of the file; none of glTF 1
+  /// Those that the scene uses, in the order in which Assimp meets them: nodes depth first, each
+  /// after its children. None of glTF 1.
+  std::vector<GltfMaterial> materials;
   std::size_t scenes = 1;
 };
 

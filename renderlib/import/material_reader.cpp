@@ -49,10 +49,35 @@ MaterialReader::MaterialReader(ModelFile& file, unsigned index)
   aiString name;
   material_.Get(AI_MATKEY_NAME, name);
   called_ = name.length == 0 ? absl::StrCat(index) : absl::StrCat("\"", name.C_Str(), "\"");
+  if (kind() == ModelKind::kOther) {
+    name_dead_files();
+  }
+}
+
+// Where dead names are the rule a texture that is not found is as if it had not been named.
+void MaterialReader::name_dead_files() {
+  for (unsigned type = aiTextureType_DIFFUSE; type <= AI_TEXTURE_TYPE_MAX; ++type) {
+    for (unsigned index = 0; index < material_.GetTextureCount(aiTextureType(type)); ++index) {
+      const std::string file = file_of({aiTextureType(type), index});
+      const absl::Status found = file.empty() ? absl::OkStatus() : textures_.locate(file);
+      const bool dead = absl::IsNotFound(found) || absl::IsPermissionDenied(found);
+      if (dead && dead_files_.insert(file).second) {
+        leave_out(absl::StrCat(found.message(), "; it is shown without"));
+      }
+    }
+  }
 }
 
 const GltfMaterial* MaterialReader::gltf() const {
-  return index_ < file_.gltf.materials.size() ? &file_.gltf.materials[index_] : nullptr;
+  const std::vector<GltfMaterial>& all = file_.gltf.materials;
+  aiString name;
+  material_.Get(AI_MATKEY_NAME, name);
+  const auto is_this = [&](const GltfMaterial& m) { return m.name == name.C_Str(); };
+  if (index_ < all.size() && (all[index_].name.empty() || is_this(all[index_]))) {
+    return &all[index_];
+  }
+  const auto found = std::find_if(all.begin(), all.end(), is_this);
+  return found == all.end() ? nullptr : &*found;
 }
 
 std::optional<double> MaterialReader::number(const char* key, double least, double most) const {
@@ -79,7 +104,8 @@ double MaterialReader::alpha_of(const char* key) const {
 }
 
 bool MaterialReader::has(Slot slot) const {
-  return material_.GetTextureCount(slot.type) > slot.index && !file_of(slot).empty();
+  const std::string file = file_of(slot);
+  return !file.empty() && dead_files_.count(file) == 0;
 }
 
 std::string MaterialReader::file_of(Slot slot) const {
@@ -147,13 +173,6 @@ absl::StatusOr<TextureId> MaterialReader::map(Slot slot, As as, const Rgb& facto
   use.factor = factor;
   use.alpha_is_known = kind() == ModelKind::kGltf;
   auto texture = textures_.find(file_of(slot), use);
-  const bool dead_names_are_common = kind() == ModelKind::kOther;
-  const bool dead =
-      absl::IsNotFound(texture.status()) || absl::IsPermissionDenied(texture.status());
-  if (dead && dead_names_are_common) {
-    leave_out(absl::StrCat(texture.status().message(), "; it is shown without"));
-    return file_.draft.textures.constant(factor);
-  }
   return texture.ok() ? texture : failed(texture.status());
 }
 

@@ -5,6 +5,7 @@
 #include <assimp/material.h>
 
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,7 @@ class MaterialReader {
     unsigned index = 0;
   };
   enum class As { kColor, kNumber, kAlpha };
+  /// Not where its file is missing and that is only a warning.
   bool has(Slot slot) const;
   /// Its texture with its wrapping, filter, transform and uv set, or white. Errors name the
   /// material.
@@ -59,14 +61,16 @@ class MaterialReader {
   std::string file_of(Slot slot) const;
   TextureStore::Use use_of(Slot slot);
   UvSet uv_set_of(unsigned assimp_set);
+  void name_dead_files();
   absl::Status failed(const absl::Status& why) const;
 
   ModelFile& file_;
   const unsigned index_;
   const aiMaterial& material_;
   ModelTextures textures_;
-  std::string called_;             ///< "\"steel\"", or its number
-  std::vector<unsigned> uv_sets_;  ///< Assimp's numbers of the two that the material uses
+  std::string called_;                ///< "\"steel\"", or its number
+  std::set<std::string> dead_files_;  ///< as the model writes them
+  std::vector<unsigned> uv_sets_;     ///< Assimp's numbers of the two that the material uses
 };
 
 }  // namespace bandsaw

@@ -90,9 +90,12 @@ std::vector<std::array<float, 3>> colors(const aiMesh& from, ModelKind kind) {
     to[i] = {channel(c.r), channel(c.g), channel(c.b)};
   }
   const std::array<float, 3> white{1, 1, 1};
+  const auto* rgba = from.mColors[0];
+  const bool unset = std::all_of(rgba, rgba + from.mNumVertices,
+                                 [](const aiColor4D& c) { return c == aiColor4D(0, 0, 0, 0); });
   const bool all_white =
       std::all_of(to.begin(), to.end(), [&](const auto& c) { return c == white; });
-  return all_white ? std::vector<std::array<float, 3>>() : to;
+  return all_white || unset ? std::vector<std::array<float, 3>>() : to;
 }
 
 // One mesh of the file; `title` begins its messages.

@@ -22,6 +22,9 @@ class ModelTextures {
   /// lies beside the model. NOT_FOUND, PERMISSION_DENIED, INVALID_ARGUMENT: the reason.
   absl::StatusOr<TextureId> find(const std::string& file, const TextureStore::Use& use) const;
 
+  /// Whether find() would find a file, or the image within the model.
+  absl::Status locate(const std::string& file) const { return source_of(file).status(); }
+
   /// Its texels alone, for a look at them. Errors: as find.
   absl::StatusOr<ImageTexture> decoded(const std::string& file) const;
 

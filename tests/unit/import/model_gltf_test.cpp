@@ -115,6 +115,29 @@ TEST_F(Gltf, TexturesAreTurnedScaledAndMovedAboutTheTopLeftCorner) {
   EXPECT_NEAR(length(at(1, 1) - Vec3{0.5, 0.5, 0}), 0, 1e-12);
 }
 
+// Assimp numbers materials as it meets them.
+TEST_F(Gltf, EachMaterialHasItsOwnExtensionsWhateverTheOrderOfUse) {
+  write_text(folder_, "o.bin", floats({0, 0, 0, 1, 0, 0, 0, 1, 0}));
+  const auto imported = import_scene(write_text(folder_, "o.gltf", R"({"asset": {"version": "2.0"},
+"extensionsUsed": ["KHR_materials_emissive_strength"], "scene": 0, "scenes": [{"nodes": [1]}],
+"nodes": [{"mesh": 0}, {"mesh": 1, "children": [0, 2]}, {"mesh": 2}],
+"meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "material": 2}]},
+  {"primitives": [{"attributes": {"POSITION": 0}, "material": 0}]},
+  {"primitives": [{"attributes": {"POSITION": 0}, "material": 1}]}],
+"materials": [
+  {"name": "a", "emissiveFactor": [1, 0, 0], "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 2}}},
+  {"name": "b", "emissiveFactor": [0, 1, 0], "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 3}}},
+  {"emissiveFactor": [0, 0, 1], "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 4}}}],
+"accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0,0,0], "max": [1,1,0]}],
+"bufferViews": [{"buffer": 0, "byteLength": 36}], "buffers": [{"byteLength": 36, "uri": "o.bin"}]})"));
+  ASSERT_TRUE(imported.ok()) << imported.status();
+  std::vector<Rgb> glow;
+  for (const Material& material : imported->scene.materials) {
+    glow.push_back(std::get<Principled>(material).emissive.factor);
+  }
+  EXPECT_THAT(glow, ::testing::UnorderedElementsAre(Rgb{2, 0, 0}, Rgb{0, 3, 0}, Rgb{0, 0, 4}));
+}
+
 TEST_F(Gltf, EachTextureHasItsOwnSetOfUvs) {
   GltfTriangle file;
   file.textures = R"({"source": 0})";
