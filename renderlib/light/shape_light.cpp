@@ -6,6 +6,7 @@
 #include "renderlib/light/ellipsoid_light.h"
 #include "renderlib/sampling/sphere_light.h"
 #include "renderlib/sampling/spherical_rectangle.h"
+#include "renderlib/sampling/spherical_triangle.h"
 #include "renderlib/sampling/warp.h"
 
 namespace bandsaw {
@@ -18,6 +19,12 @@ std::optional<SphericalRectangle> seen_rectangle(const ShapeView& shape, const V
     return std::nullopt;
   }
   return SphericalRectangle::seen_from(from, shape.a, shape.u, shape.v);
+}
+
+std::optional<SphericalTriangle> seen_triangle(const ShapeView& shape, const Vec3& from) {
+  return shape.kind == Kind::kTriangle
+             ? SphericalTriangle::seen_from(from, shape.a, shape.u, shape.v)
+             : std::nullopt;
 }
 
 /// Coordinates of a uniform point: of the parallelogram themselves; of the triangle by the square
@@ -40,10 +47,14 @@ std::optional<ShapeSample> sample_flat(const ShapeView& shape, const Vec3& from,
   ShapeSample sample;
   sample.normal = normalize(normal);
   const std::optional<SphericalRectangle> rectangle = seen_rectangle(shape, from);
-  sample.on_shape = rectangle ? rectangle->sample(u, v) : uniform_on(shape.kind, u, v);
+  const std::optional<SphericalTriangle> triangle = seen_triangle(shape, from);
+  sample.on_shape = rectangle  ? rectangle->sample(u, v)
+                    : triangle ? triangle->sample(u, v)
+                               : uniform_on(shape.kind, u, v);
   sample.position = shape.a + shape.u * sample.on_shape.x + shape.v * sample.on_shape.y;
-  sample.pdf = rectangle ? 1 / rectangle->solid_angle()
-                         : solid_angle_pdf(1 / area(shape), from, sample.position, sample.normal);
+  sample.pdf = rectangle  ? 1 / rectangle->solid_angle()
+               : triangle ? 1 / triangle->solid_angle()
+                          : solid_angle_pdf(1 / area(shape), from, sample.position, sample.normal);
   return sample;
 }
 
@@ -109,8 +120,11 @@ double direction_pdf(const ShapeView& shape, const Vec3& from, const Vec3& posit
   if (const std::optional<SphericalRectangle> rectangle = seen_rectangle(shape, from)) {
     return 1 / rectangle->solid_angle();
   }
-  const double by_area = shape.kind == Kind::kEllipsoid ? ellipsoid_area_pdf(shape, position)
-                                                        : 1 / area(shape);
+  if (const std::optional<SphericalTriangle> triangle = seen_triangle(shape, from)) {
+    return 1 / triangle->solid_angle();
+  }
+  const double by_area =
+      shape.kind == Kind::kEllipsoid ? ellipsoid_area_pdf(shape, position) : 1 / area(shape);
   const double pdf = solid_angle_pdf(by_area, from, position, normal);
   return std::isfinite(pdf) ? pdf : 0;
 }

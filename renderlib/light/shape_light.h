@@ -1,7 +1,8 @@
 #pragma once
 
 // Points on the shapes of a scene as a receiver sees them: sampled by solid angle where there is a
-// closed form (spheres from outside, rectangles), else uniformly over their area.
+// closed form (spheres from outside, rectangles, triangles that are not small), else uniformly over
+// their area.
 
 #include <optional>
 
@@ -20,7 +21,7 @@ struct ShapeView {
   Vec3 u{};  ///< quad, triangle: edges from a; disk, ellipsoid: what a unit circle or sphere in its
              ///< own axes is mapped by
   Vec3 v{};
-  Vec3 w{};  ///< ellipsoid
+  Vec3 w{};               ///< ellipsoid
   double radius = 0;      ///< sphere
   bool mirrored = false;  ///< by its placement: the outward normal is v x u
 };
