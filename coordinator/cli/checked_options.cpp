@@ -33,13 +33,6 @@ absl::Status check_outputs(const std::vector<std::string>& outputs, bool parts_a
   return absl::OkStatus();
 }
 
-absl::StatusOr<Verbosity> checked_verbosity(const RawOptions& raw) {
-  if (raw.quiet && raw.json) {
-    return wrong("--quiet and --json exclude each other");
-  }
-  return Verbosity{.quiet = raw.quiet, .json = raw.json};
-}
-
 absl::StatusOr<StopRule> checked_stop(const RawOptions& raw) {
   if (raw.samples.has_value() + raw.error.has_value() + raw.time.has_value() > 1) {
     return wrong("--samples, --error and --time exclude each other: give one");
@@ -120,13 +113,6 @@ absl::StatusOr<DisplayOptions> checked_display(const RawOptions& raw) {
   return display;
 }
 
-absl::StatusOr<JobId> checked_job(const RawOptions& raw, const std::string& command) {
-  if (!raw.job) {
-    return wrong(absl::StrCat(command, ": the job's number is missing; bandsaw jobs lists them"));
-  }
-  return parse_whole("job", *raw.job, 1, std::numeric_limits<JobId>::max());
-}
-
 absl::Status check_scene(const RawOptions& raw, const std::string& command) {
   if (raw.scene.empty()) {
     return wrong(absl::StrCat(command, ": the scene is missing, as in: bandsaw ", command,
@@ -136,6 +122,20 @@ absl::Status check_scene(const RawOptions& raw, const std::string& command) {
 }
 
 }  // namespace
+
+absl::StatusOr<Verbosity> checked_verbosity(const RawOptions& raw) {
+  if (raw.quiet && raw.json) {
+    return wrong("--quiet and --json exclude each other");
+  }
+  return Verbosity{.quiet = raw.quiet, .json = raw.json};
+}
+
+absl::StatusOr<JobId> checked_job(const RawOptions& raw, const std::string& command) {
+  if (!raw.job) {
+    return wrong(absl::StrCat(command, ": the job's number is missing; bandsaw jobs lists them"));
+  }
+  return parse_whole("job", *raw.job, 1, std::numeric_limits<JobId>::max());
+}
 
 absl::StatusOr<Command> checked_serve(const RawOptions& raw) {
   ServeOptions options;
@@ -165,6 +165,9 @@ absl::StatusOr<Command> checked_submit(const RawOptions& raw) {
   ASSIGN_OR_RETURN(options.display, checked_display(raw));
   ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
   RETURN_IF_ERROR(check_outputs(options.outputs, false));
+  if (raw.priority) {
+    ASSIGN_OR_RETURN(options.priority, checked_priority_value("--priority", *raw.priority));
+  }
   if (options.detach && !options.outputs.empty()) {
     return wrong(
         "--detach does not wait for the image: leave -o away and fetch it with bandsaw watch JOB "
@@ -194,14 +197,6 @@ absl::StatusOr<Command> checked_jobs(const RawOptions& raw) {
 absl::StatusOr<Command> checked_workers(const RawOptions& raw) {
   WorkersOptions options;
   options.farm.farm = raw.farm;
-  ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
-  return options;
-}
-
-absl::StatusOr<Command> checked_cancel(const RawOptions& raw) {
-  CancelOptions options;
-  options.farm.farm = raw.farm;
-  ASSIGN_OR_RETURN(options.job, checked_job(raw, "cancel"));
   ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
   return options;
 }

@@ -89,6 +89,9 @@ void add_submit(CLI::App& app, RawOptions& raw) {
   add_output(app, raw, kPictures, " [default: the scene's name as .png]");
   add_display(app, raw, "the scene's");
   app.add_flag("--detach", raw.detach, "Do not watch; say the job's number and leave");
+  app.add_option("--priority", raw.priority,
+                 "The highest is rendered first, -1000 to 1000 [default: 0]")
+      ->type_name("N");
   add_farm(app, raw);
   add_verbosity(app, raw);
 }
@@ -106,8 +109,15 @@ void add_list(CLI::App& app, RawOptions& raw) {
   add_verbosity(app, raw, false);
 }
 
-void add_cancel(CLI::App& app, RawOptions& raw) {
-  app.add_option("job", raw.job, "The job's number");
+void add_job(CLI::App& app, RawOptions& raw) {
+  app.add_option("job", raw.job, "The job's number, as in: bandsaw jobs");
+  add_farm(app, raw);
+  add_verbosity(app, raw);
+}
+
+void add_priority(CLI::App& app, RawOptions& raw) {
+  app.add_option("job", raw.job, "The job's number, as in: bandsaw jobs");
+  app.add_option("value", raw.priority, "The highest is rendered first, -1000 to 1000");
   add_farm(app, raw);
   add_verbosity(app, raw);
 }
@@ -156,6 +166,7 @@ struct Entry {
   const char* what;
   void (*add)(CLI::App&, RawOptions&);
   absl::StatusOr<Command> (*check)(const RawOptions&);
+  const char* example = nullptr;
 };
 
 constexpr Entry kCommands[] = {
@@ -164,7 +175,13 @@ constexpr Entry kCommands[] = {
     {"watch", "Watch a job again, and fetch its image", add_watch, checked_watch},
     {"jobs", "List the farm's jobs", add_list, checked_jobs},
     {"workers", "List the farm's workers", add_list, checked_workers},
-    {"cancel", "End a job without an image", add_cancel, checked_cancel},
+    {"cancel", "End a job without an image", add_job, checked_cancel, "bandsaw cancel 7"},
+    {"pause", "Render nothing more of a job until it is resumed", add_job, checked_pause,
+     "bandsaw pause 7"},
+    {"resume", "Let a paused job go on", add_job, checked_resume, "bandsaw resume 7"},
+    {"priority", "Render a job before others, or after them", add_priority, checked_priority,
+     "bandsaw priority 7 10    # before all jobs that are below 10"},
+    {"why", "Say why a job is not done yet", add_job, checked_why, "bandsaw why 7"},
     {"render", "Render a scene on this machine, without a farm: the same bits", add_render,
      checked_render},
     {"info", "Say what is in a scene or model, and what of it is left out", add_info, checked_info},
@@ -249,7 +266,9 @@ absl::StatusOr<Command> parse_command_line(const std::vector<std::string>& argum
     CLI::App* command = app.add_subcommand(entry.name, entry.what);
     entry.add(*command, raw);
     command->allow_extras();
-    command->footer(kExitCodes);
+    command->footer(entry.example == nullptr
+                        ? kExitCodes
+                        : absl::StrCat("Example: ", entry.example, "\n", kExitCodes));
     commands.push_back(command);
     names.emplace_back(entry.name);
   }

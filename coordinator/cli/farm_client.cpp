@@ -196,14 +196,49 @@ absl::StatusOr<farm::ListWorkersReply> FarmClient::workers() {
   return reply;
 }
 
+absl::StatusOr<Progress> FarmClient::tell(TellJob body) {
+  farm::JobStatus reply;
+  RETURN_IF_ERROR(call(kCallTimeout, [&](grpc::ClientContext& c) { return body(c, reply); }));
+  return progress_of(reply);
+}
+
 absl::StatusOr<Progress> FarmClient::cancel(JobId job) {
   farm::CancelRequest request;
   request.set_job(job);
-  farm::JobStatus reply;
+  return tell(
+      [&](auto& context, auto& reply) { return control_->Cancel(&context, request, &reply); });
+}
+
+absl::StatusOr<Progress> FarmClient::pause_job(JobId job) {
+  farm::PauseRequest request;
+  request.set_job(job);
+  return tell(
+      [&](auto& context, auto& reply) { return control_->Pause(&context, request, &reply); });
+}
+
+absl::StatusOr<Progress> FarmClient::resume_job(JobId job) {
+  farm::ResumeRequest request;
+  request.set_job(job);
+  return tell(
+      [&](auto& context, auto& reply) { return control_->Resume(&context, request, &reply); });
+}
+
+absl::StatusOr<Progress> FarmClient::set_priority(JobId job, std::int32_t priority) {
+  farm::SetPriorityRequest request;
+  request.set_job(job);
+  request.set_priority(priority);
+  return tell(
+      [&](auto& context, auto& reply) { return control_->SetPriority(&context, request, &reply); });
+}
+
+absl::StatusOr<std::vector<std::string>> FarmClient::why(JobId job) {
+  farm::WhyRequest request;
+  request.set_job(job);
+  farm::WhyReply reply;
   RETURN_IF_ERROR(call(kCallTimeout, [&](grpc::ClientContext& context) {
-    return control_->Cancel(&context, request, &reply);
+    return control_->Why(&context, request, &reply);
   }));
-  return progress_of(reply);
+  return std::vector<std::string>(reply.reason().begin(), reply.reason().end());
 }
 
 }  // namespace bandsaw::coordinator

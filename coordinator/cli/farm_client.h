@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "absl/functional/function_ref.h"
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
 #include "coordinator/cli/progress.h"
@@ -60,6 +61,11 @@ class FarmClient {
   absl::StatusOr<std::vector<Progress>> jobs();
   absl::StatusOr<farm::ListWorkersReply> workers();
   absl::StatusOr<Progress> cancel(JobId job);
+  absl::StatusOr<Progress> pause_job(JobId job);
+  absl::StatusOr<Progress> resume_job(JobId job);
+  absl::StatusOr<Progress> set_priority(JobId job, std::int32_t priority);
+  /// Sentences, at least one. NOT_FOUND.
+  absl::StatusOr<std::vector<std::string>> why(JobId job);
 
   const std::string& address() const { return connected_.address; }
 
@@ -69,6 +75,9 @@ class FarmClient {
 
  private:
   FarmClient(link::JoinString join, link::Connected connected);
+
+  using TellJob = absl::FunctionRef<grpc::Status(grpc::ClientContext&, farm::JobStatus&)>;
+  absl::StatusOr<Progress> tell(TellJob body);
 
   /// Makes a context for each try, and tries again while the farm does not answer.
   absl::Status call(std::chrono::milliseconds deadline,

@@ -28,4 +28,9 @@ ExitCode exit_code_of(const absl::Status& status) {
   }
 }
 
+ExitCode finished(const absl::Status& status, const Console& console) {
+  return status.ok() ? ExitCode::kDone
+                     : console.fail(exit_code_of(status), std::string(status.message()));
+}
+
 }  // namespace bandsaw::coordinator

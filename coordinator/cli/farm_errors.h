@@ -6,6 +6,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "coordinator/cli/console.h"
 #include "coordinator/cli/exit_code.h"
 #include "coordinator/cli/farm_client.h"
 #include "coordinator/cli/options.h"
@@ -18,5 +19,8 @@ absl::StatusOr<std::unique_ptr<FarmClient>> connect_to_farm(const FarmOption& op
 /// UNAVAILABLE, DEADLINE_EXCEEDED: no farm. INVALID_ARGUMENT, UNAUTHENTICATED, PERMISSION_DENIED:
 /// wrong use (the wrong join string among it). CANCELLED: interrupted. Others: failed.
 ExitCode exit_code_of(const absl::Status& status);
+
+/// How a command ends; complains of an error.
+ExitCode finished(const absl::Status& status, const Console& console);
 
 }  // namespace bandsaw::coordinator

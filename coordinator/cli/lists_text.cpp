@@ -31,13 +31,14 @@ std::vector<std::string> table(const std::vector<std::vector<std::string>>& rows
 
 std::vector<std::string> jobs_table(const std::vector<Progress>& jobs) {
   std::vector<std::vector<std::string>> rows = {
-      {"job", "scene", "state", "done", "size", "until", "error", "time"}};
+      {"job", "scene", "state", "priority", "done", "size", "until", "error", "time"}};
   for (const Progress& progress : jobs) {
     const JobView& job = progress.job;
     rows.push_back({
         absl::StrCat(job.id),
         printable(job.spec.name),
         state_name(job.state),
+        absl::StrCat(job.priority),
         absl::StrCat(static_cast<int>(std::floor(std::clamp(job.fraction, 0.0, 1.0) * 100)), " %"),
         absl::StrCat(job.spec.settings.width, "×", job.spec.settings.height),
         stop_text(job.spec.stop),
@@ -58,6 +59,10 @@ std::vector<std::string> jobs_json(const std::vector<Progress>& jobs) {
     lines.push_back(progress_json(progress, "job").str());
   }
   return lines;
+}
+
+std::vector<std::string> why_json(JobId job, const std::vector<std::string>& reasons) {
+  return {JsonObject().text("event", "why").whole("job", job).texts("reasons", reasons).str()};
 }
 
 std::vector<std::string> workers_table(const farm::ListWorkersReply& reply) {

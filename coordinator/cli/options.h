@@ -61,7 +61,8 @@ struct SubmitOptions {
   FarmOption farm;
   DisplayOptions display;
   Verbosity verbosity;
-  bool detach = false;  ///< do not watch
+  bool detach = false;        ///< do not watch
+  std::int32_t priority = 0;  ///< [-kMostPriority, kMostPriority]
 };
 
 struct WatchOptions {
@@ -83,6 +84,31 @@ struct WorkersOptions {
 };
 
 struct CancelOptions {
+  JobId job = 0;
+  FarmOption farm;
+  Verbosity verbosity;
+};
+
+struct PauseOptions {
+  JobId job = 0;
+  FarmOption farm;
+  Verbosity verbosity;
+};
+
+struct ResumeOptions {
+  JobId job = 0;
+  FarmOption farm;
+  Verbosity verbosity;
+};
+
+struct PriorityOptions {
+  JobId job = 0;
+  std::int32_t priority = 0;  ///< [-kMostPriority, kMostPriority]
+  FarmOption farm;
+  Verbosity verbosity;
+};
+
+struct WhyOptions {
   JobId job = 0;
   FarmOption farm;
   Verbosity verbosity;
@@ -127,8 +153,9 @@ struct ShowText {
   std::string text;
 };
 
-using Command = std::variant<ServeOptions, SubmitOptions, WatchOptions, JobsOptions, WorkersOptions,
-                             CancelOptions, RenderOptions, InfoOptions, StitchOptions,
-                             CompareOptions, ShowText>;
+using Command =
+    std::variant<ServeOptions, SubmitOptions, WatchOptions, JobsOptions, WorkersOptions,
+                 CancelOptions, PauseOptions, ResumeOptions, PriorityOptions, WhyOptions,
+                 RenderOptions, InfoOptions, StitchOptions, CompareOptions, ShowText>;
 
 }  // namespace bandsaw::coordinator

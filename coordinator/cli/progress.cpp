@@ -74,6 +74,7 @@ Progress progress_of(const farm::JobStatus& status) {
   job.counters.rays = status.rays();
   job.counters.bad_samples = status.bad_samples();
   job.cpu_s = status.cpu_s();
+  job.priority = status.priority();
   job.workers_used = status.workers_used();
   for (const farm::JobWorker& worker : status.worker()) {
     job.workers.push_back(worker_of(worker));

@@ -59,7 +59,9 @@ JsonObject progress_json(const Progress& progress, const std::string& event) {
   for (const JobWorkerView& worker : job.workers) {
     workers.push_back(worker_json(worker));
   }
-  return out.whole("workers_used", job.workers_used).objects("workers", workers);
+  return out.number("priority", job.priority)
+      .whole("workers_used", job.workers_used)
+      .objects("workers", workers);
 }
 
 }  // namespace bandsaw::coordinator

@@ -34,6 +34,7 @@ farm::SubmitRequest request_for(const SubmitOptions& options, const ImportedPack
   farm::SubmitRequest request;
   request.set_request_id(new_request_id());
   request.set_name(package.info().name);
+  request.set_priority(options.priority);
   request.set_manifest_sha256(wire::sha256(package.manifest()).raw());
   *request.mutable_settings() = to_proto(settings);
   *request.mutable_stop() = to_proto(options.image.stop);

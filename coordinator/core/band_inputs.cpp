@@ -59,14 +59,15 @@ Coverage::Change Core::State::store(Job& job, Pass& pass, const input::BandStore
   pass.digests.keep(in.band, change.rows, in.row_digests);
   pass.counters.add(in.counters);
   pass.cpu_s += in.cpu_s;
+  shrink_losses(job, in.band);
   std::uint64_t rows = 0;
   for (const RowRange& range : change.rows) {
     rows += range.count();
   }
   job.throughput.add(clock_.wall(), static_cast<double>(rows * in.band.samples.samples() *
                                                         job.spec.settings.width));
-  if (!in.instance.empty() && job.used.size() < Job::kUsedKept) {
-    job.used.insert(in.instance);
+  if (in.renderer != 0 && job.used.size() < Job::kUsedKept) {
+    job.used.insert(in.renderer);
   }
   job.advance();
   touch(job);

@@ -30,8 +30,9 @@ struct CoreOptions {
   double reattach_grace_s =
       6;  ///< after a restart nothing is leased this long unless all former workers are back
   double band_target_s =
-      1;              ///< how long a band should take its worker; bands are shorter toward the end
-  std::string epoch;  ///< names this life; part of what a held lease is known by
+      1;  ///< how long a band should take its worker; bands are shorter toward the end
+  std::size_t losses_per_band = 3;  ///< so many workers lost while rendering a band fail the job
+  std::string epoch;                ///< names this life; part of what a held lease is known by
 };
 
 /// What one input led to. Durable first: the records MUST be on disk before any action is done or

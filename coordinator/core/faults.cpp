@@ -4,6 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "coordinator/core/band_text.h"
 #include "coordinator/core/state.h"
 #include "proto/wire/limits.h"
 
@@ -14,17 +15,12 @@ namespace {
 constexpr std::uint32_t kFaultsPerWorker = 3;
 constexpr std::size_t kFaultsPerBand = 3;
 
-bool meet(const Band& a, const Band& b) {
-  return a.samples.first < b.samples.last && b.samples.first < a.samples.last &&
-         a.rows.first < b.rows.last && b.rows.first < a.rows.last;
-}
-
-std::string name_of(const Band& band) {
-  return absl::StrCat("rows ", band.rows.first, "–", band.rows.last, " of samples ",
-                      band.samples.first, "–", band.samples.last);
-}
-
 }  // namespace
+
+std::string Core::State::name_of_instance(const std::string& instance) const {
+  const Worker* known = workers_.by_instance(instance);
+  return known == nullptr ? instance : known->name;
+}
 
 bool Core::State::may_render(const Worker& worker, const Job& job) const {
   const auto on_job = worker.on_job.find(job.id);
@@ -66,8 +62,7 @@ void Core::State::add_fault(Job& job, Worker& worker, const Band& band, const st
   std::size_t count = 0;
   for (const Fault& fault : job.faults) {
     if (meet(fault.band, band)) {
-      const Worker* known = workers_.by_instance(fault.instance);
-      names.insert(known == nullptr ? fault.instance : known->name);
+      names.insert(name_of_instance(fault.instance));
       ++count;
     }
   }

@@ -57,10 +57,10 @@ void Job::advance() {
 }
 
 void Job::finish() {
-  final_totals_ = totals();
-  final_samples_ = complete_samples();
   passes.clear();
   faults.clear();
+  losses.clear();
+  used.clear();
   cost = {};
   complete_passes_ = 0;
 }
@@ -71,7 +71,7 @@ std::uint64_t Job::planned_samples() const {
 
 std::uint64_t Job::complete_samples() const {
   if (is_final(state)) {
-    return state == JobState::kDone ? fixed.value_or(0) : final_samples_;
+    return state == JobState::kDone ? fixed.value_or(0) : figures ? figures->samples_per_pixel : 0;
   }
   return complete_passes_ == 0 ? 0 : passes[complete_passes_ - 1].samples.last;
 }
@@ -94,7 +94,10 @@ std::uint64_t Job::pixels() const {
 }
 
 Totals Job::totals() const {
-  Totals sum = final_totals_;
+  Totals sum;
+  if (is_final(state) && figures) {
+    sum = {figures->samples, figures->counters, figures->cpu_s};
+  }
   for (const Pass& pass : passes) {
     sum.samples += pass.coverage.stored_samples() * spec.settings.width;
     sum.counters.add(pass.counters);

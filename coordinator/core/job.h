@@ -13,6 +13,7 @@
 
 #include "coordinator/core/cost_map.h"
 #include "coordinator/core/coverage.h"
+#include "coordinator/core/messages.h"
 #include "coordinator/core/row_digests.h"
 #include "coordinator/core/speed.h"
 #include "coordinator/core/types.h"
@@ -60,7 +61,7 @@ class Job {
   void fix(std::uint64_t samples);
   /// Counts complete passes on; digests of all but the last few are forgotten.
   void advance();
-  /// Passes, faults and digests are not needed any more; the totals stay.
+  /// Passes, faults and digests are not needed any more; the figures stay.
   void finish();
 
   std::uint64_t planned_samples() const;   ///< of all passes
@@ -79,6 +80,7 @@ class Job {
   JobState state = JobState::kRunning;
   std::int32_t priority = 0;
   bool held = false;                   ///< a person paused it
+  Time held_at = 0;                    ///< patience clock: since when
   std::string reason;                  ///< of the state
   std::string notice;                  ///< what people should know though the job goes on
   std::optional<std::uint64_t> fixed;  ///< the job ends after this many samples a pixel
@@ -92,13 +94,16 @@ class Job {
   std::set<LeaseId> copies;        ///< of `leases`, those that own nothing (Lease::copy_of)
   std::uint64_t bands_copied = 0;  ///< leases given to idle workers though others had them
   std::deque<Fault> faults;        ///< the newest kFaultsKept
-  std::set<std::string> used;      ///< instances whose bands are in the image, at most kUsedKept
+  std::deque<Fault> losses;        ///< of workers that went while rendering a band and stay away
+  std::set<std::uint64_t> used;    ///< who rendered what is in the image, at most kUsedKept
+  std::optional<record::Figures> figures;  ///< of a final job
 
   std::optional<Time> first_lease_at;  ///< in this life of the coordinator
-  std::optional<Time> final_at;
-  Throughput throughput;  ///< pixel samples
-  CostMap cost;           ///< of its rows
-  Speed per_thread;       ///< pace of all its workers, in work a second and thread
+  double elapsed_before = 0;           ///< seconds, in earlier lives
+  double elapsed_noted = 0;            ///< seconds in all, as journalled last
+  Throughput throughput;               ///< pixel samples
+  CostMap cost;                        ///< of its rows
+  Speed per_thread;                    ///< pace of all its workers, in work a second and thread
 
   static constexpr std::size_t kFaultsKept = 1'000;
   static constexpr std::size_t kUsedKept = 65'536;
@@ -106,8 +111,6 @@ class Job {
  private:
   static constexpr std::size_t kPassesWithDigests = 8;
   std::size_t complete_passes_ = 0;
-  Totals final_totals_;
-  std::uint64_t final_samples_ = 0;
 };
 
 }  // namespace bandsaw::coordinator

@@ -1,5 +1,6 @@
-// Submitting, cancelling, deciding how many samples, pausing, finishing.
+// Submitting, cancelling, deciding how many samples, finishing.
 
+#include <algorithm>
 #include <cmath>
 
 #include "absl/strings/str_cat.h"
@@ -76,67 +77,6 @@ void Core::State::on(const input::Cancel& in) {
   }
 }
 
-/// A job that can be told something; else the step's status says why not.
-Job* Core::State::asked_of(JobId id) {
-  Job* job = find(id);
-  if (job == nullptr) {
-    step_.status = absl::NotFoundError(absl::StrCat("there is no job ", id));
-    return nullptr;
-  }
-  if (is_final(job->state)) {
-    step_.status = absl::FailedPreconditionError(absl::StrCat("job ", id, " is over"));
-    return nullptr;
-  }
-  return job;
-}
-
-void Core::State::on(const input::Pause& in) {
-  Job* job = asked_of(in.job);
-  if (job == nullptr || job->held) {
-    return;
-  }
-  if (job->state == JobState::kFinishing) {
-    step_.status = absl::FailedPreconditionError(
-        absl::StrCat("job ", in.job, " is finishing: all of it is rendered"));
-    return;
-  }
-  emit(record::HoldChanged{job->id, true});
-  emit(record::StateChanged{job->id, JobState::kPaused, kPausedByAPerson});
-  std::vector<LeaseId> waiting;
-  for (const LeaseId id : job->leases) {
-    if (workers_.by_id(leases_.find(id)->worker)->leases.front() != id) {
-      waiting.push_back(id);
-    }
-  }
-  end_all(waiting, Revoke::kYes);
-}
-
-void Core::State::on(const input::Resume& in) {
-  Job* job = asked_of(in.job);
-  if (job == nullptr) {
-    return;
-  }
-  if (job->held) {
-    emit(record::HoldChanged{job->id, false});
-  }
-  if (job->state == JobState::kPaused) {
-    resume(*job);
-  }
-}
-
-void Core::State::on(const input::SetPriority& in) {
-  Job* job = asked_of(in.job);
-  if (job == nullptr || job->priority == in.priority) {
-    return;
-  }
-  if (in.priority < -kMostPriority || in.priority > kMostPriority) {
-    step_.status = absl::InvalidArgumentError(absl::StrCat(
-        "a priority lies in [", -kMostPriority, ", ", kMostPriority, "], is ", in.priority));
-    return;
-  }
-  emit(record::PriorityChanged{job->id, in.priority});
-}
-
 void Core::State::plan_first(Job& job) {
   if (const auto* rule = std::get_if<StopAtSamples>(&job.spec.stop)) {
     if (!job.fixed) {
@@ -164,7 +104,7 @@ bool Core::State::plan_timed(Job& job) {
   if (rule == nullptr || job.fixed || job.planned_samples() >= rule->max_samples) {
     return false;
   }
-  const double left = rule->seconds - elapsed(job);
+  const double left = rule->seconds - elapsed(job, clock_.wall());
   const std::size_t begun = static_cast<std::size_t>(
       std::count_if(job.passes.begin(), job.passes.end(),
                     [](const Pass& pass) { return !pass.coverage.complete(); }));
@@ -224,7 +164,7 @@ void Core::State::settle(Job& job) {
   }
   if (const auto* rule = std::get_if<StopAtTime>(&job.spec.stop); rule != nullptr && !job.fixed) {
     const std::uint64_t there = job.complete_samples();
-    if (there > 0 && (elapsed(job) >= rule->seconds || there >= rule->max_samples)) {
+    if (there > 0 && (elapsed(job, clock_.wall()) >= rule->seconds || there >= rule->max_samples)) {
       fix(job, there);
     }
   }
@@ -236,6 +176,7 @@ void Core::State::settle(Job& job) {
 
 void Core::State::end(Job& job, JobState state, const std::string& reason) {
   end_all({job.leases.begin(), job.leases.end()}, Revoke::kYes);
+  emit(figures(job));
   emit(record::StateChanged{job.id, state, reason.substr(0, wire::kReasonBytes)});
   act(action::DropBands{job.id});
 }
@@ -246,44 +187,45 @@ void Core::State::on(const input::ResultWritten& in) {
   }
 }
 
-void Core::State::on(const input::StorageFailed& in) {
-  Job* job = find(in.job);
-  if (job != nullptr && (job->state == JobState::kRunning || job->state == JobState::kFinishing)) {
-    emit(record::StateChanged{job->id, JobState::kPaused, in.reason.substr(0, wire::kReasonBytes)});
-  }
-}
-
-void Core::State::on(const input::StorageBack&) {
-  const std::set<JobId> active = active_;
-  for (const JobId id : active) {
-    if (Job& job = jobs_.at(id); job.state == JobState::kPaused && !job.held) {
-      resume(job);
-    }
-  }
-}
-
-void Core::State::resume(Job& job) {
-  emit(record::StateChanged{job.id, JobState::kRunning, ""});
-  for (const LeaseId id : job.leases) {
-    leases_.find(id)->advanced_at = clock_.patience();
-  }
-  touch(job);
-  settle(job);
-}
-
 void Core::State::on(const input::Tick&) {
   give_up_on_former();
+  take_back_from_paused();
   forget_refusals();
   check_silence();
   check_progress();
   const std::set<JobId> active = active_;
   for (const JobId id : active) {
     settle(jobs_.at(id));
+    note_time(jobs_.at(id));
   }
 }
 
-double Core::State::elapsed(const Job& job) const {
-  return job.first_lease_at ? clock_.wall() - *job.first_lease_at : 0;
+double Core::State::elapsed(const Job& job, Time now) const {
+  if (is_final(job.state)) {
+    return job.figures ? job.figures->elapsed_s : 0;
+  }
+  return job.elapsed_before + (job.first_lease_at ? std::max(0.0, now - *job.first_lease_at) : 0.0);
+}
+
+record::Figures Core::State::figures(const Job& job) const {
+  const Totals totals = job.totals();
+  return {.job = job.id,
+          .elapsed_s = elapsed(job, clock_.wall()),
+          .cpu_s = totals.cpu_s,
+          .workers_used = static_cast<std::uint32_t>(job.used.size()),
+          .samples = totals.samples,
+          .samples_per_pixel = job.complete_samples(),
+          .error = job.error,
+          .counters = totals.counters};
+}
+
+/// A crash loses at most a second of it, or a fiftieth; a long job has no more than a few hundred
+/// such records.
+void Core::State::note_time(const Job& job) {
+  const double spent = elapsed(job, clock_.wall());
+  if (job.first_lease_at && spent - job.elapsed_noted >= std::max(1.0, job.elapsed_noted / 50)) {
+    emit(record::TimeSpent{job.id, spent});
+  }
 }
 
 }  // namespace bandsaw::coordinator

@@ -19,8 +19,8 @@ struct Submit {
   JobSpec spec;
   std::int32_t priority = 0;  ///< [-kMostPriority, kMostPriority]; only of a new job
 };
-/// Nothing more is leased of it, what is not begun is taken back, what is being rendered is
-/// finished.
+/// Nothing more is leased of it, what is not begun is taken back at once, and what is not rendered
+/// a second later too.
 struct Pause {
   JobId job = 0;
 };
@@ -65,7 +65,8 @@ struct BandStored {
   JobId job = 0;
   Band band;
   std::vector<std::uint64_t> row_digests;
-  std::string instance;  ///< the worker that rendered it; empty when read back from disk
+  std::string instance;        ///< the worker that rendered it; empty when read back from disk
+  std::uint64_t renderer = 0;  ///< names that worker in all lives of the coordinator; 0: unknown
   Counters counters;
   double render_s = 0;
   double cpu_s = 0;
@@ -127,6 +128,22 @@ struct HoldChanged {
   JobId job = 0;
   bool held = false;
 };
+/// How long a job has been at work, in all lives of the coordinator; the last of a job counts.
+struct TimeSpent {
+  JobId job = 0;
+  double elapsed_s = 0;
+};
+/// What a job came to, before it is final: its bands are dropped then.
+struct Figures {
+  JobId job = 0;
+  double elapsed_s = 0;
+  double cpu_s = 0;
+  std::uint32_t workers_used = 0;
+  std::uint64_t samples = 0;            ///< pixel samples stored
+  std::uint64_t samples_per_pixel = 0;  ///< of the complete passes
+  double error = -1;                    ///< negative: not known
+  Counters counters;
+};
 /// Who was connected, so that a restart waits a moment for those who may hold finished bands.
 struct WorkerJoined {
   std::string instance;
@@ -136,9 +153,10 @@ struct WorkerLeft {
 };
 }  // namespace record
 
-using Record = std::variant<record::JobAdded, record::PassPlanned, record::SamplesFixed,
-                            record::StateChanged, record::PriorityChanged, record::HoldChanged,
-                            record::WorkerJoined, record::WorkerLeft>;
+using Record =
+    std::variant<record::JobAdded, record::PassPlanned, record::SamplesFixed, record::StateChanged,
+                 record::PriorityChanged, record::HoldChanged, record::TimeSpent, record::Figures,
+                 record::WorkerJoined, record::WorkerLeft>;
 
 // ---- actions ----
 namespace action {

@@ -37,7 +37,6 @@ void Core::State::apply(const record::StateChanged& r) {
   }
   if (is_final(r.state)) {
     job->finish();
-    job->final_at = clock_.wall();
     active_.erase(r.job);
     for (auto& [id, worker] : workers_.all()) {
       worker.on_job.erase(r.job);
@@ -65,6 +64,19 @@ void Core::State::apply(const record::PriorityChanged& r) {
 void Core::State::apply(const record::HoldChanged& r) {
   if (Job* job = find(r.job)) {
     job->held = r.held;
+    job->held_at = clock_.patience();
+  }
+}
+
+void Core::State::apply(const record::TimeSpent& r) {
+  if (Job* job = find(r.job)) {
+    job->elapsed_noted = r.elapsed_s;
+  }
+}
+
+void Core::State::apply(const record::Figures& r) {
+  if (Job* job = find(r.job); job != nullptr && !is_final(job->state)) {
+    job->figures = r;
   }
 }
 
@@ -98,6 +110,7 @@ Step Core::State::replayed(Time now) {
     }
     plan_first(job);
     job.throughput = {};
+    job.elapsed_before = job.elapsed_noted;
     if (job.held) {
       if (job.state != JobState::kPaused) {
         emit(record::StateChanged{id, JobState::kPaused, kPausedByAPerson});

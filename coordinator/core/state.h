@@ -4,9 +4,9 @@
 // only, whether they are new or replayed; sessions, leases and measurements live as long as the
 // process and are changed where they happen.
 //
-// Where to look: job_inputs.cpp, worker_inputs.cpp, band_inputs.cpp (one function an input),
-// replay.cpp (durable facts), leasing.cpp (who renders what), faults.cpp (what goes wrong),
-// views.cpp (what is shown), invariants.cpp.
+// Where to look: job_inputs.cpp, pause_inputs.cpp, worker_inputs.cpp, band_inputs.cpp (one function
+// an input), replay.cpp (durable facts), leasing.cpp (who renders what), faults.cpp (what goes
+// wrong), views.cpp (what is shown), invariants.cpp.
 
 #include <deque>
 #include <map>
@@ -65,6 +65,8 @@ class Core::State {
   void apply(const record::StateChanged& r);
   void apply(const record::PriorityChanged& r);
   void apply(const record::HoldChanged& r);
+  void apply(const record::TimeSpent& r);
+  void apply(const record::Figures& r);
   void apply(const record::WorkerJoined& r);
   void apply(const record::WorkerLeft& r);
 
@@ -101,8 +103,11 @@ class Core::State {
   void end(Job& job, JobState state, const std::string& reason);
   Job* asked_of(JobId id);
   void resume(Job& job);
+  void take_back_from_paused();
   void touch(const Job& job);
-  double elapsed(const Job& job) const;
+  double elapsed(const Job& job, Time now) const;
+  record::Figures figures(const Job& job) const;
+  void note_time(const Job& job);
 
   // Workers.
   void welcome(Worker& worker, const input::Hello& in);
@@ -154,9 +159,18 @@ class Core::State {
   // What goes wrong.
   void add_fault(Job& job, Worker& worker, const Band& band, const std::string& reason);
   std::vector<Band> left_to_others(const Job& job, const Worker& worker) const;
+  std::string name_of_instance(const std::string& instance) const;
   bool left_to_others(const Job& job, const Worker& worker, const Band& band) const;
   bool may_render(const Worker& worker, const Job& job) const;
   bool someone_else(const Job& job, const Band& band) const;
+  struct Losing {
+    JobId job = 0;
+    Band band;
+  };
+  std::optional<Losing> in_hand(const Worker& worker) const;
+  void add_loss(const Worker& worker, const Losing& lost);
+  void forgive_losses(const Worker& worker);
+  static void shrink_losses(Job& job, const Band& stored);
   void check_silence();
   void check_progress();
   void returned_other_pixels(Job& job, const input::BandStored& in, std::uint32_t row);

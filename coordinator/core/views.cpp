@@ -19,19 +19,18 @@ std::optional<JobView> Core::State::view(JobId id, Time now) const {
   view.spec = job->spec;
   view.state = job->state;
   view.reason = !job->reason.empty() ? job->reason : waiting_reason(*job);
-  view.elapsed_s = job->first_lease_at
-                       ? std::max(0.0, job->final_at.value_or(std::max(now, clock_.wall())) -
-                                           *job->first_lease_at)
-                       : 0;
+  view.elapsed_s = elapsed(*job, std::max(now, clock_.wall()));
   view.fraction = fraction(*job, now);
   view.remaining_s = remaining(*job, now);
   view.samples_per_s = is_final(job->state) ? 0 : job->throughput.per_second(now);
   view.samples_done = totals.samples;
   view.samples_per_pixel = job->complete_samples();
-  view.error = job->error;
+  view.error = is_final(job->state) && job->figures ? job->figures->error : job->error;
   view.counters = totals.counters;
   view.cpu_s = totals.cpu_s;
-  view.workers_used = static_cast<std::uint32_t>(job->used.size());
+  view.workers_used = is_final(job->state) && job->figures
+                          ? job->figures->workers_used
+                          : static_cast<std::uint32_t>(job->used.size());
   view.priority = job->priority;
   view.bands_copied = job->bands_copied;
   view.workers = lines(*job);
@@ -90,8 +89,7 @@ double Core::State::fraction(const Job& job, Time now) const {
   }
   const auto* error = std::get_if<StopAtError>(&job.spec.stop);
   if (const auto* rule = std::get_if<StopAtTime>(&job.spec.stop); rule && !job.fixed) {
-    const double elapsed = job.first_lease_at ? now - *job.first_lease_at : 0;
-    return std::clamp(elapsed / rule->seconds, 0.0, 1.0);
+    return std::clamp(elapsed(job, now) / rule->seconds, 0.0, 1.0);
   }
   if (error != nullptr && !job.fixed && job.error < 0) {
     return 0;
@@ -105,7 +103,7 @@ double Core::State::remaining(const Job& job, Time now) const {
     return 0;
   }
   if (const auto* rule = std::get_if<StopAtTime>(&job.spec.stop); rule && !job.fixed) {
-    return job.first_lease_at ? std::max(0.0, rule->seconds - (now - *job.first_lease_at)) : -1;
+    return job.first_lease_at ? std::max(0.0, rule->seconds - elapsed(job, now)) : -1;
   }
   const bool unknown =
       std::holds_alternative<StopAtError>(job.spec.stop) && !job.fixed && job.error < 0;

@@ -74,6 +74,7 @@ void Core::State::welcome(Worker& worker, const input::Hello& in) {
     emit(record::WorkerJoined{worker.instance});
   }
   former_.erase(worker.instance);
+  forgive_losses(worker);
   act(action::Welcome{in.session, worker.name,
                       static_cast<std::uint32_t>(options_.heartbeat_interval_s * 1000)});
   take_up(worker, in.worker.held);
@@ -165,6 +166,7 @@ void Core::State::on(const input::Lost& in) {
 }
 
 void Core::State::lose(Worker& worker, const std::string& reason) {
+  const std::optional<Losing> lost = in_hand(worker);
   end_all(std::vector<LeaseId>(worker.leases), Revoke::kNo);
   if (!worker.faulty) {
     worker.reason = reason.substr(0, wire::kReasonBytes);
@@ -172,6 +174,9 @@ void Core::State::lose(Worker& worker, const std::string& reason) {
   worker.doing.clear();
   if (joined_.contains(worker.instance)) {
     emit(record::WorkerLeft{worker.instance});
+  }
+  if (lost) {
+    add_loss(worker, *lost);
   }
   workers_.disconnect(worker);
   hunger_.update(worker);

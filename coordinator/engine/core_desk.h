@@ -46,7 +46,7 @@ class CoreDesk {
   absl::Status restore(StoreDesk& store, FilmDesk& film);
 
   // People.
-  void submit(JobSpec spec, Answer<JobId> answer);
+  void submit(JobSpec spec, std::int32_t priority, Answer<JobId> answer);
   /// Cancel, Pause, Resume or SetPriority of a job; answered with what it is then.
   void tell(JobId job, const Input& input, Answer<JobView> answer);
   void watch(JobId job, Watchers::Changed changed);

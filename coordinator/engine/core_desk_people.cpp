@@ -5,12 +5,12 @@
 
 namespace bandsaw::coordinator {
 
-void CoreDesk::submit(JobSpec spec, Answer<JobId> answer) {
+void CoreDesk::submit(JobSpec spec, std::int32_t priority, Answer<JobId> answer) {
   if (!journal_status_.ok()) {
     answer(journal_status_);
     return;
   }
-  const Step step = run(input::Submit{.spec = std::move(spec)});
+  const Step step = run(input::Submit{.spec = std::move(spec), .priority = priority});
   outbox_.reply([this, job = step.job, decided = step.status,
                  answer = std::move(answer)](const absl::Status& journalled) mutable {
     if (!decided.ok()) {

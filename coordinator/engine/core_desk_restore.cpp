@@ -32,7 +32,8 @@ absl::Status CoreDesk::restore_job(JobId id, const Known& known, StoreDesk& stor
     film.plan(id, samples);
   }
   absl::Status filmed;
-  const auto take = [&](BandPixels pixels, std::uint64_t offset) {
+  const auto take = [&](BandRecord record, std::uint64_t offset) {
+    BandPixels& pixels = record.pixels;
     std::optional<std::vector<RowRange>> rows = core_.wanted(id, pixels.band);
     if (!rows || rows->empty() || !filmed.ok()) {
       return;
@@ -42,7 +43,9 @@ absl::Status CoreDesk::restore_job(JobId id, const Known& known, StoreDesk& stor
                                    .band = pixels.band,
                                    .row_digests = row_digests(pixels),
                                    .instance = {},
-                                   .counters = pixels.counters});
+                                   .renderer = record.renderer,
+                                   .counters = pixels.counters,
+                                   .cpu_s = record.cpu_s});
     // A band whose other rows had other pixels is refused now as it was then.
     if (const auto left = core_.wanted(id, band); left && left->empty()) {
       PutBand put;

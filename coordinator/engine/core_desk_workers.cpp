@@ -63,6 +63,7 @@ void CoreDesk::band_stored(PutBand put, std::vector<std::uint64_t> row_digests) 
                                           .band = put.pixels.band,
                                           .row_digests = std::move(row_digests),
                                           .instance = put.instance,
+                                          .renderer = renderer_of(put.instance),
                                           .counters = put.pixels.counters,
                                           .render_s = put.render_s,
                                           .cpu_s = put.cpu_s},

@@ -34,17 +34,19 @@ absl::StatusOr<std::unique_ptr<Engine>> Engine::start(EngineOptions options, Eng
   return std::unique_ptr<Engine>(new Engine(std::move(impl)));
 }
 
-void Engine::submit(JobSpec spec, std::function<void(absl::StatusOr<JobId>)> done) {
+void Engine::submit(JobSpec spec, std::function<void(absl::StatusOr<JobId>)> done,
+                    std::int32_t priority) {
   // The package is read from the disk, so not on the caller's thread and not on the core's.
-  impl_->on_store([impl = impl_.get(), spec = std::move(spec),
+  impl_->on_store([impl = impl_.get(), spec = std::move(spec), priority,
                    answer = Answer<JobId>(std::move(done))](StoreDesk&) mutable {
     if (const absl::Status fit = check_submit(spec, impl->blobs()); !fit.ok()) {
       answer(fit);
       return;
     }
-    impl->on_core([spec = std::move(spec), answer = std::move(answer)](CoreDesk& core) mutable {
-      core.submit(std::move(spec), std::move(answer));
-    });
+    impl->on_core(
+        [spec = std::move(spec), priority, answer = std::move(answer)](CoreDesk& core) mutable {
+          core.submit(std::move(spec), priority, std::move(answer));
+        });
   });
 }
 

@@ -45,7 +45,9 @@ class Engine {
 
   // People.
   /// The job id once the job is journalled. FAILED_PRECONDITION: a blob is missing (named).
-  void submit(JobSpec spec, std::function<void(absl::StatusOr<JobId>)> done);
+  /// INVALID_ARGUMENT: the priority is beyond kMostPriority.
+  void submit(JobSpec spec, std::function<void(absl::StatusOr<JobId>)> done,
+              std::int32_t priority = 0);
   /// Answered with the job as it is then, once that is journalled. NOT_FOUND. All but cancel also
   /// FAILED_PRECONDITION: the job is over.
   void cancel(JobId job, std::function<void(absl::StatusOr<JobView>)> done);

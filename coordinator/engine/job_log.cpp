@@ -30,6 +30,11 @@ struct Line {
   void operator()(const record::HoldChanged& r) const {
     spdlog::info("job={} {} by a person", r.job, r.held ? "held" : "let go");
   }
+  void operator()(const record::TimeSpent&) const {}
+  void operator()(const record::Figures& r) const {
+    spdlog::info("job={} elapsed={:.3f} s cpu={:.3f} s workers={} samples={}", r.job, r.elapsed_s,
+                 r.cpu_s, r.workers_used, r.samples);
+  }
   void operator()(const record::WorkerJoined& r) const {
     spdlog::debug("worker instance={} joined", r.instance);
   }

@@ -13,6 +13,7 @@
 #include "coordinator/engine/answer.h"
 #include "coordinator/engine/engine.h"
 #include "renderlib/render/band.h"
+#include "renderlib/render/hash64.h"
 
 namespace bandsaw::coordinator {
 
@@ -59,6 +60,14 @@ class BandBudget {
  private:
   std::atomic<std::int64_t> left_;
 };
+
+/// A worker's instance as a band record names it.
+inline std::uint64_t renderer_of(const std::string& instance) {
+  Hash64 hash;
+  hash.add(
+      absl::MakeConstSpan(reinterpret_cast<const std::byte*>(instance.data()), instance.size()));
+  return hash.value();
+}
 
 struct PutBand {
   JobId job = 0;

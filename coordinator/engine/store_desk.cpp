@@ -17,13 +17,13 @@ bool belongs(const BandRecord& record, const JobSpec& spec) {
 }  // namespace
 
 absl::StatusOr<BandLogReport> StoreDesk::open_job(
-    JobId id, const JobSpec& spec, absl::FunctionRef<void(BandPixels, std::uint64_t)> each) {
+    JobId id, const JobSpec& spec, absl::FunctionRef<void(BandRecord, std::uint64_t)> each) {
   RETURN_IF_ERROR(add_job(id, spec));
   OpenJob& job = jobs_[id];
   BandLogReport report;
   const auto hand_on = [&](BandRecord record, std::uint64_t offset) {
     if (belongs(record, spec)) {
-      each(std::move(record.pixels), offset);
+      each(std::move(record), offset);
     } else {
       report.damaged_bytes += band_record_size(record.pixels.band, record.settings.width);
     }
@@ -57,7 +57,9 @@ absl::Status StoreDesk::write(OpenJob& job, PutBand& put) {
   RETURN_IF_ERROR(open_log(put.job, job));
   BandRecord record{.package_digest = job.spec.manifest,
                     .settings = job.spec.settings,
-                    .pixels = std::move(put.pixels)};
+                    .pixels = std::move(put.pixels),
+                    .cpu_s = put.cpu_s,
+                    .renderer = renderer_of(put.instance)};
   const absl::StatusOr<std::uint64_t> offset = job.log->append(record);
   put.pixels = std::move(record.pixels);
   RETURN_IF_ERROR(offset.status());

@@ -34,7 +34,7 @@ class StoreDesk {
   /// Opens the log of a job and hands on what it holds, with the byte each begins at. Records of
   /// something else are left out, and counted as damaged.
   absl::StatusOr<BandLogReport> open_job(JobId job, const JobSpec& spec,
-                                         absl::FunctionRef<void(BandPixels, std::uint64_t)> each);
+                                         absl::FunctionRef<void(BandRecord, std::uint64_t)> each);
   /// Makes the folder of a new job.
   absl::Status add_job(JobId job, const JobSpec& spec);
 

@@ -13,12 +13,6 @@ namespace {
 
 using Unary = grpc::ServerUnaryReactor;
 
-Unary* finished(grpc::CallbackServerContext* context, const absl::Status& status) {
-  Unary* reactor = context->DefaultReactor();
-  reactor->Finish(link::to_grpc(status));
-  return reactor;
-}
-
 absl::StatusOr<std::vector<wire::Digest>> digests(const farm::MissingBlobsRequest& request) {
   if (static_cast<std::size_t>(request.sha256_size()) > wire::kDigestsPerMessage) {
     return absl::InvalidArgumentError(absl::StrCat("sha256: at most ", wire::kDigestsPerMessage,
@@ -77,12 +71,15 @@ Unary* FarmService::Submit(grpc::CallbackServerContext* context, const farm::Sub
     return finished(context, spec.status());
   }
   Unary* reactor = context->DefaultReactor();
-  doors_.engine.submit(*std::move(spec), [reactor, reply](const absl::StatusOr<JobId>& job) {
-    if (job.ok()) {
-      reply->set_job(*job);
-    }
-    reactor->Finish(link::to_grpc(job.status()));
-  });
+  doors_.engine.submit(
+      *std::move(spec),
+      [reactor, reply](const absl::StatusOr<JobId>& job) {
+        if (job.ok()) {
+          reply->set_job(*job);
+        }
+        reactor->Finish(link::to_grpc(job.status()));
+      },
+      request->priority());
   return reactor;
 }
 
@@ -132,22 +129,6 @@ Unary* FarmService::ListWorkers(grpc::CallbackServerContext* context,
       *reply->add_worker() = to_message(worker);
     }
     reactor->Finish(grpc::Status::OK);
-  });
-  return reactor;
-}
-
-Unary* FarmService::Cancel(grpc::CallbackServerContext* context, const farm::CancelRequest* request,
-                           farm::JobStatus* reply) {
-  if (const auto status = check_caller(*context, doors_.identity, link::Role::kFarm);
-      !status.ok()) {
-    return finished(context, status);
-  }
-  Unary* reactor = context->DefaultReactor();
-  doors_.engine.cancel(request->job(), [reactor, reply](const absl::StatusOr<JobView>& job) {
-    if (job.ok()) {
-      *reply = to_message(*job);
-    }
-    reactor->Finish(link::to_grpc(job.status()));
   });
   return reactor;
 }

@@ -32,6 +32,17 @@ class FarmService final : public farm::Farm::CallbackService {
   grpc::ServerUnaryReactor* Cancel(grpc::CallbackServerContext* context,
                                    const farm::CancelRequest* request,
                                    farm::JobStatus* reply) override;
+  grpc::ServerUnaryReactor* Pause(grpc::CallbackServerContext* context,
+                                  const farm::PauseRequest* request,
+                                  farm::JobStatus* reply) override;
+  grpc::ServerUnaryReactor* Resume(grpc::CallbackServerContext* context,
+                                   const farm::ResumeRequest* request,
+                                   farm::JobStatus* reply) override;
+  grpc::ServerUnaryReactor* SetPriority(grpc::CallbackServerContext* context,
+                                        const farm::SetPriorityRequest* request,
+                                        farm::JobStatus* reply) override;
+  grpc::ServerUnaryReactor* Why(grpc::CallbackServerContext* context,
+                                const farm::WhyRequest* request, farm::WhyReply* reply) override;
 
  private:
   const Doors doors_;

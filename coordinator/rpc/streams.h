@@ -70,6 +70,14 @@ class SelfOwned : public Base, public std::enable_shared_from_this<Derived> {
   std::shared_ptr<Derived> self_;
 };
 
+/// The answer to a call of one message that ends before it began.
+inline grpc::ServerUnaryReactor* finished(grpc::CallbackServerContext* context,
+                                          const absl::Status& status) {
+  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
+  reactor->Finish(link::to_grpc(status));
+  return reactor;
+}
+
 /// A call that ends before it began.
 template <class Base>
 class RefusedCall final : public Base {

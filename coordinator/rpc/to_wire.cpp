@@ -84,6 +84,7 @@ farm::JobStatus to_message(const JobView& job) {
   }
   message.set_manifest_sha256(raw_digest(job.spec.manifest));
   message.set_cpu_s(job.cpu_s);
+  message.set_priority(job.priority);
   return message;
 }
 

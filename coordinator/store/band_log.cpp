@@ -1,7 +1,6 @@
 #include "coordinator/store/band_log.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 #include "coordinator/store/mapped_file.h"
@@ -10,13 +9,11 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr std::array<char, 8> kMagic = {'B', 'S', 'W', 'B', 'A', 'N', 'D', '1'};
-
 /// Where the next record may begin at or after `offset`; the end when none does.
 std::uint64_t next_magic(absl::Span<const std::byte> bytes, std::uint64_t offset) {
-  const auto* magic = reinterpret_cast<const std::byte*>(kMagic.data());
+  const auto* magic = reinterpret_cast<const std::byte*>(kBandRecordMagic.data());
   const auto found = std::search(bytes.begin() + static_cast<std::ptrdiff_t>(offset), bytes.end(),
-                                 magic, magic + kMagic.size());
+                                 magic, magic + kBandRecordMagic.size());
   return static_cast<std::uint64_t>(found - bytes.begin());
 }
 

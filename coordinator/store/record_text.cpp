@@ -118,6 +118,37 @@ Record read_job(FieldReader& in) {
                                    .stop = read_stop(in)}};
 }
 
+void write_figures(FieldWriter& out, const record::Figures& r) {
+  out.number("job", r.job);
+  out.real("elapsed_s", r.elapsed_s);
+  out.real("cpu_s", r.cpu_s);
+  out.number("workers_used", r.workers_used);
+  out.number("samples", r.samples);
+  out.number("samples_per_pixel", r.samples_per_pixel);
+  out.real("error", r.error);
+  out.number("rays", r.counters.rays);
+  out.number("bad_samples", r.counters.bad_samples);
+  out.number("bad_x", r.counters.bad_x);
+  out.number("bad_y", r.counters.bad_y);
+  out.number("bad_sample", r.counters.bad_sample);
+}
+
+Record read_figures(FieldReader& in) {
+  return record::Figures{
+      .job = in.number("job"),
+      .elapsed_s = in.real("elapsed_s"),
+      .cpu_s = in.real("cpu_s"),
+      .workers_used = static_cast<std::uint32_t>(in.number("workers_used", UINT32_MAX)),
+      .samples = in.number("samples"),
+      .samples_per_pixel = in.number("samples_per_pixel"),
+      .error = in.real("error"),
+      .counters = {.rays = in.number("rays"),
+                   .bad_samples = in.number("bad_samples"),
+                   .bad_x = static_cast<std::uint32_t>(in.number("bad_x", UINT32_MAX)),
+                   .bad_y = static_cast<std::uint32_t>(in.number("bad_y", UINT32_MAX)),
+                   .bad_sample = in.number("bad_sample")}};
+}
+
 Record read_record(absl::string_view kind, FieldReader& in) {
   if (kind == "job_added") {
     return read_job(in);
@@ -142,6 +173,12 @@ Record read_record(absl::string_view kind, FieldReader& in) {
   }
   if (kind == "hold_changed") {
     return record::HoldChanged{.job = in.number("job"), .held = in.number("held", 1) == 1};
+  }
+  if (kind == "time_spent") {
+    return record::TimeSpent{.job = in.number("job"), .elapsed_s = in.real("elapsed_s")};
+  }
+  if (kind == "figures") {
+    return read_figures(in);
   }
   if (kind == "worker_joined") {
     return record::WorkerJoined{.instance = in.text("instance")};
@@ -189,6 +226,15 @@ RecordText to_text(const Record& record) {
                               out.number("job", r.job);
                               out.number("held", r.held ? 1 : 0);
                               return "hold_changed";
+                            },
+                            [&](const record::TimeSpent& r) {
+                              out.number("job", r.job);
+                              out.real("elapsed_s", r.elapsed_s);
+                              return "time_spent";
+                            },
+                            [&](const record::Figures& r) {
+                              write_figures(out, r);
+                              return "figures";
                             },
                             [&](const record::WorkerJoined& r) {
                               out.text("instance", r.instance);

@@ -11,7 +11,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr int kSchema = 1;
+constexpr int kSchema = 2;
+constexpr int kOldSchema = 1;  // had fewer kinds of records and is read as it is
 constexpr char kTables[] =
     "CREATE TABLE IF NOT EXISTS record (sequence INTEGER PRIMARY KEY, kind TEXT NOT NULL,"
     " fields TEXT NOT NULL, seal TEXT NOT NULL) STRICT;";
@@ -108,7 +109,8 @@ absl::Status SqliteJournal::prepare_file() {
 
 absl::Status SqliteJournal::check_version() {
   ASSIGN_OR_RETURN(const std::string version, ask("PRAGMA user_version;"));
-  if (version == "0") {
+  int found = 0;
+  if (absl::SimpleAtoi(version, &found) && (found == 0 || found == kOldSchema)) {
     RETURN_IF_ERROR(execute(kTables));
     return execute(absl::StrCat("PRAGMA user_version = ", kSchema, ";").c_str());
   }

@@ -11,11 +11,10 @@
 namespace bandsaw {
 namespace {
 
-constexpr char kMagic[] = "BSWBAND1";
-constexpr std::size_t kMagicSize = 8;
+constexpr std::size_t kMagicSize = kBandRecordMagic.size();
 constexpr std::size_t kDigestSize = 64;
 constexpr std::uint64_t kHeaderSize =
-    kMagicSize + 8 + kDigestSize + 3 * 4 + 8 + 2 * 8 + 2 * 4 + 2 * 8 + 2 * 4 + 8;
+    kMagicSize + 8 + kDigestSize + 3 * 4 + 8 + 2 * 8 + 2 * 4 + 2 * 8 + 2 * 4 + 3 * 8;
 constexpr std::uint64_t kHashSize = 8;
 
 class Writer {
@@ -88,6 +87,9 @@ absl::Status check(const BandRecord& record) {
       (counters.bad_samples > 0 && !bad_place_inside)) {
     return absl::InvalidArgumentError("counters: the bad samples do not lie in the band");
   }
+  if (!std::isfinite(record.cpu_s) || record.cpu_s < 0) {
+    return absl::InvalidArgumentError("cpu_s: must be finite and >= 0");
+  }
   return absl::OkStatus();
 }
 
@@ -116,6 +118,8 @@ Reader read_header(Reader reader, BandRecord& record) {
   reader.number(counters.bad_x);
   reader.number(counters.bad_y);
   reader.number(counters.bad_sample);
+  reader.number(record.cpu_s);
+  reader.number(record.renderer);
   return reader;
 }
 
@@ -155,7 +159,7 @@ absl::StatusOr<std::vector<std::byte>> encode_band_record(const BandRecord& reco
   std::vector<std::byte> bytes;
   bytes.reserve(size);
   Writer writer(bytes);
-  writer.put(kMagic, kMagicSize);
+  writer.put(kBandRecordMagic.data(), kMagicSize);
   writer.number(size);
   writer.put(record.package_digest.data(), kDigestSize);
   const RenderSettings& settings = record.settings;
@@ -174,6 +178,8 @@ absl::StatusOr<std::vector<std::byte>> encode_band_record(const BandRecord& reco
   writer.number(pixels.counters.bad_x);
   writer.number(pixels.counters.bad_y);
   writer.number(pixels.counters.bad_sample);
+  writer.number(record.cpu_s);
+  writer.number(record.renderer);
   writer.put(pixels.sums.data(), pixels.sums.size() * sizeof(double));
   writer.number(hash_of(bytes));
   return bytes;
@@ -186,8 +192,8 @@ absl::StatusOr<DecodedBandRecord> decode_band_record(absl::Span<const std::byte>
     return cut_off(offset, kHeaderSize + kHashSize, 0);
   }
   const std::byte* const begin = bytes.data() + (bytes.size() - there);
-  if (std::memcmp(begin, kMagic, std::min<std::size_t>(kMagicSize, there)) != 0) {
-    return damaged(offset, "no band record of format 1 begins here");
+  if (std::memcmp(begin, kBandRecordMagic.data(), std::min<std::size_t>(kMagicSize, there)) != 0) {
+    return damaged(offset, "no band record of format 2 begins here");
   }
   if (there < kHeaderSize + kHashSize) {
     return cut_off(offset, kHeaderSize + kHashSize, there);

@@ -5,7 +5,7 @@
 // needed to know what it belongs to.
 //
 // A record, little-endian, no padding:
-//   "BSWBAND1"                                          8 bytes: magic and format version
+//   "BSWBAND2"                                          8 bytes: magic and format version
 //   size of the whole record                            u64
 //   package digest                                      64 lower-case hexadecimal digits
 //   width, height                                       u32 each
@@ -16,9 +16,12 @@
 //   rays, bad_samples                                   u64 each
 //   bad_x, bad_y                                        u32 each
 //   bad_sample                                          u64
+//   cpu_s                                               f64
+//   renderer                                            u64
 //   sums                                                f64 x rows x width x 3
 //   hash of all bytes before (render/hash64.h)          u64
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -31,16 +34,21 @@
 
 namespace bandsaw {
 
+/// What a record begins with: to find the next one after a damaged one.
+inline constexpr std::array<char, 8> kBandRecordMagic = {'B', 'S', 'W', 'B', 'A', 'N', 'D', '2'};
+
 struct BandRecord {
   std::string package_digest;  ///< 64 lower-case hexadecimal digits
   RenderSettings settings;
   BandPixels pixels;
+  double cpu_s = 0;            ///< what it cost, summed over threads, >= 0; 0: not said
+  std::uint64_t renderer = 0;  ///< names who rendered it, to tell one from another; 0: not said
 };
 
 /// The size of the record of a band, bytes.
 std::uint64_t band_record_size(const Band& band, std::uint32_t width);
 
-/// INVALID_ARGUMENT: the record contradicts itself (digest, band, number of sums).
+/// INVALID_ARGUMENT: the record contradicts itself (digest, band, number of sums, cost).
 absl::StatusOr<std::vector<std::byte>> encode_band_record(const BandRecord& record);
 
 struct DecodedBandRecord {

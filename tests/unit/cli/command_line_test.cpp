@@ -94,6 +94,12 @@ TEST(CommandLine, ServeTakesItsOptions) {
 TEST(CommandLine, TheOtherCommandsTakeTheirOptions) {
   EXPECT_EQ(parsed<WatchOptions>("watch 7 -o a.png").job, 7u);
   EXPECT_EQ(parsed<CancelOptions>("cancel 12").job, 12u);
+  EXPECT_EQ(parsed<PauseOptions>("pause 3").job, 3u);
+  EXPECT_EQ(parsed<ResumeOptions>("resume 3 --farm x").farm.farm, "x");
+  EXPECT_EQ(parsed<PriorityOptions>("priority 3 10").priority, 10);
+  EXPECT_EQ(parsed<PriorityOptions>("priority 3 -10").priority, -10);
+  EXPECT_EQ(parsed<SubmitOptions>("submit a.glb --priority -3").priority, -3);
+  EXPECT_TRUE(parsed<WhyOptions>("why 3 --json").verbosity.json);
   EXPECT_TRUE(parsed<JobsOptions>("jobs --json").verbosity.json);
   EXPECT_EQ(parsed<WorkersOptions>("workers --farm x").farm.farm, "x");
   EXPECT_THAT(parsed<StitchOptions>("stitch a.band b.band -o c.png").parts,
@@ -111,6 +117,7 @@ TEST(CommandLine, StandardInputCanBeTheFarm) {
 TEST(CommandLine, HelpAndVersionAreTexts) {
   EXPECT_THAT(parsed<ShowText>("--help").text, HasSubstr("submit"));
   EXPECT_THAT(parsed<ShowText>("submit --help").text, HasSubstr("--error"));
+  EXPECT_THAT(parsed<ShowText>("pause --help").text, HasSubstr("Example: bandsaw pause 7"));
   EXPECT_THAT(parsed<ShowText>("--version").text, HasSubstr("bandsaw 0."));
 }
 
@@ -128,6 +135,11 @@ TEST(CommandLine, WrongUseIsOneLineThatNamesTheWord) {
   expect_wrong("watch", "number");
   expect_wrong("watch seven", "'seven'");
   expect_wrong("cancel 0", "'0'");
+  expect_wrong("pause", "number");
+  expect_wrong("priority 3", "value");
+  expect_wrong("priority 3 1001", "1000");
+  expect_wrong("priority 3 high", "'high'");
+  expect_wrong("submit a.glb --priority 1e9", "--priority");
   expect_wrong("stitch -o a.png", "parts");
   expect_wrong("stitch a.band", "output");
   expect_wrong("compare a.png", "two images");

@@ -20,11 +20,13 @@ TEST(Lists, JobsAreATableWithEvenColumns) {
   status.mutable_settings()->set_height(400);
   status.mutable_stop()->set_samples(64);
   status.set_fraction(0.255);
+  status.set_priority(-5);
   status.set_elapsed_s(3);
   status.set_error(-1);
-  EXPECT_THAT(jobs_table({progress_of(status)}),
-              ElementsAre("job  scene    state    done  size     until       error  time",
-                          "7    cornell  running  25 %  600×400  64 samples         3.0 s"));
+  EXPECT_THAT(
+      jobs_table({progress_of(status)}),
+      ElementsAre("job  scene    state    priority  done  size     until       error  time",
+                  "7    cornell  running  -5        25 %  600×400  64 samples         3.0 s"));
   EXPECT_THAT(jobs_table({}), ElementsAre(HasSubstr("no jobs")));
 }
 

@@ -3,6 +3,7 @@
 // A core with its world played by hand: inputs in, and what it said kept for looking at.
 
 #include <algorithm>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -82,6 +83,7 @@ class FarmDriver {
     in.band = lease.band;
     in.row_digests = honest_digests(lease.band);
     in.instance = instance;
+    in.renderer = std::hash<std::string>()(instance);
     in.render_s = render_s;
     in.cpu_s = render_s;
     in.counters.rays = lease.band.rows.count() * lease.band.samples.samples();

@@ -109,6 +109,55 @@ TEST(Loss, ABandThatFailsThreeTimesFailsTheJobWithTheReason) {
   EXPECT_EQ(farm.all<action::DropBands>().size(), 1u);
 }
 
+/// A worker that takes the first band and goes.
+void lose_one(FarmDriver& farm, SessionId session, const std::string& instance) {
+  farm.hello(session, instance, 1);
+  farm.say(input::Lost{session, "connection reset"});
+}
+
+TEST(Poison, ABandThatEndsThreeWorkersFailsTheJobAndIsNamed) {
+  FarmDriver farm;
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  lose_one(farm, 1, "a");
+  lose_one(farm, 2, "b");
+  EXPECT_EQ(farm.job(job).state, JobState::kRunning);
+  lose_one(farm, 3, "c");
+  EXPECT_EQ(farm.job(job).state, JobState::kFailed);
+  const std::string reason = farm.job(job).reason;
+  for (const char* part :
+       {"3 workers", "rows 0–1", "samples 0–16", "worker-a", "connection reset"}) {
+    EXPECT_NE(reason.find(part), std::string::npos) << part << " in: " << reason;
+  }
+}
+
+TEST(Poison, WorkersThatComeBackOrSayThatTheyLeaveAreNotCounted) {
+  FarmDriver farm;
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  for (SessionId session = 1; session < 20; ++session) {
+    lose_one(farm, session, "a");  // a bad cable
+  }
+  for (SessionId session = 20; session < 30; ++session) {
+    farm.hello(session, std::to_string(session), 1);
+    farm.say(input::Draining{session, "SIGTERM"});
+    farm.say(input::Lost{session, "it left"});
+  }
+  EXPECT_EQ(farm.job(job).state, JobState::kRunning) << farm.job(job).reason;
+}
+
+TEST(Poison, RowsThatWereStoredSinceAreNotSuspected) {
+  CoreOptions options = test_options();
+  options.band_target_s = 1e-3;  // a row a band
+  FarmDriver farm(options);
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 8));
+  for (SessionId session = 1; session <= 6; ++session) {
+    const std::string instance = std::to_string(session);
+    farm.hello(session, instance, 1);
+    farm.stored(farm.all<action::Lease>().back(), instance);
+    farm.say(input::Lost{session, "connection reset"});
+  }
+  EXPECT_NE(farm.job(job).state, JobState::kFailed) << farm.job(job).reason;
+}
+
 TEST(Loss, AWorkerThatReturnsOtherPixelsGetsNoMoreWork) {
   FarmDriver farm;
   const JobId job = farm.submit(test_job("r1", StopAtSamples{32}, 8, 1));

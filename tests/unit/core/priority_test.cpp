@@ -56,6 +56,26 @@ TEST(Pause, TakesBackWhatIsNotBegunAndKeepsWhatIs) {
   EXPECT_EQ(farm.job(job).state, JobState::kRunning);
 }
 
+TEST(Pause, TakesBackWhatIsStillBeingRenderedASecondLater) {
+  FarmDriver farm;
+  const JobId job = submit(farm, "r1", 0);
+  farm.hello(1, "a", 1);
+  farm.hello(2, "b", 1);
+  const auto leases = farm.all<action::Lease>();
+  ASSERT_EQ(leases.size(), 2u);
+  farm.say(input::Pause{job});
+  const auto rows = leases[1].band.rows.count();
+  farm.say(input::Heartbeat{2, {{leases[1].lease, rows, false, 0}}, "sending"});
+  farm.pass_time(0.5, {1, 2});
+  EXPECT_TRUE(farm.all<action::Revoke>().empty());
+  farm.pass_time(1, {1, 2});
+  const auto revoked = farm.all<action::Revoke>();
+  ASSERT_EQ(revoked.size(), 1u) << "what is rendered and on its way is kept";
+  EXPECT_EQ(revoked[0].leases, std::vector<LeaseId>{leases[0].lease});
+  EXPECT_EQ(in<action::AddToFilm>(farm.stored(leases[1], "b")).size(), 1u);
+  EXPECT_TRUE(farm.job(job).workers.empty());
+}
+
 TEST(Pause, LeavesTheWorkersToOtherJobs) {
   FarmDriver farm;
   const JobId first = submit(farm, "r1", 0);

@@ -43,6 +43,66 @@ CoreOptions slow() {
   return options;
 }
 
+/// A second life of a farm's core, told of these bands.
+FarmDriver second_life(const FarmDriver& farm, const std::vector<input::BandStored>& bands) {
+  FarmDriver next;
+  for (const Record& record : farm.records) {
+    next.core.replay(record);
+  }
+  for (const input::BandStored& band : bands) {
+    next.core.replay(band);
+  }
+  next.now = 5;  // another clock
+  next.take(next.core.replayed(next.now));
+  return next;
+}
+
+TEST(Restart, FiguresOfARunningJobGoOn) {
+  FarmDriver farm(slow());
+  farm.submit(test_job("r1", StopAtSamples{16}));
+  farm.hello(1, "a", 1);
+  input::BandStored band;
+  band.job = 1;
+  band.band = farm.all<action::Lease>()[0].band;
+  band.row_digests = honest_digests(band.band);
+  band.renderer = 17;
+  band.cpu_s = 2.5;
+  farm.say(band);
+  farm.pass_time(25, {1});
+  EXPECT_EQ(farm.job(1).elapsed_s, 25);
+  FarmDriver next = second_life(farm, {band});
+  EXPECT_EQ(next.job(1).cpu_s, 2.5);
+  EXPECT_EQ(next.job(1).workers_used, 1u);
+  EXPECT_NEAR(next.job(1).elapsed_s, 25, 1);
+  const double before = next.job(1).elapsed_s;
+  next.pass_time(7);
+  next.hello(1, "b", 1);
+  next.pass_time(3, {1});
+  EXPECT_EQ(next.job(1).elapsed_s, before + 3) << "the time without workers is not counted";
+}
+
+TEST(Restart, FiguresOfAFinalJobStay) {
+  FarmDriver farm;
+  farm.submit(test_job("r1", StopAtSamples{16}));
+  farm.submit(test_job("r2", StopAtSamples{1000}));
+  farm.hello(1, "a", 1);
+  farm.render_all(1, "a");
+  farm.say(input::ResultWritten{1});
+  farm.say(input::Cancel{2});
+  const FarmDriver next = second_life(farm, {});
+  for (const JobId job : {JobId{1}, JobId{2}}) {
+    const JobView before = farm.job(job);
+    const JobView after = next.job(job);
+    EXPECT_GT(before.elapsed_s, 0);
+    EXPECT_EQ(after.elapsed_s, before.elapsed_s);
+    EXPECT_EQ(after.cpu_s, before.cpu_s);
+    EXPECT_EQ(after.workers_used, before.workers_used);
+    EXPECT_EQ(after.samples_done, before.samples_done);
+    EXPECT_EQ(after.samples_per_pixel, before.samples_per_pixel);
+    EXPECT_EQ(after.counters, before.counters);
+  }
+}
+
 TEST(Restart, NothingIsLeasedBeforeTheFormerWorkersAreBack) {
   const Before before;
   FarmDriver next = before.restart(false);

@@ -48,7 +48,9 @@ class SimCoordinator {
   std::uint64_t steps = 0;
   std::map<JobId, std::uint64_t> results;  ///< samples a pixel
   double time_skew = 0;                    ///< of the coordinator's clock
-  bool tear_steps = false;                 ///< a crash may keep a part of a step's records
+  /// Workers are killed here so often that three are, by chance, while they render the same rows.
+  std::size_t losses_per_band = 1'000;
+  bool tear_steps = false;  ///< a crash may keep a part of a step's records
 
  private:
   struct Committing {

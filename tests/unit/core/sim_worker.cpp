@@ -155,6 +155,16 @@ void SimWorker::drop(LeaseId id) {
   }
 }
 
+bool SimWorker::poisoned(const action::Lease& lease) const {
+  return lease.job == nature_.dies_of && lease.band.rows.first <= nature_.dies_at_row &&
+         nature_.dies_at_row < lease.band.rows.last;
+}
+
+void SimWorker::die() {
+  kill();
+  agenda_.in(1, [this] { start(); });
+}
+
 void SimWorker::render() {
   if (rendering_ != 0) {
     return;
@@ -177,7 +187,13 @@ void SimWorker::render() {
     return;
   }
   later(prepares + next->render_s, [this, id = rendering_, begun = next->begun_at] {
-    if (const Held* held = find(id); rendering_ == id && held && held->begun_at == begun) {
+    const Held* held = find(id);
+    if (rendering_ != id || held == nullptr || held->begun_at != begun) {
+      return;
+    }
+    if (poisoned(held->lease)) {
+      die();
+    } else {
       finish(id);
     }
   });

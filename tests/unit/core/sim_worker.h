@@ -17,10 +17,12 @@ struct Nature {
   double samples_per_s = 10'000;
   std::uint32_t threads = 1;
   std::uint32_t max_bands = 2;
-  double fails = 0;     ///< of its bands
-  double hangs = 0;     ///< on its bands, until it is told to drop them
-  double lies = 0;      ///< of its rows
-  double loses = 0.05;  ///< of its messages about bands, either way
+  double fails = 0;               ///< of its bands
+  double hangs = 0;               ///< on its bands, until it is told to drop them
+  double lies = 0;                ///< of its rows
+  double loses = 0.05;            ///< of its messages about bands, either way
+  JobId dies_of = 0;              ///< the process ends in the middle of a band of this job …
+  std::uint32_t dies_at_row = 0;  ///< … that holds this row; it is started again
 };
 
 class SimWorker {
@@ -73,6 +75,8 @@ class SimWorker {
   void take(const action::Lease& lease);
   void drop(LeaseId id);
   void render();
+  bool poisoned(const action::Lease& lease) const;
+  void die();
   void finish(LeaseId id);
   void upload(LeaseId id);
   void send(const input::BandStored& band, LeaseId id);

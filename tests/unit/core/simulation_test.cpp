@@ -5,6 +5,7 @@
 // one alone, BANDSAW_SEEDS=n so many.
 
 #include <cstdlib>
+#include <optional>
 
 #include "farm_driver.h"
 #include "sim_coordinator.h"
@@ -19,6 +20,7 @@ struct Outcome {
   std::uint64_t rendered = 0;
   std::uint64_t crashes = 0;
   std::uint64_t done = 0;
+  std::string failed;  ///< why the last job that failed did
   std::map<JobId, std::uint64_t> results;
 };
 
@@ -29,6 +31,7 @@ struct Weather {
   bool lies = false;
   bool failures = true;
   bool cancels = true;
+  std::optional<std::uint32_t> poisoned_row = std::nullopt;  ///< of job 1: ends who renders it
 };
 
 class Simulation {
@@ -37,6 +40,9 @@ class Simulation {
       : chance_(seed), weather_(weather), coordinator_(agenda_, chance_) {
     coordinator_.tear_steps = chance_.happens(0.3);
     coordinator_.time_skew = chance_.between(-1e6, 1e6);
+    if (weather.poisoned_row) {
+      coordinator_.losses_per_band = 3;
+    }
   }
 
   Outcome run(const std::vector<JobSpec>& jobs) {
@@ -98,6 +104,10 @@ class Simulation {
     nature.hangs = weather_.chaos && chance_.happens(0.2) ? 0.02 : 0;
     nature.lies = weather_.lies && chance_.happens(0.3) ? 0.2 : 0;
     nature.loses = weather_.chaos ? chance_.between(0, 0.2) : 0;
+    if (weather_.poisoned_row) {
+      nature.dies_of = 1;
+      nature.dies_at_row = *weather_.poisoned_row;
+    }
     workers_.push_back(std::make_unique<SimWorker>(agenda_, chance_, coordinator_,
                                                    absl::StrCat("w", workers_.size()), nature));
     agenda_.in(delay, [worker = workers_.back().get()] { worker->start(); });
@@ -201,8 +211,12 @@ class Simulation {
     }
     for (const JobView& job : coordinator_.core().jobs(agenda_.now())) {
       out.done += job.state == JobState::kDone ? 1 : 0;
-      const bool explained = job.state == JobState::kDone || job.state == JobState::kCancelled ||
-                             (weather_.failures && job.state == JobState::kFailed);
+      const bool explained =
+          job.state == JobState::kDone || job.state == JobState::kCancelled ||
+          ((weather_.failures || weather_.poisoned_row) && job.state == JobState::kFailed);
+      if (job.state == JobState::kFailed) {
+        out.failed = job.reason;
+      }
       if (!explained) {
         out.broken = absl::StrCat("job ", job.id, " ended otherwise: ", job.reason);
       }
@@ -284,6 +298,21 @@ TEST(Simulation, AWorkerThatLiesHarmsNobodyElse) {
   for_seeds(10'001, 300, [&](std::uint64_t seed) {
     const Outcome one = Simulation(seed, {.lies = true}).run(random_jobs(seed));
     EXPECT_EQ(one.broken, "") << "again with BANDSAW_SEED=" << seed;
+  });
+}
+
+TEST(Simulation, ABandThatEndsItsWorkersFailsItsOwnJobAlone) {
+  for_seeds(30'001, 100, [&](std::uint64_t seed) {
+    Chance chance(seed);
+    const auto row = static_cast<std::uint32_t>(chance.pick(0, 30));
+    const Outcome one =
+        Simulation(seed, {.chaos = false, .failures = false, .cancels = false, .poisoned_row = row})
+            .run({test_job("poison", StopAtSamples{64}, 16, 31),
+                  test_job("sound", StopAtSamples{64}, 16, 31)});
+    EXPECT_EQ(one.broken, "") << "again with BANDSAW_SEED=" << seed;
+    EXPECT_EQ(one.done, 1u);
+    EXPECT_NE(one.failed.find("workers were lost while they rendered rows"), std::string::npos)
+        << one.failed << ", again with BANDSAW_SEED=" << seed;
   });
 }
 

@@ -24,6 +24,8 @@ BandRecord record() {
   }
   record.pixels.counters = {
       .rays = 1234, .bad_samples = 2, .bad_x = 1, .bad_y = 5, .bad_sample = 40};
+  record.cpu_s = 0.3;
+  record.renderer = 0xFEDCBA9876543210u;
   return record;
 }
 
@@ -40,6 +42,8 @@ void expect_equal(const BandRecord& a, const BandRecord& b) {
   EXPECT_EQ(a.pixels.width, b.pixels.width);
   EXPECT_EQ(a.pixels.sums, b.pixels.sums);
   EXPECT_EQ(a.pixels.counters, b.pixels.counters);
+  EXPECT_EQ(a.cpu_s, b.cpu_s);
+  EXPECT_EQ(a.renderer, b.renderer);
 }
 
 TEST(BandFile, ARecordComesBackAndItsSizeIsKnownBefore) {
@@ -100,6 +104,8 @@ TEST(BandFile, RecordsThatContradictThemselvesAreNotWritten) {
   EXPECT_TRUE(refused([](BandRecord& r) { r.pixels.band.samples.first = 16; }));
   EXPECT_TRUE(refused([](BandRecord& r) { r.pixels.counters.bad_y = 6; }));
   EXPECT_TRUE(refused([](BandRecord& r) { r.settings.max_depth = 0; }));
+  EXPECT_TRUE(refused([](BandRecord& r) { r.cpu_s = std::nan(""); }));
+  EXPECT_TRUE(refused([](BandRecord& r) { r.cpu_s = -1; }));
 }
 
 TEST(BandFile, SumsThatNoRenderGivesAreNotRead) {

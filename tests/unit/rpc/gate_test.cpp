@@ -71,6 +71,26 @@ class GateTest : public FarmTest {
            farm::JobStatus reply;
            return people()->Cancel(&c, {}, &reply);
          }},
+        {"Pause", farm_role,
+         [this](auto& c) {
+           farm::JobStatus reply;
+           return people()->Pause(&c, {}, &reply);
+         }},
+        {"Resume", farm_role,
+         [this](auto& c) {
+           farm::JobStatus reply;
+           return people()->Resume(&c, {}, &reply);
+         }},
+        {"SetPriority", farm_role,
+         [this](auto& c) {
+           farm::JobStatus reply;
+           return people()->SetPriority(&c, {}, &reply);
+         }},
+        {"Why", farm_role,
+         [this](auto& c) {
+           farm::WhyReply reply;
+           return people()->Why(&c, {}, &reply);
+         }},
         {"Session", work_role,
          [this](auto& c) {
            const auto stream = work()->Session(&c);

@@ -63,6 +63,7 @@ TEST_F(ServerTest, ChecksEachFieldOfASubmission) {
        }},
       {"integrator",
        [](auto& r) { r.mutable_settings()->set_integrator(static_cast<farm::Integrator>(8)); }},
+      {"priority", [](auto& r) { r.set_priority(-1001); }},
       {"stop.max_samples", [](auto& r) { r.mutable_stop()->set_max_samples(kMaxSamples + 1); }},
   };
   const wire::Digest manifest = put_cornell_box();

@@ -31,6 +31,19 @@ inline std::vector<Record> sample_records() {
           record::StateChanged{.job = 1, .state = JobState::kDone, .reason = ""},
           record::StateChanged{.job = 1, .state = JobState::kFailed, .reason = " "},
           record::StateChanged{.job = 1, .state = JobState::kCancelled, .reason = "by\\user"},
+          record::PriorityChanged{.job = 1, .priority = -kMostPriority},
+          record::HoldChanged{.job = 1, .held = true},
+          record::TimeSpent{.job = 1, .elapsed_s = 1e-3},
+          record::Figures{
+              .job = 1,
+              .elapsed_s = 3.25,
+              .cpu_s = 1.0 / 3,
+              .workers_used = UINT32_MAX,
+              .samples = UINT64_MAX,
+              .samples_per_pixel = 7,
+              .error = -1,
+              .counters =
+                  {.rays = 9, .bad_samples = 8, .bad_x = 7, .bad_y = UINT32_MAX, .bad_sample = 5}},
           record::WorkerJoined{.instance = "0123456789abcdef0123456789abcdef"},
           record::WorkerLeft{.instance = ""}};
 }

@@ -89,6 +89,14 @@ TEST_F(SqliteJournalTest, AMissingRecordIsNamed) {
   EXPECT_THAT(std::string(status.message()), HasSubstr("record 2"));
 }
 
+TEST_F(SqliteJournalTest, TheOldSchemaIsReadAndBecomesTheNewOne) {
+  ASSERT_TRUE(open()->append(sample_records()).ok());
+  run_sql(path_, "PRAGMA user_version = 1");
+  for (int life = 0; life < 2; ++life) {
+    EXPECT_EQ(replayed(*open()), texts(sample_records()));
+  }
+}
+
 TEST_F(SqliteJournalTest, AnotherSchemaIsRefused) {
   open();
   run_sql(path_, "PRAGMA user_version = 99");

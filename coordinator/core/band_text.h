@@ -1,0 +1,23 @@
+#pragma once
+
+// Bands compared, and named for people.
+
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "renderlib/render/band.h"
+
+namespace bandsaw::coordinator {
+
+/// Whether they have a row of a sample in common.
+inline bool meet(const Band& a, const Band& b) {
+  return a.samples.first < b.samples.last && b.samples.first < a.samples.last &&
+         a.rows.first < b.rows.last && b.rows.first < a.rows.last;
+}
+
+inline std::string name_of(const Band& band) {
+  return absl::StrCat("rows ", band.rows.first, "–", band.rows.last, " of samples ",
+                      band.samples.first, "–", band.samples.last);
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,81 @@
+// Workers that go while they render a band: by chance, or because of it.
+
+#include <algorithm>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "coordinator/core/band_text.h"
+#include "coordinator/core/state.h"
+
+namespace bandsaw::coordinator {
+
+/// What the worker is rendering, if it went now without a word of leaving. A copy does not count:
+/// the original's worker is at the same rows, and a net that fails would take both at once.
+std::optional<Core::State::Losing> Core::State::in_hand(const Worker& worker) const {
+  if (worker.draining || worker.faulty || worker.leases.empty()) {
+    return std::nullopt;
+  }
+  const Lease& lease = *leases_.find(worker.leases.front());
+  return lease.copy_of != 0 ? std::nullopt : std::optional(Losing{lease.job, lease.band});
+}
+
+void Core::State::add_loss(const Worker& worker, const Losing& lost) {
+  Job* job = find(lost.job);
+  if (job == nullptr || is_final(job->state)) {
+    return;
+  }
+  job->losses.push_back({lost.band, worker.instance, worker.reason});
+  if (job->losses.size() > Job::kFaultsKept) {
+    job->losses.pop_front();
+  }
+  std::set<std::string> instances;
+  for (const Fault& loss : job->losses) {
+    if (meet(loss.band, lost.band)) {
+      instances.insert(loss.instance);
+    }
+  }
+  if (instances.size() < 2) {
+    return;
+  }
+  const std::string names =
+      absl::StrJoin(instances, ", ", [this](std::string* out, const std::string& instance) {
+        absl::StrAppend(out, name_of_instance(instance));
+      });
+  const std::string reason =
+      absl::StrCat(instances.size(), " workers were lost while they rendered ", name_of(lost.band),
+                   " (", names, "); the last: ", worker.reason);
+  job->notice = reason;
+  if (instances.size() >= options_.losses_per_band) {
+    end(*job, JobState::kFailed,
+        absl::StrCat(reason,
+                     "; it seems to end every worker that renders it: by the memory that "
+                     "it needs, or by a fault of the renderer"));
+  }
+}
+
+/// A worker that comes back had lost its connection, not its life.
+void Core::State::forgive_losses(const Worker& worker) {
+  for (const JobId id : active_) {
+    std::erase_if(jobs_.at(id).losses,
+                  [&](const Fault& loss) { return loss.instance == worker.instance; });
+  }
+}
+
+/// Rows that somebody has rendered did not end those who tried before. What is stored at an end of
+/// a loss's rows narrows it down; rows within leave it as it is.
+void Core::State::shrink_losses(Job& job, const Band& stored) {
+  for (Fault& loss : job.losses) {
+    RowRange& rows = loss.band.rows;
+    if (!meet(loss.band, stored)) {
+      continue;
+    }
+    if (stored.rows.first <= rows.first) {
+      rows.first = std::min(rows.last, stored.rows.last);
+    } else if (stored.rows.last >= rows.last) {
+      rows.last = stored.rows.first;
+    }
+  }
+  std::erase_if(job.losses, [](const Fault& loss) { return loss.band.rows.count() == 0; });
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,85 @@
+// What people tell a running job: pause, resume, priority, why.
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+
+#include "tests/farm/band_log.h"
+#include "tests/farm/farm_processes.h"
+
+namespace bandsaw::test {
+namespace {
+
+const std::string kScene = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
+const std::vector<std::string> kSettings = {"--width", "200",       "--height",
+                                            "200",     "--samples", "160"};
+
+class Control : public testing::Test {
+ protected:
+  std::string say(std::vector<std::string> arguments) {
+    const Finished finished = run(farm_.command(std::move(arguments)));
+    EXPECT_EQ(finished.code, 0) << finished.err;
+    return finished.out;
+  }
+
+  // Asks until the answer holds `text`; the test's own time limit ends it.
+  std::string ask_until(const std::vector<std::string>& arguments, const std::string& text) {
+    std::string out;
+    while (!testing::Test::HasFailure() && out.find(text) == std::string::npos) {
+      out = say(arguments);
+    }
+    return out;
+  }
+
+  static std::string samples_done(const std::string& json) {
+    const std::size_t at = json.find("\"samples_done\":");
+    return json.substr(at, json.find(',', at) - at);
+  }
+
+  void expect_the_same_bytes(const std::string& file) {
+    std::vector<std::string> local = {BANDSAW_BIN, "render", kScene, "-o", farm_.path("local.pfm")};
+    local.insert(local.end(), kSettings.begin(), kSettings.end());
+    const Finished finished = run(local);
+    ASSERT_EQ(finished.code, 0) << finished.err;
+    EXPECT_TRUE(file_bytes(file) == file_bytes(farm_.path("local.pfm")));
+  }
+
+  FarmProcesses farm_;
+};
+
+TEST_F(Control, APausedJobIsLeasedToNobodyAndGoesOnToTheSameBytes) {
+  farm_.add_worker("one", 1);
+  farm_.add_worker("two", 1);
+  std::vector<std::string> submit = {"submit", kScene, "-o", farm_.path("farm.pfm")};
+  submit.insert(submit.end(), kSettings.begin(), kSettings.end());
+  Process client = Process::start(farm_.command(submit));
+  ASSERT_TRUE(farm_.worker("one").wait_until([&](const std::string&, const std::string& log) {
+    return logged_bands(log, "stored").size() >= 2;
+  }));
+  EXPECT_NE(say({"pause", "1"}).find("job 1 is paused"), std::string::npos);
+  ask_until({"jobs", "--json"}, R"("workers":[])");
+  const std::string paused = say({"jobs", "--json"});
+  EXPECT_NE(paused.find(R"("state":"paused")"), std::string::npos) << paused;
+  EXPECT_NE(say({"why", "1"}).find("paused by a person"), std::string::npos);
+  EXPECT_NE(say({"workers"}).find("idle"), std::string::npos);
+  EXPECT_EQ(samples_done(say({"jobs", "--json"})), samples_done(paused));
+  say({"resume", "1"});
+  ASSERT_EQ(client.wait(), 0) << client.err();
+  expect_the_same_bytes(farm_.path("farm.pfm"));
+}
+
+TEST_F(Control, PrioritiesAreShownAndKeptOverARestart) {
+  say({"submit", kScene, "--samples", "16", "--detach", "--priority", "5"});
+  EXPECT_NE(say({"jobs", "--json"}).find(R"("priority":5)"), std::string::npos);
+  say({"priority", "1", "-20"});
+  farm_.coordinator().signal(SIGKILL);
+  farm_.coordinator().wait();
+  farm_.restart_coordinator();
+  EXPECT_NE(say({"jobs"}).find("-20"), std::string::npos);
+  EXPECT_NE(say({"why", "1"}).find("no worker is connected"), std::string::npos);
+  EXPECT_EQ(run(farm_.command({"pause", "99"})).code, 1);
+  EXPECT_EQ(run(farm_.command({"priority", "1", "5000"})).code, 2);
+}
+
+}  // namespace
+}  // namespace bandsaw::test

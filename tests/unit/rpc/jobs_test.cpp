@@ -1,0 +1,98 @@
+// What people tell a job, through the wire.
+
+#include <gmock/gmock.h>
+
+#include "tests/unit/rpc/farm.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+class JobsTest : public FarmTest {
+ protected:
+  std::uint64_t submit(std::int32_t priority) {
+    farm::SubmitRequest request = cornell_request(put_cornell_box());
+    request.set_priority(priority);
+    farm::SubmitReply reply;
+    const grpc::Status status = people()->Submit(context(link::Role::kFarm).get(), request, &reply);
+    EXPECT_TRUE(status.ok()) << status.error_message();
+    return reply.job();
+  }
+
+  template <class Request>
+  grpc::Status tell(grpc::Status (farm::Farm::Stub::*call)(grpc::ClientContext*, const Request&,
+                                                           farm::JobStatus*),
+                    Request request) {
+    return (people().get()->*call)(context(link::Role::kFarm).get(), request, &job_);
+  }
+
+  grpc::Status pause(std::uint64_t job) {
+    farm::PauseRequest request;
+    request.set_job(job);
+    return tell(&farm::Farm::Stub::Pause, request);
+  }
+  grpc::Status resume(std::uint64_t job) {
+    farm::ResumeRequest request;
+    request.set_job(job);
+    return tell(&farm::Farm::Stub::Resume, request);
+  }
+  grpc::Status set_priority(std::uint64_t job, std::int32_t priority) {
+    farm::SetPriorityRequest request;
+    request.set_job(job);
+    request.set_priority(priority);
+    return tell(&farm::Farm::Stub::SetPriority, request);
+  }
+  grpc::Status why(std::uint64_t job, farm::WhyReply& reply) {
+    farm::WhyRequest request;
+    request.set_job(job);
+    return people()->Why(context(link::Role::kFarm).get(), request, &reply);
+  }
+
+  farm::JobStatus job_;  ///< the last answer
+};
+
+TEST_F(JobsTest, APauseMayBeRepeatedAndEnded) {
+  const std::uint64_t job = submit(0);
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_TRUE(pause(job).ok());
+    EXPECT_EQ(job_.state(), farm::JOB_STATE_PAUSED);
+    EXPECT_THAT(job_.reason(), testing::HasSubstr("by a person"));
+  }
+  for (int i = 0; i < 2; ++i) {
+    ASSERT_TRUE(resume(job).ok());
+    EXPECT_EQ(job_.state(), farm::JOB_STATE_RUNNING);
+  }
+}
+
+TEST_F(JobsTest, APriorityIsSetAtTheBeginningAndLater) {
+  const std::uint64_t job = submit(-7);
+  ASSERT_TRUE(resume(job).ok());
+  EXPECT_EQ(job_.priority(), -7);
+  ASSERT_TRUE(set_priority(job, 1000).ok());
+  EXPECT_EQ(job_.priority(), 1000);
+  EXPECT_EQ(set_priority(job, 1001).error_code(), grpc::StatusCode::INVALID_ARGUMENT);
+}
+
+TEST_F(JobsTest, WhyIsAnsweredInSentences) {
+  const std::uint64_t job = submit(0);
+  farm::WhyReply reply;
+  ASSERT_TRUE(why(job, reply).ok());
+  EXPECT_THAT(reply.reason(), testing::ElementsAre("no worker is connected"));
+}
+
+TEST_F(JobsTest, WhatIsUnknownOrOverIsSaid) {
+  EXPECT_EQ(pause(99).error_code(), grpc::StatusCode::NOT_FOUND);
+  EXPECT_EQ(resume(99).error_code(), grpc::StatusCode::NOT_FOUND);
+  EXPECT_EQ(set_priority(99, 1).error_code(), grpc::StatusCode::NOT_FOUND);
+  farm::WhyReply reply;
+  EXPECT_EQ(why(99, reply).error_code(), grpc::StatusCode::NOT_FOUND);
+  const std::uint64_t job = submit(0);
+  farm::CancelRequest cancel;
+  cancel.set_job(job);
+  ASSERT_TRUE(tell(&farm::Farm::Stub::Cancel, cancel).ok());
+  EXPECT_EQ(pause(job).error_code(), grpc::StatusCode::FAILED_PRECONDITION);
+  EXPECT_EQ(resume(job).error_code(), grpc::StatusCode::FAILED_PRECONDITION);
+  EXPECT_EQ(set_priority(job, 1).error_code(), grpc::StatusCode::FAILED_PRECONDITION);
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator
