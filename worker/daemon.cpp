@@ -4,6 +4,7 @@
 
 #include <thread>
 
+#include "proto/wire/limits.h"
 #include "renderlib/base/status_macros.h"
 #include "worker/executor/backoff.h"
 #include "worker/session/desk.h"
@@ -50,6 +51,7 @@ class Daemon::Impl {
  private:
   absl::Status talk(const link::Connected& connected);
   void write_all(SessionStream& stream, Outbox& outbox);
+  bool write_log(SessionStream& stream);
   void handle(const farm::ToWorker& message, const std::string& address);
   void log_loss(const absl::Status& status);
 
@@ -131,7 +133,16 @@ void Daemon::Impl::write_all(SessionStream& stream, Outbox& outbox) {
     if (!stream.Write(message)) {
       return;  // the reader learns why
     }
+    if (next == Outbox::Next::kHeartbeat && !write_log(stream)) {
+      return;
+    }
   }
+}
+
+bool Daemon::Impl::write_log(SessionStream& stream) {
+  const std::vector<std::string> lines =
+      options_.new_log_lines ? options_.new_log_lines(wire::kLogLines) : std::vector<std::string>();
+  return lines.empty() || stream.Write(log_message(lines));
 }
 
 void Daemon::Impl::handle(const farm::ToWorker& message, const std::string& address) {

@@ -24,6 +24,9 @@ struct DaemonOptions {
   /// Told once, when the coordinator first took this worker in: the address, and the name it bears
   /// there.
   std::function<void(const std::string& address, const std::string& name)> joined;
+  /// Lines of the log that were not taken yet, at most so many: for the coordinator; may be
+  /// nothing.
+  std::function<std::vector<std::string>(std::size_t most)> new_log_lines = nullptr;
 };
 
 class Daemon {

@@ -19,6 +19,7 @@
 #include "renderlib/render/canary.h"
 #include "renderlib/render/pixel_version.h"
 #include "worker/daemon.h"
+#include "worker/log_queue.h"
 #include "worker/machine.h"
 
 namespace bandsaw::worker {
@@ -58,16 +59,22 @@ int fail(int code, const absl::Status& status) {
   return code;
 }
 
-/// Logs to standard error; returns the last lines for a failure's report.
-std::function<std::vector<std::string>()> start_log(bool quiet) {
-  auto ring = std::make_shared<spdlog::sinks::ringbuffer_sink_mt>(wire::kLogLines);
+/// Where the log goes beside standard error.
+struct Log {
+  std::shared_ptr<spdlog::sinks::ringbuffer_sink_mt> tail;  ///< for a failure's report
+  std::shared_ptr<LogQueue> news;                           ///< for the coordinator
+};
+
+Log start_log(bool quiet) {
+  Log log{std::make_shared<spdlog::sinks::ringbuffer_sink_mt>(wire::kLogLines),
+          std::make_shared<LogQueue>()};
   auto err = std::make_shared<spdlog::sinks::stderr_sink_mt>();
   err->set_level(quiet ? spdlog::level::warn : spdlog::level::info);
-  auto logger =
-      std::make_shared<spdlog::logger>("worker", spdlog::sinks_init_list{std::move(err), ring});
+  auto logger = std::make_shared<spdlog::logger>(
+      "worker", spdlog::sinks_init_list{std::move(err), log.tail, log.news});
   logger->set_pattern("%Y-%m-%d %H:%M:%S.%e %l %v");
   spdlog::set_default_logger(std::move(logger));
-  return [ring] { return ring->last_formatted(); };
+  return log;
 }
 
 /// Signals wait for the one thread that sits in sigwait: nothing is done inside a handler.
@@ -133,23 +140,26 @@ int run(const Arguments& arguments) {
   }
   const sigset_t set = watched_signals();
   pthread_sigmask(SIG_BLOCK, &set, nullptr);  // before any thread is made: all inherit it
-  DaemonOptions options{.join = *std::move(join),
-                        .self = {.instance = new_instance(),
-                                 .name = arguments.name,
-                                 .build = build_description(),
-                                 .threads = arguments.threads,
-                                 .pixel_version = kPixelVersion,
-                                 .canary = canary()},
-                        .cache_folder = arguments.cache,
-                        .cache_bytes = static_cast<std::uint64_t>(arguments.cache_gb * 1e9),
-                        .log_tail = start_log(arguments.quiet),
-                        .joined = [&](const std::string& address, const std::string& name) {
-                          std::printf("bandsaw-worker %s · %u thread%s · joined %s as %s\n",
-                                      BANDSAW_VERSION, arguments.threads,
-                                      arguments.threads == 1 ? "" : "s", address.c_str(),
-                                      name.c_str());
-                          std::fflush(stdout);
-                        }};
+  const Log log = start_log(arguments.quiet);
+  DaemonOptions options{
+      .join = *std::move(join),
+      .self = {.instance = new_instance(),
+               .name = arguments.name,
+               .build = build_description(),
+               .threads = arguments.threads,
+               .pixel_version = kPixelVersion,
+               .canary = canary()},
+      .cache_folder = arguments.cache,
+      .cache_bytes = static_cast<std::uint64_t>(arguments.cache_gb * 1e9),
+      .log_tail = [tail = log.tail] { return tail->last_formatted(); },
+      .joined =
+          [&](const std::string& address, const std::string& name) {
+            std::printf("bandsaw-worker %s · %u thread%s · joined %s as %s\n", BANDSAW_VERSION,
+                        arguments.threads, arguments.threads == 1 ? "" : "s", address.c_str(),
+                        name.c_str());
+            std::fflush(stdout);
+          },
+      .new_log_lines = [news = log.news](std::size_t most) { return news->take(most); }};
   absl::StatusOr<std::unique_ptr<Daemon>> daemon = Daemon::create(std::move(options));
   if (!daemon.ok()) {
     return fail(kUnfit, daemon.status());

@@ -73,6 +73,14 @@ absl::Status read(const char* name, const std::optional<std::string>& text, std:
   return read(name, text, least, most, value.emplace());
 }
 
+absl::Status read_positive(const char* name, const std::optional<std::string>& text,
+                           double& value) {
+  if (text && (!absl::SimpleAtod(*text, &value) || !(value > 0 && value < 1e9))) {
+    return wrong(absl::StrCat(name, ": must be a number above 0, is '", *text, "'"));
+  }
+  return absl::OkStatus();
+}
+
 absl::StatusOr<ImageOptions> checked_image(const RawOptions& raw) {
   ImageOptions image;
   ASSIGN_OR_RETURN(image.stop, checked_stop(raw));
@@ -123,6 +131,15 @@ absl::Status check_scene(const RawOptions& raw, const std::string& command) {
 
 }  // namespace
 
+absl::Status check_listen(const std::string& listen) {
+  const std::size_t colon = listen.rfind(':');
+  if (colon == std::string::npos || colon == 0) {
+    return wrong(
+        absl::StrCat("--listen: must be HOST:PORT, as in 0.0.0.0:7878, is '", listen, "'"));
+  }
+  return parse_whole("--listen: the port", listen.substr(colon + 1), 0, 65535).status();
+}
+
 absl::StatusOr<Verbosity> checked_verbosity(const RawOptions& raw) {
   if (raw.quiet && raw.json) {
     return wrong("--quiet and --json exclude each other");
@@ -144,13 +161,9 @@ absl::StatusOr<Command> checked_serve(const RawOptions& raw) {
   if (raw.listen) {
     options.listen = *raw.listen;
   }
-  const std::size_t colon = options.listen.rfind(':');
-  if (colon == std::string::npos || colon == 0) {
-    return wrong(
-        absl::StrCat("--listen: must be HOST:PORT, as in 0.0.0.0:7878, is '", options.listen, "'"));
-  }
-  RETURN_IF_ERROR(
-      parse_whole("--listen: the port", options.listen.substr(colon + 1), 0, 65535).status());
+  RETURN_IF_ERROR(check_listen(options.listen));
+  RETURN_IF_ERROR(read_positive("--keep-days", raw.keep_days, options.keep_days));
+  RETURN_IF_ERROR(read_positive("--keep-size", raw.keep_size, options.keep_gb));
   return options;
 }
 

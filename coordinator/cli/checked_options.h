@@ -15,7 +15,7 @@ namespace bandsaw::coordinator {
 /// The union of all commands' options, unread.
 struct RawOptions {
   std::string scene, image, reference, data, farm;
-  std::optional<std::string> job, listen, priority;
+  std::optional<std::string> job, listen, priority, worker, action, role, keep_days, keep_size;
   std::vector<std::string> outputs, parts;
   std::optional<std::string> samples, error, time, seed, width, height, depth, threads, rows;
   std::optional<std::string> integrator, exposure, tone, layers;
@@ -32,6 +32,9 @@ absl::StatusOr<Command> checked_pause(const RawOptions& raw);
 absl::StatusOr<Command> checked_resume(const RawOptions& raw);
 absl::StatusOr<Command> checked_priority(const RawOptions& raw);
 absl::StatusOr<Command> checked_why(const RawOptions& raw);
+absl::StatusOr<Command> checked_logs(const RawOptions& raw);
+absl::StatusOr<Command> checked_doctor(const RawOptions& raw);
+absl::StatusOr<Command> checked_secret(const RawOptions& raw);
 absl::StatusOr<Command> checked_render(const RawOptions& raw);
 absl::StatusOr<Command> checked_info(const RawOptions& raw);
 absl::StatusOr<Command> checked_stitch(const RawOptions& raw);
@@ -39,6 +42,7 @@ absl::StatusOr<Command> checked_compare(const RawOptions& raw);
 
 // Parts of several commands.
 absl::StatusOr<Verbosity> checked_verbosity(const RawOptions& raw);
+absl::Status check_listen(const std::string& listen);
 /// `command` is for the error.
 absl::StatusOr<JobId> checked_job(const RawOptions& raw, const std::string& command);
 absl::StatusOr<std::int32_t> checked_priority_value(const std::string& name,

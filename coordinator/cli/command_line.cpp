@@ -8,24 +8,12 @@
 #include "absl/strings/str_replace.h"
 #include "coordinator/cli/checked_options.h"
 #include "coordinator/cli/did_you_mean.h"
+#include "coordinator/cli/house_options.h"
 
 namespace bandsaw::coordinator {
 namespace {
 
 constexpr char kPictures[] = ".png, .ppm, .pfm, .hdr or .exr";
-
-void add_verbosity(CLI::App& app, RawOptions& raw, bool can_be_quiet = true) {
-  if (can_be_quiet) {
-    app.add_flag("--quiet", raw.quiet, "Say only the last line and errors");
-  }
-  app.add_flag("--json", raw.json, "One JSON object a line, for programs");
-}
-
-void add_farm(CLI::App& app, RawOptions& raw) {
-  app.add_option("--farm", raw.farm,
-                 "Join string, or the file that holds it, or - for standard input "
-                 "[default: $BANDSAW_FARM, then the farm served from this account]");
-}
 
 void add_output(CLI::App& app, RawOptions& raw, const std::string& formats,
                 const std::string& standard) {
@@ -73,12 +61,11 @@ void add_display(CLI::App& app, RawOptions& raw, const char* standard) {
 }
 
 void add_serve(CLI::App& app, RawOptions& raw) {
-  app.add_option("--data", raw.data,
-                 "Data folder [default: $XDG_DATA_HOME/bandsaw or ~/.local/share/bandsaw]")
-      ->type_name("DIR");
+  add_data(app, raw);
   app.add_option("--listen", raw.listen,
                  "Address for workers and people; port 0 picks one [default: 0.0.0.0:7878]")
       ->type_name("HOST:PORT");
+  add_keep(app, raw);
   app.add_flag("--insecure", raw.insecure,
                "No encryption: anybody on the network can read and change what passes");
 }
@@ -182,6 +169,11 @@ constexpr Entry kCommands[] = {
     {"priority", "Render a job before others, or after them", add_priority, checked_priority,
      "bandsaw priority 7 10    # before all jobs that are below 10"},
     {"why", "Say why a job is not done yet", add_job, checked_why, "bandsaw why 7"},
+    {"logs", "Show the last lines of a worker's log", add_logs, checked_logs, "bandsaw logs desk"},
+    {"doctor", "Check this machine, and the farm that it uses", add_doctor, checked_doctor,
+     "bandsaw doctor --farm join    # on a worker's machine"},
+    {"secret", "Make a new secret; who has the old one is shut out", add_secret, checked_secret,
+     "bandsaw secret rotate worker"},
     {"render", "Render a scene on this machine, without a farm: the same bits", add_render,
      checked_render},
     {"info", "Say what is in a scene or model, and what of it is left out", add_info, checked_info},

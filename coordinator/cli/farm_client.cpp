@@ -231,6 +231,35 @@ absl::StatusOr<Progress> FarmClient::set_priority(JobId job, std::int32_t priori
       [&](auto& context, auto& reply) { return control_->SetPriority(&context, request, &reply); });
 }
 
+absl::StatusOr<std::vector<std::string>> FarmClient::logs(const std::string& worker) {
+  farm::LogsRequest request;
+  request.set_worker(worker);
+  farm::LogsReply reply;
+  RETURN_IF_ERROR(call(kCallTimeout, [&](grpc::ClientContext& context) {
+    return control_->Logs(&context, request, &reply);
+  }));
+  return std::vector<std::string>(reply.line().begin(), reply.line().end());
+}
+
+absl::StatusOr<farm::AboutReply> FarmClient::about() {
+  farm::AboutReply reply;
+  RETURN_IF_ERROR(call(kCallTimeout, [&](grpc::ClientContext& context) {
+    return control_->About(&context, farm::AboutRequest(), &reply);
+  }));
+  return reply;
+}
+
+absl::StatusOr<std::string> FarmClient::rotate_secret(link::Role role) {
+  farm::RotateSecretRequest request;
+  request.set_role(role == link::Role::kWorker ? farm::SECRET_ROLE_WORKER : farm::SECRET_ROLE_FARM);
+  farm::RotateSecretReply reply;
+  // Once: a second try would be made with a secret that the first may have made void.
+  RETURN_IF_ERROR(try_once(kCallTimeout, [&](grpc::ClientContext& context) {
+    return control_->RotateSecret(&context, request, &reply);
+  }));
+  return reply.join_file();
+}
+
 absl::StatusOr<std::vector<std::string>> FarmClient::why(JobId job) {
   farm::WhyRequest request;
   request.set_job(job);

@@ -64,6 +64,11 @@ class FarmClient {
   absl::StatusOr<Progress> pause_job(JobId job);
   absl::StatusOr<Progress> resume_job(JobId job);
   absl::StatusOr<Progress> set_priority(JobId job, std::int32_t priority);
+  /// The last lines of a worker's log. NOT_FOUND.
+  absl::StatusOr<std::vector<std::string>> logs(const std::string& worker);
+  absl::StatusOr<farm::AboutReply> about();
+  /// The file of the new join string, on the coordinator's machine.
+  absl::StatusOr<std::string> rotate_secret(link::Role role);
   /// Sentences, at least one. NOT_FOUND.
   absl::StatusOr<std::vector<std::string>> why(JobId job);
 

@@ -38,20 +38,7 @@ class ScratchFolder {
   std::string path_;
 };
 
-namespace {
-
-absl::StatusOr<std::unique_ptr<ScratchFolder>> make_scratch(const std::string& wanted) {
-  std::error_code error;
-  const fs::path parent = wanted.empty() ? fs::temp_directory_path(error) : fs::path(wanted);
-  std::string pattern = (parent / "bandsaw-import-XXXXXX").string();
-  if (error || mkdtemp(pattern.data()) == nullptr) {
-    return errno_status(error ? error.value() : errno,
-                        absl::StrCat("cannot make a temporary folder in ", parent.string()));
-  }
-  return std::make_unique<ScratchFolder>(pattern);
-}
-
-absl::StatusOr<std::string> find_program(const ImportLimits& limits) {
+absl::StatusOr<std::string> import_program(const ImportLimits& limits) {
   std::error_code error;
   const fs::path program =
       limits.program.empty()
@@ -63,6 +50,19 @@ absl::StatusOr<std::string> find_program(const ImportLimits& limits) {
                      program.string(), "); install it beside bandsaw"));
   }
   return program.string();
+}
+
+namespace {
+
+absl::StatusOr<std::unique_ptr<ScratchFolder>> make_scratch(const std::string& wanted) {
+  std::error_code error;
+  const fs::path parent = wanted.empty() ? fs::temp_directory_path(error) : fs::path(wanted);
+  std::string pattern = (parent / "bandsaw-import-XXXXXX").string();
+  if (error || mkdtemp(pattern.data()) == nullptr) {
+    return errno_status(error ? error.value() : errno,
+                        absl::StrCat("cannot make a temporary folder in ", parent.string()));
+  }
+  return std::make_unique<ScratchFolder>(pattern);
 }
 
 // "NOT_FOUND: message" as the importer wrote it.
@@ -113,7 +113,7 @@ absl::Status judge(const ChildOutcome& outcome, const std::string& file,
 absl::StatusOr<std::unique_ptr<ScratchFolder>> run_importer(const char* what,
                                                             const std::string& file,
                                                             const ImportLimits& limits) {
-  ASSIGN_OR_RETURN(const std::string program, find_program(limits));
+  ASSIGN_OR_RETURN(const std::string program, import_program(limits));
   ASSIGN_OR_RETURN(std::unique_ptr<ScratchFolder> folder, make_scratch(limits.scratch));
   const auto cpu_seconds = static_cast<std::uint64_t>(std::ceil(std::max(limits.seconds, 1.0)));
   ASSIGN_OR_RETURN(const ChildOutcome outcome,

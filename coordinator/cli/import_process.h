@@ -49,6 +49,9 @@ class ImportedPackage {
   BlobFolder blobs_;
 };
 
+/// The program that would be run. FAILED_PRECONDITION: it is missing.
+absl::StatusOr<std::string> import_program(const ImportLimits& limits = {});
+
 /// Blocks until the scene file or model is imported. Errors name the file and, in a scene file,
 /// line and column: INVALID_ARGUMENT, NOT_FOUND, PERMISSION_DENIED: what is wrong with the file, or
 /// with one that it refers to. DEADLINE_EXCEEDED, RESOURCE_EXHAUSTED: past a limit. DATA_LOSS: the

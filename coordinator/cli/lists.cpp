@@ -1,9 +1,10 @@
-// bandsaw jobs, workers: one question to the farm, and the answer.
+// bandsaw jobs, workers, logs: one question to the farm, and the answer.
 
 #include "coordinator/cli/commands.h"
 #include "coordinator/cli/farm_client.h"
 #include "coordinator/cli/farm_errors.h"
 #include "coordinator/cli/lists_text.h"
+#include "coordinator/cli/text.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
@@ -28,6 +29,19 @@ absl::Status list_workers(const WorkersOptions& options, const Console& console)
   return absl::OkStatus();
 }
 
+absl::Status show_log(const LogsOptions& options, const Console& console) {
+  ASSIGN_OR_RETURN(const auto client, connect_to_farm(options.farm));
+  ASSIGN_OR_RETURN(const std::vector<std::string> lines, client->logs(options.worker));
+  if (options.verbosity.json) {
+    console.line(log_json(options.worker, lines));
+    return absl::OkStatus();
+  }
+  for (const std::string& line : lines) {
+    console.line(printable(line));
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace
 
 ExitCode run(const JobsOptions& options, Process& process) {
@@ -36,6 +50,10 @@ ExitCode run(const JobsOptions& options, Process& process) {
 
 ExitCode run(const WorkersOptions& options, Process& process) {
   return finished(list_workers(options, process.console), process.console);
+}
+
+ExitCode run(const LogsOptions& options, Process& process) {
+  return finished(show_log(options, process.console), process.console);
 }
 
 ExitCode run(const ShowText& options, Process& process) {

@@ -65,6 +65,10 @@ std::vector<std::string> why_json(JobId job, const std::vector<std::string>& rea
   return {JsonObject().text("event", "why").whole("job", job).texts("reasons", reasons).str()};
 }
 
+std::string log_json(const std::string& worker, const std::vector<std::string>& lines) {
+  return JsonObject().text("event", "log").text("worker", worker).texts("lines", lines).str();
+}
+
 std::vector<std::string> workers_table(const farm::ListWorkersReply& reply) {
   std::vector<std::vector<std::string>> rows = {
       {"worker", "state", "threads", "rate", "job", "connected", "address", "build"}};

@@ -13,6 +13,7 @@ namespace bandsaw::coordinator {
 std::vector<std::string> jobs_table(const std::vector<Progress>& jobs);
 std::vector<std::string> jobs_json(const std::vector<Progress>& jobs);
 std::vector<std::string> why_json(JobId job, const std::vector<std::string>& reasons);
+std::string log_json(const std::string& worker, const std::vector<std::string>& lines);
 std::vector<std::string> workers_table(const farm::ListWorkersReply& reply);
 std::vector<std::string> workers_json(const farm::ListWorkersReply& reply);
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "coordinator/core/types.h"
+#include "proto/link/join.h"
 #include "renderlib/image/display.h"
 #include "renderlib/render/band.h"
 
@@ -52,6 +53,8 @@ struct ServeOptions {
   std::string data;  ///< empty: the default data folder
   std::string listen = "0.0.0.0:7878";
   bool insecure = false;
+  double keep_days = 30;  ///< jobs that are over
+  double keep_gb = 100;   ///< results and scenes in all
 };
 
 struct SubmitOptions {
@@ -108,6 +111,25 @@ struct PriorityOptions {
   Verbosity verbosity;
 };
 
+struct LogsOptions {
+  std::string worker;
+  FarmOption farm;
+  Verbosity verbosity;
+};
+
+struct DoctorOptions {
+  std::string data;                     ///< empty: the default data folder
+  std::string listen = "0.0.0.0:7878";  ///< where a coordinator would listen here
+  FarmOption farm;                      ///< people's or workers' join string
+  Verbosity verbosity;
+};
+
+struct RotateOptions {
+  link::Role role = link::Role::kWorker;
+  std::string data;  ///< empty: the default data folder
+  Verbosity verbosity;
+};
+
 struct WhyOptions {
   JobId job = 0;
   FarmOption farm;
@@ -153,9 +175,9 @@ struct ShowText {
   std::string text;
 };
 
-using Command =
-    std::variant<ServeOptions, SubmitOptions, WatchOptions, JobsOptions, WorkersOptions,
-                 CancelOptions, PauseOptions, ResumeOptions, PriorityOptions, WhyOptions,
-                 RenderOptions, InfoOptions, StitchOptions, CompareOptions, ShowText>;
+using Command = std::variant<ServeOptions, SubmitOptions, WatchOptions, JobsOptions, WorkersOptions,
+                             CancelOptions, PauseOptions, ResumeOptions, PriorityOptions,
+                             WhyOptions, LogsOptions, DoctorOptions, RotateOptions, RenderOptions,
+                             InfoOptions, StitchOptions, CompareOptions, ShowText>;
 
 }  // namespace bandsaw::coordinator

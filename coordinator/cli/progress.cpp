@@ -75,6 +75,8 @@ Progress progress_of(const farm::JobStatus& status) {
   job.counters.bad_samples = status.bad_samples();
   job.cpu_s = status.cpu_s();
   job.priority = status.priority();
+  job.log_of = status.log_of();
+  job.log.assign(status.log().begin(), status.log().end());
   job.workers_used = status.workers_used();
   for (const farm::JobWorker& worker : status.worker()) {
     job.workers.push_back(worker_of(worker));

@@ -52,6 +52,9 @@ JsonObject progress_json(const Progress& progress, const std::string& event) {
   if (job.counters.bad_samples > 0) {
     out.text("bad_sample_at", progress.bad_sample_at);
   }
+  if (!job.log.empty()) {
+    out.text("log_of", job.log_of).texts("log", job.log);
+  }
   if (progress.threads > 0) {
     return out.whole("threads", static_cast<std::uint64_t>(progress.threads));
   }

@@ -10,6 +10,7 @@
 #include "coordinator/cli/commands.h"
 #include "coordinator/cli/data_folder.h"
 #include "coordinator/cli/join_addresses.h"
+#include "coordinator/cli/join_files.h"
 #include "coordinator/engine/engine.h"
 #include "coordinator/rpc/server.h"
 #include "proto/link/identity.h"
@@ -33,23 +34,6 @@ absl::Status make_folder(const std::string& folder) {
                : absl::OkStatus();
 }
 
-absl::StatusOr<std::string> write_join_string(const std::string& file, link::Role role,
-                                              const link::Identity& identity,
-                                              const std::vector<std::string>& addresses,
-                                              bool insecure) {
-  link::JoinString join;
-  join.role = role;
-  join.addresses = addresses;
-  if (!insecure) {
-    join.certificate = identity.certificate_digest;
-  }
-  join.secret = role == link::Role::kWorker ? identity.worker_secret : identity.farm_secret;
-  const std::string line = join.text() + "\n";
-  RETURN_IF_ERROR(write_file_atomically(
-      file, absl::MakeConstSpan(reinterpret_cast<const std::byte*>(line.data()), line.size())));
-  return join.text();
-}
-
 absl::StatusOr<Serving> start(const ServeOptions& options) {
   Serving serving;
   std::string folder = options.data;
@@ -62,19 +46,23 @@ absl::StatusOr<Serving> start(const ServeOptions& options) {
   // The engine first: it locks the folder.
   EngineOptions engine_options;
   engine_options.data_folder = folder;
+  engine_options.keep.seconds = options.keep_days * 24 * 60 * 60;
+  engine_options.keep.bytes = static_cast<std::uint64_t>(options.keep_gb * 1e9);
   ASSIGN_OR_RETURN(serving.engine, Engine::start(engine_options));
   ASSIGN_OR_RETURN(const link::Identity identity, link::load_or_make_identity(folder));
-  ASSIGN_OR_RETURN(serving.server,
-                   Server::start(*serving.engine, identity,
-                                 {.listen = options.listen, .insecure = options.insecure}));
+  ASSIGN_OR_RETURN(
+      serving.server,
+      Server::start(*serving.engine, identity,
+                    {.listen = options.listen,
+                     .insecure = options.insecure,
+                     .renew = [folder](link::Role role) { return rotate_secret(folder, role); }}));
   const std::string host = options.listen.substr(0, options.listen.rfind(':'));
   ASSIGN_OR_RETURN(const std::vector<LocalAddress> local, local_addresses());
   const std::vector<std::string> addresses = join_addresses(host, serving.server->port(), local);
-  ASSIGN_OR_RETURN(serving.join, write_join_string(worker_join_file(folder), link::Role::kWorker,
-                                                   identity, addresses, options.insecure));
-  RETURN_IF_ERROR(write_join_string(farm_join_file(folder), link::Role::kFarm, identity, addresses,
-                                    options.insecure)
-                      .status());
+  ASSIGN_OR_RETURN(serving.join, write_join_file(folder, link::Role::kWorker, identity, addresses,
+                                                 options.insecure));
+  RETURN_IF_ERROR(
+      write_join_file(folder, link::Role::kFarm, identity, addresses, options.insecure).status());
   serving.address = absl::StrCat(host, ":", serving.server->port());
   return serving;
 }

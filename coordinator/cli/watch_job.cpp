@@ -5,6 +5,7 @@
 #include "coordinator/cli/output.h"
 #include "coordinator/cli/progress_display.h"
 #include "coordinator/cli/steady_time.h"
+#include "coordinator/cli/text.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
@@ -102,6 +103,11 @@ ExitCode watch_job(FarmClient& client, JobId job, const std::vector<std::string>
   }
   if (last->job.state != JobState::kDone) {
     display.ended(*last);
+    if (!verbosity.json) {
+      for (const std::string& line : last->job.log) {
+        process.console.complain(printable(absl::StrCat(last->job.log_of, " | ", line)));
+      }
+    }
     const std::string reason = last->job.reason.empty() ? "" : absl::StrCat(": ", last->job.reason);
     return process.console.fail(
         ExitCode::kFailed, absl::StrCat("job ", job, " ", state_name(last->job.state), reason));

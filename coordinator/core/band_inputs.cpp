@@ -116,6 +116,8 @@ void Core::State::on(const input::BandFailed& in) {
   const Band band = lease->band;
   worker->heard_at = clock_.patience();
   end_lease(in.lease, Revoke::kNo);
+  job.log_of = worker->name;
+  job.log = in.log;
   add_fault(job, *worker, band, in.reason);
 }
 

@@ -66,6 +66,9 @@ class Core {
   /// final or unknown, or the band is not one of its passes.
   std::optional<std::vector<RowRange>> wanted(JobId job, const Band& band) const;
 
+  /// The fewest records that replay to what is durable now: what a journal can be replaced by.
+  std::vector<Record> snapshot() const;
+
   std::optional<JobView> job(JobId id, Time now) const;
   /// Why it is not done yet, in sentences, the most important first; empty: no such job.
   std::vector<std::string> why(JobId id, Time now) const;

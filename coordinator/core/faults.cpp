@@ -66,8 +66,12 @@ void Core::State::add_fault(Job& job, Worker& worker, const Band& band, const st
       ++count;
     }
   }
+  act(action::Faulted{job.id, band, worker.name, reason});
   job.notice = absl::StrCat(worker.name, " could not render ", name_of(band), ": ", reason);
   if (names.size() >= kFaultsPerBand || (count >= kFaultsPerBand && !someone_else(job, band))) {
+    if (!job.log.empty()) {
+      emit(record::LastWords{job.id, job.log_of, job.log});
+    }
     end(job, JobState::kFailed,
         absl::StrCat(name_of(band), " failed ", count, " times, on ", absl::StrJoin(names, ", "),
                      ": ", reason));

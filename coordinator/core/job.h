@@ -94,6 +94,8 @@ class Job {
   std::set<LeaseId> copies;        ///< of `leases`, those that own nothing (Lease::copy_of)
   std::uint64_t bands_copied = 0;  ///< leases given to idle workers though others had them
   std::deque<Fault> faults;        ///< the newest kFaultsKept
+  std::string log_of;              ///< the worker that failed a band last …
+  std::vector<std::string> log;    ///< … and the last lines of its log
   std::deque<Fault> losses;        ///< of workers that went while rendering a band and stay away
   std::set<std::uint64_t> used;    ///< who rendered what is in the image, at most kUsedKept
   std::optional<record::Figures> figures;  ///< of a final job

@@ -55,7 +55,8 @@ void Core::State::on(const input::Submit& in) {
     step_.status = absl::ResourceExhaustedError(
         absl::StrCat(active_.size(), " jobs are not done yet (at most ", wire::kActiveJobs, "), ",
                      jobs_.size(), " are known (at most ", kJobsKept,
-                     "); wait for a job, cancel one, or start with a new data folder"));
+                     "); wait for a job, cancel one, or keep old ones for a shorter time (bandsaw "
+                     "serve --keep-days)"));
     return;
   }
   step_.job = next_job_;

@@ -47,9 +47,11 @@ void Core::State::add_loss(const Worker& worker, const Losing& lost) {
   job->notice = reason;
   if (instances.size() >= options_.losses_per_band) {
     end(*job, JobState::kFailed,
-        absl::StrCat(reason,
-                     "; it seems to end every worker that renders it: by the memory that "
-                     "it needs, or by a fault of the renderer"));
+        absl::StrCat(
+            reason,
+            "; it seems to end every worker that renders it: by the memory that "
+            "it needs, or by a fault of the renderer; what the last one said: bandsaw logs ",
+            worker.name));
   }
 }
 

@@ -87,6 +87,10 @@ struct StorageFailed {
   std::string reason;
 };
 struct StorageBack {};
+/// Final jobs that are old enough; others are left alone.
+struct Forget {
+  std::vector<JobId> jobs;
+};
 struct Tick {};
 }  // namespace input
 
@@ -94,7 +98,7 @@ using Input =
     std::variant<input::Submit, input::Cancel, input::Pause, input::Resume, input::SetPriority,
                  input::Hello, input::Heartbeat, input::Draining, input::Lost, input::BandFailed,
                  input::BandStored, input::PassMerged, input::ResultWritten, input::StorageFailed,
-                 input::StorageBack, input::Tick>;
+                 input::StorageBack, input::Forget, input::Tick>;
 
 // ---- events that must survive: the journal ----
 namespace record {
@@ -144,6 +148,16 @@ struct Figures {
   double error = -1;                    ///< negative: not known
   Counters counters;
 };
+/// The last lines of the log of the worker that failed the job.
+struct LastWords {
+  JobId job = 0;
+  std::string worker;
+  std::vector<std::string> log;
+};
+/// A final job that nobody is told of any more; its number is never used again.
+struct JobForgotten {
+  JobId job = 0;
+};
 /// Who was connected, so that a restart waits a moment for those who may hold finished bands.
 struct WorkerJoined {
   std::string instance;
@@ -156,7 +170,7 @@ struct WorkerLeft {
 using Record =
     std::variant<record::JobAdded, record::PassPlanned, record::SamplesFixed, record::StateChanged,
                  record::PriorityChanged, record::HoldChanged, record::TimeSpent, record::Figures,
-                 record::WorkerJoined, record::WorkerLeft>;
+                 record::LastWords, record::JobForgotten, record::WorkerJoined, record::WorkerLeft>;
 
 // ---- actions ----
 namespace action {
@@ -196,6 +210,13 @@ struct Shared {
   std::string to;
   bool begun = false;  ///< both render it now; else it was taken from the one before it began
 };
+/// For the log: a worker could not render a band.
+struct Faulted {
+  JobId job = 0;
+  Band band;
+  std::string worker;
+  std::string reason;
+};
 /// The rows of the stored band that are new go into the film; the others were there already.
 struct AddToFilm {
   JobId job = 0;
@@ -207,14 +228,18 @@ struct WriteResult {
   JobId job = 0;
   std::uint64_t samples = 0;
 };
+/// A forgotten job: its result is not needed any more.
+struct DropJob {
+  JobId job = 0;
+};
 /// The job is final: its bands and film are not needed any more (the result stays).
 struct DropBands {
   JobId job = 0;
 };
 }  // namespace action
 
-using Action =
-    std::variant<action::Welcome, action::Refuse, action::Close, action::Lease, action::Revoke,
-                 action::Shared, action::AddToFilm, action::WriteResult, action::DropBands>;
+using Action = std::variant<action::Welcome, action::Refuse, action::Close, action::Lease,
+                            action::Revoke, action::Shared, action::Faulted, action::AddToFilm,
+                            action::WriteResult, action::DropBands, action::DropJob>;
 
 }  // namespace bandsaw::coordinator

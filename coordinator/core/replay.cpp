@@ -80,6 +80,22 @@ void Core::State::apply(const record::Figures& r) {
   }
 }
 
+void Core::State::apply(const record::LastWords& r) {
+  if (Job* job = find(r.job)) {
+    job->log_of = r.worker;
+    job->log = r.log;
+  }
+}
+
+void Core::State::apply(const record::JobForgotten& r) {
+  if (const Job* job = find(r.job)) {
+    by_request_.erase(job->spec.request_id);
+    active_.erase(r.job);
+    jobs_.erase(r.job);
+  }
+  next_job_ = std::max(next_job_, r.job + 1);
+}
+
 void Core::State::apply(const record::WorkerJoined& r) { joined_.insert(r.instance); }
 void Core::State::apply(const record::WorkerLeft& r) { joined_.erase(r.instance); }
 

@@ -33,6 +33,7 @@ class Core::State {
   void apply(const Record& record);
   void restore(const input::BandStored& band);
   Step replayed(Time now);
+  std::vector<Record> snapshot() const;
 
   std::optional<std::vector<RowRange>> wanted(JobId job, const Band& band) const;
   std::vector<std::string> why(JobId id, Time now) const;
@@ -57,6 +58,7 @@ class Core::State {
   void on(const input::ResultWritten& in);
   void on(const input::StorageFailed& in);
   void on(const input::StorageBack& in);
+  void on(const input::Forget& in);
   void on(const input::Tick& in);
 
   void apply(const record::JobAdded& r);
@@ -67,6 +69,8 @@ class Core::State {
   void apply(const record::HoldChanged& r);
   void apply(const record::TimeSpent& r);
   void apply(const record::Figures& r);
+  void apply(const record::LastWords& r);
+  void apply(const record::JobForgotten& r);
   void apply(const record::WorkerJoined& r);
   void apply(const record::WorkerLeft& r);
 
@@ -104,6 +108,7 @@ class Core::State {
   Job* asked_of(JobId id);
   void resume(Job& job);
   void take_back_from_paused();
+  static void add_records(const Job& job, std::vector<Record>& out);
   void touch(const Job& job);
   double elapsed(const Job& job, Time now) const;
   record::Figures figures(const Job& job) const;

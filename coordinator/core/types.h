@@ -122,6 +122,8 @@ struct JobView {
   double cpu_s = 0;
   std::uint32_t workers_used = 0;
   std::int32_t priority = 0;
+  std::string log_of;            ///< of a failed job: the worker that failed last …
+  std::vector<std::string> log;  ///< … and the last lines of its log
   /// Bands given to idle workers though others had them; what was rendered twice by it is counted
   /// in no other figure.
   std::uint64_t bands_copied = 0;

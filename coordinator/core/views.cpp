@@ -32,6 +32,10 @@ std::optional<JobView> Core::State::view(JobId id, Time now) const {
                           ? job->figures->workers_used
                           : static_cast<std::uint32_t>(job->used.size());
   view.priority = job->priority;
+  if (job->state == JobState::kFailed) {
+    view.log_of = job->log_of;
+    view.log = job->log;
+  }
   view.bands_copied = job->bands_copied;
   view.workers = lines(*job);
   return view;

@@ -16,6 +16,14 @@ std::string priority_text(std::int32_t priority) {
   return priority == 0 ? "" : absl::StrCat(" (priority ", priority, ")");
 }
 
+std::vector<std::string> failed_because(const Job& job, std::string reason) {
+  std::vector<std::string> lines = {std::move(reason)};
+  for (const std::string& line : job.log) {
+    lines.push_back(absl::StrCat(job.log_of, " | ", line));
+  }
+  return lines;
+}
+
 }  // namespace
 
 std::string Core::State::waiting_reason(const Job& job) const {
@@ -78,7 +86,7 @@ std::vector<std::string> Core::State::why(JobId id, Time now) const {
     case JobState::kDone:
       return {"it is done"};
     case JobState::kFailed:
-      return {with_reason("it failed")};
+      return failed_because(*job, with_reason("it failed"));
     case JobState::kCancelled:
       return {"it was cancelled"};
     case JobState::kFinishing:

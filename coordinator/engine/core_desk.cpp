@@ -2,15 +2,19 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/engine/job_log.h"
+#include "proto/wire/limits.h"
 
 namespace bandsaw::coordinator {
 namespace {
 
 constexpr double kTick_s = 0.1;
+constexpr double kCollectEvery_s = 600;
+constexpr std::uint64_t kCompactAbove = 10'000;
 
 }  // namespace
 
@@ -20,7 +24,8 @@ CoreDesk::CoreDesk(CoreOptions options, Journal& journal, const Clock& clock, Ho
       clock_(clock),
       hooks_(std::move(hooks)),
       outbox_(journal),
-      links_(options.epoch) {}
+      links_(options.epoch),
+      logs_(wire::kLogLinesKept, wire::kLogBytesKept) {}
 
 Step CoreDesk::run(const Input& input, PutBand* put) {
   Step step = core_.step(input, clock_.now());
@@ -63,8 +68,12 @@ void CoreDesk::perform(const Action& action) {
   } else if (const auto* drop = std::get_if<action::DropBands>(&action)) {
     results_on_the_way_.erase(drop->job);
     hooks_.drop_bands(drop->job);
+  } else if (const auto* forgotten = std::get_if<action::DropJob>(&action)) {
+    hooks_.drop_job(forgotten->job);
   } else if (const auto* shared = std::get_if<action::Shared>(&action)) {
     log_shared(*shared);
+  } else if (const auto* fault = std::get_if<action::Faulted>(&action)) {
+    log_fault(*fault);
   } else {
     std::visit(
         [this](const auto& one) {
@@ -83,6 +92,8 @@ void CoreDesk::note(const Record& record) {
     known_[pass->job].pass_ends.push_back(pass->samples.last);
   } else if (const auto* changed = std::get_if<record::StateChanged>(&record)) {
     known_[changed->job].state = changed->state;
+  } else if (const auto* forgotten = std::get_if<record::JobForgotten>(&record)) {
+    known_.erase(forgotten->job);
   }
 }
 
@@ -105,12 +116,45 @@ void CoreDesk::settle() {
     run(input::Tick{});
   }
   if (journal_status_.ok()) {
-    flush();
+    collect();
+    if (flush()) {
+      compact();
+    }
   } else {
     outbox_.fail_replies(journal_status_);
   }
   const auto view_of = [this](JobId id) { return job(id); };
   watchers_.update(view_of, !journal_status_.ok(), clock_.now());
+}
+
+void CoreDesk::collect() {
+  const Time now = clock_.now();
+  if (collected_at_ && now - *collected_at_ < kCollectEvery_s) {
+    return;
+  }
+  collected_at_ = now;
+  std::vector<Collector::Job> jobs;
+  for (const auto& [id, known] : known_) {
+    jobs.push_back({id, known.spec.manifest, is_final(known.state)});
+  }
+  hooks_.collect(std::move(jobs));
+}
+
+/// Only where nothing waits for the journal: then what the core knows is what the journal holds.
+void CoreDesk::compact() {
+  if (!outbox_.empty() || journal_.size() <= compact_above_) {
+    return;
+  }
+  const std::vector<Record> records = core_.snapshot();
+  const std::uint64_t before = journal_.size();
+  if (2 * records.size() <= before) {
+    if (const absl::Status status = journal_.rewrite(records); !status.ok()) {
+      spdlog::warn("the journal could not be written anew: {}", status.ToString());
+    } else {
+      spdlog::info("the journal was written anew: {} records, {} before", records.size(), before);
+    }
+  }
+  compact_above_ = std::max<std::uint64_t>(kCompactAbove, 2 * journal_.size());
 }
 
 bool CoreDesk::flush() {

@@ -13,10 +13,12 @@
 
 #include "coordinator/core/core.h"
 #include "coordinator/engine/clock.h"
+#include "coordinator/engine/collector.h"
 #include "coordinator/engine/links.h"
 #include "coordinator/engine/outbox.h"
 #include "coordinator/engine/put_band.h"
 #include "coordinator/engine/watchers.h"
+#include "coordinator/engine/worker_logs.h"
 #include "coordinator/store/journal.h"
 
 namespace bandsaw::coordinator {
@@ -36,6 +38,8 @@ class CoreDesk {
     std::function<void(PutBand, std::vector<RowRange>)> add_to_film;
     std::function<void(JobId, std::uint64_t samples)> make_result;
     std::function<void(JobId)> drop_bands;
+    std::function<void(JobId)> drop_job;
+    std::function<void(std::vector<Collector::Job>)> collect;
     std::function<void()> expect_trouble;
     std::function<void()> retry_film;
   };
@@ -61,6 +65,10 @@ class CoreDesk {
   /// Heartbeats and what else needs nothing but the core.
   void hear(const Input& input) { run(input); }
   void put_band(PutBand put);
+  void worker_log(SessionId session, std::vector<std::string> lines);
+  absl::StatusOr<std::vector<std::string>> worker_log(const std::string& worker) const {
+    return logs_.of(worker);
+  }
 
   // The other threads.
   void band_stored(PutBand put, std::vector<std::uint64_t> row_digests);
@@ -68,6 +76,7 @@ class CoreDesk {
   void result_written(JobId job, const absl::Status& status);
   void storage_failed(JobId job, const absl::Status& status);
   void disk_is_back();
+  void forget(std::vector<JobId> jobs) { run(input::Forget{std::move(jobs)}); }
 
   /// After each batch: the clock's tick, the journal, everything that waited for it, and those who
   /// watch.
@@ -91,6 +100,8 @@ class CoreDesk {
   void journal_failed(const absl::Status& status);
   absl::Status restore_job(JobId id, const Known& known, StoreDesk& store, FilmDesk& film);
   bool over(JobId id) const;
+  void collect();
+  void compact();
 
   Core core_;
   Journal& journal_;
@@ -99,10 +110,13 @@ class CoreDesk {
   Outbox outbox_;
   Links links_;
   Watchers watchers_;
+  WorkerLogs logs_;
   std::map<JobId, Known> known_;
   std::set<JobId> results_on_the_way_;  ///< asked for by the core, not answered yet
   absl::Status journal_status_;         ///< an error: nothing is acknowledged
   Time ticked_at_ = 0;
+  std::optional<Time> collected_at_;
+  std::uint64_t compact_above_ = 10'000;  ///< records in the journal
 };
 
 }  // namespace bandsaw::coordinator

@@ -34,6 +34,12 @@ void CoreDesk::lost(SessionId session, std::string reason) {
   run(input::Lost{.session = session, .reason = std::move(reason)});
 }
 
+void CoreDesk::worker_log(SessionId session, std::vector<std::string> lines) {
+  if (const std::string name = links_.name(session); !name.empty()) {
+    logs_.add(name, std::move(lines));
+  }
+}
+
 void CoreDesk::put_band(PutBand put) {
   const auto known = known_.find(put.job);
   if (known == known_.end() || is_final(known->second.state)) {

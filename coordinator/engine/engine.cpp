@@ -95,6 +95,19 @@ void Engine::workers(std::function<void(std::vector<WorkerView>)> done) {
   impl_->on_core([answer = std::move(answer)](CoreDesk& core) mutable { answer(core.workers()); });
 }
 
+void Engine::logs(std::string worker,
+                  std::function<void(absl::StatusOr<std::vector<std::string>>)> done) {
+  impl_->on_core(
+      [worker = std::move(worker), answer = Answer<std::vector<std::string>>(std::move(done))](
+          CoreDesk& core) mutable { answer(core.worker_log(worker)); });
+}
+
+void Engine::worker_log(SessionId session, std::vector<std::string> lines) {
+  impl_->on_core([session, lines = std::move(lines)](CoreDesk& core) mutable {
+    core.worker_log(session, std::move(lines));
+  });
+}
+
 void Engine::result(JobId job, std::function<void(absl::StatusOr<StoredResult>)> done) {
   impl_->on_core([impl = impl_.get(), job,
                   answer = Answer<StoredResult>(std::move(done))](CoreDesk& core) mutable {
@@ -180,6 +193,10 @@ void Engine::put_band(JobId job, std::string instance, BandPixels pixels, double
   }
   put.share = *std::move(share);
   impl_->on_core([put = std::move(put)](CoreDesk& core) mutable { core.put_band(std::move(put)); });
+}
+
+std::uint64_t Engine::free_bytes() const {
+  return coordinator::free_bytes(impl_->data_folder()).value_or(0);
 }
 
 const std::string& Engine::epoch() const { return impl_->epoch(); }

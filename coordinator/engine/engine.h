@@ -12,6 +12,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "coordinator/core/messages.h"
+#include "coordinator/engine/collector.h"
 #include "coordinator/engine/worker_link.h"
 #include "coordinator/store/result_file.h"
 #include "renderlib/package/blob_source.h"
@@ -25,7 +26,8 @@ struct EngineOptions {
   double progress_timeout_s =
       30;  ///< a lease whose rows do not advance this long is given to another
   double reattach_grace_s =
-      6;  ///< after a restart: how long to wait for workers that were there before
+      6;      ///< after a restart: how long to wait for workers that were there before
+  Keep keep = {};  ///< of what is over; looked at every ten minutes
 };
 
 /// How a band's upload ended for its worker.
@@ -64,6 +66,8 @@ class Engine {
   void watch(JobId job, std::function<bool(absl::StatusOr<JobView>)> changed);
   void jobs(std::function<void(std::vector<JobView>)> done);
   void workers(std::function<void(std::vector<WorkerView>)> done);
+  /// The last lines of a worker's log. NOT_FOUND.
+  void logs(std::string worker, std::function<void(absl::StatusOr<std::vector<std::string>>)> done);
   /// NOT_FOUND, FAILED_PRECONDITION: not done, DATA_LOSS.
   void result(JobId job, std::function<void(absl::StatusOr<StoredResult>)> done);
 
@@ -87,11 +91,17 @@ class Engine {
   void band_failed(SessionId session, LeaseId lease, std::string reason,
                    std::vector<std::string> log);
   void lost(SessionId session, std::string reason);
+  /// New lines of its log, checked.
+  void worker_log(SessionId session, std::vector<std::string> lines);
   /// `done` once the pixels are on disk and in the journal's reach, or not wanted.
   /// RESOURCE_EXHAUSTED: disk full, keep it and try again. INVALID_ARGUMENT: not a band of that
   /// job.
   void put_band(JobId job, std::string instance, BandPixels pixels, double render_s, double cpu_s,
                 std::function<void(absl::StatusOr<BandOutcome>)> done);
+
+  /// Of the disk under the data folder; 0 when it cannot be told. Any thread; may wait for the
+  /// disk.
+  std::uint64_t free_bytes() const;
 
   /// Names this life of the coordinator.
   const std::string& epoch() const;

@@ -2,6 +2,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <chrono>
 #include <random>
 #include <utility>
 
@@ -29,6 +31,10 @@ std::string new_epoch() {
   return epoch;
 }
 
+double unix_seconds() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
 CoreOptions core_options(const EngineOptions& options, const std::string& epoch) {
   CoreOptions core;
   core.fitness = {.protocol = wire::kProtocol, .pixel_version = kPixelVersion, .canary = canary()};
@@ -51,6 +57,7 @@ Engine::Impl::Impl(const EngineOptions& options, EngineDoors doors, DataFolder f
       budget_(kBandBudgetBytes),
       core_(core_options(options, epoch_), *journal_, *clock_, core_hooks()),
       store_(folder_, *clock_, store_hooks()),
+      collector_(folder_, *blobs_, options.keep),
       film_(folder_, film_hooks()),
       core_thread_([this] { core_.settle(); }, milliseconds(100)),
       store_thread_([this] { store_.settle(); }, milliseconds(100)),
@@ -81,51 +88,67 @@ Engine::Impl::~Impl() {
   film_thread_.stop();
 }
 
+void Engine::Impl::collect(std::vector<Collector::Job> jobs) {
+  const double now = unix_seconds();
+  std::vector<JobId> old = collector_.to_forget(jobs, now);
+  std::erase_if(jobs, [&](const Collector::Job& job) {
+    return std::find(old.begin(), old.end(), job.id) != old.end();
+  });
+  collector_.sweep(jobs, now);
+  if (!old.empty()) {
+    on_core([old = std::move(old)](CoreDesk& core) { core.forget(old); });
+  }
+}
+
 CoreDesk::Hooks Engine::Impl::core_hooks() {
-  return {.add_job =
-              [this](JobId job, const JobSpec& spec) {
-                on_store([job, spec](StoreDesk& store) {
-                  store.add_job(job, spec).IgnoreError();  // tried again at its first band
-                });
-                on_film([job, settings = spec.settings](FilmDesk& film) {
-                  film.add_job(job, settings);
-                });
-              },
-          .plan_pass =
-              [this](JobId job, std::uint64_t samples) {
-                on_film([job, samples](FilmDesk& film) { film.plan(job, samples); });
-              },
-          .store_band =
-              [this](PutBand put) {
-                on_store([put = std::move(put)](StoreDesk& store) mutable {
-                  store.append(std::move(put));
-                });
-              },
-          .compare_band =
-              [this](PutBand put) {
-                on_store([put = std::move(put)](StoreDesk& store) mutable {
-                  store.compare(std::move(put));
-                });
-              },
-          .add_to_film =
-              [this](PutBand put, std::vector<RowRange> rows) {
-                on_film([put = std::move(put), rows = std::move(rows)](FilmDesk& film) mutable {
-                  const JobId job = put.job;
-                  film.add(job, std::move(put), std::move(rows))
-                      .IgnoreError();  // the hook has told the core
-                });
-              },
-          .make_result =
-              [this](JobId job, std::uint64_t samples) {
-                on_film([job, samples](FilmDesk& film) { film.want_image(job, samples); });
-              },
-          .drop_bands =
-              [this](JobId job) {
-                on_store([job](StoreDesk& store) { store.drop_bands(job); });
-                on_film([job](FilmDesk& film) { film.drop(job); });
-              },
-          .expect_trouble = [this] { on_store([](StoreDesk& store) { store.expect_trouble(); }); },
-          .retry_film = [this] { on_film([](FilmDesk& film) { film.retry(); }); }};
+  return {
+      .add_job =
+          [this](JobId job, const JobSpec& spec) {
+            on_store([job, spec](StoreDesk& store) {
+              store.add_job(job, spec).IgnoreError();  // tried again at its first band
+            });
+            on_film(
+                [job, settings = spec.settings](FilmDesk& film) { film.add_job(job, settings); });
+          },
+      .plan_pass =
+          [this](JobId job, std::uint64_t samples) {
+            on_film([job, samples](FilmDesk& film) { film.plan(job, samples); });
+          },
+      .store_band =
+          [this](PutBand put) {
+            on_store(
+                [put = std::move(put)](StoreDesk& store) mutable { store.append(std::move(put)); });
+          },
+      .compare_band =
+          [this](PutBand put) {
+            on_store([put = std::move(put)](StoreDesk& store) mutable {
+              store.compare(std::move(put));
+            });
+          },
+      .add_to_film =
+          [this](PutBand put, std::vector<RowRange> rows) {
+            on_film([put = std::move(put), rows = std::move(rows)](FilmDesk& film) mutable {
+              const JobId job = put.job;
+              film.add(job, std::move(put), std::move(rows))
+                  .IgnoreError();  // the hook has told the core
+            });
+          },
+      .make_result =
+          [this](JobId job, std::uint64_t samples) {
+            on_film([job, samples](FilmDesk& film) { film.want_image(job, samples); });
+          },
+      .drop_bands =
+          [this](JobId job) {
+            on_store([job](StoreDesk& store) { store.drop_bands(job); });
+            on_film([job](FilmDesk& film) { film.drop(job); });
+          },
+      .drop_job = [this](JobId job) { on_store([job](StoreDesk& store) { store.drop_job(job); }); },
+      .collect =
+          [this](std::vector<Collector::Job> jobs) {
+            on_store([this, jobs = std::move(jobs)](StoreDesk&) { collect(jobs); });
+          },
+      .expect_trouble = [this] { on_store([](StoreDesk& store) { store.expect_trouble(); }); },
+      .retry_film = [this] { on_film([](FilmDesk& film) { film.retry(); }); }};
 }
 
 StoreDesk::Hooks Engine::Impl::store_hooks() {

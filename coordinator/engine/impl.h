@@ -53,10 +53,13 @@ class Engine::Impl {
   BandBudget& budget() { return budget_; }
   SessionId next_session() { return ++last_session_; }
   const std::string& epoch() const { return epoch_; }
+  const std::string& data_folder() const { return folder_.path(); }
 
  private:
   Impl(const EngineOptions& options, EngineDoors doors, DataFolder folder,
        std::unique_ptr<BlobStore> blobs);
+  /// On the store's thread.
+  void collect(std::vector<Collector::Job> jobs);
   CoreDesk::Hooks core_hooks();
   StoreDesk::Hooks store_hooks();
   FilmDesk::Hooks film_hooks();
@@ -70,6 +73,7 @@ class Engine::Impl {
   BandBudget budget_;
   CoreDesk core_;
   StoreDesk store_;
+  Collector collector_;  ///< of the store's thread
   FilmDesk film_;
   Mailbox core_thread_;
   Mailbox store_thread_;

@@ -35,6 +35,12 @@ struct Line {
     spdlog::info("job={} elapsed={:.3f} s cpu={:.3f} s workers={} samples={}", r.job, r.elapsed_s,
                  r.cpu_s, r.workers_used, r.samples);
   }
+  void operator()(const record::LastWords& r) const {
+    for (const std::string& line : r.log) {
+      spdlog::error("job={} worker={} | {}", r.job, r.worker, line);
+    }
+  }
+  void operator()(const record::JobForgotten& r) const { spdlog::info("job={} forgotten", r.job); }
   void operator()(const record::WorkerJoined& r) const {
     spdlog::debug("worker instance={} joined", r.instance);
   }
@@ -46,6 +52,12 @@ struct Line {
 }  // namespace
 
 void log_record(const Record& record) { std::visit(Line{}, record); }
+
+void log_fault(const action::Faulted& fault) {
+  spdlog::warn("failed job={} rows={}:{} samples={}:{} worker={}: {}", fault.job,
+               fault.band.rows.first, fault.band.rows.last, fault.band.samples.first,
+               fault.band.samples.last, fault.worker, fault.reason);
+}
 
 void log_shared(const action::Shared& shared) {
   spdlog::info("{} job={} rows={}:{} samples={}:{} from={} to={}",

@@ -56,6 +56,11 @@ void Links::perform(const action::Revoke& revoke) {
   }
 }
 
+std::string Links::name(SessionId session) const {
+  const auto found = sessions_.find(session);
+  return found == sessions_.end() ? std::string() : found->second.name;
+}
+
 Links::One* Links::find(SessionId session) {
   const auto found = sessions_.find(session);
   return found == sessions_.end() ? nullptr : &found->second;

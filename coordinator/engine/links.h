@@ -20,6 +20,9 @@ class Links {
   /// The stream ended by itself.
   void lost(SessionId session, const std::string& reason);
 
+  /// As it is shown; empty: no such session.
+  std::string name(SessionId session) const;
+
   void perform(const action::Welcome& welcome);
   void perform(const action::Refuse& refuse);
   void perform(const action::Close& close);

@@ -22,6 +22,8 @@ class Outbox {
 
   explicit Outbox(Journal& journal) : journal_(journal) {}
 
+  bool empty() const { return records_.empty() && waiting_.empty(); }
+
   void record(Record record) { records_.push_back(std::move(record)); }
   void deed(Deed deed) { waiting_.push_back({std::move(deed), nullptr}); }
   void reply(Reply reply) { waiting_.push_back({nullptr, std::move(reply)}); }

@@ -1,5 +1,6 @@
 #include "coordinator/engine/store_desk.h"
 
+#include <filesystem>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -132,6 +133,11 @@ absl::StatusOr<StoredResult> StoreDesk::read_result(JobId id) const {
 void StoreDesk::drop_bands(JobId id) {
   jobs_.erase(id);
   remove_file(folder_.bands(id)).IgnoreError();  // what is left is removed at the next start
+}
+
+void StoreDesk::drop_job(JobId id) {
+  std::error_code error;  // what is left is removed by the next sweep
+  std::filesystem::remove_all(folder_.job(id), error);
 }
 
 void StoreDesk::expect_trouble() {

@@ -48,9 +48,10 @@ class StoreDesk {
 
   void write_result(JobId job, const Image& image);
   absl::StatusOr<StoredResult> read_result(JobId job) const;
-  /// Removes the log of a final job. (Jobs and blobs that are old are collected elsewhere, when
-  /// that exists.)
+  /// Removes the log of a final job.
   void drop_bands(JobId job);
+  /// Removes all that is left of a forgotten job.
+  void drop_job(JobId job);
   /// Something failed: `disk_is_back` comes once the disk takes data.
   void expect_trouble();
 

@@ -82,7 +82,11 @@ absl::Status check_submit(const JobSpec& spec, BlobStore& blobs) {
   ASSIGN_OR_RETURN(const std::string manifest, read_manifest(spec.manifest, blobs));
   RETURN_IF_ERROR(package_info(manifest).status());
   ASSIGN_OR_RETURN(const std::vector<BlobRef> refs, package_blobs(manifest));
+  // Before the core has the job, the collector must find its blobs in use.
+  ASSIGN_OR_RETURN(const wire::Digest manifest_digest, wire::digest_from_hex(spec.manifest));
+  blobs.touch(manifest_digest);
   for (const BlobRef& ref : refs) {
+    blobs.touch(ref.digest);
     if (!blobs.has(ref.digest)) {
       return absl::FailedPreconditionError(absl::StrCat(
           "blob ", ref.digest.hex(), " of the package is missing; send it, then submit again"));

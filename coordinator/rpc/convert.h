@@ -20,6 +20,8 @@ absl::StatusOr<Band> band(const char* field, const farm::Band& message);
 /// `address`: of the peer, for people.
 absl::StatusOr<WorkerHello> worker_hello(const farm::Hello& message, std::string address);
 absl::StatusOr<input::Heartbeat> heartbeat(const farm::Heartbeat& message);
+absl::StatusOr<std::vector<std::string>> log_lines(
+    const char* field, const google::protobuf::RepeatedPtrField<std::string>& lines);
 absl::StatusOr<input::BandFailed> band_failed(const farm::BandFailed& message);
 absl::StatusOr<std::string> reason_field(const char* field, const std::string& text);
 

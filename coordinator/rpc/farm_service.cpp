@@ -31,8 +31,7 @@ absl::StatusOr<std::vector<wire::Digest>> digests(const farm::MissingBlobsReques
 Unary* FarmService::MissingBlobs(grpc::CallbackServerContext* context,
                                  const farm::MissingBlobsRequest* request,
                                  farm::MissingBlobsReply* reply) {
-  if (const auto status = check_caller(*context, doors_.identity, link::Role::kFarm);
-      !status.ok()) {
+  if (const auto status = doors_.gate.check(*context, link::Role::kFarm); !status.ok()) {
     return finished(context, status);
   }
   absl::StatusOr<std::vector<wire::Digest>> asked = digests(*request);
@@ -53,8 +52,7 @@ Unary* FarmService::MissingBlobs(grpc::CallbackServerContext* context,
 
 grpc::ServerReadReactor<farm::BlobChunk>* FarmService::PutBlob(grpc::CallbackServerContext* context,
                                                                farm::PutBlobReply*) {
-  if (const auto status = check_caller(*context, doors_.identity, link::Role::kFarm);
-      !status.ok()) {
+  if (const auto status = doors_.gate.check(*context, link::Role::kFarm); !status.ok()) {
     return new RefusedCall<grpc::ServerReadReactor<farm::BlobChunk>>(status);
   }
   return PutBlobCall::make(doors_, context);
@@ -62,8 +60,7 @@ grpc::ServerReadReactor<farm::BlobChunk>* FarmService::PutBlob(grpc::CallbackSer
 
 Unary* FarmService::Submit(grpc::CallbackServerContext* context, const farm::SubmitRequest* request,
                            farm::SubmitReply* reply) {
-  if (const auto status = check_caller(*context, doors_.identity, link::Role::kFarm);
-      !status.ok()) {
+  if (const auto status = doors_.gate.check(*context, link::Role::kFarm); !status.ok()) {
     return finished(context, status);
   }
   absl::StatusOr<JobSpec> spec = job_spec(*request);
@@ -85,8 +82,7 @@ Unary* FarmService::Submit(grpc::CallbackServerContext* context, const farm::Sub
 
 grpc::ServerWriteReactor<farm::JobStatus>* FarmService::Watch(grpc::CallbackServerContext* context,
                                                               const farm::WatchRequest* request) {
-  if (const auto status = check_caller(*context, doors_.identity, link::Role::kFarm);
-      !status.ok()) {
+  if (const auto status = doors_.gate.check(*context, link::Role::kFarm); !status.ok()) {
     return new RefusedCall<grpc::ServerWriteReactor<farm::JobStatus>>(status);
   }
   return WatchCall::make(doors_, request->job());
@@ -94,8 +90,7 @@ grpc::ServerWriteReactor<farm::JobStatus>* FarmService::Watch(grpc::CallbackServ
 
 grpc::ServerWriteReactor<farm::ResultChunk>* FarmService::GetResult(
     grpc::CallbackServerContext* context, const farm::GetResultRequest* request) {
-  if (const auto status = check_caller(*context, doors_.identity, link::Role::kFarm);
-      !status.ok()) {
+  if (const auto status = doors_.gate.check(*context, link::Role::kFarm); !status.ok()) {
     return new RefusedCall<grpc::ServerWriteReactor<farm::ResultChunk>>(status);
   }
   return GetResultCall::make(doors_, request->job());
@@ -103,8 +98,7 @@ grpc::ServerWriteReactor<farm::ResultChunk>* FarmService::GetResult(
 
 Unary* FarmService::ListJobs(grpc::CallbackServerContext* context, const farm::ListJobsRequest*,
                              farm::ListJobsReply* reply) {
-  if (const auto status = check_caller(*context, doors_.identity, link::Role::kFarm);
-      !status.ok()) {
+  if (const auto status = doors_.gate.check(*context, link::Role::kFarm); !status.ok()) {
     return finished(context, status);
   }
   Unary* reactor = context->DefaultReactor();
@@ -119,8 +113,7 @@ Unary* FarmService::ListJobs(grpc::CallbackServerContext* context, const farm::L
 
 Unary* FarmService::ListWorkers(grpc::CallbackServerContext* context,
                                 const farm::ListWorkersRequest*, farm::ListWorkersReply* reply) {
-  if (const auto status = check_caller(*context, doors_.identity, link::Role::kFarm);
-      !status.ok()) {
+  if (const auto status = doors_.gate.check(*context, link::Role::kFarm); !status.ok()) {
     return finished(context, status);
   }
   Unary* reactor = context->DefaultReactor();

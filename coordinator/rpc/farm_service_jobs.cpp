@@ -14,7 +14,7 @@ using Unary = grpc::ServerUnaryReactor;
 template <class Tell>
 Unary* told(const Doors& doors, grpc::CallbackServerContext* context, farm::JobStatus* reply,
             Tell tell) {
-  if (const auto status = check_caller(*context, doors.identity, link::Role::kFarm); !status.ok()) {
+  if (const auto status = doors.gate.check(*context, link::Role::kFarm); !status.ok()) {
     return finished(context, status);
   }
   Unary* reactor = context->DefaultReactor();
@@ -56,8 +56,7 @@ Unary* FarmService::SetPriority(grpc::CallbackServerContext* context,
 
 Unary* FarmService::Why(grpc::CallbackServerContext* context, const farm::WhyRequest* request,
                         farm::WhyReply* reply) {
-  if (const auto status = check_caller(*context, doors_.identity, link::Role::kFarm);
-      !status.ok()) {
+  if (const auto status = doors_.gate.check(*context, link::Role::kFarm); !status.ok()) {
     return finished(context, status);
   }
   Unary* reactor = context->DefaultReactor();

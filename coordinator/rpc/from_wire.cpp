@@ -162,17 +162,21 @@ absl::StatusOr<input::Heartbeat> heartbeat(const farm::Heartbeat& message) {
   return beat;
 }
 
+absl::StatusOr<std::vector<std::string>> log_lines(
+    const char* field, const google::protobuf::RepeatedPtrField<std::string>& lines) {
+  RETURN_IF_ERROR(check_range(absl::StrCat(field, " (count)").c_str(),
+                              static_cast<std::uint64_t>(lines.size()), 0, wire::kLogLines));
+  for (const std::string& line : lines) {
+    RETURN_IF_ERROR(check_text(field, line, wire::kLogLineBytes));
+  }
+  return std::vector<std::string>(lines.begin(), lines.end());
+}
+
 absl::StatusOr<input::BandFailed> band_failed(const farm::BandFailed& message) {
   RETURN_IF_ERROR(check_text("failed.reason", message.reason(), wire::kReasonBytes));
-  RETURN_IF_ERROR(check_range("failed.log (count)", static_cast<std::uint64_t>(message.log_size()),
-                              0, wire::kLogLines));
-  for (const std::string& line : message.log()) {
-    RETURN_IF_ERROR(check_text("failed.log", line, wire::kLogLineBytes));
-  }
-  return input::BandFailed{.session = 0,
-                           .lease = message.lease(),
-                           .reason = message.reason(),
-                           .log = {message.log().begin(), message.log().end()}};
+  ASSIGN_OR_RETURN(std::vector<std::string> log, log_lines("failed.log", message.log()));
+  return input::BandFailed{
+      .session = 0, .lease = message.lease(), .reason = message.reason(), .log = std::move(log)};
 }
 
 absl::StatusOr<std::string> reason_field(const char* field, const std::string& text) {

@@ -1,20 +1,70 @@
 #include "coordinator/rpc/gate.h"
 
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <utility>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
+#include "absl/strings/strip.h"
 #include "proto/link/channel.h"
+#include "proto/wire/limits.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
+namespace {
 
-absl::Status check_caller(const grpc::CallbackServerContext& context,
-                          const link::Identity& identity, link::Role needed) {
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+std::string address_of(const std::string& peer) {
+  absl::string_view address = peer;
+  absl::ConsumePrefix(&address, "ipv4:");
+  absl::ConsumePrefix(&address, "ipv6:");
+  address = address.substr(0, address.rfind(':'));
+  return absl::StrReplaceAll(address, {{"%5B", ""}, {"%5D", ""}, {"[", ""}, {"]", ""}});
+}
+
+Gate::Gate(link::Identity identity, RenewSecret renew)
+    : renew_(std::move(renew)),
+      identity_(std::move(identity)),
+      failures_(wire::kWrongSecretsPerMinute) {}
+
+absl::StatusOr<link::Role> Gate::role_of(const grpc::CallbackServerContext& context) {
   const auto& metadata = context.client_metadata();
   const auto found = metadata.find(link::kSecretKey);
+  MutexLock lock(mutex_);
   if (found == metadata.end()) {
-    return absl::UnauthenticatedError("the call carries no secret: it needs a join string");
+    return refused(
+        address_of(context.peer()),
+        absl::UnauthenticatedError("the call carries no secret: it needs a join string"));
   }
-  ASSIGN_OR_RETURN(
-      const link::Role role,
-      link::role_of_secret(identity, std::string(found->second.data(), found->second.size())));
+  auto role =
+      link::role_of_secret(identity_, std::string(found->second.data(), found->second.size()));
+  return role.ok() ? role : refused(address_of(context.peer()), role.status());
+}
+
+absl::Status Gate::refused(const std::string& address, const absl::Status& why) {
+  switch (failures_.add(address, now())) {
+    case Failures::Verdict::kFirst:
+      spdlog::warn("address={} refused: {}", address, std::string(why.message()));
+      return why;
+    case Failures::Verdict::kMore:
+      return why;
+    case Failures::Verdict::kTooMany:
+      break;
+  }
+  return absl::ResourceExhaustedError(
+      absl::StrCat("too many calls with a wrong secret from ", address, "; wait a minute"));
+}
+
+absl::Status Gate::check(const grpc::CallbackServerContext& context, link::Role needed) {
+  ASSIGN_OR_RETURN(const link::Role role, role_of(context));
   if (role != needed) {
     return absl::PermissionDeniedError(
         role == link::Role::kWorker
@@ -24,6 +74,23 @@ absl::Status check_caller(const grpc::CallbackServerContext& context,
               "coordinator's data folder)");
   }
   return absl::OkStatus();
+}
+
+absl::Status Gate::check_any(const grpc::CallbackServerContext& context) {
+  return role_of(context).status();
+}
+
+absl::StatusOr<std::string> Gate::rotate(link::Role role) {
+  if (!renew_) {
+    return absl::FailedPreconditionError("this coordinator cannot renew its secrets");
+  }
+  MutexLock one_at_a_time(rotating_);
+  ASSIGN_OR_RETURN(RenewedSecret renewed, renew_(role));
+  MutexLock lock(mutex_);
+  identity_ = std::move(renewed.identity);
+  spdlog::info("a new {} secret; the join string is in {}",
+               role == link::Role::kWorker ? "workers'" : "people's", renewed.join_file);
+  return renewed.join_file;
 }
 
 }  // namespace bandsaw::coordinator

@@ -27,11 +27,12 @@ std::shared_ptr<grpc::ServerCredentials> credentials(const link::Identity& ident
 
 class Server::Impl {
  public:
-  Impl(Engine& engine, const link::Identity& identity)
+  Impl(Engine& engine, const link::Identity& identity, RenewSecret renew)
       : identity_(identity),
+        gate_(identity, std::move(renew)),
         files_(kFileThreads),
-        farm_({engine, identity_, files_, streams_}),
-        work_({engine, identity_, files_, streams_}) {}
+        farm_({engine, gate_, files_, streams_}),
+        work_({engine, gate_, files_, streams_}) {}
 
   absl::Status start(const ServerOptions& options) {
     RETURN_IF_ERROR(check_can_listen(options.listen));
@@ -59,7 +60,8 @@ class Server::Impl {
   int port() const { return port_; }
 
  private:
-  const link::Identity identity_;
+  const link::Identity identity_;  ///< as at the start: the certificate does not change
+  Gate gate_;
   FileExecutor files_;  // before the server: calls that end post to it
   LongStreams streams_;
   FarmService farm_;
@@ -75,7 +77,7 @@ int Server::port() const { return impl_->port(); }
 absl::StatusOr<std::unique_ptr<Server>> Server::start(Engine& engine,
                                                       const link::Identity& identity,
                                                       const ServerOptions& options) {
-  auto impl = std::make_unique<Impl>(engine, identity);
+  auto impl = std::make_unique<Impl>(engine, identity, options.renew);
   RETURN_IF_ERROR(impl->start(options));
   return std::unique_ptr<Server>(new Server(std::move(impl)));
 }

@@ -7,6 +7,7 @@
 
 #include "absl/status/statusor.h"
 #include "coordinator/engine/engine.h"
+#include "coordinator/rpc/gate.h"
 #include "proto/link/identity.h"
 
 namespace bandsaw::coordinator {
@@ -14,6 +15,7 @@ namespace bandsaw::coordinator {
 struct ServerOptions {
   std::string listen = "0.0.0.0:7878";  ///< port 0 picks one
   bool insecure = false;                ///< plaintext
+  RenewSecret renew = nullptr;          ///< what RotateSecret does; nothing: it is refused
 };
 
 class Server {

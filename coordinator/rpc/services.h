@@ -43,6 +43,14 @@ class FarmService final : public farm::Farm::CallbackService {
                                         farm::JobStatus* reply) override;
   grpc::ServerUnaryReactor* Why(grpc::CallbackServerContext* context,
                                 const farm::WhyRequest* request, farm::WhyReply* reply) override;
+  grpc::ServerUnaryReactor* Logs(grpc::CallbackServerContext* context,
+                                 const farm::LogsRequest* request, farm::LogsReply* reply) override;
+  grpc::ServerUnaryReactor* About(grpc::CallbackServerContext* context,
+                                  const farm::AboutRequest* request,
+                                  farm::AboutReply* reply) override;
+  grpc::ServerUnaryReactor* RotateSecret(grpc::CallbackServerContext* context,
+                                         const farm::RotateSecretRequest* request,
+                                         farm::RotateSecretReply* reply) override;
 
  private:
   const Doors doors_;

@@ -69,6 +69,11 @@ absl::Status SessionCall::receive(const farm::FromWorker& message) {
       doors_.engine.draining(*session_, std::move(reason));
       return absl::OkStatus();
     }
+    case farm::FromWorker::kLog: {
+      ASSIGN_OR_RETURN(std::vector<std::string> lines, log_lines("log.line", message.log().line()));
+      doors_.engine.worker_log(*session_, std::move(lines));
+      return absl::OkStatus();
+    }
     case farm::FromWorker::KIND_NOT_SET:
       break;
   }

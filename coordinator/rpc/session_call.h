@@ -30,6 +30,7 @@ class SessionCall final
   void revoke(const action::Revoke& revoke) override;
   void close(const std::string& reason) override { stop(absl::AbortedError(reason)); }
   void stop(const absl::Status& why) override EXCLUDES(mutex_);
+  link::Role role() const override { return link::Role::kWorker; }
 
  private:
   absl::Status receive(const farm::FromWorker& message);

@@ -36,4 +36,18 @@ void LongStreams::stop_all(const absl::Status& why) {
   }
 }
 
+void LongStreams::stop_those_of(link::Role role, const absl::Status& why) {
+  std::vector<std::weak_ptr<LongStream>> streams;
+  {
+    MutexLock lock(mutex_);
+    streams = streams_;
+  }
+  for (const std::weak_ptr<LongStream>& weak : streams) {
+    if (const std::shared_ptr<LongStream> stream = weak.lock();
+        stream != nullptr && stream->role() == role) {
+      stream->stop(why);
+    }
+  }
+}
+
 }  // namespace bandsaw::coordinator

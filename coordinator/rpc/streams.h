@@ -11,6 +11,7 @@
 #include "absl/status/status.h"
 #include "coordinator/engine/engine.h"
 #include "coordinator/rpc/executor.h"
+#include "coordinator/rpc/gate.h"
 #include "proto/link/channel.h"
 #include "proto/link/identity.h"
 #include "renderlib/base/mutex.h"
@@ -24,6 +25,8 @@ class LongStream {
   /// Ends the call with this status once what is being written is out. Any thread; more than once
   /// does nothing.
   virtual void stop(const absl::Status& why) = 0;
+  /// Whose secret opened it.
+  virtual link::Role role() const = 0;
 };
 
 class LongStreams {
@@ -31,6 +34,8 @@ class LongStreams {
   /// UNAVAILABLE once stopped; RESOURCE_EXHAUSTED when there are too many.
   absl::Status add(std::weak_ptr<LongStream> stream) EXCLUDES(mutex_);
   void stop_all(const absl::Status& why) EXCLUDES(mutex_);
+  /// Those of one role that are open now.
+  void stop_those_of(link::Role role, const absl::Status& why) EXCLUDES(mutex_);
 
  private:
   Mutex mutex_;
@@ -41,7 +46,7 @@ class LongStreams {
 /// What the services share. All of it outlives every call.
 struct Doors {
   Engine& engine;
-  const link::Identity& identity;
+  Gate& gate;
   FileExecutor& files;
   LongStreams& streams;
 };

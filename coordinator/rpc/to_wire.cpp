@@ -85,6 +85,10 @@ farm::JobStatus to_message(const JobView& job) {
   message.set_manifest_sha256(raw_digest(job.spec.manifest));
   message.set_cpu_s(job.cpu_s);
   message.set_priority(job.priority);
+  message.set_log_of(job.log_of);
+  for (const std::string& line : job.log) {
+    message.add_log(line);
+  }
   return message;
 }
 

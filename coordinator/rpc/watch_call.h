@@ -17,6 +17,7 @@ class WatchCall final : public SelfOwned<grpc::ServerWriteReactor<farm::JobStatu
   void OnWriteDone(bool ok) override;
   void OnCancel() override { stop(absl::CancelledError("the watcher left")); }
   void stop(const absl::Status& why) override EXCLUDES(mutex_);
+  link::Role role() const override { return link::Role::kFarm; }
 
  private:
   /// False: nothing more is wanted.

@@ -1,5 +1,8 @@
 #include "coordinator/store/blob_store.h"
 
+#include <fcntl.h>
+#include <sys/stat.h>
+
 #include <filesystem>
 #include <system_error>
 
@@ -42,6 +45,33 @@ absl::StatusOr<std::unique_ptr<BlobStore>> BlobStore::open(const std::string& fo
 
 bool BlobStore::has(const wire::Digest& digest) const {
   return file_exists(path_of(folder_, digest));
+}
+
+std::vector<BlobStore::Stored> BlobStore::list() const {
+  std::vector<Stored> all;
+  std::error_code error;
+  for (std::filesystem::recursive_directory_iterator at(folder_, error), end; !error && at != end;
+       at.increment(error)) {
+    struct stat found {};
+    const auto digest = wire::digest_from_hex(at->path().filename().string());
+    if (digest.ok() && ::stat(at->path().c_str(), &found) == 0 && S_ISREG(found.st_mode)) {
+      all.push_back({*digest, static_cast<std::uint64_t>(found.st_size),
+                     static_cast<double>(found.st_mtim.tv_sec)});
+    }
+  }
+  return all;
+}
+
+void BlobStore::touch(const wire::Digest& digest) const {
+  ::utimensat(AT_FDCWD, path_of(folder_, digest).c_str(), nullptr, 0);
+}
+
+absl::Status BlobStore::remove(const wire::Digest& digest) {
+  {
+    MutexLock lock(mutex_);
+    checked_.erase(digest);
+  }
+  return remove_file(path_of(folder_, digest));
 }
 
 absl::StatusOr<std::unique_ptr<BlobBytes>> BlobStore::get(const wire::Digest& digest) {

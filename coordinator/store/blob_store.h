@@ -7,6 +7,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
@@ -28,6 +29,18 @@ class BlobStore : public BlobSource {
   /// The blob, mapped. Its digest is checked the first time in this life. NOT_FOUND: no such blob.
   /// DATA_LOSS: the file is damaged; it has been removed, so that the blob can be sent again.
   absl::StatusOr<std::unique_ptr<BlobBytes>> get(const wire::Digest& digest) override;
+
+  struct Stored {
+    wire::Digest digest;
+    std::uint64_t size = 0;
+    double used_at = 0;  ///< seconds since 1970: written or touched last
+  };
+  /// All blobs, in no order. Those that come or go meanwhile may be among them.
+  std::vector<Stored> list() const;
+  /// It is needed now, as if it had just come.
+  void touch(const wire::Digest& digest) const;
+  /// Fine when it is not there. Who has it mapped keeps it.
+  absl::Status remove(const wire::Digest& digest) EXCLUDES(mutex_);
 
   /// A blob that arrives in pieces. Without commit nothing is kept.
   class Writer {

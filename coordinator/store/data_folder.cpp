@@ -1,6 +1,7 @@
 #include "coordinator/store/data_folder.h"
 
 #include <sys/file.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -91,6 +92,14 @@ absl::Status probe_disk(const std::string& folder) {
   ASSIGN_OR_RETURN(StagedFile file, StagedFile::create(name, wire::kBandBytes));
   RETURN_IF_ERROR(file.append(std::vector<std::byte>(kProbeBytes)));
   return file.sync();
+}
+
+absl::StatusOr<std::uint64_t> free_bytes(const std::string& folder) {
+  struct statvfs found {};
+  if (::statvfs(folder.c_str(), &found) != 0) {
+    return errno_status(errno, folder);
+  }
+  return static_cast<std::uint64_t>(found.f_bavail) * found.f_frsize;
 }
 
 }  // namespace bandsaw::coordinator

@@ -35,4 +35,7 @@ class DataFolder {
 /// Whether the disk has room for a band and takes data: reserves, writes, syncs, removes.
 absl::Status probe_disk(const std::string& folder);
 
+/// Bytes that this user may still write on the disk of a folder. The system's reason otherwise.
+absl::StatusOr<std::uint64_t> free_bytes(const std::string& folder);
+
 }  // namespace bandsaw::coordinator

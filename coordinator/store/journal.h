@@ -18,6 +18,10 @@ class Journal {
   virtual absl::Status append(absl::Span<const Record> records) = 0;
   /// Every record, in the order written. DATA_LOSS naming the record that is damaged or not known.
   virtual absl::Status replay(absl::FunctionRef<void(const Record&)> each) = 0;
+  /// These in the place of all that is there, or nothing changes. Errors as append.
+  virtual absl::Status rewrite(absl::Span<const Record> records) = 0;
+  /// Records that are there.
+  virtual std::uint64_t size() const = 0;
 };
 
 }  // namespace bandsaw::coordinator

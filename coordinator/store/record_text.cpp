@@ -3,6 +3,8 @@
 #include <array>
 
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
 #include "coordinator/store/fields.h"
 #include "renderlib/base/status_macros.h"
@@ -180,6 +182,14 @@ Record read_record(absl::string_view kind, FieldReader& in) {
   if (kind == "figures") {
     return read_figures(in);
   }
+  if (kind == "last_words") {
+    return record::LastWords{.job = in.number("job"),
+                             .worker = in.text("worker"),
+                             .log = absl::StrSplit(in.text("log"), '\n', absl::SkipEmpty())};
+  }
+  if (kind == "job_forgotten") {
+    return record::JobForgotten{.job = in.number("job")};
+  }
   if (kind == "worker_joined") {
     return record::WorkerJoined{.instance = in.text("instance")};
   }
@@ -235,6 +245,16 @@ RecordText to_text(const Record& record) {
                             [&](const record::Figures& r) {
                               write_figures(out, r);
                               return "figures";
+                            },
+                            [&](const record::LastWords& r) {
+                              out.number("job", r.job);
+                              out.text("worker", r.worker);
+                              out.text("log", absl::StrJoin(r.log, "\n"));
+                              return "last_words";
+                            },
+                            [&](const record::JobForgotten& r) {
+                              out.number("job", r.job);
+                              return "job_forgotten";
                             },
                             [&](const record::WorkerJoined& r) {
                               out.text("instance", r.instance);

@@ -123,17 +123,24 @@ absl::Status SqliteJournal::check_version() {
 }
 
 absl::Status SqliteJournal::append(absl::Span<const Record> records) {
-  if (records.empty()) {
-    return absl::OkStatus();
-  }
+  return records.empty() ? absl::OkStatus() : transact("", records, last_);
+}
+
+absl::Status SqliteJournal::rewrite(absl::Span<const Record> records) {
+  RETURN_IF_ERROR(transact("DELETE FROM record;", records, 0));
+  // Give back the room; where that fails it is used again by what comes.
+  execute("PRAGMA wal_checkpoint(TRUNCATE);").IgnoreError();
+  execute("VACUUM;").IgnoreError();
+  return absl::OkStatus();
+}
+
+absl::Status SqliteJournal::transact(const char* first, absl::Span<const Record> records,
+                                     std::uint64_t after) {
   RETURN_IF_ERROR(execute("BEGIN IMMEDIATE;"));
-  std::uint64_t sequence = last_;
-  absl::Status status;
-  for (const Record& record : records) {
-    status = insert(record, ++sequence);
-    if (!status.ok()) {
-      break;
-    }
+  std::uint64_t sequence = after;
+  absl::Status status = execute(first);
+  for (std::size_t i = 0; i < records.size() && status.ok(); ++i) {
+    status = insert(records[i], ++sequence);
   }
   if (status.ok()) {
     status = execute("COMMIT;");

@@ -24,6 +24,8 @@ class SqliteJournal : public Journal {
 
   absl::Status append(absl::Span<const Record> records) override;
   absl::Status replay(absl::FunctionRef<void(const Record&)> each) override;
+  absl::Status rewrite(absl::Span<const Record> records) override;
+  std::uint64_t size() const override { return last_; }
 
  private:
   struct CloseDatabase {
@@ -43,6 +45,7 @@ class SqliteJournal : public Journal {
   /// The first column of the first row, as text.
   absl::StatusOr<std::string> ask(const char* sql);
   absl::Status insert(const Record& record, std::uint64_t sequence);
+  absl::Status transact(const char* first, absl::Span<const Record> records, std::uint64_t after);
   absl::Status error(const std::string& what) const;
 
   std::unique_ptr<sqlite3, CloseDatabase> database_;

@@ -7,6 +7,7 @@
 #include <openssl/x509.h>
 #include <openssl/x509v3.h>
 
+#include <ctime>
 #include <memory>
 
 #include "absl/strings/escaping.h"
@@ -107,6 +108,18 @@ absl::StatusOr<wire::Digest> certificate_digest(const std::string& certificate_p
   const std::string bytes(reinterpret_cast<const char*>(der), static_cast<std::size_t>(size));
   OPENSSL_free(der);
   return wire::sha256(bytes);
+}
+
+absl::StatusOr<Validity> certificate_validity(const std::string& certificate_pem) {
+  const Certificate certificate = parse_certificate(certificate_pem);
+  std::tm from{};
+  std::tm until{};
+  if (certificate == nullptr ||
+      ASN1_TIME_to_tm(X509_get0_notBefore(certificate.get()), &from) != 1 ||
+      ASN1_TIME_to_tm(X509_get0_notAfter(certificate.get()), &until) != 1) {
+    return absl::InvalidArgumentError("the certificate cannot be read");
+  }
+  return Validity{static_cast<double>(timegm(&from)), static_cast<double>(timegm(&until))};
 }
 
 absl::Status check_key(const std::string& key_pem, const std::string& certificate_pem) {

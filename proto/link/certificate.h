@@ -21,6 +21,14 @@ absl::StatusOr<KeyAndCertificate> make_certificate(const std::string& name);
 /// SHA-256 of the DER form. INVALID_ARGUMENT: not a certificate.
 absl::StatusOr<wire::Digest> certificate_digest(const std::string& certificate_pem);
 
+/// From when until when it is valid, in seconds since 1970.
+struct Validity {
+  double from = 0;
+  double until = 0;
+};
+/// INVALID_ARGUMENT: not a certificate.
+absl::StatusOr<Validity> certificate_validity(const std::string& certificate_pem);
+
 /// INVALID_ARGUMENT: not a private key, or not this certificate's.
 absl::Status check_key(const std::string& key_pem, const std::string& certificate_pem);
 

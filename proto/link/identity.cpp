@@ -115,6 +115,26 @@ absl::StatusOr<Identity> load_or_make_identity(const std::string& folder) {
   return identity;
 }
 
+absl::StatusOr<Identity> renew_secret(const std::string& folder, Role role) {
+  const std::string path = folder + "/identity";
+  absl::StatusOr<std::string> text = read_private_file(path);
+  if (!text.ok()) {
+    return text.status();
+  }
+  absl::StatusOr<Identity> identity = from_text(*text, path);
+  absl::StatusOr<std::string> secret = make_secret();
+  for (const absl::Status& status : {identity.status(), secret.status()}) {
+    if (!status.ok()) {
+      return status;
+    }
+  }
+  (role == Role::kWorker ? identity->worker_secret : identity->farm_secret) = *std::move(secret);
+  if (absl::Status status = write_private_file(path, to_text(*identity)); !status.ok()) {
+    return status;
+  }
+  return identity;
+}
+
 absl::StatusOr<Role> role_of_secret(const Identity& identity, const std::string& secret) {
   // Both are compared always: the time taken tells nothing of which role came near.
   const bool worker = equal_in_constant_time(identity.worker_secret, secret);

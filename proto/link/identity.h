@@ -23,6 +23,10 @@ struct Identity {
 /// DATA_LOSS: there is one that cannot be read.
 absl::StatusOr<Identity> load_or_make_identity(const std::string& folder);
 
+/// A new secret for one role, written before it is returned; the other role's and the certificate
+/// stay. NOT_FOUND: the folder has no identity.
+absl::StatusOr<Identity> renew_secret(const std::string& folder, Role role);
+
 /// The name in the certificate; clients set it as the expected name, so that addresses may change.
 inline constexpr char kServerName[] = "bandsaw";
 

@@ -22,8 +22,11 @@ inline constexpr std::size_t kBandsPerWorker = 16;
 inline constexpr std::size_t kThreadsPerWorker = 4'096;
 inline constexpr std::size_t kJobNameBytes = 200;
 inline constexpr std::size_t kWorkerNameBytes = 64;
+inline constexpr std::size_t kWrongSecretsPerMinute = 120;    ///< of one address; beyond, calls are turned away unread
 inline constexpr std::size_t kLogLines = 50;
 inline constexpr std::size_t kLogLineBytes = 500;
+inline constexpr std::size_t kLogLinesKept = 200;            ///< of one worker's log, by the coordinator
+inline constexpr std::size_t kLogBytesKept = 64 << 20;       ///< of all workers' logs
 inline constexpr std::size_t kReasonBytes = 2'000;
 
 }  // namespace bandsaw::wire

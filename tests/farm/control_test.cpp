@@ -12,7 +12,7 @@ namespace {
 
 const std::string kScene = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
 const std::vector<std::string> kSettings = {"--width", "200",       "--height",
-                                            "200",     "--samples", "160"};
+                                            "200",     "--samples", "64"};
 
 class Control : public testing::Test {
  protected:

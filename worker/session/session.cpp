@@ -58,6 +58,14 @@ void set_band(const Band& band, farm::Band& message) {
 
 }  // namespace
 
+farm::FromWorker log_message(const std::vector<std::string>& lines) {
+  farm::FromWorker message;
+  for (const std::string& line : lines) {
+    message.mutable_log()->add_line(plain(line, wire::kLogLineBytes));
+  }
+  return message;
+}
+
 Session::Session(Self self) : self_(std::move(self)) {}
 
 farm::FromWorker Session::hello() const {

@@ -47,6 +47,9 @@ struct LeaseName {
   std::string epoch;
 };
 
+/// Lines of the log as they are sent: bounded, each on one line.
+farm::FromWorker log_message(const std::vector<std::string>& lines);
+
 class Session {
  public:
   explicit Session(Self self);

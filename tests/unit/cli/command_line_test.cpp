@@ -89,6 +89,8 @@ TEST(CommandLine, ServeTakesItsOptions) {
   EXPECT_EQ(options.listen, "[::]:0");
   EXPECT_TRUE(options.insecure);
   EXPECT_EQ(parsed<ServeOptions>("serve").listen, "0.0.0.0:7878");
+  EXPECT_EQ(parsed<ServeOptions>("serve --keep-days 2").keep_days, 2);
+  EXPECT_EQ(parsed<ServeOptions>("serve --keep-size 0.5").keep_gb, 0.5);
 }
 
 TEST(CommandLine, TheOtherCommandsTakeTheirOptions) {
@@ -100,6 +102,9 @@ TEST(CommandLine, TheOtherCommandsTakeTheirOptions) {
   EXPECT_EQ(parsed<PriorityOptions>("priority 3 -10").priority, -10);
   EXPECT_EQ(parsed<SubmitOptions>("submit a.glb --priority -3").priority, -3);
   EXPECT_TRUE(parsed<WhyOptions>("why 3 --json").verbosity.json);
+  EXPECT_EQ(parsed<LogsOptions>("logs desk").worker, "desk");
+  EXPECT_EQ(parsed<DoctorOptions>("doctor --data /d --listen [::]:1").listen, "[::]:1");
+  EXPECT_EQ(parsed<RotateOptions>("secret rotate farm --data /d").role, link::Role::kFarm);
   EXPECT_TRUE(parsed<JobsOptions>("jobs --json").verbosity.json);
   EXPECT_EQ(parsed<WorkersOptions>("workers --farm x").farm.farm, "x");
   EXPECT_THAT(parsed<StitchOptions>("stitch a.band b.band -o c.png").parts,
@@ -135,7 +140,14 @@ TEST(CommandLine, WrongUseIsOneLineThatNamesTheWord) {
   expect_wrong("watch", "number");
   expect_wrong("watch seven", "'seven'");
   expect_wrong("cancel 0", "'0'");
+  expect_wrong("serve --keep-days 0", "--keep-days");
+  expect_wrong("serve --keep-size much", "--keep-size");
   expect_wrong("pause", "number");
+  expect_wrong("logs", "name");
+  expect_wrong("doctor --listen 7878", "HOST:PORT");
+  expect_wrong("secret", "rotate");
+  expect_wrong("secret rotate", "worker or farm");
+  expect_wrong("secret rotate everybody", "worker or farm");
   expect_wrong("priority 3", "value");
   expect_wrong("priority 3 1001", "1000");
   expect_wrong("priority 3 high", "'high'");

@@ -102,10 +102,20 @@ TEST(Loss, ABandThatFailsThreeTimesFailsTheJobWithTheReason) {
   farm.hello(1, "a");
   for (std::size_t i = 0; i < 3; ++i) {
     ASSERT_GT(farm.all<action::Lease>().size(), i);
-    farm.say(input::BandFailed{1, farm.all<action::Lease>()[i].lease, "out of memory", {}});
+    farm.say(input::BandFailed{
+        1, farm.all<action::Lease>()[i].lease, "out of memory", {"its last line"}});
   }
   EXPECT_EQ(farm.job(job).state, JobState::kFailed);
   EXPECT_NE(farm.job(job).reason.find("out of memory"), std::string::npos);
+  EXPECT_EQ(farm.job(job).log_of, "worker-a");
+  EXPECT_EQ(farm.job(job).log, std::vector<std::string>{"its last line"});
+  EXPECT_EQ(farm.core.why(job, farm.now).at(1), "worker-a | its last line");
+  EXPECT_EQ(farm.all<action::Faulted>().size(), 3u);
+  FarmDriver next;
+  for (const Record& record : farm.records) {
+    next.core.replay(record);
+  }
+  EXPECT_EQ(next.job(job).log, std::vector<std::string>{"its last line"});
   EXPECT_EQ(farm.all<action::DropBands>().size(), 1u);
 }
 

@@ -103,6 +103,66 @@ TEST(Restart, FiguresOfAFinalJobStay) {
   }
 }
 
+/// What replays to the same jobs.
+void expect_equal(const FarmDriver& one, const FarmDriver& other) {
+  const std::vector<JobView> a = one.core.jobs(one.now);
+  const std::vector<JobView> b = other.core.jobs(other.now);
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].id, b[i].id);
+    EXPECT_EQ(a[i].spec, b[i].spec);
+    EXPECT_EQ(a[i].state, b[i].state);
+    EXPECT_EQ(a[i].reason, b[i].reason);
+    EXPECT_EQ(a[i].priority, b[i].priority);
+    EXPECT_EQ(a[i].elapsed_s, b[i].elapsed_s);
+    EXPECT_EQ(a[i].samples_done, b[i].samples_done);
+    EXPECT_EQ(a[i].samples_per_pixel, b[i].samples_per_pixel);
+    EXPECT_EQ(a[i].log, b[i].log);
+  }
+}
+
+TEST(Snapshot, ReplaysToTheSameAndIsSmall) {
+  FarmDriver farm;
+  farm.submit(test_job("done", StopAtSamples{16}));
+  farm.hello(1, "a", 1);
+  farm.render_all(1, "a");
+  farm.say(input::ResultWritten{1});
+  farm.submit(test_job("paused", StopAtSamples{10'000}, 64, 64));
+  farm.say(input::Pause{2});
+  farm.say(input::SetPriority{2, -4});
+  for (int i = 0; i < 50; ++i) {
+    farm.say(input::SetPriority{2, i});
+  }
+  farm.submit(test_job("running", StopAtError{.relative_rmse = 0.01}));
+  FarmDriver by_journal = second_life(farm, {});
+  FarmDriver by_snapshot;
+  const std::vector<Record> snapshot = farm.core.snapshot();
+  for (const Record& record : snapshot) {
+    by_snapshot.core.replay(record);
+  }
+  by_snapshot.now = by_journal.now;
+  by_snapshot.take(by_snapshot.core.replayed(by_snapshot.now));
+  expect_equal(by_journal, by_snapshot);
+  EXPECT_LT(2 * snapshot.size(), farm.records.size());
+}
+
+TEST(Snapshot, ForgetsFinalJobsAndNeverUsesTheirNumbersAgain) {
+  FarmDriver farm;
+  farm.submit(test_job("r1", StopAtSamples{16}));
+  farm.submit(test_job("r2", StopAtSamples{16}));
+  farm.say(input::Cancel{2});
+  const Step step = farm.say(input::Forget{{1, 2, 99}});
+  ASSERT_EQ(in<action::DropJob>(step).size(), 1u) << "one runs, one is not known";
+  EXPECT_EQ(in<action::DropJob>(step)[0].job, 2u);
+  EXPECT_FALSE(farm.core.job(2, farm.now).has_value());
+  FarmDriver next;
+  for (const Record& record : farm.core.snapshot()) {
+    next.core.replay(record);
+  }
+  next.take(next.core.replayed(next.now));
+  EXPECT_EQ(next.submit(test_job("r2", StopAtSamples{16})), 3u);
+}
+
 TEST(Restart, NothingIsLeasedBeforeTheFormerWorkersAreBack) {
   const Before before;
   FarmDriver next = before.restart(false);
@@ -178,7 +238,11 @@ TEST(Restart, AJobOfWhichAllIsThereIsFinishedAgain) {
   for (const Record& record : farm.records) {
     next.core.replay(record);
   }
-  next.core.replay(input::BandStored{1, lease.band, honest_digests(lease.band), "", {}, 0, 0});
+  next.core.replay(input::BandStored{.job = 1,
+                                     .band = lease.band,
+                                     .row_digests = honest_digests(lease.band),
+                                     .instance = {},
+                                     .counters = {}});
   const Step step = next.core.replayed(next.now);
   ASSERT_EQ(in<action::WriteResult>(step).size(), 1u);
   EXPECT_EQ(in<action::WriteResult>(step)[0].samples, 16u);

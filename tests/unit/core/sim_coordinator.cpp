@@ -33,6 +33,9 @@ void SimCoordinator::start() {
     core_->replay(record);
     note(record);
   }
+  if (chance_.happens(0.3)) {
+    journal_ = core_->snapshot();
+  }
   for (auto& [id, disk] : disk_) {
     disk.stored = {};
     for (const input::BandStored& band : disk.bands) {

@@ -185,6 +185,8 @@ class Simulation {
       worker->calm_down();
       if (!worker->running()) {
         worker->start();
+      } else {
+        worker->cut_cable();  // one that drains comes back as one that does not
       }
     }
   }

@@ -50,6 +50,14 @@ class JournalDisk {
     MutexLock lock(mutex_);
     breaks_after_ = appends;
   }
+  absl::Status rewrite(absl::Span<const Record> records) EXCLUDES(mutex_) {
+    MutexLock lock(mutex_);
+    if (broken_) {
+      return absl::ResourceExhaustedError("the journal's disk is full");
+    }
+    records_.assign(records.begin(), records.end());
+    return absl::OkStatus();
+  }
   std::vector<Record> records() EXCLUDES(mutex_) {
     MutexLock lock(mutex_);
     return records_;
@@ -86,6 +94,10 @@ class MemoryJournal : public Journal {
     }
     return absl::OkStatus();
   }
+  absl::Status rewrite(absl::Span<const Record> records) override {
+    return disk_->rewrite(records);
+  }
+  std::uint64_t size() const override { return disk_->records().size(); }
 
  private:
   std::shared_ptr<JournalDisk> disk_;

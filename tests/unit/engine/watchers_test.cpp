@@ -25,7 +25,13 @@ class WatchersTest : public testing::Test {
       watchers_.update([this](JobId) { return std::optional(view_); }, hold_final, now_);
     }
   }
-  JobView view_{.id = 1, .spec = {}, .reason = {}, .counters = {}, .workers = {}};
+  JobView view_{.id = 1,
+                .spec = {},
+                .reason = {},
+                .counters = {},
+                .log_of = {},
+                .log = {},
+                .workers = {}};
   Time now_ = 50;
   Watchers watchers_;
   std::vector<absl::StatusOr<JobView>> told_;

@@ -36,6 +36,31 @@ TEST(Identity, IsForItsOwnerOnly) {
   EXPECT_EQ(std::distance(begin(entries), end(entries)), 1) << "no temporary file is left";
 }
 
+TEST(Identity, ARenewedSecretIsTheOnlyThingThatChanges) {
+  const test::TempDir folder;
+  const std::string data = folder / "data";
+  EXPECT_TRUE(absl::IsNotFound(renew_secret(data, Role::kWorker).status()));
+  const Identity before = *load_or_make_identity(data);
+  const Identity after = *renew_secret(data, Role::kWorker);
+  EXPECT_NE(after.worker_secret, before.worker_secret);
+  EXPECT_EQ(after.farm_secret, before.farm_secret);
+  EXPECT_EQ(after.certificate_digest, before.certificate_digest);
+  EXPECT_EQ(after.key_pem, before.key_pem);
+  EXPECT_EQ(load_or_make_identity(data)->worker_secret, after.worker_secret);
+  EXPECT_NE(renew_secret(data, Role::kFarm)->farm_secret, before.farm_secret);
+  EXPECT_EQ(mode_of(folder / "data/identity"), 0600U);
+}
+
+TEST(Identity, ItsCertificateIsValidNowAndForYears) {
+  const test::TempDir folder;
+  const auto validity =
+      certificate_validity(load_or_make_identity(folder / "data")->certificate_pem);
+  ASSERT_TRUE(validity.ok()) << validity.status();
+  constexpr double kDay = 24 * 60 * 60;
+  EXPECT_NEAR(validity->until - validity->from, (20 * 365 + 1) * kDay, 10);
+  EXPECT_FALSE(certificate_validity("nonsense").ok());
+}
+
 TEST(Identity, IsTheSameTheNextTime) {
   const test::TempDir folder;
   const absl::StatusOr<Identity> first = load_or_make_identity(folder.path());

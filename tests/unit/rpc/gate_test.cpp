@@ -91,6 +91,16 @@ class GateTest : public FarmTest {
            farm::WhyReply reply;
            return people()->Why(&c, {}, &reply);
          }},
+        {"Logs", farm_role,
+         [this](auto& c) {
+           farm::LogsReply reply;
+           return people()->Logs(&c, {}, &reply);
+         }},
+        {"RotateSecret", farm_role,
+         [this](auto& c) {
+           farm::RotateSecretReply reply;
+           return people()->RotateSecret(&c, {}, &reply);
+         }},
         {"Session", work_role,
          [this](auto& c) {
            const auto stream = work()->Session(&c);

@@ -58,6 +58,37 @@ class StreamTest : public FarmTest {
   }
 };
 
+farm::FromWorker log(const std::vector<std::string>& lines) {
+  farm::FromWorker message;
+  for (const std::string& line : lines) {
+    message.mutable_log()->add_line(line);
+  }
+  return message;
+}
+
+TEST_F(StreamTest, KeepsWhatAWorkerLogsForPeople) {
+  EXPECT_TRUE(say({hello(), log({"one", "two"}), log({"three"})}).ok());
+  farm::LogsRequest request;
+  request.set_worker("desk");
+  farm::LogsReply reply;
+  const grpc::Status status = people()->Logs(context(link::Role::kFarm).get(), request, &reply);
+  ASSERT_TRUE(status.ok()) << status.error_message();
+  EXPECT_THAT(reply.line(), testing::ElementsAre("one", "two", "three"));
+  request.set_worker("laptop");
+  EXPECT_EQ(people()->Logs(context(link::Role::kFarm).get(), request, &reply).error_code(),
+            StatusCode::NOT_FOUND);
+}
+
+TEST_F(StreamTest, RefusesLogsThatAreTooLongOrHoldControlCharacters) {
+  for (const farm::FromWorker& bad :
+       {log({"\x1b[2J"}), log({std::string(wire::kLogLineBytes + 1, 'x')}),
+        log(std::vector<std::string>(wire::kLogLines + 1, "x"))}) {
+    const grpc::Status status = say({hello(), bad}, nullptr, false);
+    EXPECT_EQ(status.error_code(), StatusCode::INVALID_ARGUMENT);
+    EXPECT_THAT(status.error_message(), HasSubstr("log.line"));
+  }
+}
+
 TEST_F(StreamTest, WelcomesAWorkerThatIsFit) {
   const auto call = context(link::Role::kWorker);
   const auto stream = work()->Session(call.get());

@@ -44,6 +44,8 @@ inline std::vector<Record> sample_records() {
               .error = -1,
               .counters =
                   {.rays = 9, .bad_samples = 8, .bad_x = 7, .bad_y = UINT32_MAX, .bad_sample = 5}},
+          record::LastWords{.job = 1, .worker = "desk", .log = {"one \\ line", "another"}},
+          record::JobForgotten{.job = 3},
           record::WorkerJoined{.instance = "0123456789abcdef0123456789abcdef"},
           record::WorkerLeft{.instance = ""}};
 }

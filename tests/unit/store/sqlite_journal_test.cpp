@@ -73,6 +73,22 @@ TEST_F(SqliteJournalTest, EveryKindOfRecordIsThereAfterReopeningInOrder) {
   EXPECT_EQ(replayed(*open()), texts(records));
 }
 
+TEST_F(SqliteJournalTest, IsReplacedByOtherRecordsAndGoesOn) {
+  const std::vector<Record> all = sample_records();
+  const std::vector<Record> few = {all[3], all[0]};
+  {
+    const auto journal = open();
+    ASSERT_TRUE(journal->append(all).ok());
+    EXPECT_EQ(journal->size(), all.size());
+    ASSERT_TRUE(journal->rewrite(few).ok());
+    EXPECT_EQ(journal->size(), 2u);
+    ASSERT_TRUE(journal->append({all[1]}).ok());
+  }
+  const auto journal = open();
+  EXPECT_EQ(journal->size(), 3u);
+  EXPECT_EQ(replayed(*journal), texts({all[3], all[0], all[1]}));
+}
+
 TEST_F(SqliteJournalTest, ADamagedRecordIsNamed) {
   ASSERT_TRUE(open()->append(sample_records()).ok());
   run_sql(path_, "UPDATE record SET fields = replace(fields, 'job 1', 'job 2') WHERE sequence = 4");

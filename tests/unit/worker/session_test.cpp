@@ -53,6 +53,12 @@ farm::ToWorker revoke(std::uint64_t id) {
   return message;
 }
 
+TEST(LogMessage, HoldsCleanLinesOfBoundedLength) {
+  const farm::FromWorker message =
+      log_message({"a\tb\x1b[2J\n", std::string(wire::kLogLineBytes + 9, 'x')});
+  EXPECT_THAT(message.log().line(), ElementsAre("a b [2J", std::string(wire::kLogLineBytes, 'x')));
+}
+
 TEST(Session, SaysWhoItIs) {
   const farm::FromWorker message = Session(self()).hello();
   const farm::Hello& hello = message.hello();

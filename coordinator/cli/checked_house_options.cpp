@@ -1,0 +1,50 @@
+// The commands that look after a farm.
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/cli/checked_options.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+
+absl::StatusOr<Command> checked_logs(const RawOptions& raw) {
+  LogsOptions options;
+  options.farm.farm = raw.farm;
+  ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
+  if (!raw.worker) {
+    return absl::InvalidArgumentError(
+        "logs: the worker's name is missing; bandsaw workers lists them");
+  }
+  options.worker = *raw.worker;
+  return options;
+}
+
+absl::StatusOr<Command> checked_doctor(const RawOptions& raw) {
+  DoctorOptions options;
+  options.data = raw.data;
+  options.farm.farm = raw.farm;
+  ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
+  if (raw.listen) {
+    options.listen = *raw.listen;
+  }
+  RETURN_IF_ERROR(check_listen(options.listen));
+  return options;
+}
+
+absl::StatusOr<Command> checked_secret(const RawOptions& raw) {
+  constexpr char kUse[] = "as in: bandsaw secret rotate worker";
+  RotateOptions options;
+  options.data = raw.data;
+  ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
+  if (!raw.action || *raw.action != "rotate") {
+    return absl::InvalidArgumentError(
+        absl::StrCat("secret: the only thing to do with one is rotate, ", kUse));
+  }
+  if (!raw.role || (*raw.role != "worker" && *raw.role != "farm")) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("secret rotate: whose must be worker or farm, ", kUse));
+  }
+  options.role = *raw.role == "worker" ? link::Role::kWorker : link::Role::kFarm;
+  return options;
+}
+
+}  // namespace bandsaw::coordinator

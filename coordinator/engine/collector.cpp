@@ -1,0 +1,119 @@
+#include "coordinator/engine/collector.h"
+
+#include <spdlog/spdlog.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+
+#include "absl/strings/numbers.h"
+#include "renderlib/package/package.h"
+
+namespace bandsaw::coordinator {
+
+std::set<wire::Digest> Collector::blobs_of(const DigestHex& manifest) {
+  if (const auto found = known_.find(manifest); found != known_.end()) {
+    return found->second;
+  }
+  const auto digest = wire::digest_from_hex(manifest);
+  if (!digest.ok()) {
+    return {};
+  }
+  const auto bytes = blobs_.get(*digest);
+  if (!bytes.ok()) {
+    return {};  // asked again: it may be sent anew
+  }
+  const auto text = (*bytes)->bytes();
+  const auto refs = package_blobs({reinterpret_cast<const char*>(text.data()), text.size()});
+  std::set<wire::Digest> blobs = {*digest};
+  for (const BlobRef& ref : refs.ok() ? *refs : std::vector<BlobRef>()) {
+    blobs.insert(ref.digest);
+  }
+  return known_.emplace(manifest, std::move(blobs)).first->second;
+}
+
+/// Its bands are removed when it becomes final, which is the last change of its folder.
+Collector::Final Collector::final_job(JobId id) const {
+  Final job{.id = id};
+  struct stat found {};
+  if (::stat(folder_.job(id).c_str(), &found) == 0) {
+    job.at = static_cast<double>(found.st_mtim.tv_sec);
+  }
+  if (::stat(folder_.result(id).c_str(), &found) == 0) {
+    job.bytes = static_cast<std::uint64_t>(found.st_size);
+  }
+  return job;
+}
+
+std::vector<JobId> Collector::to_forget(const std::vector<Job>& jobs, double now) {
+  std::map<wire::Digest, std::uint64_t> sizes;
+  std::uint64_t bytes = 0;
+  for (const BlobStore::Stored& blob : blobs_.list()) {
+    sizes[blob.digest] = blob.size;
+    bytes += blob.size;
+  }
+  std::map<wire::Digest, std::size_t> users;
+  std::map<JobId, DigestHex> manifests;
+  std::vector<Final> final_jobs;
+  for (const Job& job : jobs) {
+    manifests[job.id] = job.manifest;
+    for (const wire::Digest& digest : blobs_of(job.manifest)) {
+      ++users[digest];
+    }
+    if (job.final) {
+      final_jobs.push_back(final_job(job.id));
+      bytes += final_jobs.back().bytes;
+    }
+  }
+  std::sort(final_jobs.begin(), final_jobs.end(), [](const Final& a, const Final& b) {
+    return std::pair(a.at, a.id) < std::pair(b.at, b.id);
+  });
+  std::vector<JobId> forget;
+  for (const Final& job : final_jobs) {
+    if (now - job.at <= keep_.seconds && bytes <= keep_.bytes) {
+      break;
+    }
+    forget.push_back(job.id);
+    bytes -= std::min(bytes, job.bytes);
+    for (const wire::Digest& digest : blobs_of(manifests[job.id])) {
+      if (--users[digest] == 0) {
+        bytes -= std::min(bytes, sizes[digest]);
+      }
+    }
+  }
+  return forget;
+}
+
+void Collector::sweep(const std::vector<Job>& jobs, double now) {
+  std::set<wire::Digest> needed;
+  std::set<JobId> ids;
+  std::set<DigestHex> manifests;
+  for (const Job& job : jobs) {
+    ids.insert(job.id);
+    manifests.insert(job.manifest);
+    const std::set<wire::Digest> blobs = blobs_of(job.manifest);
+    needed.insert(blobs.begin(), blobs.end());
+  }
+  std::erase_if(known_, [&](const auto& one) { return !manifests.contains(one.first); });
+  std::size_t removed = 0;
+  for (const BlobStore::Stored& blob : blobs_.list()) {
+    if (!needed.contains(blob.digest) && now - blob.used_at > keep_.unused_seconds) {
+      removed += blobs_.remove(blob.digest).ok() ? 1 : 0;
+    }
+  }
+  if (removed > 0) {
+    spdlog::info("removed {} blobs that no job needs", removed);
+  }
+  // A job that was added meanwhile has a higher number than any of these.
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_.jobs(), error)) {
+    JobId id = 0;
+    if (absl::SimpleAtoi(entry.path().filename().string(), &id) && !ids.contains(id) &&
+        !ids.empty() && id < *ids.rbegin()) {
+      std::filesystem::remove_all(entry.path(), error);
+    }
+  }
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,33 @@
+#include "coordinator/rpc/failures.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+constexpr double kMinute_s = 60;
+constexpr std::size_t kMostAddresses = 10'000;
+
+}  // namespace
+
+Failures::Verdict Failures::add(const std::string& address, double now) {
+  if (counts_.size() >= kMostAddresses && !counts_.contains(address)) {
+    forget_old(now);
+  }
+  Count& count = counts_[address];
+  if (count.failures == 0 || now - count.since >= kMinute_s) {
+    count = {.since = now, .failures = 0};
+  }
+  ++count.failures;
+  return count.failures == 1      ? Verdict::kFirst
+         : count.failures > most_ ? Verdict::kTooMany
+                                  : Verdict::kMore;
+}
+
+/// So many addresses within a minute are one attacker with many: then all begin anew.
+void Failures::forget_old(double now) {
+  std::erase_if(counts_, [&](const auto& one) { return now - one.second.since >= kMinute_s; });
+  if (counts_.size() >= kMostAddresses) {
+    counts_.clear();
+  }
+}
+
+}  // namespace bandsaw::coordinator

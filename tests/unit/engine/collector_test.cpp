@@ -1,0 +1,133 @@
+#include "coordinator/engine/collector.h"
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "coordinator/store/file.h"
+#include "renderlib/package/package.h"
+#include "tests/support/scenes.h"
+#include "tests/support/temp_dir.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+constexpr double kNow = 2e9;  // seconds since 1970
+constexpr double kDay = 24 * 60 * 60;
+
+class CollectorTest : public testing::Test {
+ protected:
+  CollectorTest()
+      : folder_(*DataFolder::open(temp_ / "data")), blobs_(*BlobStore::open(folder_.blobs())) {}
+
+  static void set_time(const std::string& path, double seconds) {
+    const timespec time{static_cast<time_t>(seconds), 0};
+    const timespec times[2] = {time, time};
+    ASSERT_EQ(utimensat(AT_FDCWD, path.c_str(), times, 0), 0) << path;
+  }
+
+  wire::Digest put(const std::string& text, double at) {
+    const wire::Digest digest = wire::sha256(text);
+    auto writer = blobs_->write(digest, text.size());
+    EXPECT_TRUE(
+        writer->append({reinterpret_cast<const std::byte*>(text.data()), text.size()}).ok());
+    EXPECT_TRUE(writer->commit().ok());
+    set_time(folder_.blobs() + "/" + digest.hex().substr(0, 2) + "/" + digest.hex(), at);
+    return digest;
+  }
+
+  // A package of its own for each name; all of them share the blobs of one scene.
+  DigestHex package(const std::string& name) {
+    BlobMap blobs;
+    PackageInfo info;
+    info.name = name;
+    const std::string manifest = encode_package(test::cornell_box().scene, info, blobs);
+    for (const auto& [digest, bytes] : blobs.all()) {
+      put({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, kNow - 100 * kDay);
+    }
+    return put(manifest, kNow - 100 * kDay).hex();
+  }
+
+  void result(JobId job, std::size_t bytes, double at) {
+    ASSERT_TRUE(make_folder(folder_.job(job)).ok());
+    std::ofstream(folder_.result(job)) << std::string(bytes, 'x');
+    set_time(folder_.job(job), at);
+  }
+
+  Collector collector(const Keep& keep) { return Collector(folder_, *blobs_, keep); }
+
+  test::TempDir temp_;
+  DataFolder folder_;
+  std::unique_ptr<BlobStore> blobs_;
+};
+
+TEST_F(CollectorTest, ForgetsFinalJobsByAge) {
+  result(1, 10, kNow - 31 * kDay);
+  result(2, 10, kNow - 29 * kDay);
+  result(3, 10, kNow - 90 * kDay);
+  EXPECT_THAT(collector({}).to_forget({{1, "", true}, {2, "", true}, {3, "", false}}, kNow),
+              ElementsAre(1));
+}
+
+TEST_F(CollectorTest, ForgetsTheOldestBeyondTheBytes) {
+  for (const JobId job : {1, 2, 3}) {
+    result(job, 1'000, kNow - static_cast<double>(10 - job) * kDay);
+  }
+  const std::vector<Collector::Job> jobs = {{1, "", true}, {2, "", true}, {3, "", true}};
+  EXPECT_THAT(collector({.bytes = 2'500}).to_forget(jobs, kNow), ElementsAre(1));
+  EXPECT_THAT(collector({.bytes = 1'500}).to_forget(jobs, kNow), ElementsAre(1, 2));
+  EXPECT_THAT(collector({}).to_forget(jobs, kNow), IsEmpty());
+}
+
+TEST_F(CollectorTest, NeverRemovesWhatAKnownJobNeeds) {
+  const DigestHex one = package("one");
+  const DigestHex two = package("two");
+  collector({}).sweep({{1, one, false}}, kNow);
+  EXPECT_TRUE(blobs_->has(*wire::digest_from_hex(one)));
+  EXPECT_FALSE(blobs_->has(*wire::digest_from_hex(two)));
+  const auto bytes = blobs_->get(*wire::digest_from_hex(one));
+  ASSERT_TRUE(bytes.ok());
+  const std::string manifest(reinterpret_cast<const char*>((*bytes)->bytes().data()),
+                             (*bytes)->bytes().size());
+  const auto refs = package_blobs(manifest);
+  ASSERT_TRUE(refs.ok()) << refs.status();
+  for (const BlobRef& blob : *refs) {
+    EXPECT_TRUE(blobs_->has(blob.digest)) << "shared with the package that went";
+  }
+}
+
+TEST_F(CollectorTest, BlobsThatJustCameOrAreAskedForStay) {
+  const wire::Digest old = put("old", kNow - 2 * kDay);
+  const wire::Digest young = put("young", kNow - kDay / 2);
+  const wire::Digest asked = put("asked", kNow - 2 * kDay);
+  blobs_->touch(asked);
+  struct stat found {};
+  ASSERT_EQ(
+      stat((folder_.blobs() + "/" + asked.hex().substr(0, 2) + "/" + asked.hex()).c_str(), &found),
+      0);
+  EXPECT_GT(static_cast<double>(found.st_mtim.tv_sec), 1.7e9);
+  EXPECT_NE(static_cast<double>(found.st_mtim.tv_sec), kNow - 2 * kDay);
+  collector({}).sweep({}, kNow);
+  EXPECT_FALSE(blobs_->has(old));
+  EXPECT_TRUE(blobs_->has(young));
+}
+
+TEST_F(CollectorTest, FoldersOfForgottenJobsGo) {
+  result(1, 10, kNow);
+  result(2, 10, kNow);
+  result(3, 10, kNow);
+  collector({}).sweep({{2, "", true}}, kNow);
+  EXPECT_FALSE(std::filesystem::exists(folder_.job(1)));
+  EXPECT_TRUE(std::filesystem::exists(folder_.job(2)));
+  EXPECT_TRUE(std::filesystem::exists(folder_.job(3))) << "it may have been added meanwhile";
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,30 @@
+#include "coordinator/rpc/failures.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace bandsaw::coordinator {
+namespace {
+
+using Verdict = Failures::Verdict;
+
+TEST(Failures, AreCountedByAddressAndMinute) {
+  Failures failures(2);
+  EXPECT_EQ(failures.add("a", 100), Verdict::kFirst);
+  EXPECT_EQ(failures.add("a", 110), Verdict::kMore);
+  EXPECT_EQ(failures.add("a", 120), Verdict::kTooMany);
+  EXPECT_EQ(failures.add("b", 120), Verdict::kFirst);
+  EXPECT_EQ(failures.add("a", 159), Verdict::kTooMany);
+  EXPECT_EQ(failures.add("a", 160), Verdict::kFirst) << "a minute after its first";
+}
+
+TEST(Failures, OfAnyNumberOfAddressesTakeBoundedMemory) {
+  Failures failures(2);
+  for (int i = 0; i < 30'000; ++i) {
+    EXPECT_EQ(failures.add(std::to_string(i), 0), Verdict::kFirst);
+  }
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

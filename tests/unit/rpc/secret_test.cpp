@@ -1,0 +1,110 @@
+// Secrets that are made anew, and wrong ones that are tried often.
+
+#include <gmock/gmock.h>
+
+#include "proto/wire/limits.h"
+#include "tests/unit/rpc/farm.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+using grpc::StatusCode;
+
+class SecretTest : public FarmTest {
+ protected:
+  SecretTest() {
+    server_.reset();
+    auto server = Server::start(
+        *engine_, identity_,
+        {.listen = "127.0.0.1:0", .renew = [this](link::Role role) { return renew(role); }});
+    EXPECT_TRUE(server.ok()) << server.status();
+    server_ = *std::move(server);
+    channel_ = link::connect(join(link::Role::kFarm), std::chrono::seconds(60))->control;
+  }
+
+  absl::StatusOr<RenewedSecret> renew(link::Role role) {
+    const auto identity = link::renew_secret(folder_ / "identity", role);
+    EXPECT_TRUE(identity.ok()) << identity.status();
+    renewed_ = *identity;
+    return RenewedSecret{renewed_, "the file"};
+  }
+
+  grpc::Status rotate(farm::SecretRole role, farm::RotateSecretReply* reply) {
+    farm::RotateSecretRequest request;
+    request.set_role(role);
+    return people()->RotateSecret(context(link::Role::kFarm).get(), request, reply);
+  }
+
+  grpc::Status list_jobs(const std::string& secret) {
+    grpc::ClientContext call;
+    call.AddMetadata(link::kSecretKey, secret);
+    farm::ListJobsReply reply;
+    return people()->ListJobs(&call, {}, &reply);
+  }
+
+  link::Identity renewed_;
+};
+
+TEST_F(SecretTest, TheOldOneOfPeopleIsRefusedAndTheNewOneIsNot) {
+  farm::RotateSecretReply reply;
+  ASSERT_TRUE(rotate(farm::SECRET_ROLE_FARM, &reply).ok());
+  EXPECT_EQ(reply.join_file(), "the file");
+  EXPECT_EQ(list_jobs(identity_.farm_secret).error_code(), StatusCode::UNAUTHENTICATED);
+  EXPECT_TRUE(list_jobs(renewed_.farm_secret).ok());
+  EXPECT_EQ(renewed_.worker_secret, identity_.worker_secret);
+}
+
+TEST_F(SecretTest, WorkersWithTheOldOneAreShutOutAndPeopleAreNot) {
+  const auto call = context(link::Role::kWorker);
+  const auto stream = work()->Session(call.get());
+  farm::RotateSecretReply reply;
+  ASSERT_TRUE(rotate(farm::SECRET_ROLE_WORKER, &reply).ok());
+  farm::ToWorker message;
+  while (stream->Read(&message)) {
+  }
+  EXPECT_EQ(stream->Finish().error_code(), StatusCode::UNAUTHENTICATED);
+  EXPECT_TRUE(list_jobs(identity_.farm_secret).ok());
+}
+
+TEST_F(SecretTest, ARoleThatIsNoneIsRefused) {
+  farm::RotateSecretReply reply;
+  EXPECT_EQ(rotate(farm::SECRET_ROLE_UNSPECIFIED, &reply).error_code(),
+            StatusCode::INVALID_ARGUMENT);
+}
+
+TEST_F(SecretTest, WhoTriesManyIsTurnedAwayAndTheRightOneIsNot) {
+  StatusCode last = StatusCode::OK;
+  for (std::size_t i = 0; i <= wire::kWrongSecretsPerMinute; ++i) {
+    last = list_jobs(std::string(22, 'A')).error_code();
+  }
+  EXPECT_EQ(last, StatusCode::RESOURCE_EXHAUSTED);
+  EXPECT_TRUE(list_jobs(identity_.farm_secret).ok());
+}
+
+using WithoutRenewal = FarmTest;
+
+TEST_F(WithoutRenewal, ItIsRefused) {
+  farm::RotateSecretRequest request;
+  request.set_role(farm::SECRET_ROLE_WORKER);
+  farm::RotateSecretReply reply;
+  EXPECT_EQ(people()->RotateSecret(context(link::Role::kFarm).get(), request, &reply).error_code(),
+            StatusCode::FAILED_PRECONDITION);
+}
+
+TEST_F(WithoutRenewal, BothRolesMayAskWhatTheFarmIs) {
+  for (const link::Role role : {link::Role::kFarm, link::Role::kWorker}) {
+    farm::AboutReply about;
+    ASSERT_TRUE(people()->About(context(role).get(), {}, &about).ok());
+    EXPECT_GT(about.protocol(), 0U);
+    EXPECT_GT(about.pixel_version(), 0U);
+    EXPECT_GT(about.unix_s(), 1.7e9);
+    EXPECT_GT(about.free_bytes(), 0U);
+    EXPECT_EQ(about.workers(), 0U);
+  }
+  grpc::ClientContext stranger;
+  farm::AboutReply about;
+  EXPECT_EQ(people()->About(&stranger, {}, &about).error_code(), StatusCode::UNAUTHENTICATED);
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,41 @@
+#include "worker/log_queue.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <spdlog/logger.h>
+
+namespace bandsaw::worker {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+struct Logging {
+  std::shared_ptr<LogQueue> queue = std::make_shared<LogQueue>();
+  spdlog::logger logger{"test", queue};
+  Logging() { logger.set_pattern("%l %v"); }
+};
+
+TEST(LogQueue, GivesEachLineOnceInOrder) {
+  Logging log;
+  log.logger.info("one");
+  log.logger.warn("two");
+  log.logger.info("three");
+  EXPECT_THAT(log.queue->take(2), ElementsAre("info one\n", "warning two\n"));
+  EXPECT_THAT(log.queue->take(2), ElementsAre("info three\n"));
+  EXPECT_THAT(log.queue->take(2), IsEmpty());
+}
+
+TEST(LogQueue, CountsWhatNobodyTookInTime) {
+  Logging log;
+  for (int i = 0; i < 507; ++i) {
+    log.logger.info("{}", i);
+  }
+  const std::vector<std::string> first = log.queue->take(2);
+  EXPECT_THAT(first, ElementsAre(HasSubstr("7 lines"), "info 7\n"));
+  EXPECT_THAT(log.queue->take(1), ElementsAre("info 8\n"));
+}
+
+}  // namespace
+}  // namespace bandsaw::worker

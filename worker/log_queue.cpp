@@ -1,0 +1,33 @@
+#include "worker/log_queue.h"
+
+#include <algorithm>
+
+#include "absl/strings/str_cat.h"
+
+namespace bandsaw::worker {
+
+void LogQueue::sink_it_(const spdlog::details::log_msg& message) {
+  spdlog::memory_buf_t text;
+  formatter_->format(message, text);
+  lines_.emplace_back(text.data(), text.size());
+  if (lines_.size() > kKept) {
+    lines_.pop_front();
+    ++lost_;
+  }
+}
+
+std::vector<std::string> LogQueue::take(std::size_t most) {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::vector<std::string> taken;
+  if (lost_ > 0 && most > 0) {
+    taken.push_back(absl::StrCat(lost_, " lines were not sent in time"));
+    lost_ = 0;
+  }
+  while (taken.size() < most && !lines_.empty()) {
+    taken.push_back(std::move(lines_.front()));
+    lines_.pop_front();
+  }
+  return taken;
+}
+
+}  // namespace bandsaw::worker
