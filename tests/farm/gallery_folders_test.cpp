@@ -22,8 +22,11 @@ std::vector<std::string> scenes_in(const std::string& folder) {
     const std::string from = std::string(BANDSAW_GALLERY) + "/" + part;
     for (const auto& entry : fs::directory_iterator(from)) {
       const fs::path copy = fs::path(folder) / part / entry.path().filename();
+      if (copy.extension() == ".png") {
+        continue;
+      }
+      fs::copy_file(entry.path(), copy, fs::copy_options::overwrite_existing);
       if (copy.extension() == ".textproto") {
-        fs::copy_file(entry.path(), copy, fs::copy_options::overwrite_existing);
         scenes.push_back(copy);
       }
     }
