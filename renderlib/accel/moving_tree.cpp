@@ -6,6 +6,7 @@
 
 #include "renderlib/accel/collapse.h"
 #include "renderlib/base/check.h"
+#include "renderlib/geometry/placement.h"
 
 namespace bandsaw {
 namespace {
@@ -75,6 +76,27 @@ class Bounds {
   MovingTree& tree_;
 };
 
+bool same_linear_part(const Transform& a, const Transform& b) {
+  Transform moved = b;
+  for (std::size_t i = 0; i < 3; ++i) {
+    moved.m[i][3] = a.m[i][3];
+  }
+  return a == moved;
+}
+
+/// Whether all that the frame and its parents do is to move straight.
+bool slides(const Geometry& geometry, FrameId id) {
+  for (; id != kNoFrame; id = geometry.frames[index_of(id)].parent) {
+    const std::vector<Key>& keys = geometry.frames[index_of(id)].keys;
+    for (const Key& key : keys) {
+      if (!same_linear_part(key.at, keys.front().at)) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 MovingTree build_moving_tree(const Geometry& geometry, const Prototypes& prototypes,
@@ -94,7 +116,10 @@ MovingTree build_moving_tree(const Geometry& geometry, const Prototypes& prototy
     if (box && add_item(middle(*box), static_cast<std::uint32_t>(boxes.size()),
                         LeafKind::kInstance, items)) {
       boxes.push_back(*box);
-      result.moving.push_back({*prototype, static_cast<std::uint32_t>(i + 1)});
+      const Transform at_open = to_world_at(geometry, instance, interval.open);
+      result.moving.push_back({*prototype, static_cast<std::uint32_t>(i + 1),
+                               slides(geometry, instance.frame),
+                               inverse(at_open).value_or(Transform{})});
     }
   }
   BANDSAW_CHECK(items.size() < ChildRef::kMaxLeaves, "the package's limits are lower");

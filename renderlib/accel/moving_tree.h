@@ -12,6 +12,10 @@ namespace bandsaw {
 struct MovingInstance {
   Prototype prototype;
   std::uint32_t instance = 0;  ///< as PrimitiveId has it
+  /// It neither turns nor grows: the linear part of its placement is the same at all times, and so
+  /// is that of the inverse, which is kept.
+  bool slides = false;
+  Transform to_object;
 };
 
 struct MovingTree {

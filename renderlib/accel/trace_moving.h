@@ -13,7 +13,18 @@ template <class Query>
 bool trace_moving_instance(const MovingInstance& moving, const Geometry& geometry, const Ray& ray,
                            Query& query) {
   const Instance& instance = geometry.instances[moving.instance - 1];
-  const std::optional<Transform> to_object = inverse(to_world_at(geometry, instance, ray.time));
+  const Transform to_world = to_world_at(geometry, instance, ray.time);
+  if (moving.slides) {
+    // What inverse() would return, to the bit.
+    Transform to_object = moving.to_object;
+    const Vec3 back =
+        -to_object.direction({to_world.m[0][3], to_world.m[1][3], to_world.m[2][3]});
+    to_object.m[0][3] = back.x;
+    to_object.m[1][3] = back.y;
+    to_object.m[2][3] = back.z;
+    return trace_placed(moving.prototype, to_object, ray, moving.instance, query);
+  }
+  const std::optional<Transform> to_object = inverse(to_world);
   return to_object && trace_placed(moving.prototype, *to_object, ray, moving.instance, query);
 }
 
