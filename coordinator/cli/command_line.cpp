@@ -26,6 +26,10 @@ void add_output(CLI::App& app, RawOptions& raw, const std::string& formats,
 
 void add_image(CLI::App& app, RawOptions& raw) {
   app.add_option("scene", raw.scene, "Scene file (.textproto, .json) or model file");
+  app.add_option("--environment", raw.environment,
+                 "Equirectangular image (.hdr, .exr …) that lights the scene from all around "
+                 "[default: the scene's]")
+      ->type_name("FILE");
   app.add_option("--samples", raw.samples, "Stop at N samples a pixel [default: 64]")
       ->type_name("N");
   app.add_option("--error", raw.error, "Stop at this estimated relative RMSE, as in 1%")

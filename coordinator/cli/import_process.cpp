@@ -112,14 +112,21 @@ absl::Status judge(const ChildOutcome& outcome, const std::string& file,
 // Runs the importer on `file`; what it made lies in the folder.
 absl::StatusOr<std::unique_ptr<ScratchFolder>> run_importer(const char* what,
                                                             const std::string& file,
-                                                            const ImportLimits& limits) {
+                                                            const ImportLimits& limits,
+                                                            const std::string& environment = {}) {
   ASSIGN_OR_RETURN(const std::string program, import_program(limits));
   ASSIGN_OR_RETURN(std::unique_ptr<ScratchFolder> folder, make_scratch(limits.scratch));
   const auto cpu_seconds = static_cast<std::uint64_t>(std::ceil(std::max(limits.seconds, 1.0)));
-  ASSIGN_OR_RETURN(const ChildOutcome outcome,
-                   run_child({program, what, file, folder->path(), absl::StrCat(cpu_seconds),
-                              absl::StrCat(limits.memory_bytes)},
-                             limits.seconds, limits.stop));
+  std::vector<std::string> arguments = {program,
+                                        what,
+                                        file,
+                                        folder->path(),
+                                        absl::StrCat(cpu_seconds),
+                                        absl::StrCat(limits.memory_bytes)};
+  if (!environment.empty()) {
+    arguments.push_back(environment);
+  }
+  ASSIGN_OR_RETURN(const ChildOutcome outcome, run_child(arguments, limits.seconds, limits.stop));
   RETURN_IF_ERROR(judge(outcome, file, limits));
   return folder;
 }
@@ -152,8 +159,9 @@ ImportedPackage::ImportedPackage(ImportedPackage&&) noexcept = default;
 ImportedPackage& ImportedPackage::operator=(ImportedPackage&&) noexcept = default;
 
 absl::StatusOr<ImportedPackage> import_in_process(const std::string& scene_path,
-                                                  const ImportLimits& limits) {
-  ASSIGN_OR_RETURN(auto folder, run_importer("scene", scene_path, limits));
+                                                  const ImportLimits& limits,
+                                                  const std::string& environment) {
+  ASSIGN_OR_RETURN(auto folder, run_importer("scene", scene_path, limits, environment));
   ASSIGN_OR_RETURN(std::string manifest,
                    read_bytes(folder->path() + "/manifest", wire::kManifestBytes));
   ASSIGN_OR_RETURN(PackageInfo info, package_info(manifest));

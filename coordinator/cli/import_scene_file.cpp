@@ -8,12 +8,13 @@
 namespace bandsaw::coordinator {
 
 absl::StatusOr<ImportedPackage> import_scene_file(const std::string& scene, Verbosity verbosity,
-                                                  Process& process) {
+                                                  Process& process,
+                                                  const std::string& environment) {
   std::atomic<bool> stop{false};
   const Interrupts::Listener listener(process.interrupts, [&] { stop = true; });
   ImportLimits limits;
   limits.stop = &stop;
-  auto package = import_in_process(scene, limits);
+  auto package = import_in_process(scene, limits, environment);
   if (!package.ok()) {
     return package;
   }

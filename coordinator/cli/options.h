@@ -29,6 +29,7 @@ struct ImageOptions {
   std::optional<std::uint32_t> height;  ///< alone: the width does
   std::optional<std::uint32_t> depth;
   std::optional<Integrator> integrator;
+  std::string environment;  ///< an image that becomes the background; empty: the scene's own
 };
 
 /// How pictures are written, as far as it was given.

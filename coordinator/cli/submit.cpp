@@ -81,7 +81,8 @@ ExitCode run(const SubmitOptions& options, Process& process) {
   if (!client.ok()) {
     return console.fail(exit_code_of(client.status()), std::string(client.status().message()));
   }
-  auto package = import_scene_file(options.scene, options.verbosity, process);
+  auto package =
+      import_scene_file(options.scene, options.verbosity, process, options.image.environment);
   if (!package.ok()) {
     return console.fail(import_exit_code(package.status()),
                         std::string(package.status().message()));

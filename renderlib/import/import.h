@@ -3,6 +3,7 @@
 // Scene files and models to a scene package. Runs in its own confined process (import/main.cpp);
 // coordinator and workers never do this.
 
+#include <optional>
 #include <string>
 
 #include "absl/status/statusor.h"
@@ -10,14 +11,22 @@
 
 namespace bandsaw {
 
+/// A file that somebody named beside the scene: it may lie anywhere, so its bytes come with it.
+struct GivenFile {
+  std::string name;  ///< for messages
+  std::string bytes;
+};
+
 struct ImportedScene {
   SceneDescription scene;
   PackageInfo info;
 };
 
 /// Reads a scene file (*.textproto, *.json) or a model alone (then framed under a default sky).
+/// `environment`, if given, is what its background is instead: an equirectangular image.
 /// Files are read only below the folder of `path`. INVALID_ARGUMENT: "cornell.textproto:12:3:
 /// shape[4].sphere.radius: must be > 0, is -1". NOT_FOUND, PERMISSION_DENIED: naming the file.
-absl::StatusOr<ImportedScene> import_scene(const std::string& path);
+absl::StatusOr<ImportedScene> import_scene(
+    const std::string& path, const std::optional<GivenFile>& environment = std::nullopt);
 
 }  // namespace bandsaw

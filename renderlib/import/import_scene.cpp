@@ -8,6 +8,7 @@
 #include "absl/strings/str_cat.h"
 #include "proto/wire/limits.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/import/environment_image.h"
 #include "renderlib/import/framing.h"
 #include "renderlib/import/import.h"
 #include "renderlib/import/model.h"
@@ -31,12 +32,11 @@ constexpr std::uint64_t kMaxSceneFileBytes = std::uint64_t{64} << 20;
 
 bool has_light(const SceneDescription& scene) {
   const std::vector<Medium>& media = scene.media.media;
-  return !scene.lights.empty() ||
-         std::any_of(media.begin(), media.end(),
-                     [](const Medium& medium) { return !is_black(medium.emission); }) ||
-         std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& material) {
-           return std::holds_alternative<Emissive>(material);
-         });
+  return !scene.lights.empty() || std::any_of(media.begin(), media.end(), [](const Medium& medium) {
+    return !is_black(medium.emission);
+  }) || std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& material) {
+    return std::holds_alternative<Emissive>(material);
+  });
 }
 
 Camera framed(const ImportedScene& out) {
@@ -131,11 +131,18 @@ absl::Status read_any(const std::string& path, SceneDraft& draft) {
 
 }  // namespace
 
-absl::StatusOr<ImportedScene> import_scene(const std::string& path) {
+absl::StatusOr<ImportedScene> import_scene(const std::string& path,
+                                           const std::optional<GivenFile>& environment) {
   ASSIGN_OR_RETURN(SceneFolder folder, SceneFolder::of(path));
   SceneDraft draft(std::move(folder), name_of(path));
   draft.out.info.name = std::filesystem::path(path).stem().string();
   RETURN_IF_ERROR(read_any(path, draft));
+  if (environment) {
+    ASSIGN_OR_RETURN(const TextureId image,
+                     add_environment_image(environment->bytes, environment->name, draft));
+    draft.out.scene.background = {};
+    draft.out.scene.background.environment = Environment{.images = {image}};
+  }
   if (const absl::Status good = check_description(draft.out.scene); !good.ok()) {
     return absl::InvalidArgumentError(absl::StrCat(draft.file, ": ", good.message()));
   }

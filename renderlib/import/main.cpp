@@ -2,9 +2,9 @@
 // or one error on standard output. Started by the client commands
 // (coordinator/cli/import_process.h); can be run by hand.
 //
-//   bandsaw-import scene FILE FOLDER SECONDS BYTES   FOLDER/manifest and FOLDER/<digest> for each
-//   blob bandsaw-import image FILE FOLDER SECONDS BYTES   FOLDER/image: width and height as uint32,
-//   then float RGB, rows from the top
+//   bandsaw-import scene FILE FOLDER SECONDS BYTES [ENVIRONMENT]   FOLDER/manifest and
+//   FOLDER/<digest> for each blob bandsaw-import image FILE FOLDER SECONDS BYTES   FOLDER/image:
+//   width and height as uint32, then float RGB, rows from the top
 //
 // Exit 0: done. Exit 1: "CODE: message" on standard output, CODE as absl::StatusCodeToString writes
 // it.
@@ -18,7 +18,9 @@
 #include <exception>
 #include <initializer_list>
 #include <new>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
@@ -56,8 +58,9 @@ absl::Span<const std::byte> bytes_of(const T* data, std::size_t count) {
   return absl::MakeConstSpan(reinterpret_cast<const std::byte*>(data), count * sizeof(T));
 }
 
-absl::Status import_to(const std::string& path, const std::string& folder) {
-  ASSIGN_OR_RETURN(const ImportedScene imported, import_scene(path));
+absl::Status import_to(const std::string& path, const std::string& folder,
+                       const std::optional<GivenFile>& environment) {
+  ASSIGN_OR_RETURN(const ImportedScene imported, import_scene(path, environment));
   BlobMap blobs;
   const std::string manifest = encode_package(imported.scene, imported.info, blobs);
   // The bounds that a coordinator would hold it to.
@@ -82,19 +85,26 @@ absl::Status read_picture_to(const std::string& path, const std::string& folder)
 
 absl::Status run(int argc, char** argv) {
   Confinement limits;
-  const std::string what = argc == 6 ? argv[1] : "";
+  const std::string what =
+      argc == 6 || (argc == 7 && argv[1] == std::string("scene")) ? argv[1] : "";
   if ((what != "scene" && what != "image") || !absl::SimpleAtoi(argv[4], &limits.cpu_seconds) ||
       !absl::SimpleAtoi(argv[5], &limits.memory_bytes)) {
     return absl::InvalidArgumentError(
-        "usage: bandsaw-import scene|image FILE FOLDER SECONDS BYTES");
+        "usage: bandsaw-import scene|image FILE FOLDER SECONDS BYTES [ENVIRONMENT]");
   }
   const std::string path = argv[2];
   ASSIGN_OR_RETURN(const SceneFolder folder, SceneFolder::of(path));
   limits.read_folder = folder.path();
   limits.write_folder = argv[3];
   limits.file_bytes = wire::kBlobBytes;
+  // Named by the one who asked, not by a file: it may lie anywhere. Here it is only copied.
+  std::optional<GivenFile> environment;
+  if (argc == 7) {
+    ASSIGN_OR_RETURN(std::string bytes, read_whole_file(argv[6], kMaxImageFileBytes));
+    environment = GivenFile{name_of(argv[6]), std::move(bytes)};
+  }
   RETURN_IF_ERROR(confine_this_process(limits));
-  return what == "scene" ? import_to(path, argv[3]) : read_picture_to(path, argv[3]);
+  return what == "scene" ? import_to(path, argv[3], environment) : read_picture_to(path, argv[3]);
 }
 
 // Foreign code throws.

@@ -11,6 +11,7 @@
 #include "renderlib/image/png.h"
 #include "renderlib/import/environment_image.h"
 #include "renderlib/import/import.h"
+#include "renderlib/import/scene_folder.h"
 #include "tests/support/environments.h"
 #include "tests/unit/import/files.h"
 
@@ -137,6 +138,21 @@ TEST_F(SceneLights, WhatIsWrongWithAnEnvironmentIsSaidWithItsPlace) {
               HasSubstr("s.textproto: is not an image"));
   EXPECT_THAT(error(R"(background { environment { file: "sky.hdr" strength: -1 } })"),
               HasSubstr("background.environment.strength: must lie in [0, 1e+06], is -1"));
+}
+
+TEST_F(SceneLights, AnEnvironmentThatIsGivenBesideTheSceneReplacesItsBackground) {
+  const TempDir elsewhere;
+  write_hdr(elsewhere / "given.hdr", 4, 2, {3, 3, 3});
+  const auto bytes = read_whole_file(elsewhere / "given.hdr", 1 << 20);
+  ASSERT_TRUE(bytes.ok());
+  const std::string scene =
+      write_text(folder_, "s.textproto", kHead + "background { constant { rgb: [1, 1, 1] } }");
+  const auto imported = import_scene(scene, GivenFile{"given.hdr", *bytes});
+  ASSERT_TRUE(imported.ok()) << imported.status();
+  EXPECT_EQ(radiance(imported->scene.background, imported->scene.textures, {0, 1, 0}),
+            (Rgb{3, 3, 3}));
+  EXPECT_THAT(std::string(import_scene(scene, GivenFile{"x.hdr", "no image"}).status().message()),
+              HasSubstr("x.hdr: is not an image"));
 }
 
 TEST(MendLight, L9WhatIsNoLightIsMendedAndCounted) {
