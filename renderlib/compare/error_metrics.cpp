@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "renderlib/compare/perceived.h"
+#include "renderlib/image/srgb.h"
 #include "renderlib/math/constants.h"
 #include "renderlib/math/elementary.h"
 
@@ -23,7 +24,7 @@ struct Sums {
   std::uint64_t count = 0;
 };
 
-double shown(float linear) { return coded(clamped(gray(linear)).r); }
+double shown(float linear) { return srgb_curve(clamped(gray(linear)).r); }
 
 /// Gives the channel's part of the relative mean square error.
 double add_channel(float image, float reference, Sums& sums) {

@@ -27,10 +27,6 @@ double cube_root_part(double t) {
 
 Rgb clamped(const Rgb& linear) { return {clamped(linear.r), clamped(linear.g), clamped(linear.b)}; }
 
-double coded(double linear) {
-  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(linear, 1 / 2.4) - 0.055;
-}
-
 Vec3 xyz_over_white(const Rgb& linear) {
   double out[3];
   for (int i = 0; i < 3; ++i) {

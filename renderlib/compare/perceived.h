@@ -11,9 +11,6 @@ namespace bandsaw {
 /// Brought into [0, 1]; NaN becomes 0.
 Rgb clamped(const Rgb& linear);
 
-/// The sRGB transfer function (IEC 61966-2-1) of a value in [0, 1].
-double coded(double linear);
-
 /// CIE XYZ over that of white, and back.
 Vec3 xyz_over_white(const Rgb& linear);
 Vec3 linear_of(const Vec3& xyz_over_white);

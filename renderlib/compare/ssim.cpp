@@ -4,6 +4,7 @@
 
 #include "renderlib/compare/perceived.h"
 #include "renderlib/compare/plane.h"
+#include "renderlib/image/srgb.h"
 
 namespace bandsaw {
 namespace {
@@ -15,7 +16,7 @@ constexpr double kC2 = 0.03 * 0.03;
 Plane gray_of(const Image& image) {
   Plane gray(image.width, image.height);
   std::transform(image.pixels.begin(), image.pixels.end(), gray.values.begin(),
-                 [](const Rgb& pixel) { return coded(luminance(clamped(pixel))); });
+                 [](const Rgb& pixel) { return srgb_curve(luminance(clamped(pixel))); });
   return gray;
 }
 

@@ -21,6 +21,10 @@ double srgb_decode(double v) {
   return v <= 0.04045 ? v / 12.92 : bandsaw::pow((v + 0.055) / 1.055, 2.4);
 }
 
+double srgb_curve(double linear) {
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * bandsaw::pow(linear, 1 / 2.4) - 0.055;
+}
+
 const std::array<float, 256>& srgb_table() {
   static const std::array<float, 256> table = make_table();
   return table;
@@ -33,9 +37,7 @@ std::uint8_t srgb_encode(float linear) {
   if (linear >= 1) {
     return 255;
   }
-  const double x = linear;
-  const double v = x <= 0.0031308 ? 12.92 * x : 1.055 * bandsaw::pow(x, 1 / 2.4) - 0.055;
-  return static_cast<std::uint8_t>(std::floor(255 * v + 0.5));
+  return static_cast<std::uint8_t>(std::floor(255 * srgb_curve(linear) + 0.5));
 }
 
 }  // namespace bandsaw

@@ -7,6 +7,9 @@
 
 namespace bandsaw {
 
+/// The transfer function of a linear value in [0, 1]; the inverse of srgb_decode.
+double srgb_curve(double linear);
+
 /// The linear value of each code.
 const std::array<float, 256>& srgb_table();
 

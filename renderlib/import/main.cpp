@@ -2,9 +2,13 @@
 // or one error on standard output. Started by the client commands
 // (coordinator/cli/import_process.h); can be run by hand.
 //
-//   bandsaw-import scene FILE FOLDER SECONDS BYTES [ENVIRONMENT]   FOLDER/manifest and
-//   FOLDER/<digest> for each blob bandsaw-import image FILE FOLDER SECONDS BYTES   FOLDER/image:
-//   width and height as uint32, then float RGB, rows from the top
+//   bandsaw-import scene FILE FOLDER SECONDS BYTES [ENVIRONMENT]
+//
+// leaves FOLDER/manifest and FOLDER/<digest> for each blob;
+//
+//   bandsaw-import image FILE FOLDER SECONDS BYTES
+//
+// leaves FOLDER/image: width and height as uint32, then float RGB, rows from the top.
 //
 // Exit 0: done. Exit 1: "CODE: message" on standard output, CODE as absl::StatusCodeToString writes
 // it.

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
@@ -14,70 +15,73 @@ namespace {
 /// What a unit normal may be off by: it is normalised again where that matters.
 constexpr double kUnitSlack = 1e-6;
 
-absl::Status check_disk(const std::string& field, const Disk& disk, std::size_t materials) {
-  RETURN_IF_ERROR(check_point(field + ".center", disk.center));
-  if (!(disk.radius > 0)) {
-    return invalid(field + ".radius", absl::StrCat("must be > 0, is ", disk.radius));
+absl::Status check_radius(const std::string& field, double radius) {
+  if (!(radius > 0)) {
+    return invalid(field, absl::StrCat("must be > 0, is ", radius));
   }
-  RETURN_IF_ERROR(check_point(field + ".radius", {disk.radius, 0, 0}));
+  return check_point(field, {radius, 0, 0});
+}
+
+absl::Status check_shape(const std::string& field, const Sphere& sphere) {
+  RETURN_IF_ERROR(check_point(field + ".center", sphere.center));
+  return check_radius(field + ".radius", sphere.radius);
+}
+
+absl::Status check_shape(const std::string& field, const Quad& quad) {
+  RETURN_IF_ERROR(check_point(field + ".corner", quad.corner));
+  RETURN_IF_ERROR(check_point(field + ".u", quad.u));
+  return check_point(field + ".v", quad.v);
+}
+
+absl::Status check_shape(const std::string& field, const Triangle& triangle) {
+  RETURN_IF_ERROR(check_point(field + ".a", triangle.a));
+  RETURN_IF_ERROR(check_point(field + ".b", triangle.b));
+  return check_point(field + ".c", triangle.c);
+}
+
+absl::Status check_shape(const std::string& field, const Disk& disk) {
+  RETURN_IF_ERROR(check_point(field + ".center", disk.center));
+  RETURN_IF_ERROR(check_radius(field + ".radius", disk.radius));
   if (!(std::abs(length(disk.normal) - 1) <= kUnitSlack)) {
     return invalid(field + ".normal",
                    absl::StrCat("must have length 1, has ", length(disk.normal)));
   }
-  return check_index(field + ".material", disk.material, materials);
+  return absl::OkStatus();
+}
+
+template <class Shape>
+absl::Status check_list(const std::string& list, const std::vector<Shape>& shapes,
+                        std::size_t materials) {
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    const std::string field = item(list, i);
+    RETURN_IF_ERROR(check_shape(field, shapes[i]));
+    RETURN_IF_ERROR(check_index(field + ".material", shapes[i].material, materials));
+  }
+  return absl::OkStatus();
 }
 
 absl::Status check_shapes(const std::string& where, const Shapes& shapes, std::size_t materials) {
-  for (std::size_t i = 0; i < shapes.spheres.size(); ++i) {
-    const Sphere& sphere = shapes.spheres[i];
-    const std::string field = where + item("spheres", i);
-    RETURN_IF_ERROR(check_point(field + ".center", sphere.center));
-    if (!(sphere.radius > 0)) {
-      return invalid(field + ".radius", absl::StrCat("must be > 0, is ", sphere.radius));
-    }
-    RETURN_IF_ERROR(check_point(field + ".radius", {sphere.radius, 0, 0}));
-    RETURN_IF_ERROR(check_index(field + ".material", sphere.material, materials));
-  }
-  for (std::size_t i = 0; i < shapes.quads.size(); ++i) {
-    const Quad& quad = shapes.quads[i];
-    const std::string field = where + item("quads", i);
-    RETURN_IF_ERROR(check_point(field + ".corner", quad.corner));
-    RETURN_IF_ERROR(check_point(field + ".u", quad.u));
-    RETURN_IF_ERROR(check_point(field + ".v", quad.v));
-    RETURN_IF_ERROR(check_index(field + ".material", quad.material, materials));
-  }
-  for (std::size_t i = 0; i < shapes.triangles.size(); ++i) {
-    const Triangle& triangle = shapes.triangles[i];
-    const std::string field = where + item("triangles", i);
-    RETURN_IF_ERROR(check_point(field + ".a", triangle.a));
-    RETURN_IF_ERROR(check_point(field + ".b", triangle.b));
-    RETURN_IF_ERROR(check_point(field + ".c", triangle.c));
-    RETURN_IF_ERROR(check_index(field + ".material", triangle.material, materials));
-  }
-  for (std::size_t i = 0; i < shapes.disks.size(); ++i) {
-    RETURN_IF_ERROR(check_disk(where + item("disks", i), shapes.disks[i], materials));
+  RETURN_IF_ERROR(check_list(where + "spheres", shapes.spheres, materials));
+  RETURN_IF_ERROR(check_list(where + "quads", shapes.quads, materials));
+  RETURN_IF_ERROR(check_list(where + "triangles", shapes.triangles, materials));
+  return check_list(where + "disks", shapes.disks, materials);
+}
+
+absl::Status check_one_a_position(const std::string& field, std::size_t count,
+                                  std::size_t positions) {
+  if (count != 0 && count != positions) {
+    return invalid(field,
+                   absl::StrCat("must be none or one a position (", positions, "), are ", count));
   }
   return absl::OkStatus();
 }
 
 absl::Status check_mesh(const std::string& field, const Mesh& mesh) {
   const std::size_t vertices = mesh.positions.size();
-  if (!mesh.normals.empty() && mesh.normals.size() != vertices) {
-    return invalid(field + ".normals", absl::StrCat("must be none or one a position (", vertices,
-                                                    "), are ", mesh.normals.size()));
-  }
-  if (!mesh.uvs.empty() && mesh.uvs.size() != vertices) {
-    return invalid(field + ".uvs", absl::StrCat("must be none or one a position (", vertices,
-                                                "), are ", mesh.uvs.size()));
-  }
-  if (!mesh.uvs2.empty() && mesh.uvs2.size() != vertices) {
-    return invalid(field + ".uvs2", absl::StrCat("must be none or one a position (", vertices,
-                                                 "), are ", mesh.uvs2.size()));
-  }
-  if (!mesh.colors.empty() && mesh.colors.size() != vertices) {
-    return invalid(field + ".colors", absl::StrCat("must be none or one a position (", vertices,
-                                                   "), are ", mesh.colors.size()));
-  }
+  RETURN_IF_ERROR(check_one_a_position(field + ".normals", mesh.normals.size(), vertices));
+  RETURN_IF_ERROR(check_one_a_position(field + ".uvs", mesh.uvs.size(), vertices));
+  RETURN_IF_ERROR(check_one_a_position(field + ".uvs2", mesh.uvs2.size(), vertices));
+  RETURN_IF_ERROR(check_one_a_position(field + ".colors", mesh.colors.size(), vertices));
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     for (const std::uint32_t index : mesh.triangles[i]) {
       if (index >= vertices) {
@@ -93,8 +97,8 @@ absl::Status check_placement(const std::string& field, const Transform& placemen
   for (const auto& row : placement.m) {
     for (const double entry : row) {
       if (!(std::abs(entry) <= kMaxCoordinate)) {
-        return invalid(field, absl::StrCat("entries must be within +-", kMaxCoordinate,
-                                           ", one is ", entry));
+        return invalid(
+            field, absl::StrCat("entries must be within +-", kMaxCoordinate, ", one is ", entry));
       }
     }
   }
@@ -137,7 +141,8 @@ absl::Status check_frame(const std::string& field, const Frame& frame, std::size
     }
     RETURN_IF_ERROR(check_placement(name + ".at", key.at));
     if (!decompose(key.at)) {
-      return invalid(name + ".at", "must be a scale, then a rotation, then a translation: it shears");
+      return invalid(name + ".at",
+                     "must be a scale, then a rotation, then a translation: it shears");
     }
   }
   return absl::OkStatus();

@@ -7,6 +7,7 @@
 #include "renderlib/compare/flip_parts.h"
 #include "renderlib/compare/perceived.h"
 #include "renderlib/compare/ssim.h"
+#include "renderlib/image/srgb.h"
 #include "tests/unit/compare/pictures.h"
 
 namespace bandsaw::test {
@@ -98,8 +99,8 @@ TEST(Flip, HighDynamicRangeSeesHighlights) {
 }
 
 TEST(Ssim, UniformImagesInClosedForm) {
-  const double a = coded(0.2F);
-  const double b = coded(0.6F);
+  const double a = srgb_curve(0.2F);
+  const double b = srgb_curve(0.6F);
   EXPECT_NEAR(ssim(uniform(20, 20, 0.2F), uniform(20, 20, 0.6F)),
               (2 * a * b + 1e-4) / (a * a + b * b + 1e-4), 1e-7);
 }
