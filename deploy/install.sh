@@ -7,7 +7,7 @@ build=(g++ cmake ninja-build pkg-config libgrpc++-dev protobuf-compiler protobuf
   libabsl-dev libre2-dev libc-ares-dev zlib1g-dev libssl-dev libassimp-dev libstb-dev libspdlog-dev libsqlite3-dev
   libcli11-dev libtinyexr-dev)
 demo=("${build[@]}" assimp-testmodels)
-test=("${demo[@]}" libgtest-dev libgmock-dev git)
+test=("${demo[@]}" libgtest-dev libgmock-dev git iproute2)
 
 case "${1:-}" in
   build) wanted=("${build[@]}") ;;

@@ -11,8 +11,7 @@ namespace bandsaw::test {
 namespace {
 
 const std::string kScene = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
-const std::vector<std::string> kSettings = {"--width", "200",       "--height",
-                                            "200",     "--samples", "64"};
+const std::vector<std::string> kSettings = {"--width", "200", "--height", "200", "--samples", "64"};
 
 class Control : public testing::Test {
  protected:

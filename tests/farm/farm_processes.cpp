@@ -11,11 +11,20 @@
 
 namespace bandsaw::test {
 
-FarmProcesses::FarmProcesses() { start_coordinator(); }
+FarmProcesses::FarmProcesses(const Hosts* hosts)
+    : hosts_(hosts),
+      listen_((hosts == nullptr ? std::string("127.0.0.1") : hosts->address("house")) + ":0") {
+  start_coordinator();
+}
+
+std::vector<std::string> FarmProcesses::on(const std::string& host,
+                                           std::vector<std::string> argv) const {
+  return hosts_ == nullptr ? argv : hosts_->on(host, std::move(argv));
+}
 
 void FarmProcesses::start_coordinator() {
-  coordinator_ = std::make_unique<Process>(
-      Process::start({BANDSAW_BIN, "serve", "--data", folder_ / "data", "--listen", listen_}));
+  coordinator_ = std::make_unique<Process>(Process::start(
+      on("house", {BANDSAW_BIN, "serve", "--data", folder_ / "data", "--listen", listen_})));
   BANDSAW_CHECK(coordinator_->wait_for("join with:"), coordinator_->err().c_str());
   const auto join = link::join_string_from(join_file());
   BANDSAW_CHECK(join.ok(), join.status().ToString().c_str());
@@ -28,9 +37,9 @@ void FarmProcesses::restart_coordinator() {
 }
 
 Process& FarmProcesses::add_worker(const std::string& name, int threads) {
-  Process process =
-      Process::start({BANDSAW_WORKER_BIN, "--join", join_file(), "--name", name, "--threads",
-                      std::to_string(threads), "--cache", folder_ / ("cache-" + name)});
+  Process process = Process::start(
+      on(name, {BANDSAW_WORKER_BIN, "--join", join_file(), "--name", name, "--threads",
+                std::to_string(threads), "--cache", folder_ / ("cache-" + name)}));
   EXPECT_TRUE(process.wait_for("joined")) << process.err();
   return workers_.insert_or_assign(name, std::move(process)).first->second;
 }

@@ -1,12 +1,13 @@
 #pragma once
 
-// A real farm on loopback for one test: a coordinator on a port of its own, workers, and the
-// command.
+// A real farm for one test: a coordinator on a port of its own, workers, and the command; all on
+// loopback, or each on a machine of its own.
 
 #include <map>
 #include <string>
 #include <vector>
 
+#include "tests/farm/hosts.h"
 #include "tests/support/process.h"
 #include "tests/support/temp_dir.h"
 
@@ -14,8 +15,9 @@ namespace bandsaw::test {
 
 class FarmProcesses {
  public:
-  /// Starts the coordinator.
-  FarmProcesses();
+  /// Starts the coordinator; on the machine "house" where there are `hosts`, which MUST stay. A
+  /// worker is then started on the machine of its name.
+  explicit FarmProcesses(const Hosts* hosts = nullptr);
 
   /// Starts a worker and waits until it has joined.
   Process& add_worker(const std::string& name, int threads);
@@ -32,6 +34,8 @@ class FarmProcesses {
 
   /// `bandsaw ARGUMENTS --farm …`
   std::vector<std::string> command(std::vector<std::string> arguments) const;
+  /// The command as it is started on the machine `host`, where there are hosts.
+  std::vector<std::string> on(const std::string& host, std::vector<std::string> argv) const;
   std::string path(const std::string& name) const { return folder_ / name; }
   std::string join_file() const { return folder_ / "data/join"; }
   std::string farm_file() const { return folder_ / "data/farm"; }
@@ -39,7 +43,8 @@ class FarmProcesses {
  private:
   void start_coordinator();
   TempDir folder_;
-  std::string listen_ = "127.0.0.1:0";
+  const Hosts* hosts_;
+  std::string listen_;
   std::unique_ptr<Process> coordinator_;
   std::string earlier_log_;
   std::map<std::string, Process> workers_;

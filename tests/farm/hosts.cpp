@@ -1,0 +1,101 @@
+#include "tests/farm/hosts.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "renderlib/base/check.h"
+#include "tests/support/process.h"
+
+namespace bandsaw::test {
+namespace {
+
+const std::string kIp = "/usr/sbin/ip";
+
+// The switch is a machine of its own, so that no name or route of the test's machine is touched.
+const std::string kSwitch = "switch";
+
+}  // namespace
+
+Hosts::Hosts(std::vector<std::string> names)
+    : names_(std::move(names)), prefix_("bandsaw-" + std::to_string(getpid()) + "-") {}
+
+Hosts::~Hosts() {
+  for (const std::string& name : names_) {
+    run({kIp, "netns", "delete", space_of(name)});
+  }
+  run({kIp, "netns", "delete", space_of(kSwitch)});
+}
+
+absl::StatusOr<std::unique_ptr<Hosts>> Hosts::create(std::vector<std::string> names) {
+  auto hosts = std::unique_ptr<Hosts>(new Hosts(std::move(names)));
+  if (access(kIp.c_str(), X_OK) != 0) {
+    return absl::PermissionDeniedError("needs the command ip (package iproute2)");
+  }
+  const Finished made = run({kIp, "netns", "add", hosts->space_of(kSwitch)});
+  if (made.code != 0) {
+    return absl::PermissionDeniedError("may not make network namespaces (run as root): " +
+                                       made.err);
+  }
+  bool all = hosts->ip(kSwitch, {"link", "add", "bridge", "type", "bridge"}) &&
+             hosts->ip(kSwitch, {"link", "set", "bridge", "up"});
+  for (const std::string& name : hosts->names_) {
+    all = all && hosts->add(name);
+  }
+  if (!all) {
+    return absl::PermissionDeniedError("this kernel has no bridges or veth pairs");
+  }
+  return hosts;
+}
+
+bool Hosts::add(const std::string& name) const {
+  return run({kIp, "netns", "add", space_of(name)}).code == 0 &&
+         ip(kSwitch, {"link", "add", name, "type", "veth", "peer", "name", "cable", "netns",
+                      space_of(name)}) &&
+         ip(kSwitch, {"link", "set", name, "master", "bridge", "up"}) &&
+         ip(name, {"link", "set", "lo", "up"}) &&
+         ip(name, {"address", "add", address(name) + "/24", "dev", "cable"}) &&
+         ip(name, {"link", "set", "cable", "up"});
+}
+
+std::string Hosts::address(const std::string& name) const {
+  const auto found = std::find(names_.begin(), names_.end(), name);
+  BANDSAW_CHECK(found != names_.end(), name.c_str());
+  return "10.77.0." + std::to_string(found - names_.begin() + 1);
+}
+
+std::string Hosts::space_of(const std::string& name) const { return prefix_ + name; }
+
+bool Hosts::ip(const std::string& space, std::vector<std::string> arguments) const {
+  std::vector<std::string> argv = {kIp, "-netns", space_of(space)};
+  argv.insert(argv.end(), arguments.begin(), arguments.end());
+  return run(argv).code == 0;
+}
+
+std::vector<std::string> Hosts::on(const std::string& name, std::vector<std::string> argv) const {
+  argv.insert(argv.begin(), {kIp, "netns", "exec", space_of(name)});
+  return argv;
+}
+
+void Hosts::unplug(const std::string& name) const {
+  BANDSAW_CHECK(ip(kSwitch, {"link", "set", name, "nomaster"}), name.c_str());
+}
+
+void Hosts::plug(const std::string& name) const {
+  BANDSAW_CHECK(ip(kSwitch, {"link", "set", name, "master", "bridge"}), name.c_str());
+}
+
+void Hosts::deafen(const std::string& from, const std::string& to) const {
+  // A neighbour that is nobody: frames are sent, no machine takes them.
+  BANDSAW_CHECK(ip(from, {"neighbour", "replace", address(to), "lladdr", "02:00:00:00:00:99", "dev",
+                          "cable", "nud", "permanent"}),
+                from.c_str());
+}
+
+bool Hosts::shape(const std::string& name, const std::vector<std::string>& discipline) const {
+  std::vector<std::string> argv = {"/usr/sbin/tc", "qdisc", "replace", "dev", "cable", "root"};
+  argv.insert(argv.end(), discipline.begin(), discipline.end());
+  return run(on(name, argv)).code == 0;
+}
+
+}  // namespace bandsaw::test

@@ -1,0 +1,98 @@
+// The farm over cables that are pulled, deaf one way, slow or lossy: machines are network
+// namespaces which the test makes where it may.
+
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "tests/farm/farm_processes.h"
+#include "tests/farm/survival.h"
+
+namespace bandsaw::test {
+namespace {
+
+class Cables : public testing::Test {
+ protected:
+  void SetUp() override {
+    auto hosts = Hosts::create({"house", "desk", "laptop", "person"});
+    if (!hosts.ok()) {
+      GTEST_SKIP() << hosts.status().message();
+    }
+    hosts_ = *std::move(hosts);
+    farm_ = std::make_unique<FarmProcesses>(hosts_.get());
+    job_ = std::make_unique<Survival>(*farm_);
+    farm_->add_worker("desk", 1);
+    farm_->add_worker("laptop", 1);
+  }
+
+  void wait_until_lost(const std::string& worker) {
+    const std::regex lost("worker=" + worker + " .*(closed|disconnected)");
+    ASSERT_TRUE(farm_->coordinator().wait_until([&](const std::string&, const std::string& log) {
+      return std::regex_search(log, lost);
+    })) << farm_->coordinator_log();
+  }
+
+  // In this order they go: what uses the machines before the machines.
+  std::unique_ptr<Hosts> hosts_;
+  std::unique_ptr<FarmProcesses> farm_;
+  std::unique_ptr<Survival> job_;
+};
+
+TEST_F(Cables, OneIsPulledAndPutBack) {
+  Process client = job_->submit("person");
+  job_->wait_until_stored("desk", 2);
+  hosts_->unplug("desk");
+  job_->expect_the_same_bytes(client);
+  EXPECT_EQ(job_->rendered_again("desk"), 0);
+  hosts_->plug("desk");
+  job_->wait_until_joined("desk", 2);
+}
+
+TEST_F(Cables, AWorkerThatIsNotHeard) {
+  Process client = job_->submit("person");
+  job_->wait_until_stored("desk", 2);
+  hosts_->deafen("desk", "house");
+  job_->expect_the_same_bytes(client);
+  EXPECT_EQ(job_->rendered_again("desk"), 0);
+}
+
+TEST_F(Cables, AWorkerThatDoesNotHear) {
+  Process client = job_->submit("person");
+  job_->wait_until_stored("desk", 2);
+  hosts_->deafen("house", "desk");
+  job_->expect_the_same_bytes(client);
+  EXPECT_EQ(job_->rendered_again("desk"), 0);
+}
+
+TEST_F(Cables, TheCoordinatorsOwnIsPulled) {
+  Process client = job_->submit("person");
+  job_->wait_until_stored("desk", 2);
+  hosts_->unplug("house");
+  wait_until_lost("desk");
+  wait_until_lost("laptop");
+  hosts_->plug("house");
+  job_->expect_the_same_bytes(client);
+  EXPECT_EQ(job_->rendered_again(), 0);
+  job_->wait_until_joined("desk", 2);
+}
+
+TEST_F(Cables, AWorkerBehindAModem) {
+  ASSERT_TRUE(hosts_->shape("desk", {"tbf", "rate", "1mbit", "burst", "32kbit", "latency", "1s"}));
+  Process client = job_->submit("person");
+  job_->expect_the_same_bytes(client);
+  EXPECT_EQ(job_->rendered_again(), 0);
+}
+
+TEST_F(Cables, PacketsAreLateAndLost) {
+  for (const char* host : {"desk", "person"}) {
+    if (!hosts_->shape(host, {"netem", "delay", "50ms", "loss", "5%"})) {
+      GTEST_SKIP() << "this kernel has no netem";
+    }
+  }
+  Process client = job_->submit("person");
+  job_->expect_the_same_bytes(client);
+  EXPECT_EQ(job_->rendered_again(), 0);
+}
+
+}  // namespace
+}  // namespace bandsaw::test
