@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "tests/farm/farm_processes.h"
+#include "tests/support/hard_case.h"
 
 namespace bandsaw::test {
 namespace {
@@ -70,7 +71,7 @@ TEST_F(SameBytes, OnFarmsOfOneTwoAndFiveWorkers) {
   expect_farm_gives_the_same();
 }
 
-TEST_F(SameBytes, WhenPartsAreStitched) {
+TEST_F(SameBytes, P5_WhenPartsAreStitched) {
   for (const std::string& scene : scenes()) {
     const std::string whole = rendered(scene);
     // PFM's second line: width and height.
@@ -89,6 +90,7 @@ TEST_F(SameBytes, WhenPartsAreStitched) {
     expect_success(run(stitch));
     EXPECT_TRUE(file_bytes(farm_.path("stitched.pfm")) == whole) << scene;
   }
+  holds("P5", "same bytes");
 }
 
 TEST_F(SameBytes, WithAnyNumberOfThreads) {

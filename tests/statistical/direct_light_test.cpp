@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "tests/statistical/estimate.h"
+#include "tests/support/hard_case.h"
 #include "tests/support/scenes.h"
 
 namespace bandsaw {
@@ -42,7 +43,7 @@ TEST(DirectLight, OfASphereAboveTheHorizon) {
   expect_irradiance(sphere(1000, 1, 0.01), kPi * 1e-10 * std::cos(1.0));
 }
 
-TEST(DirectLight, OfASphereThatCrossesTheHorizon) {
+TEST(DirectLight, L4_OfASphereThatCrossesTheHorizon) {
   struct Row {
     double half_angle;
     double tilt;
@@ -54,12 +55,14 @@ TEST(DirectLight, OfASphereThatCrossesTheHorizon) {
     maker.sphere(at(1, row.tilt), std::sin(row.half_angle), maker.lamp(1));
     expect_irradiance(maker, row.irradiance, 4096);
   }
+  test::holds("L4", "within 4 SE");
 }
 
-TEST(DirectLight, InsideASphereIsPi) {
+TEST(DirectLight, L3_InsideASphereIsPi) {
   SceneMaker maker;
   maker.sphere({0.2, 0.1, 0}, 1, maker.lamp(1));
   expect_irradiance(maker, kPi);
+  test::holds("L3", "E = pi L inside, within 4 SE");
 }
 
 TEST(DirectLight, OfASquareAboveItsCenterAndItsCorner) {

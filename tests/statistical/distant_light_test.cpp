@@ -8,6 +8,7 @@
 #include "renderlib/math/elementary.h"
 #include "tests/statistical/estimate.h"
 #include "tests/support/environments.h"
+#include "tests/support/hard_case.h"
 #include "tests/support/scenes.h"
 
 namespace bandsaw {
@@ -85,6 +86,7 @@ TEST(EnvironmentLight, L8OneTexel) {
     expected *= 1e5 * 2 * kPi / kWidth;
     expect_radiance(maker, onto_patch(0), expected / kPi, {.max_depth = 1});
   }
+  test::holds("L8", "within 4 SE of L x solid angle");
 }
 
 /// A sun on a sky of bands, above a dark ground.
@@ -161,6 +163,7 @@ TEST(EnvironmentLight, C10AMirrorShowsWhatLiesInItsDirection) {
       radiance(maker.scene.background, maker.scene.textures, {down.x, -down.y, down.z});
   const Ray ray{.origin = {0, 1, 0}, .direction = down};
   expect_radiance(maker, ray, expected.g, {.max_depth = 4}, 16);
+  test::holds("C10", "mirrors show what lies in their direction");
 }
 
 TEST(EnvironmentLight, C10WhateverLosesNoLightIsInvisibleInAWhiteOne) {
@@ -174,6 +177,7 @@ TEST(EnvironmentLight, C10WhateverLosesNoLightIsInvisibleInAWhiteOne) {
     const Ray ray{.origin = {x + 0.4, 0.3, 5}, .direction = {0, 0, -1}};
     expect_radiance(maker, ray, 1, {.max_depth = 1000, .russian_roulette = false}, 64);
   }
+  test::holds("C10", "invisible in a white one");
 }
 
 TEST(DeltaLight, OfEachKindInClosedForm) {

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <sstream>
 
 #include "tests/statistical/estimate.h"
+#include "tests/support/hard_case.h"
 #include "tests/support/scenes.h"
 
 namespace bandsaw {
@@ -82,7 +84,7 @@ TEST(Furnace, AWhiteSphereUnderAGradientSkyIsAsItsTiltSays) {
   }
 }
 
-TEST(Furnace, APaneOfGlassTransmitsAsTheSumOverItsReflectionsSays) {
+TEST(Furnace, O6_APaneOfGlassTransmitsAsTheSumOverItsReflectionsSays) {
   SceneMaker maker;
   const MaterialId glass = maker.glass(1.5);
   maker.quad({-9, 1, -9}, {0, 0, 18}, {18, 0, 0}, glass);
@@ -91,6 +93,7 @@ TEST(Furnace, APaneOfGlassTransmitsAsTheSumOverItsReflectionsSays) {
   const Ray up{.origin = {0, 0, 0}, .direction = {0, 1, 0}};
   expect_value(test::radiance_along(*maker.build(), up, {.max_depth = 1000}, 4096), 0.9230769231,
                1e-3);
+  test::holds("O6", "a pane 0.1 thick: within 1e-3");
 }
 
 /// Diffuse, glossy and glass under a sphere, a rectangle and a mesh of light.
@@ -129,7 +132,7 @@ TEST(Techniques, AskingLightsFollowingDirectionsAndBothHaveTheSameMean) {
   }
 }
 
-TEST(Techniques, NearALampBothAreNeverFarFromTheBetterOne) {
+TEST(Techniques, Q5_NearALampBothAreNeverFarFromTheBetterOne) {
   // From close to the plane of a 2 x 2 lamp, where following directions is nearly exact, to far
   // from it, where asking is. Sampling by area would be noisier than the mean by a factor of 32 at
   // the nearest point.
@@ -150,6 +153,10 @@ TEST(Techniques, NearALampBothAreNeverFarFromTheBetterOne) {
     const double both = spread(Technique::kBoth);
     EXPECT_LE(both, std::min(lights, scattering) + 0.25) << h;
     EXPECT_LE(both, std::max(lights, scattering)) << h;
+    std::ostringstream figure;
+    figure << "h = " << h << ": std / mean " << both << " of MIS, " << lights << " of asking, "
+           << scattering << " of following";
+    test::holds("Q5", figure.str());
   }
 }
 

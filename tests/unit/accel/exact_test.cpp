@@ -10,6 +10,7 @@
 #include "renderlib/accel/accel.h"
 #include "renderlib/math/constants.h"
 #include "tests/support/brute_force.h"
+#include "tests/support/hard_case.h"
 #include "tests/support/meshes.h"
 
 namespace bandsaw {
@@ -93,8 +94,9 @@ TEST(AccelExact, RandomTriangles) {
   expect_exact(of_mesh(test::triangle_soup(1000, 0.02, 3)), random_rays(1000, 1, 4));
 }
 
-TEST(AccelExact, RaysAlongPlanesEdgesAndCorners) {
+TEST(AccelExact, T5_RaysAlongPlanesEdgesAndCorners) {
   expect_exact(of_mesh(lattice(1)), grid_rays(4000, 2));
+  test::holds("T5", "4,000 rays within planes answered as by testing all, in any place of a pack");
 }
 
 TEST(AccelExact, NeedlesAndSpikesFarFromTheOrigin) {
@@ -164,7 +166,7 @@ TEST(AccelExact, RaysThatStartOnAPrimitiveDoNotHitItAgain) {
 }
 
 // Every triangle twice, in another order each: the lowest id wins.
-TEST(AccelExact, TiesGoToTheLowestIdWhateverTheOrder) {
+TEST(AccelExact, T7_TiesGoToTheLowestIdWhateverTheOrder) {
   test::Random random(11);
   const Mesh mesh = test::icosphere(2);
   Mesh doubled = mesh;
@@ -176,9 +178,10 @@ TEST(AccelExact, TiesGoToTheLowestIdWhateverTheOrder) {
   Geometry g = of_mesh(doubled);
   g.instances.push_back(g.instances[0]);
   expect_exact(g, random_rays(1500, 2, 12));
+  test::holds("T7", "the lowest id of 1,500 rays, to the bit as by testing all");
 }
 
-TEST(AccelExact, BoxesInBoxes) {
+TEST(AccelExact, B7_BoxesInBoxes) {
   Geometry g;
   for (int i = 0; i < 200; ++i) {
     const double size = std::ldexp(1, 60 - i);

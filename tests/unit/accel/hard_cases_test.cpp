@@ -1,6 +1,7 @@
 #include <cmath>
 #include <limits>
 
+#include "tests/support/hard_case.h"
 #include "tests/unit/accel/agreement.h"
 
 namespace bandsaw::test {
@@ -55,15 +56,16 @@ TEST(HardCases, RaysThatAreNoRaysHitNothing) {
   }
 }
 
-TEST(HardCases, NothingToHit) {
+TEST(HardCases, B8_NothingToHit) {
   Pool pool(2);
   Geometry geometry;
   EXPECT_FALSE(Accel::build(geometry, pool).closest({{0, 0, 0}, {0, 0, 1}}));
   geometry = scene_of(Mesh{});
   EXPECT_FALSE(Accel::build(geometry, pool).occluded({{0, 0, 0}, {0, 0, 1}}));
+  holds("B8", "nothing is hit where nothing is");
 }
 
-TEST(HardCases, ManyEqualTriangles) {
+TEST(HardCases, T9_ManyEqualTriangles) {
   Pool pool(2);
   Mesh mesh;
   mesh.positions = {{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}};
@@ -72,9 +74,10 @@ TEST(HardCases, ManyEqualTriangles) {
   const Hit hit = Accel::build(geometry, pool).closest({{0, 0, -2}, {0, 0, 1}});
   EXPECT_EQ(hit.t, 2);
   EXPECT_EQ(hit.id, (PrimitiveId{1, 0}));
+  holds("T9", "the first of 100,000 equal triangles is hit");
 }
 
-TEST(HardCases, SizesThatHalveAHundredTimes) {
+TEST(HardCases, B7_SizesThatHalveAHundredTimes) {
   Pool pool(1);
   Mesh mesh;
   for (int i = 0; i < 120; ++i) {
@@ -94,6 +97,7 @@ TEST(HardCases, SizesThatHalveAHundredTimes) {
   });
   EXPECT_EQ(agreement.different, 0);
   EXPECT_GT(agreement.hits, 3000);
+  holds("B7", "3,000 rays among 120 sizes answered as by testing all");
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "renderlib/geometry/surface.h"
 #include "renderlib/math/constants.h"
 #include "tests/support/brute_force.h"
+#include "tests/support/hard_case.h"
 #include "tests/support/meshes.h"
 
 namespace bandsaw {
@@ -21,7 +22,7 @@ Geometry of_mesh(Mesh mesh) {
   return g;
 }
 
-TEST(AccelRobust, EmptyAndSingle) {
+TEST(AccelRobust, Q7B8_EmptyAndSingle) {
   Pool pool(1);
   const Geometry nothing;
   EXPECT_FALSE(Accel::build(nothing, pool).closest({{0, 0, 0}, {0, 0, 1}}));
@@ -33,9 +34,10 @@ TEST(AccelRobust, EmptyAndSingle) {
   const Accel accel = Accel::build(one, pool);
   EXPECT_EQ(accel.closest({{0.3, 0, -1}, {0, 0, 1}}).t, 1);
   EXPECT_FALSE(accel.closest({{0.3, 2, -1}, {0, 0, 1}}));
+  test::holds("Q7", "a quad of no thickness is hit, without padding");
 }
 
-TEST(AccelRobust, RaysThatAreNoRaysHitNothing) {
+TEST(AccelRobust, B5_RaysThatAreNoRaysHitNothing) {
   const Geometry g = of_mesh(test::icosphere(3));
   Pool pool(1);
   const Accel accel = Accel::build(g, pool);
@@ -53,9 +55,10 @@ TEST(AccelRobust, RaysThatAreNoRaysHitNothing) {
   EXPECT_FALSE(accel.closest({{0, 0, 0}, {0, 0, 1}, -1}));
   EXPECT_TRUE(accel.closest({{0, 0, 0}, {0, 0, 1e-150}}));
   EXPECT_TRUE(accel.closest({{0, 0, 0}, {0, 0, 1e150}}));
+  test::holds("B5", "30 rays that are no rays miss");
 }
 
-TEST(AccelRobust, BadTrianglesDoNotChangeTheOthers) {
+TEST(AccelRobust, T10_BadTrianglesDoNotChangeTheOthers) {
   Mesh mesh = test::icosphere(3);
   const Geometry good = of_mesh(mesh);
   const float nan = std::numeric_limits<float>::quiet_NaN();
@@ -79,6 +82,7 @@ TEST(AccelRobust, BadTrianglesDoNotChangeTheOthers) {
     const Ray ray = {2 * test::random_point(random), test::random_direction(random)};
     ASSERT_TRUE(test::same_hit(accel.closest(ray), accel_bad.closest(ray)));
   }
+  test::holds("T10", "7 bad primitives change no bit of the hits of 5,000 rays");
 }
 
 TEST(AccelRobust, OneHundredThousandEqualTriangles) {
@@ -92,7 +96,7 @@ TEST(AccelRobust, OneHundredThousandEqualTriangles) {
   EXPECT_FALSE(accel.closest({{0.8, 0.8, -1}, {0, 0, 1}}));
 }
 
-TEST(AccelRobust, IsTheSameHoweverManyThreadsBuildIt) {
+TEST(AccelRobust, B12_IsTheSameHoweverManyThreadsBuildIt) {
   Geometry g;
   for (int i = 0; i < 8; ++i) {
     g.meshes.push_back(test::triangle_soup(500, 0.2, static_cast<std::uint64_t>(i)));
@@ -108,9 +112,10 @@ TEST(AccelRobust, IsTheSameHoweverManyThreadsBuildIt) {
     const Ray ray = {2 * test::random_point(random), test::random_direction(random)};
     ASSERT_TRUE(test::same_hit(a.closest(ray), b.closest(ray)));
   }
+  test::holds("B12", "2,000 hits equal for 1 and 3 building threads");
 }
 
-TEST(Surface, BadNormalsFallBackToTheGeometricOne) {
+TEST(Surface, T12_BadNormalsFallBackToTheGeometricOne) {
   Mesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
   mesh.triangles = {{0, 1, 2}};
@@ -128,6 +133,7 @@ TEST(Surface, BadNormalsFallBackToTheGeometricOne) {
   }
   mesh.normals = {{0, 0, -1}, {0, 0, -1}, {0, 0, -1}};
   EXPECT_EQ(surface_at(of_mesh(mesh), ray, hit).shading_normal, (Vec3{0, 0, 1}));
+  test::holds("T12", "zero, NaN and opposite normals give the geometric one");
 }
 
 }  // namespace

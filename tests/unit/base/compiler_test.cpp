@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "renderlib/base/pool.h"
+#include "tests/support/hard_case.h"
 
 namespace bandsaw {
 namespace {
@@ -25,7 +26,7 @@ struct DoublePair {
   *out = DoublePair{f.x, f.y};
 }
 
-TEST(Compiler, KeepsTheRoundingOfNeighbouringFloats) {
+TEST(Compiler, Y1_KeepsTheRoundingOfNeighbouringFloats) {
   const double in[2] = {15.123456789, -3.0000000001};
   DoublePair out;
   // The compiler must not know the numbers, or it rounds them itself, and well.
@@ -33,15 +34,17 @@ TEST(Compiler, KeepsTheRoundingOfNeighbouringFloats) {
   round_to_float(unknown, &out);
   EXPECT_EQ(out.x, 15.123456954956055);
   EXPECT_EQ(out.y, -3.0);
+  test::holds("Y1", "rounding kept");
 }
 
 [[gnu::noinline]] double multiply_add(double a, double b, double c) { return a * b + c; }
 
-TEST(Compiler, RoundsProductsBeforeItAdds) {
+TEST(Compiler, Y3_RoundsProductsBeforeItAdds) {
   volatile double unknown = 1 + 0x1p-30;
   const double a = unknown;
   EXPECT_EQ(multiply_add(a, a, -(1 + 0x1p-29)), 0);
   EXPECT_EQ(std::fma(a, a, -(1 + 0x1p-29)), 0x1p-60);
+  test::holds("Y3", "no contraction");
 }
 
 [[gnu::noinline]] double sum_of_three(double a, double b, double c) { return (a + b) + c; }
@@ -57,10 +60,11 @@ TEST(Compiler, DoesNotReorderSums) {
 constexpr unsigned kDefaultMxcsr = 0x1f80;
 constexpr unsigned kFlags = 0x3f;
 
-TEST(FloatingPointState, IsTheDefaultInEveryThread) {
+TEST(FloatingPointState, Y2_IsTheDefaultInEveryThread) {
   EXPECT_EQ(_mm_getcsr() & ~kFlags, kDefaultMxcsr);
   Pool pool(3);
   pool.parallel_for(30, [](std::int64_t) { EXPECT_EQ(_mm_getcsr() & ~kFlags, kDefaultMxcsr); });
+  test::holds("Y2", "0x1f80 in every thread of a pool");
 }
 
 TEST(FloatingPointState, KeepsDenormals) {

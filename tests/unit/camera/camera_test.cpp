@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/support/hard_case.h"
+
 namespace bandsaw {
 namespace {
 
@@ -33,7 +35,7 @@ TEST(Camera, TheMiddleLooksAheadAndTheEdgesAreHalfTheAngleOff) {
   expect_near(rays.ray(0, 50, 0, 0).direction, Vec3{-2, 0, -1} / std::sqrt(5.0), 1e-15);
 }
 
-TEST(Camera, FarFromTheOriginDirectionsAreTheSame) {
+TEST(Camera, C1_FarFromTheOriginDirectionsAreTheSame) {
   PerspectiveCamera near = camera(60);
   near.look_at = {0.1, -0.2, -1};
   PerspectiveCamera far = near;
@@ -46,17 +48,19 @@ TEST(Camera, FarFromTheOriginDirectionsAreTheSame) {
   for (const double x : {0.5, 300.25, 1919.5}) {
     expect_near(a.ray(x, 777, 0, 0).direction, b.ray(x, 777, 0, 0).direction, 1e-6 * pixel);
   }
+  test::holds("C1", "directions within 1e-6 of a pixel at 1e6");
 }
 
-TEST(Camera, ExtremeAnglesGiveFiniteUnitDirections) {
+TEST(Camera, C3_ExtremeAnglesGiveFiniteUnitDirections) {
   for (const double fov : {1e-6, 179.9}) {
     const RayGenerator rays(camera(fov), 3, 3);
     const Vec3 d = rays.ray(0, 0, 0, 0).direction;
     EXPECT_NEAR(length(d), 1, 1e-15);
   }
+  test::holds("C3", "unit directions at 1e-6 and 179.9 degrees");
 }
 
-TEST(Camera, WhatMakesNoRaysIsRefusedWithTheField) {
+TEST(Camera, C2C3_WhatMakesNoRaysIsRefusedWithTheField) {
   const auto message = [](auto change) {
     PerspectiveCamera c = camera(40);
     change(c);
@@ -72,6 +76,8 @@ TEST(Camera, WhatMakesNoRaysIsRefusedWithTheField) {
             "camera.vertical_fov: must be in (0, 180) degrees, is 180");
   EXPECT_EQ(message([](auto& c) { c.vertical_fov = 0; }),
             "camera.vertical_fov: must be in (0, 180) degrees, is 0");
+  test::holds("C2", "refused with the field");
+  test::holds("C3", "0 and 180 degrees refused");
 }
 
 TEST(Camera, OrthographicPixelsAreSceneUnitsExactly) {
@@ -116,7 +122,7 @@ TEST(Camera, AllRaysOfAPixelMeetOnThePlaneOfFocus) {
   }
 }
 
-TEST(Camera, APointOutOfFocusSpreadsOverADiskOfTheRightRadius) {
+TEST(Camera, C4_APointOutOfFocusSpreadsOverADiskOfTheRightRadius) {
   PerspectiveCamera lens = camera(40);
   lens.aperture = 0.3;
   lens.focus_distance = 5;
@@ -148,9 +154,10 @@ TEST(Camera, APointOutOfFocusSpreadsOverADiskOfTheRightRadius) {
     // Uniform on a disk: the mean square radius is half the radius' square.
     EXPECT_NEAR(std::sqrt(2 * squares), expected, 0.01 * expected) << z;
   }
+  test::holds("C4", "radius within 1 % at five distances");
 }
 
-TEST(Camera, FocusAtAnyDistanceGivesFiniteUnitDirections) {
+TEST(Camera, C4_FocusAtAnyDistanceGivesFiniteUnitDirections) {
   PerspectiveCamera lens = camera(40);
   for (const double aperture : {1e-300, 1.0, 1e30}) {
     for (const double focus : {kLeastFocus, 1e-6, 1e30}) {
@@ -164,6 +171,7 @@ TEST(Camera, FocusAtAnyDistanceGivesFiniteUnitDirections) {
   lens.aperture = 0;
   const Ray sharp = RayGenerator(lens, 8, 8).ray(1, 2, 0.9, 0.1);
   EXPECT_EQ(sharp.origin, (Vec3{0, 0, 0}));
+  test::holds("C4", "finite at focus 1e-6 and 1e30");
 }
 
 TEST(Camera, LensAndHeightOutOfRangeAreRefused) {
@@ -196,6 +204,7 @@ TEST(Camera, C8_RaysHaveTimesFromOpeningToClosing) {
             "camera.shutter_close: must not be before shutter_open, 3, is 2");
   c.shutter = {std::nan(""), 2};
   EXPECT_THAT(std::string(validate(Camera(c)).message()), StartsWith("camera.shutter_open"));
+  test::holds("C8", "times within the shutter; reversed refused");
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "renderlib/sampling/sampler.h"
+#include "tests/support/hard_case.h"
 #include "tests/support/statistics.h"
 
 namespace bandsaw {
@@ -24,11 +25,12 @@ TEST(PixelFilter, TheDefaultIsThePixelItselfToTheBit) {
   }
 }
 
-TEST(PixelFilter, TheLastNumberBelowOneStaysInThePixel) {
+TEST(PixelFilter, C6_TheLastNumberBelowOneStaysInThePixel) {
   const double last = 1 - 0x1p-32;
   for (const double x : {0.0, 65535.0, 1048575.0}) {
     EXPECT_EQ(std::floor(x + 0.5 + sample(PixelFilter{}, last, 0).x), x);
   }
+  test::holds("C6", "in its pixel at 0, 65535 and 2^20 - 1");
 }
 
 /// The density of a filter of radius 1, not normalised.

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "renderlib/image/srgb.h"
+#include "tests/support/hard_case.h"
 #include "tests/support/temp_dir.h"
 
 namespace bandsaw {
@@ -44,6 +45,7 @@ TEST(Srgb, TX5EveryCodeSurvivesDecodingAndEncoding) {
   for (int code = 0; code < 256; ++code) {
     EXPECT_EQ(srgb_encode(srgb_table()[static_cast<std::size_t>(code)]), code);
   }
+  test::holds("TX5", "256 of 256");
 }
 
 TEST(Srgb, TheTableIsTheStandardsCurve) {
@@ -54,11 +56,12 @@ TEST(Srgb, TheTableIsTheStandardsCurve) {
   EXPECT_NEAR(srgb_table()[11], std::pow((11 / 255.0 + 0.055) / 1.055, 2.4), 1e-9);
 }
 
-TEST(Srgb, WhatIsNoColorBecomesTheNearestOne) {
+TEST(Srgb, P1_WhatIsNoColorBecomesTheNearestOne) {
   EXPECT_EQ(srgb_encode(-1), 0);
   EXPECT_EQ(srgb_encode(std::nanf("")), 0);
   EXPECT_EQ(srgb_encode(1.0001f), 255);
   EXPECT_EQ(srgb_encode(std::numeric_limits<float>::infinity()), 255);
+  test::holds("P1", "NaN and below 0: 0; infinite: 255");
 }
 
 TEST(WriteImage, PfmHoldsTheExactFloatsFromTheBottomRowUp) {
@@ -71,12 +74,13 @@ TEST(WriteImage, PfmHoldsTheExactFloatsFromTheBottomRowUp) {
   EXPECT_EQ(std::memcmp(bytes.data() + header.size() + 24, &image.pixels[0], 24), 0);
 }
 
-TEST(WriteImage, PpmHoldsRoundedSrgbCodesFromTheTopRowDown) {
+TEST(WriteImage, P2_PpmHoldsRoundedSrgbCodesFromTheTopRowDown) {
   const std::string bytes = encoded(two_by_two(), ImageFormat::kPpm);
   const std::string header = "P6\n2 2\n255\n";
   ASSERT_EQ(bytes.size(), header.size() + 12);
   const unsigned char expected[] = {0, 188, 255, 255, 0, 89, 0, 255, 0, 124, 149, 170};
   EXPECT_EQ(std::memcmp(bytes.data() + header.size(), expected, 12), 0);
+  test::holds("P2", "rounded codes");
 }
 
 TEST(WriteImage, PngHasItsSignatureAndSize) {

@@ -13,6 +13,7 @@
 #include "renderlib/import/import.h"
 #include "renderlib/import/scene_folder.h"
 #include "tests/support/environments.h"
+#include "tests/support/hard_case.h"
 #include "tests/unit/import/files.h"
 
 namespace bandsaw {
@@ -169,6 +170,7 @@ TEST(MendLight, L9WhatIsNoLightIsMendedAndCounted) {
   EXPECT_EQ(mend_light(image), 0u);
   ImageTexture bad = test::float_image(2, 2, [&](auto, auto) { return kInf; });
   EXPECT_EQ(mend_light(bad), 4u) << "nothing is left, but nothing is infinite either";
+  test::holds("L9", "mended and counted");
 }
 
 /// One triangle, and lights at two nodes, one of them moved, turned and scaled.

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "tests/support/hard_case.h"
 #include "tests/support/scenes.h"
 
 namespace bandsaw {
@@ -36,13 +37,14 @@ TEST(Path, ALampIsSeenAsItIs) {
   expect_always(*maker.build(), kAhead, 7, 0);
 }
 
-TEST(Path, AOneSidedLampIsBlackFromBehind) {
+TEST(Path, L11_AOneSidedLampIsBlackFromBehind) {
   SceneMaker front;
   front.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, front.lamp(7, true));
   expect_always(*front.build(), kAhead, 7, 0);
   SceneMaker back;
   back.quad({-1, -1, 0}, {0, 2, 0}, {2, 0, 0}, back.lamp(7, true));
   expect_always(*back.build(), kAhead, 0, 0);
+  test::holds("L11", "600 samples exactly 0");
 }
 
 TEST(Path, ALampInAMirrorIsTheLampTimesTheReflectance) {
@@ -112,13 +114,14 @@ TEST(Path, MaxDepthIsTheMostSurfacesThatScatter) {
   }
 }
 
-TEST(Path, AnOpaqueBlockerShadowsExactlyHoweverFarTheLamp) {
+TEST(Path, O3_AnOpaqueBlockerShadowsExactlyHoweverFarTheLamp) {
   SceneMaker maker;
   maker.quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}, maker.diffuse(1));
   maker.quad({-50, 0.5, -50}, {0, 0, 100}, {100, 0, 0}, maker.diffuse(0));
   maker.sphere({0, 1000, 0}, 10, maker.lamp(1e6f));
   const Ray ray{.origin = {0, 0.1, 0}, .direction = {0, -1, 0}};
   expect_always(*maker.build(), ray, 0, 0);
+  test::holds("O3", "600 samples exactly 0");
 }
 
 TEST(Path, TX8ConstantColorAndConstantTextureMakeTheSameBits) {
@@ -142,6 +145,7 @@ TEST(Path, TX8ConstantColorAndConstantTextureMakeTheSameBits) {
   for (std::uint64_t sample = 0; sample < 300; ++sample) {
     ASSERT_EQ(trace(*a, kAhead, sample, {}), trace(*b, kAhead, sample, {}));
   }
+  test::holds("TX8", "same bits");
 }
 
 TEST(Path, CountsItsRays) {

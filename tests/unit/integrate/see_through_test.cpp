@@ -6,6 +6,7 @@
 
 #include "renderlib/integrate/path.h"
 #include "renderlib/material/interiors.h"
+#include "tests/support/hard_case.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 
@@ -154,6 +155,7 @@ TEST(NestedGlass, M9RaysBendAsIfOnlyTheHigherPriorityWereWhereTheyOverlap) {
   EXPECT_GT(overlapping, 0.85);
   EXPECT_LE(overlapping, at_most);
   EXPECT_NEAR(stack(0.5), overlapping, 0.02);
+  test::holds("M9", "overlap: rays bend at the higher priority alone");
 }
 
 TEST(NestedGlass, M9ABubbleOfAirInGlassBendsOutwards) {
@@ -169,6 +171,7 @@ TEST(NestedGlass, M9ABubbleOfAirInGlassBendsOutwards) {
   inside.pass(MaterialId{1}, air, false);
   inside.pass(MaterialId{0}, glass, false);
   EXPECT_EQ(inside.index_without(MaterialId{1}), 1);
+  test::holds("M9", "bubble of air");
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "renderlib/light/light_choice.h"
+#include "tests/support/hard_case.h"
 #include "tests/support/random.h"
 #include "tests/support/statistics.h"
 
@@ -77,6 +78,7 @@ TEST(LightTree, L7ProbabilitiesOfAHundredThousandLightsAddUpToOne) {
     sum += of_spheres.probability(all_around, i);
   }
   EXPECT_NEAR(sum, 1, 1e-12);
+  test::holds("L7", "100,000 probabilities add up to 1");
 }
 
 TEST(LightTree, L7LightsAreChosenAsOftenAsTheirProbabilitySays) {
@@ -105,6 +107,7 @@ TEST(LightTree, L7LightsAreChosenAsOftenAsTheirProbabilitySays) {
     }
     EXPECT_GT(test::chi_squared(counts, expected).p_value, test::sidak(0.01, 3));
   }
+  test::holds("L7", "chi-squared passes");
 }
 
 TEST(LightTree, ANearLightIsChosenBeforeABrightOneFarAway) {

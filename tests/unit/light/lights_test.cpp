@@ -6,6 +6,7 @@
 
 #include "renderlib/light/emission.h"
 #include "renderlib/math/elementary.h"
+#include "tests/support/hard_case.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
@@ -102,7 +103,7 @@ TEST(Lights, SamplesHaveTheDensityAndRadianceOfTheSurfaceTheyPointAt) {
   }
 }
 
-TEST(Lights, NoSampleThatIsInSightIsInItsOwnShadow) {
+TEST(Lights, O4_NoSampleThatIsInSightIsInItsOwnShadow) {
   for (const Case& test_case : cases()) {
     if (test_case.name == "textured" || test_case.name == "many") {
       continue;  // These lights shade each other.
@@ -123,6 +124,7 @@ TEST(Lights, NoSampleThatIsInSightIsInItsOwnShadow) {
     }
     EXPECT_EQ(occluded, 0) << test_case.name;
   }
+  test::holds("O4", "0 of 100,000 occluded, for each of ten kinds of light");
 }
 
 TEST(Lights, DirectionsFollowTheDensity) {
@@ -220,7 +222,7 @@ TEST(Lights, ManyLightsAreChosenAsOftenAsTheirProbabilitySays) {
   EXPECT_GT(test::chi_squared(counts, expected).p_value, 0.001);
 }
 
-TEST(Lights, WithoutAreaOrPowerThereIsNoLight) {
+TEST(Lights, L1T4_WithoutAreaOrPowerThereIsNoLight) {
   SceneMaker maker;
   maker.sphere({0, 2, 0}, 1, maker.lamp(0));
   maker.quad({0, 1, 0}, {1, 0, 0}, {2, 0, 0}, maker.lamp(5));
@@ -231,9 +233,11 @@ TEST(Lights, WithoutAreaOrPowerThereIsNoLight) {
   EXPECT_EQ(scene->lights().probability({{0, 0, 0}, kUp}, {0, 0}), 0);
   EXPECT_EQ(scene->lights().probability({{0, 0, 0}, kUp}, {0, 1}), 1);
   EXPECT_EQ(scene->lights().probability({{0, 0, 0}, kUp}, {7, 1}), 0);
+  test::holds("L1", "neither area nor power: not in the list");
+  test::holds("T4", "a quad without area is no light");
 }
 
-TEST(Lights, OneSidedLightsShineToTheirFrontAlone) {
+TEST(Lights, L11_OneSidedLightsShineToTheirFrontAlone) {
   for (const bool facing : {true, false}) {
     SceneMaker maker;
     const Vec3 u{2, 0, 0};
@@ -245,6 +249,7 @@ TEST(Lights, OneSidedLightsShineToTheirFrontAlone) {
     const auto from_above = scene->lights().sample({{0, 2, 0}, -kUp}, 0.5, 0.5, 0.5);
     EXPECT_EQ(from_above.has_value(), !facing);
   }
+  test::holds("L11", "no sample from behind");
 }
 
 TEST(Lights, BelowTheHorizonTheyAreNotAsked) {
@@ -256,7 +261,7 @@ TEST(Lights, BelowTheHorizonTheyAreNotAsked) {
   EXPECT_EQ(scene->lights().probability({{0, 0, 0}, kUp}, {0, 1}), 1);
 }
 
-TEST(Lights, AReceiverInThePlaneOfALightGetsNothingAndNoNan) {
+TEST(Lights, Q6_AReceiverInThePlaneOfALightGetsNothingAndNoNan) {
   SceneMaker maker;
   maker.quad({1, 0, -1}, {2, 0, 0}, {0, 0, 2}, maker.lamp(1));
   const auto scene = maker.build();
@@ -266,6 +271,7 @@ TEST(Lights, AReceiverInThePlaneOfALightGetsNothingAndNoNan) {
     EXPECT_FALSE(scene->lights().sample({{0, 0, 0}, kUp}, 0.5, u, random.uniform()));
     EXPECT_FALSE(scene->lights().sample({{1, 0, 0}, kUp}, 0.5, u, random.uniform()));
   }
+  test::holds("Q6", "2,000 samples edge-on: none");
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "renderlib/material/fresnel.h"
 #include "renderlib/material/ggx_albedo.h"
 #include "tests/support/direction_test.h"
+#include "tests/support/hard_case.h"
 #include "tests/support/random.h"
 #include "tests/support/wide.h"
 
@@ -30,6 +31,7 @@ TEST(Ggx, M3TheDistributionIsExactHoweverSmoothTheSurface) {
       ASSERT_NEAR(ggx_distribution(h, alpha) / truth, 1, 1e-13);
     }
   }
+  test::holds("M3", "5,000 values within 1e-13");
 }
 
 // Weak white furnace: the facets that o sees, seen by their own mirror images, are all of them.
@@ -62,6 +64,7 @@ TEST(Ggx, M5WeightsOfVisibleNormalsStayInTheUnitIntervalEvenAtGrazingDirections)
       }
     }
   }
+  test::holds("M5", "40,000 weights in [0, 1 + 1e-9]");
 }
 
 // Single scattering, F = 1, by quadrature elsewhere; 1 - ln 2 at alpha 1, straight on.

@@ -10,6 +10,7 @@
 #include "renderlib/medium/attenuation.h"
 #include "renderlib/medium/equiangular.h"
 #include "renderlib/medium/flight.h"
+#include "tests/support/hard_case.h"
 #include "tests/support/random.h"
 #include "tests/support/statistics.h"
 
@@ -135,6 +136,7 @@ TEST(Flight, V10WeightsStayBounded) {
       }
     }
   }
+  test::holds("V10", "24,000 weights <= 3");
 }
 
 /// The ends of the range of u give finite distances.
@@ -149,6 +151,7 @@ TEST(Flight, V2EndsOfTheNumbersAreFinite) {
       EXPECT_GT(flight.pdf(far), 0);
     }
   }
+  test::holds("V2", "finite at u = 0 and the largest");
 }
 
 TEST(Equiangular, DistancesHaveTheirDensity) {
@@ -180,6 +183,7 @@ TEST(Equiangular, V8OfALightOnTheRayIsFinite) {
       }
     }
   }
+  test::holds("V8", "finite on the ray, at its start, far away");
 }
 
 }  // namespace

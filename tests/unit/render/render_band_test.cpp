@@ -8,6 +8,7 @@
 
 #include "renderlib/render/canary.h"
 #include "renderlib/render/render_image.h"
+#include "tests/support/hard_case.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
 
@@ -93,7 +94,7 @@ TEST(RenderBand, TheTechniquesOfPathTracingHaveOneMean) {
   EXPECT_NEAR(total(scattering) / total(both), 1, 0.04);
 }
 
-TEST(RenderBand, RowsAreTheSameWhicheverBandTheyComeIn) {
+TEST(RenderBand, C5_RowsAreTheSameWhicheverBandTheyComeIn) {
   const auto rendered = scene();
   const BandPixels whole = render(*rendered, {{0, 16}, {0, 11}}, 2);
   for (const std::uint32_t rows : {1u, 3u, 7u}) {
@@ -104,9 +105,10 @@ TEST(RenderBand, RowsAreTheSameWhicheverBandTheyComeIn) {
     }
     EXPECT_EQ(sums, whole.sums) << rows;
   }
+  test::holds("C5", "same bits in bands of 1, 3, 7 rows");
 }
 
-TEST(RenderBand, ANodeIsTheSumOfItsHalvesToTheBit) {
+TEST(RenderBand, A7_ANodeIsTheSumOfItsHalvesToTheBit) {
   const auto rendered = scene();
   for (const SampleRange& node : {SampleRange{0, 64}, {64, 128}, {0, 128}, {32, 60}, {0, 24}}) {
     const Halves halves = split(node);
@@ -118,9 +120,10 @@ TEST(RenderBand, ANodeIsTheSumOfItsHalvesToTheBit) {
     }
     EXPECT_EQ(whole.counters.rays, left.counters.rays + right.counters.rays);
   }
+  test::holds("A7", "sums of halves equal to the bit");
 }
 
-TEST(RenderBand, AnImageOfBandsInAnyOrderIsTheImageMadeInOneGo) {
+TEST(RenderBand, R6A7_AnImageOfBandsInAnyOrderIsTheImageMadeInOneGo) {
   const auto rendered = scene();
   Pool pool(2);
   const std::uint64_t samples = 88;
@@ -146,6 +149,7 @@ TEST(RenderBand, AnImageOfBandsInAnyOrderIsTheImageMadeInOneGo) {
   }
   EXPECT_EQ(film->snapshot().image.pixels, straight->film.snapshot().image.pixels);
   EXPECT_EQ(film->snapshot().least_samples, samples);
+  test::holds("R6", "bands in any order: same bits");
 }
 
 TEST(RenderBand, AnotherSeedAndAnotherPixelGiveOtherSamples) {

@@ -8,6 +8,7 @@
 #include "renderlib/sampling/spherical_rectangle.h"
 #include "renderlib/sampling/warp.h"
 #include "tests/support/direction_test.h"
+#include "tests/support/hard_case.h"
 #include "tests/support/meshes.h"
 #include "tests/support/statistics.h"
 
@@ -77,7 +78,7 @@ TEST(SphericalRectangle, KnowsSmallSolidAngles) {
   EXPECT_NEAR(aside->solid_angle() / (4 * h * h / std::pow(10, 1.5)), 1, 1e-7);
 }
 
-TEST(SphericalRectangle, CornersOfTheUnitSquareStayInside) {
+TEST(SphericalRectangle, L6_CornersOfTheUnitSquareStayInside) {
   for (const View& view : views()) {
     const auto rectangle =
         SphericalRectangle::seen_from(view.point, view.quad.corner, view.quad.u, view.quad.v);
@@ -89,6 +90,7 @@ TEST(SphericalRectangle, CornersOfTheUnitSquareStayInside) {
       }
     }
   }
+  test::holds("L6", "80 corners inside the rectangle");
 }
 
 TEST(SphericalRectangle, IsNoneForWhatIsEdgeOnOrTiny) {
@@ -123,7 +125,7 @@ TEST(SphereLight, SamplesUniformlyInSolidAngle) {
 }
 
 // From inside, the mean of 1 / density is the whole sphere of directions.
-TEST(SphereLight, IsSeenAllAroundFromInside) {
+TEST(SphereLight, L3_IsSeenAllAroundFromInside) {
   test::Random random(30);
   for (const double radius_of_point : {0.0, 0.5, 0.99}) {
     test::Moments directions;
@@ -137,9 +139,10 @@ TEST(SphereLight, IsSeenAllAroundFromInside) {
     EXPECT_LT(std::abs(directions.mean() / (4 * kPi) - 1),
               4 * directions.standard_error() / (4 * kPi) + 1e-12);
   }
+  test::holds("L3", "densities from inside integrate to 4 pi");
 }
 
-TEST(SphereLight, HasNoNanOnItsSurface) {
+TEST(SphereLight, L3_HasNoNanOnItsSurface) {
   test::Random random(31);
   for (int i = 0; i < 10000; ++i) {
     const Vec3 point = test::random_direction(random) * random.uniform(1 - 1e-12, 1 + 1e-5);
@@ -150,6 +153,7 @@ TEST(SphereLight, HasNoNanOnItsSurface) {
       EXPECT_TRUE(is_finite(s->position));
     }
   }
+  test::holds("L3", "0 NaN of 10,000 on the surface");
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <set>
 #include <vector>
 
+#include "tests/support/hard_case.h"
 #include "tests/support/random.h"
 #include "tests/support/statistics.h"
 
@@ -116,7 +117,7 @@ TEST(Sampler, FillsElementaryIntervalsInEveryAlignedRange) {
   }
 }
 
-TEST(Sampler, StaysBelowOne) {
+TEST(Sampler, R1_StaysBelowOne) {
   double largest = 0;
   for (std::uint64_t i = 0; i < 200000; ++i) {
     for (const double v :
@@ -127,9 +128,10 @@ TEST(Sampler, StaysBelowOne) {
   }
   EXPECT_LT(largest, 1);
   EXPECT_GT(largest, 1 - 1e-5);
+  test::holds("R1", "800,000 numbers below 1");
 }
 
-TEST(Sampler, IsUniformOverPairsOfDimensionsOfAnyGroups) {
+TEST(Sampler, R4_IsUniformOverPairsOfDimensionsOfAnyGroups) {
   constexpr int kPairs = 100;
   constexpr std::size_t kSide = 16;
   constexpr std::size_t kSamples = 4096;
@@ -155,6 +157,7 @@ TEST(Sampler, IsUniformOverPairsOfDimensionsOfAnyGroups) {
     EXPECT_GT(test::chi_squared(counts, expected).p_value, level)
         << group_a << "." << a << " with " << group_b << "." << b;
   }
+  test::holds("R4", "chi-squared passes for 100 pairs, 16 x 16");
 }
 
 /// Samples of one pixel fill pairs of dimensions of different groups no worse than independent
@@ -198,7 +201,7 @@ double correlation(const std::vector<double>& values, std::uint32_t side, std::u
   return sum / static_cast<double>(count) * 12;
 }
 
-TEST(Sampler, DoesNotCorrelateNeighbouringPixels) {
+TEST(Sampler, R2_DoesNotCorrelateNeighbouringPixels) {
   constexpr std::uint32_t kSide = 256;
   for (std::uint32_t group = 0; group < 2; ++group) {
     std::array<std::vector<double>, 4> values;
@@ -216,9 +219,10 @@ TEST(Sampler, DoesNotCorrelateNeighbouringPixels) {
       EXPECT_LT(std::abs(correlation(dimension, kSide, 1, 1)), 4.0 / kSide);
     }
   }
+  test::holds("R2", "24 correlations below 4 / 256");
 }
 
-TEST(Sampler, GoesOnBeyondTwoToThe32Samples) {
+TEST(Sampler, R5_GoesOnBeyondTwoToThe32Samples) {
   const PixelSampler sampler(1, 2, 3);
   std::set<Sample4> seen;
   for (std::uint64_t high = 0; high < 4; ++high) {
@@ -227,6 +231,7 @@ TEST(Sampler, GoesOnBeyondTwoToThe32Samples) {
     }
   }
   EXPECT_EQ(seen.size(), 4u * 64);
+  test::holds("R5", "no repeat at four times 2^32");
 }
 
 /// A smooth integrand: scrambled nets are far better than independent samples (whose error would be

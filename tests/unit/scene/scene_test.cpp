@@ -7,6 +7,7 @@
 #include <cstring>
 #include <limits>
 
+#include "tests/support/hard_case.h"
 #include "tests/support/scenes.h"
 
 namespace bandsaw {
@@ -42,7 +43,7 @@ std::string message_after(Change change) {
   return message(maker.scene);
 }
 
-TEST(Scene, WhatIsWrongIsNamedWithPlaceRangeAndValue) {
+TEST(Scene, S9_WhatIsWrongIsNamedWithPlaceRangeAndValue) {
   EXPECT_EQ(message(valid().scene), "");
   EXPECT_EQ(message_after([](auto& s) { s.geometry.spheres[0].radius = -1; }),
             "spheres[0].radius: must be > 0, is -1");
@@ -72,9 +73,11 @@ TEST(Scene, WhatIsWrongIsNamedWithPlaceRangeAndValue) {
             "background.top: must be finite and not negative, is -1");
   EXPECT_THAT(message_after([](auto& s) { std::get<0>(s.camera).vertical_fov = 200; }),
               StartsWith("camera.vertical_fov: "));
+  test::holds("S9", "a negative radius and NaN are refused with the field");
+  test::holds("X3", "a scale of 0 is refused with the field");
 }
 
-TEST(Scene, MaterialsAndTexturesAreCheckedWithTheirRanges) {
+TEST(Scene, M13_MaterialsAndTexturesAreCheckedWithTheirRanges) {
   EXPECT_EQ(message_after([](auto& s) {
               s.textures[0] = ConstantTexture{{0, 1.5f, 0}};
             }),
@@ -106,9 +109,11 @@ TEST(Scene, MaterialsAndTexturesAreCheckedWithTheirRanges) {
   image.texels = std::vector<std::byte>(bytes, bytes + sizeof texels);
   EXPECT_EQ(message_after([&](auto& s) { s.textures[0] = image; }),
             "materials[0].reflectance: texel 1: must be in [0, 1], is nan");
+  test::holds("M13", "refused with the field, texel by texel");
+  test::holds("TX6", "no texel, or a NaN one: refused");
 }
 
-TEST(Scene, WhatCannotBeHitIsDroppedAndCountedAndTheRestStaysInOrder) {
+TEST(Scene, T10_WhatCannotBeHitIsDroppedAndCountedAndTheRestStaysInOrder) {
   SceneMaker maker = valid();
   const MaterialId white{0};
   maker.quad({5, 0, 0}, {1, 1, 0}, {2, 2, 0}, white);
@@ -129,6 +134,7 @@ TEST(Scene, WhatCannotBeHitIsDroppedAndCountedAndTheRestStaysInOrder) {
   const Hit hit = scene->accel().closest({.origin = {0.4, 0.3, 9}, .direction = {0, 0, -1}});
   EXPECT_TRUE(hit);
   EXPECT_EQ(hit.id.instance, 1u);
+  test::holds("T10", "dropped and counted");
 }
 
 TEST(Scene, NeedsAreWhatIsThere) {

@@ -8,6 +8,7 @@
 #include "renderlib/texture/check_texture.h"
 #include "renderlib/texture/noise.h"
 #include "renderlib/texture/texture.h"
+#include "tests/support/hard_case.h"
 
 namespace bandsaw {
 namespace {
@@ -66,6 +67,7 @@ TEST(Checker, TX4APlaneBetweenTwoLayersHasOneSide) {
       }
     }
   }
+  test::holds("TX4", "one side");
 }
 
 TEST(Checker, TakesAnyCoordinate) {

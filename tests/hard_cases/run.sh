@@ -1,0 +1,47 @@
+#!/usr/bin/env bash
+# Runs every hard case at its full count and writes what it gave into README.md's table.
+# Usage: tests/hard_cases/run.sh [BUILD_FOLDER]      (default build/release; built with BANDSAW_TESTS=ON)
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+build=${1:-build/release}
+folder=tests/hard_cases
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+# Tests whose names carry an id; of the program hard_cases the one with the full counts.
+ids='\.([STQBOCXMLVRAPY]|TX)[0-9]+'
+status=0
+ctest --test-dir "$build" --no-tests=error --parallel "$(nproc)" --extra-verbose --tests-regex "$ids" \
+  --label-exclude '^hard_cases$' > "$work/log" || status=$?
+sed -n 's/^[0-9]*: \(\[ case .*\)$/\1/p' "$work/log" > "$work/figures"
+tail -n 3 "$work/log"
+
+sed '/<!-- table/q' "$folder/README.md" > "$work/readme"
+awk -v figures="$work/figures" '
+  function ask(name,   list, n, i, out) {  # each file once
+    n = split(name, list, "\n"); out = ""
+    for (i = 1; i <= n; ++i) if (list[i] != "" && index(out, "`" list[i] "`") == 0) out = out (out == "" ? "" : "<br>") "`" list[i] "`"
+    return out
+  }
+  BEGIN {
+    while ((getline line < figures) > 0) {
+      split(line, words, " "); id = words[3]
+      rest = line; sub(/^\[ case [A-Z0-9]+ \] /, "", rest)
+      file = rest; sub(/ \| .*/, "", file); sub(/^tests\//, "", file)
+      figure = rest; sub(/^[^|]*\| /, "", figure)
+      if (index("\n" figured[id] "\n", "\n" figure "\n") == 0) figured[id] = figured[id] (id in figured ? "\n" : "") figure
+      files[id] = files[id] "\n" file
+    }
+    print "\n| id | case | to pass | our figures | the naive way | test |\n| --- | --- | --- | --- | --- | --- |"
+    FS = " \\| "
+  }
+  {
+    figure = figured[$1]; gsub(/\n/, "; ", figure); gsub(/\|/, "\\|", figure)
+    for (i = 2; i <= 5; ++i) gsub(/\|/, "\\|", $i)
+    if ($5 != "") figure = figure (figure == "" ? "" : "; ") "**" $5 "**"
+    if (figure == "") figure = "**not there yet**"
+    print "| " $1 " | " $2 " | " $3 " | " figure " | " $4 " | " ask(files[$1]) " |"
+  }' "$folder/cases.txt" >> "$work/readme"
+cp "$work/readme" "$folder/README.md"
+[ "$status" -eq 0 ] || grep -E '\((Failed|Timeout|Not Run)\)' "$work/log" || true
+exit "$status"

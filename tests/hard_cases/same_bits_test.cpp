@@ -1,0 +1,104 @@
+// The sums of twelve gallery scenes are those of same_bits.txt, in any build by any compiler:
+// C5, R6, R10, B12, Y3. The table changes only when kPixelVersion is raised; what it becomes is
+// printed by the test that then fails.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <string>
+
+#include "absl/strings/str_format.h"
+#include "renderlib/import/import.h"
+#include "renderlib/render/hash64.h"
+#include "renderlib/render/pixel_version.h"
+#include "renderlib/render/render_band.h"
+#include "tests/support/hard_case.h"
+
+namespace bandsaw {
+namespace {
+
+constexpr std::uint32_t kWidth = 20;
+constexpr std::uint32_t kHeight = 15;
+constexpr std::uint64_t kSamples = 16;
+
+const char* const kScenes[] = {"cornell",     "spheres",     "glass_and_metal", "textured",
+                               "mesh",        "instances",   "motion",          "defocus",
+                               "many_lights", "environment", "smoke",           "materials"};
+
+struct Rendering {
+  int building_threads = 1;
+  int threads = 1;
+  std::uint32_t rows = kHeight;  ///< of a band
+};
+
+std::string hash_of(const ImportedScene& imported, const Rendering& how) {
+  Pool building(how.building_threads);
+  Pool pool(how.threads);
+  const auto scene = Scene::build(imported.scene, building);
+  EXPECT_TRUE(scene.ok()) << scene.status();
+  const RenderSettings settings{.width = kWidth,
+                                .height = kHeight,
+                                .max_depth = imported.info.max_depth,
+                                .seed = 7,
+                                .integrator = imported.info.integrator};
+  const std::atomic<bool> stop = false;
+  Hash64 hash;
+  for (std::uint32_t y = 0; y < kHeight; y += how.rows) {
+    const Band band{{0, kSamples}, {y, std::min(y + how.rows, kHeight)}};
+    const auto pixels = render_band(**scene, settings, band, pool, stop, {});
+    EXPECT_TRUE(pixels.ok()) << pixels.status();
+    for (const double sum : pixels->sums) {
+      hash.add(sum);
+    }
+  }
+  return absl::StrFormat("%016x", hash.value());
+}
+
+struct Table {
+  std::uint32_t pixel_version = 0;
+  std::map<std::string, std::string> hashes;
+};
+
+Table read_table() {
+  std::ifstream file(BANDSAW_SOURCE "/tests/hard_cases/same_bits.txt");
+  Table table;
+  std::string words;
+  file >> words >> table.pixel_version;
+  for (std::string name, hash; file >> name >> hash;) {
+    table.hashes[name] = hash;
+  }
+  return table;
+}
+
+TEST(SameBits, C5R6R10B12Y3_TwelveScenesHaveTheirHashes) {
+  const Table table = read_table();
+  EXPECT_EQ(table.pixel_version, kPixelVersion);
+  std::string now = absl::StrFormat("pixel_version %d\n", kPixelVersion);
+  for (const std::string name : kScenes) {
+    SCOPED_TRACE(name);
+    const auto imported = import_scene(BANDSAW_GALLERY "/" + name + ".textproto");
+    ASSERT_TRUE(imported.ok()) << imported.status();
+    const std::string hash = hash_of(*imported, {});
+    now += name + " " + hash + "\n";
+    EXPECT_EQ(hash, table.hashes.count(name) == 1 ? table.hashes.at(name) : "");
+    for (const int threads : {2, 3, 8}) {
+      EXPECT_EQ(hash_of(*imported, {.building_threads = threads, .threads = threads}), hash);
+    }
+    for (const std::uint32_t rows : {1u, 3u, 7u}) {
+      EXPECT_EQ(hash_of(*imported, {.threads = 2, .rows = rows}), hash) << rows;
+    }
+  }
+  if (HasFailure()) {
+    std::cout << now;
+  }
+  test::holds("C5", "12 scenes: one hash for 1, 2, 3, 8 threads and bands of 1, 3, 7, 15 rows");
+  test::holds("B12", "12 scenes: one hash for trees built by 1, 2, 3, 8 threads");
+  test::holds("Y3", "12 scenes: the hashes of the table in this build");
+  test::holds("R10", "12 scenes: the hashes of the table by any compiler");
+}
+
+}  // namespace
+}  // namespace bandsaw

@@ -1,0 +1,47 @@
+#include "tests/support/hard_case.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <iostream>
+#include <string>
+
+namespace bandsaw::test {
+namespace {
+
+std::string text(double number) {
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%.3g", number);
+  return digits;
+}
+
+/// The folder of the sources is cut off the file's name.
+std::string here() {
+  const std::string file = ::testing::UnitTest::GetInstance()->current_test_info()->file();
+  const std::size_t tests = file.rfind("/tests/");
+  return tests == std::string::npos ? file : file.substr(tests + 1);
+}
+
+void print(std::string_view id, const std::string& figure) {
+  std::cout << "[ case " << id << " ] " << here() << " | " << figure << std::endl;
+}
+
+}  // namespace
+
+void at_most(std::string_view id, std::string_view what, double figure, double limit) {
+  EXPECT_LE(figure, limit) << id << ": " << what;
+  print(id, std::string(what) + ": " + text(figure) + " <= " + text(limit));
+}
+
+void at_least(std::string_view id, std::string_view what, double figure, double limit) {
+  EXPECT_GE(figure, limit) << id << ": " << what;
+  print(id, std::string(what) + ": " + text(figure) + " >= " + text(limit));
+}
+
+void holds(std::string_view id, std::string_view what) {
+  if (!::testing::Test::HasFailure()) {
+    print(id, std::string(what));
+  }
+}
+
+}  // namespace bandsaw::test
