@@ -1,0 +1,118 @@
+#!/usr/bin/env bash
+# Is the error that an image reports the error that it has? Renders gallery scenes 96 pixels wide until 5 % and 2 %, with 20 seeds
+# each, compares every image with a reference of 16 times as many samples, and writes the table of tests/statistical/README.md.
+# What was measured is kept in FOLDER and not measured again: an interrupted run goes on where it was.
+# Usage: tests/statistical/calibrate.sh BANDSAW FOLDER [--scenes a,b,…] [--seeds N] [--seconds S]
+#   --scenes   names as in the gallery's folder, "cornell,books/earth"; default: all
+#   --seeds    default 20
+#   --seconds  CPU time that one render may take; what would take more is left out and named (default 20)
+set -euo pipefail
+bandsaw=$(realpath "${1:?usage: calibrate.sh BANDSAW FOLDER [options]}")
+folder=${2:?usage: calibrate.sh BANDSAW FOLDER [options]}
+shift 2
+root=$(cd "$(dirname "$0")/../.." && pwd)
+gallery=$root/renderlib/gallery
+scenes=$(cd "$gallery" && find . -name '*.textproto' | sed 's,^\./,,; s,\.textproto$,,' | sort)
+seeds=20
+seconds=20
+while [ $# -gt 0 ]; do
+  case $1 in
+    --scenes) scenes=${2//,/ } ;;
+    --seeds) seeds=$2 ;;
+    --seconds) seconds=$2 ;;
+    *) echo "calibrate.sh: unknown option $1" >&2; exit 2 ;;
+  esac
+  shift 2
+done
+mkdir -p "$folder"
+touch "$folder/runs" "$folder/left_out"
+
+number() { sed -n "s/.*\"$1\":\([-0-9.e+]*\).*/\1/p"; }
+least() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a < b) }'; }
+
+# One render to a target: prints samples, estimate, CPU seconds. Nothing: it took ten times too long.
+render() {  # scene target seed image
+  local done
+  done=$(timeout "$((10 * seconds))" "$bandsaw" render "$gallery/$1.textproto" --width 96 --error "$2%" --seed "$3" --json -o "$4" |
+         tail -n 1) || return 1
+  echo "$(number samples_done <<<"$done") $(number error <<<"$done") $(number cpu_s <<<"$done") $(number samples_per_pixel <<<"$done")"
+}
+
+measure() {  # scene targets...
+  local scene=$1 work=$folder/work seed target result true_error
+  shift
+  for target in "$@"; do
+    for ((seed = 1; seed <= seeds; ++seed)); do
+      grep -q "^$scene $target $seed " "$folder/runs" && continue
+      result=$(render "$scene" "$target" "$seed" "$work.pfm") || { echo "$scene $target" >> "$folder/left_out"; break; }
+      true_error=$("$bandsaw" compare "$work.pfm" "$folder/reference.pfm" --json | number relative_rmse)
+      echo "$scene $target $seed $result $true_error" >> "$folder/runs"
+    done
+  done
+}
+
+for scene in $scenes; do
+  [ -f "$gallery/$scene.textproto" ] || { echo "calibrate.sh: no scene $scene in $gallery" >&2; exit 2; }
+  grep -q "^$scene$" "$folder/done" 2>/dev/null && continue
+  echo "$scene" >&2
+  # One render tells what the others take: 2 % costs about six times as much as 5 %.
+  pilot=$(render "$scene" 5 1001 "$folder/work.pfm") || { echo "$scene 5" >> "$folder/left_out"; echo "$scene" >> "$folder/done"; continue; }
+  read -r _ _ cpu samples <<<"$pilot"
+  targets=5
+  if least "$(awk -v c="$cpu" 'BEGIN { print 6.25 * c }')" "$seconds"; then
+    targets="5 2"
+    samples=$((samples * 25 / 4))
+  else
+    echo "$scene 2" >> "$folder/left_out"
+  fi
+  "$bandsaw" render "$gallery/$scene.textproto" --width 96 --samples $((16 * samples)) --seed 4711 --quiet \
+    -o "$folder/reference.pfm" > /dev/null
+  measure "$scene" $targets
+  echo "$scene" >> "$folder/done"
+done
+
+readme=$root/tests/statistical/README.md
+sed '/<!-- table/q' "$readme" > "$folder/readme"
+sort -u "$folder/left_out" > "$folder/without"
+awk -v without="$folder/without" '
+  function root_mean(sum, n) { return sqrt(sum / n) }
+  {
+    key = $1 " " $2; target = $2 / 100; error = $8; ratio = $5 / error
+    if (!(key in n)) { keys[++count] = key; low[key] = high[key] = ratio }
+    ++n[key]; samples[key] += $7; squares[key] += error * error; cpu[key] += $6
+    if (ratio < low[key]) low[key] = ratio
+    if (ratio > high[key]) high[key] = ratio
+    if (error <= target) { ++met[key]; ++all_met }
+    if (ratio >= 0.9 && ratio <= 2.5) ++within
+    ++all
+  }
+  END {
+    # Wilson 1927: the interval of a share at 95 %.
+    p = all_met / all; z = 1.96; d = 1 + z * z / all
+    middle = (p + z * z / (2 * all)) / d; half = z * sqrt(p * (1 - p) / all + z * z / (4 * all * all)) / d
+    printf "\n%d renders of %d scenes: the true error is at most the target in **%.1f %%** (95 %% interval %.1f to %.1f %%); the estimate is\n",
+           all, scenes_of(), 100 * p, 100 * (middle - half), 100 * (middle + half)
+    printf "between 0.9 and 2.5 times the true error in %.1f %%.\n\n", 100 * within / all
+    print "| scene | target | renders | met | true error | estimate / true | samples a pixel | beyond the ideal | CPU s |"
+    print "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"
+    for (i = 1; i <= count; ++i) {
+      key = keys[i]; split(key, name, " "); e = root_mean(squares[key], n[key]); m = samples[key] / n[key]
+      # How the error falls between the targets; 1/2 where there is only one.
+      slope = 0.5; a = name[1] " 5"; b = name[1] " 2"
+      if ((a in n) && (b in n) && samples[b] / n[b] > samples[a] / n[a])
+        slope = log(root_mean(squares[a], n[a]) / root_mean(squares[b], n[b])) / log(samples[b] / n[b] / (samples[a] / n[a]))
+      if (slope < 0.4) slope = 0.4
+      ideal = m * (e / (name[2] / 100)) ^ (1 / slope)
+      printf "| %s | %d %% | %d | %d | %.2f %% | %.2f to %.2f | %.0f | %+.0f %% | %.1f |\n", name[1], name[2], n[key], met[key],
+             100 * e, low[key], high[key], m, 100 * (m / ideal - 1), cpu[key] / n[key]
+    }
+    first = 1
+    while ((getline line < without) > 0) {
+      split(line, name, " ")
+      printf "%s%s to %d %%", first ? "\nLeft out, as one render takes too long: " : ", ", name[1], name[2]; first = 0
+    }
+    if (!first) print "."
+  }
+  function scenes_of(  k, part, seen, total) { total = 0; for (k in n) { split(k, part, " "); if (!(part[1] in seen)) { seen[part[1]] = 1; ++total } } return total }
+' "$folder/runs" >> "$folder/readme"
+cp "$folder/readme" "$readme"
