@@ -82,8 +82,10 @@ absl::Status read_scene(const Field& root, const scene::Scene& from, SceneDraft&
   RETURN_IF_ERROR(read_lights(root, from, draft));
   RETURN_IF_ERROR(read_models(root, from.model(), draft));
   RETURN_IF_ERROR(read_instances(root, from.instance(), draft));
-  scene.geometry.frames = std::move(draft.world.frames);
-  scene.geometry.instances = std::move(draft.world.instances);
+  scene.geometry.frames = std::move(draft.world.seen.frames);
+  scene.geometry.instances = std::move(draft.world.seen.instances);
+  scene.media.boundaries.frames = std::move(draft.world.filled.frames);
+  scene.media.boundaries.instances = std::move(draft.world.filled.instances);
   if (!own_camera) {
     ASSIGN_OR_RETURN(scene.camera, camera_of_a_model(root, from, draft));
   }

@@ -1,6 +1,13 @@
 #include "renderlib/import/placements.h"
 
+#include <utility>
+
 namespace bandsaw {
+
+FrameId add_frame(Frame frame, Placements& to) {
+  to.frames.push_back(std::move(frame));
+  return FrameId{static_cast<std::uint32_t>(to.frames.size() - 1)};
+}
 
 bool place(const Placements& what, const Place& at, std::optional<MaterialId> material,
            Placements& to) {

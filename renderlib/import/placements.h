@@ -14,6 +14,15 @@ struct Placements {
   std::vector<Instance> instances;  ///< their frames are those above
 };
 
+/// What is in one space: what is seen, and the closed shapes that media fill, which are instances of
+/// Media::boundaries (scene/media.h).
+struct Contents {
+  Placements seen;
+  Placements filled;
+
+  std::size_t size() const { return seen.instances.size() + filled.instances.size(); }
+};
+
 /// More placements than this are refused: each travels in the manifest.
 inline constexpr std::size_t kMostPlacements = 500'000;
 
@@ -22,6 +31,8 @@ struct Place {
   Transform to_frame;
   FrameId frame = kNoFrame;
 };
+
+FrameId add_frame(Frame frame, Placements& to);
 
 /// Adds all of `what` to `to` at a place; `material` replaces its own. False: a placement would be
 /// singular.

@@ -18,7 +18,7 @@ namespace {
 /// While it lives, what is read goes into a group.
 class InGroup {
  public:
-  InGroup(SceneDraft& draft, Shapes& shapes, Placements& placed)
+  InGroup(SceneDraft& draft, Shapes& shapes, Contents& placed)
       : draft_(draft),
         shapes_(std::exchange(draft.shapes, &shapes)),
         placed_(std::exchange(draft.placed, &placed)) {}
@@ -32,13 +32,12 @@ class InGroup {
  private:
   SceneDraft& draft_;
   Shapes* shapes_;
-  Placements* placed_;
+  Contents* placed_;
 };
 
-absl::StatusOr<Placements> read_group(const Field& in, const scene::Group& from,
-                                      SceneDraft& draft) {
+absl::StatusOr<Contents> read_group(const Field& in, const scene::Group& from, SceneDraft& draft) {
   Shapes shapes;
-  Placements placed;
+  Contents placed;
   const std::size_t cameras = draft.cameras.size();
   {
     const InGroup in_group(draft, shapes, placed);
@@ -53,16 +52,16 @@ absl::StatusOr<Placements> read_group(const Field& in, const scene::Group& from,
     Instance loose;
     loose.group = GroupId{static_cast<std::uint32_t>(geometry.groups.size() - 1)};
     loose.material = kOwnMaterial;
-    placed.instances.insert(placed.instances.begin(), loose);
+    placed.seen.instances.insert(placed.seen.instances.begin(), loose);
   }
-  if (placed.instances.empty()) {
+  if (placed.size() == 0) {
     return in.error("is empty: write shapes, models or instances in it");
   }
   return placed;
 }
 
-absl::StatusOr<const Placements*> find_group(const Field& in, const std::string& name,
-                                             const SceneDraft& draft) {
+absl::StatusOr<const Contents*> find_group(const Field& in, const std::string& name,
+                                           const SceneDraft& draft) {
   if (name.empty()) {
     return in.error("of", "is required: the name of a group");
   }
@@ -78,8 +77,19 @@ absl::StatusOr<const Placements*> find_group(const Field& in, const std::string&
                                      "; within a group only earlier ones are known"));
 }
 
+/// Adds `what` where the placement, or the keys, say, moved by `copy`. False: as `place`.
+bool place_copy(const Placements& what, const Transform& placement, const Transform& copy,
+                const std::vector<Key>& keys, std::optional<MaterialId> material, Placements& to) {
+  if (what.instances.empty()) {
+    return true;
+  }
+  const Place at = keys.empty() ? Place{copy * placement, kNoFrame}
+                                : Place{Transform{}, add_frame({kNoFrame, copy, keys}, to)};
+  return place(what, at, material, to);
+}
+
 absl::Status read_instance(const Field& in, const scene::Instance& from, SceneDraft& draft) {
-  ASSIGN_OR_RETURN(const Placements* group, find_group(in, from.of(), draft));
+  ASSIGN_OR_RETURN(const Contents* group, find_group(in, from.of(), draft));
   std::optional<MaterialId> material;
   if (!from.material().empty()) {
     ASSIGN_OR_RETURN(material, find_material(in, from.material(), draft));
@@ -87,18 +97,15 @@ absl::Status read_instance(const Field& in, const scene::Instance& from, SceneDr
   ASSIGN_OR_RETURN(const Transform placement, read_placement(in, from));
   ASSIGN_OR_RETURN(const std::vector<Key> keys, read_keys(in, from));
   ASSIGN_OR_RETURN(const std::vector<Transform> copies, read_copies(in, from));
-  Placements& to = *draft.placed;
-  if (to.instances.size() + copies.size() * group->instances.size() > kMostPlacements) {
+  Contents& to = *draft.placed;
+  if (to.size() + copies.size() * group->size() > kMostPlacements) {
     return in.error("of", absl::StrCat("makes more than ", kMostPlacements,
                                        " placements of meshes and groups"));
   }
   for (const Transform& copy : copies) {
-    Place at{copy * placement, kNoFrame};
-    if (!keys.empty()) {
-      to.frames.push_back({kNoFrame, copy, keys});
-      at = {Transform{}, FrameId{static_cast<std::uint32_t>(to.frames.size() - 1)}};
-    }
-    if (!place(*group, at, material, to)) {
+    // What a medium is inside of has no material to be replaced.
+    if (!place_copy(group->seen, placement, copy, keys, material, to.seen) ||
+        !place_copy(group->filled, placement, copy, keys, std::nullopt, to.filled)) {
       return in.error("scale", "is too large or too small for what is placed");
     }
   }
@@ -117,7 +124,7 @@ absl::Status read_groups(const Field& root, const scene::Scene& from, SceneDraft
     if (draft.groups.count(group.name()) > 0) {
       return in.error("name", absl::StrCat("\"", group.name(), "\" is taken by an earlier group"));
     }
-    ASSIGN_OR_RETURN(Placements placed, read_group(in, group, draft));
+    ASSIGN_OR_RETURN(Contents placed, read_group(in, group, draft));
     draft.groups.emplace(group.name(), std::move(placed));
   }
   return absl::OkStatus();

@@ -110,18 +110,20 @@ absl::StatusOr<MediumId> find_medium(const Field& in, const std::string& field,
                                known.empty() ? "; the scene has none" : did_you_mean(name, known)));
 }
 
-absl::Status check_boundary_place(const Field& in, const SceneDraft& draft) {
-  return draft.placed == &draft.world
-             ? absl::OkStatus()
-             : in.error("interior", "cannot be given within a group: write the shape in the scene");
+Instance boundary_of(const Sphere& sphere, MediumId inside, SceneDraft& draft) {
+  std::vector<Shapes>& groups = draft.out.scene.media.boundaries.groups;
+  if (groups.empty()) {
+    groups.push_back(unit_ball());
+  }
+  Instance instance;
+  instance.group = GroupId{0};
+  instance.material = filled_with(inside);
+  const double r = sphere.radius;
+  instance.to_world = translation(sphere.center) * scaling({r, r, r});
+  return instance;
 }
 
-void add_boundary(const Sphere& sphere, MediumId inside, SceneDraft& draft) {
-  draft.out.scene.media.boundaries.spheres.push_back(sphere);
-  draft.out.scene.media.boundaries.spheres.back().material = filled_with(inside);
-}
-
-void add_boundary(const Vec3& low, const Vec3& high, MediumId inside, SceneDraft& draft) {
+Instance boundary_of(const Vec3& low, const Vec3& high, MediumId inside, SceneDraft& draft) {
   Geometry& boundaries = draft.out.scene.media.boundaries;
   constexpr MeshId kCube{0xffffffffu};  // a name that no mesh of the scene has
   const auto [known, is_new] = draft.boundary_meshes.try_emplace(
@@ -129,12 +131,11 @@ void add_boundary(const Vec3& low, const Vec3& high, MediumId inside, SceneDraft
   if (is_new) {
     boundaries.meshes.push_back(unit_cube());
   }
-  boundaries.instances.push_back(
-      {known->second, filled_with(inside), translation(low) * scaling(high - low)});
+  return {known->second, filled_with(inside), translation(low) * scaling(high - low)};
 }
 
-absl::Status add_boundary(const Field& in, const Instance& placed, MediumId inside,
-                          SceneDraft& draft) {
+absl::StatusOr<Instance> boundary_of(const Field& in, const Instance& placed, MediumId inside,
+                                     SceneDraft& draft) {
   Geometry& boundaries = draft.out.scene.media.boundaries;
   const auto [known, is_new] = draft.boundary_meshes.try_emplace(
       placed.mesh, MeshId{static_cast<std::uint32_t>(boundaries.meshes.size())});
@@ -154,8 +155,7 @@ absl::Status add_boundary(const Field& in, const Instance& placed, MediumId insi
     }
     boundaries.meshes.push_back(std::move(boundary));
   }
-  boundaries.instances.push_back({known->second, filled_with(inside), placed.to_world});
-  return absl::OkStatus();
+  return Instance{known->second, filled_with(inside), placed.to_world};
 }
 
 }  // namespace bandsaw

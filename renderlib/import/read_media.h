@@ -19,15 +19,11 @@ absl::Status read_media(const Field& root, const scene::Scene& from, SceneDraft&
 absl::StatusOr<MediumId> find_medium(const Field& in, const std::string& field,
                                      const std::string& name, const SceneDraft& draft);
 
-/// INVALID_ARGUMENT, about `in`'s field "interior": what is being read is a group.
-absl::Status check_boundary_place(const Field& in, const SceneDraft& draft);
-
-void add_boundary(const Sphere& sphere, MediumId inside, SceneDraft& draft);
-/// A box from `low` to `high`.
-void add_boundary(const Vec3& low, const Vec3& high, MediumId inside, SceneDraft& draft);
-/// The placement of a mesh of the scene. INVALID_ARGUMENT, about `in`'s field "interior": the mesh
-/// is open.
-absl::Status add_boundary(const Field& in, const Instance& placed, MediumId inside,
-                          SceneDraft& draft);
+/// What the medium is inside of, as an instance of Media::boundaries: a sphere; a box from `low` to
+/// `high`; a mesh of the scene. INVALID_ARGUMENT, about `in`'s field "interior": the mesh is open.
+Instance boundary_of(const Sphere& sphere, MediumId inside, SceneDraft& draft);
+Instance boundary_of(const Vec3& low, const Vec3& high, MediumId inside, SceneDraft& draft);
+absl::StatusOr<Instance> boundary_of(const Field& in, const Instance& mesh, MediumId inside,
+                                     SceneDraft& draft);
 
 }  // namespace bandsaw

@@ -61,19 +61,26 @@ void add_lights(const std::string& file, const Model& model, const Transform& to
   }
 }
 
+absl::Status place_model(const Field& in, const Placements& what, const Transform& placement,
+                         const std::vector<Key>& keys, std::optional<MaterialId> material,
+                         Placements& to) {
+  const Place at = keys.empty() ? Place{placement, kNoFrame}
+                                : Place{Transform{}, add_frame({kNoFrame, {}, keys}, to)};
+  return place(what, at, material, to)
+             ? absl::OkStatus()
+             : in.error("scale", "is too large or too small for this model");
+}
+
 /// What is inside of a model's meshes, each placed by itself.
-absl::Status read_interior(const Field& in, const scene::Model& from, const Model& model,
-                           const Transform& placement, SceneDraft& draft) {
-  RETURN_IF_ERROR(check_boundary_place(in, draft));
+absl::StatusOr<Placements> read_interior(const Field& in, const scene::Model& from,
+                                         const Model& model, SceneDraft& draft) {
   ASSIGN_OR_RETURN(const MediumId medium, find_medium(in, "interior", from.interior(), draft));
-  for (Instance placed : model.instances) {
-    placed.to_world = placement * placed.to_world;
-    if (!inverse(placed.to_world)) {
-      return in.error("scale", "is too large or too small for this model");
-    }
-    RETURN_IF_ERROR(add_boundary(in, placed, medium, draft));
+  Placements filled;
+  for (const Instance& mesh : model.instances) {
+    ASSIGN_OR_RETURN(const Instance boundary, boundary_of(in, mesh, medium, draft));
+    filled.instances.push_back(boundary);
   }
-  return absl::OkStatus();
+  return filled;
 }
 
 absl::Status read_model_entry(const Field& in, const scene::Model& from, SceneDraft& draft) {
@@ -81,30 +88,23 @@ absl::Status read_model_entry(const Field& in, const scene::Model& from, SceneDr
   if (!from.material().empty()) {
     ASSIGN_OR_RETURN(material, find_material(in, from.material(), draft));
   }
-  Place place_at;
-  ASSIGN_OR_RETURN(place_at.to_frame, read_placement(in, from));
-  ASSIGN_OR_RETURN(std::vector<Key> keys, read_keys(in, from));
+  ASSIGN_OR_RETURN(const Transform placement, read_placement(in, from));
+  ASSIGN_OR_RETURN(const std::vector<Key> keys, read_keys(in, from));
   ASSIGN_OR_RETURN(const std::shared_ptr<const Model> model, find_file(in, from, draft));
   if (!from.interior().empty()) {
-    if (!keys.empty()) {
-      return in.error("interior", "needs a model that rests: leave key out");
-    }
-    RETURN_IF_ERROR(read_interior(in, from, *model, place_at.to_frame, draft));
+    ASSIGN_OR_RETURN(const Placements filled, read_interior(in, from, *model, draft));
+    RETURN_IF_ERROR(
+        place_model(in, filled, placement, keys, std::nullopt, draft.placed->filled));
   }
   if (from.boundary_only()) {
     return from.interior().empty()
                ? in.error("boundary_only", "needs an interior: nothing would be left of the model")
                : absl::OkStatus();
   }
-  Transform to_camera = place_at.to_frame;
-  if (!keys.empty()) {
-    draft.placed->frames.push_back({kNoFrame, {}, std::move(keys)});
-    to_camera = motion_at(draft.placed->frames.back(), draft.shutter.open);
-    place_at.frame = FrameId{static_cast<std::uint32_t>(draft.placed->frames.size() - 1)};
-  }
-  if (!place({{}, model->instances}, place_at, material, *draft.placed)) {
-    return in.error("scale", "is too large or too small for this model");
-  }
+  RETURN_IF_ERROR(place_model(in, {{}, model->instances}, placement, keys, material,
+                              draft.placed->seen));
+  const Transform to_camera =
+      keys.empty() ? placement : motion_at({kNoFrame, {}, keys}, draft.shutter.open);
   add_lights(from.file(), *model, to_camera, draft);
   for (const ModelCamera& camera : model->cameras) {
     draft.cameras.push_back({from.file(), camera.name, placed(camera.camera, to_camera)});

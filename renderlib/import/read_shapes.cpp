@@ -131,45 +131,70 @@ void add_moved(const Shapes& shape, const Vec3& by, Shapes& to) {
   }
 }
 
-/// A shape that moves becomes a group of its own, placed in a frame of its own.
-void add_moving(Shapes shape, const Vec3& velocity, SceneDraft& draft) {
-  Geometry& geometry = draft.out.scene.geometry;
-  Placements& to = *draft.placed;
-  const Shutter& shutter = draft.shutter;
+/// What moves evenly while the shutter, which does not close at once, is open.
+Frame sliding(const Vec3& velocity, const Shutter& shutter) {
   Frame frame;
   frame.keys.emplace_back(shutter.open, translation(velocity * shutter.open));
   frame.keys.emplace_back(shutter.close, translation(velocity * shutter.close));
-  to.frames.push_back(std::move(frame));
+  return frame;
+}
+
+/// A shape that moves becomes a group of its own, placed in a frame of its own.
+void add_moving(Shapes shape, const Vec3& velocity, SceneDraft& draft) {
+  Geometry& geometry = draft.out.scene.geometry;
+  Placements& to = draft.placed->seen;
   geometry.groups.push_back(std::move(shape));
   Instance instance;
   instance.group = GroupId{static_cast<std::uint32_t>(geometry.groups.size() - 1)};
   instance.material = kOwnMaterial;
-  instance.frame = FrameId{static_cast<std::uint32_t>(to.frames.size() - 1)};
+  instance.frame = add_frame(sliding(velocity, draft.shutter), to);
   to.instances.push_back(instance);
 }
 
-/// What is inside of a sphere or a box.
-absl::Status read_interior(const Field& in, const scene::Shape& from, SceneDraft& draft) {
+/// The medium inside of a sphere or a box.
+absl::StatusOr<Instance> read_boundary(const Field& in, const scene::Shape& from,
+                                       SceneDraft& draft) {
   if (from.kind_case() != scene::Shape::kSphere && from.kind_case() != scene::Shape::kBox) {
     return in.error("interior",
                     "needs a closed shape, and this one encloses nothing: use a box, a sphere or a "
                     "closed model");
   }
-  if (!from.velocity().empty()) {
-    return in.error("interior", "needs a shape that rests: leave velocity out");
-  }
-  RETURN_IF_ERROR(check_boundary_place(in, draft));
   ASSIGN_OR_RETURN(const MediumId medium, find_medium(in, "interior", from.interior(), draft));
   Shapes shape;
   RETURN_IF_ERROR(read_shape(in, from, MaterialId{}, shape));
   if (from.kind_case() == scene::Shape::kSphere) {
-    add_boundary(shape.spheres.front(), medium, draft);
-    return absl::OkStatus();
+    return boundary_of(shape.spheres.front(), medium, draft);
   }
   const Field box = in.child("box");
   ASSIGN_OR_RETURN(const Vec3 low, read_vec3(box, "min", from.box().min()));
   ASSIGN_OR_RETURN(const Vec3 high, read_vec3(box, "max", from.box().max()));
-  add_boundary(low, high, medium, draft);
+  return boundary_of(low, high, medium, draft);
+}
+
+/// One that rests in the world needs no placement.
+absl::Status read_filled_sphere(const Field& in, const scene::Shape& from, SceneDraft& draft) {
+  ASSIGN_OR_RETURN(const MediumId medium, find_medium(in, "interior", from.interior(), draft));
+  return read_shape(in, from, filled_with(medium), draft.out.scene.media.boundaries);
+}
+
+/// What is inside of a sphere or a box.
+absl::Status read_interior(const Field& in, const scene::Shape& from, SceneDraft& draft) {
+  const bool loose = draft.placed == &draft.world && from.velocity().empty();
+  if (loose && from.kind_case() == scene::Shape::kSphere) {
+    return read_filled_sphere(in, from, draft);
+  }
+  ASSIGN_OR_RETURN(Instance boundary, read_boundary(in, from, draft));
+  Placements& to = draft.placed->filled;
+  const Shutter& shutter = draft.shutter;
+  if (!from.velocity().empty()) {
+    ASSIGN_OR_RETURN(const Vec3 velocity, read_vec3(in, "velocity", from.velocity()));
+    if (shutter.open == shutter.close) {
+      boundary.to_world = translation(velocity * shutter.open) * boundary.to_world;
+    } else {
+      boundary.frame = add_frame(sliding(velocity, shutter), to);
+    }
+  }
+  to.instances.push_back(boundary);
   return absl::OkStatus();
 }
 

@@ -36,7 +36,7 @@ struct SceneDraft {
   TextureStore textures{out.scene.textures, out.info.warnings};
   std::map<std::string, MaterialId> materials;      ///< by the names in the scene file
   std::map<std::string, TextureId> named_textures;  ///< the same
-  std::map<std::string, Placements> groups;         ///< the same
+  std::map<std::string, Contents> groups;           ///< the same
   std::map<std::string, MediumId> media;            ///< the same
   /// By the meshes of the scene, those of the boundaries of media that are the same.
   std::map<MeshId, MeshId> boundary_meshes;
@@ -45,10 +45,10 @@ struct SceneDraft {
   std::vector<FoundCamera> cameras;
   Shutter shutter;
 
-  Placements world;
+  Contents world;
   /// Where what is read goes: the scene, or the group that is being read.
   Shapes* shapes = &out.scene.geometry;
-  Placements* placed = &world;
+  Contents* placed = &world;
 
   MaterialId add_material(const Material& material) {
     out.scene.materials.push_back(material);

@@ -39,7 +39,7 @@ class MediumWalk {
  private:
   struct Crossing {
     Hit hit;
-    PrimitiveId shape;  ///< primitive 0 for every triangle of a mesh
+    PrimitiveId shape;  ///< primitive 0 for all of what is placed
     MediumId medium{};
     bool inwards = false;
   };

@@ -176,7 +176,7 @@ absl::StatusOr<Geometry> decode_geometry(const package::Manifest& manifest, Deco
     Shapes& group = geometry.groups.emplace_back();
     RETURN_IF_ERROR(decoder.shapes(manifest.group(i), absl::StrCat("group[", i, "]."), group));
   }
-  RETURN_IF_ERROR(decode_placements(manifest, geometry));
+  RETURN_IF_ERROR(decode_placements(manifest.frame(), manifest.instance(), "", geometry));
   return geometry;
 }
 
@@ -191,6 +191,11 @@ absl::StatusOr<Media> media_with_boundaries(const package::Manifest& manifest, D
     ASSIGN_OR_RETURN(Mesh mesh,
                      decoder.mesh(from.mesh(i), absl::StrCat("boundaries.mesh[", i, "]")));
     media.boundaries.meshes.push_back(std::move(mesh));
+  }
+  for (int i = 0; i < from.group_size(); ++i) {
+    Shapes& group = media.boundaries.groups.emplace_back();
+    RETURN_IF_ERROR(
+        decoder.shapes(from.group(i), absl::StrCat("boundaries.group[", i, "]."), group));
   }
   return media;
 }

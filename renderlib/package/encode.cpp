@@ -191,6 +191,9 @@ void encode(const Media& media, Encoder& encoder, package::Manifest& manifest) {
   for (const Mesh& mesh : media.boundaries.meshes) {
     encoder.put_mesh(mesh, *manifest.mutable_boundaries()->add_mesh());
   }
+  for (const Shapes& group : media.boundaries.groups) {
+    encoder.put_shapes(group, *manifest.mutable_boundaries()->add_group());
+  }
 }
 
 void encode(const PackageInfo& info, package::Manifest& manifest) {
@@ -237,7 +240,7 @@ std::string encode_package(const SceneDescription& scene, const PackageInfo& inf
   for (const Shapes& group : scene.geometry.groups) {
     encoder.put_shapes(group, *manifest.add_group());
   }
-  encode_placements(scene.geometry, manifest);
+  encode_placements(scene.geometry, *manifest.mutable_frame(), *manifest.mutable_instance());
   encode(scene.media, encoder, manifest);
   return manifest.SerializeAsString();
 }

@@ -129,6 +129,10 @@ absl::Status for_each_blob(const package::Manifest& m, Visit visit) {
     RETURN_IF_ERROR(for_each_shape_blob(m.group(i), absl::StrCat("group[", i, "]."), visit));
   }
   RETURN_IF_ERROR(for_each_mesh_blob(m.mesh(), "mesh", visit));
+  for (int i = 0; i < m.boundaries().group_size(); ++i) {
+    RETURN_IF_ERROR(for_each_shape_blob(m.boundaries().group(i),
+                                        absl::StrCat("boundaries.group[", i, "]."), visit));
+  }
   if (m.boundaries().has_spheres()) {
     RETURN_IF_ERROR(for_each_sphere_blob(m.boundaries().spheres(), "boundaries.spheres", visit));
   }

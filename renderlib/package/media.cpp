@@ -3,7 +3,7 @@
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/package/decode_surface.h"
-#include "renderlib/package/manifest.h"
+#include "renderlib/package/placements.h"
 
 namespace bandsaw {
 namespace {
@@ -12,23 +12,6 @@ void encode(const Rgb& color, package::Rgb& to) {
   for (const float channel : {color.r, color.g, color.b}) {
     to.add_rgb(channel);
   }
-}
-
-absl::StatusOr<Instance> decode_boundary(const package::Instance& from, const std::string& field) {
-  if (from.transform_size() != 12) {
-    return manifest_error(field + ".transform",
-                          absl::StrCat("must have 12 numbers, has ", from.transform_size()));
-  }
-  if (from.has_group() || from.has_frame()) {
-    return manifest_error(field, "must be a mesh that rests");
-  }
-  Instance instance;
-  instance.mesh = MeshId{from.mesh()};
-  instance.material = MaterialId{from.material()};
-  for (int i = 0; i < 12; ++i) {
-    instance.to_world.m[i / 4][i % 4] = from.transform(i);
-  }
-  return instance;
 }
 
 }  // namespace
@@ -41,13 +24,9 @@ void encode_media(const Media& media, package::Manifest& manifest) {
     encode(medium.emission, *to.mutable_emission());
     to.set_g(medium.g);
   }
-  for (const Instance& instance : media.boundaries.instances) {
-    auto& to = *manifest.mutable_boundaries()->add_instance();
-    to.set_mesh(static_cast<std::uint32_t>(instance.mesh));
-    to.set_material(static_cast<std::uint32_t>(instance.material));
-    for (const auto& row : instance.to_world.m) {
-      to.mutable_transform()->Add(row.begin(), row.end());
-    }
+  if (media.has_boundaries()) {
+    encode_placements(media.boundaries, *manifest.mutable_boundaries()->mutable_frame(),
+                      *manifest.mutable_boundaries()->mutable_instance());
   }
   if (media.fog) {
     manifest.set_fog(static_cast<std::uint32_t>(*media.fog));
@@ -68,12 +47,8 @@ absl::StatusOr<Media> decode_media(const package::Manifest& manifest) {
     medium.g = from.g();
     media.media.push_back(medium);
   }
-  for (int i = 0; i < manifest.boundaries().instance_size(); ++i) {
-    ASSIGN_OR_RETURN(const Instance instance,
-                     decode_boundary(manifest.boundaries().instance(i),
-                                     absl::StrCat("boundaries.instance[", i, "]")));
-    media.boundaries.instances.push_back(instance);
-  }
+  RETURN_IF_ERROR(decode_placements(manifest.boundaries().frame(), manifest.boundaries().instance(),
+                                    "boundaries.", media.boundaries));
   if (manifest.has_fog()) {
     media.fog = MediumId{manifest.fog()};
   }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Media in a manifest. Spheres and meshes of their boundaries are blobs and come with the others.
+// Media in a manifest. Shapes of their boundaries are blobs and come with the others.
 
 #include "absl/status/statusor.h"
 #include "proto/package.pb.h"
@@ -8,7 +8,7 @@
 
 namespace bandsaw {
 
-/// All but the spheres and meshes of the boundaries.
+/// All but the shapes of the boundaries.
 void encode_media(const Media& media, package::Manifest& manifest);
 
 /// The same back; form only. INVALID_ARGUMENT: a list of the wrong length.

@@ -106,9 +106,9 @@ absl::Status check_instance(const Instance& instance, const Geometry& geometry,
 
 }  // namespace
 
-void encode_placements(const Geometry& geometry, package::Manifest& manifest) {
+void encode_placements(const Geometry& geometry, Frames& frames, Instances& instances) {
   for (const Frame& frame : geometry.frames) {
-    package::Frame& to = *manifest.add_frame();
+    package::Frame& to = *frames.Add();
     if (frame.parent != kNoFrame) {
       to.set_parent(static_cast<std::uint32_t>(frame.parent));
     }
@@ -119,7 +119,7 @@ void encode_placements(const Geometry& geometry, package::Manifest& manifest) {
     }
   }
   for (const Instance& instance : geometry.instances) {
-    package::Instance& to = *manifest.add_instance();
+    package::Instance& to = *instances.Add();
     to.set_mesh(static_cast<std::uint32_t>(instance.mesh));
     to.set_material(static_cast<std::uint32_t>(instance.material));
     add(instance.to_world, *to.mutable_transform());
@@ -132,17 +132,18 @@ void encode_placements(const Geometry& geometry, package::Manifest& manifest) {
   }
 }
 
-absl::Status decode_placements(const package::Manifest& manifest, Geometry& geometry) {
-  for (int i = 0; i < manifest.frame_size(); ++i) {
+absl::Status decode_placements(const Frames& frames, const Instances& instances,
+                               const std::string& prefix, Geometry& geometry) {
+  for (int i = 0; i < frames.size(); ++i) {
     ASSIGN_OR_RETURN(Frame frame,
-                     decode_frame(manifest.frame(i), absl::StrCat("frame[", i, "]")));
+                     decode_frame(frames[i], absl::StrCat(prefix, "frame[", i, "]")));
     geometry.frames.push_back(std::move(frame));
   }
-  for (int i = 0; i < manifest.instance_size(); ++i) {
-    const package::Instance& from = manifest.instance(i);
+  for (int i = 0; i < instances.size(); ++i) {
+    const package::Instance& from = instances[i];
     ASSIGN_OR_RETURN(const Transform to_world,
                      decode_transform(from.transform(),
-                                      absl::StrCat("instance[", i, "].transform")));
+                                      absl::StrCat(prefix, "instance[", i, "].transform")));
     geometry.instances.push_back({MeshId{from.mesh()}, MaterialId{from.material()}, to_world,
                                   from.has_group() ? GroupId{from.group()} : kNoGroup,
                                   from.has_frame() ? FrameId{from.frame()} : kNoFrame});

@@ -18,9 +18,10 @@ namespace bandsaw {
 
 struct Media {
   std::vector<Medium> media;
-  /// Spheres and placements of closed meshes, at rest, nothing else. Their `material` is no
-  /// material: it is the medium inside, an index into `media`. What is seen of them lies in the
-  /// scene's own geometry as well, or nothing is: then the boundary is invisible.
+  /// Spheres, and placements of closed meshes and of groups of one sphere, nothing else. Their
+  /// `material` is no material: it is the medium inside, an index into `media`. What is seen of
+  /// them lies in the scene's own geometry as well, or nothing is: then the boundary is invisible.
+  /// Placements change where a medium is, not how dense: coefficients are per unit of the world.
   Geometry boundaries;
   std::optional<MediumId> fog;  ///< without end; MUST NOT be is_endless_glow
 
@@ -39,6 +40,9 @@ constexpr MaterialId filled_with(MediumId medium) {
 
 /// The unit cube [0, 1]^3, normals to the outside: a box is a placement of it.
 Mesh unit_cube();
+
+/// The sphere of radius 1 around 0, as a group: any sphere is a placement of it.
+Shapes unit_ball();
 
 /// INVALID_ARGUMENT: "media[1].g: must be in [-0.999, 0.999], is 2",
 /// "boundaries.meshes[0]: must be closed, has 4 open edges".

@@ -47,7 +47,7 @@ Needs needs_of(const SceneDescription& scene, const Lights& lights) {
   needs.alpha = any(has_alpha);
   needs.nested_glass = any(is_nested);
   needs.uv_directions = any(has_normal_map);
-  needs.motion = moves(scene.geometry);
+  needs.motion = moves(scene.geometry) || moves(scene.media.boundaries);
   needs.instances = !scene.geometry.instances.empty();
   needs.media = scene.media.fog || scene.media.has_boundaries();
   return needs;
@@ -65,12 +65,14 @@ absl::StatusOr<std::shared_ptr<const Scene>> Scene::build(SceneDescription descr
   const Shutter& shutter = shutter_of(own.camera);
   const Interval interval = {shutter.open, shutter.close};
   rest(interval, own.geometry);
+  rest(interval, own.media.boundaries);
   scene->accel_ = std::make_unique<Accel>(Accel::build(own.geometry, pool, interval));
   scene->lights_ = Lights(own.geometry, own.materials, own.textures, own.lights, own.background,
                           interval);
   scene->needs_ = needs_of(own, scene->lights_);
   if (scene->needs_.media) {
-    scene->boundary_accel_ = std::make_unique<Accel>(Accel::build(own.media.boundaries, pool));
+    scene->boundary_accel_ =
+        std::make_unique<Accel>(Accel::build(own.media.boundaries, pool, interval));
   }
   return std::shared_ptr<const Scene>(std::move(scene));
 }

@@ -39,7 +39,7 @@ absl::Status validate(const SceneDescription& scene) {
   RETURN_IF_ERROR(check_color("background.top", scene.background.top, infinite));
   RETURN_IF_ERROR(check_surfaces(scene));
   RETURN_IF_ERROR(check_lights(scene.background, scene.textures, scene.lights));
-  RETURN_IF_ERROR(check_geometry(scene));
+  RETURN_IF_ERROR(check_geometry("", scene.geometry, scene.materials.size()));
   return validate(scene.media);
 }
 

@@ -109,15 +109,14 @@ absl::Status check_placement(const std::string& field, const Transform& placemen
 }
 
 absl::Status check_instance(const std::string& field, const Instance& instance,
-                            const SceneDescription& scene) {
-  const Geometry& geometry = scene.geometry;
+                            const Geometry& geometry, std::size_t materials) {
   if (instance.group == kNoGroup) {
     RETURN_IF_ERROR(check_index(field + ".mesh", instance.mesh, geometry.meshes.size()));
   } else {
     RETURN_IF_ERROR(check_index(field + ".group", instance.group, geometry.groups.size()));
   }
   if (instance.group == kNoGroup || instance.material != kOwnMaterial) {
-    RETURN_IF_ERROR(check_index(field + ".material", instance.material, scene.materials.size()));
+    RETURN_IF_ERROR(check_index(field + ".material", instance.material, materials));
   }
   if (instance.frame != kNoFrame) {
     RETURN_IF_ERROR(check_index(field + ".frame", instance.frame, geometry.frames.size()));
@@ -150,21 +149,22 @@ absl::Status check_frame(const std::string& field, const Frame& frame, std::size
 
 }  // namespace
 
-absl::Status check_geometry(const SceneDescription& scene) {
-  const Geometry& geometry = scene.geometry;
-  RETURN_IF_ERROR(check_shapes("", geometry, scene.materials.size()));
+absl::Status check_geometry(const std::string& prefix, const Geometry& geometry,
+                            std::size_t materials) {
+  RETURN_IF_ERROR(check_shapes(prefix, geometry, materials));
   for (std::size_t i = 0; i < geometry.groups.size(); ++i) {
     RETURN_IF_ERROR(
-        check_shapes(item("groups", i) + ".", geometry.groups[i], scene.materials.size()));
+        check_shapes(item(prefix + "groups", i) + ".", geometry.groups[i], materials));
   }
   for (std::size_t i = 0; i < geometry.meshes.size(); ++i) {
-    RETURN_IF_ERROR(check_mesh(item("meshes", i), geometry.meshes[i]));
+    RETURN_IF_ERROR(check_mesh(item(prefix + "meshes", i), geometry.meshes[i]));
   }
   for (std::size_t i = 0; i < geometry.frames.size(); ++i) {
-    RETURN_IF_ERROR(check_frame(item("frames", i), geometry.frames[i], i));
+    RETURN_IF_ERROR(check_frame(item(prefix + "frames", i), geometry.frames[i], i));
   }
   for (std::size_t i = 0; i < geometry.instances.size(); ++i) {
-    RETURN_IF_ERROR(check_instance(item("instances", i), geometry.instances[i], scene));
+    RETURN_IF_ERROR(check_instance(item(prefix + "instances", i), geometry.instances[i], geometry,
+                                   materials));
   }
   return absl::OkStatus();
 }

@@ -331,7 +331,7 @@ const std::vector<Wrong> kWrong = {
     {"glow", [](auto& m) { m.mutable_medium(1)->mutable_emission()->set_rgb(0, 1); },
      "fog: must absorb or scatter where it emits"},
     {"filling", [](auto& m) { m.mutable_boundaries()->mutable_instance(0)->set_material(2); },
-     "boundaries.instances[0].medium: must be below 2, is 2"},
+     "boundaries.instances[0].material: must be below 2, is 2"},
     {"boundary_mesh", [](auto& m) { m.mutable_boundaries()->mutable_instance(0)->set_mesh(1); },
      "boundaries.instances[0].mesh: must be below 1, is 1"},
     {"open_boundary",
@@ -343,6 +343,22 @@ const std::vector<Wrong> kWrong = {
     {"boundary_blob",
      [](auto& m) { m.mutable_boundaries()->mutable_spheres()->mutable_radii()->set_size(7); },
      "boundaries.spheres.radii.size: must be a multiple of 8"},
+    {"boundary_group", [](auto& m) { m.mutable_boundaries()->mutable_instance(1)->set_group(1); },
+     "boundaries.instances[1].group: must be below 1, is 1"},
+    {"boundary_frame", [](auto& m) { m.mutable_boundaries()->mutable_instance(1)->set_frame(1); },
+     "boundaries.instances[1].frame: must be below 1, is 1"},
+    {"boundary_keys", [](auto& m) { m.mutable_boundaries()->mutable_frame(0)->set_at(3, NAN); },
+     "boundaries.frames[0].keys[0].at: entries must be within"},
+    {"boundary_transform",
+     [](auto& m) { m.mutable_boundaries()->mutable_instance(1)->add_transform(1); },
+     "boundaries.instance[1].transform: must have 12 numbers, has 13"},
+    {"empty_boundary_group", [](auto& m) { m.mutable_boundaries()->mutable_group(0)->Clear(); },
+     "boundaries.groups[0]: must be one sphere"},
+    {"boundary_group_blob",
+     [](auto& m) {
+       m.mutable_boundaries()->mutable_group(0)->mutable_spheres()->mutable_radii()->set_size(7);
+     },
+     "boundaries.group[0].spheres.radii.size: must be a multiple of 8"},
 };
 
 INSTANTIATE_TEST_SUITE_P(All, SpoiltManifest, ::testing::ValuesIn(kWrong),

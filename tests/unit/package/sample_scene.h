@@ -122,8 +122,11 @@ inline SceneDescription sample_scene() {
       {.absorption = {0.1f, 0, 3}, .scattering = {1, 2, 0}, .emission = {0, 0, 0.5f}, .g = -0.25},
       {}};
   scene.media.boundaries.spheres = {{{1, 1, 1.0 / 7}, 0.5, MaterialId{1}}};
+  scene.media.boundaries.groups = {unit_ball()};
+  scene.media.boundaries.frames = {{kNoFrame, {}, {Key(1.0 / 3, rotation({1, 0, 0}, 7))}}};
   scene.media.boundaries.meshes = {unit_cube()};
-  scene.media.boundaries.instances = {{MeshId{0}, MaterialId{0}, translation({1.0 / 3, 0, 0})}};
+  scene.media.boundaries.instances = {{MeshId{0}, MaterialId{0}, translation({1.0 / 3, 0, 0})},
+                                          {{}, MaterialId{1}, {}, GroupId{0}, FrameId{0}}};
   scene.media.fog = MediumId{1};
   return scene;
 }

@@ -1,0 +1,97 @@
+// Media whose boundaries are placed and move, over the time that the shutter is open.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/statistical/estimate.h"
+#include "tests/support/media.h"
+
+namespace bandsaw {
+namespace {
+
+using test::Moments;
+using test::SceneMaker;
+
+/// A ball of radius 1 under a white sky: in a frame that goes from one placement to the other
+/// while the shutter is open, from 0 to 1, and mirrored in it.
+SceneMaker moving_ball(const Medium& medium, const Transform& from, const Transform& to) {
+  SceneMaker maker;
+  maker.background(gray(1), gray(1));
+  std::get<PerspectiveCamera>(maker.scene.camera).shutter = {0, 1};
+  const MediumId inside = test::add(maker, medium);
+  Geometry& boundaries = maker.scene.media.boundaries;
+  boundaries.groups.push_back(unit_ball());
+  boundaries.frames = {{kNoFrame, {}, {Key(0, from), Key(1, to)}}};
+  Instance ball;
+  ball.group = GroupId{0};
+  ball.material = filled_with(inside);
+  ball.frame = FrameId{0};
+  ball.to_world = scaling({1, -1, 1});
+  boundaries.instances.push_back(ball);
+  return maker;
+}
+
+/// What the ray sees while the shutter is open.
+Moments seen_along(const Scene& scene, Ray ray, std::uint64_t samples) {
+  Moments means;
+  for (std::uint64_t seed = 0; seed < 32; ++seed) {
+    const PixelSampler sampler(seed, 11, 7);
+    double sum = 0;
+    std::uint64_t rays = 0;
+    for (std::uint64_t sample = 0; sample < samples; ++sample) {
+      ray.time = sampler.group(sample, kGroupTime)[0];
+      sum += path_radiance(scene, ray, sampler, sample, {.max_depth = 1000}, rays).g;
+    }
+    means.add(sum / static_cast<double>(samples));
+  }
+  return means;
+}
+
+void expect_mean(const Moments& seen, double expected) {
+  EXPECT_NEAR(seen.mean(), expected, 4 * seen.standard_error() + 2e-6 * expected);
+  EXPECT_LE(seen.standard_error(), 1e-3 * expected);
+}
+
+// A ball that grows from radius 0.5 to 1.5: the mean of exp(-2 s r) over r.
+TEST(MovingMedia, V6GrowingBallAbsorbsByTheMeanOverTheShutter) {
+  const double s = 0.8;
+  const Medium smoke = test::medium(0.8f, 0);
+  const auto scene =
+      moving_ball(smoke, scaling({0.5, 0.5, 0.5}), scaling({1.5, 1.5, 1.5})).build();
+  expect_mean(seen_along(*scene, {.origin = {-9, 0, 0}, .direction = {1, 0, 0}}, 1024),
+              (std::exp(-s) - std::exp(-3 * s)) / (2 * s));
+}
+
+// A ball that flies by: with y from -2 to 2, the mean of exp(-2 s sqrt(1 - y^2)) over those that
+// meet the ray and 1 over the others; the first by Simpson's rule in the angle.
+TEST(MovingMedia, V6BallThatFliesByAbsorbsByTheMeanOverTheShutter) {
+  const double s = 0.8;
+  const auto scene =
+      moving_ball(test::medium(0.8f, 0), translation({0, -2, 0}), translation({0, 2, 0})).build();
+  constexpr int kSteps = 1000;
+  double sum = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const auto at = [&](double angle) {
+      return std::exp(-2 * s * std::sin(angle)) * std::sin(angle);
+    };
+    const double h = kPi / kSteps;
+    sum += h / 6 * (at(i * h) + 4 * at((i + 0.5) * h) + at((i + 1) * h));
+  }
+  expect_mean(seen_along(*scene, {.origin = {-9, 0, 0}, .direction = {1, 0, 0}}, 4096),
+              (sum + 2) / 4);
+}
+
+TEST(MovingMedia, O8WithoutLossAreInvisibleInAWhiteSky) {
+  const auto scene =
+      moving_ball(test::medium(0, 2, 0.5), scaling({2, 1, -1}),
+                  translation({1, 0.5, 0}) * rotation({1, 1, 0}, 70) * scaling({1, 3, -2}))
+          .build();
+  const Moments seen =
+      seen_along(*scene, {.origin = {-9, 0.1, 0.2}, .direction = {1, 0, 0}}, 256);
+  EXPECT_NEAR(seen.mean(), 1, 1e-5);
+  EXPECT_LE(seen.standard_error(), 1e-5);
+}
+
+}  // namespace
+}  // namespace bandsaw
