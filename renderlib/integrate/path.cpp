@@ -36,7 +36,8 @@ float scattering_weight(const Scene& scene, const Departure& departure, const Su
 Rgb background_light(const Scene& scene, const Departure& departure, const Vec3& direction,
                      Technique technique) {
   const Rgb seen = radiance(scene.background(), scene.textures(), direction);
-  if (departure.delta || !scene.needs().environment || technique == Technique::kScatteringOnly) {
+  if (departure.delta || !scene.background().environment ||
+      technique == Technique::kScatteringOnly) {
     return seen;
   }
   const double asked = scene.lights().environment_pdf(departure.from, direction);
@@ -93,8 +94,8 @@ Rgb followed_environment(const Scene& scene, const SurfacePoint& point, const De
 }
 
 /// A glass that takes part in nesting.
-const Dielectric* nested_glass(const Scene& scene, const Material& material) {
-  const auto* glass = scene.needs().nested_glass ? std::get_if<Dielectric>(&material) : nullptr;
+const Dielectric* nested_glass(const Material& material) {
+  const auto* glass = std::get_if<Dielectric>(&material);
   return glass != nullptr && glass->priority > 0 ? glass : nullptr;
 }
 
@@ -115,7 +116,7 @@ bool scatter_at(const PathContext& context, const SurfacePoint& point, std::uint
   if (std::holds_alternative<Emissive>(material) || depth == options.max_depth) {
     return false;
   }
-  const auto* nested = nested_glass(scene, material);
+  const auto* nested = nested_glass(material);
   const double outside_index = nested != nullptr ? interiors.index_without(point.material) : 1;
   const Bsdf bsdf = bsdf_at(material, scene.textures(), point, wo, outside_index);
   const Receiver receiver = receiver_of(point, wo);
@@ -141,7 +142,7 @@ bool scatter_at(const PathContext& context, const SurfacePoint& point, std::uint
   path.departure = {receiver, next->pdf, next->delta || passes};
   path.throughput *= next->weight;
   if (is_last && !next->delta) {
-    if (scene.needs().environment) {
+    if (scene.background().environment) {
       path.radiance += path.throughput *
                        followed_environment(scene, point, path.departure, next->wi, context.rays);
     }

@@ -7,11 +7,9 @@ namespace {
 
 SurfacePoint point_at(const Scene& scene, const Ray& ray, const Hit& hit) {
   SurfacePoint point = surface_at(scene.geometry(), ray, hit);
-  if (scene.needs().uv_directions) {
-    const auto* principled = std::get_if<Principled>(&scene.material(point.material));
-    if (principled != nullptr && (principled->normal || principled->coat_normal)) {
-      add_uv_directions(scene.geometry(), point);
-    }
+  const auto* principled = std::get_if<Principled>(&scene.material(point.material));
+  if (principled != nullptr && (principled->normal || principled->coat_normal)) {
+    add_uv_directions(scene.geometry(), point);
   }
   return point;
 }
@@ -40,7 +38,7 @@ std::optional<SurfacePoint> first_surface(const Scene& scene, const Ray& ray,
         scene.needs().alpha ? opacity(scene.material(point.material), scene.textures(), point) : 1;
     const bool is_there =
         there >= 1 || (there > 0 && sampler.group(sample, group_alpha(bounce, passed))[0] < there);
-    if (is_there && !(scene.needs().nested_glass && is_hidden(scene, ray, point, interiors))) {
+    if (is_there && !is_hidden(scene, ray, point, interiors)) {
       return point;
     }
     ++rays;

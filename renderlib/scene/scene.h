@@ -21,8 +21,9 @@ class Scene {
   /// Checks the description (indices, ranges, finiteness), drops what cannot be hit or cannot shine
   /// (degenerate triangles, triangles with non-finite vertices) and counts it, and builds the trees
   /// and lights. INVALID_ARGUMENT: "spheres[3].radius: must be > 0, is -1".
+  /// `forced`: needs that it is to have beside its own; costs time and changes no pixel. For tests.
   static absl::StatusOr<std::shared_ptr<const Scene>> build(SceneDescription description,
-                                                            Pool& pool);
+                                                            Pool& pool, const Needs& forced = {});
 
   const Geometry& geometry() const { return description_.geometry; }
   const Accel& accel() const { return *accel_; }
