@@ -168,6 +168,19 @@ absl::StatusOr<Command> checked_serve(const RawOptions& raw) {
   return options;
 }
 
+absl::StatusOr<std::vector<LayerKind>> checked_layers(const RawOptions& raw) {
+  if (!raw.layers) {
+    return std::vector<LayerKind>{};
+  }
+  const auto is_exr = [](const std::string& name) {
+    return absl::EndsWithIgnoreCase(name, ".exr");
+  };
+  if (raw.rows || std::none_of(raw.outputs.begin(), raw.outputs.end(), is_exr)) {
+    return wrong("--layers: are of whole images in EXR files; add -o FILE.exr");
+  }
+  return parse_layers(*raw.layers);
+}
+
 absl::StatusOr<Command> checked_submit(const RawOptions& raw) {
   SubmitOptions options;
   options.scene = raw.scene;
@@ -182,6 +195,7 @@ absl::StatusOr<Command> checked_submit(const RawOptions& raw) {
   if (raw.priority) {
     ASSIGN_OR_RETURN(options.priority, checked_priority_value("--priority", *raw.priority));
   }
+  ASSIGN_OR_RETURN(options.layers, checked_layers(raw));
   if (options.detach && !options.outputs.empty()) {
     return wrong(
         "--detach does not wait for the image: leave -o away and fetch it with bandsaw watch JOB "
@@ -231,15 +245,7 @@ absl::StatusOr<Command> checked_render(const RawOptions& raw) {
       return wrong("--rows needs --samples: parts of one image must have equally many samples");
     }
   }
-  if (raw.layers) {
-    ASSIGN_OR_RETURN(options.layers, parse_layers(*raw.layers));
-    const auto is_exr = [](const std::string& name) {
-      return absl::EndsWithIgnoreCase(name, ".exr");
-    };
-    if (raw.rows || std::none_of(options.outputs.begin(), options.outputs.end(), is_exr)) {
-      return wrong("--layers: are of whole images in EXR files; add -o FILE.exr");
-    }
-  }
+  ASSIGN_OR_RETURN(options.layers, checked_layers(raw));
   return options;
 }
 

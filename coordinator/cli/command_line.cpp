@@ -74,11 +74,18 @@ void add_serve(CLI::App& app, RawOptions& raw) {
                "No encryption: anybody on the network can read and change what passes");
 }
 
+void add_layers(CLI::App& app, RawOptions& raw) {
+  app.add_option("--layers", raw.layers,
+                 "What EXR files hold besides, as in albedo,normal,depth,samples")
+      ->type_name("L,L,…");
+}
+
 void add_submit(CLI::App& app, RawOptions& raw) {
   add_image(app, raw);
   add_integrator(app, raw);
   add_output(app, raw, kPictures, " [default: the scene's name as .png]");
   add_display(app, raw, "the scene's");
+  add_layers(app, raw);
   app.add_flag("--detach", raw.detach, "Do not watch; say the job's number and leave");
   app.add_option("--priority", raw.priority,
                  "The highest is rendered first, -1000 to 1000 [default: 0]")
@@ -119,9 +126,7 @@ void add_render(CLI::App& app, RawOptions& raw) {
   add_output(app, raw, ".png, .ppm, .pfm, .hdr, .exr, or .band with --rows",
              " [default: the scene's name as .png]");
   add_display(app, raw, "the scene's");
-  app.add_option("--layers", raw.layers,
-                 "What EXR files hold besides, as in albedo,normal,depth,samples")
-      ->type_name("L,L,…");
+  add_layers(app, raw);
   app.add_option("--threads", raw.threads, "Threads [default: one for each CPU]")->type_name("N");
   app.add_option("--rows", raw.rows,
                  "Only rows y0 to y1 - 1, from the top; parts are joined by stitch")

@@ -6,7 +6,6 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "renderlib/base/status_macros.h"
-#include "renderlib/render/render_image.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -48,9 +47,8 @@ absl::StatusOr<std::vector<LayerKind>> parse_layers(const std::string& list) {
   return kinds;
 }
 
-absl::StatusOr<Layers> render_layers(const std::vector<LayerKind>& kinds, const Scene& scene,
-                                     RenderSettings settings, std::uint64_t samples, Pool& pool,
-                                     const std::atomic<bool>& stop) {
+absl::StatusOr<Layers> make_layers(const std::vector<LayerKind>& kinds, RenderSettings settings,
+                                   std::uint64_t samples, const LayerRenderer& render) {
   Layers layers;
   for (const LayerKind wanted : kinds) {
     const Kind& kind = kKinds[static_cast<std::size_t>(wanted)];
@@ -59,10 +57,8 @@ absl::StatusOr<Layers> render_layers(const std::vector<LayerKind>& kinds, const 
       continue;
     }
     settings.integrator = kind.integrator;
-    ASSIGN_OR_RETURN(
-        const RenderedImage rendered,
-        render_image(scene, settings, std::min(samples, kMostLayerSamples), pool, stop, {}, ""));
-    layers.push_back({kind.name, rendered.film.snapshot().image, kind.is_number});
+    ASSIGN_OR_RETURN(Image image, render(settings, std::min(samples, kMostLayerSamples)));
+    layers.push_back({kind.name, std::move(image), kind.is_number});
   }
   return layers;
 }

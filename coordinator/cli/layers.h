@@ -2,17 +2,15 @@
 
 // Layers of an EXR file: pictures of the same scene by integrators that follow no light.
 
-#include <atomic>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "coordinator/cli/options.h"
-#include "renderlib/base/pool.h"
 #include "renderlib/image/layers.h"
 #include "renderlib/render/settings.h"
-#include "renderlib/scene/scene.h"
 
 namespace bandsaw::coordinator {
 
@@ -22,11 +20,14 @@ inline constexpr std::uint64_t kMostLayerSamples = 64;
 /// "albedo,normal,depth,samples": each at most once. INVALID_ARGUMENT.
 absl::StatusOr<std::vector<LayerKind>> parse_layers(const std::string& list);
 
-/// Renders them with the image's settings and min(`samples`, kMostLayerSamples) samples: to the bit
-/// what `--integrator albedo`, `normals` and `depth` give for that number. `samples` is what the
-/// image has; of kSamples each pixel's number. CANCELLED; RESOURCE_EXHAUSTED: no memory.
-absl::StatusOr<Layers> render_layers(const std::vector<LayerKind>& kinds, const Scene& scene,
-                                     RenderSettings settings, std::uint64_t samples, Pool& pool,
-                                     const std::atomic<bool>& stop);
+/// Renders the scene by these settings with so many samples, here or on a farm.
+using LayerRenderer =
+    std::function<absl::StatusOr<Image>(const RenderSettings& settings, std::uint64_t samples)>;
+
+/// Has them rendered with the image's settings and min(`samples`, kMostLayerSamples) samples: to
+/// the bit what `--integrator albedo`, `normals` and `depth` give for that number. `samples` is
+/// what the image has; of kSamples each pixel's number. Errors are those of `render`.
+absl::StatusOr<Layers> make_layers(const std::vector<LayerKind>& kinds, RenderSettings settings,
+                                   std::uint64_t samples, const LayerRenderer& render);
 
 }  // namespace bandsaw::coordinator

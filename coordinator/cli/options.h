@@ -58,6 +58,9 @@ struct ServeOptions {
   double keep_gb = 100;   ///< results and scenes in all
 };
 
+/// What an EXR file holds beside the image.
+enum class LayerKind { kAlbedo, kNormal, kDepth, kSamples };
+
 struct SubmitOptions {
   std::string scene;
   std::vector<std::string> outputs;  ///< empty: the scene's name as PNG
@@ -65,8 +68,9 @@ struct SubmitOptions {
   FarmOption farm;
   DisplayOptions display;
   Verbosity verbosity;
-  bool detach = false;        ///< do not watch
-  std::int32_t priority = 0;  ///< [-kMostPriority, kMostPriority]
+  bool detach = false;            ///< do not watch
+  std::int32_t priority = 0;      ///< [-kMostPriority, kMostPriority]
+  std::vector<LayerKind> layers;  ///< of EXR files
 };
 
 struct WatchOptions {
@@ -136,9 +140,6 @@ struct WhyOptions {
   FarmOption farm;
   Verbosity verbosity;
 };
-
-/// What an EXR file holds beside the image.
-enum class LayerKind { kAlbedo, kNormal, kDepth, kSamples };
 
 struct RenderOptions {
   std::string scene;

@@ -16,6 +16,7 @@
 #include "coordinator/cli/steady_time.h"
 #include "coordinator/cli/ticker.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/render/render_image.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -118,8 +119,14 @@ class LocalRun {
     } else {
       ASSIGN_OR_RETURN(image_, render_whole(job, spec_.stop));
       const std::uint64_t samples = progress_at(steady_seconds()).job.samples_per_pixel;
-      ASSIGN_OR_RETURN(
-          layers_, render_layers(options_.layers, *scene, spec_.settings, samples, pool_, stop_));
+      const auto render_layer = [&](const RenderSettings& settings,
+                                    std::uint64_t count) -> absl::StatusOr<Image> {
+        ASSIGN_OR_RETURN(const RenderedImage layer,
+                         render_image(*scene, settings, count, pool_, stop_, {}, ""));
+        return layer.film.snapshot().image;
+      };
+      ASSIGN_OR_RETURN(layers_,
+                       make_layers(options_.layers, spec_.settings, samples, render_layer));
     }
     return absl::OkStatus();
   }

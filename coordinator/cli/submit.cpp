@@ -12,6 +12,7 @@
 #include "coordinator/cli/image_settings.h"
 #include "coordinator/cli/import_scene_file.h"
 #include "coordinator/cli/json.h"
+#include "coordinator/cli/layers.h"
 #include "coordinator/cli/output.h"
 #include "coordinator/cli/upload.h"
 #include "coordinator/cli/watch_job.h"
@@ -44,10 +45,7 @@ farm::SubmitRequest request_for(const SubmitOptions& options, const ImportedPack
 // A blob may be dropped by the farm between its upload and the job that needs it: then all is sent
 // once more.
 absl::StatusOr<JobId> send(FarmClient& client, ImportedPackage& package,
-                           const farm::SubmitRequest& request, Verbosity verbosity,
-                           Process& process) {
-  const Interrupts::Listener listener(process.interrupts, [&] { client.stop(); });
-  ProgressDisplay display(process.console, verbosity);
+                           const farm::SubmitRequest& request, ProgressDisplay& display) {
   RETURN_IF_ERROR(upload(client, package, display));
   auto job = client.submit(request);
   if (absl::IsFailedPrecondition(job.status())) {
@@ -55,6 +53,28 @@ absl::StatusOr<JobId> send(FarmClient& client, ImportedPackage& package,
     job = client.submit(request);
   }
   return job;
+}
+
+absl::StatusOr<JobId> send_image(FarmClient& client, ImportedPackage& package,
+                                 const farm::SubmitRequest& request, Verbosity verbosity,
+                                 Process& process) {
+  const Interrupts::Listener listener(process.interrupts, [&] { client.stop(); });
+  ProgressDisplay display(process.console, verbosity);
+  return send(client, package, request, display);
+}
+
+/// Layers are jobs of their own: the same package, another integrator.
+absl::StatusOr<Image> render_on_farm(FarmClient& client, ImportedPackage& package,
+                                     farm::SubmitRequest request, ProgressDisplay& display) {
+  request.set_request_id(new_request_id());
+  ASSIGN_OR_RETURN(const JobId job, send(client, package, request, display));
+  ASSIGN_OR_RETURN(const Progress last, follow_job(client, job, display));
+  if (last.job.state != JobState::kDone) {
+    return absl::AbortedError(absl::StrCat("a layer's job ", job, " ", state_name(last.job.state),
+                                           last.job.reason.empty() ? "" : ": ", last.job.reason));
+  }
+  ASSIGN_OR_RETURN(FarmImage result, client.result(job));
+  return std::move(result.image);
 }
 
 void say_detached(JobId job, Verbosity verbosity, const Console& console) {
@@ -91,8 +111,8 @@ ExitCode run(const SubmitOptions& options, Process& process) {
   if (!settings.ok()) {
     return console.fail(ExitCode::kWrong, std::string(settings.status().message()));
   }
-  const auto job = send(**client, *package, request_for(options, *package, *settings),
-                        options.verbosity, process);
+  const farm::SubmitRequest request = request_for(options, *package, *settings);
+  const auto job = send_image(**client, *package, request, options.verbosity, process);
   if (!job.ok()) {
     return console.fail(exit_code_of(job.status()), std::string(job.status().message()));
   }
@@ -100,7 +120,16 @@ ExitCode run(const SubmitOptions& options, Process& process) {
     say_detached(*job, options.verbosity, console);
     return ExitCode::kDone;
   }
-  return watch_job(**client, *job, outputs, options.display, options.verbosity, process);
+  const auto layers = [&](std::uint64_t samples, ProgressDisplay& display) {
+    const auto render = [&](const RenderSettings& layer, std::uint64_t count) {
+      farm::SubmitRequest of_layer = request;
+      *of_layer.mutable_settings() = to_proto(layer);
+      *of_layer.mutable_stop() = to_proto(StopRule(StopAtSamples{count}));
+      return render_on_farm(**client, *package, std::move(of_layer), display);
+    };
+    return make_layers(options.layers, *settings, samples, render);
+  };
+  return watch_job(**client, *job, outputs, options.display, options.verbosity, process, layers);
 }
 
 }  // namespace bandsaw::coordinator

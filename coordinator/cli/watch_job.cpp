@@ -3,7 +3,6 @@
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/farm_errors.h"
 #include "coordinator/cli/output.h"
-#include "coordinator/cli/progress_display.h"
 #include "coordinator/cli/steady_time.h"
 #include "coordinator/cli/text.h"
 #include "renderlib/base/status_macros.h"
@@ -92,11 +91,16 @@ ExitCode left_early(const absl::Status& status, JobId job, const std::vector<std
 
 }  // namespace
 
+absl::StatusOr<Progress> follow_job(FarmClient& client, JobId job, ProgressDisplay& display) {
+  return Watch(client, job, display).to_the_end();
+}
+
 ExitCode watch_job(FarmClient& client, JobId job, const std::vector<std::string>& outputs,
-                   const DisplayOptions& display_options, Verbosity verbosity, Process& process) {
+                   const DisplayOptions& display_options, Verbosity verbosity, Process& process,
+                   const BesideImage& beside) {
   const Interrupts::Listener listener(process.interrupts, [&] { client.stop(); });
   ProgressDisplay display(process.console, verbosity);
-  const auto last = Watch(client, job, display).to_the_end();
+  const auto last = follow_job(client, job, display);
   if (!last.ok()) {
     display.clear();
     return left_early(last.status(), job, outputs, process.console);
@@ -118,8 +122,14 @@ ExitCode watch_job(FarmClient& client, JobId job, const std::vector<std::string>
       display.clear();
       return left_early(result.status(), job, outputs, process.console);
     }
+    const absl::StatusOr<Layers> layers =
+        beside ? beside(last->job.samples_per_pixel, display) : Layers{};
+    if (!layers.ok()) {
+      display.clear();
+      return left_early(layers.status(), job, outputs, process.console);
+    }
     if (const auto status =
-            write_outputs(result->image, outputs, display_options.over(result->display));
+            write_outputs(result->image, outputs, display_options.over(result->display), *layers);
         !status.ok()) {
       display.clear();
       return process.console.fail(

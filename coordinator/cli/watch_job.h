@@ -2,18 +2,32 @@
 
 // Follows a job to its end and brings its image home.
 
+#include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
 #include "coordinator/cli/commands.h"
 #include "coordinator/cli/farm_client.h"
+#include "coordinator/cli/progress_display.h"
+#include "renderlib/image/layers.h"
 
 namespace bandsaw::coordinator {
 
+/// Shows the job's progress until it is final: its last state. A farm that goes away is waited for,
+/// a minute long: UNAVAILABLE. CANCELLED: `client` was stopped.
+absl::StatusOr<Progress> follow_job(FarmClient& client, JobId job, ProgressDisplay& display);
+
+/// What stands beside an image that has so many samples a pixel.
+using BesideImage =
+    std::function<absl::StatusOr<Layers>(std::uint64_t samples, ProgressDisplay& display)>;
+
 /// Shows the job's progress until it is final, then fetches its image and writes `outputs`, if
-/// there are any, 8-bit ones as `display_options` say, and the scene where they say nothing. A
-/// signal detaches: the job goes on. A farm that goes away is waited for, a minute long.
+/// there are any, 8-bit ones as `display_options` say, and the scene where they say nothing, with
+/// what `beside` makes of them, if given. A signal detaches: the job goes on. A farm that goes away
+/// is waited for, a minute long.
 ExitCode watch_job(FarmClient& client, JobId job, const std::vector<std::string>& outputs,
-                   const DisplayOptions& display_options, Verbosity verbosity, Process& process);
+                   const DisplayOptions& display_options, Verbosity verbosity, Process& process,
+                   const BesideImage& beside = {});
 
 }  // namespace bandsaw::coordinator

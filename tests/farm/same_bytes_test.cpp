@@ -93,6 +93,22 @@ TEST_F(SameBytes, P5_WhenPartsAreStitched) {
   holds("P5", "same bytes");
 }
 
+TEST_F(SameBytes, WithLayers) {
+  farm_.add_worker("one", 1);
+  farm_.add_worker("two", 1);
+  const std::string scene = std::string(BANDSAW_GALLERY) + "/textured.textproto";
+  const auto with_layers = [&](std::vector<std::string> arguments, const std::string& file) {
+    arguments.insert(arguments.end(),
+                     {scene, "-o", file, "--layers", "depth,albedo,normal,samples"});
+    return with_settings(std::move(arguments));
+  };
+  const std::string here = farm_.path("here.exr");
+  const std::string there = farm_.path("there.exr");
+  expect_success(run(with_layers({BANDSAW_BIN, "render"}, here)));
+  expect_success(run(farm_.command(with_layers({"submit"}, there))));
+  EXPECT_TRUE(file_bytes(there) == file_bytes(here));
+}
+
 TEST_F(SameBytes, WithAnyNumberOfThreads) {
   const std::string scene = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
   for (const char* threads : {"1", "2", "3", "8"}) {

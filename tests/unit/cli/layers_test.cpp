@@ -27,8 +27,12 @@ TEST(Layers, AreWhatTheirIntegratorsShow) {
   Pool pool(2);
   const std::atomic<bool> stop{false};
   RenderSettings settings{.width = 8, .height = 6};
-  const auto layers = render_layers({LayerKind::kSamples, LayerKind::kAlbedo, LayerKind::kDepth},
-                                    *scene, settings, 16, pool, stop);
+  const auto render = [&](const RenderSettings& wanted,
+                          std::uint64_t samples) -> absl::StatusOr<Image> {
+    return render_image(*scene, wanted, samples, pool, stop, {}, "")->film.snapshot().image;
+  };
+  const auto layers = make_layers({LayerKind::kSamples, LayerKind::kAlbedo, LayerKind::kDepth},
+                                  settings, 16, render);
   ASSERT_TRUE(layers.ok()) << layers.status();
   EXPECT_EQ((*layers)[0].image.pixels, std::vector<Rgb>(48, gray(16)));
   EXPECT_TRUE((*layers)[0].is_number);
