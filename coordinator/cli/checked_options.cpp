@@ -83,7 +83,7 @@ absl::Status read_positive(const char* name, const std::optional<std::string>& t
 
 absl::StatusOr<ImageOptions> checked_image(const RawOptions& raw) {
   ImageOptions image;
-  image.environment = raw.environment;
+  image.choices = {raw.environment, raw.camera};
   ASSIGN_OR_RETURN(image.stop, checked_stop(raw));
   RETURN_IF_ERROR(
       read("--seed", raw.seed, 0, std::numeric_limits<std::uint64_t>::max(), image.seed));

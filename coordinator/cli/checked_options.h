@@ -14,7 +14,7 @@ namespace bandsaw::coordinator {
 
 /// The union of all commands' options, unread.
 struct RawOptions {
-  std::string scene, environment, image, reference, data, farm;
+  std::string scene, environment, camera, image, reference, data, farm;
   std::optional<std::string> job, listen, priority, worker, action, role, keep_days, keep_size;
   std::vector<std::string> outputs, parts;
   std::optional<std::string> samples, error, time, seed, width, height, depth, threads, rows;

@@ -30,6 +30,10 @@ void add_image(CLI::App& app, RawOptions& raw) {
                  "Equirectangular image (.hdr, .exr …) that lights the scene from all around "
                  "[default: the scene's]")
       ->type_name("FILE");
+  app.add_option("--camera", raw.camera,
+                 "One of the cameras that the scene's models bring, see bandsaw info "
+                 "[default: the scene's, or a model's first]")
+      ->type_name("NAME");
   app.add_option("--samples", raw.samples, "Stop at N samples a pixel [default: 64]")
       ->type_name("N");
   app.add_option("--error", raw.error, "Stop at this estimated relative RMSE, as in 1%")

@@ -113,7 +113,7 @@ absl::Status judge(const ChildOutcome& outcome, const std::string& file,
 absl::StatusOr<std::unique_ptr<ScratchFolder>> run_importer(const char* what,
                                                             const std::string& file,
                                                             const ImportLimits& limits,
-                                                            const std::string& environment = {}) {
+                                                            const SceneChoices& choices = {}) {
   ASSIGN_OR_RETURN(const std::string program, import_program(limits));
   ASSIGN_OR_RETURN(std::unique_ptr<ScratchFolder> folder, make_scratch(limits.scratch));
   const auto cpu_seconds = static_cast<std::uint64_t>(std::ceil(std::max(limits.seconds, 1.0)));
@@ -123,8 +123,8 @@ absl::StatusOr<std::unique_ptr<ScratchFolder>> run_importer(const char* what,
                                         folder->path(),
                                         absl::StrCat(cpu_seconds),
                                         absl::StrCat(limits.memory_bytes)};
-  if (!environment.empty()) {
-    arguments.push_back(environment);
+  if (!choices.environment.empty() || !choices.camera.empty()) {
+    arguments.insert(arguments.end(), {choices.environment, choices.camera});
   }
   ASSIGN_OR_RETURN(const ChildOutcome outcome, run_child(arguments, limits.seconds, limits.stop));
   RETURN_IF_ERROR(judge(outcome, file, limits));
@@ -160,8 +160,8 @@ ImportedPackage& ImportedPackage::operator=(ImportedPackage&&) noexcept = defaul
 
 absl::StatusOr<ImportedPackage> import_in_process(const std::string& scene_path,
                                                   const ImportLimits& limits,
-                                                  const std::string& environment) {
-  ASSIGN_OR_RETURN(auto folder, run_importer("scene", scene_path, limits, environment));
+                                                  const SceneChoices& choices) {
+  ASSIGN_OR_RETURN(auto folder, run_importer("scene", scene_path, limits, choices));
   ASSIGN_OR_RETURN(std::string manifest,
                    read_bytes(folder->path() + "/manifest", wire::kManifestBytes));
   ASSIGN_OR_RETURN(PackageInfo info, package_info(manifest));

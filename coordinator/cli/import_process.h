@@ -9,6 +9,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "coordinator/cli/scene_choices.h"
 #include "renderlib/image/image.h"
 #include "renderlib/package/blob_folder.h"
 #include "renderlib/package/package.h"
@@ -56,11 +57,9 @@ absl::StatusOr<std::string> import_program(const ImportLimits& limits = {});
 /// line and column: INVALID_ARGUMENT, NOT_FOUND, PERMISSION_DENIED: what is wrong with the file, or
 /// with one that it refers to. DEADLINE_EXCEEDED, RESOURCE_EXHAUSTED: past a limit. DATA_LOSS: the
 /// importer crashed. CANCELLED: `stop`, or Ctrl-C. FAILED_PRECONDITION: the program is missing.
-/// `environment`, unless empty, is an image that becomes the scene's background; it may lie
-/// anywhere.
 absl::StatusOr<ImportedPackage> import_in_process(const std::string& scene_path,
                                                   const ImportLimits& limits = {},
-                                                  const std::string& environment = {});
+                                                  const SceneChoices& choices = {});
 
 /// A picture, linear: PNG, JPEG, TGA, BMP, PNM, HDR, PFM. The same limits and errors.
 absl::StatusOr<Image> read_image_in_process(const std::string& path,

@@ -8,13 +8,12 @@
 namespace bandsaw::coordinator {
 
 absl::StatusOr<ImportedPackage> import_scene_file(const std::string& scene, Verbosity verbosity,
-                                                  Process& process,
-                                                  const std::string& environment) {
+                                                  Process& process, const SceneChoices& choices) {
   std::atomic<bool> stop{false};
   const Interrupts::Listener listener(process.interrupts, [&] { stop = true; });
   ImportLimits limits;
   limits.stop = &stop;
-  auto package = import_in_process(scene, limits, environment);
+  auto package = import_in_process(scene, limits, choices);
   if (!package.ok()) {
     return package;
   }

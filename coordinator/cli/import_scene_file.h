@@ -11,10 +11,10 @@
 namespace bandsaw::coordinator {
 
 /// Imports in the confined process; a signal stops it. The importer's warnings are said unless
-/// quiet. `environment` and errors as of import_in_process.
+/// quiet. Errors as of import_in_process.
 absl::StatusOr<ImportedPackage> import_scene_file(const std::string& scene, Verbosity verbosity,
                                                   Process& process,
-                                                  const std::string& environment = {});
+                                                  const SceneChoices& choices = {});
 
 /// A scene that cannot be read is wrong input, whatever the reason; an interrupt and a broken
 /// installation are not.

@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "coordinator/cli/scene_choices.h"
 #include "coordinator/core/types.h"
 #include "proto/link/join.h"
 #include "renderlib/image/display.h"
@@ -29,7 +30,7 @@ struct ImageOptions {
   std::optional<std::uint32_t> height;  ///< alone: the width does
   std::optional<std::uint32_t> depth;
   std::optional<Integrator> integrator;
-  std::string environment;  ///< an image that becomes the background; empty: the scene's own
+  SceneChoices choices;
 };
 
 /// How pictures are written, as far as it was given.

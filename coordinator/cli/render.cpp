@@ -39,7 +39,7 @@ struct Prepared {
 
 absl::StatusOr<Prepared> prepare(const RenderOptions& options, Process& process) {
   ASSIGN_OR_RETURN(ImportedPackage package, import_scene_file(options.scene, options.verbosity,
-                                                              process, options.image.environment));
+                                                              process, options.image.choices));
   ASSIGN_OR_RETURN(SceneDescription scene, decode_package(package.manifest(), package.blobs()));
   return Prepared{package.info(), wire::sha256(package.manifest()).hex(), std::move(scene)};
 }

@@ -78,6 +78,40 @@ std::string kind_of(const Texture& texture) {
   return absl::StrCat(floats ? "float" : "8-bit", " image of ", image->width, "×", image->height);
 }
 
+std::string kind_of(const DeltaLight& light) {
+  constexpr const char* kNames[] = {"directional", "point", "spot"};
+  return kNames[light.index()];
+}
+
+std::string kind_of(const Medium& medium) {
+  return is_clear(medium)              ? "clear medium"
+         : !is_black(medium.emission)  ? "glowing medium"
+         : is_black(medium.scattering) ? "absorbing medium"
+         : medium.g == 0               ? "scattering medium"
+                                       : "medium that scatters by Henyey and Greenstein";
+}
+
+std::string background_text(const SceneDescription& scene) {
+  const Background& sky = scene.background;
+  if (!sky.environment) {
+    return !(sky.bottom == sky.top) ? "gradient" : is_black(sky.top) ? "black" : "constant";
+  }
+  const Texture& first = scene.textures[index_of(sky.environment->images.front())];
+  const auto& image = std::get<ImageTexture>(first);
+  return absl::StrCat(sky.environment->images.size() == 1 ? "equirectangular image" : "cube map",
+                      " of ", image.width, "×", image.height);
+}
+
+std::vector<Count> media_of(const Media& media) {
+  Tally tally;
+  for (const Medium& medium : media.media) {
+    tally.add(kind_of(medium));
+  }
+  tally.add("boundary", media.boundaries.spheres.size() + media.boundaries.instances.size());
+  tally.add("fog around everything", media.fog ? 1 : 0);
+  return tally.take();
+}
+
 std::uint64_t bytes_of(const Texture& texture) {
   const auto* image = std::get_if<ImageTexture>(&texture);
   return image == nullptr ? 0 : image->texels.size();
@@ -163,6 +197,13 @@ SceneSummary summary_of(const SceneDescription& scene, const PackageInfo& info,
   }
   summary.textures = textures.take();
   summary.lights = lights_in(scene);
+  Tally lights;
+  for (const DeltaLight& light : scene.lights) {
+    lights.add(kind_of(light));
+  }
+  summary.lights_without_size = lights.take();
+  summary.background = background_text(scene);
+  summary.media = media_of(scene.media);
   summary.geometry_bytes = bytes_in(g);
   summary.bounds = bounds_of(scene);
   summary.package_bytes = package_bytes;

@@ -26,7 +26,10 @@ struct SceneSummary {
   std::vector<Count> materials;
   std::vector<Count> textures;
   std::uint64_t texture_bytes = 0;
-  std::uint64_t lights = 0;          ///< spheres, quads and triangles that emit
+  std::uint64_t lights = 0;  ///< spheres, quads and triangles that emit
+  std::vector<Count> lights_without_size;
+  std::string background;            ///< "gradient", "equirectangular image of 128×64"
+  std::vector<Count> media;          ///< and, as "boundary", the shapes that they fill
   std::uint64_t geometry_bytes = 0;  ///< of shapes, vertices and placements, in memory
   Box bounds;  ///< of instances: of their meshes' boxes, so they may be smaller
   std::uint64_t package_bytes = 0;  ///< of manifest and blobs

@@ -39,6 +39,10 @@ std::vector<std::string> summary_text(const SceneSummary& summary) {
                                  integrator_name(info.integrator), " of at most ", info.max_depth,
                                  " surfaces")),
       line("camera", summary.camera),
+      line("cameras", info.model_cameras.empty()
+                          ? "none of a model"
+                          : absl::StrCat(printable(absl::StrJoin(info.model_cameras, ", ")),
+                                         " (--camera NAME)")),
       line("shapes",
            absl::StrCat(text(summary.shapes), "; ", summary.triangles, " triangles as placed")),
       line("bounds", summary.bounds.empty()
@@ -49,7 +53,10 @@ std::vector<std::string> summary_text(const SceneSummary& summary) {
       line("textures",
            absl::StrCat(text(summary.textures), "; ", bytes(summary.texture_bytes), " of texels")),
       line("lights", absl::StrCat(summary.lights, summary.lights == 1 ? " shape" : " shapes",
-                                  " with a material that emits")),
+                                  " with a material that emits; without size: ",
+                                  text(summary.lights_without_size))),
+      line("background", summary.background),
+      line("media", text(summary.media)),
       line("memory", absl::StrCat(bytes(summary.geometry_bytes), " of geometry, ",
                                   bytes(summary.tree_bytes), " of trees, ",
                                   bytes(summary.texture_bytes), " of texels; a pixel takes 48 B")),
@@ -73,6 +80,7 @@ std::string summary_json(const SceneSummary& summary) {
       .whole("max_depth", info.max_depth)
       .text("filter", summary.filter)
       .text("camera", summary.camera)
+      .texts("model_cameras", info.model_cameras)
       .objects("shapes", objects(summary.shapes))
       .whole("triangles", summary.triangles);
   if (!summary.bounds.empty()) {
@@ -85,6 +93,9 @@ std::string summary_json(const SceneSummary& summary) {
       .objects("textures", objects(summary.textures))
       .whole("texture_bytes", summary.texture_bytes)
       .whole("lights", summary.lights)
+      .objects("lights_without_size", objects(summary.lights_without_size))
+      .text("background", summary.background)
+      .objects("media", objects(summary.media))
       .whole("geometry_bytes", summary.geometry_bytes)
       .whole("tree_bytes", summary.tree_bytes)
       .whole("package_bytes", summary.package_bytes)

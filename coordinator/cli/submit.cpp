@@ -102,7 +102,7 @@ ExitCode run(const SubmitOptions& options, Process& process) {
     return console.fail(exit_code_of(client.status()), std::string(client.status().message()));
   }
   auto package =
-      import_scene_file(options.scene, options.verbosity, process, options.image.environment);
+      import_scene_file(options.scene, options.verbosity, process, options.image.choices);
   if (!package.ok()) {
     return console.fail(import_exit_code(package.status()),
                         std::string(package.status().message()));

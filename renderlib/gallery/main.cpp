@@ -19,6 +19,7 @@
 #include "renderlib/base/status_macros.h"
 #include "renderlib/gallery/book_scenes.h"
 #include "renderlib/gallery/globe.h"
+#include "renderlib/gallery/pergola.h"
 #include "renderlib/gallery/sky.h"
 #include "renderlib/gallery/turned.h"
 #include "renderlib/image/hdr.h"
@@ -53,7 +54,9 @@ absl::Status make_all(const std::string& folder) {
   RETURN_IF_ERROR(write(folder + "/pawn.obj", pawn()));
   RETURN_IF_ERROR(write(folder + "/lamp_foot.obj", lamp_foot()));
   RETURN_IF_ERROR(write(folder + "/lamp_shade.obj", lamp_shade()));
+  RETURN_IF_ERROR(write(folder + "/pergola.gltf", pergola()));
   RETURN_IF_ERROR(write(folder + "/evening.hdr", encode_hdr(evening_sky_map(64))));
+  RETURN_IF_ERROR(write(folder + "/dusk.hdr", encode_hdr(dusk_sky_map(128))));
   constexpr const char* kSides[] = {"px", "nx", "py", "ny", "pz", "nz"};
   for (std::uint32_t i = 0; i < 6; ++i) {
     RETURN_IF_ERROR(write(absl::StrCat(folder, "/evening_", kSides[i], ".hdr"),

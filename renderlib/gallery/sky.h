@@ -14,8 +14,13 @@ namespace bandsaw::gallery {
 /// high.
 Rgb evening_sky(const Vec3& unit);
 
-/// The same as an equirectangular image, 2 rows wide; each texel the mean of 8 x 8 directions.
+/// The same place after the sun has set: a glow at the horizon where it went down, deep blue above,
+/// and a high cloud that still shines, as a soft light from the side.
+Rgb dusk_sky(const Vec3& unit);
+
+/// The same as equirectangular images, 2 rows wide; each texel the mean of 8 x 8 directions.
 Image evening_sky_map(std::uint32_t rows);
+Image dusk_sky_map(std::uint32_t rows);
 
 /// The same as one side of a cube map: 0 to 5 are +x, -x, +y, -y, +z, -z, laid as
 /// renderlib/light/environment.h says.

@@ -108,10 +108,14 @@ void read_textures_of(const Struct& from, GltfMaterial& to) {
   }
 }
 
+std::string name_in(const Struct& from) {
+  const Value* called = find(from, "name");
+  return called == nullptr ? "" : called->string_value();
+}
+
 GltfMaterial material_of(const Struct& from) {
   GltfMaterial to;
-  const Value* called = find(from, "name");
-  to.name = called == nullptr ? "" : called->string_value();
+  to.name = name_in(from);
   read_textures_of(from, to);
   if (const Struct* base = object(from, "pbrMetallicRoughness"); base != nullptr) {
     read_textures_of(*base, to);
@@ -144,27 +148,34 @@ const Struct* item(const Struct& root, const std::string& name, double index) {
              : nullptr;
 }
 
-// The materials of the default scene's meshes, in the order in which Assimp loads them. The tree is
-// walked with a stack of its own; a node that is met again is not entered.
+// The materials of the default scene's meshes and the cameras at its nodes, in the order in which
+// Assimp loads them. The tree is walked with a stack of its own; a node that is met again is not
+// entered.
 class LoadOrder {
  public:
   explicit LoadOrder(const Struct& root) : root_(root) {}
 
-  std::vector<const Struct*> materials() {
+  void run() {
     const Struct* scene = item(root_, "scenes", number(root_, "scene").value_or(0));
-    push_all(scene == nullptr ? nullptr : list(*scene, "nodes"));
+    const ListValue* roots = scene == nullptr ? nullptr : list(*scene, "nodes");
+    // Assimp puts a node above several.
+    const std::size_t above = roots != nullptr && roots->values_size() == 1 ? 0 : 1;
+    push_all(roots);
     while (!stack_.empty()) {
       const auto [node, is_entered] = stack_.back();
       stack_.pop_back();
       if (is_entered) {
         add_mesh(item(root_, "meshes", number(*node, "mesh").value_or(-1)));
-      } else if (nodes_.insert(node).second) {
+        add_camera(item(root_, "cameras", number(*node, "camera").value_or(-1)), numbers_[node]);
+      } else if (numbers_.emplace(node, above + numbers_.size()).second) {
         stack_.emplace_back(node, true);
         push_all(list(*node, "children"));
       }
     }
-    return std::move(order_);
   }
+
+  std::vector<const Struct*> materials;
+  std::vector<GltfCamera> cameras;
 
  private:
   void push_all(const ListValue* nodes) {
@@ -180,16 +191,22 @@ class LoadOrder {
       const Struct& primitive = primitives->values(i).struct_value();
       const Struct* material = item(root_, "materials", number(primitive, "material").value_or(-1));
       if (material != nullptr && seen_.insert(material).second) {
-        order_.push_back(material);
+        materials.push_back(material);
       }
+    }
+  }
+  void add_camera(const Struct* camera, std::size_t node) {
+    if (camera != nullptr) {
+      const std::size_t loaded = loaded_.emplace(camera, loaded_.size()).first->second;
+      cameras.push_back({node, loaded, name_in(*camera)});
     }
   }
 
   const Struct& root_;
   std::vector<std::pair<const Struct*, bool>> stack_;  ///< and whether its children are done
-  std::set<const Struct*> nodes_;
+  std::map<const Struct*, std::size_t> numbers_;       ///< of the nodes, parents first
   std::set<const Struct*> seen_;
-  std::vector<const Struct*> order_;
+  std::map<const Struct*, std::size_t> loaded_;  ///< cameras, and the how manieth each is
 };
 
 // The JSON of a .gltf, or the first chunk of a .glb (glTF 2.0, 4.4).
@@ -225,9 +242,12 @@ GltfExtensions read_gltf_extensions(const std::string& path) {
       }
     }
   }
-  for (const Struct* material : LoadOrder(root).materials()) {
+  LoadOrder order(root);
+  order.run();
+  for (const Struct* material : order.materials) {
     out.materials.push_back(material_of(*material));
   }
+  out.cameras = std::move(order.cameras);
   if (const ListValue* scenes = list(root, "scenes"); scenes != nullptr) {
     out.scenes = static_cast<std::size_t>(scenes->values_size());
   }

@@ -1,7 +1,8 @@
 #pragma once
 
 // What a glTF file says and Assimp 5.2 does not pass on: which extensions it uses, how its textures
-// are placed, how strong its emission is, how many scenes it holds. Read from the file's JSON.
+// are placed, how strong its emission is, at which nodes cameras stand, how many scenes it holds.
+// Read from the file's JSON.
 
 #include <map>
 #include <optional>
@@ -27,11 +28,19 @@ struct GltfMaterial {
   double coat_normal_scale = 1;               ///< of KHR_materials_clearcoat
 };
 
+/// A camera at a node: Assimp knows but one node of each camera.
+struct GltfCamera {
+  std::size_t node = 0;    ///< the how manieth of Assimp's tree, parents first
+  std::size_t camera = 0;  ///< the how manieth that Assimp loads
+  std::string name;        ///< its own, beside its node's; may be empty
+};
+
 struct GltfExtensions {
   std::vector<std::string> ignored;  ///< extensions that the file uses and that change nothing here
   /// Those that the scene uses, in the order in which Assimp meets them: nodes depth first, each
   /// after its children. None of glTF 1.
   std::vector<GltfMaterial> materials;
+  std::vector<GltfCamera> cameras;  ///< of the default scene; none of glTF 1
   std::size_t scenes = 1;
 };
 

@@ -22,11 +22,17 @@ struct ImportedScene {
   PackageInfo info;
 };
 
-/// Reads a scene file (*.textproto, *.json) or a model alone (then framed under a default sky).
-/// `environment`, if given, is what its background is instead: an equirectangular image.
-/// Files are read only below the folder of `path`. INVALID_ARGUMENT: "cornell.textproto:12:3:
-/// shape[4].sphere.radius: must be > 0, is -1". NOT_FOUND, PERMISSION_DENIED: naming the file.
-absl::StatusOr<ImportedScene> import_scene(
-    const std::string& path, const std::optional<GivenFile>& environment = std::nullopt);
+/// What somebody chose beside the scene.
+struct ImportChoices {
+  std::optional<GivenFile> environment = {};  ///< equirectangular image, instead of its background
+  std::string camera = {};  ///< the name of one of its models' cameras; empty: the scene's own
+};
+
+/// Reads a scene file (*.textproto, *.json) or a model alone (then framed under a default sky,
+/// unless it brings cameras and lights). Files are read only below the folder of `path`.
+/// INVALID_ARGUMENT: "cornell.textproto:12:3: shape[4].sphere.radius: must be > 0, is -1".
+/// NOT_FOUND, PERMISSION_DENIED: naming the file.
+absl::StatusOr<ImportedScene> import_scene(const std::string& path,
+                                           const ImportChoices& choices = {});
 
 }  // namespace bandsaw

@@ -111,6 +111,7 @@ absl::Status read_model_alone(const std::string& path, SceneDraft& draft) {
   draft.out.scene.geometry.instances = model.instances;
   draft.out.scene.lights = model.lights;
   draft.out.scene.camera = model.cameras.empty() ? framed(draft.out) : model.cameras.front().camera;
+  add_cameras(draft.file, model, Transform{}, draft);
   if (!has_light(draft.out.scene)) {
     draft.out.scene.background = default_sky();
   }
@@ -133,15 +134,18 @@ absl::Status read_any(const std::string& path, SceneDraft& draft) {
 
 }  // namespace
 
-absl::StatusOr<ImportedScene> import_scene(const std::string& path,
-                                           const std::optional<GivenFile>& environment) {
+absl::StatusOr<ImportedScene> import_scene(const std::string& path, const ImportChoices& choices) {
   ASSIGN_OR_RETURN(SceneFolder folder, SceneFolder::of(path));
   SceneDraft draft(std::move(folder), name_of(path));
   draft.out.info.name = std::filesystem::path(path).stem().string();
   RETURN_IF_ERROR(read_any(path, draft));
-  if (environment) {
+  draft.out.info.model_cameras = names_of(draft.cameras);
+  if (!choices.camera.empty()) {
+    ASSIGN_OR_RETURN(draft.out.scene.camera, chosen_camera(choices.camera, draft));
+  }
+  if (const auto& given = choices.environment) {
     ASSIGN_OR_RETURN(const TextureId image,
-                     add_environment_image(environment->bytes, environment->name, draft));
+                     add_environment_image(given->bytes, given->name, draft));
     draft.out.scene.background = {};
     draft.out.scene.background.environment = Environment{.images = {image}};
   }

@@ -2,9 +2,9 @@
 // or one error on standard output. Started by the client commands
 // (coordinator/cli/import_process.h); can be run by hand.
 //
-//   bandsaw-import scene FILE FOLDER SECONDS BYTES [ENVIRONMENT]
+//   bandsaw-import scene FILE FOLDER SECONDS BYTES [ENVIRONMENT [CAMERA]]
 //
-// leaves FOLDER/manifest and FOLDER/<digest> for each blob;
+// leaves FOLDER/manifest and FOLDER/<digest> for each blob; an empty ENVIRONMENT is none;
 //
 //   bandsaw-import image FILE FOLDER SECONDS BYTES
 //
@@ -63,8 +63,8 @@ absl::Span<const std::byte> bytes_of(const T* data, std::size_t count) {
 }
 
 absl::Status import_to(const std::string& path, const std::string& folder,
-                       const std::optional<GivenFile>& environment) {
-  ASSIGN_OR_RETURN(const ImportedScene imported, import_scene(path, environment));
+                       const ImportChoices& choices) {
+  ASSIGN_OR_RETURN(const ImportedScene imported, import_scene(path, choices));
   BlobMap blobs;
   const std::string manifest = encode_package(imported.scene, imported.info, blobs);
   // The bounds that a coordinator would hold it to.
@@ -90,11 +90,11 @@ absl::Status read_picture_to(const std::string& path, const std::string& folder)
 absl::Status run(int argc, char** argv) {
   Confinement limits;
   const std::string what =
-      argc == 6 || (argc == 7 && argv[1] == std::string("scene")) ? argv[1] : "";
+      argc == 6 || (argc > 6 && argc <= 8 && argv[1] == std::string("scene")) ? argv[1] : "";
   if ((what != "scene" && what != "image") || !absl::SimpleAtoi(argv[4], &limits.cpu_seconds) ||
       !absl::SimpleAtoi(argv[5], &limits.memory_bytes)) {
     return absl::InvalidArgumentError(
-        "usage: bandsaw-import scene|image FILE FOLDER SECONDS BYTES [ENVIRONMENT]");
+        "usage: bandsaw-import scene|image FILE FOLDER SECONDS BYTES [ENVIRONMENT [CAMERA]]");
   }
   const std::string path = argv[2];
   ASSIGN_OR_RETURN(const SceneFolder folder, SceneFolder::of(path));
@@ -102,13 +102,14 @@ absl::Status run(int argc, char** argv) {
   limits.write_folder = argv[3];
   limits.file_bytes = wire::kBlobBytes;
   // Named by the one who asked, not by a file: it may lie anywhere. Here it is only copied.
-  std::optional<GivenFile> environment;
-  if (argc == 7) {
+  ImportChoices choices;
+  if (argc > 6 && argv[6][0] != '\0') {
     ASSIGN_OR_RETURN(std::string bytes, read_whole_file(argv[6], kMaxImageFileBytes));
-    environment = GivenFile{name_of(argv[6]), std::move(bytes)};
+    choices.environment = GivenFile{name_of(argv[6]), std::move(bytes)};
   }
+  choices.camera = argc > 7 ? argv[7] : "";
   RETURN_IF_ERROR(confine_this_process(limits));
-  return what == "scene" ? import_to(path, argv[3], environment) : read_picture_to(path, argv[3]);
+  return what == "scene" ? import_to(path, argv[3], choices) : read_picture_to(path, argv[3]);
 }
 
 // Foreign code throws.

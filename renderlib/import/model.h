@@ -14,8 +14,9 @@
 namespace bandsaw {
 
 struct ModelCamera {
-  std::string name;
-  Camera camera;  ///< in the model's own space
+  std::string name;      ///< of its node
+  std::string own_name;  ///< may be empty, and be that of other nodes' cameras too
+  Camera camera;         ///< in the model's own space
 };
 
 /// A model in the draft: its meshes, materials and textures have been added there, its placements

@@ -38,8 +38,8 @@ std::optional<Camera> camera_of(const aiCamera& camera, const Transform& node, b
   view.position = node.point({0, 0, 0});
   view.look_at = view.position + node.direction(vector_of(camera.mLookAt));
   view.up = node.direction(vector_of(camera.mUp));
-  Camera out = PerspectiveCamera{view.position, view.look_at, view.up,
-                                 vertical_fov_degrees(camera, gltf)};
+  Camera out =
+      PerspectiveCamera{view.position, view.look_at, view.up, vertical_fov_degrees(camera, gltf)};
   if (camera.mOrthographicWidth > 0) {
     // glTF's xmag, half of the width; its aspect is xmag over ymag.
     const double aspect = camera.mAspect > 0 ? camera.mAspect : 1;
@@ -60,7 +60,13 @@ class Walk {
  public:
   Walk(ModelFile& file, const ModelMeshes& meshes) : file_(file), meshes_(meshes) {
     const aiScene& scene = file.scene;
-    for (unsigned i = 0; has_usable_cameras(file) && i < scene.mNumCameras; ++i) {
+    for (const GltfCamera& camera : file.gltf.cameras) {
+      if (camera.camera < scene.mNumCameras) {
+        standing_[camera.node] = {scene.mCameras[camera.camera], camera.name};
+      }
+    }
+    const bool by_name = file.gltf.cameras.empty() && has_usable_cameras(file);
+    for (unsigned i = 0; by_name && i < scene.mNumCameras; ++i) {
       cameras_.emplace(scene.mCameras[i]->mName.C_Str(), scene.mCameras[i]);
     }
     for (unsigned i = 0; i < scene.mNumLights; ++i) {
@@ -85,6 +91,10 @@ class Walk {
     const aiNode* node;
     Transform parent;
   };
+  struct CameraAtNode {
+    const aiCamera* camera = nullptr;
+    std::string name = {};  ///< its own
+  };
 
   void visit(const aiNode& node, const Transform& to_model) {
     const bool regular = inverse(to_model).has_value();
@@ -106,12 +116,7 @@ class Walk {
       }
       model.instances.push_back({meshes_[number]->mesh, meshes_[number]->material, to_model});
     }
-    if (const auto found = cameras_.find(node.mName.C_Str()); found != cameras_.end()) {
-      const bool gltf = file_.kind == ModelKind::kGltf;
-      if (const auto camera = camera_of(*found->second, to_model, gltf)) {
-        model.cameras.push_back({found->first, *camera});
-      }
-    }
+    add_camera(node, to_model);
     const auto [first, last] = lights_.equal_range(node.mName.C_Str());
     for (auto light = first; light != last; ++light) {
       add_model_light(*light->second, to_model, file_, model);
@@ -122,9 +127,26 @@ class Walk {
     }
   }
 
+  void add_camera(const aiNode& node, const Transform& to_model) {
+    const auto standing = standing_.find(visited_++);
+    const auto named = cameras_.find(node.mName.C_Str());
+    const CameraAtNode found = standing != standing_.end() ? standing->second
+                               : named != cameras_.end()   ? CameraAtNode{named->second}
+                                                           : CameraAtNode{};
+    if (found.camera == nullptr) {
+      return;
+    }
+    const bool gltf = file_.kind == ModelKind::kGltf;
+    if (const auto camera = camera_of(*found.camera, to_model, gltf)) {
+      model.cameras.push_back({node.mName.C_Str(), found.name, *camera});
+    }
+  }
+
   ModelFile& file_;
   const ModelMeshes& meshes_;
-  std::map<std::string, const aiCamera*> cameras_;
+  std::size_t visited_ = 0;                         ///< nodes
+  std::map<std::size_t, CameraAtNode> standing_;    ///< glTF's, by the visit of their nodes
+  std::map<std::string, const aiCamera*> cameras_;  ///< others, by the names of their nodes
   std::multimap<std::string, const aiLight*> lights_;
   std::vector<Entry> stack_;
   std::set<unsigned> skinned_;  ///< those that are placed: their bones place them, not their nodes

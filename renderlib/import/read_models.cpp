@@ -10,6 +10,7 @@
 #include "renderlib/import/read_materials.h"
 #include "renderlib/import/read_media.h"
 #include "renderlib/import/read_placement.h"
+#include "renderlib/import/use_camera.h"
 
 namespace bandsaw {
 namespace {
@@ -106,9 +107,7 @@ absl::Status read_model_entry(const Field& in, const scene::Model& from, SceneDr
   const Transform to_camera =
       keys.empty() ? placement : motion_at({kNoFrame, {}, keys}, draft.shutter.open);
   add_lights(from.file(), *model, to_camera, draft);
-  for (const ModelCamera& camera : model->cameras) {
-    draft.cameras.push_back({from.file(), camera.name, placed(camera.camera, to_camera)});
-  }
+  add_cameras(from.file(), *model, to_camera, draft);
   return absl::OkStatus();
 }
 

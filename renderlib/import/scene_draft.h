@@ -19,8 +19,9 @@ struct Model;
 
 /// A camera that a model of the scene brings, in the world.
 struct FoundCamera {
-  std::string model;
-  std::string name;
+  std::string model;  ///< its file
+  std::string name;   ///< of its node
+  std::string own_name;
   Camera camera;
 };
 
@@ -42,7 +43,7 @@ struct SceneDraft {
   std::map<MeshId, MeshId> boundary_meshes;
   /// Models that have been read, by file and whether with materials.
   std::map<std::pair<std::string, bool>, std::shared_ptr<const Model>> models;
-  std::vector<FoundCamera> cameras;
+  std::vector<FoundCamera> cameras;  ///< of a model placed many times, those of its first place
   Shutter shutter;
 
   Contents world;

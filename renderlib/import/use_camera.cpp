@@ -7,17 +7,53 @@
 #include "absl/strings/str_join.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/import/numbers.h"
+#include "renderlib/package/limits.h"
 
 namespace bandsaw {
 namespace {
 
-std::string known(const SceneDraft& draft) {
-  std::vector<std::string> names;
-  for (const FoundCamera& camera : draft.cameras) {
-    names.push_back(absl::StrCat("\"", camera.name, "\" (", camera.model, ")"));
+std::string with_file(const FoundCamera& camera) {
+  return absl::StrCat(camera.model, "/", camera.name);
+}
+
+/// Those that `name` means: the first way of calling cameras that any answers to decides.
+std::vector<const FoundCamera*> called(const std::string& name,
+                                       const std::vector<FoundCamera>& cameras) {
+  const auto all = [&](auto name_of) {
+    std::vector<const FoundCamera*> found;
+    for (const FoundCamera& camera : cameras) {
+      if (name_of(camera) == name) {
+        found.push_back(&camera);
+      }
+    }
+    return found;
+  };
+  auto found = all([](const FoundCamera& camera) { return camera.name; });
+  if (found.empty()) {
+    found = all([](const FoundCamera& camera) { return camera.own_name; });
   }
-  return names.empty() ? "the scene's models bring none"
-                       : absl::StrCat("there are ", absl::StrJoin(names, ", "));
+  return found.empty() ? all(with_file) : found;
+}
+
+std::string known(const std::vector<FoundCamera>& cameras) {
+  const auto quoted = [](std::string* out, const std::string& name) {
+    absl::StrAppend(out, "\"", name, "\"");
+  };
+  return cameras.empty()
+             ? "the scene's models bring none"
+             : absl::StrCat("there are ", absl::StrJoin(names_of(cameras), ", ", quoted));
+}
+
+absl::StatusOr<Camera> find_camera(const std::string& name, const SceneDraft& draft) {
+  const auto found = called(name, draft.cameras);
+  if (found.size() == 1) {
+    Camera camera = found.front()->camera;
+    std::visit([&](auto& c) { c.shutter = draft.shutter; }, camera);
+    return camera;
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat(found.empty() ? "no model brings a camera" : "several cameras are", " called \"",
+                   name, "\"; ", known(draft.cameras)));
 }
 
 absl::Status set_lens(const Field& in, const scene::Camera& from, PerspectiveCamera& camera) {
@@ -36,6 +72,42 @@ absl::Status set_lens(const Field& in, const scene::Camera& from, PerspectiveCam
 
 }  // namespace
 
+void add_cameras(const std::string& file, const Model& model, const Transform& to_world,
+                 SceneDraft& draft) {
+  const bool is_known = std::any_of(draft.cameras.begin(), draft.cameras.end(),
+                                    [&](const FoundCamera& c) { return c.model == file; });
+  if (is_known || draft.placed != &draft.world) {
+    return;
+  }
+  for (const ModelCamera& camera : model.cameras) {
+    draft.cameras.push_back({file, camera.name, camera.own_name, placed(camera.camera, to_world)});
+  }
+}
+
+std::vector<std::string> names_of(const std::vector<FoundCamera>& cameras) {
+  std::vector<std::string> names;
+  for (const FoundCamera& camera : cameras) {
+    if (names.size() == kMaxCameraNames) {
+      break;
+    }
+    for (const std::string& name : {camera.name, camera.own_name, with_file(camera)}) {
+      const auto found = called(name, cameras);
+      if (!name.empty() && found.size() == 1 && found.front() == &camera) {
+        names.push_back(name);
+        break;
+      }
+    }
+  }
+  return names;
+}
+
+absl::StatusOr<Camera> chosen_camera(const std::string& name, const SceneDraft& draft) {
+  auto found = find_camera(name, draft);
+  return found.ok()
+             ? std::move(found)
+             : absl::InvalidArgumentError(absl::StrCat(draft.file, ": ", found.status().message()));
+}
+
 absl::StatusOr<Camera> use_camera(const Field& root, const scene::Scene& from,
                                   const SceneDraft& draft) {
   const Field in = root.child("camera");
@@ -46,15 +118,11 @@ absl::StatusOr<Camera> use_camera(const Field& root, const scene::Scene& from,
                     "stands instead of position, look_at, up, rotate, vertical_fov and "
                     "orthographic: write one or the other");
   }
-  const auto found =
-      std::find_if(draft.cameras.begin(), draft.cameras.end(),
-                   [&](const FoundCamera& camera) { return camera.name == written.use(); });
-  if (found == draft.cameras.end()) {
-    return in.error("use", absl::StrCat("no model brings a camera called \"", written.use(),
-                                        "\"; ", known(draft)));
+  auto found = find_camera(written.use(), draft);
+  if (!found.ok()) {
+    return in.error("use", found.status().message());
   }
-  Camera camera = found->camera;
-  std::visit([&](auto& c) { c.shutter = draft.shutter; }, camera);
+  Camera camera = *std::move(found);
   if (auto* perspective = std::get_if<PerspectiveCamera>(&camera)) {
     RETURN_IF_ERROR(set_lens(in, written, *perspective));
   } else if (written.has_aperture() || written.has_focus_distance()) {

@@ -212,6 +212,9 @@ void encode(const PackageInfo& info, package::Manifest& manifest) {
   if (info.warnings.size() > shown) {
     manifest.add_warning("and " + std::to_string(info.warnings.size() - shown) + " more warnings");
   }
+  for (std::size_t i = 0; i < std::min(info.model_cameras.size(), kMaxCameraNames); ++i) {
+    manifest.add_model_camera(clean_text(info.model_cameras[i], kMaxCameraNameBytes));
+  }
 }
 
 }  // namespace

@@ -20,6 +20,21 @@ absl::Status check_range(const std::string& field, std::uint64_t value, std::uin
   return manifest_error(field, absl::StrCat("must lie in [1, ", most, "], is ", value));
 }
 
+absl::Status check_texts(const std::string& field,
+                         const google::protobuf::RepeatedPtrField<std::string>& texts,
+                         std::size_t most, std::size_t most_bytes) {
+  if (texts.size() > static_cast<int>(most)) {
+    return manifest_error(field, absl::StrCat("has ", texts.size(), " entries, at most ", most));
+  }
+  for (const std::string& text : texts) {
+    if (text.size() > most_bytes) {
+      return manifest_error(field,
+                            absl::StrCat("has ", text.size(), " bytes, at most ", most_bytes));
+    }
+  }
+  return absl::OkStatus();
+}
+
 absl::Status check_head(const package::Manifest& manifest) {
   if (manifest.format() != wire::kPackageFormat) {
     return manifest_error("format", absl::StrCat("is ", manifest.format(), ", this program reads ",
@@ -46,17 +61,8 @@ absl::Status check_head(const package::Manifest& manifest) {
     return manifest_error("tone",
                           absl::StrCat("must lie in [0, ", kLastTone, "], is ", manifest.tone()));
   }
-  if (manifest.warning_size() > static_cast<int>(kMaxWarnings)) {
-    return manifest_error("warning", absl::StrCat("has ", manifest.warning_size(),
-                                                  " entries, at most ", kMaxWarnings));
-  }
-  for (const std::string& warning : manifest.warning()) {
-    if (warning.size() > kMaxWarningBytes) {
-      return manifest_error(
-          "warning", absl::StrCat("has ", warning.size(), " bytes, at most ", kMaxWarningBytes));
-    }
-  }
-  return absl::OkStatus();
+  RETURN_IF_ERROR(check_texts("warning", manifest.warning(), kMaxWarnings, kMaxWarningBytes));
+  return check_texts("model_camera", manifest.model_camera(), kMaxCameraNames, kMaxCameraNameBytes);
 }
 
 template <class Visit>
@@ -182,6 +188,7 @@ absl::StatusOr<PackageInfo> package_info(const std::string& manifest_bytes) {
   info.integrator = static_cast<Integrator>(manifest.integrator());
   info.display = {manifest.exposure(), static_cast<Tone>(manifest.tone())};
   info.warnings.assign(manifest.warning().begin(), manifest.warning().end());
+  info.model_cameras.assign(manifest.model_camera().begin(), manifest.model_camera().end());
   return info;
 }
 

@@ -23,6 +23,7 @@ struct PackageInfo {
   std::vector<std::string> warnings;
   Integrator integrator = Integrator::kPath;
   Display display = {};
+  std::vector<std::string> model_cameras = {};  ///< names of cameras that its models bring
 };
 
 /// A blob that a manifest names.

@@ -38,6 +38,29 @@ TEST(SceneSummary, CountsWhatIsThere) {
   EXPECT_EQ(summary.camera, "orthographic, 4 high, at [1, 2, 3], looking at [1, 2, 0]");
 }
 
+TEST(SceneSummary, NamesLightsWithoutSizeTheSkyMediaAndCameras) {
+  SceneDescription lit = scene();
+  lit.lights = {SpotLight{}, PointLight{}, SpotLight{}, DirectionalLight{}};
+  lit.media.media = {{.absorption = {1, 1, 1}}, {.scattering = {1, 2, 3}}, {.emission = {1, 0, 0}}};
+  lit.media.boundaries.spheres = {{{0, 0, 0}, 1, filled_with(MediumId{1})}};
+  lit.media.fog = MediumId{1};
+  lit.background.environment = Environment{.images = {TextureId{1}}};
+  ImageTexture image;
+  image.width = 8;
+  image.height = 4;
+  lit.textures.emplace_back(image);
+  PackageInfo info;
+  info.model_cameras = {"front", "plan"};
+  const SceneSummary summary = summary_of(lit, info, 0);
+  const auto lines = summary_text(summary);
+  EXPECT_THAT(lines, Contains(HasSubstr("without size: 2 × spot, 1 × point, 1 × directional")));
+  EXPECT_THAT(lines, Contains(HasSubstr("equirectangular image of 8×4")));
+  EXPECT_THAT(lines, Contains(HasSubstr("1 × absorbing medium, 1 × scattering medium, "
+                                        "1 × glowing medium, 1 × boundary, 1 × fog")));
+  EXPECT_THAT(lines, Contains(HasSubstr("front, plan (--camera NAME)")));
+  EXPECT_THAT(summary_json(summary), HasSubstr("\"model_cameras\":[\"front\",\"plan\"]"));
+}
+
 TEST(SceneSummary, SaysWhatIsLeftOut) {
   PackageInfo info;
   EXPECT_THAT(summary_text(summary_of(scene(), info, 0)), Contains(HasSubstr("nothing")));

@@ -8,6 +8,7 @@
 
 #include "renderlib/gallery/book_scenes.h"
 #include "renderlib/gallery/lathe.h"
+#include "renderlib/gallery/pergola.h"
 #include "renderlib/gallery/sky.h"
 #include "renderlib/gallery/turned.h"
 #include "renderlib/image/hdr.h"
@@ -33,7 +34,9 @@ TEST(MadeFiles, AreThoseOfTheRepository) {
   EXPECT_TRUE(kept("pawn.obj") == pawn());
   EXPECT_TRUE(kept("lamp_foot.obj") == lamp_foot());
   EXPECT_TRUE(kept("lamp_shade.obj") == lamp_shade());
+  EXPECT_TRUE(kept("pergola.gltf") == pergola());
   EXPECT_TRUE(kept("evening.hdr") == text(encode_hdr(evening_sky_map(64))));
+  EXPECT_TRUE(kept("dusk.hdr") == text(encode_hdr(dusk_sky_map(128))));
   constexpr const char* kSides[] = {"px", "nx", "py", "ny", "pz", "nz"};
   for (std::uint32_t i = 0; i < 6; ++i) {
     EXPECT_TRUE(kept(std::string("evening_") + kSides[i] + ".hdr") ==

@@ -67,13 +67,14 @@ TEST(ImportProcess, ReadsAnEnvironmentFromAnywhere) {
   const std::string scene = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
   const TempDir elsewhere;
   std::filesystem::copy_file(std::string(BANDSAW_GALLERY) + "/evening.hdr", elsewhere / "e.hdr");
-  auto imported = import_in_process(scene, limits(), elsewhere / "e.hdr");
+  auto imported = import_in_process(scene, limits(), {.environment = elsewhere / "e.hdr"});
   ASSERT_TRUE(imported.ok()) << imported.status();
   const auto decoded = decode_package(imported->manifest(), imported->blobs());
   ASSERT_TRUE(decoded.ok()) << decoded.status();
   EXPECT_TRUE(decoded->background.environment.has_value());
-  EXPECT_EQ(import_in_process(scene, limits(), elsewhere / "none.hdr").status().code(),
-            absl::StatusCode::kNotFound);
+  EXPECT_EQ(
+      import_in_process(scene, limits(), {.environment = elsewhere / "none.hdr"}).status().code(),
+      absl::StatusCode::kNotFound);
 }
 
 TEST(ImportProcess, PassesOnTheImportersError) {

@@ -148,12 +148,14 @@ TEST_F(SceneLights, AnEnvironmentThatIsGivenBesideTheSceneReplacesItsBackground)
   ASSERT_TRUE(bytes.ok());
   const std::string scene =
       write_text(folder_, "s.textproto", kHead + "background { constant { rgb: [1, 1, 1] } }");
-  const auto imported = import_scene(scene, GivenFile{"given.hdr", *bytes});
+  const auto imported = import_scene(scene, {.environment = GivenFile{"given.hdr", *bytes}});
   ASSERT_TRUE(imported.ok()) << imported.status();
   EXPECT_EQ(radiance(imported->scene.background, imported->scene.textures, {0, 1, 0}),
             (Rgb{3, 3, 3}));
-  EXPECT_THAT(std::string(import_scene(scene, GivenFile{"x.hdr", "no image"}).status().message()),
-              HasSubstr("x.hdr: is not an image"));
+  EXPECT_THAT(
+      std::string(
+          import_scene(scene, {.environment = GivenFile{"x.hdr", "no image"}}).status().message()),
+      HasSubstr("x.hdr: is not an image"));
 }
 
 TEST(MendLight, L9WhatIsNoLightIsMendedAndCounted) {

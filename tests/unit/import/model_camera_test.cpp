@@ -1,0 +1,116 @@
+// Cameras of models by their names: of nodes, of their own, with their file.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "renderlib/import/import.h"
+#include "renderlib/import/scene_folder.h"
+#include "tests/unit/import/gltf_file.h"
+
+namespace bandsaw {
+namespace {
+
+using test::GltfTriangle;
+using test::TempDir;
+using test::write_text;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+/// A triangle, "left" and "right" that share one camera, and "tower" with one below it, which
+/// Assimp loads first.
+std::string write_cameras(const TempDir& folder, const std::string& name) {
+  GltfTriangle file;
+  file.more = R"("cameras": [
+{"name": "wide", "type": "perspective", "perspective": {"yfov": 1.0471975511965976, "znear": 0.1}},
+{"name": "narrow", "type": "perspective", "perspective": {"yfov": 0.5235987755982988, "znear": 0.1}},
+{"name": "far", "type": "perspective", "perspective": {"yfov": 0.2617993877991494, "znear": 0.1}}],
+)";
+  const std::string path = file.write(folder, name);
+  std::string text = *read_whole_file(path, 1 << 20);
+  const auto put = [&](const std::string& old, const std::string& by) {
+    text.replace(text.find(old), old.size(), by);
+  };
+  put(R"("nodes": [0])", R"("nodes": [0, 1, 2, 3])");
+  put(R"("nodes": [{"mesh": 0}])", R"("nodes": [{"mesh": 0},
+{"name": "left", "camera": 0, "translation": [-1, 0, 3]},
+{"name": "right", "camera": 0, "translation": [1, 0, 3]},
+{"name": "tower", "camera": 1, "translation": [0, 5, 9], "children": [4]},
+{"name": "top", "camera": 2, "translation": [0, 1, 0]}])");
+  return write_text(folder, name, text);
+}
+
+struct Seen {
+  Vec3 from;
+  int degrees = 0;  ///< high, rounded
+  friend bool operator==(const Seen&, const Seen&) = default;
+};
+Seen seen(const ImportedScene& imported) {
+  const auto& camera = std::get<PerspectiveCamera>(imported.scene.camera);
+  return {camera.position, static_cast<int>(camera.vertical_fov + 0.5)};
+}
+
+class ModelCameraNames : public ::testing::Test {
+ protected:
+  ModelCameraNames() { write_cameras(folder_, "m.gltf"); }
+
+  Seen by(const std::string& name, const std::string& file = "m.gltf") {
+    const auto imported = import_scene(folder_ / file, {.camera = name});
+    EXPECT_TRUE(imported.ok()) << imported.status();
+    return imported.ok() ? seen(*imported) : Seen{};
+  }
+  std::string error(const std::string& name, const std::string& file = "m.gltf") {
+    return std::string(import_scene(folder_ / file, {.camera = name}).status().message());
+  }
+  TempDir folder_;
+};
+
+TEST_F(ModelCameraNames, ACameraOfTwoNodesStandsAtBoth) {
+  EXPECT_EQ(by("left"), (Seen{{-1, 0, 3}, 60}));
+  EXPECT_EQ(by("right"), (Seen{{1, 0, 3}, 60}));
+  EXPECT_EQ(by(""), (Seen{{-1, 0, 3}, 60})) << "the first node's";
+}
+
+TEST_F(ModelCameraNames, ItsOwnNameIsAsGoodAsItsNodes) {
+  EXPECT_EQ(by("tower"), (Seen{{0, 5, 9}, 30}));
+  EXPECT_EQ(by("narrow"), by("tower"));
+  EXPECT_EQ(by("far"), (Seen{{0, 6, 9}, 15}));
+  EXPECT_EQ(by("m.gltf/top"), by("far"));
+  EXPECT_THAT(error("wide"),
+              HasSubstr("m.gltf: several cameras are called \"wide\"; there are \"left\", "
+                        "\"right\", \"tower\", \"top\""));
+}
+
+TEST_F(ModelCameraNames, AnErrorListsThoseThereAre) {
+  EXPECT_THAT(error("back"), HasSubstr("m.gltf: no model brings a camera called \"back\"; there "
+                                       "are \"left\", \"right\", \"tower\", \"top\""));
+  GltfTriangle().write(folder_, "none.gltf");
+  EXPECT_THAT(error("back", "none.gltf"), HasSubstr("the scene's models bring none"));
+}
+
+TEST_F(ModelCameraNames, AreListedForPeople) {
+  const auto imported = import_scene(folder_ / "m.gltf");
+  ASSERT_TRUE(imported.ok()) << imported.status();
+  EXPECT_THAT(imported->info.model_cameras, ElementsAre("left", "right", "tower", "top"));
+}
+
+TEST_F(ModelCameraNames, TwoModelsOfASceneAreToldApartByTheirFiles) {
+  write_cameras(folder_, "n.gltf");
+  write_text(folder_, "s.textproto", R"(camera { position: [0, 0, 8] look_at: [0, 0, 0] }
+model { file: "m.gltf" } model { file: "m.gltf" translate: [0, 0, 50] }
+model { file: "n.gltf" translate: [100, 0, 0] })");
+  EXPECT_EQ(by("n.gltf/left", "s.textproto"), (Seen{{99, 0, 3}, 60}));
+  EXPECT_EQ(by("m.gltf/left", "s.textproto"), (Seen{{-1, 0, 3}, 60})) << "the first place's";
+  EXPECT_THAT(error("left", "s.textproto"),
+              HasSubstr("several cameras are called \"left\"; there are \"m.gltf/left\""));
+}
+
+TEST_F(ModelCameraNames, AModelInAGroupStandsNowhereByItself) {
+  write_text(folder_, "s.textproto", R"(camera { position: [0, 0, 8] look_at: [0, 0, 0] }
+group { name: "g" model { file: "m.gltf" } } instance { of: "g" })");
+  EXPECT_THAT(error("left", "s.textproto"), HasSubstr("the scene's models bring none"));
+}
+
+}  // namespace
+}  // namespace bandsaw
