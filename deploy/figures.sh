@@ -1,12 +1,13 @@
 #!/usr/bin/env bash
 # The comparison figures of the gallery's README, made again.
-# Usage: deploy/figures.sh samples|defocus|lights|density|all [FOLDER [WIDTH]]   (default: out/figures, the width of one picture 300)
+# Usage: deploy/figures.sh samples|defocus|lights|density|all|sheet [FOLDER [WIDTH [SCENE...]]]   (default: out/figures, the width of one picture 300)
+# sheet: every scene of the gallery, or those given, as thumbnails of at most that width (160 by default); says which is where.
 # BANDSAW_BUILD=DIR: the build to use; otherwise build/release.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 name=${1:-}
 folder=${2:-out/figures}
-width=${3:-300}
+case "$name" in sheet) width=${3:-160} ;; *) width=${3:-300} ;; esac
 export PATH="${BANDSAW_BUILD:-$PWD/build/release}/bin:$PATH"
 gallery=renderlib/gallery
 work=$(mktemp -d)
@@ -16,8 +17,28 @@ render() { # SCENE NAME [OPTION...]: $work/NAME.png
   bandsaw render "$1" -o "$work/$2.png" --width "$width" --quiet "${@:3}" >/dev/null
 }
 
-height_of() { # The height of a PNG: bytes 20 to 23, big-endian.
-  echo $((16#$(od -An -tx1 -j20 -N4 "$1" | tr -d ' \n')))
+size_of() { # PNG OFFSET: its width (16) or height (20), four bytes, big-endian.
+  echo $((16#$(od -An -tx1 -j"$2" -N4 "$1" | tr -d ' \n')))
+}
+height_of() { size_of "$1" 20; }
+
+picture() { # NUMBER FILE X Y WIDE HIGH [UV]: a lamp that shows the picture, its lower left corner at X Y.
+  cat <<SCENE
+material { name: "m$1"  emissive { texture { image { file: "$2.png"  filter: FILTER_NEAREST  ${7:-} } } } }
+shape { quad { corner: [$3, $4, 0]  u: [$5, 0, 0]  v: [0, $6, 0] }  material: "m$1" }
+SCENE
+}
+
+panel() { # OUT WIDTH HEIGHT GREY: the pictures in $work/panel, pixel for pixel.
+  cat - "$work/panel" >"$work/panel.textproto" <<SCENE
+camera { position: [$(awk "BEGIN { print $2 / 2 \", \" $3 / 2 }"), 1]  rotate { axis: [0, 1, 0]  degrees: 0 }
+         orthographic { height: $3 } }
+image { width: $2  height: $3  filter { box { radius: 0 } } }
+background { constant { rgb: [$4, $4, $4] } }
+SCENE
+  mkdir -p "$folder"
+  bandsaw render "$work/panel.textproto" -o "$folder/$1.png" --samples 1 --quiet >/dev/null
+  echo "$folder/$1.png"
 }
 
 # A scene of its own shows the pictures side by side, pixel for pixel. A picture is FILE, or FILE:FROM:TO for a part of its width.
@@ -27,24 +48,12 @@ side_by_side() { # OUT GAP PICTURE...
   for picture in "${@:3}"; do
     IFS=: read -r file from to _ <<<"$picture:0:1"
     wide=$(awk "BEGIN { print int($width * $to + 0.5) - int($width * $from + 0.5) }")
-    cat <<SCENE
-material { name: "m$number"  emissive { texture { image { file: "$file.png"  filter: FILTER_NEAREST  uv_offset: [$from, 0]
-           uv_scale: [$(awk "BEGIN { print $wide / $width }"), 1] } } } }
-shape { quad { corner: [$x, 0, 0]  u: [$wide, 0, 0]  v: [0, $height, 0] }  material: "m$number" }
-SCENE
+    picture "$number" "$file" "$x" 0 "$wide" "$height" \
+      "uv_offset: [$from, 0]  uv_scale: [$(awk "BEGIN { print $wide / $width }"), 1]"
     x=$((x + wide + gap))
     number=$((number + 1))
   done >"$work/panel"
-  x=$((x - gap))
-  cat - "$work/panel" >"$work/panel.textproto" <<SCENE
-camera { position: [$(awk "BEGIN { print $x / 2 \", \" $height / 2 }"), 1]  rotate { axis: [0, 1, 0]  degrees: 0 }
-         orthographic { height: $height } }
-image { width: $x  height: $height  filter { box { radius: 0 } } }
-background { constant { rgb: [1, 1, 1] } }
-SCENE
-  mkdir -p "$folder"
-  bandsaw render "$work/panel.textproto" -o "$folder/$out.png" --samples 1 --quiet >/dev/null
-  echo "$folder/$out.png"
+  panel "$out" $((x - gap)) "$height" 1
 }
 
 figure_samples() {
@@ -74,7 +83,36 @@ figure_density() {
   side_by_side density 4 0.0025 0.01 0.04
 }
 
+figure_sheet() { # [SCENE...]
+  local scenes=("$@") high=$((width * 9 / 16)) gap=4 columns=8 number=0 row=-1 rows wide x y
+  if [ ${#scenes[@]} = 0 ]; then
+    cp -r "$gallery" "$work/gallery"
+    bandsaw-gallery "$work/gallery" >/dev/null # The globes are not kept.
+    scenes=("$work"/gallery/*.textproto "$work"/gallery/{books,study}/*.textproto)
+  fi
+  rows=$(((${#scenes[@]} + columns - 1) / columns))
+  : >"$work/panel"
+  for scene in "${scenes[@]}"; do
+    bandsaw render "$scene" -o "$work/t$number.png" --height "$high" --samples 32 --quiet >/dev/null
+    if [ "$(size_of "$work/t$number.png" 16)" -gt "$width" ]; then render "$scene" "t$number" --samples 32; fi
+    if [ $((number / columns)) != "$row" ]; then
+      row=$((number / columns))
+      [ "$row" = 0 ] || echo
+      printf 'row %d:' $((row + 1))
+    fi
+    printf ' %s' "$(basename "$scene" .textproto)"
+    wide=$(size_of "$work/t$number.png" 16)
+    x=$((number % columns * (width + gap) + (width - wide) / 2))
+    y=$(((rows - 1 - row) * (high + gap)))
+    picture "$number" "t$number" "$x" "$y" "$wide" "$(height_of "$work/t$number.png")" >>"$work/panel"
+    number=$((number + 1))
+  done
+  echo
+  panel sheet $((columns * (width + gap) - gap)) $((rows * (high + gap) - gap)) 0.02
+}
+
 case "$name" in
+  sheet) figure_sheet "${@:4}" ;;
   samples | defocus | lights | density) "figure_$name" ;;
   all) for each in samples defocus lights density; do "figure_$each"; done ;;
   *) sed -n 's/^# Usage: /usage: /p' "$0" >&2; exit 2 ;;
