@@ -28,6 +28,19 @@ TEST(Figures, AreMadeByOneCommandEach) {
                                                             fs::directory_iterator())));
 }
 
+TEST(Figures, TheSheetShowsTheScenesAndSaysWhichIsWhere) {
+  const TempDir folder;
+  const std::string build = fs::path(BANDSAW_BIN).parent_path().parent_path();
+  const std::string gallery = BANDSAW_GALLERY;
+  const Finished finished =
+      run({"/bin/bash", std::string(BANDSAW_SOURCE) + "/deploy/figures.sh", "sheet", folder.path(),
+           "24", gallery + "/cornell.textproto", gallery + "/mesh.textproto"},
+          {"BANDSAW_BUILD=" + build, "PATH=" + build + "/bin:/usr/bin:/bin"});
+  ASSERT_EQ(finished.code, 0) << finished.err;
+  EXPECT_NE(finished.out.find("row 1: cornell mesh\n"), std::string::npos) << finished.out;
+  EXPECT_TRUE(fs::exists(fs::path(folder.path()) / "sheet.png"));
+}
+
 TEST(Figures, AnUnknownNameIsRefused) {
   const Finished finished =
       run({"/bin/bash", std::string(BANDSAW_SOURCE) + "/deploy/figures.sh", "nothing"});
