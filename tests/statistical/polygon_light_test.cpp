@@ -64,6 +64,17 @@ TEST(PolygonLight, TrianglesOfAnySizeAndSlant) {
   }
 }
 
+// A blocker halfway, whose edge is seen against the lamp: of the lamp the part before it counts.
+TEST(PolygonLight, OfOneThatIsPartlyHiddenTheRestShines) {
+  for (const double edge : {-0.6, 0.1, 0.9}) {
+    SceneMaker maker;
+    maker.quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}, maker.lamp(1));
+    maker.quad({edge / 2, 0.5, -4}, {4, 0, 0}, {0, 0, 8}, maker.diffuse(0));
+    expect_irradiance(
+        maker, irradiance_of({{-1, 1, -1}, {edge, 1, -1}, {edge, 1, 1}, {-1, 1, 1}}, kUp), 8192);
+  }
+}
+
 TEST(PolygonLight, X9AnInstanceOfALampShinesByTheAreaThatItIsPlacedWith) {
   const double expected = 1.740839502734;
   for (const int n : {1, 8}) {  // Few lights, and many.

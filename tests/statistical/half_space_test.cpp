@@ -1,0 +1,69 @@
+// Half-spaces that scatter, under a white sky: Chandrasekhar, "Radiative Transfer", R = 1 - H(mu)
+// sqrt(1 - albedo) of the cosine mu under which they are seen. Within 4 standard errors.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/statistical/estimate.h"
+#include "tests/support/hard_case.h"
+#include "tests/support/media.h"
+
+namespace bandsaw {
+namespace {
+
+using test::Moments;
+using test::SceneMaker;
+
+struct Seen {
+  float albedo;
+  double mu;
+  double reflectance;
+};
+
+/// The sky is a lamp that covers all of it and is asked wherever a path is scattered: a background
+/// would be met by chance alone, which takes many times the samples.
+std::shared_ptr<const Scene> half_space(float albedo, float density) {
+  SceneMaker maker;
+  const double far = 4000 / density;
+  const double sky = 1e6 * far;
+  maker.quad({-sky, 2 / density, -sky}, {2 * sky, 0, 0}, {0, 0, 2 * sky}, maker.lamp(1));
+  test::fill_box(maker, {-far, -far, -far}, {far, 0, far},
+                 test::add(maker, test::medium((1 - albedo) * density, albedo * density)));
+  return maker.build();
+}
+
+void expect_half_space(const Seen& seen, float density, double error, std::uint64_t samples) {
+  const Ray ray{.origin = {0, 1 / density, 0},
+                .direction = {std::sqrt(1 - seen.mu * seen.mu), -seen.mu, 0}};
+  const Moments radiance =
+      test::radiance_along(*half_space(seen.albedo, density), ray, {.max_depth = 1000}, samples);
+  EXPECT_LE(std::abs(radiance.z(seen.reflectance)), 4)
+      << seen.albedo << " " << seen.mu << ": is " << radiance.mean() << " +- "
+      << radiance.standard_error() << ", expected " << seen.reflectance;
+  EXPECT_LE(radiance.standard_error(), error * seen.reflectance) << seen.albedo << " " << seen.mu;
+}
+
+/// The errors are what a second of samples gives.
+TEST(HalfSpace, ReflectsAsItsHFunctionSays) {
+  for (const Seen& seen :
+       {Seen{0.5f, 1, 0.11522588}, Seen{0.5f, 0.5, 0.16014443}, Seen{0.8f, 1, 0.28525450},
+        Seen{0.9f, 0.5, 0.50793891}, Seen{0.99f, 1, 0.75272072}}) {
+    expect_half_space(seen, 1, 4e-3, seen.albedo > 0.95f ? 1024 : 2048);
+  }
+}
+
+TEST(HalfSpace, ReflectsAsItsHFunctionSaysToAThousandth) {
+  expect_half_space({0.8f, 0.5, 0.36796976}, 1, 1e-3, 16384);
+}
+
+/// Very dense, measured in units of the scene: the same, and no path goes on for ever.
+TEST(HalfSpace, V3IsTheSameHoweverDense) {
+  for (const float density : {1e6f, 1e10f}) {
+    expect_half_space({0.8f, 1, 0.28525450}, density, 4e-3, 1024);
+  }
+  test::holds("V3", "within 4 SE");
+}
+
+}  // namespace
+}  // namespace bandsaw
