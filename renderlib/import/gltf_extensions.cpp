@@ -28,16 +28,13 @@ constexpr std::uint64_t kMostBytes = std::uint64_t{8} << 30;
 constexpr std::size_t kMostJson = std::size_t{256} << 20;
 
 /// Extensions whose meaning reaches the scene, or that say nothing about how it looks.
-constexpr absl::string_view kKnown[] = {"KHR_materials_clearcoat",
-                                        "KHR_materials_emissive_strength",
-                                        "KHR_materials_ior",
-                                        "KHR_materials_transmission",
-                                        "KHR_materials_pbrSpecularGlossiness",
-                                        "KHR_materials_unlit",
-                                        "KHR_texture_transform",
-                                        "KHR_lights_punctual",
-                                        "KHR_xmp_json_ld",
-                                        "KHR_draco_mesh_compression"};
+constexpr absl::string_view kKnown[] = {
+    "KHR_materials_clearcoat",    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",          "KHR_materials_specular",
+    "KHR_materials_transmission", "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_unlit",        "KHR_texture_transform",
+    "KHR_lights_punctual",        "KHR_xmp_json_ld",
+    "KHR_draco_mesh_compression"};
 
 const Value* find(const Struct& in, const std::string& name) {
   const auto found = in.fields().find(name);
@@ -108,6 +105,18 @@ void read_textures_of(const Struct& from, GltfMaterial& to) {
   }
 }
 
+GltfSpecular specular_of(const Struct& from) {
+  GltfSpecular to;
+  to.factor = number(from, "specularFactor").value_or(1);
+  const ListValue* color = list(from, "specularColorFactor");
+  for (int i = 0; color != nullptr && color->values_size() == 3 && i < 3; ++i) {
+    to.color[static_cast<std::size_t>(i)] = color->values(i).number_value();
+  }
+  to.has_maps =
+      object(from, "specularTexture") != nullptr || object(from, "specularColorTexture") != nullptr;
+  return to;
+}
+
 std::string name_in(const Struct& from) {
   const Value* called = find(from, "name");
   return called == nullptr ? "" : called->string_value();
@@ -132,6 +141,9 @@ GltfMaterial material_of(const Struct& from) {
   }
   if (const Struct* glow = extension(from, "KHR_materials_emissive_strength"); glow != nullptr) {
     to.emissive_strength = number(*glow, "emissiveStrength");
+  }
+  if (const Struct* specular = extension(from, "KHR_materials_specular"); specular != nullptr) {
+    to.specular = specular_of(*specular);
   }
   if (const Struct* ior = extension(from, "KHR_materials_ior"); ior != nullptr) {
     to.index_of_refraction = number(*ior, "ior").value_or(1.5);

@@ -4,6 +4,7 @@
 // are placed, how strong its emission is, at which nodes cameras stand, how many scenes it holds.
 // Read from the file's JSON.
 
+#include <array>
 #include <map>
 #include <optional>
 #include <string>
@@ -20,12 +21,20 @@ struct GltfTexture {
   UvTransform transform;  ///< KHR_texture_transform, for uvs whose v = 0 is the bottom row
 };
 
+/// KHR_materials_specular: how much of the index's reflection along the normal is there.
+struct GltfSpecular {
+  double factor = 1;
+  std::array<double, 3> color{1, 1, 1};
+  bool has_maps = false;
+};
+
 struct GltfMaterial {
   std::string name;
   std::map<std::string, GltfTexture> textures;
   std::optional<double> emissive_strength;    ///< KHR_materials_emissive_strength
   std::optional<double> index_of_refraction;  ///< KHR_materials_ior
-  double coat_normal_scale = 1;               ///< of KHR_materials_clearcoat
+  std::optional<GltfSpecular> specular;
+  double coat_normal_scale = 1;  ///< of KHR_materials_clearcoat
 };
 
 /// A camera at a node: Assimp knows but one node of each camera.

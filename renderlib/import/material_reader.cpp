@@ -1,6 +1,7 @@
 #include "renderlib/import/material_reader.h"
 
 #include <assimp/GltfMaterial.h>
+#include <assimp/ObjMaterial.h>
 #include <assimp/scene.h>
 
 #include <algorithm>
@@ -172,8 +173,30 @@ absl::StatusOr<TextureId> MaterialReader::map(Slot slot, As as, const Rgb& facto
   use.alpha = as == As::kAlpha;
   use.factor = factor;
   use.alpha_is_known = kind() == ModelKind::kGltf;
+  return find(slot, use);
+}
+
+absl::StatusOr<TextureId> MaterialReader::find(Slot slot, const TextureStore::Use& use) {
   auto texture = textures_.find(file_of(slot), use);
   return texture.ok() ? texture : failed(texture.status());
+}
+
+absl::StatusOr<TextureId> MaterialReader::bump_map(Slot slot) {
+  TextureStore::Use use = use_of(slot);
+  use.linear = true;
+  use.become = TextureStore::Use::Become::kNormals;
+  // Formats give no unit of a height. One texel keeps what is drawn for bumps visible and shallow.
+  float strength = 1;
+  material_.Get(AI_MATKEY_OBJ_BUMPMULT(slot.type, slot.index), strength);
+  use.by = std::isfinite(strength) ? std::clamp(double{strength}, -1e6, 1e6) : 1;
+  return find(slot, use);
+}
+
+absl::StatusOr<TextureId> MaterialReader::index_map(Slot slot, double index) {
+  TextureStore::Use use = use_of(slot);
+  use.become = TextureStore::Use::Become::kIndexMap;
+  use.by = index;
+  return find(slot, use);
 }
 
 absl::StatusOr<TextureId> MaterialReader::opacity_map(Slot slot) {

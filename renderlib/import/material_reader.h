@@ -49,6 +49,10 @@ class MaterialReader {
   absl::StatusOr<TextureId> white() const { return file_.draft.textures.constant({1, 1, 1}); }
   /// An opacity map: the alpha of its image, else its brightness.
   absl::StatusOr<TextureId> opacity_map(Slot slot);
+  /// The normals of a map of heights.
+  absl::StatusOr<TextureId> bump_map(Slot slot);
+  /// What makes F0 of `index` (> 1) as much as a map says (Principled::index_map).
+  absl::StatusOr<TextureId> index_map(Slot slot, double index);
   /// Whether a map of heights in fact holds normals, as files often have it.
   bool holds_normals(Slot slot) const;
 
@@ -60,6 +64,7 @@ class MaterialReader {
  private:
   std::string file_of(Slot slot) const;
   TextureStore::Use use_of(Slot slot);
+  absl::StatusOr<TextureId> find(Slot slot, const TextureStore::Use& use);
   UvSet uv_set_of(unsigned assimp_set);
   void name_dead_files();
   absl::Status failed(const absl::Status& why) const;

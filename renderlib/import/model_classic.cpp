@@ -96,12 +96,26 @@ void set_gloss(const Classic& from, Principled& to) {
       !is_black(from.specular) && from.index ? *from.index : (1 + f0) / (1 - f0);
 }
 
+// What does not shine has no use for a map of how much.
+absl::Status read_specular_map(MaterialReader& reader, const Classic& from, Principled& to) {
+  const Slot slot{aiTextureType_SPECULAR};
+  if (!reader.has(slot) || is_black(from.specular)) {
+    return absl::OkStatus();
+  }
+  if (to.metallic.factor == 1) {
+    ASSIGN_OR_RETURN(to.base_color.texture, reader.map(slot, As::kColor));
+  } else if (to.index_of_refraction > 1) {
+    ASSIGN_OR_RETURN(to.index_map, reader.index_map(slot, to.index_of_refraction));
+  }
+  return absl::OkStatus();
+}
+
 absl::Status read_bump(MaterialReader& reader, Principled& to) {
   Slot slot{aiTextureType_NORMALS};
   if (!reader.has(slot)) {
     slot = {aiTextureType_HEIGHT};
     if (reader.has(slot) && !reader.holds_normals(slot)) {
-      reader.leave_out("its bump map of heights is left out");
+      ASSIGN_OR_RETURN(to.normal, reader.bump_map(slot));
       return absl::OkStatus();
     }
   }
@@ -121,9 +135,6 @@ bool is_lamp(const Classic& from) {
 
 absl::StatusOr<ModelMaterial> read_classic(MaterialReader& reader) {
   const Classic from = read_numbers(reader);
-  if (reader.has({aiTextureType_SPECULAR})) {
-    reader.leave_out("its specular map is left out");
-  }
   if (is_lamp(from)) {
     return reader.add(Emissive{reader.draft().textures.constant(from.glow), false});
   }
@@ -145,6 +156,7 @@ absl::StatusOr<ModelMaterial> read_classic(MaterialReader& reader) {
   to.metallic.texture = to.roughness.texture = to.coat.texture = white;
   to.coat_roughness.texture = to.transmission.texture = to.alpha.texture = white;
   set_gloss(from, to);
+  RETURN_IF_ERROR(read_specular_map(reader, from, to));
   ASSIGN_OR_RETURN(to.emissive.texture, reader.map({aiTextureType_EMISSIVE}, As::kColor));
   to.emissive.factor = from.glow;
   to.double_sided = true;

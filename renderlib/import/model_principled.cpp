@@ -102,12 +102,33 @@ absl::Status read_alpha(MaterialReader& reader, Principled& to) {
   return absl::OkStatus();
 }
 
+// F0 times its factor and the luminance of its colour is the F0 of another index. Towards the edge
+// all of the light is reflected still, but where nothing is.
+void read_specular(const GltfSpecular& from, MaterialReader& reader, Principled& to) {
+  const auto [r, g, b] = from.color;
+  if (r != g || g != b) {
+    reader.leave_out("its specular colour is taken as grey");
+  }
+  if (from.has_maps) {
+    reader.leave_out("its specular map is left out");
+  }
+  const double amount = from.factor * (0.2126 * r + 0.7152 * g + 0.0722 * b);
+  const double root = (to.index_of_refraction - 1) / (to.index_of_refraction + 1);
+  // The root of F0 at an index of 5, the highest that there is.
+  constexpr double kMostRoot = 4.0 / 6;
+  const double f = std::clamp(root * std::sqrt(std::max(0.0, amount)), 0.0, kMostRoot);
+  to.index_of_refraction = std::clamp((1 + f) / (1 - f), 1.0, 5.0);
+}
+
 absl::Status read_layers(MaterialReader& reader, Principled& to) {
   to.index_of_refraction = reader.number("$mat.refracti", 1, 5).value_or(1.5);
   if (const GltfMaterial* gltf = reader.gltf(); gltf != nullptr && gltf->index_of_refraction) {
     const double index = *gltf->index_of_refraction;
     // KHR_materials_ior: 0 stands for the old kind, whose reflection knows no angle.
     to.index_of_refraction = index >= 1 && index <= 5 ? index : 1.5;
+  }
+  if (const GltfMaterial* gltf = reader.gltf(); gltf != nullptr && gltf->specular) {
+    read_specular(*gltf->specular, reader, to);
   }
   to.coat.factor = reader.number("$mat.clearcoat.factor", 0, 1).value_or(0);
   to.coat_roughness.factor = reader.number("$mat.clearcoat.roughnessFactor", 0, 1).value_or(0);

@@ -8,6 +8,7 @@
 #include "renderlib/base/status_macros.h"
 #include "renderlib/image/srgb.h"
 #include "renderlib/import/decode_image.h"
+#include "renderlib/import/derived_images.h"
 
 namespace bandsaw {
 namespace {
@@ -64,10 +65,11 @@ absl::StatusOr<TextureId> TextureStore::image(
                   static_cast<int>(use.wrap),
                   static_cast<int>(use.filter),
                   {use.factor.r, use.factor.g, use.factor.b},
-                  (use.linear ? 1 : 0) + (use.alpha ? 2 : 0),
+                  (use.linear ? 1 : 0) + (use.alpha ? 2 : 0) + 4 * static_cast<int>(use.become),
                   use.uv_set,
                   use.uv_transform.m,
-                  use.wrap_v};
+                  use.wrap_v,
+                  use.by};
   if (const auto known = images_.find(whole); known != images_.end()) {
     return known->second;
   }
@@ -94,6 +96,11 @@ absl::StatusOr<TextureId> TextureStore::image(
   scale(*image, use.factor);
   if (use.linear && image->format == ImageTexture::Format::kSrgb8) {
     image->format = ImageTexture::Format::kLinear8;
+  }
+  if (use.become == Use::Become::kNormals) {
+    *image = normals_of_heights(*image, use.by);
+  } else if (use.become == Use::Become::kIndexMap) {
+    *image = index_map_of_reflectance(*image, use.by);
   }
   const TextureId id = add(*std::move(image));
   images_[whole] = id;

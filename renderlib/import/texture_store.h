@@ -35,6 +35,10 @@ class TextureStore {
     UvSet uv_set = UvSet::kFirst;
     UvTransform uv_transform;
     std::optional<ImageTexture::Wrap> wrap_v = std::nullopt;  ///< where it differs from `wrap`
+    /// What the texels become: themselves, normals of heights by a strength, or index_map of
+    /// amounts of reflection by an index (derived_images.h).
+    enum class Become { kThemselves, kNormals, kIndexMap } become = Become::kThemselves;
+    double by = 1;
     bool alpha_is_known = false;  ///< no warning: the material says what becomes of the alpha
   };
   /// `key` tells images apart, `name` is what errors and warnings call it; `read` is called when it
@@ -47,7 +51,7 @@ class TextureStore {
 
  private:
   using Key = std::tuple<std::string, int, int, std::array<float, 3>, int, UvSet,
-                         std::array<double, 6>, std::optional<ImageTexture::Wrap>>;
+                         std::array<double, 6>, std::optional<ImageTexture::Wrap>, double>;
   std::vector<Texture>& textures_;
   std::vector<std::string>& warnings_;
   std::map<Key, TextureId> images_;

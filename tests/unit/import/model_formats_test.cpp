@@ -100,9 +100,34 @@ TEST_F(Obj, ABumpMapThatHoldsNormalsIsANormalMap) {
   write_text(folder_, "h.ppm", ppm_of(90, 90, 90));
   EXPECT_TRUE(principled("Kd 1 1 1\nmap_Bump n.ppm\n").normal.has_value());
   EXPECT_TRUE(principled("Kd 1 1 1\nnorm n.ppm\n").normal.has_value());
-  const ImportedScene heights = read("Kd 1 1 1\nmap_Bump h.ppm\n");
-  EXPECT_THAT(heights.info.warnings,
-              Contains("m.obj: material \"a\": its bump map of heights is left out"));
+  EXPECT_TRUE(principled("Kd 1 1 1\nmap_Bump h.ppm\n").normal.has_value());
+  EXPECT_THAT(read("Kd 1 1 1\nmap_Bump h.ppm\n").info.warnings, IsEmpty());
+}
+
+// Heights that rise by 51 codes a texel to the right: slopes of 0.2, with -bm 2 of 0.4.
+TEST_F(Obj, ABumpMapOfHeightsIsTheirSlope) {
+  write_text(folder_, "h.pgm", std::string("P5 3 1 255\n") + '\x0a' + '\x3d' + '\x70');
+  const auto middle = [&](const std::string& bump) {
+    const ImportedScene imported = read("Kd 1 1 1\n" + bump);
+    const Principled& m = std::get<Principled>(imported.scene.materials[0]);
+    const Rgb texel = evaluate(imported.scene.textures, *m.normal, {{0.5, 0.5}, {}, {}, {}});
+    return Vec3{2.0 * texel.r - 1, 2.0 * texel.g - 1, 2.0 * texel.b - 1};
+  };
+  EXPECT_LE(length(middle("map_Bump h.pgm\n") - normalize({-0.2, 0, 1})), 1e-6);
+  EXPECT_LE(length(middle("map_Bump -bm 2 h.pgm\n") - normalize({-0.4, 0, 1})), 1e-6);
+}
+
+// About half of the reflection of glass, whose F0 is 0.04; the index is stored to half a code.
+TEST_F(Obj, ASpecularMapSaysHowMuchIsReflected) {
+  write_text(folder_, "s.ppm", ppm_of(188, 188, 188));
+  const ImportedScene imported = read("illum 2\nKd 0.5 0 0\nKs 1 1 1\nNs 100\nmap_Ks s.ppm\n");
+  EXPECT_THAT(imported.info.warnings, IsEmpty());
+  const Principled& m = std::get<Principled>(imported.scene.materials[0]);
+  ASSERT_TRUE(m.index_map.has_value());
+  const Rgb share = evaluate(imported.scene.textures, *m.index_map, {{0.5, 0.5}, {}, {}, {}});
+  const double index = 1 + share.r * (m.index_of_refraction - 1);
+  const double f0 = (index - 1) * (index - 1) / ((index + 1) * (index + 1));
+  EXPECT_NEAR(f0, 0.04 * srgb_table()[188], 1.3e-4);
 }
 
 TEST_F(Obj, ReadsThePbrNumbersOfNewerFiles) {

@@ -37,6 +37,22 @@ class Gltf : public ::testing::Test {
   TempDir folder_;
 };
 
+// F0 of index 1.5 is 0.04; a quarter of it is that of 1.1 / 0.9.
+TEST_F(Gltf, SpecularIsTheIndexOfTheSameReflection) {
+  GltfTriangle file;
+  file.more = R"("extensionsUsed": ["KHR_materials_specular"],)";
+  file.materials = R"({"extensions": {"KHR_materials_specular": {"specularFactor": 0.25}}})";
+  const ImportedScene plain = read(file);
+  EXPECT_THAT(plain.info.warnings, IsEmpty());
+  EXPECT_NEAR(principled(plain).index_of_refraction, 1.1 / 0.9, 1e-9);
+  file.materials = R"({"extensions": {"KHR_materials_specular": {"specularFactor": 0,
+    "specularColorFactor": [1, 0.5, 1], "specularTexture": {"index": 0}}}})";
+  const ImportedScene odd = read(file);
+  EXPECT_EQ(principled(odd).index_of_refraction, 1);
+  EXPECT_THAT(odd.info.warnings, ElementsAre(HasSubstr("its specular colour is taken as grey"),
+                                             HasSubstr("its specular map is left out")));
+}
+
 TEST_F(Gltf, EveryParameterHasItsTextureAndItsNumber) {
   GltfTriangle file;
   file.textures = R"({"source": 0}, {"source": 0, "sampler": 0})";

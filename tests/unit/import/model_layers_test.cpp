@@ -3,13 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
-
 #include "renderlib/image/srgb.h"
-#include "renderlib/import/import.h"
-#include "renderlib/render/render_image.h"
 #include "tests/support/random.h"
 #include "tests/unit/import/gltf_file.h"
+#include "tests/unit/import/layer.h"
 
 namespace bandsaw {
 namespace {
@@ -39,12 +36,7 @@ Image seen(const TempDir& folder, const std::string& model, Integrator integrato
       "model { file: \"" +
           model + "\" scale: [1.4, 1, 1] translate: [-0.2, 0, 0] }"));
   EXPECT_TRUE(imported.ok()) << imported.status();
-  Pool pool(1);
-  const auto scene = Scene::build(imported->scene, pool).value();
-  RenderSettings settings{.width = kWidth, .height = kHeight};
-  settings.integrator = integrator;
-  const std::atomic<bool> stop{false};
-  return render_image(*scene, settings, 1, pool, stop, {}, "").value().film.snapshot().image;
+  return test::layer(*imported, kWidth, kHeight, integrator);
 }
 
 void write_models(const TempDir& folder) {
