@@ -19,7 +19,7 @@ export PATH="$build/bin:$PATH"
 mkdir -p "$folder"
 cp deploy/demo.textproto "$folder/engine.textproto"
 cp /usr/share/assimp/models/glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb "$folder/"
-cp renderlib/gallery/{knot.obj,pawn.obj,vase.obj,planet.png} "$folder/"
+cp renderlib/gallery/{knot.obj,pawn.obj,vase.obj,planet.png,dusk.hdr} "$folder/"
 
 data=$(mktemp -d)
 pids=()
