@@ -42,11 +42,16 @@ bool intersect(const TracedRay& ray, const Quad& quad, Crossing& crossing) {
   const Vec3 along_u = quad.corner + quad.u;
   const Point corner = point(quad.corner);
   const Point opposite = point(along_u + quad.v);
-  Crossing first;
-  Crossing second;
-  const bool hit_first = intersect_triangle(ray, corner, point(along_u), opposite, first);
-  const bool hit_second =
-      intersect_triangle(ray, corner, opposite, point(quad.corner + quad.v), second);
+  const Point to_u = point(along_u);
+  const Point to_v = point(quad.corner + quad.v);
+  const Sheared at_corner = sheared(ray, corner);
+  const Sheared at_opposite = sheared(ray, opposite);
+  Crossing first{};
+  Crossing second{};
+  const bool hit_first = intersect_sheared(ray, corner, to_u, opposite, at_corner,
+                                           sheared(ray, to_u), at_opposite, first);
+  const bool hit_second = intersect_sheared(ray, corner, opposite, to_v, at_corner, at_opposite,
+                                            sheared(ray, to_v), second);
   // On the diagonal both are hit; the nearer counts, then the first.
   if (hit_first && (!hit_second || first.t <= second.t)) {
     crossing = {first.t, std::min(1.0, first.u + first.v), first.v};

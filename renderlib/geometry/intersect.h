@@ -28,27 +28,35 @@ inline double difference_of_products(double a, double b, double c, double d) {
   return std::fma(a, b, -cd) + error;
 }
 
-/// Woop, Benthin, Wald 2013, "Watertight Ray/Triangle Intersection", JCGT 2(1), both sides, edges
-/// included: where triangles share an edge, a ray through it hits one of them at least. `Point` is
-/// an array of three numbers, float or double.
+/// A point as the ray sees it: the ray is the z axis, its origin the origin.
+struct Sheared {
+  double x;
+  double y;
+  double z;
+};
+
+/// `Point` is an array of three numbers, float or double.
 template <class Point>
-inline bool intersect_triangle(const TracedRay& ray, const Point& a, const Point& b, const Point& c,
-                               Crossing& crossing) {
+[[gnu::always_inline]] inline Sheared sheared(const TracedRay& ray, const Point& p) {
   const auto kx = static_cast<std::size_t>(ray.kx);
   const auto ky = static_cast<std::size_t>(ray.ky);
   const auto kz = static_cast<std::size_t>(ray.kz);
-  const double az = a[kz] - ray.origin[kz];
-  const double bz = b[kz] - ray.origin[kz];
-  const double cz = c[kz] - ray.origin[kz];
-  const double ax = (a[kx] - ray.origin[kx]) - ray.shear_x * az;
-  const double ay = (a[ky] - ray.origin[ky]) - ray.shear_y * az;
-  const double bx = (b[kx] - ray.origin[kx]) - ray.shear_x * bz;
-  const double by = (b[ky] - ray.origin[ky]) - ray.shear_y * bz;
-  const double cx = (c[kx] - ray.origin[kx]) - ray.shear_x * cz;
-  const double cy = (c[ky] - ray.origin[ky]) - ray.shear_y * cz;
-  const double weight_a = difference_of_products(cx, by, cy, bx);
-  const double weight_b = difference_of_products(ax, cy, ay, cx);
-  const double weight_c = difference_of_products(bx, ay, by, ax);
+  const double z = p[kz] - ray.origin[kz];
+  return {(p[kx] - ray.origin[kx]) - ray.shear_x * z, (p[ky] - ray.origin[ky]) - ray.shear_y * z,
+          z};
+}
+
+/// Woop, Benthin, Wald 2013, "Watertight Ray/Triangle Intersection", JCGT 2(1), both sides, edges
+/// included: where triangles share an edge, a ray through it hits one of them at least. The corners
+/// come as they are and sheared.
+template <class Point>
+[[gnu::always_inline]] inline bool intersect_sheared(const TracedRay& ray, const Point& a,
+                                                     const Point& b, const Point& c,
+                                                     const Sheared& at_a, const Sheared& at_b,
+                                                     const Sheared& at_c, Crossing& crossing) {
+  const double weight_a = difference_of_products(at_c.x, at_b.y, at_c.y, at_b.x);
+  const double weight_b = difference_of_products(at_a.x, at_c.y, at_a.y, at_c.x);
+  const double weight_c = difference_of_products(at_b.x, at_a.y, at_b.y, at_a.x);
   if ((weight_a < 0 || weight_b < 0 || weight_c < 0) &&
       (weight_a > 0 || weight_b > 0 || weight_c > 0)) {
     return false;
@@ -58,7 +66,7 @@ inline bool intersect_triangle(const TracedRay& ray, const Point& a, const Point
     return false;
   }
   const double scale = 1 / sum;
-  double t = (weight_a * az + weight_b * bz + weight_c * cz) * scale * ray.shear_z;
+  double t = (weight_a * at_a.z + weight_b * at_b.z + weight_c * at_c.z) * scale * ray.shear_z;
   double lo[3];
   double hi[3];
   for (std::size_t k = 0; k < 3; ++k) {
@@ -71,6 +79,13 @@ inline bool intersect_triangle(const TracedRay& ray, const Point& a, const Point
   }
   crossing = {t, std::clamp(weight_b * scale, 0.0, 1.0), std::clamp(weight_c * scale, 0.0, 1.0)};
   return true;
+}
+
+template <class Point>
+inline bool intersect_triangle(const TracedRay& ray, const Point& a, const Point& b, const Point& c,
+                               Crossing& crossing) {
+  return intersect_sheared(ray, a, b, c, sheared(ray, a), sheared(ray, b), sheared(ray, c),
+                           crossing);
 }
 
 /// The boxes that hits are confined to (clip_to_box); what a tree's boxes must hold. A sphere's is

@@ -15,15 +15,17 @@ double norm(const std::array<Vec3, 3>& m) {
   return std::sqrt(length_squared(m[0]) + length_squared(m[1]) + length_squared(m[2]));
 }
 
-SurfacePoint on_sphere(const Sphere& sphere, const Ray& ray, const Hit& hit) {
+SurfacePoint on_sphere(const Sphere& sphere, const Ray& ray, const Hit& hit, bool with_uv) {
   const Vec3 outward = (ray.origin - sphere.center) + ray.direction * hit.t;
   SurfacePoint p;
-  p.geometric_normal = unit_or(outward, unit_or(-ray.direction, {0, 0, 1}));
+  p.geometric_normal = unit_normal(outward, ray);
   p.shading_normal = p.geometric_normal;
   p.position = sphere.center + p.geometric_normal * sphere.radius;
   p.object_position = p.geometric_normal * sphere.radius;
-  p.uv = sphere_uv(p.geometric_normal);
-  p.uv2 = p.uv;
+  if (with_uv) {
+    p.uv = sphere_uv(p.geometric_normal);
+    p.uv2 = p.uv;
+  }
   p.material = sphere.material;
   p.offset = surface_offset(p.position, sphere.radius + max_abs(sphere.center));
   return p;
@@ -60,15 +62,10 @@ SurfacePoint on_disk(const Disk& disk, const Hit& hit) {
 
 }  // namespace
 
-Vec3 unit_or(const Vec3& v, const Vec3& otherwise) {
-  const double size = max_abs(v);
-  return size > 0 && std::isfinite(size) && is_finite(v) ? normalize(v / size) : otherwise;
-}
-
 Vec3 flat_normal(const Vec3& e1, const Vec3& e2, const Ray& ray) {
   const double s1 = std::max(max_abs(e1), 0x1p-1000);
   const double s2 = std::max(max_abs(e2), 0x1p-1000);
-  return unit_or(cross(e1 / s1, e2 / s2), unit_or(-ray.direction, {0, 0, 1}));
+  return unit_normal(cross(e1 / s1, e2 / s2), ray);
 }
 
 Placement::Placement(const Transform& t) {
@@ -95,11 +92,11 @@ double surface_offset(const Vec3& position, double size) {
   return kOffset * std::max(max_abs(position), size);
 }
 
-SurfacePoint on_shape(const Shapes& shapes, const Ray& ray, const Hit& hit) {
+SurfacePoint on_shape(const Shapes& shapes, const Ray& ray, const Hit& hit, bool sphere_uv) {
   const auto [kind, index] = shape_ref(shapes, hit.id.primitive);
   switch (kind) {
     case ShapeKind::kSphere:
-      return on_sphere(shapes.spheres[index], ray, hit);
+      return on_sphere(shapes.spheres[index], ray, hit, sphere_uv);
     case ShapeKind::kQuad: {
       const Quad& quad = shapes.quads[index];
       return on_flat(quad.corner, quad.u, quad.v, quad.material, ray, hit);
@@ -118,8 +115,7 @@ SurfacePoint placed(const SurfacePoint& local, const Transform& to_world, const 
   const Placement placement(to_world);
   SurfacePoint p = local;
   p.position = to_world.point(local.position);
-  p.geometric_normal = unit_or(placement.normal(local.geometric_normal),
-                               unit_or(-world_ray.direction, {0, 0, 1}));
+  p.geometric_normal = unit_normal(placement.normal(local.geometric_normal), world_ray);
   p.shading_normal = p.geometric_normal;
   p.offset = placement.offset(p.position, local.offset / kOffset);
   return p;

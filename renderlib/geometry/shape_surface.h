@@ -9,8 +9,18 @@
 
 namespace bandsaw {
 
-/// The unit vector along `v`, or `otherwise` where v has none (zero or not finite).
-Vec3 unit_or(const Vec3& v, const Vec3& otherwise);
+/// Whether `v` has a direction: it is neither zero nor infinite nor NaN.
+inline bool has_direction(const Vec3& v) { return max_abs(v) > 0 && is_finite(v); }
+/// The unit vector along `v`, which has a direction; v may be of any length.
+inline Vec3 unit(const Vec3& v) { return normalize(v / max_abs(v)); }
+/// The unit vector along `v`, or `otherwise` where v has no direction.
+inline Vec3 unit_or(const Vec3& v, const Vec3& otherwise) {
+  return has_direction(v) ? unit(v) : otherwise;
+}
+/// The unit normal along `v`, or where v has no direction one that faces the ray.
+inline Vec3 unit_normal(const Vec3& v, const Ray& ray) {
+  return has_direction(v) ? unit(v) : unit_or(-ray.direction, {0, 0, 1});
+}
 /// The unit normal of a triangle with these edges; a triangle without area faces the ray.
 Vec3 flat_normal(const Vec3& e1, const Vec3& e2, const Ray& ray);
 
@@ -32,8 +42,8 @@ struct Placement {
   double moved;  ///< the largest component of the translation
 };
 
-/// Of a shape in the space it lies in; `ray` is in that space.
-SurfacePoint on_shape(const Shapes& shapes, const Ray& ray, const Hit& hit);
+/// Of a shape in the space it lies in; `ray` is in that space. `sphere_uv`: as surface_at.
+SurfacePoint on_shape(const Shapes& shapes, const Ray& ray, const Hit& hit, bool sphere_uv);
 
 /// The same point in the world.
 SurfacePoint placed(const SurfacePoint& local, const Transform& to_world, const Ray& world_ray);

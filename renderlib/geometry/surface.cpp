@@ -65,8 +65,7 @@ SurfacePoint on_mesh(const Geometry& geometry, const Ray& ray, const Hit& hit) {
   SurfacePoint p;
   p.position = to_world.point(local_position);
   p.object_position = local_position;
-  p.geometric_normal = unit_or(placement.normal(flat_normal(local.e1, local.e2, ray)),
-                               unit_or(-ray.direction, {0, 0, 1}));
+  p.geometric_normal = unit_normal(placement.normal(flat_normal(local.e1, local.e2, ray)), ray);
   p.shading_normal = p.geometric_normal;
   if (!mesh.normals.empty()) {
     const Vec3 n = interpolate(mesh.normals[local.index[0]], mesh.normals[local.index[1]],
@@ -85,28 +84,29 @@ SurfacePoint on_mesh(const Geometry& geometry, const Ray& ray, const Hit& hit) {
   return p;
 }
 
-SurfacePoint on_group(const Geometry& geometry, const Ray& ray, const Hit& hit) {
+SurfacePoint on_group(const Geometry& geometry, const Ray& ray, const Hit& hit, bool sphere_uv) {
   const Instance& instance = geometry.instances[hit.id.instance - 1];
   const Transform to_world = to_world_at(geometry, instance, ray.time);
   const Transform to_object = inverse(to_world).value_or(Transform{});
   Ray local = ray;
   local.origin = to_object.point(ray.origin);
   local.direction = to_object.direction(ray.direction);
-  SurfacePoint p = placed(on_shape(*group_of(geometry, instance), local, hit), to_world, ray);
+  SurfacePoint p =
+      placed(on_shape(*group_of(geometry, instance), local, hit, sphere_uv), to_world, ray);
   p.material = instance.material == kOwnMaterial ? p.material : instance.material;
   return p;
 }
 
-SurfacePoint on_instance(const Geometry& geometry, const Ray& ray, const Hit& hit) {
+SurfacePoint on_instance(const Geometry& geometry, const Ray& ray, const Hit& hit, bool sphere_uv) {
   const bool group = geometry.instances[hit.id.instance - 1].group != kNoGroup;
-  return group ? on_group(geometry, ray, hit) : on_mesh(geometry, ray, hit);
+  return group ? on_group(geometry, ray, hit, sphere_uv) : on_mesh(geometry, ray, hit);
 }
 
 }  // namespace
 
-SurfacePoint surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit) {
-  SurfacePoint p =
-      hit.id.instance == 0 ? on_shape(geometry, ray, hit) : on_instance(geometry, ray, hit);
+SurfacePoint surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit, bool sphere_uv) {
+  SurfacePoint p = hit.id.instance == 0 ? on_shape(geometry, ray, hit, sphere_uv)
+                                        : on_instance(geometry, ray, hit, sphere_uv);
   p.id = hit.id;
   p.time = ray.time;
   return p;

@@ -34,7 +34,10 @@ struct SurfacePoint {
   double time = 0;  ///< of the ray that met it; rays from here are at that time too
 };
 
-SurfacePoint surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit);
+/// `sphere_uv`: false where nobody looks at the uvs of spheres, which are zero then: their angles
+/// are much of the work.
+SurfacePoint surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit,
+                        bool sphere_uv = true);
 
 /// Sets along_u and along_v; they stay zero where the uvs of a triangle have no area.
 void add_uv_directions(const Geometry& geometry, SurfacePoint& point);

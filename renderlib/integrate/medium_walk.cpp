@@ -54,7 +54,7 @@ std::optional<MediumWalk::Crossing> MediumWalk::crossing_after(const Hit& after)
   if (!hit) {
     return std::nullopt;
   }
-  const SurfacePoint point = surface_at(scene_.media().boundaries, ray_, hit);
+  const SurfacePoint point = surface_at(scene_.media().boundaries, ray_, hit, false);
   Crossing crossing;
   crossing.hit = hit;
   crossing.shape = {hit.id.instance, hit.id.instance == 0 ? hit.id.primitive : 0};

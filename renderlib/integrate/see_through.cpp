@@ -6,7 +6,7 @@ namespace bandsaw {
 namespace {
 
 SurfacePoint point_at(const Scene& scene, const Ray& ray, const Hit& hit) {
-  SurfacePoint point = surface_at(scene.geometry(), ray, hit);
+  SurfacePoint point = surface_at(scene.geometry(), ray, hit, scene.needs().uv);
   const auto* principled = std::get_if<Principled>(&scene.material(point.material));
   if (principled != nullptr && (principled->normal || principled->coat_normal)) {
     add_uv_directions(scene.geometry(), point);

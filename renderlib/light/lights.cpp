@@ -1,5 +1,6 @@
 #include "renderlib/light/lights.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -13,7 +14,11 @@ namespace bandsaw {
 Lights::Lights(const Geometry& geometry, const std::vector<Material>& materials,
                const std::vector<Texture>& textures, const std::vector<DeltaLight>& delta_lights,
                const Background& background, const Interval& interval)
-    : geometry_(&geometry), materials_(&materials), textures_(&textures), background_(&background) {
+    : geometry_(&geometry),
+      materials_(&materials),
+      textures_(&textures),
+      background_(&background),
+      uses_uv_(std::any_of(textures.begin(), textures.end(), uses_uv)) {
   std::vector<LightBound> local = add_surfaces(interval);
   std::vector<DistantBound> distant = add_delta_lights(delta_lights, local);
   if (background.environment) {
@@ -137,7 +142,7 @@ std::optional<LightSample> Lights::sample_surface(PrimitiveId id, const Receiver
   }
   const Ray ray{.origin = receiver.position, .direction = way, .time = receiver.time};
   const Hit hit{.t = 1, .id = id, .u = on_light->on_shape.x, .v = on_light->on_shape.y};
-  const SurfacePoint point = surface_at(*geometry_, ray, hit);
+  const SurfacePoint point = surface_at(*geometry_, ray, hit, uses_uv_);
   const Material& material = (*materials_)[index_of(point.material)];
   LightSample sample;
   sample.direction = normalize(way);

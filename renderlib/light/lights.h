@@ -82,6 +82,7 @@ class Lights {
   const std::vector<Material>* materials_ = nullptr;
   const std::vector<Texture>* textures_ = nullptr;
   const Background* background_ = nullptr;
+  bool uses_uv_ = true;  ///< of its points: some texture does
   /// A light's number counts the surfaces, then the delta lights, those with a place first, then
   /// the environment.
   std::vector<PrimitiveId> ids_;

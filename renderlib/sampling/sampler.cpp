@@ -2,6 +2,8 @@
 
 #include <cstddef>
 
+#include "renderlib/base/uint4.h"
+
 namespace bandsaw {
 namespace {
 
@@ -23,7 +25,8 @@ constexpr std::uint32_t reverse_bits(std::uint32_t x) {
 
 /// Owen scrambling of a number whose bits are reversed: every step lets a bit depend on lower bits
 /// alone (Laine and Karras 2011; constants of Vegdahl 2021).
-std::uint32_t scramble_reversed(std::uint32_t x, std::uint32_t seed) {
+template <class UInt>
+UInt scramble_reversed(UInt x, UInt seed) {
   x ^= x * 0x3d20adeau;
   x += seed;
   x *= (seed >> 16) | 1u;
@@ -86,8 +89,6 @@ std::uint32_t sobol_reversed(std::uint32_t index, std::size_t dimension) {
          t[3][index >> 24];
 }
 
-double to_unit(std::uint32_t reversed) { return reverse_bits(reversed) * 0x1p-32; }
-
 }  // namespace
 
 PixelSampler::PixelSampler(std::uint64_t seed, std::uint32_t x, std::uint32_t y)
@@ -101,14 +102,13 @@ Sample4 PixelSampler::group(std::uint64_t sample, std::uint32_t group) const {
   const std::uint64_t seeds23 = mix(base + 2 * kGolden);
   const std::uint32_t index = reverse_bits(scramble_reversed(
       reverse_bits(static_cast<std::uint32_t>(sample)), static_cast<std::uint32_t>(base >> 32)));
-  return {
-      to_unit(scramble_reversed(index, static_cast<std::uint32_t>(seeds01))),
-      to_unit(
-          scramble_reversed(sobol_reversed(index, 0), static_cast<std::uint32_t>(seeds01 >> 32))),
-      to_unit(scramble_reversed(sobol_reversed(index, 1), static_cast<std::uint32_t>(seeds23))),
-      to_unit(
-          scramble_reversed(sobol_reversed(index, 2), static_cast<std::uint32_t>(seeds23 >> 32))),
-  };
+  const UInt4 points = {index, sobol_reversed(index, 0), sobol_reversed(index, 1),
+                        sobol_reversed(index, 2)};
+  const UInt4 seeds = {
+      static_cast<std::uint32_t>(seeds01), static_cast<std::uint32_t>(seeds01 >> 32),
+      static_cast<std::uint32_t>(seeds23), static_cast<std::uint32_t>(seeds23 >> 32)};
+  const UInt4 numbers = reverse_bits(scramble_reversed(points, seeds));
+  return {numbers[0] * 0x1p-32, numbers[1] * 0x1p-32, numbers[2] * 0x1p-32, numbers[3] * 0x1p-32};
 }
 
 Sample4 sample4(const SampleKey& key, std::uint32_t group) {

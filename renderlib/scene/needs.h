@@ -13,6 +13,7 @@ struct Needs {
   bool alpha = false;   ///< surfaces that are not there everywhere
   bool motion = false;  ///< something moves while the shutter is open
   bool media = false;   ///< something between the surfaces
+  bool uv = false;      ///< textures that are looked up by it
   friend bool operator==(const Needs&, const Needs&) = default;
 };
 
@@ -21,11 +22,12 @@ struct NamedNeed {
   bool Needs::*need;
 };
 
-inline constexpr std::array<NamedNeed, 4> kEachNeed = {{
+inline constexpr std::array<NamedNeed, 5> kEachNeed = {{
     {"lights", &Needs::lights},
     {"alpha", &Needs::alpha},
     {"motion", &Needs::motion},
     {"media", &Needs::media},
+    {"uv", &Needs::uv},
 }};
 static_assert(sizeof(Needs) == kEachNeed.size(), "every need is in the table");
 

@@ -16,6 +16,7 @@ Needs needs_of(const SceneDescription& scene, const Lights& lights) {
   needs.lights = !lights.empty();
   needs.alpha = std::any_of(scene.materials.begin(), scene.materials.end(), has_alpha);
   needs.motion = moves(scene.geometry) || moves(scene.media.boundaries);
+  needs.uv = std::any_of(scene.textures.begin(), scene.textures.end(), uses_uv);
   needs.media = scene.media.fog || scene.media.has_boundaries();
   return needs;
 }

@@ -83,4 +83,14 @@ float max_value(absl::Span<const Texture> textures, TextureId id) { return Most{
 
 Rgb mean(absl::Span<const Texture> textures, TextureId id) { return Mean{textures}.of(id); }
 
+bool uses_uv(const Texture& texture) {
+  if (const auto* checker = std::get_if<CheckerTexture>(&texture)) {
+    return checker->mapping == CheckerTexture::Mapping::kUv;
+  }
+  if (const auto* ramp = std::get_if<RampTexture>(&texture)) {
+    return ramp->over == RampTexture::Over::kU || ramp->over == RampTexture::Over::kV;
+  }
+  return std::holds_alternative<ImageTexture>(texture);
+}
+
 }  // namespace bandsaw

@@ -132,4 +132,7 @@ float max_value(absl::Span<const Texture> textures, TextureId id);
 /// where they are black everywhere.
 Rgb mean(absl::Span<const Texture> textures, TextureId id);
 
+/// Whether the texture itself, not one that it refers to, is looked up by uv.
+bool uses_uv(const Texture& texture);
+
 }  // namespace bandsaw
