@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numeric>
 
 #include "renderlib/base/check.h"
@@ -78,7 +79,9 @@ void ErrorSums::add_pixel(const double (&variances)[3], const double (&means)[3]
   }
   squares_ += of_pixel;
   sum_ += value;
-  variances_.push_back(static_cast<float>(std::max(0.0, of_pixel / 3)));
+  // One sample of 1e30 is worth more than a float holds, and infinity would make the shares NaN.
+  constexpr double kMost = std::numeric_limits<float>::max();
+  variances_.push_back(static_cast<float>(std::clamp(of_pixel / 3, 0.0, kMost)));
   means_.push_back(static_cast<float>(value / 3));
 }
 

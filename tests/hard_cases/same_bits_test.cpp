@@ -32,12 +32,13 @@ struct Rendering {
   int building_threads = 1;
   int threads = 1;
   std::uint32_t rows = kHeight;  ///< of a band
+  Needs forced = {};
 };
 
 std::string hash_of(const ImportedScene& imported, const Rendering& how) {
   Pool building(how.building_threads);
   Pool pool(how.threads);
-  const auto scene = Scene::build(imported.scene, building);
+  const auto scene = Scene::build(imported.scene, building, how.forced);
   EXPECT_TRUE(scene.ok()) << scene.status();
   const RenderSettings settings{.width = kWidth,
                                 .height = kHeight,
@@ -90,14 +91,17 @@ TEST(SameBits, C5R6R10B12Y3_TwelveScenesHaveTheirHashes) {
     for (const std::uint32_t rows : {1u, 3u, 7u}) {
       EXPECT_EQ(hash_of(*imported, {.threads = 2, .rows = rows}), hash) << rows;
     }
+    EXPECT_EQ(hash_of(*imported, {.forced = kAllNeeds}), hash) << "the general kernel";
   }
   if (HasFailure()) {
     std::cout << now;
   }
   test::holds("C5", "12 scenes: one hash for 1, 2, 3, 8 threads and bands of 1, 3, 7, 15 rows");
-  test::holds("B12", "12 scenes: one hash for trees built by 1, 2, 3, 8 threads");
+  test::holds(
+      "B12",
+      "12 scenes: one hash for trees built by 1, 2, 3, 8 threads, and for the general kernel");
   test::holds("Y3", "12 scenes: the hashes of the table in this build");
-  test::holds("R10", "12 scenes: the hashes of the table by any compiler");
+  test::holds("R10", "12 scenes: the hashes of the table in this build");
 }
 
 }  // namespace

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/support/hard_case.h"
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -125,7 +127,7 @@ TEST(House, OnlyPackageAndImportKnowProtobufInRenderlib) {
 
 // Functions whose results depend on the CPU's libm, on the standard library's choice or on hidden
 // state.
-TEST(House, RenderlibCallsNothingWhoseResultDependsOnTheMachine) {
+TEST(House, Y5_RenderlibCallsNothingWhoseResultDependsOnTheMachine) {
   const std::regex banned(
       R"(\bstd::(sin|cos|tan|asin|acos|atan|atan2|exp|exp2|expm1|log|log2|log10|log1p|pow|cbrt|hypot)\()"
       R"(|\bstd::(uniform_\w+_distribution|normal_distribution|shuffle|reduce|random_device|mt19937\w*)\b)"
@@ -140,6 +142,26 @@ TEST(House, RenderlibCallsNothingWhoseResultDependsOnTheMachine) {
       EXPECT_FALSE(std::regex_search(code, banned)) << source << ": " << line;
     }
   }
+  bandsaw::test::holds(
+      "Y5", "no approximate reciprocal, and no function of the machine's library, in any source");
+}
+
+// Every dimension of a sample has its place (sampling/sampler.h), so nothing is drawn until it
+// fits: where samples are mapped there is no loop without a count.
+TEST(House, R7_NothingIsDrawnUntilItFits) {
+  const std::regex loop(R"(\b(while|do)\b\s*[({]|for \(;;\))");
+  for (const fs::path& source : sources()) {
+    const std::string folder = source.parent_path().string();
+    if (folder != "renderlib/sampling" && folder != "renderlib/material" &&
+        folder != "renderlib/camera") {
+      continue;
+    }
+    for (const std::string& line : lines_of(source)) {
+      const std::string code = line.substr(0, line.find("//"));
+      EXPECT_FALSE(std::regex_search(code, loop)) << source << ": " << line;
+    }
+  }
+  bandsaw::test::holds("R7", "no loop without a count where samples are mapped");
 }
 
 TEST(House, FilesStayReadable) {

@@ -12,12 +12,9 @@
 #include "renderlib/accel/walk.h"
 #include "tests/support/hard_case.h"
 #include "tests/support/meshes.h"
-#include "tests/support/wide.h"
 
 namespace bandsaw {
 namespace {
-
-using test::Wide;
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
@@ -48,21 +45,6 @@ std::set<std::uint32_t> visited(const WideTree& tree, const Ray& ray) {
 
 bool is_used(const WideNode& node, std::size_t child) { return node.bounds[0][child] != kInf; }
 
-bool meets(const FloatBox& box, const Ray& ray) {
-  WideNode node;
-  for (std::size_t k = 0; k < 3; ++k) {
-    node.bounds[k].fill(kInf);
-    node.bounds[k + 3].fill(-kInf);
-    node.bounds[k][5] = box.lo[k];
-    node.bounds[k + 3][5] = box.hi[k];
-  }
-  const FloatRay floats(trace_setup(ray.origin, ray.direction, ray.t_max), box.reach());
-  Float8 enter;
-  const unsigned met = enter_children(node, floats, floats.above(ray.t_max), enter);
-  EXPECT_EQ(met & ~32u, 0u) << "an unused child is entered";
-  return met != 0;
-}
-
 TEST(Tree, OfNothingIsEmpty) {
   const WideTree tree = build_tree({});
   EXPECT_TRUE(tree.empty);
@@ -76,79 +58,6 @@ TEST(Tree, LeavesOutBoxesThatAreEmptyOrNotFinite) {
                                        {{0, 0, 0}, {1, 1, 1}}};
   const WideTree tree = build_tree(boxes);
   EXPECT_EQ(visited(tree, {{0.5, 0.5, -1}, {0, 0, 1}}), std::set<std::uint32_t>{3});
-}
-
-// Rays within the faces of a box, where 0 times infinity is NaN.
-TEST(Tree, B1B4_RaysWithinAFaceMeetTheBox) {
-  const FloatBox box = {{0, 0, 0}, {1, 1, 1}};
-  for (const double x : {0.0, 1.0}) {
-    for (const double zero : {0.0, -0.0}) {
-      EXPECT_TRUE(meets(box, {{x, 0.5, -1}, {zero, 0, 1}}));
-      EXPECT_TRUE(meets(box, {{x, x, -1}, {zero, zero, 1}}));
-      EXPECT_TRUE(meets(box, {{x, 0.5, 2}, {zero, 0, -1}}));
-      EXPECT_TRUE(meets(box, {{x, 0.5, -1}, {zero, 1e-320, 1}}));
-    }
-  }
-  EXPECT_FALSE(meets(box, {{1 + 1e-6, 0.5, -1}, {0, 0, 1}}));
-  const FloatBox flat = {{0, 0, 0}, {1, 1, 0}};
-  EXPECT_TRUE(meets(flat, {{0.5, 0.5, -1}, {0, 0, 1}}));
-  EXPECT_TRUE(meets(flat, {{-1, 0.5, 0}, {1, 0, 0}}));
-  test::holds("B1", "hit in 4 of 4, and with denormals");
-}
-
-/// Whether a ray meets a box, without rounding.
-bool truly_meets(const FloatBox& box, const Ray& ray) {
-  Wide enter = 0;
-  Wide leave = Wide{1e30};
-  for (int k = 0; k < 3; ++k) {
-    const Wide o = ray.origin[k];
-    const Wide d = ray.direction[k];
-    const Wide lo = box.lo[static_cast<std::size_t>(k)];
-    const Wide hi = box.hi[static_cast<std::size_t>(k)];
-    if (d == 0) {
-      if (o < lo || o > hi) {
-        return false;
-      }
-      continue;
-    }
-    const Wide first = (d > 0 ? lo : hi) - o;
-    const Wide last = (d > 0 ? hi : lo) - o;
-    enter = std::max(enter, first / d);
-    leave = std::min(leave, last / d);
-  }
-  return enter <= leave;
-}
-
-TEST(Tree, NeverMissesABoxThatIsMet) {
-  test::Random random(1);
-  int met = 0;
-  for (int i = 0; i < 300000; ++i) {
-    const double offset = std::pow(10, random.uniform(-6, 6));
-    const Vec3 center = offset * test::random_direction(random);
-    const Vec3 size = {std::pow(10, random.uniform(-6, 1)), std::pow(10, random.uniform(-6, 1)),
-                       random.below(4) == 0 ? 0 : std::pow(10, random.uniform(-6, 1))};
-    const FloatBox box = round_outwards({center - size, center + size});
-    // Through a point of an edge, from anywhere.
-    Vec3 target;
-    double* target_axes[3] = {&target.x, &target.y, &target.z};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double u = random.uniform();
-      *target_axes[k] = random.below(3) == 0   ? box.lo[k] + u * (double{box.hi[k]} - box.lo[k])
-                        : random.below(2) == 0 ? box.lo[k]
-                                               : box.hi[k];
-    }
-    Vec3 d = test::random_direction(random);
-    if (random.below(8) == 0) {
-      d.x = random.below(2) == 0 ? 0 : 1e-30;
-    }
-    const Vec3 origin = target - std::pow(10, random.uniform(-3, 3)) * d;
-    const Ray ray = {origin, d * std::ldexp(1, static_cast<int>(random.below(80)) - 40)};
-    if (truly_meets(box, ray)) {
-      ++met;
-      ASSERT_TRUE(meets(box, ray)) << i;
-    }
-  }
-  EXPECT_GT(met, 20000);
 }
 
 TEST(Tree, HoldsEveryItemOnceInBoxesThatHoldIt) {

@@ -196,7 +196,7 @@ TEST(RenderBand, BandsOfNoImageAreRefused) {
             absl::StatusCode::kInvalidArgument);
 }
 
-TEST(RenderBand, SamplesThatOverflowAreCountedAndLeftOut) {
+TEST(RenderBand, A3_SamplesThatOverflowAreCountedAndLeftOut) {
   // Inside of glass radiance is n^2 of what it is outside: 25 times this is more than a float
   // holds.
   test::SceneMaker maker;
@@ -214,6 +214,7 @@ TEST(RenderBand, SamplesThatOverflowAreCountedAndLeftOut) {
   for (const double sum : pixels->sums) {
     EXPECT_TRUE(std::isfinite(sum));
   }
+  test::holds("A3", "left out of the sums, counted, the first one named");
 }
 
 TEST(RenderImage, PassesDoubleAndAreTheNodesOfTheWhole) {

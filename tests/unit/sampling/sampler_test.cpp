@@ -132,9 +132,9 @@ TEST(Sampler, R1_StaysBelowOne) {
 }
 
 TEST(Sampler, R4_IsUniformOverPairsOfDimensionsOfAnyGroups) {
-  constexpr int kPairs = 100;
-  constexpr std::size_t kSide = 16;
-  constexpr std::size_t kSamples = 4096;
+  constexpr int kPairs = 200;
+  constexpr std::size_t kSide = 32;
+  constexpr std::size_t kSamples = 16'384;
   const double level = test::sidak(0.01, kPairs);
   test::Random random(5);
   for (int pair = 0; pair < kPairs; ++pair) {
@@ -157,7 +157,7 @@ TEST(Sampler, R4_IsUniformOverPairsOfDimensionsOfAnyGroups) {
     EXPECT_GT(test::chi_squared(counts, expected).p_value, level)
         << group_a << "." << a << " with " << group_b << "." << b;
   }
-  test::holds("R4", "chi-squared passes for 100 pairs, 16 x 16");
+  test::holds("R4", "chi-squared passes for 200 pairs, 32 x 32");
 }
 
 /// Samples of one pixel fill pairs of dimensions of different groups no worse than independent

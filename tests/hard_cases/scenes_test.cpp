@@ -1,0 +1,132 @@
+// Whole scenes: C1, O6, Q4, T13.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "renderlib/camera/camera.h"
+#include "renderlib/math/constants.h"
+#include "tests/statistical/estimate.h"
+#include "tests/support/hard_case.h"
+#include "tests/support/meshes.h"
+#include "tests/support/scenes.h"
+
+namespace bandsaw {
+namespace {
+
+std::shared_ptr<const Scene> white_ball(int slices, int stacks, bool smooth) {
+  Mesh mesh = test::rough_sphere(slices, stacks, 1, 1);
+  if (smooth) {
+    mesh.normals = mesh.positions;
+  }
+  test::SceneMaker maker;
+  maker.instance(std::move(mesh), {}, maker.diffuse(1));
+  // From the side and a little from behind: its terminator and its silhouette are seen.
+  maker.scene.lights = {DirectionalLight{normalize(Vec3{-1, -0.2, 0.1}), gray(1)}};
+  return maker.build();
+}
+
+double radiance(const Scene& scene, double x, double y) {
+  std::uint64_t rays = 0;
+  const Ray ray{.origin = {x, y, 5}, .direction = {0, 0, -1}};
+  return path_radiance(scene, ray, PixelSampler(0, 1, 2), 0, {.max_depth = 1}, rays).g;
+}
+
+TEST(SmoothNormals, T13_CoarseMeshesAreShadedAlmostAsFineOnes) {
+  const auto fine = white_ball(1000, 500, true);
+  const auto smooth = white_ball(20, 10, true);
+  const auto flat = white_ball(20, 10, false);
+  double smooth_error = 0;
+  double flat_error = 0;
+  int bright = 0;
+  constexpr int kSide = 200;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const double x = 0.96 * (2 * (i % kSide + 0.5) / kSide - 1);
+    const double y = 0.96 * (2 * (i / kSide + 0.5) / kSide - 1);
+    if (x * x + y * y > 0.92) {
+      continue;  // outside of the coarse one
+    }
+    const double truth = radiance(*fine, x, y);
+    bright += truth > 0 ? 1 : 0;
+    smooth_error += std::abs(radiance(*smooth, x, y) - truth);
+    flat_error += std::abs(radiance(*flat, x, y) - truth);
+  }
+  EXPECT_GT(bright, 5000);
+  test::at_most("T13", "mean error against the fine mesh, over that of flat normals",
+                smooth_error / flat_error, 2);
+}
+
+// A lamp in the very plane of the ceiling: the ceiling neither hides nor shades it. Seen from the
+// middle of the floor, each quarter of the lamp gives
+// E = a / sqrt(1 + a^2) atan(a / sqrt(1 + a^2)), a its side over its height.
+TEST(Ceiling, Q4_LampInItsPlaneShinesAsTheFormulaSays) {
+  test::SceneMaker maker;
+  maker.quad({-9, 0, -9}, {0, 0, 18}, {18, 0, 0}, maker.diffuse(1));
+  maker.quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}, maker.lamp(1, true));
+  maker.quad({-9, 2, -9}, {18, 0, 0}, {0, 0, 18}, maker.diffuse(0));
+  const double a = 0.5;
+  const double side = std::sqrt(1 + a * a);
+  const double irradiance = 4 * a / side * std::atan(a / side);
+  const Ray down{.origin = {0, 0.5, 0}, .direction = {0, -1, 0}};
+  const test::Moments seen = test::radiance_along(*maker.build(), down, {.max_depth = 1}, 1024);
+  EXPECT_LE(seen.standard_error(), 1e-3 * seen.mean());
+  test::at_most("Q4", "z of the floor's radiance", std::abs(seen.z(irradiance / kPi)), 4);
+  const Ray up{.origin = {0.3, 1, 0.2}, .direction = {0, 1, 0}};
+  EXPECT_EQ(test::radiance_along(*maker.build(), up, {}, 16).mean(), 1);
+}
+
+// (1 - R) / (1 + R) with R = 0.04: whatever goes back and forth within the pane, counted out.
+TEST(Pane, O6_PassesItsShareHoweverThin) {
+  for (const double thickness : {1e-3, 1e-6, 1e-9}) {
+    test::SceneMaker maker;
+    const MaterialId glass = maker.glass(1.5);
+    maker.quad({-9, 1, -9}, {0, 0, 18}, {18, 0, 0}, glass);
+    maker.quad({-9, 1 - thickness, -9}, {18, 0, 0}, {0, 0, 18}, glass);
+    maker.background(gray(0), gray(1));
+    const Ray up{.origin = {0, 0, 0}, .direction = {0, 1, 0}};
+    const test::Moments seen = test::radiance_along(*maker.build(), up, {.max_depth = 1000}, 4096);
+    EXPECT_LE(std::abs(seen.z(0.96 / 1.04)), 4);
+    std::ostringstream what;
+    what << thickness << " thick: share off";
+    test::at_most("O6", what.str(), std::abs(seen.mean() - 0.96 / 1.04), 1e-3);
+  }
+}
+
+test::SceneMaker spheres_and_mesh(const Vec3& at) {
+  test::SceneMaker maker;
+  const MaterialId white = maker.diffuse(0.5f);
+  test::Random random(4);
+  for (int i = 0; i < 60; ++i) {
+    const Vec3 p = 3 * test::random_point(random);
+    maker.sphere(at + p, 0.3, white);
+  }
+  maker.instance(test::icosphere(3), translation(at) * scaling({2, 1, 2}), white);
+  PerspectiveCamera camera{.position = at + Vec3{0, 1, 9}, .look_at = at};
+  camera.vertical_fov = 40;
+  maker.scene.camera = camera;
+  return maker;
+}
+
+TEST(Camera, C1_AMillionAwayTheSameIsHit) {
+  const auto near = spheres_and_mesh({0, 0, 0}).build();
+  const auto far = spheres_and_mesh({1e6, -1e6, 1e6}).build();
+  constexpr std::uint32_t kSide = 500;
+  const RayGenerator near_rays(near->camera(), kSide, kSide);
+  const RayGenerator far_rays(far->camera(), kSide, kSide);
+  int different = 0;
+  int hits = 0;
+  for (std::uint32_t i = 0; i < kSide * kSide; ++i) {
+    const double x = i % kSide + 0.37;
+    const double y = i / kSide + 0.61;
+    const Hit a = near->accel().closest(near_rays.ray(x, y, 0, 0));
+    const Hit b = far->accel().closest(far_rays.ray(x, y, 0, 0));
+    hits += a ? 1 : 0;
+    different += a.id == b.id ? 0 : 1;
+  }
+  EXPECT_GT(hits, 50'000);
+  test::at_most("C1", "share of other ids of 250,000", different / 250'000.0, 1e-5);
+}
+
+}  // namespace
+}  // namespace bandsaw
