@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The comparison figures of the gallery's README, made again.
-# Usage: deploy/figures.sh samples|defocus|lights|density|all|sheet [FOLDER [WIDTH [SCENE...]]]   (default: out/figures, the width of one picture 300)
+# Usage: deploy/figures.sh samples|defocus|lights|density|tone|all|sheet [FOLDER [WIDTH [SCENE...]]]   (default: out/figures, the width of one picture 300)
 # sheet: every scene of the gallery, or those given, as thumbnails of at most that width (160 by default); says which is where.
 # BANDSAW_BUILD=DIR: the build to use; otherwise build/release.
 set -euo pipefail
@@ -83,6 +83,11 @@ figure_density() {
   side_by_side density 4 0.0025 0.01 0.04
 }
 
+figure_tone() {
+  for tone in none filmic; do render $gallery/environment.textproto "$tone" --samples 256 --tone "$tone"; done
+  side_by_side tone 4 none filmic
+}
+
 figure_sheet() { # [SCENE...]
   local scenes=("$@") high=$((width * 9 / 16)) gap=4 columns=8 number=0 row=-1 rows wide x y
   if [ ${#scenes[@]} = 0 ]; then
@@ -113,7 +118,7 @@ figure_sheet() { # [SCENE...]
 
 case "$name" in
   sheet) figure_sheet "${@:4}" ;;
-  samples | defocus | lights | density) "figure_$name" ;;
-  all) for each in samples defocus lights density; do "figure_$each"; done ;;
+  samples | defocus | lights | density | tone) "figure_$name" ;;
+  all) for each in samples defocus lights density tone; do "figure_$each"; done ;;
   *) sed -n 's/^# Usage: /usage: /p' "$0" >&2; exit 2 ;;
 esac

@@ -263,6 +263,11 @@ GltfExtensions read_gltf_extensions(const std::string& path) {
   if (const ListValue* scenes = list(root, "scenes"); scenes != nullptr) {
     out.scenes = static_cast<std::size_t>(scenes->values_size());
   }
+  const Struct* punctual = extension(root, "KHR_lights_punctual");
+  const ListValue* lights = punctual == nullptr ? nullptr : list(*punctual, "lights");
+  for (int i = 0; lights != nullptr && i < lights->values_size(); ++i) {
+    out.lights_with_range += find(lights->values(i).struct_value(), "range") != nullptr ? 1 : 0;
+  }
   return out;
 }
 

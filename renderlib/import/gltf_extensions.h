@@ -51,6 +51,7 @@ struct GltfExtensions {
   std::vector<GltfMaterial> materials;
   std::vector<GltfCamera> cameras;  ///< of the default scene; none of glTF 1
   std::size_t scenes = 1;
+  std::size_t lights_with_range = 0;  ///< KHR_lights_punctual: a hint to cut light off
 };
 
 /// Of a .gltf or .glb. Nothing is an error: what cannot be read is left to Assimp to complain

@@ -58,6 +58,7 @@ void warn_of_unused(ModelFile& file) {
   };
   warn(file.scene.mNumAnimations, "animations (the rest pose is shown) are");
   warn(file.gltf.scenes > 1 ? file.gltf.scenes - 1 : 0, "scenes beside the default one are");
+  warn(file.gltf.lights_with_range, "ranges of lights (light goes on for ever) are");
   for (const std::string& extension : file.gltf.ignored) {
     file.warn(absl::StrCat("the extension ", extension, " is left out"));
   }

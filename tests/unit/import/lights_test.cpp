@@ -217,6 +217,16 @@ TEST(ModelLights, OfGltfHaveItsUnitsAndStandAtTheirNodes) {
   EXPECT_TRUE(is_black(imported->scene.background.top)) << "it brings its own light";
 }
 
+TEST(ModelLights, RangesAreLeftOutAndNamed) {
+  const TempDir folder;
+  std::string text = gltf_with_lights();
+  text.insert(text.find("\"intensity\": 40"), "\"range\": 7, ");
+  const auto imported = import_scene(write_text(folder, "m.gltf", text));
+  ASSERT_TRUE(imported.ok()) << imported.status();
+  EXPECT_THAT(imported->info.warnings,
+              Contains(HasSubstr("1 ranges of lights (light goes on for ever) are left out")));
+}
+
 TEST(ModelLights, ArePlacedWithTheirModel) {
   const TempDir folder;
   write_text(folder, "m.gltf", gltf_with_lights());
