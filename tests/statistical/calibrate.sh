@@ -25,7 +25,7 @@ while [ $# -gt 0 ]; do
   shift 2
 done
 mkdir -p "$folder"
-touch "$folder/runs" "$folder/left_out"
+touch "$folder/runs" "$folder/left_out" "$folder/references"
 
 number() { sed -n "s/.*\"$1\":\([-0-9.e+]*\).*/\1/p"; }
 least() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a < b) }'; }
@@ -67,6 +67,7 @@ for scene in $scenes; do
   fi
   "$bandsaw" render "$gallery/$scene.textproto" --width 96 --samples $((16 * samples)) --seed 4711 --quiet \
     -o "$folder/reference.pfm" > /dev/null
+  echo "$scene $((16 * samples))" >> "$folder/references"
   measure "$scene" $targets
   echo "$scene" >> "$folder/done"
 done
@@ -74,19 +75,33 @@ done
 readme=$root/tests/statistical/README.md
 sed '/<!-- table/q' "$readme" > "$folder/readme"
 sort -u "$folder/left_out" > "$folder/without"
-awk -v without="$folder/without" '
+awk -v without="$folder/without" -v references="$folder/references" '
   function root_mean(sum, n) { return sqrt(sum / n) }
-  {
-    key = $1 " " $2; target = $2 / 100; error = $8; ratio = $5 / error
-    if (!(key in n)) { keys[++count] = key; low[key] = high[key] = ratio }
-    ++n[key]; samples[key] += $7; squares[key] += error * error; cpu[key] += $6
+  { ++runs; scene[runs] = $1; goal[runs] = $2; guess[runs] = $5; spent[runs] = $6; count[runs] = $7; error[runs] = $8
+    if ($7 >= most[$1]) { most[$1] = $7; most_goal[$1] = $2 } }
+  # The reference has noise of its own: of m samples, where n have the error e, n / m of e^2.
+  function own_noise(name,   i, sum, n, samples) {
+    sum = n = samples = 0
+    for (i = 1; i <= runs; ++i) if (scene[i] == name && goal[i] == most_goal[name]) { ++n; sum += error[i] ^ 2; samples += count[i] }
+    return sum / n / (1 + reference[name] / (samples / n))
+  }
+  function add(i, true_error,   key, ratio) {
+    key = scene[i] " " goal[i]; ratio = guess[i] / true_error
+    if (!(key in n)) { keys[++keys_count] = key; low[key] = high[key] = ratio }
+    ++n[key]; samples[key] += count[i]; squares[key] += true_error ^ 2; cpu[key] += spent[i]
     if (ratio < low[key]) low[key] = ratio
     if (ratio > high[key]) high[key] = ratio
-    if (error <= target) { ++met[key]; ++all_met }
+    if (true_error <= goal[i] / 100) { ++met[key]; ++all_met }
     if (ratio >= 0.9 && ratio <= 2.5) ++within
     ++all
   }
   END {
+    while ((getline line < references) > 0) { split(line, part, " "); reference[part[1]] = part[2] }
+    for (i = 1; i <= runs; ++i) {
+      if (!(scene[i] in noise)) noise[scene[i]] = own_noise(scene[i])
+      square = error[i] ^ 2 - noise[scene[i]]
+      add(i, sqrt(square > 0 ? square : 1e-12))
+    }
     # Wilson 1927: the interval of a share at 95 %.
     p = all_met / all; z = 1.96; d = 1 + z * z / all
     middle = (p + z * z / (2 * all)) / d; half = z * sqrt(p * (1 - p) / all + z * z / (4 * all * all)) / d
@@ -95,7 +110,7 @@ awk -v without="$folder/without" '
     printf "between 0.9 and 2.5 times the true error in %.1f %%.\n\n", 100 * within / all
     print "| scene | target | renders | met | true error | estimate / true | samples a pixel | beyond the ideal | CPU s |"
     print "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"
-    for (i = 1; i <= count; ++i) {
+    for (i = 1; i <= keys_count; ++i) {
       key = keys[i]; split(key, name, " "); e = root_mean(squares[key], n[key]); m = samples[key] / n[key]
       # How the error falls between the targets; 1/2 where there is only one.
       slope = 0.5; a = name[1] " 5"; b = name[1] " 2"
