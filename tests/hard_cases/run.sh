@@ -20,11 +20,13 @@ cp "$work/new" "$work/figures"
 tail -n 3 "$work/log"
 if [ $# -ge 2 ] && [ -f "$kept" ]; then
   # A test that ran replaces what it said before; one that is gone says nothing more.
-  while read -r line; do
-    id=$(cut -d ' ' -f 3 <<<"$line")
-    file=$(cut -d ' ' -f 5 <<<"$line")
-    grep -q "\[ case $id \] $file " "$work/new" || ! grep -qs "\"$id\"" "$file" || echo "$line"
-  done < "$kept" >> "$work/figures"
+  awk -v new="$work/new" '
+    function says(file, id,   line) {
+      if (!(file in text)) while ((getline line < file) > 0) text[file] = text[file] line
+      return index(text[file], "\"" id "\"") > 0
+    }
+    BEGIN { while ((getline < new) > 0) ran[$3 " " $5] = 1 }
+    !(($3 " " $5) in ran) && says($5, $3)' "$kept" >> "$work/figures"
 fi
 cp "$work/figures" "$kept"
 
