@@ -14,7 +14,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 render() { # SCENE NAME [OPTION...]: $work/NAME.png
-  bandsaw render "$1" -o "$work/$2.png" --width "$width" --quiet "${@:3}" >/dev/null
+  bandsaw render "$1" -o "$work/$2.png" --width "$width" --report none --quiet "${@:3}" >/dev/null
 }
 
 size_of() { # PNG OFFSET: its width (16) or height (20), four bytes, big-endian.
@@ -37,7 +37,7 @@ image { width: $2  height: $3  filter { box { radius: 0 } } }
 background { constant { rgb: [$4, $4, $4] } }
 SCENE
   mkdir -p "$folder"
-  bandsaw render "$work/panel.textproto" -o "$folder/$1.png" --samples 1 --quiet >/dev/null
+  bandsaw render "$work/panel.textproto" -o "$folder/$1.png" --samples 1 --report none --quiet >/dev/null
   echo "$folder/$1.png"
 }
 

@@ -190,6 +190,7 @@ absl::StatusOr<Command> checked_submit(const RawOptions& raw) {
   RETURN_IF_ERROR(check_scene(raw, "submit"));
   ASSIGN_OR_RETURN(options.image, checked_image(raw));
   ASSIGN_OR_RETURN(options.display, checked_display(raw));
+  ASSIGN_OR_RETURN(options.report, checked_report(raw, !raw.detach));
   ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
   RETURN_IF_ERROR(check_outputs(options.outputs, false));
   if (raw.priority) {
@@ -210,6 +211,7 @@ absl::StatusOr<Command> checked_watch(const RawOptions& raw) {
   options.farm.farm = raw.farm;
   ASSIGN_OR_RETURN(options.job, checked_job(raw, "watch"));
   ASSIGN_OR_RETURN(options.display, checked_display(raw));
+  ASSIGN_OR_RETURN(options.report, checked_report(raw, !raw.outputs.empty()));
   ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
   RETURN_IF_ERROR(check_outputs(options.outputs, false));
   return options;
@@ -236,6 +238,7 @@ absl::StatusOr<Command> checked_render(const RawOptions& raw) {
   RETURN_IF_ERROR(check_scene(raw, "render"));
   ASSIGN_OR_RETURN(options.image, checked_image(raw));
   ASSIGN_OR_RETURN(options.display, checked_display(raw));
+  ASSIGN_OR_RETURN(options.report, checked_report(raw));
   ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
   RETURN_IF_ERROR(read("--threads", raw.threads, 1, wire::kThreadsPerWorker, options.threads));
   RETURN_IF_ERROR(check_outputs(options.outputs, raw.rows.has_value()));
@@ -262,6 +265,7 @@ absl::StatusOr<Command> checked_stitch(const RawOptions& raw) {
   options.parts = raw.parts;
   options.outputs = raw.outputs;
   ASSIGN_OR_RETURN(options.display, checked_display(raw));
+  ASSIGN_OR_RETURN(options.report, checked_report(raw));
   ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
   if (options.parts.empty()) {
     return wrong(

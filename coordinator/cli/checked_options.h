@@ -18,7 +18,7 @@ struct RawOptions {
   std::optional<std::string> job, listen, priority, worker, action, role, keep_days, keep_size;
   std::vector<std::string> outputs, parts;
   std::optional<std::string> samples, error, time, seed, width, height, depth, threads, rows;
-  std::optional<std::string> integrator, exposure, tone, layers;
+  std::optional<std::string> integrator, exposure, tone, layers, report;
   bool half = false, insecure = false, detach = false, quiet = false, json = false;
 };
 
@@ -42,6 +42,8 @@ absl::StatusOr<Command> checked_compare(const RawOptions& raw);
 
 // Parts of several commands.
 absl::StatusOr<Verbosity> checked_verbosity(const RawOptions& raw);
+/// Only where there are images to report of.
+absl::StatusOr<ReportOption> checked_report(const RawOptions& raw, bool has_images = true);
 absl::Status check_listen(const std::string& listen);
 /// `command` is for the error.
 absl::StatusOr<JobId> checked_job(const RawOptions& raw, const std::string& command);

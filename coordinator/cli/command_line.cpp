@@ -9,6 +9,7 @@
 #include "coordinator/cli/checked_options.h"
 #include "coordinator/cli/did_you_mean.h"
 #include "coordinator/cli/house_options.h"
+#include "coordinator/cli/report_options.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -66,6 +67,7 @@ void add_display(CLI::App& app, RawOptions& raw, const char* standard) {
                               standard, "]"))
       ->type_name("T");
   app.add_flag("--half", raw.half, "EXR files hold 16-bit numbers, not 32");
+  add_report(app, raw);
 }
 
 void add_serve(CLI::App& app, RawOptions& raw) {

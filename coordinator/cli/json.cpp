@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -59,7 +60,7 @@ std::string json_string(absl::string_view text) {
 }  // namespace
 
 JsonObject& JsonObject::raw(absl::string_view key, absl::string_view value) {
-  absl::StrAppend(&fields_, fields_.empty() ? "" : ",", json_string(key), ":", value);
+  fields_.push_back(absl::StrCat(json_string(key), ":", value));
   return *this;
 }
 
@@ -102,6 +103,18 @@ JsonObject& JsonObject::objects(absl::string_view key, const std::vector<JsonObj
     absl::StrAppend(&list, list.empty() ? "" : ",", value.str());
   }
   return raw(key, "[" + list + "]");
+}
+
+JsonObject& JsonObject::object(absl::string_view key, const JsonObject& value) {
+  return raw(key, value.str());
+}
+
+JsonObject& JsonObject::unknown(absl::string_view key) { return raw(key, "null"); }
+
+std::string JsonObject::str() const { return absl::StrCat("{", absl::StrJoin(fields_, ","), "}"); }
+
+std::string JsonObject::lines() const {
+  return absl::StrCat("{\n  ", absl::StrJoin(fields_, ",\n  "), "\n}\n");
 }
 
 }  // namespace bandsaw::coordinator

@@ -1,6 +1,6 @@
 #pragma once
 
-// One JSON object a line (RFC 8259), for --json.
+// JSON objects (RFC 8259): one a line for --json, and reports.
 
 #include <cstdint>
 #include <string>
@@ -23,13 +23,18 @@ class JsonObject {
   JsonObject& known_number(absl::string_view key, double value);
   JsonObject& texts(absl::string_view key, const std::vector<std::string>& values);
   JsonObject& objects(absl::string_view key, const std::vector<JsonObject>& values);
+  JsonObject& object(absl::string_view key, const JsonObject& value);
+  /// null.
+  JsonObject& unknown(absl::string_view key);
 
   /// "{…}" without a line end.
-  std::string str() const { return "{" + fields_ + "}"; }
+  std::string str() const;
+  /// For people: a field a line, indented, with a line end.
+  std::string lines() const;
 
  private:
   JsonObject& raw(absl::string_view key, absl::string_view value);
-  std::string fields_;
+  std::vector<std::string> fields_;
 };
 
 }  // namespace bandsaw::coordinator

@@ -2,13 +2,15 @@
 
 #include <algorithm>
 
+#include "coordinator/core/pass_plan.h"
+
 namespace bandsaw::coordinator {
 
-LocalMeter::LocalMeter(const JobSpec& spec, RowRange rows, int threads, double now)
+LocalMeter::LocalMeter(const JobSpec& spec, RowRange rows, int threads, Clocks start)
     : spec_(spec),
       pixels_(static_cast<double>(spec.settings.width) * rows.count()),
       threads_(threads),
-      start_(now) {}
+      start_(start) {}
 
 void LocalMeter::reached(std::uint64_t samples) {
   std::uint64_t before = reached_.load(std::memory_order_relaxed);
@@ -17,12 +19,12 @@ void LocalMeter::reached(std::uint64_t samples) {
   }
 }
 
-void LocalMeter::passed(std::uint64_t samples, double error) {
+void LocalMeter::passed(std::uint64_t samples, const std::optional<ErrorEstimate>& error,
+                        Clocks now) {
   MutexLock lock(mutex_);
   passed_ = samples;
-  if (error != error_) {
-    error_ = error;
-    error_at_ = samples;
+  if (error) {
+    add_point(curve_, {samples, seconds(now.steady_s), now.cpu_s - start_.cpu_s, *error});
   }
 }
 
@@ -31,7 +33,7 @@ void LocalMeter::add(const Counters& counters) {
   counters_.add(counters);
 }
 
-double LocalMeter::fraction_of(const JobView& job, std::uint64_t error_at) const {
+double LocalMeter::fraction_of(const JobView& job) const {
   const double done = static_cast<double>(job.samples_done) / pixels_;  // samples a pixel
   if (const auto* rule = std::get_if<StopAtSamples>(&spec_.stop)) {
     return done / static_cast<double>(rule->samples);
@@ -40,33 +42,29 @@ double LocalMeter::fraction_of(const JobView& job, std::uint64_t error_at) const
     return job.elapsed_s / rule->seconds;
   }
   const auto& rule = std::get<StopAtError>(spec_.stop);
-  if (job.error <= 0) {
-    return 0;
-  }
-  // The error falls about as the square root of the samples that it was measured at.
-  const double ratio = job.error / rule.relative_rmse;
-  return done / (static_cast<double>(error_at) * std::max(1.0, ratio * ratio));
+  const auto end = expected_end(job.curve, rule.relative_rmse, planned_, rule.max_samples);
+  return end ? done / static_cast<double>(*end) : 0;
 }
 
-Progress LocalMeter::progress(double now) const {
+Progress LocalMeter::progress(Clocks now) const {
   Progress progress;
   progress.threads = threads_;
   JobView& job = progress.job;
   job.spec = spec_;
-  job.elapsed_s = seconds(now);
+  job.elapsed_s = seconds(now.steady_s);
+  job.cpu_s = now.cpu_s - start_.cpu_s;
   job.samples_done = reached_.load(std::memory_order_relaxed);
-  std::uint64_t error_at = 0;
   {
     MutexLock lock(mutex_);
     job.samples_per_pixel = passed_;
-    job.error = error_;
-    error_at = error_at_;
+    job.curve = curve_;
     job.counters = counters_;
   }
+  job.error = job.curve.empty() ? -1 : job.curve.back().estimate.relative_rmse;
   if (job.counters.bad_samples > 0) {
     progress.bad_sample_at = bad_sample_text(job.counters);
   }
-  job.fraction = std::min(fraction_of(job, error_at), 0.999);  // the caller knows when it is done
+  job.fraction = std::min(fraction_of(job), 0.999);  // the caller knows when it is done
   if (job.elapsed_s > 0) {
     job.samples_per_s = static_cast<double>(job.samples_done) / job.elapsed_s;
   }

@@ -8,6 +8,7 @@ std::optional<SampleRange> LocalPlan::first_of(std::uint64_t from, std::uint64_t
   if (passes_.empty()) {
     const std::vector<SampleRange> planned = passes_between(from, to);
     passes_.assign(planned.begin(), planned.end());
+    planned_ = to;
   }
   const SampleRange pass = passes_.front();
   passes_.pop_front();

@@ -19,12 +19,15 @@ class LocalPlan {
   /// The next pass, after samples [0, samples) were rendered in `seconds`; `error` is their
   /// estimated relative RMSE, negative when it is not known. Nothing: the image is done.
   std::optional<SampleRange> next(std::uint64_t samples, double error, double seconds);
+  /// Where the last planned pass ends.
+  std::uint64_t planned() const { return planned_; }
 
  private:
   std::optional<SampleRange> first_of(std::uint64_t from, std::uint64_t to);
 
   StopRule stop_;
   std::deque<SampleRange> passes_;  ///< planned, not begun
+  std::uint64_t planned_ = 0;
 };
 
 }  // namespace bandsaw::coordinator

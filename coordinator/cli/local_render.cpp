@@ -35,6 +35,8 @@ absl::Status render_pass(const LocalJob& job, const SampleRange& pass, const Row
 
 }  // namespace
 
+LocalMeter::Clocks clocks() { return {steady_seconds(), process_cpu_seconds()}; }
+
 absl::StatusOr<Image> render_whole(const LocalJob& job, const StopRule& stop) {
   ASSIGN_OR_RETURN(Film film, Film::create(job.settings.width, job.settings.height, ""));
   LocalPlan plan(stop);
@@ -42,12 +44,13 @@ absl::StatusOr<Image> render_whole(const LocalJob& job, const StopRule& stop) {
   std::uint64_t samples = 0;
   double error = -1;
   while (const auto pass = plan.next(samples, error, job.meter.seconds(steady_seconds()))) {
+    job.meter.plans(plan.planned());
     RETURN_IF_ERROR(render_pass(job, *pass, {0, job.settings.height}, done,
                                 [&](const BandPixels& pixels) { return film.add(pixels); }));
     samples = pass->last;
     const auto estimate = film.error();
     error = estimate ? estimate->relative_rmse : -1;
-    job.meter.passed(samples, error);
+    job.meter.passed(samples, estimate, clocks());
   }
   return film.snapshot().image;
 }
@@ -62,7 +65,7 @@ absl::StatusOr<std::vector<BandPixels>> render_part(const LocalJob& job, const R
       return absl::OkStatus();
     }));
   }
-  job.meter.passed(samples, -1);
+  job.meter.passed(samples, std::nullopt, clocks());
   return bands;
 }
 

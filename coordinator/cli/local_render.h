@@ -13,6 +13,9 @@
 
 namespace bandsaw::coordinator {
 
+/// Those of this process, now.
+LocalMeter::Clocks clocks();
+
 struct LocalJob {
   const Scene& scene;
   const RenderSettings& settings;

@@ -45,6 +45,11 @@ struct DisplayOptions {
   }
 };
 
+/// Where the report goes, as given: a file, "none", or nothing (then beside each image).
+struct ReportOption {
+  std::string file;
+};
+
 /// Where the farm is, as given: a join string, a file, "-", or nothing (then environment and
 /// default folder are asked).
 struct FarmOption {
@@ -68,6 +73,7 @@ struct SubmitOptions {
   ImageOptions image;
   FarmOption farm;
   DisplayOptions display;
+  ReportOption report;
   Verbosity verbosity;
   bool detach = false;            ///< do not watch
   std::int32_t priority = 0;      ///< [-kMostPriority, kMostPriority]
@@ -79,6 +85,7 @@ struct WatchOptions {
   std::vector<std::string> outputs;  ///< empty: the image is not fetched
   FarmOption farm;
   DisplayOptions display;
+  ReportOption report;
   Verbosity verbosity;
 };
 
@@ -148,6 +155,7 @@ struct RenderOptions {
       outputs;  ///< empty: the scene's name as PNG, or as .band when rows are given
   ImageOptions image;
   DisplayOptions display;
+  ReportOption report;
   Verbosity verbosity;
   int threads = 0;                ///< 0: one for each CPU
   std::optional<RowRange> rows;   ///< a part of the image
@@ -163,6 +171,7 @@ struct StitchOptions {
   std::vector<std::string> parts;
   std::vector<std::string> outputs;
   DisplayOptions display;
+  ReportOption report;
   Verbosity verbosity;
 };
 

@@ -50,6 +50,20 @@ JobWorkerView worker_of(const farm::JobWorker& worker) {
           .state = worker.state()};
 }
 
+ErrorPoint point_of(const farm::ErrorPoint& point) {
+  return {.samples = point.samples_per_pixel(),
+          .elapsed_s = point.elapsed_s(),
+          .cpu_s = point.cpu_s(),
+          .estimate = {.mean = point.mean(),
+                       .rmse = point.rmse(),
+                       .relative_rmse = point.relative_rmse(),
+                       .relative_mse = point.relative_mse(),
+                       .median = point.median(),
+                       .percentile_95 = point.percentile_95(),
+                       .percentile_99 = point.percentile_99(),
+                       .worst_share = point.worst_share()}};
+}
+
 }  // namespace
 
 Progress progress_of(const farm::JobStatus& status) {
@@ -80,6 +94,13 @@ Progress progress_of(const farm::JobStatus& status) {
   job.workers_used = status.workers_used();
   for (const farm::JobWorker& worker : status.worker()) {
     job.workers.push_back(worker_of(worker));
+  }
+  for (const farm::ErrorPoint& point : status.curve()) {
+    job.curve.push_back(point_of(point));
+  }
+  for (const farm::WorkerShare& share : status.share()) {
+    job.shares.push_back(
+        {.name = share.name(), .samples = share.samples(), .cpu_s = share.cpu_s()});
   }
   progress.bad_sample_at = status.bad_sample_at();
   return progress;

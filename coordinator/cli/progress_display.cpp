@@ -108,18 +108,25 @@ void ProgressDisplay::preparing(const std::string& what, std::uint64_t bytes_don
   }
 }
 
-void ProgressDisplay::done(const Progress& progress, const std::vector<std::string>& outputs) {
+void ProgressDisplay::done(const Progress& progress, const std::vector<std::string>& outputs,
+                           const std::vector<std::string>& reports) {
   clear();
-  if (const std::string bad = bad_samples_line(progress); !bad.empty()) {
-    console_.complain(bad);
+  for (const std::string& warning : {bad_samples_line(progress), doubt_line(progress)}) {
+    if (!warning.empty()) {
+      console_.complain(warning);
+    }
   }
   if (verbosity_.json) {
-    console_.line(progress_json(progress, "done").texts("outputs", outputs).str());
+    console_.line(
+        progress_json(progress, "done").texts("outputs", outputs).texts("reports", reports).str());
     return;
+  }
+  if (!verbosity_.quiet) {
+    console_.line(cost_line(progress));
   }
   const std::string name =
       outputs.empty() ? absl::StrCat("job ", progress.job.id) : names_of(outputs);
-  console_.line(final_line(progress, name));
+  console_.line(final_line(progress, name, names_of(reports)));
 }
 
 void ProgressDisplay::ended(const Progress& progress) {

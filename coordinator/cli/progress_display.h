@@ -33,9 +33,10 @@ class ProgressDisplay {
   void preparing(const std::string& what, std::uint64_t bytes_done, std::uint64_t bytes_in_all,
                  double now);
 
-  /// Ends the display, and says that the image is there (`outputs` may be empty). Said even when
-  /// quiet.
-  void done(const Progress& progress, const std::vector<std::string>& outputs);
+  /// Ends the display, and says that the image is there (`outputs` may be empty), and its reports.
+  /// The last line is said even when quiet.
+  void done(const Progress& progress, const std::vector<std::string>& outputs,
+            const std::vector<std::string>& reports = {});
 
   /// Ends the display of a render that gives no image; JSON: an "ended" event. The error is said by
   /// the caller.

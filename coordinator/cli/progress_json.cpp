@@ -3,16 +3,6 @@
 namespace bandsaw::coordinator {
 namespace {
 
-void add_stop(JsonObject& out, const StopRule& stop) {
-  if (const auto* samples = std::get_if<StopAtSamples>(&stop)) {
-    out.whole("stop_samples", samples->samples);
-  } else if (const auto* error = std::get_if<StopAtError>(&stop)) {
-    out.number("stop_error", error->relative_rmse);
-  } else if (const auto* time = std::get_if<StopAtTime>(&stop)) {
-    out.number("stop_time_s", time->seconds);
-  }
-}
-
 JsonObject worker_json(const JobWorkerView& worker) {
   JsonObject out;
   out.text("name", worker.name)
@@ -25,6 +15,16 @@ JsonObject worker_json(const JobWorkerView& worker) {
 }
 
 }  // namespace
+
+void add_stop(JsonObject& out, const StopRule& stop) {
+  if (const auto* samples = std::get_if<StopAtSamples>(&stop)) {
+    out.whole("stop_samples", samples->samples);
+  } else if (const auto* error = std::get_if<StopAtError>(&stop)) {
+    out.number("stop_error", error->relative_rmse);
+  } else if (const auto* time = std::get_if<StopAtTime>(&stop)) {
+    out.number("stop_time_s", time->seconds);
+  }
+}
 
 JsonObject progress_json(const Progress& progress, const std::string& event) {
   const JobView& job = progress.job;

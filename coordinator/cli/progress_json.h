@@ -13,4 +13,7 @@ namespace bandsaw::coordinator {
 /// What every event about a render holds. `event`: "job", "progress", "done", …
 JsonObject progress_json(const Progress& progress, const std::string& event);
 
+/// One of stop_samples, stop_error and stop_time_s.
+void add_stop(JsonObject& out, const StopRule& stop);
+
 }  // namespace bandsaw::coordinator

@@ -115,15 +115,48 @@ std::vector<std::string> worker_lines(const Progress& progress, std::size_t most
   return lines;
 }
 
-std::string final_line(const Progress& progress, const std::string& name) {
+std::string final_line(const Progress& progress, const std::string& name,
+                       const std::string& reports) {
   const JobView& job = progress.job;
   std::string line = name;
   if (job.error >= 0) {
     absl::StrAppend(&line, kDot, "error ", percent(job.error));
   }
   absl::StrAppend(&line, kDot, duration(job.elapsed_s), kDot);
-  return line + (progress.threads > 0 ? count(static_cast<std::size_t>(progress.threads), "thread")
-                                      : count(job.workers_used, "worker"));
+  absl::StrAppend(&line, progress.threads > 0
+                             ? count(static_cast<std::size_t>(progress.threads), "thread")
+                             : count(job.workers_used, "worker"));
+  return reports.empty() ? line : absl::StrCat(line, kDot, "report ", reports);
+}
+
+std::string cost_line(const Progress& progress) {
+  const JobView& job = progress.job;
+  const auto rays = static_cast<double>(job.counters.rays);
+  std::string line =
+      absl::StrCat(count(job.samples_per_pixel, "sample"), " a pixel", kDot, si(rays), " rays");
+  if (job.cpu_s > 0) {
+    absl::StrAppend(&line, ", ", si(rays / job.cpu_s), "/CPU s", kDot, duration(job.cpu_s),
+                    " of CPU");
+  }
+  if (job.curve.empty()) {
+    return line;
+  }
+  const ErrorEstimate& error = job.curve.back().estimate;
+  if (const auto needed = cpu_s_until(job.curve, 0.01)) {
+    absl::StrAppend(&line, kDot, "1 % after ", duration(*needed), " of CPU");
+  }
+  return absl::StrCat(line, kDot, "half of the pixels within ", percent(error.median),
+                      ", 95 % within ", percent(error.percentile_95));
+}
+
+std::string doubt_line(const Progress& progress) {
+  const ErrorCurve& curve = progress.job.curve;
+  if (curve.empty() || !curve.back().estimate.doubtful()) {
+    return "";
+  }
+  return absl::StrCat("warning: ", percent(curve.back().estimate.worst_share),
+                      " of the error is in the worst 0.1 % of the pixels: bright light that few "
+                      "paths find; the true error is likely larger than said");
 }
 
 std::string bad_samples_line(const Progress& progress) {

@@ -24,8 +24,17 @@ std::string plain_line(const Progress& progress);
 /// how many more there are. What the job waits for comes first, when it waits.
 std::vector<std::string> worker_lines(const Progress& progress, std::size_t most);
 
-/// "cornell.png · error 0.99 % · 21.4 s · 4 workers". `name`: of the image, or of the job.
-std::string final_line(const Progress& progress, const std::string& name);
+/// "cornell.png · error 0.99 % · 21.4 s · 4 workers · report cornell.json". `name`: of the image,
+/// or of the job; `reports`: their names, or empty.
+std::string final_line(const Progress& progress, const std::string& name,
+                       const std::string& reports = {});
+
+/// "256 samples a pixel · 8 M rays, 2 M/CPU s · 4.0 s of CPU · 1 % after 11.6 s of CPU · half of
+/// the pixels within 1.2 %, 95 % within 5 %": what the image cost and where its error lies.
+std::string cost_line(const Progress& progress);
+
+/// What must not be overlooked about the error; empty when it can be trusted.
+std::string doubt_line(const Progress& progress);
 
 /// What must not be overlooked about samples that were not numbers; empty when all were.
 std::string bad_samples_line(const Progress& progress);

@@ -13,7 +13,8 @@
 #include "coordinator/cli/output.h"
 #include "coordinator/cli/part_file.h"
 #include "coordinator/cli/progress_display.h"
-#include "coordinator/cli/steady_time.h"
+#include "coordinator/cli/report.h"
+#include "coordinator/cli/report_file.h"
 #include "coordinator/cli/ticker.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/render/render_image.h"
@@ -75,14 +76,15 @@ class LocalRun {
         spec_(std::move(spec)),
         rows_(options.rows.value_or(RowRange{0, spec_.settings.height})),
         pool_(threads),
-        meter_(spec_, rows_, threads, steady_seconds()),
+        meter_(spec_, rows_, threads, clocks()),
         display_(process.console, options.verbosity),
         picture_(picture) {}
 
-  ExitCode run(SceneDescription description, const std::vector<std::string>& outputs) {
+  ExitCode run(SceneDescription description, const std::vector<std::string>& outputs,
+               const std::vector<std::string>& reports) {
     const Interrupts::Listener listener(process_.interrupts, [this] { stop_ = true; });
     const absl::Status rendered = render(std::move(description));
-    Progress progress = progress_at(steady_seconds());
+    Progress progress = meter_.progress(clocks());
     if (!rendered.ok()) {
       display_.clear();
       const ExitCode code = absl::IsCancelled(rendered)         ? ExitCode::kInterrupted
@@ -92,14 +94,14 @@ class LocalRun {
                                              ? "interrupted; nothing was written"
                                              : std::string(rendered.message()));
     }
-    if (const absl::Status written = write(outputs); !written.ok()) {
-      display_.clear();
-      return process_.console.fail(ExitCode::kFailed, std::string(written.message()));
-    }
     progress.job.state = JobState::kDone;
     progress.job.fraction = 1;
     progress.job.remaining_s = 0;
-    display_.done(progress, outputs);
+    if (const absl::Status written = write(progress, outputs, reports); !written.ok()) {
+      display_.clear();
+      return process_.console.fail(ExitCode::kFailed, std::string(written.message()));
+    }
+    display_.done(progress, outputs, reports);
     return ExitCode::kDone;
   }
 
@@ -107,8 +109,8 @@ class LocalRun {
   absl::Status render(SceneDescription description) {
     constexpr std::chrono::milliseconds kInterval{100};
     const Ticker ticker(kInterval, [this] {
-      const double now = steady_seconds();
-      display_.update(progress_at(now), now);
+      const LocalMeter::Clocks now = clocks();
+      display_.update(meter_.progress(now), now.steady_s);
     });
     ASSIGN_OR_RETURN(const std::shared_ptr<const Scene> scene,
                      Scene::build(std::move(description), pool_));
@@ -118,7 +120,7 @@ class LocalRun {
                        render_part(job, rows_, std::get<StopAtSamples>(spec_.stop).samples));
     } else {
       ASSIGN_OR_RETURN(image_, render_whole(job, spec_.stop));
-      const std::uint64_t samples = progress_at(steady_seconds()).job.samples_per_pixel;
+      const std::uint64_t samples = meter_.progress(clocks()).job.samples_per_pixel;
       const auto render_layer = [&](const RenderSettings& settings,
                                     std::uint64_t count) -> absl::StatusOr<Image> {
         ASSIGN_OR_RETURN(const RenderedImage layer,
@@ -131,15 +133,12 @@ class LocalRun {
     return absl::OkStatus();
   }
 
-  Progress progress_at(double now) const {
-    Progress progress = meter_.progress(now);
-    progress.job.cpu_s = process_cpu_seconds() - cpu_at_start_;
-    return progress;
-  }
-
-  absl::Status write(const std::vector<std::string>& outputs) const {
-    return options_.rows ? write_part_outputs(bands_, spec_, rows_, outputs, picture_)
-                         : write_outputs(image_, outputs, picture_, layers_);
+  absl::Status write(const Progress& progress, const std::vector<std::string>& outputs,
+                     const std::vector<std::string>& reports) const {
+    RETURN_IF_ERROR(options_.rows ? write_part_outputs(bands_, spec_, rows_, outputs, picture_)
+                                  : write_outputs(image_, outputs, picture_, layers_));
+    const Report report{progress, options_.rows ? "" : pixels_sha256(image_), outputs};
+    return write_reports(report_text(report), reports);
   }
 
   const RenderOptions& options_;
@@ -148,7 +147,6 @@ class LocalRun {
   const RowRange rows_;
   Pool pool_;
   LocalMeter meter_;
-  const double cpu_at_start_ = process_cpu_seconds();
   ProgressDisplay display_;
   const Display picture_;
   std::atomic<bool> stop_{false};
@@ -164,6 +162,10 @@ ExitCode run(const RenderOptions& options, Process& process) {
   const std::vector<std::string> outputs = outputs_of(options);
   if (const auto status = check_outputs_writable(outputs); !status.ok()) {
     return console.fail(ExitCode::kWrong, std::string(status.message()));
+  }
+  const auto reports = report_files(options.report, outputs);
+  if (!reports.ok()) {
+    return console.fail(ExitCode::kWrong, std::string(reports.status().message()));
   }
   auto prepared = prepare(options, process);
   if (!prepared.ok()) {
@@ -187,7 +189,7 @@ ExitCode run(const RenderOptions& options, Process& process) {
   const auto cpus = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   return LocalRun(options, process, spec, options.display.over(prepared->info.display),
                   options.threads > 0 ? options.threads : cpus)
-      .run(std::move(prepared->scene), outputs);
+      .run(std::move(prepared->scene), outputs, *reports);
 }
 
 }  // namespace bandsaw::coordinator

@@ -7,6 +7,8 @@
 #include "coordinator/cli/json.h"
 #include "coordinator/cli/output.h"
 #include "coordinator/cli/part_file.h"
+#include "coordinator/cli/report.h"
+#include "coordinator/cli/report_file.h"
 #include "coordinator/cli/stitch_coverage.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/render/film.h"
@@ -35,13 +37,36 @@ class Stitcher {
                        text(record.settings), " and ", text(settings_)));
     }
     RETURN_IF_ERROR(coverage_->add(part, record.pixels.band));
+    counters_.add(record.pixels.counters);
+    cpu_s_ += record.cpu_s;
     return film_->add(record.pixels);
   }
 
-  absl::StatusOr<Image> image() const {
-    RETURN_IF_ERROR(coverage_->samples().status());
-    return film_->snapshot().image;
+  /// As if the image had been rendered in one go. What is not in the parts is not known.
+  absl::StatusOr<Progress> progress() const {
+    ASSIGN_OR_RETURN(const std::uint64_t samples, coverage_->samples());
+    Progress progress;
+    JobView& job = progress.job;
+    job.spec.manifest = digest_;
+    job.spec.settings = settings_;
+    job.spec.stop = StopAtSamples{samples};
+    job.state = JobState::kDone;
+    job.elapsed_s = -1;
+    job.cpu_s = cpu_s_;
+    job.samples_per_pixel = samples;
+    job.samples_done = samples * settings_.width * settings_.height;
+    job.counters = counters_;
+    if (const auto error = film_->error()) {
+      job.error = error->relative_rmse;
+      job.curve = {{samples, job.elapsed_s, job.cpu_s, *error}};
+    }
+    if (counters_.bad_samples > 0) {
+      progress.bad_sample_at = bad_sample_text(counters_);
+    }
+    return progress;
   }
+
+  Image image() const { return film_->snapshot().image; }
 
  private:
   static std::string text(const RenderSettings& settings) {
@@ -54,10 +79,13 @@ class Stitcher {
   RenderSettings settings_;
   std::optional<Film> film_;
   std::optional<StitchCoverage> coverage_;
+  Counters counters_;
+  double cpu_s_ = 0;
 };
 
 struct Stitched {
   Image image;
+  Progress progress;
   Display display;  ///< as the first part says
 };
 
@@ -70,7 +98,8 @@ absl::StatusOr<Stitched> stitched(const std::vector<std::string>& parts) {
                      }));
     out.display = &part == &parts.front() ? display : out.display;
   }
-  ASSIGN_OR_RETURN(out.image, stitcher.image());
+  ASSIGN_OR_RETURN(out.progress, stitcher.progress());
+  out.image = stitcher.image();
   return out;
 }
 
@@ -80,6 +109,10 @@ ExitCode run(const StitchOptions& options, Process& process) {
   if (const auto status = check_outputs_writable(options.outputs); !status.ok()) {
     return process.console.fail(ExitCode::kWrong, std::string(status.message()));
   }
+  const auto reports = report_files(options.report, options.outputs);
+  if (!reports.ok()) {
+    return process.console.fail(ExitCode::kWrong, std::string(reports.status().message()));
+  }
   const auto whole = stitched(options.parts);
   if (!whole.ok()) {
     const bool memory = absl::IsResourceExhausted(whole.status());
@@ -87,18 +120,25 @@ ExitCode run(const StitchOptions& options, Process& process) {
                                 std::string(whole.status().message()));
   }
   const Image& image = whole->image;
-  if (const auto status =
-          write_outputs(image, options.outputs, options.display.over(whole->display));
-      !status.ok()) {
+  absl::Status status = write_outputs(image, options.outputs, options.display.over(whole->display));
+  if (status.ok()) {
+    const Report report{whole->progress, pixels_sha256(image), options.outputs};
+    status = write_reports(report_text(report), *reports);
+  }
+  if (!status.ok()) {
     return process.console.fail(ExitCode::kFailed, std::string(status.message()));
   }
   if (options.verbosity.json) {
-    process.console.line(
-        JsonObject().text("event", "done").texts("outputs", options.outputs).str());
+    process.console.line(JsonObject()
+                             .text("event", "done")
+                             .texts("outputs", options.outputs)
+                             .texts("reports", *reports)
+                             .str());
   } else {
     process.console.line(absl::StrCat(names_of(options.outputs), " · ", image.width, "×",
                                       image.height, " · ", options.parts.size(),
-                                      options.parts.size() == 1 ? " part" : " parts"));
+                                      options.parts.size() == 1 ? " part" : " parts",
+                                      reports->empty() ? "" : " · report ", names_of(*reports)));
   }
   return ExitCode::kDone;
 }

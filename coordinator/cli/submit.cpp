@@ -14,6 +14,7 @@
 #include "coordinator/cli/json.h"
 #include "coordinator/cli/layers.h"
 #include "coordinator/cli/output.h"
+#include "coordinator/cli/report_file.h"
 #include "coordinator/cli/upload.h"
 #include "coordinator/cli/watch_job.h"
 #include "renderlib/base/check.h"
@@ -96,6 +97,10 @@ ExitCode run(const SubmitOptions& options, Process& process) {
   if (const auto status = check_outputs_writable(outputs); !status.ok()) {
     return console.fail(ExitCode::kWrong, std::string(status.message()));
   }
+  const auto reports = report_files(options.report, outputs);
+  if (!reports.ok()) {
+    return console.fail(ExitCode::kWrong, std::string(reports.status().message()));
+  }
   // The farm first: a big scene takes long to read, and a farm that is not there makes that vain.
   const auto client = connect_to_farm(options.farm);
   if (!client.ok()) {
@@ -129,7 +134,8 @@ ExitCode run(const SubmitOptions& options, Process& process) {
     };
     return make_layers(options.layers, *settings, samples, render);
   };
-  return watch_job(**client, *job, outputs, options.display, options.verbosity, process, layers);
+  return watch_job(**client, *job, {outputs, *reports, options.display}, options.verbosity, process,
+                   layers);
 }
 
 }  // namespace bandsaw::coordinator

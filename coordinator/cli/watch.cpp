@@ -3,6 +3,7 @@
 #include "coordinator/cli/commands.h"
 #include "coordinator/cli/farm_errors.h"
 #include "coordinator/cli/output.h"
+#include "coordinator/cli/report_file.h"
 #include "coordinator/cli/watch_job.h"
 
 namespace bandsaw::coordinator {
@@ -11,13 +12,17 @@ ExitCode run(const WatchOptions& options, Process& process) {
   if (const auto status = check_outputs_writable(options.outputs); !status.ok()) {
     return process.console.fail(ExitCode::kWrong, std::string(status.message()));
   }
+  const auto reports = report_files(options.report, options.outputs);
+  if (!reports.ok()) {
+    return process.console.fail(ExitCode::kWrong, std::string(reports.status().message()));
+  }
   const auto client = connect_to_farm(options.farm);
   if (!client.ok()) {
     return process.console.fail(exit_code_of(client.status()),
                                 std::string(client.status().message()));
   }
-  return watch_job(**client, options.job, options.outputs, options.display, options.verbosity,
-                   process);
+  return watch_job(**client, options.job, {options.outputs, *reports, options.display},
+                   options.verbosity, process);
 }
 
 }  // namespace bandsaw::coordinator

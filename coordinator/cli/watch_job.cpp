@@ -3,6 +3,8 @@
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/farm_errors.h"
 #include "coordinator/cli/output.h"
+#include "coordinator/cli/report.h"
+#include "coordinator/cli/report_file.h"
 #include "coordinator/cli/steady_time.h"
 #include "coordinator/cli/text.h"
 #include "renderlib/base/status_macros.h"
@@ -89,15 +91,22 @@ ExitCode left_early(const absl::Status& status, JobId job, const std::vector<std
   return console.fail(code, std::string(status.message()));
 }
 
+absl::Status write_wanted(const Image& image, const Layers& layers, const Display& display,
+                          const Progress& progress, const Wanted& wanted) {
+  RETURN_IF_ERROR(write_outputs(image, wanted.outputs, display, layers));
+  const Report report{progress, pixels_sha256(image), wanted.outputs};
+  return write_reports(report_text(report), wanted.reports);
+}
+
 }  // namespace
 
 absl::StatusOr<Progress> follow_job(FarmClient& client, JobId job, ProgressDisplay& display) {
   return Watch(client, job, display).to_the_end();
 }
 
-ExitCode watch_job(FarmClient& client, JobId job, const std::vector<std::string>& outputs,
-                   const DisplayOptions& display_options, Verbosity verbosity, Process& process,
-                   const BesideImage& beside) {
+ExitCode watch_job(FarmClient& client, JobId job, const Wanted& wanted, Verbosity verbosity,
+                   Process& process, const BesideImage& beside) {
+  const std::vector<std::string>& outputs = wanted.outputs;
   const Interrupts::Listener listener(process.interrupts, [&] { client.stop(); });
   ProgressDisplay display(process.console, verbosity);
   const auto last = follow_job(client, job, display);
@@ -128,8 +137,8 @@ ExitCode watch_job(FarmClient& client, JobId job, const std::vector<std::string>
       display.clear();
       return left_early(layers.status(), job, outputs, process.console);
     }
-    if (const auto status =
-            write_outputs(result->image, outputs, display_options.over(result->display), *layers);
+    if (const auto status = write_wanted(result->image, *layers,
+                                         wanted.display.over(result->display), *last, wanted);
         !status.ok()) {
       display.clear();
       return process.console.fail(
@@ -137,7 +146,7 @@ ExitCode watch_job(FarmClient& client, JobId job, const std::vector<std::string>
           absl::StrCat(status.message(), "; the farm keeps the image. ", come_back(job, {})));
     }
   }
-  display.done(*last, outputs);
+  display.done(*last, outputs, wanted.reports);
   return ExitCode::kDone;
 }
 

@@ -14,6 +14,13 @@
 
 namespace bandsaw::coordinator {
 
+/// Where a job's image goes, and how.
+struct Wanted {
+  std::vector<std::string> outputs;  ///< may be empty: the image is not fetched
+  std::vector<std::string> reports;  ///< checked by report_files
+  DisplayOptions display;            ///< of 8-bit files; what it does not say the scene does
+};
+
 /// Shows the job's progress until it is final: its last state. A farm that goes away is waited for,
 /// a minute long: UNAVAILABLE. CANCELLED: `client` was stopped.
 absl::StatusOr<Progress> follow_job(FarmClient& client, JobId job, ProgressDisplay& display);
@@ -22,12 +29,10 @@ absl::StatusOr<Progress> follow_job(FarmClient& client, JobId job, ProgressDispl
 using BesideImage =
     std::function<absl::StatusOr<Layers>(std::uint64_t samples, ProgressDisplay& display)>;
 
-/// Shows the job's progress until it is final, then fetches its image and writes `outputs`, if
-/// there are any, 8-bit ones as `display_options` say, and the scene where they say nothing, with
-/// what `beside` makes of them, if given. A signal detaches: the job goes on. A farm that goes away
-/// is waited for, a minute long.
-ExitCode watch_job(FarmClient& client, JobId job, const std::vector<std::string>& outputs,
-                   const DisplayOptions& display_options, Verbosity verbosity, Process& process,
-                   const BesideImage& beside = {});
+/// Shows the job's progress until it is final, then fetches its image and writes what is wanted,
+/// with what `beside` makes of it, if given. A signal detaches: the job goes on. A farm that goes
+/// away is waited for, a minute long.
+ExitCode watch_job(FarmClient& client, JobId job, const Wanted& wanted, Verbosity verbosity,
+                   Process& process, const BesideImage& beside = {});
 
 }  // namespace bandsaw::coordinator

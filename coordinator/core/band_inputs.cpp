@@ -64,14 +64,26 @@ Coverage::Change Core::State::store(Job& job, Pass& pass, const input::BandStore
   for (const RowRange& range : change.rows) {
     rows += range.count();
   }
-  job.throughput.add(clock_.wall(), static_cast<double>(rows * in.band.samples.samples() *
-                                                        job.spec.settings.width));
-  if (in.renderer != 0 && job.used.size() < Job::kUsedKept) {
-    job.used.insert(in.renderer);
-  }
+  const std::uint64_t samples = rows * in.band.samples.samples() * job.spec.settings.width;
+  job.throughput.add(clock_.wall(), static_cast<double>(samples));
+  count_share(job, in, samples);
   job.advance();
   touch(job);
   return change;
+}
+
+void Core::State::count_share(Job& job, const input::BandStored& in, std::uint64_t samples) {
+  if (in.renderer == 0 ||
+      (job.shares.size() >= Job::kSharesKnown && !job.shares.contains(in.renderer))) {
+    return;
+  }
+  WorkerShare& share = job.shares[in.renderer];
+  share.renderer = in.renderer;
+  share.samples += samples;
+  share.cpu_s += in.cpu_s;
+  if (const Worker* worker = workers_.by_instance(in.instance)) {
+    share.name = worker->name;
+  }
 }
 
 void Core::State::measure(Worker& worker, Job& job, const input::BandStored& in) {

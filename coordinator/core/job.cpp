@@ -60,7 +60,7 @@ void Job::finish() {
   passes.clear();
   faults.clear();
   losses.clear();
-  used.clear();
+  shares.clear();
   cost = {};
   complete_passes_ = 0;
 }
@@ -107,6 +107,18 @@ Totals Job::totals() const {
     sum.samples = fixed.value_or(0) * pixels();
   }
   return sum;
+}
+
+std::vector<WorkerShare> Job::largest_shares() const {
+  std::vector<WorkerShare> out;
+  for (const auto& [renderer, share] : shares) {
+    out.push_back(share);
+  }
+  std::stable_sort(out.begin(), out.end(), [](const WorkerShare& a, const WorkerShare& b) {
+    return a.samples > b.samples;
+  });
+  out.resize(std::min(out.size(), kSharesKept));
+  return out;
 }
 
 std::uint64_t Job::max_samples() const {

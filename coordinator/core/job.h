@@ -71,6 +71,8 @@ class Job {
   /// Pixel samples of its passes that nobody has.
   std::uint64_t free_samples() const;
   Totals totals() const;
+  /// The largest, at most kSharesKept, by size.
+  std::vector<WorkerShare> largest_shares() const;
   std::uint64_t pixels() const;
   std::uint64_t max_samples() const;
   bool timed() const { return std::holds_alternative<StopAtTime>(spec.stop); }
@@ -89,6 +91,7 @@ class Job {
 
   double error = -1;  ///< of `error_at` samples; negative: not known
   std::uint64_t error_at = 0;
+  ErrorCurve curve;
 
   std::set<LeaseId> leases;
   std::set<LeaseId> copies;        ///< of `leases`, those that own nothing (Lease::copy_of)
@@ -97,8 +100,9 @@ class Job {
   std::string log_of;              ///< the worker that failed a band last …
   std::vector<std::string> log;    ///< … and the last lines of its log
   std::deque<Fault> losses;        ///< of workers that went while rendering a band and stay away
-  std::set<std::uint64_t> used;    ///< who rendered what is in the image, at most kUsedKept
-  std::optional<record::Figures> figures;  ///< of a final job
+  std::map<std::uint64_t, WorkerShare> shares;  ///< by renderer, at most kSharesKnown
+  std::optional<record::Figures> figures;       ///< of a final job
+  std::vector<WorkerShare> final_shares;        ///< of a final job, the largest first
 
   std::optional<Time> first_lease_at;  ///< in this life of the coordinator
   double elapsed_before = 0;           ///< seconds, in earlier lives
@@ -108,7 +112,8 @@ class Job {
   Speed per_thread;                    ///< pace of all its workers, in work a second and thread
 
   static constexpr std::size_t kFaultsKept = 1'000;
-  static constexpr std::size_t kUsedKept = 65'536;
+  static constexpr std::size_t kSharesKnown = 65'536;
+  static constexpr std::size_t kSharesKept = 128;  ///< the largest, of a final job
 
  private:
   static constexpr std::size_t kPassesWithDigests = 8;

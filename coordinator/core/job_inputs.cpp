@@ -124,12 +124,24 @@ void Core::State::on(const input::PassMerged& in) {
   if (job == nullptr || is_final(job->state) || in.samples < job->error_at) {
     return;
   }
-  const bool known = in.error >= 0 && std::isfinite(in.error);
+  const bool known = in.error && std::isfinite(in.error->relative_rmse);
   if (known) {
-    job->error = in.error;
+    job->error = in.error->relative_rmse;
     job->error_at = in.samples;
+    note_error(*job, in.samples, *in.error);
   }
-  look_at_error(*job, in.samples, known ? in.error : -1);
+  look_at_error(*job, in.samples, known ? job->error : -1);
+}
+
+/// What a restart measures again is known already.
+void Core::State::note_error(const Job& job, std::uint64_t samples, const ErrorEstimate& error) {
+  const ErrorPoint point{samples, elapsed(job, clock_.wall()), job.totals().cpu_s, error};
+  const bool known = !job.curve.empty() &&
+                     (job.curve.back().samples > samples ||
+                      (job.curve.back().samples == samples && job.curve.back().estimate == error));
+  if (!known) {
+    emit(record::ErrorMeasured{job.id, point});
+  }
 }
 
 void Core::State::look_at_error(Job& job, std::uint64_t samples, double error) {
@@ -178,6 +190,9 @@ void Core::State::settle(Job& job) {
 void Core::State::end(Job& job, JobState state, const std::string& reason) {
   end_all({job.leases.begin(), job.leases.end()}, Revoke::kYes);
   emit(figures(job));
+  for (const WorkerShare& share : job.largest_shares()) {
+    emit(record::ShareCounted{job.id, share});
+  }
   emit(record::StateChanged{job.id, state, reason.substr(0, wire::kReasonBytes)});
   act(action::DropBands{job.id});
 }
@@ -213,7 +228,7 @@ record::Figures Core::State::figures(const Job& job) const {
   return {.job = job.id,
           .elapsed_s = elapsed(job, clock_.wall()),
           .cpu_s = totals.cpu_s,
-          .workers_used = static_cast<std::uint32_t>(job.used.size()),
+          .workers_used = static_cast<std::uint32_t>(job.shares.size()),
           .samples = totals.samples,
           .samples_per_pixel = job.complete_samples(),
           .error = job.error,

@@ -4,6 +4,7 @@
 // applying one is the only way the state changes) and actions (what the world must do once the
 // durable events are on disk).
 
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -71,12 +72,12 @@ struct BandStored {
   double render_s = 0;
   double cpu_s = 0;
 };
-/// The film has merged every row of samples [0, samples); error: negative when it cannot be told
-/// yet.
+/// The film has merged every row of samples [0, samples); error: nothing when it cannot be told
+/// yet. Said once more of the finished image.
 struct PassMerged {
   JobId job = 0;
   std::uint64_t samples = 0;
-  double error = -1;
+  std::optional<ErrorEstimate> error;
 };
 struct ResultWritten {
   JobId job = 0;
@@ -148,6 +149,16 @@ struct Figures {
   double error = -1;                    ///< negative: not known
   Counters counters;
 };
+/// What the error was after a pass.
+struct ErrorMeasured {
+  JobId job = 0;
+  ErrorPoint point;
+};
+/// Of a job that is about to be final; one for each worker.
+struct ShareCounted {
+  JobId job = 0;
+  WorkerShare share;
+};
 /// The last lines of the log of the worker that failed the job.
 struct LastWords {
   JobId job = 0;
@@ -170,7 +181,8 @@ struct WorkerLeft {
 using Record =
     std::variant<record::JobAdded, record::PassPlanned, record::SamplesFixed, record::StateChanged,
                  record::PriorityChanged, record::HoldChanged, record::TimeSpent, record::Figures,
-                 record::LastWords, record::JobForgotten, record::WorkerJoined, record::WorkerLeft>;
+                 record::ErrorMeasured, record::ShareCounted, record::LastWords,
+                 record::JobForgotten, record::WorkerJoined, record::WorkerLeft>;
 
 // ---- actions ----
 namespace action {

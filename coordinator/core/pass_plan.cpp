@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace bandsaw::coordinator {
 namespace {
@@ -49,6 +50,22 @@ std::uint64_t next_look(std::uint64_t samples, double error, double target,
     next = std::max(next, static_cast<std::uint64_t>(soonest));
   }
   return std::min(quarters(next) * kBlockSamples, max_samples);
+}
+
+std::optional<std::uint64_t> expected_end(const ErrorCurve& curve, double target,
+                                          std::uint64_t planned, std::uint64_t max_samples) {
+  const std::optional<double> needed = samples_until(curve, target);
+  if (!needed) {
+    return std::nullopt;
+  }
+  const ErrorPoint& last = curve.back();
+  const double fall = fall_of(curve);
+  std::uint64_t look = std::max(planned, last.samples);
+  while (static_cast<double>(look) < *needed && look < max_samples) {
+    const double left = static_cast<double>(last.samples) / static_cast<double>(look);
+    look = next_look(look, last.estimate.relative_rmse * std::pow(left, fall), target, max_samples);
+  }
+  return look;
 }
 
 SampleRange next_timed_pass(std::uint64_t from, double fits, std::uint64_t max_samples) {

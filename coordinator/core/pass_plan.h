@@ -4,8 +4,10 @@
 // that the same job has the same passes on every farm.
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "coordinator/core/error_curve.h"
 #include "renderlib/render/band.h"
 
 namespace bandsaw::coordinator {
@@ -23,6 +25,12 @@ std::vector<SampleRange> passes_between(std::uint64_t from, std::uint64_t to);
 /// quarter too much. Never above max_samples.
 std::uint64_t next_look(std::uint64_t samples, double error, double target,
                         std::uint64_t max_samples);
+
+/// Where a job that ends at `target` will end, in samples a pixel, by how its error has fallen: at
+/// the first look from `planned` (the next one) on that finds it reached. Nothing while no error is
+/// known.
+std::optional<std::uint64_t> expected_end(const ErrorCurve& curve, double target,
+                                          std::uint64_t planned, std::uint64_t max_samples);
 
 /// The next pass of a job with a time limit, after samples [0, from): at most a quarter of what is
 /// there, and no more than `fits` samples where that is not less than a block. from < max_samples.

@@ -80,6 +80,18 @@ void Core::State::apply(const record::Figures& r) {
   }
 }
 
+void Core::State::apply(const record::ErrorMeasured& r) {
+  if (Job* job = find(r.job)) {
+    add_point(job->curve, r.point);
+  }
+}
+
+void Core::State::apply(const record::ShareCounted& r) {
+  if (Job* job = find(r.job); job != nullptr && job->final_shares.size() < Job::kSharesKept) {
+    job->final_shares.push_back(r.share);
+  }
+}
+
 void Core::State::apply(const record::LastWords& r) {
   if (Job* job = find(r.job)) {
     job->log_of = r.worker;

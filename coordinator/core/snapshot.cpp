@@ -30,8 +30,14 @@ void Core::State::add_records(const Job& job, std::vector<Record>& out) {
   if (job.elapsed_noted > 0) {
     out.push_back(record::TimeSpent{job.id, job.elapsed_noted});
   }
+  for (const ErrorPoint& point : job.curve) {
+    out.push_back(record::ErrorMeasured{job.id, point});
+  }
   if (job.figures) {
     out.push_back(*job.figures);
+  }
+  for (const WorkerShare& share : job.final_shares) {
+    out.push_back(record::ShareCounted{job.id, share});
   }
   if (is_final(job.state) && !job.log.empty()) {
     out.push_back(record::LastWords{job.id, job.log_of, job.log});

@@ -69,6 +69,8 @@ class Core::State {
   void apply(const record::HoldChanged& r);
   void apply(const record::TimeSpent& r);
   void apply(const record::Figures& r);
+  void apply(const record::ErrorMeasured& r);
+  void apply(const record::ShareCounted& r);
   void apply(const record::LastWords& r);
   void apply(const record::JobForgotten& r);
   void apply(const record::WorkerJoined& r);
@@ -101,6 +103,7 @@ class Core::State {
   void plan_until(Job& job, std::uint64_t samples);
   bool plan_timed(Job& job);
   void look_at_error(Job& job, std::uint64_t samples, double error);
+  void note_error(const Job& job, std::uint64_t samples, const ErrorEstimate& error);
   void fix(Job& job, std::uint64_t samples);
   /// Ends the job's work once every pass is there, or its time is up.
   void settle(Job& job);
@@ -160,6 +163,7 @@ class Core::State {
   /// Ends the lease that this is the result of, if its worker still has it.
   void end_own(const Worker& worker, const input::BandStored& in);
   Coverage::Change store(Job& job, Pass& pass, const input::BandStored& in);
+  void count_share(Job& job, const input::BandStored& in, std::uint64_t samples);
 
   // What goes wrong.
   void add_fault(Job& job, Worker& worker, const Band& band, const std::string& reason);

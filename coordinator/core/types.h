@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "coordinator/core/error_curve.h"
 #include "renderlib/render/band.h"
 #include "renderlib/render/settings.h"
 
@@ -106,6 +107,15 @@ struct JobWorkerView {
   std::string state;
 };
 
+/// What a worker rendered of the image.
+struct WorkerShare {
+  std::uint64_t renderer = 0;  ///< names the worker in all lives of the coordinator
+  std::string name;            ///< empty: it was not heard of since the coordinator was started
+  std::uint64_t samples = 0;   ///< pixel samples
+  double cpu_s = 0;            ///< summed over its threads
+  friend bool operator==(const WorkerShare&, const WorkerShare&) = default;
+};
+
 struct JobView {
   JobId id = 0;
   JobSpec spec;
@@ -128,6 +138,8 @@ struct JobView {
   /// in no other figure.
   std::uint64_t bands_copied = 0;
   std::vector<JobWorkerView> workers;
+  ErrorCurve curve;                 ///< in lists of jobs: empty
+  std::vector<WorkerShare> shares;  ///< of a final job; in lists of jobs: empty
 };
 
 struct WorkerView {

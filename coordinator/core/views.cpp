@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "absl/strings/str_cat.h"
+#include "coordinator/core/pass_plan.h"
 #include "coordinator/core/state.h"
 
 namespace bandsaw::coordinator {
@@ -30,7 +31,7 @@ std::optional<JobView> Core::State::view(JobId id, Time now) const {
   view.cpu_s = totals.cpu_s;
   view.workers_used = is_final(job->state) && job->figures
                           ? job->figures->workers_used
-                          : static_cast<std::uint32_t>(job->used.size());
+                          : static_cast<std::uint32_t>(job->shares.size());
   view.priority = job->priority;
   if (job->state == JobState::kFailed) {
     view.log_of = job->log_of;
@@ -38,6 +39,8 @@ std::optional<JobView> Core::State::view(JobId id, Time now) const {
   }
   view.bands_copied = job->bands_copied;
   view.workers = lines(*job);
+  view.curve = job->curve;
+  view.shares = job->final_shares;
   return view;
 }
 
@@ -45,6 +48,8 @@ std::vector<JobView> Core::State::job_views(Time now) const {
   std::vector<JobView> views;
   for (const auto& [id, job] : jobs_) {
     views.push_back(*view(id, now));
+    views.back().curve.clear();
+    views.back().shares.clear();
   }
   return views;
 }
@@ -78,13 +83,10 @@ double Core::State::expected_samples(const Job& job) const {
   }
   const auto most = static_cast<double>(job.max_samples());
   const auto* rule = std::get_if<StopAtError>(&job.spec.stop);
-  if (rule == nullptr || job.error < 0) {
-    return most;
-  }
-  // Random samples: the error falls with the square root of their number.
-  const double ratio = job.error / rule->relative_rmse;
-  const double needed = static_cast<double>(job.error_at) * std::max(1.0, ratio * ratio);
-  return std::clamp(needed, static_cast<double>(job.planned_samples()), most);
+  const auto end = rule == nullptr ? std::nullopt
+                                   : expected_end(job.curve, rule->relative_rmse,
+                                                  job.planned_samples(), job.max_samples());
+  return end ? static_cast<double>(*end) : most;
 }
 
 double Core::State::fraction(const Job& job, Time now) const {

@@ -82,8 +82,7 @@ void FilmDesk::tell_passes(JobId id, OneJob& job) {
   while (!job.pass_ends.empty() && job.film->complete(*job.pass_ends.begin())) {
     const std::uint64_t samples = *job.pass_ends.begin();
     job.pass_ends.erase(job.pass_ends.begin());
-    const std::optional<ErrorEstimate> error = job.film->error();
-    hooks_.merged({.job = id, .samples = samples, .error = error ? error->relative_rmse : -1});
+    hooks_.merged({.job = id, .samples = samples, .error = job.film->error()});
   }
 }
 
@@ -99,6 +98,8 @@ absl::Status FilmDesk::give_image(JobId id, OneJob& job) {
     std::erase_if(job.added, [&](const Added& added) { return added.last_sample > samples; });
   }
   job.image_of.reset();
+  // What was told on the way may have been of more samples.
+  hooks_.merged({.job = id, .samples = samples, .error = job.film->error()});
   hooks_.image(id, job.film->snapshot().image);
   return absl::OkStatus();
 }

@@ -35,6 +35,14 @@ struct Line {
     spdlog::info("job={} elapsed={:.3f} s cpu={:.3f} s workers={} samples={}", r.job, r.elapsed_s,
                  r.cpu_s, r.workers_used, r.samples);
   }
+  void operator()(const record::ErrorMeasured& r) const {
+    spdlog::debug("job={} samples={} error={:.5f}", r.job, r.point.samples,
+                  r.point.estimate.relative_rmse);
+  }
+  void operator()(const record::ShareCounted& r) const {
+    spdlog::info("job={} worker={} samples={} cpu={:.3f} s", r.job, r.share.name, r.share.samples,
+                 r.share.cpu_s);
+  }
   void operator()(const record::LastWords& r) const {
     for (const std::string& line : r.log) {
       spdlog::error("job={} worker={} | {}", r.job, r.worker, line);

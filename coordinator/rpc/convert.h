@@ -27,6 +27,7 @@ absl::StatusOr<std::string> reason_field(const char* field, const std::string& t
 
 // ---- to the wire ----
 
+farm::ErrorPoint to_message(const ErrorPoint& point);
 farm::JobStatus to_message(const JobView& job);
 farm::WorkerStatus to_message(const WorkerView& worker);
 farm::ToWorker to_message(const action::Welcome& welcome, const std::string& epoch);

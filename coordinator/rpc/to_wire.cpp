@@ -50,6 +50,22 @@ std::string raw_digest(const DigestHex& hex) {
 
 }  // namespace
 
+farm::ErrorPoint to_message(const ErrorPoint& point) {
+  farm::ErrorPoint message;
+  message.set_samples_per_pixel(point.samples);
+  message.set_elapsed_s(point.elapsed_s);
+  message.set_cpu_s(point.cpu_s);
+  message.set_mean(point.estimate.mean);
+  message.set_rmse(point.estimate.rmse);
+  message.set_relative_rmse(point.estimate.relative_rmse);
+  message.set_relative_mse(point.estimate.relative_mse);
+  message.set_median(point.estimate.median);
+  message.set_percentile_95(point.estimate.percentile_95);
+  message.set_percentile_99(point.estimate.percentile_99);
+  message.set_worst_share(point.estimate.worst_share);
+  return message;
+}
+
 farm::JobStatus to_message(const JobView& job) {
   farm::JobStatus message;
   message.set_job(job.id);
@@ -88,6 +104,15 @@ farm::JobStatus to_message(const JobView& job) {
   message.set_log_of(job.log_of);
   for (const std::string& line : job.log) {
     message.add_log(line);
+  }
+  for (const ErrorPoint& point : job.curve) {
+    *message.add_curve() = to_message(point);
+  }
+  for (const WorkerShare& share : job.shares) {
+    farm::WorkerShare* s = message.add_share();
+    s->set_name(share.name);
+    s->set_samples(share.samples);
+    s->set_cpu_s(share.cpu_s);
   }
   return message;
 }

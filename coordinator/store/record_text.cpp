@@ -7,6 +7,7 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
 #include "coordinator/store/fields.h"
+#include "coordinator/store/record_text_report.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
@@ -182,6 +183,12 @@ Record read_record(absl::string_view kind, FieldReader& in) {
   if (kind == "figures") {
     return read_figures(in);
   }
+  if (kind == "error_measured") {
+    return read_error(in);
+  }
+  if (kind == "share_counted") {
+    return read_share(in);
+  }
   if (kind == "last_words") {
     return record::LastWords{.job = in.number("job"),
                              .worker = in.text("worker"),
@@ -245,6 +252,14 @@ RecordText to_text(const Record& record) {
                             [&](const record::Figures& r) {
                               write_figures(out, r);
                               return "figures";
+                            },
+                            [&](const record::ErrorMeasured& r) {
+                              write_error(out, r);
+                              return "error_measured";
+                            },
+                            [&](const record::ShareCounted& r) {
+                              write_share(out, r);
+                              return "share_counted";
                             },
                             [&](const record::LastWords& r) {
                               out.number("job", r.job);

@@ -11,8 +11,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr int kSchema = 2;
-constexpr int kOldSchema = 1;  // had fewer kinds of records and is read as it is
+constexpr int kSchema = 3;  // those before it had fewer kinds of records and are read as they are
 constexpr char kTables[] =
     "CREATE TABLE IF NOT EXISTS record (sequence INTEGER PRIMARY KEY, kind TEXT NOT NULL,"
     " fields TEXT NOT NULL, seal TEXT NOT NULL) STRICT;";
@@ -110,7 +109,7 @@ absl::Status SqliteJournal::prepare_file() {
 absl::Status SqliteJournal::check_version() {
   ASSIGN_OR_RETURN(const std::string version, ask("PRAGMA user_version;"));
   int found = 0;
-  if (absl::SimpleAtoi(version, &found) && (found == 0 || found == kOldSchema)) {
+  if (absl::SimpleAtoi(version, &found) && found >= 0 && found < kSchema) {
     RETURN_IF_ERROR(execute(kTables));
     return execute(absl::StrCat("PRAGMA user_version = ", kSchema, ";").c_str());
   }

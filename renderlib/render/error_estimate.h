@@ -33,6 +33,8 @@ struct ErrorEstimate {
   /// Rare bright paths decide the error: pixels that none has met yet show nothing of theirs, and
   /// the estimate is likely too low.
   bool doubtful() const { return worst_share > 0.3; }
+
+  friend bool operator==(const ErrorEstimate&, const ErrorEstimate&) = default;
 };
 
 /// One pixel row's sums, of one node of its samples.

@@ -64,6 +64,15 @@ TEST(CommandLine, SaysWhatIsShownAndHow) {
   expect_wrong("stitch a.band -o a.png --tone aces", "--tone");
 }
 
+TEST(CommandLine, TheReportIsAFileOrNone) {
+  EXPECT_EQ(parsed<RenderOptions>("render a.glb").report.file, "");
+  EXPECT_EQ(parsed<SubmitOptions>("submit a.glb --report r.json").report.file, "r.json");
+  EXPECT_EQ(parsed<WatchOptions>("watch 7 -o a.png --report none").report.file, "none");
+  expect_wrong("render a.glb --report r.txt", ".json");
+  expect_wrong("watch 7 --report r.json", "-o");
+  expect_wrong("submit a.glb --detach --report r.json", "-o");
+}
+
 TEST(CommandLine, InfoTakesOneFile) {
   EXPECT_EQ(parsed<InfoOptions>("info model.glb").scene, "model.glb");
   EXPECT_TRUE(parsed<InfoOptions>("info model.glb --json").verbosity.json);

@@ -68,18 +68,23 @@ TEST(LocalMeter, TellsHowFarARenderIs) {
   JobSpec spec;
   spec.settings = {.width = 10, .height = 10, .max_depth = 1, .seed = 0};
   spec.stop = StopAtSamples{64};
-  LocalMeter meter(spec, {0, 5}, 2, 100);
+  LocalMeter meter(spec, {0, 5}, 2, {.steady_s = 100, .cpu_s = 7});
   meter.reached(1600);
   meter.reached(800);
-  meter.passed(16, 0.5);
-  const Progress progress = meter.progress(102);
+  meter.passed(32, ErrorEstimate{.relative_rmse = 0.5}, {.steady_s = 101, .cpu_s = 9});
+  const Progress progress = meter.progress({.steady_s = 102, .cpu_s = 11});
   EXPECT_EQ(progress.threads, 2);
   EXPECT_EQ(progress.job.samples_done, 1600u);
   EXPECT_DOUBLE_EQ(progress.job.fraction, 0.5);
   EXPECT_DOUBLE_EQ(progress.job.elapsed_s, 2);
   EXPECT_DOUBLE_EQ(progress.job.remaining_s, 2);
   EXPECT_DOUBLE_EQ(progress.job.samples_per_s, 800);
+  EXPECT_DOUBLE_EQ(progress.job.cpu_s, 4);
   EXPECT_EQ(progress.job.error, 0.5);
+  ASSERT_EQ(progress.job.curve.size(), 1u);
+  EXPECT_EQ(progress.job.curve[0].samples, 32u);
+  EXPECT_DOUBLE_EQ(progress.job.curve[0].elapsed_s, 1);
+  EXPECT_DOUBLE_EQ(progress.job.curve[0].cpu_s, 2);
 }
 
 }  // namespace

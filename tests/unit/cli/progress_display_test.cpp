@@ -56,7 +56,7 @@ TEST(ProgressDisplay, APipeGetsOneLineASecondAndNoEscapes) {
   const std::vector<std::string> lines = absl::StrSplit(screen.out, '\n', absl::SkipEmpty());
   EXPECT_THAT(lines, ElementsAre("job 3 · box · 8×4 · until 16 samples", StartsWith("  0 %"),
                                  StartsWith(" 25 %"), StartsWith(" 50 %"), StartsWith(" 75 %"),
-                                 "box.png · 0.00 s · 0 workers"));
+                                 "0 samples a pixel · 0 rays", "box.png · 0.00 s · 0 workers"));
   EXPECT_THAT(screen.out, Not(HasSubstr("\x1b")));
   EXPECT_EQ(screen.err, "");
 }
@@ -77,7 +77,8 @@ TEST(ProgressDisplay, ATerminalIsRedrawnInPlaceAndLeftClean) {
   EXPECT_THAT(screen.out, StartsWith("\r\x1b[2A 50 %"));
   screen.out.clear();
   display.done(sample(1), {"box.png"});
-  EXPECT_EQ(screen.out, "\r\x1b[2A\x1b[Jbox.png · 0.00 s · 0 workers\n");
+  EXPECT_EQ(screen.out,
+            "\r\x1b[2A\x1b[J0 samples a pixel · 0 rays\nbox.png · 0.00 s · 0 workers\n");
 }
 
 TEST(ProgressDisplay, ColoursAreOnlyUsedWhereTheyAreWanted) {

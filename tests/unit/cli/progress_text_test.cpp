@@ -106,6 +106,29 @@ TEST(ProgressText, TheLastLineSaysWhatItCost) {
   EXPECT_EQ(final_line(progress, "cornell.png"), "cornell.png · 21.4 s · 1 thread");
 }
 
+TEST(ProgressText, TheLastLineNamesTheReports) {
+  EXPECT_THAT(final_line(sample(), "a.png", "a.json"), testing::EndsWith(" · report a.json"));
+}
+
+TEST(ProgressText, TheCostIsSaidWithWhatTheErrorIsMadeOf) {
+  Progress progress = sample();
+  JobView& job = progress.job;
+  job.samples_per_pixel = 256;
+  job.counters.rays = 8'000'000;
+  job.cpu_s = 4;
+  job.curve = {{128, 1, 2, {.relative_rmse = 0.04}},
+               {256, 2, 4, {.relative_rmse = 0.02, .median = 0.012, .percentile_95 = 0.05}}};
+  EXPECT_EQ(cost_line(progress),
+            "256 samples a pixel · 8 M rays, 2 M/CPU s · 4.0 s of CPU · 1 % after 11.6 s of "
+            "CPU · half of the pixels within 1.2 %, 95 % within 5 %");
+  EXPECT_THAT(doubt_line(progress), IsEmpty());
+  job.curve.back().estimate.worst_share = 0.4;
+  EXPECT_THAT(doubt_line(progress), HasSubstr("40 % of the error"));
+  job.curve.clear();
+  job.cpu_s = 0;
+  EXPECT_EQ(cost_line(progress), "256 samples a pixel · 8 M rays");
+}
+
 TEST(ProgressText, BadSamplesAreSaidLoudly) {
   Progress progress = sample();
   EXPECT_THAT(bad_samples_line(progress), IsEmpty());

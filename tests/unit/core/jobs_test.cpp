@@ -114,7 +114,8 @@ TEST(Jobs, AnErrorTargetEndsAtTheFirstLookThatReachesIt) {
     farm.render_all(1, "a");
     const std::uint64_t n = farm.job(job).samples_per_pixel;
     looks.push_back(n);
-    farm.say(input::PassMerged{job, n, 0.2 / std::sqrt(static_cast<double>(n))});
+    const double error = 0.2 / std::sqrt(static_cast<double>(n));
+    farm.say(input::PassMerged{job, n, ErrorEstimate{.relative_rmse = error}});
   }
   // 0.2 / sqrt(n) <= 0.01 from 400 samples on.
   EXPECT_EQ(farm.job(job).state, JobState::kFinishing);
@@ -131,7 +132,8 @@ TEST(Jobs, AnErrorTargetThatCannotBeReachedEndsAtMaxSamples) {
   farm.hello(1, "a");
   for (int i = 0; i < 50 && farm.job(job).state == JobState::kRunning; ++i) {
     farm.render_all(1, "a");
-    farm.say(input::PassMerged{job, farm.job(job).samples_per_pixel, 0.5});
+    farm.say(input::PassMerged{job, farm.job(job).samples_per_pixel,
+                               ErrorEstimate{.relative_rmse = 0.5}});
   }
   EXPECT_EQ(farm.all<action::WriteResult>().back().samples, 200u);
 }

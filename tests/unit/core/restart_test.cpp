@@ -87,8 +87,13 @@ TEST(Restart, FiguresOfAFinalJobStay) {
   farm.submit(test_job("r2", StopAtSamples{1000}));
   farm.hello(1, "a", 1);
   farm.render_all(1, "a");
+  farm.say(input::PassMerged{1, 16, ErrorEstimate{.relative_rmse = 0.25, .worst_share = 0.5}});
   farm.say(input::ResultWritten{1});
   farm.say(input::Cancel{2});
+  ASSERT_EQ(farm.job(1).curve.size(), 1u);
+  ASSERT_EQ(farm.job(1).shares.size(), 1u);
+  EXPECT_EQ(farm.job(1).shares[0].name, "worker-a");
+  EXPECT_EQ(farm.job(1).shares[0].samples, farm.job(1).samples_done);
   const FarmDriver next = second_life(farm, {});
   for (const JobId job : {JobId{1}, JobId{2}}) {
     const JobView before = farm.job(job);
@@ -100,7 +105,21 @@ TEST(Restart, FiguresOfAFinalJobStay) {
     EXPECT_EQ(after.samples_done, before.samples_done);
     EXPECT_EQ(after.samples_per_pixel, before.samples_per_pixel);
     EXPECT_EQ(after.counters, before.counters);
+    EXPECT_EQ(after.curve, before.curve);
+    EXPECT_EQ(after.shares, before.shares);
   }
+}
+
+TEST(Restart, TheCurveOfARunningJobStaysAsItWasMeasured) {
+  FarmDriver farm(slow());
+  farm.submit(test_job("r1", StopAtSamples{32}));
+  const input::PassMerged merged{1, 16, ErrorEstimate{.relative_rmse = 0.25}};
+  farm.say(merged);
+  FarmDriver next = second_life(farm, {});
+  ASSERT_EQ(next.job(1).curve, farm.job(1).curve);
+  next.pass_time(5);
+  EXPECT_TRUE(next.say(merged).records.empty()) << "the film is made anew and tells it again";
+  EXPECT_EQ(next.job(1).curve, farm.job(1).curve);
 }
 
 /// What replays to the same jobs.

@@ -193,7 +193,10 @@ void SimCoordinator::tell_passes(JobId job) {
       fail(absl::StrCat("the error of job ", job, " is looked at while its film has more than ",
                         samples, " samples"));
     }
-    const double error = samples < 32 ? -1 : 0.3 / std::pow(static_cast<double>(samples), 0.6);
+    std::optional<ErrorEstimate> error;
+    if (samples >= 32) {
+      error = ErrorEstimate{.relative_rmse = 0.3 / std::pow(static_cast<double>(samples), 0.6)};
+    }
     input(input::PassMerged{job, samples, error});
   }
 }

@@ -64,7 +64,7 @@ class FilmDeskTest : public testing::Test {
                  {.merged =
                       [this](input::PassMerged m) {
                         merged_.push_back(m.samples);
-                        errors_.push_back(m.error);
+                        errors_.push_back(m.error ? m.error->relative_rmse : -1);
                       },
                   .image = [this](JobId, Image image) { images_.push_back(std::move(image)); },
                   .failed = [this](JobId, absl::Status) { ++failed_; }}};
@@ -121,7 +121,7 @@ TEST_F(FilmDeskTest, WhatAFullDiskRefusedIsAddedLater) {
   }
   EXPECT_TRUE(merged_.empty());
   desk_.retry();
-  EXPECT_EQ(merged_, (std::vector<std::uint64_t>{16}));
+  EXPECT_EQ(merged_, (std::vector<std::uint64_t>{16, 16})) << "the pass, and the finished image";
   ASSERT_EQ(images_.size(), 1u);
   EXPECT_EQ(images_[0].pixels, local(16));
 }

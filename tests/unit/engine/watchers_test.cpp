@@ -31,7 +31,9 @@ class WatchersTest : public testing::Test {
                 .counters = {},
                 .log_of = {},
                 .log = {},
-                .workers = {}};
+                .workers = {},
+                .curve = {},
+                .shares = {}};
   Time now_ = 50;
   Watchers watchers_;
   std::vector<absl::StatusOr<JobView>> told_;

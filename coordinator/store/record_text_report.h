@@ -1,0 +1,16 @@
+#pragma once
+
+// The records that a job's report is made of, as fields.
+
+#include "coordinator/core/messages.h"
+#include "coordinator/store/fields.h"
+
+namespace bandsaw::coordinator {
+
+void write_error(FieldWriter& out, const record::ErrorMeasured& r);
+record::ErrorMeasured read_error(FieldReader& in);
+
+void write_share(FieldWriter& out, const record::ShareCounted& r);
+record::ShareCounted read_share(FieldReader& in);
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,161 @@
+// What an image's report says does not depend on where it was rendered, and what it says can be
+// done again.
+
+#include <google/protobuf/struct.pb.h>
+#include <google/protobuf/util/json_util.h>
+#include <google/protobuf/util/message_differencer.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/farm/farm_processes.h"
+
+namespace bandsaw::test {
+namespace {
+
+using google::protobuf::Struct;
+
+constexpr char kScene[] = BANDSAW_GALLERY "/cornell.textproto";
+
+void expect_success(const Finished& finished) { ASSERT_EQ(finished.code, 0) << finished.err; }
+
+Struct report(const std::string& path) {
+  Struct out;
+  const auto status = google::protobuf::util::JsonStringToMessage(file_bytes(path), &out);
+  EXPECT_TRUE(status.ok()) << path << ": " << status.ToString();
+  return out;
+}
+
+const Struct& section(const Struct& json, const std::string& name) {
+  return json.fields().at(name).struct_value();
+}
+
+double number(const Struct& json, const std::string& of, const std::string& field) {
+  return section(json, of).fields().at(field).number_value();
+}
+
+/// Without what depends on the machines: times and who did it. The error on the way too: a farm
+/// measures it while rows of the next pass come in.
+Struct comparable(Struct json) {
+  for (const char* field : {"time", "machines", "outputs", "curve"}) {
+    EXPECT_EQ(json.mutable_fields()->erase(field), 1u) << field;
+  }
+  return json;
+}
+
+class ReportOfAFarm : public testing::Test {
+ protected:
+  void submit(std::vector<std::string> with, const std::string& name) {
+    std::vector<std::string> command = {"submit", kScene, "--quiet", "-o", farm_.path(name)};
+    command.insert(command.end(), with.begin(), with.end());
+    expect_success(run(farm_.command(command)));
+  }
+  void render(std::vector<std::string> with, const std::string& name) {
+    std::vector<std::string> command = {BANDSAW_BIN, "render", kScene,
+                                        "--quiet",   "-o",     farm_.path(name)};
+    command.insert(command.end(), with.begin(), with.end());
+    expect_success(run(command));
+  }
+  FarmProcesses farm_;
+};
+
+TEST_F(ReportOfAFarm, AgreesWithThatOfOneMachine) {
+  farm_.add_worker("desk", 2);
+  farm_.add_worker("laptop", 1);
+  for (const std::vector<std::string>& stop :
+       {std::vector<std::string>{"--samples", "72"}, {"--error", "20%"}}) {
+    const std::vector<std::string> with = {"--width", "48", stop[0], stop[1]};
+    render(with, "local.pfm");
+    submit(with, "farm.pfm");
+    const Struct local = report(farm_.path("local.json"));
+    const Struct farm = report(farm_.path("farm.json"));
+    EXPECT_TRUE(
+        google::protobuf::util::MessageDifferencer::Equals(comparable(local), comparable(farm)))
+        << local.ShortDebugString() << "\n"
+        << farm.ShortDebugString();
+    EXPECT_GT(number(local, "error", "relative_rmse"), 0);
+    EXPECT_GT(number(local, "work", "rays"), 0);
+    double samples = 0;
+    const auto& workers = section(farm, "machines").fields().at("workers").list_value().values();
+    for (const auto& worker : workers) {
+      samples += worker.struct_value().fields().at("samples").number_value();
+    }
+    EXPECT_EQ(samples, number(farm, "work", "samples")) << "the shares are the whole";
+  }
+}
+
+TEST_F(ReportOfAFarm, IsTheSameAfterARestart) {
+  farm_.add_worker("desk", 1);
+  submit({"--width", "32", "--samples", "32"}, "first.pfm");
+  farm_.restart_coordinator();
+  expect_success(run(farm_.command({"watch", "1", "--quiet", "-o", farm_.path("second.pfm")})));
+  Struct first = report(farm_.path("first.json"));
+  Struct second = report(farm_.path("second.json"));
+  first.mutable_fields()->erase("outputs");
+  second.mutable_fields()->erase("outputs");
+  EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(first, second))
+      << first.ShortDebugString() << "\n"
+      << second.ShortDebugString();
+}
+
+// --time is not a promise of bytes, but what it took is one.
+TEST_F(ReportOfAFarm, TheSamplesOfATimeLimitGiveTheSameBytes) {
+  farm_.add_worker("desk", 2);
+  const std::vector<std::string> limited = {"--width", "64", "--time", "0.3s"};
+  submit(limited, "farm.pfm");
+  render(limited, "local.pfm");
+  for (const char* name : {"farm", "local"}) {
+    const std::string of = farm_.path(name);
+    const auto samples =
+        static_cast<int>(number(report(of + ".json"), "work", "samples_per_pixel"));
+    ASSERT_GT(samples, 0);
+    render({"--width", "64", "--samples", std::to_string(samples)}, "again.pfm");
+    EXPECT_TRUE(file_bytes(of + ".pfm") == file_bytes(farm_.path("again.pfm"))) << name;
+    // Of a single block of samples nothing is known, there as here.
+    const auto error = [](const std::string& file) { return report(file).fields().at("error"); };
+    EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(error(of + ".json"),
+                                                                   error(farm_.path("again.json"))))
+        << name;
+  }
+}
+
+TEST(ReportOfParts, IsThatOfTheWholeAsFarAsThePartsSay) {
+  const TempDir folder;
+  const auto path = [&](const char* name) { return folder / name; };
+  const std::vector<std::string> with = {"--width", "32", "--samples", "72", "--quiet"};
+  const auto render = [&](std::vector<std::string> command) {
+    command.insert(command.begin(), {BANDSAW_BIN, "render", kScene});
+    command.insert(command.end(), with.begin(), with.end());
+    expect_success(run(command));
+  };
+  render({"-o", path("whole.pfm")});
+  render({"--rows", "0:20", "-o", path("top.band")});
+  render({"--rows", "20:32", "-o", path("bottom.band")});
+  expect_success(run(
+      {BANDSAW_BIN, "stitch", path("top.band"), path("bottom.band"), "-o", path("stitched.pfm")}));
+  const Struct whole = report(path("whole.json"));
+  const Struct stitched = report(path("stitched.json"));
+  for (const char* same : {"settings", "work", "hashes", "health"}) {
+    EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(section(whole, same),
+                                                                   section(stitched, same)))
+        << same;
+  }
+  EXPECT_TRUE(report(path("top.json")).fields().at("error").has_null_value());
+}
+
+TEST(ReportFile, OfASceneFileIsNotTouched) {
+  const TempDir folder;
+  std::filesystem::copy(kScene, folder / "a.textproto");
+  expect_success(run({BANDSAW_BIN, "render", folder / "a.textproto", "--width", "8", "--samples",
+                      "1", "--quiet", "--report", "none", "-o", folder / "a.png"}));
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.json"));
+  std::filesystem::copy(kScene, folder / "a.json");
+  const Finished refused =
+      run({BANDSAW_BIN, "render", kScene, "--report", folder / "a.json", "-o", folder / "b.png"});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_FALSE(std::filesystem::exists(folder / "b.png"));
+  EXPECT_EQ(file_bytes(folder / "a.json"), file_bytes(kScene));
+}
+
+}  // namespace
+}  // namespace bandsaw::test

@@ -1,0 +1,128 @@
+#include "coordinator/cli/report.h"
+
+#include <gmock/gmock.h>
+#include <google/protobuf/struct.pb.h>
+#include <google/protobuf/util/json_util.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "coordinator/cli/report_file.h"
+#include "tests/support/temp_dir.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+Progress finished() {
+  Progress progress;
+  JobView& job = progress.job;
+  job.id = 7;
+  job.spec.name = "cor\"nell";
+  job.spec.manifest = std::string(64, 'a');
+  job.spec.settings = {.width = 6, .height = 4, .max_depth = 9, .seed = UINT64_MAX};
+  job.spec.stop = StopAtError{.relative_rmse = 0.05};
+  job.elapsed_s = 3;
+  job.cpu_s = 4;
+  job.samples_per_pixel = 64;
+  job.samples_done = 64 * 24;
+  job.counters.rays = 8'000'000;
+  job.workers_used = 2;
+  job.shares = {{1, "desk", 1000, 3}, {2, "", 536, 1}};
+  job.curve = {{32, 1, 2, {.relative_rmse = 0.1}},
+               {64, 3, 4, {.relative_rmse = 0.05, .worst_share = 0.31}}};
+  return progress;
+}
+
+google::protobuf::Struct parsed(const std::string& text) {
+  google::protobuf::Struct out;
+  const auto status = google::protobuf::util::JsonStringToMessage(text, &out);
+  EXPECT_TRUE(status.ok()) << status.ToString() << text;
+  return out;
+}
+
+const google::protobuf::Value& at(const google::protobuf::Struct& json, const std::string& section,
+                                  const std::string& field) {
+  return json.fields().at(section).struct_value().fields().at(field);
+}
+
+TEST(Report, IsJsonThatHoldsTheFigures) {
+  const Image image{1, 1, {gray(0.5F)}};
+  const std::string text = report_text({finished(), pixels_sha256(image), {"a.png"}});
+  EXPECT_EQ(text.rfind(kReportBegins, 0), 0u);
+  const auto json = parsed(text);
+  EXPECT_EQ(json.fields().at("schema").string_value(), "bandsaw.report/1");
+  EXPECT_EQ(json.fields().at("scene").string_value(), "cor\"nell");
+  EXPECT_EQ(at(json, "settings", "stop_error").number_value(), 0.05);
+  EXPECT_THAT(text, HasSubstr("\"seed\":18446744073709551615"));
+  EXPECT_EQ(at(json, "error", "relative_rmse").number_value(), 0.05);
+  EXPECT_TRUE(at(json, "error", "doubtful").bool_value());
+  EXPECT_EQ(json.fields().at("curve").list_value().values_size(), 2);
+  // From 5 % by the steepest fall that is believed.
+  EXPECT_NEAR(at(json, "time", "cpu_s_to_1_percent").number_value(), 4 * std::pow(5, 1 / 0.65),
+              1e-9);
+  EXPECT_EQ(at(json, "machines", "mrays_per_cpu_s").number_value(), 2);
+  const auto& workers = at(json, "machines", "workers").list_value().values();
+  EXPECT_EQ(workers[0].struct_value().fields().at("name").string_value(), "desk");
+  EXPECT_TRUE(workers[1].struct_value().fields().at("name").has_null_value());
+  EXPECT_EQ(at(json, "hashes", "pixels_sha256").string_value().size(), 64u);
+}
+
+TEST(Report, WhatIsNotKnownIsNull) {
+  Progress progress = finished();
+  progress.job.curve.clear();
+  progress.job.elapsed_s = -1;
+  progress.job.cpu_s = 0;
+  const auto json = parsed(report_text({progress, "", {}}));
+  EXPECT_TRUE(json.fields().at("error").has_null_value());
+  for (const char* field : {"elapsed_s", "cpu_s", "cpu_s_to_1_percent"}) {
+    EXPECT_TRUE(at(json, "time", field).has_null_value()) << field;
+  }
+  EXPECT_TRUE(at(json, "hashes", "pixels_sha256").has_null_value());
+}
+
+class ReportFiles : public testing::Test {
+ protected:
+  std::string write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name) << text;
+    return folder_ / name;
+  }
+  test::TempDir folder_;
+};
+
+TEST_F(ReportFiles, LieBesideTheImagesOnce) {
+  EXPECT_THAT(*report_files({}, {folder_ / "a.png", folder_ / "a.exr", folder_ / "b.x.png"}),
+              ElementsAre(folder_ / "a.json", folder_ / "b.x.json"));
+  EXPECT_THAT(*report_files({"none"}, {folder_ / "a.png"}), IsEmpty());
+  EXPECT_THAT(*report_files({folder_ / "r.json"}, {folder_ / "a.png"}),
+              ElementsAre(folder_ / "r.json"));
+  EXPECT_FALSE(report_files({folder_ / "none/r.json"}, {}).ok());
+}
+
+TEST_F(ReportFiles, NeverTakeThePlaceOfSomethingElse) {
+  const std::string scene = write("a.json", "{\"camera\":{}}");
+  EXPECT_THAT(*report_files({}, {folder_ / "a.png"}), ElementsAre(folder_ / "a.report.json"));
+  const auto asked = report_files({scene}, {folder_ / "a.png"});
+  EXPECT_EQ(asked.status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(asked.status().message()), HasSubstr("--report none"));
+  EXPECT_FALSE(write_reports("x", {scene}).ok()) << "it came while the image was rendered";
+  EXPECT_EQ(std::filesystem::file_size(scene), 13u);
+  std::filesystem::create_directory(folder_ / "b.json");
+  EXPECT_THAT(*report_files({}, {folder_ / "b.png"}), ElementsAre(folder_ / "b.report.json"));
+}
+
+TEST_F(ReportFiles, ReplaceAnEarlierReport) {
+  const std::string file = folder_ / "a.json";
+  for (int time = 0; time < 2; ++time) {
+    ASSERT_THAT(*report_files({}, {folder_ / "a.png"}), ElementsAre(file));
+    ASSERT_TRUE(write_reports(report_text({finished(), "", {}}), {file}).ok());
+  }
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator
