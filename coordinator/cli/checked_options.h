@@ -16,9 +16,9 @@ namespace bandsaw::coordinator {
 struct RawOptions {
   std::string scene, environment, camera, image, reference, data, farm;
   std::optional<std::string> job, listen, priority, worker, action, role, keep_days, keep_size;
-  std::vector<std::string> outputs, parts;
+  std::vector<std::string> outputs, parts, scenes;
   std::optional<std::string> samples, error, time, seed, width, height, depth, threads, rows;
-  std::optional<std::string> integrator, exposure, tone, layers, report;
+  std::optional<std::string> integrator, exposure, tone, layers, report, seeds, reference_samples;
   bool half = false, insecure = false, detach = false, quiet = false, json = false;
 };
 

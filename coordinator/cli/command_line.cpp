@@ -10,6 +10,7 @@
 #include "coordinator/cli/did_you_mean.h"
 #include "coordinator/cli/house_options.h"
 #include "coordinator/cli/report_options.h"
+#include "coordinator/cli/study_options.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -194,6 +195,8 @@ constexpr Entry kCommands[] = {
     {"info", "Say what is in a scene or model, and what of it is left out", add_info, checked_info},
     {"stitch", "Join parts of an image that were rendered by rows", add_stitch, checked_stitch},
     {"compare", "Error metrics between two images", add_compare, checked_compare},
+    {"study", "Measure speed against error, with and without each technique", add_study,
+     checked_study, "bandsaw study cornell.textproto spheres.textproto -o study.svg"},
 };
 
 constexpr char kExitCodes[] =

@@ -32,6 +32,7 @@ ExitCode run(const RenderOptions& options, Process& process);
 ExitCode run(const InfoOptions& options, Process& process);
 ExitCode run(const StitchOptions& options, Process& process);
 ExitCode run(const CompareOptions& options, Process& process);
+ExitCode run(const StudyOptions& options, Process& process);
 ExitCode run(const ShowText& options, Process& process);
 
 }  // namespace bandsaw::coordinator

@@ -182,6 +182,18 @@ struct CompareOptions {
   Verbosity verbosity;
 };
 
+struct StudyOptions {
+  std::vector<std::string> scenes;
+  std::vector<std::string> outputs = {"study.csv", "study.svg"};
+  std::uint64_t samples = 64;      ///< the most a pixel, [4, 65536]
+  std::uint64_t seeds = 4;         ///< images of each kind
+  std::uint64_t reference = 1024;  ///< samples a pixel of what is compared with
+  std::uint64_t seed = 0;          ///< the first
+  std::uint32_t width = 96;        ///< pixels; the height keeps the scene's aspect ratio
+  int threads = 0;                 ///< 0: one for each CPU
+  Verbosity verbosity;
+};
+
 /// --help and --version: print and leave.
 struct ShowText {
   std::string text;
@@ -190,6 +202,6 @@ struct ShowText {
 using Command = std::variant<ServeOptions, SubmitOptions, WatchOptions, JobsOptions, WorkersOptions,
                              CancelOptions, PauseOptions, ResumeOptions, PriorityOptions,
                              WhyOptions, LogsOptions, DoctorOptions, RotateOptions, RenderOptions,
-                             InfoOptions, StitchOptions, CompareOptions, ShowText>;
+                             InfoOptions, StitchOptions, CompareOptions, StudyOptions, ShowText>;
 
 }  // namespace bandsaw::coordinator

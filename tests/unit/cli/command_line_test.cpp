@@ -73,6 +73,19 @@ TEST(CommandLine, TheReportIsAFileOrNone) {
   expect_wrong("submit a.glb --detach --report r.json", "-o");
 }
 
+TEST(CommandLine, StudyTakesScenesAndFiles) {
+  const auto options = parsed<StudyOptions>("study a.glb b.textproto --samples 256 --seeds 2");
+  EXPECT_THAT(options.scenes, ElementsAre("a.glb", "b.textproto"));
+  EXPECT_THAT(options.outputs, ElementsAre("study.csv", "study.svg"));
+  EXPECT_EQ(options.samples, 256u);
+  EXPECT_EQ(options.reference, 4096u);
+  EXPECT_THAT(parsed<StudyOptions>("study a.glb -o x.svg").outputs, ElementsAre("x.svg"));
+  expect_wrong("study", "missing");
+  expect_wrong("study a.glb -o x.png", ".svg");
+  expect_wrong("study a.glb --samples 2", "--samples");
+  expect_wrong("study a.glb --samples 64 --reference 65", "--reference");
+}
+
 TEST(CommandLine, InfoTakesOneFile) {
   EXPECT_EQ(parsed<InfoOptions>("info model.glb").scene, "model.glb");
   EXPECT_TRUE(parsed<InfoOptions>("info model.glb --json").verbosity.json);

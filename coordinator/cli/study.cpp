@@ -1,0 +1,104 @@
+// bandsaw study: speed against error, with and without each technique.
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+#include <utility>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "coordinator/cli/commands.h"
+#include "coordinator/cli/image_settings.h"
+#include "coordinator/cli/import_scene_file.h"
+#include "coordinator/cli/output.h"
+#include "coordinator/cli/study_measure.h"
+#include "coordinator/cli/study_text.h"
+#include "renderlib/base/atomic_file.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/image/write_image.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+struct Prepared {
+  std::string name;
+  RenderSettings settings;
+  SceneDescription scene;
+};
+
+/// All scenes before the first is rendered: what is wrong with the last is said at once.
+absl::StatusOr<std::vector<Prepared>> prepare(const StudyOptions& options, Process& process) {
+  std::vector<Prepared> out;
+  for (const std::string& scene : options.scenes) {
+    ASSIGN_OR_RETURN(ImportedPackage package, import_scene_file(scene, options.verbosity, process));
+    ASSIGN_OR_RETURN(SceneDescription description,
+                     decode_package(package.manifest(), package.blobs()));
+    ImageOptions image;
+    image.seed = options.seed;
+    image.width = options.width;
+    ASSIGN_OR_RETURN(const RenderSettings settings, image_settings(image, package.info()));
+    out.push_back({package.info().name, settings, std::move(description)});
+  }
+  return out;
+}
+
+absl::StatusOr<std::vector<StudyOfScene>> studied(const StudyOptions& options,
+                                                  std::vector<Prepared> scenes, Process& process,
+                                                  const std::atomic<bool>& stop) {
+  const auto cpus = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  Pool pool(options.threads > 0 ? options.threads : cpus);
+  const StudyPlan plan{options.samples, options.seeds, options.reference};
+  std::vector<StudyOfScene> out;
+  for (Prepared& prepared : scenes) {
+    ASSIGN_OR_RETURN(const std::shared_ptr<const Scene> scene,
+                     Scene::build(std::move(prepared.scene), pool));
+    ASSIGN_OR_RETURN(StudyOfScene study, study_scene(prepared.name, *scene, prepared.settings, plan,
+                                                     pool, stop, [&](const std::string& what) {
+                                                       if (!options.verbosity.quiet) {
+                                                         process.console.line(what);
+                                                       }
+                                                     }));
+    out.push_back(std::move(study));
+  }
+  return out;
+}
+
+absl::Status write(const std::vector<StudyOfScene>& studies, const std::string& output) {
+  const std::string text =
+      absl::EndsWithIgnoreCase(output, ".svg") ? svg_of(study_plot(studies)) : study_csv(studies);
+  return write_file_atomically(output,
+                               {reinterpret_cast<const std::byte*>(text.data()), text.size()});
+}
+
+}  // namespace
+
+ExitCode run(const StudyOptions& options, Process& process) {
+  const Console& console = process.console;
+  for (const std::string& output : options.outputs) {
+    if (const auto status = check_writable(output + ".pfm"); !status.ok()) {  // the folder counts
+      return console.fail(ExitCode::kWrong, std::string(status.message()));
+    }
+  }
+  auto scenes = prepare(options, process);
+  if (!scenes.ok()) {
+    return console.fail(import_exit_code(scenes.status()), std::string(scenes.status().message()));
+  }
+  std::atomic<bool> stop{false};
+  const Interrupts::Listener listener(process.interrupts, [&] { stop = true; });
+  const auto studies = studied(options, std::move(*scenes), process, stop);
+  if (!studies.ok()) {
+    return absl::IsCancelled(studies.status())
+               ? console.fail(ExitCode::kInterrupted, "interrupted; nothing was written")
+               : console.fail(ExitCode::kFailed, std::string(studies.status().message()));
+  }
+  for (const std::string& output : options.outputs) {
+    if (const absl::Status written = write(*studies, output); !written.ok()) {
+      return console.fail(ExitCode::kFailed, std::string(written.message()));
+    }
+  }
+  console.write(absl::StrCat(options.verbosity.quiet ? "" : "\n", study_table(*studies)));
+  console.line(absl::StrCat("\n", names_of(options.outputs)));
+  return ExitCode::kDone;
+}
+
+}  // namespace bandsaw::coordinator

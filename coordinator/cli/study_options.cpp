@@ -1,0 +1,82 @@
+#include "coordinator/cli/study_options.h"
+
+#include <limits>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "coordinator/cli/quantities.h"
+#include "proto/wire/limits.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+constexpr std::uint64_t kMostSamples = 65'536;
+constexpr std::uint64_t kMostSeeds = 1'000;
+
+/// `value` stays as it is when the option was not given.
+template <class T>
+absl::Status read(const char* name, const std::optional<std::string>& text, std::uint64_t least,
+                  std::uint64_t most, T& value) {
+  if (text) {
+    ASSIGN_OR_RETURN(const std::uint64_t whole, parse_whole(name, *text, least, most));
+    value = static_cast<T>(whole);
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+void add_study(CLI::App& app, RawOptions& raw) {
+  app.add_option("scenes", raw.scenes, "Scene files (.textproto, .json) or model files");
+  app.add_option("-o,--output", raw.outputs,
+                 "File for the figures (.csv) or the plot (.svg); may be repeated "
+                 "[default: study.csv and study.svg]")
+      ->allow_extra_args(false)
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_option("--samples", raw.samples,
+                 "The most samples a pixel; 1, 4, 16, … come before [default: 64]")
+      ->type_name("N");
+  app.add_option("--seeds", raw.seeds, "Images of each kind, to average over [default: 4]")
+      ->type_name("K");
+  app.add_option("--reference", raw.reference_samples,
+                 "Samples of the image that is compared with [default: 16 times --samples]")
+      ->type_name("N");
+  app.add_option("--seed", raw.seed, "The first seed [default: 0]")->type_name("N");
+  app.add_option("--width", raw.width, "Pixels; the height keeps the aspect ratio [default: 96]")
+      ->type_name("W");
+  app.add_option("--threads", raw.threads, "Threads [default: one for each CPU]")->type_name("N");
+  app.add_flag("--quiet", raw.quiet, "Say only the table and errors");
+}
+
+absl::StatusOr<Command> checked_study(const RawOptions& raw) {
+  StudyOptions options;
+  options.scenes = raw.scenes;
+  if (options.scenes.empty()) {
+    return absl::InvalidArgumentError(
+        "study: the scene is missing, as in: bandsaw study cornell.textproto");
+  }
+  if (!raw.outputs.empty()) {
+    options.outputs = raw.outputs;
+  }
+  for (const std::string& output : options.outputs) {
+    if (!absl::EndsWithIgnoreCase(output, ".csv") && !absl::EndsWithIgnoreCase(output, ".svg")) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("-o: a study's files end in .csv or .svg, is '", output, "'"));
+    }
+  }
+  options.verbosity.quiet = raw.quiet;
+  RETURN_IF_ERROR(read("--samples", raw.samples, 4, kMostSamples, options.samples));
+  RETURN_IF_ERROR(read("--seeds", raw.seeds, 1, kMostSeeds, options.seeds));
+  options.reference = 16 * options.samples;
+  RETURN_IF_ERROR(read("--reference", raw.reference_samples, 2 * options.samples, kMaxSamples,
+                       options.reference));
+  RETURN_IF_ERROR(
+      read("--seed", raw.seed, 0, std::numeric_limits<std::uint64_t>::max(), options.seed));
+  RETURN_IF_ERROR(read("--width", raw.width, 1, kMaxSide, options.width));
+  RETURN_IF_ERROR(read("--threads", raw.threads, 1, wire::kThreadsPerWorker, options.threads));
+  return options;
+}
+
+}  // namespace bandsaw::coordinator

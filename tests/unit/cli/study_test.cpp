@@ -1,0 +1,141 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "coordinator/cli/study_measure.h"
+#include "coordinator/cli/study_pixel_stops.h"
+#include "coordinator/cli/study_text.h"
+#include "tests/support/scenes.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr RenderSettings kSettings{.width = 8, .height = 8, .max_depth = 4, .seed = 1};
+
+StudyOfScene study_of(const Scene& scene, const StudyPlan& plan) {
+  Pool pool(1);
+  const std::atomic<bool> stop{false};
+  auto study = study_scene("a|b", scene, kSettings, plan, pool, stop, [](const std::string&) {});
+  EXPECT_TRUE(study.ok()) << study.status();
+  return study.ok() ? *study : StudyOfScene();
+}
+
+const StudyLine& line(const StudyOfScene& study, Method method) {
+  return study.lines.at(static_cast<std::size_t>(method));
+}
+
+/// A lamp in the middle of each pixel of kSettings, a twentieth of its area; else nothing.
+std::shared_ptr<const Scene> rare_light() {
+  test::SceneMaker maker;
+  const MaterialId lamp = maker.lamp(1);
+  maker.camera({0, 0, 4}, {0, 0, 0}, 2 * std::atan(1) * 180 / 3.14159265358979323846 / 2);
+  const double pixel = 2 * 4 * std::tan(std::atan(1.0) / 2) / 8;
+  const double side = pixel * std::sqrt(0.05);
+  for (int y = 0; y < 8; ++y) {
+    for (int x = 0; x < 8; ++x) {
+      maker.quad({(x - 3.5) * pixel - side / 2, (y - 3.5) * pixel - side / 2, 0}, {side, 0, 0},
+                 {0, side, 0}, lamp);
+    }
+  }
+  return maker.build();
+}
+
+TEST(Study, SamplesAreThePowersOfFourUpToTheMost) {
+  EXPECT_THAT(study_samples(64), ElementsAre(1, 4, 16, 64));
+  EXPECT_THAT(study_samples(100), ElementsAre(1, 4, 16, 64, 100));
+}
+
+TEST(Study, TechniquesThatAreOffCostErrorAndBiasNothing) {
+  const StudyOfScene study =
+      study_of(*test::cornell_box().build(), {.samples = 64, .seeds = 6, .reference = 2048});
+  ASSERT_EQ(study.lines.size(), std::size(kMethods));
+  const double best = line(study, Method::kFull).points.back().relative_rmse;
+  for (const Method method : {Method::kNoLights, Method::kIndependent}) {
+    EXPECT_GT(line(study, method).points.back().relative_rmse, best) << method_name(method);
+  }
+  for (const Method method :
+       {Method::kFull, Method::kNoMis, Method::kNoLights, Method::kIndependent}) {
+    const StudyLine& of = line(study, method);
+    ASSERT_EQ(of.points.size(), 4u);
+    EXPECT_LT(*slope_of(of), -0.3) << method_name(method);
+    const StudyPoint& last = of.points.back();
+    EXPECT_LT(std::abs(last.bias), 4 * last.bias_error + 2 * study.reference_error / 8)
+        << method_name(method);
+  }
+  EXPECT_NEAR(*slope_of(line(study, Method::kIndependent)), -0.5, 0.1);
+}
+
+TEST(Study, PixelsThatStopThemselvesLoseRareLight) {
+  const StudyOfScene study =
+      study_of(*rare_light(), {.samples = 256, .seeds = 2, .reference = 4096});
+  const StudyPoint& fair = line(study, Method::kIndependent).points.back();
+  EXPECT_LT(std::abs(fair.bias), 0.1);
+  for (const StudyPoint& point : line(study, Method::kPixelStops).points) {
+    EXPECT_LT(point.bias, -0.25);
+    EXPECT_LT(point.samples, 256);
+  }
+}
+
+TEST(Study, AStopEndsIt) {
+  Pool pool(1);
+  const std::atomic<bool> stop{true};
+  EXPECT_EQ(study_scene("a", *test::cornell_box().build(), kSettings, {}, pool, stop,
+                        [](const std::string&) {})
+                .status()
+                .code(),
+            absl::StatusCode::kCancelled);
+}
+
+/// Full: 10 % at 16 samples and 1 s, halved by each fourfold; the comparator does not fall.
+std::vector<StudyOfScene> known() {
+  StudyOfScene study{.scene = "a|\"b\" & <c>", .reference_error = 0.001, .lines = {}};
+  study.lines.push_back(
+      {Method::kFull, {{16, 0.1, 0.01, 0, 0, 1, 4e6}, {64, 0.05, 0.0025, 0, 0, 4, 16e6}}});
+  study.lines.push_back(
+      {Method::kPixelStops, {{16, 0.1, 0.01, -0.1, 0.01, 1, 4e6}, {64, 0.1, 0.01, 0, 0, 4, 16e6}}});
+  return {study};
+}
+
+TEST(StudyText, SaysWhatOnePercentCosts) {
+  const std::vector<StudyOfScene> studies = known();
+  const std::vector<StudyLine>& lines = studies[0].lines;
+  EXPECT_NEAR(*slope_of(lines[0]), -0.5, 1e-12);
+  EXPECT_NEAR(*cpu_s_to_1_percent(lines[0]), 100, 1e-9);
+  EXPECT_FALSE(cpu_s_to_1_percent(lines[1]).has_value());
+  const std::string table = study_table(known());
+  EXPECT_THAT(table, HasSubstr("| a/\"b\" & <c> | all techniques | 64 | 5 % | +0.00 ± 0.00 % | "
+                               "n^-0.50 | 4.00 | 4.0 | 1 min 40 s (1 ×) |"));
+  EXPECT_THAT(table, HasSubstr("| never |"));
+}
+
+TEST(StudyText, TheCsvHasALineAPoint) {
+  const std::string csv = study_csv(known());
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 5);
+  EXPECT_THAT(csv,
+              HasSubstr("\"a|\"\"b\"\" & <c>\",\"all techniques\",16,0.1,0.01,0,0,1,4000000,"));
+}
+
+TEST(StudyText, ThePlotIsSvgOfAllLines) {
+  const std::string svg = svg_of(study_plot(known()));
+  EXPECT_THAT(svg, testing::StartsWith("<svg xmlns="));
+  EXPECT_THAT(svg, HasSubstr("a|\"b\" &amp; &lt;c&gt;"));
+  EXPECT_THAT(svg, HasSubstr("all techniques · n^-0.50"));
+  EXPECT_THAT(svg, Not(HasSubstr("nan")));
+  EXPECT_EQ(std::count(svg.begin(), svg.end(), '<'), std::count(svg.begin(), svg.end(), '>'));
+  // 1 to 4 s and 5 to 10 % are within 1 to 10 s and 1 to 10 %.
+  EXPECT_THAT(svg, HasSubstr("<polyline points=\"62.0,34.0 "));
+}
+
+TEST(StudyText, AnEmptyPlotIsOne) {
+  EXPECT_THAT(svg_of({.x = "x", .y = "y", .panels = {{}}}), Not(HasSubstr("nan")));
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator
