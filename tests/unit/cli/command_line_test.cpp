@@ -47,6 +47,15 @@ TEST(CommandLine, SubmitTakesItsOptions) {
   EXPECT_FALSE(options.detach);
 }
 
+TEST(CommandLine, SkyAndCameraMayBeChosenBesideTheScene) {
+  const SceneChoices chosen =
+      parsed<SubmitOptions>("submit a.glb --camera plan --environment e.hdr").image.choices;
+  EXPECT_EQ(chosen.camera, "plan");
+  EXPECT_EQ(chosen.environment, "e.hdr");
+  EXPECT_EQ(parsed<RenderOptions>("render a.glb --camera plan").image.choices.camera, "plan");
+  EXPECT_EQ(parsed<RenderOptions>("render a.glb").image.choices.camera, "");
+}
+
 TEST(CommandLine, SaysWhatIsShownAndHow) {
   const auto options = parsed<RenderOptions>(
       "render a.textproto --integrator ambient_occlusion --exposure -1.5 --tone filmic --half "

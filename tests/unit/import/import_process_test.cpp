@@ -77,6 +77,19 @@ TEST(ImportProcess, ReadsAnEnvironmentFromAnywhere) {
       absl::StatusCode::kNotFound);
 }
 
+TEST(ImportProcess, TakesTheCameraThatIsAskedFor) {
+  const std::string model = std::string(BANDSAW_GALLERY) + "/pergola.gltf";
+  auto imported = import_in_process(model, limits(), {.camera = "plan"});
+  ASSERT_TRUE(imported.ok()) << imported.status();
+  const auto decoded = decode_package(imported->manifest(), imported->blobs());
+  ASSERT_TRUE(decoded.ok()) << decoded.status();
+  EXPECT_TRUE(std::holds_alternative<OrthographicCamera>(decoded->camera));
+  EXPECT_THAT(imported->info().model_cameras, ::testing::ElementsAre("gate", "corner", "plan"));
+  EXPECT_EQ(import_in_process(model, limits(), {.camera = "walker"}).status().message(),
+            "pergola.gltf: several cameras are called \"walker\"; there are \"gate\", \"corner\", "
+            "\"plan\"");
+}
+
 TEST(ImportProcess, PassesOnTheImportersError) {
   const TempDir folder;
   const auto wrong =

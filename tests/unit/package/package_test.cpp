@@ -138,6 +138,28 @@ TEST(Package, BoundsNamesAndWarningsOfForeignFiles) {
   EXPECT_EQ(kept->warnings[99], "and 4901 more warnings");
 }
 
+TEST(Package, BoundsTheNamesOfCameras) {
+  PackageInfo info = sample_info();
+  info.model_cameras.assign(500, "\x1b" + std::string(300, 'c'));
+  BlobMap blobs;
+  const std::string bytes = encode_package(sample_scene(), info, blobs);
+  const auto kept = package_info(bytes);
+  ASSERT_TRUE(kept.ok()) << kept.status();
+  EXPECT_EQ(kept->model_cameras.size(), 100u);
+  EXPECT_EQ(kept->model_cameras[0].substr(0, 2), "?c");
+  const auto error_with = [&](const std::string& name) {
+    package::Manifest manifest;
+    EXPECT_TRUE(manifest.ParseFromString(bytes));
+    manifest.mutable_model_camera()->RemoveLast();
+    manifest.add_model_camera(name);
+    manifest.add_model_camera("one more");
+    manifest.mutable_model_camera()->DeleteSubrange(0, name.empty() ? 0 : 1);
+    return std::string(package_info(manifest.SerializeAsString()).status().message());
+  };
+  EXPECT_THAT(error_with(""), HasSubstr("model_camera: has 101 entries, at most 100"));
+  EXPECT_THAT(error_with(std::string(201, 'c')), HasSubstr("model_camera: has 201 bytes"));
+}
+
 TEST(Package, NamesEachBlobOnce) {
   BlobMap blobs;
   const auto refs = package_blobs(encode_package(sample_scene(), sample_info(), blobs));
@@ -213,8 +235,7 @@ const std::vector<Wrong> kWrong = {
      "camera.up: must have 3 numbers, has 2"},
     {"no_background", [](auto& m) { m.clear_background(); }, "background: is missing"},
     {"dark", [](auto& m) { m.mutable_background()->set_top(1, -1); }, "background: must be"},
-    {"environment",
-     [](auto& m) { m.mutable_background()->mutable_environment()->set_image(0, 0); },
+    {"environment", [](auto& m) { m.mutable_background()->mutable_environment()->set_image(0, 0); },
      "lights: background.environment: images[0]: must be an image"},
     {"environment_index",
      [](auto& m) { m.mutable_background()->mutable_environment()->set_image(0, 77); },
