@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/steady_time.h"
 #include "coordinator/cli/study_pixel_stops.h"
+#include "coordinator/core/error_curve.h"
 #include "coordinator/core/power_fit.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/compare/error_metrics.h"
@@ -210,12 +211,16 @@ std::optional<double> slope_of(const StudyLine& line) {
 
 std::optional<double> cpu_s_to_1_percent(const StudyLine& line) {
   constexpr double kOnePercent = 0.01;
-  const auto slope = slope_of(line);
-  if (!slope || *slope >= 0 || line.points.back().cpu_s <= 0) {
+  if (line.method == Method::kPixelStops) {
     return std::nullopt;
   }
-  const StudyPoint& last = line.points.back();
-  return last.cpu_s * std::pow(last.relative_rmse / kOnePercent, -1 / *slope);
+  ErrorCurve curve;
+  for (const StudyPoint& point : line.points) {
+    curve.push_back({.samples = static_cast<std::uint64_t>(point.samples),
+                     .cpu_s = point.cpu_s,
+                     .estimate = {.relative_rmse = point.relative_rmse}});
+  }
+  return cpu_s_until(curve, kOnePercent);
 }
 
 }  // namespace bandsaw::coordinator

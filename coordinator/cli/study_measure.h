@@ -75,7 +75,8 @@ absl::StatusOr<StudyOfScene> study_scene(const std::string& name, const Scene& s
 /// p of "error ~ samples^p" over the line's points; nothing with less than two.
 std::optional<double> slope_of(const StudyLine& line);
 
-/// CPU seconds until the error is 1 %, by the line's fall. Nothing where it does not fall.
+/// CPU seconds until the error is 1 %, as a report foresees it (core/error_curve.h). Nothing of
+/// pixels that stop themselves: their error is no matter of samples alone.
 std::optional<double> cpu_s_to_1_percent(const StudyLine& line);
 
 }  // namespace bandsaw::coordinator

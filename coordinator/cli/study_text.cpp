@@ -26,7 +26,7 @@ std::string worth_row(const StudyOfScene& study, const StudyLine& line) {
   const StudyPoint& last = line.points.back();
   const auto needed = cpu_s_to_1_percent(line);
   const auto full = cpu_s_to_1_percent(study.lines.front());
-  std::string to_target = needed ? duration(*needed) : "never";
+  std::string to_target = needed ? duration(*needed) : "–";
   if (needed && full && *full > 0) {
     absl::StrAppendFormat(&to_target, " (%.2g ×)", *needed / *full);
   }
