@@ -37,9 +37,12 @@ absl::StatusOr<StopRule> checked_stop(const RawOptions& raw) {
   if (raw.samples.has_value() + raw.error.has_value() + raw.time.has_value() > 1) {
     return wrong("--samples, --error and --time exclude each other: give one");
   }
+  if (raw.adaptive && !raw.error) {
+    return wrong("--adaptive needs --error: with --samples and --time every pixel has as many");
+  }
   if (raw.error) {
     ASSIGN_OR_RETURN(const double error, parse_percent("--error", *raw.error));
-    return StopAtError{.relative_rmse = error};
+    return StopAtError{.relative_rmse = error, .adaptive = raw.adaptive};
   }
   if (raw.time) {
     ASSIGN_OR_RETURN(const double seconds, parse_seconds("--time", *raw.time));

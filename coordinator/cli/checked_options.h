@@ -19,7 +19,8 @@ struct RawOptions {
   std::vector<std::string> outputs, parts, scenes;
   std::optional<std::string> samples, error, time, seed, width, height, depth, threads, rows;
   std::optional<std::string> integrator, exposure, tone, layers, report, seeds, reference_samples;
-  bool half = false, insecure = false, detach = false, quiet = false, json = false;
+  bool adaptive = false, half = false, insecure = false, detach = false, quiet = false,
+       json = false;
 };
 
 absl::StatusOr<Command> checked_serve(const RawOptions& raw);

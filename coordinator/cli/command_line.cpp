@@ -40,6 +40,7 @@ void add_image(CLI::App& app, RawOptions& raw) {
       ->type_name("N");
   app.add_option("--error", raw.error, "Stop at this estimated relative RMSE, as in 1%")
       ->type_name("E%");
+  app.add_flag("--adaptive", raw.adaptive, "With --error: more samples where noise is");
   app.add_option("--time", raw.time, "Stop before this much time, as in 5s, 2m, 1h")
       ->type_name("T");
   app.add_option("--seed", raw.seed, "Another seed, another noise [default: 0]")->type_name("N");

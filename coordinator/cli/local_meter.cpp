@@ -43,7 +43,9 @@ double LocalMeter::fraction_of(const JobView& job) const {
   }
   const auto& rule = std::get<StopAtError>(spec_.stop);
   const auto end = expected_end(job.curve, rule.relative_rmse, planned_, rule.max_samples);
-  return end ? done / static_cast<double>(*end) : 0;
+  // Of an adaptive render, the complete passes: not all pixels are in each.
+  const double so_far = rule.adaptive && end ? static_cast<double>(job.curve.back().samples) : done;
+  return end ? so_far / static_cast<double>(*end) : 0;
 }
 
 Progress LocalMeter::progress(Clocks now) const {
@@ -56,7 +58,8 @@ Progress LocalMeter::progress(Clocks now) const {
   job.samples_done = reached_.load(std::memory_order_relaxed);
   {
     MutexLock lock(mutex_);
-    job.samples_per_pixel = passed_;
+    job.samples_per_pixel =
+        is_adaptive(spec_.stop) ? job.samples_done / static_cast<std::uint64_t>(pixels_) : passed_;
     job.curve = curve_;
     job.counters = counters_;
   }

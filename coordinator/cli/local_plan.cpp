@@ -27,7 +27,8 @@ std::optional<SampleRange> LocalPlan::next(std::uint64_t samples, double error, 
     if (samples > 0 && (reached || samples >= rule->max_samples)) {
       return std::nullopt;
     }
-    return first_of(samples, next_look(samples, error, rule->relative_rmse, rule->max_samples));
+    const double target = next_target(rule->relative_rmse, rule->adaptive && !schedule_);
+    return first_of(samples, next_look(samples, error, target, rule->max_samples));
   }
   const auto& rule = std::get<StopAtTime>(stop_);
   if (samples == 0) {
@@ -38,6 +39,16 @@ std::optional<SampleRange> LocalPlan::next(std::uint64_t samples, double error, 
     return std::nullopt;
   }
   return next_timed_pass(samples, fits, rule.max_samples);
+}
+
+bool LocalPlan::wants_tiles(double error) const {
+  const auto* rule = std::get_if<StopAtError>(&stop_);
+  return rule != nullptr && rule->adaptive && !schedule_ && passes_.empty() &&
+         time_to_plan_tiles(error, rule->relative_rmse);
+}
+
+void LocalPlan::plan(absl::Span<const TileError> tiles, std::uint64_t samples) {
+  schedule_.emplace(grid_, plan_tiles(grid_, tiles, samples));
 }
 
 }  // namespace bandsaw::coordinator

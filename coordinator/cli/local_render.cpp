@@ -15,18 +15,19 @@ namespace {
 
 // `done`: pixel samples before this pass; grows by those of the pass.
 absl::Status render_pass(const LocalJob& job, const SampleRange& pass, const RowRange& rows,
-                         std::uint64_t& done, absl::FunctionRef<absl::Status(BandPixels)> take) {
+                         const TileMask& tiles, std::uint64_t& done,
+                         absl::FunctionRef<absl::Status(BandPixels)> take) {
   const auto most =
       static_cast<std::uint32_t>(std::max<std::uint64_t>(1, kBandPixels / job.settings.width));
-  const std::uint64_t row_samples = pass.samples() * job.settings.width;
   for (RowRange part{rows.first, rows.first}; part.last < rows.last; part.first = part.last) {
     part.last = part.first + std::min(most, rows.last - part.first);
-    const auto advanced = [&job, done, row_samples](std::uint32_t count) {
-      job.meter.reached(done + count * row_samples);
+    const std::uint64_t samples = pass.samples() * tiles.pixels(job.settings.width, part);
+    const auto advanced = [&job, &part, done, samples](std::uint32_t count) {
+      job.meter.reached(done + samples * count / part.count());
     };
     ASSIGN_OR_RETURN(BandPixels pixels, render_band(job.scene, job.settings, {pass, part}, job.pool,
-                                                    job.stop, advanced));
-    done += part.count() * row_samples;
+                                                    job.stop, advanced, tiles));
+    done += samples;
     job.meter.add(pixels.counters);
     RETURN_IF_ERROR(take(std::move(pixels)));
   }
@@ -37,22 +38,28 @@ absl::Status render_pass(const LocalJob& job, const SampleRange& pass, const Row
 
 LocalMeter::Clocks clocks() { return {steady_seconds(), process_cpu_seconds()}; }
 
-absl::StatusOr<Image> render_whole(const LocalJob& job, const StopRule& stop) {
-  ASSIGN_OR_RETURN(Film film, Film::create(job.settings.width, job.settings.height, ""));
-  LocalPlan plan(stop);
+absl::StatusOr<Film> render_whole(const LocalJob& job, const StopRule& stop) {
+  ASSIGN_OR_RETURN(Film film,
+                   Film::create(job.settings.width, job.settings.height, "",
+                                is_adaptive(stop) ? Film::Grain::kHalfTiles : Film::Grain::kRows));
+  LocalPlan plan(stop, {job.settings.width, job.settings.height});
   std::uint64_t done = 0;
   std::uint64_t samples = 0;
   double error = -1;
   while (const auto pass = plan.next(samples, error, job.meter.seconds(steady_seconds()))) {
     job.meter.plans(plan.planned());
-    RETURN_IF_ERROR(render_pass(job, *pass, {0, job.settings.height}, done,
-                                [&](const BandPixels& pixels) { return film.add(pixels); }));
+    const TileMask tiles = plan.tiles(*pass);
+    RETURN_IF_ERROR(render_pass(job, *pass, {0, job.settings.height}, tiles, done,
+                                [&](const BandPixels& pixels) { return film.add(pixels, tiles); }));
     samples = pass->last;
     const auto estimate = film.error();
     error = estimate ? estimate->relative_rmse : -1;
     job.meter.passed(samples, estimate, clocks());
+    if (plan.wants_tiles(error)) {
+      plan.plan(film.tile_errors(), samples);
+    }
   }
-  return film.snapshot().image;
+  return film;
 }
 
 absl::StatusOr<std::vector<BandPixels>> render_part(const LocalJob& job, const RowRange& rows,
@@ -60,7 +67,7 @@ absl::StatusOr<std::vector<BandPixels>> render_part(const LocalJob& job, const R
   std::vector<BandPixels> bands;
   std::uint64_t done = 0;
   for (const SampleRange& node : maximal_nodes(samples)) {
-    RETURN_IF_ERROR(render_pass(job, node, rows, done, [&](BandPixels pixels) {
+    RETURN_IF_ERROR(render_pass(job, node, rows, {}, done, [&](BandPixels pixels) {
       bands.push_back(std::move(pixels));
       return absl::OkStatus();
     }));

@@ -26,7 +26,7 @@ struct LocalJob {
 
 /// The whole image, pass by pass until the stop rule holds. CANCELLED; RESOURCE_EXHAUSTED: no
 /// memory.
-absl::StatusOr<Image> render_whole(const LocalJob& job, const StopRule& stop);
+absl::StatusOr<Film> render_whole(const LocalJob& job, const StopRule& stop);
 
 /// Samples [0, samples) of some rows: one band for each maximal node of the samples and as many
 /// rows as a band may hold.

@@ -26,7 +26,8 @@ JobState state_of(farm::JobState state) {
 StopRule stop_of(const farm::StopRule& stop) {
   const std::uint64_t most = stop.max_samples() > 0 ? stop.max_samples() : kMaxSamples;
   if (stop.error() > 0) {
-    return StopAtError{.relative_rmse = stop.error(), .max_samples = most};
+    return StopAtError{
+        .relative_rmse = stop.error(), .max_samples = most, .adaptive = stop.adaptive()};
   }
   if (stop.time_s() > 0) {
     return StopAtTime{.seconds = stop.time_s(), .max_samples = most};
@@ -123,6 +124,7 @@ farm::StopRule to_proto(const StopRule& stop) {
   } else if (const auto* error = std::get_if<StopAtError>(&stop)) {
     out.set_error(error->relative_rmse);
     out.set_max_samples(error->max_samples);
+    out.set_adaptive(error->adaptive);
   } else if (const auto* time = std::get_if<StopAtTime>(&stop)) {
     out.set_time_s(time->seconds);
     out.set_max_samples(time->max_samples);

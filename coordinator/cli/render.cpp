@@ -119,7 +119,8 @@ class LocalRun {
       ASSIGN_OR_RETURN(bands_,
                        render_part(job, rows_, std::get<StopAtSamples>(spec_.stop).samples));
     } else {
-      ASSIGN_OR_RETURN(image_, render_whole(job, spec_.stop));
+      ASSIGN_OR_RETURN(const Film film, render_whole(job, spec_.stop));
+      image_ = film.snapshot().image;
       const std::uint64_t samples = meter_.progress(clocks()).job.samples_per_pixel;
       const auto render_layer = [&](const RenderSettings& settings,
                                     std::uint64_t count) -> absl::StatusOr<Image> {
@@ -129,6 +130,11 @@ class LocalRun {
       };
       ASSIGN_OR_RETURN(layers_,
                        make_layers(options_.layers, spec_.settings, samples, render_layer));
+      for (Layer& layer : layers_) {
+        if (is_adaptive(spec_.stop) && layer.name == "samples") {
+          layer.image = film.counts();
+        }
+      }
     }
     return absl::OkStatus();
   }

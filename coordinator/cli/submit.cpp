@@ -2,6 +2,7 @@
 
 #include <sys/random.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 
@@ -90,6 +91,13 @@ void say_detached(JobId job, Verbosity verbosity, const Console& console) {
 
 ExitCode run(const SubmitOptions& options, Process& process) {
   const Console& console = process.console;
+  const auto& kinds = options.layers;
+  if (is_adaptive(options.image.stop) &&
+      std::find(kinds.begin(), kinds.end(), LayerKind::kSamples) != kinds.end()) {
+    return console.fail(ExitCode::kWrong,
+                        "--layers samples: a farm does not keep each pixel's number of samples, "
+                        "which --adaptive makes different; use bandsaw render");
+  }
   std::vector<std::string> outputs = options.outputs;
   if (outputs.empty() && !options.detach) {
     outputs = {default_output(options.scene, ".png")};

@@ -20,6 +20,12 @@ std::optional<std::vector<RowRange>> Core::State::wanted(JobId id, const Band& b
   return pass->coverage.wanted(band);
 }
 
+TileMask Core::State::tiles(JobId id, const Band& band) const {
+  const Job* job = find(id);
+  const Pass* pass = job == nullptr ? nullptr : job->pass_of(band);
+  return pass == nullptr ? TileMask() : pass->tiles.of(band.rows);
+}
+
 void Core::State::on(const input::BandStored& in) {
   Job* job = find(in.job);
   Pass* pass = job == nullptr || is_final(job->state) ? nullptr : job->pass_of(in.band);
@@ -45,7 +51,7 @@ void Core::State::on(const input::BandStored& in) {
   end_overtaken(change.overtaken);
   end_useless_copies(*job);
   if (!change.rows.empty()) {
-    act(action::AddToFilm{job->id, in.band, change.rows});
+    act(action::AddToFilm{job->id, in.band, change.rows, pass->tiles.of(in.band.rows)});
   }
   settle(*job);
 }
@@ -60,11 +66,11 @@ Coverage::Change Core::State::store(Job& job, Pass& pass, const input::BandStore
   pass.counters.add(in.counters);
   pass.cpu_s += in.cpu_s;
   shrink_losses(job, in.band);
-  std::uint64_t rows = 0;
+  std::uint64_t samples = 0;
   for (const RowRange& range : change.rows) {
-    rows += range.count();
+    samples += job.samples_of({in.band.samples, range});
   }
-  const std::uint64_t samples = rows * in.band.samples.samples() * job.spec.settings.width;
+  pass.stored += samples;
   job.throughput.add(clock_.wall(), static_cast<double>(samples));
   count_share(job, in, samples);
   job.advance();
@@ -90,12 +96,15 @@ void Core::State::measure(Worker& worker, Job& job, const input::BandStored& in)
   if (in.render_s <= 0) {
     return;
   }
-  const double columns = static_cast<double>(in.band.samples.samples()) * job.spec.settings.width;
-  const double speed = columns * in.band.rows.count() / in.render_s;
+  const std::uint64_t samples = job.samples_of(in.band);
+  if (samples == 0) {
+    return;  // only zeros: it says nothing of anybody's speed
+  }
+  const double speed = static_cast<double>(samples) / in.render_s;
   worker.speed.measure(speed);
   Worker::OnJob& on_job = worker.on_job[job.id];
   on_job.speed.measure(speed);
-  const double work = columns * job.cost.of(in.band.rows);  // as was expected
+  const double work = job.cost_of(in.band);  // as was expected
   // Of a worker that is new to the job, what others of as many threads do is as good a guess.
   if (job.per_thread.measured()) {
     const double expected = pace(worker, job);

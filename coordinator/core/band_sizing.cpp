@@ -23,8 +23,8 @@ std::uint32_t most_rows(std::uint32_t width) {
 Band size_band(const Sizing& sizing) {
   Band band = sizing.free;
   const double full = sizing.pace * sizing.target_s;
-  const double first_row =
-      sizing.cost->of({band.rows.first, band.rows.first + 1}) * static_cast<double>(sizing.width);
+  const double first_row = sizing.cost->of({band.rows.first, band.rows.first + 1}, sizing.shares) *
+                           static_cast<double>(sizing.width);
   while (static_cast<double>(band.samples.samples()) * first_row > 2 * full &&
          band.samples.blocks() > 1) {
     band.samples = split(band.samples).left;
@@ -37,7 +37,8 @@ Band size_band(const Sizing& sizing) {
   const double want =
       std::min(full * (sizing.measured ? 1 : kFirst), std::max(guided, full * kShortest));
   const std::uint32_t fitting = sizing.cost->fitting(
-      band.rows, want / (static_cast<double>(band.samples.samples()) * sizing.width));
+      band.rows, want / (static_cast<double>(band.samples.samples()) * sizing.width),
+      sizing.shares);
   band.rows.last = band.rows.first + std::min(fitting, most_rows(sizing.width));
   return band;
 }

@@ -22,11 +22,12 @@ struct Sizing {
   Band free;                ///< what may be cut from, from its top left
   std::uint32_t width = 0;  ///< pixels
   const CostMap* cost = nullptr;
-  double pace = 0;        ///< work a second of this worker on this job, > 0
-  bool measured = false;  ///< else the band is small, to show rows and to measure
-  double share = 1;       ///< of the farm's pace that is this worker's, (0, 1]
-  double left = 0;        ///< work of the job that nobody has yet
-  double target_s = 1;    ///< > 0
+  absl::Span<const float> shares = {};  ///< of each tile row, as cost_map.h takes them
+  double pace = 0;                      ///< work a second of this worker on this job, > 0
+  bool measured = false;                ///< else the band is small, to show rows and to measure
+  double share = 1;                     ///< of the farm's pace that is this worker's, (0, 1]
+  double left = 0;                      ///< work of the job that nobody has yet
+  double target_s = 1;                  ///< > 0
 };
 
 /// A piece of `free`: whole rows of all its samples, or, when one row alone takes more than two

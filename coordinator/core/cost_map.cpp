@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "renderlib/render/tile_mask.h"
+
 namespace bandsaw::coordinator {
 namespace {
 
@@ -40,11 +42,26 @@ double CostMap::of(const RowRange& rows) const {
   return sum;
 }
 
-std::uint32_t CostMap::fitting(const RowRange& rows, double most) const {
-  double sum = rows_[rows.first];
+double CostMap::of(const RowRange& rows, absl::Span<const float> shares) const {
+  if (shares.empty()) {
+    return of(rows);
+  }
+  double sum = 0;
+  for (std::uint32_t row = rows.first; row < rows.last; ++row) {
+    sum += rows_[row] * shares[row / kTileSide];
+  }
+  return sum;
+}
+
+std::uint32_t CostMap::fitting(const RowRange& rows, double most,
+                               absl::Span<const float> shares) const {
+  const auto cost = [&](std::uint32_t row) {
+    return shares.empty() ? rows_[row] : rows_[row] * shares[row / kTileSide];
+  };
+  double sum = cost(rows.first);
   std::uint32_t row = rows.first + 1;
-  while (row < rows.last && sum + rows_[row] <= most) {
-    sum += rows_[row++];
+  while (row < rows.last && sum + cost(row) <= most) {
+    sum += cost(row++);
   }
   return row - rows.first;
 }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "absl/types/span.h"
 #include "coordinator/core/types.h"
 
 namespace bandsaw::coordinator {
@@ -19,9 +20,13 @@ class CostMap {
 
   /// Of one sample in one column, summed over the rows.
   double of(const RowRange& rows) const;
+  /// The same of a pass in which only this share of each tile row's pixels takes part (one number a
+  /// tile row of the image; none: all do).
+  double of(const RowRange& rows, absl::Span<const float> shares) const;
   double of_all() const { return of({0, static_cast<std::uint32_t>(rows_.size())}); }
   /// How many rows from the first of these cost no more than `most`; at least one.
-  std::uint32_t fitting(const RowRange& rows, double most) const;
+  std::uint32_t fitting(const RowRange& rows, double most,
+                        absl::Span<const float> shares = {}) const;
 
   /// The rows took `ratio` times as long as was expected of them.
   void learn(const RowRange& rows, double ratio);

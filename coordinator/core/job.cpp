@@ -1,10 +1,23 @@
 #include "coordinator/core/job.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "renderlib/base/check.h"
 
 namespace bandsaw::coordinator {
+namespace {
+
+/// What a row costs of which nothing is rendered: its zeros are sent and stored.
+constexpr float kLeastShare = 0.01f;
+
+}  // namespace
+
+double Pass::share() const {
+  return shares.empty() ? 1
+                        : std::accumulate(shares.begin(), shares.end(), 0.0) /
+                              static_cast<double>(shares.size());
+}
 
 Job::Job(JobId job, JobSpec job_spec)
     : id(job), spec(std::move(job_spec)), cost(spec.settings.height) {}
@@ -35,7 +48,26 @@ const Pass* Job::pass_of(const Band& band) const {
 
 void Job::add_pass(const SampleRange& samples) {
   BANDSAW_CHECK(samples.first == planned_samples(), "passes follow each other");
-  passes.push_back({samples, Coverage(samples, spec.settings.height), {}, {}, 0, {}});
+  const RenderSettings& image = spec.settings;
+  Pass& pass = passes.emplace_back(Pass{.samples = samples,
+                                        .coverage = Coverage(samples, image.height),
+                                        .tiles = schedule_ ? schedule_->next(samples) : TileMask(),
+                                        .shares = {},
+                                        .digests = {},
+                                        .counters = {},
+                                        .returned = {}});
+  for (std::uint32_t row = 0; row < image.height && !pass.tiles.whole(); row += kTileSide) {
+    const RowRange rows{row, std::min(row + kTileSide, image.height)};
+    const double all = static_cast<double>(image.width) * rows.count();
+    pass.shares.push_back(std::max(
+        kLeastShare,
+        static_cast<float>(static_cast<double>(pass.tiles.pixels(image.width, rows)) / all)));
+  }
+}
+
+void Job::plan_tiles(TilePlan plan) {
+  schedule_.emplace(TileGrid{spec.settings.width, spec.settings.height}, plan);
+  tile_plan = std::move(plan);
 }
 
 void Job::fix(std::uint64_t samples) {
@@ -81,10 +113,10 @@ bool Job::any_free() const {
                      [](const Pass& pass) { return pass.coverage.any_free(); });
 }
 
-std::uint64_t Job::free_samples() const {
-  std::uint64_t sum = 0;
+double Job::free_samples() const {
+  double sum = 0;
   for (std::size_t i = complete_passes_; i < passes.size(); ++i) {
-    sum += passes[i].coverage.free_samples();
+    sum += static_cast<double>(passes[i].coverage.free_samples()) * passes[i].share();
   }
   return sum * spec.settings.width;
 }
@@ -93,17 +125,29 @@ std::uint64_t Job::pixels() const {
   return std::uint64_t{spec.settings.width} * spec.settings.height;
 }
 
+std::uint64_t Job::samples_of(const Band& band) const {
+  return band.samples.samples() * pass_of(band)->tiles.pixels(spec.settings.width, band.rows);
+}
+
+double Job::cost_of(const Band& band) const {
+  if (band.rows.count() == 0) {
+    return 0;
+  }
+  return static_cast<double>(band.samples.samples()) * spec.settings.width *
+         cost.of(band.rows, pass_of(band)->shares);
+}
+
 Totals Job::totals() const {
   Totals sum;
   if (is_final(state) && figures) {
     sum = {figures->samples, figures->counters, figures->cpu_s};
   }
   for (const Pass& pass : passes) {
-    sum.samples += pass.coverage.stored_samples() * spec.settings.width;
+    sum.samples += pass.stored;
     sum.counters.add(pass.counters);
     sum.cpu_s += pass.cpu_s;
   }
-  if (state == JobState::kDone) {
+  if (state == JobState::kDone && !figures) {
     sum.samples = fixed.value_or(0) * pixels();
   }
   return sum;

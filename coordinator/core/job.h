@@ -17,6 +17,7 @@
 #include "coordinator/core/row_digests.h"
 #include "coordinator/core/speed.h"
 #include "coordinator/core/types.h"
+#include "renderlib/render/adaptive_plan.h"
 
 namespace bandsaw::coordinator {
 
@@ -30,11 +31,16 @@ struct Totals {
 struct Pass {
   SampleRange samples;
   Coverage coverage;
+  TileMask tiles;             ///< who takes part, of the whole image
+  std::vector<float> shares;  ///< of each tile row's pixels, those that do; empty: all
+  std::uint64_t stored = 0;   ///< pixel samples
   RowDigests digests;
   Counters counters;
   double cpu_s = 0;
   /// How often a band that begins at this sample and row came back unfinished. For the logs.
   std::map<std::pair<std::uint64_t, std::uint32_t>, std::uint32_t> returned;
+
+  double share() const;  ///< of all pixels, those that take part
 };
 
 /// The reason of a job that a person paused.
@@ -57,6 +63,8 @@ class Job {
 
   /// Follows the last pass.
   void add_pass(const SampleRange& samples);
+  /// Of the passes that are added from now on.
+  void plan_tiles(TilePlan plan);
   /// The job ends after this many samples: passes beyond are forgotten.
   void fix(std::uint64_t samples);
   /// Counts complete passes on; digests of all but the last few are forgotten.
@@ -69,11 +77,15 @@ class Job {
   bool complete() const { return fixed && complete_samples() >= *fixed; }
   bool any_free() const;
   /// Pixel samples of its passes that nobody has.
-  std::uint64_t free_samples() const;
+  double free_samples() const;
   Totals totals() const;
   /// The largest, at most kSharesKept, by size.
   std::vector<WorkerShare> largest_shares() const;
   std::uint64_t pixels() const;
+  /// Pixel samples that rendering the band takes.
+  std::uint64_t samples_of(const Band& band) const;
+  /// The work of the band: samples in columns of cost 1.
+  double cost_of(const Band& band) const;
   std::uint64_t max_samples() const;
   bool timed() const { return std::holds_alternative<StopAtTime>(spec.stop); }
 
@@ -87,6 +99,7 @@ class Job {
   std::string notice;                  ///< what people should know though the job goes on
   std::optional<std::uint64_t> fixed;  ///< the job ends after this many samples a pixel
   std::vector<Pass> passes;            ///< from sample 0 on, without gaps
+  std::optional<TilePlan> tile_plan;   ///< of an adaptive job, from its pilot's end on
   bool bands_on_disk = false;          ///< bands were stored and not dropped
 
   double error = -1;  ///< of `error_at` samples; negative: not known
@@ -117,6 +130,7 @@ class Job {
 
  private:
   static constexpr std::size_t kPassesWithDigests = 8;
+  std::optional<TileSchedule> schedule_;
   std::size_t complete_passes_ = 0;
 };
 

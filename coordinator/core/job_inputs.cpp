@@ -130,7 +130,7 @@ void Core::State::on(const input::PassMerged& in) {
     job->error_at = in.samples;
     note_error(*job, in.samples, *in.error);
   }
-  look_at_error(*job, in.samples, known ? job->error : -1);
+  look_at_error(*job, in, known ? job->error : -1);
 }
 
 /// What a restart measures again is known already.
@@ -144,8 +144,9 @@ void Core::State::note_error(const Job& job, std::uint64_t samples, const ErrorE
   }
 }
 
-void Core::State::look_at_error(Job& job, std::uint64_t samples, double error) {
+void Core::State::look_at_error(Job& job, const input::PassMerged& look, double error) {
   const auto* rule = std::get_if<StopAtError>(&job.spec.stop);
+  const std::uint64_t samples = look.samples;
   // Only where it was planned to be looked at: what is measured on the way depends on who was fast.
   if (rule == nullptr || job.fixed || samples != job.planned_samples() ||
       samples != job.complete_samples()) {
@@ -157,7 +158,13 @@ void Core::State::look_at_error(Job& job, std::uint64_t samples, double error) {
     settle(job);
     return;
   }
-  plan_until(job, next_look(samples, error, rule->relative_rmse, rule->max_samples));
+  const TileGrid grid{job.spec.settings.width, job.spec.settings.height};
+  if (rule->adaptive && !job.tile_plan && look.tiles.size() == grid.half_tiles() &&
+      time_to_plan_tiles(error, rule->relative_rmse)) {
+    emit(record::TilesPlanned{job.id, plan_tiles(grid, look.tiles, samples)});
+  }
+  const double target = next_target(rule->relative_rmse, rule->adaptive && !job.tile_plan);
+  plan_until(job, next_look(samples, error, target, rule->max_samples));
 }
 
 void Core::State::fix(Job& job, std::uint64_t samples) {

@@ -97,10 +97,7 @@ double Core::State::pace(const Worker& worker, const Job& job) const {
              : per_thread(job) * worker.threads;
 }
 
-double Core::State::work(const Job& job, const Band& band) const {
-  return static_cast<double>(band.samples.samples()) * job.spec.settings.width *
-         job.cost.of(band.rows);
-}
+double Core::State::work(const Job& job, const Band& band) const { return job.cost_of(band); }
 
 Band Core::State::sized(const Job& job, const Worker& worker, const Band& free) const {
   const auto own = worker.on_job.find(job.id);
@@ -108,6 +105,7 @@ Band Core::State::sized(const Job& job, const Worker& worker, const Band& free) 
   sizing.free = free;
   sizing.width = job.spec.settings.width;
   sizing.cost = &job.cost;
+  sizing.shares = job.pass_of(free)->shares;
   sizing.pace = pace(worker, job);
   sizing.measured = own != worker.on_job.end() && own->second.pace.measured();
   const double farm =
@@ -123,8 +121,8 @@ double Core::State::work_left(const Job& job, const Band& free) const {
   const std::uint32_t height = job.spec.settings.height;
   const Pass* pass = job.pass_of(free);
   const double here = static_cast<double>(pass->coverage.free_samples()) * job.spec.settings.width;
-  const double elsewhere = static_cast<double>(job.free_samples()) - here;
-  return here * job.cost.of({free.rows.first, height}) / (height - free.rows.first) +
+  const double elsewhere = std::max(0.0, job.free_samples() - here * pass->share());
+  return here * job.cost.of({free.rows.first, height}, pass->shares) / (height - free.rows.first) +
          elsewhere * job.cost.of_all() / height;
 }
 
@@ -150,7 +148,7 @@ void Core::State::hand_over(Worker& worker, Job& job, const Pass& pass, Lease le
   const auto returned = pass.returned.find({lease.band.samples.first, lease.band.rows.first});
   const std::uint32_t attempt = returned == pass.returned.end() ? 1 : 1 + returned->second;
   act(action::Lease{*worker.session, lease.id, job.id, job.spec.manifest, job.spec.settings,
-                    lease.band, attempt});
+                    lease.band, pass.tiles.of(lease.band.rows), attempt});
 }
 
 void Core::State::end_lease(LeaseId id, Revoke revoke) {

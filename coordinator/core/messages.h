@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "coordinator/core/types.h"
+#include "renderlib/render/adaptive_plan.h"
 
 namespace bandsaw::coordinator {
 
@@ -78,6 +79,7 @@ struct PassMerged {
   JobId job = 0;
   std::uint64_t samples = 0;
   std::optional<ErrorEstimate> error;
+  std::vector<TileError> tiles = {};  ///< of an adaptive job (Film::tile_errors)
 };
 struct ResultWritten {
   JobId job = 0;
@@ -112,6 +114,11 @@ struct JobAdded {
 struct PassPlanned {
   JobId job = 0;
   SampleRange samples;
+};
+/// From the samples that there are on, half tiles take part in passes as planned.
+struct TilesPlanned {
+  JobId job = 0;
+  TilePlan plan;
 };
 /// No further pass: the job ends after this many samples a pixel.
 struct SamplesFixed {
@@ -179,10 +186,10 @@ struct WorkerLeft {
 }  // namespace record
 
 using Record =
-    std::variant<record::JobAdded, record::PassPlanned, record::SamplesFixed, record::StateChanged,
-                 record::PriorityChanged, record::HoldChanged, record::TimeSpent, record::Figures,
-                 record::ErrorMeasured, record::ShareCounted, record::LastWords,
-                 record::JobForgotten, record::WorkerJoined, record::WorkerLeft>;
+    std::variant<record::JobAdded, record::PassPlanned, record::TilesPlanned, record::SamplesFixed,
+                 record::StateChanged, record::PriorityChanged, record::HoldChanged,
+                 record::TimeSpent, record::Figures, record::ErrorMeasured, record::ShareCounted,
+                 record::LastWords, record::JobForgotten, record::WorkerJoined, record::WorkerLeft>;
 
 // ---- actions ----
 namespace action {
@@ -208,6 +215,7 @@ struct Lease {
   DigestHex manifest;
   RenderSettings settings;
   Band band;
+  TileMask tiles = {};  ///< of the band's rows
   std::uint32_t attempt = 1;
 };
 struct Revoke {
@@ -234,6 +242,7 @@ struct AddToFilm {
   JobId job = 0;
   Band band;
   std::vector<RowRange> rows;
+  TileMask tiles = {};  ///< of the band's rows
 };
 /// Write the image of samples [0, samples), then say ResultWritten.
 struct WriteResult {

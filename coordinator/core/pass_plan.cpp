@@ -68,6 +68,15 @@ std::optional<std::uint64_t> expected_end(const ErrorCurve& curve, double target
   return look;
 }
 
+bool time_to_plan_tiles(double error, double target) {
+  return error >= 0 && error <= next_target(target, true);
+}
+
+double next_target(double target, bool tiles_to_plan) {
+  constexpr double kPilotError = 4;  // Over the target's; its square is of samples.
+  return tiles_to_plan ? kPilotError * target : target;
+}
+
 SampleRange next_timed_pass(std::uint64_t from, double fits, std::uint64_t max_samples) {
   const std::uint64_t block = from / kBlockSamples;
   const std::uint64_t end = blocks_of(max_samples);

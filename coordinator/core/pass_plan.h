@@ -32,6 +32,14 @@ std::uint64_t next_look(std::uint64_t samples, double error, double target,
 std::optional<std::uint64_t> expected_end(const ErrorCurve& curve, double target,
                                           std::uint64_t planned, std::uint64_t max_samples);
 
+/// Whether tiles are planned at a look that finds this error: not before it is near enough to the
+/// target that the pilot is about a sixteenth of what random samples need, or more.
+bool time_to_plan_tiles(double error, double target);
+
+/// The error that the next look waits for: the target, or, while tiles are still to be planned,
+/// what they are planned at.
+double next_target(double target, bool tiles_to_plan);
+
 /// The next pass of a job with a time limit, after samples [0, from): at most a quarter of what is
 /// there, and no more than `fits` samples where that is not less than a block. from < max_samples.
 SampleRange next_timed_pass(std::uint64_t from, double fits, std::uint64_t max_samples);

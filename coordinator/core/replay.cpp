@@ -24,6 +24,13 @@ void Core::State::apply(const record::PassPlanned& r) {
   }
 }
 
+void Core::State::apply(const record::TilesPlanned& r) {
+  Job* job = find(r.job);
+  if (job != nullptr && !is_final(job->state)) {
+    job->plan_tiles(r.plan);
+  }
+}
+
 void Core::State::apply(const record::SamplesFixed& r) {
   if (Job* job = find(r.job)) {
     job->fix(r.samples);

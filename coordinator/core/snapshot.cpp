@@ -21,8 +21,16 @@ void Core::State::add_records(const Job& job, std::vector<Record>& out) {
   if (job.held) {
     out.push_back(record::HoldChanged{job.id, true});
   }
+  bool tiles = !job.tile_plan;  // said, or nothing to say
   for (const Pass& pass : job.passes) {
+    if (!tiles && pass.samples.first >= job.tile_plan->pilot) {
+      out.push_back(record::TilesPlanned{job.id, *job.tile_plan});
+      tiles = true;
+    }
     out.push_back(record::PassPlanned{job.id, pass.samples});
+  }
+  if (!tiles && !is_final(job.state)) {
+    out.push_back(record::TilesPlanned{job.id, *job.tile_plan});
   }
   if (job.fixed) {
     out.push_back(record::SamplesFixed{job.id, *job.fixed});

@@ -36,6 +36,7 @@ class Core::State {
   std::vector<Record> snapshot() const;
 
   std::optional<std::vector<RowRange>> wanted(JobId job, const Band& band) const;
+  TileMask tiles(JobId job, const Band& band) const;
   std::vector<std::string> why(JobId id, Time now) const;
   std::optional<JobView> view(JobId id, Time now) const;
   std::vector<JobView> job_views(Time now) const;
@@ -63,6 +64,7 @@ class Core::State {
 
   void apply(const record::JobAdded& r);
   void apply(const record::PassPlanned& r);
+  void apply(const record::TilesPlanned& r);
   void apply(const record::SamplesFixed& r);
   void apply(const record::StateChanged& r);
   void apply(const record::PriorityChanged& r);
@@ -102,7 +104,7 @@ class Core::State {
   void plan_first(Job& job);
   void plan_until(Job& job, std::uint64_t samples);
   bool plan_timed(Job& job);
-  void look_at_error(Job& job, std::uint64_t samples, double error);
+  void look_at_error(Job& job, const input::PassMerged& look, double error);
   void note_error(const Job& job, std::uint64_t samples, const ErrorEstimate& error);
   void fix(Job& job, std::uint64_t samples);
   /// Ends the job's work once every pass is there, or its time is up.
@@ -193,6 +195,7 @@ class Core::State {
   double fraction(const Job& job, Time now) const;
   double remaining(const Job& job, Time now) const;
   double expected_samples(const Job& job) const;
+  double expected_work(const Job& job) const;
   std::vector<JobWorkerView> lines(const Job& job) const;
 
   // Invariants, each a sentence when it does not hold.

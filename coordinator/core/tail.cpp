@@ -115,7 +115,8 @@ double Core::State::rest_of(const Lease& lease) const {
   if (lease.rows_done > 0 && lease.told_at > lease.begun_at) {
     const RowRange done{lease.band.rows.first,
                         lease.band.rows.first + std::min(lease.rows_done, lease.band.rows.count())};
-    takes = (lease.told_at - lease.begun_at) * job.cost.of(lease.band.rows) / job.cost.of(done);
+    takes = (lease.told_at - lease.begun_at) * job.cost_of(lease.band) /
+            job.cost_of({lease.band.samples, done});
   }
   const double passed = clock_.wall() - lease.begun_at;
   return std::max({takes - passed, passed - takes, takes * kLeastRest});
@@ -187,7 +188,7 @@ bool Core::State::copy(const Late& late, std::vector<Worker*>& idle) {
     const double part = all * pace(helper, job) / together;
     Band band{lease.band.samples, rows};
     if (i + 1 < count) {
-      band.rows.last = rows.first + job.cost.fitting(rows, part / column);
+      band.rows.last = rows.first + job.cost.fitting(rows, part / column, pass.shares);
     }
     rows.first = band.rows.last;
     act(action::Shared{job.id, band, workers_.by_id(lease.worker)->name, helper.name, true});

@@ -34,6 +34,7 @@ struct StopAtSamples {
 struct StopAtError {
   double relative_rmse = 0;  ///< > 0; 0.01 is 1 %
   std::uint64_t max_samples = kMaxSamples;
+  bool adaptive = false;  ///< more samples where there is more noise (render/adaptive_plan.h)
   friend bool operator==(const StopAtError&, const StopAtError&) = default;
 };
 /// … or at the last complete pass before this much time since its first lease.
@@ -43,6 +44,11 @@ struct StopAtTime {
   friend bool operator==(const StopAtTime&, const StopAtTime&) = default;
 };
 using StopRule = std::variant<StopAtSamples, StopAtError, StopAtTime>;
+
+inline bool is_adaptive(const StopRule& rule) {
+  const auto* until = std::get_if<StopAtError>(&rule);
+  return until != nullptr && until->adaptive;
+}
 
 struct JobSpec {
   std::string request_id;  ///< the submitter's key: the same id is the same job

@@ -25,7 +25,8 @@ std::optional<JobView> Core::State::view(JobId id, Time now) const {
   view.remaining_s = remaining(*job, now);
   view.samples_per_s = is_final(job->state) ? 0 : job->throughput.per_second(now);
   view.samples_done = totals.samples;
-  view.samples_per_pixel = job->complete_samples();
+  const bool uneven = job->tile_plan || (is_final(job->state) && is_adaptive(job->spec.stop));
+  view.samples_per_pixel = uneven ? totals.samples / job->pixels() : job->complete_samples();
   view.error = is_final(job->state) && job->figures ? job->figures->error : job->error;
   view.counters = totals.counters;
   view.cpu_s = totals.cpu_s;
@@ -89,6 +90,16 @@ double Core::State::expected_samples(const Job& job) const {
   return end ? static_cast<double>(*end) : most;
 }
 
+/// In pixel samples: those of passes that are not planned yet as those of the last.
+double Core::State::expected_work(const Job& job) const {
+  const double beyond = expected_samples(job) - static_cast<double>(job.planned_samples());
+  double columns = beyond * (job.passes.empty() ? 1 : job.passes.back().share());
+  for (const Pass& pass : job.passes) {
+    columns += static_cast<double>(pass.samples.samples()) * pass.share();
+  }
+  return columns * static_cast<double>(job.pixels());
+}
+
 double Core::State::fraction(const Job& job, Time now) const {
   if (job.state == JobState::kDone) {
     return 1;
@@ -100,7 +111,7 @@ double Core::State::fraction(const Job& job, Time now) const {
   if (error != nullptr && !job.fixed && job.error < 0) {
     return 0;
   }
-  const double all = expected_samples(job) * static_cast<double>(job.pixels());
+  const double all = expected_work(job);
   return std::clamp(static_cast<double>(job.totals().samples) / all, 0.0, 1.0);
 }
 
@@ -117,7 +128,7 @@ double Core::State::remaining(const Job& job, Time now) const {
   if (unknown || speed <= 0) {
     return -1;
   }
-  const double all = expected_samples(job) * static_cast<double>(job.pixels());
+  const double all = expected_work(job);
   return std::max(0.0, all - static_cast<double>(job.totals().samples)) / speed;
 }
 

@@ -48,6 +48,7 @@ void CoreDesk::absorb(const Step& step, PutBand* put) {
       band.pixels = std::move(put->pixels);
       band.share = std::move(put->share);
       band.offset = put->offset;
+      band.tiles = add->tiles;
       outbox_.deed([this, rows = add->rows, band = std::move(band)]() mutable {
         hooks_.add_to_film(std::move(band), std::move(rows));
       });

@@ -27,7 +27,7 @@ absl::Status CoreDesk::restore(StoreDesk& store, FilmDesk& film) {
 }
 
 absl::Status CoreDesk::restore_job(JobId id, const Known& known, StoreDesk& store, FilmDesk& film) {
-  film.add_job(id, known.spec.settings);
+  film.add_job(id, known.spec.settings, is_adaptive(known.spec.stop));
   for (const std::uint64_t samples : known.pass_ends) {
     film.plan(id, samples);
   }
@@ -51,6 +51,7 @@ absl::Status CoreDesk::restore_job(JobId id, const Known& known, StoreDesk& stor
       PutBand put;
       put.pixels = std::move(pixels);
       put.offset = offset;
+      put.tiles = core_.tiles(id, band);
       filmed = film.add(id, std::move(put), *std::move(rows));
     }
   };

@@ -9,7 +9,8 @@ namespace bandsaw::coordinator {
 namespace {
 
 /// INVALID_ARGUMENT: not a band of an image of these settings, or not all of its pixels.
-absl::Status check_band(const BandPixels& pixels, const RenderSettings& settings) {
+absl::Status check_band(const BandPixels& pixels, const RenderSettings& settings,
+                        const TileMask& tiles) {
   if (absl::Status valid = validate(pixels.band, settings); !valid.ok()) {
     return valid;
   }
@@ -19,7 +20,7 @@ absl::Status check_band(const BandPixels& pixels, const RenderSettings& settings
         absl::StrCat("the band's pixels are ", pixels.sums.size(), " sums of rows of ",
                      pixels.width, " pixels; it must be ", sums, " of ", settings.width));
   }
-  return absl::OkStatus();
+  return check_left_out(pixels, tiles);
 }
 
 }  // namespace
@@ -46,7 +47,9 @@ void CoreDesk::put_band(PutBand put) {
     put.answer(BandOutcome::kUnwanted);
     return;
   }
-  if (const absl::Status valid = check_band(put.pixels, known->second.spec.settings); !valid.ok()) {
+  if (const absl::Status valid = check_band(put.pixels, known->second.spec.settings,
+                                            core_.tiles(put.job, put.pixels.band));
+      !valid.ok()) {
     put.answer(valid);
     return;
   }

@@ -9,8 +9,9 @@
 
 namespace bandsaw::coordinator {
 
-void FilmDesk::add_job(JobId job, const RenderSettings& settings) {
+void FilmDesk::add_job(JobId job, const RenderSettings& settings, bool adaptive) {
   jobs_[job].settings = settings;
+  jobs_[job].adaptive = adaptive;
 }
 
 void FilmDesk::plan(JobId id, std::uint64_t samples) {
@@ -65,14 +66,14 @@ absl::Status FilmDesk::work(JobId id, OneJob& job) {
 
 absl::Status FilmDesk::merge(JobId id, OneJob& job, Waiting& waiting) {
   if (!job.film) {
-    ASSIGN_OR_RETURN(job.film,
-                     Film::create(job.settings.width, job.settings.height, folder_.job(id)));
+    ASSIGN_OR_RETURN(job.film, new_film(id, job));
   }
   const BandPixels& pixels = waiting.put.pixels;
   while (!waiting.rows.empty()) {
     const RowRange rows = waiting.rows.back();
-    RETURN_IF_ERROR(job.film->add(rows == pixels.band.rows ? pixels : slice(pixels, rows)));
-    job.added.push_back({waiting.put.offset, pixels.band.samples.last, rows});
+    TileMask tiles = waiting.put.tiles.of(rows);
+    RETURN_IF_ERROR(job.film->add(rows == pixels.band.rows ? pixels : slice(pixels, rows), tiles));
+    job.added.push_back({waiting.put.offset, pixels.band.samples.last, rows, std::move(tiles)});
     waiting.rows.pop_back();
   }
   return absl::OkStatus();
@@ -82,7 +83,10 @@ void FilmDesk::tell_passes(JobId id, OneJob& job) {
   while (!job.pass_ends.empty() && job.film->complete(*job.pass_ends.begin())) {
     const std::uint64_t samples = *job.pass_ends.begin();
     job.pass_ends.erase(job.pass_ends.begin());
-    hooks_.merged({.job = id, .samples = samples, .error = job.film->error()});
+    hooks_.merged({.job = id,
+                   .samples = samples,
+                   .error = job.film->error(),
+                   .tiles = job.adaptive ? job.film->tile_errors() : std::vector<TileError>()});
   }
 }
 
@@ -104,15 +108,19 @@ absl::Status FilmDesk::give_image(JobId id, OneJob& job) {
   return absl::OkStatus();
 }
 
+absl::StatusOr<Film> FilmDesk::new_film(JobId id, const OneJob& job) const {
+  return Film::create(job.settings.width, job.settings.height, folder_.job(id),
+                      job.adaptive ? Film::Grain::kHalfTiles : Film::Grain::kRows);
+}
+
 // Nodes that met have become one sum, from which a part cannot be taken out again.
 absl::StatusOr<Film> FilmDesk::film_until(JobId id, const OneJob& job,
                                           std::uint64_t samples) const {
-  ASSIGN_OR_RETURN(Film film,
-                   Film::create(job.settings.width, job.settings.height, folder_.job(id)));
+  ASSIGN_OR_RETURN(Film film, new_film(id, job));
   for (const Added& added : job.added) {
     if (added.last_sample <= samples) {
       ASSIGN_OR_RETURN(const BandRecord band, read_band(folder_.bands(id), added.offset));
-      RETURN_IF_ERROR(film.add(slice(band.pixels, added.rows)));
+      RETURN_IF_ERROR(film.add(slice(band.pixels, added.rows), added.tiles));
     }
   }
   return film;

@@ -32,7 +32,7 @@ class FilmDesk {
   };
   FilmDesk(const DataFolder& folder, Hooks hooks) : folder_(folder), hooks_(std::move(hooks)) {}
 
-  void add_job(JobId job, const RenderSettings& settings);
+  void add_job(JobId job, const RenderSettings& settings, bool adaptive = false);
   /// A pass that ends at `samples` was begun: it is told when it is whole.
   void plan(JobId job, std::uint64_t samples);
   /// These rows of the band are new. OK: they are in the film; otherwise they wait for retry, which
@@ -53,9 +53,11 @@ class FilmDesk {
     std::uint64_t offset = 0;  ///< of the band's record
     std::uint64_t last_sample = 0;
     RowRange rows;
+    TileMask tiles;  ///< of these rows
   };
   struct OneJob {
     RenderSettings settings;
+    bool adaptive = false;
     std::optional<Film> film;  ///< from the first band on
     std::deque<Waiting> waiting;
     std::vector<Added> added;
@@ -66,6 +68,7 @@ class FilmDesk {
   absl::Status merge(JobId id, OneJob& job, Waiting& waiting);
   void tell_passes(JobId id, OneJob& job);
   absl::Status give_image(JobId id, OneJob& job);
+  absl::StatusOr<Film> new_film(JobId id, const OneJob& job) const;
   absl::StatusOr<Film> film_until(JobId id, const OneJob& job, std::uint64_t samples) const;
 
   const DataFolder& folder_;

@@ -107,8 +107,8 @@ CoreDesk::Hooks Engine::Impl::core_hooks() {
             on_store([job, spec](StoreDesk& store) {
               store.add_job(job, spec).IgnoreError();  // tried again at its first band
             });
-            on_film(
-                [job, settings = spec.settings](FilmDesk& film) { film.add_job(job, settings); });
+            on_film([job, settings = spec.settings, adaptive = is_adaptive(spec.stop)](
+                        FilmDesk& film) { film.add_job(job, settings, adaptive); });
           },
       .plan_pass =
           [this](JobId job, std::uint64_t samples) {

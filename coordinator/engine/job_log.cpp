@@ -18,6 +18,12 @@ struct Line {
   void operator()(const record::PassPlanned& r) const {
     spdlog::debug("job={} pass samples=[{},{})", r.job, r.samples.first, r.samples.last);
   }
+  void operator()(const record::TilesPlanned& r) const {
+    spdlog::info("job={} tiles planned from samples={} {}", r.job, r.plan.pilot,
+                 r.plan.levels.find_first_not_of('0') == std::string::npos
+                     ? "all in every pass"
+                     : "more where there is more noise");
+  }
   void operator()(const record::SamplesFixed& r) const {
     spdlog::info("job={} ends after samples={}", r.job, r.samples);
   }

@@ -14,6 +14,7 @@
 #include "coordinator/engine/engine.h"
 #include "renderlib/render/band.h"
 #include "renderlib/render/hash64.h"
+#include "renderlib/render/tile_mask.h"
 
 namespace bandsaw::coordinator {
 
@@ -73,6 +74,7 @@ struct PutBand {
   JobId job = 0;
   std::string instance;  ///< of the worker
   BandPixels pixels;
+  TileMask tiles = {};  ///< who takes part, of its rows; told with the way to the film
   double render_s = 0;
   double cpu_s = 0;
   std::uint64_t offset = 0;  ///< of its record in the job's log, once it is written

@@ -39,6 +39,9 @@ absl::StatusOr<StopRule> stop_rule(const farm::StopRule& rule) {
   if (given != 1) {
     return invalid("stop", "exactly one of samples, error, time_s must be given, are ", given);
   }
+  if (rule.adaptive() && rule.error() == 0) {
+    return invalid("stop.adaptive", "only with error");
+  }
   RETURN_IF_ERROR(check_range("stop.max_samples", rule.max_samples(), 0, kMaxSamples));
   const std::uint64_t most = rule.max_samples() != 0 ? rule.max_samples() : kMaxSamples;
   if (rule.samples() != 0) {
@@ -51,7 +54,7 @@ absl::StatusOr<StopRule> stop_rule(const farm::StopRule& rule) {
     return invalid(field, "must be > 0 and finite, is ", value);
   }
   if (rule.error() != 0) {
-    return StopAtError{.relative_rmse = value, .max_samples = most};
+    return StopAtError{.relative_rmse = value, .max_samples = most, .adaptive = rule.adaptive()};
   }
   return StopAtTime{.seconds = value, .max_samples = most};
 }

@@ -36,6 +36,7 @@ struct SetStop {
   void operator()(const StopAtError& stop) const {
     message.set_error(stop.relative_rmse);
     message.set_max_samples(stop.max_samples);
+    message.set_adaptive(stop.adaptive);
   }
   void operator()(const StopAtTime& stop) const {
     message.set_time_s(stop.seconds);
@@ -158,6 +159,7 @@ absl::StatusOr<farm::ToWorker> to_message(const action::Lease& lease) {
   l->mutable_band()->set_last_sample(lease.band.samples.last);
   l->mutable_band()->set_first_row(lease.band.rows.first);
   l->mutable_band()->set_last_row(lease.band.rows.last);
+  l->set_tiles(lease.tiles.bits());
   l->set_attempt(lease.attempt);
   return message;
 }

@@ -8,6 +8,7 @@
 #include "absl/strings/string_view.h"
 #include "coordinator/store/fields.h"
 #include "coordinator/store/record_text_report.h"
+#include "coordinator/store/record_text_tiles.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
@@ -57,7 +58,7 @@ void write_stop(FieldWriter& out, const StopRule& stop) {
                           out.number("samples", s.samples);
                         },
                         [&](const StopAtError& s) {
-                          out.text("stop", "error");
+                          out.text("stop", s.adaptive ? "adaptive_error" : "error");
                           out.real("relative_rmse", s.relative_rmse);
                           out.number("max_samples", s.max_samples);
                         },
@@ -69,17 +70,17 @@ void write_stop(FieldWriter& out, const StopRule& stop) {
              stop);
 }
 
-// Braced initialisers are evaluated in the order they are written, which is the order of the
-// fields.
+// Braced initialisers are evaluated in the order they are written: that of the fields.
 
 StopRule read_stop(FieldReader& in) {
   const std::string kind = in.text("stop");
   if (kind == "samples") {
     return StopAtSamples{.samples = in.number("samples")};
   }
-  if (kind == "error") {
+  if (kind == "error" || kind == "adaptive_error") {
     return StopAtError{.relative_rmse = in.real("relative_rmse"),
-                       .max_samples = in.number("max_samples")};
+                       .max_samples = in.number("max_samples"),
+                       .adaptive = kind == "adaptive_error"};
   }
   if (kind == "time") {
     return StopAtTime{.seconds = in.real("seconds"), .max_samples = in.number("max_samples")};
@@ -160,6 +161,9 @@ Record read_record(absl::string_view kind, FieldReader& in) {
     return record::PassPlanned{.job = in.number("job"),
                                .samples = {.first = in.number("first"), .last = in.number("last")}};
   }
+  if (kind == "tiles_planned") {
+    return read_tiles(in);
+  }
   if (kind == "samples_fixed") {
     return record::SamplesFixed{.job = in.number("job"), .samples = in.number("samples")};
   }
@@ -222,6 +226,7 @@ RecordText to_text(const Record& record) {
                               out.number("last", r.samples.last);
                               return "pass_planned";
                             },
+                            [&](const record::TilesPlanned& r) { return write_tiles(out, r); },
                             [&](const record::SamplesFixed& r) {
                               out.number("job", r.job);
                               out.number("samples", r.samples);

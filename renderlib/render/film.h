@@ -2,6 +2,9 @@
 
 // The accumulators of an image: takes bands in any order, holds every row's sums as nodes of the
 // summation tree (render/band.h), merges siblings as they meet, and gives the image.
+//
+// Where tiles may be left out of passes (render/tile_mask.h) a pixel's sum is the same tree, in
+// which samples that were not taken count as zeros, and its mean is over those that were.
 
 #include <cstdint>
 #include <memory>
@@ -11,32 +14,38 @@
 
 #include "absl/status/statusor.h"
 #include "renderlib/image/image.h"
+#include "renderlib/render/adaptive_plan.h"
 #include "renderlib/render/band.h"
 #include "renderlib/render/error_estimate.h"
+#include "renderlib/render/tile_mask.h"
 
 namespace bandsaw {
 
 class Film {
  public:
+  /// Which pixels may have other samples than their neighbours: rows, or half tiles.
+  enum class Grain { kRows, kHalfTiles };
+
   /// Memory grows as rows arrive: 24 bytes a pixel for each node that is not merged yet; at the end
   /// two halves. `spill_folder`: where to put the (unlinked) files the sums are mapped from; empty:
   /// plain memory. RESOURCE_EXHAUSTED: no memory or disk.
   static absl::StatusOr<Film> create(std::uint32_t width, std::uint32_t height,
-                                     std::string spill_folder);
+                                     std::string spill_folder, Grain grain = Grain::kRows);
   Film(Film&&) noexcept;
   Film& operator=(Film&&) noexcept;
   ~Film();
 
   /// Adds rows that are not covered yet. FAILED_PRECONDITION: a row's samples, or some of them, are
-  /// there already; then nothing was changed. RESOURCE_EXHAUSTED: no memory or disk.
-  absl::Status add(const BandPixels& pixels);
+  /// there already; then nothing was changed. RESOURCE_EXHAUSTED: no memory or disk. `tiles`: who
+  /// took part; whole for a film of rows.
+  absl::Status add(const BandPixels& pixels, const TileMask& tiles = {});
 
-  /// Whether samples [0, samples) of every row are there.
+  /// Whether samples [0, samples) of every row are there, or were left out.
   bool complete(std::uint64_t samples) const;
 
-  /// The image so far: mean of the samples [0, n) of each row, n the largest count whose maximal
-  /// nodes are all there, as the fixed tree adds them, rounded to float once. Rows with none are
-  /// `missing`, black.
+  /// The image so far: mean of the samples of [0, n) that each pixel took, n the largest count
+  /// whose maximal nodes are all there, as the fixed tree adds them, rounded to float once. Rows
+  /// with none are `missing`, black.
   struct Snapshot {
     Image image;
     std::uint64_t least_samples = 0;  ///< over the rows
@@ -46,6 +55,13 @@ class Film {
 
   /// Of the samples that a snapshot shows. Nothing until every row has two halves of equal size.
   std::optional<ErrorEstimate> error() const;
+
+  /// The same of each half tile, of a film of half tiles: what plan_tiles reads. Empty where
+  /// error() is nothing.
+  std::vector<TileError> tile_errors() const;
+
+  /// How many samples of each pixel a snapshot shows.
+  Image counts() const;
 
   std::uint32_t width() const;
   std::uint32_t height() const;

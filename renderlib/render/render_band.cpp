@@ -120,7 +120,7 @@ struct Units {
 
 absl::StatusOr<BandPixels> render_band(const Scene& scene, const RenderSettings& settings,
                                        const Band& band, Pool& pool, const std::atomic<bool>& stop,
-                                       const RowsDone& progress) {
+                                       const RowsDone& progress, const TileMask& tiles) {
   RETURN_IF_ERROR(validate(band, settings));
   const BandRenderer renderer(scene, settings, band, stop);
   const Units units(band, settings.width);
@@ -141,6 +141,9 @@ absl::StatusOr<BandPixels> render_band(const Scene& scene, const RenderSettings&
     for (std::uint32_t x = first; x < last; ++x) {
       if (renderer.stopped()) {
         return;
+      }
+      if (!tiles.has(x, band.rows.first + row)) {
+        continue;
       }
       const Sum sum = renderer.pixel(x, band.rows.first + row, of_unit);
       double* const to = &pixels.sums[(std::size_t{row} * settings.width + x) * 3];

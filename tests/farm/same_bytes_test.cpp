@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <csignal>
 #include <filesystem>
 
 #include "tests/farm/farm_processes.h"
@@ -69,6 +70,34 @@ TEST_F(SameBytes, OnFarmsOfOneTwoAndFiveWorkers) {
   farm_.add_worker("four", 2);
   farm_.add_worker("five", 1);
   expect_farm_gives_the_same();
+}
+
+// Tiles are planned by what is measured: the same on every farm, and after a restart.
+TEST_F(SameBytes, WithAdaptiveSampling) {
+  const auto adaptive = [&](const std::string& command, const std::string& file) {
+    return std::vector<std::string>{command,   std::string(BANDSAW_GALLERY) + "/spheres.textproto",
+                                    "-o",      farm_.path(file),
+                                    "--width", "240",
+                                    "--error", "3%",
+                                    "--quiet", "--adaptive"};
+  };
+  std::vector<std::string> here = adaptive("render", "here.pfm");
+  here.insert(here.begin(), BANDSAW_BIN);
+  expect_success(run(here));
+  farm_.add_worker("one", 1);
+  expect_success(run(farm_.command(adaptive("submit", "one.pfm"))));
+  EXPECT_TRUE(file_bytes(farm_.path("one.pfm")) == file_bytes(farm_.path("here.pfm")));
+  farm_.add_worker("two", 2);
+  Process client = Process::start(farm_.command(adaptive("submit", "two.pfm")));
+  ASSERT_TRUE(farm_.coordinator().wait_until([](const std::string&, const std::string& log) {
+    constexpr char kPlanned[] = "more where there is more noise";
+    return log.find(kPlanned) != log.rfind(kPlanned);
+  })) << farm_.coordinator_log();
+  farm_.coordinator().signal(SIGKILL);
+  ASSERT_EQ(farm_.coordinator().wait(), 128 + SIGKILL);
+  farm_.restart_coordinator();
+  EXPECT_EQ(client.wait(), 0) << client.err();
+  EXPECT_TRUE(file_bytes(farm_.path("two.pfm")) == file_bytes(farm_.path("here.pfm")));
 }
 
 TEST_F(SameBytes, P5_WhenPartsAreStitched) {

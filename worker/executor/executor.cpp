@@ -111,11 +111,13 @@ absl::StatusOr<FinishedBand> Executor::render(Running& running) {
   RETURN_IF_ERROR(wait_for_earlier(running, Reached::kRows));
   events_.rendering(task.id, 0);
   const double began = seconds(CLOCK_MONOTONIC);
-  ASSIGN_OR_RETURN(BandPixels pixels, render_band(*scene, task.settings, task.band, pool_,
-                                                  running.stop, [&](std::uint32_t rows_done) {
-                                                    events_.rendering(task.id, rows_done);
-                                                    reach(running, Reached::kRows);
-                                                  }));
+  ASSIGN_OR_RETURN(BandPixels pixels, render_band(
+                                          *scene, task.settings, task.band, pool_, running.stop,
+                                          [&](std::uint32_t rows_done) {
+                                            events_.rendering(task.id, rows_done);
+                                            reach(running, Reached::kRows);
+                                          },
+                                          task.tiles));
   return FinishedBand{.task = task, .pixels = std::move(pixels), .cost = cost_since(began)};
 }
 

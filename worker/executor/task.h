@@ -8,6 +8,7 @@
 #include "proto/wire/digest.h"
 #include "renderlib/render/band.h"
 #include "renderlib/render/settings.h"
+#include "renderlib/render/tile_mask.h"
 
 namespace bandsaw::worker {
 
@@ -19,6 +20,7 @@ struct Task {
   wire::Digest manifest;
   RenderSettings settings;
   Band band;
+  TileMask tiles = {};  ///< who takes part, of the band's rows
 };
 
 /// What rendering a band took. Where two bands overlap each moment is counted once, for the one

@@ -42,10 +42,13 @@ absl::StatusOr<Task> task_of(const farm::Lease& lease) {
                          .integrator = static_cast<Integrator>(lease.settings().integrator())},
             .band = {.samples = {.first = lease.band().first_sample(),
                                  .last = lease.band().last_sample()},
-                     .rows = {.first = lease.band().first_row(), .last = lease.band().last_row()}}};
+                     .rows = {.first = lease.band().first_row(), .last = lease.band().last_row()}},
+            .tiles = {}};
   ASSIGN_OR_RETURN(task.manifest, wire::digest_from_raw(lease.manifest_sha256()));
   RETURN_IF_ERROR(validate(task.settings));
   RETURN_IF_ERROR(validate(task.band, task.settings));
+  ASSIGN_OR_RETURN(task.tiles,
+                   TileMask::from_bits(lease.tiles(), task.settings.width, task.band.rows));
   return task;
 }
 

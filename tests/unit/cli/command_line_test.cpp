@@ -56,6 +56,15 @@ TEST(CommandLine, SkyAndCameraMayBeChosenBesideTheScene) {
   EXPECT_EQ(parsed<RenderOptions>("render a.glb").image.choices.camera, "");
 }
 
+TEST(CommandLine, AdaptiveSamplingIsOfAnErrorToBeReached) {
+  const auto adaptive = [](const StopRule& stop) { return std::get<StopAtError>(stop).adaptive; };
+  EXPECT_TRUE(adaptive(parsed<RenderOptions>("render a.glb --error 1% --adaptive").image.stop));
+  EXPECT_TRUE(adaptive(parsed<SubmitOptions>("submit a.glb --error 1% --adaptive").image.stop));
+  EXPECT_FALSE(adaptive(parsed<RenderOptions>("render a.glb --error 1%").image.stop));
+  expect_wrong("render a.glb --samples 64 --adaptive", "--adaptive needs --error");
+  expect_wrong("submit a.glb --time 5s --adaptive", "--adaptive needs --error");
+}
+
 TEST(CommandLine, SaysWhatIsShownAndHow) {
   const auto options = parsed<RenderOptions>(
       "render a.textproto --integrator ambient_occlusion --exposure -1.5 --tone filmic --half "

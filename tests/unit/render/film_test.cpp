@@ -8,44 +8,13 @@
 
 #include "renderlib/render/render_image.h"
 #include "tests/support/hard_case.h"
-#include "tests/support/random.h"
 #include "tests/support/temp_dir.h"
+#include "tests/unit/render/film_values.h"
 
 namespace bandsaw {
 namespace {
 
-using test::Random;
 using ::testing::HasSubstr;
-
-/// A sample's value that is different everywhere and whose sums round, so that another order of
-/// adding shows.
-double value(std::uint32_t y, std::size_t k, std::uint64_t sample) {
-  Random random(y * 1000003u + k * 4099u + sample * 77777777u);
-  return static_cast<float>(random.uniform() * std::exp2(random.uniform(-20, 20)));
-}
-
-/// The sum of a node, straight from the definition of the tree.
-double node_sum(std::uint32_t y, std::size_t k, const SampleRange& node) {
-  if (node.blocks() > 1) {
-    const Halves halves = split(node);
-    return node_sum(y, k, halves.left) + node_sum(y, k, halves.right);
-  }
-  double sum = 0;
-  for (std::uint64_t sample = node.first; sample < node.last; ++sample) {
-    sum += value(y, k, sample);
-  }
-  return sum;
-}
-
-BandPixels band_pixels(const Band& band, std::uint32_t width) {
-  BandPixels pixels{.band = band, .width = width, .sums = {}, .counters = {}};
-  for (std::uint32_t y = band.rows.first; y < band.rows.last; ++y) {
-    for (std::size_t k = 0; k < std::size_t{width} * 3; ++k) {
-      pixels.sums.push_back(node_sum(y, k, band.samples));
-    }
-  }
-  return pixels;
-}
 
 Film make_film(std::uint32_t width, std::uint32_t height, const std::string& folder = "") {
   auto film = Film::create(width, height, folder);
@@ -78,24 +47,6 @@ void expect_image(const Film& film, std::uint64_t samples) {
       ASSERT_EQ(pixel.b, expected(y, 3 * x + 2, samples));
     }
   }
-}
-
-/// Nodes that tile [0, samples): the maximal ones, some of them split again and again.
-std::vector<SampleRange> random_nodes(std::uint64_t samples, Random& random) {
-  std::vector<SampleRange> open = maximal_nodes(samples);
-  std::vector<SampleRange> nodes;
-  while (!open.empty()) {
-    const SampleRange node = open.back();
-    open.pop_back();
-    if (node.blocks() > 1 && random.below(3) != 0) {
-      const Halves halves = split(node);
-      open.push_back(halves.left);
-      open.push_back(halves.right);
-    } else {
-      nodes.push_back(node);
-    }
-  }
-  return nodes;
 }
 
 TEST(Film, A6_AnyPartitionInAnyOrderGivesTheBitsOfTheDefinition) {

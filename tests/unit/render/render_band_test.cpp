@@ -49,6 +49,23 @@ TEST(RenderBand, AnyNumberOfThreadsGivesTheSameBits) {
   }
 }
 
+TEST(RenderBand, WhatTakesPartHasTheBitsOfTheWholeBandAndTheRestIsZero) {
+  const auto rendered = scene();
+  TileMask tiles(13, {0, 11});
+  tiles.add(1, 0);
+  Pool pool(2);
+  const auto some = render_band(*rendered, kSettings, {{32, 64}, {2, 11}}, pool, kGoOn, {}, tiles);
+  const BandPixels all = render(*rendered, {{32, 64}, {2, 11}}, 1);
+  ASSERT_TRUE(some.ok());
+  for (std::uint32_t y = 2; y < 11; ++y) {
+    for (std::uint32_t x = 0; x < 13; ++x) {
+      const std::size_t k = ((y - 2) * 13 + x) * 3;
+      ASSERT_EQ(some->sums[k], (x + y) % 2 == 1 ? all.sums[k] : 0);
+    }
+  }
+  EXPECT_LT(some->counters.rays, all.counters.rays * 6 / 10);
+}
+
 TEST(RenderBand, EveryIntegratorGivesTheSameBitsInAnyBandsAndThreads) {
   const auto rendered = scene();
   for (int i = 0; i <= kLastIntegrator; ++i) {

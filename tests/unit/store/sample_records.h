@@ -24,6 +24,10 @@ inline std::vector<Record> sample_records() {
           record::JobAdded{.job = UINT64_MAX,
                            .spec = sample_spec(StopAtTime{.seconds = 1e-300, .max_samples = 1})},
           record::PassPlanned{.job = 1, .samples = {.first = 16, .last = 32}},
+          record::JobAdded{.job = 2,
+                           .spec = sample_spec(StopAtError{
+                               .relative_rmse = 0.1, .max_samples = 9, .adaptive = true})},
+          record::TilesPlanned{.job = 2, .plan = {.pilot = 64, .levels = "0123456789abcdef"}},
           record::SamplesFixed{.job = 1, .samples = kMaxSamples},
           record::StateChanged{.job = 1, .state = JobState::kRunning, .reason = ""},
           record::StateChanged{.job = 1, .state = JobState::kPaused, .reason = "the disk\nis full"},

@@ -1,0 +1,207 @@
+#include "renderlib/render/adaptive_plan.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "renderlib/base/check.h"
+
+namespace bandsaw {
+namespace {
+
+/// No half tile is planned for more than so many times the mean: a plan that a few dominate is
+/// drawn out over many passes in which most of the machines have little to do.
+constexpr double kMostOverMean = 8;
+/// What a tile itself says counts as much as all tiles around: they make it surer.
+constexpr double kOwnTile = 0.5;
+/// The gain in error at equal samples below which a plan is not worth having: passes that skip
+/// tiles, and samples that are not one long run, cost something too.
+constexpr double kLeastGain = 1.1;
+/// A plan is judged by what it comes to after so many times the pilot's samples.
+constexpr double kJudgedAfter = 8;
+
+constexpr int kLevels = 16;
+
+/// 2^(-level/2).
+double share_of(int level) {
+  constexpr double kRoot = 0.70710678118654752440;
+  double share = 1;
+  for (int i = 0; i < level; ++i) {
+    share *= kRoot;
+  }
+  return share;
+}
+
+int level_of(double share) {
+  int level = 0;
+  while (level + 1 < kLevels && share * share < share_of(level) * share_of(level + 1)) {
+    ++level;
+  }
+  return level;
+}
+
+int level_of_digit(char digit) { return digit <= '9' ? digit - '0' : digit - 'a' + 10; }
+char digit_of(int level) { return "0123456789abcdef"[level]; }
+
+/// Means over pixels.
+class Mean {
+ public:
+  void add(const TileError& tile) {
+    pixels_ += tile.pixels;
+    variance_ += tile.pixels * tile.variance;
+    relative_ += tile.pixels * tile.relative;
+  }
+  /// No pixels: none were added.
+  TileError value() const {
+    return pixels_ > 0 ? TileError{1, variance_ / pixels_, relative_ / pixels_} : TileError{};
+  }
+
+ private:
+  double pixels_ = 0;
+  double variance_ = 0;
+  double relative_ = 0;
+};
+
+/// What one half of all tiles says.
+class Half {
+ public:
+  Half(const TileGrid& grid, absl::Span<const TileError> tiles, std::size_t half) : grid_(grid) {
+    Mean mean;
+    for (std::size_t i = half; i < tiles.size(); i += 2) {
+      tiles_.push_back(tiles[i]);
+      mean.add(tiles[i]);
+    }
+    mean_ = mean.value();
+  }
+
+  bool empty() const { return mean_.pixels == 0; }
+  const std::vector<TileError>& tiles() const { return tiles_; }
+  const TileError& mean() const { return mean_; }
+
+  /// By which samples are dealt out to a tile whose errors are these.
+  double weight(const TileError& tile) const {
+    return std::sqrt((mean_.variance > 0 ? tile.variance / mean_.variance : 0) +
+                     (mean_.relative > 0 ? tile.relative / mean_.relative : 0));
+  }
+  /// The errors of the tiles around tile i; of all tiles where there are none.
+  TileError around(std::size_t i) const {
+    const auto row = static_cast<std::uint32_t>(i) / grid_.columns();
+    const auto column = static_cast<std::uint32_t>(i) % grid_.columns();
+    Mean mean;
+    for (std::uint32_t r = row - std::min(row, 1u); r < std::min(row + 2, grid_.rows()); ++r) {
+      for (std::uint32_t c = column - std::min(column, 1u);
+           c < std::min(column + 2, grid_.columns()); ++c) {
+        if (r != row || c != column) {
+          mean.add(tiles_[std::size_t{r} * grid_.columns() + c]);
+        }
+      }
+    }
+    const TileError value = mean.value();
+    return value.pixels > 0 ? value : mean_;
+  }
+  /// The same with the tile itself.
+  TileError here(std::size_t i) const {
+    const TileError others = around(i);
+    const TileError& own = tiles_[i];
+    return own.pixels == 0
+               ? others
+               : TileError{1, kOwnTile * own.variance + (1 - kOwnTile) * others.variance,
+                           kOwnTile * own.relative + (1 - kOwnTile) * others.relative};
+  }
+
+ private:
+  TileGrid grid_;
+  std::vector<TileError> tiles_;
+  TileError mean_;
+};
+
+/// One a tile, relative to the largest.
+std::vector<int> levels_of(std::vector<double> weights) {
+  const double mean =
+      std::accumulate(weights.begin(), weights.end(), 0.0) / static_cast<double>(weights.size());
+  double most = 0;
+  for (double& weight : weights) {
+    weight = std::min(weight, kMostOverMean * mean);
+    most = std::max(most, weight);
+  }
+  std::vector<int> levels;
+  for (const double weight : weights) {
+    levels.push_back(most > 0 ? level_of(weight / most) : 0);
+  }
+  return levels;
+}
+
+/// By how much the larger of the two errors falls below that of as many samples dealt out evenly.
+double gain(const Half& half, const std::vector<int>& levels) {
+  double samples = 0;
+  double pixels = 0;
+  Mean then;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const TileError& tile = half.tiles()[i];
+    const double times = std::max(1.0, kJudgedAfter * share_of(levels[i]));
+    then.add({tile.pixels, tile.variance / times, tile.relative / times});
+    samples += times * tile.pixels;
+    pixels += tile.pixels;
+  }
+  const auto fall = [&](double before, double after) {
+    return before > 0 ? before / after / (samples / pixels) : 1;
+  };
+  const TileError errors = then.value();
+  return std::min(fall(half.mean().variance, errors.variance),
+                  fall(half.mean().relative, errors.relative));
+}
+
+/// Of the tiles, as this half of them shows.
+std::vector<int> plan_by(const Half& half) {
+  std::vector<double> around;
+  std::vector<double> here;
+  for (std::size_t i = 0; i < half.tiles().size(); ++i) {
+    around.push_back(half.weight(half.around(i)));
+    here.push_back(half.weight(half.here(i)));
+  }
+  const bool pays = !half.empty() && gain(half, levels_of(std::move(around))) >= kLeastGain;
+  return pays ? levels_of(std::move(here)) : std::vector<int>(here.size());
+}
+
+}  // namespace
+
+TilePlan plan_tiles(const TileGrid& grid, absl::Span<const TileError> tiles,
+                    std::uint64_t samples) {
+  BANDSAW_CHECK(tiles.size() == grid.half_tiles(), "one error a half tile");
+  TilePlan plan{.pilot = samples, .levels = std::string(tiles.size(), '0')};
+  for (const std::size_t half : {0, 1}) {
+    const std::vector<int> levels = plan_by(Half(grid, tiles, 1 - half));
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+      plan.levels[2 * i + half] = digit_of(levels[i]);
+    }
+  }
+  return plan;
+}
+
+TileSchedule::TileSchedule(const TileGrid& grid, const TilePlan& plan)
+    : grid_(grid), plan_(plan), taken_(grid.half_tiles(), static_cast<std::uint32_t>(plan.pilot)) {
+  BANDSAW_CHECK(plan.levels.size() == grid.half_tiles(), "one level a half tile");
+}
+
+TileMask TileSchedule::next(const SampleRange& pass) {
+  std::array<double, kLevels> most{};
+  for (int level = 0; level < kLevels; ++level) {
+    most[static_cast<std::size_t>(level)] = share_of(level) * static_cast<double>(pass.last);
+  }
+  TileMask mask(grid_.width, {0, grid_.height});
+  bool all = true;
+  for (std::size_t i = 0; i < taken_.size(); ++i) {
+    const double half_way = taken_[i] + static_cast<double>(pass.samples()) / 2;
+    if (half_way > most[static_cast<std::size_t>(level_of_digit(plan_.levels[i]))]) {
+      all = false;
+      continue;
+    }
+    taken_[i] += static_cast<std::uint32_t>(pass.samples());
+    const auto tile = static_cast<std::uint32_t>(i / 2);
+    mask.add(tile % grid_.columns() * kTileSide + (i & 1), tile / grid_.columns() * kTileSide);
+  }
+  return all ? TileMask() : mask;
+}
+
+}  // namespace bandsaw

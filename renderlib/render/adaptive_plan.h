@@ -1,0 +1,68 @@
+#pragma once
+
+// Adaptive sampling: more samples where there is more noise, without bias.
+//
+// A rule that looks at a pixel's samples to decide whether it needs more stops where it happened to
+// see little, and keeps too little: a pixel lit by one of a hundred samples can come out at 14 % of
+// its value. Here nothing that a pixel's samples show decides how many it gets. All pixels take
+// part in a pilot, the first samples. Then the even pixels of every tile are planned, once, from
+// the pilot of the odd pixels of the image alone, and the odd ones from that of the even ones.
+// Scrambles of different pixels are independent (sampling/sampler.h), so given the plan a pixel's
+// mean is that of all its samples, and right on average.
+//
+// Samples are dealt out for two errors at once: the mean of the squared errors, which --error
+// promises, and the same over the squared values (relMSE), which is what eyes see in the dark. For
+// one of them the best share is the root of the variance of one sample (Neyman 1934, "On the Two
+// Different Aspects of the Representative Method", optimum allocation); for both, the root of the
+// sum of the two variances, each over its mean over the image.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "absl/types/span.h"
+#include "renderlib/render/band.h"
+#include "renderlib/render/tile_mask.h"
+
+namespace bandsaw {
+
+/// What a pilot shows of a half tile: means over its pixels and channels.
+struct TileError {
+  std::uint32_t pixels = 0;  ///< 0 at the edge of an image, perhaps
+  double variance = 0;       ///< of the pilot's mean, >= 0
+  double relative = 0;       ///< the same over value^2 + 0.01
+};
+
+/// How much of the passes after the pilot each half tile takes part in.
+struct TilePlan {
+  std::uint64_t pilot = 0;  ///< samples of all pixels
+  /// A digit 0 … f a half tile, in the order of TileGrid: level l is to have 2^(-l/2) of the
+  /// samples of level 0, but not fewer than the pilot.
+  std::string levels;
+  friend bool operator==(const TilePlan&, const TilePlan&) = default;
+};
+
+/// `tiles`: one a half tile, of a pilot of `samples` samples. A pure function, the same on every
+/// machine.
+///
+/// Whether it pays is asked of the pilot itself: what the tiles around say is judged by the noise
+/// of the tile. Where both errors would not fall well below those of as many samples dealt out
+/// evenly, every level is 0.
+TilePlan plan_tiles(const TileGrid& grid, absl::Span<const TileError> tiles, std::uint64_t samples);
+
+/// Which half tiles take part in which pass after the pilot.
+class TileSchedule {
+ public:
+  /// `plan.levels` has one digit 0 … f a half tile.
+  TileSchedule(const TileGrid& grid, const TilePlan& plan);
+
+  /// The pass that follows the last.
+  TileMask next(const SampleRange& pass);
+
+ private:
+  TileGrid grid_;
+  TilePlan plan_;
+  std::vector<std::uint32_t> taken_;  ///< samples of each half tile
+};
+
+}  // namespace bandsaw

@@ -1,0 +1,93 @@
+#include "renderlib/render/strip_nodes.h"
+
+#include <algorithm>
+
+namespace bandsaw {
+namespace {
+
+bool whole(const SampleRange& range) { return range.samples() == range.blocks() * kBlockSamples; }
+
+bool siblings(const SampleRange& left, const SampleRange& right) {
+  return left.last == right.first && left.blocks() == right.blocks() &&
+         left.first_block() % (2 * left.blocks()) == 0;
+}
+
+/// Whether nodes i and i + 1 are to become one. The two at the start of the strip are halves that
+/// the error estimate needs: they stay apart until a node with as many samples as both makes new
+/// halves. Adding from left to right gives the same bits either way.
+bool should_merge(const StripNodes& nodes, std::size_t i) {
+  if (!siblings(nodes[i].range, nodes[i + 1].range)) {
+    return false;
+  }
+  if (nodes[i].range.first != 0) {
+    return true;
+  }
+  const SampleRange both{0, nodes[i + 1].range.last};
+  return nodes.size() > i + 2 && whole(both) && whole(nodes[i + 2].range) &&
+         siblings(both, nodes[i + 2].range) &&
+         nodes[i + 2].samples >= nodes[i].samples + nodes[i + 1].samples;
+}
+
+/// Zeros added to a sum are the sum: where one node is empty the other's slot is that of both.
+void merge_into(Node& left, const Node& right, RowStore& store) {
+  if (left.samples > 0 && right.samples > 0) {
+    const absl::Span<double> sums = store.row(left.slot);
+    const absl::Span<const double> more = store.row(right.slot);
+    for (std::size_t k = 0; k < sums.size(); ++k) {
+      sums[k] += more[k];
+    }
+    store.give_back(right.slot);
+  } else if (right.samples > 0) {
+    left.slot = right.slot;
+  }
+  left.range.last = right.range.last;
+  left.samples += right.samples;
+}
+
+void merge_all(StripNodes& nodes, RowStore& store) {
+  std::size_t i = 0;
+  while (i + 1 < nodes.size()) {
+    if (!should_merge(nodes, i)) {
+      ++i;
+      continue;
+    }
+    merge_into(nodes[i], nodes[i + 1], store);
+    nodes.erase(nodes.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+    i = i >= 2 ? i - 2
+               : 0;  // A merge can make a sibling of the node before, or of the halves before that.
+  }
+}
+
+}  // namespace
+
+void insert_node(const Node& node, StripNodes& nodes, RowStore& store) {
+  const auto after = std::find_if(nodes.begin(), nodes.end(), [&](const Node& other) {
+    return other.range.first > node.range.first;
+  });
+  nodes.insert(after, node);
+  merge_all(nodes, store);
+}
+
+std::size_t prefix(const StripNodes& nodes) {
+  std::size_t count = 0;
+  std::uint64_t at = 0;
+  while (count < nodes.size() && nodes[count].range.first == at) {
+    at = nodes[count].range.last;
+    ++count;
+  }
+  return count;
+}
+
+bool has_halves(const StripNodes& nodes) {
+  return prefix(nodes) >= 2 && nodes[0].samples > 0 && nodes[0].samples == nodes[1].samples;
+}
+
+std::uint64_t taken(const StripNodes& nodes) {
+  std::uint64_t samples = 0;
+  for (std::size_t i = 0; i < prefix(nodes); ++i) {
+    samples += nodes[i].samples;
+  }
+  return samples;
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,100 @@
+// Adaptive jobs: the plan comes from the pilot, is journalled, and decides who takes part in every
+// pass after it.
+
+#include <cmath>
+
+#include "farm_driver.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+constexpr TileGrid kGrid{512, 32};
+
+/// The left half of the image is eight times as noisy as the right.
+std::vector<TileError> uneven() {
+  std::vector<TileError> tiles;
+  for (std::uint32_t tile = 0; tile < kGrid.columns() * kGrid.rows(); ++tile) {
+    const double variance = tile % kGrid.columns() < kGrid.columns() / 2 ? 1 : 1.0 / 64;
+    tiles.insert(tiles.end(), 2, {128, variance, variance});
+  }
+  return tiles;
+}
+
+struct Adaptive {
+  FarmDriver farm;
+  JobId job = 0;
+  std::vector<std::uint64_t> looks;
+
+  explicit Adaptive(bool adaptive = true, std::vector<TileError> tiles = uneven()) {
+    job = farm.submit(
+        test_job("r1", StopAtError{0.01, kMaxSamples, adaptive}, kGrid.width, kGrid.height));
+    farm.hello(1, "a");
+    for (int i = 0; i < 50 && farm.job(job).state == JobState::kRunning; ++i) {
+      farm.render_all(1, "a");
+      looks.push_back(farm.all_records<record::PassPlanned>().back().samples.last);
+      const double error = 0.2 / std::sqrt(static_cast<double>(looks.back()));
+      farm.say(input::PassMerged{job, looks.back(), ErrorEstimate{.relative_rmse = error}, tiles});
+    }
+  }
+};
+
+TEST(Adaptive, PassesAfterThePilotAreOfThePlansTiles) {
+  const Adaptive run;
+  EXPECT_EQ(run.farm.job(run.job).state, JobState::kFinishing);
+  const auto planned = run.farm.all_records<record::TilesPlanned>();
+  ASSERT_EQ(planned.size(), 1u);
+  // 0.2 / sqrt(n) <= 4 x 0.01 from 25 samples on: the first look plans.
+  EXPECT_EQ(planned[0].plan, plan_tiles(kGrid, uneven(), 32));
+  TileSchedule schedule(kGrid, planned[0].plan);
+  std::map<SampleRange, TileMask> masks;
+  for (const auto& pass : run.farm.all_records<record::PassPlanned>()) {
+    masks[pass.samples] = pass.samples.first < 32 ? TileMask() : schedule.next(pass.samples);
+  }
+  std::uint64_t left_out = 0;
+  for (const action::Lease& lease : run.farm.all<action::Lease>()) {
+    const auto pass = std::prev(masks.upper_bound({lease.band.samples.first, kMaxSamples}));
+    EXPECT_EQ(lease.tiles, pass->second.of(lease.band.rows));
+    left_out += lease.tiles.whole() ? 0 : 1;
+  }
+  EXPECT_GT(left_out, 0u);
+  // Half of the pixels have all samples, the others about an eighth.
+  const JobView view = run.farm.job(run.job);
+  const auto all = static_cast<double>(run.looks.back());
+  EXPECT_NEAR(static_cast<double>(view.samples_per_pixel), all * 9 / 16, all * 0.05);
+  EXPECT_EQ(view.samples_done / (kGrid.width * kGrid.height), view.samples_per_pixel);
+}
+
+TEST(Adaptive, ASecondLifeHasTheSamePlanFromTheJournalAndFromItsSnapshot) {
+  const Adaptive run;
+  Core second(test_options());
+  for (const Record& record : run.farm.records) {
+    second.replay(record);
+  }
+  Core third(test_options());
+  for (const Record& record : second.snapshot()) {
+    third.replay(record);
+  }
+  for (const action::Lease& lease : run.farm.all<action::Lease>()) {
+    EXPECT_EQ(second.tiles(run.job, lease.band), lease.tiles);
+    EXPECT_EQ(third.tiles(run.job, lease.band), lease.tiles);
+  }
+}
+
+TEST(Adaptive, NothingIsPlannedWhereItWasNotAskedFor) {
+  const Adaptive run(false);
+  EXPECT_TRUE(run.farm.all_records<record::TilesPlanned>().empty());
+  EXPECT_EQ(run.farm.job(run.job).samples_per_pixel, run.looks.back());
+}
+
+TEST(Adaptive, EvenNoiseLeavesNobodyOutAndStopsWhereAnEvenJobDoes) {
+  const Adaptive run(true, std::vector<TileError>(kGrid.half_tiles(), TileError{128, 1, 1}));
+  EXPECT_EQ(run.farm.all_records<record::TilesPlanned>().size(), 1u);
+  for (const action::Lease& lease : run.farm.all<action::Lease>()) {
+    EXPECT_TRUE(lease.tiles.whole());
+  }
+  EXPECT_EQ(run.farm.job(run.job).samples_per_pixel, run.looks.back());
+  EXPECT_EQ(run.looks, Adaptive(false).looks);
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,193 @@
+#include "renderlib/render/adaptive_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "renderlib/render/film.h"
+#include "tests/support/hard_case.h"
+#include "tests/support/random.h"
+#include "tests/support/statistics.h"
+
+namespace bandsaw {
+namespace {
+
+using test::Moments;
+using test::Random;
+
+constexpr TileGrid kGrid{64, 32};
+
+std::vector<TileError> errors(const TileGrid& grid,
+                              const std::function<double(std::uint32_t column)>& variance) {
+  std::vector<TileError> tiles;
+  for (std::uint32_t row = 0; row < grid.rows(); ++row) {
+    for (std::uint32_t column = 0; column < grid.columns(); ++column) {
+      tiles.insert(tiles.end(), 2, {128, variance(column), variance(column)});
+    }
+  }
+  return tiles;
+}
+
+bool even(const TilePlan& plan) { return plan.levels.find_first_not_of('0') == std::string::npos; }
+
+TEST(AdaptivePlan, WhereNoiseIsEvenEveryPassIsWhole) {
+  for (const double variance : {0.0, 1e-300, 0.3, 1e100}) {
+    const TilePlan plan = plan_tiles(kGrid, errors(kGrid, [&](auto) { return variance; }), 64);
+    EXPECT_TRUE(even(plan)) << variance;
+    TileSchedule schedule(kGrid, plan);
+    EXPECT_TRUE(schedule.next({64, 128}).whole());
+    EXPECT_TRUE(schedule.next({128, 256}).whole());
+  }
+}
+
+TEST(AdaptivePlan, SamplesAreDealtOutByTheRootOfTheVariance) {
+  // 32 columns: half of noise 1, half of noise 1/64, so an eighth of the samples.
+  const TileGrid grid{512, 32};
+  const auto tiles = errors(grid, [](std::uint32_t column) { return column < 16 ? 1 : 1.0 / 64; });
+  const TilePlan plan = plan_tiles(grid, tiles, 64);
+  EXPECT_EQ(plan.pilot, 64u);
+  EXPECT_EQ(plan.levels[0], '0');
+  EXPECT_EQ(plan.levels[2 * 31], '6');  // 2^(-6/2)
+  TileSchedule schedule(grid, plan);
+  std::uint64_t noisy = 64;
+  std::uint64_t quiet = 64;
+  for (std::uint64_t first = 64; first < 1024; first += 64) {
+    const TileMask mask = schedule.next({first, first + 64});
+    noisy += mask.has(0, 0) ? 64 : 0;
+    quiet += mask.has(511, 0) ? 64 : 0;
+    if (first + 64 <= 512) {
+      EXPECT_EQ(quiet, 64u) << "the pilot is an eighth of it";
+    }
+  }
+  EXPECT_EQ(noisy, 1024u);
+  EXPECT_EQ(quiet, 128u);
+}
+
+TEST(AdaptivePlan, NothingOfAHalfPlansThatHalf) {
+  const TileGrid grid{320, 48};
+  Random random(5);
+  std::vector<TileError> tiles =
+      errors(grid, [](std::uint32_t column) { return column < 8 ? 1 : 1.0 / 64; });
+  const TilePlan before = plan_tiles(grid, tiles, 64);
+  for (std::size_t i = 0; i < tiles.size(); i += 2) {
+    tiles[i].variance *= random.uniform(0.001, 1000);
+    tiles[i].relative *= random.uniform(0.001, 1000);
+  }
+  const TilePlan after = plan_tiles(grid, tiles, 64);
+  EXPECT_FALSE(even(before));
+  for (std::size_t i = 0; i < tiles.size(); i += 2) {
+    EXPECT_EQ(after.levels[i], before.levels[i]);
+  }
+  EXPECT_NE(after.levels, before.levels);
+}
+
+TEST(AdaptivePlan, ImagesOfOneTileOrOnePixelHaveAPlan) {
+  for (const TileGrid grid : {TileGrid{1, 1}, {1, 40}, {16, 16}, {17, 1}}) {
+    std::vector<TileError> tiles(grid.half_tiles(), TileError{1, 0.5, 0.5});
+    tiles.back() = {};
+    EXPECT_TRUE(even(plan_tiles(grid, tiles, 32)));
+  }
+}
+
+// ---- bias: hard case A5, and A4 ----
+
+/// Tiles of which two rows are left, so that few pixels decide and each counts: 16 a half.
+constexpr TileGrid kThin{256, 2};
+/// A pixel's samples; expected value 1 on the left half of the image. The right half is black.
+using Pixel = std::function<double(Random&)>;
+
+struct Rendered {
+  double mean = 0;  ///< of the left half
+  bool planned = false;
+};
+
+/// `naive`: each half tile is planned by its own samples instead of by its other half's.
+Rendered render(const Pixel& pixel, std::uint64_t seed, bool naive) {
+  Random random(seed);
+  Film film = *Film::create(kThin.width, kThin.height, "", Film::Grain::kHalfTiles);
+  const auto take = [&](const SampleRange& pass, const TileMask& tiles) {
+    BandPixels band{
+        .band = {pass, {0, kThin.height}}, .width = kThin.width, .sums = {}, .counters = {}};
+    for (std::uint32_t y = 0; y < kThin.height; ++y) {
+      for (std::uint32_t x = 0; x < kThin.width; ++x) {
+        double sum = 0;
+        for (std::uint64_t i = 0; i < pass.samples() && x < kThin.width / 2 && tiles.has(x, y);
+             ++i) {
+          sum += pixel(random);
+        }
+        band.sums.insert(band.sums.end(), 3, sum);
+      }
+    }
+    ASSERT_TRUE(film.add(band, tiles).ok());
+  };
+  for (const SampleRange& pass : {SampleRange{0, 16}, {16, 32}, {32, 64}}) {
+    take(pass, {});
+  }
+  std::vector<TileError> tiles = film.tile_errors();
+  for (std::size_t i = 0; i < tiles.size() && naive; i += 2) {
+    std::swap(tiles[i], tiles[i + 1]);
+  }
+  const TilePlan plan = plan_tiles(kThin, tiles, 64);
+  TileSchedule schedule(kThin, plan);
+  for (const SampleRange& pass : {SampleRange{64, 128}, {128, 256}, {256, 384}, {384, 512}}) {
+    take(pass, schedule.next(pass));
+  }
+  Moments mean;
+  const Image image = film.snapshot().image;
+  for (std::uint32_t y = 0; y < kThin.height; ++y) {
+    for (std::uint32_t x = 0; x < kThin.width / 2; ++x) {
+      mean.add(image.at(x, y).r);
+    }
+  }
+  return {mean.mean(), !even(plan)};
+}
+
+Pixel bernoulli(double p, double base = 0) {
+  return [=](Random& random) { return base + (random.uniform() < p ? (1 - base) / p : 0); };
+}
+
+constexpr int kRuns = 512;
+
+struct Result {
+  Moments mean;
+  int planned = 0;
+};
+
+Result renders(const Pixel& pixel, int runs, bool naive = false) {
+  Result result;
+  for (int i = 0; i < runs; ++i) {
+    const Rendered run = render(pixel, 1000 + static_cast<std::uint64_t>(i), naive);
+    result.mean.add(run.mean);
+    result.planned += run.planned ? 1 : 0;
+  }
+  return result;
+}
+
+TEST(AdaptivePlan, A5_RareLightIsNotBiased) {
+  test::Worst worst;
+  for (const double base : {0.0, 0.5, 0.99}) {
+    for (const double p : {0.1, 0.01, 0.001, 0.0002}) {
+      const Result result = renders(bernoulli(p, base), kRuns);
+      EXPECT_GT(result.planned, kRuns / 8) << "adaptive sampling is hardly ever on";
+      worst.see(std::abs(result.mean.z(1)));
+    }
+  }
+  test::at_most("A5", "bias of the mean, in standard errors", worst.value(), 3);
+}
+
+// So the test above can fail.
+TEST(AdaptivePlan, A5_TheSameRuleOnOwnSamplesIsBiased) {
+  const Result result = renders(bernoulli(0.0002), kRuns, true);
+  EXPECT_LT(result.mean.z(1), -4);
+  EXPECT_LT(result.mean.mean(), 0.98);
+}
+
+TEST(AdaptivePlan, A4_AConstantSceneIsExact) {
+  const Rendered rendered = render([](Random&) { return 1.0; }, 1, false);
+  test::at_most("A4", "error of the mean", std::abs(rendered.mean - 1), 1e-12);
+  EXPECT_FALSE(rendered.planned);
+}
+
+}  // namespace
+}  // namespace bandsaw
