@@ -6,6 +6,7 @@
 #include "renderlib/material/fresnel.h"
 #include "renderlib/material/ggx.h"
 #include "renderlib/material/look_up.h"
+#include "renderlib/material/opacity.h"
 #include "renderlib/material/shading_normal.h"
 #include "renderlib/math/constants.h"
 #include "renderlib/sampling/basis.h"
@@ -118,7 +119,7 @@ Bsdf glass_at(double index, double roughness, const SidedNormals& normal, bool o
   const double relative = outside_index == 1 ? index : index / outside_index;
   const double eta = outside ? relative : 1 / relative;
   const double alpha = roughness * roughness;
-  if (alpha < kLeastAlpha || std::abs(eta - 1) < 1e-6) {
+  if (alpha < kLeastAlpha || std::abs(eta - 1) < kLeastRefraction) {
     return DielectricBsdf{for_glass(normal, wo, eta), wo, eta};
   }
   const Vec3 shading = visible_normal(normal.shading, normal.geometric, wo);

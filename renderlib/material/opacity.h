@@ -1,8 +1,10 @@
 #pragma once
 
-// How much of a surface is there at a point: what glTF calls alpha.
+// How much of a surface is there at a point: what glTF calls alpha, and nothing of glass that does
+// not bend light.
 
 #include <algorithm>
+#include <cmath>
 
 #include "absl/types/span.h"
 #include "renderlib/geometry/surface.h"
@@ -12,8 +14,22 @@
 
 namespace bandsaw {
 
+/// Boundaries whose relative index of refraction is nearer to 1 bend nothing.
+inline constexpr double kLeastRefraction = 1e-6;
+
+/// Glass as dense as what is around it: light goes straight on. With a priority it keeps other glass
+/// out, and is there.
+inline bool bends_nothing(const Material& material) {
+  const auto* glass = std::get_if<Dielectric>(&material);
+  return glass != nullptr && glass->priority == 0 && !glass->index_map &&
+         std::abs(glass->index_of_refraction - 1) < kLeastRefraction;
+}
+
 /// Whether opacity() can be other than 1.
 inline bool has_alpha(const Material& material) {
+  if (bends_nothing(material)) {
+    return true;
+  }
   const auto* principled = std::get_if<Principled>(&material);
   return principled != nullptr && principled->alpha_mode != AlphaMode::kOpaque;
 }
@@ -23,6 +39,9 @@ inline double opacity(const Material& material, absl::Span<const Texture> textur
                       const SurfacePoint& point) {
   if (!has_alpha(material)) {
     return 1;
+  }
+  if (bends_nothing(material)) {
+    return 0;
   }
   const auto& principled = std::get<Principled>(material);
   const Channel& channel = principled.alpha;

@@ -115,6 +115,26 @@ TEST(Alpha, ShadowsSeeItAndEveryTechniqueAgrees) {
   EXPECT_TRUE(agree(both, found)) << both.mean() << " " << found.mean();
 }
 
+// A ball between a lamp, a light without size and a floor, rough or not: the same bits as without.
+TEST(SeeThrough, M6GlassOfIndexOneShadowsNothing) {
+  const auto light = [](std::optional<double> roughness) {
+    SceneMaker maker;
+    maker.quad({-kFar, 0, -kFar}, {0, 0, 2 * kFar}, {2 * kFar, 0, 0}, maker.diffuse(0.5f));
+    maker.sphere({0.5, 3, 0}, 0.2, maker.lamp(9));
+    maker.scene.lights = {PointLight{{-0.5, 3, 0}, gray(4)}};
+    if (roughness) {
+      maker.sphere({0, 1, 0}, 0.8, add(maker, Dielectric{1 + 1e-7, *roughness}));
+    }
+    const Ray ray{.origin = {0, 1, 5}, .direction = normalize({0, -0.2, -1})};
+    return light_along(maker, ray, 256).mean();
+  };
+  const double alone = light(std::nullopt);
+  EXPECT_GT(alone, 0);
+  EXPECT_EQ(light(0), alone);
+  EXPECT_EQ(light(0.5), alone);
+  test::holds("M6", "a ball of it before lamps: the same bits as without");
+}
+
 TEST(Emission, OfAScatteringSurfaceIsAddedToWhatItReflects) {
   SceneMaker maker = white_sky();
   Principled glow;
