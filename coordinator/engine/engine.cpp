@@ -108,6 +108,21 @@ void Engine::worker_log(SessionId session, std::vector<std::string> lines) {
   });
 }
 
+void Engine::preview(JobId job, std::uint32_t row_step,
+                     std::function<void(absl::StatusOr<Image>)> done) {
+  impl_->on_film([job, row_step, answer = Answer<Image>(std::move(done))](FilmDesk& film) mutable {
+    answer(film.preview(job, row_step));
+  });
+}
+
+void Engine::rendered_by(JobId job, std::function<void(std::vector<RowsBy>)> done) {
+  Answer<std::vector<RowsBy>> answer([done = std::move(done)](auto rows) {
+    done(rows.ok() ? *std::move(rows) : std::vector<RowsBy>());
+  });
+  impl_->on_film(
+      [job, answer = std::move(answer)](FilmDesk& film) mutable { answer(film.rendered_by(job)); });
+}
+
 void Engine::result(JobId job, std::function<void(absl::StatusOr<StoredResult>)> done) {
   impl_->on_core([impl = impl_.get(), job,
                   answer = Answer<StoredResult>(std::move(done))](CoreDesk& core) mutable {
@@ -179,6 +194,7 @@ void Engine::put_band(JobId job, std::string instance, BandPixels pixels, double
                       double cpu_s, std::function<void(absl::StatusOr<BandOutcome>)> done) {
   PutBand put{.job = job,
               .instance = std::move(instance),
+              .worker = {},
               .pixels = std::move(pixels),
               .render_s = render_s,
               .cpu_s = cpu_s,

@@ -13,6 +13,7 @@
 #include "absl/status/statusor.h"
 #include "coordinator/core/messages.h"
 #include "coordinator/engine/collector.h"
+#include "coordinator/engine/credits.h"
 #include "coordinator/engine/worker_link.h"
 #include "coordinator/store/result_file.h"
 #include "renderlib/package/blob_source.h"
@@ -26,7 +27,7 @@ struct EngineOptions {
   double progress_timeout_s =
       30;  ///< a lease whose rows do not advance this long is given to another
   double reattach_grace_s =
-      6;      ///< after a restart: how long to wait for workers that were there before
+      6;           ///< after a restart: how long to wait for workers that were there before
   Keep keep = {};  ///< of what is over; looked at every ten minutes
 };
 
@@ -68,6 +69,11 @@ class Engine {
   void workers(std::function<void(std::vector<WorkerView>)> done);
   /// The last lines of a worker's log. NOT_FOUND.
   void logs(std::string worker, std::function<void(absl::StatusOr<std::vector<std::string>>)> done);
+  /// What is there of the image of a job at work: every row_step-th row, `row_step` >= 1.
+  /// NOT_FOUND.
+  void preview(JobId job, std::uint32_t row_step, std::function<void(absl::StatusOr<Image>)> done);
+  /// Who rendered the rows that are there, in this life of the coordinator; by row.
+  void rendered_by(JobId job, std::function<void(std::vector<RowsBy>)> done);
   /// NOT_FOUND, FAILED_PRECONDITION: not done, DATA_LOSS.
   void result(JobId job, std::function<void(absl::StatusOr<StoredResult>)> done);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "coordinator/store/band_log.h"
 #include "renderlib/base/check.h"
 #include "renderlib/base/status_macros.h"
@@ -46,6 +47,22 @@ void FilmDesk::retry() {
 
 void FilmDesk::drop(JobId job) { jobs_.erase(job); }
 
+absl::StatusOr<Image> FilmDesk::preview(JobId id, std::uint32_t row_step) const {
+  const auto job = jobs_.find(id);
+  if (job == jobs_.end() || !job->second.film) {
+    return absl::NotFoundError(absl::StrCat("there is no picture of job ", id, " yet"));
+  }
+  const Image whole = job->second.film->snapshot().image;
+  Image rows{.width = whole.width,
+             .height = (whole.height + row_step - 1) / row_step,
+             .pixels = {}};
+  for (std::size_t y = 0; y < whole.height; y += row_step) {
+    const auto first = whole.pixels.begin() + static_cast<std::ptrdiff_t>(y * whole.width);
+    rows.pixels.insert(rows.pixels.end(), first, first + whole.width);
+  }
+  return rows;
+}
+
 absl::Status FilmDesk::work(JobId id, OneJob& job) {
   absl::Status status;
   while (status.ok() && !job.waiting.empty()) {
@@ -73,6 +90,7 @@ absl::Status FilmDesk::merge(JobId id, OneJob& job, Waiting& waiting) {
     const RowRange rows = waiting.rows.back();
     TileMask tiles = waiting.put.tiles.of(rows);
     RETURN_IF_ERROR(job.film->add(rows == pixels.band.rows ? pixels : slice(pixels, rows), tiles));
+    credits_.add(id, rows, waiting.put.worker);
     job.added.push_back({waiting.put.offset, pixels.band.samples.last, rows, std::move(tiles)});
     waiting.rows.pop_back();
   }

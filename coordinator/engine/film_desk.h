@@ -12,7 +12,9 @@
 #include <vector>
 
 #include "absl/status/status.h"
+#include "absl/status/statusor.h"
 #include "coordinator/core/messages.h"
+#include "coordinator/engine/credits.h"
 #include "coordinator/engine/put_band.h"
 #include "coordinator/store/data_folder.h"
 #include "renderlib/image/image.h"
@@ -42,6 +44,12 @@ class FilmDesk {
   void want_image(JobId job, std::uint64_t samples);
   void retry();
   void drop(JobId job);
+
+  /// What is there of a job's image, of every row_step-th row. NOT_FOUND: no band is, or the job is
+  /// over.
+  absl::StatusOr<Image> preview(JobId job, std::uint32_t row_step) const;
+  /// Who rendered the rows, as far as they are there; also of the newest jobs that are over.
+  std::vector<RowsBy> rendered_by(JobId job) const { return credits_.of(job); }
 
  private:
   struct Waiting {
@@ -74,6 +82,7 @@ class FilmDesk {
   const DataFolder& folder_;
   Hooks hooks_;
   std::map<JobId, OneJob> jobs_;
+  Credits credits_;
 };
 
 /// The part of a band that these rows are.

@@ -73,6 +73,7 @@ inline std::uint64_t renderer_of(const std::string& instance) {
 struct PutBand {
   JobId job = 0;
   std::string instance;  ///< of the worker
+  std::string worker;    ///< its name, for people; empty: not known
   BandPixels pixels;
   TileMask tiles = {};  ///< who takes part, of its rows; told with the way to the film
   double render_s = 0;

@@ -145,5 +145,23 @@ TEST(Slice, TakesTheRowsAsked) {
   EXPECT_EQ(middle.width, 1u);
 }
 
+TEST_F(FilmDeskTest, APreviewShowsWhatIsThereAndWhoMadeIt) {
+  EXPECT_TRUE(absl::IsNotFound(desk_.preview(1, 1).status()));
+  PutBand put = logged({0, 16}, {2, 5});
+  put.worker = "anna";
+  ASSERT_TRUE(desk_.add(1, std::move(put), {{2, 5}}).ok());
+  const Image whole = *desk_.preview(1, 1);
+  EXPECT_EQ(whole.height, 8u);
+  EXPECT_EQ(whole.at(3, 1), Rgb());
+  EXPECT_EQ(whole.at(3, 4), local(16)[4 * 6 + 3]);
+  const Image thirds = *desk_.preview(1, 3);
+  EXPECT_EQ(thirds.height, 3u);
+  EXPECT_EQ(thirds.at(3, 1), whole.at(3, 3));
+  desk_.drop(1);
+  EXPECT_TRUE(absl::IsNotFound(desk_.preview(1, 1).status()));
+  ASSERT_EQ(desk_.rendered_by(1).size(), 1u);
+  EXPECT_EQ(desk_.rendered_by(1)[0], (RowsBy{{2, 5}, "anna"}));
+}
+
 }  // namespace
 }  // namespace bandsaw::coordinator

@@ -1,0 +1,48 @@
+#include "coordinator/engine/credits.h"
+
+#include <iterator>
+#include <utility>
+
+namespace bandsaw::coordinator {
+
+void Credits::add(JobId job, const RowRange& rows, const std::string& worker) {
+  Rows& all = jobs_[job];
+  if (jobs_.size() > kMostJobs) {
+    // The oldest; `all` itself only where it is that.
+    const auto oldest = jobs_.begin()->first == job ? std::next(jobs_.begin()) : jobs_.begin();
+    jobs_.erase(oldest);
+  }
+  auto next = all.lower_bound(rows.first);
+  if (next != all.begin() && std::prev(next)->second.rows.last > rows.first) {
+    --next;
+  }
+  while (next != all.end() && next->second.rows.first < rows.last) {
+    const RowsBy old = std::move(next->second);
+    next = all.erase(next);
+    if (old.rows.first < rows.first) {
+      all[old.rows.first] = {{old.rows.first, rows.first}, old.worker};
+    }
+    if (old.rows.last > rows.last) {
+      all[rows.last] = {{rows.last, old.rows.last}, old.worker};
+    }
+  }
+  all[rows.first] = {rows, worker};
+}
+
+std::vector<RowsBy> Credits::of(JobId job) const {
+  std::vector<RowsBy> out;
+  const auto found = jobs_.find(job);
+  if (found == jobs_.end()) {
+    return out;
+  }
+  for (const auto& [first, one] : found->second) {
+    if (!out.empty() && out.back().rows.last == first && out.back().worker == one.worker) {
+      out.back().rows.last = one.rows.last;
+    } else {
+      out.push_back(one);
+    }
+  }
+  return out;
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,46 @@
+#include "coordinator/engine/credits.h"
+
+#include <gmock/gmock.h>
+
+namespace bandsaw::coordinator {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+TEST(Credits, TheLastWorkerOfARowIsItsOwn) {
+  Credits credits;
+  credits.add(1, {0, 10}, "anna");
+  credits.add(1, {20, 30}, "ben");
+  credits.add(1, {5, 22}, "cleo");
+  EXPECT_THAT(credits.of(1), ElementsAre(RowsBy{{0, 5}, "anna"}, RowsBy{{5, 22}, "cleo"},
+                                         RowsBy{{22, 30}, "ben"}));
+  credits.add(1, {7, 9}, "anna");
+  EXPECT_THAT(credits.of(1),
+              ElementsAre(RowsBy{{0, 5}, "anna"}, RowsBy{{5, 7}, "cleo"}, RowsBy{{7, 9}, "anna"},
+                          RowsBy{{9, 22}, "cleo"}, RowsBy{{22, 30}, "ben"}));
+  credits.add(1, {0, 30}, "ben");
+  EXPECT_THAT(credits.of(1), ElementsAre(RowsBy{{0, 30}, "ben"}));
+}
+
+TEST(Credits, NeighboursOfOneWorkerAreOne) {
+  Credits credits;
+  credits.add(1, {10, 20}, "anna");
+  credits.add(1, {0, 10}, "anna");
+  credits.add(1, {20, 21}, "");
+  EXPECT_THAT(credits.of(1), ElementsAre(RowsBy{{0, 20}, "anna"}, RowsBy{{20, 21}, ""}));
+}
+
+TEST(Credits, OldJobsAreForgotten) {
+  Credits credits;
+  for (JobId job = 1; job <= Credits::kMostJobs + 1; ++job) {
+    credits.add(job, {0, 1}, "anna");
+  }
+  EXPECT_THAT(credits.of(1), IsEmpty());
+  EXPECT_EQ(credits.of(2).size(), 1u);
+  credits.add(1, {0, 1}, "anna");  // late, but not lost
+  EXPECT_EQ(credits.of(1).size(), 1u);
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator
