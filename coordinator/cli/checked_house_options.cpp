@@ -18,6 +18,13 @@ absl::StatusOr<Command> checked_logs(const RawOptions& raw) {
   return options;
 }
 
+absl::StatusOr<std::string> checked_web(const RawOptions& raw) {
+  if (raw.web && *raw.web != "none") {
+    RETURN_IF_ERROR(check_listen("--web", *raw.web));
+  }
+  return raw.web.value_or("");
+}
+
 absl::StatusOr<Command> checked_doctor(const RawOptions& raw) {
   DoctorOptions options;
   options.data = raw.data;
@@ -26,7 +33,7 @@ absl::StatusOr<Command> checked_doctor(const RawOptions& raw) {
   if (raw.listen) {
     options.listen = *raw.listen;
   }
-  RETURN_IF_ERROR(check_listen(options.listen));
+  RETURN_IF_ERROR(check_listen("--listen", options.listen));
   return options;
 }
 

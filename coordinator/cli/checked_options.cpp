@@ -135,13 +135,13 @@ absl::Status check_scene(const RawOptions& raw, const std::string& command) {
 
 }  // namespace
 
-absl::Status check_listen(const std::string& listen) {
+absl::Status check_listen(const std::string& option, const std::string& listen) {
   const std::size_t colon = listen.rfind(':');
   if (colon == std::string::npos || colon == 0) {
     return wrong(
-        absl::StrCat("--listen: must be HOST:PORT, as in 0.0.0.0:7878, is '", listen, "'"));
+        absl::StrCat(option, ": must be HOST:PORT, as in 0.0.0.0:7878, is '", listen, "'"));
   }
-  return parse_whole("--listen: the port", listen.substr(colon + 1), 0, 65535).status();
+  return parse_whole(option + ": the port", listen.substr(colon + 1), 0, 65535).status();
 }
 
 absl::StatusOr<Verbosity> checked_verbosity(const RawOptions& raw) {
@@ -165,7 +165,8 @@ absl::StatusOr<Command> checked_serve(const RawOptions& raw) {
   if (raw.listen) {
     options.listen = *raw.listen;
   }
-  RETURN_IF_ERROR(check_listen(options.listen));
+  RETURN_IF_ERROR(check_listen("--listen", options.listen));
+  ASSIGN_OR_RETURN(options.web, checked_web(raw));
   RETURN_IF_ERROR(read_positive("--keep-days", raw.keep_days, options.keep_days));
   RETURN_IF_ERROR(read_positive("--keep-size", raw.keep_size, options.keep_gb));
   return options;

@@ -19,6 +19,7 @@ struct RawOptions {
   std::vector<std::string> outputs, parts, scenes;
   std::optional<std::string> samples, error, time, seed, width, height, depth, threads, rows;
   std::optional<std::string> integrator, exposure, tone, layers, report, seeds, reference_samples;
+  std::optional<std::string> web;
   bool adaptive = false, half = false, insecure = false, detach = false, quiet = false,
        json = false;
 };
@@ -45,7 +46,10 @@ absl::StatusOr<Command> checked_compare(const RawOptions& raw);
 absl::StatusOr<Verbosity> checked_verbosity(const RawOptions& raw);
 /// Only where there are images to report of.
 absl::StatusOr<ReportOption> checked_report(const RawOptions& raw, bool has_images = true);
-absl::Status check_listen(const std::string& listen);
+/// `option` is for the error.
+absl::Status check_listen(const std::string& option, const std::string& listen);
+/// Of the dashboard; empty: not given.
+absl::StatusOr<std::string> checked_web(const RawOptions& raw);
 /// `command` is for the error.
 absl::StatusOr<JobId> checked_job(const RawOptions& raw, const std::string& command);
 absl::StatusOr<std::int32_t> checked_priority_value(const std::string& name,

@@ -72,16 +72,6 @@ void add_display(CLI::App& app, RawOptions& raw, const char* standard) {
   add_report(app, raw);
 }
 
-void add_serve(CLI::App& app, RawOptions& raw) {
-  add_data(app, raw);
-  app.add_option("--listen", raw.listen,
-                 "Address for workers and people; port 0 picks one [default: 0.0.0.0:7878]")
-      ->type_name("HOST:PORT");
-  add_keep(app, raw);
-  app.add_flag("--insecure", raw.insecure,
-               "No encryption: anybody on the network can read and change what passes");
-}
-
 void add_layers(CLI::App& app, RawOptions& raw) {
   app.add_option("--layers", raw.layers,
                  "What EXR files hold besides, as in albedo,normal,depth,samples")

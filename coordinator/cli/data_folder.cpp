@@ -18,5 +18,6 @@ absl::StatusOr<std::string> default_data_folder() {
 std::string worker_join_file(const std::string& data_folder) { return data_folder + "/join"; }
 
 std::string farm_join_file(const std::string& data_folder) { return data_folder + "/farm"; }
+std::string dashboard_file(const std::string& data_folder) { return data_folder + "/dashboard"; }
 
 }  // namespace bandsaw::coordinator

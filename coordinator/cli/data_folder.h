@@ -15,5 +15,7 @@ absl::StatusOr<std::string> default_data_folder();
 /// Files in the data folder: the join string of workers, and of people.
 std::string worker_join_file(const std::string& data_folder);
 std::string farm_join_file(const std::string& data_folder);
+/// The link to the dashboard, with people's secret in it.
+std::string dashboard_file(const std::string& data_folder);
 
 }  // namespace bandsaw::coordinator

@@ -31,6 +31,20 @@ void add_keep(CLI::App& app, RawOptions& raw) {
       ->type_name("GB");
 }
 
+void add_serve(CLI::App& app, RawOptions& raw) {
+  add_data(app, raw);
+  app.add_option("--listen", raw.listen,
+                 "Address for workers and people; port 0 picks one [default: 0.0.0.0:7878]")
+      ->type_name("HOST:PORT");
+  app.add_option("--web", raw.web,
+                 "Address of the dashboard, or none; beyond loopback it speaks HTTPS [default: "
+                 "127.0.0.1:8787, or another port where that is taken]")
+      ->type_name("HOST:PORT");
+  add_keep(app, raw);
+  app.add_flag("--insecure", raw.insecure,
+               "No encryption: anybody on the network can read and change what passes");
+}
+
 void add_logs(CLI::App& app, RawOptions& raw) {
   app.add_option("worker", raw.worker, "The worker's name, as in: bandsaw workers");
   add_farm(app, raw);

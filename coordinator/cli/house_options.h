@@ -9,6 +9,7 @@
 namespace bandsaw::coordinator {
 
 // Each adds a command's options.
+void add_serve(CLI::App& app, RawOptions& raw);
 void add_logs(CLI::App& app, RawOptions& raw);
 void add_doctor(CLI::App& app, RawOptions& raw);
 void add_secret(CLI::App& app, RawOptions& raw);

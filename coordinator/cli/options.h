@@ -59,6 +59,7 @@ struct FarmOption {
 struct ServeOptions {
   std::string data;  ///< empty: the default data folder
   std::string listen = "0.0.0.0:7878";
+  std::string web;  ///< HOST:PORT of the dashboard; "none"; empty: loopback, on a port that is free
   bool insecure = false;
   double keep_days = 30;  ///< jobs that are over
   double keep_gb = 100;   ///< results and scenes in all

@@ -11,6 +11,7 @@
 #include "coordinator/cli/data_folder.h"
 #include "coordinator/cli/join_addresses.h"
 #include "coordinator/cli/join_files.h"
+#include "coordinator/cli/serve_dashboard.h"
 #include "coordinator/engine/engine.h"
 #include "coordinator/rpc/server.h"
 #include "proto/link/identity.h"
@@ -22,9 +23,11 @@ namespace {
 
 struct Serving {
   std::unique_ptr<Engine> engine;
-  std::unique_ptr<Server> server;  // after the engine: it goes first
-  std::string join;                // of workers
-  std::string address;             // host:port
+  std::unique_ptr<ServedDashboard> web;  // after the engine: it goes first
+  std::unique_ptr<Server> server;        // after the dashboard, which it tells of new secrets
+  std::string folder;
+  std::string join;     // of workers
+  std::string address;  // host:port
 };
 
 absl::Status make_folder(const std::string& folder) {
@@ -32,6 +35,17 @@ absl::Status make_folder(const std::string& folder) {
   std::filesystem::create_directories(folder, error);
   return error ? errno_status(error.value(), absl::StrCat("the data folder ", folder))
                : absl::OkStatus();
+}
+
+/// The dashboard's logins and link are made of people's secret.
+absl::StatusOr<RenewedSecret> renew_everywhere(const std::string& folder, link::Role role,
+                                               const ServedDashboard& web) {
+  ASSIGN_OR_RETURN(RenewedSecret renewed, rotate_secret(folder, role));
+  if (web.dashboard != nullptr) {
+    web.dashboard->renew(renewed.identity);
+  }
+  RETURN_IF_ERROR(web.write_link(folder, renewed.identity));
+  return renewed;
 }
 
 absl::StatusOr<Serving> start(const ServeOptions& options) {
@@ -50,12 +64,17 @@ absl::StatusOr<Serving> start(const ServeOptions& options) {
   engine_options.keep.bytes = static_cast<std::uint64_t>(options.keep_gb * 1e9);
   ASSIGN_OR_RETURN(serving.engine, Engine::start(engine_options));
   ASSIGN_OR_RETURN(const link::Identity identity, link::load_or_make_identity(folder));
-  ASSIGN_OR_RETURN(
-      serving.server,
-      Server::start(*serving.engine, identity,
-                    {.listen = options.listen,
-                     .insecure = options.insecure,
-                     .renew = [folder](link::Role role) { return rotate_secret(folder, role); }}));
+  serving.folder = folder;
+  ASSIGN_OR_RETURN(ServedDashboard web, serve_dashboard(options, *serving.engine, identity));
+  serving.web = std::make_unique<ServedDashboard>(std::move(web));
+  ASSIGN_OR_RETURN(serving.server,
+                   Server::start(*serving.engine, identity,
+                                 {.listen = options.listen,
+                                  .insecure = options.insecure,
+                                  .renew = [folder, web = serving.web.get()](link::Role role) {
+                                    return renew_everywhere(folder, role, *web);
+                                  }}));
+  RETURN_IF_ERROR(serving.web->write_link(folder, identity));
   const std::string host = options.listen.substr(0, options.listen.rfind(':'));
   ASSIGN_OR_RETURN(const std::vector<LocalAddress> local, local_addresses());
   const std::vector<std::string> addresses = join_addresses(host, serving.server->port(), local);
@@ -78,8 +97,14 @@ ExitCode run(const ServeOptions& options, Process& process) {
     return process.console.fail(ExitCode::kFailed, std::string(serving.status().message()));
   }
   const Interrupts::Listener listener(process.interrupts, [] {});
-  process.console.line(
-      absl::StrCat("bandsaw ", BANDSAW_VERSION, " · coordinator on ", serving->address));
+  const std::string& url = serving->web->url;
+  process.console.line(absl::StrCat("bandsaw ", BANDSAW_VERSION, " · coordinator on ",
+                                    serving->address,
+                                    url.empty() ? "" : absl::StrCat(" · dashboard ", url)));
+  if (!url.empty()) {
+    process.console.line(
+        absl::StrCat("dashboard: the link in ", dashboard_file(serving->folder), " logs in"));
+  }
   if (options.insecure) {
     process.console.complain(
         "warning: --insecure: nothing is encrypted, and whoever reads the network has the secrets");
@@ -88,6 +113,7 @@ ExitCode run(const ServeOptions& options, Process& process) {
   process.interrupts.wait();
   process.console.line("stopping; jobs go on when the coordinator is started again");
   serving->server.reset();
+  serving->web.reset();
   serving->engine.reset();
   return ExitCode::kDone;
 }

@@ -129,6 +129,9 @@ TEST(CommandLine, ServeTakesItsOptions) {
   EXPECT_EQ(options.listen, "[::]:0");
   EXPECT_TRUE(options.insecure);
   EXPECT_EQ(parsed<ServeOptions>("serve").listen, "0.0.0.0:7878");
+  EXPECT_EQ(parsed<ServeOptions>("serve").web, "");
+  EXPECT_EQ(parsed<ServeOptions>("serve --web none").web, "none");
+  EXPECT_EQ(parsed<ServeOptions>("serve --web 127.0.0.1:0").web, "127.0.0.1:0");
   EXPECT_EQ(parsed<ServeOptions>("serve --keep-days 2").keep_days, 2);
   EXPECT_EQ(parsed<ServeOptions>("serve --keep-size 0.5").keep_gb, 0.5);
 }
@@ -196,6 +199,7 @@ TEST(CommandLine, WrongUseIsOneLineThatNamesTheWord) {
   expect_wrong("stitch a.band", "output");
   expect_wrong("compare a.png", "two images");
   expect_wrong("serve --listen 7878", "HOST:PORT");
+  expect_wrong("serve --web 8787", "--web: must be HOST:PORT");
   expect_wrong("serve --listen localhost:70000", "70000");
 }
 

@@ -1,0 +1,188 @@
+#include "coordinator/web/access.h"
+
+#include <arpa/inet.h>
+#include <openssl/crypto.h>
+#include <openssl/evp.h>
+#include <openssl/hmac.h>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <utility>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/escaping.h"
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+#include "absl/strings/strip.h"
+#include "proto/link/join.h"
+#include "proto/wire/limits.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+constexpr long kLoginSeconds = 30L * 24 * 60 * 60;
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+std::string machine_name() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
+}
+
+/// Cookies know no ports, so several coordinators on a machine would take each other's.
+std::string cookie_name(const httplib::Request& request) {
+  return absl::StrCat("bandsaw-", request.local_port);
+}
+
+std::string cookie_of(const httplib::Request& request) {
+  const std::string name = cookie_name(request) + "=";
+  for (absl::string_view one : absl::StrSplit(request.get_header_value("Cookie"), ';')) {
+    one = absl::StripAsciiWhitespace(one);
+    if (absl::ConsumePrefix(&one, name)) {
+      return std::string(one);
+    }
+  }
+  return "";
+}
+
+/// A browser's pass: made of people's secret, so void with it, and useless at the other doors.
+std::string pass_of(const std::string& secret) {
+  constexpr char kPurpose[] = "bandsaw dashboard 1";
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+  unsigned size = 0;
+  HMAC(EVP_sha256(), secret.data(), static_cast<int>(secret.size()),
+       reinterpret_cast<const unsigned char*>(kPurpose), sizeof(kPurpose) - 1, digest.data(),
+       &size);
+  return absl::BytesToHexString({reinterpret_cast<const char*>(digest.data()), size});
+}
+
+absl::Status check_post(const httplib::Request& request) {
+  if (!request.has_header(kOurHeader)) {
+    return absl::PermissionDeniedError(absl::StrCat("a POST needs the header ", kOurHeader));
+  }
+  const std::string origin = request.get_header_value("Origin");
+  const std::string host = request.get_header_value("Host");
+  if (!origin.empty() && origin != absl::StrCat("http://", host) &&
+      origin != absl::StrCat("https://", host)) {
+    return absl::PermissionDeniedError("this request comes from another site");
+  }
+  return absl::OkStatus();
+}
+
+/// The page, its files, and the way in.
+bool is_open(const httplib::Request& request) {
+  return request.path == "/api/login" ||
+         (request.path != "/metrics" && !absl::StartsWith(request.path, "/api/"));
+}
+
+}  // namespace
+
+bool is_own_host(const std::string& host, const std::string& machine) {
+  std::string name = absl::AsciiStrToLower(host);
+  if (const std::size_t end = name.find(']'); absl::StartsWith(name, "[")) {
+    in6_addr address{};
+    return end != std::string::npos &&
+           inet_pton(AF_INET6, name.substr(1, end - 1).c_str(), &address) == 1;
+  }
+  name = name.substr(0, name.find(':'));
+  in_addr address{};
+  const std::string own = absl::AsciiStrToLower(machine);
+  return inet_pton(AF_INET, name.c_str(), &address) == 1 || name == "localhost" ||
+         (!own.empty() && (name == own || name == own + ".local"));
+}
+
+Access::Access(link::Identity identity, bool secure)
+    : secure_(secure),
+      identity_(std::move(identity)),
+      pass_(pass_of(identity_.farm_secret)),
+      failures_(wire::kWrongSecretsPerMinute) {}
+
+void Access::renew(link::Identity identity) {
+  MutexLock lock(mutex_);
+  identity_ = std::move(identity);
+  pass_ = pass_of(identity_.farm_secret);
+}
+
+absl::Status Access::check(const httplib::Request& request) {
+  if (!is_own_host(request.get_header_value("Host"), machine_name())) {
+    return absl::PermissionDeniedError(
+        "the dashboard answers under this machine's address or name only");
+  }
+  if (request.method == "POST") {
+    RETURN_IF_ERROR(check_post(request));
+  } else if (request.method != "GET" && request.method != "HEAD") {
+    return absl::InvalidArgumentError("only GET, HEAD and POST are known here");
+  }
+  return is_open(request) ? absl::OkStatus() : check_login(request);
+}
+
+bool Access::logged_in(const httplib::Request& request) {
+  const std::string cookie = cookie_of(request);
+  MutexLock lock(mutex_);
+  return cookie.size() == pass_.size() &&
+         CRYPTO_memcmp(cookie.data(), pass_.data(), pass_.size()) == 0;
+}
+
+absl::Status Access::check_login(const httplib::Request& request) {
+  if (logged_in(request)) {
+    return absl::OkStatus();
+  }
+  MutexLock lock(mutex_);
+  const std::string authorization = request.get_header_value("Authorization");
+  constexpr char kScheme[] = "Bearer ";
+  if (absl::StartsWith(authorization, kScheme)) {
+    return check_secret(authorization.substr(sizeof(kScheme) - 1), request.remote_addr);
+  }
+  return absl::UnauthenticatedError("log in first");
+}
+
+absl::Status Access::check_secret(const std::string& secret, const std::string& address) {
+  const absl::StatusOr<link::Role> role = link::role_of_secret(identity_, secret);
+  if (role.ok()) {
+    return *role == link::Role::kFarm
+               ? absl::OkStatus()
+               : absl::PermissionDeniedError(
+                     "this is the workers' join string: the dashboard needs people's (file `farm` "
+                     "in the coordinator's data folder)");
+  }
+  switch (failures_.add(address, now())) {
+    case Failures::Verdict::kFirst:
+      spdlog::warn("address={} dashboard refused: {}", address,
+                   std::string(role.status().message()));
+      return role.status();
+    case Failures::Verdict::kMore:
+      return role.status();
+    case Failures::Verdict::kTooMany:
+      break;
+  }
+  return absl::ResourceExhaustedError(
+      absl::StrCat("too many wrong secrets from ", address, "; wait a minute"));
+}
+
+absl::Status Access::log_in(const httplib::Request& request, const std::string& text,
+                            httplib::Response& response) {
+  const std::string plain(absl::StripAsciiWhitespace(text));
+  const absl::StatusOr<link::JoinString> join = link::parse_join_string(plain);
+  MutexLock lock(mutex_);
+  RETURN_IF_ERROR(check_secret(join.ok() ? join->secret : plain, request.remote_addr));
+  response.set_header("Set-Cookie", cookie(request, pass_, kLoginSeconds));
+  return absl::OkStatus();
+}
+
+void Access::log_out(const httplib::Request& request, httplib::Response& response) const {
+  response.set_header("Set-Cookie", cookie(request, "", 0));
+}
+
+std::string Access::cookie(const httplib::Request& request, const std::string& value,
+                           long seconds) const {
+  return absl::StrCat(cookie_name(request), "=", value, "; Path=/; HttpOnly; SameSite=Strict",
+                      "; Max-Age=", seconds, secure_ ? "; Secure" : "");
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,102 @@
+#include "coordinator/web/dashboard.h"
+
+#include <utility>
+
+#include "absl/strings/match.h"
+#include "coordinator/web/reply.h"
+#include "coordinator/web/routes.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+httplib::Headers headers_of_every_answer() {
+  return {{"Content-Security-Policy",
+           "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; "
+           "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
+          {"X-Content-Type-Options", "nosniff"},
+          {"Referrer-Policy", "no-referrer"},
+          {"Cache-Control", "no-store"}};
+}
+
+}  // namespace
+
+bool is_loopback(const std::string& host) {
+  return host == "localhost" || host == "::1" || absl::StartsWith(host, "127.");
+}
+
+class Dashboard::Impl {
+ public:
+  Impl(Engine& engine, const link::Identity& identity, TlsContext tls,
+       const DashboardOptions& options)
+      : secure_(tls != nullptr),
+        access_(identity, secure_),
+        pictures_(engine),
+        scenes_(engine, options.bring),
+        gallery_(options.gallery),
+        server_(std::move(tls)) {
+    server_.set_default_headers(headers_of_every_answer());
+    server_.set_pre_routing_handler(
+        [this](const httplib::Request& request, httplib::Response& response) {
+          const absl::Status status = access_.check(request);
+          if (status.ok()) {
+            return HttpServer::HandlerResponse::Unhandled;
+          }
+          refuse(response, status);
+          return HttpServer::HandlerResponse::Handled;
+        });
+    add_page(server_);
+    add_login(server_, access_);
+    add_farm(server_, engine);
+    add_jobs(server_, engine);
+    add_pictures(server_, pictures_);
+    add_scenes(server_, scenes_);
+    add_gallery(server_, engine, scenes_, gallery_);
+    server_.set_error_handler([](const httplib::Request&, httplib::Response& response) {
+      if (response.body.empty() && response.status == 404) {
+        refuse(response, absl::NotFoundError("there is nothing of this name here"));
+      }
+    });
+  }
+
+  ~Impl() { scenes_.stop(); }
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+
+  absl::Status start(const DashboardOptions& options) {
+    ASSIGN_OR_RETURN(port_, server_.start(options.host, options.port));
+    return absl::OkStatus();
+  }
+  void renew(const link::Identity& identity) { access_.renew(identity); }
+  int port() const { return port_; }
+  bool secure() const { return secure_; }
+
+ private:
+  const bool secure_;
+  Access access_;
+  Pictures pictures_;
+  Scenes scenes_;
+  const Gallery gallery_;
+  int port_ = 0;
+  HttpServer server_;  // last: its threads use the others
+};
+
+Dashboard::Dashboard(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Dashboard::~Dashboard() = default;
+void Dashboard::renew(const link::Identity& identity) { impl_->renew(identity); }
+int Dashboard::port() const { return impl_->port(); }
+bool Dashboard::secure() const { return impl_->secure(); }
+
+absl::StatusOr<std::unique_ptr<Dashboard>> Dashboard::start(Engine& engine,
+                                                            const link::Identity& identity,
+                                                            const DashboardOptions& options) {
+  TlsContext tls;
+  if (!is_loopback(options.host) && !options.insecure) {
+    ASSIGN_OR_RETURN(tls, make_tls_context(identity));
+  }
+  auto impl = std::make_unique<Impl>(engine, identity, std::move(tls), options);
+  RETURN_IF_ERROR(impl->start(options));
+  return std::unique_ptr<Dashboard>(new Dashboard(std::move(impl)));
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,40 @@
+# cmake -DOUT=page_files.cpp -DFOLDER=page -P embed.cmake: writes the table of coordinator/web/page_files.h.
+set(types_html "text/html; charset=utf-8")
+set(types_css "text/css; charset=utf-8")
+set(types_js "text/javascript; charset=utf-8")
+set(types_svg "image/svg+xml")
+
+file(GLOB files ${FOLDER}/*)
+list(SORT files)
+set(arrays "")
+set(table "")
+set(number 0)
+foreach(file IN LISTS files)
+  get_filename_component(name ${file} NAME)
+  get_filename_component(suffix ${file} LAST_EXT)
+  string(SUBSTRING ${suffix} 1 -1 suffix)
+  if(NOT DEFINED types_${suffix})
+    message(FATAL_ERROR "${file}: no type is known for .${suffix}")
+  endif()
+  file(READ ${file} hex HEX)
+  string(REGEX REPLACE "(..)" "'\\\\x\\1'," bytes "${hex}")
+  string(APPEND arrays "constexpr char kFile${number}[] = {${bytes}};\n")
+  string(APPEND table "    {\"${name}\", \"${types_${suffix}}\", {kFile${number}, sizeof(kFile${number})}},\n")
+  math(EXPR number "${number} + 1")
+endforeach()
+file(WRITE ${OUT}.new "#include \"coordinator/web/page_files.h\"
+
+namespace bandsaw::coordinator {
+namespace {
+
+${arrays}
+constexpr PageFile kFiles[] = {
+${table}};
+
+}  // namespace
+
+absl::Span<const PageFile> page_files() { return kFiles; }
+
+}  // namespace bandsaw::coordinator
+")
+file(RENAME ${OUT}.new ${OUT})

@@ -1,0 +1,73 @@
+// The farm as a whole: jobs, workers, logs, metrics.
+
+#include <algorithm>
+
+#include "coordinator/rpc/convert.h"
+#include "coordinator/web/metrics.h"
+#include "coordinator/web/reply.h"
+#include "coordinator/web/routes.h"
+#include "proto/web.pb.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+/// More is no overview; `bandsaw jobs` lists all.
+constexpr std::size_t kMostJobs = 200;
+
+std::vector<JobView> all_jobs(Engine& engine) {
+  return ask<std::vector<JobView>>([&](auto answer) { engine.jobs(answer); });
+}
+
+std::vector<WorkerView> all_workers(Engine& engine) {
+  return ask<std::vector<WorkerView>>([&](auto answer) { engine.workers(answer); });
+}
+
+web::Overview overview(Engine& engine) {
+  web::Overview overview;
+  overview.set_version(BANDSAW_VERSION);
+  std::vector<JobView> jobs = all_jobs(engine);
+  std::sort(jobs.begin(), jobs.end(), [](const JobView& a, const JobView& b) {
+    return is_final(a.state) != is_final(b.state) ? is_final(b.state) : a.id > b.id;
+  });
+  const std::size_t shown = std::min(jobs.size(), kMostJobs);
+  for (std::size_t i = 0; i < shown; ++i) {
+    *overview.add_job()->mutable_status() = to_message(jobs[i]);
+  }
+  overview.set_jobs_left_out(static_cast<std::uint32_t>(jobs.size() - shown));
+  for (const WorkerView& worker : all_workers(engine)) {
+    *overview.add_worker() = to_message(worker);
+  }
+  return overview;
+}
+
+}  // namespace
+
+void add_farm(HttpServer& server, Engine& engine) {
+  server.Get("/api/farm", [&engine](const httplib::Request&, httplib::Response& response) {
+    reply(response, overview(engine));
+  });
+  server.Get("/api/workers/log",
+             [&engine](const httplib::Request& request, httplib::Response& response) {
+               const auto name = reason_field("name", request.get_param_value("name"));
+               if (!name.ok()) {
+                 refuse(response, name.status());
+                 return;
+               }
+               using Lines = absl::StatusOr<std::vector<std::string>>;
+               const Lines lines = ask<Lines>([&](auto answer) { engine.logs(*name, answer); });
+               if (!lines.ok()) {
+                 refuse(response, lines.status());
+                 return;
+               }
+               web::Log log;
+               log.mutable_line()->Assign(lines->begin(), lines->end());
+               reply(response, log);
+             });
+  server.Get("/metrics", [&engine](const httplib::Request&, httplib::Response& response) {
+    response.set_content(
+        metrics(all_jobs(engine), all_workers(engine), engine.free_bytes(), BANDSAW_VERSION),
+        "text/plain; version=0.0.4; charset=utf-8");
+  });
+}
+
+}  // namespace bandsaw::coordinator

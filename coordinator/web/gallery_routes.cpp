@@ -1,0 +1,73 @@
+// The gallery: its scenes, what became of them here, and how to render one.
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/rpc/convert.h"
+#include "coordinator/web/reply.h"
+#include "coordinator/web/routes.h"
+#include "proto/web.pb.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+/// A gallery is for looking; more is for `bandsaw submit`.
+constexpr std::uint64_t kMostSamples = 4096;
+constexpr std::uint32_t kMostWidth = 4096;
+
+web::Gallery gallery_message(Engine& engine, const Gallery& gallery) {
+  const auto jobs = ask<std::vector<JobView>>([&](auto answer) { engine.jobs(answer); });
+  web::Gallery message;
+  for (const GalleryScene& scene : gallery.scenes()) {
+    web::Scene* const card = message.add_scene();
+    card->set_name(scene.name);
+    card->set_about(scene.about);
+    if (const JobView* job = newest_of(scene, jobs)) {
+      *card->mutable_job()->mutable_status() = to_message(*job);
+    }
+  }
+  return message;
+}
+
+absl::StatusOr<web::Submitted> render(Scenes& scenes, const Gallery& gallery,
+                                      const httplib::ContentReader& body) {
+  web::RenderScene wish;
+  RETURN_IF_ERROR(read_json(body, wish));
+  const GalleryScene* const scene = gallery.find(wish.scene());
+  if (scene == nullptr) {
+    return absl::NotFoundError("there is no such scene in the gallery");
+  }
+  if (wish.samples() < 1 || wish.samples() > kMostSamples || wish.width() > kMostWidth) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("samples: must lie in [1, ", kMostSamples, "]; width: at most ", kMostWidth));
+  }
+  ASSIGN_OR_RETURN(
+      const SubmittedScene submitted,
+      scenes.submit(scene->path, {.request_id = request_prefix(*scene) + random_digits(),
+                                  .width = wish.width(),
+                                  .stop = StopAtSamples{wish.samples()}}));
+  web::Submitted message;
+  message.set_job(submitted.job);
+  message.mutable_warning()->Assign(submitted.warnings.begin(), submitted.warnings.end());
+  return message;
+}
+
+}  // namespace
+
+void add_gallery(HttpServer& server, Engine& engine, Scenes& scenes, const Gallery& gallery) {
+  server.Get("/api/gallery",
+             [&engine, &gallery](const httplib::Request&, httplib::Response& response) {
+               reply(response, gallery_message(engine, gallery));
+             });
+  server.Post("/api/gallery/render",
+              [&scenes, &gallery](const httplib::Request&, httplib::Response& response,
+                                  const httplib::ContentReader& body) {
+                const auto submitted = render(scenes, gallery, body);
+                if (submitted.ok()) {
+                  reply(response, *submitted);
+                } else {
+                  refuse(response, submitted.status());
+                }
+              });
+}
+
+}  // namespace bandsaw::coordinator

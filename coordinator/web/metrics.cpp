@@ -1,0 +1,121 @@
+#include "coordinator/web/metrics.h"
+
+#include <map>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+const char* name_of(JobState state) {
+  switch (state) {
+    case JobState::kRunning:
+      return "running";
+    case JobState::kPaused:
+      return "paused";
+    case JobState::kFinishing:
+      return "finishing";
+    case JobState::kDone:
+      return "done";
+    case JobState::kFailed:
+      return "failed";
+    case JobState::kCancelled:
+      return "cancelled";
+  }
+  return "";
+}
+
+std::string label(const char* name, const std::string& value) {
+  return absl::StrCat(name, "=\"",
+                      absl::StrReplaceAll(value, {{"\\", "\\\\"}, {"\"", "\\\""}, {"\n", "\\n"}}),
+                      "\"");
+}
+
+class Text {
+ public:
+  /// The lines that follow are of this one.
+  void gauge(const char* name, const char* help) {
+    name_ = name;
+    absl::StrAppend(&text_, "# HELP ", name, " ", help, "\n# TYPE ", name, " gauge\n");
+  }
+  void line(const std::string& labels, double value) {
+    absl::StrAppend(&text_, name_, labels.empty() ? "" : absl::StrCat("{", labels, "}"), " ", value,
+                    "\n");
+  }
+  std::string text() && { return std::move(text_); }
+
+ private:
+  const char* name_ = "";
+  std::string text_;
+};
+
+void add_counts(Text& out, const std::vector<JobView>& jobs,
+                const std::vector<WorkerView>& workers) {
+  std::map<std::string, int> jobs_by_state;
+  for (const JobState state : {JobState::kRunning, JobState::kPaused, JobState::kFinishing,
+                               JobState::kDone, JobState::kFailed, JobState::kCancelled}) {
+    jobs_by_state[name_of(state)] = 0;
+  }
+  for (const JobView& job : jobs) {
+    ++jobs_by_state[name_of(job.state)];
+  }
+  std::map<std::string, int> workers_by_state;
+  for (const char* state : {"idle", "rendering", "draining", "lost", "refused"}) {
+    workers_by_state[state] = 0;
+  }
+  for (const WorkerView& worker : workers) {
+    ++workers_by_state[worker.state];
+  }
+  out.gauge("bandsaw_jobs", "Jobs that are known, by state.");
+  for (const auto& [state, count] : jobs_by_state) {
+    out.line(label("state", state), count);
+  }
+  out.gauge("bandsaw_workers", "Workers, by state.");
+  for (const auto& [state, count] : workers_by_state) {
+    out.line(label("state", state), count);
+  }
+}
+
+/// One line for each job that is not over; a negative value is not known.
+template <class Value>
+void add_jobs(Text& out, const char* name, const char* help, const std::vector<JobView>& jobs,
+              Value value) {
+  out.gauge(name, help);
+  for (const JobView& job : jobs) {
+    if (!is_final(job.state) && value(job) >= 0) {
+      out.line(absl::StrCat(label("job", absl::StrCat(job.id)), ",", label("name", job.spec.name)),
+               value(job));
+    }
+  }
+}
+
+}  // namespace
+
+std::string metrics(const std::vector<JobView>& jobs, const std::vector<WorkerView>& workers,
+                    std::uint64_t free_bytes, const std::string& version) {
+  Text out;
+  out.gauge("bandsaw_build_info", "The coordinator's version.");
+  out.line(label("version", version), 1);
+  out.gauge("bandsaw_free_bytes", "Free on the disk of the coordinator's data folder.");
+  out.line("", static_cast<double>(free_bytes));
+  add_counts(out, jobs, workers);
+  out.gauge("bandsaw_worker_samples_per_second", "A worker's pace, as last measured.");
+  for (const WorkerView& worker : workers) {
+    out.line(label("worker", worker.name), worker.samples_per_s);
+  }
+  out.gauge("bandsaw_worker_threads", "A worker's threads.");
+  for (const WorkerView& worker : workers) {
+    out.line(label("worker", worker.name), worker.threads);
+  }
+  add_jobs(out, "bandsaw_job_fraction", "How much of a job is done, 0 to 1.", jobs,
+           [](const JobView& job) { return job.fraction; });
+  add_jobs(out, "bandsaw_job_error", "Estimated relative RMSE of a job's image.", jobs,
+           [](const JobView& job) { return job.error; });
+  add_jobs(out, "bandsaw_job_samples_per_second", "A job's pace.", jobs,
+           [](const JobView& job) { return job.samples_per_s; });
+  return std::move(out).text();
+}
+
+}  // namespace bandsaw::coordinator

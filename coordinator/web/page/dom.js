@@ -1,0 +1,71 @@
+// The few lines that make elements and words.
+
+/// el("p.soft", {title: "x", onclick: f}, "text", child, …)
+export function el(what, attributes = {}, ...children) {
+  const [tag, ...classes] = what.split(".");
+  const element = document.createElement(tag);
+  element.className = classes.join(" ");
+  for (const [name, value] of Object.entries(attributes)) {
+    if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
+    else if (name === "hidden") element.hidden = value;
+    else element.setAttribute(name, value);
+  }
+  element.append(...children);
+  return element;
+}
+
+/// Sets only what differs, so that nothing flickers and a selection stays.
+export function text(element, value) {
+  if (element.textContent !== value) element.textContent = value;
+}
+
+/// A list of parts that live as long as their key: part = make(item), part.update(item).
+export function keyed(parent, parts, items, keyOf, make) {
+  const seen = new Set();
+  items.forEach((item, i) => {
+    const key = keyOf(item);
+    seen.add(key);
+    if (!parts.has(key)) parts.set(key, make(item));
+    const part = parts.get(key);
+    part.update(item);
+    if (parent.children[i] !== part.element) parent.insertBefore(part.element, parent.children[i] ?? null);
+  });
+  for (const [key, part] of parts) {
+    if (!seen.has(key)) {
+      part.element.remove();
+      part.leave?.();
+      parts.delete(key);
+    }
+  }
+}
+
+const digits = (value, n) => value.toLocaleString("en", {maximumSignificantDigits: n});
+
+export const percent = (fraction) => `${digits(100 * fraction, 2)} %`;
+
+export function count(value) {
+  const units = [[1e12, " T"], [1e9, " G"], [1e6, " M"], [1e3, " k"]];
+  const [by, unit] = units.find(([least]) => value >= least) ?? [1, " "];
+  return digits(value / by, 3) + unit;
+}
+
+export const rate = (perSecond) => `${count(perSecond)}samples/s`;
+
+export function duration(seconds) {
+  if (seconds < 60) return `${digits(seconds, 2)} s`;
+  const whole = Math.round(seconds);
+  const two = (value) => String(value).padStart(2, "0");
+  const [h, m, s] = [Math.floor(whole / 3600), Math.floor(whole / 60) % 60, whole % 60];
+  return h > 0 ? `${h}:${two(m)}:${two(s)} h` : `${m}:${two(s)} min`;
+}
+
+/// "running", "paused", "finishing", "done", "failed", "cancelled".
+export const stateOf = (status) => status.state.replace("JOB_STATE_", "").toLowerCase();
+export const isOver = (status) => ["done", "failed", "cancelled"].includes(stateOf(status));
+
+/// "until error ≤ 1 %"
+export function goal(stop) {
+  if (stop.error > 0) return `until error ≤ ${percent(stop.error)}`;
+  if (stop.time_s > 0) return `for ${duration(stop.time_s)}`;
+  return `${stop.samples} samples a pixel`;
+}

@@ -1,0 +1,51 @@
+// Scenes from people's disks: dropped anywhere on the page, or chosen.
+
+import {post} from "./api.js";
+import {el} from "./dom.js";
+import {attempt, say} from "./main.js";
+
+let quality = "samples=64";
+
+async function render(file) {
+  say(`Reading ${file.name}…`, {stays: true});
+  const submitted = await attempt(() => post(`/api/scenes?name=${encodeURIComponent(file.name)}&${quality}`, file));
+  if (submitted === null) return;
+  say(submitted.warning.join(" "));
+  location.hash = `#/jobs/${submitted.job}`;
+}
+
+/// A button that opens a file, and how well it is to be rendered.
+export function chooser() {
+  const input = el("input", {type: "file", accept: ".glb,.textproto", hidden: true, "aria-label": "Scene file"});
+  input.addEventListener("change", () => { if (input.files.length > 0) render(input.files[0]); });
+  const select = el("select", {"aria-label": "How well"},
+    el("option", {value: "samples=16"}, "16 samples, a draft"),
+    el("option", {value: "samples=64"}, "64 samples"),
+    el("option", {value: "samples=256"}, "256 samples"),
+    el("option", {value: "error=0.02"}, "until error ≤ 2 %"),
+    el("option", {value: "error=0.01"}, "until error ≤ 1 %"));
+  select.value = quality;
+  select.addEventListener("change", () => { quality = select.value; });
+  return el("div.row", {}, select, input,
+    el("button.main", {type: "button", onclick: () => input.click()}, "Render a scene…"));
+}
+
+export function takeDrops() {
+  const veil = el("div", {id: "drop", hidden: true}, el("p", {}, "Drop a .glb or .textproto to render it"));
+  document.body.append(veil);
+  const hasFiles = (event) => event.dataTransfer?.types.includes("Files") && !document.querySelector("nav").hidden;
+  let depth = 0;
+  const on = (name, deed) => window.addEventListener(name, (event) => {
+    if (!hasFiles(event)) return;
+    event.preventDefault();
+    deed(event);
+    veil.hidden = depth === 0;
+  });
+  on("dragenter", () => { ++depth; });
+  on("dragleave", () => { depth = Math.max(0, depth - 1); });
+  on("dragover", () => {});
+  on("drop", (event) => {
+    depth = 0;
+    if (event.dataTransfer.files.length > 0) render(event.dataTransfer.files[0]);
+  });
+}

@@ -1,0 +1,88 @@
+// One job: figures, and what can be told it.
+
+import {get, post} from "./api.js";
+import {count, duration, el, goal, isOver, percent, rate, stateOf, text} from "./dom.js";
+import {attempt} from "./main.js";
+import {picture} from "./picture.js";
+import {plot} from "./plot.js";
+
+function figuresOf(status) {
+  const known = (value, words) => (value >= 0 ? words(value) : "not known yet");
+  return {
+    "Size": `${status.settings.width} × ${status.settings.height}`,
+    "Asked for": goal(status.stop),
+    "Error": known(status.error, percent),
+    "Samples a pixel": status.samples_per_pixel,
+    "Speed": isOver(status) ? "" : rate(status.samples_per_s),
+    "Time": duration(status.elapsed_s),
+    "Time left": isOver(status) ? "" : known(status.remaining_s, duration),
+    "Processor time": duration(status.cpu_s),
+    "Rays": count(Number(status.rays)),
+    "Workers used": String(status.workers_used),
+  };
+}
+
+function actions(id) {
+  const tell = (order) => () => attempt(() => post(`/api/jobs/${id}/${order}`));
+  const pause = el("button", {onclick: tell("pause")}, "Pause");
+  const resume = el("button", {onclick: tell("resume")}, "Resume");
+  const cancel = el("button.danger", {onclick: tell("cancel")}, "Cancel");
+  const priority = el("input", {type: "number", min: "-1000", max: "1000", step: "1", id: "priority"});
+  priority.addEventListener("change", () => {
+    if (priority.checkValidity() && priority.value !== "") {
+      attempt(() => post(`/api/jobs/${id}/priority`, {priority: Number(priority.value)}));
+    }
+  });
+  const element = el("div.row", {}, pause, resume, cancel,
+    el("label.row.soft", {for: "priority"}, "Priority", priority));
+  return {
+    element,
+    update(status) {
+      const is = stateOf(status);
+      element.hidden = isOver(status);
+      pause.hidden = is !== "running";
+      resume.hidden = is !== "paused";
+      if (document.activeElement !== priority) priority.value = status.priority;
+    },
+  };
+}
+
+export function jobView(id) {
+  const title = el("h1");
+  const state = el("span.state");
+  const done = el("strong");
+  const left = el("span.soft");
+  const bar = el("div.bar", {}, el("i"));
+  const why = el("p.soft.small");
+  const figures = el("dl");
+  const log = el("pre", {hidden: true});
+  const orders = actions(id);
+  const shown = picture();
+  const curve = plot();
+  const side = el("div.stack", {},
+    el("section.card", {}, el("div.big", {}, done, left), bar, why),
+    orders.element, curve.element, el("section.card", {}, figures), log);
+  return {
+    element: el("div", {}, el("div.title", {}, title, state), el("div.page", {}, shown.element, side)),
+    async update() {
+      const page = await get(`/api/jobs/${id}`);
+      const {status} = page.job;
+      const is = stateOf(status);
+      text(title, `${status.name} · job ${id}`);
+      text(state, is);
+      state.className = `state ${is}`;
+      text(done, percent(is === "done" ? 1 : status.fraction));
+      text(left, is === "running" && status.remaining_s >= 0 ? `${duration(status.remaining_s)} left` : "");
+      bar.className = `bar ${is}`;
+      bar.firstChild.style.width = `${100 * (is === "done" ? 1 : status.fraction)}%`;
+      text(why, is === "done" ? "" : page.why.join(" "));
+      figures.replaceChildren(...Object.entries(figuresOf(status)).filter(([, value]) => value !== "")
+        .flatMap(([name, value]) => [el("dt", {}, name), el("dd", {}, value)]));
+      log.hidden = status.log.length === 0;
+      text(log, `${status.log_of}:\n${status.log.join("\n")}`);
+      orders.update(status);
+      shown.update(page);
+      curve.update((status.curve ?? []).map((point) => ({t: point.elapsed_s, error: point.relative_rmse})), status.stop.error);
+    },
+  };
+}

@@ -1,0 +1,141 @@
+// Which view is shown, and the one poll that feeds it.
+
+import {get, post} from "./api.js";
+import {count, text} from "./dom.js";
+import {login} from "./login.js";
+import {jobsView} from "./jobs.js";
+import {jobView} from "./job.js";
+import {workersView} from "./workers.js";
+import {galleryView} from "./gallery.js";
+import {takeDrops} from "./drop.js";
+
+const routes = [
+  [/^#\/jobs$/, jobsView],
+  [/^#\/jobs\/(\d+)$/, jobView],
+  [/^#\/workers$/, workersView],
+  [/^#\/gallery$/, galleryView],
+];
+const root = document.getElementById("view");
+const notice = document.getElementById("notice");
+let view = null;  // {element, update(overview), leave?()}
+let timer = 0;
+let noticeTimer = 0;
+
+/// One line under the header; goes by itself unless it `stays`.
+export function say(words, {bad = false, stays = false} = {}) {
+  clearTimeout(noticeTimer);
+  notice.hidden = words === "";
+  notice.className = bad ? "bad" : "";
+  notice.textContent = words;
+  if (!stays && words !== "") noticeTimer = setTimeout(() => say(""), 8000);
+}
+
+/// Does what a person asked for and says what went wrong with it.
+export async function attempt(deed) {
+  try {
+    const result = await deed();
+    refresh();
+    return result;
+  } catch (error) {
+    if (error.login) showLogin();
+    else say(error.message, {bad: true});
+    return null;
+  }
+}
+
+function show(next) {
+  view?.leave?.();
+  view = next;
+  root.replaceChildren(next.element);
+  window.scrollTo(0, 0);
+}
+
+function showLogin() {
+  clearTimeout(timer);
+  document.querySelector("nav").hidden = true;
+  show({element: login(start), update() {}});
+  root.querySelector("input").focus();
+}
+
+function route() {
+  const hash = routes.some(([pattern]) => pattern.test(location.hash)) ? location.hash : "#/jobs";
+  for (const [pattern, make] of routes) {
+    const match = hash.match(pattern);
+    if (match) {
+      show(make(...match.slice(1)));
+      break;
+    }
+  }
+  for (const link of document.querySelectorAll("nav a")) {
+    if (hash.startsWith(link.getAttribute("href"))) link.setAttribute("aria-current", "page");
+    else link.removeAttribute("aria-current");
+  }
+}
+
+function pulse(overview) {
+  const there = overview.worker.filter((worker) => ["idle", "rendering", "draining"].includes(worker.state));
+  const speed = overview.job.reduce((sum, job) => sum + job.status.samples_per_s, 0);
+  const words = there.length === 1 ? "1 worker" : `${there.length} workers`;
+  text(document.getElementById("pulse"), speed > 0 ? `${words} · ${count(speed)}samples/s` : words);
+}
+
+function lost(error) {
+  notice.dataset.lost = "1";
+  say(`${error.message}; trying again`, {bad: true, stays: true});
+}
+
+/// Polls once a second while the page is looked at; that is cheap, and survives everything that cuts
+/// connections.
+export async function refresh() {
+  clearTimeout(timer);
+  let wait = document.hidden ? 10000 : 1000;
+  try {
+    const overview = await get("/api/farm");
+    if (notice.dataset.lost) {
+      delete notice.dataset.lost;
+      say("");
+    }
+    pulse(overview);
+    await view.update(overview);
+  } catch (error) {
+    if (error.login) return showLogin();
+    lost(error);
+    wait = 3000;
+  }
+  clearTimeout(timer);
+  timer = setTimeout(refresh, wait);
+}
+
+function start() {
+  document.querySelector("nav").hidden = false;
+  route();
+  refresh();
+}
+
+/// The link that `bandsaw serve` leaves carries the secret behind the #, which no server sees.
+async function enter() {
+  const key = location.hash.match(/^#key=(.+)$/);
+  if (key) {
+    history.replaceState(null, "", location.pathname);
+    await post("/api/login", {secret: decodeURIComponent(key[1])}).catch((error) => say(error.message, {bad: true}));
+  }
+  const state = await get("/api/login").catch((error) => ({error}));
+  if (state.error) {
+    lost(state.error);
+    setTimeout(enter, 3000);
+  } else if (state.logged_in) {
+    start();
+  } else {
+    showLogin();
+  }
+}
+
+window.addEventListener("hashchange", () => {
+  if (location.hash.startsWith("#key=")) return enter();
+  route();
+  refresh();
+  root.focus({preventScroll: true});
+});
+document.addEventListener("visibilitychange", () => { if (!document.hidden && view) refresh(); });
+takeDrops();
+enter();

@@ -1,0 +1,75 @@
+// A job's picture: sharpens as passes arrive; on request with who rendered which rows.
+
+import {el, isOver, stateOf, text} from "./dom.js";
+
+/// Colours that people tell apart whatever they see of colour (Okabe and Ito 2008).
+const palette = ["#56b4e9", "#e69f00", "#009e73", "#cc79a7", "#f0e442", "#0072b2", "#d55e00", "#999999"];
+
+/// Shows the newest preview; the old one stays until the new one is there.
+export function preview(img, status, side) {
+  const is = stateOf(status);
+  const there = is === "done" || (Number(status.samples_done) > 0 && !["failed", "cancelled"].includes(is));
+  if (!there) return;
+  const source = `/api/jobs/${status.job}/preview.png?side=${side}&at=${is === "done" ? "end" : status.samples_done}`;
+  if (img.getAttribute("src") !== source) img.src = source;
+}
+
+function band(first, last, height, colour, now) {
+  const part = el(now ? "i.now" : "i");
+  part.style.top = `${(100 * first) / height}%`;
+  part.style.height = `${(100 * (last - first)) / height}%`;
+  part.style.background = colour;
+  part.style.borderColor = colour;
+  return part;
+}
+
+export function picture() {
+  const img = el("img", {alt: "", hidden: true});
+  img.addEventListener("load", () => { img.hidden = false; });
+  img.addEventListener("error", () => { img.hidden = true; });
+  const waiting = el("p.waiting", {}, "Nothing is rendered yet.");
+  const owners = el("div.owners", {hidden: true, "aria-hidden": "true"});
+  const frame = el("div.picture", {}, waiting, img, owners);
+  const legend = el("ul.legend.small", {hidden: true, "aria-label": "Who rendered which rows"});
+  const toggle = el("button", {"aria-pressed": "false", onclick: () => {
+    owners.hidden = legend.hidden = !owners.hidden;
+    toggle.setAttribute("aria-pressed", String(!owners.hidden));
+  }}, "Who rendered what");
+  const open = el("a.button", {target: "_blank", rel: "noopener", hidden: true}, "Open the image");
+  const png = el("a.button", {hidden: true}, "PNG");
+  const exr = el("a.button", {hidden: true}, "EXR");
+  return {
+    element: el("div.stack", {}, frame, el("div.row", {}, open, png, exr, toggle), legend),
+    update(page) {
+      const {status} = page.job;
+      const {width, height} = status.settings;
+      frame.style.aspectRatio = `${width} / ${height}`;
+      frame.style.maxWidth = `calc(74vh * ${width / height})`;
+      img.alt = `${status.name}, as far as it is rendered`;
+      preview(img, status, Math.min(2048, Math.ceil(Math.max(frame.clientWidth, frame.clientHeight) * devicePixelRatio)));
+      waiting.hidden = !img.hidden;
+      text(waiting, isOver(status) && stateOf(status) !== "done" ? "There is no image." : "Nothing is rendered yet.");
+
+      const names = [...new Set([...page.rendered.map((rows) => rows.worker), ...status.worker.map((worker) => worker.name)])].sort();
+      const colour = (name) => palette[names.indexOf(name) % palette.length];
+      const rows = (name) => page.rendered.filter((one) => one.worker === name).reduce((sum, one) => sum + one.last_row - one.first_row, 0);
+      owners.replaceChildren(
+        ...page.rendered.map((one) => band(one.first_row, one.last_row, height, colour(one.worker), false)),
+        ...status.worker.filter((one) => one.last_row > one.first_row).map((one) => band(one.first_row, one.last_row, height, colour(one.name), true)));
+      legend.replaceChildren(...names.map((name) => {
+        const swatch = el("i");
+        swatch.style.background = colour(name);
+        return el("li", {}, swatch, `${name || "before the restart"} · ${rows(name)} rows`);
+      }));
+      toggle.hidden = names.length === 0;
+      if (toggle.hidden) owners.hidden = legend.hidden = true;
+
+      const done = stateOf(status) === "done";
+      for (const link of [open, png, exr]) link.hidden = !done;
+      open.href = png.href = `/api/jobs/${status.job}/image.png`;
+      exr.href = `/api/jobs/${status.job}/image.exr`;
+      png.download = `${status.name}-${status.job}.png`;
+      exr.download = `${status.name}-${status.job}.exr`;
+    },
+  };
+}

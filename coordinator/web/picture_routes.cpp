@@ -1,0 +1,75 @@
+// Previews and images.
+
+#include <algorithm>
+
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "coordinator/web/reply.h"
+#include "coordinator/web/routes.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+constexpr std::uint32_t kSmallestSide = 64;
+constexpr std::uint32_t kLargestSide = 2048;
+
+/// Few sizes, so that few are made.
+std::uint32_t side_of(const httplib::Request& request) {
+  std::uint32_t wanted = 0;
+  if (!absl::SimpleAtoi(request.get_param_value("side"), &wanted)) {
+    wanted = 1024;
+  }
+  std::uint32_t side = kSmallestSide;
+  while (side < wanted && side < kLargestSide) {
+    side *= 2;
+  }
+  return side;
+}
+
+void send(httplib::Response& response, const absl::StatusOr<Pictures::Bytes>& bytes,
+          const char* type) {
+  if (!bytes.ok()) {
+    refuse(response, bytes.status());
+    return;
+  }
+  response.set_content_provider(
+      (*bytes)->size(), type,
+      [held = *bytes](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+        constexpr std::size_t kPiece = 1 << 20;
+        return sink.write(held->data() + offset, std::min(length, kPiece));
+      });
+}
+
+void add_image(HttpServer& server, Pictures& pictures, const char* suffix, ImageFormat format,
+               const char* type) {
+  server.Get(absl::StrCat("/api/jobs/(\\d{1,19})/image\\.", suffix),
+             [&pictures, suffix, format, type](const httplib::Request& request,
+                                               httplib::Response& response) {
+               const auto job = job_of(request);
+               if (!job.ok()) {
+                 refuse(response, job.status());
+                 return;
+               }
+               response.set_header("Content-Disposition", absl::StrCat("inline; filename=\"job-",
+                                                                       *job, ".", suffix, "\""));
+               send(response, pictures.image(*job, format), type);
+             });
+}
+
+}  // namespace
+
+void add_pictures(HttpServer& server, Pictures& pictures) {
+  server.Get("/api/jobs/(\\d{1,19})/preview\\.png",
+             [&pictures](const httplib::Request& request, httplib::Response& response) {
+               const auto job = job_of(request);
+               if (!job.ok()) {
+                 refuse(response, job.status());
+                 return;
+               }
+               send(response, pictures.preview(*job, side_of(request)), "image/png");
+             });
+  add_image(server, pictures, "png", ImageFormat::kPng, "image/png");
+  add_image(server, pictures, "exr", ImageFormat::kExr, "image/x-exr");
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,22 @@
+#pragma once
+
+// TLS of the dashboard, with the farm's own certificate.
+
+#include <openssl/ssl.h>
+
+#include <memory>
+
+#include "absl/status/statusor.h"
+#include "proto/link/identity.h"
+
+namespace bandsaw::coordinator {
+
+struct FreeTlsContext {
+  void operator()(SSL_CTX* context) const { SSL_CTX_free(context); }
+};
+using TlsContext = std::unique_ptr<SSL_CTX, FreeTlsContext>;
+
+/// TLS 1.2 or later. INVALID_ARGUMENT: key or certificate cannot be used.
+absl::StatusOr<TlsContext> make_tls_context(const link::Identity& identity);
+
+}  // namespace bandsaw::coordinator

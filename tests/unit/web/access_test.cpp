@@ -1,0 +1,147 @@
+#include "coordinator/web/access.h"
+
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "proto/link/join.h"
+#include "proto/wire/limits.h"
+#include "tests/unit/web/web_farm.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+using AccessTest = WebTest;
+
+int status_of(const httplib::Result& result) { return result ? result->status : -1; }
+
+TEST(OwnHost, IsANumberLocalhostOrTheMachine) {
+  for (const char* host : {"127.0.0.1", "127.0.0.1:8787", "192.168.1.5:80", "[::1]:8787", "[::1]",
+                           "localhost:8787", "LOCALHOST", "desk", "desk.local:8787"}) {
+    EXPECT_TRUE(is_own_host(host, "desk")) << host;
+  }
+  for (const char* host : {"", "evil.example", "evil.example:8787", "127.0.0.1.evil.example",
+                           "[evil]", "[", "desk.evil.example", "localhost.evil.example"}) {
+    EXPECT_FALSE(is_own_host(host, "desk")) << host;
+  }
+  EXPECT_FALSE(is_own_host("", ""));
+}
+
+TEST_F(AccessTest, ThePageIsOpenAllElseIsNot) {
+  EXPECT_EQ(status_of(get("/")), 200);
+  EXPECT_EQ(status_of(get("/style.css")), 200);
+  EXPECT_FALSE(message<web::LoginState>(get("/api/login")).logged_in());
+  for (const char* path : {"/api/farm", "/api/jobs/1", "/api/gallery", "/metrics", "/api/nothing",
+                           "/api/jobs/1/preview.png", "/api/workers/log?name=a"}) {
+    EXPECT_EQ(status_of(get(path)), 401) << path;
+  }
+  for (const char* path : {"/api/jobs/1/cancel", "/api/scenes?name=a.glb", "/api/gallery/render"}) {
+    EXPECT_EQ(status_of(post(path)), 401) << path;
+  }
+}
+
+TEST_F(AccessTest, TheSecretOrTheJoinStringLogsIn) {
+  log_in();
+  EXPECT_EQ(status_of(get("/api/farm")), 200);
+  EXPECT_TRUE(message<web::LoginState>(get("/api/login")).logged_in());
+  link::JoinString join;
+  join.role = link::Role::kFarm;
+  join.addresses = {"127.0.0.1:7878"};
+  join.secret = identity_.farm_secret;
+  const auto result = post("/api/login", "{\"secret\": \" " + join.text() + "\\n\"}");
+  EXPECT_EQ(status_of(result), 200);
+  const std::string cookie = result->get_header_value("Set-Cookie");
+  EXPECT_NE(cookie.find("HttpOnly"), std::string::npos);
+  EXPECT_NE(cookie.find("SameSite=Strict"), std::string::npos);
+  EXPECT_EQ(cookie.find(identity_.farm_secret), std::string::npos);
+}
+
+TEST_F(AccessTest, AWrongSecretAndTheWorkersDoNot) {
+  EXPECT_EQ(status_of(post("/api/login", "{\"secret\": \"wrong\"}")), 401);
+  EXPECT_EQ(status_of(post("/api/login", "{\"secret\": \"" + identity_.worker_secret + "\"}")),
+            403);
+  EXPECT_EQ(status_of(post("/api/login", "no json")), 400);
+  headers_.emplace("Cookie",
+                   "bandsaw-" + std::to_string(dashboard_->port()) + "=" + std::string(64, '0'));
+  EXPECT_EQ(status_of(get("/api/farm")), 401);
+}
+
+TEST_F(AccessTest, ManyWrongSecretsAreTurnedAway) {
+  Access access(identity_, false);
+  httplib::Request request;
+  request.remote_addr = "10.0.0.7";
+  httplib::Response response;
+  for (std::size_t i = 0; i < wire::kWrongSecretsPerMinute; ++i) {
+    ASSERT_TRUE(absl::IsUnauthenticated(access.log_in(request, "wrong", response)));
+  }
+  EXPECT_TRUE(absl::IsResourceExhausted(access.log_in(request, "wrong", response)));
+  // A whole office may be behind this address.
+  EXPECT_TRUE(access.log_in(request, identity_.farm_secret, response).ok());
+}
+
+TEST_F(AccessTest, ProgramsSendTheSecretItself) {
+  headers_.emplace("Authorization", "Bearer " + identity_.farm_secret);
+  const auto result = get("/metrics");
+  EXPECT_EQ(status_of(result), 200);
+  EXPECT_NE(result->body.find("bandsaw_jobs{state=\"running\"} 0\n"), std::string::npos);
+}
+
+TEST_F(AccessTest, OtherSitesCannotAct) {
+  log_in();
+  headers_.emplace("Origin", "http://evil.example");
+  EXPECT_EQ(status_of(post("/api/jobs/1/cancel")), 403);
+  headers_.erase("Origin");
+  headers_.emplace("Origin", base());
+  EXPECT_EQ(status_of(post("/api/jobs/1/cancel")), 404);
+  headers_.erase("X-Bandsaw");
+  EXPECT_EQ(status_of(post("/api/jobs/1/cancel")), 403);
+}
+
+TEST_F(AccessTest, AForeignNameForThisMachineIsRefused) {
+  headers_.emplace("Host", "evil.example");
+  EXPECT_EQ(status_of(get("/")), 403);
+}
+
+TEST_F(AccessTest, ANewSecretVoidsLogins) {
+  log_in();
+  link::Identity renewed = identity_;
+  renewed.farm_secret = "another22characters000";
+  dashboard_->renew(renewed);
+  EXPECT_EQ(status_of(get("/api/farm")), 401);
+}
+
+// Each would hold a thread for its whole patience; all together are as many as there are threads.
+TEST_F(AccessTest, HalfOpenConnectionsOfOneAddressLeaveRoom) {
+  std::vector<int> sockets;
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(dashboard_->port()));
+  inet_pton(AF_INET, "127.0.0.2", &address.sin_addr);
+  for (int i = 0; i < 40; ++i) {
+    const int one = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    sockaddr_in from{};
+    from.sin_family = AF_INET;
+    inet_pton(AF_INET, "127.0.0.2", &from.sin_addr);
+    ASSERT_EQ(bind(one, reinterpret_cast<sockaddr*>(&from), sizeof(from)), 0);
+    inet_pton(AF_INET, "127.0.0.1", &address.sin_addr);
+    ASSERT_EQ(connect(one, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
+    send(one, "GET / HT", 8, MSG_NOSIGNAL);  // some are cut off already
+    sockets.push_back(one);
+  }
+  EXPECT_EQ(status_of(get("/")), 200);
+  for (const int one : sockets) {
+    close(one);
+  }
+}
+
+TEST_F(AccessTest, AHeadWithoutEndIsCutOff) {
+  headers_.emplace("X-Long", std::string(4000, 'x'));
+  EXPECT_EQ(status_of(get("/")), 200);
+  for (int i = 0; i < 20; ++i) {
+    headers_.emplace("X-Long-" + std::to_string(i), std::string(4000, 'x'));
+  }
+  EXPECT_NE(status_of(get("/")), 200);
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

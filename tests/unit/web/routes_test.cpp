@@ -1,0 +1,127 @@
+#include <gmock/gmock.h>
+
+#include "coordinator/web/metrics.h"
+#include "tests/unit/web/web_farm.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+class RoutesTest : public WebTest {
+ protected:
+  RoutesTest() { log_in(); }
+  std::string error_of(const httplib::Result& result) {
+    return message<web::Problem>(result).error();
+  }
+};
+
+TEST_F(RoutesTest, AnEmptyFarmIsShown) {
+  const auto overview = message<web::Overview>(get("/api/farm"));
+  EXPECT_EQ(overview.job_size(), 0);
+  EXPECT_EQ(overview.worker_size(), 0);
+  EXPECT_FALSE(overview.version().empty());
+}
+
+TEST_F(RoutesTest, ThePageHasItsFilesAndItsRules) {
+  const auto page = get("/");
+  ASSERT_TRUE(page);
+  EXPECT_THAT(page->body, StartsWith("<!doctype html>"));
+  EXPECT_THAT(page->get_header_value("Content-Security-Policy"), HasSubstr("default-src 'none'"));
+  EXPECT_EQ(get("/main.js")->get_header_value("Content-Type"), "text/javascript; charset=utf-8");
+  EXPECT_EQ(get("/nothing.js")->status, 404);
+}
+
+TEST_F(RoutesTest, ADroppedSceneBecomesAJob) {
+  const auto submitted = message<web::Submitted>(
+      post("/api/scenes?name=../my%20box.textproto&width=48&samples=32", "a box"));
+  EXPECT_EQ(submitted.job(), 1u);
+  EXPECT_THAT(submitted.warning(), ::testing::ElementsAre("nothing was left out"));
+  const auto page = message<web::JobPage>(get("/api/jobs/1"));
+  EXPECT_EQ(page.job().status().name(), "my_box");
+  EXPECT_EQ(page.job().status().settings().width(), 48u);
+  EXPECT_EQ(page.job().status().settings().height(), 32u);  // 600 x 400 in small
+  EXPECT_EQ(page.job().status().stop().samples(), 32u);
+  EXPECT_EQ(page.why_size(), 1);
+  EXPECT_EQ(message<web::Overview>(get("/api/farm")).job_size(), 1);
+}
+
+TEST_F(RoutesTest, ADroppedSceneMayAskForAnError) {
+  post("/api/scenes?name=a.GLB&error=0.02", "a box");
+  EXPECT_EQ(message<web::JobPage>(get("/api/jobs/1")).job().status().stop().error(), 0.02);
+}
+
+TEST_F(RoutesTest, WhatCannotBeDroppedSaysWhy) {
+  EXPECT_THAT(error_of(post("/api/scenes?name=a.obj", "v")), HasSubstr("bandsaw submit"));
+  EXPECT_THAT(error_of(post("/api/scenes?name=a.glb", "broken")), HasSubstr("1:1: it is broken"));
+  EXPECT_THAT(error_of(post("/api/scenes?name=a.glb&samples=0", "x")), HasSubstr("samples"));
+  EXPECT_THAT(error_of(post("/api/scenes?name=a.glb&error=-1", "x")), HasSubstr("error"));
+  EXPECT_THAT(error_of(post("/api/scenes?name=a.glb&width=x", "x")), HasSubstr("width"));
+  EXPECT_THAT(error_of(post("/api/scenes?name=a.glb&width=65537", "x")), HasSubstr("width"));
+  EXPECT_EQ(message<web::Overview>(get("/api/farm")).job_size(), 0);
+}
+
+TEST_F(RoutesTest, AJobIsPausedResumedRankedAndCancelled) {
+  const std::string job = "/api/jobs/" + std::to_string(submit_box());
+  const auto state = [&](const httplib::Result& result) {
+    return message<web::Job>(result).status().state();
+  };
+  EXPECT_EQ(state(post(job + "/pause")), farm::JOB_STATE_PAUSED);
+  EXPECT_EQ(state(post(job + "/resume")), farm::JOB_STATE_RUNNING);
+  EXPECT_EQ(message<web::Job>(post(job + "/priority", "{\"priority\": 7}")).status().priority(), 7);
+  EXPECT_EQ(post(job + "/priority", "{\"priority\": 1001}")->status, 400);
+  EXPECT_EQ(post(job + "/priority", "{\"rank\": 1}")->status, 400);
+  EXPECT_EQ(state(post(job + "/cancel")), farm::JOB_STATE_CANCELLED);
+  EXPECT_EQ(post(job + "/pause")->status, 409);
+}
+
+TEST_F(RoutesTest, WhatIsNotThereIsSaid) {
+  EXPECT_EQ(get("/api/jobs/7")->status, 404);
+  EXPECT_EQ(get("/api/jobs/99999999999999999999")->status, 404);
+  EXPECT_THAT(error_of(post("/api/jobs/7/cancel")), HasSubstr("there is no job 7"));
+  EXPECT_EQ(get("/api/workers/log?name=desk")->status, 404);
+  submit_box();
+  EXPECT_EQ(get("/api/jobs/1/preview.png")->status, 404);
+  EXPECT_EQ(get("/api/jobs/1/image.png")->status, 409);
+}
+
+TEST_F(RoutesTest, TheGalleryRendersItsScenes) {
+  auto gallery = message<web::Gallery>(get("/api/gallery"));
+  ASSERT_EQ(gallery.scene_size(), 1);
+  EXPECT_EQ(gallery.scene(0).name(), "box");
+  EXPECT_EQ(gallery.scene(0).about(), "A box. With a lamp.");
+  EXPECT_FALSE(gallery.scene(0).has_job());
+  const std::string wish = R"({"scene": "box", "width": 30, "samples": "16"})";
+  EXPECT_EQ(message<web::Submitted>(post("/api/gallery/render", wish)).job(), 1u);
+  EXPECT_EQ(message<web::Submitted>(post("/api/gallery/render", wish)).job(), 2u);
+  gallery = message<web::Gallery>(get("/api/gallery"));
+  EXPECT_EQ(gallery.scene(0).job().status().job(), 2u);
+  EXPECT_EQ(gallery.scene(0).job().status().settings().width(), 30u);
+  EXPECT_EQ(post("/api/gallery/render", R"({"scene": "../box", "samples": "16"})")->status, 404);
+  EXPECT_EQ(post("/api/gallery/render", R"({"scene": "box", "samples": "0"})")->status, 400);
+}
+
+TEST_F(RoutesTest, ALongBodyIsRefused) {
+  EXPECT_EQ(post("/api/gallery/render", std::string(100'000, ' '))->status, 400);
+}
+
+TEST(Metrics, EscapeNamesAndLeaveOutWhatIsNotKnown) {
+  JobView job;
+  job.id = 3;
+  job.spec.name = "a \"b\"\\";
+  job.fraction = 0.5;
+  WorkerView worker;
+  worker.name = "desk";
+  worker.state = "idle";
+  worker.threads = 4;
+  const std::string text = metrics({job}, {worker}, 1000, "0.1");
+  EXPECT_THAT(text, HasSubstr("bandsaw_job_fraction{job=\"3\",name=\"a \\\"b\\\"\\\\\"} 0.5\n"));
+  EXPECT_THAT(text, HasSubstr("bandsaw_workers{state=\"idle\"} 1\n"));
+  EXPECT_THAT(text, HasSubstr("bandsaw_worker_threads{worker=\"desk\"} 4\n"));
+  EXPECT_THAT(text, HasSubstr("bandsaw_free_bytes 1000\n"));
+  EXPECT_THAT(text, ::testing::Not(HasSubstr("bandsaw_job_error{")));
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

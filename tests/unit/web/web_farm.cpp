@@ -1,0 +1,97 @@
+#include "tests/unit/web/web_farm.h"
+
+#include <google/protobuf/util/json_util.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "absl/strings/match.h"
+#include "renderlib/base/check.h"
+#include "tests/support/scenes.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+absl::Status put(Engine& engine, const wire::Digest& digest, absl::Span<const std::byte> bytes) {
+  auto writer = engine.write_blob(digest, bytes.size());
+  absl::Status status = writer.status();
+  if (status.ok()) {
+    status = (*writer)->append(bytes);
+  }
+  return status.ok() ? (*writer)->commit() : status;
+}
+
+absl::StatusOr<SceneOnFarm> bring_box(Engine& engine, const std::string& path) {
+  std::ifstream file(path);
+  std::stringstream text;
+  text << file.rdbuf();
+  if (absl::StrContains(text.str(), "broken")) {
+    return absl::InvalidArgumentError("scene.textproto:1:1: it is broken");
+  }
+  BlobMap blobs;
+  PackageInfo info;
+  info.name = std::filesystem::path(path).stem();
+  info.warnings = {"nothing was left out"};
+  const std::string manifest = encode_package(test::cornell_box().scene, info, blobs);
+  const auto* const bytes = reinterpret_cast<const std::byte*>(manifest.data());
+  blobs.put(std::vector<std::byte>(bytes, bytes + manifest.size()));
+  for (const auto& [digest, content] : blobs.all()) {
+    if (const absl::Status status = put(engine, digest, absl::MakeConstSpan(content));
+        !status.ok()) {
+      return status;
+    }
+  }
+  return SceneOnFarm{wire::sha256(manifest).hex(), info};
+}
+
+}  // namespace
+
+WebTest::WebTest() : identity_(*link::load_or_make_identity(folder_ / "identity")) {
+  auto engine = Engine::start({.data_folder = folder_ / "data", .reattach_grace_s = 0.1});
+  BANDSAW_CHECK(engine.ok(), engine.status().ToString().c_str());
+  engine_ = *std::move(engine);
+  std::filesystem::create_directory(folder_ / "gallery");
+  std::ofstream(folder_ / "gallery/box.textproto") << "# A box.\n# With a lamp.\n\n# Walls\n";
+  DashboardOptions options;
+  options.port = 0;
+  options.gallery = folder_ / "gallery";
+  options.bring = [this](const std::string& path, const std::atomic<bool>&) {
+    return bring_box(*engine_, path);
+  };
+  auto dashboard = Dashboard::start(*engine_, identity_, options);
+  BANDSAW_CHECK(dashboard.ok(), dashboard.status().ToString().c_str());
+  dashboard_ = *std::move(dashboard);
+  client_ = std::make_unique<httplib::Client>(base());
+}
+
+WebTest::~WebTest() {
+  dashboard_.reset();
+  engine_.reset();
+}
+
+httplib::Result WebTest::get(const std::string& path) { return client_->Get(path, headers_); }
+
+httplib::Result WebTest::post(const std::string& path, const std::string& body) {
+  return client_->Post(path, headers_, body, "application/json");
+}
+
+void WebTest::log_in() {
+  const auto result = post("/api/login", "{\"secret\": \"" + identity_.farm_secret + "\"}");
+  ASSERT_TRUE(result && result->status == 200);
+  const std::string cookie = result->get_header_value("Set-Cookie");
+  headers_.emplace("Cookie", cookie.substr(0, cookie.find(';')));
+}
+
+std::uint64_t WebTest::submit_box() {
+  return message<web::Submitted>(post("/api/scenes?name=box.textproto&width=24", "a box")).job();
+}
+
+void WebTest::read(const httplib::Result& result, google::protobuf::Message& out) {
+  ASSERT_TRUE(result) << httplib::to_string(result.error());
+  EXPECT_EQ(result->get_header_value("Content-Type"), "application/json");
+  const auto status = google::protobuf::util::JsonStringToMessage(result->body, &out);
+  EXPECT_TRUE(status.ok()) << status.ToString() << ": " << result->body;
+}
+
+}  // namespace bandsaw::coordinator
