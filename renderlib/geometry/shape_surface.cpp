@@ -31,11 +31,13 @@ SurfacePoint on_sphere(const Sphere& sphere, const Ray& ray, const Hit& hit, boo
   return p;
 }
 
-SurfacePoint on_flat(const Vec3& a, const Vec3& e1, const Vec3& e2, MaterialId material,
-                     const Ray& ray, const Hit& hit) {
+/// `ready`: its unit normal, or nothing. Zero: there is none.
+SurfacePoint on_flat(const Vec3& a, const Vec3& e1, const Vec3& e2, const Vec3* ready,
+                     MaterialId material, const Ray& ray, const Hit& hit) {
   SurfacePoint p;
   p.position = a + hit.u * e1 + hit.v * e2;
-  p.geometric_normal = flat_normal(e1, e2, ray);
+  p.geometric_normal =
+      ready != nullptr && *ready != Vec3{} ? *ready : flat_normal(e1, e2, ray);
   p.shading_normal = p.geometric_normal;
   p.object_position = p.position;
   p.uv = {hit.u, hit.v};
@@ -62,10 +64,21 @@ SurfacePoint on_disk(const Disk& disk, const Hit& hit) {
 
 }  // namespace
 
-Vec3 flat_normal(const Vec3& e1, const Vec3& e2, const Ray& ray) {
+Vec3 across(const Vec3& e1, const Vec3& e2) {
   const double s1 = std::max(max_abs(e1), 0x1p-1000);
   const double s2 = std::max(max_abs(e2), 0x1p-1000);
-  return unit_normal(cross(e1 / s1, e2 / s2), ray);
+  return cross(e1 / s1, e2 / s2);
+}
+
+void prepare_normals(Shapes& shapes) {
+  shapes.flat_normals.clear();
+  shapes.flat_normals.reserve(shapes.quads.size() + shapes.triangles.size());
+  for (const Quad& quad : shapes.quads) {
+    shapes.flat_normals.push_back(unit_or(across(quad.u, quad.v), {}));
+  }
+  for (const Triangle& t : shapes.triangles) {
+    shapes.flat_normals.push_back(unit_or(across(t.b - t.a, t.c - t.a), {}));
+  }
 }
 
 Placement::Placement(const Transform& t) {
@@ -94,16 +107,20 @@ double surface_offset(const Vec3& position, double size) {
 
 SurfacePoint on_shape(const Shapes& shapes, const Ray& ray, const Hit& hit, bool sphere_uv) {
   const auto [kind, index] = shape_ref(shapes, hit.id.primitive);
+  const auto ready = [&](std::size_t flat) {
+    return shapes.flat_normals.empty() ? nullptr : &shapes.flat_normals[flat];
+  };
   switch (kind) {
     case ShapeKind::kSphere:
       return on_sphere(shapes.spheres[index], ray, hit, sphere_uv);
     case ShapeKind::kQuad: {
       const Quad& quad = shapes.quads[index];
-      return on_flat(quad.corner, quad.u, quad.v, quad.material, ray, hit);
+      return on_flat(quad.corner, quad.u, quad.v, ready(index), quad.material, ray, hit);
     }
     case ShapeKind::kTriangle: {
       const Triangle& t = shapes.triangles[index];
-      return on_flat(t.a, t.b - t.a, t.c - t.a, t.material, ray, hit);
+      const Vec3* const normal = ready(shapes.quads.size() + index);
+      return on_flat(t.a, t.b - t.a, t.c - t.a, normal, t.material, ray, hit);
     }
     case ShapeKind::kDisk:
       break;

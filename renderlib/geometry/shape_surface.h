@@ -21,8 +21,15 @@ inline Vec3 unit_or(const Vec3& v, const Vec3& otherwise) {
 inline Vec3 unit_normal(const Vec3& v, const Ray& ray) {
   return has_direction(v) ? unit(v) : unit_or(-ray.direction, {0, 0, 1});
 }
+/// Across two edges, of any length; zero or not finite where they are parallel.
+Vec3 across(const Vec3& e1, const Vec3& e2);
 /// The unit normal of a triangle with these edges; a triangle without area faces the ray.
-Vec3 flat_normal(const Vec3& e1, const Vec3& e2, const Ray& ray);
+inline Vec3 flat_normal(const Vec3& e1, const Vec3& e2, const Ray& ray) {
+  return unit_normal(across(e1, e2), ray);
+}
+
+/// What prepare_surfaces does to each space.
+void prepare_normals(Shapes& shapes);
 
 /// How the linear part of a placement treats normals and lengths.
 struct Placement {

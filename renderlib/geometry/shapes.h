@@ -50,6 +50,9 @@ struct Shapes {
   std::vector<Quad> quads;
   std::vector<Triangle> triangles;
   std::vector<Disk> disks;
+  /// Of quads, then triangles, where prepare_surfaces has made them (geometry/surface.h); else
+  /// empty, and each hit finds its own.
+  std::vector<Vec3> flat_normals = {};
 
   std::size_t size() const {
     return spheres.size() + quads.size() + triangles.size() + disks.size();

@@ -104,6 +104,13 @@ SurfacePoint on_instance(const Geometry& geometry, const Ray& ray, const Hit& hi
 
 }  // namespace
 
+void prepare_surfaces(Geometry& geometry) {
+  prepare_normals(geometry);
+  for (Shapes& group : geometry.groups) {
+    prepare_normals(group);
+  }
+}
+
 SurfacePoint surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit, bool sphere_uv) {
   SurfacePoint p = hit.id.instance == 0 ? on_shape(geometry, ray, hit, sphere_uv)
                                         : on_instance(geometry, ray, hit, sphere_uv);

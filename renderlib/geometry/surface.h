@@ -34,6 +34,10 @@ struct SurfacePoint {
   double time = 0;  ///< of the ray that met it; rays from here are at that time too
 };
 
+/// Makes ready what surface_at would find anew at each hit, 24 bytes a loose quad or triangle: the
+/// surfaces are the same to the bit. No quad or triangle MUST come, go or change after.
+void prepare_surfaces(Geometry& geometry);
+
 /// `sphere_uv`: false where nobody looks at the uvs of spheres, which are zero then: their angles
 /// are much of the work.
 SurfacePoint surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit,

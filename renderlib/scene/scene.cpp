@@ -34,6 +34,7 @@ absl::StatusOr<std::shared_ptr<const Scene>> Scene::build(SceneDescription descr
   const Interval interval = {shutter.open, shutter.close};
   rest(interval, own.geometry);
   rest(interval, own.media.boundaries);
+  prepare_surfaces(own.geometry);
   scene->accel_ = std::make_unique<Accel>(Accel::build(own.geometry, pool, interval));
   scene->lights_ = Lights(own.geometry, own.materials, own.textures, own.lights, own.background,
                           interval);
