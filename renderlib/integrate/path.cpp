@@ -93,18 +93,12 @@ Rgb followed_environment(const Scene& scene, const SurfacePoint& point, const De
              : background_light(scene, departure, direction, Technique::kBoth) * passing;
 }
 
-/// A glass that takes part in nesting.
-const Dielectric* nested_glass(const Material& material) {
-  const auto* glass = std::get_if<Dielectric>(&material);
-  return glass != nullptr && glass->priority > 0 ? glass : nullptr;
-}
-
 bool is_metal(const Material& material) { return std::holds_alternative<Metal>(material); }
 
 /// What happens at a surface: its light, that of an asked light, and the way on; false: there is
 /// none.
 bool scatter_at(const PathContext& context, const SurfacePoint& point, std::uint32_t depth,
-                Interiors& interiors, PathState& path) {
+                Nesting& nesting, PathState& path) {
   const Scene& scene = context.scene;
   const PathOptions& options = context.options;
   const Material& material = scene.material(point.material);
@@ -117,7 +111,10 @@ bool scatter_at(const PathContext& context, const SurfacePoint& point, std::uint
     return false;
   }
   const auto* nested = nested_glass(material);
-  const double outside_index = nested != nullptr ? interiors.index_without(point.material) : 1;
+  const bool enters = dot(wo, point.geometric_normal) >= 0;
+  const double outside_index =
+      nested != nullptr ? (enters ? nesting.here : nesting.beyond).index_without(point.material)
+                        : 1;
   const Bsdf bsdf = bsdf_at(material, scene.textures(), point, wo, outside_index);
   const Receiver receiver = receiver_of(point, wo);
   const bool is_last = options.local && has_density(bsdf) && !is_metal(material);
@@ -153,7 +150,7 @@ bool scatter_at(const PathContext& context, const SurfacePoint& point, std::uint
     return false;
   }
   if (passes && nested != nullptr) {
-    interiors.pass(point.material, *nested, dot(next->wi, point.geometric_normal) < 0);
+    nesting.here = nesting.beyond;
   }
   path.ray = leave(point, next->wi);
   return true;
@@ -165,10 +162,10 @@ Rgb path_radiance(const Scene& scene, const Ray& camera_ray, const PixelSampler&
                   std::uint64_t sample, const PathOptions& options, std::uint64_t& rays) {
   const PathContext context{scene, sampler, sample, options, rays};
   PathState path{.ray = camera_ray};
-  Interiors interiors;
+  Nesting nesting;
   for (std::uint32_t depth = 0;; ++depth) {
     const std::optional<SurfacePoint> seen =
-        first_surface(scene, path.ray, sampler, sample, depth, interiors, rays);
+        first_surface(scene, path.ray, sampler, sample, depth, nesting, rays);
     if (scene.needs().media) {
       const double way = seen ? length(seen->position - path.ray.origin) : kInfinity;
       const Passage passage = through_media(context, way, depth, path);
@@ -184,7 +181,7 @@ Rgb path_radiance(const Scene& scene, const Ray& camera_ray, const PixelSampler&
                                                                 path.ray.direction,
                                                                 options.technique);
     }
-    if (!scatter_at(context, *seen, depth, interiors, path)) {
+    if (!scatter_at(context, *seen, depth, nesting, path)) {
       return path.radiance;
     }
   }

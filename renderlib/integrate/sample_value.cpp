@@ -41,8 +41,8 @@ float openness(const Scene& scene, const SurfacePoint& point, const Vec3& wo, do
 
 Rgb value_at(const Scene& scene, Integrator integrator, const Ray& ray, const PixelSampler& sampler,
              std::uint64_t sample, std::uint64_t& rays) {
-  Interiors interiors;
-  const auto seen = first_surface(scene, ray, sampler, sample, 0, interiors, rays);
+  Nesting nesting;
+  const auto seen = first_surface(scene, ray, sampler, sample, 0, nesting, rays);
   if (!seen) {
     return gray(integrator == Integrator::kAmbientOcclusion ? 1.0f : 0.0f);
   }

@@ -1,5 +1,8 @@
 #include "renderlib/integrate/see_through.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "renderlib/material/opacity.h"
 
 namespace bandsaw {
@@ -14,21 +17,60 @@ SurfacePoint point_at(const Scene& scene, const Ray& ray, const Hit& hit) {
   return point;
 }
 
-bool is_hidden(const Scene& scene, const Ray& ray, const SurfacePoint& point,
-               Interiors& interiors) {
-  const auto* glass = std::get_if<Dielectric>(&scene.material(point.material));
-  if (glass == nullptr || glass->priority == 0 || !interiors.hides(point.material, *glass)) {
-    return false;
+/// The next boundary of a nested glass that touches the one of `hit`: so near that a ray which
+/// leaves that one starts beyond both.
+std::optional<SurfacePoint> touching(const Scene& scene, const Ray& ray, double most_t, Hit& hit,
+                                     std::uint64_t& rays) {
+  ++rays;
+  const Hit next = scene.accel().closest_after(ray, hit);
+  if (!next || next.t > most_t) {
+    return std::nullopt;
   }
-  interiors.pass(point.material, *glass, dot(ray.direction, point.geometric_normal) < 0);
-  return true;
+  SurfacePoint point = point_at(scene, ray, next);
+  if (nested_glass(scene.material(point.material)) == nullptr) {
+    return std::nullopt;
+  }
+  hit = next;
+  return point;
+}
+
+/// What is seen of the boundaries that touch `first`; nothing: the same glass is there on both
+/// sides. `hit` becomes the last of them.
+std::optional<SurfacePoint> nested_surface(const Scene& scene, const Ray& ray,
+                                           const SurfacePoint& first, Hit& hit, Nesting& nesting,
+                                           std::uint64_t& rays) {
+  // Not flatter than that: along the surface others are met that do not touch it.
+  const double slope = std::max(0.01, std::abs(dot(ray.direction, first.geometric_normal)));
+  const double most_t = hit.t + 0.5 * first.offset / slope;
+  const MaterialId before = nesting.here.there();
+  std::optional<SurfacePoint> entered;
+  std::optional<SurfacePoint> left;
+  std::optional<SurfacePoint> point = first;
+  std::size_t boundaries = 0;
+  nesting.beyond = nesting.here;
+  for (; point; point = touching(scene, ray, most_t, hit, rays), ++boundaries) {
+    const Dielectric& glass = *nested_glass(scene.material(point->material));
+    const bool inwards = dot(ray.direction, point->geometric_normal) < 0;
+    nesting.beyond.pass(point->material, glass, inwards);
+    if (inwards && nesting.beyond.there() == point->material) {
+      entered = point;
+    } else if (!inwards && point->material == before) {
+      left = point;
+    }
+  }
+  const MaterialId after = nesting.beyond.there();
+  if (boundaries == 1) {
+    const Dielectric& glass = *nested_glass(scene.material(first.material));
+    return nesting.here.hides(first.material, glass) ? std::nullopt : std::optional(first);
+  }
+  return after == before ? std::nullopt : entered && entered->material == after ? entered : left;
 }
 
 }  // namespace
 
 std::optional<SurfacePoint> first_surface(const Scene& scene, const Ray& ray,
                                           const PixelSampler& sampler, std::uint64_t sample,
-                                          std::uint32_t bounce, Interiors& interiors,
+                                          std::uint32_t bounce, Nesting& nesting,
                                           std::uint64_t& rays) {
   ++rays;
   Hit hit = scene.accel().closest(ray);
@@ -38,8 +80,14 @@ std::optional<SurfacePoint> first_surface(const Scene& scene, const Ray& ray,
         scene.needs().alpha ? opacity(scene.material(point.material), scene.textures(), point) : 1;
     const bool is_there =
         there >= 1 || (there > 0 && sampler.group(sample, group_alpha(bounce, passed))[0] < there);
-    if (is_there && !is_hidden(scene, ray, point, interiors)) {
+    if (is_there && nested_glass(scene.material(point.material)) == nullptr) {
       return point;
+    }
+    if (is_there) {
+      if (auto seen = nested_surface(scene, ray, point, hit, nesting, rays)) {
+        return seen;
+      }
+      nesting.here = nesting.beyond;
     }
     ++rays;
     hit = scene.accel().closest_after(ray, hit);

@@ -13,12 +13,19 @@
 
 namespace bandsaw {
 
+/// Which glasses a path is inside of where it goes, and beyond the surface that it meets next.
+struct Nesting {
+  Interiors here;
+  Interiors beyond;  ///< set where that surface is of a nested glass (material/interiors.h)
+};
+
 /// The first surface along the ray that is there for this sample: (t, instance, primitive) still
-/// decides between those that are. Keeps account of boundaries that are passed unseen. uv
+/// decides between those that are. Keeps account of boundaries that are passed unseen. Boundaries
+/// of nested glasses that touch are one: of the glass that is there on one side of all of them. uv
 /// directions are set where the material needs them.
 std::optional<SurfacePoint> first_surface(const Scene& scene, const Ray& ray,
                                           const PixelSampler& sampler, std::uint64_t sample,
-                                          std::uint32_t bounce, Interiors& interiors,
+                                          std::uint32_t bounce, Nesting& nesting,
                                           std::uint64_t& rays);
 
 /// The share of light that passes along the ray: 0 or 1 but for blended surfaces.

@@ -13,8 +13,16 @@
 
 namespace bandsaw {
 
+/// A glass that takes part; null: the material is none.
+inline const Dielectric* nested_glass(const Material& material) {
+  const auto* glass = std::get_if<Dielectric>(&material);
+  return glass != nullptr && glass->priority > 0 ? glass : nullptr;
+}
+
 class Interiors {
  public:
+  /// No material.
+  static constexpr MaterialId kNothing{0xffffffffu};
   /// More than these inside each other are not kept.
   static constexpr std::size_t kMost = 8;
 
@@ -28,6 +36,12 @@ class Interiors {
   double index_without(MaterialId id) const {
     const Entry* top = highest_but(id);
     return top != nullptr ? top->index : 1;
+  }
+
+  /// The glass that is there; kNothing: none.
+  MaterialId there() const {
+    const Entry* top = highest_but(kNothing);
+    return top != nullptr ? top->id : kNothing;
   }
 
   /// Passing a boundary of `glass`.

@@ -93,6 +93,36 @@ TEST(Pane, O6_PassesItsShareHoweverThin) {
   }
 }
 
+/// A slab of water from 2 down to 1 - overlap on a slab of glass from 1 to 0, seen at 45 degrees:
+/// what reaches the only light, a strip where the ray leaves if it was bent as Snell says.
+test::Moments through_water_and_glass(double overlap) {
+  constexpr double kFar = 100;
+  test::SceneMaker maker;
+  const auto slab = [&](double low, double high, const Dielectric& inside) {
+    maker.scene.materials.push_back(inside);
+    const MaterialId material{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)};
+    maker.quad({-kFar, high, -kFar}, {0, 0, 2 * kFar}, {2 * kFar, 0, 0}, material);
+    maker.quad({-kFar, low, -kFar}, {2 * kFar, 0, 0}, {0, 0, 2 * kFar}, material);
+  };
+  slab(1 - overlap, 2, {1.33, 0, 1});
+  slab(0, 1, {1.5, 0, 2});
+  const double s = std::sqrt(0.5);
+  const auto aside = [&](double index) { return s / std::sqrt(index * index - s * s); };
+  const double x = aside(1.33) + aside(1.5) + 1;
+  maker.quad({x - 1e-6, -1, -1}, {2e-6, 0, 0}, {0, 0, 2}, maker.lamp(1));
+  const Ray ray{.origin = {-1, 3, 0}, .direction = normalize({1, -1, 0})};
+  return test::radiance_along(*maker.build(), ray, {}, 4096);
+}
+
+TEST(NestedGlass, M9_OverlappingALittleOrMuchOrNotAtAllIsTheSame) {
+  const double truth = through_water_and_glass(0.1).mean();
+  EXPECT_GT(truth, 0.85);
+  test::at_most("M9", "share that passes, overlap of 1e-6 against 0.1",
+                std::abs(through_water_and_glass(1e-6).mean() - truth), 1e-3);
+  test::at_most("M9", "share that passes, faces in one plane against 0.1",
+                std::abs(through_water_and_glass(0).mean() - truth), 1e-3);
+}
+
 test::SceneMaker spheres_and_mesh(const Vec3& at) {
   test::SceneMaker maker;
   const MaterialId white = maker.diffuse(0.5f);
