@@ -6,6 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/progress_json.h"
 #include "coordinator/cli/text.h"
+#include "coordinator/core/state_name.h"
 
 namespace bandsaw::coordinator {
 

@@ -132,24 +132,6 @@ farm::StopRule to_proto(const StopRule& stop) {
   return out;
 }
 
-const char* state_name(JobState state) {
-  switch (state) {
-    case JobState::kRunning:
-      return "running";
-    case JobState::kPaused:
-      return "paused";
-    case JobState::kFinishing:
-      return "finishing";
-    case JobState::kDone:
-      return "done";
-    case JobState::kFailed:
-      return "failed";
-    case JobState::kCancelled:
-      return "cancelled";
-  }
-  return "unknown";
-}
-
 std::string bad_sample_text(const Counters& counters) {
   return absl::StrCat("pixel (", counters.bad_x, ", ", counters.bad_y, "), sample ",
                       counters.bad_sample);

@@ -24,9 +24,6 @@ Progress progress_of(const farm::JobStatus& status);
 farm::Settings to_proto(const RenderSettings& settings);
 farm::StopRule to_proto(const StopRule& stop);
 
-/// "running", "done", …: the state's name, in texts and in JSON.
-const char* state_name(JobState state);
-
 /// "pixel (3, 4), sample 17".
 std::string bad_sample_text(const Counters& counters);
 

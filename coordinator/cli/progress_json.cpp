@@ -1,5 +1,7 @@
 #include "coordinator/cli/progress_json.h"
 
+#include "coordinator/core/state_name.h"
+
 namespace bandsaw::coordinator {
 namespace {
 

@@ -18,6 +18,7 @@
 #include "coordinator/cli/report_file.h"
 #include "coordinator/cli/upload.h"
 #include "coordinator/cli/watch_job.h"
+#include "coordinator/core/state_name.h"
 #include "renderlib/base/check.h"
 #include "renderlib/base/status_macros.h"
 

@@ -6,6 +6,7 @@
 #include "coordinator/cli/farm_errors.h"
 #include "coordinator/cli/lists_text.h"
 #include "coordinator/cli/text.h"
+#include "coordinator/core/state_name.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {

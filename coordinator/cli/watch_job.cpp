@@ -7,6 +7,7 @@
 #include "coordinator/cli/report_file.h"
 #include "coordinator/cli/steady_time.h"
 #include "coordinator/cli/text.h"
+#include "coordinator/core/state_name.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {

@@ -2,13 +2,10 @@
 
 #include <spdlog/spdlog.h>
 
-#include <array>
+#include "coordinator/core/state_name.h"
 
 namespace bandsaw::coordinator {
 namespace {
-
-constexpr std::array<const char*, 6> kStateNames = {"running", "paused", "finishing",
-                                                    "done",    "failed", "cancelled"};
 
 struct Line {
   void operator()(const record::JobAdded& r) const {
@@ -28,7 +25,7 @@ struct Line {
     spdlog::info("job={} ends after samples={}", r.job, r.samples);
   }
   void operator()(const record::StateChanged& r) const {
-    spdlog::info("job={} {} {}", r.job, kStateNames[static_cast<std::size_t>(r.state)], r.reason);
+    spdlog::info("job={} {} {}", r.job, state_name(r.state), r.reason);
   }
   void operator()(const record::PriorityChanged& r) const {
     spdlog::info("job={} priority={}", r.job, r.priority);

@@ -5,27 +5,10 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
+#include "coordinator/core/state_name.h"
 
 namespace bandsaw::coordinator {
 namespace {
-
-const char* name_of(JobState state) {
-  switch (state) {
-    case JobState::kRunning:
-      return "running";
-    case JobState::kPaused:
-      return "paused";
-    case JobState::kFinishing:
-      return "finishing";
-    case JobState::kDone:
-      return "done";
-    case JobState::kFailed:
-      return "failed";
-    case JobState::kCancelled:
-      return "cancelled";
-  }
-  return "";
-}
 
 std::string label(const char* name, const std::string& value) {
   return absl::StrCat(name, "=\"",
@@ -56,10 +39,10 @@ void add_counts(Text& out, const std::vector<JobView>& jobs,
   std::map<std::string, int> jobs_by_state;
   for (const JobState state : {JobState::kRunning, JobState::kPaused, JobState::kFinishing,
                                JobState::kDone, JobState::kFailed, JobState::kCancelled}) {
-    jobs_by_state[name_of(state)] = 0;
+    jobs_by_state[state_name(state)] = 0;
   }
   for (const JobView& job : jobs) {
-    ++jobs_by_state[name_of(job.state)];
+    ++jobs_by_state[state_name(job.state)];
   }
   std::map<std::string, int> workers_by_state;
   for (const char* state : {"idle", "rendering", "draining", "lost", "refused"}) {
