@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <string>
 
@@ -43,5 +44,7 @@ void holds(std::string_view id, std::string_view what) {
     print(id, std::string(what));
   }
 }
+
+int tries(int few, int full) { return std::getenv("BANDSAW_FULL_COUNTS") == nullptr ? few : full; }
 
 }  // namespace bandsaw::test

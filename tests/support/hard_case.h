@@ -16,14 +16,8 @@ void at_least(std::string_view id, std::string_view what, double figure, double 
 void holds(std::string_view id, std::string_view what);
 
 /// How often a test tries: few times in the default tests, as often as the case asks for in the
-/// program that is compiled with BANDSAW_FULL_COUNTS (label hard_cases_full).
-constexpr int tries([[maybe_unused]] int few, [[maybe_unused]] int full) {
-#ifdef BANDSAW_FULL_COUNTS
-  return full;
-#else
-  return few;
-#endif
-}
+/// same ones with BANDSAW_FULL_COUNTS in the environment (label hard_cases_full).
+int tries(int few, int full);
 
 /// The largest of the numbers that it has seen; NaN once it has seen one.
 class Worst {
