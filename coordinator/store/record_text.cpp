@@ -7,19 +7,13 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
 #include "coordinator/store/fields.h"
+#include "coordinator/store/record_text_job.h"
 #include "coordinator/store/record_text_report.h"
-#include "coordinator/store/record_text_tiles.h"
+#include "renderlib/base/overloaded.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
 namespace {
-
-template <class... F>
-struct Overloaded : F... {
-  using F::operator()...;
-};
-template <class... F>
-Overloaded(F...) -> Overloaded<F...>;
 
 struct StateName {
   JobState state;
@@ -50,76 +44,6 @@ JobState state_field(FieldReader& in, absl::string_view name) {
   }
   in.refuse(absl::StrCat("field '", name, "': unknown state '", found, "'"));
   return JobState::kFailed;
-}
-
-void write_stop(FieldWriter& out, const StopRule& stop) {
-  std::visit(Overloaded{[&](const StopAtSamples& s) {
-                          out.text("stop", "samples");
-                          out.number("samples", s.samples);
-                        },
-                        [&](const StopAtError& s) {
-                          out.text("stop", s.adaptive ? "adaptive_error" : "error");
-                          out.real("relative_rmse", s.relative_rmse);
-                          out.number("max_samples", s.max_samples);
-                        },
-                        [&](const StopAtTime& s) {
-                          out.text("stop", "time");
-                          out.real("seconds", s.seconds);
-                          out.number("max_samples", s.max_samples);
-                        }},
-             stop);
-}
-
-// Braced initialisers are evaluated in the order they are written: that of the fields.
-
-StopRule read_stop(FieldReader& in) {
-  const std::string kind = in.text("stop");
-  if (kind == "samples") {
-    return StopAtSamples{.samples = in.number("samples")};
-  }
-  if (kind == "error" || kind == "adaptive_error") {
-    return StopAtError{.relative_rmse = in.real("relative_rmse"),
-                       .max_samples = in.number("max_samples"),
-                       .adaptive = kind == "adaptive_error"};
-  }
-  if (kind == "time") {
-    return StopAtTime{.seconds = in.real("seconds"), .max_samples = in.number("max_samples")};
-  }
-  in.refuse(absl::StrCat("field 'stop': unknown rule '", kind, "'"));
-  return {};
-}
-
-void write_job(FieldWriter& out, const record::JobAdded& added) {
-  out.number("job", added.job);
-  out.text("request_id", added.spec.request_id);
-  out.text("name", added.spec.name);
-  out.text("manifest", added.spec.manifest);
-  out.number("width", added.spec.settings.width);
-  out.number("height", added.spec.settings.height);
-  out.number("max_depth", added.spec.settings.max_depth);
-  out.number("seed", added.spec.settings.seed);
-  out.number("integrator", static_cast<std::uint64_t>(added.spec.settings.integrator));
-  write_stop(out, added.spec.stop);
-}
-
-RenderSettings read_settings(FieldReader& in) {
-  return {.width = static_cast<std::uint32_t>(in.number("width", kMaxSide)),
-          .height = static_cast<std::uint32_t>(in.number("height", kMaxSide)),
-          .max_depth = static_cast<std::uint32_t>(in.number("max_depth", kMaxDepth)),
-          .seed = in.number("seed"),
-          // Journals written before there was a choice do not say.
-          .integrator = in.next_is("integrator")
-                            ? static_cast<Integrator>(in.number("integrator", kLastIntegrator))
-                            : Integrator::kPath};
-}
-
-Record read_job(FieldReader& in) {
-  return record::JobAdded{.job = in.number("job"),
-                          .spec = {.request_id = in.text("request_id"),
-                                   .name = in.text("name"),
-                                   .manifest = in.text("manifest"),
-                                   .settings = read_settings(in),
-                                   .stop = read_stop(in)}};
 }
 
 void write_figures(FieldWriter& out, const record::Figures& r) {
@@ -226,7 +150,10 @@ RecordText to_text(const Record& record) {
                               out.number("last", r.samples.last);
                               return "pass_planned";
                             },
-                            [&](const record::TilesPlanned& r) { return write_tiles(out, r); },
+                            [&](const record::TilesPlanned& r) {
+                              write_tiles(out, r);
+                              return "tiles_planned";
+                            },
                             [&](const record::SamplesFixed& r) {
                               out.number("job", r.job);
                               out.number("samples", r.samples);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "renderlib/base/overloaded.h"
 #include "renderlib/material/fresnel.h"
 #include "renderlib/material/ggx.h"
 #include "renderlib/material/look_up.h"
@@ -14,13 +15,6 @@
 
 namespace bandsaw {
 namespace {
-
-template <class... Cases>
-struct Overloaded : Cases... {
-  using Cases::operator()...;
-};
-template <class... Cases>
-Overloaded(Cases...) -> Overloaded<Cases...>;
 
 /// Whether light can come from wi to the side that the normals are on.
 bool reflects(const SidedNormals& normal, const Vec3& wi) {

@@ -1,0 +1,95 @@
+#include "coordinator/store/record_text_job.h"
+
+#include <string>
+
+#include "absl/strings/str_cat.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+void write_stop(FieldWriter& out, const StopRule& stop) {
+  if (const auto* samples = std::get_if<StopAtSamples>(&stop)) {
+    out.text("stop", "samples");
+    out.number("samples", samples->samples);
+  } else if (const auto* error = std::get_if<StopAtError>(&stop)) {
+    out.text("stop", error->adaptive ? "adaptive_error" : "error");
+    out.real("relative_rmse", error->relative_rmse);
+    out.number("max_samples", error->max_samples);
+  } else if (const auto* time = std::get_if<StopAtTime>(&stop)) {
+    out.text("stop", "time");
+    out.real("seconds", time->seconds);
+    out.number("max_samples", time->max_samples);
+  }
+}
+
+// Braced initialisers are evaluated in the order they are written: that of the fields.
+
+StopRule read_stop(FieldReader& in) {
+  const std::string kind = in.text("stop");
+  if (kind == "samples") {
+    return StopAtSamples{.samples = in.number("samples")};
+  }
+  if (kind == "error" || kind == "adaptive_error") {
+    return StopAtError{.relative_rmse = in.real("relative_rmse"),
+                       .max_samples = in.number("max_samples"),
+                       .adaptive = kind == "adaptive_error"};
+  }
+  if (kind == "time") {
+    return StopAtTime{.seconds = in.real("seconds"), .max_samples = in.number("max_samples")};
+  }
+  in.refuse(absl::StrCat("field 'stop': unknown rule '", kind, "'"));
+  return {};
+}
+
+RenderSettings read_settings(FieldReader& in) {
+  return {.width = static_cast<std::uint32_t>(in.number("width", kMaxSide)),
+          .height = static_cast<std::uint32_t>(in.number("height", kMaxSide)),
+          .max_depth = static_cast<std::uint32_t>(in.number("max_depth", kMaxDepth)),
+          .seed = in.number("seed"),
+          // Journals written before there was a choice do not say.
+          .integrator = in.next_is("integrator")
+                            ? static_cast<Integrator>(in.number("integrator", kLastIntegrator))
+                            : Integrator::kPath};
+}
+
+}  // namespace
+
+void write_job(FieldWriter& out, const record::JobAdded& added) {
+  out.number("job", added.job);
+  out.text("request_id", added.spec.request_id);
+  out.text("name", added.spec.name);
+  out.text("manifest", added.spec.manifest);
+  out.number("width", added.spec.settings.width);
+  out.number("height", added.spec.settings.height);
+  out.number("max_depth", added.spec.settings.max_depth);
+  out.number("seed", added.spec.settings.seed);
+  out.number("integrator", static_cast<std::uint64_t>(added.spec.settings.integrator));
+  write_stop(out, added.spec.stop);
+}
+
+record::JobAdded read_job(FieldReader& in) {
+  return {.job = in.number("job"),
+          .spec = {.request_id = in.text("request_id"),
+                   .name = in.text("name"),
+                   .manifest = in.text("manifest"),
+                   .settings = read_settings(in),
+                   .stop = read_stop(in)}};
+}
+
+void write_tiles(FieldWriter& out, const record::TilesPlanned& r) {
+  out.number("job", r.job);
+  out.number("pilot", r.plan.pilot);
+  out.text("levels", r.plan.levels);
+}
+
+record::TilesPlanned read_tiles(FieldReader& in) {
+  record::TilesPlanned planned{
+      .job = in.number("job"),
+      .plan = {.pilot = in.number("pilot", kMaxSamples), .levels = in.text("levels")}};
+  if (planned.plan.levels.find_first_not_of("0123456789abcdef") != std::string::npos) {
+    in.refuse("field 'levels': must be digits 0 to f");
+  }
+  return planned;
+}
+
+}  // namespace bandsaw::coordinator
