@@ -1,6 +1,5 @@
 #include "worker/machine.h"
 
-#include <openssl/rand.h>
 #include <unistd.h>
 #if defined(__x86_64__)
 #include <xmmintrin.h>
@@ -10,10 +9,8 @@
 #include <fstream>
 
 #include "absl/strings/ascii.h"
-#include "absl/strings/escaping.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "renderlib/base/check.h"
 
 namespace bandsaw::worker {
 namespace {
@@ -43,13 +40,6 @@ std::string build_description() {
   const std::string compiler = absl::StrCat("g++ ", __GNUC__, ".", __GNUC_MINOR__);
 #endif
   return absl::StrCat(BANDSAW_VERSION, ", ", compiler, ", ", cpu_name());
-}
-
-std::string new_instance() {
-  std::string bytes(16, '\0');
-  BANDSAW_CHECK(RAND_bytes(reinterpret_cast<unsigned char*>(bytes.data()), 16) == 1,
-                "the system has random bytes");
-  return absl::BytesToHexString(bytes);
 }
 
 std::string default_cache_folder() {

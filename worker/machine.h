@@ -13,9 +13,6 @@ std::string host_name();
 /// Version, compiler, CPU: for people, never compared.
 std::string build_description();
 
-/// Unique to this process: 32 hexadecimal digits.
-std::string new_instance();
-
 /// $XDG_CACHE_HOME/bandsaw/blobs, or ~/.cache/bandsaw/blobs: all workers of one user share it.
 /// Empty: neither is known.
 std::string default_cache_folder();

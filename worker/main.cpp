@@ -15,6 +15,7 @@
 #include <thread>
 
 #include "proto/link/join.h"
+#include "proto/link/random.h"
 #include "proto/wire/limits.h"
 #include "renderlib/render/canary.h"
 #include "renderlib/render/pixel_version.h"
@@ -143,7 +144,7 @@ int run(const Arguments& arguments) {
   const Log log = start_log(arguments.quiet);
   DaemonOptions options{
       .join = *std::move(join),
-      .self = {.instance = new_instance(),
+      .self = {.instance = link::random_hex(16),
                .name = arguments.name,
                .build = build_description(),
                .threads = arguments.threads,

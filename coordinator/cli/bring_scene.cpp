@@ -1,5 +1,7 @@
 #include "coordinator/cli/bring_scene.h"
 
+#include <span>
+
 #include "coordinator/cli/import_process.h"
 #include "proto/wire/digest.h"
 #include "renderlib/base/status_macros.h"
@@ -38,9 +40,7 @@ BringScene bring_scene(Engine& engine) {
     }
     const std::string& manifest = package.manifest();
     const wire::Digest digest = wire::sha256(manifest);
-    RETURN_IF_ERROR(store(
-        engine, digest,
-        absl::MakeConstSpan(reinterpret_cast<const std::byte*>(manifest.data()), manifest.size())));
+    RETURN_IF_ERROR(store(engine, digest, std::as_bytes(std::span(manifest))));
     return SceneOnFarm{digest.hex(), package.info()};
   };
 }

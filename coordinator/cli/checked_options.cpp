@@ -56,26 +56,6 @@ absl::StatusOr<StopRule> checked_stop(const RawOptions& raw) {
   return ImageOptions().stop;
 }
 
-// Sets `value` when the option was given.
-template <class T>
-absl::Status read(const char* name, const std::optional<std::string>& text, std::uint64_t least,
-                  std::uint64_t most, T& value) {
-  if (!text) {
-    return absl::OkStatus();
-  }
-  ASSIGN_OR_RETURN(const std::uint64_t whole, parse_whole(name, *text, least, most));
-  value = static_cast<T>(whole);
-  return absl::OkStatus();
-}
-template <class T>
-absl::Status read(const char* name, const std::optional<std::string>& text, std::uint64_t least,
-                  std::uint64_t most, std::optional<T>& value) {
-  if (!text) {
-    return absl::OkStatus();
-  }
-  return read(name, text, least, most, value.emplace());
-}
-
 absl::Status read_positive(const char* name, const std::optional<std::string>& text,
                            double& value) {
   if (text && (!absl::SimpleAtod(*text, &value) || !(value > 0 && value < 1e9))) {
@@ -89,10 +69,10 @@ absl::StatusOr<ImageOptions> checked_image(const RawOptions& raw) {
   image.choices = {raw.environment, raw.camera};
   ASSIGN_OR_RETURN(image.stop, checked_stop(raw));
   RETURN_IF_ERROR(
-      read("--seed", raw.seed, 0, std::numeric_limits<std::uint64_t>::max(), image.seed));
-  RETURN_IF_ERROR(read("--width", raw.width, 1, kMaxSide, image.width));
-  RETURN_IF_ERROR(read("--height", raw.height, 1, kMaxSide, image.height));
-  RETURN_IF_ERROR(read("--depth", raw.depth, 1, kMaxDepth, image.depth));
+      read_whole("--seed", raw.seed, 0, std::numeric_limits<std::uint64_t>::max(), image.seed));
+  RETURN_IF_ERROR(read_whole("--width", raw.width, 1, kMaxSide, image.width));
+  RETURN_IF_ERROR(read_whole("--height", raw.height, 1, kMaxSide, image.height));
+  RETURN_IF_ERROR(read_whole("--depth", raw.depth, 1, kMaxDepth, image.depth));
   if (raw.integrator) {
     image.integrator = integrator_named(*raw.integrator);
     if (!image.integrator) {
@@ -244,7 +224,8 @@ absl::StatusOr<Command> checked_render(const RawOptions& raw) {
   ASSIGN_OR_RETURN(options.display, checked_display(raw));
   ASSIGN_OR_RETURN(options.report, checked_report(raw));
   ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
-  RETURN_IF_ERROR(read("--threads", raw.threads, 1, wire::kThreadsPerWorker, options.threads));
+  RETURN_IF_ERROR(
+      read_whole("--threads", raw.threads, 1, wire::kThreadsPerWorker, options.threads));
   RETURN_IF_ERROR(check_outputs(options.outputs, raw.rows.has_value()));
   if (raw.rows) {
     ASSIGN_OR_RETURN(options.rows, parse_rows("--rows", *raw.rows));

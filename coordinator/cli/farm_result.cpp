@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <span>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -35,8 +36,7 @@ Display display_of(const Received& received) {
 }
 
 absl::StatusOr<FarmImage> image_of(const Received& received) {
-  const auto span = absl::MakeConstSpan(reinterpret_cast<const std::byte*>(received.bytes.data()),
-                                        received.bytes.size());
+  const absl::Span<const std::byte> span = std::as_bytes(std::span(received.bytes));
   if (received.bytes.size() != received.size() || wire::sha256(span).raw() != received.sha256) {
     return absl::DataLossError(
         "the image came damaged over the network; try again with: bandsaw watch");

@@ -1,5 +1,7 @@
 #include "coordinator/cli/join_files.h"
 
+#include <span>
+
 #include "coordinator/cli/data_folder.h"
 #include "renderlib/base/atomic_file.h"
 #include "renderlib/base/status_macros.h"
@@ -9,8 +11,7 @@ namespace {
 
 absl::Status write(const std::string& file, const link::JoinString& join) {
   const std::string line = join.text() + "\n";
-  return write_file_atomically(
-      file, absl::MakeConstSpan(reinterpret_cast<const std::byte*>(line.data()), line.size()));
+  return write_file_atomically(file, std::as_bytes(std::span(line)));
 }
 
 const std::string& secret_of(const link::Identity& identity, link::Role role) {

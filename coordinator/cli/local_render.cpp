@@ -4,8 +4,9 @@
 #include <utility>
 
 #include "absl/functional/function_ref.h"
+#include "coordinator/cli/cpu_time.h"
 #include "coordinator/cli/local_plan.h"
-#include "coordinator/cli/steady_time.h"
+#include "coordinator/engine/clock.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/render/render_band.h"
 #include "renderlib/render/render_image.h"

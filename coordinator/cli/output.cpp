@@ -4,6 +4,7 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_join.h"
+#include "renderlib/base/atomic_file.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/image/write_image.h"
 
@@ -17,9 +18,7 @@ std::string default_output(const std::string& scene, const std::string& suffix) 
 
 absl::Status check_outputs_writable(const std::vector<std::string>& outputs) {
   for (const std::string& output : outputs) {
-    // Of a part only the folder is checked, through a picture's name beside it.
-    RETURN_IF_ERROR(check_writable(
-        is_part_name(output) ? output.substr(0, output.size() - 4) + "pfm" : output));
+    RETURN_IF_ERROR(is_part_name(output) ? check_can_be_written(output) : check_writable(output));
   }
   return absl::OkStatus();
 }

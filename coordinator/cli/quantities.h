@@ -5,6 +5,7 @@
 // are INVALID_ARGUMENT.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "absl/status/statusor.h"
@@ -15,6 +16,25 @@ namespace bandsaw::coordinator {
 /// A whole number in [least, most].
 absl::StatusOr<std::uint64_t> parse_whole(const std::string& name, const std::string& text,
                                           std::uint64_t least, std::uint64_t most);
+
+/// The same into `value`, which stays as it is where nothing was given.
+template <class T>
+absl::Status read_whole(const std::string& name, const std::optional<std::string>& text,
+                        std::uint64_t least, std::uint64_t most, T& value) {
+  if (text) {
+    const absl::StatusOr<std::uint64_t> whole = parse_whole(name, *text, least, most);
+    if (!whole.ok()) {
+      return whole.status();
+    }
+    value = static_cast<T>(*whole);
+  }
+  return absl::OkStatus();
+}
+template <class T>
+absl::Status read_whole(const std::string& name, const std::optional<std::string>& text,
+                        std::uint64_t least, std::uint64_t most, std::optional<T>& value) {
+  return text ? read_whole(name, text, least, most, value.emplace()) : absl::OkStatus();
+}
 
 /// "1%", "0.5 %": a percentage in (0, 100], as a fraction. The sign is required: 0.01 alone could
 /// mean either.

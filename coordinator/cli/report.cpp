@@ -1,6 +1,7 @@
 #include "coordinator/cli/report.h"
 
 #include <optional>
+#include <span>
 
 #include "coordinator/cli/progress_json.h"
 #include "proto/wire/digest.h"
@@ -103,8 +104,7 @@ JsonObject program_json() {
 
 std::string pixels_sha256(const Image& image) {
   static_assert(sizeof(Rgb) == 3 * sizeof(float), "pixels are three floats without gaps");
-  const auto* bytes = reinterpret_cast<const std::byte*>(image.pixels.data());
-  return wire::sha256(absl::MakeConstSpan(bytes, image.pixels.size() * sizeof(Rgb))).hex();
+  return wire::sha256(std::as_bytes(std::span(image.pixels))).hex();
 }
 
 std::string report_text(const Report& report) {

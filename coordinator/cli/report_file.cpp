@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <span>
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/report.h"
 #include "renderlib/base/atomic_file.h"
 #include "renderlib/base/status_macros.h"
-#include "renderlib/image/write_image.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -59,7 +59,7 @@ absl::StatusOr<std::vector<std::string>> report_files(const ReportOption& asked,
     if (!is_free(file)) {
       return taken(file);
     }
-    RETURN_IF_ERROR(check_writable(file + ".pfm"));  // its folder, through a picture's name
+    RETURN_IF_ERROR(check_can_be_written(file));
   }
   return files;
 }
@@ -68,8 +68,7 @@ absl::Status write_reports(const std::string& text, const std::vector<std::strin
   for (const std::string& file : files) {
     absl::Status status = taken(file);
     if (is_free(file)) {
-      status = write_file_atomically(
-          file, {reinterpret_cast<const std::byte*>(text.data()), text.size()});
+      status = write_file_atomically(file, std::as_bytes(std::span(text)));
     }
     if (!status.ok()) {
       return absl::Status(status.code(), absl::StrCat("the image is written, its report is not: ",

@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <span>
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/bring_scene.h"
@@ -68,8 +69,7 @@ absl::Status ServedDashboard::write_link(const std::string& data_folder,
   }
   // Behind the #: browsers keep that to themselves.
   const std::string link = absl::StrCat(url, "/#key=", identity.farm_secret, "\n");
-  return write_file_atomically(
-      file, absl::MakeConstSpan(reinterpret_cast<const std::byte*>(link.data()), link.size()));
+  return write_file_atomically(file, std::as_bytes(std::span(link)));
 }
 
 absl::StatusOr<ServedDashboard> serve_dashboard(const ServeOptions& options, Engine& engine,

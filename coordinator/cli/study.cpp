@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <span>
 #include <thread>
 #include <utility>
 
@@ -15,7 +16,6 @@
 #include "coordinator/cli/study_text.h"
 #include "renderlib/base/atomic_file.h"
 #include "renderlib/base/status_macros.h"
-#include "renderlib/image/write_image.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -66,8 +66,7 @@ absl::StatusOr<std::vector<StudyOfScene>> studied(const StudyOptions& options,
 absl::Status write(const std::vector<StudyOfScene>& studies, const std::string& output) {
   const std::string text =
       absl::EndsWithIgnoreCase(output, ".svg") ? svg_of(study_plot(studies)) : study_csv(studies);
-  return write_file_atomically(output,
-                               {reinterpret_cast<const std::byte*>(text.data()), text.size()});
+  return write_file_atomically(output, std::as_bytes(std::span(text)));
 }
 
 }  // namespace
@@ -75,7 +74,7 @@ absl::Status write(const std::vector<StudyOfScene>& studies, const std::string& 
 ExitCode run(const StudyOptions& options, Process& process) {
   const Console& console = process.console;
   for (const std::string& output : options.outputs) {
-    if (const auto status = check_writable(output + ".pfm"); !status.ok()) {  // the folder counts
+    if (const auto status = check_can_be_written(output); !status.ok()) {
       return console.fail(ExitCode::kWrong, std::string(status.message()));
     }
   }

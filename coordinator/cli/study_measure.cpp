@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "coordinator/cli/steady_time.h"
+#include "coordinator/cli/cpu_time.h"
 #include "coordinator/cli/study_pixel_stops.h"
 #include "coordinator/core/error_curve.h"
 #include "coordinator/core/power_fit.h"

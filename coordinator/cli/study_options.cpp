@@ -14,17 +14,6 @@ namespace {
 constexpr std::uint64_t kMostSamples = 65'536;
 constexpr std::uint64_t kMostSeeds = 1'000;
 
-/// `value` stays as it is when the option was not given.
-template <class T>
-absl::Status read(const char* name, const std::optional<std::string>& text, std::uint64_t least,
-                  std::uint64_t most, T& value) {
-  if (text) {
-    ASSIGN_OR_RETURN(const std::uint64_t whole, parse_whole(name, *text, least, most));
-    value = static_cast<T>(whole);
-  }
-  return absl::OkStatus();
-}
-
 }  // namespace
 
 void add_study(CLI::App& app, RawOptions& raw) {
@@ -67,15 +56,16 @@ absl::StatusOr<Command> checked_study(const RawOptions& raw) {
     }
   }
   options.verbosity.quiet = raw.quiet;
-  RETURN_IF_ERROR(read("--samples", raw.samples, 4, kMostSamples, options.samples));
-  RETURN_IF_ERROR(read("--seeds", raw.seeds, 1, kMostSeeds, options.seeds));
+  RETURN_IF_ERROR(read_whole("--samples", raw.samples, 4, kMostSamples, options.samples));
+  RETURN_IF_ERROR(read_whole("--seeds", raw.seeds, 1, kMostSeeds, options.seeds));
   options.reference = 16 * options.samples;
-  RETURN_IF_ERROR(read("--reference", raw.reference_samples, 2 * options.samples, kMaxSamples,
-                       options.reference));
+  RETURN_IF_ERROR(read_whole("--reference", raw.reference_samples, 2 * options.samples, kMaxSamples,
+                             options.reference));
   RETURN_IF_ERROR(
-      read("--seed", raw.seed, 0, std::numeric_limits<std::uint64_t>::max(), options.seed));
-  RETURN_IF_ERROR(read("--width", raw.width, 1, kMaxSide, options.width));
-  RETURN_IF_ERROR(read("--threads", raw.threads, 1, wire::kThreadsPerWorker, options.threads));
+      read_whole("--seed", raw.seed, 0, std::numeric_limits<std::uint64_t>::max(), options.seed));
+  RETURN_IF_ERROR(read_whole("--width", raw.width, 1, kMaxSide, options.width));
+  RETURN_IF_ERROR(
+      read_whole("--threads", raw.threads, 1, wire::kThreadsPerWorker, options.threads));
   return options;
 }
 

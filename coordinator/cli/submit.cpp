@@ -1,12 +1,8 @@
 // bandsaw submit: a scene file to the farm, and its image back.
 
-#include <sys/random.h>
-
 #include <algorithm>
-#include <array>
 #include <atomic>
 
-#include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/commands.h"
 #include "coordinator/cli/farm_errors.h"
@@ -19,24 +15,16 @@
 #include "coordinator/cli/upload.h"
 #include "coordinator/cli/watch_job.h"
 #include "coordinator/core/state_name.h"
-#include "renderlib/base/check.h"
+#include "proto/link/random.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
 namespace {
 
-// 32 hexadecimal digits that nobody else chooses.
-std::string new_request_id() {
-  std::array<char, 16> bytes{};
-  BANDSAW_CHECK(getentropy(bytes.data(), bytes.size()) == 0,
-                "Linux gives up to 256 random bytes at any time");
-  return absl::BytesToHexString({bytes.data(), bytes.size()});
-}
-
 farm::SubmitRequest request_for(const SubmitOptions& options, const ImportedPackage& package,
                                 const RenderSettings& settings) {
   farm::SubmitRequest request;
-  request.set_request_id(new_request_id());
+  request.set_request_id(link::random_hex(16));
   request.set_name(package.info().name);
   request.set_priority(options.priority);
   request.set_manifest_sha256(wire::sha256(package.manifest()).raw());
@@ -69,7 +57,7 @@ absl::StatusOr<JobId> send_image(FarmClient& client, ImportedPackage& package,
 /// Layers are jobs of their own: the same package, another integrator.
 absl::StatusOr<Image> render_on_farm(FarmClient& client, ImportedPackage& package,
                                      farm::SubmitRequest request, ProgressDisplay& display) {
-  request.set_request_id(new_request_id());
+  request.set_request_id(link::random_hex(16));
   ASSIGN_OR_RETURN(const JobId job, send(client, package, request, display));
   ASSIGN_OR_RETURN(const Progress last, follow_job(client, job, display));
   if (last.job.state != JobState::kDone) {

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <set>
+#include <span>
 
-#include "coordinator/cli/steady_time.h"
+#include "coordinator/engine/clock.h"
 #include "proto/wire/digest.h"
 #include "renderlib/base/status_macros.h"
 
@@ -24,10 +25,6 @@ class Meter {
   std::uint64_t all_;
   std::uint64_t before_ = 0;
 };
-
-absl::Span<const std::byte> bytes_of(const std::string& text) {
-  return absl::MakeConstSpan(reinterpret_cast<const std::byte*>(text.data()), text.size());
-}
 
 }  // namespace
 
@@ -53,7 +50,7 @@ absl::Status upload(FarmClient& client, ImportedPackage& package, ProgressDispla
     meter.finished(blob.size);
   }
   if (missing.contains(manifest)) {
-    RETURN_IF_ERROR(client.put_blob(manifest, bytes_of(package.manifest()),
+    RETURN_IF_ERROR(client.put_blob(manifest, std::as_bytes(std::span(package.manifest())),
                                     [&](std::uint64_t sent) { meter.sent(sent); }));
   }
   return absl::OkStatus();

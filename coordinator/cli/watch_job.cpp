@@ -5,9 +5,9 @@
 #include "coordinator/cli/output.h"
 #include "coordinator/cli/report.h"
 #include "coordinator/cli/report_file.h"
-#include "coordinator/cli/steady_time.h"
 #include "coordinator/cli/text.h"
 #include "coordinator/core/state_name.h"
+#include "coordinator/engine/clock.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {

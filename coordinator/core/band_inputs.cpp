@@ -51,7 +51,11 @@ void Core::State::on(const input::BandStored& in) {
   end_overtaken(change.overtaken);
   end_useless_copies(*job);
   if (!change.rows.empty()) {
-    act(action::AddToFilm{job->id, in.band, change.rows, pass->tiles.of(in.band.rows)});
+    act(action::AddToFilm{.job = job->id,
+                          .band = in.band,
+                          .rows = change.rows,
+                          .worker = worker == nullptr ? std::string() : worker->name,
+                          .tiles = pass->tiles.of(in.band.rows)});
   }
   settle(*job);
 }

@@ -21,47 +21,38 @@ CostMap::CostMap(std::uint32_t height) : rows_(height, 1) {
   }
 }
 
-double CostMap::add(std::uint32_t first, std::uint32_t last) const {
+float CostMap::of_row(std::uint32_t row, absl::Span<const float> shares) const {
+  return shares.empty() ? rows_[row] : rows_[row] * shares[row / kTileSide];
+}
+
+double CostMap::add(std::uint32_t first, std::uint32_t last, absl::Span<const float> shares) const {
   double sum = 0;
   for (std::uint32_t row = first; row < last; ++row) {
-    sum += rows_[row];
+    sum += of_row(row, shares);
   }
   return sum;
 }
 
-double CostMap::of(const RowRange& rows) const {
+// The groups' sums are of whole rows.
+double CostMap::of(const RowRange& rows, absl::Span<const float> shares) const {
   const std::uint32_t whole = (rows.first + kGroup - 1) / kGroup;
   const std::uint32_t after = rows.last / kGroup;
-  if (whole >= after) {
-    return add(rows.first, rows.last);
+  if (whole >= after || !shares.empty()) {
+    return add(rows.first, rows.last, shares);
   }
-  double sum = add(rows.first, whole * kGroup) + add(after * kGroup, rows.last);
+  double sum = add(rows.first, whole * kGroup, {}) + add(after * kGroup, rows.last, {});
   for (std::uint32_t group = whole; group < after; ++group) {
     sum += groups_[group];
   }
   return sum;
 }
 
-double CostMap::of(const RowRange& rows, absl::Span<const float> shares) const {
-  if (shares.empty()) {
-    return of(rows);
-  }
-  double sum = 0;
-  for (std::uint32_t row = rows.first; row < rows.last; ++row) {
-    sum += rows_[row] * shares[row / kTileSide];
-  }
-  return sum;
-}
-
 std::uint32_t CostMap::fitting(const RowRange& rows, double most,
                                absl::Span<const float> shares) const {
-  const auto cost = [&](std::uint32_t row) {
-    return shares.empty() ? rows_[row] : rows_[row] * shares[row / kTileSide];
-  };
-  double sum = cost(rows.first);
+  double sum = of_row(rows.first, shares);
   std::uint32_t row = rows.first + 1;
-  while (row < rows.last && sum + cost(row) <= most) {
-    sum += cost(row++);
+  while (row < rows.last && sum + of_row(row, shares) <= most) {
+    sum += of_row(row++, shares);
   }
   return row - rows.first;
 }
@@ -76,7 +67,7 @@ void CostMap::learn(const RowRange& rows, double ratio) {
   }
   const auto height = static_cast<std::uint32_t>(rows_.size());
   for (std::uint32_t group = rows.first / kGroup; group * kGroup < rows.last; ++group) {
-    groups_[group] = add(group * kGroup, std::min(height, (group + 1) * kGroup));
+    groups_[group] = add(group * kGroup, std::min(height, (group + 1) * kGroup), {});
   }
 }
 

@@ -18,11 +18,9 @@ class CostMap {
   /// height > 0
   explicit CostMap(std::uint32_t height);
 
-  /// Of one sample in one column, summed over the rows.
-  double of(const RowRange& rows) const;
-  /// The same of a pass in which only this share of each tile row's pixels takes part (one number a
-  /// tile row of the image; none: all do).
-  double of(const RowRange& rows, absl::Span<const float> shares) const;
+  /// Of one sample in one column, summed over the rows, in a pass in which only this share of each
+  /// tile row's pixels takes part (one number a tile row of the image; none: all do).
+  double of(const RowRange& rows, absl::Span<const float> shares = {}) const;
   double of_all() const { return of({0, static_cast<std::uint32_t>(rows_.size())}); }
   /// How many rows from the first of these cost no more than `most`; at least one.
   std::uint32_t fitting(const RowRange& rows, double most,
@@ -33,7 +31,8 @@ class CostMap {
 
  private:
   static constexpr std::uint32_t kGroup = 64;
-  double add(std::uint32_t first, std::uint32_t last) const;
+  float of_row(std::uint32_t row, absl::Span<const float> shares) const;
+  double add(std::uint32_t first, std::uint32_t last, absl::Span<const float> shares) const;
 
   std::vector<float> rows_;
   std::vector<double> groups_;  ///< sums over kGroup rows each

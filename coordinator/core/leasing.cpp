@@ -97,8 +97,6 @@ double Core::State::pace(const Worker& worker, const Job& job) const {
              : per_thread(job) * worker.threads;
 }
 
-double Core::State::work(const Job& job, const Band& band) const { return job.cost_of(band); }
-
 Band Core::State::sized(const Job& job, const Worker& worker, const Band& free) const {
   const auto own = worker.on_job.find(job.id);
   Sizing sizing;

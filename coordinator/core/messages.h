@@ -242,6 +242,7 @@ struct AddToFilm {
   JobId job = 0;
   Band band;
   std::vector<RowRange> rows;
+  std::string worker;   ///< whose it is, for people; empty: one that is not known any more
   TileMask tiles = {};  ///< of the band's rows
 };
 /// Write the image of samples [0, samples), then say ResultWritten.

@@ -136,7 +136,6 @@ class Core::State {
   Band sized(const Job& job, const Worker& worker, const Band& free) const;
   double per_thread(const Job& job) const;
   double pace(const Worker& worker, const Job& job) const;
-  double work(const Job& job, const Band& band) const;
   double work_left(const Job& job, const Band& free) const;
   void grant(Worker& worker, Job& job, Pass& pass, const Band& band, LeaseId id);
   void hand_over(Worker& worker, Job& job, const Pass& pass, Lease lease);

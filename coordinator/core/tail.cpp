@@ -108,7 +108,7 @@ std::vector<Core::State::Late> Core::State::late_leases() const {
 double Core::State::rest_of(const Lease& lease) const {
   const Job& job = jobs_.at(lease.job);
   const Worker& worker = *workers_.by_id(lease.worker);
-  double takes = work(job, lease.band) / pace(worker, job);
+  double takes = job.cost_of(lease.band) / pace(worker, job);
   if (worker.leases.front() != lease.id) {
     return takes;
   }
@@ -148,7 +148,7 @@ bool Core::State::steal(const Late& late, std::vector<Worker*>& idle) {
   }
   Worker& thief = *able.front();
   const Band least = sized(job, thief, lease.band);
-  if (work(job, least) / pace(thief, job) + kTrip_s >= late.done_in_s) {
+  if (job.cost_of(least) / pace(thief, job) + kTrip_s >= late.done_in_s) {
     return false;
   }
   const Worker& from = *workers_.by_id(lease.worker);
@@ -171,7 +171,7 @@ bool Core::State::copy(const Late& late, std::vector<Worker*>& idle) {
   RowRange rows = not_copied(job, lease);
   std::vector<Worker*> able = helpers(job, lease, idle);
   able.resize(std::min<std::size_t>(able.size(), rows.count()));
-  const double all = work(job, {lease.band.samples, rows});
+  const double all = job.cost_of({lease.band.samples, rows});
   double together = 0;
   std::size_t count = 0;
   while (count < able.size() && all > (late.done_in_s * kSoon - kTrip_s) * together) {

@@ -8,6 +8,11 @@
 
 namespace bandsaw::coordinator {
 
+/// Since an arbitrary start; never goes back.
+inline Time steady_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
 /// Thread-safe.
 class Clock {
  public:
@@ -18,10 +23,7 @@ class Clock {
 
 class SteadyClock : public Clock {
  public:
-  Time now() const override {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch())
-        .count();
-  }
+  Time now() const override { return steady_seconds(); }
 };
 
 }  // namespace bandsaw::coordinator

@@ -45,7 +45,7 @@ void CoreDesk::absorb(const Step& step, PutBand* put) {
     if (add != nullptr && put != nullptr) {
       PutBand band;
       band.job = put->job;
-      band.worker = put->worker;
+      band.worker = add->worker;
       band.pixels = std::move(put->pixels);
       band.share = std::move(put->share);
       band.offset = put->offset;

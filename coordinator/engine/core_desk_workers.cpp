@@ -57,7 +57,6 @@ void CoreDesk::put_band(PutBand put) {
     put.answer(journal_status_);
     return;
   }
-  put.worker = links_.name_of(put.instance);
   const std::optional<std::vector<RowRange>> wanted = core_.wanted(put.job, put.pixels.band);
   if (!wanted) {
     put.answer(BandOutcome::kUnwanted);

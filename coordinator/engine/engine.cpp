@@ -194,8 +194,8 @@ void Engine::put_band(JobId job, std::string instance, BandPixels pixels, double
                       double cpu_s, std::function<void(absl::StatusOr<BandOutcome>)> done) {
   PutBand put{.job = job,
               .instance = std::move(instance),
-              .worker = {},
               .pixels = std::move(pixels),
+              .worker = {},
               .render_s = render_s,
               .cpu_s = cpu_s,
               .answer = Answer<BandOutcome>(std::move(done)),

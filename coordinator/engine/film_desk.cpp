@@ -52,15 +52,7 @@ absl::StatusOr<Image> FilmDesk::preview(JobId id, std::uint32_t row_step) const 
   if (job == jobs_.end() || !job->second.film) {
     return absl::NotFoundError(absl::StrCat("there is no picture of job ", id, " yet"));
   }
-  const Image whole = job->second.film->snapshot().image;
-  Image rows{.width = whole.width,
-             .height = (whole.height + row_step - 1) / row_step,
-             .pixels = {}};
-  for (std::size_t y = 0; y < whole.height; y += row_step) {
-    const auto first = whole.pixels.begin() + static_cast<std::ptrdiff_t>(y * whole.width);
-    rows.pixels.insert(rows.pixels.end(), first, first + whole.width);
-  }
-  return rows;
+  return job->second.film->snapshot(row_step).image;
 }
 
 absl::Status FilmDesk::work(JobId id, OneJob& job) {

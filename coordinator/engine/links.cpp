@@ -7,17 +7,13 @@
 namespace bandsaw::coordinator {
 
 void Links::add(SessionId session, std::shared_ptr<WorkerLink> link, const WorkerHello& hello) {
-  sessions_[session] = {.link = std::move(link),
-                        .name = hello.name,
-                        .address = hello.address,
-                        .instance = hello.instance};
-  by_instance_[hello.instance] = session;
+  sessions_[session] = {.link = std::move(link), .name = hello.name, .address = hello.address};
 }
 
 void Links::lost(SessionId session, const std::string& reason) {
   if (const One* one = find(session)) {
     spdlog::info("worker={} address={} disconnected: {}", one->name, one->address, reason);
-    forget(session);
+    sessions_.erase(session);
   }
 }
 
@@ -40,7 +36,7 @@ void Links::perform(const action::Close& close) {
   if (const One* one = find(close.session)) {
     spdlog::info("worker={} address={} closed: {}", one->name, one->address, close.reason);
     one->link->close(close.reason);
-    forget(close.session);
+    sessions_.erase(close.session);
   }
 }
 
@@ -63,20 +59,6 @@ void Links::perform(const action::Revoke& revoke) {
 std::string Links::name(SessionId session) const {
   const auto found = sessions_.find(session);
   return found == sessions_.end() ? std::string() : found->second.name;
-}
-
-std::string Links::name_of(const std::string& instance) const {
-  const auto found = by_instance_.find(instance);
-  return found == by_instance_.end() ? std::string() : name(found->second);
-}
-
-void Links::forget(SessionId session) {
-  const auto found = sessions_.find(session);
-  const auto newest = by_instance_.find(found->second.instance);
-  if (newest != by_instance_.end() && newest->second == session) {
-    by_instance_.erase(newest);
-  }
-  sessions_.erase(found);
 }
 
 Links::One* Links::find(SessionId session) {

@@ -22,7 +22,6 @@ class Links {
 
   /// As it is shown; empty: no such session.
   std::string name(SessionId session) const;
-  std::string name_of(const std::string& instance) const;
 
   void perform(const action::Welcome& welcome);
   void perform(const action::Refuse& refuse);
@@ -35,14 +34,11 @@ class Links {
     std::shared_ptr<WorkerLink> link;
     std::string name;  ///< for the log
     std::string address;
-    std::string instance;
   };
   One* find(SessionId session);
-  void forget(SessionId session);
 
   std::string epoch_;
   std::map<SessionId, One> sessions_;
-  std::map<std::string, SessionId> by_instance_;  ///< the newest session of each
 };
 
 }  // namespace bandsaw::coordinator

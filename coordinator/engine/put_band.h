@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -65,17 +66,16 @@ class BandBudget {
 /// A worker's instance as a band record names it.
 inline std::uint64_t renderer_of(const std::string& instance) {
   Hash64 hash;
-  hash.add(
-      absl::MakeConstSpan(reinterpret_cast<const std::byte*>(instance.data()), instance.size()));
+  hash.add(std::as_bytes(std::span(instance)));
   return hash.value();
 }
 
 struct PutBand {
   JobId job = 0;
   std::string instance;  ///< of the worker
-  std::string worker;    ///< its name, for people; empty: not known
   BandPixels pixels;
-  TileMask tiles = {};  ///< who takes part, of its rows; told with the way to the film
+  std::string worker;   ///< as action::AddToFilm tells it
+  TileMask tiles = {};  ///< likewise
   double render_s = 0;
   double cpu_s = 0;
   std::uint64_t offset = 0;  ///< of its record in the job's log, once it is written

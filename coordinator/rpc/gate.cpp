@@ -2,25 +2,18 @@
 
 #include <spdlog/spdlog.h>
 
-#include <chrono>
 #include <utility>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
 #include "absl/strings/strip.h"
+#include "coordinator/engine/clock.h"
 #include "proto/link/channel.h"
 #include "proto/wire/limits.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
-namespace {
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-}  // namespace
 
 std::string address_of(const std::string& peer) {
   absl::string_view address = peer;
@@ -50,7 +43,7 @@ absl::StatusOr<link::Role> Gate::role_of(const grpc::CallbackServerContext& cont
 }
 
 absl::Status Gate::refused(const std::string& address, const absl::Status& why) {
-  switch (failures_.add(address, now())) {
+  switch (failures_.add(address, steady_seconds())) {
     case Failures::Verdict::kFirst:
       spdlog::warn("address={} refused: {}", address, std::string(why.message()));
       return why;

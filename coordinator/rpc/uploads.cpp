@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <span>
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/rpc/convert.h"
@@ -13,10 +14,6 @@ namespace bandsaw::coordinator {
 namespace {
 
 constexpr std::uint64_t kPixelBytes = 3 * sizeof(double);
-
-absl::Span<const std::byte> bytes_of(const std::string& data) {
-  return absl::MakeConstSpan(reinterpret_cast<const std::byte*>(data.data()), data.size());
-}
 
 /// A chunk must fit what was announced.
 absl::Status check_chunk(const std::string& data, std::uint64_t received, std::uint64_t size) {
@@ -58,7 +55,7 @@ absl::Status PutBlobCall::add(const farm::BlobChunk& chunk) {
   }
   RETURN_IF_ERROR(check_chunk(chunk.data(), received_, size_));
   received_ += chunk.data().size();
-  return writer_->append(bytes_of(chunk.data()));
+  return writer_->append(std::as_bytes(std::span(chunk.data())));
 }
 
 void PutBlobCall::end() {
@@ -114,7 +111,7 @@ absl::Status PutBandCall::add(const farm::BandChunk& chunk) {
   std::memcpy(reinterpret_cast<char*>(pixels_.sums.data()) + received_, chunk.data().data(),
               chunk.data().size());
   received_ += chunk.data().size();
-  hasher_.update(bytes_of(chunk.data()));
+  hasher_.update(std::as_bytes(std::span(chunk.data())));
   return absl::OkStatus();
 }
 

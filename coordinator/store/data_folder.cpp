@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <span>
 #include <vector>
 
 #include "absl/strings/ascii.h"
@@ -18,7 +19,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr char kFormat[] = "bandsaw data 1\n";
+constexpr absl::string_view kFormat = "bandsaw data 1\n";
 constexpr std::size_t kProbeBytes = 1 << 16;
 
 /// A small file's text, at most `limit` bytes of it.
@@ -28,10 +29,6 @@ absl::StatusOr<std::string> read_text(const File& file, std::uint64_t limit) {
   RETURN_IF_ERROR(
       file.read(0, absl::MakeSpan(reinterpret_cast<std::byte*>(text.data()), text.size())));
   return text;
-}
-
-absl::Span<const std::byte> bytes_of(const std::string& text) {
-  return {reinterpret_cast<const std::byte*>(text.data()), text.size()};
 }
 
 absl::StatusOr<File> take_lock(const std::string& path) {
@@ -46,7 +43,8 @@ absl::StatusOr<File> take_lock(const std::string& path) {
         ") uses the data folder ", path, "; stop it, or give this one its own with --data"));
   }
   RETURN_IF_ERROR(lock.truncate(0));
-  RETURN_IF_ERROR(lock.write(bytes_of(absl::StrCat(::getpid(), "\n"))));
+  const std::string holder = absl::StrCat(::getpid(), "\n");
+  RETURN_IF_ERROR(lock.write(std::as_bytes(std::span(holder))));
   return lock;
 }
 
@@ -58,7 +56,7 @@ absl::Status check_format(const std::string& path) {
       return absl::DataLossError(absl::StrCat(
           name, " is missing beside a journal; restore it, or choose another folder with --data"));
     }
-    return write_file_atomically(name, bytes_of(kFormat));
+    return write_file_atomically(name, std::as_bytes(std::span(kFormat)));
   }
   ASSIGN_OR_RETURN(const File file, File::open(name, O_RDONLY));
   ASSIGN_OR_RETURN(const std::string found, read_text(file, 100));

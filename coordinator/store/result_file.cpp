@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cstring>
+#include <span>
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/store/file.h"
@@ -36,8 +37,7 @@ absl::Status damaged(const std::string& path, const std::string& how) {
 absl::Status write_result(const Image& image, const std::string& folder, const std::string& path) {
   BANDSAW_CHECK(image.pixels.size() == std::size_t{image.width} * image.height,
                 "an image is whole");
-  const auto pixels = absl::MakeConstSpan(reinterpret_cast<const std::byte*>(image.pixels.data()),
-                                          image.pixels.size() * sizeof(Rgb));
+  const absl::Span<const std::byte> pixels = std::as_bytes(std::span(image.pixels));
   Header header{.width = image.width, .height = image.height};
   std::memcpy(header.magic, kMagic, sizeof kMagic);
   const wire::Digest digest = wire::sha256(pixels);
@@ -46,7 +46,7 @@ absl::Status write_result(const Image& image, const std::string& folder, const s
   const std::string staging = path + ".incoming";
   RETURN_IF_ERROR(remove_file(staging));
   ASSIGN_OR_RETURN(StagedFile file, StagedFile::create(staging, sizeof header + pixels.size()));
-  RETURN_IF_ERROR(file.append({reinterpret_cast<const std::byte*>(&header), sizeof header}));
+  RETURN_IF_ERROR(file.append(std::as_bytes(std::span(&header, 1))));
   RETURN_IF_ERROR(file.append(pixels));
   return file.commit(folder, path);
 }

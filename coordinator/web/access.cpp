@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include <array>
-#include <chrono>
 #include <utility>
 
 #include "absl/strings/ascii.h"
@@ -17,6 +16,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
+#include "coordinator/engine/clock.h"
 #include "proto/link/join.h"
 #include "proto/wire/limits.h"
 #include "renderlib/base/status_macros.h"
@@ -25,10 +25,6 @@ namespace bandsaw::coordinator {
 namespace {
 
 constexpr long kLoginSeconds = 30L * 24 * 60 * 60;
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 std::string machine_name() {
   std::array<char, 256> name{};
@@ -151,7 +147,7 @@ absl::Status Access::check_secret(const std::string& secret, const std::string& 
                      "this is the workers' join string: the dashboard needs people's (file `farm` "
                      "in the coordinator's data folder)");
   }
-  switch (failures_.add(address, now())) {
+  switch (failures_.add(address, steady_seconds())) {
     case Failures::Verdict::kFirst:
       spdlog::warn("address={} dashboard refused: {}", address,
                    std::string(role.status().message()));

@@ -7,6 +7,7 @@
 #include "coordinator/web/reply.h"
 #include "coordinator/web/routes.h"
 #include "proto/web.pb.h"
+#include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -40,6 +41,16 @@ web::Overview overview(Engine& engine) {
   return overview;
 }
 
+absl::StatusOr<web::Log> worker_log(Engine& engine, const httplib::Request& request) {
+  ASSIGN_OR_RETURN(const std::string name, reason_field("name", request.get_param_value("name")));
+  using Lines = absl::StatusOr<std::vector<std::string>>;
+  ASSIGN_OR_RETURN(const std::vector<std::string> lines,
+                   ask<Lines>([&](auto answer) { engine.logs(name, answer); }));
+  web::Log log;
+  log.mutable_line()->Assign(lines.begin(), lines.end());
+  return log;
+}
+
 }  // namespace
 
 void add_farm(HttpServer& server, Engine& engine) {
@@ -48,20 +59,7 @@ void add_farm(HttpServer& server, Engine& engine) {
   });
   server.Get("/api/workers/log",
              [&engine](const httplib::Request& request, httplib::Response& response) {
-               const auto name = reason_field("name", request.get_param_value("name"));
-               if (!name.ok()) {
-                 refuse(response, name.status());
-                 return;
-               }
-               using Lines = absl::StatusOr<std::vector<std::string>>;
-               const Lines lines = ask<Lines>([&](auto answer) { engine.logs(*name, answer); });
-               if (!lines.ok()) {
-                 refuse(response, lines.status());
-                 return;
-               }
-               web::Log log;
-               log.mutable_line()->Assign(lines->begin(), lines->end());
-               reply(response, log);
+               answer(response, worker_log(engine, request));
              });
   server.Get("/metrics", [&engine](const httplib::Request&, httplib::Response& response) {
     response.set_content(

@@ -4,6 +4,7 @@
 #include "coordinator/rpc/convert.h"
 #include "coordinator/web/reply.h"
 #include "coordinator/web/routes.h"
+#include "proto/link/random.h"
 #include "proto/web.pb.h"
 #include "renderlib/base/status_macros.h"
 
@@ -40,15 +41,9 @@ absl::StatusOr<web::Submitted> render(Scenes& scenes, const Gallery& gallery,
     return absl::InvalidArgumentError(
         absl::StrCat("samples: must lie in [1, ", kMostSamples, "]; width: at most ", kMostWidth));
   }
-  ASSIGN_OR_RETURN(
-      const SubmittedScene submitted,
-      scenes.submit(scene->path, {.request_id = request_prefix(*scene) + random_digits(),
-                                  .width = wish.width(),
-                                  .stop = StopAtSamples{wish.samples()}}));
-  web::Submitted message;
-  message.set_job(submitted.job);
-  message.mutable_warning()->Assign(submitted.warnings.begin(), submitted.warnings.end());
-  return message;
+  return scenes.submit(scene->path, {.request_id = request_prefix(*scene) + link::random_hex(8),
+                                     .width = wish.width(),
+                                     .stop = StopAtSamples{wish.samples()}});
 }
 
 }  // namespace
@@ -61,12 +56,7 @@ void add_gallery(HttpServer& server, Engine& engine, Scenes& scenes, const Galle
   server.Post("/api/gallery/render",
               [&scenes, &gallery](const httplib::Request&, httplib::Response& response,
                                   const httplib::ContentReader& body) {
-                const auto submitted = render(scenes, gallery, body);
-                if (submitted.ok()) {
-                  reply(response, *submitted);
-                } else {
-                  refuse(response, submitted.status());
-                }
+                answer(response, render(scenes, gallery, body));
               });
 }
 

@@ -75,12 +75,7 @@ absl::StatusOr<JobId> job_of(const httplib::Request& request) {
 void add_jobs(HttpServer& server, Engine& engine) {
   server.Get("/api/jobs/(\\d{1,19})",
              [&engine](const httplib::Request& request, httplib::Response& response) {
-               const auto page = job_page(engine, request);
-               if (page.ok()) {
-                 reply(response, *page);
-               } else {
-                 refuse(response, page.status());
-               }
+               answer(response, job_page(engine, request));
              });
   add_order(server, engine, "cancel", &Engine::cancel);
   add_order(server, engine, "pause", &Engine::pause);

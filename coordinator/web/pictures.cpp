@@ -1,9 +1,9 @@
 #include "coordinator/web/pictures.h"
 
 #include <algorithm>
-#include <chrono>
 
 #include "absl/strings/str_cat.h"
+#include "coordinator/engine/clock.h"
 #include "coordinator/web/reply.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/image/shrink.h"
@@ -14,10 +14,6 @@ namespace {
 
 constexpr double kFresh_s = 0.9;
 constexpr std::size_t kMostBytes = 64 << 20;
-
-double seconds_now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 absl::StatusOr<Pictures::Bytes> encoded(const Image& image, ImageFormat format,
                                         const Display& display) {
@@ -52,7 +48,7 @@ absl::StatusOr<Pictures::Bytes> Pictures::preview(JobId id, std::uint32_t most_s
     Made& old = found->second;
     old.used = ++calls_;
     const bool unchanged = old.samples == job.samples_done && job.state != JobState::kDone;
-    if (old.whole || unchanged || seconds_now() - old.at < kFresh_s) {
+    if (old.whole || unchanged || steady_seconds() - old.at < kFresh_s) {
       return old.png;
     }
   }
@@ -64,7 +60,7 @@ absl::StatusOr<Pictures::Bytes> Pictures::preview(JobId id, std::uint32_t most_s
   keep(key, {.png = *png,
              .samples = job.samples_done,
              .whole = job.state == JobState::kDone,
-             .at = seconds_now(),
+             .at = steady_seconds(),
              .used = ++calls_});
   return png;
 }

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "absl/status/status.h"
+#include "absl/status/statusor.h"
 
 namespace bandsaw::coordinator {
 
@@ -19,6 +20,12 @@ inline constexpr std::size_t kMostJson = 64 << 10;
 void reply(httplib::Response& response, const google::protobuf::Message& message);
 /// A Problem, with the HTTP status that fits. The status MUST be an error.
 void refuse(httplib::Response& response, const absl::Status& status);
+
+/// The one or the other.
+template <class Message>
+void answer(httplib::Response& response, const absl::StatusOr<Message>& message) {
+  message.ok() ? reply(response, *message) : refuse(response, message.status());
+}
 
 /// The body as a message. INVALID_ARGUMENT: too long, or not of its form.
 absl::Status read_json(const httplib::ContentReader& reader, google::protobuf::Message& message);

@@ -99,8 +99,8 @@ absl::StatusOr<std::string> file_name(const std::string& given) {
       "bandsaw submit");
 }
 
-absl::StatusOr<Wanted> wanted_of(const httplib::Request& request) {
-  Wanted wanted;
+absl::StatusOr<SceneWish> wanted_of(const httplib::Request& request) {
+  SceneWish wanted;
   const std::string width = request.get_param_value("width");
   if (!width.empty() && (!absl::SimpleAtoi(width, &wanted.width) || wanted.width > kMaxSide)) {
     return absl::InvalidArgumentError("width: must be a number of pixels");
@@ -122,10 +122,10 @@ absl::StatusOr<Wanted> wanted_of(const httplib::Request& request) {
   return wanted;
 }
 
-absl::StatusOr<SubmittedScene> take_scene(Scenes& scenes, const httplib::Request& request,
+absl::StatusOr<web::Submitted> take_scene(Scenes& scenes, const httplib::Request& request,
                                           const httplib::ContentReader& body) {
   ASSIGN_OR_RETURN(const std::string name, file_name(request.get_param_value("name")));
-  ASSIGN_OR_RETURN(const Wanted wanted, wanted_of(request));
+  ASSIGN_OR_RETURN(const SceneWish wanted, wanted_of(request));
   Upload upload;
   RETURN_IF_ERROR(upload.open(name));
   RETURN_IF_ERROR(upload.receive(body));
@@ -137,15 +137,7 @@ absl::StatusOr<SubmittedScene> take_scene(Scenes& scenes, const httplib::Request
 void add_scenes(HttpServer& server, Scenes& scenes) {
   server.Post("/api/scenes", [&scenes](const httplib::Request& request, httplib::Response& response,
                                        const httplib::ContentReader& body) {
-    const auto submitted = take_scene(scenes, request, body);
-    if (!submitted.ok()) {
-      refuse(response, submitted.status());
-      return;
-    }
-    web::Submitted message;
-    message.set_job(submitted->job);
-    message.mutable_warning()->Assign(submitted->warnings.begin(), submitted->warnings.end());
-    reply(response, message);
+    answer(response, take_scene(scenes, request, body));
   });
 }
 

@@ -8,10 +8,10 @@
 #include <functional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "absl/status/statusor.h"
 #include "coordinator/engine/engine.h"
+#include "proto/web.pb.h"
 #include "renderlib/package/package.h"
 
 namespace bandsaw::coordinator {
@@ -28,15 +28,10 @@ using BringScene = std::function<absl::StatusOr<SceneOnFarm>(const std::string& 
                                                              const std::atomic<bool>& stop)>;
 
 /// What is wanted of a scene.
-struct Wanted {
+struct SceneWish {
   std::string request_id;   ///< as in farm.SubmitRequest; empty: a new one
   std::uint32_t width = 0;  ///< pixels; 0: the scene's own; the height keeps the shape
   StopRule stop = StopAtSamples{64};
-};
-
-struct SubmittedScene {
-  JobId job = 0;
-  std::vector<std::string> warnings;  ///< of the importer
 };
 
 /// Thread-safe.
@@ -48,7 +43,7 @@ class Scenes {
   Scenes(Engine& engine, BringScene bring) : engine_(engine), bring_(std::move(bring)) {}
 
   /// Errors of BringScene and Engine::submit; RESOURCE_EXHAUSTED: busy with others.
-  absl::StatusOr<SubmittedScene> submit(const std::string& path, const Wanted& wanted);
+  absl::StatusOr<web::Submitted> submit(const std::string& path, const SceneWish& wanted);
   /// Ends what is being read; what comes later is refused.
   void stop() { stop_ = true; }
 
@@ -58,8 +53,5 @@ class Scenes {
   std::atomic<bool> stop_{false};
   std::atomic<int> reading_{0};
 };
-
-/// 16 hexadecimal digits that nobody else chooses.
-std::string random_digits();
 
 }  // namespace bandsaw::coordinator

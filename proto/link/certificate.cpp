@@ -10,7 +10,6 @@
 #include <ctime>
 #include <memory>
 
-#include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 
 namespace bandsaw::link {
@@ -133,15 +132,6 @@ absl::Status check_key(const std::string& key_pem, const std::string& certificat
     return absl::InvalidArgumentError("its key is not that of its certificate");
   }
   return absl::OkStatus();
-}
-
-absl::StatusOr<std::string> make_secret() {
-  std::string bytes(16, '\0');
-  if (RAND_bytes(reinterpret_cast<unsigned char*>(bytes.data()), static_cast<int>(bytes.size())) !=
-      1) {
-    return failed("make random bytes");
-  }
-  return absl::WebSafeBase64Escape(bytes);
 }
 
 }  // namespace bandsaw::link

@@ -1,6 +1,6 @@
 #pragma once
 
-// What OpenSSL makes and reads: keys, self-signed certificates, random secrets.
+// What OpenSSL makes and reads: keys, self-signed certificates.
 
 #include <string>
 
@@ -31,8 +31,5 @@ absl::StatusOr<Validity> certificate_validity(const std::string& certificate_pem
 
 /// INVALID_ARGUMENT: not a private key, or not this certificate's.
 absl::Status check_key(const std::string& key_pem, const std::string& certificate_pem);
-
-/// 128 random bits as 22 characters of base64url.
-absl::StatusOr<std::string> make_secret();
 
 }  // namespace bandsaw::link

@@ -11,6 +11,7 @@
 #include "absl/strings/str_split.h"
 #include "proto/link/certificate.h"
 #include "proto/link/private_file.h"
+#include "proto/link/random.h"
 
 namespace bandsaw::link {
 namespace {
@@ -67,18 +68,14 @@ absl::StatusOr<Identity> from_text(const std::string& text, const std::string& p
 
 absl::StatusOr<Identity> make_identity() {
   absl::StatusOr<KeyAndCertificate> made = make_certificate(kServerName);
-  absl::StatusOr<std::string> worker = make_secret();
-  absl::StatusOr<std::string> farm = make_secret();
-  for (const absl::Status& status : {made.status(), worker.status(), farm.status()}) {
-    if (!status.ok()) {
-      return status;
-    }
+  if (!made.ok()) {
+    return made.status();
   }
   Identity identity{.key_pem = std::move(made->key_pem),
                     .certificate_pem = std::move(made->certificate_pem),
                     .certificate_digest = {},
-                    .worker_secret = *std::move(worker),
-                    .farm_secret = *std::move(farm)};
+                    .worker_secret = make_secret(),
+                    .farm_secret = make_secret()};
   absl::StatusOr<wire::Digest> digest = certificate_digest(identity.certificate_pem);
   if (!digest.ok()) {
     return digest.status();
@@ -122,13 +119,10 @@ absl::StatusOr<Identity> renew_secret(const std::string& folder, Role role) {
     return text.status();
   }
   absl::StatusOr<Identity> identity = from_text(*text, path);
-  absl::StatusOr<std::string> secret = make_secret();
-  for (const absl::Status& status : {identity.status(), secret.status()}) {
-    if (!status.ok()) {
-      return status;
-    }
+  if (!identity.ok()) {
+    return identity.status();
   }
-  (role == Role::kWorker ? identity->worker_secret : identity->farm_secret) = *std::move(secret);
+  (role == Role::kWorker ? identity->worker_secret : identity->farm_secret) = make_secret();
   if (absl::Status status = write_private_file(path, to_text(*identity)); !status.ok()) {
     return status;
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <span>
 #include <utility>
 
 #include "absl/status/status.h"
@@ -54,10 +55,7 @@ Digest sha256(absl::Span<const std::byte> bytes) {
   return hasher.finish();
 }
 
-Digest sha256(const std::string& bytes) {
-  return sha256(
-      absl::MakeConstSpan(reinterpret_cast<const std::byte*>(bytes.data()), bytes.size()));
-}
+Digest sha256(const std::string& bytes) { return sha256(std::as_bytes(std::span(bytes))); }
 
 std::string Digest::raw() const {
   return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());

@@ -114,4 +114,22 @@ absl::Status write_file_atomically(const std::string& path, absl::Span<const std
   return sync_folder(folder_of(path));
 }
 
+absl::Status check_can_be_written(const std::string& path) {
+  struct stat info {};
+  if (::stat(path.c_str(), &info) == 0 && S_ISDIR(info.st_mode)) {
+    return errno_status(EISDIR, path);
+  }
+  const std::string folder = folder_of(path);
+  if (::stat(folder.c_str(), &info) != 0) {
+    return errno_status(errno, folder);
+  }
+  if (!S_ISDIR(info.st_mode)) {
+    return errno_status(ENOTDIR, folder);
+  }
+  if (::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0) {
+    return errno_status(errno, folder);
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace bandsaw

@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
+#include <span>
 #include <string>
 #include <thread>
 
@@ -39,8 +40,7 @@ absl::Status write(const std::string& path, absl::Span<const std::byte> bytes) {
   return absl::OkStatus();
 }
 absl::Status write(const std::string& path, const std::string& text) {
-  return write(path,
-               absl::MakeConstSpan(reinterpret_cast<const std::byte*>(text.data()), text.size()));
+  return write(path, std::as_bytes(std::span(text)));
 }
 
 absl::Status make_all(const std::string& folder) {

@@ -1,11 +1,6 @@
 #include "renderlib/image/write_image.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <bit>
-#include <cerrno>
 #include <cstring>
 
 #include "absl/strings/ascii.h"
@@ -60,11 +55,6 @@ std::vector<std::byte> encode_pfm(const Image& image) {
     std::memcpy(to, &image.pixels[std::size_t{y} * image.width], row_size);
   }
   return bytes;
-}
-
-std::string folder_of(const std::string& path) {
-  const std::size_t slash = path.rfind('/');
-  return slash == std::string::npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
 }
 
 }  // namespace
@@ -122,21 +112,7 @@ absl::Status write_image(const Image& image, const std::string& path, const Disp
 
 absl::Status check_writable(const std::string& path) {
   RETURN_IF_ERROR(image_format_of(path).status());
-  struct stat info {};
-  if (stat(path.c_str(), &info) == 0 && S_ISDIR(info.st_mode)) {
-    return errno_status(EISDIR, path);
-  }
-  const std::string folder = folder_of(path);
-  if (stat(folder.c_str(), &info) != 0) {
-    return errno_status(errno, folder);
-  }
-  if (!S_ISDIR(info.st_mode)) {
-    return errno_status(ENOTDIR, folder);
-  }
-  if (faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0) {
-    return errno_status(errno, folder);
-  }
-  return absl::OkStatus();
+  return check_can_be_written(path);
 }
 
 }  // namespace bandsaw

@@ -23,6 +23,7 @@
 #include <initializer_list>
 #include <new>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -57,11 +58,6 @@ absl::Status write_file(const std::string& path,
   return good ? absl::OkStatus() : errno_status(error, path);
 }
 
-template <class T>
-absl::Span<const std::byte> bytes_of(const T* data, std::size_t count) {
-  return absl::MakeConstSpan(reinterpret_cast<const std::byte*>(data), count * sizeof(T));
-}
-
 absl::Status import_to(const std::string& path, const std::string& folder,
                        const ImportChoices& choices) {
   ASSIGN_OR_RETURN(const ImportedScene imported, import_scene(path, choices));
@@ -73,7 +69,7 @@ absl::Status import_to(const std::string& path, const std::string& folder,
   for (const auto& [digest, bytes] : blobs.all()) {
     RETURN_IF_ERROR(write_file(out.path_of(digest), {absl::MakeConstSpan(bytes)}));
   }
-  return write_file(folder + "/manifest", {bytes_of(manifest.data(), manifest.size())});
+  return write_file(folder + "/manifest", {std::as_bytes(std::span(manifest))});
 }
 
 absl::Status read_picture_to(const std::string& path, const std::string& folder) {
@@ -83,8 +79,9 @@ absl::Status read_picture_to(const std::string& path, const std::string& folder)
     return absl::Status(picture.status().code(),
                         absl::StrCat(path, ": ", picture.status().message()));
   }
-  return write_file(folder + "/image", {bytes_of(&picture->width, 1), bytes_of(&picture->height, 1),
-                                        bytes_of(picture->pixels.data(), picture->pixels.size())});
+  return write_file(folder + "/image", {std::as_bytes(std::span(&picture->width, 1)),
+                                        std::as_bytes(std::span(&picture->height, 1)),
+                                        std::as_bytes(std::span(picture->pixels))});
 }
 
 absl::Status run(int argc, char** argv) {

@@ -157,25 +157,25 @@ bool Film::complete(std::uint64_t samples) const {
   return true;
 }
 
-Film::Snapshot Film::snapshot() const {
+Film::Snapshot Film::snapshot(std::uint32_t row_step) const {
   Snapshot snapshot;
   snapshot.image.width = width();
-  snapshot.image.height = height();
-  snapshot.image.pixels.resize(std::size_t{width()} * height());
+  snapshot.image.height = (height() + row_step - 1) / row_step;
+  snapshot.image.pixels.resize(std::size_t{width()} * snapshot.image.height);
   snapshot.least_samples = kMaxSamples;
   std::vector<double> total(std::size_t{rows_->strips.longest()} * 3);
-  for (std::uint32_t y = 0; y < height(); ++y) {
+  for (std::uint32_t y = 0; y < height(); y += row_step) {
     snapshot.least_samples = std::min(snapshot.least_samples, rows_->samples_of_row(y));
     snapshot.missing_rows += rows_->samples_of_row(y) == 0 ? 1 : 0;
   }
   rows_->each([&](std::uint32_t y, std::uint32_t, const Strip& strip, const StripNodes& nodes) {
-    const std::uint64_t samples = taken(nodes);
+    const std::uint64_t samples = y % row_step == 0 ? taken(nodes) : 0;
     if (samples == 0) {
       return;
     }
     rows_->add_up(nodes, total);
     const auto n = static_cast<double>(samples);
-    Rgb* const row = &snapshot.image.pixels[std::size_t{y} * width()];
+    Rgb* const row = &snapshot.image.pixels[std::size_t{y / row_step} * width()];
     for (std::uint32_t k = 0; k < strip.count; ++k) {
       row[strip.first + k * strip.step] = {static_cast<float>(total[3 * k] / n),
                                            static_cast<float>(total[3 * k + 1] / n),

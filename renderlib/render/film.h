@@ -51,7 +51,8 @@ class Film {
     std::uint64_t least_samples = 0;  ///< over the rows
     std::uint32_t missing_rows = 0;
   };
-  Snapshot snapshot() const;
+  /// Of every row_step-th row (> 0): an image of so many rows; the counts are over those, too.
+  Snapshot snapshot(std::uint32_t row_step = 1) const;
 
   /// Of the samples that a snapshot shows. Nothing until every row has two halves of equal size.
   std::optional<ErrorEstimate> error() const;

@@ -165,6 +165,48 @@ TEST(House, R7_NothingIsDrawnUntilItFits) {
   bandsaw::test::holds("R7", "no loop without a count where samples are mapped");
 }
 
+/// The types that headers define, each as "namespace::name", and where.
+std::map<std::string, std::set<std::string>> types_of_headers() {
+  const std::regex opens(R"(^namespace ([\w:]+) \{$)");
+  const std::regex defines(R"(^(?:struct|class|enum class) (?:alignas\(\w+\) )?([\w:]+)[^;]*\{)");
+  std::map<std::string, std::set<std::string>> found;
+  for (const fs::path& source : sources()) {
+    if (source.extension() != ".h") {
+      continue;
+    }
+    std::vector<std::string> within;
+    for (const std::string& line : lines_of(source)) {
+      std::smatch match;
+      if (std::regex_search(line, match, opens)) {
+        within.push_back(match[1]);
+      } else if (line.starts_with("}  // namespace") && !within.empty()) {
+        within.pop_back();
+      } else if (std::regex_search(line, match, defines)) {
+        std::string name;
+        for (const std::string& space : within) {
+          name += space + "::";
+        }
+        found[name + match[1].str()].insert(source.string());
+      }
+    }
+  }
+  return found;
+}
+
+// Two types of one name, in headers that no file includes together, would still be one to the
+// linker: their inline members would be mixed without a word.
+TEST(House, ATypeIsDefinedInOneHeader) {
+  const auto found = types_of_headers();
+  EXPECT_GT(found.size(), 300u);
+  EXPECT_TRUE(found.contains("bandsaw::coordinator::action::Lease"));
+  for (const auto& [name, where] : found) {
+    const std::set<std::string> either_is_built = {"renderlib/base/simd_avx2.h",
+                                                   "renderlib/base/simd_plain.h"};
+    EXPECT_TRUE(where.size() == 1 || where == either_is_built)
+        << name << " is defined in " << *where.begin() << " and in " << *where.rbegin();
+  }
+}
+
 TEST(House, FilesStayReadable) {
   for (const fs::path& source : sources()) {
     EXPECT_LE(lines_of(source).size(), 300u) << source << " wants to be two files";

@@ -1,6 +1,7 @@
 #include "worker/session/farm_calls.h"
 
 #include <algorithm>
+#include <span>
 
 #include "proto/wire/limits.h"
 #include "renderlib/base/status_macros.h"
@@ -15,8 +16,7 @@ constexpr std::chrono::milliseconds kTransferDeadline{60'000};
 farm::BandHeader header_of(const FinishedBand& band, const std::string& instance,
                            const LeaseName& lease) {
   const BandPixels& pixels = band.pixels;
-  const auto bytes = absl::MakeConstSpan(reinterpret_cast<const std::byte*>(pixels.sums.data()),
-                                         pixels.sums.size() * sizeof(double));
+  const absl::Span<const std::byte> bytes = std::as_bytes(std::span(pixels.sums));
   farm::BandHeader header;
   header.set_job(band.task.job);
   header.mutable_band()->set_first_sample(pixels.band.samples.first);
@@ -92,8 +92,7 @@ absl::Status FarmCalls::get_blob(const wire::Digest& digest, std::uint64_t offse
       status = absl::DataLossError("the coordinator left out a piece of a blob");
     } else {
       offset += chunk.data().size();
-      status = take(absl::MakeConstSpan(reinterpret_cast<const std::byte*>(chunk.data().data()),
-                                        chunk.data().size()));
+      status = take(std::as_bytes(std::span(chunk.data())));
     }
   }
   if (!status.ok()) {

@@ -1,0 +1,21 @@
+#include "proto/link/random.h"
+
+#include <sys/random.h>
+
+#include "absl/strings/escaping.h"
+#include "renderlib/base/check.h"
+
+namespace bandsaw::link {
+
+std::string random_bytes(std::size_t count) {
+  std::string bytes(count, '\0');
+  BANDSAW_CHECK(getentropy(bytes.data(), bytes.size()) == 0,
+                "Linux gives up to 256 random bytes at any time");
+  return bytes;
+}
+
+std::string random_hex(std::size_t count) { return absl::BytesToHexString(random_bytes(count)); }
+
+std::string make_secret() { return absl::WebSafeBase64Escape(random_bytes(16)); }
+
+}  // namespace bandsaw::link
