@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
@@ -111,10 +112,38 @@ class Panel {
     return out;
   }
 
-  static std::string number(int power) { return absl::StrFormat("%g", std::pow(10.0, power)); }
+  static std::string number(int power) {
+    if (power >= -4 && power <= 4) {
+      return absl::StrFormat("%g", std::pow(10.0, power));
+    }
+    constexpr std::array<const char*, 10> kSmall = {"⁰", "¹", "²", "³", "⁴",
+                                                    "⁵", "⁶", "⁷", "⁸", "⁹"};
+    std::string out = power < 0 ? "10⁻" : "10";
+    for (const char digit : std::to_string(std::abs(power))) {
+      out += kSmall[static_cast<std::size_t>(digit - '0')];
+    }
+    return out;
+  }
+
+  /// Lines that fall leave room at the bottom left, lines that rise at the top left.
+  bool names_on_top() const {
+    int below = 0;
+    for (const PlotLine& line : panel_.lines) {
+      for (const auto& [x, y] : line.points) {
+        if (x > 0 && y > 0 && x_.place(x) < 0.4) {
+          below += y_.place(y) < 0.5 ? 1 : -1;
+        }
+      }
+    }
+    return below > 0;
+  }
 
   std::string lines() const {
     std::string out;
+    const double names_top =
+        names_on_top()
+            ? top_ + kLegendLine
+            : top_ + kTall - 8 - kLegendLine * static_cast<double>(panel_.lines.size() - 1);
     for (std::size_t i = 0; i < panel_.lines.size(); ++i) {
       const PlotLine& line = panel_.lines[i];
       const char* const colour = kColours[i % kColours.size()];
@@ -130,9 +159,7 @@ class Panel {
       absl::StrAppendFormat(
           &out, "<polyline points=\"%s\" fill=\"none\" stroke=\"%s\" stroke-width=\"1.6\"/>\n%s",
           path, colour, dots);
-      // From the bottom left, where lines that fall leave room.
-      const double y =
-          top_ + kTall - 8 - kLegendLine * static_cast<double>(panel_.lines.size() - 1 - i);
+      const double y = names_top + kLegendLine * static_cast<double>(i);
       absl::StrAppend(
           &out, text(left_ + 8, y,
                      line.note.empty() ? line.name : absl::StrCat(line.name, " · ", line.note),

@@ -1,0 +1,43 @@
+#!/usr/bin/env bash
+# What Bandsaw costs and gains on this machine: its kernel beside Embree's, error against time, growth with what a scene has.
+# Usage: deploy/bench.sh [--quick] [FOLDER]    (default out/bench; about 20 minutes on two cores after the build, --quick: two)
+# In the folder: bench.md (all tables), kernel.txt, study.csv, study.svg, growth.json, growth_*.svg.
+# Embree's columns are there where libembree-dev is installed. BANDSAW_BUILD=DIR: the build to use; otherwise build/release, made here.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+quick=
+if [ "${1:-}" = --quick ]; then quick=--quick; shift; fi
+folder=${1:-out/bench}
+case "$folder" in -*) echo "usage: deploy/bench.sh [--quick] [FOLDER]" >&2; exit 2 ;; esac
+build=${BANDSAW_BUILD:-build/release}
+mkdir -p "$folder"
+
+if [ -z "${BANDSAW_BUILD:-}" ]; then
+  cmake --preset release -DBANDSAW_TESTS=ON >/dev/null
+fi
+cmake --build "$build" --target bandsaw bandsaw-import kernel_bench needs_bench growth_bench
+
+gallery=renderlib/gallery
+if [ -n "$quick" ]; then
+  meshes=(icosphere) samples=64 seeds=2
+else
+  meshes=() samples=256 seeds=4
+fi
+
+section() { printf '\n## %s\n\n' "$1"; }
+{
+  printf '# %s, %s threads, %s\n' "$(sed -n 's/^model name[^:]*: //p' /proc/cpuinfo | head -1)" "$(nproc)" "$(git describe --always --dirty)"
+  section 'The kernel: millions of rays a second, and times Embree'
+  echo '```'
+  "$build/tests/kernel_bench" "${meshes[@]}" | tee "$folder/kernel.txt"
+  echo '```'
+  section 'Error against time'
+  "$build/bin/bandsaw" study --samples "$samples" --seeds "$seeds" --quiet -o "$folder/study.csv" -o "$folder/study.svg" \
+    "$gallery/cornell.textproto" "$gallery/spheres.textproto" "$gallery/mesh.textproto" "$gallery/books/one_weekend.textproto"
+  section 'Growth'
+  "$build/tests/growth_bench" $quick "$folder"
+  if [ -z "$quick" ]; then
+    section 'What each need costs a scene that has it not'
+    "$build/tests/needs_bench" "$gallery/cornell.textproto" "$gallery/spheres.textproto" "$gallery/mesh.textproto"
+  fi
+} | tee "$folder/bench.md"

@@ -1,0 +1,38 @@
+#include "tests/bench/measured_apart.h"
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+
+namespace bandsaw::bench {
+
+Figures measured_apart(const std::function<Figures()>& work) {
+  std::fflush(stdout);
+  int ends[2] = {};
+  if (pipe(ends) != 0) {
+    std::perror("pipe");
+    std::exit(1);
+  }
+  const pid_t child = fork();
+  if (child == 0) {
+    const Figures figures = work();
+    _exit(write(ends[1], &figures, sizeof figures) == sizeof figures ? 0 : 1);
+  }
+  Figures figures;
+  int status = 0;
+  rusage used{};
+  const bool told = child > 0 && read(ends[0], &figures, sizeof figures) == sizeof figures;
+  close(ends[0]);
+  close(ends[1]);
+  if (!told || wait4(child, &status, 0, &used) != child || status != 0) {
+    std::fprintf(stderr, "a measurement failed: no memory?\n");
+    std::exit(1);
+  }
+  figures.peak_bytes = 1024.0 * static_cast<double>(used.ru_maxrss);
+  return figures;
+}
+
+}  // namespace bandsaw::bench
