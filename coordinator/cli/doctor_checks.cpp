@@ -13,8 +13,8 @@
 #include "coordinator/cli/import_process.h"
 #include "coordinator/rpc/port_check.h"
 #include "coordinator/store/data_folder.h"
-#include "coordinator/store/file.h"
 #include "proto/wire/versions.h"
+#include "renderlib/base/file.h"
 #include "renderlib/render/pixel_version.h"
 
 namespace bandsaw::coordinator {

@@ -9,8 +9,8 @@
 #include "coordinator/cli/doctor_checks.h"
 #include "coordinator/cli/farm_client.h"
 #include "coordinator/cli/find_farm.h"
-#include "coordinator/store/file.h"
 #include "proto/link/certificate.h"
+#include "renderlib/base/file.h"
 
 namespace bandsaw::coordinator {
 namespace {

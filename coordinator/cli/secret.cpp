@@ -10,7 +10,7 @@
 #include "coordinator/cli/join_files.h"
 #include "coordinator/cli/json.h"
 #include "coordinator/store/data_folder.h"
-#include "coordinator/store/file.h"
+#include "renderlib/base/file.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {

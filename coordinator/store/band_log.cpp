@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "coordinator/store/mapped_file.h"
+#include "renderlib/base/mapped_file.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {

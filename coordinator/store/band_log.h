@@ -8,7 +8,7 @@
 #include "absl/functional/function_ref.h"
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "coordinator/store/file.h"
+#include "renderlib/base/file.h"
 #include "renderlib/render/band_file.h"
 
 namespace bandsaw::coordinator {

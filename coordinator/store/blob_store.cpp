@@ -7,9 +7,9 @@
 #include <system_error>
 
 #include "absl/strings/str_cat.h"
-#include "coordinator/store/file.h"
-#include "coordinator/store/mapped_file.h"
 #include "proto/wire/limits.h"
+#include "renderlib/base/file.h"
+#include "renderlib/base/mapped_file.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {

@@ -6,7 +6,7 @@
 
 #include "absl/status/statusor.h"
 #include "coordinator/core/types.h"
-#include "coordinator/store/file.h"
+#include "renderlib/base/file.h"
 
 namespace bandsaw::coordinator {
 

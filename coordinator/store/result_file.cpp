@@ -5,9 +5,9 @@
 #include <span>
 
 #include "absl/strings/str_cat.h"
-#include "coordinator/store/file.h"
 #include "coordinator/store/staged_file.h"
 #include "renderlib/base/check.h"
+#include "renderlib/base/file.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/render/settings.h"
 

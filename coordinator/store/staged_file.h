@@ -8,7 +8,7 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
-#include "coordinator/store/file.h"
+#include "renderlib/base/file.h"
 
 namespace bandsaw::coordinator {
 

@@ -71,29 +71,7 @@ absl::Status fill(int file, absl::Span<const std::byte> bytes, const std::string
   return status;
 }
 
-absl::Status sync_folder(const std::string& folder) {
-  const int handle = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (handle < 0) {
-    return errno_status(errno, absl::StrCat("cannot open folder ", folder));
-  }
-  const int result = ::fsync(handle);
-  const int error = errno;
-  ::close(handle);
-  // Some file systems cannot sync folders; they have nothing to lose then.
-  if (result != 0 && error != EINVAL && error != EROFS) {
-    return errno_status(error, absl::StrCat("cannot sync folder ", folder));
-  }
-  return absl::OkStatus();
-}
-
 }  // namespace
-
-absl::Status errno_status(int error, const std::string& what) {
-  if (error == EFBIG) {  // a limit on the size of files is as much "no room" as a full disk
-    return absl::ResourceExhaustedError(absl::ErrnoToStatus(error, what).message());
-  }
-  return absl::ErrnoToStatus(error, what);
-}
 
 absl::Status write_file_atomically(const std::string& path, absl::Span<const std::byte> bytes) {
   const std::string what = absl::StrCat("cannot write ", path);

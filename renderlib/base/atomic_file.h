@@ -7,12 +7,9 @@
 
 #include "absl/status/status.h"
 #include "absl/types/span.h"
+#include "renderlib/base/file.h"
 
 namespace bandsaw {
-
-/// The canonical status for an errno: ENOENT NOT_FOUND, EACCES PERMISSION_DENIED, ENOSPC
-/// RESOURCE_EXHAUSTED, …; the message is "what: strerror".
-absl::Status errno_status(int error, const std::string& what);
 
 /// On any error nothing is left behind and the target is unchanged.
 absl::Status write_file_atomically(const std::string& path, absl::Span<const std::byte> bytes);

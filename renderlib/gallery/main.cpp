@@ -29,7 +29,7 @@
 namespace bandsaw::gallery {
 namespace {
 
-absl::Status make_folder(const std::string& path) {
+absl::Status make_open_folder(const std::string& path) {
   return mkdir(path.c_str(), 0777) == 0 || errno == EEXIST ? absl::OkStatus()
                                                            : errno_status(errno, path);
 }
@@ -48,7 +48,7 @@ absl::Status make_all(const std::string& folder) {
   const std::string study = folder + "/study";
   const std::string books = folder + "/books";
   for (const std::string& path : {folder, study, books}) {
-    RETURN_IF_ERROR(make_folder(path));
+    RETURN_IF_ERROR(make_open_folder(path));
   }
   RETURN_IF_ERROR(write(folder + "/vase.obj", vase()));
   RETURN_IF_ERROR(write(folder + "/pawn.obj", pawn()));

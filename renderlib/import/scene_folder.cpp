@@ -1,17 +1,12 @@
 #include "renderlib/import/scene_folder.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <filesystem>
 
-#include "absl/cleanup/cleanup.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
-#include "renderlib/base/atomic_file.h"
+#include "renderlib/base/file.h"
+#include "renderlib/base/status_macros.h"
 
 namespace bandsaw {
 namespace fs = std::filesystem;
@@ -92,38 +87,15 @@ absl::StatusOr<std::string> SceneFolder::resolve_any_case(const std::string& nam
 }
 
 absl::StatusOr<std::string> read_whole_file(const std::string& path, std::uint64_t most_bytes) {
-  const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (fd < 0) {
-    return errno_status(errno, path);
-  }
-  const absl::Cleanup close_file = [fd] { close(fd); };
-  struct stat info {};
-  if (fstat(fd, &info) != 0) {
-    return errno_status(errno, path);
-  }
-  if (!S_ISREG(info.st_mode)) {
-    return absl::InvalidArgumentError(absl::StrCat(path, ": is not a file"));
-  }
-  const auto size = static_cast<std::uint64_t>(info.st_size);
+  ASSIGN_OR_RETURN(const File file, File::open_regular(path));
+  ASSIGN_OR_RETURN(const std::uint64_t size, file.size());
   if (size > most_bytes) {
     return absl::ResourceExhaustedError(
         absl::StrCat(path, ": has ", size, " bytes, at most ", most_bytes, " are read"));
   }
   std::string bytes(size, '\0');
-  std::size_t done = 0;
-  while (done < bytes.size()) {
-    const ssize_t got = read(fd, bytes.data() + done, bytes.size() - done);
-    if (got < 0 && errno == EINTR) {
-      continue;
-    }
-    if (got < 0) {
-      return errno_status(errno, path);
-    }
-    if (got == 0) {
-      bytes.resize(done);
-    }
-    done += static_cast<std::size_t>(got);
-  }
+  RETURN_IF_ERROR(
+      file.read(0, absl::MakeSpan(reinterpret_cast<std::byte*>(bytes.data()), bytes.size())));
   return bytes;
 }
 

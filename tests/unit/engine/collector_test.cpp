@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "coordinator/store/file.h"
+#include "renderlib/base/file.h"
 #include "renderlib/package/package.h"
 #include "tests/support/scenes.h"
 #include "tests/support/temp_dir.h"

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "coordinator/store/file.h"
+#include "renderlib/base/file.h"
 #include "tests/support/full_disk.h"
 #include "tests/support/temp_dir.h"
 #include "tests/unit/store/test_files.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-// The few calls to the file system that the store needs, as values and statuses.
+// The few calls to the file system that are needed, as values and statuses.
 
 #include <fcntl.h>
 #include <sys/types.h>
@@ -14,13 +14,19 @@
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
 
-namespace bandsaw::coordinator {
+namespace bandsaw {
+
+/// The canonical status for an errno: ENOENT NOT_FOUND, EACCES PERMISSION_DENIED, ENOSPC
+/// RESOURCE_EXHAUSTED, …; the message is "what: strerror".
+absl::Status errno_status(int error, const std::string& what);
 
 /// An open file descriptor that closes itself.
 class File {
  public:
   /// `flags` as open(2) takes them; O_CLOEXEC is added, a new file is readable by its owner alone.
   static absl::StatusOr<File> open(const std::string& path, int flags);
+  /// To read. INVALID_ARGUMENT: not a regular file; nothing waits for the writer of a pipe.
+  static absl::StatusOr<File> open_regular(const std::string& path, int flags = 0);
   File(File&& other) noexcept : fd_(std::exchange(other.fd_, -1)), path_(std::move(other.path_)) {}
   File& operator=(File&& other) noexcept;
   ~File();
@@ -51,4 +57,4 @@ bool file_exists(const std::string& path);
 /// Removes a file; fine when it is not there.
 absl::Status remove_file(const std::string& path);
 
-}  // namespace bandsaw::coordinator
+}  // namespace bandsaw

@@ -1,4 +1,4 @@
-#include "coordinator/store/mapped_file.h"
+#include "renderlib/base/mapped_file.h"
 
 #include <sys/mman.h>
 
@@ -6,14 +6,13 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "coordinator/store/file.h"
-#include "renderlib/base/atomic_file.h"
+#include "renderlib/base/file.h"
 #include "renderlib/base/status_macros.h"
 
-namespace bandsaw::coordinator {
+namespace bandsaw {
 
-absl::StatusOr<MappedFile> MappedFile::open(const std::string& path) {
-  ASSIGN_OR_RETURN(const File file, File::open(path, O_RDONLY));
+absl::StatusOr<MappedFile> MappedFile::open(const std::string& path, int flags) {
+  ASSIGN_OR_RETURN(const File file, File::open_regular(path, flags));
   ASSIGN_OR_RETURN(const std::uint64_t size, file.size());
   if (size == 0) {
     return MappedFile(nullptr, 0);
@@ -34,4 +33,4 @@ MappedFile::~MappedFile() {
   }
 }
 
-}  // namespace bandsaw::coordinator
+}  // namespace bandsaw

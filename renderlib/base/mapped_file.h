@@ -8,14 +8,13 @@
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
 
-namespace bandsaw::coordinator {
+namespace bandsaw {
 
-/// The file MUST NOT be cut while it is mapped: files of the data folder are only ever replaced or
-/// removed.
+/// The file MUST NOT be cut while it is mapped: what is mapped is only ever replaced or removed.
 class MappedFile {
  public:
-  /// NOT_FOUND: no such file.
-  static absl::StatusOr<MappedFile> open(const std::string& path);
+  /// `flags`: as File::open_regular. NOT_FOUND: no such file.
+  static absl::StatusOr<MappedFile> open(const std::string& path, int flags = 0);
   MappedFile(MappedFile&& other) noexcept;
   MappedFile& operator=(MappedFile&&) = delete;
   ~MappedFile();
@@ -27,4 +26,4 @@ class MappedFile {
   std::size_t size_ = 0;
 };
 
-}  // namespace bandsaw::coordinator
+}  // namespace bandsaw

@@ -1,4 +1,4 @@
-#include "coordinator/store/file.h"
+#include "renderlib/base/file.h"
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -6,10 +6,16 @@
 #include <cerrno>
 
 #include "absl/strings/str_cat.h"
-#include "renderlib/base/atomic_file.h"
 #include "renderlib/base/status_macros.h"
 
-namespace bandsaw::coordinator {
+namespace bandsaw {
+
+absl::Status errno_status(int error, const std::string& what) {
+  if (error == EFBIG) {  // a limit on the size of files is as much "no room" as a full disk
+    return absl::ResourceExhaustedError(absl::ErrnoToStatus(error, what).message());
+  }
+  return absl::ErrnoToStatus(error, what);
+}
 
 absl::StatusOr<File> File::open(const std::string& path, int flags) {
   int fd = -1;
@@ -20,6 +26,18 @@ absl::StatusOr<File> File::open(const std::string& path, int flags) {
     return errno_status(errno, absl::StrCat("cannot open ", path));
   }
   return File(fd, path);
+}
+
+absl::StatusOr<File> File::open_regular(const std::string& path, int flags) {
+  ASSIGN_OR_RETURN(File file, open(path, O_RDONLY | O_NONBLOCK | flags));
+  struct stat info {};
+  if (::fstat(file.fd_, &info) != 0) {
+    return errno_status(errno, path);
+  }
+  if (!S_ISREG(info.st_mode)) {
+    return absl::InvalidArgumentError(absl::StrCat(path, ": is not a file"));
+  }
+  return file;
 }
 
 File& File::operator=(File&& other) noexcept {
@@ -98,7 +116,8 @@ absl::Status make_folder(const std::string& path) {
 
 absl::Status sync_folder(const std::string& path) {
   ASSIGN_OR_RETURN(const File folder, File::open(path, O_RDONLY | O_DIRECTORY));
-  if (::fsync(folder.fd()) != 0) {
+  // Some file systems cannot sync folders; they have nothing to lose then.
+  if (::fsync(folder.fd()) != 0 && errno != EINVAL && errno != EROFS) {
     return errno_status(errno, absl::StrCat("cannot sync the folder ", path));
   }
   return absl::OkStatus();
@@ -113,4 +132,4 @@ absl::Status remove_file(const std::string& path) {
   return absl::OkStatus();
 }
 
-}  // namespace bandsaw::coordinator
+}  // namespace bandsaw

@@ -1,0 +1,32 @@
+#include "renderlib/base/file.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "renderlib/base/mapped_file.h"
+#include "tests/support/temp_dir.h"
+
+namespace bandsaw {
+namespace {
+
+TEST(File, WhatIsNoFileIsRefusedAtOnce) {
+  const test::TempDir folder;
+  const std::string pipe = folder / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  // Opened as a file would be, it would wait for somebody who writes.
+  EXPECT_EQ(File::open_regular(pipe).status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_EQ(MappedFile::open(folder.path()).status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_EQ(File::open_regular(folder / "none").status().code(), absl::StatusCode::kNotFound);
+}
+
+TEST(File, ALinkIsFollowedOnlyWhereItMay) {
+  const test::TempDir folder;
+  ASSERT_TRUE(File::open(folder / "file", O_WRONLY | O_CREAT).ok());
+  ASSERT_EQ(symlink((folder / "file").c_str(), (folder / "link").c_str()), 0);
+  EXPECT_TRUE(MappedFile::open(folder / "link").ok());
+  EXPECT_FALSE(MappedFile::open(folder / "link", O_NOFOLLOW).ok());
+}
+
+}  // namespace
+}  // namespace bandsaw
