@@ -1,0 +1,77 @@
+#!/usr/bin/env bash
+# Runs deploy/tutorial.md, block by block, on three machines made of network namespaces. Exit 77: they cannot be made here (run as root).
+# A block's first line says where: on=HOST; `stays`: it goes on in the background, once it has said "join"; `stops`: those on that
+# machine are told to end. Usage: tutorial.sh BUILD-FOLDER
+set -euo pipefail
+build=$(cd "$1" && pwd)
+page=$(cd "$(dirname "$0")/../.." && pwd)/deploy/tutorial.md
+work=$(mktemp -d)
+net=bandsaw-$$
+hosts=(studio desk attic)
+
+finish() {
+  for pids in "$work"/*/pids; do [ -f "$pids" ] && xargs kill <"$pids" 2>/dev/null || true; done
+  wait
+  for host in switch "${hosts[@]}"; do ip netns delete "$net-$host" 2>/dev/null || true; done
+  rm -rf "$work"
+}
+trap finish EXIT
+
+make_hosts() {
+  ip netns add "$net-switch"
+  ip -netns "$net-switch" link add bridge type bridge
+  ip -netns "$net-switch" link set bridge up
+  local number=0
+  for host in "${hosts[@]}"; do
+    number=$((number + 1))
+    mkdir "$work/$host"
+    ip netns add "$net-$host"
+    ip -netns "$net-switch" link add "$host" type veth peer name cable netns "$net-$host"
+    ip -netns "$net-switch" link set "$host" master bridge up
+    ip -netns "$net-$host" link set lo up
+    ip -netns "$net-$host" address add "10.78.0.$number/24" dev cable
+    ip -netns "$net-$host" link set cable up
+  done
+}
+
+# The page's placeholders are what a person would paste.
+pasted() {
+  local text=$1 farm=$work/studio/farm
+  [ -s "$farm/join" ] && text=${text//--join JOIN/--join $(cat "$farm/join")}
+  [ -s "$farm/farm" ] && text=${text//--farm FARM/--farm $(cat "$farm/farm")}
+  printf '%s' "$text"
+}
+
+run_block() {
+  local host=$1 how=$2 text
+  text=$(pasted "$3")
+  cd "$work/$host"
+  local machine=(ip netns exec "$net-$host" env -i "HOME=$PWD" "PATH=$build/bin:/usr/bin:/bin:/usr/sbin" bash -euo pipefail -c)
+  case $how in
+    stays)
+      "${machine[@]}" "exec $text" >log 2>&1 &
+      echo $! >>pids
+      until grep -q join log; do
+        kill -0 $! || { cat log; return 1; }
+        sleep 0.1
+      done ;;
+    stops) xargs kill <pids ; rm pids ;;
+    *) "${machine[@]}" "$text" ;;
+  esac
+}
+
+make_hosts 2>/dev/null || { echo "needs root, and a kernel with network namespaces"; exit 77; }
+host= how= text=
+while IFS= read -r line; do
+  case $line in
+    '```sh on='*) read -r _ host how <<<"${line/on=/}"; text= ;;
+    '```')
+      if [ -n "$host" ]; then
+        echo "--- $host${how:+ ($how)}"
+        run_block "$host" "$how" "$text" </dev/null
+      fi
+      host= ;;
+    *) [ -n "$host" ] && text+=$line$'\n' ;;
+  esac
+done <"$page"
+echo "the tutorial holds"
