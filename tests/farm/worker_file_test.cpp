@@ -1,0 +1,46 @@
+// The worker is one file: what it needs of a machine beside the kernel is glibc.
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <sstream>
+
+#include "tests/support/process.h"
+
+namespace bandsaw::test {
+namespace {
+
+std::set<std::string> libraries_of(const std::string& program) {
+  const Finished read = run({"/usr/bin/readelf", "--dynamic", "--wide", program});
+  EXPECT_EQ(read.code, 0) << read.err;
+  std::set<std::string> libraries;
+  std::istringstream lines(read.out);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t begin = line.find('[');
+    if (line.find("(NEEDED)") != std::string::npos && begin != std::string::npos) {
+      libraries.insert(line.substr(begin + 1, line.find(']') - begin - 1));
+    }
+  }
+  return libraries;
+}
+
+TEST(WorkerFile, NeedsNothingButGlibc) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "a sanitizer brings libraries of its own";
+#endif
+  const std::set<std::string> glibc = {"libc.so.6",       "libm.so.6",  "libdl.so.2",
+                                       "libpthread.so.0", "librt.so.1", "ld-linux-x86-64.so.2"};
+  const std::set<std::string> needed = libraries_of(BANDSAW_WORKER_BIN);
+  EXPECT_TRUE(needed.contains("libc.so.6"));
+  for (const std::string& library : needed) {
+    EXPECT_TRUE(glibc.contains(library)) << library;
+  }
+}
+
+// Programs that are linked with shared libraries show that the test above can fail.
+TEST(WorkerFile, TheCommandNeedsMore) {
+  EXPECT_TRUE(libraries_of(BANDSAW_BIN).contains("libstdc++.so.6"));
+}
+
+}  // namespace
+}  // namespace bandsaw::test

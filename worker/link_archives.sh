@@ -1,0 +1,22 @@
+#!/bin/sh
+# Links a program with archives wherever there is one beside the shared library: COMPILER ARGUMENT...
+# CMake's packages of Debian name shared libraries only; their order on the line is right for archives too.
+set -eu
+compiler=$1
+shift
+for argument; do
+  shift
+  case $argument in
+    -lc | -lm | -ldl | -lrt | -lpthread) name= ;;  # glibc's own
+    -l[!:]*) name=${argument#-l} ;;
+    /*/lib*.so | /*/lib*.so.*) name=${argument##*/lib} name=${name%%.so*} ;;
+    *) name= ;;
+  esac
+  archive=lib$name.a
+  # The compiler says the name as it is where it knows no such file.
+  if [ -n "$name" ] && [ "$("$compiler" -print-file-name="$archive")" != "$archive" ]; then
+    argument=-l:$archive
+  fi
+  set -- "$@" "$argument"
+done
+exec "$compiler" "$@"
