@@ -15,6 +15,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "coordinator/cli/child_process.h"
+#include "coordinator/cli/program_folder.h"
 #include "proto/wire/limits.h"
 #include "renderlib/base/atomic_file.h"
 #include "renderlib/base/status_macros.h"
@@ -39,17 +40,14 @@ class ScratchFolder {
 };
 
 absl::StatusOr<std::string> import_program(const ImportLimits& limits) {
-  std::error_code error;
-  const fs::path program =
-      limits.program.empty()
-          ? fs::read_symlink("/proc/self/exe", error).parent_path() / "bandsaw-import"
-          : fs::path(limits.program);
-  if (error || access(program.c_str(), X_OK) != 0) {
+  const std::string program =
+      limits.program.empty() ? program_folder() + "/bandsaw-import" : limits.program;
+  if (access(program.c_str(), X_OK) != 0) {
     return absl::FailedPreconditionError(
         absl::StrCat("the program bandsaw-import, which reads scenes, is missing (looked for ",
-                     program.string(), "); install it beside bandsaw"));
+                     program, "); install it beside bandsaw"));
   }
-  return program.string();
+  return program;
 }
 
 namespace {

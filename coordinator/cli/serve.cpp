@@ -27,6 +27,7 @@ struct Serving {
   std::unique_ptr<Server> server;        // after the dashboard, which it tells of new secrets
   std::string folder;
   std::string join;     // of workers
+  std::string line;     // brings a worker to a machine that has none; may be empty
   std::string address;  // host:port
 };
 
@@ -82,6 +83,7 @@ absl::StatusOr<Serving> start(const ServeOptions& options) {
                                                  options.insecure));
   RETURN_IF_ERROR(
       write_join_file(folder, link::Role::kFarm, identity, addresses, options.insecure).status());
+  ASSIGN_OR_RETURN(serving.line, serving.web->worker_line(options, identity, serving.join));
   serving.address = absl::StrCat(host, ":", serving.server->port());
   return serving;
 }
@@ -110,6 +112,11 @@ ExitCode run(const ServeOptions& options, Process& process) {
         "warning: --insecure: nothing is encrypted, and whoever reads the network has the secrets");
   }
   process.console.line(absl::StrCat("join with:  bandsaw-worker --join ", serving->join));
+  if (!serving->line.empty()) {
+    process.console.line(absl::StrCat("or where there is no bandsaw-worker:  ", serving->line));
+  } else if (serving->web->worker) {
+    process.console.line("with --web 0.0.0.0:8787 there is a line that brings the worker along");
+  }
   process.interrupts.wait();
   process.console.line("stopping; jobs go on when the coordinator is started again");
   serving->server.reset();

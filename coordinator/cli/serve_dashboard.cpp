@@ -10,22 +10,31 @@
 #include "coordinator/cli/bring_scene.h"
 #include "coordinator/cli/data_folder.h"
 #include "coordinator/cli/join_addresses.h"
+#include "coordinator/cli/program_folder.h"
+#include "coordinator/cli/worker_program.h"
+#include "proto/link/certificate.h"
 #include "renderlib/base/atomic_file.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
 namespace {
 
+/// Of HOST:PORT; IPv6 without its brackets.
+std::string host_of(const std::string& address) {
+  const std::string host = address.substr(0, address.rfind(':'));
+  return host.front() == '[' && host.back() == ']' ? host.substr(1, host.size() - 2) : host;
+}
+
 /// Installed, and in a build folder: bin beside share.
 std::string gallery_folder() {
-  std::error_code error;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  return (program.parent_path().parent_path() / "share/bandsaw/gallery").string();
+  return std::filesystem::path(program_folder()).parent_path() / "share/bandsaw/gallery";
 }
 
 absl::StatusOr<std::unique_ptr<Dashboard>> start(const ServeOptions& options, Engine& engine,
-                                                 const link::Identity& identity) {
+                                                 const link::Identity& identity,
+                                                 const WorkerProgram& worker) {
   DashboardOptions wanted;
+  wanted.worker = worker;
   wanted.insecure = options.insecure;
   wanted.gallery = gallery_folder();
   wanted.bring = bring_scene(engine);
@@ -42,12 +51,8 @@ absl::StatusOr<std::unique_ptr<Dashboard>> start(const ServeOptions& options, En
     }
     return dashboard;
   }
-  const std::size_t colon = options.web.rfind(':');
-  wanted.host = options.web.substr(0, colon);
-  wanted.port = std::atoi(options.web.c_str() + colon + 1);
-  if (wanted.host.front() == '[' && wanted.host.back() == ']') {
-    wanted.host = wanted.host.substr(1, wanted.host.size() - 2);
-  }
+  wanted.host = host_of(options.web);
+  wanted.port = std::atoi(options.web.c_str() + options.web.rfind(':') + 1);
   auto dashboard = Dashboard::start(engine, identity, wanted);
   if (!dashboard.ok()) {
     return absl::FailedPreconditionError(
@@ -72,12 +77,37 @@ absl::Status ServedDashboard::write_link(const std::string& data_folder,
   return write_file_atomically(file, std::as_bytes(std::span(link)));
 }
 
+absl::StatusOr<std::string> ServedDashboard::worker_line(const ServeOptions& options,
+                                                         const link::Identity& identity,
+                                                         const std::string& join) const {
+  if (dashboard == nullptr || !worker) {
+    return "";
+  }
+  const bool here_only = options.web.empty() || is_loopback(host_of(options.web));
+  if (here_only && !is_loopback(host_of(options.listen))) {
+    return "";
+  }
+  std::optional<wire::Digest> key;
+  if (dashboard->secure()) {
+    ASSIGN_OR_RETURN(key, link::public_key_digest(identity.certificate_pem));
+  }
+  return coordinator::worker_line(url, key, *worker, join);
+}
+
 absl::StatusOr<ServedDashboard> serve_dashboard(const ServeOptions& options, Engine& engine,
                                                 const link::Identity& identity) {
   ServedDashboard served;
-  if (options.web != "none") {
-    ASSIGN_OR_RETURN(served.dashboard, start(options, engine, identity));
+  if (options.web == "none") {
+    return served;
   }
+  auto worker = load_worker_program();
+  if (worker.ok()) {
+    served.worker = worker->digest;
+  } else {  // a farm whose workers come by another way
+    spdlog::info("no worker is handed out: {}", std::string(worker.status().message()));
+    worker.emplace();
+  }
+  ASSIGN_OR_RETURN(served.dashboard, start(options, engine, identity, *worker));
   if (served.dashboard != nullptr) {
     const std::string host =
         options.web.empty() ? "127.0.0.1" : options.web.substr(0, options.web.rfind(':'));

@@ -34,6 +34,7 @@ class Dashboard::Impl {
         pictures_(engine),
         scenes_(engine, options.bring),
         gallery_(options.gallery),
+        worker_(options.worker),
         server_(std::move(tls)) {
     server_.set_default_headers(headers_of_every_answer());
     server_.set_pre_routing_handler(
@@ -46,6 +47,7 @@ class Dashboard::Impl {
           return HttpServer::HandlerResponse::Handled;
         });
     add_page(server_);
+    add_worker_program(server_, worker_);
     add_login(server_, access_);
     add_farm(server_, engine);
     add_jobs(server_, engine);
@@ -77,6 +79,7 @@ class Dashboard::Impl {
   Pictures pictures_;
   Scenes scenes_;
   const Gallery gallery_;
+  const WorkerProgram worker_;
   int port_ = 0;
   HttpServer server_;  // last: its threads use the others
 };

@@ -9,6 +9,7 @@
 #include "absl/status/statusor.h"
 #include "coordinator/engine/engine.h"
 #include "coordinator/web/scenes.h"
+#include "coordinator/web/worker_program.h"
 #include "proto/link/identity.h"
 
 namespace bandsaw::coordinator {
@@ -19,6 +20,7 @@ struct DashboardOptions {
   bool insecure = false;           ///< plain HTTP beyond loopback too
   std::string gallery;             ///< folder of scene files; need not be there
   BringScene bring;
+  WorkerProgram worker;  ///< what is handed out to machines that are to join
 };
 
 class Dashboard {

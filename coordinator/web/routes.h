@@ -8,12 +8,14 @@
 #include "coordinator/web/http_server.h"
 #include "coordinator/web/pictures.h"
 #include "coordinator/web/scenes.h"
+#include "coordinator/web/worker_program.h"
 
 namespace bandsaw::coordinator {
 
 /// The page's files, which are part of the program.
 void add_page(HttpServer& server);
-/// What is given outlives the server's threads, here and below.
+/// What is given outlives the server's threads, here and below. Nothing where there is no program.
+void add_worker_program(HttpServer& server, const WorkerProgram& program);
 void add_login(HttpServer& server, Access& access);
 void add_farm(HttpServer& server, Engine& engine);
 void add_jobs(HttpServer& server, Engine& engine);

@@ -42,6 +42,18 @@ Certificate parse_certificate(const std::string& pem) {
   return {PEM_read_bio_X509(bio.get(), nullptr, nullptr, nullptr), &X509_free};
 }
 
+absl::Status unreadable() { return absl::InvalidArgumentError("the certificate cannot be read"); }
+
+/// Of what OpenSSL wrote, which is freed; a size that is not positive: it could not.
+absl::StatusOr<wire::Digest> digest_of_der(unsigned char* der, int size) {
+  if (size <= 0) {
+    return failed("write a certificate as DER");
+  }
+  const std::string bytes(reinterpret_cast<const char*>(der), static_cast<std::size_t>(size));
+  OPENSSL_free(der);
+  return wire::sha256(bytes);
+}
+
 bool add_extension(X509* certificate, int nid, const std::string& value) {
   const Extension extension(X509V3_EXT_conf_nid(nullptr, nullptr, nid, value.c_str()),
                             &X509_EXTENSION_free);
@@ -97,16 +109,21 @@ absl::StatusOr<KeyAndCertificate> make_certificate(const std::string& name) {
 absl::StatusOr<wire::Digest> certificate_digest(const std::string& certificate_pem) {
   const Certificate certificate = parse_certificate(certificate_pem);
   if (certificate == nullptr) {
-    return absl::InvalidArgumentError("the certificate cannot be read");
+    return unreadable();
   }
   unsigned char* der = nullptr;
   const int size = i2d_X509(certificate.get(), &der);
-  if (size <= 0) {
-    return failed("write a certificate as DER");
+  return digest_of_der(der, size);
+}
+
+absl::StatusOr<wire::Digest> public_key_digest(const std::string& certificate_pem) {
+  const Certificate certificate = parse_certificate(certificate_pem);
+  if (certificate == nullptr) {
+    return unreadable();
   }
-  const std::string bytes(reinterpret_cast<const char*>(der), static_cast<std::size_t>(size));
-  OPENSSL_free(der);
-  return wire::sha256(bytes);
+  unsigned char* der = nullptr;
+  const int size = i2d_X509_PUBKEY(X509_get_X509_PUBKEY(certificate.get()), &der);
+  return digest_of_der(der, size);
 }
 
 absl::StatusOr<Validity> certificate_validity(const std::string& certificate_pem) {
@@ -116,7 +133,7 @@ absl::StatusOr<Validity> certificate_validity(const std::string& certificate_pem
   if (certificate == nullptr ||
       ASN1_TIME_to_tm(X509_get0_notBefore(certificate.get()), &from) != 1 ||
       ASN1_TIME_to_tm(X509_get0_notAfter(certificate.get()), &until) != 1) {
-    return absl::InvalidArgumentError("the certificate cannot be read");
+    return unreadable();
   }
   return Validity{static_cast<double>(timegm(&from)), static_cast<double>(timegm(&until))};
 }

@@ -21,6 +21,10 @@ absl::StatusOr<KeyAndCertificate> make_certificate(const std::string& name);
 /// SHA-256 of the DER form. INVALID_ARGUMENT: not a certificate.
 absl::StatusOr<wire::Digest> certificate_digest(const std::string& certificate_pem);
 
+/// SHA-256 of the public key (SubjectPublicKeyInfo, RFC 7469, section 2.4). INVALID_ARGUMENT: not a
+/// certificate.
+absl::StatusOr<wire::Digest> public_key_digest(const std::string& certificate_pem);
+
 /// From when until when it is valid, in seconds since 1970.
 struct Validity {
   double from = 0;

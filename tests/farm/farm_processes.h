@@ -15,9 +15,9 @@ namespace bandsaw::test {
 
 class FarmProcesses {
  public:
-  /// Starts the coordinator; on the machine "house" where there are `hosts`, which MUST stay. A
-  /// worker is then started on the machine of its name.
-  explicit FarmProcesses(const Hosts* hosts = nullptr);
+  /// Starts the coordinator, with `options` besides; on the machine "house" where there are
+  /// `hosts`, which MUST stay. A worker is then started on the machine of its name.
+  explicit FarmProcesses(const Hosts* hosts = nullptr, std::vector<std::string> options = {});
 
   /// Starts a worker and waits until it has joined.
   Process& add_worker(const std::string& name, int threads);
@@ -44,6 +44,7 @@ class FarmProcesses {
   void start_coordinator();
   TempDir folder_;
   const Hosts* hosts_;
+  std::vector<std::string> options_;
   std::string listen_;
   std::unique_ptr<Process> coordinator_;
   std::string earlier_log_;

@@ -61,6 +61,26 @@ TEST(Identity, ItsCertificateIsValidNowAndForYears) {
   EXPECT_FALSE(certificate_validity("nonsense").ok());
 }
 
+// A certificate and its key's digest as the command openssl gives it: openssl x509 -noout -pubkey |
+// openssl pkey -pubin -outform der | sha256sum
+TEST(Identity, ItsPublicKeyHasADigest) {
+  const std::string certificate =
+      "-----BEGIN CERTIFICATE-----\n"
+      "MIIBbjCCAROgAwIBAgIUEsUGly2sB4OpZf0/SZu7/qlfow8wCgYIKoZIzj0EAwIw\n"
+      "DDEKMAgGA1UEAwwBYjAeFw0yNjExMjIwMjA3MDlaFw0yNjExMjMwMjA3MDlaMAwx\n"
+      "CjAIBgNVBAMMAWIwWTATBgcqhkjOPQIBBggqhkjOPQMBBwNCAATMc6CSImSmnCMg\n"
+      "HhyzoahrueSi+1MiUnR+iHXzBLONy1mlx/Zht1MdYm+uPsC9cAZAxJknWxG7oKeX\n"
+      "uJpdNbMuo1MwUTAdBgNVHQ4EFgQUYoFMUeNQJH7Qz1GBGDcHlIcrZGIwHwYDVR0j\n"
+      "BBgwFoAUYoFMUeNQJH7Qz1GBGDcHlIcrZGIwDwYDVR0TAQH/BAUwAwEB/zAKBggq\n"
+      "hkjOPQQDAgNJADBGAiEAqwmh0FZ6RKHNFLQXVpLGVAAc3QJC/faMXnkxEwZLu3MC\n"
+      "IQDIwl4XVMGn/ZUB6IshRMVDgutyfjC7X/H6uaJJBxaNvg==\n"
+      "-----END CERTIFICATE-----\n";
+  const auto digest = public_key_digest(certificate);
+  ASSERT_TRUE(digest.ok()) << digest.status();
+  EXPECT_EQ(digest->hex(), "2fff1845e9fba182b56afd73980d03da00d60de7f20b21a87a49270b4e00b898");
+  EXPECT_FALSE(public_key_digest("nonsense").ok());
+}
+
 TEST(Identity, IsTheSameTheNextTime) {
   const test::TempDir folder;
   const absl::StatusOr<Identity> first = load_or_make_identity(folder.path());

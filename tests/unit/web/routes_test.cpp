@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 
+#include "absl/strings/escaping.h"
 #include "coordinator/web/metrics.h"
 #include "tests/unit/web/web_farm.h"
 
@@ -31,6 +32,17 @@ TEST_F(RoutesTest, ThePageHasItsFilesAndItsRules) {
   EXPECT_THAT(page->get_header_value("Content-Security-Policy"), HasSubstr("default-src 'none'"));
   EXPECT_EQ(get("/main.js")->get_header_value("Content-Type"), "text/javascript; charset=utf-8");
   EXPECT_EQ(get("/nothing.js")->status, 404);
+}
+
+TEST_F(RoutesTest, TheWorkersProgramIsHandedOutWithVersionAndDigest) {
+  headers_.clear();  // to whoever asks: it holds no secret
+  const auto got = get("/bandsaw-worker");
+  ASSERT_TRUE(got);
+  EXPECT_EQ(got->status, 200);
+  EXPECT_EQ(got->body, std::string(3 << 20, 'w'));
+  EXPECT_EQ(got->get_header_value("X-Bandsaw-Version"), "1.2.3");
+  const std::string raw = wire::sha256(got->body).raw();
+  EXPECT_EQ(got->get_header_value("Repr-Digest"), "sha-256=:" + absl::Base64Escape(raw) + ":");
 }
 
 TEST_F(RoutesTest, ADroppedSceneBecomesAJob) {

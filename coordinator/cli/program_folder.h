@@ -1,0 +1,13 @@
+#pragma once
+
+// Where this program lies, and with it the others.
+
+#include <string>
+
+namespace bandsaw::coordinator {
+
+/// The folder of the program that runs, links resolved: beside it lie bandsaw-import and
+/// bandsaw-worker, and the gallery in ../share.
+std::string program_folder();
+
+}  // namespace bandsaw::coordinator

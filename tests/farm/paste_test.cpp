@@ -1,0 +1,84 @@
+// The line that `bandsaw serve` prints for a machine that has no worker: as pasted into its shell.
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <regex>
+
+#include "tests/farm/farm_processes.h"
+
+namespace bandsaw::test {
+namespace {
+
+const std::string kScene = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
+
+// What stands for a person's shell is to become the worker, so that signals reach it.
+std::string pasted_line(Process& coordinator) {
+  const std::regex line("no bandsaw-worker:  (curl [^\n]*&& )(\\./[^\n]*)\n");
+  std::smatch found;
+  EXPECT_TRUE(coordinator.wait_until([&](const std::string& out, const std::string&) {
+    return std::regex_search(out, line);
+  })) << coordinator.err();
+  const std::string out = coordinator.out();
+  std::regex_search(out, found, line);
+  return found[1].str() + "exec " + found[2].str();
+}
+
+// A shell in an empty folder, with nothing of ours on its PATH.
+Process paste(const FarmProcesses& farm, const std::string& host, const std::string& folder,
+              const std::string& line) {
+  return Process::start(
+      farm.on(host, {"/bin/sh", "-c", "mkdir " + folder + " && cd " + folder + " && " + line}),
+      {"PATH=/usr/bin:/bin", "HOME=" + folder});
+}
+
+TEST(Paste, ALineBringsAWorkerAlong) {
+  const auto hosts = Hosts::create({"house", "desk"});
+  if (!hosts.ok()) {
+    GTEST_SKIP() << hosts.status().message();
+  }
+  FarmProcesses farm(hosts->get(), {"--web", (*hosts)->address("house") + ":0"});
+  const std::string line = pasted_line(farm.coordinator());
+  EXPECT_NE(line.find(" --pinnedpubkey "), std::string::npos) << farm.coordinator().out();
+  Process worker = paste(farm, "desk", farm.path("desk"), line);
+  ASSERT_TRUE(worker.wait_for(" joined ")) << worker.err();
+  const Finished submitted =
+      run(farm.on("desk", farm.command({"submit", kScene, "--width", "32", "--samples", "16", "-o",
+                                        farm.path("a.pfm")})));
+  EXPECT_EQ(submitted.code, 0) << submitted.err;
+  EXPECT_NE(worker.err().find("rendered job=1"), std::string::npos) << worker.err();
+  worker.signal(SIGTERM);
+  EXPECT_EQ(worker.wait(), 0) << worker.err();
+}
+
+TEST(Paste, AnotherKeyOrAnotherProgramIsNotStarted) {
+  const auto hosts = Hosts::create({"house"});
+  if (!hosts.ok()) {
+    GTEST_SKIP() << hosts.status().message();
+  }
+  FarmProcesses farm(hosts->get(), {"--web", (*hosts)->address("house") + ":0"});
+  const std::string line = pasted_line(farm.coordinator());
+  const std::string zeros(43, 'A');
+  const std::string other_key =
+      std::regex_replace(line, std::regex("sha256//[^ ]*"), "sha256//" + zeros + "=");
+  Process impostor = paste(farm, "house", farm.path("one"), other_key);
+  EXPECT_EQ(impostor.wait(), 90) << impostor.err();  // curl: the pinned key does not match
+  const std::string other_digest =
+      std::regex_replace(line, std::regex("'[0-9a-f]{64} "), "'" + std::string(64, '0') + " ");
+  Process damaged = paste(farm, "house", farm.path("two"), other_digest);
+  EXPECT_EQ(damaged.wait(), 1);
+  EXPECT_NE(damaged.out().find("FAILED"), std::string::npos) << damaged.out();
+}
+
+TEST(Paste, OnLoopbackItNeedsNoKey) {
+  FarmProcesses farm(nullptr, {"--web", "127.0.0.1:0"});
+  const std::string line = pasted_line(farm.coordinator());
+  EXPECT_NE(line.find(" http://127.0.0.1:"), std::string::npos) << farm.coordinator().out();
+  Process worker = paste(farm, "", farm.path("desk"), line);
+  EXPECT_TRUE(worker.wait_for(" joined ")) << worker.err();
+  worker.signal(SIGTERM);
+  EXPECT_EQ(worker.wait(), 0) << worker.err();
+}
+
+}  // namespace
+}  // namespace bandsaw::test
