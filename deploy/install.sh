@@ -1,19 +1,21 @@
 #!/usr/bin/env bash
-# Installs the Debian 12 packages that building, testing or the demo need, if any is missing.
-# Usage: deploy/install.sh build|demo|test
+# Installs the Debian 12 packages that building, testing, packing or the demo need, if any is missing.
+# Usage: deploy/install.sh build|demo|packages|test
 set -euo pipefail
 
 build=(g++ cmake ninja-build pkg-config libgrpc++-dev protobuf-compiler protobuf-compiler-grpc libprotobuf-dev
   libabsl-dev libre2-dev libc-ares-dev zlib1g-dev libssl-dev libassimp-dev libstb-dev libspdlog-dev libsqlite3-dev
   libcli11-dev libtinyexr-dev libcpp-httplib-dev)
 demo=("${build[@]}" assimp-testmodels)
+packages=("${build[@]}" dpkg-dev file fakeroot)
 test=("${demo[@]}" libgtest-dev libgmock-dev git iproute2)
 
 case "${1:-}" in
   build) wanted=("${build[@]}") ;;
   demo) wanted=("${demo[@]}") ;;
+  packages) wanted=("${packages[@]}") ;;
   test) wanted=("${test[@]}") ;;
-  *) echo "usage: deploy/install.sh build|demo|test" >&2; exit 2 ;;
+  *) echo "usage: deploy/install.sh build|demo|packages|test" >&2; exit 2 ;;
 esac
 
 missing=()

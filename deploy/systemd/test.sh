@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# The units are understood by systemd, and what they keep a program from is what systemd calls safe. Exit status 77 where there is no
+# systemd-analyze.
+# Usage: deploy/systemd/test.sh FOLDER-OF-THE-PROGRAMS
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+programs=$(cd "$1" && pwd)
+if ! command -v systemd-analyze >/dev/null; then
+  echo "skipped: systemd-analyze is not here"
+  exit 77
+fi
+dir=$(mktemp -d)
+trap 'rm -rf "$dir"' EXIT
+for unit in "$here"/*.service "$here"/*.timer; do
+  sed "s#=/usr/bin/bandsaw#=$programs/bandsaw#" "$unit" >"$dir/${unit##*/}"
+done
+said=$(systemd-analyze verify --man=no "$dir"/*.service "$dir"/*.timer 2>&1 | grep -e "$dir" -e bandsaw || true)
+if [ -n "$said" ]; then
+  echo "$said" >&2
+  exit 1
+fi
+for unit in bandsaw bandsaw-worker; do
+  # In tenths; 10 is a service that may do everything, 2 and less is "OK".
+  systemd-analyze security --offline=true --threshold=20 --no-pager "$dir/$unit.service" >"$dir/found" || {
+    cat "$dir/found" >&2
+    exit 1
+  }
+  tail -n 1 "$dir/found"
+done
