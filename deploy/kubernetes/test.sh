@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# What can be known of these files without a cluster: kustomize builds them, what must agree does, the programs know the options.
+# Exit status 77 where there is no kubectl.
+# Usage: deploy/kubernetes/test.sh FOLDER-OF-THE-PROGRAMS
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+programs=$(cd "$1" && pwd)
+if ! command -v kubectl >/dev/null; then
+  echo "skipped: kubectl is not here"
+  exit 77
+fi
+built=$(kubectl kustomize "$here")
+
+has() { grep -q -e "$1" <<<"$built" || { echo "missing: $1" >&2; exit 1; }; }
+for kind in Namespace Service StatefulSet Deployment NetworkPolicy; do
+  has "^kind: $kind\$"
+done
+# The name that is listened on: the pod's, below the service that governs its set.
+has '^  name: coordinator$'
+has '^  serviceName: bandsaw$'
+has '^        - coordinator-0.bandsaw:7878$'
+[ "$(grep -c 'clusterIP: None' <<<"$built")" -eq 1 ]
+[ "$(grep -c 'runAsNonRoot: true' <<<"$built")" -eq 2 ]
+[ "$(grep -c 'readOnlyRootFilesystem: true' <<<"$built")" -eq 2 ]
+
+help=$("$programs/bandsaw" serve --help)
+for option in --data --listen --web; do
+  has "^        - $option\$"
+  grep -q -e "$option " <<<"$help" || { echo "bandsaw serve has no $option" >&2; exit 1; }
+done
+help=$("$programs/bandsaw-worker" --help)
+for option in --join --cache --name --threads; do
+  has "^        - $option\$"
+  grep -q -e "$option " <<<"$help" || { echo "bandsaw-worker has no $option" >&2; exit 1; }
+done
+echo "the parts agree with each other and with the programs"
