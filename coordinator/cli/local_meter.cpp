@@ -63,7 +63,7 @@ Progress LocalMeter::progress(Clocks now) const {
     job.curve = curve_;
     job.counters = counters_;
   }
-  job.error = job.curve.empty() ? -1 : job.curve.back().estimate.relative_rmse;
+  job.error = job.curve.empty() ? -1 : job.curve.back().estimate.at_most();
   if (job.counters.bad_samples > 0) {
     progress.bad_sample_at = bad_sample_text(job.counters);
   }

@@ -54,7 +54,7 @@ absl::StatusOr<Film> render_whole(const LocalJob& job, const StopRule& stop) {
                                 [&](const BandPixels& pixels) { return film.add(pixels, tiles); }));
     samples = pass->last;
     const auto estimate = film.error();
-    error = estimate ? estimate->relative_rmse : -1;
+    error = estimate ? estimate->at_most() : -1;
     job.meter.passed(samples, estimate, clocks());
     if (plan.wants_tiles(error)) {
       plan.plan(film.tile_errors(), samples);

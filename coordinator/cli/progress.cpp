@@ -58,6 +58,7 @@ ErrorPoint point_of(const farm::ErrorPoint& point) {
           .estimate = {.mean = point.mean(),
                        .rmse = point.rmse(),
                        .relative_rmse = point.relative_rmse(),
+                       .margin = point.margin(),
                        .relative_mse = point.relative_mse(),
                        .median = point.median(),
                        .percentile_95 = point.percentile_95(),

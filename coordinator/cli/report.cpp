@@ -27,6 +27,7 @@ JsonObject error_json(const ErrorEstimate& estimate) {
   return JsonObject()
       .text("method", "halves")
       .number("relative_rmse", estimate.relative_rmse)
+      .number("relative_rmse_at_most", estimate.at_most())
       .number("rmse", estimate.rmse)
       .number("mean", estimate.mean)
       .number("relative_mse", estimate.relative_mse)
@@ -43,6 +44,7 @@ std::vector<JsonObject> curve_json(const ErrorCurve& curve) {
     out.push_back(JsonObject()
                       .whole("samples_per_pixel", point.samples)
                       .number("relative_rmse", point.estimate.relative_rmse)
+                      .number("relative_rmse_at_most", point.estimate.at_most())
                       .number("relative_mse", point.estimate.relative_mse)
                       .number("elapsed_s", point.elapsed_s)
                       .number("cpu_s", point.cpu_s));

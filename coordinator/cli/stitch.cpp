@@ -57,7 +57,7 @@ class Stitcher {
     job.samples_done = samples * settings_.width * settings_.height;
     job.counters = counters_;
     if (const auto error = film_->error()) {
-      job.error = error->relative_rmse;
+      job.error = error->at_most();
       job.curve = {{samples, job.elapsed_s, job.cpu_s, *error}};
     }
     if (counters_.bad_samples > 0) {

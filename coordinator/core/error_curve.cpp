@@ -15,7 +15,7 @@ constexpr double kFallOfNoise = 0.5;
 constexpr double kSteepestFall = 0.65;
 
 double log_samples(const ErrorPoint& point) { return std::log(static_cast<double>(point.samples)); }
-double log_error(const ErrorPoint& point) { return std::log(point.estimate.relative_rmse); }
+double log_error(const ErrorPoint& point) { return std::log(point.estimate.at_most()); }
 
 }  // namespace
 
@@ -37,18 +37,18 @@ double fall_of(const ErrorCurve& curve) {
   std::vector<std::pair<double, double>> points;
   for (const ErrorPoint& point : curve) {
     if (16 * point.samples >= curve.back().samples) {
-      points.emplace_back(point.samples, point.estimate.relative_rmse);
+      points.emplace_back(point.samples, point.estimate.at_most());
     }
   }
   return std::clamp(-power_of(points).value_or(-kFallOfNoise), kFallOfNoise, kSteepestFall);
 }
 
 std::optional<double> samples_until(const ErrorCurve& curve, double target) {
-  if (curve.empty() || curve.back().estimate.relative_rmse <= 0) {
+  if (curve.empty() || curve.back().estimate.at_most() <= 0) {
     return std::nullopt;
   }
   const auto reached = std::find_if(curve.begin(), curve.end(), [&](const ErrorPoint& point) {
-    return point.estimate.relative_rmse <= target;
+    return point.estimate.at_most() <= target;
   });
   const bool at_first = reached == curve.begin();
   const ErrorPoint& near = at_first ? curve.front() : *std::prev(reached);

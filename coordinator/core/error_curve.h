@@ -31,8 +31,9 @@ void add_point(ErrorCurve& curve, const ErrorPoint& point);
 /// samples, kept in [0.5, 0.65]: random samples have 1/2. 1/2 where there are not two points.
 double fall_of(const ErrorCurve& curve);
 
-/// The samples a pixel at which the relative RMSE is `target`, > 0: between points by
-/// interpolation, beyond the last by its fall. Nothing without a point or of a black image.
+/// The samples a pixel at which the relative RMSE is at most `target`, > 0, by its margin too:
+/// between points by interpolation, beyond the last by its fall. Nothing without a point or of a
+/// black image.
 std::optional<double> samples_until(const ErrorCurve& curve, double target);
 
 /// The same in CPU seconds, which grow with the samples. Nothing where those are not known either.

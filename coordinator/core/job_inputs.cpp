@@ -124,9 +124,9 @@ void Core::State::on(const input::PassMerged& in) {
   if (job == nullptr || is_final(job->state) || in.samples < job->error_at) {
     return;
   }
-  const bool known = in.error && std::isfinite(in.error->relative_rmse);
+  const bool known = in.error && std::isfinite(in.error->at_most());
   if (known) {
-    job->error = in.error->relative_rmse;
+    job->error = in.error->at_most();
     job->error_at = in.samples;
     note_error(*job, in.samples, *in.error);
   }

@@ -40,7 +40,7 @@ struct Line {
   }
   void operator()(const record::ErrorMeasured& r) const {
     spdlog::debug("job={} samples={} error={:.5f}", r.job, r.point.samples,
-                  r.point.estimate.relative_rmse);
+                  r.point.estimate.at_most());
   }
   void operator()(const record::ShareCounted& r) const {
     spdlog::info("job={} worker={} samples={} cpu={:.3f} s", r.job, r.share.name, r.share.samples,

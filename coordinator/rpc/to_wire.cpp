@@ -59,6 +59,7 @@ farm::ErrorPoint to_message(const ErrorPoint& point) {
   message.set_mean(point.estimate.mean);
   message.set_rmse(point.estimate.rmse);
   message.set_relative_rmse(point.estimate.relative_rmse);
+  message.set_margin(point.estimate.margin);
   message.set_relative_mse(point.estimate.relative_mse);
   message.set_median(point.estimate.median);
   message.set_percentile_95(point.estimate.percentile_95);

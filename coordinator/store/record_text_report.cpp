@@ -11,6 +11,7 @@ void write_error(FieldWriter& out, const record::ErrorMeasured& r) {
   out.real("mean", estimate.mean);
   out.real("rmse", estimate.rmse);
   out.real("relative_rmse", estimate.relative_rmse);
+  out.real("margin", estimate.margin);
   out.real("relative_mse", estimate.relative_mse);
   out.real("median", estimate.median);
   out.real("percentile_95", estimate.percentile_95);
@@ -19,7 +20,7 @@ void write_error(FieldWriter& out, const record::ErrorMeasured& r) {
 }
 
 // Braced initialisers are evaluated in the order they are written, which is the order of the
-// fields.
+// fields. Records from before have no margin.
 
 record::ErrorMeasured read_error(FieldReader& in) {
   return {.job = in.number("job"),
@@ -29,6 +30,7 @@ record::ErrorMeasured read_error(FieldReader& in) {
                     .estimate = {.mean = in.real("mean"),
                                  .rmse = in.real("rmse"),
                                  .relative_rmse = in.real("relative_rmse"),
+                                 .margin = in.next_is("margin") ? in.real("margin") : 0,
                                  .relative_mse = in.real("relative_mse"),
                                  .median = in.real("median"),
                                  .percentile_95 = in.real("percentile_95"),

@@ -13,6 +13,17 @@ namespace {
 
 constexpr double kSmallest = 0.01;  // Keeps ratios to dark pixels from deciding all.
 
+// One image is off by a squared error T, of which its nodes tell V. Both are sums over pixels,
+// which do not depend on each other (sampling/sampler.h). Let a pixel's error be normal with
+// variance s. Its parts of T and V are independent, the first has the variance 2 s^2, the second r
+// s^2: r = 2 from two halves, about 1 with further nodes. So the variance of T - V is (2 + r) s^2,
+// where the square of the pixel's part of V is (1 + r) s^2 on average: between 4/3 and 3/2 of that.
+// Rare bright samples are in T and in V, which makes the difference smaller.
+constexpr double kOfSquares = 1.5;
+// Of 1.64 standard deviations a normal T - V is below 19 times of 20. The rest is for looking more
+// than once, and for few pixels, whose sums are skew (tests/unit/cli/stop_at_error_test.cpp).
+constexpr double kDeviations = 2;
+
 struct Estimated {
   double mean = 0;
   double variance = 0;
@@ -78,6 +89,7 @@ void ErrorSums::add_pixel(const double (&variances)[3], const double (&means)[3]
     value += means[c];
   }
   squares_ += of_pixel;
+  squared_variances_ += of_pixel * of_pixel;
   sum_ += value;
   // One sample of 1e30 is worth more than a float holds, and infinity would make the shares NaN.
   constexpr double kMost = std::numeric_limits<float>::max();
@@ -90,9 +102,12 @@ ErrorEstimate ErrorSums::estimate() const {
   ErrorEstimate out;
   out.mean = sum_ / count;
   out.rmse = std::sqrt(std::max(0.0, squares_ / count));
-  out.relative_rmse = out.mean > 0 ? out.rmse / out.mean : 0;
   out.relative_mse = std::max(0.0, relative_squares_ / count);
   if (out.mean > 0) {
+    const double beyond = kDeviations * std::sqrt(kOfSquares * squared_variances_);
+    out.relative_rmse = out.rmse / out.mean;
+    out.margin =
+        std::sqrt((std::max(0.0, squares_) + beyond) / count) / out.mean - out.relative_rmse;
     std::vector<float> relative(variances_.size());
     for (std::size_t i = 0; i < relative.size(); ++i) {
       relative[i] =

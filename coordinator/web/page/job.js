@@ -82,7 +82,7 @@ export function jobView(id) {
       text(log, `${status.log_of}:\n${status.log.join("\n")}`);
       orders.update(status);
       shown.update(page);
-      curve.update((status.curve ?? []).map((point) => ({t: point.elapsed_s, error: point.relative_rmse})), status.stop.error);
+      curve.update((status.curve ?? []).map((point) => ({t: point.elapsed_s, error: point.relative_rmse + point.margin})), status.stop.error);
     },
   };
 }

@@ -36,6 +36,19 @@ TEST(ErrorEstimate, IsHalfTheDifferenceOfTheHalves) {
   EXPECT_NEAR(error.relative_mse, 0.01 / 4.01, 1e-12);
 }
 
+// Two deviations of a sum of n equal squares: sqrt(1.5 n) of one of them.
+TEST(ErrorEstimate, TheMarginIsWiderTheFewerPixelsDecide) {
+  for (const int pixels : {24, 2400}) {
+    Row row;
+    for (int i = 0; i < 2400; ++i) {
+      row.add(1, i < pixels ? 0.1 : 0);
+    }
+    const ErrorEstimate error = row.estimate();
+    const double over = error.at_most() / error.relative_rmse;
+    EXPECT_NEAR(over * over, 1 + 2 * std::sqrt(1.5 / pixels), 1e-9) << pixels;
+  }
+}
+
 TEST(ErrorEstimate, APixelThatDecidesAllMakesItDoubtful) {
   Row even;
   Row uneven;
@@ -65,6 +78,7 @@ TEST(ErrorEstimate, BlackIsCertain) {
   row.add(0, 0);
   const ErrorEstimate error = row.estimate();
   EXPECT_EQ(error.relative_rmse, 0);
+  EXPECT_EQ(error.margin, 0);
   EXPECT_EQ(error.percentile_99, 0);
   EXPECT_EQ(error.worst_share, 0);
 }

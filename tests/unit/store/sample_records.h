@@ -55,6 +55,7 @@ inline std::vector<Record> sample_records() {
                                           .estimate = {.mean = 1e-300,
                                                        .rmse = 2.0 / 3,
                                                        .relative_rmse = 0.1,
+                                                       .margin = 0.02,
                                                        .relative_mse = 1e300,
                                                        .median = 0,
                                                        .percentile_95 = 1,
