@@ -22,11 +22,14 @@ struct Seen {
 };
 
 /// The sky is a lamp that covers all of it and is asked wherever a path is scattered: a background
-/// would be met by chance alone, which takes many times the samples.
+/// would be met by chance alone, which takes many times the samples. It is 8e6 free paths wide and
+/// misses 5e-7 of the sky. A wider one is worse: shadow rays end 2^-40 of its size before it, and
+/// at 8e9 that is a hundredth of a free path, which makes the flat ways through the medium longer
+/// and the half-space darker by 0.1 %.
 std::shared_ptr<const Scene> half_space(float albedo, float density) {
   SceneMaker maker;
   const double far = 4000 / density;
-  const double sky = 1e6 * far;
+  const double sky = 1e3 * far;
   maker.quad({-sky, 2 / density, -sky}, {2 * sky, 0, 0}, {0, 0, 2 * sky}, maker.lamp(1));
   test::fill_box(maker, {-far, -far, -far}, {far, 0, far},
                  test::add(maker, test::medium((1 - albedo) * density, albedo * density)));
