@@ -89,6 +89,9 @@ Progress progress_of(const farm::JobStatus& status) {
   job.error = status.error();
   job.counters.rays = status.rays();
   job.counters.bad_samples = status.bad_samples();
+  job.counters.negative_samples = status.negative_samples();
+  job.counters.truncated_paths = status.truncated_paths();
+  job.counters.dropped_primitives = status.dropped_primitives();
   job.cpu_s = status.cpu_s();
   job.priority = status.priority();
   job.log_of = status.log_of();

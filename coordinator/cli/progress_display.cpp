@@ -123,6 +123,9 @@ void ProgressDisplay::done(const Progress& progress, const std::vector<std::stri
   }
   if (!verbosity_.quiet) {
     console_.line(cost_line(progress));
+    if (const std::string left_out = left_out_line(progress); !left_out.empty()) {
+      console_.line(left_out);
+    }
   }
   const std::string name =
       outputs.empty() ? absl::StrCat("job ", progress.job.id) : names_of(outputs);

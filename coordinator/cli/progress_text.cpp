@@ -159,6 +159,22 @@ std::string doubt_line(const Progress& progress) {
                       "paths find; the true error is likely larger than said");
 }
 
+std::string left_out_line(const Progress& progress) {
+  const JobView& job = progress.job;
+  std::vector<std::string> parts;
+  if (job.counters.truncated_paths > 0 && job.samples_done > 0) {
+    const double share =
+        static_cast<double>(job.counters.truncated_paths) / static_cast<double>(job.samples_done);
+    parts.push_back(absl::StrCat(percent(share), " of the paths were cut off at depth ",
+                                 job.spec.settings.max_depth));
+  }
+  if (job.counters.dropped_primitives > 0) {
+    parts.push_back(absl::StrCat(count(job.counters.dropped_primitives, "primitive"),
+                                 " without area left out"));
+  }
+  return absl::StrJoin(parts, kDot);
+}
+
 std::string bad_samples_line(const Progress& progress) {
   const std::uint64_t bad = progress.job.counters.bad_samples;
   if (bad == 0) {

@@ -67,11 +67,15 @@ JsonObject work_json(const JobView& job) {
 }
 
 JsonObject health_json(const Progress& progress) {
+  const Counters& counters = progress.job.counters;
   JsonObject out;
-  out.whole("bad_samples", progress.job.counters.bad_samples);
-  return progress.job.counters.bad_samples == 0
-             ? out.unknown("first_bad_sample")
-             : out.text("first_bad_sample", progress.bad_sample_at);
+  out.whole("bad_samples", counters.bad_samples)
+      .whole("not_finite_samples", counters.bad_samples - counters.negative_samples)
+      .whole("negative_samples", counters.negative_samples)
+      .whole("truncated_paths", counters.truncated_paths)
+      .whole("dropped_primitives", counters.dropped_primitives);
+  return counters.bad_samples == 0 ? out.unknown("first_bad_sample")
+                                   : out.text("first_bad_sample", progress.bad_sample_at);
 }
 
 JsonObject who_json(const Progress& progress) {

@@ -100,6 +100,9 @@ farm::JobStatus to_message(const JobView& job) {
                               std::to_string(job.counters.bad_y) + "), sample " +
                               std::to_string(job.counters.bad_sample));
   }
+  message.set_negative_samples(job.counters.negative_samples);
+  message.set_truncated_paths(job.counters.truncated_paths);
+  message.set_dropped_primitives(job.counters.dropped_primitives);
   message.set_manifest_sha256(raw_digest(job.spec.manifest));
   message.set_cpu_s(job.cpu_s);
   message.set_priority(job.priority);

@@ -92,7 +92,10 @@ absl::Status PutBandCall::take_header(const farm::BandHeader& header) {
                       .bad_samples = header.counters().bad_samples(),
                       .bad_x = header.counters().bad_x(),
                       .bad_y = header.counters().bad_y(),
-                      .bad_sample = header.counters().bad_sample()};
+                      .bad_sample = header.counters().bad_sample(),
+                      .negative_samples = header.counters().negative_samples(),
+                      .truncated_paths = header.counters().truncated_paths(),
+                      .dropped_primitives = header.counters().dropped_primitives()};
   header_ = header;
   has_header_ = true;
   return absl::OkStatus();

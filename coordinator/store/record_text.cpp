@@ -54,11 +54,30 @@ void write_figures(FieldWriter& out, const record::Figures& r) {
   out.number("samples", r.samples);
   out.number("samples_per_pixel", r.samples_per_pixel);
   out.real("error", r.error);
+  out.number("negative_samples", r.counters.negative_samples);
+  out.number("truncated_paths", r.counters.truncated_paths);
+  out.number("dropped_primitives", r.counters.dropped_primitives);
   out.number("rays", r.counters.rays);
   out.number("bad_samples", r.counters.bad_samples);
   out.number("bad_x", r.counters.bad_x);
   out.number("bad_y", r.counters.bad_y);
   out.number("bad_sample", r.counters.bad_sample);
+}
+
+/// Records from before do not count what is left out.
+Counters read_counters(FieldReader& in) {
+  Counters counters;
+  if (in.next_is("negative_samples")) {
+    counters.negative_samples = in.number("negative_samples");
+    counters.truncated_paths = in.number("truncated_paths");
+    counters.dropped_primitives = in.number("dropped_primitives");
+  }
+  counters.rays = in.number("rays");
+  counters.bad_samples = in.number("bad_samples");
+  counters.bad_x = static_cast<std::uint32_t>(in.number("bad_x", UINT32_MAX));
+  counters.bad_y = static_cast<std::uint32_t>(in.number("bad_y", UINT32_MAX));
+  counters.bad_sample = in.number("bad_sample");
+  return counters;
 }
 
 Record read_figures(FieldReader& in) {
@@ -70,11 +89,7 @@ Record read_figures(FieldReader& in) {
       .samples = in.number("samples"),
       .samples_per_pixel = in.number("samples_per_pixel"),
       .error = in.real("error"),
-      .counters = {.rays = in.number("rays"),
-                   .bad_samples = in.number("bad_samples"),
-                   .bad_x = static_cast<std::uint32_t>(in.number("bad_x", UINT32_MAX)),
-                   .bad_y = static_cast<std::uint32_t>(in.number("bad_y", UINT32_MAX)),
-                   .bad_sample = in.number("bad_sample")}};
+      .counters = read_counters(in)};
 }
 
 Record read_record(absl::string_view kind, FieldReader& in) {

@@ -107,7 +107,11 @@ bool scatter_at(const PathContext& context, const SurfacePoint& point, std::uint
     path.radiance += path.throughput * light *
                      scattering_weight(scene, path.departure, point, options.technique);
   }
-  if (std::holds_alternative<Emissive>(material) || depth == options.max_depth) {
+  if (std::holds_alternative<Emissive>(material)) {
+    return false;
+  }
+  if (depth == options.max_depth) {
+    path.truncated = true;
     return false;
   }
   const auto* nested = nested_glass(material);
@@ -156,16 +160,12 @@ bool scatter_at(const PathContext& context, const SurfacePoint& point, std::uint
   return true;
 }
 
-}  // namespace
-
-Rgb path_radiance(const Scene& scene, const Ray& camera_ray, const PixelSampler& sampler,
-                  std::uint64_t sample, const PathOptions& options, std::uint64_t& rays) {
-  const PathContext context{scene, sampler, sample, options, rays};
-  PathState path{.ray = camera_ray};
+Rgb follow(const PathContext& context, PathState& path) {
+  const Scene& scene = context.scene;
   Nesting nesting;
   for (std::uint32_t depth = 0;; ++depth) {
-    const std::optional<SurfacePoint> seen =
-        first_surface(scene, path.ray, sampler, sample, depth, nesting, rays);
+    const std::optional<SurfacePoint> seen = first_surface(
+        scene, path.ray, context.sampler, context.sample, depth, nesting, context.rays);
     if (scene.needs().media) {
       const double way = seen ? length(seen->position - path.ray.origin) : kInfinity;
       const Passage passage = through_media(context, way, depth, path);
@@ -179,12 +179,22 @@ Rgb path_radiance(const Scene& scene, const Ray& camera_ray, const PixelSampler&
     if (!seen) {
       return path.radiance + path.throughput * background_light(scene, path.departure,
                                                                 path.ray.direction,
-                                                                options.technique);
+                                                                context.options.technique);
     }
     if (!scatter_at(context, *seen, depth, nesting, path)) {
       return path.radiance;
     }
   }
+}
+
+}  // namespace
+
+Rgb path_radiance(const Scene& scene, const Ray& camera_ray, const PixelSampler& sampler,
+                  std::uint64_t sample, const PathOptions& options, PathCounts& counts) {
+  PathState path{.ray = camera_ray};
+  const Rgb radiance = follow({scene, sampler, sample, options, counts.rays}, path);
+  counts.truncated += path.truncated ? 1 : 0;
+  return radiance;
 }
 
 }  // namespace bandsaw

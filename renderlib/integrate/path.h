@@ -30,13 +30,20 @@ struct PathOptions {
   bool local = false;
 };
 
+/// What following paths comes to.
+struct PathCounts {
+  std::uint64_t rays = 0;
+  /// Paths that would have been scattered once more than `max_depth` allows: what they would have
+  /// brought is missing.
+  std::uint64_t truncated = 0;
+};
+
 /// Scattering from this one on may end by Russian roulette.
 inline constexpr std::uint32_t kRouletteDepth = 3;
 
 /// The radiance that comes back along `camera_ray`, whose direction is a unit vector, by sample
-/// number `sample` of the pixel. Adds the rays it traced to `rays`. Deterministic, allocates
-/// nothing.
+/// number `sample` of the pixel. Adds to `counts`. Deterministic, allocates nothing.
 Rgb path_radiance(const Scene& scene, const Ray& camera_ray, const PixelSampler& sampler,
-                  std::uint64_t sample, const PathOptions& options, std::uint64_t& rays);
+                  std::uint64_t sample, const PathOptions& options, PathCounts& counts);
 
 }  // namespace bandsaw

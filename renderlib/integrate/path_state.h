@@ -27,6 +27,7 @@ struct PathState {
   /// What refraction did to the throughput; roulette must not mistake it for loss.
   double compression = 1;
   Departure departure = {};
+  bool truncated = false;  ///< PathCounts::truncated
 };
 
 /// What all steps of one path share.

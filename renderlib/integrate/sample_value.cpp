@@ -65,11 +65,11 @@ Rgb value_at(const Scene& scene, Integrator integrator, const Ray& ray, const Pi
 
 Rgb sample_value(const Scene& scene, Integrator integrator, const Ray& camera_ray,
                  const PixelSampler& sampler, std::uint64_t sample, const PathOptions& options,
-                 std::uint64_t& rays) {
+                 PathCounts& counts) {
   if (follows_light(integrator)) {
-    return path_radiance(scene, camera_ray, sampler, sample, options, rays);
+    return path_radiance(scene, camera_ray, sampler, sample, options, counts);
   }
-  return value_at(scene, integrator, camera_ray, sampler, sample, rays);
+  return value_at(scene, integrator, camera_ray, sampler, sample, counts.rays);
 }
 
 }  // namespace bandsaw

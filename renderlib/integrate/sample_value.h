@@ -13,6 +13,6 @@ namespace bandsaw {
 /// camera ray, and for occlusion one more, is traced.
 Rgb sample_value(const Scene& scene, Integrator integrator, const Ray& camera_ray,
                  const PixelSampler& sampler, std::uint64_t sample, const PathOptions& options,
-                 std::uint64_t& rays);
+                 PathCounts& counts);
 
 }  // namespace bandsaw

@@ -144,7 +144,9 @@ Passage through_media(const PathContext& context, double length, std::uint32_t d
   for (std::uint32_t number = 0; const std::optional<Stretch> stretch = walk.next(); ++number) {
     const double part = stretch->end - stretch->begin;
     const Flight flight(*stretch->medium, path.throughput, part);
-    const double chance = depth < context.options.max_depth ? flight.chance() : 0;
+    const bool may_scatter = depth < context.options.max_depth;
+    path.truncated = path.truncated || (!may_scatter && flight.chance() > 0);
+    const double chance = may_scatter ? flight.chance() : 0;
     const Vec3 origin = ray.origin + ray.direction * stretch->begin;
     const Step step{context,  depth,  number, *stretch->medium, origin, ray.direction,
                     ray.time, flight, chance};

@@ -63,6 +63,9 @@ void Counters::add(const Counters& other) {
     bad_sample = other.bad_sample;
   }
   bad_samples += other.bad_samples;
+  negative_samples += other.negative_samples;
+  truncated_paths += other.truncated_paths;
+  dropped_primitives = std::max(dropped_primitives, other.dropped_primitives);
 }
 
 }  // namespace bandsaw

@@ -71,6 +71,11 @@ struct Counters {
   std::uint32_t bad_x = 0;
   std::uint32_t bad_y = 0;
   std::uint64_t bad_sample = 0;
+  std::uint64_t negative_samples = 0;  ///< of bad_samples: those that are finite
+  /// Samples whose path was cut off at max_depth: what it would have brought is missing.
+  std::uint64_t truncated_paths = 0;
+  /// Of the scene (Scene::dropped_primitives): the same in all bands.
+  std::uint64_t dropped_primitives = 0;
 
   void add(const Counters& other);
   friend bool operator==(const Counters&, const Counters&) = default;

@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kMagicSize = kBandRecordMagic.size();
 constexpr std::size_t kDigestSize = 64;
 constexpr std::uint64_t kHeaderSize =
-    kMagicSize + 8 + kDigestSize + 3 * 4 + 8 + 2 * 8 + 2 * 4 + 2 * 8 + 2 * 4 + 3 * 8;
+    kMagicSize + 8 + kDigestSize + 3 * 4 + 8 + 2 * 8 + 2 * 4 + 2 * 8 + 2 * 4 + 6 * 8;
 constexpr std::uint64_t kHashSize = 8;
 
 class Writer {
@@ -87,6 +87,12 @@ absl::Status check(const BandRecord& record) {
       (counters.bad_samples > 0 && !bad_place_inside)) {
     return absl::InvalidArgumentError("counters: the bad samples do not lie in the band");
   }
+  if (counters.negative_samples > counters.bad_samples) {
+    return absl::InvalidArgumentError("counters: more samples are negative than bad");
+  }
+  if (counters.truncated_paths > samples.samples() * rows.count() * pixels.width) {
+    return absl::InvalidArgumentError("counters: more paths are truncated than there are");
+  }
   if (!std::isfinite(record.cpu_s) || record.cpu_s < 0) {
     return absl::InvalidArgumentError("cpu_s: must be finite and >= 0");
   }
@@ -118,6 +124,9 @@ Reader read_header(Reader reader, BandRecord& record) {
   reader.number(counters.bad_x);
   reader.number(counters.bad_y);
   reader.number(counters.bad_sample);
+  reader.number(counters.negative_samples);
+  reader.number(counters.truncated_paths);
+  reader.number(counters.dropped_primitives);
   reader.number(record.cpu_s);
   reader.number(record.renderer);
   return reader;
@@ -178,6 +187,9 @@ absl::StatusOr<std::vector<std::byte>> encode_band_record(const BandRecord& reco
   writer.number(pixels.counters.bad_x);
   writer.number(pixels.counters.bad_y);
   writer.number(pixels.counters.bad_sample);
+  writer.number(pixels.counters.negative_samples);
+  writer.number(pixels.counters.truncated_paths);
+  writer.number(pixels.counters.dropped_primitives);
   writer.number(record.cpu_s);
   writer.number(record.renderer);
   writer.put(pixels.sums.data(), pixels.sums.size() * sizeof(double));
@@ -193,7 +205,7 @@ absl::StatusOr<DecodedBandRecord> decode_band_record(absl::Span<const std::byte>
   }
   const std::byte* const begin = bytes.data() + (bytes.size() - there);
   if (std::memcmp(begin, kBandRecordMagic.data(), std::min<std::size_t>(kMagicSize, there)) != 0) {
-    return damaged(offset, "no band record of format 2 begins here");
+    return damaged(offset, "no band record of format 3 begins here");
   }
   if (there < kHeaderSize + kHashSize) {
     return cut_off(offset, kHeaderSize + kHashSize, there);

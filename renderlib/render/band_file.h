@@ -5,7 +5,7 @@
 // needed to know what it belongs to.
 //
 // A record, little-endian, no padding:
-//   "BSWBAND2"                                          8 bytes: magic and format version
+//   "BSWBAND3"                                          8 bytes: magic and format version
 //   size of the whole record                            u64
 //   package digest                                      64 lower-case hexadecimal digits
 //   width, height                                       u32 each
@@ -16,6 +16,8 @@
 //   rays, bad_samples                                   u64 each
 //   bad_x, bad_y                                        u32 each
 //   bad_sample                                          u64
+//   negative_samples, truncated_paths                   u64 each
+//   dropped_primitives                                  u64
 //   cpu_s                                               f64
 //   renderer                                            u64
 //   sums                                                f64 x rows x width x 3
@@ -35,7 +37,7 @@
 namespace bandsaw {
 
 /// What a record begins with: to find the next one after a damaged one.
-inline constexpr std::array<char, 8> kBandRecordMagic = {'B', 'S', 'W', 'B', 'A', 'N', 'D', '2'};
+inline constexpr std::array<char, 8> kBandRecordMagic = {'B', 'S', 'W', 'B', 'A', 'N', 'D', '3'};
 
 struct BandRecord {
   std::string package_digest;  ///< 64 lower-case hexadecimal digits

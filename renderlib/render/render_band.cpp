@@ -74,20 +74,27 @@ class BandRenderer {
   Sum leaf(const PixelSampler& sampler, std::uint32_t x, std::uint32_t y, std::uint64_t first,
            Counters& counters) const {
     Sum sum;
+    PathCounts counts;
     const std::uint64_t last = std::min(first + kBlockSamples, samples_.last);
     for (std::uint64_t sample = first; sample < last; ++sample) {
       const Sample4 at = sampler.group(sample, kGroupCamera);
       const Vec2 offset = bandsaw::sample(filter_, at[0], at[1]);
       const double when = moves_ ? sampler.group(sample, kGroupTime)[0] : 0;
       const Ray ray = camera_.ray(x + 0.5 + offset.x, y + 0.5 + offset.y, at[2], at[3], when);
-      const Rgb value =
-          sample_value(scene_, integrator_, ray, sampler, sample, options_, counters.rays);
-      if (!is_finite(value) || value.r < 0 || value.g < 0 || value.b < 0) {
-        counters.add({.bad_samples = 1, .bad_x = x, .bad_y = y, .bad_sample = sample});
+      const Rgb value = sample_value(scene_, integrator_, ray, sampler, sample, options_, counts);
+      const bool finite = is_finite(value);
+      if (!finite || value.r < 0 || value.g < 0 || value.b < 0) {
+        counters.add({.bad_samples = 1,
+                      .bad_x = x,
+                      .bad_y = y,
+                      .bad_sample = sample,
+                      .negative_samples = finite ? 1u : 0u});
         continue;
       }
       sum = sum + Sum{value.r, value.g, value.b};
     }
+    counters.rays += counts.rays;
+    counters.truncated_paths += counts.truncated;
     return sum;
   }
 
@@ -128,7 +135,7 @@ absl::StatusOr<BandPixels> render_band(const Scene& scene, const RenderSettings&
       .band = band,
       .width = settings.width,
       .sums = std::vector<double>(std::size_t{band.rows.count()} * settings.width * 3),
-      .counters = {}};
+      .counters = {.dropped_primitives = scene.dropped_primitives()}};
   std::vector<Counters> counters(static_cast<std::size_t>(units.count));
   std::vector<std::atomic<std::uint32_t>> runs_done(band.rows.count());
   std::atomic<std::uint32_t> rows_done = 0;

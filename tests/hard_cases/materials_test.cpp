@@ -127,17 +127,17 @@ TEST(MaterialHardCases, M11M12PathsEnd) {
     test::SceneMaker maker;
     maker.sphere({0, 0, 0}, 1, maker.diffuse(reflectance));
     const auto scene = maker.build();
-    std::uint64_t rays = 0;
+    PathCounts counts;
     const Ray ray{.origin = {0.5, 0, 0}, .direction = {0, 1, 0}};
     for (std::uint64_t sample = 0; sample < 64; ++sample) {
       const Rgb seen =
-          path_radiance(*scene, ray, PixelSampler(0, 1, 2), sample, {.max_depth = 200}, rays);
+          path_radiance(*scene, ray, PixelSampler(0, 1, 2), sample, {.max_depth = 200}, counts);
       EXPECT_TRUE(is_black(seen));
     }
     if (reflectance == 1) {
-      EXPECT_EQ(rays, 64u * 201);
+      EXPECT_EQ(counts.rays, 64u * 201);
     } else {
-      EXPECT_LE(rays, 64u * 8);
+      EXPECT_LE(counts.rays, 64u * 8);
     }
   }
   test::holds("M11", "64 paths end at their greatest depth");

@@ -28,9 +28,9 @@ std::shared_ptr<const Scene> white_ball(int slices, int stacks, bool smooth) {
 }
 
 double radiance(const Scene& scene, double x, double y) {
-  std::uint64_t rays = 0;
+  PathCounts counts;
   const Ray ray{.origin = {x, y, 5}, .direction = {0, 0, -1}};
-  return path_radiance(scene, ray, PixelSampler(0, 1, 2), 0, {.max_depth = 1}, rays).g;
+  return path_radiance(scene, ray, PixelSampler(0, 1, 2), 0, {.max_depth = 1}, counts).g;
 }
 
 TEST(SmoothNormals, T13_CoarseMeshesAreShadedAlmostAsFineOnes) {

@@ -46,12 +46,12 @@ Moments mean_radiance(const Scene& scene, const Wall& wall, const PathOptions& o
   for (std::uint64_t seed = 0; seed < 32; ++seed) {
     const PixelSampler sampler(seed, 3, 5);
     double sum = 0;
-    std::uint64_t rays = 0;
+    PathCounts counts;
     for (std::uint64_t sample = 0; sample < samples; ++sample) {
       const Sample4 at = sampler.group(sample, kGroupCamera);
       const Vec3 point = wall.corner + wall.u * at[0] + wall.v * at[1];
       const Ray ray{.origin = point + wall.normal() * 1e-6, .direction = -wall.normal()};
-      sum += path_radiance(scene, ray, sampler, sample, options, rays).g;
+      sum += path_radiance(scene, ray, sampler, sample, options, counts).g;
     }
     means.add(sum / static_cast<double>(samples));
   }

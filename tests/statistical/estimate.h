@@ -15,9 +15,9 @@ inline Moments radiance_along(const Scene& scene, const Ray& ray, const PathOpti
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     const PixelSampler sampler(seed, 11, 7);
     double sum = 0;
-    std::uint64_t rays = 0;
+    PathCounts counts;
     for (std::uint64_t sample = 0; sample < samples; ++sample) {
-      sum += path_radiance(scene, ray, sampler, sample, options, rays).g;
+      sum += path_radiance(scene, ray, sampler, sample, options, counts).g;
     }
     means.add(sum / static_cast<double>(samples));
   }

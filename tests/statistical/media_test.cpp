@@ -26,8 +26,8 @@ void expect_value(const Moments& radiance, double expected, double relative_erro
 }
 
 double one_sample(const Scene& scene, const Ray& ray, const PathOptions& options = {}) {
-  std::uint64_t rays = 0;
-  return path_radiance(scene, ray, PixelSampler(3, 1, 2), 0, options, rays).g;
+  PathCounts counts;
+  return path_radiance(scene, ray, PixelSampler(3, 1, 2), 0, options, counts).g;
 }
 
 SceneMaker white_sky() {
@@ -51,9 +51,9 @@ TEST(Media, V6AbsorbAsTheExponentialSays) {
   // Each channel by itself, through a slab, at an angle.
   SceneMaker maker = white_sky();
   test::fill_box(maker, {-99, 0, -99}, {99, 2, 99}, test::add(maker, {.absorption = {0, 0.5f, 2}}));
-  std::uint64_t rays = 0;
+  PathCounts counts;
   const Ray ray{.origin = {0, 5, 0}, .direction = normalize({1, -1, 0})};
-  const Rgb seen = path_radiance(*maker.build(), ray, PixelSampler(3, 1, 2), 0, {}, rays);
+  const Rgb seen = path_radiance(*maker.build(), ray, PixelSampler(3, 1, 2), 0, {}, counts);
   EXPECT_EQ(seen.r, 1);
   EXPECT_NEAR(seen.g, std::exp(-std::sqrt(2.0)), 1e-6);
   EXPECT_NEAR(seen.b, std::exp(-4 * std::sqrt(2.0)), 1e-6);
@@ -295,8 +295,7 @@ TEST(Media, V1OfNothingChangeNoBit) {
   const Ray ray{.origin = {0.3, 1.4, 3.5}, .direction = normalize({0.2, -0.2, -1})};
   const Moments seen = test::radiance_along(*with.build(), ray, {.max_depth = 8}, 256);
   EXPECT_GT(seen.mean(), 0);
-  EXPECT_EQ(seen.mean(),
-            test::radiance_along(*without.build(), ray, {.max_depth = 8}, 256).mean());
+  EXPECT_EQ(seen.mean(), test::radiance_along(*without.build(), ray, {.max_depth = 8}, 256).mean());
 }
 
 TEST(MediaTechniques, AgreeUnderAnUnevenSky) {

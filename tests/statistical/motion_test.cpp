@@ -36,13 +36,13 @@ void expect_irradiance(SceneMaker maker, double expected, std::uint64_t samples 
   for (std::uint64_t seed = 0; seed < 32; ++seed) {
     const PixelSampler sampler(seed, 11, 7);
     double sum = 0;
-    std::uint64_t rays = 0;
+    PathCounts counts;
     for (std::uint64_t sample = 0; sample < samples; ++sample) {
       const double share = sampler.group(sample, kGroupTime)[0];
       const double time = shutter.open + share * (shutter.close - shutter.open);
       const Ray down{.origin = {0, 1e-3, 0}, .direction = {0, -1, 0}, .time = time};
-      sum += path_radiance(*scene, down, sampler, sample,
-                           {.max_depth = 1, .technique = technique}, rays)
+      sum += path_radiance(*scene, down, sampler, sample, {.max_depth = 1, .technique = technique},
+                           counts)
                  .g;
     }
     means.add(sum / static_cast<double>(samples));
@@ -95,7 +95,8 @@ TEST(PlacedLight, OfAnEllipsoidIsTheSameByEveryTechnique) {
   SceneMaker maker;
   maker.scene.geometry.groups.resize(1);
   maker.scene.geometry.groups[0].spheres.push_back({{0, 0, 0}, 1, maker.lamp(1)});
-  maker.scene.geometry.instances.push_back(of_group(0, translation({0, 2, 0}) * scaling({1.5, 1e-4, 1.5})));
+  maker.scene.geometry.instances.push_back(
+      of_group(0, translation({0, 2, 0}) * scaling({1.5, 1e-4, 1.5})));
   expect_irradiance(maker, kPi * 2.25 / (2.25 + 4), 8192);
 
   maker.scene.geometry.instances[0].to_world =
@@ -108,8 +109,8 @@ TEST(PlacedLight, OfAnEllipsoidIsTheSameByEveryTechnique) {
   const Technique techniques[] = {Technique::kBoth, Technique::kLightsOnly,
                                   Technique::kScatteringOnly};
   for (std::size_t i = 0; i < 3; ++i) {
-    found[i] = test::radiance_along(*scene, down, {.max_depth = 1, .technique = techniques[i]},
-                                    8192);
+    found[i] =
+        test::radiance_along(*scene, down, {.max_depth = 1, .technique = techniques[i]}, 8192);
   }
   for (std::size_t i = 1; i < 3; ++i) {
     const double error = std::hypot(found[0].standard_error(), found[i].standard_error());
@@ -136,9 +137,9 @@ TEST(MovingLight, ShinesFromWhereItIs) {
   Shapes ball;
   ball.spheres.push_back({{0, 0, 0}, 0.5, MaterialId{0}});
   for (const Technique technique : {Technique::kBoth, Technique::kLightsOnly}) {
-    expect_irradiance(moving_lamp(ball, Key(-1, translation({0, 1.5, 0})),
-                                  Key(3, translation({0, 4, 0}))),
-                      kPi * 0.25 / (1.5 * 4), 4096, technique);
+    expect_irradiance(
+        moving_lamp(ball, Key(-1, translation({0, 1.5, 0})), Key(3, translation({0, 4, 0}))),
+        kPi * 0.25 / (1.5 * 4), 4096, technique);
   }
   // A square that turns about its own middle: of its two sides one is always seen.
   Shapes disk;
@@ -158,16 +159,17 @@ TEST(MovingLight, ShinesFromWhereItIs) {
   for (std::uint64_t seed = 0; seed < 32; ++seed) {
     const PixelSampler sampler(seed, 3, 4);
     double sum = 0;
-    std::uint64_t rays = 0;
+    PathCounts counts;
     for (std::uint64_t sample = 0; sample < 4096; ++sample) {
       const double time = 2 * sampler.group(sample, kGroupTime)[0];
       const Ray down{.origin = {0, 1e-3, 0}, .direction = {0, -1, 0}, .time = time};
-      sum += path_radiance(*scene, down, sampler, sample, {.max_depth = 1}, rays).g;
+      sum += path_radiance(*scene, down, sampler, sample, {.max_depth = 1}, counts).g;
     }
     means.add(sum / 4096);
   }
   // The disk is not quite small: 1e-4 of the value.
-  EXPECT_NEAR(means.mean() * kPi, closed_form, 4 * kPi * means.standard_error() + 2e-4 * closed_form);
+  EXPECT_NEAR(means.mean() * kPi, closed_form,
+              4 * kPi * means.standard_error() + 2e-4 * closed_form);
 }
 
 // C9: a bright half-plane whose edge moves by ten pixels.

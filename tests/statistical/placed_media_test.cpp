@@ -38,10 +38,10 @@ Moments seen_along(const Scene& scene, Ray ray, std::uint64_t samples) {
   for (std::uint64_t seed = 0; seed < 32; ++seed) {
     const PixelSampler sampler(seed, 11, 7);
     double sum = 0;
-    std::uint64_t rays = 0;
+    PathCounts counts;
     for (std::uint64_t sample = 0; sample < samples; ++sample) {
       ray.time = sampler.group(sample, kGroupTime)[0];
-      sum += path_radiance(scene, ray, sampler, sample, {.max_depth = 1000}, rays).g;
+      sum += path_radiance(scene, ray, sampler, sample, {.max_depth = 1000}, counts).g;
     }
     means.add(sum / static_cast<double>(samples));
   }
@@ -57,8 +57,7 @@ void expect_mean(const Moments& seen, double expected) {
 TEST(MovingMedia, V6GrowingBallAbsorbsByTheMeanOverTheShutter) {
   const double s = 0.8;
   const Medium smoke = test::medium(0.8f, 0);
-  const auto scene =
-      moving_ball(smoke, scaling({0.5, 0.5, 0.5}), scaling({1.5, 1.5, 1.5})).build();
+  const auto scene = moving_ball(smoke, scaling({0.5, 0.5, 0.5}), scaling({1.5, 1.5, 1.5})).build();
   expect_mean(seen_along(*scene, {.origin = {-9, 0, 0}, .direction = {1, 0, 0}}, 1024),
               (std::exp(-s) - std::exp(-3 * s)) / (2 * s));
 }
@@ -87,8 +86,7 @@ TEST(MovingMedia, O8WithoutLossAreInvisibleInAWhiteSky) {
       moving_ball(test::medium(0, 2, 0.5), scaling({2, 1, -1}),
                   translation({1, 0.5, 0}) * rotation({1, 1, 0}, 70) * scaling({1, 3, -2}))
           .build();
-  const Moments seen =
-      seen_along(*scene, {.origin = {-9, 0.1, 0.2}, .direction = {1, 0, 0}}, 256);
+  const Moments seen = seen_along(*scene, {.origin = {-9, 0.1, 0.2}, .direction = {1, 0, 0}}, 256);
   EXPECT_NEAR(seen.mean(), 1, 1e-5);
   EXPECT_LE(seen.standard_error(), 1e-5);
 }

@@ -34,6 +34,9 @@ farm::BandHeader header_of(const FinishedBand& band, const std::string& instance
   counters->set_bad_x(pixels.counters.bad_x);
   counters->set_bad_y(pixels.counters.bad_y);
   counters->set_bad_sample(pixels.counters.bad_sample);
+  counters->set_negative_samples(pixels.counters.negative_samples);
+  counters->set_truncated_paths(pixels.counters.truncated_paths);
+  counters->set_dropped_primitives(pixels.counters.dropped_primitives);
   counters->set_render_s(band.cost.render_s);
   counters->set_cpu_s(band.cost.cpu_s);
   return header;

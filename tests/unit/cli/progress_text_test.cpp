@@ -129,6 +129,18 @@ TEST(ProgressText, TheCostIsSaidWithWhatTheErrorIsMadeOf) {
   EXPECT_EQ(cost_line(progress), "256 samples a pixel · 8 M rays");
 }
 
+TEST(ProgressText, WhatIsLeftOutIsSaid) {
+  Progress progress = sample();
+  EXPECT_THAT(left_out_line(progress), IsEmpty());
+  progress.job.samples_done = 1000;
+  progress.job.spec.settings.max_depth = 5;
+  progress.job.counters.truncated_paths = 20;
+  EXPECT_EQ(left_out_line(progress), "2 % of the paths were cut off at depth 5");
+  progress.job.counters.dropped_primitives = 1;
+  EXPECT_EQ(left_out_line(progress),
+            "2 % of the paths were cut off at depth 5 · 1 primitive without area left out");
+}
+
 TEST(ProgressText, BadSamplesAreSaidLoudly) {
   Progress progress = sample();
   EXPECT_THAT(bad_samples_line(progress), IsEmpty());

@@ -31,7 +31,11 @@ Progress finished() {
   job.cpu_s = 4;
   job.samples_per_pixel = 64;
   job.samples_done = 64 * 24;
-  job.counters.rays = 8'000'000;
+  job.counters = {.rays = 8'000'000,
+                  .bad_samples = 5,
+                  .negative_samples = 2,
+                  .truncated_paths = 11,
+                  .dropped_primitives = 4};
   job.workers_used = 2;
   job.shares = {{1, "desk", 1000, 3}, {2, "", 536, 1}};
   job.curve = {{32, 1, 2, {.relative_rmse = 0.1}},
@@ -71,6 +75,10 @@ TEST(Report, IsJsonThatHoldsTheFigures) {
   const auto& workers = at(json, "machines", "workers").list_value().values();
   EXPECT_EQ(workers[0].struct_value().fields().at("name").string_value(), "desk");
   EXPECT_TRUE(workers[1].struct_value().fields().at("name").has_null_value());
+  EXPECT_EQ(at(json, "health", "not_finite_samples").number_value(), 3);
+  EXPECT_EQ(at(json, "health", "negative_samples").number_value(), 2);
+  EXPECT_EQ(at(json, "health", "truncated_paths").number_value(), 11);
+  EXPECT_EQ(at(json, "health", "dropped_primitives").number_value(), 4);
   EXPECT_EQ(at(json, "hashes", "pixels_sha256").string_value().size(), 64u);
 }
 

@@ -17,9 +17,9 @@ using test::SceneMaker;
 const Ray kAhead{.origin = {0, 0, 5}, .direction = {0, 0, -1}};
 
 Rgb value(const Scene& scene, Integrator integrator, std::uint32_t pixel = 1) {
-  std::uint64_t rays = 0;
+  PathCounts counts;
   const PathOptions options{.local = integrator == Integrator::kDirect};
-  return sample_value(scene, integrator, kAhead, PixelSampler(1, pixel, 2), 0, options, rays);
+  return sample_value(scene, integrator, kAhead, PixelSampler(1, pixel, 2), 0, options, counts);
 }
 
 TEST(MediaIntegrators, ABoundaryWithoutASurfaceIsInvisible) {
@@ -54,9 +54,10 @@ TEST(MediaIntegrators, DirectShowsLampsScatteredOnceAsPathsOfOneScatteringDo) {
   Moments direct;
   Moments once;
   for (std::uint32_t pixel = 0; pixel < 20000; ++pixel) {
-    std::uint64_t rays = 0;
+    PathCounts counts;
     direct.add(value(*scene, Integrator::kDirect, pixel).g);
-    once.add(path_radiance(*scene, kAhead, PixelSampler(2, pixel, 2), 0, {.max_depth = 1}, rays).g);
+    once.add(
+        path_radiance(*scene, kAhead, PixelSampler(2, pixel, 2), 0, {.max_depth = 1}, counts).g);
   }
   EXPECT_GT(direct.mean(), 0.005);
   EXPECT_LE(std::abs(direct.mean() - once.mean()),

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "tests/support/hard_case.h"
+#include "tests/support/media.h"
 #include "tests/support/scenes.h"
 
 namespace bandsaw {
@@ -13,8 +14,8 @@ namespace {
 using test::SceneMaker;
 
 Rgb trace(const Scene& scene, const Ray& ray, std::uint64_t sample, const PathOptions& options) {
-  std::uint64_t rays = 0;
-  return path_radiance(scene, ray, PixelSampler(1, 2, 3), sample, options, rays);
+  PathCounts counts;
+  return path_radiance(scene, ray, PixelSampler(1, 2, 3), sample, options, counts);
 }
 
 const Ray kAhead{.origin = {0.1, 0.2, 5}, .direction = {0, 0, -1}};
@@ -152,9 +153,31 @@ TEST(Path, CountsItsRays) {
   SceneMaker maker;
   maker.background(gray(1), gray(1));
   const auto scene = maker.build();
-  std::uint64_t rays = 41;
-  path_radiance(*scene, kAhead, PixelSampler(1, 2, 3), 0, {}, rays);
-  EXPECT_EQ(rays, 42u);
+  PathCounts counts{.rays = 41};
+  path_radiance(*scene, kAhead, PixelSampler(1, 2, 3), 0, {}, counts);
+  EXPECT_EQ(counts.rays, 42u);
+}
+
+// Inside of a closed sphere every path is cut off: once, wherever that is. In the open none is.
+TEST(Path, CountsThePathsThatItCutsOff) {
+  SceneMaker closed;
+  closed.sphere({0, 0, 0}, 10, closed.diffuse(0.5f));
+  SceneMaker misty = closed;
+  test::fog(misty, test::medium(0.1f, 0.1f));
+  SceneMaker open;
+  open.background(gray(1), gray(1));
+  open.sphere({0, 0, 0}, 1, open.diffuse(0.5f));
+  const auto truncated = [](const SceneMaker& maker) {
+    PathCounts counts;
+    for (std::uint64_t sample = 0; sample < 64; ++sample) {
+      path_radiance(*maker.build(), kAhead, PixelSampler(1, 2, 3), sample,
+                    {.max_depth = 2, .russian_roulette = false}, counts);
+    }
+    return counts.truncated;
+  };
+  EXPECT_EQ(truncated(closed), 64u);
+  EXPECT_EQ(truncated(misty), 64u);
+  EXPECT_EQ(truncated(open), 0u);
 }
 
 }  // namespace

@@ -14,19 +14,19 @@ using test::SceneMaker;
 
 Rgb value(const SceneMaker& maker, Integrator integrator, const Ray& ray,
           std::uint64_t sample = 0) {
-  std::uint64_t rays = 0;
+  PathCounts counts;
   return sample_value(*maker.build(), integrator, ray, PixelSampler(1, 2, 3), sample,
-                      {.max_depth = 16, .local = integrator == Integrator::kDirect}, rays);
+                      {.max_depth = 16, .local = integrator == Integrator::kDirect}, counts);
 }
 
 /// False alarms: 4 standard errors, 6e-5 each.
 double mean(const SceneMaker& maker, Integrator integrator, const Ray& ray, double expected) {
   const auto scene = maker.build();
   test::Moments moments;
-  std::uint64_t rays = 0;
+  PathCounts counts;
   for (std::uint32_t pixel = 0; pixel < 20'000; ++pixel) {
     moments.add(sample_value(*scene, integrator, ray, PixelSampler(1, pixel, 3), 0,
-                             {.max_depth = 16, .local = integrator == Integrator::kDirect}, rays)
+                             {.max_depth = 16, .local = integrator == Integrator::kDirect}, counts)
                     .g);
   }
   EXPECT_LT(std::abs(moments.z(expected)), 4) << moments.mean() << " for " << expected;

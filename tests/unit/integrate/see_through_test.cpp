@@ -36,11 +36,11 @@ Moments light_along(const SceneMaker& maker, const Ray& ray, int samples,
                     Technique technique = Technique::kBoth) {
   const auto scene = maker.build();
   Moments sum;
-  std::uint64_t rays = 0;
+  PathCounts counts;
   const PathOptions options{.technique = technique};
   for (int i = 0; i < samples; ++i) {
     const PixelSampler sampler(5, static_cast<std::uint32_t>(i), 3);
-    sum.add(path_radiance(*scene, ray, sampler, 0, options, rays).g);
+    sum.add(path_radiance(*scene, ray, sampler, 0, options, counts).g);
   }
   return sum;
 }

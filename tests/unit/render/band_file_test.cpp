@@ -22,8 +22,14 @@ BandRecord record() {
   for (int i = 0; i < 2 * 3 * 3; ++i) {
     record.pixels.sums.push_back(i * 0.1);
   }
-  record.pixels.counters = {
-      .rays = 1234, .bad_samples = 2, .bad_x = 1, .bad_y = 5, .bad_sample = 40};
+  record.pixels.counters = {.rays = 1234,
+                            .bad_samples = 2,
+                            .bad_x = 1,
+                            .bad_y = 5,
+                            .bad_sample = 40,
+                            .negative_samples = 1,
+                            .truncated_paths = 168,
+                            .dropped_primitives = 1ull << 40};
   record.cpu_s = 0.3;
   record.renderer = 0xFEDCBA9876543210u;
   return record;
@@ -103,6 +109,8 @@ TEST(BandFile, RecordsThatContradictThemselvesAreNotWritten) {
   EXPECT_TRUE(refused([](BandRecord& r) { r.pixels.band.rows.last = 10; }));
   EXPECT_TRUE(refused([](BandRecord& r) { r.pixels.band.samples.first = 16; }));
   EXPECT_TRUE(refused([](BandRecord& r) { r.pixels.counters.bad_y = 6; }));
+  EXPECT_TRUE(refused([](BandRecord& r) { r.pixels.counters.negative_samples = 3; }));
+  EXPECT_TRUE(refused([](BandRecord& r) { r.pixels.counters.truncated_paths = 169; }));
   EXPECT_TRUE(refused([](BandRecord& r) { r.settings.max_depth = 0; }));
   EXPECT_TRUE(refused([](BandRecord& r) { r.cpu_s = std::nan(""); }));
   EXPECT_TRUE(refused([](BandRecord& r) { r.cpu_s = -1; }));

@@ -115,5 +115,14 @@ TEST(Band, CountersKeepTheFirstBadSampleInRowColumnSampleOrderWhateverTheOrderOf
                             [](const Counters& a, const Counters& b) { return a.rays < b.rays; }));
 }
 
+TEST(Band, CountersAddUpButForWhatIsOfTheScene) {
+  Counters sum = {
+      .bad_samples = 2, .negative_samples = 1, .truncated_paths = 7, .dropped_primitives = 3};
+  sum.add({.bad_samples = 1, .negative_samples = 1, .truncated_paths = 1, .dropped_primitives = 3});
+  EXPECT_EQ(sum.negative_samples, 2u);
+  EXPECT_EQ(sum.truncated_paths, 8u);
+  EXPECT_EQ(sum.dropped_primitives, 3u);
+}
+
 }  // namespace
 }  // namespace bandsaw

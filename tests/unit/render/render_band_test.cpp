@@ -228,10 +228,25 @@ TEST(RenderBand, A3_SamplesThatOverflowAreCountedAndLeftOut) {
   EXPECT_GT(pixels->counters.bad_samples, 0u);
   EXPECT_EQ(pixels->counters.bad_y, 1u);
   EXPECT_GE(pixels->counters.bad_sample, 16u);
+  EXPECT_EQ(pixels->counters.negative_samples, 0u);
   for (const double sum : pixels->sums) {
     EXPECT_TRUE(std::isfinite(sum));
   }
   test::holds("A3", "left out of the sums, counted, the first one named");
+}
+
+TEST(RenderBand, CountsWhatIsLeftOut) {
+  test::SceneMaker maker;
+  maker.camera({0, 0, 0}, {0, 0, 1}, 20);
+  maker.sphere({0, 0, 0}, 1, maker.diffuse(0.5f));
+  maker.triangle({0, 0, 2}, {0, 0, 2}, {1, 0, 2}, maker.diffuse(0.5f));
+  const auto rendered = maker.build();
+  Pool pool(2);
+  const auto pixels = render_band(*rendered, {.width = 3, .height = 2, .max_depth = 1},
+                                  {{0, 16}, {0, 2}}, pool, kGoOn, {});
+  ASSERT_TRUE(pixels.ok());
+  EXPECT_EQ(pixels->counters.truncated_paths, 16u * 6);
+  EXPECT_EQ(pixels->counters.dropped_primitives, 1u);
 }
 
 TEST(RenderImage, PassesDoubleAndAreTheNodesOfTheWhole) {
