@@ -18,9 +18,9 @@ SampleRange pass_at(std::uint64_t block, std::uint64_t blocks, std::uint64_t end
   return {block * kBlockSamples, std::min((block + blocks) * kBlockSamples, end)};
 }
 
-/// x rounded down to a power of two times 4, 5, 6 or 7 quarters.
-std::uint64_t quarters(std::uint64_t x) {
-  const std::uint64_t step = std::max<std::uint64_t>(1, std::bit_floor(x) / 4);
+/// x rounded down to a power of two times 8, 9, … or 15 eighths.
+std::uint64_t eighths(std::uint64_t x) {
+  const std::uint64_t step = std::max<std::uint64_t>(1, std::bit_floor(x) / 8);
   return x / step * step;
 }
 
@@ -41,15 +41,19 @@ std::vector<SampleRange> passes_between(std::uint64_t from, std::uint64_t to) {
 std::uint64_t next_look(std::uint64_t samples, double error, double target,
                         std::uint64_t max_samples) {
   const std::uint64_t now = blocks_of(samples);
-  std::uint64_t next = std::max<std::uint64_t>(2, now + std::max<std::uint64_t>(1, now / 4));
+  const auto more = [now](std::uint64_t part) { return now + std::max<std::uint64_t>(1, part); };
+  std::uint64_t next = more(now / 4);
   if (!(error >= 0)) {
-    next = std::max<std::uint64_t>(2, 2 * now);
+    next = 2 * now;
   } else if (error > target) {
-    const double soonest = std::min(static_cast<double>(now) * (error / target),
-                                    static_cast<double>(blocks_of(max_samples)));
-    next = std::max(next, static_cast<std::uint64_t>(soonest));
+    const auto reached = [&](double power) {
+      return static_cast<std::uint64_t>(
+          std::min(std::ceil(static_cast<double>(now) * std::pow(error / target, power)),
+                   static_cast<double>(blocks_of(max_samples))));
+    };
+    next = std::max(std::clamp(reached(2), more(now / 8), more(now / 4)), reached(1));
   }
-  return std::min(quarters(next) * kBlockSamples, max_samples);
+  return std::min(eighths(std::max<std::uint64_t>(2, next)) * kBlockSamples, max_samples);
 }
 
 std::optional<std::uint64_t> expected_end(const ErrorCurve& curve, double target,
