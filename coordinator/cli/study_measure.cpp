@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/cpu_time.h"
+#include "coordinator/cli/study_adaptive.h"
 #include "coordinator/cli/study_pixel_stops.h"
 #include "coordinator/core/error_curve.h"
 #include "coordinator/core/power_fit.h"
@@ -119,6 +120,12 @@ class Study {
       seeds.add(independent.mean(), n, process_cpu_seconds() - start, independent.rays());
       return absl::OkStatus();
     }
+    if (method == Method::kAdaptive) {
+      ASSIGN_OR_RETURN(const AdaptiveImage adaptive,
+                       render_adaptively(scene_, settings, samples, pool_, stop_));
+      seeds.add(adaptive.image, adaptive.samples, process_cpu_seconds() - start, adaptive.rays);
+      return absl::OkStatus();
+    }
     ASSIGN_OR_RETURN(const RenderedImage rendered,
                      render_image(scene_, settings, samples, pool_, stop_, {}, ""));
     seeds.add(rendered.film.snapshot().image, n, process_cpu_seconds() - start,
@@ -168,6 +175,8 @@ const char* method_name(Method method) {
       return "lights asked alone (no MIS)";
     case Method::kNoLights:
       return "no lights asked (no NEE)";
+    case Method::kAdaptive:
+      return "adaptive";
     case Method::kIndependent:
       return "independent numbers";
     case Method::kPixelStops:

@@ -23,6 +23,7 @@ enum class Method {
   kFull,         ///< as render does it
   kNoMis,        ///< lights are found by asking them alone, where there is a density
   kNoLights,     ///< … by following directions alone: no next-event estimation
+  kAdaptive,     ///< more samples where there is more noise, about as many in all
   kIndependent,  ///< random numbers that know nothing of each other in place of Owen-scrambled nets
   /// Independent numbers, and each pixel ends at the first multiple of 16 samples where 1.96
   /// standard errors of its mean are within a tolerance of it. What many ray tracers do; it is
@@ -30,8 +31,8 @@ enum class Method {
   /// much.
   kPixelStops,
 };
-inline constexpr Method kMethods[] = {Method::kFull, Method::kNoMis, Method::kNoLights,
-                                      Method::kIndependent, Method::kPixelStops};
+inline constexpr Method kMethods[] = {Method::kFull,     Method::kNoMis,       Method::kNoLights,
+                                      Method::kAdaptive, Method::kIndependent, Method::kPixelStops};
 const char* method_name(Method method);
 
 /// Means over the seeds.

@@ -60,8 +60,8 @@ TEST(Study, TechniquesThatAreOffCostErrorAndBiasNothing) {
   for (const Method method : {Method::kNoLights, Method::kIndependent}) {
     EXPECT_GT(line(study, method).points.back().relative_rmse, best) << method_name(method);
   }
-  for (const Method method :
-       {Method::kFull, Method::kNoMis, Method::kNoLights, Method::kIndependent}) {
+  for (const Method method : {Method::kFull, Method::kNoMis, Method::kNoLights, Method::kAdaptive,
+                              Method::kIndependent}) {
     const StudyLine& of = line(study, method);
     ASSERT_EQ(of.points.size(), 4u);
     EXPECT_LT(*slope_of(of), -0.3) << method_name(method);
