@@ -1,0 +1,113 @@
+// Adaptive sampling of rendered scenes whose light few paths find: a pixel that met some of it and
+// one that met none have different noise to show, but the image is right on average. 64 seeds, a
+// bias of at most 3 standard errors (hard case A5 has the same for pixels without a scene).
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "renderlib/render/film.h"
+#include "renderlib/render/render_band.h"
+#include "tests/support/scenes.h"
+#include "tests/support/statistics.h"
+
+namespace bandsaw {
+namespace {
+
+using test::Moments;
+using test::SceneMaker;
+
+constexpr TileGrid kGrid{128, 2};
+constexpr std::uint64_t kSeeds = 64;
+
+/// A strip of floor, seen from above. The lamp is small, lights one end of it, and is not asked.
+SceneMaker strip(const Vec3& lamp, double radius) {
+  SceneMaker maker;
+  maker.camera({0, 2, 0}, {0, 0, 0.001}, 1);
+  maker.sphere(lamp, radius, maker.lamp(100));
+  return maker;
+}
+
+void add_floor(SceneMaker& maker, MaterialId material) {
+  maker.quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}, material);
+}
+
+struct Rendered {
+  double mean = 0;
+  bool planned = false;
+};
+
+Rendered render(const Scene& scene, std::uint64_t seed, bool adaptive) {
+  static const std::atomic<bool> kGoOn{false};
+  Pool pool(1);
+  const RenderSettings settings{.width = kGrid.width,
+                                .height = kGrid.height,
+                                .max_depth = 6,
+                                .seed = seed,
+                                .integrator = Integrator::kPathScattering};
+  Film film = *Film::create(kGrid.width, kGrid.height, "", Film::Grain::kHalfTiles);
+  const auto take = [&](const SampleRange& pass, const TileMask& tiles) {
+    const auto pixels =
+        render_band(scene, settings, {pass, {0, kGrid.height}}, pool, kGoOn, {}, tiles);
+    ASSERT_TRUE(pixels.ok() && film.add(*pixels, tiles).ok());
+  };
+  for (const SampleRange& pass : {SampleRange{0, 16}, {16, 32}, {32, 64}}) {
+    take(pass, {});
+  }
+  TilePlan plan{.pilot = 64, .levels = std::string(kGrid.half_tiles(), '0')};
+  if (adaptive) {
+    plan = plan_tiles(kGrid, film.tile_errors(), plan.pilot);
+  }
+  TileSchedule schedule(kGrid, plan);
+  for (const SampleRange& pass : {SampleRange{64, 128}, {128, 256}}) {
+    take(pass, schedule.next(pass));
+  }
+  Rendered rendered;
+  for (const Rgb& pixel : film.snapshot().image.pixels) {
+    rendered.mean += pixel.g / static_cast<double>(kGrid.width * kGrid.height);
+  }
+  rendered.planned = plan.levels.find_first_not_of('0') != std::string::npos;
+  return rendered;
+}
+
+void expect_unbiased(const SceneMaker& maker) {
+  const auto scene = maker.build();
+  Moments even;
+  Moments adaptive;
+  std::uint64_t planned = 0;
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    even.add(render(*scene, 1000 + seed, false).mean);
+    const Rendered rendered = render(*scene, seed, true);
+    adaptive.add(rendered.mean);
+    planned += rendered.planned ? 1 : 0;
+  }
+  EXPECT_GT(planned, kSeeds / 4) << "adaptive sampling is hardly ever on";
+  const double error = std::hypot(even.standard_error(), adaptive.standard_error());
+  EXPECT_LE(std::abs(adaptive.mean() - even.mean()), 3 * error)
+      << adaptive.mean() << " against " << even.mean() << ", both +- " << error;
+  EXPECT_LE(error, 0.05 * even.mean());
+}
+
+TEST(RareLight, OfASmallLampOnAFloorIsNotBiasedByAdaptiveSampling) {
+  SceneMaker maker = strip({-0.8, 0.6, 0.3}, 0.05);
+  add_floor(maker, maker.diffuse(0.5f));
+  expect_unbiased(maker);
+}
+
+TEST(RareLight, ThroughAGlassBallIsNotBiasedByAdaptiveSampling) {
+  SceneMaker maker = strip({-0.8, 0.9, 0.9}, 0.05);
+  maker.sphere({-0.8, 0.45, 0.45}, 0.2, maker.glass(1.5));
+  add_floor(maker, maker.diffuse(0.5f));
+  expect_unbiased(maker);
+}
+
+TEST(RareLight, InABrushedMetalIsNotBiasedByAdaptiveSampling) {
+  SceneMaker maker = strip({-1.2, 1, 0.4}, 0.05);
+  add_floor(maker, maker.metal(0.9f, 0.4));
+  expect_unbiased(maker);
+}
+
+}  // namespace
+}  // namespace bandsaw
