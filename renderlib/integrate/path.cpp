@@ -4,6 +4,7 @@
 
 #include "renderlib/geometry/surface.h"
 #include "renderlib/integrate/path_state.h"
+#include "renderlib/integrate/path_steps.h"
 #include "renderlib/integrate/see_through.h"
 #include "renderlib/integrate/through_media.h"
 #include "renderlib/light/emission.h"
@@ -95,32 +96,39 @@ Rgb followed_environment(const Scene& scene, const SurfacePoint& point, const De
 
 bool is_metal(const Material& material) { return std::holds_alternative<Metal>(material); }
 
-/// What happens at a surface: its light, that of an asked light, and the way on; false: there is
-/// none.
-bool scatter_at(const PathContext& context, const SurfacePoint& point, std::uint32_t depth,
-                Nesting& nesting, PathState& path) {
+}  // namespace
+
+std::optional<Bsdf> arrive(const PathContext& context, const SurfacePoint& point,
+                           std::uint32_t depth, PathState& path) {
   const Scene& scene = context.scene;
-  const PathOptions& options = context.options;
   const Material& material = scene.material(point.material);
   const Vec3 wo = -path.ray.direction;
   if (const Rgb light = emitted(material, scene.textures(), point, wo); !is_black(light)) {
     path.radiance += path.throughput * light *
-                     scattering_weight(scene, path.departure, point, options.technique);
+                     scattering_weight(scene, path.departure, point, context.options.technique);
   }
   if (std::holds_alternative<Emissive>(material)) {
-    return false;
+    return std::nullopt;
   }
-  if (depth == options.max_depth) {
+  if (depth == context.options.max_depth) {
     path.truncated = true;
-    return false;
+    return std::nullopt;
   }
-  const auto* nested = nested_glass(material);
-  const bool enters = dot(wo, point.geometric_normal) >= 0;
-  const double outside_index =
-      nested != nullptr ? (enters ? nesting.here : nesting.beyond).index_without(point.material)
-                        : 1;
-  const Bsdf bsdf = bsdf_at(material, scene.textures(), point, wo, outside_index);
-  const Receiver receiver = receiver_of(point, wo);
+  double outside_index = 1;
+  if (nested_glass(material) != nullptr) {
+    const bool enters = dot(wo, point.geometric_normal) >= 0;
+    const Interiors& outside = enters ? path.nesting.here : path.nesting.beyond;
+    outside_index = outside.index_without(point.material);
+  }
+  return bsdf_at(material, scene.textures(), point, wo, outside_index);
+}
+
+bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& bsdf,
+             std::uint32_t depth, PathState& path) {
+  const Scene& scene = context.scene;
+  const PathOptions& options = context.options;
+  const Material& material = scene.material(point.material);
+  const Receiver receiver = receiver_of(point, -path.ray.direction);
   const bool is_last = options.local && has_density(bsdf) && !is_metal(material);
   if (context.asks_lights() && has_density(bsdf)) {
     const Sample4 numbers = context.numbers(group_light(depth));
@@ -153,48 +161,48 @@ bool scatter_at(const PathContext& context, const SurfacePoint& point, std::uint
   if (!survives(context, depth, numbers[3], path)) {
     return false;
   }
-  if (passes && nested != nullptr) {
-    nesting.here = nesting.beyond;
+  if (passes && nested_glass(material) != nullptr) {
+    path.nesting.here = path.nesting.beyond;
   }
   path.ray = leave(point, next->wi);
   return true;
 }
 
-Rgb follow(const PathContext& context, PathState& path) {
-  const Scene& scene = context.scene;
-  Nesting nesting;
-  for (std::uint32_t depth = 0;; ++depth) {
-    const std::optional<SurfacePoint> seen = first_surface(
-        scene, path.ray, context.sampler, context.sample, depth, nesting, context.rays);
-    if (scene.needs().media) {
+void leave_scene(const PathContext& context, PathState& path) {
+  path.radiance +=
+      path.throughput * background_light(context.scene, path.departure, path.ray.direction,
+                                         context.options.technique);
+}
+
+void follow(const PathContext& context, std::uint32_t depth, PathState& path) {
+  for (;; ++depth) {
+    const std::optional<SurfacePoint> seen = next_surface(context, depth, path);
+    if (context.scene.needs().media) {
       const double way = seen ? length(seen->position - path.ray.origin) : kInfinity;
       const Passage passage = through_media(context, way, depth, path);
       if (passage == Passage::kEnded) {
-        return path.radiance;
+        return;
       }
       if (passage == Passage::kScattered) {
         continue;
       }
     }
     if (!seen) {
-      return path.radiance + path.throughput * background_light(scene, path.departure,
-                                                                path.ray.direction,
-                                                                context.options.technique);
+      leave_scene(context, path);
+      return;
     }
-    if (!scatter_at(context, *seen, depth, nesting, path)) {
-      return path.radiance;
+    if (!scatter_at(context, *seen, depth, path)) {
+      return;
     }
   }
 }
 
-}  // namespace
-
 Rgb path_radiance(const Scene& scene, const Ray& camera_ray, const PixelSampler& sampler,
                   std::uint64_t sample, const PathOptions& options, PathCounts& counts) {
   PathState path{.ray = camera_ray};
-  const Rgb radiance = follow({scene, sampler, sample, options, counts.rays}, path);
+  follow({scene, sampler, sample, options, counts.rays}, 0, path);
   counts.truncated += path.truncated ? 1 : 0;
-  return radiance;
+  return path.radiance;
 }
 
 }  // namespace bandsaw

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "renderlib/integrate/path.h"
+#include "renderlib/integrate/see_through.h"
 #include "renderlib/light/lights.h"
 
 namespace bandsaw {
@@ -28,6 +29,7 @@ struct PathState {
   double compression = 1;
   Departure departure = {};
   bool truncated = false;  ///< PathCounts::truncated
+  Nesting nesting = {};    ///< the glasses it is inside of
 };
 
 /// What all steps of one path share.
@@ -44,12 +46,15 @@ struct PathContext {
   }
 };
 
+/// Russian roulette leaves paths alone whose throughput is at least this: README.md, "Why".
+inline constexpr double kRouletteThroughput = 0.25;
+
 /// Russian roulette after scattering `depth`; false: the path ends.
 inline bool survives(const PathContext& context, std::uint32_t depth, double number,
                      PathState& path) {
   if (context.options.russian_roulette && depth + 1 >= kRouletteDepth) {
-    const double survival =
-        std::clamp(max_component(path.throughput) / path.compression, 0.05, 1.0);
+    const double survival = std::clamp(
+        max_component(path.throughput) / (path.compression * kRouletteThroughput), 0.05, 1.0);
     if (number >= survival) {
       return false;
     }

@@ -159,6 +159,20 @@ SceneDescription in_smoke() {
   return scene;
 }
 
+/// A lamp, a ball and a wall on a floor, in the dark: its pixels share their paths.
+SceneDescription room() {
+  SceneDescription scene;
+  scene.textures = {ConstantTexture{{0.7f, 0.5f, 0.3f}}, ConstantTexture{gray(5)}};
+  scene.materials = {Diffuse{TextureId{0}}, Emissive{TextureId{1}}};
+  Geometry& g = scene.geometry;
+  g.spheres = {{{0.3, 0.5, 0.2}, 0.5, MaterialId{0}}};
+  g.quads = {{{-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, MaterialId{0}},
+             {{-2, 0, -1}, {4, 0, 0.5}, {0, 3, 0}, MaterialId{0}},
+             {{-0.5, 2.5, 0.5}, {0, 0, -1}, {1, 0, 0}, MaterialId{1}}};
+  scene.camera = PerspectiveCamera{.position = {0.2, 1.1, 4}, .look_at = {0, 1, 0}};
+  return scene;
+}
+
 void add_render(Hash64& hash, const SceneDescription& description, const RenderSettings& settings) {
   Pool pool(1);
   const auto scene = Scene::build(description, pool);
@@ -184,6 +198,7 @@ std::uint64_t canary() {
   add_render(hash, flat_view(), {.width = 4, .height = 3, .max_depth = 3, .seed = 2});
   add_render(hash, lit_from_outside(), {.width = 6, .height = 4, .max_depth = 4, .seed = 4});
   add_render(hash, in_smoke(), {.width = 6, .height = 4, .max_depth = 5, .seed = 4});
+  add_render(hash, room(), {.width = 20, .height = 4, .max_depth = 5, .seed = 5});
   for (const Integrator integrator : {Integrator::kDirect, Integrator::kNormals, Integrator::kDepth,
                                       Integrator::kAlbedo, Integrator::kAmbientOcclusion}) {
     add_render(hash, flat_view(),

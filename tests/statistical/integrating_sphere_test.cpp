@@ -4,11 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <vector>
 
 #include "renderlib/math/constants.h"
 #include "tests/statistical/estimate.h"
+#include "tests/statistical/shared_estimate.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
 
@@ -52,31 +54,67 @@ double area_mean(const std::vector<float>& values) {
   return sum;
 }
 
-TEST(IntegratingSphere, OfAnyTextureIsAsBrightAsItsMeanAlbedoSays) {
-  const std::vector<float> values = albedos();
+/// A lamp in a sphere of these albedos, and what it makes everywhere: a lamp so small that it hides
+/// nothing, just off the wall, facing the middle.
+struct LitSphere {
+  std::shared_ptr<const Scene> scene;
+  double irradiance = 0;
+};
+
+LitSphere lit_sphere(const std::vector<float>& values) {
   test::SceneMaker maker;
   maker.sphere({0, 0, 0}, 1, maker.diffuse(1));
   maker.scene.materials.back() = Diffuse{maker.texture(image_of(values))};
-  // A lamp so small that it hides nothing, just off the wall, facing the middle.
   const double side = 0.004;
   const float radiance = 1e5f;
   maker.quad({-side / 2, -1 + side * side, -side / 2}, {0, 0, side}, {side, 0, 0},
              maker.lamp(radiance, true));
-  const auto scene = maker.build();
   const double flux = kPi * double{radiance} * side * side;
-  const double irradiance = flux / (4 * kPi * (1 - area_mean(values)));
+  return {maker.build(), flux / (4 * kPi * (1 - area_mean(values)))};
+}
+
+/// From the middle to that of a texel: u counts from -x over +z, as geometry/surface.h says of its
+/// poles.
+Ray toward_texel(std::uint32_t x, std::uint32_t y) {
+  const double theta = kPi * (y + 0.5) / kRows;
+  const double phi = 2 * kPi * (x + 0.5) / kColumns;
+  return {.origin = {0, 0, 0},
+          .direction = {-std::sin(theta) * std::cos(phi), std::cos(theta),
+                        std::sin(theta) * std::sin(phi)}};
+}
+
+void expect_mean(const test::Moments& seen, double expected) {
+  EXPECT_LE(std::abs(seen.z(expected)), 4)
+      << seen.mean() << " +- " << seen.standard_error() << ", expected " << expected;
+  EXPECT_LE(seen.standard_error(), 1e-3 * expected);
+}
+
+TEST(IntegratingSphere, OfAnyTextureIsAsBrightAsItsMeanAlbedoSays) {
+  const std::vector<float> values = albedos();
+  const LitSphere lit = lit_sphere(values);
   for (const auto& [x, y] : {std::pair(1u, 1u), std::pair(5u, 2u)}) {
-    // The middle of a texel: u counts from -x over +z, as geometry/surface.h says of its poles.
-    const double theta = kPi * (y + 0.5) / kRows;
-    const double phi = 2 * kPi * (x + 0.5) / kColumns;
-    const Vec3 there{-std::sin(theta) * std::cos(phi), std::cos(theta),
-                     std::sin(theta) * std::sin(phi)};
-    const Ray ray{.origin = {0, 0, 0}, .direction = there};
-    const auto seen = test::radiance_along(*scene, ray, {.max_depth = 1000}, 8192);
-    const double expected = double{values[y * kColumns + x]} * irradiance / kPi;
-    EXPECT_LE(std::abs(seen.z(expected)), 4)
-        << seen.mean() << " +- " << seen.standard_error() << ", expected " << expected;
-    EXPECT_LE(seen.standard_error(), 1e-3 * expected);
+    expect_mean(test::radiance_along(*lit.scene, toward_texel(x, y), {.max_depth = 1000}, 8192),
+                double{values[y * kColumns + x]} * lit.irradiance / kPi);
+  }
+}
+
+// Most of the pixels see one corner of the texture, two the other side: the shares of what is found
+// are uneven.
+TEST(IntegratingSphere, IsAsBrightForPixelsThatShareTheirPaths) {
+  const std::vector<float> values = albedos();
+  const LitSphere lit = lit_sphere(values);
+  ASSERT_TRUE(shares_paths(*lit.scene));
+  const std::array<std::pair<std::uint32_t, std::uint32_t>, kMostShared> texels = {
+      {{1, 1}, {2, 1}, {1, 2}, {2, 2}, {1, 3}, {2, 3}, {5, 2}, {6, 4}}};
+  std::array<Ray, kMostShared> rays;
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    rays[i] = toward_texel(texels[i].first, texels[i].second);
+  }
+  const auto seen = test::shared_radiance_along(*lit.scene, rays, {.max_depth = 1000}, 2048);
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    SCOPED_TRACE(i);
+    const double albedo = values[texels[i].second * kColumns + texels[i].first];
+    expect_mean(seen[i], albedo * lit.irradiance / kPi);
   }
 }
 

@@ -1,0 +1,44 @@
+#pragma once
+
+// The steps of a path, for those who put paths together: path.cpp and shared_paths.cpp.
+
+#include <cstdint>
+#include <optional>
+
+#include "renderlib/geometry/surface.h"
+#include "renderlib/integrate/path_state.h"
+#include "renderlib/material/bsdf.h"
+
+namespace bandsaw {
+
+/// The first surface along the path's ray, on the way to scattering `depth`.
+inline std::optional<SurfacePoint> next_surface(const PathContext& context, std::uint32_t depth,
+                                                PathState& path) {
+  return first_surface(context.scene, path.ray, context.sampler, context.sample, depth,
+                       path.nesting, context.rays);
+}
+
+/// The path meets a surface as scattering `depth`: adds the surface's own light. How the surface
+/// scatters; nothing: it does not, or the path may not go on.
+std::optional<Bsdf> arrive(const PathContext& context, const SurfacePoint& point,
+                           std::uint32_t depth, PathState& path);
+
+/// Adds what the surface sends on of one asked light, and turns the path into a direction that it
+/// scatters to; false: there is none. `bsdf`: what arrive() gave.
+bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& bsdf,
+             std::uint32_t depth, PathState& path);
+
+/// Both.
+inline bool scatter_at(const PathContext& context, const SurfacePoint& point, std::uint32_t depth,
+                       PathState& path) {
+  const std::optional<Bsdf> bsdf = arrive(context, point, depth, path);
+  return bsdf && scatter(context, point, *bsdf, depth, path);
+}
+
+/// The path leaves the scene: adds what it sees there.
+void leave_scene(const PathContext& context, PathState& path);
+
+/// Follows the path along its ray, to scattering `depth` and on until it ends.
+void follow(const PathContext& context, std::uint32_t depth, PathState& path);
+
+}  // namespace bandsaw

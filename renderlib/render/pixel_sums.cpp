@@ -1,0 +1,132 @@
+#include "renderlib/render/pixel_sums.h"
+
+#include <algorithm>
+#include <bit>
+#include <vector>
+
+#include "renderlib/integrate/sample_value.h"
+
+namespace bandsaw {
+namespace {
+
+Technique technique_of(Integrator integrator) {
+  return integrator == Integrator::kPathLights       ? Technique::kLightsOnly
+         : integrator == Integrator::kPathScattering ? Technique::kScatteringOnly
+                                                     : Technique::kBoth;
+}
+
+}  // namespace
+
+PixelSums::PixelSums(const Scene& scene, const RenderSettings& settings, const Band& band,
+                     const std::atomic<bool>& stop)
+    : scene_(scene),
+      settings_(settings),
+      samples_(band.samples),
+      stop_(stop),
+      options_{.max_depth = settings.max_depth,
+               .technique = technique_of(settings.integrator),
+               .local = settings.integrator == Integrator::kDirect},
+      camera_(scene.camera(), static_cast<int>(settings.width), static_cast<int>(settings.height)),
+      shares_(shares_paths(scene) && follows_light(settings.integrator) && !options_.local) {}
+
+void PixelSums::add_run(std::uint32_t y, std::uint32_t first, std::uint32_t last,
+                        const TileMask& tiles, absl::Span<double> row, Counters& counters) const {
+  if (!shares_) {
+    for (std::uint32_t x = first; x < last && !stopped(); ++x) {
+      if (tiles.has(x, y)) {
+        add_group(y, {x, x + 1}, row, counters);
+      }
+    }
+    return;
+  }
+  const TileGrid grid{settings_.width, settings_.height};
+  for (std::uint32_t column = first / kTileSide; column * kTileSide < last; ++column) {
+    for (const std::uint32_t half : {0u, 1u}) {
+      const HalfRow group = half_row(grid, column, half, y);
+      if (group.count() > 0 && tiles.has(group.first, y) && !stopped()) {
+        add_group(y, group, row, counters);
+      }
+    }
+  }
+}
+
+/// Leaves in order, two siblings added as soon as both are there.
+void PixelSums::add_group(std::uint32_t y, const HalfRow& group, absl::Span<double> row,
+                          Counters& counters) const {
+  std::vector<SharedPixel> pixels;
+  pixels.reserve(kMostShared);
+  for (std::uint32_t x = group.first; x < group.last; x += 2) {
+    pixels.push_back({.sampler = PixelSampler(settings_.seed, x, y), .camera_ray = {}});
+  }
+  std::vector<Sums> stack(static_cast<std::size_t>(std::bit_width(samples_.blocks())) + 1);
+  std::size_t top = 0;
+  for (std::uint64_t block = 0; block < samples_.blocks() && !stopped(); ++block) {
+    stack[top++] =
+        leaves(y, group, samples_.first + block * kBlockSamples, absl::MakeSpan(pixels), counters);
+    for (std::uint64_t pairs = block; (pairs & 1) != 0; pairs >>= 1) {
+      --top;
+      for (std::size_t i = 0; i < pixels.size(); ++i) {
+        stack[top - 1][i] = stack[top - 1][i] + stack[top][i];
+      }
+    }
+  }
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    double* const to = &row[(group.first + 2 * i) * 3];
+    to[0] = stack[0][i].r;
+    to[1] = stack[0][i].g;
+    to[2] = stack[0][i].b;
+  }
+}
+
+PixelSums::Sums PixelSums::leaves(std::uint32_t y, const HalfRow& group, std::uint64_t first_sample,
+                                  absl::Span<SharedPixel> pixels, Counters& counters) const {
+  Sums sums{};
+  PathCounts counts;
+  const std::uint64_t last = std::min(first_sample + kBlockSamples, samples_.last);
+  for (std::uint64_t number = first_sample; number < last; ++number) {
+    sample(y, group, number, pixels, counts);
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      const Rgb& value = pixels[i].radiance;
+      const bool finite = is_finite(value);
+      if (!finite || value.r < 0 || value.g < 0 || value.b < 0) {
+        counters.add({.bad_samples = 1,
+                      .bad_x = static_cast<std::uint32_t>(group.first + 2 * i),
+                      .bad_y = y,
+                      .bad_sample = number,
+                      .negative_samples = finite ? 1u : 0u});
+        continue;
+      }
+      sums[i] = sums[i] + Sum{value.r, value.g, value.b};
+    }
+  }
+  counters.rays += counts.rays;
+  counters.truncated_paths += counts.truncated;
+  return sums;
+}
+
+void PixelSums::sample(std::uint32_t y, const HalfRow& group, std::uint64_t sample,
+                       absl::Span<SharedPixel> pixels, PathCounts& counts) const {
+  std::uint32_t x = group.first;
+  for (SharedPixel& pixel : pixels) {
+    pixel.camera_ray = camera_ray(pixel.sampler, x, y, sample);
+    x += 2;
+  }
+  if (shares_) {
+    shared_radiance(scene_, pixels, sample, options_, counts);
+    return;
+  }
+  for (SharedPixel& pixel : pixels) {
+    pixel.radiance = sample_value(scene_, settings_.integrator, pixel.camera_ray, pixel.sampler,
+                                  sample, options_, counts);
+  }
+}
+
+Ray PixelSums::camera_ray(const PixelSampler& sampler, std::uint32_t x, std::uint32_t y,
+                          std::uint64_t sample) const {
+  const Sample4 at = sampler.group(sample, kGroupCamera);
+  const Vec2 offset = bandsaw::sample(scene_.filter(), at[0], at[1]);
+  const double when = scene_.needs().motion ? sampler.group(sample, kGroupTime)[0] : 0;
+  return camera_.ray(x + 0.5 + offset.x, y + 0.5 + offset.y, at[2], at[3], when);
+}
+
+}  // namespace bandsaw
