@@ -2,6 +2,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/checked_options.h"
+#include "coordinator/cli/quantities.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
@@ -16,6 +17,26 @@ absl::StatusOr<Command> checked_logs(const RawOptions& raw) {
   }
   options.worker = *raw.worker;
   return options;
+}
+
+absl::StatusOr<Command> checked_quarantine(const RawOptions& raw) {
+  QuarantineOptions options;
+  options.farm.farm = raw.farm;
+  options.lift = raw.lift;
+  ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
+  if (!raw.worker || raw.worker->empty()) {
+    return absl::InvalidArgumentError(
+        "quarantine: the worker's name is missing; bandsaw workers lists them");
+  }
+  options.worker = *raw.worker;
+  return options;
+}
+
+absl::StatusOr<double> checked_audit(const RawOptions& raw, double standard) {
+  if (!raw.audit) {
+    return standard;
+  }
+  return *raw.audit == "0%" ? 0 : parse_percent("--audit", *raw.audit);
 }
 
 absl::StatusOr<std::string> checked_web(const RawOptions& raw) {

@@ -147,6 +147,7 @@ absl::StatusOr<Command> checked_serve(const RawOptions& raw) {
   }
   RETURN_IF_ERROR(check_listen("--listen", options.listen));
   ASSIGN_OR_RETURN(options.web, checked_web(raw));
+  ASSIGN_OR_RETURN(options.audit_share, checked_audit(raw, options.audit_share));
   RETURN_IF_ERROR(read_positive("--keep-days", raw.keep_days, options.keep_days));
   RETURN_IF_ERROR(read_positive("--keep-size", raw.keep_size, options.keep_gb));
   return options;

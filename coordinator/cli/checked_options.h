@@ -19,9 +19,9 @@ struct RawOptions {
   std::vector<std::string> outputs, parts, scenes;
   std::optional<std::string> samples, error, time, seed, width, height, depth, threads, rows;
   std::optional<std::string> integrator, exposure, tone, layers, report, seeds, reference_samples;
-  std::optional<std::string> web;
-  bool adaptive = false, half = false, insecure = false, detach = false, quiet = false,
-       json = false;
+  std::optional<std::string> web, audit;
+  bool lift = false, adaptive = false, half = false, insecure = false, detach = false,
+       quiet = false, json = false;
 };
 
 absl::StatusOr<Command> checked_serve(const RawOptions& raw);
@@ -35,6 +35,7 @@ absl::StatusOr<Command> checked_resume(const RawOptions& raw);
 absl::StatusOr<Command> checked_priority(const RawOptions& raw);
 absl::StatusOr<Command> checked_why(const RawOptions& raw);
 absl::StatusOr<Command> checked_logs(const RawOptions& raw);
+absl::StatusOr<Command> checked_quarantine(const RawOptions& raw);
 absl::StatusOr<Command> checked_doctor(const RawOptions& raw);
 absl::StatusOr<Command> checked_secret(const RawOptions& raw);
 absl::StatusOr<Command> checked_render(const RawOptions& raw);
@@ -48,6 +49,8 @@ absl::StatusOr<Verbosity> checked_verbosity(const RawOptions& raw);
 absl::StatusOr<ReportOption> checked_report(const RawOptions& raw, bool has_images = true);
 /// `option` is for the error.
 absl::Status check_listen(const std::string& option, const std::string& listen);
+/// A share of all bands; `standard` when none is given.
+absl::StatusOr<double> checked_audit(const RawOptions& raw, double standard);
 /// Of the dashboard; empty: not given.
 absl::StatusOr<std::string> checked_web(const RawOptions& raw);
 /// `command` is for the error.

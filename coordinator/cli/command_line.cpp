@@ -177,6 +177,8 @@ constexpr Entry kCommands[] = {
      "bandsaw priority 7 10    # before all jobs that are below 10"},
     {"why", "Say why a job is not done yet", add_job, checked_why, "bandsaw why 7"},
     {"logs", "Show the last lines of a worker's log", add_logs, checked_logs, "bandsaw logs desk"},
+    {"quarantine", "Keep a machine away that renders wrongly, or let it in", add_quarantine,
+     checked_quarantine, "bandsaw quarantine --lift desk"},
     {"doctor", "Check this machine, and the farm that it uses", add_doctor, checked_doctor,
      "bandsaw doctor --farm join    # on a worker's machine"},
     {"secret", "Make a new secret; who has the old one is shut out", add_secret, checked_secret,

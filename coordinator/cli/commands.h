@@ -26,6 +26,7 @@ ExitCode run(const ResumeOptions& options, Process& process);
 ExitCode run(const PriorityOptions& options, Process& process);
 ExitCode run(const WhyOptions& options, Process& process);
 ExitCode run(const LogsOptions& options, Process& process);
+ExitCode run(const QuarantineOptions& options, Process& process);
 ExitCode run(const DoctorOptions& options, Process& process);
 ExitCode run(const RotateOptions& options, Process& process);
 ExitCode run(const RenderOptions& options, Process& process);

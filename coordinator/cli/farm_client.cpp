@@ -241,6 +241,16 @@ absl::StatusOr<std::vector<std::string>> FarmClient::logs(const std::string& wor
   return std::vector<std::string>(reply.line().begin(), reply.line().end());
 }
 
+absl::Status FarmClient::quarantine(const std::string& worker, bool lift) {
+  farm::QuarantineRequest request;
+  request.set_worker(worker);
+  request.set_lift(lift);
+  farm::QuarantineReply reply;
+  return call(kCallTimeout, [&](grpc::ClientContext& context) {
+    return control_->Quarantine(&context, request, &reply);
+  });
+}
+
 absl::StatusOr<farm::AboutReply> FarmClient::about() {
   farm::AboutReply reply;
   RETURN_IF_ERROR(call(kCallTimeout, [&](grpc::ClientContext& context) {

@@ -66,6 +66,8 @@ class FarmClient {
   absl::StatusOr<Progress> set_priority(JobId job, std::int32_t priority);
   /// The last lines of a worker's log. NOT_FOUND.
   absl::StatusOr<std::vector<std::string>> logs(const std::string& worker);
+  /// Keeps a worker's machine away, or lets it in again. NOT_FOUND.
+  absl::Status quarantine(const std::string& worker, bool lift);
   absl::StatusOr<farm::AboutReply> about();
   /// The file of the new join string, on the coordinator's machine.
   absl::StatusOr<std::string> rotate_secret(link::Role role);

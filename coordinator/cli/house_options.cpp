@@ -41,6 +41,9 @@ void add_serve(CLI::App& app, RawOptions& raw) {
                  "127.0.0.1:8787, or another port where that is taken]")
       ->type_name("HOST:PORT");
   add_keep(app, raw);
+  app.add_option("--audit", raw.audit,
+                 "This share of all bands is rendered by two machines and compared [default: 1%]")
+      ->type_name("P%");
   app.add_flag("--insecure", raw.insecure,
                "No encryption: anybody on the network can read and change what passes");
 }
@@ -49,6 +52,13 @@ void add_logs(CLI::App& app, RawOptions& raw) {
   app.add_option("worker", raw.worker, "The worker's name, as in: bandsaw workers");
   add_farm(app, raw);
   add_verbosity(app, raw, false);
+}
+
+void add_quarantine(CLI::App& app, RawOptions& raw) {
+  app.add_option("worker", raw.worker, "The worker's name, as in: bandsaw workers");
+  app.add_flag("--lift", raw.lift, "Let it in again, once its worker is started anew");
+  add_farm(app, raw);
+  add_verbosity(app, raw);
 }
 
 void add_doctor(CLI::App& app, RawOptions& raw) {

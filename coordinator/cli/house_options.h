@@ -11,6 +11,7 @@ namespace bandsaw::coordinator {
 // Each adds a command's options.
 void add_serve(CLI::App& app, RawOptions& raw);
 void add_logs(CLI::App& app, RawOptions& raw);
+void add_quarantine(CLI::App& app, RawOptions& raw);
 void add_doctor(CLI::App& app, RawOptions& raw);
 void add_secret(CLI::App& app, RawOptions& raw);
 

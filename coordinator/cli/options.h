@@ -61,8 +61,9 @@ struct ServeOptions {
   std::string listen = "0.0.0.0:7878";
   std::string web;  ///< HOST:PORT of the dashboard; "none"; empty: loopback, on a port that is free
   bool insecure = false;
-  double keep_days = 30;  ///< jobs that are over
-  double keep_gb = 100;   ///< results and scenes in all
+  double keep_days = 30;      ///< jobs that are over
+  double keep_gb = 100;       ///< results and scenes in all
+  double audit_share = 0.01;  ///< of all bands, [0, 1]
 };
 
 /// What an EXR file holds beside the image.
@@ -127,6 +128,13 @@ struct PriorityOptions {
 
 struct LogsOptions {
   std::string worker;
+  FarmOption farm;
+  Verbosity verbosity;
+};
+
+struct QuarantineOptions {
+  std::string worker;
+  bool lift = false;
   FarmOption farm;
   Verbosity verbosity;
 };
@@ -200,9 +208,10 @@ struct ShowText {
   std::string text;
 };
 
-using Command = std::variant<ServeOptions, SubmitOptions, WatchOptions, JobsOptions, WorkersOptions,
-                             CancelOptions, PauseOptions, ResumeOptions, PriorityOptions,
-                             WhyOptions, LogsOptions, DoctorOptions, RotateOptions, RenderOptions,
-                             InfoOptions, StitchOptions, CompareOptions, StudyOptions, ShowText>;
+using Command =
+    std::variant<ServeOptions, SubmitOptions, WatchOptions, JobsOptions, WorkersOptions,
+                 CancelOptions, PauseOptions, ResumeOptions, PriorityOptions, WhyOptions,
+                 LogsOptions, QuarantineOptions, DoctorOptions, RotateOptions, RenderOptions,
+                 InfoOptions, StitchOptions, CompareOptions, StudyOptions, ShowText>;
 
 }  // namespace bandsaw::coordinator

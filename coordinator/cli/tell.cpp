@@ -1,9 +1,11 @@
-// bandsaw cancel, pause, resume, priority, why: a word to one job, and what it is then.
+// bandsaw cancel, pause, resume, priority, why: a word to one job, and what it is then. And
+// quarantine: a word about a worker.
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/commands.h"
 #include "coordinator/cli/farm_client.h"
 #include "coordinator/cli/farm_errors.h"
+#include "coordinator/cli/json.h"
 #include "coordinator/cli/lists_text.h"
 #include "coordinator/cli/text.h"
 #include "coordinator/core/state_name.h"
@@ -54,7 +56,30 @@ absl::Status say_why(const WhyOptions& options, const Console& console) {
   return absl::OkStatus();
 }
 
+absl::Status tell_of_worker(const QuarantineOptions& options, const Console& console) {
+  ASSIGN_OR_RETURN(const auto client, connect_to_farm(options.farm));
+  RETURN_IF_ERROR(client->quarantine(options.worker, options.lift));
+  if (options.verbosity.json) {
+    console.line(JsonObject()
+                     .text("event", "quarantine")
+                     .text("worker", options.worker)
+                     .flag("lifted", options.lift)
+                     .str());
+  } else {
+    console.line(absl::StrCat(printable(options.worker),
+                              options.lift
+                                  ? " may render again, once its worker is started anew"
+                                  : " gets no more work; what it rendered of jobs at work is "
+                                    "rendered again"));
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace
+
+ExitCode run(const QuarantineOptions& options, Process& process) {
+  return finished(tell_of_worker(options, process.console), process.console);
+}
 
 ExitCode run(const CancelOptions& options, Process& process) {
   return finished(tell_and_say(options, process.console), process.console);

@@ -36,15 +36,19 @@ void Core::State::on(const input::BandStored& in) {
     step_.status = absl::InternalError("a stored band needs one digest a row");
     return;
   }
-  Worker* worker = workers_.by_instance(in.instance);
-  if (const auto row = pass->digests.first_difference(in.band, in.row_digests)) {
-    returned_other_pixels(*job, in, *row);
+  const Witness witness = witness_of(in);
+  if (!is_quarantined(witness)) {
+    weigh(*job, *pass, in);
+  }
+  if (is_quarantined(witness)) {
+    settle(*job);
     return;
   }
+  Worker* worker = workers_.by_instance(in.instance);
   if (worker != nullptr) {
     measure(*worker, *job, in);
   }
-  const Coverage::Change change = store(*job, *pass, in);
+  const Coverage::Change change = in.written ? store(*job, *pass, in) : Coverage::Change();
   if (worker != nullptr) {
     end_own(*worker, in);
   }
@@ -67,14 +71,13 @@ Coverage::Change Core::State::store(Job& job, Pass& pass, const input::BandStore
     return change;
   }
   pass.digests.keep(in.band, change.rows, in.row_digests);
-  pass.counters.add(in.counters);
-  pass.cpu_s += in.cpu_s;
   shrink_losses(job, in.band);
   std::uint64_t samples = 0;
   for (const RowRange& range : change.rows) {
     samples += job.samples_of({in.band.samples, range});
   }
-  pass.stored += samples;
+  pass.credit(witness_of(in).renderer, in.band, change.rows, {samples, in.counters, in.cpu_s});
+  open_audits(job, in, change.rows);
   job.throughput.add(clock_.wall(), static_cast<double>(samples));
   count_share(job, in, samples);
   job.advance();
@@ -83,12 +86,12 @@ Coverage::Change Core::State::store(Job& job, Pass& pass, const input::BandStore
 }
 
 void Core::State::count_share(Job& job, const input::BandStored& in, std::uint64_t samples) {
-  if (in.renderer == 0 ||
-      (job.shares.size() >= Job::kSharesKnown && !job.shares.contains(in.renderer))) {
+  const std::uint64_t renderer = witness_of(in).renderer;
+  if (renderer == 0 || (job.shares.size() >= Job::kSharesKnown && !job.shares.contains(renderer))) {
     return;
   }
-  WorkerShare& share = job.shares[in.renderer];
-  share.renderer = in.renderer;
+  WorkerShare& share = job.shares[renderer];
+  share.renderer = renderer;
   share.samples += samples;
   share.cpu_s += in.cpu_s;
   if (const Worker* worker = workers_.by_instance(in.instance)) {
@@ -140,6 +143,10 @@ void Core::State::on(const input::BandFailed& in) {
   Job& job = jobs_.at(lease->job);
   const Band band = lease->band;
   worker->heard_at = clock_.patience();
+  if (lease->audit) {
+    give_up_audit(*lease, *worker, in.reason);
+    return;
+  }
   end_lease(in.lease, Revoke::kNo);
   job.log_of = worker->name;
   job.log = in.log;

@@ -32,6 +32,7 @@ struct CoreOptions {
   double band_target_s =
       1;  ///< how long a band should take its worker; bands are shorter toward the end
   std::size_t losses_per_band = 3;  ///< so many workers lost while rendering a band fail the job
+  double audit_share = 0;           ///< of all bands, [0, 1]: rendered by two machines (audit.h)
   std::string epoch;                ///< names this life; part of what a held lease is known by
 };
 

@@ -179,6 +179,39 @@ void Coverage::give_back(const Band& band, LeaseId lease) {
   join(band.rows);
 }
 
+/// What of stored cells lies beyond the node stays stored.
+void Coverage::open(Strip& strip, const SampleRange& node) {
+  std::vector<Cell> cells;
+  for (Cell cell : strip.cells) {
+    if (cell.owner == kStored && overlap(cell.node, node)) {
+      while (contains(cell.node, node) && cell.node != node) {
+        const Halves halves = split(cell.node);
+        const bool left = contains(halves.left, node);
+        cells.push_back({left ? halves.right : halves.left, kStored});
+        cell.node = left ? halves.left : halves.right;
+      }
+      cell.owner = kFree;
+    }
+    cells.push_back(cell);
+  }
+  std::sort(cells.begin(), cells.end(),
+            [](const Cell& a, const Cell& b) { return a.node < b.node; });
+  strip.cells = std::move(cells);
+  merge_siblings(strip);
+}
+
+void Coverage::reopen(const Band& band) {
+  cut_at(band.rows.first);
+  cut_at(band.rows.last);
+  for (auto it = strips_.find(band.rows.first); it != strips_.end() && it->first < band.rows.last;
+       ++it) {
+    uncount(it->first, it->second);
+    open(it->second, band.samples);
+    count(it->first, it->second);
+  }
+  join(band.rows);
+}
+
 std::vector<RowRange> Coverage::wanted(const Band& band) const {
   std::vector<RowRange> rows;
   for (auto it = strip_at(band.rows.first); it != strips_.end() && it->first < band.rows.last;

@@ -43,6 +43,10 @@ class Coverage {
   /// What the lease still has of its band becomes free.
   void give_back(const Band& band, LeaseId lease);
 
+  /// Of what is stored of the band, each cell that is a part of its node, or that its node is a
+  /// part of, becomes free as far as the band goes.
+  void reopen(const Band& band);
+
   /// Rows of the band of whose samples nothing is stored, ascending.
   std::vector<RowRange> wanted(const Band& band) const;
   /// Whether some row is wanted and no wanted row is leased.
@@ -81,6 +85,7 @@ class Coverage {
 
   static bool stored_in(const Strip& strip, const SampleRange& node);
   static void put(Strip& strip, const SampleRange& node, Owner owner, std::vector<LeaseId>& lost);
+  static void open(Strip& strip, const SampleRange& node);
   static void merge_siblings(Strip& strip);
   Strips::const_iterator strip_at(std::uint32_t row) const;
   void cut_at(std::uint32_t row);

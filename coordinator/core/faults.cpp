@@ -111,28 +111,13 @@ void Core::State::check_progress() {
     const Band band = lease->band;
     Job& job = jobs_.at(lease->job);
     Worker& worker = *workers_.by_id(lease->worker);
+    const std::string reason = absl::StrCat("no progress for ", options_.progress_timeout_s, " s");
+    if (lease->audit) {
+      give_up_audit(*lease, worker, reason);
+      continue;
+    }
     end_lease(id, Revoke::kYes);
-    add_fault(job, worker, band,
-              absl::StrCat("no progress for ", options_.progress_timeout_s, " s"));
-  }
-}
-
-void Core::State::returned_other_pixels(Job& job, const input::BandStored& in, std::uint32_t row) {
-  Band where = in.band;
-  where.rows = {row, row + 1};
-  Worker* worker = workers_.by_instance(in.instance);
-  const std::string reason = absl::StrCat("returned different pixels than another worker for ",
-                                          name_of(where), " of job ", job.id);
-  job.notice = absl::StrCat(worker == nullptr ? "a worker that has left" : worker->name, " ",
-                            reason, "; it gets no more work");
-  if (worker == nullptr) {
-    return;
-  }
-  worker->faulty = true;
-  worker->reason = absl::StrCat(reason, "; check the machine and restart the worker");
-  if (worker->session) {
-    act(action::Close{*worker->session, worker->reason});
-    lose(*worker, worker->reason);
+    add_fault(job, worker, band, reason);
   }
 }
 

@@ -36,8 +36,14 @@ std::optional<std::string> Core::State::broken_leases() const {
       return absl::StrCat("lease ", id, " is of a job that does not have it");
     }
     const Pass* pass = job->pass_of(lease.band);
-    if (pass == nullptr || (lease.copy_of == 0) != pass->coverage.holds(lease.band, id)) {
+    if (pass == nullptr ||
+        (lease.copy_of == 0 && !lease.audit) != pass->coverage.holds(lease.band, id)) {
       return absl::StrCat("lease ", id, " has nothing of its band, or is a copy that has");
+    }
+    if (lease.audit && std::count_if(job->audits.begin(), job->audits.end(), [&](const Audit& a) {
+                         return a.lease == id && a.band() == lease.band;
+                       }) != 1) {
+      return absl::StrCat("lease ", id, " is of an audit that its job does not know");
     }
     if ((lease.copy_of != 0) != job->copies.contains(id)) {
       return absl::StrCat("lease ", id, " is a copy that its job does not know, or the reverse");
@@ -96,10 +102,19 @@ std::optional<std::string> Core::State::broken_job(const Job& job) const {
   if (job.state == JobState::kFinishing && (!job.complete() || !job.leases.empty())) {
     return "it is finishing and not all of it is there";
   }
-  if (job.state == JobState::kRunning && job.complete()) {
+  if (job.state == JobState::kRunning && job.complete() && job.audits.empty()) {
     return "all of it is there and it is not finishing";
   }
-  if (job.state == JobState::kRunning && job.any_free() && !leasable_.contains(rank(job))) {
+  for (const Audit& audit : job.audits) {
+    if (audit.lease != 0 && !job.leases.contains(audit.lease)) {
+      return "a band is rendered a second time by nobody";
+    }
+    if (quarantined_.contains(audit.stored().witness.renderer)) {
+      return "it has rows of a machine that is under quarantine";
+    }
+  }
+  if (job.state == JobState::kRunning && (job.any_free() || job.audit_waits()) &&
+      !leasable_.contains(rank(job))) {
     return "it has free rows and is passed over";
   }
   if (job.state != JobState::kRunning && leasable_.contains(rank(job))) {

@@ -19,6 +19,44 @@ double Pass::share() const {
                               static_cast<double>(shares.size());
 }
 
+void Pass::credit(std::uint64_t renderer, const Band& band, const std::vector<RowRange>& rows,
+                  const Totals& totals) {
+  Part& part = parts[renderer];
+  for (const RowRange& range : rows) {
+    part.bands.push_back({band.samples, range});
+  }
+  part.totals.add(totals);
+  stored.add(totals);
+}
+
+bool Pass::retract(std::uint64_t renderer) {
+  const auto part = parts.find(renderer);
+  if (part == parts.end()) {
+    return false;
+  }
+  for (const Band& band : part->second.bands) {
+    coverage.reopen(band);
+    digests.forget(band);
+  }
+  parts.erase(part);
+  stored = {};
+  for (const auto& [id, other] : parts) {
+    stored.add(other.totals);
+  }
+  return true;
+}
+
+std::uint64_t Pass::renderer_of_row(const SampleRange& of, std::uint32_t row) const {
+  for (const auto& [renderer, part] : parts) {
+    for (const Band& band : part.bands) {
+      if (band.samples == of && band.rows.first <= row && row < band.rows.last) {
+        return renderer;
+      }
+    }
+  }
+  return 0;
+}
+
 Job::Job(JobId job, JobSpec job_spec)
     : id(job), spec(std::move(job_spec)), cost(spec.settings.height) {}
 
@@ -53,8 +91,9 @@ void Job::add_pass(const SampleRange& samples) {
                                         .coverage = Coverage(samples, image.height),
                                         .tiles = schedule_ ? schedule_->next(samples) : TileMask(),
                                         .shares = {},
+                                        .stored = {},
                                         .digests = {},
-                                        .counters = {},
+                                        .parts = {},
                                         .returned = {}});
   for (std::uint32_t row = 0; row < image.height && !pass.tiles.whole(); row += kTileSide) {
     const RowRange rows{row, std::min(row + kTileSide, image.height)};
@@ -76,6 +115,23 @@ void Job::fix(std::uint64_t samples) {
     passes.pop_back();
   }
   complete_passes_ = std::min(complete_passes_, passes.size());
+  std::erase_if(audits, [&](const Audit& audit) { return audit.band().samples.first >= samples; });
+}
+
+bool Job::retract(std::uint64_t renderer) {
+  std::erase_if(audits, [&](const Audit& a) { return a.stored().witness.renderer == renderer; });
+  for (Audit& audit : audits) {
+    audit.forget({.renderer = renderer, .machine = {}});
+  }
+  shares.erase(renderer);
+  bool any = false;
+  for (std::size_t i = 0; i < passes.size(); ++i) {
+    if (passes[i].retract(renderer)) {
+      complete_passes_ = std::min(complete_passes_, i);
+      any = true;
+    }
+  }
+  return any;
 }
 
 void Job::advance() {
@@ -91,6 +147,9 @@ void Job::advance() {
 void Job::finish() {
   passes.clear();
   faults.clear();
+  audits.clear();
+  audited.clear();
+  look.reset();
   losses.clear();
   shares.clear();
   cost = {};
@@ -111,6 +170,10 @@ std::uint64_t Job::complete_samples() const {
 bool Job::any_free() const {
   return std::any_of(passes.begin() + static_cast<std::ptrdiff_t>(complete_passes_), passes.end(),
                      [](const Pass& pass) { return pass.coverage.any_free(); });
+}
+
+bool Job::audit_waits() const {
+  return std::any_of(audits.begin(), audits.end(), [](const Audit& a) { return a.lease == 0; });
 }
 
 double Job::free_samples() const {
@@ -143,9 +206,7 @@ Totals Job::totals() const {
     sum = {figures->samples, figures->counters, figures->cpu_s};
   }
   for (const Pass& pass : passes) {
-    sum.samples += pass.stored;
-    sum.counters.add(pass.counters);
-    sum.cpu_s += pass.cpu_s;
+    sum.add(pass.stored);
   }
   if (state == JobState::kDone && !figures) {
     sum.samples = fixed.value_or(0) * pixels();

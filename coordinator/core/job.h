@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "coordinator/core/audit.h"
 #include "coordinator/core/cost_map.h"
 #include "coordinator/core/coverage.h"
 #include "coordinator/core/messages.h"
@@ -26,6 +27,12 @@ struct Totals {
   std::uint64_t samples = 0;  ///< pixel samples
   Counters counters;
   double cpu_s = 0;
+
+  void add(const Totals& other) {
+    samples += other.samples;
+    counters.add(other.counters);
+    cpu_s += other.cpu_s;
+  }
 };
 
 struct Pass {
@@ -33,14 +40,25 @@ struct Pass {
   Coverage coverage;
   TileMask tiles;             ///< who takes part, of the whole image
   std::vector<float> shares;  ///< of each tile row's pixels, those that do; empty: all
-  std::uint64_t stored = 0;   ///< pixel samples
+  Totals stored;
   RowDigests digests;
-  Counters counters;
-  double cpu_s = 0;
+  /// What one worker process stored of it.
+  struct Part {
+    std::vector<Band> bands;
+    Totals totals;
+  };
+  std::map<std::uint64_t, Part> parts;  ///< by renderer
   /// How often a band that begins at this sample and row came back unfinished. For the logs.
   std::map<std::pair<std::uint64_t, std::uint32_t>, std::uint32_t> returned;
 
   double share() const;  ///< of all pixels, those that take part
+  /// Counts rows of a band as stored by a renderer.
+  void credit(std::uint64_t renderer, const Band& band, const std::vector<RowRange>& rows,
+              const Totals& totals);
+  /// What the renderer stored is free again; false: it had nothing.
+  bool retract(std::uint64_t renderer);
+  /// Who stored a row of a node; 0: not known.
+  std::uint64_t renderer_of_row(const SampleRange& samples, std::uint32_t row) const;
 };
 
 /// The reason of a job that a person paused.
@@ -67,6 +85,9 @@ class Job {
   void plan_tiles(TilePlan plan);
   /// The job ends after this many samples: passes beyond are forgotten.
   void fix(std::uint64_t samples);
+  /// What the renderer stored of any pass is free again, and no share of its is counted; false: it
+  /// had nothing. Its bands' audits are over.
+  bool retract(std::uint64_t renderer);
   /// Counts complete passes on; digests of all but the last few are forgotten.
   void advance();
   /// Passes, faults and digests are not needed any more; the figures stay.
@@ -76,6 +97,8 @@ class Job {
   std::uint64_t complete_samples() const;  ///< of the passes that are complete from the first
   bool complete() const { return fixed && complete_samples() >= *fixed; }
   bool any_free() const;
+  /// Whether a band waits for a machine to render it a second time.
+  bool audit_waits() const;
   /// Pixel samples of its passes that nobody has.
   double free_samples() const;
   Totals totals() const;
@@ -100,6 +123,7 @@ class Job {
   std::optional<std::uint64_t> fixed;  ///< the job ends after this many samples a pixel
   std::vector<Pass> passes;            ///< from sample 0 on, without gaps
   std::optional<TilePlan> tile_plan;   ///< of an adaptive job, from its pilot's end on
+  bool image_asked = false;            ///< in this life of the coordinator
   bool bands_on_disk = false;          ///< bands were stored and not dropped
 
   double error = -1;  ///< of `error_at` samples; negative: not known
@@ -112,7 +136,11 @@ class Job {
   std::deque<Fault> faults;        ///< the newest kFaultsKept
   std::string log_of;              ///< the worker that failed a band last …
   std::vector<std::string> log;    ///< … and the last lines of its log
-  std::deque<Fault> losses;        ///< of workers that went while rendering a band and stay away
+  std::vector<Audit> audits;       ///< open, at most kAuditsKept
+  std::set<Band> audited;          ///< whose second result was the same
+  /// A look at the error that waits for audits: what it would decide on may be wrong pixels.
+  std::optional<input::PassMerged> look;
+  std::deque<Fault> losses;  ///< of workers that went while rendering a band and stay away
   std::map<std::uint64_t, WorkerShare> shares;  ///< by renderer, at most kSharesKnown
   std::optional<record::Figures> figures;       ///< of a final job
   std::vector<WorkerShare> final_shares;        ///< of a final job, the largest first
@@ -125,6 +153,7 @@ class Job {
   Speed per_thread;                    ///< pace of all its workers, in work a second and thread
 
   static constexpr std::size_t kFaultsKept = 1'000;
+  static constexpr std::size_t kAuditsKept = 4'096;
   static constexpr std::size_t kSharesKnown = 65'536;
   static constexpr std::size_t kSharesKept = 128;  ///< the largest, of a final job
 

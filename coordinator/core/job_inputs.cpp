@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/core/pass_plan.h"
@@ -130,7 +131,11 @@ void Core::State::on(const input::PassMerged& in) {
     job->error_at = in.samples;
     note_error(*job, in.samples, *in.error);
   }
-  look_at_error(*job, in, known ? job->error : -1);
+  if (audits_hold(*job)) {
+    job->look = in;
+  } else {
+    look_at_error(*job, in);
+  }
 }
 
 /// What a restart measures again is known already.
@@ -144,7 +149,7 @@ void Core::State::note_error(const Job& job, std::uint64_t samples, const ErrorE
   }
 }
 
-void Core::State::look_at_error(Job& job, const input::PassMerged& look, double error) {
+void Core::State::look_at_error(Job& job, const input::PassMerged& look) {
   const auto* rule = std::get_if<StopAtError>(&job.spec.stop);
   const std::uint64_t samples = look.samples;
   // Only where it was planned to be looked at: what is measured on the way depends on who was fast.
@@ -152,6 +157,8 @@ void Core::State::look_at_error(Job& job, const input::PassMerged& look, double 
       samples != job.complete_samples()) {
     return;
   }
+  const bool known = look.error && std::isfinite(look.error->relative_rmse);
+  const double error = known ? look.error->relative_rmse : -1;
   const bool reached = error >= 0 && error <= rule->relative_rmse;
   if (reached || samples >= rule->max_samples) {
     fix(job, samples);
@@ -182,13 +189,19 @@ void Core::State::settle(Job& job) {
   if (job.state != JobState::kRunning) {
     return;
   }
+  if (job.look && !audits_hold(job)) {
+    const input::PassMerged look = *std::exchange(job.look, std::nullopt);
+    look_at_error(job, look);
+  }
   if (const auto* rule = std::get_if<StopAtTime>(&job.spec.stop); rule != nullptr && !job.fixed) {
     const std::uint64_t there = job.complete_samples();
     if (there > 0 && (elapsed(job, clock_.wall()) >= rule->seconds || there >= rule->max_samples)) {
       fix(job, there);
     }
   }
-  if (job.complete()) {
+  if (job.state == JobState::kRunning && job.complete() && !audits_hold(job)) {
+    job.audits.clear();
+    job.image_asked = true;
     emit(record::StateChanged{job.id, JobState::kFinishing, ""});
     act(action::WriteResult{job.id, *job.fixed});
   }

@@ -20,6 +20,7 @@ struct Lease {
   /// A copy: this lease's band is a part of that one's, which goes on and owns the rows. 0: it owns
   /// its rows itself.
   LeaseId copy_of = 0;
+  bool audit = false;     ///< its rows are stored: it owns none (audit.h)
   bool taken_up = false;  ///< named in a Hello: its result may come before the answer to that
   std::uint32_t rows_done = 0;
   std::uint64_t prepared = 0;

@@ -57,11 +57,15 @@ void Core::State::hand_out() {
 bool Core::State::lease_to(Worker& worker) {
   for (auto it = leasable_.begin(); it != leasable_.end();) {
     Job& job = jobs_.at(it->second);
-    if (!job.any_free() && !plan_timed(job)) {
+    if (!job.any_free() && !job.audit_waits() && !plan_timed(job)) {
       it = leasable_.erase(it);
       continue;
     }
     if (may_render(worker, job)) {
+      if (Audit* audit = audit_for(worker, job)) {
+        grant_audit(worker, job, *audit);
+        return true;
+      }
       if (const auto free = free_for(job, worker)) {
         const Band band = sized(job, worker, *free);
         grant(worker, job, *job.pass_of(band), band, leases_.new_id());
@@ -146,7 +150,7 @@ void Core::State::hand_over(Worker& worker, Job& job, const Pass& pass, Lease le
   const auto returned = pass.returned.find({lease.band.samples.first, lease.band.rows.first});
   const std::uint32_t attempt = returned == pass.returned.end() ? 1 : 1 + returned->second;
   act(action::Lease{*worker.session, lease.id, job.id, job.spec.manifest, job.spec.settings,
-                    lease.band, pass.tiles.of(lease.band.rows), attempt});
+                    lease.band, pass.tiles.of(lease.band.rows), attempt, lease.audit});
 }
 
 void Core::State::end_lease(LeaseId id, Revoke revoke) {
@@ -156,6 +160,10 @@ void Core::State::end_lease(LeaseId id, Revoke revoke) {
   if (Pass* pass = job.pass_of(lease.band); pass->coverage.holds(lease.band, id)) {
     pass->coverage.give_back(lease.band, id);
     ++pass->returned[{lease.band.samples.first, lease.band.rows.first}];
+    touch(job);
+  }
+  if (Audit* audit = lease.audit ? audit_of(lease) : nullptr) {
+    audit->lease = 0;
     touch(job);
   }
   leases_.erase(id);

@@ -10,13 +10,15 @@
 namespace bandsaw::coordinator {
 
 /// What the worker is rendering, if it went now without a word of leaving. A copy does not count:
-/// the original's worker is at the same rows, and a net that fails would take both at once.
+/// the original's worker is at the same rows, and a net that fails would take both at once. Nor
+/// does an audit: somebody has rendered those rows.
 std::optional<Core::State::Losing> Core::State::in_hand(const Worker& worker) const {
-  if (worker.draining || worker.faulty || worker.leases.empty()) {
+  if (worker.draining || worker.quarantined || worker.leases.empty()) {
     return std::nullopt;
   }
   const Lease& lease = *leases_.find(worker.leases.front());
-  return lease.copy_of != 0 ? std::nullopt : std::optional(Losing{lease.job, lease.band});
+  return lease.copy_of != 0 || lease.audit ? std::nullopt
+                                           : std::optional(Losing{lease.job, lease.band});
 }
 
 void Core::State::add_loss(const Worker& worker, const Losing& lost) {

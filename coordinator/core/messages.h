@@ -9,8 +9,8 @@
 #include <variant>
 #include <vector>
 
+#include "coordinator/core/records.h"
 #include "coordinator/core/types.h"
-#include "renderlib/render/adaptive_plan.h"
 
 namespace bandsaw::coordinator {
 
@@ -61,17 +61,17 @@ struct BandFailed {
   std::vector<std::string> log;
 };
 /// A band's pixels are on disk. One digest a row, of the row's sums.
-/// To be said of a duplicate that was not written too: it changes nothing but that its digests are
-/// compared.
+/// To be said of a duplicate that was not written too: its digests are compared.
 struct BandStored {
   JobId job = 0;
   Band band;
   std::vector<std::uint64_t> row_digests;
   std::string instance;        ///< the worker that rendered it; empty when read back from disk
-  std::uint64_t renderer = 0;  ///< names that worker in all lives of the coordinator; 0: unknown
+  std::uint64_t renderer = 0;  ///< who it was (core/renderer.h), when read back; 0: unknown
   Counters counters;
   double render_s = 0;
   double cpu_s = 0;
+  bool written = true;  ///< false: it was there already and was only compared
 };
 /// The film has merged every row of samples [0, samples); error: nothing when it cannot be told
 /// yet. Said once more of the finished image.
@@ -90,6 +90,14 @@ struct StorageFailed {
   std::string reason;
 };
 struct StorageBack {};
+/// A person wants this machine kept away as if it had returned wrong pixels.
+struct Quarantine {
+  std::string worker;  ///< its name, as shown or as it says itself
+};
+/// … or let in again. A worker process that was sent away MUST be started again for it.
+struct LiftQuarantine {
+  std::string worker;
+};
 /// Final jobs that are old enough; others are left alone.
 struct Forget {
   std::vector<JobId> jobs;
@@ -97,99 +105,11 @@ struct Forget {
 struct Tick {};
 }  // namespace input
 
-using Input =
-    std::variant<input::Submit, input::Cancel, input::Pause, input::Resume, input::SetPriority,
-                 input::Hello, input::Heartbeat, input::Draining, input::Lost, input::BandFailed,
-                 input::BandStored, input::PassMerged, input::ResultWritten, input::StorageFailed,
-                 input::StorageBack, input::Forget, input::Tick>;
-
-// ---- events that must survive: the journal ----
-namespace record {
-struct JobAdded {
-  JobId job = 0;
-  JobSpec spec;
-};
-/// A pass [first, last) of the whole image was begun. (For error and time rules passes depend on
-/// what was measured.)
-struct PassPlanned {
-  JobId job = 0;
-  SampleRange samples;
-};
-/// From the samples that there are on, half tiles take part in passes as planned.
-struct TilesPlanned {
-  JobId job = 0;
-  TilePlan plan;
-};
-/// No further pass: the job ends after this many samples a pixel.
-struct SamplesFixed {
-  JobId job = 0;
-  std::uint64_t samples = 0;
-};
-struct StateChanged {
-  JobId job = 0;
-  JobState state = JobState::kRunning;
-  std::string reason;
-};
-/// Of a job that was not submitted with 0, or since.
-struct PriorityChanged {
-  JobId job = 0;
-  std::int32_t priority = 0;
-};
-/// A person paused it: only a person resumes it.
-struct HoldChanged {
-  JobId job = 0;
-  bool held = false;
-};
-/// How long a job has been at work, in all lives of the coordinator; the last of a job counts.
-struct TimeSpent {
-  JobId job = 0;
-  double elapsed_s = 0;
-};
-/// What a job came to, before it is final: its bands are dropped then.
-struct Figures {
-  JobId job = 0;
-  double elapsed_s = 0;
-  double cpu_s = 0;
-  std::uint32_t workers_used = 0;
-  std::uint64_t samples = 0;            ///< pixel samples stored
-  std::uint64_t samples_per_pixel = 0;  ///< of the complete passes
-  double error = -1;                    ///< negative: not known
-  Counters counters;
-};
-/// What the error was after a pass.
-struct ErrorMeasured {
-  JobId job = 0;
-  ErrorPoint point;
-};
-/// Of a job that is about to be final; one for each worker.
-struct ShareCounted {
-  JobId job = 0;
-  WorkerShare share;
-};
-/// The last lines of the log of the worker that failed the job.
-struct LastWords {
-  JobId job = 0;
-  std::string worker;
-  std::vector<std::string> log;
-};
-/// A final job that nobody is told of any more; its number is never used again.
-struct JobForgotten {
-  JobId job = 0;
-};
-/// Who was connected, so that a restart waits a moment for those who may hold finished bands.
-struct WorkerJoined {
-  std::string instance;
-};
-struct WorkerLeft {
-  std::string instance;
-};
-}  // namespace record
-
-using Record =
-    std::variant<record::JobAdded, record::PassPlanned, record::TilesPlanned, record::SamplesFixed,
-                 record::StateChanged, record::PriorityChanged, record::HoldChanged,
-                 record::TimeSpent, record::Figures, record::ErrorMeasured, record::ShareCounted,
-                 record::LastWords, record::JobForgotten, record::WorkerJoined, record::WorkerLeft>;
+using Input = std::variant<input::Submit, input::Cancel, input::Pause, input::Resume,
+                           input::SetPriority, input::Hello, input::Heartbeat, input::Draining,
+                           input::Lost, input::BandFailed, input::BandStored, input::PassMerged,
+                           input::ResultWritten, input::StorageFailed, input::StorageBack,
+                           input::Quarantine, input::LiftQuarantine, input::Forget, input::Tick>;
 
 // ---- actions ----
 namespace action {
@@ -217,6 +137,7 @@ struct Lease {
   Band band;
   TileMask tiles = {};  ///< of the band's rows
   std::uint32_t attempt = 1;
+  bool audit = false;  ///< the rows are there; another machine renders them to compare
 };
 struct Revoke {
   SessionId session = 0;
@@ -245,6 +166,12 @@ struct AddToFilm {
   std::string worker;   ///< whose it is, for people; empty: one that is not known any more
   TileMask tiles = {};  ///< of the band's rows
 };
+/// What this worker rendered of the job is void: the film is made anew without it, and tells its
+/// passes again as they become whole.
+struct Retract {
+  JobId job = 0;
+  std::uint64_t renderer = 0;
+};
 /// Write the image of samples [0, samples), then say ResultWritten.
 struct WriteResult {
   JobId job = 0;
@@ -260,8 +187,9 @@ struct DropBands {
 };
 }  // namespace action
 
-using Action = std::variant<action::Welcome, action::Refuse, action::Close, action::Lease,
-                            action::Revoke, action::Shared, action::Faulted, action::AddToFilm,
-                            action::WriteResult, action::DropBands, action::DropJob>;
+using Action =
+    std::variant<action::Welcome, action::Refuse, action::Close, action::Lease, action::Revoke,
+                 action::Shared, action::Faulted, action::AddToFilm, action::Retract,
+                 action::WriteResult, action::DropBands, action::DropJob>;
 
 }  // namespace bandsaw::coordinator

@@ -118,6 +118,25 @@ void Core::State::apply(const record::JobForgotten& r) {
 void Core::State::apply(const record::WorkerJoined& r) { joined_.insert(r.instance); }
 void Core::State::apply(const record::WorkerLeft& r) { joined_.erase(r.instance); }
 
+void Core::State::apply(const record::BandAudited& r) {
+  if (Job* job = find(r.job); job != nullptr && !is_final(job->state)) {
+    job->audited.insert(r.band);
+  }
+}
+
+/// A number of samples that was fixed by a wrong error is not.
+void Core::State::apply(const record::ErrorForgotten& r) {
+  if (Job* job = find(r.job); job != nullptr && !is_final(job->state)) {
+    job->curve.clear();
+    job->error = -1;
+    job->error_at = 0;
+    job->look.reset();
+    if (std::holds_alternative<StopAtError>(job->spec.stop)) {
+      job->fixed.reset();
+    }
+  }
+}
+
 void Core::State::restore(const input::BandStored& band) {
   Job* job = find(band.job);
   if (job == nullptr) {
@@ -126,9 +145,10 @@ void Core::State::restore(const input::BandStored& band) {
   job->bands_on_disk = true;
   Pass* pass = is_final(job->state) ? nullptr : job->pass_of(band.band);
   if (pass == nullptr || band.row_digests.size() != band.band.rows.count() ||
-      pass->digests.first_difference(band.band, band.row_digests)) {
+      is_quarantined(witness_of(band))) {
     return;
   }
+  weigh(*job, *pass, band);
   store(*job, *pass, band);
 }
 

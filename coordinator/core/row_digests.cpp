@@ -30,4 +30,20 @@ std::optional<std::uint32_t> RowDigests::first_difference(
   return std::nullopt;
 }
 
+std::optional<std::uint64_t> RowDigests::of(const SampleRange& samples, std::uint32_t row) const {
+  const auto of_node = known_.find(samples);
+  if (of_node == known_.end()) {
+    return std::nullopt;
+  }
+  const auto digest = of_node->second.find(row);
+  return digest == of_node->second.end() ? std::nullopt : std::optional(digest->second);
+}
+
+void RowDigests::forget(const Band& band) {
+  if (const auto of_node = known_.find(band.samples); of_node != known_.end()) {
+    of_node->second.erase(of_node->second.lower_bound(band.rows.first),
+                          of_node->second.lower_bound(band.rows.last));
+  }
+}
+
 }  // namespace bandsaw::coordinator

@@ -23,6 +23,9 @@ class RowDigests {
   std::optional<std::uint32_t> first_difference(const Band& band,
                                                 const std::vector<std::uint64_t>& digests) const;
 
+  /// Of a row of a node; nothing when it is not known.
+  std::optional<std::uint64_t> of(const SampleRange& samples, std::uint32_t row) const;
+  void forget(const Band& band);
   void clear() { known_.clear(); }
 
  private:

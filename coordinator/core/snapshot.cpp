@@ -41,6 +41,9 @@ void Core::State::add_records(const Job& job, std::vector<Record>& out) {
   for (const ErrorPoint& point : job.curve) {
     out.push_back(record::ErrorMeasured{job.id, point});
   }
+  for (const Band& band : job.audited) {
+    out.push_back(record::BandAudited{job.id, band});
+  }
   if (job.figures) {
     out.push_back(*job.figures);
   }
@@ -64,6 +67,7 @@ std::vector<Record> Core::State::snapshot() const {
   if (next_job_ > 1 && !jobs_.contains(next_job_ - 1)) {
     records.push_back(record::JobForgotten{next_job_ - 1});
   }
+  add_quarantine(records);
   for (const std::string& instance : joined_) {
     records.push_back(record::WorkerJoined{instance});
   }

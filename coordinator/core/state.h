@@ -6,7 +6,7 @@
 //
 // Where to look: job_inputs.cpp, pause_inputs.cpp, worker_inputs.cpp, band_inputs.cpp (one function
 // an input), replay.cpp (durable facts), leasing.cpp (who renders what), faults.cpp (what goes
-// wrong), views.cpp (what is shown), invariants.cpp.
+// wrong), audits.cpp and quarantine.cpp (who is wrong), views.cpp (what is shown), invariants.cpp.
 
 #include <deque>
 #include <map>
@@ -59,6 +59,8 @@ class Core::State {
   void on(const input::ResultWritten& in);
   void on(const input::StorageFailed& in);
   void on(const input::StorageBack& in);
+  void on(const input::Quarantine& in);
+  void on(const input::LiftQuarantine& in);
   void on(const input::Forget& in);
   void on(const input::Tick& in);
 
@@ -77,6 +79,10 @@ class Core::State {
   void apply(const record::JobForgotten& r);
   void apply(const record::WorkerJoined& r);
   void apply(const record::WorkerLeft& r);
+  void apply(const record::BandAudited& r);
+  void apply(const record::ErrorForgotten& r);
+  void apply(const record::WorkerQuarantined& r);
+  void apply(const record::QuarantineLifted& r);
 
   /// Who comes first: the highest priority, then the oldest.
   using Rank = std::pair<std::int32_t, JobId>;
@@ -104,7 +110,7 @@ class Core::State {
   void plan_first(Job& job);
   void plan_until(Job& job, std::uint64_t samples);
   bool plan_timed(Job& job);
-  void look_at_error(Job& job, const input::PassMerged& look, double error);
+  void look_at_error(Job& job, const input::PassMerged& look);
   void note_error(const Job& job, std::uint64_t samples, const ErrorEstimate& error);
   void fix(Job& job, std::uint64_t samples);
   /// Ends the job's work once every pass is there, or its time is up.
@@ -153,6 +159,7 @@ class Core::State {
   double rest_of(const Lease& lease) const;
   bool steal(const Late& late, std::vector<Worker*>& idle);
   bool copy(const Late& late, std::vector<Worker*>& idle);
+  bool move_audit(const Late& late, std::vector<Worker*>& idle);
   std::vector<Worker*> helpers(const Job& job, const Lease& lease,
                                const std::vector<Worker*>& idle) const;
   RowRange not_copied(const Job& job, const Lease& lease) const;
@@ -165,6 +172,40 @@ class Core::State {
   void end_own(const Worker& worker, const input::BandStored& in);
   Coverage::Change store(Job& job, Pass& pass, const input::BandStored& in);
   void count_share(Job& job, const input::BandStored& in, std::uint64_t samples);
+
+  // Audits.
+  Witness witness_of(const input::BandStored& in) const;
+  static Witness witness_of(const Worker& worker);
+  Witness witness_of(std::uint64_t renderer) const;
+  void open_audits(Job& job, const input::BandStored& in, const std::vector<RowRange>& rows);
+  void open_dispute(Job& job, const Pass& pass, const input::BandStored& in);
+  /// What a result says of rows that are there already.
+  void weigh(Job& job, const Pass& pass, const input::BandStored& in);
+  bool judge_one(Job& job);
+  bool may_audit(const Worker& worker, const Job& job, const Audit& audit) const;
+  Audit* audit_for(const Worker& worker, Job& job) const;
+  Audit* audit_of(const Lease& lease);
+  void grant_audit(Worker& worker, Job& job, Audit& audit);
+  void give_up_audit(const Lease& lease, const Worker& worker, const std::string& reason);
+  bool audits_hold(const Job& job) const;
+  std::string audit_reason(const Job& job) const;
+
+  // Quarantine.
+  struct Quarantined {
+    std::string name;  ///< of the machine, as it says it
+    std::string reason;
+    bool lifted = false;
+  };
+  std::string shown_name(const Witness& witness) const;
+  bool is_quarantined(const Witness& witness) const;
+  std::optional<std::string> kept_away(const std::string& instance, const std::string& said) const;
+  static std::string quarantine_reason(const Quarantined& one);
+  void quarantine(const Witness& witness, const std::string& reason);
+  void send_away(Worker& worker);
+  void learn_name(const WorkerHello& worker);
+  void retract(Job& job, std::uint64_t renderer, const std::string& why);
+  std::vector<WorkerView> quarantined_views() const;
+  void add_quarantine(std::vector<Record>& out) const;
 
   // What goes wrong.
   void add_fault(Job& job, Worker& worker, const Band& band, const std::string& reason);
@@ -183,7 +224,6 @@ class Core::State {
   static void shrink_losses(Job& job, const Band& stored);
   void check_silence();
   void check_progress();
-  void returned_other_pixels(Job& job, const input::BandStored& in, std::uint32_t row);
 
   // Views.
   std::string waiting_reason(const Job& job) const;
@@ -227,6 +267,10 @@ class Core::State {
   };
   static constexpr std::size_t kRefusalsKept = 32;
   std::deque<Refusal> refusals_;
+
+  static constexpr std::size_t kQuarantinedKept = 1'024;
+  /// By renderer: what one rendered is void for ever, its name is barred until it is lifted.
+  std::map<std::uint64_t, Quarantined> quarantined_;
 
   std::set<std::string> joined_;  ///< instances, as journalled
   std::set<std::string> former_;  ///< of those, who were there before the restart and are awaited

@@ -55,7 +55,10 @@ bool Core::State::share_the_tail() {
     }
     const Job& job = jobs_.at(lease->job);
     const bool queued = late.untouched && late.begins_in_s > kTrip_s;
-    any = (queued ? steal(late, idle) : copy(late, idle)) || any;
+    any = (lease->audit ? move_audit(late, idle)
+           : queued     ? steal(late, idle)
+                        : copy(late, idle)) ||
+          any;
     if (any && job.any_free()) {
       return true;
     }
@@ -163,6 +166,27 @@ bool Core::State::steal(const Late& late, std::vector<Worker*>& idle) {
   const Band band = sized(job, thief, *free);
   grant(thief, job, *job.pass_of(band), band, leases_.new_id());
   return true;
+}
+
+/// An audit has no parts and no owner: who is much sooner takes it, begun or not, and each machine
+/// once, so that it does not wander.
+bool Core::State::move_audit(const Late& late, std::vector<Worker*>& idle) {
+  const Lease lease = *leases_.find(late.lease);
+  Job& job = jobs_.at(lease.job);
+  Audit& audit = *audit_of(lease);
+  for (Worker* worker : helpers(job, lease, idle)) {
+    const double takes = job.cost_of(lease.band) / pace(*worker, job) + kTrip_s;
+    if (takes < late.done_in_s * kSoonEnough && !audit.given.contains(worker->said) &&
+        may_audit(*worker, job, audit)) {
+      act(action::Shared{job.id, lease.band, workers_.by_id(lease.worker)->name, worker->name,
+                         false});
+      end_lease(lease.id, Revoke::kYes);
+      grant_audit(*worker, job, audit);
+      std::erase(idle, worker);
+      return true;
+    }
+  }
+  return false;
 }
 
 bool Core::State::copy(const Late& late, std::vector<Worker*>& idle) {

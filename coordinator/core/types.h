@@ -143,6 +143,8 @@ struct JobView {
   /// Bands given to idle workers though others had them; what was rendered twice by it is counted
   /// in no other figure.
   std::uint64_t bands_copied = 0;
+  /// Bands that two machines rendered to the same digests. Of a job that is over: 0.
+  std::uint64_t bands_audited = 0;
   std::vector<JobWorkerView> workers;
   ErrorCurve curve;                 ///< in lists of jobs: empty
   std::vector<WorkerShare> shares;  ///< of a final job; in lists of jobs: empty

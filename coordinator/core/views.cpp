@@ -39,6 +39,7 @@ std::optional<JobView> Core::State::view(JobId id, Time now) const {
     view.log = job->log;
   }
   view.bands_copied = job->bands_copied;
+  view.bands_audited = job->audited.size();
   view.workers = lines(*job);
   view.curve = job->curve;
   view.shares = job->final_shares;
@@ -135,7 +136,7 @@ double Core::State::remaining(const Job& job, Time now) const {
 std::vector<WorkerView> Core::State::worker_views(Time now) const {
   std::vector<WorkerView> views;
   for (const auto& [id, worker] : workers_.all()) {
-    const char* const state = worker.faulty           ? "refused"
+    const char* const state = worker.quarantined      ? "quarantined"
                               : !worker.session       ? "lost"
                               : worker.draining       ? "draining"
                               : worker.leases.empty() ? "idle"
@@ -154,6 +155,9 @@ std::vector<WorkerView> Core::State::worker_views(Time now) const {
   }
   for (const Refusal& refusal : refusals_) {
     views.push_back(refusal.worker);
+  }
+  for (WorkerView& view : quarantined_views()) {
+    views.push_back(std::move(view));
   }
   std::sort(views.begin(), views.end(),
             [](const WorkerView& a, const WorkerView& b) { return a.name < b.name; });

@@ -30,6 +30,9 @@ std::string Core::State::waiting_reason(const Job& job) const {
   if (job.state != JobState::kRunning || !job.leases.empty()) {
     return job.notice;
   }
+  if (!job.any_free() && audits_hold(job)) {
+    return audit_reason(job);
+  }
   if (waits_for_former()) {
     return absl::StrCat("waits for ", former_.size(),
                         " workers that were there before the coordinator's restart");
@@ -100,7 +103,9 @@ std::vector<std::string> Core::State::why(JobId id, Time now) const {
   if (const std::string reason = waiting_reason(*job); !reason.empty()) {
     lines.push_back(reason);
   }
-  if (job->leases.empty() && !job->any_free()) {
+  if (!job->any_free() && audits_hold(*job)) {
+    lines.push_back(audit_reason(*job));
+  } else if (job->leases.empty() && !job->any_free()) {
     lines.push_back("all that is planned is rendered; how much more is needed is being measured");
   }
   if (lines.empty()) {
@@ -132,9 +137,9 @@ std::vector<std::string> Core::State::working_on(const Job& job) const {
 std::vector<std::string> Core::State::not_working_on(const Job& job) const {
   std::vector<std::string> out;
   for (const auto& [id, worker] : workers_.all()) {
-    if (worker.faulty || (worker.session && worker.draining)) {
-      out.push_back(absl::StrCat(worker.name,
-                                 worker.faulty ? " is refused: " : " is leaving: ", worker.reason));
+    if (worker.quarantined || (worker.session && worker.draining)) {
+      out.push_back(absl::StrCat(
+          worker.name, worker.quarantined ? " gets no work: " : " is leaving: ", worker.reason));
     } else if (worker.eligible() && !may_render(worker, job)) {
       out.push_back(absl::StrCat(worker.name, " is not given it any more: it failed too often"));
     } else if (worker.eligible() && !worker.leases.empty() &&

@@ -22,11 +22,12 @@ void Core::State::on(const input::Hello& in) {
     act(action::Refuse{in.session, *why, kRetryUnfitMs});
     return;
   }
-  Worker* worker = workers_.by_instance(in.worker.instance);
-  if (worker != nullptr && worker->faulty) {
-    act(action::Refuse{in.session, worker->reason, kRetryUnfitMs});
+  learn_name(in.worker);
+  if (const auto why = kept_away(in.worker.instance, in.worker.name)) {
+    act(action::Refuse{in.session, *why, kRetryUnfitMs});
     return;
   }
+  Worker* worker = workers_.by_instance(in.worker.instance);
   const bool there = worker != nullptr && worker->session;
   if (!there && workers_.connected() >= wire::kWorkers) {
     act(action::Refuse{in.session, absl::StrCat("the farm is full: ", wire::kWorkers, " workers"),
@@ -113,7 +114,8 @@ bool Core::State::take_up_one(Worker& worker, const WorkerHello::Held& held) {
       leases_.find(held.lease)->advanced_at = clock_.patience();
       leases_.find(held.lease)->taken_up = true;
       act(action::Lease{*worker.session, held.lease, job->id, job->spec.manifest,
-                        job->spec.settings, held.band, pass->tiles.of(held.band.rows), 1});
+                        job->spec.settings, held.band, pass->tiles.of(held.band.rows), 1,
+                        lease->audit});
     }
     return same;
   }
@@ -168,7 +170,7 @@ void Core::State::on(const input::Lost& in) {
 void Core::State::lose(Worker& worker, const std::string& reason) {
   const std::optional<Losing> lost = in_hand(worker);
   end_all(std::vector<LeaseId>(worker.leases), Revoke::kNo);
-  if (!worker.faulty) {
+  if (!worker.quarantined) {
     worker.reason = reason.substr(0, wire::kReasonBytes);
   }
   worker.doing.clear();

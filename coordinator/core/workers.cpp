@@ -38,6 +38,7 @@ Worker& Workers::add(const std::string& instance, const std::string& name) {
   worker.id = next_++;
   worker.instance = instance;
   worker.name = unique;
+  worker.said = name;
   by_instance_[instance] = worker.id;
   by_name_[unique] = worker.id;
   gone_.push_back(worker.id);

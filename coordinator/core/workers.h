@@ -18,15 +18,16 @@ struct Worker {
   WorkerId id = 0;
   std::string instance;
   std::string name;  ///< unique among those known
+  std::string said;  ///< the name that it says itself: of its machine
   std::string address;
   std::string build;
   std::uint32_t threads = 1;
   std::uint32_t credits = 1;         ///< leases it may hold
   std::optional<SessionId> session;  ///< none: it is gone
   bool draining = false;
-  bool faulty = false;  ///< it returned wrong pixels and gets no more work
+  bool quarantined = false;  ///< it gets no more work
   std::string doing;
-  std::string reason;           ///< why it is gone, drains or is faulty
+  std::string reason;           ///< why it is gone, drains or is quarantined
   Time connected_at = 0;        ///< wall clock
   Time heard_at = 0;            ///< patience clock
   std::vector<LeaseId> leases;  ///< in the order given, which is the order it renders them in
@@ -41,7 +42,7 @@ struct Worker {
   };
   std::map<JobId, OnJob> on_job;
 
-  bool eligible() const { return session && !draining && !faulty; }
+  bool eligible() const { return session && !draining && !quarantined; }
   bool hungry() const { return eligible() && leases.size() < credits; }
 };
 

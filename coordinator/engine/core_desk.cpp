@@ -46,6 +46,7 @@ void CoreDesk::absorb(const Step& step, PutBand* put) {
       PutBand band;
       band.job = put->job;
       band.worker = add->worker;
+      band.renderer = put->renderer;
       band.pixels = std::move(put->pixels);
       band.share = std::move(put->share);
       band.offset = put->offset;
@@ -70,6 +71,8 @@ void CoreDesk::perform(const Action& action) {
   } else if (const auto* drop = std::get_if<action::DropBands>(&action)) {
     results_on_the_way_.erase(drop->job);
     hooks_.drop_bands(drop->job);
+  } else if (const auto* retracted = std::get_if<action::Retract>(&action)) {
+    hooks_.retract(retracted->job, retracted->renderer);
   } else if (const auto* forgotten = std::get_if<action::DropJob>(&action)) {
     hooks_.drop_job(forgotten->job);
   } else if (const auto* shared = std::get_if<action::Shared>(&action)) {

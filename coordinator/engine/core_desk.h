@@ -36,6 +36,7 @@ class CoreDesk {
     std::function<void(PutBand)> store_band;
     std::function<void(PutBand)> compare_band;
     std::function<void(PutBand, std::vector<RowRange>)> add_to_film;
+    std::function<void(JobId, std::uint64_t renderer)> retract;
     std::function<void(JobId, std::uint64_t samples)> make_result;
     std::function<void(JobId)> drop_bands;
     std::function<void(JobId)> drop_job;
@@ -53,6 +54,8 @@ class CoreDesk {
   void submit(JobSpec spec, std::int32_t priority, Answer<JobId> answer);
   /// Cancel, Pause, Resume or SetPriority of a job; answered with what it is then.
   void tell(JobId job, const Input& input, Answer<JobView> answer);
+  /// Quarantine or LiftQuarantine of a worker.
+  void tell_of_worker(const Input& input, Answer<bool> answer);
   void watch(JobId job, Watchers::Changed changed);
   std::optional<JobView> job(JobId id) const { return core_.job(id, clock_.now()); }
   std::vector<std::string> why(JobId id) const { return core_.why(id, clock_.now()); }

@@ -40,6 +40,18 @@ void CoreDesk::tell(JobId id, const Input& input, Answer<JobView> answer) {
   });
 }
 
+void CoreDesk::tell_of_worker(const Input& input, Answer<bool> answer) {
+  const Step step = run(input);
+  outbox_.reply(
+      [decided = step.status, answer = std::move(answer)](const absl::Status& journalled) mutable {
+        if (!decided.ok() || !journalled.ok()) {
+          answer(decided.ok() ? journalled : decided);
+        } else {
+          answer(true);
+        }
+      });
+}
+
 void CoreDesk::watch(JobId id, Watchers::Changed changed) {
   watchers_.add(id, job(id), std::move(changed), clock_.now());
 }

@@ -49,6 +49,7 @@ absl::Status CoreDesk::restore_job(JobId id, const Known& known, StoreDesk& stor
     // A band whose other rows had other pixels is refused now as it was then.
     if (const auto left = core_.wanted(id, band); left && left->empty()) {
       PutBand put;
+      put.renderer = record.renderer;
       put.pixels = std::move(pixels);
       put.offset = offset;
       put.tiles = core_.tiles(id, band);

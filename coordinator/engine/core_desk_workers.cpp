@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "coordinator/core/renderer.h"
 #include "coordinator/engine/core_desk.h"
 
 namespace bandsaw::coordinator {
@@ -57,6 +58,7 @@ void CoreDesk::put_band(PutBand put) {
     put.answer(journal_status_);
     return;
   }
+  put.renderer = renderer_of(put.instance);
   const std::optional<std::vector<RowRange>> wanted = core_.wanted(put.job, put.pixels.band);
   if (!wanted) {
     put.answer(BandOutcome::kUnwanted);
@@ -72,10 +74,10 @@ void CoreDesk::band_stored(PutBand put, std::vector<std::uint64_t> row_digests) 
                                           .band = put.pixels.band,
                                           .row_digests = std::move(row_digests),
                                           .instance = put.instance,
-                                          .renderer = renderer_of(put.instance),
                                           .counters = put.pixels.counters,
                                           .render_s = put.render_s,
-                                          .cpu_s = put.cpu_s},
+                                          .cpu_s = put.cpu_s,
+                                          .written = put.written},
                         &put);
   const bool added = std::any_of(step.actions.begin(), step.actions.end(), [](const Action& a) {
     return std::holds_alternative<action::AddToFilm>(a);

@@ -67,6 +67,16 @@ void Engine::set_priority(JobId job, std::int32_t priority,
   impl_->tell(job, input::SetPriority{.job = job, .priority = priority}, std::move(done));
 }
 
+void Engine::quarantine(std::string worker, bool lift, std::function<void(absl::Status)> done) {
+  Answer<bool> answer(
+      [done = std::move(done)](const absl::StatusOr<bool>& told) { done(told.status()); });
+  const Input input = lift ? Input(input::LiftQuarantine{std::move(worker)})
+                           : Input(input::Quarantine{std::move(worker)});
+  impl_->on_core([input, answer = std::move(answer)](CoreDesk& core) mutable {
+    core.tell_of_worker(input, std::move(answer));
+  });
+}
+
 void Engine::why(JobId job, std::function<void(std::vector<std::string>)> done) {
   Answer<std::vector<std::string>> answer([done = std::move(done)](auto lines) {
     done(lines.ok() ? *std::move(lines) : std::vector<std::string>());

@@ -27,7 +27,9 @@ struct EngineOptions {
   double progress_timeout_s =
       30;  ///< a lease whose rows do not advance this long is given to another
   double reattach_grace_s =
-      6;           ///< after a restart: how long to wait for workers that were there before
+      6;  ///< after a restart: how long to wait for workers that were there before
+  /// Of all bands, [0, 1]: rendered by two machines and compared.
+  double audit_share = 0.01;
   Keep keep = {};  ///< of what is over; looked at every ten minutes
 };
 
@@ -59,6 +61,8 @@ class Engine {
   /// INVALID_ARGUMENT: beyond kMostPriority.
   void set_priority(JobId job, std::int32_t priority,
                     std::function<void(absl::StatusOr<JobView>)> done);
+  /// Keeps a machine away as if it had returned wrong pixels, or lets it in again. NOT_FOUND.
+  void quarantine(std::string worker, bool lift, std::function<void(absl::Status)> done);
   /// Why it is not done yet, in sentences; none: no such job.
   void why(JobId job, std::function<void(std::vector<std::string>)> done);
   /// Calls `changed` with the state now and after each change (at most ten a second a job, at least

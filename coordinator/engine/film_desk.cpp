@@ -39,10 +39,23 @@ void FilmDesk::want_image(JobId id, std::uint64_t samples) {
 
 void FilmDesk::retry() {
   for (auto& [id, job] : jobs_) {
-    if (!job.waiting.empty() || job.image_of) {
+    if (job.anew || !job.waiting.empty() || job.image_of) {
       work(id, job).IgnoreError();  // the hook has heard of it
     }
   }
+}
+
+void FilmDesk::retract(JobId id, std::uint64_t renderer) {
+  const auto job = jobs_.find(id);
+  if (job == jobs_.end()) {
+    return;
+  }
+  const auto by = [&](const auto& one) { return one.renderer == renderer; };
+  std::erase_if(job->second.waiting, [&](const Waiting& waiting) { return by(waiting.put); });
+  std::erase_if(job->second.added, by);
+  job->second.anew = true;
+  job->second.told = 0;
+  work(id, job->second).IgnoreError();  // the hook has heard of it
 }
 
 void FilmDesk::drop(JobId job) { jobs_.erase(job); }
@@ -56,7 +69,7 @@ absl::StatusOr<Image> FilmDesk::preview(JobId id, std::uint32_t row_step) const 
 }
 
 absl::Status FilmDesk::work(JobId id, OneJob& job) {
-  absl::Status status;
+  absl::Status status = job.anew ? make_anew(id, job) : absl::OkStatus();
   while (status.ok() && !job.waiting.empty()) {
     status = merge(id, job, job.waiting.front());
     if (status.ok()) {
@@ -73,6 +86,13 @@ absl::Status FilmDesk::work(JobId id, OneJob& job) {
   return status;
 }
 
+absl::Status FilmDesk::make_anew(JobId id, OneJob& job) {
+  ASSIGN_OR_RETURN(job.film, film_until(id, job, kMaxSamples));
+  job.anew = false;
+  tell_passes(id, job);
+  return absl::OkStatus();
+}
+
 absl::Status FilmDesk::merge(JobId id, OneJob& job, Waiting& waiting) {
   if (!job.film) {
     ASSIGN_OR_RETURN(job.film, new_film(id, job));
@@ -83,18 +103,19 @@ absl::Status FilmDesk::merge(JobId id, OneJob& job, Waiting& waiting) {
     TileMask tiles = waiting.put.tiles.of(rows);
     RETURN_IF_ERROR(job.film->add(rows == pixels.band.rows ? pixels : slice(pixels, rows), tiles));
     credits_.add(id, rows, waiting.put.worker);
-    job.added.push_back({waiting.put.offset, pixels.band.samples.last, rows, std::move(tiles)});
+    job.added.push_back({waiting.put.offset, pixels.band.samples.last, waiting.put.renderer, rows,
+                         std::move(tiles)});
     waiting.rows.pop_back();
   }
   return absl::OkStatus();
 }
 
 void FilmDesk::tell_passes(JobId id, OneJob& job) {
-  while (!job.pass_ends.empty() && job.film->complete(*job.pass_ends.begin())) {
-    const std::uint64_t samples = *job.pass_ends.begin();
-    job.pass_ends.erase(job.pass_ends.begin());
+  for (auto end = job.pass_ends.upper_bound(job.told);
+       end != job.pass_ends.end() && job.film->complete(*end); ++end) {
+    job.told = *end;
     hooks_.merged({.job = id,
-                   .samples = samples,
+                   .samples = job.told,
                    .error = job.film->error(),
                    .tiles = job.adaptive ? job.film->tile_errors() : std::vector<TileError>()});
   }

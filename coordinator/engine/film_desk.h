@@ -43,6 +43,9 @@ class FilmDesk {
   /// The image of samples [0, samples) goes to the hook as soon as the film has them.
   void want_image(JobId job, std::uint64_t samples);
   void retry();
+  /// What this renderer gave is left out: the film is made anew from the log of the others, and its
+  /// passes are told again as they become whole.
+  void retract(JobId job, std::uint64_t renderer);
   void drop(JobId job);
 
   /// What is there of a job's image, of every row_step-th row. NOT_FOUND: no band is, or the job is
@@ -60,6 +63,7 @@ class FilmDesk {
   struct Added {
     std::uint64_t offset = 0;  ///< of the band's record
     std::uint64_t last_sample = 0;
+    std::uint64_t renderer = 0;
     RowRange rows;
     TileMask tiles;  ///< of these rows
   };
@@ -69,10 +73,13 @@ class FilmDesk {
     std::optional<Film> film;  ///< from the first band on
     std::deque<Waiting> waiting;
     std::vector<Added> added;
-    std::set<std::uint64_t> pass_ends;  ///< not whole yet
+    std::set<std::uint64_t> pass_ends;
+    std::uint64_t told = 0;  ///< the end of the last pass that was told
+    bool anew = false;       ///< the film has what is not in `added`
     std::optional<std::uint64_t> image_of;
   };
   absl::Status work(JobId id, OneJob& job);
+  absl::Status make_anew(JobId id, OneJob& job);
   absl::Status merge(JobId id, OneJob& job, Waiting& waiting);
   void tell_passes(JobId id, OneJob& job);
   absl::Status give_image(JobId id, OneJob& job);

@@ -41,6 +41,7 @@ CoreOptions core_options(const EngineOptions& options, const std::string& epoch)
   core.heartbeat_timeout_s = options.heartbeat_timeout_s;
   core.progress_timeout_s = options.progress_timeout_s;
   core.reattach_grace_s = options.reattach_grace_s;
+  core.audit_share = options.audit_share;
   core.epoch = epoch;
   return core;
 }
@@ -132,6 +133,10 @@ CoreDesk::Hooks Engine::Impl::core_hooks() {
               film.add(job, std::move(put), std::move(rows))
                   .IgnoreError();  // the hook has told the core
             });
+          },
+      .retract =
+          [this](JobId job, std::uint64_t renderer) {
+            on_film([job, renderer](FilmDesk& film) { film.retract(job, renderer); });
           },
       .make_result =
           [this](JobId job, std::uint64_t samples) {

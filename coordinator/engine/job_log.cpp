@@ -58,6 +58,19 @@ struct Line {
   void operator()(const record::WorkerLeft& r) const {
     spdlog::debug("worker instance={} left", r.instance);
   }
+  void operator()(const record::BandAudited& r) const {
+    spdlog::debug("audited job={} rows={}:{} samples={}:{}", r.job, r.band.rows.first,
+                  r.band.rows.last, r.band.samples.first, r.band.samples.last);
+  }
+  void operator()(const record::ErrorForgotten& r) const {
+    spdlog::warn("job={} wrong pixels are rendered again; its error is measured anew", r.job);
+  }
+  void operator()(const record::WorkerQuarantined& r) const {
+    spdlog::error("quarantined worker={} {}", r.name, r.reason);
+  }
+  void operator()(const record::QuarantineLifted& r) const {
+    spdlog::info("quarantine lifted worker={}", r.name);
+  }
 };
 
 }  // namespace

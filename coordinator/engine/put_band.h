@@ -6,7 +6,6 @@
 #include <atomic>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
 #include <utility>
 
@@ -14,7 +13,6 @@
 #include "coordinator/engine/answer.h"
 #include "coordinator/engine/engine.h"
 #include "renderlib/render/band.h"
-#include "renderlib/render/hash64.h"
 #include "renderlib/render/tile_mask.h"
 
 namespace bandsaw::coordinator {
@@ -63,21 +61,16 @@ class BandBudget {
   std::atomic<std::int64_t> left_;
 };
 
-/// A worker's instance as a band record names it.
-inline std::uint64_t renderer_of(const std::string& instance) {
-  Hash64 hash;
-  hash.add(std::as_bytes(std::span(instance)));
-  return hash.value();
-}
-
 struct PutBand {
   JobId job = 0;
-  std::string instance;  ///< of the worker
+  std::string instance;        ///< of the worker
+  std::uint64_t renderer = 0;  ///< of it (core/renderer.h)
   BandPixels pixels;
   std::string worker;   ///< as action::AddToFilm tells it
   TileMask tiles = {};  ///< likewise
   double render_s = 0;
   double cpu_s = 0;
+  bool written = false;
   std::uint64_t offset = 0;  ///< of its record in the job's log, once it is written
   Answer<BandOutcome> answer;
   BandBudget::Share share;

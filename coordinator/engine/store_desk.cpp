@@ -60,11 +60,12 @@ absl::Status StoreDesk::write(OpenJob& job, PutBand& put) {
                     .settings = job.spec.settings,
                     .pixels = std::move(put.pixels),
                     .cpu_s = put.cpu_s,
-                    .renderer = renderer_of(put.instance)};
+                    .renderer = put.renderer};
   const absl::StatusOr<std::uint64_t> offset = job.log->append(record);
   put.pixels = std::move(record.pixels);
   RETURN_IF_ERROR(offset.status());
   put.offset = *offset;
+  put.written = true;
   return absl::OkStatus();
 }
 

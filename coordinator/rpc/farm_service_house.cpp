@@ -1,4 +1,4 @@
-// What people ask of the farm itself: logs, what it is, new secrets.
+// What people ask of the farm itself: logs, who is kept away, what it is, new secrets.
 
 #include <algorithm>
 #include <chrono>
@@ -41,6 +41,22 @@ Unary* FarmService::Logs(grpc::CallbackServerContext* context, const farm::LogsR
   return reactor;
 }
 
+Unary* FarmService::Quarantine(grpc::CallbackServerContext* context,
+                               const farm::QuarantineRequest* request, farm::QuarantineReply*) {
+  if (const auto status = doors_.gate.check(*context, link::Role::kFarm); !status.ok()) {
+    return finished(context, status);
+  }
+  const absl::StatusOr<std::string> worker = reason_field("worker", request->worker());
+  if (!worker.ok()) {
+    return finished(context, worker.status());
+  }
+  Unary* reactor = context->DefaultReactor();
+  doors_.engine.quarantine(*worker, request->lift(), [reactor](const absl::Status& status) {
+    reactor->Finish(link::to_grpc(status));
+  });
+  return reactor;
+}
+
 Unary* FarmService::About(grpc::CallbackServerContext* context, const farm::AboutRequest*,
                           farm::AboutReply* reply) {
   if (const auto status = doors_.gate.check_any(*context); !status.ok()) {
@@ -55,7 +71,8 @@ Unary* FarmService::About(grpc::CallbackServerContext* context, const farm::Abou
     doors_.engine.workers([reactor, reply](const std::vector<WorkerView>& workers) {
       reply->set_workers(static_cast<std::uint32_t>(
           std::count_if(workers.begin(), workers.end(), [](const WorkerView& worker) {
-            return worker.state != "lost" && worker.state != "refused";
+            return worker.state != "lost" && worker.state != "refused" &&
+                   worker.state != "quarantined";
           })));
       reply->set_unix_s(unix_seconds());
       reactor->Finish(grpc::Status::OK);

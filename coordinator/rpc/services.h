@@ -45,6 +45,9 @@ class FarmService final : public farm::Farm::CallbackService {
                                 const farm::WhyRequest* request, farm::WhyReply* reply) override;
   grpc::ServerUnaryReactor* Logs(grpc::CallbackServerContext* context,
                                  const farm::LogsRequest* request, farm::LogsReply* reply) override;
+  grpc::ServerUnaryReactor* Quarantine(grpc::CallbackServerContext* context,
+                                       const farm::QuarantineRequest* request,
+                                       farm::QuarantineReply* reply) override;
   grpc::ServerUnaryReactor* About(grpc::CallbackServerContext* context,
                                   const farm::AboutRequest* request,
                                   farm::AboutReply* reply) override;

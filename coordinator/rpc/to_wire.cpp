@@ -93,6 +93,7 @@ farm::JobStatus to_message(const JobView& job) {
     w->set_state(worker.state);
   }
   message.set_workers_used(job.workers_used);
+  message.set_bands_audited(job.bands_audited);
   message.set_rays(job.counters.rays);
   message.set_bad_samples(job.counters.bad_samples);
   if (job.counters.bad_samples > 0) {

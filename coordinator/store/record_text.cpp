@@ -7,6 +7,7 @@
 #include "absl/strings/str_split.h"
 #include "absl/strings/string_view.h"
 #include "coordinator/store/fields.h"
+#include "coordinator/store/record_text_audit.h"
 #include "coordinator/store/record_text_job.h"
 #include "coordinator/store/record_text_report.h"
 #include "renderlib/base/overloaded.h"
@@ -146,6 +147,9 @@ Record read_record(absl::string_view kind, FieldReader& in) {
   if (kind == "worker_left") {
     return record::WorkerLeft{.instance = in.text("instance")};
   }
+  if (auto record = read_audit(kind, in)) {
+    return *std::move(record);
+  }
   in.refuse(absl::StrCat("unknown kind '", kind, "'"));
   return {};
 }
@@ -225,7 +229,8 @@ RecordText to_text(const Record& record) {
                             [&](const record::WorkerLeft& r) {
                               out.text("instance", r.instance);
                               return "worker_left";
-                            }},
+                            },
+                            [&](const auto& r) -> const char* { return write_audit(out, r); }},
                  record);
   return {.kind = kind, .fields = out.take()};
 }

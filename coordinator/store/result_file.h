@@ -16,7 +16,7 @@ namespace bandsaw::coordinator {
 /// A finished image as it is kept: linear RGB float.
 struct StoredResult {
   Image image;
-  wire::Digest digest;  ///< of the pixels' bytes
+  wire::Digest digest;   ///< of the pixels' bytes
   Display display = {};  ///< as the scene wants it shown; not in the file
 };
 

@@ -45,7 +45,7 @@ void add_counts(Text& out, const std::vector<JobView>& jobs,
     ++jobs_by_state[state_name(job.state)];
   }
   std::map<std::string, int> workers_by_state;
-  for (const char* state : {"idle", "rendering", "draining", "lost", "refused"}) {
+  for (const char* state : {"idle", "rendering", "draining", "lost", "refused", "quarantined"}) {
     workers_by_state[state] = 0;
   }
   for (const WorkerView& worker : workers) {
@@ -96,6 +96,8 @@ std::string metrics(const std::vector<JobView>& jobs, const std::vector<WorkerVi
            [](const JobView& job) { return job.fraction; });
   add_jobs(out, "bandsaw_job_error", "Estimated relative RMSE of a job's image.", jobs,
            [](const JobView& job) { return job.error; });
+  add_jobs(out, "bandsaw_job_bands_audited", "Bands that two machines rendered alike.", jobs,
+           [](const JobView& job) { return static_cast<double>(job.bands_audited); });
   add_jobs(out, "bandsaw_job_samples_per_second", "A job's pace.", jobs,
            [](const JobView& job) { return job.samples_per_s; });
   return std::move(out).text();

@@ -46,7 +46,7 @@ export function workersView() {
   return {
     element: el("div", {}, el("div.title", {}, el("h1", {}, "Workers")), empty, list),
     update(overview) {
-      const there = overview.worker.filter((worker) => !["lost", "refused"].includes(worker.state));
+      const there = overview.worker.filter((worker) => !["lost", "refused", "quarantined"].includes(worker.state));
       const all = there.reduce((sum, worker) => sum + worker.samples_per_s, 0);
       const shares = overview.worker.map((worker) => ({worker, share: there.includes(worker) && all > 0 ? worker.samples_per_s / all : 0}));
       keyed(list, parts, shares, ({worker}) => worker.name + worker.address, ({worker}) => workerCard(worker));

@@ -33,10 +33,13 @@ inline JobSpec test_job(std::string request, const StopRule& stop, std::uint32_t
 }
 
 /// What an honest worker's rows hash to.
+inline std::uint64_t honest_digest(const SampleRange& samples, std::uint32_t row) {
+  return samples.first * 1'000'003 + samples.last * 7'919 + row + 1;
+}
 inline std::vector<std::uint64_t> honest_digests(const Band& band) {
   std::vector<std::uint64_t> digests;
   for (std::uint32_t row = band.rows.first; row < band.rows.last; ++row) {
-    digests.push_back(band.samples.first * 1'000'003 + band.samples.last * 7'919 + row + 1);
+    digests.push_back(honest_digest(band.samples, row));
   }
   return digests;
 }
@@ -83,7 +86,6 @@ class FarmDriver {
     in.band = lease.band;
     in.row_digests = honest_digests(lease.band);
     in.instance = instance;
-    in.renderer = std::hash<std::string>()(instance);
     in.render_s = render_s;
     in.cpu_s = render_s;
     in.counters.rays = lease.band.rows.count() * lease.band.samples.samples();

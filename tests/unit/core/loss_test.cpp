@@ -168,28 +168,6 @@ TEST(Poison, RowsThatWereStoredSinceAreNotSuspected) {
   EXPECT_NE(farm.job(job).state, JobState::kFailed) << farm.job(job).reason;
 }
 
-TEST(Loss, AWorkerThatReturnsOtherPixelsGetsNoMoreWork) {
-  FarmDriver farm;
-  const JobId job = farm.submit(test_job("r1", StopAtSamples{32}, 8, 1));
-  farm.hello(1, "a", 1);
-  const auto first = farm.all<action::Lease>();
-  farm.say(input::Lost{1, "connection reset"});
-  farm.hello(2, "b", 1);
-  farm.stored(first[0], "b");
-  farm.hello(3, "a", 1);
-  input::BandStored wrong;
-  wrong.job = job;
-  wrong.band = first[0].band;
-  wrong.row_digests = {42};
-  wrong.instance = "a";
-  farm.say(wrong);
-  ASSERT_EQ(farm.all<action::Close>().size(), 1u);
-  EXPECT_EQ(farm.all<action::Close>()[0].session, 3u);
-  EXPECT_NE(farm.job(job).reason.find("different pixels"), std::string::npos);
-  EXPECT_EQ(in<action::Refuse>(farm.hello(4, "a")).size(), 1u);
-  EXPECT_EQ(farm.core.workers(farm.now)[0].state, "refused");
-}
-
 TEST(Loss, AWorkerThatDiffersIsRefusedWithWhatDiffers) {
   FarmDriver farm;
   WorkerHello worker;

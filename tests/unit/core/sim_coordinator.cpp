@@ -28,6 +28,7 @@ void SimCoordinator::start() {
   options.epoch = epoch();
   options.progress_timeout_s = 8;
   options.losses_per_band = losses_per_band;
+  options.audit_share = audit_share;
   core_ = std::make_unique<Core>(options);
   for (const Record& record : journal_) {
     core_->replay(record);
@@ -41,14 +42,15 @@ void SimCoordinator::start() {
     for (const input::BandStored& band : disk.bands) {
       const auto rows = core_->wanted(id, band.band);
       input::BandStored found = band;
+      found.renderer = renderer_of(found.instance);
       found.instance.clear();
       core_->replay(found);
       const auto left = core_->wanted(id, band.band);
       if (rows && left && left->empty()) {
         for (const RowRange& range : *rows) {
-          disk.stored.add(band.band.samples, range);
+          disk.stored.add(found, range);
         }
-        add_to_film(id, band.band, *rows);
+        add_to_film(id, found, *rows);
       }
     }
   }
@@ -91,6 +93,13 @@ void SimCoordinator::input(const Input& input) {
   take(core_->step(input, agenda_.now() + time_skew));
 }
 
+void SimCoordinator::take_stored(const input::BandStored& band, std::function<void()> then) {
+  held_.clear();
+  band_ = band;
+  take(core_->step(band, agenda_.now() + time_skew), std::move(then));
+  band_.reset();
+}
+
 void SimCoordinator::take(Step step, std::function<void()> then) {
   ++steps;
   if (const auto invariant = core_->broken_invariant()) {
@@ -107,13 +116,15 @@ void SimCoordinator::take(Step step, std::function<void()> then) {
       check_lease(*lease, held_);
     } else if (const auto* add = std::get_if<action::AddToFilm>(&action)) {
       for (const RowRange& rows : add->rows) {
-        if (!disk_[add->job].stored.add(add->band.samples, rows)) {
+        if (!disk_[add->job].stored.add(*band_, rows)) {
           fail(absl::StrCat("row ", rows.first, " of job ", add->job, " is in the image twice"));
         }
       }
+    } else if (const auto* retract = std::get_if<action::Retract>(&action)) {
+      disk_[retract->job].stored.retract(retract->renderer);
     }
   }
-  committing_.push_back({std::move(step), {}});
+  committing_.push_back({std::move(step), {}, band_});
   if (then) {
     committing_.back().then.push_back(std::move(then));
   }
@@ -121,7 +132,7 @@ void SimCoordinator::take(Step step, std::function<void()> then) {
 }
 
 void SimCoordinator::check_lease(const action::Lease& lease, const std::set<LeaseId>& held) {
-  if (!held.contains(lease.lease) &&
+  if (!lease.audit && !held.contains(lease.lease) &&
       disk_[lease.job].stored.any_of(lease.band.samples, lease.band.rows)) {
     fail(absl::StrCat("row ", lease.band.rows.first, " of job ", lease.job,
                       " is leased though it is stored"));
@@ -136,7 +147,7 @@ void SimCoordinator::commit() {
   committing_.pop_front();
   journal_.insert(journal_.end(), done.step.records.begin(), done.step.records.end());
   for (const Action& action : done.step.actions) {
-    perform(action);
+    perform(action, done.band);
   }
   for (const auto& then : done.then) {
     then();
@@ -146,14 +157,22 @@ void SimCoordinator::commit() {
 void SimCoordinator::note(const Record& record) {
   if (const auto* added = std::get_if<record::JobAdded>(&record)) {
     disk_[added->job].spec = added->spec;
+  } else if (const auto* wrong = std::get_if<record::WorkerQuarantined>(&record)) {
+    quarantined.insert(wrong->name);
   } else if (const auto* pass = std::get_if<record::PassPlanned>(&record)) {
     films_[pass->job].pass_ends.insert(pass->samples.last);
   }
 }
 
-void SimCoordinator::perform(const Action& action) {
+void SimCoordinator::perform(const Action& action, const std::optional<input::BandStored>& band) {
   if (const auto* add = std::get_if<action::AddToFilm>(&action)) {
-    after(chance_.between(0, 0.2), [this, a = *add] { add_to_film(a.job, a.band, a.rows); });
+    after(chance_.between(0, 0.2),
+          [this, a = *add, band = *band] { add_to_film(a.job, band, a.rows); });
+  } else if (const auto* retract = std::get_if<action::Retract>(&action)) {
+    Filming& filming = films_[retract->job];
+    filming.film.retract(retract->renderer);
+    filming.pass_ends.merge(filming.told);
+    after(0, [this, job = retract->job] { tell_passes(job); });
   } else if (const auto* write = std::get_if<action::WriteResult>(&action)) {
     after(chance_.between(0.3, 1), [this, w = *write] { write_result(w); });
   } else if (const auto* drop = std::get_if<action::DropBands>(&action)) {
@@ -172,9 +191,10 @@ void SimCoordinator::perform(const Action& action) {
   }
 }
 
-void SimCoordinator::add_to_film(JobId job, const Band& band, const std::vector<RowRange>& rows) {
+void SimCoordinator::add_to_film(JobId job, const input::BandStored& band,
+                                 const std::vector<RowRange>& rows) {
   for (const RowRange& range : rows) {
-    if (!films_[job].film.add(band.samples, range)) {
+    if (!films_[job].film.add(band, range)) {
       fail(absl::StrCat("the film of job ", job, " refuses row ", range.first));
     }
   }
@@ -187,6 +207,7 @@ void SimCoordinator::tell_passes(JobId job) {
   while (!filming.pass_ends.empty() &&
          filming.film.least(spec.settings.height) >= *filming.pass_ends.begin()) {
     const std::uint64_t samples = *filming.pass_ends.begin();
+    filming.told.insert(samples);
     filming.pass_ends.erase(filming.pass_ends.begin());
     const bool look = std::holds_alternative<StopAtError>(spec.stop) && filming.pass_ends.empty();
     if (look && filming.film.last_sample() != samples) {
@@ -210,6 +231,9 @@ void SimCoordinator::write_result(const action::WriteResult& write) {
   if (disk.stored.least(disk.spec.settings.height) < write.samples) {
     fail(absl::StrCat("the image of job ", write.job, " has a hole"));
   }
+  if (const auto row = disk.stored.wrong_row(honest_digest); row && must_be_right) {
+    fail(absl::StrCat("row ", *row, " of the image of job ", write.job, " is wrong"));
+  }
   results[write.job] = write.samples;
   input(input::ResultWritten{write.job});
 }
@@ -220,9 +244,9 @@ void SimCoordinator::put_band(const input::BandStored& band,
   if (!wanted) {
     reply(PutOutcome::kUnwanted);
   } else if (wanted->empty()) {
-    held_.clear();
-    take(core_->step(band, agenda_.now() + time_skew),
-         [reply = std::move(reply)] { reply(PutOutcome::kDuplicate); });
+    input::BandStored compared = band;
+    compared.written = false;
+    take_stored(compared, [reply = std::move(reply)] { reply(PutOutcome::kDuplicate); });
   } else if (agenda_.now() < disk_full_until_) {
     input(input::StorageFailed{band.job, "the disk is full"});
     reply(PutOutcome::kTryAgain);
@@ -236,8 +260,7 @@ void SimCoordinator::put_band(const input::BandStored& band,
 void SimCoordinator::write_band(input::BandStored band, std::function<void(PutOutcome)> reply) {
   disk_[band.job].bands.push_back(band);
   after(chance_.between(0, 0.05), [this, band, reply = std::move(reply)] {
-    held_.clear();
-    take(core_->step(band, agenda_.now() + time_skew), [reply] { reply(PutOutcome::kStored); });
+    take_stored(band, [reply] { reply(PutOutcome::kStored); });
   });
 }
 

@@ -50,12 +50,18 @@ class SimCoordinator {
   double time_skew = 0;                    ///< of the coordinator's clock
   /// Workers are killed here so often that three are, by chance, while they render the same rows.
   std::size_t losses_per_band = 1'000;
-  bool tear_steps = false;  ///< a crash may keep a part of a step's records
+  double audit_share = 0;
+  /// No image has a wrong row. Can only be promised where every band is audited and machines that
+  /// are right are there until the end.
+  bool must_be_right = false;
+  std::set<std::string> quarantined;  ///< names, in all lives
+  bool tear_steps = false;            ///< a crash may keep a part of a step's records
 
  private:
   struct Committing {
     Step step;
     std::vector<std::function<void()>> then;
+    std::optional<input::BandStored> band;
   };
   struct OnDisk {
     JobSpec spec;
@@ -65,16 +71,18 @@ class SimCoordinator {
   struct Filming {
     SimFilm film;
     std::set<std::uint64_t> pass_ends;
+    std::set<std::uint64_t> told;
   };
 
   void fail(const std::string& what);
   void take(Step step, std::function<void()> then = {});
   void commit();
-  void perform(const Action& action);
+  void perform(const Action& action, const std::optional<input::BandStored>& band);
   void check_lease(const action::Lease& lease, const std::set<LeaseId>& held);
+  void take_stored(const input::BandStored& band, std::function<void()> then);
   void after(double seconds, std::function<void()> what);
   void write_band(input::BandStored band, std::function<void(PutOutcome)> reply);
-  void add_to_film(JobId job, const Band& band, const std::vector<RowRange>& rows);
+  void add_to_film(JobId job, const input::BandStored& band, const std::vector<RowRange>& rows);
   void tell_passes(JobId job);
   void write_result(const action::WriteResult& write);
   void note(const Record& record);
@@ -89,7 +97,8 @@ class SimCoordinator {
   std::deque<Committing> committing_;
   std::map<JobId, Filming> films_;
   double disk_full_until_ = 0;
-  std::set<LeaseId> held_;  ///< named in the Hello being said
+  std::set<LeaseId> held_;                 ///< named in the Hello being said
+  std::optional<input::BandStored> band_;  ///< that the core is being told of
 
   // Survives a crash.
   std::vector<Record> journal_;

@@ -211,7 +211,7 @@ void SimWorker::finish(LeaseId id) {
     held.finished = true;
     held.digests = honest_digests(held.lease.band);
     for (std::uint64_t& digest : held.digests) {
-      digest += chance_.happens(nature_.lies) ? 1 : 0;
+      digest += chance_.happens(nature_.lies) ? chance_.bits() : 0;
     }
     upload(id);
   }

@@ -81,6 +81,25 @@ TEST_F(FilmDeskTest, TellsEachPassOnceWhenItsLastRowsAreThere) {
   EXPECT_GT(errors_.back(), 0) << "two halves are there";
 }
 
+TEST_F(FilmDeskTest, WhatAMachineGaveCanBeTakenOutAgain) {
+  desk_.plan(1, 16);
+  desk_.plan(1, 32);
+  PutBand wrong = logged({0, 16}, {0, 4});
+  wrong.pixels.sums[5] += 1;
+  wrong.renderer = 7;
+  ASSERT_TRUE(desk_.add(1, std::move(wrong), {{0, 4}}).ok());
+  ASSERT_TRUE(add({0, 16}, {4, 8}).ok());
+  ASSERT_TRUE(add({16, 32}, {0, 8}).ok()) << "nodes that met are one sum in the film";
+  EXPECT_EQ(merged_, (std::vector<std::uint64_t>{16, 32}));
+  desk_.retract(1, 7);
+  EXPECT_EQ(merged_.size(), 2u);
+  ASSERT_TRUE(add({0, 16}, {0, 4}).ok());
+  EXPECT_EQ(merged_, (std::vector<std::uint64_t>{16, 32, 16, 32}));
+  desk_.want_image(1, 32);
+  ASSERT_EQ(images_.size(), 1u);
+  EXPECT_EQ(images_[0].pixels, local(32));
+}
+
 TEST_F(FilmDeskTest, AddsOnlyTheRowsThatAreNew) {
   ASSERT_TRUE(add({0, 16}, {2, 5}).ok());
   ASSERT_TRUE(add({0, 16}, {0, 8}, {{0, 2}, {5, 8}}).ok());

@@ -72,7 +72,11 @@ inline std::vector<Record> sample_records() {
           record::LastWords{.job = 1, .worker = "desk", .log = {"one \\ line", "another"}},
           record::JobForgotten{.job = 3},
           record::WorkerJoined{.instance = "0123456789abcdef0123456789abcdef"},
-          record::WorkerLeft{.instance = ""}};
+          record::WorkerLeft{.instance = ""},
+          record::BandAudited{.job = 1, .band = {{16, 32}, {3, UINT32_MAX}}},
+          record::ErrorForgotten{.job = 1},
+          record::WorkerQuarantined{.renderer = UINT64_MAX, .name = "a desk", .reason = "lied\n"},
+          record::QuarantineLifted{.name = "a desk"}};
 }
 
 }  // namespace bandsaw::coordinator

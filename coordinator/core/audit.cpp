@@ -1,0 +1,57 @@
+#include "coordinator/core/audit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "coordinator/core/renderer.h"
+
+namespace bandsaw::coordinator {
+
+bool is_audited(const JobSpec& spec, const Band& band, double share) {
+  Hash64 hash;
+  hash.add(renderer_of(spec.request_id));
+  hash.add(band.samples.first);
+  hash.add(std::uint64_t{band.rows.first});
+  return std::ldexp(static_cast<double>(hash.value() >> 11), -53) < share;
+}
+
+const Audit::Claim* Audit::claim_of(const Witness& witness) const {
+  const auto claim = std::find_if(claims_.begin(), claims_.end(),
+                                  [&](const Claim& c) { return c.witness.same_machine(witness); });
+  return claim == claims_.end() ? nullptr : &*claim;
+}
+
+std::optional<Audit::Claim> Audit::hear(Claim claim, bool asked) {
+  const auto before = std::find_if(claims_.begin(), claims_.end(), [&](const Claim& c) {
+    return c.witness.same_machine(claim.witness);
+  });
+  if (before == claims_.end()) {
+    claims_.push_back(std::move(claim));
+    return std::nullopt;
+  }
+  if (before->digests != claim.digests) {
+    return *before;
+  }
+  before->repeated = before->repeated || asked;
+  return std::nullopt;
+}
+
+std::optional<Audit::Verdict> Audit::verdict() const {
+  for (auto one = claims_.begin(); one != claims_.end(); ++one) {
+    const auto agrees = [&](const Claim& other) { return other.digests == one->digests; };
+    if (std::find_if(std::next(one), claims_.end(), agrees) != claims_.end()) {
+      Verdict verdict{.stored_is_right = agrees(stored()), .liars = {}};
+      std::remove_copy_if(claims_.begin(), claims_.end(), std::back_inserter(verdict.liars),
+                          agrees);
+      return verdict;
+    }
+  }
+  return std::nullopt;
+}
+
+void Audit::forget(const Witness& witness) {
+  std::erase_if(claims_, [&](const Claim& c) { return c.witness.same_machine(witness); });
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,56 @@
+#include "coordinator/store/record_text_audit.h"
+
+#include <cstdint>
+
+namespace bandsaw::coordinator {
+
+const char* write_audit(FieldWriter& out, const record::BandAudited& r) {
+  out.number("job", r.job);
+  out.number("first", r.band.samples.first);
+  out.number("last", r.band.samples.last);
+  out.number("first_row", r.band.rows.first);
+  out.number("last_row", r.band.rows.last);
+  return "band_audited";
+}
+
+const char* write_audit(FieldWriter& out, const record::ErrorForgotten& r) {
+  out.number("job", r.job);
+  return "error_forgotten";
+}
+
+const char* write_audit(FieldWriter& out, const record::WorkerQuarantined& r) {
+  out.number("renderer", r.renderer);
+  out.text("name", r.name);
+  out.text("reason", r.reason);
+  return "worker_quarantined";
+}
+
+const char* write_audit(FieldWriter& out, const record::QuarantineLifted& r) {
+  out.text("name", r.name);
+  return "quarantine_lifted";
+}
+
+// Braced initialisers are evaluated in the order they are written, which is that of the fields.
+
+std::optional<Record> read_audit(absl::string_view kind, FieldReader& in) {
+  if (kind == "band_audited") {
+    return record::BandAudited{
+        .job = in.number("job"),
+        .band = {.samples = {.first = in.number("first"), .last = in.number("last")},
+                 .rows = {.first = static_cast<std::uint32_t>(in.number("first_row", UINT32_MAX)),
+                          .last = static_cast<std::uint32_t>(in.number("last_row", UINT32_MAX))}}};
+  }
+  if (kind == "error_forgotten") {
+    return record::ErrorForgotten{.job = in.number("job")};
+  }
+  if (kind == "worker_quarantined") {
+    return record::WorkerQuarantined{
+        .renderer = in.number("renderer"), .name = in.text("name"), .reason = in.text("reason")};
+  }
+  if (kind == "quarantine_lifted") {
+    return record::QuarantineLifted{.name = in.text("name")};
+  }
+  return std::nullopt;
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,21 @@
+#pragma once
+
+// What came of audits, as fields; each write gives the record's kind.
+
+#include <optional>
+
+#include "absl/strings/string_view.h"
+#include "coordinator/core/records.h"
+#include "coordinator/store/fields.h"
+
+namespace bandsaw::coordinator {
+
+const char* write_audit(FieldWriter& out, const record::BandAudited& r);
+const char* write_audit(FieldWriter& out, const record::ErrorForgotten& r);
+const char* write_audit(FieldWriter& out, const record::WorkerQuarantined& r);
+const char* write_audit(FieldWriter& out, const record::QuarantineLifted& r);
+
+/// Nothing: the kind is none of these.
+std::optional<Record> read_audit(absl::string_view kind, FieldReader& in);
+
+}  // namespace bandsaw::coordinator

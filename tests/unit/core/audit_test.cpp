@@ -1,0 +1,263 @@
+// Bands that two machines render: which, by whom, and what follows when they differ.
+
+#include "coordinator/core/audit.h"
+#include "coordinator/core/renderer.h"
+#include "farm_driver.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+CoreOptions audited() {
+  CoreOptions options = test_options();
+  options.audit_share = 1;
+  options.band_target_s = 1e-3;  // a row a band
+  return options;
+}
+
+/// A farm that answers one lease at a time.
+struct AuditFarm : FarmDriver {
+  explicit AuditFarm(CoreOptions options = audited()) : FarmDriver(std::move(options)) {}
+
+  /// The newest lease of a session that is an audit, or not.
+  action::Lease lease(SessionId session, bool audit) const {
+    action::Lease found;
+    for (const auto& lease : all<action::Lease>()) {
+      found = lease.session == session && lease.audit == audit ? lease : found;
+    }
+    EXPECT_NE(found.lease, 0u) << "session " << session;
+    return found;
+  }
+
+  Step result(const action::Lease& lease, const std::string& instance, std::uint64_t lie = 0) {
+    input::BandStored in;
+    in.job = lease.job;
+    in.band = lease.band;
+    in.row_digests = honest_digests(lease.band);
+    in.row_digests[0] += lie;
+    in.instance = instance;
+    in.render_s = 0.1;
+    in.written = !lease.audit;
+    return say(in);
+  }
+
+  std::string state_of(const std::string& name) const {
+    for (const WorkerView& worker : core.workers(now)) {
+      if (worker.name == name) {
+        return worker.state;
+      }
+    }
+    return "unknown";
+  }
+};
+
+/// One row, rendered by a and then by b; c may be there to be asked next.
+AuditFarm two_claims(std::uint64_t lie_of_a, std::uint64_t lie_of_b, bool third = false) {
+  AuditFarm farm;
+  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.hello(1, "a", 1);
+  farm.hello(2, "b", 1);
+  farm.result(farm.lease(1, false), "a", lie_of_a);
+  EXPECT_EQ(farm.job(1).state, JobState::kRunning) << "the audit is to come";
+  if (third) {
+    farm.hello(3, "c", 1);
+  }
+  farm.result(farm.lease(2, true), "b", lie_of_b);
+  return farm;
+}
+
+TEST(Audit, TheShareIsOfAllBandsAndTheSameInEveryLife) {
+  const JobSpec spec = test_job("a request that nobody guesses", StopAtSamples{16});
+  const JobSpec other = test_job("another", StopAtSamples{16});
+  int count = 0;
+  int both = 0;
+  for (std::uint32_t row = 0; row < 20'000; ++row) {
+    const Band band{{0, 16}, {row, row + 1}};
+    const bool one = is_audited(spec, band, 0.05);
+    count += one ? 1 : 0;
+    both += one && is_audited(other, band, 0.05) ? 1 : 0;
+    EXPECT_FALSE(is_audited(spec, band, 0));
+    EXPECT_TRUE(is_audited(spec, band, 1));
+  }
+  EXPECT_NEAR(count, 1'000, 4 * 31);
+  EXPECT_NEAR(both, 50, 4 * 7) << "a job does not tell of another";
+}
+
+TEST(Audit, AnotherMachineRendersTheBandAgainAndTheJobEnds) {
+  AuditFarm farm = two_claims(0, 0);
+  EXPECT_EQ(farm.job(1).state, JobState::kFinishing);
+  EXPECT_EQ(farm.all_records<record::BandAudited>().size(), 1u);
+  EXPECT_TRUE(farm.all_records<record::WorkerQuarantined>().empty());
+}
+
+TEST(Audit, ALoneMachineIsNotAskedTwiceAndHoldsNothingUp) {
+  AuditFarm farm;
+  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.hello(1, "a", 1);
+  farm.result(farm.lease(1, false), "a");
+  EXPECT_EQ(farm.job(1).state, JobState::kFinishing);
+  EXPECT_EQ(farm.all<action::Lease>().size(), 1u);
+}
+
+TEST(Audit, AMachineIsNotItsOwnWitness) {
+  AuditFarm farm;
+  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.hello(1, "a", 1);
+  WorkerHello sibling;
+  sibling.instance = "b";
+  sibling.name = "worker-a";
+  sibling.protocol = 1;
+  sibling.pixel_version = 2;
+  sibling.canary = 3;
+  farm.say(input::Hello{2, sibling});
+  farm.result(farm.lease(1, false), "a");
+  EXPECT_EQ(farm.job(1).state, JobState::kFinishing);
+}
+
+TEST(Audit, AThirdMachineDecidesAndTheLiarsRowsAreRenderedAgain) {
+  AuditFarm farm = two_claims(7, 0, true);
+  const Step step = farm.result(farm.lease(3, true), "c");
+  EXPECT_EQ(farm.state_of("worker-a"), "quarantined");
+  EXPECT_EQ(farm.state_of("worker-b"), "rendering");
+  ASSERT_EQ(in<action::Retract>(step).size(), 1u);
+  EXPECT_EQ(in<action::Retract>(step)[0].renderer, renderer_of("a"));
+  EXPECT_EQ(farm.job(1).samples_done, 0u);
+  EXPECT_NE(farm.job(1).reason.find("other pixels than two others"), std::string::npos)
+      << farm.job(1).reason;
+  // Of b and c one renders the row, the other audits it.
+  const SessionId again = farm.all<action::Lease>().back().session;
+  const std::string who[] = {"", "", "b", "c"};
+  farm.result(farm.lease(again, false), who[again]);
+  farm.result(farm.lease(5 - again, true), who[5 - again]);
+  EXPECT_EQ(farm.job(1).state, JobState::kFinishing);
+}
+
+TEST(Audit, AnAuditorThatLiesIsSentAwayAndTheRowsStay) {
+  AuditFarm farm = two_claims(0, 7, true);
+  const Step step = farm.result(farm.lease(3, true), "c");
+  EXPECT_EQ(farm.state_of("worker-b"), "quarantined");
+  EXPECT_TRUE(in<action::Retract>(step).empty());
+  EXPECT_EQ(farm.job(1).state, JobState::kFinishing);
+}
+
+TEST(Audit, OfTwoMachinesTheOneThatContradictsItselfIsWrong) {
+  AuditFarm farm = two_claims(7, 0);
+  // Nobody else is there: each is asked again.
+  farm.result(farm.lease(1, true), "a", 8);
+  EXPECT_EQ(farm.state_of("worker-a"), "quarantined");
+  EXPECT_EQ(farm.all_records<record::WorkerQuarantined>()[0].name, "worker-a");
+  farm.result(farm.lease(2, false), "b");
+  EXPECT_EQ(farm.job(1).state, JobState::kFinishing);
+}
+
+TEST(Audit, TwoThatStandByTheirWordWaitForAThird) {
+  AuditFarm farm = two_claims(7, 0);
+  farm.result(farm.lease(1, true), "a", 7);
+  farm.result(farm.lease(2, true), "b", 0);
+  const std::size_t leases = farm.all<action::Lease>().size();
+  farm.pass_time(100, {1, 2});
+  EXPECT_EQ(farm.all<action::Lease>().size(), leases) << "each is asked again once";
+  EXPECT_EQ(farm.job(1).state, JobState::kRunning);
+  EXPECT_NE(farm.job(1).reason.find("another machine must decide"), std::string::npos)
+      << farm.job(1).reason;
+  farm.say(input::Quarantine{"worker-a"});
+  farm.result(farm.lease(2, false), "b");
+  EXPECT_EQ(farm.job(1).state, JobState::kFinishing);
+}
+
+TEST(Audit, ACopyThatDiffersIsADisputeThoughNobodyAskedForAnAudit) {
+  FarmDriver farm;
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{32}, 8, 1));
+  farm.hello(1, "a", 1);
+  const auto first = farm.all<action::Lease>();
+  farm.say(input::Lost{1, "connection reset"});
+  farm.hello(2, "b", 1);
+  farm.stored(first[0], "b");
+  farm.hello(3, "a", 1);
+  farm.hello(4, "c", 1);
+  input::BandStored wrong;
+  wrong.job = job;
+  wrong.band = first[0].band;
+  wrong.row_digests = {42};
+  wrong.instance = "a";
+  wrong.written = false;
+  farm.say(wrong);
+  for (const auto& lease : farm.all<action::Lease>()) {
+    if (lease.audit) {
+      EXPECT_EQ(lease.session, 4u);
+      farm.stored(lease, "c");
+    }
+  }
+  ASSERT_EQ(farm.all_records<record::WorkerQuarantined>().size(), 1u);
+  EXPECT_EQ(farm.all_records<record::WorkerQuarantined>()[0].name, "worker-a");
+  EXPECT_EQ(farm.all<action::Close>().back().session, 3u);
+}
+
+TEST(Audit, AnAuditThatFailsFailsNoJob) {
+  AuditFarm farm;
+  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.hello(1, "a", 1);
+  farm.hello(2, "b", 1);
+  farm.result(farm.lease(1, false), "a");
+  farm.say(input::BandFailed{2, farm.lease(2, true).lease, "out of memory", {}});
+  farm.pass_time(0.5, {1, 2});
+  EXPECT_EQ(farm.job(1).state, JobState::kFinishing) << "nobody else is there to ask";
+}
+
+TEST(Quarantine, LastsOverARestartOfBothAndIsLifted) {
+  AuditFarm farm = two_claims(7, 0);
+  farm.result(farm.lease(1, true), "a", 8);
+  AuditFarm next;
+  for (const Record& record : farm.core.snapshot()) {
+    next.core.replay(record);
+  }
+  input::BandStored old;
+  old.job = 1;
+  old.band = farm.lease(1, false).band;
+  old.row_digests = {42};
+  old.renderer = renderer_of("a");
+  next.core.replay(old);
+  next.take(next.core.replayed(next.now));
+  EXPECT_EQ(next.job(1).samples_done, 0u) << "what it rendered stays void";
+  EXPECT_EQ(next.state_of("worker-a"), "quarantined");
+  // The same process, and the machine with a new one.
+  EXPECT_EQ(in<action::Refuse>(next.hello(1, "a")).size(), 1u);
+  WorkerHello again;
+  again.instance = "a2";
+  again.name = "worker-a";
+  again.protocol = 1;
+  again.pixel_version = 2;
+  again.canary = 3;
+  const auto refused = in<action::Refuse>(next.say(input::Hello{2, again}));
+  ASSERT_EQ(refused.size(), 1u);
+  EXPECT_NE(refused[0].reason.find("bandsaw quarantine --lift worker-a"), std::string::npos);
+  EXPECT_TRUE(absl::IsNotFound(next.say(input::LiftQuarantine{"nobody"}).status));
+  EXPECT_TRUE(next.say(input::LiftQuarantine{"worker-a"}).status.ok());
+  EXPECT_EQ(in<action::Welcome>(next.say(input::Hello{3, again})).size(), 1u);
+  EXPECT_NE(in<action::Refuse>(next.hello(4, "a"))[0].reason.find("start the worker again"),
+            std::string::npos);
+}
+
+TEST(Quarantine, AnErrorMeasuredWithWrongPixelsIsForgotten) {
+  AuditFarm farm;
+  farm.submit(test_job("r1", StopAtError{.relative_rmse = 0.01}, 8, 1));
+  farm.hello(1, "a", 1);
+  farm.hello(2, "b", 1);
+  farm.hello(3, "c", 1);
+  const std::string who[] = {"", "a", "b", "c"};
+  for (std::size_t i = 0; i < 40 && farm.all<action::Retract>().empty(); ++i) {
+    const action::Lease lease = farm.all<action::Lease>().at(i);
+    farm.result(lease, who[lease.session], lease.session == 1 ? 7 : 0);
+    if (farm.all<action::Retract>().empty()) {
+      farm.say(input::PassMerged{1, 16 * (i + 1), ErrorEstimate{.relative_rmse = 1e-6}});
+      EXPECT_EQ(farm.job(1).error, 1e-6);
+      EXPECT_EQ(farm.job(1).state, JobState::kRunning) << "a look waits for the audits";
+    }
+  }
+  ASSERT_FALSE(farm.all<action::Retract>().empty());
+  EXPECT_LT(farm.job(1).error, 0);
+  EXPECT_TRUE(farm.job(1).curve.empty());
+  EXPECT_EQ(farm.job(1).state, JobState::kRunning);
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator
