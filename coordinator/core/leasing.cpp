@@ -57,7 +57,7 @@ void Core::State::hand_out() {
 bool Core::State::lease_to(Worker& worker) {
   for (auto it = leasable_.begin(); it != leasable_.end();) {
     Job& job = jobs_.at(it->second);
-    if (!job.any_free() && !job.audit_waits() && !plan_timed(job)) {
+    if (!job.any_free() && !plan_timed(job) && !job.audit_waits()) {
       it = leasable_.erase(it);
       continue;
     }

@@ -5,6 +5,7 @@
 #include <csignal>
 #include <fstream>
 #include <sstream>
+#include <utility>
 
 #include "proto/link/join.h"
 #include "renderlib/base/check.h"
@@ -39,10 +40,11 @@ void FarmProcesses::restart_coordinator() {
   start_coordinator();
 }
 
-Process& FarmProcesses::add_worker(const std::string& name, int threads) {
-  Process process = Process::start(
-      on(name, {BANDSAW_WORKER_BIN, "--join", join_file(), "--name", name, "--threads",
-                std::to_string(threads), "--cache", folder_ / ("cache-" + name)}));
+Process& FarmProcesses::add_worker(const std::string& name, int threads,
+                                   const std::string& program) {
+  Process process =
+      Process::start(on(name, {program, "--join", join_file(), "--name", name, "--threads",
+                               std::to_string(threads), "--cache", folder_ / ("cache-" + name)}));
   EXPECT_TRUE(process.wait_for("joined")) << process.err();
   return workers_.insert_or_assign(name, std::move(process)).first->second;
 }

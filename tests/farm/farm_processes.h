@@ -15,12 +15,15 @@ namespace bandsaw::test {
 
 class FarmProcesses {
  public:
-  /// Starts the coordinator, with `options` besides; on the machine "house" where there are
+  /// Starts the coordinator, with `options` besides (none that renders bands twice: tests count
+  /// them); on the machine "house" where there are
   /// `hosts`, which MUST stay. A worker is then started on the machine of its name.
-  explicit FarmProcesses(const Hosts* hosts = nullptr, std::vector<std::string> options = {});
+  explicit FarmProcesses(const Hosts* hosts = nullptr,
+                         std::vector<std::string> options = {"--audit", "0%"});
 
   /// Starts a worker and waits until it has joined.
-  Process& add_worker(const std::string& name, int threads);
+  Process& add_worker(const std::string& name, int threads,
+                      const std::string& program = BANDSAW_WORKER_BIN);
   Process& worker(const std::string& name) { return workers_.at(name); }
   /// Everything the worker has logged.
   std::string worker_log(const std::string& name) { return worker(name).err(); }

@@ -98,6 +98,18 @@ TEST(Audit, ALoneMachineIsNotAskedTwiceAndHoldsNothingUp) {
   EXPECT_EQ(farm.all<action::Lease>().size(), 1u);
 }
 
+TEST(Audit, AnAuditThatNobodyIsThereForDoesNotKeepATimedJobFromGoingOn) {
+  AuditFarm farm;
+  farm.submit(test_job("r1", StopAtTime{.seconds = 10}, 8, 1));
+  farm.hello(1, "a", 1);
+  for (int band = 0; band < 20; ++band) {
+    const std::size_t leases = farm.all<action::Lease>().size();
+    farm.now += 0.1;
+    farm.result(farm.all<action::Lease>().back(), "a");
+    EXPECT_EQ(farm.all<action::Lease>().size(), leases + 1);
+  }
+}
+
 TEST(Audit, AMachineIsNotItsOwnWitness) {
   AuditFarm farm;
   farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));

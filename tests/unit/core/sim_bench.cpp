@@ -14,7 +14,7 @@ namespace {
 class Bench {
  public:
   explicit Bench(const BenchFarm& farm)
-      : farm_(farm), chance_(farm.seed), core_(test_options()), workers_(farm.speeds.size()) {}
+      : farm_(farm), chance_(farm.seed), core_(options(farm)), workers_(farm.speeds.size()) {}
 
   BenchResult run() {
     JobSpec spec = test_job("bench", StopAtSamples{farm_.samples}, farm_.width, farm_.height);
@@ -31,6 +31,12 @@ class Bench {
   }
 
  private:
+  static CoreOptions options(const BenchFarm& farm) {
+    CoreOptions options = test_options();
+    options.audit_share = farm.audit_share;
+    return options;
+  }
+
   struct Busy {
     std::deque<action::Lease> queue;  ///< the first is being rendered
     double begun_at = -1;
@@ -132,10 +138,11 @@ class Bench {
     stored.instance = std::to_string(i + 1);
     stored.render_s = worker.takes;
     worker.queue.pop_front();
-    agenda_.in(farm_.upload_s, [this, stored] {
+    agenda_.in(farm_.upload_s, [this, stored]() mutable {
       ++result_.bands;
       const auto wanted = core_.wanted(stored.job, stored.band);
-      result_.wasted += !wanted || wanted->empty() ? 1 : 0;
+      stored.written = wanted && !wanted->empty();
+      result_.wasted += stored.written ? 0 : 1;
       take(core_.step(stored, agenda_.now()));
     });
     begin(i);

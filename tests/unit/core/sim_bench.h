@@ -23,6 +23,7 @@ struct BenchFarm {
   double trip_s = 0.002;      ///< of a message, either way
   double upload_s = 0.02;     ///< of a band, until it is on disk
   std::uint64_t seed = 1;
+  double audit_share = 0;  ///< of all bands: rendered twice
   /// A worker that slows down to a hundredth at this time; none: no worker.
   double stalls_at = -1;
 };

@@ -21,7 +21,8 @@ absl::Status TestFarm::start(EngineDoors doors) {
   absl::StatusOr<std::unique_ptr<Engine>> engine = Engine::start({.data_folder = folder_,
                                                                   .heartbeat_timeout_s = 1e6,
                                                                   .progress_timeout_s = 1e6,
-                                                                  .reattach_grace_s = 0},
+                                                                  .reattach_grace_s = 0,
+                                                                  .audit_share = 0},
                                                                  std::move(doors));
   if (engine.ok()) {
     engine_ = *std::move(engine);

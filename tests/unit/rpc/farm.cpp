@@ -11,7 +11,8 @@ constexpr std::chrono::milliseconds kLong{60'000};
 }  // namespace
 
 FarmTest::FarmTest() : identity_(*link::load_or_make_identity(folder_ / "identity")) {
-  auto engine = Engine::start({.data_folder = folder_ / "data", .reattach_grace_s = 0.1});
+  auto engine =
+      Engine::start({.data_folder = folder_ / "data", .reattach_grace_s = 0.1, .audit_share = 0});
   BANDSAW_CHECK(engine.ok(), engine.status().ToString().c_str());
   engine_ = *std::move(engine);
   auto server = Server::start(*engine_, identity_, {.listen = "127.0.0.1:0"});

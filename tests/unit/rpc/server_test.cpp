@@ -196,7 +196,8 @@ TEST_F(WorkerTest, OutlivesARestartOfTheCoordinator) {
   const std::string listen = "127.0.0.1:" + std::to_string(server_->port());
   server_.reset();
   engine_.reset();
-  engine_ = *Engine::start({.data_folder = folder_ / "data", .reattach_grace_s = 0.1});
+  engine_ =
+      *Engine::start({.data_folder = folder_ / "data", .reattach_grace_s = 0.1, .audit_share = 0});
   auto server = Server::start(*engine_, identity_, {.listen = listen});
   ASSERT_TRUE(server.ok()) << server.status();
   server_ = *std::move(server);

@@ -48,7 +48,8 @@ absl::StatusOr<SceneOnFarm> bring_box(Engine& engine, const std::string& path) {
 }  // namespace
 
 WebTest::WebTest() : identity_(*link::load_or_make_identity(folder_ / "identity")) {
-  auto engine = Engine::start({.data_folder = folder_ / "data", .reattach_grace_s = 0.1});
+  auto engine =
+      Engine::start({.data_folder = folder_ / "data", .reattach_grace_s = 0.1, .audit_share = 0});
   BANDSAW_CHECK(engine.ok(), engine.status().ToString().c_str());
   engine_ = *std::move(engine);
   std::filesystem::create_directory(folder_ / "gallery");

@@ -1,0 +1,272 @@
+// What the real coordinator takes for a band, through gRPC with TLS and down to the disk, and for a
+// worker that is connected: null renderers that answer each lease at once with black rows.
+//
+//   dispatch_bench [SECONDS [WORKERS]]    10 seconds of bands; then so many workers connected, 1000
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "proto/farm.grpc.pb.h"
+#include "proto/link/channel.h"
+#include "proto/wire/versions.h"
+#include "renderlib/base/check.h"
+#include "renderlib/package/package.h"
+#include "renderlib/render/canary.h"
+#include "renderlib/render/pixel_version.h"
+#include "tests/support/process.h"
+#include "tests/support/scenes.h"
+#include "tests/support/temp_dir.h"
+
+namespace bandsaw {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using Stream = grpc::ClientReaderWriter<farm::FromWorker, farm::ToWorker>;
+
+constexpr std::chrono::milliseconds kLong{600'000};
+constexpr std::uint32_t kWidth = 64;
+constexpr std::uint32_t kHeight = 4096;
+
+/// Of the coordinator's process: CPU seconds so far, and MB resident.
+struct Usage {
+  double cpu_s = 0;
+  double resident_mb = 0;
+};
+
+Usage usage_of(pid_t pid) {
+  std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
+  std::string text((std::istreambuf_iterator<char>(file)), {});
+  std::istringstream fields(text.substr(text.rfind(')') + 2));
+  std::vector<std::string> field;
+  for (std::string word; fields >> word;) {
+    field.push_back(word);
+  }
+  // proc(5): utime and stime are fields 14 and 15, rss is 24; the third is the first here.
+  const double ticks = std::stod(field.at(11)) + std::stod(field.at(12));
+  const double pages = std::stod(field.at(21));
+  return {ticks / static_cast<double>(sysconf(_SC_CLK_TCK)),
+          pages * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6};
+}
+
+void check(const grpc::Status& status) {
+  BANDSAW_CHECK(status.ok(), status.error_message().c_str());
+}
+
+link::JoinString join_from(const std::string& file) {
+  const auto join = link::join_string_from(file);
+  BANDSAW_CHECK(join.ok(), join.status().ToString().c_str());
+  return *join;
+}
+
+link::Connected connect(const link::JoinString& join) {
+  auto connected = link::connect(join, kLong);
+  BANDSAW_CHECK(connected.ok(), connected.status().ToString().c_str());
+  return *connected;
+}
+
+void put_blob(farm::Farm::Stub& stub, const link::JoinString& join, const std::string& bytes) {
+  farm::BlobChunk chunk;
+  chunk.set_sha256(wire::sha256(bytes).raw());
+  chunk.set_size(bytes.size());
+  chunk.set_data(bytes);
+  grpc::ClientContext context;
+  link::prepare(context, join, kLong);
+  farm::PutBlobReply reply;
+  const auto writer = stub.PutBlob(&context, &reply);
+  writer->Write(chunk);
+  writer->WritesDone();
+  check(writer->Finish());
+}
+
+void submit(const link::JoinString& join, std::uint32_t width, std::uint32_t height) {
+  const link::Connected farm = connect(join);
+  const auto stub = farm::Farm::NewStub(farm.control);
+  BlobMap blobs;
+  const std::string manifest = encode_package(test::cornell_box().scene, PackageInfo(), blobs);
+  for (const auto& [digest, bytes] : blobs.all()) {
+    put_blob(*stub, join, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  }
+  put_blob(*stub, join, manifest);
+  farm::SubmitRequest request;
+  request.set_request_id("0123456789abcdef" + std::to_string(width));
+  request.set_name("null");
+  request.set_manifest_sha256(wire::sha256(manifest).raw());
+  request.mutable_settings()->set_width(width);
+  request.mutable_settings()->set_height(height);
+  request.mutable_settings()->set_max_depth(4);
+  request.mutable_stop()->set_samples(1 << 20);
+  grpc::ClientContext context;
+  link::prepare(context, join, kLong);
+  farm::SubmitReply reply;
+  check(stub->Submit(&context, request, &reply));
+}
+
+/// A worker that renders nothing.
+class NullWorker {
+ public:
+  NullWorker(const link::JoinString& join, const link::Connected& farm, int number)
+      : join_(join),
+        stub_(farm::Work::NewStub(farm.control)),
+        bulk_(farm::Work::NewStub(farm.bulk)),
+        instance_(std::string(32, '0')) {
+    const std::string digits = std::to_string(number);
+    instance_.replace(32 - digits.size(), digits.size(), digits);
+    link::prepare(context_, join, std::chrono::milliseconds(0));
+    stream_ = stub_->Session(&context_);
+    farm::FromWorker message;
+    farm::Hello& hello = *message.mutable_hello();
+    hello.set_protocol(wire::kProtocol);
+    hello.set_pixel_version(kPixelVersion);
+    hello.set_canary(canary());
+    hello.set_instance(instance_);
+    hello.set_name("null-" + digits);
+    hello.set_threads(1);
+    hello.set_max_bands(3);
+    stream_->Write(message);
+    farm::ToWorker answer;
+    BANDSAW_CHECK(stream_->Read(&answer) && answer.has_welcome(), "a null worker is welcome");
+  }
+  ~NullWorker() { context_.TryCancel(); }
+
+  void beat() {
+    farm::FromWorker message;
+    message.mutable_heartbeat()->set_doing("nothing");
+    stream_->Write(message);
+  }
+
+  /// Answers leases until the time is up; seconds from lease to acknowledged, of each.
+  std::vector<double> work(Clock::time_point until) {
+    std::vector<double> took;
+    farm::ToWorker message;
+    auto beaten = Clock::now();
+    while (Clock::now() < until && stream_->Read(&message)) {
+      if (message.has_lease()) {
+        const auto began = Clock::now();
+        put(message.lease());
+        took.push_back(std::chrono::duration<double>(Clock::now() - began).count());
+      }
+      if (Clock::now() - beaten > std::chrono::seconds(1)) {
+        beat();
+        beaten = Clock::now();
+      }
+    }
+    return took;
+  }
+
+ private:
+  void put(const farm::Lease& lease) {
+    const farm::Band& band = lease.band();
+    const std::string black(
+        std::size_t{band.last_row() - band.first_row()} * lease.settings().width() * 24, '\0');
+    farm::BandChunk chunk;
+    farm::BandHeader& header = *chunk.mutable_header();
+    header.set_job(lease.job());
+    *header.mutable_band() = band;
+    header.set_lease(lease.lease());
+    header.set_instance(instance_);
+    header.set_size(black.size());
+    header.set_sha256(wire::sha256(black).raw());
+    // So slow that a band is a row: what is measured is bands, not bytes.
+    header.mutable_counters()->set_render_s(2.0 * (band.last_row() - band.first_row()));
+    chunk.set_data(black);
+    grpc::ClientContext context;
+    link::prepare(context, join_, kLong);
+    farm::PutBandReply reply;
+    const auto writer = bulk_->PutBand(&context, &reply);
+    writer->Write(chunk);
+    writer->WritesDone();
+    check(writer->Finish());
+  }
+
+  const link::JoinString join_;
+  const std::unique_ptr<farm::Work::Stub> stub_;
+  const std::unique_ptr<farm::Work::Stub> bulk_;
+  std::string instance_;
+  grpc::ClientContext context_;
+  std::unique_ptr<Stream> stream_;
+};
+
+struct Coordinator {
+  test::TempDir folder;
+  test::Process process =
+      test::Process::start({BANDSAW_BIN, "serve", "--data", folder / "data", "--listen",
+                            "127.0.0.1:0", "--web", "none", "--audit", "0%"});
+  Coordinator() { BANDSAW_CHECK(process.wait_for("join with:"), process.err().c_str()); }
+  link::JoinString workers() const { return join_from(folder / "data/join"); }
+  link::JoinString people() const { return join_from(folder / "data/farm"); }
+};
+
+void bands(double seconds) {
+  Coordinator farm;
+  submit(farm.people(), kWidth, kHeight);
+  constexpr int kWorkers = 16;
+  std::vector<std::vector<double>> took(kWorkers);
+  std::vector<std::thread> threads;
+  const Usage before = usage_of(farm.process.pid());
+  const auto began = Clock::now();
+  const auto until = began + std::chrono::milliseconds(static_cast<int>(1000 * seconds));
+  for (int i = 0; i < kWorkers; ++i) {
+    threads.emplace_back([&, i] {
+      const link::JoinString join = farm.workers();
+      NullWorker worker(join, connect(join), i);
+      took[i] = worker.work(until);
+    });
+  }
+  for (std::thread& thread : threads) {
+    thread.join();
+  }
+  const double passed = std::chrono::duration<double>(Clock::now() - began).count();
+  const Usage after = usage_of(farm.process.pid());
+  std::vector<double> all;
+  for (const auto& one : took) {
+    all.insert(all.end(), one.begin(), one.end());
+  }
+  std::sort(all.begin(), all.end());
+  BANDSAW_CHECK(!all.empty(), "some band was answered");
+  std::printf(
+      "%zu bands of %d null workers in %.1f s: %.0f bands/s; lease to acknowledged median "
+      "%.2f ms; coordinator %.0f µs CPU a band, %.0f MB\n",
+      all.size(), kWorkers, passed, static_cast<double>(all.size()) / passed,
+      1e3 * all[all.size() / 2],
+      1e6 * (after.cpu_s - before.cpu_s) / static_cast<double>(all.size()), after.resident_mb);
+}
+
+void memory(int count) {
+  Coordinator farm;
+  submit(farm.people(), 3840, 2160);
+  const link::JoinString join = farm.workers();
+  const double empty = usage_of(farm.process.pid()).resident_mb;
+  std::vector<std::unique_ptr<NullWorker>> workers;
+  for (int i = 0; i < count; ++i) {
+    workers.push_back(std::make_unique<NullWorker>(join, connect(join), i));
+    if ((i + 1) % 100 == 0) {
+      for (const auto& worker : workers) {
+        worker->beat();
+      }
+    }
+    if (i + 1 == count / 4 || i + 1 == count / 2 || i + 1 == count) {
+      const double now = usage_of(farm.process.pid()).resident_mb;
+      std::printf("%d workers, one 4K job: coordinator %.0f MB resident, %.0f kB a worker\n", i + 1,
+                  now, 1e3 * (now - empty) / (i + 1));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace bandsaw
+
+int main(int argc, char** argv) {
+  bandsaw::bands(argc > 1 ? std::atof(argv[1]) : 10);
+  bandsaw::memory(argc > 2 ? std::atoi(argv[2]) : 1'000);
+}

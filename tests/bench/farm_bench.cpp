@@ -1,0 +1,91 @@
+// What a farm's scheduler makes of its workers' time: workers that sleep by a cost map, in virtual
+// time, so that nothing of this machine is in the figures but the last column.
+
+#include <algorithm>
+#include <cstdio>
+#include <ctime>
+#include <string>
+#include <vector>
+
+#include "tests/unit/core/sim_bench.h"
+
+namespace {
+
+using bandsaw::coordinator::sim::BenchFarm;
+using bandsaw::coordinator::sim::BenchResult;
+
+constexpr std::uint32_t kWidth = 1920;
+constexpr std::uint32_t kHeight = 1080;
+constexpr std::uint64_t kSamples = 64;
+
+double even(std::uint32_t) { return 1; }
+/// 20:1 from the top to the bottom, with the mean 1.
+double uneven(std::uint32_t row) { return row < kHeight / 2 ? 40.0 / 21 : 2.0 / 21; }
+
+/// Workers that need `seconds` together; every second one four times as fast where not equal.
+std::vector<double> speeds(std::size_t count, double seconds, bool equal) {
+  const double mean = double{kWidth} * kHeight * kSamples / seconds / static_cast<double>(count);
+  std::vector<double> out;
+  for (std::size_t i = 0; i < count; ++i) {
+    out.push_back(mean * (equal ? 1 : i % 2 == 0 ? 0.4 : 1.6));
+  }
+  return out;
+}
+
+double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
+
+struct Spread {
+  double least = 1e300;
+  double most = -1e300;
+  void add(double value) {
+    least = std::min(least, value);
+    most = std::max(most, value);
+  }
+};
+
+bool measure(const char* name, BenchFarm farm) {
+  Spread efficiency;
+  Spread tail;
+  std::uint64_t bands = 0;
+  std::uint64_t wasted = 0;
+  const double began = cpu_seconds();
+  for (farm.seed = 1; farm.seed <= 10; ++farm.seed) {
+    const BenchResult one = bandsaw::coordinator::sim::run_bench(farm);
+    if (!one.broken.empty()) {
+      std::fprintf(stderr, "farm_bench: %s: %s\n", name, one.broken.c_str());
+      return false;
+    }
+    efficiency.add(100 * one.efficiency);
+    tail.add(100 * one.tail);
+    bands += one.bands;
+    wasted += one.wasted;
+  }
+  std::printf("| %s | %.2f–%.2f %% | %.2f–%.2f %% | %.2f %% | %.0f µs |\n", name, efficiency.least,
+              efficiency.most, tail.least, tail.most,
+              100.0 * static_cast<double>(wasted) / static_cast<double>(bands),
+              1e6 * (cpu_seconds() - began) / static_cast<double>(bands));
+  return true;
+}
+
+}  // namespace
+
+int main() {
+  std::printf(
+      "| 1920x1080, 64 samples, 60 s of work for all; 10 runs | efficiency | tail | bands "
+      "rendered for nothing or to compare | CPU a band, of coordinator and simulation |\n"
+      "| --- | --- | --- | --- | --- |\n");
+  bool ok = true;
+  for (const double audit : {0.0, 0.01}) {
+    const char* const with = audit > 0 ? ", audit 1 %" : "";
+    const auto row = [&](const char* what, BenchFarm farm) {
+      farm.audit_share = audit;
+      ok = measure((std::string(what) + with).c_str(), farm) && ok;
+    };
+    row("16 equal workers, even", {.speeds = speeds(16, 60, true), .cost_of = even});
+    row("16 equal workers, uneven 20:1", {.speeds = speeds(16, 60, true), .cost_of = uneven});
+    row("16 workers of speeds 1:4, even", {.speeds = speeds(16, 60, false), .cost_of = even});
+    row("16 workers of speeds 1:4, uneven 20:1, times ± 30 %",
+        {.speeds = speeds(16, 60, false), .cost_of = uneven, .noise = 0.3});
+  }
+  return ok ? 0 : 1;
+}

@@ -1,0 +1,44 @@
+#include "renderlib/render/band_file.h"
+
+#include <cstring>
+#include <vector>
+
+#include "renderlib/base/check.h"
+#include "renderlib/render/hash64.h"
+#include "tests/fuzz/fuzz.h"
+
+namespace {
+
+void read_all(absl::Span<const std::byte> bytes) {
+  std::uint64_t offset = 0;
+  while (offset < bytes.size()) {
+    const auto decoded = bandsaw::decode_band_record(bytes, offset);
+    if (!decoded.ok()) {
+      return;
+    }
+    const auto encoded = bandsaw::encode_band_record(decoded->record);
+    BANDSAW_CHECK(encoded.ok(), "what was read can be written");
+    BANDSAW_CHECK(absl::MakeConstSpan(*encoded) == bytes.subspan(offset, decoded->size),
+                  "a band reads back as it is");
+    offset += decoded->size;
+  }
+}
+
+}  // namespace
+
+void bandsaw::fuzz::run(absl::Span<const std::uint8_t> input) {
+  std::vector<std::byte> bytes;
+  for (const std::uint8_t byte : input) {
+    bytes.push_back(static_cast<std::byte>(byte));
+  }
+  read_all(bytes);
+  // No mutation guesses the hash at the end: what lies behind it is tried with the right one.
+  if (bytes.size() > sizeof(std::uint64_t)) {
+    const std::size_t body = bytes.size() - sizeof(std::uint64_t);
+    Hash64 hash;
+    hash.add(absl::MakeConstSpan(bytes).subspan(0, body));
+    const std::uint64_t value = hash.value();
+    std::memcpy(bytes.data() + body, &value, sizeof(value));
+    read_all(bytes);
+  }
+}

@@ -1,0 +1,83 @@
+// What a worker says on its stream, message after message (each after two bytes of its length,
+// little-endian): checked as the coordinator does, then told to a core with a job.
+
+#include "coordinator/core/core.h"
+#include "coordinator/rpc/convert.h"
+#include "renderlib/base/check.h"
+#include "tests/fuzz/fuzz.h"
+
+namespace {
+
+using namespace bandsaw;
+using namespace bandsaw::coordinator;
+
+Core farm_with_a_job() {
+  CoreOptions options;
+  options.epoch = "fuzz";
+  options.audit_share = 0.5;
+  Core core(options);
+  JobSpec spec;
+  spec.request_id = "0123456789abcdef";
+  spec.manifest = std::string(64, 'a');
+  spec.settings = {.width = 8, .height = 8, .max_depth = 2, .seed = 0};
+  spec.stop = StopAtSamples{64};
+  core.step(input::Submit{spec}, 0);
+  return core;
+}
+
+std::optional<Input> as_input(const farm::FromWorker& message) {
+  constexpr SessionId kSession = 1;
+  switch (message.kind_case()) {
+    case farm::FromWorker::kHello:
+      if (auto hello = worker_hello(message.hello(), "address"); hello.ok()) {
+        hello->protocol = 0;  // fit, whatever it says
+        hello->pixel_version = 0;
+        hello->canary = 0;
+        return input::Hello{kSession, *std::move(hello)};
+      }
+      return std::nullopt;
+    case farm::FromWorker::kHeartbeat:
+      if (auto beat = heartbeat(message.heartbeat()); beat.ok()) {
+        beat->session = kSession;
+        return *std::move(beat);
+      }
+      return std::nullopt;
+    case farm::FromWorker::kFailed:
+      if (auto failed = band_failed(message.failed()); failed.ok()) {
+        failed->session = kSession;
+        return *std::move(failed);
+      }
+      return std::nullopt;
+    case farm::FromWorker::kDraining:
+      if (auto reason = reason_field("reason", message.draining().reason()); reason.ok()) {
+        return input::Draining{kSession, *std::move(reason)};
+      }
+      return std::nullopt;
+    case farm::FromWorker::kLog:
+      log_lines("line", message.log().line()).IgnoreError();
+      return std::nullopt;
+    case farm::FromWorker::KIND_NOT_SET:
+      return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+void bandsaw::fuzz::run(absl::Span<const std::uint8_t> in) {
+  Core core = farm_with_a_job();
+  double now = 0;
+  while (in.size() >= 2) {
+    const std::size_t length = std::min<std::size_t>(in[0] + 256u * in[1], in.size() - 2);
+    farm::FromWorker message;
+    if (message.ParseFromArray(in.data() + 2, static_cast<int>(length))) {
+      if (const auto input = as_input(message)) {
+        core.step(*input, now += 0.25);
+      }
+      core.step(input::Tick{}, now += 0.25);
+      const auto broken = core.broken_invariant();
+      BANDSAW_CHECK(!broken, broken->c_str());
+    }
+    in.remove_prefix(2 + length);
+  }
+}

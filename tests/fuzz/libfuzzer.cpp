@@ -1,0 +1,6 @@
+#include "tests/fuzz/fuzz.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  bandsaw::fuzz::run({data, size});
+  return 0;
+}

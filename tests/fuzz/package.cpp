@@ -1,0 +1,47 @@
+// A manifest, and bytes that take the place of every blob that it names: two bytes of the
+// manifest's length, little-endian, the manifest, the blob's bytes.
+
+#include "renderlib/package/package.h"
+
+#include <algorithm>
+#include <span>
+
+#include "tests/fuzz/fuzz.h"
+
+namespace {
+
+class OneBlob : public bandsaw::BlobBytes {
+ public:
+  explicit OneBlob(absl::Span<const std::byte> bytes) : bytes_(bytes) {}
+  absl::Span<const std::byte> bytes() const override { return bytes_; }
+
+ private:
+  absl::Span<const std::byte> bytes_;
+};
+
+/// Whatever is asked for is there, with the bytes that there are.
+class AnyBlob : public bandsaw::BlobSource {
+ public:
+  explicit AnyBlob(absl::Span<const std::byte> bytes) : bytes_(bytes) {}
+  absl::StatusOr<std::unique_ptr<bandsaw::BlobBytes>> get(const bandsaw::wire::Digest&) override {
+    return std::make_unique<OneBlob>(bytes_);
+  }
+
+ private:
+  absl::Span<const std::byte> bytes_;
+};
+
+}  // namespace
+
+void bandsaw::fuzz::run(absl::Span<const std::uint8_t> input) {
+  if (input.size() < 2) {
+    return;
+  }
+  const std::size_t length = std::min<std::size_t>(input[0] + 256u * input[1], input.size() - 2);
+  const std::string manifest = text(input.subspan(2, length));
+  const auto rest = std::as_bytes(std::span(input.data() + 2 + length, input.size() - 2 - length));
+  AnyBlob blobs({rest.data(), rest.size()});
+  package_info(manifest).IgnoreError();
+  package_blobs(manifest).IgnoreError();
+  decode_package(manifest, blobs).IgnoreError();
+}

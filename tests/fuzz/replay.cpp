@@ -1,0 +1,25 @@
+// Runs a fuzz target over the files of a folder: what was found once is tried with every build.
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <vector>
+
+#include "tests/fuzz/fuzz.h"
+
+int main(int argc, char** argv) {
+  int count = 0;
+  for (int i = 1; i < argc; ++i) {
+    for (const auto& entry : std::filesystem::directory_iterator(argv[i])) {
+      std::ifstream file(entry.path(), std::ios::binary);
+      const std::vector<std::uint8_t> input{std::istreambuf_iterator<char>(file), {}};
+      std::printf("%s\n", entry.path().filename().c_str());
+      std::fflush(stdout);
+      bandsaw::fuzz::run(input);
+      ++count;
+    }
+  }
+  std::printf("%d inputs\n", count);
+  return count == 0 ? 1 : 0;
+}

@@ -1,0 +1,47 @@
+// Requests of people and bands of workers: one byte that says which, then the message.
+
+#include "coordinator/rpc/convert.h"
+#include "renderlib/base/check.h"
+#include "renderlib/render/settings.h"
+#include "tests/fuzz/fuzz.h"
+
+namespace {
+
+using namespace bandsaw;
+
+template <class Message>
+Message parsed(absl::Span<const std::uint8_t> bytes) {
+  Message message;
+  message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()));
+  return message;
+}
+
+}  // namespace
+
+void bandsaw::fuzz::run(absl::Span<const std::uint8_t> in) {
+  if (in.empty()) {
+    return;
+  }
+  const auto rest = in.subspan(1);
+  switch (in[0] % 4) {
+    case 0:
+      if (const auto spec = coordinator::job_spec(parsed<farm::SubmitRequest>(rest)); spec.ok()) {
+        BANDSAW_CHECK(validate(spec->settings).ok(), "settings that were taken are in range");
+      }
+      break;
+    case 1:
+      if (const auto band = coordinator::band("band", parsed<farm::Band>(rest)); band.ok()) {
+        BANDSAW_CHECK(is_node(band->samples) && band->rows.first < band->rows.last,
+                      "a band that was taken is one");
+      }
+      break;
+    case 2:
+      coordinator::reason_field("worker", parsed<farm::QuarantineRequest>(rest).worker())
+          .IgnoreError();
+      break;
+    default:
+      for (const std::string& raw : parsed<farm::MissingBlobsRequest>(rest).sha256()) {
+        coordinator::digest_field("sha256", raw).IgnoreError();
+      }
+  }
+}
