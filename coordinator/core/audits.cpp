@@ -53,7 +53,8 @@ void Core::State::open_audits(Job& job, const input::BandStored& in,
   }
   for (const RowRange& range : rows) {
     const Band band{in.band.samples, range};
-    if (!job.audited.contains(band) && job.audits.size() < Job::kAuditsKept) {
+    if (!job.audited.contains({band, witness_of(in).renderer}) &&
+        job.audits.size() < Job::kAuditsKept) {
       job.audits.emplace_back(band, Audit::Claim{witness_of(in), *digests_for(band, in)});
     }
   }
@@ -116,12 +117,13 @@ bool Core::State::judge_one(Job& job) {
       continue;
     }
     const Band band = audit->band();
+    const std::uint64_t stored_by = audit->stored().witness.renderer;
     if (audit->lease != 0) {
       end_lease(audit->lease, Revoke::kYes);
     }
     job.audits.erase(audit);
     if (verdict->stored_is_right) {
-      emit(record::BandAudited{job.id, band});
+      emit(record::BandAudited{job.id, band, stored_by});
     }
     for (const Audit::Claim& liar : verdict->liars) {
       quarantine(liar.witness, absl::StrCat("returned other pixels than two others for ",

@@ -137,7 +137,8 @@ class Job {
   std::string log_of;              ///< the worker that failed a band last …
   std::vector<std::string> log;    ///< … and the last lines of its log
   std::vector<Audit> audits;       ///< open, at most kAuditsKept
-  std::set<Band> audited;          ///< whose second result was the same
+  /// Whose second result was the same, and by whom they are stored: it may be another one day.
+  std::set<std::pair<Band, std::uint64_t>> audited;
   /// A look at the error that waits for audits: what it would decide on may be wrong pixels.
   std::optional<input::PassMerged> look;
   std::deque<Fault> losses;  ///< of workers that went while rendering a band and stay away

@@ -91,10 +91,11 @@ struct WorkerJoined {
 struct WorkerLeft {
   std::string instance;
 };
-/// Two machines gave the same digests for a band that was rendered twice.
+/// Another machine gave the same digests for what this renderer had stored.
 struct BandAudited {
   JobId job = 0;
   Band band;
+  std::uint64_t renderer = 0;  ///< core/renderer.h
 };
 /// What was measured of a job's error was measured with pixels that are void since.
 struct ErrorForgotten {

@@ -120,7 +120,7 @@ void Core::State::apply(const record::WorkerLeft& r) { joined_.erase(r.instance)
 
 void Core::State::apply(const record::BandAudited& r) {
   if (Job* job = find(r.job); job != nullptr && !is_final(job->state)) {
-    job->audited.insert(r.band);
+    job->audited.insert({r.band, r.renderer});
   }
 }
 

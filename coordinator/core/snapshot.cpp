@@ -41,8 +41,8 @@ void Core::State::add_records(const Job& job, std::vector<Record>& out) {
   for (const ErrorPoint& point : job.curve) {
     out.push_back(record::ErrorMeasured{job.id, point});
   }
-  for (const Band& band : job.audited) {
-    out.push_back(record::BandAudited{job.id, band});
+  for (const auto& [band, renderer] : job.audited) {
+    out.push_back(record::BandAudited{job.id, band, renderer});
   }
   if (job.figures) {
     out.push_back(*job.figures);

@@ -10,6 +10,7 @@ const char* write_audit(FieldWriter& out, const record::BandAudited& r) {
   out.number("last", r.band.samples.last);
   out.number("first_row", r.band.rows.first);
   out.number("last_row", r.band.rows.last);
+  out.number("renderer", r.renderer);
   return "band_audited";
 }
 
@@ -38,7 +39,8 @@ std::optional<Record> read_audit(absl::string_view kind, FieldReader& in) {
         .job = in.number("job"),
         .band = {.samples = {.first = in.number("first"), .last = in.number("last")},
                  .rows = {.first = static_cast<std::uint32_t>(in.number("first_row", UINT32_MAX)),
-                          .last = static_cast<std::uint32_t>(in.number("last_row", UINT32_MAX))}}};
+                          .last = static_cast<std::uint32_t>(in.number("last_row", UINT32_MAX))}},
+        .renderer = in.number("renderer")};
   }
   if (kind == "error_forgotten") {
     return record::ErrorForgotten{.job = in.number("job")};

@@ -249,6 +249,23 @@ TEST(Quarantine, LastsOverARestartOfBothAndIsLifted) {
             std::string::npos);
 }
 
+TEST(Audit, WhatWasAuditedOfALiarIsAuditedAgainOfTheNext) {
+  AuditFarm farm = two_claims(0, 0);
+  farm.submit(test_job("r2", StopAtSamples{16}, 8, 2));
+  farm.hello(3, "c", 1);
+  farm.result(farm.lease(1, false), "a");
+  farm.say(input::Quarantine{"worker-a"});
+  const auto audits = farm.all_records<record::BandAudited>();
+  for (std::size_t i = 0; i < farm.all<action::Lease>().size(); ++i) {
+    const action::Lease lease = farm.all<action::Lease>()[i];
+    if (lease.job == 2 && lease.session != 1) {
+      farm.result(lease, lease.session == 2 ? "b" : "c");
+    }
+  }
+  EXPECT_EQ(farm.job(2).state, JobState::kFinishing);
+  EXPECT_EQ(farm.all_records<record::BandAudited>().size(), audits.size() + 2) << "both rows";
+}
+
 TEST(Quarantine, AnErrorMeasuredWithWrongPixelsIsForgotten) {
   AuditFarm farm;
   farm.submit(test_job("r1", StopAtError{.relative_rmse = 0.01}, 8, 1));

@@ -73,7 +73,7 @@ inline std::vector<Record> sample_records() {
           record::JobForgotten{.job = 3},
           record::WorkerJoined{.instance = "0123456789abcdef0123456789abcdef"},
           record::WorkerLeft{.instance = ""},
-          record::BandAudited{.job = 1, .band = {{16, 32}, {3, UINT32_MAX}}},
+          record::BandAudited{.job = 1, .band = {{16, 32}, {3, UINT32_MAX}}, .renderer = 7},
           record::ErrorForgotten{.job = 1},
           record::WorkerQuarantined{.renderer = UINT64_MAX, .name = "a desk", .reason = "lied\n"},
           record::QuarantineLifted{.name = "a desk"}};
