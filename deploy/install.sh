@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 packages that building, testing, packing or the demo need, if any is missing.
-# Usage: deploy/install.sh build|demo|packages|test
+# Usage: deploy/install.sh build|demo|packages|test|browser    browser: what the tests of that label need besides, 400 MB
 set -euo pipefail
 
 build=(g++ cmake ninja-build pkg-config libgrpc++-dev protobuf-compiler protobuf-compiler-grpc libprotobuf-dev
@@ -9,13 +9,15 @@ build=(g++ cmake ninja-build pkg-config libgrpc++-dev protobuf-compiler protobuf
 demo=("${build[@]}" assimp-testmodels)
 packages=("${build[@]}" dpkg-dev file fakeroot)
 test=("${demo[@]}" libgtest-dev libgmock-dev git iproute2)
+browser=("${test[@]}" chromium chromium-driver)
 
 case "${1:-}" in
   build) wanted=("${build[@]}") ;;
   demo) wanted=("${demo[@]}") ;;
   packages) wanted=("${packages[@]}") ;;
   test) wanted=("${test[@]}") ;;
-  *) echo "usage: deploy/install.sh build|demo|packages|test" >&2; exit 2 ;;
+  browser) wanted=("${browser[@]}") ;;
+  *) echo "usage: deploy/install.sh build|demo|packages|test|browser" >&2; exit 2 ;;
 esac
 
 missing=()

@@ -11,6 +11,7 @@
 #include "coordinator/cli/data_folder.h"
 #include "coordinator/cli/join_addresses.h"
 #include "coordinator/cli/program_folder.h"
+#include "coordinator/cli/report.h"
 #include "coordinator/cli/worker_program.h"
 #include "proto/link/certificate.h"
 #include "renderlib/base/atomic_file.h"
@@ -38,6 +39,10 @@ absl::StatusOr<std::unique_ptr<Dashboard>> start(const ServeOptions& options, En
   wanted.insecure = options.insecure;
   wanted.gallery = gallery_folder();
   wanted.bring = bring_scene(engine);
+  wanted.report = [](const JobView& job, const Image& image) {
+    const Progress progress{job, bad_sample_text(job.counters)};
+    return report_text({progress, pixels_sha256(image), {}});
+  };
   if (options.web.empty()) {
     auto dashboard = Dashboard::start(engine, identity, wanted);
     if (dashboard.ok()) {

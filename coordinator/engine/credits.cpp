@@ -1,11 +1,14 @@
 #include "coordinator/engine/credits.h"
 
 #include <iterator>
-#include <utility>
 
 namespace bandsaw::coordinator {
 
-void Credits::add(JobId job, const RowRange& rows, const std::string& worker) {
+void Credits::add(JobId job, const RowRange& rows, std::uint64_t renderer,
+                  const std::string& name) {
+  if (!name.empty() && (names_.size() < kMostNames || names_.contains(renderer))) {
+    names_[renderer] = name;
+  }
   Rows& all = jobs_[job];
   if (jobs_.size() > kMostJobs) {
     // The oldest; `all` itself only where it is that.
@@ -17,16 +20,16 @@ void Credits::add(JobId job, const RowRange& rows, const std::string& worker) {
     --next;
   }
   while (next != all.end() && next->second.rows.first < rows.last) {
-    const RowsBy old = std::move(next->second);
+    const Piece old = next->second;
     next = all.erase(next);
     if (old.rows.first < rows.first) {
-      all[old.rows.first] = {{old.rows.first, rows.first}, old.worker};
+      all[old.rows.first] = {{old.rows.first, rows.first}, old.renderer};
     }
     if (old.rows.last > rows.last) {
-      all[rows.last] = {{rows.last, old.rows.last}, old.worker};
+      all[rows.last] = {{rows.last, old.rows.last}, old.renderer};
     }
   }
-  all[rows.first] = {rows, worker};
+  all[rows.first] = {rows, renderer};
 }
 
 std::vector<RowsBy> Credits::of(JobId job) const {
@@ -36,10 +39,12 @@ std::vector<RowsBy> Credits::of(JobId job) const {
     return out;
   }
   for (const auto& [first, one] : found->second) {
-    if (!out.empty() && out.back().rows.last == first && out.back().worker == one.worker) {
+    const auto name = names_.find(one.renderer);
+    const std::string worker = name == names_.end() ? "" : name->second;
+    if (!out.empty() && out.back().rows.last == first && out.back().worker == worker) {
       out.back().rows.last = one.rows.last;
     } else {
-      out.push_back(one);
+      out.push_back({one.rows, worker});
     }
   }
   return out;

@@ -14,7 +14,7 @@ namespace bandsaw::coordinator {
 /// Rows that one worker rendered last.
 struct RowsBy {
   RowRange rows;
-  std::string worker;  ///< its name; empty: not known, as after a restart
+  std::string worker;  ///< its name; empty: not known
   friend bool operator==(const RowsBy&, const RowsBy&) = default;
 };
 
@@ -23,14 +23,23 @@ class Credits {
  public:
   static constexpr std::size_t kMostJobs = 200;
 
-  void add(JobId job, const RowRange& rows, const std::string& worker);
+  /// `renderer` names the worker in all lives of the coordinator. `name` may be empty: what a band
+  /// on disk does not say is known again once the worker brings the next.
+  void add(JobId job, const RowRange& rows, std::uint64_t renderer, const std::string& name);
   /// By row, without those that nobody rendered; neighbours of one worker are one.
   std::vector<RowsBy> of(JobId job) const;
 
  private:
+  static constexpr std::size_t kMostNames = 65'536;
+
+  struct Piece {
+    RowRange rows;
+    std::uint64_t renderer = 0;
+  };
   /// Disjoint, by first row.
-  using Rows = std::map<std::uint32_t, RowsBy>;
+  using Rows = std::map<std::uint32_t, Piece>;
   std::map<JobId, Rows> jobs_;
+  std::map<std::uint64_t, std::string> names_;  ///< by renderer
 };
 
 }  // namespace bandsaw::coordinator

@@ -102,7 +102,7 @@ absl::Status FilmDesk::merge(JobId id, OneJob& job, Waiting& waiting) {
     const RowRange rows = waiting.rows.back();
     TileMask tiles = waiting.put.tiles.of(rows);
     RETURN_IF_ERROR(job.film->add(rows == pixels.band.rows ? pixels : slice(pixels, rows), tiles));
-    credits_.add(id, rows, waiting.put.worker);
+    credits_.add(id, rows, waiting.put.renderer, waiting.put.worker);
     job.added.push_back({waiting.put.offset, pixels.band.samples.last, waiting.put.renderer, rows,
                          std::move(tiles)});
     waiting.rows.pop_back();

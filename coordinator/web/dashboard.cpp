@@ -32,6 +32,7 @@ class Dashboard::Impl {
       : secure_(tls != nullptr),
         access_(identity, secure_),
         pictures_(engine),
+        report_(options.report),
         scenes_(engine, options.bring),
         gallery_(options.gallery),
         worker_(options.worker),
@@ -51,7 +52,7 @@ class Dashboard::Impl {
     add_login(server_, access_);
     add_farm(server_, engine);
     add_jobs(server_, engine);
-    add_pictures(server_, pictures_);
+    add_pictures(server_, pictures_, report_);
     add_scenes(server_, scenes_);
     add_gallery(server_, engine, scenes_, gallery_);
     server_.set_error_handler([](const httplib::Request&, httplib::Response& response) {
@@ -77,6 +78,7 @@ class Dashboard::Impl {
   const bool secure_;
   Access access_;
   Pictures pictures_;
+  const TellReport report_;
   Scenes scenes_;
   const Gallery gallery_;
   const WorkerProgram worker_;

@@ -8,6 +8,7 @@
 
 #include "absl/status/statusor.h"
 #include "coordinator/engine/engine.h"
+#include "coordinator/web/pictures.h"
 #include "coordinator/web/scenes.h"
 #include "coordinator/web/worker_program.h"
 #include "proto/link/identity.h"
@@ -21,6 +22,7 @@ struct DashboardOptions {
   std::string gallery;             ///< folder of scene files; need not be there
   BringScene bring;
   WorkerProgram worker;  ///< what is handed out to machines that are to join
+  TellReport report;
 };
 
 class Dashboard {

@@ -1,6 +1,8 @@
-// Previews and images.
+// Previews, images, and what is said of them.
 
 #include <algorithm>
+#include <functional>
+#include <utility>
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
@@ -40,11 +42,14 @@ void send(httplib::Response& response, const absl::StatusOr<Pictures::Bytes>& by
       });
 }
 
-void add_image(HttpServer& server, Pictures& pictures, const char* suffix, ImageFormat format,
-               const char* type) {
-  server.Get(absl::StrCat("/api/jobs/(\\d{1,19})/image\\.", suffix),
-             [&pictures, suffix, format, type](const httplib::Request& request,
-                                               httplib::Response& response) {
+using Make = std::function<absl::StatusOr<Pictures::Bytes>(JobId)>;
+
+/// A file of a finished job: `what`.`suffix`.
+void add_file(HttpServer& server, const std::string& what, const std::string& suffix,
+              const char* type, Make make) {
+  server.Get(absl::StrCat("/api/jobs/(\\d{1,19})/", what, "\\.", suffix),
+             [suffix, type, make = std::move(make)](const httplib::Request& request,
+                                                    httplib::Response& response) {
                const auto job = job_of(request);
                if (!job.ok()) {
                  refuse(response, job.status());
@@ -52,13 +57,13 @@ void add_image(HttpServer& server, Pictures& pictures, const char* suffix, Image
                }
                response.set_header("Content-Disposition", absl::StrCat("inline; filename=\"job-",
                                                                        *job, ".", suffix, "\""));
-               send(response, pictures.image(*job, format), type);
+               send(response, make(*job), type);
              });
 }
 
 }  // namespace
 
-void add_pictures(HttpServer& server, Pictures& pictures) {
+void add_pictures(HttpServer& server, Pictures& pictures, const TellReport& report) {
   server.Get("/api/jobs/(\\d{1,19})/preview\\.png",
              [&pictures](const httplib::Request& request, httplib::Response& response) {
                const auto job = job_of(request);
@@ -68,8 +73,12 @@ void add_pictures(HttpServer& server, Pictures& pictures) {
                }
                send(response, pictures.preview(*job, side_of(request)), "image/png");
              });
-  add_image(server, pictures, "png", ImageFormat::kPng, "image/png");
-  add_image(server, pictures, "exr", ImageFormat::kExr, "image/x-exr");
+  add_file(server, "image", "png", "image/png",
+           [&pictures](JobId job) { return pictures.image(job, ImageFormat::kPng); });
+  add_file(server, "image", "exr", "image/x-exr",
+           [&pictures](JobId job) { return pictures.image(job, ImageFormat::kExr); });
+  add_file(server, "report", "json", "application/json",
+           [&pictures, &report](JobId job) { return pictures.report(job, report); });
 }
 
 }  // namespace bandsaw::coordinator

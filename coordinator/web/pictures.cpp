@@ -113,4 +113,11 @@ absl::StatusOr<Pictures::Bytes> Pictures::image(JobId job, ImageFormat format) {
   return encoded(result.image, format, result.display);
 }
 
+absl::StatusOr<Pictures::Bytes> Pictures::report(JobId job, const TellReport& tell) {
+  ASSIGN_OR_RETURN(const JobView view, look_at(engine_, job));
+  MutexLock lock(making_);
+  ASSIGN_OR_RETURN(const StoredResult result, result_of(engine_, job));
+  return std::make_shared<const std::string>(tell(view, result.image));
+}
+
 }  // namespace bandsaw::coordinator

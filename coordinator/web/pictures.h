@@ -16,6 +16,10 @@
 
 namespace bandsaw::coordinator {
 
+/// The text of a finished job's report; how is given from outside, because its words are the
+/// command's.
+using TellReport = std::function<std::string(const JobView& job, const Image& image)>;
+
 /// Thread-safe. One picture is made at a time, whoever asks, so that browsers cannot take the
 /// machine from the farm.
 class Pictures {
@@ -29,6 +33,8 @@ class Pictures {
   absl::StatusOr<Bytes> preview(JobId job, std::uint32_t most_side) EXCLUDES(making_);
   /// The finished image. Errors as Engine::result.
   absl::StatusOr<Bytes> image(JobId job, ImageFormat format) EXCLUDES(making_);
+  /// What is said of it: `tell`'s text. Errors as Engine::result.
+  absl::StatusOr<Bytes> report(JobId job, const TellReport& tell) EXCLUDES(making_);
 
  private:
   using Key = std::pair<JobId, std::uint32_t>;  ///< job, most_side

@@ -19,7 +19,7 @@ void add_worker_program(HttpServer& server, const WorkerProgram& program);
 void add_login(HttpServer& server, Access& access);
 void add_farm(HttpServer& server, Engine& engine);
 void add_jobs(HttpServer& server, Engine& engine);
-void add_pictures(HttpServer& server, Pictures& pictures);
+void add_pictures(HttpServer& server, Pictures& pictures, const TellReport& report);
 void add_scenes(HttpServer& server, Scenes& scenes);
 void add_gallery(HttpServer& server, Engine& engine, Scenes& scenes, const Gallery& gallery);
 

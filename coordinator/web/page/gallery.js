@@ -29,12 +29,13 @@ function sceneCard(first) {
   const bar = el("div.bar", {hidden: true}, el("i"));
   const took = el("span.took");
   const open = el("a", {hidden: true}, "Open");
-  const again = el("button", {type: "button", hidden: true}, "Render again");
+  const again = el("button", {type: "button", hidden: true, title: "Render again"}, "Again");
   let job = null;
   let asked = false;
   const render = async () => {
     if (asked) return;
     asked = true;
+    foot.hidden = false;
     text(took, "reading the scene…");
     await attempt(() => post("/api/gallery/render", {scene: first.name, width, samples}));
     asked = false;
@@ -45,22 +46,24 @@ function sceneCard(first) {
   });
   again.addEventListener("click", render);
   const title = titleOf(first.name);
+  const foot = el("div.foot", {hidden: true}, took, el("span.row", {}, open, again));
   return {
     element: el("li.card.scene", {"data-scene": first.name}, face, bar,
-      el("div.text", {}, el("h2", {}, title), el("p.soft.small", {}, first.about),
-        el("div.foot", {}, took, el("span.row", {}, open, again)))),
+      el("div.text", {}, el("h2", {}, title), el("p.soft.small.about", {title: first.about}, first.about), foot)),
     update(scene) {
       job = scene.job?.status ?? null;
       const is = job === null ? "" : stateOf(job);
       face.setAttribute("aria-label", is === "" || is === "failed" ? `Render ${title}` : `Open ${title}`);
       again.hidden = open.hidden = job === null || !isOver(job);
       bar.hidden = job === null || isOver(job);
+      foot.hidden = job === null && !asked;
       if (job === null) return;
       open.href = is === "done" ? `/api/jobs/${job.job}/image.png` : `#/jobs/${job.job}`;
       open.target = is === "done" ? "_blank" : "";
       bar.firstChild.style.width = `${100 * job.fraction}%`;
       preview(img, job, 512);
-      if (!asked) text(took, is === "done" ? `${Math.round(1000 * job.elapsed_s).toLocaleString("en")} ms` : is === "running" ? percent(job.fraction) : is);
+      if (!asked) text(took, is === "done" ? `${Math.round(1000 * job.elapsed_s).toLocaleString("en")} ms` :
+        is === "running" ? percent(job.fraction) : is);
       took.title = is === "done" ? `${job.settings.width} × ${job.settings.height}, ${job.samples_per_pixel} samples a pixel, ${job.workers_used} workers` : "";
     },
   };

@@ -7,7 +7,7 @@ import {picture} from "./picture.js";
 import {plot} from "./plot.js";
 
 function figuresOf(status) {
-  const known = (value, words) => (value >= 0 ? words(value) : "not known yet");
+  const known = (value, words) => (value >= 0 ? words(value) : isOver(status) ? "not known" : "not known yet");
   return {
     "Size": `${status.settings.width} × ${status.settings.height}`,
     "Asked for": goal(status.stop),
@@ -72,17 +72,19 @@ export function jobView(id) {
       text(state, is);
       state.className = `state ${is}`;
       text(done, percent(is === "done" ? 1 : status.fraction));
-      text(left, is === "running" && status.remaining_s >= 0 ? `${duration(status.remaining_s)} left` : "");
+      text(left, is === "done" ? `in ${duration(status.elapsed_s)}` :
+        is === "running" && status.remaining_s >= 0 ? `${duration(status.remaining_s)} left` : "");
       bar.className = `bar ${is}`;
       bar.firstChild.style.width = `${100 * (is === "done" ? 1 : status.fraction)}%`;
-      text(why, is === "done" ? "" : page.why.join(" "));
+      text(why, is === "done" ? "" : page.why.join(" · "));
       figures.replaceChildren(...Object.entries(figuresOf(status)).filter(([, value]) => value !== "")
         .flatMap(([name, value]) => [el("dt", {}, name), el("dd", {}, value)]));
       log.hidden = status.log.length === 0;
       text(log, `${status.log_of}:\n${status.log.join("\n")}`);
       orders.update(status);
       shown.update(page);
-      curve.update((status.curve ?? []).map((point) => ({t: point.elapsed_s, error: point.relative_rmse + point.margin})), status.stop.error);
+      const points = (status.curve ?? []).map((point) => ({t: point.elapsed_s, error: point.relative_rmse + point.margin}));
+      curve.update(points, status.stop.error, isOver(status));
     },
   };
 }

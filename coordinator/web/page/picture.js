@@ -5,12 +5,13 @@ import {el, isOver, stateOf, text} from "./dom.js";
 /// Colours that people tell apart whatever they see of colour (Okabe and Ito 2008).
 const palette = ["#56b4e9", "#e69f00", "#009e73", "#cc79a7", "#f0e442", "#0072b2", "#d55e00", "#999999"];
 
+/// Whether something of the picture can be had.
+const there = (status) => stateOf(status) === "done" || (Number(status.samples_done) > 0 && !isOver(status));
+
 /// Shows the newest preview; the old one stays until the new one is there.
 export function preview(img, status, side) {
-  const is = stateOf(status);
-  const there = is === "done" || (Number(status.samples_done) > 0 && !["failed", "cancelled"].includes(is));
-  if (!there) return;
-  const source = `/api/jobs/${status.job}/preview.png?side=${side}&at=${is === "done" ? "end" : status.samples_done}`;
+  if (!there(status)) return;
+  const source = `/api/jobs/${status.job}/preview.png?side=${side}&at=${stateOf(status) === "done" ? "end" : status.samples_done}`;
   if (img.getAttribute("src") !== source) img.src = source;
 }
 
@@ -18,8 +19,7 @@ function band(first, last, height, colour, now) {
   const part = el(now ? "i.now" : "i");
   part.style.top = `${(100 * first) / height}%`;
   part.style.height = `${(100 * (last - first)) / height}%`;
-  part.style.background = colour;
-  part.style.borderColor = colour;
+  part.style.color = colour;
   return part;
 }
 
@@ -38,8 +38,9 @@ export function picture() {
   const open = el("a.button", {target: "_blank", rel: "noopener", hidden: true}, "Open the image");
   const png = el("a.button", {hidden: true}, "PNG");
   const exr = el("a.button", {hidden: true}, "EXR");
+  const report = el("a.button", {hidden: true, title: "What the image cost and how wrong it is, as JSON"}, "Report");
   return {
-    element: el("div.stack", {}, frame, el("div.row", {}, open, png, exr, toggle), legend),
+    element: el("div.stack", {}, frame, el("div.row", {}, open, png, exr, report, toggle), legend),
     update(page) {
       const {status} = page.job;
       const {width, height} = status.settings;
@@ -48,7 +49,7 @@ export function picture() {
       img.alt = `${status.name}, as far as it is rendered`;
       preview(img, status, Math.min(2048, Math.ceil(Math.max(frame.clientWidth, frame.clientHeight) * devicePixelRatio)));
       waiting.hidden = !img.hidden;
-      text(waiting, isOver(status) && stateOf(status) !== "done" ? "There is no image." : "Nothing is rendered yet.");
+      text(waiting, there(status) ? "Loading the picture…" : isOver(status) ? "There is no image." : "Nothing is rendered yet.");
 
       const names = [...new Set([...page.rendered.map((rows) => rows.worker), ...status.worker.map((worker) => worker.name)])].sort();
       const colour = (name) => palette[names.indexOf(name) % palette.length];
@@ -65,11 +66,13 @@ export function picture() {
       if (toggle.hidden) owners.hidden = legend.hidden = true;
 
       const done = stateOf(status) === "done";
-      for (const link of [open, png, exr]) link.hidden = !done;
+      for (const link of [open, png, exr, report]) link.hidden = !done;
       open.href = png.href = `/api/jobs/${status.job}/image.png`;
       exr.href = `/api/jobs/${status.job}/image.exr`;
+      report.href = `/api/jobs/${status.job}/report.json`;
       png.download = `${status.name}-${status.job}.png`;
       exr.download = `${status.name}-${status.job}.exr`;
+      report.download = `${status.name}-${status.job}.json`;
     },
   };
 }

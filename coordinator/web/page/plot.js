@@ -22,15 +22,16 @@ function ticks(low, high) {
   return inside.length <= 6 ? inside : inside.filter((value) => Math.log10(value) % 1 === 0);
 }
 
-/// `points`: {t in seconds, error}; `goal`: an error, or 0.
+/// `points`: {t in seconds, error}; `goal`: an error, or 0; `over`: there will be no more.
 export function plot() {
   const svg = draw("svg", {class: "plot", viewBox: `0 0 ${box.width} ${box.height}`, role: "img"});
   const none = el("p.soft.small", {}, "The error is known after the second pass.");
   const element = el("section.card", {}, el("h2", {}, "Error over time"), none, svg);
   return {
     element,
-    update(points, goal) {
+    update(points, goal, over) {
       const known = points.filter((point) => point.error > 0 && point.t > 0);
+      element.hidden = over && known.length === 0;
       none.hidden = known.length > 0;
       svg.toggleAttribute("hidden", known.length === 0);
       if (known.length === 0) return;

@@ -10,36 +10,45 @@ using ::testing::IsEmpty;
 
 TEST(Credits, TheLastWorkerOfARowIsItsOwn) {
   Credits credits;
-  credits.add(1, {0, 10}, "anna");
-  credits.add(1, {20, 30}, "ben");
-  credits.add(1, {5, 22}, "cleo");
+  credits.add(1, {0, 10}, 1, "anna");
+  credits.add(1, {20, 30}, 2, "ben");
+  credits.add(1, {5, 22}, 3, "cleo");
   EXPECT_THAT(credits.of(1), ElementsAre(RowsBy{{0, 5}, "anna"}, RowsBy{{5, 22}, "cleo"},
                                          RowsBy{{22, 30}, "ben"}));
-  credits.add(1, {7, 9}, "anna");
+  credits.add(1, {7, 9}, 1, "anna");
   EXPECT_THAT(credits.of(1),
               ElementsAre(RowsBy{{0, 5}, "anna"}, RowsBy{{5, 7}, "cleo"}, RowsBy{{7, 9}, "anna"},
                           RowsBy{{9, 22}, "cleo"}, RowsBy{{22, 30}, "ben"}));
-  credits.add(1, {0, 30}, "ben");
+  credits.add(1, {0, 30}, 2, "ben");
   EXPECT_THAT(credits.of(1), ElementsAre(RowsBy{{0, 30}, "ben"}));
 }
 
 TEST(Credits, NeighboursOfOneWorkerAreOne) {
   Credits credits;
-  credits.add(1, {10, 20}, "anna");
-  credits.add(1, {0, 10}, "anna");
-  credits.add(1, {20, 21}, "");
+  credits.add(1, {10, 20}, 1, "anna");
+  credits.add(1, {0, 10}, 1, "anna");
+  credits.add(1, {20, 21}, 7, "");
   EXPECT_THAT(credits.of(1), ElementsAre(RowsBy{{0, 20}, "anna"}, RowsBy{{20, 21}, ""}));
 }
 
 TEST(Credits, OldJobsAreForgotten) {
   Credits credits;
   for (JobId job = 1; job <= Credits::kMostJobs + 1; ++job) {
-    credits.add(job, {0, 1}, "anna");
+    credits.add(job, {0, 1}, 1, "anna");
   }
   EXPECT_THAT(credits.of(1), IsEmpty());
   EXPECT_EQ(credits.of(2).size(), 1u);
-  credits.add(1, {0, 1}, "anna");  // late, but not lost
+  credits.add(1, {0, 1}, 1, "anna");  // late, but not lost
   EXPECT_EQ(credits.of(1).size(), 1u);
+}
+
+TEST(Credits, ANameThatComesLaterIsThatOfEarlierRows) {
+  Credits credits;
+  credits.add(1, {0, 10}, 1, "");
+  credits.add(1, {20, 30}, 2, "ben");
+  EXPECT_THAT(credits.of(1), ElementsAre(RowsBy{{0, 10}, ""}, RowsBy{{20, 30}, "ben"}));
+  credits.add(1, {10, 15}, 1, "anna");
+  EXPECT_THAT(credits.of(1), ElementsAre(RowsBy{{0, 15}, "anna"}, RowsBy{{20, 30}, "ben"}));
 }
 
 }  // namespace

@@ -96,6 +96,8 @@ TEST_F(RoutesTest, WhatIsNotThereIsSaid) {
   submit_box();
   EXPECT_EQ(get("/api/jobs/1/preview.png")->status, 404);
   EXPECT_EQ(get("/api/jobs/1/image.png")->status, 409);
+  EXPECT_EQ(get("/api/jobs/1/report.json")->status, 409);
+  EXPECT_EQ(get("/api/jobs/7/report.json")->status, 404);
 }
 
 TEST_F(RoutesTest, TheGalleryRendersItsScenes) {

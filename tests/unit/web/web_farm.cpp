@@ -63,6 +63,7 @@ WebTest::WebTest() : identity_(*link::load_or_make_identity(folder_ / "identity"
   options.bring = [this](const std::string& path, const std::atomic<bool>&) {
     return bring_box(*engine_, path);
   };
+  options.report = [](const JobView& job, const Image&) { return job.spec.name; };
   auto dashboard = Dashboard::start(*engine_, identity_, options);
   BANDSAW_CHECK(dashboard.ok(), dashboard.status().ToString().c_str());
   dashboard_ = *std::move(dashboard);

@@ -1,0 +1,58 @@
+#pragma once
+
+// Chromium without a window, driven through chromedriver by the WebDriver protocol (W3C).
+
+#include <google/protobuf/struct.pb.h>
+#include <httplib.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tests/support/process.h"
+
+namespace bandsaw::test {
+
+/// Where the programs are; empty: not installed.
+std::string chromedriver_program();
+
+struct BrowserOptions {
+  int width = 1280;  ///< of the window, in CSS pixels
+  int height = 900;
+  double pixel_ratio = 1;
+  bool phone = false;  ///< touch, and a phone's viewport
+  bool dark = false;
+};
+
+/// One session with a profile of its own. A call that fails, fails the test and gives nothing.
+class Browser {
+ public:
+  explicit Browser(const BrowserOptions& options = {});
+  ~Browser();
+  Browser(const Browser&) = delete;
+  Browser& operator=(const Browser&) = delete;
+
+  void go(const std::string& url);
+  /// What the body of a function returns; `argument` is its `arguments[0]`.
+  google::protobuf::Value run(const std::string& body, const std::string& argument = "");
+  /// The same, as text.
+  std::string text(const std::string& expression);
+  /// Waits in the page until the expression is true; false: three minutes passed.
+  bool wait(const std::string& expression);
+  void click(const std::string& selector);
+  void type(const std::string& selector, const std::string& keys);
+  /// A PNG of what is in the window.
+  void screenshot(const std::string& path);
+  /// What the console said that is an error, since the last call.
+  std::vector<std::string> console_errors();
+
+ private:
+  google::protobuf::Value post(const std::string& path, const google::protobuf::Struct& body);
+  std::string element(const std::string& selector);
+
+  Process driver_;
+  std::unique_ptr<httplib::Client> client_;
+  std::string session_;  ///< "/session/…"
+};
+
+}  // namespace bandsaw::test
