@@ -29,16 +29,21 @@ struct Child {
 
 // Signals that this process blocks or ignores reach the child all the same: Ctrl-C in a terminal
 // ends it at once.
-absl::StatusOr<Child> spawn(const std::vector<std::string>& arguments) {
+absl::StatusOr<Child> spawn(const std::vector<std::string>& arguments,
+                            const ChildStreams& streams) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) {
     return errno_status(errno, "cannot make a pipe");
   }
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, streams.input.c_str(), O_RDONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-  posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+  if (streams.errors_too) {
+    posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
+  } else {
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+  }
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);
   sigset_t signals;
@@ -56,7 +61,7 @@ absl::StatusOr<Child> spawn(const std::vector<std::string>& arguments) {
   }
   argv.push_back(nullptr);
   Child child{-1, ends[0]};
-  const int error = posix_spawn(&child.pid, argv[0], &actions, &attributes, argv.data(), environ);
+  const int error = posix_spawnp(&child.pid, argv[0], &actions, &attributes, argv.data(), environ);
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   close(ends[1]);
@@ -104,8 +109,8 @@ ChildOutcome wait_for(const Child& child, double seconds, const std::atomic<bool
 }  // namespace
 
 absl::StatusOr<ChildOutcome> run_child(const std::vector<std::string>& arguments, double seconds,
-                                       const std::atomic<bool>* stop) {
-  ASSIGN_OR_RETURN(const Child child, spawn(arguments));
+                                       const std::atomic<bool>* stop, const ChildStreams& streams) {
+  ASSIGN_OR_RETURN(const Child child, spawn(arguments, streams));
   const absl::Cleanup close_output = [&child] { close(child.output); };
   return wait_for(child, seconds, stop);
 }

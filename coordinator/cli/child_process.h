@@ -21,12 +21,17 @@ struct ChildOutcome {
   std::string output;   ///< what it wrote to its standard output, at most 64 KiB
 };
 
-/// Starts `arguments[0]` (a path) by posix_spawn, without a shell, with nothing on standard input
-/// and standard error thrown away, and waits until it ends; when this returns it is gone. It gets
-/// the default dispositions of SIGINT and SIGTERM whatever this process does with them, so Ctrl-C
-/// in a terminal ends it. `stop` may be null; it is looked at every 20 ms. The error is the
-/// system's: it could not be started.
+struct ChildStreams {
+  std::string input = "/dev/null";  ///< path of what it reads from standard input
+  bool errors_too = false;          ///< what it writes to standard error is output too
+};
+
+/// Starts `arguments[0]` (a path, or a name on PATH) by posix_spawn, without a shell, and waits
+/// until it ends; when this returns it is gone. It gets the default dispositions of SIGINT and
+/// SIGTERM whatever this process does with them, so Ctrl-C in a terminal ends it. `stop` may be
+/// null; it is looked at every 20 ms. The error is the system's: it could not be started.
 absl::StatusOr<ChildOutcome> run_child(const std::vector<std::string>& arguments, double seconds,
-                                       const std::atomic<bool>* stop);
+                                       const std::atomic<bool>* stop,
+                                       const ChildStreams& streams = {});
 
 }  // namespace bandsaw::coordinator

@@ -9,6 +9,7 @@
 #include "coordinator/cli/checked_options.h"
 #include "coordinator/cli/did_you_mean.h"
 #include "coordinator/cli/house_options.h"
+#include "coordinator/cli/invite_options.h"
 #include "coordinator/cli/report_options.h"
 #include "coordinator/cli/study_options.h"
 
@@ -183,6 +184,10 @@ constexpr Entry kCommands[] = {
      "bandsaw doctor --farm join    # on a worker's machine"},
     {"secret", "Make a new secret; who has the old one is shut out", add_secret, checked_secret,
      "bandsaw secret rotate worker"},
+    {"invite", "Bring workers to other machines by ssh", add_invite, checked_invite,
+     "bandsaw invite anna@desk laptop"},
+    {"dismiss", "Take such workers away again", add_dismiss, checked_dismiss,
+     "bandsaw dismiss anna@desk laptop"},
     {"render", "Render a scene on this machine, without a farm: the same bits", add_render,
      checked_render},
     {"info", "Say what is in a scene or model, and what of it is left out", add_info, checked_info},

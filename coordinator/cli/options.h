@@ -152,6 +152,20 @@ struct RotateOptions {
   Verbosity verbosity;
 };
 
+struct InviteOptions {
+  std::vector<std::string> hosts;  ///< as ssh takes them; at least one
+  std::string join;                ///< workers' join string or its file; empty: of the data folder
+  std::string data;                ///< empty: the default data folder
+  double seconds = 300;            ///< most for one host
+  Verbosity verbosity;
+};
+
+struct DismissOptions {
+  std::vector<std::string> hosts;  ///< as ssh takes them; at least one
+  double drain_s = 60;             ///< most for a worker to finish what it holds
+  Verbosity verbosity;
+};
+
 struct WhyOptions {
   JobId job = 0;
   FarmOption farm;
@@ -208,10 +222,10 @@ struct ShowText {
   std::string text;
 };
 
-using Command =
-    std::variant<ServeOptions, SubmitOptions, WatchOptions, JobsOptions, WorkersOptions,
-                 CancelOptions, PauseOptions, ResumeOptions, PriorityOptions, WhyOptions,
-                 LogsOptions, QuarantineOptions, DoctorOptions, RotateOptions, RenderOptions,
-                 InfoOptions, StitchOptions, CompareOptions, StudyOptions, ShowText>;
+using Command = std::variant<ServeOptions, SubmitOptions, WatchOptions, JobsOptions, WorkersOptions,
+                             CancelOptions, PauseOptions, ResumeOptions, PriorityOptions,
+                             WhyOptions, LogsOptions, QuarantineOptions, DoctorOptions,
+                             RotateOptions, InviteOptions, DismissOptions, RenderOptions,
+                             InfoOptions, StitchOptions, CompareOptions, StudyOptions, ShowText>;
 
 }  // namespace bandsaw::coordinator

@@ -51,7 +51,6 @@ absl::Status CoreDesk::restore_job(JobId id, const Known& known, StoreDesk& stor
       PutBand put;
       put.renderer = record.renderer;
       put.pixels = std::move(pixels);
-      put.renderer = record.renderer;
       put.offset = offset;
       put.tiles = core_.tiles(id, band);
       filmed = film.add(id, std::move(put), *std::move(rows));

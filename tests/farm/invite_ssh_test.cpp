@@ -1,0 +1,76 @@
+// bandsaw invite and dismiss through the real ssh and a real sshd, which ssh starts itself: no
+// port, no daemon.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "tests/farm/farm_processes.h"
+
+namespace bandsaw::test {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+constexpr char kSshd[] = "/usr/sbin/sshd";
+
+void write(const std::string& path, const std::string& text) { std::ofstream(path) << text; }
+
+// An `ssh` on PATH with a configuration of its own, behind it an account whose HOME is the test's.
+std::string make_account(const TempDir& folder) {
+  for (const char* key : {"key", "host"}) {
+    run({"/usr/bin/ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f", folder / key});
+  }
+  fs::create_directories(folder / "bin");
+  fs::create_directories(folder / "home");
+  write(folder / "sshd_config",
+        "HostKey " + folder / "host" + "\nAuthorizedKeysFile " + folder / "key.pub" +
+            "\nStrictModes no\nUsePAM no\nPidFile none\n"
+            "PermitRootLogin yes\nSetEnv XDG_RUNTIME_DIR=/nowhere PATH=" +
+            folder / "there" + ":/usr/bin:/bin HOME=" + folder / "home" + "\n");
+  write(folder / "ssh_config", std::string("ProxyCommand ") + kSshd + " -i -f " +
+                                   folder / "sshd_config" + "\nIdentityFile " + folder / "key" +
+                                   "\nIdentitiesOnly yes\nUserKnownHostsFile " + folder / "known" +
+                                   "\nLogLevel ERROR\n");
+  write(folder / "bin/ssh",
+        "#!/bin/sh\nexec /usr/bin/ssh -F " + folder / "ssh_config" + " \"$@\"\n");
+  fs::permissions(folder / "bin/ssh", fs::perms::owner_all);
+  // Beside other tests a worker that gives way to all would not come to its turn.
+  fs::create_directories(folder / "there");
+  write(folder / "there/nice", "#!/bin/sh\nshift 2; exec \"$@\"\n");
+  fs::permissions(folder / "there/nice", fs::perms::owner_all);
+  return "PATH=" + folder / "bin" + ":/usr/bin:/bin";
+}
+
+TEST(InviteSsh, ThroughARealServer) {
+  if (access(kSshd, X_OK) != 0 || access("/usr/bin/ssh", X_OK) != 0) {
+    GTEST_SKIP() << "needs the packages openssh-server and openssh-client";
+  }
+  if (geteuid() == 0) {
+    fs::create_directories("/run/sshd");  // sshd wants it as root; the package makes it at boot
+  }
+  FarmProcesses farm;
+  const TempDir folder;
+  const std::string path = make_account(folder);
+  const std::vector<std::string> invite = {BANDSAW_BIN, "invite", "--join", farm.join_file(),
+                                           "desk"};
+  const Finished stranger = run(invite, {path});
+  EXPECT_EQ(stranger.code, 1);
+  EXPECT_THAT(stranger.err, HasSubstr("connect once by hand: ssh desk"));
+
+  const std::string key = file_bytes(folder / "host.pub");
+  write(folder / "known", "desk " + key);
+  const Finished invited = run(invite, {path});
+  EXPECT_EQ(invited.code, 0) << invited.err;
+  EXPECT_THAT(invited.out, HasSubstr("desk: bandsaw-worker ")) << invited.out;
+  const Finished dismissed = run({BANDSAW_BIN, "dismiss", "desk"}, {path});
+  EXPECT_EQ(dismissed.code, 0) << dismissed.err;
+  EXPECT_FALSE(fs::exists(folder / "home/.local/share/bandsaw-worker"));
+}
+
+}  // namespace
+}  // namespace bandsaw::test
