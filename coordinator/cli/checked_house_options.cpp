@@ -2,6 +2,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/checked_options.h"
+#include "coordinator/cli/choices.h"
 #include "coordinator/cli/quantities.h"
 #include "renderlib/base/status_macros.h"
 
@@ -68,8 +69,7 @@ absl::StatusOr<Command> checked_secret(const RawOptions& raw) {
         absl::StrCat("secret: the only thing to do with one is rotate, ", kUse));
   }
   if (!raw.role || (*raw.role != "worker" && *raw.role != "farm")) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("secret rotate: whose must be worker or farm, ", kUse));
+    return wrong_choice("secret rotate: whose", "role", raw.role.value_or(""));
   }
   options.role = *raw.role == "worker" ? link::Role::kWorker : link::Role::kFarm;
   return options;

@@ -7,6 +7,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
+#include "coordinator/cli/choices.h"
 #include "coordinator/cli/layers.h"
 #include "coordinator/cli/output.h"
 #include "coordinator/cli/quantities.h"
@@ -76,10 +77,7 @@ absl::StatusOr<ImageOptions> checked_image(const RawOptions& raw) {
   if (raw.integrator) {
     image.integrator = integrator_named(*raw.integrator);
     if (!image.integrator) {
-      return wrong(absl::StrCat(
-          "--integrator: must be path, direct, normals, depth, albedo, ambient_occlusion, "
-          "path_lights or path_scattering, is '",
-          *raw.integrator, "'"));
+      return wrong_choice("--integrator", *raw.integrator);
     }
   }
   return image;
@@ -99,7 +97,7 @@ absl::StatusOr<DisplayOptions> checked_display(const RawOptions& raw) {
   if (raw.tone) {
     display.tone = tone_named(*raw.tone);
     if (!display.tone) {
-      return wrong(absl::StrCat("--tone: must be none or filmic, is '", *raw.tone, "'"));
+      return wrong_choice("--tone", *raw.tone);
     }
   }
   return display;

@@ -19,7 +19,7 @@ struct RawOptions {
   std::vector<std::string> outputs, parts, scenes, hosts;
   std::optional<std::string> samples, error, time, seed, width, height, depth, threads, rows;
   std::optional<std::string> integrator, exposure, tone, layers, report, seeds, reference_samples;
-  std::optional<std::string> web, audit;
+  std::optional<std::string> web, shell, audit;
   bool lift = false, adaptive = false, half = false, insecure = false, detach = false,
        quiet = false, json = false;
 };

@@ -7,99 +7,16 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
 #include "coordinator/cli/checked_options.h"
+#include "coordinator/cli/choices.h"
+#include "coordinator/cli/completion.h"
 #include "coordinator/cli/did_you_mean.h"
 #include "coordinator/cli/house_options.h"
+#include "coordinator/cli/image_options.h"
 #include "coordinator/cli/invite_options.h"
-#include "coordinator/cli/report_options.h"
 #include "coordinator/cli/study_options.h"
 
 namespace bandsaw::coordinator {
 namespace {
-
-constexpr char kPictures[] = ".png, .ppm, .pfm, .hdr or .exr";
-
-void add_output(CLI::App& app, RawOptions& raw, const std::string& formats,
-                const std::string& standard) {
-  app.add_option("-o,--output", raw.outputs,
-                 "File for the image: " + formats + "; may be repeated" + standard)
-      ->allow_extra_args(false)
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-}
-
-void add_image(CLI::App& app, RawOptions& raw) {
-  app.add_option("scene", raw.scene, "Scene file (.textproto, .json) or model file");
-  app.add_option("--environment", raw.environment,
-                 "Equirectangular image (.hdr, .exr …) that lights the scene from all around "
-                 "[default: the scene's]")
-      ->type_name("FILE");
-  app.add_option("--camera", raw.camera,
-                 "One of the cameras that the scene's models bring, see bandsaw info "
-                 "[default: the scene's, or a model's first]")
-      ->type_name("NAME");
-  app.add_option("--samples", raw.samples, "Stop at N samples a pixel [default: 64]")
-      ->type_name("N");
-  app.add_option("--error", raw.error, "Stop at this estimated relative RMSE, as in 1%")
-      ->type_name("E%");
-  app.add_flag("--adaptive", raw.adaptive, "With --error: more samples where noise is");
-  app.add_option("--time", raw.time, "Stop before this much time, as in 5s, 2m, 1h")
-      ->type_name("T");
-  app.add_option("--seed", raw.seed, "Another seed, another noise [default: 0]")->type_name("N");
-  app.add_option("--width", raw.width, "Pixels; alone it keeps the scene's aspect ratio")
-      ->type_name("W");
-  app.add_option("--height", raw.height, "Pixels; alone it keeps the scene's aspect ratio")
-      ->type_name("H");
-  app.add_option("--depth", raw.depth, "Most surfaces a path scatters at [default: the scene's]")
-      ->type_name("N");
-}
-
-void add_integrator(CLI::App& app, RawOptions& raw) {
-  app.add_option("--integrator", raw.integrator,
-                 "What is shown: path, direct, normals, depth, albedo, ambient_occlusion, "
-                 "path_lights or path_scattering "
-                 "[default: the scene's]")
-      ->type_name("I");
-}
-
-void add_display(CLI::App& app, RawOptions& raw, const char* standard) {
-  app.add_option("--exposure", raw.exposure,
-                 absl::StrCat("PNG and PPM show 2^STOPS times the light [default: ", standard, "]"))
-      ->type_name("STOPS");
-  app.add_option("--tone", raw.tone,
-                 absl::StrCat("Light above 1 in PNG and PPM: none (cut off) or filmic [default: ",
-                              standard, "]"))
-      ->type_name("T");
-  app.add_flag("--half", raw.half, "EXR files hold 16-bit numbers, not 32");
-  add_report(app, raw);
-}
-
-void add_layers(CLI::App& app, RawOptions& raw) {
-  app.add_option("--layers", raw.layers,
-                 "What EXR files hold besides, as in albedo,normal,depth,samples")
-      ->type_name("L,L,…");
-}
-
-void add_submit(CLI::App& app, RawOptions& raw) {
-  add_image(app, raw);
-  add_integrator(app, raw);
-  add_output(app, raw, kPictures, " [default: the scene's name as .png]");
-  add_display(app, raw, "the scene's");
-  add_layers(app, raw);
-  app.add_flag("--detach", raw.detach, "Do not watch; say the job's number and leave");
-  app.add_option("--priority", raw.priority,
-                 "The highest is rendered first, -1000 to 1000 [default: 0]")
-      ->type_name("N");
-  add_farm(app, raw);
-  add_verbosity(app, raw);
-}
-
-void add_watch(CLI::App& app, RawOptions& raw) {
-  app.add_option("job", raw.job, "The job's number");
-  add_output(app, raw, kPictures, "");
-  add_display(app, raw, "the scene's");
-  add_farm(app, raw);
-  add_verbosity(app, raw);
-}
 
 void add_list(CLI::App& app, RawOptions& raw) {
   add_farm(app, raw);
@@ -119,57 +36,28 @@ void add_priority(CLI::App& app, RawOptions& raw) {
   add_verbosity(app, raw);
 }
 
-void add_render(CLI::App& app, RawOptions& raw) {
-  add_image(app, raw);
-  add_integrator(app, raw);
-  add_output(app, raw, ".png, .ppm, .pfm, .hdr, .exr, or .band with --rows",
-             " [default: the scene's name as .png]");
-  add_display(app, raw, "the scene's");
-  add_layers(app, raw);
-  app.add_option("--threads", raw.threads, "Threads [default: one for each CPU]")->type_name("N");
-  app.add_option("--rows", raw.rows,
-                 "Only rows y0 to y1 - 1, from the top; parts are joined by stitch")
-      ->type_name("y0:y1");
-  add_verbosity(app, raw);
-}
-
-void add_info(CLI::App& app, RawOptions& raw) {
-  app.add_option("scene", raw.scene, "Scene file (.textproto, .json) or model file");
-  add_verbosity(app, raw, false);
-}
-
-void add_stitch(CLI::App& app, RawOptions& raw) {
-  app.add_option("parts", raw.parts, "Parts made by: bandsaw render --rows y0:y1 -o PART.band");
-  add_output(app, raw, kPictures, "");
-  add_display(app, raw, "the scene's");
-  add_verbosity(app, raw);
-}
-
-void add_compare(CLI::App& app, RawOptions& raw) {
-  app.add_option("image", raw.image, "The image that is judged (PNG, PPM, PFM, …)");
-  app.add_option("reference", raw.reference, "The image that it is judged by");
-  app.add_option("-o,--output", raw.outputs,
-                 "File for a picture of the differences (FLIP), black for none, white for the most")
-      ->allow_extra_args(false)
-      ->expected(1)
-      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  add_verbosity(app, raw, false);
+void add_completion(CLI::App& app, RawOptions& raw) {
+  app.add_option("shell", raw.shell, "Whose: " + one_of(choices_of("shell")));
 }
 
 struct Entry {
   const char* name;
   const char* what;
   void (*add)(CLI::App&, RawOptions&);
-  absl::StatusOr<Command> (*check)(const RawOptions&);
-  const char* example = nullptr;
+  absl::StatusOr<Command> (*check)(const RawOptions&);  ///< null: completion, made of this table
+  const char* example;
 };
 
 constexpr Entry kCommands[] = {
-    {"serve", "Run the coordinator of a farm on this machine", add_serve, checked_serve},
-    {"submit", "Render a scene on the farm and watch it", add_submit, checked_submit},
-    {"watch", "Watch a job again, and fetch its image", add_watch, checked_watch},
-    {"jobs", "List the farm's jobs", add_list, checked_jobs},
-    {"workers", "List the farm's workers", add_list, checked_workers},
+    {"serve", "Run the coordinator of a farm on this machine", add_serve, checked_serve,
+     "bandsaw serve --data ~/farm --web 0.0.0.0:8787    # phones reach the dashboard"},
+    {"submit", "Render a scene on the farm and watch it", add_submit, checked_submit,
+     "bandsaw submit cornell.textproto -o cornell.png --error 2%"},
+    {"watch", "Watch a job again, and fetch its image", add_watch, checked_watch,
+     "bandsaw watch 7 -o cornell.png"},
+    {"jobs", "List the farm's jobs", add_list, checked_jobs, "bandsaw jobs --json"},
+    {"workers", "List the farm's workers", add_list, checked_workers,
+     "bandsaw workers --farm farm.txt"},
     {"cancel", "End a job without an image", add_job, checked_cancel, "bandsaw cancel 7"},
     {"pause", "Render nothing more of a job until it is resumed", add_job, checked_pause,
      "bandsaw pause 7"},
@@ -189,12 +77,17 @@ constexpr Entry kCommands[] = {
     {"dismiss", "Take such workers away again", add_dismiss, checked_dismiss,
      "bandsaw dismiss anna@desk laptop"},
     {"render", "Render a scene on this machine, without a farm: the same bits", add_render,
-     checked_render},
-    {"info", "Say what is in a scene or model, and what of it is left out", add_info, checked_info},
-    {"stitch", "Join parts of an image that were rendered by rows", add_stitch, checked_stitch},
-    {"compare", "Error metrics between two images", add_compare, checked_compare},
+     checked_render, "bandsaw render helmet.glb --width 640 --samples 256 -o helmet.exr"},
+    {"info", "Say what is in a scene or model, and what of it is left out", add_info, checked_info,
+     "bandsaw info helmet.glb"},
+    {"stitch", "Join parts of an image that were rendered by rows", add_stitch, checked_stitch,
+     "bandsaw stitch top.band bottom.band -o whole.png"},
+    {"compare", "Error metrics between two images", add_compare, checked_compare,
+     "bandsaw compare mine.png reference.pfm -o differences.png"},
     {"study", "Measure speed against error, with and without each technique", add_study,
      checked_study, "bandsaw study cornell.textproto spheres.textproto -o study.svg"},
+    {"completion", "Print what lets a shell complete these words", add_completion, nullptr,
+     "source <(bandsaw completion bash)    # in ~/.bashrc"},
 };
 
 constexpr char kExitCodes[] =
@@ -227,6 +120,13 @@ absl::Status check_no_extras(const CLI::App& app, const std::string& command) {
   return unknown(command + " option", word, known, cure);
 }
 
+absl::StatusOr<Command> completion(const CLI::App& app, const RawOptions& raw) {
+  if (raw.shell != "bash") {
+    return wrong_choice("completion: the shell", "shell", raw.shell.value_or(""));
+  }
+  return ShowText{bash_completion(app)};
+}
+
 absl::StatusOr<Command> parse_with(CLI::App& app, const std::vector<CLI::App*>& commands,
                                    const RawOptions& raw,
                                    const std::vector<std::string>& arguments) {
@@ -254,15 +154,25 @@ absl::StatusOr<Command> parse_with(CLI::App& app, const std::vector<CLI::App*>& 
       if (auto status = check_no_extras(*commands[i], kCommands[i].name); !status.ok()) {
         return status;
       }
-      return kCommands[i].check(raw);
+      return kCommands[i].check != nullptr ? kCommands[i].check(raw) : completion(app, raw);
     }
   }
   return absl::InvalidArgumentError("no command; see: bandsaw --help");
 }
 
+// "help" is "--help", "help submit" is "submit --help".
+std::vector<std::string> without_help_word(std::vector<std::string> arguments) {
+  if (!arguments.empty() && arguments.front() == "help") {
+    arguments.erase(arguments.begin());
+    arguments.emplace_back("--help");
+  }
+  return arguments;
+}
+
 }  // namespace
 
-absl::StatusOr<Command> parse_command_line(const std::vector<std::string>& arguments) {
+absl::StatusOr<Command> parse_command_line(const std::vector<std::string>& typed) {
+  const std::vector<std::string> arguments = without_help_word(typed);
   CLI::App app("Renders one image on every machine of a network.", "bandsaw");
   app.set_version_flag("--version", std::string(BANDSAW_VERSION));
   app.footer(kExitCodes);
@@ -274,9 +184,7 @@ absl::StatusOr<Command> parse_command_line(const std::vector<std::string>& argum
     CLI::App* command = app.add_subcommand(entry.name, entry.what);
     entry.add(*command, raw);
     command->allow_extras();
-    command->footer(entry.example == nullptr
-                        ? kExitCodes
-                        : absl::StrCat("Example: ", entry.example, "\n", kExitCodes));
+    command->footer(absl::StrCat("Example: ", entry.example, "\n", kExitCodes));
     commands.push_back(command);
     names.emplace_back(entry.name);
   }

@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "coordinator/cli/choices.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
@@ -30,17 +31,26 @@ Image counts(const RenderSettings& settings, std::uint64_t samples) {
 
 }  // namespace
 
+std::vector<std::string> layer_names() {
+  std::vector<std::string> names;
+  for (const Kind& kind : kKinds) {
+    names.emplace_back(kind.name);
+  }
+  return names;
+}
+
 absl::StatusOr<std::vector<LayerKind>> parse_layers(const std::string& list) {
   std::vector<LayerKind> kinds;
   for (const absl::string_view name : absl::StrSplit(list, ',')) {
     const auto* found = std::find_if(std::begin(kKinds), std::end(kKinds),
                                      [&](const Kind& kind) { return kind.name == name; });
     const auto kind = static_cast<LayerKind>(found - std::begin(kKinds));
-    if (found == std::end(kKinds) || std::find(kinds.begin(), kinds.end(), kind) != kinds.end()) {
-      return absl::InvalidArgumentError(absl::StrCat(
-          "--layers: must be some of albedo, normal, depth and samples, with commas between, each "
-          "once, is '",
-          list, "'"));
+    if (found == std::end(kKinds)) {
+      return wrong_choice("--layers", std::string(name));
+    }
+    if (std::find(kinds.begin(), kinds.end(), kind) != kinds.end()) {
+      return absl::InvalidArgumentError(absl::StrCat("--layers: each once, with commas between; '",
+                                                     list, "' has ", name, " twice"));
     }
     kinds.push_back(kind);
   }

@@ -17,6 +17,9 @@ namespace bandsaw::coordinator {
 /// More samples than these make a layer no better to look at.
 inline constexpr std::uint64_t kMostLayerSamples = 64;
 
+/// "albedo", "normal", "depth", "samples".
+std::vector<std::string> layer_names();
+
 /// "albedo,normal,depth,samples": each at most once. INVALID_ARGUMENT.
 absl::StatusOr<std::vector<LayerKind>> parse_layers(const std::string& list);
 

@@ -238,5 +238,30 @@ TEST(CommandLine, OutputsHaveAKnownSuffix) {
   EXPECT_TRUE(parse("render a.textproto --rows 0:4 -o a.band").ok());
 }
 
+TEST(CommandLine, TheHelpOfEachCommandHasAnExampleOfItAndTheExitCodes) {
+  const std::string all = parsed<ShowText>("help").text;
+  for (const char* command : {"serve", "submit", "watch", "jobs", "workers", "cancel", "pause",
+                              "resume", "priority", "why", "logs", "doctor", "secret", "render",
+                              "info", "stitch", "compare", "study", "completion"}) {
+    EXPECT_THAT(all, HasSubstr(std::string("  ") + command)) << command;
+    const std::string help = parsed<ShowText>(std::string("help ") + command).text;
+    EXPECT_EQ(help, parsed<ShowText>(std::string(command) + " --help").text);
+    EXPECT_THAT(help, HasSubstr("Example: ")) << command;
+    EXPECT_THAT(help, HasSubstr(std::string("bandsaw ") + command)) << command;
+    EXPECT_THAT(help, HasSubstr("Exit status: 0 done")) << command;
+  }
+}
+
+TEST(CommandLine, TheNearestWordIsNamed) {
+  expect_wrong("rendr a.glb", "did you mean render?");
+  expect_wrong("render a.glb --sample 4", "did you mean --samples?");
+  expect_wrong("render a.glb --integrator pth", "did you mean path?");
+  expect_wrong("render a.glb --tone flimic", "must be none or filmic, is 'flimic'; did you mean");
+  expect_wrong("render a.glb -o a.exr --layers albedo,normals", "did you mean normal?");
+  expect_wrong("render a.glb -o a.exr --layers depth,depth", "depth twice");
+  expect_wrong("secret rotate wroker", "did you mean worker?");
+  expect_wrong("completion zsh", "must be bash");
+}
+
 }  // namespace
 }  // namespace bandsaw::coordinator

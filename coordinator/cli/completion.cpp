@@ -1,0 +1,112 @@
+#include "coordinator/cli/completion.h"
+
+#include <map>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "coordinator/cli/choices.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+constexpr char kBegin[] = R"(# Completion of bandsaw for bash, made by: bandsaw completion bash
+_bandsaw() {
+  local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} words=
+  COMPREPLY=()
+  if [ "$COMP_CWORD" -eq 1 ]; then
+    before=
+  fi
+  case $before in
+)";
+constexpr char kCommands[] = R"(    *)
+      case $COMP_CWORD:${COMP_WORDS[1]}:$word in
+)";
+constexpr char kEnd[] = R"(      esac ;;
+  esac
+  COMPREPLY=($(compgen -W "$words" -- "$word"))
+}
+complete -o default -F _bandsaw bandsaw
+)";
+
+// Where nothing fits, bash offers files; this says that no file is meant.
+constexpr char kNoFiles[] = "compopt +o default 2>/dev/null || true; return";
+
+std::vector<std::string> names_of(const CLI::Option& option) {
+  std::vector<std::string> names;
+  for (const std::string& name : option.get_lnames()) {
+    names.push_back("--" + name);
+  }
+  for (const std::string& name : option.get_snames()) {
+    names.push_back("-" + name);
+  }
+  return names;
+}
+
+bool takes_file(const CLI::Option& option) {
+  const std::string type = option.get_type_name();
+  return type == "TEXT" || type == "FILE" || type == "DIR";
+}
+
+/// What comes after an option that takes something, by the option's name.
+std::map<std::string, std::string> after_options(const CLI::App& app) {
+  std::map<std::string, std::string> cases;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    for (const CLI::Option* option : command->get_options()) {
+      if (option->get_positional() || option->get_items_expected_max() == 0) {
+        continue;
+      }
+      for (const std::string& name : names_of(*option)) {
+        const std::vector<std::string> words = choices_of(name);
+        cases[name] = !words.empty() ? absl::StrCat("words='", absl::StrJoin(words, " "), "'")
+                      : takes_file(*option) ? "return"
+                                            : kNoFiles;
+      }
+    }
+  }
+  return cases;
+}
+
+/// The words that an argument without a name takes.
+std::vector<std::string> arguments_of(const CLI::App& command) {
+  std::vector<std::string> words;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& word : choices_of(option->get_name(true))) {
+      words.push_back(word);
+    }
+  }
+  return words;
+}
+
+std::string when(const std::string& pattern, const std::vector<std::string>& words) {
+  return absl::StrCat("        ", pattern, ") words='", absl::StrJoin(words, " "), "' ;;\n");
+}
+
+}  // namespace
+
+std::string bash_completion(const CLI::App& app) {
+  std::string out = kBegin;
+  for (const auto& [name, deed] : after_options(app)) {
+    absl::StrAppend(&out, "    ", name, ") ", deed, " ;;\n");
+  }
+  absl::StrAppend(&out, kCommands);
+  std::vector<std::string> commands;
+  std::string of_commands;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    commands.push_back(command->get_name());
+    std::vector<std::string> options;
+    for (const CLI::Option* option : command->get_options()) {
+      const std::vector<std::string> names = names_of(*option);
+      options.insert(options.end(), names.begin(), names.end());
+    }
+    absl::StrAppend(&of_commands, when("*:" + command->get_name() + ":-*", options));
+    if (const std::vector<std::string> words = arguments_of(*command); !words.empty()) {
+      absl::StrAppend(&of_commands, when("*:" + command->get_name() + ":*", words));
+    }
+  }
+  commands.insert(commands.end(), {"--help", "--version"});
+  absl::StrAppend(&out, when("1:*", commands), of_commands, kEnd);
+  return out;
+}
+
+}  // namespace bandsaw::coordinator
