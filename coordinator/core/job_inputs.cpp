@@ -157,8 +157,8 @@ void Core::State::look_at_error(Job& job, const input::PassMerged& look) {
       samples != job.complete_samples()) {
     return;
   }
-  const bool known = look.error && std::isfinite(look.error->relative_rmse);
-  const double error = known ? look.error->relative_rmse : -1;
+  const bool known = look.error && std::isfinite(look.error->at_most());
+  const double error = known ? look.error->at_most() : -1;
   const bool reached = error >= 0 && error <= rule->relative_rmse;
   if (reached || samples >= rule->max_samples) {
     fix(job, samples);
