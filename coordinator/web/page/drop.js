@@ -2,7 +2,7 @@
 
 import {post} from "./api.js";
 import {el} from "./dom.js";
-import {attempt, say} from "./main.js";
+import {attempt, say} from "./notice.js";
 
 let quality = "samples=64";
 

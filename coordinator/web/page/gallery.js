@@ -2,7 +2,7 @@
 
 import {get, post} from "./api.js";
 import {el, isOver, keyed, percent, stateOf, text} from "./dom.js";
-import {attempt} from "./main.js";
+import {attempt} from "./notice.js";
 import {preview} from "./picture.js";
 
 /// What fills this screen, in steps, so that a phone is not asked to look at a poster.

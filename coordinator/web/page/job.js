@@ -2,7 +2,7 @@
 
 import {get, post} from "./api.js";
 import {count, duration, el, goal, isOver, percent, rate, stateOf, text} from "./dom.js";
-import {attempt} from "./main.js";
+import {attempt} from "./notice.js";
 import {picture} from "./picture.js";
 import {plot} from "./plot.js";
 

@@ -8,6 +8,7 @@ import {jobView} from "./job.js";
 import {workersView} from "./workers.js";
 import {galleryView} from "./gallery.js";
 import {takeDrops} from "./drop.js";
+import {say} from "./notice.js";
 
 const routes = [
   [/^#\/jobs$/, jobsView],
@@ -16,32 +17,9 @@ const routes = [
   [/^#\/gallery$/, galleryView],
 ];
 const root = document.getElementById("view");
-const notice = document.getElementById("notice");
 let view = null;  // {element, update(overview), leave?()}
 let timer = 0;
-let noticeTimer = 0;
-
-/// One line under the header; goes by itself unless it `stays`.
-export function say(words, {bad = false, stays = false} = {}) {
-  clearTimeout(noticeTimer);
-  notice.hidden = words === "";
-  notice.className = bad ? "bad" : "";
-  notice.textContent = words;
-  if (!stays && words !== "") noticeTimer = setTimeout(() => say(""), 8000);
-}
-
-/// Does what a person asked for and says what went wrong with it.
-export async function attempt(deed) {
-  try {
-    const result = await deed();
-    refresh();
-    return result;
-  } catch (error) {
-    if (error.login) showLogin();
-    else say(error.message, {bad: true});
-    return null;
-  }
-}
+let isLost = false;
 
 function show(next) {
   view?.leave?.();
@@ -80,19 +58,19 @@ function pulse(overview) {
 }
 
 function lost(error) {
-  notice.dataset.lost = "1";
+  isLost = true;
   say(`${error.message}; trying again`, {bad: true, stays: true});
 }
 
 /// Polls once a second while the page is looked at; that is cheap, and survives everything that cuts
 /// connections.
-export async function refresh() {
+async function refresh() {
   clearTimeout(timer);
   let wait = document.hidden ? 10000 : 1000;
   try {
     const overview = await get("/api/farm");
-    if (notice.dataset.lost) {
-      delete notice.dataset.lost;
+    if (isLost) {
+      isLost = false;
       say("");
     }
     pulse(overview);
@@ -136,6 +114,8 @@ window.addEventListener("hashchange", () => {
   refresh();
   root.focus({preventScroll: true});
 });
+window.addEventListener("deed-done", refresh);
+window.addEventListener("login-needed", showLogin);
 document.addEventListener("visibilitychange", () => { if (!document.hidden && view) refresh(); });
 takeDrops();
 enter();

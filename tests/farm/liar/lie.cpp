@@ -15,12 +15,12 @@ extern "C" {
 // A member function takes its object as its first argument (Itanium C++ ABI, section 3.2.1).
 Outcome
 put_band_as_it_is(bandsaw::worker::FarmCalls* calls, const bandsaw::worker::FinishedBand& band, const std::string& instance, const bandsaw::worker::LeaseName& lease) __asm__(
-    "__real__ZN8bandsaw6worker9FarmCalls8put_bandERKNS0_12FinishedBandERKNSt7__cxx1112basic_"
+    "__real__ZN7bandsaw6worker9FarmCalls8put_bandERKNS0_12FinishedBandERKNSt7__cxx1112basic_"
     "stringIcSt11char_traitsIcESaIcEEERKNS0_9LeaseNameE");
 
 Outcome
 lie(bandsaw::worker::FarmCalls* calls, const bandsaw::worker::FinishedBand& band, const std::string& instance, const bandsaw::worker::LeaseName& lease) __asm__(
-    "__wrap__ZN8bandsaw6worker9FarmCalls8put_bandERKNS0_12FinishedBandERKNSt7__cxx1112basic_"
+    "__wrap__ZN7bandsaw6worker9FarmCalls8put_bandERKNS0_12FinishedBandERKNSt7__cxx1112basic_"
     "stringIcSt11char_traitsIcESaIcEEERKNS0_9LeaseNameE");
 }
 
