@@ -55,11 +55,12 @@ class Simulation {
   Outcome run(const std::vector<JobSpec>& jobs) {
     coordinator_.start();
     for (const JobSpec& job : jobs) {
-      agenda_.in(chance_.between(0, 3), [this, job] { submit(job); });
+      // A machine that lies must not be alone: nobody could tell.
+      agenda_.in(chance_.between(0, 3) + (weather_.liars ? 4 : 0), [this, job] { submit(job); });
     }
     const std::size_t count = weather_.liars ? 7 : chance_.pick(1, 6);
     for (std::size_t i = 0; i < count; ++i) {
-      add_worker(chance_.between(0, 5));
+      add_worker(chance_.between(0, weather_.liars ? 3 : 5));
     }
     if (weather_.chaos) {
       stir();
@@ -127,7 +128,7 @@ class Simulation {
   }
 
   void crash_now_and_then() {
-    agenda_.in(chance_.between(2, 20), [this] {
+    agenda_.in(chance_.between(5, 20), [this] {
       if (agenda_.now() < kStorm && coordinator_.up()) {
         crash();
         crash_now_and_then();
@@ -216,7 +217,7 @@ class Simulation {
       worker->calm_down();
       if (!worker->running()) {
         worker->start();
-      } else {
+      } else if (!weather_.liars) {
         worker->cut_cable();  // one that drains comes back as one that does not
       }
     }
