@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "coordinator/core/renderer.h"
@@ -37,17 +38,32 @@ std::optional<Audit::Claim> Audit::hear(Claim claim, bool asked) {
   return std::nullopt;
 }
 
+Audit::Verdict Audit::verdict_for(const Claim& right) const {
+  const auto agrees = [&](const Claim& other) { return other.digests == right.digests; };
+  Verdict verdict{.stored_is_right = agrees(stored()), .liars = {}};
+  std::remove_copy_if(claims_.begin(), claims_.end(), std::back_inserter(verdict.liars), agrees);
+  return verdict;
+}
+
 std::optional<Audit::Verdict> Audit::verdict() const {
   for (auto one = claims_.begin(); one != claims_.end(); ++one) {
     const auto agrees = [&](const Claim& other) { return other.digests == one->digests; };
     if (std::find_if(std::next(one), claims_.end(), agrees) != claims_.end()) {
-      Verdict verdict{.stored_is_right = agrees(stored()), .liars = {}};
-      std::remove_copy_if(claims_.begin(), claims_.end(), std::back_inserter(verdict.liars),
-                          agrees);
-      return verdict;
+      return verdict_for(*one);
     }
   }
-  return std::nullopt;
+  const auto known = [](const Claim& claim) { return !claim.witness.machine.empty(); };
+  const auto here = std::find_if(claims_.begin(), claims_.end(), known);
+  const bool alone = disputed() && std::count_if(claims_.begin(), claims_.end(), known) == 1;
+  return alone && here->repeated ? std::optional(verdict_for(*here)) : std::nullopt;
+}
+
+void Audit::introduce(const Witness& witness) {
+  for (Claim& claim : claims_) {
+    if (claim.witness.renderer == witness.renderer) {
+      claim.witness.machine = witness.machine;
+    }
+  }
 }
 
 void Audit::forget(const Witness& witness) {

@@ -52,8 +52,11 @@ class Audit {
   /// One more result. `asked`: it was rendered for this. The earlier claim of a machine that
   /// contradicts itself.
   std::optional<Claim> hear(Claim claim, bool asked);
-  /// Nothing while no two machines agree.
+  /// Nothing while no two machines agree. Except: one that repeated its word is believed against
+  /// those that were not heard of in this life of the coordinator and cannot be asked.
   std::optional<Verdict> verdict() const;
+  /// A witness of whom only the renderer was known is this one.
+  void introduce(const Witness& witness);
   /// A machine whose word counts nothing any more; MUST NOT be the one whose rows are stored.
   void forget(const Witness& witness);
 
@@ -69,6 +72,8 @@ class Audit {
   std::set<std::string> unable;  ///< of these, who could not
 
  private:
+  Verdict verdict_for(const Claim& right) const;
+
   Band band_;
   std::vector<Claim> claims_;  ///< of different machines; the first is what is stored
 };

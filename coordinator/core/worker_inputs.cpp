@@ -76,6 +76,11 @@ void Core::State::welcome(Worker& worker, const input::Hello& in) {
   }
   former_.erase(worker.instance);
   forgive_losses(worker);
+  for (const JobId id : active_) {
+    for (Audit& audit : jobs_.at(id).audits) {
+      audit.introduce(witness_of(worker));
+    }
+  }
   act(action::Welcome{in.session, worker.name,
                       static_cast<std::uint32_t>(options_.heartbeat_interval_s * 1000)});
   take_up(worker, in.worker.held);

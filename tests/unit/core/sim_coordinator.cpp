@@ -231,7 +231,7 @@ void SimCoordinator::write_result(const action::WriteResult& write) {
   if (disk.stored.least(disk.spec.settings.height) < write.samples) {
     fail(absl::StrCat("the image of job ", write.job, " has a hole"));
   }
-  if (const auto row = disk.stored.wrong_row(honest_digest); row && must_be_right) {
+  if (const auto row = disk.stored.wrong_row(write.samples, honest_digest); row && must_be_right) {
     fail(absl::StrCat("row ", *row, " of the image of job ", write.job, " is wrong"));
   }
   results[write.job] = write.samples;

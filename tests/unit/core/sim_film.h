@@ -78,12 +78,12 @@ class SimFilm {
     return last;
   }
 
-  /// A row whose digest is not the one that `honest` gives for (samples, row).
+  /// A row of samples [0, end) whose digest is not the one that `honest` gives for (samples, row).
   template <class Honest>
-  std::optional<std::uint32_t> wrong_row(Honest honest) const {
+  std::optional<std::uint32_t> wrong_row(std::uint64_t end, Honest honest) const {
     for (const auto& [row, there] : rows_) {
       for (const auto& [samples, what] : there) {
-        if (what.digest != honest(samples, row)) {
+        if (samples.first < end && what.digest != honest(samples, row)) {
           return row;
         }
       }
