@@ -39,9 +39,11 @@ void bandsaw::fuzz::run(absl::Span<const std::uint8_t> in) {
       coordinator::reason_field("worker", parsed<farm::QuarantineRequest>(rest).worker())
           .IgnoreError();
       break;
-    default:
-      for (const std::string& raw : parsed<farm::MissingBlobsRequest>(rest).sha256()) {
+    default: {
+      const auto request = parsed<farm::MissingBlobsRequest>(rest);
+      for (const std::string& raw : request.sha256()) {
         coordinator::digest_field("sha256", raw).IgnoreError();
       }
+    }
   }
 }
