@@ -8,7 +8,7 @@ build=(g++ cmake ninja-build pkg-config libgrpc++-dev protobuf-compiler protobuf
   libcli11-dev libtinyexr-dev libcpp-httplib-dev)
 demo=("${build[@]}" assimp-testmodels)
 packages=("${build[@]}" dpkg-dev file fakeroot)
-test=("${demo[@]}" libgtest-dev libgmock-dev git iproute2)
+test=("${demo[@]}" libgtest-dev libgmock-dev git iproute2 curl)
 browser=("${test[@]}" chromium chromium-driver)
 
 case "${1:-}" in
