@@ -25,7 +25,11 @@ class MappedBytes : public BlobBytes {
 
 absl::StatusOr<std::unique_ptr<BlobBytes>> BlobFolder::get(const wire::Digest& digest) {
   const std::string path = path_of(digest);
-  ASSIGN_OR_RETURN(MappedFile file, MappedFile::open(path, O_NOFOLLOW));
+  absl::StatusOr<MappedFile> opened = MappedFile::open(path, O_NOFOLLOW);
+  if (absl::IsInvalidArgument(opened.status())) {
+    return absl::DataLossError(absl::StrCat(opened.status().message(), "; remove it"));
+  }
+  ASSIGN_OR_RETURN(MappedFile file, std::move(opened));
   if (wire::sha256(file.bytes()) != digest) {
     return absl::DataLossError(absl::StrCat(
         "blob ", path, " is damaged: its bytes do not have the digest that names it; remove it"));

@@ -53,7 +53,7 @@ TEST(BlobFolder, TellsMissingFromDamaged) {
               ::testing::HasSubstr(blobs.path_of(digest)));
   std::remove(blobs.path_of(digest).c_str());
   mkdir(blobs.path_of(digest).c_str(), 0700);
-  EXPECT_FALSE(blobs.get(digest).ok());
+  EXPECT_EQ(blobs.get(digest).status().code(), absl::StatusCode::kDataLoss);
 }
 
 TEST(CleanText, KeepsWhatIsText) {
