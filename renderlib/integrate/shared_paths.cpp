@@ -1,15 +1,11 @@
 #include "renderlib/integrate/shared_paths.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
 
 #include "renderlib/base/check.h"
 #include "renderlib/integrate/path_steps.h"
-#include "renderlib/material/interiors.h"
-#include "renderlib/material/opacity.h"
-#include "renderlib/scene/rest.h"
 
 namespace bandsaw {
 namespace {
@@ -76,21 +72,6 @@ void follow_own(const PathContext& context, PathState& path, std::optional<Taker
   }
 }
 
-/// Whether what is of this material hides all that is behind it, for shadow rays and for paths
-/// alike.
-bool is_opaque(const Material& material) {
-  return !has_alpha(material) && nested_glass(material) == nullptr;
-}
-
-template <class OfMaterial>
-bool all_of_shapes(const Shapes& shapes, const OfMaterial& test) {
-  const auto all = [&](const auto& kind) {
-    return std::all_of(kind.begin(), kind.end(),
-                       [&](const auto& shape) { return test(shape.material); });
-  };
-  return all(shapes.spheres) && all(shapes.quads) && all(shapes.triangles) && all(shapes.disks);
-}
-
 using Takers = std::array<std::optional<Taker>, kMostShared>;
 
 /// What a taker scatters from there by solid angle, and the solid angle of an area there; no
@@ -139,24 +120,6 @@ void deal_out(const Scene& scene, const Takers& takers, const Finding& found, st
 }
 
 }  // namespace
-
-bool shares_paths(const Scene& scene) {
-  const Background& background = scene.background();
-  const Geometry& geometry = scene.geometry();
-  if (scene.lights().empty() || background.environment || !is_black(background.bottom) ||
-      !is_black(background.top) || scene.media().fog || scene.media().has_boundaries() ||
-      moves(geometry)) {
-    return false;
-  }
-  const auto opaque = [&](MaterialId id) {
-    return id == kOwnMaterial || is_opaque(scene.material(id));
-  };
-  return all_of_shapes(geometry, opaque) &&
-         std::all_of(geometry.groups.begin(), geometry.groups.end(),
-                     [&](const Shapes& group) { return all_of_shapes(group, opaque); }) &&
-         std::all_of(geometry.instances.begin(), geometry.instances.end(),
-                     [&](const Instance& instance) { return opaque(instance.material); });
-}
 
 void shared_radiance(const Scene& scene, absl::Span<SharedPixel> pixels, std::uint64_t sample,
                      const PathOptions& options, PathCounts& counts) {

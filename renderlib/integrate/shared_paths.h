@@ -23,12 +23,6 @@ namespace bandsaw {
 /// Pixels that share at most.
 inline constexpr std::size_t kMostShared = 8;
 
-/// Whether the pixels of a scene share what their paths find: lamps give all its light, so that
-/// paths stay among its surfaces, and what is between two points hides one from the other or is not
-/// there. A property of what the scene holds: forced needs do not change it. Looks at every loose
-/// shape and instance: for once a band.
-bool shares_paths(const Scene& scene);
-
 struct SharedPixel {
   PixelSampler sampler;
   Ray camera_ray;     ///< of the sample, of unit direction
@@ -36,7 +30,7 @@ struct SharedPixel {
 };
 
 /// One sample, number `sample`, of each of up to kMostShared pixels. The scene MUST share paths
-/// (shares_paths), options.local MUST be false. Adds to `counts`.
+/// (Scene::shares_paths), options.local MUST be false. Adds to `counts`.
 /// Deterministic, allocates nothing.
 void shared_radiance(const Scene& scene, absl::Span<SharedPixel> pixels, std::uint64_t sample,
                      const PathOptions& options, PathCounts& counts);

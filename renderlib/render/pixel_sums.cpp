@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <vector>
 
 #include "renderlib/integrate/sample_value.h"
 
@@ -27,14 +26,17 @@ PixelSums::PixelSums(const Scene& scene, const RenderSettings& settings, const B
                .technique = technique_of(settings.integrator),
                .local = settings.integrator == Integrator::kDirect},
       camera_(scene.camera(), static_cast<int>(settings.width), static_cast<int>(settings.height)),
-      shares_(shares_paths(scene) && follows_light(settings.integrator) && !options_.local) {}
+      shares_(scene.shares_paths() && follows_light(settings.integrator) && !options_.local) {}
 
 void PixelSums::add_run(std::uint32_t y, std::uint32_t first, std::uint32_t last,
                         const TileMask& tiles, absl::Span<double> row, Counters& counters) const {
+  Desk desk;
+  desk.pixels.reserve(kMostShared);
+  desk.stack.resize(static_cast<std::size_t>(std::bit_width(samples_.blocks())) + 1);
   if (!shares_) {
     for (std::uint32_t x = first; x < last && !stopped(); ++x) {
       if (tiles.has(x, y)) {
-        add_group(y, {x, x + 1}, row, counters);
+        add_group(y, {x, x + 1}, row, desk, counters);
       }
     }
     return;
@@ -44,21 +46,20 @@ void PixelSums::add_run(std::uint32_t y, std::uint32_t first, std::uint32_t last
     for (const std::uint32_t half : {0u, 1u}) {
       const HalfRow group = half_row(grid, column, half, y);
       if (group.count() > 0 && tiles.has(group.first, y) && !stopped()) {
-        add_group(y, group, row, counters);
+        add_group(y, group, row, desk, counters);
       }
     }
   }
 }
 
 /// Leaves in order, two siblings added as soon as both are there.
-void PixelSums::add_group(std::uint32_t y, const HalfRow& group, absl::Span<double> row,
+void PixelSums::add_group(std::uint32_t y, const HalfRow& group, absl::Span<double> row, Desk& desk,
                           Counters& counters) const {
-  std::vector<SharedPixel> pixels;
-  pixels.reserve(kMostShared);
+  auto& [pixels, stack] = desk;
+  pixels.clear();
   for (std::uint32_t x = group.first; x < group.last; x += 2) {
     pixels.push_back({.sampler = PixelSampler(settings_.seed, x, y), .camera_ray = {}});
   }
-  std::vector<Sums> stack(static_cast<std::size_t>(std::bit_width(samples_.blocks())) + 1);
   std::size_t top = 0;
   for (std::uint64_t block = 0; block < samples_.blocks() && !stopped(); ++block) {
     stack[top++] =

@@ -3,8 +3,10 @@
 // The sums of a band's pixels, as band.h defines them: each alone, or where the scene's pixels
 // share their paths, those of half a row of a tile together.
 
+#include <array>
 #include <atomic>
 #include <cstdint>
+#include <vector>
 
 #include "absl/types/span.h"
 #include "renderlib/camera/camera.h"
@@ -41,8 +43,13 @@ class PixelSums {
     friend Sum operator+(const Sum& a, const Sum& b) { return {a.r + b.r, a.g + b.g, a.b + b.b}; }
   };
   using Sums = std::array<Sum, kMostShared>;
+  /// What a group works in: allocated once a run.
+  struct Desk {
+    std::vector<SharedPixel> pixels;
+    std::vector<Sums> stack;
+  };
 
-  void add_group(std::uint32_t y, const HalfRow& group, absl::Span<double> row,
+  void add_group(std::uint32_t y, const HalfRow& group, absl::Span<double> row, Desk& desk,
                  Counters& counters) const;
   Sums leaves(std::uint32_t y, const HalfRow& group, std::uint64_t first_sample,
               absl::Span<SharedPixel> pixels, Counters& counters) const;

@@ -6,6 +6,7 @@
 #include "renderlib/material/opacity.h"
 #include "renderlib/scene/clean.h"
 #include "renderlib/scene/rest.h"
+#include "renderlib/scene/sharing.h"
 #include "renderlib/scene/validate.h"
 
 namespace bandsaw {
@@ -38,7 +39,9 @@ absl::StatusOr<std::shared_ptr<const Scene>> Scene::build(SceneDescription descr
   scene->accel_ = std::make_unique<Accel>(Accel::build(own.geometry, pool, interval));
   scene->lights_ = Lights(own.geometry, own.materials, own.textures, own.lights, own.background,
                           interval);
-  scene->needs_ = needs_of(own, scene->lights_) | forced;
+  const Needs needs = needs_of(own, scene->lights_);
+  scene->shares_paths_ = bandsaw::shares_paths(own, scene->lights_, needs);
+  scene->needs_ = needs | forced;
   if (scene->needs_.media) {
     scene->boundary_accel_ =
         std::make_unique<Accel>(Accel::build(own.media.boundaries, pool, interval));

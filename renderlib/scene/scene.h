@@ -40,6 +40,9 @@ class Scene {
   const Texture& texture(TextureId id) const { return description_.textures[index_of(id)]; }
   const std::vector<Texture>& textures() const { return description_.textures; }
   const Needs& needs() const { return needs_; }
+  /// Whether pixels share what their paths find (sharing.h). A property of what the scene holds:
+  /// forced needs do not change it.
+  bool shares_paths() const { return shares_paths_; }
   /// Primitives that were left out because no ray can hit them.
   std::size_t dropped_primitives() const { return dropped_; }
 
@@ -50,6 +53,7 @@ class Scene {
   std::unique_ptr<Accel> boundary_accel_;
   Lights lights_;
   Needs needs_;
+  bool shares_paths_ = false;
   std::size_t dropped_ = 0;
 };
 

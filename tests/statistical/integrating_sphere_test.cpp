@@ -103,7 +103,7 @@ TEST(IntegratingSphere, OfAnyTextureIsAsBrightAsItsMeanAlbedoSays) {
 TEST(IntegratingSphere, IsAsBrightForPixelsThatShareTheirPaths) {
   const std::vector<float> values = albedos();
   const LitSphere lit = lit_sphere(values);
-  ASSERT_TRUE(shares_paths(*lit.scene));
+  ASSERT_TRUE(lit.scene->shares_paths());
   const std::array<std::pair<std::uint32_t, std::uint32_t>, kMostShared> texels = {
       {{1, 1}, {2, 1}, {1, 2}, {2, 2}, {1, 3}, {2, 3}, {5, 2}, {6, 4}}};
   std::array<Ray, kMostShared> rays;

@@ -43,7 +43,7 @@ void expect_equal_means(const Scene& scene, const std::array<Ray, kMostShared>& 
 
 TEST(SharedPaths, HaveTheMeansOfPathsAloneAcrossACornerAndABox) {
   const auto box = test::cornell_box().build();
-  ASSERT_TRUE(shares_paths(*box));
+  ASSERT_TRUE(box->shares_paths());
   expect_equal_means(*box, rays_across(40, 440, 150), {.max_depth = 4}, 0.01);
 }
 
@@ -52,7 +52,7 @@ TEST(SharedPaths, HaveThemWithFuzzyMetalAndGlassInBetween) {
   maker.sphere({120, 240, 200}, 60, maker.glass(1.5));
   maker.sphere({400, 240, 260}, 60, maker.metal(0.9f, 0.4));
   const auto box = maker.build();
-  ASSERT_TRUE(shares_paths(*box));
+  ASSERT_TRUE(box->shares_paths());
   expect_equal_means(*box, rays_across(60, 440, 240), {.max_depth = 4}, 0.03);
 }
 

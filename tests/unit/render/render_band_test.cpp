@@ -91,7 +91,7 @@ TEST(RenderBand, EveryIntegratorGivesTheSameBitsInAnyBandsAndThreads) {
 // A tile and a part of one; of the second half a row of two pixels and one of three.
 TEST(RenderBand, C5_PixelsThatShareTheirPathsHaveTheSameBitsInAnyBandsThreadsAndTiles) {
   const auto box = test::cornell_box().build();
-  ASSERT_TRUE(shares_paths(*box));
+  ASSERT_TRUE(box->shares_paths());
   RenderSettings settings = kSettings;
   settings.width = 21;
   const auto rendered = [&](const Band& band, int threads, const TileMask& tiles) {
