@@ -17,24 +17,28 @@ bool is_audited(const JobSpec& spec, const Band& band, double share) {
   return std::ldexp(static_cast<double>(hash.value() >> 11), -53) < share;
 }
 
-const Audit::Claim* Audit::claim_of(const Witness& witness) const {
+std::size_t Audit::index_of(const Witness& witness) const {
   const auto claim = std::find_if(claims_.begin(), claims_.end(),
                                   [&](const Claim& c) { return c.witness.same_machine(witness); });
-  return claim == claims_.end() ? nullptr : &*claim;
+  return static_cast<std::size_t>(claim - claims_.begin());
+}
+
+const Audit::Claim* Audit::claim_of(const Witness& witness) const {
+  const std::size_t index = index_of(witness);
+  return index == claims_.size() ? nullptr : &claims_[index];
 }
 
 std::optional<Audit::Claim> Audit::hear(Claim claim, bool asked) {
-  const auto before = std::find_if(claims_.begin(), claims_.end(), [&](const Claim& c) {
-    return c.witness.same_machine(claim.witness);
-  });
-  if (before == claims_.end()) {
+  const std::size_t index = index_of(claim.witness);
+  if (index == claims_.size()) {
     claims_.push_back(std::move(claim));
     return std::nullopt;
   }
-  if (before->digests != claim.digests) {
-    return *before;
+  Claim& before = claims_[index];
+  if (before.digests != claim.digests) {
+    return before;
   }
-  before->repeated = before->repeated || asked;
+  before.repeated = before.repeated || asked;
   return std::nullopt;
 }
 

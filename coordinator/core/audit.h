@@ -6,6 +6,7 @@
 // agree are right: two machines that are wrong differ from each other. A machine that is asked
 // again and differs from itself is wrong for certain, whoever else there is.
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <set>
@@ -73,6 +74,8 @@ class Audit {
 
  private:
   Verdict verdict_for(const Claim& right) const;
+  /// Of its claim; claims_.size(): it has said nothing.
+  std::size_t index_of(const Witness& witness) const;
 
   Band band_;
   std::vector<Claim> claims_;  ///< of different machines; the first is what is stored

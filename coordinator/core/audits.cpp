@@ -29,33 +29,29 @@ Witness Core::State::witness_of(const input::BandStored& in) const {
     return {.renderer = in.renderer, .machine = {}};
   }
   const Worker* worker = workers_.by_instance(in.instance);
-  return {.renderer = renderer_of(in.instance),
-          .machine = worker == nullptr ? std::string() : worker->said};
+  return worker == nullptr ? Witness{.renderer = renderer_of(in.instance), .machine = {}}
+                           : witness_of(*worker);
 }
 
 Witness Core::State::witness_of(const Worker& worker) {
-  return {.renderer = renderer_of(worker.instance), .machine = worker.said};
+  return {.renderer = worker.renderer, .machine = worker.said};
 }
 
 Witness Core::State::witness_of(std::uint64_t renderer) const {
-  for (const auto& [id, worker] : workers_.all()) {
-    if (Witness witness = witness_of(worker); witness.renderer == renderer) {
-      return witness;
-    }
-  }
-  return {.renderer = renderer, .machine = {}};
+  const Worker* worker = workers_.by_renderer(renderer);
+  return worker == nullptr ? Witness{.renderer = renderer, .machine = {}} : witness_of(*worker);
 }
 
-void Core::State::open_audits(Job& job, const input::BandStored& in,
+void Core::State::open_audits(Job& job, const input::BandStored& in, const Witness& witness,
                               const std::vector<RowRange>& rows) {
   if (!is_audited(job.spec, in.band, options_.audit_share)) {
     return;
   }
   for (const RowRange& range : rows) {
     const Band band{in.band.samples, range};
-    if (!job.audited.contains({band, witness_of(in).renderer}) &&
+    if (!job.audited.contains({band, witness.renderer}) &&
         job.audits.size() < Job::kAuditsKept) {
-      job.audits.emplace_back(band, Audit::Claim{witness_of(in), *digests_for(band, in)});
+      job.audits.emplace_back(band, Audit::Claim{witness, *digests_for(band, in)});
     }
   }
 }
@@ -78,7 +74,8 @@ void Core::State::open_dispute(Job& job, const Pass& pass, const input::BandStor
   }
 }
 
-void Core::State::weigh(Job& job, const Pass& pass, const input::BandStored& in) {
+void Core::State::weigh(Job& job, const Pass& pass, const input::BandStored& in,
+                        const Witness& witness) {
   open_dispute(job, pass, in);
   const Worker* worker = workers_.by_instance(in.instance);
   std::vector<LeaseId> answered;
@@ -90,7 +87,7 @@ void Core::State::weigh(Job& job, const Pass& pass, const input::BandStored& in)
     }
     const Lease* lease = leases_.find(audit.lease);
     const bool asked = lease != nullptr && worker != nullptr && lease->worker == worker->id;
-    if (const auto before = audit.hear({witness_of(in), *digests}, asked)) {
+    if (const auto before = audit.hear({witness, *digests}, asked)) {
       contradicted.emplace_back(audit.band(), *before);
     }
     if (asked) {

@@ -38,7 +38,7 @@ void Core::State::on(const input::BandStored& in) {
   }
   const Witness witness = witness_of(in);
   if (!is_quarantined(witness)) {
-    weigh(*job, *pass, in);
+    weigh(*job, *pass, in, witness);
   }
   if (is_quarantined(witness)) {
     settle(*job);
@@ -48,7 +48,7 @@ void Core::State::on(const input::BandStored& in) {
   if (worker != nullptr) {
     measure(*worker, *job, in);
   }
-  const Coverage::Change change = in.written ? store(*job, *pass, in) : Coverage::Change();
+  const Coverage::Change change = in.written ? store(*job, *pass, in, witness) : Coverage::Change();
   if (worker != nullptr) {
     end_own(*worker, in);
   }
@@ -64,7 +64,8 @@ void Core::State::on(const input::BandStored& in) {
   settle(*job);
 }
 
-Coverage::Change Core::State::store(Job& job, Pass& pass, const input::BandStored& in) {
+Coverage::Change Core::State::store(Job& job, Pass& pass, const input::BandStored& in,
+                                    const Witness& witness) {
   Coverage::Change change = pass.coverage.assign(in.band, kStored);
   job.bands_on_disk = true;
   if (change.rows.empty()) {
@@ -76,17 +77,17 @@ Coverage::Change Core::State::store(Job& job, Pass& pass, const input::BandStore
   for (const RowRange& range : change.rows) {
     samples += job.samples_of({in.band.samples, range});
   }
-  pass.credit(witness_of(in).renderer, in.band, change.rows, {samples, in.counters, in.cpu_s});
-  open_audits(job, in, change.rows);
+  pass.credit(witness.renderer, in.band, change.rows, {samples, in.counters, in.cpu_s});
+  open_audits(job, in, witness, change.rows);
   job.throughput.add(clock_.wall(), static_cast<double>(samples));
-  count_share(job, in, samples);
+  count_share(job, in, witness.renderer, samples);
   job.advance();
   touch(job);
   return change;
 }
 
-void Core::State::count_share(Job& job, const input::BandStored& in, std::uint64_t samples) {
-  const std::uint64_t renderer = witness_of(in).renderer;
+void Core::State::count_share(Job& job, const input::BandStored& in, std::uint64_t renderer,
+                              std::uint64_t samples) {
   if (renderer == 0 || (job.shares.size() >= Job::kSharesKnown && !job.shares.contains(renderer))) {
     return;
   }

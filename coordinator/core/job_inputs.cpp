@@ -1,7 +1,6 @@
 // Submitting, cancelling, deciding how many samples, finishing.
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -125,9 +124,8 @@ void Core::State::on(const input::PassMerged& in) {
   if (job == nullptr || is_final(job->state) || in.samples < job->error_at) {
     return;
   }
-  const bool known = in.error && std::isfinite(in.error->at_most());
-  if (known) {
-    job->error = in.error->at_most();
+  if (const double error = in.error_at_most(); error >= 0) {
+    job->error = error;
     job->error_at = in.samples;
     note_error(*job, in.samples, *in.error);
   }
@@ -157,8 +155,7 @@ void Core::State::look_at_error(Job& job, const input::PassMerged& look) {
       samples != job.complete_samples()) {
     return;
   }
-  const bool known = look.error && std::isfinite(look.error->at_most());
-  const double error = known ? look.error->at_most() : -1;
+  const double error = look.error_at_most();
   const bool reached = error >= 0 && error <= rule->relative_rmse;
   if (reached || samples >= rule->max_samples) {
     fix(job, samples);

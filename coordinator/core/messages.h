@@ -4,6 +4,7 @@
 // applying one is the only way the state changes) and actions (what the world must do once the
 // durable events are on disk).
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <variant>
@@ -80,6 +81,11 @@ struct PassMerged {
   std::uint64_t samples = 0;
   std::optional<ErrorEstimate> error;
   std::vector<TileError> tiles = {};  ///< of an adaptive job (Film::tile_errors)
+
+  /// The error that is not passed; below 0: not known, as where the image is black.
+  double error_at_most() const {
+    return error && std::isfinite(error->at_most()) ? error->at_most() : -1;
+  }
 };
 struct ResultWritten {
   JobId job = 0;

@@ -12,10 +12,8 @@
 namespace bandsaw::coordinator {
 
 std::string Core::State::shown_name(const Witness& witness) const {
-  for (const auto& [id, worker] : workers_.all()) {
-    if (renderer_of(worker.instance) == witness.renderer) {
-      return worker.name;
-    }
+  if (const Worker* worker = workers_.by_renderer(witness.renderer)) {
+    return worker->name;
   }
   return witness.machine.empty() ? "a worker that has left" : witness.machine;
 }
@@ -131,10 +129,7 @@ void Core::State::on(const input::Quarantine& in) {
 void Core::State::on(const input::LiftQuarantine& in) {
   std::set<std::string> names;
   for (const auto& [renderer, one] : quarantined_) {
-    const Worker* worker = nullptr;
-    for (const auto& [id, known] : workers_.all()) {
-      worker = renderer_of(known.instance) == renderer ? &known : worker;
-    }
+    const Worker* worker = workers_.by_renderer(renderer);
     if (!one.lifted &&
         (one.name == in.worker || (worker != nullptr && worker->name == in.worker))) {
       names.insert(one.name);

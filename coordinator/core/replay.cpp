@@ -144,12 +144,13 @@ void Core::State::restore(const input::BandStored& band) {
   }
   job->bands_on_disk = true;
   Pass* pass = is_final(job->state) ? nullptr : job->pass_of(band.band);
+  const Witness witness = witness_of(band);
   if (pass == nullptr || band.row_digests.size() != band.band.rows.count() ||
-      is_quarantined(witness_of(band))) {
+      is_quarantined(witness)) {
     return;
   }
-  weigh(*job, *pass, band);
-  store(*job, *pass, band);
+  weigh(*job, *pass, band, witness);
+  store(*job, *pass, band, witness);
 }
 
 Step Core::State::replayed(Time now) {

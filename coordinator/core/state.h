@@ -170,17 +170,20 @@ class Core::State {
   void measure(Worker& worker, Job& job, const input::BandStored& in);
   /// Ends the lease that this is the result of, if its worker still has it.
   void end_own(const Worker& worker, const input::BandStored& in);
-  Coverage::Change store(Job& job, Pass& pass, const input::BandStored& in);
-  void count_share(Job& job, const input::BandStored& in, std::uint64_t samples);
+  Coverage::Change store(Job& job, Pass& pass, const input::BandStored& in,
+                         const Witness& witness);
+  void count_share(Job& job, const input::BandStored& in, std::uint64_t renderer,
+                   std::uint64_t samples);
 
   // Audits.
   Witness witness_of(const input::BandStored& in) const;
   static Witness witness_of(const Worker& worker);
   Witness witness_of(std::uint64_t renderer) const;
-  void open_audits(Job& job, const input::BandStored& in, const std::vector<RowRange>& rows);
+  void open_audits(Job& job, const input::BandStored& in, const Witness& witness,
+                   const std::vector<RowRange>& rows);
   void open_dispute(Job& job, const Pass& pass, const input::BandStored& in);
   /// What a result says of rows that are there already.
-  void weigh(Job& job, const Pass& pass, const input::BandStored& in);
+  void weigh(Job& job, const Pass& pass, const input::BandStored& in, const Witness& witness);
   bool judge_one(Job& job);
   bool may_audit(const Worker& worker, const Job& job, const Audit& audit) const;
   Audit* audit_for(const Worker& worker, Job& job) const;

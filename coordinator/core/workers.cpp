@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "coordinator/core/renderer.h"
+
 namespace bandsaw::coordinator {
 
 Worker* Workers::by_id(WorkerId id) {
@@ -29,6 +31,13 @@ const Worker* Workers::by_instance(const std::string& instance) const {
   return it == by_instance_.end() ? nullptr : by_id(it->second);
 }
 
+const Worker* Workers::by_renderer(std::uint64_t renderer) const {
+  const auto it = std::find_if(all_.begin(), all_.end(), [&](const auto& entry) {
+    return entry.second.renderer == renderer;
+  });
+  return it == all_.end() ? nullptr : &it->second;
+}
+
 Worker& Workers::add(const std::string& instance, const std::string& name) {
   std::string unique = name;
   for (std::uint32_t number = 2; by_name_.contains(unique); ++number) {
@@ -37,6 +46,7 @@ Worker& Workers::add(const std::string& instance, const std::string& name) {
   Worker& worker = all_[next_];
   worker.id = next_++;
   worker.instance = instance;
+  worker.renderer = renderer_of(instance);
   worker.name = unique;
   worker.said = name;
   by_instance_[instance] = worker.id;

@@ -17,6 +17,7 @@ namespace bandsaw::coordinator {
 struct Worker {
   WorkerId id = 0;
   std::string instance;
+  std::uint64_t renderer = 0;  ///< core/renderer.h: of the instance
   std::string name;  ///< unique among those known
   std::string said;  ///< the name that it says itself: of its machine
   std::string address;
@@ -53,6 +54,8 @@ class Workers {
   Worker* by_session(SessionId session);
   Worker* by_instance(const std::string& instance);
   const Worker* by_instance(const std::string& instance) const;
+  /// Looks at all: for what is rare.
+  const Worker* by_renderer(std::uint64_t renderer) const;
 
   /// A worker that was not known, under a name that no other has.
   Worker& add(const std::string& instance, const std::string& name);

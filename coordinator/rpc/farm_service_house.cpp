@@ -7,6 +7,7 @@
 #include "coordinator/rpc/gate.h"
 #include "coordinator/rpc/services.h"
 #include "proto/wire/versions.h"
+#include "renderlib/base/status_macros.h"
 #include "renderlib/render/pixel_version.h"
 
 namespace bandsaw::coordinator {
@@ -20,12 +21,15 @@ double unix_seconds() {
 
 }  // namespace
 
+absl::StatusOr<std::string> FarmService::worker_named(const grpc::CallbackServerContext& context,
+                                                      const std::string& name) const {
+  RETURN_IF_ERROR(doors_.gate.check(context, link::Role::kFarm));
+  return reason_field("worker", name);
+}
+
 Unary* FarmService::Logs(grpc::CallbackServerContext* context, const farm::LogsRequest* request,
                          farm::LogsReply* reply) {
-  if (const auto status = doors_.gate.check(*context, link::Role::kFarm); !status.ok()) {
-    return finished(context, status);
-  }
-  const absl::StatusOr<std::string> worker = reason_field("worker", request->worker());
+  const absl::StatusOr<std::string> worker = worker_named(*context, request->worker());
   if (!worker.ok()) {
     return finished(context, worker.status());
   }
@@ -43,10 +47,7 @@ Unary* FarmService::Logs(grpc::CallbackServerContext* context, const farm::LogsR
 
 Unary* FarmService::Quarantine(grpc::CallbackServerContext* context,
                                const farm::QuarantineRequest* request, farm::QuarantineReply*) {
-  if (const auto status = doors_.gate.check(*context, link::Role::kFarm); !status.ok()) {
-    return finished(context, status);
-  }
-  const absl::StatusOr<std::string> worker = reason_field("worker", request->worker());
+  const absl::StatusOr<std::string> worker = worker_named(*context, request->worker());
   if (!worker.ok()) {
     return finished(context, worker.status());
   }

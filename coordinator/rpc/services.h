@@ -56,6 +56,10 @@ class FarmService final : public farm::Farm::CallbackService {
                                          farm::RotateSecretReply* reply) override;
 
  private:
+  /// The worker that a person names. The gate's refusal; INVALID_ARGUMENT: no name of one.
+  absl::StatusOr<std::string> worker_named(const grpc::CallbackServerContext& context,
+                                           const std::string& name) const;
+
   const Doors doors_;
 };
 
