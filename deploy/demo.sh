@@ -7,13 +7,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 folder=${1:-out/demo}
 
-build=${BANDSAW_BUILD:-}
-if [ -z "$build" ]; then
-  build=$PWD/build/release
-  deploy/install.sh demo
-  [ -f "$build/CMakeCache.txt" ] || cmake --preset release -DBANDSAW_TESTS=OFF
-  cmake --build --preset release --target bandsaw bandsaw-worker bandsaw-import
-fi
+. deploy/build.sh demo
 export PATH="$build/bin:$PATH"
 
 mkdir -p "$folder"

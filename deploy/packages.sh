@@ -10,13 +10,7 @@ try=
 mkdir -p "${1:-out/packages}"
 folder=$(cd "${1:-out/packages}" && pwd)
 
-build=${BANDSAW_BUILD:-}
-if [ -z "$build" ]; then
-  build=$PWD/build/release
-  deploy/install.sh packages
-  [ -f "$build/CMakeCache.txt" ] || cmake --preset release -DBANDSAW_TESTS=OFF
-  cmake --build --preset release --target bandsaw bandsaw-worker bandsaw-import
-fi
+. deploy/build.sh packages
 (cd "$build" && cpack -G DEB -B "$folder" >"$folder/cpack.log") || {
   cat "$folder/cpack.log" >&2
   exit 1

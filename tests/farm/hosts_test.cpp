@@ -32,6 +32,14 @@ class Cables : public testing::Test {
     })) << farm_->coordinator_log();
   }
 
+  void expect_nothing_lost_when_deaf(const std::string& from, const std::string& to) {
+    Process client = job_->submit("person");
+    job_->wait_until_stored("desk", 2);
+    hosts_->deafen(from, to);
+    job_->expect_the_same_bytes(client);
+    EXPECT_EQ(job_->rendered_again("desk"), 0);
+  }
+
   // In this order they go: what uses the machines before the machines.
   std::unique_ptr<Hosts> hosts_;
   std::unique_ptr<FarmProcesses> farm_;
@@ -49,19 +57,11 @@ TEST_F(Cables, OneIsPulledAndPutBack) {
 }
 
 TEST_F(Cables, AWorkerThatIsNotHeard) {
-  Process client = job_->submit("person");
-  job_->wait_until_stored("desk", 2);
-  hosts_->deafen("desk", "house");
-  job_->expect_the_same_bytes(client);
-  EXPECT_EQ(job_->rendered_again("desk"), 0);
+  expect_nothing_lost_when_deaf("desk", "house");
 }
 
 TEST_F(Cables, AWorkerThatDoesNotHear) {
-  Process client = job_->submit("person");
-  job_->wait_until_stored("desk", 2);
-  hosts_->deafen("house", "desk");
-  job_->expect_the_same_bytes(client);
-  EXPECT_EQ(job_->rendered_again("desk"), 0);
+  expect_nothing_lost_when_deaf("house", "desk");
 }
 
 TEST_F(Cables, TheCoordinatorsOwnIsPulled) {
