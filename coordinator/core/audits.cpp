@@ -49,8 +49,7 @@ void Core::State::open_audits(Job& job, const input::BandStored& in, const Witne
   }
   for (const RowRange& range : rows) {
     const Band band{in.band.samples, range};
-    if (!job.audited.contains({band, witness.renderer}) &&
-        job.audits.size() < Job::kAuditsKept) {
+    if (!job.audited.contains({band, witness.renderer}) && job.audits.size() < Job::kAuditsKept) {
       job.audits.emplace_back(band, Audit::Claim{witness, *digests_for(band, in)});
     }
   }

@@ -170,8 +170,7 @@ class Core::State {
   void measure(Worker& worker, Job& job, const input::BandStored& in);
   /// Ends the lease that this is the result of, if its worker still has it.
   void end_own(const Worker& worker, const input::BandStored& in);
-  Coverage::Change store(Job& job, Pass& pass, const input::BandStored& in,
-                         const Witness& witness);
+  Coverage::Change store(Job& job, Pass& pass, const input::BandStored& in, const Witness& witness);
   void count_share(Job& job, const input::BandStored& in, std::uint64_t renderer,
                    std::uint64_t samples);
 

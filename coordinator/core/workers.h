@@ -18,8 +18,8 @@ struct Worker {
   WorkerId id = 0;
   std::string instance;
   std::uint64_t renderer = 0;  ///< core/renderer.h: of the instance
-  std::string name;  ///< unique among those known
-  std::string said;  ///< the name that it says itself: of its machine
+  std::string name;            ///< unique among those known
+  std::string said;            ///< the name that it says itself: of its machine
   std::string address;
   std::string build;
   std::uint32_t threads = 1;

@@ -37,8 +37,8 @@ absl::StatusOr<std::shared_ptr<const Scene>> Scene::build(SceneDescription descr
   rest(interval, own.media.boundaries);
   prepare_surfaces(own.geometry);
   scene->accel_ = std::make_unique<Accel>(Accel::build(own.geometry, pool, interval));
-  scene->lights_ = Lights(own.geometry, own.materials, own.textures, own.lights, own.background,
-                          interval);
+  scene->lights_ =
+      Lights(own.geometry, own.materials, own.textures, own.lights, own.background, interval);
   const Needs needs = needs_of(own, scene->lights_);
   scene->shares_paths_ = bandsaw::shares_paths(own, scene->lights_, needs);
   scene->needs_ = needs | forced;

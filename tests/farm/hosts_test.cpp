@@ -56,13 +56,9 @@ TEST_F(Cables, OneIsPulledAndPutBack) {
   job_->wait_until_joined("desk", 2);
 }
 
-TEST_F(Cables, AWorkerThatIsNotHeard) {
-  expect_nothing_lost_when_deaf("desk", "house");
-}
+TEST_F(Cables, AWorkerThatIsNotHeard) { expect_nothing_lost_when_deaf("desk", "house"); }
 
-TEST_F(Cables, AWorkerThatDoesNotHear) {
-  expect_nothing_lost_when_deaf("house", "desk");
-}
+TEST_F(Cables, AWorkerThatDoesNotHear) { expect_nothing_lost_when_deaf("house", "desk"); }
 
 TEST_F(Cables, TheCoordinatorsOwnIsPulled) {
   Process client = job_->submit("person");
