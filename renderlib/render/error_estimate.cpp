@@ -7,18 +7,22 @@
 #include <numeric>
 
 #include "renderlib/base/check.h"
+#include "renderlib/render/tile_mask.h"
 
 namespace bandsaw {
 namespace {
 
 constexpr double kSmallest = 0.01;  // Keeps ratios to dark pixels from deciding all.
 
-// One image is off by a squared error T, of which its nodes tell V. Both are sums over pixels,
-// which do not depend on each other (sampling/sampler.h). Let a pixel's error be normal with
-// variance s. Its parts of T and V are independent, the first has the variance 2 s^2, the second r
-// s^2: r = 2 from two halves, about 1 with further nodes. So the variance of T - V is (2 + r) s^2,
-// where the square of the pixel's part of V is (1 + r) s^2 on average: between 4/3 and 3/2 of that.
-// Rare bright samples are in T and in V, which makes the difference smaller.
+// One image is off by a squared error T, of which its nodes tell V. Both are sums over half rows of
+// tiles, which do not depend on each other (sampling/sampler.h, integrate/shared_paths.h). Let the
+// errors within one be normal and, at worst, the same for all its pixels: s its variance. Its parts
+// of T and V are independent, the first has the variance 2 s^2, the second r s^2: r = 2 from two
+// halves, about 1 with further nodes. So the variance of T - V is (2 + r) s^2, where the square of
+// its part of V is (1 + r) s^2 on average: between 4/3 and 3/2 of that. Where its pixels have
+// nothing in common the margin is too wide, by the root of 10 / 3 at most: little in an image of
+// many pixels, and one bright pixel of eight is most of its half row's square either way. Rare
+// bright samples are in T and in V, which makes the difference smaller.
 constexpr double kOfSquares = 1.5;
 // Of 1.64 standard deviations a normal T - V is below 19 times of 20. The rest is for looking more
 // than once, and for few pixels, whose sums are skew (tests/unit/cli/stop_at_error_test.cpp).
@@ -65,22 +69,32 @@ double share_of_worst(std::vector<float> variances) {
 
 }  // namespace
 
-void ErrorSums::add_row(absl::Span<const NodeSums> nodes) {
+void ErrorSums::add_row(absl::Span<const NodeSums> nodes, std::size_t step) {
   BANDSAW_CHECK(nodes.size() >= 2 && nodes[0].samples == nodes[1].samples,
                 "the error is told from halves");
-  for (std::size_t k = 0; k < nodes[0].sums.size(); k += 3) {
-    double variances[3];
-    double means[3];
-    for (std::size_t c = 0; c < 3; ++c) {
-      const Estimated channel = of_channel(nodes, k + c);
-      variances[c] = channel.variance;
-      means[c] = channel.mean;
+  const std::size_t pixels = nodes[0].sums.size() / 3;
+  const std::size_t together =
+      step * kTileSide / 2;  // So many pixels in a row are `step` half rows.
+  for (std::size_t first = 0; first < pixels; first += together) {
+    for (std::size_t half = first; half < std::min(first + step, pixels); ++half) {
+      double of_half_row = 0;
+      for (std::size_t x = half; x < std::min(first + together, pixels); x += step) {
+        double variances[3];
+        double means[3];
+        for (std::size_t c = 0; c < 3; ++c) {
+          const Estimated channel = of_channel(nodes, 3 * x + c);
+          variances[c] = channel.variance;
+          means[c] = channel.mean;
+        }
+        of_half_row += add_pixel(variances, means);
+      }
+      squares_ += of_half_row;
+      squared_variances_ += of_half_row * of_half_row;
     }
-    add_pixel(variances, means);
   }
 }
 
-void ErrorSums::add_pixel(const double (&variances)[3], const double (&means)[3]) {
+double ErrorSums::add_pixel(const double (&variances)[3], const double (&means)[3]) {
   double of_pixel = 0;
   double value = 0;
   for (int c = 0; c < 3; ++c) {
@@ -88,13 +102,12 @@ void ErrorSums::add_pixel(const double (&variances)[3], const double (&means)[3]
     of_pixel += variances[c];
     value += means[c];
   }
-  squares_ += of_pixel;
-  squared_variances_ += of_pixel * of_pixel;
   sum_ += value;
   // One sample of 1e30 is worth more than a float holds, and infinity would make the shares NaN.
   constexpr double kMost = std::numeric_limits<float>::max();
   variances_.push_back(static_cast<float>(std::clamp(of_pixel / 3, 0.0, kMost)));
   means_.push_back(static_cast<float>(value / 3));
+  return of_pixel;
 }
 
 ErrorEstimate ErrorSums::estimate() const {

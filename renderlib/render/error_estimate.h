@@ -26,7 +26,7 @@ struct ErrorEstimate {
   double mean = 0;           ///< of the image
   double rmse = 0;           ///< sqrt(mean variance)
   double relative_rmse = 0;  ///< rmse / mean; 0 where the image is black
-  double margin = 0;         ///< at_most() over relative_rmse, >= 0
+  double margin = 0;         ///< what at_most() adds to relative_rmse, >= 0
   double relative_mse = 0;   ///< mean(variance / (value^2 + 0.01))
   /// Of the pixels' errors, each over its value plus a hundredth of the mean: what half, 95 and 99
   /// of a hundred pixels stay below.
@@ -58,16 +58,20 @@ class ErrorSums {
   /// A row whose first two nodes have equally many samples; all rows have equally many pixels. With
   /// a and b their means and v = (a - b)^2 / 4 the variance of both together, the variance of a
   /// further node of mean e is taken as (e - (a + b) / 2)^2 - v, which is right on average.
-  void add_row(absl::Span<const NodeSums> nodes);
+  /// Pixels of one half row of a tile (render/tile_mask.h) may have found their light together, as
+  /// no others may; the margin allows for it. `step`: 2 for rows of an image, where the pixels of
+  /// two half rows take turns, 1 for a half row.
+  void add_row(absl::Span<const NodeSums> nodes, std::size_t step);
 
   /// At least one row MUST have been added.
   ErrorEstimate estimate() const;
 
  private:
-  void add_pixel(const double (&variances)[3], const double (&means)[3]);
+  /// Returns the pixel's variance, summed over its channels.
+  double add_pixel(const double (&variances)[3], const double (&means)[3]);
 
-  double squares_ = 0;            ///< each pixel's variance, summed over its channels
-  double squared_variances_ = 0;  ///< the square of that of each pixel
+  double squares_ = 0;            ///< the variances of all pixels
+  double squared_variances_ = 0;  ///< the square of that of each half row
   double relative_squares_ = 0;
   double sum_ = 0;
   std::vector<float> variances_;  ///< mean over the channels, >= 0

@@ -193,7 +193,7 @@ std::optional<ErrorEstimate> Film::error() const {
     known = known && has_halves(nodes);
     if (known) {
       rows_->node_sums(strip, nodes, of_strip);
-      sums.add_row(of_strip);
+      sums.add_row(of_strip, rows_->strips.half_tiles() ? 1 : 2);
     }
   });
   return known ? std::optional(sums.estimate()) : std::nullopt;
@@ -208,7 +208,7 @@ std::vector<TileError> Film::tile_errors() const {
     known = known && has_halves(nodes);
     if (known) {
       rows_->node_sums(strip, nodes, of_strip);
-      sums[rows_->strips.half_tile(y, i)].add_row(of_strip);
+      sums[rows_->strips.half_tile(y, i)].add_row(of_strip, 1);
       errors[rows_->strips.half_tile(y, i)].pixels += strip.count;
     }
   });

@@ -176,7 +176,7 @@ ErrorEstimate estimate_of(const std::vector<double>& a, const std::vector<double
                           std::uint64_t samples) {
   ErrorSums sums;
   const NodeSums nodes[] = {{samples, a}, {samples, b}};
-  sums.add_row(nodes);
+  sums.add_row(nodes, 2);
   return sums.estimate();
 }
 

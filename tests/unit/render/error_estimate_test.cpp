@@ -17,10 +17,10 @@ struct Row {
     first.insert(first.end(), 3, 16 * (value + error));
     second.insert(second.end(), 3, 16 * (value - error));
   }
-  ErrorEstimate estimate() const {
+  ErrorEstimate estimate(std::size_t step = 2) const {
     ErrorSums sums;
     const NodeSums nodes[] = {{16, first}, {16, second}};
-    sums.add_row(nodes);
+    sums.add_row(nodes, step);
     return sums.estimate();
   }
 };
@@ -36,17 +36,34 @@ TEST(ErrorEstimate, IsHalfTheDifferenceOfTheHalves) {
   EXPECT_NEAR(error.relative_mse, 0.01 / 4.01, 1e-12);
 }
 
+double square_at_most(const ErrorEstimate& error) {
+  const double over = error.at_most() / error.relative_rmse;
+  return over * over;
+}
+
 // Two deviations of a sum of n equal squares: sqrt(1.5 n) of one of them.
-TEST(ErrorEstimate, TheMarginIsWiderTheFewerPixelsDecide) {
-  for (const int pixels : {24, 2400}) {
-    Row row;
-    for (int i = 0; i < 2400; ++i) {
-      row.add(1, i < pixels ? 0.1 : 0);
+TEST(ErrorEstimate, TheMarginIsWiderTheFewerHalfRowsDecide) {
+  for (const std::size_t decide : {3, 150}) {
+    Row one_pixel;  // Of each of so many half rows,
+    Row all;        // or all eight, which may have the same error.
+    for (std::size_t x = 0; x < 2400; ++x) {
+      const bool noisy = x / 16 < decide && x % 2 == 0;
+      one_pixel.add(1, noisy && x % 16 == 4 ? 0.1 : 0);
+      all.add(1, noisy ? 0.1 : 0);
     }
-    const ErrorEstimate error = row.estimate();
-    const double over = error.at_most() / error.relative_rmse;
-    EXPECT_NEAR(over * over, 1 + 2 * std::sqrt(1.5 / pixels), 1e-9) << pixels;
+    const double expected = 1 + 2 * std::sqrt(1.5 / static_cast<double>(decide));
+    EXPECT_NEAR(square_at_most(one_pixel.estimate()), expected, 1e-9) << decide;
+    EXPECT_NEAR(square_at_most(all.estimate()), expected, 1e-9) << decide;
   }
+}
+
+TEST(ErrorEstimate, AHalfRowByItselfIsEightPixels) {
+  Row row;
+  for (int x = 0; x < 80; ++x) {
+    row.add(1, 0.1);
+  }
+  EXPECT_NEAR(square_at_most(row.estimate(1)), 1 + 2 * std::sqrt(1.5 / 10), 1e-9);
+  EXPECT_NEAR(square_at_most(row.estimate(2)), 1 + 2 * std::sqrt(1.5 / 10), 1e-9);
 }
 
 TEST(ErrorEstimate, APixelThatDecidesAllMakesItDoubtful) {
@@ -92,7 +109,7 @@ TEST(ErrorEstimate, FurtherNodesCount) {
     const std::vector<double> c(3, 16 * mean);
     ErrorSums sums;
     const NodeSums nodes[] = {{16, a}, {16, b}, {16, c}};
-    sums.add_row(nodes);
+    sums.add_row(nodes, 2);
     return sums.estimate().rmse;
   };
   EXPECT_NEAR(with(1.1), std::sqrt((4 * 0.01 + (0.01 - 0.01)) / 9), 1e-12);
