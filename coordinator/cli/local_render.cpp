@@ -66,8 +66,15 @@ absl::StatusOr<Film> render_whole(const LocalJob& job, const StopRule& stop) {
 absl::StatusOr<std::vector<BandPixels>> render_part(const LocalJob& job, const RowRange& rows,
                                                     std::uint64_t samples) {
   std::vector<BandPixels> bands;
+  std::vector<SampleRange> nodes = maximal_nodes(samples);
+  if (nodes.front().blocks() > 1) {
+    // The error of the whole is told from its halves, as render has them.
+    const Halves halves = split(nodes.front());
+    nodes.front() = halves.right;
+    nodes.insert(nodes.begin(), halves.left);
+  }
   std::uint64_t done = 0;
-  for (const SampleRange& node : maximal_nodes(samples)) {
+  for (const SampleRange& node : nodes) {
     RETURN_IF_ERROR(render_pass(job, node, rows, {}, done, [&](BandPixels pixels) {
       bands.push_back(std::move(pixels));
       return absl::OkStatus();

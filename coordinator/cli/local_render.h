@@ -28,8 +28,8 @@ struct LocalJob {
 /// memory.
 absl::StatusOr<Film> render_whole(const LocalJob& job, const StopRule& stop);
 
-/// Samples [0, samples) of some rows: one band for each maximal node of the samples and as many
-/// rows as a band may hold.
+/// Samples [0, samples) of some rows: one band for each maximal node of the samples, of the first
+/// one for each half, and as many rows as a band may hold.
 absl::StatusOr<std::vector<BandPixels>> render_part(const LocalJob& job, const RowRange& rows,
                                                     std::uint64_t samples);
 

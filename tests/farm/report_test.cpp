@@ -135,7 +135,7 @@ TEST(ReportOfParts, IsThatOfTheWholeAsFarAsThePartsSay) {
       {BANDSAW_BIN, "stitch", path("top.band"), path("bottom.band"), "-o", path("stitched.pfm")}));
   const Struct whole = report(path("whole.json"));
   const Struct stitched = report(path("stitched.json"));
-  for (const char* same : {"settings", "work", "hashes", "health"}) {
+  for (const char* same : {"settings", "error", "work", "hashes", "health"}) {
     EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(section(whole, same),
                                                                    section(stitched, same)))
         << same;
