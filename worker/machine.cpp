@@ -6,28 +6,11 @@
 #endif
 
 #include <cstdlib>
-#include <fstream>
 
-#include "absl/strings/ascii.h"
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "renderlib/base/cpu_name.h"
 
 namespace bandsaw::worker {
-namespace {
-
-std::string cpu_name() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);) {
-    if (const std::size_t colon = line.find(':');
-        absl::StartsWith(line, "model name") && colon != std::string::npos) {
-      return std::string(absl::StripAsciiWhitespace(line.substr(colon + 1)));
-    }
-  }
-  return "unknown CPU";
-}
-
-}  // namespace
-
 std::string host_name() {
   char name[65] = {};
   return gethostname(name, sizeof(name) - 1) == 0 && name[0] != '\0' ? name : "worker";

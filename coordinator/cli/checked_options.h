@@ -19,9 +19,10 @@ struct RawOptions {
   std::vector<std::string> outputs, parts, scenes, hosts;
   std::optional<std::string> samples, error, time, seed, width, height, depth, threads, rows;
   std::optional<std::string> integrator, exposure, tone, layers, report, seeds, reference_samples;
+  std::optional<std::string> runs, tev;
   std::optional<std::string> web, shell, audit;
   bool lift = false, adaptive = false, half = false, insecure = false, detach = false,
-       quiet = false, json = false;
+       quiet = false, json = false, preview = false, phone = false;
 };
 
 absl::StatusOr<Command> checked_serve(const RawOptions& raw);

@@ -9,4 +9,8 @@ std::string program_folder() {
   return std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
 }
 
+std::string gallery_folder() {
+  return std::filesystem::path(program_folder()).parent_path() / "share/bandsaw/gallery";
+}
+
 }  // namespace bandsaw::coordinator

@@ -10,4 +10,7 @@ namespace bandsaw::coordinator {
 /// bandsaw-worker, and the gallery in ../share.
 std::string program_folder();
 
+/// Of the scenes that come with it, installed or in a build folder: bin beside share.
+std::string gallery_folder();
+
 }  // namespace bandsaw::coordinator

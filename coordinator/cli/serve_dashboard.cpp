@@ -26,11 +26,6 @@ std::string host_of(const std::string& address) {
   return host.front() == '[' && host.back() == ']' ? host.substr(1, host.size() - 2) : host;
 }
 
-/// Installed, and in a build folder: bin beside share.
-std::string gallery_folder() {
-  return std::filesystem::path(program_folder()).parent_path() / "share/bandsaw/gallery";
-}
-
 absl::StatusOr<std::unique_ptr<Dashboard>> start(const ServeOptions& options, Engine& engine,
                                                  const link::Identity& identity,
                                                  const WorkerProgram& worker) {

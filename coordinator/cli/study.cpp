@@ -2,19 +2,17 @@
 
 #include <algorithm>
 #include <atomic>
-#include <span>
 #include <thread>
 #include <utility>
 
-#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/commands.h"
 #include "coordinator/cli/image_settings.h"
 #include "coordinator/cli/import_scene_file.h"
 #include "coordinator/cli/output.h"
 #include "coordinator/cli/study_measure.h"
+#include "coordinator/cli/study_outputs.h"
 #include "coordinator/cli/study_text.h"
-#include "renderlib/base/atomic_file.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
@@ -63,20 +61,12 @@ absl::StatusOr<std::vector<StudyOfScene>> studied(const StudyOptions& options,
   return out;
 }
 
-absl::Status write(const std::vector<StudyOfScene>& studies, const std::string& output) {
-  const std::string text =
-      absl::EndsWithIgnoreCase(output, ".svg") ? svg_of(study_plot(studies)) : study_csv(studies);
-  return write_file_atomically(output, std::as_bytes(std::span(text)));
-}
-
 }  // namespace
 
 ExitCode run(const StudyOptions& options, Process& process) {
   const Console& console = process.console;
-  for (const std::string& output : options.outputs) {
-    if (const auto status = check_can_be_written(output); !status.ok()) {
-      return console.fail(ExitCode::kWrong, std::string(status.message()));
-    }
+  if (const auto status = check_study_writable(options.outputs); !status.ok()) {
+    return console.fail(ExitCode::kWrong, std::string(status.message()));
   }
   auto scenes = prepare(options, process);
   if (!scenes.ok()) {
@@ -90,10 +80,10 @@ ExitCode run(const StudyOptions& options, Process& process) {
                ? console.fail(ExitCode::kInterrupted, "interrupted; nothing was written")
                : console.fail(ExitCode::kFailed, std::string(studies.status().message()));
   }
-  for (const std::string& output : options.outputs) {
-    if (const absl::Status written = write(*studies, output); !written.ok()) {
-      return console.fail(ExitCode::kFailed, std::string(written.message()));
-    }
+  if (const absl::Status written =
+          write_study(options.outputs, study_csv(*studies), study_plot(*studies));
+      !written.ok()) {
+    return console.fail(ExitCode::kFailed, std::string(written.message()));
   }
   console.write(absl::StrCat(options.verbosity.quiet ? "" : "\n", study_table(*studies)));
   console.line(absl::StrCat("\n", names_of(options.outputs)));

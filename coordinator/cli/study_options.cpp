@@ -2,9 +2,9 @@
 
 #include <limits>
 
-#include "absl/strings/match.h"
-#include "absl/strings/str_cat.h"
+#include "coordinator/cli/house_options.h"
 #include "coordinator/cli/quantities.h"
+#include "coordinator/cli/study_outputs.h"
 #include "proto/wire/limits.h"
 #include "renderlib/base/status_macros.h"
 
@@ -13,14 +13,41 @@ namespace {
 
 constexpr std::uint64_t kMostSamples = 65'536;
 constexpr std::uint64_t kMostSeeds = 1'000;
+constexpr std::uint64_t kMostRuns = 10'000;
+
+absl::StatusOr<Command> checked_phone_study(const RawOptions& raw) {
+  if (raw.samples || raw.seeds || raw.seed || raw.reference_samples) {
+    return absl::InvalidArgumentError(
+        "study --phone: samples and seeds are the phone study's; it takes --runs, --width and "
+        "--threads");
+  }
+  PhoneStudyOptions options;
+  options.images = raw.scenes;
+  if (!raw.outputs.empty()) {
+    options.outputs = raw.outputs;
+  }
+  RETURN_IF_ERROR(check_study_outputs(options.outputs));
+  options.farm.farm = raw.farm;
+  options.verbosity.quiet = raw.quiet;
+  RETURN_IF_ERROR(read_whole("--runs", raw.runs, 1, kMostRuns, options.runs));
+  RETURN_IF_ERROR(read_whole("--width", raw.width, 1, kMaxSide, options.width));
+  RETURN_IF_ERROR(
+      read_whole("--threads", raw.threads, 1, wire::kThreadsPerWorker, options.threads));
+  return options;
+}
 
 }  // namespace
 
 void add_study(CLI::App& app, RawOptions& raw) {
-  app.add_option("scenes", raw.scenes, "Scene files (.textproto, .json) or model files");
+  app.add_option("scenes", raw.scenes,
+                 "Scene files (.textproto, .json) or model files; with --phone: how the names of "
+                 "its images begin, as in objects [default: all]");
+  app.add_flag("--phone", raw.phone,
+               "Instead: time the 23 images of a study of ray tracing on phones (gallery/study) on "
+               "one thread, on all, and on the farm if there is one");
   app.add_option("-o,--output", raw.outputs,
                  "File for the figures (.csv) or the plot (.svg); may be repeated "
-                 "[default: study.csv and study.svg]")
+                 "[default: study.csv and study.svg; phone.csv and phone.svg]")
       ->allow_extra_args(false)
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -33,13 +60,24 @@ void add_study(CLI::App& app, RawOptions& raw) {
                  "Samples of the image that is compared with [default: 16 times --samples]")
       ->type_name("N");
   app.add_option("--seed", raw.seed, "The first seed [default: 0]")->type_name("N");
-  app.add_option("--width", raw.width, "Pixels; the height keeps the aspect ratio [default: 96]")
+  app.add_option(
+         "--width", raw.width,
+         "Pixels; the height keeps the aspect ratio [default: 96; with --phone the study's]")
       ->type_name("W");
   app.add_option("--threads", raw.threads, "Threads [default: one for each CPU]")->type_name("N");
+  app.add_option("--runs", raw.runs, "With --phone: how often each image is timed [default: 10]")
+      ->type_name("N");
+  add_farm(app, raw);
   app.add_flag("--quiet", raw.quiet, "Say only the table and errors");
 }
 
 absl::StatusOr<Command> checked_study(const RawOptions& raw) {
+  if (raw.phone) {
+    return checked_phone_study(raw);
+  }
+  if (raw.runs || !raw.farm.empty()) {
+    return absl::InvalidArgumentError("study: --runs and --farm are for --phone");
+  }
   StudyOptions options;
   options.scenes = raw.scenes;
   if (options.scenes.empty()) {
@@ -49,12 +87,7 @@ absl::StatusOr<Command> checked_study(const RawOptions& raw) {
   if (!raw.outputs.empty()) {
     options.outputs = raw.outputs;
   }
-  for (const std::string& output : options.outputs) {
-    if (!absl::EndsWithIgnoreCase(output, ".csv") && !absl::EndsWithIgnoreCase(output, ".svg")) {
-      return absl::InvalidArgumentError(
-          absl::StrCat("-o: a study's files end in .csv or .svg, is '", output, "'"));
-    }
-  }
+  RETURN_IF_ERROR(check_study_outputs(options.outputs));
   options.verbosity.quiet = raw.quiet;
   RETURN_IF_ERROR(read_whole("--samples", raw.samples, 4, kMostSamples, options.samples));
   RETURN_IF_ERROR(read_whole("--seeds", raw.seeds, 1, kMostSeeds, options.seeds));

@@ -21,31 +21,6 @@
 namespace bandsaw::coordinator {
 namespace {
 
-farm::SubmitRequest request_for(const SubmitOptions& options, const ImportedPackage& package,
-                                const RenderSettings& settings) {
-  farm::SubmitRequest request;
-  request.set_request_id(link::random_hex(16));
-  request.set_name(package.info().name);
-  request.set_priority(options.priority);
-  request.set_manifest_sha256(wire::sha256(package.manifest()).raw());
-  *request.mutable_settings() = to_proto(settings);
-  *request.mutable_stop() = to_proto(options.image.stop);
-  return request;
-}
-
-// A blob may be dropped by the farm between its upload and the job that needs it: then all is sent
-// once more.
-absl::StatusOr<JobId> send(FarmClient& client, ImportedPackage& package,
-                           const farm::SubmitRequest& request, ProgressDisplay& display) {
-  RETURN_IF_ERROR(upload(client, package, display));
-  auto job = client.submit(request);
-  if (absl::IsFailedPrecondition(job.status())) {
-    RETURN_IF_ERROR(upload(client, package, display));
-    job = client.submit(request);
-  }
-  return job;
-}
-
 absl::StatusOr<JobId> send_image(FarmClient& client, ImportedPackage& package,
                                  const farm::SubmitRequest& request, Verbosity verbosity,
                                  Process& process) {
@@ -113,7 +88,8 @@ ExitCode run(const SubmitOptions& options, Process& process) {
   if (!settings.ok()) {
     return console.fail(ExitCode::kWrong, std::string(settings.status().message()));
   }
-  const farm::SubmitRequest request = request_for(options, *package, *settings);
+  farm::SubmitRequest request = request_for(*package, *settings, options.image.stop);
+  request.set_priority(options.priority);
   const auto job = send_image(**client, *package, request, options.verbosity, process);
   if (!job.ok()) {
     return console.fail(exit_code_of(job.status()), std::string(job.status().message()));

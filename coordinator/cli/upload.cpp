@@ -5,6 +5,7 @@
 #include <span>
 
 #include "coordinator/engine/clock.h"
+#include "proto/link/random.h"
 #include "proto/wire/digest.h"
 #include "renderlib/base/status_macros.h"
 
@@ -54,6 +55,30 @@ absl::Status upload(FarmClient& client, ImportedPackage& package, ProgressDispla
                                     [&](std::uint64_t sent) { meter.sent(sent); }));
   }
   return absl::OkStatus();
+}
+
+farm::SubmitRequest request_for(const ImportedPackage& package, const RenderSettings& settings,
+                                const StopRule& stop) {
+  farm::SubmitRequest request;
+  request.set_request_id(link::random_hex(16));
+  request.set_name(package.info().name);
+  request.set_manifest_sha256(wire::sha256(package.manifest()).raw());
+  *request.mutable_settings() = to_proto(settings);
+  *request.mutable_stop() = to_proto(stop);
+  return request;
+}
+
+// A blob may be dropped by the farm between its upload and the job that needs it: then all is sent
+// once more.
+absl::StatusOr<JobId> send(FarmClient& client, ImportedPackage& package,
+                           const farm::SubmitRequest& request, ProgressDisplay& display) {
+  RETURN_IF_ERROR(upload(client, package, display));
+  auto job = client.submit(request);
+  if (absl::IsFailedPrecondition(job.status())) {
+    RETURN_IF_ERROR(upload(client, package, display));
+    job = client.submit(request);
+  }
+  return job;
 }
 
 }  // namespace bandsaw::coordinator
