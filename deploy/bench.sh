@@ -2,7 +2,7 @@
 # What Bandsaw costs and gains on this machine: its kernel beside Embree's, error against time, growth with what a scene has.
 # Usage: deploy/bench.sh [--quick] [FOLDER]    (default out/bench; about 20 minutes on two cores after the build, --quick: two)
 # In the folder: bench.md (all tables), kernel.txt, study.csv, study.svg, growth.json, growth_*.svg.
-# Embree's columns are there where libembree-dev is installed. BANDSAW_BUILD=DIR: the build to use; otherwise build/release, made here.
+# Embree's columns are there where libembree-dev is installed, Cycles' lines where blender is. BANDSAW_BUILD=DIR: the build to use; otherwise build/release, made here.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 quick=
@@ -37,6 +37,8 @@ section() { printf '\n## %s\n\n' "$1"; }
   section 'Growth'
   "$build/tests/growth_bench" $quick "$folder"
   if [ -z "$quick" ]; then
+    section 'Beside Cycles'
+    tests/bench/peers.sh "$build/bin/bandsaw"
     section 'What each need costs a scene that has it not'
     "$build/tests/needs_bench" "$gallery/cornell.textproto" "$gallery/spheres.textproto" "$gallery/mesh.textproto"
   fi

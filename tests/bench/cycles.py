@@ -1,0 +1,222 @@
+"""Renders a scene of Bandsaw with Cycles, for peers.sh.
+
+blender -b --python cycles.py -- SCENE.textproto WIDTH HEIGHT SAMPLES SEED OUTPUT.exr
+Prints "cpu_s=…": the CPU seconds of all samples but one, so without what comes before rendering.
+
+Knows perspective cameras with a lens, quads, spheres (as meshes; Cycles has none), models in PLY files
+as they lie in them, diffuse, emissive, metal and dielectric materials of one colour, constant and
+gradient backgrounds. Anything else ends it with an error.
+"""
+
+import math
+import os
+import re
+import resource
+import sys
+
+import bpy
+from mathutils import Matrix, Vector
+
+
+def parse(text):
+    """A message in protobuf's text format: {field: [values]}."""
+    text = re.sub(r"#.*", "", text)
+    tokens = iter(re.findall(r'"[^"]*"|[{}\[\]:,]|[^\s{}\[\]:,"]+', text) + ["}"])
+
+    def value(token):
+        if token == "{":
+            return message()
+        if token == "[":
+            return [float(t) for t in iter(lambda: next(tokens), "]") if t != ","]
+        if token.startswith('"'):
+            return token[1:-1]
+        try:
+            return float(token)
+        except ValueError:
+            return token == "true"
+
+    def message():
+        fields = {}
+        for name in iter(lambda: next(tokens), "}"):
+            token = next(tokens)
+            fields.setdefault(name, []).append(value(next(tokens) if token == ":" else token))
+        return fields
+
+    return message()
+
+
+def only(message, *known):
+    unknown = set(message) - set(known)
+    if unknown:
+        sys.exit(f"cycles.py: does not know {', '.join(sorted(unknown))}")
+
+
+def colour(message):
+    return (*message["rgb"][0], 1)
+
+
+def make_material(message):
+    (name,) = message.pop("name")
+    ((kind, (fields,)),) = message.items()
+    material = bpy.data.materials.new(name)
+    material.use_nodes = True
+    tree = material.node_tree
+    tree.nodes.clear()
+    output = tree.nodes.new("ShaderNodeOutputMaterial")
+    nodes = {"diffuse": "BsdfDiffuse", "metal": "BsdfGlossy", "dielectric": "BsdfGlass", "emissive": "Emission"}
+    node = tree.nodes.new("ShaderNode" + nodes[kind])
+    if kind == "dielectric":
+        only(fields, "index_of_refraction")
+        node.inputs["IOR"].default_value = fields["index_of_refraction"][0]
+        node.inputs["Roughness"].default_value = 0
+    elif kind == "emissive":
+        only(fields, "radiance", "one_sided")
+        node.inputs["Color"].default_value = colour(fields["radiance"][0])
+        if fields.get("one_sided", [False])[0]:
+            back = tree.nodes.new("ShaderNodeNewGeometry").outputs["Backfacing"]
+            front = tree.nodes.new("ShaderNodeMath")
+            front.operation = "SUBTRACT"
+            front.inputs[0].default_value = 1
+            tree.links.new(back, front.inputs[1])
+            tree.links.new(front.outputs[0], node.inputs["Strength"])
+    else:
+        only(fields, "color", "fuzz")
+        node.inputs["Color"].default_value = colour(fields["color"][0])
+        node.inputs["Roughness"].default_value = fields.get("fuzz", [0])[0]
+    tree.links.new(node.outputs[0], output.inputs["Surface"])
+    return material
+
+
+def add_object(mesh, material):
+    thing = bpy.data.objects.new("thing", mesh)
+    bpy.context.scene.collection.objects.link(thing)
+    if not mesh.materials:
+        mesh.materials.append(None)
+    thing.material_slots[0].link = "OBJECT"
+    thing.material_slots[0].material = material
+    return thing
+
+
+def sphere_mesh(segments):
+    bpy.ops.mesh.primitive_uv_sphere_add(segments=segments, ring_count=segments // 2, radius=1)
+    thing = bpy.context.object
+    bpy.ops.object.shade_smooth()
+    mesh = thing.data
+    bpy.data.objects.remove(thing)
+    return mesh
+
+
+def add_shapes(scene, materials, folder):
+    spheres = {}
+    for shape in scene.get("shape", []):
+        only(shape, "quad", "sphere", "material")
+        material = materials[shape["material"][0]]
+        if "quad" in shape:
+            corner, u, v = (Vector(shape["quad"][0][k][0]) for k in ("corner", "u", "v"))
+            mesh = bpy.data.meshes.new("quad")
+            mesh.from_pydata([corner, corner + u, corner + u + v, corner + v], [], [(0, 1, 2, 3)])
+            add_object(mesh, material)
+            continue
+        radius = shape["sphere"][0]["radius"][0]
+        segments = 1024 if radius > 50 else 64
+        if segments not in spheres:
+            spheres[segments] = sphere_mesh(segments)
+        thing = add_object(spheres[segments], material)
+        thing.location = shape["sphere"][0]["center"][0]
+        thing.scale = (radius,) * 3
+    for model in scene.get("model", []):
+        only(model, "file", "material")
+        bpy.ops.import_mesh.ply(filepath=os.path.join(folder, model["file"][0]))
+        thing = bpy.context.object
+        thing.matrix_world = Matrix()
+        thing.data.materials.append(materials[model["material"][0]])
+
+
+def set_camera(fields):
+    only(fields, "position", "look_at", "vertical_fov", "aperture", "focus_distance")
+    camera = bpy.data.objects.new("camera", bpy.data.cameras.new("camera"))
+    bpy.context.scene.collection.objects.link(camera)
+    bpy.context.scene.camera = camera
+    position, target = Vector(fields["position"][0]), Vector(fields["look_at"][0])
+    back = (position - target).normalized()
+    right = Vector((0, 1, 0)).cross(back).normalized()
+    turned = Matrix((right, back.cross(right), back)).transposed().to_4x4()
+    camera.matrix_world = Matrix.Translation(position) @ turned
+    camera.data.sensor_fit = "VERTICAL"
+    camera.data.angle = math.radians(fields["vertical_fov"][0])
+    camera.data.clip_start, camera.data.clip_end = 1e-3, 1e5
+    if "aperture" in fields:
+        camera.data.dof.use_dof = True
+        camera.data.dof.focus_distance = fields["focus_distance"][0]
+        camera.data.dof.aperture_fstop = camera.data.lens * 1e-3 / fields["aperture"][0]
+
+
+def set_background(fields):
+    world = bpy.context.scene.world = bpy.data.worlds.new("world")
+    world.use_nodes = True
+    tree = world.node_tree
+    background = tree.nodes["Background"]
+    only(fields, "constant", "gradient")
+    if "gradient" not in fields:
+        background.inputs["Color"].default_value = colour(fields["constant"][0]) if fields else (0, 0, 0, 1)
+        return
+    height = tree.nodes.new("ShaderNodeSeparateXYZ")
+    tree.links.new(tree.nodes.new("ShaderNodeTexCoord").outputs["Generated"], height.inputs[0])
+    share = tree.nodes.new("ShaderNodeMapRange")
+    share.inputs["From Min"].default_value = -1
+    tree.links.new(height.outputs["Y"], share.inputs["Value"])
+    mix = tree.nodes.new("ShaderNodeMixRGB")
+    mix.inputs[1].default_value = colour(fields["gradient"][0]["bottom"][0])
+    mix.inputs[2].default_value = colour(fields["gradient"][0]["top"][0])
+    tree.links.new(share.outputs[0], mix.inputs[0])
+    tree.links.new(mix.outputs[0], background.inputs["Color"])
+
+
+def set_quality(width, height, seed):
+    scene = bpy.context.scene
+    scene.render.engine = "CYCLES"
+    scene.render.resolution_x, scene.render.resolution_y = width, height
+    scene.render.resolution_percentage = 100
+    scene.render.threads_mode = "AUTO"
+    scene.render.image_settings.file_format = "OPEN_EXR"
+    scene.render.image_settings.color_depth = "32"
+    cycles = scene.cycles
+    cycles.device = "CPU"
+    cycles.seed = seed
+    cycles.use_adaptive_sampling = cycles.use_denoising = False
+    cycles.pixel_filter_type = "BOX"
+    cycles.light_sampling_threshold = 0
+    cycles.blur_glossy = 0
+    cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
+    for kind in ("max", "diffuse", "glossy", "transmission", "transparent_max"):
+        setattr(cycles, kind + "_bounces", 50)
+
+
+def rendered(samples):
+    """CPU seconds."""
+    bpy.context.scene.cycles.samples = samples
+    bpy.context.scene.update_tag()
+    before = resource.getrusage(resource.RUSAGE_SELF)
+    bpy.ops.render.render(write_still=True)
+    after = resource.getrusage(resource.RUSAGE_SELF)
+    return after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
+
+
+def main():
+    path, width, height, samples, seed, output = sys.argv[sys.argv.index("--") + 1 :]
+    with open(path) as file:
+        scene = parse(file.read())
+    only(scene, "camera", "image", "integrator", "background", "material", "shape", "model")
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    set_quality(int(width), int(height), int(seed))
+    set_camera(scene["camera"][0])
+    set_background(scene.get("background", [{}])[0])
+    materials = {m["name"][0]: make_material(m) for m in scene["material"]}
+    add_shapes(scene, materials, os.path.dirname(path))
+    bpy.context.scene.render.filepath = os.path.abspath(output)
+    rendered(1)  # Loads what is loaded once.
+    first = rendered(1)
+    print(f"cpu_s={rendered(int(samples)) - first:.3f}")
+
+
+main()
