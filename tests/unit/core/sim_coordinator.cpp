@@ -1,5 +1,6 @@
 #include "sim_coordinator.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -58,6 +59,11 @@ void SimCoordinator::start() {
   tick();
 }
 
+void SimCoordinator::on_film(std::function<void()> what) {
+  film_at_ = std::max(film_at_, agenda_.now() + chance_.between(0, 0.2));
+  after(film_at_ - agenda_.now(), std::move(what));
+}
+
 void SimCoordinator::crash() {
   if (tear_steps && !committing_.empty()) {
     const std::vector<Record>& records = committing_.front().step.records;
@@ -67,6 +73,7 @@ void SimCoordinator::crash() {
   committing_.clear();
   links_.clear();
   films_.clear();
+  film_at_ = 0;
   core_.reset();
 }
 
@@ -166,18 +173,19 @@ void SimCoordinator::note(const Record& record) {
 
 void SimCoordinator::perform(const Action& action, const std::optional<input::BandStored>& band) {
   if (const auto* add = std::get_if<action::AddToFilm>(&action)) {
-    after(chance_.between(0, 0.2),
-          [this, a = *add, band = *band] { add_to_film(a.job, band, a.rows); });
+    on_film([this, a = *add, band = *band] { add_to_film(a.job, band, a.rows); });
   } else if (const auto* retract = std::get_if<action::Retract>(&action)) {
-    Filming& filming = films_[retract->job];
-    filming.film.retract(retract->renderer);
-    filming.pass_ends.merge(filming.told);
-    after(0, [this, job = retract->job] { tell_passes(job); });
+    on_film([this, r = *retract] {
+      Filming& filming = films_[r.job];
+      filming.film.retract(r.renderer);
+      filming.pass_ends.merge(filming.told);
+      tell_passes(r.job);
+    });
   } else if (const auto* write = std::get_if<action::WriteResult>(&action)) {
     after(chance_.between(0.3, 1), [this, w = *write] { write_result(w); });
   } else if (const auto* drop = std::get_if<action::DropBands>(&action)) {
     disk_[drop->job].bands.clear();
-    films_.erase(drop->job);
+    on_film([this, job = drop->job] { films_.erase(job); });
   } else {
     std::visit(
         [&](const auto& a) {

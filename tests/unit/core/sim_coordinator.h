@@ -81,6 +81,8 @@ class SimCoordinator {
   void check_lease(const action::Lease& lease, const std::set<LeaseId>& held);
   void take_stored(const input::BandStored& band, std::function<void()> then);
   void after(double seconds, std::function<void()> what);
+  /// One thread does what the film is told, late but in order.
+  void on_film(std::function<void()> what);
   void write_band(input::BandStored band, std::function<void(PutOutcome)> reply);
   void add_to_film(JobId job, const input::BandStored& band, const std::vector<RowRange>& rows);
   void tell_passes(JobId job);
@@ -96,6 +98,7 @@ class SimCoordinator {
   std::map<SessionId, ToWorker> links_;
   std::deque<Committing> committing_;
   std::map<JobId, Filming> films_;
+  double film_at_ = 0;  ///< when the film has done what it was told
   double disk_full_until_ = 0;
   std::set<LeaseId> held_;                 ///< named in the Hello being said
   std::optional<input::BandStored> band_;  ///< that the core is being told of

@@ -32,7 +32,8 @@ struct Weather {
   bool crashes = true;
   bool lies = false;
   /// So many of seven machines lie in one row of five, all bands are audited, and the coordinator
-  /// crashes now and then.
+  /// crashes now and then. Two that are right are there before the first job: of one machine that
+  /// is alone nobody can tell.
   std::optional<std::size_t> liars = std::nullopt;
   bool failures = true;
   bool cancels = true;
@@ -55,12 +56,11 @@ class Simulation {
   Outcome run(const std::vector<JobSpec>& jobs) {
     coordinator_.start();
     for (const JobSpec& job : jobs) {
-      // A machine that lies must not be alone: nobody could tell.
-      agenda_.in(chance_.between(0, 3) + (weather_.liars ? 4 : 0), [this, job] { submit(job); });
+      agenda_.in(chance_.between(weather_.liars ? 1 : 0, 3), [this, job] { submit(job); });
     }
     const std::size_t count = weather_.liars ? 7 : chance_.pick(1, 6);
     for (std::size_t i = 0; i < count; ++i) {
-      add_worker(chance_.between(0, weather_.liars ? 3 : 5));
+      add_worker(weather_.liars && i + 2 >= count ? 0 : chance_.between(0, 5));
     }
     if (weather_.chaos) {
       stir();
@@ -108,8 +108,7 @@ class Simulation {
 
   void add_worker(double delay) {
     Nature nature;
-    // Among those that lie nobody is so slow that it gives up a band that another was given.
-    nature.samples_per_s = chance_.between_log(weather_.liars ? 8'000 : 500, 30'000);
+    nature.samples_per_s = chance_.between_log(500, 30'000);
     nature.threads = static_cast<std::uint32_t>(chance_.pick(1, 8));
     nature.max_bands = static_cast<std::uint32_t>(chance_.pick(1, 4));
     nature.fails = weather_.failures && chance_.happens(0.2) ? 0.02 : 0;
@@ -129,7 +128,7 @@ class Simulation {
   }
 
   void crash_now_and_then() {
-    agenda_.in(chance_.between(5, 20), [this] {
+    agenda_.in(chance_.between(2, 20), [this] {
       if (agenda_.now() < kStorm && coordinator_.up()) {
         crash();
         crash_now_and_then();
@@ -218,7 +217,7 @@ class Simulation {
       worker->calm_down();
       if (!worker->running()) {
         worker->start();
-      } else if (!weather_.liars) {
+      } else {
         worker->cut_cable();  // one that drains comes back as one that does not
       }
     }
@@ -343,7 +342,8 @@ TEST(Simulation, AnAuditedImageIsRightThoughMachinesLie) {
   for_seeds(40'001, 300, [&](std::uint64_t seed) {
     const std::size_t liars = seed % 3;
     const Outcome one =
-        Simulation(seed, {.chaos = false, .liars = liars, .failures = false, .cancels = false})
+        Simulation(seed,
+                   {.chaos = seed % 2 == 1, .liars = liars, .failures = false, .cancels = false})
             .run(random_jobs(seed));
     EXPECT_EQ(one.broken, "") << "again with BANDSAW_SEED=" << seed;
     for (const std::string& name : one.quarantined) {
