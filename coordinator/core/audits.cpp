@@ -75,6 +75,9 @@ void Core::State::open_dispute(Job& job, const Pass& pass, const input::BandStor
 
 void Core::State::weigh(Job& job, const Pass& pass, const input::BandStored& in,
                         const Witness& witness) {
+  if (job.image_asked) {
+    return;  // what is in the image stays there: nothing is left to decide
+  }
   open_dispute(job, pass, in);
   const Worker* worker = workers_.by_instance(in.instance);
   std::vector<LeaseId> answered;

@@ -1,5 +1,7 @@
 // Durable facts: new ones, and those of earlier lives.
 
+#include <utility>
+
 #include "coordinator/core/pass_plan.h"
 #include "coordinator/core/state.h"
 
@@ -149,14 +151,28 @@ void Core::State::restore(const input::BandStored& band) {
       is_quarantined(witness)) {
     return;
   }
-  weigh(*job, *pass, band, witness);
+  const bool alone = pass->coverage.wanted(band.band) == std::vector<RowRange>{band.band.rows};
   store(*job, *pass, band, witness);
+  if (!alone) {
+    met_.push_back(band);
+  }
+}
+
+/// Not while bands are replayed: the film takes all of them first, then what is retracted.
+void Core::State::weigh_replayed() {
+  for (const input::BandStored& band : std::exchange(met_, {})) {
+    Job& job = jobs_.at(band.job);
+    if (const Witness witness = witness_of(band); !is_quarantined(witness)) {
+      weigh(job, *job.pass_of(band.band), band, witness);
+    }
+  }
 }
 
 Step Core::State::replayed(Time now) {
   clock_.advance(now);
   former_ = joined_;
   awaited_until_ = clock_.patience() + options_.reattach_grace_s;
+  weigh_replayed();
   for (auto& [id, job] : jobs_) {
     if (is_final(job.state)) {
       if (job.bands_on_disk) {

@@ -183,6 +183,7 @@ class Core::State {
   void open_dispute(Job& job, const Pass& pass, const input::BandStored& in);
   /// What a result says of rows that are there already.
   void weigh(Job& job, const Pass& pass, const input::BandStored& in, const Witness& witness);
+  void weigh_replayed();
   bool judge_one(Job& job);
   bool may_audit(const Worker& worker, const Job& job, const Audit& audit) const;
   Audit* audit_for(const Worker& worker, Job& job) const;
@@ -274,7 +275,8 @@ class Core::State {
   /// By renderer: what one rendered is void for ever, its name is barred until it is lifted.
   std::map<std::uint64_t, Quarantined> quarantined_;
 
-  std::set<std::string> joined_;  ///< instances, as journalled
+  std::vector<input::BandStored> met_;  ///< being replayed, with rows that were there already
+  std::set<std::string> joined_;        ///< instances, as journalled
   std::set<std::string> former_;  ///< of those, who were there before the restart and are awaited
   Time awaited_until_ = 0;        ///< patience clock
 };

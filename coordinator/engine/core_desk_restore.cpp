@@ -46,7 +46,7 @@ absl::Status CoreDesk::restore_job(JobId id, const Known& known, StoreDesk& stor
                                    .renderer = record.renderer,
                                    .counters = pixels.counters,
                                    .cpu_s = record.cpu_s});
-    // A band whose other rows had other pixels is refused now as it was then.
+    // A band of a machine that is kept away is refused.
     if (const auto left = core_.wanted(id, band); left && left->empty()) {
       PutBand put;
       put.renderer = record.renderer;

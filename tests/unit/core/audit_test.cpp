@@ -266,6 +266,24 @@ TEST(Audit, WhatWasAuditedOfALiarIsAuditedAgainOfTheNext) {
   EXPECT_EQ(farm.all_records<record::BandAudited>().size(), audits.size() + 2) << "both rows";
 }
 
+TEST(Audit, NothingIsDecidedAnyMoreOfAnImageThatWasAskedFor) {
+  AuditFarm farm(test_options());
+  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.hello(1, "a", 1);
+  farm.hello(2, "b", 1);
+  const action::Lease lease = farm.all<action::Lease>()[0];
+  farm.result(lease, lease.session == 1 ? "a" : "b");
+  ASSERT_EQ(farm.job(1).state, JobState::kFinishing);
+  farm.say(input::Quarantine{"worker-a"});
+  farm.say(input::Quarantine{"worker-b"});
+  farm.hello(3, "c", 1);
+  farm.result(lease, "c", 5);  // late, and different
+  farm.say(input::StorageFailed{1, "the disk is full"});
+  farm.say(input::StorageBack{});
+  farm.say(input::ResultWritten{1});
+  EXPECT_EQ(farm.job(1).state, JobState::kDone);
+}
+
 TEST(Quarantine, AnErrorMeasuredWithWrongPixelsIsForgotten) {
   AuditFarm farm;
   farm.submit(test_job("r1", StopAtError{.relative_rmse = 0.01}, 8, 1));

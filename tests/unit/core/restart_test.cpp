@@ -313,5 +313,38 @@ TEST(Reconnect, AFinishedBandIsBetterThanOneThatAnotherHasBegun) {
   EXPECT_EQ(farm.job(1).state, JobState::kFinishing);
 }
 
+/// A band on disk, of another renderer than those with other numbers.
+input::BandStored on_disk(const RowRange& rows, std::uint64_t renderer, std::uint64_t lie = 0) {
+  input::BandStored band;
+  band.job = 1;
+  band.band = {{0, 16}, rows};
+  band.row_digests = honest_digests(band.band);
+  for (std::uint64_t& digest : band.row_digests) {
+    digest += lie;
+  }
+  band.renderer = renderer;
+  return band;
+}
+
+TEST(Restart, AMachineFoundWrongOnDiskIsRetractedAfterAllBandsAreReplayed) {
+  FarmDriver farm(slow());
+  farm.submit(test_job("r1", StopAtSamples{16}));
+  FarmDriver next;
+  for (const Record& record : farm.records) {
+    next.core.replay(record);
+  }
+  // Two others say what the first is contradicted by; each has a row that nobody else has.
+  next.core.replay(on_disk({0, 2}, 1, 99));
+  next.core.replay(on_disk({0, 3}, 2));
+  next.core.replay(on_disk({0, 4}, 3));
+  EXPECT_TRUE(next.core.wanted(1, {{0, 16}, {0, 4}})->empty())
+      << "the film has the first one's rows and cannot take another's yet";
+  next.take(next.core.replayed(next.now));
+  const auto retracted = next.all<action::Retract>();
+  ASSERT_EQ(retracted.size(), 1u);
+  EXPECT_EQ(retracted[0].renderer, 1u);
+  EXPECT_EQ(next.core.wanted(1, {{0, 16}, {0, 4}}), (std::vector<RowRange>{{0, 2}}));
+}
+
 }  // namespace
 }  // namespace bandsaw::coordinator

@@ -208,10 +208,8 @@ class Simulation {
     for (JobId job = 1; job <= 3; ++job) {
       resume(job);  // a pause may have been journalled and its answer lost
     }
-    if (!weather_.liars && coordinator_.up()) {
-      for (const std::string& name : coordinator_.quarantined) {
-        coordinator_.input(input::LiftQuarantine{name});  // its memory was changed
-      }
+    if (!weather_.liars) {
+      lift_quarantines();
     }
     for (const auto& worker : workers_) {
       worker->calm_down();
@@ -221,6 +219,16 @@ class Simulation {
         worker->cut_cable();  // one that drains comes back as one that does not
       }
     }
+  }
+
+  /// Their memory was changed; more may be found wrong by what they rendered before.
+  void lift_quarantines() {
+    if (coordinator_.up()) {
+      for (const std::string& name : coordinator_.quarantined) {
+        coordinator_.input(input::LiftQuarantine{name});
+      }
+    }
+    agenda_.in(20, [this] { lift_quarantines(); });
   }
 
   Outcome outcome(std::size_t jobs) {
