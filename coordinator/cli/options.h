@@ -214,6 +214,7 @@ struct StudyOptions {
   std::uint64_t seed = 0;          ///< the first
   std::uint32_t width = 96;        ///< pixels; the height keeps the scene's aspect ratio
   int threads = 0;                 ///< 0: one for each CPU
+  bool every_object = false;       ///< also without trees
   Verbosity verbosity;
 };
 

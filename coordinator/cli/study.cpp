@@ -31,6 +31,12 @@ absl::StatusOr<std::vector<Prepared>> prepare(const StudyOptions& options, Proce
     ASSIGN_OR_RETURN(ImportedPackage package, import_scene_file(scene, options.verbosity, process));
     ASSIGN_OR_RETURN(SceneDescription description,
                      decode_package(package.manifest(), package.blobs()));
+    if (options.every_object && objects_of(description) > kMostObjects) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("--every-object: ", scene, " has ", objects_of(description),
+                       " objects, each to be tested against every ray; at most ", kMostObjects,
+                       ": leave the option out, or choose a smaller scene"));
+    }
     ImageOptions image;
     image.seed = options.seed;
     image.width = options.width;
@@ -48,14 +54,19 @@ absl::StatusOr<std::vector<StudyOfScene>> studied(const StudyOptions& options,
   const StudyPlan plan{options.samples, options.seeds, options.reference};
   std::vector<StudyOfScene> out;
   for (Prepared& prepared : scenes) {
+    std::shared_ptr<const Scene> every_object;
+    if (options.every_object) {
+      ASSIGN_OR_RETURN(every_object, Scene::build(prepared.scene, pool, {}, Tested::kEverything));
+    }
     ASSIGN_OR_RETURN(const std::shared_ptr<const Scene> scene,
                      Scene::build(std::move(prepared.scene), pool));
-    ASSIGN_OR_RETURN(StudyOfScene study, study_scene(prepared.name, *scene, prepared.settings, plan,
-                                                     pool, stop, [&](const std::string& what) {
-                                                       if (!options.verbosity.quiet) {
-                                                         process.console.line(what);
-                                                       }
-                                                     }));
+    const auto doing = [&](const std::string& what) {
+      if (!options.verbosity.quiet) {
+        process.console.line(what);
+      }
+    };
+    ASSIGN_OR_RETURN(StudyOfScene study, study_scene(prepared.name, *scene, every_object.get(),
+                                                     prepared.settings, plan, pool, stop, doing));
     out.push_back(std::move(study));
   }
   return out;

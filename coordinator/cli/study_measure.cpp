@@ -12,6 +12,7 @@
 #include "coordinator/core/power_fit.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/compare/error_metrics.h"
+#include "renderlib/geometry/placement.h"
 #include "renderlib/render/render_image.h"
 
 namespace bandsaw::coordinator {
@@ -90,7 +91,7 @@ class Study {
     return error ? error->relative_rmse : 0;
   }
 
-  absl::StatusOr<StudyLine> line(Method method) {
+  absl::StatusOr<StudyLine> line(Method method, const Scene& scene) {
     StudyLine line{method, {}};
     if (method == Method::kPixelStops) {
       return pixel_stops();
@@ -98,7 +99,7 @@ class Study {
     for (const std::uint64_t samples : study_samples(plan_.samples)) {
       Seeds seeds(reference_, mean_);
       for (std::uint64_t seed = 0; seed < plan_.seeds; ++seed) {
-        RETURN_IF_ERROR(add_image(method, samples, settings_.seed + seed, seeds));
+        RETURN_IF_ERROR(add_image(method, scene, samples, settings_.seed + seed, seeds));
       }
       line.points.push_back(seeds.point());
     }
@@ -106,14 +107,15 @@ class Study {
   }
 
  private:
-  absl::Status add_image(Method method, std::uint64_t samples, std::uint64_t seed, Seeds& seeds) {
+  absl::Status add_image(Method method, const Scene& scene, std::uint64_t samples,
+                         std::uint64_t seed, Seeds& seeds) {
     RenderSettings settings = settings_;
     settings.seed = seed;
     settings.integrator = integrator_of(method, settings.integrator);
     const double start = process_cpu_seconds();
     const auto n = static_cast<double>(samples);
     if (method == Method::kIndependent) {
-      IndependentSamples independent(scene_, settings, pool_, stop_);
+      IndependentSamples independent(scene, settings, pool_, stop_);
       for (std::uint64_t i = 0; i < samples; ++i) {
         RETURN_IF_ERROR(independent.next().status());
       }
@@ -122,12 +124,12 @@ class Study {
     }
     if (method == Method::kAdaptive) {
       ASSIGN_OR_RETURN(const AdaptiveImage adaptive,
-                       render_adaptively(scene_, settings, samples, pool_, stop_));
+                       render_adaptively(scene, settings, samples, pool_, stop_));
       seeds.add(adaptive.image, adaptive.samples, process_cpu_seconds() - start, adaptive.rays);
       return absl::OkStatus();
     }
     ASSIGN_OR_RETURN(const RenderedImage rendered,
-                     render_image(scene_, settings, samples, pool_, stop_, {}, ""));
+                     render_image(scene, settings, samples, pool_, stop_, {}, ""));
     seeds.add(rendered.film.snapshot().image, n, process_cpu_seconds() - start,
               static_cast<double>(rendered.counters.rays));
     return absl::OkStatus();
@@ -181,8 +183,23 @@ const char* method_name(Method method) {
       return "independent numbers";
     case Method::kPixelStops:
       return "pixels stop themselves";
+    case Method::kEveryObject:
+      return "every object tested (no tree)";
   }
   return "";
+}
+
+std::uint64_t objects_of(const SceneDescription& scene) {
+  std::uint64_t count = 0;
+  for (const Geometry* geometry : {&scene.geometry, &scene.media.boundaries}) {
+    count += geometry->size();
+    for (const Instance& instance : geometry->instances) {
+      const Shapes* group = group_of(*geometry, instance);
+      count += group != nullptr ? group->size()
+                                : geometry->meshes[index_of(instance.mesh)].triangles.size();
+    }
+  }
+  return count;
 }
 
 std::vector<std::uint64_t> study_samples(std::uint64_t most) {
@@ -195,8 +212,9 @@ std::vector<std::uint64_t> study_samples(std::uint64_t most) {
 }
 
 absl::StatusOr<StudyOfScene> study_scene(const std::string& name, const Scene& scene,
-                                         const RenderSettings& settings, const StudyPlan& plan,
-                                         Pool& pool, const std::atomic<bool>& stop,
+                                         const Scene* every_object, const RenderSettings& settings,
+                                         const StudyPlan& plan, Pool& pool,
+                                         const std::atomic<bool>& stop,
                                          const std::function<void(const std::string&)>& doing) {
   Study study(scene, settings, plan, pool, stop);
   doing(absl::StrCat(name, " · reference, ", plan.reference, " samples"));
@@ -204,7 +222,12 @@ absl::StatusOr<StudyOfScene> study_scene(const std::string& name, const Scene& s
   ASSIGN_OR_RETURN(out.reference_error, study.make_reference());
   for (const Method method : kMethods) {
     doing(absl::StrCat(name, " · ", method_name(method)));
-    ASSIGN_OR_RETURN(StudyLine line, study.line(method));
+    ASSIGN_OR_RETURN(StudyLine line, study.line(method, scene));
+    out.lines.push_back(std::move(line));
+  }
+  if (every_object != nullptr) {
+    doing(absl::StrCat(name, " · ", method_name(Method::kEveryObject)));
+    ASSIGN_OR_RETURN(StudyLine line, study.line(Method::kEveryObject, *every_object));
     out.lines.push_back(std::move(line));
   }
   return out;

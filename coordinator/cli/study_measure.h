@@ -18,7 +18,7 @@
 
 namespace bandsaw::coordinator {
 
-/// How the image is made. All but the last have the same mean.
+/// How the image is made. All but kPixelStops have the same mean.
 enum class Method {
   kFull,         ///< as render does it
   kNoMis,        ///< lights are found by asking them alone, where there is a density
@@ -30,6 +30,8 @@ enum class Method {
   /// biased, since the samples decide themselves how many they are, and it is here to show by how
   /// much.
   kPixelStops,
+  /// As kFull, to the bit; each ray is tested against every object of the scene. Where asked for.
+  kEveryObject,
 };
 inline constexpr Method kMethods[] = {Method::kFull,     Method::kNoMis,       Method::kNoLights,
                                       Method::kAdaptive, Method::kIndependent, Method::kPixelStops};
@@ -63,14 +65,22 @@ struct StudyPlan {
   std::uint64_t reference = 1024;  ///< samples of the reference
 };
 
+/// Each ray is tested against at most so many objects, or a study takes too long.
+inline constexpr std::uint64_t kMostObjects = 2'000;
+
+/// Spheres, quads, triangles and disks as often as they are placed, boundaries of media too: what a
+/// ray meets without a tree.
+std::uint64_t objects_of(const SceneDescription& scene);
+
 /// 1, 4, 16, …: powers of four up to `most`, which is the last.
 std::vector<std::uint64_t> study_samples(std::uint64_t most);
 
 /// Errors: as render_image; CANCELLED. `settings.seed` is the first of the seeds. `doing` hears
-/// what comes next.
+/// what comes next. `every_object`: the same scene, built to test everything (Tested); may be null.
 absl::StatusOr<StudyOfScene> study_scene(const std::string& name, const Scene& scene,
-                                         const RenderSettings& settings, const StudyPlan& plan,
-                                         Pool& pool, const std::atomic<bool>& stop,
+                                         const Scene* every_object, const RenderSettings& settings,
+                                         const StudyPlan& plan, Pool& pool,
+                                         const std::atomic<bool>& stop,
                                          const std::function<void(const std::string&)>& doing);
 
 /// p of "error ~ samples^p" over the line's points; nothing with less than two.

@@ -16,7 +16,7 @@ constexpr std::uint64_t kMostSeeds = 1'000;
 constexpr std::uint64_t kMostRuns = 10'000;
 
 absl::StatusOr<Command> checked_phone_study(const RawOptions& raw) {
-  if (raw.samples || raw.seeds || raw.seed || raw.reference_samples) {
+  if (raw.samples || raw.seeds || raw.seed || raw.reference_samples || raw.every_object) {
     return absl::InvalidArgumentError(
         "study --phone: samples and seeds are the phone study's; it takes --runs, --width and "
         "--threads");
@@ -68,6 +68,8 @@ void add_study(CLI::App& app, RawOptions& raw) {
   app.add_option("--runs", raw.runs, "With --phone: how often each image is timed [default: 10]")
       ->type_name("N");
   add_farm(app, raw);
+  app.add_flag("--every-object", raw.every_object,
+               "Also test each ray against every object; small scenes only");
   app.add_flag("--quiet", raw.quiet, "Say only the table and errors");
 }
 
@@ -88,6 +90,7 @@ absl::StatusOr<Command> checked_study(const RawOptions& raw) {
     options.outputs = raw.outputs;
   }
   RETURN_IF_ERROR(check_study_outputs(options.outputs));
+  options.every_object = raw.every_object;
   options.verbosity.quiet = raw.quiet;
   RETURN_IF_ERROR(read_whole("--samples", raw.samples, 4, kMostSamples, options.samples));
   RETURN_IF_ERROR(read_whole("--seeds", raw.seeds, 1, kMostSeeds, options.seeds));

@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "renderlib/accel/open_boxes.h"
 #include "renderlib/accel/query.h"
 #include "renderlib/accel/top_tree.h"
 #include "renderlib/accel/trace.h"
@@ -53,6 +54,17 @@ struct Accel::Trees {
     return trace(top, *geometry, ray, query) ||
            (!moving.tree.empty && trace_moving(moving, *geometry, ray, query));
   }
+
+  void open_boxes() {
+    for (MeshTree& mesh : prototypes.meshes) {
+      bandsaw::open_boxes(mesh.tree);
+    }
+    for (ShapesTree& group : prototypes.groups) {
+      bandsaw::open_boxes(group.tree);
+    }
+    bandsaw::open_boxes(top.tree);
+    bandsaw::open_boxes(moving);
+  }
 };
 
 Accel::Accel(std::unique_ptr<Trees> trees) : trees_(std::move(trees)) {}
@@ -60,7 +72,7 @@ Accel::Accel(Accel&&) noexcept = default;
 Accel& Accel::operator=(Accel&&) noexcept = default;
 Accel::~Accel() = default;
 
-Accel Accel::build(const Geometry& geometry, Pool& pool, const Interval& interval) {
+Accel Accel::build(const Geometry& geometry, Pool& pool, const Interval& interval, Tested tested) {
   auto trees = std::make_unique<Trees>();
   trees->geometry = &geometry;
   Prototypes& prototypes = trees->prototypes;
@@ -68,6 +80,9 @@ Accel Accel::build(const Geometry& geometry, Pool& pool, const Interval& interva
   prototypes.groups = build_groups(geometry.groups, pool);
   trees->top = build_top_tree(geometry, prototypes, &pool);
   trees->moving = build_moving_tree(geometry, prototypes, interval, &pool);
+  if (tested == Tested::kEverything) {
+    trees->open_boxes();
+  }
   return Accel(std::move(trees));
 }
 

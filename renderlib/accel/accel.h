@@ -7,18 +7,25 @@
 #include <cstddef>
 #include <memory>
 
-#include "renderlib/geometry/moving_bounds.h"
 #include "renderlib/base/pool.h"
+#include "renderlib/geometry/moving_bounds.h"
 #include "renderlib/geometry/ray.h"
 #include "renderlib/geometry/shapes.h"
 
 namespace bandsaw {
 
+/// What a ray is tested against.
+enum class Tested {
+  kOnItsWay,    ///< what lies in boxes that it meets
+  kEverything,  ///< all there is, as without trees: the same hits, slowly
+};
+
 class Accel {
  public:
   /// `geometry` MUST outlive the result and not change. What moves is found by rays whose time is
   /// within `interval`.
-  static Accel build(const Geometry& geometry, Pool& pool, const Interval& interval = {});
+  static Accel build(const Geometry& geometry, Pool& pool, const Interval& interval = {},
+                     Tested tested = Tested::kOnItsWay);
 
   Accel(Accel&&) noexcept;
   Accel& operator=(Accel&&) noexcept;

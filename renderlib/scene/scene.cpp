@@ -25,7 +25,7 @@ Needs needs_of(const SceneDescription& scene, const Lights& lights) {
 }  // namespace
 
 absl::StatusOr<std::shared_ptr<const Scene>> Scene::build(SceneDescription description, Pool& pool,
-                                                          const Needs& forced) {
+                                                          const Needs& forced, Tested tested) {
   RETURN_IF_ERROR(validate(description));
   // Trees and lights point into the scene: it has its place before they are made.
   std::shared_ptr<Scene> scene(new Scene(std::move(description)));
@@ -36,7 +36,7 @@ absl::StatusOr<std::shared_ptr<const Scene>> Scene::build(SceneDescription descr
   rest(interval, own.geometry);
   rest(interval, own.media.boundaries);
   prepare_surfaces(own.geometry);
-  scene->accel_ = std::make_unique<Accel>(Accel::build(own.geometry, pool, interval));
+  scene->accel_ = std::make_unique<Accel>(Accel::build(own.geometry, pool, interval, tested));
   scene->lights_ =
       Lights(own.geometry, own.materials, own.textures, own.lights, own.background, interval);
   const Needs needs = needs_of(own, scene->lights_);
@@ -44,7 +44,7 @@ absl::StatusOr<std::shared_ptr<const Scene>> Scene::build(SceneDescription descr
   scene->needs_ = needs | forced;
   if (scene->needs_.media) {
     scene->boundary_accel_ =
-        std::make_unique<Accel>(Accel::build(own.media.boundaries, pool, interval));
+        std::make_unique<Accel>(Accel::build(own.media.boundaries, pool, interval, tested));
   }
   return std::shared_ptr<const Scene>(std::move(scene));
 }

@@ -22,8 +22,10 @@ class Scene {
   /// (degenerate triangles, triangles with non-finite vertices) and counts it, and builds the trees
   /// and lights. INVALID_ARGUMENT: "spheres[3].radius: must be > 0, is -1".
   /// `forced`: needs that it is to have beside its own; costs time and changes no pixel. For tests.
+  /// `tested`: the same, for comparison.
   static absl::StatusOr<std::shared_ptr<const Scene>> build(SceneDescription description,
-                                                            Pool& pool, const Needs& forced = {});
+                                                            Pool& pool, const Needs& forced = {},
+                                                            Tested tested = Tested::kOnItsWay);
 
   const Geometry& geometry() const { return description_.geometry; }
   const Accel& accel() const { return *accel_; }

@@ -39,6 +39,16 @@ TEST_F(StudyCommand, WritesTableFiguresAndPlot) {
   EXPECT_EQ(file_bytes(folder_ / "s.svg").rfind("<svg ", 0), 0u);
 }
 
+TEST_F(StudyCommand, EveryObjectIsForSmallScenes) {
+  const Finished done =
+      run(study({BANDSAW_GALLERY "/mesh.textproto", "--every-object", "--width", "12"}));
+  EXPECT_EQ(done.code, 2);
+  EXPECT_NE(done.err.find("13826 objects, each to be tested against every ray; at most 2000"),
+            std::string::npos)
+      << done.err;
+  EXPECT_TRUE(nothing_written());
+}
+
 TEST_F(StudyCommand, ABadSceneIsSaidBeforeAnythingIsRendered) {
   const Finished done = run(study({kCornell, folder_ / "none.textproto"}));
   EXPECT_EQ(done.code, 2);

@@ -33,12 +33,13 @@ struct Rendering {
   int threads = 1;
   std::uint32_t rows = kHeight;  ///< of a band
   Needs forced = {};
+  Tested tested = Tested::kOnItsWay;
 };
 
 std::string hash_of(const ImportedScene& imported, const Rendering& how) {
   Pool building(how.building_threads);
   Pool pool(how.threads);
-  const auto scene = Scene::build(imported.scene, building, how.forced);
+  const auto scene = Scene::build(imported.scene, building, how.forced, how.tested);
   EXPECT_TRUE(scene.ok()) << scene.status();
   const RenderSettings settings{.width = kWidth,
                                 .height = kHeight,
@@ -56,6 +57,13 @@ std::string hash_of(const ImportedScene& imported, const Rendering& how) {
     }
   }
   return absl::StrFormat("%016x", hash.value());
+}
+
+/// Whether each ray can be tested against all there is.
+bool is_small(const Geometry& geometry) {
+  const auto few = [](const Mesh& mesh) { return mesh.triangles.size() <= 2'000; };
+  return geometry.instances.size() <= 10 &&
+         std::all_of(geometry.meshes.begin(), geometry.meshes.end(), few);
 }
 
 struct Table {
@@ -92,6 +100,9 @@ TEST(SameBits, C5R6R10B12Y3_TwelveScenesHaveTheirHashes) {
       EXPECT_EQ(hash_of(*imported, {.threads = 2, .rows = rows}), hash) << rows;
     }
     EXPECT_EQ(hash_of(*imported, {.forced = kAllNeeds}), hash) << "the general kernel";
+    if (is_small(imported->scene.geometry)) {
+      EXPECT_EQ(hash_of(*imported, {.tested = Tested::kEverything}), hash) << "no tree";
+    }
   }
   if (HasFailure()) {
     std::cout << now;
@@ -99,7 +110,8 @@ TEST(SameBits, C5R6R10B12Y3_TwelveScenesHaveTheirHashes) {
   test::holds("C5", "12 scenes: one hash for 1, 2, 3, 8 threads and bands of 1, 3, 7, 15 rows");
   test::holds(
       "B12",
-      "12 scenes: one hash for trees built by 1, 2, 3, 8 threads, and for the general kernel");
+      "12 scenes: one hash for trees built by 1, 2, 3, 8 threads, and for the general kernel; "
+      "small ones without a tree too");
   test::holds("Y3", "12 scenes: the hashes of the table in this build");
   test::holds("R10", "12 scenes: the hashes of the table in this build");
 }

@@ -19,10 +19,12 @@ using testing::Not;
 
 constexpr RenderSettings kSettings{.width = 8, .height = 8, .max_depth = 4, .seed = 1};
 
-StudyOfScene study_of(const Scene& scene, const StudyPlan& plan) {
+StudyOfScene study_of(const Scene& scene, const StudyPlan& plan,
+                      const Scene* every_object = nullptr) {
   Pool pool(1);
   const std::atomic<bool> stop{false};
-  auto study = study_scene("a|b", scene, kSettings, plan, pool, stop, [](const std::string&) {});
+  auto study = study_scene("a|b", scene, every_object, kSettings, plan, pool, stop,
+                           [](const std::string&) {});
   EXPECT_TRUE(study.ok()) << study.status();
   return study.ok() ? *study : StudyOfScene();
 }
@@ -83,10 +85,36 @@ TEST(Study, PixelsThatStopThemselvesLoseRareLight) {
   }
 }
 
+TEST(Study, WithoutATreeThePixelsAreTheSame) {
+  Pool pool(1);
+  const auto everything = Scene::build(test::cornell_box().scene, pool, {}, Tested::kEverything);
+  ASSERT_TRUE(everything.ok());
+  const StudyOfScene study =
+      study_of(*test::cornell_box().build(), {.samples = 16, .seeds = 1, .reference = 64},
+               everything->get());
+  const StudyLine& full = line(study, Method::kFull);
+  const StudyLine& without = line(study, Method::kEveryObject);
+  ASSERT_EQ(without.points.size(), full.points.size());
+  for (std::size_t i = 0; i < full.points.size(); ++i) {
+    EXPECT_EQ(without.points[i].relative_mse, full.points[i].relative_mse);
+    EXPECT_EQ(without.points[i].rays, full.points[i].rays);
+  }
+}
+
+TEST(Study, ObjectsAreCountedAsOftenAsTheyArePlaced) {
+  SceneDescription scene = test::cornell_box().scene;
+  const std::uint64_t loose = scene.geometry.size();
+  EXPECT_EQ(objects_of(scene), loose);
+  scene.geometry.groups.push_back(
+      {.spheres = {3, Sphere{}}, .quads = {}, .triangles = {}, .disks = {}});
+  scene.geometry.instances.resize(2, {.group = GroupId{0}});
+  EXPECT_EQ(objects_of(scene), loose + 6);
+}
+
 TEST(Study, AStopEndsIt) {
   Pool pool(1);
   const std::atomic<bool> stop{true};
-  EXPECT_EQ(study_scene("a", *test::cornell_box().build(), kSettings, {}, pool, stop,
+  EXPECT_EQ(study_scene("a", *test::cornell_box().build(), nullptr, kSettings, {}, pool, stop,
                         [](const std::string&) {})
                 .status()
                 .code(),

@@ -1,0 +1,43 @@
+#include "renderlib/accel/open_boxes.h"
+
+#include <cstddef>
+#include <limits>
+
+namespace bandsaw {
+namespace {
+
+// Finite: planes in infinity would be NaN where a ray runs along them.
+constexpr float kFarthest = std::numeric_limits<float>::max();
+
+/// A child that is not used stays closed.
+bool used(const WideNode& node, std::size_t child) {
+  return node.bounds[0][child] <= node.bounds[3][child];
+}
+
+void open(WideNode& node, std::size_t child) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    node.bounds[axis][child] = -kFarthest;
+    node.bounds[axis + 3][child] = kFarthest;
+  }
+}
+
+}  // namespace
+
+void open_boxes(WideTree& tree) {
+  for (WideNode& node : tree.nodes) {
+    for (std::size_t child = 0; child < WideNode::kChildren; ++child) {
+      if (used(node, child)) {
+        open(node, child);
+      }
+    }
+  }
+}
+
+void open_boxes(MovingTree& tree) {
+  open_boxes(tree.tree);
+  for (MovingTree::Change& change : tree.change) {
+    change = {};
+  }
+}
+
+}  // namespace bandsaw
