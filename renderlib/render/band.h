@@ -65,8 +65,8 @@ absl::Status validate(const Band& band, const RenderSettings& settings);
 /// What rendering cost and met.
 struct Counters {
   std::uint64_t rays = 0;
-  /// Samples that were NaN, infinite or negative and were left out of the sums; the first of them
-  /// in (row, x, sample) order.
+  /// Samples that were NaN, infinite or negative and were left out of the sums, where the mean of
+  /// the others of their block stands for them; the first of them in (row, x, sample) order.
   std::uint64_t bad_samples = 0;
   std::uint32_t bad_x = 0;
   std::uint32_t bad_y = 0;

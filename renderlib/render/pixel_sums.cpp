@@ -82,6 +82,7 @@ void PixelSums::add_group(std::uint32_t y, const HalfRow& group, absl::Span<doub
 PixelSums::Sums PixelSums::leaves(std::uint32_t y, const HalfRow& group, std::uint64_t first_sample,
                                   absl::Span<SharedPixel> pixels, Counters& counters) const {
   Sums sums{};
+  std::array<double, kMostShared> left_out{};
   PathCounts counts;
   const std::uint64_t last = std::min(first_sample + kBlockSamples, samples_.last);
   for (std::uint64_t number = first_sample; number < last; ++number) {
@@ -95,9 +96,17 @@ PixelSums::Sums PixelSums::leaves(std::uint32_t y, const HalfRow& group, std::ui
                       .bad_y = y,
                       .bad_sample = number,
                       .negative_samples = finite ? 1u : 0u});
+        left_out[i] += 1;
         continue;
       }
       sums[i] = sums[i] + Sum{value.r, value.g, value.b};
+    }
+  }
+  // The others stand for what was left out: as black it would darken the pixel.
+  const auto taken = static_cast<double>(last - first_sample);
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    if (left_out[i] > 0 && left_out[i] < taken) {
+      sums[i] = taken / (taken - left_out[i]) * sums[i];
     }
   }
   counters.rays += counts.rays;

@@ -40,7 +40,8 @@ class PixelSums {
     double r;
     double g;
     double b;
-    friend Sum operator+(const Sum& a, const Sum& b) { return {a.r + b.r, a.g + b.g, a.b + b.b}; }
+    friend Sum operator+(const Sum& p, const Sum& q) { return {p.r + q.r, p.g + q.g, p.b + q.b}; }
+    friend Sum operator*(double s, const Sum& p) { return {s * p.r, s * p.g, s * p.b}; }
   };
   using Sums = std::array<Sum, kMostShared>;
   /// What a group works in: allocated once a run.

@@ -273,6 +273,25 @@ TEST(RenderBand, A3_SamplesThatOverflowAreCountedAndLeftOut) {
   test::holds("A3", "left out of the sums, counted, the first one named");
 }
 
+TEST(RenderBand, A3_APixelIsTheMeanOfItsOtherSamples) {
+  // As above; a small lamp before the camera is seen by a quarter of the samples, which are 1.
+  test::SceneMaker maker;
+  maker.camera({0, 0, 0}, {0, 0, 1}, 20);
+  maker.background({3e38f, 3e38f, 3e38f}, {3e38f, 3e38f, 3e38f});
+  maker.sphere({0, 0, 0}, 1, maker.glass(5));
+  maker.sphere({0, 0, 0.5}, 0.05, maker.lamp(1));
+  const auto rendered = maker.build();
+  Pool pool(1);
+  const auto pixels = render_band(*rendered, {.width = 2, .height = 2, .max_depth = 64},
+                                  {{0, 64}, {0, 2}}, pool, kGoOn, {});
+  ASSERT_TRUE(pixels.ok());
+  EXPECT_GT(pixels->counters.bad_samples, 64u);
+  for (const double sum : pixels->sums) {
+    EXPECT_NEAR(sum / 64, 1, 1e-12);
+  }
+  test::holds("A3", "the pixel is the mean of the others of each block");
+}
+
 TEST(RenderBand, CountsWhatIsLeftOut) {
   test::SceneMaker maker;
   maker.camera({0, 0, 0}, {0, 0, 1}, 20);
