@@ -1,11 +1,13 @@
 #include "coordinator/cli/output.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_join.h"
 #include "renderlib/base/atomic_file.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/image/exr.h"
 #include "renderlib/image/write_image.h"
 
 namespace bandsaw::coordinator {
@@ -29,6 +31,15 @@ absl::Status write_outputs(const Image& image, const std::vector<std::string>& o
     RETURN_IF_ERROR(write_image(image, output, display, layers));
   }
   return absl::OkStatus();
+}
+
+std::uint64_t cut_off_values(const Image& image, const std::vector<std::string>& outputs,
+                             const Display& display) {
+  const auto is_exr = [](const std::string& output) {
+    return absl::EndsWithIgnoreCase(output, ".exr");
+  };
+  return display.half && std::any_of(outputs.begin(), outputs.end(), is_exr) ? beyond_half(image)
+                                                                             : 0;
 }
 
 std::string names_of(const std::vector<std::string>& outputs) {

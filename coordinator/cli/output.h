@@ -2,6 +2,7 @@
 
 // The files that an image goes to.
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,11 @@ absl::Status check_outputs_writable(const std::vector<std::string>& outputs);
 /// or not at all; stops at the first error.
 absl::Status write_outputs(const Image& image, const std::vector<std::string>& outputs,
                            const Display& display, const Layers& layers = {});
+
+/// Numbers of the image that were cut off since an EXR file of halves has no room for them; 0 where
+/// no such file is among the outputs.
+std::uint64_t cut_off_values(const Image& image, const std::vector<std::string>& outputs,
+                             const Display& display);
 
 /// "cornell.png, cornell.pfm".
 std::string names_of(const std::vector<std::string>& outputs);

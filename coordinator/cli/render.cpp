@@ -143,7 +143,8 @@ class LocalRun {
                      const std::vector<std::string>& reports) const {
     RETURN_IF_ERROR(options_.rows ? write_part_outputs(bands_, spec_, rows_, outputs, picture_)
                                   : write_outputs(image_, outputs, picture_, layers_));
-    const Report report{progress, options_.rows ? "" : pixels_sha256(image_), outputs};
+    const Report report{progress, options_.rows ? "" : pixels_sha256(image_), outputs,
+                        cut_off_values(image_, outputs, picture_)};
     return write_reports(report_text(report), reports);
   }
 

@@ -66,14 +66,16 @@ JsonObject work_json(const JobView& job) {
       .whole("rays", job.counters.rays);
 }
 
-JsonObject health_json(const Progress& progress) {
+JsonObject health_json(const Report& report) {
+  const Progress& progress = report.progress;
   const Counters& counters = progress.job.counters;
   JsonObject out;
   out.whole("bad_samples", counters.bad_samples)
       .whole("not_finite_samples", counters.bad_samples - counters.negative_samples)
       .whole("negative_samples", counters.negative_samples)
       .whole("truncated_paths", counters.truncated_paths)
-      .whole("dropped_primitives", counters.dropped_primitives);
+      .whole("dropped_primitives", counters.dropped_primitives)
+      .whole("cut_off_values", report.cut_off_values);
   return counters.bad_samples == 0 ? out.unknown("first_bad_sample")
                                    : out.text("first_bad_sample", progress.bad_sample_at);
 }
@@ -125,7 +127,7 @@ std::string report_text(const Report& report) {
       .object("time", time_json(job))
       .object("work", work_json(job))
       .object("machines", who_json(report.progress))
-      .object("health", health_json(report.progress))
+      .object("health", health_json(report))
       .object("hashes", hashes_json(report))
       .object("program", program_json())
       .texts("outputs", report.outputs)

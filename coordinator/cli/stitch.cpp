@@ -120,9 +120,11 @@ ExitCode run(const StitchOptions& options, Process& process) {
                                 std::string(whole.status().message()));
   }
   const Image& image = whole->image;
-  absl::Status status = write_outputs(image, options.outputs, options.display.over(whole->display));
+  const Display display = options.display.over(whole->display);
+  absl::Status status = write_outputs(image, options.outputs, display);
   if (status.ok()) {
-    const Report report{whole->progress, pixels_sha256(image), options.outputs};
+    const Report report{whole->progress, pixels_sha256(image), options.outputs,
+                        cut_off_values(image, options.outputs, display)};
     status = write_reports(report_text(report), *reports);
   }
   if (!status.ok()) {

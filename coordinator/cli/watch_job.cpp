@@ -95,7 +95,8 @@ ExitCode left_early(const absl::Status& status, JobId job, const std::vector<std
 absl::Status write_wanted(const Image& image, const Layers& layers, const Display& display,
                           const Progress& progress, const Wanted& wanted) {
   RETURN_IF_ERROR(write_outputs(image, wanted.outputs, display, layers));
-  const Report report{progress, pixels_sha256(image), wanted.outputs};
+  const Report report{progress, pixels_sha256(image), wanted.outputs,
+                      cut_off_values(image, wanted.outputs, display)};
   return write_reports(report_text(report), wanted.reports);
 }
 

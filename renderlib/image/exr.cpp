@@ -3,6 +3,7 @@
 #include <tinyexr.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
@@ -57,6 +58,16 @@ std::vector<Channel> channels_of(const Image& image, bool half, const Layers& la
 }
 
 }  // namespace
+
+std::uint64_t beyond_half(const Image& image) {
+  std::uint64_t count = 0;
+  for (const Rgb& pixel : image.pixels) {
+    for (const float value : {pixel.r, pixel.g, pixel.b}) {
+      count += std::abs(value) > kMostHalf ? 1 : 0;
+    }
+  }
+  return count;
+}
 
 absl::StatusOr<std::vector<std::byte>> encode_exr(const Image& image, bool half,
                                                   const Layers& layers) {

@@ -3,6 +3,7 @@
 // OpenEXR pictures, by tinyexr.
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -16,5 +17,8 @@ namespace bandsaw {
 /// RESOURCE_EXHAUSTED: too large to encode.
 absl::StatusOr<std::vector<std::byte>> encode_exr(const Image& image, bool half,
                                                   const Layers& layers = {});
+
+/// Numbers of the image that halves cut off.
+std::uint64_t beyond_half(const Image& image);
 
 }  // namespace bandsaw

@@ -136,11 +136,12 @@ TEST(MaterialHardCases, M11M12PathsEnd) {
     }
     if (reflectance == 1) {
       EXPECT_EQ(counts.rays, 64u * 201);
+      EXPECT_EQ(counts.truncated, 64u);
     } else {
       EXPECT_LE(counts.rays, 64u * 8);
     }
   }
-  test::holds("M11", "64 paths end at their greatest depth");
+  test::holds("M11", "64 paths end at their greatest depth, and are counted as cut off");
   test::holds("M12", "64 paths of 200 bounces end within 8 rays");
 }
 

@@ -232,7 +232,8 @@ TEST(Exr, P4_HalvesAreClampedAndNeverInfinite) {
   EXPECT_EQ(value(2), -65504);
   EXPECT_EQ(value(3), 0);
   EXPECT_EQ(value(5), 65504);
-  test::holds("P4", "65,520 and more: 65,504; 1e-8: 0");
+  EXPECT_EQ(beyond_half(image), 3u);
+  test::holds("P4", "65,520 and more: 65,504, and counted; 1e-8: 0");
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ least() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a < b) }'; }
 # One render to a target: prints samples, estimate, CPU seconds. Nothing: it took ten times too long.
 render() {  # scene target seed image
   local done
-  done=$(timeout "$((10 * seconds))" "$bandsaw" render "$gallery/$1.textproto" --width 96 --error "$2%" --seed "$3" --json -o "$4" |
+  done=$(ulimit -S -t "$((10 * seconds))" && "$bandsaw" render "$gallery/$1.textproto" --width 96 --error "$2%" --seed "$3" --json -o "$4" |
          tail -n 1) || return 1
   echo "$(number samples_done <<<"$done") $(number error <<<"$done") $(number cpu_s <<<"$done") $(number samples_per_pixel <<<"$done")"
 }

@@ -170,6 +170,13 @@ TEST(Media, V3V11OpaqueBallEndsByItsDepth) {
     last = seen.mean();
   }
   EXPECT_GT(last, 0.9);
+  PathCounts counts;
+  for (std::uint64_t sample = 0; sample < 64; ++sample) {
+    path_radiance(*scene, ray, PixelSampler(3, 1, 2), sample, {.max_depth = 8}, counts);
+  }
+  EXPECT_GT(counts.truncated, 0u);
+  EXPECT_LE(counts.truncated, 64u);
+  test::holds("V11", "paths that were cut off are counted");
   test::holds("V3", "an opaque ball: the path ends by its depth");
   test::at_least("V11", "radiance of a ball of scattering 1e12 at 512 bounces", last, 0.9);
 }

@@ -107,7 +107,9 @@ TEST(Study, ObjectsAreCountedAsOftenAsTheyArePlaced) {
   EXPECT_EQ(objects_of(scene), loose);
   scene.geometry.groups.push_back(
       {.spheres = {3, Sphere{}}, .quads = {}, .triangles = {}, .disks = {}});
-  scene.geometry.instances.resize(2, {.group = GroupId{0}});
+  Instance placed;
+  placed.group = GroupId{0};
+  scene.geometry.instances.assign(2, placed);
   EXPECT_EQ(objects_of(scene), loose + 6);
 }
 

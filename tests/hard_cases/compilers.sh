@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# The hashes of same_bits.txt by clang 14 (preset clang, -O3) and by gcc at -O2 (preset dev), each in its own build folder; the
+# default tests hold them for gcc at -O3. Builds no more than the test needs.
+# Usage: tests/hard_cases/compilers.sh [PRESET…]      (default: clang dev)
+set -euo pipefail
+cd "$(dirname "$0")/../.."
+presets=("$@")
+((${#presets[@]})) || presets=(clang dev)
+for preset in "${presets[@]}"; do
+  cmake --preset "$preset" -DBANDSAW_TESTS=ON > /dev/null
+  cmake --build --preset "$preset" --target hard_cases
+  "build/$preset/tests/hard_cases" --gtest_filter='SameBits.*'
+done
