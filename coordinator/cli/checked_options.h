@@ -22,8 +22,7 @@ struct RawOptions {
   std::optional<std::string> runs, tev;
   std::optional<std::string> web, shell, audit;
   bool lift = false, adaptive = false, half = false, insecure = false, detach = false,
-       quiet = false, json = false, preview = false, phone = false,
-       every_object = false;
+       quiet = false, json = false, preview = false, phone = false, every_object = false;
 };
 
 absl::StatusOr<Command> checked_serve(const RawOptions& raw);
