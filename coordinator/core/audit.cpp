@@ -70,6 +70,21 @@ void Audit::introduce(const Witness& witness) {
   }
 }
 
+Audit Audit::split_at(std::uint32_t row) {
+  Audit rest = *this;
+  rest.lease = 0;
+  rest.band_.rows.first = row;
+  band_.rows.last = row;
+  const auto cut = static_cast<std::ptrdiff_t>(band_.rows.count());
+  for (std::size_t i = 0; i < claims_.size(); ++i) {
+    std::vector<std::uint64_t>& all = claims_[i].digests;
+    rest.claims_[i].digests.erase(rest.claims_[i].digests.begin(),
+                                  rest.claims_[i].digests.begin() + cut);
+    all.erase(all.begin() + cut, all.end());
+  }
+  return rest;
+}
+
 void Audit::forget(const Witness& witness) {
   std::erase_if(claims_, [&](const Claim& c) { return c.witness.same_machine(witness); });
 }

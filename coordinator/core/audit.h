@@ -58,6 +58,9 @@ class Audit {
   std::optional<Verdict> verdict() const;
   /// A witness of whom only the renderer was known is this one.
   void introduce(const Witness& witness);
+  /// Cuts off the rows from `row` on, with what was said of them. REQUIRES a row inside of the
+  /// band.
+  Audit split_at(std::uint32_t row);
   /// A machine whose word counts nothing any more; MUST NOT be the one whose rows are stored.
   void forget(const Witness& witness);
 

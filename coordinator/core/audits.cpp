@@ -22,6 +22,25 @@ std::optional<std::vector<std::uint64_t>> digests_for(const Band& audited,
   return std::vector(first, first + audited.rows.count());
 }
 
+/// The band without the rows that a second machine has vouched for.
+std::vector<RowRange> not_audited(const Job& job, const Band& band, std::uint64_t renderer) {
+  std::vector<RowRange> rows;
+  std::uint32_t next = band.rows.first;
+  for (const auto& [done, by] : job.audited) {
+    if (by == renderer && done.samples == band.samples && done.rows.last > next &&
+        done.rows.first < band.rows.last) {
+      if (done.rows.first > next) {
+        rows.push_back({next, done.rows.first});
+      }
+      next = done.rows.last;
+    }
+  }
+  if (next < band.rows.last) {
+    rows.push_back({next, band.rows.last});
+  }
+  return rows;
+}
+
 }  // namespace
 
 Witness Core::State::witness_of(const input::BandStored& in) const {
@@ -48,9 +67,11 @@ void Core::State::open_audits(Job& job, const input::BandStored& in, const Witne
     return;
   }
   for (const RowRange& range : rows) {
-    const Band band{in.band.samples, range};
-    if (!job.audited.contains({band, witness.renderer}) && job.audits.size() < Job::kAuditsKept) {
-      job.audits.emplace_back(band, Audit::Claim{witness, *digests_for(band, in)});
+    for (const RowRange& left : not_audited(job, {in.band.samples, range}, witness.renderer)) {
+      const Band band{in.band.samples, left};
+      if (job.audits.size() < Job::kAuditsKept) {
+        job.audits.emplace_back(band, Audit::Claim{witness, *digests_for(band, in)});
+      }
     }
   }
 }
@@ -164,12 +185,22 @@ Audit* Core::State::audit_of(const Lease& lease) {
   return audit == audits.end() ? nullptr : &*audit;
 }
 
+/// As much of it as is a band for this worker now; what is left waits for the next one.
 void Core::State::grant_audit(Worker& worker, Job& job, Audit& audit) {
+  std::optional<Audit> rest;
+  const std::uint32_t end = sized(job, worker, audit.band()).rows.last;
+  if (end < audit.band().rows.last && !audit.disputed() && job.audits.size() < Job::kAuditsKept) {
+    rest = audit.split_at(end);
+  }
   audit.lease = leases_.new_id();
   audit.given.insert(worker.said);
   hand_over(
       worker, job, *job.pass_of(audit.band()),
       {.id = audit.lease, .job = job.id, .worker = worker.id, .band = audit.band(), .audit = true});
+  if (rest) {
+    job.audits.push_back(*std::move(rest));  // `audit` is not where it was
+    touch(job);
+  }
 }
 
 /// One machine that cannot render a band again says nothing of the job: others are asked, or none.

@@ -113,7 +113,7 @@ Band Core::State::sized(const Job& job, const Worker& worker, const Band& free) 
   const double farm =
       std::max(sizing.pace, per_thread(job) * static_cast<double>(hunger_.threads()));
   sizing.share = sizing.pace / farm;
-  sizing.left = work_left(job, free);
+  sizing.left = std::max(work_left(job, free), job.cost_of(free));
   sizing.target_s = options_.band_target_s;
   return size_band(sizing);
 }

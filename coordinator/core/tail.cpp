@@ -168,25 +168,29 @@ bool Core::State::steal(const Late& late, std::vector<Worker*>& idle) {
   return true;
 }
 
-/// An audit has no parts and no owner: who is much sooner takes it, begun or not, and each machine
-/// once, so that it does not wander.
+/// An audit has no owner: if idle workers are much sooner together they take it, begun or not, and
+/// each machine once, so that it does not wander.
 bool Core::State::move_audit(const Late& late, std::vector<Worker*>& idle) {
   const Lease lease = *leases_.find(late.lease);
   Job& job = jobs_.at(lease.job);
   Audit& audit = *audit_of(lease);
-  for (Worker* worker : helpers(job, lease, idle)) {
-    const double takes = job.cost_of(lease.band) / pace(*worker, job) + kTrip_s;
-    if (takes < late.done_in_s * kSoonEnough && !audit.given.contains(worker->said) &&
-        may_audit(*worker, job, audit)) {
-      act(action::Shared{job.id, lease.band, workers_.by_id(lease.worker)->name, worker->name,
-                         false});
-      end_lease(lease.id, Revoke::kYes);
-      grant_audit(*worker, job, audit);
-      std::erase(idle, worker);
-      return true;
-    }
+  std::vector<Worker*> able = helpers(job, lease, idle);
+  std::erase_if(able, [&](const Worker* worker) {
+    return audit.given.contains(worker->said) || !may_audit(*worker, job, audit);
+  });
+  double together = 0;
+  for (const Worker* worker : able) {
+    together += pace(*worker, job);
   }
-  return false;
+  if (job.cost_of(lease.band) >= (late.done_in_s * kSoonEnough - kTrip_s) * together) {
+    return false;
+  }
+  Worker& first = *able.front();  // the others are given what it leaves
+  act(action::Shared{job.id, lease.band, workers_.by_id(lease.worker)->name, first.name, false});
+  end_lease(lease.id, Revoke::kYes);
+  grant_audit(first, job, audit);
+  std::erase(idle, &first);
+  return true;
 }
 
 bool Core::State::copy(const Late& late, std::vector<Worker*>& idle) {

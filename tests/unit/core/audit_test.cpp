@@ -266,6 +266,46 @@ TEST(Audit, WhatWasAuditedOfALiarIsAuditedAgainOfTheNext) {
   EXPECT_EQ(farm.all_records<record::BandAudited>().size(), audits.size() + 2) << "both rows";
 }
 
+TEST(Audit, ALargeBandIsComparedInPartsAndNoPartTwice) {
+  CoreOptions options = audited();
+  options.band_target_s = 1;
+  AuditFarm farm(options);
+  farm.submit(test_job("r1", StopAtSamples{16}));
+  farm.hello(1, "a", 1);
+  farm.hello(2, "b", 1);
+  input::BandStored slow;
+  slow.job = 1;
+  slow.band = farm.lease(1, false).band;
+  ASSERT_GT(slow.band.rows.count(), 1u);
+  slow.row_digests = honest_digests(slow.band);
+  slow.instance = "a";
+  slow.render_s = 100;  // more than was thought
+  farm.say(slow);
+  const action::Lease part = farm.lease(2, true);
+  EXPECT_LT(part.band.rows.count(), slow.band.rows.count());
+  farm.result(part, "b");
+  EXPECT_EQ(farm.lease(2, true).band.rows.first, part.band.rows.last);
+  EXPECT_EQ(farm.job(1).bands_audited, 1u);
+
+  FarmDriver next(options);
+  for (const Record& record : farm.records) {
+    next.core.replay(record);
+  }
+  slow.instance.clear();
+  slow.renderer = renderer_of("a");
+  next.core.replay(slow);
+  next.take(next.core.replayed(next.now));
+  next.hello(1, "a", 1);
+  next.hello(2, "b", 1);
+  next.pass_time(60, {1, 2});  // nobody else is waited for any more
+  std::optional<RowRange> again;
+  for (const action::Lease& lease : next.all<action::Lease>()) {
+    again = lease.audit && !again ? std::optional(lease.band.rows) : again;
+  }
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->first, part.band.rows.last) << "the part before was vouched for";
+}
+
 TEST(Audit, NothingIsDecidedAnyMoreOfAnImageThatWasAskedFor) {
   AuditFarm farm(test_options());
   farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));

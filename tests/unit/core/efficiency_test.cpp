@@ -69,6 +69,14 @@ TEST(Efficiency, OfUnequalWorkersOnAnUnevenImageThatTheyTakeUnevenTimesFor) {
   EXPECT_LE(r.tail, 0.02);
 }
 
+TEST(Efficiency, OfAudits) {
+  const BenchResult r =
+      measure("the same with audits",
+              {.speeds = speeds(60, false), .cost_of = uneven, .noise = 0.3, .audit_share = 0.01});
+  EXPECT_GE(r.efficiency, 0.95);
+  EXPECT_LE(r.tail, 0.02);
+}
+
 TEST(Efficiency, OfAShortJob) {
   const BenchResult r =
       measure("20:1, speeds 1:4, short", {.speeds = speeds(10, false), .cost_of = uneven});

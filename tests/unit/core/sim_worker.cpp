@@ -162,7 +162,11 @@ bool SimWorker::poisoned(const action::Lease& lease) const {
 
 void SimWorker::die() {
   kill();
-  agenda_.in(1, [this] { start(); });
+  agenda_.in(1, [this] {
+    if (!running_) {
+      start();
+    }
+  });
 }
 
 void SimWorker::render() {
