@@ -40,9 +40,10 @@ std::optional<std::string> Core::State::broken_leases() const {
         (lease.copy_of == 0 && !lease.audit) != pass->coverage.holds(lease.band, id)) {
       return absl::StrCat("lease ", id, " has nothing of its band, or is a copy that has");
     }
-    if (lease.audit && std::count_if(job->audits.begin(), job->audits.end(), [&](const Audit& a) {
-                         return a.lease == id && a.band() == lease.band;
-                       }) != 1) {
+    const auto is_its_audit = [&id = id, &lease = lease](const Audit& a) {
+      return a.lease == id && a.band() == lease.band;
+    };
+    if (lease.audit && std::count_if(job->audits.begin(), job->audits.end(), is_its_audit) != 1) {
       return absl::StrCat("lease ", id, " is of an audit that its job does not know");
     }
     if ((lease.copy_of != 0) != job->copies.contains(id)) {

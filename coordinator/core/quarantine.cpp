@@ -168,9 +168,10 @@ void Core::State::apply(const record::QuarantineLifted& r) {
 std::vector<WorkerView> Core::State::quarantined_views() const {
   std::map<std::string, WorkerView> views;
   for (const auto& [renderer, one] : quarantined_) {
-    const bool here = std::any_of(workers_.all().begin(), workers_.all().end(), [&](const auto& w) {
-      return w.second.quarantined && w.second.said == one.name;
-    });
+    const auto is_it = [&name = one.name](const auto& w) {
+      return w.second.quarantined && w.second.said == name;
+    };
+    const bool here = std::any_of(workers_.all().begin(), workers_.all().end(), is_it);
     if (!one.lifted && !one.name.empty() && !here) {
       WorkerView& view = views[one.name];
       view.name = one.name;

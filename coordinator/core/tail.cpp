@@ -86,10 +86,11 @@ std::vector<Core::State::Late> Core::State::late_leases() const {
       continue;
     }
     Late one{.lease = id};
+    const auto is_its_copy = [this, &id = id](LeaseId copy) {
+      return leases_.find(copy)->copy_of == id;
+    };
     one.untouched =
-        lease.copy_of == 0 && std::none_of(job.copies.begin(), job.copies.end(), [&](LeaseId copy) {
-          return leases_.find(copy)->copy_of == lease.id;
-        });
+        lease.copy_of == 0 && std::none_of(job.copies.begin(), job.copies.end(), is_its_copy);
     for (const LeaseId ahead : workers_.by_id(lease.worker)->leases) {
       if (ahead == id) {
         break;
