@@ -91,9 +91,9 @@ class RefusedCall final : public Base {
   void OnDone() override { delete this; }
 };
 
-/// Reads a client's stream chunk by chunk on the file executor: one chunk is read only when the one
-/// before is dealt with. Derived has: absl::Status add(const Chunk&); void end() (all chunks came;
-/// MUST Finish).
+/// Reads a client's stream chunk by chunk: one chunk is read only when the one before is dealt
+/// with. Derived has: kWritesFiles (then it is called on the file executor, else where gRPC calls);
+/// absl::Status add(const Chunk&); void end() (all chunks came; MUST Finish).
 template <class Chunk, class Derived>
 class ChunkReader : public SelfOwned<grpc::ServerReadReactor<Chunk>, Derived> {
  public:
@@ -102,7 +102,11 @@ class ChunkReader : public SelfOwned<grpc::ServerReadReactor<Chunk>, Derived> {
 
   void begin() { this->StartRead(&chunk_); }
   void OnReadDone(bool ok) override {
-    doors_.files.post([self = this->shared_from_this(), ok] { self->take(ok); });
+    if constexpr (Derived::kWritesFiles) {
+      doors_.files.post([self = this->shared_from_this(), ok] { self->take(ok); });
+    } else {
+      take(ok);
+    }
   }
   void take(bool ok) {
     auto& derived = static_cast<Derived&>(*this);

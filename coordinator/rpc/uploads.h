@@ -11,6 +11,7 @@ namespace bandsaw::coordinator {
 /// Farm.PutBlob.
 class PutBlobCall final : public ChunkReader<farm::BlobChunk, PutBlobCall> {
  public:
+  static constexpr bool kWritesFiles = true;
   using ChunkReader::ChunkReader;
   absl::Status add(const farm::BlobChunk& chunk);
   void end();
@@ -21,9 +22,11 @@ class PutBlobCall final : public ChunkReader<farm::BlobChunk, PutBlobCall> {
   std::uint64_t received_ = 0;
 };
 
-/// Work.PutBand.
+/// Work.PutBand. A chunk is copied and hashed, which is less than handing it to another thread
+/// takes where bands are small; the engine writes it.
 class PutBandCall final : public ChunkReader<farm::BandChunk, PutBandCall> {
  public:
+  static constexpr bool kWritesFiles = false;
   PutBandCall(const Doors& doors, grpc::CallbackServerContext* context, farm::PutBandReply* reply)
       : ChunkReader(doors, context), reply_(reply) {}
   absl::Status add(const farm::BandChunk& chunk);

@@ -182,10 +182,10 @@ class NullWorker {
     chunk.set_data(black);
     grpc::ClientContext context;
     link::prepare(context, join_, kLong);
+    context.set_initial_metadata_corked(true);  // as a worker does
     farm::PutBandReply reply;
     const auto writer = bulk_->PutBand(&context, &reply);
-    writer->Write(chunk);
-    writer->WritesDone();
+    writer->WriteLast(chunk, grpc::WriteOptions());
     check(writer->Finish());
   }
 

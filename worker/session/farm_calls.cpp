@@ -115,15 +115,17 @@ absl::StatusOr<farm::PutBandReply::Outcome> FarmCalls::put_band(const FinishedBa
   *chunk.mutable_header() = header_of(band, instance, lease);
   farm::PutBandReply reply;
   Context context(*this, kTransferDeadline);
+  (*context).set_initial_metadata_corked(true);  // a small band is one packet, its end with it
   const std::unique_ptr<grpc::ClientWriter<farm::BandChunk>> writer =
       stub->PutBand(context.get(), &reply);
   bool open = true;
   for (std::size_t offset = 0; open && offset < size; offset += wire::kChunkBytes) {
     chunk.set_data(data + offset, std::min(wire::kChunkBytes, size - offset));
-    open = writer->Write(chunk);
+    const bool last = size - offset <= wire::kChunkBytes;
+    open =
+        writer->Write(chunk, last ? grpc::WriteOptions().set_last_message() : grpc::WriteOptions());
     chunk.clear_header();
   }
-  writer->WritesDone();
   RETURN_IF_ERROR(link::from_grpc(writer->Finish()));
   return reply.outcome();
 }
