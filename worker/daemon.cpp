@@ -72,6 +72,7 @@ class Daemon::Impl {
   Backoff backoff_;
   std::optional<Away> away_;
   std::string last_loss_;
+  std::string epoch_;  ///< names the life of the coordinator that welcomed it last
   bool joined_ = false;
   Workshop workshop_;  ///< last: its threads use the calls and the desk
 };
@@ -155,6 +156,10 @@ void Daemon::Impl::handle(const farm::ToWorker& message, const std::string& addr
     if (!joined_ && options_.joined) {
       options_.joined(address, desk_.name());
     }
+    if (joined_ && message.welcome().epoch() != epoch_ && options_.log_lines_lost) {
+      options_.log_lines_lost();
+    }
+    epoch_ = message.welcome().epoch();
     joined_ = true;
   }
   for (const TaskId task : reaction.stop) {

@@ -27,6 +27,8 @@ struct DaemonOptions {
   /// Lines of the log that were not taken yet, at most so many: for the coordinator; may be
   /// nothing.
   std::function<std::vector<std::string>(std::size_t most)> new_log_lines = nullptr;
+  /// The coordinator was started again and has lost the lines that it was sent; may be nothing.
+  std::function<void()> log_lines_lost = nullptr;
 };
 
 class Daemon {

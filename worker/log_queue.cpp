@@ -24,10 +24,20 @@ std::vector<std::string> LogQueue::take(std::size_t most) {
     lost_ = 0;
   }
   while (taken.size() < most && !lines_.empty()) {
-    taken.push_back(std::move(lines_.front()));
+    taken.push_back(lines_.front());
+    taken_.push_back(std::move(lines_.front()));
     lines_.pop_front();
+    if (taken_.size() > kTakenKept) {
+      taken_.pop_front();
+    }
   }
   return taken;
+}
+
+void LogQueue::again() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  lines_.insert(lines_.begin(), taken_.begin(), taken_.end());
+  taken_.clear();
 }
 
 }  // namespace bandsaw::worker

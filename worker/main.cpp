@@ -160,7 +160,8 @@ int run(const Arguments& arguments) {
                         name.c_str());
             std::fflush(stdout);
           },
-      .new_log_lines = [news = log.news](std::size_t most) { return news->take(most); }};
+      .new_log_lines = [news = log.news](std::size_t most) { return news->take(most); },
+      .log_lines_lost = [news = log.news] { news->again(); }};
   absl::StatusOr<std::unique_ptr<Daemon>> daemon = Daemon::create(std::move(options));
   if (!daemon.ok()) {
     return fail(kUnfit, daemon.status());

@@ -40,6 +40,10 @@ TEST_F(House, AWorkersLogIsReadFromAfar) {
       0);
   const std::string log = ask_until({"logs", "desk"}, "stored job=1");
   EXPECT_NE(log.find("rendered job=1"), std::string::npos) << log;
+  farm_.coordinator().signal(SIGKILL);
+  farm_.coordinator().wait();
+  farm_.restart_coordinator();
+  ask_until({"logs", "desk"}, "stored job=1");  // sent again to the next life
   const Finished unknown = say({"logs", "nobody"});
   EXPECT_EQ(unknown.code, 1);
   EXPECT_NE(unknown.err.find("desk"), std::string::npos) << unknown.err;

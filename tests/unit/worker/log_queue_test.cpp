@@ -27,6 +27,20 @@ TEST(LogQueue, GivesEachLineOnceInOrder) {
   EXPECT_THAT(log.queue->take(2), IsEmpty());
 }
 
+TEST(LogQueue, GivesTheLastOnesAgainBeforeWhatIsNew) {
+  Logging log;
+  for (int i = 0; i < 60; ++i) {
+    log.logger.info("{}", i);
+  }
+  EXPECT_EQ(log.queue->take(60).size(), 60u);
+  log.logger.info("new");
+  log.queue->again();
+  const std::vector<std::string> again = log.queue->take(100);
+  ASSERT_EQ(again.size(), 51u);
+  EXPECT_EQ(again.front(), "info 10\n");
+  EXPECT_EQ(again.back(), "info new\n");
+}
+
 TEST(LogQueue, CountsWhatNobodyTookInTime) {
   Logging log;
   for (int i = 0; i < 507; ++i) {
