@@ -126,7 +126,21 @@ absl::StatusOr<Verbosity> checked_verbosity(const RawOptions& raw) {
   if (raw.quiet && raw.json) {
     return wrong("--quiet and --json exclude each other");
   }
-  return Verbosity{.quiet = raw.quiet, .json = raw.json};
+  if (raw.preview && (raw.quiet || raw.json || raw.detach)) {
+    return wrong("--preview draws on the terminal: --quiet, --json and --detach exclude it");
+  }
+  return Verbosity{.quiet = raw.quiet, .json = raw.json, .preview = raw.preview};
+}
+
+absl::StatusOr<std::string> checked_tev(const RawOptions& raw) {
+  if (!raw.tev) {
+    return "";
+  }
+  if (raw.detach || raw.rows) {
+    return wrong("--tev shows a whole image while it forms: --detach and --rows exclude it");
+  }
+  RETURN_IF_ERROR(check_listen("--tev", *raw.tev));
+  return *raw.tev;
 }
 
 absl::StatusOr<JobId> checked_job(const RawOptions& raw, const std::string& command) {
@@ -140,6 +154,7 @@ absl::StatusOr<Command> checked_serve(const RawOptions& raw) {
   ServeOptions options;
   options.data = raw.data;
   options.insecure = raw.insecure;
+  options.reflection = raw.reflection;
   if (raw.listen) {
     options.listen = *raw.listen;
   }
@@ -175,6 +190,7 @@ absl::StatusOr<Command> checked_submit(const RawOptions& raw) {
   ASSIGN_OR_RETURN(options.display, checked_display(raw));
   ASSIGN_OR_RETURN(options.report, checked_report(raw, !raw.detach));
   ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
+  ASSIGN_OR_RETURN(options.tev, checked_tev(raw));
   RETURN_IF_ERROR(check_outputs(options.outputs, false));
   if (raw.priority) {
     ASSIGN_OR_RETURN(options.priority, checked_priority_value("--priority", *raw.priority));
@@ -196,6 +212,7 @@ absl::StatusOr<Command> checked_watch(const RawOptions& raw) {
   ASSIGN_OR_RETURN(options.display, checked_display(raw));
   ASSIGN_OR_RETURN(options.report, checked_report(raw, !raw.outputs.empty()));
   ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
+  ASSIGN_OR_RETURN(options.tev, checked_tev(raw));
   RETURN_IF_ERROR(check_outputs(options.outputs, false));
   return options;
 }
@@ -223,6 +240,7 @@ absl::StatusOr<Command> checked_render(const RawOptions& raw) {
   ASSIGN_OR_RETURN(options.display, checked_display(raw));
   ASSIGN_OR_RETURN(options.report, checked_report(raw));
   ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
+  ASSIGN_OR_RETURN(options.tev, checked_tev(raw));
   RETURN_IF_ERROR(
       read_whole("--threads", raw.threads, 1, wire::kThreadsPerWorker, options.threads));
   RETURN_IF_ERROR(check_outputs(options.outputs, raw.rows.has_value()));

@@ -22,7 +22,8 @@ struct RawOptions {
   std::optional<std::string> runs, tev;
   std::optional<std::string> web, shell, audit;
   bool lift = false, adaptive = false, half = false, insecure = false, detach = false,
-       quiet = false, json = false, preview = false, phone = false, every_object = false;
+       quiet = false, json = false, preview = false, phone = false, every_object = false,
+       reflection = false;
 };
 
 absl::StatusOr<Command> checked_serve(const RawOptions& raw);
@@ -48,6 +49,8 @@ absl::StatusOr<Command> checked_compare(const RawOptions& raw);
 absl::StatusOr<Verbosity> checked_verbosity(const RawOptions& raw);
 /// Only where there are images to report of.
 absl::StatusOr<ReportOption> checked_report(const RawOptions& raw, bool has_images = true);
+/// HOST:PORT of a viewer; empty: not given.
+absl::StatusOr<std::string> checked_tev(const RawOptions& raw);
 /// `option` is for the error.
 absl::Status check_listen(const std::string& option, const std::string& listen);
 /// A share of all bands; `standard` when none is given.

@@ -36,6 +36,10 @@ FarmClient::FarmClient(link::JoinString join, link::Connected connected)
       control_(farm::Farm::NewStub(connected_.control)),
       bulk_(farm::Farm::NewStub(connected_.bulk)) {}
 
+std::unique_ptr<FarmClient> FarmClient::another() const {
+  return std::unique_ptr<FarmClient>(new FarmClient(join_, connected_));
+}
+
 void FarmClient::stop() {
   MutexLock lock(mutex_);
   stopped_ = true;

@@ -33,6 +33,8 @@ class FarmClient {
  public:
   /// UNAVAILABLE: no address answered. UNAUTHENTICATED: another farm answered.
   static absl::StatusOr<std::unique_ptr<FarmClient>> connect(const link::JoinString& join);
+  /// Another one over the same connection, for calls at the same time.
+  std::unique_ptr<FarmClient> another() const;
   FarmClient(const FarmClient&) = delete;
   FarmClient& operator=(const FarmClient&) = delete;
 
@@ -57,6 +59,9 @@ class FarmClient {
 
   /// The finished image, its digest checked. DATA_LOSS: it does not match.
   absl::StatusOr<FarmImage> result(JobId job);
+  /// What is there of it, at most about `most_side` pixels a side; 0: the image's own. NOT_FOUND:
+  /// nothing is. DATA_LOSS as above.
+  absl::StatusOr<FarmImage> preview(JobId job, std::uint32_t most_side);
 
   absl::StatusOr<std::vector<Progress>> jobs();
   absl::StatusOr<farm::ListWorkersReply> workers();
@@ -85,6 +90,10 @@ class FarmClient {
 
   using TellJob = absl::FunctionRef<grpc::Status(grpc::ClientContext&, farm::JobStatus&)>;
   absl::StatusOr<Progress> tell(TellJob body);
+
+  using OpenImage =
+      std::function<std::unique_ptr<grpc::ClientReader<farm::ResultChunk>>(grpc::ClientContext&)>;
+  absl::StatusOr<FarmImage> receive(JobId job, const OpenImage& open);
 
   /// Makes a context for each try, and tries again while the farm does not answer.
   absl::Status call(std::chrono::milliseconds deadline,

@@ -1,4 +1,4 @@
-// FarmClient::result: a finished image in chunks, checked before anybody sees it.
+// FarmClient::result and preview: an image in chunks, checked before anybody sees it.
 
 #include <bit>
 #include <cmath>
@@ -53,13 +53,24 @@ absl::StatusOr<FarmImage> image_of(const Received& received) {
 }  // namespace
 
 absl::StatusOr<FarmImage> FarmClient::result(JobId job) {
-  Received received;
-  bool too_much = false;
   farm::GetResultRequest request;
   request.set_job(job);
+  return receive(job, [&](auto& context) { return bulk_->GetResult(&context, request); });
+}
+
+absl::StatusOr<FarmImage> FarmClient::preview(JobId job, std::uint32_t most_side) {
+  farm::PreviewRequest request;
+  request.set_job(job);
+  request.set_most_side(most_side);
+  return receive(job, [&](auto& context) { return bulk_->Preview(&context, request); });
+}
+
+absl::StatusOr<FarmImage> FarmClient::receive(JobId job, const OpenImage& open) {
+  Received received;
+  bool too_much = false;
   RETURN_IF_ERROR(call(kTransferTimeout, [&](grpc::ClientContext& context) {
     received = Received();
-    const auto stream = bulk_->GetResult(&context, request);
+    const auto stream = open(context);
     farm::ResultChunk chunk;
     for (bool first = true; stream->Read(&chunk); first = false) {
       if (first) {

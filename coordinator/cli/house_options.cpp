@@ -44,6 +44,9 @@ void add_serve(CLI::App& app, RawOptions& raw) {
   app.add_option("--audit", raw.audit,
                  "This share of all bands is rendered by two machines and compared [default: 1%]")
       ->type_name("P%");
+  app.add_flag("--reflection", raw.reflection,
+               "Tell whoever asks which gRPC calls there are, as grpcurl does; none works without "
+               "a secret all the same");
   app.add_flag("--insecure", raw.insecure,
                "No encryption: anybody on the network can read and change what passes");
 }

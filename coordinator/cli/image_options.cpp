@@ -70,6 +70,14 @@ void add_layers(CLI::App& app, RawOptions& raw) {
       ->type_name("L,L,…");
 }
 
+void add_views(CLI::App& app, RawOptions& raw) {
+  app.add_flag("--preview", raw.preview,
+               "Draw the image on the terminal while it forms, in half blocks of 24-bit colours");
+  app.add_option("--tev", raw.tev,
+                 "Show it while it forms in the viewer tev, as in 127.0.0.1:14158")
+      ->type_name("HOST:PORT");
+}
+
 }  // namespace
 
 void add_submit(CLI::App& app, RawOptions& raw) {
@@ -83,6 +91,7 @@ void add_submit(CLI::App& app, RawOptions& raw) {
                  "The highest is rendered first, -1000 to 1000 [default: 0]")
       ->type_name("N");
   add_farm(app, raw);
+  add_views(app, raw);
   add_verbosity(app, raw);
 }
 
@@ -91,6 +100,7 @@ void add_watch(CLI::App& app, RawOptions& raw) {
   add_output(app, raw, kPictures, "");
   add_display(app, raw, "the scene's");
   add_farm(app, raw);
+  add_views(app, raw);
   add_verbosity(app, raw);
 }
 
@@ -105,6 +115,7 @@ void add_render(CLI::App& app, RawOptions& raw) {
   app.add_option("--rows", raw.rows,
                  "Only rows y0 to y1 - 1, from the top; parts are joined by stitch")
       ->type_name("y0:y1");
+  add_views(app, raw);
   add_verbosity(app, raw);
 }
 

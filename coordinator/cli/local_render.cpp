@@ -51,7 +51,13 @@ absl::StatusOr<Film> render_whole(const LocalJob& job, const StopRule& stop) {
     job.meter.plans(plan.planned());
     const TileMask tiles = plan.tiles(*pass);
     RETURN_IF_ERROR(render_pass(job, *pass, {0, job.settings.height}, tiles, done,
-                                [&](const BandPixels& pixels) { return film.add(pixels, tiles); }));
+                                [&](const BandPixels& pixels) {
+                                  const absl::Status added = film.add(pixels, tiles);
+                                  if (added.ok() && job.grown) {
+                                    job.grown(film);
+                                  }
+                                  return added;
+                                }));
     samples = pass->last;
     const auto estimate = film.error();
     error = estimate ? estimate->at_most() : -1;

@@ -3,6 +3,7 @@
 // Renders an image, or some of its rows, on this machine: the same bits as a farm.
 
 #include <atomic>
+#include <functional>
 #include <vector>
 
 #include "absl/status/statusor.h"
@@ -22,6 +23,8 @@ struct LocalJob {
   Pool& pool;
   const std::atomic<bool>& stop;  ///< when it becomes true the render ends with CANCELLED
   LocalMeter& meter;
+  /// Hears of each band that was added to a whole image; may be nothing.
+  std::function<void(const Film&)> grown = nullptr;
 };
 
 /// The whole image, pass by pass until the stop rule holds. CANCELLED; RESOURCE_EXHAUSTED: no

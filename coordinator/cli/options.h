@@ -18,8 +18,9 @@ namespace bandsaw::coordinator {
 
 /// How much a command says.
 struct Verbosity {
-  bool quiet = false;  ///< only the last line and errors
-  bool json = false;   ///< one JSON object a line instead of text
+  bool quiet = false;    ///< only the last line and errors
+  bool json = false;     ///< one JSON object a line instead of text
+  bool preview = false;  ///< the image as it forms, on a terminal with colours
 };
 
 /// Everything beside the scene that decides an image, as far as it was given.
@@ -61,6 +62,7 @@ struct ServeOptions {
   std::string listen = "0.0.0.0:7878";
   std::string web;  ///< HOST:PORT of the dashboard; "none"; empty: loopback, on a port that is free
   bool insecure = false;
+  bool reflection = false;
   double keep_days = 30;      ///< jobs that are over
   double keep_gb = 100;       ///< results and scenes in all
   double audit_share = 0.01;  ///< of all bands, [0, 1]
@@ -76,6 +78,7 @@ struct SubmitOptions {
   FarmOption farm;
   DisplayOptions display;
   ReportOption report;
+  std::string tev;  ///< HOST:PORT of a viewer; empty: none
   Verbosity verbosity;
   bool detach = false;            ///< do not watch
   std::int32_t priority = 0;      ///< [-kMostPriority, kMostPriority]
@@ -88,6 +91,7 @@ struct WatchOptions {
   FarmOption farm;
   DisplayOptions display;
   ReportOption report;
+  std::string tev;  ///< HOST:PORT of a viewer; empty: none
   Verbosity verbosity;
 };
 
@@ -179,6 +183,7 @@ struct RenderOptions {
   ImageOptions image;
   DisplayOptions display;
   ReportOption report;
+  std::string tev;  ///< HOST:PORT of a viewer; empty: none
   Verbosity verbosity;
   int threads = 0;                ///< 0: one for each CPU
   std::optional<RowRange> rows;   ///< a part of the image

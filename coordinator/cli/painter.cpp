@@ -7,13 +7,17 @@
 
 namespace bandsaw::coordinator {
 
-std::string Painter::frame(const std::vector<std::string>& lines, TerminalSize size) {
+std::string Painter::frame(const std::vector<std::string>& lines, TerminalSize size,
+                           const std::vector<std::string>& picture) {
   std::string out = back_to_first();
   const std::size_t room = std::max<std::size_t>(size.rows, 2) - 1;
-  drawn_ = std::min(lines.size(), room);
+  drawn_ = std::min(picture.size() + lines.size(), room);
   for (std::size_t i = 0; i < drawn_; ++i) {
     // One column less than there are: a full line would wrap on some terminals.
-    absl::StrAppend(&out, fit(lines[i], std::max<std::size_t>(size.columns, 2) - 1), "\x1b[K\n");
+    const std::string line = i < picture.size() ? picture[i]
+                                                : fit(lines[i - picture.size()],
+                                                      std::max<std::size_t>(size.columns, 2) - 1);
+    absl::StrAppend(&out, line, "\x1b[K\n");
   }
   return out + "\x1b[J";
 }

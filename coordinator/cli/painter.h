@@ -16,8 +16,10 @@ namespace bandsaw::coordinator {
 class Painter {
  public:
   /// The bytes that replace the last frame by these lines, each cut to the terminal's width, at
-  /// most rows - 1 of them.
-  std::string frame(const std::vector<std::string>& lines, TerminalSize size);
+  /// most rows - 1 of them. `picture`: lines that come before and fit already, with what colours
+  /// them.
+  std::string frame(const std::vector<std::string>& lines, TerminalSize size,
+                    const std::vector<std::string>& picture = {});
   /// The bytes that take the last frame away.
   std::string clear();
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "absl/strings/str_cat.h"
+#include "coordinator/cli/half_blocks.h"
 #include "coordinator/cli/output.h"
 #include "coordinator/cli/progress_json.h"
 #include "coordinator/cli/progress_text.h"
@@ -21,7 +22,14 @@ constexpr char kPlain[] = "\x1b[0m";
 }  // namespace
 
 ProgressDisplay::ProgressDisplay(const Console& console, Verbosity verbosity)
-    : console_(console), verbosity_(verbosity) {}
+    : console_(console),
+      verbosity_(verbosity),
+      draws_(verbosity.preview && console.is_terminal() && console.colour()) {
+  if (verbosity.preview && !draws_) {
+    console_.complain(
+        "--preview draws on a terminal with colours only: this is none, or NO_COLOR is set");
+  }
+}
 
 ProgressDisplay::~ProgressDisplay() { clear(); }
 
@@ -36,13 +44,14 @@ bool ProgressDisplay::due(double now) {
 }
 
 void ProgressDisplay::update(const Progress& progress, double now) {
+  MutexLock lock(mutex_);
   if (verbosity_.quiet) {
     return;
   }
   if (!has_header_) {
     has_header_ = true;
     has_shown_ = false;
-    clear();
+    wipe();
     const std::string header = header_line(progress);
     console_.line(verbosity_.json     ? progress_json(progress, "job").str()
                   : console_.colour() ? absl::StrCat(kBold, header, kPlain)
@@ -64,15 +73,28 @@ void ProgressDisplay::show_terminal(const Progress& progress) {
   const TerminalSize size = console_.size();
   constexpr std::size_t kKept = 3;  // for the header, the bar and the cursor
   std::vector<std::string> lines = {bar_line(progress, std::max<std::size_t>(size.columns, 1) - 1)};
-  const std::size_t room = std::max(size.rows, kKept + 1) - kKept;
+  constexpr std::size_t kBesidePicture = 4;
+  const std::size_t room =
+      image_.pixels.empty() ? std::max(size.rows, kKept + 1) - kKept : kBesidePicture;
   for (std::string& line : worker_lines(progress, room)) {
     lines.push_back(std::move(line));
   }
-  console_.write(painter_.frame(lines, size));
+  const TerminalSize above{std::max<std::size_t>(size.columns, 1) - 1,
+                           size.rows - std::min(size.rows, lines.size() + 2)};
+  console_.write(painter_.frame(lines, size, half_blocks(image_, shown_as_, above)));
+}
+
+void ProgressDisplay::picture(Image image, const Display& display) {
+  if (draws_) {
+    MutexLock lock(mutex_);
+    image_ = std::move(image);
+    shown_as_ = display;
+  }
 }
 
 void ProgressDisplay::note(const std::string& text) {
-  clear();
+  MutexLock lock(mutex_);
+  wipe();
   if (verbosity_.json) {
     console_.line(JsonObject().text("event", "note").text("text", text).str());
   } else {
@@ -82,6 +104,7 @@ void ProgressDisplay::note(const std::string& text) {
 
 void ProgressDisplay::preparing(const std::string& what, std::uint64_t bytes_done,
                                 std::uint64_t bytes_in_all, double now) {
+  MutexLock lock(mutex_);
   // What is over within a moment is not worth a line.
   if (!has_shown_) {
     has_shown_ = true;
@@ -110,7 +133,8 @@ void ProgressDisplay::preparing(const std::string& what, std::uint64_t bytes_don
 
 void ProgressDisplay::done(const Progress& progress, const std::vector<std::string>& outputs,
                            const std::vector<std::string>& reports) {
-  clear();
+  MutexLock lock(mutex_);
+  wipe();
   for (const std::string& warning : {bad_samples_line(progress), doubt_line(progress)}) {
     if (!warning.empty()) {
       console_.complain(warning);
@@ -127,19 +151,30 @@ void ProgressDisplay::done(const Progress& progress, const std::vector<std::stri
       console_.line(left_out);
     }
   }
+  const TerminalSize size = console_.size();
+  const TerminalSize room{size.columns - 1, size.rows - std::min<std::size_t>(size.rows, 4)};
+  for (const std::string& line : half_blocks(image_, shown_as_, room)) {
+    console_.line(line);
+  }
   const std::string name =
       outputs.empty() ? absl::StrCat("job ", progress.job.id) : names_of(outputs);
   console_.line(final_line(progress, name, names_of(reports)));
 }
 
 void ProgressDisplay::ended(const Progress& progress) {
-  clear();
+  MutexLock lock(mutex_);
+  wipe();
   if (verbosity_.json) {
     console_.line(progress_json(progress, "ended").str());
   }
 }
 
 void ProgressDisplay::clear() {
+  MutexLock lock(mutex_);
+  wipe();
+}
+
+void ProgressDisplay::wipe() {
   if (const std::string bytes = painter_.clear(); !bytes.empty()) {
     console_.write(bytes);
   }

@@ -16,6 +16,8 @@
 #include "coordinator/cli/report.h"
 #include "coordinator/cli/report_file.h"
 #include "coordinator/cli/ticker.h"
+#include "coordinator/cli/views.h"
+#include "coordinator/engine/clock.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/render/render_image.h"
 
@@ -78,7 +80,8 @@ class LocalRun {
         pool_(threads),
         meter_(spec_, rows_, threads, clocks()),
         display_(process.console, options.verbosity),
-        picture_(picture) {}
+        picture_(picture),
+        views_(display_, options.display, options.tev, spec_.name) {}
 
   ExitCode run(SceneDescription description, const std::vector<std::string>& outputs,
                const std::vector<std::string>& reports) {
@@ -114,13 +117,17 @@ class LocalRun {
     });
     ASSIGN_OR_RETURN(const std::shared_ptr<const Scene> scene,
                      Scene::build(std::move(description), pool_));
-    const LocalJob job{*scene, spec_.settings, pool_, stop_, meter_};
+    LocalJob job{*scene, spec_.settings, pool_, stop_, meter_};
+    if (views_.any()) {
+      job.grown = [this](const Film& film) { show(film); };
+    }
     if (options_.rows) {
       ASSIGN_OR_RETURN(bands_,
                        render_part(job, rows_, std::get<StopAtSamples>(spec_.stop).samples));
     } else {
       ASSIGN_OR_RETURN(const Film film, render_whole(job, spec_.stop));
       image_ = film.snapshot().image;
+      views_.show(image_, picture_);
       const std::uint64_t samples = meter_.progress(clocks()).job.samples_per_pixel;
       const auto render_layer = [&](const RenderSettings& settings,
                                     std::uint64_t count) -> absl::StatusOr<Image> {
@@ -137,6 +144,15 @@ class LocalRun {
       }
     }
     return absl::OkStatus();
+  }
+
+  /// Not so often that the showing takes long beside the rendering.
+  void show(const Film& film) {
+    constexpr double kInterval_s = 0.3;
+    if (steady_seconds() >= shown_at_ + kInterval_s) {
+      views_.show(film.snapshot().image, picture_);
+      shown_at_ = steady_seconds();
+    }
   }
 
   absl::Status write(const Progress& progress, const std::vector<std::string>& outputs,
@@ -156,6 +172,8 @@ class LocalRun {
   LocalMeter meter_;
   ProgressDisplay display_;
   const Display picture_;
+  Views views_;
+  double shown_at_ = -1;  ///< seconds of a steady clock
   std::atomic<bool> stop_{false};
   Image image_;
   Layers layers_;

@@ -73,6 +73,7 @@ absl::StatusOr<Serving> start(const ServeOptions& options) {
                    Server::start(*serving.engine, identity,
                                  {.listen = options.listen,
                                   .insecure = options.insecure,
+                                  .reflection = options.reflection,
                                   .renew = [folder, web = serving.web.get()](link::Role role) {
                                     return renew_everywhere(folder, role, *web);
                                   }}));

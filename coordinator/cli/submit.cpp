@@ -25,6 +25,7 @@ absl::StatusOr<JobId> send_image(FarmClient& client, ImportedPackage& package,
                                  const farm::SubmitRequest& request, Verbosity verbosity,
                                  Process& process) {
   const Interrupts::Listener listener(process.interrupts, [&] { client.stop(); });
+  verbosity.preview = false;  // there is nothing to see yet
   ProgressDisplay display(process.console, verbosity);
   return send(client, package, request, display);
 }
@@ -107,8 +108,8 @@ ExitCode run(const SubmitOptions& options, Process& process) {
     };
     return make_layers(options.layers, *settings, samples, render);
   };
-  return watch_job(**client, *job, {outputs, *reports, options.display}, options.verbosity, process,
-                   layers);
+  return watch_job(**client, *job, {outputs, *reports, options.display, options.tev},
+                   options.verbosity, process, layers);
 }
 
 }  // namespace bandsaw::coordinator

@@ -21,7 +21,7 @@ ExitCode run(const WatchOptions& options, Process& process) {
     return process.console.fail(exit_code_of(client.status()),
                                 std::string(client.status().message()));
   }
-  return watch_job(**client, options.job, {options.outputs, *reports, options.display},
+  return watch_job(**client, options.job, {options.outputs, *reports, options.display, options.tev},
                    options.verbosity, process);
 }
 

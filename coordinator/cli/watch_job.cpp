@@ -6,6 +6,7 @@
 #include "coordinator/cli/report.h"
 #include "coordinator/cli/report_file.h"
 #include "coordinator/cli/text.h"
+#include "coordinator/cli/views.h"
 #include "coordinator/core/state_name.h"
 #include "coordinator/engine/clock.h"
 #include "renderlib/base/status_macros.h"
@@ -111,7 +112,11 @@ ExitCode watch_job(FarmClient& client, JobId job, const Wanted& wanted, Verbosit
   const std::vector<std::string>& outputs = wanted.outputs;
   const Interrupts::Listener listener(process.interrupts, [&] { client.stop(); });
   ProgressDisplay display(process.console, verbosity);
-  const auto last = follow_job(client, job, display);
+  Views views(display, wanted.display, wanted.tev, absl::StrCat("bandsaw job ", job));
+  const auto last = [&] {
+    const FollowedImage followed(client, job, views);
+    return follow_job(client, job, display);
+  }();
   if (!last.ok()) {
     display.clear();
     return left_early(last.status(), job, outputs, process.console);
@@ -127,12 +132,13 @@ ExitCode watch_job(FarmClient& client, JobId job, const Wanted& wanted, Verbosit
     return process.console.fail(
         ExitCode::kFailed, absl::StrCat("job ", job, " ", state_name(last->job.state), reason));
   }
-  if (!outputs.empty()) {
+  if (!outputs.empty() || views.any()) {
     const auto result = client.result(job);
     if (!result.ok()) {
       display.clear();
       return left_early(result.status(), job, outputs, process.console);
     }
+    views.show(result->image, result->display);
     const absl::StatusOr<Layers> layers =
         beside ? beside(last->job.samples_per_pixel, display) : Layers{};
     if (!layers.ok()) {

@@ -19,6 +19,7 @@ struct Wanted {
   std::vector<std::string> outputs;  ///< may be empty: the image is not fetched
   std::vector<std::string> reports;  ///< checked by report_files
   DisplayOptions display;            ///< of 8-bit files; what it does not say the scene does
+  std::string tev;                   ///< HOST:PORT of a viewer; empty: none
 };
 
 /// Shows the job's progress until it is final: its last state. A farm that goes away is waited for,

@@ -57,7 +57,7 @@ absl::Status check_words(const JobSpec& spec) {
   return absl::OkStatus();
 }
 
-absl::StatusOr<std::string> read_manifest(const DigestHex& hex, BlobStore& blobs) {
+absl::StatusOr<std::string> read_manifest(const DigestHex& hex, BlobSource& blobs) {
   ASSIGN_OR_RETURN(const wire::Digest digest, wire::digest_from_hex(hex));
   const absl::StatusOr<std::unique_ptr<BlobBytes>> blob = blobs.get(digest);
   if (absl::IsNotFound(blob.status())) {
@@ -95,7 +95,7 @@ absl::Status check_submit(const JobSpec& spec, BlobStore& blobs) {
   return absl::OkStatus();
 }
 
-Display display_of(const DigestHex& manifest, BlobStore& blobs) {
+Display display_of(const DigestHex& manifest, BlobSource& blobs) {
   const auto bytes = read_manifest(manifest, blobs);
   const auto info = bytes.ok() ? package_info(*bytes) : bytes.status();
   return info.ok() ? info->display : Display();

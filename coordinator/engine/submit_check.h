@@ -15,6 +15,6 @@ namespace bandsaw::coordinator {
 absl::Status check_submit(const JobSpec& spec, BlobStore& blobs);
 
 /// How the package wants its image shown; the default where its manifest cannot be read any more.
-Display display_of(const DigestHex& manifest, BlobStore& blobs);
+Display display_of(const DigestHex& manifest, BlobSource& blobs);
 
 }  // namespace bandsaw::coordinator

@@ -59,8 +59,9 @@ void GetBlobCall::write_next(bool first) {
   StartWrite(&chunk_);
 }
 
-void GetResultCall::begin() {
-  doors_.engine.result(job_, [self = shared_from_this()](absl::StatusOr<StoredResult> result) {
+void ImageCall::begin() {
+  doors_.files.post([self = shared_from_this()] {
+    absl::StatusOr<StoredResult> result = self->make_();
     if (!result.ok()) {
       self->Finish(link::to_grpc(result.status()));
       return;
@@ -75,7 +76,7 @@ void GetResultCall::begin() {
   });
 }
 
-void GetResultCall::OnWriteDone(bool ok) {
+void ImageCall::OnWriteDone(bool ok) {
   const std::uint64_t total = result_.image.pixels.size() * sizeof(Rgb);
   if (!ok) {
     Finish(grpc::Status::CANCELLED);
@@ -87,7 +88,7 @@ void GetResultCall::OnWriteDone(bool ok) {
   }
 }
 
-void GetResultCall::write_next() {
+void ImageCall::write_next() {
   const auto* bytes = reinterpret_cast<const char*>(result_.image.pixels.data());
   const std::uint64_t total = result_.image.pixels.size() * sizeof(Rgb);
   const std::uint64_t size = std::min<std::uint64_t>(wire::kChunkBytes, total - offset_);

@@ -2,6 +2,9 @@
 
 // What goes out in chunks: blobs to workers, results to people.
 
+#include <functional>
+#include <utility>
+
 #include "coordinator/rpc/streams.h"
 #include "proto/farm.pb.h"
 
@@ -27,11 +30,12 @@ class GetBlobCall final : public SelfOwned<grpc::ServerWriteReactor<farm::BlobCh
   farm::BlobChunk chunk_;
 };
 
-/// Farm.GetResult.
-class GetResultCall final
-    : public SelfOwned<grpc::ServerWriteReactor<farm::ResultChunk>, GetResultCall> {
+/// Farm.GetResult and Farm.Preview: an image that is made on the file executor.
+class ImageCall final : public SelfOwned<grpc::ServerWriteReactor<farm::ResultChunk>, ImageCall> {
  public:
-  GetResultCall(const Doors& doors, JobId job) : doors_(doors), job_(job) {}
+  /// May wait, for the engine too.
+  using Make = std::function<absl::StatusOr<StoredResult>()>;
+  ImageCall(const Doors& doors, Make make) : doors_(doors), make_(std::move(make)) {}
   void begin();
   void OnWriteDone(bool ok) override;
 
@@ -39,7 +43,7 @@ class GetResultCall final
   void write_next();
 
   const Doors doors_;
-  const JobId job_;
+  const Make make_;
   StoredResult result_;
   std::uint64_t offset_ = 0;
   farm::ResultChunk chunk_;

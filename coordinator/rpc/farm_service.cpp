@@ -2,11 +2,13 @@
 #include "coordinator/rpc/convert.h"
 #include "coordinator/rpc/downloads.h"
 #include "coordinator/rpc/gate.h"
+#include "coordinator/rpc/picture.h"
 #include "coordinator/rpc/services.h"
 #include "coordinator/rpc/uploads.h"
 #include "coordinator/rpc/watch_call.h"
 #include "proto/wire/limits.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/render/settings.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -93,7 +95,23 @@ grpc::ServerWriteReactor<farm::ResultChunk>* FarmService::GetResult(
   if (const auto status = doors_.gate.check(*context, link::Role::kFarm); !status.ok()) {
     return new RefusedCall<grpc::ServerWriteReactor<farm::ResultChunk>>(status);
   }
-  return GetResultCall::make(doors_, request->job());
+  return ImageCall::make(
+      doors_, [&engine = doors_.engine, job = request->job()] { return result_of(engine, job); });
+}
+
+grpc::ServerWriteReactor<farm::ResultChunk>* FarmService::Preview(
+    grpc::CallbackServerContext* context, const farm::PreviewRequest* request) {
+  if (const auto status = doors_.gate.check(*context, link::Role::kFarm); !status.ok()) {
+    return new RefusedCall<grpc::ServerWriteReactor<farm::ResultChunk>>(status);
+  }
+  if (request->most_side() > kMaxSide) {
+    return new RefusedCall<grpc::ServerWriteReactor<farm::ResultChunk>>(absl::InvalidArgumentError(
+        absl::StrCat("most_side: must lie in [0, ", kMaxSide, "], is ", request->most_side())));
+  }
+  const std::uint32_t most_side = request->most_side() > 0 ? request->most_side() : kMaxSide;
+  return ImageCall::make(doors_, [&engine = doors_.engine, job = request->job(), most_side] {
+    return preview_of(engine, job, most_side);
+  });
 }
 
 Unary* FarmService::ListJobs(grpc::CallbackServerContext* context, const farm::ListJobsRequest*,

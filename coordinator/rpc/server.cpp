@@ -1,7 +1,9 @@
 #include "coordinator/rpc/server.h"
 
 #include "absl/strings/str_cat.h"
+#include "coordinator/rpc/health_service.h"
 #include "coordinator/rpc/port_check.h"
+#include "coordinator/rpc/reflection.h"
 #include "coordinator/rpc/services.h"
 #include "renderlib/base/status_macros.h"
 
@@ -41,6 +43,8 @@ class Server::Impl {
     builder.AddListeningPort(options.listen, credentials(identity_, options.insecure), &port_);
     builder.RegisterService(&farm_);
     builder.RegisterService(&work_);
+    builder.RegisterService(&health_);
+    set_reflection(builder, options.reflection);
     server_ = builder.BuildAndStart();
     if (server_ == nullptr || port_ == 0) {
       return absl::FailedPreconditionError(
@@ -66,6 +70,7 @@ class Server::Impl {
   LongStreams streams_;
   FarmService farm_;
   WorkService work_;
+  HealthService health_;
   std::unique_ptr<grpc::Server> server_;
   int port_ = 0;
 };

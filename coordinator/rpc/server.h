@@ -15,6 +15,7 @@ namespace bandsaw::coordinator {
 struct ServerOptions {
   std::string listen = "0.0.0.0:7878";  ///< port 0 picks one
   bool insecure = false;                ///< plaintext
+  bool reflection = false;              ///< tells which calls there are, to anybody who asks
   RenewSecret renew = nullptr;          ///< what RotateSecret does; nothing: it is refused
 };
 

@@ -23,6 +23,8 @@ class FarmService final : public farm::Farm::CallbackService {
                                                    const farm::WatchRequest* request) override;
   grpc::ServerWriteReactor<farm::ResultChunk>* GetResult(
       grpc::CallbackServerContext* context, const farm::GetResultRequest* request) override;
+  grpc::ServerWriteReactor<farm::ResultChunk>* Preview(
+      grpc::CallbackServerContext* context, const farm::PreviewRequest* request) override;
   grpc::ServerUnaryReactor* ListJobs(grpc::CallbackServerContext* context,
                                      const farm::ListJobsRequest* request,
                                      farm::ListJobsReply* reply) override;

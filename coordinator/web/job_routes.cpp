@@ -3,6 +3,7 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "coordinator/rpc/convert.h"
+#include "coordinator/rpc/picture.h"
 #include "coordinator/web/reply.h"
 #include "coordinator/web/routes.h"
 #include "proto/web.pb.h"

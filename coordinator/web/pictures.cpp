@@ -2,12 +2,9 @@
 
 #include <algorithm>
 
-#include "absl/strings/str_cat.h"
 #include "coordinator/engine/clock.h"
-#include "coordinator/web/reply.h"
+#include "coordinator/rpc/picture.h"
 #include "renderlib/base/status_macros.h"
-#include "renderlib/image/shrink.h"
-#include "renderlib/package/package.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -22,22 +19,7 @@ absl::StatusOr<Pictures::Bytes> encoded(const Image& image, ImageFormat format,
                                              bytes.size());
 }
 
-absl::StatusOr<StoredResult> result_of(Engine& engine, JobId job) {
-  using Result = absl::StatusOr<StoredResult>;
-  return ask<Result>([&](auto answer) { engine.result(job, answer); });
-}
-
 }  // namespace
-
-absl::StatusOr<JobView> look_at(Engine& engine, JobId job) {
-  using View = absl::StatusOr<JobView>;
-  return ask<View>([&](auto answer) {
-    engine.watch(job, [answer](View view) {
-      answer(std::move(view));
-      return false;
-    });
-  });
-}
 
 absl::StatusOr<Pictures::Bytes> Pictures::preview(JobId id, std::uint32_t most_side) {
   ASSIGN_OR_RETURN(const JobView job, look_at(engine_, id));
@@ -52,7 +34,10 @@ absl::StatusOr<Pictures::Bytes> Pictures::preview(JobId id, std::uint32_t most_s
       return old.png;
     }
   }
-  absl::StatusOr<Bytes> png = make(job, most_side);
+  const absl::StatusOr<StoredResult> picture = picture_of(engine_, job, most_side);
+  const absl::StatusOr<Bytes> png =
+      picture.ok() ? encoded(picture->image, ImageFormat::kPng, picture->display)
+                   : picture.status();
   if (!png.ok()) {
     // Between the last band and the result on disk there is nothing newer than what was shown.
     return found != made_.end() ? absl::StatusOr<Bytes>(found->second.png) : png;
@@ -63,20 +48,6 @@ absl::StatusOr<Pictures::Bytes> Pictures::preview(JobId id, std::uint32_t most_s
              .at = steady_seconds(),
              .used = ++calls_});
   return png;
-}
-
-absl::StatusOr<Pictures::Bytes> Pictures::make(const JobView& job, std::uint32_t most_side) {
-  const RenderSettings& settings = job.spec.settings;
-  const std::uint32_t side = std::max(settings.width, settings.height);
-  const std::uint32_t step = (side + most_side - 1) / most_side;
-  if (job.state == JobState::kDone) {
-    ASSIGN_OR_RETURN(const StoredResult result, result_of(engine_, job.id));
-    return encoded(shrunk(result.image, step, step), ImageFormat::kPng, result.display);
-  }
-  using Part = absl::StatusOr<Image>;
-  ASSIGN_OR_RETURN(const Image rows,
-                   ask<Part>([&](auto answer) { engine_.preview(job.id, step, answer); }));
-  return encoded(shrunk(rows, step, 1), ImageFormat::kPng, display_of(job.spec.manifest));
 }
 
 void Pictures::keep(const Key& key, Made made) {
@@ -90,21 +61,6 @@ void Pictures::keep(const Key& key, Made made) {
     bytes_ -= size_of(oldest->second);
     made_.erase(oldest);
   }
-}
-
-Display Pictures::display_of(const DigestHex& manifest) {
-  if (display_.first != manifest) {
-    display_ = {manifest, Display()};
-    const auto digest = wire::digest_from_hex(manifest);
-    auto blob = digest.ok() ? engine_.blobs().get(*digest) : digest.status();
-    if (blob.ok()) {
-      const auto bytes = (*blob)->bytes();
-      const auto info =
-          package_info(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
-      display_.second = info.ok() ? info->display : Display();
-    }
-  }
-  return display_.second;
 }
 
 absl::StatusOr<Pictures::Bytes> Pictures::image(JobId job, ImageFormat format) {

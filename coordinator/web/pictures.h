@@ -45,19 +45,13 @@ class Pictures {
     double at = 0;              ///< when, in seconds of a steady clock
     std::uint64_t used = 0;     ///< counts calls
   };
-  absl::StatusOr<Bytes> make(const JobView& job, std::uint32_t most_side) REQUIRES(making_);
   void keep(const Key& key, Made made) REQUIRES(making_);
-  Display display_of(const DigestHex& manifest) REQUIRES(making_);
 
   Engine& engine_;
   Mutex making_;
   std::map<Key, Made> made_ GUARDED_BY(making_);
   std::size_t bytes_ GUARDED_BY(making_) = 0;  ///< of all that are made
   std::uint64_t calls_ GUARDED_BY(making_) = 0;
-  std::pair<DigestHex, Display> display_ GUARDED_BY(making_);  ///< of the manifest looked at last
 };
-
-/// The job as it is now. NOT_FOUND.
-absl::StatusOr<JobView> look_at(Engine& engine, JobId job);
 
 }  // namespace bandsaw::coordinator

@@ -1,16 +1,15 @@
 #pragma once
 
-// Messages to JSON and back, statuses to HTTP, and how a handler waits for the engine's answer.
+// Messages to JSON and back, statuses to HTTP.
 
 #include <google/protobuf/message.h>
 #include <httplib.h>
 
-#include <future>
-#include <memory>
 #include <string>
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
+#include "coordinator/engine/ask.h"
 
 namespace bandsaw::coordinator {
 
@@ -29,15 +28,5 @@ void answer(httplib::Response& response, const absl::StatusOr<Message>& message)
 
 /// The body as a message. INVALID_ARGUMENT: too long, or not of its form.
 absl::Status read_json(const httplib::ContentReader& reader, google::protobuf::Message& message);
-
-/// Waits on this thread for what `begin` is to call its argument with, once: the engine always
-/// answers (engine/answer.h), and HTTP's threads are there to wait.
-template <class T, class Begin>
-T ask(Begin begin) {
-  const auto answer = std::make_shared<std::promise<T>>();
-  std::future<T> later = answer->get_future();
-  begin([answer](T value) { answer->set_value(std::move(value)); });
-  return later.get();
-}
 
 }  // namespace bandsaw::coordinator

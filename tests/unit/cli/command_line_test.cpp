@@ -115,6 +115,19 @@ TEST(CommandLine, ThePhoneStudyTakesNamesOfItsImages) {
   expect_wrong("study a.glb --runs 4", "--phone");
 }
 
+TEST(CommandLine, AnImageMayBeLookedAtWhileItForms) {
+  const auto options = parsed<SubmitOptions>("submit a.glb --preview --tev 127.0.0.1:14158");
+  EXPECT_TRUE(options.verbosity.preview);
+  EXPECT_EQ(options.tev, "127.0.0.1:14158");
+  EXPECT_TRUE(parsed<WatchOptions>("watch 7 --preview").verbosity.preview);
+  EXPECT_EQ(parsed<RenderOptions>("render a.glb --tev host:1").tev, "host:1");
+  expect_wrong("submit a.glb --preview --json", "--preview");
+  expect_wrong("submit a.glb --preview --detach", "--preview");
+  expect_wrong("submit a.glb --tev h:1 --detach", "--tev");
+  expect_wrong("render a.glb --samples 1 --rows 0:1 --tev h:1", "--rows");
+  expect_wrong("render a.glb --tev 14158", "HOST:PORT");
+}
+
 TEST(CommandLine, InfoTakesOneFile) {
   EXPECT_EQ(parsed<InfoOptions>("info model.glb").scene, "model.glb");
   EXPECT_TRUE(parsed<InfoOptions>("info model.glb --json").verbosity.json);

@@ -169,5 +169,31 @@ TEST(Console, AnErrorIsOneLineWhateverItHolds) {
   EXPECT_EQ(screen.err, "bandsaw: a b?\n");
 }
 
+TEST(ProgressDisplay, APictureStandsAboveTheProgressAndStays) {
+  Screen screen;
+  const Console console = screen.console(true, true);
+  ProgressDisplay display(console, {.preview = true});
+  display.update(sample(), 100);
+  EXPECT_THAT(screen.out, Not(HasSubstr("▀")));
+  display.picture({2, 2, std::vector<Rgb>(4, Rgb{1, 0, 0})}, {});
+  display.update(sample(), 101);
+  EXPECT_THAT(screen.out, HasSubstr("255;0;0m▀▀\x1b[0m\x1b[K\n 50 %"));
+  screen.out.clear();
+  display.done(sample(1), {"box.png"});
+  EXPECT_THAT(screen.out, HasSubstr("▀▀\x1b[0m\nbox.png"));
+}
+
+TEST(ProgressDisplay, WithoutColoursNoPictureIsDrawnAndThatIsSaid) {
+  Screen screen;
+  const Console console = screen.console(true, false);
+  ProgressDisplay display(console, {.preview = true});
+  EXPECT_FALSE(display.draws());
+  display.picture({2, 2, std::vector<Rgb>(4)}, {});
+  display.update(sample(), 100);
+  display.done(sample(1), {"box.png"});
+  EXPECT_THAT(screen.out, Not(HasSubstr("▀")));
+  EXPECT_THAT(screen.err, HasSubstr("NO_COLOR"));
+}
+
 }  // namespace
 }  // namespace bandsaw::coordinator

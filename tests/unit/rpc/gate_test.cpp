@@ -56,6 +56,11 @@ class GateTest : public FarmTest {
            const auto reader = people()->GetResult(&c, {});
            return drain<grpc::ClientReader<farm::ResultChunk>, farm::ResultChunk>(*reader);
          }},
+        {"Preview", farm_role,
+         [this](auto& c) {
+           const auto reader = people()->Preview(&c, {});
+           return drain<grpc::ClientReader<farm::ResultChunk>, farm::ResultChunk>(*reader);
+         }},
         {"ListJobs", farm_role,
          [this](auto& c) {
            farm::ListJobsReply reply;
