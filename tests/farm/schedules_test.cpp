@@ -1,0 +1,190 @@
+// Random schedules of what befalls a farm of real processes: workers are killed, frozen, asked to
+// leave and cut off, others join, the coordinator is killed; the image has the same bytes each
+// time. 20 schedules, BANDSAW_SCHEDULES=n so many, BANDSAW_SEED=n that one alone. What a schedule
+// does is a function of its seed; when exactly it meets which band is not.
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <set>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "tests/farm/band_log.h"
+#include "tests/farm/farm_processes.h"
+#include "tests/support/random.h"
+
+namespace bandsaw::test {
+namespace {
+
+constexpr int kMachines = 4;
+
+std::uint64_t number(const char* variable, std::uint64_t otherwise) {
+  const char* const text = std::getenv(variable);
+  return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
+}
+
+std::vector<std::string> with_job(std::vector<std::string> arguments) {
+  for (const char* one : {"--width", "96", "--height", "96", "--samples", "64", "--quiet"}) {
+    arguments.emplace_back(one);
+  }
+  return arguments;
+}
+
+const std::string kScene = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
+
+class Schedule {
+ public:
+  /// Cables are pulled where there are `hosts`, which MUST stay.
+  Schedule(std::uint64_t seed, const Hosts* hosts) : random_(seed), hosts_(hosts), farm_(hosts) {}
+
+  /// The image's bytes; empty: the job did not end well, see told().
+  std::string run() {
+    const std::uint32_t count = 2 + random_.below(2);
+    while (names_.size() < count) {
+      join();
+    }
+    const std::string image = farm_.path("farm.pfm");
+    Process client = Process::start(
+        farm_.on("person", farm_.command(with_job({"submit", kScene, "-o", image}))));
+    const std::uint32_t events = 2 + random_.below(4);
+    for (std::uint32_t i = 0; i < events && wait_for_a_band(client); ++i) {
+      one_thing_happens();
+    }
+    calm_down();
+    const std::optional<int> code = client.wait();
+    tell(absl::StrCat("the client ended with ", code.value_or(-1)));
+    return code == 0 ? file_bytes(image) : "";
+  }
+
+  std::string told() { return absl::StrJoin(told_, "; ") + "\n" + farm_.coordinator_log(); }
+
+ private:
+  void tell(std::string what) { told_.push_back(std::move(what)); }
+
+  /// Until a worker has stored one more. False: the job is over.
+  bool wait_for_a_band(Process& client) {
+    while (!client.wait(Process::Milliseconds(0))) {
+      const std::string name = one_of(working());
+      const std::size_t before = logged_bands(farm_.worker_log(name), "stored").size();
+      const auto more = [&](const std::string&, const std::string& log) {
+        return logged_bands(log, "stored").size() > before;
+      };
+      if (farm_.worker(name).wait_until(more, Process::Milliseconds(500))) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  std::vector<std::string> working() const {
+    std::vector<std::string> names;
+    for (const std::string& name : names_) {
+      if (!frozen_.contains(name) && !cut_off_.contains(name)) {
+        names.push_back(name);
+      }
+    }
+    return names;
+  }
+  std::string one_of(const std::vector<std::string>& names) {
+    return names[random_.below(static_cast<std::uint32_t>(names.size()))];
+  }
+
+  void join() {
+    names_.push_back(absl::StrCat("w", names_.size()));
+    tell(names_.back() + " joins");
+    farm_.add_worker(names_.back(), 1 + static_cast<int>(random_.below(2)));
+  }
+
+  // At least one that works is left.
+  void one_thing_happens() {
+    const std::string name = one_of(working());
+    const bool others = working().size() > 1;
+    switch (random_.below(6)) {
+      case 0:
+        tell(name + " is killed and started again");
+        farm_.worker(name).signal(SIGKILL);
+        farm_.add_worker(name, 1);
+        break;
+      case 1:
+        tell(name + " is asked to leave and started again");
+        farm_.worker(name).signal(SIGTERM);
+        farm_.worker(name).wait();
+        farm_.add_worker(name, 1);
+        break;
+      case 2:
+        if (others) {
+          tell(name + " is frozen");
+          farm_.worker(name).signal(SIGSTOP);
+          frozen_.insert(name);
+        }
+        break;
+      case 3:
+        if (others && hosts_ != nullptr) {
+          tell(name + " is cut off");
+          hosts_->unplug(name);
+          cut_off_.insert(name);
+        } else {
+          calm_down();
+        }
+        break;
+      case 4:
+        if (names_.size() < kMachines) {
+          join();
+        }
+        break;
+      default:
+        tell("the coordinator is killed and started again");
+        farm_.coordinator().signal(SIGKILL);
+        farm_.coordinator().wait();
+        farm_.restart_coordinator();
+    }
+  }
+
+  void calm_down() {
+    tell("all go on");
+    for (const std::string& name : frozen_) {
+      farm_.worker(name).signal(SIGCONT);
+    }
+    for (const std::string& name : cut_off_) {
+      hosts_->plug(name);
+    }
+    frozen_.clear();
+    cut_off_.clear();
+  }
+
+  Random random_;
+  const Hosts* hosts_;
+  FarmProcesses farm_;
+  std::vector<std::string> names_;
+  std::set<std::string> frozen_;
+  std::set<std::string> cut_off_;
+  std::vector<std::string> told_;
+};
+
+TEST(Schedules, TheSameBytesWhateverBefallsTheFarm) {
+  const auto made = Hosts::create({"house", "person", "w0", "w1", "w2", "w3"});
+  const Hosts* hosts = made.ok() ? made->get() : nullptr;
+  const TempDir folder;
+  const std::string local = folder / "local.pfm";
+  ASSERT_EQ(run(with_job({BANDSAW_BIN, "render", kScene, "-o", local})).code, 0);
+  const std::string expected = file_bytes(local);
+  const bool alone = std::getenv("BANDSAW_SEED") != nullptr;
+  const std::uint64_t first = number("BANDSAW_SEED", 1);
+  const std::uint64_t count = alone ? 1 : number("BANDSAW_SCHEDULES", 20);
+  std::uint64_t same = 0;
+  for (std::uint64_t seed = first; seed < first + count; ++seed) {
+    Schedule schedule(seed, hosts);
+    const bool equal = schedule.run() == expected;
+    EXPECT_TRUE(equal) << "again with BANDSAW_SEED=" << seed << ": " << schedule.told();
+    same += equal ? 1 : 0;
+  }
+  std::printf("%llu of %llu random schedules gave the same bytes%s\n",
+              static_cast<unsigned long long>(same), static_cast<unsigned long long>(count),
+              hosts == nullptr ? " (cables were not pulled: no network namespaces here)" : "");
+}
+
+}  // namespace
+}  // namespace bandsaw::test
