@@ -42,7 +42,7 @@ absl::StatusOr<double> checked_audit(const RawOptions& raw, double standard) {
 
 absl::StatusOr<std::string> checked_web(const RawOptions& raw) {
   if (raw.web && *raw.web != "none") {
-    RETURN_IF_ERROR(check_listen("--web", *raw.web));
+    RETURN_IF_ERROR(check_address("--web", *raw.web, "0.0.0.0:8787"));
   }
   return raw.web.value_or("");
 }
@@ -55,7 +55,7 @@ absl::StatusOr<Command> checked_doctor(const RawOptions& raw) {
   if (raw.listen) {
     options.listen = *raw.listen;
   }
-  RETURN_IF_ERROR(check_listen("--listen", options.listen));
+  RETURN_IF_ERROR(check_address("--listen", options.listen, "0.0.0.0:7878"));
   return options;
 }
 

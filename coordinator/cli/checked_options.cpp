@@ -113,13 +113,14 @@ absl::Status check_scene(const RawOptions& raw, const std::string& command) {
 
 }  // namespace
 
-absl::Status check_listen(const std::string& option, const std::string& listen) {
-  const std::size_t colon = listen.rfind(':');
+absl::Status check_address(const std::string& option, const std::string& address,
+                           const std::string& example) {
+  const std::size_t colon = address.rfind(':');
   if (colon == std::string::npos || colon == 0) {
     return wrong(
-        absl::StrCat(option, ": must be HOST:PORT, as in 0.0.0.0:7878, is '", listen, "'"));
+        absl::StrCat(option, ": must be HOST:PORT, as in ", example, ", is '", address, "'"));
   }
-  return parse_whole(option + ": the port", listen.substr(colon + 1), 0, 65535).status();
+  return parse_whole(option + ": the port", address.substr(colon + 1), 0, 65535).status();
 }
 
 absl::StatusOr<Verbosity> checked_verbosity(const RawOptions& raw) {
@@ -139,7 +140,7 @@ absl::StatusOr<std::string> checked_tev(const RawOptions& raw) {
   if (raw.detach || raw.rows) {
     return wrong("--tev shows a whole image while it forms: --detach and --rows exclude it");
   }
-  RETURN_IF_ERROR(check_listen("--tev", *raw.tev));
+  RETURN_IF_ERROR(check_address("--tev", *raw.tev, "127.0.0.1:14158"));
   return *raw.tev;
 }
 
@@ -158,7 +159,7 @@ absl::StatusOr<Command> checked_serve(const RawOptions& raw) {
   if (raw.listen) {
     options.listen = *raw.listen;
   }
-  RETURN_IF_ERROR(check_listen("--listen", options.listen));
+  RETURN_IF_ERROR(check_address("--listen", options.listen, "0.0.0.0:7878"));
   ASSIGN_OR_RETURN(options.web, checked_web(raw));
   ASSIGN_OR_RETURN(options.audit_share, checked_audit(raw, options.audit_share));
   RETURN_IF_ERROR(read_positive("--keep-days", raw.keep_days, options.keep_days));

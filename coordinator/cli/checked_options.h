@@ -51,8 +51,9 @@ absl::StatusOr<Verbosity> checked_verbosity(const RawOptions& raw);
 absl::StatusOr<ReportOption> checked_report(const RawOptions& raw, bool has_images = true);
 /// HOST:PORT of a viewer; empty: not given.
 absl::StatusOr<std::string> checked_tev(const RawOptions& raw);
-/// `option` is for the error.
-absl::Status check_listen(const std::string& option, const std::string& listen);
+/// HOST:PORT. `option` and `example` are for the error.
+absl::Status check_address(const std::string& option, const std::string& address,
+                           const std::string& example);
 /// A share of all bands; `standard` when none is given.
 absl::StatusOr<double> checked_audit(const RawOptions& raw, double standard);
 /// Of the dashboard; empty: not given.

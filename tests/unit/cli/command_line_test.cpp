@@ -123,6 +123,7 @@ TEST(CommandLine, AnImageMayBeLookedAtWhileItForms) {
   EXPECT_EQ(parsed<RenderOptions>("render a.glb --tev host:1").tev, "host:1");
   expect_wrong("submit a.glb --preview --json", "--preview");
   expect_wrong("submit a.glb --preview --detach", "--preview");
+  expect_wrong("submit a.glb --tev h", "as in 127.0.0.1:14158");
   expect_wrong("submit a.glb --tev h:1 --detach", "--tev");
   expect_wrong("render a.glb --samples 1 --rows 0:1 --tev h:1", "--rows");
   expect_wrong("render a.glb --tev 14158", "HOST:PORT");

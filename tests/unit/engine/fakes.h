@@ -62,6 +62,10 @@ class JournalDisk {
     MutexLock lock(mutex_);
     return records_;
   }
+  std::size_t size() EXCLUDES(mutex_) {
+    MutexLock lock(mutex_);
+    return records_.size();
+  }
   absl::Status append(absl::Span<const Record> records) EXCLUDES(mutex_) {
     MutexLock lock(mutex_);
     if (breaks_after_ == 0) {
@@ -97,7 +101,7 @@ class MemoryJournal : public Journal {
   absl::Status rewrite(absl::Span<const Record> records) override {
     return disk_->rewrite(records);
   }
-  std::uint64_t size() const override { return disk_->records().size(); }
+  std::uint64_t size() const override { return disk_->size(); }
 
  private:
   std::shared_ptr<JournalDisk> disk_;
