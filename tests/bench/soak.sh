@@ -1,0 +1,52 @@
+#!/usr/bin/env bash
+# Thousands of small jobs through one coordinator and one worker: what both keep in memory, and how fast jobs go through.
+# Usage: tests/bench/soak.sh BIN-FOLDER [JOBS]   (default 10,000; one job about 0.1 s on two cores)
+# A line at each tenth: jobs done, resident MB of coordinator and worker, MB of the coordinator's folder. The last line says by
+# how much the second half grew both.
+set -euo pipefail
+bin=$(cd "${1:?usage: soak.sh BIN-FOLDER [JOBS]}" && pwd)
+jobs=${2:-10000}
+gallery=$(cd "$(dirname "$0")/../../renderlib/gallery" && pwd)
+folder=$(mktemp -d)
+pids=()
+stop() {
+  kill "${pids[@]}" 2>/dev/null || true
+  wait 2>/dev/null || true
+  rm -rf "$folder"
+}
+trap stop EXIT
+
+"$bin/bandsaw" serve --data "$folder/farm" --listen 127.0.0.1:0 >"$folder/coordinator.log" 2>&1 &
+pids+=($!)
+until [ -s "$folder/farm/join" ]; do
+  kill -0 "${pids[0]}" 2>/dev/null || { cat "$folder/coordinator.log" >&2; exit 1; }
+  sleep 0.05
+done
+"$bin/bandsaw-worker" --join "$folder/farm/join" --name soak --threads 1 --cache "$folder/cache" >"$folder/worker.log" 2>&1 &
+pids+=($!)
+
+resident() { awk '/^VmRSS/ { printf "%.1f", $2 / 1024 }' "/proc/$1/status"; }
+submit() {
+  "$bin/bandsaw" submit "$gallery/spheres.textproto" --farm "$folder/farm/farm" --samples 1 --width 16 --seed "$1" --quiet \
+    --report none -o "$folder/$2.pfm" >/dev/null
+}
+
+echo "| jobs | coordinator, MB | worker, MB | on disk, MB | jobs a second |"
+echo "| --- | --- | --- | --- | --- |"
+step=$(((jobs + 9) / 10))
+for ((done = 0; done < jobs; done += step)); do
+  began=$(date +%s.%N)
+  for lane in 0 1 2 3; do
+    for ((i = done + lane; i < done + step && i < jobs; i += 4)); do submit "$i" "$lane"; done &
+    lanes[lane]=$!
+  done
+  wait "${lanes[@]}"
+  last=$((done + step < jobs ? done + step : jobs))
+  coordinator=$(resident "${pids[0]}") worker=$(resident "${pids[1]}")
+  awk -v jobs="$last" -v c="$coordinator" -v w="$worker" -v disk="$(du -sm "$folder/farm" | cut -f1)" \
+    -v took="$(date +%s.%N) $began" -v step=$((last - done)) 'BEGIN {
+      split(took, t, " "); printf "| %d | %s | %s | %d | %.1f |\n", jobs, c, w, disk, step / (t[1] - t[2]) }'
+  ((2 * last < jobs)) || [ -n "${half:-}" ] || half=$coordinator half_worker=$worker half_at=$last
+done
+awk -v c="$coordinator" -v h="$half" -v w="$worker" -v hw="$half_worker" -v n=$((jobs - half_at)) 'BEGIN {
+  printf "the last %d jobs: coordinator %+.1f MB, worker %+.1f MB\n", n, c - h, w - hw }'
