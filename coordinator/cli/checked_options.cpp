@@ -164,6 +164,7 @@ absl::StatusOr<Command> checked_serve(const RawOptions& raw) {
   ASSIGN_OR_RETURN(options.audit_share, checked_audit(raw, options.audit_share));
   RETURN_IF_ERROR(read_positive("--keep-days", raw.keep_days, options.keep_days));
   RETURN_IF_ERROR(read_positive("--keep-size", raw.keep_size, options.keep_gb));
+  RETURN_IF_ERROR(read_whole("--keep-jobs", raw.keep_jobs, 1, 1'000'000, options.keep_jobs));
   return options;
 }
 

@@ -15,7 +15,8 @@ namespace bandsaw::coordinator {
 /// The union of all commands' options, unread.
 struct RawOptions {
   std::string scene, environment, camera, image, reference, data, farm, join;
-  std::optional<std::string> job, listen, priority, worker, action, role, keep_days, keep_size;
+  std::optional<std::string> job, listen, priority, worker, action, role, keep_days, keep_size,
+      keep_jobs;
   std::vector<std::string> outputs, parts, scenes, hosts;
   std::optional<std::string> samples, error, time, seed, width, height, depth, threads, rows;
   std::optional<std::string> integrator, exposure, tone, layers, report, seeds, reference_samples;

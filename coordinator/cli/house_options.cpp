@@ -29,6 +29,9 @@ void add_keep(CLI::App& app, RawOptions& raw) {
          "--keep-size", raw.keep_size,
          "Forget the oldest of them when images and scenes take more than this [default: 100]")
       ->type_name("GB");
+  app.add_option("--keep-jobs", raw.keep_jobs,
+                 "Forget the oldest of them when there are more than this [default: 10000]")
+      ->type_name("N");
 }
 
 void add_serve(CLI::App& app, RawOptions& raw) {

@@ -63,9 +63,10 @@ struct ServeOptions {
   std::string web;  ///< HOST:PORT of the dashboard; "none"; empty: loopback, on a port that is free
   bool insecure = false;
   bool reflection = false;
-  double keep_days = 30;      ///< jobs that are over
-  double keep_gb = 100;       ///< results and scenes in all
-  double audit_share = 0.01;  ///< of all bands, [0, 1]
+  double keep_days = 30;             ///< jobs that are over
+  double keep_gb = 100;              ///< results and scenes in all
+  std::uint64_t keep_jobs = 10'000;  ///< that are over
+  double audit_share = 0.01;         ///< of all bands, [0, 1]
 };
 
 /// What an EXR file holds beside the image.

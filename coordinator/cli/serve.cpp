@@ -62,6 +62,7 @@ absl::StatusOr<Serving> start(const ServeOptions& options) {
   EngineOptions engine_options;
   engine_options.data_folder = folder;
   engine_options.keep.seconds = options.keep_days * 24 * 60 * 60;
+  engine_options.keep.jobs = options.keep_jobs;
   engine_options.keep.bytes = static_cast<std::uint64_t>(options.keep_gb * 1e9);
   engine_options.audit_share = options.audit_share;
   ASSIGN_OR_RETURN(serving.engine, Engine::start(engine_options));

@@ -71,7 +71,8 @@ std::vector<JobId> Collector::to_forget(const std::vector<Job>& jobs, double now
   });
   std::vector<JobId> forget;
   for (const Final& job : final_jobs) {
-    if (now - job.at <= keep_.seconds && bytes <= keep_.bytes) {
+    if (now - job.at <= keep_.seconds && bytes <= keep_.bytes &&
+        final_jobs.size() - forget.size() <= keep_.jobs) {
       break;
     }
     forget.push_back(job.id);

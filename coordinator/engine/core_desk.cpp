@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kTick_s = 0.1;
 constexpr double kCollectEvery_s = 600;
+constexpr std::size_t kCollectEveryJobs = 1'000;
 constexpr std::uint64_t kCompactAbove = 10'000;
 
 }  // namespace
@@ -93,6 +94,7 @@ void CoreDesk::perform(const Action& action) {
 void CoreDesk::note(const Record& record) {
   if (const auto* added = std::get_if<record::JobAdded>(&record)) {
     known_[added->job].spec = added->spec;
+    ++added_since_;
   } else if (const auto* pass = std::get_if<record::PassPlanned>(&record)) {
     known_[pass->job].pass_ends.push_back(pass->samples.last);
   } else if (const auto* changed = std::get_if<record::StateChanged>(&record)) {
@@ -134,10 +136,11 @@ void CoreDesk::settle() {
 
 void CoreDesk::collect() {
   const Time now = clock_.now();
-  if (collected_at_ && now - *collected_at_ < kCollectEvery_s) {
+  if (collected_at_ && now - *collected_at_ < kCollectEvery_s && added_since_ < kCollectEveryJobs) {
     return;
   }
   collected_at_ = now;
+  added_since_ = 0;
   std::vector<Collector::Job> jobs;
   for (const auto& [id, known] : known_) {
     jobs.push_back({id, known.spec.manifest, is_final(known.state)});

@@ -30,7 +30,7 @@ struct EngineOptions {
       6;  ///< after a restart: how long to wait for workers that were there before
   /// Of all bands, [0, 1]: rendered by two machines and compared.
   double audit_share = 0.01;
-  Keep keep = {};  ///< of what is over; looked at every ten minutes
+  Keep keep = {};  ///< of what is over; looked at every ten minutes and every 1,000 jobs
 };
 
 /// How a band's upload ended for its worker.

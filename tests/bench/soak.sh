@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # Thousands of small jobs through one coordinator and one worker: what both keep in memory, and how fast jobs go through.
-# Usage: tests/bench/soak.sh BIN-FOLDER [JOBS]   (default 10,000; one job about 0.1 s on two cores)
+# Usage: tests/bench/soak.sh BIN-FOLDER [JOBS [KEPT]]   (default 10,000 and 1,000; one job about 0.1 s on two cores)
+# KEPT: the coordinator's --keep-jobs; until there are so many that are over, it grows by each.
 # A line at each tenth: jobs done, resident MB of coordinator and worker, MB of the coordinator's folder. The last line says by
 # how much the second half grew both.
 set -euo pipefail
-bin=$(cd "${1:?usage: soak.sh BIN-FOLDER [JOBS]}" && pwd)
-jobs=${2:-10000}
+bin=$(cd "${1:?usage: soak.sh BIN-FOLDER [JOBS [KEPT]]}" && pwd)
+jobs=${2:-10000} kept=${3:-1000}
 gallery=$(cd "$(dirname "$0")/../../renderlib/gallery" && pwd)
 folder=$(mktemp -d)
 pids=()
@@ -16,7 +17,7 @@ stop() {
 }
 trap stop EXIT
 
-"$bin/bandsaw" serve --data "$folder/farm" --listen 127.0.0.1:0 >"$folder/coordinator.log" 2>&1 &
+"$bin/bandsaw" serve --data "$folder/farm" --listen 127.0.0.1:0 --web none --keep-jobs "$kept" >"$folder/coordinator.log" 2>&1 &
 pids+=($!)
 until [ -s "$folder/farm/join" ]; do
   kill -0 "${pids[0]}" 2>/dev/null || { cat "$folder/coordinator.log" >&2; exit 1; }

@@ -159,6 +159,7 @@ TEST(CommandLine, ServeTakesItsOptions) {
   EXPECT_EQ(parsed<ServeOptions>("serve --web 127.0.0.1:0").web, "127.0.0.1:0");
   EXPECT_EQ(parsed<ServeOptions>("serve --keep-days 2").keep_days, 2);
   EXPECT_EQ(parsed<ServeOptions>("serve --keep-size 0.5").keep_gb, 0.5);
+  EXPECT_EQ(parsed<ServeOptions>("serve --keep-jobs 50").keep_jobs, 50u);
 }
 
 TEST(CommandLine, TheOtherCommandsTakeTheirOptions) {
@@ -210,6 +211,7 @@ TEST(CommandLine, WrongUseIsOneLineThatNamesTheWord) {
   expect_wrong("cancel 0", "'0'");
   expect_wrong("serve --keep-days 0", "--keep-days");
   expect_wrong("serve --keep-size much", "--keep-size");
+  expect_wrong("serve --keep-jobs 0", "--keep-jobs");
   expect_wrong("pause", "number");
   expect_wrong("logs", "name");
   expect_wrong("doctor --listen 7878", "HOST:PORT");

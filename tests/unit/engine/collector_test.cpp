@@ -86,6 +86,17 @@ TEST_F(CollectorTest, ForgetsTheOldestBeyondTheBytes) {
   EXPECT_THAT(collector({}).to_forget(jobs, kNow), IsEmpty());
 }
 
+TEST_F(CollectorTest, ForgetsTheOldestBeyondTheNumber) {
+  std::vector<Collector::Job> jobs;
+  for (const JobId job : {1, 2, 3, 4}) {
+    result(job, 1, kNow - kDay);
+    jobs.push_back({job, "", job != 2});
+  }
+  EXPECT_THAT(collector({.jobs = 2}).to_forget(jobs, kNow), ElementsAre(1));
+  EXPECT_THAT(collector({.jobs = 1}).to_forget(jobs, kNow), ElementsAre(1, 3));
+  EXPECT_THAT(collector({.jobs = 3}).to_forget(jobs, kNow), IsEmpty());
+}
+
 TEST_F(CollectorTest, NeverRemovesWhatAKnownJobNeeds) {
   const DigestHex one = package("one");
   const DigestHex two = package("two");

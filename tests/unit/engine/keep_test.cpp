@@ -1,0 +1,80 @@
+// A coordinator to which jobs are sent by the thousand forgets the oldest of those that are over.
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "tests/unit/engine/fakes.h"
+#include "tests/unit/engine/test_farm.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+class KeepTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    EngineDoors doors;
+    doors.journal = std::make_unique<MemoryJournal>(std::make_shared<JournalDisk>());
+    ASSERT_TRUE(farm_.start(std::move(doors), {.jobs = 5}).ok());
+    spec_ = farm_.spec(StopAtSamples{.samples = 64});
+  }
+
+  /// All at once: waiting for each would wait for the disk each time.
+  std::vector<JobId> submit(std::size_t jobs) {
+    Box<std::vector<JobId>> box;
+    std::vector<JobId> submitted;  // Of the engine's thread, which answers in order.
+    for (std::size_t i = 0; i < jobs; ++i) {
+      spec_.request_id = absl::StrCat("one-of-many-requests-", ++requests_);
+      farm_.engine().submit(spec_, [&, jobs](const absl::StatusOr<JobId>& job) {
+        submitted.push_back(job.value_or(0));
+        if (submitted.size() == jobs) {
+          box.put(submitted);
+        }
+      });
+    }
+    return box.take();
+  }
+  void cancel(const std::vector<JobId>& jobs) {
+    Box<bool> done;
+    for (const JobId job : jobs) {
+      farm_.engine().cancel(job, [&, job](const absl::StatusOr<JobView>& view) {
+        EXPECT_TRUE(view.ok()) << view.status();
+        if (job == jobs.back()) {
+          done.put(true);
+        }
+      });
+    }
+    done.take();
+  }
+  std::vector<JobView> jobs() {
+    Box<std::vector<JobView>> box;
+    farm_.engine().jobs([&](std::vector<JobView> views) { box.put(std::move(views)); });
+    return box.take();
+  }
+
+  TestFarm farm_;
+  JobSpec spec_;
+  int requests_ = 0;
+};
+
+TEST_F(KeepTest, TheThousandthJobMakesTheOldestGo) {
+  cancel(submit(990));
+  EXPECT_EQ(jobs().size(), 990u);
+  submit(20);
+  std::vector<JobView> left = jobs();
+  while (left.size() > 25) {  // The store's thread looks at what there is first.
+    left = jobs();
+  }
+  ASSERT_EQ(left.size(), 25u) << "five that are over, twenty that are not";
+  std::size_t over = 0;
+  for (const JobView& job : left) {
+    EXPECT_GT(job.id, 985u);
+    over += is_final(job.state) ? 1 : 0;
+  }
+  EXPECT_EQ(over, 5u);
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator
