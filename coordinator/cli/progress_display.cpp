@@ -57,6 +57,11 @@ void ProgressDisplay::update(const Progress& progress, double now) {
                   : console_.colour() ? absl::StrCat(kBold, header, kPlain)
                                       : header);
   }
+  // The first pixels are what people wait for: they are told at once.
+  if (!has_pixels_ && progress.job.samples_done > 0) {
+    has_pixels_ = true;
+    has_shown_ = false;
+  }
   if (is_final(progress.job.state) || !due(now)) {
     return;
   }

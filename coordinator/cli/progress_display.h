@@ -1,7 +1,7 @@
 #pragma once
 
 // Shows progress the way that was asked for: redrawn in place on a terminal, a line a second in a
-// pipe, JSON lines, or not.
+// pipe and one with the first pixels, JSON lines likewise, or not.
 
 #include <string>
 
@@ -70,6 +70,7 @@ class ProgressDisplay {
   Display shown_as_ GUARDED_BY(mutex_);
   bool has_header_ GUARDED_BY(mutex_) = false;
   bool has_shown_ GUARDED_BY(mutex_) = false;
+  bool has_pixels_ GUARDED_BY(mutex_) = false;
   double shown_at_ GUARDED_BY(mutex_) = 0;
 };
 

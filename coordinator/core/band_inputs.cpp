@@ -123,6 +123,9 @@ void Core::State::measure(Worker& worker, Job& job, const input::BandStored& in)
   }
   on_job.pace.measure(work / in.render_s, std::max(kNewestPace, 1.0 / (2 + on_job.bands++)));
   job.per_thread.measure(on_job.pace.mean() / worker.threads);
+  // Samples are those of pixels that take part: of so many columns of all rows.
+  const double columns = static_cast<double>(samples) / in.band.rows.count();
+  job.row_times.measure(in.band.rows, in.render_s * worker.threads / columns);
 }
 
 void Core::State::end_own(const Worker& worker, const input::BandStored& in) {

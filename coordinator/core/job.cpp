@@ -58,7 +58,10 @@ std::uint64_t Pass::renderer_of_row(const SampleRange& of, std::uint32_t row) co
 }
 
 Job::Job(JobId job, JobSpec job_spec)
-    : id(job), spec(std::move(job_spec)), cost(spec.settings.height) {}
+    : id(job),
+      spec(std::move(job_spec)),
+      cost(spec.settings.height),
+      row_times(spec.settings.height) {}
 
 Pass* Job::pass_of(const Band& band) {
   return const_cast<Pass*>(std::as_const(*this).pass_of(band));

@@ -16,6 +16,7 @@
 #include "coordinator/core/coverage.h"
 #include "coordinator/core/messages.h"
 #include "coordinator/core/row_digests.h"
+#include "coordinator/core/row_times.h"
 #include "coordinator/core/speed.h"
 #include "coordinator/core/types.h"
 #include "renderlib/render/adaptive_plan.h"
@@ -151,6 +152,7 @@ class Job {
   double elapsed_noted = 0;            ///< seconds in all, as journalled last
   Throughput throughput;               ///< pixel samples
   CostMap cost;                        ///< of its rows
+  RowTimes row_times;                  ///< likewise
   Speed per_thread;                    ///< pace of all its workers, in work a second and thread
 
   static constexpr std::size_t kFaultsKept = 1'000;

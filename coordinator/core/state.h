@@ -238,6 +238,11 @@ class Core::State {
   double remaining(const Job& job, Time now) const;
   double expected_samples(const Job& job) const;
   double expected_work(const Job& job) const;
+  /// In seconds of a thread: all that nobody has been given yet, and what is left of the rest.
+  double time_of_free(const Job& job) const;
+  double time_of_leased(const Job& job, Time now) const;
+  /// Of the workers that render it; of those that render another job too, by what they hold of it.
+  double threads_at(const Job& job) const;
   std::vector<JobWorkerView> lines(const Job& job) const;
 
   // Invariants, each a sentence when it does not hold.

@@ -116,23 +116,6 @@ double Core::State::fraction(const Job& job, Time now) const {
   return std::clamp(static_cast<double>(job.totals().samples) / all, 0.0, 1.0);
 }
 
-double Core::State::remaining(const Job& job, Time now) const {
-  if (is_final(job.state)) {
-    return 0;
-  }
-  if (const auto* rule = std::get_if<StopAtTime>(&job.spec.stop); rule && !job.fixed) {
-    return job.first_lease_at ? std::max(0.0, rule->seconds - elapsed(job, now)) : -1;
-  }
-  const bool unknown =
-      std::holds_alternative<StopAtError>(job.spec.stop) && !job.fixed && job.error < 0;
-  const double speed = job.throughput.per_second(now);
-  if (unknown || speed <= 0) {
-    return -1;
-  }
-  const double all = expected_work(job);
-  return std::max(0.0, all - static_cast<double>(job.totals().samples)) / speed;
-}
-
 std::vector<WorkerView> Core::State::worker_views(Time now) const {
   std::vector<WorkerView> views;
   for (const auto& [id, worker] : workers_.all()) {

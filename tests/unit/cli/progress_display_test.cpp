@@ -61,6 +61,22 @@ TEST(ProgressDisplay, APipeGetsOneLineASecondAndNoEscapes) {
   EXPECT_EQ(screen.err, "");
 }
 
+TEST(ProgressDisplay, APipeIsToldOfTheFirstPixelsAtOnce) {
+  Screen screen;
+  const Console console = screen.console(false);
+  ProgressDisplay display(console, {});
+  Progress begun = sample(0);
+  display.update(begun, 100);
+  begun.job.samples_done = 32;
+  begun.job.fraction = 0.02;
+  display.update(begun, 100.1);
+  begun.job.fraction = 0.03;
+  display.update(begun, 100.2);
+  const std::vector<std::string> lines = absl::StrSplit(screen.out, '\n', absl::SkipEmpty());
+  EXPECT_THAT(lines, ElementsAre("job 3 · box · 8×4 · until 16 samples", StartsWith("  0 %"),
+                                 StartsWith("  2 %")));
+}
+
 TEST(ProgressDisplay, ATerminalIsRedrawnInPlaceAndLeftClean) {
   Screen screen;
   const Console console = screen.console(true);

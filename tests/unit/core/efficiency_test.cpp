@@ -1,6 +1,8 @@
 // How much of the workers' time is used, and how long the end drags on, in virtual time: sixteen
 // workers whose renderer sleeps by a cost map. The figures are printed.
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "gtest/gtest.h"
@@ -96,6 +98,34 @@ TEST(Efficiency, WhenAWorkerStallsNearTheEnd) {
       measure("one stalls", {.speeds = speeds(60, true), .cost_of = even, .stalls_at = 59});
   EXPECT_GE(r.efficiency, 0.93);
   EXPECT_LE(r.tail, 0.05);
+}
+
+/// How far off the time left is that is told after a quarter of the time, of what was left; the
+/// worst of a few seeds.
+double worst_time_left(BenchFarm farm) {
+  double worst = 0;
+  for (farm.seed = 1; farm.seed <= 5; ++farm.seed) {
+    const BenchResult one = run_bench(farm);
+    EXPECT_EQ(one.broken, "");
+    worst = std::max(worst, std::abs(one.told_left - 1));
+  }
+  return worst;
+}
+
+/// 1:4 from the top to the bottom, with the mean 1.
+double rising(std::uint32_t row) { return 0.4 + 1.2 * row / kHeight; }
+
+TEST(TimeLeft, IsToldAfterAQuarterOfTheTime) {
+  const double two = 1920.0 * kHeight * 64 / 60 / 2;
+  EXPECT_LE(worst_time_left({.speeds = speeds(60, true), .cost_of = even}), 0.15);
+  EXPECT_LE(worst_time_left({.speeds = {two, two}, .cost_of = rising, .noise = 0.1}), 0.15);
+  EXPECT_LE(worst_time_left({.speeds = speeds(60, false), .cost_of = rising, .noise = 0.3}), 0.15);
+}
+
+TEST(TimeLeft, IsToldOfRowsThatTakeMinutesInAll) {
+  const double two = 1920.0 * kHeight * 64 / 600 / 2;
+  EXPECT_LE(worst_time_left({.speeds = {two, two}, .cost_of = rising, .noise = 0.1}), 0.15);
+  EXPECT_LE(worst_time_left({.speeds = {two, two}, .cost_of = uneven, .noise = 0.1}), 0.15);
 }
 
 }  // namespace

@@ -58,6 +58,7 @@ class Bench {
 
   void tick() {
     take(core_.step(input::Tick{}, agenda_.now()));
+    told_left_[agenda_.now()] = core_.job(1, agenda_.now())->remaining_s;
     agenda_.in(0.1, [this] { tick(); });
   }
 
@@ -163,6 +164,8 @@ class Bench {
       result_.broken = "the job did not come to its end";
     }
     result_.seconds = agenda_.now() - first_lease_;
+    const auto quarter = told_left_.lower_bound(first_lease_ + result_.seconds / 4);
+    result_.told_left = quarter->second / (agenda_.now() - quarter->first);
     double work = 0;
     for (std::uint32_t row = 0; row < farm_.height; ++row) {
       work += farm_.cost_of(row);
@@ -185,6 +188,7 @@ class Bench {
   Core core_;
   std::vector<Busy> workers_;
   BenchResult result_;
+  std::map<double, double> told_left_;  ///< by time
   double first_lease_ = -1;
   bool over_ = false;
 };

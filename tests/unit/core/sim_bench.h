@@ -34,6 +34,7 @@ struct BenchResult {
   double tail = 0;        ///< last result after the first worker idles for good, of the whole
   std::uint64_t bands = 0;
   std::uint64_t wasted = 0;  ///< bands or parts rendered for nothing
+  double told_left = 0;      ///< time left as told after a quarter of the time, over what was left
   std::string broken;        ///< an invariant, or a job that did not end
 };
 
