@@ -10,11 +10,6 @@ void Credits::add(JobId job, const RowRange& rows, std::uint64_t renderer,
     names_[renderer] = name;
   }
   Rows& all = jobs_[job];
-  if (jobs_.size() > kMostJobs) {
-    // The oldest; `all` itself only where it is that.
-    const auto oldest = jobs_.begin()->first == job ? std::next(jobs_.begin()) : jobs_.begin();
-    jobs_.erase(oldest);
-  }
   auto next = all.lower_bound(rows.first);
   if (next != all.begin() && std::prev(next)->second.rows.last > rows.first) {
     --next;

@@ -1,6 +1,7 @@
 #pragma once
 
-// Who rendered which rows of which job, for people to look at.
+// Who rendered which rows of which job that is at work, for people to look at. When a job is over
+// they lie beside its image (store/credits_file.h).
 
 #include <cstdint>
 #include <map>
@@ -8,26 +9,19 @@
 #include <vector>
 
 #include "coordinator/core/types.h"
+#include "coordinator/store/credits_file.h"
 
 namespace bandsaw::coordinator {
 
-/// Rows that one worker rendered last.
-struct RowsBy {
-  RowRange rows;
-  std::string worker;  ///< its name; empty: not known
-  friend bool operator==(const RowsBy&, const RowsBy&) = default;
-};
-
-/// Keeps the newest kMostJobs jobs that it heard of. Used by one thread.
+/// Of jobs at work. Used by one thread.
 class Credits {
  public:
-  static constexpr std::size_t kMostJobs = 200;
-
   /// `renderer` names the worker in all lives of the coordinator. `name` may be empty: what a band
   /// on disk does not say is known again once the worker brings the next.
   void add(JobId job, const RowRange& rows, std::uint64_t renderer, const std::string& name);
   /// By row, without those that nobody rendered; neighbours of one worker are one.
   std::vector<RowsBy> of(JobId job) const;
+  void forget(JobId job) { jobs_.erase(job); }
 
  private:
   static constexpr std::size_t kMostNames = 65'536;

@@ -76,7 +76,8 @@ class Engine {
   /// What is there of the image of a job at work: every row_step-th row, `row_step` >= 1.
   /// NOT_FOUND.
   void preview(JobId job, std::uint32_t row_step, std::function<void(absl::StatusOr<Image>)> done);
-  /// Who rendered the rows that are there, in this life of the coordinator; by row.
+  /// Who rendered the rows that are there, by row. Of a job at work a name is not known from before
+  /// a restart until its worker brings another band.
   void rendered_by(JobId job, std::function<void(std::vector<RowsBy>)> done);
   /// NOT_FOUND, FAILED_PRECONDITION: not done, DATA_LOSS.
   void result(JobId job, std::function<void(absl::StatusOr<StoredResult>)> done);

@@ -58,7 +58,15 @@ void FilmDesk::retract(JobId id, std::uint64_t renderer) {
   work(id, job->second).IgnoreError();  // the hook has heard of it
 }
 
-void FilmDesk::drop(JobId job) { jobs_.erase(job); }
+void FilmDesk::drop(JobId job) {
+  jobs_.erase(job);
+  credits_.forget(job);
+}
+
+std::vector<RowsBy> FilmDesk::rendered_by(JobId job) const {
+  return jobs_.contains(job) ? credits_.of(job)
+                             : read_credits(folder_.credits(job)).value_or(std::vector<RowsBy>());
+}
 
 absl::StatusOr<Image> FilmDesk::preview(JobId id, std::uint32_t row_step) const {
   const auto job = jobs_.find(id);
@@ -135,7 +143,7 @@ absl::Status FilmDesk::give_image(JobId id, OneJob& job) {
   job.image_of.reset();
   // What was told on the way may have been of more samples.
   hooks_.merged({.job = id, .samples = samples, .error = job.film->error()});
-  hooks_.image(id, job.film->snapshot().image);
+  hooks_.image(id, job.film->snapshot().image, credits_.of(id));
   return absl::OkStatus();
 }
 

@@ -28,7 +28,7 @@ class FilmDesk {
   /// Called on the film's thread.
   struct Hooks {
     std::function<void(input::PassMerged)> merged;
-    std::function<void(JobId, Image)> image;
+    std::function<void(JobId, Image, std::vector<RowsBy>)> image;
     /// The film could not take a band: it is kept in memory until retry.
     std::function<void(JobId, absl::Status)> failed;
   };
@@ -51,8 +51,9 @@ class FilmDesk {
   /// What is there of a job's image, of every row_step-th row. NOT_FOUND: no band is, or the job is
   /// over.
   absl::StatusOr<Image> preview(JobId job, std::uint32_t row_step) const;
-  /// Who rendered the rows, as far as they are there; also of the newest jobs that are over.
-  std::vector<RowsBy> rendered_by(JobId job) const { return credits_.of(job); }
+  /// Who rendered the rows, as far as they are there; of jobs that are over from what lies beside
+  /// the image.
+  std::vector<RowsBy> rendered_by(JobId job) const;
 
  private:
   struct Waiting {

@@ -185,10 +185,9 @@ FilmDesk::Hooks Engine::Impl::film_hooks() {
                 on_core([merged](CoreDesk& core) { core.hear(merged); });
               },
           .image =
-              [this](JobId job, Image image) {
-                on_store([job, image = std::move(image)](StoreDesk& store) {
-                  store.write_result(job, image);
-                });
+              [this](JobId job, Image image, std::vector<RowsBy> credits) {
+                on_store([job, image = std::move(image), credits = std::move(credits)](
+                             StoreDesk& store) { store.write_result(job, image, credits); });
               },
           .failed =
               [this](JobId job, absl::Status status) {

@@ -1,5 +1,7 @@
 #include "coordinator/engine/store_desk.h"
 
+#include <spdlog/spdlog.h>
+
 #include <filesystem>
 #include <utility>
 
@@ -113,7 +115,11 @@ void StoreDesk::settle(OpenJob& job) {
   }
 }
 
-void StoreDesk::write_result(JobId id, const Image& image) {
+void StoreDesk::write_result(JobId id, const Image& image, const std::vector<RowsBy>& credits) {
+  // The image does not depend on it.
+  if (const absl::Status status = write_credits(credits, folder_.credits(id)); !status.ok()) {
+    spdlog::warn("job={} who rendered its rows could not be kept: {}", id, status.ToString());
+  }
   const absl::Status written =
       coordinator::write_result(image, folder_.job(id), folder_.result(id));
   if (!written.ok()) {

@@ -13,6 +13,7 @@
 #include "coordinator/engine/clock.h"
 #include "coordinator/engine/put_band.h"
 #include "coordinator/store/band_log.h"
+#include "coordinator/store/credits_file.h"
 #include "coordinator/store/data_folder.h"
 #include "coordinator/store/result_file.h"
 
@@ -46,7 +47,7 @@ class StoreDesk {
   /// fails.
   void settle();
 
-  void write_result(JobId job, const Image& image);
+  void write_result(JobId job, const Image& image, const std::vector<RowsBy>& credits);
   absl::StatusOr<StoredResult> read_result(JobId job) const;
   /// Removes the log of a final job.
   void drop_bands(JobId job);

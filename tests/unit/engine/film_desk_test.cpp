@@ -59,6 +59,7 @@ class FilmDeskTest : public testing::Test {
   std::vector<std::uint64_t> merged_;
   std::vector<double> errors_;
   std::vector<Image> images_;
+  std::vector<RowsBy> credits_;
   int failed_ = 0;
   FilmDesk desk_{folder_,
                  {.merged =
@@ -66,7 +67,11 @@ class FilmDeskTest : public testing::Test {
                         merged_.push_back(m.samples);
                         errors_.push_back(m.error ? m.error->relative_rmse : -1);
                       },
-                  .image = [this](JobId, Image image) { images_.push_back(std::move(image)); },
+                  .image =
+                      [this](JobId, Image image, std::vector<RowsBy> credits) {
+                        images_.push_back(std::move(image));
+                        credits_ = std::move(credits);
+                      },
                   .failed = [this](JobId, absl::Status) { ++failed_; }}};
 };
 
@@ -176,10 +181,23 @@ TEST_F(FilmDeskTest, APreviewShowsWhatIsThereAndWhoMadeIt) {
   const Image thirds = *desk_.preview(1, 3);
   EXPECT_EQ(thirds.height, 3u);
   EXPECT_EQ(thirds.at(3, 1), whole.at(3, 3));
+  const std::vector<RowsBy> by_anna = {{{2, 5}, "anna"}};
+  EXPECT_EQ(desk_.rendered_by(1), by_anna);
   desk_.drop(1);
   EXPECT_TRUE(absl::IsNotFound(desk_.preview(1, 1).status()));
-  ASSERT_EQ(desk_.rendered_by(1).size(), 1u);
-  EXPECT_EQ(desk_.rendered_by(1)[0], (RowsBy{{2, 5}, "anna"}));
+}
+
+TEST_F(FilmDeskTest, WhoMadeAnImageIsToldWithItAndReadFromBesideItLater) {
+  PutBand put = logged({0, 16}, {0, 8});
+  put.worker = "anna";
+  ASSERT_TRUE(desk_.add(1, std::move(put), {{0, 8}}).ok());
+  desk_.want_image(1, 16);
+  const std::vector<RowsBy> by_anna = {{{0, 8}, "anna"}};
+  EXPECT_EQ(credits_, by_anna);
+  desk_.drop(1);
+  EXPECT_TRUE(desk_.rendered_by(1).empty());
+  ASSERT_TRUE(write_credits(by_anna, folder_.credits(1)).ok());
+  EXPECT_EQ(desk_.rendered_by(1), by_anna);
 }
 
 }  // namespace

@@ -88,9 +88,17 @@ TEST(Restart, AFinishedJobKeepsItsResult) {
     one.join(farm.engine());
     expect_local_image(farm, job, 16);
   }
+  const auto rendered_by = [&] {
+    Box<std::vector<RowsBy>> box;
+    farm.engine().rendered_by(job, [&](std::vector<RowsBy> rows) { box.put(std::move(rows)); });
+    return box.take();
+  };
+  const std::vector<RowsBy> by_one = {{{0, farm.settings().height}, "one"}};
+  EXPECT_EQ(rendered_by(), by_one);
   farm.stop();
   ASSERT_TRUE(farm.start().ok());
   expect_local_image(farm, job, 16);
+  EXPECT_EQ(rendered_by(), by_one);
 }
 
 TEST(Restart, DamagedBandsAreRenderedAgain) {

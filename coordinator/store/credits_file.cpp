@@ -1,0 +1,70 @@
+#include "coordinator/store/credits_file.h"
+
+#include <span>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/store/fields.h"
+#include "renderlib/base/atomic_file.h"
+#include "renderlib/base/file.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/render/settings.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+/// Far more than all rows of the tallest image with the longest names take.
+constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 26;
+
+absl::Status damaged(const std::string& path, absl::string_view how) {
+  return absl::DataLossError(absl::StrCat(path, " is damaged: ", how));
+}
+
+absl::StatusOr<std::string> whole_file(const std::string& path) {
+  ASSIGN_OR_RETURN(const File file, File::open_regular(path));
+  ASSIGN_OR_RETURN(const std::uint64_t size, file.size());
+  if (size > kMostBytes) {
+    return damaged(path, "it is too large");
+  }
+  std::string text(size, '\0');
+  RETURN_IF_ERROR(file.read(0, {reinterpret_cast<std::byte*>(text.data()), text.size()}));
+  return text;
+}
+
+}  // namespace
+
+absl::Status write_credits(const std::vector<RowsBy>& credits, const std::string& path) {
+  FieldWriter fields;
+  fields.number("pieces", credits.size());
+  for (const RowsBy& by : credits) {
+    fields.number("first", by.rows.first);
+    fields.number("last", by.rows.last);
+    fields.text("worker", by.worker);
+  }
+  const std::string text = fields.take();
+  return write_file_atomically(path, std::as_bytes(std::span(text)));
+}
+
+absl::StatusOr<std::vector<RowsBy>> read_credits(const std::string& path) {
+  ASSIGN_OR_RETURN(const std::string text, whole_file(path));
+  FieldReader fields(text);
+  const std::uint64_t pieces = fields.number("pieces", kMaxSide);
+  std::vector<RowsBy> credits;
+  std::uint64_t before = 0;
+  for (std::uint64_t i = 0; i < pieces; ++i) {
+    const std::uint64_t first = fields.number("first", kMaxSide);
+    const std::uint64_t last = fields.number("last", kMaxSide);
+    if (first < before || last <= first) {
+      fields.refuse(absl::StrCat("rows ", first, " to ", last, " after row ", before));
+      break;
+    }
+    credits.push_back({{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)},
+                       fields.text("worker")});
+    before = last;
+  }
+  if (const absl::Status status = fields.finish(); !status.ok()) {
+    return damaged(path, status.message());
+  }
+  return credits;
+}
+
+}  // namespace bandsaw::coordinator
