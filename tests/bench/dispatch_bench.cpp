@@ -1,7 +1,9 @@
 // What the real coordinator takes for a band, through gRPC with TLS and down to the disk, and for a
 // worker that is connected: null renderers that answer each lease at once with black rows.
 //
-//   dispatch_bench [SECONDS [WORKERS]]    10 seconds of bands; then so many workers connected, 1000
+//   dispatch_bench [SECONDS [WORKERS]]    10 seconds of bands with 1, 4 and 16 workers; then so
+//   many
+//                                         workers connected, 1000
 
 #include <unistd.h>
 
@@ -21,6 +23,7 @@
 #include "proto/link/channel.h"
 #include "proto/wire/versions.h"
 #include "renderlib/base/check.h"
+#include "renderlib/base/file.h"
 #include "renderlib/package/package.h"
 #include "renderlib/render/canary.h"
 #include "renderlib/render/pixel_version.h"
@@ -207,16 +210,15 @@ struct Coordinator {
   link::JoinString people() const { return join_from(folder / "data/farm"); }
 };
 
-void bands(double seconds) {
+void bands(double seconds, int workers) {
   Coordinator farm;
   submit(farm.people(), kWidth, kHeight);
-  constexpr int kWorkers = 16;
-  std::vector<std::vector<double>> took(kWorkers);
+  std::vector<std::vector<double>> took(workers);
   std::vector<std::thread> threads;
   const Usage before = usage_of(farm.process.pid());
   const auto began = Clock::now();
   const auto until = began + std::chrono::milliseconds(static_cast<int>(1000 * seconds));
-  for (int i = 0; i < kWorkers; ++i) {
+  for (int i = 0; i < workers; ++i) {
     threads.emplace_back([&, i] {
       const link::JoinString join = farm.workers();
       NullWorker worker(join, connect(join), i);
@@ -235,11 +237,29 @@ void bands(double seconds) {
   std::sort(all.begin(), all.end());
   BANDSAW_CHECK(!all.empty(), "some band was answered");
   std::printf(
-      "%zu bands of %d null workers in %.1f s: %.0f bands/s; lease to acknowledged median "
+      "%zu bands of %d null worker(s) in %.1f s: %.0f bands/s; lease to acknowledged median "
       "%.2f ms; coordinator %.0f µs CPU a band, %.0f MB\n",
-      all.size(), kWorkers, passed, static_cast<double>(all.size()) / passed,
+      all.size(), workers, passed, static_cast<double>(all.size()) / passed,
       1e3 * all[all.size() / 2],
       1e6 * (after.cpu_s - before.cpu_s) / static_cast<double>(all.size()), after.resident_mb);
+}
+
+/// What each band waits for, whoever writes it: a row appended and synced, with nothing else to do.
+void disk(double seconds) {
+  const test::TempDir folder;
+  auto file = File::open(folder / "rows", O_CREAT | O_WRONLY);
+  BANDSAW_CHECK(file.ok(), file.status().ToString().c_str());
+  const std::vector<std::byte> row(std::size_t{kWidth} * 24);
+  std::vector<double> took;
+  const auto until = Clock::now() + std::chrono::milliseconds(static_cast<int>(1000 * seconds));
+  for (auto began = Clock::now(); began < until; began = Clock::now()) {
+    const bool synced = file->write(row).ok() && file->sync().ok();
+    BANDSAW_CHECK(synced, "the disk takes a row");
+    took.push_back(std::chrono::duration<double>(Clock::now() - began).count());
+  }
+  std::sort(took.begin(), took.end());
+  std::printf("the disk alone: a row appended and synced, median %.2f ms\n",
+              1e3 * took[took.size() / 2]);
 }
 
 void memory(int count) {
@@ -267,6 +287,9 @@ void memory(int count) {
 }  // namespace bandsaw
 
 int main(int argc, char** argv) {
-  bandsaw::bands(argc > 1 ? std::atof(argv[1]) : 10);
+  bandsaw::disk(2);
+  for (const int workers : {1, 4, 16}) {
+    bandsaw::bands(argc > 1 ? std::atof(argv[1]) : 10, workers);
+  }
   bandsaw::memory(argc > 2 ? std::atoi(argv[2]) : 1'000);
 }
