@@ -98,11 +98,21 @@ Wide plane_distance(const Ray& ray, const Triangle& t) {
   return dot(n, WideVec(t.a) - ray.origin) / dot(n, ray.direction);
 }
 
+/// By how much that moves when the last bit of the corners' heights is another.
+double worth_of_last_bits(const Ray& ray, Triangle t) {
+  const Wide distance = plane_distance(ray, t);
+  for (Vec3* corner : {&t.a, &t.b, &t.c}) {
+    corner->y = std::nextafter(corner->y, kInfinity);
+  }
+  return std::abs(static_cast<double>(plane_distance(ray, t) - distance));
+}
+
 TEST(Triangle, T6_AHugeOneJustBelowTheCamera) {
   Random random(2);
   const Transform turns[] = {{}, rotation({1, 2, 3}, 33)};
   for (const Transform& turn : turns) {
     Worst error;
+    Worst over_last_bits;
     int missed = 0;
     const Triangle t = {
         turn.point({-5e5, 0, -3e5}), turn.point({5e5, 0, -3e5}), turn.point({0, 0, 6e5}), {}};
@@ -118,7 +128,9 @@ TEST(Triangle, T6_AHugeOneJustBelowTheCamera) {
         continue;
       }
       // In units of the coordinates: the camera itself is rounded to u |o|.
-      error.see(std::abs(static_cast<double>(crossing.t - plane_distance(ray, t))));
+      const double off = std::abs(static_cast<double>(crossing.t - plane_distance(ray, t)));
+      error.see(off);
+      over_last_bits.see(off / worth_of_last_bits(ray, t));
     }
     const bool level = turn.direction({0, 1, 0}).y == 1;
     const std::string name = level ? "level" : "tilted";
@@ -127,6 +139,8 @@ TEST(Triangle, T6_AHugeOneJustBelowTheCamera) {
       at_most("T6", "level: relative error of t", error.value() / 1e-3, 1e-9);
     } else {
       at_most("T6", "tilted: error of t in u x edge", error.value() / (0x1p-53 * 1e6), 8);
+      at_most("T6", "tilted: the same over what the last bits of the corners' heights are worth",
+              over_last_bits.value(), 4);
     }
   }
 }

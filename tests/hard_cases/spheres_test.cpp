@@ -139,11 +139,24 @@ TEST(Sphere, S2_HitPointsLieOnItHoweverLarge) {
   test::at_most("S2", "self-hits of " + std::to_string(3 * rays), again, 0);
 }
 
+/// By how much of itself the far root moves when the origin does by the last bit of a coordinate.
+double worth_of_last_bits(const Ray& ray, const Sphere& sphere) {
+  const Wide far = truth(ray, sphere).far;
+  double most = 0;
+  for (double Vec3::*axis : {&Vec3::x, &Vec3::y, &Vec3::z}) {
+    Ray moved = ray;
+    moved.origin.*axis = std::nextafter(ray.origin.*axis, kInfinity);
+    most = std::max(most, std::abs(static_cast<double>(truth(moved, sphere).far / far - 1)));
+  }
+  return most;
+}
+
 TEST(Sphere, S4_IsLeftOnTheFarSideFromWithin) {
   test::Random random(4);
   const Sphere sphere = {{1, 2, 3}, 2, {}};
   test::Worst error;
   test::Worst flat_error;
+  test::Worst over_last_bits;
   for (int i = 0; i < 20000; ++i) {
     const Vec3 n = test::random_direction(random);
     const Vec3 d = test::random_direction(random);
@@ -156,12 +169,19 @@ TEST(Sphere, S4_IsLeftOnTheFarSideFromWithin) {
     const auto t = hit(ray, sphere, true);
     ASSERT_TRUE(t);  // a near root would be 0
     const double relative = std::abs(static_cast<double>(*t / truth(ray, sphere).far - 1));
-    (cosine > 0.03 ? error : flat_error).see(relative * (cosine > 0.03 ? 1 : cosine * cosine));
+    if (cosine > 0.03) {
+      error.see(relative);
+    } else {
+      flat_error.see(relative * cosine * cosine);
+      over_last_bits.see(relative / worth_of_last_bits(ray, sphere));
+    }
   }
   test::at_most("S4", "relative error of the far root", error.value(), 1e-12);
   // Of a flat chord the last bit of the discriminant, u R^2, is 1 / cos^2 of the whole.
   test::at_most("S4", "times cos^2, for chords flatter than 1.7 degrees", flat_error.value(),
                 1e-15);
+  test::at_most("S4", "these over what the last bit of the origin is worth", over_last_bits.value(),
+                8);
   EXPECT_EQ(hit({sphere.center, {0, 1, 0}}, sphere), 2);
 }
 
