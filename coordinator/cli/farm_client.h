@@ -59,6 +59,8 @@ class FarmClient {
 
   /// The finished image, its digest checked. DATA_LOSS: it does not match.
   absl::StatusOr<FarmImage> result(JobId job);
+  /// How many samples each of its pixels has, of an adaptive job. DATA_LOSS as above.
+  absl::StatusOr<Image> samples(JobId job);
   /// What is there of it, at most about `most_side` pixels a side; 0: the image's own. NOT_FOUND:
   /// nothing is. DATA_LOSS as above.
   absl::StatusOr<FarmImage> preview(JobId job, std::uint32_t most_side);

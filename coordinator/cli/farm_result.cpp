@@ -1,4 +1,4 @@
-// FarmClient::result and preview: an image in chunks, checked before anybody sees it.
+// FarmClient::result, samples and preview: an image in chunks, checked before anybody sees it.
 
 #include <bit>
 #include <cmath>
@@ -56,6 +56,16 @@ absl::StatusOr<FarmImage> FarmClient::result(JobId job) {
   farm::GetResultRequest request;
   request.set_job(job);
   return receive(job, [&](auto& context) { return bulk_->GetResult(&context, request); });
+}
+
+absl::StatusOr<Image> FarmClient::samples(JobId job) {
+  farm::GetResultRequest request;
+  request.set_job(job);
+  request.set_samples(true);
+  ASSIGN_OR_RETURN(FarmImage received, receive(job, [&](auto& context) {
+                     return bulk_->GetResult(&context, request);
+                   }));
+  return std::move(received.image);
 }
 
 absl::StatusOr<FarmImage> FarmClient::preview(JobId job, std::uint32_t most_side) {

@@ -23,7 +23,7 @@ constexpr Kind kKinds[] = {{"albedo", Integrator::kAlbedo, false},
                            {"depth", Integrator::kDepth, true},
                            {"samples", Integrator::kPath, true}};
 
-Image counts(const RenderSettings& settings, std::uint64_t samples) {
+Image equal_counts(const RenderSettings& settings, std::uint64_t samples) {
   Image image{settings.width, settings.height, {}};
   image.pixels.assign(std::size_t{image.width} * image.height, gray(static_cast<float>(samples)));
   return image;
@@ -58,12 +58,15 @@ absl::StatusOr<std::vector<LayerKind>> parse_layers(const std::string& list) {
 }
 
 absl::StatusOr<Layers> make_layers(const std::vector<LayerKind>& kinds, RenderSettings settings,
-                                   std::uint64_t samples, const LayerRenderer& render) {
+                                   std::uint64_t samples, const LayerRenderer& render,
+                                   const SampleCounts& counts) {
   Layers layers;
   for (const LayerKind wanted : kinds) {
     const Kind& kind = kKinds[static_cast<std::size_t>(wanted)];
     if (wanted == LayerKind::kSamples) {
-      layers.push_back({kind.name, counts(settings, samples), kind.is_number});
+      absl::StatusOr<Image> of_pixels = counts ? counts() : equal_counts(settings, samples);
+      RETURN_IF_ERROR(of_pixels.status());
+      layers.push_back({kind.name, *std::move(of_pixels), kind.is_number});
       continue;
     }
     settings.integrator = kind.integrator;

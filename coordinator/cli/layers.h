@@ -27,10 +27,15 @@ absl::StatusOr<std::vector<LayerKind>> parse_layers(const std::string& list);
 using LayerRenderer =
     std::function<absl::StatusOr<Image>(const RenderSettings& settings, std::uint64_t samples)>;
 
+/// How many samples each pixel of an adaptive image has.
+using SampleCounts = std::function<absl::StatusOr<Image>()>;
+
 /// Has them rendered with the image's settings and min(`samples`, kMostLayerSamples) samples: to
 /// the bit what `--integrator albedo`, `normals` and `depth` give for that number. `samples` is
-/// what the image has; of kSamples each pixel's number. Errors are those of `render`.
+/// what the image has: kSamples shows it where there are no `counts`. Errors are those of `render`
+/// and `counts`.
 absl::StatusOr<Layers> make_layers(const std::vector<LayerKind>& kinds, RenderSettings settings,
-                                   std::uint64_t samples, const LayerRenderer& render);
+                                   std::uint64_t samples, const LayerRenderer& render,
+                                   const SampleCounts& counts);
 
 }  // namespace bandsaw::coordinator

@@ -135,13 +135,12 @@ class LocalRun {
                          render_image(*scene, settings, count, pool_, stop_, {}, ""));
         return layer.film.snapshot().image;
       };
-      ASSIGN_OR_RETURN(layers_,
-                       make_layers(options_.layers, spec_.settings, samples, render_layer));
-      for (Layer& layer : layers_) {
-        if (is_adaptive(spec_.stop) && layer.name == "samples") {
-          layer.image = film.counts();
-        }
+      SampleCounts counts;
+      if (is_adaptive(spec_.stop)) {
+        counts = [&] { return film.counts(); };
       }
+      ASSIGN_OR_RETURN(layers_,
+                       make_layers(options_.layers, spec_.settings, samples, render_layer, counts));
     }
     return absl::OkStatus();
   }

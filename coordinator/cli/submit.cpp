@@ -1,6 +1,5 @@
 // bandsaw submit: a scene file to the farm, and its image back.
 
-#include <algorithm>
 #include <atomic>
 
 #include "absl/strings/str_cat.h"
@@ -56,13 +55,6 @@ void say_detached(JobId job, Verbosity verbosity, const Console& console) {
 
 ExitCode run(const SubmitOptions& options, Process& process) {
   const Console& console = process.console;
-  const auto& kinds = options.layers;
-  if (is_adaptive(options.image.stop) &&
-      std::find(kinds.begin(), kinds.end(), LayerKind::kSamples) != kinds.end()) {
-    return console.fail(ExitCode::kWrong,
-                        "--layers samples: a farm does not keep each pixel's number of samples, "
-                        "which --adaptive makes different; use bandsaw render");
-  }
   std::vector<std::string> outputs = options.outputs;
   if (outputs.empty() && !options.detach) {
     outputs = {default_output(options.scene, ".png")};
@@ -106,7 +98,11 @@ ExitCode run(const SubmitOptions& options, Process& process) {
       *of_layer.mutable_stop() = to_proto(StopRule(StopAtSamples{count}));
       return render_on_farm(**client, *package, std::move(of_layer), display);
     };
-    return make_layers(options.layers, *settings, samples, render);
+    SampleCounts counts;
+    if (is_adaptive(options.image.stop)) {
+      counts = [&] { return (*client)->samples(*job); };
+    }
+    return make_layers(options.layers, *settings, samples, render, counts);
   };
   return watch_job(**client, *job, {outputs, *reports, options.display, options.tev},
                    options.verbosity, process, layers);

@@ -40,8 +40,10 @@ Collector::Final Collector::final_job(JobId id) const {
   if (::stat(folder_.job(id).c_str(), &found) == 0) {
     job.at = static_cast<double>(found.st_mtim.tv_sec);
   }
-  if (::stat(folder_.result(id).c_str(), &found) == 0) {
-    job.bytes = static_cast<std::uint64_t>(found.st_size);
+  for (const std::string& file : {folder_.result(id), folder_.samples(id)}) {
+    if (::stat(file.c_str(), &found) == 0) {
+      job.bytes += static_cast<std::uint64_t>(found.st_size);
+    }
   }
   return job;
 }

@@ -133,8 +133,9 @@ void Engine::rendered_by(JobId job, std::function<void(std::vector<RowsBy>)> don
       [job, answer = std::move(answer)](FilmDesk& film) mutable { answer(film.rendered_by(job)); });
 }
 
-void Engine::result(JobId job, std::function<void(absl::StatusOr<StoredResult>)> done) {
-  impl_->on_core([impl = impl_.get(), job,
+void Engine::result(JobId job, FinishedPart part,
+                    std::function<void(absl::StatusOr<StoredResult>)> done) {
+  impl_->on_core([impl = impl_.get(), job, part,
                   answer = Answer<StoredResult>(std::move(done))](CoreDesk& core) mutable {
     const std::optional<JobView> view = core.job(job);
     if (!view) {
@@ -142,9 +143,9 @@ void Engine::result(JobId job, std::function<void(absl::StatusOr<StoredResult>)>
     } else if (view->state != JobState::kDone) {
       answer(absl::FailedPreconditionError(absl::StrCat("job ", job, " is not done")));
     } else {
-      impl->on_store([impl, job, manifest = view->spec.manifest,
+      impl->on_store([impl, job, part, manifest = view->spec.manifest,
                       answer = std::move(answer)](StoreDesk& store) mutable {
-        absl::StatusOr<StoredResult> result = store.read_result(job);
+        absl::StatusOr<StoredResult> result = store.read_result(job, part);
         if (result.ok()) {
           result->display = display_of(manifest, impl->blobs());
         }

@@ -79,8 +79,9 @@ class Engine {
   /// Who rendered the rows that are there, by row. Of a job at work a name is not known from before
   /// a restart until its worker brings another band.
   void rendered_by(JobId job, std::function<void(std::vector<RowsBy>)> done);
-  /// NOT_FOUND, FAILED_PRECONDITION: not done, DATA_LOSS.
-  void result(JobId job, std::function<void(absl::StatusOr<StoredResult>)> done);
+  /// NOT_FOUND: no such job, or samples of one that was not adaptive. FAILED_PRECONDITION: not
+  /// done. DATA_LOSS.
+  void result(JobId job, FinishedPart part, std::function<void(absl::StatusOr<StoredResult>)> done);
 
   // Blobs. Thread-safe, may block on the disk: not for gRPC's own threads.
   class BlobWriter {

@@ -143,7 +143,11 @@ absl::Status FilmDesk::give_image(JobId id, OneJob& job) {
   job.image_of.reset();
   // What was told on the way may have been of more samples.
   hooks_.merged({.job = id, .samples = samples, .error = job.film->error()});
-  hooks_.image(id, job.film->snapshot().image, credits_.of(id));
+  Finished finished{job.film->snapshot().image, std::nullopt, credits_.of(id)};
+  if (job.adaptive) {
+    finished.samples = job.film->counts();
+  }
+  hooks_.image(id, std::move(finished));
   return absl::OkStatus();
 }
 

@@ -17,6 +17,7 @@
 #include "coordinator/engine/credits.h"
 #include "coordinator/engine/put_band.h"
 #include "coordinator/store/data_folder.h"
+#include "coordinator/store/finished.h"
 #include "renderlib/image/image.h"
 #include "renderlib/render/film.h"
 
@@ -28,7 +29,7 @@ class FilmDesk {
   /// Called on the film's thread.
   struct Hooks {
     std::function<void(input::PassMerged)> merged;
-    std::function<void(JobId, Image, std::vector<RowsBy>)> image;
+    std::function<void(JobId, Finished)> image;
     /// The film could not take a band: it is kept in memory until retry.
     std::function<void(JobId, absl::Status)> failed;
   };

@@ -185,9 +185,10 @@ FilmDesk::Hooks Engine::Impl::film_hooks() {
                 on_core([merged](CoreDesk& core) { core.hear(merged); });
               },
           .image =
-              [this](JobId job, Image image, std::vector<RowsBy> credits) {
-                on_store([job, image = std::move(image), credits = std::move(credits)](
-                             StoreDesk& store) { store.write_result(job, image, credits); });
+              [this](JobId job, Finished finished) {
+                on_store([job, finished = std::move(finished)](StoreDesk& store) {
+                  store.write_result(job, finished);
+                });
               },
           .failed =
               [this](JobId job, absl::Status status) {

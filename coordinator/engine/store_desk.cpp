@@ -115,20 +115,34 @@ void StoreDesk::settle(OpenJob& job) {
   }
 }
 
-void StoreDesk::write_result(JobId id, const Image& image, const std::vector<RowsBy>& credits) {
+void StoreDesk::write_result(JobId id, const Finished& finished) {
   // The image does not depend on it.
-  if (const absl::Status status = write_credits(credits, folder_.credits(id)); !status.ok()) {
+  if (const absl::Status status = write_credits(finished.credits, folder_.credits(id));
+      !status.ok()) {
     spdlog::warn("job={} who rendered its rows could not be kept: {}", id, status.ToString());
   }
-  const absl::Status written =
-      coordinator::write_result(image, folder_.job(id), folder_.result(id));
+  absl::Status written;
+  if (finished.samples) {
+    written = coordinator::write_result(*finished.samples, folder_.job(id), folder_.samples(id));
+  }
+  if (written.ok()) {
+    written = coordinator::write_result(finished.image, folder_.job(id), folder_.result(id));
+  }
   if (!written.ok()) {
     expect_trouble();
   }
   hooks_.result_written(id, written);
 }
 
-absl::StatusOr<StoredResult> StoreDesk::read_result(JobId id) const {
+absl::StatusOr<StoredResult> StoreDesk::read_result(JobId id, FinishedPart part) const {
+  if (part == FinishedPart::kSamples) {
+    absl::StatusOr<StoredResult> samples = coordinator::read_result(folder_.samples(id));
+    return absl::IsNotFound(samples.status())
+               ? absl::NotFoundError(
+                     absl::StrCat("there are no samples of each pixel of job ", id,
+                                  ": it was not adaptive, or was rendered by an earlier version"))
+               : std::move(samples);
+  }
   absl::StatusOr<StoredResult> result = coordinator::read_result(folder_.result(id));
   if (absl::IsNotFound(result.status())) {
     return absl::DataLossError(absl::StrCat("the result of job ", id, " is missing (",

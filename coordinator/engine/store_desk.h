@@ -15,6 +15,7 @@
 #include "coordinator/store/band_log.h"
 #include "coordinator/store/credits_file.h"
 #include "coordinator/store/data_folder.h"
+#include "coordinator/store/finished.h"
 #include "coordinator/store/result_file.h"
 
 namespace bandsaw::coordinator {
@@ -47,8 +48,9 @@ class StoreDesk {
   /// fails.
   void settle();
 
-  void write_result(JobId job, const Image& image, const std::vector<RowsBy>& credits);
-  absl::StatusOr<StoredResult> read_result(JobId job) const;
+  void write_result(JobId job, const Finished& finished);
+  /// DATA_LOSS. NOT_FOUND: the job was not adaptive, and kSamples is asked for.
+  absl::StatusOr<StoredResult> read_result(JobId job, FinishedPart part) const;
   /// Removes the log of a final job.
   void drop_bands(JobId job);
   /// Removes all that is left of a forgotten job.

@@ -95,8 +95,10 @@ grpc::ServerWriteReactor<farm::ResultChunk>* FarmService::GetResult(
   if (const auto status = doors_.gate.check(*context, link::Role::kFarm); !status.ok()) {
     return new RefusedCall<grpc::ServerWriteReactor<farm::ResultChunk>>(status);
   }
-  return ImageCall::make(
-      doors_, [&engine = doors_.engine, job = request->job()] { return result_of(engine, job); });
+  const FinishedPart part = request->samples() ? FinishedPart::kSamples : FinishedPart::kImage;
+  return ImageCall::make(doors_, [&engine = doors_.engine, job = request->job(), part] {
+    return result_of(engine, job, part);
+  });
 }
 
 grpc::ServerWriteReactor<farm::ResultChunk>* FarmService::Preview(

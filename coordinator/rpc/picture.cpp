@@ -21,9 +21,9 @@ absl::StatusOr<JobView> look_at(Engine& engine, JobId job) {
   });
 }
 
-absl::StatusOr<StoredResult> result_of(Engine& engine, JobId job) {
+absl::StatusOr<StoredResult> result_of(Engine& engine, JobId job, FinishedPart part) {
   using Result = absl::StatusOr<StoredResult>;
-  return ask<Result>([&](auto answer) { engine.result(job, answer); });
+  return ask<Result>([&](auto answer) { engine.result(job, part, answer); });
 }
 
 absl::StatusOr<StoredResult> picture_of(Engine& engine, const JobView& job,

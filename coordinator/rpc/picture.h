@@ -12,8 +12,9 @@ namespace bandsaw::coordinator {
 /// The job as it is now. NOT_FOUND. Waits for the engine, as all here.
 absl::StatusOr<JobView> look_at(Engine& engine, JobId job);
 
-/// The finished image. Errors as Engine::result.
-absl::StatusOr<StoredResult> result_of(Engine& engine, JobId job);
+/// The finished image, or how many samples each pixel has. Errors as Engine::result.
+absl::StatusOr<StoredResult> result_of(Engine& engine, JobId job,
+                                       FinishedPart part = FinishedPart::kImage);
 
 /// What is there of the job, or its finished image, at most about `most_side` pixels a side, >= 1;
 /// without `digest`. NOT_FOUND: nothing of it is there.

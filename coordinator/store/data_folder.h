@@ -25,6 +25,7 @@ class DataFolder {
   std::string job(JobId id) const;
   std::string bands(JobId id) const { return job(id) + "/bands"; }
   std::string result(JobId id) const { return job(id) + "/result"; }
+  std::string samples(JobId id) const { return job(id) + "/samples"; }
   std::string credits(JobId id) const { return job(id) + "/credits"; }
 
  private:

@@ -1,7 +1,7 @@
 #pragma once
 
-// A finished image on disk: a header, then linear RGB float32, rows from the top. The form is in
-// this folder's README.
+// A finished image, or its pixels' numbers of samples, on disk: a header, then linear RGB float32,
+// rows from the top. The form is in this folder's README.
 
 #include <string>
 
@@ -12,6 +12,9 @@
 #include "renderlib/image/image.h"
 
 namespace bandsaw::coordinator {
+
+/// Which of a job's pictures: its image, or how many samples each pixel has.
+enum class FinishedPart { kImage, kSamples };
 
 /// A finished image as it is kept: linear RGB float.
 struct StoredResult {

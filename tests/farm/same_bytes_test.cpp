@@ -72,23 +72,25 @@ TEST_F(SameBytes, OnFarmsOfOneTwoAndFiveWorkers) {
   expect_farm_gives_the_same();
 }
 
-// Tiles are planned by what is measured: the same on every farm, and after a restart.
+// Tiles are planned by what is measured: the same on every farm, and after a restart. So is the
+// layer that shows the plan.
 TEST_F(SameBytes, WithAdaptiveSampling) {
   const auto adaptive = [&](const std::string& command, const std::string& file) {
-    return std::vector<std::string>{command,   std::string(BANDSAW_GALLERY) + "/spheres.textproto",
-                                    "-o",      farm_.path(file),
-                                    "--width", "240",
-                                    "--error", "3%",
-                                    "--quiet", "--adaptive"};
+    return std::vector<std::string>{command,    std::string(BANDSAW_GALLERY) + "/spheres.textproto",
+                                    "-o",       farm_.path(file),
+                                    "--width",  "240",
+                                    "--error",  "3%",
+                                    "--layers", "samples,depth",
+                                    "--quiet",  "--adaptive"};
   };
-  std::vector<std::string> here = adaptive("render", "here.pfm");
+  std::vector<std::string> here = adaptive("render", "here.exr");
   here.insert(here.begin(), BANDSAW_BIN);
   expect_success(run(here));
   farm_.add_worker("one", 1);
-  expect_success(run(farm_.command(adaptive("submit", "one.pfm"))));
-  EXPECT_TRUE(file_bytes(farm_.path("one.pfm")) == file_bytes(farm_.path("here.pfm")));
+  expect_success(run(farm_.command(adaptive("submit", "one.exr"))));
+  EXPECT_TRUE(file_bytes(farm_.path("one.exr")) == file_bytes(farm_.path("here.exr")));
   farm_.add_worker("two", 2);
-  Process client = Process::start(farm_.command(adaptive("submit", "two.pfm")));
+  Process client = Process::start(farm_.command(adaptive("submit", "two.exr")));
   ASSERT_TRUE(farm_.coordinator().wait_until([](const std::string&, const std::string& log) {
     constexpr char kPlanned[] = "more where there is more noise";
     return log.find(kPlanned) != log.rfind(kPlanned);
@@ -97,7 +99,7 @@ TEST_F(SameBytes, WithAdaptiveSampling) {
   ASSERT_EQ(farm_.coordinator().wait(), 128 + SIGKILL);
   farm_.restart_coordinator();
   EXPECT_EQ(client.wait(), 0) << client.err();
-  EXPECT_TRUE(file_bytes(farm_.path("two.pfm")) == file_bytes(farm_.path("here.pfm")));
+  EXPECT_TRUE(file_bytes(farm_.path("two.exr")) == file_bytes(farm_.path("here.exr")));
 }
 
 TEST_F(SameBytes, P5_WhenPartsAreStitched) {

@@ -32,7 +32,7 @@ TEST(Layers, AreWhatTheirIntegratorsShow) {
     return render_image(*scene, wanted, samples, pool, stop, {}, "")->film.snapshot().image;
   };
   const auto layers = make_layers({LayerKind::kSamples, LayerKind::kAlbedo, LayerKind::kDepth},
-                                  settings, 16, render);
+                                  settings, 16, render, {});
   ASSERT_TRUE(layers.ok()) << layers.status();
   EXPECT_EQ((*layers)[0].image.pixels, std::vector<Rgb>(48, gray(16)));
   EXPECT_TRUE((*layers)[0].is_number);
@@ -41,6 +41,20 @@ TEST(Layers, AreWhatTheirIntegratorsShow) {
   const auto albedo = render_image(*scene, settings, 16, pool, stop, {}, "");
   EXPECT_EQ((*layers)[1].image.pixels, albedo->film.snapshot().image.pixels);
   EXPECT_EQ((*layers)[2].name, "depth");
+}
+
+TEST(Layers, OfAnAdaptiveImageShowEachPixelsNumberOfSamples) {
+  const auto render = [](const RenderSettings&, std::uint64_t) -> absl::StatusOr<Image> {
+    return absl::InternalError("nothing is to be rendered");
+  };
+  const Image counts{2, 1, {gray(32), gray(64)}};
+  const auto layers = make_layers({LayerKind::kSamples}, {.width = 2, .height = 1}, 64, render,
+                                  [&] { return counts; });
+  ASSERT_TRUE(layers.ok()) << layers.status();
+  EXPECT_EQ((*layers)[0].image.pixels, counts.pixels);
+  const auto gone = make_layers({LayerKind::kSamples}, {.width = 2, .height = 1}, 64, render,
+                                [] { return absl::NotFoundError("gone"); });
+  EXPECT_EQ(gone.status().message(), "gone");
 }
 
 }  // namespace

@@ -84,6 +84,9 @@ TEST_F(CollectorTest, ForgetsTheOldestBeyondTheBytes) {
   EXPECT_THAT(collector({.bytes = 2'500}).to_forget(jobs, kNow), ElementsAre(1));
   EXPECT_THAT(collector({.bytes = 1'500}).to_forget(jobs, kNow), ElementsAre(1, 2));
   EXPECT_THAT(collector({}).to_forget(jobs, kNow), IsEmpty());
+  std::ofstream(folder_.samples(3)) << std::string(1'000, 'x');
+  set_time(folder_.job(3), kNow - 7 * kDay);
+  EXPECT_THAT(collector({.bytes = 2'500}).to_forget(jobs, kNow), ElementsAre(1, 2));
 }
 
 TEST_F(CollectorTest, ForgetsTheOldestBeyondTheNumber) {

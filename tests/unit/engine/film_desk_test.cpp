@@ -24,13 +24,14 @@ class FilmDeskTest : public testing::Test {
     desk_.add_job(1, settings_);
   }
 
-  PutBand logged(const SampleRange& samples, const RowRange& rows) {
+  PutBand logged(const SampleRange& samples, const RowRange& rows, const TileMask& tiles = {}) {
     Pool pool(1);
     const std::atomic<bool> stop{false};
     BandRecord record{.package_digest = std::string(64, 'a'), .settings = settings_, .pixels = {}};
-    record.pixels =
-        *render_band(*scene_, settings_, {samples, rows}, pool, stop, [](std::uint32_t) {});
+    record.pixels = *render_band(
+        *scene_, settings_, {samples, rows}, pool, stop, [](std::uint32_t) {}, tiles);
     PutBand put;
+    put.tiles = tiles;
     put.offset = *log_->append(record);
     put.pixels = std::move(record.pixels);
     return put;
@@ -60,6 +61,7 @@ class FilmDeskTest : public testing::Test {
   std::vector<double> errors_;
   std::vector<Image> images_;
   std::vector<RowsBy> credits_;
+  std::optional<Image> samples_;
   int failed_ = 0;
   FilmDesk desk_{folder_,
                  {.merged =
@@ -68,9 +70,10 @@ class FilmDeskTest : public testing::Test {
                         errors_.push_back(m.error ? m.error->relative_rmse : -1);
                       },
                   .image =
-                      [this](JobId, Image image, std::vector<RowsBy> credits) {
-                        images_.push_back(std::move(image));
-                        credits_ = std::move(credits);
+                      [this](JobId, Finished finished) {
+                        images_.push_back(std::move(finished.image));
+                        samples_ = std::move(finished.samples);
+                        credits_ = std::move(finished.credits);
                       },
                   .failed = [this](JobId, absl::Status) { ++failed_; }}};
 };
@@ -128,7 +131,24 @@ TEST_F(FilmDeskTest, AnImageWaitsForItsLastRows) {
   EXPECT_TRUE(images_.empty());
   ASSERT_TRUE(add({0, 16}, {7, 8}).ok());
   ASSERT_EQ(images_.size(), 1u);
+  EXPECT_FALSE(samples_.has_value()) << "all pixels have as many";
   EXPECT_EQ(images_[0].pixels, local(16));
+}
+
+TEST_F(FilmDeskTest, AnAdaptiveJobLeavesEachPixelsNumberOfSamples) {
+  desk_.add_job(1, settings_, true);
+  TileMask even(settings_.width, {0, 8});
+  even.add(0, 0);
+  ASSERT_TRUE(add({0, 16}, {0, 8}).ok());
+  ASSERT_TRUE(desk_.add(1, logged({16, 32}, {0, 8}, even), {{0, 8}}).ok());
+  desk_.want_image(1, 32);
+  ASSERT_TRUE(samples_.has_value());
+  ASSERT_EQ(samples_->pixels.size(), 48u);
+  for (std::uint32_t y = 0; y < 8; ++y) {
+    for (std::uint32_t x = 0; x < 6; ++x) {
+      EXPECT_EQ(samples_->pixels[y * 6 + x], gray((x + y) % 2 == 0 ? 32 : 16)) << x << " " << y;
+    }
+  }
 }
 
 TEST_F(FilmDeskTest, WhatAFullDiskRefusedIsAddedLater) {

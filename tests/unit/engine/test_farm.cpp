@@ -95,9 +95,9 @@ JobView TestFarm::wait_final(JobId job) {
   return wait_until(job, [](const JobView& view) { return is_final(view.state); });
 }
 
-absl::StatusOr<StoredResult> TestFarm::result(JobId job) {
+absl::StatusOr<StoredResult> TestFarm::result(JobId job, FinishedPart part) {
   const auto box = std::make_shared<Box<absl::StatusOr<StoredResult>>>();
-  engine_->result(job, [box](absl::StatusOr<StoredResult> r) { box->put(std::move(r)); });
+  engine_->result(job, part, [box](absl::StatusOr<StoredResult> r) { box->put(std::move(r)); });
   return box->take();
 }
 

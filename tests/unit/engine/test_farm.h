@@ -32,7 +32,7 @@ class TestFarm {
   JobView view(JobId job);
   JobView wait_until(JobId job, const std::function<bool(const JobView&)>& fits);
   JobView wait_final(JobId job);
-  absl::StatusOr<StoredResult> result(JobId job);
+  absl::StatusOr<StoredResult> result(JobId job, FinishedPart part = FinishedPart::kImage);
   absl::StatusOr<BandOutcome> put(JobId job, const BandPixels& pixels);
 
   std::shared_ptr<const Scene> scene() const { return scene_; }
