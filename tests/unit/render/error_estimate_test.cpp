@@ -41,7 +41,7 @@ double square_at_most(const ErrorEstimate& error) {
   return over * over;
 }
 
-// Two deviations of a sum of n equal squares: sqrt(1.5 n) of one of them.
+// Three deviations of a sum of n equal squares: sqrt(1.5 n) of one of them.
 TEST(ErrorEstimate, TheMarginIsWiderTheFewerHalfRowsDecide) {
   for (const std::size_t decide : {3, 150}) {
     Row one_pixel;  // Of each of so many half rows,
@@ -51,7 +51,7 @@ TEST(ErrorEstimate, TheMarginIsWiderTheFewerHalfRowsDecide) {
       one_pixel.add(1, noisy && x % 16 == 4 ? 0.1 : 0);
       all.add(1, noisy ? 0.1 : 0);
     }
-    const double expected = 1 + 2 * std::sqrt(1.5 / static_cast<double>(decide));
+    const double expected = 1 + 3 * std::sqrt(1.5 / static_cast<double>(decide));
     EXPECT_NEAR(square_at_most(one_pixel.estimate()), expected, 1e-9) << decide;
     EXPECT_NEAR(square_at_most(all.estimate()), expected, 1e-9) << decide;
   }
@@ -62,8 +62,8 @@ TEST(ErrorEstimate, AHalfRowByItselfIsEightPixels) {
   for (int x = 0; x < 80; ++x) {
     row.add(1, 0.1);
   }
-  EXPECT_NEAR(square_at_most(row.estimate(1)), 1 + 2 * std::sqrt(1.5 / 10), 1e-9);
-  EXPECT_NEAR(square_at_most(row.estimate(2)), 1 + 2 * std::sqrt(1.5 / 10), 1e-9);
+  EXPECT_NEAR(square_at_most(row.estimate(1)), 1 + 3 * std::sqrt(1.5 / 10), 1e-9);
+  EXPECT_NEAR(square_at_most(row.estimate(2)), 1 + 3 * std::sqrt(1.5 / 10), 1e-9);
 }
 
 TEST(ErrorEstimate, APixelThatDecidesAllMakesItDoubtful) {
