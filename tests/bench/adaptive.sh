@@ -1,16 +1,20 @@
 #!/usr/bin/env bash
 # What adaptive sampling gains: renders gallery scenes until an error, evenly and adaptively, with several seeds in turn, and
-# compares both with a reference of another seed. Gain: error squared x CPU time of the even render over that of the adaptive
-# one, mean over the seeds; above 1 adaptive sampling is better.
-# Usage: tests/bench/adaptive.sh PATH-TO-BANDSAW [WIDTH [ERROR [SEEDS [SCENE...]]]]
+# compares both with a reference of another seed, whose own noise is taken off. Gain: error squared x CPU time of the even renders
+# over that of the adaptive ones, each a mean over the seeds; above 1 adaptive sampling is better.
+# Usage: tests/bench/adaptive.sh PATH-TO-BANDSAW [WIDTH [ERROR [SEEDS [SCENE[:ERROR]...]]]]
+# An error should take some 200 samples a pixel or more: a pilot of fewer than 32 plans nothing.
+# TIMES in the environment: samples of a reference over those of an even image, default 8.
 set -euo pipefail
 bandsaw=${1:?usage: adaptive.sh PATH-TO-BANDSAW [WIDTH [ERROR [SEEDS [SCENE...]]]]}
-width=${2:-96}
-error=${3:-5%}
+width=${2:-128}
+standard_error=${3:-2%}
 seeds=${4:-3}
+times=${TIMES:-8}
 shift $(($# < 4 ? $# : 4))
 scenes=("$@")
-((${#scenes[@]})) || scenes=(cornell spheres room glass_and_metal spots smoke)
+((${#scenes[@]})) || scenes=(defocus spheres glass_and_metal everything many_lights materials
+  study/lights_0 mesh environment textures)
 gallery=$(cd "$(dirname "$0")/../../renderlib/gallery" && pwd)
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -27,19 +31,23 @@ measure() {
     "$(number relative_rmse <<<"$compared") $(number error <<<"$done")"
 }
 
-echo "| scene | samples even | adaptive | error even | adaptive | told adaptive | gain in relMSE | gain in MSE |"
-echo "| --- | --- | --- | --- | --- | --- | --- | --- |"
-for scene in "${scenes[@]}"; do
+echo "| scene | samples even | adaptive | error even | adaptive | told adaptive | CPU time even over adaptive | gain in relMSE | gain in MSE |"
+echo "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"
+for wanted in "${scenes[@]}"; do
+  IFS=: read -r scene error <<<"$wanted"
+  error=${error:-$standard_error}
   seed=1
   most=$("$bandsaw" render "$gallery/$scene.textproto" --width "$width" --error "$error" --seed 1 --json -o "$folder/image.pfm" |
     tail -1 | number samples_per_pixel)
-  "$bandsaw" render "$gallery/$scene.textproto" --width "$width" --samples $((most * 16)) --seed 4711 --quiet \
+  "$bandsaw" render "$gallery/$scene.textproto" --width "$width" --samples $((most * times)) --seed 4711 --quiet \
     -o "$folder/reference.pfm" >/dev/null
   for ((seed = 1; seed <= seeds; ++seed)); do
     echo "$(measure) $(measure --adaptive)"
-  done | awk -v scene="$scene" '
-    { even = $1 * $3; own = $6 * $8; rel += even; arel += own; mse += $1 * $4 ^ 2; amse += $6 * $9 ^ 2
-      n += $2; an += $7; e += $4; ae += $9; told += $10; ++k }
-    END { printf "| %s | %.0f | %.0f | %.2f %% | %.2f %% | %.2f %% | %.2f | %.2f |\n",
-          scene, n / k, an / k, 100 * e / k, 100 * ae / k, 100 * told / k, rel / arel, mse / amse }'
+  done | awk -v scene="$scene" -v reference="$((most * times))" '
+    { cpu += $1; n += $2; rel += $3; mse += $4 ^ 2; acpu += $6; an += $7; arel += $8; amse += $9 ^ 2; told += $10; ++k }
+    # Of an error that falls with the root of n samples, what m have is n / (n + m) of what is measured.
+    END { noise = n / k / (n / k + reference)
+          printf "| %s | %.0f | %.0f | %.2f %% | %.2f %% | %.2f %% | %.2f | %.2f | %.2f |\n", scene, n / k, an / k,
+          100 * sqrt((1 - noise) * mse / k), 100 * sqrt((amse - noise * mse) / k), 100 * told / k, cpu / acpu,
+          (1 - noise) * rel * cpu / ((arel - noise * rel) * acpu), (1 - noise) * mse * cpu / ((amse - noise * mse) * acpu) }'
 done
