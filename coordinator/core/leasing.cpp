@@ -55,6 +55,9 @@ void Core::State::hand_out() {
 }
 
 bool Core::State::lease_to(Worker& worker) {
+  if (has_suspect(worker)) {
+    return false;
+  }
   for (auto it = leasable_.begin(); it != leasable_.end();) {
     Job& job = jobs_.at(it->second);
     if (!job.any_free() && !plan_timed(job) && !job.audit_waits()) {
@@ -68,6 +71,9 @@ bool Core::State::lease_to(Worker& worker) {
       }
       if (const auto free = free_for(job, worker)) {
         const Band band = sized(job, worker, *free);
+        if (is_suspect(job, band) && !worker.leases.empty()) {
+          return false;  // The first who has nothing else in hand takes it.
+        }
         grant(worker, job, *job.pass_of(band), band, leases_.new_id());
         return true;
       }

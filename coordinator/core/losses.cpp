@@ -57,6 +57,21 @@ void Core::State::add_loss(const Worker& worker, const Losing& lost) {
   }
 }
 
+/// Whether it may have ended a worker. Such a band is rendered by a worker that has nothing else in
+/// hand: should that one go as well, it is known by what. A band that is finished but not stored
+/// would be blamed for the one behind it.
+bool Core::State::is_suspect(const Job& job, const Band& band) {
+  return std::any_of(job.losses.begin(), job.losses.end(),
+                     [&](const Fault& loss) { return meet(loss.band, band); });
+}
+
+bool Core::State::has_suspect(const Worker& worker) const {
+  return std::any_of(worker.leases.begin(), worker.leases.end(), [&](LeaseId id) {
+    const Lease& lease = *leases_.find(id);
+    return is_suspect(jobs_.at(lease.job), lease.band);
+  });
+}
+
 /// A worker that comes back had lost its connection, not its life.
 void Core::State::forgive_losses(const Worker& worker) {
   for (const JobId id : active_) {
