@@ -14,16 +14,14 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kConnectTimeout{5'000};
 constexpr milliseconds kCallTimeout{10'000};
-constexpr milliseconds kRetryPause{500};
-constexpr int kTries = 4;
 // No deadline: what ends a dead stream is keepalive.
 constexpr milliseconds kStreamTimeout{0};
 
-bool outcome_unknown(const absl::Status& status) {
+}  // namespace
+
+bool FarmClient::outcome_unknown(const absl::Status& status) {
   return absl::IsUnavailable(status) || absl::IsDeadlineExceeded(status);
 }
-
-}  // namespace
 
 absl::StatusOr<std::unique_ptr<FarmClient>> FarmClient::connect(const link::JoinString& join) {
   ASSIGN_OR_RETURN(link::Connected connected, link::connect(join, kConnectTimeout));
@@ -85,16 +83,19 @@ absl::Status FarmClient::call(milliseconds deadline,
     pause(kRetryPause);
     status = try_once(deadline, body);
   }
-  if (outcome_unknown(status)) {
-    return absl::UnavailableError(
-        absl::StrCat("the farm at ", connected_.address, " does not answer: ", status.message()));
-  }
-  return status;
+  return given_up(status);
 }
 
-absl::StatusOr<std::vector<wire::Digest>> FarmClient::missing_blobs(
+absl::Status FarmClient::given_up(const absl::Status& status) const {
+  return outcome_unknown(status)
+             ? absl::UnavailableError(absl::StrCat("the farm at ", connected_.address,
+                                                   " does not answer: ", status.message()))
+             : status;
+}
+
+absl::StatusOr<std::vector<FarmClient::MissingBlob>> FarmClient::missing_blobs(
     const std::vector<wire::Digest>& digests) {
-  std::vector<wire::Digest> missing;
+  std::vector<MissingBlob> missing;
   for (std::size_t first = 0; first < digests.size(); first += wire::kDigestsPerMessage) {
     farm::MissingBlobsRequest request;
     const std::size_t last = std::min(first + wire::kDigestsPerMessage, digests.size());
@@ -105,39 +106,12 @@ absl::StatusOr<std::vector<wire::Digest>> FarmClient::missing_blobs(
     RETURN_IF_ERROR(call(kCallTimeout, [&](grpc::ClientContext& context) {
       return control_->MissingBlobs(&context, request, &reply);
     }));
-    for (const std::string& raw : reply.sha256()) {
-      ASSIGN_OR_RETURN(missing.emplace_back(), wire::digest_from_raw(raw));
+    for (int i = 0; i < reply.sha256_size(); ++i) {
+      ASSIGN_OR_RETURN(const wire::Digest digest, wire::digest_from_raw(reply.sha256(i)));
+      missing.push_back({digest, i < reply.there_size() ? reply.there(i) : 0});
     }
   }
   return missing;
-}
-
-absl::Status FarmClient::put_blob(const wire::Digest& digest, absl::Span<const std::byte> bytes,
-                                  const std::function<void(std::uint64_t)>& sent) {
-  return call(kStreamTimeout, [&](grpc::ClientContext& context) {
-    farm::PutBlobReply reply;
-    const auto stream = bulk_->PutBlob(&context, &reply);
-    std::uint64_t offset = 0;
-    bool first = true;
-    while (first || offset < bytes.size()) {
-      farm::BlobChunk chunk;
-      if (first) {
-        chunk.set_sha256(digest.raw());
-        chunk.set_size(bytes.size());
-        first = false;
-      }
-      const auto piece = bytes.subspan(offset, wire::kChunkBytes);
-      chunk.set_offset(offset);
-      chunk.set_data(piece.data(), piece.size());
-      if (!stream->Write(chunk)) {
-        break;  // Finish tells why.
-      }
-      offset += piece.size();
-      sent(offset);
-    }
-    stream->WritesDone();
-    return stream->Finish();
-  });
 }
 
 absl::StatusOr<JobId> FarmClient::submit(const farm::SubmitRequest& request) {

@@ -38,12 +38,17 @@ class FarmClient {
   FarmClient(const FarmClient&) = delete;
   FarmClient& operator=(const FarmClient&) = delete;
 
+  struct MissingBlob {
+    wire::Digest digest;
+    std::uint64_t there = 0;  ///< bytes from its beginning, of an upload that was cut
+  };
   /// Those of the digests whose blobs the farm lacks.
-  absl::StatusOr<std::vector<wire::Digest>> missing_blobs(const std::vector<wire::Digest>& digests);
+  absl::StatusOr<std::vector<MissingBlob>> missing_blobs(const std::vector<wire::Digest>& digests);
 
-  /// Sends one blob on the bulk channel; `sent` hears of bytes handed over, in all of this try.
+  /// Sends one blob on the bulk channel, from `there` on, and where that is cut, from where it was;
+  /// `sent` hears how far it is.
   absl::Status put_blob(const wire::Digest& digest, absl::Span<const std::byte> bytes,
-                        const std::function<void(std::uint64_t)>& sent);
+                        std::uint64_t there, const std::function<void(std::uint64_t)>& sent);
 
   absl::StatusOr<JobId> submit(const farm::SubmitRequest& request);
 
@@ -100,6 +105,14 @@ class FarmClient {
   /// Makes a context for each try, and tries again while the farm does not answer.
   absl::Status call(std::chrono::milliseconds deadline,
                     const std::function<grpc::Status(grpc::ClientContext&)>& body) EXCLUDES(mutex_);
+  static constexpr std::chrono::milliseconds kRetryPause{500};
+  static constexpr int kTries = 4;
+  static bool outcome_unknown(const absl::Status& status);
+  /// What people are told where nothing more is tried.
+  absl::Status given_up(const absl::Status& status) const;
+  absl::Status put_rest(const wire::Digest& digest, absl::Span<const std::byte> bytes,
+                        std::uint64_t offset, const std::function<void(std::uint64_t)>& sent)
+      EXCLUDES(mutex_);
   absl::Status try_once(std::chrono::milliseconds deadline,
                         const std::function<grpc::Status(grpc::ClientContext&)>& body)
       EXCLUDES(mutex_);

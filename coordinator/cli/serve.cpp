@@ -2,8 +2,10 @@
 
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "absl/strings/str_cat.h"
@@ -91,9 +93,21 @@ absl::StatusOr<Serving> start(const ServeOptions& options) {
   return serving;
 }
 
+/// Each worker has two connections, and each connection is an open file: the soft limit of most
+/// systems, 1,024, is for programs that use select(2).
+void raise_file_limit() {
+  constexpr rlim_t kEnough = 65'536;
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) == 0 && limit.rlim_cur < kEnough) {
+    limit.rlim_cur = std::min(kEnough, limit.rlim_max);
+    ::setrlimit(RLIMIT_NOFILE, &limit);
+  }
+}
+
 }  // namespace
 
 ExitCode run(const ServeOptions& options, Process& process) {
+  raise_file_limit();
   // Standard output is for people and scripts; the log goes beside it.
   spdlog::set_default_logger(
       std::make_shared<spdlog::logger>("", std::make_shared<spdlog::sinks::stderr_sink_mt>()));

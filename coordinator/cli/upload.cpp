@@ -1,7 +1,7 @@
 #include "coordinator/cli/upload.h"
 
 #include <algorithm>
-#include <set>
+#include <map>
 #include <span>
 
 #include "coordinator/engine/clock.h"
@@ -36,8 +36,12 @@ absl::Status upload(FarmClient& client, ImportedPackage& package, ProgressDispla
   for (const BlobRef& blob : blobs) {
     digests.push_back(blob.digest);
   }
-  ASSIGN_OR_RETURN(const std::vector<wire::Digest> lacking, client.missing_blobs(digests));
-  const std::set<wire::Digest> missing(lacking.begin(), lacking.end());
+  ASSIGN_OR_RETURN(const std::vector<FarmClient::MissingBlob> lacking,
+                   client.missing_blobs(digests));
+  std::map<wire::Digest, std::uint64_t> missing;  // how many bytes of each are there
+  for (const FarmClient::MissingBlob& blob : lacking) {
+    missing[blob.digest] = blob.there;
+  }
   std::erase_if(blobs, [&](const BlobRef& blob) { return !missing.contains(blob.digest); });
   std::uint64_t all = package.manifest().size();
   for (const BlobRef& blob : blobs) {
@@ -46,12 +50,13 @@ absl::Status upload(FarmClient& client, ImportedPackage& package, ProgressDispla
   Meter meter(display, all);
   for (const BlobRef& blob : blobs) {
     ASSIGN_OR_RETURN(const std::unique_ptr<BlobBytes> bytes, package.blobs().get(blob.digest));
-    RETURN_IF_ERROR(client.put_blob(blob.digest, bytes->bytes(),
+    RETURN_IF_ERROR(client.put_blob(blob.digest, bytes->bytes(), missing[blob.digest],
                                     [&](std::uint64_t sent) { meter.sent(sent); }));
     meter.finished(blob.size);
   }
   if (missing.contains(manifest)) {
     RETURN_IF_ERROR(client.put_blob(manifest, std::as_bytes(std::span(package.manifest())),
+                                    missing[manifest],
                                     [&](std::uint64_t sent) { meter.sent(sent); }));
   }
   return absl::OkStatus();

@@ -108,6 +108,7 @@ void Collector::sweep(const std::vector<Job>& jobs, double now) {
   if (removed > 0) {
     spdlog::info("removed {} blobs that no job needs", removed);
   }
+  blobs_.remove_partials(now, keep_.unused_seconds);
   // A job that was added meanwhile has a higher number than any of these.
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder_.jobs(), error)) {

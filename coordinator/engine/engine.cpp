@@ -157,9 +157,14 @@ void Engine::result(JobId job, FinishedPart part,
 
 bool Engine::has_blob(const wire::Digest& digest) const { return impl_->blobs().has(digest); }
 
+std::uint64_t Engine::partial_blob(const wire::Digest& digest) const {
+  return impl_->blobs().partial(digest);
+}
+
 absl::StatusOr<std::unique_ptr<Engine::BlobWriter>> Engine::write_blob(const wire::Digest& digest,
-                                                                       std::uint64_t size) {
-  ASSIGN_OR_RETURN(BlobStore::Writer writer, impl_->blobs().write(digest, size));
+                                                                       std::uint64_t size,
+                                                                       std::uint64_t offset) {
+  ASSIGN_OR_RETURN(BlobStore::Writer writer, impl_->blobs().write(digest, size, offset));
   return std::make_unique<BlobUpload>(std::move(writer));
 }
 

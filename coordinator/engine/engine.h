@@ -86,14 +86,19 @@ class Engine {
   // Blobs. Thread-safe, may block on the disk: not for gRPC's own threads.
   class BlobWriter {
    public:
-    virtual ~BlobWriter() = default;  ///< without commit: nothing is kept
+    virtual ~BlobWriter() = default;  ///< without commit: what came is kept for the next try
     virtual absl::Status append(absl::Span<const std::byte> bytes) = 0;
-    /// INVALID_ARGUMENT: digest or size differ. OK: on disk.
+    /// INVALID_ARGUMENT: digest or size differ. DATA_LOSS: so do bytes of an earlier try. OK: on
+    /// disk.
     virtual absl::Status commit() = 0;
   };
   bool has_blob(const wire::Digest& digest) const;
+  /// Bytes of a blob that is not there, from its beginning, of an upload that was cut.
+  std::uint64_t partial_blob(const wire::Digest& digest) const;
+  /// `offset`: goes on behind so many of those. FAILED_PRECONDITION: there are fewer.
   absl::StatusOr<std::unique_ptr<BlobWriter>> write_blob(const wire::Digest& digest,
-                                                         std::uint64_t size);
+                                                         std::uint64_t size,
+                                                         std::uint64_t offset = 0);
   BlobSource& blobs();
 
   // Workers.

@@ -45,6 +45,7 @@ Unary* FarmService::MissingBlobs(grpc::CallbackServerContext* context,
     for (const wire::Digest& digest : asked) {
       if (!doors_.engine.has_blob(digest)) {
         reply->add_sha256(digest.raw());
+        reply->add_there(doors_.engine.partial_blob(digest));
       }
     }
     reactor->Finish(grpc::Status::OK);

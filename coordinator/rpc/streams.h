@@ -93,7 +93,8 @@ class RefusedCall final : public Base {
 
 /// Reads a client's stream chunk by chunk: one chunk is read only when the one before is dealt
 /// with. Derived has: kWritesFiles (then it is called on the file executor, else where gRPC calls);
-/// absl::Status add(const Chunk&); void end() (all chunks came; MUST Finish).
+/// absl::Status add(const Chunk&); void end() (all chunks came; MUST Finish); void cut() if it has
+/// something to put away when the client is gone.
 template <class Chunk, class Derived>
 class ChunkReader : public SelfOwned<grpc::ServerReadReactor<Chunk>, Derived> {
  public:
@@ -108,9 +109,11 @@ class ChunkReader : public SelfOwned<grpc::ServerReadReactor<Chunk>, Derived> {
       take(ok);
     }
   }
+  void cut() {}
   void take(bool ok) {
     auto& derived = static_cast<Derived&>(*this);
     if (!ok && context_->IsCancelled()) {
+      derived.cut();
       this->Finish(grpc::Status::CANCELLED);
     } else if (!ok) {
       derived.end();

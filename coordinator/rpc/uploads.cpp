@@ -15,57 +15,22 @@ namespace {
 
 constexpr std::uint64_t kPixelBytes = 3 * sizeof(double);
 
-/// A chunk must fit what was announced.
-absl::Status check_chunk(const std::string& data, std::uint64_t received, std::uint64_t size) {
-  if (data.size() > wire::kChunkBytes) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("data: at most ", wire::kChunkBytes, " bytes a chunk, has ", data.size()));
-  }
-  if (data.size() > size - received) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("data: more bytes came than the announced size of ", size));
-  }
-  return absl::OkStatus();
-}
-
-absl::Status cut_short(std::uint64_t received, std::uint64_t size) {
-  return absl::InvalidArgumentError(
-      absl::StrCat("data: the stream ended after ", received, " of ", size, " bytes"));
-}
-
 bool is_sum(double value) { return std::isfinite(value) && value >= 0; }
 
 }  // namespace
 
 absl::Status PutBlobCall::add(const farm::BlobChunk& chunk) {
+  RETURN_IF_ERROR(intake_.add(chunk));
   if (writer_ == nullptr) {
-    ASSIGN_OR_RETURN(const wire::Digest digest, digest_field("sha256", chunk.sha256()));
-    if (chunk.size() > wire::kBlobBytes) {
-      return absl::ResourceExhaustedError(absl::StrCat(
-          "size: a blob has at most ", wire::kBlobBytes, " bytes, not ", chunk.size()));
-    }
-    size_ = chunk.size();
-    ASSIGN_OR_RETURN(writer_, doors_.engine.write_blob(digest, size_));
-  } else if (!chunk.sha256().empty() || chunk.size() != 0) {
-    return absl::InvalidArgumentError("sha256, size: belong in the first chunk only");
+    ASSIGN_OR_RETURN(writer_, doors_.engine.write_blob(intake_.digest(), intake_.size(),
+                                                       intake_.first_offset()));
   }
-  if (chunk.offset() != received_) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("offset: must be ", received_, " now, is ", chunk.offset()));
-  }
-  RETURN_IF_ERROR(check_chunk(chunk.data(), received_, size_));
-  received_ += chunk.data().size();
   return writer_->append(std::as_bytes(std::span(chunk.data())));
 }
 
 void PutBlobCall::end() {
-  if (writer_ == nullptr) {
-    Finish(link::to_grpc(absl::InvalidArgumentError("the stream holds no chunk")));
-  } else if (received_ != size_) {
-    Finish(link::to_grpc(cut_short(received_, size_)));
-  } else {
-    Finish(link::to_grpc(writer_->commit()));
-  }
+  const absl::Status whole = intake_.end();
+  Finish(link::to_grpc(whole.ok() ? writer_->commit() : whole));
 }
 
 absl::Status PutBandCall::take_header(const farm::BandHeader& header) {

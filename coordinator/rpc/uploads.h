@@ -2,6 +2,7 @@
 
 // What comes in chunks: blobs from people, pixels from workers.
 
+#include "coordinator/rpc/blob_intake.h"
 #include "coordinator/rpc/streams.h"
 #include "proto/farm.pb.h"
 #include "renderlib/render/band.h"
@@ -15,11 +16,11 @@ class PutBlobCall final : public ChunkReader<farm::BlobChunk, PutBlobCall> {
   using ChunkReader::ChunkReader;
   absl::Status add(const farm::BlobChunk& chunk);
   void end();
+  void cut() { writer_.reset(); }
 
  private:
+  BlobIntake intake_;
   std::unique_ptr<Engine::BlobWriter> writer_;
-  std::uint64_t size_ = 0;
-  std::uint64_t received_ = 0;
 };
 
 /// Work.PutBand. A chunk is copied and hashed, which is less than handing it to another thread

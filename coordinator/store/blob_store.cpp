@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <system_error>
 
@@ -37,10 +38,8 @@ class MappedBlob : public BlobBytes {
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<BlobStore>> BlobStore::open(const std::string& folder) {
-  std::error_code error;
-  std::filesystem::remove_all(folder + kStaging, error);
-  RETURN_IF_ERROR(make_folder(folder + kStaging));
-  return std::unique_ptr<BlobStore>(new BlobStore(folder));
+  ASSIGN_OR_RETURN(auto partials, PartialBlobs::open(folder + kStaging));
+  return std::unique_ptr<BlobStore>(new BlobStore(folder, std::move(partials)));
 }
 
 bool BlobStore::has(const wire::Digest& digest) const {
@@ -102,7 +101,8 @@ absl::Status BlobStore::check(const wire::Digest& digest, absl::Span<const std::
   return absl::OkStatus();
 }
 
-absl::StatusOr<BlobStore::Writer> BlobStore::write(const wire::Digest& digest, std::uint64_t size) {
+absl::StatusOr<BlobStore::Writer> BlobStore::write(const wire::Digest& digest, std::uint64_t size,
+                                                   std::uint64_t offset) {
   if (size > wire::kBlobBytes) {
     return absl::ResourceExhaustedError(absl::StrCat("blob ", digest.hex(), " has ", size,
                                                      " bytes; at most ", wire::kBlobBytes,
@@ -110,28 +110,67 @@ absl::StatusOr<BlobStore::Writer> BlobStore::write(const wire::Digest& digest, s
   }
   RETURN_IF_ERROR(make_folder(folder_of(folder_, digest)));
   RETURN_IF_ERROR(sync_folder(folder_));
-  ASSIGN_OR_RETURN(StagedFile file,
-                   StagedFile::create(absl::StrCat(folder_, kStaging, "/", ++uploads_), size));
-  return Writer(folder_, digest, size, std::move(file));
+  std::unique_ptr<PartialBlobs::Claim> claim = partials_->claim(digest);
+  absl::StatusOr<StagedFile> file = StagedFile::resume(claim->path(), size, offset);
+  if (absl::IsOutOfRange(file.status())) {
+    return absl::FailedPreconditionError(absl::StrCat("blob ", digest.hex(), ": ",
+                                                      file.status().message(),
+                                                      "; ask again how many, and send the rest"));
+  }
+  RETURN_IF_ERROR(file.status());
+  Writer writer(folder_, digest, size, std::move(claim), *std::move(file));
+  RETURN_IF_ERROR(writer.take_earlier(offset));
+  return writer;
+}
+
+BlobStore::Writer::~Writer() {
+  if (claim_ != nullptr && claim_->resumable() && intact_ &&
+      written_ >= PartialBlobs::kLeastBytes) {
+    file_.leave(written_);
+  }
+}
+
+/// Only hashed: whether they are right is known at the end.
+absl::Status BlobStore::Writer::take_earlier(std::uint64_t bytes) {
+  std::vector<std::byte> buffer(std::min<std::uint64_t>(bytes, 1 << 20));
+  while (written_ < bytes) {
+    const auto piece =
+        absl::MakeSpan(buffer).first(std::min<std::uint64_t>(buffer.size(), bytes - written_));
+    RETURN_IF_ERROR(file_.read(written_, piece));
+    hasher_.update(piece);
+    written_ += piece.size();
+  }
+  earlier_ = bytes;
+  return absl::OkStatus();
 }
 
 absl::Status BlobStore::Writer::append(absl::Span<const std::byte> bytes) {
   if (bytes.size() > size_ - written_) {
+    intact_ = false;
     return absl::InvalidArgumentError(
         absl::StrCat("blob ", digest_.hex(), " is longer than the ", size_, " bytes announced"));
   }
   hasher_.update(bytes);
-  RETURN_IF_ERROR(file_.append(bytes));
+  const absl::Status status = file_.append(bytes);
+  intact_ = intact_ && status.ok();
   written_ += bytes.size();
-  return absl::OkStatus();
+  return status;
 }
 
 absl::Status BlobStore::Writer::commit() {
+  intact_ = false;  // whole or wrong: nothing to go on from
   if (written_ != size_) {
     return absl::InvalidArgumentError(absl::StrCat(
         "blob ", digest_.hex(), " ended after ", written_, " of the ", size_, " bytes announced"));
   }
-  if (hasher_.finish() != digest_) {
+  const bool right = hasher_.finish() == digest_;
+  if (!right && earlier_ > 0) {
+    return absl::DataLossError(absl::StrCat(
+        "blob ", digest_.hex(), " has another digest: the ", earlier_,
+        " bytes of an earlier upload were damaged, or those sent now; they have been thrown away, "
+        "send all of it"));
+  }
+  if (!right) {
     return absl::InvalidArgumentError(
         absl::StrCat("the bytes sent for blob ", digest_.hex(), " have another digest"));
   }

@@ -15,8 +15,8 @@ namespace bandsaw::coordinator {
 namespace {
 
 /// A file system that cannot reserve says so at the first write instead.
-absl::Status reserve(const File& file, std::uint64_t size) {
-  if (size == 0 || ::fallocate(file.fd(), 0, 0, static_cast<off_t>(size)) == 0 ||
+absl::Status reserve(const File& file, std::uint64_t size, int mode = 0) {
+  if (size == 0 || ::fallocate(file.fd(), mode, 0, static_cast<off_t>(size)) == 0 ||
       errno == EOPNOTSUPP || errno == ENOSYS) {
     return absl::OkStatus();
   }
@@ -31,6 +31,27 @@ absl::StatusOr<StagedFile> StagedFile::create(const std::string& staging, std::u
   RETURN_IF_ERROR(reserve(staged.file_, size));
   return staged;
 }
+
+absl::StatusOr<StagedFile> StagedFile::resume(const std::string& staging, std::uint64_t size,
+                                              std::uint64_t offset) {
+  ASSIGN_OR_RETURN(File file, File::open(staging, O_RDWR | O_CREAT));
+  ASSIGN_OR_RETURN(const std::uint64_t there, file.size());
+  if (there < offset) {
+    return absl::OutOfRangeError(absl::StrCat(there, " bytes are there, not ", offset));
+  }
+  StagedFile staged(std::move(file));
+  // Once as long as it will be, for the limit of a file's length; then reserved, and as long as
+  // what is written: whatever ends this process, the length says how far it came.
+  RETURN_IF_ERROR(reserve(staged.file_, size));
+  RETURN_IF_ERROR(staged.file_.truncate(offset));
+  RETURN_IF_ERROR(reserve(staged.file_, size, FALLOC_FL_KEEP_SIZE));
+  if (::lseek(staged.file_.fd(), static_cast<off_t>(offset), SEEK_SET) < 0) {
+    return errno_status(errno, staged.file_.path());
+  }
+  return staged;
+}
+
+void StagedFile::leave(std::uint64_t size) { staged_ = !file_.truncate(size).ok(); }
 
 StagedFile::StagedFile(StagedFile&& other) noexcept
     : file_(std::move(other.file_)), staged_(std::exchange(other.staged_, false)) {}

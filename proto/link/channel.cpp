@@ -12,6 +12,8 @@ namespace {
 
 // A frozen machine or a pulled cable is noticed after time plus timeout.
 constexpr int kKeepaliveMs = 2000;
+/// Of the server: whoever connects and does not come to the point holds a file no longer than this.
+constexpr int kHandshakeMs = 10'000;
 constexpr int kKeepaliveTimeoutMs = 4000;
 
 grpc::ChannelArguments channel_arguments(bool own_connection) {
@@ -124,6 +126,7 @@ void configure_server(grpc::ServerBuilder& builder) {
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);
   builder.AddChannelArgument(GRPC_ARG_KEEPALIVE_PERMIT_WITHOUT_CALLS, 1);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);
+  builder.AddChannelArgument(GRPC_ARG_SERVER_HANDSHAKE_TIMEOUT_MS, kHandshakeMs);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MIN_RECV_PING_INTERVAL_WITHOUT_DATA_MS, 1000);
   builder.AddChannelArgument(GRPC_ARG_HTTP2_MAX_PING_STRIKES, 0);
   builder.SetMaxReceiveMessageSize(static_cast<int>(wire::kMessageBytes));

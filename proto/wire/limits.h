@@ -1,32 +1,36 @@
 #pragma once
 
-// Every bound that a message or a file is held to, in one place. Passing one is INVALID_ARGUMENT or RESOURCE_EXHAUSTED with the
-// bound's name and value; nothing is truncated in silence. Bounds of an image are in renderlib/render/settings.h.
+// Every bound that a message or a file is held to, in one place. Passing one is INVALID_ARGUMENT or
+// RESOURCE_EXHAUSTED with the bound's name and value; nothing is truncated in silence. Bounds of an
+// image are in renderlib/render/settings.h.
 
 #include <cstddef>
 #include <cstdint>
 
 namespace bandsaw::wire {
 
-inline constexpr std::size_t kChunkBytes = 1 << 20;          ///< data in one chunk of a stream
-inline constexpr std::size_t kMessageBytes = 4 << 20;        ///< any gRPC message
-inline constexpr std::uint64_t kBlobBytes = 8ull << 30;      ///< one blob
-inline constexpr std::uint64_t kManifestBytes = 64ull << 20; ///< a package's manifest
-inline constexpr std::uint64_t kPackageBytes = 32ull << 30;  ///< a package's blobs in all
-inline constexpr std::uint64_t kBandBytes = 64ull << 20;     ///< pixels of one band
+inline constexpr std::size_t kChunkBytes = 1 << 20;      ///< data in one chunk of a stream
+inline constexpr std::size_t kMessageBytes = 4 << 20;    ///< any gRPC message
+inline constexpr std::uint64_t kBlobBytes = 8ull << 30;  ///< one blob
+inline constexpr std::size_t kPartialBlobs = 64;  ///< kept of uploads that were cut, the newest
+inline constexpr std::uint64_t kPartialBytes = 16ull << 30;   ///< of them, in all
+inline constexpr std::uint64_t kManifestBytes = 64ull << 20;  ///< a package's manifest
+inline constexpr std::uint64_t kPackageBytes = 32ull << 30;   ///< a package's blobs in all
+inline constexpr std::uint64_t kBandBytes = 64ull << 20;      ///< pixels of one band
 inline constexpr std::size_t kBlobsPerPackage = 100'000;
 inline constexpr std::size_t kDigestsPerMessage = 10'000;
-inline constexpr std::size_t kActiveJobs = 1'000;            ///< jobs that are not final
+inline constexpr std::size_t kActiveJobs = 1'000;  ///< jobs that are not final
 inline constexpr std::size_t kWorkers = 4'096;
 inline constexpr std::size_t kBandsPerWorker = 16;
 inline constexpr std::size_t kThreadsPerWorker = 4'096;
 inline constexpr std::size_t kJobNameBytes = 200;
 inline constexpr std::size_t kWorkerNameBytes = 64;
-inline constexpr std::size_t kWrongSecretsPerMinute = 120;    ///< of one address; beyond, calls are turned away unread
+inline constexpr std::size_t kWrongSecretsPerMinute =
+    120;  ///< of one address; beyond, calls are turned away unread
 inline constexpr std::size_t kLogLines = 50;
 inline constexpr std::size_t kLogLineBytes = 500;
-inline constexpr std::size_t kLogLinesKept = 200;            ///< of one worker's log, by the coordinator
-inline constexpr std::size_t kLogBytesKept = 64 << 20;       ///< of all workers' logs
+inline constexpr std::size_t kLogLinesKept = 200;       ///< of one worker's log, by the coordinator
+inline constexpr std::size_t kLogBytesKept = 64 << 20;  ///< of all workers' logs
 inline constexpr std::size_t kReasonBytes = 2'000;
 
 }  // namespace bandsaw::wire

@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <limits>
+#include <thread>
 
 #include "proto/wire/limits.h"
 #include "tests/unit/rpc/farm.h"
@@ -38,6 +41,55 @@ class ChunksTest : public FarmTest {
     }
     status = reader->Finish();
     return bytes;
+  }
+
+  /// The blob's chunks from `offset` on.
+  static std::vector<farm::BlobChunk> chunks_from(const std::string& bytes, std::size_t offset) {
+    std::vector<farm::BlobChunk> chunks;
+    for (std::size_t at = offset; at < bytes.size(); at += wire::kChunkBytes) {
+      farm::BlobChunk chunk = chunks.empty() ? whole(bytes) : farm::BlobChunk();
+      chunk.set_offset(at);
+      chunk.set_data(bytes.substr(at, wire::kChunkBytes));
+      chunks.push_back(chunk);
+    }
+    return chunks;
+  }
+
+  /// A sender that goes away when so many chunks are written.
+  void cut_after(const std::string& bytes, std::size_t count) {
+    const auto call = context(link::Role::kFarm);
+    farm::PutBlobReply reply;
+    const auto writer = people()->PutBlob(call.get(), &reply);
+    const std::vector<farm::BlobChunk> chunks = chunks_from(bytes, 0);
+    for (std::size_t i = 0; i < count; ++i) {
+      ASSERT_TRUE(writer->Write(chunks[i]));
+    }
+    const std::string part =
+        folder_ / ("data/blobs/incoming/" + wire::sha256(bytes).hex() + ".part");
+    std::error_code error;
+    while (std::filesystem::file_size(part, error) != count * wire::kChunkBytes || error) {
+      std::this_thread::yield();
+    }
+    call->TryCancel();
+    EXPECT_EQ(writer->Finish().error_code(), StatusCode::CANCELLED);
+  }
+
+  std::uint64_t bytes_there(const std::string& bytes) {
+    farm::MissingBlobsRequest request;
+    request.add_sha256(wire::sha256(bytes).raw());
+    farm::MissingBlobsReply reply;
+    const auto status = people()->MissingBlobs(context(link::Role::kFarm).get(), request, &reply);
+    EXPECT_TRUE(status.ok()) << status.error_message();
+    EXPECT_EQ(reply.there_size(), 1);
+    return reply.there_size() == 1 ? reply.there(0) : 0;
+  }
+  /// The coordinator hears of a sender's end a moment later.
+  std::uint64_t wait_until_there(const std::string& bytes) {
+    std::uint64_t there = 0;
+    while (there == 0 && !HasFailure()) {
+      there = bytes_there(bytes);
+    }
+    return there;
   }
 
   /// A good band of 2 rows of 3 pixels.
@@ -87,6 +139,48 @@ TEST_F(ChunksTest, BlobArrivesInPiecesAndLeavesFromAnyOffset) {
   grpc::Status status;
   get_blob(wire::sha256(bytes), bytes.size() + 1, status);
   expect(status, StatusCode::INVALID_ARGUMENT, "offset");
+}
+
+TEST_F(ChunksTest, AnUploadThatWasCutGoesOnFromWhereItWas) {
+  const std::string bytes = pattern((3 << 20) + 77);
+  cut_after(bytes, 2);
+  const std::uint64_t there = wait_until_there(bytes);
+  ASSERT_EQ(there, 2U << 20);
+  const std::vector<farm::BlobChunk> rest = chunks_from(bytes, there);
+  std::size_t sent = 0;
+  for (const farm::BlobChunk& chunk : rest) {
+    sent += chunk.data().size();
+  }
+  EXPECT_EQ(sent, bytes.size() - (2U << 20));
+  const grpc::Status put = put_blob(rest);
+  ASSERT_TRUE(put.ok()) << put.error_message();
+  grpc::Status status;
+  EXPECT_TRUE(get_blob(wire::sha256(bytes), 0, status) == bytes);
+}
+
+TEST_F(ChunksTest, WhatIsNotThereCannotBeGoneOnFrom) {
+  const std::string bytes = pattern(3 << 20);
+  expect(put_blob(chunks_from(bytes, 1 << 20)), StatusCode::FAILED_PRECONDITION, "0 bytes");
+  farm::BlobChunk beyond = whole("x");
+  beyond.set_offset(2);
+  expect(put_blob({beyond}), StatusCode::INVALID_ARGUMENT, "offset");
+  EXPECT_FALSE(is_there(bytes));
+}
+
+TEST_F(ChunksTest, APartThatWasDamagedIsNamedAndSentAnew) {
+  const std::string bytes = pattern(3 << 20);
+  const wire::Digest digest = wire::sha256(bytes);
+  cut_after(bytes, 2);
+  const std::uint64_t there = wait_until_there(bytes);
+  std::fstream part(folder_ / ("data/blobs/incoming/" + digest.hex() + ".part"),
+                    std::ios::in | std::ios::out | std::ios::binary);
+  part.seekp(12345).put(static_cast<char>(bytes[12345] ^ 1));
+  part.close();
+  ASSERT_TRUE(part.good());
+  expect(put_blob(chunks_from(bytes, there)), StatusCode::DATA_LOSS, digest.hex());
+  EXPECT_EQ(bytes_there(bytes), 0U);
+  EXPECT_TRUE(put_blob(chunks_from(bytes, 0)).ok());
+  EXPECT_TRUE(is_there(bytes));
 }
 
 TEST_F(ChunksTest, BlobThatIsNotThereIsNotFound) {

@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <ctime>
 #include <filesystem>
 #include <thread>
 
+#include "proto/wire/limits.h"
 #include "tests/support/full_disk.h"
 #include "tests/support/temp_dir.h"
 #include "tests/unit/store/test_files.h"
@@ -30,6 +32,16 @@ class BlobStoreTest : public testing::Test {
       return s;
     }
     return writer->commit();
+  }
+
+  /// Long enough that half of it is worth keeping.
+  static std::string long_text(char fill) {
+    return std::string(2 * PartialBlobs::kLeastBytes, fill);
+  }
+  static void leave_half(BlobStore& store, const std::string& text) {
+    absl::StatusOr<BlobStore::Writer> writer = store.write(wire::sha256(text), text.size());
+    ASSERT_TRUE(writer.ok()) << writer.status();
+    ASSERT_TRUE(writer->append(bytes_of(text.substr(0, text.size() / 2))).ok());
   }
 
   static std::string text_of(BlobStore& store, const wire::Digest& digest) {
@@ -98,6 +110,67 @@ TEST_F(BlobStoreTest, AnAbandonedUploadIsGoneAtTheNextStart) {
   open();
   write_all(folder_ / "incoming/7", "half");
   open();
+  EXPECT_EQ(files(), 0u);
+}
+
+TEST_F(BlobStoreTest, AnUploadThatWasCutGoesOnInTheNextLife) {
+  const std::string text = long_text('a');
+  const wire::Digest digest = wire::sha256(text);
+  leave_half(*open(), text);
+  const auto store = open();
+  ASSERT_EQ(store->partial(digest), text.size() / 2);
+  EXPECT_FALSE(store->has(digest));
+  auto writer = store->write(digest, text.size(), text.size() / 2);
+  ASSERT_TRUE(writer.ok()) << writer.status();
+  EXPECT_EQ(store->partial(digest), 0u) << "somebody sends it";
+  ASSERT_TRUE(writer->append(bytes_of(text.substr(text.size() / 2))).ok());
+  ASSERT_TRUE(writer->commit().ok());
+  EXPECT_EQ(text_of(*store, digest), text);
+}
+
+TEST_F(BlobStoreTest, LessThanIsThereMayBeKeptAndMoreMayNot) {
+  const std::string text = long_text('b');
+  const wire::Digest digest = wire::sha256(text);
+  const auto store = open();
+  leave_half(*store, text);
+  EXPECT_EQ(store->write(digest, text.size(), text.size() / 2 + 1).status().code(),
+            absl::StatusCode::kFailedPrecondition);
+  auto writer = store->write(digest, text.size(), 10);
+  ASSERT_TRUE(writer->append(bytes_of(text.substr(10))).ok());
+  EXPECT_TRUE(writer->commit().ok());
+}
+
+TEST_F(BlobStoreTest, APartThatWasDamagedIsNamedAndThrownAway) {
+  const std::string text = long_text('c');
+  const wire::Digest digest = wire::sha256(text);
+  const auto store = open();
+  leave_half(*store, text);
+  write_all(folder_ / ("incoming/" + digest.hex() + ".part"), std::string(text.size() / 2, 'x'));
+  {
+    auto writer = store->write(digest, text.size(), text.size() / 2);
+    ASSERT_TRUE(writer->append(bytes_of(text.substr(text.size() / 2))).ok());
+    const absl::Status status = writer->commit();
+    EXPECT_EQ(status.code(), absl::StatusCode::kDataLoss);
+    EXPECT_THAT(std::string(status.message()), testing::HasSubstr(digest.hex()));
+  }
+  EXPECT_EQ(store->partial(digest), 0u);
+  EXPECT_TRUE(put(*store, text).ok());
+}
+
+TEST_F(BlobStoreTest, PartsAreBoundedInNumberAndGoWhenTheyAreOld) {
+  const auto store = open();
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < wire::kPartialBlobs + 2; ++i) {
+    texts.push_back(long_text('d') + std::to_string(i));
+    leave_half(*store, texts.back());
+  }
+  EXPECT_EQ(files(), wire::kPartialBlobs);
+  EXPECT_EQ(store->partial(wire::sha256(texts.front())), 0u);
+  EXPECT_GT(store->partial(wire::sha256(texts.back())), 0u);
+  const double now = static_cast<double>(std::time(nullptr));
+  store->remove_partials(now, 60);
+  EXPECT_EQ(files(), wire::kPartialBlobs);
+  store->remove_partials(now + 100, 60);
   EXPECT_EQ(files(), 0u);
 }
 

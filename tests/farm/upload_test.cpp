@@ -1,0 +1,78 @@
+// A submitter that goes away in the middle of an upload, and one that comes back.
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <optional>
+#include <vector>
+
+#include "coordinator/cli/farm_client.h"
+#include "tests/farm/farm_processes.h"
+
+namespace bandsaw::test {
+namespace {
+
+using coordinator::FarmClient;
+
+class Upload : public testing::Test {
+ protected:
+  Upload() {
+    for (std::size_t i = 0; i < bytes_.size(); ++i) {
+      bytes_[i] = static_cast<std::byte>(i * 2654435761U >> 13);
+    }
+  }
+
+  std::unique_ptr<FarmClient> connect() {
+    return *FarmClient::connect(*link::join_string_from(farm_.farm_file()));
+  }
+
+  /// How many bytes the farm has of it; nothing: all.
+  std::optional<std::uint64_t> there() {
+    const auto missing = connect()->missing_blobs({digest()});
+    EXPECT_TRUE(missing.ok()) << missing.status();
+    return missing->empty() ? std::nullopt : std::optional(missing->front().there);
+  }
+
+  void leave_in_the_middle() {
+    const auto client = connect();
+    const absl::Status cut = client->put_blob(digest(), bytes_, 0, [&](std::uint64_t sent) {
+      if (sent >= bytes_.size() / 2) {
+        client->stop();
+      }
+    });
+    ASSERT_EQ(cut.code(), absl::StatusCode::kCancelled) << cut;
+  }
+
+  wire::Digest digest() const { return wire::sha256(bytes_); }
+
+  FarmProcesses farm_;
+  std::vector<std::byte> bytes_ = std::vector<std::byte>(16 << 20);
+};
+
+TEST_F(Upload, GoesOnWhereItWasCutAlsoAfterTheCoordinatorsEnd) {
+  leave_in_the_middle();
+  std::uint64_t kept = 0;
+  while (kept == 0 && !HasFailure()) {
+    kept = there().value_or(bytes_.size());  // the coordinator hears of the end a moment later
+  }
+  ASSERT_LT(kept, bytes_.size());
+  farm_.coordinator().signal(SIGKILL);
+  farm_.coordinator().wait();
+  farm_.restart_coordinator();
+  EXPECT_EQ(there(), kept);
+  std::optional<std::uint64_t> first;
+  const absl::Status put = connect()->put_blob(
+      digest(), bytes_, kept, [&](std::uint64_t sent) { first = first.value_or(sent); });
+  ASSERT_TRUE(put.ok()) << put;
+  EXPECT_EQ(first, kept + (1 << 20)) << "the first chunk is the one after those that are there";
+  EXPECT_EQ(there(), std::nullopt);
+}
+
+TEST_F(Upload, IsSentFromTheBeginningWhereTheFarmHasLostWhatItHad) {
+  const absl::Status put = connect()->put_blob(digest(), bytes_, 8 << 20, [](std::uint64_t) {});
+  EXPECT_TRUE(put.ok()) << put;
+  EXPECT_EQ(there(), std::nullopt);
+}
+
+}  // namespace
+}  // namespace bandsaw::test

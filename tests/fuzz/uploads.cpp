@@ -1,0 +1,153 @@
+// Chunks of a blob: any message; then a sender who begins, goes on, skips, lies and is cut off as
+// the input says, and a disk that is damaged meanwhile. Whatever happens, a blob that is there is
+// the one of its digest.
+
+#include <algorithm>
+#include <cstring>
+#include <fstream>
+#include <optional>
+#include <span>
+
+#include "coordinator/rpc/blob_intake.h"
+#include "coordinator/store/blob_store.h"
+#include "proto/wire/limits.h"
+#include "renderlib/base/check.h"
+#include "tests/fuzz/fuzz.h"
+#include "tests/support/temp_dir.h"
+
+namespace {
+
+using namespace bandsaw;
+using namespace bandsaw::coordinator;
+
+/// Long enough to be cut at places that are worth keeping.
+const std::string& content() {
+  static const std::string bytes = [] {
+    std::string text(PartialBlobs::kLeastBytes + 40'000, '\0');
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      text[i] = static_cast<char>(i * 2654435761U >> 13);
+    }
+    return text;
+  }();
+  return bytes;
+}
+
+class Sender {
+ public:
+  explicit Sender(const std::string& folder) : folder_(folder), store_(*BlobStore::open(folder)) {}
+
+  /// Three bytes of the input: what happens, and a number.
+  void step(std::uint8_t what, std::uint32_t number) {
+    switch (what % 6) {
+      case 0:
+        leave();
+        return;
+      case 1:
+        leave();
+        store_ = *BlobStore::open(folder_);
+        break;
+      case 2:
+        damage(number);
+        break;
+      case 3:
+        finish();
+        break;
+      default:
+        send(what, number);
+    }
+    check();
+  }
+
+ private:
+  void leave() {
+    writer_.reset();
+    intake_ = {};
+  }
+
+  void damage(std::uint32_t number) {
+    std::fstream part(folder_ + "/incoming/" + digest_.hex() + ".part",
+                      std::ios::in | std::ios::out | std::ios::binary);
+    part.seekp(number * 32).put('x');
+  }
+
+  void finish() {
+    if (!intake_.end().ok()) {
+      return leave();
+    }
+    const absl::Status status = writer_->commit();
+    BANDSAW_CHECK(!status.ok() || store_->has(digest_), "what was stored is there");
+    leave();
+    BANDSAW_CHECK(status.ok() || store_->partial(digest_) == 0, "wrong bytes are not kept");
+  }
+
+  /// High bits of `what`: from the beginning or from what is there, bytes as they are or not, at
+  /// the place or beside it.
+  void send(std::uint8_t what, std::uint32_t number) {
+    farm::BlobChunk chunk;
+    std::uint64_t offset = intake_.received();
+    if (!intake_.begun()) {
+      offset = (what & 64) != 0 ? store_->partial(digest_) : number * 16;
+      chunk.set_sha256(digest_.raw());
+      chunk.set_size(content().size());
+    }
+    chunk.set_offset(offset + ((what & 128) != 0 ? number : 0));
+    const std::size_t from = std::min<std::size_t>(offset, content().size());
+    std::string data = content().substr(from, number * 32);
+    if ((what & 32) != 0 && !data.empty()) {
+      data[number % data.size()] ^= 1;
+    }
+    chunk.set_data(data);
+    const bool first = !intake_.begun();
+    if (!intake_.add(chunk).ok()) {
+      return leave();
+    }
+    if (first) {
+      auto writer = store_->write(intake_.digest(), intake_.size(), intake_.first_offset());
+      if (!writer.ok()) {
+        return leave();
+      }
+      writer_.emplace(*std::move(writer));
+    }
+    BANDSAW_CHECK(writer_->append(std::as_bytes(std::span(data))).ok(), "there is room");
+  }
+
+  void check() {
+    BANDSAW_CHECK(store_->partial(digest_) <= content().size(),
+                  "a part is not more than the whole");
+    if (!store_->has(digest_)) {
+      return;
+    }
+    const auto blob = store_->get(digest_);
+    BANDSAW_CHECK(blob.ok(), "nobody touched it");
+    const auto bytes = (*blob)->bytes();
+    BANDSAW_CHECK(bytes.size() == content().size() &&
+                      std::memcmp(bytes.data(), content().data(), bytes.size()) == 0,
+                  "a blob that is there is the one of its digest");
+    BANDSAW_CHECK(store_->remove(digest_).ok(), "a blob can be removed");
+  }
+
+  const std::string folder_;
+  const wire::Digest digest_ = wire::sha256(content());
+  std::unique_ptr<BlobStore> store_;
+  BlobIntake intake_;
+  std::optional<BlobStore::Writer> writer_;
+};
+
+}  // namespace
+
+void bandsaw::fuzz::run(absl::Span<const std::uint8_t> in) {
+  farm::BlobChunk message;
+  if (message.ParseFromArray(in.data(), static_cast<int>(in.size()))) {
+    BlobIntake intake;
+    if (intake.add(message).ok()) {
+      BANDSAW_CHECK(intake.received() <= intake.size() && intake.size() <= wire::kBlobBytes,
+                    "what was taken is within its size");
+    }
+  }
+  const test::TempDir folder;
+  Sender sender(folder.path());
+  constexpr std::size_t kSteps = 64;
+  for (std::size_t at = 0; at + 3 <= std::min(in.size(), 3 * kSteps); at += 3) {
+    sender.step(in[at], in[at + 1] | in[at + 2] << 8);
+  }
+}
