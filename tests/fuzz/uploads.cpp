@@ -65,9 +65,12 @@ class Sender {
   }
 
   void damage(std::uint32_t number) {
-    std::fstream part(folder_ + "/incoming/" + digest_.hex() + ".part",
-                      std::ios::in | std::ios::out | std::ios::binary);
-    part.seekp(number * 32).put('x');
+    const std::uint64_t size = store_->partial(digest_);
+    if (size > 0) {
+      std::fstream part(folder_ + "/incoming/" + digest_.hex() + ".part",
+                        std::ios::in | std::ios::out | std::ios::binary);
+      part.seekp(static_cast<std::streamoff>(number * 32 % size)).put('x');
+    }
   }
 
   void finish() {
