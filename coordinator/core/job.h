@@ -72,6 +72,14 @@ struct Fault {
   std::string reason;
 };
 
+/// A worker went while rendering a band, and stays away.
+struct Loss {
+  Band band;               ///< without what others stored of it since
+  std::uint32_t rows = 0;  ///< of it, at a time, when it is leased again
+  std::string instance;
+  std::string reason;
+};
+
 class Job {
  public:
   Job(JobId id, JobSpec spec);
@@ -142,7 +150,7 @@ class Job {
   std::set<std::pair<Band, std::uint64_t>> audited;
   /// A look at the error that waits for audits: what it would decide on may be wrong pixels.
   std::optional<input::PassMerged> look;
-  std::deque<Fault> losses;  ///< of workers that went while rendering a band and stay away
+  std::deque<Loss> losses;                      ///< the newest kFaultsKept
   std::map<std::uint64_t, WorkerShare> shares;  ///< by renderer, at most kSharesKnown
   std::optional<record::Figures> figures;       ///< of a final job
   std::vector<WorkerShare> final_shares;        ///< of a final job, the largest first

@@ -70,7 +70,7 @@ bool Core::State::lease_to(Worker& worker) {
         return true;
       }
       if (const auto free = free_for(job, worker)) {
-        const Band band = sized(job, worker, *free);
+        const Band band = narrowed(job, *free, sized(job, worker, *free));
         if (is_suspect(job, band) && !worker.leases.empty()) {
           return false;  // The first who has nothing else in hand takes it.
         }

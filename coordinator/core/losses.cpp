@@ -8,6 +8,13 @@
 #include "coordinator/core/state.h"
 
 namespace bandsaw::coordinator {
+namespace {
+
+/// A suspect band is rendered again in so many pieces: the longest, those that were cut before a
+/// pace was known, take seconds, and workers that go for other reasons go while at them.
+constexpr std::uint32_t kPieces = 8;
+
+}  // namespace
 
 /// What the worker is rendering, if it went now without a word of leaving. A copy does not count:
 /// the original's worker is at the same rows, and a net that fails would take both at once. Nor
@@ -26,12 +33,14 @@ void Core::State::add_loss(const Worker& worker, const Losing& lost) {
   if (job == nullptr || is_final(job->state)) {
     return;
   }
-  job->losses.push_back({lost.band, worker.instance, worker.reason});
+  const std::uint32_t count = lost.band.rows.count();
+  const std::uint32_t again = is_suspect(*job, lost.band) ? count : (count + kPieces - 1) / kPieces;
+  job->losses.push_back({lost.band, again, worker.instance, worker.reason});
   if (job->losses.size() > Job::kFaultsKept) {
     job->losses.pop_front();
   }
   std::set<std::string> instances;
-  for (const Fault& loss : job->losses) {
+  for (const Loss& loss : job->losses) {
     if (meet(loss.band, lost.band)) {
       instances.insert(loss.instance);
     }
@@ -62,7 +71,30 @@ void Core::State::add_loss(const Worker& worker, const Losing& lost) {
 /// would be blamed for the one behind it.
 bool Core::State::is_suspect(const Job& job, const Band& band) {
   return std::any_of(job.losses.begin(), job.losses.end(),
-                     [&](const Fault& loss) { return meet(loss.band, band); });
+                     [&](const Loss& loss) { return meet(loss.band, band); });
+}
+
+/// Of what is free, from its first row on, instead of `band`, which is cut by times alone: rows that
+/// are not suspect, or one piece of a band that is, whole. The third who is lost must have been at
+/// the very piece that the second was at, and not just at another of a long band.
+Band Core::State::narrowed(const Job& job, const Band& free, Band band) {
+  if (band.samples != free.samples) {
+    return band;  // part of a row
+  }
+  std::optional<std::uint32_t> piece;
+  for (const Loss& loss : job.losses) {
+    const RowRange& rows = loss.band.rows;
+    if (meet(loss.band, band) && rows.first <= band.rows.first) {
+      piece = std::min({piece.value_or(free.rows.last), rows.last, band.rows.first + loss.rows});
+    }
+  }
+  band.rows.last = piece.value_or(band.rows.last);
+  for (const Loss& loss : job.losses) {
+    if (meet(loss.band, band) && loss.band.rows.first > band.rows.first) {
+      band.rows.last = loss.band.rows.first;
+    }
+  }
+  return band;
 }
 
 bool Core::State::has_suspect(const Worker& worker) const {
@@ -76,14 +108,14 @@ bool Core::State::has_suspect(const Worker& worker) const {
 void Core::State::forgive_losses(const Worker& worker) {
   for (const JobId id : active_) {
     std::erase_if(jobs_.at(id).losses,
-                  [&](const Fault& loss) { return loss.instance == worker.instance; });
+                  [&](const Loss& loss) { return loss.instance == worker.instance; });
   }
 }
 
 /// Rows that somebody has rendered did not end those who tried before. What is stored at an end of
 /// a loss's rows narrows it down; rows within leave it as it is.
 void Core::State::shrink_losses(Job& job, const Band& stored) {
-  for (Fault& loss : job.losses) {
+  for (Loss& loss : job.losses) {
     RowRange& rows = loss.band.rows;
     if (!meet(loss.band, stored)) {
       continue;
@@ -94,7 +126,7 @@ void Core::State::shrink_losses(Job& job, const Band& stored) {
       rows.last = stored.rows.first;
     }
   }
-  std::erase_if(job.losses, [](const Fault& loss) { return loss.band.rows.count() == 0; });
+  std::erase_if(job.losses, [](const Loss& loss) { return loss.band.rows.count() == 0; });
 }
 
 }  // namespace bandsaw::coordinator

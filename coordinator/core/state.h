@@ -224,6 +224,7 @@ class Core::State {
   std::optional<Losing> in_hand(const Worker& worker) const;
   void add_loss(const Worker& worker, const Losing& lost);
   static bool is_suspect(const Job& job, const Band& band);
+  static Band narrowed(const Job& job, const Band& free, Band band);
   bool has_suspect(const Worker& worker) const;
   void forgive_losses(const Worker& worker);
   static void shrink_losses(Job& job, const Band& stored);

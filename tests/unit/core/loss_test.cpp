@@ -195,5 +195,46 @@ TEST(Loss, ADrainingWorkerKeepsWhatItHasAndGetsNothingMore) {
   EXPECT_EQ(farm.core.workers(farm.now)[0].state, "draining");
 }
 
+/// Starts a new worker that renders bands until one of them holds the row, and is lost with it.
+Band lose_one_at(FarmDriver& farm, std::uint32_t row, SessionId session) {
+  const std::string instance = std::to_string(session);
+  farm.hello(session, instance, 1);
+  Band band = farm.all<action::Lease>().back().band;
+  while (row < band.rows.first || band.rows.last <= row) {
+    farm.stored(farm.all<action::Lease>().back(), instance);
+    band = farm.all<action::Lease>().back().band;
+  }
+  farm.say(input::Lost{session, "connection reset"});
+  return band;
+}
+
+TEST(Poison, OneDeadlyRowOfALongBandCostsThreeWorkersAndIsNarrowedDown) {
+  FarmDriver farm;
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 800));
+  const Band first = lose_one_at(farm, 23, 1);
+  ASSERT_GE(first.rows.count(), 24u);
+  const Band second = lose_one_at(farm, 23, 2);
+  EXPECT_LE(second.rows.count(), (first.rows.count() + 7) / 8);
+  EXPECT_EQ(farm.job(job).state, JobState::kRunning) << farm.job(job).reason;
+  EXPECT_EQ(lose_one_at(farm, 23, 3), second);
+  EXPECT_EQ(farm.job(job).state, JobState::kFailed);
+  const std::string rows =
+      "rows " + std::to_string(second.rows.first) + "–" + std::to_string(second.rows.last);
+  EXPECT_NE(farm.job(job).reason.find(rows), std::string::npos) << farm.job(job).reason;
+}
+
+TEST(Poison, WorkersThatAreKilledOneAfterTheOtherDoNotFailAJobThatAdvances) {
+  FarmDriver farm;
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 800));
+  lose_one_at(farm, 0, 1);
+  for (SessionId session = 2; session <= 9; ++session) {
+    const std::string instance = std::to_string(session);
+    farm.hello(session, instance, 1);
+    farm.stored(farm.all<action::Lease>().back(), instance);
+    farm.say(input::Lost{session, "connection reset"});
+  }
+  EXPECT_EQ(farm.job(job).state, JobState::kRunning) << farm.job(job).reason;
+}
+
 }  // namespace
 }  // namespace bandsaw::coordinator
