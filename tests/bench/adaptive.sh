@@ -15,7 +15,7 @@ shift $(($# < 4 ? $# : 4))
 scenes=("$@")
 ((${#scenes[@]})) || scenes=(defocus spheres glass_and_metal everything many_lights materials
   study/lights_0 mesh environment textures)
-gallery=$(cd "$(dirname "$0")/../../renderlib/gallery" && pwd)
+gallery=$(dirname "$(realpath "$bandsaw")")/../share/bandsaw/gallery  # with the textures that are made when it is built
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 

@@ -12,7 +12,7 @@ bandsaw=$(realpath "${1:?usage: calibrate.sh BANDSAW FOLDER [options]}")
 folder=${2:?usage: calibrate.sh BANDSAW FOLDER [options]}
 shift 2
 root=$(cd "$(dirname "$0")/../.." && pwd)
-gallery=$root/renderlib/gallery
+gallery=$(dirname "$bandsaw")/../share/bandsaw/gallery  # with the textures that are made when it is built
 scenes=$(cd "$gallery" && find . -name '*.textproto' | sed 's,^\./,,; s,\.textproto$,,' | sort)
 seeds=20
 seconds=20
@@ -33,11 +33,13 @@ touch "$folder/runs" "$folder/left_out" "$folder/references"
 number() { sed -n "s/.*\"$1\":\([-0-9.e+]*\).*/\1/p"; }
 least() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a < b) }'; }
 
-# One render to a target: prints samples, estimate, CPU seconds. Nothing: it took ten times too long.
+# One render to a target: prints samples, estimate, CPU seconds. Status 1: it took ten times too long.
 render() {  # scene target seed image
-  local done
+  local done status=0
   done=$(ulimit -S -t "$((10 * seconds))" && "$bandsaw" render "$gallery/$1.textproto" --width 96 --error "$2%" --seed "$3" --json -o "$4" |
-         tail -n 1) || return 1
+         tail -n 1) || status=$?
+  ((status <= 128)) || return 1
+  ((status == 0)) || { echo "calibrate.sh: $1 cannot be rendered" >&2; kill $$; }
   echo "$(number samples_done <<<"$done") $(number error <<<"$done") $(number cpu_s <<<"$done") $(number samples_per_pixel <<<"$done")"
 }
 
