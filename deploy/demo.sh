@@ -15,25 +15,10 @@ cp deploy/demo.textproto "$folder/engine.textproto"
 cp /usr/share/assimp/models/glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb "$folder/"
 cp renderlib/gallery/{knot.obj,pawn.obj,vase.obj,planet.png,dusk.hdr} "$folder/"
 
-data=$(mktemp -d)
-pids=()
-stop() {
-  kill "${pids[@]}" 2>/dev/null || true
-  wait 2>/dev/null || true
-  rm -rf "$data"
-}
-trap stop EXIT
-
-bandsaw serve --data "$data" --listen 127.0.0.1:0 >"$folder/coordinator.log" 2>&1 &
-pids+=($!)
-until [ -s "$data/join" ]; do
-  kill -0 "${pids[0]}" 2>/dev/null || { cat "$folder/coordinator.log" >&2; exit 1; }
-  sleep 0.05
-done
+. deploy/loopback.sh
+serve_here "$folder/coordinator.log"
 for name in anna ben cleo; do
-  bandsaw-worker --join "$data/join" --name "$name" --threads 1 --cache "$data/cache-$name" \
-    >"$folder/$name.log" 2>&1 &
-  pids+=($!)
+  work_here "$name" "$folder/$name.log" --threads 1
 done
 
 bandsaw submit "$folder/engine.textproto" --farm "$data/farm" --samples "${BANDSAW_DEMO_SAMPLES:-64}" \

@@ -14,8 +14,6 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kConnectTimeout{5'000};
 constexpr milliseconds kCallTimeout{10'000};
-// No deadline: what ends a dead stream is keepalive.
-constexpr milliseconds kStreamTimeout{0};
 
 }  // namespace
 
@@ -124,7 +122,7 @@ absl::StatusOr<JobId> FarmClient::submit(const farm::SubmitRequest& request) {
 
 absl::Status FarmClient::watch(JobId job, const std::function<void(const Progress&)>& changed) {
   bool ended = false;
-  const absl::Status status = try_once(kStreamTimeout, [&](grpc::ClientContext& context) {
+  const absl::Status status = try_once(kNoDeadline, [&](grpc::ClientContext& context) {
     farm::WatchRequest request;
     request.set_job(job);
     const auto stream = control_->Watch(&context, request);

@@ -105,6 +105,8 @@ class FarmClient {
   /// Makes a context for each try, and tries again while the farm does not answer.
   absl::Status call(std::chrono::milliseconds deadline,
                     const std::function<grpc::Status(grpc::ClientContext&)>& body) EXCLUDES(mutex_);
+  /// Of streams: keepalive ends a dead one, and what is big takes its time.
+  static constexpr std::chrono::milliseconds kNoDeadline{0};
   static constexpr std::chrono::milliseconds kRetryPause{500};
   static constexpr int kTries = 4;
   static bool outcome_unknown(const absl::Status& status);

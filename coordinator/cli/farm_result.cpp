@@ -14,9 +14,6 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// No deadline: keepalive ends a dead stream, and a big image takes its time.
-constexpr std::chrono::milliseconds kTransferTimeout{0};
-
 struct Received {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
@@ -78,7 +75,7 @@ absl::StatusOr<FarmImage> FarmClient::preview(JobId job, std::uint32_t most_side
 absl::StatusOr<FarmImage> FarmClient::receive(JobId job, const OpenImage& open) {
   Received received;
   bool too_much = false;
-  RETURN_IF_ERROR(call(kTransferTimeout, [&](grpc::ClientContext& context) {
+  RETURN_IF_ERROR(call(kNoDeadline, [&](grpc::ClientContext& context) {
     received = Received();
     const auto stream = open(context);
     farm::ResultChunk chunk;

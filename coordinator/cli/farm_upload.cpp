@@ -9,9 +9,6 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// No deadline: keepalive ends a dead stream, and a big blob takes its time.
-constexpr std::chrono::milliseconds kTransferTimeout{0};
-
 /// The farm has less of a blob than was thought, or threw away what was damaged.
 bool other_is_there(const absl::Status& status) {
   return absl::IsFailedPrecondition(status) || absl::IsDataLoss(status);
@@ -41,7 +38,7 @@ absl::Status FarmClient::put_blob(const wire::Digest& digest, absl::Span<const s
 absl::Status FarmClient::put_rest(const wire::Digest& digest, absl::Span<const std::byte> bytes,
                                   std::uint64_t offset,
                                   const std::function<void(std::uint64_t)>& sent) {
-  return try_once(kTransferTimeout, [&](grpc::ClientContext& context) {
+  return try_once(kNoDeadline, [&](grpc::ClientContext& context) {
     farm::PutBlobReply reply;
     const auto stream = bulk_->PutBlob(&context, &reply);
     std::uint64_t at = std::min<std::uint64_t>(offset, bytes.size());

@@ -14,7 +14,6 @@ namespace bandsaw::coordinator {
 
 class RowTimes {
  public:
-  RowTimes() = default;
   /// height > 0
   explicit RowTimes(std::uint32_t height) : rows_(height, kUnknown) {}
 

@@ -15,7 +15,6 @@ namespace {
 constexpr double kTick_s = 0.1;
 constexpr double kCollectEvery_s = 600;
 constexpr std::size_t kCollectEveryJobs = 1'000;
-constexpr std::uint64_t kCompactAbove = 10'000;
 
 }  // namespace
 

@@ -119,8 +119,9 @@ class CoreDesk {
   absl::Status journal_status_;         ///< an error: nothing is acknowledged
   Time ticked_at_ = 0;
   std::optional<Time> collected_at_;
-  std::size_t added_since_ = 0;           ///< jobs, since then
-  std::uint64_t compact_above_ = 10'000;  ///< records in the journal
+  std::size_t added_since_ = 0;                           ///< jobs, since then
+  static constexpr std::uint64_t kCompactAbove = 10'000;  ///< records in the journal
+  std::uint64_t compact_above_ = kCompactAbove;
 };
 
 }  // namespace bandsaw::coordinator

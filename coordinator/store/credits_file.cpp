@@ -15,21 +15,6 @@ namespace {
 /// Far more than all rows of the tallest image with the longest names take.
 constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 26;
 
-absl::Status damaged(const std::string& path, absl::string_view how) {
-  return absl::DataLossError(absl::StrCat(path, " is damaged: ", how));
-}
-
-absl::StatusOr<std::string> whole_file(const std::string& path) {
-  ASSIGN_OR_RETURN(const File file, File::open_regular(path));
-  ASSIGN_OR_RETURN(const std::uint64_t size, file.size());
-  if (size > kMostBytes) {
-    return damaged(path, "it is too large");
-  }
-  std::string text(size, '\0');
-  RETURN_IF_ERROR(file.read(0, {reinterpret_cast<std::byte*>(text.data()), text.size()}));
-  return text;
-}
-
 }  // namespace
 
 absl::Status write_credits(const std::vector<RowsBy>& credits, const std::string& path) {
@@ -45,7 +30,7 @@ absl::Status write_credits(const std::vector<RowsBy>& credits, const std::string
 }
 
 absl::StatusOr<std::vector<RowsBy>> read_credits(const std::string& path) {
-  ASSIGN_OR_RETURN(const std::string text, whole_file(path));
+  ASSIGN_OR_RETURN(const std::string text, read_whole_file(path, kMostBytes));
   FieldReader fields(text);
   const std::uint64_t pieces = fields.number("pieces", kMaxSide);
   std::vector<RowsBy> credits;
@@ -62,7 +47,7 @@ absl::StatusOr<std::vector<RowsBy>> read_credits(const std::string& path) {
     before = last;
   }
   if (const absl::Status status = fields.finish(); !status.ok()) {
-    return damaged(path, status.message());
+    return absl::DataLossError(absl::StrCat(path, " is damaged: ", status.message()));
   }
   return credits;
 }

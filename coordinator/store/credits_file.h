@@ -22,7 +22,7 @@ struct RowsBy {
 /// Whole or not at all.
 absl::Status write_credits(const std::vector<RowsBy>& credits, const std::string& path);
 
-/// NOT_FOUND: no such file. DATA_LOSS: damaged, saying how.
+/// NOT_FOUND: no such file. DATA_LOSS: damaged, saying how. RESOURCE_EXHAUSTED: far too long.
 absl::StatusOr<std::vector<RowsBy>> read_credits(const std::string& path);
 
 }  // namespace bandsaw::coordinator

@@ -107,6 +107,19 @@ absl::StatusOr<std::uint64_t> File::size() const {
   return static_cast<std::uint64_t>(info.st_size);
 }
 
+absl::StatusOr<std::string> read_whole_file(const std::string& path, std::uint64_t most_bytes) {
+  ASSIGN_OR_RETURN(const File file, File::open_regular(path));
+  ASSIGN_OR_RETURN(const std::uint64_t size, file.size());
+  if (size > most_bytes) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat(path, ": has ", size, " bytes, at most ", most_bytes, " are read"));
+  }
+  std::string bytes(size, '\0');
+  RETURN_IF_ERROR(
+      file.read(0, absl::MakeSpan(reinterpret_cast<std::byte*>(bytes.data()), bytes.size())));
+  return bytes;
+}
+
 absl::Status make_folder(const std::string& path) {
   if (::mkdir(path.c_str(), 0700) != 0 && errno != EEXIST) {
     return errno_status(errno, absl::StrCat("cannot make the folder ", path));

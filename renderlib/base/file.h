@@ -49,6 +49,9 @@ class File {
   std::string path_;
 };
 
+/// A regular file's bytes. RESOURCE_EXHAUSTED: larger than `most_bytes`. Never blocks on a pipe or
+/// device.
+absl::StatusOr<std::string> read_whole_file(const std::string& path, std::uint64_t most_bytes);
 /// Makes the folder (0700) unless it is there.
 absl::Status make_folder(const std::string& path);
 /// Names made, renamed or removed in the folder are on disk.

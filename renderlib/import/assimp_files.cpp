@@ -1,4 +1,5 @@
 #include "renderlib/import/assimp_files.h"
+#include "renderlib/base/file.h"
 
 #include <assimp/IOStream.hpp>
 

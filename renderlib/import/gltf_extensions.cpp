@@ -1,4 +1,5 @@
 #include "renderlib/import/gltf_extensions.h"
+#include "renderlib/base/file.h"
 
 #include <google/protobuf/struct.pb.h>
 #include <google/protobuf/util/json_util.h>
@@ -13,7 +14,6 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/string_view.h"
-#include "renderlib/import/scene_folder.h"
 #include "renderlib/math/elementary.h"
 
 namespace bandsaw {

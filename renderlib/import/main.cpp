@@ -31,6 +31,7 @@
 #include "absl/strings/str_cat.h"
 #include "proto/wire/limits.h"
 #include "renderlib/base/atomic_file.h"
+#include "renderlib/base/file.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/import/confine.h"
 #include "renderlib/import/decode_image.h"

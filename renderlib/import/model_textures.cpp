@@ -1,4 +1,5 @@
 #include "renderlib/import/model_textures.h"
+#include "renderlib/base/file.h"
 
 #include <assimp/scene.h>
 

@@ -1,4 +1,5 @@
 #include "renderlib/import/read_environment.h"
+#include "renderlib/base/file.h"
 
 #include <utility>
 

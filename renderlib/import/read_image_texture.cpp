@@ -1,4 +1,5 @@
 #include "renderlib/import/read_image_texture.h"
+#include "renderlib/base/file.h"
 
 #include <cmath>
 

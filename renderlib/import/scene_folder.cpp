@@ -86,17 +86,4 @@ absl::StatusOr<std::string> SceneFolder::resolve_any_case(const std::string& nam
   return found.empty() ? std::move(exact) : resolve(found, folder);
 }
 
-absl::StatusOr<std::string> read_whole_file(const std::string& path, std::uint64_t most_bytes) {
-  ASSIGN_OR_RETURN(const File file, File::open_regular(path));
-  ASSIGN_OR_RETURN(const std::uint64_t size, file.size());
-  if (size > most_bytes) {
-    return absl::ResourceExhaustedError(
-        absl::StrCat(path, ": has ", size, " bytes, at most ", most_bytes, " are read"));
-  }
-  std::string bytes(size, '\0');
-  RETURN_IF_ERROR(
-      file.read(0, absl::MakeSpan(reinterpret_cast<std::byte*>(bytes.data()), bytes.size())));
-  return bytes;
-}
-
 }  // namespace bandsaw

@@ -39,8 +39,4 @@ std::string folder_of(const std::string& path);
 /// The last part of a path.
 std::string name_of(const std::string& path);
 
-/// A regular file's bytes. RESOURCE_EXHAUSTED: larger than `most_bytes`. Never blocks on a pipe or
-/// device.
-absl::StatusOr<std::string> read_whole_file(const std::string& path, std::uint64_t most_bytes);
-
 }  // namespace bandsaw

@@ -1,9 +1,8 @@
 // What the real coordinator takes for a band, through gRPC with TLS and down to the disk, and for a
 // worker that is connected: null renderers that answer each lease at once with black rows.
 //
-//   dispatch_bench [SECONDS [WORKERS]]    10 seconds of bands with 1, 4 and 16 workers; then so
-//   many
-//                                         workers connected, 1000
+//   dispatch_bench [SECONDS [WORKERS]]    10 seconds of bands with 1, 4 and 16 workers;
+//                                         then so many connected, 1000
 
 #include <unistd.h>
 

@@ -7,29 +7,16 @@
 set -euo pipefail
 bin=$(cd "${1:?usage: soak.sh BIN-FOLDER [JOBS [KEPT]]}" && pwd)
 jobs=${2:-10000} kept=${3:-1000}
-gallery=$(cd "$(dirname "$0")/../../renderlib/gallery" && pwd)
-folder=$(mktemp -d)
-pids=()
-stop() {
-  kill "${pids[@]}" 2>/dev/null || true
-  wait 2>/dev/null || true
-  rm -rf "$folder"
-}
-trap stop EXIT
-
-"$bin/bandsaw" serve --data "$folder/farm" --listen 127.0.0.1:0 --web none --keep-jobs "$kept" >"$folder/coordinator.log" 2>&1 &
-pids+=($!)
-until [ -s "$folder/farm/join" ]; do
-  kill -0 "${pids[0]}" 2>/dev/null || { cat "$folder/coordinator.log" >&2; exit 1; }
-  sleep 0.05
-done
-"$bin/bandsaw-worker" --join "$folder/farm/join" --name soak --threads 1 --cache "$folder/cache" >"$folder/worker.log" 2>&1 &
-pids+=($!)
+top=$(cd "$(dirname "$0")/../.." && pwd)
+PATH=$bin:$PATH
+. "$top/deploy/loopback.sh"
+serve_here "$scratch/coordinator.log" --web none --keep-jobs "$kept"
+work_here soak "$scratch/worker.log" --threads 1
 
 resident() { awk '/^VmRSS/ { printf "%.1f", $2 / 1024 }' "/proc/$1/status"; }
 submit() {
-  "$bin/bandsaw" submit "$gallery/spheres.textproto" --farm "$folder/farm/farm" --samples 1 --width 16 --seed "$1" --quiet \
-    --report none -o "$folder/$2.pfm" >/dev/null
+  bandsaw submit "$top/renderlib/gallery/spheres.textproto" --farm "$data/farm" --samples 1 --width 16 --seed "$1" --quiet \
+    --report none -o "$scratch/$2.pfm" >/dev/null
 }
 
 echo "| jobs | coordinator, MB | worker, MB | on disk, MB | jobs a second |"
@@ -44,7 +31,7 @@ for ((done = 0; done < jobs; done += step)); do
   wait "${lanes[@]}"
   last=$((done + step < jobs ? done + step : jobs))
   coordinator=$(resident "${pids[0]}") worker=$(resident "${pids[1]}")
-  awk -v jobs="$last" -v c="$coordinator" -v w="$worker" -v disk="$(du -sm "$folder/farm" | cut -f1)" \
+  awk -v jobs="$last" -v c="$coordinator" -v w="$worker" -v disk="$(du -sm "$data" | cut -f1)" \
     -v took="$(date +%s.%N) $began" -v step=$((last - done)) 'BEGIN {
       split(took, t, " "); printf "| %d | %s | %s | %d | %.1f |\n", jobs, c, w, disk, step / (t[1] - t[2]) }'
   ((2 * last < jobs)) || [ -n "${half:-}" ] || half=$coordinator half_worker=$worker half_at=$last

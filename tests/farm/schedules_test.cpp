@@ -14,17 +14,13 @@
 #include "absl/strings/str_join.h"
 #include "tests/farm/band_log.h"
 #include "tests/farm/farm_processes.h"
+#include "tests/support/environment.h"
 #include "tests/support/random.h"
 
 namespace bandsaw::test {
 namespace {
 
 constexpr int kMachines = 4;
-
-std::uint64_t number(const char* variable, std::uint64_t otherwise) {
-  const char* const text = std::getenv(variable);
-  return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
-}
 
 std::vector<std::string> with_job(std::vector<std::string> arguments) {
   for (const char* one : {"--width", "96", "--height", "96", "--samples", "64", "--quiet"}) {
@@ -172,8 +168,8 @@ TEST(Schedules, TheSameBytesWhateverBefallsTheFarm) {
   ASSERT_EQ(run(with_job({BANDSAW_BIN, "render", kScene, "-o", local})).code, 0);
   const std::string expected = file_bytes(local);
   const bool alone = std::getenv("BANDSAW_SEED") != nullptr;
-  const std::uint64_t first = number("BANDSAW_SEED", 1);
-  const std::uint64_t count = alone ? 1 : number("BANDSAW_SCHEDULES", 20);
+  const std::uint64_t first = number_from("BANDSAW_SEED", 1);
+  const std::uint64_t count = alone ? 1 : number_from("BANDSAW_SCHEDULES", 20);
   std::uint64_t same = 0;
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
     Schedule schedule(seed, hosts);

@@ -4,10 +4,12 @@
 
 #include <csignal>
 #include <optional>
-#include <vector>
+#include <span>
+#include <string>
 
 #include "coordinator/cli/farm_client.h"
 #include "tests/farm/farm_processes.h"
+#include "tests/support/pattern.h"
 
 namespace bandsaw::test {
 namespace {
@@ -16,12 +18,6 @@ using coordinator::FarmClient;
 
 class Upload : public testing::Test {
  protected:
-  Upload() {
-    for (std::size_t i = 0; i < bytes_.size(); ++i) {
-      bytes_[i] = static_cast<std::byte>(i * 2654435761U >> 13);
-    }
-  }
-
   std::unique_ptr<FarmClient> connect() {
     return *FarmClient::connect(*link::join_string_from(farm_.farm_file()));
   }
@@ -46,7 +42,8 @@ class Upload : public testing::Test {
   wire::Digest digest() const { return wire::sha256(bytes_); }
 
   FarmProcesses farm_;
-  std::vector<std::byte> bytes_ = std::vector<std::byte>(16 << 20);
+  const std::string text_ = pattern(16 << 20);
+  const absl::Span<const std::byte> bytes_ = std::as_bytes(std::span(text_));
 };
 
 TEST_F(Upload, GoesOnWhereItWasCutAlsoAfterTheCoordinatorsEnd) {

@@ -13,6 +13,7 @@
 #include "proto/wire/limits.h"
 #include "renderlib/base/check.h"
 #include "tests/fuzz/fuzz.h"
+#include "tests/support/pattern.h"
 #include "tests/support/temp_dir.h"
 
 namespace {
@@ -22,13 +23,7 @@ using namespace bandsaw::coordinator;
 
 /// Long enough to be cut at places that are worth keeping.
 const std::string& content() {
-  static const std::string bytes = [] {
-    std::string text(PartialBlobs::kLeastBytes + 40'000, '\0');
-    for (std::size_t i = 0; i < text.size(); ++i) {
-      text[i] = static_cast<char>(i * 2654435761U >> 13);
-    }
-    return text;
-  }();
+  static const std::string bytes = test::pattern(PartialBlobs::kLeastBytes + 40'000);
   return bytes;
 }
 

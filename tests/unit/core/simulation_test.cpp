@@ -11,6 +11,7 @@
 #include "farm_driver.h"
 #include "sim_coordinator.h"
 #include "sim_worker.h"
+#include "tests/support/environment.h"
 
 namespace bandsaw::coordinator::sim {
 namespace {
@@ -296,11 +297,6 @@ std::vector<JobSpec> random_jobs(std::uint64_t seed) {
   return jobs;
 }
 
-std::uint64_t number(const char* variable, std::uint64_t otherwise) {
-  const char* const text = std::getenv(variable);
-  return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
-}
-
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr std::uint64_t kShare = 8;  // a sanitizer takes about as many times longer
 #else
@@ -311,10 +307,11 @@ constexpr std::uint64_t kShare = 1;
 template <class F>
 void for_seeds(std::uint64_t first, std::uint64_t seeds, F f) {
   if (std::getenv("BANDSAW_SEED") != nullptr) {
-    f(number("BANDSAW_SEED", 0));
+    f(test::number_from("BANDSAW_SEED", 0));
     return;
   }
-  for (std::uint64_t seed = first; seed < first + number("BANDSAW_SEEDS", seeds / kShare); ++seed) {
+  for (std::uint64_t seed = first;
+       seed < first + test::number_from("BANDSAW_SEEDS", seeds / kShare); ++seed) {
     f(seed);
     if (testing::Test::HasFailure()) {
       return;

@@ -7,11 +7,11 @@
 #include <limits>
 
 #include "renderlib/base/atomic_file.h"
+#include "renderlib/base/file.h"
 #include "renderlib/image/hdr.h"
 #include "renderlib/image/png.h"
 #include "renderlib/import/environment_image.h"
 #include "renderlib/import/import.h"
-#include "renderlib/import/scene_folder.h"
 #include "tests/support/environments.h"
 #include "tests/support/hard_case.h"
 #include "tests/unit/import/files.h"

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
+#include "renderlib/base/file.h"
 #include "renderlib/import/import.h"
-#include "renderlib/import/scene_folder.h"
 #include "tests/unit/import/gltf_file.h"
 
 namespace bandsaw {

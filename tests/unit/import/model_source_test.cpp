@@ -10,9 +10,9 @@
 #include <optional>
 #include <sstream>
 
+#include "renderlib/base/file.h"
 #include "renderlib/image/srgb.h"
 #include "renderlib/import/decode_image.h"
-#include "renderlib/import/scene_folder.h"
 #include "tests/unit/import/files.h"
 #include "tests/unit/import/layer.h"
 

@@ -9,10 +9,13 @@
 #include <thread>
 
 #include "proto/wire/limits.h"
+#include "tests/support/pattern.h"
 #include "tests/unit/rpc/farm.h"
 
 namespace bandsaw::coordinator {
 namespace {
+
+using test::pattern;
 
 using grpc::StatusCode;
 using ::testing::HasSubstr;
@@ -108,14 +111,6 @@ class ChunksTest : public FarmTest {
     return chunk;
   }
 };
-
-std::string pattern(std::size_t size) {
-  std::string bytes(size, '\0');
-  for (std::size_t i = 0; i < size; ++i) {
-    bytes[i] = static_cast<char>(i * 2654435761U >> 13);
-  }
-  return bytes;
-}
 
 TEST_F(ChunksTest, BlobArrivesInPiecesAndLeavesFromAnyOffset) {
   const std::string bytes = pattern((2 << 20) + 12345);
