@@ -44,12 +44,12 @@ double seen_after(FarmProcesses& farm, const std::string& worker,
 
 Figure signalled(const std::string& name, const std::string& aim, int number, int times) {
   Figure figure{name, aim, " s", {}, ""};
+  FarmProcesses farm;
+  keep_busy(farm);
   for (int i = 0; i < times; ++i) {
-    FarmProcesses
-        farm;  // Its own: of one job three workers that are lost at the same rows are enough.
-    keep_busy(farm);
+    const std::string worker = "desk" + std::to_string(i);
     figure.measured.push_back(
-        seen_after(farm, "desk", [&] { farm.worker("desk").signal(number); }));
+        seen_after(farm, worker, [&] { farm.worker(worker).signal(number); }));
   }
   return figure;
 }
