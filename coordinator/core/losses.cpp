@@ -18,14 +18,19 @@ constexpr std::uint32_t kPieces = 8;
 
 /// What the worker is rendering, if it went now without a word of leaving. A copy does not count:
 /// the original's worker is at the same rows, and a net that fails would take both at once. Nor
-/// does an audit: somebody has rendered those rows.
+/// does an audit: somebody has rendered those rows. Nor what it was given when it had fallen silent
+/// already: it never began that.
 std::optional<Core::State::Losing> Core::State::in_hand(const Worker& worker) const {
   if (worker.draining || worker.quarantined || worker.leases.empty()) {
     return std::nullopt;
   }
   const Lease& lease = *leases_.find(worker.leases.front());
-  return lease.copy_of != 0 || lease.audit ? std::nullopt
-                                           : std::optional(Losing{lease.job, lease.band});
+  const bool silent_before =
+      worker.heard_at < lease.advanced_at &&
+      clock_.patience() - worker.heard_at > 2 * options_.heartbeat_interval_s;
+  return lease.copy_of != 0 || lease.audit || silent_before
+             ? std::nullopt
+             : std::optional(Losing{lease.job, lease.band});
 }
 
 void Core::State::add_loss(const Worker& worker, const Losing& lost) {

@@ -236,5 +236,20 @@ TEST(Poison, WorkersThatAreKilledOneAfterTheOtherDoNotFailAJobThatAdvances) {
   EXPECT_EQ(farm.job(job).state, JobState::kRunning) << farm.job(job).reason;
 }
 
+TEST(Poison, WhoFellSilentBeforeItWasGivenTheBandIsNotCounted) {
+  FarmDriver farm;
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  for (SessionId session = 1; session <= 5; ++session) {
+    farm.say(input::Pause{job});
+    farm.hello(session, std::to_string(session), 1);
+    farm.pass_time(3);
+    farm.say(input::Resume{job});
+    ASSERT_EQ(farm.all<action::Lease>().size(), session);
+    farm.pass_time(2);
+    ASSERT_EQ(farm.all<action::Close>().size(), session);
+  }
+  EXPECT_EQ(farm.job(job).state, JobState::kRunning) << farm.job(job).reason;
+}
+
 }  // namespace
 }  // namespace bandsaw::coordinator
