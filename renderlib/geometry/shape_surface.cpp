@@ -36,8 +36,7 @@ SurfacePoint on_flat(const Vec3& a, const Vec3& e1, const Vec3& e2, const Vec3* 
                      MaterialId material, const Ray& ray, const Hit& hit) {
   SurfacePoint p;
   p.position = a + hit.u * e1 + hit.v * e2;
-  p.geometric_normal =
-      ready != nullptr && *ready != Vec3{} ? *ready : flat_normal(e1, e2, ray);
+  p.geometric_normal = ready != nullptr && *ready != Vec3{} ? *ready : flat_normal(e1, e2, ray);
   p.shading_normal = p.geometric_normal;
   p.object_position = p.position;
   p.uv = {hit.u, hit.v};
@@ -50,8 +49,7 @@ SurfacePoint on_flat(const Vec3& a, const Vec3& e1, const Vec3& e2, const Vec3* 
 SurfacePoint on_disk(const Disk& disk, const Hit& hit) {
   const DiskAxes axes = axes_of(disk);
   SurfacePoint p;
-  p.position =
-      disk.center + axes.u * (hit.u * disk.radius) + axes.v * (hit.v * disk.radius);
+  p.position = disk.center + axes.u * (hit.u * disk.radius) + axes.v * (hit.v * disk.radius);
   p.geometric_normal = normalize(disk.normal);
   p.shading_normal = p.geometric_normal;
   p.object_position = p.position;
@@ -64,11 +62,7 @@ SurfacePoint on_disk(const Disk& disk, const Hit& hit) {
 
 }  // namespace
 
-Vec3 across(const Vec3& e1, const Vec3& e2) {
-  const double s1 = std::max(max_abs(e1), 0x1p-1000);
-  const double s2 = std::max(max_abs(e2), 0x1p-1000);
-  return cross(e1 / s1, e2 / s2);
-}
+Vec3 across(const Vec3& e1, const Vec3& e2) { return cross(near_one(e1), near_one(e2)); }
 
 void prepare_normals(Shapes& shapes) {
   shapes.flat_normals.clear();
@@ -133,7 +127,11 @@ SurfacePoint placed(const SurfacePoint& local, const Transform& to_world, const 
   SurfacePoint p = local;
   p.position = to_world.point(local.position);
   p.geometric_normal = unit_normal(placement.normal(local.geometric_normal), world_ray);
-  p.shading_normal = p.geometric_normal;
+  p.shading_normal =
+      local.shading_normal == local.geometric_normal
+          ? p.geometric_normal
+          : same_side(unit_or(placement.normal(local.shading_normal), p.geometric_normal),
+                      p.geometric_normal);
   p.offset = placement.offset(p.position, local.offset / kOffset);
   return p;
 }

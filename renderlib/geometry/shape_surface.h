@@ -3,7 +3,10 @@
 // What surface.cpp is made of: surfaces of loose shapes in their own space, and how placements
 // treat normals.
 
+#include <algorithm>
 #include <array>
+#include <bit>
+#include <cstdint>
 
 #include "renderlib/geometry/surface.h"
 
@@ -11,8 +14,17 @@ namespace bandsaw {
 
 /// Whether `v` has a direction: it is neither zero nor infinite nor NaN.
 inline bool has_direction(const Vec3& v) { return max_abs(v) > 0 && is_finite(v); }
+/// `v` times a power of two, exact: its longest component is in [1, 4), or as `v` has it where that
+/// is zero, infinite or below 2^-1023.
+inline Vec3 near_one(const Vec3& v) {
+  const std::uint64_t exponent = std::bit_cast<std::uint64_t>(max_abs(v)) >> 52;
+  return v * std::bit_cast<double>((2046 - std::min<std::uint64_t>(exponent, 2045)) << 52);
+}
 /// The unit vector along `v`, which has a direction; v may be of any length.
-inline Vec3 unit(const Vec3& v) { return normalize(v / max_abs(v)); }
+inline Vec3 unit(const Vec3& v) {
+  const Vec3 scaled = near_one(v);
+  return scaled * (1 / length(scaled));
+}
 /// The unit vector along `v`, or `otherwise` where v has no direction.
 inline Vec3 unit_or(const Vec3& v, const Vec3& otherwise) {
   return has_direction(v) ? unit(v) : otherwise;
@@ -20,6 +32,9 @@ inline Vec3 unit_or(const Vec3& v, const Vec3& otherwise) {
 /// The unit normal along `v`, or where v has no direction one that faces the ray.
 inline Vec3 unit_normal(const Vec3& v, const Ray& ray) {
   return has_direction(v) ? unit(v) : unit_or(-ray.direction, {0, 0, 1});
+}
+inline Vec3 same_side(const Vec3& n, const Vec3& reference) {
+  return dot(n, reference) < 0 ? -n : n;
 }
 /// Across two edges, of any length; zero or not finite where they are parallel.
 Vec3 across(const Vec3& e1, const Vec3& e2);
@@ -52,7 +67,7 @@ struct Placement {
 /// Of a shape in the space it lies in; `ray` is in that space. `sphere_uv`: as surface_at.
 SurfacePoint on_shape(const Shapes& shapes, const Ray& ray, const Hit& hit, bool sphere_uv);
 
-/// The same point in the world.
+/// A surface in a space of its own, in the world.
 SurfacePoint placed(const SurfacePoint& local, const Transform& to_world, const Ray& world_ray);
 
 }  // namespace bandsaw

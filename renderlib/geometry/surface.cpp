@@ -12,8 +12,6 @@ namespace {
 
 Vec3 vec(const std::array<float, 3>& p) { return {p[0], p[1], p[2]}; }
 
-Vec3 same_side(const Vec3& n, const Vec3& reference) { return dot(n, reference) < 0 ? -n : n; }
-
 /// A mesh triangle in its own space.
 struct Corners {
   Vec3 a;
@@ -55,32 +53,37 @@ Rgb mesh_color(const Mesh& mesh, const std::array<std::uint32_t, 3>& index, cons
          color(2) * static_cast<float>(hit.v);
 }
 
-SurfacePoint on_mesh(const Geometry& geometry, const Ray& ray, const Hit& hit) {
-  const Instance& instance = geometry.instances[hit.id.instance - 1];
-  const Mesh& mesh = geometry.meshes[index_of(instance.mesh)];
+/// In the mesh's own space.
+SurfacePoint on_triangle(const Mesh& mesh, const Ray& ray, const Hit& hit) {
   const Corners local = corners(mesh, hit.id.primitive);
-  const Transform to_world = to_world_at(geometry, instance, ray.time);
-  const Placement placement(to_world);
-  const Vec3 local_position = local.a + hit.u * local.e1 + hit.v * local.e2;
   SurfacePoint p;
-  p.position = to_world.point(local_position);
-  p.object_position = local_position;
-  p.geometric_normal = unit_normal(placement.normal(flat_normal(local.e1, local.e2, ray)), ray);
+  p.position = local.a + hit.u * local.e1 + hit.v * local.e2;
+  p.object_position = p.position;
+  p.geometric_normal = flat_normal(local.e1, local.e2, ray);
   p.shading_normal = p.geometric_normal;
   if (!mesh.normals.empty()) {
     const Vec3 n = interpolate(mesh.normals[local.index[0]], mesh.normals[local.index[1]],
                                mesh.normals[local.index[2]], hit);
-    p.shading_normal =
-        same_side(unit_or(placement.normal(n), p.geometric_normal), p.geometric_normal);
+    p.shading_normal = same_side(unit_or(n, p.geometric_normal), p.geometric_normal);
   }
   p.uv = mesh_uv(mesh.uvs, local.index, hit, {hit.u, hit.v});
   p.uv2 = mesh_uv(mesh.uvs2, local.index, hit, p.uv);
   if (!mesh.colors.empty()) {
     p.color = mesh_color(mesh, local.index, hit);
   }
-  p.material = instance.material;
   const double size = std::max(max_abs(local.e1), max_abs(local.e2));
-  p.offset = placement.offset(p.position, max_abs(local_position) + size);
+  p.offset = surface_offset({}, max_abs(p.position) + size);
+  return p;
+}
+
+SurfacePoint on_mesh(const Geometry& geometry, const Ray& ray, const Hit& hit) {
+  const Instance& instance = geometry.instances[hit.id.instance - 1];
+  SurfacePoint p = on_triangle(geometry.meshes[index_of(instance.mesh)], ray, hit);
+  const bool in_place = instance.frame == kNoFrame && instance.to_world == Transform{};
+  if (!in_place) {
+    p = placed(p, to_world_at(geometry, instance, ray.time), ray);
+  }
+  p.material = instance.material;
   return p;
 }
 
@@ -121,8 +124,7 @@ SurfacePoint surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit
 
 Ray leave(const SurfacePoint& from, const Vec3& direction, double t_max) {
   const double side = dot(direction, from.geometric_normal) < 0 ? -from.offset : from.offset;
-  return {from.position + from.geometric_normal * side, direction, t_max, from.id,
-          from.time};
+  return {from.position + from.geometric_normal * side, direction, t_max, from.id, from.time};
 }
 
 Ray toward(const SurfacePoint& from, const Vec3& target, double target_offset) {

@@ -96,7 +96,31 @@ Rgb followed_environment(const Scene& scene, const SurfacePoint& point, const De
 
 bool is_metal(const Material& material) { return std::holds_alternative<Metal>(material); }
 
+/// Goes on from a surface, as scattering `depth`, in all directions that the path has before it.
+void follow_branches(const PathContext& context, const SurfacePoint& point, const Bsdf& bsdf,
+                     std::uint32_t depth, PathState& path) {
+  Rgb sum;
+  for (std::uint32_t i = 0; i < context.branches; ++i) {
+    const PathContext of_branch = context.branch(i);
+    PathState branch = path;
+    branch.radiance = {};
+    if (scatter(of_branch, point, bsdf, depth, branch)) {
+      follow(of_branch, depth + 1, branch);
+    }
+    sum += branch.radiance;
+    path.truncated |= branch.truncated;
+  }
+  path.radiance += sum * (1 / static_cast<float>(context.branches));
+}
+
 }  // namespace
+
+std::uint32_t branches_for(const Scene& scene) {
+  if (!scene.lights().empty()) {
+    return 1;
+  }
+  return scene.geometry().meshes.empty() ? 2 : 4;
+}
 
 std::optional<Bsdf> arrive(const PathContext& context, const SurfacePoint& point,
                            std::uint32_t depth, PathState& path) {
@@ -191,7 +215,15 @@ void follow(const PathContext& context, std::uint32_t depth, PathState& path) {
       leave_scene(context, path);
       return;
     }
-    if (!scatter_at(context, *seen, depth, path)) {
+    const std::optional<Bsdf> bsdf = arrive(context, *seen, depth, path);
+    if (!bsdf) {
+      return;
+    }
+    if (context.branches > 1 && has_density(*bsdf)) {
+      follow_branches(context, *seen, *bsdf, depth, path);
+      return;
+    }
+    if (!scatter(context, *seen, *bsdf, depth, path)) {
       return;
     }
   }
@@ -200,7 +232,7 @@ void follow(const PathContext& context, std::uint32_t depth, PathState& path) {
 Rgb path_radiance(const Scene& scene, const Ray& camera_ray, const PixelSampler& sampler,
                   std::uint64_t sample, const PathOptions& options, PathCounts& counts) {
   PathState path{.ray = camera_ray};
-  follow({scene, sampler, sample, options, counts.rays}, 0, path);
+  follow({scene, sampler, sample, options, counts.rays, options.branches}, 0, path);
   counts.truncated += path.truncated ? 1 : 0;
   return path.radiance;
 }

@@ -28,7 +28,14 @@ struct PathOptions {
   /// Local shading: what surfaces with a density scatter of the lights and of the scene's ambient
   /// term, nothing of each other; only mirrors, glass and fuzzy metal are followed.
   bool local = false;
+  /// A power of two: in how many directions a path goes on from the first surface with a density,
+  /// each for its share (splitting: Arvo, Kirk 1990, "Particle Transport and Image Synthesis").
+  /// Direction i of sample n takes the numbers of sample n * branches + i.
+  std::uint32_t branches = 1;
 };
+
+/// How many `branches` serve the scene: README.md, "Why".
+std::uint32_t branches_for(const Scene& scene);
 
 /// What following paths comes to.
 struct PathCounts {

@@ -39,7 +39,12 @@ struct PathContext {
   std::uint64_t sample = 0;
   const PathOptions& options;
   std::uint64_t& rays;
+  std::uint32_t branches = 1;  ///< that the path has before it: PathOptions::branches, then 1
 
+  /// Of one of the directions that the path goes on in.
+  PathContext branch(std::uint32_t which) const {
+    return {scene, sampler, sample * branches + which, options, rays};
+  }
   Sample4 numbers(std::uint32_t group) const { return sampler.group(sample, group); }
   bool asks_lights() const {
     return scene.needs().lights && options.technique != Technique::kScatteringOnly;

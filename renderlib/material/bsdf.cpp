@@ -42,11 +42,14 @@ SidedNormals for_glass(const SidedNormals& normal, const Vec3& wo, double eta) {
 
 std::optional<BsdfSample> sample_diffuse(const DiffuseBsdf& bsdf, double u, double v) {
   const Vec3 local = sample_cosine_hemisphere(u, v);
-  BsdfSample sample;
-  sample.wi = normalize(orthonormal_basis(bsdf.normal.shading).to_world(local));
-  sample.pdf = cosine_hemisphere_pdf(dot(sample.wi, bsdf.normal.shading));
-  sample.weight = bsdf.reflectance;
-  return reflects(bsdf.normal, sample.wi) ? std::optional(sample) : std::nullopt;
+  std::optional<BsdfSample> sample(std::in_place);  // in place: a copy waits for stores
+  sample->wi = orthonormal_basis(bsdf.normal.shading).to_world(local);
+  sample->pdf = cosine_hemisphere_pdf(dot(sample->wi, bsdf.normal.shading));
+  sample->weight = bsdf.reflectance;
+  if (!reflects(bsdf.normal, sample->wi)) {
+    sample.reset();
+  }
+  return sample;
 }
 
 /// The density of the direction of mirror + fuzz * (a uniform point of the unit ball): the ball's

@@ -7,14 +7,15 @@
 
 namespace bandsaw {
 
-/// c[0] + c[1] x + … + c[N-1] x^(N-1) by Horner's rule, one rounding a step.
-template <std::size_t N>
+/// c[0] + c[1] x + … + c[N-1] x^(N-1) by Horner's rule, one rounding a step; from c[I] on. Not a
+/// loop: compilers leave it one.
+template <std::size_t I = 0, std::size_t N>
 inline double polynomial(double x, const double (&c)[N]) {
-  double sum = c[N - 1];
-  for (std::size_t i = N - 1; i > 0; --i) {
-    sum = std::fma(sum, x, c[i - 1]);
+  if constexpr (I + 1 == N) {
+    return c[I];
+  } else {
+    return std::fma(polynomial<I + 1>(x, c), x, c[I]);
   }
-  return sum;
 }
 
 /// An unevaluated sum: hi is the sum rounded, lo the rest.

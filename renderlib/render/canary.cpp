@@ -57,8 +57,9 @@ void add_what_moves(SceneDescription& scene) {
   group.spheres = {{{0, 0, 0}, 0.3, MaterialId{3}}};
   group.disks = {{{0, 0.4, 0}, {0, 1, 0}, 0.2, MaterialId{6}}};
   g.groups = {group};
-  g.frames = {{kNoFrame, translation({0.9, 1.4, 0.2}), {Key(0, {}), Key(2, translation({1, 0, 0}))}},
-              {FrameId{0}, {}, {Key(0, {}), Key(1, rotation({1, 0, 1}, 50) * scaling({1, 2, 1}))}}};
+  g.frames = {
+      {kNoFrame, translation({0.9, 1.4, 0.2}), {Key(0, {}), Key(2, translation({1, 0, 0}))}},
+      {FrameId{0}, {}, {Key(0, {}), Key(1, rotation({1, 0, 1}, 50) * scaling({1, 2, 1}))}}};
   Instance placed;
   placed.group = GroupId{0};
   placed.material = kOwnMaterial;
@@ -173,6 +174,21 @@ SceneDescription room() {
   return scene;
 }
 
+/// A ball and a pyramid on a floor under a sky and no lamp: paths go on in several directions.
+SceneDescription outdoors() {
+  SceneDescription scene;
+  scene.background = {{0.9f, 0.8f, 0.7f}, {0.4f, 0.5f, 0.7f}};
+  scene.textures = {ConstantTexture{{0.7f, 0.5f, 0.3f}}};
+  scene.materials = {Diffuse{TextureId{0}}, Metal{TextureId{0}, 0.2}};
+  Geometry& g = scene.geometry;
+  g.spheres = {{{0.3, 0.5, 0.2}, 0.5, MaterialId{1}}};
+  g.quads = {{{-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, MaterialId{0}}};
+  g.meshes = {pyramid()};
+  g.instances = {{MeshId{0}, MaterialId{0}, {}}};
+  scene.camera = PerspectiveCamera{.position = {0.2, 1.1, 4}, .look_at = {0, 0.5, 0}};
+  return scene;
+}
+
 void add_render(Hash64& hash, const SceneDescription& description, const RenderSettings& settings) {
   Pool pool(1);
   const auto scene = Scene::build(description, pool);
@@ -199,6 +215,7 @@ std::uint64_t canary() {
   add_render(hash, lit_from_outside(), {.width = 6, .height = 4, .max_depth = 4, .seed = 4});
   add_render(hash, in_smoke(), {.width = 6, .height = 4, .max_depth = 5, .seed = 4});
   add_render(hash, room(), {.width = 20, .height = 4, .max_depth = 5, .seed = 5});
+  add_render(hash, outdoors(), {.width = 8, .height = 6, .max_depth = 5, .seed = 6});
   for (const Integrator integrator : {Integrator::kDirect, Integrator::kNormals, Integrator::kDepth,
                                       Integrator::kAlbedo, Integrator::kAmbientOcclusion}) {
     add_render(hash, flat_view(),

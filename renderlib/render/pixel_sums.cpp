@@ -24,7 +24,8 @@ PixelSums::PixelSums(const Scene& scene, const RenderSettings& settings, const B
       stop_(stop),
       options_{.max_depth = settings.max_depth,
                .technique = technique_of(settings.integrator),
-               .local = settings.integrator == Integrator::kDirect},
+               .local = settings.integrator == Integrator::kDirect,
+               .branches = settings.integrator == Integrator::kDirect ? 1 : branches_for(scene)},
       camera_(scene.camera(), static_cast<int>(settings.width), static_cast<int>(settings.height)),
       shares_(scene.shares_paths() && follows_light(settings.integrator) && !options_.local) {}
 

@@ -1,5 +1,6 @@
 #include "renderlib/sampling/sampler.h"
 
+#include <bit>
 #include <cstddef>
 
 #include "renderlib/base/uint4.h"
@@ -47,46 +48,57 @@ constexpr std::array<Polynomial, 3> kPolynomials = {{
     {3, 1, {1, 3, 1}},
 }};
 
-using ByteTable = std::array<std::array<std::uint32_t, 256>, 4>;
-
-/// For each byte of an index, the xor of its direction numbers, bits reversed.
-constexpr ByteTable make_table(const Polynomial& p) {
+/// The direction numbers of one dimension, bits reversed.
+constexpr std::array<std::uint32_t, 32> reversed_directions(const Polynomial& p) {
   std::array<std::uint32_t, 32> direction{};
-  for (int i = 0; i < 32; ++i) {
-    const auto n = static_cast<std::size_t>(i);
-    if (i < p.degree) {
-      direction[n] = p.initial[n] << (31 - i);
+  const auto s = static_cast<std::size_t>(p.degree);
+  for (std::size_t n = 0; n < 32; ++n) {
+    if (n < s) {
+      direction[n] = p.initial[n] << (31 - n);
       continue;
     }
-    const auto s = static_cast<std::size_t>(p.degree);
-    direction[n] = direction[n - s] ^ (direction[n - s] >> p.degree);
+    direction[n] = direction[n - s] ^ (direction[n - s] >> s);
     for (std::size_t k = 1; k < s; ++k) {
       if ((p.coefficients >> (s - 1 - k)) & 1u) {
         direction[n] ^= direction[n - k];
       }
     }
   }
-  ByteTable table{};
-  for (std::size_t byte = 0; byte < 4; ++byte) {
-    for (std::size_t value = 0; value < 256; ++value) {
-      for (std::size_t bit = 0; bit < 8; ++bit) {
-        if ((value >> bit) & 1u) {
-          table[byte][value] ^= reverse_bits(direction[8 * byte + bit]);
-        }
+  for (std::uint32_t& d : direction) {
+    d = reverse_bits(d);
+  }
+  return direction;
+}
+
+/// For four bits of an index, what they add (xor) to all four dimensions, bits reversed: 2 KB in
+/// all. Dimension 0 is the index itself.
+using Points = std::array<std::uint32_t, 4>;
+using PointTable = std::array<std::array<Points, 16>, 8>;
+
+constexpr PointTable make_table() {
+  PointTable table{};
+  for (std::size_t dimension = 0; dimension < 4; ++dimension) {
+    for (std::size_t bit = 0; bit < 32; ++bit) {
+      const std::uint32_t adds = dimension == 0
+                                     ? std::uint32_t{1} << bit
+                                     : reversed_directions(kPolynomials[dimension - 1])[bit];
+      for (std::size_t value = 0; value < 16; ++value) {
+        table[bit / 4][value][dimension] ^= ((value >> (bit % 4)) & 1u) != 0 ? adds : 0;
       }
     }
   }
   return table;
 }
 
-constexpr std::array<ByteTable, 3> kTables = {
-    {make_table(kPolynomials[0]), make_table(kPolynomials[1]), make_table(kPolynomials[2])}};
+alignas(64) constexpr PointTable kTable = make_table();
 
-/// Sobol' dimension `dimension` + 1 of an index, bits reversed.
-std::uint32_t sobol_reversed(std::uint32_t index, std::size_t dimension) {
-  const ByteTable& t = kTables[dimension];
-  return t[0][index & 255u] ^ t[1][(index >> 8) & 255u] ^ t[2][(index >> 16) & 255u] ^
-         t[3][index >> 24];
+/// The point of an index, bits reversed.
+UInt4 sobol_reversed(std::uint32_t index) {
+  UInt4 point = {};
+  for (std::size_t i = 0; i < 8; ++i) {
+    point ^= std::bit_cast<UInt4>(kTable[i][(index >> (4 * i)) & 15u]);
+  }
+  return point;
 }
 
 }  // namespace
@@ -102,8 +114,7 @@ Sample4 PixelSampler::group(std::uint64_t sample, std::uint32_t group) const {
   const std::uint64_t seeds23 = mix(base + 2 * kGolden);
   const std::uint32_t index = reverse_bits(scramble_reversed(
       reverse_bits(static_cast<std::uint32_t>(sample)), static_cast<std::uint32_t>(base >> 32)));
-  const UInt4 points = {index, sobol_reversed(index, 0), sobol_reversed(index, 1),
-                        sobol_reversed(index, 2)};
+  const UInt4 points = sobol_reversed(index);
   const UInt4 seeds = {
       static_cast<std::uint32_t>(seeds01), static_cast<std::uint32_t>(seeds01 >> 32),
       static_cast<std::uint32_t>(seeds23), static_cast<std::uint32_t>(seeds23 >> 32)};

@@ -1,8 +1,47 @@
 #include "renderlib/sampling/warp.h"
 
+#include <bit>
+#include <cstdint>
+
 #include "renderlib/math/elementary.h"
+#include "renderlib/math/polynomial.h"
 
 namespace bandsaw {
+namespace {
+
+/// sin and cos of x pi / 4, x in [-1, 1], to a few units in the last place: Taylor's series. A
+/// third of the work of sincos_turns, which does better.
+SinCos sincos_eighths(double x) {
+  static constexpr double kSin[] = {
+      0x1.921fb54442d18p-1,  -0x1.4abbce625be53p-4,  0x1.466bc6775aae2p-9,  -0x1.32d2cce62bd86p-15,
+      0x1.50783487ee782p-22, -0x1.e3074fde8871fp-30, 0x1.e8f434d018d63p-38, -0x1.6fadb9f155744p-46};
+  static constexpr double kCos[] = {1,
+                                    -0x1.3bd3cc9be45dep-2,
+                                    0x1.03c1f081b5ac4p-6,
+                                    -0x1.55d3c7e3cbffap-12,
+                                    0x1.e1f506891babbp-19,
+                                    -0x1.a6d1f2a204a8cp-26,
+                                    0x1.f9d38a3763cc3p-34,
+                                    -0x1.b6e24f44b128fp-42,
+                                    0x1.20c62c2f2d7f5p-50};
+  const double square = x * x;
+  return {x * polynomial(square, kSin), polynomial(square, kCos)};
+}
+
+/// The point of the unit circle at `turn` in [0, 1]. Which quarter it is in is anybody's guess: no
+/// branch.
+Vec2 on_circle(double turn) {
+  const double quarters = std::floor(4 * turn + 0.5);
+  const SinCos angle = sincos_eighths(2 * (4 * turn - quarters));
+  const auto quarter = static_cast<std::uint64_t>(quarters);
+  const bool odd = (quarter & 1) != 0;
+  const std::uint64_t x = std::bit_cast<std::uint64_t>(odd ? angle.sin : angle.cos);
+  const std::uint64_t y = std::bit_cast<std::uint64_t>(odd ? angle.cos : angle.sin);
+  return {std::bit_cast<double>(x ^ ((quarter + 1) & 2) << 62),
+          std::bit_cast<double>(y ^ (quarter & 2) << 62)};
+}
+
+}  // namespace
 
 Vec2 sample_disk(double u, double v) {
   const double a = 2 * u - 1;
@@ -10,11 +49,13 @@ Vec2 sample_disk(double u, double v) {
   if (a == 0 && b == 0) {
     return {0, 0};
   }
+  // The angle is pi / 4 b / a, or pi / 2 - pi / 4 a / b.
   const bool wide = std::abs(a) > std::abs(b);
   const double radius = wide ? a : b;
-  // The angle is pi / 4 b / a, or pi / 2 - pi / 4 a / b.
-  const SinCos angle = sincos_turns(wide ? 0.125 * (b / a) : 0.25 - 0.125 * (a / b));
-  return {radius * angle.cos, radius * angle.sin};
+  const SinCos angle = sincos_eighths((wide ? b : a) / radius);
+  const double near = radius * angle.cos;
+  const double far = radius * angle.sin;
+  return {wide ? near : far, wide ? far : near};
 }
 
 Vec3 sample_cosine_hemisphere(double u, double v) {
@@ -32,8 +73,8 @@ Vec3 sample_ball(double u, double v, double w) { return sample_sphere(u, v) * po
 Vec3 sample_cone(double u, double v, double one_minus_cos) {
   const double h = u * one_minus_cos;  // 1 - cos theta
   const double sin_theta = std::sqrt(std::max(0.0, h * (2 - h)));
-  const SinCos angle = sincos_turns(v);
-  return {sin_theta * angle.cos, sin_theta * angle.sin, 1 - h};
+  const Vec2 around = on_circle(v);
+  return {sin_theta * around.x, sin_theta * around.y, 1 - h};
 }
 
 }  // namespace bandsaw

@@ -33,6 +33,29 @@ TEST(Warp, DiskIsUniform) {
   EXPECT_GT(test::chi_squared(counts, std::vector<double>(64, 100000.0 / 64)).p_value, 0.01);
 }
 
+TEST(Warp, PointsLieWhereExactAnglesPutThem) {
+  test::Random random(8);
+  for (int i = 0; i < 100000; ++i) {
+    const double u = random.uniform();
+    const double v = random.uniform();
+    const SinCos around = sincos_turns(v);
+    const Vec3 on_equator = sample_cone(1, v, 1);
+    ASSERT_NEAR(on_equator.x, around.cos, 0x1p-51);
+    ASSERT_NEAR(on_equator.y, around.sin, 0x1p-51);
+    const Vec2 p = sample_disk(u, v);
+    const double radius = std::max(std::abs(2 * u - 1), std::abs(2 * v - 1));
+    ASSERT_NEAR(p.x * p.x + p.y * p.y, radius * radius, 0x1p-51);
+    const bool wide = std::abs(2 * u - 1) > std::abs(2 * v - 1);
+    const double turn = wide ? (2 * v - 1) / (2 * u - 1) / 8 : 0.25 - (2 * u - 1) / (2 * v - 1) / 8;
+    ASSERT_NEAR(p.x * sincos_turns(turn).sin, p.y * sincos_turns(turn).cos, 0x1p-51);
+  }
+  for (const double quarter : {0.0, 0.25, 0.5, 0.75}) {
+    const Vec3 axis = sample_cone(1, quarter, 1);
+    EXPECT_EQ(axis.x, sincos_turns(quarter).cos);
+    EXPECT_EQ(axis.y, sincos_turns(quarter).sin);
+  }
+}
+
 TEST(Warp, CosineHemisphereHasItsDensity) {
   expect_samples_match_density([](double u, double v) { return sample_cosine_hemisphere(u, v); },
                                [](const Vec3& d) { return cosine_hemisphere_pdf(d.z); }, 2);

@@ -1,0 +1,99 @@
+// Paths that go on in several directions from the first surface with a density.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "renderlib/integrate/path.h"
+#include "tests/support/scenes.h"
+#include "tests/support/statistics.h"
+
+namespace bandsaw {
+namespace {
+
+using test::SceneMaker;
+
+const Ray kDown{.origin = {0.1, 3, 0.2}, .direction = {0, -1, 0}};
+
+/// A floor beside a wall, under a sky that is not even, seen through a pane where `behind_glass`.
+SceneMaker corner(bool behind_glass) {
+  SceneMaker maker;
+  const MaterialId gray = maker.diffuse({0.7f, 0.5f, 0.6f});
+  maker.quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}, gray);
+  maker.quad({-0.3, 0, -5}, {0, 0, 10}, {0, 2, 0}, gray);
+  maker.background({0.2f, 0.3f, 0.4f}, {0.9f, 0.8f, 0.7f});
+  if (behind_glass) {
+    maker.sphere({0.1, 2, 0.2}, 0.3, maker.glass(1.5));
+  }
+  return maker;
+}
+
+Rgb sample_of(const Scene& scene, std::uint64_t sample, std::uint32_t branches,
+              PathCounts& counts) {
+  return path_radiance(scene, kDown, PixelSampler(1, 2, 3), sample, {.branches = branches}, counts);
+}
+
+TEST(Branches, AreThePathsOfTheirNumbers) {
+  const auto scene = corner(false).build();
+  PathCounts whole;
+  PathCounts parts;
+  for (std::uint64_t sample = 0; sample < 100; ++sample) {
+    for (const std::uint32_t branches : {2u, 4u}) {
+      Rgb sum;
+      for (std::uint32_t i = 0; i < branches; ++i) {
+        sum += sample_of(*scene, sample * branches + i, 1, parts);
+      }
+      ASSERT_EQ(sample_of(*scene, sample, branches, whole),
+                sum * (1 / static_cast<float>(branches)));
+    }
+  }
+  // The first ray is one for all of them.
+  EXPECT_EQ(whole.rays, parts.rays - 100 * (1 + 3));
+}
+
+/// Of one sample each of many pixels, which are independent of each other.
+test::Moments moments_of(const Scene& scene, std::uint64_t sample, std::uint32_t branches) {
+  test::Moments moments;
+  PathCounts counts;
+  for (std::uint32_t i = 0; i < 20'000; ++i) {
+    const PixelSampler sampler(5, i, 0);
+    moments.add(path_radiance(scene, kDown, sampler, sample, {.branches = branches}, counts).g);
+  }
+  return moments;
+}
+
+TEST(Branches, HaveTheSameMean) {
+  for (const bool behind_glass : {false, true}) {
+    const auto scene = corner(behind_glass).build();
+    const test::Moments one = moments_of(*scene, 0, 1);
+    const test::Moments four = moments_of(*scene, 7, 4);
+    const double deviation = std::hypot(one.standard_error(), four.standard_error());
+    EXPECT_LE(std::abs(one.mean() - four.mean()), 4 * deviation) << behind_glass;
+    // Four that are stratified are better than four that are independent; whether glass reflects
+    // they have in common.
+    EXPECT_LT(four.variance(), (behind_glass ? 0.7 : 0.25) * one.variance());
+  }
+}
+
+TEST(Branches, APathIsCutOffOnce) {
+  SceneMaker closed;
+  closed.sphere({0, 0, 0}, 10, closed.diffuse(0.5f));
+  PathCounts counts;
+  path_radiance(*closed.build(), kDown, PixelSampler(1, 2, 3), 0, {.max_depth = 2, .branches = 4},
+                counts);
+  EXPECT_EQ(counts.truncated, 1u);
+}
+
+TEST(Branches, OnlyWhereNothingIsAskedForLight) {
+  SceneMaker shapes = corner(false);
+  EXPECT_EQ(branches_for(*shapes.build()), 2u);
+  SceneMaker lit = shapes;
+  lit.sphere({0, 9, 0}, 1, lit.lamp(3));
+  EXPECT_EQ(branches_for(*lit.build()), 1u);
+  SceneMaker with_mesh = shapes;
+  with_mesh.instance(test::grid(2), {}, MaterialId{0});
+  EXPECT_EQ(branches_for(*with_mesh.build()), 4u);
+}
+
+}  // namespace
+}  // namespace bandsaw
