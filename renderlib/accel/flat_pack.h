@@ -8,10 +8,13 @@
 #include <cstdint>
 
 #include "renderlib/accel/binary_tree.h"
+#include "renderlib/geometry/ray.h"
 
 namespace bandsaw {
 
 struct FlatPack {
+  static_assert(kPackSize == kCornerStride, "hits refer to corners");
+
   /// [3 * corner + axis][lane]; lanes past the last are zero.
   std::array<std::array<float, kPackSize>, 9> corner;
   std::array<std::uint32_t, kPackSize> primitive;

@@ -21,7 +21,7 @@ class ClosestQuery {
   /// Returns true when nothing more need be told.
   bool found(const PrimitiveId& id, const Crossing& crossing) {
     if (crossing.t < best_.t || (crossing.t == best_.t && id < best_.id)) {
-      best_ = {crossing.t, id, crossing.u, crossing.v};
+      best_ = {crossing.t, id, crossing.u, crossing.v, crossing.corners};
     }
     return false;
   }

@@ -60,11 +60,13 @@ inline bool trace_mesh(const MeshTree& mesh, const TracedRay& ray, std::uint32_t
   const std::uint32_t skipped = from.instance == instance ? from.primitive : kNoneSkipped;
   return walk<!Query::kAny>(mesh.tree, floats, bound, [&](ChildRef leaf) {
     const FlatPack& pack = mesh.packs[leaf.leaf_index()];
-    return test_flats(pack, floats, instance, skipped, bound, query,
-                      [&](std::size_t lane, Crossing& crossing) {
-                        return intersect_triangle(ray, pack.vertex(lane, 0), pack.vertex(lane, 1),
-                                                  pack.vertex(lane, 2), crossing);
-                      });
+    return test_flats(
+        pack, floats, instance, skipped, bound, query, [&](std::size_t lane, Crossing& crossing) {
+          const bool hit = intersect_triangle(ray, pack.vertex(lane, 0), pack.vertex(lane, 1),
+                                              pack.vertex(lane, 2), crossing);
+          crossing.corners = &pack.corner[0][lane];
+          return hit;
+        });
   });
 }
 
@@ -174,10 +176,9 @@ inline bool trace_placed(const Prototype& prototype, const Transform& to_object,
 template <class Query>
 inline bool trace_instance(const Placed& placed, const TracedRay& world, const Ray& ray,
                            Query& query) {
-  return placed.identity ? trace_prototype(placed.prototype, world, placed.instance, ray.from,
-                                           query)
-                         : trace_placed(placed.prototype, placed.to_object, ray, placed.instance,
-                                        query);
+  return placed.identity
+             ? trace_prototype(placed.prototype, world, placed.instance, ray.from, query)
+             : trace_placed(placed.prototype, placed.to_object, ray, placed.instance, query);
 }
 
 /// What does not move. True: the query needs no more.

@@ -18,6 +18,7 @@ struct Crossing {
   double t;
   double u;
   double v;
+  const float* corners = nullptr;
 };
 
 /// a b - c d with the exact sign, within 1.5 units in the last place (Kahan). The sign of an edge

@@ -2,6 +2,7 @@
 
 // A ray and what it met. Distances t are in units of |direction|; direction need not be a unit vector.
 
+#include <cstddef>
 #include <cstdint>
 
 #include "renderlib/math/constants.h"
@@ -27,6 +28,9 @@ struct Ray {
   double time = 0;  ///< when it is: moving things are where they are then
 };
 
+/// Numbers of a triangle that a tree keeps lie this far apart (Hit::corners).
+inline constexpr std::size_t kCornerStride = 8;
+
 /// The closest hit: the lexicographically lowest (t, instance, primitive), whatever tree found it.
 struct Hit {
   double t = kInfinity;
@@ -34,6 +38,9 @@ struct Hit {
   /// Triangles: barycentric weights of b and c. Quads: the coordinates along u and v. Spheres: unused.
   double u = 0;
   double v = 0;
+  /// Of a mesh's triangle, where its tree keeps it, near at hand: component k of corner c at
+  /// [(3 c + k) kCornerStride], the mesh's own bits. Null: only the mesh has it.
+  const float* corners = nullptr;
 
   explicit operator bool() const { return id != kNoPrimitive; }
 };

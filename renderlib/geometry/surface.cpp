@@ -17,13 +17,21 @@ struct Corners {
   Vec3 a;
   Vec3 e1;
   Vec3 e2;
-  std::array<std::uint32_t, 3> index;
 };
 
-Corners corners(const Mesh& mesh, std::uint32_t primitive) {
-  const auto& index = mesh.triangles[primitive];
-  const Vec3 a = vec(mesh.positions[index[0]]);
-  return {a, vec(mesh.positions[index[1]]) - a, vec(mesh.positions[index[2]]) - a, index};
+Corners corners(const Mesh& mesh, const Hit& hit) {
+  std::array<Vec3, 3> at;
+  if (hit.corners != nullptr) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float* const corner = hit.corners + 3 * c * kCornerStride;
+      at[c] = {corner[0], corner[kCornerStride], corner[2 * kCornerStride]};
+    }
+  } else {
+    for (std::size_t c = 0; c < 3; ++c) {
+      at[c] = vec(mesh.positions[mesh.triangles[hit.id.primitive][c]]);
+    }
+  }
+  return {at[0], at[1] - at[0], at[2] - at[0]};
 }
 
 Vec3 interpolate(const std::array<float, 3>& a, const std::array<float, 3>& b,
@@ -55,21 +63,22 @@ Rgb mesh_color(const Mesh& mesh, const std::array<std::uint32_t, 3>& index, cons
 
 /// In the mesh's own space.
 SurfacePoint on_triangle(const Mesh& mesh, const Ray& ray, const Hit& hit) {
-  const Corners local = corners(mesh, hit.id.primitive);
+  const Corners local = corners(mesh, hit);
+  const std::array<std::uint32_t, 3>& index = mesh.triangles[hit.id.primitive];
   SurfacePoint p;
   p.position = local.a + hit.u * local.e1 + hit.v * local.e2;
   p.object_position = p.position;
   p.geometric_normal = flat_normal(local.e1, local.e2, ray);
   p.shading_normal = p.geometric_normal;
   if (!mesh.normals.empty()) {
-    const Vec3 n = interpolate(mesh.normals[local.index[0]], mesh.normals[local.index[1]],
-                               mesh.normals[local.index[2]], hit);
+    const Vec3 n =
+        interpolate(mesh.normals[index[0]], mesh.normals[index[1]], mesh.normals[index[2]], hit);
     p.shading_normal = same_side(unit_or(n, p.geometric_normal), p.geometric_normal);
   }
-  p.uv = mesh_uv(mesh.uvs, local.index, hit, {hit.u, hit.v});
-  p.uv2 = mesh_uv(mesh.uvs2, local.index, hit, p.uv);
+  p.uv = mesh_uv(mesh.uvs, index, hit, {hit.u, hit.v});
+  p.uv2 = mesh_uv(mesh.uvs2, index, hit, p.uv);
   if (!mesh.colors.empty()) {
-    p.color = mesh_color(mesh, local.index, hit);
+    p.color = mesh_color(mesh, index, hit);
   }
   const double size = std::max(max_abs(local.e1), max_abs(local.e2));
   p.offset = surface_offset({}, max_abs(p.position) + size);

@@ -1,0 +1,62 @@
+// The corners that a tree keeps near at hand are those of the mesh, to the bit.
+
+#include <gtest/gtest.h>
+
+#include "renderlib/accel/accel.h"
+#include "renderlib/geometry/surface.h"
+#include "tests/support/meshes.h"
+
+namespace bandsaw {
+namespace {
+
+/// A ball of triangles in place, another that is placed, and a loose sphere and quad.
+Geometry mixed() {
+  Geometry geometry;
+  geometry.meshes = {test::icosphere(3)};
+  geometry.instances = {
+      {MeshId{0}, MaterialId{0}, {}},
+      {MeshId{0}, MaterialId{0}, translation({2.5, 0.3, 0}) * scaling({1, 2, 1})}};
+  geometry.spheres = {{{-2.5, 0, 0}, 1, MaterialId{0}}};
+  geometry.quads = {{{-9, -9, -3}, {18, 0, 0}, {0, 18, 0}, MaterialId{0}}};
+  return geometry;
+}
+
+TEST(Corners, AreTheMeshesOwn) {
+  const Geometry geometry = mixed();
+  Pool pool(1);
+  const Accel accel = Accel::build(geometry, pool);
+  test::Random random(3);
+  int of_meshes = 0;
+  int loose = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Ray ray{.origin = {random.uniform(-4, 4), random.uniform(-2, 2), 6},
+                  .direction = {0.01, 0.02, -1}};
+    Hit hit = accel.closest(ray);
+    ASSERT_TRUE(hit);
+    if (hit.id.instance == 0) {
+      ASSERT_EQ(hit.corners, nullptr);
+      ++loose;
+      continue;
+    }
+    ++of_meshes;
+    ASSERT_NE(hit.corners, nullptr);
+    const Mesh& mesh = geometry.meshes[0];
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        ASSERT_EQ(hit.corners[(3 * c + k) * kCornerStride],
+                  mesh.positions[mesh.triangles[hit.id.primitive][c]][k]);
+      }
+    }
+    const SurfacePoint near_at_hand = surface_at(geometry, ray, hit);
+    hit.corners = nullptr;
+    const SurfacePoint looked_up = surface_at(geometry, ray, hit);
+    ASSERT_EQ(near_at_hand.position, looked_up.position);
+    ASSERT_EQ(near_at_hand.geometric_normal, looked_up.geometric_normal);
+    ASSERT_EQ(near_at_hand.offset, looked_up.offset);
+  }
+  EXPECT_GT(of_meshes, 500);
+  EXPECT_GT(loose, 500);
+}
+
+}  // namespace
+}  // namespace bandsaw
