@@ -46,6 +46,9 @@ FloatRay::FloatRay(const TracedRay& ray, float reach) {
   origin_size = static_cast<float>(o1 * kUp);
   direction_size = static_cast<float>(d1 * kUp);
   floor = static_cast<float>(kTiny);
+  length = std::sqrt(direction[0] * direction[0] + direction[1] * direction[1] +
+                     direction[2] * direction[2]) *
+           (1 + 0x1p-20f);
   const bool large = !(std::max(o1, double{reach}) < kLargest);
   if (large) [[unlikely]] {
     decide_nothing();

@@ -26,6 +26,7 @@ struct FloatRay {
   std::array<float, 3> direction;  ///< scaled
   float origin_size;               ///< at least |origin|_1, which bounds its rounding
   float direction_size;            ///< at least |direction|_1
+  float length;                    ///< at least |direction|, within 2^-19 of it
   /// Added to every bound for what underflows; infinite where numbers are so large that float may
   /// overflow: then nothing is decided in float.
   float floor;

@@ -28,10 +28,7 @@ inline unsigned filter_spheres(const SpherePack& pack, const FloatRay& ray, floa
   constexpr float kError = 16 * 0x1p-24f;
   const Vector8<Float> d = {Float(ray.direction[0]), Float(ray.direction[1]),
                             Float(ray.direction[2])};
-  const float length =
-      std::sqrt(ray.direction[0] * ray.direction[0] + ray.direction[1] * ray.direction[1] +
-                ray.direction[2] * ray.direction[2]) *
-      (1 + 0x1p-20f);
+  const float length = ray.length;
   const Vector8<Float> c = {Float::load(pack.center[0].data()) - Float(ray.origin[0]),
                             Float::load(pack.center[1].data()) - Float(ray.origin[1]),
                             Float::load(pack.center[2].data()) - Float(ray.origin[2])};

@@ -76,10 +76,13 @@ bool intersect(const TracedRay& ray, const Sphere& sphere, bool starts_on_it, Cr
   const double root = std::sqrt(a * discriminant);
   const double q = b < 0 ? b - root : b + root;
   const double distance = length(f);
-  const double product = ((distance - sphere.radius) * (distance + sphere.radius)) / q;
-  const double near = b < 0 ? q / a : product;
-  const double far = b < 0 ? product : q / a;
-  double t = !starts_on_it && near > 0 ? near : far;
+  const double product = (distance - sphere.radius) * (distance + sphere.radius);
+  // One root is product / q, the other q / a; the near one is the first where b >= 0.
+  const bool near_by_product = !(b < 0);
+  double t = starts_on_it ? -1 : near_by_product ? product / q : q / a;
+  if (!(t > 0)) {
+    t = near_by_product ? q / a : product / q;
+  }
   if (!(t > 0)) {
     return false;
   }
