@@ -48,7 +48,9 @@ TEST_F(AuditedFarm, AMachineThatSendsWrongPixelsIsFoundAndTheImageIsRight) {
   farm_.coordinator().signal(SIGKILL);
   farm_.coordinator().wait();
   farm_.restart_coordinator();
-  EXPECT_NE(say({"workers"}).out.find("quarantine --lift liar"), std::string::npos);
+  const Finished again = say({"workers"});
+  EXPECT_NE(again.out.find("quarantine --lift liar"), std::string::npos)
+      << again.code << again.out << again.err << farm_.coordinator_log();
   EXPECT_EQ(say({"quarantine", "--lift", "nobody"}).code, 1);
   EXPECT_EQ(say({"quarantine", "--lift", "liar"}).code, 0);
   farm_.worker("liar").signal(SIGKILL);
