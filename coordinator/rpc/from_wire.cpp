@@ -113,6 +113,10 @@ absl::StatusOr<Band> band(const char* field, const farm::Band& message) {
     return invalid(field, "samples must be a range within [0, ", kMaxSamples, "], are [",
                    band.samples.first, ", ", band.samples.last, ")");
   }
+  if (!is_node(band.samples)) {
+    return invalid(field, "samples must be a node of the tree in which samples are summed, are [",
+                   band.samples.first, ", ", band.samples.last, ")");
+  }
   if (band.rows.first >= band.rows.last || band.rows.last > kMaxSide) {
     return invalid(field, "rows must be a range within [0, ", kMaxSide, "], are [", band.rows.first,
                    ", ", band.rows.last, ")");
