@@ -15,7 +15,7 @@ serve_here() {
   local log=$1
   bandsaw serve --data "$data" --listen 127.0.0.1:0 "${@:2}" >"$log" 2>&1 &
   pids+=($!)
-  until [ -s "$data/join" ]; do
+  until [ -s "$data/farm" ]; do  # the last that it writes
     kill -0 "${pids[0]}" 2>/dev/null || { cat "$log" >&2; exit 1; }
     sleep 0.05
   done

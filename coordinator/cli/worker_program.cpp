@@ -1,6 +1,7 @@
 #include "coordinator/cli/worker_program.h"
 
-#include <span>
+#include <cstdint>
+#include <limits>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/escaping.h"
@@ -35,11 +36,7 @@ absl::StatusOr<WorkerProgram> load_worker_program() {
   }
   WorkerProgram program;
   ASSIGN_OR_RETURN(program.version, version_of(path));
-  ASSIGN_OR_RETURN(const File file, File::open_regular(path));
-  ASSIGN_OR_RETURN(const std::uint64_t size, file.size());
-  program.bytes.resize(size);
-  const auto bytes = std::as_writable_bytes(std::span(program.bytes));
-  RETURN_IF_ERROR(file.read(0, absl::MakeSpan(bytes.data(), bytes.size())));
+  ASSIGN_OR_RETURN(program.bytes, read_whole_file(path, std::numeric_limits<std::uint64_t>::max()));
   program.digest = wire::sha256(program.bytes);
   return program;
 }

@@ -77,7 +77,6 @@ struct Loss {
   Band band;               ///< without what others stored of it since
   std::uint32_t rows = 0;  ///< of it, at a time, when it is leased again
   std::string instance;
-  std::string reason;
 };
 
 class Job {

@@ -40,7 +40,7 @@ void Core::State::add_loss(const Worker& worker, const Losing& lost) {
   }
   const std::uint32_t count = lost.band.rows.count();
   const std::uint32_t again = is_suspect(*job, lost.band) ? count : (count + kPieces - 1) / kPieces;
-  job->losses.push_back({lost.band, again, worker.instance, worker.reason});
+  job->losses.push_back({lost.band, again, worker.instance});
   if (job->losses.size() > Job::kFaultsKept) {
     job->losses.pop_front();
   }
@@ -79,26 +79,28 @@ bool Core::State::is_suspect(const Job& job, const Band& band) {
                      [&](const Loss& loss) { return meet(loss.band, band); });
 }
 
-/// Of what is free, from its first row on, instead of `band`, which is cut by times alone: rows that
-/// are not suspect, or one piece of a band that is, whole. The third who is lost must have been at
-/// the very piece that the second was at, and not just at another of a long band.
+/// Of what is free, from its first row on, instead of `band`, which is cut by times alone: rows
+/// that are not suspect, or one piece of a band that is, whole. The third who is lost must have
+/// been at the very piece that the second was at, and not just at another of a long band.
 Band Core::State::narrowed(const Job& job, const Band& free, Band band) {
   if (band.samples != free.samples) {
     return band;  // part of a row
   }
+  const std::uint32_t first = band.rows.first;
+  std::uint32_t next = free.rows.last;  // where the next suspect band begins
   std::optional<std::uint32_t> piece;
   for (const Loss& loss : job.losses) {
     const RowRange& rows = loss.band.rows;
-    if (meet(loss.band, band) && rows.first <= band.rows.first) {
-      piece = std::min({piece.value_or(free.rows.last), rows.last, band.rows.first + loss.rows});
+    if (!meet(loss.band, free)) {
+      continue;
+    }
+    if (rows.first > first) {
+      next = std::min(next, rows.first);
+    } else {
+      piece = std::min({piece.value_or(free.rows.last), rows.last, first + loss.rows});
     }
   }
-  band.rows.last = piece.value_or(band.rows.last);
-  for (const Loss& loss : job.losses) {
-    if (meet(loss.band, band) && loss.band.rows.first > band.rows.first) {
-      band.rows.last = loss.band.rows.first;
-    }
-  }
+  band.rows.last = std::min(piece.value_or(band.rows.last), next);
   return band;
 }
 

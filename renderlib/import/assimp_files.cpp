@@ -1,5 +1,4 @@
 #include "renderlib/import/assimp_files.h"
-#include "renderlib/base/file.h"
 
 #include <assimp/IOStream.hpp>
 
@@ -9,6 +8,7 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/strip.h"
+#include "renderlib/base/file.h"
 
 namespace bandsaw {
 namespace {

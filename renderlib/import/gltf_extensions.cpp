@@ -1,5 +1,4 @@
 #include "renderlib/import/gltf_extensions.h"
-#include "renderlib/base/file.h"
 
 #include <google/protobuf/struct.pb.h>
 #include <google/protobuf/util/json_util.h>
@@ -14,6 +13,7 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/string_view.h"
+#include "renderlib/base/file.h"
 #include "renderlib/math/elementary.h"
 
 namespace bandsaw {

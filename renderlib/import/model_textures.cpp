@@ -1,5 +1,4 @@
 #include "renderlib/import/model_textures.h"
-#include "renderlib/base/file.h"
 
 #include <assimp/scene.h>
 
@@ -10,6 +9,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
 #include "absl/strings/strip.h"
+#include "renderlib/base/file.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/import/decode_image.h"
 #include "renderlib/import/percent.h"

@@ -1,9 +1,9 @@
 #include "renderlib/import/read_environment.h"
-#include "renderlib/base/file.h"
 
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "renderlib/base/file.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/import/decode_image.h"
 #include "renderlib/import/environment_image.h"

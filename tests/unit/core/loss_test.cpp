@@ -125,6 +125,14 @@ void lose_one(FarmDriver& farm, SessionId session, const std::string& instance) 
   farm.say(input::Lost{session, "connection reset"});
 }
 
+/// A new worker that renders one band, is given the next and goes.
+void store_one_and_lose(FarmDriver& farm, SessionId session) {
+  const std::string instance = std::to_string(session);
+  farm.hello(session, instance, 1);
+  farm.stored(farm.all<action::Lease>().back(), instance);
+  farm.say(input::Lost{session, "connection reset"});
+}
+
 TEST(Poison, ABandThatEndsThreeWorkersFailsTheJobAndIsNamed) {
   FarmDriver farm;
   const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
@@ -160,10 +168,7 @@ TEST(Poison, RowsThatWereStoredSinceAreNotSuspected) {
   FarmDriver farm(options);
   const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 8));
   for (SessionId session = 1; session <= 6; ++session) {
-    const std::string instance = std::to_string(session);
-    farm.hello(session, instance, 1);
-    farm.stored(farm.all<action::Lease>().back(), instance);
-    farm.say(input::Lost{session, "connection reset"});
+    store_one_and_lose(farm, session);
   }
   EXPECT_NE(farm.job(job).state, JobState::kFailed) << farm.job(job).reason;
 }
@@ -228,10 +233,7 @@ TEST(Poison, WorkersThatAreKilledOneAfterTheOtherDoNotFailAJobThatAdvances) {
   const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 800));
   lose_one_at(farm, 0, 1);
   for (SessionId session = 2; session <= 9; ++session) {
-    const std::string instance = std::to_string(session);
-    farm.hello(session, instance, 1);
-    farm.stored(farm.all<action::Lease>().back(), instance);
-    farm.say(input::Lost{session, "connection reset"});
+    store_one_and_lose(farm, session);
   }
   EXPECT_EQ(farm.job(job).state, JobState::kRunning) << farm.job(job).reason;
 }
