@@ -25,9 +25,7 @@ std::optional<Core::State::Losing> Core::State::in_hand(const Worker& worker) co
     return std::nullopt;
   }
   const Lease& lease = *leases_.find(worker.leases.front());
-  const bool silent_before =
-      worker.heard_at < lease.advanced_at &&
-      clock_.patience() - worker.heard_at > 2 * options_.heartbeat_interval_s;
+  const bool silent_before = worker.heard_at < lease.advanced_at && is_silent(worker);
   return lease.copy_of != 0 || lease.audit || silent_before
              ? std::nullopt
              : std::optional(Losing{lease.job, lease.band});

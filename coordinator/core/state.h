@@ -131,6 +131,9 @@ class Core::State {
   bool take_up_one(Worker& worker, const WorkerHello::Held& held);
   void lose(Worker& worker, const std::string& reason);
   void forget_refusals();
+  bool is_silent(const Worker& worker) const;
+  void note_those_lost_together();
+  void await_rest_of_former(const Worker& back);
   void give_up_on_former();
   bool waits_for_former() const;
 
@@ -283,10 +286,11 @@ class Core::State {
   /// By renderer: what one rendered is void for ever, its name is barred until it is lifted.
   std::map<std::uint64_t, Quarantined> quarantined_;
 
-  std::vector<input::BandStored> met_;  ///< being replayed, with rows that were there already
-  std::set<std::string> joined_;        ///< instances, as journalled
-  std::set<std::string> former_;  ///< of those, who were there before the restart and are awaited
-  Time awaited_until_ = 0;        ///< patience clock
+  std::vector<input::BandStored> met_;   ///< being replayed, with rows that were there already
+  std::set<std::string> joined_;         ///< instances, as journalled
+  std::set<std::string> lost_together_;  ///< instances; nobody was left
+  std::set<std::string> former_;         ///< instances that are awaited (former.cpp)
+  Time awaited_until_ = 0;               ///< patience clock
 };
 
 }  // namespace bandsaw::coordinator

@@ -35,7 +35,8 @@ std::string Core::State::waiting_reason(const Job& job) const {
   }
   if (waits_for_former()) {
     return absl::StrCat("waits for ", former_.size(),
-                        " workers that were there before the coordinator's restart");
+                        " workers that were there before the coordinator's restart, or before "
+                        "all were lost at once");
   }
   if (hunger_.eligible() == 0) {
     return refusals_.empty()

@@ -74,7 +74,7 @@ void Core::State::welcome(Worker& worker, const input::Hello& in) {
   if (!joined_.contains(worker.instance)) {
     emit(record::WorkerJoined{worker.instance});
   }
-  former_.erase(worker.instance);
+  await_rest_of_former(worker);
   forgive_losses(worker);
   for (const JobId id : active_) {
     for (Audit& audit : jobs_.at(id).audits) {
@@ -174,6 +174,7 @@ void Core::State::on(const input::Lost& in) {
 
 void Core::State::lose(Worker& worker, const std::string& reason) {
   const std::optional<Losing> lost = in_hand(worker);
+  worker.fell_silent = is_silent(worker);
   end_all(std::vector<LeaseId>(worker.leases), Revoke::kNo);
   if (!worker.quarantined) {
     worker.reason = reason.substr(0, wire::kReasonBytes);
@@ -187,25 +188,13 @@ void Core::State::lose(Worker& worker, const std::string& reason) {
   }
   workers_.disconnect(worker);
   hunger_.update(worker);
-}
-
-bool Core::State::waits_for_former() const {
-  return !former_.empty() && clock_.patience() < awaited_until_;
+  note_those_lost_together();
 }
 
 /// One that has not tried again for three times as long as it was told to wait is not there.
 void Core::State::forget_refusals() {
   while (!refusals_.empty() && clock_.wall() - refusals_.front().at > kRefusalKept_s) {
     refusals_.pop_front();
-  }
-}
-
-void Core::State::give_up_on_former() {
-  if (former_.empty() || waits_for_former()) {
-    return;
-  }
-  for (const std::string& instance : std::exchange(former_, {})) {
-    emit(record::WorkerLeft{instance});
   }
 }
 

@@ -26,6 +26,7 @@ struct Worker {
   std::uint32_t credits = 1;         ///< leases it may hold
   std::optional<SessionId> session;  ///< none: it is gone
   bool draining = false;
+  bool fell_silent = false;  ///< before it was lost last
   bool quarantined = false;  ///< it gets no more work
   std::string doing;
   std::string reason;           ///< why it is gone, drains or is quarantined

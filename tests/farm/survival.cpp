@@ -93,4 +93,12 @@ int Survival::rendered_again(const std::string& cut_off) {
   return again;
 }
 
+void Survival::expect_nothing_rendered_again(const std::string& cut_off) {
+  std::string logs = farm_.coordinator_log();
+  for (const std::string& name : farm_.worker_names()) {
+    logs += "\n" + name + ":\n" + farm_.worker_log(name);
+  }
+  EXPECT_EQ(rendered_again(cut_off), 0) << logs;
+}
+
 }  // namespace bandsaw::test

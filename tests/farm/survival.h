@@ -31,6 +31,9 @@ class Survival {
   /// does not count: it could not know what others did meanwhile.
   int rendered_again(const std::string& cut_off = "");
 
+  /// None of the above; where there are, every log is printed.
+  void expect_nothing_rendered_again(const std::string& cut_off = "");
+
  private:
   bool shared(const LoggedBand& one, const LoggedBand& other) const;
   FarmProcesses& farm_;

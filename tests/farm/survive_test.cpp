@@ -25,7 +25,7 @@ TEST_F(Survive, AKilledWorker) {
   job_.wait_until_stored("victim", 3);
   farm_.worker("victim").signal(SIGKILL);
   job_.expect_the_same_bytes(client);
-  EXPECT_EQ(job_.rendered_again(), 0);
+  job_.expect_nothing_rendered_again();
 }
 
 TEST_F(Survive, AFrozenWorker) {
@@ -35,7 +35,7 @@ TEST_F(Survive, AFrozenWorker) {
   job_.wait_until_stored("victim", 2);
   farm_.worker("victim").signal(SIGSTOP);
   job_.expect_the_same_bytes(client);
-  EXPECT_EQ(job_.rendered_again(), 0);
+  job_.expect_nothing_rendered_again();
   farm_.worker("victim").signal(SIGCONT);
   job_.wait_until_joined("victim", 2);
 }
@@ -47,7 +47,7 @@ TEST_F(Survive, AWorkerThatJoinsInTheMiddle) {
   farm_.add_worker("late", 1);
   job_.expect_the_same_bytes(client);
   EXPECT_GT(logged_bands(farm_.worker_log("late"), "stored").size(), 0u);
-  EXPECT_EQ(job_.rendered_again(), 0);
+  job_.expect_nothing_rendered_again();
 }
 
 TEST_F(Survive, AKilledCoordinator) {
@@ -59,7 +59,7 @@ TEST_F(Survive, AKilledCoordinator) {
   ASSERT_EQ(farm_.coordinator().wait(), 128 + SIGKILL);
   farm_.restart_coordinator();
   job_.expect_the_same_bytes(client);
-  EXPECT_EQ(job_.rendered_again(), 0);
+  job_.expect_nothing_rendered_again();
 }
 
 TEST_F(Survive, AWorkerThatIsAskedToLeave) {
@@ -73,7 +73,7 @@ TEST_F(Survive, AWorkerThatIsAskedToLeave) {
   EXPECT_EQ(logged_bands(farm_.worker_log("leaving"), "rendered").size(),
             logged_bands(farm_.worker_log("leaving"), "stored").size());
   job_.expect_the_same_bytes(client);
-  EXPECT_EQ(job_.rendered_again(), 0);
+  job_.expect_nothing_rendered_again();
 }
 
 }  // namespace

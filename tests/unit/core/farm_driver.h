@@ -20,6 +20,13 @@ inline CoreOptions test_options() {
   return options;
 }
 
+/// Rows of a small image that take a worker a while: leases are of a row or two.
+inline CoreOptions slow() {
+  CoreOptions options = test_options();
+  options.band_target_s = 1e-3;
+  return options;
+}
+
 inline JobSpec test_job(std::string request, const StopRule& stop, std::uint32_t width = 8,
                         std::uint32_t height = 8) {
   JobSpec spec;

@@ -36,13 +36,6 @@ struct Before {
   }
 };
 
-/// Rows of a small image that take a worker a while: leases are of a row or two.
-CoreOptions slow() {
-  CoreOptions options = test_options();
-  options.band_target_s = 1e-3;
-  return options;
-}
-
 /// A second life of a farm's core, told of these bands.
 FarmDriver second_life(const FarmDriver& farm, const std::vector<input::BandStored>& bands) {
   FarmDriver next;
