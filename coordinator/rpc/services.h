@@ -73,8 +73,8 @@ class WorkService final : public farm::Work::CallbackService {
       grpc::CallbackServerContext* context) override;
   grpc::ServerWriteReactor<farm::BlobChunk>* GetBlob(grpc::CallbackServerContext* context,
                                                      const farm::GetBlobRequest* request) override;
-  grpc::ServerReadReactor<farm::BandChunk>* PutBand(grpc::CallbackServerContext* context,
-                                                    farm::PutBandReply* reply) override;
+  grpc::ServerBidiReactor<farm::BandChunk, farm::PutBandReply>* PutBands(
+      grpc::CallbackServerContext* context) override;
 
  private:
   const Doors doors_;

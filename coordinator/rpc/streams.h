@@ -91,45 +91,4 @@ class RefusedCall final : public Base {
   void OnDone() override { delete this; }
 };
 
-/// Reads a client's stream chunk by chunk: one chunk is read only when the one before is dealt
-/// with. Derived has: kWritesFiles (then it is called on the file executor, else where gRPC calls);
-/// absl::Status add(const Chunk&); void end() (all chunks came; MUST Finish); void cut() if it has
-/// something to put away when the client is gone.
-template <class Chunk, class Derived>
-class ChunkReader : public SelfOwned<grpc::ServerReadReactor<Chunk>, Derived> {
- public:
-  ChunkReader(const Doors& doors, grpc::CallbackServerContext* context)
-      : doors_(doors), context_(context) {}
-
-  void begin() { this->StartRead(&chunk_); }
-  void OnReadDone(bool ok) override {
-    if constexpr (Derived::kWritesFiles) {
-      doors_.files.post([self = this->shared_from_this(), ok] { self->take(ok); });
-    } else {
-      take(ok);
-    }
-  }
-  void cut() {}
-  void take(bool ok) {
-    auto& derived = static_cast<Derived&>(*this);
-    if (!ok && context_->IsCancelled()) {
-      derived.cut();
-      this->Finish(grpc::Status::CANCELLED);
-    } else if (!ok) {
-      derived.end();
-    } else if (const absl::Status status = derived.add(chunk_); !status.ok()) {
-      this->Finish(link::to_grpc(status));
-    } else {
-      this->StartRead(&chunk_);
-    }
-  }
-
- protected:
-  const Doors doors_;
-
- private:
-  grpc::CallbackServerContext* const context_;
-  Chunk chunk_;
-};
-
 }  // namespace bandsaw::coordinator

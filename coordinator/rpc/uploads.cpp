@@ -1,23 +1,27 @@
 #include "coordinator/rpc/uploads.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstring>
 #include <span>
 
-#include "absl/strings/str_cat.h"
-#include "coordinator/rpc/convert.h"
-#include "proto/wire/limits.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
-namespace {
 
-constexpr std::uint64_t kPixelBytes = 3 * sizeof(double);
+void PutBlobCall::OnReadDone(bool ok) {
+  doors_.files.post([self = shared_from_this(), ok] { self->take(ok); });
+}
 
-bool is_sum(double value) { return std::isfinite(value) && value >= 0; }
-
-}  // namespace
+void PutBlobCall::take(bool ok) {
+  if (!ok && context_->IsCancelled()) {
+    writer_.reset();
+    Finish(grpc::Status::CANCELLED);
+  } else if (!ok) {
+    Finish(link::to_grpc(end()));
+  } else if (const absl::Status status = add(chunk_); !status.ok()) {
+    Finish(link::to_grpc(status));
+  } else {
+    StartRead(&chunk_);
+  }
+}
 
 absl::Status PutBlobCall::add(const farm::BlobChunk& chunk) {
   RETURN_IF_ERROR(intake_.add(chunk));
@@ -28,94 +32,9 @@ absl::Status PutBlobCall::add(const farm::BlobChunk& chunk) {
   return writer_->append(std::as_bytes(std::span(chunk.data())));
 }
 
-void PutBlobCall::end() {
-  const absl::Status whole = intake_.end();
-  Finish(link::to_grpc(whole.ok() ? writer_->commit() : whole));
-}
-
-absl::Status PutBandCall::take_header(const farm::BandHeader& header) {
-  ASSIGN_OR_RETURN(pixels_.band, band("header.band", header.band()));
-  RETURN_IF_ERROR(digest_field("header.sha256", header.sha256()).status());
-  RETURN_IF_ERROR(reason_field("header.instance", header.instance()).status());
-  if (header.size() > wire::kBandBytes) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        "header.size: a band has at most ", wire::kBandBytes, " bytes, not ", header.size()));
-  }
-  const std::uint64_t row_bytes = header.size() / pixels_.band.rows.count();
-  if (row_bytes == 0 || row_bytes * pixels_.band.rows.count() != header.size() ||
-      row_bytes % kPixelBytes != 0 || row_bytes / kPixelBytes > kMaxSide) {
-    return absl::InvalidArgumentError(absl::StrCat("header.size: ", header.size(),
-                                                   " bytes are not ", pixels_.band.rows.count(),
-                                                   " rows of pixels of ", kPixelBytes, " bytes"));
-  }
-  if (!is_sum(header.counters().render_s()) || !is_sum(header.counters().cpu_s())) {
-    return absl::InvalidArgumentError("header.counters: times must be finite and >= 0");
-  }
-  pixels_.width = static_cast<std::uint32_t>(row_bytes / kPixelBytes);
-  pixels_.sums.resize(header.size() / sizeof(double));
-  pixels_.counters = {.rays = header.counters().rays(),
-                      .bad_samples = header.counters().bad_samples(),
-                      .bad_x = header.counters().bad_x(),
-                      .bad_y = header.counters().bad_y(),
-                      .bad_sample = header.counters().bad_sample(),
-                      .negative_samples = header.counters().negative_samples(),
-                      .truncated_paths = header.counters().truncated_paths(),
-                      .dropped_primitives = header.counters().dropped_primitives()};
-  header_ = header;
-  has_header_ = true;
-  return absl::OkStatus();
-}
-
-absl::Status PutBandCall::add(const farm::BandChunk& chunk) {
-  if (!has_header_) {
-    if (!chunk.has_header()) {
-      return absl::InvalidArgumentError("header: must be in the first chunk");
-    }
-    RETURN_IF_ERROR(take_header(chunk.header()));
-  } else if (chunk.has_header()) {
-    return absl::InvalidArgumentError("header: belongs in the first chunk only");
-  }
-  RETURN_IF_ERROR(check_chunk(chunk.data(), received_, header_.size()));
-  std::memcpy(reinterpret_cast<char*>(pixels_.sums.data()) + received_, chunk.data().data(),
-              chunk.data().size());
-  received_ += chunk.data().size();
-  hasher_.update(std::as_bytes(std::span(chunk.data())));
-  return absl::OkStatus();
-}
-
-absl::Status PutBandCall::check_pixels() {
-  if (!has_header_) {
-    return absl::InvalidArgumentError("header: the stream holds no chunk");
-  }
-  if (received_ != header_.size()) {
-    return cut_short(received_, header_.size());
-  }
-  if (hasher_.finish().raw() != header_.sha256()) {
-    return absl::InvalidArgumentError("header.sha256: the bytes that came do not have it");
-  }
-  if (!std::all_of(pixels_.sums.begin(), pixels_.sums.end(), is_sum)) {
-    return absl::InvalidArgumentError("data: a pixel's sum is not a finite number >= 0");
-  }
-  return absl::OkStatus();
-}
-
-void PutBandCall::end() {
-  if (const absl::Status status = check_pixels(); !status.ok()) {
-    Finish(link::to_grpc(status));
-    return;
-  }
-  doors_.engine.put_band(header_.job(), header_.instance(), std::move(pixels_),
-                         header_.counters().render_s(), header_.counters().cpu_s(),
-                         [self = shared_from_this()](const absl::StatusOr<BandOutcome>& outcome) {
-                           if (outcome.ok()) {
-                             self->reply_->set_outcome(*outcome == BandOutcome::kStored
-                                                           ? farm::PutBandReply::OUTCOME_STORED
-                                                       : *outcome == BandOutcome::kDuplicate
-                                                           ? farm::PutBandReply::OUTCOME_DUPLICATE
-                                                           : farm::PutBandReply::OUTCOME_UNWANTED);
-                           }
-                           self->Finish(link::to_grpc(outcome.status()));
-                         });
+absl::Status PutBlobCall::end() {
+  RETURN_IF_ERROR(intake_.end());
+  return writer_->commit();
 }
 
 }  // namespace bandsaw::coordinator

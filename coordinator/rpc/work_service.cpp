@@ -1,8 +1,8 @@
 #include "coordinator/rpc/downloads.h"
 #include "coordinator/rpc/gate.h"
+#include "coordinator/rpc/put_bands_call.h"
 #include "coordinator/rpc/services.h"
 #include "coordinator/rpc/session_call.h"
-#include "coordinator/rpc/uploads.h"
 
 namespace bandsaw::coordinator {
 grpc::ServerBidiReactor<farm::FromWorker, farm::ToWorker>* WorkService::Session(
@@ -21,12 +21,12 @@ grpc::ServerWriteReactor<farm::BlobChunk>* WorkService::GetBlob(
   return GetBlobCall::make(doors_, *request);
 }
 
-grpc::ServerReadReactor<farm::BandChunk>* WorkService::PutBand(grpc::CallbackServerContext* context,
-                                                               farm::PutBandReply* reply) {
+grpc::ServerBidiReactor<farm::BandChunk, farm::PutBandReply>* WorkService::PutBands(
+    grpc::CallbackServerContext* context) {
   if (const auto status = doors_.gate.check(*context, link::Role::kWorker); !status.ok()) {
-    return new RefusedCall<grpc::ServerReadReactor<farm::BandChunk>>(status);
+    return new RefusedCall<grpc::ServerBidiReactor<farm::BandChunk, farm::PutBandReply>>(status);
   }
-  return PutBandCall::make(doors_, context, reply);
+  return PutBandsCall::make(doors_, context);
 }
 
 }  // namespace bandsaw::coordinator

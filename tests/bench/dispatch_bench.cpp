@@ -138,8 +138,14 @@ class NullWorker {
     stream_->Write(message);
     farm::ToWorker answer;
     BANDSAW_CHECK(stream_->Read(&answer) && answer.has_welcome(), "a null worker is welcome");
+    link::prepare(bands_context_, join, std::chrono::milliseconds(0));
+    bands_ = bulk_->PutBands(&bands_context_);
   }
-  ~NullWorker() { context_.TryCancel(); }
+  ~NullWorker() {
+    context_.TryCancel();
+    bands_context_.TryCancel();
+    bands_->Finish();
+  }
 
   void beat() {
     farm::FromWorker message;
@@ -182,13 +188,9 @@ class NullWorker {
     // So slow that a band is a row: what is measured is bands, not bytes.
     header.mutable_counters()->set_render_s(2.0 * (band.last_row() - band.first_row()));
     chunk.set_data(black);
-    grpc::ClientContext context;
-    link::prepare(context, join_, kLong);
-    context.set_initial_metadata_corked(true);  // as a worker does
     farm::PutBandReply reply;
-    const auto writer = bulk_->PutBand(&context, &reply);
-    writer->WriteLast(chunk, grpc::WriteOptions());
-    check(writer->Finish());
+    const bool answered = bands_->Write(chunk) && bands_->Read(&reply);
+    BANDSAW_CHECK(answered, "a band is taken");
   }
 
   const link::JoinString join_;
@@ -197,6 +199,8 @@ class NullWorker {
   std::string instance_;
   grpc::ClientContext context_;
   std::unique_ptr<Stream> stream_;
+  grpc::ClientContext bands_context_;
+  std::unique_ptr<grpc::ClientReaderWriter<farm::BandChunk, farm::PutBandReply>> bands_;
 };
 
 struct Coordinator {

@@ -16,10 +16,13 @@
 
 namespace bandsaw::worker {
 
+class BandStream;
+
 /// Where the farm is now; changes with every reconnect.
 class FarmCalls {
  public:
-  explicit FarmCalls(link::JoinString join) : join_(std::move(join)) {}
+  explicit FarmCalls(link::JoinString join);
+  ~FarmCalls();
 
   const link::JoinString& join() const { return join_; }
   /// Nothing: not connected; calls fail with UNAVAILABLE at once.
@@ -28,6 +31,7 @@ class FarmCalls {
   void leave() EXCLUDES(mutex_);
 
   absl::Status get_blob(const wire::Digest& digest, std::uint64_t offset, const TakeBytes& take);
+  /// One at a time.
   absl::StatusOr<farm::PutBandReply::Outcome> put_band(const FinishedBand& band,
                                                        const std::string& instance,
                                                        const LeaseName& lease);
@@ -49,13 +53,15 @@ class FarmCalls {
   };
 
  private:
-  absl::StatusOr<std::unique_ptr<farm::Work::Stub>> stub() EXCLUDES(mutex_);
+  /// Null: not connected.
+  std::shared_ptr<grpc::Channel> bulk() EXCLUDES(mutex_);
 
   const link::JoinString join_;
   Mutex mutex_;
   bool left_ GUARDED_BY(mutex_) = false;
   std::shared_ptr<grpc::Channel> bulk_ GUARDED_BY(mutex_);
   std::set<grpc::ClientContext*> open_ GUARDED_BY(mutex_);
+  std::unique_ptr<BandStream> bands_;  ///< put_band's own
 };
 
 }  // namespace bandsaw::worker

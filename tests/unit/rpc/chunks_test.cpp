@@ -94,22 +94,6 @@ class ChunksTest : public FarmTest {
     }
     return there;
   }
-
-  /// A good band of 2 rows of 3 pixels.
-  static farm::BandChunk band_chunk(std::vector<double> sums = std::vector<double>(18, 0.5)) {
-    const std::string bytes(reinterpret_cast<const char*>(sums.data()),
-                            sums.size() * sizeof(double));
-    farm::BandChunk chunk;
-    farm::BandHeader* header = chunk.mutable_header();
-    header->set_job(1);
-    header->mutable_band()->set_last_sample(16);
-    header->mutable_band()->set_last_row(2);
-    header->set_instance(std::string(32, 'a'));
-    header->set_size(bytes.size());
-    header->set_sha256(wire::sha256(bytes).raw());
-    chunk.set_data(bytes);
-    return chunk;
-  }
 };
 
 TEST_F(ChunksTest, BlobArrivesInPiecesAndLeavesFromAnyOffset) {
@@ -235,7 +219,7 @@ TEST_F(ChunksTest, LimitsHold) {
       << "gRPC's own guard";
   farm::BandChunk band = band_chunk();
   band.mutable_header()->set_size(wire::kBandBytes + 1);
-  expect(put_band({band}), StatusCode::INVALID_ARGUMENT, "header.size");
+  expect(put_bands({band}).status, StatusCode::INVALID_ARGUMENT, "header.size");
 }
 
 TEST_F(ChunksTest, MissingBlobsAreNamed) {
@@ -253,40 +237,49 @@ TEST_F(ChunksTest, MissingBlobsAreNamed) {
 }
 
 TEST_F(ChunksTest, BandThatIsNotWhatItSaysIsRefused) {
-  expect(put_band({}), StatusCode::INVALID_ARGUMENT, "no chunk");
   farm::BandChunk bare = band_chunk();
   bare.clear_header();
-  expect(put_band({bare}), StatusCode::INVALID_ARGUMENT, "header");
-  expect(put_band({band_chunk(), band_chunk()}), StatusCode::INVALID_ARGUMENT, "first chunk only");
-  expect(put_band({band_chunk(), bare}), StatusCode::INVALID_ARGUMENT, "more bytes");
+  expect(put_bands({bare}).status, StatusCode::INVALID_ARGUMENT, "header");
   farm::BandChunk half = band_chunk();
   half.set_data(half.data().substr(0, 40));
-  expect(put_band({half}), StatusCode::INVALID_ARGUMENT, "ended after 40 of 144");
+  expect(put_bands({half}).status, StatusCode::INVALID_ARGUMENT, "ended after 40 of 144");
+  expect(put_bands({half, half}).status, StatusCode::INVALID_ARGUMENT,
+         "first chunk of a band only");
+  expect(put_bands({half, bare}).status, StatusCode::INVALID_ARGUMENT, "more bytes");
   farm::BandChunk wrong = band_chunk();
   wrong.mutable_header()->set_sha256(wire::Digest().raw());
-  expect(put_band({wrong}), StatusCode::INVALID_ARGUMENT, "sha256");
+  expect(put_bands({wrong}).status, StatusCode::INVALID_ARGUMENT, "sha256");
   farm::BandChunk uneven = band_chunk();
   uneven.mutable_header()->mutable_band()->set_last_row(5);
-  expect(put_band({uneven}), StatusCode::INVALID_ARGUMENT, "rows of pixels");
+  expect(put_bands({uneven}).status, StatusCode::INVALID_ARGUMENT, "rows of pixels");
   farm::BandChunk rows = band_chunk();
   rows.mutable_header()->mutable_band()->set_last_row(0);
-  expect(put_band({rows}), StatusCode::INVALID_ARGUMENT, "header.band");
+  expect(put_bands({rows}).status, StatusCode::INVALID_ARGUMENT, "header.band");
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), -1.0}) {
     std::vector<double> sums(18, 0.5);
     sums[17] = bad;
-    expect(put_band({band_chunk(sums)}), StatusCode::INVALID_ARGUMENT, "finite");
+    expect(put_bands({band_chunk(sums)}).status, StatusCode::INVALID_ARGUMENT, "finite");
   }
 }
 
 TEST_F(ChunksTest, BandOfNoJobIsNotStored) {
-  const auto call = context(link::Role::kWorker);
-  farm::PutBandReply reply;
-  const auto writer = work()->PutBand(call.get(), &reply);
-  writer->Write(band_chunk());
-  writer->WritesDone();
-  const grpc::Status status = writer->Finish();
-  EXPECT_TRUE(!status.ok() || reply.outcome() == farm::PutBandReply::OUTCOME_UNWANTED);
+  const PutBands put = put_bands({band_chunk()});
+  EXPECT_TRUE(!put.status.ok() ||
+              put.outcomes == std::vector{farm::PutBandReply::OUTCOME_UNWANTED});
+}
+
+TEST_F(ChunksTest, BandsThatFollowEachOtherAreAnsweredEach) {
+  farm::BandChunk first = band_chunk();
+  first.set_data(first.data().substr(0, 40));
+  farm::BandChunk rest = band_chunk();
+  rest.clear_header();
+  rest.set_data(rest.data().substr(40));
+  const PutBands none = put_bands({});
+  EXPECT_TRUE(none.status.ok() && none.outcomes.empty());
+  const PutBands put = put_bands({first, rest, band_chunk()});
+  EXPECT_TRUE(put.status.ok()) << put.status.error_message();
+  EXPECT_EQ(put.outcomes.size(), 2u);
 }
 
 }  // namespace

@@ -54,15 +54,33 @@ grpc::Status FarmTest::put_blob(const std::vector<farm::BlobChunk>& chunks) {
   return writer->Finish();
 }
 
-grpc::Status FarmTest::put_band(const std::vector<farm::BandChunk>& chunks) {
+FarmTest::PutBands FarmTest::put_bands(const std::vector<farm::BandChunk>& chunks) {
   const auto call = context(link::Role::kWorker);
-  farm::PutBandReply reply;
-  const auto writer = work()->PutBand(call.get(), &reply);
+  const auto stream = work()->PutBands(call.get());
   for (const farm::BandChunk& chunk : chunks) {
-    writer->Write(chunk);
+    stream->Write(chunk);
   }
-  writer->WritesDone();
-  return writer->Finish();
+  stream->WritesDone();
+  PutBands put;
+  for (farm::PutBandReply reply; stream->Read(&reply);) {
+    put.outcomes.push_back(reply.outcome());
+  }
+  put.status = stream->Finish();
+  return put;
+}
+
+farm::BandChunk FarmTest::band_chunk(const std::vector<double>& sums) {
+  const std::string bytes(reinterpret_cast<const char*>(sums.data()), sums.size() * sizeof(double));
+  farm::BandChunk chunk;
+  farm::BandHeader* header = chunk.mutable_header();
+  header->set_job(1);
+  header->mutable_band()->set_last_sample(16);
+  header->mutable_band()->set_last_row(2);
+  header->set_instance(std::string(32, 'a'));
+  header->set_size(bytes.size());
+  header->set_sha256(wire::sha256(bytes).raw());
+  chunk.set_data(bytes);
+  return chunk;
 }
 
 farm::BlobChunk FarmTest::whole(const std::string& bytes) {

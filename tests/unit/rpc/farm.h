@@ -33,7 +33,13 @@ class FarmTest : public ::testing::Test {
   std::unique_ptr<farm::Work::Stub> work() const { return farm::Work::NewStub(channel_); }
 
   grpc::Status put_blob(const std::vector<farm::BlobChunk>& chunks);
-  grpc::Status put_band(const std::vector<farm::BandChunk>& chunks);
+  struct PutBands {
+    std::vector<farm::PutBandReply::Outcome> outcomes;
+    grpc::Status status;
+  };
+  /// Two rows of three pixels, of a job that is none.
+  static farm::BandChunk band_chunk(const std::vector<double>& sums = std::vector<double>(18, 0.5));
+  PutBands put_bands(const std::vector<farm::BandChunk>& chunks);
   /// One chunk that is the whole blob.
   static farm::BlobChunk whole(const std::string& bytes);
 

@@ -118,12 +118,12 @@ class GateTest : public FarmTest {
            const auto reader = work()->GetBlob(&c, {});
            return drain<grpc::ClientReader<farm::BlobChunk>, farm::BlobChunk>(*reader);
          }},
-        {"PutBand", work_role,
+        {"PutBands", work_role,
          [this](auto& c) {
-           farm::PutBandReply reply;
-           const auto writer = work()->PutBand(&c, &reply);
-           writer->WritesDone();
-           return writer->Finish();
+           const auto stream = work()->PutBands(&c);
+           stream->WritesDone();
+           return drain<grpc::ClientReaderWriter<farm::BandChunk, farm::PutBandReply>,
+                        farm::PutBandReply>(*stream);
          }},
     };
   }

@@ -66,6 +66,17 @@ TEST_F(SecretTest, WorkersWithTheOldOneAreShutOutAndPeopleAreNot) {
   EXPECT_TRUE(list_jobs(identity_.farm_secret).ok());
 }
 
+TEST_F(SecretTest, NobodyGoesOnSendingBandsWithTheOldOne) {
+  const auto call = context(link::Role::kWorker);
+  const auto stream = work()->PutBands(call.get());
+  farm::PutBandReply outcome;
+  ASSERT_TRUE(stream->Write(band_chunk()) && stream->Read(&outcome));
+  farm::RotateSecretReply reply;
+  ASSERT_TRUE(rotate(farm::SECRET_ROLE_WORKER, &reply).ok());
+  EXPECT_FALSE(stream->Read(&outcome));
+  EXPECT_EQ(stream->Finish().error_code(), StatusCode::CANCELLED);
+}
+
 TEST_F(SecretTest, ARoleThatIsNoneIsRefused) {
   farm::RotateSecretReply reply;
   EXPECT_EQ(rotate(farm::SECRET_ROLE_UNSPECIFIED, &reply).error_code(),
