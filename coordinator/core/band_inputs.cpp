@@ -1,6 +1,7 @@
 // A band's pixels are on disk, or a worker could not make them.
 
 #include "absl/strings/str_cat.h"
+#include "coordinator/core/probes.h"
 #include "coordinator/core/state.h"
 
 namespace bandsaw::coordinator {
@@ -100,18 +101,8 @@ void Core::State::count_share(Job& job, const input::BandStored& in, std::uint64
   }
 }
 
-void Core::State::measure(Worker& worker, Job& job, const input::BandStored& in) {
-  if (in.render_s <= 0) {
-    return;
-  }
-  const std::uint64_t samples = job.samples_of(in.band);
-  if (samples == 0) {
-    return;  // only zeros: it says nothing of anybody's speed
-  }
-  const double speed = static_cast<double>(samples) / in.render_s;
-  worker.speed.measure(speed);
+void Core::State::measure_pace(Worker& worker, Job& job, const input::BandStored& in) {
   Worker::OnJob& on_job = worker.on_job[job.id];
-  on_job.speed.measure(speed);
   const double work = job.cost_of(in.band);  // as was expected
   // Of a worker that is new to the job, what others of as many threads do is as good a guess.
   if (job.per_thread.measured()) {
@@ -123,6 +114,22 @@ void Core::State::measure(Worker& worker, Job& job, const input::BandStored& in)
   }
   on_job.pace.measure(work / in.render_s, std::max(kNewestPace, 1.0 / (2 + on_job.bands++)));
   job.per_thread.measure(on_job.pace.mean() / worker.threads);
+}
+
+void Core::State::measure(Worker& worker, Job& job, const input::BandStored& in) {
+  if (in.render_s <= 0) {
+    return;
+  }
+  const std::uint64_t samples = job.samples_of(in.band);
+  if (samples == 0) {
+    return;  // only zeros: it says nothing of anybody's speed
+  }
+  const double speed = static_cast<double>(samples) / in.render_s;
+  worker.speed.measure(speed);
+  worker.on_job[job.id].speed.measure(speed);
+  if (!is_probe(job.spec.settings.height, in.band)) {
+    measure_pace(worker, job, in);
+  }
   // Samples are those of pixels that take part: of so many columns of all rows.
   const double columns = static_cast<double>(samples) / in.band.rows.count();
   job.row_times.measure(in.band.rows, in.render_s * worker.threads / columns);

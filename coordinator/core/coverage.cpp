@@ -253,15 +253,25 @@ bool Coverage::holds(const Band& band, LeaseId lease) const {
   return false;
 }
 
+std::optional<SampleRange> Coverage::free_in(const Strip& strip) {
+  const auto cell = std::find_if(strip.cells.begin(), strip.cells.end(),
+                                 [](const Cell& c) { return c.owner == kFree; });
+  return cell == strip.cells.end() ? std::nullopt : std::optional(cell->node);
+}
+
 std::optional<Band> Coverage::free_from(std::uint32_t row) const {
   const auto key = with_free_.lower_bound(row);
   if (key == with_free_.end()) {
     return std::nullopt;
   }
   const Strip& strip = strips_.at(*key);
-  const auto cell = std::find_if(strip.cells.begin(), strip.cells.end(),
-                                 [](const Cell& c) { return c.owner == kFree; });
-  return Band{cell->node, {*key, strip.last}};
+  return Band{*free_in(strip), {*key, strip.last}};
+}
+
+std::optional<Band> Coverage::free_at(std::uint32_t row) const {
+  const Strip& strip = strip_at(row)->second;
+  const auto node = free_in(strip);
+  return node ? std::optional(Band{*node, {row, strip.last}}) : std::nullopt;
 }
 
 std::optional<std::string> Coverage::broken_partition() const {

@@ -56,6 +56,8 @@ class Coverage {
 
   /// The first free piece that begins in or below `row`: a node, and rows that all have it free.
   std::optional<Band> free_from(std::uint32_t row) const;
+  /// The same of the rows from `row` on that are alike, if something is free in it.
+  std::optional<Band> free_at(std::uint32_t row) const;
 
   bool complete() const { return stored_ == total_; }
   bool any_free() const { return !with_free_.empty(); }
@@ -87,6 +89,7 @@ class Coverage {
   static void put(Strip& strip, const SampleRange& node, Owner owner, std::vector<LeaseId>& lost);
   static void open(Strip& strip, const SampleRange& node);
   static void merge_siblings(Strip& strip);
+  static std::optional<SampleRange> free_in(const Strip& strip);
   Strips::const_iterator strip_at(std::uint32_t row) const;
   void cut_at(std::uint32_t row);
   void join(const RowRange& rows);

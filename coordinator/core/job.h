@@ -160,6 +160,7 @@ class Job {
   Throughput throughput;               ///< pixel samples
   CostMap cost;                        ///< of its rows
   RowTimes row_times;                  ///< likewise
+  std::uint32_t probes = 0;            ///< given out, or not to be had (probes.h)
   Speed per_thread;                    ///< pace of all its workers, in work a second and thread
 
   static constexpr std::size_t kFaultsKept = 1'000;

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "coordinator/core/band_sizing.h"
+#include "coordinator/core/probes.h"
 #include "coordinator/core/state.h"
 
 namespace bandsaw::coordinator {
@@ -69,7 +70,8 @@ bool Core::State::lease_to(Worker& worker) {
         grant_audit(worker, job, *audit);
         return true;
       }
-      if (const auto free = free_for(job, worker)) {
+      const auto first = probe_for(job, worker);
+      if (const auto free = first ? first : free_for(job, worker)) {
         const Band band = narrowed(job, *free, sized(job, worker, *free));
         if (is_suspect(job, band) && !worker.leases.empty()) {
           return false;  // The first who has nothing else in hand takes it.
@@ -90,6 +92,20 @@ std::optional<Band> Core::State::free_for(const Job& job, const Worker& worker) 
          free = pass.coverage.free_from(free->rows.last)) {
       if (const auto piece = without(*free, avoid)) {
         return piece;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<Band> Core::State::probe_for(Job& job, const Worker& worker) const {
+  const std::uint32_t height = job.spec.settings.height;
+  while (job.probes < probes_of(height)) {
+    const RowRange rows = probe(height, job.probes++);
+    if (auto free = job.passes.front().coverage.free_at(rows.first)) {
+      free->rows.last = std::min(free->rows.last, rows.last);
+      if (const auto band = without(*free, left_to_others(job, worker))) {
+        return band;
       }
     }
   }

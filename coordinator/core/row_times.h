@@ -2,7 +2,7 @@
 
 // How long the rows of one image took, in seconds of a thread, for telling the time that is left.
 // Beside the cost map, whose scale drifts and whose rows are half guessed: here every number was
-// measured, and what was not is their mean.
+// measured, and what was not lies between its neighbours.
 
 #include <cstdint>
 #include <vector>
@@ -19,7 +19,7 @@ class RowTimes {
 
   /// The rows took so long for each sample in one column, together.
   void measure(const RowRange& rows, double seconds);
-  bool measured() const { return rows_known_ > 0; }
+  bool measured() const { return measured_; }
 
   /// Of one sample in one column, summed over the rows; `shares` as the cost map takes them.
   double of(const RowRange& rows, absl::Span<const float> shares = {}) const;
@@ -27,10 +27,20 @@ class RowTimes {
 
  private:
   static constexpr float kUnknown = -1;
+  /// Rows that nobody has measured, and what the nearest that somebody has took.
+  struct Gap {
+    RowRange rows;
+    double before = 0;
+    double after = 0;
+    double of(std::uint32_t row) const {
+      return before + (after - before) * (row - rows.first + 1) / (rows.count() + 1);
+    }
+  };
+  /// Around an unknown row, while some row is known.
+  Gap gap_at(std::uint32_t row) const;
 
   std::vector<float> rows_;
-  double sum_ = 0;  ///< of those that are known
-  std::uint32_t rows_known_ = 0;
+  bool measured_ = false;
 };
 
 }  // namespace bandsaw::coordinator

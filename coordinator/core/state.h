@@ -141,6 +141,7 @@ class Core::State {
   void lease_out();
   void hand_out();
   bool lease_to(Worker& worker);
+  std::optional<Band> probe_for(Job& job, const Worker& worker) const;
   std::optional<Band> free_for(const Job& job, const Worker& worker) const;
   Band sized(const Job& job, const Worker& worker, const Band& free) const;
   double per_thread(const Job& job) const;
@@ -171,6 +172,7 @@ class Core::State {
 
   // Bands.
   void measure(Worker& worker, Job& job, const input::BandStored& in);
+  void measure_pace(Worker& worker, Job& job, const input::BandStored& in);
   /// Ends the lease that this is the result of, if its worker still has it.
   void end_own(const Worker& worker, const input::BandStored& in);
   Coverage::Change store(Job& job, Pass& pass, const input::BandStored& in, const Witness& witness);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <vector>
 
 #include "gtest/gtest.h"
 #include "sim_bench.h"
@@ -25,20 +26,25 @@ std::vector<double> speeds(double seconds, bool equal) {
   return speeds;
 }
 
-/// The worst of a few seeds.
-BenchResult measure(const char* name, BenchFarm farm) {
+/// What 19 of 20 seeds are at least as good as: which bands come last is chance where the times
+/// are.
+BenchResult measure(const char* name, BenchFarm farm, std::size_t seeds = 20) {
   BenchResult worst;
-  worst.efficiency = 1;
-  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    farm.seed = seed;
+  std::vector<double> efficiencies;
+  std::vector<double> tails;
+  for (farm.seed = 1; farm.seed <= seeds; ++farm.seed) {
     const BenchResult one = run_bench(farm);
     EXPECT_EQ(one.broken, "");
     worst.seconds = std::max(worst.seconds, one.seconds);
-    worst.efficiency = std::min(worst.efficiency, one.efficiency);
-    worst.tail = std::max(worst.tail, one.tail);
+    efficiencies.push_back(one.efficiency);
+    tails.push_back(one.tail);
     worst.bands = std::max(worst.bands, one.bands);
     worst.wasted = std::max(worst.wasted, one.wasted);
   }
+  std::sort(efficiencies.begin(), efficiencies.end());
+  std::sort(tails.rbegin(), tails.rend());
+  worst.efficiency = efficiencies[seeds / 20];
+  worst.tail = tails[seeds / 20];
   std::printf("%-34s %6.2f s  efficiency %6.2f %%  tail %5.2f %%  %llu bands, %llu for nothing\n",
               name, worst.seconds, 100 * worst.efficiency, 100 * worst.tail,
               static_cast<unsigned long long>(worst.bands),
@@ -88,7 +94,7 @@ TEST(Efficiency, OfAShortJob) {
 
 TEST(Efficiency, OfWorkersTwentyTimesSlowerThanGuessed) {
   const BenchResult r =
-      measure("slow, 20:1, speeds 1:4", {.speeds = speeds(1200, false), .cost_of = uneven});
+      measure("slow, 20:1, speeds 1:4", {.speeds = speeds(1200, false), .cost_of = uneven}, 5);
   EXPECT_GE(r.efficiency, 0.95);
   EXPECT_LE(r.tail, 0.02);
 }

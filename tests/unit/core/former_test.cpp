@@ -12,7 +12,7 @@ bool share_rows(const action::Lease& one, const action::Lease& other) {
 /// Two workers that fall silent together, each with a band in hand.
 struct AllLost {
   FarmDriver farm{slow()};
-  JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 64));
+  JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 32));
   std::vector<action::Lease> leases;
 
   AllLost() {
@@ -62,7 +62,7 @@ TEST(Former, WhoIsNewAwaitsNobody) {
 
 TEST(Former, WhoWasKilledIsNotAwaited) {
   FarmDriver farm{slow()};
-  farm.submit(test_job("r1", StopAtSamples{16}, 8, 64));
+  farm.submit(test_job("r1", StopAtSamples{16}, 8, 32));
   for (const SessionId session : {1u, 2u}) {
     farm.hello(session, std::to_string(session), 1);
   }
