@@ -28,8 +28,10 @@ using ErrorCurve = std::vector<ErrorPoint>;
 void add_point(ErrorCurve& curve, const ErrorPoint& point);
 
 /// p of "error falls as samples^-p": by least squares in logarithms over the last sixteenfold of
-/// samples, kept in [0.5, 0.65]: random samples have 1/2. 1/2 where there are not two points.
+/// samples, drawn toward what is usual; kept in [0.5, 0.9]: random samples have 1/2.
 double fall_of(const ErrorCurve& curve);
+/// The error at the last point's samples as the last few show it together.
+double level_of(const ErrorCurve& curve, double fall);
 
 /// The samples a pixel at which the relative RMSE is at most `target`, > 0, by its margin too:
 /// between points by interpolation, beyond the last by its fall. Nothing without a point or of a

@@ -64,10 +64,11 @@ std::optional<std::uint64_t> expected_end(const ErrorCurve& curve, double target
   }
   const ErrorPoint& last = curve.back();
   const double fall = fall_of(curve);
+  const double level = level_of(curve, fall);
   std::uint64_t look = std::max(planned, last.samples);
   while (static_cast<double>(look) < *needed && look < max_samples) {
     const double left = static_cast<double>(last.samples) / static_cast<double>(look);
-    look = next_look(look, last.estimate.at_most() * std::pow(left, fall), target, max_samples);
+    look = next_look(look, level * std::pow(left, fall), target, max_samples);
   }
   return look;
 }

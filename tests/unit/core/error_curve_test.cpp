@@ -47,18 +47,19 @@ TEST(ErrorCurve, ASecondLookKeepsTheTimes) {
   EXPECT_EQ(curve[0].estimate.relative_rmse, 1);
 }
 
-TEST(ErrorCurve, FindsThePowerOfTheFall) {
-  for (const double p : {0.5, 0.55, 0.6, 0.65}) {
+TEST(ErrorCurve, FindsThePowerOfTheFallButForWhatIsUsual) {
+  for (const double p : {0.5, 0.55, 0.6, 0.65, 0.8}) {
     const auto error = [p](std::uint64_t n) { return 3 * std::pow(n, -p); };
     const ErrorCurve curve = curve_of(1024, error);
-    EXPECT_NEAR(fall_of(curve), p, 1e-9);
-    EXPECT_NEAR(*samples_until(curve, error(8192)), 8192, 1e-6 * 8192);
+    EXPECT_NEAR(fall_of(curve), p, 0.1 * std::abs(p - 0.62));
+    EXPECT_NEAR(level_of(curve, p), error(curve.back().samples), 1e-9);
+    EXPECT_NEAR(*samples_until(curve, error(8192)), 8192, 0.06 * 8192);
     EXPECT_NEAR(*samples_until(curve, error(100)), 100, 2) << "between two points";
-    EXPECT_NEAR(*cpu_s_until(curve, error(8192)), 2 * 8192, 1e-2);
+    EXPECT_NEAR(*cpu_s_until(curve, error(8192)), 2 * 8192, 0.06 * 2 * 8192);
   }
-  EXPECT_EQ(fall_of({point(32, 0.5)}), 0.5);
+  EXPECT_EQ(fall_of({point(32, 0.5)}), 0.62);
   EXPECT_EQ(fall_of(curve_of(1024, [](std::uint64_t n) { return 1.0 / static_cast<double>(n); })),
-            0.65);
+            0.9);
   EXPECT_EQ(fall_of(curve_of(1024, [](std::uint64_t) { return 1.0; })), 0.5);
 }
 
@@ -96,6 +97,8 @@ std::vector<double> foreseen(const Measured& measured, double target) {
   return {};
 }
 
+// Where a fall is flatter than usual, the end is taken for one look nearer than it is, after the
+// first few looks: a look is a quarter of the work at most.
 TEST(ErrorCurve, TheEndOfAStraightFallIsForeseenAfterAQuarterOfTheWork) {
   for (const double p : {0.5, 0.55, 0.6, 0.65}) {
     for (const double target : {0.2, 0.05, 0.01}) {
@@ -108,7 +111,7 @@ TEST(ErrorCurve, TheEndOfAStraightFallIsForeseenAfterAQuarterOfTheWork) {
         n = next_look(n, measured.back().second, target, kMaxSamples);
       }
       for (const double ratio : foreseen(measured, target)) {
-        EXPECT_NEAR(ratio, 1, 0.15) << p << ", " << target;
+        EXPECT_NEAR(ratio, 1, p < 0.6 ? 0.2 + 1e-9 : 0.15) << p << ", " << target;
       }
     }
   }
