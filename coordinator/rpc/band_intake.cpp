@@ -39,7 +39,7 @@ absl::Status BandIntake::begin(const farm::BandHeader& header) {
     return absl::InvalidArgumentError("header.counters: times must be finite and >= 0");
   }
   pixels_.width = static_cast<std::uint32_t>(row_bytes / kPixelBytes);
-  pixels_.sums.resize(header.size() / sizeof(double));
+  pixels_.sums.reserve(header.size() / sizeof(double));  // touched only as far as bytes come
   pixels_.counters = {.rays = header.counters().rays(),
                       .bad_samples = header.counters().bad_samples(),
                       .bad_x = header.counters().bad_x(),
@@ -63,6 +63,8 @@ absl::Status BandIntake::add(const farm::BandChunk& chunk) {
     return absl::InvalidArgumentError("header: belongs in the first chunk of a band only");
   }
   RETURN_IF_ERROR(check_chunk(chunk.data(), received_, header_.size()));
+  const std::uint64_t bytes = received_ + chunk.data().size();
+  pixels_.sums.resize((bytes + sizeof(double) - 1) / sizeof(double));
   std::memcpy(reinterpret_cast<char*>(pixels_.sums.data()) + received_, chunk.data().data(),
               chunk.data().size());
   received_ += chunk.data().size();

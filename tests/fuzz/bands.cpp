@@ -1,0 +1,110 @@
+// Chunks of bands: any message; then a worker who begins, goes on, lies and sends too much as the
+// input says. What is taken is what came, of the digest that was announced, and sums.
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string>
+
+#include "coordinator/rpc/band_intake.h"
+#include "proto/wire/limits.h"
+#include "renderlib/base/check.h"
+#include "tests/fuzz/fuzz.h"
+
+namespace {
+
+using namespace bandsaw;
+using namespace bandsaw::coordinator;
+
+bool is_sum(double value) { return std::isfinite(value) && value >= 0; }
+
+class Sender {
+ public:
+  /// Three bytes of the input: what is said, and a number.
+  void step(std::uint8_t what, std::uint32_t number) {
+    farm::BandChunk chunk;
+    if ((what & 1) != 0) {
+      announce(what, number, *chunk.mutable_header());
+    }
+    const std::size_t left = band_.size() - std::min(band_.size(), came_.size());
+    std::string data = band_.substr(band_.size() - left, number % 512);
+    if ((what & 2) != 0 && !data.empty()) {
+      data[number % data.size()] ^= static_cast<char>(what);
+    }
+    if ((what & 4) != 0) {
+      data.append(number % 64, 'x');
+    }
+    chunk.set_data(data);
+    if (!intake_.add(chunk).ok()) {
+      return leave();
+    }
+    came_ += data;
+    BANDSAW_CHECK(intake_.received() == came_.size() && came_.size() <= intake_.header().size(),
+                  "what was taken is within its size");
+    if (intake_.whole()) {
+      take();
+    }
+  }
+
+ private:
+  void announce(std::uint8_t what, std::uint32_t number, farm::BandHeader& header) {
+    const std::uint32_t width = 1 + number % 7;
+    const std::uint32_t rows = 1 + number / 8 % 5;
+    std::vector<double> sums(std::size_t{3} * width * rows);
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      sums[i] = 0.25 * static_cast<double>(i);
+    }
+    if ((what & 8) != 0) {
+      sums[number % sums.size()] = -1;
+    }
+    band_.assign(reinterpret_cast<const char*>(sums.data()), sums.size() * sizeof(double));
+    header.mutable_band()->set_last_sample(16);
+    header.mutable_band()->set_last_row(rows + ((what & 16) != 0 ? number : 0));
+    header.set_size(band_.size() + ((what & 32) != 0 ? number : 0));
+    header.set_sha256((what & 64) != 0 ? wire::Digest().raw() : wire::sha256(band_).raw());
+  }
+
+  void take() {
+    const farm::BandHeader header = intake_.header();
+    const auto pixels = intake_.take();
+    if (pixels.ok()) {
+      const std::size_t bytes = pixels->sums.size() * sizeof(double);
+      BANDSAW_CHECK(
+          bytes == came_.size() && std::memcmp(pixels->sums.data(), came_.data(), bytes) == 0,
+          "what was taken is what came");
+      BANDSAW_CHECK(wire::sha256(came_).raw() == header.sha256(), "of the digest announced");
+      BANDSAW_CHECK(
+          pixels->sums.size() == std::size_t{3} * pixels->width * pixels->band.rows.count(),
+          "three sums a pixel");
+      BANDSAW_CHECK(std::all_of(pixels->sums.begin(), pixels->sums.end(), is_sum), "sums");
+    }
+    leave();
+  }
+
+  void leave() {
+    intake_ = {};
+    came_.clear();
+  }
+
+  BandIntake intake_;
+  std::string band_;  ///< what an honest worker would send
+  std::string came_;
+};
+
+}  // namespace
+
+void bandsaw::fuzz::run(absl::Span<const std::uint8_t> in) {
+  farm::BandChunk message;
+  if (message.ParseFromArray(in.data(), static_cast<int>(in.size()))) {
+    BandIntake intake;
+    if (intake.add(message).ok()) {
+      BANDSAW_CHECK(
+          intake.received() <= intake.header().size() && intake.header().size() <= wire::kBandBytes,
+          "what was taken is within its size");
+    }
+  }
+  Sender sender;
+  for (std::size_t at = 0; at + 3 <= in.size(); at += 3) {
+    sender.step(in[at], in[at + 1] | in[at + 2] << 8);
+  }
+}
