@@ -23,76 +23,89 @@ farm::PutBandReply::Outcome to_wire(BandOutcome outcome) {
 
 void PutBandsCall::begin() {
   if (const absl::Status status = doors_.streams.add(weak_from_this()); !status.ok()) {
-    Finish(link::to_grpc(status));
+    stop(status);
     return;
   }
   StartRead(&chunk_);
 }
 
-void PutBandsCall::done() {
-  MutexLock lock(mutex_);
-  context_ = nullptr;
-}
-
-void PutBandsCall::stop(const absl::Status& why) {
-  (void)why;
-  MutexLock lock(mutex_);
-  if (context_ != nullptr) {
-    context_->TryCancel();
-  }
-}
-
 void PutBandsCall::OnReadDone(bool ok) {
   if (!ok) {
-    Finish(last_word());
+    stop(intake_.cut() ? cut_short(intake_.received(), intake_.header().size()) : absl::OkStatus());
   } else if (const absl::Status status = take(chunk_); !status.ok()) {
-    Finish(link::to_grpc(status));
+    stop(status);
   }
 }
 
 absl::Status PutBandsCall::take(const farm::BandChunk& chunk) {
   RETURN_IF_ERROR(intake_.add(chunk));
   if (!intake_.whole()) {
-    StartRead(&chunk_);
+    read_next();
     return absl::OkStatus();
   }
   ASSIGN_OR_RETURN(BandPixels pixels, intake_.take());
   const farm::BandHeader header = std::exchange(intake_, {}).header();
-  doors_.engine.put_band(header.job(), header.instance(), std::move(pixels),
-                         header.counters().render_s(), header.counters().cpu_s(),
-                         [self = shared_from_this()](const absl::StatusOr<BandOutcome>& outcome) {
-                           self->answer(outcome);
-                         });
+  if (hand_over()) {
+    doors_.engine.put_band(header.job(), header.instance(), std::move(pixels),
+                           header.counters().render_s(), header.counters().cpu_s(),
+                           [self = shared_from_this()](const absl::StatusOr<BandOutcome>& outcome) {
+                             self->answer(outcome);
+                           });
+  }
   return absl::OkStatus();
 }
 
+void PutBandsCall::read_next() {
+  MutexLock lock(mutex_);
+  if (!finished_) {
+    StartRead(&chunk_);
+  }
+}
+
+bool PutBandsCall::hand_over() {
+  MutexLock lock(mutex_);
+  handed_over_ = !finished_;
+  return handed_over_;
+}
+
 void PutBandsCall::answer(const absl::StatusOr<BandOutcome>& outcome) {
-  if (!outcome.ok()) {
-    Finish(link::to_grpc(outcome.status()));
+  MutexLock lock(mutex_);
+  if (outcome.ok()) {
+    reply_.set_outcome(to_wire(*outcome));
+    StartWrite(&reply_);
     return;
   }
-  reply_.set_outcome(to_wire(*outcome));
-  StartWrite(&reply_);
+  handed_over_ = false;
+  end_ = outcome.status();
+  advance();
 }
 
 void PutBandsCall::OnWriteDone(bool ok) {
-  if (ok) {
-    StartRead(&chunk_);
+  MutexLock lock(mutex_);
+  handed_over_ = false;
+  if (!ok && !end_) {
+    end_ = absl::CancelledError("the connection broke");
+  }
+  if (end_) {
+    advance();
   } else {
-    Finish(grpc::Status::CANCELLED);
+    StartRead(&chunk_);
   }
 }
 
-/// No chunk comes any more.
-grpc::Status PutBandsCall::last_word() {
-  {
-    MutexLock lock(mutex_);
-    if (context_->IsCancelled()) {
-      return grpc::Status::CANCELLED;
-    }
+void PutBandsCall::stop(const absl::Status& why) {
+  MutexLock lock(mutex_);
+  if (!end_) {
+    end_ = why;
   }
-  return link::to_grpc(intake_.cut() ? cut_short(intake_.received(), intake_.header().size())
-                                     : absl::OkStatus());
+  advance();
+}
+
+void PutBandsCall::advance() {
+  if (end_ && !handed_over_ && !finished_) {
+    finished_ = true;
+    Finish(link::to_grpc(*end_));
+  }
 }
 
 }  // namespace bandsaw::coordinator

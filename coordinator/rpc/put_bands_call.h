@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "coordinator/rpc/band_intake.h"
 #include "coordinator/rpc/streams.h"
 
@@ -12,29 +14,32 @@ class PutBandsCall final
     : public SelfOwned<grpc::ServerBidiReactor<farm::BandChunk, farm::PutBandReply>, PutBandsCall>,
       public LongStream {
  public:
-  PutBandsCall(const Doors& doors, grpc::CallbackServerContext* context)
-      : doors_(doors), context_(context) {}
+  explicit PutBandsCall(const Doors& doors) : doors_(doors) {}
   void begin();
-  void done() EXCLUDES(mutex_);
 
   void OnReadDone(bool ok) override;
   void OnWriteDone(bool ok) override;
 
-  /// The worker sees a cancelled call; why, its session tells it.
+  /// A band that the engine has is answered first.
   void stop(const absl::Status& why) override EXCLUDES(mutex_);
   link::Role role() const override { return link::Role::kWorker; }
 
  private:
-  absl::Status take(const farm::BandChunk& chunk);
-  void answer(const absl::StatusOr<BandOutcome>& outcome);
-  grpc::Status last_word() EXCLUDES(mutex_);
+  absl::Status take(const farm::BandChunk& chunk) EXCLUDES(mutex_);
+  void read_next() EXCLUDES(mutex_);
+  /// False: the call is over.
+  bool hand_over() EXCLUDES(mutex_);
+  void answer(const absl::StatusOr<BandOutcome>& outcome) EXCLUDES(mutex_);
+  void advance() REQUIRES(mutex_);
 
   const Doors doors_;
-  farm::BandChunk chunk_;
+  farm::BandChunk chunk_;  ///< this and the next: touched in the order of reads only
   BandIntake intake_;
-  farm::PutBandReply reply_;
+  farm::PutBandReply reply_;  ///< by the one who answers
   Mutex mutex_;
-  grpc::CallbackServerContext* context_ GUARDED_BY(mutex_);  ///< null: gRPC has put it away
+  bool handed_over_ GUARDED_BY(mutex_) = false;  ///< a band, whose answer is not out yet
+  bool finished_ GUARDED_BY(mutex_) = false;
+  std::optional<absl::Status> end_ GUARDED_BY(mutex_);
 };
 
 }  // namespace bandsaw::coordinator

@@ -26,7 +26,7 @@ grpc::ServerBidiReactor<farm::BandChunk, farm::PutBandReply>* WorkService::PutBa
   if (const auto status = doors_.gate.check(*context, link::Role::kWorker); !status.ok()) {
     return new RefusedCall<grpc::ServerBidiReactor<farm::BandChunk, farm::PutBandReply>>(status);
   }
-  return PutBandsCall::make(doors_, context);
+  return PutBandsCall::make(doors_);
 }
 
 }  // namespace bandsaw::coordinator

@@ -284,7 +284,7 @@ std::vector<JobSpec> random_jobs(std::uint64_t seed) {
   for (std::uint64_t i = 0; i < count; ++i) {
     jobs.push_back(test_job(absl::StrCat("request ", i), StopAtSamples{chance.pick(1, 200)},
                             static_cast<std::uint32_t>(chance.pick(1, 48)),
-                            static_cast<std::uint32_t>(chance.pick(1, 40))));
+                            static_cast<std::uint32_t>(chance.pick(1, 90))));  // with probes too
     const std::uint64_t rule = chance.pick(0, 3);
     if (rule == 0) {
       const double target = chance.between_log(0.01, 0.06);
@@ -369,7 +369,7 @@ TEST(Simulation, ABandThatEndsItsWorkersFailsItsOwnJobAlone) {
     const Outcome one =
         Simulation(seed, {.chaos = false, .failures = false, .cancels = false, .poisoned_row = row})
             .run({test_job("poison", StopAtSamples{64}, 16, 31),
-                  test_job("sound", StopAtSamples{64}, 16, 31)});
+                  test_job("sound", StopAtSamples{64}, 16, 80)});
     EXPECT_EQ(one.broken, "") << "again with BANDSAW_SEED=" << seed;
     EXPECT_EQ(one.done, 1u) << one.failed << ", again with BANDSAW_SEED=" << seed;
     EXPECT_NE(one.failed.find("workers were lost while they rendered rows"), std::string::npos)

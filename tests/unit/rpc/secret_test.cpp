@@ -74,7 +74,7 @@ TEST_F(SecretTest, NobodyGoesOnSendingBandsWithTheOldOne) {
   farm::RotateSecretReply reply;
   ASSERT_TRUE(rotate(farm::SECRET_ROLE_WORKER, &reply).ok());
   EXPECT_FALSE(stream->Read(&outcome));
-  EXPECT_EQ(stream->Finish().error_code(), StatusCode::CANCELLED);
+  EXPECT_EQ(stream->Finish().error_code(), StatusCode::UNAUTHENTICATED);
 }
 
 TEST_F(SecretTest, ARoleThatIsNoneIsRefused) {
