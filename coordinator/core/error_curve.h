@@ -28,10 +28,8 @@ using ErrorCurve = std::vector<ErrorPoint>;
 void add_point(ErrorCurve& curve, const ErrorPoint& point);
 
 /// p of "error falls as samples^-p": by least squares in logarithms over the last sixteenfold of
-/// samples, drawn toward what is usual; kept in [0.5, 0.9]: random samples have 1/2.
+/// samples, kept in [0.5, 0.65]: random samples have 1/2. 1/2 where there are not two points.
 double fall_of(const ErrorCurve& curve);
-/// The error at the last point's samples as the last few show it together.
-double level_of(const ErrorCurve& curve, double fall);
 
 /// The samples a pixel at which the relative RMSE is at most `target`, > 0, by its margin too:
 /// between points by interpolation, beyond the last by its fall. Nothing without a point or of a
@@ -40,5 +38,14 @@ std::optional<double> samples_until(const ErrorCurve& curve, double target);
 
 /// The same in CPU seconds, which grow with the samples. Nothing where those are not known either.
 std::optional<double> cpu_s_until(const ErrorCurve& curve, double target);
+
+/// How the error of a running job will fall. Not for reports: it is what is usual as much as what
+/// was measured.
+struct Forecast {
+  double fall = 0;   ///< p of "samples^-p", in [0.5, 0.9]
+  double level = 0;  ///< the error at the last point's samples, as the last few show it together
+};
+/// Of a curve that has a point; of a black image all is 0.
+Forecast forecast_of(const ErrorCurve& curve);
 
 }  // namespace bandsaw::coordinator

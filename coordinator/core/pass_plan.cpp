@@ -58,17 +58,18 @@ std::uint64_t next_look(std::uint64_t samples, double error, double target,
 
 std::optional<std::uint64_t> expected_end(const ErrorCurve& curve, double target,
                                           std::uint64_t planned, std::uint64_t max_samples) {
-  const std::optional<double> needed = samples_until(curve, target);
-  if (!needed) {
+  if (curve.empty() || curve.back().estimate.at_most() <= 0) {
     return std::nullopt;
   }
-  const ErrorPoint& last = curve.back();
-  const double fall = fall_of(curve);
-  const double level = level_of(curve, fall);
-  std::uint64_t look = std::max(planned, last.samples);
-  while (static_cast<double>(look) < *needed && look < max_samples) {
-    const double left = static_cast<double>(last.samples) / static_cast<double>(look);
-    look = next_look(look, level * std::pow(left, fall), target, max_samples);
+  const auto last = static_cast<double>(curve.back().samples);
+  const Forecast forecast = forecast_of(curve);
+  const double needed = curve.back().estimate.at_most() <= target
+                            ? last
+                            : last * std::pow(forecast.level / target, 1 / forecast.fall);
+  std::uint64_t look = std::max(planned, curve.back().samples);
+  while (static_cast<double>(look) < needed && look < max_samples) {
+    const double error = forecast.level * std::pow(last / static_cast<double>(look), forecast.fall);
+    look = next_look(look, error, target, max_samples);
   }
   return look;
 }

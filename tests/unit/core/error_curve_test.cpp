@@ -47,20 +47,33 @@ TEST(ErrorCurve, ASecondLookKeepsTheTimes) {
   EXPECT_EQ(curve[0].estimate.relative_rmse, 1);
 }
 
-TEST(ErrorCurve, FindsThePowerOfTheFallButForWhatIsUsual) {
+TEST(ErrorCurve, FindsThePowerOfTheFall) {
+  for (const double p : {0.5, 0.55, 0.6, 0.65}) {
+    const auto error = [p](std::uint64_t n) { return 3 * std::pow(n, -p); };
+    const ErrorCurve curve = curve_of(1024, error);
+    EXPECT_NEAR(fall_of(curve), p, 1e-9);
+    EXPECT_NEAR(*samples_until(curve, error(8192)), 8192, 1e-6 * 8192);
+    EXPECT_NEAR(*samples_until(curve, error(100)), 100, 2) << "between two points";
+    EXPECT_NEAR(*cpu_s_until(curve, error(8192)), 2 * 8192, 1e-2);
+  }
+  EXPECT_EQ(fall_of({point(32, 0.5)}), 0.5);
+  EXPECT_EQ(fall_of(curve_of(1024, [](std::uint64_t n) { return 1.0 / static_cast<double>(n); })),
+            0.65);
+  EXPECT_EQ(fall_of(curve_of(1024, [](std::uint64_t) { return 1.0; })), 0.5);
+}
+
+TEST(ErrorCurve, IsForecastByItsFallAndWhatIsUsual) {
   for (const double p : {0.5, 0.55, 0.6, 0.65, 0.8}) {
     const auto error = [p](std::uint64_t n) { return 3 * std::pow(n, -p); };
     const ErrorCurve curve = curve_of(1024, error);
-    EXPECT_NEAR(fall_of(curve), p, 0.1 * std::abs(p - 0.62));
-    EXPECT_NEAR(level_of(curve, p), error(curve.back().samples), 1e-9);
-    EXPECT_NEAR(*samples_until(curve, error(8192)), 8192, 0.06 * 8192);
-    EXPECT_NEAR(*samples_until(curve, error(100)), 100, 2) << "between two points";
-    EXPECT_NEAR(*cpu_s_until(curve, error(8192)), 2 * 8192, 0.06 * 2 * 8192);
+    const Forecast forecast = forecast_of(curve);
+    EXPECT_NEAR(forecast.fall, p, 0.1 * std::abs(p - 0.62));
+    EXPECT_NEAR(forecast.level, error(curve.back().samples), 0.01 * error(curve.back().samples));
   }
-  EXPECT_EQ(fall_of({point(32, 0.5)}), 0.62);
-  EXPECT_EQ(fall_of(curve_of(1024, [](std::uint64_t n) { return 1.0 / static_cast<double>(n); })),
-            0.9);
-  EXPECT_EQ(fall_of(curve_of(1024, [](std::uint64_t) { return 1.0; })), 0.5);
+  EXPECT_EQ(forecast_of({point(32, 0.5)}).fall, 0.62);
+  EXPECT_EQ(forecast_of({point(32, 0.5)}).level, 0.5);
+  EXPECT_EQ(forecast_of(curve_of(1024, [](std::uint64_t) { return 1.0; })).fall, 0.5);
+  EXPECT_EQ(forecast_of({point(32, 0)}).level, 0) << "a black image";
 }
 
 TEST(ErrorCurve, SaysNothingWhereNothingIsKnown) {
