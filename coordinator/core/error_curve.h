@@ -39,13 +39,4 @@ std::optional<double> samples_until(const ErrorCurve& curve, double target);
 /// The same in CPU seconds, which grow with the samples. Nothing where those are not known either.
 std::optional<double> cpu_s_until(const ErrorCurve& curve, double target);
 
-/// How the error of a running job will fall. Not for reports: it is what is usual as much as what
-/// was measured.
-struct Forecast {
-  double fall = 0;   ///< p of "samples^-p", in [0.5, 0.9]
-  double level = 0;  ///< the error at the last point's samples, as the last few show it together
-};
-/// Of a curve that has a point; of a black image all is 0.
-Forecast forecast_of(const ErrorCurve& curve);
-
 }  // namespace bandsaw::coordinator

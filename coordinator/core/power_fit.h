@@ -9,13 +9,9 @@
 
 namespace bandsaw::coordinator {
 
-/// Of the logarithms of the points with x, y > 0: sums over the points of (x - mean x)^2 and
-/// (x - mean x)(y - mean y).
-struct PowerFit {
-  double spread = 0;
-  double covariance = 0;
-};
-inline PowerFit fit_power(const std::vector<std::pair<double, double>>& points) {
+/// p of "y ~ x^p" by least squares in logarithms over the points with x, y > 0. Nothing where these
+/// have not two different x.
+inline std::optional<double> power_of(const std::vector<std::pair<double, double>>& points) {
   double n = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (const auto& [at, value] : points) {
     if (at > 0 && value > 0) {
@@ -23,13 +19,9 @@ inline PowerFit fit_power(const std::vector<std::pair<double, double>>& points) 
       n += 1, x += log_at, y += log_value, xx += log_at * log_at, xy += log_at * log_value;
     }
   }
-  return n < 1 ? PowerFit() : PowerFit{xx - x * x / n, xy - x * y / n};
-}
-
-/// p of "y ~ x^p" by least squares in logarithms. Nothing where these have not two different x.
-inline std::optional<double> power_of(const std::vector<std::pair<double, double>>& points) {
-  const PowerFit fit = fit_power(points);
-  return fit.spread > 1e-9 ? std::optional(fit.covariance / fit.spread) : std::nullopt;
+  const double spread = n * xx - x * x;
+  return n < 2 || !(spread > 1e-12 * n * xx) ? std::nullopt
+                                             : std::optional((n * xy - x * y) / spread);
 }
 
 }  // namespace bandsaw::coordinator

@@ -14,7 +14,7 @@ class BandIntake {
   /// INVALID_ARGUMENT: the field, what is allowed and what was found.
   absl::Status add(const farm::BandChunk& chunk);
   /// Chunks came, but not all.
-  bool cut() const { return begun_ && received_ < header_.size(); }
+  bool cut() const { return begun_ && !whole(); }
   bool whole() const { return begun_ && received_ == header_.size(); }
   std::uint64_t received() const { return received_; }
 

@@ -1,5 +1,7 @@
 #include "coordinator/rpc/put_bands_call.h"
 
+#include <utility>
+
 #include "coordinator/rpc/blob_intake.h"
 #include "coordinator/rpc/convert.h"
 #include "renderlib/base/status_macros.h"

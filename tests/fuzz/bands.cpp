@@ -104,7 +104,6 @@ void bandsaw::fuzz::run(absl::Span<const std::uint8_t> in) {
     }
   }
   Sender sender;
-  for (std::size_t at = 0; at + 3 <= in.size(); at += 3) {
-    sender.step(in[at], in[at + 1] | in[at + 2] << 8);
-  }
+  constexpr std::size_t kSteps = 4096;
+  each_step(in, kSteps, [&](auto what, auto number) { sender.step(what, number); });
 }

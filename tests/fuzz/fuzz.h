@@ -3,6 +3,7 @@
 // A fuzz target is one file with fuzz(): any bytes, no crash, no leak, and what it takes is what it
 // gives back. libFuzzer calls it through run_fuzzer.cpp, CTest with the corpus through replay.cpp.
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -13,6 +14,14 @@ namespace bandsaw::fuzz {
 
 /// Ends the program when something that must hold does not.
 void run(absl::Span<const std::uint8_t> input);
+
+/// step(what, number) for every three bytes, `most` times at most: a sequence of events.
+template <class F>
+void each_step(absl::Span<const std::uint8_t> input, std::size_t most, F step) {
+  for (std::size_t at = 0; at + 3 <= std::min(input.size(), 3 * most); at += 3) {
+    step(input[at], static_cast<std::uint32_t>(input[at + 1] | input[at + 2] << 8));
+  }
+}
 
 inline std::string text(absl::Span<const std::uint8_t> input) {
   return {input.begin(), input.end()};

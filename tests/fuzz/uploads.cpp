@@ -145,7 +145,5 @@ void bandsaw::fuzz::run(absl::Span<const std::uint8_t> in) {
   const test::TempDir folder;
   Sender sender(folder.path());
   constexpr std::size_t kSteps = 64;
-  for (std::size_t at = 0; at + 3 <= std::min(in.size(), 3 * kSteps); at += 3) {
-    sender.step(in[at], in[at + 1] | in[at + 2] << 8);
-  }
+  each_step(in, kSteps, [&](auto what, auto number) { sender.step(what, number); });
 }

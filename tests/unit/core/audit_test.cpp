@@ -8,9 +8,8 @@ namespace bandsaw::coordinator {
 namespace {
 
 CoreOptions audited() {
-  CoreOptions options = test_options();
+  CoreOptions options = slow();
   options.audit_share = 1;
-  options.band_target_s = 1e-3;  // a row a band
   return options;
 }
 

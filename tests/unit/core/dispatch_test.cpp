@@ -9,9 +9,7 @@ namespace {
 
 /// Steps without the invariants: bands stored until the job is over.
 std::size_t bands_of(std::size_t workers, std::uint32_t height, double& seconds) {
-  CoreOptions options = test_options();
-  options.band_target_s = 1e-3;
-  Core core(options);
+  Core core(slow());
   core.step(input::Submit{test_job("r1", StopAtSamples{64}, 256, height)}, 0);
   std::vector<action::Lease> queue;
   const auto take = [&](const Step& step) {

@@ -163,9 +163,7 @@ TEST(Poison, WorkersThatComeBackOrSayThatTheyLeaveAreNotCounted) {
 }
 
 TEST(Poison, RowsThatWereStoredSinceAreNotSuspected) {
-  CoreOptions options = test_options();
-  options.band_target_s = 1e-3;  // a row a band
-  FarmDriver farm(options);
+  FarmDriver farm(slow());
   const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 8));
   for (SessionId session = 1; session <= 6; ++session) {
     store_one_and_lose(farm, session);

@@ -22,9 +22,8 @@ struct Before {
 
   /// The second life, before its `replayed`.
   FarmDriver restart(bool with_band = true) const {
-    CoreOptions options = test_options();
+    CoreOptions options = slow();
     options.epoch = "two";
-    options.band_target_s = 1e-3;
     FarmDriver next(options);
     for (const Record& record : farm.records) {
       next.core.replay(record);
