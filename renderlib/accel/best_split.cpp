@@ -3,71 +3,112 @@
 #include <cmath>
 
 namespace bandsaw {
+namespace {
 
-void RangeBounds::add(const TreeItem& item) {
-  box.add(item.box);
-  for (std::size_t k = 0; k < 3; ++k) {
-    const float c = item.box.centre(k);
-    centres.lo[k] = c < centres.lo[k] ? c : centres.lo[k];
-    centres.hi[k] = c > centres.hi[k] ? c : centres.hi[k];
-  }
+/// How many packs `count` items take.
+double packs_of(std::uint32_t count) {
+  return static_cast<double>((count + kPackSize - 1) / kPackSize);
 }
 
-Binning::Binning(const FloatBox& centres) : first(centres.lo), scale{} {
+}  // namespace
+
+Binning::Binning(const LaneBox& centres) {
+  const FloatBox box = centres.box();
+  // In the lanes that hold no centre a place is 0, and nothing is multiplied that may be denormal.
+  std::array<float, 8> first = {0, 0, 0, 1, 1, 1, 1, 1};
+  std::array<float, 8> scale = {};
   for (std::size_t k = 0; k < 3; ++k) {
-    const float s = static_cast<float>(kBins) / (centres.hi[k] - centres.lo[k]);
-    scale[k] = std::isfinite(s) && s > 0 ? s : 0;
+    const float s = static_cast<float>(kBins) / (box.hi[k] - box.lo[k]);
+    has_extent_[k] = std::isfinite(s) && s > 0;
+    first[k] = box.lo[k];
+    scale[k] = has_extent_[k] ? s : 0;
   }
+  first_ = Float8::load(first.data());
+  scale_ = Float8::load(scale.data());
 }
 
 void Bins::add(absl::Span<const TreeItem> items, const Binning& binning) {
   for (const TreeItem& item : items) {
+    const Float8 lanes = Float8::from_bytes(item);
+    const LaneBox box = LaneBox::of(lanes);
+    std::array<std::int32_t, 8> bin;
+    binning.place(twice_centre(lanes)).store_truncated(bin.data());
     for (std::size_t k = 0; k < 3; ++k) {
-      Bin& bin = axis[k][static_cast<std::size_t>(binning.bin(item.box, k))];
-      bin.box.add(item.box);
-      ++bin.count;
+      const auto b = static_cast<std::size_t>(bin[k]);
+      box_[k][b].add(box);
+      ++count_[k][b];
     }
   }
 }
 
 void Bins::add(const Bins& other) {
   for (std::size_t k = 0; k < 3; ++k) {
-    for (std::size_t b = 0; b < axis[k].size(); ++b) {
-      axis[k][b].box.add(other.axis[k][b].box);
-      axis[k][b].count += other.axis[k][b].count;
+    for (std::size_t b = 0; b < Binning::kBins; ++b) {
+      box_[k][b].add(other.box_[k][b]);
+      count_[k][b] += other.count_[k][b];
     }
   }
 }
 
-Split best_split(const Bins& bins, const Binning& binning) {
+Split Bins::best_split(const Binning& binning) const {
   Split best;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (binning.scale[axis] == 0) {
+    if (!binning.has_extent(axis)) {
       continue;
     }
-    const auto& row = bins.axis[axis];
-    std::array<double, Binning::kBins> right_cost{};
-    FloatBox box;
+    // A side without items costs 0 times infinity, which is not less than anything.
+    std::array<double, Binning::kBins> right_cost;
+    LaneBox box;
     std::uint32_t count = 0;
-    for (std::size_t b = Binning::kBins - 1; b > 0; --b) {
-      box.add(row[b].box);
-      count += row[b].count;
-      right_cost[b] = count == 0 ? -1 : packs_of(count) * box.area();
+    for (std::uint32_t b = Binning::kBins - 1; b > 0; --b) {
+      box.add(box_[axis][b]);
+      count += count_[axis][b];
+      right_cost[b] = packs_of(count) * box.area();
     }
     box = {};
     count = 0;
-    for (std::size_t b = 1; b < Binning::kBins; ++b) {
-      box.add(row[b - 1].box);
-      count += row[b - 1].count;
+    for (std::uint32_t b = 1; b < Binning::kBins; ++b) {
+      box.add(box_[axis][b - 1]);
+      count += count_[axis][b - 1];
       const double cost = packs_of(count) * box.area() + right_cost[b];
-      if (count > 0 && right_cost[b] >= 0 && cost < best.cost) {
-        best.cost = cost;
-        best.axis = axis;
-        best.bin = static_cast<int>(b);
+      if (cost < best.cost) {
+        best = {cost, axis, b};
       }
     }
   }
   return best;
+}
+
+std::uint32_t Bins::left_count(const Split& split) const {
+  std::uint32_t count = 0;
+  for (std::uint32_t b = 0; b < split.bin; ++b) {
+    count += count_[split.axis][b];
+  }
+  return count;
+}
+
+std::array<LaneBox, 2> Bins::boxes(const Split& split) const {
+  std::array<LaneBox, 2> boxes;
+  for (std::uint32_t b = 0; b < Binning::kBins; ++b) {
+    boxes[b < split.bin ? 0 : 1].add(box_[split.axis][b]);
+  }
+  return boxes;
+}
+
+std::array<LaneBox, 2> part(absl::Span<const TreeItem> items, const Binning& binning,
+                            const Split& split, TreeItem* left, TreeItem* right) {
+  // Without a branch, which nothing could predict.
+  std::array<TreeItem*, 2> to = {left, right};
+  std::array<LaneBox, 2> centres;
+  const Float8 plane(static_cast<float>(split.bin));
+  for (const TreeItem& item : items) {
+    const Float8 lanes = Float8::from_bytes(item);
+    const Float8 centre = twice_centre(lanes);
+    const std::size_t side = (~(binning.place(centre) < plane).bits() >> split.axis) & 1u;
+    lanes.to_bytes(*to[side]++);
+    centres[side].add(LaneBox::of(centre));
+  }
+  return centres;
 }
 
 }  // namespace bandsaw

@@ -2,6 +2,7 @@
 
 // Where to cut a range of items in two: the cheapest plane between bins of their centres.
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -9,54 +10,58 @@
 
 #include "absl/types/span.h"
 #include "renderlib/accel/binary_tree.h"
+#include "renderlib/accel/tree_item.h"
 
 namespace bandsaw {
-
-/// Box of the items, and of their centres.
-struct RangeBounds {
-  FloatBox box;
-  FloatBox centres;
-
-  void add(const TreeItem& item);
-};
-
-/// Which of the bins of each axis a centre falls into.
-struct Binning {
-  static constexpr int kBins = 16;
-  std::array<float, 3> first;
-  std::array<float, 3> scale;  ///< 0: the centres have no extent there
-
-  explicit Binning(const FloatBox& centres);
-  int bin(const FloatBox& box, std::size_t axis) const {
-    const auto b = static_cast<int>((box.centre(axis) - first[axis]) * scale[axis]);
-    return b < kBins ? b : kBins - 1;
-  }
-};
-
-struct Bins {
-  struct Bin {
-    FloatBox box;
-    std::uint32_t count = 0;
-  };
-  std::array<std::array<Bin, Binning::kBins>, 3> axis;
-
-  void add(absl::Span<const TreeItem> items, const Binning& binning);
-  void add(const Bins& other);
-};
 
 /// Items whose bin on `axis` is below `bin` go left.
 struct Split {
   double cost = std::numeric_limits<double>::infinity();  ///< sum of area times packs
   std::size_t axis = 0;
-  int bin = 0;
+  std::uint32_t bin = 0;
 };
 
-/// How many packs `count` items take.
-inline double packs_of(std::uint32_t count) {
-  return static_cast<double>((count + kPackSize - 1) / kPackSize);
-}
+/// Which of the bins of each axis a centre falls into.
+class Binning {
+ public:
+  static constexpr std::uint32_t kBins = 16;
 
-/// cost infinity: no plane has items on both sides.
-Split best_split(const Bins& bins, const Binning& binning);
+  /// `centres`: the box of the items' twice_centre().
+  explicit Binning(const LaneBox& centres);
+
+  bool has_extent(std::size_t axis) const { return has_extent_[axis]; }
+  /// In lanes 0 to 2 the bin and a fraction, in [0, kBins - 1] whatever the centre is.
+  Float8 place(Float8 centre) const {
+    return min((centre - first_) * scale_, Float8(static_cast<float>(kBins - 1)));
+  }
+
+ private:
+  std::array<bool, 3> has_extent_;
+  Float8 first_;
+  Float8 scale_;
+};
+
+/// What a range holds, bin by bin.
+class Bins {
+ public:
+  void add(absl::Span<const TreeItem> items, const Binning& binning);
+  void add(const Bins& other);
+  /// cost infinity: no plane has items on both sides.
+  Split best_split(const Binning& binning) const;
+  std::uint32_t left_count(const Split& split) const;
+  /// Of what lies left and right of a plane.
+  std::array<LaneBox, 2> boxes(const Split& split) const;
+
+ private:
+  template <class T>
+  using Rows = std::array<std::array<T, Binning::kBins>, 3>;
+  Rows<LaneBox> box_;
+  Rows<std::uint32_t> count_ = {};
+};
+
+/// Copies `items` to `left` and `right`, where their order stays; returns the boxes of the centres
+/// of both.
+std::array<LaneBox, 2> part(absl::Span<const TreeItem> items, const Binning& binning,
+                            const Split& split, TreeItem* left, TreeItem* right);
 
 }  // namespace bandsaw

@@ -6,16 +6,10 @@
 #include <vector>
 
 #include "renderlib/accel/float_box.h"
-#include "renderlib/accel/wide_tree.h"
+#include "renderlib/accel/tree_item.h"
 #include "renderlib/base/pool.h"
 
 namespace bandsaw {
-
-struct TreeItem {
-  FloatBox box;
-  std::uint32_t index = 0;  ///< the caller's name for it
-  LeafKind kind = LeafKind::kFlats;
-};
 
 struct BinaryNode {
   FloatBox box;
@@ -27,7 +21,7 @@ struct BinaryNode {
 
 struct BinaryTree {
   std::vector<BinaryNode> nodes;  ///< the root first; empty: no items
-  std::vector<TreeItem> items;
+  std::vector<ItemRef> items;
 };
 
 /// How many items a leaf holds at most: a pack of primitives, or one instance.

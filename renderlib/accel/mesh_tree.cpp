@@ -57,7 +57,7 @@ std::vector<TreeItem> items_of(const Mesh& mesh, Pool* pool) {
       items[i] = {bounds(mesh, i), static_cast<std::uint32_t>(i), LeafKind::kFlats};
     }
   });
-  std::erase_if(items, [](const TreeItem& item) { return !item.box.can_be_hit(); });
+  std::erase_if(items, [](const TreeItem& item) { return !item.can_be_hit(); });
   return items;
 }
 

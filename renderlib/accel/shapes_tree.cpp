@@ -71,27 +71,27 @@ Triangle ShapeItems::flat(std::uint32_t item) const {
 }
 
 ChildRef ShapeItems::make_leaf(const BinaryTree& tree, const BinaryNode& leaf) {
-  const absl::Span<const TreeItem> items(&tree.items[leaf.first], leaf.count);
+  const absl::Span<const ItemRef> items(&tree.items[leaf.first], leaf.count);
   const LeafKind kind = items.front().kind;
   const auto last = [kind](const auto& packs) {
     return ChildRef::leaf(kind, static_cast<std::uint32_t>(packs.size() - 1));
   };
   if (kind == LeafKind::kSpheres) {
     SpherePack& pack = tree_.spheres.emplace_back();
-    for (const TreeItem& item : items) {
+    for (const ItemRef& item : items) {
       pack.add(shapes_.spheres[item.index], item.index);
     }
     return last(tree_.spheres);
   }
   if (kind == LeafKind::kDisks) {
     SpherePack& pack = tree_.disks.emplace_back();
-    for (const TreeItem& item : items) {
+    for (const ItemRef& item : items) {
       pack.add(around(shapes_.disks[item.index]), item.index);
     }
     return last(tree_.disks);
   }
   FlatPacker packer(tree_.flats.emplace_back());
-  for (const TreeItem& item : items) {
+  for (const ItemRef& item : items) {
     const Triangle t = flat(item.index);
     packer.add_rounded({rounded(t.a), rounded(t.b), rounded(t.c)}, item.index / 2);
   }

@@ -46,7 +46,7 @@ TopTree build_top_tree(const Geometry& geometry, const Prototypes& prototypes, P
   BANDSAW_CHECK(items.size() < ChildRef::kMaxLeaves, "the package's limits are lower");
   const BinaryTree binary = build_binary_tree(std::move(items), pool);
   top.tree = collapse(binary, [&](const BinaryNode& leaf) {
-    const TreeItem& first = binary.items[leaf.first];
+    const ItemRef& first = binary.items[leaf.first];
     return first.kind == LeafKind::kInstance ? ChildRef::leaf(first.kind, first.index)
                                              : shape_items.make_leaf(binary, leaf);
   });

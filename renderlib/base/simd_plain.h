@@ -52,7 +52,22 @@ class Float8 {
   static Float8 load(const float* from) {
     return lanes([from](std::size_t i) { return from[i]; });
   }
+  /// The 32 bytes of any object.
+  template <class Object>
+  static Float8 from_bytes(const Object& object) {
+    return Float8(std::bit_cast<std::array<float, kLanes>>(object));
+  }
+  template <class Object>
+  void to_bytes(Object& object) const {
+    object = std::bit_cast<Object>(v_);
+  }
   void store(float* to) const { std::copy(v_.begin(), v_.end(), to); }
+  /// Rounded towards zero; anything for what is then no int32, NaN among it.
+  void store_truncated(std::int32_t* to) const {
+    for (std::size_t i = 0; i < kLanes; ++i) {
+      to[i] = std::abs(v_[i]) < 0x1p31f ? static_cast<std::int32_t>(v_[i]) : 0;
+    }
+  }
 
   friend Float8 operator+(const Float8& a, const Float8& b) {
     return lanes([&](std::size_t i) { return a.v_[i] + b.v_[i]; });
@@ -77,6 +92,10 @@ class Float8 {
   friend Float8 max(const Float8& a, const Float8& b) {
     return lanes([&](std::size_t i) { return a.v_[i] > b.v_[i] ? a.v_[i] : b.v_[i]; });
   }
+  /// Lanes 4 to 7, then 0 to 3.
+  friend Float8 swap_halves(const Float8& a) {
+    return lanes([&](std::size_t i) { return a.v_[(i + kLanes / 2) % kLanes]; });
+  }
   friend Float8 abs(const Float8& a) {
     return lanes([&](std::size_t i) { return std::abs(a.v_[i]); });
   }
@@ -93,6 +112,7 @@ class Float8 {
   }
 
  private:
+  explicit Float8(const std::array<float, kLanes>& v) : v_(v) {}
   template <class Lane>
   static Float8 lanes(Lane lane) {
     Float8 result;

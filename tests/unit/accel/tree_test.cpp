@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <set>
 
 #include "absl/types/span.h"
 #include "renderlib/accel/collapse.h"
+#include "renderlib/accel/mesh_tree.h"
 #include "renderlib/accel/walk.h"
 #include "tests/support/hard_case.h"
 #include "tests/support/meshes.h"
@@ -111,6 +113,33 @@ TEST(Tree, B7_IsNeverDeeperThanItsStack) {
   const std::vector<FloatBox> huge(100, FloatBox{{-3e38f, 0, 0}, {3e38f, 3e38f, 1}});
   EXPECT_LE(build_tree(huge).depth, 8u);
   test::holds("B7", "1,000 nested boxes no deeper than the stack");
+}
+
+/// Enough for pieces and tasks, and a heap of equal boxes that no plane parts.
+Mesh mesh_of_pieces() {
+  Mesh mesh = test::triangle_soup(60'000, 0.05, 4);
+  mesh.triangles.insert(mesh.triangles.end(), 20'000, mesh.triangles.front());
+  return mesh;
+}
+
+TEST(Tree, IsTheSameForAnyNumberOfThreads) {
+  const Mesh mesh = mesh_of_pieces();
+  const MeshTree alone = build_mesh_tree(mesh, nullptr);
+  for (const int threads : {1, 2, 3, 8}) {
+    Pool pool(threads);
+    const MeshTree tree = build_mesh_tree(mesh, &pool);
+    ASSERT_EQ(tree.packs.size(), alone.packs.size());
+    EXPECT_EQ(
+        std::memcmp(tree.packs.data(), alone.packs.data(), alone.packs.size() * sizeof(FlatPack)),
+        0);
+    ASSERT_EQ(tree.tree.nodes.size(), alone.tree.nodes.size());
+    for (std::size_t i = 0; i < alone.tree.nodes.size(); ++i) {
+      ASSERT_EQ(tree.tree.nodes[i].bounds, alone.tree.nodes[i].bounds);
+      for (std::size_t c = 0; c < WideNode::kChildren; ++c) {
+        ASSERT_EQ(tree.tree.nodes[i].child[c].bits(), alone.tree.nodes[i].child[c].bits());
+      }
+    }
+  }
 }
 
 }  // namespace

@@ -58,6 +58,25 @@ Lanes stored(const Float& x) {
   return lanes;
 }
 
+template <class Float>
+Lanes in_bytes(const Float& x) {
+  Lanes lanes;
+  x.to_bytes(lanes);
+  return lanes;
+}
+
+/// Without lanes that no int32 can hold.
+template <class Float>
+std::array<std::int32_t, 8> truncated(const Float& x) {
+  const Lanes all = stored(x);
+  std::array<std::int32_t, 8> lanes;
+  x.store_truncated(lanes.data());
+  for (std::size_t i = 0; i < lanes.size(); ++i) {
+    lanes[i] = std::abs(all[i]) < 0x1p31f ? lanes[i] : 0;
+  }
+  return lanes;
+}
+
 TEST(Simd, PlainFusedMultiplyAddRoundsOnce) {
   test::Random random(1);
   for (int i = 0; i < 2'000'000; ++i) {
@@ -88,6 +107,9 @@ TEST(Simd, EveryOperationIsEqualToPlain) {
                 stored(fused_minus(plain(a), plain(b), plain(c))));
     expect_same(stored(min(fast(a), fast(b))), stored(min(plain(a), plain(b))));
     expect_same(stored(max(fast(a), fast(b))), stored(max(plain(a), plain(b))));
+    expect_same(in_bytes(Fast::from_bytes(a)), in_bytes(Float8::from_bytes(a)));
+    expect_same(stored(swap_halves(fast(a))), stored(swap_halves(plain(a))));
+    ASSERT_EQ(truncated(fast(a)), truncated(plain(a)));
     expect_same(stored(abs(fast(a))), stored(abs(plain(a))));
     expect_same(stored(flip_by_sign(fast(a), fast(b))), stored(flip_by_sign(plain(a), plain(b))));
     ASSERT_EQ((fast(a) < fast(b)).bits(), (plain(a) < plain(b)).bits());
@@ -97,6 +119,14 @@ TEST(Simd, EveryOperationIsEqualToPlain) {
     ASSERT_EQ(((fast(a) < fast(b)) | (fast(b) < fast(c))).bits(),
               ((plain(a) < plain(b)) | (plain(b) < plain(c))).bits());
   }
+}
+
+TEST(Simd, TruncatesTowardsZeroAndSwapsHalves) {
+  const Lanes lanes = {-1.9f, 2.9f, -0.0f, 0x1p30f, 0.99f, -0x1p30f, 15, 16.5f};
+  const std::array<std::int32_t, 8> expected = {-1, 2, 0, 1 << 30, 0, -(1 << 30), 15, 16};
+  EXPECT_EQ(truncated(Float8::load(lanes.data())), expected);
+  const Lanes numbers = {0, 1, 2, 3, 4, 5, 6, 7};
+  expect_same(stored(swap_halves(Float8::from_bytes(numbers))), {4, 5, 6, 7, 0, 1, 2, 3});
 }
 
 }  // namespace
