@@ -82,13 +82,13 @@ void graft(Task& task, std::vector<BinaryNode>& nodes) {
 
 }  // namespace
 
-BinaryTree build_binary_tree(std::vector<TreeItem> items, Pool* pool) {
+BinaryTree build_binary_tree(TreeItems items, Pool* pool) {
   BinaryTree tree;
   if (items.empty()) {
     return tree;
   }
   const auto count = static_cast<std::uint32_t>(items.size());
-  std::vector<TreeItem> other(count);
+  TreeItems other(count);
   const TwoLists lists = {absl::MakeSpan(items), absl::MakeSpan(other)};
   const Divider upper(lists, pool);
   const Divider lower(lists, nullptr);
@@ -105,6 +105,11 @@ BinaryTree build_binary_tree(std::vector<TreeItem> items, Pool* pool) {
   } else {
     build_task(0);
   }
+  std::size_t nodes = tree.nodes.size();
+  for (const Task& task : tasks) {
+    nodes += task.nodes.size();
+  }
+  tree.nodes.reserve(nodes);
   for (Task& task : tasks) {
     graft(task, tree.nodes);
   }

@@ -21,7 +21,7 @@ struct BinaryNode {
 
 struct BinaryTree {
   std::vector<BinaryNode> nodes;  ///< the root first; empty: no items
-  std::vector<ItemRef> items;
+  HugeVector<ItemRef> items;
 };
 
 /// How many items a leaf holds at most: a pack of primitives, or one instance.
@@ -30,6 +30,6 @@ inline constexpr std::uint32_t kPackSize = 8;
 /// Binned surface area heuristic (Wald 2007, "On fast Construction of SAH-based Bounding Volume
 /// Hierarchies") with items counted in packs. Items whose box cannot be hit MUST have been left
 /// out. Depth at most kMaxDepth. The same for any number of threads; `pool` null: on this thread.
-BinaryTree build_binary_tree(std::vector<TreeItem> items, Pool* pool);
+BinaryTree build_binary_tree(TreeItems items, Pool* pool);
 
 }  // namespace bandsaw

@@ -1,6 +1,7 @@
 #include "renderlib/accel/mesh_tree.h"
 
 #include <algorithm>
+#include <atomic>
 #include <vector>
 
 #include "renderlib/accel/collapse.h"
@@ -50,14 +51,20 @@ FloatBox bounds(const Mesh& mesh, std::size_t triangle) {
   return finite ? box : FloatBox{};
 }
 
-std::vector<TreeItem> items_of(const Mesh& mesh, Pool* pool) {
-  std::vector<TreeItem> items(mesh.triangles.size());
+TreeItems items_of(const Mesh& mesh, Pool* pool) {
+  TreeItems items(mesh.triangles.size());
+  std::atomic<bool> all = true;
   in_pieces(items.size(), pool, [&](std::size_t first, std::size_t end) {
     for (std::size_t i = first; i < end; ++i) {
-      items[i] = {bounds(mesh, i), static_cast<std::uint32_t>(i), LeafKind::kFlats};
+      items[i] = {bounds(mesh, i), static_cast<std::uint32_t>(i)};
+      if (!items[i].can_be_hit()) {
+        all = false;
+      }
     }
   });
-  std::erase_if(items, [](const TreeItem& item) { return !item.can_be_hit(); });
+  if (!all) {
+    std::erase_if(items, [](const TreeItem& item) { return !item.can_be_hit(); });
+  }
   return items;
 }
 

@@ -32,7 +32,7 @@ Box middle(const MovingBox& box) {
 class Bounds {
  public:
   Bounds(const std::vector<MovingBox>& boxes, MovingTree& tree) : boxes_(boxes), tree_(tree) {
-    tree.change.resize(tree.tree.nodes.size());
+    tree.change.resize(tree.tree.nodes.size(), {});
     const MovingBox all = set(tree.tree.root);
     tree.tree.reach = round_outwards(both(all.at_open, all.at_close)).reach();
   }
@@ -66,7 +66,9 @@ class Bounds {
   void set_plane(std::uint32_t node, std::size_t row, std::size_t i, double open, double close,
                  double outwards) {
     const double room = kLerpError * std::max(std::abs(open), std::abs(close)) + kTiny;
-    const auto rounded = [outwards](double x) { return outwards < 0 ? round_down(x) : round_up(x); };
+    const auto rounded = [outwards](double x) {
+      return outwards < 0 ? round_down(x) : round_up(x);
+    };
     const float from = rounded(open + outwards * room);
     tree_.tree.nodes[node].bounds[row][i] = from;
     tree_.change[node][row][i] = rounded(close + outwards * room) - from;
@@ -103,7 +105,7 @@ MovingTree build_moving_tree(const Geometry& geometry, const Prototypes& prototy
                              const Interval& interval, Pool* pool) {
   MovingTree result;
   result.interval = interval;
-  std::vector<TreeItem> items;
+  TreeItems items;
   std::vector<MovingBox> boxes;
   for (std::size_t i = 0; i < geometry.instances.size(); ++i) {
     const Instance& instance = geometry.instances[i];
@@ -113,8 +115,8 @@ MovingTree build_moving_tree(const Geometry& geometry, const Prototypes& prototy
       continue;
     }
     const auto box = moving_bounds(geometry, instance, prototype->box(), interval);
-    if (box && add_item(middle(*box), static_cast<std::uint32_t>(boxes.size()),
-                        LeafKind::kInstance, items)) {
+    if (box && add_item(middle(*box), static_cast<std::uint32_t>(boxes.size()), LeafKind::kInstance,
+                        items)) {
       boxes.push_back(*box);
       const Transform at_open = to_world_at(geometry, instance, interval.open);
       result.moving.push_back({*prototype, static_cast<std::uint32_t>(i + 1),

@@ -28,7 +28,7 @@ Sphere around(const Disk& disk) { return {disk.center, disk.radius, disk.materia
 
 }  // namespace
 
-bool add_item(const Box& box, std::uint32_t index, LeafKind kind, std::vector<TreeItem>& items) {
+bool add_item(const Box& box, std::uint32_t index, LeafKind kind, TreeItems& items) {
   const FloatBox rounded_box = round_outwards(box);
   if (!rounded_box.can_be_hit()) {
     return false;
@@ -37,15 +37,14 @@ bool add_item(const Box& box, std::uint32_t index, LeafKind kind, std::vector<Tr
   return true;
 }
 
-void ShapeItems::add(const Box& box, std::uint32_t index, LeafKind kind,
-                     std::vector<TreeItem>& items) {
+void ShapeItems::add(const Box& box, std::uint32_t index, LeafKind kind, TreeItems& items) {
   if (add_item(box, index, kind, items)) {
     tree_.box.add(box.lo);
     tree_.box.add(box.hi);
   }
 }
 
-void ShapeItems::add_all(std::vector<TreeItem>& items) {
+void ShapeItems::add_all(TreeItems& items) {
   std::uint32_t index = 0;
   for (const Sphere& sphere : shapes_.spheres) {
     add(bounds(sphere), index++, LeafKind::kSpheres, items);
@@ -101,12 +100,12 @@ ChildRef ShapeItems::make_leaf(const BinaryTree& tree, const BinaryNode& leaf) {
 ShapesTree build_shapes_tree(const Shapes& shapes, Pool* pool) {
   ShapesTree result;
   ShapeItems shape_items(shapes, result);
-  std::vector<TreeItem> items;
+  TreeItems items;
   shape_items.add_all(items);
   BANDSAW_CHECK(items.size() < ChildRef::kMaxLeaves, "the package's limits are lower");
   const BinaryTree binary = build_binary_tree(std::move(items), pool);
-  result.tree = collapse(
-      binary, [&](const BinaryNode& leaf) { return shape_items.make_leaf(binary, leaf); });
+  result.tree =
+      collapse(binary, [&](const BinaryNode& leaf) { return shape_items.make_leaf(binary, leaf); });
   return result;
 }
 

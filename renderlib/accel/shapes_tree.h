@@ -34,12 +34,12 @@ class ShapeItems {
   /// Both MUST outlive this.
   ShapeItems(const Shapes& shapes, ShapesTree& tree) : shapes_(shapes), tree_(tree) {}
 
-  void add_all(std::vector<TreeItem>& items);
+  void add_all(TreeItems& items);
   /// Lays out a leaf of shapes, which are of one kind.
   ChildRef make_leaf(const BinaryTree& tree, const BinaryNode& leaf);
 
  private:
-  void add(const Box& box, std::uint32_t index, LeafKind kind, std::vector<TreeItem>& items);
+  void add(const Box& box, std::uint32_t index, LeafKind kind, TreeItems& items);
   Triangle flat(std::uint32_t item) const;
 
   const Shapes& shapes_;
@@ -47,7 +47,7 @@ class ShapeItems {
 };
 
 /// Appends an item; false: its box cannot be hit, it is left out.
-bool add_item(const Box& box, std::uint32_t index, LeafKind kind, std::vector<TreeItem>& items);
+bool add_item(const Box& box, std::uint32_t index, LeafKind kind, TreeItems& items);
 
 ShapesTree build_shapes_tree(const Shapes& shapes, Pool* pool);
 

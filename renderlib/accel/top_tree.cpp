@@ -8,7 +8,7 @@ namespace bandsaw {
 namespace {
 
 void add_instances(const Geometry& geometry, const Prototypes& prototypes, TopTree& top,
-                   std::vector<TreeItem>& items) {
+                   TreeItems& items) {
   for (std::size_t i = 0; i < geometry.instances.size(); ++i) {
     const Instance& instance = geometry.instances[i];
     const std::optional<Transform> to_object = inverse(instance.to_world);
@@ -40,7 +40,7 @@ std::optional<Prototype> Prototypes::of(const Geometry& geometry, const Instance
 TopTree build_top_tree(const Geometry& geometry, const Prototypes& prototypes, Pool* pool) {
   TopTree top;
   ShapeItems shape_items(geometry, top);
-  std::vector<TreeItem> items;
+  TreeItems items;
   shape_items.add_all(items);
   add_instances(geometry, prototypes, top, items);
   BANDSAW_CHECK(items.size() < ChildRef::kMaxLeaves, "the package's limits are lower");

@@ -7,14 +7,15 @@
 
 #include "renderlib/accel/float_box.h"
 #include "renderlib/accel/wide_tree.h"
+#include "renderlib/base/huge_vector.h"
 #include "renderlib/base/simd.h"
 
 namespace bandsaw {
 
 /// The caller's name for an item.
 struct ItemRef {
-  std::uint32_t index = 0;
-  LeafKind kind = LeafKind::kFlats;
+  std::uint32_t index;
+  LeafKind kind;
 };
 
 /// 32 bytes that are one Float8: the box's corners are where LaneBox has them.
@@ -30,6 +31,8 @@ struct alignas(32) TreeItem {
   /// Neither empty nor infinite.
   bool can_be_hit() const { return FloatBox{lo, hi}.can_be_hit(); }
 };
+
+using TreeItems = HugeVector<TreeItem>;
 
 /// A box as -lo in lanes 0 to 2 and hi in lanes 4 to 6, so that a union is one max. Lanes 3 and 7
 /// hold anything, an index for one: numbers that may be denormal, which are slow in products.

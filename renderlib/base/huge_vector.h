@@ -1,7 +1,8 @@
 #pragma once
 
 // std::vector for tables of megabytes that are read at random: from 2 MiB on it lies on huge pages
-// where the system gives them, so that a read seldom misses the address cache.
+// where the system gives them, so that a read seldom misses the address cache. resize() and the
+// like leave new elements as `T x;` would: nothing is written that will be written over.
 
 #include <sys/mman.h>
 
@@ -33,6 +34,10 @@ struct HugePages {
   }
   void deallocate(T* memory, std::size_t count) {
     ::operator delete(memory, alignment(count * sizeof(T)));
+  }
+  template <class U>
+  void construct(U* element) {
+    ::new (static_cast<void*>(element)) U;
   }
   friend bool operator==(const HugePages&, const HugePages&) { return true; }
 };

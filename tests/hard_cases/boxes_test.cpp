@@ -120,8 +120,8 @@ TEST(Tree, B2B3_NeverMissesABoxThatIsMet) {
   }
 }
 
-std::vector<TreeItem> items_of(const Mesh& mesh) {
-  std::vector<TreeItem> items;
+TreeItems items_of(const Mesh& mesh) {
+  TreeItems items;
   for (const auto& t : mesh.triangles) {
     Box box;
     for (const std::uint32_t i : t) {

@@ -22,7 +22,7 @@ constexpr float kInf = std::numeric_limits<float>::infinity();
 
 /// A tree with one item a leaf.
 WideTree build_tree(absl::Span<const FloatBox> boxes) {
-  std::vector<TreeItem> items;
+  TreeItems items;
   for (std::uint32_t i = 0; i < boxes.size(); ++i) {
     if (boxes[i].can_be_hit()) {
       items.push_back({boxes[i], i, LeafKind::kInstance});
