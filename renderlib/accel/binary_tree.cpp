@@ -105,6 +105,9 @@ BinaryTree build_binary_tree(TreeItems items, Pool* pool) {
   } else {
     build_task(0);
   }
+  // Grafting takes as much again as the nodes do.
+  items = {};
+  other = {};
   std::size_t nodes = tree.nodes.size();
   for (const Task& task : tasks) {
     nodes += task.nodes.size();
