@@ -96,9 +96,8 @@ std::array<LaneBox, 2> Bins::boxes(const Split& split) const {
 }
 
 std::array<LaneBox, 2> part(absl::Span<const TreeItem> items, const Binning& binning,
-                            const Split& split, TreeItem* left, TreeItem* right) {
+                            const Split& split, std::array<TreeItem*, 2> to) {
   // Without a branch, which nothing could predict.
-  std::array<TreeItem*, 2> to = {left, right};
   std::array<LaneBox, 2> centres;
   const Float8 plane(static_cast<float>(split.bin));
   for (const TreeItem& item : items) {

@@ -59,9 +59,9 @@ class Bins {
   Rows<std::uint32_t> count_ = {};
 };
 
-/// Copies `items` to `left` and `right`, where their order stays; returns the boxes of the centres
-/// of both.
+/// Copies `items` to the left and to the right place, where their order stays; returns the boxes of
+/// the centres of both.
 std::array<LaneBox, 2> part(absl::Span<const TreeItem> items, const Binning& binning,
-                            const Split& split, TreeItem* left, TreeItem* right);
+                            const Split& split, std::array<TreeItem*, 2> to);
 
 }  // namespace bandsaw

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "absl/functional/function_ref.h"
 #include "absl/types/span.h"
 #include "renderlib/accel/divide.h"
 
@@ -10,31 +11,34 @@ namespace bandsaw {
 namespace {
 
 /// Appends the subtree of `range` to `nodes`.
-void build_subtree(const Divider& divider, const Range& range, absl::Span<ItemRef> leaves,
+void build_subtree(const TwoLists& lists, const Range& range, absl::Span<ItemRef> leaves,
                    std::vector<BinaryNode>& nodes) {
   const std::size_t index = nodes.size();
   nodes.push_back({range.box.box()});
   Range left;
   Range right;
-  if (!divider.divide(range, left, right)) {
+  if (!divide(lists, range, left, right)) {
     nodes[index].first = range.first;
     nodes[index].count = range.count();
-    const absl::Span<const TreeItem> all = divider.items(range);
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      leaves[range.first + i] = {all[i].index, all[i].kind};
+    const absl::Span<const TreeItem> items = items_of(lists, range);
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      leaves[range.first + i] = {items[i].index, items[i].kind};
     }
     return;
   }
   nodes[index].left = static_cast<std::uint32_t>(nodes.size());
-  build_subtree(divider, left, leaves, nodes);
+  build_subtree(lists, left, leaves, nodes);
   nodes[index].right = static_cast<std::uint32_t>(nodes.size());
-  build_subtree(divider, right, leaves, nodes);
+  build_subtree(lists, right, leaves, nodes);
 }
+
+/// Larger ones are binned and parted in pieces of this size.
+constexpr std::size_t kPieceSize = 1 << 12;
 
 /// Ranges up to this size are one thread's work.
 std::uint32_t task_size(std::uint32_t count, Pool* pool) {
   constexpr std::uint32_t kLeast = 1 << 13;
-  constexpr std::uint32_t kTasksOfAThread = 16;
+  constexpr std::uint32_t kTasksOfAThread = 8;
   return pool == nullptr
              ? count
              : std::max(kLeast,
@@ -48,22 +52,79 @@ struct Task {
   std::vector<BinaryNode> nodes = {};
 };
 
-/// Splits until ranges are tasks; returns the node of `range`.
-std::uint32_t build_upper(const Divider& divider, const Range& range, std::uint32_t most,
-                          std::vector<BinaryNode>& nodes, std::vector<Task>& tasks) {
-  const auto index = static_cast<std::uint32_t>(nodes.size());
-  nodes.push_back({range.box.box()});
-  Range left;
-  Range right;
-  if (range.count() <= most || !divider.divide(range, left, right)) {
-    tasks.push_back({range, index});
-    return index;
+/// One level of the upper tree: large ranges, and the nodes that are theirs.
+class Level {
+ public:
+  Level(const TwoLists& lists, std::vector<Task> tasks) : tasks_(std::move(tasks)) {
+    std::size_t count = 0;
+    for (const Task& task : tasks_) {
+      count += (task.range.count() + kPieceSize - 1) / kPieceSize;
+    }
+    pieces_.reserve(count);
+    for (const Task& task : tasks_) {
+      const absl::Span<const TreeItem> items = items_of(lists, task.range);
+      const std::size_t first = pieces_.size();
+      for (std::size_t i = 0; i < items.size(); i += kPieceSize) {
+        owner_.push_back(divisions_.size());
+        pieces_.push_back({items.subspan(i, kPieceSize)});
+      }
+      divisions_.emplace_back(lists, task.range, absl::MakeSpan(pieces_).subspan(first));
+    }
   }
-  const std::uint32_t left_node = build_upper(divider, left, most, nodes, tasks);
-  const std::uint32_t right_node = build_upper(divider, right, most, nodes, tasks);
-  nodes[index].left = left_node;
-  nodes[index].right = right_node;
-  return index;
+
+  /// Divides all and gives each node its children.
+  std::vector<Task> next(Pool& pool, std::vector<BinaryNode>& nodes) {
+    for_each(pool, [&](Division& division, Division::Piece& piece) { division.bin(piece); });
+    for (Division& division : divisions_) {
+      division.choose();
+    }
+    for_each(pool, [&](Division& division, Division::Piece& piece) { division.move(piece); });
+    std::vector<Task> children;
+    for (std::size_t i = 0; i < tasks_.size(); ++i) {
+      Range left;
+      Range right;
+      divisions_[i].parts(left, right);
+      const auto place = static_cast<std::uint32_t>(nodes.size());
+      nodes[tasks_[i].node].left = place;
+      nodes[tasks_[i].node].right = place + 1;
+      nodes.push_back({left.box.box()});
+      nodes.push_back({right.box.box()});
+      children.push_back({left, place});
+      children.push_back({right, place + 1});
+    }
+    return children;
+  }
+
+ private:
+  void for_each(Pool& pool, absl::FunctionRef<void(Division&, Division::Piece&)> body) {
+    pool.parallel_for(static_cast<std::int64_t>(pieces_.size()), [&](std::int64_t i) {
+      const auto piece = static_cast<std::size_t>(i);
+      body(divisions_[owner_[piece]], pieces_[piece]);
+    });
+  }
+
+  std::vector<Task> tasks_;
+  std::vector<Division> divisions_;
+  std::vector<Division::Piece> pieces_;
+  std::vector<std::size_t> owner_;  ///< of each piece, its division
+};
+
+/// Splits, level by level, until ranges are tasks.
+std::vector<Task> build_upper(const TwoLists& lists, const Range& all, std::uint32_t most,
+                              Pool* pool, std::vector<BinaryNode>& nodes) {
+  nodes.push_back({all.box.box()});
+  std::vector<Task> tasks;
+  std::vector<Task> open = {{all, 0}};
+  while (true) {
+    std::vector<Task> large;
+    for (const Task& task : open) {
+      (task.range.count() > most ? large : tasks).push_back(task);
+    }
+    if (large.empty()) {
+      return tasks;
+    }
+    open = Level(lists, std::move(large)).next(*pool, nodes);
+  }
 }
 
 /// Puts a task's root where the upper tree has its place, and the rest at the end.
@@ -90,15 +151,16 @@ BinaryTree build_binary_tree(TreeItems items, Pool* pool) {
   const auto count = static_cast<std::uint32_t>(items.size());
   TreeItems other(count);
   const TwoLists lists = {absl::MakeSpan(items), absl::MakeSpan(other)};
-  const Divider upper(lists, pool);
-  const Divider lower(lists, nullptr);
-  std::vector<Task> tasks;
-  build_upper(upper, upper.range_of(0, count, 1, 0), task_size(count, pool), tree.nodes, tasks);
+  std::vector<Task> tasks = build_upper(lists, bounded(lists, {0, count, 1, 0, {}, {}}),
+                                        task_size(count, pool), pool, tree.nodes);
+  // The largest first, so that threads end together.
+  std::sort(tasks.begin(), tasks.end(),
+            [](const Task& a, const Task& b) { return a.range.count() > b.range.count(); });
   tree.items.resize(count);
   const auto build_task = [&](std::int64_t i) {
     Task& task = tasks[static_cast<std::size_t>(i)];
     task.nodes.reserve(task.range.count() / 2);
-    build_subtree(lower, task.range, absl::MakeSpan(tree.items), task.nodes);
+    build_subtree(lists, task.range, absl::MakeSpan(tree.items), task.nodes);
   };
   if (pool != nullptr) {
     pool->parallel_for(static_cast<std::int64_t>(tasks.size()), build_task);

@@ -6,11 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "absl/functional/function_ref.h"
 #include "absl/types/span.h"
 #include "renderlib/accel/best_split.h"
 #include "renderlib/accel/tree_item.h"
-#include "renderlib/base/pool.h"
 
 namespace bandsaw {
 
@@ -29,32 +27,48 @@ struct Range {
 /// Items lie in one of two lists: parting a range moves it to the other, in its place.
 using TwoLists = std::array<absl::Span<TreeItem>, 2>;
 
-class Divider {
- public:
-  /// `pool` null: all on this thread. The parts are the same.
-  Divider(const TwoLists& lists, Pool* pool) : lists_(lists), pool_(pool) {}
+inline absl::Span<TreeItem> items_of(const TwoLists& lists, const Range& range) {
+  return lists[range.list].subspan(range.first, range.count());
+}
+/// Sets both boxes.
+Range bounded(const TwoLists& lists, Range range);
 
-  Range range_of(std::uint32_t first, std::uint32_t end, std::size_t depth, std::size_t list) const;
-  absl::Span<TreeItem> items(const Range& range) const {
-    return lists_[range.list].subspan(range.first, range.count());
-  }
-  /// The two parts of a range that is no leaf; false: it is one.
-  bool divide(const Range& range, Range& left, Range& right) const;
+/// A range on its way to become two, in steps: bin() for each piece, choose(), move() for each
+/// piece, parts(). Pieces may be taken side by side, and what they are does not matter: least, most
+/// and count are the same in any order, and items stay in theirs.
+class Division {
+ public:
+  struct Piece {
+    absl::Span<const TreeItem> items;
+    Bins bins = {};
+    std::array<TreeItem*, 2> to = {};     ///< left and right
+    std::array<LaneBox, 2> centres = {};  ///< left and right
+  };
+
+  /// The pieces' items, together and in order, are those of the range.
+  Division(const TwoLists& lists, const Range& range, absl::Span<Piece> pieces);
+
+  void bin(Piece& piece) const;
+  /// False: the range is a leaf, and nothing more is to be done.
+  bool choose();
+  void move(Piece& piece) const;
+  void parts(Range& left, Range& right) const;
 
  private:
-  struct Piece;
-  bool one_kind(const Range& range) const;
-  bool must_split(const Range& range) const;
-  void for_each(absl::Span<Piece> pieces, absl::FunctionRef<void(Piece&)> body) const;
-  Split find_split(const Binning& binning, absl::Span<Piece> pieces) const;
-  void part_at(const Split& split, const Binning& binning, absl::Span<Piece> pieces,
-               const Range& range, Range& left, Range& right) const;
-  void part_without_plane(const Range& range, Range& left, Range& right) const;
-  bool divide(const Range& range, const Binning& binning, absl::Span<Piece> pieces, Range& left,
-              Range& right) const;
+  Split find_split() const;
+  bool has_plane() const;
+  void part_without_plane(Range& left, Range& right) const;
 
-  TwoLists lists_;
-  Pool* pool_;
+  const TwoLists& lists_;
+  const Range& range_;
+  absl::Span<Piece> pieces_;
+  bool must_;
+  bool deep_;
+  Binning binning_;
+  Split split_;
 };
+
+/// All on this thread; false: a leaf.
+bool divide(const TwoLists& lists, const Range& range, Range& left, Range& right);
 
 }  // namespace bandsaw
