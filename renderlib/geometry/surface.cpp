@@ -131,11 +131,6 @@ SurfacePoint surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit
   return p;
 }
 
-Ray leave(const SurfacePoint& from, const Vec3& direction, double t_max) {
-  const double side = dot(direction, from.geometric_normal) < 0 ? -from.offset : from.offset;
-  return {from.position + from.geometric_normal * side, direction, t_max, from.id, from.time};
-}
-
 Ray toward(const SurfacePoint& from, const Vec3& target, double target_offset) {
   const Ray ray = leave(from, target - from.position);
   const Vec3 way = target - ray.origin;

@@ -47,8 +47,11 @@ SurfacePoint surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit
 void add_uv_directions(const Geometry& geometry, SurfacePoint& point);
 
 /// A ray that leaves the surface: starts `offset` off it on the side of `direction` and cannot hit
-/// the flat primitive again.
-Ray leave(const SurfacePoint& from, const Vec3& direction, double t_max = kInfinity);
+/// the flat primitive again. (Here, so that what waits for the ray has it in registers.)
+inline Ray leave(const SurfacePoint& from, const Vec3& direction, double t_max = kInfinity) {
+  const double side = dot(direction, from.geometric_normal) < 0 ? -from.offset : from.offset;
+  return {from.position + from.geometric_normal * side, direction, t_max, from.id, from.time};
+}
 
 /// A ray from `from` to `target`, for asking whether anything lies between; t is in (0, 1), ends
 /// short of the target surface by `target_offset` (its SurfacePoint::offset; 0 for a point in

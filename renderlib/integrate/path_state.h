@@ -22,7 +22,7 @@ struct Departure {
 };
 
 struct PathState {
-  Ray ray;  ///< of unit direction
+  Ray ray = {};  ///< of unit direction
   Rgb radiance = {};
   Rgb throughput = gray(1);
   /// What refraction did to the throughput; roulette must not mistake it for loss.

@@ -26,6 +26,15 @@ class Interiors {
   /// More than these inside each other are not kept.
   static constexpr std::size_t kMost = 8;
 
+  // Most paths never enter one: what is not there is neither set nor copied.
+  Interiors() {}
+  Interiors(const Interiors& other) { *this = other; }
+  Interiors& operator=(const Interiors& other) {
+    size_ = other.size_;
+    std::copy_n(other.entries_.begin(), size_, entries_.begin());
+    return *this;
+  }
+
   /// Whether a boundary of `glass` changes nothing: something of higher priority is there.
   bool hides(MaterialId id, const Dielectric& glass) const {
     const Entry* top = highest_but(id);
@@ -62,9 +71,9 @@ class Interiors {
 
  private:
   struct Entry {
-    MaterialId id{};
-    std::uint32_t priority = 0;
-    double index = 1;
+    MaterialId id;
+    std::uint32_t priority;
+    double index;
   };
 
   const Entry* highest_but(MaterialId id) const {

@@ -70,8 +70,8 @@ constexpr std::array<std::uint32_t, 32> reversed_directions(const Polynomial& p)
   return direction;
 }
 
-/// For four bits of an index, what they add (xor) to all four dimensions, bits reversed: 2 KB in
-/// all. Dimension 0 is the index itself.
+/// For four bits of an index whose bits are reversed, what they add (xor) to all four dimensions,
+/// bits reversed: 2 KB in all. Dimension 0 is the index itself.
 using Points = std::array<std::uint32_t, 4>;
 using PointTable = std::array<std::array<Points, 16>, 8>;
 
@@ -82,8 +82,9 @@ constexpr PointTable make_table() {
       const std::uint32_t adds = dimension == 0
                                      ? std::uint32_t{1} << bit
                                      : reversed_directions(kPolynomials[dimension - 1])[bit];
+      const std::size_t at = 31 - bit;
       for (std::size_t value = 0; value < 16; ++value) {
-        table[bit / 4][value][dimension] ^= ((value >> (bit % 4)) & 1u) != 0 ? adds : 0;
+        table[at / 4][value][dimension] ^= ((value >> (at % 4)) & 1u) != 0 ? adds : 0;
       }
     }
   }
@@ -92,7 +93,7 @@ constexpr PointTable make_table() {
 
 alignas(64) constexpr PointTable kTable = make_table();
 
-/// The point of an index, bits reversed.
+/// The point of an index, both with their bits reversed.
 UInt4 sobol_reversed(std::uint32_t index) {
   UInt4 point = {};
   for (std::size_t i = 0; i < 8; ++i) {
@@ -112,8 +113,8 @@ Sample4 PixelSampler::group(std::uint64_t sample, std::uint32_t group) const {
   const std::uint64_t base = mix(pixel_hash_ + sequence * kGolden);
   const std::uint64_t seeds01 = mix(base + kGolden);
   const std::uint64_t seeds23 = mix(base + 2 * kGolden);
-  const std::uint32_t index = reverse_bits(scramble_reversed(
-      reverse_bits(static_cast<std::uint32_t>(sample)), static_cast<std::uint32_t>(base >> 32)));
+  const std::uint32_t index = scramble_reversed(reverse_bits(static_cast<std::uint32_t>(sample)),
+                                                static_cast<std::uint32_t>(base >> 32));
   const UInt4 points = sobol_reversed(index);
   const UInt4 seeds = {
       static_cast<std::uint32_t>(seeds01), static_cast<std::uint32_t>(seeds01 >> 32),

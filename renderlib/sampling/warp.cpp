@@ -41,6 +41,14 @@ Vec2 on_circle(double turn) {
           std::bit_cast<double>(y ^ (quarter & 2) << 62)};
 }
 
+/// (y, x) where `mask` is all ones, (x, y) where it is none.
+Vec2 swapped(const Vec2& v, std::uint64_t mask) {
+  const auto x = std::bit_cast<std::uint64_t>(v.x);
+  const auto y = std::bit_cast<std::uint64_t>(v.y);
+  const std::uint64_t change = (x ^ y) & mask;
+  return {std::bit_cast<double>(x ^ change), std::bit_cast<double>(y ^ change)};
+}
+
 }  // namespace
 
 Vec2 sample_disk(double u, double v) {
@@ -49,13 +57,11 @@ Vec2 sample_disk(double u, double v) {
   if (a == 0 && b == 0) {
     return {0, 0};
   }
-  // The angle is pi / 4 b / a, or pi / 2 - pi / 4 a / b.
-  const bool wide = std::abs(a) > std::abs(b);
-  const double radius = wide ? a : b;
-  const SinCos angle = sincos_eighths((wide ? b : a) / radius);
-  const double near = radius * angle.cos;
-  const double far = radius * angle.sin;
-  return {wide ? near : far, wide ? far : near};
+  // The angle is pi / 4 b / a, or pi / 2 - pi / 4 a / b. Which is anybody's guess: no branch.
+  const std::uint64_t swap = std::abs(a) > std::abs(b) ? 0 : ~std::uint64_t{0};
+  const Vec2 ordered = swapped({a, b}, swap);
+  const SinCos angle = sincos_eighths(ordered.y / ordered.x);
+  return swapped({ordered.x * angle.cos, ordered.x * angle.sin}, swap);
 }
 
 Vec3 sample_cosine_hemisphere(double u, double v) {
