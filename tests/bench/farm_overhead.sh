@@ -1,31 +1,52 @@
 #!/usr/bin/env bash
-# What a farm of one local worker costs over `bandsaw render`: paired runs of the same job, one after the other, and the ratio
-# of their wall-clock times; the first figure printed is the median ratio.
-# Usage: tests/bench/farm_overhead.sh FOLDER-OF-PROGRAMS [PAIRS [SAMPLES]]
+# What a farm of one local worker costs over `bandsaw render`: paired runs of the same job, whose images must be the same, each
+# way first in turns. Wall clock, and CPU time of all processes (the farm's: coordinator, worker and submitter), which other work
+# on the machine changes less; the first two figures printed are the median ratios.
+# Usage: tests/bench/farm_overhead.sh FOLDER-OF-PROGRAMS [PAIRS [SCENE [OPTION-OF-RENDER...]]]
+#   60 s and more:            farm_overhead.sh build/release/bin 3 cornell --samples 256
+#   4K, 16 samples a pass:    farm_overhead.sh build/release/bin 1 books/one_weekend --width 3840 --height 2160 --samples 16
 set -euo pipefail
-bin=$(cd "${1:?usage: farm_overhead.sh FOLDER-OF-PROGRAMS [PAIRS [SAMPLES]]}" && pwd)
+bin=$(cd "${1:?usage: farm_overhead.sh FOLDER-OF-PROGRAMS [PAIRS [SCENE [OPTION...]]]}" && pwd)
 pairs=${2:-5}
-samples=${3:-128}
 top=$(cd "$(dirname "$0")/../.." && pwd)
-scene=$top/renderlib/gallery/cornell.textproto
+scene=$bin/../share/bandsaw/gallery/${3:-cornell}.textproto  # with the textures that are made when it is built
+options=("${@:4}")
+((${#options[@]})) || options=(--samples 128)
 PATH=$bin:$PATH
 . "$top/deploy/loopback.sh"
-serve_here "$scratch/serve.log"
+serve_here "$scratch/serve.log" --web none
 work_here local "$scratch/worker.log"
 until grep -q joined "$scratch/worker.log"; do sleep 0.05; done
 
-seconds() {
-  local begin end
-  begin=$(date +%s.%N)
-  "$@" >/dev/null
-  end=$(date +%s.%N)
-  awk -v a="$begin" -v b="$end" 'BEGIN { print b - a }'
+# CPU seconds so far: of what this shell started and has ended, and of the farm.
+cpu() {
+  {
+    sed 's/.*) //' "/proc/$$/stat" | cut -d ' ' -f 14,15
+    for pid in "${pids[@]}"; do sed 's/.*) //' "/proc/$pid/stat" | cut -d ' ' -f 12,13; done
+  } | awk -v hz="$(getconf CLK_TCK)" '{ ticks += $1 + $2 } END { print ticks / hz }'
 }
 
+spent() {  # COMMAND...: its seconds of wall clock and of CPU
+  local begin cpu_begin
+  begin=$(date +%s.%N)
+  cpu_begin=$(cpu)
+  "$@" "${options[@]}" --quiet >/dev/null
+  echo "$begin $(date +%s.%N) $cpu_begin $(cpu)" | awk '{ print $2 - $1, $4 - $3 }'
+}
+
+on_farm() { spent bandsaw submit "$scene" --farm "$data/farm" --seed "$1" -o "$scratch/farm.pfm"; }
+alone() { spent bandsaw render "$scene" --seed "$1" -o "$scratch/local.pfm"; }
+
 for ((i = 1; i <= pairs; ++i)); do
-  farm=$(seconds bandsaw submit "$scene" --farm "$data/farm" --samples "$samples" --seed "$i" --quiet \
-    -o "$scratch/farm.pfm")
-  local=$(seconds bandsaw render "$scene" --samples "$samples" --seed "$i" --quiet -o "$scratch/local.pfm")
+  if ((i % 2)); then on_farm "$i" >"$scratch/f"; alone "$i" >"$scratch/l"; else alone "$i" >"$scratch/l"; on_farm "$i" >"$scratch/f"; fi
   cmp "$scratch/farm.pfm" "$scratch/local.pfm"
-  awk -v f="$farm" -v l="$local" 'BEGIN { printf "%.4f  farm %.2f s, local %.2f s\n", f / l, f, l }'
-done | sort -n | awk '{ line[NR] = $0 } END { print "median", line[int((NR + 1) / 2)]; for (i = 1; i <= NR; ++i) print line[i] }'
+  paste -d ' ' "$scratch/f" "$scratch/l" >>"$scratch/pairs"
+done
+awk '
+  function median(v, n,   i, j, x) {
+    for (i = 2; i <= n; ++i) { x = v[i]; for (j = i - 1; j >= 1 && v[j] > x; --j) v[j + 1] = v[j]; v[j + 1] = x }
+    return v[int((n + 1) / 2)]
+  }
+  { wall[NR] = $1 / $3; cpu[NR] = $2 / $4
+    line[NR] = sprintf("wall %.4f  farm %.2f s, local %.2f s   CPU %.4f  farm %.2f s, local %.2f s", $1 / $3, $1, $3, $2 / $4, $2, $4) }
+  END { printf "median wall %.4f, CPU %.4f\n", median(wall, NR), median(cpu, NR); for (i = 1; i <= NR; ++i) print line[i] }' "$scratch/pairs"
