@@ -19,7 +19,7 @@ struct ItemRef {
 };
 
 /// 32 bytes that are one Float8: the box's corners are where LaneBox has them.
-struct alignas(32) TreeItem {
+struct TreeItem {
   std::array<float, 3> lo;
   std::uint32_t index;
   std::array<float, 3> hi;
