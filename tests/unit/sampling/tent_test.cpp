@@ -73,13 +73,17 @@ TEST(Tent, SamplesFollowLinearInterpolation) {
 }
 
 TEST(Tent, SamplesInLatitudeFollowInterpolationTimesTheSine) {
-  const std::vector<std::pair<std::uint32_t, std::uint32_t>> cases = {
-      {0, 1}, {0, 2}, {1, 2}, {0, 10}, {1, 10}, {5, 10}, {8, 10}, {9, 10}, {40, 100}};
-  for (const auto& [row, rows] : cases) {
+  struct Case {
+    std::uint32_t row;
+    std::uint32_t rows;
+  };
+  const std::vector<Case> cases = {{0, 1},  {0, 2},  {1, 2},  {0, 10},  {1, 10},
+                                   {5, 10}, {8, 10}, {9, 10}, {40, 100}};
+  for (const Case& c : cases) {
     expect_density(
-        kPi, [&](double v) { return sample_latitude_tent(row, rows, v); },
+        kPi, [&](double v) { return sample_latitude_tent(c.row, c.rows, v); },
         [&](double theta) {
-          return tent(theta * kInvPi * rows, row, rows, Ends::kClamped) * std::sin(theta);
+          return tent(theta * kInvPi * c.rows, c.row, c.rows, Ends::kClamped) * std::sin(theta);
         },
         cases.size());
   }
