@@ -19,9 +19,7 @@ struct Prototype {
   const Shapes* shapes = nullptr;  ///< the group's
 
   const Box& box() const { return mesh != nullptr ? mesh->box : group->box; }
-  const WideTree& tree() const { return mesh != nullptr ? mesh->tree : group->tree; }
-  bool empty() const { return tree().empty; }
-  float reach() const { return tree().reach; }
+  bool empty() const { return mesh != nullptr ? mesh->tree.empty : group->tree.empty; }
 };
 
 /// Trees of everything that is placed. They and the geometry MUST outlive what is built of them and

@@ -53,8 +53,9 @@ inline bool test_flats(const FlatPack& pack, const FloatRay& ray, std::uint32_t 
 }
 
 template <class Query>
-inline bool trace_mesh(const MeshTree& mesh, const TracedRay& ray, const FloatRay& floats,
-                       std::uint32_t instance, const PrimitiveId& from, Query& query) {
+inline bool trace_mesh(const MeshTree& mesh, const TracedRay& ray, std::uint32_t instance,
+                       const PrimitiveId& from, Query& query) {
+  const FloatRay floats(ray, mesh.tree.reach);
   float bound = floats.above(query.bound());
   const std::uint32_t skipped = from.instance == instance ? from.primitive : kNoneSkipped;
   return walk<!Query::kAny>(mesh.tree, floats, bound, [&](ChildRef leaf) {
@@ -143,8 +144,8 @@ inline bool trace_leaf(ChildRef leaf, const ShapesTree& tree, const Shapes& shap
 
 template <class Query>
 [[gnu::noinline]] bool trace_group(const Prototype& group, const TracedRay& ray,
-                                   const FloatRay& floats, std::uint32_t instance,
-                                   const PrimitiveId& from, Query& query) {
+                                   std::uint32_t instance, const PrimitiveId& from, Query& query) {
+  const FloatRay floats(ray, group.group->tree.reach);
   float bound = floats.above(query.bound());
   const Started started(instance, from);
   return walk<!Query::kAny>(group.group->tree, floats, bound, [&](ChildRef leaf) {
@@ -152,13 +153,11 @@ template <class Query>
   });
 }
 
-/// `floats`: made for the reach of the prototype's tree or more.
 template <class Query>
 inline bool trace_prototype(const Prototype& prototype, const TracedRay& ray,
-                            const FloatRay& floats, std::uint32_t instance, const PrimitiveId& from,
-                            Query& query) {
-  return prototype.mesh != nullptr ? trace_mesh(*prototype.mesh, ray, floats, instance, from, query)
-                                   : trace_group(prototype, ray, floats, instance, from, query);
+                            std::uint32_t instance, const PrimitiveId& from, Query& query) {
+  return prototype.mesh != nullptr ? trace_mesh(*prototype.mesh, ray, instance, from, query)
+                                   : trace_group(prototype, ray, instance, from, query);
 }
 
 /// In the space that `to_object` leads to.
@@ -170,17 +169,15 @@ inline bool trace_placed(const Prototype& prototype, const Transform& to_object,
   if (!is_traceable({origin, direction, ray.t_max})) {
     return false;
   }
-  const TracedRay traced = trace_setup(origin, direction, ray.t_max);
-  return trace_prototype(prototype, traced, FloatRay(traced, prototype.reach()), instance, ray.from,
+  return trace_prototype(prototype, trace_setup(origin, direction, ray.t_max), instance, ray.from,
                          query);
 }
 
-/// What is where it was made lies in a box of the top tree, whose reach is no less.
 template <class Query>
-inline bool trace_instance(const Placed& placed, const TracedRay& world, const FloatRay& floats,
-                           const Ray& ray, Query& query) {
+inline bool trace_instance(const Placed& placed, const TracedRay& world, const Ray& ray,
+                           Query& query) {
   return placed.identity
-             ? trace_prototype(placed.prototype, world, floats, placed.instance, ray.from, query)
+             ? trace_prototype(placed.prototype, world, placed.instance, ray.from, query)
              : trace_placed(placed.prototype, placed.to_object, ray, placed.instance, query);
 }
 
@@ -191,24 +188,17 @@ inline bool trace(const TopTree& top, const Geometry& geometry, const Ray& ray, 
     return false;
   }
   const TracedRay traced = trace_setup(ray.origin, ray.direction, ray.t_max);
-  const ChildRef root = top.tree.root;
-  const Placed* const only = root.is_leaf() && root.kind() == LeafKind::kInstance
-                                 ? &top.placed[root.leaf_index()]
-                                 : nullptr;
-  if (only != nullptr && !only->identity) {
-    return trace_placed(only->prototype, only->to_object, ray, only->instance, query);
+  if (top.tree.root.is_leaf() && top.tree.root.kind() == LeafKind::kInstance) {
+    return trace_instance(top.placed[top.tree.root.leaf_index()], traced, ray, query);
   }
   const FloatRay floats(traced, top.tree.reach);
-  if (only != nullptr) {
-    return trace_prototype(only->prototype, traced, floats, only->instance, ray.from, query);
-  }
   float bound = floats.above(query.bound());
   const Started started(0, ray.from);
   return walk<!Query::kAny>(top.tree, floats, bound, [&](ChildRef leaf) {
     if (leaf.kind() != LeafKind::kInstance) {
       return trace_leaf(leaf, top, geometry, traced, floats, started, bound, query);
     }
-    const bool stop = trace_instance(top.placed[leaf.leaf_index()], traced, floats, ray, query);
+    const bool stop = trace_instance(top.placed[leaf.leaf_index()], traced, ray, query);
     bound = floats.above(query.bound());
     return stop;
   });
