@@ -32,7 +32,6 @@ struct FloatBox {
     const double z = double{hi[2]} - double{lo[2]};
     return x >= 0 ? x * y + y * z + z * x : 0;
   }
-  float centre(std::size_t axis) const { return 0.5f * lo[axis] + 0.5f * hi[axis]; }
   /// Neither empty nor infinite.
   bool can_be_hit() const {
     bool good = true;

@@ -231,8 +231,7 @@ void follow(const PathContext& context, std::uint32_t depth, PathState& path) {
 
 Rgb path_radiance(const Scene& scene, const Ray& camera_ray, const PixelSampler& sampler,
                   std::uint64_t sample, const PathOptions& options, PathCounts& counts) {
-  PathState path;
-  path.ray = camera_ray;
+  PathState path(camera_ray);
   follow({scene, sampler, sample, options, counts.rays, options.branches}, 0, path);
   counts.truncated += path.truncated ? 1 : 0;
   return path.radiance;

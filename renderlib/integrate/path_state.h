@@ -22,7 +22,10 @@ struct Departure {
 };
 
 struct PathState {
-  Ray ray = {};  ///< of unit direction
+  /// What begins with this ray. (An aggregate would be zeroed as a whole first, glasses and all.)
+  explicit PathState(const Ray& from) : ray(from) {}
+
+  Ray ray;  ///< of unit direction
   Rgb radiance = {};
   Rgb throughput = gray(1);
   /// What refraction did to the throughput; roulette must not mistake it for loss.

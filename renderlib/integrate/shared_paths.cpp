@@ -128,8 +128,7 @@ void shared_radiance(const Scene& scene, absl::Span<SharedPixel> pixels, std::ui
   std::array<std::optional<Finding>, kMostShared> found;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const PathContext context{scene, pixels[i].sampler, sample, options, counts.rays};
-    PathState path;
-    path.ray = pixels[i].camera_ray;
+    PathState path(pixels[i].camera_ray);
     follow_own(context, path, takers[i], found[i]);
     pixels[i].radiance = path.radiance;
     counts.truncated += path.truncated ? 1 : 0;

@@ -28,25 +28,23 @@ SinCos sincos_eighths(double x) {
   return {x * polynomial(square, kSin), polynomial(square, kCos)};
 }
 
-/// The point of the unit circle at `turn` in [0, 1]. Which quarter it is in is anybody's guess: no
-/// branch.
-Vec2 on_circle(double turn) {
-  const double quarters = std::floor(4 * turn + 0.5);
-  const SinCos angle = sincos_eighths(2 * (4 * turn - quarters));
-  const auto quarter = static_cast<std::uint64_t>(quarters);
-  const bool odd = (quarter & 1) != 0;
-  const std::uint64_t x = std::bit_cast<std::uint64_t>(odd ? angle.sin : angle.cos);
-  const std::uint64_t y = std::bit_cast<std::uint64_t>(odd ? angle.cos : angle.sin);
-  return {std::bit_cast<double>(x ^ ((quarter + 1) & 2) << 62),
-          std::bit_cast<double>(y ^ (quarter & 2) << 62)};
-}
-
 /// (y, x) where `mask` is all ones, (x, y) where it is none.
 Vec2 swapped(const Vec2& v, std::uint64_t mask) {
   const auto x = std::bit_cast<std::uint64_t>(v.x);
   const auto y = std::bit_cast<std::uint64_t>(v.y);
   const std::uint64_t change = (x ^ y) & mask;
   return {std::bit_cast<double>(x ^ change), std::bit_cast<double>(y ^ change)};
+}
+
+/// The point of the unit circle at `turn` in [0, 1]. Which quarter it is in is anybody's guess: no
+/// branch.
+Vec2 on_circle(double turn) {
+  const double quarters = std::floor(4 * turn + 0.5);
+  const SinCos angle = sincos_eighths(2 * (4 * turn - quarters));
+  const auto quarter = static_cast<std::uint64_t>(quarters);
+  const Vec2 at = swapped({angle.cos, angle.sin}, -(quarter & 1));
+  return {std::bit_cast<double>(std::bit_cast<std::uint64_t>(at.x) ^ ((quarter + 1) & 2) << 62),
+          std::bit_cast<double>(std::bit_cast<std::uint64_t>(at.y) ^ (quarter & 2) << 62)};
 }
 
 }  // namespace

@@ -34,19 +34,17 @@ spent() {  # COMMAND...: its seconds of wall clock and of CPU
   echo "$begin $(date +%s.%N) $cpu_begin $(cpu)" | awk '{ print $2 - $1, $4 - $3 }'
 }
 
-on_farm() { spent bandsaw submit "$scene" --farm "$data/farm" --seed "$1" -o "$scratch/farm.pfm"; }
-alone() { spent bandsaw render "$scene" --seed "$1" -o "$scratch/local.pfm"; }
+on_farm() { spent bandsaw submit "$scene" --farm "$data/farm" --seed "$1" -o "$scratch/on_farm.pfm"; }
+alone() { spent bandsaw render "$scene" --seed "$1" -o "$scratch/alone.pfm"; }
 
 for ((i = 1; i <= pairs; ++i)); do
-  if ((i % 2)); then on_farm "$i" >"$scratch/f"; alone "$i" >"$scratch/l"; else alone "$i" >"$scratch/l"; on_farm "$i" >"$scratch/f"; fi
-  cmp "$scratch/farm.pfm" "$scratch/local.pfm"
-  paste -d ' ' "$scratch/f" "$scratch/l" >>"$scratch/pairs"
+  ways=(on_farm alone)
+  ((i % 2)) || ways=(alone on_farm)
+  for way in "${ways[@]}"; do "$way" "$i" >"$scratch/$way"; done
+  cmp "$scratch/on_farm.pfm" "$scratch/alone.pfm"
+  paste -d ' ' "$scratch/on_farm" "$scratch/alone" >>"$scratch/pairs"
 done
-awk '
-  function median(v, n,   i, j, x) {
-    for (i = 2; i <= n; ++i) { x = v[i]; for (j = i - 1; j >= 1 && v[j] > x; --j) v[j + 1] = v[j]; v[j + 1] = x }
-    return v[int((n + 1) / 2)]
-  }
-  { wall[NR] = $1 / $3; cpu[NR] = $2 / $4
-    line[NR] = sprintf("wall %.4f  farm %.2f s, local %.2f s   CPU %.4f  farm %.2f s, local %.2f s", $1 / $3, $1, $3, $2 / $4, $2, $4) }
-  END { printf "median wall %.4f, CPU %.4f\n", median(wall, NR), median(cpu, NR); for (i = 1; i <= NR; ++i) print line[i] }' "$scratch/pairs"
+
+median() { awk "{ print $1 }" "$scratch/pairs" | sort -n | sed -n "$(((pairs + 1) / 2))p"; }
+echo "median wall $(median '$1 / $3'), CPU $(median '$2 / $4')"
+awk '{ printf "wall %.4f  farm %.2f s, local %.2f s   CPU %.4f  farm %.2f s, local %.2f s\n", $1 / $3, $1, $3, $2 / $4, $2, $4 }' "$scratch/pairs"
