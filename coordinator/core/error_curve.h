@@ -27,13 +27,19 @@ using ErrorCurve = std::vector<ErrorPoint>;
 /// stays, so a curve has at most some 160 of them.
 void add_point(ErrorCurve& curve, const ErrorPoint& point);
 
-/// p of "error falls as samples^-p": by least squares in logarithms over the last sixteenfold of
-/// samples, kept in [0.5, 0.65]: random samples have 1/2. 1/2 where there are not two points.
+/// p of "error falls as samples^-p" from octave to octave: the mean over the points of the last
+/// octave, each against half its samples, kept in [0.5, 0.75]: random samples have 1/2. 1/2 where
+/// there is not an octave.
 double fall_of(const ErrorCurve& curve);
 
-/// The samples a pixel at which the relative RMSE is at most `target`, > 0, by its margin too:
-/// between points by interpolation, beyond the last by its fall. Nothing without a point or of a
-/// black image.
+/// The relative RMSE and its margin at so many samples a pixel, > 0: between points by
+/// interpolation; beyond the last that of half as many, lower by the fall. So what a whole net of
+/// 2^k points gains over three quarters of one, and no power of the samples has, is expected again.
+/// The curve MUST have a point whose error is not 0.
+double error_at(const ErrorCurve& curve, double samples);
+
+/// The samples a pixel at which that is at most `target`, > 0. Nothing without a point, of a black
+/// image, or where no job may have so many.
 std::optional<double> samples_until(const ErrorCurve& curve, double target);
 
 /// The same in CPU seconds, which grow with the samples. Nothing where those are not known either.

@@ -58,16 +58,16 @@ std::uint64_t next_look(std::uint64_t samples, double error, double target,
 
 std::optional<std::uint64_t> expected_end(const ErrorCurve& curve, double target,
                                           std::uint64_t planned, std::uint64_t max_samples) {
-  const std::optional<double> needed = samples_until(curve, target);
-  if (!needed) {
+  if (curve.empty() || curve.back().estimate.at_most() <= 0) {
     return std::nullopt;
   }
-  const ErrorPoint& last = curve.back();
-  const double fall = fall_of(curve);
-  std::uint64_t look = std::max(planned, last.samples);
-  while (static_cast<double>(look) < *needed && look < max_samples) {
-    const double left = static_cast<double>(last.samples) / static_cast<double>(look);
-    look = next_look(look, last.estimate.at_most() * std::pow(left, fall), target, max_samples);
+  std::uint64_t look = std::max(planned, curve.back().samples);
+  while (look < max_samples) {
+    const double error = error_at(curve, static_cast<double>(look));
+    if (error <= target) {
+      break;
+    }
+    look = next_look(look, error, target, max_samples);
   }
   return look;
 }

@@ -135,9 +135,9 @@ Figure time_left_figure() {
       {"room", {"--width", "160", "--height", "120", "--samples", "256"}},
       {"environment", {"--width", "200", "--height", "150", "--samples", "512"}},
       {"cornell", {"--width", "400", "--height", "400", "--samples", "64"}},
-      {"books/one_weekend", {"--width", "200", "--height", "112", "--error", "0.5%"}},
-      {"spheres", {"--width", "200", "--height", "150", "--error", "0.5%"}},
-      {"cornell", {"--width", "200", "--height", "200", "--error", "1%"}},
+      {"books/one_weekend", {"--width", "400", "--height", "225", "--error", "0.8%"}},
+      {"spheres", {"--width", "400", "--height", "300", "--error", "0.7%"}},
+      {"cornell", {"--width", "300", "--height", "300", "--error", "2%"}},
   };
   Figure figure{
       "time left after a quarter of the job", "within 15 % on 90 % of jobs", " %", {}, ""};

@@ -58,8 +58,42 @@ TEST(ErrorCurve, FindsThePowerOfTheFall) {
   }
   EXPECT_EQ(fall_of({point(32, 0.5)}), 0.5);
   EXPECT_EQ(fall_of(curve_of(1024, [](std::uint64_t n) { return 1.0 / static_cast<double>(n); })),
-            0.65);
+            0.75);
   EXPECT_EQ(fall_of(curve_of(1024, [](std::uint64_t) { return 1.0; })), 0.5);
+}
+
+// As nets of 2^k points have it: random noise in between, and less of it with each whole net.
+double error_in_steps(double samples) {
+  return std::pow(samples, -0.5) * std::exp2(-0.2 * std::floor(std::log2(samples)));
+}
+
+TEST(ErrorCurve, ExpectsTheStepsOfWholeNetsAgain) {
+  ErrorCurve curve;
+  for (std::uint64_t net = 128; net <= 512; net *= 2) {
+    for (std::uint64_t n = net; n < 2 * net; n += net / 4) {
+      add_point(curve, point(n, error_in_steps(static_cast<double>(n))));
+    }
+  }
+  EXPECT_NEAR(fall_of(curve), 0.7, 1e-9);
+  for (const double samples : {160.0, 896.0, 1024.0, 1280.0, 1792.0, 2048.0, 3072.0, 4096.0}) {
+    EXPECT_NEAR(error_at(curve, samples) / error_in_steps(samples), 1, 1e-9) << samples;
+  }
+  // What 3,584 samples miss by little, the whole net of 4,096 has, with much to spare.
+  const double target = 0.99 * error_in_steps(3584);
+  EXPECT_GT(*samples_until(curve, target), 3584);
+  EXPECT_LT(*samples_until(curve, target), 4096);
+  EXPECT_LT(error_at(curve, 4096), 0.9 * target);
+}
+
+TEST(ErrorCurve, BeforeTheFirstPointFallsAsRandomSamplesDo) {
+  EXPECT_DOUBLE_EQ(error_at({point(64, 0.1)}, 16), 0.2);
+  EXPECT_DOUBLE_EQ(*samples_until({point(64, 0.1)}, 0.2), 16);
+}
+
+TEST(ErrorCurve, AnImageThatWasBlackIsNoFall) {
+  const ErrorCurve curve = {point(32, 0), point(64, 0), point(128, 0.5)};
+  EXPECT_EQ(fall_of(curve), 0.5);
+  EXPECT_DOUBLE_EQ(*samples_until(curve, 0.25), 512);
 }
 
 TEST(ErrorCurve, SaysNothingWhereNothingIsKnown) {
