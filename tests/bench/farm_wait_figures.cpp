@@ -147,10 +147,13 @@ Figure time_left_figure() {
   std::size_t within = 0;
   for (const Job& job : jobs) {
     const double error = error_of_time_left(farm, job);
-    within += std::abs(error) <= 0.15 ? 1 : 0;
-    if (std::isnan(error)) {
-      figure.remark += "one was not told; ";
+    if (std::abs(error) <= 0.15) {
+      ++within;
     } else {
+      figure.remark += job.scene + " " + job.options.back() +
+                       (std::isnan(error) ? " was not told; " : " was not; ");
+    }
+    if (!std::isnan(error)) {
       figure.measured.push_back(100 * error);
     }
   }

@@ -6,12 +6,14 @@
 
 #include "tests/farm/band_log.h"
 #include "tests/farm/farm_processes.h"
+#include "tests/support/sanitized.h"
 
 namespace bandsaw::test {
 namespace {
 
 const std::string kScene = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
-const std::vector<std::string> kSettings = {"--width", "200", "--height", "200", "--samples", "64"};
+const std::vector<std::string> kSettings = {"--width", "200",       "--height",
+                                            "200",     "--samples", std::to_string(64 / kSlower)};
 
 class Control : public testing::Test {
  protected:

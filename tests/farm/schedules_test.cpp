@@ -16,6 +16,7 @@
 #include "tests/farm/farm_processes.h"
 #include "tests/support/environment.h"
 #include "tests/support/random.h"
+#include "tests/support/sanitized.h"
 
 namespace bandsaw::test {
 namespace {
@@ -23,9 +24,9 @@ namespace {
 constexpr int kMachines = 4;
 
 std::vector<std::string> with_job(std::vector<std::string> arguments) {
-  for (const char* one : {"--width", "96", "--height", "96", "--samples", "64", "--quiet"}) {
-    arguments.emplace_back(one);
-  }
+  const std::vector<std::string> job = {
+      "--width", "96", "--height", "96", "--samples", std::to_string(64 / kSlower), "--quiet"};
+  arguments.insert(arguments.end(), job.begin(), job.end());
   return arguments;
 }
 

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 
+#include "tests/support/sanitized.h"
+
 namespace bandsaw::test {
 namespace {
 
 const std::string kScene = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
 const std::vector<std::string> kSettings = {"--width", "200",       "--height",
-                                            "200",     "--samples", "160"};
+                                            "200",     "--samples", std::to_string(160 / kSlower)};
 
 std::vector<std::string> with_settings(std::vector<std::string> arguments) {
   arguments.insert(arguments.end(), kSettings.begin(), kSettings.end());
