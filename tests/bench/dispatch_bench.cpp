@@ -1,7 +1,7 @@
 // What the real coordinator takes for a band, through gRPC with TLS and down to the disk, and for a
 // worker that is connected: null renderers that answer each lease at once with black rows.
 //
-//   dispatch_bench [SECONDS [WORKERS]]    10 seconds of bands with 1, 4 and 16 workers;
+//   dispatch_bench [SECONDS [WORKERS]]    10 seconds of bands with 1 to 16 workers;
 //                                         then so many connected, 1000
 
 #include <unistd.h>
@@ -291,7 +291,7 @@ void memory(int count) {
 
 int main(int argc, char** argv) {
   bandsaw::disk(2);
-  for (const int workers : {1, 4, 16}) {
+  for (const int workers : {1, 4, 5, 6, 16}) {
     bandsaw::bands(argc > 1 ? std::atof(argv[1]) : 10, workers);
   }
   bandsaw::memory(argc > 2 ? std::atoi(argv[2]) : 1'000);

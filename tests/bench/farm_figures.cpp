@@ -1,6 +1,6 @@
 // What must be seen to hold of a farm, as far as processes on one machine show it, as a table.
 //
-//   farm_figures [loss|pixels|again|left]...    all of them: four minutes on two cores
+//   farm_figures [loss|pixels|again|left]...    all of them: ten minutes on two cores
 //
 // Cables are pulled where the user may make network namespaces (root).
 
