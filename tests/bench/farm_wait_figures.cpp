@@ -131,9 +131,9 @@ std::vector<Figure> first_pixel_figures() {
 Figure time_left_figure() {
   const std::vector<Job> jobs = {
       {"cornell", {"--width", "200", "--height", "200", "--samples", "256"}},
-      {"spheres", {"--width", "200", "--height", "150", "--samples", "512"}},
-      {"mesh", {"--width", "200", "--height", "150", "--samples", "256"}},
-      {"books/one_weekend", {"--width", "200", "--height", "112", "--samples", "512"}},
+      {"spheres", {"--width", "200", "--height", "150", "--samples", "1024"}},
+      {"mesh", {"--width", "200", "--height", "150", "--samples", "1024"}},
+      {"books/one_weekend", {"--width", "200", "--height", "112", "--samples", "1024"}},
       {"room", {"--width", "160", "--height", "120", "--samples", "256"}},
       {"environment", {"--width", "200", "--height", "150", "--samples", "512"}},
       {"cornell", {"--width", "400", "--height", "400", "--samples", "64"}},
