@@ -6,10 +6,10 @@
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/cpu_time.h"
+#include "coordinator/cli/power_fit.h"
 #include "coordinator/cli/study_adaptive.h"
 #include "coordinator/cli/study_pixel_stops.h"
 #include "coordinator/core/error_curve.h"
-#include "coordinator/core/power_fit.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/compare/error_metrics.h"
 #include "renderlib/geometry/placement.h"

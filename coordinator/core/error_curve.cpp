@@ -28,6 +28,28 @@ double between(const ErrorPoint& a, const ErrorPoint& b, double samples) {
          std::pow(b.estimate.at_most() / a.estimate.at_most(), std::log(samples / from) / all);
 }
 
+/// From the first point of which something is known to the last.
+double measured_at(const ErrorCurve& curve, double samples) {
+  const auto next = std::find_if(begin_of(curve), curve.end(), [&](const ErrorPoint& point) {
+    return static_cast<double>(point.samples) >= samples;
+  });
+  return static_cast<double>(next->samples) == samples ? next->estimate.at_most()
+                                                       : between(*std::prev(next), *next, samples);
+}
+
+/// Anywhere, where the curve has this fall.
+double expected_at(const ErrorCurve& curve, double samples, double fall) {
+  const auto last = static_cast<double>(curve.back().samples);
+  if (samples > last) {
+    const double octaves = std::ceil(std::log2(samples / last));
+    return expected_at(curve, samples * std::exp2(-octaves), fall) * std::exp2(-octaves * fall);
+  }
+  const ErrorPoint& first = *begin_of(curve);
+  const double before = static_cast<double>(first.samples) / samples;
+  return before > 1 ? first.estimate.at_most() * std::pow(before, fall)
+                    : measured_at(curve, samples);
+}
+
 }  // namespace
 
 void add_point(ErrorCurve& curve, const ErrorPoint& point) {
@@ -50,7 +72,7 @@ double fall_of(const ErrorCurve& curve) {
   int count = 0;
   for (auto point = first; point != curve.end(); ++point) {
     if (2 * point->samples > curve.back().samples && point->samples >= 2 * first->samples) {
-      const double half = error_at(curve, static_cast<double>(point->samples) / 2);
+      const double half = measured_at(curve, static_cast<double>(point->samples) / 2);
       sum += std::log2(half / point->estimate.at_most());
       ++count;
     }
@@ -59,21 +81,8 @@ double fall_of(const ErrorCurve& curve) {
 }
 
 double error_at(const ErrorCurve& curve, double samples) {
-  const auto first = begin_of(curve);
-  BANDSAW_CHECK(first != curve.end() && samples > 0, "something is known of the error");
-  const auto last = static_cast<double>(curve.back().samples);
-  if (samples > last) {
-    const double octaves = std::ceil(std::log2(samples / last));
-    return error_at(curve, samples * std::exp2(-octaves)) * std::exp2(-octaves * fall_of(curve));
-  }
-  const double before = static_cast<double>(first->samples) / samples;
-  if (before > 1) {
-    return first->estimate.at_most() * std::pow(before, fall_of(curve));
-  }
-  const auto next = std::find_if(first, curve.end(), [&](const ErrorPoint& point) {
-    return static_cast<double>(point.samples) >= samples;
-  });
-  return next == first ? first->estimate.at_most() : between(*std::prev(next), *next, samples);
+  BANDSAW_CHECK(begin_of(curve) != curve.end() && samples > 0, "something is known of the error");
+  return expected_at(curve, samples, fall_of(curve));
 }
 
 std::optional<double> samples_until(const ErrorCurve& curve, double target) {
@@ -81,16 +90,17 @@ std::optional<double> samples_until(const ErrorCurve& curve, double target) {
   if (point == curve.end()) {
     return std::nullopt;
   }
+  const double fall = fall_of(curve);
   auto samples = static_cast<double>(point->samples);
   double error = point->estimate.at_most();
   if (error <= target) {
-    return samples * std::pow(error / target, 1 / fall_of(curve));
+    return samples * std::pow(error / target, 1 / fall);
   }
   while (samples < static_cast<double>(kMaxSamples)) {
     const bool measured = point != curve.end() && ++point != curve.end();
     const double next =
         measured ? static_cast<double>(point->samples) : samples * std::exp2(1.0 / 8);
-    const double lower = error_at(curve, next);
+    const double lower = expected_at(curve, next, fall);
     if (lower <= target) {
       return samples * std::pow(next / samples, std::log(error / target) / std::log(error / lower));
     }

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "tests/support/process.h"
+#include "tests/support/sanitized.h"
 
 namespace bandsaw::test {
 namespace {
@@ -25,9 +26,9 @@ std::set<std::string> libraries_of(const std::string& program) {
 }
 
 TEST(WorkerFile, NeedsNothingButGlibc) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "a sanitizer brings libraries of its own";
-#endif
+  if (kSanitized) {
+    GTEST_SKIP() << "a sanitizer brings libraries of its own";
+  }
   const std::set<std::string> glibc = {"libc.so.6",       "libm.so.6",  "libdl.so.2",
                                        "libpthread.so.0", "librt.so.1", "ld-linux-x86-64.so.2"};
   const std::set<std::string> needed = libraries_of(BANDSAW_WORKER_BIN);

@@ -2,12 +2,15 @@
 
 namespace bandsaw::test {
 
-/// How many times as long a sample takes with a sanitizer, about: jobs of process tests have so
-/// many fewer, and last as long.
+/// Whether this is built with AddressSanitizer or ThreadSanitizer.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-inline constexpr int kSlower = 8;
+inline constexpr bool kSanitized = true;
 #else
-inline constexpr int kSlower = 1;
+inline constexpr bool kSanitized = false;
 #endif
+
+/// How many times as long everything takes for that, about: what is long has so many times less to
+/// do.
+inline constexpr int kSlower = kSanitized ? 8 : 1;
 
 }  // namespace bandsaw::test

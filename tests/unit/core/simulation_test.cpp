@@ -12,6 +12,7 @@
 #include "sim_coordinator.h"
 #include "sim_worker.h"
 #include "tests/support/environment.h"
+#include "tests/support/sanitized.h"
 
 namespace bandsaw::coordinator::sim {
 namespace {
@@ -297,12 +298,6 @@ std::vector<JobSpec> random_jobs(std::uint64_t seed) {
   return jobs;
 }
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr std::uint64_t kShare = 8;  // a sanitizer takes about as many times longer
-#else
-constexpr std::uint64_t kShare = 1;
-#endif
-
 /// Runs `seeds` seeds from `first` on, or the one asked for.
 template <class F>
 void for_seeds(std::uint64_t first, std::uint64_t seeds, F f) {
@@ -311,7 +306,7 @@ void for_seeds(std::uint64_t first, std::uint64_t seeds, F f) {
     return;
   }
   for (std::uint64_t seed = first;
-       seed < first + test::number_from("BANDSAW_SEEDS", seeds / kShare); ++seed) {
+       seed < first + test::number_from("BANDSAW_SEEDS", seeds / test::kSlower); ++seed) {
     f(seed);
     if (testing::Test::HasFailure()) {
       return;

@@ -12,6 +12,7 @@
 #include "renderlib/gallery/globe.h"
 #include "renderlib/image/png.h"
 #include "renderlib/render/render_image.h"
+#include "tests/support/sanitized.h"
 #include "tests/support/temp_dir.h"
 
 namespace bandsaw::gallery {
@@ -67,9 +68,9 @@ std::uint64_t peak_of_render(const std::string& scene_path) {
 }
 
 TEST(GlobeMemory, IsAtMostAFifthAboveTheTexels) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "a sanitizer's own memory would be counted";
-#endif
+  if (test::kSanitized) {
+    GTEST_SKIP() << "a sanitizer's own memory would be counted";
+  }
   const TempDir folder;
   const std::string small = scene_in(folder, 512);
   const std::string large = scene_in(folder, 4096);
