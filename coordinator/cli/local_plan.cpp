@@ -47,7 +47,7 @@ bool LocalPlan::wants_tiles(double error) const {
          time_to_plan_tiles(error, rule->relative_rmse);
 }
 
-void LocalPlan::plan(absl::Span<const TileError> tiles, std::uint64_t samples) {
+void LocalPlan::plan(absl::Span<const HalfTileErrors> tiles, std::uint64_t samples) {
   schedule_.emplace(grid_, plan_tiles(grid_, tiles, samples));
 }
 

@@ -26,7 +26,7 @@ class LocalPlan {
 
   /// Whether the tiles are to be planned now, before next() is asked with the same error.
   bool wants_tiles(double error) const;
-  void plan(absl::Span<const TileError> tiles, std::uint64_t samples);
+  void plan(absl::Span<const HalfTileErrors> tiles, std::uint64_t samples);
   /// Who takes part in the pass that next() gave. Once for each.
   TileMask tiles(const SampleRange& pass) { return schedule_ ? schedule_->next(pass) : TileMask(); }
 

@@ -80,7 +80,7 @@ struct PassMerged {
   JobId job = 0;
   std::uint64_t samples = 0;
   std::optional<ErrorEstimate> error;
-  std::vector<TileError> tiles = {};  ///< of an adaptive job (Film::tile_errors)
+  std::vector<HalfTileErrors> tiles = {};  ///< of an adaptive job (Film::tile_errors)
 
   /// The error that is not passed; below 0: not known, as where the image is black.
   double error_at_most() const {

@@ -125,7 +125,7 @@ void FilmDesk::tell_passes(JobId id, OneJob& job) {
     hooks_.merged({.job = id,
                    .samples = job.told,
                    .error = job.film->error(),
-                   .tiles = job.adaptive ? job.film->tile_errors() : std::vector<TileError>()});
+                   .tiles = job.adaptive ? job.film->tile_errors() : std::vector<HalfTileErrors>()});
   }
 }
 

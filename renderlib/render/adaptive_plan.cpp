@@ -18,7 +18,7 @@ constexpr double kOwnTile = 0.5;
 /// The gain in error at equal samples below which a plan is not worth having: a sample where noise
 /// is takes 1.2 to 1.4 times the time of others, and errors of runs of samples that are not whole
 /// nets fall less.
-constexpr double kLeastGain = 1.2;
+constexpr double kLeastGain = 1.4;
 /// A plan is judged by what it comes to after so many times the pilot's samples.
 constexpr double kJudgedAfter = 8;
 
@@ -53,33 +53,57 @@ class Mean {
     variance_ += tile.pixels * tile.variance;
     relative_ += tile.pixels * tile.relative;
   }
-  /// No pixels: none were added.
+  /// Of all of them together.
   TileError value() const {
-    return pixels_ > 0 ? TileError{1, variance_ / pixels_, relative_ / pixels_} : TileError{};
+    return pixels_ > 0 ? TileError{pixels_, variance_ / pixels_, relative_ / pixels_} : TileError{};
   }
 
  private:
-  double pixels_ = 0;
+  std::uint32_t pixels_ = 0;
   double variance_ = 0;
   double relative_ = 0;
 };
 
-/// What one half of all tiles says.
-class Half {
+/// One a tile, relative to the largest.
+std::vector<int> levels_of(std::vector<double> weights) {
+  const double mean =
+      std::accumulate(weights.begin(), weights.end(), 0.0) / static_cast<double>(weights.size());
+  double most = 0;
+  for (double& weight : weights) {
+    weight = std::min(weight, kMostOverMean * mean);
+    most = std::max(most, weight);
+  }
+  std::vector<int> levels;
+  for (const double weight : weights) {
+    levels.push_back(most > 0 ? level_of(weight / most) : 0);
+  }
+  return levels;
+}
+
+/// What some pixels of every tile say.
+class Pilot {
  public:
-  Half(const TileGrid& grid, absl::Span<const TileError> tiles, std::size_t half) : grid_(grid) {
+  Pilot(const TileGrid& grid, std::vector<TileError> tiles)
+      : grid_(grid), tiles_(std::move(tiles)) {
     Mean mean;
-    for (std::size_t i = half; i < tiles.size(); i += 2) {
-      tiles_.push_back(tiles[i]);
-      mean.add(tiles[i]);
+    for (const TileError& tile : tiles_) {
+      mean.add(tile);
     }
     mean_ = mean.value();
   }
 
-  bool empty() const { return mean_.pixels == 0; }
   const std::vector<TileError>& tiles() const { return tiles_; }
-  const TileError& mean() const { return mean_; }
 
+  /// How samples are dealt out to the tiles.
+  std::vector<int> levels() const {
+    std::vector<double> weights;
+    for (std::size_t i = 0; i < tiles_.size(); ++i) {
+      weights.push_back(weight(here(i)));
+    }
+    return levels_of(std::move(weights));
+  }
+
+ private:
   /// By which samples are dealt out to a tile whose errors are these.
   double weight(const TileError& tile) const {
     return std::sqrt((mean_.variance > 0 ? tile.variance / mean_.variance : 0) +
@@ -111,68 +135,62 @@ class Half {
                            kOwnTile * own.relative + (1 - kOwnTile) * others.relative};
   }
 
- private:
   TileGrid grid_;
   std::vector<TileError> tiles_;
   TileError mean_;
 };
 
-/// One a tile, relative to the largest.
-std::vector<int> levels_of(std::vector<double> weights) {
-  const double mean =
-      std::accumulate(weights.begin(), weights.end(), 0.0) / static_cast<double>(weights.size());
-  double most = 0;
-  for (double& weight : weights) {
-    weight = std::min(weight, kMostOverMean * mean);
-    most = std::max(most, weight);
-  }
-  std::vector<int> levels;
-  for (const double weight : weights) {
-    levels.push_back(most > 0 ? level_of(weight / most) : 0);
-  }
-  return levels;
-}
-
-/// By how much the larger of the two errors falls below that of as many samples dealt out evenly.
-double gain(const Half& half, const std::vector<int>& levels) {
+/// By how much the larger of the two errors falls below that of as many samples dealt out evenly,
+/// where each half of the rows is dealt out to as the other shows.
+double gain(const std::array<Pilot, 2>& rows) {
   double samples = 0;
   double pixels = 0;
-  Mean then;
-  for (std::size_t i = 0; i < levels.size(); ++i) {
-    const TileError& tile = half.tiles()[i];
-    const double times = std::max(1.0, kJudgedAfter * share_of(levels[i]));
-    then.add({tile.pixels, tile.variance / times, tile.relative / times});
-    samples += times * tile.pixels;
-    pixels += tile.pixels;
+  Mean before;
+  Mean after;
+  for (const std::size_t half : {0, 1}) {
+    const std::vector<int> levels = rows[1 - half].levels();
+    for (std::size_t i = 0; i < levels.size(); ++i) {
+      const TileError& tile = rows[half].tiles()[i];
+      const double times = std::max(1.0, kJudgedAfter * share_of(levels[i]));
+      before.add(tile);
+      after.add({tile.pixels, tile.variance / times, tile.relative / times});
+      samples += times * tile.pixels;
+      pixels += tile.pixels;
+    }
   }
-  const auto fall = [&](double before, double after) {
-    return before > 0 ? before / after / (samples / pixels) : 1;
+  const auto fall = [&](double even, double planned) {
+    return even > 0 ? even / planned / (samples / pixels) : 1;
   };
-  const TileError errors = then.value();
-  return std::min(fall(half.mean().variance, errors.variance),
-                  fall(half.mean().relative, errors.relative));
+  return std::min(fall(before.value().variance, after.value().variance),
+                  fall(before.value().relative, after.value().relative));
 }
 
 /// Of the tiles, as this half of them shows.
-std::vector<int> plan_by(const Half& half) {
-  std::vector<double> around;
-  std::vector<double> here;
-  for (std::size_t i = 0; i < half.tiles().size(); ++i) {
-    around.push_back(half.weight(half.around(i)));
-    here.push_back(half.weight(half.here(i)));
+std::vector<int> plan_by(const TileGrid& grid, absl::Span<const HalfTileErrors> tiles,
+                         std::size_t half) {
+  std::vector<TileError> all;
+  std::array<std::vector<TileError>, 2> rows;
+  for (std::size_t i = half; i < tiles.size(); i += 2) {
+    Mean mean;
+    for (const std::size_t parity : {0, 1}) {
+      mean.add(tiles[i][parity]);
+      rows[parity].push_back(tiles[i][parity]);
+    }
+    all.push_back(mean.value());
   }
-  const bool pays = !half.empty() && gain(half, levels_of(std::move(around))) >= kLeastGain;
-  return pays ? levels_of(std::move(here)) : std::vector<int>(here.size());
+  const bool pays =
+      gain({Pilot(grid, std::move(rows[0])), Pilot(grid, std::move(rows[1]))}) >= kLeastGain;
+  return pays ? Pilot(grid, std::move(all)).levels() : std::vector<int>(all.size());
 }
 
 }  // namespace
 
-TilePlan plan_tiles(const TileGrid& grid, absl::Span<const TileError> tiles,
+TilePlan plan_tiles(const TileGrid& grid, absl::Span<const HalfTileErrors> tiles,
                     std::uint64_t samples) {
   BANDSAW_CHECK(tiles.size() == grid.half_tiles(), "one error a half tile");
   TilePlan plan{.pilot = samples, .levels = std::string(tiles.size(), '0')};
   for (const std::size_t half : {0, 1}) {
-    const std::vector<int> levels = plan_by(Half(grid, tiles, 1 - half));
+    const std::vector<int> levels = plan_by(grid, tiles, 1 - half);
     for (std::size_t i = 0; i < levels.size(); ++i) {
       plan.levels[2 * i + half] = digit_of(levels[i]);
     }

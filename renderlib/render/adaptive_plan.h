@@ -16,6 +16,7 @@
 // Different Aspects of the Representative Method", optimum allocation); for both, the root of the
 // sum of the two variances, each over its mean over the image.
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -26,12 +27,15 @@
 
 namespace bandsaw {
 
-/// What a pilot shows of a half tile: means over its pixels and channels.
+/// What a pilot shows of some pixels: means over them and their channels.
 struct TileError {
   std::uint32_t pixels = 0;  ///< 0 at the edge of an image, perhaps
   double variance = 0;       ///< of the pilot's mean, >= 0
   double relative = 0;       ///< the same over value^2 + 0.01
 };
+
+/// Of a half tile: of its pixels in even rows of the image, and of those in odd ones.
+using HalfTileErrors = std::array<TileError, 2>;
 
 /// How much of the passes after the pilot each half tile takes part in.
 struct TilePlan {
@@ -45,10 +49,11 @@ struct TilePlan {
 /// `tiles`: one a half tile, of a pilot of `samples` samples. A pure function, the same on every
 /// machine.
 ///
-/// Whether it pays is asked of the pilot itself: what the tiles around say is judged by the noise
-/// of the tile. Where both errors would not fall well below those of as many samples dealt out
-/// evenly, every level is 0.
-TilePlan plan_tiles(const TileGrid& grid, absl::Span<const TileError> tiles, std::uint64_t samples);
+/// Whether it pays is asked of the pilot itself: what even rows would plan is judged by the noise
+/// of odd ones, and the other way round. Where both errors would not fall well below those of as
+/// many samples dealt out evenly, every level is 0.
+TilePlan plan_tiles(const TileGrid& grid, absl::Span<const HalfTileErrors> tiles,
+                    std::uint64_t samples);
 
 /// Which half tiles take part in which pass after the pilot.
 class TileSchedule {

@@ -1,6 +1,7 @@
 #include "renderlib/render/film.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -199,27 +200,31 @@ std::optional<ErrorEstimate> Film::error() const {
   return known ? std::optional(sums.estimate()) : std::nullopt;
 }
 
-std::vector<TileError> Film::tile_errors() const {
-  std::vector<ErrorSums> sums(rows_->strips.grid().half_tiles());
-  std::vector<TileError> errors(sums.size());
+std::vector<HalfTileErrors> Film::tile_errors() const {
+  using Sums = std::array<ErrorSums, 2>;
+  std::vector<Sums> sums(rows_->strips.grid().half_tiles());
+  std::vector<HalfTileErrors> errors(sums.size());
   std::vector<NodeSums> of_strip;
   bool known = rows_->strips.half_tiles();
   rows_->each([&](std::uint32_t y, std::uint32_t i, const Strip& strip, const StripNodes& nodes) {
     known = known && has_halves(nodes);
     if (known) {
+      const std::size_t tile = rows_->strips.half_tile(y, i);
       rows_->node_sums(strip, nodes, of_strip);
-      sums[rows_->strips.half_tile(y, i)].add_row(of_strip, 1);
-      errors[rows_->strips.half_tile(y, i)].pixels += strip.count;
+      sums[tile][y % 2].add_row(of_strip, 1);
+      errors[tile][y % 2].pixels += strip.count;
     }
   });
   if (!known) {
     return {};
   }
   for (std::size_t i = 0; i < sums.size(); ++i) {
-    if (errors[i].pixels > 0) {
-      const ErrorEstimate estimate = sums[i].estimate();
-      errors[i].variance = estimate.rmse * estimate.rmse;
-      errors[i].relative = estimate.relative_mse;
+    for (const std::size_t rows : {0, 1}) {
+      if (TileError& error = errors[i][rows]; error.pixels > 0) {
+        const ErrorEstimate estimate = sums[i][rows].estimate();
+        error.variance = estimate.rmse * estimate.rmse;
+        error.relative = estimate.relative_mse;
+      }
     }
   }
   return errors;

@@ -59,7 +59,7 @@ class Film {
 
   /// The same of each half tile, of a film of half tiles: what plan_tiles reads. Empty where
   /// error() is nothing.
-  std::vector<TileError> tile_errors() const;
+  std::vector<HalfTileErrors> tile_errors() const;
 
   /// How many samples of each pixel a snapshot shows.
   Image counts() const;

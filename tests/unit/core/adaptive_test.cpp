@@ -11,11 +11,12 @@ namespace {
 constexpr TileGrid kGrid{512, 32};
 
 /// The left half of the image is eight times as noisy as the right.
-std::vector<TileError> uneven() {
-  std::vector<TileError> tiles;
+std::vector<HalfTileErrors> uneven() {
+  std::vector<HalfTileErrors> tiles;
   for (std::uint32_t tile = 0; tile < kGrid.columns() * kGrid.rows(); ++tile) {
     const double variance = tile % kGrid.columns() < kGrid.columns() / 2 ? 1 : 1.0 / 64;
-    tiles.insert(tiles.end(), 2, {128, variance, variance});
+    const TileError error{64, variance, variance};
+    tiles.insert(tiles.end(), 2, {error, error});
   }
   return tiles;
 }
@@ -25,7 +26,7 @@ struct Adaptive {
   JobId job = 0;
   std::vector<std::uint64_t> looks;
 
-  explicit Adaptive(bool adaptive = true, std::vector<TileError> tiles = uneven()) {
+  explicit Adaptive(bool adaptive = true, std::vector<HalfTileErrors> tiles = uneven()) {
     job = farm.submit(
         test_job("r1", StopAtError{0.01, kMaxSamples, adaptive}, kGrid.width, kGrid.height));
     farm.hello(1, "a");
@@ -87,7 +88,8 @@ TEST(Adaptive, NothingIsPlannedWhereItWasNotAskedFor) {
 }
 
 TEST(Adaptive, EvenNoiseLeavesNobodyOutAndStopsWhereAnEvenJobDoes) {
-  const Adaptive run(true, std::vector<TileError>(kGrid.half_tiles(), TileError{128, 1, 1}));
+  const Adaptive run(true, std::vector<HalfTileErrors>(kGrid.half_tiles(),
+                                                       {TileError{64, 1, 1}, TileError{64, 1, 1}}));
   EXPECT_EQ(run.farm.all_records<record::TilesPlanned>().size(), 1u);
   for (const action::Lease& lease : run.farm.all<action::Lease>()) {
     EXPECT_TRUE(lease.tiles.whole());

@@ -18,12 +18,13 @@ using test::Random;
 
 constexpr TileGrid kGrid{64, 32};
 
-std::vector<TileError> errors(const TileGrid& grid,
-                              const std::function<double(std::uint32_t column)>& variance) {
-  std::vector<TileError> tiles;
+std::vector<HalfTileErrors> errors(const TileGrid& grid,
+                                   const std::function<double(std::uint32_t column)>& variance) {
+  std::vector<HalfTileErrors> tiles;
   for (std::uint32_t row = 0; row < grid.rows(); ++row) {
     for (std::uint32_t column = 0; column < grid.columns(); ++column) {
-      tiles.insert(tiles.end(), 2, {128, variance(column), variance(column)});
+      const TileError error{64, variance(column), variance(column)};
+      tiles.insert(tiles.end(), 2, {error, error});
     }
   }
   return tiles;
@@ -67,12 +68,14 @@ TEST(AdaptivePlan, SamplesAreDealtOutByTheRootOfTheVariance) {
 TEST(AdaptivePlan, NothingOfAHalfPlansThatHalf) {
   const TileGrid grid{320, 48};
   Random random(5);
-  std::vector<TileError> tiles =
+  std::vector<HalfTileErrors> tiles =
       errors(grid, [](std::uint32_t column) { return column < 8 ? 1 : 1.0 / 64; });
   const TilePlan before = plan_tiles(grid, tiles, 64);
   for (std::size_t i = 0; i < tiles.size(); i += 2) {
-    tiles[i].variance *= random.uniform(0.001, 1000);
-    tiles[i].relative *= random.uniform(0.001, 1000);
+    for (TileError& rows : tiles[i]) {
+      rows.variance *= random.uniform(0.001, 1000);
+      rows.relative *= random.uniform(0.001, 1000);
+    }
   }
   const TilePlan after = plan_tiles(grid, tiles, 64);
   EXPECT_FALSE(even(before));
@@ -82,9 +85,23 @@ TEST(AdaptivePlan, NothingOfAHalfPlansThatHalf) {
   EXPECT_NE(after.levels, before.levels);
 }
 
+TEST(AdaptivePlan, NoiseOfOneTileIsPlannedForWhereBothHalvesOfItsRowsShowIt) {
+  const TileGrid grid{512, 128};
+  const auto plan_of_rows = [&](double even_rows, double odd_rows) {
+    std::vector<HalfTileErrors> tiles = errors(grid, [](auto) { return 1e-3; });
+    const std::size_t tile = 2 * (std::size_t{4} * grid.columns() + 7);
+    for (const std::size_t half : {0, 1}) {
+      tiles[tile + half] = {TileError{64, even_rows, even_rows}, TileError{64, odd_rows, odd_rows}};
+    }
+    return plan_tiles(grid, tiles, 64);
+  };
+  EXPECT_FALSE(even(plan_of_rows(1, 1)));
+  EXPECT_TRUE(even(plan_of_rows(1, 1e-3))) << "one bright sample is no reason";
+}
+
 TEST(AdaptivePlan, ImagesOfOneTileOrOnePixelHaveAPlan) {
   for (const TileGrid grid : {TileGrid{1, 1}, {1, 40}, {16, 16}, {17, 1}}) {
-    std::vector<TileError> tiles(grid.half_tiles(), TileError{1, 0.5, 0.5});
+    std::vector<HalfTileErrors> tiles(grid.half_tiles(), {TileError{1, 0.5, 0.5}, TileError{}});
     tiles.back() = {};
     EXPECT_TRUE(even(plan_tiles(grid, tiles, 32)));
   }
@@ -124,7 +141,7 @@ Rendered render(const Pixel& pixel, std::uint64_t seed, bool naive) {
   for (const SampleRange& pass : {SampleRange{0, 16}, {16, 32}, {32, 64}}) {
     take(pass, {});
   }
-  std::vector<TileError> tiles = film.tile_errors();
+  std::vector<HalfTileErrors> tiles = film.tile_errors();
   for (std::size_t i = 0; i < tiles.size() && naive; i += 2) {
     std::swap(tiles[i], tiles[i + 1]);
   }

@@ -117,13 +117,15 @@ TEST(Film, TheErrorOfUnevenNumbersOfSamplesIsTheirStandardError) {
   // Half of the pixels have 128 samples, the others 32.
   const double expected_error = std::sqrt((1.0 / 128 + 1.0 / 32) / 2 / 3);
   EXPECT_NEAR(film.error()->relative_rmse / expected_error, 1, 0.02);
-  const std::vector<TileError> tiles = film.tile_errors();
+  const std::vector<HalfTileErrors> tiles = film.tile_errors();
   ASSERT_EQ(tiles.size(), grid.half_tiles());
   double many = 0;
   double few = 0;
   for (std::size_t i = 0; i < tiles.size(); ++i) {
-    EXPECT_EQ(tiles[i].pixels, 128u);
-    (i / 2 % 2 == 0 ? many : few) += tiles[i].variance / static_cast<double>(tiles.size() / 2);
+    for (const TileError& rows : tiles[i]) {
+      EXPECT_EQ(rows.pixels, 64u);
+      (i / 2 % 2 == 0 ? many : few) += rows.variance / static_cast<double>(tiles.size());
+    }
   }
   EXPECT_NEAR(many * 3 * 128, 1, 0.05);
   EXPECT_NEAR(few * 3 * 32, 1, 0.05);
