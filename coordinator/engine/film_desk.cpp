@@ -122,10 +122,11 @@ void FilmDesk::tell_passes(JobId id, OneJob& job) {
   for (auto end = job.pass_ends.upper_bound(job.told);
        end != job.pass_ends.end() && job.film->complete(*end); ++end) {
     job.told = *end;
-    hooks_.merged({.job = id,
-                   .samples = job.told,
-                   .error = job.film->error(),
-                   .tiles = job.adaptive ? job.film->tile_errors() : std::vector<HalfTileErrors>()});
+    hooks_.merged(
+        {.job = id,
+         .samples = job.told,
+         .error = job.film->error(),
+         .tiles = job.adaptive ? job.film->tile_errors() : std::vector<HalfTileErrors>()});
   }
 }
 

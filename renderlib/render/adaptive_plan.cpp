@@ -144,25 +144,24 @@ class Pilot {
 /// where each half of the rows is dealt out to as the other shows.
 double gain(const std::array<Pilot, 2>& rows) {
   double samples = 0;
-  double pixels = 0;
-  Mean before;
-  Mean after;
+  Mean evenly;
+  Mean planned;
   for (const std::size_t half : {0, 1}) {
     const std::vector<int> levels = rows[1 - half].levels();
     for (std::size_t i = 0; i < levels.size(); ++i) {
       const TileError& tile = rows[half].tiles()[i];
       const double times = std::max(1.0, kJudgedAfter * share_of(levels[i]));
-      before.add(tile);
-      after.add({tile.pixels, tile.variance / times, tile.relative / times});
+      evenly.add(tile);
+      planned.add({tile.pixels, tile.variance / times, tile.relative / times});
       samples += times * tile.pixels;
-      pixels += tile.pixels;
     }
   }
-  const auto fall = [&](double even, double planned) {
-    return even > 0 ? even / planned / (samples / pixels) : 1;
+  const TileError before = evenly.value();
+  const TileError after = planned.value();
+  const auto fall = [&](double from, double to) {
+    return from > 0 ? from / to / (samples / before.pixels) : 1;
   };
-  return std::min(fall(before.value().variance, after.value().variance),
-                  fall(before.value().relative, after.value().relative));
+  return std::min(fall(before.variance, after.variance), fall(before.relative, after.relative));
 }
 
 /// Of the tiles, as this half of them shows.

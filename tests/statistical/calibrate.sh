@@ -2,7 +2,7 @@
 # Is the error that an image reports the error that it has? Renders gallery scenes 96 pixels wide until 5 % and 2 %, with 20 seeds
 # each, compares every image with a reference of many times as many samples, and writes the table of tests/statistical/README.md.
 # What was measured is kept in FOLDER and not measured again: an interrupted run goes on where it was.
-# Usage: tests/statistical/calibrate.sh BANDSAW FOLDER [--scenes a,b,…] [--seeds N] [--seconds S]
+# Usage: tests/statistical/calibrate.sh BANDSAW FOLDER [--scenes a,b,…] [--seeds N] [--times N] [--seconds S]
 #   --scenes   names as in the gallery's folder, "cornell,books/earth"; default: all
 #   --seeds    default 20
 #   --times    samples of a reference over those of an image of 2 %, default 16; its own noise is taken off
@@ -113,8 +113,8 @@ awk -v without="$folder/without" -v references="$folder/references" '
     # Wilson 1927: the interval of a share at 95 %.
     p = all_met / all; z = 1.96; d = 1 + z * z / all
     middle = (p + z * z / (2 * all)) / d; half = z * sqrt(p * (1 - p) / all + z * z / (4 * all * all)) / d
-    printf "\n%d renders of %d scenes: the true error is at most the target in **%.1f %%** (95 %% interval %.1f to %.1f %%); the estimate is\n",
-           all, scenes_of(), 100 * p, 100 * (middle - half), 100 * (middle + half)
+    printf "\n%d renders of %d scenes: the true error is at most the target in **%d, %.1f %%** (95 %% interval %.1f to %.1f %%); the estimate is\n",
+           all, scenes_of(), all_met, 100 * p, 100 * (middle - half), 100 * (middle + half)
     printf "between 0.9 and 2.5 times the true error in %.1f %%.\n\n", 100 * within / all
     print "| scene | target | renders | met | true error | estimate / true | samples a pixel | beyond the ideal | CPU s |"
     print "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"
