@@ -27,8 +27,10 @@ class LocalPlan {
   /// Whether the tiles are to be planned now, before next() is asked with the same error.
   bool wants_tiles(double error) const;
   void plan(absl::Span<const HalfTileErrors> tiles, std::uint64_t samples);
-  /// Who takes part in the pass that next() gave. Once for each.
-  TileMask tiles(const SampleRange& pass) { return schedule_ ? schedule_->next(pass) : TileMask(); }
+  /// What half tiles take in the pass that next() gave. Once for each.
+  TileSamples tiles(const SampleRange& pass) {
+    return schedule_ ? schedule_->next(pass) : TileSamples();
+  }
 
  private:
   std::optional<SampleRange> first_of(std::uint64_t from, std::uint64_t to);

@@ -16,13 +16,13 @@ namespace {
 
 // `done`: pixel samples before this pass; grows by those of the pass.
 absl::Status render_pass(const LocalJob& job, const SampleRange& pass, const RowRange& rows,
-                         const TileMask& tiles, std::uint64_t& done,
+                         const TileSamples& tiles, std::uint64_t& done,
                          absl::FunctionRef<absl::Status(BandPixels)> take) {
   const auto most =
       static_cast<std::uint32_t>(std::max<std::uint64_t>(1, kBandPixels / job.settings.width));
   for (RowRange part{rows.first, rows.first}; part.last < rows.last; part.first = part.last) {
     part.last = part.first + std::min(most, rows.last - part.first);
-    const std::uint64_t samples = pass.samples() * tiles.pixels(job.settings.width, part);
+    const std::uint64_t samples = tiles.count(job.settings.width, {pass, part});
     const auto advanced = [&job, &part, done, samples](std::uint32_t count) {
       job.meter.reached(done + samples * count / part.count());
     };
@@ -49,7 +49,7 @@ absl::StatusOr<Film> render_whole(const LocalJob& job, const StopRule& stop) {
   double error = -1;
   while (const auto pass = plan.next(samples, error, job.meter.seconds(steady_seconds()))) {
     job.meter.plans(plan.planned());
-    const TileMask tiles = plan.tiles(*pass);
+    const TileSamples tiles = plan.tiles(*pass);
     RETURN_IF_ERROR(render_pass(job, *pass, {0, job.settings.height}, tiles, done,
                                 [&](const BandPixels& pixels) {
                                   const absl::Status added = film.add(pixels, tiles);

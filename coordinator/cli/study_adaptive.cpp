@@ -17,7 +17,7 @@ class AdaptiveRender {
                  const std::atomic<bool>& stop, Film film)
       : scene_(scene), settings_(settings), pool_(pool), stop_(stop), film_(std::move(film)) {}
 
-  absl::Status take(const SampleRange& pass, const TileMask& tiles) {
+  absl::Status take(const SampleRange& pass, const TileSamples& tiles) {
     const auto most =
         static_cast<std::uint32_t>(std::max<std::uint64_t>(1, kBandPixels / settings_.width));
     for (RowRange rows{0, 0}; rows.last < settings_.height; rows.first = rows.last) {
@@ -28,7 +28,7 @@ class AdaptiveRender {
       RETURN_IF_ERROR(film_.add(pixels, tiles));
     }
     const RowRange all{0, settings_.height};
-    out_.samples += static_cast<double>(pass.samples() * tiles.pixels(settings_.width, all)) /
+    out_.samples += static_cast<double>(tiles.count(settings_.width, {pass, all})) /
                     (static_cast<double>(settings_.width) * settings_.height);
     return absl::OkStatus();
   }

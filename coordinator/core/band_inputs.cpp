@@ -21,10 +21,10 @@ std::optional<std::vector<RowRange>> Core::State::wanted(JobId id, const Band& b
   return pass->coverage.wanted(band);
 }
 
-TileMask Core::State::tiles(JobId id, const Band& band) const {
+TileSamples Core::State::tiles(JobId id, const Band& band) const {
   const Job* job = find(id);
   const Pass* pass = job == nullptr ? nullptr : job->pass_of(band);
-  return pass == nullptr ? TileMask() : pass->tiles.of(band.rows);
+  return pass == nullptr ? TileSamples() : pass->tiles_of(band);
 }
 
 void Core::State::on(const input::BandStored& in) {
@@ -60,7 +60,7 @@ void Core::State::on(const input::BandStored& in) {
                           .band = in.band,
                           .rows = change.rows,
                           .worker = worker == nullptr ? std::string() : worker->name,
-                          .tiles = pass->tiles.of(in.band.rows)});
+                          .tiles = pass->tiles_of(in.band)});
   }
   settle(*job);
 }
@@ -130,7 +130,7 @@ void Core::State::measure(Worker& worker, Job& job, const input::BandStored& in)
   if (!is_probe(job.spec.settings.height, in.band)) {
     measure_pace(worker, job, in);
   }
-  // Samples are those of pixels that take part: of so many columns of all rows.
+  // Samples are those that pixels took: of so many columns of all rows.
   const double columns = static_cast<double>(samples) / in.band.rows.count();
   job.row_times.measure(in.band.rows, in.render_s * worker.threads / columns);
 }

@@ -20,7 +20,7 @@ std::optional<std::vector<RowRange>> Core::wanted(JobId job, const Band& band) c
   return state_->wanted(job, band);
 }
 
-TileMask Core::tiles(JobId job, const Band& band) const { return state_->tiles(job, band); }
+TileSamples Core::tiles(JobId job, const Band& band) const { return state_->tiles(job, band); }
 std::vector<Record> Core::snapshot() const { return state_->snapshot(); }
 std::optional<JobView> Core::job(JobId id, Time now) const { return state_->view(id, now); }
 std::vector<std::string> Core::why(JobId id, Time now) const { return state_->why(id, now); }

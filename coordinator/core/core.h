@@ -67,8 +67,8 @@ class Core {
   /// final or unknown, or the band is not one of its passes.
   std::optional<std::vector<RowRange>> wanted(JobId job, const Band& band) const;
 
-  /// Who takes part in the pass that the band is of, of its rows.
-  TileMask tiles(JobId job, const Band& band) const;
+  /// What its half tiles take.
+  TileSamples tiles(JobId job, const Band& band) const;
 
   /// The fewest records that replay to what is durable now: what a journal can be replaced by.
   std::vector<Record> snapshot() const;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "renderlib/render/tile_mask.h"
+#include "renderlib/render/tile_samples.h"
 
 namespace bandsaw::coordinator {
 namespace {

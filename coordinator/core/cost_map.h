@@ -18,8 +18,8 @@ class CostMap {
   /// height > 0
   explicit CostMap(std::uint32_t height);
 
-  /// Of one sample in one column, summed over the rows, in a pass in which only this share of each
-  /// tile row's pixels takes part (one number a tile row of the image; none: all do).
+  /// Of one sample in one column, summed over the rows, in a pass in which the pixels of a tile row
+  /// take so many times as many samples as evenly (one number a tile row of the image; none: 1).
   double of(const RowRange& rows, absl::Span<const float> shares = {}) const;
   double of_all() const { return of({0, static_cast<std::uint32_t>(rows_.size())}); }
   /// How many rows from the first of these cost no more than `most`; at least one.

@@ -57,9 +57,10 @@ std::uint64_t Pass::renderer_of_row(const SampleRange& of, std::uint32_t row) co
   return 0;
 }
 
-Job::Job(JobId job, JobSpec job_spec)
+Job::Job(JobId job, JobSpec job_spec, std::uint32_t version)
     : id(job),
       spec(std::move(job_spec)),
+      pixel_version(version),
       cost(spec.settings.height),
       row_times(spec.settings.height) {}
 
@@ -90,20 +91,22 @@ const Pass* Job::pass_of(const Band& band) const {
 void Job::add_pass(const SampleRange& samples) {
   BANDSAW_CHECK(samples.first == planned_samples(), "passes follow each other");
   const RenderSettings& image = spec.settings;
-  Pass& pass = passes.emplace_back(Pass{.samples = samples,
-                                        .coverage = Coverage(samples, image.height),
-                                        .tiles = schedule_ ? schedule_->next(samples) : TileMask(),
-                                        .shares = {},
-                                        .stored = {},
-                                        .digests = {},
-                                        .parts = {},
-                                        .returned = {}});
+  Pass& pass =
+      passes.emplace_back(Pass{.samples = samples,
+                               .coverage = Coverage(samples, image.height),
+                               .tiles = schedule_ ? schedule_->next(samples) : TileSamples(),
+                               .shares = {},
+                               .stored = {},
+                               .digests = {},
+                               .parts = {},
+                               .returned = {}});
   for (std::uint32_t row = 0; row < image.height && !pass.tiles.whole(); row += kTileSide) {
     const RowRange rows{row, std::min(row + kTileSide, image.height)};
-    const double all = static_cast<double>(image.width) * rows.count();
+    const Band band{samples, rows};
+    const double all = static_cast<double>(TileSamples().count(image.width, band));
     pass.shares.push_back(std::max(
         kLeastShare,
-        static_cast<float>(static_cast<double>(pass.tiles.pixels(image.width, rows)) / all)));
+        static_cast<float>(static_cast<double>(pass.tiles.count(image.width, band)) / all)));
   }
 }
 
@@ -192,7 +195,7 @@ std::uint64_t Job::pixels() const {
 }
 
 std::uint64_t Job::samples_of(const Band& band) const {
-  return band.samples.samples() * pass_of(band)->tiles.pixels(spec.settings.width, band.rows);
+  return pass_of(band)->tiles_of(band).count(spec.settings.width, band);
 }
 
 double Job::cost_of(const Band& band) const {

@@ -39,8 +39,10 @@ struct Totals {
 struct Pass {
   SampleRange samples;
   Coverage coverage;
-  TileMask tiles;             ///< who takes part, of the whole image
-  std::vector<float> shares;  ///< of each tile row's pixels, those that do; empty: all
+  TileSamples tiles;  ///< of the whole image
+  /// What each tile row's pixels take, over what all would if each took the pass's samples; empty:
+  /// they do.
+  std::vector<float> shares;
   Totals stored;
   RowDigests digests;
   /// What one worker process stored of it.
@@ -52,7 +54,8 @@ struct Pass {
   /// How often a band that begins at this sample and row came back unfinished. For the logs.
   std::map<std::pair<std::uint64_t, std::uint32_t>, std::uint32_t> returned;
 
-  double share() const;  ///< of all pixels, those that take part
+  double share() const;  ///< the same of the whole image
+  TileSamples tiles_of(const Band& band) const { return tiles.of(samples, band); }
   /// Counts rows of a band as stored by a renderer.
   void credit(std::uint64_t renderer, const Band& band, const std::vector<RowRange>& rows,
               const Totals& totals);
@@ -81,7 +84,7 @@ struct Loss {
 
 class Job {
  public:
-  Job(JobId id, JobSpec spec);
+  Job(JobId id, JobSpec spec, std::uint32_t pixel_version);
 
   /// The pass that a band's samples are a node of, when its rows are in the image; else nothing.
   Pass* pass_of(const Band& band);
@@ -122,6 +125,7 @@ class Job {
 
   JobId id = 0;
   JobSpec spec;
+  std::uint32_t pixel_version = 0;  ///< that it was begun with; 0: not known
   JobState state = JobState::kRunning;
   std::int32_t priority = 0;
   bool held = false;                   ///< a person paused it

@@ -60,7 +60,7 @@ void Core::State::on(const input::Submit& in) {
     return;
   }
   step_.job = next_job_;
-  emit(record::JobAdded{step_.job, in.spec});
+  emit(record::JobAdded{step_.job, in.spec, options_.fitness.pixel_version});
   if (in.priority != 0) {
     emit(record::PriorityChanged{step_.job, in.priority});
   }

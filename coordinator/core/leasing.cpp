@@ -172,7 +172,7 @@ void Core::State::hand_over(Worker& worker, Job& job, const Pass& pass, Lease le
   const auto returned = pass.returned.find({lease.band.samples.first, lease.band.rows.first});
   const std::uint32_t attempt = returned == pass.returned.end() ? 1 : 1 + returned->second;
   act(action::Lease{*worker.session, lease.id, job.id, job.spec.manifest, job.spec.settings,
-                    lease.band, pass.tiles.of(lease.band.rows), attempt, lease.audit});
+                    lease.band, pass.tiles_of(lease.band), attempt, lease.audit});
 }
 
 void Core::State::end_lease(LeaseId id, Revoke revoke) {

@@ -141,7 +141,7 @@ struct Lease {
   DigestHex manifest;
   RenderSettings settings;
   Band band;
-  TileMask tiles = {};  ///< of the band's rows
+  TileSamples tiles = {};  ///< of the band
   std::uint32_t attempt = 1;
   bool audit = false;  ///< the rows are there; another machine renders them to compare
 };
@@ -169,8 +169,8 @@ struct AddToFilm {
   JobId job = 0;
   Band band;
   std::vector<RowRange> rows;
-  std::string worker;   ///< whose it is, for people; empty: one that is not known any more
-  TileMask tiles = {};  ///< of the band's rows
+  std::string worker;      ///< whose it is, for people; empty: one that is not known any more
+  TileSamples tiles = {};  ///< of the band
 };
 /// What this worker rendered of the job is void: the film is made anew without it, and tells its
 /// passes again as they become whole.

@@ -16,6 +16,7 @@ namespace record {
 struct JobAdded {
   JobId job = 0;
   JobSpec spec;
+  std::uint32_t pixel_version = 0;  ///< of the coordinator then; 0: its journal did not say
 };
 /// A pass [first, last) of the whole image was begun. (For error and time rules passes depend on
 /// what was measured.)
@@ -23,7 +24,7 @@ struct PassPlanned {
   JobId job = 0;
   SampleRange samples;
 };
-/// From the samples that there are on, half tiles take part in passes as planned.
+/// From the samples that there are on, half tiles take samples as planned.
 struct TilesPlanned {
   JobId job = 0;
   TilePlan plan;

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "coordinator/core/pass_plan.h"
 #include "coordinator/core/state.h"
 
@@ -12,7 +13,7 @@ void Core::State::apply(const Record& record) {
 }
 
 void Core::State::apply(const record::JobAdded& r) {
-  jobs_.emplace(r.job, Job(r.job, r.spec));
+  jobs_.emplace(r.job, Job(r.job, r.spec, r.pixel_version));
   by_request_[r.spec.request_id] = r.job;
   active_.insert(r.job);
   next_job_ = std::max(next_job_, r.job + 1);
@@ -178,6 +179,16 @@ Step Core::State::replayed(Time now) {
       if (job.bands_on_disk) {
         act(action::DropBands{id});
       }
+      continue;
+    }
+    if (job.pixel_version != options_.fitness.pixel_version) {
+      const std::string version = job.pixel_version == 0
+                                      ? "an earlier pixel version"
+                                      : absl::StrCat("pixel version ", job.pixel_version);
+      end(job, JobState::kFailed,
+          absl::StrCat("begun with ", version, ", this coordinator has ",
+                       options_.fitness.pixel_version,
+                       ": an image is of one version; submit it again"));
       continue;
     }
     plan_first(job);

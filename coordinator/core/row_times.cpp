@@ -1,6 +1,6 @@
 #include "coordinator/core/row_times.h"
 
-#include "renderlib/render/tile_mask.h"
+#include "renderlib/render/tile_samples.h"
 
 namespace bandsaw::coordinator {
 namespace {

@@ -14,7 +14,7 @@ void Core::State::on(const input::Forget& in) {
 }
 
 void Core::State::add_records(const Job& job, std::vector<Record>& out) {
-  out.push_back(record::JobAdded{job.id, job.spec});
+  out.push_back(record::JobAdded{job.id, job.spec, job.pixel_version});
   if (job.priority != 0) {
     out.push_back(record::PriorityChanged{job.id, job.priority});
   }

@@ -36,7 +36,7 @@ class Core::State {
   std::vector<Record> snapshot() const;
 
   std::optional<std::vector<RowRange>> wanted(JobId job, const Band& band) const;
-  TileMask tiles(JobId job, const Band& band) const;
+  TileSamples tiles(JobId job, const Band& band) const;
   std::vector<std::string> why(JobId id, Time now) const;
   std::optional<JobView> view(JobId id, Time now) const;
   std::vector<JobView> job_views(Time now) const;

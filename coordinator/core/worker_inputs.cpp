@@ -119,8 +119,7 @@ bool Core::State::take_up_one(Worker& worker, const WorkerHello::Held& held) {
       leases_.find(held.lease)->advanced_at = clock_.patience();
       leases_.find(held.lease)->taken_up = true;
       act(action::Lease{*worker.session, held.lease, job->id, job->spec.manifest,
-                        job->spec.settings, held.band, pass->tiles.of(held.band.rows), 1,
-                        lease->audit});
+                        job->spec.settings, held.band, pass->tiles_of(held.band), 1, lease->audit});
     }
     return same;
   }

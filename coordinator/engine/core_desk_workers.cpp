@@ -11,7 +11,7 @@ namespace {
 
 /// INVALID_ARGUMENT: not a band of an image of these settings, or not all of its pixels.
 absl::Status check_band(const BandPixels& pixels, const RenderSettings& settings,
-                        const TileMask& tiles) {
+                        const TileSamples& tiles) {
   if (absl::Status valid = validate(pixels.band, settings); !valid.ok()) {
     return valid;
   }

@@ -108,7 +108,7 @@ absl::Status FilmDesk::merge(JobId id, OneJob& job, Waiting& waiting) {
   const BandPixels& pixels = waiting.put.pixels;
   while (!waiting.rows.empty()) {
     const RowRange rows = waiting.rows.back();
-    TileMask tiles = waiting.put.tiles.of(rows);
+    TileSamples tiles = waiting.put.tiles.of(rows);
     RETURN_IF_ERROR(job.film->add(rows == pixels.band.rows ? pixels : slice(pixels, rows), tiles));
     credits_.add(id, rows, waiting.put.renderer, waiting.put.worker);
     job.added.push_back({waiting.put.offset, pixels.band.samples.last, waiting.put.renderer, rows,

@@ -67,7 +67,7 @@ class FilmDesk {
     std::uint64_t last_sample = 0;
     std::uint64_t renderer = 0;
     RowRange rows;
-    TileMask tiles;  ///< of these rows
+    TileSamples tiles;  ///< of these rows
   };
   struct OneJob {
     RenderSettings settings;

@@ -13,7 +13,7 @@
 #include "coordinator/engine/answer.h"
 #include "coordinator/engine/engine.h"
 #include "renderlib/render/band.h"
-#include "renderlib/render/tile_mask.h"
+#include "renderlib/render/tile_samples.h"
 
 namespace bandsaw::coordinator {
 
@@ -66,8 +66,8 @@ struct PutBand {
   std::string instance;        ///< of the worker
   std::uint64_t renderer = 0;  ///< of it (core/renderer.h)
   BandPixels pixels;
-  std::string worker;   ///< as action::AddToFilm tells it
-  TileMask tiles = {};  ///< likewise
+  std::string worker;      ///< as action::AddToFilm tells it
+  TileSamples tiles = {};  ///< likewise
   double render_s = 0;
   double cpu_s = 0;
   bool written = false;

@@ -164,7 +164,9 @@ absl::StatusOr<farm::ToWorker> to_message(const action::Lease& lease) {
   l->mutable_band()->set_last_sample(lease.band.samples.last);
   l->mutable_band()->set_first_row(lease.band.rows.first);
   l->mutable_band()->set_last_row(lease.band.rows.last);
-  l->set_tiles(lease.tiles.bits());
+  for (const std::uint32_t number : lease.tiles.numbers()) {
+    l->add_tile_samples(number);
+  }
   l->set_attempt(lease.attempt);
   return message;
 }

@@ -56,6 +56,7 @@ RenderSettings read_settings(FieldReader& in) {
 
 void write_job(FieldWriter& out, const record::JobAdded& added) {
   out.number("job", added.job);
+  out.number("pixel_version", added.pixel_version);
   out.text("request_id", added.spec.request_id);
   out.text("name", added.spec.name);
   out.text("manifest", added.spec.manifest);
@@ -68,12 +69,16 @@ void write_job(FieldWriter& out, const record::JobAdded& added) {
 }
 
 record::JobAdded read_job(FieldReader& in) {
-  return {.job = in.number("job"),
+  const JobId job = in.number("job");
+  const std::uint64_t version =
+      in.next_is("pixel_version") ? in.number("pixel_version", UINT32_MAX) : 0;
+  return {.job = job,
           .spec = {.request_id = in.text("request_id"),
                    .name = in.text("name"),
                    .manifest = in.text("manifest"),
                    .settings = read_settings(in),
-                   .stop = read_stop(in)}};
+                   .stop = read_stop(in)},
+          .pixel_version = static_cast<std::uint32_t>(version)};
 }
 
 void write_tiles(FieldWriter& out, const record::TilesPlanned& r) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <numeric>
 
@@ -182,6 +183,15 @@ std::vector<int> plan_by(const TileGrid& grid, absl::Span<const HalfTileErrors> 
   return pays ? Pilot(grid, std::move(all)).levels() : std::vector<int>(all.size());
 }
 
+/// A power of two times a block: the one at or below `due`, or the one above, half tile by half
+/// tile so that the mean over them is `due`.
+double whole_net(double due, std::size_t i) {
+  // The golden ratio: neighbours, and any number of them, spread evenly over [0, 1).
+  const auto spread = static_cast<std::uint32_t>(i * 2'654'435'769u);
+  const double below = static_cast<double>(std::bit_floor(static_cast<std::uint64_t>(due)));
+  return due - below > below * (spread / 4'294'967'296.0) ? 2 * below : below;
+}
+
 }  // namespace
 
 TilePlan plan_tiles(const TileGrid& grid, absl::Span<const HalfTileErrors> tiles,
@@ -200,26 +210,36 @@ TilePlan plan_tiles(const TileGrid& grid, absl::Span<const HalfTileErrors> tiles
 TileSchedule::TileSchedule(const TileGrid& grid, const TilePlan& plan)
     : grid_(grid), plan_(plan), taken_(grid.half_tiles(), static_cast<std::uint32_t>(plan.pilot)) {
   BANDSAW_CHECK(plan.levels.size() == grid.half_tiles(), "one level a half tile");
+  for (std::size_t i = 0; i < plan.levels.size(); ++i) {
+    even_[i % 2] = even_[i % 2] && plan.levels[i] == '0';
+  }
 }
 
-TileMask TileSchedule::next(const SampleRange& pass) {
-  std::array<double, kLevels> most{};
-  for (int level = 0; level < kLevels; ++level) {
-    most[static_cast<std::size_t>(level)] = share_of(level) * static_cast<double>(pass.last);
+TileSamples TileSchedule::next(const SampleRange& pass) {
+  if (even_[0] && even_[1]) {
+    return {};
   }
-  TileMask mask(grid_.width, {0, grid_.height});
-  bool all = true;
+  TileSamples tiles(grid_.width, {0, grid_.height});
   for (std::size_t i = 0; i < taken_.size(); ++i) {
-    const double half_way = taken_[i] + static_cast<double>(pass.samples()) / 2;
-    if (half_way > most[static_cast<std::size_t>(level_of_digit(plan_.levels[i]))]) {
-      all = false;
-      continue;
+    const SampleRange samples = even_[i % 2] ? pass : node_of(i, pass);
+    if (samples.samples() > 0) {
+      taken_[i] = samples.last;
+      const auto tile = static_cast<std::uint32_t>(i / 2);
+      tiles.set(tile % grid_.columns() * kTileSide + (i & 1), tile / grid_.columns() * kTileSide,
+                samples);
     }
-    taken_[i] += static_cast<std::uint32_t>(pass.samples());
-    const auto tile = static_cast<std::uint32_t>(i / 2);
-    mask.add(tile % grid_.columns() * kTileSide + (i & 1), tile / grid_.columns() * kTileSide);
   }
-  return all ? TileMask() : mask;
+  return tiles;
+}
+
+SampleRange TileSchedule::node_of(std::size_t i, const SampleRange& pass) const {
+  const double due = share_of(level_of_digit(plan_.levels[i])) * static_cast<double>(pass.last);
+  const std::uint64_t at = taken_[i];
+  const std::uint64_t next = at + (at & (~at + 1));
+  if (static_cast<double>(at) >= whole_net(due, i) || next > kMaxSamples) {
+    return {};
+  }
+  return {at, next};
 }
 
 }  // namespace bandsaw

@@ -23,7 +23,7 @@
 
 #include "absl/types/span.h"
 #include "renderlib/render/band.h"
-#include "renderlib/render/tile_mask.h"
+#include "renderlib/render/tile_samples.h"
 
 namespace bandsaw {
 
@@ -37,7 +37,7 @@ struct TileError {
 /// Of a half tile: of its pixels in even rows of the image, and of those in odd ones.
 using HalfTileErrors = std::array<TileError, 2>;
 
-/// How much of the passes after the pilot each half tile takes part in.
+/// How many samples each half tile is to have after the pilot.
 struct TilePlan {
   std::uint64_t pilot = 0;  ///< samples of all pixels
   /// A digit 0 … f a half tile, in the order of TileGrid: level l is to have 2^(-l/2) of the
@@ -55,19 +55,29 @@ struct TilePlan {
 TilePlan plan_tiles(const TileGrid& grid, absl::Span<const HalfTileErrors> tiles,
                     std::uint64_t samples);
 
-/// Which half tiles take part in which pass after the pilot.
+/// Which samples half tiles take in which pass after the pilot.
+///
+/// Where an image is smooth its error falls in whole nets of Sobol' points, the first 2^k of a
+/// sequence, and hardly between them. So a half tile has 2^k samples, and doubles them when its
+/// share of those of level 0 is due; which of two half tiles of equal shares does so earlier is
+/// dealt out evenly over the image. A half of the image whose levels are all 0 takes the passes as
+/// they are.
 class TileSchedule {
  public:
   /// `plan.levels` has one digit 0 … f a half tile.
   TileSchedule(const TileGrid& grid, const TilePlan& plan);
 
   /// The pass that follows the last.
-  TileMask next(const SampleRange& pass);
+  TileSamples next(const SampleRange& pass);
 
  private:
+  /// What half tile i takes: the longest node after what it has, or nothing.
+  SampleRange node_of(std::size_t i, const SampleRange& pass) const;
+
   TileGrid grid_;
   TilePlan plan_;
-  std::vector<std::uint32_t> taken_;  ///< samples of each half tile
+  std::array<bool, 2> even_{true, true};  ///< each half of the image: all levels are 0
+  std::vector<std::uint64_t> taken_;      ///< samples of each half tile
 };
 
 }  // namespace bandsaw

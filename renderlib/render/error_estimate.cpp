@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "renderlib/base/check.h"
-#include "renderlib/render/tile_mask.h"
+#include "renderlib/render/tile_samples.h"
 
 namespace bandsaw {
 namespace {

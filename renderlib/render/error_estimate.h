@@ -58,9 +58,9 @@ class ErrorSums {
   /// A row whose first two nodes have equally many samples; all rows have equally many pixels. With
   /// a and b their means and v = (a - b)^2 / 4 the variance of both together, the variance of a
   /// further node of mean e is taken as (e - (a + b) / 2)^2 - v, which is right on average.
-  /// Pixels of one half row of a tile (render/tile_mask.h) may have found their light together, as
-  /// no others may; the margin allows for it. `step`: 2 for rows of an image, where the pixels of
-  /// two half rows take turns, 1 for a half row.
+  /// Pixels of one half row of a tile (render/tile_samples.h) may have found their light together,
+  /// as no others may; the margin allows for it. `step`: 2 for rows of an image, where the pixels
+  /// of two half rows take turns, 1 for a half row.
   void add_row(absl::Span<const NodeSums> nodes, std::size_t step);
 
   /// At least one row MUST have been added.

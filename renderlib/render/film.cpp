@@ -7,6 +7,7 @@
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/check.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/render/covered_samples.h"
 #include "renderlib/render/film_strips.h"
 #include "renderlib/render/row_store.h"
 #include "renderlib/render/strip_nodes.h"
@@ -15,7 +16,8 @@ namespace bandsaw {
 struct Film::Rows {
   FilmStrips strips;
   RowStore store;
-  std::vector<StripNodes> nodes;  ///< of all strips, row by row
+  std::vector<StripNodes> nodes;        ///< of all strips, row by row
+  std::vector<CoveredSamples> covered;  ///< of all rows
 
   std::uint32_t width() const { return strips.grid().width; }
   std::uint32_t height() const { return strips.grid().height; }
@@ -24,13 +26,6 @@ struct Film::Rows {
   }
   const StripNodes& of(std::uint32_t y, std::uint32_t index) const {
     return nodes[std::size_t{y} * strips.per_row() + index];
-  }
-  /// The first samples of the row that all are there or left out. All strips of a row have nodes of
-  /// the same samples, merged more or less.
-  std::uint64_t samples_of_row(std::uint32_t y) const {
-    const StripNodes& first = of(y, 0);
-    const std::size_t count = prefix(first);
-    return count == 0 ? 0 : first[count - 1].range.last;
   }
   /// Calls f(row, strip's index, strip, nodes) for each strip that has pixels, row by row.
   template <class F>
@@ -44,18 +39,17 @@ struct Film::Rows {
     }
   }
 
-  absl::Status check(const BandPixels& pixels, const TileMask& tiles) const;
-  absl::Status check_new(std::uint32_t y, const SampleRange& samples) const;
+  absl::Status check(const BandPixels& pixels, const TileSamples& tiles) const;
   /// `row`: the sums of a row's pixels.
-  void insert(std::uint32_t y, const SampleRange& range, absl::Span<const double> row,
-              const TileMask& tiles);
+  void insert(std::uint32_t y, const SampleRange& samples, absl::Span<const double> row,
+              const TileSamples& tiles);
   /// The nodes that follow each other from the first, as the error is told from; in `out`.
   void node_sums(const Strip& strip, const StripNodes& from, std::vector<NodeSums>& out) const;
   /// The sum of these nodes, left to right: 3 numbers a pixel of the strip.
   void add_up(const StripNodes& from, std::vector<double>& total) const;
 };
 
-absl::Status Film::Rows::check(const BandPixels& pixels, const TileMask& tiles) const {
+absl::Status Film::Rows::check(const BandPixels& pixels, const TileSamples& tiles) const {
   const Band& band = pixels.band;
   if (pixels.width != width() || band.rows.first >= band.rows.last || band.rows.last > height() ||
       pixels.sums.size() != std::size_t{band.rows.count()} * width() * 3 ||
@@ -67,36 +61,32 @@ absl::Status Film::Rows::check(const BandPixels& pixels, const TileMask& tiles) 
   }
   BANDSAW_CHECK(strips.half_tiles() || tiles.whole(), "a film of rows has no tiles");
   for (std::uint32_t y = band.rows.first; y < band.rows.last; ++y) {
-    RETURN_IF_ERROR(check_new(y, band.samples));
-  }
-  return absl::OkStatus();
-}
-
-absl::Status Film::Rows::check_new(std::uint32_t y, const SampleRange& samples) const {
-  for (const Node& node : of(y, 0)) {
-    if (node.range.first < samples.last && samples.first < node.range.last) {
+    if (const auto there = covered[y].overlap(band.samples)) {
       return absl::FailedPreconditionError(absl::StrCat(
-          "row ", y, ": samples [", node.range.first, ", ", node.range.last,
-          ") are there already; came again: [", samples.first, ", ", samples.last, ")"));
+          "row ", y, ": samples [", there->first, ", ", there->last,
+          ") are there already; came again: [", band.samples.first, ", ", band.samples.last, ")"));
     }
   }
   return absl::OkStatus();
 }
 
-void Film::Rows::insert(std::uint32_t y, const SampleRange& range, absl::Span<const double> row,
-                        const TileMask& tiles) {
+void Film::Rows::insert(std::uint32_t y, const SampleRange& samples, absl::Span<const double> row,
+                        const TileSamples& tiles) {
+  covered[y].add(samples);
   for (std::uint32_t i = 0; i < strips.per_row(); ++i) {
     const Strip strip = strips.strip(y, i);
-    Node node{.range = range};
-    if (strip.count > 0 && tiles.has(strip.first, y)) {
-      node.samples = range.samples();
+    if (strip.count == 0) {
+      continue;
+    }
+    Node node{.range = tiles.of_pixel(strip.first, y, samples)};
+    if (node.range.samples() > 0) {
       node.slot = store.take();
       const absl::Span<double> to = store.row(node.slot);
       for (std::size_t k = 0; k < strip.count; ++k) {
         std::copy_n(&row[(strip.first + k * strip.step) * 3], 3, &to[3 * k]);
       }
+      insert_node(node, of(y, i), store);
     }
-    insert_node(node, of(y, i), store);
   }
 }
 
@@ -104,20 +94,17 @@ void Film::Rows::node_sums(const Strip& strip, const StripNodes& from,
                            std::vector<NodeSums>& out) const {
   out.clear();
   for (std::size_t i = 0; i < prefix(from); ++i) {
-    if (from[i].samples > 0) {
-      out.push_back({from[i].samples, store.row(from[i].slot).first(std::size_t{strip.count} * 3)});
-    }
+    out.push_back(
+        {from[i].range.samples(), store.row(from[i].slot).first(std::size_t{strip.count} * 3)});
   }
 }
 
 void Film::Rows::add_up(const StripNodes& from, std::vector<double>& total) const {
   std::fill(total.begin(), total.end(), 0.0);
   for (std::size_t i = 0; i < prefix(from); ++i) {
-    if (from[i].samples > 0) {
-      const absl::Span<const double> sums = store.row(from[i].slot);
-      for (std::size_t k = 0; k < total.size(); ++k) {
-        total[k] += sums[k];
-      }
+    const absl::Span<const double> sums = store.row(from[i].slot);
+    for (std::size_t k = 0; k < total.size(); ++k) {
+      total[k] += sums[k];
     }
   }
 }
@@ -133,10 +120,11 @@ absl::StatusOr<Film> Film::create(std::uint32_t width, std::uint32_t height,
   const FilmStrips strips({width, height}, grain == Grain::kHalfTiles);
   return Film(std::make_unique<Rows>(
       Rows{strips, RowStore(std::size_t{strips.longest()} * 3, std::move(spill_folder)),
-           std::vector<StripNodes>(std::size_t{height} * strips.per_row())}));
+           std::vector<StripNodes>(std::size_t{height} * strips.per_row()),
+           std::vector<CoveredSamples>(height)}));
 }
 
-absl::Status Film::add(const BandPixels& pixels, const TileMask& tiles) {
+absl::Status Film::add(const BandPixels& pixels, const TileSamples& tiles) {
   RETURN_IF_ERROR(rows_->check(pixels, tiles));
   const RowRange& range = pixels.band.rows;
   RETURN_IF_ERROR(rows_->store.reserve(std::size_t{range.count()} * rows_->strips.per_row()));
@@ -151,7 +139,7 @@ absl::Status Film::add(const BandPixels& pixels, const TileMask& tiles) {
 
 bool Film::complete(std::uint64_t samples) const {
   for (std::uint32_t y = 0; y < height(); ++y) {
-    if (rows_->samples_of_row(y) < samples) {
+    if (rows_->covered[y].from_start() < samples) {
       return false;
     }
   }
@@ -166,16 +154,15 @@ Film::Snapshot Film::snapshot(std::uint32_t row_step) const {
   snapshot.least_samples = kMaxSamples;
   std::vector<double> total(std::size_t{rows_->strips.longest()} * 3);
   for (std::uint32_t y = 0; y < height(); y += row_step) {
-    snapshot.least_samples = std::min(snapshot.least_samples, rows_->samples_of_row(y));
-    snapshot.missing_rows += rows_->samples_of_row(y) == 0 ? 1 : 0;
+    snapshot.least_samples = std::min(snapshot.least_samples, rows_->covered[y].from_start());
+    snapshot.missing_rows += rows_->covered[y].from_start() == 0 ? 1 : 0;
   }
   rows_->each([&](std::uint32_t y, std::uint32_t, const Strip& strip, const StripNodes& nodes) {
-    const std::uint64_t samples = y % row_step == 0 ? taken(nodes) : 0;
-    if (samples == 0) {
+    const auto n = static_cast<double>(y % row_step == 0 ? samples(nodes) : 0);
+    if (n == 0) {
       return;
     }
     rows_->add_up(nodes, total);
-    const auto n = static_cast<double>(samples);
     Rgb* const row = &snapshot.image.pixels[std::size_t{y / row_step} * width()];
     for (std::uint32_t k = 0; k < strip.count; ++k) {
       row[strip.first + k * strip.step] = {static_cast<float>(total[3 * k] / n),
@@ -234,9 +221,9 @@ Image Film::counts() const {
   Image image{width(), height(), {}};
   image.pixels.resize(std::size_t{width()} * height());
   rows_->each([&](std::uint32_t y, std::uint32_t, const Strip& strip, const StripNodes& nodes) {
-    const Rgb samples = gray(static_cast<float>(taken(nodes)));
+    const Rgb count = gray(static_cast<float>(samples(nodes)));
     for (std::uint32_t k = 0; k < strip.count; ++k) {
-      image.pixels[std::size_t{y} * width() + strip.first + k * strip.step] = samples;
+      image.pixels[std::size_t{y} * width() + strip.first + k * strip.step] = count;
     }
   });
   return image;

@@ -3,8 +3,8 @@
 // The accumulators of an image: takes bands in any order, holds every row's sums as nodes of the
 // summation tree (render/band.h), merges siblings as they meet, and gives the image.
 //
-// Where tiles may be left out of passes (render/tile_mask.h) a pixel's sum is the same tree, in
-// which samples that were not taken count as zeros, and its mean is over those that were.
+// Where half tiles take samples of their own in a pass (render/tile_samples.h), a pixel's sum is
+// the tree of those, and its mean is over them.
 
 #include <cstdint>
 #include <memory>
@@ -17,7 +17,7 @@
 #include "renderlib/render/adaptive_plan.h"
 #include "renderlib/render/band.h"
 #include "renderlib/render/error_estimate.h"
-#include "renderlib/render/tile_mask.h"
+#include "renderlib/render/tile_samples.h"
 
 namespace bandsaw {
 
@@ -36,19 +36,19 @@ class Film {
   ~Film();
 
   /// Adds rows that are not covered yet. FAILED_PRECONDITION: a row's samples, or some of them, are
-  /// there already; then nothing was changed. RESOURCE_EXHAUSTED: no memory or disk. `tiles`: who
-  /// took part; whole for a film of rows.
-  absl::Status add(const BandPixels& pixels, const TileMask& tiles = {});
+  /// there already; then nothing was changed. RESOURCE_EXHAUSTED: no memory or disk. `tiles`: of
+  /// the band, who took which samples; whole for a film of rows.
+  absl::Status add(const BandPixels& pixels, const TileSamples& tiles = {});
 
-  /// Whether samples [0, samples) of every row are there, or were left out.
+  /// Whether samples [0, samples) of every row's passes are there, or were left out.
   bool complete(std::uint64_t samples) const;
 
-  /// The image so far: mean of the samples of [0, n) that each pixel took, n the largest count
-  /// whose maximal nodes are all there, as the fixed tree adds them, rounded to float once. Rows
-  /// with none are `missing`, black.
+  /// The image so far: mean of each pixel's first n samples, n the largest count whose maximal
+  /// nodes are all there, as the fixed tree adds them, rounded to float once. Rows with none are
+  /// `missing`, black.
   struct Snapshot {
     Image image;
-    std::uint64_t least_samples = 0;  ///< over the rows
+    std::uint64_t least_samples = 0;  ///< of passes, over the rows
     std::uint32_t missing_rows = 0;
   };
   /// Of every row_step-th row (> 0): an image of so many rows; the counts are over those, too.

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "renderlib/render/tile_mask.h"
+#include "renderlib/render/tile_samples.h"
 
 namespace bandsaw {
 

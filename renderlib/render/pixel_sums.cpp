@@ -30,15 +30,13 @@ PixelSums::PixelSums(const Scene& scene, const RenderSettings& settings, const B
       shares_(scene.shares_paths() && follows_light(settings.integrator) && !options_.local) {}
 
 void PixelSums::add_run(std::uint32_t y, std::uint32_t first, std::uint32_t last,
-                        const TileMask& tiles, absl::Span<double> row, Counters& counters) const {
+                        const TileSamples& tiles, absl::Span<double> row,
+                        Counters& counters) const {
   Desk desk;
   desk.pixels.reserve(kMostShared);
-  desk.stack.resize(static_cast<std::size_t>(std::bit_width(samples_.blocks())) + 1);
   if (!shares_) {
     for (std::uint32_t x = first; x < last && !stopped(); ++x) {
-      if (tiles.has(x, y)) {
-        add_group(y, {x, x + 1}, row, desk, counters);
-      }
+      add_group(y, {x, x + 1}, tiles.of_pixel(x, y, samples_), row, desk, counters);
     }
     return;
   }
@@ -46,25 +44,30 @@ void PixelSums::add_run(std::uint32_t y, std::uint32_t first, std::uint32_t last
   for (std::uint32_t column = first / kTileSide; column * kTileSide < last; ++column) {
     for (const std::uint32_t half : {0u, 1u}) {
       const HalfRow group = half_row(grid, column, half, y);
-      if (group.count() > 0 && tiles.has(group.first, y) && !stopped()) {
-        add_group(y, group, row, desk, counters);
+      if (group.count() > 0 && !stopped()) {
+        add_group(y, group, tiles.of_pixel(group.first, y, samples_), row, desk, counters);
       }
     }
   }
 }
 
 /// Leaves in order, two siblings added as soon as both are there.
-void PixelSums::add_group(std::uint32_t y, const HalfRow& group, absl::Span<double> row, Desk& desk,
-                          Counters& counters) const {
+void PixelSums::add_group(std::uint32_t y, const HalfRow& group, const SampleRange& samples,
+                          absl::Span<double> row, Desk& desk, Counters& counters) const {
+  if (samples.samples() == 0) {
+    return;
+  }
   auto& [pixels, stack] = desk;
+  stack.resize(static_cast<std::size_t>(std::bit_width(samples.blocks())) + 1);
   pixels.clear();
   for (std::uint32_t x = group.first; x < group.last; x += 2) {
     pixels.push_back({.sampler = PixelSampler(settings_.seed, x, y), .camera_ray = {}});
   }
   std::size_t top = 0;
-  for (std::uint64_t block = 0; block < samples_.blocks() && !stopped(); ++block) {
-    stack[top++] =
-        leaves(y, group, samples_.first + block * kBlockSamples, absl::MakeSpan(pixels), counters);
+  for (std::uint64_t block = 0; block < samples.blocks() && !stopped(); ++block) {
+    const std::uint64_t first = samples.first + block * kBlockSamples;
+    stack[top++] = leaf(y, group, {first, std::min(first + kBlockSamples, samples.last)},
+                        absl::MakeSpan(pixels), counters);
     for (std::uint64_t pairs = block; (pairs & 1) != 0; pairs >>= 1) {
       --top;
       for (std::size_t i = 0; i < pixels.size(); ++i) {
@@ -80,13 +83,12 @@ void PixelSums::add_group(std::uint32_t y, const HalfRow& group, absl::Span<doub
   }
 }
 
-PixelSums::Sums PixelSums::leaves(std::uint32_t y, const HalfRow& group, std::uint64_t first_sample,
-                                  absl::Span<SharedPixel> pixels, Counters& counters) const {
+PixelSums::Sums PixelSums::leaf(std::uint32_t y, const HalfRow& group, const SampleRange& samples,
+                                absl::Span<SharedPixel> pixels, Counters& counters) const {
   Sums sums{};
   std::array<double, kMostShared> left_out{};
   PathCounts counts;
-  const std::uint64_t last = std::min(first_sample + kBlockSamples, samples_.last);
-  for (std::uint64_t number = first_sample; number < last; ++number) {
+  for (std::uint64_t number = samples.first; number < samples.last; ++number) {
     sample(y, group, number, pixels, counts);
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       const Rgb& value = pixels[i].radiance;
@@ -104,7 +106,7 @@ PixelSums::Sums PixelSums::leaves(std::uint32_t y, const HalfRow& group, std::ui
     }
   }
   // The others stand for what was left out: as black it would darken the pixel.
-  const auto taken = static_cast<double>(last - first_sample);
+  const auto taken = static_cast<double>(samples.samples());
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     if (left_out[i] > 0 && left_out[i] < taken) {
       sums[i] = taken / (taken - left_out[i]) * sums[i];

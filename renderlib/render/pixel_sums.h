@@ -13,7 +13,7 @@
 #include "renderlib/integrate/shared_paths.h"
 #include "renderlib/render/band.h"
 #include "renderlib/render/settings.h"
-#include "renderlib/render/tile_mask.h"
+#include "renderlib/render/tile_samples.h"
 #include "renderlib/scene/scene.h"
 
 namespace bandsaw {
@@ -30,9 +30,9 @@ class PixelSums {
   /// Where a run of pixels may begin and end: at multiples of this, and at the end of the row.
   std::uint32_t run_step() const { return shares_ ? kTileSide : 1; }
 
-  /// Sets three sums a pixel of those of [first, last) in row y that take part; `row`: of the whole
-  /// row. Checks `stop` at least once a block of samples; sums mean nothing once it is set.
-  void add_run(std::uint32_t y, std::uint32_t first, std::uint32_t last, const TileMask& tiles,
+  /// Sets three sums a pixel of those of [first, last) in row y that take samples; `row`: of the
+  /// whole row. Checks `stop` at least once a block of samples; sums mean nothing once it is set.
+  void add_run(std::uint32_t y, std::uint32_t first, std::uint32_t last, const TileSamples& tiles,
                absl::Span<double> row, Counters& counters) const;
 
  private:
@@ -50,10 +50,11 @@ class PixelSums {
     std::vector<Sums> stack;
   };
 
-  void add_group(std::uint32_t y, const HalfRow& group, absl::Span<double> row, Desk& desk,
-                 Counters& counters) const;
-  Sums leaves(std::uint32_t y, const HalfRow& group, std::uint64_t first_sample,
-              absl::Span<SharedPixel> pixels, Counters& counters) const;
+  void add_group(std::uint32_t y, const HalfRow& group, const SampleRange& samples,
+                 absl::Span<double> row, Desk& desk, Counters& counters) const;
+  /// Of one block, or what is there of it.
+  Sums leaf(std::uint32_t y, const HalfRow& group, const SampleRange& samples,
+            absl::Span<SharedPixel> pixels, Counters& counters) const;
   void sample(std::uint32_t y, const HalfRow& group, std::uint64_t sample,
               absl::Span<SharedPixel> pixels, PathCounts& counts) const;
   Ray camera_ray(const PixelSampler& sampler, std::uint32_t x, std::uint32_t y,

@@ -34,7 +34,7 @@ struct Units {
 
 absl::StatusOr<BandPixels> render_band(const Scene& scene, const RenderSettings& settings,
                                        const Band& band, Pool& pool, const std::atomic<bool>& stop,
-                                       const RowsDone& progress, const TileMask& tiles) {
+                                       const RowsDone& progress, const TileSamples& tiles) {
   RETURN_IF_ERROR(validate(band, settings));
   const PixelSums pixel_sums(scene, settings, band, stop);
   const Units units(band, settings.width, pixel_sums.run_step());

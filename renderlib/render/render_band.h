@@ -9,7 +9,7 @@
 #include "renderlib/base/pool.h"
 #include "renderlib/render/band.h"
 #include "renderlib/render/settings.h"
-#include "renderlib/render/tile_mask.h"
+#include "renderlib/render/tile_samples.h"
 #include "renderlib/scene/scene.h"
 
 namespace bandsaw {
@@ -20,9 +20,9 @@ using RowsDone = std::function<void(std::uint32_t)>;
 
 /// Renders the band. The pixels depend on scene, settings and band alone. Checks `stop` at least
 /// once a row of a tile: CANCELLED when it was set. INVALID_ARGUMENT: settings or band out of
-/// range. `tiles`: who takes part, of rows that include the band's; the sums of others are zero.
+/// range. `tiles`: what half tiles take, of rows that include the band's; sums of nothing are zero.
 absl::StatusOr<BandPixels> render_band(const Scene& scene, const RenderSettings& settings,
                                        const Band& band, Pool& pool, const std::atomic<bool>& stop,
-                                       const RowsDone& progress, const TileMask& tiles = {});
+                                       const RowsDone& progress, const TileSamples& tiles = {});
 
 }  // namespace bandsaw

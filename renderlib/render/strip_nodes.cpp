@@ -24,24 +24,17 @@ bool should_merge(const StripNodes& nodes, std::size_t i) {
   }
   const SampleRange both{0, nodes[i + 1].range.last};
   return nodes.size() > i + 2 && whole(both) && whole(nodes[i + 2].range) &&
-         siblings(both, nodes[i + 2].range) &&
-         nodes[i + 2].samples >= nodes[i].samples + nodes[i + 1].samples;
+         siblings(both, nodes[i + 2].range);
 }
 
-/// Zeros added to a sum are the sum: where one node is empty the other's slot is that of both.
 void merge_into(Node& left, const Node& right, RowStore& store) {
-  if (left.samples > 0 && right.samples > 0) {
-    const absl::Span<double> sums = store.row(left.slot);
-    const absl::Span<const double> more = store.row(right.slot);
-    for (std::size_t k = 0; k < sums.size(); ++k) {
-      sums[k] += more[k];
-    }
-    store.give_back(right.slot);
-  } else if (right.samples > 0) {
-    left.slot = right.slot;
+  const absl::Span<double> sums = store.row(left.slot);
+  const absl::Span<const double> more = store.row(right.slot);
+  for (std::size_t k = 0; k < sums.size(); ++k) {
+    sums[k] += more[k];
   }
+  store.give_back(right.slot);
   left.range.last = right.range.last;
-  left.samples += right.samples;
 }
 
 void merge_all(StripNodes& nodes, RowStore& store) {
@@ -79,15 +72,12 @@ std::size_t prefix(const StripNodes& nodes) {
 }
 
 bool has_halves(const StripNodes& nodes) {
-  return prefix(nodes) >= 2 && nodes[0].samples > 0 && nodes[0].samples == nodes[1].samples;
+  return prefix(nodes) >= 2 && nodes[0].range.samples() == nodes[1].range.samples();
 }
 
-std::uint64_t taken(const StripNodes& nodes) {
-  std::uint64_t samples = 0;
-  for (std::size_t i = 0; i < prefix(nodes); ++i) {
-    samples += nodes[i].samples;
-  }
-  return samples;
+std::uint64_t samples(const StripNodes& nodes) {
+  const std::size_t count = prefix(nodes);
+  return count == 0 ? 0 : nodes[count - 1].range.last;
 }
 
 }  // namespace bandsaw

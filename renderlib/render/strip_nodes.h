@@ -12,7 +12,6 @@ namespace bandsaw {
 
 struct Node {
   SampleRange range;
-  std::uint64_t samples = 0;  ///< that were taken; 0: none, and there is no slot
   RowStore::Slot slot = 0;
 };
 
@@ -26,10 +25,10 @@ void insert_node(const Node& node, StripNodes& nodes, RowStore& store);
 /// How many nodes from the first sample on follow each other without a gap.
 std::size_t prefix(const StripNodes& nodes);
 
-/// Whether these begin with two of equally many samples, at least one each.
+/// Whether these begin with two of equally many samples.
 bool has_halves(const StripNodes& nodes);
 
-/// Samples that were taken, of these.
-std::uint64_t taken(const StripNodes& nodes);
+/// How many samples these are.
+std::uint64_t samples(const StripNodes& nodes);
 
 }  // namespace bandsaw

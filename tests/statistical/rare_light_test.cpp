@@ -48,7 +48,7 @@ Rendered render(const Scene& scene, std::uint64_t seed, bool adaptive) {
                                 .seed = seed,
                                 .integrator = Integrator::kPathScattering};
   Film film = *Film::create(kGrid.width, kGrid.height, "", Film::Grain::kHalfTiles);
-  const auto take = [&](const SampleRange& pass, const TileMask& tiles) {
+  const auto take = [&](const SampleRange& pass, const TileSamples& tiles) {
     const auto pixels =
         render_band(scene, settings, {pass, {0, kGrid.height}}, pool, kGoOn, {}, tiles);
     ASSERT_TRUE(pixels.ok() && film.add(*pixels, tiles).ok());

@@ -8,7 +8,7 @@
 #include "proto/wire/digest.h"
 #include "renderlib/render/band.h"
 #include "renderlib/render/settings.h"
-#include "renderlib/render/tile_mask.h"
+#include "renderlib/render/tile_samples.h"
 
 namespace bandsaw::worker {
 
@@ -20,7 +20,7 @@ struct Task {
   wire::Digest manifest;
   RenderSettings settings;
   Band band;
-  TileMask tiles = {};  ///< who takes part, of the band's rows
+  TileSamples tiles = {};  ///< of the band
 };
 
 /// What rendering a band took. Where two bands overlap each moment is counted once, for the one

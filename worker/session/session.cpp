@@ -47,8 +47,8 @@ absl::StatusOr<Task> task_of(const farm::Lease& lease) {
   ASSIGN_OR_RETURN(task.manifest, wire::digest_from_raw(lease.manifest_sha256()));
   RETURN_IF_ERROR(validate(task.settings));
   RETURN_IF_ERROR(validate(task.band, task.settings));
-  ASSIGN_OR_RETURN(task.tiles,
-                   TileMask::from_bits(lease.tiles(), task.settings.width, task.band.rows));
+  ASSIGN_OR_RETURN(task.tiles, TileSamples::from_numbers(lease.tile_samples(), task.settings.width,
+                                                         task.band.rows));
   return task;
 }
 

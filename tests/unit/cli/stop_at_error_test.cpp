@@ -45,16 +45,18 @@ class NoisyImage {
   /// So many samples a pixel have the target on average.
   double ideal_samples() const { return variance_ / (kTarget * kTarget); }
 
-  BandPixels render(const SampleRange& samples) {
-    const auto n = static_cast<double>(samples.samples());
+  BandPixels render(const SampleRange& samples, const TileSamples& tiles) {
     std::vector<double> errors;
     for (const double deviation : deviations_) {
-      errors.push_back(std::sqrt(n) * deviation * normal(random_));
+      errors.push_back(deviation * normal(random_));
     }
     BandPixels pixels{
         .band = {samples, {0, kGrid.height}}, .width = kGrid.width, .sums = {}, .counters = {}};
     for (std::size_t i = 0; i < kPixels; ++i) {
-      pixels.sums.insert(pixels.sums.end(), 3, n + errors[source(i)]);
+      const auto x = static_cast<std::uint32_t>(i % kGrid.width);
+      const auto y = static_cast<std::uint32_t>(i / kGrid.width);
+      const auto n = static_cast<double>(tiles.of_pixel(x, y, samples).samples());
+      pixels.sums.insert(pixels.sums.end(), 3, n + std::sqrt(n) * errors[source(i)]);
     }
     return pixels;
   }
@@ -97,10 +99,10 @@ Stopped run(Errors errors, bool adaptive, bool with_margin, Random& random) {
   double taken = 0;
   double error = -1;
   while (const auto pass = plan.next(samples, error, 1)) {
-    const TileMask tiles = plan.tiles(*pass);
-    EXPECT_TRUE(film.add(image.render(*pass), tiles).ok());
+    const TileSamples tiles = plan.tiles(*pass);
+    EXPECT_TRUE(film.add(image.render(*pass, tiles), tiles).ok());
     samples = pass->last;
-    taken += static_cast<double>(pass->samples() * tiles.pixels(kGrid.width, {0, kGrid.height}));
+    taken += static_cast<double>(tiles.count(kGrid.width, {*pass, {0, kGrid.height}}));
     if (const auto estimate = film.error()) {
       error = with_margin ? estimate->at_most() : estimate->relative_rmse;
     }

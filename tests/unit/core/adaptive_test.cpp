@@ -1,4 +1,4 @@
-// Adaptive jobs: the plan comes from the pilot, is journalled, and decides who takes part in every
+// Adaptive jobs: the plan comes from the pilot, is journalled, and decides who takes what in every
 // pass after it.
 
 #include <cmath>
@@ -47,14 +47,14 @@ TEST(Adaptive, PassesAfterThePilotAreOfThePlansTiles) {
   // 0.2 / sqrt(n) <= 4 x 0.01 from 25 samples on: the first look plans.
   EXPECT_EQ(planned[0].plan, plan_tiles(kGrid, uneven(), 32));
   TileSchedule schedule(kGrid, planned[0].plan);
-  std::map<SampleRange, TileMask> masks;
+  std::map<SampleRange, TileSamples> tiles_of;
   for (const auto& pass : run.farm.all_records<record::PassPlanned>()) {
-    masks[pass.samples] = pass.samples.first < 32 ? TileMask() : schedule.next(pass.samples);
+    tiles_of[pass.samples] = pass.samples.first < 32 ? TileSamples() : schedule.next(pass.samples);
   }
   std::uint64_t left_out = 0;
   for (const action::Lease& lease : run.farm.all<action::Lease>()) {
-    const auto pass = std::prev(masks.upper_bound({lease.band.samples.first, kMaxSamples}));
-    EXPECT_EQ(lease.tiles, pass->second.of(lease.band.rows));
+    const auto pass = std::prev(tiles_of.upper_bound({lease.band.samples.first, kMaxSamples}));
+    EXPECT_EQ(lease.tiles, pass->second.of(pass->first, lease.band));
     left_out += lease.tiles.whole() ? 0 : 1;
   }
   EXPECT_GT(left_out, 0u);

@@ -49,6 +49,31 @@ FarmDriver second_life(const FarmDriver& farm, const std::vector<input::BandStor
   return next;
 }
 
+// Its bands would be of two versions, and where half tiles are is for the version to say.
+TEST(Restart, AJobOfAnotherPixelVersionFailsAndOneThatIsOverStays) {
+  FarmDriver farm;
+  const JobId running = farm.submit(test_job("r1", StopAtSamples{16}));
+  const JobId cancelled = farm.submit(test_job("r2", StopAtSamples{16}));
+  farm.say(input::Cancel{cancelled});
+  for (const std::uint32_t version : {2u, 3u}) {
+    CoreOptions options = test_options();
+    options.fitness.pixel_version = version;
+    FarmDriver next(options);
+    for (const Record& record : farm.records) {
+      next.core.replay(record);
+    }
+    next.take(next.core.replayed(0));
+    EXPECT_EQ(next.job(cancelled).state, JobState::kCancelled);
+    EXPECT_EQ(next.job(running).state, version == 2 ? JobState::kRunning : JobState::kFailed);
+    if (version == 3) {
+      EXPECT_EQ(next.job(running).reason,
+                "begun with pixel version 2, this coordinator has 3: an image is of one version; "
+                "submit it again");
+      EXPECT_EQ(next.all<action::DropBands>().size(), 1u);
+    }
+  }
+}
+
 TEST(Restart, FiguresOfARunningJobGoOn) {
   FarmDriver farm(slow());
   farm.submit(test_job("r1", StopAtSamples{16}));

@@ -24,7 +24,7 @@ class FilmDeskTest : public testing::Test {
     desk_.add_job(1, settings_);
   }
 
-  PutBand logged(const SampleRange& samples, const RowRange& rows, const TileMask& tiles = {}) {
+  PutBand logged(const SampleRange& samples, const RowRange& rows, const TileSamples& tiles = {}) {
     Pool pool(1);
     const std::atomic<bool> stop{false};
     BandRecord record{.package_digest = std::string(64, 'a'), .settings = settings_, .pixels = {}};
@@ -137,8 +137,8 @@ TEST_F(FilmDeskTest, AnImageWaitsForItsLastRows) {
 
 TEST_F(FilmDeskTest, AnAdaptiveJobLeavesEachPixelsNumberOfSamples) {
   desk_.add_job(1, settings_, true);
-  TileMask even(settings_.width, {0, 8});
-  even.add(0, 0);
+  TileSamples even(settings_.width, {0, 8});
+  even.set(0, 0, {16, 32});
   ASSERT_TRUE(add({0, 16}, {0, 8}).ok());
   ASSERT_TRUE(desk_.add(1, logged({16, 32}, {0, 8}, even), {{0, 8}}).ok());
   desk_.want_image(1, 32);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <map>
 
 #include "renderlib/render/film.h"
 #include "tests/support/hard_case.h"
@@ -51,18 +52,39 @@ TEST(AdaptivePlan, SamplesAreDealtOutByTheRootOfTheVariance) {
   EXPECT_EQ(plan.levels[0], '0');
   EXPECT_EQ(plan.levels[2 * 31], '6');  // 2^(-6/2)
   TileSchedule schedule(grid, plan);
-  std::uint64_t noisy = 64;
-  std::uint64_t quiet = 64;
-  for (std::uint64_t first = 64; first < 1024; first += 64) {
-    const TileMask mask = schedule.next({first, first + 64});
-    noisy += mask.has(0, 0) ? 64 : 0;
-    quiet += mask.has(511, 0) ? 64 : 0;
-    if (first + 64 <= 512) {
-      EXPECT_EQ(quiet, 64u) << "the pilot is an eighth of it";
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint64_t> taken;  // by column and row
+  for (std::uint64_t first = 64; first < 4096; first += 64) {
+    const TileSamples now = schedule.next({first, first + 64});
+    Moments noisy;
+    Moments quiet;
+    for (std::uint32_t column = 0; column < 32; ++column) {
+      for (const std::uint32_t y : {0, 1, 16, 17}) {  // Both halves of both rows of tiles.
+        const SampleRange more = now.of_pixel(column * kTileSide, y, {});
+        std::uint64_t& samples = taken.try_emplace({column, y}, 64).first->second;
+        if (more.samples() > 0) {
+          ASSERT_EQ(more, (SampleRange{samples, 2 * samples})) << "always a whole net";
+          samples = more.last;
+        }
+        if (column != 15 && column != 16) {  // Where both meet they are mixed.
+          (column < 16 ? noisy : quiet).add(static_cast<double>(samples));
+        }
+      }
     }
+    const auto due = static_cast<double>(first + 64);
+    EXPECT_NEAR(noisy.mean() / due, 1, 0.05) << due;
+    EXPECT_NEAR(quiet.mean() / std::max(64.0, due / 8), 1, 0.05) << due;
   }
-  EXPECT_EQ(noisy, 1024u);
-  EXPECT_EQ(quiet, 128u);
+}
+
+// 48 samples are three blocks: the rest of the first 64 is no whole doubling.
+TEST(AdaptivePlan, APilotThatIsNoWholeNetIsMadeOneFirst) {
+  const TileGrid grid{512, 32};
+  TileSchedule schedule(
+      grid,
+      plan_tiles(
+          grid, errors(grid, [](std::uint32_t column) { return column < 16 ? 1 : 1.0 / 64; }), 48));
+  EXPECT_EQ(schedule.next({48, 64}).of_pixel(0, 0, {}), (SampleRange{48, 64}));
+  EXPECT_EQ(schedule.next({64, 128}).of_pixel(0, 0, {}), (SampleRange{64, 128}));
 }
 
 TEST(AdaptivePlan, NothingOfAHalfPlansThatHalf) {
@@ -123,14 +145,14 @@ struct Rendered {
 Rendered render(const Pixel& pixel, std::uint64_t seed, bool naive) {
   Random random(seed);
   Film film = *Film::create(kThin.width, kThin.height, "", Film::Grain::kHalfTiles);
-  const auto take = [&](const SampleRange& pass, const TileMask& tiles) {
+  const auto take = [&](const SampleRange& pass, const TileSamples& tiles) {
     BandPixels band{
         .band = {pass, {0, kThin.height}}, .width = kThin.width, .sums = {}, .counters = {}};
     for (std::uint32_t y = 0; y < kThin.height; ++y) {
       for (std::uint32_t x = 0; x < kThin.width; ++x) {
         double sum = 0;
-        for (std::uint64_t i = 0; i < pass.samples() && x < kThin.width / 2 && tiles.has(x, y);
-             ++i) {
+        const std::uint64_t samples = tiles.of_pixel(x, y, pass).samples();
+        for (std::uint64_t i = 0; i < samples && x < kThin.width / 2; ++i) {
           sum += pixel(random);
         }
         band.sums.insert(band.sums.end(), 3, sum);

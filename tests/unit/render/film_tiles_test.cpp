@@ -1,7 +1,8 @@
-// Half tiles that take part in some passes only.
+// Half tiles that take samples of their own.
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "renderlib/render/film.h"
@@ -10,60 +11,72 @@
 namespace bandsaw {
 namespace {
 
-struct Part {
+struct Pass {
   SampleRange samples;
-  TileMask tiles;
+  TileSamples tiles;
 };
 
-/// A third of the half tiles are left out of each of the nodes that cover the samples.
-std::vector<Part> random_parts(std::uint64_t samples, const TileGrid& grid, Random& random) {
-  std::vector<Part> parts;
+/// In each pass two thirds of the half tiles take the next node of their own.
+std::vector<Pass> random_passes(std::uint64_t samples, const TileGrid& grid, Random& random) {
+  std::vector<std::vector<SampleRange>> nodes(grid.half_tiles());
+  for (std::vector<SampleRange>& of_half_tile : nodes) {
+    of_half_tile = random_nodes(samples, random);
+    std::sort(of_half_tile.rbegin(), of_half_tile.rend());
+  }
+  std::vector<Pass> passes;
   for (const SampleRange& node : random_nodes(samples, random)) {
-    TileMask tiles(grid.width, {0, grid.height});
-    for (std::uint32_t y = 0; y < grid.height; y += kTileSide) {
-      for (std::uint32_t x = 0; x < grid.width; x += kTileSide) {
-        for (const std::uint32_t half : {0, 1}) {
-          if (random.below(3) != 0) {
-            tiles.add(x + half, y);
-          }
-        }
+    passes.push_back({node, TileSamples(grid.width, {0, grid.height})});
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      if (!nodes[i].empty() && random.below(3) != 0) {
+        const auto tile = static_cast<std::uint32_t>(i / 2);
+        passes.back().tiles.set(tile % grid.columns() * kTileSide + (i & 1),
+                                tile / grid.columns() * kTileSide, nodes[i].back());
+        nodes[i].pop_back();
       }
     }
-    parts.push_back({node, tiles});
   }
-  return parts;
+  return passes;
 }
 
-/// The tree's node with zeros for what the pixel did not take.
-double node_sum_of(const std::vector<Part>& parts, std::uint32_t x, std::uint32_t y, std::size_t k,
-                   const SampleRange& node) {
-  for (const Part& part : parts) {
-    if (part.samples.first <= node.first && node.last <= part.samples.last) {
-      return part.tiles.has(x, y) ? node_sum(y, k, node) : 0;
+BandPixels pixels_of(const Band& band, const TileGrid& grid, const TileSamples& tiles) {
+  BandPixels pixels{.band = band, .width = grid.width, .sums = {}, .counters = {}};
+  for (std::uint32_t y = band.rows.first; y < band.rows.last; ++y) {
+    for (std::uint32_t x = 0; x < grid.width; ++x) {
+      const SampleRange node = tiles.of_pixel(x, y, band.samples);
+      for (const std::size_t k : {3 * x, 3 * x + 1, 3 * x + 2}) {
+        pixels.sums.push_back(node.samples() > 0 ? node_sum(y, k, node) : 0);
+      }
     }
   }
-  const Halves halves = split(node);
-  return node_sum_of(parts, x, y, k, halves.left) + node_sum_of(parts, x, y, k, halves.right);
+  return pixels;
 }
 
-TEST(Film, WhatIsLeftOutCountsAsZerosInTheTreeInAnyOrder) {
+TEST(Film, WhatHalfTilesTakeIsTheTreeOfTheirOwnSamplesInAnyOrder) {
   const TileGrid grid{19, 18};
   Random random(3);
   for (const std::uint64_t samples : {96, 160, 256}) {
-    const std::vector<Part> parts = random_parts(samples, grid, random);
-    std::vector<std::pair<const Part*, std::uint32_t>> bands;
-    for (const Part& part : parts) {
+    const std::vector<Pass> passes = random_passes(samples, grid, random);
+    std::vector<std::pair<Band, TileSamples>> bands;
+    for (const Pass& pass : passes) {
       for (std::uint32_t y = 0; y < grid.height; ++y) {
-        bands.emplace_back(&part, y);
+        std::vector<SampleRange> parts{pass.samples};
+        if (pass.samples.blocks() > 1 && random.below(2) == 0) {
+          const Halves halves = split(pass.samples);
+          parts = {halves.left, halves.right};
+        }
+        for (const SampleRange& part : parts) {
+          const Band band{part, {y, y + 1}};
+          bands.emplace_back(band, pass.tiles.of(pass.samples, band));
+        }
       }
     }
     for (std::size_t i = bands.size(); i > 1; --i) {
       std::swap(bands[i - 1], bands[random.below(static_cast<std::uint32_t>(i))]);
     }
     Film film = *Film::create(grid.width, grid.height, "", Film::Grain::kHalfTiles);
-    for (const auto& [part, y] : bands) {
-      const TileMask tiles = part->tiles.of({y, y + 1});
-      ASSERT_TRUE(film.add(band_pixels({part->samples, {y, y + 1}}, grid.width), tiles).ok());
+    for (const auto& [band, tiles] : bands) {
+      ASSERT_TRUE(film.add(pixels_of(band, grid, tiles), tiles).ok());
+      EXPECT_FALSE(film.add(pixels_of(band, grid, tiles), tiles).ok()) << "it is there";
     }
     EXPECT_TRUE(film.complete(samples));
     EXPECT_EQ(film.snapshot().least_samples, samples);
@@ -71,16 +84,17 @@ TEST(Film, WhatIsLeftOutCountsAsZerosInTheTreeInAnyOrder) {
     const Image counts = film.counts();
     for (std::uint32_t y = 0; y < grid.height; ++y) {
       for (std::uint32_t x = 0; x < grid.width; ++x) {
-        double count = 0;
-        for (const Part& part : parts) {
-          count += part.tiles.has(x, y) ? static_cast<double>(part.samples.samples()) : 0;
+        std::uint64_t count = 0;
+        for (const Pass& pass : passes) {
+          count += pass.tiles.of_pixel(x, y, pass.samples).samples();
         }
-        ASSERT_EQ(counts.at(x, y).r, count);
+        ASSERT_EQ(counts.at(x, y).r, static_cast<float>(count));
         double total = 0;
-        for (const SampleRange& node : maximal_nodes(samples)) {
-          total += node_sum_of(parts, x, y, 3 * x, node);
+        for (const SampleRange& node : maximal_nodes(count)) {
+          total += node_sum(y, 3 * x, node);
         }
-        ASSERT_EQ(image.at(x, y).r, count > 0 ? static_cast<float>(total / count) : 0) << x;
+        const double mean = count > 0 ? total / static_cast<double>(count) : 0;
+        ASSERT_EQ(image.at(x, y).r, static_cast<float>(mean)) << x;
       }
     }
   }
@@ -89,16 +103,20 @@ TEST(Film, WhatIsLeftOutCountsAsZerosInTheTreeInAnyOrder) {
 // Right with uneven numbers of samples: the noise of each pixel is that of its own number.
 TEST(Film, TheErrorOfUnevenNumbersOfSamplesIsTheirStandardError) {
   const TileGrid grid{128, 96};
-  TileMask some(grid.width, {0, grid.height});
-  for (std::uint32_t x = 0; x < grid.width; x += 2 * kTileSide) {
-    for (std::uint32_t y = 0; y < grid.height; y += kTileSide) {
-      some.add(x, y);
-      some.add(x + 1, y);
+  // Every other tile.
+  const auto some = [&](const SampleRange& samples) {
+    TileSamples tiles(grid.width, {0, grid.height});
+    for (std::uint32_t x = 0; x < grid.width; x += 2 * kTileSide) {
+      for (std::uint32_t y = 0; y < grid.height; y += kTileSide) {
+        tiles.set(x, y, samples);
+        tiles.set(x + 1, y, samples);
+      }
     }
-  }
+    return tiles;
+  };
   Film film = *Film::create(grid.width, grid.height, "", Film::Grain::kHalfTiles);
   Random random(11);
-  const auto add = [&](const SampleRange& samples, const TileMask& tiles) {
+  const auto add = [&](const SampleRange& samples, const TileSamples& tiles) {
     BandPixels pixels{
         .band = {samples, {0, grid.height}}, .width = grid.width, .sums = {}, .counters = {}};
     for (std::size_t k = 0; k < std::size_t{grid.width} * grid.height * 3; ++k) {
@@ -112,8 +130,8 @@ TEST(Film, TheErrorOfUnevenNumbersOfSamplesIsTheirStandardError) {
   };
   add({0, 16}, {});
   add({16, 32}, {});
-  add({32, 64}, some);
-  add({64, 128}, some);
+  add({32, 64}, some({32, 64}));
+  add({64, 128}, some({64, 128}));
   // Half of the pixels have 128 samples, the others 32.
   const double expected_error = std::sqrt((1.0 / 128 + 1.0 / 32) / 2 / 3);
   EXPECT_NEAR(film.error()->relative_rmse / expected_error, 1, 0.02);

@@ -50,12 +50,13 @@ TEST(RenderBand, AnyNumberOfThreadsGivesTheSameBits) {
   }
 }
 
-TEST(RenderBand, WhatTakesPartHasTheBitsOfTheWholeBandAndTheRestIsZero) {
+TEST(RenderBand, AHalfTilesOwnSamplesHaveTheBitsOfABandOfTheseAndTheRestIsZero) {
   const auto rendered = scene();
-  TileMask tiles(13, {0, 11});
-  tiles.add(1, 0);
+  TileSamples tiles(13, {0, 11});
+  tiles.set(1, 0, {32, 64});
   Pool pool(2);
-  const auto some = render_band(*rendered, kSettings, {{32, 64}, {2, 11}}, pool, kGoOn, {}, tiles);
+  const auto some =
+      render_band(*rendered, kSettings, {{256, 272}, {2, 11}}, pool, kGoOn, {}, tiles);
   const BandPixels all = render(*rendered, {{32, 64}, {2, 11}}, 1);
   ASSERT_TRUE(some.ok());
   for (std::uint32_t y = 2; y < 11; ++y) {
@@ -94,15 +95,15 @@ TEST(RenderBand, C5_PixelsThatShareTheirPathsHaveTheSameBitsInAnyBandsThreadsAnd
   ASSERT_TRUE(box->shares_paths());
   RenderSettings settings = kSettings;
   settings.width = 21;
-  const auto rendered = [&](const Band& band, int threads, const TileMask& tiles) {
+  const auto rendered = [&](const Band& band, int threads, const TileSamples& tiles) {
     Pool pool(threads);
     return render_band(*box, settings, band, pool, kGoOn, {}, tiles)->sums;
   };
   const std::vector<double> whole = rendered({{32, 64}, {0, 11}}, 1, {});
   EXPECT_EQ(rendered({{32, 64}, {0, 11}}, 3, {}), whole);
-  TileMask tiles(21, {0, 11});
-  tiles.add(1, 0);
-  tiles.add(16, 0);
+  TileSamples tiles(21, {0, 11});
+  tiles.set(1, 0, {32, 64});
+  tiles.set(16, 0, {32, 64});
   for (const std::uint32_t rows : {1u, 3u, 7u}) {
     std::vector<double> sums;
     std::vector<double> some;

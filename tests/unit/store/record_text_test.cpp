@@ -22,9 +22,11 @@ TEST(RecordText, EveryKindReadsBackAsItWasWritten) {
 
 TEST(RecordText, AJobKeepsEveryField) {
   const JobSpec spec = sample_spec(StopAtError{.relative_rmse = 1.0 / 3, .max_samples = 77});
-  const absl::StatusOr<Record> back = from_text(to_text(record::JobAdded{.job = 5, .spec = spec}));
+  const absl::StatusOr<Record> back =
+      from_text(to_text(record::JobAdded{.job = 5, .spec = spec, .pixel_version = 8}));
   ASSERT_TRUE(back.ok());
   EXPECT_EQ(std::get<record::JobAdded>(*back).job, 5u);
+  EXPECT_EQ(std::get<record::JobAdded>(*back).pixel_version, 8u);
   EXPECT_EQ(std::get<record::JobAdded>(*back).spec, spec);
 }
 
@@ -36,6 +38,14 @@ TEST(RecordText, AJobOfBeforeThereWereIntegratorsIsOfPath) {
   text.fields.erase(at, text.fields.find('\n', at) + 1 - at);
   spec.settings.integrator = Integrator::kPath;
   EXPECT_EQ(std::get<record::JobAdded>(from_text(text).value()).spec, spec);
+}
+
+TEST(RecordText, AJobOfBeforePixelVersionsWereNotedIsOfNone) {
+  RecordText text = to_text(
+      record::JobAdded{.job = 5, .spec = sample_spec(StopAtSamples{4}), .pixel_version = 8});
+  const std::string field = "pixel_version 8\n";
+  text.fields.erase(text.fields.find(field), field.size());
+  EXPECT_EQ(std::get<record::JobAdded>(from_text(text).value()).pixel_version, 0u);
 }
 
 TEST(RecordText, AnUnknownKindIsNamed) {
