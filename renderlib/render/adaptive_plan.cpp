@@ -183,13 +183,19 @@ std::vector<int> plan_by(const TileGrid& grid, absl::Span<const HalfTileErrors> 
   return pays ? Pilot(grid, std::move(all)).levels() : std::vector<int>(all.size());
 }
 
-/// A power of two times a block: the one at or below `due`, or the one above, half tile by half
-/// tile so that the mean over them is `due`.
-double whole_net(double due, std::size_t i) {
-  // The golden ratio: neighbours, and any number of them, spread evenly over [0, 1).
-  const auto spread = static_cast<std::uint32_t>(i * 2'654'435'769u);
-  const double below = static_cast<double>(std::bit_floor(static_cast<std::uint64_t>(due)));
-  return due - below > below * (spread / 4'294'967'296.0) ? 2 * below : below;
+/// Numbers in [0, 1), as even as can be over neighbours, and over any number of them: multiples of
+/// the golden ratio.
+double spread(std::size_t i) {
+  return static_cast<std::uint32_t>(i * 2'654'435'769u) / 4'294'967'296.0;
+}
+
+/// The longest node that follows `samples` samples, of at most a quarter of the octave they are in,
+/// or of as many as are owed.
+std::uint64_t next_step(std::uint64_t samples, double owed) {
+  const std::uint64_t aligned = samples & (~samples + 1);
+  const std::uint64_t quarter = std::bit_floor(samples) / 4;
+  return std::min(aligned, std::max({kBlockSamples, quarter,
+                                     std::bit_floor(static_cast<std::uint64_t>(owed))}));
 }
 
 }  // namespace
@@ -233,13 +239,14 @@ TileSamples TileSchedule::next(const SampleRange& pass) {
 }
 
 SampleRange TileSchedule::node_of(std::size_t i, const SampleRange& pass) const {
-  const double due = share_of(level_of_digit(plan_.levels[i])) * static_cast<double>(pass.last);
   const std::uint64_t at = taken_[i];
-  const std::uint64_t next = at + (at & (~at + 1));
-  if (static_cast<double>(at) >= whole_net(due, i) || next > kMaxSamples) {
+  const double due = share_of(level_of_digit(plan_.levels[i])) * static_cast<double>(pass.last);
+  const double owed = std::max(0.0, due - static_cast<double>(at));
+  const std::uint64_t step = next_step(at, owed);
+  if (owed <= static_cast<double>(step) * spread(i) || at + step > kMaxSamples) {
     return {};
   }
-  return {at, next};
+  return {at, at + step};
 }
 
 }  // namespace bandsaw

@@ -57,10 +57,11 @@ TilePlan plan_tiles(const TileGrid& grid, absl::Span<const HalfTileErrors> tiles
 
 /// Which samples half tiles take in which pass after the pilot.
 ///
-/// Where an image is smooth its error falls in whole nets of Sobol' points, the first 2^k of a
-/// sequence, and hardly between them. So a half tile has 2^k samples, and doubles them when its
-/// share of those of level 0 is due; which of two half tiles of equal shares does so earlier is
-/// dealt out evenly over the image. A half of the image whose levels are all 0 takes the passes as
+/// A half tile has the first samples of its own sequence, 4, 5, 6 or 7 quarters of 2^k: samples
+/// left out here and there would be no nets of Sobol' points, and where an image is smooth its
+/// error falls by nets. It takes the next quarter when its share of the samples of level 0 is due;
+/// which of two half tiles of equal shares does so earlier is dealt out evenly over the image, so
+/// that the mean is what is due. A half of the image whose levels are all 0 takes the passes as
 /// they are.
 class TileSchedule {
  public:

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -62,8 +63,10 @@ TEST(AdaptivePlan, SamplesAreDealtOutByTheRootOfTheVariance) {
         const SampleRange more = now.of_pixel(column * kTileSide, y, {});
         std::uint64_t& samples = taken.try_emplace({column, y}, 64).first->second;
         if (more.samples() > 0) {
-          ASSERT_EQ(more, (SampleRange{samples, 2 * samples})) << "always a whole net";
+          ASSERT_TRUE(is_node(more));
+          ASSERT_EQ(more.first, samples);
           samples = more.last;
+          EXPECT_EQ(samples % (std::bit_floor(samples) / 4), 0u) << "4, 5, 6 or 7 quarters of 2^k";
         }
         if (column != 15 && column != 16) {  // Where both meet they are mixed.
           (column < 16 ? noisy : quiet).add(static_cast<double>(samples));
@@ -76,8 +79,8 @@ TEST(AdaptivePlan, SamplesAreDealtOutByTheRootOfTheVariance) {
   }
 }
 
-// 48 samples are three blocks: the rest of the first 64 is no whole doubling.
-TEST(AdaptivePlan, APilotThatIsNoWholeNetIsMadeOneFirst) {
+// 48 samples are three blocks: what follows is one of its own, and then as many as there are.
+TEST(AdaptivePlan, WhatIsOwedIsTakenAtOnceWhereANodeOfItBegins) {
   const TileGrid grid{512, 32};
   TileSchedule schedule(
       grid,
@@ -85,6 +88,7 @@ TEST(AdaptivePlan, APilotThatIsNoWholeNetIsMadeOneFirst) {
           grid, errors(grid, [](std::uint32_t column) { return column < 16 ? 1 : 1.0 / 64; }), 48));
   EXPECT_EQ(schedule.next({48, 64}).of_pixel(0, 0, {}), (SampleRange{48, 64}));
   EXPECT_EQ(schedule.next({64, 128}).of_pixel(0, 0, {}), (SampleRange{64, 128}));
+  EXPECT_EQ(schedule.next({128, 192}).of_pixel(0, 0, {}), (SampleRange{128, 192}));
 }
 
 TEST(AdaptivePlan, NothingOfAHalfPlansThatHalf) {

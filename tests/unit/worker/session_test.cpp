@@ -108,6 +108,21 @@ TEST(Session, StartsLeasesAndReportsTheirRows) {
   EXPECT_EQ(beat.doing(), "rendering");
 }
 
+TEST(Session, ATaskHasTheSamplesOfItsHalfTiles) {
+  Session session(self());
+  session.receive(welcome("e1"));
+  farm::ToWorker message = lease(10, 2);
+  TileSamples tiles(8, {2, 4});
+  tiles.set(1, 2, {64, 128});
+  for (const std::uint32_t number : tiles.numbers()) {
+    message.mutable_lease()->add_tile_samples(number);
+  }
+  const Reaction reaction = session.receive(message);
+  ASSERT_EQ(reaction.start.size(), 1U);
+  EXPECT_EQ(reaction.start[0].tiles, tiles);
+  EXPECT_TRUE(session.receive(lease(11, 4)).start[0].tiles.whole());
+}
+
 TEST(Session, RefusesALeaseThatIsNoBand) {
   Session session(self());
   session.receive(welcome("e1"));
@@ -115,7 +130,13 @@ TEST(Session, RefusesALeaseThatIsNoBand) {
   bad.mutable_lease()->mutable_band()->set_last_row(81);
   farm::ToWorker worse = lease(11, 0);
   worse.mutable_lease()->set_manifest_sha256("short");
-  for (const farm::ToWorker& message : {bad, worse}) {
+  farm::ToWorker no_node = lease(12, 0);
+  for (const std::uint32_t number : {16u, 16u, 16u, 32u}) {
+    no_node.mutable_lease()->add_tile_samples(number);
+  }
+  farm::ToWorker too_few = lease(13, 0);
+  too_few.mutable_lease()->add_tile_samples(16);
+  for (const farm::ToWorker& message : {bad, worse, no_node, too_few}) {
     const Reaction reaction = session.receive(message);
     EXPECT_THAT(reaction.start, IsEmpty());
     ASSERT_EQ(reaction.send.size(), 1U);
