@@ -16,10 +16,11 @@ namespace {
 constexpr double kMostOverMean = 8;
 /// What a tile itself says counts as much as all tiles around: they make it surer.
 constexpr double kOwnTile = 0.5;
-/// The gain in error at equal samples below which a plan is not worth having: a sample where noise
-/// is takes 1.2 to 1.4 times the time of others, and errors of runs of samples that are not whole
-/// nets fall less.
-constexpr double kLeastGain = 1.4;
+/// The gains at equal samples, of both errors on (geometric) average and of the lesser, below which
+/// a plan is not worth having: a sample where noise is takes 1.1 to 1.4 times the time of others
+/// (tests/bench/README.md).
+constexpr double kLeastGain = 1.3;
+constexpr double kLeastOfEither = 1.1;
 /// A plan is judged by what it comes to after so many times the pilot's samples.
 constexpr double kJudgedAfter = 8;
 
@@ -141,9 +142,9 @@ class Pilot {
   TileError mean_;
 };
 
-/// By how much the larger of the two errors falls below that of as many samples dealt out evenly,
-/// where each half of the rows is dealt out to as the other shows.
-double gain(const std::array<Pilot, 2>& rows) {
+/// Whether both errors fall enough below those of as many samples dealt out evenly, where each half
+/// of the rows is dealt out to as the other shows.
+bool pays(const std::array<Pilot, 2>& rows) {
   double samples = 0;
   Mean evenly;
   Mean planned;
@@ -159,10 +160,13 @@ double gain(const std::array<Pilot, 2>& rows) {
   }
   const TileError before = evenly.value();
   const TileError after = planned.value();
-  const auto fall = [&](double from, double to) {
+  const auto gain = [&](double from, double to) {
     return from > 0 ? from / to / (samples / before.pixels) : 1;
   };
-  return std::min(fall(before.variance, after.variance), fall(before.relative, after.relative));
+  const double squared = gain(before.variance, after.variance);
+  const double relative = gain(before.relative, after.relative);
+  return std::min(squared, relative) >= kLeastOfEither &&
+         squared * relative >= kLeastGain * kLeastGain;
 }
 
 /// Of the tiles, as this half of them shows.
@@ -178,9 +182,9 @@ std::vector<int> plan_by(const TileGrid& grid, absl::Span<const HalfTileErrors> 
     }
     all.push_back(mean.value());
   }
-  const bool pays =
-      gain({Pilot(grid, std::move(rows[0])), Pilot(grid, std::move(rows[1]))}) >= kLeastGain;
-  return pays ? Pilot(grid, std::move(all)).levels() : std::vector<int>(all.size());
+  return pays({Pilot(grid, std::move(rows[0])), Pilot(grid, std::move(rows[1]))})
+             ? Pilot(grid, std::move(all)).levels()
+             : std::vector<int>(all.size());
 }
 
 /// Numbers in [0, 1), as even as can be over neighbours, and over any number of them: multiples of
