@@ -8,7 +8,7 @@
 
 #include "absl/functional/function_ref.h"
 #include "coordinator/core/types.h"
-#include "renderlib/render/adaptive_plan.h"
+#include "renderlib/render/tile_schedule.h"
 #include "renderlib/render/band.h"
 
 namespace bandsaw::coordinator {

@@ -7,6 +7,7 @@
 #include "renderlib/base/status_macros.h"
 #include "renderlib/render/render_band.h"
 #include "renderlib/render/render_image.h"
+#include "renderlib/render/tile_schedule.h"
 
 namespace bandsaw::coordinator {
 namespace {

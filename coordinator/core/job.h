@@ -19,7 +19,7 @@
 #include "coordinator/core/row_times.h"
 #include "coordinator/core/speed.h"
 #include "coordinator/core/types.h"
-#include "renderlib/render/adaptive_plan.h"
+#include "renderlib/render/tile_schedule.h"
 
 namespace bandsaw::coordinator {
 

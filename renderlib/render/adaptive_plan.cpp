@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <numeric>
 
@@ -187,21 +186,6 @@ std::vector<int> plan_by(const TileGrid& grid, absl::Span<const HalfTileErrors> 
              : std::vector<int>(all.size());
 }
 
-/// Numbers in [0, 1), as even as can be over neighbours, and over any number of them: multiples of
-/// the golden ratio.
-double spread(std::size_t i) {
-  return static_cast<std::uint32_t>(i * 2'654'435'769u) / 4'294'967'296.0;
-}
-
-/// The longest node that follows `samples` samples, of at most a quarter of the octave they are in,
-/// or of as many as are owed.
-std::uint64_t next_step(std::uint64_t samples, double owed) {
-  const std::uint64_t aligned = samples & (~samples + 1);
-  const std::uint64_t quarter = std::bit_floor(samples) / 4;
-  return std::min(aligned, std::max({kBlockSamples, quarter,
-                                     std::bit_floor(static_cast<std::uint64_t>(owed))}));
-}
-
 }  // namespace
 
 TilePlan plan_tiles(const TileGrid& grid, absl::Span<const HalfTileErrors> tiles,
@@ -217,40 +201,8 @@ TilePlan plan_tiles(const TileGrid& grid, absl::Span<const HalfTileErrors> tiles
   return plan;
 }
 
-TileSchedule::TileSchedule(const TileGrid& grid, const TilePlan& plan)
-    : grid_(grid), plan_(plan), taken_(grid.half_tiles(), static_cast<std::uint32_t>(plan.pilot)) {
-  BANDSAW_CHECK(plan.levels.size() == grid.half_tiles(), "one level a half tile");
-  for (std::size_t i = 0; i < plan.levels.size(); ++i) {
-    even_[i % 2] = even_[i % 2] && plan.levels[i] == '0';
-  }
-}
-
-TileSamples TileSchedule::next(const SampleRange& pass) {
-  if (even_[0] && even_[1]) {
-    return {};
-  }
-  TileSamples tiles(grid_.width, {0, grid_.height});
-  for (std::size_t i = 0; i < taken_.size(); ++i) {
-    const SampleRange samples = even_[i % 2] ? pass : node_of(i, pass);
-    if (samples.samples() > 0) {
-      taken_[i] = samples.last;
-      const auto tile = static_cast<std::uint32_t>(i / 2);
-      tiles.set(tile % grid_.columns() * kTileSide + (i & 1), tile / grid_.columns() * kTileSide,
-                samples);
-    }
-  }
-  return tiles;
-}
-
-SampleRange TileSchedule::node_of(std::size_t i, const SampleRange& pass) const {
-  const std::uint64_t at = taken_[i];
-  const double due = share_of(level_of_digit(plan_.levels[i])) * static_cast<double>(pass.last);
-  const double owed = std::max(0.0, due - static_cast<double>(at));
-  const std::uint64_t step = next_step(at, owed);
-  if (owed <= static_cast<double>(step) * spread(i) || at + step > kMaxSamples) {
-    return {};
-  }
-  return {at, at + step};
+double share_of(const TilePlan& plan, std::size_t half_tile) {
+  return share_of(level_of_digit(plan.levels[half_tile]));
 }
 
 }  // namespace bandsaw

@@ -10,6 +10,7 @@
 
 #include "renderlib/render/film.h"
 #include "renderlib/render/render_band.h"
+#include "renderlib/render/tile_schedule.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "farm_driver.h"
+#include "renderlib/render/tile_schedule.h"
 
 namespace bandsaw::coordinator {
 namespace {

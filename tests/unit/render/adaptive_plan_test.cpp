@@ -2,12 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <bit>
 #include <cmath>
 #include <functional>
-#include <map>
 
 #include "renderlib/render/film.h"
+#include "renderlib/render/tile_schedule.h"
 #include "tests/support/hard_case.h"
 #include "tests/support/random.h"
 #include "tests/support/statistics.h"
@@ -52,43 +51,7 @@ TEST(AdaptivePlan, SamplesAreDealtOutByTheRootOfTheVariance) {
   EXPECT_EQ(plan.pilot, 64u);
   EXPECT_EQ(plan.levels[0], '0');
   EXPECT_EQ(plan.levels[2 * 31], '6');  // 2^(-6/2)
-  TileSchedule schedule(grid, plan);
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint64_t> taken;  // by column and row
-  for (std::uint64_t first = 64; first < 4096; first += 64) {
-    const TileSamples now = schedule.next({first, first + 64});
-    Moments noisy;
-    Moments quiet;
-    for (std::uint32_t column = 0; column < 32; ++column) {
-      for (const std::uint32_t y : {0, 1, 16, 17}) {  // Both halves of both rows of tiles.
-        const SampleRange more = now.of_pixel(column * kTileSide, y, {});
-        std::uint64_t& samples = taken.try_emplace({column, y}, 64).first->second;
-        if (more.samples() > 0) {
-          ASSERT_TRUE(is_node(more));
-          ASSERT_EQ(more.first, samples);
-          samples = more.last;
-          EXPECT_EQ(samples % (std::bit_floor(samples) / 4), 0u) << "4, 5, 6 or 7 quarters of 2^k";
-        }
-        if (column != 15 && column != 16) {  // Where both meet they are mixed.
-          (column < 16 ? noisy : quiet).add(static_cast<double>(samples));
-        }
-      }
-    }
-    const auto due = static_cast<double>(first + 64);
-    EXPECT_NEAR(noisy.mean() / due, 1, 0.05) << due;
-    EXPECT_NEAR(quiet.mean() / std::max(64.0, due / 8), 1, 0.05) << due;
-  }
-}
-
-// 48 samples are three blocks: what follows is one of its own, and then as many as there are.
-TEST(AdaptivePlan, WhatIsOwedIsTakenAtOnceWhereANodeOfItBegins) {
-  const TileGrid grid{512, 32};
-  TileSchedule schedule(
-      grid,
-      plan_tiles(
-          grid, errors(grid, [](std::uint32_t column) { return column < 16 ? 1 : 1.0 / 64; }), 48));
-  EXPECT_EQ(schedule.next({48, 64}).of_pixel(0, 0, {}), (SampleRange{48, 64}));
-  EXPECT_EQ(schedule.next({64, 128}).of_pixel(0, 0, {}), (SampleRange{64, 128}));
-  EXPECT_EQ(schedule.next({128, 192}).of_pixel(0, 0, {}), (SampleRange{128, 192}));
+  EXPECT_NEAR(share_of(plan, 2 * 31), 0.125, 1e-12);
 }
 
 TEST(AdaptivePlan, NothingOfAHalfPlansThatHalf) {

@@ -1,0 +1,81 @@
+#include "renderlib/render/tile_schedule.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <string>
+
+#include "tests/support/statistics.h"
+
+namespace bandsaw {
+namespace {
+
+using test::Moments;
+
+constexpr TileGrid kGrid{512, 32};
+
+/// Level 6 is an eighth.
+TilePlan half_noisy(std::uint64_t pilot) {
+  TilePlan plan{.pilot = pilot, .levels = {}};
+  for (std::size_t i = 0; i < kGrid.half_tiles(); ++i) {
+    plan.levels += i / 2 % kGrid.columns() < 16 ? '0' : '6';
+  }
+  return plan;
+}
+
+SampleRange of_half_tile(const TileSamples& tiles, std::size_t i) {
+  const auto tile = static_cast<std::uint32_t>(i / 2);
+  return tiles.of_pixel(tile % kGrid.columns() * kTileSide + (i & 1),
+                        tile / kGrid.columns() * kTileSide, {});
+}
+
+TEST(TileSchedule, TheMeanIsWhatIsDueInNodesThatFollowEachOther) {
+  const TilePlan plan = half_noisy(64);
+  TileSchedule schedule(kGrid, plan);
+  std::vector<std::uint64_t> taken(kGrid.half_tiles(), 64);
+  for (std::uint64_t first = 64; first < 4096; first += 64) {
+    const TileSamples tiles = schedule.next({first, first + 64});
+    Moments noisy;
+    Moments quiet;
+    for (std::size_t i = 0; i < taken.size(); ++i) {
+      if (const SampleRange more = of_half_tile(tiles, i); more.samples() > 0) {
+        ASSERT_TRUE(is_node(more));
+        ASSERT_EQ(more.first, taken[i]);
+        taken[i] = more.last;
+        EXPECT_EQ(taken[i] % (std::bit_floor(taken[i]) / 4), 0u) << "quarters of an octave";
+      }
+      (plan.levels[i] == '0' ? noisy : quiet).add(static_cast<double>(taken[i]));
+    }
+    const auto due = static_cast<double>(first + 64);
+    EXPECT_NEAR(noisy.mean() / due, 1, 0.05) << due;
+    EXPECT_NEAR(quiet.mean() / std::max(64.0, due / 8), 1, 0.05) << due;
+  }
+}
+
+// 48 samples are three blocks: what follows is one of its own, and then as many as there are.
+TEST(TileSchedule, WhatIsOwedIsTakenAtOnceWhereANodeOfItBegins) {
+  TileSchedule schedule(kGrid, half_noisy(48));
+  EXPECT_EQ(of_half_tile(schedule.next({48, 64}), 0), (SampleRange{48, 64}));
+  EXPECT_EQ(of_half_tile(schedule.next({64, 128}), 0), (SampleRange{64, 128}));
+  EXPECT_EQ(of_half_tile(schedule.next({128, 192}), 0), (SampleRange{128, 192}));
+}
+
+TEST(TileSchedule, AHalfThatIsNotPlannedTakesThePassesAsTheyAre) {
+  TilePlan plan = half_noisy(32);
+  for (std::size_t i = 1; i < plan.levels.size(); i += 2) {
+    plan.levels[i] = '0';
+  }
+  TileSchedule schedule(kGrid, plan);
+  for (const SampleRange& pass : {SampleRange{32, 64}, {64, 96}, {96, 100}}) {
+    const TileSamples tiles = schedule.next(pass);
+    EXPECT_FALSE(tiles.whole());
+    for (std::size_t i = 1; i < plan.levels.size(); i += 2) {
+      ASSERT_EQ(of_half_tile(tiles, i), pass);
+    }
+  }
+  plan.levels.assign(plan.levels.size(), '0');
+  EXPECT_TRUE(TileSchedule(kGrid, plan).next({32, 64}).whole());
+}
+
+}  // namespace
+}  // namespace bandsaw
