@@ -15,11 +15,9 @@ namespace {
 constexpr double kMostOverMean = 8;
 /// What a tile itself says counts as much as all tiles around: they make it surer.
 constexpr double kOwnTile = 0.5;
-/// The gains at equal samples, of both errors on (geometric) average and of the lesser, below which
-/// a plan is not worth having: a sample where noise is takes 1.1 to 1.4 times the time of others
-/// (tests/bench/README.md).
-constexpr double kLeastGain = 1.3;
-constexpr double kLeastOfEither = 1.1;
+/// The gain in error at equal samples below which a plan is not worth having: a sample where noise
+/// is takes 1.1 to 1.4 times the time of others (tests/bench/README.md).
+constexpr double kLeastGain = 1.25;
 /// A plan is judged by what it comes to after so many times the pilot's samples.
 constexpr double kJudgedAfter = 8;
 
@@ -141,9 +139,9 @@ class Pilot {
   TileError mean_;
 };
 
-/// Whether both errors fall enough below those of as many samples dealt out evenly, where each half
-/// of the rows is dealt out to as the other shows.
-bool pays(const std::array<Pilot, 2>& rows) {
+/// By how much the larger of the two errors falls below that of as many samples dealt out evenly,
+/// where each half of the rows is dealt out to as the other shows.
+double gain(const std::array<Pilot, 2>& rows) {
   double samples = 0;
   Mean evenly;
   Mean planned;
@@ -159,13 +157,10 @@ bool pays(const std::array<Pilot, 2>& rows) {
   }
   const TileError before = evenly.value();
   const TileError after = planned.value();
-  const auto gain = [&](double from, double to) {
+  const auto fall = [&](double from, double to) {
     return from > 0 ? from / to / (samples / before.pixels) : 1;
   };
-  const double squared = gain(before.variance, after.variance);
-  const double relative = gain(before.relative, after.relative);
-  return std::min(squared, relative) >= kLeastOfEither &&
-         squared * relative >= kLeastGain * kLeastGain;
+  return std::min(fall(before.variance, after.variance), fall(before.relative, after.relative));
 }
 
 /// Of the tiles, as this half of them shows.
@@ -181,9 +176,9 @@ std::vector<int> plan_by(const TileGrid& grid, absl::Span<const HalfTileErrors> 
     }
     all.push_back(mean.value());
   }
-  return pays({Pilot(grid, std::move(rows[0])), Pilot(grid, std::move(rows[1]))})
-             ? Pilot(grid, std::move(all)).levels()
-             : std::vector<int>(all.size());
+  const bool pays =
+      gain({Pilot(grid, std::move(rows[0])), Pilot(grid, std::move(rows[1]))}) >= kLeastGain;
+  return pays ? Pilot(grid, std::move(all)).levels() : std::vector<int>(all.size());
 }
 
 }  // namespace

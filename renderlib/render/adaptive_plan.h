@@ -50,7 +50,7 @@ struct TilePlan {
 /// machine.
 ///
 /// Whether it pays is asked of the pilot itself: what even rows would plan is judged by the noise
-/// of odd ones, and the other way round. Where the errors would not fall well below those of as
+/// of odd ones, and the other way round. Where both errors would not fall well below those of as
 /// many samples dealt out evenly, every level is 0.
 TilePlan plan_tiles(const TileGrid& grid, absl::Span<const HalfTileErrors> tiles,
                     std::uint64_t samples);
