@@ -17,9 +17,7 @@ struct Line {
   }
   void operator()(const record::TilesPlanned& r) const {
     spdlog::info("job={} tiles planned from samples={} {}", r.job, r.plan.pilot,
-                 r.plan.levels.find_first_not_of('0') == std::string::npos
-                     ? "all in every pass"
-                     : "more where there is more noise");
+                 r.plan.even() ? "all in every pass" : "more where there is more noise");
   }
   void operator()(const record::SamplesFixed& r) const {
     spdlog::info("job={} ends after samples={}", r.job, r.samples);

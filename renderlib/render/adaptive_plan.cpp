@@ -23,10 +23,13 @@ constexpr double kJudgedAfter = 8;
 
 constexpr int kLevels = 16;
 
-/// 2^(-level/2).
+int level_of_digit(char digit) { return digit <= '9' ? digit - '0' : digit - 'a' + 10; }
+char digit_of(int level) { return "0123456789abcdef"[level]; }
+
+/// 2^((6 - level) / 2).
 double share_of(int level) {
   constexpr double kRoot = 0.70710678118654752440;
-  double share = 1;
+  double share = 8;
   for (int i = 0; i < level; ++i) {
     share *= kRoot;
   }
@@ -40,9 +43,6 @@ int level_of(double share) {
   }
   return level;
 }
-
-int level_of_digit(char digit) { return digit <= '9' ? digit - '0' : digit - 'a' + 10; }
-char digit_of(int level) { return "0123456789abcdef"[level]; }
 
 /// Means over pixels.
 class Mean {
@@ -63,18 +63,21 @@ class Mean {
   double relative_ = 0;
 };
 
-/// One a tile, relative to the largest.
+/// One a tile. The same for all would be their root mean square: then the last sample of a tile
+/// takes off as much of the error as the last of one that is dealt out to evenly, in the other half
+/// of the image, say, where it is the root of the mean variance that counts.
 std::vector<int> levels_of(std::vector<double> weights) {
-  const double mean =
-      std::accumulate(weights.begin(), weights.end(), 0.0) / static_cast<double>(weights.size());
-  double most = 0;
+  const auto count = static_cast<double>(weights.size());
+  const double most = kMostOverMean * std::accumulate(weights.begin(), weights.end(), 0.0) / count;
+  double squares = 0;
   for (double& weight : weights) {
-    weight = std::min(weight, kMostOverMean * mean);
-    most = std::max(most, weight);
+    weight = std::min(weight, most);
+    squares += weight * weight;
   }
+  const double even = std::sqrt(squares / count);
   std::vector<int> levels;
   for (const double weight : weights) {
-    levels.push_back(most > 0 ? level_of(weight / most) : 0);
+    levels.push_back(even > 0 ? level_of(weight / even) : level_of(1));
   }
   return levels;
 }
@@ -178,7 +181,8 @@ std::vector<int> plan_by(const TileGrid& grid, absl::Span<const HalfTileErrors> 
   }
   const bool pays =
       gain({Pilot(grid, std::move(rows[0])), Pilot(grid, std::move(rows[1]))}) >= kLeastGain;
-  return pays ? Pilot(grid, std::move(all)).levels() : std::vector<int>(all.size());
+  return pays ? Pilot(grid, std::move(all)).levels()
+              : std::vector<int>(all.size(), level_of_digit(kEvenLevel));
 }
 
 }  // namespace
@@ -186,7 +190,7 @@ std::vector<int> plan_by(const TileGrid& grid, absl::Span<const HalfTileErrors> 
 TilePlan plan_tiles(const TileGrid& grid, absl::Span<const HalfTileErrors> tiles,
                     std::uint64_t samples) {
   BANDSAW_CHECK(tiles.size() == grid.half_tiles(), "one error a half tile");
-  TilePlan plan{.pilot = samples, .levels = std::string(tiles.size(), '0')};
+  TilePlan plan{.pilot = samples, .levels = std::string(tiles.size(), kEvenLevel)};
   for (const std::size_t half : {0, 1}) {
     const std::vector<int> levels = plan_by(grid, tiles, 1 - half);
     for (std::size_t i = 0; i < levels.size(); ++i) {

@@ -37,12 +37,17 @@ struct TileError {
 /// Of a half tile: of its pixels in even rows of the image, and of those in odd ones.
 using HalfTileErrors = std::array<TileError, 2>;
 
+inline constexpr char kEvenLevel = '6';
+
 /// How many samples each half tile is to have after the pilot.
 struct TilePlan {
   std::uint64_t pilot = 0;  ///< samples of all pixels
-  /// A digit 0 … f a half tile, in the order of TileGrid: level l is to have 2^(-l/2) of the
-  /// samples of level 0, but not fewer than the pilot.
+  /// A digit 0 … f a half tile, in the order of TileGrid: of the samples of a half tile that is
+  /// dealt out to evenly, level l is to have 2^((6 - l) / 2), but not fewer than the pilot.
   std::string levels;
+
+  /// No tile is to have other samples than another.
+  bool even() const { return levels.find_first_not_of(kEvenLevel) == std::string::npos; }
   friend bool operator==(const TilePlan&, const TilePlan&) = default;
 };
 
@@ -51,11 +56,11 @@ struct TilePlan {
 ///
 /// Whether it pays is asked of the pilot itself: what even rows would plan is judged by the noise
 /// of odd ones, and the other way round. Where both errors would not fall well below those of as
-/// many samples dealt out evenly, every level is 0.
+/// many samples dealt out evenly, every level of a half is 6.
 TilePlan plan_tiles(const TileGrid& grid, absl::Span<const HalfTileErrors> tiles,
                     std::uint64_t samples);
 
-/// Of level 0's samples, what this half tile is to have.
+/// What this half tile is to have, over the samples of one that is dealt out to evenly.
 double share_of(const TilePlan& plan, std::size_t half_tile);
 
 }  // namespace bandsaw

@@ -29,7 +29,7 @@ TileSchedule::TileSchedule(const TileGrid& grid, const TilePlan& plan)
     : grid_(grid), plan_(plan), taken_(grid.half_tiles(), static_cast<std::uint32_t>(plan.pilot)) {
   BANDSAW_CHECK(plan.levels.size() == grid.half_tiles(), "one level a half tile");
   for (std::size_t i = 0; i < plan.levels.size(); ++i) {
-    even_[i % 2] = even_[i % 2] && plan.levels[i] == '0';
+    even_[i % 2] = even_[i % 2] && plan.levels[i] == kEvenLevel;
   }
 }
 

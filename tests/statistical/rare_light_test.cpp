@@ -57,7 +57,7 @@ Rendered render(const Scene& scene, std::uint64_t seed, bool adaptive) {
   for (const SampleRange& pass : {SampleRange{0, 16}, {16, 32}, {32, 64}}) {
     take(pass, {});
   }
-  TilePlan plan{.pilot = 64, .levels = std::string(kGrid.half_tiles(), '0')};
+  TilePlan plan{.pilot = 64, .levels = std::string(kGrid.half_tiles(), kEvenLevel)};
   if (adaptive) {
     plan = plan_tiles(kGrid, film.tile_errors(), plan.pilot);
   }
@@ -69,7 +69,7 @@ Rendered render(const Scene& scene, std::uint64_t seed, bool adaptive) {
   for (const Rgb& pixel : film.snapshot().image.pixels) {
     rendered.mean += pixel.g / static_cast<double>(kGrid.width * kGrid.height);
   }
-  rendered.planned = plan.levels.find_first_not_of('0') != std::string::npos;
+  rendered.planned = !plan.even();
   return rendered;
 }
 

@@ -59,10 +59,11 @@ TEST(Adaptive, PassesAfterThePilotAreOfThePlansTiles) {
     left_out += lease.tiles.whole() ? 0 : 1;
   }
   EXPECT_GT(left_out, 0u);
-  // Half of the pixels have all samples, the others about an eighth.
+  // Half of the pixels have 2^(1/2) times as many samples as an even job's, the others an eighth of
+  // that.
   const JobView view = run.farm.job(run.job);
   const auto all = static_cast<double>(run.looks.back());
-  EXPECT_NEAR(static_cast<double>(view.samples_per_pixel), all * 9 / 16, all * 0.05);
+  EXPECT_NEAR(static_cast<double>(view.samples_per_pixel), all * std::sqrt(2) * 9 / 16, all * 0.05);
   EXPECT_EQ(view.samples_done / (kGrid.width * kGrid.height), view.samples_per_pixel);
 }
 
