@@ -8,8 +8,8 @@
 
 #include "absl/functional/function_ref.h"
 #include "coordinator/core/types.h"
-#include "renderlib/render/tile_schedule.h"
 #include "renderlib/render/band.h"
+#include "renderlib/render/tile_schedule.h"
 
 namespace bandsaw::coordinator {
 

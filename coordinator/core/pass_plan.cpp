@@ -11,8 +11,8 @@ std::uint64_t blocks_of(std::uint64_t samples) {
   return (samples + kBlockSamples - 1) / kBlockSamples;
 }
 
-/// The longest node that begins at a block, in blocks.
-std::uint64_t alignment(std::uint64_t block) { return block == 0 ? 1 : block & (~block + 1); }
+/// The longest pass that begins at a block, in blocks: the first is one.
+std::uint64_t alignment(std::uint64_t block) { return block == 0 ? 1 : longest_at(block); }
 
 SampleRange pass_at(std::uint64_t block, std::uint64_t blocks, std::uint64_t end) {
   return {block * kBlockSamples, std::min((block + blocks) * kBlockSamples, end)};

@@ -7,6 +7,17 @@
 #include "coordinator/core/state.h"
 
 namespace bandsaw::coordinator {
+namespace {
+
+/// Why a job that was begun with this pixel version does not go on; 0: its journal did not say.
+std::string of_two_versions(std::uint32_t begun_with, const Fitness& here) {
+  const std::string version =
+      begun_with == 0 ? "an earlier pixel version" : absl::StrCat("pixel version ", begun_with);
+  return absl::StrCat("begun with ", version, ", this coordinator has ", here.pixel_version,
+                      ": an image is of one version; submit it again");
+}
+
+}  // namespace
 
 void Core::State::apply(const Record& record) {
   std::visit([this](const auto& r) { apply(r); }, record);
@@ -182,13 +193,7 @@ Step Core::State::replayed(Time now) {
       continue;
     }
     if (job.pixel_version != options_.fitness.pixel_version) {
-      const std::string version = job.pixel_version == 0
-                                      ? "an earlier pixel version"
-                                      : absl::StrCat("pixel version ", job.pixel_version);
-      end(job, JobState::kFailed,
-          absl::StrCat("begun with ", version, ", this coordinator has ",
-                       options_.fitness.pixel_version,
-                       ": an image is of one version; submit it again"));
+      end(job, JobState::kFailed, of_two_versions(job.pixel_version, options_.fitness));
       continue;
     }
     plan_first(job);

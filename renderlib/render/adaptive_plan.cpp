@@ -181,8 +181,7 @@ std::vector<int> plan_by(const TileGrid& grid, absl::Span<const HalfTileErrors> 
   }
   const bool pays =
       gain({Pilot(grid, std::move(rows[0])), Pilot(grid, std::move(rows[1]))}) >= kLeastGain;
-  return pays ? Pilot(grid, std::move(all)).levels()
-              : std::vector<int>(all.size(), level_of_digit(kEvenLevel));
+  return pays ? Pilot(grid, std::move(all)).levels() : std::vector<int>(all.size(), level_of(1));
 }
 
 }  // namespace

@@ -33,6 +33,9 @@ struct SampleRange {
 /// Whether the range is a node of the tree.
 bool is_node(const SampleRange& range);
 
+/// How many blocks the longest node has that begins at this block, > 0.
+constexpr std::uint64_t longest_at(std::uint64_t block) { return block & (~block + 1); }
+
 /// The maximal aligned nodes of samples [0, samples), from left to right.
 std::vector<SampleRange> maximal_nodes(std::uint64_t samples);
 

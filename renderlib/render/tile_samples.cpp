@@ -56,7 +56,7 @@ absl::StatusOr<TileSamples> TileSamples::from_numbers(absl::Span<const std::uint
                        samples.last, "), must be none or a power of two of blocks of ",
                        kBlockSamples, ", aligned, below ", kMaxSamples));
     }
-    tiles.taken_[i] = {numbers[2 * i], static_cast<std::uint32_t>(samples.last)};
+    tiles.set(i, samples);
   }
   return tiles;
 }
@@ -98,10 +98,9 @@ TileSamples TileSamples::of(const SampleRange& pass, const Band& band) const {
   if (pass == band.samples) {
     return part;
   }
-  for (Taken& taken : part.taken_) {
-    if (taken.first != taken.last) {
-      const SampleRange within = part_of(range(taken), pass, band.samples);
-      taken = {static_cast<std::uint32_t>(within.first), static_cast<std::uint32_t>(within.last)};
+  for (std::size_t i = 0; i < part.taken_.size(); ++i) {
+    if (const Taken taken = part.taken_[i]; taken.first != taken.last) {
+      part.set(i, part_of(range(taken), pass, band.samples));
     }
   }
   return part;

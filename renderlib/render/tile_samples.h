@@ -60,10 +60,11 @@ class TileSamples {
   SampleRange of_pixel(std::uint32_t x, std::uint32_t y, const SampleRange& band) const {
     return whole() ? band : range(taken_[index_of(x, y)]);
   }
-  /// The half tile of this pixel takes these: a node of at most kMaxSamples.
-  void set(std::uint32_t x, std::uint32_t y, const SampleRange& samples) {
-    taken_[index_of(x, y)] = {static_cast<std::uint32_t>(samples.first),
-                              static_cast<std::uint32_t>(samples.last)};
+  /// Half tile i of those that the rows meet, in the order of TileGrid, takes these: a node of at
+  /// most kMaxSamples.
+  void set(std::size_t i, const SampleRange& samples) {
+    taken_[i] = {static_cast<std::uint32_t>(samples.first),
+                 static_cast<std::uint32_t>(samples.last)};
   }
 
   /// How many samples the pixels of the band take, in an image of this width.

@@ -14,10 +14,10 @@ double spread(std::size_t i) {
   return static_cast<std::uint32_t>(i * 2'654'435'769u) / 4'294'967'296.0;
 }
 
-/// The longest node that follows `samples` samples, of at most a quarter of the octave they are in,
-/// or of as many as are owed.
+/// The longest node that follows `samples` samples (whole blocks), of at most a quarter of the
+/// octave they are in, or of as many as are owed.
 std::uint64_t next_step(std::uint64_t samples, double owed) {
-  const std::uint64_t aligned = samples & (~samples + 1);
+  const std::uint64_t aligned = longest_at(samples / kBlockSamples) * kBlockSamples;
   const std::uint64_t quarter = std::bit_floor(samples) / 4;
   return std::min(aligned, std::max({kBlockSamples, quarter,
                                      std::bit_floor(static_cast<std::uint64_t>(owed))}));
@@ -42,9 +42,7 @@ TileSamples TileSchedule::next(const SampleRange& pass) {
     const SampleRange samples = even_[i % 2] ? pass : node_of(i, pass);
     if (samples.samples() > 0) {
       taken_[i] = samples.last;
-      const auto tile = static_cast<std::uint32_t>(i / 2);
-      tiles.set(tile % grid_.columns() * kTileSide + (i & 1), tile / grid_.columns() * kTileSide,
-                samples);
+      tiles.set(i, samples);
     }
   }
   return tiles;

@@ -16,10 +16,9 @@ namespace bandsaw {
 ///
 /// A half tile has the first samples of its own sequence, 4, 5, 6 or 7 quarters of 2^k: samples
 /// left out here and there would be no nets of Sobol' points, and where an image is smooth its
-/// error falls by nets. It takes the next quarter when its share is due;
-/// which of two half tiles of equal shares does so earlier is dealt out evenly over the image, so
-/// that the mean is what is due. A half of the image whose levels are all 6 takes the passes as
-/// they are.
+/// error falls by nets. It takes the next quarter when its share is due; which of two half tiles of
+/// equal shares does so earlier is dealt out evenly over the image, so that the mean is what is
+/// due. A half of the image whose levels are all 6 takes the passes as they are.
 class TileSchedule {
  public:
   /// `plan.levels` has one digit 0 … f a half tile.

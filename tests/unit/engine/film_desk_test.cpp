@@ -138,7 +138,7 @@ TEST_F(FilmDeskTest, AnImageWaitsForItsLastRows) {
 TEST_F(FilmDeskTest, AnAdaptiveJobLeavesEachPixelsNumberOfSamples) {
   desk_.add_job(1, settings_, true);
   TileSamples even(settings_.width, {0, 8});
-  even.set(0, 0, {16, 32});
+  even.set(0, {16, 32});
   ASSERT_TRUE(add({0, 16}, {0, 8}).ok());
   ASSERT_TRUE(desk_.add(1, logged({16, 32}, {0, 8}, even), {{0, 8}}).ok());
   desk_.want_image(1, 32);

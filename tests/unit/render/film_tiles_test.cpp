@@ -28,9 +28,7 @@ std::vector<Pass> random_passes(std::uint64_t samples, const TileGrid& grid, Ran
     passes.push_back({node, TileSamples(grid.width, {0, grid.height})});
     for (std::size_t i = 0; i < nodes.size(); ++i) {
       if (!nodes[i].empty() && random.below(3) != 0) {
-        const auto tile = static_cast<std::uint32_t>(i / 2);
-        passes.back().tiles.set(tile % grid.columns() * kTileSide + (i & 1),
-                                tile / grid.columns() * kTileSide, nodes[i].back());
+        passes.back().tiles.set(i, nodes[i].back());
         nodes[i].pop_back();
       }
     }
@@ -106,11 +104,9 @@ TEST(Film, TheErrorOfUnevenNumbersOfSamplesIsTheirStandardError) {
   // Every other tile.
   const auto some = [&](const SampleRange& samples) {
     TileSamples tiles(grid.width, {0, grid.height});
-    for (std::uint32_t x = 0; x < grid.width; x += 2 * kTileSide) {
-      for (std::uint32_t y = 0; y < grid.height; y += kTileSide) {
-        tiles.set(x, y, samples);
-        tiles.set(x + 1, y, samples);
-      }
+    for (std::size_t i = 0; i < grid.half_tiles(); i += 4) {
+      tiles.set(i, samples);
+      tiles.set(i + 1, samples);
     }
     return tiles;
   };

@@ -53,7 +53,7 @@ TEST(RenderBand, AnyNumberOfThreadsGivesTheSameBits) {
 TEST(RenderBand, AHalfTilesOwnSamplesHaveTheBitsOfABandOfTheseAndTheRestIsZero) {
   const auto rendered = scene();
   TileSamples tiles(13, {0, 11});
-  tiles.set(1, 0, {32, 64});
+  tiles.set(1, {32, 64});
   Pool pool(2);
   const auto some =
       render_band(*rendered, kSettings, {{256, 272}, {2, 11}}, pool, kGoOn, {}, tiles);
@@ -102,8 +102,8 @@ TEST(RenderBand, C5_PixelsThatShareTheirPathsHaveTheSameBitsInAnyBandsThreadsAnd
   const std::vector<double> whole = rendered({{32, 64}, {0, 11}}, 1, {});
   EXPECT_EQ(rendered({{32, 64}, {0, 11}}, 3, {}), whole);
   TileSamples tiles(21, {0, 11});
-  tiles.set(1, 0, {32, 64});
-  tiles.set(16, 0, {32, 64});
+  tiles.set(1, {32, 64});
+  tiles.set(2, {32, 64});
   for (const std::uint32_t rows : {1u, 3u, 7u}) {
     std::vector<double> sums;
     std::vector<double> some;

@@ -34,7 +34,7 @@ Some some(std::uint32_t width, std::uint32_t height) {
       for (const std::uint32_t half : {0, 1}) {
         const std::size_t i = 2 * (y / kTileSide * grid.columns() + x / kTileSide) + half;
         halves[i] = some_node(random);
-        out.tiles.set(x + half, y, halves[i]);
+        out.tiles.set(i, halves[i]);
       }
     }
   }
@@ -90,7 +90,7 @@ TEST(TileSamples, OfThePartsOfAPassAreThoseOfThePass) {
   for (int i = 0; i < 200; ++i) {
     TileSamples tiles(1, row);
     const SampleRange taken = some_node(random);
-    tiles.set(0, 0, taken);
+    tiles.set(0, taken);
     std::vector<SampleRange> parts{kPass};
     for (int cuts = 0; cuts < 5; ++cuts) {
       const auto at = parts.begin() + random.below(static_cast<std::uint32_t>(parts.size()));

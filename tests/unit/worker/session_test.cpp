@@ -113,7 +113,7 @@ TEST(Session, ATaskHasTheSamplesOfItsHalfTiles) {
   session.receive(welcome("e1"));
   farm::ToWorker message = lease(10, 2);
   TileSamples tiles(8, {2, 4});
-  tiles.set(1, 2, {64, 128});
+  tiles.set(1, {64, 128});
   for (const std::uint32_t number : tiles.numbers()) {
     message.mutable_lease()->add_tile_samples(number);
   }
