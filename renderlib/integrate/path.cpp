@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "renderlib/geometry/surface.h"
+#include "renderlib/integrate/medium_walk.h"
 #include "renderlib/integrate/path_state.h"
 #include "renderlib/integrate/path_steps.h"
 #include "renderlib/integrate/see_through.h"
@@ -122,15 +123,28 @@ std::uint32_t branches_for(const Scene& scene) {
   return scene.geometry().meshes.empty() ? 2 : 4;
 }
 
+void see_surface(const PathContext& context, const SurfacePoint& point, PathState& path) {
+  const Scene& scene = context.scene;
+  const Rgb light =
+      emitted(scene.material(point.material), scene.textures(), point, -path.ray.direction);
+  if (is_black(light)) {
+    return;
+  }
+  Rgb passing = gray(1);
+  if (scene.needs().media) {
+    Ray way = path.ray;
+    way.t_max = length(point.position - way.origin);
+    passing = media_transmittance(scene, way, context.rays);
+  }
+  path.radiance += path.throughput * light * passing *
+                   scattering_weight(scene, path.departure, point, context.options.technique);
+}
+
 std::optional<Bsdf> arrive(const PathContext& context, const SurfacePoint& point,
                            std::uint32_t depth, PathState& path) {
   const Scene& scene = context.scene;
   const Material& material = scene.material(point.material);
   const Vec3 wo = -path.ray.direction;
-  if (const Rgb light = emitted(material, scene.textures(), point, wo); !is_black(light)) {
-    path.radiance += path.throughput * light *
-                     scattering_weight(scene, path.departure, point, context.options.technique);
-  }
   if (std::holds_alternative<Emissive>(material)) {
     return std::nullopt;
   }
@@ -201,6 +215,9 @@ void leave_scene(const PathContext& context, PathState& path) {
 void follow(const PathContext& context, std::uint32_t depth, PathState& path) {
   for (;; ++depth) {
     const std::optional<SurfacePoint> seen = next_surface(context, depth, path);
+    if (seen) {
+      see_surface(context, *seen, path);
+    }
     if (context.scene.needs().media) {
       const double way = seen ? length(seen->position - path.ray.origin) : kInfinity;
       const Passage passage = through_media(context, way, depth, path);

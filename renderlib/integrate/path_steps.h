@@ -18,8 +18,13 @@ inline std::optional<SurfacePoint> next_surface(const PathContext& context, std:
                        path.nesting, context.rays);
 }
 
-/// The path meets a surface as scattering `depth`: adds the surface's own light. How the surface
-/// scatters; nothing: it does not, or the path may not go on.
+/// Adds the own light of the surface that the path's ray meets, faded by all media before it. What
+/// is added there is not left to whether the path passes them: a lamp is brighter than what is
+/// scattered before it, and costs no ray.
+void see_surface(const PathContext& context, const SurfacePoint& point, PathState& path);
+
+/// The path meets a surface as scattering `depth`. How the surface scatters; nothing: it does not,
+/// or the path may not go on.
 std::optional<Bsdf> arrive(const PathContext& context, const SurfacePoint& point,
                            std::uint32_t depth, PathState& path);
 
@@ -28,9 +33,10 @@ std::optional<Bsdf> arrive(const PathContext& context, const SurfacePoint& point
 bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& bsdf,
              std::uint32_t depth, PathState& path);
 
-/// Both.
+/// All three.
 inline bool scatter_at(const PathContext& context, const SurfacePoint& point, std::uint32_t depth,
                        PathState& path) {
+  see_surface(context, point, path);
   const std::optional<Bsdf> bsdf = arrive(context, point, depth, path);
   return bsdf && scatter(context, point, *bsdf, depth, path);
 }

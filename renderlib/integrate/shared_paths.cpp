@@ -40,6 +40,7 @@ void follow_own(const PathContext& context, PathState& path, std::optional<Taker
     leave_scene(context, path);
     return;
   }
+  see_surface(context, *first, path);
   const std::optional<Bsdf> bsdf = arrive(context, *first, 0, path);
   if (!bsdf) {
     return;

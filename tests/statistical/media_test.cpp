@@ -80,6 +80,19 @@ TEST(Media, V7AroundTheCameraAbsorbOnTheWayToALamp) {
   test::holds("V7", "within 4 SE");
 }
 
+/// What scatters light before a lamp does not make its edge noisy: half of these paths are
+/// scattered before they reach it, and all of them have its light.
+TEST(Media, BeforeALampLetThroughTheSameOfEverySample) {
+  SceneMaker maker;
+  maker.sphere({10, 0, 0}, 1e-3, maker.lamp(5));
+  test::fog(maker, medium(0.01f, 0.05f));
+  test::fill_sphere(maker, {5, 0, 0}, 1, test::add(maker, medium(0, 0.25f)));
+  const Ray ray{.origin = {0, 0, 0}, .direction = {1, 0, 0}};
+  const Moments seen =
+      test::radiance_along(*maker.build(), ray, {.technique = Technique::kScatteringOnly}, 256);
+  expect_value(seen, 5 * std::exp(-0.06 * (8 - 1e-3) - 0.25 * 2), 1e-6);
+}
+
 TEST(Media, ThatEmitGiveTheirReach) {
   SceneMaker maker = white_sky();
   const MediumId flame = test::add(maker, {.absorption = {0, 1, 0}, .emission = {0, 3, 0}});
