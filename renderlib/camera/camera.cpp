@@ -124,6 +124,8 @@ void RayGenerator::prepare(const PerspectiveCamera& camera, int width, int heigh
   corner_ = axes.forward - dx_ * (width / 2.0) - dy_ * (height / 2.0);
   lens_x_ = axes.right * (camera.aperture / 2);
   lens_y_ = axes.up * (camera.aperture / 2);
+  forward_ = axes.forward;
+  lens_radius_ = camera.aperture / 2;
   focus_distance_ = camera.focus_distance;
 }
 
@@ -141,6 +143,14 @@ Ray RayGenerator::ray(double x, double y, double lens_u, double lens_v, double s
   Ray ray = ray_now(x, y, lens_u, lens_v);
   ray.time = std::min(shutter_.open + share * (shutter_.close - shutter_.open), shutter_.close);
   return ray;
+}
+
+std::optional<LensView> RayGenerator::lens_view(double x, double y) const {
+  if (kind_ != Kind::kLens) {
+    return std::nullopt;
+  }
+  return LensView::make(origin_, forward_, lens_radius_, focus_distance_,
+                        corner_ + dx_ * x + dy_ * y);
 }
 
 Ray RayGenerator::ray_now(double x, double y, double lens_u, double lens_v) const {

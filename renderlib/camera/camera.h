@@ -2,9 +2,11 @@
 
 // Where rays start. A closed set.
 
+#include <optional>
 #include <variant>
 
 #include "absl/status/status.h"
+#include "renderlib/camera/lens_view.h"
 #include "renderlib/geometry/ray.h"
 #include "renderlib/math/vec.h"
 
@@ -67,6 +69,8 @@ class RayGenerator {
   /// [0, 1)^2. The direction is a unit vector. It is at `share` of the time that the shutter is
   /// open, in [0, 1].
   Ray ray(double x, double y, double lens_u, double lens_v, double share = 0) const;
+  /// What the lens sees there through the plane of focus; nothing: it is no lens, or too wide.
+  std::optional<LensView> lens_view(double x, double y) const;
 
  private:
   Ray ray_now(double x, double y, double lens_u, double lens_v) const;
@@ -83,6 +87,8 @@ class RayGenerator {
   Vec3 dy_;      ///< and a pixel down
   Vec3 lens_x_;  ///< the lens' radius to the right
   Vec3 lens_y_;  ///< and upwards
+  Vec3 forward_;
+  double lens_radius_ = 0;
   double focus_distance_ = 1;
   Shutter shutter_;
 };

@@ -5,6 +5,7 @@
 #include "renderlib/geometry/surface.h"
 #include "renderlib/integrate/path_state.h"
 #include "renderlib/integrate/path_steps.h"
+#include "renderlib/integrate/through_lens.h"
 #include "renderlib/integrate/through_media.h"
 #include "renderlib/material/bsdf.h"
 
@@ -71,10 +72,14 @@ void follow(const PathContext& context, std::uint32_t depth, PathState& path) {
   }
 }
 
-Rgb path_radiance(const Scene& scene, const Ray& camera_ray, const PixelSampler& sampler,
+Rgb path_radiance(const Scene& scene, const CameraRay& camera_ray, const PixelSampler& sampler,
                   std::uint64_t sample, const PathOptions& options, PathCounts& counts) {
-  PathState path(camera_ray);
-  follow({scene, sampler, sample, options, counts.rays, options.branches}, 0, path);
+  const PathContext context{scene, sampler, sample, options, counts.rays, options.branches};
+  PathState path(camera_ray.ray);
+  if (camera_ray.lens) {
+    ask_through_lens(context, *camera_ray.lens, path);
+  }
+  follow(context, 0, path);
   counts.truncated += path.truncated ? 1 : 0;
   return path.radiance;
 }

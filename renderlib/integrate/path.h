@@ -6,7 +6,9 @@
 // sections 9.2 and 10.2).
 
 #include <cstdint>
+#include <optional>
 
+#include "renderlib/camera/lens_view.h"
 #include "renderlib/geometry/ray.h"
 #include "renderlib/math/rgb.h"
 #include "renderlib/sampling/sampler.h"
@@ -48,9 +50,19 @@ struct PathCounts {
 /// Scattering from this one on may end by Russian roulette.
 inline constexpr std::uint32_t kRouletteDepth = 3;
 
-/// The radiance that comes back along `camera_ray`, whose direction is a unit vector, by sample
-/// number `sample` of the pixel. Adds to `counts`. Deterministic, allocates nothing.
-Rgb path_radiance(const Scene& scene, const Ray& camera_ray, const PixelSampler& sampler,
+/// What a sample of a pixel looks along.
+struct CameraRay {
+  /// Not explicit: any ray is one.
+  CameraRay(const Ray& of_camera) : ray(of_camera) {}
+
+  Ray ray;  ///< of unit direction
+  /// The lens it came through, where lamps beyond its focus are to be asked as well.
+  std::optional<LensView> lens = std::nullopt;
+};
+
+/// The radiance that comes back along `camera_ray` by sample number `sample` of the pixel. Adds to
+/// `counts`. Deterministic, allocates nothing.
+Rgb path_radiance(const Scene& scene, const CameraRay& camera_ray, const PixelSampler& sampler,
                   std::uint64_t sample, const PathOptions& options, PathCounts& counts);
 
 }  // namespace bandsaw

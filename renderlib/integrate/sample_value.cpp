@@ -63,13 +63,13 @@ Rgb value_at(const Scene& scene, Integrator integrator, const Ray& ray, const Pi
 
 }  // namespace
 
-Rgb sample_value(const Scene& scene, Integrator integrator, const Ray& camera_ray,
+Rgb sample_value(const Scene& scene, Integrator integrator, const CameraRay& camera_ray,
                  const PixelSampler& sampler, std::uint64_t sample, const PathOptions& options,
                  PathCounts& counts) {
   if (follows_light(integrator)) {
     return path_radiance(scene, camera_ray, sampler, sample, options, counts);
   }
-  return value_at(scene, integrator, camera_ray, sampler, sample, counts.rays);
+  return value_at(scene, integrator, camera_ray.ray, sampler, sample, counts.rays);
 }
 
 }  // namespace bandsaw

@@ -11,7 +11,7 @@ namespace bandsaw {
 
 /// As path_radiance, whose arguments these are; of an integrator that follows no light only the
 /// camera ray, and for occlusion one more, is traced.
-Rgb sample_value(const Scene& scene, Integrator integrator, const Ray& camera_ray,
+Rgb sample_value(const Scene& scene, Integrator integrator, const CameraRay& camera_ray,
                  const PixelSampler& sampler, std::uint64_t sample, const PathOptions& options,
                  PathCounts& counts);
 

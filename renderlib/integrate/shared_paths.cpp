@@ -6,6 +6,7 @@
 
 #include "renderlib/base/check.h"
 #include "renderlib/integrate/path_steps.h"
+#include "renderlib/integrate/through_lens.h"
 
 namespace bandsaw {
 namespace {
@@ -129,7 +130,10 @@ void shared_radiance(const Scene& scene, absl::Span<SharedPixel> pixels, std::ui
   std::array<std::optional<Finding>, kMostShared> found;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const PathContext context{scene, pixels[i].sampler, sample, options, counts.rays};
-    PathState path(pixels[i].camera_ray);
+    PathState path(pixels[i].camera_ray.ray);
+    if (pixels[i].camera_ray.lens) {
+      ask_through_lens(context, *pixels[i].camera_ray.lens, path);
+    }
     follow_own(context, path, takers[i], found[i]);
     pixels[i].radiance = path.radiance;
     counts.truncated += path.truncated ? 1 : 0;

@@ -25,8 +25,8 @@ inline constexpr std::size_t kMostShared = 8;
 
 struct SharedPixel {
   PixelSampler sampler;
-  Ray camera_ray;     ///< of the sample, of unit direction
-  Rgb radiance = {};  ///< that comes back along it; set by shared_radiance
+  CameraRay camera_ray;  ///< of the sample
+  Rgb radiance = {};     ///< that comes back along it; set by shared_radiance
 };
 
 /// One sample, number `sample`, of each of up to kMostShared pixels. The scene MUST share paths

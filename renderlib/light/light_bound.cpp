@@ -82,6 +82,13 @@ double importance(const LightBound& bound, const Receiver& receiver) {
   const double distance = std::sqrt(distance2);
   const double sin_seen = radius / distance;
   const Angle seen{sin_seen, std::sqrt((1 - sin_seen) * (1 + sin_seen))};
+  if (receiver.within != nullptr) {
+    const Cone& cone = *receiver.within;
+    const Angle off = angle_of(dot(cone.axis, way) / distance);
+    if (reduced(reduced(off, {cone.sin, cone.cos}), seen).cos < 1) {
+      return 0;
+    }
+  }
   double cosines = 1;
   if (receiver.normal) {
     cosines = reduced(angle_of(dot(*receiver.normal, way) / distance), seen).cos;

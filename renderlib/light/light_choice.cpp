@@ -9,6 +9,9 @@
 namespace bandsaw {
 
 double importance(const DistantBound& bound, const Receiver& receiver) {
+  if (receiver.within != nullptr) {
+    return 0;
+  }
   if (!bound.way || !receiver.normal) {
     return bound.irradiance;
   }
@@ -36,6 +39,15 @@ double LightChoice::weight(std::size_t candidate, const Receiver& receiver) cons
     return importance(distant_[candidate - first_distant], receiver);
   }
   return in_tree_ > 0 ? tree_.importance(receiver) : importance(few_[candidate], receiver);
+}
+
+bool LightChoice::any_for(const Receiver& receiver) const {
+  for (std::size_t i = 0; i < candidates(); ++i) {
+    if (weight(i, receiver) > 0) {
+      return true;
+    }
+  }
+  return false;
 }
 
 std::optional<LightChoice::Choice> LightChoice::choose(const Receiver& receiver,

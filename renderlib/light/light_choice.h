@@ -34,6 +34,8 @@ class LightChoice {
   /// Fewer than kFewLights distant ones.
   LightChoice(std::vector<LightBound> local, std::vector<DistantBound> distant);
 
+  /// Whether any light may reach the receiver.
+  bool any_for(const Receiver& receiver) const;
   /// `number` in [0, 1), as fine as double: a light is chosen as often as its probability says down
   /// to the spacing of the numbers. Nothing: no light reaches the receiver.
   std::optional<Choice> choose(const Receiver& receiver, double number) const;

@@ -183,7 +183,8 @@ std::optional<LightSample> Lights::sample_environment(const Receiver& receiver, 
 
 double Lights::pdf(const Receiver& receiver, const SurfacePoint& hit) const {
   const double chosen = probability(receiver, hit.id);
-  if (chosen == 0) {
+  if (chosen == 0 ||
+      (receiver.within != nullptr && !receiver.faces(hit.position - receiver.position))) {
     return 0;
   }
   return chosen * direction_pdf(shape_view(*geometry_, hit.id, receiver.time), receiver.position,

@@ -48,6 +48,9 @@ class Lights {
   std::size_t size() const { return ids_.size() + delta_.size() + (environment_.empty() ? 0 : 1); }
   bool empty() const { return size() == 0; }
 
+  /// Whether sample() may find light for the receiver, and pdf() be more than 0.
+  bool any_for(const Receiver& receiver) const { return choice_.any_for(receiver); }
+
   /// `choice` in [0, 1), as fine as double where there are many lights; u, v in [0, 1). Nothing: no
   /// light reaches the receiver by this sample.
   std::optional<LightSample> sample(const Receiver& receiver, double choice, double u,

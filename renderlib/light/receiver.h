@@ -2,20 +2,27 @@
 
 #include <optional>
 
+#include "renderlib/math/cone.h"
 #include "renderlib/math/vec.h"
 
 namespace bandsaw {
 
 /// A point that receives light: on a surface, from one side of it; without a normal (in a medium)
-/// from all around.
+/// from all around. Or a point through which light is seen.
 struct Receiver {
   Vec3 position;
   /// Unit; light comes only from directions with a positive cosine to it.
   std::optional<Vec3> normal = std::nullopt;
   double time = 0;  ///< lights are where they are then
 
+  /// Where it is set, surfaces are asked that may be seen within it, and no distant light. Outlives
+  /// the receiver.
+  const Cone* within = nullptr;
+
   /// Whether light can come from that way, of any length.
-  bool faces(const Vec3& way) const { return !normal || dot(*normal, way) > 0; }
+  bool faces(const Vec3& way) const {
+    return (!normal || dot(*normal, way) > 0) && (within == nullptr || within->contains(way));
+  }
 };
 
 }  // namespace bandsaw

@@ -27,6 +27,8 @@ PixelSums::PixelSums(const Scene& scene, const RenderSettings& settings, const B
                .local = settings.integrator == Integrator::kDirect,
                .branches = settings.integrator == Integrator::kDirect ? 1 : branches_for(scene)},
       camera_(scene.camera(), static_cast<int>(settings.width), static_cast<int>(settings.height)),
+      asks_through_lens_(!scene.lights().empty() && follows_light(settings.integrator) &&
+                         options_.technique == Technique::kBoth),
       shares_(scene.shares_paths() && follows_light(settings.integrator) && !options_.local) {}
 
 void PixelSums::add_run(std::uint32_t y, std::uint32_t first, std::uint32_t last,
@@ -61,7 +63,7 @@ void PixelSums::add_group(std::uint32_t y, const HalfRow& group, const SampleRan
   stack.resize(static_cast<std::size_t>(std::bit_width(samples.blocks())) + 1);
   pixels.clear();
   for (std::uint32_t x = group.first; x < group.last; x += 2) {
-    pixels.push_back({.sampler = PixelSampler(settings_.seed, x, y), .camera_ray = {}});
+    pixels.push_back({.sampler = PixelSampler(settings_.seed, x, y), .camera_ray = Ray{}});
   }
   std::size_t top = 0;
   for (std::uint64_t block = 0; block < samples.blocks() && !stopped(); ++block) {
@@ -134,12 +136,17 @@ void PixelSums::sample(std::uint32_t y, const HalfRow& group, std::uint64_t samp
   }
 }
 
-Ray PixelSums::camera_ray(const PixelSampler& sampler, std::uint32_t x, std::uint32_t y,
-                          std::uint64_t sample) const {
+CameraRay PixelSums::camera_ray(const PixelSampler& sampler, std::uint32_t x, std::uint32_t y,
+                                std::uint64_t sample) const {
   const Sample4 at = sampler.group(sample, kGroupCamera);
   const Vec2 offset = bandsaw::sample(scene_.filter(), at[0], at[1]);
   const double when = scene_.needs().motion ? sampler.group(sample, kGroupTime)[0] : 0;
-  return camera_.ray(x + 0.5 + offset.x, y + 0.5 + offset.y, at[2], at[3], when);
+  const Vec2 place{x + 0.5 + offset.x, y + 0.5 + offset.y};
+  CameraRay looks(camera_.ray(place.x, place.y, at[2], at[3], when));
+  if (asks_through_lens_) {
+    looks.lens = camera_.lens_view(place.x, place.y);
+  }
+  return looks;
 }
 
 }  // namespace bandsaw

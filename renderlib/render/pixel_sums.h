@@ -57,8 +57,8 @@ class PixelSums {
             absl::Span<SharedPixel> pixels, Counters& counters) const;
   void sample(std::uint32_t y, const HalfRow& group, std::uint64_t sample,
               absl::Span<SharedPixel> pixels, PathCounts& counts) const;
-  Ray camera_ray(const PixelSampler& sampler, std::uint32_t x, std::uint32_t y,
-                 std::uint64_t sample) const;
+  CameraRay camera_ray(const PixelSampler& sampler, std::uint32_t x, std::uint32_t y,
+                       std::uint64_t sample) const;
 
   const Scene& scene_;
   RenderSettings settings_;
@@ -66,6 +66,7 @@ class PixelSums {
   const std::atomic<bool>& stop_;
   PathOptions options_;
   RayGenerator camera_;
+  bool asks_through_lens_;
   bool shares_;
 };
 

@@ -38,7 +38,8 @@ class PixelSampler {
 Sample4 sample4(const SampleKey& key, std::uint32_t group);
 
 inline constexpr std::uint32_t kGroupCamera = 0;  ///< pixel x, pixel y, lens u, lens v
-inline constexpr std::uint32_t kGroupTime = 1;    ///< time, -, -, -
+inline constexpr std::uint32_t kGroupTime =
+    1;  ///< time; a light seen through the lens: choice, u, v
 /// Of scattering `bounce` (0 at the camera ray's hit): direction u, v, lobe, Russian roulette.
 constexpr std::uint32_t group_bsdf(std::uint32_t bounce) { return 2 + 2 * bounce; }
 /// Of scattering `bounce`: light choice, light u, v, distance in a medium.

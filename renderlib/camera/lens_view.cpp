@@ -1,0 +1,43 @@
+#include "renderlib/camera/lens_view.h"
+
+#include <cmath>
+
+#include "renderlib/math/constants.h"
+
+namespace bandsaw {
+
+std::optional<LensView> LensView::make(const Vec3& middle, const Vec3& forward, double radius,
+                                       double distance, const Vec3& way) {
+  LensView view;
+  view.middle_ = middle;
+  view.forward_ = forward;
+  view.to_focus_ = way * distance;
+  view.focus_ = middle + view.to_focus_;
+  view.radius_ = radius;
+  view.distance_ = distance;
+  // The lens is within a ball of its radius.
+  const double far = length(view.to_focus_);
+  const double sine = radius / far;
+  if (!(sine < 1)) {
+    return std::nullopt;
+  }
+  view.beyond_ = {view.to_focus_ / far, sine, std::sqrt((1 - sine) * (1 + sine))};
+  return view;
+}
+
+std::optional<Vec3> LensView::on_lens(const Vec3& direction) const {
+  const double along = dot(direction, forward_);
+  if (!(along > 0)) {
+    return std::nullopt;
+  }
+  const Vec3 from = to_focus_ - direction * (distance_ / along);
+  return length_squared(from) <= radius_ * radius_ ? std::optional(middle_ + from) : std::nullopt;
+}
+
+double LensView::pdf(const Vec3& direction) const {
+  const double along = dot(direction, forward_);
+  const double far = distance_ / radius_;
+  return far * far / (kPi * along * along * along);
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,134 @@
+// Lamps out of focus: disks of the brightness that the share of the lens says from which they are
+// seen, and the same mean whether or not they are asked through the lens.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "renderlib/camera/camera.h"
+#include "renderlib/integrate/path.h"
+#include "tests/statistical/estimate.h"
+#include "tests/support/media.h"
+#include "tests/support/scenes.h"
+
+namespace bandsaw {
+namespace {
+
+using test::Moments;
+using test::SceneMaker;
+
+/// From the origin along -z, focused at 4.
+PerspectiveCamera camera(double aperture) {
+  return {.look_at = {0, 0, -1}, .aperture = aperture, .focus_distance = 4};
+}
+
+enum class Lamps { kFoundByChance, kAsked };
+
+/// What position (x, y) of an image of 20 x 20 pixels sees.
+Moments seen(const SceneMaker& maker, const PerspectiveCamera& camera, double x, double y,
+             Lamps lamps, std::uint64_t samples) {
+  const auto scene = maker.build();
+  const RayGenerator rays(camera, 20, 20);
+  Moments means;
+  for (std::uint64_t seed = 0; seed < 32; ++seed) {
+    const PixelSampler sampler(seed, 11, 7);
+    double sum = 0;
+    PathCounts counts;
+    for (std::uint64_t sample = 0; sample < samples; ++sample) {
+      const Sample4 at = sampler.group(sample, kGroupCamera);
+      CameraRay ray(rays.ray(x, y, at[2], at[3]));
+      if (lamps == Lamps::kAsked) {
+        ray.lens = rays.lens_view(x, y);
+      }
+      sum += path_radiance(*scene, ray, sampler, sample, {.max_depth = 8}, counts).g;
+    }
+    means.add(sum / static_cast<double>(samples));
+  }
+  return means;
+}
+
+void expect_value(const Moments& radiance, double expected, double relative_error) {
+  EXPECT_NEAR(radiance.mean(), expected, 4 * radiance.standard_error() + 1e-6 * expected);
+  EXPECT_LE(radiance.standard_error(), relative_error * expected);
+}
+
+/// A ball of this radius straight ahead is seen from the part of the lens that its cone, through
+/// the focus, cuts out.
+double share_of_lens(double radius, double distance, double aperture) {
+  const double sine = radius / std::abs(distance - 4);
+  const double on_lens = 4 * sine / std::sqrt((1 - sine) * (1 + sine));
+  return on_lens * on_lens / (aperture * aperture / 4);
+}
+
+TEST(Lens, MakesADiskOfALampBeyondItsFocus) {
+  // The last is seen from a millionth of the lens: of 8,192 rays, hardly one would meet it.
+  for (const double radius : {0.1, 0.01, 3e-4}) {
+    SceneMaker maker;
+    maker.sphere({0, 0, -10}, radius, maker.lamp(7));
+    expect_value(seen(maker, camera(0.4), 10, 10, Lamps::kAsked, 256),
+                 7 * share_of_lens(radius, 10, 0.4), 1e-3);
+  }
+}
+
+TEST(Lens, MakesADiskOfALampBeforeItsFocus) {
+  SceneMaker maker;
+  maker.sphere({0, 0, -2}, 0.05, maker.lamp(7));
+  for (const Lamps lamps : {Lamps::kAsked, Lamps::kFoundByChance}) {
+    expect_value(seen(maker, camera(0.4), 10, 10, lamps, 4096), 7 * share_of_lens(0.05, 2, 0.4),
+                 1e-2);
+  }
+}
+
+void expect_the_same(const SceneMaker& maker, const PerspectiveCamera& camera,
+                     std::uint64_t samples = 4096) {
+  // The middle, the edge of a disk, between disks, a corner.
+  for (const double place : {10.0, 10.7, 12.5, 19.5}) {
+    const Moments asked = seen(maker, camera, place, 20 - place, Lamps::kAsked, samples);
+    const Moments by_chance =
+        seen(maker, camera, place, 20 - place, Lamps::kFoundByChance, samples);
+    EXPECT_NEAR(asked.mean(), by_chance.mean(),
+                4 * std::hypot(asked.standard_error(), by_chance.standard_error()))
+        << "at " << place;
+    EXPECT_LE(asked.standard_error(), 1.1 * by_chance.standard_error() + 1e-4 * asked.mean())
+        << "at " << place;
+  }
+}
+
+/// Lamps of all kinds before, in and beyond the focus, one behind a ball, among lights that no
+/// camera sees.
+SceneMaker lamps() {
+  SceneMaker maker;
+  maker.quad({-9, -2, -30}, {18, 0, 0}, {0, 0, 40}, maker.diffuse(0.6f));
+  maker.sphere({0.3, 0.1, -9}, 0.2, maker.lamp(4));
+  maker.quad({1, -1.5, -12}, {0.5, 0, 0}, {0, 0.7, 0}, maker.lamp(3));
+  maker.triangle({-1, 0, -7}, {-0.5, 0, -7}, {-0.7, 0.6, -8}, maker.lamp(2, true));
+  maker.sphere({-0.2, 0.2, -4}, 0.3, maker.lamp(1.5f));
+  maker.sphere({0.05, -0.3, -2}, 0.02, maker.lamp(5));
+  maker.sphere({0.4, -0.2, -6}, 0.4, maker.diffuse(0.5f));
+  maker.scene.lights = {PointLight{{0, 1, -8}, gray(2)},
+                        DirectionalLight{normalize({0, -1, 0.1}), gray(0.3f)}};
+  return maker;
+}
+
+TEST(Lens, AskedAndFoundByChanceHaveTheSameMean) {
+  expect_the_same(lamps(), camera(0.4));
+  expect_the_same(lamps(), camera(3));
+}
+
+TEST(Lens, AskedAndFoundByChanceHaveTheSameMeanAmongMany) {
+  SceneMaker maker = lamps();
+  for (int i = 0; i < 40; ++i) {
+    maker.sphere({std::sin(i) * 3, std::cos(3 * i) * 2, -8.0 - i % 7}, 0.1, maker.lamp(3));
+  }
+  expect_the_same(maker, camera(0.6));
+}
+
+TEST(Lens, AskedAndFoundByChanceHaveTheSameMeanInFogAndUnderASky) {
+  SceneMaker maker = lamps();
+  maker.background(gray(0.2f), gray(0.7f));
+  test::fog(maker, test::medium(0.02f, 0.1f, 0.3));
+  expect_the_same(maker, camera(0.4), 512);
+}
+
+}  // namespace
+}  // namespace bandsaw

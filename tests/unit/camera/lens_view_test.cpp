@@ -1,0 +1,88 @@
+#include "renderlib/camera/lens_view.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+
+#include "renderlib/camera/camera.h"
+#include "renderlib/math/constants.h"
+#include "renderlib/sampling/sampler.h"
+
+namespace bandsaw {
+namespace {
+
+PerspectiveCamera lens() {
+  PerspectiveCamera camera;
+  camera.position = {3, 1, -2};
+  camera.look_at = {2.5, 0.7, -9};
+  camera.aperture = 0.8;
+  camera.focus_distance = 4;
+  return camera;
+}
+
+TEST(LensView, IsPassedByAllRaysOfItsPlace) {
+  const PerspectiveCamera camera = lens();
+  const RayGenerator rays(camera, 60, 40);
+  const double area = kPi * camera.aperture * camera.aperture / 4;
+  const Vec3 forward = normalize(camera.look_at - camera.position);
+  for (std::uint64_t i = 0; i < 1000; ++i) {
+    const Sample4 at = sample4({1, 2, 3, i}, 0);
+    const auto view = rays.lens_view(60 * at[0], 40 * at[1]);
+    ASSERT_TRUE(view);
+    const Ray ray = rays.ray(60 * at[0], 40 * at[1], at[2], at[3]);
+    const Vec3 way = view->focus() - ray.origin;
+    EXPECT_LE(length(cross(way, ray.direction)), 1e-14 * length(way));
+    EXPECT_TRUE(view->beyond().contains(ray.direction));
+    EXPECT_FALSE(view->beyond().contains(-ray.direction));
+    const double cosine = dot(ray.direction, forward);
+    EXPECT_NEAR(view->pdf(ray.direction), length_squared(way) / (area * cosine),
+                1e-12 * view->pdf(ray.direction));
+    // But for rays of the very rim.
+    const Vec3 inwards = normalize(view->focus() - (ray.origin * 0.999 + camera.position * 0.001));
+    const std::optional<Vec3> from = view->on_lens(inwards);
+    ASSERT_TRUE(from);
+    EXPECT_LE(length(*from - (ray.origin * 0.999 + camera.position * 0.001)), 1e-13);
+    const Vec3 beside = camera.position + (ray.origin - camera.position) * 1000;
+    EXPECT_EQ(view->on_lens(normalize(view->focus() - beside)).has_value(),
+              length(beside - camera.position) <= camera.aperture / 2);
+  }
+}
+
+TEST(LensView, HasTheDensityOfItsSolidAngle) {
+  const PerspectiveCamera camera = lens();
+  const RayGenerator rays(camera, 60, 40);
+  const auto view = rays.lens_view(30, 20);
+  double sum = 0;
+  constexpr int kSamples = 4096;
+  for (std::uint64_t i = 0; i < kSamples; ++i) {
+    const Sample4 at = sample4({1, 2, 3, i}, 0);
+    sum += 1 / view->pdf(rays.ray(30, 20, at[2], at[3]).direction);
+  }
+  const double solid_angle = 2 * kPi * (1 - 4 / std::sqrt(4 * 4 + 0.4 * 0.4));
+  EXPECT_NEAR(sum / kSamples, solid_angle, 1e-5 * solid_angle);
+}
+
+TEST(LensView, IsNoneOfAPinholeParallelRaysAndALensAsWideAsItsFocusIsFar) {
+  PerspectiveCamera camera = lens();
+  camera.aperture = 0;
+  EXPECT_FALSE(RayGenerator(camera, 60, 40).lens_view(30, 20));
+  camera.aperture = 8;
+  EXPECT_FALSE(RayGenerator(camera, 60, 40).lens_view(30, 20));
+  EXPECT_FALSE(RayGenerator(OrthographicCamera{}, 60, 40).lens_view(30, 20));
+  camera.aperture = kMostLens;
+  camera.focus_distance = kLeastFocus;
+  EXPECT_FALSE(RayGenerator(camera, 60, 40).lens_view(30, 20));
+}
+
+TEST(LensView, OfAFocusOutOfReachSeesNothingButIsFinite) {
+  PerspectiveCamera camera = lens();
+  camera.focus_distance = kMostLens;
+  const auto view = RayGenerator(camera, 60, 40).lens_view(30, 20);
+  ASSERT_TRUE(view);
+  EXPECT_FALSE(view->beyond().contains(camera.position - view->focus()));
+  EXPECT_TRUE(std::isfinite(view->pdf(normalize(camera.look_at - camera.position))));
+}
+
+}  // namespace
+}  // namespace bandsaw
