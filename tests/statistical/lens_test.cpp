@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "renderlib/camera/camera.h"
-#include "renderlib/integrate/path.h"
+#include "renderlib/integrate/shared_paths.h"
 #include "tests/statistical/estimate.h"
 #include "tests/support/media.h"
 #include "tests/support/scenes.h"
@@ -26,7 +28,7 @@ enum class Lamps { kFoundByChance, kAsked };
 
 /// What position (x, y) of an image of 20 x 20 pixels sees.
 Moments seen(const SceneMaker& maker, const PerspectiveCamera& camera, double x, double y,
-             Lamps lamps, std::uint64_t samples) {
+             Lamps lamps, std::uint64_t samples, const PathOptions& options = {.max_depth = 8}) {
   const auto scene = maker.build();
   const RayGenerator rays(camera, 20, 20);
   Moments means;
@@ -40,7 +42,7 @@ Moments seen(const SceneMaker& maker, const PerspectiveCamera& camera, double x,
       if (lamps == Lamps::kAsked) {
         ray.lens = rays.lens_view(x, y);
       }
-      sum += path_radiance(*scene, ray, sampler, sample, {.max_depth = 8}, counts).g;
+      sum += path_radiance(*scene, ray, sampler, sample, options, counts).g;
     }
     means.add(sum / static_cast<double>(samples));
   }
@@ -128,6 +130,67 @@ TEST(Lens, AskedAndFoundByChanceHaveTheSameMeanInFogAndUnderASky) {
   maker.background(gray(0.2f), gray(0.7f));
   test::fog(maker, test::medium(0.02f, 0.1f, 0.3));
   expect_the_same(maker, camera(0.4), 512);
+}
+
+/// A closed room: pixels share their paths there.
+SceneMaker room() {
+  SceneMaker maker;
+  const MaterialId wall = maker.diffuse(0.5f);
+  const Vec3 low{-3, -3, -12};
+  const Vec3 x{6, 0, 0};
+  const Vec3 y{0, 6, 0};
+  const Vec3 z{0, 0, 14};
+  for (const Vec3& corner : {low, low + z}) {
+    maker.quad(corner, x, y, wall);
+  }
+  for (const Vec3& corner : {low, low + x}) {
+    maker.quad(corner, y, z, wall);
+  }
+  for (const Vec3& corner : {low, low + y}) {
+    maker.quad(corner, x, z, wall);
+  }
+  maker.sphere({0, 0.2, -9}, 0.1, maker.lamp(8));
+  maker.sphere({0.9, -0.1, -7}, 0.05, maker.lamp(8));
+  return maker;
+}
+
+TEST(Lens, IsAskedThroughWherePixelsShareTheirPaths) {
+  const auto scene = room().build();
+  ASSERT_TRUE(scene->shares_paths());
+  const RayGenerator rays(camera(0.4), 20, 20);
+  constexpr double kRow = 10.3;
+  std::array<Moments, kMostShared> shared;
+  for (std::uint64_t seed = 0; seed < 32; ++seed) {
+    std::vector<SharedPixel> pixels;
+    for (std::uint32_t x = 0; x < kMostShared; ++x) {
+      pixels.push_back({.sampler = PixelSampler(seed, x, 3), .camera_ray = Ray{}});
+    }
+    std::array<double, kMostShared> sums{};
+    PathCounts counts;
+    for (std::uint64_t sample = 0; sample < 512; ++sample) {
+      for (std::size_t i = 0; i < pixels.size(); ++i) {
+        const Sample4 at = pixels[i].sampler.group(sample, kGroupCamera);
+        const double place = 7 + static_cast<double>(i);
+        pixels[i].camera_ray = rays.ray(place, kRow, at[2], at[3]);
+        pixels[i].camera_ray.lens = rays.lens_view(place, kRow);
+      }
+      shared_radiance(*scene, absl::MakeSpan(pixels), sample, {.max_depth = 3}, counts);
+      for (std::size_t i = 0; i < pixels.size(); ++i) {
+        sums[i] += pixels[i].radiance.g;
+      }
+    }
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      shared[i].add(sums[i] / 512);
+    }
+  }
+  for (std::size_t i = 0; i < shared.size(); ++i) {
+    const Moments alone = seen(room(), camera(0.4), 7 + static_cast<double>(i), kRow,
+                               Lamps::kFoundByChance, 512, {.max_depth = 3});
+    EXPECT_NEAR(shared[i].mean(), alone.mean(),
+                4 * std::hypot(shared[i].standard_error(), alone.standard_error()))
+        << "pixel " << i;
+    EXPECT_LE(shared[i].standard_error(), alone.standard_error()) << "pixel " << i;
+  }
 }
 
 }  // namespace

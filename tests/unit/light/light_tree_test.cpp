@@ -149,6 +149,32 @@ TEST(LightTree, NestedLightsStayWithinItsDepth) {
   EXPECT_NEAR(sum, 1, 1e-12);
 }
 
+/// A ball that a direction within the cone meets may be chosen, one beyond the sum of the angles is
+/// not: to the angle that cosines can tell, 1.5e-8.
+TEST(LightChoice, WithinAConeThereIsWhatMayBeSeenInIt) {
+  Random random(4);
+  int met = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const double angle = std::pow(10, random.uniform(-6, 0));
+    const Cone cone{normalize(random_point(random, 1)), std::sin(angle), std::cos(angle)};
+    const Receiver receiver{random_point(random, 5), std::nullopt, 0, &cone};
+    const double off = std::min(random.uniform(0, 3) * angle, 3.0);
+    const Vec3 aside = normalize(cross(cone.axis, random_point(random, 1)));
+    const double distance = random.uniform(1, 9);
+    const Vec3 way = cone.axis * std::cos(off) + aside * std::sin(off);
+    const double seen = angle * random.uniform(0, 1);
+    const LightBound light{.ball = {receiver.position + way * distance, distance * std::sin(seen)},
+                           .intensity = 1};
+    if (std::abs(off - angle - seen) < 3e-8) {
+      continue;
+    }
+    EXPECT_EQ(importance(light, receiver) > 0, off < angle + seen) << angle << " " << off;
+    met += off < angle + seen ? 1 : 0;
+  }
+  EXPECT_GT(met, 5000);
+  EXPECT_LT(met, 15000);
+}
+
 TEST(LightChoice, DistantLightsStandBesideFewAndBesideATree) {
   for (const std::size_t count : {3u, 300u}) {
     const std::vector<LightBound> local = lights_of_all_kinds(count);
