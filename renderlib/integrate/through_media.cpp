@@ -31,8 +31,8 @@ struct Step {
   }
 };
 
-/// Looks for light where some lights are, by points of them that are chosen for a point halfway to
-/// what is scattered; evenly over all choices, that no bright light is missed. These MUST NOT
+/// Looks for light where some lights are, by points of them that are chosen by what they give all
+/// along; evenly over all choices, that no bright light is missed. These MUST NOT
 /// depend on where the path goes on, nor on the light that is asked then.
 AskedDistance asked_distance(const Step& step, double length) {
   AskedDistance asked(step.flight, step.medium);
@@ -40,18 +40,16 @@ AskedDistance asked_distance(const Step& step, double length) {
   if (!step.context.asks_lights()) {
     return asked;
   }
-  constexpr double kHalf = 0.693;  // ln 2: half of the light gets that far
-  const double distance = std::min(length / 2, kHalf / mean_extinction(step.medium));
-  const Receiver receiver{step.origin + step.way * distance, std::nullopt, step.time};
+  const LitStretch stretch{step.origin, step.way, length, mean_extinction(step.medium)};
   const Sample4 at = step.numbers(1);
   const std::size_t pivots = std::min(lights.size(), AskedDistance::kMostPivots);
   for (std::size_t i = 0; i < pivots; ++i) {
     const double choice = (at[0] + static_cast<double>(i)) / static_cast<double>(pivots);
-    const std::optional<LightSample> light = lights.sample(receiver, choice, at[1], at[2]);
-    if (light && light->distant) {
+    const std::optional<LightPlace> place = lights.place(stretch, step.time, choice, at[1], at[2]);
+    if (place && place->distant) {
       asked.add_distant();
-    } else if (light) {
-      asked.add(step.origin, step.way, length, light->target);
+    } else if (place) {
+      asked.add(step.origin, step.way, length, place->position);
     }
   }
   return asked;

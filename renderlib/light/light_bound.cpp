@@ -3,11 +3,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "renderlib/math/constants.h"
+#include "renderlib/math/elementary.h"
+
 namespace bandsaw {
 namespace {
 
 /// Beyond the cone of a spot light nothing is given; its rim has rounding.
 constexpr double kJustFacing = 1 - 0x1p-40;
+
+/// Of the distance to a light, how far it is beside a ray at least (medium/equiangular.h).
+constexpr double kLeastAside = 1e-6;
 
 /// Sums and shares of such numbers are finite.
 constexpr double kMostGiven = 1e300;
@@ -29,6 +35,22 @@ Angle reduced(const Angle& a, const Angle& b) {
     return {0, 1};
   }
   return {a.sin * b.cos - a.cos * b.sin, a.cos * b.cos + a.sin * b.sin};
+}
+
+/// The integral of intensity / distance^2 along the stretch, as if its nearest point were its
+/// middle, faded as on the way by that point.
+double importance_along(const LightBound& bound, const LitStretch& stretch) {
+  const Vec3 to_light = bound.ball.center - stretch.origin;
+  const double nearest = stretch.nearest(bound.ball.center);
+  const double aside = std::max({length(to_light - stretch.way * nearest), bound.ball.radius,
+                                 kLeastAside * length(to_light)});
+  if (!(aside > 0)) {
+    return kMostGiven;
+  }
+  const double angle = std::min(kPi, stretch.length / aside);
+  const double given =
+      bound.intensity * exp(-stretch.extinction * (nearest + aside)) * angle / aside;
+  return std::min(given, kMostGiven);
 }
 
 }  // namespace
@@ -62,6 +84,9 @@ LightBound bound_of(const SpotLight& light) {
 }
 
 double importance(const LightBound& bound, const Receiver& receiver) {
+  if (receiver.along != nullptr) {
+    return importance_along(bound, *receiver.along);
+  }
   const Vec3 way = bound.ball.center - receiver.position;
   const double distance2 = length_squared(way);
   const double radius = bound.ball.radius;

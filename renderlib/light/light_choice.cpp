@@ -12,6 +12,9 @@ double importance(const DistantBound& bound, const Receiver& receiver) {
   if (receiver.within != nullptr) {
     return 0;
   }
+  if (receiver.along != nullptr) {
+    return bound.irradiance * std::min(receiver.along->length, 1 / receiver.along->extinction);
+  }
   if (!bound.way || !receiver.normal) {
     return bound.irradiance;
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 #include <utility>
 
 #include "renderlib/geometry/placement.h"
@@ -10,6 +11,21 @@
 #include "renderlib/material/opacity.h"
 
 namespace bandsaw {
+namespace {
+
+LightPlace place_of(const DeltaLight& light) {
+  return std::visit(
+      [](const auto& kind) -> LightPlace {
+        if constexpr (std::is_same_v<std::decay_t<decltype(kind)>, DirectionalLight>) {
+          return {.distant = true};
+        } else {
+          return {.position = kind.position};
+        }
+      },
+      light);
+}
+
+}  // namespace
 
 Lights::Lights(const Geometry& geometry, const std::vector<Material>& materials,
                const std::vector<Texture>& textures, const std::vector<DeltaLight>& delta_lights,
@@ -126,6 +142,24 @@ std::optional<LightSample> Lights::sample(const Receiver& receiver, double choic
   }
   sample->pdf *= chosen->probability;
   return sample->pdf > 0 ? sample : std::nullopt;
+}
+
+std::optional<LightPlace> Lights::place(const LitStretch& stretch, double time, double choice,
+                                        double u, double v) const {
+  const auto chosen =
+      choice_.choose({stretch.origin, std::nullopt, time, nullptr, &stretch}, choice);
+  if (!chosen) {
+    return std::nullopt;
+  }
+  const std::size_t delta = chosen->light - ids_.size();
+  if (chosen->light >= ids_.size()) {
+    return delta < delta_.size() ? place_of(delta_[delta]) : LightPlace{.distant = true};
+  }
+  const ShapeView shape = shape_view(*geometry_, ids_[chosen->light], time);
+  const Vec3 middle = bounds(shape).center;
+  const Vec3 from = stretch.origin + stretch.way * stretch.nearest(middle);
+  const std::optional<ShapeSample> on_light = bandsaw::sample(shape, from, u, v);
+  return LightPlace{on_light ? on_light->position : middle};
 }
 
 std::optional<LightSample> Lights::sample_surface(PrimitiveId id, const Receiver& receiver,

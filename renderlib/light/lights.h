@@ -35,6 +35,11 @@ struct LightSample {
   bool delta = false;    ///< no other technique ever finds it
 };
 
+struct LightPlace {
+  Vec3 position = {};    ///< of distant lights: means nothing
+  bool distant = false;  ///< infinitely far
+};
+
 class Lights {
  public:
   Lights() = default;
@@ -55,6 +60,11 @@ class Lights {
   /// light reaches the receiver by this sample.
   std::optional<LightSample> sample(const Receiver& receiver, double choice, double u,
                                     double v) const;
+
+  /// A place of a light, chosen by what lights give along a stretch of medium; nothing: none is of
+  /// use.
+  std::optional<LightPlace> place(const LitStretch& stretch, double time, double choice, double u,
+                                  double v) const;
 
   /// The density with which sample() makes the direction from the receiver to `hit`, a point of an
   /// emissive primitive; 0 when it never does.

@@ -1,11 +1,23 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 
 #include "renderlib/math/cone.h"
 #include "renderlib/math/vec.h"
 
 namespace bandsaw {
+
+/// A stretch of a ray in a medium that scatters.
+struct LitStretch {
+  Vec3 origin;
+  Vec3 way;               ///< unit
+  double length = 0;      ///< > 0, maybe infinite
+  double extinction = 0;  ///< > 0, the mean of the channels
+
+  /// How far along it is nearest to a point.
+  double nearest(const Vec3& to) const { return std::clamp(dot(to - origin, way), 0.0, length); }
+};
 
 /// A point that receives light: on a surface, from one side of it; without a normal (in a medium)
 /// from all around. Or a point through which light is seen.
@@ -18,6 +30,9 @@ struct Receiver {
   /// Where it is set, surfaces are asked that may be seen within it, and no distant light. Outlives
   /// the receiver.
   const Cone* within = nullptr;
+  /// Where it is set, lights are judged by what they give all along it, and only Lights::place()
+  /// may be asked. Outlives the receiver.
+  const LitStretch* along = nullptr;
 
   /// Whether light can come from that way, of any length.
   bool faces(const Vec3& way) const {

@@ -169,6 +169,33 @@ TEST(Media, ScatterLightsWithoutSize) {
   expect_value(test::radiance_along(*sun.build(), down, {.max_depth = 1}, 1024), expected, 1e-3);
 }
 
+/// What a ray along x sees of a light, scattered once in isotropic fog.
+double scattered_once(const Medium& fog, const DeltaLight& light) {
+  const double sigma = double{fog.absorption.g} + fog.scattering.g;
+  return integral([&](double s) {
+    const Arrival arrives = std::visit([&](const auto& l) { return arrival(l, {s, 0, 0}); }, light);
+    return fog.scattering.g / (4 * kPi) * std::exp(-sigma * (s + length(arrives.way))) *
+           arrives.irradiance.g;
+  });
+}
+
+/// A ray meets the cone of a spot close to its tip, far from where most light is scattered.
+TEST(Media, ScatterASpotAmongOtherLightsWithoutFireflies) {
+  const Medium smoke = medium(0.02f, 0.1f);
+  SceneMaker maker;
+  test::fog(maker, smoke);
+  maker.scene.lights = {SpotLight{{2, 0.02, 0}, {0, -1, 0}, gray(1), 0.97, 0.94}};
+  for (const double x : {-1.0, 3.0, 5.0, 7.0, 9.0}) {
+    maker.scene.lights.push_back(PointLight{{x, 4, 1}, gray(1)});
+  }
+  double expected = 0;
+  for (const DeltaLight& light : maker.scene.lights) {
+    expected += scattered_once(smoke, light);
+  }
+  const Ray ray{.origin = {0, 0, 0}, .direction = {1, 0, 0}};
+  expect_value(test::radiance_along(*maker.build(), ray, {.max_depth = 1}, 1024), expected, 1e-2);
+}
+
 /// A ball of a size that is enormous in free paths ends, for its depth is counted.
 TEST(Media, V3V11OpaqueBallEndsByItsDepth) {
   SceneMaker maker = white_sky();
