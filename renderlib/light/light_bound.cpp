@@ -37,22 +37,6 @@ Angle reduced(const Angle& a, const Angle& b) {
   return {a.sin * b.cos - a.cos * b.sin, a.cos * b.cos + a.sin * b.sin};
 }
 
-/// The integral of intensity / distance^2 along the stretch, as if its nearest point were its
-/// middle, faded as on the way by that point.
-double importance_along(const LightBound& bound, const LitStretch& stretch) {
-  const Vec3 to_light = bound.ball.center - stretch.origin;
-  const double nearest = stretch.nearest(bound.ball.center);
-  const double aside = std::max({length(to_light - stretch.way * nearest), bound.ball.radius,
-                                 kLeastAside * length(to_light)});
-  if (!(aside > 0)) {
-    return kMostGiven;
-  }
-  const double angle = std::min(kPi, stretch.length / aside);
-  const double given =
-      bound.intensity * exp(-stretch.extinction * (nearest + aside)) * angle / aside;
-  return std::min(given, kMostGiven);
-}
-
 }  // namespace
 
 LightBound bound_of(const ShapeView& shape, double radiance, bool one_sided) {
@@ -84,9 +68,6 @@ LightBound bound_of(const SpotLight& light) {
 }
 
 double importance(const LightBound& bound, const Receiver& receiver) {
-  if (receiver.along != nullptr) {
-    return importance_along(bound, *receiver.along);
-  }
   const Vec3 way = bound.ball.center - receiver.position;
   const double distance2 = length_squared(way);
   const double radius = bound.ball.radius;
@@ -131,6 +112,20 @@ double importance(const LightBound& bound, const Receiver& receiver) {
     cosines *= facing;
   }
   return given * cosines;
+}
+
+double importance(const LightBound& bound, const LitStretch& stretch) {
+  const Vec3 to_light = bound.ball.center - stretch.origin;
+  const double nearest = stretch.nearest(bound.ball.center);
+  const double aside = std::max({length(to_light - stretch.way * nearest), bound.ball.radius,
+                                 kLeastAside * length(to_light)});
+  if (!(aside > 0)) {
+    return kMostGiven;
+  }
+  const double angle = std::min(kPi, stretch.length / aside);
+  const double given =
+      bound.intensity * exp(-stretch.extinction * (nearest + aside)) * angle / aside;
+  return std::min(given, kMostGiven);
 }
 
 }  // namespace bandsaw

@@ -32,6 +32,10 @@ LightBound bound_of(const SpotLight& light);
 /// intensity x cosines / distance^2, each factor at its largest over the bound; zero only where
 /// nothing can arrive.
 double importance(const LightBound& bound, const Receiver& receiver);
+/// The integral of intensity / distance^2 along the stretch, as if its nearest point were its
+/// middle, faded as on the way by that point. Where the lights face does not count: a ray meets a
+/// spot's cone anywhere.
+double importance(const LightBound& bound, const LitStretch& stretch);
 
 /// The mean of the channels.
 inline double brightness(const Rgb& c) { return (double{c.r} + c.g + c.b) / 3; }

@@ -12,13 +12,14 @@ double importance(const DistantBound& bound, const Receiver& receiver) {
   if (receiver.within != nullptr) {
     return 0;
   }
-  if (receiver.along != nullptr) {
-    return bound.irradiance * std::min(receiver.along->length, 1 / receiver.along->extinction);
-  }
   if (!bound.way || !receiver.normal) {
     return bound.irradiance;
   }
   return bound.irradiance * std::max(0.0, dot(*receiver.normal, *bound.way));
+}
+
+double importance(const DistantBound& bound, const LitStretch& stretch) {
+  return bound.irradiance * std::min(stretch.length, 1 / stretch.extinction);
 }
 
 LightChoice::LightChoice(std::vector<LightBound> local, std::vector<DistantBound> distant)
@@ -36,7 +37,8 @@ std::size_t LightChoice::candidates() const {
   return few_.size() + (in_tree_ > 0 ? 1 : 0) + distant_.size();
 }
 
-double LightChoice::weight(std::size_t candidate, const Receiver& receiver) const {
+template <typename From>
+double LightChoice::weight(std::size_t candidate, const From& receiver) const {
   const std::size_t first_distant = candidates() - distant_.size();
   if (candidate >= first_distant) {
     return importance(distant_[candidate - first_distant], receiver);
@@ -53,8 +55,8 @@ bool LightChoice::any_for(const Receiver& receiver) const {
   return false;
 }
 
-std::optional<LightChoice::Choice> LightChoice::choose(const Receiver& receiver,
-                                                       double number) const {
+template <typename From>
+std::optional<LightChoice::Choice> LightChoice::choose(const From& receiver, double number) const {
   std::array<double, kFewLights> sums;
   const std::size_t count = candidates();
   double sum = 0;
@@ -85,6 +87,9 @@ std::optional<LightChoice::Choice> LightChoice::choose(const Receiver& receiver,
   return in_tree ? std::optional(Choice{in_tree->light, probability * in_tree->probability})
                  : std::nullopt;
 }
+
+template std::optional<LightChoice::Choice> LightChoice::choose(const Receiver&, double) const;
+template std::optional<LightChoice::Choice> LightChoice::choose(const LitStretch&, double) const;
 
 double LightChoice::probability(const Receiver& receiver, std::size_t light) const {
   const bool is_in_tree = light < in_tree_;

@@ -17,6 +17,7 @@ struct DistantBound {
   std::optional<Vec3> way;  ///< unit, to the light; none: from all around
 };
 double importance(const DistantBound& bound, const Receiver& receiver);
+double importance(const DistantBound& bound, const LitStretch& stretch);
 
 /// Up to kFewLights lights are judged each on its own at every point; more by a tree, beside which
 /// the distant ones stand as before.
@@ -37,15 +38,18 @@ class LightChoice {
   /// Whether any light may reach the receiver.
   bool any_for(const Receiver& receiver) const;
   /// `number` in [0, 1), as fine as double: a light is chosen as often as its probability says down
-  /// to the spacing of the numbers. Nothing: no light reaches the receiver.
-  std::optional<Choice> choose(const Receiver& receiver, double number) const;
+  /// to the spacing of the numbers. Nothing: no light reaches the receiver. From: Receiver or
+  /// LitStretch.
+  template <typename From>
+  std::optional<Choice> choose(const From& receiver, double number) const;
   /// With which choose() answers this light.
   double probability(const Receiver& receiver, std::size_t light) const;
 
  private:
   /// One of few lights, or the tree, or a distant light.
   std::size_t candidates() const;
-  double weight(std::size_t candidate, const Receiver& receiver) const;
+  template <typename From>
+  double weight(std::size_t candidate, const From& receiver) const;
 
   std::vector<LightBound> few_;
   LightTree tree_;

@@ -5,17 +5,20 @@
 
 namespace bandsaw {
 
-double LightTree::importance(const Receiver& receiver) const {
+template <typename From>
+double LightTree::importance(const From& receiver) const {
   return bandsaw::importance(nodes_.front().bound, receiver);
 }
 
-std::optional<double> LightTree::share_of_first(const Receiver& receiver, const Node& node) const {
+template <typename From>
+std::optional<double> LightTree::share_of_first(const From& receiver, const Node& node) const {
   const double first = bandsaw::importance(nodes_[node.first].bound, receiver);
   const double second = bandsaw::importance(nodes_[node.first + 1].bound, receiver);
   return first + second > 0 ? std::optional(first / (first + second)) : std::nullopt;
 }
 
-std::optional<LightTree::Choice> LightTree::choose(const Receiver& receiver, double number) const {
+template <typename From>
+std::optional<LightTree::Choice> LightTree::choose(const From& receiver, double number) const {
   double probability = 1;
   const Node* node = &nodes_.front();
   while (!node->is_leaf) {
@@ -30,6 +33,11 @@ std::optional<LightTree::Choice> LightTree::choose(const Receiver& receiver, dou
   }
   return probability > 0 ? std::optional(Choice{node->first, probability}) : std::nullopt;
 }
+
+template double LightTree::importance(const Receiver&) const;
+template double LightTree::importance(const LitStretch&) const;
+template std::optional<LightTree::Choice> LightTree::choose(const Receiver&, double) const;
+template std::optional<LightTree::Choice> LightTree::choose(const LitStretch&, double) const;
 
 double LightTree::probability(const Receiver& receiver, std::uint32_t light) const {
   std::array<std::uint32_t, kMostDepth> way;

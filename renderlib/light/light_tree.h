@@ -30,10 +30,12 @@ class LightTree {
   explicit LightTree(const std::vector<LightBound>& lights);
 
   bool empty() const { return nodes_.empty(); }
-  /// Of all lights together.
-  double importance(const Receiver& receiver) const;
+  /// Of all lights together. From, here and below: Receiver or LitStretch.
+  template <typename From>
+  double importance(const From& receiver) const;
   /// `number` in [0, 1). Nothing: no light reaches the receiver.
-  std::optional<Choice> choose(const Receiver& receiver, double number) const;
+  template <typename From>
+  std::optional<Choice> choose(const From& receiver, double number) const;
   /// With which choose() answers this light.
   double probability(const Receiver& receiver, std::uint32_t light) const;
 
@@ -46,7 +48,8 @@ class LightTree {
     bool is_leaf = false;
   };
   /// The share of the first of a node's children; nothing when neither gives anything.
-  std::optional<double> share_of_first(const Receiver& receiver, const Node& node) const;
+  template <typename From>
+  std::optional<double> share_of_first(const From& receiver, const Node& node) const;
 
   std::vector<Node> nodes_;            ///< the root first
   std::vector<std::uint32_t> leaves_;  ///< by light

@@ -146,8 +146,7 @@ std::optional<LightSample> Lights::sample(const Receiver& receiver, double choic
 
 std::optional<LightPlace> Lights::place(const LitStretch& stretch, double time, double choice,
                                         double u, double v) const {
-  const auto chosen =
-      choice_.choose({stretch.origin, std::nullopt, time, nullptr, &stretch}, choice);
+  const auto chosen = choice_.choose(stretch, choice);
   if (!chosen) {
     return std::nullopt;
   }

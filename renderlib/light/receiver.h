@@ -8,7 +8,7 @@
 
 namespace bandsaw {
 
-/// A stretch of a ray in a medium that scatters.
+/// A stretch of a ray in a medium that scatters: lights are judged by what they give all along it.
 struct LitStretch {
   Vec3 origin;
   Vec3 way;               ///< unit
@@ -30,9 +30,6 @@ struct Receiver {
   /// Where it is set, surfaces are asked that may be seen within it, and no distant light. Outlives
   /// the receiver.
   const Cone* within = nullptr;
-  /// Where it is set, lights are judged by what they give all along it, and only Lights::place()
-  /// may be asked. Outlives the receiver.
-  const LitStretch* along = nullptr;
 
   /// Whether light can come from that way, of any length.
   bool faces(const Vec3& way) const {

@@ -197,7 +197,7 @@ TEST(LightChoice, DistantLightsStandBesideFewAndBesideATree) {
       }
     }
   }
-  EXPECT_FALSE(LightChoice().choose({{0, 0, 0}, std::nullopt}, 0.5));
+  EXPECT_FALSE(LightChoice().choose(Receiver{{0, 0, 0}, std::nullopt}, 0.5));
 }
 
 }  // namespace
