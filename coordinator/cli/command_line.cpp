@@ -6,14 +6,14 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
-#include "coordinator/cli/checked_options.h"
-#include "coordinator/cli/choices.h"
 #include "coordinator/cli/completion.h"
-#include "coordinator/cli/did_you_mean.h"
-#include "coordinator/cli/house_options.h"
-#include "coordinator/cli/image_options.h"
-#include "coordinator/cli/invite_options.h"
-#include "coordinator/cli/study_options.h"
+#include "coordinator/cli/machines/invite_options.h"
+#include "coordinator/cli/options/checked_options.h"
+#include "coordinator/cli/options/choices.h"
+#include "coordinator/cli/options/did_you_mean.h"
+#include "coordinator/cli/options/house_options.h"
+#include "coordinator/cli/options/image_options.h"
+#include "coordinator/cli/study/study_options.h"
 
 namespace bandsaw::coordinator {
 namespace {

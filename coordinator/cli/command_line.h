@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
-#include "coordinator/cli/options.h"
+#include "coordinator/cli/options/options.h"
 
 namespace bandsaw::coordinator {
 

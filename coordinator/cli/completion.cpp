@@ -5,7 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
-#include "coordinator/cli/choices.h"
+#include "coordinator/cli/options/choices.h"
 
 namespace bandsaw::coordinator {
 namespace {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "coordinator/cli/command_line.h"
-#include "coordinator/cli/commands.h"
+#include "coordinator/cli/options/commands.h"
 
 int main(int argc, char** argv) {
   using namespace bandsaw::coordinator;

@@ -2,15 +2,17 @@
 
 #include <sys/random.h>
 
+#include <cstdlib>
+
 #include "absl/strings/escaping.h"
-#include "renderlib/base/check.h"
 
 namespace bandsaw::link {
 
 std::string random_bytes(std::size_t count) {
   std::string bytes(count, '\0');
-  BANDSAW_CHECK(getentropy(bytes.data(), bytes.size()) == 0,
-                "Linux gives up to 256 random bytes at any time");
+  if (getentropy(bytes.data(), bytes.size()) != 0) {
+    std::abort();  // never: Linux gives up to 256 random bytes at any time
+  }
   return bytes;
 }
 

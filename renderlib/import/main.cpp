@@ -1,6 +1,6 @@
 // bandsaw-import: reads one foreign file and leaves it in a folder in a form that needs no parser,
 // or one error on standard output. Started by the client commands
-// (coordinator/cli/import_process.h); can be run by hand.
+// (coordinator/cli/scene/import_process.h); can be run by hand.
 //
 //   bandsaw-import scene FILE FOLDER SECONDS BYTES [ENVIRONMENT [CAMERA]]
 //

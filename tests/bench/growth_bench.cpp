@@ -15,9 +15,9 @@
 #include <string>
 #include <thread>
 
-#include "coordinator/cli/cpu_time.h"
-#include "coordinator/cli/json.h"
-#include "coordinator/cli/log_plot.h"
+#include "coordinator/cli/base/cpu_time.h"
+#include "coordinator/cli/base/json.h"
+#include "coordinator/cli/study/log_plot.h"
 #include "renderlib/package/blob_folder.h"
 #include "renderlib/package/package.h"
 #include "renderlib/render/render_band.h"

@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "coordinator/cli/farm_client.h"
+#include "coordinator/cli/farm/farm_client.h"
 #include "tests/farm/farm_processes.h"
 #include "tests/support/pattern.h"
 

@@ -9,7 +9,7 @@
 #include <cstring>
 #include <thread>
 
-#include "coordinator/cli/farm_client.h"
+#include "coordinator/cli/farm/farm_client.h"
 #include "tests/farm/farm_processes.h"
 
 namespace bandsaw::test {

@@ -1,4 +1,4 @@
-#include "coordinator/cli/comparison.h"
+#include "coordinator/cli/image/comparison.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "coordinator/cli/doctor_checks.h"
+#include "coordinator/cli/machines/doctor_checks.h"
 #include "proto/wire/versions.h"
 #include "renderlib/render/pixel_version.h"
 #include "tests/support/temp_dir.h"

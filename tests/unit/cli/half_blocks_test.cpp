@@ -1,10 +1,10 @@
-#include "coordinator/cli/half_blocks.h"
+#include "coordinator/cli/progress/half_blocks.h"
 
 #include <gmock/gmock.h>
 
 #include <limits>
 
-#include "coordinator/cli/text.h"
+#include "coordinator/cli/base/text.h"
 
 namespace bandsaw::coordinator {
 namespace {

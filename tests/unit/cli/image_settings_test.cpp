@@ -1,8 +1,8 @@
-#include "coordinator/cli/image_settings.h"
+#include "coordinator/cli/scene/image_settings.h"
 
 #include <gtest/gtest.h>
 
-#include "coordinator/cli/output.h"
+#include "coordinator/cli/options/output.h"
 
 namespace bandsaw::coordinator {
 namespace {

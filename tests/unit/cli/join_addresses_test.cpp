@@ -1,4 +1,4 @@
-#include "coordinator/cli/join_addresses.h"
+#include "coordinator/cli/serve/join_addresses.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

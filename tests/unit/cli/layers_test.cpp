@@ -1,4 +1,4 @@
-#include "coordinator/cli/layers.h"
+#include "coordinator/cli/options/layers.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
-#include "coordinator/cli/lists_text.h"
+#include "coordinator/cli/farm/lists_text.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "coordinator/cli/farm_errors.h"
+#include "coordinator/cli/farm/farm_errors.h"
 
 namespace bandsaw::coordinator {
 namespace {

@@ -1,8 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "coordinator/cli/local_meter.h"
-#include "coordinator/cli/local_plan.h"
+#include "coordinator/cli/render/local_meter.h"
+#include "coordinator/cli/render/local_plan.h"
 
 namespace bandsaw::coordinator {
 namespace {

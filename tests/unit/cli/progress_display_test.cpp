@@ -1,4 +1,4 @@
-#include "coordinator/cli/progress_display.h"
+#include "coordinator/cli/progress/progress_display.h"
 
 #include <gmock/gmock.h>
 #include <google/protobuf/struct.pb.h>
@@ -7,8 +7,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
-#include "coordinator/cli/json.h"
-#include "coordinator/cli/progress_json.h"
+#include "coordinator/cli/base/json.h"
+#include "coordinator/cli/progress/progress_json.h"
 
 namespace bandsaw::coordinator {
 namespace {

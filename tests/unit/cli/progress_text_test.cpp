@@ -1,4 +1,4 @@
-#include "coordinator/cli/progress_text.h"
+#include "coordinator/cli/progress/progress_text.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

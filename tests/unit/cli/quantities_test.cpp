@@ -1,4 +1,4 @@
-#include "coordinator/cli/quantities.h"
+#include "coordinator/cli/options/quantities.h"
 
 #include <gtest/gtest.h>
 

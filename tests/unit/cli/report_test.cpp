@@ -1,4 +1,4 @@
-#include "coordinator/cli/report.h"
+#include "coordinator/cli/image/report.h"
 
 #include <gmock/gmock.h>
 #include <google/protobuf/struct.pb.h>
@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "coordinator/cli/report_file.h"
+#include "coordinator/cli/image/report_file.h"
 #include "tests/support/temp_dir.h"
 
 namespace bandsaw::coordinator {

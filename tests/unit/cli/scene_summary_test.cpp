@@ -1,4 +1,4 @@
-#include "coordinator/cli/scene_summary.h"
+#include "coordinator/cli/scene/scene_summary.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

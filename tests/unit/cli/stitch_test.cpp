@@ -3,8 +3,8 @@
 
 #include <fstream>
 
-#include "coordinator/cli/part_file.h"
-#include "coordinator/cli/stitch_coverage.h"
+#include "coordinator/cli/image/part_file.h"
+#include "coordinator/cli/image/stitch_coverage.h"
 #include "tests/support/temp_dir.h"
 
 namespace bandsaw::coordinator {

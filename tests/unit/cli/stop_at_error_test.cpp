@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "coordinator/cli/local_plan.h"
+#include "coordinator/cli/render/local_plan.h"
 #include "renderlib/render/film.h"
 #include "tests/support/random.h"
 

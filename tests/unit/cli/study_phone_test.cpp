@@ -1,4 +1,4 @@
-#include "coordinator/cli/study_phone.h"
+#include "coordinator/cli/study/study_phone.h"
 
 #include <gmock/gmock.h>
 

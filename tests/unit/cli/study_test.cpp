@@ -5,9 +5,9 @@
 #include <atomic>
 #include <cmath>
 
-#include "coordinator/cli/study_measure.h"
-#include "coordinator/cli/study_pixel_stops.h"
-#include "coordinator/cli/study_text.h"
+#include "coordinator/cli/study/study_measure.h"
+#include "coordinator/cli/study/study_pixel_stops.h"
+#include "coordinator/cli/study/study_text.h"
 #include "tests/support/scenes.h"
 
 namespace bandsaw::coordinator {

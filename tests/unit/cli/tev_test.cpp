@@ -1,4 +1,4 @@
-#include "coordinator/cli/tev.h"
+#include "coordinator/cli/progress/tev.h"
 
 #include <gmock/gmock.h>
 

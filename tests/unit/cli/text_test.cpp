@@ -1,8 +1,8 @@
-#include "coordinator/cli/text.h"
+#include "coordinator/cli/base/text.h"
 
 #include <gtest/gtest.h>
 
-#include "coordinator/cli/did_you_mean.h"
+#include "coordinator/cli/options/did_you_mean.h"
 
 namespace bandsaw::coordinator {
 namespace {

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "coordinator/cli/import_process.h"
+#include "coordinator/cli/scene/import_process.h"
 #include "renderlib/base/atomic_file.h"
 #include "renderlib/gallery/globe.h"
 #include "renderlib/image/png.h"

@@ -1,4 +1,4 @@
-#include "coordinator/cli/import_process.h"
+#include "coordinator/cli/scene/import_process.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 
 #include <filesystem>
 
-#include "coordinator/cli/child_process.h"
+#include "coordinator/cli/base/child_process.h"
 #include "renderlib/import/import.h"
 #include "tests/support/sanitized.h"
 #include "tests/unit/import/files.h"

@@ -1,0 +1,118 @@
+#include "coordinator/cli/base/child_process.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+
+#include "absl/cleanup/cleanup.h"
+#include "absl/strings/str_cat.h"
+#include "renderlib/base/atomic_file.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Child {
+  pid_t pid = -1;
+  int output = -1;  ///< what it says, read end
+};
+
+// Signals that this process blocks or ignores reach the child all the same: Ctrl-C in a terminal
+// ends it at once.
+absl::StatusOr<Child> spawn(const std::vector<std::string>& arguments,
+                            const ChildStreams& streams) {
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) {
+    return errno_status(errno, "cannot make a pipe");
+  }
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, streams.input.c_str(), O_RDONLY, 0);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
+  if (streams.errors_too) {
+    posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
+  } else {
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+  }
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t signals;
+  sigemptyset(&signals);
+  posix_spawnattr_setsigmask(&attributes, &signals);
+  for (const int signal : {SIGINT, SIGTERM, SIGPIPE}) {
+    sigaddset(&signals, signal);
+  }
+  posix_spawnattr_setsigdefault(&attributes, &signals);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+
+  std::vector<char*> argv;
+  for (const std::string& argument : arguments) {
+    argv.push_back(const_cast<char*>(argument.c_str()));
+  }
+  argv.push_back(nullptr);
+  Child child{-1, ends[0]};
+  const int error = posix_spawnp(&child.pid, argv[0], &actions, &attributes, argv.data(), environ);
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&actions);
+  close(ends[1]);
+  if (error != 0) {
+    close(ends[0]);
+    return errno_status(error, absl::StrCat("cannot start ", arguments[0]));
+  }
+  return child;
+}
+
+// Waits for the child, reading what it says, until it ends, `seconds` have passed or
+// `stop` is set; then it is gone in every case.
+ChildOutcome wait_for(const Child& child, double seconds, const std::atomic<bool>* stop) {
+  constexpr int kLookEveryMs = 20;
+  constexpr std::size_t kMostOutput = 64 << 10;
+  ChildOutcome outcome;
+  const auto deadline = Clock::now() + std::chrono::duration<double>(seconds);
+  bool open = true;
+  while (waitpid(child.pid, &outcome.wait_status, WNOHANG) == 0) {
+    const bool stopped = stop != nullptr && stop->load();
+    if (stopped || Clock::now() >= deadline) {
+      outcome.end = stopped ? ChildOutcome::End::kStopped : ChildOutcome::End::kTimedOut;
+      kill(child.pid, SIGKILL);
+      waitpid(child.pid, &outcome.wait_status, 0);
+      break;
+    }
+    pollfd ready{open ? child.output : -1, POLLIN, 0};
+    // After the end of its output the process itself ends within moments.
+    if (poll(&ready, 1, open ? kLookEveryMs : 1) > 0) {
+      std::array<char, 4096> buffer{};
+      const ssize_t got = read(child.output, buffer.data(), buffer.size());
+      open = got > 0;
+      outcome.output.append(buffer.data(), static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
+      outcome.output.resize(std::min(outcome.output.size(), kMostOutput));
+    }
+  }
+  std::array<char, 4096> rest{};
+  for (ssize_t got = 0; (got = read(child.output, rest.data(), rest.size())) > 0 &&
+                        outcome.output.size() < kMostOutput;) {
+    outcome.output.append(rest.data(), static_cast<std::size_t>(got));
+  }
+  return outcome;
+}
+
+}  // namespace
+
+absl::StatusOr<ChildOutcome> run_child(const std::vector<std::string>& arguments, double seconds,
+                                       const std::atomic<bool>* stop, const ChildStreams& streams) {
+  ASSIGN_OR_RETURN(const Child child, spawn(arguments, streams));
+  const absl::Cleanup close_output = [&child] { close(child.output); };
+  return wait_for(child, seconds, stop);
+}
+
+}  // namespace bandsaw::coordinator

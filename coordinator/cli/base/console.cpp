@@ -1,0 +1,66 @@
+#include "coordinator/cli/base/console.h"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/cli/base/text.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+// A reader that went away is not worth an error: nobody would read it.
+void write_all(int fd, absl::string_view text) {
+  while (!text.empty()) {
+    const ssize_t n = ::write(fd, text.data(), text.size());
+    if (n < 0 && errno != EINTR) {
+      return;
+    }
+    text.remove_prefix(n > 0 ? static_cast<std::size_t>(n) : 0);
+  }
+}
+
+bool environment_has(const char* name) {
+  const char* value = std::getenv(name);
+  return value != nullptr && *value != '\0';
+}
+
+}  // namespace
+
+Console::Console(Write out, Write err, bool is_terminal, bool colour)
+    : out_(std::move(out)), err_(std::move(err)), is_terminal_(is_terminal), colour_(colour) {}
+
+Console Console::standard() {
+  const char* term = std::getenv("TERM");
+  const bool dumb = term == nullptr || absl::string_view(term) == "dumb";
+  const bool terminal = isatty(STDOUT_FILENO) == 1 && !dumb;
+  return Console([](absl::string_view text) { write_all(STDOUT_FILENO, text); },
+                 [](absl::string_view text) { write_all(STDERR_FILENO, text); }, terminal,
+                 terminal && !environment_has("NO_COLOR"));
+}
+
+TerminalSize Console::size() const {
+  winsize size{};
+  if (is_terminal_ && ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 &&
+      size.ws_row > 0) {
+    return {size.ws_col, size.ws_row};
+  }
+  return {};
+}
+
+void Console::line(absl::string_view text) const { out_(absl::StrCat(text, "\n")); }
+
+void Console::complain(absl::string_view text) const {
+  err_(absl::StrCat("bandsaw: ", printable(text), "\n"));
+}
+
+ExitCode Console::fail(ExitCode code, absl::string_view text) const {
+  complain(text);
+  return code;
+}
+
+}  // namespace bandsaw::coordinator

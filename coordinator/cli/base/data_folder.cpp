@@ -1,0 +1,23 @@
+#include "coordinator/cli/base/data_folder.h"
+
+#include <cstdlib>
+
+namespace bandsaw::coordinator {
+
+absl::StatusOr<std::string> default_data_folder() {
+  if (const char* data = std::getenv("XDG_DATA_HOME"); data != nullptr && *data == '/') {
+    return std::string(data) + "/bandsaw";
+  }
+  if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/') {
+    return std::string(home) + "/.local/share/bandsaw";
+  }
+  return absl::FailedPreconditionError(
+      "neither XDG_DATA_HOME nor HOME is set; name the folder with --data DIR");
+}
+
+std::string worker_join_file(const std::string& data_folder) { return data_folder + "/join"; }
+
+std::string farm_join_file(const std::string& data_folder) { return data_folder + "/farm"; }
+std::string dashboard_file(const std::string& data_folder) { return data_folder + "/dashboard"; }
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,16 @@
+#include "coordinator/cli/base/program_folder.h"
+
+#include <filesystem>
+
+namespace bandsaw::coordinator {
+
+std::string program_folder() {
+  std::error_code error;
+  return std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+}
+
+std::string gallery_folder() {
+  return std::filesystem::path(program_folder()).parent_path() / "share/bandsaw/gallery";
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,67 @@
+// FarmClient::put_blob: a blob in chunks, again from where the farm has it when the line was cut.
+
+#include <algorithm>
+
+#include "coordinator/cli/farm/farm_client.h"
+#include "proto/wire/limits.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+/// The farm has less of a blob than was thought, or threw away what was damaged.
+bool other_is_there(const absl::Status& status) {
+  return absl::IsFailedPrecondition(status) || absl::IsDataLoss(status);
+}
+
+}  // namespace
+
+absl::Status FarmClient::put_blob(const wire::Digest& digest, absl::Span<const std::byte> bytes,
+                                  std::uint64_t there,
+                                  const std::function<void(std::uint64_t)>& sent) {
+  absl::Status status = put_rest(digest, bytes, there, sent);
+  for (int tries = 1; tries < kTries && (outcome_unknown(status) || other_is_there(status));
+       ++tries) {
+    pause(kRetryPause);
+    ASSIGN_OR_RETURN(const std::vector<MissingBlob> missing, missing_blobs({digest}));
+    if (missing.empty()) {
+      return absl::OkStatus();
+    }
+    // A bad line may be tried for ever, as long as it brings something.
+    tries = missing.front().there > there ? 0 : tries;
+    there = missing.front().there;
+    status = put_rest(digest, bytes, there, sent);
+  }
+  return given_up(status);
+}
+
+absl::Status FarmClient::put_rest(const wire::Digest& digest, absl::Span<const std::byte> bytes,
+                                  std::uint64_t offset,
+                                  const std::function<void(std::uint64_t)>& sent) {
+  return try_once(kNoDeadline, [&](grpc::ClientContext& context) {
+    farm::PutBlobReply reply;
+    const auto stream = bulk_->PutBlob(&context, &reply);
+    std::uint64_t at = std::min<std::uint64_t>(offset, bytes.size());
+    bool first = true;
+    while (first || at < bytes.size()) {
+      farm::BlobChunk chunk;
+      if (first) {
+        chunk.set_sha256(digest.raw());
+        chunk.set_size(bytes.size());
+        first = false;
+      }
+      const auto piece = bytes.subspan(at, wire::kChunkBytes);
+      chunk.set_offset(at);
+      chunk.set_data(piece.data(), piece.size());
+      if (!stream->Write(chunk)) {
+        break;  // Finish tells why.
+      }
+      at += piece.size();
+      sent(at);
+    }
+    stream->WritesDone();
+    return stream->Finish();
+  });
+}
+
+}  // namespace bandsaw::coordinator

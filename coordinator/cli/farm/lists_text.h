@@ -1,0 +1,24 @@
+#pragma once
+
+// Jobs and workers as tables, and as one JSON object a line. Pure functions.
+
+#include <string>
+#include <vector>
+
+#include "coordinator/cli/progress/progress.h"
+#include "proto/farm.pb.h"
+
+namespace bandsaw::coordinator {
+
+std::vector<std::string> jobs_table(const std::vector<Progress>& jobs);
+std::vector<std::string> jobs_json(const std::vector<Progress>& jobs);
+std::vector<std::string> why_json(JobId job, const std::vector<std::string>& reasons);
+std::string log_json(const std::string& worker, const std::vector<std::string>& lines);
+std::vector<std::string> workers_table(const farm::ListWorkersReply& reply);
+std::vector<std::string> workers_json(const farm::ListWorkersReply& reply);
+
+/// Rows of cells with columns as wide as their widest cell, two spaces apart; the first row is the
+/// heading.
+std::vector<std::string> table(const std::vector<std::vector<std::string>>& rows);
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,111 @@
+// bandsaw submit: a scene file to the farm, and its image back.
+
+#include <atomic>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/cli/base/json.h"
+#include "coordinator/cli/farm/farm_errors.h"
+#include "coordinator/cli/farm/upload.h"
+#include "coordinator/cli/farm/watch_job.h"
+#include "coordinator/cli/image/report_file.h"
+#include "coordinator/cli/options/commands.h"
+#include "coordinator/cli/options/layers.h"
+#include "coordinator/cli/options/output.h"
+#include "coordinator/cli/scene/image_settings.h"
+#include "coordinator/cli/scene/import_scene_file.h"
+#include "coordinator/core/state_name.h"
+#include "proto/link/random.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+absl::StatusOr<JobId> send_image(FarmClient& client, ImportedPackage& package,
+                                 const farm::SubmitRequest& request, Verbosity verbosity,
+                                 Process& process) {
+  const Interrupts::Listener listener(process.interrupts, [&] { client.stop(); });
+  verbosity.preview = false;  // there is nothing to see yet
+  ProgressDisplay display(process.console, verbosity);
+  return send(client, package, request, display);
+}
+
+/// Layers are jobs of their own: the same package, another integrator.
+absl::StatusOr<Image> render_on_farm(FarmClient& client, ImportedPackage& package,
+                                     farm::SubmitRequest request, ProgressDisplay& display) {
+  request.set_request_id(link::random_hex(16));
+  ASSIGN_OR_RETURN(const JobId job, send(client, package, request, display));
+  ASSIGN_OR_RETURN(const Progress last, follow_job(client, job, display));
+  if (last.job.state != JobState::kDone) {
+    return absl::AbortedError(absl::StrCat("a layer's job ", job, " ", state_name(last.job.state),
+                                           last.job.reason.empty() ? "" : ": ", last.job.reason));
+  }
+  ASSIGN_OR_RETURN(FarmImage result, client.result(job));
+  return std::move(result.image);
+}
+
+void say_detached(JobId job, Verbosity verbosity, const Console& console) {
+  if (verbosity.json) {
+    console.line(JsonObject().text("event", "submitted").whole("job", job).str());
+  } else {
+    console.line(absl::StrCat("job ", job));
+  }
+}
+
+}  // namespace
+
+ExitCode run(const SubmitOptions& options, Process& process) {
+  const Console& console = process.console;
+  std::vector<std::string> outputs = options.outputs;
+  if (outputs.empty() && !options.detach) {
+    outputs = {default_output(options.scene, ".png")};
+  }
+  if (const auto status = check_outputs_writable(outputs); !status.ok()) {
+    return console.fail(ExitCode::kWrong, std::string(status.message()));
+  }
+  const auto reports = report_files(options.report, outputs);
+  if (!reports.ok()) {
+    return console.fail(ExitCode::kWrong, std::string(reports.status().message()));
+  }
+  // The farm first: a big scene takes long to read, and a farm that is not there makes that vain.
+  const auto client = connect_to_farm(options.farm);
+  if (!client.ok()) {
+    return console.fail(exit_code_of(client.status()), std::string(client.status().message()));
+  }
+  auto package =
+      import_scene_file(options.scene, options.verbosity, process, options.image.choices);
+  if (!package.ok()) {
+    return console.fail(import_exit_code(package.status()),
+                        std::string(package.status().message()));
+  }
+  const auto settings = image_settings(options.image, package->info());
+  if (!settings.ok()) {
+    return console.fail(ExitCode::kWrong, std::string(settings.status().message()));
+  }
+  farm::SubmitRequest request = request_for(*package, *settings, options.image.stop);
+  request.set_priority(options.priority);
+  const auto job = send_image(**client, *package, request, options.verbosity, process);
+  if (!job.ok()) {
+    return console.fail(exit_code_of(job.status()), std::string(job.status().message()));
+  }
+  if (options.detach) {
+    say_detached(*job, options.verbosity, console);
+    return ExitCode::kDone;
+  }
+  const auto layers = [&](std::uint64_t samples, ProgressDisplay& display) {
+    const auto render = [&](const RenderSettings& layer, std::uint64_t count) {
+      farm::SubmitRequest of_layer = request;
+      *of_layer.mutable_settings() = to_proto(layer);
+      *of_layer.mutable_stop() = to_proto(StopRule(StopAtSamples{count}));
+      return render_on_farm(**client, *package, std::move(of_layer), display);
+    };
+    SampleCounts counts;
+    if (is_adaptive(options.image.stop)) {
+      counts = [&] { return (*client)->samples(*job); };
+    }
+    return make_layers(options.layers, *settings, samples, render, counts);
+  };
+  return watch_job(**client, *job, {outputs, *reports, options.display, options.tev},
+                   options.verbosity, process, layers);
+}
+
+}  // namespace bandsaw::coordinator

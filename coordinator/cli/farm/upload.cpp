@@ -1,0 +1,89 @@
+#include "coordinator/cli/farm/upload.h"
+
+#include <algorithm>
+#include <map>
+#include <span>
+
+#include "coordinator/engine/clock.h"
+#include "proto/link/random.h"
+#include "proto/wire/digest.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+// Tells the display of bytes sent, over all blobs.
+class Meter {
+ public:
+  Meter(ProgressDisplay& display, std::uint64_t all) : display_(display), all_(all) {}
+  void sent(std::uint64_t of_this_blob) {
+    display_.preparing("sending the scene", before_ + of_this_blob, all_, steady_seconds());
+  }
+  void finished(std::uint64_t blob) { before_ += blob; }
+
+ private:
+  ProgressDisplay& display_;
+  std::uint64_t all_;
+  std::uint64_t before_ = 0;
+};
+
+}  // namespace
+
+absl::Status upload(FarmClient& client, ImportedPackage& package, ProgressDisplay& display) {
+  ASSIGN_OR_RETURN(std::vector<BlobRef> blobs, package_blobs(package.manifest()));
+  const wire::Digest manifest = wire::sha256(package.manifest());
+  std::vector<wire::Digest> digests = {manifest};
+  for (const BlobRef& blob : blobs) {
+    digests.push_back(blob.digest);
+  }
+  ASSIGN_OR_RETURN(const std::vector<FarmClient::MissingBlob> lacking,
+                   client.missing_blobs(digests));
+  std::map<wire::Digest, std::uint64_t> missing;  // how many bytes of each are there
+  for (const FarmClient::MissingBlob& blob : lacking) {
+    missing[blob.digest] = blob.there;
+  }
+  std::erase_if(blobs, [&](const BlobRef& blob) { return !missing.contains(blob.digest); });
+  std::uint64_t all = package.manifest().size();
+  for (const BlobRef& blob : blobs) {
+    all += blob.size;
+  }
+  Meter meter(display, all);
+  for (const BlobRef& blob : blobs) {
+    ASSIGN_OR_RETURN(const std::unique_ptr<BlobBytes> bytes, package.blobs().get(blob.digest));
+    RETURN_IF_ERROR(client.put_blob(blob.digest, bytes->bytes(), missing[blob.digest],
+                                    [&](std::uint64_t sent) { meter.sent(sent); }));
+    meter.finished(blob.size);
+  }
+  if (missing.contains(manifest)) {
+    RETURN_IF_ERROR(client.put_blob(manifest, std::as_bytes(std::span(package.manifest())),
+                                    missing[manifest],
+                                    [&](std::uint64_t sent) { meter.sent(sent); }));
+  }
+  return absl::OkStatus();
+}
+
+farm::SubmitRequest request_for(const ImportedPackage& package, const RenderSettings& settings,
+                                const StopRule& stop) {
+  farm::SubmitRequest request;
+  request.set_request_id(link::random_hex(16));
+  request.set_name(package.info().name);
+  request.set_manifest_sha256(wire::sha256(package.manifest()).raw());
+  *request.mutable_settings() = to_proto(settings);
+  *request.mutable_stop() = to_proto(stop);
+  return request;
+}
+
+// A blob may be dropped by the farm between its upload and the job that needs it: then all is sent
+// once more.
+absl::StatusOr<JobId> send(FarmClient& client, ImportedPackage& package,
+                           const farm::SubmitRequest& request, ProgressDisplay& display) {
+  RETURN_IF_ERROR(upload(client, package, display));
+  auto job = client.submit(request);
+  if (absl::IsFailedPrecondition(job.status())) {
+    RETURN_IF_ERROR(upload(client, package, display));
+    job = client.submit(request);
+  }
+  return job;
+}
+
+}  // namespace bandsaw::coordinator

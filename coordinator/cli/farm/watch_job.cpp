@@ -1,0 +1,161 @@
+#include "coordinator/cli/farm/watch_job.h"
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/cli/base/text.h"
+#include "coordinator/cli/farm/farm_errors.h"
+#include "coordinator/cli/farm/followed_image.h"
+#include "coordinator/cli/image/report.h"
+#include "coordinator/cli/image/report_file.h"
+#include "coordinator/cli/options/output.h"
+#include "coordinator/core/state_name.h"
+#include "coordinator/engine/clock.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+constexpr double kPatience = 60;  // seconds that a farm may be gone
+constexpr std::chrono::milliseconds kPause{200};
+
+std::string come_back(JobId job, const std::vector<std::string>& outputs) {
+  return absl::StrCat("Come back with: bandsaw watch ", job, " -o ",
+                      outputs.empty() ? "FILE" : outputs.front());
+}
+
+class Watch {
+ public:
+  Watch(FarmClient& client, JobId job, ProgressDisplay& display)
+      : client_(client), job_(job), display_(display) {}
+
+  // The last state. UNAVAILABLE: the farm was gone too long. CANCELLED: stopped.
+  absl::StatusOr<Progress> to_the_end() {
+    for (;;) {
+      const absl::Status status =
+          client_.watch(job_, [this](const Progress& progress) { heard(progress); });
+      if (status.ok()) {
+        return last_;
+      }
+      if (!absl::IsUnavailable(status) && !absl::IsDeadlineExceeded(status)) {
+        return status;
+      }
+      RETURN_IF_ERROR(wait_for_farm(status));
+    }
+  }
+
+ private:
+  void heard(const Progress& progress) {
+    if (gone_since_) {
+      display_.note("the farm is back");
+      gone_since_.reset();
+    }
+    last_ = progress;
+    display_.update(progress, steady_seconds());
+  }
+
+  absl::Status wait_for_farm(const absl::Status& why) {
+    const double now = steady_seconds();
+    if (!gone_since_) {
+      gone_since_ = now;
+      display_.note(absl::StrCat("lost the farm at ", client_.address(), " (", why.message(),
+                                 "); trying again for ", kPatience, " s"));
+    }
+    const double left = *gone_since_ + kPatience - now;
+    const auto milliseconds = std::chrono::milliseconds(static_cast<std::int64_t>(left * 1000));
+    if (left <= 0 || !client_.wait_for_farm(milliseconds)) {
+      return client_.stopped() ? absl::CancelledError("interrupted")
+                               : absl::UnavailableError(
+                                     absl::StrCat("the farm at ", client_.address(), " is gone"));
+    }
+    client_.pause(kPause);
+    return absl::OkStatus();
+  }
+
+  FarmClient& client_;
+  JobId job_;
+  ProgressDisplay& display_;
+  Progress last_;
+  std::optional<double> gone_since_;
+};
+
+// What is said when a job is not followed to its image.
+ExitCode left_early(const absl::Status& status, JobId job, const std::vector<std::string>& outputs,
+                    const Console& console) {
+  const ExitCode code = exit_code_of(status);
+  if (code == ExitCode::kInterrupted) {
+    return console.fail(code,
+                        absl::StrCat("detached; job ", job, " goes on. ", come_back(job, outputs)));
+  }
+  if (code == ExitCode::kNoFarm) {
+    return console.fail(
+        code, absl::StrCat(status.message(), "; job ", job, " goes on when it is started again. ",
+                           come_back(job, outputs)));
+  }
+  return console.fail(code, std::string(status.message()));
+}
+
+absl::Status write_wanted(const Image& image, const Layers& layers, const Display& display,
+                          const Progress& progress, const Wanted& wanted) {
+  RETURN_IF_ERROR(write_outputs(image, wanted.outputs, display, layers));
+  const Report report{progress, pixels_sha256(image), wanted.outputs,
+                      cut_off_values(image, wanted.outputs, display)};
+  return write_reports(report_text(report), wanted.reports);
+}
+
+}  // namespace
+
+absl::StatusOr<Progress> follow_job(FarmClient& client, JobId job, ProgressDisplay& display) {
+  return Watch(client, job, display).to_the_end();
+}
+
+ExitCode watch_job(FarmClient& client, JobId job, const Wanted& wanted, Verbosity verbosity,
+                   Process& process, const BesideImage& beside) {
+  const std::vector<std::string>& outputs = wanted.outputs;
+  const Interrupts::Listener listener(process.interrupts, [&] { client.stop(); });
+  ProgressDisplay display(process.console, verbosity);
+  Views views(display, wanted.display, wanted.tev, absl::StrCat("bandsaw job ", job));
+  const auto last = [&] {
+    const FollowedImage followed(client, job, views);
+    return follow_job(client, job, display);
+  }();
+  if (!last.ok()) {
+    display.clear();
+    return left_early(last.status(), job, outputs, process.console);
+  }
+  if (last->job.state != JobState::kDone) {
+    display.ended(*last);
+    if (!verbosity.json) {
+      for (const std::string& line : last->job.log) {
+        process.console.complain(printable(absl::StrCat(last->job.log_of, " | ", line)));
+      }
+    }
+    const std::string reason = last->job.reason.empty() ? "" : absl::StrCat(": ", last->job.reason);
+    return process.console.fail(
+        ExitCode::kFailed, absl::StrCat("job ", job, " ", state_name(last->job.state), reason));
+  }
+  if (!outputs.empty() || views.any()) {
+    const auto result = client.result(job);
+    if (!result.ok()) {
+      display.clear();
+      return left_early(result.status(), job, outputs, process.console);
+    }
+    views.show(result->image, result->display);
+    const absl::StatusOr<Layers> layers =
+        beside ? beside(last->job.samples_per_pixel, display) : Layers{};
+    if (!layers.ok()) {
+      display.clear();
+      return left_early(layers.status(), job, outputs, process.console);
+    }
+    if (const auto status = write_wanted(result->image, *layers,
+                                         wanted.display.over(result->display), *last, wanted);
+        !status.ok()) {
+      display.clear();
+      return process.console.fail(
+          ExitCode::kFailed,
+          absl::StrCat(status.message(), "; the farm keeps the image. ", come_back(job, {})));
+    }
+  }
+  display.done(*last, outputs, wanted.reports);
+  return ExitCode::kDone;
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,103 @@
+#include "coordinator/cli/image/part_file.h"
+
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+
+#include "absl/strings/str_cat.h"
+#include "renderlib/base/atomic_file.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/render/hash64.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+absl::StatusOr<std::vector<std::byte>> read_file(const std::string& path) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error) {
+    return errno_status(error.value(), path);
+  }
+  std::vector<std::byte> bytes(size);
+  std::ifstream file(path, std::ios::binary);
+  file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+  if (!file) {
+    return errno_status(errno == 0 ? EIO : errno, path);
+  }
+  return bytes;
+}
+
+constexpr std::array<char, 8> kMagic = {'B', 'S', 'W', 'P', 'A', 'R', 'T', '1'};
+
+struct Beginning {
+  std::array<char, 8> magic = kMagic;
+  double exposure = 0;
+  std::uint64_t tone = 0;
+  std::uint64_t hash = 0;
+
+  std::uint64_t hash_of_rest() const {
+    Hash64 sum;
+    sum.add(exposure);
+    sum.add(tone);
+    return sum.value();
+  }
+};
+static_assert(sizeof(Beginning) == 32, "it is written as it lies in memory");
+
+/// Takes the beginning off `offset`, where there is one.
+absl::StatusOr<Display> display_of(const std::vector<std::byte>& bytes, std::uint64_t& offset) {
+  Beginning from;
+  if (bytes.size() < sizeof from || std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0) {
+    return Display();
+  }
+  std::memcpy(&from, bytes.data(), sizeof from);
+  if (from.hash != from.hash_of_rest() || from.tone > static_cast<std::uint64_t>(kLastTone)) {
+    return absl::DataLossError("its first bytes are damaged");
+  }
+  offset = sizeof from;
+  return Display{from.exposure, static_cast<Tone>(from.tone), false};
+}
+
+}  // namespace
+
+absl::Status write_part(const std::string& path, const std::vector<BandRecord>& records,
+                        const Display& display) {
+  Beginning beginning;
+  beginning.exposure = display.exposure;
+  beginning.tone = static_cast<std::uint64_t>(display.tone);
+  beginning.hash = beginning.hash_of_rest();
+  std::vector<std::byte> bytes(sizeof beginning);
+  std::memcpy(bytes.data(), &beginning, sizeof beginning);
+  for (const BandRecord& record : records) {
+    ASSIGN_OR_RETURN(const std::vector<std::byte> encoded, encode_band_record(record));
+    bytes.insert(bytes.end(), encoded.begin(), encoded.end());
+  }
+  return write_file_atomically(path, bytes);
+}
+
+absl::StatusOr<Display> read_part(const std::string& path,
+                                  const std::function<absl::Status(const BandRecord&)>& record) {
+  ASSIGN_OR_RETURN(const std::vector<std::byte> bytes, read_file(path));
+  if (bytes.empty()) {
+    return absl::DataLossError(absl::StrCat(path, ": is empty, not a part of an image"));
+  }
+  std::uint64_t offset = 0;
+  const auto display = display_of(bytes, offset);
+  if (!display.ok()) {
+    return absl::DataLossError(absl::StrCat(path, ": ", display.status().message()));
+  }
+  while (offset < bytes.size()) {
+    const auto decoded = decode_band_record(bytes, offset);
+    if (!decoded.ok()) {
+      return absl::DataLossError(
+          absl::StrCat(path, ": not a whole part of an image: ", decoded.status().message()));
+    }
+    RETURN_IF_ERROR(record(decoded->record));
+    offset += decoded->size;
+  }
+  return display;
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,81 @@
+#include "coordinator/cli/image/report_file.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <span>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/cli/image/report.h"
+#include "renderlib/base/atomic_file.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Whether the report may go there: nothing is there, or a report.
+bool is_free(const std::string& path) {
+  std::error_code error;
+  if (!fs::exists(fs::symlink_status(path, error))) {
+    return true;
+  }
+  std::string begins(sizeof kReportBegins - 1, '\0');
+  std::ifstream file(path, std::ios::binary);
+  return file.read(begins.data(), static_cast<std::streamsize>(begins.size())) &&
+         begins == kReportBegins;
+}
+
+absl::Status taken(const std::string& path) {
+  return absl::InvalidArgumentError(absl::StrCat(
+      path, ": is there and is no report; choose another with --report FILE, or --report none"));
+}
+
+std::string beside(const std::string& output) {
+  const fs::path path(output);
+  const std::string plain = fs::path(path).replace_extension(".json");
+  return is_free(plain) ? plain : std::string(fs::path(path).replace_extension(".report.json"));
+}
+
+}  // namespace
+
+absl::StatusOr<std::vector<std::string>> report_files(const ReportOption& asked,
+                                                      const std::vector<std::string>& outputs) {
+  std::vector<std::string> files;
+  if (asked.file == "none") {
+    return files;
+  }
+  if (!asked.file.empty()) {
+    files.push_back(asked.file);
+  } else {
+    for (const std::string& output : outputs) {
+      files.push_back(beside(output));
+    }
+    std::sort(files.begin(), files.end());
+    files.erase(std::unique(files.begin(), files.end()), files.end());
+  }
+  for (const std::string& file : files) {
+    if (!is_free(file)) {
+      return taken(file);
+    }
+    RETURN_IF_ERROR(check_can_be_written(file));
+  }
+  return files;
+}
+
+absl::Status write_reports(const std::string& text, const std::vector<std::string>& files) {
+  for (const std::string& file : files) {
+    absl::Status status = taken(file);
+    if (is_free(file)) {
+      status = write_file_atomically(file, std::as_bytes(std::span(text)));
+    }
+    if (!status.ok()) {
+      return absl::Status(status.code(), absl::StrCat("the image is written, its report is not: ",
+                                                      status.message()));
+    }
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,23 @@
+#pragma once
+
+// Where reports go. A report never takes the place of a file that is not one.
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "coordinator/cli/options/options.h"
+
+namespace bandsaw::coordinator {
+
+/// The files that the report of these images goes to: the one asked for, or beside each image with
+/// its name and .json, or .report.json where .json is there and is something else (a scene may be);
+/// each once. INVALID_ARGUMENT: a file is there and is no report. Other errors: its folder is not
+/// there or cannot be written.
+absl::StatusOr<std::vector<std::string>> report_files(const ReportOption& asked,
+                                                      const std::vector<std::string>& outputs);
+
+/// Each whole or not at all; stops at the first error, which says that the image is there.
+absl::Status write_reports(const std::string& text, const std::vector<std::string>& files);
+
+}  // namespace bandsaw::coordinator

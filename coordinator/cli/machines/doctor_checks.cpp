@@ -1,0 +1,142 @@
+#include "coordinator/cli/machines/doctor_checks.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "coordinator/cli/scene/import_process.h"
+#include "coordinator/rpc/port_check.h"
+#include "coordinator/store/data_folder.h"
+#include "proto/wire/versions.h"
+#include "renderlib/base/file.h"
+#include "renderlib/render/pixel_version.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+constexpr std::uint64_t kLeastRoom = 1ull << 30;    // bytes: some passes of a large image
+constexpr std::uint64_t kLeastMemory = 1ull << 30;  // bytes: a scene of some size and its trees
+constexpr double kMostClockDifference_s = 60;       // logs could not be put side by side
+constexpr double kDay_s = 24 * 60 * 60;
+
+Check problem(std::string name, std::string found) {
+  return {.name = std::move(name), .ok = false, .found = std::move(found)};
+}
+
+std::string size(std::uint64_t bytes) {
+  return absl::StrFormat("%.1f GB", static_cast<double>(bytes) / 1e9);
+}
+
+/// The folder itself, or the nearest one above it that is there.
+std::string existing_part(std::string folder) {
+  while (!file_exists(folder) && folder.size() > 1) {
+    const std::size_t slash = folder.rfind('/');
+    folder = slash == std::string::npos ? "." : slash == 0 ? "/" : folder.substr(0, slash);
+  }
+  return folder;
+}
+
+}  // namespace
+
+Check room_check(const std::string& name, const std::string& where, std::uint64_t free_bytes) {
+  if (free_bytes < kLeastRoom) {
+    return problem(name, absl::StrCat(where, ": only ", size(free_bytes),
+                                      " free; make room, or jobs "
+                                      "will pause when the disk is full"));
+  }
+  return {.name = name, .ok = true, .found = absl::StrCat(where, ": ", size(free_bytes), " free")};
+}
+
+Check check_data_folder(const std::string& folder) {
+  const std::string name = "data folder";
+  const std::string there = existing_part(folder);
+  if (access(there.c_str(), W_OK | X_OK) != 0) {
+    return problem(name, absl::StrCat(there, ": ", std::strerror(errno),
+                                      "; give this account the right to write there, or name "
+                                      "another folder with --data"));
+  }
+  const absl::StatusOr<std::uint64_t> room = free_bytes(there);
+  if (!room.ok()) {
+    return problem(name, std::string(room.status().message()));
+  }
+  return room_check(name, there == folder ? folder : folder + " (not made yet)", *room);
+}
+
+Check check_memory() {
+  std::ifstream file("/proc/meminfo");
+  std::string word;
+  std::uint64_t kilobytes = 0;
+  while (file >> word) {
+    if (word == "MemAvailable:" && file >> kilobytes) {
+      const std::uint64_t bytes = kilobytes * 1024;
+      return bytes >= kLeastMemory
+                 ? Check{"memory", true, absl::StrCat(size(bytes), " available")}
+                 : problem("memory", absl::StrCat("only ", size(bytes),
+                                                  " available; end other programs, or render small "
+                                                  "scenes only"));
+    }
+  }
+  return problem("memory", "/proc/meminfo does not tell how much is available; is /proc mounted?");
+}
+
+Check check_import_program() {
+  const absl::StatusOr<std::string> program = import_program();
+  return program.ok() ? Check{"import", true, *program}
+                      : problem("import", std::string(program.status().message()));
+}
+
+Check check_port(const std::string& listen, const std::vector<std::string>& own) {
+  const absl::Status free = check_can_listen(listen);
+  if (free.ok()) {
+    return {"port", true, absl::StrCat(listen, " is free for a coordinator")};
+  }
+  const std::string port = listen.substr(listen.rfind(':'));
+  const bool ours = std::any_of(own.begin(), own.end(), [&](const std::string& address) {
+    return address.substr(address.rfind(':')) == port;
+  });
+  return ours ? Check{"port", true, absl::StrCat(listen, " is the farm's own")}
+              : problem("port", std::string(free.message()));
+}
+
+Check certificate_check(double from, double until, double now) {
+  if (now < from || now > until) {
+    return problem(
+        "certificate",
+        absl::StrCat(now < from ? "not valid yet" : "not valid any more",
+                     ": check this machine's clock; else move the coordinator's identity "
+                     "away, to have a new one, and join again"));
+  }
+  return {
+      "certificate", true,
+      absl::StrFormat("the join string's own; valid for %.0f more days", (until - now) / kDay_s)};
+}
+
+Check clock_check(double ours_before, double theirs, double ours_after) {
+  const double difference = theirs - (ours_before + ours_after) / 2;
+  if (std::abs(difference) > kMostClockDifference_s) {
+    return problem("clock", absl::StrFormat("the coordinator's is %+.0f s from this machine's; set "
+                                            "both by the net: timedatectl set-ntp true",
+                                            difference));
+  }
+  return {"clock", true, absl::StrFormat("%+.2f s from the coordinator's", difference)};
+}
+
+Check versions_check(const farm::AboutReply& about) {
+  const std::string found =
+      absl::StrCat("coordinator ", about.version(), ", protocol ", about.protocol(),
+                   ", pixel version ", about.pixel_version());
+  if (about.protocol() != wire::kProtocol || about.pixel_version() != kPixelVersion) {
+    return problem("versions",
+                   absl::StrCat(found, "; here protocol ", wire::kProtocol, ", pixel version ",
+                                kPixelVersion, ": install the same version on all machines"));
+  }
+  return {"versions", true, found + ", as here"};
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,92 @@
+// The checks of `bandsaw doctor` that need a farm.
+
+#include <chrono>
+#include <cstdlib>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "coordinator/cli/base/data_folder.h"
+#include "coordinator/cli/farm/farm_client.h"
+#include "coordinator/cli/farm/find_farm.h"
+#include "coordinator/cli/machines/doctor_checks.h"
+#include "proto/link/certificate.h"
+#include "renderlib/base/file.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+constexpr std::chrono::milliseconds kPatience{5'000};
+
+double unix_seconds() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+Check failed(const std::string& name, const absl::Status& status, const std::string& cure) {
+  return {.name = name, .ok = false, .found = absl::StrCat(status.message(), cure)};
+}
+
+Check check_certificate(const std::string& address) {
+  const auto pem = link::fetch_certificate_pem(address, kPatience);
+  if (!pem.ok()) {
+    return failed("certificate", pem.status(), "");
+  }
+  const auto validity = link::certificate_validity(*pem);
+  return validity.ok() ? certificate_check(validity->from, validity->until, unix_seconds())
+                       : failed("certificate", validity.status(), "");
+}
+
+std::string secret_cure(const absl::Status& status) {
+  return absl::IsUnauthenticated(status)
+             ? "; take the join string anew from the coordinator's data folder"
+             : "";
+}
+
+}  // namespace
+
+absl::StatusOr<link::JoinString> doctor_join(const FarmOption& option, const std::string& folder) {
+  std::string text = option.farm;
+  for (const char* variable : {"BANDSAW_FARM", "BANDSAW_JOIN"}) {
+    if (const char* value = std::getenv(variable); text.empty() && value != nullptr) {
+      text = value;
+    }
+  }
+  if (text.empty() && file_exists(farm_join_file(folder))) {
+    text = farm_join_file(folder);
+  }
+  if (text.empty()) {
+    return absl::NotFoundError("none is named; --farm STRING-or-FILE, or bandsaw serve here");
+  }
+  return link::join_string_from(text);
+}
+
+std::vector<Check> check_farm(const link::JoinString& join) {
+  const auto client = FarmClient::connect(join);
+  if (!client.ok()) {
+    return {failed("farm", client.status(),
+                   absl::IsUnavailable(client.status())
+                       ? "; does bandsaw serve run there, and does a firewall let its port through?"
+                       : "; take the join string anew from the coordinator's data folder")};
+  }
+  std::vector<Check> checks;
+  if (join.certificate) {
+    checks.push_back(check_certificate((*client)->address()));
+  } else {
+    checks.push_back({"certificate", true, "none: the farm is --insecure"});
+  }
+  const double before = unix_seconds();
+  const auto about = (*client)->about();
+  const double after = unix_seconds();
+  if (!about.ok()) {
+    checks.push_back(failed("farm", about.status(), secret_cure(about.status())));
+    return checks;
+  }
+  checks.insert(checks.begin(), Check{"farm", true,
+                                      absl::StrCat((*client)->address(), " answers; ",
+                                                   about->workers(), " workers are connected")});
+  checks.push_back(versions_check(*about));
+  checks.push_back(clock_check(before, about->unix_s(), after));
+  checks.push_back(room_check("farm's disk", "at the coordinator", about->free_bytes()));
+  return checks;
+}
+
+}  // namespace bandsaw::coordinator

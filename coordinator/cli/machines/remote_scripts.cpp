@@ -1,0 +1,143 @@
+#include "coordinator/cli/machines/remote_scripts.h"
+
+#include "absl/strings/str_cat.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+// What both scripts know. `result` ends the script: the first word says whether all went well.
+constexpr char kCommon[] = R"sh(
+result() { echo "bandsaw-result: $*"; exit 0; }
+[ -n "${HOME:-}" ] || result failed "HOME is not set there"
+dir=$HOME/.local/share/bandsaw-worker
+unit=${XDG_CONFIG_HOME:-$HOME/.config}/systemd/user/bandsaw-worker.service
+XDG_RUNTIME_DIR=${XDG_RUNTIME_DIR:-/run/user/$(id -u)}
+export XDG_RUNTIME_DIR
+
+# The worker that runs on its own, if there is one; a number that was given to another process is none.
+own_pid() {
+  pid=$(cat "$dir/pid" 2>/dev/null) || return 1
+  case $(readlink "/proc/$pid/exe" 2>/dev/null) in
+    "$(cd "$dir" && pwd -P)/bandsaw-worker"*) return 0 ;;
+  esac
+  return 1
+}
+gone_within() {
+  left=$(($1 * 5))
+  while own_pid && [ "$left" -gt 0 ]; do
+    sleep 0.2
+    left=$((left - 1))
+  done
+  ! own_pid
+}
+# The first signal drains, the second leaves at once. $1: seconds to drain.
+end_worker() {
+  if [ -f "$unit" ]; then
+    timeout "$1" systemctl --user stop bandsaw-worker 2>/dev/null ||
+      systemctl --user kill --signal=KILL bandsaw-worker 2>/dev/null
+  fi
+  if own_pid; then
+    kill -TERM "$pid"
+    gone_within "$1" || kill -TERM "$pid"
+    gone_within 2 || kill -KILL "$pid"
+  fi
+  rm -f "$dir/pid"
+}
+)sh";
+
+constexpr char kInvite[] = R"sh(
+umask 077
+read -r join
+[ "$(uname -s) $(uname -m)" = "Linux x86_64" ] ||
+  result failed "it is a $(uname -s) machine ($(uname -m)); workers run on Linux, x86_64"
+for flag in avx2 fma bmi2; do
+  grep -q -w -m 1 "$flag" /proc/cpuinfo ||
+    result failed "its CPU is too old: it has no $flag (needed: Haswell, Zen or later)"
+done
+mkdir -p "$dir" || result failed "cannot make $dir"
+free=$(df -Pk "$dir" | awk 'NR == 2 { print $4 }')
+need=$((size * 2 / 1024))
+[ "$free" -ge "$need" ] || result failed "no space: $free KiB are free in $dir, $need are needed"
+new=$dir/bandsaw-worker.new
+cat >"$new" || { rm -f "$new"; result failed "cannot write $new"; }
+[ "$(sha256sum <"$new" | cut -c 1-64)" = "$digest" ] || { rm -f "$new"; result failed "what arrived is damaged"; }
+chmod 700 "$new"
+said=$("$new" --version 2>&1) || { rm -f "$new"; result failed "the worker does not run there: $said"; }
+
+end_worker 10
+mv "$new" "$dir/bandsaw-worker"
+printf '%s\n' "$join" >"$dir/join"
+: >"$dir/log"
+
+if systemctl --user show-environment >/dev/null 2>&1; then
+  mkdir -p "${unit%/*}"
+  cat >"$unit" <<END
+[Unit]
+Description=Bandsaw worker, by invitation
+[Service]
+ExecStart="$dir/bandsaw-worker" --join "$dir/join" --cache "$dir/cache"
+StandardOutput=append:$dir/log
+StandardError=append:$dir/log
+Restart=on-failure
+RestartPreventExitStatus=1 2
+TimeoutStopSec=60
+Nice=19
+CPUSchedulingPolicy=idle
+CPUWeight=1
+NoNewPrivileges=yes
+[Install]
+WantedBy=default.target
+END
+  systemctl --user daemon-reload && systemctl --user enable --quiet bandsaw-worker &&
+    systemctl --user restart bandsaw-worker || result failed "systemd --user did not start it"
+  how="a user service"
+  if [ "$(loginctl show-user "$(id -un)" --property=Linger --value 2>/dev/null)" != yes ]; then
+    if loginctl enable-linger 2>/dev/null; then
+      : >"$dir/lingers"
+    else
+      how="a user service until you log out there (loginctl enable-linger is not allowed)"
+    fi
+  fi
+  running() { systemctl --user is-active --quiet bandsaw-worker; }
+else
+  setsid nice -n 19 "$dir/bandsaw-worker" --join "$dir/join" --cache "$dir/cache" \
+    >"$dir/log" 2>&1 </dev/null &
+  echo $! >"$dir/pid"
+  how="a process until it is restarted"
+  running() { readlink "/proc/$(cat "$dir/pid")/exe" >/dev/null; }  # not so of a dead child
+fi
+
+joined="^bandsaw-worker .* joined "
+left=300
+while [ "$left" -gt 0 ] && running && ! grep -q "$joined" "$dir/log"; do
+  sleep 0.2
+  left=$((left - 1))
+done
+grep -q "$joined" "$dir/log" && result ok "$(grep -m 1 "$joined" "$dir/log"), $how"
+running || result failed "the worker ended: $(tail -n 1 "$dir/log")"
+result failed "it runs, but has not reached the farm yet: $(tail -n 1 "$dir/log")"
+)sh";
+
+constexpr char kDismiss[] = R"sh(
+[ -d "$dir" ] || [ -f "$unit" ] || result ok "there was none"
+end_worker "$drain"
+if [ -f "$unit" ]; then
+  systemctl --user disable --quiet bandsaw-worker 2>/dev/null
+  rm -f "$unit"
+  systemctl --user daemon-reload 2>/dev/null
+fi
+[ ! -f "$dir/lingers" ] || loginctl disable-linger 2>/dev/null
+rm -rf "$dir" && result ok "gone" || result failed "cannot remove $dir"
+)sh";
+
+}  // namespace
+
+std::string invite_script(std::uint64_t size, const wire::Digest& program) {
+  return absl::StrCat("size=", size, "\ndigest=", program.hex(), "\n", kCommon, kInvite);
+}
+
+std::string dismiss_script(int drain_s) {
+  return absl::StrCat("drain=", drain_s, "\n", kCommon, kDismiss);
+}
+
+}  // namespace bandsaw::coordinator

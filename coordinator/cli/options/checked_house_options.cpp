@@ -1,0 +1,78 @@
+// The commands that look after a farm.
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/cli/options/checked_options.h"
+#include "coordinator/cli/options/choices.h"
+#include "coordinator/cli/options/quantities.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+
+absl::StatusOr<Command> checked_logs(const RawOptions& raw) {
+  LogsOptions options;
+  options.farm.farm = raw.farm;
+  ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
+  if (!raw.worker) {
+    return absl::InvalidArgumentError(
+        "logs: the worker's name is missing; bandsaw workers lists them");
+  }
+  options.worker = *raw.worker;
+  return options;
+}
+
+absl::StatusOr<Command> checked_quarantine(const RawOptions& raw) {
+  QuarantineOptions options;
+  options.farm.farm = raw.farm;
+  options.lift = raw.lift;
+  ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
+  if (!raw.worker || raw.worker->empty()) {
+    return absl::InvalidArgumentError(
+        "quarantine: the worker's name is missing; bandsaw workers lists them");
+  }
+  options.worker = *raw.worker;
+  return options;
+}
+
+absl::StatusOr<double> checked_audit(const RawOptions& raw, double standard) {
+  if (!raw.audit) {
+    return standard;
+  }
+  return *raw.audit == "0%" ? 0 : parse_percent("--audit", *raw.audit);
+}
+
+absl::StatusOr<std::string> checked_web(const RawOptions& raw) {
+  if (raw.web && *raw.web != "none") {
+    RETURN_IF_ERROR(check_address("--web", *raw.web, "0.0.0.0:8787"));
+  }
+  return raw.web.value_or("");
+}
+
+absl::StatusOr<Command> checked_doctor(const RawOptions& raw) {
+  DoctorOptions options;
+  options.data = raw.data;
+  options.farm.farm = raw.farm;
+  ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
+  if (raw.listen) {
+    options.listen = *raw.listen;
+  }
+  RETURN_IF_ERROR(check_address("--listen", options.listen, "0.0.0.0:7878"));
+  return options;
+}
+
+absl::StatusOr<Command> checked_secret(const RawOptions& raw) {
+  constexpr char kUse[] = "as in: bandsaw secret rotate worker";
+  RotateOptions options;
+  options.data = raw.data;
+  ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
+  if (!raw.action || *raw.action != "rotate") {
+    return absl::InvalidArgumentError(
+        absl::StrCat("secret: the only thing to do with one is rotate, ", kUse));
+  }
+  if (!raw.role || (*raw.role != "worker" && *raw.role != "farm")) {
+    return wrong_choice("secret rotate: whose", "role", raw.role.value_or(""));
+  }
+  options.role = *raw.role == "worker" ? link::Role::kWorker : link::Role::kFarm;
+  return options;
+}
+
+}  // namespace bandsaw::coordinator

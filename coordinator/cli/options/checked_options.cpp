@@ -1,0 +1,299 @@
+#include "coordinator/cli/options/checked_options.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "absl/strings/match.h"
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "coordinator/cli/options/choices.h"
+#include "coordinator/cli/options/layers.h"
+#include "coordinator/cli/options/output.h"
+#include "coordinator/cli/options/quantities.h"
+#include "proto/wire/limits.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/image/write_image.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+absl::Status wrong(const std::string& message) { return absl::InvalidArgumentError(message); }
+
+absl::Status check_outputs(const std::vector<std::string>& outputs, bool parts_allowed) {
+  for (const std::string& output : outputs) {
+    if (parts_allowed && is_part_name(output)) {
+      continue;
+    }
+    if (is_part_name(output)) {
+      return wrong(
+          absl::StrCat("-o ", output, ": a .band part is made by: bandsaw render --rows y0:y1"));
+    }
+    RETURN_IF_ERROR(image_format_of(output).status());
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<StopRule> checked_stop(const RawOptions& raw) {
+  if (raw.samples.has_value() + raw.error.has_value() + raw.time.has_value() > 1) {
+    return wrong("--samples, --error and --time exclude each other: give one");
+  }
+  if (raw.adaptive && !raw.error) {
+    return wrong("--adaptive needs --error: with --samples and --time every pixel has as many");
+  }
+  if (raw.error) {
+    ASSIGN_OR_RETURN(const double error, parse_percent("--error", *raw.error));
+    return StopAtError{.relative_rmse = error, .adaptive = raw.adaptive};
+  }
+  if (raw.time) {
+    ASSIGN_OR_RETURN(const double seconds, parse_seconds("--time", *raw.time));
+    return StopAtTime{.seconds = seconds};
+  }
+  if (raw.samples) {
+    ASSIGN_OR_RETURN(const std::uint64_t samples,
+                     parse_whole("--samples", *raw.samples, 1, kMaxSamples));
+    return StopAtSamples{samples};
+  }
+  return ImageOptions().stop;
+}
+
+absl::Status read_positive(const char* name, const std::optional<std::string>& text,
+                           double& value) {
+  if (text && (!absl::SimpleAtod(*text, &value) || !(value > 0 && value < 1e9))) {
+    return wrong(absl::StrCat(name, ": must be a number above 0, is '", *text, "'"));
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<ImageOptions> checked_image(const RawOptions& raw) {
+  ImageOptions image;
+  image.choices = {raw.environment, raw.camera};
+  ASSIGN_OR_RETURN(image.stop, checked_stop(raw));
+  RETURN_IF_ERROR(
+      read_whole("--seed", raw.seed, 0, std::numeric_limits<std::uint64_t>::max(), image.seed));
+  RETURN_IF_ERROR(read_whole("--width", raw.width, 1, kMaxSide, image.width));
+  RETURN_IF_ERROR(read_whole("--height", raw.height, 1, kMaxSide, image.height));
+  RETURN_IF_ERROR(read_whole("--depth", raw.depth, 1, kMaxDepth, image.depth));
+  if (raw.integrator) {
+    image.integrator = integrator_named(*raw.integrator);
+    if (!image.integrator) {
+      return wrong_choice("--integrator", *raw.integrator);
+    }
+  }
+  return image;
+}
+
+absl::StatusOr<DisplayOptions> checked_display(const RawOptions& raw) {
+  DisplayOptions display;
+  display.half = raw.half;
+  if (raw.exposure) {
+    double stops = 0;
+    if (!absl::SimpleAtod(*raw.exposure, &stops) || !(std::abs(stops) <= kMostExposure)) {
+      return wrong(absl::StrCat("--exposure: must be a number in [-", kMostExposure, ", ",
+                                kMostExposure, "], is '", *raw.exposure, "'"));
+    }
+    display.exposure = stops;
+  }
+  if (raw.tone) {
+    display.tone = tone_named(*raw.tone);
+    if (!display.tone) {
+      return wrong_choice("--tone", *raw.tone);
+    }
+  }
+  return display;
+}
+
+absl::Status check_scene(const RawOptions& raw, const std::string& command) {
+  if (raw.scene.empty()) {
+    return wrong(absl::StrCat(command, ": the scene is missing, as in: bandsaw ", command,
+                              " cornell.textproto"));
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::Status check_address(const std::string& option, const std::string& address,
+                           const std::string& example) {
+  const std::size_t colon = address.rfind(':');
+  if (colon == std::string::npos || colon == 0) {
+    return wrong(
+        absl::StrCat(option, ": must be HOST:PORT, as in ", example, ", is '", address, "'"));
+  }
+  return parse_whole(option + ": the port", address.substr(colon + 1), 0, 65535).status();
+}
+
+absl::StatusOr<Verbosity> checked_verbosity(const RawOptions& raw) {
+  if (raw.quiet && raw.json) {
+    return wrong("--quiet and --json exclude each other");
+  }
+  if (raw.preview && (raw.quiet || raw.json || raw.detach)) {
+    return wrong("--preview draws on the terminal: --quiet, --json and --detach exclude it");
+  }
+  return Verbosity{.quiet = raw.quiet, .json = raw.json, .preview = raw.preview};
+}
+
+absl::StatusOr<std::string> checked_tev(const RawOptions& raw) {
+  if (!raw.tev) {
+    return "";
+  }
+  if (raw.detach || raw.rows) {
+    return wrong("--tev shows a whole image while it forms: --detach and --rows exclude it");
+  }
+  RETURN_IF_ERROR(check_address("--tev", *raw.tev, "127.0.0.1:14158"));
+  return *raw.tev;
+}
+
+absl::StatusOr<JobId> checked_job(const RawOptions& raw, const std::string& command) {
+  if (!raw.job) {
+    return wrong(absl::StrCat(command, ": the job's number is missing; bandsaw jobs lists them"));
+  }
+  return parse_whole("job", *raw.job, 1, std::numeric_limits<JobId>::max());
+}
+
+absl::StatusOr<Command> checked_serve(const RawOptions& raw) {
+  ServeOptions options;
+  options.data = raw.data;
+  options.insecure = raw.insecure;
+  options.reflection = raw.reflection;
+  if (raw.listen) {
+    options.listen = *raw.listen;
+  }
+  RETURN_IF_ERROR(check_address("--listen", options.listen, "0.0.0.0:7878"));
+  ASSIGN_OR_RETURN(options.web, checked_web(raw));
+  ASSIGN_OR_RETURN(options.audit_share, checked_audit(raw, options.audit_share));
+  RETURN_IF_ERROR(read_positive("--keep-days", raw.keep_days, options.keep_days));
+  RETURN_IF_ERROR(read_positive("--keep-size", raw.keep_size, options.keep_gb));
+  RETURN_IF_ERROR(read_whole("--keep-jobs", raw.keep_jobs, 1, 1'000'000, options.keep_jobs));
+  return options;
+}
+
+absl::StatusOr<std::vector<LayerKind>> checked_layers(const RawOptions& raw) {
+  if (!raw.layers) {
+    return std::vector<LayerKind>{};
+  }
+  const auto is_exr = [](const std::string& name) {
+    return absl::EndsWithIgnoreCase(name, ".exr");
+  };
+  if (raw.rows || std::none_of(raw.outputs.begin(), raw.outputs.end(), is_exr)) {
+    return wrong("--layers: are of whole images in EXR files; add -o FILE.exr");
+  }
+  return parse_layers(*raw.layers);
+}
+
+absl::StatusOr<Command> checked_submit(const RawOptions& raw) {
+  SubmitOptions options;
+  options.scene = raw.scene;
+  options.outputs = raw.outputs;
+  options.farm.farm = raw.farm;
+  options.detach = raw.detach;
+  RETURN_IF_ERROR(check_scene(raw, "submit"));
+  ASSIGN_OR_RETURN(options.image, checked_image(raw));
+  ASSIGN_OR_RETURN(options.display, checked_display(raw));
+  ASSIGN_OR_RETURN(options.report, checked_report(raw, !raw.detach));
+  ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
+  ASSIGN_OR_RETURN(options.tev, checked_tev(raw));
+  RETURN_IF_ERROR(check_outputs(options.outputs, false));
+  if (raw.priority) {
+    ASSIGN_OR_RETURN(options.priority, checked_priority_value("--priority", *raw.priority));
+  }
+  ASSIGN_OR_RETURN(options.layers, checked_layers(raw));
+  if (options.detach && !options.outputs.empty()) {
+    return wrong(
+        "--detach does not wait for the image: leave -o away and fetch it with bandsaw watch JOB "
+        "-o FILE");
+  }
+  return options;
+}
+
+absl::StatusOr<Command> checked_watch(const RawOptions& raw) {
+  WatchOptions options;
+  options.outputs = raw.outputs;
+  options.farm.farm = raw.farm;
+  ASSIGN_OR_RETURN(options.job, checked_job(raw, "watch"));
+  ASSIGN_OR_RETURN(options.display, checked_display(raw));
+  ASSIGN_OR_RETURN(options.report, checked_report(raw, !raw.outputs.empty()));
+  ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
+  ASSIGN_OR_RETURN(options.tev, checked_tev(raw));
+  RETURN_IF_ERROR(check_outputs(options.outputs, false));
+  return options;
+}
+
+absl::StatusOr<Command> checked_jobs(const RawOptions& raw) {
+  JobsOptions options;
+  options.farm.farm = raw.farm;
+  ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
+  return options;
+}
+
+absl::StatusOr<Command> checked_workers(const RawOptions& raw) {
+  WorkersOptions options;
+  options.farm.farm = raw.farm;
+  ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
+  return options;
+}
+
+absl::StatusOr<Command> checked_render(const RawOptions& raw) {
+  RenderOptions options;
+  options.scene = raw.scene;
+  options.outputs = raw.outputs;
+  RETURN_IF_ERROR(check_scene(raw, "render"));
+  ASSIGN_OR_RETURN(options.image, checked_image(raw));
+  ASSIGN_OR_RETURN(options.display, checked_display(raw));
+  ASSIGN_OR_RETURN(options.report, checked_report(raw));
+  ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
+  ASSIGN_OR_RETURN(options.tev, checked_tev(raw));
+  RETURN_IF_ERROR(
+      read_whole("--threads", raw.threads, 1, wire::kThreadsPerWorker, options.threads));
+  RETURN_IF_ERROR(check_outputs(options.outputs, raw.rows.has_value()));
+  if (raw.rows) {
+    ASSIGN_OR_RETURN(options.rows, parse_rows("--rows", *raw.rows));
+    if (!std::holds_alternative<StopAtSamples>(options.image.stop)) {
+      return wrong("--rows needs --samples: parts of one image must have equally many samples");
+    }
+  }
+  ASSIGN_OR_RETURN(options.layers, checked_layers(raw));
+  return options;
+}
+
+absl::StatusOr<Command> checked_info(const RawOptions& raw) {
+  InfoOptions options;
+  options.scene = raw.scene;
+  RETURN_IF_ERROR(check_scene(raw, "info"));
+  ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
+  return options;
+}
+
+absl::StatusOr<Command> checked_stitch(const RawOptions& raw) {
+  StitchOptions options;
+  options.parts = raw.parts;
+  options.outputs = raw.outputs;
+  ASSIGN_OR_RETURN(options.display, checked_display(raw));
+  ASSIGN_OR_RETURN(options.report, checked_report(raw));
+  ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
+  if (options.parts.empty()) {
+    return wrong(
+        "stitch: the parts are missing, as in: bandsaw stitch top.band bottom.band -o image.png");
+  }
+  if (options.outputs.empty()) {
+    return wrong(
+        "stitch: the output is missing, as in: bandsaw stitch top.band bottom.band -o image.png");
+  }
+  RETURN_IF_ERROR(check_outputs(options.outputs, false));
+  return options;
+}
+
+absl::StatusOr<Command> checked_compare(const RawOptions& raw) {
+  if (raw.image.empty() || raw.reference.empty()) {
+    return wrong("compare: two images are needed, as in: bandsaw compare a.png reference.png");
+  }
+  CompareOptions options;
+  options.image = raw.image;
+  options.reference = raw.reference;
+  options.outputs = raw.outputs;
+  RETURN_IF_ERROR(check_outputs(options.outputs, false));
+  ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
+  return options;
+}
+
+}  // namespace bandsaw::coordinator

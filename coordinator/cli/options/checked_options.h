@@ -1,0 +1,67 @@
+#pragma once
+
+// Options as they were typed, and the checks that turn them into a command's options. All errors
+// are INVALID_ARGUMENT.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "coordinator/cli/options/options.h"
+
+namespace bandsaw::coordinator {
+
+/// The union of all commands' options, unread.
+struct RawOptions {
+  std::string scene, environment, camera, image, reference, data, farm, join;
+  std::optional<std::string> job, listen, priority, worker, action, role, keep_days, keep_size,
+      keep_jobs;
+  std::vector<std::string> outputs, parts, scenes, hosts;
+  std::optional<std::string> samples, error, time, seed, width, height, depth, threads, rows;
+  std::optional<std::string> integrator, exposure, tone, layers, report, seeds, reference_samples;
+  std::optional<std::string> runs, tev;
+  std::optional<std::string> web, shell, audit;
+  bool lift = false, adaptive = false, half = false, insecure = false, detach = false,
+       quiet = false, json = false, preview = false, phone = false, every_object = false,
+       reflection = false;
+};
+
+absl::StatusOr<Command> checked_serve(const RawOptions& raw);
+absl::StatusOr<Command> checked_submit(const RawOptions& raw);
+absl::StatusOr<Command> checked_watch(const RawOptions& raw);
+absl::StatusOr<Command> checked_jobs(const RawOptions& raw);
+absl::StatusOr<Command> checked_workers(const RawOptions& raw);
+absl::StatusOr<Command> checked_cancel(const RawOptions& raw);
+absl::StatusOr<Command> checked_pause(const RawOptions& raw);
+absl::StatusOr<Command> checked_resume(const RawOptions& raw);
+absl::StatusOr<Command> checked_priority(const RawOptions& raw);
+absl::StatusOr<Command> checked_why(const RawOptions& raw);
+absl::StatusOr<Command> checked_logs(const RawOptions& raw);
+absl::StatusOr<Command> checked_quarantine(const RawOptions& raw);
+absl::StatusOr<Command> checked_doctor(const RawOptions& raw);
+absl::StatusOr<Command> checked_secret(const RawOptions& raw);
+absl::StatusOr<Command> checked_render(const RawOptions& raw);
+absl::StatusOr<Command> checked_info(const RawOptions& raw);
+absl::StatusOr<Command> checked_stitch(const RawOptions& raw);
+absl::StatusOr<Command> checked_compare(const RawOptions& raw);
+
+// Parts of several commands.
+absl::StatusOr<Verbosity> checked_verbosity(const RawOptions& raw);
+/// Only where there are images to report of.
+absl::StatusOr<ReportOption> checked_report(const RawOptions& raw, bool has_images = true);
+/// HOST:PORT of a viewer; empty: not given.
+absl::StatusOr<std::string> checked_tev(const RawOptions& raw);
+/// HOST:PORT. `option` and `example` are for the error.
+absl::Status check_address(const std::string& option, const std::string& address,
+                           const std::string& example);
+/// A share of all bands; `standard` when none is given.
+absl::StatusOr<double> checked_audit(const RawOptions& raw, double standard);
+/// Of the dashboard; empty: not given.
+absl::StatusOr<std::string> checked_web(const RawOptions& raw);
+/// `command` is for the error.
+absl::StatusOr<JobId> checked_job(const RawOptions& raw, const std::string& command);
+absl::StatusOr<std::int32_t> checked_priority_value(const std::string& name,
+                                                    const std::string& text);
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,145 @@
+#include "coordinator/cli/options/image_options.h"
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/cli/options/choices.h"
+#include "coordinator/cli/options/house_options.h"
+#include "coordinator/cli/options/report_options.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+constexpr char kPictures[] = ".png, .ppm, .pfm, .hdr or .exr";
+
+void add_output(CLI::App& app, RawOptions& raw, const std::string& formats,
+                const std::string& standard) {
+  app.add_option("-o,--output", raw.outputs,
+                 "File for the image: " + formats + "; may be repeated" + standard)
+      ->allow_extra_args(false)
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void add_image(CLI::App& app, RawOptions& raw) {
+  app.add_option("scene", raw.scene, "Scene file (.textproto, .json) or model file");
+  app.add_option("--environment", raw.environment,
+                 "Equirectangular image (.hdr, .exr …) that lights the scene from all around "
+                 "[default: the scene's]")
+      ->type_name("FILE");
+  app.add_option("--camera", raw.camera,
+                 "One of the cameras that the scene's models bring, see bandsaw info "
+                 "[default: the scene's, or a model's first]")
+      ->type_name("NAME");
+  app.add_option("--samples", raw.samples, "Stop at N samples a pixel [default: 64]")
+      ->type_name("N");
+  app.add_option("--error", raw.error, "Stop at this estimated relative RMSE, as in 1%")
+      ->type_name("E%");
+  app.add_flag("--adaptive", raw.adaptive, "With --error: more samples where noise is");
+  app.add_option("--time", raw.time, "Stop before this much time, as in 5s, 2m, 1h")
+      ->type_name("T");
+  app.add_option("--seed", raw.seed, "Another seed, another noise [default: 0]")->type_name("N");
+  app.add_option("--width", raw.width, "Pixels; alone it keeps the scene's aspect ratio")
+      ->type_name("W");
+  app.add_option("--height", raw.height, "Pixels; alone it keeps the scene's aspect ratio")
+      ->type_name("H");
+  app.add_option("--depth", raw.depth, "Most surfaces a path scatters at [default: the scene's]")
+      ->type_name("N");
+}
+
+void add_integrator(CLI::App& app, RawOptions& raw) {
+  app.add_option("--integrator", raw.integrator,
+                 absl::StrCat("What is shown: ", one_of(choices_of("--integrator")),
+                              " [default: the scene's]"))
+      ->type_name("I");
+}
+
+void add_display(CLI::App& app, RawOptions& raw, const char* standard) {
+  app.add_option("--exposure", raw.exposure,
+                 absl::StrCat("PNG and PPM show 2^STOPS times the light [default: ", standard, "]"))
+      ->type_name("STOPS");
+  app.add_option("--tone", raw.tone,
+                 absl::StrCat("Light above 1 in PNG and PPM: none (cut off) or filmic [default: ",
+                              standard, "]"))
+      ->type_name("T");
+  app.add_flag("--half", raw.half, "EXR files hold 16-bit numbers, not 32");
+  add_report(app, raw);
+}
+
+void add_layers(CLI::App& app, RawOptions& raw) {
+  app.add_option("--layers", raw.layers,
+                 "What EXR files hold besides, as in albedo,normal,depth,samples")
+      ->type_name("L,L,…");
+}
+
+void add_views(CLI::App& app, RawOptions& raw) {
+  app.add_flag("--preview", raw.preview,
+               "Draw the image on the terminal while it forms, in half blocks of 24-bit colours");
+  app.add_option("--tev", raw.tev,
+                 "Show it while it forms in the viewer tev, as in 127.0.0.1:14158")
+      ->type_name("HOST:PORT");
+}
+
+}  // namespace
+
+void add_submit(CLI::App& app, RawOptions& raw) {
+  add_image(app, raw);
+  add_integrator(app, raw);
+  add_output(app, raw, kPictures, " [default: the scene's name as .png]");
+  add_display(app, raw, "the scene's");
+  add_layers(app, raw);
+  app.add_flag("--detach", raw.detach, "Do not watch; say the job's number and leave");
+  app.add_option("--priority", raw.priority,
+                 "The highest is rendered first, -1000 to 1000 [default: 0]")
+      ->type_name("N");
+  add_farm(app, raw);
+  add_views(app, raw);
+  add_verbosity(app, raw);
+}
+
+void add_watch(CLI::App& app, RawOptions& raw) {
+  app.add_option("job", raw.job, "The job's number");
+  add_output(app, raw, kPictures, "");
+  add_display(app, raw, "the scene's");
+  add_farm(app, raw);
+  add_views(app, raw);
+  add_verbosity(app, raw);
+}
+
+void add_render(CLI::App& app, RawOptions& raw) {
+  add_image(app, raw);
+  add_integrator(app, raw);
+  add_output(app, raw, ".png, .ppm, .pfm, .hdr, .exr, or .band with --rows",
+             " [default: the scene's name as .png]");
+  add_display(app, raw, "the scene's");
+  add_layers(app, raw);
+  app.add_option("--threads", raw.threads, "Threads [default: one for each CPU]")->type_name("N");
+  app.add_option("--rows", raw.rows,
+                 "Only rows y0 to y1 - 1, from the top; parts are joined by stitch")
+      ->type_name("y0:y1");
+  add_views(app, raw);
+  add_verbosity(app, raw);
+}
+
+void add_info(CLI::App& app, RawOptions& raw) {
+  app.add_option("scene", raw.scene, "Scene file (.textproto, .json) or model file");
+  add_verbosity(app, raw, false);
+}
+
+void add_stitch(CLI::App& app, RawOptions& raw) {
+  app.add_option("parts", raw.parts, "Parts made by: bandsaw render --rows y0:y1 -o PART.band");
+  add_output(app, raw, kPictures, "");
+  add_display(app, raw, "the scene's");
+  add_verbosity(app, raw);
+}
+
+void add_compare(CLI::App& app, RawOptions& raw) {
+  app.add_option("image", raw.image, "The image that is judged (PNG, PPM, PFM, …)");
+  app.add_option("reference", raw.reference, "The image that it is judged by");
+  app.add_option("-o,--output", raw.outputs,
+                 "File for a picture of the differences (FLIP), black for none, white for the most")
+      ->allow_extra_args(false)
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  add_verbosity(app, raw, false);
+}
+
+}  // namespace bandsaw::coordinator

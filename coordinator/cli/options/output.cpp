@@ -1,0 +1,49 @@
+#include "coordinator/cli/options/output.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_join.h"
+#include "renderlib/base/atomic_file.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/image/exr.h"
+#include "renderlib/image/write_image.h"
+
+namespace bandsaw::coordinator {
+
+bool is_part_name(const std::string& path) { return absl::EndsWithIgnoreCase(path, ".band"); }
+
+std::string default_output(const std::string& scene, const std::string& suffix) {
+  return std::filesystem::path(scene).stem().string() + suffix;
+}
+
+absl::Status check_outputs_writable(const std::vector<std::string>& outputs) {
+  for (const std::string& output : outputs) {
+    RETURN_IF_ERROR(is_part_name(output) ? check_can_be_written(output) : check_writable(output));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status write_outputs(const Image& image, const std::vector<std::string>& outputs,
+                           const Display& display, const Layers& layers) {
+  for (const std::string& output : outputs) {
+    RETURN_IF_ERROR(write_image(image, output, display, layers));
+  }
+  return absl::OkStatus();
+}
+
+std::uint64_t cut_off_values(const Image& image, const std::vector<std::string>& outputs,
+                             const Display& display) {
+  const auto is_exr = [](const std::string& output) {
+    return absl::EndsWithIgnoreCase(output, ".exr");
+  };
+  return display.half && std::any_of(outputs.begin(), outputs.end(), is_exr) ? beyond_half(image)
+                                                                             : 0;
+}
+
+std::string names_of(const std::vector<std::string>& outputs) {
+  return absl::StrJoin(outputs, ", ");
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,39 @@
+#include "coordinator/cli/progress/painter.h"
+
+#include <algorithm>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/cli/base/text.h"
+
+namespace bandsaw::coordinator {
+
+std::string Painter::frame(const std::vector<std::string>& lines, TerminalSize size,
+                           const std::vector<std::string>& picture) {
+  std::string out = back_to_first();
+  const std::size_t room = std::max<std::size_t>(size.rows, 2) - 1;
+  drawn_ = std::min(picture.size() + lines.size(), room);
+  for (std::size_t i = 0; i < drawn_; ++i) {
+    // One column less than there are: a full line would wrap on some terminals.
+    const std::string line = i < picture.size() ? picture[i]
+                                                : fit(lines[i - picture.size()],
+                                                      std::max<std::size_t>(size.columns, 2) - 1);
+    absl::StrAppend(&out, line, "\x1b[K\n");
+  }
+  return out + "\x1b[J";
+}
+
+// The carriage return: a terminal echoes ^C where the cursor is.
+std::string Painter::back_to_first() const {
+  return drawn_ > 0 ? absl::StrCat("\r\x1b[", drawn_, "A") : "";
+}
+
+std::string Painter::clear() {
+  if (drawn_ == 0) {
+    return "";
+  }
+  const std::string out = back_to_first() + "\x1b[J";
+  drawn_ = 0;
+  return out;
+}
+
+}  // namespace bandsaw::coordinator

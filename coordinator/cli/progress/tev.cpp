@@ -1,0 +1,113 @@
+#include "coordinator/cli/progress/tev.h"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cstring>
+#include <limits>
+
+#include "absl/strings/str_cat.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "numbers are copied as they are");
+static_assert(sizeof(Rgb) == 3 * sizeof(float), "pixels are copied as they are");
+
+constexpr std::chrono::seconds kPatience{5};
+constexpr std::size_t kPacketPixels = 1 << 18;  // 3 MB
+
+enum class Operation : std::uint8_t { kCreateImage = 4, kUpdateImageV3 = 6 };
+
+constexpr const char* kChannels[] = {"R", "G", "B"};
+
+class Packet {
+ public:
+  explicit Packet(Operation operation) {
+    number(std::uint32_t{0});  // the length, once it is known
+    number(static_cast<std::uint8_t>(operation));
+  }
+  template <class T>
+  void number(T value) {
+    bytes(&value, sizeof(value));
+  }
+  void text(const std::string& value) { bytes(value.c_str(), value.size() + 1); }
+  void bytes(const void* data, std::size_t size) {
+    bytes_.append(static_cast<const char*>(data), size);
+  }
+  std::string finish() && {
+    const auto length = static_cast<std::uint32_t>(bytes_.size());
+    std::memcpy(bytes_.data(), &length, sizeof(length));
+    return std::move(bytes_);
+  }
+
+ private:
+  std::string bytes_;
+};
+
+void channels(Packet& packet) {
+  packet.number(static_cast<std::int32_t>(std::size(kChannels)));
+  for (const char* channel : kChannels) {
+    packet.text(channel);
+  }
+}
+
+link::Deadline soon() { return std::chrono::steady_clock::now() + kPatience; }
+
+}  // namespace
+
+namespace tev {
+
+std::string create_image(const std::string& name, std::uint32_t width, std::uint32_t height) {
+  Packet packet(Operation::kCreateImage);
+  packet.number(std::uint8_t{1});  // it becomes the image that is looked at
+  packet.text(name);
+  packet.number(static_cast<std::int32_t>(width));
+  packet.number(static_cast<std::int32_t>(height));
+  channels(packet);
+  return std::move(packet).finish();
+}
+
+std::string update_rows(const std::string& name, const Image& image, std::uint32_t first,
+                        std::uint32_t last) {
+  Packet packet(Operation::kUpdateImageV3);
+  packet.number(std::uint8_t{0});
+  packet.text(name);
+  channels(packet);
+  for (const std::uint32_t place : {0U, first, image.width, last - first}) {
+    packet.number(static_cast<std::int32_t>(place));
+  }
+  for (std::int64_t channel = 0; channel < 3; ++channel) {
+    packet.number(channel);  // where its first value is, in floats
+  }
+  for (int channel = 0; channel < 3; ++channel) {
+    packet.number(std::int64_t{3});  // from one value to the next
+  }
+  const std::size_t pixels = std::size_t{last - first} * image.width;
+  packet.bytes(&image.pixels[std::size_t{first} * image.width], pixels * sizeof(Rgb));
+  return std::move(packet).finish();
+}
+
+}  // namespace tev
+
+absl::StatusOr<TevViewer> TevViewer::connect(const std::string& address, const std::string& name) {
+  ASSIGN_OR_RETURN(link::Socket socket, link::Socket::connect(address, soon()));
+  return TevViewer(std::move(socket), name);
+}
+
+absl::Status TevViewer::show(const Image& image) {
+  if (!created_) {
+    RETURN_IF_ERROR(socket_.send(tev::create_image(name_, image.width, image.height), soon()));
+    created_ = true;
+  }
+  const auto rows =
+      static_cast<std::uint32_t>(std::max<std::size_t>(1, kPacketPixels / image.width));
+  for (std::uint32_t first = 0; first < image.height; first += rows) {
+    const std::uint32_t last = std::min(first + rows, image.height);
+    RETURN_IF_ERROR(socket_.send(tev::update_rows(name_, image, first, last), soon()));
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,50 @@
+#include "coordinator/cli/progress/views.h"
+
+#include <algorithm>
+
+#include "absl/strings/str_cat.h"
+#include "renderlib/image/shrink.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+/// What no terminal shows need not be sent.
+constexpr std::uint32_t kTerminalSide = 256;
+
+}  // namespace
+
+Views::Views(ProgressDisplay& display, const DisplayOptions& picture, const std::string& tev,
+             const std::string& name)
+    : display_(display), picture_(picture), address_(tev) {
+  if (!address_.empty()) {
+    auto viewer = TevViewer::connect(address_, name);
+    if (viewer.ok()) {
+      tev_.emplace(*std::move(viewer));
+    } else {
+      lost(viewer.status());
+    }
+  }
+}
+
+std::uint32_t Views::most_side() const { return tev_ ? 0 : kTerminalSide; }
+
+void Views::show(const Image& image, const Display& of_scene) {
+  if (tev_) {
+    if (const absl::Status shown = tev_->show(image); !shown.ok()) {
+      tev_.reset();
+      lost(shown);
+    }
+  }
+  if (display_.draws()) {
+    const std::uint32_t side = std::max(image.width, image.height);
+    const std::uint32_t step = (side + kTerminalSide - 1) / kTerminalSide;
+    display_.picture(step > 1 ? shrunk(image, step, step) : image, picture_.over(of_scene));
+  }
+}
+
+void Views::lost(const absl::Status& why) {
+  display_.note(absl::StrCat("warning: no viewer at ", address_, ": ", why.message(),
+                             "; the image is rendered all the same"));
+}
+
+}  // namespace bandsaw::coordinator

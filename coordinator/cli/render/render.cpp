@@ -1,0 +1,219 @@
+// bandsaw render: the image on this machine, without a farm.
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/cli/base/ticker.h"
+#include "coordinator/cli/image/part_file.h"
+#include "coordinator/cli/image/report.h"
+#include "coordinator/cli/image/report_file.h"
+#include "coordinator/cli/options/commands.h"
+#include "coordinator/cli/options/layers.h"
+#include "coordinator/cli/options/output.h"
+#include "coordinator/cli/progress/progress_display.h"
+#include "coordinator/cli/progress/views.h"
+#include "coordinator/cli/render/local_render.h"
+#include "coordinator/cli/scene/image_settings.h"
+#include "coordinator/cli/scene/import_scene_file.h"
+#include "coordinator/engine/clock.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/render/render_image.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+std::vector<std::string> outputs_of(const RenderOptions& options) {
+  if (!options.outputs.empty()) {
+    return options.outputs;
+  }
+  return {default_output(options.scene, options.rows ? absl::StrCat("-", options.rows->first, "-",
+                                                                    options.rows->last, ".band")
+                                                     : ".png")};
+}
+
+// The package, ready to render.
+struct Prepared {
+  PackageInfo info;
+  DigestHex digest;
+  SceneDescription scene;
+};
+
+absl::StatusOr<Prepared> prepare(const RenderOptions& options, Process& process) {
+  ASSIGN_OR_RETURN(ImportedPackage package, import_scene_file(options.scene, options.verbosity,
+                                                              process, options.image.choices));
+  ASSIGN_OR_RETURN(SceneDescription scene, decode_package(package.manifest(), package.blobs()));
+  return Prepared{package.info(), wire::sha256(package.manifest()).hex(), std::move(scene)};
+}
+
+absl::Status write_part_outputs(const std::vector<BandPixels>& bands, const JobSpec& spec,
+                                const RowRange& rows, const std::vector<std::string>& outputs,
+                                const Display& display) {
+  std::vector<std::string> pictures;
+  for (const std::string& output : outputs) {
+    if (!is_part_name(output)) {
+      pictures.push_back(output);
+      continue;
+    }
+    std::vector<BandRecord> records;
+    for (const BandPixels& band : bands) {
+      records.push_back({spec.manifest, spec.settings, band});
+    }
+    RETURN_IF_ERROR(write_part(output, records, display));
+  }
+  if (pictures.empty()) {
+    return absl::OkStatus();
+  }
+  ASSIGN_OR_RETURN(const Image image, image_of_part(bands, spec.settings, rows));
+  return write_outputs(image, pictures, display);
+}
+
+class LocalRun {
+ public:
+  LocalRun(const RenderOptions& options, Process& process, JobSpec spec, const Display& picture,
+           int threads)
+      : options_(options),
+        process_(process),
+        spec_(std::move(spec)),
+        rows_(options.rows.value_or(RowRange{0, spec_.settings.height})),
+        pool_(threads),
+        meter_(spec_, rows_, threads, clocks()),
+        display_(process.console, options.verbosity),
+        picture_(picture),
+        views_(display_, options.display, options.tev, spec_.name) {}
+
+  ExitCode run(SceneDescription description, const std::vector<std::string>& outputs,
+               const std::vector<std::string>& reports) {
+    const Interrupts::Listener listener(process_.interrupts, [this] { stop_ = true; });
+    const absl::Status rendered = render(std::move(description));
+    Progress progress = meter_.progress(clocks());
+    if (!rendered.ok()) {
+      display_.clear();
+      const ExitCode code = absl::IsCancelled(rendered)         ? ExitCode::kInterrupted
+                            : absl::IsInvalidArgument(rendered) ? ExitCode::kWrong
+                                                                : ExitCode::kFailed;
+      return process_.console.fail(code, code == ExitCode::kInterrupted
+                                             ? "interrupted; nothing was written"
+                                             : std::string(rendered.message()));
+    }
+    progress.job.state = JobState::kDone;
+    progress.job.fraction = 1;
+    progress.job.remaining_s = 0;
+    if (const absl::Status written = write(progress, outputs, reports); !written.ok()) {
+      display_.clear();
+      return process_.console.fail(ExitCode::kFailed, std::string(written.message()));
+    }
+    display_.done(progress, outputs, reports);
+    return ExitCode::kDone;
+  }
+
+ private:
+  absl::Status render(SceneDescription description) {
+    constexpr std::chrono::milliseconds kInterval{100};
+    const Ticker ticker(kInterval, [this] {
+      const LocalMeter::Clocks now = clocks();
+      display_.update(meter_.progress(now), now.steady_s);
+    });
+    ASSIGN_OR_RETURN(const std::shared_ptr<const Scene> scene,
+                     Scene::build(std::move(description), pool_));
+    LocalJob job{*scene, spec_.settings, pool_, stop_, meter_};
+    if (views_.any()) {
+      job.grown = [this](const Film& film) { show(film); };
+    }
+    if (options_.rows) {
+      ASSIGN_OR_RETURN(bands_,
+                       render_part(job, rows_, std::get<StopAtSamples>(spec_.stop).samples));
+    } else {
+      ASSIGN_OR_RETURN(const Film film, render_whole(job, spec_.stop));
+      image_ = film.snapshot().image;
+      views_.show(image_, picture_);
+      const std::uint64_t samples = meter_.progress(clocks()).job.samples_per_pixel;
+      const auto render_layer = [&](const RenderSettings& settings,
+                                    std::uint64_t count) -> absl::StatusOr<Image> {
+        ASSIGN_OR_RETURN(const RenderedImage layer,
+                         render_image(*scene, settings, count, pool_, stop_, {}, ""));
+        return layer.film.snapshot().image;
+      };
+      SampleCounts counts;
+      if (is_adaptive(spec_.stop)) {
+        counts = [&] { return film.counts(); };
+      }
+      ASSIGN_OR_RETURN(layers_,
+                       make_layers(options_.layers, spec_.settings, samples, render_layer, counts));
+    }
+    return absl::OkStatus();
+  }
+
+  /// Not so often that the showing takes long beside the rendering.
+  void show(const Film& film) {
+    constexpr double kInterval_s = 0.3;
+    if (steady_seconds() >= shown_at_ + kInterval_s) {
+      views_.show(film.snapshot().image, picture_);
+      shown_at_ = steady_seconds();
+    }
+  }
+
+  absl::Status write(const Progress& progress, const std::vector<std::string>& outputs,
+                     const std::vector<std::string>& reports) const {
+    RETURN_IF_ERROR(options_.rows ? write_part_outputs(bands_, spec_, rows_, outputs, picture_)
+                                  : write_outputs(image_, outputs, picture_, layers_));
+    const Report report{progress, options_.rows ? "" : pixels_sha256(image_), outputs,
+                        cut_off_values(image_, outputs, picture_)};
+    return write_reports(report_text(report), reports);
+  }
+
+  const RenderOptions& options_;
+  Process& process_;
+  const JobSpec spec_;
+  const RowRange rows_;
+  Pool pool_;
+  LocalMeter meter_;
+  ProgressDisplay display_;
+  const Display picture_;
+  Views views_;
+  double shown_at_ = -1;  ///< seconds of a steady clock
+  std::atomic<bool> stop_{false};
+  Image image_;
+  Layers layers_;
+  std::vector<BandPixels> bands_;
+};
+
+}  // namespace
+
+ExitCode run(const RenderOptions& options, Process& process) {
+  const Console& console = process.console;
+  const std::vector<std::string> outputs = outputs_of(options);
+  if (const auto status = check_outputs_writable(outputs); !status.ok()) {
+    return console.fail(ExitCode::kWrong, std::string(status.message()));
+  }
+  const auto reports = report_files(options.report, outputs);
+  if (!reports.ok()) {
+    return console.fail(ExitCode::kWrong, std::string(reports.status().message()));
+  }
+  auto prepared = prepare(options, process);
+  if (!prepared.ok()) {
+    return console.fail(import_exit_code(prepared.status()),
+                        std::string(prepared.status().message()));
+  }
+  const auto settings = image_settings(options.image, prepared->info);
+  if (!settings.ok()) {
+    return console.fail(ExitCode::kWrong, std::string(settings.status().message()));
+  }
+  if (options.rows && options.rows->last > settings->height) {
+    return console.fail(ExitCode::kWrong,
+                        absl::StrCat("--rows: must end at or before ", settings->height,
+                                     ", the image's height, is ", options.rows->last));
+  }
+  JobSpec spec;
+  spec.name = prepared->info.name;
+  spec.manifest = prepared->digest;
+  spec.settings = *settings;
+  spec.stop = options.image.stop;
+  const auto cpus = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  return LocalRun(options, process, spec, options.display.over(prepared->info.display),
+                  options.threads > 0 ? options.threads : cpus)
+      .run(std::move(prepared->scene), outputs, *reports);
+}
+
+}  // namespace bandsaw::coordinator

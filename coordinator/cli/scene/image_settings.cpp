@@ -1,0 +1,17 @@
+#include "coordinator/cli/scene/image_settings.h"
+
+#include "renderlib/base/status_macros.h"
+#include "renderlib/package/settings_of.h"
+
+namespace bandsaw::coordinator {
+absl::StatusOr<RenderSettings> image_settings(const ImageOptions& options,
+                                              const PackageInfo& scene) {
+  RenderSettings settings = settings_of(scene, options.width, options.height);
+  settings.seed = options.seed;
+  settings.max_depth = options.depth.value_or(settings.max_depth);
+  settings.integrator = options.integrator.value_or(settings.integrator);
+  RETURN_IF_ERROR(validate(settings));
+  return settings;
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,45 @@
+#include "coordinator/cli/scene/import_scene_file.h"
+
+#include <atomic>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/cli/base/json.h"
+
+namespace bandsaw::coordinator {
+
+absl::StatusOr<ImportedPackage> import_scene_file(const std::string& scene, Verbosity verbosity,
+                                                  Process& process, const SceneChoices& choices) {
+  std::atomic<bool> stop{false};
+  const Interrupts::Listener listener(process.interrupts, [&] { stop = true; });
+  ImportLimits limits;
+  limits.stop = &stop;
+  auto package = import_in_process(scene, limits, choices);
+  if (!package.ok()) {
+    return package;
+  }
+  if (stop) {
+    return absl::CancelledError("interrupted");
+  }
+  for (const std::string& warning : package->info().warnings) {
+    if (verbosity.json) {
+      process.console.line(JsonObject().text("event", "warning").text("text", warning).str());
+    } else if (!verbosity.quiet) {
+      process.console.complain(absl::StrCat("warning: ", warning));
+    }
+  }
+  return package;
+}
+
+ExitCode import_exit_code(const absl::Status& status) {
+  switch (status.code()) {
+    case absl::StatusCode::kCancelled:
+      return ExitCode::kInterrupted;
+    case absl::StatusCode::kFailedPrecondition:
+    case absl::StatusCode::kInternal:
+      return ExitCode::kFailed;
+    default:
+      return ExitCode::kWrong;
+  }
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,52 @@
+// bandsaw info: what is in a scene or model, and what of it is left out.
+
+#include <algorithm>
+#include <thread>
+#include <utility>
+
+#include "coordinator/cli/options/commands.h"
+#include "coordinator/cli/scene/import_scene_file.h"
+#include "coordinator/cli/scene/scene_summary.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/scene/scene.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+absl::StatusOr<SceneSummary> summary_of_file(const InfoOptions& options, Process& process) {
+  // Warnings are part of the summary.
+  ASSIGN_OR_RETURN(ImportedPackage package,
+                   import_scene_file(options.scene, {.quiet = true}, process));
+  ASSIGN_OR_RETURN(SceneDescription scene, decode_package(package.manifest(), package.blobs()));
+  ASSIGN_OR_RETURN(const std::vector<BlobRef> blobs, package_blobs(package.manifest()));
+  std::uint64_t bytes = package.manifest().size();
+  for (const BlobRef& blob : blobs) {
+    bytes += blob.size;
+  }
+  SceneSummary summary = summary_of(scene, package.info(), bytes);
+  // The trees are built for their size alone: nothing else tells it.
+  Pool pool(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
+  ASSIGN_OR_RETURN(const auto built, Scene::build(std::move(scene), pool));
+  summary.tree_bytes = built->accel().bytes();
+  return summary;
+}
+
+}  // namespace
+
+ExitCode run(const InfoOptions& options, Process& process) {
+  const auto summary = summary_of_file(options, process);
+  if (!summary.ok()) {
+    return process.console.fail(import_exit_code(summary.status()),
+                                std::string(summary.status().message()));
+  }
+  if (options.verbosity.json) {
+    process.console.line(summary_json(*summary));
+    return ExitCode::kDone;
+  }
+  for (const std::string& line : summary_text(*summary)) {
+    process.console.line(line);
+  }
+  return ExitCode::kDone;
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,53 @@
+#include "coordinator/cli/serve/join_files.h"
+
+#include <span>
+
+#include "coordinator/cli/base/data_folder.h"
+#include "renderlib/base/atomic_file.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+absl::Status write(const std::string& file, const link::JoinString& join) {
+  const std::string line = join.text() + "\n";
+  return write_file_atomically(file, std::as_bytes(std::span(line)));
+}
+
+const std::string& secret_of(const link::Identity& identity, link::Role role) {
+  return role == link::Role::kWorker ? identity.worker_secret : identity.farm_secret;
+}
+
+}  // namespace
+
+std::string join_file_of(const std::string& data_folder, link::Role role) {
+  return role == link::Role::kWorker ? worker_join_file(data_folder) : farm_join_file(data_folder);
+}
+
+absl::StatusOr<std::string> write_join_file(const std::string& data_folder, link::Role role,
+                                            const link::Identity& identity,
+                                            const std::vector<std::string>& addresses,
+                                            bool insecure) {
+  link::JoinString join;
+  join.role = role;
+  join.addresses = addresses;
+  if (!insecure) {
+    join.certificate = identity.certificate_digest;
+  }
+  join.secret = secret_of(identity, role);
+  RETURN_IF_ERROR(write(join_file_of(data_folder, role), join));
+  return join.text();
+}
+
+absl::StatusOr<RenewedSecret> rotate_secret(const std::string& data_folder, link::Role role) {
+  const std::string file = join_file_of(data_folder, role);
+  absl::StatusOr<link::JoinString> join = link::join_string_from(file);
+  ASSIGN_OR_RETURN(link::Identity identity, link::renew_secret(data_folder, role));
+  if (join.ok()) {
+    join->secret = secret_of(identity, role);
+    RETURN_IF_ERROR(write(file, *join));
+  }
+  return RenewedSecret{std::move(identity), file};
+}
+
+}  // namespace bandsaw::coordinator

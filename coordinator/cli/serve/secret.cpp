@@ -1,0 +1,66 @@
+// bandsaw secret rotate: through the coordinator when it runs, else in its folder.
+
+#include <sys/stat.h>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/cli/base/data_folder.h"
+#include "coordinator/cli/base/json.h"
+#include "coordinator/cli/farm/farm_client.h"
+#include "coordinator/cli/farm/farm_errors.h"
+#include "coordinator/cli/options/commands.h"
+#include "coordinator/cli/serve/join_files.h"
+#include "coordinator/store/data_folder.h"
+#include "renderlib/base/file.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+/// While nobody serves the folder. FAILED_PRECONDITION: somebody does.
+absl::StatusOr<std::string> rotate_here(const std::string& folder, link::Role role) {
+  ASSIGN_OR_RETURN(const DataFolder locked, DataFolder::open(folder));
+  ASSIGN_OR_RETURN(const RenewedSecret renewed, rotate_secret(folder, role));
+  return renewed.join_file;
+}
+
+absl::StatusOr<std::string> rotate(const std::string& folder, link::Role role) {
+  if (!file_exists(folder + "/identity")) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(folder, " is no data folder of a coordinator; name it with --data DIR"));
+  }
+  umask(S_IRWXG | S_IRWXO);
+  // The lock says whether a coordinator runs; only it can shut out those who are connected.
+  auto here = rotate_here(folder, role);
+  if (!absl::IsFailedPrecondition(here.status())) {
+    return here;
+  }
+  ASSIGN_OR_RETURN(const auto client, connect_to_farm({.farm = farm_join_file(folder)}));
+  return client->rotate_secret(role);
+}
+
+}  // namespace
+
+ExitCode run(const RotateOptions& options, Process& process) {
+  std::string folder = options.data;
+  if (folder.empty()) {
+    const auto standard = default_data_folder();
+    if (!standard.ok()) {
+      return finished(standard.status(), process.console);
+    }
+    folder = *standard;
+  }
+  const auto file = rotate(folder, options.role);
+  if (!file.ok()) {
+    return finished(file.status(), process.console);
+  }
+  const char* const whose = options.role == link::Role::kWorker ? "workers'" : "people's";
+  if (options.verbosity.json) {
+    process.console.line(JsonObject().text("event", "rotated").text("join_file", *file).str());
+  } else {
+    process.console.line(
+        absl::StrCat("the ", whose, " old join string is void; the new one is in ", *file));
+  }
+  return ExitCode::kDone;
+}
+
+}  // namespace bandsaw::coordinator

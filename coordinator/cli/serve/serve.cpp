@@ -1,0 +1,145 @@
+// bandsaw serve: the coordinator, until a signal asks it to leave.
+
+#include <spdlog/sinks/stdout_sinks.h>
+#include <spdlog/spdlog.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/cli/base/data_folder.h"
+#include "coordinator/cli/options/commands.h"
+#include "coordinator/cli/serve/join_addresses.h"
+#include "coordinator/cli/serve/join_files.h"
+#include "coordinator/cli/serve/serve_dashboard.h"
+#include "coordinator/engine/engine.h"
+#include "coordinator/rpc/server.h"
+#include "proto/link/identity.h"
+#include "renderlib/base/atomic_file.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+struct Serving {
+  std::unique_ptr<Engine> engine;
+  std::unique_ptr<ServedDashboard> web;  // after the engine: it goes first
+  std::unique_ptr<Server> server;        // after the dashboard, which it tells of new secrets
+  std::string folder;
+  std::string join;     // of workers
+  std::string line;     // brings a worker to a machine that has none; may be empty
+  std::string address;  // host:port
+};
+
+absl::Status make_folder(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  return error ? errno_status(error.value(), absl::StrCat("the data folder ", folder))
+               : absl::OkStatus();
+}
+
+/// The dashboard's logins and link are made of people's secret.
+absl::StatusOr<RenewedSecret> renew_everywhere(const std::string& folder, link::Role role,
+                                               const ServedDashboard& web) {
+  ASSIGN_OR_RETURN(RenewedSecret renewed, rotate_secret(folder, role));
+  if (web.dashboard != nullptr) {
+    web.dashboard->renew(renewed.identity);
+  }
+  RETURN_IF_ERROR(web.write_link(folder, renewed.identity));
+  return renewed;
+}
+
+absl::StatusOr<Serving> start(const ServeOptions& options) {
+  Serving serving;
+  std::string folder = options.data;
+  if (folder.empty()) {
+    ASSIGN_OR_RETURN(folder, default_data_folder());
+  }
+  // Secrets, scenes and images are nobody else's: every file that is made from here on is 0600.
+  umask(S_IRWXG | S_IRWXO);
+  RETURN_IF_ERROR(make_folder(folder));
+  // The engine first: it locks the folder.
+  EngineOptions engine_options;
+  engine_options.data_folder = folder;
+  engine_options.keep.seconds = options.keep_days * 24 * 60 * 60;
+  engine_options.keep.jobs = options.keep_jobs;
+  engine_options.keep.bytes = static_cast<std::uint64_t>(options.keep_gb * 1e9);
+  engine_options.audit_share = options.audit_share;
+  ASSIGN_OR_RETURN(serving.engine, Engine::start(engine_options));
+  ASSIGN_OR_RETURN(const link::Identity identity, link::load_or_make_identity(folder));
+  serving.folder = folder;
+  ASSIGN_OR_RETURN(ServedDashboard web, serve_dashboard(options, *serving.engine, identity));
+  serving.web = std::make_unique<ServedDashboard>(std::move(web));
+  ASSIGN_OR_RETURN(serving.server,
+                   Server::start(*serving.engine, identity,
+                                 {.listen = options.listen,
+                                  .insecure = options.insecure,
+                                  .reflection = options.reflection,
+                                  .renew = [folder, web = serving.web.get()](link::Role role) {
+                                    return renew_everywhere(folder, role, *web);
+                                  }}));
+  RETURN_IF_ERROR(serving.web->write_link(folder, identity));
+  const std::string host = options.listen.substr(0, options.listen.rfind(':'));
+  ASSIGN_OR_RETURN(const std::vector<LocalAddress> local, local_addresses());
+  const std::vector<std::string> addresses = join_addresses(host, serving.server->port(), local);
+  ASSIGN_OR_RETURN(serving.join, write_join_file(folder, link::Role::kWorker, identity, addresses,
+                                                 options.insecure));
+  RETURN_IF_ERROR(
+      write_join_file(folder, link::Role::kFarm, identity, addresses, options.insecure).status());
+  ASSIGN_OR_RETURN(serving.line, serving.web->worker_line(options, identity, serving.join));
+  serving.address = absl::StrCat(host, ":", serving.server->port());
+  return serving;
+}
+
+/// Each worker has two connections, and each connection is an open file: the soft limit of most
+/// systems, 1,024, is for programs that use select(2).
+void raise_file_limit() {
+  constexpr rlim_t kEnough = 65'536;
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) == 0 && limit.rlim_cur < kEnough) {
+    limit.rlim_cur = std::min(kEnough, limit.rlim_max);
+    ::setrlimit(RLIMIT_NOFILE, &limit);
+  }
+}
+
+}  // namespace
+
+ExitCode run(const ServeOptions& options, Process& process) {
+  raise_file_limit();
+  // Standard output is for people and scripts; the log goes beside it.
+  spdlog::set_default_logger(
+      std::make_shared<spdlog::logger>("", std::make_shared<spdlog::sinks::stderr_sink_mt>()));
+  auto serving = start(options);
+  if (!serving.ok()) {
+    return process.console.fail(ExitCode::kFailed, std::string(serving.status().message()));
+  }
+  const Interrupts::Listener listener(process.interrupts, [] {});
+  const std::string& url = serving->web->url;
+  process.console.line(absl::StrCat("bandsaw ", BANDSAW_VERSION, " · coordinator on ",
+                                    serving->address,
+                                    url.empty() ? "" : absl::StrCat(" · dashboard ", url)));
+  if (!url.empty()) {
+    process.console.line(
+        absl::StrCat("dashboard: the link in ", dashboard_file(serving->folder), " logs in"));
+  }
+  if (options.insecure) {
+    process.console.complain(
+        "warning: --insecure: nothing is encrypted, and whoever reads the network has the secrets");
+  }
+  process.console.line(absl::StrCat("join with:  bandsaw-worker --join ", serving->join));
+  if (!serving->line.empty()) {
+    process.console.line(absl::StrCat("or where there is no bandsaw-worker:  ", serving->line));
+  } else if (serving->web->worker) {
+    process.console.line("with --web 0.0.0.0:8787 there is a line that brings the worker along");
+  }
+  process.interrupts.wait();
+  process.console.line("stopping; jobs go on when the coordinator is started again");
+  serving->server.reset();
+  serving->web.reset();
+  serving->engine.reset();
+  return ExitCode::kDone;
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,122 @@
+#include "coordinator/cli/serve/serve_dashboard.h"
+
+#include <spdlog/spdlog.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <span>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/cli/base/data_folder.h"
+#include "coordinator/cli/base/program_folder.h"
+#include "coordinator/cli/image/report.h"
+#include "coordinator/cli/machines/worker_program.h"
+#include "coordinator/cli/serve/bring_scene.h"
+#include "coordinator/cli/serve/join_addresses.h"
+#include "proto/link/certificate.h"
+#include "renderlib/base/atomic_file.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+/// Of HOST:PORT; IPv6 without its brackets.
+std::string host_of(const std::string& address) {
+  const std::string host = address.substr(0, address.rfind(':'));
+  return host.front() == '[' && host.back() == ']' ? host.substr(1, host.size() - 2) : host;
+}
+
+absl::StatusOr<std::unique_ptr<Dashboard>> start(const ServeOptions& options, Engine& engine,
+                                                 const link::Identity& identity,
+                                                 const WorkerProgram& worker) {
+  DashboardOptions wanted;
+  wanted.worker = worker;
+  wanted.insecure = options.insecure;
+  wanted.gallery = gallery_folder();
+  wanted.bring = bring_scene(engine);
+  wanted.report = [](const JobView& job, const Image& image) {
+    const Progress progress{job, bad_sample_text(job.counters)};
+    return report_text({progress, pixels_sha256(image), {}});
+  };
+  if (options.web.empty()) {
+    auto dashboard = Dashboard::start(engine, identity, wanted);
+    if (dashboard.ok()) {
+      return dashboard;
+    }
+    wanted.port = 0;
+    dashboard = Dashboard::start(engine, identity, wanted);
+    if (!dashboard.ok()) {  // nobody asked for it: a farm does without
+      spdlog::warn("there is no dashboard: {}", std::string(dashboard.status().message()));
+      return nullptr;
+    }
+    return dashboard;
+  }
+  wanted.host = host_of(options.web);
+  wanted.port = std::atoi(options.web.c_str() + options.web.rfind(':') + 1);
+  auto dashboard = Dashboard::start(engine, identity, wanted);
+  if (!dashboard.ok()) {
+    return absl::FailedPreconditionError(
+        absl::StrCat("--web: ", dashboard.status().message(),
+                     "; its port is taken, or the address is none of this machine"));
+  }
+  return dashboard;
+}
+
+}  // namespace
+
+absl::Status ServedDashboard::write_link(const std::string& data_folder,
+                                         const link::Identity& identity) const {
+  const std::string file = dashboard_file(data_folder);
+  if (dashboard == nullptr) {
+    std::error_code error;
+    std::filesystem::remove(file, error);
+    return error ? errno_status(error.value(), file) : absl::OkStatus();
+  }
+  // Behind the #: browsers keep that to themselves.
+  const std::string link = absl::StrCat(url, "/#key=", identity.farm_secret, "\n");
+  return write_file_atomically(file, std::as_bytes(std::span(link)));
+}
+
+absl::StatusOr<std::string> ServedDashboard::worker_line(const ServeOptions& options,
+                                                         const link::Identity& identity,
+                                                         const std::string& join) const {
+  if (dashboard == nullptr || !worker) {
+    return "";
+  }
+  const bool here_only = options.web.empty() || is_loopback(host_of(options.web));
+  if (here_only && !is_loopback(host_of(options.listen))) {
+    return "";
+  }
+  std::optional<wire::Digest> key;
+  if (dashboard->secure()) {
+    ASSIGN_OR_RETURN(key, link::public_key_digest(identity.certificate_pem));
+  }
+  return coordinator::worker_line(url, key, *worker, join);
+}
+
+absl::StatusOr<ServedDashboard> serve_dashboard(const ServeOptions& options, Engine& engine,
+                                                const link::Identity& identity) {
+  ServedDashboard served;
+  if (options.web == "none") {
+    return served;
+  }
+  auto worker = load_worker_program();
+  if (worker.ok()) {
+    served.worker = worker->digest;
+  } else {  // a farm whose workers come by another way
+    spdlog::info("no worker is handed out: {}", std::string(worker.status().message()));
+    worker.emplace();
+  }
+  ASSIGN_OR_RETURN(served.dashboard, start(options, engine, identity, *worker));
+  if (served.dashboard != nullptr) {
+    const std::string host =
+        options.web.empty() ? "127.0.0.1" : options.web.substr(0, options.web.rfind(':'));
+    ASSIGN_OR_RETURN(const std::vector<LocalAddress> local, local_addresses());
+    const auto addresses = join_addresses(host, served.dashboard->port(), local);
+    served.url =
+        absl::StrCat(served.dashboard->secure() ? "https://" : "http://", addresses.front());
+  }
+  return served;
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,258 @@
+#include "coordinator/cli/study/study_measure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/cli/base/cpu_time.h"
+#include "coordinator/cli/study/power_fit.h"
+#include "coordinator/cli/study/study_adaptive.h"
+#include "coordinator/cli/study/study_pixel_stops.h"
+#include "coordinator/core/error_curve.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/compare/error_metrics.h"
+#include "renderlib/geometry/placement.h"
+#include "renderlib/render/render_image.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+constexpr std::uint64_t kReferenceSeed = 0x5eed0fa1d;
+
+double mean_of(const Image& image) {
+  double sum = 0;
+  for (const Rgb& pixel : image.pixels) {
+    sum += double{pixel.r} + pixel.g + pixel.b;
+  }
+  return sum / (3 * static_cast<double>(image.pixels.size()));
+}
+
+/// Sums over the seeds.
+class Seeds {
+ public:
+  Seeds(const Image& reference, double mean) : reference_(reference), mean_(mean) {}
+
+  void add(const Image& image, double samples, double cpu_s, double rays) {
+    const ErrorMetrics errors = error_metrics(image, reference_);
+    const double bias = mean_ > 0 ? mean_of(image) / mean_ - 1 : 0;
+    count_ += 1;
+    sum_.samples += samples;
+    sum_.relative_rmse += errors.relative_rmse * errors.relative_rmse;
+    sum_.relative_mse += errors.relative_mse;
+    sum_.bias += bias;
+    bias_squares_ += bias * bias;
+    sum_.cpu_s += cpu_s;
+    sum_.rays += rays;
+  }
+
+  StudyPoint point() const {
+    StudyPoint out;
+    out.samples = sum_.samples / count_;
+    out.relative_rmse = std::sqrt(sum_.relative_rmse / count_);
+    out.relative_mse = sum_.relative_mse / count_;
+    out.bias = sum_.bias / count_;
+    const double spread = bias_squares_ / count_ - out.bias * out.bias;
+    out.bias_error = count_ > 1 ? std::sqrt(std::max(0.0, spread) / (count_ - 1)) : 0;
+    out.cpu_s = sum_.cpu_s / count_;
+    out.rays = sum_.rays / count_;
+    return out;
+  }
+
+ private:
+  const Image& reference_;
+  double mean_;
+  double count_ = 0;
+  double bias_squares_ = 0;
+  StudyPoint sum_;
+};
+
+Integrator integrator_of(Method method, Integrator standard) {
+  return method == Method::kNoMis      ? Integrator::kPathLights
+         : method == Method::kNoLights ? Integrator::kPathScattering
+                                       : standard;
+}
+
+class Study {
+ public:
+  Study(const Scene& scene, const RenderSettings& settings, const StudyPlan& plan, Pool& pool,
+        const std::atomic<bool>& stop)
+      : scene_(scene), settings_(settings), plan_(plan), pool_(pool), stop_(stop) {}
+
+  /// The estimated error of the reference.
+  absl::StatusOr<double> make_reference() {
+    RenderSettings settings = settings_;
+    settings.seed = settings_.seed ^ kReferenceSeed;
+    ASSIGN_OR_RETURN(const RenderedImage rendered,
+                     render_image(scene_, settings, plan_.reference, pool_, stop_, {}, ""));
+    reference_ = rendered.film.snapshot().image;
+    mean_ = mean_of(reference_);
+    const auto error = rendered.film.error();
+    return error ? error->relative_rmse : 0;
+  }
+
+  absl::StatusOr<StudyLine> line(Method method, const Scene& scene) {
+    StudyLine line{method, {}};
+    if (method == Method::kPixelStops) {
+      return pixel_stops();
+    }
+    for (const std::uint64_t samples : study_samples(plan_.samples)) {
+      Seeds seeds(reference_, mean_);
+      for (std::uint64_t seed = 0; seed < plan_.seeds; ++seed) {
+        RETURN_IF_ERROR(add_image(method, scene, samples, settings_.seed + seed, seeds));
+      }
+      line.points.push_back(seeds.point());
+    }
+    return line;
+  }
+
+ private:
+  absl::Status add_image(Method method, const Scene& scene, std::uint64_t samples,
+                         std::uint64_t seed, Seeds& seeds) {
+    RenderSettings settings = settings_;
+    settings.seed = seed;
+    settings.integrator = integrator_of(method, settings.integrator);
+    const double start = process_cpu_seconds();
+    const auto n = static_cast<double>(samples);
+    if (method == Method::kIndependent) {
+      IndependentSamples independent(scene, settings, pool_, stop_);
+      for (std::uint64_t i = 0; i < samples; ++i) {
+        RETURN_IF_ERROR(independent.next().status());
+      }
+      seeds.add(independent.mean(), n, process_cpu_seconds() - start, independent.rays());
+      return absl::OkStatus();
+    }
+    if (method == Method::kAdaptive) {
+      ASSIGN_OR_RETURN(const AdaptiveImage adaptive,
+                       render_adaptively(scene, settings, samples, pool_, stop_));
+      seeds.add(adaptive.image, adaptive.samples, process_cpu_seconds() - start, adaptive.rays);
+      return absl::OkStatus();
+    }
+    ASSIGN_OR_RETURN(const RenderedImage rendered,
+                     render_image(scene, settings, samples, pool_, stop_, {}, ""));
+    seeds.add(rendered.film.snapshot().image, n, process_cpu_seconds() - start,
+              static_cast<double>(rendered.counters.rays));
+    return absl::OkStatus();
+  }
+
+  absl::StatusOr<StudyLine> pixel_stops() {
+    std::vector<Seeds> seeds(std::size(kTolerances), Seeds(reference_, mean_));
+    for (std::uint64_t seed = 0; seed < plan_.seeds; ++seed) {
+      RenderSettings settings = settings_;
+      settings.seed = settings_.seed + seed;
+      const double start = process_cpu_seconds();
+      ASSIGN_OR_RETURN(const StoppedImages stopped,
+                       stop_by_pixels(scene_, settings, plan_.samples, pool_, stop_));
+      // All tolerances look at one set of samples; each pays for those that it took.
+      const double cpu_s = process_cpu_seconds() - start;
+      const auto all = static_cast<double>(plan_.samples);
+      for (std::size_t i = 0; i < seeds.size(); ++i) {
+        const double share = stopped.samples[i] / all;
+        seeds[i].add(stopped.images[i], stopped.samples[i], cpu_s * share, stopped.rays * share);
+      }
+    }
+    StudyLine line{Method::kPixelStops, {}};
+    for (const Seeds& of_tolerance : seeds) {
+      line.points.push_back(of_tolerance.point());
+    }
+    return line;
+  }
+
+  const Scene& scene_;
+  const RenderSettings& settings_;
+  const StudyPlan& plan_;
+  Pool& pool_;
+  const std::atomic<bool>& stop_;
+  Image reference_;
+  double mean_ = 0;
+};
+
+}  // namespace
+
+const char* method_name(Method method) {
+  switch (method) {
+    case Method::kFull:
+      return "all techniques";
+    case Method::kNoMis:
+      return "lights asked alone (no MIS)";
+    case Method::kNoLights:
+      return "no lights asked (no NEE)";
+    case Method::kAdaptive:
+      return "adaptive";
+    case Method::kIndependent:
+      return "independent numbers";
+    case Method::kPixelStops:
+      return "pixels stop themselves";
+    case Method::kEveryObject:
+      return "every object tested (no tree)";
+  }
+  return "";
+}
+
+std::uint64_t objects_of(const SceneDescription& scene) {
+  std::uint64_t count = 0;
+  for (const Geometry* geometry : {&scene.geometry, &scene.media.boundaries}) {
+    count += geometry->size();
+    for (const Instance& instance : geometry->instances) {
+      const Shapes* group = group_of(*geometry, instance);
+      count += group != nullptr ? group->size()
+                                : geometry->meshes[index_of(instance.mesh)].triangles.size();
+    }
+  }
+  return count;
+}
+
+std::vector<std::uint64_t> study_samples(std::uint64_t most) {
+  std::vector<std::uint64_t> out;
+  for (std::uint64_t samples = 1; samples < most; samples *= 4) {
+    out.push_back(samples);
+  }
+  out.push_back(most);
+  return out;
+}
+
+absl::StatusOr<StudyOfScene> study_scene(const std::string& name, const Scene& scene,
+                                         const Scene* every_object, const RenderSettings& settings,
+                                         const StudyPlan& plan, Pool& pool,
+                                         const std::atomic<bool>& stop,
+                                         const std::function<void(const std::string&)>& doing) {
+  Study study(scene, settings, plan, pool, stop);
+  doing(absl::StrCat(name, " · reference, ", plan.reference, " samples"));
+  StudyOfScene out{.scene = name, .reference_error = 0, .lines = {}};
+  ASSIGN_OR_RETURN(out.reference_error, study.make_reference());
+  for (const Method method : kMethods) {
+    doing(absl::StrCat(name, " · ", method_name(method)));
+    ASSIGN_OR_RETURN(StudyLine line, study.line(method, scene));
+    out.lines.push_back(std::move(line));
+  }
+  if (every_object != nullptr) {
+    doing(absl::StrCat(name, " · ", method_name(Method::kEveryObject)));
+    ASSIGN_OR_RETURN(StudyLine line, study.line(Method::kEveryObject, *every_object));
+    out.lines.push_back(std::move(line));
+  }
+  return out;
+}
+
+std::optional<double> slope_of(const StudyLine& line) {
+  std::vector<std::pair<double, double>> points;
+  for (const StudyPoint& point : line.points) {
+    points.emplace_back(point.samples, point.relative_rmse);
+  }
+  return power_of(points);
+}
+
+std::optional<double> cpu_s_to_1_percent(const StudyLine& line) {
+  constexpr double kOnePercent = 0.01;
+  if (line.method == Method::kPixelStops) {
+    return std::nullopt;
+  }
+  ErrorCurve curve;
+  for (const StudyPoint& point : line.points) {
+    curve.push_back({.samples = static_cast<std::uint64_t>(point.samples),
+                     .cpu_s = point.cpu_s,
+                     .estimate = {.relative_rmse = point.relative_rmse}});
+  }
+  return cpu_s_until(curve, kOnePercent);
+}
+
+}  // namespace bandsaw::coordinator
