@@ -7,7 +7,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
-#include "renderlib/package/package.h"
+#include "renderlib/import/draft/imported_scene.h"
 
 namespace bandsaw {
 
@@ -15,11 +15,6 @@ namespace bandsaw {
 struct GivenFile {
   std::string name;  ///< for messages
   std::string bytes;
-};
-
-struct ImportedScene {
-  SceneDescription scene;
-  PackageInfo info;
 };
 
 /// What somebody chose beside the scene.

@@ -33,10 +33,10 @@
 #include "renderlib/base/atomic_file.h"
 #include "renderlib/base/file.h"
 #include "renderlib/base/status_macros.h"
-#include "renderlib/import/confine.h"
-#include "renderlib/import/decode_image.h"
+#include "renderlib/import/files/confine.h"
+#include "renderlib/import/files/scene_folder.h"
+#include "renderlib/import/image/decode_image.h"
 #include "renderlib/import/import.h"
-#include "renderlib/import/scene_folder.h"
 #include "renderlib/package/blob_folder.h"
 #include "renderlib/package/clean_text.h"
 

@@ -9,7 +9,7 @@
 
 #include "renderlib/image/exr.h"
 #include "renderlib/image/srgb.h"
-#include "renderlib/import/decode_exr.h"
+#include "renderlib/import/image/decode_exr.h"
 #include "renderlib/render/film.h"
 #include "renderlib/sampling/sampler.h"
 #include "renderlib/sampling/spherical_rectangle.h"

@@ -1,4 +1,4 @@
-#include "renderlib/import/confine.h"
+#include "renderlib/import/files/confine.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

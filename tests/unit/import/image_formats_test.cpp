@@ -6,7 +6,7 @@
 #include <cstring>
 #include <string>
 
-#include "renderlib/import/decode_image.h"
+#include "renderlib/import/image/decode_image.h"
 
 namespace bandsaw {
 namespace {

@@ -7,7 +7,7 @@
 #include <random>
 
 #include "renderlib/image/write_image.h"
-#include "renderlib/import/decode_image.h"
+#include "renderlib/import/image/decode_image.h"
 #include "tests/unit/import/files.h"
 
 namespace bandsaw {

@@ -10,7 +10,7 @@
 #include "renderlib/base/file.h"
 #include "renderlib/image/hdr.h"
 #include "renderlib/image/png.h"
-#include "renderlib/import/environment_image.h"
+#include "renderlib/import/draft/environment_image.h"
 #include "renderlib/import/import.h"
 #include "tests/support/environments.h"
 #include "tests/support/hard_case.h"

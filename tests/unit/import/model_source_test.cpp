@@ -12,7 +12,7 @@
 
 #include "renderlib/base/file.h"
 #include "renderlib/image/srgb.h"
-#include "renderlib/import/decode_image.h"
+#include "renderlib/import/image/decode_image.h"
 #include "tests/unit/import/files.h"
 #include "tests/unit/import/layer.h"
 

@@ -1,0 +1,11 @@
+#pragma once
+
+// What a channel of a colour may be at most, wherever it was written: beyond, products of a few of
+// them would overflow.
+
+namespace bandsaw {
+
+inline constexpr float kMostReflectance = 1;
+inline constexpr float kMostRadiance = 1e30f;
+
+}  // namespace bandsaw

@@ -1,0 +1,219 @@
+#include "renderlib/import/image/decode_image.h"
+
+#define STBI_NO_STDIO
+#include <stb_image.h>
+
+#include <algorithm>
+#include <cstring>
+#include <memory>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/image/srgb.h"
+#include "renderlib/import/image/decode_exr.h"
+#include "renderlib/import/image/decode_pfm.h"
+#include "renderlib/package/limits.h"
+
+namespace bandsaw {
+namespace {
+
+template <class T>
+using Pixels = std::shared_ptr<T>;
+
+template <class T>
+Pixels<T> owned(T* pixels) {
+  return Pixels<T>(pixels, [](T* p) { stbi_image_free(p); });
+}
+
+struct Shape {
+  int width = 0;
+  int height = 0;
+  int channels = 0;
+};
+
+absl::Status failure() {
+  const char* reason = stbi_failure_reason();
+  return absl::InvalidArgumentError(
+      absl::StrCat("is not an image that can be read, or is damaged (",
+                   reason == nullptr ? "unknown reason" : reason, ")"));
+}
+
+const stbi_uc* data_of(absl::string_view bytes) {
+  return reinterpret_cast<const stbi_uc*>(bytes.data());
+}
+
+absl::StatusOr<Shape> shape_of(absl::string_view bytes) {
+  Shape shape;
+  if (stbi_info_from_memory(data_of(bytes), static_cast<int>(bytes.size()), &shape.width,
+                            &shape.height, &shape.channels) == 0) {
+    return failure();
+  }
+  const int most = static_cast<int>(kMaxTextureSide);
+  if (shape.width < 1 || shape.height < 1 || shape.width > most || shape.height > most) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "is ", shape.width, " x ", shape.height, " texels, each side must lie in [1, ", most, "]"));
+  }
+  return shape;
+}
+
+// A file that seems never to end: after its last byte come line feeds, and that they were asked for
+// is remembered. stb_image 2.27 loops for ever on a Radiance file that ends within a run; line
+// feeds end every header line and every run.
+struct Endless {
+  absl::string_view rest;
+  bool overrun = false;
+};
+
+int read_endless(void* user, char* to, int size) {
+  auto& source = *static_cast<Endless*>(user);
+  const std::size_t wanted = static_cast<std::size_t>(size);
+  const std::size_t real = std::min(wanted, source.rest.size());
+  std::memcpy(to, source.rest.data(), real);
+  source.rest.remove_prefix(real);
+  // A large request fills stb_image's buffer ahead of need and may come back short; a pixel of four
+  // bytes may not.
+  constexpr std::size_t kPixel = 4;
+  if (real == wanted || (real > 0 && wanted > kPixel)) {
+    return static_cast<int>(real);
+  }
+  std::memset(to + real, '\n', wanted - real);
+  source.overrun = true;
+  return size;
+}
+
+void skip_endless(void* user, int size) {
+  auto& source = *static_cast<Endless*>(user);
+  const std::size_t wanted = static_cast<std::size_t>(std::max(size, 0));
+  source.overrun |= wanted > source.rest.size();
+  source.rest.remove_prefix(std::min(wanted, source.rest.size()));
+}
+
+int at_end(void*) { return 0; }
+
+// The decoder's own memory, held for as long as the texels are.
+template <class T>
+ImageTexture texture_of(Pixels<T> pixels, const Shape& shape, int channels,
+                        ImageTexture::Format format) {
+  ImageTexture image;
+  image.width = static_cast<std::uint32_t>(shape.width);
+  image.height = static_cast<std::uint32_t>(shape.height);
+  image.format = format;
+  image.channels = static_cast<std::uint8_t>(channels);
+  const auto* bytes = reinterpret_cast<const std::byte*>(pixels.get());
+  image.texels = SharedBytes(std::move(pixels), absl::MakeConstSpan(bytes, texel_bytes(image)));
+  return image;
+}
+
+absl::StatusOr<ImageTexture> decode_radiance(absl::string_view bytes) {
+  Endless source{bytes};
+  const stbi_io_callbacks callbacks{read_endless, skip_endless, at_end};
+  Shape shape;
+  Pixels<float> pixels = owned(stbi_loadf_from_callbacks(&callbacks, &source, &shape.width,
+                                                         &shape.height, &shape.channels, 3));
+  if (source.overrun) {
+    return absl::InvalidArgumentError("is truncated: its last pixels are missing");
+  }
+  if (pixels == nullptr) {
+    return failure();
+  }
+  return texture_of(std::move(pixels), shape, 3, ImageTexture::Format::kFloat32);
+}
+
+absl::StatusOr<ImageTexture> decode_bytes(absl::string_view bytes, int channels) {
+  Shape shape;
+  Pixels<stbi_uc> pixels =
+      owned(stbi_load_from_memory(data_of(bytes), static_cast<int>(bytes.size()), &shape.width,
+                                  &shape.height, &shape.channels, channels));
+  if (pixels == nullptr) {
+    return failure();
+  }
+  return texture_of(std::move(pixels), shape, channels, ImageTexture::Format::kSrgb8);
+}
+
+}  // namespace
+
+absl::StatusOr<ImageTexture> decode_image(absl::string_view bytes,
+                                          std::vector<std::string>& warnings, Gray gray) {
+  if (bytes.size() >= kMaxImageFileBytes) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat("has ", bytes.size(), " bytes, at most ", kMaxImageFileBytes, " are read"));
+  }
+  if (is_exr(bytes)) {
+    return decode_exr(bytes);
+  }
+  ASSIGN_OR_RETURN(const Shape shape, shape_of(bytes));
+  const int size = static_cast<int>(bytes.size());
+  if (stbi_is_hdr_from_memory(data_of(bytes), size) != 0) {
+    return decode_radiance(bytes);
+  }
+  if (shape.channels == 2 || shape.channels == 4) {
+    warnings.emplace_back(kAlphaWarning);
+  }
+  if (stbi_is_16_bit_from_memory(data_of(bytes), size) != 0) {
+    warnings.emplace_back("its 16 bits a channel are read as 8");
+  }
+  return decode_bytes(bytes, gray == Gray::kKept && shape.channels <= 2 ? 1 : 3);
+}
+
+absl::StatusOr<ImageTexture> decode_alpha(absl::string_view bytes) {
+  if (bytes.size() >= kMaxImageFileBytes) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat("has ", bytes.size(), " bytes, at most ", kMaxImageFileBytes, " are read"));
+  }
+  ASSIGN_OR_RETURN(const Shape shape, shape_of(bytes));
+  ImageTexture alpha;
+  alpha.width = 1;
+  alpha.height = 1;
+  std::vector<std::byte> texels{std::byte{255}};
+  if (shape.channels == 2 || shape.channels == 4) {
+    // The last channel of four, whatever the file has.
+    Shape found;
+    const Pixels<stbi_uc> pixels =
+        owned(stbi_load_from_memory(data_of(bytes), static_cast<int>(bytes.size()), &found.width,
+                                    &found.height, &found.channels, 4));
+    if (pixels == nullptr) {
+      return failure();
+    }
+    alpha.width = static_cast<std::uint32_t>(found.width);
+    alpha.height = static_cast<std::uint32_t>(found.height);
+    texels.resize(std::size_t{alpha.width} * alpha.height);
+    for (std::size_t i = 0; i < texels.size(); ++i) {
+      texels[i] = std::byte{pixels.get()[4 * i + 3]};
+    }
+  }
+  alpha.format = ImageTexture::Format::kLinear8;
+  alpha.channels = 1;
+  alpha.texels = std::move(texels);
+  return alpha;
+}
+
+bool image_has_alpha(absl::string_view bytes) {
+  const auto shape = bytes.size() < kMaxImageFileBytes && !is_exr(bytes)
+                         ? shape_of(bytes)
+                         : absl::InvalidArgumentError("");
+  return shape.ok() && (shape->channels == 2 || shape->channels == 4);
+}
+
+absl::StatusOr<Image> decode_picture(absl::string_view bytes) {
+  if (is_pfm(bytes)) {
+    return decode_pfm(bytes);
+  }
+  std::vector<std::string> unused;
+  ASSIGN_OR_RETURN(const ImageTexture texels, decode_image(bytes, unused));
+  Image image{texels.width, texels.height, {}};
+  image.pixels.resize(std::size_t{image.width} * image.height);
+  if (texels.format == ImageTexture::Format::kFloat32) {
+    std::memcpy(image.pixels.data(), texels.texels.data(), texels.texels.size());
+    return image;
+  }
+  const auto linear = [&](std::size_t i) {
+    return srgb_table()[static_cast<std::size_t>(texels.texels[i])];
+  };
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    image.pixels[i] = {linear(3 * i), linear(3 * i + 1), linear(3 * i + 2)};
+  }
+  return image;
+}
+
+}  // namespace bandsaw

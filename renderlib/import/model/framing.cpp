@@ -1,0 +1,83 @@
+#include "renderlib/import/model/framing.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "renderlib/geometry/placement.h"
+#include "renderlib/math/elementary.h"
+
+namespace bandsaw {
+namespace {
+
+constexpr double kVerticalFov = 35;  // degrees: little distortion
+constexpr double kMargin = 0.94;
+const Vec3 kToCamera = {0.55, 0.38, 1};
+
+template <class Visit>
+void for_each_vertex(const Geometry& geometry, const std::vector<Instance>& instances,
+                     Visit visit) {
+  for (const Instance& instance : instances) {
+    if (instance.group != kNoGroup) {
+      continue;
+    }
+    const Transform to_world = to_world_at(geometry, instance, 0);
+    const Mesh& mesh = geometry.meshes[index_of(instance.mesh)];
+    for (const auto& p : mesh.positions) {
+      visit(to_world.point({p[0], p[1], p[2]}));
+    }
+  }
+}
+
+// The tightest pair of parallel planes of given slope around points: with half-angle tangent t, a
+// point (x, z), z towards the camera, is seen when |x - a| <= t (d - z). So d t >= x + t z - a and
+// d t >= -x + t z + a; the least d is half the sum of the two maxima over t, and a half their
+// difference.
+struct Fit {
+  double tangent;
+  double right = -std::numeric_limits<double>::infinity();
+  double left = -std::numeric_limits<double>::infinity();
+
+  void add(double x, double z) {
+    right = std::max(right, x + tangent * z);
+    left = std::max(left, -x + tangent * z);
+  }
+  double distance() const { return (right + left) / (2 * tangent); }
+  double centre() const { return (right - left) / 2; }
+};
+
+}  // namespace
+
+PerspectiveCamera frame(const Geometry& geometry, const std::vector<Instance>& instances,
+                        double aspect_ratio) {
+  const Vec3 back = normalize(kToCamera);
+  const Vec3 right = normalize(cross(Vec3{0, 1, 0}, back));
+  const Vec3 up = cross(back, right);
+  const double tangent = tan_degrees(kVerticalFov / 2) * kMargin;
+  Fit wide{tangent * aspect_ratio};
+  Fit high{tangent};
+  for_each_vertex(geometry, instances, [&](const Vec3& p) {
+    wide.add(dot(p, right), dot(p, back));
+    high.add(dot(p, up), dot(p, back));
+  });
+  double distance = std::max(wide.distance(), high.distance());
+  // The plane through the middle of what is seen, along the view: where the camera looks at.
+  double nearest = -std::numeric_limits<double>::infinity();
+  double farthest = std::numeric_limits<double>::infinity();
+  for_each_vertex(geometry, instances, [&](const Vec3& p) {
+    nearest = std::max(nearest, dot(p, back));
+    farthest = std::min(farthest, dot(p, back));
+  });
+  if (!(distance > nearest)) {
+    distance = nearest + 1;  // All of it is one point.
+  }
+  const Vec3 axis = right * wide.centre() + up * high.centre();
+  PerspectiveCamera camera;
+  camera.position = axis + back * distance;
+  camera.look_at = axis + back * ((nearest + farthest) / 2);
+  camera.vertical_fov = kVerticalFov;
+  return camera;
+}
+
+Background default_sky() { return {{0.22f, 0.21f, 0.20f}, {1.0f, 1.2f, 1.5f}}; }
+
+}  // namespace bandsaw

@@ -1,0 +1,220 @@
+#include "renderlib/import/model/material_reader.h"
+
+#include <assimp/GltfMaterial.h>
+#include <assimp/ObjMaterial.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/import/model/texture_look.h"
+
+namespace bandsaw {
+namespace {
+
+/// What glTF calls the textureInfo that Assimp keeps in this slot.
+const char* gltf_name(MaterialReader::Slot slot) {
+  switch (slot.type) {
+    case aiTextureType_BASE_COLOR:
+      return "baseColorTexture";
+    case aiTextureType_DIFFUSE:
+      return "diffuseTexture";
+    case aiTextureType_SPECULAR:
+      return "specularGlossinessTexture";
+    case aiTextureType_UNKNOWN:
+      return "metallicRoughnessTexture";
+    case aiTextureType_NORMALS:
+      return "normalTexture";
+    case aiTextureType_EMISSIVE:
+      return "emissiveTexture";
+    case aiTextureType_TRANSMISSION:
+      return "transmissionTexture";
+    case aiTextureType_CLEARCOAT:
+      return slot.index == 0   ? "clearcoatTexture"
+             : slot.index == 1 ? "clearcoatRoughnessTexture"
+                               : "clearcoatNormalTexture";
+    default:
+      return "";
+  }
+}
+
+}  // namespace
+
+MaterialReader::MaterialReader(ModelFile& file, unsigned index)
+    : file_(file),
+      index_(index),
+      material_(*file.scene.mMaterials[index]),
+      textures_(file.scene, file.path, file.draft) {
+  aiString name;
+  material_.Get(AI_MATKEY_NAME, name);
+  called_ = name.length == 0 ? absl::StrCat(index) : absl::StrCat("\"", name.C_Str(), "\"");
+  if (kind() == ModelKind::kOther) {
+    name_dead_files();
+  }
+}
+
+// Where dead names are the rule a texture that is not found is as if it had not been named.
+void MaterialReader::name_dead_files() {
+  for (unsigned type = aiTextureType_DIFFUSE; type <= AI_TEXTURE_TYPE_MAX; ++type) {
+    for (unsigned index = 0; index < material_.GetTextureCount(aiTextureType(type)); ++index) {
+      const std::string file = file_of({aiTextureType(type), index});
+      const absl::Status found = file.empty() ? absl::OkStatus() : textures_.locate(file);
+      const bool dead = absl::IsNotFound(found) || absl::IsPermissionDenied(found);
+      if (dead && dead_files_.insert(file).second) {
+        leave_out(absl::StrCat(found.message(), "; it is shown without"));
+      }
+    }
+  }
+}
+
+const GltfMaterial* MaterialReader::gltf() const {
+  const std::vector<GltfMaterial>& all = file_.gltf.materials;
+  aiString name;
+  material_.Get(AI_MATKEY_NAME, name);
+  const auto is_this = [&](const GltfMaterial& m) { return m.name == name.C_Str(); };
+  if (index_ < all.size() && (all[index_].name.empty() || is_this(all[index_]))) {
+    return &all[index_];
+  }
+  const auto found = std::find_if(all.begin(), all.end(), is_this);
+  return found == all.end() ? nullptr : &*found;
+}
+
+std::optional<double> MaterialReader::number(const char* key, double least, double most) const {
+  float value = 0;
+  if (material_.Get(key, 0, 0, value) != aiReturn_SUCCESS || !std::isfinite(value)) {
+    return std::nullopt;
+  }
+  return std::clamp(double{value}, least, most);
+}
+
+std::optional<Rgb> MaterialReader::color(const char* key, float most) const {
+  aiColor4D c;
+  if (material_.Get(key, 0, 0, c) != aiReturn_SUCCESS) {
+    return std::nullopt;
+  }
+  const auto channel = [&](float v) { return std::isfinite(v) ? std::clamp(v, 0.0f, most) : 0.0f; };
+  return Rgb{channel(c.r), channel(c.g), channel(c.b)};
+}
+
+double MaterialReader::alpha_of(const char* key) const {
+  aiColor4D c(1, 1, 1, 1);
+  material_.Get(key, 0, 0, c);
+  return std::isfinite(c.a) ? std::clamp(double{c.a}, 0.0, 1.0) : 1;
+}
+
+bool MaterialReader::has(Slot slot) const {
+  const std::string file = file_of(slot);
+  return !file.empty() && dead_files_.count(file) == 0;
+}
+
+std::string MaterialReader::file_of(Slot slot) const {
+  aiString file;
+  return material_.GetTexture(slot.type, slot.index, &file) == aiReturn_SUCCESS ? file.C_Str() : "";
+}
+
+UvSet MaterialReader::uv_set_of(unsigned assimp_set) {
+  const auto found = std::find(uv_sets_.begin(), uv_sets_.end(), assimp_set);
+  if (found == uv_sets_.end() && uv_sets_.size() == 2) {
+    leave_out("its third set of uvs is left out: the first is used");
+    return UvSet::kFirst;
+  }
+  const auto place = found - uv_sets_.begin();
+  if (found == uv_sets_.end()) {
+    uv_sets_.push_back(assimp_set);
+  }
+  return place == 0 ? UvSet::kFirst : UvSet::kSecond;
+}
+
+TextureStore::Use MaterialReader::use_of(Slot slot) {
+  TextureStore::Use use;
+  aiTextureMapMode modes[2] = {aiTextureMapMode_Wrap, aiTextureMapMode_Wrap};
+  unsigned uv_set = 0;
+  aiString file;
+  material_.GetTexture(slot.type, slot.index, &file, nullptr, &uv_set, nullptr, nullptr, modes);
+  use.wrap = wrap_of(modes[0]);
+  if (modes[0] != modes[1]) {
+    use.wrap_v = wrap_of(modes[1]);
+  }
+  int filter = 0;
+  constexpr int kGlNearest = 9728;
+  if (material_.Get(AI_MATKEY_GLTF_MAPPINGFILTER_MAG(slot.type, slot.index), filter) ==
+          aiReturn_SUCCESS &&
+      filter == kGlNearest) {
+    use.filter = ImageTexture::Filter::kNearest;
+  }
+  if (const GltfMaterial* gltf_material = gltf(); gltf_material != nullptr) {
+    const auto found = gltf_material->textures.find(gltf_name(slot));
+    if (found != gltf_material->textures.end()) {
+      uv_set = found->second.uv_set;
+      use.uv_transform = found->second.transform;
+    }
+  } else {
+    aiUVTransform transform;
+    material_.Get(AI_MATKEY_UVTRANSFORM(slot.type, slot.index), transform);
+    use.uv_transform = uv_transform_of(transform);
+  }
+  use.uv_set = uv_set_of(uv_set);
+  return use;
+}
+
+absl::Status MaterialReader::failed(const absl::Status& why) const {
+  return absl::Status(why.code(),
+                      absl::StrCat(file_.name(), ": material ", called_, ": ", why.message()));
+}
+
+absl::StatusOr<TextureId> MaterialReader::map(Slot slot, As as, const Rgb& factor) {
+  if (!has(slot)) {
+    return white();
+  }
+  TextureStore::Use use = use_of(slot);
+  use.linear = as != As::kColor;
+  use.alpha = as == As::kAlpha;
+  use.factor = factor;
+  use.alpha_is_known = kind() == ModelKind::kGltf;
+  return find(slot, use);
+}
+
+absl::StatusOr<TextureId> MaterialReader::find(Slot slot, const TextureStore::Use& use) {
+  auto texture = textures_.find(file_of(slot), use);
+  return texture.ok() ? texture : failed(texture.status());
+}
+
+absl::StatusOr<TextureId> MaterialReader::bump_map(Slot slot) {
+  TextureStore::Use use = use_of(slot);
+  use.linear = true;
+  use.become = TextureStore::Use::Become::kNormals;
+  // Formats give no unit of a height. One texel keeps what is drawn for bumps visible and shallow.
+  float strength = 1;
+  material_.Get(AI_MATKEY_OBJ_BUMPMULT(slot.type, slot.index), strength);
+  use.by = std::isfinite(strength) ? std::clamp(double{strength}, -1e6, 1e6) : 1;
+  return find(slot, use);
+}
+
+absl::StatusOr<TextureId> MaterialReader::index_map(Slot slot, double index) {
+  TextureStore::Use use = use_of(slot);
+  use.become = TextureStore::Use::Become::kIndexMap;
+  use.by = index;
+  return find(slot, use);
+}
+
+absl::StatusOr<TextureId> MaterialReader::opacity_map(Slot slot) {
+  const auto in_alpha = textures_.has_alpha(file_of(slot));
+  return map(slot, in_alpha.ok() && *in_alpha ? As::kAlpha : As::kNumber);
+}
+
+bool MaterialReader::holds_normals(Slot slot) const {
+  const auto image = textures_.decoded(file_of(slot));
+  return image.ok() && looks_like_normals(*image);
+}
+
+ModelMaterial MaterialReader::add(const Material& material) const {
+  ModelMaterial to;
+  to.id = file_.draft.add_material(material);
+  to.uv_set = uv_sets_.empty() ? 0 : uv_sets_[0];
+  to.second_uv_set = uv_sets_.size() < 2 ? kNoUvSet : uv_sets_[1];
+  return to;
+}
+
+}  // namespace bandsaw

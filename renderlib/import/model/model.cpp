@@ -1,0 +1,190 @@
+#include "renderlib/import/model/model.h"
+
+#include <assimp/config.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <assimp/DefaultLogger.hpp>
+#include <assimp/Importer.hpp>
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <set>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/strip.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/import/model/assimp_files.h"
+#include "renderlib/import/model/gltf_extensions.h"
+#include "renderlib/import/model/model_file.h"
+#include "renderlib/import/model/model_material.h"
+#include "renderlib/import/model/model_mesh.h"
+#include "renderlib/import/model/model_nodes.h"
+
+namespace bandsaw {
+namespace {
+
+// Assimp's reason, or what it was not allowed or able to open, which is mostly the true reason.
+absl::Status read_failure(const std::string& name, const RefusedFiles& refused,
+                          absl::string_view reason) {
+  if (!refused.outside.empty()) {
+    return absl::PermissionDeniedError(absl::StrCat(name, ": ", refused.outside.front()));
+  }
+  if (!refused.missing.empty()) {
+    return absl::NotFoundError(
+        absl::StrCat(name, ": its file \"", refused.missing.front(), "\" is missing"));
+  }
+  absl::ConsumePrefix(&reason, "Fatal Error: ");
+  return absl::InvalidArgumentError(absl::StrCat(
+      name, ": cannot be read: ", reason.empty() ? "it is damaged or not supported" : reason));
+}
+
+void warn_of_missing(const std::string& name, RefusedFiles refused, SceneDraft& draft) {
+  auto& files = refused.missing;
+  std::sort(files.begin(), files.end());
+  files.erase(std::unique(files.begin(), files.end()), files.end());
+  for (const std::string& file : files) {
+    draft.out.info.warnings.push_back(absl::StrCat(name, ": its file \"", file, "\" is missing"));
+  }
+}
+
+void warn_of_unused(ModelFile& file) {
+  const auto warn = [&](std::size_t count, absl::string_view what) {
+    if (count > 0) {
+      file.warn(absl::StrCat(count, " ", what, " left out"));
+    }
+  };
+  warn(file.scene.mNumAnimations, "animations (the rest pose is shown) are");
+  warn(file.gltf.scenes > 1 ? file.gltf.scenes - 1 : 0, "scenes beside the default one are");
+  warn(file.gltf.lights_with_range, "ranges of lights (light goes on for ever) are");
+  for (const std::string& extension : file.gltf.ignored) {
+    file.warn(absl::StrCat("the extension ", extension, " is left out"));
+  }
+}
+
+ModelKind kind_of(const std::string& path) {
+  const std::string lower = absl::AsciiStrToLower(path);
+  const auto is = [&](absl::string_view suffix) { return absl::EndsWith(lower, suffix); };
+  return is(".gltf") || is(".glb")                ? ModelKind::kGltf
+         : is(".obj")                             ? ModelKind::kObj
+         : is(".ply") || is(".stl") || is(".off") ? ModelKind::kPlain
+                                                  : ModelKind::kOther;
+}
+
+// FBX files name the axes that point up, to the viewer and to the right; Assimp 5.2 does not turn
+// the scene by them. glTF's are +y, +z and +x, as ours.
+Transform upright(const aiScene& scene) {
+  struct Axis {
+    const char* name;
+    const char* sign;
+  };
+  constexpr Axis kAxes[] = {
+      {"CoordAxis", "CoordAxisSign"}, {"UpAxis", "UpAxisSign"}, {"FrontAxis", "FrontAxisSign"}};
+  Transform turned;
+  turned.m = {};
+  for (std::size_t row = 0; row < 3; ++row) {
+    std::int32_t axis = -1;
+    std::int32_t sign = 1;
+    if (scene.mMetaData == nullptr || !scene.mMetaData->Get(kAxes[row].name, axis) || axis < 0 ||
+        axis > 2) {
+      return {};
+    }
+    scene.mMetaData->Get(kAxes[row].sign, sign);
+    turned.m[row][static_cast<std::size_t>(axis)] = sign < 0 ? -1 : 1;
+  }
+  return determinant(turned) == 1 ? turned : Transform{};
+}
+
+void turn(const Transform& by, Model& model) {
+  for (Instance& instance : model.instances) {
+    instance.to_world = by * instance.to_world;
+  }
+  for (DeltaLight& light : model.lights) {
+    light = placed(light, by);
+  }
+  for (ModelCamera& camera : model.cameras) {
+    camera.camera = placed(camera.camera, by);
+  }
+}
+
+std::set<unsigned> used_materials(const aiScene& scene) {
+  std::set<unsigned> used;
+  for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
+    if (scene.mMeshes[i]->mMaterialIndex < scene.mNumMaterials) {
+      used.insert(scene.mMeshes[i]->mMaterialIndex);
+    }
+  }
+  return used;
+}
+
+}  // namespace
+
+Camera placed(Camera camera, const Transform& placement) {
+  if (auto* flat = std::get_if<OrthographicCamera>(&camera)) {
+    flat->height *= length(placement.direction(flat->up)) / length(flat->up);
+  }
+  std::visit(
+      [&](auto& c) {
+        c.position = placement.point(c.position);
+        c.look_at = placement.point(c.look_at);
+        c.up = placement.direction(c.up);
+      },
+      camera);
+  return camera;
+}
+
+bool is_model_file(const std::string& path) {
+  const std::size_t dot = path.rfind('.');
+  if (dot == std::string::npos || path.find('/', dot) != std::string::npos) {
+    return false;
+  }
+  return Assimp::Importer().IsExtensionSupported(absl::AsciiStrToLower(path.substr(dot)));
+}
+
+absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, SceneDraft& draft) {
+  const std::string name = name_of(path);
+  const std::size_t warnings_before = draft.out.info.warnings.size();
+  RefusedFiles refused;
+  Assimp::Importer importer;
+  importer.SetIOHandler(std::make_unique<AssimpFiles>(draft.folder, path, refused).release());
+  // No meshes that stand for the bones of files without any.
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
+  // Nothing that alters geometry: faces become triangles, that is all.
+  const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate);
+  if (scene == nullptr || scene->mRootNode == nullptr || !refused.outside.empty()) {
+    return read_failure(name, refused, importer.GetErrorString());
+  }
+  ModelFile file{*scene, path, kind_of(path), {}, draft};
+  if (file.kind == ModelKind::kGltf) {
+    file.gltf = read_gltf_extensions(path);
+  }
+  warn_of_missing(name, refused, draft);
+  warn_of_unused(file);
+
+  std::vector<ModelMaterial> materials(scene->mNumMaterials);
+  if (with_materials) {
+    // Assimp adds a material of its own, and files hold more than they use; what is not used is not
+    // read.
+    for (const unsigned used : used_materials(*scene)) {
+      ASSIGN_OR_RETURN(materials[used], read_model_material(file, used));
+    }
+    file.left_out.tell(name, draft.out.info.warnings);
+  } else {
+    // The scene's own material may use either.
+    std::fill(materials.begin(), materials.end(), ModelMaterial{.second_uv_set = 1});
+  }
+  ASSIGN_OR_RETURN(const ModelMeshes meshes, add_meshes(file, materials, with_materials));
+  ASSIGN_OR_RETURN(Model model, read_nodes(file, meshes));
+  if (model.instances.empty()) {
+    const auto& warnings = draft.out.info.warnings;
+    return absl::InvalidArgumentError(
+        absl::StrCat(name, ": holds no triangle that can be rendered",
+                     warnings.size() > warnings_before ? "; " + warnings.back() : ""));
+  }
+  turn(upright(*scene), model);
+  return model;
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,174 @@
+// The older kind of material, Kd, Ks, Ns, Ke, Ni, d: of OBJ, FBX, DAE, 3DS and the rest.
+
+#include <assimp/material.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "renderlib/base/status_macros.h"
+#include "renderlib/import/draft/color_limits.h"
+#include "renderlib/import/model/material_reader.h"
+#include "renderlib/import/model/model_material.h"
+
+namespace bandsaw {
+namespace {
+
+using As = MaterialReader::As;
+using Slot = MaterialReader::Slot;
+constexpr float kMostRadiance = 1e30f;
+
+/// Its numbers, as far as they say anything.
+struct Classic {
+  Rgb base;
+  bool textured = false;
+  Rgb specular;         ///< black: it does not shine
+  double exponent = 0;  ///< of Blinn's highlight
+  std::optional<double> index;
+  Rgb glow;
+  bool glow_map = false;
+  double opacity = 1;
+  bool opacity_map = false;
+};
+
+// Many exporters write a highlight's colour and switch it off by the exponent or by the model.
+bool shines(const MaterialReader& reader, double exponent) {
+  int model = aiShadingMode_Phong;
+  reader.material().Get(AI_MATKEY_SHADING_MODEL, model);
+  const bool matte = model == aiShadingMode_Flat || model == aiShadingMode_Gouraud ||
+                     model == aiShadingMode_NoShading || model == aiShadingMode_OrenNayar ||
+                     model == aiShadingMode_Minnaert;
+  // Of MTL's models Assimp knows 0 to 2; from 2 on all have a highlight.
+  int mtl_model = 0;
+  reader.material().Get("$mat.illum", 0, 0, mtl_model);
+  return (!matte || mtl_model >= 2) && exponent >= 1 && reader.kind() != ModelKind::kPlain;
+}
+
+double opacity_of(MaterialReader& reader, bool mapped) {
+  const double opacity = reader.number("$mat.opacity", 0, 1).value_or(1);
+  if (opacity == 0 && !mapped) {
+    // The commonest mistake of exporters: transparency and opacity exchanged.
+    reader.leave_out("it is not there at all (opacity 0), which is taken as a mistake");
+    return 1;
+  }
+  return opacity;
+}
+
+Classic read_numbers(MaterialReader& reader) {
+  Classic from;
+  // What formats without materials are given by Assimp is white.
+  constexpr float kUnpainted = 0.8f;
+  from.base = reader.kind() == ModelKind::kPlain
+                  ? gray(kUnpainted)
+                  : reader.color("$clr.diffuse", 1).value_or(gray(kUnpainted));
+  from.textured = reader.has({aiTextureType_DIFFUSE}) || reader.has({aiTextureType_BASE_COLOR});
+  // Exporters that mean "the texture alone" write a black Kd.
+  from.base = from.textured && is_black(from.base) ? Rgb{1, 1, 1} : from.base;
+  from.exponent = reader.number("$mat.shininess", 0, 1e6).value_or(0);
+  if (shines(reader, from.exponent)) {
+    const double strength = reader.number("$mat.shinpercent", 0, 1).value_or(1);
+    from.specular = reader.color("$clr.specular", 1).value_or(Rgb{}) * static_cast<float>(strength);
+  }
+  const double index = reader.number("$mat.refracti", 0, 5).value_or(0);
+  from.index = index > 1 ? std::optional(index) : std::nullopt;
+  from.glow = reader.color("$clr.emissive", kMostRadiance).value_or(Rgb{});
+  from.glow_map = reader.has({aiTextureType_EMISSIVE});
+  from.glow = from.glow_map && is_black(from.glow) ? Rgb{1, 1, 1} : from.glow;
+  from.opacity_map = reader.has({aiTextureType_OPACITY});
+  from.opacity = opacity_of(reader, from.opacity_map);
+  return from;
+}
+
+// A highlight (n.h)^exponent is as wide as GGX of this alpha (Walter et al. 2007, section 5.1).
+double roughness_of(double exponent) { return std::sqrt(std::sqrt(2 / (exponent + 2))); }
+
+void set_gloss(const Classic& from, Principled& to) {
+  to.metallic.factor = 0;
+  to.roughness.factor = is_black(from.specular) ? 1 : roughness_of(from.exponent);
+  if (!from.textured && is_black(from.base) && !is_black(from.specular)) {
+    to.metallic.factor = 1;
+    to.base_color.factor = from.specular;
+    return;
+  }
+  // What reflects without being metal reflects little, whatever Ks says: as its index, or no more
+  // than glass.
+  constexpr double kGlass = 0.04;
+  const double f0 = std::sqrt(std::min(kGlass, double{luminance(from.specular)}));
+  to.index_of_refraction =
+      !is_black(from.specular) && from.index ? *from.index : (1 + f0) / (1 - f0);
+}
+
+// What does not shine has no use for a map of how much.
+absl::Status read_specular_map(MaterialReader& reader, const Classic& from, Principled& to) {
+  const Slot slot{aiTextureType_SPECULAR};
+  if (!reader.has(slot) || is_black(from.specular)) {
+    return absl::OkStatus();
+  }
+  if (to.metallic.factor == 1) {
+    ASSIGN_OR_RETURN(to.base_color.texture, reader.map(slot, As::kColor));
+  } else if (to.index_of_refraction > 1) {
+    ASSIGN_OR_RETURN(to.index_map, reader.index_map(slot, to.index_of_refraction));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status read_bump(MaterialReader& reader, Principled& to) {
+  Slot slot{aiTextureType_NORMALS};
+  if (!reader.has(slot)) {
+    slot = {aiTextureType_HEIGHT};
+    if (reader.has(slot) && !reader.holds_normals(slot)) {
+      ASSIGN_OR_RETURN(to.normal, reader.bump_map(slot));
+      return absl::OkStatus();
+    }
+  }
+  if (reader.has(slot)) {
+    ASSIGN_OR_RETURN(to.normal, reader.map(slot, As::kNumber));
+  }
+  return absl::OkStatus();
+}
+
+// Whether it is a lamp: it shines, and what it reflects besides is not worth having.
+bool is_lamp(const Classic& from) {
+  return !is_black(from.glow) && !from.textured && !from.glow_map && is_black(from.specular) &&
+         (max_component(from.glow) >= 1 || is_black(from.base));
+}
+
+}  // namespace
+
+absl::StatusOr<ModelMaterial> read_classic(MaterialReader& reader) {
+  const Classic from = read_numbers(reader);
+  if (is_lamp(from)) {
+    return reader.add(Emissive{reader.draft().textures.constant(from.glow), false});
+  }
+  const Slot slot{reader.has({aiTextureType_DIFFUSE}) ? aiTextureType_DIFFUSE
+                                                      : aiTextureType_BASE_COLOR};
+  Principled to;
+  RETURN_IF_ERROR(read_bump(reader, to));
+  const bool see_through = from.opacity < 1 || from.opacity_map;
+  if (is_black(from.specular) && is_black(from.glow) && !see_through && !to.normal) {
+    if (!reader.has(slot)) {
+      return reader.add(Diffuse{reader.draft().textures.constant(from.base)});
+    }
+    ASSIGN_OR_RETURN(const TextureId texture, reader.map(slot, As::kColor, from.base));
+    return reader.add(Diffuse{texture});
+  }
+  ASSIGN_OR_RETURN(to.base_color.texture, reader.map(slot, As::kColor));
+  to.base_color.factor = from.base;
+  ASSIGN_OR_RETURN(const TextureId white, reader.white());
+  to.metallic.texture = to.roughness.texture = to.coat.texture = white;
+  to.coat_roughness.texture = to.transmission.texture = to.alpha.texture = white;
+  set_gloss(from, to);
+  RETURN_IF_ERROR(read_specular_map(reader, from, to));
+  ASSIGN_OR_RETURN(to.emissive.texture, reader.map({aiTextureType_EMISSIVE}, As::kColor));
+  to.emissive.factor = from.glow;
+  to.double_sided = true;
+  if (see_through) {
+    to.alpha_mode = AlphaMode::kBlend;
+    to.alpha.factor = from.opacity;
+    if (from.opacity_map) {
+      ASSIGN_OR_RETURN(to.alpha.texture, reader.opacity_map({aiTextureType_OPACITY}));
+    }
+  }
+  return reader.add(to);
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,105 @@
+#include "renderlib/import/model/model_lights.h"
+
+#include <assimp/light.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
+#include "renderlib/import/draft/color_limits.h"
+#include "renderlib/math/constants.h"
+#include "renderlib/math/elementary.h"
+
+namespace bandsaw {
+namespace {
+
+Vec3 vector_of(const aiVector3D& v) { return {v.x, v.y, v.z}; }
+
+/// Assimp multiplies colour and intensity: candela or lux of glTF, which become our radiant
+/// intensity and irradiance as they are.
+Rgb brightness_of(const aiLight& from) {
+  const auto channel = [](float value) {
+    return std::isfinite(value) ? std::clamp(value, 0.0f, kMostRadiance) : 0.0f;
+  };
+  return {channel(from.mColorDiffuse.r), channel(from.mColorDiffuse.g),
+          channel(from.mColorDiffuse.b)};
+}
+
+/// Intensity at distance 1 of a light that falls off as c + l r + q r^2 says, q > 0. Other falloffs
+/// are known to few formats and are not light's; they are taken at distance 1 too.
+Rgb intensity_of(const aiLight& from, ModelFile& file) {
+  const float square = from.mAttenuationQuadratic;
+  const bool is_square =
+      square > 0 && from.mAttenuationConstant == 0 && from.mAttenuationLinear == 0;
+  if (is_square) {
+    return brightness_of(from) * (1 / square);
+  }
+  const float at_one = from.mAttenuationConstant + from.mAttenuationLinear + square;
+  file.warn(absl::StrCat("the light \"", from.mName.C_Str(),
+                         "\" falls off with the square of the distance here, from 1 unit on"));
+  return brightness_of(from) * (at_one > 0 && std::isfinite(at_one) ? 1 / at_one : 1.0f);
+}
+
+/// A unit vector, or nothing where a node flattens the light.
+std::optional<Vec3> direction_of(const aiLight& from, const Transform& node) {
+  const Vec3 d = node.direction(vector_of(from.mDirection));
+  const double size = length(d);
+  return size > 0 && std::isfinite(size) ? std::optional(d / size) : std::nullopt;
+}
+
+std::size_t directional_lights(const Model& model) {
+  return static_cast<std::size_t>(std::count_if(
+      model.lights.begin(), model.lights.end(),
+      [](const DeltaLight& light) { return std::holds_alternative<DirectionalLight>(light); }));
+}
+
+bool is_place(const Vec3& p) { return is_finite(p) && max_abs(p) <= 1e30; }
+
+SpotLight spot_of(const aiLight& from, const Vec3& position, const Vec3& direction,
+                  const Rgb& intensity) {
+  const auto cosine = [](double angle) {
+    return sincos_turns(std::clamp(angle, 0.0, kPi / 2) / (2 * kPi)).cos;
+  };
+  SpotLight spot{position, direction, intensity};
+  spot.cos_outer = std::max(0.0, cosine(from.mAngleOuterCone));
+  spot.cos_inner = std::max(spot.cos_outer, cosine(from.mAngleInnerCone));
+  return spot;
+}
+
+}  // namespace
+
+void add_model_light(const aiLight& from, const Transform& node, ModelFile& file, Model& model) {
+  const std::optional<Vec3> direction = direction_of(from, node);
+  const Vec3 position = node.point(vector_of(from.mPosition));
+  const auto leave_out = [&](absl::string_view why) {
+    file.warn(absl::StrCat("the light \"", from.mName.C_Str(), "\" is left out: ", why));
+  };
+  switch (from.mType) {
+    case aiLightSource_DIRECTIONAL:
+      if (!direction) {
+        return leave_out("it has no direction");
+      }
+      if (directional_lights(model) == kMostDirectionalLights) {
+        return leave_out("there are too many directional ones");
+      }
+      model.lights.emplace_back(DirectionalLight{*direction, brightness_of(from)});
+      return;
+    case aiLightSource_POINT:
+    case aiLightSource_SPOT:
+      if (!is_place(position)) {
+        return leave_out("it has no place");
+      }
+      if (from.mType == aiLightSource_POINT) {
+        model.lights.emplace_back(PointLight{position, intensity_of(from, file)});
+      } else if (direction) {
+        model.lights.emplace_back(spot_of(from, position, *direction, intensity_of(from, file)));
+      } else {
+        leave_out("it has no direction");
+      }
+      return;
+    default:
+      return leave_out("it is neither a point, a spot nor a directional light");
+  }
+}
+
+}  // namespace bandsaw

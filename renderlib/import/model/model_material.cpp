@@ -1,0 +1,55 @@
+#include "renderlib/import/model/model_material.h"
+
+#include "absl/strings/str_cat.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/import/model/material_reader.h"
+
+namespace bandsaw {
+namespace {
+
+// Textures of which nothing is rendered, by what they are called.
+void name_unused_textures(MaterialReader& reader) {
+  constexpr struct {
+    aiTextureType type;
+    const char* what;
+  } kUnused[] = {{aiTextureType_SHININESS, "shininess"},
+                 {aiTextureType_REFLECTION, "reflection"},
+                 {aiTextureType_DISPLACEMENT, "displacement"},
+                 {aiTextureType_SHEEN, "sheen"}};
+  for (const auto& [type, what] : kUnused) {
+    if (reader.has({type})) {
+      reader.leave_out(absl::StrCat("its ", what, " map is left out"));
+    }
+  }
+  if (reader.has({aiTextureType_LIGHTMAP}) || reader.has({aiTextureType_AMBIENT_OCCLUSION})) {
+    reader.leave_out("its occlusion map is left out: light is followed instead");
+  }
+}
+
+// KHR_materials_unlit: meant to show its base colour whatever the light, which no surface does.
+absl::StatusOr<ModelMaterial> read_unlit(MaterialReader& reader) {
+  reader.leave_out("is unlit, which is taken as a diffuse surface");
+  const Rgb base = reader.color("$clr.base", 1).value_or(Rgb{1, 1, 1});
+  if (!reader.has({aiTextureType_BASE_COLOR})) {
+    return reader.add(Diffuse{reader.draft().textures.constant(base)});
+  }
+  ASSIGN_OR_RETURN(const TextureId texture,
+                   reader.map({aiTextureType_BASE_COLOR}, MaterialReader::As::kColor, base));
+  return reader.add(Diffuse{texture});
+}
+
+}  // namespace
+
+absl::StatusOr<ModelMaterial> read_model_material(ModelFile& file, unsigned index) {
+  MaterialReader reader(file, index);
+  name_unused_textures(reader);
+  if (reader.number("$mat.gltf.unlit", 0, 1).value_or(0) != 0) {
+    return read_unlit(reader);
+  }
+  const bool principled = file.kind == ModelKind::kGltf ||
+                          reader.number("$mat.metallicFactor", 0, 1) ||
+                          reader.has({aiTextureType_METALNESS});
+  return principled ? read_metallic_roughness(reader) : read_classic(reader);
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,217 @@
+#include "renderlib/import/model/model_mesh.h"
+
+#include <assimp/mesh.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/image/srgb.h"
+#include "renderlib/import/model/mend_mesh.h"
+#include "renderlib/import/model/model_pose.h"
+
+namespace bandsaw {
+namespace {
+
+struct Counts {
+  std::size_t other_faces = 0;  ///< points and lines
+  std::size_t not_finite = 0;   ///< triangles with a vertex that is not
+};
+
+std::vector<std::array<float, 3>> vectors(const aiVector3D* from, std::size_t count) {
+  std::vector<std::array<float, 3>> to(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    to[i] = {from[i].x, from[i].y, from[i].z};
+  }
+  return to;
+}
+
+absl::Status add_triangles(const aiMesh& from, const std::string& title, Mesh& mesh,
+                           Counts& counts) {
+  const auto finite = [&](std::uint32_t index) {
+    const auto& p = mesh.positions[index];
+    return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+  };
+  for (unsigned i = 0; i < from.mNumFaces; ++i) {
+    const aiFace& face = from.mFaces[i];
+    if (face.mNumIndices != 3) {
+      ++counts.other_faces;
+      continue;
+    }
+    const std::array<std::uint32_t, 3> corners{face.mIndices[0], face.mIndices[1],
+                                               face.mIndices[2]};
+    for (const std::uint32_t corner : corners) {
+      if (corner >= mesh.positions.size()) {
+        return absl::InvalidArgumentError(absl::StrCat(title, ": is damaged: triangle ", i,
+                                                       " refers to vertex ", corner, " of ",
+                                                       mesh.positions.size()));
+      }
+    }
+    if (finite(corners[0]) && finite(corners[1]) && finite(corners[2])) {
+      mesh.triangles.push_back(corners);
+    } else {
+      ++counts.not_finite;
+    }
+  }
+  return absl::OkStatus();
+}
+
+std::vector<std::array<float, 2>> uvs(const aiMesh& from, unsigned uv_set) {
+  if (uv_set >= AI_MAX_NUMBER_OF_TEXTURECOORDS || !from.HasTextureCoords(uv_set)) {
+    return {};
+  }
+  // Assimp's v = 0 is the image's bottom row for every format, and so is ours.
+  std::vector<std::array<float, 2>> to(from.mNumVertices);
+  for (unsigned i = 0; i < from.mNumVertices; ++i) {
+    const aiVector3D& uv = from.mTextureCoords[uv_set][i];
+    to[i] = {uv.x, uv.y};
+  }
+  return to;
+}
+
+// What files other than glTF give are codes of a picture's kind, sRGB.
+std::vector<std::array<float, 3>> colors(const aiMesh& from, ModelKind kind) {
+  if (!from.HasVertexColors(0)) {
+    return {};
+  }
+  const auto channel = [&](float value) {
+    const float valid = std::isfinite(value) ? std::max(value, 0.0f) : 0.0f;
+    return kind == ModelKind::kGltf ? valid
+                                    : static_cast<float>(srgb_decode(std::min(valid, 1.0f)));
+  };
+  std::vector<std::array<float, 3>> to(from.mNumVertices);
+  for (unsigned i = 0; i < from.mNumVertices; ++i) {
+    const aiColor4D& c = from.mColors[0][i];
+    to[i] = {channel(c.r), channel(c.g), channel(c.b)};
+  }
+  const std::array<float, 3> white{1, 1, 1};
+  const auto* rgba = from.mColors[0];
+  const bool unset = std::all_of(rgba, rgba + from.mNumVertices,
+                                 [](const aiColor4D& c) { return c == aiColor4D(0, 0, 0, 0); });
+  const bool all_white =
+      std::all_of(to.begin(), to.end(), [&](const auto& c) { return c == white; });
+  return all_white || unset ? std::vector<std::array<float, 3>>() : to;
+}
+
+// One mesh of the file; `title` begins its messages.
+class MeshReader {
+ public:
+  MeshReader(const aiMesh& from, std::string title, std::vector<std::string>& warnings)
+      : from_(from), title_(std::move(title)), warnings_(warnings) {}
+
+  absl::StatusOr<Mesh> read(const ModelMaterial& material) {
+    Mesh mesh;
+    mesh.positions = vectors(from_.mVertices, from_.HasPositions() ? from_.mNumVertices : 0);
+    if (from_.HasNormals()) {
+      mesh.normals = vectors(from_.mNormals, from_.mNumVertices);
+    }
+    mesh.uvs = uvs(from_, material.uv_set);
+    mesh.uvs2 = uvs(from_, material.second_uv_set);
+    add_morph_targets(from_, mesh);
+    Counts counts;
+    RETURN_IF_ERROR(add_triangles(from_, title_, mesh, counts));
+    tell(counts, mesh);
+    return mesh;
+  }
+
+  void mend(Mesh& mesh) {
+    drop_unused_vertices(mesh);
+    if (const std::size_t mended = mend_normals(mesh); mended > 0) {
+      warn(absl::StrCat(mended, " normals are zero or not finite and are made anew"));
+    }
+    if (const std::size_t mended = mend_uvs(mesh); mended > 0) {
+      warn(absl::StrCat(mended, " uvs are not finite and become 0"));
+    }
+  }
+
+  void warn(const std::string& what) { warnings_.push_back(absl::StrCat(title_, ": ", what)); }
+
+ private:
+  void tell(const Counts& counts, const Mesh& mesh) {
+    if (counts.other_faces > 0) {
+      warn(absl::StrCat(counts.other_faces, " points and lines are left out"));
+    }
+    if (counts.not_finite > 0) {
+      warn(absl::StrCat(counts.not_finite, " of ", counts.not_finite + mesh.triangles.size(),
+                        " triangles have a vertex that is not a finite number and are left out"));
+    }
+  }
+
+  const aiMesh& from_;
+  std::string title_;
+  std::vector<std::string>& warnings_;
+};
+
+bool has_clear_colors(const aiMesh& from) {
+  for (unsigned i = 0; from.HasVertexColors(0) && i < from.mNumVertices; ++i) {
+    if (from.mColors[0][i].a < 1) {
+      return true;
+    }
+  }
+  return false;
+}
+
+// Where the first node that bears each mesh stands.
+std::vector<Transform> first_places(const aiScene& scene,
+                                    const std::map<std::string, Transform>& places) {
+  std::vector<Transform> first(scene.mNumMeshes);
+  std::vector<const aiNode*> stack{scene.mRootNode};
+  while (!stack.empty()) {
+    const aiNode* node = stack.back();
+    stack.pop_back();
+    for (unsigned i = 0; i < node->mNumMeshes; ++i) {
+      const auto found = places.find(node->mName.C_Str());
+      if (node->mMeshes[i] < first.size() && found != places.end()) {
+        first[node->mMeshes[i]] = found->second;
+      }
+    }
+    stack.insert(stack.end(), node->mChildren, node->mChildren + node->mNumChildren);
+  }
+  return first;
+}
+
+}  // namespace
+
+absl::StatusOr<ModelMeshes> add_meshes(ModelFile& file, const std::vector<ModelMaterial>& materials,
+                                       bool with_colors) {
+  const aiScene& scene = file.scene;
+  const auto places = node_places(scene);
+  const std::vector<Transform> first = first_places(scene, places);
+  ModelMeshes meshes(scene.mNumMeshes);
+  std::vector<Mesh>& out = file.draft.out.scene.geometry.meshes;
+  for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
+    const aiMesh& from = *scene.mMeshes[i];
+    const std::string called =
+        from.mName.length == 0 ? absl::StrCat(i) : absl::StrCat("\"", from.mName.C_Str(), "\"");
+    MeshReader reader(from, absl::StrCat(file.name(), ": mesh ", called),
+                      file.draft.out.info.warnings);
+    const ModelMaterial material =
+        from.mMaterialIndex < materials.size() ? materials[from.mMaterialIndex] : ModelMaterial{};
+    ASSIGN_OR_RETURN(Mesh mesh, reader.read(material));
+    if (with_colors) {
+      mesh.colors = colors(from, file.kind);
+      if (has_clear_colors(from)) {
+        reader.warn("the alpha of its vertex colours is left out");
+      }
+    }
+    const Skin skin = add_skin(from, places, first[i], mesh);
+    if (skin == Skin::kIncomplete) {
+      reader.warn("its skin is left out: a bone has no node");
+    }
+    reader.mend(mesh);
+    if (mesh.triangles.empty()) {
+      continue;
+    }
+    meshes[i] = ModelMesh{MeshId{static_cast<std::uint32_t>(out.size())}, material.id,
+                          skin == Skin::kApplied};
+    out.push_back(std::move(mesh));
+  }
+  return meshes;
+}
+
+}  // namespace bandsaw

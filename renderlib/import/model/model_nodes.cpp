@@ -1,0 +1,178 @@
+#include "renderlib/import/model/model_nodes.h"
+
+#include <assimp/scene.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "renderlib/import/model/model_lights.h"
+#include "renderlib/math/constants.h"
+#include "renderlib/math/elementary.h"
+
+namespace bandsaw {
+namespace {
+
+constexpr std::size_t kMostInstances = 1'000'000;
+
+Vec3 vector_of(const aiVector3D& v) { return {v.x, v.y, v.z}; }
+
+// Assimp's glTF reader keeps the vertical angle times the aspect ratio, and the vertical angle
+// itself where the file gives no ratio; those of other formats the horizontal angle.
+double vertical_fov_degrees(const aiCamera& camera, bool gltf) {
+  const double aspect = camera.mAspect > 0 ? camera.mAspect : 1;
+  if (gltf) {
+    return camera.mHorizontalFOV / aspect * 180 / kPi;
+  }
+  const SinCos half = sincos_turns(camera.mHorizontalFOV / (4 * kPi));
+  return atan2(half.sin, half.cos * aspect) * 360 / kPi;
+}
+
+// Nothing where it makes no rays.
+std::optional<Camera> camera_of(const aiCamera& camera, const Transform& node, bool gltf) {
+  View view;
+  // Assimp 5.2 copies the node's translation into the camera of some files; cameras stand at their
+  // node's origin.
+  view.position = node.point({0, 0, 0});
+  view.look_at = view.position + node.direction(vector_of(camera.mLookAt));
+  view.up = node.direction(vector_of(camera.mUp));
+  Camera out =
+      PerspectiveCamera{view.position, view.look_at, view.up, vertical_fov_degrees(camera, gltf)};
+  if (camera.mOrthographicWidth > 0) {
+    // glTF's xmag, half of the width; its aspect is xmag over ymag.
+    const double aspect = camera.mAspect > 0 ? camera.mAspect : 1;
+    out = OrthographicCamera{view.position, view.look_at, view.up,
+                             2 * camera.mOrthographicWidth / aspect};
+  }
+  return validate(out).ok() ? std::optional(out) : std::nullopt;
+}
+
+// Those of 3DS files and the like look at a target that Assimp does not pass on.
+bool has_usable_cameras(const ModelFile& file) {
+  return file.kind != ModelKind::kOther || absl::EndsWithIgnoreCase(file.path, ".dae") ||
+         absl::EndsWithIgnoreCase(file.path, ".fbx");
+}
+
+// The tree is walked with a stack of its own: its depth comes from the file.
+class Walk {
+ public:
+  Walk(ModelFile& file, const ModelMeshes& meshes) : file_(file), meshes_(meshes) {
+    const aiScene& scene = file.scene;
+    for (const GltfCamera& camera : file.gltf.cameras) {
+      if (camera.camera < scene.mNumCameras) {
+        standing_[camera.node] = {scene.mCameras[camera.camera], camera.name};
+      }
+    }
+    const bool by_name = file.gltf.cameras.empty() && has_usable_cameras(file);
+    for (unsigned i = 0; by_name && i < scene.mNumCameras; ++i) {
+      cameras_.emplace(scene.mCameras[i]->mName.C_Str(), scene.mCameras[i]);
+    }
+    for (unsigned i = 0; i < scene.mNumLights; ++i) {
+      lights_.emplace(scene.mLights[i]->mName.C_Str(), scene.mLights[i]);
+    }
+    stack_.push_back({scene.mRootNode, Transform{}});
+  }
+
+  void run() {
+    while (!stack_.empty() && model.instances.size() <= kMostInstances) {
+      const auto [node, parent] = stack_.back();
+      stack_.pop_back();
+      visit(*node, parent * transform_of(node->mTransformation));
+    }
+  }
+
+  Model model;
+  std::size_t flattened = 0;
+
+ private:
+  struct Entry {
+    const aiNode* node;
+    Transform parent;
+  };
+  struct CameraAtNode {
+    const aiCamera* camera = nullptr;
+    std::string name = {};  ///< its own
+  };
+
+  void visit(const aiNode& node, const Transform& to_model) {
+    const bool regular = inverse(to_model).has_value();
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+      const unsigned number = node.mMeshes[i];
+      if (number >= meshes_.size() || !meshes_[number]) {
+        continue;
+      }
+      if (meshes_[number]->skinned) {
+        if (skinned_.insert(number).second) {
+          model.instances.push_back(
+              {meshes_[number]->mesh, meshes_[number]->material, Transform{}});
+        }
+        continue;
+      }
+      if (!regular) {
+        ++flattened;
+        continue;
+      }
+      model.instances.push_back({meshes_[number]->mesh, meshes_[number]->material, to_model});
+    }
+    add_camera(node, to_model);
+    const auto [first, last] = lights_.equal_range(node.mName.C_Str());
+    for (auto light = first; light != last; ++light) {
+      add_model_light(*light->second, to_model, file_, model);
+    }
+    // Backwards, so that children are visited in the order of the file.
+    for (unsigned i = node.mNumChildren; i-- > 0;) {
+      stack_.push_back({node.mChildren[i], to_model});
+    }
+  }
+
+  void add_camera(const aiNode& node, const Transform& to_model) {
+    const auto standing = standing_.find(visited_++);
+    const auto named = cameras_.find(node.mName.C_Str());
+    const CameraAtNode found = standing != standing_.end() ? standing->second
+                               : named != cameras_.end()   ? CameraAtNode{named->second}
+                                                           : CameraAtNode{};
+    if (found.camera == nullptr) {
+      return;
+    }
+    const bool gltf = file_.kind == ModelKind::kGltf;
+    if (const auto camera = camera_of(*found.camera, to_model, gltf)) {
+      model.cameras.push_back({node.mName.C_Str(), found.name, *camera});
+    }
+  }
+
+  ModelFile& file_;
+  const ModelMeshes& meshes_;
+  std::size_t visited_ = 0;                         ///< nodes
+  std::map<std::size_t, CameraAtNode> standing_;    ///< glTF's, by the visit of their nodes
+  std::map<std::string, const aiCamera*> cameras_;  ///< others, by the names of their nodes
+  std::multimap<std::string, const aiLight*> lights_;
+  std::vector<Entry> stack_;
+  std::set<unsigned> skinned_;  ///< those that are placed: their bones place them, not their nodes
+};
+
+}  // namespace
+
+Transform transform_of(const aiMatrix4x4& m) {
+  return {{{{m.a1, m.a2, m.a3, m.a4}, {m.b1, m.b2, m.b3, m.b4}, {m.c1, m.c2, m.c3, m.c4}}}};
+}
+
+absl::StatusOr<Model> read_nodes(ModelFile& file, const ModelMeshes& meshes) {
+  Walk walk(file, meshes);
+  walk.run();
+  if (walk.model.instances.size() > kMostInstances) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat(file.name(), ": has more than ", kMostInstances, " placements of meshes"));
+  }
+  if (walk.flattened > 0) {
+    file.warn(
+        absl::StrCat(walk.flattened, " placements are left out: their transform flattens them"));
+  }
+  if (file.scene.mNumCameras > 0 && !has_usable_cameras(file)) {
+    file.warn(absl::StrCat(file.scene.mNumCameras, " cameras are left out"));
+  }
+  return std::move(walk.model);
+}
+
+}  // namespace bandsaw

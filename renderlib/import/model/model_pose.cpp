@@ -1,0 +1,111 @@
+#include "renderlib/import/model/model_pose.h"
+
+#include <assimp/scene.h>
+
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "renderlib/import/model/model_nodes.h"
+
+namespace bandsaw {
+namespace {
+
+using Float3 = std::array<float, 3>;
+
+Vec3 vec(const Float3& v) { return {v[0], v[1], v[2]}; }
+Vec3 vec(const aiVector3D& v) { return {v.x, v.y, v.z}; }
+Float3 floats(const Vec3& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+void add_target(const aiVector3D* target, const aiVector3D* base, double weight,
+                std::vector<Float3>& to) {
+  for (std::size_t i = 0; i < to.size(); ++i) {
+    to[i] = floats(vec(to[i]) + weight * (vec(target[i]) - vec(base[i])));
+  }
+}
+
+void add_scaled(const Transform& t, double by, Transform& sum) {
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t column = 0; column < 4; ++column) {
+      sum.m[row][column] += by * t.m[row][column];
+    }
+  }
+}
+
+}  // namespace
+
+std::map<std::string, Transform> node_places(const aiScene& scene) {
+  std::map<std::string, Transform> places;
+  std::vector<std::pair<const aiNode*, Transform>> stack{{scene.mRootNode, Transform{}}};
+  while (!stack.empty()) {
+    const auto [node, parent] = stack.back();
+    stack.pop_back();
+    const Transform place = parent * transform_of(node->mTransformation);
+    places.emplace(node->mName.C_Str(), place);
+    for (unsigned i = node->mNumChildren; i-- > 0;) {
+      stack.emplace_back(node->mChildren[i], place);
+    }
+  }
+  return places;
+}
+
+void add_morph_targets(const aiMesh& from, Mesh& mesh) {
+  for (unsigned i = 0; i < from.mNumAnimMeshes; ++i) {
+    const aiAnimMesh& target = *from.mAnimMeshes[i];
+    if (target.mWeight == 0 || !std::isfinite(target.mWeight) ||
+        target.mNumVertices != from.mNumVertices) {
+      continue;
+    }
+    if (target.HasPositions()) {
+      add_target(target.mVertices, from.mVertices, target.mWeight, mesh.positions);
+    }
+    if (target.HasNormals() && from.HasNormals()) {
+      add_target(target.mNormals, from.mNormals, target.mWeight, mesh.normals);
+    }
+  }
+}
+
+Skin add_skin(const aiMesh& from, const std::map<std::string, Transform>& places,
+              const Transform& place, Mesh& mesh) {
+  if (!from.HasBones()) {
+    return Skin::kNone;
+  }
+  Transform nothing;
+  nothing.m = {};
+  std::vector<Transform> blended(mesh.positions.size(), nothing);
+  std::vector<double> weights(mesh.positions.size(), 0);
+  for (unsigned i = 0; i < from.mNumBones; ++i) {
+    const aiBone& bone = *from.mBones[i];
+    const auto found = places.find(bone.mName.C_Str());
+    if (found == places.end()) {
+      return Skin::kIncomplete;
+    }
+    const Transform moves = found->second * transform_of(bone.mOffsetMatrix);
+    for (unsigned w = 0; w < bone.mNumWeights; ++w) {
+      const aiVertexWeight& weight = bone.mWeights[w];
+      if (weight.mVertexId < blended.size() && std::isfinite(weight.mWeight)) {
+        add_scaled(moves, weight.mWeight, blended[weight.mVertexId]);
+        weights[weight.mVertexId] += weight.mWeight;
+      }
+    }
+  }
+  for (std::size_t i = 0; i < blended.size(); ++i) {
+    Transform moves = place;
+    if (weights[i] > 0) {
+      moves = nothing;
+      add_scaled(blended[i], 1 / weights[i], moves);
+    }
+    mesh.positions[i] = floats(moves.point(vec(mesh.positions[i])));
+    if (const auto back = inverse(moves); back && !mesh.normals.empty()) {
+      const Vec3 normal = normal_to_world(*back, vec(mesh.normals[i]));
+      const double size = length(normal);
+      mesh.normals[i] = floats(size > 0 ? normal / size : normal);
+    }
+  }
+  return Skin::kApplied;
+}
+
+}  // namespace bandsaw

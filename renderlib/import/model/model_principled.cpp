@@ -1,0 +1,187 @@
+// Metallic-roughness materials: of glTF, of MTL files with the PBR extension, of FBX files by Maya
+// and 3ds Max.
+
+#include <assimp/GltfMaterial.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/string_view.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/import/draft/color_limits.h"
+#include "renderlib/import/model/material_reader.h"
+#include "renderlib/import/model/model_material.h"
+
+namespace bandsaw {
+namespace {
+
+using As = MaterialReader::As;
+using Slot = MaterialReader::Slot;
+constexpr float kMostRadiance = 1e30f;
+
+Slot either(const MaterialReader& reader, Slot first, Slot second) {
+  return reader.has(first) ? first : second;
+}
+
+absl::Status read_base(MaterialReader& reader, Principled& to) {
+  const Slot slot = either(reader, {aiTextureType_BASE_COLOR}, {aiTextureType_DIFFUSE});
+  ASSIGN_OR_RETURN(to.base_color.texture, reader.map(slot, As::kColor));
+  const auto base = reader.color("$clr.base", 1);
+  to.base_color.factor = base ? *base : reader.color("$clr.diffuse", 1).value_or(Rgb{1, 1, 1});
+  // glTF keeps both in one image; elsewhere each has its own.
+  const Slot both{aiTextureType_UNKNOWN};
+  const bool one = reader.kind() == ModelKind::kGltf && reader.has(both);
+  const Slot metal = one ? both : Slot{aiTextureType_METALNESS};
+  const Slot rough = one ? both : Slot{aiTextureType_DIFFUSE_ROUGHNESS};
+  ASSIGN_OR_RETURN(to.metallic.texture, reader.map(metal, As::kNumber));
+  ASSIGN_OR_RETURN(to.roughness.texture, reader.map(rough, As::kNumber));
+  const bool gltf = reader.kind() == ModelKind::kGltf;
+  to.metallic.factor =
+      reader.number("$mat.metallicFactor", 0, 1).value_or(gltf || reader.has(metal) ? 1 : 0);
+  to.roughness.factor = reader.number("$mat.roughnessFactor", 0, 1).value_or(1);
+  return absl::OkStatus();
+}
+
+absl::Status read_emission(MaterialReader& reader, Principled& to) {
+  const Slot slot = either(reader, {aiTextureType_EMISSIVE}, {aiTextureType_EMISSION_COLOR});
+  ASSIGN_OR_RETURN(to.emissive.texture, reader.map(slot, As::kColor));
+  const double strength =
+      reader.gltf() != nullptr && reader.gltf()->emissive_strength
+          ? *reader.gltf()->emissive_strength
+          : reader.number("$mat.emissiveIntensity", 0, double{kMostRadiance}).value_or(1);
+  const Rgb color = reader.color("$clr.emissive", kMostRadiance).value_or(Rgb{}) *
+                    static_cast<float>(std::clamp(strength, 0.0, 1e8));
+  const auto least = [](float v) { return std::min(v, kMostRadiance); };
+  to.emissive.factor = {least(color.r), least(color.g), least(color.b)};
+  int both = reader.kind() == ModelKind::kGltf ? 0 : 1;
+  reader.material().Get(AI_MATKEY_TWOSIDED, both);
+  to.double_sided = both != 0;
+  return absl::OkStatus();
+}
+
+absl::Status read_normals(MaterialReader& reader, Principled& to) {
+  const Slot slot = either(reader, {aiTextureType_NORMALS}, {aiTextureType_NORMAL_CAMERA});
+  if (reader.has(slot)) {
+    ASSIGN_OR_RETURN(to.normal, reader.map(slot, As::kNumber));
+    float scale = 1;
+    reader.material().Get(AI_MATKEY_GLTF_TEXTURE_SCALE(slot.type, slot.index), scale);
+    to.normal_scale = std::isfinite(scale) ? scale : 1;
+  }
+  const Slot coat{aiTextureType_CLEARCOAT, 2};
+  if (reader.has(coat)) {
+    ASSIGN_OR_RETURN(to.coat_normal, reader.map(coat, As::kNumber));
+    const double scale = reader.gltf() != nullptr ? reader.gltf()->coat_normal_scale : 1;
+    to.coat_normal_scale = std::isfinite(scale) ? scale : 1;
+  }
+  return absl::OkStatus();
+}
+
+absl::Status read_alpha(MaterialReader& reader, Principled& to) {
+  ASSIGN_OR_RETURN(to.alpha.texture, reader.white());
+  const Slot opacity{aiTextureType_OPACITY};
+  if (reader.kind() != ModelKind::kGltf) {
+    to.alpha.factor = reader.number("$mat.opacity", 0, 1).value_or(1);
+    if (reader.has(opacity)) {
+      ASSIGN_OR_RETURN(to.alpha.texture, reader.opacity_map(opacity));
+    }
+    const bool whole = to.alpha.factor == 1 && !reader.has(opacity);
+    to.alpha_mode = whole ? AlphaMode::kOpaque : AlphaMode::kBlend;
+    return absl::OkStatus();
+  }
+  aiString mode;
+  reader.material().Get(AI_MATKEY_GLTF_ALPHAMODE, mode);
+  const absl::string_view name = mode.C_Str();
+  if (name != "MASK" && name != "BLEND") {
+    return absl::OkStatus();
+  }
+  to.alpha_mode = name == "MASK" ? AlphaMode::kMask : AlphaMode::kBlend;
+  to.alpha_cutoff = reader.number("$mat.gltf.alphaCutoff", 0, 1e30).value_or(0.5);
+  to.alpha.factor = reader.alpha_of("$clr.base");
+  const Slot base = either(reader, {aiTextureType_BASE_COLOR}, {aiTextureType_DIFFUSE});
+  ASSIGN_OR_RETURN(to.alpha.texture, reader.map(base, As::kAlpha));
+  return absl::OkStatus();
+}
+
+// F0 times its factor and the luminance of its colour is the F0 of another index. Towards the edge
+// all of the light is reflected still, but where nothing is.
+void read_specular(const GltfSpecular& from, MaterialReader& reader, Principled& to) {
+  const auto [r, g, b] = from.color;
+  if (r != g || g != b) {
+    reader.leave_out("its specular colour is taken as grey");
+  }
+  if (from.has_maps) {
+    reader.leave_out("its specular map is left out");
+  }
+  const double amount = from.factor * (0.2126 * r + 0.7152 * g + 0.0722 * b);
+  const double root = (to.index_of_refraction - 1) / (to.index_of_refraction + 1);
+  // The root of F0 at an index of 5, the highest that there is.
+  constexpr double kMostRoot = 4.0 / 6;
+  const double f = std::clamp(root * std::sqrt(std::max(0.0, amount)), 0.0, kMostRoot);
+  to.index_of_refraction = std::clamp((1 + f) / (1 - f), 1.0, 5.0);
+}
+
+absl::Status read_layers(MaterialReader& reader, Principled& to) {
+  to.index_of_refraction = reader.number("$mat.refracti", 1, 5).value_or(1.5);
+  if (const GltfMaterial* gltf = reader.gltf(); gltf != nullptr && gltf->index_of_refraction) {
+    const double index = *gltf->index_of_refraction;
+    // KHR_materials_ior: 0 stands for the old kind, whose reflection knows no angle.
+    to.index_of_refraction = index >= 1 && index <= 5 ? index : 1.5;
+  }
+  if (const GltfMaterial* gltf = reader.gltf(); gltf != nullptr && gltf->specular) {
+    read_specular(*gltf->specular, reader, to);
+  }
+  to.coat.factor = reader.number("$mat.clearcoat.factor", 0, 1).value_or(0);
+  to.coat_roughness.factor = reader.number("$mat.clearcoat.roughnessFactor", 0, 1).value_or(0);
+  to.transmission.factor = reader.number("$mat.transmission.factor", 0, 1).value_or(0);
+  ASSIGN_OR_RETURN(to.coat.texture, reader.map({aiTextureType_CLEARCOAT, 0}, As::kNumber));
+  ASSIGN_OR_RETURN(to.coat_roughness.texture,
+                   reader.map({aiTextureType_CLEARCOAT, 1}, As::kNumber));
+  ASSIGN_OR_RETURN(to.transmission.texture, reader.map({aiTextureType_TRANSMISSION}, As::kNumber));
+  if (reader.number("$mat.sheen.roughnessFactor", 0, 1) || reader.color("$clr.sheen.factor", 1)) {
+    reader.leave_out("its sheen is left out");
+  }
+  if (reader.number("$mat.volume.thicknessFactor", 0, 1e30).value_or(0) > 0) {
+    reader.leave_out("its volume is left out: what it transmits passes as through a thin pane");
+  }
+  return absl::OkStatus();
+}
+
+// KHR_materials_pbrSpecularGlossiness without images, as its appendix converts it: the metallic
+// share whose mixture of 0.04 and base colour is as bright as the specular colour.
+void from_glossiness(MaterialReader& reader, double glossiness, Principled& to) {
+  to.roughness.factor = 1 - glossiness;
+  to.metallic.factor = 0;
+  const Rgb diffuse = reader.color("$clr.diffuse", 1).value_or(Rgb{1, 1, 1});
+  const Rgb specular = reader.color("$clr.specular", 1).value_or(Rgb{1, 1, 1});
+  to.base_color.factor = diffuse;
+  if (reader.has({aiTextureType_SPECULAR})) {
+    reader.leave_out("its specular-glossiness map is left out: it is taken as not metallic");
+    return;
+  }
+  constexpr double kDielectric = 0.04;
+  const double bright = std::max({specular.r, specular.g, specular.b});
+  if (bright > 0.5 && !reader.has({aiTextureType_DIFFUSE})) {
+    to.metallic.factor = std::min(1.0, (bright - kDielectric) / (1 - kDielectric));
+    to.base_color.factor = lerp(diffuse, specular, static_cast<float>(to.metallic.factor));
+  }
+  reader.leave_out("its specular colour and glossiness are taken as metallic and roughness");
+}
+
+}  // namespace
+
+absl::StatusOr<ModelMaterial> read_metallic_roughness(MaterialReader& reader) {
+  Principled to;
+  RETURN_IF_ERROR(read_base(reader, to));
+  RETURN_IF_ERROR(read_emission(reader, to));
+  RETURN_IF_ERROR(read_normals(reader, to));
+  RETURN_IF_ERROR(read_alpha(reader, to));
+  RETURN_IF_ERROR(read_layers(reader, to));
+  if (const auto glossiness = reader.number("$mat.glossinessFactor", 0, 1);
+      glossiness && reader.kind() == ModelKind::kGltf) {
+    from_glossiness(reader, *glossiness, to);
+  }
+  return reader.add(to);
+}
+
+}  // namespace bandsaw

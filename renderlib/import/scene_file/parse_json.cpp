@@ -1,0 +1,53 @@
+#include <google/protobuf/util/json_util.h>
+
+#include <algorithm>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/string_view.h"
+#include "renderlib/import/scene_file/parse_scene.h"
+
+namespace bandsaw {
+namespace {
+
+// Protobuf shows broken JSON as three parts: the cause, up to 40 characters of the text, and a line
+// with a caret below the place. Where those characters occur once in the file, they give line and
+// column.
+std::string place_of(absl::string_view text, absl::string_view excerpt, std::size_t caret) {
+  const std::size_t found = text.find(excerpt);
+  if (excerpt.empty() || found == text.npos || text.find(excerpt, found + 1) != text.npos) {
+    return "";
+  }
+  const std::size_t offset = std::min(text.size(), found + caret);
+  const absl::string_view before = text.substr(0, offset);
+  const auto line = std::count(before.begin(), before.end(), '\n') + 1;
+  const std::size_t line_start = before.rfind('\n');
+  const std::size_t column = line_start == before.npos ? offset : offset - line_start - 1;
+  return absl::StrCat(":", line, ":", column + 1);
+}
+
+absl::Status syntax_error(const std::string& text, const std::string& file,
+                          absl::string_view message) {
+  const std::size_t first = message.find('\n');
+  const std::size_t last = message.rfind('\n');
+  if (first == message.npos || last == first) {
+    return absl::InvalidArgumentError(absl::StrCat(file, ": ", message));
+  }
+  const absl::string_view excerpt = message.substr(first + 1, last - first - 1);
+  const std::size_t caret = message.size() - last - 2;
+  return absl::InvalidArgumentError(
+      absl::StrCat(file, place_of(text, excerpt, caret), ": ", message.substr(0, first)));
+}
+
+}  // namespace
+
+absl::StatusOr<ParsedScene> parse_json(const std::string& text, const std::string& file) {
+  ParsedScene parsed;
+  const auto status = google::protobuf::util::JsonStringToMessage(text, &parsed.scene);
+  if (!status.ok()) {
+    return syntax_error(text, file,
+                        absl::string_view(status.message().data(), status.message().size()));
+  }
+  return parsed;
+}
+
+}  // namespace bandsaw

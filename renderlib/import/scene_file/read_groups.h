@@ -1,0 +1,19 @@
+#pragma once
+
+#include "absl/status/status.h"
+#include "proto/scene.pb.h"
+#include "renderlib/import/draft/scene_draft.h"
+#include "renderlib/import/scene_file/field.h"
+
+namespace bandsaw {
+
+using InstanceList = google::protobuf::RepeatedPtrField<scene::Instance>;
+
+/// All groups of a scene file, into SceneDraft::groups; materials and shutter have been read.
+absl::Status read_groups(const Field& root, const scene::Scene& from, SceneDraft& draft);
+
+/// The instances of the scene or of a group, into SceneDraft::placed; the groups that they may name
+/// have been read.
+absl::Status read_instances(const Field& parent, const InstanceList& instances, SceneDraft& draft);
+
+}  // namespace bandsaw

@@ -1,0 +1,122 @@
+#include "renderlib/import/scene_file/read_models.h"
+
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/import/model/model.h"
+#include "renderlib/import/scene_file/read_materials.h"
+#include "renderlib/import/scene_file/read_media.h"
+#include "renderlib/import/scene_file/read_placement.h"
+#include "renderlib/import/scene_file/use_camera.h"
+
+namespace bandsaw {
+namespace {
+
+// What may be wrong with a model's file, at the field that names it.
+absl::StatusOr<std::shared_ptr<const Model>> read_file(const Field& in, const scene::Model& from,
+                                                       SceneDraft& draft) {
+  if (from.file().empty()) {
+    return in.error("file", "is required: the name of a model file");
+  }
+  const auto path = draft.folder.resolve(from.file(), draft.folder.path());
+  if (!path.ok()) {
+    return in.error("file", path.status().message());
+  }
+  if (!is_model_file(*path)) {
+    return in.error("file", absl::StrCat("\"", from.file(),
+                                         "\" is not a model that is read: .gltf, .glb, .obj, "
+                                         ".fbx, .dae, .3ds, .ply, .stl …"));
+  }
+  auto model = read_model(*path, from.material().empty(), draft);
+  if (!model.ok()) {
+    return in.error("file", model.status().message());
+  }
+  return std::make_shared<const Model>(*std::move(model));
+}
+
+/// Read once, however often it is named.
+absl::StatusOr<std::shared_ptr<const Model>> find_file(const Field& in, const scene::Model& from,
+                                                       SceneDraft& draft) {
+  std::shared_ptr<const Model>& model = draft.models[{from.file(), !from.material().empty()}];
+  if (model == nullptr) {
+    ASSIGN_OR_RETURN(model, read_file(in, from, draft));
+  }
+  return model;
+}
+
+/// Lights without size stand still in the world: where the shutter opens, if their model moves.
+void add_lights(const std::string& file, const Model& model, const Transform& to_world,
+                SceneDraft& draft) {
+  if (draft.placed != &draft.world) {
+    if (!model.lights.empty()) {
+      draft.out.info.warnings.push_back(
+          absl::StrCat(file, ": ", model.lights.size(), " lights are left out: a group has none"));
+    }
+    return;
+  }
+  for (const DeltaLight& light : model.lights) {
+    draft.out.scene.lights.push_back(placed(light, to_world));
+  }
+}
+
+absl::Status place_model(const Field& in, const Placements& what, const Transform& placement,
+                         const std::vector<Key>& keys, std::optional<MaterialId> material,
+                         Placements& to) {
+  const Place at = keys.empty() ? Place{placement, kNoFrame}
+                                : Place{Transform{}, add_frame({kNoFrame, {}, keys}, to)};
+  return place(what, at, material, to)
+             ? absl::OkStatus()
+             : in.error("scale", "is too large or too small for this model");
+}
+
+/// What is inside of a model's meshes, each placed by itself.
+absl::StatusOr<Placements> read_interior(const Field& in, const scene::Model& from,
+                                         const Model& model, SceneDraft& draft) {
+  ASSIGN_OR_RETURN(const MediumId medium, find_medium(in, "interior", from.interior(), draft));
+  Placements filled;
+  for (const Instance& mesh : model.instances) {
+    ASSIGN_OR_RETURN(const Instance boundary, boundary_of(in, mesh, medium, draft));
+    filled.instances.push_back(boundary);
+  }
+  return filled;
+}
+
+absl::Status read_model_entry(const Field& in, const scene::Model& from, SceneDraft& draft) {
+  std::optional<MaterialId> material;
+  if (!from.material().empty()) {
+    ASSIGN_OR_RETURN(material, find_material(in, from.material(), draft));
+  }
+  ASSIGN_OR_RETURN(const Transform placement, read_placement(in, from));
+  ASSIGN_OR_RETURN(const std::vector<Key> keys, read_keys(in, from));
+  ASSIGN_OR_RETURN(const std::shared_ptr<const Model> model, find_file(in, from, draft));
+  if (!from.interior().empty()) {
+    ASSIGN_OR_RETURN(const Placements filled, read_interior(in, from, *model, draft));
+    RETURN_IF_ERROR(place_model(in, filled, placement, keys, std::nullopt, draft.placed->filled));
+  }
+  if (from.boundary_only()) {
+    return from.interior().empty()
+               ? in.error("boundary_only", "needs an interior: nothing would be left of the model")
+               : absl::OkStatus();
+  }
+  RETURN_IF_ERROR(
+      place_model(in, {{}, model->instances}, placement, keys, material, draft.placed->seen));
+  const Transform to_camera =
+      keys.empty() ? placement : motion_at({kNoFrame, {}, keys}, draft.shutter.open);
+  add_lights(from.file(), *model, to_camera, draft);
+  add_cameras(from.file(), *model, to_camera, draft);
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::Status read_models(const Field& parent, const ModelList& models, SceneDraft& draft) {
+  for (int i = 0; i < models.size(); ++i) {
+    RETURN_IF_ERROR(read_model_entry(parent.child("model", i), models[i], draft));
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace bandsaw

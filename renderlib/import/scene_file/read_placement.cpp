@@ -1,0 +1,179 @@
+#include "renderlib/import/scene_file/read_placement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "absl/strings/str_cat.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/camera/camera.h"
+#include "renderlib/import/scene_file/numbers.h"
+
+namespace bandsaw {
+namespace {
+
+/// Of a turn about one axis this much goes between two keys; the shortest way is the whole way
+/// then.
+constexpr double kMostTurn = 90;  // degrees
+constexpr double kMostKeys = 100'000;
+
+struct Turn {
+  Vec3 axis;
+  double degrees = 0;
+};
+
+/// What is written of a placement.
+struct Written {
+  Vec3 scale{1, 1, 1};
+  std::vector<Turn> turns;
+  Vec3 translate;
+};
+
+absl::StatusOr<Vec3> read_scale(const Field& in, const Numbers& list) {
+  if (list.empty()) {
+    return Vec3{1, 1, 1};
+  }
+  if (list.size() != 1 && list.size() != 3) {
+    return in.error("scale", absl::StrCat("must be 1 or 3 numbers, has ", list.size()));
+  }
+  for (int i = 0; i < list.size(); ++i) {
+    if (!std::isfinite(list[i]) || list[i] == 0) {
+      return in.error("scale", absl::StrCat("must be finite and not zero, is ", list[i]), i);
+    }
+  }
+  return list.size() == 1 ? Vec3{list[0], list[0], list[0]} : Vec3{list[0], list[1], list[2]};
+}
+
+template <class Message>
+absl::StatusOr<Written> read_written(const Field& in, const Message& from) {
+  Written written;
+  ASSIGN_OR_RETURN(written.scale, read_scale(in, from.scale()));
+  for (int i = 0; i < from.rotate_size(); ++i) {
+    const Field rotate = in.child("rotate", i);
+    Turn turn;
+    ASSIGN_OR_RETURN(turn.axis, read_direction(rotate, "axis", from.rotate(i).axis()));
+    turn.degrees = from.rotate(i).degrees();
+    if (!std::isfinite(turn.degrees)) {
+      return rotate.error("degrees", absl::StrCat("must be finite, is ", turn.degrees));
+    }
+    written.turns.push_back(turn);
+  }
+  ASSIGN_OR_RETURN(written.translate, read_vec3(in, "translate", from.translate(), Vec3{}));
+  return written;
+}
+
+Transform transform_of(const Written& written) {
+  Transform placement = scaling(written.scale);
+  for (const Turn& turn : written.turns) {
+    placement = rotation(turn.axis, turn.degrees) * placement;
+  }
+  return translation(written.translate) * placement;
+}
+
+template <class Message>
+absl::StatusOr<Transform> read_any_placement(const Field& in, const Message& from) {
+  ASSIGN_OR_RETURN(const Written written, read_written(in, from));
+  const Transform placement = transform_of(written);
+  if (!inverse(placement)) {
+    return in.error("scale", "flattens the model: its largest and smallest scale differ too much");
+  }
+  return placement;
+}
+
+struct WrittenKey {
+  double time = 0;
+  Written pose;
+};
+
+bool same_sign(const Vec3& a, const Vec3& b) {
+  return a.x * b.x > 0 && a.y * b.y > 0 && a.z * b.z > 0;
+}
+
+/// The one turn of a pose; of a pose that does not turn, none about the axis of the other.
+std::optional<Turn> only_turn(const Written& pose, const Written& other) {
+  if (pose.turns.size() == 1) {
+    return pose.turns[0];
+  }
+  const bool rests = pose.turns.empty() && other.turns.size() == 1;
+  return rests ? std::optional(Turn{other.turns[0].axis, 0}) : std::nullopt;
+}
+
+/// Keys from one after a up to b: more than one where both turn about one axis by more than the
+/// shortest way would.
+void add_keys(const WrittenKey& a, const WrittenKey& b, std::vector<Key>& keys) {
+  const std::optional<Turn> from = only_turn(a.pose, b.pose);
+  const std::optional<Turn> to = only_turn(b.pose, a.pose);
+  const bool one_axis = from && to && from->axis == to->axis;
+  const double turn = one_axis ? to->degrees - from->degrees : 0;
+  const double steps = std::clamp(std::ceil(std::abs(turn) / kMostTurn), 1.0, kMostKeys);
+  for (double step = 1; step < steps; ++step) {
+    const double u = step / steps;
+    Written between;
+    between.scale = a.pose.scale + u * (b.pose.scale - a.pose.scale);
+    between.turns = {{from->axis, from->degrees + u * turn}};
+    between.translate = a.pose.translate + u * (b.pose.translate - a.pose.translate);
+    keys.emplace_back(a.time + u * (b.time - a.time), transform_of(between));
+  }
+  keys.emplace_back(b.time, transform_of(b.pose));
+}
+
+absl::StatusOr<WrittenKey> read_key(const Field& in, const scene::Key& from,
+                                    const std::vector<WrittenKey>& earlier) {
+  WrittenKey key;
+  key.time = from.time();
+  RETURN_IF_ERROR(check_range(in, "time", key.time, -kMostTime, kMostTime));
+  if (!earlier.empty() && !(key.time > earlier.back().time)) {
+    return in.error("time", absl::StrCat("must be after that of the key before, ",
+                                         earlier.back().time, ", is ", key.time));
+  }
+  ASSIGN_OR_RETURN(key.pose, read_written(in, from));
+  if (!earlier.empty() && !same_sign(key.pose.scale, earlier.back().pose.scale)) {
+    return in.error("scale", "must keep its signs from key to key: it would be 0 in between");
+  }
+  if (!decompose(transform_of(key.pose))) {
+    return in.error("scale", "flattens the model: its largest and smallest scale differ too much");
+  }
+  return key;
+}
+
+template <class Message>
+absl::StatusOr<std::vector<Key>> read_any_keys(const Field& in, const Message& from) {
+  std::vector<WrittenKey> written;
+  std::vector<Key> keys;
+  for (int i = 0; i < from.key_size(); ++i) {
+    ASSIGN_OR_RETURN(WrittenKey key, read_key(in.child("key", i), from.key(i), written));
+    if (written.empty()) {
+      keys.emplace_back(key.time, transform_of(key.pose));
+    } else {
+      add_keys(written.back(), key, keys);
+    }
+    written.push_back(std::move(key));
+  }
+  if (!keys.empty() &&
+      (!from.translate().empty() || !from.scale().empty() || from.rotate_size() > 0)) {
+    return in.error("key", "stands instead of translate, scale and rotate: write one or the other",
+                    0);
+  }
+  return keys;
+}
+
+}  // namespace
+
+absl::StatusOr<Transform> read_placement(const Field& in, const scene::Model& from) {
+  return read_any_placement(in, from);
+}
+absl::StatusOr<Transform> read_placement(const Field& in, const scene::Instance& from) {
+  return read_any_placement(in, from);
+}
+absl::StatusOr<Transform> read_placement(const Field& in, const scene::Copy& from) {
+  return read_any_placement(in, from);
+}
+
+absl::StatusOr<std::vector<Key>> read_keys(const Field& in, const scene::Model& from) {
+  return read_any_keys(in, from);
+}
+absl::StatusOr<std::vector<Key>> read_keys(const Field& in, const scene::Instance& from) {
+  return read_any_keys(in, from);
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,23 @@
+#pragma once
+
+// Placements in a scene file: by scale, then rotate, then translate, once or at times.
+
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "proto/scene.pb.h"
+#include "renderlib/geometry/frame.h"
+#include "renderlib/import/scene_file/field.h"
+
+namespace bandsaw {
+
+/// What `in` stands for: a Model, an Instance, a Copy or a Key.
+absl::StatusOr<Transform> read_placement(const Field& in, const scene::Model& from);
+absl::StatusOr<Transform> read_placement(const Field& in, const scene::Instance& from);
+absl::StatusOr<Transform> read_placement(const Field& in, const scene::Copy& from);
+
+/// The keys of a Model or an Instance; none: it has none.
+absl::StatusOr<std::vector<Key>> read_keys(const Field& in, const scene::Model& from);
+absl::StatusOr<std::vector<Key>> read_keys(const Field& in, const scene::Instance& from);
+
+}  // namespace bandsaw

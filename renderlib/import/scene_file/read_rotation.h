@@ -1,0 +1,16 @@
+#pragma once
+
+#include <google/protobuf/repeated_field.h>
+
+#include "absl/status/statusor.h"
+#include "proto/scene.pb.h"
+#include "renderlib/import/scene_file/field.h"
+#include "renderlib/math/transform.h"
+
+namespace bandsaw {
+
+/// The rotations of the field `rotate` of `in`, applied in the order written.
+absl::StatusOr<Transform> read_rotation(
+    const Field& in, const google::protobuf::RepeatedPtrField<scene::Rotation>& list);
+
+}  // namespace bandsaw

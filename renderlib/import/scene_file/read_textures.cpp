@@ -1,0 +1,235 @@
+#include "renderlib/import/scene_file/read_textures.h"
+
+#include <cmath>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/import/draft/color_limits.h"
+#include "renderlib/import/scene_file/numbers.h"
+#include "renderlib/import/scene_file/read_image_texture.h"
+#include "renderlib/import/scene_file/suggest.h"
+
+namespace bandsaw {
+namespace {
+
+using MaybeId = absl::StatusOr<TextureId>;
+
+// A texture inside another; `otherwise` is the colour it has where nothing was written, below 0
+// where it is required.
+MaybeId read_part(const Field& in, const std::string& name, const scene::Texture& from, float most,
+                  float otherwise, SceneDraft& draft) {
+  if (in.has(name)) {
+    return read_texture(in.child(name), from, most, draft);
+  }
+  if (otherwise < 0) {
+    return in.error(name, "is required");
+  }
+  return draft.textures.constant(gray(otherwise));
+}
+
+absl::StatusOr<Vec3> read_size(const Field& in, const scene::CheckerTexture& from, int most) {
+  const Numbers& list = from.size();
+  if (list.size() > 1 && list.size() != most) {
+    return in.error("size", absl::StrCat("must be 1 or ", most, " numbers, has ", list.size()));
+  }
+  for (int i = 0; i < list.size(); ++i) {
+    if (!(std::isfinite(list[i]) && list[i] > 0)) {
+      return in.error("size", absl::StrCat("must be finite and > 0, is ", list[i]), i);
+    }
+  }
+  const auto at = [&](int i) { return list.empty() ? 1 : list.size() == 1 ? list[0] : list[i]; };
+  return Vec3{at(0), at(1), most == 3 ? at(2) : 1};
+}
+
+MaybeId read_checker(const Field& in, const scene::CheckerTexture& from, float most,
+                     SceneDraft& draft) {
+  CheckerTexture to;
+  ASSIGN_OR_RETURN(to.mapping,
+                   read_enum<CheckerTexture::Mapping>(in, "mapping", from.mapping(),
+                                                      scene::CheckerTexture::Mapping_MAX));
+  const bool solid = to.mapping == CheckerTexture::Mapping::kPosition;
+  ASSIGN_OR_RETURN(to.size, read_size(in, from, solid ? 3 : 2));
+  ASSIGN_OR_RETURN(to.uv_set, read_enum<UvSet>(in, "uv_set", from.uv_set(), scene::UvSet_MAX));
+  ASSIGN_OR_RETURN(to.space, read_enum<Space>(in, "space", from.space(), scene::Space_MAX));
+  ASSIGN_OR_RETURN(to.even, read_part(in, "even", from.even(), most, 1, draft));
+  ASSIGN_OR_RETURN(to.odd, read_part(in, "odd", from.odd(), most, 0, draft));
+  return draft.textures.add(to);
+}
+
+MaybeId read_noise(const Field& in, const scene::NoiseTexture& from, float most,
+                   SceneDraft& draft) {
+  constexpr double kMost = 1e30;
+  NoiseTexture to;
+  ASSIGN_OR_RETURN(to.kind, read_enum<NoiseTexture::Kind>(in, "kind", from.kind(),
+                                                          scene::NoiseTexture::Kind_MAX));
+  ASSIGN_OR_RETURN(to.space, read_enum<Space>(in, "space", from.space(), scene::Space_MAX));
+  if (from.has_octaves()) {
+    to.octaves = from.octaves();
+  }
+  RETURN_IF_ERROR(check_range(in, "octaves", to.octaves, 1, 16));
+  for (const auto& [name, written, value, ours] :
+       {std::tuple("scale", from.has_scale(), from.scale(), &to.scale),
+        std::tuple("strength", from.has_strength(), from.strength(), &to.strength),
+        std::tuple("turbulence_scale", from.has_turbulence_scale(), from.turbulence_scale(),
+                   &to.turbulence_scale)}) {
+    if (written) {
+      RETURN_IF_ERROR(check_range(in, name, value, -kMost, kMost));
+      *ours = value;
+    }
+  }
+  ASSIGN_OR_RETURN(to.axis, read_vec3(in, "axis", from.axis(), to.axis));
+  if (from.has_low()) {
+    ASSIGN_OR_RETURN(to.low, read_color(in.child("low"), from.low(), most));
+  }
+  if (from.has_high()) {
+    ASSIGN_OR_RETURN(to.high, read_color(in.child("high"), from.high(), most));
+  }
+  return draft.textures.add(to);
+}
+
+absl::StatusOr<RampTexture::Stop> read_stop(const Field& in, const scene::RampTexture::Stop& from,
+                                            float most) {
+  RETURN_IF_ERROR(check_range(in, "at", from.at(), -1e30, 1e30));
+  ASSIGN_OR_RETURN(const Vec3 color, read_vec3(in, "color", from.color()));
+  for (int i = 0; i < 3; ++i) {
+    const double channel = from.color(i);
+    if (!(channel >= 0 && channel <= most)) {
+      return in.error("color", absl::StrCat("must lie in [0, ", most, "], is ", channel), i);
+    }
+  }
+  return RampTexture::Stop{
+      from.at(),
+      {static_cast<float>(color.x), static_cast<float>(color.y), static_cast<float>(color.z)}};
+}
+
+MaybeId read_ramp(const Field& in, const scene::RampTexture& from, float most, SceneDraft& draft) {
+  RampTexture to;
+  to.steps = from.steps();
+  ASSIGN_OR_RETURN(to.uv_set, read_enum<UvSet>(in, "uv_set", from.uv_set(), scene::UvSet_MAX));
+  ASSIGN_OR_RETURN(to.space, read_enum<Space>(in, "space", from.space(), scene::Space_MAX));
+  for (int i = 0; i < from.stop_size(); ++i) {
+    const Field stop = in.child("stop", i);
+    ASSIGN_OR_RETURN(const RampTexture::Stop read, read_stop(stop, from.stop(i), most));
+    if (i > 0 && !(read.at > to.stops.back().at)) {
+      return stop.error("at", absl::StrCat("must be above ", to.stops.back().at,
+                                           ", where the stop before it is"));
+    }
+    to.stops.push_back(read);
+  }
+  if (to.stops.empty() || to.stops.size() > 256) {
+    return in.error("stop", absl::StrCat("must be 1 to 256 stops, are ", to.stops.size()));
+  }
+  if (from.has_texture()) {
+    ASSIGN_OR_RETURN(to.texture,
+                     read_texture(in.child("texture"), from.texture(), kMostRadiance, draft));
+    return draft.textures.add(std::move(to));
+  }
+  // Ours count from 0, which is the texture, as the file's "not said" is.
+  ASSIGN_OR_RETURN(to.over, read_enum<RampTexture::Over>(in, "coordinate", from.coordinate(),
+                                                         scene::RampTexture::Coordinate_MAX));
+  if (to.over == RampTexture::Over::kTexture) {
+    return in.error("is over nothing: write texture or coordinate");
+  }
+  return draft.textures.add(std::move(to));
+}
+
+MaybeId read_mix(const Field& in, const scene::MixTexture& from, float most, SceneDraft& draft) {
+  MixTexture to;
+  ASSIGN_OR_RETURN(to.a, read_part(in, "a", from.a(), most, -1, draft));
+  ASSIGN_OR_RETURN(to.b, read_part(in, "b", from.b(), most, -1, draft));
+  ASSIGN_OR_RETURN(to.amount, read_part(in, "amount", from.amount(), kMostRadiance, 0.5f, draft));
+  return draft.textures.add(to);
+}
+
+// Its factors may be above `most`, their product may not: checked by read_texture.
+MaybeId read_product(const Field& in, const scene::ProductTexture& from, SceneDraft& draft) {
+  ProductTexture to;
+  ASSIGN_OR_RETURN(to.a, read_part(in, "a", from.a(), kMostRadiance, -1, draft));
+  ASSIGN_OR_RETURN(to.b, read_part(in, "b", from.b(), kMostRadiance, -1, draft));
+  return draft.textures.add(to);
+}
+
+MaybeId find_texture(const Field& in, const std::string& name, const SceneDraft& draft) {
+  const auto found = draft.named_textures.find(name);
+  if (found != draft.named_textures.end()) {
+    return found->second;
+  }
+  std::vector<std::string> known;
+  for (const auto& [other, id] : draft.named_textures) {
+    known.push_back(other);
+  }
+  return in.error("use", absl::StrCat("no texture before this is called \"", name, "\"",
+                                      known.empty() ? "" : did_you_mean(name, known)));
+}
+
+MaybeId read_kind(const Field& in, const scene::Texture& from, float most, SceneDraft& draft) {
+  switch (from.kind_case()) {
+    case scene::Texture::kColor: {
+      ASSIGN_OR_RETURN(const Rgb color, read_color(in.child("color"), from.color(), most));
+      return draft.textures.constant(color);
+    }
+    case scene::Texture::kImage:
+      return read_image_texture(in.child("image"), from.image(), draft);
+    case scene::Texture::kChecker:
+      return read_checker(in.child("checker"), from.checker(), most, draft);
+    case scene::Texture::kNoise:
+      return read_noise(in.child("noise"), from.noise(), most, draft);
+    case scene::Texture::kRamp:
+      return read_ramp(in.child("ramp"), from.ramp(), most, draft);
+    case scene::Texture::kMix:
+      return read_mix(in.child("mix"), from.mix(), most, draft);
+    case scene::Texture::kProduct:
+      return read_product(in.child("product"), from.product(), draft);
+    case scene::Texture::kUse:
+      return find_texture(in, from.use(), draft);
+    case scene::Texture::KIND_NOT_SET:
+      break;
+  }
+  return in.error("is empty: write color, image, checker, noise, ramp, mix, product or use");
+}
+
+// Kinds whose colours are written elsewhere or come together from several.
+bool may_pass(const scene::Texture& from) {
+  return from.has_image() || from.has_product() || from.kind_case() == scene::Texture::kUse;
+}
+
+}  // namespace
+
+absl::StatusOr<TextureId> read_texture(const Field& in, const scene::Texture& from, float most,
+                                       SceneDraft& draft) {
+  if (!from.name().empty()) {
+    return in.error("name", "is for the textures of the scene; write it there and use it here");
+  }
+  ASSIGN_OR_RETURN(const TextureId id, read_kind(in, from, most, draft));
+  if (may_pass(from)) {
+    if (const float found = draft.textures.max_value(id); found > most) {
+      const std::string place = from.has_image() ? "image" : from.has_product() ? "product" : "use";
+      const std::string what =
+          absl::StrCat(most == kMostReflectance ? "a reflectance must lie in [0, 1], "
+                                                : absl::StrCat("must be at most ", most, ", "),
+                       from.has_image() ? "the image holds " : "it reaches ", found);
+      return from.has_image() ? in.child("image").error("file", what) : in.error(place, what);
+    }
+  }
+  return id;
+}
+
+absl::Status read_textures(const Field& root, const scene::Scene& from, SceneDraft& draft) {
+  for (int i = 0; i < from.texture_size(); ++i) {
+    const Field in = root.child("texture", i);
+    const std::string& name = from.texture(i).name();
+    if (name.empty()) {
+      return in.error("name", "is required, so that a material can use it");
+    }
+    ASSIGN_OR_RETURN(const TextureId id, read_kind(in, from.texture(i), kMostRadiance, draft));
+    if (!draft.named_textures.emplace(name, id).second) {
+      return in.error("name", absl::StrCat("\"", name, "\" is the name of another texture"));
+    }
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "absl/status/statusor.h"
+#include "proto/scene.pb.h"
+#include "renderlib/import/draft/scene_draft.h"
+#include "renderlib/import/scene_file/field.h"
+
+namespace bandsaw {
+
+/// The named textures of the scene, into the draft: before its materials.
+absl::Status read_textures(const Field& root, const scene::Scene& from, SceneDraft& draft);
+
+/// The texture that `in` stands for, written out or used by name; no channel above `most` anywhere.
+absl::StatusOr<TextureId> read_texture(const Field& in, const scene::Texture& from, float most,
+                                       SceneDraft& draft);
+
+}  // namespace bandsaw

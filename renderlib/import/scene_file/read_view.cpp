@@ -1,0 +1,241 @@
+#include "renderlib/import/scene_file/read_view.h"
+
+#include <algorithm>
+
+#include "absl/strings/str_cat.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/import/draft/color_limits.h"
+#include "renderlib/import/scene_file/numbers.h"
+#include "renderlib/import/scene_file/read_environment.h"
+#include "renderlib/import/scene_file/read_rotation.h"
+#include "renderlib/math/transform.h"
+#include "renderlib/render/settings.h"
+
+namespace bandsaw {
+
+namespace {
+
+/// The view of a camera that is turned out of the view along -z.
+absl::StatusOr<View> read_turned(const Field& in, const scene::Camera& from, View view) {
+  if (!from.look_at().empty() || !from.up().empty()) {
+    return in.error("rotate", "stands instead of look_at and up: write one or the other");
+  }
+  ASSIGN_OR_RETURN(const Transform turn, read_rotation(in, from.rotate()));
+  // Far enough ahead that the sum keeps the direction's digits.
+  const double ahead = std::max(1.0, max_abs(view.position));
+  view.look_at = view.position + turn.direction({0, 0, -1}) * ahead;
+  view.up = turn.direction({0, 1, 0});
+  return view;
+}
+
+absl::StatusOr<View> read_view(const Field& in, const scene::Camera& from) {
+  View view;
+  ASSIGN_OR_RETURN(view.position, read_vec3(in, "position", from.position(), Vec3{0, 0, 0}));
+  if (from.rotate_size() > 0) {
+    return read_turned(in, from, view);
+  }
+  ASSIGN_OR_RETURN(view.look_at, read_vec3(in, "look_at", from.look_at()));
+  ASSIGN_OR_RETURN(view.up, read_vec3(in, "up", from.up(), Vec3{0, 1, 0}));
+  if (view.look_at == view.position) {
+    return in.error("look_at", "must differ from position");
+  }
+  if (!(length_squared(view.up) > 0)) {
+    return in.error("up", "must not be zero");
+  }
+  const Vec3 ahead = normalize(view.look_at - view.position);
+  if (!(length_squared(cross(ahead, normalize(view.up))) > 1e-24)) {
+    return in.error("up", from.up().empty()
+                              ? "is [0, 1, 0] unless written, and the camera looks along it; write "
+                                "another, for example [0, 0, 1]"
+                              : "must not be parallel to the view direction");
+  }
+  return view;
+}
+
+absl::StatusOr<Camera> read_perspective(const Field& in, const scene::Camera& from,
+                                        const View& view) {
+  PerspectiveCamera camera{.position = view.position, .look_at = view.look_at, .up = view.up};
+  camera.vertical_fov = from.has_vertical_fov() ? from.vertical_fov() : camera.vertical_fov;
+  if (!(camera.vertical_fov > 0 && camera.vertical_fov < 180)) {
+    return in.error("vertical_fov",
+                    absl::StrCat("must lie in (0, 180) degrees, is ", camera.vertical_fov));
+  }
+  camera.aperture = from.aperture();
+  RETURN_IF_ERROR(check_range(in, "aperture", camera.aperture, 0, kMostLens));
+  if (from.has_focus_distance()) {
+    camera.focus_distance = from.focus_distance();
+    RETURN_IF_ERROR(
+        check_range(in, "focus_distance", camera.focus_distance, kLeastFocus, kMostLens));
+  } else if (camera.aperture > 0) {
+    if (from.rotate_size() > 0) {
+      return in.error("focus_distance", "is required where rotate stands instead of look_at");
+    }
+    camera.focus_distance = length(view.look_at - view.position);
+  }
+  return Camera(camera);
+}
+
+absl::StatusOr<Camera> read_orthographic(const Field& in, const scene::Camera& from,
+                                         const View& view) {
+  for (const char* name : {"vertical_fov", "aperture", "focus_distance"}) {
+    if (in.has(name)) {
+      return in.error(name, "is of a perspective camera; this one is orthographic");
+    }
+  }
+  const Field orthographic = in.child("orthographic");
+  const double height = from.orthographic().height();
+  if (!from.orthographic().has_height()) {
+    return orthographic.error("height", "is required: how high the image is, in scene units");
+  }
+  if (!(height > 0 && height <= kMostLens)) {
+    return orthographic.error("height", absl::StrCat("must be > 0, at most 1e30, is ", height));
+  }
+  return Camera(OrthographicCamera{view.position, view.look_at, view.up, height,
+                                   from.orthographic().mirrored()});
+}
+
+}  // namespace
+
+absl::StatusOr<Shutter> read_shutter(const Field& root, const scene::Scene& from) {
+  const Shutter shutter = {from.camera().shutter_open(), from.camera().shutter_close()};
+  if (!from.has_camera()) {
+    return shutter;
+  }
+  const Field in = root.child("camera");
+  RETURN_IF_ERROR(check_range(in, "shutter_open", shutter.open, -kMostTime, kMostTime));
+  RETURN_IF_ERROR(check_range(in, "shutter_close", shutter.close, -kMostTime, kMostTime));
+  if (shutter.close < shutter.open) {
+    return in.error("shutter_close", absl::StrCat("must not be before shutter_open, ", shutter.open,
+                                                  ", is ", shutter.close));
+  }
+  return shutter;
+}
+
+absl::StatusOr<Camera> read_camera(const Field& root, const scene::Scene& from) {
+  const Field in = root.child("camera");
+  ASSIGN_OR_RETURN(const View view, read_view(in, from.camera()));
+  ASSIGN_OR_RETURN(Camera camera, from.camera().has_orthographic()
+                                      ? read_orthographic(in, from.camera(), view)
+                                      : read_perspective(in, from.camera(), view));
+  ASSIGN_OR_RETURN(const Shutter shutter, read_shutter(root, from));
+  std::visit([&](auto& c) { c.shutter = shutter; }, camera);
+  if (const absl::Status valid = validate(camera); !valid.ok()) {
+    return in.error(valid.message());
+  }
+  return camera;
+}
+
+absl::StatusOr<PixelFilter> read_filter(const Field& root, const scene::Scene& from) {
+  if (!from.image().has_filter()) {
+    return PixelFilter{};
+  }
+  using Kind = PixelFilter::Kind;
+  const Field in = root.child("image").child("filter");
+  const scene::PixelFilter& written = from.image().filter();
+  const auto read = [&](Kind kind, const char* name,
+                        const scene::FilterSize& size) -> absl::StatusOr<PixelFilter> {
+    const PixelFilter filter{kind, size.has_radius() ? size.radius() : default_radius(kind)};
+    RETURN_IF_ERROR(check_range(in.child(name), "radius", filter.radius, 0, kMaxFilterRadius));
+    return filter;
+  };
+  switch (written.kind_case()) {
+    case scene::PixelFilter::kBox:
+      return read(Kind::kBox, "box", written.box());
+    case scene::PixelFilter::kTent:
+      return read(Kind::kTent, "tent", written.tent());
+    case scene::PixelFilter::kGaussian:
+      return read(Kind::kGaussian, "gaussian", written.gaussian());
+    case scene::PixelFilter::KIND_NOT_SET:
+      break;
+  }
+  return in.error("is empty: write box, tent or gaussian");
+}
+
+absl::Status read_settings(const Field& root, const scene::Scene& from, PackageInfo& info) {
+  if (from.has_image()) {
+    const Field image = root.child("image");
+    info.width = from.image().has_width() ? from.image().width() : info.width;
+    info.height = from.image().has_height() ? from.image().height() : info.height;
+    RETURN_IF_ERROR(check_range(image, "width", info.width, 1, kMaxSide));
+    RETURN_IF_ERROR(check_range(image, "height", info.height, 1, kMaxSide));
+    if (std::uint64_t{info.width} * info.height > kMaxPixels) {
+      return image.error(absl::StrCat("has ", std::uint64_t{info.width} * info.height,
+                                      " pixels, at most ", kMaxPixels, " are allowed"));
+    }
+  }
+  // Ours count from 0 in the same order; 0 means "not written".
+  if (from.integrator().kind() != scene::Integrator::KIND_UNSPECIFIED) {
+    info.integrator = static_cast<Integrator>(static_cast<int>(from.integrator().kind()) - 1);
+  }
+  if (from.image().tone() != scene::Image::TONE_UNSPECIFIED) {
+    info.display.tone = static_cast<Tone>(static_cast<int>(from.image().tone()) - 1);
+  }
+  info.display.exposure = from.image().exposure();
+  RETURN_IF_ERROR(check_range(root.child("image"), "exposure", info.display.exposure,
+                              -kMostExposure, kMostExposure));
+  if (from.integrator().has_max_depth()) {
+    info.max_depth = from.integrator().max_depth();
+    RETURN_IF_ERROR(
+        check_range(root.child("integrator"), "max_depth", info.max_depth, 1, kMaxDepth));
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<LocalShading> read_local_shading(const Field& root, const scene::Scene& from) {
+  LocalShading local;
+  const Field in = root.child("integrator");
+  if (from.integrator().has_ambient()) {
+    ASSIGN_OR_RETURN(local.ambient,
+                     read_color(in.child("ambient"), from.integrator().ambient(), kMostRadiance));
+  }
+  if (from.integrator().has_occlusion_distance()) {
+    local.occlusion_distance = from.integrator().occlusion_distance();
+    if (!(local.occlusion_distance > 0)) {
+      return in.error("occlusion_distance",
+                      absl::StrCat("must be > 0, is ", local.occlusion_distance));
+    }
+  }
+  return local;
+}
+
+absl::StatusOr<Background> read_background(const Field& root, const scene::Scene& from,
+                                           SceneDraft& draft) {
+  const Field in = root.child("background");
+  switch (from.background().kind_case()) {
+    case scene::Background::kConstant: {
+      ASSIGN_OR_RETURN(const Rgb radiance, read_color(in.child("constant"),
+                                                      from.background().constant(), kMostRadiance));
+      return Background{radiance, radiance};
+    }
+    case scene::Background::kGradient: {
+      const Field gradient = in.child("gradient");
+      const scene::Gradient& of = from.background().gradient();
+      if (!of.has_bottom() || !of.has_top()) {
+        return gradient.error("needs bottom and top");
+      }
+      Background background;
+      ASSIGN_OR_RETURN(background.bottom,
+                       read_color(gradient.child("bottom"), of.bottom(), kMostRadiance));
+      ASSIGN_OR_RETURN(background.top, read_color(gradient.child("top"), of.top(), kMostRadiance));
+      return background;
+    }
+    case scene::Background::kEnvironment: {
+      Background background;
+      ASSIGN_OR_RETURN(
+          background.environment,
+          read_environment(in.child("environment"), from.background().environment(), draft));
+      return background;
+    }
+    case scene::Background::kCubeMap: {
+      Background background;
+      ASSIGN_OR_RETURN(background.environment,
+                       read_cube_map(in.child("cube_map"), from.background().cube_map(), draft));
+      return background;
+    }
+    case scene::Background::KIND_NOT_SET:
+      break;
+  }
+  return in.error("is empty: write constant, gradient, environment or cube_map");
+}
+
+}  // namespace bandsaw

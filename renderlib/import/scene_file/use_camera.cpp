@@ -1,0 +1,134 @@
+#include "renderlib/import/scene_file/use_camera.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/import/scene_file/numbers.h"
+#include "renderlib/package/limits.h"
+
+namespace bandsaw {
+namespace {
+
+std::string with_file(const FoundCamera& camera) {
+  return absl::StrCat(camera.model, "/", camera.name);
+}
+
+/// Those that `name` means: the first way of calling cameras that any answers to decides.
+std::vector<const FoundCamera*> called(const std::string& name,
+                                       const std::vector<FoundCamera>& cameras) {
+  const auto all = [&](auto name_of) {
+    std::vector<const FoundCamera*> found;
+    for (const FoundCamera& camera : cameras) {
+      if (name_of(camera) == name) {
+        found.push_back(&camera);
+      }
+    }
+    return found;
+  };
+  auto found = all([](const FoundCamera& camera) { return camera.name; });
+  if (found.empty()) {
+    found = all([](const FoundCamera& camera) { return camera.own_name; });
+  }
+  return found.empty() ? all(with_file) : found;
+}
+
+std::string known(const std::vector<FoundCamera>& cameras) {
+  const auto quoted = [](std::string* out, const std::string& name) {
+    absl::StrAppend(out, "\"", name, "\"");
+  };
+  return cameras.empty()
+             ? "the scene's models bring none"
+             : absl::StrCat("there are ", absl::StrJoin(names_of(cameras), ", ", quoted));
+}
+
+absl::StatusOr<Camera> find_camera(const std::string& name, const SceneDraft& draft) {
+  const auto found = called(name, draft.cameras);
+  if (found.size() == 1) {
+    Camera camera = found.front()->camera;
+    std::visit([&](auto& c) { c.shutter = draft.shutter; }, camera);
+    return camera;
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat(found.empty() ? "no model brings a camera" : "several cameras are", " called \"",
+                   name, "\"; ", known(draft.cameras)));
+}
+
+absl::Status set_lens(const Field& in, const scene::Camera& from, PerspectiveCamera& camera) {
+  camera.aperture = from.aperture();
+  RETURN_IF_ERROR(check_range(in, "aperture", camera.aperture, 0, kMostLens));
+  if (camera.aperture > 0 && !from.has_focus_distance()) {
+    return in.error("focus_distance", "is required where a model's camera gets an aperture");
+  }
+  if (from.has_focus_distance()) {
+    camera.focus_distance = from.focus_distance();
+    RETURN_IF_ERROR(
+        check_range(in, "focus_distance", camera.focus_distance, kLeastFocus, kMostLens));
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+void add_cameras(const std::string& file, const Model& model, const Transform& to_world,
+                 SceneDraft& draft) {
+  const bool is_known = std::any_of(draft.cameras.begin(), draft.cameras.end(),
+                                    [&](const FoundCamera& c) { return c.model == file; });
+  if (is_known || draft.placed != &draft.world) {
+    return;
+  }
+  for (const ModelCamera& camera : model.cameras) {
+    draft.cameras.push_back({file, camera.name, camera.own_name, placed(camera.camera, to_world)});
+  }
+}
+
+std::vector<std::string> names_of(const std::vector<FoundCamera>& cameras) {
+  std::vector<std::string> names;
+  for (const FoundCamera& camera : cameras) {
+    if (names.size() == kMaxCameraNames) {
+      break;
+    }
+    for (const std::string& name : {camera.name, camera.own_name, with_file(camera)}) {
+      const auto found = called(name, cameras);
+      if (!name.empty() && found.size() == 1 && found.front() == &camera) {
+        names.push_back(name);
+        break;
+      }
+    }
+  }
+  return names;
+}
+
+absl::StatusOr<Camera> chosen_camera(const std::string& name, const SceneDraft& draft) {
+  auto found = find_camera(name, draft);
+  return found.ok()
+             ? std::move(found)
+             : absl::InvalidArgumentError(absl::StrCat(draft.file, ": ", found.status().message()));
+}
+
+absl::StatusOr<Camera> use_camera(const Field& root, const scene::Scene& from,
+                                  const SceneDraft& draft) {
+  const Field in = root.child("camera");
+  const scene::Camera& written = from.camera();
+  if (!written.position().empty() || !written.look_at().empty() || !written.up().empty() ||
+      written.rotate_size() > 0 || written.has_vertical_fov() || written.has_orthographic()) {
+    return in.error("use",
+                    "stands instead of position, look_at, up, rotate, vertical_fov and "
+                    "orthographic: write one or the other");
+  }
+  auto found = find_camera(written.use(), draft);
+  if (!found.ok()) {
+    return in.error("use", found.status().message());
+  }
+  Camera camera = *std::move(found);
+  if (auto* perspective = std::get_if<PerspectiveCamera>(&camera)) {
+    RETURN_IF_ERROR(set_lens(in, written, *perspective));
+  } else if (written.has_aperture() || written.has_focus_distance()) {
+    return in.error("aperture", "is of a perspective camera; this one is orthographic");
+  }
+  return camera;
+}
+
+}  // namespace bandsaw
