@@ -35,6 +35,11 @@ reference() {
       rows[name, ++count[name]] = type
       row_words[name, count[name]] = words
     }
+    # A comment belongs to what follows; the second line of one at the end of a line would go to the wrong field.
+    match($0, /^ *\/\//) && RLENGTH > 2 * depth + 2 {
+      print "proto/scene.proto:" NR ": a comment that goes on must stand above its field" > "/dev/stderr"
+      exit bad = 1
+    }
     { sub(/^ +/, "") }
     /^\/\// { sub(/^\/\/ ?/, ""); pending = depth == 0 ? pending $0 "\n" : joined(pending, $0); next }
     /^$/ { if (depth == 0 && intro == "") intro = pending; pending = ""; next }
@@ -60,6 +65,7 @@ reference() {
       row_one[name, count[name]] = kind[depth] == "oneof"
     }
     END {
+      if (bad) exit 1
       print "# The scene file\n"
       print "Made of the comments in `scene.proto` by `proto/reference.sh`: change them there.\n"
       print intro

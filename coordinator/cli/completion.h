@@ -7,7 +7,7 @@
 
 namespace bandsaw::coordinator {
 
-/// A script for bash: commands, their options, the words that options take (cli/choices.h), and
+/// A script for bash: commands, their options, the words that options take (cli/options/choices.h), and
 /// files where a file is meant.
 std::string bash_completion(const CLI::App& app);
 

@@ -110,7 +110,7 @@ struct Instance {
   MaterialId material{};
   Transform to_world;  ///< regular (math/transform.h, inverse); within `frame` where there is one
   GroupId group = kNoGroup;
-  FrameId frame = kNoFrame;  ///< what it moves along with (geometry/motion.h)
+  FrameId frame = kNoFrame;  ///< what it moves along with (geometry/frame.h)
 };
 
 /// Everything that can be hit. In a hit, `instance` 0 is the geometry's own loose shapes;

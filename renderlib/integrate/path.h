@@ -24,7 +24,7 @@ enum class Technique {
 };
 
 struct PathOptions {
-  std::uint32_t max_depth = 32;  ///< most surfaces a path scatters at
+  std::uint32_t max_depth = 32;  ///< most times a path scatters, at surfaces and in media
   Technique technique = Technique::kBoth;
   bool russian_roulette = true;
   /// Local shading: what surfaces with a density scatter of the lights and of the scene's ambient

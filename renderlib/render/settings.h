@@ -12,7 +12,7 @@ namespace bandsaw {
 struct RenderSettings {
   std::uint32_t width = 600;     ///< pixels, [1, 65536]
   std::uint32_t height = 400;    ///< pixels, [1, 65536]; width x height <= kMaxPixels
-  std::uint32_t max_depth = 32;  ///< most surfaces a path scatters at, [1, 1024]
+  std::uint32_t max_depth = 32;  ///< most times a path scatters, [1, 1024]
   std::uint64_t seed = 0;
   Integrator integrator = Integrator::kPath;
   friend bool operator==(const RenderSettings&, const RenderSettings&) = default;

@@ -42,7 +42,7 @@ inline constexpr std::uint32_t kGroupTime =
     1;  ///< time; a light seen through the lens: choice, u, v
 /// Of scattering `bounce` (0 at the camera ray's hit): direction u, v, lobe, Russian roulette.
 constexpr std::uint32_t group_bsdf(std::uint32_t bounce) { return 2 + 2 * bounce; }
-/// Of scattering `bounce`: light choice, light u, v, distance in a medium.
+/// Of scattering `bounce`: light choice, light u, v, finer steps of the choice.
 constexpr std::uint32_t group_light(std::uint32_t bounce) { return 3 + 2 * bounce; }
 /// Of the surface number `passed` (below 2^20) that is met on the way to scattering `bounce` (below
 /// 2^11): whether it is there,

@@ -1,7 +1,7 @@
 #pragma once
 
 // A fuzz target is one file with fuzz(): any bytes, no crash, no leak, and what it takes is what it
-// gives back. libFuzzer calls it through run_fuzzer.cpp, CTest with the corpus through replay.cpp.
+// gives back. libFuzzer calls it through libfuzzer.cpp, CTest with the corpus through replay.cpp.
 
 #include <algorithm>
 #include <cstddef>
