@@ -96,8 +96,8 @@ struct Mesh {
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into positions
   std::vector<std::array<float, 3>> normals;            ///< empty, or one a position
   std::vector<std::array<float, 2>> uvs;                ///< empty, or one a position
-  std::vector<std::array<float, 2>> uvs2 = {};  ///< the second set: empty, or one a position
-  std::vector<std::array<float, 3>> colors = {};        ///< linear RGB >= 0: empty, or one a position
+  std::vector<std::array<float, 2>> uvs2 = {};    ///< the second set: empty, or one a position
+  std::vector<std::array<float, 3>> colors = {};  ///< linear RGB >= 0: empty, or one a position
 };
 
 inline constexpr GroupId kNoGroup{0xffffffffu};

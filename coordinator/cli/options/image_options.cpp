@@ -31,7 +31,8 @@ void add_image(CLI::App& app, RawOptions& raw) {
       ->type_name("NAME");
   app.add_option("--samples", raw.samples, "Stop at N samples a pixel [default: 64]")
       ->type_name("N");
-  app.add_option("--error", raw.error, "Stop where the relative RMSE is at most this, 19 times of 20, as in 1%")
+  app.add_option("--error", raw.error,
+                 "Stop where the relative RMSE is at most this, 19 times of 20, as in 1%")
       ->type_name("E%");
   app.add_flag("--adaptive", raw.adaptive, "With --error: more samples where noise is");
   app.add_option("--time", raw.time, "Stop before this much time, as in 5s, 2m, 1h")
