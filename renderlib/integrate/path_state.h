@@ -11,11 +11,12 @@
 
 namespace bandsaw {
 
-/// Where the path scattered last and how it left.
+/// Where the path scattered last and how it left; of a ray through a lens that lights were asked
+/// through, the point in focus.
 struct Departure {
   Receiver from;
   double pdf = 0;
-  bool delta = true;  ///< also of the camera: lights seen from there were not asked
+  bool delta = true;  ///< what is met was not asked for: of the camera, too
   /// How many times denser this place was chosen for asking a light than for going on; 1 on
   /// surfaces, where it is the same place.
   double asked = 1;

@@ -25,11 +25,11 @@ float scattering_weight(const Scene& scene, const Departure& departure, const Su
   if (departure.delta || technique == Technique::kScatteringOnly) {
     return 1;
   }
+  const double asked = scene.lights().pdf(departure.from, light);
   if (technique == Technique::kLightsOnly) {
-    return 0;
+    return asked > 0 ? 0 : 1;  // The far side of a sphere, through its near one, is never asked.
   }
-  return static_cast<float>(
-      power_heuristic(departure.pdf, scene.lights().pdf(departure.from, light) * departure.asked));
+  return static_cast<float>(power_heuristic(departure.pdf, asked * departure.asked));
 }
 
 /// What is seen where a ray leaves the scene, as far as scattering counts for it.
@@ -63,7 +63,7 @@ bool is_also_followed(const LightSample& light, const Asking& asking) {
 Rgb asked_light(const Scene& scene, const SurfacePoint& point, const Receiver& receiver,
                 const Bsdf& bsdf, const Sample4& numbers, const Asking& asking,
                 std::uint64_t& rays) {
-  // The fourth number, which surfaces do not use, gives the choice among many lights finer steps.
+  // The fourth number gives the choice among many lights finer steps.
   const double choice = numbers[0] + numbers[3] * 0x1p-32;
   const std::optional<LightSample> light =
       scene.lights().sample(receiver, choice, numbers[1], numbers[2]);

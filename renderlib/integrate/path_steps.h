@@ -14,8 +14,11 @@ namespace bandsaw {
 /// The first surface along the path's ray, on the way to scattering `depth`.
 inline std::optional<SurfacePoint> next_surface(const PathContext& context, std::uint32_t depth,
                                                 PathState& path) {
-  return first_surface(context.scene, path.ray, context.sampler, context.sample, depth,
-                       path.nesting, context.rays);
+  std::optional<SurfacePoint> seen = first_surface(
+      context.scene, path.ray, context.sampler, context.sample, depth, path.nesting, context.rays);
+  // A boundary that a path passes unseen stops those who ask for light.
+  path.departure.delta = path.departure.delta || path.nesting.passed_unseen;
+  return seen;
 }
 
 /// Adds the own light of the surface that the path's ray meets, faded by all media before it. What

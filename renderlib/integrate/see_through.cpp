@@ -73,6 +73,7 @@ std::optional<SurfacePoint> first_surface(const Scene& scene, const Ray& ray,
                                           std::uint32_t bounce, Nesting& nesting,
                                           std::uint64_t& rays) {
   ++rays;
+  nesting.passed_unseen = false;
   Hit hit = scene.accel().closest(ray);
   for (std::uint32_t passed = 0; hit; ++passed) {
     const SurfacePoint point = point_at(scene, ray, hit);
@@ -86,6 +87,10 @@ std::optional<SurfacePoint> first_surface(const Scene& scene, const Ray& ray,
     if (is_there) {
       if (auto seen = nested_surface(scene, ray, point, hit, nesting, rays)) {
         return seen;
+      }
+      if (!nesting.passed_unseen) {
+        nesting.passed_unseen = true;
+        nesting.before = nesting.here;
       }
       nesting.here = nesting.beyond;
     }

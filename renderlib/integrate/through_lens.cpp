@@ -8,6 +8,9 @@
 namespace bandsaw {
 
 void ask_through_lens(const PathContext& context, const LensView& lens, PathState& path) {
+  if (context.options.technique != Technique::kBoth) {
+    return;
+  }
   const Receiver focus{lens.focus(), std::nullopt, path.ray.time, &lens.beyond()};
   const Lights& lights = context.scene.lights();
   if (!lights.any_for(focus)) {

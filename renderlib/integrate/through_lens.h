@@ -12,7 +12,8 @@
 namespace bandsaw {
 
 /// Adds the light of one lamp beyond the focus, and has the path, whose ray MUST be one of the
-/// lens' through it, weigh what it meets there. `lens` MUST outlive the path's first step.
+/// lens' through it, weigh what it meets there; does nothing where only one technique is wanted.
+/// `lens` MUST outlive the path's first step.
 void ask_through_lens(const PathContext& context, const LensView& lens, PathState& path);
 
 }  // namespace bandsaw

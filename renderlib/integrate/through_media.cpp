@@ -133,6 +133,13 @@ Passage through(const Step& step, double length, PathState& path) {
   return scatter(step, distance, asked.pdf(distance) / followed, path);
 }
 
+/// The path has scattered at the end of `ray`, before the surface that first_surface() found: only
+/// boundaries of nested glass up to there are passed.
+void pass_again(const PathContext& context, const Ray& ray, std::uint32_t depth, Nesting& nesting) {
+  nesting.here = nesting.before;
+  first_surface(context.scene, ray, context.sampler, context.sample, depth, nesting, context.rays);
+}
+
 }  // namespace
 
 Passage through_media(const PathContext& context, double length, std::uint32_t depth,
@@ -149,6 +156,11 @@ Passage through_media(const PathContext& context, double length, std::uint32_t d
     const Step step{context,  depth,  number, *stretch->medium, origin, ray.direction,
                     ray.time, flight, chance};
     const Passage passage = through(step, part, path);
+    if (passage == Passage::kScattered && path.nesting.passed_unseen) {
+      Ray passed = ray;
+      passed.t_max = dot(path.ray.origin - ray.origin, ray.direction);
+      pass_again(context, passed, depth, path.nesting);
+    }
     if (passage != Passage::kThrough) {
       return passage;
     }

@@ -27,7 +27,7 @@ struct Receiver {
   std::optional<Vec3> normal = std::nullopt;
   double time = 0;  ///< lights are where they are then
 
-  /// Where it is set, surfaces are asked that may be seen within it, and no distant light. Outlives
+  /// Where it is set, lights are asked that may be seen within it, and no distant ones. Outlives
   /// the receiver.
   const Cone* within = nullptr;
 

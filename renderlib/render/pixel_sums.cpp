@@ -27,8 +27,7 @@ PixelSums::PixelSums(const Scene& scene, const RenderSettings& settings, const B
                .local = settings.integrator == Integrator::kDirect,
                .branches = settings.integrator == Integrator::kDirect ? 1 : branches_for(scene)},
       camera_(scene.camera(), static_cast<int>(settings.width), static_cast<int>(settings.height)),
-      asks_through_lens_(!scene.lights().empty() && follows_light(settings.integrator) &&
-                         options_.technique == Technique::kBoth),
+      asks_through_lens_(!scene.lights().empty() && follows_light(settings.integrator)),
       shares_(scene.shares_paths() && follows_light(settings.integrator) && !options_.local) {}
 
 void PixelSums::add_run(std::uint32_t y, std::uint32_t first, std::uint32_t last,

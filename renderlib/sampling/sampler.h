@@ -52,8 +52,8 @@ constexpr std::uint32_t group_alpha(std::uint32_t bounce, std::uint32_t passed) 
 }
 /// Of stretch `stretch` (below 2^17) of media on the way to scattering `bounce` (below 2^11), in
 /// three groups: 0: what to choose and how far light flies, the same of where a light is asked; 1:
-/// a point of a light (choice, u, v) that distances are sampled by; 2: the light that is asked
-/// (choice, u, v).
+/// points of lights (choice, u, v) that distances are sampled by; 2: the light that is asked
+/// (choice, u, v, finer steps of the choice).
 constexpr std::uint32_t group_medium(std::uint32_t bounce, std::uint32_t stretch,
                                      std::uint32_t which) {
   return 0x40000000u | (bounce & 0x7ffu) << 19 | (stretch & 0x1ffffu) << 2 | which;

@@ -16,6 +16,9 @@ bool sees_cone(double distance2, double radius) {
   return distance2 > radius * radius * (kNear * kNear);
 }
 
+/// Where a sample is on the rim, its normal is this far from upright at most.
+constexpr double kRimCosine = 1e-6;
+
 double area_pdf(double radius) { return kSpherePdf / (radius * radius); }
 
 }  // namespace
@@ -56,6 +59,10 @@ double sphere_light_pdf(const Vec3& center, double radius, const Vec3& point, co
                         const Vec3& normal) {
   const double distance2 = length_squared(center - point);
   if (sees_cone(distance2, radius)) {
+    const Vec3 way = position - point;
+    if (dot(normal, way) > kRimCosine * length(way)) {
+      return 0;
+    }
     return cone_pdf(one_minus_cos_from_sin2(radius * radius / distance2));
   }
   const double pdf = solid_angle_pdf(area_pdf(radius), point, position, normal);

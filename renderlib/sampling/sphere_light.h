@@ -22,7 +22,8 @@ std::optional<SphereSample> sample_sphere_light(const Vec3& center, double radiu
                                                 const Vec3& point, double u, double v);
 
 /// The density by solid angle with which sample_sphere_light makes the direction from `point` to
-/// `position`, which is a point of the sphere with outward unit normal `normal`.
+/// `position`, which is a point of the sphere with outward unit normal `normal`: 0 on the side that
+/// only those see who look through the sphere.
 double sphere_light_pdf(const Vec3& center, double radius, const Vec3& point, const Vec3& position,
                         const Vec3& normal);
 

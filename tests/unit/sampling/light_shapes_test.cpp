@@ -113,6 +113,8 @@ TEST(SphereLight, SamplesUniformlyInSolidAngle) {
           EXPECT_NEAR(length(s->position - center), 1, 1e-14);
           EXPECT_LE(dot(s->normal, s->position - point), 1e-7);  // on the near side
           EXPECT_EQ(s->pdf, sphere_light_pdf(center, 1, point, s->position, s->normal));
+          const Vec3 far_side = 2 * center - s->position;
+          EXPECT_EQ(sphere_light_pdf(center, 1, point, far_side, -s->normal), 0);
           return normalize(s->position - point);
         },
         [&](const Vec3& d) {
