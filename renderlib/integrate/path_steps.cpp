@@ -51,10 +51,20 @@ Rgb background_light(const Scene& scene, const Departure& departure, const Vec3&
 struct Asking {
   Technique technique = Technique::kBoth;
   bool only_distant_followed = false;  ///< local shading: directions end at the next surface
+  bool behind = false;  ///< through the surface: only what no direction that passes it may find
 };
 
+Asking through(Asking asking) {
+  asking.behind = true;
+  return asking;
+}
+
+bool is_found_behind(const LightSample& light, const Asking& asking) {
+  return !light.delta && (!asking.only_distant_followed || light.distant);
+}
+
 bool is_also_followed(const LightSample& light, const Asking& asking) {
-  return !light.delta &&
+  return !light.delta && !asking.behind &&
          (asking.technique == Technique::kBoth || (asking.only_distant_followed && light.distant));
 }
 
@@ -67,7 +77,7 @@ Rgb asked_light(const Scene& scene, const SurfacePoint& point, const Receiver& r
   const double choice = numbers[0] + numbers[3] * 0x1p-32;
   const std::optional<LightSample> light =
       scene.lights().sample(receiver, choice, numbers[1], numbers[2]);
-  if (!light) {
+  if (!light || (asking.behind && is_found_behind(*light, asking))) {
     return {};
   }
   const BsdfValue scattered = evaluate(bsdf, light->direction);
@@ -148,6 +158,11 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
         is_last ? Asking{Technique::kLightsOnly, true} : Asking{options.technique, false};
     path.radiance +=
         path.throughput * asked_light(scene, point, receiver, bsdf, numbers, asking, context.rays);
+    if (has_density_behind(bsdf) && (is_last || scene.lights().any_delta())) {
+      const Receiver behind{point.position, -*receiver.normal, point.time};
+      path.radiance += path.throughput * asked_light(scene, point, behind, bsdf, numbers,
+                                                     through(asking), context.rays);
+    }
   }
   if (is_last) {
     const Rgb albedo = albedo_at(material, scene.textures(), point);
@@ -158,7 +173,7 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
   if (!next) {
     return false;
   }
-  // Lights beyond the surface were not asked.
+  // Lights beyond the surface that a direction can find were not asked.
   const bool passes = dot(next->wi, *receiver.normal) <= 0;
   path.departure = {receiver, next->pdf, next->delta || passes};
   path.throughput *= next->weight;

@@ -61,7 +61,8 @@ std::optional<SurfacePoint> nested_surface(const Scene& scene, const Ray& ray,
   const MaterialId after = nesting.beyond.there();
   if (boundaries == 1) {
     const Dielectric& glass = *nested_glass(scene.material(first.material));
-    return nesting.here.hides(first.material, glass) ? std::nullopt : std::optional(first);
+    const bool inwards = dot(ray.direction, first.geometric_normal) < 0;
+    return nesting.here.hides(first.material, glass, inwards) ? std::nullopt : std::optional(first);
   }
   return after == before ? std::nullopt : entered && entered->material == after ? entered : left;
 }

@@ -52,6 +52,8 @@ class Lights {
 
   std::size_t size() const { return ids_.size() + delta_.size() + (environment_.empty() ? 0 : 1); }
   bool empty() const { return size() == 0; }
+  /// Whether there are lights that nobody finds but who asks.
+  bool any_delta() const { return !delta_.empty(); }
 
   /// Whether sample() may find light for the receiver, and pdf() be more than 0.
   bool any_for(const Receiver& receiver) const { return choice_.any_for(receiver); }

@@ -200,4 +200,10 @@ bool has_density(const Bsdf& bsdf) {
          !std::holds_alternative<DielectricBsdf>(bsdf);
 }
 
+bool has_density_behind(const Bsdf& bsdf) {
+  const auto* principled = std::get_if<PrincipledBsdf>(&bsdf);
+  return std::holds_alternative<RoughDielectricBsdf>(bsdf) ||
+         (principled != nullptr && principled->transmission > 0 && principled->metallic < 1);
+}
+
 }  // namespace bandsaw

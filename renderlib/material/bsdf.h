@@ -72,4 +72,7 @@ BsdfValue evaluate(const Bsdf& bsdf, const Vec3& wi);
 /// Whether evaluate() can be other than zero: whether looking for lights is worth a shadow ray.
 bool has_density(const Bsdf& bsdf);
 
+/// Whether it can be other than zero for light from behind the surface.
+bool has_density_behind(const Bsdf& bsdf);
+
 }  // namespace bandsaw

@@ -35,10 +35,13 @@ class Interiors {
     return *this;
   }
 
-  /// Whether a boundary of `glass` changes nothing: something of higher priority is there.
-  bool hides(MaterialId id, const Dielectric& glass) const {
+  /// Whether passing a boundary of `glass` changes nothing: something of higher priority is there,
+  /// or another body of the same.
+  bool hides(MaterialId id, const Dielectric& glass, bool inwards) const {
+    const auto bodies = std::count_if(entries_.begin(), entries_.begin() + size_,
+                                      [id](const Entry& entry) { return entry.id == id; });
     const Entry* top = highest_but(id);
-    return top != nullptr && top->priority > glass.priority;
+    return bodies > (inwards ? 0 : 1) || (top != nullptr && top->priority > glass.priority);
   }
 
   /// The index of refraction where `id` is not.

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "renderlib/integrate/path.h"
+#include "renderlib/integrate/see_through.h"
+#include "renderlib/material/bsdf.h"
 #include "renderlib/material/interiors.h"
 #include "tests/support/hard_case.h"
 #include "tests/support/media.h"
@@ -167,6 +169,32 @@ TEST(Emission, OfAScatteringSurfaceIsAddedToWhatItReflects) {
   EXPECT_LT(light_along(maker, back, 2000).mean(), 0.1);
 }
 
+// Behind a pane only asking finds a light without size: the pane sends on what its value says.
+TEST(SeeThrough, LightsWithoutSizeShineThroughWhatScattersThem) {
+  Principled paper;
+  paper.roughness.factor = 0.7;
+  paper.transmission.factor = 1;
+  for (const Material& material : {Material(paper), Material(Dielectric{1.5, 0.5})}) {
+    SceneMaker maker = white_sky();
+    maker.background({0, 0, 0}, {0, 0, 0});
+    maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, add(maker, material));
+    maker.scene.lights = {PointLight{{0.3, 0.1, -2}, gray(4)}};
+    const Ray ray{.origin = {0, 0, 3}, .direction = {0, 0, -1}};
+    const auto scene = maker.build();
+    std::uint64_t rays = 0;
+    Nesting nesting;
+    const auto point = first_surface(*scene, ray, PixelSampler(5, 0, 3), 0, 0, nesting, rays);
+    ASSERT_TRUE(point);
+    const Bsdf bsdf =
+        bsdf_at(scene->material(point->material), scene->textures(), *point, -ray.direction);
+    const Vec3 way = Vec3{0.3, 0.1, -2};
+    const double expected = evaluate(bsdf, normalize(way)).value.g * 4 / length_squared(way);
+    EXPECT_GT(expected, 0.01);
+    const Moments seen = light_along(maker, ray, 64);
+    EXPECT_NEAR(seen.mean(), expected, 1e-6 * expected);
+  }
+}
+
 TEST(NestedGlass, M9RaysBendAsIfOnlyTheHigherPriorityWereWhereTheyOverlap) {
   // Water (1) that reaches into its tumbler (2): a slab of each, overlapping by 0.1.
   const auto stack = [](double overlap) {
@@ -203,14 +231,28 @@ TEST(NestedGlass, M9ABubbleOfAirInGlassBendsOutwards) {
   const Dielectric air{1, 0, 2};
   EXPECT_EQ(inside.index_without(MaterialId{0}), 1);
   inside.pass(MaterialId{0}, glass, true);
-  EXPECT_FALSE(inside.hides(MaterialId{1}, air));
+  EXPECT_FALSE(inside.hides(MaterialId{1}, air, true));
   EXPECT_EQ(inside.index_without(MaterialId{1}), 1.5);
   inside.pass(MaterialId{1}, air, true);
-  EXPECT_TRUE(inside.hides(MaterialId{0}, glass));
+  EXPECT_TRUE(inside.hides(MaterialId{0}, glass, false));
   inside.pass(MaterialId{1}, air, false);
   inside.pass(MaterialId{0}, glass, false);
   EXPECT_EQ(inside.index_without(MaterialId{1}), 1);
   test::holds("M9", "bubble of air");
+}
+
+// The walls inside of two bodies of one glass are not there: on the axis it is one pane.
+TEST(NestedGlass, BodiesOfOneGlassThatOverlapAreOne) {
+  SceneMaker maker = white_sky();
+  maker.background({0, 0, 0}, {0, 0, 0});
+  const MaterialId glass = add(maker, Dielectric{1.5, 0, 1});
+  for (const double z : {0.0, 1.0, -0.7}) {
+    maker.sphere({0, 0, z}, 1, glass);
+  }
+  maker.quad({-9, -9, -9}, {18, 0, 0}, {0, 18, 0}, maker.lamp(1));
+  const Moments seen = light_along(maker, {.origin = {0, 0, 5}, .direction = {0, 0, -1}}, 40000);
+  EXPECT_NEAR(seen.mean(), 0.96 / 1.04, 4 * seen.standard_error());
+  EXPECT_LE(seen.standard_error(), 0.002);
 }
 
 // A bubble that sticks out of a block of glass. The block's face in the bubble is not there for
