@@ -17,6 +17,7 @@
 #include "proto/link/join.h"
 #include "proto/link/random.h"
 #include "proto/wire/limits.h"
+#include "renderlib/package/clean_text.h"
 #include "renderlib/render/canary.h"
 #include "renderlib/render/pixel_version.h"
 #include "worker/daemon.h"
@@ -136,8 +137,11 @@ int run(const Arguments& arguments) {
     return fail(kWrongUsage, absl::InvalidArgumentError(
                                  "neither HOME nor XDG_CACHE_HOME is set: --cache DIR is needed"));
   }
-  if (arguments.name.empty() || arguments.name.size() > wire::kWorkerNameBytes) {
-    return fail(kWrongUsage, absl::InvalidArgumentError("--name must have 1 to 64 bytes"));
+  if (arguments.name.empty() ||
+      clean_text(arguments.name, wire::kWorkerNameBytes) != arguments.name) {
+    return fail(kWrongUsage,
+                absl::InvalidArgumentError(
+                    "--name must have 1 to 64 bytes of UTF-8 without control characters"));
   }
   const sigset_t set = watched_signals();
   pthread_sigmask(SIG_BLOCK, &set, nullptr);  // before any thread is made: all inherit it

@@ -6,6 +6,7 @@
 #include "coordinator/rpc/convert.h"
 #include "proto/wire/limits.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/package/clean_text.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -28,7 +29,7 @@ absl::Status check_text(const char* field, const std::string& text, std::size_t 
   if (text.size() > most) {
     return invalid(field, "at most ", most, " bytes, has ", text.size());
   }
-  if (std::any_of(text.begin(), text.end(), absl::ascii_iscntrl)) {
+  if (clean_text(text, most) != text) {
     return invalid(field, "must not hold control characters");
   }
   return absl::OkStatus();

@@ -81,6 +81,11 @@ absl::StatusOr<std::string> Gate::rotate(link::Role role) {
   ASSIGN_OR_RETURN(RenewedSecret renewed, renew_(role));
   MutexLock lock(mutex_);
   identity_ = std::move(renewed.identity);
+  if (!renewed.written.ok()) {
+    return absl::Status(renewed.written.code(),
+                        absl::StrCat("the secret is new, but not in all files (",
+                                     renewed.written.message(), "): rotate it again"));
+  }
   spdlog::info("a new {} secret; the join string is in {}",
                role == link::Role::kWorker ? "workers'" : "people's", renewed.join_file);
   return renewed.join_file;

@@ -19,6 +19,7 @@ namespace bandsaw::coordinator {
 struct RenewedSecret {
   link::Identity identity;
   std::string join_file;
+  absl::Status written = {};  ///< of the files beside the identity: the secret is new all the same
 };
 /// May be nothing: then secrets cannot be renewed. Waits for the disk.
 using RenewSecret = std::function<absl::StatusOr<RenewedSecret>(link::Role)>;

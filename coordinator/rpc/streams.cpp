@@ -5,7 +5,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr std::size_t kMaxStreams = wire::kWorkers + 1024;  // and as many watched jobs
+constexpr std::size_t kMaxStreams =
+    2 * wire::kWorkers + 1024;  // a worker: orders and bands; the rest: watched jobs
 
 }  // namespace
 

@@ -25,6 +25,8 @@ bool is_loopback(const std::string& host) {
   return host == "localhost" || host == "::1" || absl::StartsWith(host, "127.");
 }
 
+absl::Status nothing_here() { return absl::NotFoundError("there is nothing of this name here"); }
+
 class Dashboard::Impl {
  public:
   Impl(Engine& engine, const link::Identity& identity, TlsContext tls,
@@ -55,9 +57,12 @@ class Dashboard::Impl {
     add_pictures(server_, pictures_, report_);
     add_scenes(server_, scenes_);
     add_gallery(server_, engine, scenes_, gallery_);
+    // The last: without it the body of a POST to nowhere would be read whole before the answer.
+    server_.Post(".*", [](const httplib::Request&, httplib::Response& response,
+                          const httplib::ContentReader&) { refuse(response, nothing_here()); });
     server_.set_error_handler([](const httplib::Request&, httplib::Response& response) {
       if (response.body.empty() && response.status == 404) {
-        refuse(response, absl::NotFoundError("there is nothing of this name here"));
+        refuse(response, nothing_here());
       }
     });
   }

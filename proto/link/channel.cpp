@@ -1,5 +1,6 @@
 #include "proto/link/channel.h"
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
 #include "proto/link/certificate.h"
@@ -87,7 +88,8 @@ absl::StatusOr<Connected> connect_plain(const std::string& address,
 
 absl::StatusOr<Connected> connect(const JoinString& join, std::chrono::milliseconds timeout) {
   std::vector<std::string> reasons;
-  bool wrong_certificate = false;
+  std::size_t wrong = 0;         // addresses where another certificate is shown
+  bool wrong_elsewhere = false;  // not on this machine, which may have a farm of its own
   for (const std::string& address : join.addresses) {
     absl::StatusOr<Connected> connected = join.certificate
                                               ? connect_tls(address, *join.certificate, timeout)
@@ -95,11 +97,14 @@ absl::StatusOr<Connected> connect(const JoinString& join, std::chrono::milliseco
     if (connected.ok()) {
       return connected;
     }
-    wrong_certificate |= absl::IsUnauthenticated(connected.status());
+    if (absl::IsUnauthenticated(connected.status())) {
+      ++wrong;
+      wrong_elsewhere |= !absl::StartsWith(address, "127.");
+    }
     reasons.push_back(absl::StrCat(address, ": ", connected.status().message()));
   }
   const std::string all = absl::StrJoin(reasons, "; ");
-  return wrong_certificate
+  return wrong_elsewhere || wrong == join.addresses.size()
              ? absl::UnauthenticatedError(absl::StrCat("not this farm at ", all))
              : absl::UnavailableError(absl::StrCat("no coordinator answers at ", all));
 }

@@ -32,6 +32,7 @@ case $2 in
   restart) eval "exec setsid $(sed -n s/^ExecStart=//p "$unit")" >"$(sed -n s/^StandardOutput=append://p "$unit")" 2>&1 </dev/null &
     echo $! >"$HOME/service" ;;
   is-active) running ;;
+  kill) kill "-${3#--signal=}" "$(cat "$HOME/service")" ;;
   stop) kill "$(cat "$HOME/service")"; while running; do sleep 0.1; done ;;
 esac
 )sh";

@@ -77,6 +77,7 @@ TEST_F(Invite, BySystemdWhereTheUserHasIt) {
   const std::string asked = file_bytes(machines_.home("desk") + "/asked");
   EXPECT_THAT(asked, HasSubstr("systemctl --user enable --quiet bandsaw-worker"));
   EXPECT_THAT(asked, HasSubstr("loginctl enable-linger"));
+  EXPECT_THAT(asked, HasSubstr("systemctl --user kill --signal=TERM bandsaw-worker"));
   EXPECT_THAT(asked, HasSubstr("systemctl --user stop bandsaw-worker"));
   EXPECT_THAT(asked, HasSubstr("systemctl --user disable --quiet bandsaw-worker"));
   EXPECT_THAT(asked, HasSubstr("loginctl disable-linger"));

@@ -107,8 +107,14 @@ absl::StatusOr<std::unique_ptr<BlobCache::Download>> BlobCache::begin(const wire
   if (fd < 0) {
     return errno_status(errno, path);
   }
+  const bool is_taken = flock(fd, LOCK_EX | LOCK_NB) != 0;
+  if (is_taken && errno != EWOULDBLOCK) {
+    const absl::Status status = errno_status(errno, absl::StrCat("a lock on ", path));
+    close(fd);
+    return status;
+  }
   struct stat info {};
-  if (flock(fd, LOCK_EX | LOCK_NB) != 0 || !is_at(fd, path) || fstat(fd, &info) != 0) {
+  if (is_taken || !is_at(fd, path) || fstat(fd, &info) != 0) {
     close(fd);
     return std::unique_ptr<Download>();
   }

@@ -7,15 +7,16 @@
 #include "proto/wire/limits.h"
 #include "proto/wire/versions.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/package/clean_text.h"
 
 namespace bandsaw::worker {
 namespace {
 
-/// What the coordinator takes: bounded, on one line.
+/// What the coordinator takes: bounded, UTF-8, on one line.
 std::string plain(absl::string_view text, std::size_t most) {
-  std::string line(absl::StripAsciiWhitespace(text).substr(0, most));
+  std::string line(absl::StripAsciiWhitespace(text));
   std::replace_if(line.begin(), line.end(), absl::ascii_iscntrl, ' ');
-  return line;
+  return clean_text(line, most);
 }
 
 farm::FromWorker failure(std::uint64_t lease, const std::string& reason,

@@ -98,9 +98,14 @@ ChildOutcome wait_for(const Child& child, double seconds, const std::atomic<bool
       outcome.output.resize(std::min(outcome.output.size(), kMostOutput));
     }
   }
+  // What it has said; children of its own may hold the pipe open, and are not waited for.
+  pollfd left{child.output, POLLIN, 0};
   std::array<char, 4096> rest{};
-  for (ssize_t got = 0; (got = read(child.output, rest.data(), rest.size())) > 0 &&
-                        outcome.output.size() < kMostOutput;) {
+  while (outcome.output.size() < kMostOutput && poll(&left, 1, 0) > 0) {
+    const ssize_t got = read(child.output, rest.data(), rest.size());
+    if (got <= 0) {
+      break;
+    }
     outcome.output.append(rest.data(), static_cast<std::size_t>(got));
   }
   return outcome;

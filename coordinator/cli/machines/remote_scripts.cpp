@@ -22,6 +22,7 @@ own_pid() {
   esac
   return 1
 }
+serves() { systemctl --user is-active --quiet bandsaw-worker 2>/dev/null; }
 gone_within() {
   left=$(($1 * 5))
   while own_pid && [ "$left" -gt 0 ]; do
@@ -33,7 +34,14 @@ gone_within() {
 # The first signal drains, the second leaves at once. $1: seconds to drain.
 end_worker() {
   if [ -f "$unit" ]; then
-    timeout "$1" systemctl --user stop bandsaw-worker 2>/dev/null ||
+    # Not by `stop`, which ends it after the unit's own time.
+    serves && systemctl --user kill --signal=TERM bandsaw-worker 2>/dev/null
+    left=$(($1 * 5))
+    while serves && [ "$left" -gt 0 ]; do
+      sleep 0.2
+      left=$((left - 1))
+    done
+    timeout 5 systemctl --user stop bandsaw-worker 2>/dev/null ||
       systemctl --user kill --signal=KILL bandsaw-worker 2>/dev/null
   fi
   if own_pid; then

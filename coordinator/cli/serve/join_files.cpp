@@ -43,11 +43,12 @@ absl::StatusOr<RenewedSecret> rotate_secret(const std::string& data_folder, link
   const std::string file = join_file_of(data_folder, role);
   absl::StatusOr<link::JoinString> join = link::join_string_from(file);
   ASSIGN_OR_RETURN(link::Identity identity, link::renew_secret(data_folder, role));
+  absl::Status written;
   if (join.ok()) {
     join->secret = secret_of(identity, role);
-    RETURN_IF_ERROR(write(file, *join));
+    written = write(file, *join);
   }
-  return RenewedSecret{std::move(identity), file};
+  return RenewedSecret{std::move(identity), file, written};
 }
 
 }  // namespace bandsaw::coordinator

@@ -20,6 +20,7 @@ namespace {
 absl::StatusOr<std::string> rotate_here(const std::string& folder, link::Role role) {
   ASSIGN_OR_RETURN(const DataFolder locked, DataFolder::open(folder));
   ASSIGN_OR_RETURN(const RenewedSecret renewed, rotate_secret(folder, role));
+  RETURN_IF_ERROR(renewed.written);
   return renewed.join_file;
 }
 

@@ -47,7 +47,7 @@ absl::StatusOr<RenewedSecret> renew_everywhere(const std::string& folder, link::
   if (web.dashboard != nullptr) {
     web.dashboard->renew(renewed.identity);
   }
-  RETURN_IF_ERROR(web.write_link(folder, renewed.identity));
+  renewed.written.Update(web.write_link(folder, renewed.identity));
   return renewed;
 }
 

@@ -90,6 +90,17 @@ TEST_F(ConnectTest, RefusesAnotherCertificateBeforeAnyCall) {
   EXPECT_THAT(std::string(status.message()), HasSubstr("another certificate"));
 }
 
+// Every join string ends with this machine, which may have a farm of its own; the right one may
+// only be away.
+TEST_F(ConnectTest, AnotherFarmOnThisMachineSaysNothingOfOneThatIsAway) {
+  const EchoServer server(tls(identity_));
+  JoinString join = join_to(server.port, wire::sha256("another"));
+  join.addresses.insert(join.addresses.begin(), "127.0.0.2:1");
+  const absl::Status status = connect(join, milliseconds(10'000)).status();
+  EXPECT_EQ(status.code(), absl::StatusCode::kUnavailable);
+  EXPECT_THAT(std::string(status.message()), HasSubstr("another certificate"));
+}
+
 TEST_F(ConnectTest, TriesTheNextAddress) {
   const EchoServer server(tls(identity_));
   JoinString join = join_to(server.port, identity_.certificate_digest);
