@@ -17,7 +17,7 @@
 #include "proto/link/join.h"
 #include "proto/link/random.h"
 #include "proto/wire/limits.h"
-#include "renderlib/package/clean_text.h"
+#include "renderlib/base/clean_text.h"
 #include "renderlib/render/canary.h"
 #include "renderlib/render/pixel_version.h"
 #include "worker/daemon.h"
@@ -187,5 +187,6 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : bandsaw::worker::kWrongUsage;
   }
+  bandsaw::link::hide_join_strings({argv, static_cast<std::size_t>(argc)});
   return bandsaw::worker::run(arguments);
 }

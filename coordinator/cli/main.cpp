@@ -4,12 +4,14 @@
 
 #include "coordinator/cli/command_line.h"
 #include "coordinator/cli/options/commands.h"
+#include "proto/link/join.h"
 
 int main(int argc, char** argv) {
   using namespace bandsaw::coordinator;
   const Console console = Console::standard();
   const auto command =
       parse_command_line(std::vector<std::string>(argv + (argc > 0 ? 1 : 0), argv + argc));
+  bandsaw::link::hide_join_strings({argv, static_cast<std::size_t>(argc)});
   if (!command.ok()) {
     return static_cast<int>(
         console.fail(ExitCode::kWrong, std::string(command.status().message())));

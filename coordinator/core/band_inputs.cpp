@@ -48,6 +48,7 @@ void Core::State::on(const input::BandStored& in) {
   Worker* worker = workers_.by_instance(in.instance);
   if (worker != nullptr) {
     measure(*worker, *job, in);
+    worker->on_job[job->id].faults = 0;
   }
   const Coverage::Change change = in.written ? store(*job, *pass, in, witness) : Coverage::Change();
   if (worker != nullptr) {

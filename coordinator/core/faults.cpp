@@ -7,6 +7,7 @@
 #include "coordinator/core/band_text.h"
 #include "coordinator/core/state.h"
 #include "proto/wire/limits.h"
+#include "renderlib/base/clean_text.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -52,9 +53,15 @@ bool Core::State::left_to_others(const Job& job, const Worker& worker, const Ban
   return std::any_of(avoid.begin(), avoid.end(), [&](const Band& a) { return meet(a, band); });
 }
 
+bool Core::State::someone_may_render(const Job& job) const {
+  return std::any_of(workers_.all().begin(), workers_.all().end(), [&](const auto& entry) {
+    return entry.second.eligible() && may_render(entry.second, job);
+  });
+}
+
 void Core::State::add_fault(Job& job, Worker& worker, const Band& band, const std::string& reason) {
   ++worker.on_job[job.id].faults;
-  job.faults.push_back({band, worker.instance, reason.substr(0, wire::kReasonBytes)});
+  job.faults.push_back({band, worker.instance, clean_text(reason, wire::kReasonBytes)});
   if (job.faults.size() > Job::kFaultsKept) {
     job.faults.pop_front();
   }
@@ -69,13 +76,19 @@ void Core::State::add_fault(Job& job, Worker& worker, const Band& band, const st
   act(action::Faulted{job.id, band, worker.name, reason});
   job.notice = absl::StrCat(worker.name, " could not render ", name_of(band), ": ", reason);
   if (names.size() >= kFaultsPerBand || (count >= kFaultsPerBand && !someone_else(job, band))) {
-    if (!job.log.empty()) {
-      emit(record::LastWords{job.id, job.log_of, job.log});
-    }
-    end(job, JobState::kFailed,
-        absl::StrCat(name_of(band), " failed ", count, " times, on ", absl::StrJoin(names, ", "),
-                     ": ", reason));
+    give_up(job, absl::StrCat(name_of(band), " failed ", count, " times, on ",
+                              absl::StrJoin(names, ", "), ": ", reason));
+  } else if (worker.eligible() && !may_render(worker, job) && !someone_may_render(job)) {
+    give_up(job, absl::StrCat("each worker that is connected failed ", kFaultsPerWorker,
+                              " of its bands, with none rendered between; the last: ", job.notice));
   }
+}
+
+void Core::State::give_up(Job& job, const std::string& reason) {
+  if (!job.log.empty()) {
+    emit(record::LastWords{job.id, job.log_of, job.log});
+  }
+  end(job, JobState::kFailed, reason);
 }
 
 void Core::State::check_silence() {

@@ -159,6 +159,9 @@ void Job::finish() {
   losses.clear();
   shares.clear();
   cost = {};
+  row_times = RowTimes(0);
+  tile_plan.reset();
+  schedule_.reset();
   complete_passes_ = 0;
 }
 

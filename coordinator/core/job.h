@@ -101,7 +101,7 @@ class Job {
   bool retract(std::uint64_t renderer);
   /// Counts complete passes on; digests of all but the last few are forgotten.
   void advance();
-  /// Passes, faults and digests are not needed any more; the figures stay.
+  /// Passes, plans, faults and digests are not needed any more; the figures stay.
   void finish();
 
   std::uint64_t planned_samples() const;   ///< of all passes

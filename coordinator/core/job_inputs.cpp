@@ -7,6 +7,7 @@
 #include "coordinator/core/pass_plan.h"
 #include "coordinator/core/state.h"
 #include "proto/wire/limits.h"
+#include "renderlib/base/clean_text.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -121,7 +122,9 @@ bool Core::State::plan_timed(Job& job) {
 
 void Core::State::on(const input::PassMerged& in) {
   Job* job = find(in.job);
-  if (job == nullptr || is_final(job->state) || in.samples < job->error_at) {
+  // More samples than are complete: it is of pixels that were taken back since.
+  if (job == nullptr || is_final(job->state) || in.samples < job->error_at ||
+      in.samples > job->complete_samples()) {
     return;
   }
   if (const double error = in.error_at_most(); error >= 0) {
@@ -210,7 +213,7 @@ void Core::State::end(Job& job, JobState state, const std::string& reason) {
   for (const WorkerShare& share : job.largest_shares()) {
     emit(record::ShareCounted{job.id, share});
   }
-  emit(record::StateChanged{job.id, state, reason.substr(0, wire::kReasonBytes)});
+  emit(record::StateChanged{job.id, state, clean_text(reason, wire::kReasonBytes)});
   act(action::DropBands{job.id});
 }
 

@@ -3,6 +3,7 @@
 #include "absl/strings/str_cat.h"
 #include "coordinator/core/state.h"
 #include "proto/wire/limits.h"
+#include "renderlib/base/clean_text.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -90,7 +91,8 @@ void Core::State::on(const input::SetPriority& in) {
 void Core::State::on(const input::StorageFailed& in) {
   Job* job = find(in.job);
   if (job != nullptr && (job->state == JobState::kRunning || job->state == JobState::kFinishing)) {
-    emit(record::StateChanged{job->id, JobState::kPaused, in.reason.substr(0, wire::kReasonBytes)});
+    emit(record::StateChanged{job->id, JobState::kPaused,
+                              clean_text(in.reason, wire::kReasonBytes)});
   }
 }
 

@@ -8,6 +8,7 @@
 #include "coordinator/core/renderer.h"
 #include "coordinator/core/state.h"
 #include "proto/wire/limits.h"
+#include "renderlib/base/clean_text.h"
 
 namespace bandsaw::coordinator {
 
@@ -56,7 +57,7 @@ void Core::State::quarantine(const Witness& witness, const std::string& reason) 
   for (const std::uint64_t renderer : renderers) {
     if (renderer != 0 && !quarantined_.contains(renderer)) {
       emit(record::WorkerQuarantined{renderer, witness.machine,
-                                     reason.substr(0, wire::kReasonBytes)});
+                                     clean_text(reason, wire::kReasonBytes)});
     }
   }
   for (const WorkerId id : workers) {

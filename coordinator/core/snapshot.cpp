@@ -29,7 +29,7 @@ void Core::State::add_records(const Job& job, std::vector<Record>& out) {
     }
     out.push_back(record::PassPlanned{job.id, pass.samples});
   }
-  if (!tiles && !is_final(job.state)) {
+  if (!tiles) {
     out.push_back(record::TilesPlanned{job.id, *job.tile_plan});
   }
   if (job.fixed) {

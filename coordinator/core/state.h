@@ -221,6 +221,8 @@ class Core::State {
   std::string name_of_instance(const std::string& instance) const;
   bool left_to_others(const Job& job, const Worker& worker, const Band& band) const;
   bool may_render(const Worker& worker, const Job& job) const;
+  bool someone_may_render(const Job& job) const;
+  void give_up(Job& job, const std::string& reason);
   bool someone_else(const Job& job, const Band& band) const;
   struct Losing {
     JobId job = 0;

@@ -44,10 +44,7 @@ std::string Core::State::waiting_reason(const Job& job) const {
                : absl::StrCat("no worker is connected; ", refusals_.back().worker.name,
                               " was refused: ", refusals_.back().worker.reason);
   }
-  const bool somebody = std::any_of(
-      workers_.all().begin(), workers_.all().end(),
-      [&](const auto& entry) { return entry.second.eligible() && may_render(entry.second, job); });
-  if (!somebody) {
+  if (!someone_may_render(job)) {
     return absl::StrCat("no connected worker can render it; the last: ", job.notice);
   }
   const std::string busy = job.any_free() ? busy_with(job) : "";

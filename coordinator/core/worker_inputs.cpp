@@ -6,6 +6,7 @@
 #include "coordinator/core/fitness.h"
 #include "coordinator/core/state.h"
 #include "proto/wire/limits.h"
+#include "renderlib/base/clean_text.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -48,7 +49,7 @@ void Core::State::remember_refusal(const WorkerHello& worker, const std::string&
   WorkerView view;
   view.name = worker.name;
   view.state = "refused";
-  view.reason = reason.substr(0, wire::kReasonBytes);
+  view.reason = clean_text(reason, wire::kReasonBytes);
   view.address = worker.address;
   view.build = worker.build;
   view.threads = worker.threads;
@@ -140,7 +141,7 @@ void Core::State::on(const input::Heartbeat& in) {
     return;
   }
   worker->heard_at = clock_.patience();
-  worker->doing = in.doing.substr(0, wire::kReasonBytes);
+  worker->doing = clean_text(in.doing, wire::kReasonBytes);
   for (const LeaseProgress& progress : in.leases) {
     const auto place = std::find(worker->leases.begin(), worker->leases.end(), progress.lease);
     if (place == worker->leases.end()) {
@@ -159,7 +160,7 @@ void Core::State::on(const input::Heartbeat& in) {
 void Core::State::on(const input::Draining& in) {
   if (Worker* worker = workers_.by_session(in.session)) {
     worker->draining = true;
-    worker->reason = in.reason.substr(0, wire::kReasonBytes);
+    worker->reason = clean_text(in.reason, wire::kReasonBytes);
     worker->heard_at = clock_.patience();
     hunger_.update(*worker);
   }
@@ -176,7 +177,7 @@ void Core::State::lose(Worker& worker, const std::string& reason) {
   worker.fell_silent = is_silent(worker);
   end_all(std::vector<LeaseId>(worker.leases), Revoke::kNo);
   if (!worker.quarantined) {
-    worker.reason = reason.substr(0, wire::kReasonBytes);
+    worker.reason = clean_text(reason, wire::kReasonBytes);
   }
   worker.doing.clear();
   if (joined_.contains(worker.instance)) {

@@ -37,10 +37,10 @@ struct Worker {
 
   /// Of one job that is not final.
   struct OnJob {
-    Speed speed;              ///< pixel samples a second: what people see
-    Speed pace;               ///< work a second (cost_map.h): what bands are sized by
-    std::uint32_t bands = 0;  ///< measured
-    std::uint32_t faults = 0;
+    Speed speed;               ///< pixel samples a second: what people see
+    Speed pace;                ///< work a second (cost_map.h): what bands are sized by
+    std::uint32_t bands = 0;   ///< measured
+    std::uint32_t faults = 0;  ///< since a band of it was stored
   };
   std::map<JobId, OnJob> on_job;
 

@@ -12,17 +12,22 @@
 
 namespace bandsaw::coordinator {
 
-std::set<wire::Digest> Collector::blobs_of(const DigestHex& manifest) {
+std::optional<std::set<wire::Digest>> Collector::blobs_of(const DigestHex& manifest) {
   if (const auto found = known_.find(manifest); found != known_.end()) {
     return found->second;
   }
   const auto digest = wire::digest_from_hex(manifest);
   if (!digest.ok()) {
-    return {};
+    return std::set<wire::Digest>();
   }
   const auto bytes = blobs_.get(*digest);
+  if (absl::IsNotFound(bytes.status()) || absl::IsDataLoss(bytes.status())) {
+    return std::set<wire::Digest>();  // asked again: it may be sent anew
+  }
   if (!bytes.ok()) {
-    return {};  // asked again: it may be sent anew
+    spdlog::warn("no blob is removed now: the scene {} cannot be read: {}", manifest,
+                 bytes.status().ToString());
+    return std::nullopt;
   }
   const auto text = (*bytes)->bytes();
   const auto refs = package_blobs({reinterpret_cast<const char*>(text.data()), text.size()});
@@ -31,6 +36,10 @@ std::set<wire::Digest> Collector::blobs_of(const DigestHex& manifest) {
     blobs.insert(ref.digest);
   }
   return known_.emplace(manifest, std::move(blobs)).first->second;
+}
+
+std::set<wire::Digest> Collector::known_blobs_of(const DigestHex& manifest) {
+  return blobs_of(manifest).value_or(std::set<wire::Digest>());
 }
 
 /// Its bands are removed when it becomes final, which is the last change of its folder.
@@ -60,7 +69,7 @@ std::vector<JobId> Collector::to_forget(const std::vector<Job>& jobs, double now
   std::vector<Final> final_jobs;
   for (const Job& job : jobs) {
     manifests[job.id] = job.manifest;
-    for (const wire::Digest& digest : blobs_of(job.manifest)) {
+    for (const wire::Digest& digest : known_blobs_of(job.manifest)) {
       ++users[digest];
     }
     if (job.final) {
@@ -79,7 +88,7 @@ std::vector<JobId> Collector::to_forget(const std::vector<Job>& jobs, double now
     }
     forget.push_back(job.id);
     bytes -= std::min(bytes, job.bytes);
-    for (const wire::Digest& digest : blobs_of(manifests[job.id])) {
+    for (const wire::Digest& digest : known_blobs_of(manifests[job.id])) {
       if (--users[digest] == 0) {
         bytes -= std::min(bytes, sizes[digest]);
       }
@@ -88,17 +97,7 @@ std::vector<JobId> Collector::to_forget(const std::vector<Job>& jobs, double now
   return forget;
 }
 
-void Collector::sweep(const std::vector<Job>& jobs, double now) {
-  std::set<wire::Digest> needed;
-  std::set<JobId> ids;
-  std::set<DigestHex> manifests;
-  for (const Job& job : jobs) {
-    ids.insert(job.id);
-    manifests.insert(job.manifest);
-    const std::set<wire::Digest> blobs = blobs_of(job.manifest);
-    needed.insert(blobs.begin(), blobs.end());
-  }
-  std::erase_if(known_, [&](const auto& one) { return !manifests.contains(one.first); });
+void Collector::remove_unneeded(const std::set<wire::Digest>& needed, double now) {
   std::size_t removed = 0;
   for (const BlobStore::Stored& blob : blobs_.list()) {
     if (!needed.contains(blob.digest) && now - blob.used_at > keep_.unused_seconds) {
@@ -109,6 +108,26 @@ void Collector::sweep(const std::vector<Job>& jobs, double now) {
     spdlog::info("removed {} blobs that no job needs", removed);
   }
   blobs_.remove_partials(now, keep_.unused_seconds);
+}
+
+void Collector::sweep(const std::vector<Job>& jobs, double now) {
+  std::set<wire::Digest> needed;
+  std::set<JobId> ids;
+  std::set<DigestHex> manifests;
+  bool all_known = true;
+  for (const Job& job : jobs) {
+    ids.insert(job.id);
+    manifests.insert(job.manifest);
+    if (const auto blobs = blobs_of(job.manifest)) {
+      needed.insert(blobs->begin(), blobs->end());
+    } else {
+      all_known = false;
+    }
+  }
+  std::erase_if(known_, [&](const auto& one) { return !manifests.contains(one.first); });
+  if (all_known) {
+    remove_unneeded(needed, now);
+  }
   // A job that was added meanwhile has a higher number than any of these.
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder_.jobs(), error)) {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <set>
 #include <vector>
 
@@ -49,8 +50,11 @@ class Collector {
     std::uint64_t bytes = 0;
   };
   Final final_job(JobId id) const;
-  /// The blobs of a package, its manifest among them; fewer when it is gone or cannot be read.
-  std::set<wire::Digest> blobs_of(const DigestHex& manifest);
+  /// The blobs of a package, its manifest among them; none when that is gone, nothing when it is
+  /// there and cannot be read.
+  std::optional<std::set<wire::Digest>> blobs_of(const DigestHex& manifest);
+  std::set<wire::Digest> known_blobs_of(const DigestHex& manifest);
+  void remove_unneeded(const std::set<wire::Digest>& needed, double now);
 
   const DataFolder& folder_;
   BlobStore& blobs_;

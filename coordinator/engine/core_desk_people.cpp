@@ -17,7 +17,9 @@ void CoreDesk::submit(JobSpec spec, std::int32_t priority, Answer<JobId> answer)
       answer(decided);
     } else if (!journalled.ok()) {
       // Its submitter hears that it failed, so it must not begin by itself when the disk is back.
+      // Nor is it what a second try with the same request id is told of.
       run(input::Cancel{.job = job});
+      forget({job});
       answer(absl::ResourceExhaustedError(journalled.message()));
     } else {
       answer(job);
@@ -26,6 +28,10 @@ void CoreDesk::submit(JobSpec spec, std::int32_t priority, Answer<JobId> answer)
 }
 
 void CoreDesk::tell(JobId id, const Input& input, Answer<JobView> answer) {
+  if (!journal_status_.ok()) {
+    answer(journal_status_);
+    return;
+  }
   const Step step = run(input);
   outbox_.reply([this, id, decided = step.status,
                  answer = std::move(answer)](const absl::Status& journalled) mutable {
@@ -41,6 +47,10 @@ void CoreDesk::tell(JobId id, const Input& input, Answer<JobView> answer) {
 }
 
 void CoreDesk::tell_of_worker(const Input& input, Answer<bool> answer) {
+  if (!journal_status_.ok()) {
+    answer(journal_status_);
+    return;
+  }
   const Step step = run(input);
   outbox_.reply(
       [decided = step.status, answer = std::move(answer)](const absl::Status& journalled) mutable {

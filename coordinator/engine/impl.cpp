@@ -89,12 +89,11 @@ Engine::Impl::~Impl() {
   film_thread_.stop();
 }
 
-void Engine::Impl::collect(std::vector<Collector::Job> jobs) {
+void Engine::Impl::collect(const std::vector<Collector::Job>& jobs) {
   const double now = unix_seconds();
+  // What is forgotten goes when the journal says so (action::DropJob), its blobs with the next
+  // sweep.
   std::vector<JobId> old = collector_.to_forget(jobs, now);
-  std::erase_if(jobs, [&](const Collector::Job& job) {
-    return std::find(old.begin(), old.end(), job.id) != old.end();
-  });
   collector_.sweep(jobs, now);
   if (!old.empty()) {
     on_core([old = std::move(old)](CoreDesk& core) { core.forget(old); });
@@ -192,10 +191,11 @@ FilmDesk::Hooks Engine::Impl::film_hooks() {
               },
           .failed =
               [this](JobId job, absl::Status status) {
-                on_store([](StoreDesk& store) { store.expect_trouble(); });
+                // The core hears of it before the store can tell it that the disk is back.
                 on_core([job, status = apart(status)](CoreDesk& core) {
                   core.storage_failed(job, status);
                 });
+                on_store([](StoreDesk& store) { store.expect_trouble(); });
               }};
 }
 

@@ -59,7 +59,7 @@ class Engine::Impl {
   Impl(const EngineOptions& options, EngineDoors doors, DataFolder folder,
        std::unique_ptr<BlobStore> blobs);
   /// On the store's thread.
-  void collect(std::vector<Collector::Job> jobs);
+  void collect(const std::vector<Collector::Job>& jobs);
   CoreDesk::Hooks core_hooks();
   StoreDesk::Hooks store_hooks();
   FilmDesk::Hooks film_hooks();

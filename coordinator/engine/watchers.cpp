@@ -23,11 +23,15 @@ bool changed(const JobView& a, const JobView& b) {
                      });
 }
 
+absl::Status unknown(JobId job) {
+  return absl::NotFoundError(absl::StrCat("there is no job ", job));
+}
+
 }  // namespace
 
 void Watchers::add(JobId job, const std::optional<JobView>& view, Changed changed, Time now) {
   if (!view) {
-    changed(absl::NotFoundError(absl::StrCat("there is no job ", job)));
+    changed(unknown(job));
     return;
   }
   if (!changed(*view) || is_final(view->state)) {
@@ -51,8 +55,15 @@ void Watchers::update(ViewOf view_of, bool hold_final, Time now) {
     }
     watched.looked_at = now;
     const std::optional<JobView> view = view_of(it->first);
-    const bool final = view && is_final(view->state);
-    const bool due = view && (changed(*view, watched.told) || now - watched.told_at >= kLongest_s);
+    if (!view) {
+      for (const Changed& tell : watched.watchers) {
+        tell(unknown(it->first));
+      }
+      it = jobs_.erase(it);
+      continue;
+    }
+    const bool final = is_final(view->state);
+    const bool due = changed(*view, watched.told) || now - watched.told_at >= kLongest_s;
     if (!due || (final && hold_final)) {
       ++it;
       continue;

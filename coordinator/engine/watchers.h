@@ -23,7 +23,8 @@ class Watchers {
   void add(JobId job, const std::optional<JobView>& view, Changed changed, Time now);
 
   /// Tells everybody whose job changed, at most ten times a second a job, and everybody at least
-  /// once a second; a final state always, and last. `hold_final`: not yet, it is not durable.
+  /// once a second; a final state always, and last; NOT_FOUND when the job was forgotten.
+  /// `hold_final`: not yet, it is not durable.
   void update(ViewOf view_of, bool hold_final, Time now);
 
  private:

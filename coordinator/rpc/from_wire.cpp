@@ -5,8 +5,8 @@
 #include "absl/strings/str_cat.h"
 #include "coordinator/rpc/convert.h"
 #include "proto/wire/limits.h"
+#include "renderlib/base/clean_text.h"
 #include "renderlib/base/status_macros.h"
-#include "renderlib/package/clean_text.h"
 
 namespace bandsaw::coordinator {
 namespace {

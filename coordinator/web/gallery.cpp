@@ -8,7 +8,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "proto/wire/digest.h"
-#include "renderlib/package/clean_text.h"
+#include "renderlib/base/clean_text.h"
 
 namespace bandsaw::coordinator {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstring>
 #include <memory>
 
 #include "absl/strings/ascii.h"
@@ -176,6 +177,15 @@ absl::StatusOr<JoinString> join_string_from(const std::string& text) {
     return absl::InvalidArgumentError(absl::StrCat(text, ": ", join.status().message()));
   }
   return join;
+}
+
+void hide_join_strings(absl::Span<char* const> arguments) {
+  for (char* argument : arguments) {
+    if (char* found = std::strstr(argument, kForm)) {
+      found += std::strlen(kForm);
+      std::memset(found, 'x', std::strlen(found));
+    }
+  }
 }
 
 }  // namespace bandsaw::link

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "absl/types/span.h"
 #include "proto/wire/digest.h"
 
 namespace bandsaw::link {
@@ -34,5 +35,9 @@ absl::StatusOr<JoinString> parse_join_string(const std::string& text);
 
 /// `text` is a join string, or the name of a file that holds one, or "-" for standard input.
 absl::StatusOr<JoinString> join_string_from(const std::string& text);
+
+/// Writes over the join strings among a process's own arguments, which every user of the machine
+/// can list while it runs. To be called once they are parsed.
+void hide_join_strings(absl::Span<char* const> arguments);
 
 }  // namespace bandsaw::link

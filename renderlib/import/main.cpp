@@ -31,6 +31,7 @@
 #include "absl/strings/str_cat.h"
 #include "proto/wire/limits.h"
 #include "renderlib/base/atomic_file.h"
+#include "renderlib/base/clean_text.h"
 #include "renderlib/base/file.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/import/files/confine.h"
@@ -38,7 +39,6 @@
 #include "renderlib/import/image/decode_image.h"
 #include "renderlib/import/import.h"
 #include "renderlib/package/blob_folder.h"
-#include "renderlib/package/clean_text.h"
 
 namespace bandsaw {
 namespace {

@@ -61,6 +61,18 @@ bool is_at(int fd, const std::string& path) {
          open_file.st_ino == named.st_ino && open_file.st_dev == named.st_dev;
 }
 
+/// Not one that is being downloaded: another worker's commit would give the blob's name to a part
+/// that a third has begun anew.
+bool remove_unused(const std::string& path) {
+  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+  if (fd < 0) {
+    return false;
+  }
+  const bool removed = flock(fd, LOCK_EX | LOCK_NB) == 0 && unlink(path.c_str()) == 0;
+  close(fd);
+  return removed;
+}
+
 }  // namespace
 
 BlobCache::BlobCache(std::string folder, std::uint64_t max_bytes)
@@ -137,7 +149,7 @@ void BlobCache::make_room(std::uint64_t added, const std::string& newest) {
     if (bytes_ <= max_bytes_) {
       break;
     }
-    if (entry.path != newest && unlink(entry.path.c_str()) == 0) {
+    if (entry.path != newest && remove_unused(entry.path)) {
       bytes_ -= entry.bytes;
     }
   }
@@ -182,7 +194,7 @@ absl::Status BlobCache::Download::commit() {
   }
   const std::string path = cache_.blobs_.path_of(digest_);
   if (rename(part.c_str(), path.c_str()) != 0) {
-    // Thrown away by a worker that made room: it is fetched again.
+    // Thrown away by a person who made room: it is fetched again.
     return absl::UnavailableError(errno_status(errno, part).message());
   }
   cache_.make_room(offset_, path);

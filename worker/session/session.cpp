@@ -6,8 +6,8 @@
 #include "absl/strings/str_cat.h"
 #include "proto/wire/limits.h"
 #include "proto/wire/versions.h"
+#include "renderlib/base/clean_text.h"
 #include "renderlib/base/status_macros.h"
-#include "renderlib/package/clean_text.h"
 
 namespace bandsaw::worker {
 namespace {

@@ -119,6 +119,40 @@ TEST(Loss, ABandThatFailsThreeTimesFailsTheJobWithTheReason) {
   EXPECT_EQ(farm.all<action::DropBands>().size(), 1u);
 }
 
+TEST(Loss, AJobThatNoConnectedWorkerCanRenderFails) {
+  FarmDriver farm(slow());
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 64));
+  farm.hello(1, "a", 3);
+  farm.hello(2, "b", 3);
+  const auto leases = farm.all<action::Lease>();
+  ASSERT_EQ(leases.size(), 6u);
+  for (std::size_t i = 0; i < 6; ++i) {
+    ASSERT_EQ(farm.job(job).state, JobState::kRunning) << i;
+    farm.say(input::BandFailed{
+        leases[i].session, leases[i].lease, "cannot read the scene", {"its last line"}});
+  }
+  EXPECT_EQ(farm.job(job).state, JobState::kFailed);
+  for (const char* part : {"each worker", "3 of its bands", "worker-b", "cannot read the scene"}) {
+    EXPECT_NE(farm.job(job).reason.find(part), std::string::npos) << farm.job(job).reason;
+  }
+  EXPECT_EQ(farm.job(job).log, std::vector<std::string>{"its last line"});
+}
+
+TEST(Loss, AWorkerThatFailsNowAndThenKeepsItsJob) {
+  FarmDriver farm(slow());
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 64));
+  farm.hello(1, "a", 1);
+  for (int i = 0; i < 12; ++i) {
+    const action::Lease lease = farm.all<action::Lease>().back();
+    if (i % 3 == 2) {
+      farm.stored(lease, "a");
+    } else {
+      farm.say(input::BandFailed{1, lease.lease, "out of memory", {}});
+    }
+    ASSERT_EQ(farm.job(job).state, JobState::kRunning) << i;
+  }
+}
+
 /// A worker that takes the first band and goes.
 void lose_one(FarmDriver& farm, SessionId session, const std::string& instance) {
   farm.hello(session, instance, 1);

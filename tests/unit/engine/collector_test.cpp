@@ -117,6 +117,21 @@ TEST_F(CollectorTest, NeverRemovesWhatAKnownJobNeeds) {
   }
 }
 
+TEST_F(CollectorTest, NothingIsRemovedWhileWhatAJobNeedsCannotBeRead) {
+  const DigestHex one = package("one");
+  const wire::Digest other = put("of no job that can be read", kNow - 2 * kDay);
+  const std::string path = folder_.blobs() + "/" + one.substr(0, 2) + "/" + one;
+  ASSERT_TRUE(std::filesystem::remove(path));
+  ASSERT_TRUE(std::filesystem::create_directory(path));
+  const absl::Status unreadable = blobs_->get(*wire::digest_from_hex(one)).status();
+  ASSERT_FALSE(unreadable.ok() || absl::IsNotFound(unreadable)) << unreadable;
+  collector({}).sweep({{1, one, false}}, kNow);
+  EXPECT_TRUE(blobs_->has(other));
+  ASSERT_TRUE(std::filesystem::remove(path));
+  collector({}).sweep({{1, one, false}}, kNow);
+  EXPECT_FALSE(blobs_->has(other)) << "a scene that is gone needs nothing";
+}
+
 TEST_F(CollectorTest, BlobsThatJustCameOrAreAskedForStay) {
   const wire::Digest old = put("old", kNow - 2 * kDay);
   const wire::Digest young = put("young", kNow - kDay / 2);

@@ -94,16 +94,27 @@ TEST_F(FullDiskTest, ASubmitThatCannotBeJournalledFailsAndDoesNotBeginLater) {
   EXPECT_EQ(refused.code(), absl::StatusCode::kResourceExhausted);
   EXPECT_THAT(std::string(refused.message()), HasSubstr("journal"));
   disk_->mend();
-  wait_for(1, JobState::kCancelled);
-  JobSpec again = spec;
-  again.request_id = "another request id";
-  absl::StatusOr<JobId> job = farm_.submit(again);
+  absl::StatusOr<JobId> job = farm_.submit(spec);
   while (!job.ok()) {
     time_->advance(1);
-    job = farm_.submit(again);
+    job = farm_.submit(spec);
   }
   ASSERT_TRUE(farm_.put(*job, rendered(0, 14)).ok());
   expect_local_image(*job);
+}
+
+TEST_F(FullDiskTest, ResumingIsRefusedWhileTheJournalIs) {
+  const JobId job = farm_.begin(StopAtSamples{.samples = 16});
+  ASSERT_TRUE(farm_.put(job, rendered(0, 7)).ok());
+  disk_->break_it();
+  EXPECT_FALSE(farm_.put(job, rendered(7, 14)).ok());
+  wait_for(job, JobState::kPaused);
+  Box<absl::Status> said;
+  farm_.engine().resume(job, [&](const absl::StatusOr<JobView>& view) { said.put(view.status()); });
+  EXPECT_EQ(said.take().code(), absl::StatusCode::kResourceExhausted);
+  EXPECT_EQ(wait_for(job, JobState::kPaused).state, JobState::kPaused);
+  disk_->mend();
+  expect_local_image(job);
 }
 
 TEST_F(FullDiskTest, NothingIsAcknowledgedThatTheJournalDoesNotHold) {

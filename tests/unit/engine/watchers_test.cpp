@@ -84,6 +84,16 @@ TEST_F(WatchersTest, WatchingAFinalJobEndsWithItsState) {
   EXPECT_EQ(told_.size(), 1u);
 }
 
+TEST_F(WatchersTest, AJobThatIsForgottenEndsTheWatch) {
+  watch();
+  for (int i = 0; i < 50; ++i) {
+    now_ += 0.01;
+    watchers_.update([](JobId) { return std::nullopt; }, false, now_);
+  }
+  ASSERT_EQ(told_.size(), 2u);
+  EXPECT_EQ(told_[1].status().code(), absl::StatusCode::kNotFound);
+}
+
 TEST_F(WatchersTest, WhoSaysNoIsNotToldAgainAndOthersAre) {
   watch(2);
   watch();

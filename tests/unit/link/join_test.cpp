@@ -128,5 +128,16 @@ TEST(JoinStringFrom, DoesNotRepeatAMistypedSecret) {
   EXPECT_THAT(std::string(join.status().message()), Not(HasSubstr(kSecret)));
 }
 
+TEST(HideJoinStrings, LeavesNothingOfASecretAmongTheArguments) {
+  std::string name = "bandsaw-worker";
+  std::string apart = example().text();
+  std::string joined = absl::StrCat("--join=", example().text());
+  char* arguments[] = {name.data(), apart.data(), joined.data()};
+  hide_join_strings(arguments);
+  EXPECT_EQ(name, "bandsaw-worker");
+  EXPECT_EQ(apart, "bsw1-" + std::string(example().text().size() - 5, 'x'));
+  EXPECT_EQ(joined, "--join=" + apart);
+}
+
 }  // namespace
 }  // namespace bandsaw::link

@@ -4,8 +4,8 @@
 
 #include <fstream>
 
+#include "renderlib/base/clean_text.h"
 #include "renderlib/package/blob_folder.h"
-#include "renderlib/package/clean_text.h"
 #include "tests/support/temp_dir.h"
 
 namespace bandsaw {

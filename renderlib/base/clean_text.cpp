@@ -1,4 +1,4 @@
-#include "renderlib/package/clean_text.h"
+#include "renderlib/base/clean_text.h"
 
 #include <cstdint>
 
