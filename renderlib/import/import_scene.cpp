@@ -25,6 +25,7 @@
 #include "renderlib/import/scene_file/read_view.h"
 #include "renderlib/import/scene_file/use_camera.h"
 #include "renderlib/package/check.h"
+#include "renderlib/scene/validate.h"
 
 namespace bandsaw {
 namespace {
@@ -150,7 +151,10 @@ absl::StatusOr<ImportedScene> import_scene(const std::string& path, const Import
     draft.out.scene.background = {};
     draft.out.scene.background.environment = Environment{.images = {image}};
   }
-  if (const absl::Status good = check_description(draft.out.scene); !good.ok()) {
+  // What a worker would refuse is refused here, before anybody waits for it.
+  absl::Status good = check_description(draft.out.scene);
+  good.Update(validate(draft.out.scene));
+  if (!good.ok()) {
     return absl::InvalidArgumentError(absl::StrCat(draft.file, ": ", good.message()));
   }
   return std::move(draft.out);

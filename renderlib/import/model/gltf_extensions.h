@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "renderlib/import/model/gltf_load_order.h"
 #include "renderlib/texture/texture.h"
 
 namespace bandsaw {
@@ -35,13 +36,7 @@ struct GltfMaterial {
   std::optional<double> index_of_refraction;  ///< KHR_materials_ior
   std::optional<GltfSpecular> specular;
   double coat_normal_scale = 1;  ///< of KHR_materials_clearcoat
-};
-
-/// A camera at a node: Assimp knows but one node of each camera.
-struct GltfCamera {
-  std::size_t node = 0;    ///< the how manieth of Assimp's tree, parents first
-  std::size_t camera = 0;  ///< the how manieth that Assimp loads
-  std::string name;        ///< its own, beside its node's; may be empty
+  bool unlit = false;            ///< KHR_materials_unlit
 };
 
 struct GltfExtensions {
@@ -49,13 +44,14 @@ struct GltfExtensions {
   /// Those that the scene uses, in the order in which Assimp meets them: nodes depth first, each
   /// after its children. None of glTF 1.
   std::vector<GltfMaterial> materials;
-  std::vector<GltfCamera> cameras;  ///< of the default scene; none of glTF 1
+  std::vector<GltfAtNode> cameras;  ///< of the default scene; none of glTF 1
+  std::vector<GltfAtNode> lights;   ///< likewise
   std::size_t scenes = 1;
   std::size_t lights_with_range = 0;  ///< KHR_lights_punctual: a hint to cut light off
 };
 
-/// Of a .gltf or .glb. Nothing is an error: what cannot be read is left to Assimp to complain
-/// about.
-GltfExtensions read_gltf_extensions(const std::string& path);
+/// Of a .gltf or .glb. INVALID_ARGUMENT when it needs what neither Assimp nor we can read; what is
+/// no glTF at all is left to Assimp to complain about.
+absl::StatusOr<GltfExtensions> read_gltf_extensions(const std::string& path);
 
 }  // namespace bandsaw

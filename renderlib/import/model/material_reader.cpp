@@ -77,7 +77,8 @@ const GltfMaterial* MaterialReader::gltf() const {
   if (index_ < all.size() && (all[index_].name.empty() || is_this(all[index_]))) {
     return &all[index_];
   }
-  const auto found = std::find_if(all.begin(), all.end(), is_this);
+  // What has no name, as Assimp's material for primitives without one, is none of the others.
+  const auto found = name.length == 0 ? all.end() : std::find_if(all.begin(), all.end(), is_this);
   return found == all.end() ? nullptr : &*found;
 }
 

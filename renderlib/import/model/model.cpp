@@ -146,6 +146,15 @@ bool is_model_file(const std::string& path) {
 absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, SceneDraft& draft) {
   const std::string name = name_of(path);
   const std::size_t warnings_before = draft.out.info.warnings.size();
+  GltfExtensions gltf;
+  if (kind_of(path) == ModelKind::kGltf) {
+    auto read = read_gltf_extensions(path);
+    if (!read.ok()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(name, ": cannot be read: ", read.status().message()));
+    }
+    gltf = *std::move(read);
+  }
   RefusedFiles refused;
   Assimp::Importer importer;
   importer.SetIOHandler(std::make_unique<AssimpFiles>(draft.folder, path, refused).release());
@@ -156,10 +165,7 @@ absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, S
   if (scene == nullptr || scene->mRootNode == nullptr || !refused.outside.empty()) {
     return read_failure(name, refused, importer.GetErrorString());
   }
-  ModelFile file{*scene, path, kind_of(path), {}, draft};
-  if (file.kind == ModelKind::kGltf) {
-    file.gltf = read_gltf_extensions(path);
-  }
+  ModelFile file{*scene, path, kind_of(path), std::move(gltf), draft};
   warn_of_missing(name, refused, draft);
   warn_of_unused(file);
 

@@ -43,7 +43,7 @@ absl::StatusOr<ModelMaterial> read_unlit(MaterialReader& reader) {
 absl::StatusOr<ModelMaterial> read_model_material(ModelFile& file, unsigned index) {
   MaterialReader reader(file, index);
   name_unused_textures(reader);
-  if (reader.number("$mat.gltf.unlit", 0, 1).value_or(0) != 0) {
+  if (reader.gltf() != nullptr && reader.gltf()->unlit) {
     return read_unlit(reader);
   }
   const bool principled = file.kind == ModelKind::kGltf ||

@@ -147,13 +147,15 @@ class MeshReader {
   std::vector<std::string>& warnings_;
 };
 
+// Colours of three channels come from Assimp with an alpha of 0.
 bool has_clear_colors(const aiMesh& from) {
-  for (unsigned i = 0; from.HasVertexColors(0) && i < from.mNumVertices; ++i) {
-    if (from.mColors[0][i].a < 1) {
-      return true;
-    }
-  }
-  return false;
+  const aiColor4D* colors = from.mColors[0];
+  const auto count = [&](auto has) {
+    return from.HasVertexColors(0) ? std::count_if(colors, colors + from.mNumVertices, has) : 0;
+  };
+  const auto clear = count([](const aiColor4D& c) { return c.a < 1; });
+  const auto all_clear = count([](const aiColor4D& c) { return c.a == 0; });
+  return clear > 0 && all_clear < from.mNumVertices;
 }
 
 // Where the first node that bears each mesh stands.

@@ -60,16 +60,21 @@ class Walk {
  public:
   Walk(ModelFile& file, const ModelMeshes& meshes) : file_(file), meshes_(meshes) {
     const aiScene& scene = file.scene;
-    for (const GltfCamera& camera : file.gltf.cameras) {
-      if (camera.camera < scene.mNumCameras) {
-        standing_[camera.node] = {scene.mCameras[camera.camera], camera.name};
+    for (const GltfAtNode& camera : file.gltf.cameras) {
+      if (camera.loaded < scene.mNumCameras) {
+        standing_[camera.node] = {scene.mCameras[camera.loaded], camera.name};
+      }
+    }
+    for (const GltfAtNode& light : file.gltf.lights) {
+      if (light.loaded < scene.mNumLights) {
+        shining_[light.node] = scene.mLights[light.loaded];
       }
     }
     const bool by_name = file.gltf.cameras.empty() && has_usable_cameras(file);
     for (unsigned i = 0; by_name && i < scene.mNumCameras; ++i) {
       cameras_.emplace(scene.mCameras[i]->mName.C_Str(), scene.mCameras[i]);
     }
-    for (unsigned i = 0; i < scene.mNumLights; ++i) {
+    for (unsigned i = 0; file.gltf.lights.empty() && i < scene.mNumLights; ++i) {
       lights_.emplace(scene.mLights[i]->mName.C_Str(), scene.mLights[i]);
     }
     stack_.push_back({scene.mRootNode, Transform{}});
@@ -117,10 +122,8 @@ class Walk {
       model.instances.push_back({meshes_[number]->mesh, meshes_[number]->material, to_model});
     }
     add_camera(node, to_model);
-    const auto [first, last] = lights_.equal_range(node.mName.C_Str());
-    for (auto light = first; light != last; ++light) {
-      add_model_light(*light->second, to_model, file_, model);
-    }
+    add_lights(node, to_model);
+    ++visited_;
     // Backwards, so that children are visited in the order of the file.
     for (unsigned i = node.mNumChildren; i-- > 0;) {
       stack_.push_back({node.mChildren[i], to_model});
@@ -128,7 +131,7 @@ class Walk {
   }
 
   void add_camera(const aiNode& node, const Transform& to_model) {
-    const auto standing = standing_.find(visited_++);
+    const auto standing = standing_.find(visited_);
     const auto named = cameras_.find(node.mName.C_Str());
     const CameraAtNode found = standing != standing_.end() ? standing->second
                                : named != cameras_.end()   ? CameraAtNode{named->second}
@@ -142,11 +145,22 @@ class Walk {
     }
   }
 
+  void add_lights(const aiNode& node, const Transform& to_model) {
+    if (const auto shining = shining_.find(visited_); shining != shining_.end()) {
+      add_model_light(*shining->second, to_model, file_, model);
+    }
+    const auto [first, last] = lights_.equal_range(node.mName.C_Str());
+    for (auto light = first; light != last; ++light) {
+      add_model_light(*light->second, to_model, file_, model);
+    }
+  }
+
   ModelFile& file_;
   const ModelMeshes& meshes_;
   std::size_t visited_ = 0;                         ///< nodes
   std::map<std::size_t, CameraAtNode> standing_;    ///< glTF's, by the visit of their nodes
   std::map<std::string, const aiCamera*> cameras_;  ///< others, by the names of their nodes
+  std::map<std::size_t, const aiLight*> shining_;   ///< glTF's lights, likewise
   std::multimap<std::string, const aiLight*> lights_;
   std::vector<Entry> stack_;
   std::set<unsigned> skinned_;  ///< those that are placed: their bones place them, not their nodes

@@ -217,6 +217,25 @@ TEST(ModelLights, OfGltfHaveItsUnitsAndStandAtTheirNodes) {
   EXPECT_TRUE(is_black(imported->scene.background.top)) << "it brings its own light";
 }
 
+TEST(ModelLights, OneAtSeveralNodesShinesFromEach) {
+  const TempDir folder;
+  std::string text = gltf_with_lights();
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    ASSERT_NE(text.find(from), std::string::npos) << from;
+    text.replace(text.find(from), from.size(), to);
+  };
+  replace(R"({"light": 2})", R"({"light": 1})");
+  replace(R"("name": "c")", R"("name": "b")");
+  replace(R"("name": "t")", R"("name": "b")");  // and no third one, where a node has that name
+  const auto imported = import_scene(write_text(folder, "m.gltf", text));
+  ASSERT_TRUE(imported.ok()) << imported.status();
+  const auto& lights = imported->scene.lights;
+  ASSERT_EQ(lights.size(), 3u);
+  EXPECT_TRUE(std::holds_alternative<DirectionalLight>(lights[0]));
+  EXPECT_EQ(std::get<PointLight>(lights[1]).position, (Vec3{1, 2, 3}));
+  EXPECT_EQ(std::get<PointLight>(lights[2]).position, (Vec3{0, 5, 0}));
+}
+
 TEST(ModelLights, RangesAreLeftOutAndNamed) {
   const TempDir folder;
   std::string text = gltf_with_lights();

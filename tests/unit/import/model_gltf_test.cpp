@@ -200,6 +200,53 @@ TEST_F(Gltf, WhatIsNotRenderedIsNamed) {
   EXPECT_THAT(imported.info.warnings, Not(Contains(HasSubstr("xmp"))));
 }
 
+TEST_F(Gltf, AnUnlitMaterialIsDiffuseAndNamed) {
+  GltfTriangle file;
+  file.more = R"("extensionsUsed": ["KHR_materials_unlit"],)";
+  file.materials = R"({"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.25, 1, 1]},
+    "extensions": {"KHR_materials_unlit": {}}})";
+  const ImportedScene imported = read(file);
+  EXPECT_THAT(imported.info.warnings, ElementsAre(HasSubstr("is unlit")));
+  EXPECT_TRUE(std::holds_alternative<Diffuse>(imported.scene.materials.at(0)));
+}
+
+TEST_F(Gltf, APrimitiveWithoutAMaterialHasNobodyElses) {
+  GltfTriangle file;
+  file.materials = R"({"extensions": {"KHR_materials_unlit": {}}})";
+  file.primitives = R"(, {"attributes": {"POSITION": 0}})";
+  const ImportedScene imported = read(file);
+  ASSERT_EQ(imported.scene.geometry.instances.size(), 2u);
+  const auto material = [&](std::size_t i) {
+    return imported.scene.materials.at(index_of(imported.scene.geometry.instances[i].material));
+  };
+  EXPECT_TRUE(std::holds_alternative<Diffuse>(material(0)));
+  ASSERT_TRUE(std::holds_alternative<Principled>(material(1)));
+  EXPECT_EQ(std::get<Principled>(material(1)).base_color.factor, (Rgb{1, 1, 1}));
+}
+
+TEST_F(Gltf, ColoursOfThreeChannelsHaveNoAlphaToLeaveOut) {
+  GltfTriangle file;
+  file.colors = true;
+  EXPECT_THAT(read(file).info.warnings, IsEmpty());
+}
+
+// What Assimp would take for floats, or nobody can read, is refused instead of drawn as rubbish.
+TEST_F(Gltf, WhatCannotBeReadIsRefused) {
+  const auto refused = [&](const GltfTriangle& file) {
+    const auto imported = import_scene(file.write(folder_, "t.gltf"));
+    EXPECT_EQ(imported.status().code(), absl::StatusCode::kInvalidArgument);
+    return std::string(imported.status().message());
+  };
+  GltfTriangle file;
+  file.type_of_uvs = 5123;
+  EXPECT_THAT(refused(file), HasSubstr("t.gltf: cannot be read: its TEXCOORD_0 are integers"));
+  file.type_of_uvs = 5126;
+  file.more = R"("extensionsRequired": ["EXT_meshopt_compression"],)";
+  EXPECT_THAT(refused(file), HasSubstr("requires the extension EXT_meshopt_compression"));
+  file.more = R"("extensionsRequired": ["KHR_texture_transform", "KHR_technique_webgl"],)";
+  EXPECT_TRUE(import_scene(file.write(folder_, "t.gltf")).ok());
+}
+
 // A skinned triangle: one bone that its node lifts by 2, whose inverse bind matrix lowers by 1; and
 // a morph target at weight 0.5 that moves the second vertex along z. The mesh's own node counts for
 // nothing.

@@ -16,7 +16,8 @@ using test::TempDir;
 using test::write_text;
 using ::testing::HasSubstr;
 
-const std::string kHead = R"(camera { position: [0, 1, 5] look_at: [0, 0, 0] shutter_open: 1 shutter_close: 3 }
+const std::string kHead =
+    R"(camera { position: [0, 1, 5] look_at: [0, 0, 0] shutter_open: 1 shutter_close: 3 }
 material { name: "white" diffuse { } }
 material { name: "red" diffuse { } }
 group { name: "pair"
@@ -69,8 +70,8 @@ instance { of: "field" translate: [0, 0, 7] })");
 TEST(Placement, GridsMakeCopiesThatAreTheSameForTheSameSeed) {
   const auto grid = [](const std::string& more) {
     auto imported = import_text(
-        "instance { of: \"pair\" grid { count: [4, 1, 3] step: [10, 0, 20] origin: [1, 2, 3] " + more +
-        "} }");
+        "instance { of: \"pair\" grid { count: [4, 1, 3] step: [10, 0, 20] origin: [1, 2, 3] " +
+        more + "} }");
     EXPECT_TRUE(imported.ok()) << imported.status();
     return imported->scene.geometry.instances;
   };
@@ -236,15 +237,30 @@ TEST(ModelCamera, IsUsedByItsName) {
   EXPECT_TRUE(std::holds_alternative<PerspectiveCamera>(alone->scene.camera)) << "the first";
 }
 
+// Each number is fine; a worker would have refused what they make.
+TEST(Placement, ProductsThatNoWorkerTakesAreRefusedHere) {
+  const TempDir folder;
+  const auto made = import_scene(write_text(folder, "s.textproto", R"(
+camera { position: [0, 0, 5] look_at: [0, 0, 0] }
+material { name: "m" diffuse { } }
+group { name: "g" shape { material: "m" sphere { center: [1, 0, 0] radius: 1 } } }
+group { name: "h" instance { of: "g" scale: 1e20 } }
+instance { of: "h" scale: 1e20 }
+)"));
+  EXPECT_EQ(made.status().code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_THAT(std::string(made.status().message()), HasSubstr("s.textproto: instances[0]"));
+}
+
 TEST(ModelCamera, ErrorsListThoseThereAre) {
   const TempDir folder;
   write_text(folder, "m.gltf", kCameras);
   const auto message = [&](const std::string& text) {
     return std::string(import_scene(write_text(folder, "s.textproto", text)).status().message());
   };
-  EXPECT_THAT(message("camera { use: \"back\" } model { file: \"m.gltf\" }"),
-              HasSubstr("camera.use: no model brings a camera called \"back\"; there are \"front\", "
-                        "\"plan\""));
+  EXPECT_THAT(
+      message("camera { use: \"back\" } model { file: \"m.gltf\" }"),
+      HasSubstr("camera.use: no model brings a camera called \"back\"; there are \"front\", "
+                "\"plan\""));
   EXPECT_THAT(message("camera { use: \"back\" }"), HasSubstr("the scene's models bring none"));
   EXPECT_THAT(message("camera { use: \"front\" vertical_fov: 3 } model { file: \"m.gltf\" }"),
               HasSubstr("camera.use: stands instead of position"));

@@ -1,0 +1,31 @@
+#pragma once
+
+// In which order Assimp 5.2 loads what a glTF file holds: by that its objects are told apart where
+// names are not given, or given twice.
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "renderlib/import/model/gltf_json.h"
+
+namespace bandsaw {
+
+/// A camera or a light at a node: Assimp knows but one node of each.
+struct GltfAtNode {
+  std::size_t node = 0;    ///< the how manieth of Assimp's tree, parents first
+  std::size_t loaded = 0;  ///< the how manieth of its kind that Assimp loads
+  std::string name;        ///< its own, beside its node's; may be empty
+};
+
+/// Of the default scene: nodes depth first, each after its children.
+struct GltfLoadOrder {
+  std::vector<const gltf::Struct*> materials;
+  std::vector<GltfAtNode> cameras;
+  std::vector<GltfAtNode> lights;  ///< of KHR_lights_punctual
+};
+
+/// Points into `root`.
+GltfLoadOrder load_order(const gltf::Struct& root);
+
+}  // namespace bandsaw
