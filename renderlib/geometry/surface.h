@@ -15,14 +15,14 @@ struct SurfacePoint {
   Vec3 shading_normal;  ///< unit; interpolated where the mesh has normals, else the geometric one;
                         ///< same hemisphere
   /// Spheres: as a globe with the seam at -x and v = 0 at the pole -y, u in [0, 1), u = 1/2 at +x,
-  /// 3/4 at -z. Quads: (a, b). Disks: the square around them. Triangles: the weights of b and c. Meshes: their own uv, else
-  /// weights.
+  /// 3/4 at -z. Quads: (a, b). Disks: the square around them. Triangles: the weights of b and c.
+  /// Meshes: their own uv, else weights.
   Vec2 uv;
   Vec2 uv2;              ///< a mesh's second set; uv where there is none
   Vec3 object_position;  ///< meshes and groups: before their placement; spheres: from their
                          ///< centre; else the position
-  Rgb color{1, 1, 1};  ///< of the vertices, interpolated; white where there is none
-  /// Where uv.x and uv.y grow, of any length; zero unless set by add_uv_directions.
+  Rgb color{1, 1, 1};    ///< of the vertices, interpolated; white where there is none
+  /// Where the uvs of a set grow, of any length; zero unless set by add_uv_directions.
   Vec3 along_u;
   Vec3 along_v;
   MaterialId material{};
@@ -43,8 +43,9 @@ void prepare_surfaces(Geometry& geometry);
 SurfacePoint surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit,
                         bool sphere_uv = true);
 
-/// Sets along_u and along_v; they stay zero where the uvs of a triangle have no area.
-void add_uv_directions(const Geometry& geometry, SurfacePoint& point);
+/// Sets along_u and along_v; they stay zero where the uvs of a triangle have no area. `second`: of
+/// a mesh's second set, where it has one.
+void add_uv_directions(const Geometry& geometry, bool second, SurfacePoint& point);
 
 /// A ray that leaves the surface: starts `offset` off it on the side of `direction` and cannot hit
 /// the flat primitive again. (Here, so that what waits for the ray has it in registers.)

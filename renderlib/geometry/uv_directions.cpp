@@ -12,20 +12,22 @@ namespace {
 Vec3 vec(const std::array<float, 3>& p) { return {p[0], p[1], p[2]}; }
 
 /// dp/du and dp/dv of the affine map that takes the triangle's uvs to its corners.
-void along_mesh(const Geometry& geometry, const Transform& to_world, SurfacePoint& point) {
+void along_mesh(const Geometry& geometry, const Transform& to_world, bool second,
+                SurfacePoint& point) {
   const Instance& instance = geometry.instances[point.id.instance - 1];
   const Mesh& mesh = geometry.meshes[index_of(instance.mesh)];
   const auto& corner = mesh.triangles[point.id.primitive];
   const Vec3 a = vec(mesh.positions[corner[0]]);
   const Vec3 e1 = to_world.direction(vec(mesh.positions[corner[1]]) - a);
   const Vec3 e2 = to_world.direction(vec(mesh.positions[corner[2]]) - a);
-  if (mesh.uvs.empty()) {
+  const auto& uvs = second && !mesh.uvs2.empty() ? mesh.uvs2 : mesh.uvs;
+  if (uvs.empty()) {
     point.along_u = e1;
     point.along_v = e2;
     return;
   }
   const auto uv = [&](std::size_t i, std::size_t axis) {
-    return double{mesh.uvs[corner[i]][axis]} - double{mesh.uvs[corner[0]][axis]};
+    return double{uvs[corner[i]][axis]} - double{uvs[corner[0]][axis]};
   };
   const double du1 = uv(1, 0);
   const double dv1 = uv(1, 1);
@@ -73,7 +75,7 @@ void along_shape(const Shapes& shapes, const Vec3& normal, SurfacePoint& point) 
 
 }  // namespace
 
-void add_uv_directions(const Geometry& geometry, SurfacePoint& point) {
+void add_uv_directions(const Geometry& geometry, bool second, SurfacePoint& point) {
   if (point.id.instance == 0) {
     along_shape(geometry, point.geometric_normal, point);
     return;
@@ -81,7 +83,7 @@ void add_uv_directions(const Geometry& geometry, SurfacePoint& point) {
   const Instance& instance = geometry.instances[point.id.instance - 1];
   const Transform to_world = to_world_at(geometry, instance, point.time);
   if (instance.group == kNoGroup) {
-    along_mesh(geometry, to_world, point);
+    along_mesh(geometry, to_world, second, point);
     return;
   }
   // A sphere's point from its centre is along the normal in its own space.

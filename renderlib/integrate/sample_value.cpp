@@ -23,8 +23,7 @@ Vec3 outside_normal(const Material& material, absl::Span<const Texture> textures
   const auto* principled = std::get_if<Principled>(&material);
   return principled == nullptr || !principled->normal
              ? point.shading_normal
-             : mapped_normal(point, look_up(textures, *principled->normal, point),
-                             principled->normal_scale);
+             : mapped_normal(point, textures, *principled->normal, principled->normal_scale);
 }
 
 /// 1 where a cosine-weighted direction on the viewer's side meets nothing near, else 0.

@@ -4,15 +4,17 @@
 #include <cmath>
 
 #include "renderlib/material/opacity.h"
+#include "renderlib/material/shading_normal.h"
 
 namespace bandsaw {
 namespace {
 
 SurfacePoint point_at(const Scene& scene, const Ray& ray, const Hit& hit) {
   SurfacePoint point = surface_at(scene.geometry(), ray, hit, scene.needs().uv);
-  const auto* principled = std::get_if<Principled>(&scene.material(point.material));
-  if (principled != nullptr && (principled->normal || principled->coat_normal)) {
-    add_uv_directions(scene.geometry(), point);
+  if (const auto* principled = std::get_if<Principled>(&scene.material(point.material))) {
+    if (const auto set = normal_uv_set(*principled, scene.textures())) {
+      add_uv_directions(scene.geometry(), *set == UvSet::kSecond, point);
+    }
   }
   return point;
 }

@@ -52,6 +52,9 @@ inline double schlick_rim(double cos_i) {
   return m2 * m2 * m;
 }
 
+/// The reflectance of a clear coat at normal incidence: of index 1.5.
+inline constexpr double kCoatF0 = 0.04;
+
 /// The reflectance at normal incidence.
 inline double normal_reflectance(double eta) {
   const double r = (eta - 1) / (eta + 1);

@@ -72,7 +72,7 @@ struct Principled {
   /// Directions in the frame of the uvs, 0.5 + 0.5 n; b towards the outside.
   std::optional<TextureId> normal;
   double normal_scale = 1;       ///< finite; of the part along the surface
-  Tint emissive{{}, {0, 0, 0}};  ///< radiance, >= 0
+  Tint emissive{{}, {0, 0, 0}};  ///< radiance, >= 0, below the coat
   bool double_sided = false;     ///< emits to both sides; scattering always does
   AlphaMode alpha_mode = AlphaMode::kOpaque;
   Channel alpha{{}, 1};       ///< channel r; [0, 1]

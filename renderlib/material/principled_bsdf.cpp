@@ -14,7 +14,6 @@
 namespace bandsaw {
 namespace {
 
-constexpr double kCoatF0 = 0.04;
 enum Lobe : std::size_t { kCoat, kReflection, kDiffuse, kTransmission };
 
 /// Both directions in the frame of one normal.
@@ -132,7 +131,7 @@ PrincipledBsdf principled_at(const Principled& material, absl::Span<const Textur
   bsdf.coat_normal = visible_normal(normal.shading, normal.geometric, wo);
   bsdf.normal = {normal.geometric, bsdf.coat_normal};
   const auto bent = [&](TextureId map, double scale) {
-    const Vec3 outside = mapped_normal(point, texel(map), scale);
+    const Vec3 outside = mapped_normal(point, textures, map, scale);
     const bool flipped = dot(point.geometric_normal, normal.geometric) < 0;
     return visible_normal(flipped ? -outside : outside, normal.geometric, wo);
   };

@@ -4,19 +4,37 @@
 #include <cmath>
 
 #include "renderlib/material/fresnel.h"
+#include "renderlib/material/look_up.h"
 #include "renderlib/sampling/basis.h"
 
 namespace bandsaw {
 namespace {
 
+const ImageTexture* image_at(absl::Span<const Texture> textures, TextureId id) {
+  return std::get_if<ImageTexture>(&textures[index_of(id)]);
+}
+
+struct Directions {
+  Vec3 u;
+  Vec3 v;
+};
+
+/// Where the map's own coordinates grow, of any length: the inverse of how it is placed, but for
+/// the size of its determinant.
+Directions along_map(const SurfacePoint& point, const UvTransform& placed) {
+  const auto& [a, b, x, d, e, y] = placed.m;
+  const double sign = a * e - b * d < 0 ? -1 : 1;
+  return {(point.along_u * e - point.along_v * d) * sign,
+          (point.along_v * a - point.along_u * b) * sign};
+}
+
 /// The frame of the uvs made orthonormal around the normal; mirrored where the uvs are.
-Basis uv_basis(const SurfacePoint& point) {
-  const Vec3& n = point.shading_normal;
-  const double size = max_abs(point.along_u);
+Basis uv_basis(const Vec3& n, const Directions& uv) {
+  const double size = max_abs(uv.u);
   if (!(size > 0) || !std::isfinite(size)) {
     return orthonormal_basis(n);
   }
-  const Vec3 u = point.along_u / size;
+  const Vec3 u = uv.u / size;
   const Vec3 along = u - n * dot(n, u);
   const double length_along = length(along);
   if (!(length_along > 1e-6)) {
@@ -24,15 +42,33 @@ Basis uv_basis(const SurfacePoint& point) {
   }
   const Vec3 x = along / length_along;
   const Vec3 y = cross(n, x);
-  return {x, dot(y, point.along_v) < 0 ? -y : y, n};
+  return {x, dot(y, uv.v) < 0 ? -y : y, n};
 }
 
 }  // namespace
 
-Vec3 mapped_normal(const SurfacePoint& point, const Rgb& texel, double scale) {
+Vec3 mapped_normal(const SurfacePoint& point, const Rgb& texel, double scale,
+                   const UvTransform& placed) {
   const Vec3 local{(2.0 * texel.r - 1) * scale, (2.0 * texel.g - 1) * scale,
                    std::max(2.0 * texel.b - 1, 1e-3)};
-  return normalize(uv_basis(point).to_world(local));
+  const Basis frame = uv_basis(point.shading_normal, along_map(point, placed));
+  return normalize(frame.to_world(local));
+}
+
+Vec3 mapped_normal(const SurfacePoint& point, absl::Span<const Texture> textures, TextureId map,
+                   double scale) {
+  const ImageTexture* image = image_at(textures, map);
+  return mapped_normal(point, look_up(textures, map, point), scale,
+                       image == nullptr ? UvTransform{} : image->uv_transform);
+}
+
+std::optional<UvSet> normal_uv_set(const Principled& material, absl::Span<const Texture> textures) {
+  const std::optional<TextureId>& map = material.normal ? material.normal : material.coat_normal;
+  if (!map) {
+    return std::nullopt;
+  }
+  const ImageTexture* image = image_at(textures, *map);
+  return image == nullptr ? UvSet::kFirst : image->uv_set;
 }
 
 Vec3 visible_normal(const Vec3& n, const Vec3& geometric, const Vec3& wo) {

@@ -93,6 +93,32 @@ TEST(SampleValue, NormalsAreThoseOfTheNormalMapAndWhatIsNotThereIsSeenThrough) {
   EXPECT_EQ(value(maker, Integrator::kAlbedo, kAhead), (Rgb{0.2f, 0.4f, 0.6f}));
 }
 
+// A normal map that tilts along its u lies on the second uvs, whose u grows along y.
+TEST(SampleValue, ANormalMapTiltsAlongTheUvsThatItLiesOn) {
+  SceneMaker maker;
+  ImageTexture map;
+  map.width = map.height = 1;
+  map.format = ImageTexture::Format::kLinear8;
+  map.uv_set = UvSet::kSecond;
+  map.texels = std::vector<std::byte>{std::byte{255}, std::byte{128}, std::byte{128}};
+  Principled bent;
+  bent.normal = maker.texture(map);
+  maker.scene.materials.emplace_back(bent);
+  Mesh mesh;
+  mesh.positions = {{-9, -9, 0}, {9, -9, 0}, {-9, 9, 0}};
+  mesh.uvs = {{0, 0}, {1, 0}, {0, 1}};
+  mesh.uvs2 = {{0, 0}, {0, -1}, {1, 0}};
+  mesh.triangles = {{0, 1, 2}};
+  Geometry& geometry = maker.scene.geometry;
+  geometry.meshes.push_back(mesh);
+  const MaterialId id{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)};
+  geometry.instances.push_back({MeshId{0}, id, Transform{}});
+  const Ray ahead{.origin = {-3, -3, 5}, .direction = {0, 0, -1}};
+  EXPECT_GT(value(maker, Integrator::kNormals, ahead).g, 0.99f);
+  std::get<ImageTexture>(maker.scene.textures.back()).uv_set = UvSet::kFirst;
+  EXPECT_GT(value(maker, Integrator::kNormals, ahead).r, 0.99f);
+}
+
 TEST(SampleValue, AMissIsBlackAndOpen) {
   SceneMaker maker;
   maker.sphere({50, 0, 0}, 1, maker.diffuse(0.5f));

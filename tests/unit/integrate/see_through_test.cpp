@@ -169,6 +169,22 @@ TEST(Emission, OfAScatteringSurfaceIsAddedToWhatItReflects) {
   EXPECT_LT(light_along(maker, back, 2000).mean(), 0.1);
 }
 
+// What the coat does not let out at 0 and at 60 degrees: 0.04, and 0.04 + 0.96 / 32.
+TEST(Emission, IsSeenThroughTheClearCoat) {
+  SceneMaker maker = white_sky();
+  maker.background({0, 0, 0}, {0, 0, 0});
+  Principled glow;
+  glow.base_color.factor = {0, 0, 0};
+  glow.emissive.factor = {3, 3, 3};
+  glow.coat.factor = 0.5;
+  maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, add(maker, glow));
+  const Ray ahead{.origin = {0, 0, 5}, .direction = {0, 0, -1}};
+  EXPECT_NEAR(light_along(maker, ahead, 10).mean(), 3 * (1 - 0.5 * 0.04), 1e-6);
+  const Vec3 slanted{std::sqrt(0.75), 0, -0.5};
+  const Ray aside{.origin = slanted * -4, .direction = slanted};
+  EXPECT_NEAR(light_along(maker, aside, 10).mean(), 3 * (1 - 0.5 * 0.07), 1e-6);
+}
+
 // Behind a pane only asking finds a light without size: the pane sends on what its value says.
 TEST(SeeThrough, LightsWithoutSizeShineThroughWhatScattersThem) {
   Principled paper;

@@ -256,6 +256,21 @@ TEST(ShadingNormal, AFlatTexelChangesNothingAndATiltedOneTiltsAlongTheUvs) {
   EXPECT_NEAR(mapped_normal(mirrored, {0.5f, 0.75f, 0.933f}, 1).y, -0.5, 2e-2);
 }
 
+// A map turned by a quarter shows its own right upwards; one mirrored in u tilts the other way.
+TEST(ShadingNormal, AMapThatIsPlacedTiltsAlongItsOwnAxes) {
+  const SurfacePoint p = point({0, 0, 1});
+  const Rgb tilted{1, 0.5f, 0.5f};
+  const auto normal = [&](const std::array<double, 6>& m) {
+    return mapped_normal(p, tilted, 1, UvTransform{m});
+  };
+  // Texture coordinates (s, t) = (v, -u): s grows where v does.
+  EXPECT_GT(normal({0, 1, 0, -1, 0, 1}).y, 0.99);
+  EXPECT_LT(normal({-1, 0, 1, 0, 1, 0}).x, -0.99);
+  EXPECT_GT(normal({5, 0, 0, 0, 3, 0}).x, 0.99) << "a size is no tilt";
+  EXPECT_NEAR(mapped_normal(p, {0.5f, 0.75f, 0.933f}, 1, UvTransform{{-1, 0, 1, 0, 1, 0}}).y, 0.5,
+              2e-2);
+}
+
 TEST(ShadingNormal, T15_UvsWithoutAreaGiveAUnitNormal) {
   SurfacePoint p = point({0.2, 0.1, -0.9});
   for (const Vec3& along : {Vec3{}, Vec3{0.2, 0.1, -0.9}, Vec3{1e-300, 0, 0}}) {
