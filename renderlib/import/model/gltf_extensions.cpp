@@ -129,6 +129,7 @@ absl::StatusOr<GltfExtensions> read_gltf_extensions(const std::string& path) {
   }
   out.cameras = std::move(order.cameras);
   out.lights = std::move(order.lights);
+  out.bones = std::move(order.bones);
   if (const ListValue* scenes = list(*root, "scenes"); scenes != nullptr) {
     out.scenes = static_cast<std::size_t>(scenes->values_size());
   }

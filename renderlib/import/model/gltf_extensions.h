@@ -44,8 +44,9 @@ struct GltfExtensions {
   /// Those that the scene uses, in the order in which Assimp meets them: nodes depth first, each
   /// after its children. None of glTF 1.
   std::vector<GltfMaterial> materials;
-  std::vector<GltfAtNode> cameras;  ///< of the default scene; none of glTF 1
-  std::vector<GltfAtNode> lights;   ///< likewise
+  std::vector<GltfAtNode> cameras;                        ///< of the default scene; none of glTF 1
+  std::vector<GltfAtNode> lights;                         ///< likewise
+  std::map<std::size_t, std::vector<std::size_t>> bones;  ///< as GltfLoadOrder's
   std::size_t scenes = 1;
   std::size_t lights_with_range = 0;  ///< KHR_lights_punctual: a hint to cut light off
 };

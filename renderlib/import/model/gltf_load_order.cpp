@@ -33,7 +33,11 @@ class Walk {
       const auto [node, is_entered] = stack_.back();
       stack_.pop_back();
       if (is_entered) {
-        add_mesh(item_of(root_, "meshes", *node, "mesh"));
+        const Struct* mesh = item_of(root_, "meshes", *node, "mesh");
+        add_mesh(mesh);
+        if (const Struct* skin = item_of(root_, "skins", *node, "skin"); skin && mesh) {
+          skins_[mesh] = skin;  // Assimp keeps the last
+        }
         add(item_of(root_, "cameras", *node, "camera"), numbers_[node], cameras_, order.cameras);
         if (const Struct* light = extension(*node, kLights);
             light != nullptr && lights_in_ != nullptr) {
@@ -45,6 +49,7 @@ class Walk {
         push_all(list(*node, "children"));
       }
     }
+    add_bones();
   }
 
   GltfLoadOrder order;
@@ -59,6 +64,9 @@ class Walk {
   }
   void add_mesh(const Struct* mesh) {
     const ListValue* primitives = mesh == nullptr ? nullptr : list(*mesh, "primitives");
+    if (primitives != nullptr && first_meshes_.emplace(mesh, meshes_).second) {
+      meshes_ += static_cast<std::size_t>(primitives->values_size());
+    }
     for (int i = 0; primitives != nullptr && i < primitives->values_size(); ++i) {
       const Struct& primitive = primitives->values(i).struct_value();
       const Struct* material = item_of(root_, "materials", primitive, "material");
@@ -67,6 +75,26 @@ class Walk {
       }
     }
   }
+  // Joints may lie behind the meshes that they hold.
+  void add_bones() {
+    for (const auto& [mesh, skin] : skins_) {
+      const ListValue* joints = list(*skin, "joints");
+      std::vector<std::size_t> nodes;
+      for (int i = 0; joints != nullptr && i < joints->values_size(); ++i) {
+        const auto node = numbers_.find(item(root_, "nodes", joints->values(i).number_value()));
+        if (node == numbers_.end()) {
+          nodes.clear();
+          break;
+        }
+        nodes.push_back(node->second);
+      }
+      const ListValue* primitives = list(*mesh, "primitives");
+      for (int i = 0; primitives != nullptr && i < primitives->values_size(); ++i) {
+        order.bones[first_meshes_[mesh] + static_cast<std::size_t>(i)] = nodes;
+      }
+    }
+  }
+
   using Loaded = std::map<const Struct*, std::size_t>;
   static void add(const Struct* what, std::size_t node, Loaded& loaded,
                   std::vector<GltfAtNode>& to) {
@@ -82,6 +110,9 @@ class Walk {
   std::set<const Struct*> seen_;
   Loaded cameras_;  ///< and the how manieth each is
   Loaded lights_;
+  Loaded first_meshes_;                           ///< and Assimp's mesh of their first primitive
+  std::size_t meshes_ = 0;                        ///< of Assimp's
+  std::map<const Struct*, const Struct*> skins_;  ///< of meshes
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 // names are not given, or given twice.
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,9 @@ struct GltfLoadOrder {
   std::vector<const gltf::Struct*> materials;
   std::vector<GltfAtNode> cameras;
   std::vector<GltfAtNode> lights;  ///< of KHR_lights_punctual
+  /// By the numbers of Assimp's meshes: the nodes of the bones, as GltfAtNode::node; none of a mesh
+  /// without a skin, or of one with a bone outside the scene.
+  std::map<std::size_t, std::vector<std::size_t>> bones;
 };
 
 /// Points into `root`.

@@ -158,23 +158,26 @@ bool has_clear_colors(const aiMesh& from) {
   return clear > 0 && all_clear < from.mNumVertices;
 }
 
-// Where the first node that bears each mesh stands.
-std::vector<Transform> first_places(const aiScene& scene,
-                                    const std::map<std::string, Transform>& places) {
-  std::vector<Transform> first(scene.mNumMeshes);
-  std::vector<const aiNode*> stack{scene.mRootNode};
-  while (!stack.empty()) {
-    const aiNode* node = stack.back();
-    stack.pop_back();
-    for (unsigned i = 0; i < node->mNumMeshes; ++i) {
-      const auto found = places.find(node->mName.C_Str());
-      if (node->mMeshes[i] < first.size() && found != places.end()) {
-        first[node->mMeshes[i]] = found->second;
-      }
+// Where the bones of a mesh stand; nothing: one has no node. By their names where the file does not
+// say it better: names need not be unique.
+std::optional<std::vector<Transform>> bone_places(const ModelFile& file, unsigned number,
+                                                  const NodePlaces& places) {
+  const aiMesh& mesh = *file.scene.mMeshes[number];
+  const auto known = file.gltf.bones.find(number);
+  std::vector<Transform> bones;
+  for (unsigned i = 0; i < mesh.mNumBones; ++i) {
+    if (known != file.gltf.bones.end() && known->second.size() == mesh.mNumBones &&
+        known->second[i] < places.by_number.size()) {
+      bones.push_back(places.by_number[known->second[i]]);
+      continue;
     }
-    stack.insert(stack.end(), node->mChildren, node->mChildren + node->mNumChildren);
+    const auto named = places.by_name.find(mesh.mBones[i]->mName.C_Str());
+    if (named == places.by_name.end()) {
+      return std::nullopt;
+    }
+    bones.push_back(named->second);
   }
-  return first;
+  return bones;
 }
 
 }  // namespace
@@ -182,8 +185,7 @@ std::vector<Transform> first_places(const aiScene& scene,
 absl::StatusOr<ModelMeshes> add_meshes(ModelFile& file, const std::vector<ModelMaterial>& materials,
                                        bool with_colors) {
   const aiScene& scene = file.scene;
-  const auto places = node_places(scene);
-  const std::vector<Transform> first = first_places(scene, places);
+  const NodePlaces places = node_places(scene);
   ModelMeshes meshes(scene.mNumMeshes);
   std::vector<Mesh>& out = file.draft.out.scene.geometry.meshes;
   for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
@@ -201,16 +203,19 @@ absl::StatusOr<ModelMeshes> add_meshes(ModelFile& file, const std::vector<ModelM
         reader.warn("the alpha of its vertex colours is left out");
       }
     }
-    const Skin skin = add_skin(from, places, first[i], mesh);
-    if (skin == Skin::kIncomplete) {
+    const auto bones = bone_places(file, i, places);
+    const bool skinned = from.HasBones() && bones;
+    if (skinned) {
+      const auto place = places.of_meshes.find(i);
+      add_skin(from, *bones, place == places.of_meshes.end() ? Transform{} : place->second, mesh);
+    } else if (from.HasBones()) {
       reader.warn("its skin is left out: a bone has no node");
     }
     reader.mend(mesh);
     if (mesh.triangles.empty()) {
       continue;
     }
-    meshes[i] = ModelMesh{MeshId{static_cast<std::uint32_t>(out.size())}, material.id,
-                          skin == Skin::kApplied};
+    meshes[i] = ModelMesh{MeshId{static_cast<std::uint32_t>(out.size())}, material.id, skinned};
     out.push_back(std::move(mesh));
   }
   return meshes;

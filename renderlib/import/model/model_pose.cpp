@@ -3,7 +3,6 @@
 #include <assimp/scene.h>
 
 #include <cmath>
-#include <optional>
 #include <utility>
 #include <vector>
 
@@ -37,14 +36,18 @@ void add_scaled(const Transform& t, double by, Transform& sum) {
 
 }  // namespace
 
-std::map<std::string, Transform> node_places(const aiScene& scene) {
-  std::map<std::string, Transform> places;
+NodePlaces node_places(const aiScene& scene) {
+  NodePlaces places;
   std::vector<std::pair<const aiNode*, Transform>> stack{{scene.mRootNode, Transform{}}};
   while (!stack.empty()) {
     const auto [node, parent] = stack.back();
     stack.pop_back();
     const Transform place = parent * transform_of(node->mTransformation);
-    places.emplace(node->mName.C_Str(), place);
+    places.by_number.push_back(place);
+    places.by_name.emplace(node->mName.C_Str(), place);
+    for (unsigned i = 0; i < node->mNumMeshes; ++i) {
+      places.of_meshes.emplace(node->mMeshes[i], place);
+    }
     for (unsigned i = node->mNumChildren; i-- > 0;) {
       stack.emplace_back(node->mChildren[i], place);
     }
@@ -68,22 +71,15 @@ void add_morph_targets(const aiMesh& from, Mesh& mesh) {
   }
 }
 
-Skin add_skin(const aiMesh& from, const std::map<std::string, Transform>& places,
-              const Transform& place, Mesh& mesh) {
-  if (!from.HasBones()) {
-    return Skin::kNone;
-  }
+void add_skin(const aiMesh& from, const std::vector<Transform>& bones, const Transform& place,
+              Mesh& mesh) {
   Transform nothing;
   nothing.m = {};
   std::vector<Transform> blended(mesh.positions.size(), nothing);
   std::vector<double> weights(mesh.positions.size(), 0);
   for (unsigned i = 0; i < from.mNumBones; ++i) {
     const aiBone& bone = *from.mBones[i];
-    const auto found = places.find(bone.mName.C_Str());
-    if (found == places.end()) {
-      return Skin::kIncomplete;
-    }
-    const Transform moves = found->second * transform_of(bone.mOffsetMatrix);
+    const Transform moves = bones[i] * transform_of(bone.mOffsetMatrix);
     for (unsigned w = 0; w < bone.mNumWeights; ++w) {
       const aiVertexWeight& weight = bone.mWeights[w];
       if (weight.mVertexId < blended.size() && std::isfinite(weight.mWeight)) {
@@ -105,7 +101,6 @@ Skin add_skin(const aiMesh& from, const std::map<std::string, Transform>& places
       mesh.normals[i] = floats(size > 0 ? normal / size : normal);
     }
   }
-  return Skin::kApplied;
 }
 
 }  // namespace bandsaw

@@ -282,5 +282,33 @@ TEST_F(Gltf, StandsInItsRestPose) {
   EXPECT_THAT(imported->info.warnings, Contains(HasSubstr("1 scenes beside the default one")));
 }
 
+// Two triangles with a bone each; both bones have one name.
+TEST_F(Gltf, BonesOfOneNameAreToldApart) {
+  const std::string joints = std::string(12, '\0');
+  write_text(folder_, "s.bin",
+             floats({0, 0, 0, 1, 0, 0, 0, 1, 0}) + floats({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}) +
+                 joints + floats({1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}));
+  const auto imported = import_scene(write_text(folder_, "s.gltf", R"({"asset": {"version": "2.0"},
+"scene": 0, "scenes": [{"nodes": [0, 1, 2, 3]}],
+"nodes": [{"mesh": 0, "skin": 0}, {"mesh": 1, "skin": 1},
+  {"name": "hips", "translation": [0, 2, 0]}, {"name": "hips", "translation": [0, 0, 7]}],
+"skins": [{"joints": [2], "inverseBindMatrices": 3}, {"joints": [3], "inverseBindMatrices": 3}],
+"meshes": [{"primitives": [{"attributes": {"POSITION": 0, "WEIGHTS_0": 1, "JOINTS_0": 2}}]},
+  {"primitives": [{"attributes": {"POSITION": 0, "WEIGHTS_0": 1, "JOINTS_0": 2}}]}],
+"accessors": [
+{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0,0,0], "max": [1,1,0]},
+{"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC4"},
+{"bufferView": 2, "componentType": 5121, "count": 3, "type": "VEC4"},
+{"bufferView": 3, "componentType": 5126, "count": 1, "type": "MAT4"}],
+"bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 48},
+{"buffer": 0, "byteOffset": 84, "byteLength": 12}, {"buffer": 0, "byteOffset": 96, "byteLength": 64}],
+"buffers": [{"byteLength": 160, "uri": "s.bin"}]})"));
+  ASSERT_TRUE(imported.ok()) << imported.status();
+  const auto& meshes = imported->scene.geometry.meshes;
+  ASSERT_EQ(meshes.size(), 2u);
+  EXPECT_THAT(meshes[0].positions[0], ElementsAre(0, 2, 0));
+  EXPECT_THAT(meshes[1].positions[0], ElementsAre(0, 0, 7));
+}
+
 }  // namespace
 }  // namespace bandsaw
