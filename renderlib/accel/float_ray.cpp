@@ -12,8 +12,11 @@ namespace {
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr double kUnit = 0x1p-24;
-/// Beyond this, products of four lengths may leave float's range.
+/// Beyond this, products of four lengths, which the packs of triangles make, may leave float's
+/// range.
 constexpr double kLargest = 0x1p30;
+/// Beyond this, so may the product of a length and the largest factor, which boxes make.
+constexpr double kLargestBox = 0x1p60;
 /// The largest factor: directions that are flatter against an axis get this, so that it is finite.
 constexpr double kSteepest = 0x1p60;
 /// Bytes of a row of WideNode::bounds.
@@ -49,9 +52,12 @@ FloatRay::FloatRay(const TracedRay& ray, float reach) {
   length = std::sqrt(direction[0] * direction[0] + direction[1] * direction[1] +
                      direction[2] * direction[2]) *
            (1 + 0x1p-20f);
-  const bool large = !(std::max(o1, double{reach}) < kLargest);
-  if (large) [[unlikely]] {
-    decide_nothing();
+  const double largest = std::max(o1, double{reach});
+  if (!(largest < kLargest)) [[unlikely]] {
+    floor = kInf;
+  }
+  if (!(largest < kLargestBox)) [[unlikely]] {
+    open_boxes();
   } else if (!(steepest <= kSteepest)) [[unlikely]] {
     for (std::size_t k = 0; k < 3; ++k) {
       if (!(std::abs(ray.inverse[k] * scale) <= kSteepest)) {
@@ -75,8 +81,7 @@ void FloatRay::set_planes(std::size_t k, double from, float factor, double slack
   far_offset[k] = static_cast<float>(-far_at + room);
 }
 
-void FloatRay::decide_nothing() {
-  floor = kInf;
+void FloatRay::open_boxes() {
   for (std::size_t k = 0; k < 3; ++k) {
     near_factor[k] = 0;
     far_factor[k] = 0;

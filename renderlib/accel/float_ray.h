@@ -41,7 +41,7 @@ struct FloatRay {
 
  private:
   void set_planes(std::size_t k, double from, float factor, double slack);
-  void decide_nothing();
+  void open_boxes();
 };
 
 }  // namespace bandsaw

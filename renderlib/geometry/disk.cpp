@@ -21,11 +21,12 @@ DiskAxes axes_of(const Disk& disk) {
 
 Box bounds(const Disk& disk) {
   const double room = kRoom * (disk.radius + max_abs(disk.center));
-  const auto reach = [&](double n) {
-    return disk.radius * std::sqrt(std::max(0.0, 1 - n * n)) + room;
+  // Of a normal almost along an axis 1 - n^2 would keep nothing of what it is not.
+  const auto reach = [&](double a, double b) {
+    return disk.radius * std::sqrt(a * a + b * b) + room;
   };
   const Vec3 n = normalize(disk.normal);
-  const Vec3 half = {reach(n.x), reach(n.y), reach(n.z)};
+  const Vec3 half = {reach(n.y, n.z), reach(n.z, n.x), reach(n.x, n.y)};
   return {disk.center - half, disk.center + half};
 }
 

@@ -1,37 +1,44 @@
 #include "renderlib/integrate/medium_walk.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "renderlib/geometry/surface.h"
 #include "renderlib/medium/attenuation.h"
 
 namespace bandsaw {
 
-void MediumWalk::Around::enter(const Crossing& crossing) {
-  if (size_ < kMostNested && !contains(crossing.shape)) {
-    entries_[size_++] = {crossing.shape, crossing.medium};
-  }
-}
-
-bool MediumWalk::Around::leave(const PrimitiveId& shape) {
+int* MediumWalk::Around::count_of(MediumId medium) {
   for (std::size_t i = 0; i < size_; ++i) {
-    if (entries_[i].shape == shape) {
-      entries_[i] = entries_[--size_];
-      return true;
+    if (entries_[i].medium == medium) {
+      return &entries_[i].shapes;
     }
   }
-  return false;
+  if (size_ == kMostMedia) {
+    return nullptr;
+  }
+  entries_[size_] = {medium, 0};
+  return &entries_[size_++].shapes;
 }
 
-bool MediumWalk::Around::contains(const PrimitiveId& shape) const {
-  return std::any_of(entries_.begin(), entries_.begin() + size_,
-                     [&](const Entry& entry) { return entry.shape == shape; });
+void MediumWalk::Around::add(MediumId medium, int shapes) {
+  if (int* const count = count_of(medium)) {
+    *count += shapes;
+  }
+}
+
+void MediumWalk::Around::forget_negative() {
+  for (std::size_t i = 0; i < size_; ++i) {
+    entries_[i].shapes = std::max(0, entries_[i].shapes);
+  }
 }
 
 std::optional<MediumId> MediumWalk::Around::medium() const {
   std::optional<MediumId> top;
   for (std::size_t i = 0; i < size_; ++i) {
-    top = !top || entries_[i].medium > *top ? entries_[i].medium : top;
+    if (entries_[i].shapes > 0 && (!top || entries_[i].medium > *top)) {
+      top = entries_[i].medium;
+    }
   }
   return top;
 }
@@ -47,43 +54,50 @@ MediumWalk::MediumWalk(const Scene& scene, const Ray& ray, double length, std::u
   }
 }
 
-std::optional<MediumWalk::Crossing> MediumWalk::crossing_after(const Hit& after) {
+std::optional<MediumWalk::Crossing> MediumWalk::find_next(Search& search) {
   const Accel& boundaries = scene_.boundary_accel();
-  ++rays_;
-  const Hit hit = after ? boundaries.closest_after(ray_, after) : boundaries.closest(ray_);
-  if (!hit) {
-    return std::nullopt;
+  for (;;) {
+    ++rays_;
+    const Hit hit =
+        search.last ? boundaries.closest_after(ray_, search.last) : boundaries.closest(ray_);
+    if (!hit) {
+      return std::nullopt;
+    }
+    search.last = hit;
+    const SurfacePoint point = surface_at(scene_.media().boundaries, ray_, hit, false);
+    const double slope = dot(ray_.direction, point.geometric_normal);
+    Crossing crossing;
+    crossing.t = hit.t;
+    crossing.shape = {hit.id.instance, hit.id.instance == 0 ? hit.id.primitive : 0};
+    crossing.medium = medium_in(point.material);
+    crossing.inwards = slope < 0;
+    // Through an edge or a corner that triangles share a ray goes once.
+    const double same = 4 * point.offset / std::max(0.01, std::abs(slope));
+    const auto known = static_cast<std::ptrdiff_t>(std::min(search.found, Search::kRecent));
+    const bool again = std::any_of(
+        search.recent.begin(), search.recent.begin() + known, [&](const Crossing& other) {
+          return other.shape == crossing.shape && other.inwards == crossing.inwards &&
+                 crossing.t - other.t <= same;
+        });
+    if (!again) {
+      search.recent[search.found++ % Search::kRecent] = crossing;
+      return crossing;
+    }
   }
-  const SurfacePoint point = surface_at(scene_.media().boundaries, ray_, hit, false);
-  Crossing crossing;
-  crossing.hit = hit;
-  crossing.shape = {hit.id.instance, hit.id.instance == 0 ? hit.id.primitive : 0};
-  crossing.medium = medium_in(point.material);
-  crossing.inwards = dot(ray_.direction, point.geometric_normal) < 0;
-  return crossing;
 }
 
 void MediumWalk::find_around_origin() {
-  Around entered;
-  Crossing before;
-  Hit last;
-  while (const std::optional<Crossing> crossing = crossing_after(last)) {
-    last = crossing->hit;
-    // Through an edge that two triangles share a ray goes once.
-    const bool again = crossing->shape == before.shape && crossing->inwards == before.inwards;
-    before = *crossing;
+  Search all;
+  while (const std::optional<Crossing> crossing = find_next(all)) {
     if (kept_size_ < kKept) {
       kept_[kept_size_++] = *crossing;
-      last_ = last;
+      beyond_kept_ = all;
     } else {
       all_kept_ = false;
     }
-    if (crossing->inwards) {
-      entered.enter(*crossing);
-    } else if (!entered.leave(crossing->shape) && !again) {
-      around_.enter(*crossing);
-    }
+    around_.add(crossing->medium, crossing->inwards ? -1 : 1);
   }
+  around_.forget_negative();
 }
 
 std::optional<MediumWalk::Crossing> MediumWalk::take_crossing() {
@@ -93,8 +107,7 @@ std::optional<MediumWalk::Crossing> MediumWalk::take_crossing() {
   if (all_kept_) {
     return std::nullopt;
   }
-  const std::optional<Crossing> crossing = crossing_after(last_);
-  last_ = crossing ? crossing->hit : last_;
+  const std::optional<Crossing> crossing = find_next(beyond_kept_);
   all_kept_ = !crossing;
   return crossing;
 }
@@ -115,11 +128,9 @@ std::optional<Stretch> MediumWalk::next() {
     const double begin = at_;
     const Medium* const medium = here();
     const std::optional<Crossing> crossing = take_crossing();
-    at_ = crossing ? std::min(crossing->hit.t, length_) : length_;
-    if (crossing && crossing->inwards) {
-      around_.enter(*crossing);
-    } else if (crossing) {
-      around_.leave(crossing->shape);
+    at_ = crossing ? std::min(crossing->t, length_) : length_;
+    if (crossing) {
+      around_.add(crossing->medium, crossing->inwards ? 1 : -1);
     }
     if (medium != nullptr && at_ > begin) {
       return Stretch{begin, at_, medium};

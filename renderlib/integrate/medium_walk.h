@@ -2,10 +2,10 @@
 
 // A ray, cut where it passes the boundaries of media (scene/media.h).
 //
-// What a point is inside of is found anew for every ray, from the boundaries ahead: a shape that
-// the ray leaves before it enters it contains the ray's origin. Nothing is carried along a path, so
-// nothing can go wrong on the way: cameras and lights inside of media, surfaces that touch a
-// boundary or lie in it, and reflections at a filled glass need no rules of their own.
+// What a point is inside of is found anew for every ray, from the boundaries ahead: a medium that
+// the ray leaves more often than it enters it is around the ray's origin. Nothing is carried along
+// a path, so nothing can go wrong on the way: cameras and lights inside of media, surfaces that
+// touch a boundary or lie in it, and reflections at a filled glass need no rules of their own.
 
 #include <array>
 #include <cstddef>
@@ -26,8 +26,8 @@ struct Stretch {
 
 class MediumWalk {
  public:
-  /// More shapes than these around one point are not kept.
-  static constexpr std::size_t kMostNested = 16;
+  /// More media than these along one ray are not kept.
+  static constexpr std::size_t kMostMedia = 16;
 
   /// `ray` has a unit direction and is followed for `length` (> 0, maybe infinite). The scene MUST
   /// need media and outlive the walk. Adds the rays that it traced to `rays`.
@@ -38,33 +38,40 @@ class MediumWalk {
 
  private:
   struct Crossing {
-    Hit hit;
+    double t = 0;
     PrimitiveId shape;  ///< primitive 0 for all of what is placed
     MediumId medium{};
     bool inwards = false;
   };
-  /// The shapes around a point.
+  /// How many shapes of each medium are around a point; below 0 between faces of one distance.
   class Around {
    public:
-    void enter(const Crossing& crossing);
-    /// Whether it was there.
-    bool leave(const PrimitiveId& shape);
-    bool contains(const PrimitiveId& shape) const;
+    void add(MediumId medium, int shapes);
+    /// Shapes that are not closed may be entered more often than they are left.
+    void forget_negative();
     std::optional<MediumId> medium() const;
 
    private:
+    int* count_of(MediumId medium);
     struct Entry {
-      PrimitiveId shape;
       MediumId medium{};
+      int shapes = 0;
     };
-    std::array<Entry, kMostNested> entries_;
+    std::array<Entry, kMostMedia> entries_;
     std::size_t size_ = 0;
+  };
+  /// How far the boundaries have been looked for.
+  struct Search {
+    static constexpr std::size_t kRecent = 4;
+    Hit last;
+    std::array<Crossing, kRecent> recent;
+    std::size_t found = 0;
   };
 
   static constexpr std::size_t kKept = 8;
 
-  /// The first crossing beyond `after`, or the very first where that is no hit; none at the end.
-  std::optional<Crossing> crossing_after(const Hit& after);
+  /// The next crossing; none at the end.
+  std::optional<Crossing> find_next(Search& search);
   void find_around_origin();
   std::optional<Crossing> take_crossing();
   const Medium* here() const;
@@ -79,7 +86,7 @@ class MediumWalk {
   std::array<Crossing, kKept> kept_;
   std::size_t kept_size_ = 0;
   std::size_t taken_ = 0;
-  Hit last_;
+  Search beyond_kept_;
   bool all_kept_ = true;
 };
 

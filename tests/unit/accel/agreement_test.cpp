@@ -143,7 +143,7 @@ TEST(Agreement, ForOriginsFarAway) {
   const Accel accel = Accel::build(geometry, pool);
   const ReferenceAccel reference(geometry);
   const Box box = box_of(mesh);
-  for (const double distance : {1e2, 1e4, 1e6, 1e9, 1e12}) {
+  for (const double distance : {1e2, 1e4, 1e6, 1e9, 1e12, 1e15, 1e19}) {
     SCOPED_TRACE(distance);
     Random random(13);
     const Agreement agreement = compare(accel, reference, 3000, [&] {
@@ -154,7 +154,8 @@ TEST(Agreement, ForOriginsFarAway) {
       return ray;
     });
     EXPECT_EQ(agreement.different, 0);
-    EXPECT_GT(agreement.hits, agreement.rays / 10);
+    EXPECT_TRUE(agreement.hits > agreement.rays / 10 || distance > 1e12)
+        << "rounding moves the ray";
   }
 }
 
@@ -223,7 +224,8 @@ Geometry mixed_scene(const Vec3& at, double size) {
 
 TEST(Agreement, ForLooseShapesAndInstances) {
   Pool pool(2);
-  const std::pair<double, double> places[] = {{0, 1}, {1e4, 1}, {1e6, 10}, {0, 1e-6}, {3e5, 1e6}};
+  const std::pair<double, double> places[] = {{0, 1},     {1e4, 1},    {1e6, 10}, {0, 1e-6},
+                                              {3e5, 1e6}, {1e10, 1e6}, {0, 1e10}, {0, 1e15}};
   for (const auto& place : places) {
     const double offset = place.first;
     const double size = place.second;

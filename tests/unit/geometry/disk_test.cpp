@@ -17,7 +17,9 @@ using test::WideVec;
 
 Disk random_disk(Random& random) {
   return {std::pow(10, random.uniform(-2, 4)) * test::random_point(random),
-          test::random_direction(random), std::pow(10, random.uniform(-3, 3)), {}};
+          test::random_direction(random),
+          std::pow(10, random.uniform(-3, 3)),
+          {}};
 }
 
 TEST(Disk, FacingUpHasItsAxesAlongXAndMinusZ) {
@@ -30,6 +32,21 @@ TEST(Disk, FacingUpHasItsAxesAlongXAndMinusZ) {
     const DiskAxes a = axes_of(disk);
     EXPECT_LE(length(cross(a.u, a.v) - disk.normal), 1e-15);
     EXPECT_NEAR(length(a.u), 1, 1e-15);
+  }
+}
+
+// A normal as exported files have it, which is not quite along an axis: the box holds the rim.
+TEST(Disk, NearlyAlongAnAxisIsNotCutByItsBox) {
+  for (const double tilt : {1e-9, 1e-8, 4.371139e-8, 1e-7, 1e-6, 1e-3}) {
+    const Disk disk{{0, 4, 0}, normalize(Vec3{tilt, -1, 0}), 1, {}};
+    const Box box = bounds(disk);
+    const DiskAxes axes = axes_of(disk);
+    for (int i = 0; i < 100; ++i) {
+      const double turn = 2 * kPi * i / 100;
+      const Vec3 rim = disk.center + std::cos(turn) * axes.u + std::sin(turn) * axes.v;
+      EXPECT_TRUE(rim.y >= box.lo.y && rim.y <= box.hi.y) << tilt;
+      EXPECT_TRUE(rim.x >= box.lo.x && rim.x <= box.hi.x) << tilt;
+    }
   }
 }
 
@@ -61,8 +78,7 @@ TEST(Disk, IsHitWhereTheRayPassesIt) {
     const Wide t = dot(center - o, n) / slope;
     const WideVec p = o + d * t - center;
     const double out = static_cast<double>(dot(p, p)) / (disk.radius * disk.radius) - 1;
-    const double slack =
-        1e-9 * (1 + max_abs(disk.center) / disk.radius);
+    const double slack = 1e-9 * (1 + max_abs(disk.center) / disk.radius);
     if (t <= 0 || std::abs(out) < slack) {
       continue;
     }

@@ -4,12 +4,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 
 #include "renderlib/sampling/warp.h"
 #include "tests/support/hard_case.h"
 #include "tests/support/media.h"
+#include "tests/support/meshes.h"
 #include "tests/support/random.h"
 
 namespace bandsaw {
@@ -166,6 +168,68 @@ TEST(MediumWalk, OfManyBallsInARowSeesEach) {
   EXPECT_NEAR(std::log(media_transmittance(*scene, ray, rays).g), -100 * 2 * 0.125, 1e-4);
   const Ray inside{.origin = {150, 0, 0}, .direction = {-1, 0, 0}, .t_max = 10};
   EXPECT_FLOAT_EQ(media_transmittance(*scene, inside, rays).g, std::exp(-7 * 0.125f));
+}
+
+/// More shapes around one point than anybody would list.
+TEST(MediumWalk, OfACloudOfPuffsItSeesTheUnion) {
+  SceneMaker maker;
+  const MediumId smoke = test::add(maker, test::medium(1, 0));
+  for (int i = 0; i < 40; ++i) {
+    test::fill_sphere(maker, {0.05 * i, 0, 0}, 1, smoke);
+  }
+  const auto scene = maker.build();
+  test::Random random(4);
+  const Inside inside = [](const Vec3& p) {
+    const double x = p.x - 0.05 * std::clamp(std::round(p.x / 0.05), 0.0, 39.0);
+    return x * x + p.y * p.y + p.z * p.z < 1 ? 0 : -1;
+  };
+  expect_walk(*scene, {.origin = {-5, 0.01, 0}, .direction = {1, 0, 0}}, kInfinity, inside);
+  expect_walk(*scene, {.origin = {8, 0.01, 0}, .direction = {-1, 0, 0}}, kInfinity, inside);
+  expect_walk(*scene, {.origin = {1, 0.01, 0}, .direction = {-1, 0, 0}}, kInfinity, inside);
+  for (int i = 0; i < 500; ++i) {
+    expect_walk(*scene, random_ray(random, 3), kInfinity, inside);
+  }
+}
+
+/// A mesh of two cubes that overlap is their union, from wherever it is seen.
+TEST(MediumWalk, OverlappingPartsOfOneMeshAreOne) {
+  SceneMaker maker;
+  const MediumId smoke = test::add(maker, test::medium(1, 0));
+  Mesh both = unit_cube();
+  const Mesh other = test::moved(unit_cube(), {0.5, 0.5, 0.5});
+  const auto first = static_cast<std::uint32_t>(both.positions.size());
+  both.positions.insert(both.positions.end(), other.positions.begin(), other.positions.end());
+  both.normals.clear();
+  both.uvs.clear();
+  for (const auto& corner : other.triangles) {
+    both.triangles.push_back({corner[0] + first, corner[1] + first, corner[2] + first});
+  }
+  test::fill_mesh(maker, both, {}, smoke);
+  const auto scene = maker.build();
+  const Inside inside = [](const Vec3& p) {
+    const auto in_cube = [&](double low) {
+      return p.x > low && p.x < low + 1 && p.y > low && p.y < low + 1 && p.z > low && p.z < low + 1;
+    };
+    return in_cube(0) || in_cube(0.5) ? 0 : -1;
+  };
+  test::Random random(5);
+  for (int i = 0; i < 2000; ++i) {
+    expect_walk(*scene, random_ray(random, 1.5), kInfinity, inside);
+  }
+}
+
+/// A ray that touches an edge, in the plane of the diagonal, passes nothing.
+TEST(MediumWalk, AnEdgeThatIsTouchedIsNotEntered) {
+  SceneMaker maker;
+  const MediumId smoke = test::add(maker, test::medium(1, 0));
+  test::fill_box(maker, {0, 0, 0}, {1, 1, 1}, smoke);
+  const auto scene = maker.build();
+  const double s = std::sqrt(0.5);
+  for (const Vec3& origin : {Vec3{0, -1, 0.53}, Vec3{-1, 0, 0.53}}) {
+    std::uint64_t rays = 0;
+    const Ray ray{.origin = origin, .direction = {s, s, 0}};
+    EXPECT_FLOAT_EQ(media_transmittance(*scene, ray, rays).g, 1) << origin.x;
+  }
 }
 
 /// Two shapes of one medium that overlap are one: it is not twice as dense there.
