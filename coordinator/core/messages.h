@@ -82,10 +82,8 @@ struct PassMerged {
   std::optional<ErrorEstimate> error;
   std::vector<HalfTileErrors> tiles = {};  ///< of an adaptive job (Film::tile_errors)
 
-  /// The error that is not passed; below 0: not known, as where the image is black.
-  double error_at_most() const {
-    return error && std::isfinite(error->at_most()) ? error->at_most() : -1;
-  }
+  /// The error that is not passed; below 0: not known.
+  double error_at_most() const { return known_error(error, samples); }
 };
 struct ResultWritten {
   JobId job = 0;

@@ -21,7 +21,9 @@ absl::Status check_band(const BandPixels& pixels, const RenderSettings& settings
         absl::StrCat("the band's pixels are ", pixels.sums.size(), " sums of rows of ",
                      pixels.width, " pixels; it must be ", sums, " of ", settings.width));
   }
-  return check_left_out(pixels, tiles);
+  absl::Status valid = check_left_out(pixels, tiles);
+  valid.Update(check_counters(pixels, tiles));
+  return valid;
 }
 
 }  // namespace

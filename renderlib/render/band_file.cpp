@@ -77,20 +77,19 @@ absl::Status check(const BandRecord& record) {
     return absl::InvalidArgumentError(absl::StrCat("width: the pixels have ", pixels.width,
                                                    ", the settings ", record.settings.width));
   }
+  // Which samples of its own a half tile takes is not in the record (render/tile_samples.h).
   const Counters& counters = pixels.counters;
-  const SampleRange& samples = pixels.band.samples;
   const RowRange& rows = pixels.band.rows;
-  const bool bad_place_inside =
-      counters.bad_x < pixels.width && counters.bad_y >= rows.first && counters.bad_y < rows.last &&
-      counters.bad_sample >= samples.first && counters.bad_sample < samples.last;
-  if (counters.bad_samples > samples.samples() * rows.count() * pixels.width ||
-      (counters.bad_samples > 0 && !bad_place_inside)) {
+  const std::uint64_t most = kMaxSamples * rows.count() * pixels.width;
+  const bool bad_place_inside = counters.bad_x < pixels.width && counters.bad_y >= rows.first &&
+                                counters.bad_y < rows.last && counters.bad_sample < kMaxSamples;
+  if (counters.bad_samples > most || (counters.bad_samples > 0 && !bad_place_inside)) {
     return absl::InvalidArgumentError("counters: the bad samples do not lie in the band");
   }
   if (counters.negative_samples > counters.bad_samples) {
     return absl::InvalidArgumentError("counters: more samples are negative than bad");
   }
-  if (counters.truncated_paths > samples.samples() * rows.count() * pixels.width) {
+  if (counters.truncated_paths > most) {
     return absl::InvalidArgumentError("counters: more paths are truncated than there are");
   }
   if (!std::isfinite(record.cpu_s) || record.cpu_s < 0) {

@@ -61,6 +61,10 @@ double quantile(std::vector<float>& values, double share) {
 }
 
 double share_of_worst(std::vector<float> variances) {
+  constexpr std::size_t kFew = 64;  // Where one pixel is much of the image by itself.
+  if (variances.size() < kFew) {
+    return 0;
+  }
   const double all = std::accumulate(variances.begin(), variances.end(), 0.0);
   const auto worst = static_cast<std::ptrdiff_t>((variances.size() + 999) / 1000);
   std::nth_element(variances.begin(), variances.begin() + worst - 1, variances.end(),
@@ -69,6 +73,12 @@ double share_of_worst(std::vector<float> variances) {
 }
 
 }  // namespace
+
+double known_error(const std::optional<ErrorEstimate>& estimate, std::uint64_t samples) {
+  const bool known = estimate && std::isfinite(estimate->at_most()) &&
+                     (estimate->mean > 0 || estimate->at_most() > 0 || samples >= kBlackSamples);
+  return known ? estimate->at_most() : -1;
+}
 
 void ErrorSums::add_row(absl::Span<const NodeSums> nodes, std::size_t step) {
   BANDSAW_CHECK(nodes.size() >= 2 && nodes[0].samples == nodes[1].samples,

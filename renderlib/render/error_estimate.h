@@ -14,6 +14,7 @@
 // for is therefore a bound: the estimate and a margin.
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "absl/types/span.h"
@@ -33,7 +34,8 @@ struct ErrorEstimate {
   double median = 0;
   double percentile_95 = 0;
   double percentile_99 = 0;
-  /// The share of the variance that the worst thousandth of the pixels (at least one) has.
+  /// The share of the variance that the worst thousandth of the pixels (at least one) has; 0 of
+  /// images of fewer than 64.
   double worst_share = 0;
 
   /// What the relative RMSE of this very image is below, 19 times of 20 or more, also where samples
@@ -46,6 +48,13 @@ struct ErrorEstimate {
 
   friend bool operator==(const ErrorEstimate&, const ErrorEstimate&) = default;
 };
+
+/// A black image of fewer samples says nothing: none may have met its light yet.
+inline constexpr std::uint64_t kBlackSamples = 1024;
+
+/// What the error of an image of so many samples a pixel is below (ErrorEstimate::at_most); below
+/// 0: not known.
+double known_error(const std::optional<ErrorEstimate>& estimate, std::uint64_t samples);
 
 /// One pixel row's sums, of one node of its samples.
 struct NodeSums {

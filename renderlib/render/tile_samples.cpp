@@ -130,4 +130,29 @@ absl::Status check_left_out(const BandPixels& pixels, const TileSamples& tiles) 
   return absl::OkStatus();
 }
 
+absl::Status check_counters(const BandPixels& pixels, const TileSamples& tiles) {
+  const Counters& counters = pixels.counters;
+  const RowRange& rows = pixels.band.rows;
+  const std::uint64_t samples = tiles.count(pixels.width, pixels.band);
+  if (counters.bad_samples > samples || counters.truncated_paths > samples ||
+      counters.negative_samples > counters.bad_samples) {
+    return absl::InvalidArgumentError(absl::StrCat(
+        "the band has ", samples, " samples; it must not count ", counters.bad_samples, " bad, ",
+        counters.negative_samples, " negative, ", counters.truncated_paths, " truncated ones"));
+  }
+  if (counters.bad_samples == 0) {
+    return absl::OkStatus();
+  }
+  const bool inside =
+      counters.bad_x < pixels.width && counters.bad_y >= rows.first && counters.bad_y < rows.last;
+  const SampleRange taken =
+      inside ? tiles.of_pixel(counters.bad_x, counters.bad_y, pixels.band.samples) : SampleRange{};
+  if (!inside || counters.bad_sample < taken.first || counters.bad_sample >= taken.last) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("sample ", counters.bad_sample, " of pixel (", counters.bad_x, ", ",
+                     counters.bad_y, ") is said to be bad and does not lie in the band"));
+  }
+  return absl::OkStatus();
+}
+
 }  // namespace bandsaw

@@ -103,4 +103,7 @@ class TileSamples {
 /// rows, or more.
 absl::Status check_left_out(const BandPixels& pixels, const TileSamples& tiles);
 
+/// INVALID_ARGUMENT: the counters count samples that the band does not have. `tiles`: likewise.
+absl::Status check_counters(const BandPixels& pixels, const TileSamples& tiles);
+
 }  // namespace bandsaw

@@ -60,7 +60,7 @@ absl::StatusOr<Film> render_whole(const LocalJob& job, const StopRule& stop) {
                                 }));
     samples = pass->last;
     const auto estimate = film.error();
-    error = estimate ? estimate->at_most() : -1;
+    error = known_error(estimate, samples);
     job.meter.passed(samples, estimate, clocks());
     if (plan.wants_tiles(error)) {
       plan.plan(film.tile_errors(), samples);

@@ -90,6 +90,14 @@ TEST(ErrorEstimate, PercentilesAreOfThePixelsOwnErrors) {
   EXPECT_NEAR(error.percentile_99, 0.99 / 1.01, 1e-6);
 }
 
+TEST(ErrorEstimate, OfBlackIsKnownWhenManySamplesAreBlack) {
+  Row row;
+  row.add(0, 0);
+  EXPECT_LT(known_error(row.estimate(), kBlackSamples - 1), 0);
+  EXPECT_EQ(known_error(row.estimate(), kBlackSamples), 0);
+  EXPECT_LT(known_error(std::nullopt, 1 << 20), 0);
+}
+
 TEST(ErrorEstimate, BlackIsCertain) {
   Row row;
   row.add(0, 0);

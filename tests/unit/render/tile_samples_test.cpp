@@ -150,5 +150,23 @@ TEST(TileSamples, SumsOfNoSamplesMustBeZero) {
               HasSubstr("its tile takes none"));
 }
 
+TEST(TileSamples, CountersCountSamplesThatThereAre) {
+  TileSamples tiles(16, {0, 4});
+  tiles.set(0, {64, 128});
+  BandPixels pixels{.band = {{64, 80}, {0, 4}}, .width = 16, .sums = {}, .counters = {}};
+  const auto good = [&](const Counters& counters) {
+    pixels.counters = counters;
+    return check_counters(pixels, tiles).ok();
+  };
+  EXPECT_TRUE(good({.bad_samples = 1, .bad_x = 2, .bad_y = 2, .bad_sample = 100}));
+  EXPECT_FALSE(good({.bad_samples = 1, .bad_x = 2, .bad_y = 2, .bad_sample = 128}));
+  EXPECT_FALSE(good({.bad_samples = 1, .bad_x = 3, .bad_y = 2, .bad_sample = 70}))
+      << "the other half takes none";
+  EXPECT_FALSE(good({.bad_samples = 1, .bad_x = 16, .bad_y = 2, .bad_sample = 100}));
+  EXPECT_FALSE(good({.bad_samples = 1, .bad_x = 2, .bad_y = 4, .bad_sample = 100}));
+  EXPECT_TRUE(good({.truncated_paths = 32 * 64}));
+  EXPECT_FALSE(good({.truncated_paths = 32 * 64 + 1}));
+}
+
 }  // namespace
 }  // namespace bandsaw
