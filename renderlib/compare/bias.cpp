@@ -9,6 +9,8 @@
 namespace bandsaw {
 namespace {
 
+constexpr std::uint64_t kLeastValues = 8;
+
 /// Mean and spread in one pass (Welford 1962).
 struct Moments {
   std::uint64_t count = 0;
@@ -43,7 +45,8 @@ double upper_tail(double x) {
   return exp(-0.5 * x * x) / std::sqrt(2 * kPi) * polynomial;
 }
 
-// The two-sided bound that each of `tests` passes so rarely that any does once in a hundred.
+// The two-sided bound of a normal number that each of `tests` passes so rarely that any does once
+// in a hundred.
 double bound_of(std::uint32_t tests) {
   const double one = -expm1(log1p(-0.01) / tests);
   double low = 0;
@@ -52,23 +55,48 @@ double bound_of(std::uint32_t tests) {
     const double middle = (low + high) / 2;
     (2 * upper_tail(middle) > one ? low : high) = middle;
   }
-  // Student's t of few values has heavier tails than the normal law; of 256 hardly.
-  return high * 1.05;
+  return high;
+}
+
+// Student's t as the normal number of the same probability (Wallace 1959, "Bounds on Normal
+// Approximations to Student's and the Chi-Square Distributions").
+double as_normal(double t, std::uint64_t values) {
+  const auto freedom = static_cast<double>(values - 1);
+  return std::sqrt(freedom * log1p(t * t / freedom)) * (8 * freedom + 1) / (8 * freedom + 3);
+}
+
+struct Sums {
+  Moments& difference;
+  Moments& all;
+  Moments& light;
+};
+
+// The finite pixels x, x + 2, … of a row, before x1.
+void add_half_row(const Image& image, const Image& reference, std::uint32_t x, std::uint32_t x1,
+                  std::uint32_t y, Sums sums) {
+  Moments difference;
+  Moments light;
+  for (; x < x1; x += 2) {
+    if (is_finite(image.at(x, y)) && is_finite(reference.at(x, y))) {
+      const double there = luminance(reference.at(x, y));
+      difference.add(double{luminance(image.at(x, y))} - there);
+      light.add(there);
+    }
+  }
+  if (difference.count > 0) {
+    sums.difference.add(difference.mean);
+    sums.all.add(difference.mean);
+    sums.light.add(light.mean);
+  }
 }
 
 Moments block_of(const Image& image, const Image& reference, std::uint32_t x0, std::uint32_t y0,
                  Moments& all, Moments& light) {
   Moments block;
+  const std::uint32_t x1 = std::min(x0 + kBiasBlock, image.width);
   for (std::uint32_t y = y0; y < std::min(y0 + kBiasBlock, image.height); ++y) {
-    for (std::uint32_t x = x0; x < std::min(x0 + kBiasBlock, image.width); ++x) {
-      if (!is_finite(image.at(x, y)) || !is_finite(reference.at(x, y))) {
-        continue;
-      }
-      const double there = luminance(reference.at(x, y));
-      const double difference = double{luminance(image.at(x, y))} - there;
-      block.add(difference);
-      all.add(difference);
-      light.add(there);
+    for (const std::uint32_t first : {x0, x0 + 1}) {
+      add_half_row(image, reference, first, x1, y, {block, all, light});
     }
   }
   return block;
@@ -85,12 +113,12 @@ BiasTest test_bias(const Image& image, const Image& reference) {
   for (std::uint32_t y = 0; y < image.height; y += kBiasBlock) {
     for (std::uint32_t x = 0; x < image.width; x += kBiasBlock) {
       const Moments block = block_of(image, reference, x, y, all, light);
-      if (block.count < kBiasBlock) {
+      if (block.count < kLeastValues) {
         continue;
       }
       ++test.blocks;
       const double t = block.t();
-      test.suspicious_blocks += std::abs(t) > bound ? 1 : 0;
+      test.suspicious_blocks += as_normal(t, block.count) > bound ? 1 : 0;
       if (std::abs(t) > std::abs(test.worst_t)) {
         test.worst_t = t;
         test.worst_x = x;

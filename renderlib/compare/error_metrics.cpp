@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -61,12 +62,13 @@ PixelError add_pixel(const Rgb& image, const Rgb& reference, Sums& sums,
   return error;
 }
 
-// Of the sums over channels, without the largest thousandth.
-double trimmed_sum(std::vector<double>& sums) {
-  const std::size_t worst = (sums.size() + 999) / 1000;
+// Of the sums over channels, without the largest thousandth, of which there is one in two at least.
+double trimmed_mean(std::vector<double>& sums) {
+  const std::size_t worst = sums.size() < 2 ? 0 : (sums.size() + 999) / 1000;
   std::nth_element(sums.begin(), sums.begin() + static_cast<std::ptrdiff_t>(worst), sums.end(),
                    std::greater<>());
-  return std::accumulate(sums.begin() + static_cast<std::ptrdiff_t>(worst), sums.end(), 0.0);
+  return std::accumulate(sums.begin() + static_cast<std::ptrdiff_t>(worst), sums.end(), 0.0) /
+         static_cast<double>(sums.size() - worst);
 }
 
 void set_means(const Sums& sums, std::vector<double>& pixels, ErrorMetrics& metrics) {
@@ -80,7 +82,7 @@ void set_means(const Sums& sums, std::vector<double>& pixels, ErrorMetrics& metr
   metrics.psnr =
       sums.coded_squares == 0 ? kInfinity : -10 * log(sums.coded_squares / count) / log(10);
   metrics.relative_mse = std::accumulate(pixels.begin(), pixels.end(), 0.0) / count;
-  metrics.trimmed_relative_mse = trimmed_sum(pixels) / count;
+  metrics.trimmed_relative_mse = trimmed_mean(pixels) * static_cast<double>(pixels.size()) / count;
 }
 
 }  // namespace
@@ -102,6 +104,9 @@ ErrorMetrics error_metrics(const Image& image, const Image& reference) {
   metrics.identical = metrics.max_difference == 0 && metrics.not_finite == 0;
   if (sums.count > 0) {
     set_means(sums, relative_squares, metrics);
+  } else {
+    metrics.rmse = metrics.relative_rmse = metrics.mape = metrics.psnr = metrics.relative_mse =
+        metrics.trimmed_relative_mse = std::numeric_limits<double>::quiet_NaN();
   }
   return metrics;
 }

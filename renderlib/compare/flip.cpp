@@ -18,7 +18,9 @@ constexpr double k3 = 0.6 * 0.6 * 2.43;
 constexpr double k4 = 0.6 * 0.59;
 constexpr double k5 = 0.14;
 
-float filmed(double x) {
+// White from far below where the quotient would be that of infinities.
+float filmed(double light) {
+  const double x = std::min(light, 1e6);
   return static_cast<float>(
       std::clamp((k0 * x * x + k1 * x) / (k3 * x * x + k4 * x + k5), 0.0, 1.0));
 }

@@ -1,6 +1,7 @@
 #include "renderlib/image/display.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "renderlib/math/constants.h"
 #include "renderlib/math/elementary.h"
@@ -9,6 +10,9 @@ namespace bandsaw {
 namespace {
 
 float filmic(float light) {
+  if (std::isnan(light)) {
+    return light;
+  }
   // The curve passes 1 at 8.1; what lies far beyond would overflow.
   const double x = std::clamp(double{light}, 0.0, 1e6);
   return static_cast<float>(std::min(1.0, x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14)));

@@ -62,6 +62,27 @@ TEST(Bias, FalseAlarmsAreAsRareAsStated) {
   EXPECT_LE(alarms, 12);  // 4 expected; more than 12 has a probability below 1e-3
 }
 
+// Every other pixel of sixteen in a row has the same noise, as where they find their light
+// together.
+TEST(Bias, HalfRowsThatShareTheirNoiseAreNone) {
+  int alarms = 0;
+  for (std::uint64_t seed = 0; seed < 400; ++seed) {
+    const Image image = uniform(64, 64, 0.5F);
+    Image shared = image;
+    Random random(seed);
+    for (std::size_t row = 0; row < 64 * 4; ++row) {
+      for (const std::size_t half : {0, 1}) {
+        const auto noise = static_cast<float>(random.uniform() - 0.5);
+        for (std::size_t x = half; x < 16; x += 2) {
+          shared.pixels[16 * row + x] += gray(0.1F * noise);
+        }
+      }
+    }
+    alarms += test_bias(shared, image).suspicious_blocks > 0 ? 1 : 0;
+  }
+  EXPECT_LE(alarms, 12);  // as above
+}
+
 TEST(Bias, EqualImagesAndTinyOnes) {
   EXPECT_EQ(test_bias(waves(20, 20), waves(20, 20)).t, 0);
   EXPECT_EQ(test_bias(uniform(2, 2, 1), uniform(2, 2, 0)).blocks, 0u);

@@ -53,7 +53,21 @@ TEST(ErrorMetrics, TrimmingLeavesOutTheWorstThousandth) {
   a.pixels[1234] = gray(50);
   EXPECT_EQ(error_metrics(a, uniform(50, 40, 1)).trimmed_relative_mse, 0);
   a.pixels[9].b = 2;
-  EXPECT_NEAR(error_metrics(a, uniform(50, 40, 1)).trimmed_relative_mse, 1 / 1.01 / 6000, 1e-12);
+  EXPECT_NEAR(error_metrics(a, uniform(50, 40, 1)).trimmed_relative_mse, 1 / 1.01 / 5994, 1e-12);
+}
+
+TEST(ErrorMetrics, AnImageOfOnePixelIsNotTrimmedAway) {
+  const ErrorMetrics metrics = error_metrics(uniform(1, 1, 2), uniform(1, 1, 1));
+  EXPECT_EQ(metrics.trimmed_relative_mse, metrics.relative_mse);
+  EXPECT_GT(metrics.relative_mse, 0.9);
+}
+
+TEST(ErrorMetrics, WithoutAFinitePixelNothingIsKnown) {
+  const ErrorMetrics metrics = error_metrics(uniform(3, 2, std::nanf("")), uniform(3, 2, 1));
+  EXPECT_EQ(metrics.not_finite, 18u);
+  EXPECT_TRUE(std::isnan(metrics.rmse));
+  EXPECT_TRUE(std::isnan(metrics.relative_mse));
+  EXPECT_FALSE(metrics.identical);
 }
 
 TEST(ErrorMetrics, ABlackReferenceGivesNoRatio) {

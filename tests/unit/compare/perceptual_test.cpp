@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "renderlib/compare/false_color.h"
 #include "renderlib/compare/flip.h"
@@ -126,6 +127,18 @@ TEST(FalseColor, LightGrowsFromBlackToNearlyWhite) {
   for (std::size_t i = 1; i < 101; ++i) {
     EXPECT_GT(luminance(image.pixels[i]), luminance(image.pixels[i - 1])) << i;
   }
+}
+
+// A lamp that is infinitely bright where there is none is as wrong as a very bright one.
+TEST(Flip, InfiniteIsVeryBright) {
+  Image reference = uniform(32, 32, 0);
+  reference.pixels[0] = gray(2);
+  Image bright = reference;
+  bright.pixels[500] = gray(1e30F);
+  Image infinite = reference;
+  infinite.pixels[500] = gray(std::numeric_limits<float>::infinity());
+  EXPECT_GT(mean(hdr_flip(infinite, reference)), 1e-3);
+  EXPECT_EQ(mean(hdr_flip(infinite, reference)), mean(hdr_flip(bright, reference)));
 }
 
 }  // namespace
