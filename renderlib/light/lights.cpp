@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <type_traits>
 #include <utility>
 
@@ -48,21 +49,28 @@ Lights::Lights(const Geometry& geometry, const std::vector<Material>& materials,
 
 std::vector<LightBound> Lights::add_surfaces(const Interval& interval) {
   std::vector<double> radiance(materials_->size(), 0.0);
+  std::map<TextureId, Rgb> means;  // many materials may share one large image
   for (std::size_t i = 0; i < materials_->size(); ++i) {
     if (const auto emission = emission_of((*materials_)[i])) {
-      radiance[i] =
-          brightness(mean(*textures_, emission->radiance.texture) * emission->radiance.factor);
+      const TextureId texture = emission->radiance.texture;
+      auto known = means.find(texture);
+      if (known == means.end()) {
+        known = means.emplace(texture, mean(*textures_, texture)).first;
+      }
+      radiance[i] = brightness(known->second * emission->radiance.factor);
     }
   }
   const Geometry& geometry = *geometry_;
+  std::map<GroupId, bool> emitting_groups;
   std::vector<LightBound> bounds;
   for (std::uint32_t instance = 0; instance <= geometry.instances.size(); ++instance) {
     std::size_t primitives = geometry.size();
     if (instance > 0) {
       const Instance& placed = geometry.instances[instance - 1];
       const bool own = placed.group != kNoGroup && placed.material == kOwnMaterial;
-      const bool may_emit = own || radiance[index_of(placed.material)] > 0;
-      primitives = may_emit ? primitives_of(geometry, placed) : 0;
+      const bool emits = own ? group_emits(instance, radiance, emitting_groups)
+                             : radiance[index_of(placed.material)] > 0;
+      primitives = emits ? primitives_of(geometry, placed) : 0;
     }
     first_of_instance_.push_back(primitives == 0 ? kNoLight
                                                  : static_cast<std::uint32_t>(light_of_.size()));
@@ -71,6 +79,22 @@ std::vector<LightBound> Lights::add_surfaces(const Interval& interval) {
     }
   }
   return bounds;
+}
+
+// Asked once for each group: it may be placed as often as it has primitives.
+bool Lights::group_emits(std::uint32_t instance, const std::vector<double>& radiance,
+                         std::map<GroupId, bool>& known) const {
+  const Instance& placed = geometry_->instances[instance - 1];
+  const auto found = known.find(placed.group);
+  if (found != known.end()) {
+    return found->second;
+  }
+  bool emits = false;
+  const std::size_t primitives = primitives_of(*geometry_, placed);
+  for (std::uint32_t primitive = 0; primitive < primitives && !emits; ++primitive) {
+    emits = radiance[index_of(material_of(*geometry_, {instance, primitive}))] > 0;
+  }
+  return known.emplace(placed.group, emits).first->second;
 }
 
 void Lights::add_surface(PrimitiveId id, const std::vector<double>& radiance,

@@ -5,6 +5,7 @@
 // constant or gradient background is no light here, directions from scattering find it alone.
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -82,6 +83,8 @@ class Lights {
   static constexpr std::uint32_t kNoLight = 0xffffffffu;
 
   std::vector<LightBound> add_surfaces(const Interval& interval);
+  bool group_emits(std::uint32_t instance, const std::vector<double>& radiance,
+                   std::map<GroupId, bool>& known) const;
   void add_surface(PrimitiveId id, const std::vector<double>& radiance, const Interval& interval,
                    std::vector<LightBound>& to);
   std::vector<DistantBound> add_delta_lights(const std::vector<DeltaLight>& delta_lights,
