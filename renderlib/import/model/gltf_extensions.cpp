@@ -119,6 +119,7 @@ absl::StatusOr<GltfExtensions> read_gltf_extensions(const std::string& path) {
   GltfExtensions out;
   const std::optional<Struct> root = gltf::root_of(path);
   if (!root) {
+    out.unread = true;
     return out;
   }
   RETURN_IF_ERROR(check_gltf_support(*root));

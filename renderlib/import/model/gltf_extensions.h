@@ -40,6 +40,7 @@ struct GltfMaterial {
 };
 
 struct GltfExtensions {
+  bool unread = false;               ///< its JSON is not strict, or too large: all else is empty
   std::vector<std::string> ignored;  ///< extensions that the file uses and that change nothing here
   /// Those that the scene uses, in the order in which Assimp meets them: nodes depth first, each
   /// after its children. None of glTF 1.
@@ -51,8 +52,8 @@ struct GltfExtensions {
   std::size_t lights_with_range = 0;  ///< KHR_lights_punctual: a hint to cut light off
 };
 
-/// Of a .gltf or .glb. INVALID_ARGUMENT when it needs what neither Assimp nor we can read; what is
-/// no glTF at all is left to Assimp to complain about.
+/// Of a .gltf or .glb. INVALID_ARGUMENT when it needs what neither Assimp nor we can read; JSON
+/// that cannot be read is left to Assimp, which is less strict.
 absl::StatusOr<GltfExtensions> read_gltf_extensions(const std::string& path);
 
 }  // namespace bandsaw

@@ -35,7 +35,10 @@ absl::string_view json_of(absl::string_view bytes) {
 
 std::optional<Struct> root_of(const std::string& path) {
   const auto bytes = read_whole_file(path, kMostBytes);
-  const absl::string_view json = bytes.ok() ? json_of(*bytes) : absl::string_view();
+  absl::string_view json = bytes.ok() ? json_of(*bytes) : absl::string_view();
+  while (absl::EndsWith(json, absl::string_view("\0", 1))) {
+    json.remove_suffix(1);  // as some writers fill up the chunk
+  }
   Struct root;
   if (json.empty() || json.size() > kMostJson ||
       !google::protobuf::util::JsonStringToMessage({json.data(), json.size()}, &root).ok()) {

@@ -56,6 +56,12 @@ void warn_of_unused(ModelFile& file) {
       file.warn(absl::StrCat(count, " ", what, " left out"));
     }
   };
+  if (file.gltf.unread) {
+    file.warn(
+        "its JSON is not as glTF asks (valid UTF-8, each name once, nested less than 100 deep): "
+        "its "
+        "extensions, further lights and bones of one name are left out");
+  }
   warn(file.scene.mNumAnimations, "animations (the rest pose is shown) are");
   warn(file.gltf.scenes > 1 ? file.gltf.scenes - 1 : 0, "scenes beside the default one are");
   warn(file.gltf.lights_with_range, "ranges of lights (light goes on for ever) are");
