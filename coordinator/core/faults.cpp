@@ -76,19 +76,30 @@ void Core::State::add_fault(Job& job, Worker& worker, const Band& band, const st
   act(action::Faulted{job.id, band, worker.name, reason});
   job.notice = absl::StrCat(worker.name, " could not render ", name_of(band), ": ", reason);
   if (names.size() >= kFaultsPerBand || (count >= kFaultsPerBand && !someone_else(job, band))) {
-    give_up(job, absl::StrCat(name_of(band), " failed ", count, " times, on ",
-                              absl::StrJoin(names, ", "), ": ", reason));
-  } else if (worker.eligible() && !may_render(worker, job) && !someone_may_render(job)) {
-    give_up(job, absl::StrCat("each worker that is connected failed ", kFaultsPerWorker,
-                              " of its bands, with none rendered between; the last: ", job.notice));
+    end(job, JobState::kFailed,
+        absl::StrCat(name_of(band), " failed ", count, " times, on ", absl::StrJoin(names, ", "),
+                     ": ", reason));
   }
 }
 
-void Core::State::give_up(Job& job, const std::string& reason) {
-  if (!job.log.empty()) {
-    emit(record::LastWords{job.id, job.log_of, job.log});
+/// One that reconnects is as good as there.
+void Core::State::check_unable() {
+  const double patience = options_.heartbeat_timeout_s + options_.reattach_grace_s;
+  const std::set<JobId> active = active_;
+  for (const JobId id : active) {
+    Job& job = jobs_.at(id);
+    const bool unable = job.state == JobState::kRunning && job.leases.empty() && job.any_free() &&
+                        hunger_.eligible() > 0 && !waits_for_former() && !someone_may_render(job);
+    if (!unable) {
+      job.unable_since.reset();
+    } else if (!job.unable_since) {
+      job.unable_since = clock_.patience();
+    } else if (clock_.patience() - *job.unable_since >= patience) {
+      end(job, JobState::kFailed,
+          absl::StrCat("each worker that is connected failed ", kFaultsPerWorker,
+                       " of its bands, with none rendered between; the last: ", job.notice));
+    }
   }
-  end(job, JobState::kFailed, reason);
 }
 
 void Core::State::check_silence() {

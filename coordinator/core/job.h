@@ -146,9 +146,11 @@ class Job {
   std::set<LeaseId> copies;        ///< of `leases`, those that own nothing (Lease::copy_of)
   std::uint64_t bands_copied = 0;  ///< leases given to idle workers though others had them
   std::deque<Fault> faults;        ///< the newest kFaultsKept
-  std::string log_of;              ///< the worker that failed a band last …
-  std::vector<std::string> log;    ///< … and the last lines of its log
-  std::vector<Audit> audits;       ///< open, at most kAuditsKept
+  /// Patience clock: since when no connected worker is given it any more.
+  std::optional<Time> unable_since;
+  std::string log_of;            ///< the worker that failed a band last …
+  std::vector<std::string> log;  ///< … and the last lines of its log
+  std::vector<Audit> audits;     ///< open, at most kAuditsKept
   /// Whose second result was the same, and by whom they are stored: it may be another one day.
   std::set<std::pair<Band, std::uint64_t>> audited;
   /// A look at the error that waits for audits: what it would decide on may be wrong pixels.

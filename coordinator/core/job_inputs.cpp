@@ -213,6 +213,9 @@ void Core::State::end(Job& job, JobState state, const std::string& reason) {
   for (const WorkerShare& share : job.largest_shares()) {
     emit(record::ShareCounted{job.id, share});
   }
+  if (state == JobState::kFailed && !job.log.empty()) {
+    emit(record::LastWords{job.id, job.log_of, job.log});
+  }
   emit(record::StateChanged{job.id, state, clean_text(reason, wire::kReasonBytes)});
   act(action::DropBands{job.id});
 }
@@ -229,6 +232,7 @@ void Core::State::on(const input::Tick&) {
   forget_refusals();
   check_silence();
   check_progress();
+  check_unable();
   const std::set<JobId> active = active_;
   for (const JobId id : active) {
     settle(jobs_.at(id));

@@ -222,7 +222,6 @@ class Core::State {
   bool left_to_others(const Job& job, const Worker& worker, const Band& band) const;
   bool may_render(const Worker& worker, const Job& job) const;
   bool someone_may_render(const Job& job) const;
-  void give_up(Job& job, const std::string& reason);
   bool someone_else(const Job& job, const Band& band) const;
   struct Losing {
     JobId job = 0;
@@ -235,6 +234,7 @@ class Core::State {
   bool has_suspect(const Worker& worker) const;
   void forgive_losses(const Worker& worker);
   static void shrink_losses(Job& job, const Band& stored);
+  void check_unable();
   void check_silence();
   void check_progress();
 

@@ -25,7 +25,7 @@ std::optional<std::set<wire::Digest>> Collector::blobs_of(const DigestHex& manif
     return std::set<wire::Digest>();  // asked again: it may be sent anew
   }
   if (!bytes.ok()) {
-    spdlog::warn("no blob is removed now: the scene {} cannot be read: {}", manifest,
+    spdlog::warn("what the scene {} needs is not known, it cannot be read: {}", manifest,
                  bytes.status().ToString());
     return std::nullopt;
   }
@@ -107,7 +107,6 @@ void Collector::remove_unneeded(const std::set<wire::Digest>& needed, double now
   if (removed > 0) {
     spdlog::info("removed {} blobs that no job needs", removed);
   }
-  blobs_.remove_partials(now, keep_.unused_seconds);
 }
 
 void Collector::sweep(const std::vector<Job>& jobs, double now) {
@@ -120,7 +119,7 @@ void Collector::sweep(const std::vector<Job>& jobs, double now) {
     manifests.insert(job.manifest);
     if (const auto blobs = blobs_of(job.manifest)) {
       needed.insert(blobs->begin(), blobs->end());
-    } else {
+    } else if (!job.final) {
       all_known = false;
     }
   }
@@ -128,6 +127,7 @@ void Collector::sweep(const std::vector<Job>& jobs, double now) {
   if (all_known) {
     remove_unneeded(needed, now);
   }
+  blobs_.remove_partials(now, keep_.unused_seconds);
   // A job that was added meanwhile has a higher number than any of these.
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder_.jobs(), error)) {

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <utility>
+#include <variant>
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/engine/core_desk.h"
@@ -11,15 +13,20 @@ void CoreDesk::submit(JobSpec spec, std::int32_t priority, Answer<JobId> answer)
     return;
   }
   const Step step = run(input::Submit{.spec = std::move(spec), .priority = priority});
-  outbox_.reply([this, job = step.job, decided = step.status,
+  const bool added = std::any_of(
+      step.records.begin(), step.records.end(),
+      [](const Record& record) { return std::holds_alternative<record::JobAdded>(record); });
+  outbox_.reply([this, job = step.job, added, decided = step.status,
                  answer = std::move(answer)](const absl::Status& journalled) mutable {
     if (!decided.ok()) {
       answer(decided);
     } else if (!journalled.ok()) {
       // Its submitter hears that it failed, so it must not begin by itself when the disk is back.
-      // Nor is it what a second try with the same request id is told of.
-      run(input::Cancel{.job = job});
-      forget({job});
+      // Nor is it what a second try with the same request id is told of; one of before stays.
+      if (added) {
+        run(input::Cancel{.job = job});
+        forget({job});
+      }
       answer(absl::ResourceExhaustedError(journalled.message()));
     } else {
       answer(job);

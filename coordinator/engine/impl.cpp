@@ -93,8 +93,8 @@ void Engine::Impl::collect(const std::vector<Collector::Job>& jobs) {
   const double now = unix_seconds();
   // What is forgotten goes when the journal says so (action::DropJob), its blobs with the next
   // sweep.
-  std::vector<JobId> old = collector_.to_forget(jobs, now);
   collector_.sweep(jobs, now);
+  std::vector<JobId> old = collector_.to_forget(jobs, now);
   if (!old.empty()) {
     on_core([old = std::move(old)](CoreDesk& core) { core.forget(old); });
   }

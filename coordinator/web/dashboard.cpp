@@ -57,9 +57,11 @@ class Dashboard::Impl {
     add_pictures(server_, pictures_, report_);
     add_scenes(server_, scenes_);
     add_gallery(server_, engine, scenes_, gallery_);
-    // The last: without it the body of a POST to nowhere would be read whole before the answer.
-    server_.Post(".*", [](const httplib::Request&, httplib::Response& response,
-                          const httplib::ContentReader&) { refuse(response, nothing_here()); });
+    // The last: without it the body of a POST to nowhere would be read whole before the answer. (A
+    // dot matches no line feed, which %0A is by now.)
+    server_.Post(R"([\s\S]*)",
+                 [](const httplib::Request&, httplib::Response& response,
+                    const httplib::ContentReader&) { refuse(response, nothing_here()); });
     server_.set_error_handler([](const httplib::Request&, httplib::Response& response) {
       if (response.body.empty() && response.status == 404) {
         refuse(response, nothing_here());

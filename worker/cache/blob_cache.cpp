@@ -64,11 +64,13 @@ bool is_at(int fd, const std::string& path) {
 /// Not one that is being downloaded: another worker's commit would give the blob's name to a part
 /// that a third has begun anew.
 bool remove_unused(const std::string& path) {
-  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+  // NFS locks only what is open for writing.
+  const int fd = ::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
   if (fd < 0) {
     return false;
   }
-  const bool removed = flock(fd, LOCK_EX | LOCK_NB) == 0 && unlink(path.c_str()) == 0;
+  const bool removed =
+      flock(fd, LOCK_EX | LOCK_NB) == 0 && is_at(fd, path) && unlink(path.c_str()) == 0;
   close(fd);
   return removed;
 }

@@ -53,12 +53,19 @@ end_worker() {
 }
 )sh";
 
+// What the worker was built for, as worker/machine.cpp asks.
+#if defined(__AVX2__)
+#define BANDSAW_CPU_FLAGS "flags='avx2 fma bmi2'"
+#else
+#define BANDSAW_CPU_FLAGS "flags="
+#endif
 constexpr char kInvite[] = R"sh(
 umask 077
 read -r join
 [ "$(uname -s) $(uname -m)" = "Linux x86_64" ] ||
   result failed "it is a $(uname -s) machine ($(uname -m)); workers run on Linux, x86_64"
-for flag in avx2 fma bmi2; do
+)sh" BANDSAW_CPU_FLAGS R"sh(
+for flag in $flags; do
   grep -q -w -m 1 "$flag" /proc/cpuinfo ||
     result failed "its CPU is too old: it has no $flag (needed: Haswell, Zen or later)"
 done

@@ -1,6 +1,9 @@
 // bandsaw secret rotate: through the coordinator when it runs, else in its folder.
 
 #include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/base/data_folder.h"
@@ -10,22 +13,40 @@
 #include "coordinator/cli/options/commands.h"
 #include "coordinator/cli/serve/join_files.h"
 #include "coordinator/store/data_folder.h"
+#include "renderlib/base/atomic_file.h"
 #include "renderlib/base/file.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
 namespace {
 
+std::string identity_file(const std::string& folder) { return folder + "/identity"; }
+
+/// What root writes into the folder of another user, as of the service that is installed, is that
+/// user's.
+absl::Status give_to_owner(const std::string& folder, const std::string& file) {
+  struct stat owner {};
+  if (geteuid() == 0 && (stat(folder.c_str(), &owner) != 0 ||
+                         lchown(file.c_str(), owner.st_uid, owner.st_gid) != 0)) {
+    return errno_status(errno, absl::StrCat("cannot give ", file, " to the owner of its folder"));
+  }
+  return absl::OkStatus();
+}
+
 /// While nobody serves the folder. FAILED_PRECONDITION: somebody does.
 absl::StatusOr<std::string> rotate_here(const std::string& folder, link::Role role) {
   ASSIGN_OR_RETURN(const DataFolder locked, DataFolder::open(folder));
   ASSIGN_OR_RETURN(const RenewedSecret renewed, rotate_secret(folder, role));
+  RETURN_IF_ERROR(give_to_owner(folder, identity_file(folder)));
   RETURN_IF_ERROR(renewed.written);
+  if (file_exists(renewed.join_file)) {
+    RETURN_IF_ERROR(give_to_owner(folder, renewed.join_file));
+  }
   return renewed.join_file;
 }
 
 absl::StatusOr<std::string> rotate(const std::string& folder, link::Role role) {
-  if (!file_exists(folder + "/identity")) {
+  if (!file_exists(identity_file(folder))) {
     return absl::InvalidArgumentError(
         absl::StrCat(folder, " is no data folder of a coordinator; name it with --data DIR"));
   }

@@ -119,23 +119,49 @@ TEST(Loss, ABandThatFailsThreeTimesFailsTheJobWithTheReason) {
   EXPECT_EQ(farm.all<action::DropBands>().size(), 1u);
 }
 
+/// Every band that the session is given fails.
+void fail_all(FarmDriver& farm, SessionId session) {
+  for (std::size_t i = 0; i < farm.all<action::Lease>().size(); ++i) {
+    const action::Lease lease = farm.all<action::Lease>()[i];
+    if (lease.session == session) {
+      farm.say(input::BandFailed{session, lease.lease, "cannot read the scene", {"its last line"}});
+    }
+  }
+}
+
 TEST(Loss, AJobThatNoConnectedWorkerCanRenderFails) {
   FarmDriver farm(slow());
   const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 64));
   farm.hello(1, "a", 3);
   farm.hello(2, "b", 3);
-  const auto leases = farm.all<action::Lease>();
-  ASSERT_EQ(leases.size(), 6u);
-  for (std::size_t i = 0; i < 6; ++i) {
-    ASSERT_EQ(farm.job(job).state, JobState::kRunning) << i;
-    farm.say(input::BandFailed{
-        leases[i].session, leases[i].lease, "cannot read the scene", {"its last line"}});
-  }
+  fail_all(farm, 1);
+  fail_all(farm, 2);
+  EXPECT_EQ(farm.job(job).state, JobState::kRunning);
+  EXPECT_NE(farm.core.why(job, farm.now).at(0).find("no connected worker can render it"),
+            std::string::npos);
+  farm.pass_time(60, {1, 2});
   EXPECT_EQ(farm.job(job).state, JobState::kFailed);
   for (const char* part : {"each worker", "3 of its bands", "worker-b", "cannot read the scene"}) {
     EXPECT_NE(farm.job(job).reason.find(part), std::string::npos) << farm.job(job).reason;
   }
   EXPECT_EQ(farm.job(job).log, std::vector<std::string>{"its last line"});
+}
+
+TEST(Loss, AJobWaitsForTheOneThatCanRenderItButNotForEver) {
+  FarmDriver farm(slow());
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 64));
+  farm.hello(1, "a", 3);
+  farm.hello(2, "b", 1);
+  fail_all(farm, 1);
+  farm.say(input::Lost{2, "connection reset"});
+  farm.pass_time(3, {1});
+  farm.hello(3, "b", 1);
+  farm.pass_time(20, {1, 3});
+  EXPECT_EQ(farm.job(job).state, JobState::kRunning);
+  farm.say(input::Lost{3, "connection reset"});
+  farm.pass_time(60, {1});
+  EXPECT_EQ(farm.job(job).state, JobState::kFailed);
+  EXPECT_NE(farm.job(job).reason.find("cannot read the scene"), std::string::npos);
 }
 
 TEST(Loss, AWorkerThatFailsNowAndThenKeepsItsJob) {

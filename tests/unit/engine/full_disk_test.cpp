@@ -103,6 +103,23 @@ TEST_F(FullDiskTest, ASubmitThatCannotBeJournalledFailsAndDoesNotBeginLater) {
   expect_local_image(*job);
 }
 
+TEST_F(FullDiskTest, ASecondTryThatCannotBeJournalledLeavesTheJobAsItIs) {
+  const JobId job = farm_.begin(StopAtSamples{.samples = 16});
+  ASSERT_TRUE(farm_.put(job, rendered(0, 14)).ok());
+  wait_for(job, JobState::kDone);
+  JobSpec same = farm_.spec(StopAtSamples{.samples = 16});
+  disk_->break_it();
+  // Journalled together with what is new.
+  JobSpec other = same;
+  other.request_id = "another request id";
+  Box<absl::Status> said;
+  farm_.engine().submit(other, [](const absl::StatusOr<JobId>&) {});
+  farm_.engine().submit(same, [&](const absl::StatusOr<JobId>& id) { said.put(id.status()); });
+  said.take().IgnoreError();
+  disk_->mend();
+  expect_local_image(job);
+}
+
 TEST_F(FullDiskTest, ResumingIsRefusedWhileTheJournalIs) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 16});
   ASSERT_TRUE(farm_.put(job, rendered(0, 7)).ok());

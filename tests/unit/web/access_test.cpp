@@ -136,20 +136,22 @@ TEST_F(AccessTest, HalfOpenConnectionsOfOneAddressLeaveRoom) {
 
 // Nobody has logged in: the answer comes before the body, which is never taken.
 TEST_F(AccessTest, ABodyForNowhereIsNotWaitedFor) {
-  const int one = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(static_cast<std::uint16_t>(dashboard_->port()));
-  inet_pton(AF_INET, "127.0.0.1", &address.sin_addr);
-  ASSERT_EQ(connect(one, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
-  const std::string head =
-      "POST /nowhere HTTP/1.1\r\nHost: 127.0.0.1\r\nX-Bandsaw: 1\r\nContent-Length: "
-      "1000000000000\r\n\r\n";
-  ASSERT_EQ(send(one, head.data(), head.size(), MSG_NOSIGNAL), static_cast<ssize_t>(head.size()));
-  char answer[13] = {};
-  ASSERT_EQ(recv(one, answer, sizeof(answer) - 1, MSG_WAITALL), 12);
-  EXPECT_STREQ(answer, "HTTP/1.1 404");
-  close(one);
+  for (const std::string path : {"/nowhere", "/%0A"}) {
+    const int one = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(dashboard_->port()));
+    inet_pton(AF_INET, "127.0.0.1", &address.sin_addr);
+    ASSERT_EQ(connect(one, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
+    const std::string head = "POST " + path +
+                             " HTTP/1.1\r\nHost: 127.0.0.1\r\nX-Bandsaw: 1\r\nContent-Length: "
+                             "1000000000000\r\n\r\n";
+    ASSERT_EQ(send(one, head.data(), head.size(), MSG_NOSIGNAL), static_cast<ssize_t>(head.size()));
+    char answer[13] = {};
+    ASSERT_EQ(recv(one, answer, sizeof(answer) - 1, MSG_WAITALL), 12);
+    EXPECT_STREQ(answer, "HTTP/1.1 404");
+    close(one);
+  }
 }
 
 TEST_F(AccessTest, AHeadWithoutEndIsCutOff) {
