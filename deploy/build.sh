@@ -5,6 +5,6 @@ build=${BANDSAW_BUILD:-}
 if [ -z "$build" ]; then
   build=$PWD/build/release
   deploy/install.sh "$1"
-  [ -f "$build/CMakeCache.txt" ] || cmake --preset release -DBANDSAW_TESTS=OFF
+  [ -f "$build/build.ninja" ] || cmake --preset release -DBANDSAW_TESTS=OFF
   cmake --build --preset release --target bandsaw bandsaw-worker bandsaw-import
 fi

@@ -6,11 +6,12 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 folder=${1:-out/demo}
+mkdir -p "$folder"
+folder=$(cd "$folder" && pwd)
 
 . deploy/build.sh demo
 export PATH="$build/bin:$PATH"
 
-mkdir -p "$folder"
 cp deploy/demo.textproto "$folder/engine.textproto"
 cp /usr/share/assimp/models/glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb "$folder/"
 cp renderlib/gallery/{knot.obj,pawn.obj,vase.obj,planet.png,dusk.hdr} "$folder/"
@@ -23,4 +24,4 @@ done
 
 bandsaw submit "$folder/engine.textproto" --farm "$data/farm" --samples "${BANDSAW_DEMO_SAMPLES:-64}" \
   -o "$folder/engine.png"
-echo "the picture: $PWD/$folder/engine.png"
+echo "the picture: $folder/engine.png"

@@ -15,10 +15,11 @@ has() { grep -q -e "$1" <<<"$built" || { echo "missing: $1" >&2; exit 1; }; }
 for kind in Namespace Service StatefulSet Deployment NetworkPolicy; do
   has "^kind: $kind\$"
 done
-# The name that is listened on: the pod's, below the service that governs its set.
+# The name that the join string gets: the pod's, below the service that governs its set.
 has '^  name: coordinator$'
 has '^  serviceName: bandsaw$'
-has '^        - coordinator-0.bandsaw:7878$'
+has '^        - 0.0.0.0:7878$'
+grep -q 'coordinator-0.bandsaw:7878' "$here/README.md"
 [ "$(grep -c 'clusterIP: None' <<<"$built")" -eq 1 ]
 [ "$(grep -c 'runAsNonRoot: true' <<<"$built")" -eq 2 ]
 [ "$(grep -c 'readOnlyRootFilesystem: true' <<<"$built")" -eq 2 ]
