@@ -28,7 +28,7 @@ struct FloatRay {
   float direction_size;            ///< at least |direction|_1
   float length;                    ///< at least |direction|, within 2^-19 of it
   /// Added to every bound for what underflows; infinite where numbers are so large that float may
-  /// overflow: then nothing is decided in float.
+  /// overflow: then nothing but boxes is decided in float.
   float floor;
   double scale;
 

@@ -7,10 +7,22 @@
 #include "renderlib/medium/attenuation.h"
 
 namespace bandsaw {
+namespace {
+
+/// Of a weight that is 0 but for rounding.
+constexpr double kRim = 1e-12;
+
+}  // namespace
 
 int* MediumWalk::Around::count_of(MediumId medium) {
   for (std::size_t i = 0; i < size_; ++i) {
     if (entries_[i].medium == medium) {
+      return &entries_[i].shapes;
+    }
+  }
+  for (std::size_t i = 0; i < size_; ++i) {
+    if (entries_[i].shapes == 0) {
+      entries_[i].medium = medium;
       return &entries_[i].shapes;
     }
   }
@@ -54,6 +66,11 @@ MediumWalk::MediumWalk(const Scene& scene, const Ray& ray, double length, std::u
   }
 }
 
+bool MediumWalk::is_of_mesh(const Hit& hit) const {
+  return hit.id.instance != 0 &&
+         scene_.media().boundaries.instances[hit.id.instance - 1].group == kNoGroup;
+}
+
 std::optional<MediumWalk::Crossing> MediumWalk::find_next(Search& search) {
   const Accel& boundaries = scene_.boundary_accel();
   for (;;) {
@@ -71,13 +88,14 @@ std::optional<MediumWalk::Crossing> MediumWalk::find_next(Search& search) {
     crossing.shape = {hit.id.instance, hit.id.instance == 0 ? hit.id.primitive : 0};
     crossing.medium = medium_in(point.material);
     crossing.inwards = slope < 0;
-    // Through an edge or a corner that triangles share a ray goes once.
+    // Through an edge or a corner that triangles of a mesh share a ray goes once.
+    crossing.on_rim = is_of_mesh(hit) && std::min({hit.u, hit.v, 1 - hit.u - hit.v}) < kRim;
     const double same = 4 * point.offset / std::max(0.01, std::abs(slope));
     const auto known = static_cast<std::ptrdiff_t>(std::min(search.found, Search::kRecent));
     const bool again = std::any_of(
         search.recent.begin(), search.recent.begin() + known, [&](const Crossing& other) {
-          return other.shape == crossing.shape && other.inwards == crossing.inwards &&
-                 crossing.t - other.t <= same;
+          return other.on_rim && crossing.on_rim && other.shape == crossing.shape &&
+                 other.inwards == crossing.inwards && crossing.t - other.t <= same;
         });
     if (!again) {
       search.recent[search.found++ % Search::kRecent] = crossing;

@@ -26,7 +26,7 @@ struct Stretch {
 
 class MediumWalk {
  public:
-  /// More media than these along one ray are not kept.
+  /// More media than these around one point are not kept.
   static constexpr std::size_t kMostMedia = 16;
 
   /// `ray` has a unit direction and is followed for `length` (> 0, maybe infinite). The scene MUST
@@ -42,6 +42,7 @@ class MediumWalk {
     PrimitiveId shape;  ///< primitive 0 for all of what is placed
     MediumId medium{};
     bool inwards = false;
+    bool on_rim = false;  ///< of a mesh's triangle
   };
   /// How many shapes of each medium are around a point; below 0 between faces of one distance.
   class Around {
@@ -70,6 +71,7 @@ class MediumWalk {
 
   static constexpr std::size_t kKept = 8;
 
+  bool is_of_mesh(const Hit& hit) const;
   /// The next crossing; none at the end.
   std::optional<Crossing> find_next(Search& search);
   void find_around_origin();

@@ -191,31 +191,63 @@ TEST(MediumWalk, OfACloudOfPuffsItSeesTheUnion) {
   }
 }
 
-/// A mesh of two cubes that overlap is their union, from wherever it is seen.
+/// A mesh of two cubes that overlap is their union, from wherever it is seen; also where faces of
+/// both lie in one plane.
 TEST(MediumWalk, OverlappingPartsOfOneMeshAreOne) {
+  for (const Vec3& by : {Vec3{0.5, 0.5, 0.5}, Vec3{0.5, 0, 0}, Vec3{0, 0.5, 0.5}}) {
+    SceneMaker maker;
+    const MediumId smoke = test::add(maker, test::medium(1, 0));
+    Mesh both = unit_cube();
+    const Mesh other = test::moved(unit_cube(), by);
+    const auto first = static_cast<std::uint32_t>(both.positions.size());
+    both.positions.insert(both.positions.end(), other.positions.begin(), other.positions.end());
+    both.normals.clear();
+    both.uvs.clear();
+    for (const auto& corner : other.triangles) {
+      both.triangles.push_back({corner[0] + first, corner[1] + first, corner[2] + first});
+    }
+    test::fill_mesh(maker, both, {}, smoke);
+    const auto scene = maker.build();
+    const Inside inside = [&](const Vec3& p) {
+      const auto in_cube = [&](const Vec3& q) {
+        return q.x > 0 && q.x < 1 && q.y > 0 && q.y < 1 && q.z > 0 && q.z < 1;
+      };
+      return in_cube(p) || in_cube(p - by) ? 0 : -1;
+    };
+    test::Random random(5);
+    for (int i = 0; i < 2000; ++i) {
+      expect_walk(*scene, random_ray(random, 1.5), kInfinity, inside);
+    }
+  }
+}
+
+/// Rays through the edges and corners that the triangles of a face share.
+TEST(MediumWalk, SharedEdgesArePassedOnce) {
   SceneMaker maker;
   const MediumId smoke = test::add(maker, test::medium(1, 0));
-  Mesh both = unit_cube();
-  const Mesh other = test::moved(unit_cube(), {0.5, 0.5, 0.5});
-  const auto first = static_cast<std::uint32_t>(both.positions.size());
-  both.positions.insert(both.positions.end(), other.positions.begin(), other.positions.end());
-  both.normals.clear();
-  both.uvs.clear();
-  for (const auto& corner : other.triangles) {
-    both.triangles.push_back({corner[0] + first, corner[1] + first, corner[2] + first});
-  }
-  test::fill_mesh(maker, both, {}, smoke);
+  test::fill_box(maker, {0, 0, 0}, {1, 1, 1}, smoke);
   const auto scene = maker.build();
-  const Inside inside = [](const Vec3& p) {
-    const auto in_cube = [&](double low) {
-      return p.x > low && p.x < low + 1 && p.y > low && p.y < low + 1 && p.z > low && p.z < low + 1;
-    };
-    return in_cube(0) || in_cube(0.5) ? 0 : -1;
-  };
-  test::Random random(5);
-  for (int i = 0; i < 2000; ++i) {
-    expect_walk(*scene, random_ray(random, 1.5), kInfinity, inside);
+  for (int i = 1; i < 64; ++i) {
+    for (const Vec2& at : {Vec2{i / 64.0, i / 64.0}, Vec2{i / 64.0, 1 - i / 64.0}}) {
+      std::uint64_t rays = 0;
+      const Ray down{.origin = {at.x, at.y, 3}, .direction = {0, 0, -1}};
+      EXPECT_FLOAT_EQ(media_transmittance(*scene, down, rays).g, std::exp(-1.0f)) << i;
+    }
   }
+}
+
+/// Many media one after the other; the one around all of them is left last.
+TEST(MediumWalk, OfManyMediaInARowSeesEach) {
+  SceneMaker maker;
+  const MediumId mist = test::add(maker, test::medium(0.125f, 0));
+  test::fill_sphere(maker, {0, 0, 0}, 500, mist);
+  for (int i = 0; i < 40; ++i) {
+    test::fill_sphere(maker, {3.0 * i, 0, 0}, 1, test::add(maker, test::medium(0.25f, 0)));
+  }
+  const auto scene = maker.build();
+  std::uint64_t rays = 0;
+  const Ray ray{.origin = {-2, 0, 0}, .direction = {1, 0, 0}, .t_max = 3.0 * 40};
+  EXPECT_NEAR(std::log(media_transmittance(*scene, ray, rays).g), -40 * (2 * 0.25 + 0.125), 1e-4);
 }
 
 /// A ray that touches an edge, in the plane of the diagonal, passes nothing.
