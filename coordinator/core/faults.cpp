@@ -89,9 +89,11 @@ void Core::State::check_unable() {
   for (const JobId id : active) {
     Job& job = jobs_.at(id);
     const bool unable = job.state == JobState::kRunning && job.leases.empty() && job.any_free() &&
-                        hunger_.eligible() > 0 && !waits_for_former() && !someone_may_render(job);
+                        !waits_for_former() && !someone_may_render(job);
     if (!unable) {
       job.unable_since.reset();
+    } else if (hunger_.eligible() == 0) {
+      continue;  // Nobody is there: neither a reason to give up nor a sign of hope.
     } else if (!job.unable_since) {
       job.unable_since = clock_.patience();
     } else if (clock_.patience() - *job.unable_since >= patience) {

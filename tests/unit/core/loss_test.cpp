@@ -164,6 +164,20 @@ TEST(Loss, AJobWaitsForTheOneThatCanRenderItButNotForEver) {
   EXPECT_NE(farm.job(job).reason.find("cannot read the scene"), std::string::npos);
 }
 
+TEST(Loss, AWorkerThatCannotRenderItAndComesAndGoesIsNoHope) {
+  FarmDriver farm(slow());
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 64));
+  farm.hello(1, "a", 3);
+  fail_all(farm, 1);
+  for (SessionId session = 2; session < 20; ++session) {
+    farm.pass_time(4, {session - 1});
+    farm.say(input::Lost{session - 1, "a bad cable"});
+    farm.pass_time(1);
+    farm.hello(session, "a", 3);
+  }
+  EXPECT_EQ(farm.job(job).state, JobState::kFailed);
+}
+
 TEST(Loss, AWorkerThatFailsNowAndThenKeepsItsJob) {
   FarmDriver farm(slow());
   const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 64));
