@@ -65,38 +65,38 @@ double as_normal(double t, std::uint64_t values) {
   return std::sqrt(freedom * log1p(t * t / freedom)) * (8 * freedom + 1) / (8 * freedom + 3);
 }
 
-struct Sums {
-  Moments& difference;
-  Moments& all;
-  Moments& light;
+// Of all pixels.
+struct Totals {
+  Moments half_rows;
+  double difference = 0;
+  double light = 0;
 };
 
 // The finite pixels x, x + 2, … of a row, before x1.
 void add_half_row(const Image& image, const Image& reference, std::uint32_t x, std::uint32_t x1,
-                  std::uint32_t y, Sums sums) {
+                  std::uint32_t y, Moments& block, Totals& totals) {
   Moments difference;
-  Moments light;
   for (; x < x1; x += 2) {
     if (is_finite(image.at(x, y)) && is_finite(reference.at(x, y))) {
       const double there = luminance(reference.at(x, y));
       difference.add(double{luminance(image.at(x, y))} - there);
-      light.add(there);
+      totals.difference += double{luminance(image.at(x, y))} - there;
+      totals.light += there;
     }
   }
   if (difference.count > 0) {
-    sums.difference.add(difference.mean);
-    sums.all.add(difference.mean);
-    sums.light.add(light.mean);
+    block.add(difference.mean);
+    totals.half_rows.add(difference.mean);
   }
 }
 
 Moments block_of(const Image& image, const Image& reference, std::uint32_t x0, std::uint32_t y0,
-                 Moments& all, Moments& light) {
+                 Totals& totals) {
   Moments block;
   const std::uint32_t x1 = std::min(x0 + kBiasBlock, image.width);
   for (std::uint32_t y = y0; y < std::min(y0 + kBiasBlock, image.height); ++y) {
     for (const std::uint32_t first : {x0, x0 + 1}) {
-      add_half_row(image, reference, first, x1, y, {block, all, light});
+      add_half_row(image, reference, first, x1, y, block, totals);
     }
   }
   return block;
@@ -108,11 +108,10 @@ BiasTest test_bias(const Image& image, const Image& reference) {
   BiasTest test;
   const auto along = [](std::uint32_t size) { return (size + kBiasBlock - 1) / kBiasBlock; };
   const double bound = bound_of(along(image.width) * along(image.height));
-  Moments all;
-  Moments light;
+  Totals totals;
   for (std::uint32_t y = 0; y < image.height; y += kBiasBlock) {
     for (std::uint32_t x = 0; x < image.width; x += kBiasBlock) {
-      const Moments block = block_of(image, reference, x, y, all, light);
+      const Moments block = block_of(image, reference, x, y, totals);
       if (block.count < kLeastValues) {
         continue;
       }
@@ -126,8 +125,8 @@ BiasTest test_bias(const Image& image, const Image& reference) {
       }
     }
   }
-  test.t = all.t();
-  test.relative_bias = light.mean != 0 ? all.mean / light.mean : 0;
+  test.t = totals.half_rows.t();
+  test.relative_bias = totals.light != 0 ? totals.difference / totals.light : 0;
   return test;
 }
 

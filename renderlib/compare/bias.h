@@ -18,7 +18,7 @@ struct BiasTest {
   std::uint32_t blocks = 0;
   /// t of the whole: the mean over all values by its standard error. |t| above 4 is no chance.
   double t = 0;
-  double relative_bias = 0;  ///< that mean, over the reference's; 0 where the reference is black
+  double relative_bias = 0;  ///< of the sums over pixels; 0 where the reference is black
   /// Blocks with |t| above what one of so many passes by chance once in a hundred images (Sidak; of
   /// normal noise).
   std::uint32_t suspicious_blocks = 0;

@@ -83,6 +83,15 @@ TEST(Bias, HalfRowsThatShareTheirNoiseAreNone) {
   EXPECT_LE(alarms, 12);  // as above
 }
 
+// The last column is a thirty-third of the light.
+TEST(Bias, EveryPixelCountsAlike) {
+  Image image = uniform(33, 32, 1);
+  for (std::uint32_t y = 0; y < 32; ++y) {
+    image.pixels[std::size_t{33} * y + 32] = gray(1.5F);
+  }
+  EXPECT_NEAR(test_bias(image, uniform(33, 32, 1)).relative_bias, 0.5 / 33, 1e-6);
+}
+
 TEST(Bias, EqualImagesAndTinyOnes) {
   EXPECT_EQ(test_bias(waves(20, 20), waves(20, 20)).t, 0);
   EXPECT_EQ(test_bias(uniform(2, 2, 1), uniform(2, 2, 0)).blocks, 0u);
