@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <climits>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -14,6 +15,8 @@ namespace bandsaw {
 namespace {
 
 constexpr int kAttempts = 1000;
+/// Of ".4194304.999.part", Linux's largest process number.
+constexpr std::size_t kTemporarySuffix = 17;
 
 /// "a/b" -> "a", "b" -> ".", "/b" -> "/".
 std::string folder_of(const std::string& path) {
@@ -94,8 +97,14 @@ absl::Status write_file_atomically(const std::string& path, absl::Span<const std
 
 absl::Status check_can_be_written(const std::string& path) {
   struct stat info {};
-  if (::stat(path.c_str(), &info) == 0 && S_ISDIR(info.st_mode)) {
-    return errno_status(EISDIR, path);
+  if (::stat(path.c_str(), &info) == 0 && !S_ISREG(info.st_mode)) {
+    return S_ISDIR(info.st_mode)
+               ? errno_status(EISDIR, path)
+               : absl::FailedPreconditionError(absl::StrCat(path, " is not a regular file"));
+  }
+  // The file that is renamed at the end has a longer name.
+  if (path.size() - (path.rfind('/') + 1) + kTemporarySuffix > NAME_MAX) {
+    return errno_status(ENAMETOOLONG, path);
   }
   const std::string folder = folder_of(path);
   if (::stat(folder.c_str(), &info) != 0) {

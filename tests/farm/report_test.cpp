@@ -59,6 +59,16 @@ class ReportOfAFarm : public testing::Test {
   FarmProcesses farm_;
 };
 
+// A reader that went away does not cost the image.
+TEST(Render, OutlivesTheReaderOfItsProgress) {
+  const TempDir folder;
+  const std::string image = folder / "a.pfm";
+  const std::string command = std::string(BANDSAW_BIN) + " render " + kScene +
+                              " --width 32 --samples 64 --json -o " + image + " | true";
+  expect_success(run({"/bin/bash", "-o", "pipefail", "-c", command}));
+  EXPECT_TRUE(std::filesystem::exists(image));
+}
+
 TEST_F(ReportOfAFarm, AgreesWithThatOfOneMachine) {
   farm_.add_worker("desk", 2);
   farm_.add_worker("laptop", 1);

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <utility>
 
@@ -30,6 +31,8 @@ bool environment_has(const char* name) {
 }
 
 }  // namespace
+
+void outlive_reader() { std::signal(SIGPIPE, SIG_IGN); }
 
 Console::Console(Write out, Write err, bool is_terminal, bool colour)
     : out_(std::move(out)), err_(std::move(err)), is_terminal_(is_terminal), colour_(colour) {}

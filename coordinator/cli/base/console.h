@@ -15,6 +15,10 @@ struct TerminalSize {
   std::size_t rows = 24;
 };
 
+/// From now on writing where nobody reads any more does not end the process: for commands that
+/// leave a file. Others end with their reader.
+void outlive_reader();
+
 class Console {
  public:
   using Write = std::function<void(absl::string_view)>;

@@ -44,7 +44,7 @@ void Interrupts::read() {
     poll(files, 2, -1);
     signalfd_siginfo info{};
     while (::read(signals_, &info, sizeof info) == sizeof info) {
-      took_signal();
+      took_signal(static_cast<int>(info.ssi_signo));
     }
     if ((files[1].revents & POLLIN) != 0) {
       return;
@@ -52,8 +52,11 @@ void Interrupts::read() {
   }
 }
 
-void Interrupts::took_signal() {
+void Interrupts::took_signal(int signal) {
   MutexLock lock(mutex_);
+  if (seen_ && signal == SIGHUP) {
+    return;  // The shell and the system both send it; neither is a person who waits.
+  }
   if (seen_ || !first_) {
     _exit(static_cast<int>(ExitCode::kInterrupted));
   }
@@ -77,12 +80,12 @@ bool Interrupts::seen() const {
 Interrupts::Listener::Listener(Interrupts& interrupts, std::function<void()> first)
     : interrupts_(interrupts) {
   MutexLock lock(interrupts_.mutex_);
-  interrupts_.first_ = std::move(first);
+  before_ = std::exchange(interrupts_.first_, std::move(first));
 }
 
 Interrupts::Listener::~Listener() {
   MutexLock lock(interrupts_.mutex_);
-  interrupts_.first_ = nullptr;
+  interrupts_.first_ = std::move(before_);
 }
 
 }  // namespace bandsaw::coordinator

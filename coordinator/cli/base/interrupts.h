@@ -19,7 +19,8 @@ class Interrupts {
   Interrupts(const Interrupts&) = delete;
   Interrupts& operator=(const Interrupts&) = delete;
 
-  /// While it lives, the first signal calls `first` on the reading thread instead. One at a time.
+  /// While it lives, the first signal calls `first` on the reading thread instead; of several the
+  /// newest.
   class Listener {
    public:
     Listener(Interrupts& interrupts, std::function<void()> first);
@@ -29,6 +30,7 @@ class Interrupts {
 
    private:
     Interrupts& interrupts_;
+    std::function<void()> before_;
   };
 
   /// Waits for a signal; returns at once when one has come while somebody listened.
@@ -37,7 +39,7 @@ class Interrupts {
 
  private:
   void read() EXCLUDES(mutex_);
-  void took_signal() EXCLUDES(mutex_);
+  void took_signal(int signal) EXCLUDES(mutex_);
 
   mutable Mutex mutex_;
   CondVar changed_;

@@ -54,13 +54,18 @@ void say_detached(JobId job, Verbosity verbosity, const Console& console) {
 }  // namespace
 
 ExitCode run(const SubmitOptions& options, Process& process) {
+  outlive_reader();
   const Console& console = process.console;
   std::vector<std::string> outputs = options.outputs;
   if (outputs.empty() && !options.detach) {
     outputs = {default_output(options.scene, ".png")};
   }
-  if (const auto status = check_outputs_writable(outputs); !status.ok()) {
-    return console.fail(ExitCode::kWrong, std::string(status.message()));
+  absl::Status fit = check_outputs_writable(outputs);
+  if (options.outputs.empty() && !outputs.empty()) {
+    fit.Update(check_default_output(options.scene, outputs.front()));
+  }
+  if (!fit.ok()) {
+    return console.fail(ExitCode::kWrong, std::string(fit.message()));
   }
   const auto reports = report_files(options.report, outputs);
   if (!reports.ok()) {

@@ -143,7 +143,12 @@ ExitCode watch_job(FarmClient& client, JobId job, const Wanted& wanted, Verbosit
         beside ? beside(last->job.samples_per_pixel, display) : Layers{};
     if (!layers.ok()) {
       display.clear();
-      return left_early(layers.status(), job, outputs, process.console);
+      const bool kept = exit_code_of(layers.status()) == ExitCode::kFailed;
+      return kept ? process.console.fail(ExitCode::kFailed,
+                                         absl::StrCat(layers.status().message(),
+                                                      "; the farm keeps the image without layers. ",
+                                                      come_back(job, {})))
+                  : left_early(layers.status(), job, outputs, process.console);
     }
     if (const auto status = write_wanted(result->image, *layers,
                                          wanted.display.over(result->display), *last, wanted);

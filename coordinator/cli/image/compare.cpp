@@ -6,27 +6,43 @@
 #include "coordinator/cli/options/commands.h"
 #include "coordinator/cli/options/output.h"
 #include "coordinator/cli/scene/import_process.h"
+#include "renderlib/base/status_macros.h"
 #include "renderlib/compare/false_color.h"
 
 namespace bandsaw::coordinator {
+
+namespace {
+
+struct Pair {
+  Image image;
+  Image reference;
+};
+
+/// While it reads, a signal ends it; nothing is left to tidy up after.
+absl::StatusOr<Pair> read_pair(const CompareOptions& options, Interrupts& interrupts) {
+  std::atomic<bool> stop{false};
+  const Interrupts::Listener listener(interrupts, [&] { stop = true; });
+  ImportLimits limits;
+  limits.stop = &stop;
+  Pair pair;
+  ASSIGN_OR_RETURN(pair.image, read_image_in_process(options.image, limits));
+  ASSIGN_OR_RETURN(pair.reference, read_image_in_process(options.reference, limits));
+  return pair;
+}
+
+}  // namespace
 
 ExitCode run(const CompareOptions& options, Process& process) {
   if (const absl::Status status = check_outputs_writable(options.outputs); !status.ok()) {
     return process.console.fail(ExitCode::kWrong, std::string(status.message()));
   }
-  std::atomic<bool> stop{false};
-  Interrupts::Listener listener(process.interrupts, [&] { stop = true; });
-  ImportLimits limits;
-  limits.stop = &stop;
-  const auto image = read_image_in_process(options.image, limits);
-  const auto reference = image.ok() ? read_image_in_process(options.reference, limits) : image;
-  if (!image.ok() || !reference.ok()) {
-    const absl::Status status = image.ok() ? reference.status() : image.status();
-    const bool interrupted = absl::IsCancelled(status);
+  const auto pair = read_pair(options, process.interrupts);
+  if (!pair.ok()) {
+    const bool interrupted = absl::IsCancelled(pair.status());
     return process.console.fail(interrupted ? ExitCode::kInterrupted : ExitCode::kWrong,
-                                std::string(status.message()));
+                                std::string(pair.status().message()));
   }
-  const auto comparison = compare_images(*image, *reference);
+  const auto comparison = compare_images(pair->image, pair->reference);
   if (!comparison.ok()) {
     return process.console.fail(ExitCode::kWrong, std::string(comparison.status().message()));
   }

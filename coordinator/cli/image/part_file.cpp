@@ -88,6 +88,9 @@ absl::StatusOr<Display> read_part(const std::string& path,
   if (!display.ok()) {
     return absl::DataLossError(absl::StrCat(path, ": ", display.status().message()));
   }
+  if (offset == bytes.size()) {
+    return absl::DataLossError(absl::StrCat(path, ": is cut off: it holds no rows"));
+  }
   while (offset < bytes.size()) {
     const auto decoded = decode_band_record(bytes, offset);
     if (!decoded.ok()) {

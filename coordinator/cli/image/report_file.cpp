@@ -5,6 +5,7 @@
 #include <fstream>
 #include <span>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/image/report.h"
 #include "renderlib/base/atomic_file.h"
@@ -15,17 +16,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether the report may go there: nothing is there, or a report.
-bool is_free(const std::string& path) {
+bool is_there(const std::string& path) {
   std::error_code error;
-  if (!fs::exists(fs::symlink_status(path, error))) {
-    return true;
-  }
+  return fs::exists(fs::symlink_status(path, error));
+}
+
+bool is_report(const std::string& path) {
   std::string begins(sizeof kReportBegins - 1, '\0');
   std::ifstream file(path, std::ios::binary);
   return file.read(begins.data(), static_cast<std::streamsize>(begins.size())) &&
          begins == kReportBegins;
 }
+
+/// Whether the report may go there: nothing is there, or a report.
+bool is_free(const std::string& path) { return !is_there(path) || is_report(path); }
 
 absl::Status taken(const std::string& path) {
   return absl::InvalidArgumentError(absl::StrCat(
@@ -62,6 +66,20 @@ absl::StatusOr<std::vector<std::string>> report_files(const ReportOption& asked,
     RETURN_IF_ERROR(check_can_be_written(file));
   }
   return files;
+}
+
+absl::Status check_default_output(const std::string& scene, const std::string& output) {
+  const bool is_scene_file =
+      absl::EndsWithIgnoreCase(scene, ".textproto") || absl::EndsWithIgnoreCase(scene, ".json");
+  const fs::path path(output);
+  if (is_scene_file || !is_there(output) || is_report(fs::path(path).replace_extension(".json")) ||
+      is_report(fs::path(path).replace_extension(".report.json"))) {
+    return absl::OkStatus();
+  }
+  return absl::InvalidArgumentError(
+      absl::StrCat(output,
+                   ": is there and may be the model's own, as no report of a render lies "
+                   "beside it; name a file with -o"));
 }
 
 absl::Status write_reports(const std::string& text, const std::vector<std::string>& files) {

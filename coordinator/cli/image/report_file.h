@@ -17,6 +17,11 @@ namespace bandsaw::coordinator {
 absl::StatusOr<std::vector<std::string>> report_files(const ReportOption& asked,
                                                       const std::vector<std::string>& outputs);
 
+/// Whether an image may go to the file that is taken where none is named: a picture beside a model
+/// may be its texture. INVALID_ARGUMENT: something is there, and no report of a render beside it.
+/// Scene files own no picture of their name.
+absl::Status check_default_output(const std::string& scene, const std::string& output);
+
 /// Each whole or not at all; stops at the first error, which says that the image is there.
 absl::Status write_reports(const std::string& text, const std::vector<std::string>& files);
 

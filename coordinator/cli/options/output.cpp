@@ -27,10 +27,11 @@ absl::Status check_outputs_writable(const std::vector<std::string>& outputs) {
 
 absl::Status write_outputs(const Image& image, const std::vector<std::string>& outputs,
                            const Display& display, const Layers& layers) {
+  absl::Status first;
   for (const std::string& output : outputs) {
-    RETURN_IF_ERROR(write_image(image, output, display, layers));
+    first.Update(write_image(image, output, display, layers));
   }
-  return absl::OkStatus();
+  return first;
 }
 
 std::uint64_t cut_off_values(const Image& image, const std::vector<std::string>& outputs,

@@ -23,7 +23,7 @@ void LocalMeter::passed(std::uint64_t samples, const std::optional<ErrorEstimate
                         Clocks now) {
   MutexLock lock(mutex_);
   passed_ = samples;
-  if (error) {
+  if (known_error(error, samples) >= 0) {
     add_point(curve_, {samples, seconds(now.steady_s), now.cpu_s - start_.cpu_s, *error});
   }
 }

@@ -58,9 +58,8 @@ void warn_of_unused(ModelFile& file) {
   };
   if (file.gltf.unread) {
     file.warn(
-        "its JSON is not as glTF asks (valid UTF-8, each name once, nested less than 100 deep): "
-        "its "
-        "extensions, further lights and bones of one name are left out");
+        "its JSON is not as glTF asks (valid UTF-8, each name once, nested less than 100 deep) or "
+        "larger than 256 MiB: its extensions, further lights and bones of one name are left out");
   }
   warn(file.scene.mNumAnimations, "animations (the rest pose is shown) are");
   warn(file.gltf.scenes > 1 ? file.gltf.scenes - 1 : 0, "scenes beside the default one are");

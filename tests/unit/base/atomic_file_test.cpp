@@ -70,6 +70,17 @@ TEST(AtomicFile, RefusesTargetsThatAreNoFiles) {
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
 }
 
+// Before the work that the file is for.
+TEST(AtomicFile, SaysBeforehandWhatCannotBeWritten) {
+  const test::TempDir dir;
+  EXPECT_TRUE(check_can_be_written(dir / "a").ok());
+  ASSERT_EQ(mkfifo((dir / "pipe").c_str(), 0600), 0);
+  EXPECT_FALSE(check_can_be_written(dir / "pipe").ok());
+  EXPECT_TRUE(check_can_be_written(dir / std::string(230, 'n')).ok());
+  EXPECT_TRUE(write_file_atomically(dir / std::string(230, 'n'), bytes("x")).ok());
+  EXPECT_FALSE(check_can_be_written(dir / std::string(250, 'n')).ok());
+}
+
 TEST(AtomicFile, LeavesNothingBehindInAFolderThatCannotBeWritten) {
   if (::geteuid() == 0) {
     GTEST_SKIP() << "root may write everywhere";

@@ -124,6 +124,15 @@ TEST_F(ReportFiles, NeverTakeThePlaceOfSomethingElse) {
   EXPECT_THAT(*report_files({}, {folder_ / "b.png"}), ElementsAre(folder_ / "b.report.json"));
 }
 
+TEST_F(ReportFiles, APictureBesideAModelIsNotTakenForARender) {
+  const std::string picture = write("cube.png", "a texture");
+  EXPECT_EQ(check_default_output("cube.obj", picture).code(), absl::StatusCode::kInvalidArgument);
+  EXPECT_TRUE(check_default_output("cube.textproto", picture).ok());
+  EXPECT_TRUE(check_default_output("cube.obj", folder_ / "other.png").ok());
+  ASSERT_TRUE(write_reports(report_text({finished(), "", {}}), {folder_ / "cube.json"}).ok());
+  EXPECT_TRUE(check_default_output("cube.obj", picture).ok()) << "an earlier render";
+}
+
 TEST_F(ReportFiles, ReplaceAnEarlierReport) {
   const std::string file = folder_ / "a.json";
   for (int time = 0; time < 2; ++time) {

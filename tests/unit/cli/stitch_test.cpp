@@ -101,6 +101,13 @@ TEST(PartFile, ADamagedBeginningIsFound) {
   EXPECT_EQ(read_part(folder / "a.band", ignore).status().code(), absl::StatusCode::kDataLoss);
 }
 
+TEST(PartFile, ABeginningAloneIsNoPart) {
+  const test::TempDir folder;
+  ASSERT_TRUE(write_part(folder / "a.band", {}, {2, Tone::kNone, false}).ok());
+  const auto ignore = [](const BandRecord&) { return absl::OkStatus(); };
+  EXPECT_EQ(read_part(folder / "a.band", ignore).status().code(), absl::StatusCode::kDataLoss);
+}
+
 TEST(PartFile, ErrorsNameTheFile) {
   const test::TempDir folder;
   const auto ignore = [](const BandRecord&) { return absl::OkStatus(); };
