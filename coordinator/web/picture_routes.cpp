@@ -1,6 +1,5 @@
 // Previews, images, and what is said of them.
 
-#include <algorithm>
 #include <functional>
 #include <utility>
 
@@ -34,12 +33,8 @@ void send(httplib::Response& response, const absl::StatusOr<Pictures::Bytes>& by
     refuse(response, bytes.status());
     return;
   }
-  response.set_content_provider(
-      (*bytes)->size(), type,
-      [held = *bytes](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
-        constexpr std::size_t kPiece = 1 << 20;
-        return sink.write(held->data() + offset, std::min(length, kPiece));
-      });
+  const auto& held = **bytes;
+  send_bytes(response, {reinterpret_cast<const char*>(held.data()), held.size()}, type, *bytes);
 }
 
 using Make = std::function<absl::StatusOr<Pictures::Bytes>(JobId)>;

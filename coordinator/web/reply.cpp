@@ -2,6 +2,9 @@
 
 #include <google/protobuf/util/json_util.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "absl/strings/str_cat.h"
 #include "proto/web.pb.h"
 
@@ -53,6 +56,20 @@ void refuse(httplib::Response& response, const absl::Status& status) {
   problem.set_error(std::string(status.message()));
   response.status = http_status(status.code());
   reply(response, problem);
+}
+
+void send_bytes(httplib::Response& response, absl::string_view bytes, const char* type,
+                std::shared_ptr<const void> held) {
+  response.set_content_provider(
+      bytes.size(), type,
+      [bytes, held = std::move(held)](std::size_t offset, std::size_t length,
+                                      httplib::DataSink& sink) {
+        constexpr std::size_t kPiece = 1 << 20;
+        if (offset >= bytes.size()) {
+          return false;
+        }
+        return sink.write(bytes.data() + offset, std::min({length, bytes.size() - offset, kPiece}));
+      });
 }
 
 absl::Status read_json(const httplib::ContentReader& reader, google::protobuf::Message& message) {

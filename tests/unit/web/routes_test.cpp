@@ -45,6 +45,24 @@ TEST_F(RoutesTest, TheWorkersProgramIsHandedOutWithVersionAndDigest) {
   EXPECT_EQ(got->get_header_value("Repr-Digest"), "sha-256=:" + absl::Base64Escape(raw) + ":");
 }
 
+// The library passes on whatever a Range header says.
+TEST_F(RoutesTest, RangesEndWithTheBytes) {
+  const std::size_t size = 3 << 20;
+  headers_ = {{"Range", "bytes=5-9"}};
+  const auto part = get("/bandsaw-worker");
+  ASSERT_TRUE(part);
+  EXPECT_EQ(part->body, "wwwww");
+  for (const std::string& range :
+       {"0-" + std::to_string(size + 200), std::to_string(size) + "-" + std::to_string(size + 9),
+        std::string("99999999999999-99999999999999")}) {
+    headers_ = {{"Range", "bytes=" + range}};
+    const auto got = get("/bandsaw-worker");
+    EXPECT_TRUE(!got || got->body.size() <= size) << range;
+  }
+  headers_.clear();
+  EXPECT_EQ(get("/bandsaw-worker")->body.size(), size) << "it is still there";
+}
+
 TEST_F(RoutesTest, ADroppedSceneBecomesAJob) {
   const auto submitted = message<web::Submitted>(
       post("/api/scenes?name=../my%20box.textproto&width=48&samples=32", "a box"));
