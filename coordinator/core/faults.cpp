@@ -1,6 +1,7 @@
 // What goes wrong: bands that cannot be rendered, workers that are silent, stuck, or wrong.
 
 #include <algorithm>
+#include <cmath>
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
@@ -15,6 +16,8 @@ namespace {
 /// Faults after which a worker is not given that job again, and after which a band is given up.
 constexpr std::uint32_t kFaultsPerWorker = 3;
 constexpr std::size_t kFaultsPerBand = 3;
+/// So many times as long a band that is rendered may take: it is sent, maybe by a slow line.
+constexpr double kForSending = 20;
 
 }  // namespace
 
@@ -122,22 +125,27 @@ void Core::State::check_silence() {
 
 void Core::State::check_progress() {
   std::vector<LeaseId> stuck;
+  const auto is_late = [this](const Lease& lease) {
+    const bool rendered = lease.rows_done >= lease.band.rows.count();
+    return clock_.patience() - lease.advanced_at >
+           options_.progress_timeout_s * (rendered ? kForSending : 1);
+  };
   for (const auto& [id, lease] : leases_.all()) {
-    if (jobs_.at(lease.job).state == JobState::kRunning &&
-        clock_.patience() - lease.advanced_at > options_.progress_timeout_s) {
+    if (jobs_.at(lease.job).state == JobState::kRunning && is_late(lease)) {
       stuck.push_back(id);
     }
   }
   for (const LeaseId id : stuck) {
     const Lease* lease = leases_.find(id);
     // One that waited behind a stuck one has its turn now; a job that has failed has no leases.
-    if (lease == nullptr || clock_.patience() - lease->advanced_at <= options_.progress_timeout_s) {
+    if (lease == nullptr || !is_late(*lease)) {
       continue;
     }
     const Band band = lease->band;
     Job& job = jobs_.at(lease->job);
     Worker& worker = *workers_.by_id(lease->worker);
-    const std::string reason = absl::StrCat("no progress for ", options_.progress_timeout_s, " s");
+    const std::string reason =
+        absl::StrCat("no progress for ", std::lround(clock_.patience() - lease->advanced_at), " s");
     if (lease->audit) {
       give_up_audit(*lease, worker, reason);
       continue;

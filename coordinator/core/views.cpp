@@ -51,6 +51,7 @@ std::vector<JobView> Core::State::job_views(Time now) const {
   for (const auto& [id, job] : jobs_) {
     views.push_back(*view(id, now));
     views.back().curve.clear();
+    views.back().log.clear();
     views.back().shares.clear();
   }
   return views;

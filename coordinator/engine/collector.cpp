@@ -82,7 +82,9 @@ std::vector<JobId> Collector::to_forget(const std::vector<Job>& jobs, double now
   });
   std::vector<JobId> forget;
   for (const Final& job : final_jobs) {
-    if (now - job.at <= keep_.seconds && bytes <= keep_.bytes &&
+    // Its submitter may be about to fetch it, whatever else fills the disk.
+    const bool fresh = now - job.at < keep_.least_seconds;
+    if (now - job.at <= keep_.seconds && (bytes <= keep_.bytes || fresh) &&
         final_jobs.size() - forget.size() <= keep_.jobs) {
       break;
     }

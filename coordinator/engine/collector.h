@@ -20,6 +20,7 @@ namespace bandsaw::coordinator {
 struct Keep {
   double seconds = 30.0 * 24 * 60 * 60;   ///< a final job, since it became final
   std::uint64_t bytes = 100'000'000'000;  ///< results and blobs in all; oldest jobs go first
+  double least_seconds = 60.0 * 60;       ///< a final job, whatever the bytes
   std::size_t jobs = 10'000;              ///< final jobs; each takes some 4 kB of memory
   double unused_seconds =
       24.0 * 60 * 60;  ///< a blob of no job, since it was sent or asked for; a part of one

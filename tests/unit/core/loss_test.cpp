@@ -69,6 +69,19 @@ TEST(Loss, AWorkerThatIsHeardOfButDoesNotAdvanceLosesItsBand) {
   EXPECT_FALSE(farm.all<action::Revoke>().empty());
 }
 
+// What is rendered is on its way, by a line that may be slow; but not for ever.
+TEST(Loss, ABandThatIsSentHasTime) {
+  FarmDriver farm;
+  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.hello(1, "a");
+  const action::Lease lease = farm.all<action::Lease>()[0];
+  farm.say(input::Heartbeat{1, {{lease.lease, lease.band.rows.count(), true, 0}}, "sending"});
+  farm.pass_time(300, {1});
+  EXPECT_TRUE(farm.all<action::Revoke>().empty());
+  farm.pass_time(600, {1});
+  EXPECT_FALSE(farm.all<action::Revoke>().empty());
+}
+
 TEST(Loss, AReconnectTakesTheSameLeaseUpAgain) {
   FarmDriver farm;
   farm.submit(test_job("r1", StopAtSamples{16}, 8, 2));

@@ -89,6 +89,15 @@ TEST_F(CollectorTest, ForgetsTheOldestBeyondTheBytes) {
   EXPECT_THAT(collector({.bytes = 2'500}).to_forget(jobs, kNow), ElementsAre(1, 2));
 }
 
+TEST_F(CollectorTest, AFreshResultIsNotForgottenForItsSize) {
+  result(1, 1'000, kNow - kDay);
+  result(2, 1'000, kNow - 60);
+  put("a large scene of a job that is not final", kNow);
+  EXPECT_THAT(
+      collector({.bytes = 10}).to_forget({{1, "", true}, {2, "", true}, {3, "", false}}, kNow),
+      ElementsAre(1));
+}
+
 TEST_F(CollectorTest, ForgetsTheOldestBeyondTheNumber) {
   std::vector<Collector::Job> jobs;
   for (const JobId job : {1, 2, 3, 4}) {
