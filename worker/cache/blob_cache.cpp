@@ -157,6 +157,22 @@ void BlobCache::make_room(std::uint64_t added, const std::string& newest) {
   }
 }
 
+bool BlobCache::give_up_some(std::uint64_t wanted) {
+  constexpr std::uint64_t kAtOnce = 64 << 20;
+  MutexLock lock(mutex_);
+  std::vector<Entry> all = entries(folder_);
+  std::sort(all.begin(), all.end());
+  std::uint64_t freed = 0;
+  for (const Entry& entry : all) {
+    if (freed >= std::max(wanted, kAtOnce)) {
+      break;
+    }
+    freed += remove_unused(entry.path) ? entry.bytes : 0;
+  }
+  bytes_ -= std::min(bytes_, freed);
+  return freed > 0;
+}
+
 BlobCache::Download::Download(BlobCache& cache, const wire::Digest& digest, int fd,
                               std::uint64_t offset)
     : cache_(cache), digest_(digest), fd_(fd), offset_(offset) {}
@@ -167,7 +183,11 @@ absl::Status BlobCache::Download::append(absl::Span<const std::byte> bytes) {
   while (!bytes.empty()) {
     const ssize_t written = pwrite(fd_, bytes.data(), bytes.size(), static_cast<off_t>(offset_));
     if (written < 0 && errno != EINTR) {
-      return errno_status(errno, absl::StrCat("the cache folder ", cache_.folder_));
+      const int error = errno;
+      if (error == ENOSPC && cache_.give_up_some(bytes.size())) {
+        continue;
+      }
+      return errno_status(error, absl::StrCat("the cache folder ", cache_.folder_));
     }
     if (written > 0) {
       offset_ += static_cast<std::uint64_t>(written);

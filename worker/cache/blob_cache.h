@@ -56,6 +56,9 @@ class BlobCache : public BlobSource {
   std::string part_of(const wire::Digest& digest) const;
   /// Throws away until the rest fits; keeps `newest`.
   void make_room(std::uint64_t added, const std::string& newest) EXCLUDES(mutex_);
+  /// Throws away what was used longest ago, where the disk is full: `wanted` bytes, or more. False:
+  /// there is nothing left to throw away.
+  bool give_up_some(std::uint64_t wanted) EXCLUDES(mutex_);
 
   const std::string folder_;
   const std::uint64_t max_bytes_;

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/mount.h>
 #include <sys/stat.h>
 
 #include <filesystem>
@@ -125,6 +126,30 @@ TEST_F(BlobCacheTest, KeepsABlobThatIsLargerThanItself) {
   EXPECT_TRUE(cache->get(wire::sha256(bytes_of('a'))).ok()) << "it is needed now";
   put(*cache, bytes_of('b'));
   EXPECT_FALSE(cache->has(wire::sha256(bytes_of('a'))));
+}
+
+// The disk may be fuller than the cache may be large.
+TEST_F(BlobCacheTest, MakesRoomWhereTheDiskIsFull) {
+  const std::string disk = folder_ / "cache";
+  std::filesystem::create_directory(disk);
+  if (::mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=256k") != 0) {
+    GTEST_SKIP() << "a small disk needs root";
+  }
+  {
+    const auto cache = open();
+    const auto large = [](char fill) {
+      return std::vector<std::byte>(100 << 10, static_cast<std::byte>(fill));
+    };
+    for (const char fill : {'a', 'b', 'c', 'd'}) {
+      put(*cache, large(fill));
+    }
+    EXPECT_TRUE(cache->get(wire::sha256(large('d'))).ok());
+    EXPECT_FALSE(cache->has(wire::sha256(large('a'))));
+    auto download = *cache->begin(wire::sha256(std::vector<std::byte>(1 << 20)));
+    EXPECT_EQ(download->append(std::vector<std::byte>(1 << 20)).code(),
+              absl::StatusCode::kResourceExhausted);
+  }
+  ::umount2(disk.c_str(), MNT_DETACH);
 }
 
 TEST_F(BlobCacheTest, LeavesFilesThatItDidNotMake) {
