@@ -92,6 +92,7 @@ struct WorkerHello {
     LeaseId lease = 0;
     std::string epoch;
     bool finished = false;
+    std::uint64_t work = 0;  ///< renderlib/render/work_hash.h; 0: not said
   };
   std::vector<Held> held;
 };

@@ -206,9 +206,11 @@ void Engine::lost(SessionId session, std::string reason) {
   });
 }
 
-void Engine::put_band(JobId job, std::string instance, BandPixels pixels, double render_s,
-                      double cpu_s, std::function<void(absl::StatusOr<BandOutcome>)> done) {
+void Engine::put_band(JobId job, std::uint64_t work, std::string instance, BandPixels pixels,
+                      double render_s, double cpu_s,
+                      std::function<void(absl::StatusOr<BandOutcome>)> done) {
   PutBand put{.job = job,
+              .work = work,
               .instance = std::move(instance),
               .pixels = std::move(pixels),
               .worker = {},

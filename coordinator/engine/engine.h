@@ -112,8 +112,10 @@ class Engine {
   void worker_log(SessionId session, std::vector<std::string> lines);
   /// `done` once the pixels are on disk and in the journal's reach, or not wanted.
   /// RESOURCE_EXHAUSTED: disk full, keep it and try again. INVALID_ARGUMENT: not a band of that
-  /// job.
-  void put_band(JobId job, std::string instance, BandPixels pixels, double render_s, double cpu_s,
+  /// job. `work` (renderlib/render/work_hash.h): that it was rendered for, 0 where nobody says;
+  /// of another job that bore the number before it is not wanted.
+  void put_band(JobId job, std::uint64_t work, std::string instance, BandPixels pixels,
+                double render_s, double cpu_s,
                 std::function<void(absl::StatusOr<BandOutcome>)> done);
 
   /// Of the disk under the data folder; 0 when it cannot be told. Any thread; may wait for the

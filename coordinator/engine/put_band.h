@@ -63,6 +63,7 @@ class BandBudget {
 
 struct PutBand {
   JobId job = 0;
+  std::uint64_t work = 0;      ///< that it says it is of (renderlib/render/work_hash.h); 0: nothing
   std::string instance;        ///< of the worker
   std::uint64_t renderer = 0;  ///< of it (core/renderer.h)
   BandPixels pixels;

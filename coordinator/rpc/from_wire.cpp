@@ -65,7 +65,8 @@ absl::StatusOr<WorkerHello::Held> held_lease(const farm::Held& message) {
                          .band = {},
                          .lease = message.lease(),
                          .epoch = message.epoch(),
-                         .finished = message.finished()};
+                         .finished = message.finished(),
+                         .work = message.work()};
   RETURN_IF_ERROR(check_text("hello.held.epoch", held.epoch, wire::kWorkerNameBytes));
   ASSIGN_OR_RETURN(held.band, band("hello.held.band", message.band()));
   return held;

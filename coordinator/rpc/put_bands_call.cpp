@@ -48,7 +48,7 @@ absl::Status PutBandsCall::take(const farm::BandChunk& chunk) {
   ASSIGN_OR_RETURN(BandPixels pixels, intake_.take());
   const farm::BandHeader header = std::exchange(intake_, {}).header();
   if (hand_over()) {
-    doors_.engine.put_band(header.job(), header.instance(), std::move(pixels),
+    doors_.engine.put_band(header.job(), header.work(), header.instance(), std::move(pixels),
                            header.counters().render_s(), header.counters().cpu_s(),
                            [self = shared_from_this()](const absl::StatusOr<BandOutcome>& outcome) {
                              self->answer(outcome);

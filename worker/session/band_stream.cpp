@@ -4,6 +4,7 @@
 #include <span>
 
 #include "proto/wire/limits.h"
+#include "renderlib/render/work_hash.h"
 
 namespace bandsaw::worker {
 namespace {
@@ -27,6 +28,7 @@ farm::BandHeader header_of(const FinishedBand& band, const std::string& instance
   header.set_instance(instance);
   header.set_size(bytes.size());
   header.set_sha256(wire::sha256(bytes).raw());
+  header.set_work(work_hash(band.task.manifest.hex(), band.task.settings));
   farm::Counters* counters = header.mutable_counters();
   counters->set_rays(pixels.counters.rays);
   counters->set_bad_samples(pixels.counters.bad_samples);

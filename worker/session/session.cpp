@@ -8,6 +8,7 @@
 #include "proto/wire/versions.h"
 #include "renderlib/base/clean_text.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/render/work_hash.h"
 
 namespace bandsaw::worker {
 namespace {
@@ -90,6 +91,7 @@ farm::FromWorker Session::hello() const {
     h->set_lease(held.name.lease);
     h->set_epoch(held.name.epoch);
     h->set_finished(held.stage == Stage::kFinished);
+    h->set_work(work_hash(held.task.manifest.hex(), held.task.settings));
   }
   return message;
 }
@@ -146,9 +148,14 @@ void Session::take_lease(const farm::Lease& lease, Reaction& reaction) {
   const auto same = std::find_if(held_.begin(), held_.end(), [&](const Held& held) {
     return held.task.job == task->job && held.task.band == task->band;
   });
-  if (same != held_.end()) {
+  if (same != held_.end() && same->task.manifest == task->manifest &&
+      same->task.settings == task->settings) {
     same->name = {.lease = lease.lease(), .epoch = epoch_};
     return;
+  }
+  if (same != held_.end()) {  // of another job that bore the number
+    reaction.stop.push_back(same->task.id);
+    held_.erase(same);
   }
   if (held_.size() >= wire::kBandsPerWorker) {
     reaction.send.push_back(failure(lease.lease(), "this worker holds too many bands", {}));

@@ -1,6 +1,7 @@
 // A coordinator that starts again: what was journalled and what lies on disk is all there is.
 
 #include "farm_driver.h"
+#include "renderlib/render/work_hash.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -252,6 +253,24 @@ TEST(Restart, AHeldBandIsTakenUpUnderItsOldLeaseId) {
   EXPECT_EQ(in<action::Lease>(step)[0].lease, lease.lease);
   EXPECT_EQ(in<action::Lease>(step)[0].band, lease.band);
   EXPECT_TRUE(in<action::Revoke>(step).empty());
+}
+
+// The folder was begun anew, or restored: the number is another job's.
+TEST(Restart, AHeldBandOfAnotherJobOfTheNumberIsRevoked) {
+  FarmDriver farm(slow());
+  JobSpec spec = test_job("r1", StopAtSamples{16});
+  farm.submit(spec);
+  const Band band{{0, 16}, {0, 1}};
+  const std::uint64_t right = work_hash(spec.manifest, spec.settings);
+  spec.settings.seed += 1;
+  const std::uint64_t wrong = work_hash(spec.manifest, spec.settings);
+  const Step refused = farm.hello(1, "a", 1, {{1, band, 77, "old", true, wrong}});
+  ASSERT_EQ(in<action::Revoke>(refused).size(), 1u);
+  EXPECT_EQ(in<action::Revoke>(refused)[0].leases, std::vector<LeaseId>{77});
+  FarmDriver other(slow());
+  other.submit(test_job("r1", StopAtSamples{16}));
+  const Step taken = other.hello(1, "a", 1, {{1, band, 77, "old", true, right}});
+  EXPECT_TRUE(in<action::Revoke>(taken).empty());
 }
 
 TEST(Restart, AHeldBandThatIsNotWantedIsRevoked) {

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "renderlib/render/render_band.h"
+#include "renderlib/render/work_hash.h"
 #include "tests/unit/engine/fake_worker.h"
 #include "tests/unit/engine/test_farm.h"
 
@@ -126,6 +127,15 @@ TEST_F(EngineTest, ABandIsStoredOnceThenADuplicateAndUnwantedWhenTheJobIsOver) {
   expect_done(job, 16);
   EXPECT_EQ(*farm_.put(job, top), BandOutcome::kUnwanted);
   EXPECT_EQ(*farm_.put(job + 1, top), BandOutcome::kUnwanted) << "no such job";
+}
+
+TEST_F(EngineTest, ABandOfAnotherJobOfTheNumberIsUnwanted) {
+  const JobId job = farm_.begin(StopAtSamples{.samples = 16});
+  const BandPixels top = rendered({.samples = {0, 16}, .rows = {0, 7}});
+  JobSpec spec = farm_.spec(StopAtSamples{.samples = 16});
+  EXPECT_EQ(*farm_.put(job, top, work_hash(spec.manifest, spec.settings) + 1),
+            BandOutcome::kUnwanted);
+  EXPECT_EQ(*farm_.put(job, top, work_hash(spec.manifest, spec.settings)), BandOutcome::kStored);
 }
 
 TEST_F(EngineTest, WhatIsNoBandOfTheJobIsRefused) {

@@ -33,7 +33,7 @@ class TestFarm {
   JobView wait_until(JobId job, const std::function<bool(const JobView&)>& fits);
   JobView wait_final(JobId job);
   absl::StatusOr<StoredResult> result(JobId job, FinishedPart part = FinishedPart::kImage);
-  absl::StatusOr<BandOutcome> put(JobId job, const BandPixels& pixels);
+  absl::StatusOr<BandOutcome> put(JobId job, const BandPixels& pixels, std::uint64_t work = 0);
 
   std::shared_ptr<const Scene> scene() const { return scene_; }
   const RenderSettings& settings() const { return settings_; }

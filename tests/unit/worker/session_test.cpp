@@ -172,6 +172,23 @@ TEST(Session, NamesWhatItHoldsAfterAReconnect) {
   EXPECT_TRUE(hello.held(0).finished());
   EXPECT_FALSE(hello.held(1).finished());
   EXPECT_EQ(hello.held(1).band().first_row(), 2U);
+  EXPECT_NE(hello.held(0).work(), 0U);
+  EXPECT_EQ(hello.held(0).work(), hello.held(1).work()) << "of one job";
+}
+
+// The coordinator's folder was begun anew: the number and the rows are those of another job.
+TEST(Session, ABandOfAnotherJobOfTheSameNumberIsNotTheSame) {
+  Session session(self());
+  session.receive(welcome("e1"));
+  const TaskId old = session.receive(lease(10, 0)).start[0].id;
+  session.disconnected();
+  session.receive(welcome("e2"));
+  farm::ToWorker again = lease(1, 0);
+  again.mutable_lease()->mutable_settings()->set_seed(99);
+  const Reaction reaction = session.receive(again);
+  EXPECT_THAT(reaction.stop, ElementsAre(old));
+  ASSERT_EQ(reaction.start.size(), 1U);
+  EXPECT_EQ(reaction.start[0].settings.seed, 99U);
 }
 
 TEST(Session, GoesOnWithAHeldBandUnderItsNewName) {
