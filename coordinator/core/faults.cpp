@@ -86,24 +86,22 @@ void Core::State::add_fault(Job& job, Worker& worker, const Band& band, const st
 }
 
 /// One that reconnects is as good as there.
-void Core::State::check_unable() {
-  const double patience = options_.heartbeat_timeout_s + options_.reattach_grace_s;
-  const std::set<JobId> active = active_;
-  for (const JobId id : active) {
-    Job& job = jobs_.at(id);
-    const bool unable = job.state == JobState::kRunning && job.leases.empty() && job.any_free() &&
-                        !waits_for_former() && !someone_may_render(job);
-    if (!unable) {
-      job.unable_since.reset();
-    } else if (hunger_.eligible() == 0) {
-      continue;  // Nobody is there: neither a reason to give up nor a sign of hope.
-    } else if (!job.unable_since) {
-      job.unable_since = clock_.patience();
-    } else if (clock_.patience() - *job.unable_since >= patience) {
-      end(job, JobState::kFailed,
-          absl::StrCat("each worker that is connected failed ", kFaultsPerWorker,
-                       " of its bands, with none rendered between; the last: ", job.notice));
-    }
+void Core::State::check_unable(Job& job) {
+  const bool unable = job.state == JobState::kRunning && job.leases.empty() && job.any_free() &&
+                      !waits_for_former() && !someone_may_render(job);
+  if (!unable) {
+    job.unable_since.reset();
+    return;
+  }
+  if (hunger_.eligible() == 0) {
+    return;  // Nobody is there: neither a reason to give up nor a sign of hope.
+  }
+  job.unable_since = job.unable_since.value_or(clock_.patience());
+  if (clock_.patience() - *job.unable_since >=
+      options_.heartbeat_timeout_s + options_.reattach_grace_s) {
+    end(job, JobState::kFailed,
+        absl::StrCat("each worker that is connected failed ", kFaultsPerWorker,
+                     " of its bands, with none rendered between; the last: ", job.notice));
   }
 }
 

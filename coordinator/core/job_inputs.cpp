@@ -232,11 +232,11 @@ void Core::State::on(const input::Tick&) {
   forget_refusals();
   check_silence();
   check_progress();
-  check_unable();
   const std::set<JobId> active = active_;
   for (const JobId id : active) {
     settle(jobs_.at(id));
     note_time(jobs_.at(id));
+    check_unable(jobs_.at(id));
   }
 }
 

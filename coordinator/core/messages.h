@@ -4,7 +4,6 @@
 // applying one is the only way the state changes) and actions (what the world must do once the
 // durable events are on disk).
 
-#include <cmath>
 #include <optional>
 #include <string>
 #include <variant>

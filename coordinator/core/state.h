@@ -234,7 +234,7 @@ class Core::State {
   bool has_suspect(const Worker& worker) const;
   void forgive_losses(const Worker& worker);
   static void shrink_losses(Job& job, const Band& stored);
-  void check_unable();
+  void check_unable(Job& job);
   void check_silence();
   void check_progress();
 

@@ -11,6 +11,7 @@
 #include "coordinator/core/error_curve.h"
 #include "renderlib/render/band.h"
 #include "renderlib/render/settings.h"
+#include "renderlib/render/work_hash.h"
 
 namespace bandsaw::coordinator {
 
@@ -56,6 +57,11 @@ struct JobSpec {
   DigestHex manifest;
   RenderSettings settings;
   StopRule stop;
+  /// Whether pixels that say they are of `work` (renderlib/render/work_hash.h; 0: nothing) may be
+  /// of it: the job's number alone may be that of another job by now.
+  bool may_be(std::uint64_t work) const {
+    return work == 0 || work == work_hash(manifest, settings);
+  }
   friend bool operator==(const JobSpec&, const JobSpec&) = default;
 };
 

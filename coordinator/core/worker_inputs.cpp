@@ -7,7 +7,6 @@
 #include "coordinator/core/state.h"
 #include "proto/wire/limits.h"
 #include "renderlib/base/clean_text.h"
-#include "renderlib/render/work_hash.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -111,11 +110,8 @@ void Core::State::take_up(Worker& worker, const std::vector<WorkerHello::Held>& 
 bool Core::State::take_up_one(Worker& worker, const WorkerHello::Held& held) {
   Job* job = find(held.job);
   Pass* pass = job == nullptr || is_final(job->state) ? nullptr : job->pass_of(held.band);
-  if (pass == nullptr || held.lease == kFree || held.lease == kStored) {
-    return false;
-  }
-  // The number may mean another job by now.
-  if (held.work != 0 && held.work != work_hash(job->spec.manifest, job->spec.settings)) {
+  if (pass == nullptr || held.lease == kFree || held.lease == kStored ||
+      !job->spec.may_be(held.work)) {
     return false;
   }
   if (const Lease* lease = leases_.find(held.lease)) {

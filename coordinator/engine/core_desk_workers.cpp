@@ -5,7 +5,6 @@
 #include "absl/strings/str_cat.h"
 #include "coordinator/core/renderer.h"
 #include "coordinator/engine/core_desk.h"
-#include "renderlib/render/work_hash.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -47,13 +46,9 @@ void CoreDesk::worker_log(SessionId session, std::vector<std::string> lines) {
 
 void CoreDesk::put_band(PutBand put) {
   const auto known = known_.find(put.job);
-  if (known == known_.end() || is_final(known->second.state)) {
+  if (known == known_.end() || is_final(known->second.state) ||
+      !known->second.spec.may_be(put.work)) {
     put.answer(BandOutcome::kUnwanted);
-    return;
-  }
-  const JobSpec& spec = known->second.spec;
-  if (put.work != 0 && put.work != work_hash(spec.manifest, spec.settings)) {
-    put.answer(BandOutcome::kUnwanted);  // of another job that had its number
     return;
   }
   if (const absl::Status valid = check_band(put.pixels, known->second.spec.settings,

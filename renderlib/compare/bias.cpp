@@ -79,8 +79,9 @@ void add_half_row(const Image& image, const Image& reference, std::uint32_t x, s
   for (; x < x1; x += 2) {
     if (is_finite(image.at(x, y)) && is_finite(reference.at(x, y))) {
       const double there = luminance(reference.at(x, y));
-      difference.add(double{luminance(image.at(x, y))} - there);
-      totals.difference += double{luminance(image.at(x, y))} - there;
+      const double off = double{luminance(image.at(x, y))} - there;
+      difference.add(off);
+      totals.difference += off;
       totals.light += there;
     }
   }

@@ -109,7 +109,9 @@ void MediumWalk::find_around_origin() {
   while (const std::optional<Crossing> crossing = find_next(all)) {
     if (kept_size_ < kKept) {
       kept_[kept_size_++] = *crossing;
-      beyond_kept_ = all;
+      if (kept_size_ == kKept) {
+        beyond_kept_ = all;
+      }
     } else {
       all_kept_ = false;
     }

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <filesystem>
+#include <numeric>
 #include <tuple>
 #include <vector>
 
@@ -73,6 +74,20 @@ bool remove_unused(const std::string& path) {
       flock(fd, LOCK_EX | LOCK_NB) == 0 && is_at(fd, path) && unlink(path.c_str()) == 0;
   close(fd);
   return removed;
+}
+
+/// Removes what was used longest ago, `wanted` bytes of it or all that there is, but not `kept`.
+/// Returns how many.
+std::uint64_t remove_oldest(std::vector<Entry> all, std::uint64_t wanted, const std::string& kept) {
+  std::sort(all.begin(), all.end());
+  std::uint64_t freed = 0;
+  for (const Entry& entry : all) {
+    if (freed >= wanted) {
+      break;
+    }
+    freed += entry.path != kept && remove_unused(entry.path) ? entry.bytes : 0;
+  }
+  return freed;
 }
 
 }  // namespace
@@ -142,33 +157,17 @@ void BlobCache::make_room(std::uint64_t added, const std::string& newest) {
     return;
   }
   std::vector<Entry> all = entries(folder_);
-  std::sort(all.begin(), all.end());
-  bytes_ = 0;
-  for (const Entry& entry : all) {
-    bytes_ += entry.bytes;
-  }
-  for (const Entry& entry : all) {
-    if (bytes_ <= max_bytes_) {
-      break;
-    }
-    if (entry.path != newest && remove_unused(entry.path)) {
-      bytes_ -= entry.bytes;
-    }
+  bytes_ = std::accumulate(all.begin(), all.end(), std::uint64_t{0},
+                           [](std::uint64_t sum, const Entry& entry) { return sum + entry.bytes; });
+  if (bytes_ > max_bytes_) {
+    bytes_ -= remove_oldest(std::move(all), bytes_ - max_bytes_, newest);
   }
 }
 
 bool BlobCache::give_up_some(std::uint64_t wanted) {
   constexpr std::uint64_t kAtOnce = 64 << 20;
   MutexLock lock(mutex_);
-  std::vector<Entry> all = entries(folder_);
-  std::sort(all.begin(), all.end());
-  std::uint64_t freed = 0;
-  for (const Entry& entry : all) {
-    if (freed >= std::max(wanted, kAtOnce)) {
-      break;
-    }
-    freed += remove_unused(entry.path) ? entry.bytes : 0;
-  }
+  const std::uint64_t freed = remove_oldest(entries(folder_), std::max(wanted, kAtOnce), "");
   bytes_ -= std::min(bytes_, freed);
   return freed > 0;
 }

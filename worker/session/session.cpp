@@ -148,13 +148,12 @@ void Session::take_lease(const farm::Lease& lease, Reaction& reaction) {
   const auto same = std::find_if(held_.begin(), held_.end(), [&](const Held& held) {
     return held.task.job == task->job && held.task.band == task->band;
   });
-  if (same != held_.end() && same->task.manifest == task->manifest &&
-      same->task.settings == task->settings) {
-    same->name = {.lease = lease.lease(), .epoch = epoch_};
-    return;
-  }
-  if (same != held_.end()) {  // of another job that bore the number
-    reaction.stop.push_back(same->task.id);
+  if (same != held_.end()) {
+    if (same->task.manifest == task->manifest && same->task.settings == task->settings) {
+      same->name = {.lease = lease.lease(), .epoch = epoch_};
+      return;
+    }
+    reaction.stop.push_back(same->task.id);  // of another job that bore the number
     held_.erase(same);
   }
   if (held_.size() >= wire::kBandsPerWorker) {

@@ -1,6 +1,7 @@
 #pragma once
 
-// SIGINT and SIGTERM without signal handlers: they are blocked in every thread and read by one.
+// SIGINT, SIGTERM and SIGHUP without signal handlers: they are blocked in every thread and read by
+// one.
 
 #include <functional>
 #include <thread>
@@ -10,8 +11,8 @@
 namespace bandsaw::coordinator {
 
 /// Made first thing in main, before any other thread: threads inherit the blocked signals. While
-/// nobody listens a signal ends the process at once with status 130; a second signal does so
-/// always.
+/// nobody listens a signal ends the process at once with status 130; a second one does so
+/// always, but for a second SIGHUP.
 class Interrupts {
  public:
   Interrupts();

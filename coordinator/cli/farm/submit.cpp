@@ -60,12 +60,8 @@ ExitCode run(const SubmitOptions& options, Process& process) {
   if (outputs.empty() && !options.detach) {
     outputs = {default_output(options.scene, ".png")};
   }
-  absl::Status fit = check_outputs_writable(outputs);
-  if (options.outputs.empty() && !outputs.empty()) {
-    fit.Update(check_default_output(options.scene, outputs.front()));
-  }
-  if (!fit.ok()) {
-    return console.fail(ExitCode::kWrong, std::string(fit.message()));
+  if (const auto status = check_outputs(options.scene, options.outputs, outputs); !status.ok()) {
+    return console.fail(ExitCode::kWrong, std::string(status.message()));
   }
   const auto reports = report_files(options.report, outputs);
   if (!reports.ok()) {

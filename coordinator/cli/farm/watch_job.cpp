@@ -93,6 +93,13 @@ ExitCode left_early(const absl::Status& status, JobId job, const std::vector<std
   return console.fail(code, std::string(status.message()));
 }
 
+// The farm has the image, the one who waits for it has not.
+ExitCode not_fetched(const absl::Status& status, JobId job, const Console& console) {
+  return console.fail(
+      ExitCode::kFailed,
+      absl::StrCat(status.message(), "; the farm keeps the image. ", come_back(job, {})));
+}
+
 absl::Status write_wanted(const Image& image, const Layers& layers, const Display& display,
                           const Progress& progress, const Wanted& wanted) {
   RETURN_IF_ERROR(write_outputs(image, wanted.outputs, display, layers));
@@ -143,20 +150,15 @@ ExitCode watch_job(FarmClient& client, JobId job, const Wanted& wanted, Verbosit
         beside ? beside(last->job.samples_per_pixel, display) : Layers{};
     if (!layers.ok()) {
       display.clear();
-      const bool kept = exit_code_of(layers.status()) == ExitCode::kFailed;
-      return kept ? process.console.fail(ExitCode::kFailed,
-                                         absl::StrCat(layers.status().message(),
-                                                      "; the farm keeps the image without layers. ",
-                                                      come_back(job, {})))
-                  : left_early(layers.status(), job, outputs, process.console);
+      return exit_code_of(layers.status()) == ExitCode::kFailed
+                 ? not_fetched(layers.status(), job, process.console)
+                 : left_early(layers.status(), job, outputs, process.console);
     }
     if (const auto status = write_wanted(result->image, *layers,
                                          wanted.display.over(result->display), *last, wanted);
         !status.ok()) {
       display.clear();
-      return process.console.fail(
-          ExitCode::kFailed,
-          absl::StrCat(status.message(), "; the farm keeps the image. ", come_back(job, {})));
+      return not_fetched(status, job, process.console);
     }
   }
   display.done(*last, outputs, wanted.reports);

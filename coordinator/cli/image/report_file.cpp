@@ -8,6 +8,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/image/report.h"
+#include "coordinator/cli/options/output.h"
 #include "renderlib/base/atomic_file.h"
 #include "renderlib/base/status_macros.h"
 
@@ -80,6 +81,13 @@ absl::Status check_default_output(const std::string& scene, const std::string& o
       absl::StrCat(output,
                    ": is there and may be the model's own, as no report of a render lies "
                    "beside it; name a file with -o"));
+}
+
+absl::Status check_outputs(const std::string& scene, const std::vector<std::string>& asked,
+                           const std::vector<std::string>& outputs) {
+  RETURN_IF_ERROR(check_outputs_writable(outputs));
+  return asked.empty() && !outputs.empty() ? check_default_output(scene, outputs.front())
+                                           : absl::OkStatus();
 }
 
 absl::Status write_reports(const std::string& text, const std::vector<std::string>& files) {

@@ -22,6 +22,10 @@ absl::StatusOr<std::vector<std::string>> report_files(const ReportOption& asked,
 /// Scene files own no picture of their name.
 absl::Status check_default_output(const std::string& scene, const std::string& output);
 
+/// check_outputs_writable (options/output.h), and check_default_output where none was asked for.
+absl::Status check_outputs(const std::string& scene, const std::vector<std::string>& asked,
+                           const std::vector<std::string>& outputs);
+
 /// Each whole or not at all; stops at the first error, which says that the image is there.
 absl::Status write_reports(const std::string& text, const std::vector<std::string>& files);
 

@@ -4,7 +4,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/base/json.h"
-#include "coordinator/cli/base/text.h"
 #include "coordinator/cli/image/part_file.h"
 #include "coordinator/cli/image/report.h"
 #include "coordinator/cli/image/report_file.h"
@@ -58,8 +57,9 @@ class Stitcher {
     job.samples_per_pixel = samples;
     job.samples_done = samples * settings_.width * settings_.height;
     job.counters = counters_;
-    if (const auto error = film_->error(); known_error(error, samples) >= 0) {
-      job.error = error->at_most();
+    const auto error = film_->error();
+    job.error = known_error(error, samples);
+    if (job.error >= 0) {
       job.curve = {{samples, job.elapsed_s, job.cpu_s, *error}};
     }
     if (counters_.bad_samples > 0) {
@@ -132,11 +132,8 @@ ExitCode run(const StitchOptions& options, Process& process) {
   if (!status.ok()) {
     return process.console.fail(ExitCode::kFailed, std::string(status.message()));
   }
-  for (const std::string& warning :
-       {bad_samples_line(whole->progress), doubt_line(whole->progress)}) {
-    if (!warning.empty()) {
-      process.console.complain(warning);
-    }
+  for (const std::string& warning : warning_lines(whole->progress)) {
+    process.console.complain(warning);
   }
   if (options.verbosity.json) {
     process.console.line(JsonObject()
@@ -145,7 +142,7 @@ ExitCode run(const StitchOptions& options, Process& process) {
                              .texts("reports", *reports)
                              .str());
   } else {
-    process.console.line(absl::StrCat(printable(names_of(options.outputs)), " · ", image.width, "×",
+    process.console.line(absl::StrCat(names_of(options.outputs), " · ", image.width, "×",
                                       image.height, " · ", options.parts.size(),
                                       options.parts.size() == 1 ? " part" : " parts",
                                       reports->empty() ? "" : " · report ", names_of(*reports)));

@@ -5,6 +5,7 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_join.h"
+#include "coordinator/cli/base/text.h"
 #include "renderlib/base/atomic_file.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/image/exr.h"
@@ -44,7 +45,7 @@ std::uint64_t cut_off_values(const Image& image, const std::vector<std::string>&
 }
 
 std::string names_of(const std::vector<std::string>& outputs) {
-  return absl::StrJoin(outputs, ", ");
+  return printable(absl::StrJoin(outputs, ", "));
 }
 
 }  // namespace bandsaw::coordinator

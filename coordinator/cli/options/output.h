@@ -32,7 +32,7 @@ absl::Status write_outputs(const Image& image, const std::vector<std::string>& o
 std::uint64_t cut_off_values(const Image& image, const std::vector<std::string>& outputs,
                              const Display& display);
 
-/// "cornell.png, cornell.pfm".
+/// "cornell.png, cornell.pfm", fit for a terminal.
 std::string names_of(const std::vector<std::string>& outputs);
 
 }  // namespace bandsaw::coordinator

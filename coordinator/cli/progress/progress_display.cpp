@@ -140,10 +140,8 @@ void ProgressDisplay::done(const Progress& progress, const std::vector<std::stri
                            const std::vector<std::string>& reports) {
   MutexLock lock(mutex_);
   wipe();
-  for (const std::string& warning : {bad_samples_line(progress), doubt_line(progress)}) {
-    if (!warning.empty()) {
-      console_.complain(warning);
-    }
+  for (const std::string& warning : warning_lines(progress)) {
+    console_.complain(warning);
   }
   if (verbosity_.json) {
     console_.line(

@@ -159,6 +159,12 @@ std::string doubt_line(const Progress& progress) {
                       "paths find; the true error is likely larger than said");
 }
 
+std::vector<std::string> warning_lines(const Progress& progress) {
+  std::vector<std::string> lines = {bad_samples_line(progress), doubt_line(progress)};
+  std::erase(lines, "");
+  return lines;
+}
+
 std::string left_out_line(const Progress& progress) {
   const JobView& job = progress.job;
   std::vector<std::string> parts;

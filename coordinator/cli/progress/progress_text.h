@@ -39,6 +39,9 @@ std::string doubt_line(const Progress& progress);
 /// What must not be overlooked about samples that were not numbers; empty when all were.
 std::string bad_samples_line(const Progress& progress);
 
+/// Those of the two that are not empty.
+std::vector<std::string> warning_lines(const Progress& progress);
+
 /// "0.2 % of the paths were cut off at depth 32 · 3 primitives without area left out"; empty when
 /// neither is so.
 std::string left_out_line(const Progress& progress);

@@ -185,12 +185,8 @@ ExitCode run(const RenderOptions& options, Process& process) {
   outlive_reader();
   const Console& console = process.console;
   const std::vector<std::string> outputs = outputs_of(options);
-  absl::Status fit = check_outputs_writable(outputs);
-  if (options.outputs.empty()) {
-    fit.Update(check_default_output(options.scene, outputs.front()));
-  }
-  if (!fit.ok()) {
-    return console.fail(ExitCode::kWrong, std::string(fit.message()));
+  if (const auto status = check_outputs(options.scene, options.outputs, outputs); !status.ok()) {
+    return console.fail(ExitCode::kWrong, std::string(status.message()));
   }
   const auto reports = report_files(options.report, outputs);
   if (!reports.ok()) {

@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
 #include "absl/strings/match.h"
-#include "absl/strings/string_view.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/import/model/gltf_json.h"
 #include "renderlib/import/model/gltf_support.h"
@@ -23,7 +21,6 @@ using gltf::name_in;
 using gltf::number;
 using gltf::object;
 using gltf::Struct;
-using gltf::Value;
 
 // Two numbers, or what stands there.
 void read_pair(const Struct& in, const std::string& name, double& x, double& y) {

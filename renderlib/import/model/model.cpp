@@ -151,8 +151,9 @@ bool is_model_file(const std::string& path) {
 absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, SceneDraft& draft) {
   const std::string name = name_of(path);
   const std::size_t warnings_before = draft.out.info.warnings.size();
+  const ModelKind kind = kind_of(path);
   GltfExtensions gltf;
-  if (kind_of(path) == ModelKind::kGltf) {
+  if (kind == ModelKind::kGltf) {
     auto read = read_gltf_extensions(path);
     if (!read.ok()) {
       return absl::InvalidArgumentError(
@@ -170,7 +171,7 @@ absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, S
   if (scene == nullptr || scene->mRootNode == nullptr || !refused.outside.empty()) {
     return read_failure(name, refused, importer.GetErrorString());
   }
-  ModelFile file{*scene, path, kind_of(path), std::move(gltf), draft};
+  ModelFile file{*scene, path, kind, std::move(gltf), draft};
   warn_of_missing(name, refused, draft);
   warn_of_unused(file);
 

@@ -149,13 +149,12 @@ class MeshReader {
 
 // Colours of three channels come from Assimp with an alpha of 0.
 bool has_clear_colors(const aiMesh& from) {
-  const aiColor4D* colors = from.mColors[0];
-  const auto count = [&](auto has) {
-    return from.HasVertexColors(0) ? std::count_if(colors, colors + from.mNumVertices, has) : 0;
+  const auto any = [&](auto has) {
+    return from.HasVertexColors(0) &&
+           std::any_of(from.mColors[0], from.mColors[0] + from.mNumVertices, has);
   };
-  const auto clear = count([](const aiColor4D& c) { return c.a < 1; });
-  const auto all_clear = count([](const aiColor4D& c) { return c.a == 0; });
-  return clear > 0 && all_clear < from.mNumVertices;
+  return any([](const aiColor4D& c) { return c.a < 1; }) &&
+         any([](const aiColor4D& c) { return c.a != 0; });
 }
 
 // Where the bones of a mesh stand; nothing: one has no node. By their names where the file does not
