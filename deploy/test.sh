@@ -1,11 +1,13 @@
 #!/usr/bin/env bash
 # Builds everything and runs the tests: those of the label `default`, or of the labels given.
-# Usage: deploy/test.sh [LABEL...]
+# Usage: deploy/test.sh [--strict] [LABEL...]    (--strict: the compilers' warnings are errors)
 set -euo pipefail
 cd "$(dirname "$0")/.."
+strict=OFF
+if [ "${1:-}" = --strict ]; then strict=ON; shift; fi
 
 deploy/install.sh test
-cmake --preset release -DBANDSAW_TESTS=ON
+cmake --preset release -DBANDSAW_TESTS=ON -DCMAKE_COMPILE_WARNING_AS_ERROR="$strict"
 cmake --build --preset release
 if [ $# -eq 0 ]; then
   set -- default
