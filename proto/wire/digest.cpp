@@ -3,6 +3,7 @@
 #include <openssl/evp.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdlib>
 #include <span>
 #include <utility>
@@ -74,13 +75,16 @@ absl::StatusOr<Digest> digest_from_raw(const std::string& raw) {
 }
 
 absl::StatusOr<Digest> digest_from_hex(const std::string& hex) {
-  const auto is_hex = [](char c) {
-    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F');
-  };
-  if (hex.size() != 64 || !std::all_of(hex.begin(), hex.end(), is_hex)) {
+  Digest digest;
+  bool valid = hex.size() == 2 * digest.bytes.size();
+  for (std::size_t i = 0; valid && i < digest.bytes.size(); ++i) {
+    const char* const digits = &hex[2 * i];
+    valid = std::from_chars(digits, digits + 2, digest.bytes[i], 16).ptr == digits + 2;
+  }
+  if (!valid) {
     return absl::InvalidArgumentError("a SHA-256 digest must be written as 64 hexadecimal digits");
   }
-  return digest_from_raw(absl::HexStringToBytes(hex));
+  return digest;
 }
 
 }  // namespace bandsaw::wire

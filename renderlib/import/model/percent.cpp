@@ -1,17 +1,16 @@
 #include "renderlib/import/model/percent.h"
 
-#include "absl/strings/ascii.h"
-#include "absl/strings/escaping.h"
+#include <charconv>
 
 namespace bandsaw {
 
 std::string percent_decoded(absl::string_view text) {
   std::string decoded;
   while (!text.empty()) {
+    unsigned char byte = 0;
     const bool escape = text.size() >= 3 && text[0] == '%' &&
-                        absl::ascii_isxdigit(static_cast<unsigned char>(text[1])) &&
-                        absl::ascii_isxdigit(static_cast<unsigned char>(text[2]));
-    decoded += escape ? absl::HexStringToBytes(text.substr(1, 2)) : std::string(text.substr(0, 1));
+                        std::from_chars(&text[1], &text[1] + 2, byte, 16).ptr == &text[1] + 2;
+    decoded += escape ? static_cast<char>(byte) : text[0];
     text.remove_prefix(escape ? 3 : 1);
   }
   return decoded;
