@@ -1,6 +1,8 @@
 #!/usr/bin/env bash
-# Installs the Debian 12 packages that building, testing, packing or the demo need, if any is missing.
-# Usage: deploy/install.sh build|demo|packages|test|browser    browser: what the tests of that label need besides, 400 MB
+# Installs the packages of Debian 12 or 13 that building, testing, packing or the demo need, if any is missing.
+# Usage: deploy/install.sh build|demo|packages|test|browser|clang
+#   browser  what the tests of that label need besides `test`, 400 MB
+#   clang    what the presets clang and fuzz need besides `test`
 set -euo pipefail
 
 build=(g++ cmake ninja-build pkg-config libgrpc++-dev protobuf-compiler protobuf-compiler-grpc libprotobuf-dev
@@ -10,6 +12,7 @@ demo=("${build[@]}" assimp-testmodels)
 packages=("${build[@]}" dpkg-dev file fakeroot)
 test=("${demo[@]}" libgtest-dev libgmock-dev git iproute2 curl)
 browser=("${test[@]}" chromium chromium-driver)
+clang=("${test[@]}" clang libclang-rt-dev)
 
 case "${1:-}" in
   build) wanted=("${build[@]}") ;;
@@ -17,7 +20,8 @@ case "${1:-}" in
   packages) wanted=("${packages[@]}") ;;
   test) wanted=("${test[@]}") ;;
   browser) wanted=("${browser[@]}") ;;
-  *) echo "usage: deploy/install.sh build|demo|packages|test|browser" >&2; exit 2 ;;
+  clang) wanted=("${clang[@]}") ;;
+  *) echo "usage: deploy/install.sh build|demo|packages|test|browser|clang" >&2; exit 2 ;;
 esac
 
 missing=()

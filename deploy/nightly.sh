@@ -1,0 +1,142 @@
+#!/usr/bin/env bash
+# The tests that are too long for CI: every label, sanitizers, the other compiler, the other Debian, ARM64, fuzzing. It goes on
+# after a part that fails, and leaves one table of what passed, failed and was skipped. Exit 1: a part failed.
+# Usage: deploy/nightly.sh [--fuzz-minutes N] [--calibration-minutes N] [--out FOLDER] [PART...]
+#   N: minutes for each fuzz target (default 1), and for the calibration, which goes on from there the next night (default 60)
+#   FOLDER: table.md and a log for each part (default: out/nightly)
+#   PART: those to run, of: default labels browser asan-ubsan tsan clang fuzz debian12 debian13 compilers arm64 machines calibration
+#         (default: all, in this order; about seven hours on two cores)
+# A part that needs what this machine lacks (root, debootstrap) is skipped, and the table says why. A compiler and a browser are
+# installed.
+set -uo pipefail
+cd "$(dirname "$0")/.."
+. deploy/bare.sh
+
+every_part=(default labels browser asan-ubsan tsan clang fuzz debian12 debian13 compilers arm64 machines calibration)
+fuzz_minutes=1
+calibration_minutes=60
+out=out/nightly
+usage() { sed -n 's/^# Usage: /usage: /p; s/^#   \(PART\)/  \1/p' "$0" >&2; exit 2; }
+while [ $# -gt 0 ]; do
+  case $1 in
+    --fuzz-minutes | --calibration-minutes)
+      case ${2:-} in '' | *[!0-9]*) usage ;; esac
+      if [ "$1" = --fuzz-minutes ]; then fuzz_minutes=$2; else calibration_minutes=$2; fi
+      shift 2 ;;
+    --out) out=${2:?}; shift 2 ;;
+    -*) usage ;;
+    *) break ;;
+  esac
+done
+for part in "$@"; do
+  case " ${every_part[*]} " in *" $part "*) ;; *) usage ;; esac
+done
+[ $# -gt 0 ] || set -- "${every_part[@]}"
+mkdir -p "$out"
+out=$(cd "$out" && pwd)
+readonly kSkipped=77  # as CTest's SKIP_RETURN_CODE
+
+skip() { echo "skipped: $*"; exit $kSkipped; }
+# tests BUILD-FOLDER CTEST-OPTION...: runs them; the summary is read by `row`.
+tests() { ctest --test-dir "$1" --no-tests=error --output-on-failure --parallel "$(nproc)" "${@:2}"; }
+# preset NAME TARGET...: configures and builds.
+preset() {
+  cmake --preset "$1" -DBANDSAW_TESTS=ON && cmake --build --preset "$1" --target "${@:2}"
+}
+
+part_default() { deploy/test.sh --strict; }
+
+part_labels() {
+  preset release all && tests build/release --label-regex '^(hard_cases_full|simulation_full|schedules_full)$'
+}
+
+part_browser() { deploy/install.sh browser && preset release browser && tests build/release --label-regex '^browser$'; }
+
+part_asan-ubsan() { preset asan-ubsan all && tests build/asan-ubsan --label-regex '^default$'; }
+
+part_tsan() {
+  export TSAN_OPTIONS="suppressions=$PWD/tests/tsan_suppressions.txt"
+  preset tsan all && tests build/tsan --label-regex '^(tsan|farm)$'
+}
+
+part_clang() {
+  deploy/install.sh clang && preset clang all && tests build/clang --label-regex '^default$'
+}
+
+part_fuzz() {
+  deploy/install.sh clang && cmake --preset fuzz -DBANDSAW_TESTS=ON -DBANDSAW_FUZZ_SECONDS=$((fuzz_minutes * 60)) &&
+    cmake --build --preset fuzz --target fuzz_targets && tests build/fuzz --label-regex '^fuzz$'
+}
+
+# debian RELEASE: both commands of the README in a fresh clone on the bare system.
+debian() {
+  bare_possible || skip "no root or no debootstrap"
+  local root=$PWD/build/$1
+  bare_make "$root" "$1" && bare_clone "$root" && bare_run "$root" 'cd bandsaw; deploy/demo.sh; deploy/test.sh'
+  local status=$?
+  bare_close "$root"
+  return $status
+}
+part_debian12() { debian bookworm; }
+part_debian13() { debian trixie; }
+
+# The hashes of same_bits.txt by both compilers of both releases, and by less optimisation.
+part_compilers() {
+  deploy/install.sh clang && tests/hard_cases/compilers.sh clang dev || return
+  bare_possible || skip "Debian 13's compilers: no root or no debootstrap"
+  local root=$PWD/build/trixie
+  bare_make "$root" trixie && bare_clone "$root" &&
+    bare_run "$root" 'cd bandsaw; deploy/install.sh clang; tests/hard_cases/compilers.sh clang release'
+  local status=$?
+  bare_close "$root"
+  return $status
+}
+
+part_arm64() { deploy/arm64.sh; }
+
+# A farm of all kinds of machines; takes what debian13 and arm64 built.
+part_machines() {
+  bare_possible || skip "no root or no debootstrap"
+  preset release all && tests build/release --label-regex '^machines$'
+}
+
+part_calibration() {
+  preset release bandsaw bandsaw-import bandsaw-gallery &&
+    tests/statistical/calibrate.sh --minutes "$calibration_minutes" build/release/bin/bandsaw build/calibration
+}
+
+count() { sed -n "$1" "$2" | awk '{ sum += $1 } END { print sum + 0 }'; }
+
+# row PART STATUS SECONDS LOG: a line of the table. Counts come from CTest's summary in the log.
+row() {
+  local state=failed log=$4 total failed skipped
+  [ "$2" -ne 0 ] || state=passed
+  [ "$2" -ne $kSkipped ] || state="skipped: $(sed -n 's/^skipped: //p' "$log" | tail -n 1)"
+  total=$(count 's/.*tests failed out of \([0-9]*\)$/\1/p' "$log")
+  failed=$(count 's/.*, \([0-9]*\) tests failed out of .*/\1/p' "$log")
+  skipped=$(grep -c '(Skipped)$' "$log")
+  printf '| %s | %s | %d | %d | %d | %d:%02d | `%s` |\n' "$1" "$state" $((total - failed - skipped)) "$failed" "$skipped" \
+    $(($3 / 3600)) $(($3 / 60 % 60)) "$(basename "$log")"
+}
+
+table=$out/table.md
+{
+  echo "# $(git describe --always --dirty), $(nproc) cores, $(date --utc +%Y-%m-%d)"
+  echo
+  echo "| part | result | tests passed | failed | skipped | hours | log |"
+  echo "| --- | --- | --- | --- | --- | --- | --- |"
+} >"$table"
+worst=0
+trap 'echo "stopped; so far:"; cat "$table"; exit 130' INT TERM
+for part in "$@"; do
+  log=$out/$part.log
+  echo "$part …"
+  begun=$SECONDS
+  ("part_$part") >"$log" 2>&1 </dev/null
+  status=$?
+  row "$part" "$status" $((SECONDS - begun)) "$log" | tee -a "$table"
+  [ "$status" -eq 0 ] || [ "$status" -eq $kSkipped ] || worst=1
+done
+echo
+cat "$table"
+exit $worst
