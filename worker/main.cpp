@@ -17,6 +17,7 @@
 #include "proto/link/join.h"
 #include "proto/link/random.h"
 #include "proto/wire/limits.h"
+#include "proto/wire/worker_mark.h"
 #include "renderlib/base/clean_text.h"
 #include "renderlib/render/canary.h"
 #include "renderlib/render/pixel_version.h"
@@ -26,6 +27,10 @@
 
 namespace bandsaw::worker {
 namespace {
+
+/// Coordinators read it from the program's file; nothing in the program does.
+[[gnu::used]] constexpr wire::WorkerMark kMark{.pixel_version = kPixelVersion,
+                                               .version = BANDSAW_VERSION};
 
 constexpr int kUnfit = 1;
 constexpr int kWrongUsage = 2;

@@ -37,7 +37,7 @@ class Dashboard::Impl {
         report_(options.report),
         scenes_(engine, options.bring),
         gallery_(options.gallery),
-        worker_(options.worker),
+        workers_(options.workers),
         server_(std::move(tls)) {
     server_.set_default_headers(headers_of_every_answer());
     server_.set_pre_routing_handler(
@@ -50,7 +50,7 @@ class Dashboard::Impl {
           return HttpServer::HandlerResponse::Handled;
         });
     add_page(server_);
-    add_worker_program(server_, worker_);
+    add_worker_programs(server_, workers_);
     add_login(server_, access_);
     add_farm(server_, engine);
     add_jobs(server_, engine);
@@ -88,7 +88,7 @@ class Dashboard::Impl {
   const TellReport report_;
   Scenes scenes_;
   const Gallery gallery_;
-  const WorkerProgram worker_;
+  const WorkerPrograms workers_;
   int port_ = 0;
   HttpServer server_;  // last: its threads use the others
 };

@@ -21,7 +21,7 @@ struct DashboardOptions {
   bool insecure = false;           ///< plain HTTP beyond loopback too
   std::string gallery;             ///< folder of scene files; need not be there
   BringScene bring;
-  WorkerProgram worker;  ///< what is handed out to machines that are to join
+  WorkerPrograms workers;  ///< what is handed out to machines that are to join
   TellReport report;
 };
 

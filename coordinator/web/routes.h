@@ -14,8 +14,9 @@ namespace bandsaw::coordinator {
 
 /// The page's files, which are part of the program.
 void add_page(HttpServer& server);
-/// What is given outlives the server's threads, here and below. Nothing where there is no program.
-void add_worker_program(HttpServer& server, const WorkerProgram& program);
+/// What is given outlives the server's threads, here and below. /bandsaw-worker/MACHINE is the
+/// program for the architecture of that name, /bandsaw-worker that for the coordinator's own.
+void add_worker_programs(HttpServer& server, const WorkerPrograms& programs);
 void add_login(HttpServer& server, Access& access);
 void add_farm(HttpServer& server, Engine& engine);
 void add_jobs(HttpServer& server, Engine& engine);

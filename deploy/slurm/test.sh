@@ -86,9 +86,9 @@ start_coordinator() {
   export BANDSAW_FARM="$dir/data/farm"
 }
 
-# start_workers RANGE: an array of workers; prints its number.
+# start_workers RANGE [PROGRAM]: an array of workers; prints its number.
 start_workers() {
-  BANDSAW_JOIN="$dir/data/join" BANDSAW_CACHE="$dir/cache" sbatch --parsable --array="$1" --cpus-per-task=1 \
+  BANDSAW_JOIN="$dir/data/join" BANDSAW_CACHE="$dir/cache" BANDSAW_WORKER="${2:-bandsaw-worker}" sbatch --parsable --array="$1" --cpus-per-task=1 \
     --output="$dir/worker-%A_%a.log" "$here/worker.sbatch"
 }
 log_holds() { grep -q "$2" "$dir/worker-$1.log" 2>/dev/null; }
@@ -107,7 +107,9 @@ bandsaw submit "$scene" "${settings[@]}" -o "$dir/farm.pfm" >"$dir/submit.log" 2
 submit=$!
 until_true 30 log_holds "${first}_1" 'rendered job='
 
-second=$(start_workers 3-4)
+mkdir "$dir/shared"  # as on nodes of several architectures
+cp "$programs/bandsaw-worker" "$dir/shared/bandsaw-worker-$(uname -m)"
+second=$(start_workers 3-4 "$dir/shared/bandsaw-worker")
 until_true 30 log_holds "${second}_4" 'rendered job='
 echo "scaled up while it renders: $(squeue --noheader --states=RUNNING --array | wc -l) workers"
 

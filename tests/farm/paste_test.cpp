@@ -14,7 +14,7 @@ const std::string kScene = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
 
 // What stands for a person's shell is to become the worker, so that signals reach it.
 std::string pasted_line(Process& coordinator) {
-  const std::regex line("no bandsaw-worker:  (curl [^\n]*&& )(\\./[^\n]*)\n");
+  const std::regex line("no bandsaw-worker:  (case [^\n]*&& )(\\./[^\n]*)\n");
   std::smatch found;
   EXPECT_TRUE(coordinator.wait_until([&](const std::string& out, const std::string&) {
     return std::regex_search(out, line);
@@ -64,7 +64,7 @@ TEST(Paste, AnotherKeyOrAnotherProgramIsNotStarted) {
   Process impostor = paste(farm, "house", farm.path("one"), other_key);
   EXPECT_EQ(impostor.wait(), 90) << impostor.err();  // curl: the pinned key does not match
   const std::string other_digest =
-      std::regex_replace(line, std::regex("'[0-9a-f]{64} "), "'" + std::string(64, '0') + " ");
+      std::regex_replace(line, std::regex("d=[0-9a-f]{64}"), "d=" + std::string(64, '0'));
   Process damaged = paste(farm, "house", farm.path("two"), other_digest);
   EXPECT_EQ(damaged.wait(), 1);
   EXPECT_NE(damaged.out().find("FAILED"), std::string::npos) << damaged.out();

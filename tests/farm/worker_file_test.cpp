@@ -1,10 +1,13 @@
 // The worker is one file: what it needs of a machine beside the kernel is glibc.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <set>
 #include <sstream>
 
+#include "coordinator/cli/machines/worker_program.h"
+#include "tests/farm/farm_processes.h"
 #include "tests/support/process.h"
 #include "tests/support/sanitized.h"
 
@@ -29,8 +32,13 @@ TEST(WorkerFile, NeedsNothingButGlibc) {
   if (kSanitized) {
     GTEST_SKIP() << "a sanitizer brings libraries of its own";
   }
-  const std::set<std::string> glibc = {"libc.so.6",       "libm.so.6",  "libdl.so.2",
-                                       "libpthread.so.0", "librt.so.1", "ld-linux-x86-64.so.2"};
+  const std::set<std::string> glibc = {"libc.so.6",
+                                       "libm.so.6",
+                                       "libdl.so.2",
+                                       "libpthread.so.0",
+                                       "librt.so.1",
+                                       "ld-linux-x86-64.so.2",
+                                       "ld-linux-aarch64.so.1"};
   const std::set<std::string> needed = libraries_of(BANDSAW_WORKER_BIN);
   EXPECT_TRUE(needed.contains("libc.so.6"));
   for (const std::string& library : needed) {
@@ -41,6 +49,20 @@ TEST(WorkerFile, NeedsNothingButGlibc) {
 // Programs that are linked with shared libraries show that the test above can fail.
 TEST(WorkerFile, TheCommandNeedsMore) {
   EXPECT_TRUE(libraries_of(BANDSAW_BIN).contains("libstdc++.so.6"));
+}
+
+TEST(WorkerFile, SaysItsVersionToThoseWhoCannotRunIt) {
+  const auto program = coordinator::checked_worker_program(file_bytes(BANDSAW_WORKER_BIN),
+                                                           coordinator::kThisMachine);
+  ASSERT_TRUE(program.ok()) << program.status();
+  EXPECT_EQ(run({BANDSAW_WORKER_BIN, "--version"}).out,
+            "bandsaw-worker " + program->version + "\n");
+}
+
+TEST(WorkerFile, AnotherProgramOfTheSameMachineIsNone) {
+  const auto command = coordinator::checked_worker_program(file_bytes(BANDSAW_IMPORT_BIN),
+                                                           coordinator::kThisMachine);
+  EXPECT_THAT(command.status().message(), ::testing::HasSubstr("is no bandsaw-worker"));
 }
 
 }  // namespace

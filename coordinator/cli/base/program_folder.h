@@ -7,7 +7,7 @@
 namespace bandsaw::coordinator {
 
 /// The folder of the program that runs, links resolved: beside it lie bandsaw-import and
-/// bandsaw-worker, and the gallery in ../share.
+/// bandsaw-worker, the gallery in ../share, workers of other architectures in ../lib.
 std::string program_folder();
 
 /// Of the scenes that come with it, installed or in a build folder: bin beside share.

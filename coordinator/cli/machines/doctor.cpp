@@ -13,7 +13,8 @@ namespace bandsaw::coordinator {
 namespace {
 
 std::vector<Check> all_checks(const DoctorOptions& options, const std::string& folder) {
-  std::vector<Check> checks = {check_data_folder(folder), check_memory(), check_import_program()};
+  std::vector<Check> checks = {check_data_folder(folder), check_memory(), check_import_program(),
+                               check_worker_programs()};
   const auto join = doctor_join(options.farm, folder);
   std::vector<Check> of_farm;
   std::vector<std::string> own;

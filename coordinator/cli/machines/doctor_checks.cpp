@@ -10,6 +10,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
+#include "coordinator/cli/machines/worker_program.h"
 #include "coordinator/cli/scene/import_process.h"
 #include "coordinator/rpc/port_check.h"
 #include "coordinator/store/data_folder.h"
@@ -89,6 +91,21 @@ Check check_import_program() {
   const absl::StatusOr<std::string> program = import_program();
   return program.ok() ? Check{"import", true, *program}
                       : problem("import", std::string(program.status().message()));
+}
+
+Check check_worker_programs() {
+  std::vector<std::string> found;
+  for (const Machine machine : kMachines) {
+    const absl::StatusOr<WorkerProgram> program = load_worker_program(machine);
+    if (program.ok()) {
+      found.push_back(absl::StrCat(machine_name(machine), " (", program->version, ")"));
+    } else if (!absl::IsNotFound(program.status())) {
+      return problem("workers", std::string(program.status().message()));
+    }
+  }
+  return {"workers", true,
+          found.empty() ? "no program to hand out here"
+                        : absl::StrCat("a program to hand out for ", absl::StrJoin(found, ", "))};
 }
 
 Check check_port(const std::string& listen, const std::vector<std::string>& own) {

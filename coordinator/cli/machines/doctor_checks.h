@@ -23,6 +23,9 @@ struct Check {
 Check check_data_folder(const std::string& folder);
 Check check_memory();
 Check check_import_program();
+/// The workers' programs that a coordinator here hands out to other machines. That there is none is
+/// no problem; one that cannot be handed out is.
+Check check_worker_programs();
 /// Free, or taken by the farm that answers at one of `own`.
 Check check_port(const std::string& listen, const std::vector<std::string>& own);
 

@@ -6,9 +6,9 @@
 #include "coordinator/cli/base/data_folder.h"
 #include "coordinator/cli/base/json.h"
 #include "coordinator/cli/farm/farm_errors.h"
+#include "coordinator/cli/machines/invitation.h"
 #include "coordinator/cli/machines/remote_hosts.h"
 #include "coordinator/cli/machines/remote_scripts.h"
-#include "coordinator/cli/machines/worker_program.h"
 #include "coordinator/cli/options/commands.h"
 #include "proto/link/join.h"
 #include "renderlib/base/file.h"
@@ -41,32 +41,33 @@ absl::StatusOr<link::JoinString> workers_join(const InviteOptions& options) {
   return join;
 }
 
-/// Says how it went on each host as it is known, and then how many.
-ExitCode on_hosts(const std::vector<std::string>& hosts, const char* event,
-                  const std::string& script, const std::string& input, double seconds,
+/// What is done to one host, until `stop` is set.
+using HostWork =
+    std::function<RemoteOutcome(const std::string& host, const std::atomic<bool>& stop)>;
+
+/// Prints how it went on each host as soon as it is known, and at the end how many went well.
+ExitCode on_hosts(const std::vector<std::string>& hosts, const char* event, const HostWork& work,
                   const Verbosity& verbosity, Process& process) {
   std::atomic<bool> stop = false;
   const Interrupts::Listener listener(process.interrupts, [&stop] { stop = true; });
   std::size_t good = 0;
-  const absl::Status status =
-      run_on_hosts(hosts, script, input, seconds, stop, [&](const RemoteOutcome& outcome) {
-        good += outcome.ok ? 1 : 0;
-        if (verbosity.json) {
-          process.console.line(JsonObject()
-                                   .text("event", event)
-                                   .text("host", outcome.host)
-                                   .flag("ok", outcome.ok)
-                                   .text("found", outcome.what)
-                                   .str());
-        } else if (!outcome.ok) {
-          process.console.complain(absl::StrCat(outcome.host, ": ", outcome.what));
-        } else if (!verbosity.quiet) {
-          process.console.line(absl::StrCat(outcome.host, ": ", outcome.what));
-        }
-      });
-  if (!status.ok()) {
-    return finished(status, process.console);
-  }
+  const auto tell = [&](const RemoteOutcome& outcome) {
+    good += outcome.ok ? 1 : 0;
+    if (verbosity.json) {
+      process.console.line(JsonObject()
+                               .text("event", event)
+                               .text("host", outcome.host)
+                               .flag("ok", outcome.ok)
+                               .text("found", outcome.what)
+                               .str());
+    } else if (!outcome.ok) {
+      process.console.complain(absl::StrCat(outcome.host, ": ", outcome.what));
+    } else if (!verbosity.quiet) {
+      process.console.line(absl::StrCat(outcome.host, ": ", outcome.what));
+    }
+  };
+  for_each_host(
+      hosts, [&](const std::string& host) { return work(host, stop); }, tell);
   if (!verbosity.json) {
     process.console.line(absl::StrCat(event, ": ", good, " of ", hosts.size(),
                                       hosts.size() == 1 ? " host" : " hosts"));
@@ -84,21 +85,28 @@ ExitCode run(const InviteOptions& options, Process& process) {
   if (!join.ok()) {
     return finished(join.status(), process.console);
   }
-  const auto program = load_worker_program();
-  if (!program.ok()) {
-    return finished(program.status(), process.console);
+  const auto invitation = Invitation::create(join->text());
+  if (!invitation.ok()) {
+    return finished(invitation.status(), process.console);
   }
-  return on_hosts(options.hosts, "invited", invite_script(program->bytes.size(), program->digest),
-                  absl::StrCat(join->text(), "\n", program->bytes), options.seconds,
-                  options.verbosity, process);
+  const HostWork work = [&](const std::string& host, const std::atomic<bool>& stop) {
+    return invitation->invite(host, options.seconds, stop);
+  };
+  return on_hosts(options.hosts, "invited", work, options.verbosity, process);
 }
 
 ExitCode run(const DismissOptions& options, Process& process) {
   // Beside the drain the connection and the shell need their time.
   constexpr double kAround = 30;
-  return on_hosts(options.hosts, "dismissed",
-                  dismiss_script(static_cast<int>(std::ceil(options.drain_s))), "",
-                  options.drain_s + kAround, options.verbosity, process);
+  const auto script =
+      RemoteScript::create(dismiss_script(static_cast<int>(std::ceil(options.drain_s))));
+  if (!script.ok()) {
+    return finished(script.status(), process.console);
+  }
+  const HostWork work = [&](const std::string& host, const std::atomic<bool>& stop) {
+    return script->run(host, options.drain_s + kAround, stop);
+  };
+  return on_hosts(options.hosts, "dismissed", work, options.verbosity, process);
 }
 
 }  // namespace bandsaw::coordinator

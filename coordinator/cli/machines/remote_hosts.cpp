@@ -45,21 +45,6 @@ std::vector<std::string> ssh_command(const std::string& host, std::size_t script
           absl::StrCat("exec sh -c 'eval \"$(dd bs=1 count=", script_size, " 2>/dev/null)\"'")};
 }
 
-/// A file without a name that holds the text; the caller closes it.
-absl::StatusOr<int> file_in_memory(const std::string& text) {
-  const int file = memfd_create("bandsaw-input", MFD_CLOEXEC);
-  std::size_t done = 0;
-  while (file >= 0 && done < text.size()) {
-    const ssize_t wrote = write(file, text.data() + done, text.size() - done);
-    if (wrote <= 0) {
-      close(file);
-      return errno_status(errno, "what is to be sent");
-    }
-    done += static_cast<std::size_t>(wrote);
-  }
-  return file >= 0 ? absl::StatusOr<int>(file) : errno_status(errno, "what is to be sent");
-}
-
 std::string last_line(const std::string& output) {
   std::string last = "no answer";
   for (const absl::string_view line : absl::StrSplit(output, '\n', absl::SkipWhitespace())) {
@@ -108,26 +93,43 @@ RemoteOutcome judge(const std::string& host, const absl::StatusOr<ChildOutcome>&
 
 }  // namespace
 
-absl::Status run_on_hosts(const std::vector<std::string>& hosts, const std::string& script,
-                          const std::string& input, double seconds, const std::atomic<bool>& stop,
-                          const std::function<void(const RemoteOutcome&)>& tell) {
-  ASSIGN_OR_RETURN(const int file, file_in_memory(script + input));
-  const absl::Cleanup close_file = [file] { close(file); };
-  // Opened anew by each child, so that each reads from the beginning.
-  const ChildStreams streams{.input = absl::StrCat("/proc/self/fd/", file), .errors_too = true};
+absl::StatusOr<RemoteScript> RemoteScript::create(const std::string& script,
+                                                  const std::string& input) {
+  const int memory = memfd_create("bandsaw-input", MFD_CLOEXEC);
+  if (memory < 0) {
+    return errno_status(errno, "what is to be sent");
+  }
+  const absl::Cleanup close_memory = [memory] { close(memory); };
+  ASSIGN_OR_RETURN(File file, File::open(absl::StrCat("/proc/self/fd/", memory), O_RDWR));
+  for (const std::string& text : {script, input}) {
+    RETURN_IF_ERROR(file.write(
+        absl::MakeConstSpan(reinterpret_cast<const std::byte*>(text.data()), text.size())));
+  }
+  return RemoteScript(std::move(file), script.size());
+}
+
+RemoteOutcome RemoteScript::run(const std::string& host, double seconds,
+                                const std::atomic<bool>& stop) const {
+  // Each child opens it anew, so that each reads from the beginning.
+  const ChildStreams streams{.input = absl::StrCat("/proc/self/fd/", file_.fd()),
+                             .errors_too = true};
+  return judge(host, run_child(ssh_command(host, script_size_), seconds, &stop, streams), seconds);
+}
+
+void for_each_host(const std::vector<std::string>& hosts,
+                   const std::function<RemoteOutcome(const std::string& host)>& work,
+                   const std::function<void(const RemoteOutcome&)>& tell) {
   Mutex telling;
   std::atomic<std::size_t> next{0};
-  const auto work = [&] {
+  const auto take_hosts = [&] {
     for (std::size_t i = next++; i < hosts.size(); i = next++) {
-      const auto child = run_child(ssh_command(hosts[i], script.size()), seconds, &stop, streams);
-      const RemoteOutcome outcome = judge(hosts[i], child, seconds);
+      const RemoteOutcome outcome = work(hosts[i]);
       MutexLock lock(telling);
       tell(outcome);
     }
   };
   std::vector<std::jthread> threads(std::min(hosts.size(), kAtOnce));
-  std::generate(threads.begin(), threads.end(), [&] { return std::jthread(work); });
-  return absl::OkStatus();  // when the threads have ended
+  std::generate(threads.begin(), threads.end(), [&] { return std::jthread(take_hosts); });
 }
 
 }  // namespace bandsaw::coordinator

@@ -1,13 +1,14 @@
 #pragma once
 
-// A script on many machines at once, by the ssh of this one.
+// Scripts on many machines at once, by the ssh of this one.
 
 #include <atomic>
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "renderlib/base/file.h"
 
 namespace bandsaw::coordinator {
 
@@ -18,13 +19,30 @@ struct RemoteOutcome {
   std::string what;  ///< one line, printable
 };
 
-/// Runs `script` (remote_scripts.h) on every host, `input` on its standard input; 32 at a time,
-/// each for at most `seconds`. ssh never asks: a host that wants a password or is not known yet has
-/// an error that says so. `tell` is called as each ends, one at a time, from several threads.
-/// Returns when all have ended; soon after `stop` is set. The error is the system's: nothing was
-/// run.
-absl::Status run_on_hosts(const std::vector<std::string>& hosts, const std::string& script,
-                          const std::string& input, double seconds, const std::atomic<bool>& stop,
-                          const std::function<void(const RemoteOutcome&)>& tell);
+/// A script (remote_scripts.h) and what it reads from standard input, held once in memory for any
+/// number of hosts.
+class RemoteScript {
+ public:
+  /// The error is the system's.
+  static absl::StatusOr<RemoteScript> create(const std::string& script,
+                                             const std::string& input = "");
+
+  /// Runs it on `host` for at most `seconds`; ends soon after `stop` is set. ssh never asks: a host
+  /// that wants a password or is not known yet has an error that says so. May be called from
+  /// several threads at once.
+  RemoteOutcome run(const std::string& host, double seconds, const std::atomic<bool>& stop) const;
+
+ private:
+  RemoteScript(File file, std::size_t script_size)
+      : file_(std::move(file)), script_size_(script_size) {}
+  File file_;  // without a name: the script, then the input
+  std::size_t script_size_;
+};
+
+/// Calls `work` for each host, 32 at a time from several threads, and `tell` as each ends, one at a
+/// time. Returns when all have ended.
+void for_each_host(const std::vector<std::string>& hosts,
+                   const std::function<RemoteOutcome(const std::string& host)>& work,
+                   const std::function<void(const RemoteOutcome&)>& tell);
 
 }  // namespace bandsaw::coordinator

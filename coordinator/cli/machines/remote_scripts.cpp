@@ -53,22 +53,9 @@ end_worker() {
 }
 )sh";
 
-// What the worker was built for, as worker/machine.cpp asks.
-#if defined(__AVX2__)
-#define BANDSAW_CPU_FLAGS "flags='avx2 fma bmi2'"
-#else
-#define BANDSAW_CPU_FLAGS "flags="
-#endif
 constexpr char kInvite[] = R"sh(
 umask 077
 read -r join
-[ "$(uname -s) $(uname -m)" = "Linux x86_64" ] ||
-  result failed "it is a $(uname -s) machine ($(uname -m)); workers run on Linux, x86_64"
-)sh" BANDSAW_CPU_FLAGS R"sh(
-for flag in $flags; do
-  grep -q -w -m 1 "$flag" /proc/cpuinfo ||
-    result failed "its CPU is too old: it has no $flag (needed: Haswell, Zen or later)"
-done
 mkdir -p "$dir" || result failed "cannot make $dir"
 free=$(df -Pk "$dir" | awk 'NR == 2 { print $4 }')
 need=$((size * 2 / 1024))
@@ -77,7 +64,13 @@ new=$dir/bandsaw-worker.new
 cat >"$new" || { rm -f "$new"; result failed "cannot write $new"; }
 [ "$(sha256sum <"$new" | cut -c 1-64)" = "$digest" ] || { rm -f "$new"; result failed "what arrived is damaged"; }
 chmod 700 "$new"
-said=$("$new" --version 2>&1) || { rm -f "$new"; result failed "the worker does not run there: $said"; }
+said=$("$new" --version 2>&1) || {
+  status=$?
+  rm -f "$new"
+  # The shell itself says 126 and 127: the kernel does not run the file, or there is no such loader.
+  case $status in 126 | 127) said="$said (it needs a 64-bit system with glibc)" ;; esac
+  result failed "the worker does not run there: $said"
+}
 
 end_worker 10
 mv "$new" "$dir/bandsaw-worker"
@@ -146,6 +139,10 @@ rm -rf "$dir" && result ok "gone" || result failed "cannot remove $dir"
 )sh";
 
 }  // namespace
+
+std::string machine_script() {
+  return absl::StrCat("echo \"", kRemoteResult, "ok $(uname -s) $(uname -m)\"\n");
+}
 
 std::string invite_script(std::uint64_t size, const wire::Digest& program) {
   return absl::StrCat("size=", size, "\ndigest=", program.hex(), "\n", kCommon, kInvite);

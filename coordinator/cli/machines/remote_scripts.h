@@ -13,6 +13,9 @@ namespace bandsaw::coordinator {
 
 inline constexpr char kRemoteResult[] = "bandsaw-result: ";
 
+/// Says which system the host runs and its architecture, as `uname` names them: "Linux x86_64".
+std::string machine_script();
+
 /// Reads from standard input a line with the join string, then the program's bytes, `size` of them.
 /// Puts it into ~/.local/share/bandsaw-worker, in the place of what an earlier invitation left
 /// there, and starts it: by systemd --user where the user has that, else on its own.

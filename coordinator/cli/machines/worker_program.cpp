@@ -1,57 +1,101 @@
 #include "coordinator/cli/machines/worker_program.h"
 
+#include <elf.h>
+
+#include <algorithm>
 #include <cstdint>
+#include <cstring>
+#include <filesystem>
 #include <limits>
+#include <utility>
 
 #include "absl/strings/ascii.h"
-#include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
-#include "absl/strings/strip.h"
-#include "coordinator/cli/base/child_process.h"
 #include "coordinator/cli/base/program_folder.h"
+#include "coordinator/cli/machines/elf_file.h"
+#include "proto/wire/worker_mark.h"
 #include "renderlib/base/file.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/render/pixel_version.h"
 
 namespace bandsaw::coordinator {
 namespace {
 
-absl::StatusOr<std::string> version_of(const std::string& program) {
-  constexpr double kPatience = 10;  // seconds
-  ASSIGN_OR_RETURN(const ChildOutcome outcome,
-                   run_child({program, "--version"}, kPatience, nullptr));
-  if (outcome.end != ChildOutcome::End::kExited || outcome.wait_status != 0) {
-    return absl::FailedPreconditionError(absl::StrCat(program, " does not run here"));
+constexpr std::uint16_t elf_number(Machine machine) {
+  return machine == Machine::kX86_64 ? EM_X86_64 : EM_AARCH64;
+}
+
+/// For a message: a name, or a number where the architecture is none of workers.
+std::string machine_of_number(std::uint16_t number) {
+  for (const Machine machine : kMachines) {
+    if (elf_number(machine) == number) {
+      return std::string(machine_name(machine));
+    }
   }
-  absl::string_view said = absl::StripAsciiWhitespace(outcome.output);
-  absl::ConsumePrefix(&said, absl::StrCat(kWorkerProgram, " "));
-  return std::string(said);
+  return absl::StrCat("another architecture (ELF machine ", number, ")");
+}
+
+std::string versions_text(std::uint32_t protocol, std::uint32_t pixel_version) {
+  return absl::StrCat("protocol ", protocol, " and pixel version ", pixel_version);
+}
+
+absl::StatusOr<wire::WorkerMark> mark_of(absl::string_view file) {
+  wire::WorkerMark mark;
+  const std::size_t at = file.find(absl::string_view(mark.magic, sizeof(mark.magic)));
+  if (at == absl::string_view::npos || file.size() - at < sizeof(mark)) {
+    return absl::InvalidArgumentError(
+        "is no bandsaw-worker, or one that is too old: it does not say its version");
+  }
+  std::memcpy(&mark, file.data() + at, sizeof(mark));
+  const absl::string_view version(mark.version, strnlen(mark.version, sizeof(mark.version)));
+  if (version.empty() || version.size() == sizeof(mark.version) ||
+      !std::all_of(version.begin(), version.end(), absl::ascii_isgraph)) {
+    return absl::InvalidArgumentError("says a version that is no text; copy it again");
+  }
+  return mark;
 }
 
 }  // namespace
 
-absl::StatusOr<WorkerProgram> load_worker_program() {
-  const std::string path = absl::StrCat(program_folder(), "/", kWorkerProgram);
-  if (!file_exists(path)) {
-    return absl::NotFoundError(absl::StrCat("there is no ", path));
-  }
-  WorkerProgram program;
-  ASSIGN_OR_RETURN(program.version, version_of(path));
-  ASSIGN_OR_RETURN(program.bytes, read_whole_file(path, std::numeric_limits<std::uint64_t>::max()));
-  program.digest = wire::sha256(program.bytes);
-  return program;
+std::string worker_program_path(Machine machine) {
+  const std::filesystem::path folder = program_folder();
+  return machine == kThisMachine ? folder / kWorkerProgram
+                                 : folder.parent_path() / "lib/bandsaw" /
+                                       absl::StrCat(kWorkerProgram, "-", machine_name(machine));
 }
 
-std::string worker_line(const std::string& url, const std::optional<wire::Digest>& public_key,
-                        const wire::Digest& program, const std::string& join) {
-  // The certificate is nobody's but the farm's, so only its key counts. The file gets its name when
-  // it is whole: one of that name may be running.
-  const std::string trust = public_key ? absl::StrCat(" -k --pinnedpubkey sha256//",
-                                                      absl::Base64Escape(public_key->raw()))
-                                       : "";
-  const std::string file = kWorkerProgram;
-  return absl::StrCat("curl -fsS", trust, " ", url, "/", file, " -o ", file, ".new && echo '",
-                      program.hex(), "  ", file, ".new' | sha256sum -c - && chmod +x ", file,
-                      ".new && mv ", file, ".new ", file, " && ./", file, " --join ", join);
+absl::StatusOr<WorkerProgram> checked_worker_program(std::string bytes, Machine machine) {
+  ASSIGN_OR_RETURN(const std::uint16_t number, elf_machine(bytes));
+  if (number != elf_number(machine)) {
+    return absl::InvalidArgumentError(absl::StrCat("is a program for ", machine_of_number(number),
+                                                   ", not for ", machine_name(machine)));
+  }
+  ASSIGN_OR_RETURN(const wire::WorkerMark mark, mark_of(bytes));
+  if (mark.protocol != wire::kProtocol || mark.pixel_version != kPixelVersion) {
+    return absl::FailedPreconditionError(absl::StrCat(
+        "is version ", mark.version, " with ", versions_text(mark.protocol, mark.pixel_version),
+        ", but this farm needs ", versions_text(wire::kProtocol, kPixelVersion),
+        ": take the worker of the same version as bandsaw"));
+  }
+  const wire::Digest digest = wire::sha256(bytes);
+  return WorkerProgram{machine, mark.version, std::move(bytes), digest};
+}
+
+absl::StatusOr<WorkerProgram> load_worker_program(Machine machine) {
+  const std::string path = worker_program_path(machine);
+  if (!file_exists(path)) {
+    const std::string package =
+        machine == kThisMachine ? "" : absl::StrCat("-", other_machine_name(machine));
+    return absl::NotFoundError(absl::StrCat("there is no bandsaw-worker for ",
+                                            machine_name(machine), " here: put it at ", path,
+                                            ", or install the package ", kWorkerProgram, package));
+  }
+  ASSIGN_OR_RETURN(std::string bytes,
+                   read_whole_file(path, std::numeric_limits<std::uint64_t>::max()));
+  auto program = checked_worker_program(std::move(bytes), machine);
+  return program.ok() ? std::move(program)
+                      : absl::Status(program.status().code(),
+                                     absl::StrCat(path, " ", program.status().message()));
 }
 
 }  // namespace bandsaw::coordinator

@@ -1,24 +1,28 @@
 #pragma once
 
-// The worker that lies beside this program, and the line that brings it to another machine.
+// The workers' programs that lie with this one, for each architecture.
 
-#include <optional>
 #include <string>
 
 #include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
 #include "coordinator/web/worker_program.h"
-#include "proto/wire/digest.h"
 
 namespace bandsaw::coordinator {
 
-/// Reads it and asks it for its version. NOT_FOUND: it does not lie there. FAILED_PRECONDITION: it
-/// does not run here. Others as File.
-absl::StatusOr<WorkerProgram> load_worker_program();
+/// Where the program for `machine` lies: beside this one where it is of the same architecture, else
+/// ../lib/bandsaw/bandsaw-worker-MACHINE from there; in a build folder as installed.
+std::string worker_program_path(Machine machine);
 
-/// What to paste into a shell of another machine, which needs curl: gets the worker from the
-/// dashboard at `url` (without a path), checks it, starts it with the join string. `public_key`:
-/// the SHA-256 of the server's, which is the only one taken then; nothing for plain HTTP.
-std::string worker_line(const std::string& url, const std::optional<wire::Digest>& public_key,
-                        const wire::Digest& program, const std::string& join);
+/// What `bytes`, a whole file, are: a worker for `machine` that fits this coordinator (equal
+/// protocol and pixel version). Known from the file alone, by its ELF header and its
+/// wire::WorkerMark; nothing is run. INVALID_ARGUMENT: another program, or for another
+/// architecture. DATA_LOSS: cut off. FAILED_PRECONDITION: of another version. Messages begin with a
+/// verb; the caller names the file.
+absl::StatusOr<WorkerProgram> checked_worker_program(std::string bytes, Machine machine);
+
+/// Reads the program for `machine` and checks it as above. NOT_FOUND: it does not lie there; the
+/// message says how to provide it. Others as above, and as File.
+absl::StatusOr<WorkerProgram> load_worker_program(Machine machine);
 
 }  // namespace bandsaw::coordinator

@@ -131,7 +131,7 @@ ExitCode run(const ServeOptions& options, Process& process) {
   process.console.line(absl::StrCat("join with:  bandsaw-worker --join ", serving->join));
   if (!serving->line.empty()) {
     process.console.line(absl::StrCat("or where there is no bandsaw-worker:  ", serving->line));
-  } else if (serving->web->worker) {
+  } else if (!serving->web->workers.empty()) {
     process.console.line("with --web 0.0.0.0:8787 there is a line that brings the worker along");
   }
   process.interrupts.wait();

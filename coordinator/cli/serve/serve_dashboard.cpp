@@ -26,11 +26,28 @@ std::string host_of(const std::string& address) {
   return host.front() == '[' && host.back() == ']' ? host.substr(1, host.size() - 2) : host;
 }
 
+/// The workers' programs that lie with this one; none where workers come by another way. Logs each
+/// that is missing or cannot be handed out.
+WorkerPrograms load_workers() {
+  WorkerPrograms workers;
+  for (const Machine machine : kMachines) {
+    auto worker = load_worker_program(machine);
+    if (worker.ok()) {
+      workers.push_back(*std::move(worker));
+    } else {
+      spdlog::log(absl::IsNotFound(worker.status()) ? spdlog::level::info : spdlog::level::warn,
+                  "no worker for {} is handed out: {}", std::string(machine_name(machine)),
+                  std::string(worker.status().message()));
+    }
+  }
+  return workers;
+}
+
 absl::StatusOr<std::unique_ptr<Dashboard>> start(const ServeOptions& options, Engine& engine,
                                                  const link::Identity& identity,
-                                                 const WorkerProgram& worker) {
+                                                 const WorkerPrograms& workers) {
   DashboardOptions wanted;
-  wanted.worker = worker;
+  wanted.workers = workers;
   wanted.insecure = options.insecure;
   wanted.gallery = gallery_folder();
   wanted.bring = bring_scene(engine);
@@ -80,7 +97,7 @@ absl::Status ServedDashboard::write_link(const std::string& data_folder,
 absl::StatusOr<std::string> ServedDashboard::worker_line(const ServeOptions& options,
                                                          const link::Identity& identity,
                                                          const std::string& join) const {
-  if (dashboard == nullptr || !worker) {
+  if (dashboard == nullptr || workers.empty()) {
     return "";
   }
   const bool here_only = options.web.empty() || is_loopback(host_of(options.web));
@@ -91,7 +108,7 @@ absl::StatusOr<std::string> ServedDashboard::worker_line(const ServeOptions& opt
   if (dashboard->secure()) {
     ASSIGN_OR_RETURN(key, link::public_key_digest(identity.certificate_pem));
   }
-  return coordinator::worker_line(url, key, *worker, join);
+  return coordinator::worker_line(url, key, workers, join);
 }
 
 absl::StatusOr<ServedDashboard> serve_dashboard(const ServeOptions& options, Engine& engine,
@@ -100,14 +117,11 @@ absl::StatusOr<ServedDashboard> serve_dashboard(const ServeOptions& options, Eng
   if (options.web == "none") {
     return served;
   }
-  auto worker = load_worker_program();
-  if (worker.ok()) {
-    served.worker = worker->digest;
-  } else {  // a farm whose workers come by another way
-    spdlog::info("no worker is handed out: {}", std::string(worker.status().message()));
-    worker.emplace();
+  const WorkerPrograms workers = load_workers();
+  for (const WorkerProgram& worker : workers) {
+    served.workers.emplace(worker.machine, worker.digest);
   }
-  ASSIGN_OR_RETURN(served.dashboard, start(options, engine, identity, *worker));
+  ASSIGN_OR_RETURN(served.dashboard, start(options, engine, identity, workers));
   if (served.dashboard != nullptr) {
     const std::string host =
         options.web.empty() ? "127.0.0.1" : options.web.substr(0, options.web.rfind(':'));

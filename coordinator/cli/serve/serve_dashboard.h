@@ -3,23 +3,22 @@
 // The dashboard as `bandsaw serve` starts it, and the file with the link to it.
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "coordinator/cli/machines/worker_line.h"
 #include "coordinator/cli/options/options.h"
 #include "coordinator/engine/engine.h"
 #include "coordinator/web/dashboard.h"
 #include "proto/link/identity.h"
-#include "proto/wire/digest.h"
 
 namespace bandsaw::coordinator {
 
 struct ServedDashboard {
   std::unique_ptr<Dashboard> dashboard;  ///< null: there is none
   std::string url;                       ///< as people reach it, without a secret
-  std::optional<wire::Digest> worker;    ///< of the worker's program that it hands out, if any
+  WorkerDigests workers;                 ///< the workers' programs that it hands out
 
   /// The link that logs in, in its file (0600 where the umask says so); without a dashboard there
   /// is no such file afterwards.

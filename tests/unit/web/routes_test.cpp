@@ -45,6 +45,27 @@ TEST_F(RoutesTest, TheWorkersProgramIsHandedOutWithVersionAndDigest) {
   EXPECT_EQ(got->get_header_value("Repr-Digest"), "sha-256=:" + absl::Base64Escape(raw) + ":");
 }
 
+TEST_F(RoutesTest, EachArchitectureHasItsProgram) {
+  headers_.clear();
+  const std::string own(machine_name(kThisMachine));
+  EXPECT_EQ(get("/bandsaw-worker/" + own)->body, get("/bandsaw-worker")->body);
+  for (const absl::string_view name :
+       {machine_name(kOtherMachine), other_machine_name(kOtherMachine)}) {
+    const auto got = get("/bandsaw-worker/" + std::string(name));
+    ASSERT_TRUE(got);
+    EXPECT_EQ(got->body, "o");
+    EXPECT_EQ(got->get_header_value("X-Bandsaw-Version"), "1.2.4");
+    EXPECT_EQ(got->get_header_value("Repr-Digest"),
+              "sha-256=:" + absl::Base64Escape(wire::sha256("o").raw()) + ":");
+  }
+  const auto none = get("/bandsaw-worker/riscv64");
+  ASSERT_TRUE(none);
+  EXPECT_EQ(none->status, 404);
+  EXPECT_THAT(error_of(none), HasSubstr("no bandsaw-worker for this architecture; it has: " + own));
+  EXPECT_EQ(get("/bandsaw-worker/..%2fx")->status, 404);
+  EXPECT_EQ(get("/bandsaw-worker/")->status, 404);
+}
+
 // The library passes on whatever a Range header says.
 TEST_F(RoutesTest, RangesEndWithTheBytes) {
   const std::size_t size = 3 << 20;

@@ -57,9 +57,10 @@ WebTest::WebTest() : identity_(*link::load_or_make_identity(folder_ / "identity"
   DashboardOptions options;
   options.port = 0;
   options.gallery = folder_ / "gallery";
-  options.worker = {.version = "1.2.3",
-                    .bytes = std::string(3 << 20, 'w'),
-                    .digest = wire::sha256(std::string(3 << 20, 'w'))};
+  const std::string bytes(3 << 20, 'w');
+  options.workers = {
+      {.version = "1.2.3", .bytes = bytes, .digest = wire::sha256(bytes)},
+      {.machine = kOtherMachine, .version = "1.2.4", .bytes = "o", .digest = wire::sha256("o")}};
   options.bring = [this](const std::string& path, const std::atomic<bool>&) {
     return bring_box(*engine_, path);
   };

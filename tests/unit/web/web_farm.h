@@ -16,6 +16,10 @@
 
 namespace bandsaw::coordinator {
 
+/// The architecture that is not this program's.
+inline constexpr Machine kOtherMachine =
+    kThisMachine == Machine::kX86_64 ? Machine::kAarch64 : Machine::kX86_64;
+
 class WebTest : public ::testing::Test {
  protected:
   /// The gallery holds one scene, "box"; a scene file that holds "broken" cannot be read, and every

@@ -1,0 +1,39 @@
+#include "coordinator/cli/machines/worker_line.h"
+
+#include "absl/strings/escaping.h"
+#include "absl/strings/str_cat.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+/// A shell command that sets `d` to the digest of the program for this machine, or fails.
+std::string choice_of_digest(const WorkerDigests& programs) {
+  std::string arms;
+  std::string names;
+  for (const auto& [machine, digest] : programs) {
+    absl::StrAppend(&arms, machine_name(machine), "|", other_machine_name(machine),
+                    ") d=", digest.hex(), ";; ");
+    absl::StrAppend(&names, names.empty() ? "" : ", ", machine_name(machine));
+  }
+  return absl::StrCat("case $(uname -m) in ", arms, "*) echo \"", kWorkerProgram,
+                      ": the coordinator has none for $(uname -m), only for ", names,
+                      "\" >&2; false;; esac");
+}
+
+}  // namespace
+
+std::string worker_line(const std::string& url, const std::optional<wire::Digest>& public_key,
+                        const WorkerDigests& programs, const std::string& join) {
+  // The certificate is the farm's own and signed by nobody else, so only its key counts. The file
+  // gets its name when it is whole: a program of that name may be running.
+  const std::string trust = public_key ? absl::StrCat(" -k --pinnedpubkey sha256//",
+                                                      absl::Base64Escape(public_key->raw()))
+                                       : "";
+  const std::string file = kWorkerProgram;
+  return absl::StrCat(choice_of_digest(programs), " && curl -fsS", trust, " ", url, "/", file,
+                      "/$(uname -m) -o ", file, ".new && echo \"$d  ", file,
+                      ".new\" | sha256sum -c - && chmod +x ", file, ".new && mv ", file, ".new ",
+                      file, " && ./", file, " --join ", join);
+}
+
+}  // namespace bandsaw::coordinator

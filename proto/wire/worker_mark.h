@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+
+#include "proto/wire/versions.h"
+
+namespace bandsaw::wire {
+
+/// Says which worker a program file holds, so that a coordinator knows it without running the
+/// program, which may be for another architecture. It stands in the read-only data of each
+/// bandsaw-worker and is found there by `magic`. Little-endian, without padding. Another layout
+/// gets another `magic`.
+struct WorkerMark {
+  char magic[16] = "\177bandsaw-worker";
+  std::uint32_t protocol = kProtocol;
+  std::uint32_t pixel_version = 0;  ///< kPixelVersion of renderlib
+  char version[24] = "";            ///< visible ASCII characters; ends with a zero
+};
+static_assert(sizeof(WorkerMark) == 48);
+
+}  // namespace bandsaw::wire

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+
+#include "tests/support/temp_dir.h"
+
+namespace bandsaw::test {
+
+/// The command and its worker, copied into a folder of the test's own, so that a test decides which
+/// programs of other architectures lie with them.
+class Installed {
+ public:
+  Installed();
+  std::string bandsaw() const { return folder_ / "bin/bandsaw"; }
+  /// Where the program for aarch64 machines is looked for; the folder is there, the file is not.
+  std::string aarch64_worker() const { return folder_ / "lib/bandsaw/bandsaw-worker-aarch64"; }
+  void put_aarch64_worker(const std::string& bytes) const;
+
+ private:
+  TempDir folder_;
+};
+
+}  // namespace bandsaw::test

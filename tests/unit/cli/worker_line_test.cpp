@@ -1,0 +1,103 @@
+// The line for machines that have no worker, in a real shell, on a machine whose uname and curl are
+// scripts of the test.
+
+#include "coordinator/cli/machines/worker_line.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "absl/strings/str_cat.h"
+#include "tests/support/process.h"
+#include "tests/support/temp_dir.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+using test::Finished;
+using testing::HasSubstr;
+using testing::Not;
+
+/// What stands for the program: says for which architecture it is, and how it was called.
+std::string program(Machine machine) {
+  return absl::StrCat("#!/bin/sh\necho ", machine_name(machine), " started \"$@\"\n");
+}
+
+class WorkerLine : public ::testing::Test {
+ protected:
+  WorkerLine() {
+    std::filesystem::create_directory(folder_ / "bin");
+    std::filesystem::create_directory(folder_ / "home");
+    for (const Machine machine : kMachines) {
+      write(absl::StrCat("program-", machine_name(machine)), program(machine));
+      write(absl::StrCat("program-", other_machine_name(machine)), program(machine));
+      digests_[machine] = wire::sha256(program(machine));
+    }
+    // Hands out what the last part of the address names: curl -fsS URL -o FILE.
+    write("bin/curl", "#!/bin/sh\necho \"$2\" >>" + folder_.path() + "/asked\ncp \"" +
+                          folder_.path() + "/program-${2##*/}\" \"$4\"\n");
+  }
+  void write(const std::string& name, const std::string& text) {
+    std::ofstream(folder_ / name) << text;
+    std::filesystem::permissions(folder_ / name, std::filesystem::perms::owner_all);
+  }
+  /// In a home of its own, which is empty.
+  Finished paste(const std::string& uname) {
+    write("uname", uname);
+    write("bin/uname", "#!/bin/sh\n[ \"$*\" = -m ] && cat " + folder_.path() + "/uname\n");
+    return test::run({"/bin/sh", "-c",
+                      absl::StrCat("cd ", folder_ / "home", " && ",
+                                   worker_line("http://desk:1", std::nullopt, digests_, "JOIN"))},
+                     {"PATH=" + folder_ / "bin" + ":/usr/bin:/bin"});
+  }
+  bool asked() const { return std::filesystem::exists(folder_ / "asked"); }
+  bool home_is_empty() const { return std::filesystem::is_empty(folder_ / "home"); }
+
+  test::TempDir folder_;
+  WorkerDigests digests_;
+};
+
+TEST_F(WorkerLine, EachArchitectureGetsItsProgramByEitherName) {
+  for (const Machine machine : kMachines) {
+    for (const absl::string_view name : {machine_name(machine), other_machine_name(machine)}) {
+      const Finished pasted = paste(absl::StrCat(name, "\n"));
+      EXPECT_EQ(pasted.code, 0) << pasted.err;
+      EXPECT_THAT(pasted.out,
+                  HasSubstr(absl::StrCat(machine_name(machine), " started --join JOIN")));
+    }
+  }
+}
+
+TEST_F(WorkerLine, TheProgramOfAnotherArchitectureIsNotStarted) {
+  write("program-aarch64", program(Machine::kX86_64));
+  const Finished pasted = paste("aarch64\n");
+  EXPECT_EQ(pasted.code, 1);
+  EXPECT_THAT(pasted.out, HasSubstr("FAILED"));
+  EXPECT_THAT(pasted.out, Not(HasSubstr("started")));
+}
+
+TEST_F(WorkerLine, WithoutAProgramForItNothingIsFetched) {
+  digests_.erase(Machine::kAarch64);
+  const Finished pasted = paste("aarch64\n");
+  EXPECT_EQ(pasted.code, 1);
+  EXPECT_EQ(pasted.err, "bandsaw-worker: the coordinator has none for aarch64, only for x86_64\n");
+  EXPECT_FALSE(asked());
+  EXPECT_TRUE(home_is_empty());
+}
+
+TEST_F(WorkerLine, WhateverUnameSaysIsNeverRun) {
+  for (const char* said : {"riscv64\n", "", "*\n", "-n\n", "x86_64 aarch64\n", "x86_64\naarch64\n",
+                           "x86_64;touch run\n", "$(touch run)\n", "`touch run`\n",
+                           "\"; touch run; \"\n", "../../x86_64\n"}) {
+    const Finished pasted = paste(said);
+    EXPECT_EQ(pasted.code, 1) << said;
+    EXPECT_THAT(pasted.err, HasSubstr("the coordinator has none for")) << said;
+    EXPECT_FALSE(asked()) << said;
+    EXPECT_TRUE(home_is_empty()) << said;
+  }
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator
