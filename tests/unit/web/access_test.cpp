@@ -13,7 +13,9 @@ namespace {
 
 using AccessTest = WebTest;
 
-int status_of(const httplib::Result& result) { return result ? result->status : -1; }
+int status_of(const std::optional<test::HttpAnswer>& result) {
+  return result ? result->status : -1;
+}
 
 TEST(OwnHost, IsANumberLocalhostOrTheMachine) {
   for (const char* host : {"127.0.0.1", "127.0.0.1:8787", "192.168.1.5:80", "[::1]:8787", "[::1]",
@@ -50,7 +52,7 @@ TEST_F(AccessTest, TheSecretOrTheJoinStringLogsIn) {
   join.secret = identity_.farm_secret;
   const auto result = post("/api/login", "{\"secret\": \" " + join.text() + "\\n\"}");
   EXPECT_EQ(status_of(result), 200);
-  const std::string cookie = result->get_header_value("Set-Cookie");
+  const std::string cookie = result->header("Set-Cookie");
   EXPECT_NE(cookie.find("HttpOnly"), std::string::npos);
   EXPECT_NE(cookie.find("SameSite=Strict"), std::string::npos);
   EXPECT_EQ(cookie.find(identity_.farm_secret), std::string::npos);
@@ -68,15 +70,15 @@ TEST_F(AccessTest, AWrongSecretAndTheWorkersDoNot) {
 
 TEST_F(AccessTest, ManyWrongSecretsAreTurnedAway) {
   Access access(identity_, false);
-  httplib::Request request;
-  request.remote_addr = "10.0.0.7";
-  httplib::Response response;
+  HttpRequest request;
+  request.remote_address = "10.0.0.7";
+  HttpReply reply;
   for (std::size_t i = 0; i < wire::kWrongSecretsPerMinute; ++i) {
-    ASSERT_TRUE(absl::IsUnauthenticated(access.log_in(request, "wrong", response)));
+    ASSERT_TRUE(absl::IsUnauthenticated(access.log_in(request, "wrong", reply)));
   }
-  EXPECT_TRUE(absl::IsResourceExhausted(access.log_in(request, "wrong", response)));
+  EXPECT_TRUE(absl::IsResourceExhausted(access.log_in(request, "wrong", reply)));
   // A whole office may be behind this address.
-  EXPECT_TRUE(access.log_in(request, identity_.farm_secret, response).ok());
+  EXPECT_TRUE(access.log_in(request, identity_.farm_secret, reply).ok());
 }
 
 TEST_F(AccessTest, ProgramsSendTheSecretItself) {

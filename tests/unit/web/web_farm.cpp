@@ -67,7 +67,6 @@ WebTest::WebTest() : identity_(*link::load_or_make_identity(folder_ / "identity"
   auto dashboard = Dashboard::start(*engine_, identity_, options);
   BANDSAW_CHECK(dashboard.ok(), dashboard.status().ToString().c_str());
   dashboard_ = *std::move(dashboard);
-  client_ = std::make_unique<httplib::Client>(base());
 }
 
 WebTest::~WebTest() {
@@ -75,16 +74,19 @@ WebTest::~WebTest() {
   engine_.reset();
 }
 
-httplib::Result WebTest::get(const std::string& path) { return client_->Get(path, headers_); }
+WebTest::Answer WebTest::get(const std::string& path) {
+  return test::http_call(dashboard_->port(), {.target = path, .headers = headers_});
+}
 
-httplib::Result WebTest::post(const std::string& path, const std::string& body) {
-  return client_->Post(path, headers_, body, "application/json");
+WebTest::Answer WebTest::post(const std::string& path, const std::string& body) {
+  return test::http_call(dashboard_->port(),
+                         {.method = "POST", .target = path, .headers = headers_, .body = body});
 }
 
 void WebTest::log_in() {
   const auto result = post("/api/login", "{\"secret\": \"" + identity_.farm_secret + "\"}");
   ASSERT_TRUE(result && result->status == 200);
-  const std::string cookie = result->get_header_value("Set-Cookie");
+  const std::string cookie = result->header("Set-Cookie");
   headers_.emplace("Cookie", cookie.substr(0, cookie.find(';')));
 }
 
@@ -92,9 +94,9 @@ std::uint64_t WebTest::submit_box() {
   return message<web::Submitted>(post("/api/scenes?name=box.textproto&width=24", "a box")).job();
 }
 
-void WebTest::read(const httplib::Result& result, google::protobuf::Message& out) {
-  ASSERT_TRUE(result) << httplib::to_string(result.error());
-  EXPECT_EQ(result->get_header_value("Content-Type"), "application/json");
+void WebTest::read(const Answer& result, google::protobuf::Message& out) {
+  ASSERT_TRUE(result) << "no answer came";
+  EXPECT_EQ(result->header("Content-Type"), "application/json");
   const auto status = google::protobuf::util::JsonStringToMessage(result->body, &out);
   EXPECT_TRUE(status.ok()) << status.ToString() << ": " << result->body;
 }
