@@ -99,10 +99,12 @@ Access::Access(link::Identity identity, bool secure)
       pass_(pass_of(identity_.farm_secret)),
       failures_(wire::kWrongSecretsPerMinute) {}
 
-void Access::renew(link::Identity identity) {
+bool Access::renew(link::Identity identity) {
   MutexLock lock(mutex_);
+  const bool changed = identity.farm_secret != identity_.farm_secret;
   identity_ = std::move(identity);
   pass_ = pass_of(identity_.farm_secret);
+  return changed;
 }
 
 absl::Status Access::check(const HttpRequest& request) {

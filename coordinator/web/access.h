@@ -22,8 +22,8 @@ class Access {
   /// `secure`: cookies go over TLS only.
   Access(link::Identity identity, bool secure);
 
-  /// Logins with the secrets of before are void.
-  void renew(link::Identity identity) EXCLUDES(mutex_);
+  /// Logins with the secrets of before are void. True: people's secret is another one.
+  bool renew(link::Identity identity) EXCLUDES(mutex_);
 
   /// INVALID_ARGUMENT: no HTTP of ours. PERMISSION_DENIED: under a foreign name, from another site.
   /// UNAUTHENTICATED: not logged in. RESOURCE_EXHAUSTED: too many wrong secrets.

@@ -61,7 +61,11 @@ class Dashboard::Impl {
     ASSIGN_OR_RETURN(port_, server_.start(options.host, options.port));
     return absl::OkStatus();
   }
-  void renew(const link::Identity& identity) { access_.renew(identity); }
+  void renew(const link::Identity& identity) {
+    if (access_.renew(identity)) {
+      server_.cut();
+    }
+  }
   int port() const { return port_; }
   bool secure() const { return secure_; }
 

@@ -92,10 +92,8 @@ HttpServer::~HttpServer() {
   {
     MutexLock lock(mutex_);
     stopping_ = true;
-    for (const auto& [socket, address] : open_) {
-      shutdown(socket, SHUT_RDWR);
-    }
   }
+  cut();
   stopped_.notify_all();
   shutdown(listener_, SHUT_RDWR);  // ends every accept
   for (std::thread& thread : threads_) {
@@ -103,6 +101,13 @@ HttpServer::~HttpServer() {
   }
   if (listener_ >= 0) {
     close(listener_);
+  }
+}
+
+void HttpServer::cut() {
+  MutexLock lock(mutex_);
+  for (const auto& [socket, address] : open_) {
+    shutdown(socket, SHUT_RDWR);
   }
 }
 

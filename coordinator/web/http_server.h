@@ -33,6 +33,8 @@ class HttpServer {
   /// Listens from its return on; MUST be called at most once. `host`: a number or a name; `port`: 0
   /// picks one. Gives the port. FAILED_PRECONDITION: it cannot be had.
   absl::StatusOr<int> start(const std::string& host, int port);
+  /// Cuts every connection that is open now.
+  void cut() EXCLUDES(mutex_);
 
  private:
   /// What each thread does: accepts a connection, serves it, closes it.

@@ -112,6 +112,33 @@ TEST_F(AccessTest, ANewSecretVoidsLogins) {
   EXPECT_EQ(status_of(get("/api/farm")), 401);
 }
 
+// An upload is let in by the login that it began with; the new secret ends it without an answer.
+TEST_F(AccessTest, ANewSecretCutsWhatIsUnderWay) {
+  log_in();
+  const int one = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(dashboard_->port()));
+  inet_pton(AF_INET, "127.0.0.1", &address.sin_addr);
+  ASSERT_EQ(connect(one, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
+  const std::string head =
+      "POST /api/scenes?name=a.glb HTTP/1.1\r\nHost: 127.0.0.1\r\nX-Bandsaw: 1\r\nCookie: " +
+      headers_.find("Cookie")->second + "\r\nExpect: 100-continue\r\nContent-Length: 1000\r\n\r\n";
+  ASSERT_EQ(send(one, head.data(), head.size(), MSG_NOSIGNAL), static_cast<ssize_t>(head.size()));
+  std::string told(25, '\0');  // "HTTP/1.1 100 Continue" and the empty line: it is let in
+  ASSERT_EQ(recv(one, told.data(), told.size(), MSG_WAITALL), 25);
+  ASSERT_EQ(told.substr(0, 12), "HTTP/1.1 100");
+  link::Identity renewed = identity_;
+  renewed.worker_secret = "another22characters000";
+  dashboard_->renew(renewed);
+  char answer = 0;
+  EXPECT_EQ(recv(one, &answer, 1, MSG_DONTWAIT), -1) << "the workers' secret is not its own";
+  renewed.farm_secret = "another22characters000";
+  dashboard_->renew(renewed);
+  EXPECT_EQ(recv(one, &answer, 1, 0), 0) << answer;
+  close(one);
+}
+
 // Each would hold a thread for its whole patience; all together are as many as there are threads.
 TEST_F(AccessTest, HalfOpenConnectionsOfOneAddressLeaveRoom) {
   std::vector<int> sockets;

@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <thread>
+
 #include "absl/strings/escaping.h"
 #include "coordinator/web/metrics.h"
 #include "tests/unit/web/web_farm.h"
@@ -115,6 +117,32 @@ TEST_F(RoutesTest, WhatIsNotThereIsSaid) {
   EXPECT_EQ(get("/api/jobs/1/image.png")->status, 409);
   EXPECT_EQ(get("/api/jobs/1/report.json")->status, 409);
   EXPECT_EQ(get("/api/jobs/7/report.json")->status, 404);
+}
+
+TEST_F(RoutesTest, AnImageThatFindsNoMemoryIsRefused) {
+  const std::uint64_t job = submit_box();
+  finish(job, 24, 16);
+  const std::string path = "/api/jobs/" + std::to_string(job);
+  const std::int64_t all = engine_->images().left();
+  {
+    const auto others = engine_->images().take(static_cast<std::uint64_t>(all));
+    ASSERT_TRUE(others);
+    for (const char* file : {"/image.png", "/image.exr", "/preview.png", "/report.json"}) {
+      const auto refused = get(path + file);
+      EXPECT_EQ(refused->status, 429) << file;
+      EXPECT_THAT(error_of(refused), HasSubstr("try again when a download has ended")) << file;
+    }
+  }
+  for (const char* file : {"/image.png", "/image.exr", "/report.json"}) {
+    EXPECT_EQ(get(path + file)->status, 200) << file;
+  }
+  while (engine_->images().left() != all) {  // given back when the server has closed it
+    std::this_thread::yield();
+  }
+  const auto preview = get(path + "/preview.png");
+  EXPECT_EQ(preview->status, 200);
+  EXPECT_EQ(engine_->images().left(), all - static_cast<std::int64_t>(preview->body.size()))
+      << "it is kept for the next who asks";
 }
 
 TEST_F(RoutesTest, TheGalleryRendersItsScenes) {

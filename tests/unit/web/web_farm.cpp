@@ -4,9 +4,11 @@
 
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <sstream>
 
 #include "absl/strings/match.h"
+#include "coordinator/engine/ask.h"
 #include "renderlib/base/check.h"
 #include "tests/support/scenes.h"
 
@@ -92,6 +94,29 @@ void WebTest::log_in() {
 
 std::uint64_t WebTest::submit_box() {
   return message<web::Submitted>(post("/api/scenes?name=box.textproto&width=24", "a box")).job();
+}
+
+void WebTest::finish(std::uint64_t job, std::uint32_t width, std::uint32_t height) {
+  for (std::uint64_t sample = 0; sample < 64; sample += 16) {
+    const BandPixels pixels{.band = {.samples = {sample, sample + 16}, .rows = {0, height}},
+                            .width = width,
+                            .sums = std::vector<double>(std::size_t{width} * height * 3, 8.0),
+                            .counters = {}};
+    using Put = absl::StatusOr<BandOutcome>;
+    const Put put = ask<Put>([&](auto answer) {
+      engine_->put_band(job, 0, std::string(32, 'a'), pixels, 0, 0, answer);
+    });
+    ASSERT_TRUE(put.ok()) << put.status();
+  }
+  const auto done = std::make_shared<std::promise<void>>();
+  engine_->watch(job, [done](const absl::StatusOr<JobView>& view) {
+    const bool is_done = view.ok() && view->state == JobState::kDone;
+    if (is_done) {
+      done->set_value();
+    }
+    return !is_done;
+  });
+  done->get_future().wait();
 }
 
 void WebTest::read(const Answer& result, google::protobuf::Message& out) {

@@ -32,6 +32,8 @@ class WebTest : public ::testing::Test {
   void log_in();
   /// A job that nobody renders.
   std::uint64_t submit_box();
+  /// Brings all samples of a job as a worker would, and waits until the job is done.
+  void finish(std::uint64_t job, std::uint32_t width, std::uint32_t height);
   /// The body as a message; the test fails when it is none.
   template <class Message>
   Message message(const Answer& result) {
