@@ -218,8 +218,8 @@ void Engine::put_band(JobId job, std::uint64_t work, std::string instance, BandP
               .cpu_s = cpu_s,
               .answer = Answer<BandOutcome>(std::move(done)),
               .share = {}};
-  std::optional<BandBudget::Share> share =
-      impl_->budget().take(put.pixels.sums.size() * sizeof(double));
+  std::optional<MemoryBudget::Share> share =
+      impl_->bands().take(put.pixels.sums.size() * sizeof(double));
   if (!share) {
     put.answer(absl::ResourceExhaustedError(
         "the coordinator holds as many bands in memory as it may; send this one again soon"));
@@ -228,6 +228,8 @@ void Engine::put_band(JobId job, std::uint64_t work, std::string instance, BandP
   put.share = *std::move(share);
   impl_->on_core([put = std::move(put)](CoreDesk& core) mutable { core.put_band(std::move(put)); });
 }
+
+MemoryBudget& Engine::images() { return impl_->images(); }
 
 std::uint64_t Engine::free_bytes() const {
   return coordinator::free_bytes(impl_->data_folder()).value_or(0);

@@ -14,6 +14,7 @@
 #include "coordinator/core/messages.h"
 #include "coordinator/engine/collector.h"
 #include "coordinator/engine/credits.h"
+#include "coordinator/engine/memory_budget.h"
 #include "coordinator/engine/worker_link.h"
 #include "coordinator/store/result_file.h"
 #include "renderlib/package/blob_source.h"
@@ -82,6 +83,11 @@ class Engine {
   /// NOT_FOUND: no such job, or samples of one that was not adaptive. FAILED_PRECONDITION: not
   /// done. DATA_LOSS.
   void result(JobId job, FinishedPart part, std::function<void(absl::StatusOr<StoredResult>)> done);
+
+  /// The memory that images may take while they are made for somebody and downloaded, 1 GiB.
+  /// Whoever calls result or preview takes the image's bytes of it before, and gives them back when
+  /// the image is not held any more.
+  MemoryBudget& images();
 
   // Blobs. Thread-safe, may block on the disk: not for gRPC's own threads.
   class BlobWriter {

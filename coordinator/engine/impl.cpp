@@ -19,7 +19,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr std::uint64_t kBandBudgetBytes = 2ull << 30;
+constexpr std::uint64_t kMaxBandBytes = 2ull << 30;
+constexpr std::uint64_t kMaxImageBytes = 1ull << 30;
+static_assert(kMaxImageBytes > kMaxPixels * sizeof(Rgb), "the largest image can be downloaded");
 
 std::string new_epoch() {
   std::random_device random;
@@ -54,7 +56,8 @@ Engine::Impl::Impl(const EngineOptions& options, EngineDoors doors, DataFolder f
       journal_(std::move(doors.journal)),
       clock_(std::move(doors.clock)),
       epoch_(new_epoch()),
-      budget_(kBandBudgetBytes),
+      bands_(kMaxBandBytes),
+      images_(kMaxImageBytes),
       core_(core_options(options, epoch_), *journal_, *clock_, core_hooks()),
       store_(folder_, *clock_, store_hooks()),
       collector_(folder_, *blobs_, options.keep),

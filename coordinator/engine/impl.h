@@ -18,6 +18,7 @@
 #include "coordinator/engine/engine.h"
 #include "coordinator/engine/film_desk.h"
 #include "coordinator/engine/mailbox.h"
+#include "coordinator/engine/memory_budget.h"
 #include "coordinator/engine/put_band.h"
 #include "coordinator/engine/store_desk.h"
 #include "coordinator/store/blob_store.h"
@@ -50,7 +51,8 @@ class Engine::Impl {
   }
 
   BlobStore& blobs() { return *blobs_; }
-  BandBudget& budget() { return budget_; }
+  MemoryBudget& bands() { return bands_; }
+  MemoryBudget& images() { return images_; }
   SessionId next_session() { return ++last_session_; }
   const std::string& epoch() const { return epoch_; }
   const std::string& data_folder() const { return folder_.path(); }
@@ -70,7 +72,8 @@ class Engine::Impl {
   const std::unique_ptr<Clock> clock_;
   const std::string epoch_;
   std::atomic<SessionId> last_session_{0};
-  BandBudget budget_;
+  MemoryBudget bands_;   ///< bytes of the bands in memory
+  MemoryBudget images_;  ///< bytes of the images that are made or downloaded
   CoreDesk core_;
   StoreDesk store_;
   Collector collector_;  ///< of the store's thread

@@ -25,13 +25,28 @@ absl::Status GetBlobCall::open() {
 }
 
 void GetBlobCall::begin() {
+  if (const absl::Status status = doors_.streams.add(weak_from_this()); !status.ok()) {
+    stop(status);
+  }
   doors_.files.post([self = shared_from_this()] {
-    if (const absl::Status status = self->open(); !status.ok()) {
+    absl::Status status = self->stopped();
+    status = status.ok() ? self->open() : status;
+    if (!status.ok()) {
       self->Finish(link::to_grpc(status));
     } else {
       self->write_next(true);
     }
   });
+}
+
+void GetBlobCall::stop(const absl::Status& why) {
+  MutexLock lock(mutex_);
+  stopped_.Update(why);
+}
+
+absl::Status GetBlobCall::stopped() {
+  MutexLock lock(mutex_);
+  return stopped_;
 }
 
 void GetBlobCall::OnWriteDone(bool ok) {
@@ -48,8 +63,9 @@ void GetBlobCall::OnWriteDone(bool ok) {
 
 void GetBlobCall::write_next(bool first) {
   const auto bytes = blob_->bytes();
-  if (offset_ == bytes.size() && !first) {
-    Finish(grpc::Status::OK);
+  const absl::Status status = stopped();
+  if (!status.ok() || (offset_ == bytes.size() && !first)) {
+    Finish(link::to_grpc(status));
     return;
   }
   const std::uint64_t size = std::min<std::uint64_t>(wire::kChunkBytes, bytes.size() - offset_);
@@ -60,37 +76,60 @@ void GetBlobCall::write_next(bool first) {
 }
 
 void ImageCall::begin() {
-  doors_.files.post([self = shared_from_this()] {
-    absl::StatusOr<StoredResult> result = self->make_();
-    if (!result.ok()) {
-      self->Finish(link::to_grpc(result.status()));
+  if (const absl::Status status = doors_.streams.add(weak_from_this()); !status.ok()) {
+    stop(status);
+  }
+  doors_.images.post([self = shared_from_this()] { self->make_and_write(); });
+}
+
+void ImageCall::make_and_write() {
+  {
+    MutexLock lock(mutex_);
+    if (!stopped_.ok()) {
+      write_next();
       return;
     }
-    self->result_ = *std::move(result);
-    self->chunk_.set_width(self->result_.image.width);
-    self->chunk_.set_height(self->result_.image.height);
-    self->chunk_.set_sha256(self->result_.digest.raw());
-    self->chunk_.set_exposure(self->result_.display.exposure);
-    self->chunk_.set_tone(static_cast<std::uint32_t>(self->result_.display.tone));
-    self->write_next();
-  });
+  }
+  absl::StatusOr<HeldImage> made = make_();
+  MutexLock lock(mutex_);
+  if (!made.ok()) {
+    stopped_.Update(made.status());
+  } else if (stopped_.ok()) {
+    image_ = *std::move(made);
+    chunk_.set_width(image_.result.image.width);
+    chunk_.set_height(image_.result.image.height);
+    chunk_.set_sha256(image_.result.digest.raw());
+    chunk_.set_exposure(image_.result.display.exposure);
+    chunk_.set_tone(static_cast<std::uint32_t>(image_.result.display.tone));
+  }
+  write_next();
+}
+
+void ImageCall::stop(const absl::Status& why) {
+  MutexLock lock(mutex_);
+  stopped_.Update(why);
+  image_ = {};
 }
 
 void ImageCall::OnWriteDone(bool ok) {
-  const std::uint64_t total = result_.image.pixels.size() * sizeof(Rgb);
+  MutexLock lock(mutex_);
   if (!ok) {
+    image_ = {};
     Finish(grpc::Status::CANCELLED);
-  } else if (offset_ == total) {
-    Finish(grpc::Status::OK);
-  } else {
-    chunk_.Clear();
-    write_next();
+    return;
   }
+  chunk_.Clear();
+  write_next();
 }
 
 void ImageCall::write_next() {
-  const auto* bytes = reinterpret_cast<const char*>(result_.image.pixels.data());
-  const std::uint64_t total = result_.image.pixels.size() * sizeof(Rgb);
+  const auto* bytes = reinterpret_cast<const char*>(image_.result.image.pixels.data());
+  const std::uint64_t total = image_.result.image.pixels.size() * sizeof(Rgb);
+  if (!stopped_.ok() || offset_ == total) {
+    image_ = {};
+    Finish(link::to_grpc(stopped_));
+    return;
+  }
   const std::uint64_t size = std::min<std::uint64_t>(wire::kChunkBytes, total - offset_);
   chunk_.set_data(bytes + offset_, size);
   offset_ += size;

@@ -3,50 +3,69 @@
 // What goes out in chunks: blobs to workers, results to people.
 
 #include <functional>
+#include <optional>
 #include <utility>
 
+#include "coordinator/rpc/picture.h"
 #include "coordinator/rpc/streams.h"
 #include "proto/farm.pb.h"
 
 namespace bandsaw::coordinator {
 
 /// Work.GetBlob. Each chunk is copied out of the mapped file on the file executor: touching a
-/// mapped page may wait for the disk.
-class GetBlobCall final : public SelfOwned<grpc::ServerWriteReactor<farm::BlobChunk>, GetBlobCall> {
+/// mapped page may wait for the disk. From begin to Finish always either a task or a write is under
+/// way; the end of it looks whether the call was stopped.
+class GetBlobCall final : public SelfOwned<grpc::ServerWriteReactor<farm::BlobChunk>, GetBlobCall>,
+                          public LongStream {
  public:
   GetBlobCall(const Doors& doors, const farm::GetBlobRequest& request)
       : doors_(doors), request_(request) {}
   void begin();
   void OnWriteDone(bool ok) override;
+  void stop(const absl::Status& why) override EXCLUDES(mutex_);
+  link::Role role() const override { return link::Role::kWorker; }
 
  private:
   absl::Status open();
   void write_next(bool first);
+  /// Of stop; OK: it was not called.
+  absl::Status stopped() EXCLUDES(mutex_);
 
   const Doors doors_;
   const farm::GetBlobRequest request_;
   std::unique_ptr<BlobBytes> blob_;
   std::uint64_t offset_ = 0;
   farm::BlobChunk chunk_;
+  Mutex mutex_;
+  absl::Status stopped_ GUARDED_BY(mutex_);
 };
 
-/// Farm.GetResult and Farm.Preview: an image that is made on the file executor.
-class ImageCall final : public SelfOwned<grpc::ServerWriteReactor<farm::ResultChunk>, ImageCall> {
+/// Farm.GetResult and Farm.Preview: an image that is made on the executor for images. As with
+/// GetBlobCall, a task or a write is always under way.
+class ImageCall final : public SelfOwned<grpc::ServerWriteReactor<farm::ResultChunk>, ImageCall>,
+                        public LongStream {
  public:
   /// May wait, for the engine too.
-  using Make = std::function<absl::StatusOr<StoredResult>()>;
+  using Make = std::function<absl::StatusOr<HeldImage>()>;
   ImageCall(const Doors& doors, Make make) : doors_(doors), make_(std::move(make)) {}
   void begin();
   void OnWriteDone(bool ok) override;
+  /// Gives the memory of the image back at once.
+  void stop(const absl::Status& why) override EXCLUDES(mutex_);
+  link::Role role() const override { return link::Role::kFarm; }
 
  private:
-  void write_next();
+  void make_and_write() EXCLUDES(mutex_);
+  /// Writes the next chunk, or ends the call.
+  void write_next() REQUIRES(mutex_);
 
   const Doors doors_;
   const Make make_;
-  StoredResult result_;
-  std::uint64_t offset_ = 0;
   farm::ResultChunk chunk_;
+  Mutex mutex_;
+  HeldImage image_ GUARDED_BY(mutex_);
+  std::uint64_t offset_ GUARDED_BY(mutex_) = 0;
+  absl::Status stopped_ GUARDED_BY(mutex_);
 };
 
 }  // namespace bandsaw::coordinator

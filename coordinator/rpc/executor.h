@@ -1,6 +1,6 @@
 #pragma once
 
-// A few threads for work that waits on the disk: gRPC's reactions must not.
+// A few threads for work that waits, for the disk or for the film: gRPC's reactions must not.
 
 #include <deque>
 #include <functional>

@@ -55,10 +55,7 @@ Unary* FarmService::MissingBlobs(grpc::CallbackServerContext* context,
 
 grpc::ServerReadReactor<farm::BlobChunk>* FarmService::PutBlob(grpc::CallbackServerContext* context,
                                                                farm::PutBlobReply*) {
-  if (const auto status = doors_.gate.check(*context, link::Role::kFarm); !status.ok()) {
-    return new RefusedCall<grpc::ServerReadReactor<farm::BlobChunk>>(status);
-  }
-  return PutBlobCall::make(doors_, context);
+  return admitted<PutBlobCall>(doors_, *context, link::Role::kFarm, context);
 }
 
 Unary* FarmService::Submit(grpc::CallbackServerContext* context, const farm::SubmitRequest* request,
@@ -85,36 +82,29 @@ Unary* FarmService::Submit(grpc::CallbackServerContext* context, const farm::Sub
 
 grpc::ServerWriteReactor<farm::JobStatus>* FarmService::Watch(grpc::CallbackServerContext* context,
                                                               const farm::WatchRequest* request) {
-  if (const auto status = doors_.gate.check(*context, link::Role::kFarm); !status.ok()) {
-    return new RefusedCall<grpc::ServerWriteReactor<farm::JobStatus>>(status);
-  }
-  return WatchCall::make(doors_, request->job());
+  return admitted<WatchCall>(doors_, *context, link::Role::kFarm, request->job());
 }
 
 grpc::ServerWriteReactor<farm::ResultChunk>* FarmService::GetResult(
     grpc::CallbackServerContext* context, const farm::GetResultRequest* request) {
-  if (const auto status = doors_.gate.check(*context, link::Role::kFarm); !status.ok()) {
-    return new RefusedCall<grpc::ServerWriteReactor<farm::ResultChunk>>(status);
-  }
   const FinishedPart part = request->samples() ? FinishedPart::kSamples : FinishedPart::kImage;
-  return ImageCall::make(doors_, [&engine = doors_.engine, job = request->job(), part] {
-    return result_of(engine, job, part);
-  });
+  return admitted<ImageCall>(doors_, *context, link::Role::kFarm,
+                             [&engine = doors_.engine, job = request->job(), part] {
+                               return result_of(engine, job, part);
+                             });
 }
 
 grpc::ServerWriteReactor<farm::ResultChunk>* FarmService::Preview(
     grpc::CallbackServerContext* context, const farm::PreviewRequest* request) {
-  if (const auto status = doors_.gate.check(*context, link::Role::kFarm); !status.ok()) {
-    return new RefusedCall<grpc::ServerWriteReactor<farm::ResultChunk>>(status);
-  }
-  if (request->most_side() > kMaxSide) {
-    return new RefusedCall<grpc::ServerWriteReactor<farm::ResultChunk>>(absl::InvalidArgumentError(
-        absl::StrCat("most_side: must lie in [0, ", kMaxSide, "], is ", request->most_side())));
-  }
-  const std::uint32_t most_side = request->most_side() > 0 ? request->most_side() : kMaxSide;
-  return ImageCall::make(doors_, [&engine = doors_.engine, job = request->job(), most_side] {
-    return preview_of(engine, job, most_side);
-  });
+  return admitted<ImageCall>(doors_, *context, link::Role::kFarm,
+                             [&engine = doors_.engine, job = request->job(),
+                              side = request->most_side()]() -> absl::StatusOr<HeldImage> {
+                               if (side > kMaxSide) {
+                                 return absl::InvalidArgumentError(absl::StrCat(
+                                     "most_side: must lie in [0, ", kMaxSide, "], is ", side));
+                               }
+                               return preview_of(engine, job, side > 0 ? side : kMaxSide);
+                             });
 }
 
 Unary* FarmService::ListJobs(grpc::CallbackServerContext* context, const farm::ListJobsRequest*,

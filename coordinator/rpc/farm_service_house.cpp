@@ -98,10 +98,7 @@ Unary* FarmService::RotateSecret(grpc::CallbackServerContext* context,
     const absl::StatusOr<std::string> file = doors_.gate.rotate(role);
     if (file.ok()) {
       reply->set_join_file(*file);
-      doors_.streams.stop_those_of(
-          role,
-          absl::UnauthenticatedError(
-              "this secret is void: there is a new join string on the coordinator's machine"));
+      doors_.streams.stop_those_of(role, void_secret());
     }
     reactor->Finish(link::to_grpc(file.status()));
   });

@@ -69,6 +69,18 @@ absl::Status Gate::check(const grpc::CallbackServerContext& context, link::Role 
   return absl::OkStatus();
 }
 
+bool Gate::holds(const grpc::CallbackServerContext& context, link::Role needed) {
+  const auto& metadata = context.client_metadata();
+  const auto found = metadata.find(link::kSecretKey);
+  if (found == metadata.end()) {
+    return false;
+  }
+  const std::string secret(found->second.data(), found->second.size());
+  MutexLock lock(mutex_);
+  const absl::StatusOr<link::Role> role = link::role_of_secret(identity_, secret);
+  return role.ok() && *role == needed;
+}
+
 absl::Status Gate::check_any(const grpc::CallbackServerContext& context) {
   return role_of(context).status();
 }

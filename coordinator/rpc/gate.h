@@ -33,7 +33,9 @@ class Gate {
   /// PERMISSION_DENIED: the other role's.
   absl::Status check(const grpc::CallbackServerContext& context, link::Role needed)
       EXCLUDES(mutex_);
-  /// The same, where both roles may call.
+  /// Whether check would let the call in now. A wrong secret is not counted.
+  bool holds(const grpc::CallbackServerContext& context, link::Role needed) EXCLUDES(mutex_);
+  /// As check, where both roles may call.
   absl::Status check_any(const grpc::CallbackServerContext& context) EXCLUDES(mutex_);
 
   /// From its return on the old secret is refused; the file of the new join string.

@@ -1,15 +1,47 @@
 #include "coordinator/rpc/picture.h"
 
 #include <algorithm>
+#include <optional>
 #include <span>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
 #include "coordinator/engine/ask.h"
 #include "coordinator/engine/submit_check.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/image/shrink.h"
 
 namespace bandsaw::coordinator {
+namespace {
+
+absl::StatusOr<MemoryBudget::Share> share_for(Engine& engine, std::uint32_t width,
+                                              std::uint32_t height) {
+  const std::uint64_t bytes = std::uint64_t{width} * height * sizeof(Rgb);
+  if (std::optional<MemoryBudget::Share> share = engine.images().take(bytes)) {
+    return *std::move(share);
+  }
+  return absl::ResourceExhaustedError(
+      absl::StrCat("images that are being downloaded leave no memory for this one of ",
+                   (bytes >> 20) + 1, " MiB; try again when a download has ended"));
+}
+
+absl::StatusOr<HeldImage> finished_image(Engine& engine, const JobView& job, FinishedPart part) {
+  const RenderSettings& settings = job.spec.settings;
+  ASSIGN_OR_RETURN(MemoryBudget::Share share, share_for(engine, settings.width, settings.height));
+  using Result = absl::StatusOr<StoredResult>;
+  ASSIGN_OR_RETURN(StoredResult result,
+                   ask<Result>([&](auto answer) { engine.result(job.id, part, answer); }));
+  return HeldImage{std::move(result), std::move(share)};
+}
+
+void shrink(HeldImage& held, std::uint32_t across, std::uint32_t down) {
+  if (across > 1 || down > 1) {
+    held.result.image = shrunk(held.result.image, across, down);
+    held.share.resize(held.result.image.pixels.size() * sizeof(Rgb));
+  }
+}
+
+}  // namespace
 
 absl::StatusOr<JobView> look_at(Engine& engine, JobId job) {
   using View = absl::StatusOr<JobView>;
@@ -21,34 +53,38 @@ absl::StatusOr<JobView> look_at(Engine& engine, JobId job) {
   });
 }
 
-absl::StatusOr<StoredResult> result_of(Engine& engine, JobId job, FinishedPart part) {
-  using Result = absl::StatusOr<StoredResult>;
-  return ask<Result>([&](auto answer) { engine.result(job, part, answer); });
+absl::StatusOr<HeldImage> result_of(Engine& engine, JobId job, FinishedPart part) {
+  ASSIGN_OR_RETURN(const JobView view, look_at(engine, job));
+  return finished_image(engine, view, part);
 }
 
-absl::StatusOr<StoredResult> picture_of(Engine& engine, const JobView& job,
-                                        std::uint32_t most_side) {
+absl::StatusOr<HeldImage> picture_of(Engine& engine, const JobView& job, std::uint32_t most_side) {
   const RenderSettings& settings = job.spec.settings;
   const std::uint32_t side = std::max(settings.width, settings.height);
   const std::uint32_t step = side / most_side + (side % most_side == 0 ? 0 : 1);
   if (job.state == JobState::kDone) {
-    ASSIGN_OR_RETURN(StoredResult result, result_of(engine, job.id));
-    result.image = shrunk(result.image, step, step);
-    return result;
+    ASSIGN_OR_RETURN(HeldImage held, finished_image(engine, job, FinishedPart::kImage));
+    shrink(held, step, step);
+    return held;
   }
+  const std::uint32_t rows = (settings.height - 1) / step + 1;
+  ASSIGN_OR_RETURN(MemoryBudget::Share share, share_for(engine, settings.width, rows));
   using Part = absl::StatusOr<Image>;
-  ASSIGN_OR_RETURN(const Image rows,
+  ASSIGN_OR_RETURN(Image image,
                    ask<Part>([&](auto answer) { engine.preview(job.id, step, answer); }));
-  return StoredResult{.image = shrunk(rows, step, 1),
-                      .digest = {},
-                      .display = display_of(job.spec.manifest, engine.blobs())};
+  HeldImage held{{.image = std::move(image),
+                  .digest = {},
+                  .display = display_of(job.spec.manifest, engine.blobs())},
+                 std::move(share)};
+  shrink(held, step, 1);
+  return held;
 }
 
-absl::StatusOr<StoredResult> preview_of(Engine& engine, JobId job, std::uint32_t most_side) {
+absl::StatusOr<HeldImage> preview_of(Engine& engine, JobId job, std::uint32_t most_side) {
   ASSIGN_OR_RETURN(const JobView view, look_at(engine, job));
-  ASSIGN_OR_RETURN(StoredResult picture, picture_of(engine, view, most_side));
-  picture.digest = wire::sha256(std::as_bytes(std::span(picture.image.pixels)));
-  return picture;
+  ASSIGN_OR_RETURN(HeldImage held, picture_of(engine, view, most_side));
+  held.result.digest = wire::sha256(std::as_bytes(std::span(held.result.image.pixels)));
+  return held;
 }
 
 }  // namespace bandsaw::coordinator

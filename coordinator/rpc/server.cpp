@@ -10,7 +10,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr int kFileThreads = 4;  // they wait for the disk more than they work
+constexpr int kFileThreads = 4;   // they wait for the disk more than they work
+constexpr int kImageThreads = 2;  // they wait for the film, or hold an image of up to 768 MB each
 constexpr auto kShutdownTime = std::chrono::seconds(4);
 
 std::shared_ptr<grpc::ServerCredentials> credentials(const link::Identity& identity,
@@ -33,8 +34,9 @@ class Server::Impl {
       : identity_(identity),
         gate_(identity, std::move(renew)),
         files_(kFileThreads),
-        farm_({engine, gate_, files_, streams_}),
-        work_({engine, gate_, files_, streams_}) {}
+        images_(kImageThreads),
+        farm_({engine, gate_, files_, images_, streams_}),
+        work_({engine, gate_, files_, images_, streams_}) {}
 
   absl::Status start(const ServerOptions& options) {
     RETURN_IF_ERROR(check_can_listen(options.listen));
@@ -66,7 +68,8 @@ class Server::Impl {
  private:
   const link::Identity identity_;  ///< as at the start: the certificate does not change
   Gate gate_;
-  FileExecutor files_;  // before the server: calls that end post to it
+  FileExecutor files_;  // before the server, as the next: calls that end post to them
+  FileExecutor images_;
   LongStreams streams_;
   FarmService farm_;
   WorkService work_;

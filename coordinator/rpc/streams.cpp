@@ -6,7 +6,7 @@ namespace bandsaw::coordinator {
 namespace {
 
 constexpr std::size_t kMaxStreams =
-    2 * wire::kWorkers + 1024;  // a worker: orders and bands; the rest: watched jobs
+    3 * wire::kWorkers + 1024;  // a worker: orders, bands and a blob; the rest: people
 
 }  // namespace
 

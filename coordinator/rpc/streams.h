@@ -1,7 +1,7 @@
 #pragma once
 
-// How a reactor of gRPC's callback API lives, and the register of the long ones, which a stopping
-// server must end.
+// How a reactor of gRPC's callback API lives, and the register of all streams, which a stopping
+// server and a new secret must end.
 
 #include <grpcpp/grpcpp.h>
 
@@ -18,12 +18,12 @@
 
 namespace bandsaw::coordinator {
 
-/// A stream without an end of its own: a worker's session, a watched job.
+/// A call that may last: a worker's session, a watched job, an upload, a download.
 class LongStream {
  public:
   virtual ~LongStream() = default;
-  /// Ends the call with this status once what is being written is out. Any thread; more than once
-  /// does nothing.
+  /// Ends the call with this status as soon as the write or the task that is under way has ended;
+  /// nothing is begun after it. Any thread; the first status counts.
   virtual void stop(const absl::Status& why) = 0;
   /// Whose secret opened it.
   virtual link::Role role() const = 0;
@@ -47,15 +47,24 @@ class LongStreams {
 struct Doors {
   Engine& engine;
   Gate& gate;
-  FileExecutor& files;
+  FileExecutor& files;   ///< for what waits for the disk
+  FileExecutor& images;  ///< for what makes images, and waits for the film
   LongStreams& streams;
 };
+
+/// Who holds a secret that was renewed is told so.
+inline absl::Status void_secret() {
+  return absl::UnauthenticatedError(
+      "this secret is void: there is a new join string on the coordinator's machine");
+}
 
 /// A reactor that keeps itself until OnDone, which is gRPC's last word. Whatever may come later
 /// than that (an answer of the engine, a task of the file executor) holds it by shared_from_this().
 template <class Base, class Derived>
 class SelfOwned : public Base, public std::enable_shared_from_this<Derived> {
  public:
+  using Reactor = Base;
+
   template <class... Args>
   static Derived* make(Args&&... args) {
     auto made = std::make_shared<Derived>(std::forward<Args>(args)...);
@@ -90,5 +99,22 @@ class RefusedCall final : public Base {
   explicit RefusedCall(const absl::Status& why) { this->Finish(link::to_grpc(why)); }
   void OnDone() override { delete this; }
 };
+
+/// The reactor of a stream, made of `doors` and `args`, if the caller has this role's secret; else
+/// one that refuses. The secret is checked again when the stream is in the register: it may have
+/// been renewed meanwhile, and the streams that were registered then have been ended.
+template <class Call, class... Args>
+auto* admitted(const Doors& doors, const grpc::CallbackServerContext& context, link::Role role,
+               Args&&... args) {
+  using Base = typename Call::Reactor;
+  if (const absl::Status status = doors.gate.check(context, role); !status.ok()) {
+    return static_cast<Base*>(new RefusedCall<Base>(status));
+  }
+  Call* const call = Call::make(doors, std::forward<Args>(args)...);
+  if (!doors.gate.holds(context, role)) {
+    call->stop(void_secret());
+  }
+  return static_cast<Base*>(call);
+}
 
 }  // namespace bandsaw::coordinator

@@ -6,20 +6,62 @@
 
 namespace bandsaw::coordinator {
 
-void PutBlobCall::OnReadDone(bool ok) {
-  doors_.files.post([self = shared_from_this(), ok] { self->take(ok); });
+void PutBlobCall::begin() {
+  if (const absl::Status status = doors_.streams.add(weak_from_this()); !status.ok()) {
+    stop(status);
+    return;
+  }
+  StartRead(&chunk_);
 }
 
-void PutBlobCall::take(bool ok) {
+void PutBlobCall::OnReadDone(bool ok) {
+  {
+    MutexLock lock(mutex_);
+    if (finished_) {
+      return;
+    }
+    working_ = true;
+  }
+  doors_.files.post([self = shared_from_this(), ok] { self->after_task(self->take(ok)); });
+}
+
+std::optional<absl::Status> PutBlobCall::take(bool ok) {
   if (!ok && context_->IsCancelled()) {
     writer_.reset();
-    Finish(grpc::Status::CANCELLED);
-  } else if (!ok) {
-    Finish(link::to_grpc(end()));
-  } else if (const absl::Status status = add(chunk_); !status.ok()) {
-    Finish(link::to_grpc(status));
+    return absl::CancelledError("the sender left");
+  }
+  if (!ok) {
+    return end();
+  }
+  const absl::Status status = add(chunk_);
+  return status.ok() ? std::nullopt : std::optional(status);
+}
+
+void PutBlobCall::after_task(std::optional<absl::Status> ended) {
+  MutexLock lock(mutex_);
+  working_ = false;
+  if (ended) {
+    end_ = *std::move(ended);  // an upload that is whole is whole, stopped or not
+  }
+  if (end_) {
+    advance();
   } else {
     StartRead(&chunk_);
+  }
+}
+
+void PutBlobCall::stop(const absl::Status& why) {
+  MutexLock lock(mutex_);
+  if (!end_) {
+    end_ = why;
+  }
+  advance();
+}
+
+void PutBlobCall::advance() {
+  if (end_ && !working_ && !finished_) {
+    finished_ = true;
+    Finish(link::to_grpc(*end_));
   }
 }
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <memory>
+#include <optional>
+
 #include "coordinator/rpc/blob_intake.h"
 #include "coordinator/rpc/streams.h"
 #include "proto/farm.pb.h"
@@ -8,23 +11,34 @@ namespace bandsaw::coordinator {
 
 /// Farm.PutBlob: what people send in chunks. A chunk is read only when the one before is in the
 /// file, which the file executor writes.
-class PutBlobCall final : public SelfOwned<grpc::ServerReadReactor<farm::BlobChunk>, PutBlobCall> {
+class PutBlobCall final : public SelfOwned<grpc::ServerReadReactor<farm::BlobChunk>, PutBlobCall>,
+                          public LongStream {
  public:
   PutBlobCall(const Doors& doors, grpc::CallbackServerContext* context)
       : doors_(doors), context_(context) {}
-  void begin() { StartRead(&chunk_); }
+  void begin();
   void OnReadDone(bool ok) override;
+  /// What came is kept for the next try.
+  void stop(const absl::Status& why) override EXCLUDES(mutex_);
+  link::Role role() const override { return link::Role::kFarm; }
 
  private:
-  void take(bool ok);
+  /// Nothing: the next chunk is to be read.
+  std::optional<absl::Status> take(bool ok);
+  void after_task(std::optional<absl::Status> ended) EXCLUDES(mutex_);
   absl::Status add(const farm::BlobChunk& chunk);
   absl::Status end();
+  void advance() REQUIRES(mutex_);
 
   const Doors doors_;
   grpc::CallbackServerContext* const context_;
-  farm::BlobChunk chunk_;
+  farm::BlobChunk chunk_;  ///< this and the next two: of reads and tasks, which alternate
   BlobIntake intake_;
   std::unique_ptr<Engine::BlobWriter> writer_;
+  Mutex mutex_;
+  bool working_ GUARDED_BY(mutex_) = false;  ///< a task is on the file executor
+  bool finished_ GUARDED_BY(mutex_) = false;
+  std::optional<absl::Status> end_ GUARDED_BY(mutex_);
 };
 
 }  // namespace bandsaw::coordinator

@@ -32,13 +32,13 @@ std::string machine_name() {
 }
 
 /// Cookies know no ports, so several coordinators on a machine would take each other's.
-std::string cookie_name(const httplib::Request& request) {
+std::string cookie_name(const HttpRequest& request) {
   return absl::StrCat("bandsaw-", request.local_port);
 }
 
-std::string cookie_of(const httplib::Request& request) {
+std::string cookie_of(const HttpRequest& request) {
   const std::string name = cookie_name(request) + "=";
-  for (absl::string_view one : absl::StrSplit(request.get_header_value("Cookie"), ';')) {
+  for (absl::string_view one : absl::StrSplit(request.header("Cookie"), ';')) {
     one = absl::StripAsciiWhitespace(one);
     if (absl::ConsumePrefix(&one, name)) {
       return std::string(one);
@@ -58,12 +58,12 @@ std::string pass_of(const std::string& secret) {
   return absl::BytesToHexString({reinterpret_cast<const char*>(digest.data()), size});
 }
 
-absl::Status check_post(const httplib::Request& request) {
+absl::Status check_post(const HttpRequest& request) {
   if (!request.has_header(kOurHeader)) {
     return absl::PermissionDeniedError(absl::StrCat("a POST needs the header ", kOurHeader));
   }
-  const std::string origin = request.get_header_value("Origin");
-  const std::string host = request.get_header_value("Host");
+  const std::string origin = request.header("Origin");
+  const std::string host = request.header("Host");
   if (!origin.empty() && origin != absl::StrCat("http://", host) &&
       origin != absl::StrCat("https://", host)) {
     return absl::PermissionDeniedError("this request comes from another site");
@@ -72,7 +72,7 @@ absl::Status check_post(const httplib::Request& request) {
 }
 
 /// The page, its files, and the way in.
-bool is_open(const httplib::Request& request) {
+bool is_open(const HttpRequest& request) {
   return request.path == "/api/login" ||
          (request.path != "/metrics" && !absl::StartsWith(request.path, "/api/"));
 }
@@ -99,14 +99,16 @@ Access::Access(link::Identity identity, bool secure)
       pass_(pass_of(identity_.farm_secret)),
       failures_(wire::kWrongSecretsPerMinute) {}
 
-void Access::renew(link::Identity identity) {
+bool Access::renew(link::Identity identity) {
   MutexLock lock(mutex_);
+  const bool changed = identity.farm_secret != identity_.farm_secret;
   identity_ = std::move(identity);
   pass_ = pass_of(identity_.farm_secret);
+  return changed;
 }
 
-absl::Status Access::check(const httplib::Request& request) {
-  if (!is_own_host(request.get_header_value("Host"), machine_name())) {
+absl::Status Access::check(const HttpRequest& request) {
+  if (!is_own_host(request.header("Host"), machine_name())) {
     return absl::PermissionDeniedError(
         "the dashboard answers under this machine's address or name only");
   }
@@ -118,22 +120,22 @@ absl::Status Access::check(const httplib::Request& request) {
   return is_open(request) ? absl::OkStatus() : check_login(request);
 }
 
-bool Access::logged_in(const httplib::Request& request) {
+bool Access::logged_in(const HttpRequest& request) {
   const std::string cookie = cookie_of(request);
   MutexLock lock(mutex_);
   return cookie.size() == pass_.size() &&
          CRYPTO_memcmp(cookie.data(), pass_.data(), pass_.size()) == 0;
 }
 
-absl::Status Access::check_login(const httplib::Request& request) {
+absl::Status Access::check_login(const HttpRequest& request) {
   if (logged_in(request)) {
     return absl::OkStatus();
   }
   MutexLock lock(mutex_);
-  const std::string authorization = request.get_header_value("Authorization");
+  const std::string authorization = request.header("Authorization");
   constexpr char kScheme[] = "Bearer ";
   if (absl::StartsWith(authorization, kScheme)) {
-    return check_secret(authorization.substr(sizeof(kScheme) - 1), request.remote_addr);
+    return check_secret(authorization.substr(sizeof(kScheme) - 1), request.remote_address);
   }
   return absl::UnauthenticatedError("log in first");
 }
@@ -161,21 +163,20 @@ absl::Status Access::check_secret(const std::string& secret, const std::string& 
       absl::StrCat("too many wrong secrets from ", address, "; wait a minute"));
 }
 
-absl::Status Access::log_in(const httplib::Request& request, const std::string& text,
-                            httplib::Response& response) {
+absl::Status Access::log_in(const HttpRequest& request, const std::string& text, HttpReply& reply) {
   const std::string plain(absl::StripAsciiWhitespace(text));
   const absl::StatusOr<link::JoinString> join = link::parse_join_string(plain);
   MutexLock lock(mutex_);
-  RETURN_IF_ERROR(check_secret(join.ok() ? join->secret : plain, request.remote_addr));
-  response.set_header("Set-Cookie", cookie(request, pass_, kLoginSeconds));
+  RETURN_IF_ERROR(check_secret(join.ok() ? join->secret : plain, request.remote_address));
+  reply.headers.emplace_back("Set-Cookie", cookie(request, pass_, kLoginSeconds));
   return absl::OkStatus();
 }
 
-void Access::log_out(const httplib::Request& request, httplib::Response& response) const {
-  response.set_header("Set-Cookie", cookie(request, "", 0));
+void Access::log_out(const HttpRequest& request, HttpReply& reply) const {
+  reply.headers.emplace_back("Set-Cookie", cookie(request, "", 0));
 }
 
-std::string Access::cookie(const httplib::Request& request, const std::string& value,
+std::string Access::cookie(const HttpRequest& request, const std::string& value,
                            long seconds) const {
   return absl::StrCat(cookie_name(request), "=", value, "; Path=/; HttpOnly; SameSite=Strict",
                       "; Max-Age=", seconds, secure_ ? "; Secure" : "");

@@ -3,12 +3,11 @@
 // Which requests are served. The page itself is for everybody who can reach it; all else needs a
 // login, and what changes anything must come from the page.
 
-#include <httplib.h>
-
 #include <string>
 
 #include "absl/status/status.h"
 #include "coordinator/rpc/failures.h"
+#include "coordinator/web/http.h"
 #include "proto/link/identity.h"
 #include "renderlib/base/mutex.h"
 
@@ -23,26 +22,28 @@ class Access {
   /// `secure`: cookies go over TLS only.
   Access(link::Identity identity, bool secure);
 
-  /// Logins with the secrets of before are void.
-  void renew(link::Identity identity) EXCLUDES(mutex_);
+  /// Logins with the secrets of before are void. True: people's secret is another one.
+  bool renew(link::Identity identity) EXCLUDES(mutex_);
 
   /// INVALID_ARGUMENT: no HTTP of ours. PERMISSION_DENIED: under a foreign name, from another site.
   /// UNAUTHENTICATED: not logged in. RESOURCE_EXHAUSTED: too many wrong secrets.
-  absl::Status check(const httplib::Request& request) EXCLUDES(mutex_);
+  absl::Status check(const HttpRequest& request) EXCLUDES(mutex_);
 
   /// By the cookie.
-  bool logged_in(const httplib::Request& request) EXCLUDES(mutex_);
+  bool logged_in(const HttpRequest& request) EXCLUDES(mutex_);
 
-  /// `text`: people's join string, or the secret in it. UNAUTHENTICATED: a wrong one.
-  /// RESOURCE_EXHAUSTED: that, too often from one address. PERMISSION_DENIED: the workers'.
-  absl::Status log_in(const httplib::Request& request, const std::string& text,
-                      httplib::Response& response) EXCLUDES(mutex_);
-  void log_out(const httplib::Request& request, httplib::Response& response) const;
+  /// Sets the cookie in `reply`. `text`: people's join string, or the secret in it.
+  /// UNAUTHENTICATED: a wrong one. RESOURCE_EXHAUSTED: that, too often from one address.
+  /// PERMISSION_DENIED: the workers'.
+  absl::Status log_in(const HttpRequest& request, const std::string& text, HttpReply& reply)
+      EXCLUDES(mutex_);
+  /// Takes the cookie away.
+  void log_out(const HttpRequest& request, HttpReply& reply) const;
 
  private:
-  absl::Status check_login(const httplib::Request& request) EXCLUDES(mutex_);
+  absl::Status check_login(const HttpRequest& request) EXCLUDES(mutex_);
   absl::Status check_secret(const std::string& secret, const std::string& address) REQUIRES(mutex_);
-  std::string cookie(const httplib::Request& request, const std::string& value, long seconds) const;
+  std::string cookie(const HttpRequest& request, const std::string& value, long seconds) const;
 
   const bool secure_;
   Mutex mutex_;

@@ -7,36 +7,47 @@
 #include <sys/socket.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdlib>
-#include <cstring>
 
 namespace bandsaw::coordinator {
 namespace {
 
-using NameOf = int (*)(int, sockaddr*, socklen_t*);
+constexpr std::size_t kMaxAtOnce = 1 << 20;
 
-void read_name(int socket, NameOf name_of, std::string& ip, int& port) {
+struct Endpoint {
+  std::string address;  ///< numeric
+  int port = 0;
+};
+
+/// `name_of`: getpeername or getsockname. Empty where the socket has no address with numbers.
+Endpoint endpoint_of(int socket, int (*name_of)(int, sockaddr*, socklen_t*)) {
   sockaddr_storage address{};
   socklen_t size = sizeof(address);
   std::array<char, NI_MAXHOST> host{};
   std::array<char, NI_MAXSERV> service{};
   auto* const generic = reinterpret_cast<sockaddr*>(&address);
-  if (name_of(socket, generic, &size) == 0 &&
+  if (name_of(socket, generic, &size) != 0 ||
+      (generic->sa_family != AF_INET && generic->sa_family != AF_INET6) ||
       getnameinfo(generic, size, host.data(), host.size(), service.data(), service.size(),
-                  NI_NUMERICHOST | NI_NUMERICSERV) == 0) {
-    ip = host.data();
-    port = std::atoi(service.data());
+                  NI_NUMERICHOST | NI_NUMERICSERV) != 0) {
+    return {};
   }
+  return {host.data(), std::atoi(service.data())};
 }
 
 }  // namespace
 
-Connection::Connection(int socket, SSL_CTX* tls)
-    : socket_(socket), ssl_(tls == nullptr ? nullptr : SSL_new(tls)) {
+Connection::Connection(int socket, SSL_CTX* tls, std::chrono::milliseconds patience)
+    : socket_(socket),
+      encrypted_(tls != nullptr),
+      ssl_(tls == nullptr ? nullptr : SSL_new(tls)),
+      patience_(patience),
+      deadline_(Clock::now() + patience),
+      remote_(endpoint_of(socket, &getpeername).address),
+      local_port_(endpoint_of(socket, &getsockname).port) {
   fcntl(socket_, F_SETFL, fcntl(socket_, F_GETFL) | O_NONBLOCK);
-  read_name(socket_, &getpeername, remote_, remote_port_);
-  read_name(socket_, &getsockname, local_, local_port_);
   if (ssl_ != nullptr) {
     SSL_set_fd(ssl_.get(), socket_);
     SSL_set_mode(ssl_.get(), SSL_MODE_ENABLE_PARTIAL_WRITE | SSL_MODE_ACCEPT_MOVING_WRITE_BUFFER);
@@ -71,81 +82,70 @@ bool Connection::wait_after(int tls_result, short plain_events) const {
 }
 
 bool Connection::shake_hands() {
-  while (ssl_ != nullptr) {
+  if (!encrypted_) {
+    return true;
+  }
+  while (ssl_ != nullptr) {  // null: there was no memory for it
     ERR_clear_error();
     const int result = SSL_accept(ssl_.get());
     if (result == 1) {
-      break;
+      return true;
     }
     if (!wait_after(result, POLLIN)) {
       return false;
     }
   }
-  return true;
+  return false;
 }
 
 void Connection::begin_body() {
-  phase_ = Phase::kBody;
-  deadline_ = Clock::now() + kPatience;
+  in_head_ = false;
+  deadline_ = Clock::now() + patience_;
 }
 
-void Connection::earn(std::size_t bytes) {
-  deadline_ += std::chrono::duration_cast<Clock::duration>(
-      std::chrono::duration<double>(static_cast<double>(bytes) / kSlowest));
+void Connection::begin_answer() { begin_body(); }
+
+void Connection::extend(std::size_t bytes) {
+  if (!in_head_) {
+    deadline_ += std::chrono::duration_cast<Clock::duration>(
+        std::chrono::duration<double>(static_cast<double>(bytes) / kMinBytesPerSecond));
+  }
 }
 
-bool Connection::fill() {
+std::size_t Connection::read(char* bytes, std::size_t size) {
+  const std::size_t most = std::min(size, kMaxAtOnce);
   while (true) {
+    if (Clock::now() >= deadline_) {
+      return 0;
+    }
     ERR_clear_error();
-    const ssize_t got = ssl_ != nullptr
-                            ? SSL_read(ssl_.get(), buffer_.data(), static_cast<int>(buffer_.size()))
-                            : recv(socket_, buffer_.data(), buffer_.size(), 0);
+    const ssize_t got = ssl_ != nullptr ? SSL_read(ssl_.get(), bytes, static_cast<int>(most))
+                                        : recv(socket_, bytes, most, 0);
     if (got > 0) {
-      begin_ = 0;
-      end_ = static_cast<std::size_t>(got);
-      return true;
+      extend(static_cast<std::size_t>(got));
+      return static_cast<std::size_t>(got);
     }
     if ((got == 0 && ssl_ == nullptr) || !wait_after(static_cast<int>(got), POLLIN)) {
-      return false;
+      return 0;
     }
   }
 }
 
-ssize_t Connection::read(char* bytes, size_t size) {
-  if (begin_ == end_ && !fill()) {
-    return -1;
-  }
-  const std::size_t given = std::min(size, end_ - begin_);
-  if (phase_ == Phase::kHead) {
-    if (given > head_left_) {
-      return -1;
-    }
-    head_left_ -= given;
-  } else {
-    earn(given);
-  }
-  std::memcpy(bytes, &buffer_[begin_], given);
-  begin_ += given;
-  return static_cast<ssize_t>(given);
-}
-
-ssize_t Connection::write(const char* bytes, size_t size) {
-  if (phase_ != Phase::kAnswer) {
-    phase_ = Phase::kAnswer;
-    deadline_ = Clock::now() + kPatience;
-  }
-  constexpr std::size_t kMost = 1 << 20;
+std::size_t Connection::write(const char* bytes, std::size_t size) {
+  const std::size_t most = std::min(size, kMaxAtOnce);
   while (true) {
+    if (Clock::now() >= deadline_) {
+      return 0;
+    }
     ERR_clear_error();
-    const ssize_t sent = ssl_ != nullptr
-                             ? SSL_write(ssl_.get(), bytes, static_cast<int>(std::min(size, kMost)))
-                             : send(socket_, bytes, size, MSG_NOSIGNAL);
+    const ssize_t sent = ssl_ != nullptr ? SSL_write(ssl_.get(), bytes, static_cast<int>(most))
+                                         : send(socket_, bytes, most, MSG_NOSIGNAL);
     if (sent > 0) {
-      earn(static_cast<std::size_t>(sent));
-      return sent;
+      extend(static_cast<std::size_t>(sent));
+      return static_cast<std::size_t>(sent);
     }
     if (!wait_after(static_cast<int>(sent), POLLOUT)) {
-      return -1;
+      return 0;
     }
   }
 }
@@ -157,20 +157,12 @@ void Connection::finish() {
   }
   shutdown(socket_, SHUT_WR);
   deadline_ = Clock::now() + kLastWords;
+  std::array<char, 16 << 10> ignored;
   ssize_t got = 0;
   do {
-    got = recv(socket_, buffer_.data(), buffer_.size(), 0);
-  } while (got > 0 || (got < 0 && (errno == EAGAIN || errno == EINTR) && wait(POLLIN)));
-}
-
-void Connection::get_remote_ip_and_port(std::string& ip, int& port) const {
-  ip = remote_;
-  port = remote_port_;
-}
-
-void Connection::get_local_ip_and_port(std::string& ip, int& port) const {
-  ip = local_;
-  port = local_port_;
+    got = recv(socket_, ignored.data(), ignored.size(), 0);
+  } while (got > 0 ? Clock::now() < deadline_
+                   : got < 0 && (errno == EAGAIN || errno == EINTR) && wait(POLLIN));
 }
 
 }  // namespace bandsaw::coordinator

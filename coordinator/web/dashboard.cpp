@@ -1,8 +1,10 @@
 #include "coordinator/web/dashboard.h"
 
 #include <utility>
+#include <vector>
 
 #include "absl/strings/match.h"
+#include "coordinator/web/http_server.h"
 #include "coordinator/web/reply.h"
 #include "coordinator/web/routes.h"
 #include "renderlib/base/status_macros.h"
@@ -10,7 +12,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-httplib::Headers headers_of_every_answer() {
+std::vector<HttpField> headers_of_every_answer() {
   return {{"Content-Security-Policy",
            "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; "
            "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"},
@@ -25,8 +27,6 @@ bool is_loopback(const std::string& host) {
   return host == "localhost" || host == "::1" || absl::StartsWith(host, "127.");
 }
 
-absl::Status nothing_here() { return absl::NotFoundError("there is nothing of this name here"); }
-
 class Dashboard::Impl {
  public:
   Impl(Engine& engine, const link::Identity& identity, TlsContext tls,
@@ -38,35 +38,19 @@ class Dashboard::Impl {
         scenes_(engine, options.bring),
         gallery_(options.gallery),
         workers_(options.workers),
-        server_(std::move(tls)) {
-    server_.set_default_headers(headers_of_every_answer());
-    server_.set_pre_routing_handler(
-        [this](const httplib::Request& request, httplib::Response& response) {
-          const absl::Status status = access_.check(request);
-          if (status.ok()) {
-            return HttpServer::HandlerResponse::Unhandled;
-          }
-          refuse(response, status);
-          return HttpServer::HandlerResponse::Handled;
-        });
-    add_page(server_);
-    add_worker_programs(server_, workers_);
-    add_login(server_, access_);
-    add_farm(server_, engine);
-    add_jobs(server_, engine);
-    add_pictures(server_, pictures_, report_);
-    add_scenes(server_, scenes_);
-    add_gallery(server_, engine, scenes_, gallery_);
-    // The last: without it the body of a POST to nowhere would be read whole before the answer. (A
-    // dot matches no line feed, which %0A is by now.)
-    server_.Post(R"([\s\S]*)",
-                 [](const httplib::Request&, httplib::Response& response,
-                    const httplib::ContentReader&) { refuse(response, nothing_here()); });
-    server_.set_error_handler([](const httplib::Request&, httplib::Response& response) {
-      if (response.body.empty() && response.status == 404) {
-        refuse(response, nothing_here());
-      }
-    });
+        server_(std::move(tls), headers_of_every_answer(),
+                [this](const HttpRequest& request, const HttpBody& body) {
+                  const absl::Status status = access_.check(request);
+                  return status.ok() ? router_.answer(request, body) : refuse(status);
+                }) {
+    add_page(router_);
+    add_worker_programs(router_, workers_);
+    add_login(router_, access_);
+    add_farm(router_, engine);
+    add_jobs(router_, engine);
+    add_pictures(router_, pictures_, report_);
+    add_scenes(router_, scenes_);
+    add_gallery(router_, engine, scenes_, gallery_);
   }
 
   ~Impl() { scenes_.stop(); }
@@ -77,7 +61,11 @@ class Dashboard::Impl {
     ASSIGN_OR_RETURN(port_, server_.start(options.host, options.port));
     return absl::OkStatus();
   }
-  void renew(const link::Identity& identity) { access_.renew(identity); }
+  void renew(const link::Identity& identity) {
+    if (access_.renew(identity)) {
+      server_.cut();
+    }
+  }
   int port() const { return port_; }
   bool secure() const { return secure_; }
 
@@ -89,6 +77,7 @@ class Dashboard::Impl {
   Scenes scenes_;
   const Gallery gallery_;
   const WorkerPrograms workers_;
+  Router router_;
   int port_ = 0;
   HttpServer server_;  // last: its threads use the others
 };

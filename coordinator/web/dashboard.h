@@ -33,7 +33,8 @@ class Dashboard {
                                                           const DashboardOptions& options);
   /// Cuts every connection.
   ~Dashboard();
-  /// There is a new secret: logins with the old one are void.
+  /// There is a new secret. If it is people's, logins with the old one are void, and every
+  /// connection is cut: it may be under way with the old one.
   void renew(const link::Identity& identity);
   int port() const;
   bool secure() const;

@@ -41,8 +41,8 @@ web::Overview overview(Engine& engine) {
   return overview;
 }
 
-absl::StatusOr<web::Log> worker_log(Engine& engine, const httplib::Request& request) {
-  ASSIGN_OR_RETURN(const std::string name, reason_field("name", request.get_param_value("name")));
+absl::StatusOr<web::Log> worker_log(Engine& engine, const HttpRequest& request) {
+  ASSIGN_OR_RETURN(const std::string name, reason_field("name", request.parameter("name")));
   using Lines = absl::StatusOr<std::vector<std::string>>;
   ASSIGN_OR_RETURN(const std::vector<std::string> lines,
                    ask<Lines>([&](auto answer) { engine.logs(name, answer); }));
@@ -53,16 +53,12 @@ absl::StatusOr<web::Log> worker_log(Engine& engine, const httplib::Request& requ
 
 }  // namespace
 
-void add_farm(HttpServer& server, Engine& engine) {
-  server.Get("/api/farm", [&engine](const httplib::Request&, httplib::Response& response) {
-    reply(response, overview(engine));
-  });
-  server.Get("/api/workers/log",
-             [&engine](const httplib::Request& request, httplib::Response& response) {
-               answer(response, worker_log(engine, request));
-             });
-  server.Get("/metrics", [&engine](const httplib::Request&, httplib::Response& response) {
-    response.set_content(
+void add_farm(Router& router, Engine& engine) {
+  router.get("/api/farm", [&engine](const HttpRequest&) { return reply(overview(engine)); });
+  router.get("/api/workers/log",
+             [&engine](const HttpRequest& request) { return answer(worker_log(engine, request)); });
+  router.get("/metrics", [&engine](const HttpRequest&) {
+    return text_reply(
         metrics(all_jobs(engine), all_workers(engine), engine.free_bytes(), BANDSAW_VERSION),
         "text/plain; version=0.0.4; charset=utf-8");
   });

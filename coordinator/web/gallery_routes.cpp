@@ -30,7 +30,7 @@ web::Gallery gallery_message(Engine& engine, const Gallery& gallery) {
 }
 
 absl::StatusOr<web::Submitted> render(Scenes& scenes, const Gallery& gallery,
-                                      const httplib::ContentReader& body) {
+                                      const HttpBody& body) {
   web::RenderScene wish;
   RETURN_IF_ERROR(read_json(body, wish));
   const GalleryScene* const scene = gallery.find(wish.scene());
@@ -48,16 +48,13 @@ absl::StatusOr<web::Submitted> render(Scenes& scenes, const Gallery& gallery,
 
 }  // namespace
 
-void add_gallery(HttpServer& server, Engine& engine, Scenes& scenes, const Gallery& gallery) {
-  server.Get("/api/gallery",
-             [&engine, &gallery](const httplib::Request&, httplib::Response& response) {
-               reply(response, gallery_message(engine, gallery));
-             });
-  server.Post("/api/gallery/render",
-              [&scenes, &gallery](const httplib::Request&, httplib::Response& response,
-                                  const httplib::ContentReader& body) {
-                answer(response, render(scenes, gallery, body));
-              });
+void add_gallery(Router& router, Engine& engine, Scenes& scenes, const Gallery& gallery) {
+  router.get("/api/gallery", [&engine, &gallery](const HttpRequest&) {
+    return reply(gallery_message(engine, gallery));
+  });
+  router.post("/api/gallery/render", [&scenes, &gallery](const HttpRequest&, const HttpBody& body) {
+    return answer(render(scenes, gallery, body));
+  });
 }
 
 }  // namespace bandsaw::coordinator

@@ -1,57 +1,157 @@
 #include "coordinator/web/http_server.h"
 
+#include <netdb.h>
+#include <netinet/in.h>
+#include <netinet/tcp.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <memory>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "coordinator/web/exchange.h"
 
 namespace bandsaw::coordinator {
+namespace {
 
-HttpServer::HttpServer(TlsContext tls) : tls_(std::move(tls)) {
-  new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
-  // Not the library's SO_REUSEPORT: two coordinators would share the port in silence.
-  set_socket_options([](socket_t socket) {
-    const int on = 1;
-    setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &on, sizeof(on));
-  });
-  set_tcp_nodelay(true);
+constexpr std::chrono::milliseconds kWaitForDescriptors{100};
+
+struct FreeAddresses {
+  void operator()(addrinfo* addresses) const { freeaddrinfo(addresses); }
+};
+
+void switch_on(int socket, int level, int option) {
+  const int on = 1;
+  setsockopt(socket, level, option, &on, sizeof(on));
 }
+
+/// A socket that listens at this address, or -1 with errno.
+int listen_at(const addrinfo& address) {
+  const int one = socket(address.ai_family, address.ai_socktype | SOCK_CLOEXEC, 0);
+  if (one < 0) {
+    return -1;
+  }
+  // Not SO_REUSEPORT: two coordinators would share the port in silence.
+  switch_on(one, SOL_SOCKET, SO_REUSEADDR);
+  if (address.ai_family == AF_INET6) {
+    const int off = 0;  // "::" takes IPv4 too
+    setsockopt(one, IPPROTO_IPV6, IPV6_V6ONLY, &off, sizeof(off));
+  }
+  if (bind(one, address.ai_addr, address.ai_addrlen) == 0 && listen(one, SOMAXCONN) == 0) {
+    return one;
+  }
+  const int error = errno;
+  close(one);
+  errno = error;
+  return -1;
+}
+
+/// A socket that listens at the first address of the host that can be had.
+absl::StatusOr<int> listen_on(const std::string& host, int port) {
+  addrinfo hints{};
+  hints.ai_family = AF_UNSPEC;
+  hints.ai_socktype = SOCK_STREAM;
+  hints.ai_flags = AI_PASSIVE | AI_NUMERICSERV;
+  addrinfo* found = nullptr;
+  const int failed = getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &found);
+  const std::unique_ptr<addrinfo, FreeAddresses> addresses(failed == 0 ? found : nullptr);
+  std::string why = failed == 0 ? "it has no address" : gai_strerror(failed);
+  for (const addrinfo* one = addresses.get(); one != nullptr; one = one->ai_next) {
+    if (const int socket = listen_at(*one); socket >= 0) {
+      return socket;
+    }
+    why = std::strerror(errno);
+  }
+  return absl::FailedPreconditionError(
+      absl::StrCat("cannot listen on ", host, ":", port, ": ", why));
+}
+
+absl::StatusOr<int> port_of(int socket) {
+  sockaddr_storage address{};
+  socklen_t size = sizeof(address);
+  if (getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size) != 0) {
+    return absl::InternalError("a listening socket has no address");
+  }
+  return ntohs(address.ss_family == AF_INET6
+                   ? reinterpret_cast<const sockaddr_in6&>(address).sin6_port
+                   : reinterpret_cast<const sockaddr_in&>(address).sin_port);
+}
+
+}  // namespace
+
+HttpServer::HttpServer(TlsContext tls, std::vector<HttpField> headers, HttpHandler handler)
+    : tls_(std::move(tls)), headers_(std::move(headers)), handler_(std::move(handler)) {}
 
 HttpServer::~HttpServer() {
   {
     MutexLock lock(mutex_);
     stopping_ = true;
-    for (const auto& [socket, address] : open_) {
-      shutdown(socket, SHUT_RDWR);
-    }
   }
-  stop();
-  if (thread_.joinable()) {
-    thread_.join();
+  cut();
+  stopped_.notify_all();
+  shutdown(listener_, SHUT_RDWR);  // ends every accept
+  for (std::thread& thread : threads_) {
+    thread.join();
+  }
+  if (listener_ >= 0) {
+    close(listener_);
+  }
+}
+
+void HttpServer::cut() {
+  MutexLock lock(mutex_);
+  for (const auto& [socket, address] : open_) {
+    shutdown(socket, SHUT_RDWR);
   }
 }
 
 absl::StatusOr<int> HttpServer::start(const std::string& host, int port) {
-  const bool bound = port == 0 ? (port = bind_to_any_port(host)) > 0 : bind_to_port(host, port);
-  if (!bound) {
-    return absl::FailedPreconditionError(absl::StrCat("cannot listen on ", host, ":", port));
+  absl::StatusOr<int> listener = listen_on(host, port);
+  if (!listener.ok()) {
+    return listener.status();
   }
-  thread_ = std::thread([this] { listen_after_bind(); });
-  // stop() before the loop has begun would not end it.
-  while (!is_running()) {
-    std::this_thread::yield();
+  listener_ = *listener;
+  for (int i = 0; i < kThreads; ++i) {
+    threads_.emplace_back([this] { run(); });
   }
-  return port;
+  return port_of(listener_);
+}
+
+void HttpServer::run() {
+  sigset_t pipe;
+  sigemptyset(&pipe);
+  sigaddset(&pipe, SIGPIPE);
+  pthread_sigmask(SIG_BLOCK, &pipe, nullptr);  // OpenSSL writes without MSG_NOSIGNAL
+  while (true) {
+    const int socket = accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC);
+    if (socket >= 0) {
+      serve(socket);
+      close(socket);
+    } else if (!may_accept_again(errno)) {
+      return;
+    }
+  }
+}
+
+bool HttpServer::may_accept_again(int error) {
+  MutexLock lock(mutex_);
+  if (!stopping_ && (error == EMFILE || error == ENFILE || error == ENOBUFS || error == ENOMEM)) {
+    stopped_.wait_for(mutex_, kWaitForDescriptors);
+  }
+  return !stopping_;
 }
 
 bool HttpServer::enter(int socket, const std::string& address) {
   MutexLock lock(mutex_);
   const auto same = std::count_if(open_.begin(), open_.end(),
                                   [&](const auto& one) { return one.second == address; });
-  if (stopping_ || same >= kMostOfOneAddress) {
+  if (stopping_ || same >= kMaxOfOneAddress) {
     return false;
   }
   open_.emplace(socket, address);
@@ -63,24 +163,17 @@ void HttpServer::leave(int socket) {
   open_.erase(socket);
 }
 
-bool HttpServer::process_and_close_socket(socket_t socket) {
-  {
-    Connection connection(socket, tls_.get());
-    if (enter(socket, connection.remote_address())) {
-      serve(connection);
-      connection.finish();
-      leave(socket);
-    }
+void HttpServer::serve(int socket) {
+  switch_on(socket, IPPROTO_TCP, TCP_NODELAY);
+  Connection connection(socket, tls_.get());
+  if (!enter(socket, connection.remote_address())) {
+    return;
   }
-  close(socket);
-  return true;
-}
-
-void HttpServer::serve(Connection& connection) {
-  bool closed = false;
   if (connection.shake_hands()) {
-    process_request(connection, true, closed, [&](httplib::Request&) { connection.begin_body(); });
+    exchange(connection, handler_, headers_);
   }
+  connection.finish();
+  leave(socket);
 }
 
 }  // namespace bandsaw::coordinator

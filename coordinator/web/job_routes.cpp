@@ -15,36 +15,32 @@ namespace {
 using Told = absl::StatusOr<JobView>;
 using TellJob = void (Engine::*)(JobId, std::function<void(Told)>);
 
-void answer_with(httplib::Response& response, const Told& told) {
+HttpReply answer_with(const Told& told) {
   if (!told.ok()) {
-    refuse(response, told.status());
-    return;
+    return refuse(told.status());
   }
   web::Job job;
   *job.mutable_status() = to_message(*told);
-  reply(response, job);
+  return reply(job);
 }
 
-void add_order(HttpServer& server, Engine& engine, const char* order, TellJob tell) {
-  server.Post(absl::StrCat("/api/jobs/(\\d{1,19})/", order),
-              [&engine, tell](const httplib::Request& request, httplib::Response& response,
-                              const httplib::ContentReader&) {
-                const auto job = job_of(request);
-                answer_with(response,
-                            job.ok() ? ask<Told>([&](auto answer) { (engine.*tell)(*job, answer); })
-                                     : Told(job.status()));
-              });
+void add_order(Router& router, Engine& engine, const char* order, TellJob tell) {
+  router.post(absl::StrCat("/api/jobs/*/", order), [&engine, tell](const HttpRequest& request,
+                                                                   const HttpBody&) {
+    const auto job = job_of(request);
+    return answer_with(job.ok() ? ask<Told>([&](auto answer) { (engine.*tell)(*job, answer); })
+                                : Told(job.status()));
+  });
 }
 
-Told set_priority(Engine& engine, const httplib::Request& request,
-                  const httplib::ContentReader& body) {
+Told set_priority(Engine& engine, const HttpRequest& request, const HttpBody& body) {
   ASSIGN_OR_RETURN(const JobId job, job_of(request));
   web::Priority wanted;
   RETURN_IF_ERROR(read_json(body, wanted));
   return ask<Told>([&](auto answer) { engine.set_priority(job, wanted.priority(), answer); });
 }
 
-absl::StatusOr<web::JobPage> job_page(Engine& engine, const httplib::Request& request) {
+absl::StatusOr<web::JobPage> job_page(Engine& engine, const HttpRequest& request) {
   ASSIGN_OR_RETURN(const JobId id, job_of(request));
   ASSIGN_OR_RETURN(const JobView view, look_at(engine, id));
   web::JobPage page;
@@ -65,27 +61,23 @@ absl::StatusOr<web::JobPage> job_page(Engine& engine, const httplib::Request& re
 
 }  // namespace
 
-absl::StatusOr<JobId> job_of(const httplib::Request& request) {
+absl::StatusOr<JobId> job_of(const HttpRequest& request) {
   JobId job = 0;
-  if (!absl::SimpleAtoi(request.matches[1].str(), &job) || job == 0) {
-    return absl::NotFoundError(absl::StrCat("there is no job ", request.matches[1].str()));
+  if (!absl::SimpleAtoi(request.captured, &job) || job == 0) {
+    return absl::NotFoundError(absl::StrCat("there is no job ", request.captured));
   }
   return job;
 }
 
-void add_jobs(HttpServer& server, Engine& engine) {
-  server.Get("/api/jobs/(\\d{1,19})",
-             [&engine](const httplib::Request& request, httplib::Response& response) {
-               answer(response, job_page(engine, request));
-             });
-  add_order(server, engine, "cancel", &Engine::cancel);
-  add_order(server, engine, "pause", &Engine::pause);
-  add_order(server, engine, "resume", &Engine::resume);
-  server.Post("/api/jobs/(\\d{1,19})/priority",
-              [&engine](const httplib::Request& request, httplib::Response& response,
-                        const httplib::ContentReader& body) {
-                answer_with(response, set_priority(engine, request, body));
-              });
+void add_jobs(Router& router, Engine& engine) {
+  router.get("/api/jobs/*",
+             [&engine](const HttpRequest& request) { return answer(job_page(engine, request)); });
+  add_order(router, engine, "cancel", &Engine::cancel);
+  add_order(router, engine, "pause", &Engine::pause);
+  add_order(router, engine, "resume", &Engine::resume);
+  router.post("/api/jobs/*/priority", [&engine](const HttpRequest& request, const HttpBody& body) {
+    return answer_with(set_priority(engine, request, body));
+  });
 }
 
 }  // namespace bandsaw::coordinator

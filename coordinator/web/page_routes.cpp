@@ -8,42 +8,34 @@
 
 namespace bandsaw::coordinator {
 
-void add_page(HttpServer& server) {
+void add_page(Router& router) {
   for (const PageFile& file : page_files()) {
-    const auto send = [&file](const httplib::Request&, httplib::Response& response) {
-      response.set_content(file.bytes.data(), file.bytes.size(), std::string(file.type));
-    };
-    if (file.name == "index.html") {
-      server.Get("/", send);
-    } else {
-      server.Get(absl::StrCat("/", std::string(file.name)), send);
-    }
+    router.get(file.name == "index.html" ? "/" : absl::StrCat("/", file.name),
+               [&file](const HttpRequest&) {
+                 return HttpReply{.type = std::string(file.type), .bytes = file.bytes};
+               });
   }
 }
 
-void add_login(HttpServer& server, Access& access) {
-  server.Get("/api/login", [&access](const httplib::Request& request, httplib::Response& response) {
+void add_login(Router& router, Access& access) {
+  router.get("/api/login", [&access](const HttpRequest& request) {
     web::LoginState state;
     state.set_logged_in(access.logged_in(request));
-    reply(response, state);
+    return reply(state);
   });
-  server.Post("/api/login", [&access](const httplib::Request& request, httplib::Response& response,
-                                      const httplib::ContentReader& body) {
+  router.post("/api/login", [&access](const HttpRequest& request, const HttpBody& body) {
     web::Login login;
+    HttpReply done = reply(web::Login());
     absl::Status status = read_json(body, login);
     if (status.ok()) {
-      status = access.log_in(request, login.secret(), response);
+      status = access.log_in(request, login.secret(), done);
     }
-    if (status.ok()) {
-      reply(response, web::Login());
-    } else {
-      refuse(response, status);
-    }
+    return status.ok() ? done : refuse(status);
   });
-  server.Post("/api/logout", [&access](const httplib::Request& request, httplib::Response& response,
-                                       const httplib::ContentReader&) {
-    access.log_out(request, response);
-    reply(response, web::Login());
+  router.post("/api/logout", [&access](const HttpRequest& request, const HttpBody&) {
+    HttpReply done = reply(web::Login());
+    access.log_out(request, done);
+    return done;
   });
 }
 

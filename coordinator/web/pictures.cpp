@@ -1,6 +1,8 @@
 #include "coordinator/web/pictures.h"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "coordinator/engine/clock.h"
 #include "coordinator/rpc/picture.h"
@@ -12,11 +14,23 @@ namespace {
 constexpr double kFresh_s = 0.9;
 constexpr std::size_t kMostBytes = 64 << 20;
 
-absl::StatusOr<Pictures::Bytes> encoded(const Image& image, ImageFormat format,
-                                        const Display& display) {
-  ASSIGN_OR_RETURN(const std::vector<std::byte> bytes, encode_image(image, format, display));
-  return std::make_shared<const std::string>(reinterpret_cast<const char*>(bytes.data()),
-                                             bytes.size());
+/// A file, and its bytes of Engine::images.
+struct HeldFile {
+  std::string bytes;
+  MemoryBudget::Share share;
+};
+
+/// The image as a file, which takes its place in memory. (While it is encoded both are there: that
+/// is one at a time.)
+absl::StatusOr<Pictures::Bytes> encoded(HeldImage image, ImageFormat format) {
+  ASSIGN_OR_RETURN(const std::vector<std::byte> bytes,
+                   encode_image(image.result.image, format, image.result.display));
+  image.result = {};
+  image.share.resize(bytes.size());
+  const auto file = std::make_shared<const HeldFile>(
+      HeldFile{std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()),
+               std::move(image.share)});
+  return Pictures::Bytes(file, &file->bytes);
 }
 
 }  // namespace
@@ -34,10 +48,9 @@ absl::StatusOr<Pictures::Bytes> Pictures::preview(JobId id, std::uint32_t most_s
       return old.png;
     }
   }
-  const absl::StatusOr<StoredResult> picture = picture_of(engine_, job, most_side);
+  absl::StatusOr<HeldImage> picture = picture_of(engine_, job, most_side);
   const absl::StatusOr<Bytes> png =
-      picture.ok() ? encoded(picture->image, ImageFormat::kPng, picture->display)
-                   : picture.status();
+      picture.ok() ? encoded(*std::move(picture), ImageFormat::kPng) : picture.status();
   if (!png.ok()) {
     // Between the last band and the result on disk there is nothing newer than what was shown.
     return found != made_.end() ? absl::StatusOr<Bytes>(found->second.png) : png;
@@ -65,15 +78,15 @@ void Pictures::keep(const Key& key, Made made) {
 
 absl::StatusOr<Pictures::Bytes> Pictures::image(JobId job, ImageFormat format) {
   MutexLock lock(making_);
-  ASSIGN_OR_RETURN(const StoredResult result, result_of(engine_, job));
-  return encoded(result.image, format, result.display);
+  ASSIGN_OR_RETURN(HeldImage image, result_of(engine_, job));
+  return encoded(std::move(image), format);
 }
 
 absl::StatusOr<Pictures::Bytes> Pictures::report(JobId job, const TellReport& tell) {
   ASSIGN_OR_RETURN(const JobView view, look_at(engine_, job));
   MutexLock lock(making_);
-  ASSIGN_OR_RETURN(const StoredResult result, result_of(engine_, job));
-  return std::make_shared<const std::string>(tell(view, result.image));
+  ASSIGN_OR_RETURN(const HeldImage image, result_of(engine_, job));
+  return std::make_shared<const std::string>(tell(view, image.result.image));
 }
 
 }  // namespace bandsaw::coordinator

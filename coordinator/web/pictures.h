@@ -29,7 +29,8 @@ class Pictures {
   explicit Pictures(Engine& engine) : engine_(engine) {}
 
   /// A PNG of at most about `most_side` pixels a side of what is there of the job: of at most a
-  /// second ago, or of the finished image. NOT_FOUND: no such job, or nothing of it is there.
+  /// second ago, or of the finished image. NOT_FOUND: no such job, or nothing of it is there. Here
+  /// and below, RESOURCE_EXHAUSTED: as of picture_of (coordinator/rpc/picture.h).
   absl::StatusOr<Bytes> preview(JobId job, std::uint32_t most_side) EXCLUDES(making_);
   /// The finished image. Errors as Engine::result.
   absl::StatusOr<Bytes> image(JobId job, ImageFormat format) EXCLUDES(making_);

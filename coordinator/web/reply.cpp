@@ -2,11 +2,11 @@
 
 #include <google/protobuf/util/json_util.h>
 
-#include <algorithm>
-#include <utility>
+#include <string>
 
 #include "absl/strings/str_cat.h"
 #include "proto/web.pb.h"
+#include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -47,45 +47,32 @@ std::string json_of(const google::protobuf::Message& message) {
 
 }  // namespace
 
-void reply(httplib::Response& response, const google::protobuf::Message& message) {
-  response.set_content(json_of(message), "application/json");
+HttpReply reply(const google::protobuf::Message& message) {
+  return text_reply(json_of(message), "application/json");
 }
 
-void refuse(httplib::Response& response, const absl::Status& status) {
+HttpReply refuse(const absl::Status& status) {
   web::Problem problem;
   problem.set_error(std::string(status.message()));
-  response.status = http_status(status.code());
-  reply(response, problem);
+  HttpReply refusal = reply(problem);
+  refusal.status = http_status(status.code());
+  return refusal;
 }
 
-void send_bytes(httplib::Response& response, absl::string_view bytes, const char* type,
-                std::shared_ptr<const void> held) {
-  response.set_content_provider(
-      bytes.size(), type,
-      [bytes, held = std::move(held)](std::size_t offset, std::size_t length,
-                                      httplib::DataSink& sink) {
-        constexpr std::size_t kPiece = 1 << 20;
-        if (offset >= bytes.size()) {
-          return false;
-        }
-        return sink.write(bytes.data() + offset, std::min({length, bytes.size() - offset, kPiece}));
-      });
-}
-
-absl::Status read_json(const httplib::ContentReader& reader, google::protobuf::Message& message) {
-  std::string body;
-  const bool read = reader([&](const char* data, std::size_t size) {
-    if (size > kMostJson - body.size()) {
-      return false;
+absl::Status read_json(const HttpBody& body, google::protobuf::Message& message) {
+  std::string json;
+  while (true) {
+    ASSIGN_OR_RETURN(const absl::string_view bytes, body());
+    if (bytes.empty()) {
+      break;
     }
-    body.append(data, size);
-    return true;
-  });
-  if (!read) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("the body must come whole and have at most ", kMostJson, " bytes"));
+    if (bytes.size() > kMaxJsonBytes - json.size()) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("the body must have at most ", kMaxJsonBytes, " bytes"));
+    }
+    json.append(bytes.data(), bytes.size());
   }
-  const auto status = google::protobuf::util::JsonStringToMessage(body, &message);
+  const auto status = google::protobuf::util::JsonStringToMessage(json, &message);
   return status.ok() ? absl::OkStatus()
                      : absl::InvalidArgumentError(
                            absl::StrCat("the body is not the JSON that is expected here: ",

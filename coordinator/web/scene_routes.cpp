@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kMostScene = 512ull << 20;
+constexpr std::uint64_t kMaxSceneBytes = 512ull << 20;
 
 /// A folder of its own for one file, removed with it: the importer reads below it and nowhere else.
 class Upload {
@@ -50,23 +50,9 @@ class Upload {
     file_ = std::fopen(path_.c_str(), "wb");
     return file_ != nullptr ? absl::OkStatus() : errno_status(errno, "cannot keep the scene");
   }
-  absl::Status receive(const httplib::ContentReader& body) {
-    std::uint64_t size = 0;
-    absl::Status status;
-    const bool read = body([&](const char* data, std::size_t count) {
-      size += count;
-      if (size > kMostScene) {
-        status =
-            absl::InvalidArgumentError(absl::StrCat("a scene has at most ", kMostScene >> 20,
-                                                    " MiB here; bandsaw submit takes larger ones"));
-      } else if (std::fwrite(data, 1, count, file_) != count) {
-        status = errno_status(errno, "cannot keep the scene");
-      }
-      return status.ok();
-    });
-    if (status.ok() && !read) {
-      status = absl::InvalidArgumentError("the scene did not come whole");
-    }
+  /// Writes the whole body to the file, as it comes, and closes the file.
+  absl::Status receive(const HttpBody& body) {
+    absl::Status status = copy(body);
     if (std::fclose(std::exchange(file_, nullptr)) != 0 && status.ok()) {
       status = errno_status(errno, "cannot keep the scene");
     }
@@ -75,6 +61,25 @@ class Upload {
   const std::string& path() const { return path_; }
 
  private:
+  absl::Status copy(const HttpBody& body) const {
+    std::uint64_t left = kMaxSceneBytes;
+    while (true) {
+      ASSIGN_OR_RETURN(const absl::string_view bytes, body());
+      if (bytes.empty()) {
+        return absl::OkStatus();
+      }
+      if (bytes.size() > left) {
+        return absl::InvalidArgumentError(
+            absl::StrCat("a scene has at most ", kMaxSceneBytes >> 20,
+                         " MiB here; bandsaw submit takes larger ones"));
+      }
+      left -= bytes.size();
+      if (std::fwrite(bytes.data(), 1, bytes.size(), file_) != bytes.size()) {
+        return errno_status(errno, "cannot keep the scene");
+      }
+    }
+  }
+
   std::string folder_;
   std::string path_;
   std::FILE* file_ = nullptr;
@@ -99,20 +104,20 @@ absl::StatusOr<std::string> file_name(const std::string& given) {
       "bandsaw submit");
 }
 
-absl::StatusOr<SceneWish> wanted_of(const httplib::Request& request) {
+absl::StatusOr<SceneWish> wanted_of(const HttpRequest& request) {
   SceneWish wanted;
-  const std::string width = request.get_param_value("width");
+  const std::string width = request.parameter("width");
   if (!width.empty() && (!absl::SimpleAtoi(width, &wanted.width) || wanted.width > kMaxSide)) {
     return absl::InvalidArgumentError("width: must be a number of pixels");
   }
-  if (const std::string error = request.get_param_value("error"); !error.empty()) {
+  if (const std::string error = request.parameter("error"); !error.empty()) {
     StopAtError stop;
     if (!absl::SimpleAtod(error, &stop.relative_rmse) || !(stop.relative_rmse > 0) ||
         stop.relative_rmse > 1) {
       return absl::InvalidArgumentError("error: must be in (0, 1]");
     }
     wanted.stop = stop;
-  } else if (const std::string text = request.get_param_value("samples"); !text.empty()) {
+  } else if (const std::string text = request.parameter("samples"); !text.empty()) {
     StopAtSamples stop;
     if (!absl::SimpleAtoi(text, &stop.samples) || stop.samples < 1 || stop.samples > kMaxSamples) {
       return absl::InvalidArgumentError("samples: must be a number of samples a pixel");
@@ -122,9 +127,9 @@ absl::StatusOr<SceneWish> wanted_of(const httplib::Request& request) {
   return wanted;
 }
 
-absl::StatusOr<web::Submitted> take_scene(Scenes& scenes, const httplib::Request& request,
-                                          const httplib::ContentReader& body) {
-  ASSIGN_OR_RETURN(const std::string name, file_name(request.get_param_value("name")));
+absl::StatusOr<web::Submitted> take_scene(Scenes& scenes, const HttpRequest& request,
+                                          const HttpBody& body) {
+  ASSIGN_OR_RETURN(const std::string name, file_name(request.parameter("name")));
   ASSIGN_OR_RETURN(const SceneWish wanted, wanted_of(request));
   Upload upload;
   RETURN_IF_ERROR(upload.open(name));
@@ -134,10 +139,9 @@ absl::StatusOr<web::Submitted> take_scene(Scenes& scenes, const httplib::Request
 
 }  // namespace
 
-void add_scenes(HttpServer& server, Scenes& scenes) {
-  server.Post("/api/scenes", [&scenes](const httplib::Request& request, httplib::Response& response,
-                                       const httplib::ContentReader& body) {
-    answer(response, take_scene(scenes, request, body));
+void add_scenes(Router& router, Scenes& scenes) {
+  router.post("/api/scenes", [&scenes](const HttpRequest& request, const HttpBody& body) {
+    return answer(take_scene(scenes, request, body));
   });
 }
 

@@ -1,4 +1,4 @@
-// The worker's program, for machines that have none yet.
+// Hands the worker's program to machines that have none yet.
 
 #include <algorithm>
 
@@ -22,31 +22,30 @@ absl::Status no_program(const WorkerPrograms& programs) {
                    "says, and start the coordinator again"));
 }
 
-void send_program(httplib::Response& response, const WorkerPrograms& programs,
-                  std::optional<Machine> machine) {
+/// The program for `machine`; std::nullopt is an unknown architecture. 404 if there is none.
+HttpReply program_for(const WorkerPrograms& programs, std::optional<Machine> machine) {
   const auto found = std::find_if(programs.begin(), programs.end(),
                                   [&](const WorkerProgram& one) { return one.machine == machine; });
   if (found == programs.end()) {
-    return refuse(response, no_program(programs));
+    return refuse(no_program(programs));
   }
-  response.set_header("X-Bandsaw-Version", found->version);
+  HttpReply reply{.type = "application/octet-stream", .bytes = found->bytes};
+  reply.headers.emplace_back("X-Bandsaw-Version", found->version);
   // RFC 9530, section 3.
-  response.set_header("Repr-Digest",
-                      absl::StrCat("sha-256=:", absl::Base64Escape(found->digest.raw()), ":"));
-  send_bytes(response, found->bytes, "application/octet-stream", nullptr);
+  reply.headers.emplace_back(
+      "Repr-Digest", absl::StrCat("sha-256=:", absl::Base64Escape(found->digest.raw()), ":"));
+  return reply;
 }
 
 }  // namespace
 
-void add_worker_programs(HttpServer& server, const WorkerPrograms& programs) {
+void add_worker_programs(Router& router, const WorkerPrograms& programs) {
   const std::string path = absl::StrCat("/", kWorkerProgram);
-  server.Get(path, [&programs](const httplib::Request&, httplib::Response& response) {
-    send_program(response, programs, kThisMachine);
+  router.get(path,
+             [&programs](const HttpRequest&) { return program_for(programs, kThisMachine); });
+  router.get(path + "/*", [&programs](const HttpRequest& request) {
+    return program_for(programs, machine_named(request.captured));
   });
-  server.Get(path + R"(/(\w+))",
-             [&programs](const httplib::Request& request, httplib::Response& response) {
-               send_program(response, programs, machine_named(request.matches[1].str()));
-             });
 }
 
 }  // namespace bandsaw::coordinator

@@ -1,45 +1,90 @@
-// A request of a browser: lines "Name: value" up to an empty one, then the body. What cpp-httplib
-// makes of bytes is its own; what we make of requests is tried.
+// A request of a browser, twice: the input as it comes over a connection, and as lines "Name:
+// value" up to an empty one, then the body, so that little has to be guessed to get to the
+// handlers.
 
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
 #include <sstream>
 
 #include "coordinator/web/access.h"
+#include "coordinator/web/exchange.h"
 #include "coordinator/web/reply.h"
 #include "proto/link/identity.h"
 #include "proto/web.pb.h"
+#include "renderlib/base/check.h"
 #include "tests/fuzz/fuzz.h"
 
-void bandsaw::fuzz::run(absl::Span<const std::uint8_t> input) {
-  static coordinator::Access access({.key_pem = "",
-                                     .certificate_pem = "",
-                                     .certificate_digest = {},
-                                     .worker_secret = std::string(22, 'w'),
-                                     .farm_secret = std::string(22, 'f')},
-                                    true);
-  std::istringstream lines(text(input));
-  httplib::Request request;
+namespace {
+
+using namespace bandsaw::coordinator;
+
+HttpReply answer(Access& access, const HttpRequest& request, const HttpBody& body) {
+  access.check(request).IgnoreError();
+  access.logged_in(request);
+  is_own_host(request.header("Host"), "desk");
+  bandsaw::web::Login login;
+  HttpReply done = text_reply("0123456789", "text/plain");
+  if (const absl::Status status = read_json(body, login); !status.ok()) {
+    return refuse(status);
+  }
+  access.log_in(request, login.secret(), done).IgnoreError();
+  return done;
+}
+
+void over_a_connection(Access& access, absl::Span<const std::uint8_t> input) {
+  std::array<int, 2> sockets{};
+  BANDSAW_CHECK(socketpair(AF_UNIX, SOCK_STREAM, 0, sockets.data()) == 0, "socketpair");
+  send(sockets[0], input.data(), input.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+  shutdown(sockets[0], SHUT_WR);
+  {
+    Connection connection(sockets[1], nullptr);
+    exchange(connection,
+             [&](const HttpRequest& request, const HttpBody& body) {
+               return answer(access, request, body);
+             },
+             {{"X-Content-Type-Options", "nosniff"}});
+  }
+  close(sockets[1]);
+  close(sockets[0]);
+}
+
+void as_lines(Access& access, absl::Span<const std::uint8_t> input) {
+  std::istringstream lines(bandsaw::fuzz::text(input));
+  HttpRequest request;
   request.method = "POST";
   std::string line;
   while (std::getline(lines, line) && !line.empty()) {
     const std::size_t colon = line.find(": ");
     if (colon == std::string::npos) {
-      request.path = line;
+      parse_target(line, request);
     } else {
-      request.headers.emplace(line.substr(0, colon), line.substr(colon + 2));
+      request.headers.emplace_back(line.substr(0, colon), line.substr(colon + 2));
     }
   }
   std::string body;
   std::getline(lines, body, '\0');
-  access.check(request).IgnoreError();
-  access.logged_in(request);
-  coordinator::is_own_host(request.get_header_value("Host"), "desk");
-  httplib::Response response;
-  access.log_in(request, body, response).IgnoreError();
-  const httplib::ContentReader reader(
-      [&](const httplib::ContentReceiver& take) { return take(body.data(), body.size()); },
-      [](const httplib::MultipartContentHeader&, const httplib::ContentReceiver&) {
-        return false;
-      });
-  web::Login login;
-  coordinator::read_json(reader, login).IgnoreError();
+  bool given = false;
+  const HttpBody read = [&]() -> absl::StatusOr<absl::string_view> {
+    return std::exchange(given, true) ? absl::string_view() : absl::string_view(body);
+  };
+  HttpReply reply = answer(access, request, read);
+  request.method = "GET";
+  const std::size_t size = reply.bytes.size();
+  reply = with_range(request, std::move(reply));
+  BANDSAW_CHECK(reply.bytes.size() <= size, "a range is a part of the answer");
+}
+
+}  // namespace
+
+void bandsaw::fuzz::run(absl::Span<const std::uint8_t> input) {
+  static Access access({.key_pem = "",
+                        .certificate_pem = "",
+                        .certificate_digest = {},
+                        .worker_secret = std::string(22, 'w'),
+                        .farm_secret = std::string(22, 'f')},
+                       true);
+  as_lines(access, input);
+  over_a_connection(access, input);
 }

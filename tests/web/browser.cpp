@@ -9,6 +9,7 @@
 #include "absl/strings/escaping.h"
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/check.h"
+#include "tests/support/http_client.h"
 
 namespace bandsaw::test {
 namespace {
@@ -61,8 +62,7 @@ std::string chromedriver_program() {
 }
 
 Browser::Browser(const BrowserOptions& options) : driver_(start_driver()) {
-  client_ = std::make_unique<httplib::Client>("127.0.0.1", port_of(driver_));
-  client_->set_read_timeout(240);
+  port_ = port_of(driver_);
   const std::string phone =
       options.phone ? absl::StrCat(R"(, "mobileEmulation": {"deviceMetrics": {"width": )",
                                    options.width, R"(, "height": )", options.height,
@@ -84,14 +84,17 @@ Browser::Browser(const BrowserOptions& options) : driver_(start_driver()) {
                            options.dark ? "dark" : "light", R"("}]}})")));
 }
 
-Browser::~Browser() { client_->Delete(session_); }
+Browser::~Browser() { http_call(port_, {.method = "DELETE", .target = session_}); }
 
 Value Browser::post(const std::string& path, const Struct& body) {
   std::string json;
   BANDSAW_CHECK(google::protobuf::util::MessageToJsonString(body, &json).ok(), "it is an object");
-  const auto result = client_->Post(path, json, "application/json");
+  const auto result = http_call(port_, {.method = "POST",
+                                        .target = path,
+                                        .headers = {{"Content-Type", "application/json"}},
+                                        .body = json});
   if (!result) {
-    ADD_FAILURE() << path << ": " << httplib::to_string(result.error());
+    ADD_FAILURE() << path << ": the driver gave no answer";
     return {};
   }
   Struct answer;
@@ -141,7 +144,7 @@ void Browser::type(const std::string& selector, const std::string& keys) {
 }
 
 void Browser::screenshot(const std::string& path) {
-  const auto result = client_->Get(session_ + "/screenshot");
+  const auto result = http_call(port_, {.target = session_ + "/screenshot"});
   ASSERT_TRUE(result);
   Struct answer;
   ASSERT_TRUE(google::protobuf::util::JsonStringToMessage(result->body, &answer).ok());

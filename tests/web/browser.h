@@ -3,9 +3,7 @@
 // Chromium without a window, driven through chromedriver by the WebDriver protocol (W3C).
 
 #include <google/protobuf/struct.pb.h>
-#include <httplib.h>
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -51,7 +49,7 @@ class Browser {
   std::string element(const std::string& selector);
 
   Process driver_;
-  std::unique_ptr<httplib::Client> client_;
+  int port_ = 0;         ///< of the driver
   std::string session_;  ///< "/session/…"
 };
 

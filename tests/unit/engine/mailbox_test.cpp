@@ -61,17 +61,30 @@ TEST(Answer, IsGivenOnce) {
   EXPECT_EQ(calls, 1);
 }
 
-TEST(BandBudget, IsGivenBackWhenAShareEnds) {
-  BandBudget budget(100);
-  std::optional<BandBudget::Share> most = budget.take(80);
+TEST(MemoryBudget, IsGivenBackWhenAShareEnds) {
+  MemoryBudget budget(100);
+  std::optional<MemoryBudget::Share> most = budget.take(80);
   ASSERT_TRUE(most);
   EXPECT_FALSE(budget.take(30));
   EXPECT_TRUE(budget.take(20));
-  BandBudget::Share moved = *std::move(most);
+  MemoryBudget::Share moved = *std::move(most);
   most.reset();
   EXPECT_FALSE(budget.take(30)) << "it moved, it did not end";
   moved = {};
   EXPECT_TRUE(budget.take(100));
+}
+
+TEST(MemoryBudget, FollowsTheSizeOfAShare) {
+  MemoryBudget budget(100);
+  std::optional<MemoryBudget::Share> share = budget.take(80);
+  ASSERT_TRUE(share);
+  share->resize(30);
+  EXPECT_EQ(budget.left(), 70);
+  share->resize(120);
+  EXPECT_FALSE(budget.take(1));
+  MemoryBudget::Share().resize(50);  // of no budget
+  share.reset();
+  EXPECT_EQ(budget.left(), 100);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "tests/unit/rpc/farm.h"
 
+#include "coordinator/engine/ask.h"
 #include "renderlib/base/check.h"
 #include "tests/support/scenes.h"
 
@@ -117,6 +118,46 @@ farm::SubmitRequest FarmTest::cornell_request(const wire::Digest& manifest) cons
   request.mutable_settings()->set_seed(5);
   request.mutable_stop()->set_samples(40);
   return request;
+}
+
+std::uint64_t FarmTest::submit_job(std::uint32_t side) {
+  farm::SubmitRequest request = cornell_request(put_cornell_box());
+  request.set_request_id("request-of-a-job-" + std::to_string(++submitted_));
+  request.mutable_settings()->set_width(side);
+  request.mutable_settings()->set_height(side);
+  request.mutable_stop()->set_samples(16);
+  farm::SubmitReply reply;
+  const grpc::Status status = people()->Submit(context(link::Role::kFarm).get(), request, &reply);
+  EXPECT_TRUE(status.ok()) << status.error_message();
+  return reply.job();
+}
+
+void FarmTest::put_rows(std::uint64_t job, std::uint32_t side, std::uint32_t first,
+                        std::uint32_t last) {
+  const BandPixels pixels{.band = {.samples = {0, 16}, .rows = {first, last}},
+                          .width = side,
+                          .sums = std::vector<double>(std::size_t{side} * (last - first) * 3, 8.0),
+                          .counters = {}};
+  using Put = absl::StatusOr<BandOutcome>;
+  const Put put = ask<Put>(
+      [&](auto answer) { engine_->put_band(job, 0, std::string(32, 'a'), pixels, 0, 0, answer); });
+  ASSERT_TRUE(put.ok()) << put.status();
+  EXPECT_EQ(*put, BandOutcome::kStored);
+}
+
+std::uint64_t FarmTest::finish_job(std::uint32_t side) {
+  const std::uint64_t job = submit_job(side);
+  put_rows(job, side, 0, side);
+  const auto call = context(link::Role::kFarm);
+  farm::WatchRequest request;
+  request.set_job(job);
+  const auto watch = people()->Watch(call.get(), request);
+  farm::JobStatus state;
+  while (watch->Read(&state)) {
+  }
+  EXPECT_TRUE(watch->Finish().ok());
+  EXPECT_EQ(state.state(), farm::JOB_STATE_DONE) << state.reason();
+  return job;
 }
 
 }  // namespace bandsaw::coordinator

@@ -47,11 +47,21 @@ class FarmTest : public ::testing::Test {
   wire::Digest put_cornell_box();
   farm::SubmitRequest cornell_request(const wire::Digest& manifest) const;
 
+  /// A job of side x side pixels and 16 samples.
+  std::uint64_t submit_job(std::uint32_t side);
+  /// Brings all samples of these rows as a worker would; waits until they are stored.
+  void put_rows(std::uint64_t job, std::uint32_t side, std::uint32_t first, std::uint32_t last);
+  /// A job that is done.
+  std::uint64_t finish_job(std::uint32_t side);
+
   test::TempDir folder_;
   link::Identity identity_;
   std::unique_ptr<Engine> engine_;
   std::unique_ptr<Server> server_;
   std::shared_ptr<grpc::Channel> channel_;
+
+ private:
+  int submitted_ = 0;
 };
 
 }  // namespace bandsaw::coordinator

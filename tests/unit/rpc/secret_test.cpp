@@ -2,7 +2,11 @@
 
 #include <gmock/gmock.h>
 
+#include <filesystem>
+#include <thread>
+
 #include "proto/wire/limits.h"
+#include "tests/support/pattern.h"
 #include "tests/unit/rpc/farm.h"
 
 namespace bandsaw::coordinator {
@@ -42,6 +46,17 @@ class SecretTest : public FarmTest {
     return people()->ListJobs(&call, {}, &reply);
   }
 
+  static std::vector<farm::BlobChunk> chunks_of(const std::string& bytes) {
+    std::vector<farm::BlobChunk> chunks;
+    for (std::size_t at = 0; at < bytes.size(); at += wire::kChunkBytes) {
+      farm::BlobChunk chunk = chunks.empty() ? whole(bytes) : farm::BlobChunk();
+      chunk.set_offset(at);
+      chunk.set_data(bytes.substr(at, wire::kChunkBytes));
+      chunks.push_back(chunk);
+    }
+    return chunks;
+  }
+
   link::Identity renewed_;
 };
 
@@ -75,6 +90,74 @@ TEST_F(SecretTest, NobodyGoesOnSendingBandsWithTheOldOne) {
   ASSERT_TRUE(rotate(farm::SECRET_ROLE_WORKER, &reply).ok());
   EXPECT_FALSE(stream->Read(&outcome));
   EXPECT_EQ(stream->Finish().error_code(), StatusCode::UNAUTHENTICATED);
+}
+
+TEST_F(SecretTest, NobodyGoesOnDownloadingASceneWithTheOldOne) {
+  const std::string scene = test::pattern(16 << 20);
+  ASSERT_TRUE(put_blob(chunks_of(scene)).ok());
+  const auto call = context(link::Role::kWorker);
+  farm::GetBlobRequest request;
+  request.set_sha256(wire::sha256(scene).raw());
+  const auto reader = work()->GetBlob(call.get(), request);
+  farm::BlobChunk chunk;
+  ASSERT_TRUE(reader->Read(&chunk));
+  farm::RotateSecretReply reply;
+  ASSERT_TRUE(rotate(farm::SECRET_ROLE_WORKER, &reply).ok());
+  while (reader->Read(&chunk)) {
+  }
+  EXPECT_EQ(reader->Finish().error_code(), StatusCode::UNAUTHENTICATED);
+}
+
+TEST_F(SecretTest, NobodyGoesOnSendingASceneWithTheOldOne) {
+  const std::string scene = test::pattern(3 << 20);
+  const auto call = context(link::Role::kFarm);
+  farm::PutBlobReply put;
+  const auto writer = people()->PutBlob(call.get(), &put);
+  ASSERT_TRUE(writer->Write(chunks_of(scene)[0]));
+  const wire::Digest digest = wire::sha256(scene);
+  const std::string part = folder_ / ("data/blobs/incoming/" + digest.hex() + ".part");
+  std::error_code error;
+  while (std::filesystem::file_size(part, error) != wire::kChunkBytes || error) {
+    std::this_thread::yield();
+  }
+  farm::RotateSecretReply reply;
+  ASSERT_TRUE(rotate(farm::SECRET_ROLE_FARM, &reply).ok());
+  EXPECT_EQ(writer->Finish().error_code(), StatusCode::UNAUTHENTICATED);
+  while (engine_->partial_blob(digest) == 0) {  // what came is kept for who has the new one
+    std::this_thread::yield();
+  }
+}
+
+TEST_F(SecretTest, NobodyGoesOnDownloadingAnImageWithTheOldOne) {
+  const std::uint64_t job = finish_job(1024);
+  const std::int64_t all = engine_->images().left();
+  const auto call = context(link::Role::kFarm);
+  farm::GetResultRequest request;
+  request.set_job(job);
+  const auto reader = people()->GetResult(call.get(), request);
+  farm::ResultChunk chunk;
+  ASSERT_TRUE(reader->Read(&chunk));
+  farm::RotateSecretReply reply;
+  ASSERT_TRUE(rotate(farm::SECRET_ROLE_FARM, &reply).ok());
+  EXPECT_EQ(engine_->images().left(), all) << "whether it reads on or not";
+  while (reader->Read(&chunk)) {
+  }
+  EXPECT_EQ(reader->Finish().error_code(), StatusCode::UNAUTHENTICATED);
+}
+
+TEST_F(SecretTest, ADownloadWithTheOtherSecretGoesOn) {
+  const std::uint64_t job = finish_job(1024);
+  const auto call = context(link::Role::kFarm);
+  farm::GetResultRequest request;
+  request.set_job(job);
+  const auto reader = people()->GetResult(call.get(), request);
+  farm::ResultChunk chunk;
+  ASSERT_TRUE(reader->Read(&chunk));
+  farm::RotateSecretReply reply;
+  ASSERT_TRUE(rotate(farm::SECRET_ROLE_WORKER, &reply).ok());
+  while (reader->Read(&chunk)) {
+  }
+  EXPECT_TRUE(reader->Finish().ok());
 }
 
 TEST_F(SecretTest, ARoleThatIsNoneIsRefused) {

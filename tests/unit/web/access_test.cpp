@@ -13,7 +13,9 @@ namespace {
 
 using AccessTest = WebTest;
 
-int status_of(const httplib::Result& result) { return result ? result->status : -1; }
+int status_of(const std::optional<test::HttpAnswer>& result) {
+  return result ? result->status : -1;
+}
 
 TEST(OwnHost, IsANumberLocalhostOrTheMachine) {
   for (const char* host : {"127.0.0.1", "127.0.0.1:8787", "192.168.1.5:80", "[::1]:8787", "[::1]",
@@ -50,7 +52,7 @@ TEST_F(AccessTest, TheSecretOrTheJoinStringLogsIn) {
   join.secret = identity_.farm_secret;
   const auto result = post("/api/login", "{\"secret\": \" " + join.text() + "\\n\"}");
   EXPECT_EQ(status_of(result), 200);
-  const std::string cookie = result->get_header_value("Set-Cookie");
+  const std::string cookie = result->header("Set-Cookie");
   EXPECT_NE(cookie.find("HttpOnly"), std::string::npos);
   EXPECT_NE(cookie.find("SameSite=Strict"), std::string::npos);
   EXPECT_EQ(cookie.find(identity_.farm_secret), std::string::npos);
@@ -68,15 +70,15 @@ TEST_F(AccessTest, AWrongSecretAndTheWorkersDoNot) {
 
 TEST_F(AccessTest, ManyWrongSecretsAreTurnedAway) {
   Access access(identity_, false);
-  httplib::Request request;
-  request.remote_addr = "10.0.0.7";
-  httplib::Response response;
+  HttpRequest request;
+  request.remote_address = "10.0.0.7";
+  HttpReply reply;
   for (std::size_t i = 0; i < wire::kWrongSecretsPerMinute; ++i) {
-    ASSERT_TRUE(absl::IsUnauthenticated(access.log_in(request, "wrong", response)));
+    ASSERT_TRUE(absl::IsUnauthenticated(access.log_in(request, "wrong", reply)));
   }
-  EXPECT_TRUE(absl::IsResourceExhausted(access.log_in(request, "wrong", response)));
+  EXPECT_TRUE(absl::IsResourceExhausted(access.log_in(request, "wrong", reply)));
   // A whole office may be behind this address.
-  EXPECT_TRUE(access.log_in(request, identity_.farm_secret, response).ok());
+  EXPECT_TRUE(access.log_in(request, identity_.farm_secret, reply).ok());
 }
 
 TEST_F(AccessTest, ProgramsSendTheSecretItself) {
@@ -108,6 +110,33 @@ TEST_F(AccessTest, ANewSecretVoidsLogins) {
   renewed.farm_secret = "another22characters000";
   dashboard_->renew(renewed);
   EXPECT_EQ(status_of(get("/api/farm")), 401);
+}
+
+// An upload is let in by the login that it began with; the new secret ends it without an answer.
+TEST_F(AccessTest, ANewSecretCutsWhatIsUnderWay) {
+  log_in();
+  const int one = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(static_cast<std::uint16_t>(dashboard_->port()));
+  inet_pton(AF_INET, "127.0.0.1", &address.sin_addr);
+  ASSERT_EQ(connect(one, reinterpret_cast<sockaddr*>(&address), sizeof(address)), 0);
+  const std::string head =
+      "POST /api/scenes?name=a.glb HTTP/1.1\r\nHost: 127.0.0.1\r\nX-Bandsaw: 1\r\nCookie: " +
+      headers_.find("Cookie")->second + "\r\nExpect: 100-continue\r\nContent-Length: 1000\r\n\r\n";
+  ASSERT_EQ(send(one, head.data(), head.size(), MSG_NOSIGNAL), static_cast<ssize_t>(head.size()));
+  std::string told(25, '\0');  // "HTTP/1.1 100 Continue" and the empty line: it is let in
+  ASSERT_EQ(recv(one, told.data(), told.size(), MSG_WAITALL), 25);
+  ASSERT_EQ(told.substr(0, 12), "HTTP/1.1 100");
+  link::Identity renewed = identity_;
+  renewed.worker_secret = "another22characters000";
+  dashboard_->renew(renewed);
+  char answer = 0;
+  EXPECT_EQ(recv(one, &answer, 1, MSG_DONTWAIT), -1) << "the workers' secret is not its own";
+  renewed.farm_secret = "another22characters000";
+  dashboard_->renew(renewed);
+  EXPECT_EQ(recv(one, &answer, 1, 0), 0) << answer;
+  close(one);
 }
 
 // Each would hold a thread for its whole patience; all together are as many as there are threads.

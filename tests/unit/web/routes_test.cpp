@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <thread>
+
 #include "absl/strings/escaping.h"
 #include "coordinator/web/metrics.h"
 #include "tests/unit/web/web_farm.h"
@@ -13,9 +15,7 @@ using ::testing::StartsWith;
 class RoutesTest : public WebTest {
  protected:
   RoutesTest() { log_in(); }
-  std::string error_of(const httplib::Result& result) {
-    return message<web::Problem>(result).error();
-  }
+  std::string error_of(const Answer& result) { return message<web::Problem>(result).error(); }
 };
 
 TEST_F(RoutesTest, AnEmptyFarmIsShown) {
@@ -29,8 +29,8 @@ TEST_F(RoutesTest, ThePageHasItsFilesAndItsRules) {
   const auto page = get("/");
   ASSERT_TRUE(page);
   EXPECT_THAT(page->body, StartsWith("<!doctype html>"));
-  EXPECT_THAT(page->get_header_value("Content-Security-Policy"), HasSubstr("default-src 'none'"));
-  EXPECT_EQ(get("/main.js")->get_header_value("Content-Type"), "text/javascript; charset=utf-8");
+  EXPECT_THAT(page->header("Content-Security-Policy"), HasSubstr("default-src 'none'"));
+  EXPECT_EQ(get("/main.js")->header("Content-Type"), "text/javascript; charset=utf-8");
   EXPECT_EQ(get("/nothing.js")->status, 404);
 }
 
@@ -40,9 +40,9 @@ TEST_F(RoutesTest, TheWorkersProgramIsHandedOutWithVersionAndDigest) {
   ASSERT_TRUE(got);
   EXPECT_EQ(got->status, 200);
   EXPECT_EQ(got->body, std::string(3 << 20, 'w'));
-  EXPECT_EQ(got->get_header_value("X-Bandsaw-Version"), "1.2.3");
+  EXPECT_EQ(got->header("X-Bandsaw-Version"), "1.2.3");
   const std::string raw = wire::sha256(got->body).raw();
-  EXPECT_EQ(got->get_header_value("Repr-Digest"), "sha-256=:" + absl::Base64Escape(raw) + ":");
+  EXPECT_EQ(got->header("Repr-Digest"), "sha-256=:" + absl::Base64Escape(raw) + ":");
 }
 
 TEST_F(RoutesTest, EachArchitectureHasItsProgram) {
@@ -54,8 +54,8 @@ TEST_F(RoutesTest, EachArchitectureHasItsProgram) {
     const auto got = get("/bandsaw-worker/" + std::string(name));
     ASSERT_TRUE(got);
     EXPECT_EQ(got->body, "o");
-    EXPECT_EQ(got->get_header_value("X-Bandsaw-Version"), "1.2.4");
-    EXPECT_EQ(got->get_header_value("Repr-Digest"),
+    EXPECT_EQ(got->header("X-Bandsaw-Version"), "1.2.4");
+    EXPECT_EQ(got->header("Repr-Digest"),
               "sha-256=:" + absl::Base64Escape(wire::sha256("o").raw()) + ":");
   }
   const auto none = get("/bandsaw-worker/riscv64");
@@ -66,12 +66,13 @@ TEST_F(RoutesTest, EachArchitectureHasItsProgram) {
   EXPECT_EQ(get("/bandsaw-worker/")->status, 404);
 }
 
-// The library passes on whatever a Range header says.
+// Whatever a Range header says, no more than the bytes are sent.
 TEST_F(RoutesTest, RangesEndWithTheBytes) {
   const std::size_t size = 3 << 20;
   headers_ = {{"Range", "bytes=5-9"}};
   const auto part = get("/bandsaw-worker");
   ASSERT_TRUE(part);
+  EXPECT_EQ(part->status, 206);
   EXPECT_EQ(part->body, "wwwww");
   for (const std::string& range :
        {"0-" + std::to_string(size + 200), std::to_string(size) + "-" + std::to_string(size + 9),
@@ -115,7 +116,7 @@ TEST_F(RoutesTest, WhatCannotBeDroppedSaysWhy) {
 
 TEST_F(RoutesTest, AJobIsPausedResumedRankedAndCancelled) {
   const std::string job = "/api/jobs/" + std::to_string(submit_box());
-  const auto state = [&](const httplib::Result& result) {
+  const auto state = [&](const Answer& result) {
     return message<web::Job>(result).status().state();
   };
   EXPECT_EQ(state(post(job + "/pause")), farm::JOB_STATE_PAUSED);
@@ -137,6 +138,32 @@ TEST_F(RoutesTest, WhatIsNotThereIsSaid) {
   EXPECT_EQ(get("/api/jobs/1/image.png")->status, 409);
   EXPECT_EQ(get("/api/jobs/1/report.json")->status, 409);
   EXPECT_EQ(get("/api/jobs/7/report.json")->status, 404);
+}
+
+TEST_F(RoutesTest, AnImageThatFindsNoMemoryIsRefused) {
+  const std::uint64_t job = submit_box();
+  finish(job, 24, 16);
+  const std::string path = "/api/jobs/" + std::to_string(job);
+  const std::int64_t all = engine_->images().left();
+  {
+    const auto others = engine_->images().take(static_cast<std::uint64_t>(all));
+    ASSERT_TRUE(others);
+    for (const char* file : {"/image.png", "/image.exr", "/preview.png", "/report.json"}) {
+      const auto refused = get(path + file);
+      EXPECT_EQ(refused->status, 429) << file;
+      EXPECT_THAT(error_of(refused), HasSubstr("try again when a download has ended")) << file;
+    }
+  }
+  for (const char* file : {"/image.png", "/image.exr", "/report.json"}) {
+    EXPECT_EQ(get(path + file)->status, 200) << file;
+  }
+  while (engine_->images().left() != all) {  // given back when the server has closed it
+    std::this_thread::yield();
+  }
+  const auto preview = get(path + "/preview.png");
+  EXPECT_EQ(preview->status, 200);
+  EXPECT_EQ(engine_->images().left(), all - static_cast<std::int64_t>(preview->body.size()))
+      << "it is kept for the next who asks";
 }
 
 TEST_F(RoutesTest, TheGalleryRendersItsScenes) {

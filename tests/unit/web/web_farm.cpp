@@ -4,9 +4,11 @@
 
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <sstream>
 
 #include "absl/strings/match.h"
+#include "coordinator/engine/ask.h"
 #include "renderlib/base/check.h"
 #include "tests/support/scenes.h"
 
@@ -68,7 +70,6 @@ WebTest::WebTest() : identity_(*link::load_or_make_identity(folder_ / "identity"
   auto dashboard = Dashboard::start(*engine_, identity_, options);
   BANDSAW_CHECK(dashboard.ok(), dashboard.status().ToString().c_str());
   dashboard_ = *std::move(dashboard);
-  client_ = std::make_unique<httplib::Client>(base());
 }
 
 WebTest::~WebTest() {
@@ -76,16 +77,19 @@ WebTest::~WebTest() {
   engine_.reset();
 }
 
-httplib::Result WebTest::get(const std::string& path) { return client_->Get(path, headers_); }
+WebTest::Answer WebTest::get(const std::string& path) {
+  return test::http_call(dashboard_->port(), {.target = path, .headers = headers_});
+}
 
-httplib::Result WebTest::post(const std::string& path, const std::string& body) {
-  return client_->Post(path, headers_, body, "application/json");
+WebTest::Answer WebTest::post(const std::string& path, const std::string& body) {
+  return test::http_call(dashboard_->port(),
+                         {.method = "POST", .target = path, .headers = headers_, .body = body});
 }
 
 void WebTest::log_in() {
   const auto result = post("/api/login", "{\"secret\": \"" + identity_.farm_secret + "\"}");
   ASSERT_TRUE(result && result->status == 200);
-  const std::string cookie = result->get_header_value("Set-Cookie");
+  const std::string cookie = result->header("Set-Cookie");
   headers_.emplace("Cookie", cookie.substr(0, cookie.find(';')));
 }
 
@@ -93,9 +97,32 @@ std::uint64_t WebTest::submit_box() {
   return message<web::Submitted>(post("/api/scenes?name=box.textproto&width=24", "a box")).job();
 }
 
-void WebTest::read(const httplib::Result& result, google::protobuf::Message& out) {
-  ASSERT_TRUE(result) << httplib::to_string(result.error());
-  EXPECT_EQ(result->get_header_value("Content-Type"), "application/json");
+void WebTest::finish(std::uint64_t job, std::uint32_t width, std::uint32_t height) {
+  for (std::uint64_t sample = 0; sample < 64; sample += 16) {
+    const BandPixels pixels{.band = {.samples = {sample, sample + 16}, .rows = {0, height}},
+                            .width = width,
+                            .sums = std::vector<double>(std::size_t{width} * height * 3, 8.0),
+                            .counters = {}};
+    using Put = absl::StatusOr<BandOutcome>;
+    const Put put = ask<Put>([&](auto answer) {
+      engine_->put_band(job, 0, std::string(32, 'a'), pixels, 0, 0, answer);
+    });
+    ASSERT_TRUE(put.ok()) << put.status();
+  }
+  const auto done = std::make_shared<std::promise<void>>();
+  engine_->watch(job, [done](const absl::StatusOr<JobView>& view) {
+    const bool is_done = view.ok() && view->state == JobState::kDone;
+    if (is_done) {
+      done->set_value();
+    }
+    return !is_done;
+  });
+  done->get_future().wait();
+}
+
+void WebTest::read(const Answer& result, google::protobuf::Message& out) {
+  ASSERT_TRUE(result) << "no answer came";
+  EXPECT_EQ(result->header("Content-Type"), "application/json");
   const auto status = google::protobuf::util::JsonStringToMessage(result->body, &out);
   EXPECT_TRUE(status.ok()) << status.ToString() << ": " << result->body;
 }

@@ -3,15 +3,16 @@
 // A coordinator with a dashboard of its own for each test, and a browser's calls to it.
 
 #include <gtest/gtest.h>
-#include <httplib.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "coordinator/engine/engine.h"
 #include "coordinator/web/dashboard.h"
 #include "proto/link/identity.h"
 #include "proto/web.pb.h"
+#include "tests/support/http_client.h"
 #include "tests/support/temp_dir.h"
 
 namespace bandsaw::coordinator {
@@ -22,20 +23,24 @@ inline constexpr Machine kOtherMachine =
 
 class WebTest : public ::testing::Test {
  protected:
+  using Answer = std::optional<test::HttpAnswer>;
+
   /// The gallery holds one scene, "box"; a scene file that holds "broken" cannot be read, and every
   /// other is the Cornell box.
   WebTest();
   ~WebTest() override;
 
   /// With our header and, after log_in(), the cookie.
-  httplib::Result get(const std::string& path);
-  httplib::Result post(const std::string& path, const std::string& body = "{}");
+  Answer get(const std::string& path);
+  Answer post(const std::string& path, const std::string& body = "{}");
   void log_in();
   /// A job that nobody renders.
   std::uint64_t submit_box();
+  /// Brings all samples of a job as a worker would, and waits until the job is done.
+  void finish(std::uint64_t job, std::uint32_t width, std::uint32_t height);
   /// The body as a message; the test fails when it is none.
   template <class Message>
-  Message message(const httplib::Result& result) {
+  Message message(const Answer& result) {
     Message out;
     read(result, out);
     return out;
@@ -46,11 +51,10 @@ class WebTest : public ::testing::Test {
   link::Identity identity_;
   std::unique_ptr<Engine> engine_;
   std::unique_ptr<Dashboard> dashboard_;
-  httplib::Headers headers_ = {{"X-Bandsaw", "1"}};
+  test::HttpHeaders headers_ = {{"X-Bandsaw", "1"}};
 
  private:
-  static void read(const httplib::Result& result, google::protobuf::Message& out);
-  std::unique_ptr<httplib::Client> client_;
+  static void read(const Answer& result, google::protobuf::Message& out);
 };
 
 }  // namespace bandsaw::coordinator

@@ -1,0 +1,193 @@
+#include "coordinator/web/exchange.h"
+
+#include <algorithm>
+#include <array>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/error.hpp>
+#include <boost/beast/core/buffers_range.hpp>
+#include <boost/beast/core/error.hpp>
+#include <boost/beast/core/flat_static_buffer.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/system/system_error.hpp>
+#include <exception>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "coordinator/web/reply.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+namespace beast = boost::beast;
+namespace http = boost::beast::http;
+
+constexpr std::size_t kBufferBytes = 64 << 10;
+static_assert(kBufferBytes > kMaxHeadBytes, "a head is parsed from one buffer");
+
+std::string text_of(beast::string_view text) { return {text.data(), text.size()}; }
+
+/// A connection with Beast's concepts SyncReadStream and SyncWriteStream.
+class Stream {
+ public:
+  explicit Stream(Connection& connection) : connection_(connection) {}
+
+  template <class Buffers>
+  std::size_t read_some(const Buffers& buffers, beast::error_code& error) {
+    for (const boost::asio::mutable_buffer buffer : beast::buffers_range_ref(buffers)) {
+      if (buffer.size() > 0) {
+        return moved(connection_.read(static_cast<char*>(buffer.data()), buffer.size()), error);
+      }
+    }
+    error = {};
+    return 0;
+  }
+  template <class Buffers>
+  std::size_t write_some(const Buffers& buffers, beast::error_code& error) {
+    for (const boost::asio::const_buffer buffer : beast::buffers_range_ref(buffers)) {
+      if (buffer.size() > 0) {
+        return moved(connection_.write(static_cast<const char*>(buffer.data()), buffer.size()),
+                     error);
+      }
+    }
+    error = {};
+    return 0;
+  }
+
+  // The concepts ask for these too.
+  template <class Buffers>
+  std::size_t read_some(const Buffers& buffers) {
+    beast::error_code error;
+    const std::size_t count = read_some(buffers, error);
+    return error ? throw boost::system::system_error(error) : count;
+  }
+  template <class Buffers>
+  std::size_t write_some(const Buffers& buffers) {
+    beast::error_code error;
+    const std::size_t count = write_some(buffers, error);
+    return error ? throw boost::system::system_error(error) : count;
+  }
+
+ private:
+  static std::size_t moved(std::ptrdiff_t count, beast::error_code& error) {
+    error = count > 0 ? beast::error_code() : boost::asio::error::eof;
+    return count > 0 ? static_cast<std::size_t>(count) : 0;
+  }
+
+  Connection& connection_;
+};
+
+class Exchange {
+ public:
+  Exchange(Connection& connection, const std::vector<HttpField>& headers)
+      : connection_(connection), stream_(connection), headers_(headers) {
+    parser_.header_limit(kMaxHeadBytes);
+    // Handlers bound what they take. (No limit, boost::none, is smaller than any in Boost 1.74.)
+    parser_.body_limit(std::numeric_limits<std::uint64_t>::max());
+  }
+
+  void run(const HttpHandler& handler) {
+    beast::error_code error;
+    http::read_header(stream_, buffer_, parser_, error);
+    if (error == http::error::end_of_stream || error == http::error::partial_message) {
+      return;
+    }
+    const HttpRequest request = error ? HttpRequest() : read_request();
+    write(request, error ? refuse_head(error) : with_range(request, answer(request, handler)));
+  }
+
+ private:
+  static HttpReply refuse_head(const beast::error_code& error) {
+    HttpReply reply = refuse(absl::InvalidArgumentError(
+        error == http::error::header_limit
+            ? absl::StrCat("the request line and the headers have more than ", kMaxHeadBytes,
+                           " bytes")
+            : absl::StrCat("this is no HTTP/1.1 request: ", error.message())));
+    reply.status = error == http::error::header_limit ? 431 : 400;
+    return reply;
+  }
+
+  HttpRequest read_request() const {
+    HttpRequest request;
+    const auto& head = parser_.get();
+    request.method = text_of(head.method_string());
+    request.remote_address = connection_.remote_address();
+    request.local_port = connection_.local_port();
+    parse_target(text_of(head.target()), request);
+    for (const auto& field : head) {
+      request.headers.emplace_back(text_of(field.name_string()), text_of(field.value()));
+    }
+    return request;
+  }
+
+  HttpReply answer(const HttpRequest& request, const HttpHandler& handler) {
+    connection_.begin_body();
+    awaits_continue_ = absl::EqualsIgnoreCase(request.header("Expect"), "100-continue");
+    try {
+      return handler(request, [this] { return read_body(); });
+    } catch (const std::exception& error) {  // bad_alloc of a large image, for example
+      return refuse(absl::InternalError(absl::StrCat("the request failed: ", error.what())));
+    }
+  }
+
+  absl::StatusOr<absl::string_view> read_body() {
+    beast::error_code error;
+    if (std::exchange(awaits_continue_, false)) {
+      const http::response<http::empty_body> go_on(http::status::continue_, 11);
+      http::response_serializer<http::empty_body> serializer(go_on);
+      http::write_header(stream_, serializer, error);
+    }
+    while (!error && !parser_.is_done()) {
+      parser_.get().body() = {.data = body_.data(), .size = body_.size(), .more = true};
+      http::read_some(stream_, buffer_, parser_, error);
+      if (const std::size_t count = body_.size() - parser_.get().body().size; count > 0 && !error) {
+        return absl::string_view(body_.data(), count);
+      }
+    }
+    return error ? absl::StatusOr<absl::string_view>(absl::InvalidArgumentError(
+                       absl::StrCat("the body did not come whole: ", error.message())))
+                 : absl::string_view();
+  }
+
+  void write(const HttpRequest& request, const HttpReply& reply) {
+    using Bytes = http::span_body<const char>;
+    http::response<Bytes> response(static_cast<http::status>(reply.status), 11);
+    response.set(http::field::connection, "close");
+    const auto add = [&](const HttpField& field) { response.insert(field.first, field.second); };
+    std::for_each(headers_.begin(), headers_.end(), add);
+    std::for_each(reply.headers.begin(), reply.headers.end(), add);
+    if (!reply.type.empty()) {
+      response.set(http::field::content_type, reply.type);
+    }
+    response.content_length(reply.bytes.size());
+    response.body() = Bytes::value_type(reply.bytes.data(), reply.bytes.size());
+    http::response_serializer<Bytes> serializer(response);
+    beast::error_code ignored;  // whoever asked is gone
+    connection_.begin_answer();
+    http::write_header(stream_, serializer, ignored);
+    if (!ignored && request.method != "HEAD") {
+      http::write(stream_, serializer, ignored);
+    }
+  }
+
+  Connection& connection_;
+  Stream stream_;
+  const std::vector<HttpField>& headers_;
+  http::request_parser<http::buffer_body> parser_;
+  beast::flat_static_buffer<kBufferBytes> buffer_;
+  // What was read last of the body. It is larger than what is parsed at once, so that it is never
+  // full: Beast would ask for another one (need_buffer) before it noticed the body's end.
+  std::array<char, kBufferBytes + 1> body_;
+  bool awaits_continue_ = false;  ///< the client sends the body when it is told to
+};
+
+}  // namespace
+
+void exchange(Connection& connection, const HttpHandler& handler,
+              const std::vector<HttpField>& headers) {
+  Exchange(connection, headers).run(handler);
+}
+
+}  // namespace bandsaw::coordinator
