@@ -1,4 +1,4 @@
-#include "renderlib/import/model/percent.h"
+#include "renderlib/import/files/percent.h"
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/escaping.h"
