@@ -15,6 +15,7 @@ constexpr absl::string_view kKnown[] = {
     "KHR_materials_ior",
     "KHR_materials_specular",
     "KHR_materials_transmission",
+    "KHR_materials_volume",
     "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_unlit",
     "KHR_texture_transform",
@@ -24,6 +25,12 @@ constexpr absl::string_view kKnown[] = {
     "KHR_mesh_quantization",
     "EXT_meshopt_compression",
     "EXT_texture_webp",
+    // Left out; each material that has something of them says so.
+    "KHR_materials_sheen",
+    "KHR_materials_iridescence",
+    "KHR_materials_anisotropy",
+    "KHR_materials_dispersion",
+    "KHR_materials_diffuse_transmission",
 };
 
 }  // namespace

@@ -21,6 +21,7 @@
 #include "renderlib/import/model/assimp_files.h"
 #include "renderlib/import/model/gltf_extensions.h"
 #include "renderlib/import/model/model_file.h"
+#include "renderlib/import/model/model_glass.h"
 #include "renderlib/import/model/model_material.h"
 #include "renderlib/import/model/model_mesh.h"
 #include "renderlib/import/model/model_nodes.h"
@@ -102,6 +103,9 @@ Transform upright(const aiScene& scene) {
 void turn(const Transform& by, Model& model) {
   for (Instance& instance : model.instances) {
     instance.to_world = by * instance.to_world;
+  }
+  for (Instance& boundary : model.filled) {
+    boundary.to_world = by * boundary.to_world;
   }
   for (DeltaLight& light : model.lights) {
     light = placed(light, by);
@@ -218,6 +222,7 @@ absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, S
         absl::StrCat(name, ": holds no triangle that can be rendered",
                      warnings.size() > warnings_before ? "; " + warnings.back() : ""));
   }
+  fill_glass(materials, file, model);
   turn(upright(*scene), model);
   return model;
 }

@@ -190,11 +190,38 @@ TEST_F(Gltf, WhatIsNotRenderedIsNamed) {
   file.textures = R"({"source": 0})";
   file.images = R"({"uri": "a.ppm"})";
   file.more =
-      R"("extensionsUsed": ["KHR_materials_variants", "KHR_xmp_json_ld"],)";
+      R"("extensionsUsed": ["KHR_materials_variants", "KHR_materials_sheen", "KHR_xmp_json_ld"],)";
   file.materials = R"({"occlusionTexture": {"index": 0}})";
   EXPECT_THAT(read(file).info.warnings,
               ElementsAre("t.gltf: the extension KHR_materials_variants is left out",
                           HasSubstr("its occlusion map is left out")));
+}
+
+// Each of them by one warning, however many materials have it; none where it adds nothing.
+TEST_F(Gltf, WhatMaterialsHaveAndIsNotShownIsNamedOnceAFile) {
+  GltfTriangle file;
+  file.more = R"("extensionsUsed": ["KHR_materials_sheen", "KHR_materials_iridescence",
+    "KHR_materials_anisotropy", "KHR_materials_dispersion", "KHR_materials_diffuse_transmission"],)";
+  const std::string all = R"({"extensions": {"KHR_materials_sheen": {"sheenColorFactor": [1, 0, 0],
+      "sheenColorTexture": {"index": 0}},
+    "KHR_materials_iridescence": {"iridescenceFactor": 1},
+    "KHR_materials_anisotropy": {"anisotropyStrength": 0.5},
+    "KHR_materials_dispersion": {"dispersion": 0.1},
+    "KHR_materials_diffuse_transmission": {"diffuseTransmissionFactor": 0.25}}})";
+  file.textures = R"({"source": 0})";
+  file.images = R"({"uri": "a.ppm"})";
+  file.materials = all + ", " + all;
+  file.primitives = R"(, {"attributes": {"POSITION": 0}, "material": 1})";
+  const auto named = [](const std::string& what) {
+    return HasSubstr(" and 1 more: its " + what + " is left out");
+  };
+  EXPECT_THAT(
+      read(file).info.warnings,
+      ::testing::UnorderedElementsAre(named("sheen"), named("iridescence"), named("anisotropy"),
+                                      named("dispersion"), named("diffuse transmission")));
+  file.materials = R"({"extensions": {"KHR_materials_sheen": {},
+    "KHR_materials_iridescence": {"iridescenceIor": 2}, "KHR_materials_dispersion": {}}}, {})";
+  EXPECT_THAT(read(file).info.warnings, IsEmpty());
 }
 
 TEST_F(Gltf, AnUnlitMaterialIsDiffuseAndNamed) {
