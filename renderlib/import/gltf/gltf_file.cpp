@@ -58,11 +58,19 @@ absl::StatusOr<absl::string_view> take_apart(GltfFile& file) {
   return json.bytes;
 }
 
+/// glTF 1.0 and 1.0.1; some of their writers give the version as a number.
+bool is_first_version(const Json& root) {
+  const Json* asset = object(root, "asset");
+  return asset != nullptr && (absl::StartsWith(text(*asset, "version"), "1") ||
+                              number(*asset, "version").value_or(0) == 1);
+}
+
 }  // namespace
 
 absl::StatusOr<bool> read_gltf_file(const std::string& path, GltfFile& to) {
   ASSIGN_OR_RETURN(to.bytes, read_whole_file(path, kMaxModelBytes));
   absl::string_view json = to.bytes;
+  to.root = Json::object();
   if (absl::StartsWith(to.bytes, "glTF")) {
     if (to.bytes.size() < kHeaderBytes) {
       return damaged("its header", absl::StrCat("the file has ", to.bytes.size(), " bytes"));
@@ -76,8 +84,7 @@ absl::StatusOr<bool> read_gltf_file(const std::string& path, GltfFile& to) {
     json.remove_suffix(1);  // some writers fill the chunk with zeros
   }
   ASSIGN_OR_RETURN(to.root, parse_json(json));
-  const Json* asset = object(to.root, "asset");
-  return !(asset != nullptr && absl::StartsWith(text(*asset, "version"), "1"));
+  return !is_first_version(to.root);
 }
 
 }  // namespace bandsaw::gltf

@@ -25,7 +25,8 @@ struct GltfFile {
   GltfFile& operator=(const GltfFile&) = delete;
 };
 
-/// Reads the file into `to`. Returns false, and leaves `to` undefined, where it is of glTF 1.
+/// Reads the file into `to`. Returns false where it is of glTF 1; of a binary one `to` then has no
+/// JSON.
 /// INVALID_ARGUMENT: its container or its JSON is broken. Errors of the disk: as read_whole_file.
 absl::StatusOr<bool> read_gltf_file(const std::string& path, GltfFile& to);
 

@@ -162,18 +162,19 @@ class Rewriter {
 
 }  // namespace
 
-absl::StatusOr<std::optional<PlainGltf>> read_plain_gltf(const std::string& path,
-                                                         const SceneFolder& scene) {
+absl::StatusOr<PlainGltf> read_plain_gltf(const std::string& path, const SceneFolder& scene) {
   GltfFile file;
   ASSIGN_OR_RETURN(const bool is_second, read_gltf_file(path, file));
   if (!is_second) {
-    return std::nullopt;
+    PlainGltf first;
+    first.is_first_version = true;
+    first.root = std::move(file.root);
+    return first;
   }
   RETURN_IF_ERROR(check_required(file.root));
   RETURN_IF_ERROR(check_references(file.root));
   Buffers buffers(file, scene, folder_of(path));
-  ASSIGN_OR_RETURN(PlainGltf plain, Rewriter(file, buffers).run());
-  return plain;
+  return Rewriter(file, buffers).run();
 }
 
 }  // namespace bandsaw::gltf

@@ -138,7 +138,7 @@ const aiScene* read_by_assimp(const std::string& path, const SceneFolder& folder
                               Assimp::Importer& importer) {
   // Nothing that alters geometry: faces become triangles, that is all.
   constexpr unsigned kFlags = aiProcess_Triangulate;
-  if (!plain) {
+  if (!plain || plain->is_first_version) {
     importer.SetIOHandler(std::make_unique<AssimpFiles>(folder, path, refused).release());
     return importer.ReadFile(path, kFlags);
   }

@@ -286,6 +286,26 @@ TEST_F(GltfAccessors, JsonThatIsBrokenOrTooDeepIsRefused) {
   EXPECT_THAT(message(R"({"a": 1e999})"), HasSubstr("a number that is too large"));
 }
 
+// Its lists are objects by name; some of its writers give the version as a number.
+TEST_F(GltfAccessors, TheFirstVersionIsStillRead) {
+  write_text(folder_, "f.bin", test::bytes_of(kTriangle));
+  for (const std::string version : {"\"1.0\"", "1"}) {
+    const auto imported = import_scene(write_text(
+        folder_, "f.gltf",
+        R"({"asset": {"version": )" + version + R"(}, "scene": "s", "extensionsUsed": ["X_y"],
+"scenes": {"s": {"nodes": ["n"]}}, "nodes": {"n": {"meshes": ["m"]}},
+"meshes": {"m": {"primitives": [{"attributes": {"POSITION": "a"}, "mode": 4}]}},
+"accessors": {"a": {"bufferView": "v", "byteOffset": 0, "byteStride": 12, "componentType": 5126,
+  "count": 3, "type": "VEC3"}},
+"bufferViews": {"v": {"buffer": "b", "byteOffset": 0, "byteLength": 36, "target": 34962}},
+"buffers": {"b": {"byteLength": 36, "type": "arraybuffer", "uri": "f.bin"}}})"));
+    ASSERT_TRUE(imported.ok()) << imported.status();
+    EXPECT_EQ(flat(imported->scene.geometry.meshes.at(0).positions), kTriangle);
+    EXPECT_THAT(imported->info.warnings,
+                ::testing::Contains("f.gltf: the extension X_y is left out"));
+  }
+}
+
 // Wherever a .glb is cut off, it is an error.
 TEST_F(GltfAccessors, EveryTruncationIsAnError) {
   const std::string whole = WavySquare(1).plain().glb();
