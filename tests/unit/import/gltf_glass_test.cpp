@@ -1,4 +1,5 @@
-// KHR_materials_volume: closed meshes that transmit are solid glass with what it absorbs.
+// KHR_materials_volume: closed meshes that transmit are solid glass with what it absorbs, and the
+// clear coat's normal map has its own uvs.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -119,6 +120,48 @@ TEST(GltfVolume, WithoutAThicknessItIsAThinPane) {
   const ImportedScene imported = read(thin, folder);
   EXPECT_THAT(imported.info.warnings, IsEmpty());
   EXPECT_TRUE(imported.scene.media.media.empty());
+}
+
+// The base's normal map, of scale 0, lies in the first set of uvs and bends nothing; the coat's
+// lies in the second, which is turned by a quarter. So the picture is that without the base's map.
+TEST(GltfCoat, ItsNormalMapLiesOnItsOwnUvs) {
+  const TempDir folder;
+  write_text(folder, "lean.ppm", std::string("P6 1 1 255\n") + "\xe0\x80\xf0");
+  const WavySquare square(2);
+  std::vector<float> turned;
+  for (std::size_t i = 0; i < square.uvs.size(); i += 2) {
+    turned.insert(turned.end(), {square.uvs[i + 1], -square.uvs[i]});
+  }
+  const auto seen = [&](bool base_map, int coat_set) {
+    GltfWriter file = square.plain();
+    file.attributes()["TEXCOORD_1"] = file.add(turned, 2);
+    file.primitive()["material"] = 0;
+    file.root["images"] = {{{"uri", "lean.ppm"}}};
+    file.root["textures"] = {{{"source", 0}}};
+    Json material = Json::parse(R"({"pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1],
+      "metallicFactor": 0, "roughnessFactor": 1}, "extensions": {"KHR_materials_clearcoat":
+      {"clearcoatFactor": 1, "clearcoatRoughnessFactor": 0.3, "clearcoatNormalTexture": {"index": 0}}}})");
+    material["extensions"]["KHR_materials_clearcoat"]["clearcoatNormalTexture"]["texCoord"] =
+        coat_set;
+    if (base_map) {
+      material["normalTexture"] = {{"index", 0}, {"texCoord", 0}, {"scale", 0}};
+    }
+    file.root["materials"] = Json::array({material});
+    file.root["extensionsUsed"] = {"KHR_materials_clearcoat"};
+    ImportedScene imported = read(file, folder);
+    imported.scene.camera =
+        OrthographicCamera{.position = {0.5, 0.5, 9}, .look_at = {0.5, 0.5, 0}, .height = 0.9};
+    return test::layer(imported, 16, 16, Integrator::kPath).pixels;
+  };
+  const auto difference = [](const std::vector<Rgb>& a, const std::vector<Rgb>& b) {
+    float most = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      most = std::max(most, std::abs(a[i].r - b[i].r));
+    }
+    return most;
+  };
+  EXPECT_LT(difference(seen(true, 1), seen(false, 1)), 1e-4);
+  EXPECT_GT(difference(seen(true, 1), seen(true, 0)), 1e-2) << "the sets differ";
 }
 
 }  // namespace
