@@ -22,9 +22,11 @@ struct SurfacePoint {
   Vec3 object_position;  ///< meshes and groups: before their placement; spheres: from their
                          ///< centre; else the position
   Rgb color{1, 1, 1};    ///< of the vertices, interpolated; white where there is none
-  /// Where the uvs of a set grow, of any length; zero unless set by add_uv_directions.
+  /// The directions in which the uvs grow, of any length; zero unless set by add_uv_directions.
   Vec3 along_u;
   Vec3 along_v;
+  Vec3 along_u2;  ///< those of uv2
+  Vec3 along_v2;
   MaterialId material{};
   PrimitiveId id;
   /// How far apart ray origins and surface must lie to be told apart: 2^-40 max(|position|, size of
@@ -43,8 +45,8 @@ void prepare_surfaces(Geometry& geometry);
 SurfacePoint surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit,
                         bool sphere_uv = true);
 
-/// Sets along_u and along_v; they stay zero where the uvs of a triangle have no area. `second`: of
-/// a mesh's second set, where it has one.
+/// Sets along_u and along_v, or those of the second set; they stay zero where the uvs of a triangle
+/// have no area.
 void add_uv_directions(const Geometry& geometry, bool second, SurfacePoint& point);
 
 /// A ray that leaves the surface: starts `offset` off it on the side of `direction` and cannot hit

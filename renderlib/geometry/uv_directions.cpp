@@ -9,11 +9,16 @@
 namespace bandsaw {
 namespace {
 
+struct Directions {
+  Vec3 u;
+  Vec3 v;
+};
+
 Vec3 vec(const std::array<float, 3>& p) { return {p[0], p[1], p[2]}; }
 
 /// dp/du and dp/dv of the affine map that takes the triangle's uvs to its corners.
-void along_mesh(const Geometry& geometry, const Transform& to_world, bool second,
-                SurfacePoint& point) {
+Directions along_mesh(const Geometry& geometry, const Transform& to_world, bool second,
+                      const SurfacePoint& point) {
   const Instance& instance = geometry.instances[point.id.instance - 1];
   const Mesh& mesh = geometry.meshes[index_of(instance.mesh)];
   const auto& corner = mesh.triangles[point.id.primitive];
@@ -22,9 +27,7 @@ void along_mesh(const Geometry& geometry, const Transform& to_world, bool second
   const Vec3 e2 = to_world.direction(vec(mesh.positions[corner[2]]) - a);
   const auto& uvs = second && !mesh.uvs2.empty() ? mesh.uvs2 : mesh.uvs;
   if (uvs.empty()) {
-    point.along_u = e1;
-    point.along_v = e2;
-    return;
+    return {e1, e2};
   }
   const auto uv = [&](std::size_t i, std::size_t axis) {
     return double{uvs[corner[i]][axis]} - double{uvs[corner[0]][axis]};
@@ -36,60 +39,56 @@ void along_mesh(const Geometry& geometry, const Transform& to_world, bool second
   const double area = du1 * dv2 - du2 * dv1;
   const double size = std::max({std::abs(du1), std::abs(dv1), std::abs(du2), std::abs(dv2)});
   if (!(std::abs(area) > 1e-12 * size * size)) {
-    return;
+    return {};
   }
   const Vec3 u = (e1 * dv2 - e2 * dv1) / area;
   const Vec3 v = (e2 * du1 - e1 * du2) / area;
-  if (is_finite(u) && is_finite(v)) {
-    point.along_u = u;
-    point.along_v = v;
-  }
+  return is_finite(u) && is_finite(v) ? Directions{u, v} : Directions{};
 }
 
 /// In the space the shapes lie in; `normal` is a sphere's there.
-void along_shape(const Shapes& shapes, const Vec3& normal, SurfacePoint& point) {
+Directions along_shape(const Shapes& shapes, const Vec3& normal, const SurfacePoint& point) {
   const auto [kind, index] = shape_ref(shapes, point.id.primitive);
   switch (kind) {
-    case ShapeKind::kSphere:
-      point.along_u = cross({0, 1, 0}, normal);
-      point.along_v = cross(normal, point.along_u);
-      return;
+    case ShapeKind::kSphere: {
+      const Vec3 u = cross({0, 1, 0}, normal);
+      return {u, cross(normal, u)};
+    }
     case ShapeKind::kQuad:
-      point.along_u = shapes.quads[index].u;
-      point.along_v = shapes.quads[index].v;
-      return;
+      return {shapes.quads[index].u, shapes.quads[index].v};
     case ShapeKind::kTriangle: {
       const Triangle& triangle = shapes.triangles[index];
-      point.along_u = triangle.b - triangle.a;
-      point.along_v = triangle.c - triangle.a;
-      return;
+      return {triangle.b - triangle.a, triangle.c - triangle.a};
     }
     case ShapeKind::kDisk: {
       const DiskAxes axes = axes_of(shapes.disks[index]);
-      point.along_u = axes.u;
-      point.along_v = axes.v;
-      return;
+      return {axes.u, axes.v};
     }
   }
+  return {};
+}
+
+Directions uv_directions(const Geometry& geometry, bool second, const SurfacePoint& point) {
+  if (point.id.instance == 0) {
+    return along_shape(geometry, point.geometric_normal, point);
+  }
+  const Instance& instance = geometry.instances[point.id.instance - 1];
+  const Transform to_world = to_world_at(geometry, instance, point.time);
+  if (instance.group == kNoGroup) {
+    return along_mesh(geometry, to_world, second, point);
+  }
+  // A sphere's point from its centre is along the normal in its own space.
+  const Directions along = along_shape(*group_of(geometry, instance),
+                                       unit_or(point.object_position, {0, 0, 1}), point);
+  return {to_world.direction(along.u), to_world.direction(along.v)};
 }
 
 }  // namespace
 
 void add_uv_directions(const Geometry& geometry, bool second, SurfacePoint& point) {
-  if (point.id.instance == 0) {
-    along_shape(geometry, point.geometric_normal, point);
-    return;
-  }
-  const Instance& instance = geometry.instances[point.id.instance - 1];
-  const Transform to_world = to_world_at(geometry, instance, point.time);
-  if (instance.group == kNoGroup) {
-    along_mesh(geometry, to_world, second, point);
-    return;
-  }
-  // A sphere's point from its centre is along the normal in its own space.
-  along_shape(*group_of(geometry, instance), unit_or(point.object_position, {0, 0, 1}), point);
-  point.along_u = to_world.direction(point.along_u);
-  point.along_v = to_world.direction(point.along_v);
+  const Directions along = uv_directions(geometry, second, point);
+  (second ? point.along_u2 : point.along_u) = along.u;
+  (second ? point.along_v2 : point.along_v) = along.v;
 }
 
 }  // namespace bandsaw

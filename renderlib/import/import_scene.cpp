@@ -111,6 +111,7 @@ absl::Status read_model_alone(const std::string& path, SceneDraft& draft) {
   ASSIGN_OR_RETURN(const auto real, draft.folder.resolve(name_of(path), draft.folder.path()));
   ASSIGN_OR_RETURN(const Model model, read_model(real, true, draft));
   draft.out.scene.geometry.instances = model.instances;
+  draft.out.scene.media.boundaries.instances = model.filled;
   draft.out.scene.lights = model.lights;
   draft.out.scene.camera = model.cameras.empty() ? framed(draft.out) : model.cameras.front().camera;
   add_cameras(draft.file, model, Transform{}, draft);

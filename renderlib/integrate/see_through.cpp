@@ -12,8 +12,12 @@ namespace {
 SurfacePoint point_at(const Scene& scene, const Ray& ray, const Hit& hit) {
   SurfacePoint point = surface_at(scene.geometry(), ray, hit, scene.needs().uv);
   if (const auto* principled = std::get_if<Principled>(&scene.material(point.material))) {
-    if (const auto set = normal_uv_set(*principled, scene.textures())) {
-      add_uv_directions(scene.geometry(), *set == UvSet::kSecond, point);
+    const NormalUvSets sets = normal_uv_sets(*principled, scene.textures());
+    if (sets.first) {
+      add_uv_directions(scene.geometry(), false, point);
+    }
+    if (sets.second) {
+      add_uv_directions(scene.geometry(), true, point);
     }
   }
   return point;

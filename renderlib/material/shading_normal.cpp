@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "renderlib/material/fresnel.h"
 #include "renderlib/material/look_up.h"
@@ -21,11 +22,15 @@ struct Directions {
 
 /// Where the map's own coordinates grow, of any length: the inverse of how it is placed, but for
 /// the size of its determinant.
-Directions along_map(const SurfacePoint& point, const UvTransform& placed) {
+Directions along_map(const Directions& uv, const UvTransform& placed) {
   const auto& [a, b, x, d, e, y] = placed.m;
   const double sign = a * e - b * d < 0 ? -1 : 1;
-  return {(point.along_u * e - point.along_v * d) * sign,
-          (point.along_v * a - point.along_u * b) * sign};
+  return {(uv.u * e - uv.v * d) * sign, (uv.v * a - uv.u * b) * sign};
+}
+
+UvSet set_of(absl::Span<const Texture> textures, TextureId map) {
+  const ImageTexture* image = image_at(textures, map);
+  return image == nullptr ? UvSet::kFirst : image->uv_set;
 }
 
 /// The frame of the uvs made orthonormal around the normal; mirrored where the uvs are.
@@ -48,10 +53,12 @@ Basis uv_basis(const Vec3& n, const Directions& uv) {
 }  // namespace
 
 Vec3 mapped_normal(const SurfacePoint& point, const Rgb& texel, double scale,
-                   const UvTransform& placed) {
+                   const UvTransform& placed, UvSet set) {
+  const Directions uv = set == UvSet::kSecond ? Directions{point.along_u2, point.along_v2}
+                                              : Directions{point.along_u, point.along_v};
   const Vec3 local{(2.0 * texel.r - 1) * scale, (2.0 * texel.g - 1) * scale,
                    std::max(2.0 * texel.b - 1, 1e-3)};
-  const Basis frame = uv_basis(point.shading_normal, along_map(point, placed));
+  const Basis frame = uv_basis(point.shading_normal, along_map(uv, placed));
   return normalize(frame.to_world(local));
 }
 
@@ -59,16 +66,18 @@ Vec3 mapped_normal(const SurfacePoint& point, absl::Span<const Texture> textures
                    double scale) {
   const ImageTexture* image = image_at(textures, map);
   return mapped_normal(point, look_up(textures, map, point), scale,
-                       image == nullptr ? UvTransform{} : image->uv_transform);
+                       image == nullptr ? UvTransform{} : image->uv_transform,
+                       set_of(textures, map));
 }
 
-std::optional<UvSet> normal_uv_set(const Principled& material, absl::Span<const Texture> textures) {
-  const std::optional<TextureId>& map = material.normal ? material.normal : material.coat_normal;
-  if (!map) {
-    return std::nullopt;
+NormalUvSets normal_uv_sets(const Principled& material, absl::Span<const Texture> textures) {
+  NormalUvSets sets;
+  for (const std::optional<TextureId>& map : {material.normal, material.coat_normal}) {
+    if (map) {
+      (set_of(textures, *map) == UvSet::kSecond ? sets.second : sets.first) = true;
+    }
   }
-  const ImageTexture* image = image_at(textures, *map);
-  return image == nullptr ? UvSet::kFirst : image->uv_set;
+  return sets;
 }
 
 Vec3 visible_normal(const Vec3& n, const Vec3& geometric, const Vec3& wo) {

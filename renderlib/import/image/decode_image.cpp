@@ -13,6 +13,7 @@
 #include "renderlib/image/srgb.h"
 #include "renderlib/import/image/decode_exr.h"
 #include "renderlib/import/image/decode_pfm.h"
+#include "renderlib/import/image/decode_webp.h"
 #include "renderlib/package/limits.h"
 
 namespace bandsaw {
@@ -45,8 +46,11 @@ const stbi_uc* data_of(absl::string_view bytes) {
 
 absl::StatusOr<Shape> shape_of(absl::string_view bytes) {
   Shape shape;
-  if (stbi_info_from_memory(data_of(bytes), static_cast<int>(bytes.size()), &shape.width,
-                            &shape.height, &shape.channels) == 0) {
+  if (is_webp(bytes)) {
+    ASSIGN_OR_RETURN(const WebpHeader header, webp_header(bytes));
+    shape = {header.width, header.height, header.has_alpha ? 4 : 3};
+  } else if (stbi_info_from_memory(data_of(bytes), static_cast<int>(bytes.size()), &shape.width,
+                                   &shape.height, &shape.channels) == 0) {
     return failure();
   }
   const int most = static_cast<int>(kMaxTextureSide);
@@ -120,14 +124,21 @@ absl::StatusOr<ImageTexture> decode_radiance(absl::string_view bytes) {
   return texture_of(std::move(pixels), shape, 3, ImageTexture::Format::kFloat32);
 }
 
-absl::StatusOr<ImageTexture> decode_bytes(absl::string_view bytes, int channels) {
-  Shape shape;
+/// Pixels of `channels` bytes. Of `shape` what the decoder found is set.
+absl::StatusOr<Pixels<stbi_uc>> decode_pixels(absl::string_view bytes, int channels, Shape& shape) {
+  if (is_webp(bytes)) {
+    ASSIGN_OR_RETURN(shape, shape_of(bytes));
+    return decode_webp(bytes, channels);
+  }
   Pixels<stbi_uc> pixels =
       owned(stbi_load_from_memory(data_of(bytes), static_cast<int>(bytes.size()), &shape.width,
                                   &shape.height, &shape.channels, channels));
-  if (pixels == nullptr) {
-    return failure();
-  }
+  return pixels == nullptr ? failure() : absl::StatusOr<Pixels<stbi_uc>>(std::move(pixels));
+}
+
+absl::StatusOr<ImageTexture> decode_bytes(absl::string_view bytes, int channels) {
+  Shape shape;
+  ASSIGN_OR_RETURN(Pixels<stbi_uc> pixels, decode_pixels(bytes, channels, shape));
   return texture_of(std::move(pixels), shape, channels, ImageTexture::Format::kSrgb8);
 }
 
@@ -169,12 +180,7 @@ absl::StatusOr<ImageTexture> decode_alpha(absl::string_view bytes) {
   if (shape.channels == 2 || shape.channels == 4) {
     // The last channel of four, whatever the file has.
     Shape found;
-    const Pixels<stbi_uc> pixels =
-        owned(stbi_load_from_memory(data_of(bytes), static_cast<int>(bytes.size()), &found.width,
-                                    &found.height, &found.channels, 4));
-    if (pixels == nullptr) {
-      return failure();
-    }
+    ASSIGN_OR_RETURN(const Pixels<stbi_uc> pixels, decode_pixels(bytes, 4, found));
     alpha.width = static_cast<std::uint32_t>(found.width);
     alpha.height = static_cast<std::uint32_t>(found.height);
     texels.resize(std::size_t{alpha.width} * alpha.height);

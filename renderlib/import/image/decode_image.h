@@ -1,6 +1,7 @@
 #pragma once
 
-// Image files to texels, by stb_image.
+// Image files to texels, by stb_image and, for the formats that it does not know, libwebp and
+// tinyexr.
 
 #include <string>
 #include <vector>
@@ -21,10 +22,10 @@ inline constexpr char kAlphaWarning[] = "its alpha channel is left out";
 /// What becomes of an image of one channel.
 enum class Gray { kExpanded, kKept };
 
-/// PNG, JPEG, TGA, BMP, PNM: 8-bit sRGB of three channels (or one: `gray`), alpha and a second byte
-/// of depth left out with a warning. HDR, EXR: linear floats. The texels are what the decoder made,
-/// uncopied. Sizes are checked before anything is decoded. INVALID_ARGUMENT: the reason, without
-/// the file's name.
+/// PNG, JPEG, TGA, BMP, PNM, WebP: 8-bit sRGB of three channels (or one: `gray`), alpha and a
+/// second byte of depth left out with a warning. HDR, EXR: linear floats. The texels are what the
+/// decoder made, uncopied. Sizes are checked before anything is decoded. INVALID_ARGUMENT: the
+/// reason, without the file's name.
 absl::StatusOr<ImageTexture> decode_image(absl::string_view bytes,
                                           std::vector<std::string>& warnings,
                                           Gray gray = Gray::kExpanded);

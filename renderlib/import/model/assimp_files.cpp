@@ -15,10 +15,12 @@ namespace {
 
 constexpr std::uint64_t kMaxModelFileBytes = std::uint64_t{8} << 30;
 
-// A file's bytes in memory: Assimp seeks about, and the file is closed at once.
+// Bytes in memory: Assimp seeks about, and a file is closed at once.
 class BytesStream : public Assimp::IOStream {
  public:
-  explicit BytesStream(std::string bytes) : bytes_(std::move(bytes)) {}
+  /// `bytes` outlive this.
+  explicit BytesStream(absl::string_view bytes) : bytes_(bytes) {}
+  explicit BytesStream(std::string bytes) : owned_(std::move(bytes)), bytes_(owned_) {}
 
   std::size_t Read(void* to, std::size_t size, std::size_t count) override {
     if (size == 0) {
@@ -47,7 +49,8 @@ class BytesStream : public Assimp::IOStream {
   void Flush() override {}
 
  private:
-  std::string bytes_;
+  std::string owned_;
+  absl::string_view bytes_;
   std::size_t at_ = 0;
 };
 
@@ -88,6 +91,18 @@ Assimp::IOStream* AssimpFiles::Open(const char* file, const char* mode) {
 }
 
 void AssimpFiles::Close(Assimp::IOStream* stream) {
+  const std::unique_ptr<Assimp::IOStream> closed(stream);
+}
+
+Assimp::IOStream* PlainGltfFiles::Open(const char* file, const char* mode) {
+  if (std::strchr(mode, 'w') != nullptr) {
+    return nullptr;
+  }
+  const bool is_document = absl::EndsWith(file, kDocument);
+  return std::make_unique<BytesStream>(is_document ? json_ : buffer_).release();
+}
+
+void PlainGltfFiles::Close(Assimp::IOStream* stream) {
   const std::unique_ptr<Assimp::IOStream> closed(stream);
 }
 

@@ -1,12 +1,13 @@
 #pragma once
 
-// Assimp's view of the disk: the scene's folder, read only.
+// The files that Assimp sees: those of the scene's folder, read only, or a glTF document in memory.
 
 #include <assimp/IOSystem.hpp>
 
 #include <string>
 #include <vector>
 
+#include "absl/strings/string_view.h"
 #include "renderlib/import/files/scene_folder.h"
 
 namespace bandsaw {
@@ -34,6 +35,23 @@ class AssimpFiles : public Assimp::IOSystem {
   const SceneFolder& folder_;
   std::string model_folder_;
   RefusedFiles& refused_;
+};
+
+/// A glTF document that is in memory: its JSON as kDocument, its buffer under any other name.
+class PlainGltfFiles : public Assimp::IOSystem {
+ public:
+  static constexpr char kDocument[] = "plain.gltf";
+  /// Both outlive this and what it opens.
+  PlainGltfFiles(absl::string_view json, absl::string_view buffer) : json_(json), buffer_(buffer) {}
+
+  bool Exists(const char*) const override { return true; }
+  char getOsSeparator() const override { return '/'; }
+  Assimp::IOStream* Open(const char* file, const char* mode) override;
+  void Close(Assimp::IOStream* stream) override;
+
+ private:
+  absl::string_view json_;
+  absl::string_view buffer_;
 };
 
 }  // namespace bandsaw

@@ -5,8 +5,7 @@
 #include <utility>
 
 #include "absl/strings/match.h"
-#include "renderlib/base/status_macros.h"
-#include "renderlib/import/model/gltf_json.h"
+#include "renderlib/import/gltf/gltf_json.h"
 #include "renderlib/import/model/gltf_support.h"
 #include "renderlib/math/elementary.h"
 
@@ -15,25 +14,26 @@ namespace {
 
 using gltf::extension;
 using gltf::find;
+using gltf::items;
+using gltf::Json;
 using gltf::list;
-using gltf::ListValue;
 using gltf::name_in;
 using gltf::number;
 using gltf::object;
-using gltf::Struct;
 
 // Two numbers, or what stands there.
-void read_pair(const Struct& in, const std::string& name, double& x, double& y) {
-  const ListValue* values = list(in, name);
-  if (values != nullptr && values->values_size() == 2) {
-    x = values->values(0).number_value();
-    y = values->values(1).number_value();
+void read_pair(const Json& in, const std::string& name, double& x, double& y) {
+  const Json* values = list(in, name);
+  if (values != nullptr && values->size() == 2 && (*values)[0].is_number() &&
+      (*values)[1].is_number()) {
+    x = (*values)[0].get<double>();
+    y = (*values)[1].get<double>();
   }
 }
 
 // offset + rotation (scale uv) with the image's top at v = 0, seen from uvs whose v = 0 is the
 // bottom: v -> 1 - v before and after. The rotation is counter-clockwise as the image is seen.
-UvTransform transform_of(const Struct& from) {
+UvTransform transform_of(const Json& from) {
   double offset_u = 0;
   double offset_v = 0;
   double scale_u = 1;
@@ -46,10 +46,10 @@ UvTransform transform_of(const Struct& from) {
            turn.sin * scale_u, turn.cos * scale_v, 1 - offset_v - turn.cos * scale_v}};
 }
 
-GltfTexture texture_of(const Struct& from) {
+GltfTexture texture_of(const Json& from) {
   GltfTexture to;
   double uv_set = number(from, "texCoord").value_or(0);
-  if (const Struct* placed = extension(from, "KHR_texture_transform"); placed != nullptr) {
+  if (const Json* placed = extension(from, "KHR_texture_transform"); placed != nullptr) {
     to.transform = transform_of(*placed);
     uv_set = number(*placed, "texCoord").value_or(uv_set);
   }
@@ -60,81 +60,122 @@ GltfTexture texture_of(const Struct& from) {
   return to;
 }
 
-void read_textures_of(const Struct& from, GltfMaterial& to) {
-  for (const auto& [name, value] : from.fields()) {
-    if (absl::EndsWith(name, "Texture") && value.has_struct_value()) {
-      to.textures[name] = texture_of(value.struct_value());
+void read_textures_of(const Json& from, GltfMaterial& to) {
+  for (const auto& [name, value] : from.items()) {
+    if (absl::EndsWith(name, "Texture") && value.is_object()) {
+      to.textures[name] = texture_of(value);
     }
   }
 }
 
-GltfSpecular specular_of(const Struct& from) {
+/// Three numbers, each as it stands or as in `otherwise`.
+std::array<double, 3> triple_of(const Json& in, const std::string& name,
+                                std::array<double, 3> otherwise) {
+  const Json* values = list(in, name);
+  for (std::size_t i = 0; values != nullptr && values->size() == 3 && i < 3; ++i) {
+    otherwise[i] = (*values)[i].is_number() ? (*values)[i].get<double>() : otherwise[i];
+  }
+  return otherwise;
+}
+
+GltfSpecular specular_of(const Json& from) {
   GltfSpecular to;
   to.factor = number(from, "specularFactor").value_or(1);
-  const ListValue* color = list(from, "specularColorFactor");
-  for (int i = 0; color != nullptr && color->values_size() == 3 && i < 3; ++i) {
-    to.color[static_cast<std::size_t>(i)] = color->values(i).number_value();
-  }
+  to.color = triple_of(from, "specularColorFactor", {1, 1, 1});
   to.has_maps =
       object(from, "specularTexture") != nullptr || object(from, "specularColorTexture") != nullptr;
   return to;
 }
 
-GltfMaterial material_of(const Struct& from) {
+std::optional<GltfVolume> volume_of(const Json& material) {
+  const Json* from = extension(material, "KHR_materials_volume");
+  if (from == nullptr) {
+    return std::nullopt;
+  }
+  GltfVolume to;
+  to.thickness = number(*from, "thicknessFactor").value_or(0);
+  to.attenuation_distance = number(*from, "attenuationDistance").value_or(to.attenuation_distance);
+  to.attenuation_color = triple_of(*from, "attenuationColor", {1, 1, 1});
+  return to;
+}
+
+/// What an extension adds to the material, where it adds anything, and nothing here shows.
+std::vector<std::string> left_out_of(const Json& material) {
+  std::vector<std::string> out;
+  const auto has = [&](const char* name, const char* factor) {
+    const Json* from = extension(material, name);
+    return from != nullptr && number(*from, factor).value_or(0) != 0;
+  };
+  const Json* sheen = extension(material, "KHR_materials_sheen");
+  if (sheen != nullptr &&
+      triple_of(*sheen, "sheenColorFactor", {0, 0, 0}) != std::array<double, 3>{0, 0, 0}) {
+    out.emplace_back("its sheen is left out");
+  }
+  if (has("KHR_materials_iridescence", "iridescenceFactor")) {
+    out.emplace_back("its iridescence is left out");
+  }
+  if (has("KHR_materials_anisotropy", "anisotropyStrength")) {
+    out.emplace_back("its anisotropy is left out: it shines alike in all directions");
+  }
+  if (has("KHR_materials_dispersion", "dispersion")) {
+    out.emplace_back("its dispersion is left out: all colours are refracted alike");
+  }
+  if (has("KHR_materials_diffuse_transmission", "diffuseTransmissionFactor")) {
+    out.emplace_back("its diffuse transmission is left out");
+  }
+  return out;
+}
+
+GltfMaterial material_of(const Json& from) {
   GltfMaterial to;
   to.name = name_in(from);
   read_textures_of(from, to);
-  if (const Struct* base = object(from, "pbrMetallicRoughness"); base != nullptr) {
+  if (const Json* base = object(from, "pbrMetallicRoughness"); base != nullptr) {
     read_textures_of(*base, to);
   }
   for (const char* name : {"KHR_materials_clearcoat", "KHR_materials_transmission",
                            "KHR_materials_pbrSpecularGlossiness"}) {
-    if (const Struct* layer = extension(from, name); layer != nullptr) {
+    if (const Json* layer = extension(from, name); layer != nullptr) {
       read_textures_of(*layer, to);
     }
   }
-  if (const Struct* coat = extension(from, "KHR_materials_clearcoat"); coat != nullptr) {
-    const Struct* normal = object(*coat, "clearcoatNormalTexture");
+  if (const Json* coat = extension(from, "KHR_materials_clearcoat"); coat != nullptr) {
+    const Json* normal = object(*coat, "clearcoatNormalTexture");
     to.coat_normal_scale = normal == nullptr ? 1 : number(*normal, "scale").value_or(1);
   }
-  if (const Struct* glow = extension(from, "KHR_materials_emissive_strength"); glow != nullptr) {
+  if (const Json* glow = extension(from, "KHR_materials_emissive_strength"); glow != nullptr) {
     to.emissive_strength = number(*glow, "emissiveStrength");
   }
-  if (const Struct* specular = extension(from, "KHR_materials_specular"); specular != nullptr) {
+  if (const Json* specular = extension(from, "KHR_materials_specular"); specular != nullptr) {
     to.specular = specular_of(*specular);
   }
-  if (const Struct* ior = extension(from, "KHR_materials_ior"); ior != nullptr) {
+  if (const Json* ior = extension(from, "KHR_materials_ior"); ior != nullptr) {
     to.index_of_refraction = number(*ior, "ior").value_or(1.5);
   }
+  to.volume = volume_of(from);
+  to.left_out = left_out_of(from);
   to.unlit = extension(from, "KHR_materials_unlit") != nullptr;
   return to;
 }
 
 }  // namespace
 
-absl::StatusOr<GltfExtensions> read_gltf_extensions(const std::string& path) {
+GltfExtensions read_gltf_extensions(const Json& root) {
   GltfExtensions out;
-  const std::optional<Struct> root = gltf::root_of(path);
-  if (!root) {
-    out.unread = true;
-    return out;
-  }
-  RETURN_IF_ERROR(check_gltf_support(*root));
-  out.ignored = ignored_extensions(*root);
-  GltfLoadOrder order = load_order(*root);
-  for (const Struct* material : order.materials) {
+  out.ignored = ignored_extensions(root);
+  GltfLoadOrder order = load_order(root);
+  for (const Json* material : order.materials) {
     out.materials.push_back(material_of(*material));
   }
   out.cameras = std::move(order.cameras);
   out.lights = std::move(order.lights);
   out.bones = std::move(order.bones);
-  if (const ListValue* scenes = list(*root, "scenes"); scenes != nullptr) {
-    out.scenes = static_cast<std::size_t>(scenes->values_size());
-  }
-  const Struct* punctual = extension(*root, "KHR_lights_punctual");
-  const ListValue* lights = punctual == nullptr ? nullptr : list(*punctual, "lights");
-  for (int i = 0; lights != nullptr && i < lights->values_size(); ++i) {
-    out.lights_with_range += find(lights->values(i).struct_value(), "range") != nullptr ? 1 : 0;
+  out.scenes = std::max<std::size_t>(1, items(root, "scenes").size());
+  const Json* punctual = extension(root, "KHR_lights_punctual");
+  if (punctual != nullptr) {
+    for (const Json& light : items(*punctual, "lights")) {
+      out.lights_with_range += find(light, "range") != nullptr ? 1 : 0;
+    }
   }
   return out;
 }

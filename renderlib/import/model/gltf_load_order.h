@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "renderlib/import/model/gltf_json.h"
+#include "renderlib/import/gltf/gltf_json.h"
 
 namespace bandsaw {
 
@@ -21,7 +21,7 @@ struct GltfAtNode {
 
 /// Of the default scene: nodes depth first, each after its children.
 struct GltfLoadOrder {
-  std::vector<const gltf::Struct*> materials;
+  std::vector<const gltf::Json*> materials;
   std::vector<GltfAtNode> cameras;
   std::vector<GltfAtNode> lights;  ///< of KHR_lights_punctual
   /// By the numbers of Assimp's meshes: the nodes of the bones, as GltfAtNode::node; none of a mesh
@@ -30,6 +30,6 @@ struct GltfLoadOrder {
 };
 
 /// Points into `root`.
-GltfLoadOrder load_order(const gltf::Struct& root);
+GltfLoadOrder load_order(const gltf::Json& root);
 
 }  // namespace bandsaw

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <set>
 
 #include "absl/strings/ascii.h"
@@ -16,9 +17,11 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/strip.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/import/gltf/plain_gltf.h"
 #include "renderlib/import/model/assimp_files.h"
 #include "renderlib/import/model/gltf_extensions.h"
 #include "renderlib/import/model/model_file.h"
+#include "renderlib/import/model/model_glass.h"
 #include "renderlib/import/model/model_material.h"
 #include "renderlib/import/model/model_mesh.h"
 #include "renderlib/import/model/model_nodes.h"
@@ -56,12 +59,7 @@ void warn_of_unused(ModelFile& file) {
       file.warn(absl::StrCat(count, " ", what, " left out"));
     }
   };
-  if (file.gltf.unread) {
-    file.warn(
-        "its JSON is not as glTF asks (valid UTF-8, each name once, nested less than 100 deep) or "
-        "larger than 256 MiB: its extensions, further lights and bones of one name are left out");
-  }
-  warn(file.scene.mNumAnimations, "animations (the rest pose is shown) are");
+  warn(file.scene.mNumAnimations + file.gltf.animations, "animations (the rest pose is shown) are");
   warn(file.gltf.scenes > 1 ? file.gltf.scenes - 1 : 0, "scenes beside the default one are");
   warn(file.gltf.lights_with_range, "ranges of lights (light goes on for ever) are");
   for (const std::string& extension : file.gltf.ignored) {
@@ -106,6 +104,9 @@ void turn(const Transform& by, Model& model) {
   for (Instance& instance : model.instances) {
     instance.to_world = by * instance.to_world;
   }
+  for (Instance& boundary : model.filled) {
+    boundary.to_world = by * boundary.to_world;
+  }
   for (DeltaLight& light : model.lights) {
     light = placed(light, by);
   }
@@ -122,6 +123,31 @@ std::set<unsigned> used_materials(const aiScene& scene) {
     }
   }
   return used;
+}
+
+absl::Status gltf_failure(const std::string& name, const absl::Status& why) {
+  const bool is_broken = absl::IsInvalidArgument(why);
+  return absl::Status(why.code(),
+                      absl::StrCat(name, is_broken ? ": cannot be read: " : ": ", why.message()));
+}
+
+/// Null where Assimp fails. Of a plain glTF document Assimp sees nothing but that; the document is
+/// given up afterwards, but for its JSON.
+const aiScene* read_by_assimp(const std::string& path, const SceneFolder& folder,
+                              std::optional<gltf::PlainGltf>& plain, RefusedFiles& refused,
+                              Assimp::Importer& importer) {
+  // Nothing that alters geometry: faces become triangles, that is all.
+  constexpr unsigned kFlags = aiProcess_Triangulate;
+  if (!plain || plain->is_first_version) {
+    importer.SetIOHandler(std::make_unique<AssimpFiles>(folder, path, refused).release());
+    return importer.ReadFile(path, kFlags);
+  }
+  const std::string json = plain->root.dump();
+  importer.SetIOHandler(std::make_unique<PlainGltfFiles>(json, plain->buffer).release());
+  const aiScene* scene = importer.ReadFile(PlainGltfFiles::kDocument, kFlags);
+  importer.SetIOHandler(nullptr);
+  plain->buffer = {};
+  return scene;
 }
 
 }  // namespace
@@ -152,26 +178,27 @@ absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, S
   const std::string name = name_of(path);
   const std::size_t warnings_before = draft.out.info.warnings.size();
   const ModelKind kind = kind_of(path);
-  GltfExtensions gltf;
+  std::optional<gltf::PlainGltf> plain;
   if (kind == ModelKind::kGltf) {
-    auto read = read_gltf_extensions(path);
+    auto read = gltf::read_plain_gltf(path, draft.folder);
     if (!read.ok()) {
-      return absl::InvalidArgumentError(
-          absl::StrCat(name, ": cannot be read: ", read.status().message()));
+      return gltf_failure(name, read.status());
     }
-    gltf = *std::move(read);
+    plain = *std::move(read);
   }
   RefusedFiles refused;
   Assimp::Importer importer;
-  importer.SetIOHandler(std::make_unique<AssimpFiles>(draft.folder, path, refused).release());
   // No meshes that stand for the bones of files without any.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
-  // Nothing that alters geometry: faces become triangles, that is all.
-  const aiScene* scene = importer.ReadFile(path, aiProcess_Triangulate);
+  const aiScene* scene = read_by_assimp(path, draft.folder, plain, refused, importer);
   if (scene == nullptr || scene->mRootNode == nullptr || !refused.outside.empty()) {
     return read_failure(name, refused, importer.GetErrorString());
   }
-  ModelFile file{*scene, path, kind, std::move(gltf), draft};
+  ModelFile file{*scene, path, kind, {}, draft};
+  if (plain) {
+    file.gltf = read_gltf_extensions(plain->root);
+    file.gltf.animations = plain->animations;
+  }
   warn_of_missing(name, refused, draft);
   warn_of_unused(file);
 
@@ -195,6 +222,7 @@ absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, S
         absl::StrCat(name, ": holds no triangle that can be rendered",
                      warnings.size() > warnings_before ? "; " + warnings.back() : ""));
   }
+  fill_glass(materials, file, model);
   turn(upright(*scene), model);
   return model;
 }

@@ -22,8 +22,9 @@ struct ModelCamera {
 /// A model in the draft: its meshes, materials and textures have been added there, its placements
 /// have not.
 struct Model {
-  std::vector<Instance> instances;   ///< in the model's own space
-  std::vector<ModelCamera> cameras;  ///< in the order of its nodes
+  std::vector<Instance> instances = {};   ///< in the model's own space
+  std::vector<Instance> filled = {};      ///< likewise, of Media::boundaries
+  std::vector<ModelCamera> cameras = {};  ///< in the order of its nodes
   std::vector<DeltaLight> lights = {};
 };
 

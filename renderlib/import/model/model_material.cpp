@@ -17,7 +17,8 @@ void name_unused_textures(MaterialReader& reader) {
                  {aiTextureType_DISPLACEMENT, "displacement"},
                  {aiTextureType_SHEEN, "sheen"}};
   for (const auto& [type, what] : kUnused) {
-    if (reader.has({type})) {
+    const bool is_named = type == aiTextureType_SHEEN && reader.kind() == ModelKind::kGltf;
+    if (reader.has({type}) && !is_named) {
       reader.leave_out(absl::StrCat("its ", what, " map is left out"));
     }
   }
@@ -43,6 +44,11 @@ absl::StatusOr<ModelMaterial> read_unlit(MaterialReader& reader) {
 absl::StatusOr<ModelMaterial> read_model_material(ModelFile& file, unsigned index) {
   MaterialReader reader(file, index);
   name_unused_textures(reader);
+  if (reader.gltf() != nullptr) {
+    for (const std::string& what : reader.gltf()->left_out) {
+      reader.leave_out(what);
+    }
+  }
   if (reader.gltf() != nullptr && reader.gltf()->unlit) {
     return read_unlit(reader);
   }

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <optional>
+
 #include "absl/status/statusor.h"
 #include "renderlib/base/ids.h"
+#include "renderlib/math/rgb.h"
 
 namespace bandsaw {
 
@@ -16,6 +19,12 @@ struct ModelMaterial {
   MaterialId id{};
   unsigned uv_set = 0;
   unsigned second_uv_set = kNoUvSet;
+  /// What the material becomes on a mesh that encloses a volume (KHR_materials_volume).
+  struct Glass {
+    MaterialId id{};
+    Rgb absorption;  ///< of what is inside, per scene unit
+  };
+  std::optional<Glass> glass = std::nullopt;
 };
 
 /// Metallic-roughness materials, glTF's among them, become Principled; the older kinds become

@@ -11,6 +11,7 @@
 #include "renderlib/base/status_macros.h"
 #include "renderlib/import/draft/color_limits.h"
 #include "renderlib/import/model/material_reader.h"
+#include "renderlib/import/model/model_glass.h"
 #include "renderlib/import/model/model_material.h"
 
 namespace bandsaw {
@@ -138,12 +139,6 @@ absl::Status read_layers(MaterialReader& reader, Principled& to) {
   ASSIGN_OR_RETURN(to.coat_roughness.texture,
                    reader.map({aiTextureType_CLEARCOAT, 1}, As::kNumber));
   ASSIGN_OR_RETURN(to.transmission.texture, reader.map({aiTextureType_TRANSMISSION}, As::kNumber));
-  if (reader.number("$mat.sheen.roughnessFactor", 0, 1) || reader.color("$clr.sheen.factor", 1)) {
-    reader.leave_out("its sheen is left out");
-  }
-  if (reader.number("$mat.volume.thicknessFactor", 0, 1e30).value_or(0) > 0) {
-    reader.leave_out("its volume is left out: what it transmits passes as through a thin pane");
-  }
   return absl::OkStatus();
 }
 
@@ -181,7 +176,9 @@ absl::StatusOr<ModelMaterial> read_metallic_roughness(MaterialReader& reader) {
       glossiness && reader.kind() == ModelKind::kGltf) {
     from_glossiness(reader, *glossiness, to);
   }
-  return reader.add(to);
+  ModelMaterial added = reader.add(to);
+  added.glass = glass_of(reader, to);
+  return added;
 }
 
 }  // namespace bandsaw

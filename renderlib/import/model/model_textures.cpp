@@ -11,8 +11,8 @@
 #include "absl/strings/strip.h"
 #include "renderlib/base/file.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/import/files/percent.h"
 #include "renderlib/import/image/decode_image.h"
-#include "renderlib/import/model/percent.h"
 
 namespace bandsaw {
 namespace {

@@ -6,6 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/geometry/closed.h"
+#include "renderlib/import/draft/boundaries.h"
 #include "renderlib/import/draft/color_limits.h"
 #include "renderlib/import/scene_file/numbers.h"
 #include "renderlib/import/scene_file/suggest.h"
@@ -51,21 +52,6 @@ absl::StatusOr<Medium> read_medium(const Field& in, const scene::Medium& from) {
     medium.absorption = Rgb{1 - albedo.r, 1 - albedo.g, 1 - albedo.b} * scale;
   }
   return medium;
-}
-
-/// Six times the volume that the mesh encloses; negative where its normals point inwards.
-double signed_volume(const Mesh& mesh) {
-  const auto corner = [&](std::uint32_t index) {
-    const std::array<float, 3>& p = mesh.positions[index];
-    return Vec3{p[0], p[1], p[2]};
-  };
-  // From a corner of the mesh, that a far origin takes no digits.
-  const Vec3 from = corner(mesh.triangles[0][0]);
-  double sum = 0;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    sum += dot(corner(a) - from, cross(corner(b) - from, corner(c) - from));
-  }
-  return sum;
 }
 
 }  // namespace
@@ -137,26 +123,14 @@ Instance boundary_of(const Vec3& low, const Vec3& high, MediumId inside, SceneDr
 
 absl::StatusOr<Instance> boundary_of(const Field& in, const Instance& placed, MediumId inside,
                                      SceneDraft& draft) {
-  Geometry& boundaries = draft.out.scene.media.boundaries;
-  const auto [known, is_new] = draft.boundary_meshes.try_emplace(
-      placed.mesh, MeshId{static_cast<std::uint32_t>(boundaries.meshes.size())});
-  if (is_new) {
-    const Mesh& mesh = draft.out.scene.geometry.meshes[index_of(placed.mesh)];
-    if (const std::size_t open = open_edges(mesh); open > 0) {
-      return in.error("interior", absl::StrCat("needs closed meshes; one of ",
-                                               mesh.triangles.size(), " triangles has ", open,
-                                               " open edges: close its holes, or use a "
-                                               "box or a sphere"));
-    }
-    Mesh boundary{mesh.positions, mesh.triangles, {}, {}};
-    if (signed_volume(boundary) < 0) {
-      for (auto& [a, b, c] : boundary.triangles) {
-        std::swap(b, c);
-      }
-    }
-    boundaries.meshes.push_back(std::move(boundary));
+  if (const auto boundary = mesh_boundary(placed, inside, draft)) {
+    return *boundary;
   }
-  return Instance{known->second, filled_with(inside), placed.to_world};
+  const Mesh& mesh = draft.out.scene.geometry.meshes[index_of(placed.mesh)];
+  return in.error("interior", absl::StrCat("needs closed meshes; one of ", mesh.triangles.size(),
+                                           " triangles has ", open_edges(mesh),
+                                           " open edges: close its holes, or use a "
+                                           "box or a sphere"));
 }
 
 }  // namespace bandsaw

@@ -101,6 +101,10 @@ absl::Status read_model_entry(const Field& in, const scene::Model& from, SceneDr
                ? in.error("boundary_only", "needs an interior: nothing would be left of the model")
                : absl::OkStatus();
   }
+  if (from.interior().empty() && !model->filled.empty()) {
+    RETURN_IF_ERROR(
+        place_model(in, {{}, model->filled}, placement, keys, std::nullopt, draft.placed->filled));
+  }
   RETURN_IF_ERROR(
       place_model(in, {{}, model->instances}, placement, keys, material, draft.placed->seen));
   const Transform to_camera =

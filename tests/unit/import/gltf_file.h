@@ -27,7 +27,6 @@ struct GltfTriangle {
   std::string samplers;
   bool colors = false;
   std::string primitives;  ///< further ones of the mesh, each after a comma
-  int type_of_uvs = 5126;  ///< the componentType that the first uvs are said to have
   std::string more;        ///< further members of the file, each followed by a comma
 
   std::string write(const TempDir& folder, const std::string& name) const {
@@ -48,8 +47,7 @@ struct GltfTriangle {
                      R"(]}],
 "accessors": [
 {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0,0,0], "max": [1,1,0]},
-{"bufferView": 1, "componentType": )",
-                     type_of_uvs, R"(, "count": 3, "type": "VEC2"},
+{"bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC2"},
 {"bufferView": 2, "componentType": 5126, "count": 3, "type": "VEC2"},
 {"bufferView": 3, "componentType": 5126, "count": 3, "type": "VEC3"}],
 "bufferViews": [{"buffer": 0, "byteLength": 36}, {"buffer": 0, "byteOffset": 36, "byteLength": 24},

@@ -3,8 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <span>
+#include <variant>
+#include <vector>
+
 #include "renderlib/material/albedo.h"
 #include "renderlib/material/bsdf.h"
+#include "renderlib/material/shading_normal.h"
 #include "tests/support/meshes.h"
 #include "tests/support/random.h"
 
@@ -28,6 +34,40 @@ SurfacePoint point(double u, const Vec3& normal = {0, 0, 1}) {
   p.along_v = {0, 1, 0};
   p.uv = p.uv2 = {u, 0.5};
   return p;
+}
+
+/// A normal map of one texel that leans along its u.
+ImageTexture tilted_map(UvSet set) {
+  ImageTexture map;
+  map.width = 1;
+  map.height = 1;
+  map.format = ImageTexture::Format::kFloat32;
+  map.channels = 3;
+  const std::array<float, 3> texel{0.75f, 0.5f, 1};
+  const auto bytes = std::as_bytes(std::span(texel));
+  map.texels = std::vector<std::byte>(bytes.begin(), bytes.end());
+  map.uv_set = set;
+  return map;
+}
+
+// The uvs of the second set are turned by a quarter, so the normal of the coat leans along y; that of
+// the base, whose map is the same in the first set, leans along x.
+TEST(Maps, TheNormalMapOfTheCoatLiesOnItsOwnUvs) {
+  const std::vector<Texture> textures = {ConstantTexture{{1, 1, 1}}, tilted_map(UvSet::kFirst),
+                                         tilted_map(UvSet::kSecond)};
+  SurfacePoint p = point(0.5);
+  p.along_u2 = {0, 3, 0};
+  p.along_v2 = {-3, 0, 0};
+  Principled m;
+  m.normal = TextureId{1};
+  m.coat.factor = 1;
+  m.coat_normal = TextureId{2};
+  const NormalUvSets sets = normal_uv_sets(m, textures);
+  EXPECT_TRUE(sets.first && sets.second);
+  const auto bsdf = std::get<PrincipledBsdf>(bsdf_at(m, textures, p, {0, 0, 1}));
+  const Vec3 leaning = normalize({0.5, 0, 1});
+  EXPECT_NEAR(length(bsdf.normal.shading - leaning), 0, 1e-6);
+  EXPECT_NEAR(length(bsdf.coat_normal - Vec3{0, leaning.x, leaning.z}), 0, 1e-6);
 }
 
 /// Whether `mapped` is `there` at u = 0.5 and `next` at u = 1.5, from all sides.

@@ -1,4 +1,4 @@
-#include "renderlib/import/model/percent.h"
+#include "renderlib/import/files/percent.h"
 
 #include <charconv>
 

@@ -1,0 +1,13 @@
+#pragma once
+
+#include "absl/status/status.h"
+#include "renderlib/import/gltf/gltf_json.h"
+
+namespace bandsaw::gltf {
+
+/// Checks every index by which an object of the file refers to another one, except for accessors of
+/// meshes, and that the nodes are trees of at most 1,000 levels in which no node stands twice.
+/// INVALID_ARGUMENT: "nodes[3].mesh: meshes[7] does not exist, …".
+absl::Status check_references(const Json& root);
+
+}  // namespace bandsaw::gltf

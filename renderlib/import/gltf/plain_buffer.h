@@ -1,0 +1,37 @@
+#pragma once
+
+// The one buffer of a plain glTF document while it is filled.
+
+#include <cstdint>
+#include <string>
+
+#include "absl/strings/string_view.h"
+#include "absl/types/span.h"
+#include "renderlib/import/gltf/gltf_json.h"
+
+namespace bandsaw::gltf {
+
+class PlainBuffer {
+ public:
+  /// Each returns the number of a new accessor over a copy of the values. `components`: 1 to 4, or
+  /// 16 of a matrix.
+  std::size_t add(absl::Span<const float> values, std::size_t components);
+  std::size_t add(absl::Span<const std::uint16_t> values, std::size_t components);
+  std::size_t add(absl::Span<const std::uint32_t> values);
+  /// Returns the number of a new buffer view over a copy of the bytes.
+  std::size_t add_bytes(absl::string_view bytes);
+
+  /// Puts accessors, buffer views and the buffer called `uri` into `root`, and returns its bytes.
+  /// May be called once.
+  std::string finish(const std::string& uri, Json& root);
+
+ private:
+  std::size_t add_accessor(absl::string_view bytes, int component, std::size_t components,
+                           std::size_t count);
+
+  std::string bytes_;
+  Json views_ = Json::array();
+  Json accessors_ = Json::array();
+};
+
+}  // namespace bandsaw::gltf

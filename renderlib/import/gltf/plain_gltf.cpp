@@ -1,0 +1,180 @@
+#include "renderlib/import/gltf/plain_gltf.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/string_view.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/import/gltf/gltf_accessor.h"
+#include "renderlib/import/gltf/gltf_file.h"
+#include "renderlib/import/gltf/gltf_references.h"
+#include "renderlib/import/gltf/plain_meshes.h"
+
+namespace bandsaw::gltf {
+namespace {
+
+/// Extensions that put other bytes in the place of vertices or images. A file that only offers one
+/// of them has something else beside it.
+constexpr absl::string_view kUnreadable[] = {"KHR_meshopt_compression", "KHR_texture_basisu",
+                                             "EXT_texture_avif", "MSFT_texture_dds"};
+constexpr char kWebp[] = "EXT_texture_webp";
+
+absl::Status check_required(const Json& root) {
+  for (const Json& required : items(root, "extensionsRequired")) {
+    const std::string name = required.is_string() ? required.get<std::string>() : "";
+    if (std::find(std::begin(kUnreadable), std::end(kUnreadable), name) != std::end(kUnreadable)) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("it requires the extension ", name,
+                       ", which is not read; gltf-transform (copy, ktxdecompress, webp) writes it "
+                       "without"));
+    }
+  }
+  return absl::OkStatus();
+}
+
+class Rewriter {
+ public:
+  Rewriter(const GltfFile& file, Buffers& buffers)
+      : from_(file.root), buffers_(buffers), meshes_(file.root, buffers, out_) {}
+
+  absl::StatusOr<PlainGltf> run() {
+    plain_.root = from_;
+    plain_.animations = items(from_, "animations").size();
+    for (const char* name :
+         {"animations", "accessors", "bufferViews", "buffers", "extensionsRequired"}) {
+      plain_.root.erase(name);
+    }
+    for (std::size_t i = 0; i < items(from_, "meshes").size(); ++i) {
+      ASSIGN_OR_RETURN(plain_.root["meshes"][i], meshes_.mesh(i));
+    }
+    for (std::size_t i = 0; i < items(from_, "skins").size(); ++i) {
+      RETURN_IF_ERROR(rewrite_skin(i));
+    }
+    RETURN_IF_ERROR(check_joints());
+    RETURN_IF_ERROR(rewrite_textures());
+    plain_.buffer = out_.finish(kPlainBuffer, plain_.root);
+    return std::move(plain_);
+  }
+
+ private:
+  /// A skin without matrices has those that change nothing (glTF 2.0, 3.7.3.1).
+  absl::Status rewrite_skin(std::size_t index) {
+    const std::string place = absl::StrCat("skins[", index, "]");
+    const Json& skin = from_["skins"][index];
+    const std::size_t joints = items(skin, "joints").size();
+    std::vector<float> matrices;
+    if (find(skin, "inverseBindMatrices") == nullptr) {
+      constexpr float kNothing[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+      for (std::size_t j = 0; j < joints; ++j) {
+        matrices.insert(matrices.end(), std::begin(kNothing), std::end(kNothing));
+      }
+    } else {
+      ASSIGN_OR_RETURN(const std::size_t accessor, whole_of(skin, "inverseBindMatrices", place));
+      ASSIGN_OR_RETURN(const AccessorShape shape, accessor_shape(from_, accessor, place));
+      if (shape.components != 16 || shape.component != Component::kFloat || shape.count < joints) {
+        return damaged(shape.place, absl::StrCat("must hold a MAT4 of floats for each of the ",
+                                                 joints, " joints of ", place));
+      }
+      ASSIGN_OR_RETURN(matrices, read_floats(from_, accessor, shape, buffers_));
+    }
+    plain_.root["skins"][index]["inverseBindMatrices"] = out_.add(matrices, 16);
+    return absl::OkStatus();
+  }
+
+  absl::Status check_joints() const {
+    const Json& nodes = items(from_, "nodes");
+    for (std::size_t n = 0; n < nodes.size(); ++n) {
+      const Json* skin = item_of(from_, "skins", nodes[n], "skin");
+      const auto mesh = number(nodes[n], "mesh");
+      const std::size_t joints = skin == nullptr ? 0 : items(*skin, "joints").size();
+      const std::uint32_t used = mesh ? meshes_.joints_of(static_cast<std::size_t>(*mesh)) : 0;
+      if (skin != nullptr && used > joints) {
+        return damaged(absl::StrCat("nodes[", n, "].skin"),
+                       absl::StrCat("has ", joints, " joints, its mesh uses joint ", used - 1));
+      }
+    }
+    return absl::OkStatus();
+  }
+
+  absl::Status rewrite_textures() {
+    std::vector<bool> used(items(from_, "images").size(), false);
+    const Json& textures = items(from_, "textures");
+    for (std::size_t i = 0; i < textures.size(); ++i) {
+      Json& texture = plain_.root["textures"][i];
+      if (const Json* webp = extension(textures[i], kWebp)) {
+        ASSIGN_OR_RETURN(const std::size_t source,
+                         whole_of(*webp, "source", absl::StrCat("textures[", i, "].", kWebp)));
+        if (source >= used.size()) {
+          return damaged(absl::StrCat("textures[", i, "].", kWebp),
+                         absl::StrCat("images[", source, "] does not exist"));
+        }
+        texture["source"] = source;
+        remove_extension(texture, kWebp);
+      }
+      if (const auto source = number(texture, "source")) {
+        used[static_cast<std::size_t>(*source)] = true;
+      }
+    }
+    for (std::size_t i = 0; i < used.size(); ++i) {
+      RETURN_IF_ERROR(rewrite_image(i, used[i]));
+    }
+    return absl::OkStatus();
+  }
+
+  absl::Status rewrite_image(std::size_t index, bool is_used) {
+    const std::string place = absl::StrCat("images[", index, "]");
+    const Json& from = from_["images"][index];
+    const std::string uri = text(from, "uri");
+    Json& to = plain_.root["images"][index];
+    if (!is_used) {
+      to = {{"uri", "unused"}};
+    } else if (find(from, "bufferView") != nullptr) {
+      ASSIGN_OR_RETURN(const std::size_t view, whole_of(from, "bufferView", place));
+      ASSIGN_OR_RETURN(const absl::string_view bytes, buffers_.view(view, place));
+      embed(bytes, to);
+    } else if (absl::StartsWithIgnoreCase(uri, "data:")) {
+      const auto bytes = data_of_uri(uri);
+      if (!bytes) {
+        return damaged(place + ".uri", "its base64 is broken");
+      }
+      embed(*bytes, to);
+    } else if (uri.empty()) {
+      return damaged(place, "has neither a uri nor a bufferView");
+    }
+    return absl::OkStatus();
+  }
+
+  /// What the bytes are is found by looking at them, not by the type that the file gives.
+  void embed(absl::string_view bytes, Json& image) {
+    image = {{"bufferView", out_.add_bytes(bytes)}, {"mimeType", "image/png"}};
+  }
+
+  const Json& from_;
+  Buffers& buffers_;
+  PlainBuffer out_;
+  PlainMeshes meshes_;
+  PlainGltf plain_;
+};
+
+}  // namespace
+
+absl::StatusOr<PlainGltf> read_plain_gltf(const std::string& path, const SceneFolder& scene) {
+  GltfFile file;
+  ASSIGN_OR_RETURN(const bool is_second, read_gltf_file(path, file));
+  if (!is_second) {
+    PlainGltf first;
+    first.is_first_version = true;
+    first.root = std::move(file.root);
+    return first;
+  }
+  RETURN_IF_ERROR(check_required(file.root));
+  RETURN_IF_ERROR(check_references(file.root));
+  Buffers buffers(file, scene, folder_of(path));
+  return Rewriter(file, buffers).run();
+}
+
+}  // namespace bandsaw::gltf

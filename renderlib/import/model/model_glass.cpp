@@ -1,0 +1,100 @@
+#include "renderlib/import/model/model_glass.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "absl/strings/str_cat.h"
+#include "renderlib/geometry/closed.h"
+#include "renderlib/import/draft/boundaries.h"
+#include "renderlib/math/elementary.h"
+
+namespace bandsaw {
+namespace {
+
+/// Beer and Lambert: after the distance the light that is left is the colour.
+Rgb absorption_of(const GltfVolume& volume) {
+  const auto channel = [&](double color) {
+    constexpr double kLeastColor = 1e-6;  // darker is as opaque
+    const double rate =
+        -log(std::clamp(color, kLeastColor, 1.0)) / std::max(volume.attenuation_distance, 1e-12);
+    return std::clamp(static_cast<float>(rate), 0.0f, kMostPerUnit);
+  };
+  const auto [r, g, b] = volume.attenuation_color;
+  return std::isfinite(volume.attenuation_distance) ? Rgb{channel(r), channel(g), channel(b)}
+                                                    : Rgb{};
+}
+
+bool is_white(const Rgb& color) { return color == Rgb{1, 1, 1}; }
+
+/// What glass has no place for.
+bool has_more_than_glass(const MaterialReader& reader, const Principled& material) {
+  return !is_white(material.base_color.factor) || reader.has({aiTextureType_BASE_COLOR}) ||
+         reader.has({aiTextureType_UNKNOWN}) || material.normal || material.coat.factor > 0 ||
+         !is_black(material.emissive.factor);
+}
+
+}  // namespace
+
+std::optional<ModelMaterial::Glass> glass_of(MaterialReader& reader, const Principled& material) {
+  const GltfMaterial* gltf = reader.gltf();
+  if (gltf == nullptr || !gltf->volume || !(gltf->volume->thickness > 0) ||
+      material.transmission.factor == 0) {
+    return std::nullopt;
+  }
+  const bool is_metal = material.metallic.factor > 0 && !reader.has({aiTextureType_UNKNOWN});
+  if (material.transmission.factor < 1 || reader.has({aiTextureType_TRANSMISSION}) || is_metal ||
+      material.alpha_mode != AlphaMode::kOpaque) {
+    reader.leave_out("its volume is left out: what it transmits passes as through a thin pane");
+    return std::nullopt;
+  }
+  if (has_more_than_glass(reader, material)) {
+    reader.leave_out(
+        "is solid glass: its base colour, its maps, its clear coat and its emission are left out");
+  }
+  Dielectric glass;
+  glass.index_of_refraction = material.index_of_refraction;
+  glass.roughness = material.roughness.factor;
+  return ModelMaterial::Glass{reader.add(glass).id, absorption_of(*gltf->volume)};
+}
+
+void fill_glass(const std::vector<ModelMaterial>& materials, ModelFile& file, Model& model) {
+  struct Filling {
+    ModelMaterial::Glass glass;
+    std::optional<MediumId> medium;
+  };
+  std::map<MaterialId, Filling> fillings;
+  std::vector<Medium>& media = file.draft.out.scene.media.media;
+  for (const ModelMaterial& material : materials) {
+    if (material.glass && fillings.count(material.id) == 0) {
+      Filling& filling = fillings[material.id];
+      filling.glass = *material.glass;
+      if (!is_black(filling.glass.absorption)) {
+        filling.medium = MediumId{static_cast<std::uint32_t>(media.size())};
+        media.push_back(Medium{.absorption = filling.glass.absorption});
+      }
+    }
+  }
+  std::size_t open = 0;
+  for (Instance& instance : model.instances) {
+    const auto found = fillings.find(instance.material);
+    if (found == fillings.end()) {
+      continue;
+    }
+    const Mesh& mesh = file.draft.out.scene.geometry.meshes[index_of(instance.mesh)];
+    if (open_edges(mesh) > 0) {
+      ++open;
+      continue;
+    }
+    instance.material = found->second.glass.id;
+    if (found->second.medium) {
+      model.filled.push_back(*mesh_boundary(instance, *found->second.medium, file.draft));
+    }
+  }
+  if (open > 0) {
+    file.warn(absl::StrCat("the volume of ", open, " placements of meshes that are not closed is ",
+                           "left out: what they transmit passes as through a thin pane"));
+  }
+}
+
+}  // namespace bandsaw

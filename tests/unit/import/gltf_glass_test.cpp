@@ -1,0 +1,168 @@
+// KHR_materials_volume: closed meshes that transmit are solid glass with what it absorbs, and the
+// clear coat's normal map has its own uvs.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/unit/import/gltf_writer.h"
+#include "tests/unit/import/layer.h"
+
+namespace bandsaw {
+namespace {
+
+using test::GltfWriter;
+using test::Json;
+using test::TempDir;
+using test::WavySquare;
+using test::write_text;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr char kGlass[] = R"({"pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0},
+  "extensions": {"KHR_materials_transmission": {"transmissionFactor": 1}, "KHR_materials_ior": {"ior": 1},
+    "KHR_materials_volume": {"thicknessFactor": 1, "attenuationDistance": 2,
+      "attenuationColor": [0.25, 0.5, 1]}}})";
+
+/// The cube [-1, 1]^3, each face with vertices of its own; without its last face it is open.
+GltfWriter cube(bool open = false) {
+  std::vector<float> positions;
+  std::vector<std::uint16_t> indices;
+  for (int face = 0; face < (open ? 5 : 6); ++face) {
+    const int axis = face / 2;
+    const float side = face % 2 == 0 ? -1.0f : 1.0f;
+    const auto first = static_cast<std::uint16_t>(positions.size() / 3);
+    for (const auto& [a, b] : {std::pair(-1, -1), {1, -1}, {1, 1}, {-1, 1}}) {
+      float p[3];
+      p[axis] = side;
+      p[(axis + 1) % 3] = static_cast<float>(a) * side;
+      p[(axis + 2) % 3] = static_cast<float>(b);
+      positions.insert(positions.end(), {p[0], p[1], p[2]});
+    }
+    for (const int corner : {0, 1, 2, 0, 2, 3}) {
+      indices.push_back(static_cast<std::uint16_t>(first + corner));
+    }
+  }
+  GltfWriter file;
+  file.attributes()["POSITION"] = file.add(positions, 3);
+  file.primitive()["indices"] = file.add(indices, 1);
+  file.primitive()["material"] = 0;
+  file.root["materials"] = Json::array({Json::parse(kGlass)});
+  file.root["extensionsUsed"] = {"KHR_materials_transmission", "KHR_materials_volume",
+                                 "KHR_materials_ior"};
+  return file;
+}
+
+ImportedScene read(GltfWriter file, const TempDir& folder) {
+  auto imported = file.import(folder);
+  EXPECT_TRUE(imported.ok()) << imported.status();
+  return imported.ok() ? *std::move(imported) : ImportedScene();
+}
+
+TEST(GltfVolume, AClosedMeshIsGlassThatAbsorbs) {
+  const TempDir folder;
+  const ImportedScene imported = read(cube(), folder);
+  EXPECT_THAT(imported.info.warnings, IsEmpty());
+  const Instance& instance = imported.scene.geometry.instances.at(0);
+  const auto& glass =
+      std::get<Dielectric>(imported.scene.materials.at(index_of(instance.material)));
+  EXPECT_EQ(glass.index_of_refraction, 1);
+  EXPECT_EQ(glass.roughness, 0);
+  ASSERT_EQ(imported.scene.media.media.size(), 1u);
+  const Rgb& absorption = imported.scene.media.media[0].absorption;
+  EXPECT_NEAR(absorption.r, std::log(4.0) / 2, 1e-6);
+  EXPECT_NEAR(absorption.g, std::log(2.0) / 2, 1e-6);
+  EXPECT_EQ(absorption.b, 0);
+  EXPECT_EQ(imported.scene.media.boundaries.instances.size(), 1u);
+}
+
+// Seen through its middle, glass of index 1 and a depth of 2 that turns white into the colour after
+// a length of 2 shows that colour, in the file alone and placed by a scene.
+TEST(GltfVolume, WhiteLightHasTheColourAfterTheDistance) {
+  const TempDir folder;
+  cube().write(folder, "m.gltf");
+  const auto imported = import_scene(
+      write_text(folder, "s.textproto",
+                 "camera { position: [0, 0, 9] look_at: [0, 0, 0] orthographic { height: 1 } }"
+                 "background { constant { rgb: [1, 1, 1] } } model { file: \"m.gltf\" }"));
+  ASSERT_TRUE(imported.ok()) << imported.status();
+  const Image image = test::layer(*imported, 2, 2, Integrator::kPath);
+  for (const Rgb& pixel : image.pixels) {
+    EXPECT_NEAR(pixel.r, 0.25, 1e-4);
+    EXPECT_NEAR(pixel.g, 0.5, 1e-4);
+    EXPECT_NEAR(pixel.b, 1, 1e-4);
+  }
+}
+
+TEST(GltfVolume, WhatIsOpenOrNotWhollyClearStaysAThinPane) {
+  const TempDir folder;
+  const ImportedScene open = read(cube(true), folder);
+  EXPECT_THAT(open.info.warnings, ElementsAre(HasSubstr("the volume of 1 placements of meshes")));
+  const auto is_thin = [](const ImportedScene& imported) {
+    const MaterialId id = imported.scene.geometry.instances.at(0).material;
+    return std::holds_alternative<Principled>(imported.scene.materials.at(index_of(id))) &&
+           imported.scene.media.boundaries.instances.empty();
+  };
+  EXPECT_TRUE(is_thin(open));
+  GltfWriter half = cube();
+  half.root["materials"][0]["extensions"]["KHR_materials_transmission"]["transmissionFactor"] = 0.5;
+  const ImportedScene clouded = read(half, folder);
+  EXPECT_THAT(clouded.info.warnings, ElementsAre(HasSubstr("its volume is left out")));
+  EXPECT_TRUE(is_thin(clouded));
+}
+
+TEST(GltfVolume, WithoutAThicknessItIsAThinPane) {
+  const TempDir folder;
+  GltfWriter thin = cube();
+  thin.root["materials"][0]["extensions"]["KHR_materials_volume"].erase("thicknessFactor");
+  const ImportedScene imported = read(thin, folder);
+  EXPECT_THAT(imported.info.warnings, IsEmpty());
+  EXPECT_TRUE(imported.scene.media.media.empty());
+}
+
+// The base's normal map, of scale 0, lies in the first set of uvs and bends nothing; the coat's
+// lies in the second, which is turned by a quarter. So the picture is that without the base's map.
+TEST(GltfCoat, ItsNormalMapLiesOnItsOwnUvs) {
+  const TempDir folder;
+  write_text(folder, "lean.ppm", std::string("P6 1 1 255\n") + "\xe0\x80\xf0");
+  const WavySquare square(2);
+  std::vector<float> turned;
+  for (std::size_t i = 0; i < square.uvs.size(); i += 2) {
+    turned.insert(turned.end(), {square.uvs[i + 1], -square.uvs[i]});
+  }
+  const auto seen = [&](bool base_map, int coat_set) {
+    GltfWriter file = square.plain();
+    file.attributes()["TEXCOORD_1"] = file.add(turned, 2);
+    file.primitive()["material"] = 0;
+    file.root["images"] = {{{"uri", "lean.ppm"}}};
+    file.root["textures"] = {{{"source", 0}}};
+    Json material = Json::parse(R"({"pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 1],
+      "metallicFactor": 0, "roughnessFactor": 1}, "extensions": {"KHR_materials_clearcoat":
+      {"clearcoatFactor": 1, "clearcoatRoughnessFactor": 0.3, "clearcoatNormalTexture": {"index": 0}}}})");
+    material["extensions"]["KHR_materials_clearcoat"]["clearcoatNormalTexture"]["texCoord"] =
+        coat_set;
+    if (base_map) {
+      material["normalTexture"] = {{"index", 0}, {"texCoord", 0}, {"scale", 0}};
+    }
+    file.root["materials"] = Json::array({material});
+    file.root["extensionsUsed"] = {"KHR_materials_clearcoat"};
+    ImportedScene imported = read(file, folder);
+    imported.scene.camera =
+        OrthographicCamera{.position = {0.5, 0.5, 9}, .look_at = {0.5, 0.5, 0}, .height = 0.9};
+    return test::layer(imported, 16, 16, Integrator::kPath).pixels;
+  };
+  const auto difference = [](const std::vector<Rgb>& a, const std::vector<Rgb>& b) {
+    float most = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      most = std::max(most, std::abs(a[i].r - b[i].r));
+    }
+    return most;
+  };
+  EXPECT_LT(difference(seen(true, 1), seen(false, 1)), 1e-4);
+  EXPECT_GT(difference(seen(true, 1), seen(true, 0)), 1e-2) << "the sets differ";
+}
+
+}  // namespace
+}  // namespace bandsaw
