@@ -4,6 +4,7 @@
 #include <atomic>
 #include <vector>
 
+#include "renderlib/accel/capacity.h"
 #include "renderlib/accel/collapse.h"
 #include "renderlib/base/check.h"
 
@@ -71,7 +72,7 @@ TreeItems items_of(const Mesh& mesh, Pool* pool) {
 }  // namespace
 
 MeshTree build_mesh_tree(const Mesh& mesh, Pool* pool) {
-  BANDSAW_CHECK(mesh.triangles.size() < ChildRef::kMaxLeaves, "the package's limits are lower");
+  BANDSAW_CHECK(mesh.triangles.size() <= kMaxTreeItems, "scene/check_counts.h refuses more");
   MeshTree result;
   const BinaryTree binary = build_binary_tree(items_of(mesh, pool), pool);
   if (binary.nodes.empty()) {

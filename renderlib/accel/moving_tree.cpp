@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "renderlib/accel/capacity.h"
 #include "renderlib/accel/collapse.h"
 #include "renderlib/base/check.h"
 #include "renderlib/geometry/placement.h"
@@ -124,7 +125,7 @@ MovingTree build_moving_tree(const Geometry& geometry, const Prototypes& prototy
                                inverse(at_open).value_or(Transform{})});
     }
   }
-  BANDSAW_CHECK(items.size() < ChildRef::kMaxLeaves, "the package's limits are lower");
+  BANDSAW_CHECK(items.size() <= kMaxTreeItems, "scene/check_counts.h refuses more");
   const BinaryTree binary = build_binary_tree(std::move(items), pool);
   result.tree = collapse(binary, [&](const BinaryNode& leaf) {
     return ChildRef::leaf(LeafKind::kInstance, binary.items[leaf.first].index);

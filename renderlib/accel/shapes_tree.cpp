@@ -3,6 +3,7 @@
 #include <array>
 
 #include "absl/types/span.h"
+#include "renderlib/accel/capacity.h"
 #include "renderlib/accel/collapse.h"
 #include "renderlib/base/check.h"
 #include "renderlib/geometry/disk.h"
@@ -102,7 +103,7 @@ ShapesTree build_shapes_tree(const Shapes& shapes, Pool* pool) {
   ShapeItems shape_items(shapes, result);
   TreeItems items;
   shape_items.add_all(items);
-  BANDSAW_CHECK(items.size() < ChildRef::kMaxLeaves, "the package's limits are lower");
+  BANDSAW_CHECK(items.size() <= kMaxTreeItems, "scene/check_counts.h refuses more");
   const BinaryTree binary = build_binary_tree(std::move(items), pool);
   result.tree =
       collapse(binary, [&](const BinaryNode& leaf) { return shape_items.make_leaf(binary, leaf); });

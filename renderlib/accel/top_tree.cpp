@@ -1,5 +1,6 @@
 #include "renderlib/accel/top_tree.h"
 
+#include "renderlib/accel/capacity.h"
 #include "renderlib/accel/collapse.h"
 #include "renderlib/base/check.h"
 #include "renderlib/geometry/moving_bounds.h"
@@ -43,7 +44,7 @@ TopTree build_top_tree(const Geometry& geometry, const Prototypes& prototypes, P
   TreeItems items;
   shape_items.add_all(items);
   add_instances(geometry, prototypes, top, items);
-  BANDSAW_CHECK(items.size() < ChildRef::kMaxLeaves, "the package's limits are lower");
+  BANDSAW_CHECK(items.size() <= kMaxTreeItems, "scene/check_counts.h refuses more");
   const BinaryTree binary = build_binary_tree(std::move(items), pool);
   top.tree = collapse(binary, [&](const BinaryNode& leaf) {
     const ItemRef& first = binary.items[leaf.first];

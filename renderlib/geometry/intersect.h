@@ -29,6 +29,12 @@ inline double difference_of_products(double a, double b, double c, double d) {
   return std::fma(a, b, -cd) + error;
 }
 
+/// cross(a, b), each component within 1.5 units in the last place, also where products cancel.
+inline Vec3 exact_cross(const Vec3& a, const Vec3& b) {
+  return {difference_of_products(a.y, b.z, a.z, b.y), difference_of_products(a.z, b.x, a.x, b.z),
+          difference_of_products(a.x, b.y, a.y, b.x)};
+}
+
 /// A point as the ray sees it: the ray is the z axis, its origin the origin.
 struct Sheared {
   double x;

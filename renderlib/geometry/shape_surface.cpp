@@ -4,12 +4,17 @@
 #include <cmath>
 
 #include "renderlib/geometry/disk.h"
+#include "renderlib/geometry/intersect.h"
 #include "renderlib/geometry/sphere_uv.h"
 
 namespace bandsaw {
 namespace {
 
 constexpr double kOffset = 0x1p-40;
+/// Up to this condition of a placement kOffset is far above the rounding of rays that come back.
+constexpr double kMaxPlainCondition = 0x1p8;
+/// Beyond it, what of kOffset is enough in the primitive's own space.
+constexpr double kSquashedShare = 0x1p-5;
 
 double norm(const std::array<Vec3, 3>& m) {
   return std::sqrt(length_squared(m[0]) + length_squared(m[1]) + length_squared(m[2]));
@@ -83,16 +88,34 @@ Placement::Placement(const Transform& t) {
     cofactors[i] = cross(rows[(i + 1) % 3], rows[(i + 2) % 3]);
   }
   determinant = dot(rows[0], cofactors[0]);
+  // With a determinant of mere rounding, too, this is above the limit.
+  squashes = !(norm(rows) * norm(cofactors) <= kMaxPlainCondition * std::abs(determinant));
+  if (squashes) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      cofactors[i] = exact_cross(rows[(i + 1) % 3], rows[(i + 2) % 3]);
+    }
+    determinant = dot(rows[0], cofactors[0]);
+  }
   moved = max_abs(Vec3{t.m[0][3], t.m[1][3], t.m[2][3]});
 }
 
-double Placement::offset(const Vec3& position, double largest_in_object) const {
-  // The largest numbers that went into the position: they bound its rounding. Rays come back
-  // through the inverse, which can make rounding of the origin larger by the condition of the
-  // placement, |M| |M^-1| in Frobenius norms; the factor 2^-8 is what 2^-40 has in reserve.
-  const double condition = norm(rows) * norm(cofactors) / std::abs(determinant);
-  const double scale = std::max({max_abs(position), largest_in_object * norm(rows), moved});
-  return surface_offset({}, scale * std::max(1.0, 0x1p-8 * condition));
+// Rays come back through the inverse, and with them the rounding of their origins, which is a few
+// 2^-53 of `scale`, the largest number that went into the position. README.md, "Squashed space",
+// derives the constants.
+void Placement::set_offset(const SurfacePoint& local, SurfacePoint& placed) const {
+  const double largest_in_object = local.offset / kOffset;
+  const double scale = std::max({max_abs(placed.position), largest_in_object * norm(rows), moved});
+  placed.squashed = squashes;
+  if (!squashes) {
+    placed.offset = surface_offset({}, scale);
+    return;
+  }
+  const double across = length(normal(local.geometric_normal));
+  placed.offset = surface_offset({}, kSquashedShare * scale * norm(cofactors) / across);
+  const Vec3 own_normal = {dot(rows[0], local.geometric_normal),
+                           dot(rows[1], local.geometric_normal),
+                           dot(rows[2], local.geometric_normal)};
+  placed.away = own_normal * (placed.offset * across / std::abs(determinant));
 }
 
 double surface_offset(const Vec3& position, double size) {
@@ -132,7 +155,7 @@ SurfacePoint placed(const SurfacePoint& local, const Transform& to_world, const 
           ? p.geometric_normal
           : same_side(unit_or(placement.normal(local.shading_normal), p.geometric_normal),
                       p.geometric_normal);
-  p.offset = placement.offset(p.position, local.offset / kOffset);
+  placement.set_offset(local, p);
   return p;
 }
 

@@ -54,13 +54,16 @@ struct Placement {
     const Vec3 c = {dot(cofactors[0], n), dot(cofactors[1], n), dot(cofactors[2], n)};
     return determinant < 0 ? -c : c;
   }
-  /// SurfacePoint::offset of what lies at `position` in the world, for the largest number that went
-  /// into it in its own space.
-  double offset(const Vec3& position, double largest_in_object) const;
+  /// Sets `squashed` and `offset` of `placed`, and `away` where it is squashed. The position is
+  /// set; `local` is the same surface before the placement.
+  void set_offset(const SurfacePoint& local, SurfacePoint& placed) const;
 
   std::array<Vec3, 3> rows;
   std::array<Vec3, 3> cofactors;
   double determinant;
+  /// Whether lengths of different directions are changed by so different factors that the rounding
+  /// of rays that come back to the primitive's own space counts there.
+  bool squashes;
   double moved;  ///< the largest component of the translation
 };
 

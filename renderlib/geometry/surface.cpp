@@ -128,6 +128,10 @@ SurfacePoint surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit
                                         : on_instance(geometry, ray, hit, sphere_uv);
   p.id = hit.id;
   p.time = ray.time;
+  p.t = hit.t;
+  if (!p.squashed) {
+    p.away = p.geometric_normal * p.offset;
+  }
   return p;
 }
 
@@ -138,11 +142,9 @@ Ray toward(const SurfacePoint& from, const Vec3& target, double target_offset) {
   return {ray.origin, way, 1 - shorter, from.id, from.time};
 }
 
-Ray toward(const SurfacePoint& from, const Vec3& target, double target_offset,
-           const Vec3& target_normal) {
-  const double side =
-      dot(from.position - target, target_normal) < 0 ? -target_offset : target_offset;
-  return toward(from, target + target_normal * side, 0);
+Ray toward(const SurfacePoint& from, const SurfacePoint& target) {
+  const bool behind = dot(from.position - target.position, target.geometric_normal) < 0;
+  return toward(from, behind ? target.position - target.away : target.position + target.away, 0);
 }
 
 }  // namespace bandsaw

@@ -29,10 +29,17 @@ struct SurfacePoint {
   Vec3 along_v2;
   MaterialId material{};
   PrimitiveId id;
-  /// How far apart ray origins and surface must lie to be told apart: 2^-40 max(|position|, size of
-  /// the primitive), in the larger of object and world space scale; more for instances that squash
-  /// space so much that rounding is larger.
+  /// Whether an instance squashes space so much that rounding in the primitive's own space counts.
+  bool squashed = false;
+  /// How far apart ray origins and surface must lie along the normal to be told apart: 2^-40
+  /// max(|position|, size of the primitive), in the larger of object and world space scale. Where
+  /// an instance squashes space it depends on how far it squashes along this normal.
   double offset = 0;
+  /// From the position to where rays that leave outwards begin; those that leave inwards begin at
+  /// the other side. geometric_normal times `offset`, but where an instance squashes space: there
+  /// that may lead past the primitive, and this is at a right angle to it in its own space.
+  Vec3 away;
+  double t = 0;     ///< Hit::t
   double time = 0;  ///< of the ray that met it; rays from here are at that time too
 };
 
@@ -49,11 +56,19 @@ SurfacePoint surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit
 /// have no area.
 void add_uv_directions(const Geometry& geometry, bool second, SurfacePoint& point);
 
-/// A ray that leaves the surface: starts `offset` off it on the side of `direction` and cannot hit
-/// the flat primitive again. (Here, so that what waits for the ray has it in registers.)
+/// How far along `ray`, whose direction is a unit vector, the surface is that it has met. A
+/// position that was rounded in squashed space is on its primitive, but may lie further beside the
+/// ray than the primitive is thick: not it tells the distance there.
+inline double distance_along(const Ray& ray, const SurfacePoint& met) {
+  return met.squashed ? met.t : length(met.position - ray.origin);
+}
+
+/// A ray that leaves the surface: starts off it on the side of `direction` and cannot hit the flat
+/// primitive again. (Here, so that what waits for the ray has it in registers.)
 inline Ray leave(const SurfacePoint& from, const Vec3& direction, double t_max = kInfinity) {
-  const double side = dot(direction, from.geometric_normal) < 0 ? -from.offset : from.offset;
-  return {from.position + from.geometric_normal * side, direction, t_max, from.id, from.time};
+  const bool inwards = dot(direction, from.geometric_normal) < 0;
+  return {inwards ? from.position - from.away : from.position + from.away, direction, t_max,
+          from.id, from.time};
 }
 
 /// A ray from `from` to `target`, for asking whether anything lies between; t is in (0, 1), ends
@@ -61,11 +76,9 @@ inline Ray leave(const SurfacePoint& from, const Vec3& direction, double t_max =
 /// space).
 Ray toward(const SurfacePoint& from, const Vec3& target, double target_offset);
 
-/// The same to a point of a surface with unit normal `target_normal`: ends `target_offset` off the
-/// surface, on the side that faces `from`, so that the surface itself is never between, however
-/// edge-on it is seen. For a sample on a light use this.
-Ray toward(const SurfacePoint& from, const Vec3& target, double target_offset,
-           const Vec3& target_normal);
+/// The same to another surface: ends off it, on the side that faces `from`, so that
+/// the surface itself is never between, however edge-on it is seen.
+Ray toward(const SurfacePoint& from, const SurfacePoint& target);
 
 /// SurfacePoint::offset of a point at `position` on a primitive of `size`, in world space without
 /// instances.

@@ -45,7 +45,7 @@ void follow(const PathContext& context, std::uint32_t depth, PathState& path) {
       see_surface(context, *seen, path);
     }
     if (context.scene.needs().media) {
-      const double way = seen ? length(seen->position - path.ray.origin) : kInfinity;
+      const double way = seen ? distance_along(path.ray, *seen) : kInfinity;
       const Passage passage = through_media(context, way, depth, path);
       if (passage == Passage::kEnded) {
         return;

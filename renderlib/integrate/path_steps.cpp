@@ -117,7 +117,7 @@ void see_surface(const PathContext& context, const SurfacePoint& point, PathStat
   Rgb passing = gray(1);
   if (scene.needs().media) {
     Ray way = path.ray;
-    way.t_max = length(point.position - way.origin);
+    way.t_max = distance_along(way, point);
     passing = media_transmittance(scene, way, context.rays);
   }
   path.radiance += path.throughput * light * passing *

@@ -105,10 +105,8 @@ void deal_out(const Scene& scene, const Takers& takers, const Finding& found, st
     }
     const View view = view_of(*takers[j], found);
     if (j != finder && view.scattered.pdf > 0) {
-      const SurfacePoint& there = found.point;
       ++rays;
-      if (scene.accel().occluded(
-              toward(takers[j]->point, there.position, there.offset, there.geometric_normal))) {
+      if (scene.accel().occluded(toward(takers[j]->point, found.point))) {
         continue;
       }
     }

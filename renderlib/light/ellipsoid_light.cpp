@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "renderlib/geometry/intersect.h"
 #include "renderlib/sampling/warp.h"
 
 namespace bandsaw {
@@ -10,16 +11,14 @@ namespace {
 /// The map's cofactors: what it does to normals, and by their length to areas.
 struct Cofactors {
   explicit Cofactors(const ShapeView& shape)
-      : x(cross(shape.v, shape.w)),
-        y(cross(shape.w, shape.u)),
-        z(cross(shape.u, shape.v)),
+      : x(exact_cross(shape.v, shape.w)),
+        y(exact_cross(shape.w, shape.u)),
+        z(exact_cross(shape.u, shape.v)),
         determinant(dot(shape.u, x)) {}
 
   Vec3 times(const Vec3& s) const { return x * s.x + y * s.y + z * s.z; }
   /// Of a vector in the world, before the map.
-  Vec3 back(const Vec3& p) const {
-    return Vec3{dot(x, p), dot(y, p), dot(z, p)} / determinant;
-  }
+  Vec3 back(const Vec3& p) const { return Vec3{dot(x, p), dot(y, p), dot(z, p)} / determinant; }
 
   Vec3 x;
   Vec3 y;
@@ -35,11 +34,9 @@ std::optional<ShapeSample> sample_ellipsoid(const ShapeView& shape, const Vec3& 
   const Vec3 on_sphere = sample_sphere(u, v);
   const Vec3 outward = cofactors.times(on_sphere) * (cofactors.determinant < 0 ? -1 : 1);
   ShapeSample sample;
-  sample.position =
-      shape.a + shape.u * on_sphere.x + shape.v * on_sphere.y + shape.w * on_sphere.z;
+  sample.position = shape.a + shape.u * on_sphere.x + shape.v * on_sphere.y + shape.w * on_sphere.z;
   sample.normal = normalize(outward);
-  sample.pdf =
-      solid_angle_pdf(kSpherePdf / length(outward), from, sample.position, sample.normal);
+  sample.pdf = solid_angle_pdf(kSpherePdf / length(outward), from, sample.position, sample.normal);
   return sample;
 }
 

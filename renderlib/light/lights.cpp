@@ -203,7 +203,7 @@ std::optional<LightSample> Lights::sample_surface(PrimitiveId id, const Receiver
   const Material& material = (*materials_)[index_of(point.material)];
   LightSample sample;
   sample.direction = normalize(way);
-  sample.target = on_light->position + on_light->normal * std::copysign(point.offset, facing);
+  sample.target = on_light->position + (facing < 0 ? -point.away : point.away);
   sample.radiance = emitted(material, *textures_, point, -sample.direction) *
                     static_cast<float>(opacity(material, *textures_, point));
   sample.pdf = on_light->pdf;

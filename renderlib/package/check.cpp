@@ -4,9 +4,11 @@
 
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/light/check_light_counts.h"
 #include "renderlib/light/check_lights.h"
 #include "renderlib/package/manifest.h"
 #include "renderlib/package/placements.h"
+#include "renderlib/scene/check_counts.h"
 
 namespace bandsaw {
 namespace {
@@ -151,6 +153,13 @@ absl::Status check_mesh(const Mesh& mesh, const std::string& field) {
   return absl::OkStatus();
 }
 
+/// An error of a check that is not about packages alone.
+absl::Status of_package(const absl::Status& status) {
+  return status.ok()
+             ? status
+             : absl::InvalidArgumentError(absl::StrCat("scene package: ", status.message()));
+}
+
 }  // namespace
 
 absl::Status check_description(const SceneDescription& scene) {
@@ -168,6 +177,7 @@ absl::Status check_description(const SceneDescription& scene) {
     return manifest_error("lights", std::string(lights.message()));
   }
   const Geometry& geometry = scene.geometry;
+  RETURN_IF_ERROR(of_package(check_geometry_counts("", geometry)));
   RETURN_IF_ERROR(check_shapes(geometry, scene.materials.size(), ""));
   for (std::size_t i = 0; i < geometry.meshes.size(); ++i) {
     RETURN_IF_ERROR(check_mesh(geometry.meshes[i], absl::StrCat("mesh[", i, "]")));
@@ -177,10 +187,9 @@ absl::Status check_description(const SceneDescription& scene) {
         check_shapes(geometry.groups[i], scene.materials.size(), absl::StrCat("group[", i, "].")));
   }
   RETURN_IF_ERROR(check_placements(geometry, scene.materials.size()));
-  if (const absl::Status media = validate(scene.media); !media.ok()) {
-    return absl::InvalidArgumentError(absl::StrCat("scene package: ", media.message()));
-  }
-  return absl::OkStatus();
+  RETURN_IF_ERROR(of_package(
+      check_light_counts(geometry, scene.materials, scene.textures, scene.lights.size())));
+  return of_package(validate(scene.media));
 }
 
 }  // namespace bandsaw

@@ -8,6 +8,7 @@
 #include "proto/wire/versions.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/package/limits.h"
+#include "renderlib/package/manifest_counts.h"
 #include "renderlib/render/settings.h"
 
 namespace bandsaw {
@@ -163,6 +164,7 @@ absl::StatusOr<package::Manifest> parse_manifest(const std::string& bytes) {
     return absl::InvalidArgumentError("scene package: the manifest is damaged: it cannot be read");
   }
   RETURN_IF_ERROR(check_head(manifest));
+  RETURN_IF_ERROR(check_counts(manifest));
   return manifest;
 }
 

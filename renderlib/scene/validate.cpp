@@ -5,6 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/light/check_light_counts.h"
 #include "renderlib/light/check_lights.h"
 #include "renderlib/scene/validate_field.h"
 #include "renderlib/scene/validate_geometry.h"
@@ -40,6 +41,8 @@ absl::Status validate(const SceneDescription& scene) {
   RETURN_IF_ERROR(check_surfaces(scene));
   RETURN_IF_ERROR(check_lights(scene.background, scene.textures, scene.lights));
   RETURN_IF_ERROR(check_geometry("", scene.geometry, scene.materials.size()));
+  RETURN_IF_ERROR(
+      check_light_counts(scene.geometry, scene.materials, scene.textures, scene.lights.size()));
   return validate(scene.media);
 }
 

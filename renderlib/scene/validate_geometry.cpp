@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/scene/check_counts.h"
 #include "renderlib/scene/validate.h"
 #include "renderlib/scene/validate_field.h"
 
@@ -151,10 +152,10 @@ absl::Status check_frame(const std::string& field, const Frame& frame, std::size
 
 absl::Status check_geometry(const std::string& prefix, const Geometry& geometry,
                             std::size_t materials) {
+  RETURN_IF_ERROR(check_geometry_counts(prefix, geometry));
   RETURN_IF_ERROR(check_shapes(prefix, geometry, materials));
   for (std::size_t i = 0; i < geometry.groups.size(); ++i) {
-    RETURN_IF_ERROR(
-        check_shapes(item(prefix + "groups", i) + ".", geometry.groups[i], materials));
+    RETURN_IF_ERROR(check_shapes(item(prefix + "groups", i) + ".", geometry.groups[i], materials));
   }
   for (std::size_t i = 0; i < geometry.meshes.size(); ++i) {
     RETURN_IF_ERROR(check_mesh(item(prefix + "meshes", i), geometry.meshes[i]));
@@ -163,8 +164,8 @@ absl::Status check_geometry(const std::string& prefix, const Geometry& geometry,
     RETURN_IF_ERROR(check_frame(item(prefix + "frames", i), geometry.frames[i], i));
   }
   for (std::size_t i = 0; i < geometry.instances.size(); ++i) {
-    RETURN_IF_ERROR(check_instance(item(prefix + "instances", i), geometry.instances[i], geometry,
-                                   materials));
+    RETURN_IF_ERROR(
+        check_instance(item(prefix + "instances", i), geometry.instances[i], geometry, materials));
   }
   return absl::OkStatus();
 }

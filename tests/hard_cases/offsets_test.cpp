@@ -158,6 +158,7 @@ TEST(Offset, O7_RefractedRaysStartOnTheFarSide) {
     p.shading_normal = normalize(p.geometric_normal + 0.5 * bump);
     p.position = 10 * test::random_point(random);
     p.offset = surface_offset(p.position, 1);
+    p.away = p.geometric_normal * p.offset;
     const Vec3 wo = test::random_direction(random);
     const auto drawn = sample(bsdf_at(Dielectric{1.5}, none, p, wo), 0, 0, random.uniform());
     if (drawn) {

@@ -35,7 +35,7 @@ std::vector<std::string> lines_of(const std::string& path) {
 /// How many cases each section has.
 std::vector<std::string> known_ids() {
   const std::pair<const char*, int> sections[] = {
-      {"S", 11}, {"T", 15}, {"Q", 8},  {"B", 12}, {"O", 8}, {"C", 10}, {"X", 9}, {"M", 15},
+      {"S", 12}, {"T", 15}, {"Q", 8},  {"B", 12}, {"O", 8}, {"C", 10}, {"X", 9}, {"M", 15},
       {"L", 12}, {"V", 11}, {"TX", 8}, {"R", 10}, {"A", 8}, {"P", 6},  {"Y", 5}};
   std::vector<std::string> ids;
   for (const auto& [letter, count] : sections) {

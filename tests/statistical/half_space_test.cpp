@@ -1,5 +1,8 @@
 // Half-spaces that scatter, under a white sky: Chandrasekhar, "Radiative Transfer", R = 1 - H(mu)
-// sqrt(1 - albedo) of the cosine mu under which they are seen. Within 4 standard errors.
+// sqrt(1 - albedo) of the cosine mu under which they are seen. Within 4 standard errors. H is, by
+// Stibbs and Weir 1959, "On the H-functions for isotropic scattering", MNRAS 119, the exponential
+// of -mu / pi times the integral over x in [0, pi / 2] of ln(1 - albedo x cot x) / (cos^2 x + mu^2
+// sin^2 x): integrated to 20 digits. That albedos are floats changes R by less than 1e-7 of it.
 
 #include <gtest/gtest.h>
 

@@ -89,6 +89,15 @@ TEST(Offset, O2_NarrowGapsAreNotPassedOver) {
   test::holds("O2", "0 skipped of 30,000, gaps 1e-4, 1e-6, 1e-9");
 }
 
+SurfacePoint surface(const Vec3& position, const Vec3& normal, double size) {
+  SurfacePoint p;
+  p.position = position;
+  p.geometric_normal = normal;
+  p.offset = surface_offset(position, size);
+  p.away = p.geometric_normal * p.offset;
+  return p;
+}
+
 TEST(Offset, O4_NothingStandsBetweenAPointAndALightItSees) {
   Pool pool(1);
   test::Random random(4);
@@ -108,12 +117,12 @@ TEST(Offset, O4_NothingStandsBetweenAPointAndALightItSees) {
       const Quad& quad = g.quads[0];
       const Vec3 on_quad = quad.corner + u * quad.u + v * quad.v;
       const Vec3 normal = normalize(cross(quad.u, quad.v));
-      const Ray to_quad = toward(p, on_quad, surface_offset(on_quad, 1), normal);
+      const Ray to_quad = toward(p, surface(on_quad, normal, 1));
       // The sphere may hide the quad; the quad never hides itself.
       ASSERT_NE(accel.closest(to_quad).id, (PrimitiveId{0, 1}));
       const auto s = sample_sphere_light(g.spheres[0].center, 0.7, p.position, u, v);
       ASSERT_TRUE(s);
-      const Ray to_sphere = toward(p, s->position, surface_offset(s->position, 0.7), s->normal);
+      const Ray to_sphere = toward(p, surface(s->position, s->normal, 0.7));
       ASSERT_NE(accel.closest(to_sphere).id, (PrimitiveId{0, 0}));
     }
   }

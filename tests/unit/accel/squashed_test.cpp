@@ -1,0 +1,185 @@
+// Spheres and boxes whose placement squashes or stretches space by many orders of magnitude: a ray
+// that leaves their surface inwards meets their other side, one that leaves outwards meets them no
+// more.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "renderlib/accel/accel.h"
+#include "renderlib/geometry/surface.h"
+#include "renderlib/light/lights.h"
+#include "renderlib/scene/media.h"
+#include "tests/support/hard_case.h"
+#include "tests/support/meshes.h"
+
+namespace bandsaw {
+namespace {
+
+using test::Random;
+
+struct Case {
+  std::string name;
+  Transform to_world;
+};
+
+std::vector<Case> cases() {
+  const Transform turn = rotation({1, 2, 3}, 40);
+  const Transform away = translation({3, -2, 1}) * turn;
+  std::vector<Case> all;
+  for (const double by : {1e-3, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10}) {
+    const std::string text = std::to_string(std::log10(by)).substr(0, 3);
+    all.push_back({"squashed, 10^" + text, scaling({1, by, 1})});
+    all.push_back({"squashed and turned, 10^" + text, away * scaling({1, by, 1})});
+    all.push_back({"turned and squashed, 10^" + text, away * scaling({1, by, -1}) * turn});
+    all.push_back({"a needle, 10^" + text, away * scaling({by, 1, by}) * turn});
+    all.push_back({"small, 10^" + text, turn * scaling({1e-4, by * 1e-4, 2e-4})});
+    all.push_back({"stretched, 1 / 10^" + text, turn * scaling({1, 1 / by, 1})});
+  }
+  return all;
+}
+
+/// One sphere of radius 1, or one unit cube around 0, placed.
+Geometry placed(const Transform& to_world, bool cube) {
+  Geometry g;
+  Instance instance;
+  instance.to_world = to_world;
+  if (cube) {
+    g.meshes.push_back(unit_cube());
+    instance.to_world = to_world * translation({-0.5, -0.5, -0.5});
+  } else {
+    g.groups.push_back(unit_ball());
+    instance.group = GroupId{0};
+    instance.material = kOwnMaterial;
+  }
+  g.instances.push_back(instance);
+  return g;
+}
+
+/// A direction on one side of the surface, drawn evenly in the world or in the object's own space.
+Vec3 direction_from(const SurfacePoint& p, bool inwards, const Transform& to_world,
+                    Random& random) {
+  Vec3 d = test::random_direction(random);
+  if (random.below(2) == 0) {
+    d = normalize(to_world.direction(d));
+  }
+  return (dot(d, p.geometric_normal) < 0) == inwards ? d : -d;
+}
+
+struct Lost {
+  int rays = 0;
+  int inside = 0;   ///< of rays that left inwards: they met nothing, or the surface from outside
+  int outside = 0;  ///< of rays that left outwards: they met it again
+};
+
+/// Rays that come from outside, and go on from each surface inwards several times; at each also one
+/// that leaves outwards.
+Lost bounce(const Geometry& g, const Transform& to_world, int rays, std::uint64_t seed) {
+  Pool pool(1);
+  const Accel accel = Accel::build(g, pool);
+  Random random(seed);
+  Lost lost;
+  for (int i = 0; i < rays; ++i) {
+    const Vec3 target = to_world.point(0.6 * test::random_point(random));
+    const Vec3 origin = target + 5 * direction_from({}, false, to_world, random);
+    Ray ray = {origin, normalize(target - origin)};
+    Hit hit = accel.closest(ray);
+    for (int k = 0; hit && k < 20; ++k) {
+      const SurfacePoint p = surface_at(g, ray, hit);
+      ++lost.rays;
+      lost.outside += accel.occluded(leave(p, direction_from(p, false, to_world, random))) ? 1 : 0;
+      ray = leave(p, direction_from(p, true, to_world, random));
+      hit = accel.closest(ray);
+      const bool exits = hit && dot(surface_at(g, ray, hit).geometric_normal, ray.direction) > 0;
+      lost.inside += exits ? 0 : 1;
+    }
+  }
+  return lost;
+}
+
+TEST(Squashed, S12_CrossingsOfASphereAlternate) {
+  constexpr int kRays = 2'000;
+  Lost all;
+  for (const Case& c : cases()) {
+    const Lost lost = bounce(placed(c.to_world, false), c.to_world, kRays, 1);
+    EXPECT_GT(lost.rays, 10 * kRays) << c.name;
+    EXPECT_EQ(lost.inside, 0) << c.name << ", of " << lost.rays;
+    EXPECT_EQ(lost.outside, 0) << c.name << ", of " << lost.rays;
+    all.rays += lost.rays;
+    all.inside += lost.inside;
+    all.outside += lost.outside;
+  }
+  const std::string of = std::to_string(all.rays);
+  test::at_most("S12", "rays lost inside, of " + of, all.inside, 0);
+  test::at_most("S12", "rays that meet what they leave, of " + of, all.outside, 0);
+}
+
+/// The chord from one surface of the sphere to the other, in the sphere's own space: p + t d with
+/// |p| = 1 ends at t = -2 (p.d) / (d.d).
+TEST(Squashed, S12_ChordsAreAsLongAsTheyAre) {
+  test::Worst error;
+  for (const Case& c : cases()) {
+    const Geometry g = placed(c.to_world, false);
+    const Transform to_object = *inverse(c.to_world);
+    Pool pool(1);
+    const Accel accel = Accel::build(g, pool);
+    Random random(2);
+    for (int i = 0; i < 2000; ++i) {
+      const Vec3 origin = c.to_world.point(3 * test::random_direction(random));
+      const Vec3 target = c.to_world.point(0.6 * test::random_point(random));
+      const Ray in = {origin, target - origin};
+      const SurfacePoint p = surface_at(g, in, accel.closest(in));
+      const Ray ray = leave(p, direction_from(p, true, c.to_world, random));
+      const Vec3 d = to_object.direction(ray.direction);
+      const double along = -dot(p.object_position, d) / length(d);
+      if (along > 0.1) {  // flatter ones are shorter by more than the offset
+        error.see(std::abs(accel.closest(ray).t * length(d) - 2 * along));
+      }
+    }
+  }
+  test::at_most("S12", "chords off, in radii, steeper than 6 degrees", error.value(), 0.05);
+}
+
+TEST(Squashed, CrossingsOfACubeAlternate) {
+  for (const Case& c : cases()) {
+    const Lost lost = bounce(placed(c.to_world, true), c.to_world, 2'000, 3);
+    EXPECT_GT(lost.rays, 20'000) << c.name;
+    EXPECT_EQ(lost.inside, 0) << c.name << ", of " << lost.rays;
+    EXPECT_EQ(lost.outside, 0) << c.name << ", of " << lost.rays;
+  }
+}
+
+// From within a lamp all of it is in sight.
+TEST(Squashed, S12_ALampFromWithinIsNotInItsOwnShadow) {
+  int rays = 0;
+  int shadows = 0;
+  for (const Case& c : cases()) {
+    Geometry lamp = placed(c.to_world, false);
+    lamp.instances[0].material = MaterialId{0};
+    const std::vector<Texture> textures = {ConstantTexture{gray(1)}};
+    const std::vector<Material> materials = {Emissive{{TextureId{0}}}};
+    const Lights lights(lamp, materials, textures, {}, {});
+    Pool pool(1);
+    const Accel accel = Accel::build(lamp, pool);
+    Random random(4);
+    int occluded = 0;
+    for (int i = 0; i < 2000; ++i) {
+      const Vec3 from = c.to_world.point(0.5 * test::random_point(random));
+      const double u = random.uniform();
+      const auto light = lights.sample({from, std::nullopt}, 0.5, u, random.uniform());
+      rays += light ? 1 : 0;
+      occluded += light && accel.occluded({from, light->target - from, 1}) ? 1 : 0;
+    }
+    EXPECT_EQ(occluded, 0) << c.name;
+    shadows += occluded;
+  }
+  EXPECT_GT(rays, 10'000);
+  test::at_most("S12", "shadow rays within a lamp that end at it, of " + std::to_string(rays),
+                shadows, 0);
+}
+
+}  // namespace
+}  // namespace bandsaw

@@ -1,0 +1,96 @@
+// What trees and numbers of lights can hold, and what a scene says that has more.
+
+#include "renderlib/scene/check_counts.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "renderlib/accel/capacity.h"
+#include "renderlib/light/check_light_counts.h"
+#include "tests/support/scenes.h"
+
+namespace bandsaw {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+std::string message(const absl::Status& status) {
+  EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument);
+  return std::string(status.message());
+}
+
+TEST(Counts, OfAMesh) {
+  EXPECT_TRUE(check_mesh_counts("mesh", kMaxTreeItems, kMaxMeshPositions).ok());
+  EXPECT_EQ(message(check_mesh_counts("meshes[3]", kMaxTreeItems + 1, 3)),
+            "meshes[3]: has 536870912 triangles, a mesh holds at most 536870911: split it into "
+            "several meshes");
+  EXPECT_EQ(message(check_mesh_counts("meshes[3]", 1, kMaxMeshPositions + 1)),
+            "meshes[3]: has 4294967297 positions, a mesh holds at most 4294967296: split it into "
+            "several meshes");
+}
+
+TEST(Counts, OfLooseShapes) {
+  constexpr std::uint64_t kHalf = kMaxTreeItems / 2;
+  EXPECT_TRUE(check_shape_counts("shapes", {.quads = kHalf, .disks = 1}).ok());
+  EXPECT_TRUE(check_shape_counts("shapes", {.spheres = kHalf, .instances = kHalf + 1}).ok());
+  for (const ShapeCounts& counts :
+       {ShapeCounts{.quads = kHalf + 1}, ShapeCounts{.triangles = kMaxTreeItems + 1},
+        ShapeCounts{.spheres = kHalf, .disks = kHalf + 2},
+        ShapeCounts{.spheres = 1, .instances = kMaxTreeItems}}) {
+    EXPECT_THAT(message(check_shape_counts("groups[2]", counts)),
+                AllOf(StartsWith("groups[2]: has "), HasSubstr("at most 536870911")));
+  }
+}
+
+/// A mesh of 131,072 triangles, placed so often that they are 2^31.
+test::SceneMaker placed_many_times(MaterialId material, test::SceneMaker maker) {
+  maker.instance(test::grid(256), {}, material);
+  maker.scene.geometry.instances.resize(std::size_t{1} << 14, maker.scene.geometry.instances[0]);
+  return maker;
+}
+
+TEST(Counts, OfLightsAreJudgedBeforeAnyIsMade) {
+  test::SceneMaker maker;
+  const MaterialId lamp = maker.lamp(1);
+  Pool pool(1);
+  EXPECT_THAT(message(Scene::build(placed_many_times(lamp, maker).scene, pool).status()),
+              AllOf(StartsWith("lights: "), HasSubstr("2147483648 primitives"),
+                    HasSubstr("at most 2147483647")));
+}
+
+TEST(Counts, OfWhatGivesNoLightAreNoLights) {
+  const auto check = [](const test::SceneMaker& maker) {
+    const SceneDescription& s = maker.scene;
+    return check_light_counts(s.geometry, s.materials, s.textures, 0);
+  };
+  test::SceneMaker maker;
+  const MaterialId white = maker.diffuse(1);
+  const MaterialId dark = maker.lamp(0);
+  EXPECT_TRUE(check(placed_many_times(white, maker)).ok());
+  EXPECT_TRUE(check(placed_many_times(dark, maker)).ok());
+}
+
+TEST(Counts, OfLightsInGroups) {
+  test::SceneMaker maker;
+  const MaterialId lamp = maker.lamp(1);
+  Geometry& geometry = maker.scene.geometry;
+  geometry.groups.resize(1);
+  geometry.groups[0].spheres.resize(std::size_t{1} << 16, Sphere{{0, 0, 0}, 1, maker.diffuse(1)});
+  geometry.groups[0].spheres.back().material = lamp;
+  Instance placed;
+  placed.group = GroupId{0};
+  placed.material = kOwnMaterial;
+  geometry.instances.resize(std::size_t{1} << 15, placed);
+  const SceneDescription& s = maker.scene;
+  EXPECT_THAT(message(check_light_counts(geometry, s.materials, s.textures, 0)),
+              HasSubstr("2147483648 primitives"));
+  geometry.instances.pop_back();
+  EXPECT_TRUE(check_light_counts(geometry, s.materials, s.textures, 0xffff).ok());
+  EXPECT_FALSE(check_light_counts(geometry, s.materials, s.textures, 0x10000).ok());
+}
+
+}  // namespace
+}  // namespace bandsaw
