@@ -31,7 +31,9 @@ struct CoreOptions {
       6;  ///< after a restart nothing is leased this long unless all former workers are back
   double band_target_s =
       1;  ///< how long a band should take its worker; bands are shorter toward the end
-  std::size_t losses_per_band = 3;  ///< so many workers lost while rendering a band fail the job
+  /// So many machines lost at a band that is suspect already fail the job; more where many are lost
+  /// for other reasons (losses.cpp).
+  std::size_t losses_per_band = 3;
   double audit_share = 0;           ///< of all bands, [0, 1]: rendered by two machines (audit.h)
   std::string epoch;                ///< names this life; part of what a held lease is known by
 };

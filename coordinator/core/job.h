@@ -75,11 +75,13 @@ struct Fault {
   std::string reason;
 };
 
-/// A worker went while rendering a band, and stays away.
+/// A worker was lost while it had a band in hand, and has not come back.
 struct Loss {
   Band band;               ///< without what others stored of it since
   std::uint32_t rows = 0;  ///< of it, at a time, when it is leased again
   std::string instance;
+  std::string machine;   ///< the name that the worker says itself
+  bool witness = false;  ///< the band was suspect already, and all that the worker had in hand
 };
 
 class Job {

@@ -21,6 +21,7 @@
 #include "coordinator/core/hunger.h"
 #include "coordinator/core/job.h"
 #include "coordinator/core/leases.h"
+#include "coordinator/core/loss_rate.h"
 #include "coordinator/core/workers.h"
 
 namespace bandsaw::coordinator {
@@ -226,10 +227,15 @@ class Core::State {
   struct Losing {
     JobId job = 0;
     Band band;
+    bool alone = false;
   };
-  std::optional<Losing> in_hand(const Worker& worker) const;
-  void add_loss(const Worker& worker, const Losing& lost);
+  std::vector<Losing> in_hand(const Worker& worker) const;
+  void add_losses(const Worker& worker, const std::vector<Losing>& lost);
+  void add_loss(Job& job, const Worker& worker, const Losing& lost);
+  void weigh_losses(Job& job, const Worker& worker, const Band& band);
   static bool is_suspect(const Job& job, const Band& band);
+  static bool has_witness(const Job& job, const Band& band);
+  bool another_machine(const Job& job, const Band& band) const;
   static Band narrowed(const Job& job, const Band& free, Band band);
   bool has_suspect(const Worker& worker) const;
   void forgive_losses(const Worker& worker);
@@ -274,6 +280,7 @@ class Core::State {
   Workers workers_;
   Hunger hunger_;
   Leases leases_;
+  LossRate loss_rate_;                                 ///< in this life of the coordinator
   Time tail_again_at_ = 0;                             ///< wall clock
   std::map<SessionId, std::vector<LeaseId>> revoked_;  ///< in this step
 

@@ -28,7 +28,6 @@ void SimCoordinator::start() {
   CoreOptions options = test_options();
   options.epoch = epoch();
   options.progress_timeout_s = 8;
-  options.losses_per_band = losses_per_band;
   options.audit_share = audit_share;
   core_ = std::make_unique<Core>(options);
   for (const Record& record : journal_) {

@@ -46,10 +46,9 @@ class SimCoordinator {
   /// The first thing that must never happen, if it did.
   std::optional<std::string> broken;
   std::uint64_t steps = 0;
+  std::uint64_t damages = 0;               ///< that a film found
   std::map<JobId, std::uint64_t> results;  ///< samples a pixel
   double time_skew = 0;                    ///< of the coordinator's clock
-  /// Workers are killed here so often that three are, by chance, while they render the same rows.
-  std::size_t losses_per_band = 1'000;
   double audit_share = 0;
   /// No image has a wrong row. Can only be promised where every band is audited and machines that
   /// are right are there until the end.
