@@ -34,8 +34,8 @@ struct CoreOptions {
   /// So many machines lost at a band that is suspect already fail the job; more where many are lost
   /// for other reasons (losses.cpp).
   std::size_t losses_per_band = 3;
-  double audit_share = 0;           ///< of all bands, [0, 1]: rendered by two machines (audit.h)
-  std::string epoch;                ///< names this life; part of what a held lease is known by
+  double audit_share = 0;  ///< of all bands, [0, 1]: rendered by two machines (audit.h)
+  std::string epoch;       ///< names this life; part of what a held lease is known by
 };
 
 /// What one input led to. Durable first: the records MUST be on disk before any action is done or
@@ -58,10 +58,12 @@ class Core {
   /// interval.
   Step step(const Input& input, Time now);
 
-  // Restart: all records in the order they were written, then all bands found on disk, then
-  // `replayed` once, then inputs.
+  // Restart: all records in the order they were written, then all bands found on disk and what is
+  // damaged of them, then `replayed` once, then inputs.
   void replay(const Record& record);
   void replay(const input::BandStored& band);
+  /// So many bytes of a job's band log, > 0, are of no whole band: said to people (why).
+  void replay_damage(JobId job, std::uint64_t bytes);
   /// Begins the grace time; its actions are for jobs that were finishing.
   Step replayed(Time now);
 

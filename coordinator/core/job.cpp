@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "coordinator/core/band_text.h"
 #include "renderlib/base/check.h"
 
 namespace bandsaw::coordinator {
@@ -23,7 +24,7 @@ void Pass::credit(std::uint64_t renderer, const Band& band, const std::vector<Ro
                   const Totals& totals) {
   Part& part = parts[renderer];
   for (const RowRange& range : rows) {
-    part.bands.push_back({band.samples, range});
+    part.bands.push_back({{band.samples, range}, range == rows.front() ? totals : Totals()});
   }
   part.totals.add(totals);
   stored.add(totals);
@@ -34,22 +35,61 @@ bool Pass::retract(std::uint64_t renderer) {
   if (part == parts.end()) {
     return false;
   }
-  for (const Band& band : part->second.bands) {
-    coverage.reopen(band);
-    digests.forget(band);
+  for (const StoredBand& one : part->second.bands) {
+    coverage.reopen(one.band);
+    digests.forget(one.band);
   }
   parts.erase(part);
-  stored = {};
-  for (const auto& [id, other] : parts) {
-    stored.add(other.totals);
-  }
+  add_up();
   return true;
+}
+
+bool Pass::has_stored(const Band& band, std::uint64_t renderer) const {
+  const auto part = parts.find(renderer);
+  return part != parts.end() &&
+         std::any_of(part->second.bands.begin(), part->second.bands.end(),
+                     [&](const StoredBand& one) { return one.band == band; });
+}
+
+std::optional<Totals> Pass::lose(const Band& band, std::uint64_t renderer) {
+  const auto part = parts.find(renderer);
+  if (part == parts.end()) {
+    return std::nullopt;
+  }
+  std::vector<StoredBand>& bands = part->second.bands;
+  const auto lost = std::find_if(bands.begin(), bands.end(),
+                                 [&](const StoredBand& one) { return one.band == band; });
+  if (lost == bands.end()) {
+    return std::nullopt;
+  }
+  const Totals totals = lost->totals;
+  bands.erase(lost);
+  coverage.reopen(band);
+  digests.forget(band);
+  part->second.totals = {};
+  for (const StoredBand& one : bands) {
+    part->second.totals.add(one.totals);
+  }
+  if (bands.empty()) {
+    parts.erase(part);
+  }
+  add_up();
+  return totals;
+}
+
+/// Counters hold the first of something, so one cannot be taken out of a sum.
+void Pass::add_up() {
+  stored = {};
+  for (const auto& [id, part] : parts) {
+    stored.add(part.totals);
+  }
 }
 
 std::uint64_t Pass::renderer_of_row(const SampleRange& of, std::uint32_t row) const {
   for (const auto& [renderer, part] : parts) {
-    for (const Band& band : part.bands) {
-      if (band.samples == of && band.rows.first <= row && row < band.rows.last) {
+    for (const StoredBand& one : part.bands) {
+      const RowRange& rows = one.band.rows;
+      if (one.band.samples == of && rows.first <= row && row < rows.last) {
         return renderer;
       }
     }
@@ -138,6 +178,25 @@ bool Job::retract(std::uint64_t renderer) {
     }
   }
   return any;
+}
+
+void Job::lose(const Band& band, std::uint64_t renderer) {
+  std::erase_if(audited, [&](const std::pair<Band, std::uint64_t>& one) {
+    return one.second == renderer && meet(one.first, band);
+  });
+  Pass* pass = pass_of(band);
+  const std::optional<Totals> lost = pass == nullptr ? std::nullopt : pass->lose(band, renderer);
+  if (!lost) {
+    return;
+  }
+  complete_passes_ = std::min(complete_passes_, static_cast<std::size_t>(pass - passes.data()));
+  if (const auto share = shares.find(renderer); share != shares.end()) {
+    share->second.samples -= std::min(share->second.samples, lost->samples);
+    share->second.cpu_s = std::max(0.0, share->second.cpu_s - lost->cpu_s);
+    if (share->second.samples == 0) {
+      shares.erase(share);
+    }
+  }
 }
 
 void Job::advance() {

@@ -33,6 +33,7 @@ class Core::State {
   Step step(const Input& input, Time now);
   void apply(const Record& record);
   void restore(const input::BandStored& band);
+  void note_damage(JobId id, std::uint64_t bytes);
   Step replayed(Time now);
   std::vector<Record> snapshot() const;
 
@@ -58,6 +59,7 @@ class Core::State {
   void on(const input::BandStored& in);
   void on(const input::PassMerged& in);
   void on(const input::ResultWritten& in);
+  void on(const input::BandsDamaged& in);
   void on(const input::StorageFailed& in);
   void on(const input::StorageBack& in);
   void on(const input::Quarantine& in);
@@ -81,6 +83,7 @@ class Core::State {
   void apply(const record::WorkerJoined& r);
   void apply(const record::WorkerLeft& r);
   void apply(const record::BandAudited& r);
+  void apply(const record::BandLost& r);
   void apply(const record::ErrorForgotten& r);
   void apply(const record::WorkerQuarantined& r);
   void apply(const record::QuarantineLifted& r);
@@ -213,6 +216,8 @@ class Core::State {
   void send_away(Worker& worker);
   void learn_name(const WorkerHello& worker);
   void retract(Job& job, std::uint64_t renderer, const std::string& why);
+  void close_audits(Job& job, const Band& band, std::uint64_t renderer);
+  void note_lost_audited(Job& job);
   std::vector<WorkerView> quarantined_views() const;
   void add_quarantine(std::vector<Record>& out) const;
 
@@ -246,6 +251,7 @@ class Core::State {
 
   // Views.
   std::string waiting_reason(const Job& job) const;
+  std::vector<std::string> why_of_state(const Job& job, Time now) const;
   std::string busy_with(const Job& job) const;
   std::vector<std::string> working_on(const Job& job) const;
   std::vector<std::string> not_working_on(const Job& job) const;

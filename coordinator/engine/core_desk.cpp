@@ -203,6 +203,11 @@ void CoreDesk::disk_is_back() {
   hooks_.retry_film();
 }
 
+void CoreDesk::bands_damaged(input::BandsDamaged damaged) {
+  results_on_the_way_.erase(damaged.job);  // the film waits for the bands; the core asks again
+  run(damaged);
+}
+
 void CoreDesk::result_written(JobId job, const absl::Status& status) {
   results_on_the_way_.erase(job);
   if (status.ok()) {

@@ -9,6 +9,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "coordinator/core/core.h"
@@ -76,6 +77,7 @@ class CoreDesk {
   // The other threads.
   void band_stored(PutBand put, std::vector<std::uint64_t> row_digests);
   void band_failed(PutBand put, const absl::Status& status);
+  void bands_damaged(input::BandsDamaged damaged);
   void result_written(JobId job, const absl::Status& status);
   void storage_failed(JobId job, const absl::Status& status);
   void disk_is_back();

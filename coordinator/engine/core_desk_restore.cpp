@@ -62,6 +62,7 @@ absl::Status CoreDesk::restore_job(JobId id, const Known& known, StoreDesk& stor
         filmed.code(), absl::StrCat("cannot rebuild the film of job ", id, ": ", filmed.message()));
   }
   if (report.damaged_bytes > 0) {
+    core_.replay_damage(id, report.damaged_bytes);
     spdlog::warn(
         "job={} {} damaged bytes in its bands were left out; their rows are rendered again", id,
         report.damaged_bytes);

@@ -195,6 +195,14 @@ FilmDesk::Hooks Engine::Impl::film_hooks() {
                   core.storage_failed(job, status);
                 });
                 on_store([](StoreDesk& store) { store.expect_trouble(); });
+              },
+          .damaged =
+              [this](JobId job, std::vector<input::BandsDamaged::Lost> bands) {
+                // Before the first of them is leased again.
+                on_store([job](StoreDesk& store) { store.reopen(job); });
+                on_core([job, bands = std::move(bands)](CoreDesk& core) mutable {
+                  core.bands_damaged({.job = job, .bands = std::move(bands)});
+                });
               }};
 }
 

@@ -11,7 +11,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr int kSchema = 6;  // those before it had fewer kinds and fields and are read as they are
+constexpr int kSchema = 7;  // those before it had fewer kinds and fields and are read as they are
 constexpr char kTables[] =
     "CREATE TABLE IF NOT EXISTS record (sequence INTEGER PRIMARY KEY, kind TEXT NOT NULL,"
     " fields TEXT NOT NULL, seal TEXT NOT NULL) STRICT;";

@@ -39,6 +39,9 @@ class SimCoordinator {
   void input(const Input& input);
   void put_band(const input::BandStored& band, std::function<void(PutOutcome)> reply);
   void fill_disk(double seconds);
+  /// Records of a job's band log are damaged: some, the last ones, or all. The film may find it
+  /// when it reads the log, else the next start does.
+  void damage_log();
 
   bool all_final() const;
   Core& core() { return *core_; }
@@ -67,8 +70,15 @@ class SimCoordinator {
     std::vector<input::BandStored> bands;
     SimFilm stored;  ///< what of the bands is in the image
   };
+  /// Rows of a record that are in the film.
+  struct Added {
+    Band record;
+    Band band;
+    std::uint64_t renderer = 0;
+  };
   struct Filming {
     SimFilm film;
+    std::vector<Added> added;
     std::set<std::uint64_t> pass_ends;
     std::set<std::uint64_t> told;
   };
@@ -85,6 +95,8 @@ class SimCoordinator {
   void write_band(input::BandStored band, std::function<void(PutOutcome)> reply);
   void add_to_film(JobId job, const input::BandStored& band, const std::vector<RowRange>& rows);
   void tell_passes(JobId job);
+  void find_damage(JobId job, const std::vector<Added>& records);
+  void take_damaged(const input::BandsDamaged& damaged);
   void write_result(const action::WriteResult& write);
   void note(const Record& record);
   void tick();
@@ -97,7 +109,8 @@ class SimCoordinator {
   std::map<SessionId, ToWorker> links_;
   std::deque<Committing> committing_;
   std::map<JobId, Filming> films_;
-  double film_at_ = 0;  ///< when the film has done what it was told
+  std::set<JobId> writing_;  ///< results that the film was asked for
+  double film_at_ = 0;       ///< when the film has done what it was told
   double disk_full_until_ = 0;
   std::set<LeaseId> held_;                 ///< named in the Hello being said
   std::optional<input::BandStored> band_;  ///< that the core is being told of
