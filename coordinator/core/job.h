@@ -96,6 +96,13 @@ struct Loss {
   bool witness = false;  ///< the band was suspect already, and all that the worker had in hand
 };
 
+/// What a worker may have been rendering when it was lost.
+struct Losing {
+  JobId job = 0;
+  Band band;
+  bool alone = false;  ///< it was all that the worker had in hand
+};
+
 class Job {
  public:
   Job(JobId id, JobSpec spec, std::uint32_t pixel_version);

@@ -21,7 +21,7 @@ constexpr std::uint32_t kPieces = 8;
 /// original's worker is at the same rows, and a net that fails would take both at once. Without
 /// audits: somebody has rendered those rows. Without what it was given when it had fallen silent
 /// already: it never began that.
-std::vector<Core::State::Losing> Core::State::in_hand(const Worker& worker) const {
+std::vector<Losing> Core::State::in_hand(const Worker& worker) const {
   std::vector<Losing> lost;
   if (worker.draining || worker.quarantined) {
     return lost;

@@ -20,6 +20,7 @@
 #include "coordinator/core/core_clock.h"
 #include "coordinator/core/hunger.h"
 #include "coordinator/core/job.h"
+#include "coordinator/core/kept_away.h"
 #include "coordinator/core/leases.h"
 #include "coordinator/core/loss_rate.h"
 #include "coordinator/core/workers.h"
@@ -203,11 +204,6 @@ class Core::State {
   std::string audit_reason(const Job& job) const;
 
   // Quarantine.
-  struct Quarantined {
-    std::string name;  ///< of the machine, as it says it
-    std::string reason;
-    bool lifted = false;
-  };
   std::string shown_name(const Witness& witness) const;
   bool is_quarantined(const Witness& witness) const;
   std::optional<std::string> kept_away(const std::string& instance, const std::string& said) const;
@@ -229,11 +225,6 @@ class Core::State {
   bool may_render(const Worker& worker, const Job& job) const;
   bool someone_may_render(const Job& job) const;
   bool someone_else(const Job& job, const Band& band) const;
-  struct Losing {
-    JobId job = 0;
-    Band band;
-    bool alone = false;
-  };
   std::vector<Losing> in_hand(const Worker& worker) const;
   void add_losses(const Worker& worker, const std::vector<Losing>& lost);
   void add_loss(Job& job, const Worker& worker, const Losing& lost);
@@ -290,14 +281,8 @@ class Core::State {
   Time tail_again_at_ = 0;                             ///< wall clock
   std::map<SessionId, std::vector<LeaseId>> revoked_;  ///< in this step
 
-  /// Workers that were sent away, the newest kRefusalsKept.
-  struct Refusal {
-    std::string instance;
-    WorkerView worker;
-    Time at = 0;  ///< wall clock
-  };
   static constexpr std::size_t kRefusalsKept = 32;
-  std::deque<Refusal> refusals_;
+  std::deque<Refusal> refusals_;  ///< the newest kRefusalsKept
 
   static constexpr std::size_t kQuarantinedKept = 1'024;
   /// By renderer: what one rendered is void for ever, its name is barred until it is lifted.
