@@ -51,6 +51,8 @@ class Engine::Impl {
 
   BlobStore& blobs() { return *blobs_; }
   BandBudget& budget() { return budget_; }
+  /// Whether the disk has room for what is new. Any thread.
+  bool room() const { return room_; }
   SessionId next_session() { return ++last_session_; }
   const std::string& epoch() const { return epoch_; }
   const std::string& data_folder() const { return folder_.path(); }
@@ -70,6 +72,7 @@ class Engine::Impl {
   const std::unique_ptr<Clock> clock_;
   const std::string epoch_;
   std::atomic<SessionId> last_session_{0};
+  std::atomic<bool> room_{true};
   BandBudget budget_;
   CoreDesk core_;
   StoreDesk store_;
