@@ -32,7 +32,7 @@ struct CoreOptions {
   double band_target_s =
       1;  ///< how long a band should take its worker; bands are shorter toward the end
   /// So many machines lost at a band that is suspect already fail the job; more where many are lost
-  /// for other reasons (losses.cpp).
+  /// for other reasons, or nothing is known of the farm yet (loss_rate.h).
   std::size_t losses_per_band = 3;
   double audit_share = 0;  ///< of all bands, [0, 1]: rendered by two machines (audit.h)
   std::string epoch;       ///< names this life; part of what a held lease is known by

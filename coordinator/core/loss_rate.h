@@ -19,10 +19,9 @@ class LossRate {
  private:
   static constexpr double kMistake = 1e-6;
   static constexpr std::size_t kMaxWitnesses = 30;
-  /// What is assumed of a farm of which nothing is known: one loss in a hundred bands, forgotten
-  /// soon.
+  /// What is assumed of a farm of which nothing is known: one loss beside twenty bands.
   static constexpr double kBandsBefore = 20;
-  static constexpr double kLossesBefore = 0.19;
+  static constexpr double kLossesBefore = 1;
   /// Both counts are halved above it: what is long past says little.
   static constexpr double kMaxCount = 2'000;
 
