@@ -49,6 +49,9 @@ void Core::State::on(const input::BandStored& in) {
   if (worker != nullptr) {
     measure(*worker, *job, in);
     worker->on_job[job->id].faults = 0;
+    if (!is_suspect(*job, in.band)) {
+      loss_rate_.add_band();
+    }
   }
   const Coverage::Change change = in.written ? store(*job, *pass, in, witness) : Coverage::Change();
   if (worker != nullptr) {

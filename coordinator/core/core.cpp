@@ -14,6 +14,7 @@ Core& Core::operator=(Core&&) noexcept = default;
 Step Core::step(const Input& input, Time now) { return state_->step(input, now); }
 void Core::replay(const Record& record) { state_->apply(record); }
 void Core::replay(const input::BandStored& band) { state_->restore(band); }
+void Core::replay_damage(JobId job, std::uint64_t bytes) { state_->note_damage(job, bytes); }
 Step Core::replayed(Time now) { return state_->replayed(now); }
 
 std::optional<std::vector<RowRange>> Core::wanted(JobId job, const Band& band) const {

@@ -31,9 +31,11 @@ struct CoreOptions {
       6;  ///< after a restart nothing is leased this long unless all former workers are back
   double band_target_s =
       1;  ///< how long a band should take its worker; bands are shorter toward the end
-  std::size_t losses_per_band = 3;  ///< so many workers lost while rendering a band fail the job
-  double audit_share = 0;           ///< of all bands, [0, 1]: rendered by two machines (audit.h)
-  std::string epoch;                ///< names this life; part of what a held lease is known by
+  /// So many machines lost at a band that is suspect already fail the job; more where many are lost
+  /// for other reasons, or nothing is known of the farm yet (loss_rate.h).
+  std::size_t losses_per_band = 3;
+  double audit_share = 0;  ///< of all bands, [0, 1]: rendered by two machines (audit.h)
+  std::string epoch;       ///< names this life; part of what a held lease is known by
 };
 
 /// What one input led to. Durable first: the records MUST be on disk before any action is done or
@@ -56,10 +58,12 @@ class Core {
   /// interval.
   Step step(const Input& input, Time now);
 
-  // Restart: all records in the order they were written, then all bands found on disk, then
-  // `replayed` once, then inputs.
+  // Restart: all records in the order they were written, then all bands found on disk and what is
+  // damaged of them, then `replayed` once, then inputs.
   void replay(const Record& record);
   void replay(const input::BandStored& band);
+  /// So many bytes of a job's band log, > 0, are of no whole band: said to people (why).
+  void replay_damage(JobId job, std::uint64_t bytes);
   /// Begins the grace time; its actions are for jobs that were finishing.
   Step replayed(Time now);
 

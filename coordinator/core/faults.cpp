@@ -48,6 +48,11 @@ std::vector<Band> Core::State::left_to_others(const Job& job, const Worker& work
       avoid.push_back(fault.band);
     }
   }
+  for (const Loss& loss : job.losses) {
+    if (loss.witness && loss.machine == worker.said && another_machine(job, loss.band)) {
+      avoid.push_back(loss.band);
+    }
+  }
   return avoid;
 }
 

@@ -1,8 +1,8 @@
 #include "coordinator/core/job.h"
 
 #include <algorithm>
-#include <numeric>
 
+#include "coordinator/core/band_text.h"
 #include "renderlib/base/check.h"
 
 namespace bandsaw::coordinator {
@@ -12,50 +12,6 @@ namespace {
 constexpr float kLeastShare = 0.01f;
 
 }  // namespace
-
-double Pass::share() const {
-  return shares.empty() ? 1
-                        : std::accumulate(shares.begin(), shares.end(), 0.0) /
-                              static_cast<double>(shares.size());
-}
-
-void Pass::credit(std::uint64_t renderer, const Band& band, const std::vector<RowRange>& rows,
-                  const Totals& totals) {
-  Part& part = parts[renderer];
-  for (const RowRange& range : rows) {
-    part.bands.push_back({band.samples, range});
-  }
-  part.totals.add(totals);
-  stored.add(totals);
-}
-
-bool Pass::retract(std::uint64_t renderer) {
-  const auto part = parts.find(renderer);
-  if (part == parts.end()) {
-    return false;
-  }
-  for (const Band& band : part->second.bands) {
-    coverage.reopen(band);
-    digests.forget(band);
-  }
-  parts.erase(part);
-  stored = {};
-  for (const auto& [id, other] : parts) {
-    stored.add(other.totals);
-  }
-  return true;
-}
-
-std::uint64_t Pass::renderer_of_row(const SampleRange& of, std::uint32_t row) const {
-  for (const auto& [renderer, part] : parts) {
-    for (const Band& band : part.bands) {
-      if (band.samples == of && band.rows.first <= row && row < band.rows.last) {
-        return renderer;
-      }
-    }
-  }
-  return 0;
-}
 
 Job::Job(JobId job, JobSpec job_spec, std::uint32_t version)
     : id(job),
@@ -138,6 +94,25 @@ bool Job::retract(std::uint64_t renderer) {
     }
   }
   return any;
+}
+
+void Job::lose(const Band& band, std::uint64_t renderer) {
+  std::erase_if(audited, [&](const std::pair<Band, std::uint64_t>& one) {
+    return one.second == renderer && meet(one.first, band);
+  });
+  Pass* pass = pass_of(band);
+  const std::optional<Totals> lost = pass == nullptr ? std::nullopt : pass->lose(band, renderer);
+  if (!lost) {
+    return;
+  }
+  complete_passes_ = std::min(complete_passes_, static_cast<std::size_t>(pass - passes.data()));
+  if (const auto share = shares.find(renderer); share != shares.end()) {
+    share->second.samples -= std::min(share->second.samples, lost->samples);
+    share->second.cpu_s = std::max(0.0, share->second.cpu_s - lost->cpu_s);
+    if (share->second.samples == 0) {
+      shares.erase(share);
+    }
+  }
 }
 
 void Job::advance() {

@@ -45,10 +45,15 @@ struct Pass {
   std::vector<float> shares;
   Totals stored;
   RowDigests digests;
+  /// Rows that were stored with one result.
+  struct StoredBand {
+    Band band;
+    Totals totals;  ///< of the whole result, at the first of its rows; else nothing
+  };
   /// What one worker process stored of it.
   struct Part {
-    std::vector<Band> bands;
-    Totals totals;
+    std::vector<StoredBand> bands;
+    Totals totals;  ///< of all bands
   };
   std::map<std::uint64_t, Part> parts;  ///< by renderer
   /// How often a band that begins at this sample and row came back unfinished. For the logs.
@@ -61,8 +66,15 @@ struct Pass {
               const Totals& totals);
   /// What the renderer stored is free again; false: it had nothing.
   bool retract(std::uint64_t renderer);
+  /// Whether the renderer stored exactly this band, and it was not freed since.
+  bool has_stored(const Band& band, std::uint64_t renderer) const;
+  /// Frees such a band; returns what was counted for it, nothing when there is no such band.
+  std::optional<Totals> lose(const Band& band, std::uint64_t renderer);
   /// Who stored a row of a node; 0: not known.
   std::uint64_t renderer_of_row(const SampleRange& samples, std::uint32_t row) const;
+
+ private:
+  void add_up();
 };
 
 /// The reason of a job that a person paused.
@@ -75,11 +87,20 @@ struct Fault {
   std::string reason;
 };
 
-/// A worker went while rendering a band, and stays away.
+/// A worker was lost while it had a band in hand, and has not come back.
 struct Loss {
   Band band;               ///< without what others stored of it since
   std::uint32_t rows = 0;  ///< of it, at a time, when it is leased again
   std::string instance;
+  std::string machine;   ///< the name that the worker says itself
+  bool witness = false;  ///< the band was suspect already, and all that the worker had in hand
+};
+
+/// What a worker may have been rendering when it was lost.
+struct Losing {
+  JobId job = 0;
+  Band band;
+  bool alone = false;  ///< it was all that the worker had in hand
 };
 
 class Job {
@@ -99,6 +120,9 @@ class Job {
   /// What the renderer stored of any pass is free again, and no share of its is counted; false: it
   /// had nothing. Its bands' audits are over.
   bool retract(std::uint64_t renderer);
+  /// Frees a band that the renderer stored, and forgets that a second machine vouched for it.
+  /// Nothing is freed when Pass::has_stored does not hold.
+  void lose(const Band& band, std::uint64_t renderer);
   /// Counts complete passes on; digests of all but the last few are forgotten.
   void advance();
   /// Passes, plans, faults and digests are not needed any more; the figures stay.
@@ -132,6 +156,8 @@ class Job {
   Time held_at = 0;                    ///< patience clock: since when
   std::string reason;                  ///< of the state
   std::string notice;                  ///< what people should know though the job goes on
+  std::string damage;                  ///< what of its bands on disk was damaged, in this life
+  std::uint64_t damaged_bands = 0;     ///< likewise, while the coordinator ran
   std::optional<std::uint64_t> fixed;  ///< the job ends after this many samples a pixel
   std::vector<Pass> passes;            ///< from sample 0 on, without gaps
   std::optional<TilePlan> tile_plan;   ///< of an adaptive job, from its pilot's end on

@@ -73,7 +73,7 @@ bool Core::State::lease_to(Worker& worker) {
       const auto first = probe_for(job, worker);
       if (const auto free = first ? first : free_for(job, worker)) {
         const Band band = narrowed(job, *free, sized(job, worker, *free));
-        if (is_suspect(job, band) && !worker.leases.empty()) {
+        if (is_suspect(job, band) && !(worker.leases.empty() && worker.dropping.empty())) {
           return false;  // The first who has nothing else in hand takes it.
         }
         grant(worker, job, *job.pass_of(band), band, leases_.new_id());
@@ -201,6 +201,7 @@ void Core::State::end_lease(LeaseId id, Revoke revoke) {
   hunger_.update(worker);
   if (revoke == Revoke::kYes && worker.session) {
     revoked_[*worker.session].push_back(id);
+    worker.dropping.insert(id);
   }
   if (lease.copy_of == 0) {
     promote_copies(job, id);

@@ -87,6 +87,15 @@ struct PassMerged {
 struct ResultWritten {
   JobId job = 0;
 };
+/// What lies on disk of these bands is damaged. They are not in the film any more.
+struct BandsDamaged {
+  struct Lost {
+    Band band;  ///< rows that one AddToFilm named, next to each other
+    std::uint64_t renderer = 0;
+  };
+  JobId job = 0;
+  std::vector<Lost> bands;
+};
 /// The disk or memory refused; the job is paused with the reason until StorageBack.
 struct StorageFailed {
   JobId job = 0;
@@ -108,11 +117,12 @@ struct Forget {
 struct Tick {};
 }  // namespace input
 
-using Input = std::variant<input::Submit, input::Cancel, input::Pause, input::Resume,
-                           input::SetPriority, input::Hello, input::Heartbeat, input::Draining,
-                           input::Lost, input::BandFailed, input::BandStored, input::PassMerged,
-                           input::ResultWritten, input::StorageFailed, input::StorageBack,
-                           input::Quarantine, input::LiftQuarantine, input::Forget, input::Tick>;
+using Input =
+    std::variant<input::Submit, input::Cancel, input::Pause, input::Resume, input::SetPriority,
+                 input::Hello, input::Heartbeat, input::Draining, input::Lost, input::BandFailed,
+                 input::BandStored, input::PassMerged, input::ResultWritten, input::BandsDamaged,
+                 input::StorageFailed, input::StorageBack, input::Quarantine, input::LiftQuarantine,
+                 input::Forget, input::Tick>;
 
 // ---- actions ----
 namespace action {

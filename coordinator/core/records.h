@@ -98,6 +98,13 @@ struct BandAudited {
   Band band;
   std::uint64_t renderer = 0;  ///< core/renderer.h
 };
+/// What this renderer had stored of the band is damaged on disk. It is rendered again; whoever
+/// vouched for it vouched for other bytes.
+struct BandLost {
+  JobId job = 0;
+  Band band;
+  std::uint64_t renderer = 0;  ///< core/renderer.h
+};
 /// What was measured of a job's error was measured with pixels that are void since.
 struct ErrorForgotten {
   JobId job = 0;
@@ -119,7 +126,7 @@ using Record =
                  record::StateChanged, record::PriorityChanged, record::HoldChanged,
                  record::TimeSpent, record::Figures, record::ErrorMeasured, record::ShareCounted,
                  record::LastWords, record::JobForgotten, record::WorkerJoined, record::WorkerLeft,
-                 record::BandAudited, record::ErrorForgotten, record::WorkerQuarantined,
-                 record::QuarantineLifted>;
+                 record::BandAudited, record::BandLost, record::ErrorForgotten,
+                 record::WorkerQuarantined, record::QuarantineLifted>;
 
 }  // namespace bandsaw::coordinator

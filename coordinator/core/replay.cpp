@@ -138,6 +138,12 @@ void Core::State::apply(const record::BandAudited& r) {
   }
 }
 
+void Core::State::apply(const record::BandLost& r) {
+  if (Job* job = find(r.job); job != nullptr && !is_final(job->state)) {
+    job->lose(r.band, r.renderer);
+  }
+}
+
 /// A number of samples that was fixed by a wrong error is not.
 void Core::State::apply(const record::ErrorForgotten& r) {
   if (Job* job = find(r.job); job != nullptr && !is_final(job->state)) {
@@ -197,6 +203,7 @@ Step Core::State::replayed(Time now) {
       continue;
     }
     plan_first(job);
+    note_lost_audited(job);
     job.throughput = {};
     job.elapsed_before = job.elapsed_noted;
     if (job.held) {

@@ -20,7 +20,9 @@
 #include "coordinator/core/core_clock.h"
 #include "coordinator/core/hunger.h"
 #include "coordinator/core/job.h"
+#include "coordinator/core/kept_away.h"
 #include "coordinator/core/leases.h"
+#include "coordinator/core/loss_rate.h"
 #include "coordinator/core/workers.h"
 
 namespace bandsaw::coordinator {
@@ -32,6 +34,7 @@ class Core::State {
   Step step(const Input& input, Time now);
   void apply(const Record& record);
   void restore(const input::BandStored& band);
+  void note_damage(JobId id, std::uint64_t bytes);
   Step replayed(Time now);
   std::vector<Record> snapshot() const;
 
@@ -57,6 +60,7 @@ class Core::State {
   void on(const input::BandStored& in);
   void on(const input::PassMerged& in);
   void on(const input::ResultWritten& in);
+  void on(const input::BandsDamaged& in);
   void on(const input::StorageFailed& in);
   void on(const input::StorageBack& in);
   void on(const input::Quarantine& in);
@@ -80,6 +84,7 @@ class Core::State {
   void apply(const record::WorkerJoined& r);
   void apply(const record::WorkerLeft& r);
   void apply(const record::BandAudited& r);
+  void apply(const record::BandLost& r);
   void apply(const record::ErrorForgotten& r);
   void apply(const record::WorkerQuarantined& r);
   void apply(const record::QuarantineLifted& r);
@@ -199,11 +204,6 @@ class Core::State {
   std::string audit_reason(const Job& job) const;
 
   // Quarantine.
-  struct Quarantined {
-    std::string name;  ///< of the machine, as it says it
-    std::string reason;
-    bool lifted = false;
-  };
   std::string shown_name(const Witness& witness) const;
   bool is_quarantined(const Witness& witness) const;
   std::optional<std::string> kept_away(const std::string& instance, const std::string& said) const;
@@ -212,6 +212,8 @@ class Core::State {
   void send_away(Worker& worker);
   void learn_name(const WorkerHello& worker);
   void retract(Job& job, std::uint64_t renderer, const std::string& why);
+  void close_audits(Job& job, const Band& band, std::uint64_t renderer);
+  void note_lost_audited(Job& job);
   std::vector<WorkerView> quarantined_views() const;
   void add_quarantine(std::vector<Record>& out) const;
 
@@ -223,13 +225,13 @@ class Core::State {
   bool may_render(const Worker& worker, const Job& job) const;
   bool someone_may_render(const Job& job) const;
   bool someone_else(const Job& job, const Band& band) const;
-  struct Losing {
-    JobId job = 0;
-    Band band;
-  };
-  std::optional<Losing> in_hand(const Worker& worker) const;
-  void add_loss(const Worker& worker, const Losing& lost);
+  std::vector<Losing> in_hand(const Worker& worker) const;
+  void add_losses(const Worker& worker, const std::vector<Losing>& lost);
+  void add_loss(Job& job, const Worker& worker, const Losing& lost);
+  void weigh_losses(Job& job, const Worker& worker, const Band& band);
   static bool is_suspect(const Job& job, const Band& band);
+  static bool has_witness(const Job& job, const Band& band);
+  bool another_machine(const Job& job, const Band& band) const;
   static Band narrowed(const Job& job, const Band& free, Band band);
   bool has_suspect(const Worker& worker) const;
   void forgive_losses(const Worker& worker);
@@ -240,6 +242,7 @@ class Core::State {
 
   // Views.
   std::string waiting_reason(const Job& job) const;
+  std::vector<std::string> why_of_state(const Job& job, Time now) const;
   std::string busy_with(const Job& job) const;
   std::vector<std::string> working_on(const Job& job) const;
   std::vector<std::string> not_working_on(const Job& job) const;
@@ -274,17 +277,12 @@ class Core::State {
   Workers workers_;
   Hunger hunger_;
   Leases leases_;
+  LossRate loss_rate_;                                 ///< in this life of the coordinator
   Time tail_again_at_ = 0;                             ///< wall clock
   std::map<SessionId, std::vector<LeaseId>> revoked_;  ///< in this step
 
-  /// Workers that were sent away, the newest kRefusalsKept.
-  struct Refusal {
-    std::string instance;
-    WorkerView worker;
-    Time at = 0;  ///< wall clock
-  };
   static constexpr std::size_t kRefusalsKept = 32;
-  std::deque<Refusal> refusals_;
+  std::deque<Refusal> refusals_;  ///< the newest kRefusalsKept
 
   static constexpr std::size_t kQuarantinedKept = 1'024;
   /// By renderer: what one rendered is void for ever, its name is barred until it is lifted.

@@ -157,6 +157,7 @@ bool Core::State::steal(const Late& late, std::vector<Worker*>& idle) {
   }
   const Worker& from = *workers_.by_id(lease.worker);
   act(action::Revoke{*from.session, {lease.id}});
+  workers_.by_id(lease.worker)->dropping.insert(lease.id);
   act(action::Shared{job.id, lease.band, from.name, thief.name, false});
   end_lease(lease.id, Revoke::kNo);
   std::erase(idle, &thief);
@@ -164,7 +165,7 @@ bool Core::State::steal(const Late& late, std::vector<Worker*>& idle) {
   if (!free) {
     return false;
   }
-  const Band band = sized(job, thief, *free);
+  const Band band = narrowed(job, *free, sized(job, thief, *free));
   grant(thief, job, *job.pass_of(band), band, leases_.new_id());
   return true;
 }
@@ -197,6 +198,9 @@ bool Core::State::move_audit(const Late& late, std::vector<Worker*>& idle) {
 bool Core::State::copy(const Late& late, std::vector<Worker*>& idle) {
   const Lease lease = *leases_.find(late.lease);
   Job& job = jobs_.at(lease.job);
+  if (has_witness(job, lease.band)) {
+    return false;  // one worker at a time
+  }
   RowRange rows = not_copied(job, lease);
   std::vector<Worker*> able = helpers(job, lease, idle);
   able.resize(std::min<std::size_t>(able.size(), rows.count()));

@@ -20,6 +20,9 @@ std::optional<JobView> Core::State::view(JobId id, Time now) const {
   view.spec = job->spec;
   view.state = job->state;
   view.reason = !job->reason.empty() ? job->reason : waiting_reason(*job);
+  if (view.reason.empty()) {
+    view.reason = job->damage;
+  }
   view.elapsed_s = elapsed(*job, std::max(now, clock_.wall()));
   view.fraction = fraction(*job, now);
   view.remaining_s = remaining(*job, now);

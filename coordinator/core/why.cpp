@@ -80,14 +80,22 @@ std::vector<std::string> Core::State::why(JobId id, Time now) const {
   if (job == nullptr) {
     return {};
   }
+  std::vector<std::string> lines = why_of_state(*job, now);
+  if (!job->damage.empty()) {
+    lines.push_back(job->damage);
+  }
+  return lines;
+}
+
+std::vector<std::string> Core::State::why_of_state(const Job& job, Time now) const {
   const auto with_reason = [&](const char* what) {
-    return absl::StrCat(what, job->reason.empty() ? "" : ": ", job->reason);
+    return absl::StrCat(what, job.reason.empty() ? "" : ": ", job.reason);
   };
-  switch (job->state) {
+  switch (job.state) {
     case JobState::kDone:
       return {"it is done"};
     case JobState::kFailed:
-      return failed_because(*job, with_reason("it failed"));
+      return failed_because(job, with_reason("it failed"));
     case JobState::kCancelled:
       return {"it was cancelled"};
     case JobState::kFinishing:
@@ -97,23 +105,23 @@ std::vector<std::string> Core::State::why(JobId id, Time now) const {
     case JobState::kRunning:
       break;
   }
-  std::vector<std::string> lines = working_on(*job);
-  if (const std::string reason = waiting_reason(*job); !reason.empty()) {
+  std::vector<std::string> lines = working_on(job);
+  if (const std::string reason = waiting_reason(job); !reason.empty()) {
     lines.push_back(reason);
   }
-  if (!job->any_free() && audits_hold(*job)) {
-    lines.push_back(audit_reason(*job));
-  } else if (job->leases.empty() && !job->any_free()) {
+  if (!job.any_free() && audits_hold(job)) {
+    lines.push_back(audit_reason(job));
+  } else if (job.leases.empty() && !job.any_free()) {
     lines.push_back("all that is planned is rendered; how much more is needed is being measured");
   }
   if (lines.empty()) {
     lines.push_back("it is about to be given to workers");
   }
-  if (const double left = remaining(*job, now); left >= 0 && !job->leases.empty()) {
+  if (const double left = remaining(job, now); left >= 0 && !job.leases.empty()) {
     lines.push_back(
         absl::StrCat("it needs about ", static_cast<std::uint64_t>(left + 0.5), " s more"));
   }
-  const std::vector<std::string> not_working = not_working_on(*job);
+  const std::vector<std::string> not_working = not_working_on(job);
   lines.insert(lines.end(), not_working.begin(), not_working.end());
   return lines;
 }

@@ -89,6 +89,7 @@ void Core::State::welcome(Worker& worker, const input::Hello& in) {
 }
 
 void Core::State::take_up(Worker& worker, const std::vector<WorkerHello::Held>& held) {
+  worker.dropping.clear();
   std::vector<LeaseId> dropped;
   for (const LeaseId id : worker.leases) {
     const Lease& lease = *leases_.find(id);
@@ -103,6 +104,9 @@ void Core::State::take_up(Worker& worker, const std::vector<WorkerHello::Held>& 
   for (const WorkerHello::Held& h : held) {
     if (!take_up_one(worker, h)) {
       revoked_[*worker.session].push_back(h.lease);
+      if (!h.finished) {
+        worker.dropping.insert(h.lease);
+      }
     }
   }
 }
@@ -143,6 +147,10 @@ void Core::State::on(const input::Heartbeat& in) {
   }
   worker->heard_at = clock_.patience();
   worker->doing = clean_text(in.doing, wire::kReasonBytes);
+  std::erase_if(worker->dropping, [&](LeaseId id) {
+    return std::none_of(in.leases.begin(), in.leases.end(),
+                        [&](const LeaseProgress& progress) { return progress.lease == id; });
+  });
   for (const LeaseProgress& progress : in.leases) {
     const auto place = std::find(worker->leases.begin(), worker->leases.end(), progress.lease);
     if (place == worker->leases.end()) {
@@ -174,7 +182,7 @@ void Core::State::on(const input::Lost& in) {
 }
 
 void Core::State::lose(Worker& worker, const std::string& reason) {
-  const std::optional<Losing> lost = in_hand(worker);
+  const std::vector<Losing> lost = in_hand(worker);
   worker.fell_silent = is_silent(worker);
   end_all(std::vector<LeaseId>(worker.leases), Revoke::kNo);
   if (!worker.quarantined) {
@@ -184,11 +192,9 @@ void Core::State::lose(Worker& worker, const std::string& reason) {
   if (joined_.contains(worker.instance)) {
     emit(record::WorkerLeft{worker.instance});
   }
-  if (lost) {
-    add_loss(worker, *lost);
-  }
   workers_.disconnect(worker);
   hunger_.update(worker);
+  add_losses(worker, lost);
   note_those_lost_together();
 }
 

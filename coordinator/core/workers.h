@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -33,6 +34,9 @@ struct Worker {
   Time connected_at = 0;        ///< wall clock
   Time heard_at = 0;            ///< patience clock
   std::vector<LeaseId> leases;  ///< in the order given, which is the order it renders them in
+  /// Leases that it was told to drop, and has not been heard of since without: it may be rendering
+  /// one of them.
+  std::set<LeaseId> dropping;
   Speed speed;
 
   /// Of one job that is not final.

@@ -18,9 +18,11 @@ constexpr std::size_t kCollectEveryJobs = 1'000;
 
 }  // namespace
 
-CoreDesk::CoreDesk(CoreOptions options, Journal& journal, const Clock& clock, Hooks hooks)
+CoreDesk::CoreDesk(CoreOptions options, Journal& journal, Reserve reserve, const Clock& clock,
+                   Hooks hooks)
     : core_(options),
       journal_(journal),
+      reserve_(std::move(reserve)),
       clock_(clock),
       hooks_(std::move(hooks)),
       outbox_(journal),
@@ -165,6 +167,10 @@ void CoreDesk::compact() {
 }
 
 bool CoreDesk::flush() {
+  if (const absl::Status written = outbox_.write();
+      absl::IsResourceExhausted(written) && reserve_.release()) {
+    no_room(written);
+  }
   const absl::Status flushed = outbox_.flush();
   if (flushed.ok()) {
     journal_status_ = flushed;
@@ -182,9 +188,26 @@ void CoreDesk::journal_failed(const absl::Status& status) {
   journal_status_ = absl::ResourceExhaustedError(
       absl::StrCat("the coordinator cannot write its journal: ", status.message()));
   spdlog::error("{}", journal_status_.ToString());
+  pause_all(journal_status_);
+}
+
+void CoreDesk::no_room(const absl::Status& status) {
+  hooks_.expect_trouble();
+  if (!room_.ok()) {
+    return;
+  }
+  room_ = absl::ResourceExhaustedError(absl::StrCat(
+      "the coordinator's disk is full: ", status.message(),
+      "; jobs are paused and nothing new is taken until there is room: cancel jobs, or free some"));
+  spdlog::error("{}", room_.ToString());
+  hooks_.room(false);
+  pause_all(room_);
+}
+
+void CoreDesk::pause_all(const absl::Status& status) {
   for (const auto& [id, known] : known_) {
     if (!is_final(known.state)) {
-      storage_failed(id, journal_status_);
+      storage_failed(id, status);
     }
   }
 }
@@ -198,9 +221,20 @@ void CoreDesk::disk_is_back() {
   if (!flush()) {
     return;
   }
+  if (const absl::Status held = reserve_.hold(); !held.ok()) {
+    no_room(held);
+    return;
+  }
+  room_ = absl::OkStatus();
+  hooks_.room(true);
   spdlog::info("the disk takes data again");
   run(input::StorageBack{});
   hooks_.retry_film();
+}
+
+void CoreDesk::bands_damaged(input::BandsDamaged damaged) {
+  results_on_the_way_.erase(damaged.job);  // the film waits for the bands; the core asks again
+  run(damaged);
 }
 
 void CoreDesk::result_written(JobId job, const absl::Status& status) {

@@ -9,6 +9,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "coordinator/core/core.h"
@@ -20,6 +21,7 @@
 #include "coordinator/engine/watchers.h"
 #include "coordinator/engine/worker_logs.h"
 #include "coordinator/store/journal.h"
+#include "coordinator/store/reserve.h"
 
 namespace bandsaw::coordinator {
 
@@ -42,13 +44,15 @@ class CoreDesk {
     std::function<void(JobId)> drop_job;
     std::function<void(std::vector<Collector::Job>)> collect;
     std::function<void()> expect_trouble;
+    std::function<void(bool there)> room;  ///< whether the disk has room for what is new
     std::function<void()> retry_film;
   };
-  CoreDesk(CoreOptions options, Journal& journal, const Clock& clock, Hooks hooks);
+  /// `reserve`: is released when the journal has no room, and held again when there is.
+  CoreDesk(CoreOptions options, Journal& journal, Reserve reserve, const Clock& clock, Hooks hooks);
 
   /// Journal, bands and films as they were. Before any other call; the other threads MUST not run
-  /// yet.
-  absl::Status restore(StoreDesk& store, FilmDesk& film);
+  /// yet. `room`: OK, or why the disk is full (no_room).
+  absl::Status restore(StoreDesk& store, FilmDesk& film, const absl::Status& room);
 
   // People.
   void submit(JobSpec spec, std::int32_t priority, Answer<JobId> answer);
@@ -76,6 +80,7 @@ class CoreDesk {
   // The other threads.
   void band_stored(PutBand put, std::vector<std::uint64_t> row_digests);
   void band_failed(PutBand put, const absl::Status& status);
+  void bands_damaged(input::BandsDamaged damaged);
   void result_written(JobId job, const absl::Status& status);
   void storage_failed(JobId job, const absl::Status& status);
   void disk_is_back();
@@ -100,6 +105,9 @@ class CoreDesk {
   void note(const Record& record);
   void tell_others(const Record& record);
   bool flush();
+  /// The disk is full: until `disk_is_back` jobs are paused, and submits and bands refused.
+  void no_room(const absl::Status& status);
+  void pause_all(const absl::Status& status);
   void journal_failed(const absl::Status& status);
   absl::Status restore_job(JobId id, const Known& known, StoreDesk& store, FilmDesk& film);
   bool over(JobId id) const;
@@ -108,6 +116,7 @@ class CoreDesk {
 
   Core core_;
   Journal& journal_;
+  Reserve reserve_;
   const Clock& clock_;
   Hooks hooks_;
   Outbox outbox_;
@@ -117,6 +126,7 @@ class CoreDesk {
   std::map<JobId, Known> known_;
   std::set<JobId> results_on_the_way_;  ///< asked for by the core, not answered yet
   absl::Status journal_status_;         ///< an error: nothing is acknowledged
+  absl::Status room_;                   ///< an error: the reserve is released, nothing new is taken
   Time ticked_at_ = 0;
   std::optional<Time> collected_at_;
   std::size_t added_since_ = 0;                           ///< jobs, since then

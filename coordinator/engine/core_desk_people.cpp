@@ -8,8 +8,8 @@
 namespace bandsaw::coordinator {
 
 void CoreDesk::submit(JobSpec spec, std::int32_t priority, Answer<JobId> answer) {
-  if (!journal_status_.ok()) {
-    answer(journal_status_);
+  if (!journal_status_.ok() || !room_.ok()) {
+    answer(journal_status_.ok() ? room_ : journal_status_);
     return;
   }
   const Step step = run(input::Submit{.spec = std::move(spec), .priority = priority});

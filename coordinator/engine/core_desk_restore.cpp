@@ -1,6 +1,7 @@
 #include <spdlog/spdlog.h>
 
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/engine/core_desk.h"
@@ -10,22 +11,34 @@
 
 namespace bandsaw::coordinator {
 
-absl::Status CoreDesk::restore(StoreDesk& store, FilmDesk& film) {
+absl::Status CoreDesk::restore(StoreDesk& store, FilmDesk& film, const absl::Status& room) {
   RETURN_IF_ERROR(journal_.replay([this](const Record& record) {
     core_.replay(record);
     note(record);
   }));
+  std::vector<std::pair<JobId, absl::Status>> failed;
   for (const auto& [id, known] : known_) {
     if (is_final(known.state)) {
       store.drop_bands(id);
+    } else if (const absl::Status restored = restore_job(id, known, store, film);
+               absl::IsResourceExhausted(restored)) {
+      failed.emplace_back(id, restored);
     } else {
-      RETURN_IF_ERROR(restore_job(id, known, store, film));
+      RETURN_IF_ERROR(restored);
     }
   }
   absorb(core_.replayed(clock_.now()), nullptr);
+  if (!room.ok()) {
+    no_room(room);
+  }
+  for (const auto& [id, status] : failed) {
+    hooks_.expect_trouble();
+    storage_failed(id, status);
+  }
   return absl::OkStatus();
 }
 
+/// RESOURCE_EXHAUSTED: the job is known, and the rest of it is read when there is room.
 absl::Status CoreDesk::restore_job(JobId id, const Known& known, StoreDesk& store, FilmDesk& film) {
   film.add_job(id, known.spec.settings, is_adaptive(known.spec.stop));
   for (const std::uint64_t samples : known.pass_ends) {
@@ -35,7 +48,7 @@ absl::Status CoreDesk::restore_job(JobId id, const Known& known, StoreDesk& stor
   const auto take = [&](BandRecord record, std::uint64_t offset) {
     BandPixels& pixels = record.pixels;
     std::optional<std::vector<RowRange>> rows = core_.wanted(id, pixels.band);
-    if (!rows || rows->empty() || !filmed.ok()) {
+    if (!rows || rows->empty()) {
       return;
     }
     const Band band = pixels.band;
@@ -53,21 +66,24 @@ absl::Status CoreDesk::restore_job(JobId id, const Known& known, StoreDesk& stor
       put.pixels = std::move(pixels);
       put.offset = offset;
       put.tiles = core_.tiles(id, band);
-      filmed = film.add(id, std::move(put), *std::move(rows));
+      if (filmed.ok()) {
+        filmed = film.add(id, std::move(put), *std::move(rows));
+      } else {
+        film.add_later(id, put, *rows);
+      }
     }
   };
   ASSIGN_OR_RETURN(const BandLogReport report, store.open_job(id, known.spec, take));
-  if (!filmed.ok()) {
-    return absl::Status(
-        filmed.code(), absl::StrCat("cannot rebuild the film of job ", id, ": ", filmed.message()));
-  }
   if (report.damaged_bytes > 0) {
+    core_.replay_damage(id, report.damaged_bytes);
     spdlog::warn(
         "job={} {} damaged bytes in its bands were left out; their rows are rendered again", id,
         report.damaged_bytes);
   }
   spdlog::info("job={} taken up again, {} bands on disk", id, report.records);
-  return absl::OkStatus();
+  return filmed.ok() ? filmed
+                     : absl::Status(filmed.code(), absl::StrCat("cannot rebuild the film of job ",
+                                                                id, ": ", filmed.message()));
 }
 
 }  // namespace bandsaw::coordinator

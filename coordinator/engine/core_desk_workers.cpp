@@ -67,6 +67,8 @@ void CoreDesk::put_band(PutBand put) {
     put.answer(BandOutcome::kUnwanted);
   } else if (wanted->empty()) {
     hooks_.compare_band(std::move(put));
+  } else if (!room_.ok()) {
+    put.answer(room_);
   } else {
     hooks_.store_band(std::move(put));
   }

@@ -164,6 +164,10 @@ std::uint64_t Engine::partial_blob(const wire::Digest& digest) const {
 absl::StatusOr<std::unique_ptr<Engine::BlobWriter>> Engine::write_blob(const wire::Digest& digest,
                                                                        std::uint64_t size,
                                                                        std::uint64_t offset) {
+  if (!impl_->room()) {
+    return absl::ResourceExhaustedError(
+        "the coordinator's disk is full: it takes no scene now; cancel jobs, or free some room");
+  }
   ASSIGN_OR_RETURN(BlobStore::Writer writer, impl_->blobs().write(digest, size, offset));
   return std::make_unique<BlobUpload>(std::move(writer));
 }

@@ -1,14 +1,34 @@
 #include "coordinator/engine/film_desk.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/store/band_log.h"
 #include "renderlib/base/check.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/render/hash64.h"
 
 namespace bandsaw::coordinator {
+namespace {
+
+/// Whether a band is not in the log any more, however often it is read. UNKNOWN is what an
+/// unreadable sector (EIO) says.
+bool is_damage(const absl::Status& status) {
+  return absl::IsDataLoss(status) || absl::IsOutOfRange(status) || absl::IsNotFound(status) ||
+         absl::IsUnknown(status);
+}
+
+std::uint64_t digest_of(const BandPixels& pixels, const RowRange& rows) {
+  const std::vector<std::uint64_t> digests = row_digests(pixels);
+  const std::span<const std::uint64_t> all = digests;
+  Hash64 hash;
+  hash.add(std::as_bytes(all.subspan(rows.first - pixels.band.rows.first, rows.count())));
+  return hash.value();
+}
+
+}  // namespace
 
 void FilmDesk::add_job(JobId job, const RenderSettings& settings, bool adaptive) {
   jobs_[job].settings = settings;
@@ -30,6 +50,18 @@ absl::Status FilmDesk::add(JobId id, PutBand put, std::vector<RowRange> rows) {
   return work(id, job->second);
 }
 
+void FilmDesk::add_later(JobId id, const PutBand& put, const std::vector<RowRange>& rows) {
+  const auto job = jobs_.find(id);
+  if (job == jobs_.end()) {
+    return;
+  }
+  for (const RowRange& range : rows) {
+    job->second.added.push_back(added(put, range));
+  }
+  job->second.film.reset();
+  job->second.anew = true;
+}
+
 void FilmDesk::want_image(JobId id, std::uint64_t samples) {
   if (const auto job = jobs_.find(id); job != jobs_.end()) {
     job->second.image_of = samples;
@@ -39,6 +71,7 @@ void FilmDesk::want_image(JobId id, std::uint64_t samples) {
 
 void FilmDesk::retry() {
   for (auto& [id, job] : jobs_) {
+    make_folder(folder_.job(id)).IgnoreError();  // where it is missing, `work` says so
     if (job.anew || !job.waiting.empty() || job.image_of) {
       work(id, job).IgnoreError();  // the hook has heard of it
     }
@@ -95,6 +128,7 @@ absl::Status FilmDesk::work(JobId id, OneJob& job) {
 }
 
 absl::Status FilmDesk::make_anew(JobId id, OneJob& job) {
+  job.film.reset();  // its room is needed
   ASSIGN_OR_RETURN(job.film, film_until(id, job, kMaxSamples));
   job.anew = false;
   tell_passes(id, job);
@@ -108,11 +142,10 @@ absl::Status FilmDesk::merge(JobId id, OneJob& job, Waiting& waiting) {
   const BandPixels& pixels = waiting.put.pixels;
   while (!waiting.rows.empty()) {
     const RowRange rows = waiting.rows.back();
-    TileSamples tiles = waiting.put.tiles.of(rows);
-    RETURN_IF_ERROR(job.film->add(rows == pixels.band.rows ? pixels : slice(pixels, rows), tiles));
+    RETURN_IF_ERROR(job.film->add(rows == pixels.band.rows ? pixels : slice(pixels, rows),
+                                  waiting.put.tiles.of(rows)));
     credits_.add(id, rows, waiting.put.renderer, waiting.put.worker);
-    job.added.push_back({waiting.put.offset, pixels.band.samples.last, waiting.put.renderer, rows,
-                         std::move(tiles)});
+    job.added.push_back(added(waiting.put, rows));
     waiting.rows.pop_back();
   }
   return absl::OkStatus();
@@ -135,11 +168,14 @@ absl::Status FilmDesk::give_image(JobId id, OneJob& job) {
     return absl::OkStatus();
   }
   const std::uint64_t samples = *job.image_of;
-  const bool beyond = std::any_of(job.added.begin(), job.added.end(),
-                                  [&](const Added& added) { return added.last_sample > samples; });
-  if (beyond) {
+  const auto is_beyond = [&](const Added& one) { return one.band.samples.last > samples; };
+  if (std::any_of(job.added.begin(), job.added.end(), is_beyond)) {
     ASSIGN_OR_RETURN(job.film, film_until(id, job, samples));
-    std::erase_if(job.added, [&](const Added& added) { return added.last_sample > samples; });
+    std::erase_if(job.added, is_beyond);
+    if (!job.film->complete(samples)) {
+      job.image_of.reset();  // it is asked for again when what is damaged is there again
+      return absl::OkStatus();
+    }
   }
   job.image_of.reset();
   // What was told on the way may have been of more samples.
@@ -157,17 +193,61 @@ absl::StatusOr<Film> FilmDesk::new_film(JobId id, const OneJob& job) const {
                       job.adaptive ? Film::Grain::kHalfTiles : Film::Grain::kRows);
 }
 
-// Nodes that met have become one sum, from which a part cannot be taken out again.
-absl::StatusOr<Film> FilmDesk::film_until(JobId id, const OneJob& job,
-                                          std::uint64_t samples) const {
+FilmDesk::Added FilmDesk::added(const PutBand& put, const RowRange& rows) {
+  return {.offset = put.offset,
+          .band = {put.pixels.band.samples, rows},
+          .renderer = put.renderer,
+          .tiles = put.tiles.of(rows),
+          .digest = digest_of(put.pixels, rows)};
+}
+
+/// A film of what was added up to a sample, read from the log: nodes that met have become one sum,
+/// from which a part cannot be taken out again. What the log does not hold any more is left out and
+/// told. Fails where the film cannot be made, or the log cannot be read for another reason than
+/// damage.
+absl::StatusOr<Film> FilmDesk::film_until(JobId id, OneJob& job, std::uint64_t samples) {
   ASSIGN_OR_RETURN(Film film, new_film(id, job));
-  for (const Added& added : job.added) {
-    if (added.last_sample <= samples) {
-      ASSIGN_OR_RETURN(const BandRecord band, read_band(folder_.bands(id), added.offset));
-      RETURN_IF_ERROR(film.add(slice(band.pixels, added.rows), added.tiles));
+  std::vector<std::size_t> damaged;
+  for (std::size_t i = 0; i < job.added.size(); ++i) {
+    const Added& one = job.added[i];
+    if (one.band.samples.last > samples) {
+      continue;
     }
+    const absl::StatusOr<BandPixels> pixels = read_again(id, one);
+    if (is_damage(pixels.status())) {
+      damaged.push_back(i);
+      continue;
+    }
+    RETURN_IF_ERROR(pixels.status());
+    RETURN_IF_ERROR(film.add(*pixels, one.tiles));
   }
+  leave_out(id, job, damaged);
   return film;
+}
+
+/// Bit for bit what was added. DATA_LOSS: the record is sound, but it is another one.
+absl::StatusOr<BandPixels> FilmDesk::read_again(JobId id, const Added& added) const {
+  ASSIGN_OR_RETURN(const BandRecord record, read_band(folder_.bands(id), added.offset));
+  const Band& found = record.pixels.band;
+  const RowRange& rows = added.band.rows;
+  if (found.samples != added.band.samples || rows.first < found.rows.first ||
+      found.rows.last < rows.last || digest_of(record.pixels, rows) != added.digest) {
+    return absl::DataLossError(
+        absl::StrCat(folder_.bands(id), " holds another band at byte ", added.offset));
+  }
+  return slice(record.pixels, rows);
+}
+
+void FilmDesk::leave_out(JobId id, OneJob& job, const std::vector<std::size_t>& damaged) {
+  std::vector<input::BandsDamaged::Lost> lost;
+  for (auto index = damaged.rbegin(); index != damaged.rend(); ++index) {
+    const auto one = job.added.begin() + static_cast<std::ptrdiff_t>(*index);
+    lost.push_back({one->band, one->renderer});
+    job.added.erase(one);
+  }
+  if (!lost.empty()) {
+    hooks_.damaged(id, std::move(lost));
+  }
 }
 
 BandPixels slice(const BandPixels& pixels, const RowRange& rows) {

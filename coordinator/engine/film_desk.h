@@ -32,6 +32,8 @@ class FilmDesk {
     std::function<void(JobId, Finished)> image;
     /// The film could not take a band: it is kept in memory until retry.
     std::function<void(JobId, absl::Status)> failed;
+    /// The log does not hold what was added any more: it is left out of the film from now on.
+    std::function<void(JobId, std::vector<input::BandsDamaged::Lost>)> damaged;
   };
   FilmDesk(const DataFolder& folder, Hooks hooks) : folder_(folder), hooks_(std::move(hooks)) {}
 
@@ -41,6 +43,9 @@ class FilmDesk {
   /// These rows of the band are new. OK: they are in the film; otherwise they wait for retry, which
   /// `failed` says too.
   absl::Status add(JobId job, PutBand put, std::vector<RowRange> rows);
+  /// The same of a band that is in the job's log, while the film cannot take any: it is read again
+  /// at the next retry.
+  void add_later(JobId job, const PutBand& put, const std::vector<RowRange>& rows);
   /// The image of samples [0, samples) goes to the hook as soon as the film has them.
   void want_image(JobId job, std::uint64_t samples);
   void retry();
@@ -63,11 +68,11 @@ class FilmDesk {
   };
   /// What was added: enough to add it again from the job's log.
   struct Added {
-    std::uint64_t offset = 0;  ///< of the band's record
-    std::uint64_t last_sample = 0;
+    std::uint64_t offset = 0;  ///< of the record that holds the band
+    Band band;
     std::uint64_t renderer = 0;
-    RowRange rows;
-    TileSamples tiles;  ///< of these rows
+    TileSamples tiles;         ///< of these rows
+    std::uint64_t digest = 0;  ///< of the rows' sums
   };
   struct OneJob {
     RenderSettings settings;
@@ -80,13 +85,16 @@ class FilmDesk {
     bool anew = false;       ///< the film has what is not in `added`
     std::optional<std::uint64_t> image_of;
   };
+  static Added added(const PutBand& put, const RowRange& rows);
   absl::Status work(JobId id, OneJob& job);
   absl::Status make_anew(JobId id, OneJob& job);
   absl::Status merge(JobId id, OneJob& job, Waiting& waiting);
   void tell_passes(JobId id, OneJob& job);
   absl::Status give_image(JobId id, OneJob& job);
   absl::StatusOr<Film> new_film(JobId id, const OneJob& job) const;
-  absl::StatusOr<Film> film_until(JobId id, const OneJob& job, std::uint64_t samples) const;
+  absl::StatusOr<Film> film_until(JobId id, OneJob& job, std::uint64_t samples);
+  absl::StatusOr<BandPixels> read_again(JobId id, const Added& added) const;
+  void leave_out(JobId id, OneJob& job, const std::vector<std::size_t>& damaged);
 
   const DataFolder& folder_;
   Hooks hooks_;

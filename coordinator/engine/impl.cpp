@@ -47,6 +47,19 @@ CoreOptions core_options(const EngineOptions& options, const std::string& epoch)
   return core;
 }
 
+/// Whether the disk takes a little beside the reserve. Where it does not the reserve is released,
+/// so that the journal can be opened and the rest of the start has room for small files.
+absl::Status find_room(const DataFolder& folder) {
+  constexpr std::uint64_t kLittle = 1 << 20;
+  Reserve reserve(folder.reserve());
+  absl::Status room = reserve.hold();
+  room.Update(probe_disk(folder.path(), kLittle));
+  if (!room.ok()) {
+    reserve.release();
+  }
+  return room;
+}
+
 }  // namespace
 
 Engine::Impl::Impl(const EngineOptions& options, EngineDoors doors, DataFolder folder,
@@ -58,7 +71,8 @@ Engine::Impl::Impl(const EngineOptions& options, EngineDoors doors, DataFolder f
       epoch_(new_epoch()),
       bands_(kMaxBandBytes),
       images_(kMaxImageBytes),
-      core_(core_options(options, epoch_), *journal_, *clock_, core_hooks()),
+      core_(core_options(options, epoch_), *journal_, Reserve(folder_.reserve()), *clock_,
+            core_hooks()),
       store_(folder_, *clock_, store_hooks()),
       collector_(folder_, *blobs_, options.keep),
       film_(folder_, film_hooks()),
@@ -69,6 +83,10 @@ Engine::Impl::Impl(const EngineOptions& options, EngineDoors doors, DataFolder f
 absl::StatusOr<std::unique_ptr<Engine::Impl>> Engine::Impl::start(EngineOptions options,
                                                                   EngineDoors doors) {
   ASSIGN_OR_RETURN(DataFolder folder, DataFolder::open(options.data_folder));
+  const absl::Status room = find_room(folder);
+  if (!room.ok() && !absl::IsResourceExhausted(room)) {
+    return room;
+  }
   ASSIGN_OR_RETURN(std::unique_ptr<BlobStore> blobs, BlobStore::open(folder.blobs()));
   if (doors.journal == nullptr) {
     ASSIGN_OR_RETURN(doors.journal, SqliteJournal::open(folder.journal()));
@@ -78,7 +96,7 @@ absl::StatusOr<std::unique_ptr<Engine::Impl>> Engine::Impl::start(EngineOptions 
   }
   std::unique_ptr<Impl> impl(
       new Impl(options, std::move(doors), std::move(folder), std::move(blobs)));
-  RETURN_IF_ERROR(impl->core_.restore(impl->store_, impl->film_));
+  RETURN_IF_ERROR(impl->core_.restore(impl->store_, impl->film_, room));
   impl->film_thread_.start();
   impl->store_thread_.start();
   impl->core_thread_.start();
@@ -154,6 +172,7 @@ CoreDesk::Hooks Engine::Impl::core_hooks() {
             on_store([this, jobs = std::move(jobs)](StoreDesk&) { collect(jobs); });
           },
       .expect_trouble = [this] { on_store([](StoreDesk& store) { store.expect_trouble(); }); },
+      .room = [this](bool there) { room_ = there; },
       .retry_film = [this] { on_film([](FilmDesk& film) { film.retry(); }); }};
 }
 
@@ -198,6 +217,14 @@ FilmDesk::Hooks Engine::Impl::film_hooks() {
                   core.storage_failed(job, status);
                 });
                 on_store([](StoreDesk& store) { store.expect_trouble(); });
+              },
+          .damaged =
+              [this](JobId job, std::vector<input::BandsDamaged::Lost> bands) {
+                // Before the first of them is leased again.
+                on_store([job](StoreDesk& store) { store.reopen(job); });
+                on_core([job, bands = std::move(bands)](CoreDesk& core) mutable {
+                  core.bands_damaged({.job = job, .bands = std::move(bands)});
+                });
               }};
 }
 

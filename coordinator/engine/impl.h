@@ -53,6 +53,8 @@ class Engine::Impl {
   BlobStore& blobs() { return *blobs_; }
   MemoryBudget& bands() { return bands_; }
   MemoryBudget& images() { return images_; }
+  /// True if the disk has room for new data. Callable from any thread.
+  bool room() const { return room_; }
   SessionId next_session() { return ++last_session_; }
   const std::string& epoch() const { return epoch_; }
   const std::string& data_folder() const { return folder_.path(); }
@@ -72,6 +74,7 @@ class Engine::Impl {
   const std::unique_ptr<Clock> clock_;
   const std::string epoch_;
   std::atomic<SessionId> last_session_{0};
+  std::atomic<bool> room_{true};
   MemoryBudget bands_;   ///< bytes of the bands in memory
   MemoryBudget images_;  ///< bytes of the images that are made or downloaded
   CoreDesk core_;

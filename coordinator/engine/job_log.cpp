@@ -60,6 +60,12 @@ struct Line {
     spdlog::debug("audited job={} rows={}:{} samples={}:{}", r.job, r.band.rows.first,
                   r.band.rows.last, r.band.samples.first, r.band.samples.last);
   }
+  void operator()(const record::BandLost& r) const {
+    spdlog::error(
+        "lost job={} rows={}:{} samples={}:{} its record in the band log is damaged; it is "
+        "rendered again",
+        r.job, r.band.rows.first, r.band.rows.last, r.band.samples.first, r.band.samples.last);
+  }
   void operator()(const record::ErrorForgotten& r) const {
     spdlog::warn("job={} wrong pixels are rendered again; its error is measured anew", r.job);
   }

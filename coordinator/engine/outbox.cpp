@@ -4,12 +4,19 @@
 
 namespace bandsaw::coordinator {
 
+absl::Status Outbox::write() {
+  const absl::Status written = journal_.append(records_);
+  if (written.ok()) {
+    records_.clear();
+  }
+  return written;
+}
+
 absl::Status Outbox::flush() {
-  if (const absl::Status written = journal_.append(records_); !written.ok()) {
+  if (const absl::Status written = write(); !written.ok()) {
     fail_replies(written);
     return written;
   }
-  records_.clear();
   // What is done here may put more into the outbox: that waits for the next flush.
   for (Waiting& next : std::exchange(waiting_, {})) {
     if (next.deed) {

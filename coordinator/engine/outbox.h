@@ -28,6 +28,8 @@ class Outbox {
   void deed(Deed deed) { waiting_.push_back({std::move(deed), nullptr}); }
   void reply(Reply reply) { waiting_.push_back({nullptr, std::move(reply)}); }
 
+  /// Appends all records at once, and no more. On an error they stay.
+  absl::Status write();
   /// Appends all records at once, then does and answers everything in the order it came. On an
   /// error the replies are given it, and records and deeds stay, in order, for the next flush.
   absl::Status flush();

@@ -151,6 +151,13 @@ absl::StatusOr<StoredResult> StoreDesk::read_result(JobId id, FinishedPart part)
   return result;
 }
 
+void StoreDesk::reopen(JobId id) {
+  if (const auto job = jobs_.find(id); job != jobs_.end() && job->second.log) {
+    settle(job->second);
+    job->second.log.reset();
+  }
+}
+
 void StoreDesk::drop_bands(JobId id) {
   jobs_.erase(id);
   remove_file(folder_.bands(id)).IgnoreError();  // what is left is removed at the next start

@@ -51,6 +51,9 @@ class StoreDesk {
   void write_result(JobId job, const Finished& finished);
   /// DATA_LOSS. NOT_FOUND: the job was not adaptive, and kSamples is asked for.
   absl::StatusOr<StoredResult> read_result(JobId job, FinishedPart part) const;
+  /// The log was found damaged: what is appended from now on goes to the end of what is sound of
+  /// it, or into a new one where it is missing.
+  void reopen(JobId job);
   /// Removes the log of a final job.
   void drop_bands(JobId job);
   /// Removes all that is left of a forgotten job.

@@ -1,13 +1,25 @@
 #include "coordinator/store/band_log.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
 #include <utility>
 
+#include "absl/strings/str_cat.h"
+#include "proto/wire/limits.h"
 #include "renderlib/base/mapped_file.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
 namespace {
+
+static_assert(std::endian::native == std::endian::little, "the file is little-endian");
+
+/// Magic and size (renderlib/render/band_file.h).
+constexpr std::size_t kSizeEnd = kBandRecordMagic.size() + sizeof(std::uint64_t);
+/// The largest band that a worker may send, and what a record says beside its sums.
+constexpr std::uint64_t kMaxRecordBytes = wire::kBandBytes + 4096;
 
 /// Where the next record may begin at or after `offset`; the end when none does.
 std::uint64_t next_magic(absl::Span<const std::byte> bytes, std::uint64_t offset) {
@@ -98,8 +110,20 @@ absl::Status BandLog::take_back(std::uint64_t size) {
 }
 
 absl::StatusOr<BandRecord> read_band(const std::string& path, std::uint64_t offset) {
-  ASSIGN_OR_RETURN(const MappedFile mapped, MappedFile::open(path));
-  ASSIGN_OR_RETURN(DecodedBandRecord decoded, decode_band_record(mapped.bytes(), offset));
+  ASSIGN_OR_RETURN(const File file, File::open(path, O_RDONLY));
+  // Not mapped: a sector that cannot be read is an error of one band here, the end of the process
+  // there.
+  std::array<std::byte, kSizeEnd> head{};
+  RETURN_IF_ERROR(file.read(offset, absl::MakeSpan(head)));
+  std::uint64_t size = 0;
+  std::memcpy(&size, head.data() + kBandRecordMagic.size(), sizeof size);
+  if (size < head.size() || size > kMaxRecordBytes) {
+    return absl::DataLossError(
+        absl::StrCat(path, ": at byte ", offset, " is no record: it would have ", size, " bytes"));
+  }
+  std::vector<std::byte> bytes(size);
+  RETURN_IF_ERROR(file.read(offset, absl::MakeSpan(bytes)));
+  ASSIGN_OR_RETURN(DecodedBandRecord decoded, decode_band_record(bytes));
   return std::move(decoded.record);
 }
 

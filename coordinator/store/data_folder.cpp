@@ -11,8 +11,8 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
 #include "coordinator/store/staged_file.h"
-#include "proto/wire/limits.h"
 #include "renderlib/base/atomic_file.h"
 #include "renderlib/base/status_macros.h"
 
@@ -42,10 +42,12 @@ absl::StatusOr<File> take_lock(const std::string& path) {
         "another coordinator (process ", holder.ok() ? absl::StripAsciiWhitespace(*holder) : "?",
         ") uses the data folder ", path, "; stop it, or give this one its own with --data"));
   }
-  RETURN_IF_ERROR(lock.truncate(0));
-  const std::string holder = absl::StrCat(::getpid(), "\n");
-  RETURN_IF_ERROR(lock.write(std::as_bytes(std::span(holder))));
-  return lock;
+  // As long as the one before it: what is written over needs no room on a full disk.
+  const std::string holder = absl::StrFormat("%-20d\n", ::getpid());
+  const absl::Status told = lock.write(std::as_bytes(std::span(holder)));
+  // People read it; the lock itself holds without.
+  return absl::IsResourceExhausted(told) || told.ok() ? absl::StatusOr<File>(std::move(lock))
+                                                      : told;
 }
 
 /// Marks a new folder with the format, and refuses one that has another.
@@ -84,10 +86,10 @@ absl::StatusOr<DataFolder> DataFolder::open(const std::string& path) {
 
 std::string DataFolder::job(JobId id) const { return absl::StrCat(jobs(), "/", id); }
 
-absl::Status probe_disk(const std::string& folder) {
+absl::Status probe_disk(const std::string& folder, std::uint64_t bytes) {
   const std::string name = folder + "/probe";
   RETURN_IF_ERROR(remove_file(name));
-  ASSIGN_OR_RETURN(StagedFile file, StagedFile::create(name, wire::kBandBytes));
+  ASSIGN_OR_RETURN(StagedFile file, StagedFile::create(name, bytes));
   RETURN_IF_ERROR(file.append(std::vector<std::byte>(kProbeBytes)));
   return file.sync();
 }

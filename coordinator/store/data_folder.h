@@ -6,6 +6,7 @@
 
 #include "absl/status/statusor.h"
 #include "coordinator/core/types.h"
+#include "proto/wire/limits.h"
 #include "renderlib/base/file.h"
 
 namespace bandsaw::coordinator {
@@ -20,6 +21,7 @@ class DataFolder {
 
   const std::string& path() const { return path_; }
   std::string journal() const { return path_ + "/journal.sqlite"; }
+  std::string reserve() const { return path_ + "/reserve"; }
   std::string blobs() const { return path_ + "/blobs"; }
   std::string jobs() const { return path_ + "/jobs"; }
   std::string job(JobId id) const;
@@ -34,8 +36,9 @@ class DataFolder {
   File lock_;
 };
 
-/// Whether the disk has room for a band and takes data: reserves, writes, syncs, removes.
-absl::Status probe_disk(const std::string& folder);
+/// Whether the disk has room for `bytes`, by default a band's, and takes data: reserves, writes,
+/// syncs, removes.
+absl::Status probe_disk(const std::string& folder, std::uint64_t bytes = wire::kBandBytes);
 
 /// Bytes that this user may still write on the disk of a folder. The system's reason otherwise.
 absl::StatusOr<std::uint64_t> free_bytes(const std::string& folder);

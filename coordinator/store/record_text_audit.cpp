@@ -4,14 +4,39 @@
 
 namespace bandsaw::coordinator {
 
+namespace {
+
+/// The fields of a band that a renderer stored.
+void write_stored(FieldWriter& out, JobId job, const Band& band, std::uint64_t renderer) {
+  out.number("job", job);
+  out.number("first", band.samples.first);
+  out.number("last", band.samples.last);
+  out.number("first_row", band.rows.first);
+  out.number("last_row", band.rows.last);
+  out.number("renderer", renderer);
+}
+
+// Braced initialisers are evaluated in the order they are written, which is that of the fields.
+
+template <class R>
+R read_stored(FieldReader& in) {
+  return {.job = in.number("job"),
+          .band = {.samples = {.first = in.number("first"), .last = in.number("last")},
+                   .rows = {.first = static_cast<std::uint32_t>(in.number("first_row", UINT32_MAX)),
+                            .last = static_cast<std::uint32_t>(in.number("last_row", UINT32_MAX))}},
+          .renderer = in.number("renderer")};
+}
+
+}  // namespace
+
 const char* write_audit(FieldWriter& out, const record::BandAudited& r) {
-  out.number("job", r.job);
-  out.number("first", r.band.samples.first);
-  out.number("last", r.band.samples.last);
-  out.number("first_row", r.band.rows.first);
-  out.number("last_row", r.band.rows.last);
-  out.number("renderer", r.renderer);
+  write_stored(out, r.job, r.band, r.renderer);
   return "band_audited";
+}
+
+const char* write_audit(FieldWriter& out, const record::BandLost& r) {
+  write_stored(out, r.job, r.band, r.renderer);
+  return "band_lost";
 }
 
 const char* write_audit(FieldWriter& out, const record::ErrorForgotten& r) {
@@ -31,16 +56,12 @@ const char* write_audit(FieldWriter& out, const record::QuarantineLifted& r) {
   return "quarantine_lifted";
 }
 
-// Braced initialisers are evaluated in the order they are written, which is that of the fields.
-
 std::optional<Record> read_audit(absl::string_view kind, FieldReader& in) {
   if (kind == "band_audited") {
-    return record::BandAudited{
-        .job = in.number("job"),
-        .band = {.samples = {.first = in.number("first"), .last = in.number("last")},
-                 .rows = {.first = static_cast<std::uint32_t>(in.number("first_row", UINT32_MAX)),
-                          .last = static_cast<std::uint32_t>(in.number("last_row", UINT32_MAX))}},
-        .renderer = in.number("renderer")};
+    return read_stored<record::BandAudited>(in);
+  }
+  if (kind == "band_lost") {
+    return read_stored<record::BandLost>(in);
   }
   if (kind == "error_forgotten") {
     return record::ErrorForgotten{.job = in.number("job")};

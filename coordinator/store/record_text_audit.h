@@ -11,6 +11,7 @@
 namespace bandsaw::coordinator {
 
 const char* write_audit(FieldWriter& out, const record::BandAudited& r);
+const char* write_audit(FieldWriter& out, const record::BandLost& r);
 const char* write_audit(FieldWriter& out, const record::ErrorForgotten& r);
 const char* write_audit(FieldWriter& out, const record::WorkerQuarantined& r);
 const char* write_audit(FieldWriter& out, const record::QuarantineLifted& r);

@@ -11,10 +11,12 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr int kSchema = 6;  // those before it had fewer kinds and fields and are read as they are
+constexpr int kSchema = 7;  // those before it had fewer kinds and fields and are read as they are
 constexpr char kTables[] =
     "CREATE TABLE IF NOT EXISTS record (sequence INTEGER PRIMARY KEY, kind TEXT NOT NULL,"
     " fields TEXT NOT NULL, seal TEXT NOT NULL) STRICT;";
+
+std::string raise_version() { return absl::StrCat("PRAGMA user_version = ", kSchema, ";"); }
 
 /// SQLite itself does not notice a changed byte in a value; this does.
 std::string seal(std::uint64_t sequence, const RecordText& text) {
@@ -109,9 +111,13 @@ absl::Status SqliteJournal::prepare_file() {
 absl::Status SqliteJournal::check_version() {
   ASSIGN_OR_RETURN(const std::string version, ask("PRAGMA user_version;"));
   int found = 0;
-  if (absl::SimpleAtoi(version, &found) && found >= 0 && found < kSchema) {
+  if (absl::SimpleAtoi(version, &found) && found > 0 && found < kSchema) {
+    raise_version_ = true;
+    return absl::OkStatus();
+  }
+  if (version == "0") {
     RETURN_IF_ERROR(execute(kTables));
-    return execute(absl::StrCat("PRAGMA user_version = ", kSchema, ";").c_str());
+    return execute(raise_version().c_str());
   }
   if (version != absl::StrCat(kSchema)) {
     return absl::FailedPreconditionError(absl::StrCat("the journal ", path_, " has schema ",
@@ -138,6 +144,9 @@ absl::Status SqliteJournal::transact(const char* first, absl::Span<const Record>
   RETURN_IF_ERROR(execute("BEGIN IMMEDIATE;"));
   std::uint64_t sequence = after;
   absl::Status status = execute(first);
+  if (status.ok() && raise_version_) {
+    status = execute(raise_version().c_str());
+  }
   for (std::size_t i = 0; i < records.size() && status.ok(); ++i) {
     status = insert(records[i], ++sequence);
   }
@@ -151,6 +160,7 @@ absl::Status SqliteJournal::transact(const char* first, absl::Span<const Record>
     return status;
   }
   last_ = sequence;
+  raise_version_ = false;
   return absl::OkStatus();
 }
 

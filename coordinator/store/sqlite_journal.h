@@ -51,6 +51,9 @@ class SqliteJournal : public Journal {
   std::unique_ptr<sqlite3, CloseDatabase> database_;
   std::string path_;
   std::uint64_t last_ = 0;  ///< the highest sequence number in the file
+  /// The file has an earlier schema still: the first transaction raises it. A full disk can be
+  /// read.
+  bool raise_version_ = false;
   Statement insert_;
 };
 

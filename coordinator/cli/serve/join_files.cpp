@@ -9,8 +9,13 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// What is there already is not written again: a full disk does not matter to it.
 absl::Status write(const std::string& file, const link::JoinString& join) {
   const std::string line = join.text() + "\n";
+  const absl::StatusOr<std::string> there = read_whole_file(file, 2 * line.size());
+  if (there.ok() && *there == line) {
+    return absl::OkStatus();
+  }
   return write_file_atomically(file, std::as_bytes(std::span(line)));
 }
 
@@ -24,10 +29,8 @@ std::string join_file_of(const std::string& data_folder, link::Role role) {
   return role == link::Role::kWorker ? worker_join_file(data_folder) : farm_join_file(data_folder);
 }
 
-absl::StatusOr<std::string> write_join_file(const std::string& data_folder, link::Role role,
-                                            const link::Identity& identity,
-                                            const std::vector<std::string>& addresses,
-                                            bool insecure) {
+link::JoinString join_string(link::Role role, const link::Identity& identity,
+                             const std::vector<std::string>& addresses, bool insecure) {
   link::JoinString join;
   join.role = role;
   join.addresses = addresses;
@@ -35,8 +38,11 @@ absl::StatusOr<std::string> write_join_file(const std::string& data_folder, link
     join.certificate = identity.certificate_digest;
   }
   join.secret = secret_of(identity, role);
-  RETURN_IF_ERROR(write(join_file_of(data_folder, role), join));
-  return join.text();
+  return join;
+}
+
+absl::Status write_join_file(const std::string& data_folder, const link::JoinString& join) {
+  return write(join_file_of(data_folder, join.role), join);
 }
 
 absl::StatusOr<RenewedSecret> rotate_secret(const std::string& data_folder, link::Role role) {

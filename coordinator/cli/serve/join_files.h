@@ -8,17 +8,20 @@
 #include "absl/status/statusor.h"
 #include "coordinator/rpc/gate.h"
 #include "proto/link/identity.h"
+#include "proto/link/join.h"
 
 namespace bandsaw::coordinator {
 
 /// `DATA/join` for workers, `DATA/farm` for people.
 std::string join_file_of(const std::string& data_folder, link::Role role);
 
-/// Writes the role's join string; returns it. `insecure`: without the certificate.
-absl::StatusOr<std::string> write_join_file(const std::string& data_folder, link::Role role,
-                                            const link::Identity& identity,
-                                            const std::vector<std::string>& addresses,
-                                            bool insecure);
+/// What a worker, or a person, joins the farm with. `insecure`: without the certificate.
+link::JoinString join_string(link::Role role, const link::Identity& identity,
+                             const std::vector<std::string>& addresses, bool insecure);
+
+/// Writes it to its role's file, unless the file has it. RESOURCE_EXHAUSTED: the disk is full; the
+/// file is as it was.
+absl::Status write_join_file(const std::string& data_folder, const link::JoinString& join);
 
 /// A new secret in the identity and in the role's join string, if there is one. Errors as
 /// link::renew_secret; from then on the two files may differ until the next `serve`.

@@ -51,6 +51,16 @@ absl::StatusOr<RenewedSecret> renew_everywhere(const std::string& folder, link::
   return renewed;
 }
 
+/// A full disk keeps nobody from being served: the file is that of an earlier start.
+absl::Status unless_full(const absl::Status& written) {
+  if (!absl::IsResourceExhausted(written)) {
+    return written;
+  }
+  spdlog::error("{}; it is as it was, and may name another address: start again when there is room",
+                written.ToString());
+  return absl::OkStatus();
+}
+
 absl::StatusOr<Serving> start(const ServeOptions& options) {
   Serving serving;
   std::string folder = options.data;
@@ -80,14 +90,15 @@ absl::StatusOr<Serving> start(const ServeOptions& options) {
                                   .renew = [folder, web = serving.web.get()](link::Role role) {
                                     return renew_everywhere(folder, role, *web);
                                   }}));
-  RETURN_IF_ERROR(serving.web->write_link(folder, identity));
+  RETURN_IF_ERROR(unless_full(serving.web->write_link(folder, identity)));
   const std::string host = options.listen.substr(0, options.listen.rfind(':'));
   ASSIGN_OR_RETURN(const std::vector<LocalAddress> local, local_addresses());
   const std::vector<std::string> addresses = join_addresses(host, serving.server->port(), local);
-  ASSIGN_OR_RETURN(serving.join, write_join_file(folder, link::Role::kWorker, identity, addresses,
-                                                 options.insecure));
-  RETURN_IF_ERROR(
-      write_join_file(folder, link::Role::kFarm, identity, addresses, options.insecure).status());
+  for (const link::Role role : {link::Role::kFarm, link::Role::kWorker}) {
+    const link::JoinString join = join_string(role, identity, addresses, options.insecure);
+    RETURN_IF_ERROR(unless_full(write_join_file(folder, join)));
+    serving.join = join.text();  // the last: of workers
+  }
   ASSIGN_OR_RETURN(serving.line, serving.web->worker_line(options, identity, serving.join));
   serving.address = absl::StrCat(host, ":", serving.server->port());
   return serving;

@@ -91,6 +91,10 @@ absl::Status ServedDashboard::write_link(const std::string& data_folder,
   }
   // Behind the #: browsers keep that to themselves.
   const std::string link = absl::StrCat(url, "/#key=", identity.farm_secret, "\n");
+  const absl::StatusOr<std::string> there = read_whole_file(file, 2 * link.size());
+  if (there.ok() && *there == link) {
+    return absl::OkStatus();
+  }
   return write_file_atomically(file, std::as_bytes(std::span(link)));
 }
 

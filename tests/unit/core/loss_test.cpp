@@ -1,5 +1,6 @@
 // Workers that go, freeze, come back, fail and lie.
 
+#include "coordinator/core/loss_rate.h"
 #include "farm_driver.h"
 
 namespace bandsaw::coordinator {
@@ -220,17 +221,18 @@ void store_one_and_lose(FarmDriver& farm, SessionId session) {
   farm.say(input::Lost{session, "connection reset"});
 }
 
-TEST(Poison, ABandThatEndsThreeWorkersFailsTheJobAndIsNamed) {
+TEST(Poison, ABandThatEndsSixWorkersOfANewFarmFailsTheJobAndIsNamed) {
   FarmDriver farm;
   const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
-  lose_one(farm, 1, "a");
-  lose_one(farm, 2, "b");
-  EXPECT_EQ(farm.job(job).state, JobState::kRunning);
-  lose_one(farm, 3, "c");
+  const std::string names = "abcdef";
+  for (SessionId session = 1; session <= 6; ++session) {
+    EXPECT_EQ(farm.job(job).state, JobState::kRunning) << "the first only made it suspect";
+    lose_one(farm, session, names.substr(session - 1, 1));
+  }
   EXPECT_EQ(farm.job(job).state, JobState::kFailed);
   const std::string reason = farm.job(job).reason;
   for (const char* part :
-       {"3 workers", "rows 0–1", "samples 0–16", "worker-a", "connection reset"}) {
+       {"6 workers", "rows 0–1", "samples 0–16", "worker-a", "connection reset"}) {
     EXPECT_NE(reason.find(part), std::string::npos) << part << " in: " << reason;
   }
 }
@@ -298,19 +300,118 @@ Band lose_one_at(FarmDriver& farm, std::uint32_t row, SessionId session) {
   return band;
 }
 
-TEST(Poison, OneDeadlyRowOfALongBandCostsThreeWorkersAndIsNarrowedDown) {
+TEST(Poison, OneDeadlyRowOfALongBandIsNarrowedDown) {
   FarmDriver farm;
   const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 800));
   const Band first = lose_one_at(farm, 23, 1);
   ASSERT_GE(first.rows.count(), 24u);
   const Band second = lose_one_at(farm, 23, 2);
   EXPECT_LE(second.rows.count(), (first.rows.count() + 7) / 8);
-  EXPECT_EQ(farm.job(job).state, JobState::kRunning) << farm.job(job).reason;
-  EXPECT_EQ(lose_one_at(farm, 23, 3), second);
+  for (SessionId session = 3; session <= 6; ++session) {
+    ASSERT_EQ(farm.job(job).state, JobState::kRunning) << farm.job(job).reason;
+    EXPECT_EQ(lose_one_at(farm, 23, session), second);
+  }
   EXPECT_EQ(farm.job(job).state, JobState::kFailed);
   const std::string rows =
       "rows " + std::to_string(second.rows.first) + "–" + std::to_string(second.rows.last);
   EXPECT_NE(farm.job(job).reason.find(rows), std::string::npos) << farm.job(job).reason;
+}
+
+// Whoever dies at the first pixel of a band still has the one before it, finished and not stored.
+TEST(Poison, TheBandBehindTheFirstIsSuspectToo) {
+  FarmDriver farm(slow());
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 2));
+  farm.hello(1, "a", 2);
+  const std::vector<action::Lease> held = farm.all<action::Lease>();
+  ASSERT_EQ(held.size(), 2u);
+  farm.say(input::Lost{1, "connection reset"});
+  farm.actions.clear();
+  farm.hello(2, "b", 3);
+  const std::vector<action::Lease> again = farm.all<action::Lease>();
+  ASSERT_EQ(again.size(), 1u) << "a suspect band is given alone";
+  farm.stored(again[0], "b");
+  ASSERT_EQ(farm.all<action::Lease>().size(), 2u) << "so is the other";
+  EXPECT_EQ(farm.job(job).state, JobState::kRunning);
+}
+
+// A worker that was told to drop a band may be at it until it is heard of without it.
+TEST(Poison, ABandIsNotBlamedForOneThatItsWorkerWasToldToDrop) {
+  FarmDriver farm;
+  const JobId deadly = farm.submit(test_job("deadly", StopAtSamples{16}, 8, 1));
+  const JobId sound = farm.submit(test_job("sound", StopAtSamples{16}, 8, 1));
+  for (SessionId session = 1; session <= 8; ++session) {
+    const std::string instance = std::to_string(session);
+    farm.hello(session, instance, 1);
+    farm.say(input::Pause{deadly});
+    farm.pass_time(1.5);  // the band is taken back, the sound one is given
+    if (session > 1) {
+      EXPECT_NE(farm.all<action::Lease>().back().job, sound) << "not before it is heard of";
+    }
+    farm.say(input::Lost{session, "connection reset"});
+    farm.say(input::Resume{deadly});
+  }
+  EXPECT_EQ(farm.job(sound).state, JobState::kRunning) << farm.job(sound).reason;
+}
+
+TEST(Poison, OneBadMachineIsNoProofWhileThereIsAnother) {
+  FarmDriver farm(slow());
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 64));
+  farm.hello(100, "good", 1);
+  for (SessionId session = 1; session <= 12; ++session) {
+    WorkerHello bad;
+    bad.instance = std::to_string(session);
+    bad.name = "bad";
+    bad.protocol = 1;
+    bad.pixel_version = 2;
+    bad.canary = 3;
+    bad.max_bands = 1;
+    farm.say(input::Hello{session, bad});
+    farm.heartbeat(100);
+    farm.say(input::Lost{session, "connection reset"});
+  }
+  EXPECT_EQ(farm.job(job).state, JobState::kRunning) << farm.job(job).reason;
+  farm.render_all(100, "good");
+  EXPECT_EQ(farm.job(job).state, JobState::kFinishing) << farm.job(job).reason;
+}
+
+TEST(Poison, OneMachineThatIsAloneIsProof) {
+  FarmDriver farm;
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  for (SessionId session = 1; session <= 6; ++session) {
+    EXPECT_EQ(farm.job(job).state, JobState::kRunning);
+    WorkerHello only;
+    only.instance = std::to_string(session);
+    only.name = "only";
+    only.protocol = 1;
+    only.pixel_version = 2;
+    only.canary = 3;
+    farm.say(input::Hello{session, only});
+    farm.say(input::Lost{session, "connection reset"});
+  }
+  EXPECT_EQ(farm.job(job).state, JobState::kFailed);
+}
+
+TEST(LossRate, AsksForMoreWitnessesWhereMoreIsLost) {
+  LossRate calm;
+  EXPECT_EQ(calm.witnesses(3, 0), 5u) << "nothing is known of a new farm";
+  calm.add_loss();
+  EXPECT_EQ(calm.witnesses(3, 1), 5u) << "the band's own loss says nothing of the farm";
+  EXPECT_GT(calm.witnesses(3, 0), 5u);
+  for (int i = 0; i < 100; ++i) {
+    calm.add_band();
+  }
+  EXPECT_EQ(calm.witnesses(3, 1), 3u);
+  LossRate storm;
+  for (int i = 0; i < 500; ++i) {
+    storm.add_band();
+    storm.add_loss();
+  }
+  // Half of all bands lose their worker: 2^-20 is 1e-6.
+  EXPECT_EQ(storm.witnesses(3, 0), 20u);
+  for (int i = 0; i < 100'000; ++i) {
+    storm.add_band();
+  }
+  EXPECT_EQ(storm.witnesses(3, 0), 3u) << "what is long past is forgotten";
 }
 
 TEST(Poison, WorkersThatAreKilledOneAfterTheOtherDoNotFailAJobThatAdvances) {

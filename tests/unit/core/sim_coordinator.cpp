@@ -28,7 +28,6 @@ void SimCoordinator::start() {
   CoreOptions options = test_options();
   options.epoch = epoch();
   options.progress_timeout_s = 8;
-  options.losses_per_band = losses_per_band;
   options.audit_share = audit_share;
   core_ = std::make_unique<Core>(options);
   for (const Record& record : journal_) {
@@ -73,6 +72,7 @@ void SimCoordinator::crash() {
   committing_.clear();
   links_.clear();
   films_.clear();
+  writing_.clear();
   film_at_ = 0;
   core_.reset();
 }
@@ -178,10 +178,12 @@ void SimCoordinator::perform(const Action& action, const std::optional<input::Ba
     on_film([this, r = *retract] {
       Filming& filming = films_[r.job];
       filming.film.retract(r.renderer);
+      std::erase_if(filming.added, [&](const Added& a) { return a.renderer == r.renderer; });
       filming.pass_ends.merge(filming.told);
       tell_passes(r.job);
     });
   } else if (const auto* write = std::get_if<action::WriteResult>(&action)) {
+    writing_.insert(write->job);
     after(chance_.between(0.3, 1), [this, w = *write] { write_result(w); });
   } else if (const auto* drop = std::get_if<action::DropBands>(&action)) {
     disk_[drop->job].bands.clear();
@@ -205,6 +207,10 @@ void SimCoordinator::add_to_film(JobId job, const input::BandStored& band,
     if (!films_[job].film.add(band, range)) {
       fail(absl::StrCat("the film of job ", job, " refuses row ", range.first));
     }
+    films_[job].added.push_back(
+        {band.band,
+         {band.band.samples, range},
+         band.instance.empty() ? band.renderer : renderer_of(band.instance)});
   }
   after(chance_.between(0, 0.1), [this, job] { tell_passes(job); });
 }
@@ -230,7 +236,78 @@ void SimCoordinator::tell_passes(JobId job) {
   }
 }
 
+void SimCoordinator::damage_log() {
+  const auto at =
+      std::next(disk_.begin(),
+                static_cast<std::ptrdiff_t>(disk_.empty() ? 0 : chance_.pick(0, disk_.size() - 1)));
+  if (at == disk_.end() || at->second.bands.empty()) {
+    return;
+  }
+  const double share = chance_.happens(0.2) ? 1 : chance_.between(0, 0.5);
+  const std::size_t tail = chance_.happens(0.3) ? chance_.pick(0, at->second.bands.size()) : 0;
+  std::vector<Added> records;
+  for (std::size_t i = tail; i < at->second.bands.size(); ++i) {
+    const input::BandStored& band = at->second.bands[i];
+    if (tail > 0 || chance_.happens(share)) {
+      records.push_back({band.band, band.band, renderer_of(band.instance)});
+    }
+  }
+  std::erase_if(at->second.bands, [&](const input::BandStored& band) {
+    return std::any_of(records.begin(), records.end(), [&](const Added& record) {
+      return record.record == band.band && record.renderer == renderer_of(band.instance);
+    });
+  });
+  if (up() && chance_.happens(0.7)) {
+    after(chance_.between(0, 3), [this, job = at->first, records] {
+      on_film([this, job, records] { find_damage(job, records); });
+    });
+  }
+}
+
+void SimCoordinator::find_damage(JobId job, const std::vector<Added>& records) {
+  const auto filming = films_.find(job);
+  if (filming == films_.end()) {
+    return;
+  }
+  input::BandsDamaged damaged{.job = job, .bands = {}};
+  std::erase_if(filming->second.added, [&](const Added& added) {
+    const bool lost = std::any_of(records.begin(), records.end(), [&](const Added& record) {
+      return record.record == added.record && record.renderer == added.renderer;
+    });
+    if (lost) {
+      filming->second.film.lose(added.band, added.renderer);
+      damaged.bands.push_back({added.band, added.renderer});
+    }
+    return lost;
+  });
+  if (!damaged.bands.empty()) {
+    writing_.erase(job);
+    filming->second.pass_ends.merge(filming->second.told);
+    after(chance_.between(0, 0.1), [this, damaged] { take_damaged(damaged); });
+    ++damages;
+  }
+}
+
+void SimCoordinator::take_damaged(const input::BandsDamaged& damaged) {
+  writing_.erase(damaged.job);
+  held_.clear();
+  Step step = core_->step(damaged, agenda_.now() + time_skew);
+  for (const Record& record : step.records) {
+    if (const auto* lost = std::get_if<record::BandLost>(&record)) {
+      disk_[lost->job].stored.lose(lost->band, lost->renderer);
+    }
+  }
+  take(std::move(step));
+}
+
 void SimCoordinator::write_result(const action::WriteResult& write) {
+  if (!writing_.contains(write.job)) {
+    return;
+  }
+  if (films_[write.job].film.least(disk_[write.job].spec.settings.height) < write.samples) {
+    after(0.1, [this, write] { write_result(write); });
+    return;
+  }
   if (agenda_.now() < disk_full_until_) {
     input(input::StorageFailed{write.job, "the disk is full"});
     return;
@@ -242,6 +319,7 @@ void SimCoordinator::write_result(const action::WriteResult& write) {
   if (const auto row = disk.stored.wrong_row(write.samples, honest_digest); row && must_be_right) {
     fail(absl::StrCat("row ", *row, " of the image of job ", write.job, " is wrong"));
   }
+  writing_.erase(write.job);
   results[write.job] = write.samples;
   input(input::ResultWritten{write.job});
 }

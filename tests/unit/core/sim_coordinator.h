@@ -39,6 +39,9 @@ class SimCoordinator {
   void input(const Input& input);
   void put_band(const input::BandStored& band, std::function<void(PutOutcome)> reply);
   void fill_disk(double seconds);
+  /// Records of a job's band log are damaged: some, the last ones, or all. The film may find it
+  /// when it reads the log, else the next start does.
+  void damage_log();
 
   bool all_final() const;
   Core& core() { return *core_; }
@@ -46,10 +49,9 @@ class SimCoordinator {
   /// The first thing that must never happen, if it did.
   std::optional<std::string> broken;
   std::uint64_t steps = 0;
+  std::uint64_t damages = 0;               ///< that a film found
   std::map<JobId, std::uint64_t> results;  ///< samples a pixel
   double time_skew = 0;                    ///< of the coordinator's clock
-  /// Workers are killed here so often that three are, by chance, while they render the same rows.
-  std::size_t losses_per_band = 1'000;
   double audit_share = 0;
   /// No image has a wrong row. Can only be promised where every band is audited and machines that
   /// are right are there until the end.
@@ -68,8 +70,15 @@ class SimCoordinator {
     std::vector<input::BandStored> bands;
     SimFilm stored;  ///< what of the bands is in the image
   };
+  /// Rows of a record that are in the film.
+  struct Added {
+    Band record;
+    Band band;
+    std::uint64_t renderer = 0;
+  };
   struct Filming {
     SimFilm film;
+    std::vector<Added> added;
     std::set<std::uint64_t> pass_ends;
     std::set<std::uint64_t> told;
   };
@@ -86,6 +95,8 @@ class SimCoordinator {
   void write_band(input::BandStored band, std::function<void(PutOutcome)> reply);
   void add_to_film(JobId job, const input::BandStored& band, const std::vector<RowRange>& rows);
   void tell_passes(JobId job);
+  void find_damage(JobId job, const std::vector<Added>& records);
+  void take_damaged(const input::BandsDamaged& damaged);
   void write_result(const action::WriteResult& write);
   void note(const Record& record);
   void tick();
@@ -98,7 +109,8 @@ class SimCoordinator {
   std::map<SessionId, ToWorker> links_;
   std::deque<Committing> committing_;
   std::map<JobId, Filming> films_;
-  double film_at_ = 0;  ///< when the film has done what it was told
+  std::set<JobId> writing_;  ///< results that the film was asked for
+  double film_at_ = 0;       ///< when the film has done what it was told
   double disk_full_until_ = 0;
   std::set<LeaseId> held_;                 ///< named in the Hello being said
   std::optional<input::BandStored> band_;  ///< that the core is being told of

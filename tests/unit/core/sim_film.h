@@ -41,6 +41,16 @@ class SimFilm {
     }
   }
 
+  /// Rows that the renderer gave.
+  void lose(const Band& band, std::uint64_t renderer) {
+    for (std::uint32_t row = band.rows.first; row < band.rows.last; ++row) {
+      if (const auto part = rows_[row].find(band.samples);
+          part != rows_[row].end() && part->second.renderer == renderer) {
+        rows_[row].erase(part);
+      }
+    }
+  }
+
   bool any_of(const SampleRange& samples, const RowRange& rows) const {
     for (auto it = rows_.lower_bound(rows.first); it != rows_.end() && it->first < rows.last;
          ++it) {

@@ -3,6 +3,7 @@
 // The engine's doors, in memory: time that tests move, and a journal that can refuse.
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -50,6 +51,11 @@ class JournalDisk {
     MutexLock lock(mutex_);
     breaks_after_ = appends;
   }
+  /// Appends are refused while this holds; nothing: no more.
+  void refuse_while(std::function<bool()> holds) EXCLUDES(mutex_) {
+    MutexLock lock(mutex_);
+    refuse_while_ = std::move(holds);
+  }
   absl::Status rewrite(absl::Span<const Record> records) EXCLUDES(mutex_) {
     MutexLock lock(mutex_);
     if (broken_) {
@@ -72,7 +78,7 @@ class JournalDisk {
       broken_ = true;
     }
     --breaks_after_;
-    if (broken_) {
+    if (broken_ || (refuse_while_ && refuse_while_())) {
       return absl::ResourceExhaustedError("the journal's disk is full");
     }
     records_.insert(records_.end(), records.begin(), records.end());
@@ -84,6 +90,7 @@ class JournalDisk {
   std::vector<Record> records_ GUARDED_BY(mutex_);
   bool broken_ GUARDED_BY(mutex_) = false;
   int breaks_after_ GUARDED_BY(mutex_) = -1;
+  std::function<bool()> refuse_while_ GUARDED_BY(mutex_);
 };
 
 class MemoryJournal : public Journal {

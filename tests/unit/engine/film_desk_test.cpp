@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <fstream>
 
 #include "coordinator/store/band_log.h"
 #include "renderlib/render/render_band.h"
@@ -43,6 +44,11 @@ class FilmDeskTest : public testing::Test {
     }
     return desk_.add(1, logged(samples, rows), std::move(new_rows));
   }
+  void damage(std::uint64_t at) {
+    std::fstream bands(folder_.bands(1), std::ios::in | std::ios::out | std::ios::binary);
+    bands.seekp(static_cast<std::streamoff>(at));
+    bands.put('!');
+  }
   std::vector<Rgb> local(std::uint64_t samples) {
     Pool pool(1);
     const std::atomic<bool> stop{false};
@@ -63,6 +69,7 @@ class FilmDeskTest : public testing::Test {
   std::vector<RowsBy> credits_;
   std::optional<Image> samples_;
   int failed_ = 0;
+  std::vector<input::BandsDamaged::Lost> damaged_;
   FilmDesk desk_{folder_,
                  {.merged =
                       [this](input::PassMerged m) {
@@ -75,7 +82,11 @@ class FilmDeskTest : public testing::Test {
                         samples_ = std::move(finished.samples);
                         credits_ = std::move(finished.credits);
                       },
-                  .failed = [this](JobId, absl::Status) { ++failed_; }}};
+                  .failed = [this](JobId, absl::Status) { ++failed_; },
+                  .damaged =
+                      [this](JobId, std::vector<input::BandsDamaged::Lost> bands) {
+                        damaged_.insert(damaged_.end(), bands.begin(), bands.end());
+                      }}};
 };
 
 TEST_F(FilmDeskTest, TellsEachPassOnceWhenItsLastRowsAreThere) {
@@ -106,6 +117,69 @@ TEST_F(FilmDeskTest, WhatAMachineGaveCanBeTakenOutAgain) {
   desk_.want_image(1, 32);
   ASSERT_EQ(images_.size(), 1u);
   EXPECT_EQ(images_[0].pixels, local(32));
+}
+
+TEST_F(FilmDeskTest, WhatIsDamagedInTheLogIsLeftOutAndTold) {
+  desk_.plan(1, 16);
+  ASSERT_TRUE(add({0, 16}, {0, 4}).ok());
+  PutBand sound = logged({0, 16}, {4, 8});
+  damage(sound.offset + 300);
+  sound.renderer = 5;
+  ASSERT_TRUE(desk_.add(1, std::move(sound), {{4, 6}, {6, 8}}).ok());
+  EXPECT_EQ(merged_, (std::vector<std::uint64_t>{16})) << "it was added from memory";
+  desk_.retract(1, 7);
+  EXPECT_EQ(failed_, 0);
+  ASSERT_EQ(damaged_.size(), 2u);
+  for (const auto& lost : damaged_) {
+    EXPECT_EQ(lost.renderer, 5u);
+    EXPECT_EQ(lost.band.rows.count(), 2u);
+  }
+  ASSERT_TRUE(add({0, 16}, {4, 8}).ok());
+  EXPECT_EQ(merged_, (std::vector<std::uint64_t>{16, 16}));
+  desk_.want_image(1, 16);
+  ASSERT_EQ(images_.size(), 1u);
+  EXPECT_EQ(images_[0].pixels, local(16));
+}
+
+TEST_F(FilmDeskTest, AnotherBandInThePlaceOfOneIsDamage) {
+  ASSERT_TRUE(add({0, 16}, {0, 4}).ok());
+  PutBand other = logged({0, 16}, {4, 8});
+  PutBand wrong = logged({0, 16}, {4, 8});
+  wrong.pixels.sums[7] += 1;  // sound in the log, but not what was added
+  wrong.offset = other.offset;
+  ASSERT_TRUE(desk_.add(1, std::move(wrong), {{4, 8}}).ok());
+  desk_.retract(1, 7);
+  ASSERT_EQ(damaged_.size(), 1u);
+  EXPECT_EQ(damaged_[0].band.rows, (RowRange{4, 8}));
+}
+
+TEST_F(FilmDeskTest, AnImageOfADamagedLogIsAskedForAgain) {
+  ASSERT_TRUE(add({0, 16}, {0, 8}).ok());
+  ASSERT_TRUE(add({16, 32}, {0, 3}).ok());
+  ASSERT_TRUE(remove_file(folder_.bands(1)).ok());
+  desk_.want_image(1, 16);
+  EXPECT_TRUE(images_.empty());
+  ASSERT_EQ(damaged_.size(), 1u) << "what lies beyond is not needed any more";
+  BandLogReport report;
+  log_.emplace(*BandLog::open(
+      folder_.job(1), folder_.bands(1), [](BandRecord, std::uint64_t) {}, report));
+  ASSERT_TRUE(add({0, 16}, {0, 8}).ok());
+  EXPECT_TRUE(images_.empty());
+  desk_.want_image(1, 16);
+  ASSERT_EQ(images_.size(), 1u);
+  EXPECT_EQ(images_[0].pixels, local(16));
+}
+
+TEST_F(FilmDeskTest, WhatIsInTheLogIsReadWhenTheFilmHasRoom) {
+  desk_.plan(1, 16);
+  ASSERT_TRUE(add({0, 16}, {0, 4}).ok());
+  desk_.add_later(1, logged({0, 16}, {4, 8}), {{4, 8}});
+  EXPECT_TRUE(merged_.empty());
+  desk_.retry();
+  EXPECT_EQ(merged_, (std::vector<std::uint64_t>{16}));
+  desk_.want_image(1, 16);
+  ASSERT_EQ(images_.size(), 1u);
+  EXPECT_EQ(images_[0].pixels, local(16));
 }
 
 TEST_F(FilmDeskTest, AddsOnlyTheRowsThatAreNew) {

@@ -144,6 +144,61 @@ TEST_F(FullDiskTest, NothingIsAcknowledgedThatTheJournalDoesNotHold) {
   expect_local_image(job);
 }
 
+TEST(StartOnAFullDisk, ServesWhatIsThereRefusesWhatIsNewAndGoesOn) {
+  TestFarm farm;
+  ASSERT_TRUE(farm.start().ok());
+  JobSpec spec = farm.spec(StopAtSamples{.samples = 16});
+  const JobId done = *farm.submit(spec);
+  {
+    FakeWorker worker(farm.scene(), "one");
+    worker.join(farm.engine());
+    farm.wait_final(done);
+  }
+  spec.request_id = "a job that is at work";
+  spec.stop = StopAtSamples{.samples = 512};
+  const JobId job = *farm.submit(spec);
+  {
+    FakeWorker worker(farm.scene(), "one");
+    worker.join(farm.engine());
+    farm.wait_until(job, [](const JobView& view) { return view.fraction > 0.1; });
+  }
+  farm.stop();
+  auto full = std::make_unique<test::FullDisk>(0);
+  const absl::Status started = farm.start();
+  ASSERT_TRUE(started.ok()) << started;
+  EXPECT_EQ(farm.result(done)->image.pixels, farm.local(16).pixels);
+  EXPECT_THAT(
+      farm.wait_until(job, [](const JobView& v) { return v.state == JobState::kPaused; }).reason,
+      HasSubstr("disk is full"));
+  EXPECT_GT(farm.view(job).fraction, 0.1) << "what is in the log is known";
+  JobSpec another = spec;
+  another.request_id = "a job that is new";
+  const absl::Status refused = farm.submit(another).status();
+  EXPECT_EQ(refused.code(), absl::StatusCode::kResourceExhausted) << refused;
+  EXPECT_EQ(farm.engine().write_blob(wire::sha256("new"), 3).status().code(),
+            absl::StatusCode::kResourceExhausted);
+  full.reset();
+  FakeWorker worker(farm.scene(), "two");
+  worker.join(farm.engine());
+  ASSERT_EQ(farm.wait_final(job).state, JobState::kDone);
+  EXPECT_EQ(farm.result(job)->image.pixels, farm.local(512).pixels);
+}
+
+// The file that holds the reserve is what the journal has no room beside.
+TEST_F(FullDiskTest, TheReserveIsForTheJournal) {
+  const JobId job = farm_.begin(StopAtSamples{.samples = 16});
+  JobSpec another = farm_.spec(StopAtSamples{.samples = 16});
+  another.request_id = "another request id";
+  ASSERT_TRUE(file_exists(farm_.folder() + "/reserve"));
+  disk_->refuse_while([file = farm_.folder() + "/reserve"] { return file_exists(file); });
+  Box<absl::Status> said;
+  farm_.engine().cancel(job, [&](const absl::StatusOr<JobView>& view) { said.put(view.status()); });
+  EXPECT_TRUE(said.take().ok());
+  EXPECT_EQ(farm_.view(job).state, JobState::kCancelled);
+  EXPECT_EQ(farm_.submit(another).status().code(), absl::StatusCode::kResourceExhausted);
+  disk_->refuse_while(nullptr);
+}
+
 TEST(BrokenJournal, AfterEveryAppendItMayBreakAndTheNextLifeGoesOn) {
   for (int appends = 0; appends < 6; ++appends) {
     TestFarm farm;

@@ -108,6 +108,12 @@ absl::StatusOr<BandOutcome> TestFarm::put(JobId job, const BandPixels& pixels, s
   return box->take();
 }
 
+std::vector<std::string> TestFarm::why(JobId job) {
+  const auto box = std::make_shared<Box<std::vector<std::string>>>();
+  engine_->why(job, [box](std::vector<std::string> lines) { box->put(std::move(lines)); });
+  return box->take();
+}
+
 Image TestFarm::local(std::uint64_t samples) const {
   Pool pool(1);
   const std::atomic<bool> stop{false};

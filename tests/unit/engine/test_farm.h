@@ -34,6 +34,10 @@ class TestFarm {
   JobView wait_final(JobId job);
   absl::StatusOr<StoredResult> result(JobId job, FinishedPart part = FinishedPart::kImage);
   absl::StatusOr<BandOutcome> put(JobId job, const BandPixels& pixels, std::uint64_t work = 0);
+  std::string bands_file(JobId job) const {
+    return folder_ + "/jobs/" + std::to_string(job) + "/bands";
+  }
+  std::vector<std::string> why(JobId job);
 
   std::shared_ptr<const Scene> scene() const { return scene_; }
   const RenderSettings& settings() const { return settings_; }

@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "coordinator/store/reserve.h"
 #include "tests/support/full_disk.h"
 #include "tests/support/temp_dir.h"
 #include "tests/unit/store/test_files.h"
@@ -50,6 +51,33 @@ TEST(DataFolder, OfAnotherFormatIsRefused) {
 TEST(DataFolder, WithoutItsParentIsNotFound) {
   const test::TempDir temp;
   EXPECT_EQ(DataFolder::open(temp / "no/data").status().code(), absl::StatusCode::kNotFound);
+}
+
+TEST(DataFolder, IsOpenedOnAFullDisk) {
+  const test::TempDir temp;
+  ASSERT_TRUE(DataFolder::open(temp / "data").ok());
+  const test::FullDisk full(0);
+  const auto folder = DataFolder::open(temp / "data");
+  EXPECT_TRUE(folder.ok()) << folder.status();
+}
+
+TEST(Reserve, IsHeldReleasedAndHeldAgain) {
+  const test::TempDir temp;
+  Reserve reserve(temp / "reserve");
+  EXPECT_FALSE(reserve.release());
+  ASSERT_TRUE(reserve.hold().ok());
+  struct stat info {};
+  ASSERT_EQ(::stat((temp / "reserve").c_str(), &info), 0);
+  EXPECT_GE(static_cast<std::uint64_t>(info.st_blocks) * 512, Reserve::kBytes);
+  EXPECT_TRUE(Reserve(temp / "reserve").hold().ok()) << "in the next life";
+  EXPECT_TRUE(reserve.release());
+  EXPECT_FALSE(file_exists(temp / "reserve"));
+  {
+    const test::FullDisk full(1000);
+    EXPECT_EQ(reserve.hold().code(), absl::StatusCode::kResourceExhausted);
+    EXPECT_FALSE(file_exists(temp / "reserve"));
+  }
+  EXPECT_TRUE(reserve.hold().ok());
 }
 
 TEST(DataFolder, TheProbeTellsWhetherTheDiskTakesData) {

@@ -74,6 +74,7 @@ inline std::vector<Record> sample_records() {
           record::WorkerJoined{.instance = "0123456789abcdef0123456789abcdef"},
           record::WorkerLeft{.instance = ""},
           record::BandAudited{.job = 1, .band = {{16, 32}, {3, UINT32_MAX}}, .renderer = 7},
+          record::BandLost{.job = 1, .band = {{0, 16}, {0, UINT32_MAX}}, .renderer = UINT64_MAX},
           record::ErrorForgotten{.job = 1},
           record::WorkerQuarantined{.renderer = UINT64_MAX, .name = "a desk", .reason = "lied\n"},
           record::QuarantineLifted{.name = "a desk"}};

@@ -113,6 +113,35 @@ TEST_F(SqliteJournalTest, TheOldSchemaIsReadAndBecomesTheNewOne) {
   }
 }
 
+TEST_F(SqliteJournalTest, OneOfAnOldSchemaIsReadOnAFullDiskAndRaisedLater) {
+  const std::vector<Record> records = sample_records();
+  ASSERT_TRUE(open()->append(records).ok());
+  run_sql(path_, "PRAGMA user_version = 1");
+  const auto version = [this] {
+    std::string found;
+    sqlite3* database = nullptr;
+    EXPECT_EQ(sqlite3_open(path_.c_str(), &database), SQLITE_OK);
+    const auto keep = [](void* to, int, char** values, char**) {
+      *static_cast<std::string*>(to) = values[0];
+      return 0;
+    };
+    EXPECT_EQ(sqlite3_exec(database, "PRAGMA user_version", keep, &found, nullptr), SQLITE_OK);
+    sqlite3_close(database);
+    return found;
+  };
+  {
+    auto full = std::make_unique<test::FullDisk>(0);
+    const auto journal = open();
+    ASSERT_NE(journal, nullptr);
+    EXPECT_EQ(replayed(*journal), texts(records));
+    EXPECT_EQ(journal->append(records).code(), absl::StatusCode::kResourceExhausted);
+    full.reset();
+    ASSERT_TRUE(journal->append({records[3]}).ok());
+  }
+  EXPECT_NE(version(), "1");
+  EXPECT_EQ(replayed(*open()).size(), records.size() + 1);
+}
+
 TEST_F(SqliteJournalTest, AnotherSchemaIsRefused) {
   open();
   run_sql(path_, "PRAGMA user_version = 99");

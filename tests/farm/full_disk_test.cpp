@@ -1,0 +1,156 @@
+// A coordinator that is started on a full disk: a small tmpfs that holds its data folder.
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/mount.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <optional>
+
+#include "proto/link/join.h"
+#include "tests/farm/band_log.h"
+#include "tests/farm/farm_processes.h"
+#include "tests/support/sanitized.h"
+
+namespace bandsaw::test {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string kScene = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
+
+std::vector<std::string> with_settings(std::vector<std::string> arguments, int samples) {
+  arguments.insert(arguments.end(), {"--width", "200", "--height", "200", "--samples",
+                                     std::to_string(samples / kSlower)});
+  return arguments;
+}
+
+class FullDiskFarm : public testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(mkdir(disk_.c_str(), 0700), 0);
+    // The reserve, and the 64 MiB that must be free before jobs go on.
+    if (mount("tmpfs", disk_.c_str(), "tmpfs", 0, "size=192m") != 0) {
+      GTEST_SKIP() << "needs the right to mount a small tmpfs (run as root)";
+    }
+    mounted_ = true;
+    start();
+  }
+  void TearDown() override {
+    worker_.reset();
+    coordinator_.reset();
+    if (mounted_) {
+      EXPECT_EQ(umount(disk_.c_str()), 0);
+    }
+  }
+
+  void start() {
+    coordinator_.emplace(Process::start({BANDSAW_BIN, "serve", "--data", data(), "--listen",
+                                         listen_, "--web", "none", "--audit", "0%"}));
+    ASSERT_TRUE(coordinator_->wait_for("join with:")) << coordinator_->err();
+    const auto join = link::join_string_from(data() + "/join");
+    ASSERT_TRUE(join.ok()) << join.status();
+    listen_ = join->addresses.front();
+  }
+  void start_worker() {
+    worker_.emplace(Process::start({BANDSAW_WORKER_BIN, "--join", data() + "/join", "--name", "one",
+                                    "--threads", "1", "--cache", folder_ / "cache"}));
+    ASSERT_TRUE(worker_->wait_for("joined")) << worker_->err();
+  }
+  /// Job 1 is done, job 2 at work, job 3 waits; then the disk is filled and nobody runs.
+  void stop_with_jobs_and_fill() {
+    start_worker();
+    ASSERT_EQ(say(with_settings({"submit", kScene, "-o", folder_ / "first.pfm"}, 16)).code, 0);
+    ASSERT_EQ(say(with_settings({"submit", kScene, "--detach"}, 160)).code, 0);
+    ASSERT_EQ(say(with_settings({"submit", kScene, "--detach"}, 160)).code, 0);
+    ASSERT_TRUE(worker_->wait_until([](const std::string&, const std::string& log) {
+      const auto stored = logged_bands(log, "stored");
+      return std::count_if(stored.begin(), stored.end(),
+                           [](const LoggedBand& band) { return band.job == 2; }) >= 2;
+    })) << worker_->err();
+    coordinator_->signal(SIGKILL);
+    coordinator_->wait();
+    worker_.reset();
+  }
+  void fill() {
+    const int file = open((disk_ + "/filler").c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
+    ASSERT_GE(file, 0);
+    for (std::size_t size = 1 << 20; size > 0; size /= 2) {
+      const std::string bytes(size, 'x');
+      while (write(file, bytes.data(), bytes.size()) > 0) {
+      }
+    }
+    close(file);
+  }
+  void make_room() { ASSERT_TRUE(std::filesystem::remove(disk_ + "/filler")); }
+
+  Finished say(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), BANDSAW_BIN);
+    arguments.insert(arguments.end(), {"--farm", data() + "/farm"});
+    return run(arguments);
+  }
+  /// Asks until the answer holds `text`; the test's own time limit ends it.
+  void ask_until(const std::vector<std::string>& arguments, const std::string& text) {
+    std::string out;
+    while (!HasFailure() && out.find(text) == std::string::npos) {
+      out = say(arguments).out;
+    }
+  }
+  void expect_local_bytes(const std::string& file, int samples) {
+    const std::string local = folder_ / "local.pfm";
+    ASSERT_EQ(run(with_settings({BANDSAW_BIN, "render", kScene, "-o", local}, samples)).code, 0);
+    EXPECT_TRUE(file_bytes(file) == file_bytes(local));
+  }
+  void expect_what_is_there_is_served() {
+    EXPECT_THAT(coordinator_->err(), HasSubstr("disk is full"));
+    EXPECT_THAT(say({"jobs", "--json"}).out, HasSubstr(R"("state":"paused")"));
+    EXPECT_THAT(say({"why", "2"}).out, HasSubstr("disk is full"));
+    EXPECT_EQ(say({"watch", "1", "-o", folder_ / "again.pfm"}).code, 0);
+    EXPECT_TRUE(file_bytes(folder_ / "again.pfm") == file_bytes(folder_ / "first.pfm"));
+    const Finished refused = say(with_settings({"submit", kScene, "--detach"}, 32));
+    EXPECT_NE(refused.code, 0);
+    EXPECT_THAT(refused.out + refused.err, HasSubstr("disk is full"));
+  }
+  void expect_it_goes_on() {
+    make_room();
+    ask_until({"why", "2"}, "no worker is connected");
+    start_worker();
+    ASSERT_EQ(say({"watch", "2", "-o", folder_ / "second.pfm"}).code, 0);
+    expect_local_bytes(folder_ / "second.pfm", 160);
+  }
+  std::string data() const { return disk_ + "/data"; }
+
+  TempDir folder_;
+  const std::string disk_ = folder_ / "disk";
+  bool mounted_ = false;
+  std::string listen_ = "127.0.0.1:0";
+  std::optional<Process> coordinator_;
+  std::optional<Process> worker_;
+};
+
+TEST_F(FullDiskFarm, StartsServesWhatIsThereAndGoesOnWhenThereIsRoom) {
+  ASSERT_NO_FATAL_FAILURE(stop_with_jobs_and_fill());
+  fill();
+  ASSERT_NO_FATAL_FAILURE(start());
+  expect_what_is_there_is_served();
+  EXPECT_EQ(say({"cancel", "3"}).code, 0) << "the reserve is there for it";
+  EXPECT_FALSE(std::filesystem::exists(data() + "/jobs/3/bands")) << "and its room is given back";
+  expect_it_goes_on();
+}
+
+TEST_F(FullDiskFarm, StartsWithoutItsReserve) {
+  ASSERT_NO_FATAL_FAILURE(stop_with_jobs_and_fill());
+  ASSERT_TRUE(std::filesystem::remove(data() + "/reserve"));
+  fill();
+  ASSERT_NO_FATAL_FAILURE(start());
+  expect_what_is_there_is_served();
+  expect_it_goes_on();
+}
+
+}  // namespace
+}  // namespace bandsaw::test
