@@ -24,10 +24,10 @@ struct Nesting {
 
 /// Returns the first surface along the ray that exists for this sample; among hits that exist, the
 /// order (t, instance, primitive) decides. Updates `nesting` for all hidden boundaries that are
-/// skipped. Boundaries of nested glasses that coincide are treated as one: the result belongs to
-/// the glass that is present on exactly one side of all of them. uv directions are set if the
-/// material needs them. Returns std::nullopt if nothing is hit. Adds the number of rays traced to
-/// `rays`.
+/// skipped. Boundaries of nested glasses that touch, within the offset of ray origins, are treated
+/// as one: the result belongs to the glass that is present on exactly one side of all of them. uv
+/// directions are set if the material needs them. Returns std::nullopt if nothing is hit. Adds the
+/// number of rays traced to `rays`.
 std::optional<SurfacePoint> first_surface(const Scene& scene, const Ray& ray,
                                           const PixelSampler& sampler, std::uint64_t sample,
                                           std::uint32_t bounce, Nesting& nesting,

@@ -9,9 +9,10 @@
 
 namespace bandsaw {
 
-/// Removes quads and triangles without area, and mesh triangles with a vertex that is not finite;
-/// the others keep their order. Normals, uvs and colours that are not finite become zero. Returns
-/// the number of removed primitives; those of a mesh or group count once per instance.
+/// Removes quads and triangles, including those of meshes, whose area is zero or not finite (e.g.
+/// because a vertex is not finite); the others keep their order. Normals, uvs and colours that are
+/// not finite become zero. Returns the number of removed primitives; those of a mesh or group count
+/// once per instance.
 std::size_t clean(Geometry& geometry);
 
 }  // namespace bandsaw
