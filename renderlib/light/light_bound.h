@@ -34,10 +34,10 @@ LightBound bound_of(const SpotLight& light);
 /// Returns intensity * cosines / distance^2 with each factor at its maximum over the bound; zero
 /// only if no light can arrive.
 double importance(const LightBound& bound, const Receiver& receiver);
-/// Returns the approximate integral of intensity / distance^2 along the segment, attenuated by the
-/// medium: the segment is treated as if it were centred on its closest point, with the attenuation
-/// at that point. Orientation is ignored, because the segment may cross a spot light's cone
-/// anywhere.
+/// Returns the approximate integral of intensity / distance^2 along the segment, which is treated
+/// as if it were centred on its point closest to the light; attenuated by the medium along the path
+/// through that point to the light. Orientation is ignored, because the segment may cross a spot
+/// light's cone anywhere.
 double importance(const LightBound& bound, const LitStretch& stretch);
 
 /// Returns the mean of the channels.

@@ -30,7 +30,7 @@ double acos(double x);
 double exp(double x);
 /// Returns exp(x) - 1 without cancellation near 0.
 double expm1(double x);
-/// Natural logarithm; x > 0.
+/// Returns the natural logarithm; x > 0.
 double log(double x);
 /// Returns log(1 + x) without cancellation near 0; x > -1.
 double log1p(double x);
