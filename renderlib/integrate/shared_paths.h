@@ -6,7 +6,7 @@
 //
 // Let x_j be the first vertex of pixel j, y_i the second vertex of the path of pixel i, and L_i the
 // radiance arriving from y_i. Pixel i samples y with the area pdf p_i(y) = pdf(x_i to y) cos(y) V /
-// y - x_i|^2, where V is the visibility of y from x_i. With the balance heuristic over the pdfs of
+// |y - x_i|^2, where V is the visibility of y from x_i. With the balance heuristic over the pdfs of
 // all pixels (Veach 1997, section 9.2.2), y_i contributes f_j(y_i) L_i / sum_k p_k(y_i) to pixel j;
 // f_j is p_j with the BSDF value of x_j (including its cosine) in place of the pdf. The expected
 // value of every pixel equals that of `path_radiance()`. L_i must not depend on the outgoing
