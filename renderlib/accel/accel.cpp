@@ -12,7 +12,8 @@
 namespace bandsaw {
 namespace {
 
-/// Meshes from this size on are built by all threads one after another, smaller ones one a thread.
+/// Larger meshes are built one after another by all threads, smaller ones in parallel, each by one
+/// thread.
 constexpr std::size_t kLargeMesh = std::size_t{1} << 15;
 
 std::vector<MeshTree> build_meshes(const std::vector<Mesh>& meshes, Pool& pool) {
@@ -48,7 +49,7 @@ struct Accel::Trees {
   TopTree top;
   MovingTree moving;
 
-  /// True: the query needs no more.
+  /// Returns true if the query is finished.
   template <class Query>
   bool ask(const Ray& ray, Query& query) const {
     return trace(top, *geometry, ray, query) ||

@@ -1,8 +1,8 @@
 #pragma once
 
-// Finds hits fast. The answer does not depend on the tree: boxes are conservative, the test of each
-// primitive is one deterministic double-precision function, and the closest hit is the lowest (t,
-// instance, primitive).
+// Ray intersection queries over all geometry, accelerated by BVHs. The answers do not depend on the
+// trees: boxes are conservative, the test of each primitive is one deterministic double-precision
+// function, and the closest hit is the lowest (t, instance, primitive).
 
 #include <cstddef>
 #include <memory>
@@ -14,16 +14,16 @@
 
 namespace bandsaw {
 
-/// What a ray is tested against.
+/// Selects the primitives that a ray is tested against.
 enum class Tested {
-  kOnItsWay,    ///< what lies in boxes that it meets
-  kEverything,  ///< all there is, as without trees: the same hits, slowly
+  kOnItsWay,    ///< primitives in boxes that the ray enters
+  kEverything,  ///< all primitives, as without a BVH: the same hits, slowly; for comparison
 };
 
 class Accel {
  public:
-  /// `geometry` MUST outlive the result and not change. What moves is found by rays whose time is
-  /// within `interval`.
+  /// Builds the BVHs. `geometry` MUST outlive the result and not change. Moving instances are only
+  /// found by rays whose time is within `interval`.
   static Accel build(const Geometry& geometry, Pool& pool, const Interval& interval = {},
                      Tested tested = Tested::kOnItsWay);
 
@@ -31,15 +31,15 @@ class Accel {
   Accel& operator=(Accel&&) noexcept;
   ~Accel();
 
-  /// The closest hit, or one that is false.
+  /// Returns the closest hit; false (as a bool) if there is none.
   Hit closest(const Ray& ray) const;
-  /// The closest hit beyond `after`, an earlier hit of the same ray, in the order (t, instance,
-  /// primitive): surfaces in the same place are all met, one after the other.
+  /// Returns the closest hit beyond `after`, an earlier hit of the same ray, in the order (t,
+  /// instance, primitive). So coincident surfaces are all returned, one after the other.
   Hit closest_after(const Ray& ray, const Hit& after) const;
-  /// Whether anything lies in (0, ray.t_max).
+  /// Returns true if anything lies in (0, ray.t_max).
   bool occluded(const Ray& ray) const;
 
-  /// Memory of the trees.
+  /// Returns the memory of the trees in bytes.
   std::size_t bytes() const;
 
  private:

@@ -5,7 +5,7 @@
 namespace bandsaw {
 namespace {
 
-/// How many packs `count` items take.
+/// Returns the number of packs for `count` items.
 double packs_of(std::uint32_t count) {
   return static_cast<double>((count + kPackSize - 1) / kPackSize);
 }
@@ -14,7 +14,7 @@ double packs_of(std::uint32_t count) {
 
 Binning::Binning(const LaneBox& centres) {
   const FloatBox box = centres.box();
-  // In the lanes that hold no centre a place is 0, and nothing is multiplied that may be denormal.
+  // In the unused lanes the result is 0, and no potentially denormal number is multiplied.
   std::array<float, 8> first = {0, 0, 0, 1, 1, 1, 1, 1};
   std::array<float, 8> scale = {};
   for (std::size_t k = 0; k < 3; ++k) {
@@ -56,7 +56,7 @@ Split Bins::best_split(const Binning& binning) const {
     if (!binning.has_extent(axis)) {
       continue;
     }
-    // A side without items costs 0 times infinity, which is not less than anything.
+    // A side without items has cost 0 * infinity = NaN, which is never less than the best cost.
     std::array<double, Binning::kBins> right_cost;
     LaneBox box;
     std::uint32_t count = 0;
@@ -97,7 +97,7 @@ std::array<LaneBox, 2> Bins::boxes(const Split& split) const {
 
 std::array<LaneBox, 2> part(absl::Span<const TreeItem> items, const Binning& binning,
                             const Split& split, std::array<TreeItem*, 2> to) {
-  // Without a branch, which nothing could predict.
+  // Branch-free, because the side is unpredictable.
   std::array<LaneBox, 2> centres;
   const Float8 plane(static_cast<float>(split.bin));
   for (const TreeItem& item : items) {

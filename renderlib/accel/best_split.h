@@ -1,6 +1,6 @@
 #pragma once
 
-// Where to cut a range of items in two: the cheapest plane between bins of their centres.
+// Binned SAH: selects the cheapest plane between bins of the items' centres.
 
 #include <algorithm>
 #include <array>
@@ -14,23 +14,23 @@
 
 namespace bandsaw {
 
-/// Items whose bin on `axis` is below `bin` go left.
+/// A split: items whose bin on `axis` is below `bin` go left.
 struct Split {
-  double cost = std::numeric_limits<double>::infinity();  ///< sum of area times packs
+  double cost = std::numeric_limits<double>::infinity();  ///< sum of area times number of packs
   std::size_t axis = 0;
   std::uint32_t bin = 0;
 };
 
-/// Which of the bins of each axis a centre falls into.
+/// Maps centres of items to bins on each axis.
 class Binning {
  public:
   static constexpr std::uint32_t kBins = 16;
 
-  /// `centres`: the box of the items' twice_centre().
+  /// `centres` is the bounding box of the items' twice_centre().
   explicit Binning(const LaneBox& centres);
 
   bool has_extent(std::size_t axis) const { return has_extent_[axis]; }
-  /// In lanes 0 to 2 the bin and a fraction, in [0, kBins - 1] whatever the centre is.
+  /// Returns in lanes 0 to 2 the bin plus a fraction, in [0, kBins - 1] for any centre.
   Float8 place(Float8 centre) const {
     return min((centre - first_) * scale_, Float8(static_cast<float>(kBins - 1)));
   }
@@ -41,15 +41,15 @@ class Binning {
   Float8 scale_;
 };
 
-/// What a range holds, bin by bin.
+/// Bounding boxes and item counts of a range, by bin.
 class Bins {
  public:
   void add(absl::Span<const TreeItem> items, const Binning& binning);
   void add(const Bins& other);
-  /// cost infinity: no plane has items on both sides.
+  /// Returns the cheapest split; its cost is infinite if no plane has items on both sides.
   Split best_split(const Binning& binning) const;
   std::uint32_t left_count(const Split& split) const;
-  /// Of what lies left and right of a plane.
+  /// Returns the bounding boxes left and right of a plane.
   std::array<LaneBox, 2> boxes(const Split& split) const;
 
  private:
@@ -59,8 +59,8 @@ class Bins {
   Rows<std::uint32_t> count_ = {};
 };
 
-/// Copies `items` to the left and to the right place, where their order stays; returns the boxes of
-/// the centres of both.
+/// Copies `items` to their left or right destination, preserving their order. Returns the bounding
+/// boxes of the centres of both sides.
 std::array<LaneBox, 2> part(absl::Span<const TreeItem> items, const Binning& binning,
                             const Split& split, std::array<TreeItem*, 2> to);
 

@@ -32,10 +32,10 @@ void build_subtree(const TwoLists& lists, const Range& range, absl::Span<ItemRef
   build_subtree(lists, right, leaves, nodes);
 }
 
-/// Larger ones are binned and parted in pieces of this size.
+/// Larger ranges are binned and partitioned in pieces of this size.
 constexpr std::size_t kPieceSize = 1 << 12;
 
-/// Ranges up to this size are one thread's work.
+/// Returns the size up to which a range is built by one thread.
 std::uint32_t task_size(std::uint32_t count, Pool* pool) {
   constexpr std::uint32_t kLeast = 1 << 13;
   constexpr std::uint32_t kTasksOfAThread = 8;
@@ -52,7 +52,7 @@ struct Task {
   std::vector<BinaryNode> nodes = {};
 };
 
-/// One level of the upper tree: large ranges, and the nodes that are theirs.
+/// One level of the upper tree: large ranges and their nodes.
 class Level {
  public:
   Level(const TwoLists& lists, std::vector<Task> tasks) : tasks_(std::move(tasks)) {
@@ -72,7 +72,7 @@ class Level {
     }
   }
 
-  /// Divides all and gives each node its children.
+  /// Divides all ranges and links their nodes to the new children.
   std::vector<Task> next(Pool& pool, std::vector<BinaryNode>& nodes) {
     for_each(pool, [&](Division& division, Division::Piece& piece) { division.bin(piece); });
     for (Division& division : divisions_) {
@@ -106,10 +106,10 @@ class Level {
   std::vector<Task> tasks_;
   std::vector<Division> divisions_;
   std::vector<Division::Piece> pieces_;
-  std::vector<std::size_t> owner_;  ///< of each piece, its division
+  std::vector<std::size_t> owner_;  ///< for each piece, the index of its division
 };
 
-/// Splits, level by level, until ranges are tasks.
+/// Divides ranges level by level until all are small enough to be tasks.
 std::vector<Task> build_upper(const TwoLists& lists, const Range& all, std::uint32_t most,
                               Pool* pool, std::vector<BinaryNode>& nodes) {
   nodes.push_back({all.box.box()});
@@ -127,7 +127,7 @@ std::vector<Task> build_upper(const TwoLists& lists, const Range& all, std::uint
   }
 }
 
-/// Puts a task's root where the upper tree has its place, and the rest at the end.
+/// Puts a task's root at its place in the upper tree, and appends its other nodes.
 void graft(Task& task, std::vector<BinaryNode>& nodes) {
   const auto shift = static_cast<std::uint32_t>(nodes.size()) - 1;
   for (BinaryNode& node : task.nodes) {
@@ -153,7 +153,7 @@ BinaryTree build_binary_tree(TreeItems items, Pool* pool) {
   const TwoLists lists = {absl::MakeSpan(items), absl::MakeSpan(other)};
   std::vector<Task> tasks = build_upper(lists, bounded(lists, {0, count, 1, 0, {}, {}}),
                                         task_size(count, pool), pool, tree.nodes);
-  // The largest first, so that threads end together.
+  // Largest tasks first, so that the threads finish together.
   std::sort(tasks.begin(), tasks.end(),
             [](const Task& a, const Task& b) { return a.range.count() > b.range.count(); });
   tree.items.resize(count);
@@ -167,7 +167,7 @@ BinaryTree build_binary_tree(TreeItems items, Pool* pool) {
   } else {
     build_task(0);
   }
-  // Grafting takes as much again as the nodes do.
+  // Freed early, because grafting needs as much memory again as the nodes.
   items = {};
   other = {};
   std::size_t nodes = tree.nodes.size();

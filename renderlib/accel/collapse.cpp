@@ -9,12 +9,12 @@ namespace bandsaw {
 namespace {
 
 constexpr std::size_t kSlots = WideNode::kChildren;
-/// What a visit costs, relative to each other; measured (README.md).
+/// Relative costs of visiting a node and a pack, measured (NOTES.md).
 constexpr float kNodeCost = 1.0f;
 constexpr float kPackCost = 1.5f;
 
-/// Of a subtree: the least cost with 1 to 8 slots of its parent; the eighth is what its own node's
-/// children cost.
+/// Minimum costs of a subtree with 1 to 8 slots of its parent; the eighth is also the cost of its
+/// own node's children.
 struct Costs {
   std::array<float, kSlots> slots;
 };
@@ -23,7 +23,7 @@ class Collapse {
  public:
   Collapse(const BinaryTree& tree, absl::FunctionRef<ChildRef(const BinaryNode&)> make_leaf)
       : tree_(tree), make_leaf_(make_leaf), costs_(tree.nodes.size()) {
-    // Children come after their parents.
+    // Children have larger indices than their parents.
     for (std::size_t i = tree.nodes.size(); i-- > 0;) {
       set_costs(i);
     }
@@ -37,7 +37,7 @@ class Collapse {
     std::size_t count = 0;
   };
   void set_costs(std::size_t index);
-  /// How many of `slots` >= 2 the left child gets.
+  /// Returns how many of `slots` (>= 2) the left child gets at minimum cost.
   std::size_t left_share(const BinaryNode& node, std::size_t slots, float& cost) const;
   void choose(std::uint32_t index, std::size_t slots, Members& members) const;
   float cost(std::uint32_t index, std::size_t slots) const {
@@ -47,7 +47,7 @@ class Collapse {
   const BinaryTree& tree_;
   absl::FunctionRef<ChildRef(const BinaryNode&)> make_leaf_;
   std::vector<Costs> costs_;
-  ChildRef any_leaf_;  // the first one, once there is one
+  ChildRef any_leaf_;  // the first leaf, once it exists
 };
 
 std::size_t Collapse::left_share(const BinaryNode& node, std::size_t slots, float& least) const {
@@ -65,7 +65,7 @@ std::size_t Collapse::left_share(const BinaryNode& node, std::size_t slots, floa
 
 void Collapse::set_costs(std::size_t index) {
   const BinaryNode& node = tree_.nodes[index];
-  // Relative to the root, so that float has room.
+  // Relative to the root's area, to stay within the range of float.
   const auto area =
       static_cast<float>(node.box.area() / std::max(tree_.nodes[0].box.area(), 1e-300));
   Costs& costs = costs_[index];
@@ -82,7 +82,7 @@ void Collapse::set_costs(std::size_t index) {
   }
 }
 
-/// The subtrees that take `slots` >= 1 slots in place of node `index`.
+/// Collects the subtrees that take `slots` (>= 1) slots in place of node `index`.
 void Collapse::choose(std::uint32_t index, std::size_t slots, Members& members) const {
   const BinaryNode& node = tree_.nodes[index];
   while (slots > 1 && slots < kSlots && cost(index, slots) == cost(index, slots - 1)) {

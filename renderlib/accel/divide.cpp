@@ -8,7 +8,7 @@
 namespace bandsaw {
 namespace {
 
-/// A range that fits one pack is split all the same when that leaves less than this part of it.
+/// A range that fits one pack is split only if the parts' area is below this share of its area.
 constexpr double kWorthSplitting = 0.7;
 
 bool one_kind(absl::Span<const TreeItem> items) {
@@ -22,14 +22,14 @@ bool must_split(absl::Span<const TreeItem> items) {
          (items.size() > 1 && items.front().kind == LeafKind::kInstance);
 }
 
-/// Halving from here on needs log2(count) levels, and two more to part kinds; when no more are
-/// left, nothing else will do.
+/// Returns true if halving must begin: it needs log2(count) levels, and two more to separate kinds,
+/// and no more are left.
 bool is_deep(const Range& range) {
   return range.depth + static_cast<std::size_t>(std::bit_width(range.count())) + 2 >= kMaxDepth;
 }
 
-/// The middle item along the widest axis; ties by index, so that the tree does not depend on the
-/// sort.
+/// Moves the median along the widest axis to the middle; ties are broken by index, so that the tree
+/// does not depend on the sorting algorithm.
 void halve(absl::Span<TreeItem> items, const FloatBox& centres) {
   std::size_t axis = 0;
   for (std::size_t k = 1; k < 3; ++k) {
@@ -133,7 +133,7 @@ void Division::parts(Range& left, Range& right) const {
   }
 }
 
-/// By kind, or in halves.
+/// Divides by kind, or in halves.
 void Division::part_without_plane(Range& left, Range& right) const {
   const absl::Span<TreeItem> all = items_of(lists_, range_);
   std::uint32_t middle = range_.first + range_.count() / 2;

@@ -1,6 +1,6 @@
 #pragma once
 
-// One step of a build: a range of items that becomes two, or a leaf.
+// One step of a build: divides a range of items in two, or makes it a leaf.
 
 #include <array>
 #include <cstddef>
@@ -12,44 +12,45 @@
 
 namespace bandsaw {
 
-/// A range of items that is to become a subtree.
+/// A range of items that becomes a subtree.
 struct Range {
   std::uint32_t first;
   std::uint32_t end;
   std::size_t depth;
-  std::size_t list;  ///< which of the two holds it
+  std::size_t list;  ///< index of the list that holds it
   LaneBox box;
-  LaneBox centres;  ///< of twice_centre()
+  LaneBox centres;  ///< bounding box of twice_centre()
 
   std::uint32_t count() const { return end - first; }
 };
 
-/// Items lie in one of two lists: parting a range moves it to the other, in its place.
+/// Double buffer of items: partitioning a range moves it to the same positions in the other list.
 using TwoLists = std::array<absl::Span<TreeItem>, 2>;
 
 inline absl::Span<TreeItem> items_of(const TwoLists& lists, const Range& range) {
   return lists[range.list].subspan(range.first, range.count());
 }
-/// Sets both boxes.
+/// Returns `range` with both boxes set.
 Range bounded(const TwoLists& lists, Range range);
 
-/// A range on its way to become two, in steps: bin() for each piece, choose(), move() for each
-/// piece, parts(). Pieces may be taken side by side, and what they are does not matter: least, most
-/// and count are the same in any order, and items stay in theirs.
+/// Division of a range in steps: bin() for each piece, choose(), move() for each piece, parts().
+/// Pieces can be processed in parallel, and the result does not depend on how the range is cut into
+/// pieces: minimum, maximum and count are independent of order, and items keep their order.
 class Division {
  public:
   struct Piece {
     absl::Span<const TreeItem> items;
     Bins bins = {};
-    std::array<TreeItem*, 2> to = {};     ///< left and right
+    std::array<TreeItem*, 2> to = {};     ///< left and right destination
     std::array<LaneBox, 2> centres = {};  ///< left and right
   };
 
-  /// The pieces' items, together and in order, are those of the range.
+  /// The items of all pieces, in order, MUST be those of the range.
   Division(const TwoLists& lists, const Range& range, absl::Span<Piece> pieces);
 
   void bin(Piece& piece) const;
-  /// False: the range is a leaf, and nothing more is to be done.
+  /// Selects the split. Returns false if the range becomes a leaf; then nothing else is to be
+  /// called.
   bool choose();
   void move(Piece& piece) const;
   void parts(Range& left, Range& right) const;
@@ -68,7 +69,7 @@ class Division {
   Split split_;
 };
 
-/// All on this thread; false: a leaf.
+/// Divides a range on this thread; returns false if it becomes a leaf.
 bool divide(const TwoLists& lists, const Range& range, Range& left, Range& right);
 
 }  // namespace bandsaw

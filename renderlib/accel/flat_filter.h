@@ -1,7 +1,7 @@
 #pragma once
 
-// Which of eight triangles a ray may hit, in float with a bound on the error: what is left out, the
-// double test would leave out as well. README.md, "Triangles", derives the bounds.
+// Conservative float test of a ray against eight triangles: a triangle that it rejects would be
+// rejected by the double test as well. README.md, "Triangles", derives the bounds.
 
 #include "renderlib/accel/flat_pack.h"
 #include "renderlib/accel/float_ray.h"
@@ -9,11 +9,11 @@
 
 namespace bandsaw {
 
-/// Bounds of rounding, in units of 2^-24: of the weights of the corners, and of volume and
+/// Bounds of the rounding error, in units of 2^-24: of the corners' weights, and of volume and
 /// distance.
 inline constexpr float kWeightError = 26 * 0x1p-24f;
 inline constexpr float kDistanceError = 24 * 0x1p-24f;
-/// The part of a length that stands for the rounding of the double test.
+/// Share of a length that covers the rounding of the double test.
 inline constexpr float kDoubleError = 0x1p-27f;
 
 template <class Float>
@@ -34,8 +34,8 @@ struct Vector8 {
   }
 };
 
-/// The lanes that may be hit before `bound` (in the ray's units, rounded up), and of them those
-/// that surely are hit, at a t that is surely in (0, sure_bound) (rounded down; 0: not asked).
+/// `maybe`: lanes that may be hit before `bound` (in the ray's units, rounded up). `surely`: lanes
+/// among them that are certainly hit, at a t in (0, sure_bound) (rounded down; 0: not computed).
 struct FlatLanes {
   unsigned maybe = 0;
   unsigned surely = 0;
@@ -68,8 +68,8 @@ template <class Float = Float8>
   const Float error = fused(Float(kWeightError * ray.direction_size) * reach,
                             fused(Float(kDoubleError), reach, size), Float(ray.floor));
   const Float minus_error = Float(0.0f) - error;
-  // weight_a is NaN when any of them is, and then the result of min and max as their second
-  // operand.
+  // If any weight is NaN, so is weight_a; min and max return their second operand then, so `least`
+  // and `most` are NaN and reject nothing.
   const Float least = min(min(weight_b, weight_c), weight_a);
   const Float most = max(max(weight_b, weight_c), weight_a);
   const unsigned outside = ((least < minus_error) & (error < most)).bits();
@@ -79,7 +79,7 @@ template <class Float = Float8>
   }
   const unsigned inside = ((error < least) | (most < minus_error)).bits();
 
-  // t = volume_t / volume; its sign and size are trusted only where the weights are certain.
+  // t = volume_t / volume. Its sign and value are used only where the weights are certain.
   const Float volume_t = flip_by_sign(dot(n, c), volume);
   const Float positive = abs(volume);
   const Float per_length =

@@ -7,7 +7,7 @@ namespace bandsaw {
 
 namespace {
 
-/// The largest component of an edge from the first corner, by size.
+/// Returns the largest absolute component of the edges from the first corner.
 float longest(const FlatPacker::Corners& corners) {
   float most = 0;
   for (std::size_t which = 1; which < 3; ++which) {
@@ -29,7 +29,7 @@ void FlatPacker::add(const Corners& corners, std::uint32_t primitive) {
   }
   pack_.primitive[lane] = primitive;
   pack_.lanes |= 1u << lane;
-  // Twice the rounding of the difference itself.
+  // The factor covers twice the rounding of the difference.
   pack_.size = std::max(pack_.size, longest(corners) * (1 + 0x1p-22f));
 }
 

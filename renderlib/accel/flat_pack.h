@@ -1,7 +1,7 @@
 #pragma once
 
-// Eight triangles side by side in float. For mesh triangles these are the vertices themselves; a
-// loose triangle is rounded, a quad is two of them that share its diagonal and its id.
+// Eight triangles in float, in structure-of-arrays layout. Triangles of a mesh hold the vertices
+// exactly; a loose triangle is rounded, a quad is two triangles that share its diagonal and its id.
 
 #include <array>
 #include <cstddef>
@@ -15,27 +15,27 @@ namespace bandsaw {
 struct FlatPack {
   static_assert(kPackSize == kCornerStride, "hits refer to corners");
 
-  /// [3 * corner + axis][lane]; lanes past the last are zero.
+  /// [3 * corner + axis][lane]; unused lanes are zero.
   std::array<std::array<float, kPackSize>, 9> corner;
   std::array<std::uint32_t, kPackSize> primitive;
-  /// At least every component of every edge; where corners were rounded, plus four times the
-  /// largest of their components (README.md, "Triangles").
+  /// At least the absolute value of every component of every edge. If corners were rounded, four
+  /// times their largest component is added (README.md, "Triangles").
   float size;
-  std::uint32_t lanes;  ///< bit i: lane i is a triangle
+  std::uint32_t lanes;  ///< bit i: lane i is used
 
   std::array<float, 3> vertex(std::size_t lane, std::size_t which) const {
     return {corner[3 * which][lane], corner[3 * which + 1][lane], corner[3 * which + 2][lane]};
   }
 };
 
-/// Fills packs, one triangle after another.
+/// Fills a pack, one triangle after another.
 class FlatPacker {
  public:
   using Corners = std::array<std::array<float, 3>, 3>;
 
   explicit FlatPacker(FlatPack& pack) : pack_(pack) { pack_ = {}; }
   void add(const Corners& corners, std::uint32_t primitive);
-  /// Corners that were rounded from double.
+  /// Adds a triangle whose corners were rounded from double.
   void add_rounded(const Corners& corners, std::uint32_t primitive);
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
 
-// Boxes in float, rounded outwards: what trees are built from and hold.
+// Bounding boxes in float, rounded outwards; the boxes of BVHs.
 
 #include <algorithm>
 #include <array>
@@ -15,7 +15,7 @@ namespace bandsaw {
 struct FloatBox {
   static constexpr float kInf = std::numeric_limits<float>::infinity();
 
-  /// Empty: no ray meets it, no tree takes it in.
+  /// Empty by default: no ray hits it, no tree accepts it.
   std::array<float, 3> lo{kInf, kInf, kInf};
   std::array<float, 3> hi{-kInf, -kInf, -kInf};
 
@@ -25,14 +25,14 @@ struct FloatBox {
       hi[k] = other.hi[k] > hi[k] ? other.hi[k] : hi[k];
     }
   }
-  /// Half the surface, 0 when empty; double, since products of floats leave float's range.
+  /// Returns half the surface area, 0 if empty. In double, because products of floats may overflow.
   double area() const {
     const double x = double{hi[0]} - double{lo[0]};
     const double y = double{hi[1]} - double{lo[1]};
     const double z = double{hi[2]} - double{lo[2]};
     return x >= 0 ? x * y + y * z + z * x : 0;
   }
-  /// Neither empty nor infinite.
+  /// Returns true if the box is neither empty nor infinite.
   bool can_be_hit() const {
     bool good = true;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -40,7 +40,7 @@ struct FloatBox {
     }
     return good;
   }
-  /// The largest absolute coordinate.
+  /// Returns the largest absolute coordinate.
   float reach() const {
     float most = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -50,7 +50,7 @@ struct FloatBox {
   }
 };
 
-/// The nearest float that is not above (below) x.
+/// Returns the nearest float that is not above (below) x.
 inline float round_down(double x) {
   const auto f = static_cast<float>(x);
   return double{f} > x ? std::nextafter(f, -FloatBox::kInf) : f;
@@ -60,7 +60,7 @@ inline float round_up(double x) {
   return double{f} < x ? std::nextafter(f, FloatBox::kInf) : f;
 }
 
-/// The smallest float box that holds `box`.
+/// Returns the smallest float box that contains `box`.
 inline FloatBox round_outwards(const Box& box) {
   return {{round_down(box.lo.x), round_down(box.lo.y), round_down(box.lo.z)},
           {round_up(box.hi.x), round_up(box.hi.y), round_up(box.hi.z)}};

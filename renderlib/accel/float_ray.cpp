@@ -12,18 +12,19 @@ namespace {
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
 constexpr double kUnit = 0x1p-24;
-/// Beyond this, products of four lengths, which the packs of triangles make, may leave float's
-/// range.
+/// Above this, products of four lengths, as in the triangle filter, may overflow float.
 constexpr double kLargest = 0x1p30;
-/// Beyond this, so may the product of a length and the largest factor, which boxes make.
+/// Above this, the product of a length and the largest factor, as in the box test, may overflow
+/// float.
 constexpr double kLargestBox = 0x1p60;
-/// The largest factor: directions that are flatter against an axis get this, so that it is finite.
+/// Largest slope factor; directions closer to perpendicular to an axis are clamped to it, so that
+/// it is finite.
 constexpr double kSteepest = 0x1p60;
 /// Bytes of a row of WideNode::bounds.
 constexpr std::size_t kRow = sizeof(WideNode::bounds[0]);
-/// Far above what is lost where floats underflow.
+/// Far above the error of float underflow.
 constexpr double kTiny = 0x1p-100;
-/// Rounds up what was rounded to float.
+/// Rounds up a value that was rounded to float.
 constexpr double kUp = 1 + 0x1p-22;
 
 }  // namespace

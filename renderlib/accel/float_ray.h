@@ -1,8 +1,8 @@
 #pragma once
 
-// A ray as the float tests of boxes and packs want it. Its distances are t times `scale`, a power
-// of two that brings the longest component of the direction into [1, 2). README.md derives what
-// the tests add for rounding.
+// A ray prepared for the float tests of boxes and packs. Distances are t times `scale`, a power of
+// two that brings the longest component of the direction into [1, 2). README.md derives the tests'
+// margins for rounding.
 
 #include <array>
 #include <cstddef>
@@ -13,8 +13,8 @@
 namespace bandsaw {
 
 struct FloatRay {
-  /// Which of WideNode::bounds the ray enters and leaves axis k by, and where: bound * factor +
-  /// offset. In bytes (WideNode::plane).
+  /// Rows of WideNode::bounds through which the ray enters and leaves the slab of axis k, as byte
+  /// offsets (WideNode::plane). The distance is bound * factor + offset.
   std::array<std::size_t, 3> near;
   std::array<std::size_t, 3> far;
   std::array<float, 3> near_factor;
@@ -24,18 +24,19 @@ struct FloatRay {
 
   std::array<float, 3> origin;
   std::array<float, 3> direction;  ///< scaled
-  float origin_size;               ///< at least |origin|_1, which bounds its rounding
+  float origin_size;               ///< at least |origin|_1; bounds the rounding of the origin
   float direction_size;            ///< at least |direction|_1
   float length;                    ///< at least |direction|, within 2^-19 of it
-  /// Added to every bound for what underflows; infinite where numbers are so large that float may
-  /// overflow: then nothing but boxes is decided in float.
+  /// Added to every error bound, for underflow. Infinite if the numbers are so large that float may
+  /// overflow: then float decides nothing except boxes.
   float floor;
   double scale;
 
-  /// `reach`: the largest absolute coordinate of what is to be tested.
+  /// `reach` is the largest absolute coordinate of the geometry to be tested.
   FloatRay(const TracedRay& ray, float reach);
 
-  /// t in this ray's units, rounded down and up by more than all roundings of box distances.
+  /// Return t in this ray's units, rounded down and up by more than the rounding error of box
+  /// distances.
   float below(double t) const { return static_cast<float>(t * scale * (1 - 0x1p-20)); }
   float above(double t) const { return static_cast<float>(t * scale * (1 + 0x1p-20)); }
 

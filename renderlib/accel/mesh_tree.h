@@ -1,6 +1,6 @@
 #pragma once
 
-// The tree of one mesh, in the mesh's own space.
+// BVH of one mesh, in the mesh's own space.
 
 #include "renderlib/accel/flat_pack.h"
 #include "renderlib/accel/wide_tree.h"
@@ -18,9 +18,10 @@ struct MeshTree {
   std::size_t bytes() const { return tree.bytes() + packs.capacity() * sizeof(FlatPack); }
 };
 
-/// Left out are triangles with a corner that is not finite or not there, and those with two equal
-/// corners: they span nothing that a neighbour does not cover. (Triangles of three different points
-/// on a line stay: they close T-junctions.) `pool` null: on this thread.
+/// Builds the tree. Left out are triangles with a corner that is not finite or does not exist, and
+/// triangles with two equal corners, which cover nothing that a neighbour does not cover.
+/// (Triangles of three different collinear points are kept: they close T-junctions.) If `pool` is
+/// null, the build runs on this thread.
 MeshTree build_mesh_tree(const Mesh& mesh, Pool* pool);
 
 }  // namespace bandsaw

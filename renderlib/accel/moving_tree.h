@@ -1,6 +1,6 @@
 #pragma once
 
-// The tree over what moves: boxes whose sides move linearly while the shutter is open.
+// BVH over moving instances: boxes whose sides move linearly during the shutter interval.
 
 #include "renderlib/geometry/moving_bounds.h"
 #include "renderlib/accel/top_tree.h"
@@ -11,18 +11,18 @@ namespace bandsaw {
 /// An instance that moves.
 struct MovingInstance {
   Prototype prototype;
-  std::uint32_t instance = 0;  ///< as PrimitiveId has it
-  /// It neither turns nor grows: the linear part of its placement is the same at all times, and so
-  /// is that of the inverse, which is kept.
+  std::uint32_t instance = 0;  ///< as in PrimitiveId
+  /// True if it neither rotates nor scales: the linear part of its placement is constant, and so is
+  /// that of its inverse, which is stored in `to_object`.
   bool slides = false;
   Transform to_object;
 };
 
 struct MovingTree {
-  /// By how much the bounds of a node are larger at the end than at the beginning.
+  /// Difference of a node's bounds between the end and the beginning of the interval.
   using Change = std::array<std::array<float, WideNode::kChildren>, 6>;
 
-  WideTree tree;  ///< bounds at the beginning; its reach is that of all times
+  WideTree tree;  ///< bounds at the beginning; its `reach` covers all times
   HugeVector<Change> change;
   std::vector<MovingInstance> moving;
   Interval interval;
@@ -31,7 +31,7 @@ struct MovingTree {
     return tree.bytes() + change.capacity() * sizeof(Change) +
            moving.capacity() * sizeof(MovingInstance);
   }
-  /// How far through the interval a time is, in [0, 1].
+  /// Returns the position of a time within the interval, in [0, 1].
   float share(double time) const {
     const double u = (time - interval.open) / (interval.close - interval.open);
     return u > 0 ? u < 1 ? static_cast<float>(u) : 1.0f : 0.0f;
@@ -41,7 +41,7 @@ struct MovingTree {
 MovingTree build_moving_tree(const Geometry& geometry, const Prototypes& prototypes,
                              const Interval& interval, Pool* pool);
 
-/// As enter_children (accel/walk.h) of node `index` at `share` of the interval.
+/// The same as enter_children() (accel/walk.h) for node `index` at `share` of the interval.
 template <class Float = Float8>
 inline unsigned enter_moving_children(const MovingTree& tree, std::uint32_t index, float share,
                                       const FloatRay& ray, float bound, Float& enter) {

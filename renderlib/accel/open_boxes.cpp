@@ -6,10 +6,10 @@
 namespace bandsaw {
 namespace {
 
-// Finite: planes in infinity would be NaN where a ray runs along them.
+// Finite: infinite planes would give NaN for rays parallel to them.
 constexpr float kFarthest = std::numeric_limits<float>::max();
 
-/// A child that is not used stays closed.
+/// Unused children stay empty.
 bool used(const WideNode& node, std::size_t child) {
   return node.bounds[0][child] <= node.bounds[3][child];
 }

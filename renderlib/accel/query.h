@@ -1,7 +1,7 @@
 #pragma once
 
-// What is asked of the trees: the closest hit, or whether there is any. Both hear of every hit that
-// the double tests find, in any order.
+// Queries: the closest hit, or whether there is any. Traversal passes to them every hit that the
+// double tests find, in any order.
 
 #include "renderlib/geometry/intersect.h"
 #include "renderlib/geometry/ray.h"
@@ -11,14 +11,14 @@ namespace bandsaw {
 class ClosestQuery {
  public:
   static constexpr bool kAny = false;
-  /// Whether far sides of spheres count beside near ones.
+  /// True if the far intersection of a sphere is reported in addition to the near one.
   static constexpr bool kBothSides = false;
 
   explicit ClosestQuery(const Ray& ray) { best_.t = ray.t_max; }
 
-  /// Hits beyond this change nothing.
+  /// Returns the distance beyond which hits are irrelevant.
   double bound() const { return best_.t; }
-  /// Returns true when nothing more need be told.
+  /// Reports a hit; returns true if traversal can stop.
   bool found(const PrimitiveId& id, const Crossing& crossing) {
     if (crossing.t < best_.t || (crossing.t == best_.t && id < best_.id)) {
       best_ = {crossing.t, id, crossing.u, crossing.v, crossing.corners};
@@ -31,7 +31,7 @@ class ClosestQuery {
   Hit best_;
 };
 
-/// The closest hit beyond another in the order (t, instance, primitive).
+/// Finds the closest hit beyond another one in the order (t, instance, primitive).
 class AfterQuery {
  public:
   static constexpr bool kAny = false;

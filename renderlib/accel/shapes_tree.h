@@ -1,7 +1,7 @@
 #pragma once
 
-// The tree over loose shapes in one space: of a group, or of the world together with its instances
-// (top_tree.h).
+// BVH over loose shapes in one space: those of a group, or those of the world together with its
+// instances (top_tree.h).
 
 #include <cstdint>
 #include <vector>
@@ -17,8 +17,8 @@ struct ShapesTree {
   WideTree tree;
   std::vector<FlatPack> flats;
   std::vector<SpherePack> spheres;
-  std::vector<SpherePack> disks;  ///< the spheres around them
-  Box box;                        ///< of all shapes
+  std::vector<SpherePack> disks;  ///< bounding spheres of the disks
+  Box box;                        ///< bounds of all shapes
 
   std::size_t bytes() const {
     return tree.bytes() + flats.capacity() * sizeof(FlatPack) +
@@ -26,16 +26,16 @@ struct ShapesTree {
   }
 };
 
-/// The items of a tree over shapes, and its leaves. Spheres and disks go under their number among
-/// their kind, the triangles of flats under twice their number as primitives (geometry/shapes.h),
-/// plus one for the second half of a quad.
+/// Items and leaves of a tree over shapes. The item index of a sphere or disk is its index within
+/// its kind. The item index of a triangle or of half a quad is twice its primitive number
+/// (geometry/shapes.h), plus one for the second half of a quad.
 class ShapeItems {
  public:
-  /// Both MUST outlive this.
+  /// Both MUST outlive this object.
   ShapeItems(const Shapes& shapes, ShapesTree& tree) : shapes_(shapes), tree_(tree) {}
 
   void add_all(TreeItems& items);
-  /// Lays out a leaf of shapes, which are of one kind.
+  /// Stores a leaf of shapes, which are all of one kind.
   ChildRef make_leaf(const BinaryTree& tree, const BinaryNode& leaf);
 
  private:
@@ -46,7 +46,7 @@ class ShapeItems {
   ShapesTree& tree_;
 };
 
-/// Appends an item; false: its box cannot be hit, it is left out.
+/// Appends an item. Returns false if its box cannot be hit and the item is left out.
 bool add_item(const Box& box, std::uint32_t index, LeafKind kind, TreeItems& items);
 
 ShapesTree build_shapes_tree(const Shapes& shapes, Pool* pool);

@@ -1,7 +1,7 @@
 #pragma once
 
-// Eight spheres side by side in float, and which of them a ray may hit: what is left out, the
-// double test would leave out as well. README.md, "Spheres", derives the bounds.
+// Eight spheres in float, and a conservative test of a ray against them: a sphere that it rejects
+// would be rejected by the double test as well. README.md, "Spheres", derives the bounds.
 
 #include <array>
 #include <cmath>
@@ -16,13 +16,13 @@ struct SpherePack {
   std::array<std::array<float, kPackSize>, 3> center;
   std::array<float, kPackSize> radius;  ///< rounded up
   std::array<std::uint32_t, kPackSize> primitive;
-  float reach = 0;          ///< at least |center|_1 + radius of each
-  std::uint32_t lanes = 0;  ///< bit i: lane i is a sphere
+  float reach = 0;          ///< at least |center|_1 + radius of every sphere
+  std::uint32_t lanes = 0;  ///< bit i: lane i is used
 
   void add(const Sphere& sphere, std::uint32_t index);
 };
 
-/// `bound`: in the ray's units, rounded up.
+/// Returns the lanes that may be hit before `bound` (in the ray's units, rounded up).
 template <class Float = Float8>
 inline unsigned filter_spheres(const SpherePack& pack, const FloatRay& ray, float bound) {
   constexpr float kError = 16 * 0x1p-24f;
@@ -38,7 +38,7 @@ inline unsigned filter_spheres(const SpherePack& pack, const FloatRay& ray, floa
   const Float slack = fused(Float(kError * ray.direction_size), reach, Float(0x1p20f * ray.floor));
   const Float radius = fused(Float::load(pack.radius.data()), Float(length), slack);
   const Float square = radius * radius * Float(1 + 0x1p-20f);
-  // The corners of a sphere's box, where hits are confined to, lie up to sqrt(3) radii out.
+  // Hits are confined to a sphere's box, whose corners are sqrt(3) radii from the centre.
   const Float half = Float(1.8f) * radius;
   const Float limit(bound * length * length * (1 + 0x1p-20f));
   const unsigned missed =

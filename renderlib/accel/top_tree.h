@@ -1,6 +1,6 @@
 #pragma once
 
-// The tree of the whole scene: the loose shapes and the instances.
+// Top-level BVH of the scene: loose shapes and instances.
 
 #include <cstdint>
 #include <optional>
@@ -12,31 +12,31 @@
 
 namespace bandsaw {
 
-/// The tree of a mesh or of a group.
+/// BVH of a mesh or of a group.
 struct Prototype {
-  const MeshTree* mesh = nullptr;  ///< null: a group
+  const MeshTree* mesh = nullptr;  ///< null for a group
   const ShapesTree* group = nullptr;
-  const Shapes* shapes = nullptr;  ///< the group's
+  const Shapes* shapes = nullptr;  ///< those of the group
 
   const Box& box() const { return mesh != nullptr ? mesh->box : group->box; }
   bool empty() const { return mesh != nullptr ? mesh->tree.empty : group->tree.empty; }
 };
 
-/// Trees of everything that is placed. They and the geometry MUST outlive what is built of them and
-/// stay where they are.
+/// BVHs of all meshes and groups. They and the geometry MUST outlive everything built from them,
+/// and MUST NOT be moved in memory.
 struct Prototypes {
-  std::vector<MeshTree> meshes;    ///< one a mesh of the geometry
-  std::vector<ShapesTree> groups;  ///< one a group
+  std::vector<MeshTree> meshes;    ///< one for each mesh of the geometry
+  std::vector<ShapesTree> groups;  ///< one for each group
 
-  /// Nothing: the instance places nothing that can be hit.
+  /// Returns the BVH of an instance; std::nullopt if the instance contains nothing that can be hit.
   std::optional<Prototype> of(const Geometry& geometry, const Instance& instance) const;
 };
 
 /// An instance that can be hit.
 struct Placed {
   Prototype prototype;
-  std::uint32_t instance = 0;  ///< as PrimitiveId has it
-  bool identity = false;       ///< its space is the world's
+  std::uint32_t instance = 0;  ///< as in PrimitiveId
+  bool identity = false;       ///< true if its space is the world's
   Transform to_object;
 };
 
@@ -46,7 +46,7 @@ struct TopTree : ShapesTree {
   std::size_t bytes() const { return ShapesTree::bytes() + placed.capacity() * sizeof(Placed); }
 };
 
-/// The loose shapes and the instances that do not move.
+/// Builds the tree over the loose shapes and the instances that do not move.
 TopTree build_top_tree(const Geometry& geometry, const Prototypes& prototypes, Pool* pool);
 
 }  // namespace bandsaw

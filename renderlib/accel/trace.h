@@ -1,6 +1,7 @@
 #pragma once
 
-// A ray through the trees: packs are filtered in float, what is left is tested in double.
+// Traces a ray through the BVHs: packs are filtered in float, the remaining primitives tested in
+// double.
 
 #include <bit>
 #include <cstdint>
@@ -16,7 +17,7 @@ namespace bandsaw {
 
 inline constexpr std::uint32_t kNoneSkipped = 0xffffffffu;
 
-/// The instance whose primitives are tested, and the one of them that the ray starts on.
+/// The instance whose primitives are tested, and the primitive in it on which the ray starts.
 struct Started {
   Started(std::uint32_t of, const PrimitiveId& from)
       : instance(of), on(from.instance == of ? from.primitive : kNoneSkipped) {}
@@ -24,8 +25,8 @@ struct Started {
   std::uint32_t on;
 };
 
-/// Tests the flats of a pack but `skipped`; test(lane, crossing) is the double test. Lowers `bound`
-/// with the query's. True: the query needs no more.
+/// Tests the triangles of a pack except `skipped`; test(lane, crossing) is the double test. Updates
+/// `bound` from the query. Returns true if the query is finished.
 template <class Query, class Test>
 inline bool test_flats(const FlatPack& pack, const FloatRay& ray, std::uint32_t instance,
                        std::uint32_t skipped, float& bound, Query& query, Test&& test) {
@@ -127,7 +128,7 @@ template <class Query>
   return false;
 }
 
-/// A leaf of shapes.
+/// Tests a leaf of shapes.
 template <class Query>
 inline bool trace_leaf(ChildRef leaf, const ShapesTree& tree, const Shapes& shapes,
                        const TracedRay& ray, const FloatRay& floats, const Started& started,
@@ -160,7 +161,7 @@ inline bool trace_prototype(const Prototype& prototype, const TracedRay& ray,
                                    : trace_group(prototype, ray, instance, from, query);
 }
 
-/// In the space that `to_object` leads to.
+/// Traces a prototype in its own space; `to_object` maps the world to it.
 template <class Query>
 inline bool trace_placed(const Prototype& prototype, const Transform& to_object, const Ray& ray,
                          std::uint32_t instance, Query& query) {
@@ -181,7 +182,7 @@ inline bool trace_instance(const Placed& placed, const TracedRay& world, const R
              : trace_placed(placed.prototype, placed.to_object, ray, placed.instance, query);
 }
 
-/// What does not move. True: the query needs no more.
+/// Traces all geometry that does not move. Returns true if the query is finished.
 template <class Query>
 inline bool trace(const TopTree& top, const Geometry& geometry, const Ray& ray, Query& query) {
   if (!is_traceable(ray) || top.tree.empty) {

@@ -1,7 +1,7 @@
 #pragma once
 
-// A ray through what moves, at the ray's time. Apart from trace.h, so that scenes where nothing
-// moves run the code they would run if nothing could.
+// Traces a ray through the moving instances at the ray's time. Separate from trace.h, so that
+// scenes without motion run the same machine code as if motion were not supported.
 
 #include "renderlib/accel/moving_tree.h"
 #include "renderlib/accel/trace.h"
@@ -15,7 +15,7 @@ bool trace_moving_instance(const MovingInstance& moving, const Geometry& geometr
   const Instance& instance = geometry.instances[moving.instance - 1];
   const Transform to_world = to_world_at(geometry, instance, ray.time);
   if (moving.slides) {
-    // What inverse() would return, to the bit.
+    // The same as the result of inverse(), to the bit.
     Transform to_object = moving.to_object;
     const Vec3 back =
         -to_object.direction({to_world.m[0][3], to_world.m[1][3], to_world.m[2][3]});
@@ -28,7 +28,7 @@ bool trace_moving_instance(const MovingInstance& moving, const Geometry& geometr
   return to_object && trace_placed(moving.prototype, *to_object, ray, moving.instance, query);
 }
 
-/// True: the query needs no more.
+/// Traces the moving instances. Returns true if the query is finished.
 template <class Query>
 [[gnu::noinline]] bool trace_moving(const MovingTree& tree, const Geometry& geometry,
                                     const Ray& ray, Query& query) {

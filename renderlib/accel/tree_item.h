@@ -1,6 +1,6 @@
 #pragma once
 
-// What a build sorts: boxes with a name, each as eight floats.
+// The items of a build: boxes with an index, each as eight floats.
 
 #include <array>
 #include <cstdint>
@@ -12,13 +12,13 @@
 
 namespace bandsaw {
 
-/// The caller's name for an item.
+/// The caller's identification of an item.
 struct ItemRef {
   std::uint32_t index;
   LeafKind kind;
 };
 
-/// 32 bytes that are one Float8: the box's corners are where LaneBox has them.
+/// 32 bytes that are loaded as one Float8; the box's corners are in the same lanes as in LaneBox.
 struct TreeItem {
   std::array<float, 3> lo;
   std::uint32_t index;
@@ -28,14 +28,15 @@ struct TreeItem {
   TreeItem() = default;
   TreeItem(const FloatBox& box, std::uint32_t name, LeafKind what = LeafKind::kFlats)
       : lo(box.lo), index(name), hi(box.hi), kind(what) {}
-  /// Neither empty nor infinite.
+  /// Returns true if the box is neither empty nor infinite.
   bool can_be_hit() const { return FloatBox{lo, hi}.can_be_hit(); }
 };
 
 using TreeItems = HugeVector<TreeItem>;
 
-/// A box as -lo in lanes 0 to 2 and hi in lanes 4 to 6, so that a union is one max. Lanes 3 and 7
-/// hold anything, an index for one: numbers that may be denormal, which are slow in products.
+/// A box as -lo in lanes 0 to 2 and hi in lanes 4 to 6, so that a union is a single max. Lanes 3
+/// and 7 are unspecified, e.g. an index; as floats they may be denormal, which would be slow in
+/// products.
 class LaneBox {
  public:
   LaneBox() : lanes_(-FloatBox::kInf) {}
@@ -44,11 +45,11 @@ class LaneBox {
   void add(const LaneBox& other) { lanes_ = max(lanes_, other.lanes_); }
   FloatBox box() const {
     const Lanes v = stored(lanes_);
-    // Plus zero, whichever of two zeros the order of unions has left.
+    // Adding zero removes the sign of a zero, which depends on the order of unions.
     return {{0 - v[0], 0 - v[1], 0 - v[2]}, {v[4] + 0, v[5] + 0, v[6] + 0}};
   }
-  /// Half the surface; infinite or NaN when empty. Double, since products of floats leave float's
-  /// range.
+  /// Returns half the surface area; infinite or NaN if empty. In double, because products of floats
+  /// may overflow.
   double area() const {
     const Lanes size = stored(lanes_ + swap_halves(lanes_));
     const double x = size[0];
@@ -73,7 +74,7 @@ class LaneBox {
   Float8 lanes_;
 };
 
-/// Twice the centre, in lanes 0 to 2 and again in 4 to 6.
+/// Returns twice the centre, in lanes 0 to 2 and again in 4 to 6.
 inline Float8 twice_centre(Float8 item) { return item + swap_halves(item); }
 
 }  // namespace bandsaw

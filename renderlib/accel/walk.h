@@ -1,7 +1,7 @@
 #pragma once
 
-// Walks a wide tree along a ray. The box test never misses a box that holds a hit (README.md,
-// "Boxes").
+// Traversal of a wide BVH along a ray. The box test never rejects a box that contains a hit
+// (README.md, "Boxes").
 
 #include <algorithm>
 #include <array>
@@ -15,7 +15,8 @@
 
 namespace bandsaw {
 
-/// Which children the ray meets before `bound`, and where it enters them.
+/// Returns the mask of the children that the ray enters before `bound`; `enter` gets the entry
+/// distances.
 template <class Float = Float8>
 inline unsigned enter_children(const WideNode& node, const FloatRay& ray, float bound,
                                Float& enter) {
@@ -26,7 +27,7 @@ inline unsigned enter_children(const WideNode& node, const FloatRay& ray, float 
                            Float(ray.near_offset[k]));
     const Float out = fused(Float::load(node.plane(ray.far[k])), Float(ray.far_factor[k]),
                             Float(ray.far_offset[k]));
-    // NaN is the first operand: it bounds nothing.
+    // A NaN is the first operand, so it is ignored.
     first = max(in, first);
     last = min(out, last);
   }
@@ -34,15 +35,15 @@ inline unsigned enter_children(const WideNode& node, const FloatRay& ray, float 
   return (first <= last).bits();
 }
 
-/// Seven children a level are put off at most.
+/// Each level pushes at most seven children.
 inline constexpr std::size_t kStackSize = 7 * kMaxDepth + 1;
 
-/// What is put off: where it is entered in the high half (floats that are not negative order as
-/// integers do), the child in the low.
+/// Traversal stack. The high half of an entry is its entry distance (non-negative floats order as
+/// integers do), the low half is the child.
 class WalkStack {
  public:
   void push(std::uint64_t entry) { entries_[size_++] = entry; }
-  /// Takes the top entry that is entered before `bound`; false: none.
+  /// Pops the top entry that is entered before `bound`; returns false if there is none.
   bool pop(float bound, ChildRef& next) {
     const auto limit = std::uint64_t{std::bit_cast<std::uint32_t>(bound)} << 32 | 0xffffffffu;
     while (size_ > 0) {
@@ -54,7 +55,7 @@ class WalkStack {
     }
     return false;
   }
-  /// Sorts the entries from `bottom` up, the least on top.
+  /// Sorts the entries from `bottom` up, with the smallest on top.
   void sort_from(std::size_t bottom) {
     for (std::size_t i = bottom + 1; i < size_; ++i) {
       const std::uint64_t entry = entries_[i];
@@ -69,10 +70,10 @@ class WalkStack {
 
  private:
   std::size_t size_ = 0;
-  std::array<std::uint64_t, kStackSize> entries_;  // left as memory was: 3.5 KB a ray
+  std::array<std::uint64_t, kStackSize> entries_;  // uninitialised on purpose: 3.5 KB per ray
 };
 
-/// Takes the children in `hits` (not 0): the nearest is returned, the others put off.
+/// Returns the nearest of the children in `hits` (not 0) and pushes the others, nearest on top.
 inline ChildRef nearest_child(const WideNode& node, unsigned hits, const Float8& enter,
                               WalkStack& stack) {
   auto i = static_cast<std::size_t>(std::countr_zero(hits));
@@ -90,7 +91,7 @@ inline ChildRef nearest_child(const WideNode& node, unsigned hits, const Float8&
     hits &= hits - 1;
     return entry(i);
   };
-  // Which is nearer is anybody's guess: no branch.
+  // The order is unpredictable, so there is no branch.
   const auto order = [](std::uint64_t& low, std::uint64_t& high) {
     const std::uint64_t change = (low ^ high) & (std::uint64_t{0} - std::uint64_t{high < low});
     low ^= change;
@@ -135,7 +136,7 @@ inline ChildRef nearest_child(const WideNode& node, unsigned hits, const Float8&
   return nearest;
 }
 
-/// As nearest_child, in no order: for walks that stop at any hit.
+/// The same as nearest_child without an order, for any-hit traversal.
 inline ChildRef some_child(const WideNode& node, unsigned hits, WalkStack& stack) {
   auto i = static_cast<std::size_t>(std::countr_zero(hits));
   for (hits &= hits - 1; hits != 0; hits &= hits - 1) {
@@ -145,9 +146,9 @@ inline ChildRef some_child(const WideNode& node, unsigned hits, WalkStack& stack
   return node.child[i];
 }
 
-/// Calls leaf(child) for the leaves that the ray meets before `bound`, a float that leaf may lower;
-/// stops when leaf returns true, and says whether it did. kSorted: nearest boxes first.
-/// enter(index, at) is enter_children of a node.
+/// Calls leaf(child) for each leaf that the ray enters before `bound`, a float that leaf() may
+/// lower. Stops and returns true as soon as leaf() does. kSorted visits nearer boxes first.
+/// enter(index, at) is enter_children() for a node.
 template <bool kSorted, class Enter, class Leaf>
 [[gnu::always_inline]] inline bool walk(const WideTree& tree, const float& bound,
                                         const Enter& enter, Leaf&& leaf) {
@@ -176,7 +177,7 @@ template <bool kSorted, class Enter, class Leaf>
   }
 }
 
-/// The same where nothing moves.
+/// The same for a tree without motion.
 template <bool kSorted, class Leaf>
 [[gnu::always_inline]] inline bool walk(const WideTree& tree, const FloatRay& ray,
                                         const float& bound, Leaf&& leaf) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// A tree over boxes, eight children a node; bounds in float, rounded outwards.
+// A BVH with eight children per node; bounds in float, rounded outwards.
 
 #include <array>
 #include <cstddef>
@@ -10,10 +10,11 @@
 
 namespace bandsaw {
 
-/// What a leaf holds. A leaf holds one kind.
+/// Contents of a leaf; all of one kind.
 enum class LeafKind : std::uint32_t { kFlats, kSpheres, kInstance, kDisks };
 
-/// What a node points to: another node, or a leaf: one pack of primitives, or one instance.
+/// Reference from a node: to another node or to a leaf, i.e. one pack of primitives or one
+/// instance.
 class ChildRef {
  public:
   static constexpr std::uint32_t kMaxLeaves = 1u << 29;
@@ -35,15 +36,15 @@ class ChildRef {
   std::uint32_t bits_;
 };
 
-/// Four cache lines. A child that is not used has bounds that no ray meets (lo = infinity, hi =
-/// -infinity) and refers to a leaf, so that even a walk that enters it ends.
+/// Four cache lines. An unused child has bounds that no ray enters (lo = infinity, hi = -infinity)
+/// and refers to a leaf, so that even a traversal that enters it terminates.
 struct alignas(64) WideNode {
   static constexpr std::size_t kChildren = 8;
-  /// lo x, y, z, hi x, y, z, each for the eight children.
+  /// lo x, y, z, hi x, y, z, each for the eight children
   std::array<std::array<float, kChildren>, 6> bounds;
   std::array<ChildRef, kChildren> child;
 
-  /// A row of `bounds` by its place in bytes, which saves a walk the multiplication.
+  /// Returns a row of `bounds` by its byte offset, which saves a multiplication during traversal.
   const float* plane(std::size_t bytes) const {
     return reinterpret_cast<const float*>(reinterpret_cast<const char*>(this) + bytes);
   }
@@ -51,16 +52,16 @@ struct alignas(64) WideNode {
 
 struct WideTree {
   HugeVector<WideNode> nodes;
-  ChildRef root;          ///< a node or a leaf; meaningless when `empty`
-  bool empty = true;      ///< nothing to hit
-  std::size_t depth = 0;  ///< nodes on the longest way down
-  float reach = 0;        ///< the largest absolute coordinate of any bound
+  ChildRef root;          ///< a node or a leaf; unspecified if `empty`
+  bool empty = true;      ///< no primitives
+  std::size_t depth = 0;  ///< number of nodes on the longest path from the root
+  float reach = 0;        ///< largest absolute coordinate of any bound
 
   std::size_t bytes() const { return nodes.capacity() * sizeof(WideNode); }
 };
 
-/// No tree is deeper, whatever it is built from (accel/binary_tree.h); a walk reserves its stack by
-/// it.
+/// Maximum depth of any tree, whatever it is built from (accel/binary_tree.h); it determines the
+/// size of the traversal stack.
 inline constexpr std::size_t kMaxDepth = 64;
 
 }  // namespace bandsaw

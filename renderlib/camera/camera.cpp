@@ -11,8 +11,8 @@
 namespace bandsaw {
 namespace {
 
-/// Sine of the least angle between view direction and `up` that still gives a sideways direction
-/// with ten digits.
+/// Minimum sine of the angle between view direction and `up`; the sideways direction then still has
+/// ten digits.
 constexpr double kLeastUpSine = 1e-6;
 
 absl::Status invalid(absl::string_view field, absl::string_view why) {
@@ -81,7 +81,7 @@ absl::Status validate_kind(const OrthographicCamera& camera) {
   return absl::OkStatus();
 }
 
-/// Unit vectors.
+/// Orthonormal axes of a camera.
 struct Axes {
   explicit Axes(const View& view)
       : forward(normalize(view.look_at - view.position)),
@@ -117,7 +117,7 @@ void RayGenerator::prepare(const PerspectiveCamera& camera, int width, int heigh
   const Axes axes(view_of(camera));
   kind_ = camera.aperture > 0 ? Kind::kLens : Kind::kPinhole;
   origin_ = camera.position;
-  // The image plane at distance 1 is 2 tan(fov / 2) high; pixels are square.
+  // The image plane at distance 1 has height 2 tan(fov / 2); pixels are square.
   const double pixel = 2 * tan_degrees(camera.vertical_fov / 2) / height;
   dx_ = axes.right * pixel;
   dy_ = axes.up * -pixel;
@@ -163,7 +163,7 @@ Ray RayGenerator::ray_now(double x, double y, double lens_u, double lens_v) cons
   }
   const Vec2 on_lens = sample_disk(lens_u, lens_v);
   const Vec3 from = lens_x_ * on_lens.x + lens_y_ * on_lens.y;
-  // To the point at `at` times the distance of focus, in units of that distance: it may be any.
+  // Towards `at` times the focus distance, in units of that distance, so that any distance works.
   return {.origin = origin_ + from, .direction = normalize(at - from / focus_distance_)};
 }
 

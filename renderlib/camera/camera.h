@@ -1,6 +1,6 @@
 #pragma once
 
-// Where rays start. A closed set.
+// Cameras: generation of primary rays. A closed set.
 
 #include <optional>
 #include <variant>
@@ -12,29 +12,32 @@
 
 namespace bandsaw {
 
-/// Where a camera stands and where it looks.
+/// Position and orientation of a camera.
 struct View {
   Vec3 position{0, 0, 0};
   Vec3 look_at{0, 0, -1};  ///< differs from position
   Vec3 up{0, 1, 0};        ///< not parallel to the view direction
 };
 
-/// When the image is taken: rays have times from open to close, evenly. Equal: at one moment.
+/// Exposure interval: the times of rays are uniformly distributed from open to close. Equal values:
+/// one instant.
 struct Shutter {
   double open = 0;
   double close = 0;  ///< >= open
   friend bool operator==(const Shutter&, const Shutter&) = default;
 };
 
-/// A pinhole, or a thin lens (Potmesil and Chakravarty 1981): a point at distance z along the view
-/// spreads on the plane of focus, at distance f, over a disk of radius aperture / 2 |z - f| / z.
+/// A pinhole camera, or a thin lens (Potmesil and Chakravarty 1981): a point at distance z along
+/// the view direction is spread over a disk on the plane of focus, at distance f, of radius
+/// aperture / 2 |z - f| / z.
 struct PerspectiveCamera {
   Vec3 position{0, 0, 0};
   Vec3 look_at{0, 0, -1};
   Vec3 up{0, 1, 0};
-  double vertical_fov = 40;   ///< degrees, (0, 180)
-  double aperture = 0;        ///< diameter of the lens, [0, kMostLens]; 0: a pinhole
-  double focus_distance = 1;  ///< of the sharp plane, along the view, [kLeastFocus, kMostLens]
+  double vertical_fov = 40;  ///< degrees, (0, 180)
+  double aperture = 0;       ///< diameter of the lens, [0, kMostLens]; 0: a pinhole
+  /// Distance of the plane of focus along the view direction, [kLeastFocus, kMostLens].
+  double focus_distance = 1;
   Shutter shutter = {};
 };
 
@@ -42,12 +45,12 @@ inline constexpr double kMostTime = 1e9;
 inline constexpr double kLeastFocus = 1e-9;
 inline constexpr double kMostLens = 1e30;
 
-/// Parallel rays from the plane through `position`, which is the middle of the image.
+/// Parallel rays from the plane through `position`, which is the centre of the image.
 struct OrthographicCamera {
   Vec3 position{0, 0, 0};
   Vec3 look_at{0, 0, -1};
   Vec3 up{0, 1, 0};
-  double height = 2;      ///< of what the image shows, scene units, > 0, at most kMostLens
+  double height = 2;      ///< height of the visible region in scene units, > 0, at most kMostLens
   bool mirrored = false;  ///< left and right are exchanged
   Shutter shutter = {};
 };
@@ -57,19 +60,20 @@ using Camera = std::variant<PerspectiveCamera, OrthographicCamera>;
 View view_of(const Camera& camera);
 const Shutter& shutter_of(const Camera& camera);
 
-/// INVALID_ARGUMENT with the reason when a camera cannot make rays.
+/// Returns INVALID_ARGUMENT with the reason if the camera cannot generate rays.
 absl::Status validate(const Camera& camera);
 
-/// A camera made ready for an image of a given size: what one ray costs is a few multiplications.
+/// A camera prepared for an image of a given size: a ray costs a few multiplications.
 class RayGenerator {
  public:
-  /// `camera` MUST be valid; sizes in pixels, >= 1.
+  /// `camera` MUST be valid; sizes are in pixels, >= 1.
   RayGenerator(const Camera& camera, int width, int height);
-  /// The ray through image position (x, y), in pixels from the top left corner; (lens_u, lens_v) in
-  /// [0, 1)^2. The direction is a unit vector. It is at `share` of the time that the shutter is
-  /// open, in [0, 1].
+  /// Returns the ray through image position (x, y), in pixels from the top left corner; (lens_u,
+  /// lens_v) in [0, 1)^2 selects the point on the lens. The direction is a unit vector. `share` in
+  /// [0, 1] is the position of the ray's time in the shutter interval.
   Ray ray(double x, double y, double lens_u, double lens_v, double share = 0) const;
-  /// What the lens sees there through the plane of focus; nothing: it is no lens, or too wide.
+  /// Returns the view through the lens at this image position; std::nullopt without a lens or if it
+  /// is too wide.
   std::optional<LensView> lens_view(double x, double y) const;
 
  private:
@@ -81,12 +85,13 @@ class RayGenerator {
   void prepare(const OrthographicCamera& camera, int width, int height);
 
   Kind kind_ = Kind::kPinhole;
-  Vec3 origin_;  ///< parallel: the direction of all rays
-  Vec3 corner_;  ///< direction through image position (0, 0), not normalised; parallel: its origin
-  Vec3 dx_;      ///< change of it a pixel to the right
-  Vec3 dy_;      ///< and a pixel down
+  Vec3 origin_;  ///< orthographic: the direction of all rays
+  /// Direction through image position (0, 0), not normalised; orthographic: the ray origin there.
+  Vec3 corner_;
+  Vec3 dx_;      ///< its change per pixel to the right
+  Vec3 dy_;      ///< its change per pixel down
   Vec3 lens_x_;  ///< the lens' radius to the right
-  Vec3 lens_y_;  ///< and upwards
+  Vec3 lens_y_;  ///< the lens' radius upwards
   Vec3 forward_;
   double lens_radius_ = 0;
   double focus_distance_ = 1;

@@ -15,7 +15,7 @@ std::optional<LensView> LensView::make(const Vec3& middle, const Vec3& forward, 
   view.focus_ = middle + view.to_focus_;
   view.radius_ = radius;
   view.distance_ = distance;
-  // The lens is within a ball of its radius.
+  // The lens lies within a sphere of its radius.
   const double far = length(view.to_focus_);
   const double sine = radius / far;
   if (!(sine < 1)) {

@@ -1,8 +1,8 @@
 #pragma once
 
-// All rays of a thin lens through one point of its plane of focus: what is beyond that point is
-// seen once from each point of the lens, so that a direction away from the point stands for one of
-// them.
+// The view from a point on a thin lens' plane of focus: the rays through the lens and that point.
+// Each point of the lens sees the scene beyond the point in one direction, so directions away from
+// the point correspond to points on the lens.
 
 #include <optional>
 
@@ -13,22 +13,23 @@ namespace bandsaw {
 
 class LensView {
  public:
-  /// A round lens of this radius > 0 around `middle`, across the unit vector `forward`, focused at
-  /// `distance` > 0 along it; `way` leads from the middle to the point in focus and has the
-  /// component 1 along `forward`, in units of the distance. Nothing where the lens is as wide as
-  /// the point is far.
+  /// Describes a round lens of `radius` > 0 around `middle`, perpendicular to the unit vector
+  /// `forward`, focused at `distance` > 0 along it. `way` leads from `middle` towards the point in
+  /// focus; its component along `forward` is 1, i.e. it is in units of `distance`. Returns
+  /// std::nullopt if the radius is not less than the distance to the point.
   static std::optional<LensView> make(const Vec3& middle, const Vec3& forward, double radius,
                                       double distance, const Vec3& way);
 
   const Vec3& focus() const { return focus_; }
-  /// The directions in which rays go on from there, and some around these.
+  /// Returns a cone that contains all directions in which rays continue beyond the point.
   const Cone& beyond() const { return beyond_; }
 
-  /// Where the ray that goes on in this unit direction comes from the lens; nothing: it does not.
+  /// Returns the point on the lens of the ray that continues in this unit direction; std::nullopt
+  /// if the ray misses the lens.
   std::optional<Vec3> on_lens(const Vec3& direction) const;
-  /// The density of the unit directions of rays from everywhere on the lens evenly, by solid angle;
-  /// for a direction of such a ray, > 0. (With the lens' area A and the angle a to its axis:
-  /// distance^2 / (A cos^3 a).)
+  /// Returns the pdf by solid angle of the directions of rays from a uniformly sampled point on the
+  /// lens; > 0 for the direction of such a ray. With the lens' area A and the angle a to its axis,
+  /// it is distance^2 / (A cos^3 a).
   double pdf(const Vec3& direction) const;
 
  private:
@@ -36,7 +37,7 @@ class LensView {
 
   Vec3 middle_;
   Vec3 forward_;
-  Vec3 to_focus_;  ///< from the middle
+  Vec3 to_focus_;  ///< from `middle_`
   Vec3 focus_;
   double radius_ = 1;
   double distance_ = 1;

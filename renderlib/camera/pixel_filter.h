@@ -1,8 +1,8 @@
 #pragma once
 
-// How the light around a pixel's centre is weighed, by laying out its samples with that density: a
-// sample belongs to one pixel and all samples count alike. (Filter importance sampling: Ernst,
-// Stamminger and Greiner 2006, "Filter importance sampling", section 3.)
+// Pixel reconstruction filters, applied by importance sampling: samples are placed with the
+// filter's density, so each belongs to one pixel and all have equal weight (Ernst, Stamminger and
+// Greiner 2006, "Filter importance sampling", section 3).
 
 #include "absl/status/status.h"
 #include "renderlib/math/vec.h"
@@ -22,14 +22,14 @@ struct PixelFilter {
 
 inline constexpr double kMaxFilterRadius = 16;
 
-/// The radius of a filter for which none is given.
+/// Returns the radius that is used if none is given.
 double default_radius(PixelFilter::Kind kind);
 
-/// INVALID_ARGUMENT: the radius.
+/// Returns INVALID_ARGUMENT if the radius is out of range.
 absl::Status validate(const PixelFilter& filter);
 
-/// Where to look, in pixels from the pixel's centre; u, v in [0, 1). Of the default filter exactly
-/// (u - 0.5, v - 0.5) for multiples of 2^-32.
+/// Returns the sample's offset from the pixel's centre, in pixels; u, v in [0, 1). For the default
+/// filter it is exactly (u - 0.5, v - 0.5) for multiples of 2^-32.
 Vec2 sample(const PixelFilter& filter, double u, double v);
 
 }  // namespace bandsaw

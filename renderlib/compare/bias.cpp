@@ -11,11 +11,11 @@ namespace {
 
 constexpr std::uint64_t kLeastValues = 8;
 
-/// Mean and spread in one pass (Welford 1962).
+/// Running mean and variance (Welford 1962).
 struct Moments {
   std::uint64_t count = 0;
   double mean = 0;
-  double squares = 0;  // of the distances from the mean
+  double squares = 0;  // sum of squared deviations from the mean
 
   void add(double value) {
     ++count;
@@ -24,7 +24,7 @@ struct Moments {
     squares += from_old * (value - mean);
   }
 
-  /// The mean over its standard error; 0 where all values are 0.
+  /// Returns the mean divided by its standard error; 0 if the mean is 0.
   double t() const {
     const auto n = static_cast<double>(count);
     if (count < 2 || mean == 0) {
@@ -35,8 +35,8 @@ struct Moments {
   }
 };
 
-// The probability that a normal number is above x > 0: Abramowitz and Stegun 1964, 26.2.17, off by
-// less than 1e-7 of it where it matters here.
+// Returns the upper tail probability of the standard normal distribution for x > 0: Abramowitz and
+// Stegun 1964, 26.2.17, with a relative error below 1e-7 in the range used here.
 double upper_tail(double x) {
   const double k = 1 / (1 + 0.2316419 * x);
   const double polynomial =
@@ -45,8 +45,8 @@ double upper_tail(double x) {
   return exp(-0.5 * x * x) / std::sqrt(2 * kPi) * polynomial;
 }
 
-// The two-sided bound of a normal number that each of `tests` passes so rarely that any does once
-// in a hundred.
+// Returns the two-sided bound that a standard normal value exceeds so rarely that any of `tests`
+// values does once in a hundred.
 double bound_of(std::uint32_t tests) {
   const double one = -expm1(log1p(-0.01) / tests);
   double low = 0;
@@ -58,21 +58,21 @@ double bound_of(std::uint32_t tests) {
   return high;
 }
 
-// Student's t as the normal number of the same probability (Wallace 1959, "Bounds on Normal
-// Approximations to Student's and the Chi-Square Distributions").
+// Converts Student's t to the standard normal value of the same probability (Wallace 1959, "Bounds
+// on Normal Approximations to Student's and the Chi-Square Distributions").
 double as_normal(double t, std::uint64_t values) {
   const auto freedom = static_cast<double>(values - 1);
   return std::sqrt(freedom * log1p(t * t / freedom)) * (8 * freedom + 1) / (8 * freedom + 3);
 }
 
-// Of all pixels.
+// Sums over all pixels.
 struct Totals {
   Moments half_rows;
   double difference = 0;
   double light = 0;
 };
 
-// The finite pixels x, x + 2, … of a row, before x1.
+// Adds the finite pixels x, x + 2, … below x1 of a row.
 void add_half_row(const Image& image, const Image& reference, std::uint32_t x, std::uint32_t x1,
                   std::uint32_t y, Moments& block, Totals& totals) {
   Moments difference;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Whether an image is off on the whole, and not only noisy: noise has no sign, a bias has one.
+// Statistical test for bias: noise has no sign, a bias has one.
 
 #include <cstdint>
 
@@ -8,28 +8,28 @@
 
 namespace bandsaw {
 
-/// Blocks of 16 by 16 pixels, those at the right and lower edge smaller. The values are the mean
-/// differences in luminance of half rows: every other pixel of a block's row. Their noise is
-/// independent, which that of single pixels is not: those of one half row may have found their
-/// light together (render/tile_samples.h). Each block gives its mean and Student's t of it from
-/// their spread; the reference's own noise is part of the spread. Blocks of fewer than 8 values are
-/// left out.
+/// Result of the test. Blocks are 16 x 16 pixels, smaller at the right and lower edge. The values
+/// tested are mean differences in luminance over half rows, i.e. every other pixel of a block's
+/// row: their noise is independent, while pixels of one half row may share paths
+/// (render/tile_samples.h). For each block, Student's t of the mean is computed from the values'
+/// spread, which includes the noise of the reference. Blocks of fewer than 8 values are left out.
 struct BiasTest {
   std::uint32_t blocks = 0;
-  /// t of the whole: the mean over all values by its standard error. |t| above 4 is no chance.
+  /// t of the whole image: the mean over all values divided by its standard error. |t| above 4 is
+  /// significant.
   double t = 0;
-  double relative_bias = 0;  ///< of the sums over pixels; 0 where the reference is black
-  /// Blocks with |t| above what one of so many passes by chance once in a hundred images (Sidak; of
-  /// normal noise).
+  double relative_bias = 0;  ///< ratio of the sums over pixels; 0 if the reference is black
+  /// Number of blocks whose |t| exceeds the bound that one of that many blocks exceeds by chance
+  /// once in a hundred images (Sidak's correction; for normal noise).
   std::uint32_t suspicious_blocks = 0;
-  double worst_t = 0;         ///< of the block with the largest |t|
-  std::uint32_t worst_x = 0;  ///< its first pixel
+  double worst_t = 0;         ///< t of the block with the largest |t|
+  std::uint32_t worst_x = 0;  ///< first pixel of that block
   std::uint32_t worst_y = 0;
 };
 
 inline constexpr std::uint32_t kBiasBlock = 16;
 
-/// The images MUST be of one size.
+/// Tests the image against the reference. The images MUST have the same size.
 BiasTest test_bias(const Image& image, const Image& reference);
 
 }  // namespace bandsaw

@@ -15,7 +15,7 @@
 namespace bandsaw {
 namespace {
 
-constexpr double kSmallest = 0.01;  // Keeps ratios to dark pixels from deciding all.
+constexpr double kSmallest = 0.01;  // Prevents ratios for dark pixels from dominating.
 
 struct Sums {
   double squares = 0;
@@ -27,7 +27,7 @@ struct Sums {
 
 double shown(float linear) { return srgb_curve(clamped(gray(linear)).r); }
 
-/// Gives the channel's part of the relative mean square error.
+/// Returns the channel's contribution to the relative mean squared error.
 double add_channel(float image, float reference, Sums& sums) {
   const double a = image;
   const double b = reference;
@@ -62,7 +62,8 @@ PixelError add_pixel(const Rgb& image, const Rgb& reference, Sums& sums,
   return error;
 }
 
-// Of the sums over channels, without the largest thousandth, of which there is one in two at least.
+// Returns the mean of the pixels' sums without the largest thousandth, at least one if there are
+// two or more.
 double trimmed_mean(std::vector<double>& sums) {
   const std::size_t worst = sums.size() < 2 ? 0 : (sums.size() + 999) / 1000;
   std::nth_element(sums.begin(), sums.begin() + static_cast<std::ptrdiff_t>(worst), sums.end(),

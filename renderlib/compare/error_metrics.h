@@ -1,6 +1,6 @@
 #pragma once
 
-// How far an image is from a reference, number by number.
+// Pixel-wise error metrics of an image against a reference.
 
 #include <cstdint>
 
@@ -8,26 +8,27 @@
 
 namespace bandsaw {
 
-/// Over all channels of all pixels where both values are finite; a is the image, b the reference,
-/// linear RGB.
+/// Metrics over all channels of all pixels where both values are finite; a is the image, b the
+/// reference, linear RGB.
 struct ErrorMetrics {
   double rmse = 0;           ///< sqrt(mean((a - b)^2))
-  double relative_rmse = 0;  ///< rmse / mean(b); 0 where both are black, infinite where only b is
-  double relative_mse =
-      0;  ///< mean((a - b)^2 / (b^2 + 0.01)), as Rousselle et al. 2011, "Adaptive Sampling and
-          ///< Reconstruction using Greedy Error Minimization", section 5
-  double trimmed_relative_mse = 0;  ///< the same without the worst 0.1 % of the pixels, rounded up
-  double mape = 0;                  ///< mean(|a - b| / (|b| + 0.01))
-  double psnr =
-      0;  ///< decibels, of the sRGB-coded values in [0, 1]; infinite where those are equal
+  double relative_rmse = 0;  ///< rmse / mean(b); 0 if both are black, infinite if only b is
+  /// mean((a - b)^2 / (b^2 + 0.01)), as in Rousselle et al. 2011, "Adaptive Sampling and
+  /// Reconstruction using Greedy Error Minimization", section 5.
+  double relative_mse = 0;
+  /// `relative_mse` without the worst 0.1 % of the pixels, rounded up.
+  double trimmed_relative_mse = 0;
+  double mape = 0;  ///< mean(|a - b| / (|b| + 0.01))
+  /// Decibels, of the sRGB-coded values in [0, 1]; infinite if those are equal.
+  double psnr = 0;
   double max_difference = 0;  ///< largest |a - b|
-  std::uint32_t max_x = 0;    ///< where that is, the first such
+  std::uint32_t max_x = 0;    ///< first pixel with the largest difference
   std::uint32_t max_y = 0;
   std::uint64_t not_finite = 0;  ///< channel values left out
-  bool identical = false;        ///< every value is equal, and finite
+  bool identical = false;        ///< every value is equal and finite
 };
 
-/// The images MUST be of one size and not empty.
+/// Computes the metrics. The images MUST have the same size and not be empty.
 ErrorMetrics error_metrics(const Image& image, const Image& reference);
 
 }  // namespace bandsaw

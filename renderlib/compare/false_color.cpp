@@ -9,7 +9,7 @@
 namespace bandsaw {
 namespace {
 
-// sRGB codes, evenly spaced; lightness grows in even steps.
+// sRGB codes, evenly spaced, with lightness in even steps.
 using Code = std::array<double, 3>;
 constexpr std::array<Code, 6> kStops = {
     {{0, 0, 0}, {58, 9, 99}, {150, 38, 103}, {221, 81, 58}, {252, 165, 10}, {252, 255, 220}}};

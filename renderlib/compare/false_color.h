@@ -1,14 +1,14 @@
 #pragma once
 
-// A picture of where an image differs from a reference.
+// False-colour images of errors.
 
 #include "renderlib/compare/plane.h"
 #include "renderlib/image/image.h"
 
 namespace bandsaw {
 
-/// Each value of [0, 1] as a colour from black over violet, red and yellow to white, brighter for
-/// more: linear RGB for an 8-bit file.
+/// Maps each value of [0, 1] to a colour from black over violet, red and yellow to white, of
+/// increasing lightness: linear RGB for an 8-bit file.
 Image false_color(const Plane& values);
 
 }  // namespace bandsaw

@@ -11,21 +11,21 @@
 namespace bandsaw {
 namespace {
 
-// The film curve (k0 x^2 + k1 x) / (k3 x^2 + k4 x + k5) of Narkowicz 2016, with exposure 0.6.
+// Film curve (k0 x^2 + k1 x) / (k3 x^2 + k4 x + k5) of Narkowicz 2016, with exposure 0.6.
 constexpr double k0 = 0.6 * 0.6 * 2.51;
 constexpr double k1 = 0.6 * 0.03;
 constexpr double k3 = 0.6 * 0.6 * 2.43;
 constexpr double k4 = 0.6 * 0.59;
 constexpr double k5 = 0.14;
 
-// White from far below where the quotient would be that of infinities.
+// Clamped to a value that is already white, before the quotient becomes infinity over infinity.
 float filmed(double light) {
   const double x = std::min(light, 1e6);
   return static_cast<float>(
       std::clamp((k0 * x * x + k1 * x) / (k3 * x * x + k4 * x + k5), 0.0, 1.0));
 }
 
-// The light that the curve shows as 0.85.
+// Returns the radiance that the curve maps to 0.85.
 double nearly_white() {
   constexpr double kShown = 0.85;
   const double a = k0 - kShown * k3;
@@ -51,8 +51,8 @@ struct Exposures {
 
 double log2_of(double x) { return log(x) / log(2.0); }
 
-// Equations 2 and 3 of the second paper; a reference whose middle is black is shown from its
-// brightest alone.
+// Equations 2 and 3 of the second paper. If the reference's median is black, only the exposure of
+// its maximum is used.
 Exposures exposures_of(const Image& reference) {
   std::vector<double> light;
   for (const Rgb& pixel : reference.pixels) {

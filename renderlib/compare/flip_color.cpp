@@ -26,7 +26,7 @@ int kernel_radius(double pixels_per_degree) {
   return static_cast<int>(std::ceil(3 * std::sqrt(kWidest / (2 * kPi * kPi)) * pixels_per_degree));
 }
 
-// exp(-pi^2 d^2 / b) of d in degrees.
+// exp(-pi^2 d^2 / b), with d in degrees.
 Kernel part(double b, double pixels_per_degree, int radius) {
   return gaussian(std::sqrt(b / 2) / kPi * pixels_per_degree, radius);
 }
@@ -70,7 +70,7 @@ Opponents seen(const Image& image, double pixels_per_degree) {
           blurred(planes[2], kBlueYellow, pixels_per_degree)};
 }
 
-// Section 4.1.2: dark colours look less colourful.
+// Section 4.1.2 (Hunt effect): dark colours appear less colourful.
 Vec3 hunt(const Vec3& lab) { return {lab.x, 0.01 * lab.x * lab.y, 0.01 * lab.x * lab.z}; }
 
 Vec3 adjusted(const Rgb& linear) { return hunt(lab(xyz_over_white(linear))); }
@@ -82,14 +82,14 @@ Vec3 adjusted(const Opponents& planes, std::size_t i) {
                               static_cast<float>(linear.z)}));
 }
 
-// Equation 7 (Abasi et al. 2020), to the power of equation 8.
+// Equation 7 (Abasi et al. 2020), raised to the power of equation 8.
 double distance(const Vec3& a, const Vec3& b) {
   const double hyab =
       std::abs(a.x - b.x) + std::sqrt((a.y - b.y) * (a.y - b.y) + (a.z - b.z) * (a.z - b.z));
   return pow(hyab, kExponent);
 }
 
-// Equation 9: errors into [0, 1], the small ones over most of it.
+// Equation 9: maps errors to [0, 1], with most of the range for small ones.
 double redistributed(double error, double largest) {
   const double knee = kKneeError * largest;
   return error < knee ? kKneeResult / knee * error

@@ -16,7 +16,8 @@ struct Features {
   Plane points;
 };
 
-// Weights above 0 sum to 1, those below to -1: a feature's strength is in units of contrast.
+// Scales positive weights to sum to 1 and negative ones to -1, so that a feature's strength is in
+// units of contrast.
 Kernel balanced(Kernel kernel, double across) {
   double above = 0;
   double below = 0;

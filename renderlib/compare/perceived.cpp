@@ -9,7 +9,7 @@ namespace {
 
 float clamped(float value) { return value > 0 ? std::min(value, 1.0f) : 0.0f; }
 
-// sRGB's primaries in XYZ (IEC 61966-2-1), as ratios of whole numbers.
+// sRGB's primaries in XYZ (IEC 61966-2-1), as ratios of integers.
 constexpr double kToXyz[3][3] = {
     {10135552.0 / 24577794.0, 8788810.0 / 24577794.0, 4435075.0 / 24577794.0},
     {2613072.0 / 12288897.0, 8788810.0 / 12288897.0, 887015.0 / 12288897.0},
@@ -17,7 +17,7 @@ constexpr double kToXyz[3][3] = {
 
 double row_sum(int row) { return kToXyz[row][0] + kToXyz[row][1] + kToXyz[row][2]; }
 
-// f of CIE 1976, equation of L*.
+// The function f of CIE 1976 L*a*b*.
 double cube_root_part(double t) {
   constexpr double kKnee = 6.0 / 29;
   return t > kKnee * kKnee * kKnee ? pow(t, 1.0 / 3) : t / (3 * kKnee * kKnee) + 4.0 / 29;

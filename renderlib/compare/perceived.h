@@ -1,25 +1,24 @@
 #pragma once
 
-// Colour spaces in which differences are closer to what an eye sees. All of one pixel; white is
-// that of sRGB (D65).
+// Conversions of single pixels to perceptual colour spaces. The white point is that of sRGB (D65).
 
 #include "renderlib/math/rgb.h"
 #include "renderlib/math/vec.h"
 
 namespace bandsaw {
 
-/// Brought into [0, 1]; NaN becomes 0.
+/// Returns the colour clamped to [0, 1]; NaN becomes 0.
 Rgb clamped(const Rgb& linear);
 
-/// CIE XYZ over that of white, and back.
+/// Converts to CIE XYZ relative to the white point, and back.
 Vec3 xyz_over_white(const Rgb& linear);
 Vec3 linear_of(const Vec3& xyz_over_white);
 
-/// YyCxCz: linear opponents (Flohr et al. 1993) of XYZ over white.
+/// Converts XYZ relative to white to YyCxCz, a linear opponent space (Flohr et al. 1993), and back.
 Vec3 opponents(const Vec3& xyz_over_white);
 Vec3 xyz_of_opponents(const Vec3& opponents);
 
-/// CIE L*a*b*.
+/// Converts to CIE L*a*b*.
 Vec3 lab(const Vec3& xyz_over_white);
 
 }  // namespace bandsaw

@@ -10,7 +10,7 @@ namespace {
 
 int radius_of(const Kernel& kernel) { return static_cast<int>(kernel.size() / 2); }
 
-// `count` values that lie `step` apart.
+// Filters `count` values with a stride of `step`.
 void filter_line(const double* from, double* to, int count, int step, const Kernel& kernel) {
   const int radius = radius_of(kernel);
   for (int i = 0; i < count; ++i) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// One channel of a picture, for filters.
+// Single-channel images and their filters.
 
 #include <cstdint>
 #include <vector>
@@ -19,19 +19,19 @@ struct Plane {
       : width(w), height(h), values(static_cast<std::size_t>(w) * h) {}
 };
 
-/// Of all values; the plane MUST NOT be empty.
+/// Returns the mean of all values; the plane MUST NOT be empty.
 double mean(const Plane& plane);
 
-/// Weights of -radius ... radius.
+/// Weights for offsets -radius to radius.
 using Kernel = std::vector<double>;
 
-/// exp(-(x / deviation)^2 / 2) for |x| <= radius, not normalised.
+/// Returns exp(-(x / deviation)^2 / 2) for |x| <= radius, not normalised.
 Kernel gaussian(double deviation, int radius);
 
 double sum(const Kernel& kernel);
 
-/// The plane filtered along x by one kernel and along y by another; beyond an edge, the edge.
-/// Kernels have an odd size.
+/// Filters the plane by one kernel along x and another along y; edges are clamped. Kernels have an
+/// odd size.
 Plane filtered(const Plane& plane, const Kernel& along_x, const Kernel& along_y);
 
 }  // namespace bandsaw

@@ -9,7 +9,7 @@
 namespace bandsaw {
 namespace {
 
-// Section III.B, equations 13 and 14 with L = 1.
+// Section III.B, equations 13 and 14, with L = 1.
 constexpr double kC1 = 0.01 * 0.01;
 constexpr double kC2 = 0.03 * 0.03;
 

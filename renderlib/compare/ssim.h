@@ -7,8 +7,9 @@
 
 namespace bandsaw {
 
-/// The mean over all pixels, of the sRGB-coded luminance in [0, 1], with a Gaussian window of
-/// deviation 1.5 and radius 5; 1 for equal images, at least -1. The images MUST be of one size.
+/// Returns the mean SSIM over all pixels, of the sRGB-coded luminance in [0, 1], with a Gaussian
+/// window of standard deviation 1.5 and radius 5; 1 for equal images, at least -1. The images MUST
+/// have the same size.
 double ssim(const Image& image, const Image& reference);
 
 }  // namespace bandsaw

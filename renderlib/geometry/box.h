@@ -1,6 +1,6 @@
 #pragma once
 
-// Axis-aligned boxes in double, and where a ray is inside one.
+// Axis-aligned bounding boxes in double, and the clipping of hits to them.
 
 #include <algorithm>
 
@@ -20,10 +20,12 @@ struct Box {
 };
 
 /// Part of the contract of every primitive test: a hit lies where the ray is inside the primitive's
-/// own box. A test whose t is mostly rounding noise (a triangle seen edge-on) would otherwise
-/// report hits outside the boxes of a tree, and which of them are found would depend on the tree.
-/// Moves t into the box; false: the ray misses the box by more than rounding. The slack, 2^-40 of
-/// t, is far above the rounding of the tests and far below the slack of the trees' boxes.
+/// own box. Where t is mostly rounding noise (a triangle seen edge-on), a test would otherwise
+/// report hits outside the boxes of a BVH, and whether they are found would depend on the tree.
+///
+/// Moves t into the box. Returns false if the ray misses the box by more than rounding. The
+/// tolerance, 2^-40 of t, is far above the rounding error of the tests and far below the tolerance
+/// of the BVHs' boxes.
 inline bool clip_to_box(const TracedRay& ray, const double (&lo)[3], const double (&hi)[3],
                         double& t) {
   constexpr double kGrow = 1 + 0x1p-40;
@@ -32,7 +34,7 @@ inline bool clip_to_box(const TracedRay& ray, const double (&lo)[3], const doubl
   for (std::size_t k = 0; k < 3; ++k) {
     const double a = (lo[k] - ray.origin[k]) * ray.inverse[k];
     const double b = (hi[k] - ray.origin[k]) * ray.inverse[k];
-    // 0 times infinity, a ray that runs within a face, is NaN and bounds nothing.
+    // 0 * infinity, for a ray within the plane of a face, is NaN and bounds nothing.
     const double first = ray.inverse[k] < 0 ? b : a;
     const double last = ray.inverse[k] < 0 ? a : b;
     enter = first > enter ? first : enter;

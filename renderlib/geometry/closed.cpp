@@ -8,7 +8,7 @@
 namespace bandsaw {
 namespace {
 
-/// For each vertex, the lowest of those at its position.
+/// Returns, for each vertex, the lowest index of those at its position.
 std::vector<std::uint32_t> welded(const std::vector<std::array<float, 3>>& positions) {
   std::vector<std::uint32_t> order(positions.size());
   std::iota(order.begin(), order.end(), 0u);
@@ -26,7 +26,7 @@ std::vector<std::uint32_t> welded(const std::vector<std::array<float, 3>>& posit
 struct Edge {
   std::uint32_t low;
   std::uint32_t high;
-  int upwards;  ///< +1 from low to high, -1 back
+  int upwards;  ///< +1 from low to high, -1 in the other direction
 };
 
 bool same_place(const Edge& a, const Edge& b) { return a.low == b.low && a.high == b.high; }

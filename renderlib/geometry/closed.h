@@ -1,6 +1,6 @@
 #pragma once
 
-// Whether a mesh encloses something.
+// Check that a mesh is closed.
 
 #include <cstddef>
 
@@ -8,9 +8,9 @@
 
 namespace bandsaw {
 
-/// How many edges have no match: a closed mesh passes each edge as often in one direction as in the
-/// other. Corners at equal positions are one, whatever their index. Indices MUST be valid,
-/// positions finite.
+/// Returns the number of edges without a match: a closed mesh contains each edge equally often in
+/// both directions. Vertices at equal positions are identified, whatever their index. Indices MUST
+/// be valid and positions finite.
 std::size_t open_edges(const Mesh& mesh);
 
 }  // namespace bandsaw

@@ -6,14 +6,14 @@
 namespace bandsaw {
 namespace {
 
-/// What the box has beyond the disk, of the largest number involved.
+/// Margin of the box around the disk, relative to the largest number involved.
 constexpr double kRoom = 0x1p-44;
 
 }  // namespace
 
 DiskAxes axes_of(const Disk& disk) {
   const Vec3& n = disk.normal;
-  // Across the normal and z, or x where the normal is nearer to z.
+  // Perpendicular to the normal and z, or to y if the normal is close to z.
   const bool steep = std::abs(n.z) > 0.9 * length(n);
   const Vec3 u = normalize(steep ? cross(Vec3{0, 1, 0}, n) : cross(n, Vec3{0, 0, 1}));
   return {u, cross(normalize(n), u)};
@@ -21,7 +21,7 @@ DiskAxes axes_of(const Disk& disk) {
 
 Box bounds(const Disk& disk) {
   const double room = kRoom * (disk.radius + max_abs(disk.center));
-  // Of a normal almost along an axis 1 - n^2 would keep nothing of what it is not.
+  // For a normal almost along an axis, 1 - n^2 would lose the precision of the other components.
   const auto reach = [&](double a, double b) {
     return disk.radius * std::sqrt(a * a + b * b) + room;
   };

@@ -6,7 +6,7 @@
 namespace bandsaw {
 namespace {
 
-/// How well a product of rotation and scale must meet the map it came from, of the map's size.
+/// Tolerance of decompose(), relative to the size of the map.
 constexpr double kDecomposed = 1e-9;
 
 double largest(const Transform& t) {
@@ -27,7 +27,7 @@ Transform between(const Key& a, const Key& b, double time) {
   const double u = (time - a.time) / (b.time - a.time);
   const Vec3 moved = a.pose.translate + u * (b.pose.translate - a.pose.translate);
   if (a.pose.rotate == b.pose.rotate && a.pose.scale == b.pose.scale) {
-    Transform t = a.at;  // It only moves: the rest keeps its bits.
+    Transform t = a.at;  // Only a translation: the linear part keeps its bits.
     t.m[0][3] = moved.x;
     t.m[1][3] = moved.y;
     t.m[2][3] = moved.z;

@@ -1,10 +1,11 @@
 #pragma once
 
-// Spaces that move. What is placed in a frame moves along; frames may move within frames.
+// Animated coordinate frames. What is placed in a frame moves with it; frames can be nested.
 //
-// Between two keys translation and scale change linearly and the rotation by the shortest way at
-// constant speed (Shoemake 1985, "Animating Rotation with Quaternion Curves", section 3.3). At a
-// key, before the first and after the last, the frame is exactly what the key says.
+// Between two keys, translation and scale are interpolated linearly and the rotation along the
+// shortest arc at constant speed (Shoemake 1985, "Animating Rotation with Quaternion Curves",
+// section 3.3). At a key, before the first and after the last one, the frame is exactly the key's
+// transform.
 
 #include <optional>
 #include <vector>
@@ -17,7 +18,7 @@ namespace bandsaw {
 
 inline constexpr FrameId kNoFrame{0xffffffffu};
 
-/// Translation after rotation after scale. Of a placement that mirrors all three scales are
+/// Translation after rotation after scale. If the placement is mirrored, all three scales are
 /// negative.
 struct Pose {
   Vec3 translate;
@@ -25,13 +26,14 @@ struct Pose {
   Vec3 scale{1, 1, 1};
 };
 
-/// Nothing where the map is no such product to 1e-9 of its size: where it shears, or is singular.
+/// Returns std::nullopt if the map is not such a product within 1e-9 of its size: it shears or is
+/// singular.
 std::optional<Pose> decompose(const Transform& t);
 
-/// Where a frame is at one time.
+/// The transform of a frame at one time.
 struct Key {
   Key() = default;
-  /// A transform that cannot be decomposed keeps Pose{} (see is_rigid).
+  /// If `where` cannot be decomposed, `pose` stays Pose{}; validation refuses such keys.
   Key(double when, const Transform& where);
 
   double time = 0;
@@ -40,15 +42,17 @@ struct Key {
 };
 
 struct Frame {
-  FrameId parent = kNoFrame;  ///< an earlier frame: what this one moves in
-  Transform placement;        ///< of this frame in its parent, before it moves; regular
-  std::vector<Key> keys;      ///< one at least; times rise
+  FrameId parent = kNoFrame;  ///< an earlier frame, in which this one moves
+  /// Placement of this frame in its parent, applied after its motion; regular.
+  Transform placement;
+  std::vector<Key> keys;  ///< at least one; times strictly increase
 };
 
-/// The movement alone, without parent and placement. `frame` MUST have a key.
+/// Returns the motion alone, without parent and placement. `frame` MUST have a key.
 Transform motion_at(const Frame& frame, double time);
 
-/// From the frame to the world. `id` MUST name one of the frames, whose parents come before them.
+/// Returns the transform from the frame to the world. `id` MUST name one of the frames, whose
+/// parents precede them.
 Transform frame_at(const std::vector<Frame>& frames, FrameId id, double time);
 
 }  // namespace bandsaw

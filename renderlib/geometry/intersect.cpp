@@ -52,7 +52,7 @@ bool intersect(const TracedRay& ray, const Quad& quad, Crossing& crossing) {
                                            sheared(ray, to_u), at_opposite, first);
   const bool hit_second = intersect_sheared(ray, corner, opposite, to_v, at_corner, at_opposite,
                                             sheared(ray, to_v), second);
-  // On the diagonal both are hit; the nearer counts, then the first.
+  // On the diagonal both triangles are hit; the nearer counts, and the first one if t is equal.
   if (hit_first && (!hit_second || first.t <= second.t)) {
     crossing = {first.t, std::min(1.0, first.u + first.v), first.v};
     return true;
@@ -77,7 +77,7 @@ bool intersect(const TracedRay& ray, const Sphere& sphere, bool starts_on_it, Cr
   const double q = b < 0 ? b - root : b + root;
   const double distance = length(f);
   const double product = (distance - sphere.radius) * (distance + sphere.radius);
-  // One root is product / q, the other q / a; the near one is the first where b >= 0.
+  // One root is product / q, the other q / a; the near one is the first if b >= 0.
   const bool near_by_product = !(b < 0);
   double t = starts_on_it ? -1 : near_by_product ? product / q : q / a;
   if (!(t > 0)) {

@@ -10,14 +10,15 @@
 namespace bandsaw {
 namespace {
 
-/// Between two keys corners bend by at most this part of the box, or the interval is cut in
-/// kMostPieces.
+/// Maximum deviation of a corner's path from a chord, relative to the box; intervals between keys
+/// are cut into pieces accordingly, at most kMostPieces.
 constexpr double kBend = 0x1p-6;
 constexpr double kMostPieces = 64;
-/// Between the times that are looked at, rounding may be larger than at them.
+/// Rounding margin: between the sampled times rounding errors may be larger than at them.
 constexpr double kTrips = 8;
 
-/// Bounds of a point's distance from the origin, and of its first and second derivative by time.
+/// Bounds of a point's distance from the origin, and of its first and second derivative with
+/// respect to time.
 struct Course {
   double distance = 0;
   double speed = 0;
@@ -41,8 +42,8 @@ Course through(const Transform& placement, const Course& c) {
   return {n * c.distance + moved(placement), n * c.speed, n * c.bend};
 }
 
-/// Through T + R S between two keys, with p = S q: |(R p)''| <= w^2 |p| + 2 w |p'| + |p''|, where
-/// the rotation turns at w; S and T change linearly.
+/// Bounds after T + R S between two keys. With p = S q: |(R p)''| <= w^2 |p| + 2 w |p'| + |p''|,
+/// where the rotation has angular speed w; S and T change linearly.
 Course through(const Key& a, const Key& b, const Course& c) {
   const double duration = b.time - a.time;
   const double scale = std::max(max_abs(a.pose.scale), max_abs(b.pose.scale));
@@ -56,7 +57,7 @@ Course through(const Key& a, const Key& b, const Course& c) {
           turning * turning * p.distance + 2 * turning * p.speed + p.bend};
 }
 
-/// Through a frame at times that no key divides.
+/// Bounds after a frame, in an interval that contains no key.
 Course through(const Frame& frame, double time, const Course& c) {
   const auto after = std::upper_bound(frame.keys.begin(), frame.keys.end(), time,
                                       [](double t, const Key& key) { return t < key.time; });
@@ -66,7 +67,7 @@ Course through(const Frame& frame, double time, const Course& c) {
   return through(frame.placement, within);
 }
 
-/// Of the points of a box while no key is passed.
+/// Returns the bounds for the points of a box in an interval that contains no key.
 Course course_of(const Geometry& geometry, const Instance& instance, const Box& box, double time) {
   const Vec3 far = {std::max(std::abs(box.lo.x), std::abs(box.hi.x)),
                     std::max(std::abs(box.lo.y), std::abs(box.hi.y)),
@@ -78,7 +79,7 @@ Course course_of(const Geometry& geometry, const Instance& instance, const Box& 
   return course;
 }
 
-/// The interval's ends and the keys between them, in order.
+/// Returns the interval's ends and the keys between them, in ascending order.
 std::vector<double> turning_points(const Geometry& geometry, const Instance& instance,
                                    const Interval& interval) {
   std::vector<double> times = {interval.open, interval.close};
@@ -94,13 +95,13 @@ std::vector<double> turning_points(const Geometry& geometry, const Instance& ins
   return times;
 }
 
-/// What is where at `time`, and `room` around it; collects boxes.
+/// Collects the boxes of an instance at sampled times, each enlarged by `room`.
 class Stops {
  public:
   Stops(const Geometry& geometry, const Instance& instance, const Box& box)
       : geometry_(geometry), instance_(instance), box_(box) {}
 
-  /// False: the placement is singular.
+  /// Returns false if the placement is singular.
   bool add(double time, double room) {
     const Transform to_world = to_world_at(geometry_, instance_, time);
     const std::optional<Transform> to_object = inverse(to_world);
@@ -115,8 +116,9 @@ class Stops {
     return true;
   }
 
-  /// The ends moved out until the line between them holds every stop. Courses between stops are
-  /// within `room` of lines, so all of them are held.
+  /// Returns the boxes at both ends, enlarged until their linear interpolation contains every
+  /// sampled box. Between samples the motion deviates from the chord by at most `room`, so the
+  /// result bounds all of it.
   MovingBox around(const Interval& interval) const {
     MovingBox result = {boxes_.front(), boxes_.back()};
     Vec3 below;
@@ -182,7 +184,7 @@ std::optional<MovingBox> moving_bounds(const Geometry& geometry, const Instance&
   for (std::size_t i = 0; i + 1 < times.size(); ++i) {
     const double duration = times[i + 1] - times[i];
     const Course course = course_of(geometry, instance, box, times[i] + duration / 2);
-    // A course with second derivative c leaves its chord over h by at most c h^2 / 8.
+    // A path with second derivative c deviates from its chord over h by at most c h^2 / 8.
     const double bend = course.bend * duration * duration / 8;
     const double wanted = std::ceil(std::sqrt(bend / (kBend * size)));
     const double pieces = wanted >= 1 && wanted <= kMostPieces ? wanted : bend > 0 ? kMostPieces : 1;

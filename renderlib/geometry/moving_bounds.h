@@ -1,7 +1,7 @@
 #pragma once
 
-// Where an instance is: one that rests as a box, one that moves as a box whose sides move linearly
-// during the time that an image takes.
+// Bounds of instances: a box for one at rest, a box with linearly moving sides for one that moves
+// during the shutter interval.
 
 #include <optional>
 
@@ -10,26 +10,27 @@
 
 namespace bandsaw {
 
-/// The world box of a placed box, with room for `trips` times the rounding of a ray that goes there
-/// and back.
+/// Returns the world box of a placed box, enlarged by `trips` times the rounding error of a ray
+/// that is transformed to the instance and back.
 Box placed_bounds(const Box& box, const Transform& to_world, const Transform& to_object,
                   double trips = 1);
 
-/// From open to close, both included.
+/// Closed interval of time.
 struct Interval {
   double open = 0;
   double close = 0;
   friend bool operator==(const Interval&, const Interval&) = default;
 };
 
-/// At any time u of the way through the interval all is within (1 - u) at_open + u at_close.
+/// At a share u of the interval, everything lies within (1 - u) at_open + u at_close.
 struct MovingBox {
   Box at_open;
   Box at_close;
 };
 
-/// Of `box`, a box in the instance's own space, with room for the rounding of rays that go there
-/// and back. The instance has a frame. Nothing where a placement on the way is singular.
+/// Returns the bounds of `box`, given in the instance's own space, enlarged for the rounding error
+/// of rays that are transformed to the instance and back. The instance MUST have a frame. Returns
+/// std::nullopt if a placement during the interval is singular.
 std::optional<MovingBox> moving_bounds(const Geometry& geometry, const Instance& instance,
                                        const Box& box, const Interval& interval);
 

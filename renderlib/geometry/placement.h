@@ -1,6 +1,6 @@
 #pragma once
 
-// Where instances are, at a time.
+// Placement of instances at a time.
 
 #include <optional>
 
@@ -8,26 +8,26 @@
 
 namespace bandsaw {
 
-/// From the mesh's or group's space to the world.
+/// Returns the transform from the mesh's or group's space to the world.
 inline Transform to_world_at(const Geometry& geometry, const Instance& instance, double time) {
   return instance.frame == kNoFrame
              ? instance.to_world
              : frame_at(geometry.frames, instance.frame, time) * instance.to_world;
 }
 
-/// The group that an instance places; null where it places a mesh.
+/// Returns the group of an instance; null if it places a mesh.
 inline const Shapes* group_of(const Geometry& geometry, const Instance& instance) {
   return instance.group == kNoGroup ? nullptr : &geometry.groups[index_of(instance.group)];
 }
 
-/// How many primitives an instance places.
+/// Returns the number of primitives of an instance.
 inline std::size_t primitives_of(const Geometry& geometry, const Instance& instance) {
   const Shapes* group = group_of(geometry, instance);
   return group != nullptr ? group->size()
                           : geometry.meshes[index_of(instance.mesh)].triangles.size();
 }
 
-/// `primitive` is one of the instance's.
+/// Returns the material of a primitive of the instance.
 inline MaterialId material_of(const Geometry& geometry, const Instance& instance,
                               std::size_t primitive) {
   const bool own = instance.group != kNoGroup && instance.material == kOwnMaterial;

@@ -1,6 +1,6 @@
 #pragma once
 
-// A ray and what it met. Distances t are in units of |direction|; direction need not be a unit vector.
+// Rays and hits. Distances t are in units of |direction|; the direction need not be a unit vector.
 
 #include <cstddef>
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace bandsaw {
 
-/// Names a surface element over the whole scene (geometry/shapes.h, Geometry).
+/// Identifies a primitive of the scene (geometry/shapes.h, Geometry).
 struct PrimitiveId {
   std::uint32_t instance = 0xffffffffu;
   std::uint32_t primitive = 0xffffffffu;
@@ -22,24 +22,26 @@ inline constexpr PrimitiveId kNoPrimitive{};
 struct Ray {
   Vec3 origin;
   Vec3 direction;
-  double t_max = kInfinity;  ///< hits have 0 < t < t_max
-  /// A flat primitive that the ray starts on and cannot hit again. For a sphere: its near root is not taken as a hit.
+  double t_max = kInfinity;  ///< hits satisfy 0 < t < t_max
+  /// The primitive on which the ray starts. A flat primitive is not hit again; for a sphere, the
+  /// near root is ignored.
   PrimitiveId from = kNoPrimitive;
-  double time = 0;  ///< when it is: moving things are where they are then
+  double time = 0;  ///< moving instances are placed at this time
 };
 
-/// Numbers of a triangle that a tree keeps lie this far apart (Hit::corners).
+/// Stride, in floats, of the numbers of a triangle in a pack (Hit::corners).
 inline constexpr std::size_t kCornerStride = 8;
 
-/// The closest hit: the lexicographically lowest (t, instance, primitive), whatever tree found it.
+/// The closest hit: the lexicographically lowest (t, instance, primitive), independent of the BVH.
 struct Hit {
   double t = kInfinity;
   PrimitiveId id = kNoPrimitive;
-  /// Triangles: barycentric weights of b and c. Quads: the coordinates along u and v. Spheres: unused.
+  /// Triangles: barycentric weights of b and c. Quads: coordinates along u and v. Disks:
+  /// coordinates along the axes, in radii. Spheres: unused.
   double u = 0;
   double v = 0;
-  /// Of a mesh's triangle, where its tree keeps it, near at hand: component k of corner c at
-  /// [(3 c + k) kCornerStride], the mesh's own bits. Null: only the mesh has it.
+  /// For a triangle of a mesh, the corners in the BVH's pack: component k of corner c is at [(3 c +
+  /// k) kCornerStride], with the mesh's own bits. Null if only the mesh has them.
   const float* corners = nullptr;
 
   explicit operator bool() const { return id != kNoPrimitive; }

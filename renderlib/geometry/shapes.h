@@ -1,7 +1,7 @@
 #pragma once
 
-// What can be hit, as plain values. Meshes keep float32 positions in their own space; placements
-// stay double and are never baked into the vertices.
+// Geometry as plain values. Meshes keep float32 positions in their own space; placements stay
+// double and are never baked into the vertices.
 
 #include <array>
 #include <cstdint>
@@ -20,7 +20,7 @@ struct Sphere {
   MaterialId material{};
 };
 
-/// The parallelogram corner + a u + b v, (a, b) in [0, 1]^2. Normal u x v.
+/// The parallelogram corner + a u + b v with (a, b) in [0, 1]^2. Its normal is u x v.
 struct Quad {
   Vec3 corner;
   Vec3 u;
@@ -28,7 +28,7 @@ struct Quad {
   MaterialId material{};
 };
 
-/// Normal (b - a) x (c - a).
+/// A triangle with normal (b - a) x (c - a).
 struct Triangle {
   Vec3 a;
   Vec3 b;
@@ -36,7 +36,7 @@ struct Triangle {
   MaterialId material{};
 };
 
-/// Of the points at most `radius` from `center` in the plane across `normal`.
+/// The points at most `radius` from `center` in the plane perpendicular to `normal`.
 struct Disk {
   Vec3 center;
   Vec3 normal{0, 1, 0};  ///< unit
@@ -44,14 +44,14 @@ struct Disk {
   MaterialId material{};
 };
 
-/// Shapes that lie loose in one space. As primitives they are counted in this order.
+/// Loose shapes in one space. Primitives are numbered in the order of these members.
 struct Shapes {
   std::vector<Sphere> spheres;
   std::vector<Quad> quads;
   std::vector<Triangle> triangles;
   std::vector<Disk> disks;
-  /// Of quads, then triangles, where prepare_surfaces has made them (geometry/surface.h); else
-  /// empty, and each hit finds its own.
+  /// Normals of the quads, then of the triangles, if prepare_surfaces() has computed them
+  /// (geometry/surface.h); otherwise empty, and each hit computes its own.
   std::vector<Vec3> flat_normals = {};
 
   std::size_t size() const {
@@ -61,13 +61,13 @@ struct Shapes {
 
 enum class ShapeKind { kSphere, kQuad, kTriangle, kDisk };
 
-/// One of the shapes: `index` counts within its kind.
+/// One of the shapes; `index` counts within its kind.
 struct ShapeRef {
   ShapeKind kind;
   std::size_t index;
 };
 
-/// `primitive` MUST be below shapes.size().
+/// Returns the shape of a primitive. `primitive` MUST be below shapes.size().
 inline ShapeRef shape_ref(const Shapes& shapes, std::size_t primitive) {
   if (primitive < shapes.spheres.size()) {
     return {ShapeKind::kSphere, primitive};
@@ -94,33 +94,33 @@ inline MaterialId material_of(const Shapes& shapes, std::size_t primitive) {
 struct Mesh {
   std::vector<std::array<float, 3>> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into positions
-  std::vector<std::array<float, 3>> normals;            ///< empty, or one a position
-  std::vector<std::array<float, 2>> uvs;                ///< empty, or one a position
-  std::vector<std::array<float, 2>> uvs2 = {};    ///< the second set: empty, or one a position
-  std::vector<std::array<float, 3>> colors = {};  ///< linear RGB >= 0: empty, or one a position
+  std::vector<std::array<float, 3>> normals;            ///< empty, or one per position
+  std::vector<std::array<float, 2>> uvs;                ///< empty, or one per position
+  std::vector<std::array<float, 2>> uvs2 = {};          ///< second set: empty, or one per position
+  std::vector<std::array<float, 3>> colors = {};  ///< linear RGB >= 0: empty, or one per position
 };
 
 inline constexpr GroupId kNoGroup{0xffffffffu};
-/// Of an instance of a group: each of its shapes keeps its own.
+/// For an instance of a group: each shape keeps its own material.
 inline constexpr MaterialId kOwnMaterial{0xffffffffu};
 
-/// One placement of a mesh or of a group.
+/// Placement of a mesh or a group.
 struct Instance {
-  MeshId mesh{};  ///< meaningless where there is a group
+  MeshId mesh{};  ///< unspecified if there is a group
   MaterialId material{};
-  Transform to_world;  ///< regular (math/transform.h, inverse); within `frame` where there is one
+  Transform to_world;  ///< regular (math/transform.h, inverse); relative to `frame` if there is one
   GroupId group = kNoGroup;
-  FrameId frame = kNoFrame;  ///< what it moves along with (geometry/frame.h)
+  FrameId frame = kNoFrame;  ///< the frame it moves with (geometry/frame.h)
 };
 
-/// Everything that can be hit. In a hit, `instance` 0 is the geometry's own loose shapes;
-/// `instance` i + 1 is instances[i], whose `primitive` is the triangle of its mesh or the shape of
-/// its group.
+/// All geometry that can be hit. In a hit, `instance` 0 means the geometry's own loose shapes;
+/// `instance` i + 1 means instances[i], whose `primitive` is the triangle of its mesh or the shape
+/// of its group.
 struct Geometry : Shapes {
   std::vector<Mesh> meshes;
   std::vector<Instance> instances;
-  std::vector<Shapes> groups;  ///< loose shapes in spaces of their own, hit only where placed
-  std::vector<Frame> frames;   ///< what moves
+  std::vector<Shapes> groups;  ///< loose shapes in spaces of their own; hit only through instances
+  std::vector<Frame> frames;   ///< animated frames
 };
 
 }  // namespace bandsaw

@@ -1,7 +1,7 @@
 #pragma once
 
-// A ray with what the primitive tests need computed once: the axes and shear of the triangle test
-// and reciprocals for boxes.
+// A ray with precomputed values for the primitive tests: axes and shear of the triangle test, and
+// reciprocals for boxes.
 
 #include <array>
 #include <cmath>
@@ -15,8 +15,8 @@ struct TracedRay {
   std::array<double, 3> direction;
   std::array<double, 3> inverse;  ///< 1 / direction; infinite where that is 0
   double t_max;
-  /// kz: the axis along which the direction is longest; (kx, ky, kz) is right-handed as seen along
-  /// the ray.
+  /// kz is the axis along which the direction is longest; (kx, ky, kz) is right-handed as seen
+  /// along the ray.
   int kx;
   int ky;
   int kz;
@@ -25,7 +25,7 @@ struct TracedRay {
   double shear_z;
 };
 
-/// `ray` MUST be finite with a direction that is not zero (is_traceable).
+/// Prepares a ray, which MUST be traceable (is_traceable).
 inline TracedRay trace_setup(const Vec3& origin, const Vec3& direction, double t_max) {
   TracedRay r;
   r.origin = {origin.x, origin.y, origin.z};
@@ -41,7 +41,7 @@ inline TracedRay trace_setup(const Vec3& origin, const Vec3& direction, double t
   r.kx = r.kz == 2 ? 0 : r.kz + 1;
   r.ky = r.kx == 2 ? 0 : r.kx + 1;
   if (r.direction[static_cast<std::size_t>(r.kz)] < 0) {
-    const int swapped = r.kx;  // keeps the winding
+    const int swapped = r.kx;  // preserves the winding
     r.kx = r.ky;
     r.ky = swapped;
   }
@@ -51,9 +51,8 @@ inline TracedRay trace_setup(const Vec3& origin, const Vec3& direction, double t
   return r;
 }
 
-/// Whether anything can be hit at all: rays with NaN or infinite parts hit nothing, nor do those
-/// whose direction is zero or so near the ends of the range of double (2^-500, 2^500) that its
-/// square has no meaning.
+/// Returns true if the ray can hit anything: it is finite, t_max is positive, and the direction's
+/// largest component is within (2^-500, 2^500), so that its square does not overflow or underflow.
 inline bool is_traceable(const Ray& ray) {
   const double size = max_abs(ray.direction);
   return is_finite(ray.origin) && is_finite(ray.direction) && size > 0x1p-500 && size < 0x1p500 &&

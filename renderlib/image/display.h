@@ -1,6 +1,6 @@
 #pragma once
 
-// How linear light becomes the numbers of a picture file.
+// Conversion of linear radiance to the values of 8-bit image files.
 
 #include <optional>
 
@@ -9,30 +9,31 @@
 
 namespace bandsaw {
 
-/// What becomes of light above 1 in 8-bit files. The numbers are those of package.proto.
+/// Tone mapping of radiance above 1 in 8-bit files. The values are those of package.proto.
 enum class Tone {
-  kNone = 0,    ///< cut off
-  kFilmic = 1,  ///< x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14), each channel: a fit of the ACES
-                ///< film curve (Narkowicz 2016, "ACES filmic tone mapping curve")
+  kNone = 0,  ///< clamped
+  /// X (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14) for each channel: a fit of the ACES film curve
+  /// (Narkowicz 2016, "ACES filmic tone mapping curve").
+  kFilmic = 1,
 };
 inline constexpr int kLastTone = 1;
 
-/// "none", "filmic".
+/// Returns "none" or "filmic".
 absl::string_view tone_name(Tone tone);
 std::optional<Tone> tone_named(absl::string_view name);
 
 inline constexpr double kMostExposure = 30;
 
 struct Display {
-  double exposure = 0;  ///< of 8-bit files: stops, [-kMostExposure, kMostExposure]
+  double exposure = 0;  ///< for 8-bit files: stops, [-kMostExposure, kMostExposure]
   Tone tone = Tone::kNone;
-  bool half = false;  ///< EXR files hold halves, not floats
+  bool half = false;  ///< EXR files store halves instead of floats
   friend bool operator==(const Display&, const Display&) = default;
 };
 
-/// The light that an 8-bit file shows, before its transfer function: 2^exposure times it, then the
-/// tone curve. With the default exactly the light itself. Rising in every channel; infinite light
-/// is white, NaN stays NaN.
+/// Returns the radiance that an 8-bit file shows, before its transfer function: 2^exposure * light,
+/// then the tone curve. With the default settings it is exactly `light`. Monotonic in every
+/// channel; infinite radiance becomes white, NaN stays NaN.
 Rgb shown(const Rgb& light, const Display& display);
 
 }  // namespace bandsaw

@@ -36,7 +36,7 @@ Channel channel(const std::string& name, const Image& image, float Rgb::*of, boo
   return to;
 }
 
-/// In the order of their names, as the format wants them.
+/// Returns the channels sorted by name, as the format requires.
 std::vector<Channel> channels_of(const Image& image, bool half, const Layers& layers) {
   std::vector<Channel> channels;
   const auto add = [&](const std::string& prefix, const Image& from) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// OpenEXR pictures, by tinyexr.
+// OpenEXR encoder, using tinyexr.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,13 +12,13 @@
 
 namespace bandsaw {
 
-/// Scan lines from the top, channels R, G, B and those of the layers, ZIP compressed. Floats are
-/// exact; halves are to the nearest, cut off at +-65504. INVALID_ARGUMENT: a layer of another size.
-/// RESOURCE_EXHAUSTED: too large to encode.
+/// Encodes scan lines from the top, with channels R, G, B and those of the layers, ZIP compressed.
+/// Floats are exact; halves are rounded to nearest and clamped to +-65504. Returns INVALID_ARGUMENT
+/// if a layer has another size, RESOURCE_EXHAUSTED if the image is too large to encode.
 absl::StatusOr<std::vector<std::byte>> encode_exr(const Image& image, bool half,
                                                   const Layers& layers = {});
 
-/// Numbers of the image that halves cut off.
+/// Returns the number of channel values that halves would clamp.
 std::uint64_t beyond_half(const Image& image);
 
 }  // namespace bandsaw

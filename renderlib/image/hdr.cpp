@@ -13,7 +13,7 @@ namespace {
 
 using Rgbe = std::array<std::uint8_t, 4>;
 
-/// Beyond this the shared exponent would not fit.
+/// Above this value the shared exponent would overflow.
 constexpr float kMost = 0x1.fep126f;
 
 float mendable(float v) { return v > 0 ? std::min(v, kMost) : 0; }
@@ -27,7 +27,7 @@ Rgbe rgbe(const Rgb& pixel) {
   int exponent = 0;
   (void)std::frexp(largest, &exponent);
   if (std::floor(std::ldexp(largest, 8 - exponent) + 0.5f) > 255) {
-    ++exponent;  // Rounding makes it the next power of two.
+    ++exponent;  // Rounding reaches the next power of two.
   }
   const auto mantissa = [&](float v) {
     return static_cast<std::uint8_t>(std::floor(std::ldexp(v, 8 - exponent) + 0.5f));
@@ -41,10 +41,10 @@ class RowWriter {
 
   void put(std::size_t value) { out_.push_back(static_cast<std::byte>(value)); }
 
-  /// One channel of a row: runs of three and more as (128 + length, value), the rest as (length,
-  /// values).
+  /// Writes one channel of a row: runs of three and more as (128 + length, value), other values as
+  /// (length, values).
   void channel(const std::vector<Rgbe>& row, std::size_t c) {
-    std::size_t plain = 0;  // begin of what is not written yet
+    std::size_t plain = 0;  // start of the values not yet written
     for (std::size_t at = 0; at < row.size();) {
       std::size_t run = 1;
       while (run < 127 && at + run < row.size() && row[at + run][c] == row[at][c]) {
@@ -86,7 +86,7 @@ std::vector<std::byte> encode_hdr(const Image& image) {
     out.push_back(static_cast<std::byte>(c));
   }
   RowWriter writer(out);
-  // Readers take other widths for the old form, without runs.
+  // For other widths readers expect the old form without runs.
   const bool runs = image.width >= 8 && image.width < 32768;
   std::vector<Rgbe> row(image.width);
   for (std::uint32_t y = 0; y < image.height; ++y) {

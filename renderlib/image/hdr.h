@@ -1,7 +1,7 @@
 #pragma once
 
-// Radiance pictures (.hdr): three 8-bit mantissas that share an exponent, run-length coded. Ward
-// 1991, "Real pixels", Graphics Gems II.5, and the RADIANCE manual's file format notes.
+// Radiance encoder (.hdr): three 8-bit mantissas with a shared exponent, run-length coded. Ward
+// 1991, "Real Pixels", Graphics Gems II.5, and the RADIANCE manual's file format notes.
 
 #include <cstddef>
 #include <vector>
@@ -10,8 +10,8 @@
 
 namespace bandsaw {
 
-/// Each channel is within 1/256 of the pixel's largest, to the nearest; up to 1.7e38. Negative and
-/// NaN: 0. Rows from the top.
+/// Encodes the image, rows from the top. Each channel is rounded to nearest, within 1/256 of the
+/// pixel's largest channel; up to 1.7e38. Negative values and NaN become 0.
 std::vector<std::byte> encode_hdr(const Image& image);
 
 }  // namespace bandsaw

@@ -1,6 +1,6 @@
 #pragma once
 
-// A finished picture: linear RGB, float, rows from the top.
+// An image: linear RGB, float, rows from the top.
 
 #include <cstdint>
 #include <vector>

@@ -1,6 +1,6 @@
 #pragma once
 
-// Pictures that stand beside the image in one EXR file.
+// Additional images stored beside the main image in one EXR file.
 
 #include <string>
 #include <vector>
@@ -10,9 +10,10 @@
 namespace bandsaw {
 
 struct Layer {
-  std::string name;  ///< "albedo": its channels are albedo.R, albedo.G, albedo.B
-  Image image;       ///< as large as the image that it stands beside
-  /// A number a pixel, in the red channel, named name.Z and kept as floats whatever the file holds.
+  std::string name;  ///< for "albedo" the channels are albedo.R, albedo.G, albedo.B
+  Image image;       ///< MUST have the size of the main image
+  /// True if the layer is one number per pixel, taken from the red channel; its channel is name.Z
+  /// and is always stored as floats.
   bool is_number = false;
 };
 

@@ -20,7 +20,7 @@
 namespace bandsaw {
 namespace {
 
-// stb counts bytes in int, and its compressor doubles its buffer: this much is safe.
+// stb counts bytes in int, and its compressor doubles its buffer; this size is safe.
 constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 29;
 
 void append(void* context, void* data, int size) {

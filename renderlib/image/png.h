@@ -1,6 +1,6 @@
 #pragma once
 
-// The one file that stb_image_write is compiled in.
+// PNG encoder; the only file that compiles stb_image_write.
 
 #include <cstddef>
 #include <cstdint>
@@ -11,8 +11,8 @@
 
 namespace bandsaw {
 
-/// A PNG of 8-bit RGB, rows from the top, width x height x 3 codes. RESOURCE_EXHAUSTED: too large
-/// to encode.
+/// Encodes a PNG of 8-bit RGB, rows from the top; `codes` has width x height x 3 values. Returns
+/// RESOURCE_EXHAUSTED if the image is too large to encode.
 absl::StatusOr<std::vector<std::byte>> encode_png(std::uint32_t width, std::uint32_t height,
                                                   absl::Span<const std::uint8_t> codes);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Smaller pictures, for people to look at.
+// Downscaling of images for display.
 
 #include <cstdint>
 
@@ -8,8 +8,8 @@
 
 namespace bandsaw {
 
-/// Means of cells of across x down pixels, both >= 1; those at the right and lower edge are of what
-/// is left.
+/// Returns the means of cells of `across` x `down` pixels, both >= 1. Cells at the right and lower
+/// edge may be smaller.
 Image shrunk(const Image& image, std::uint32_t across, std::uint32_t down);
 
 }  // namespace bandsaw

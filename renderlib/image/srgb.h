@@ -7,17 +7,17 @@
 
 namespace bandsaw {
 
-/// The transfer function of a linear value in [0, 1]; the inverse of srgb_decode.
+/// Returns the sRGB value of a linear value in [0, 1]; the inverse of srgb_decode.
 double srgb_curve(double linear);
 
-/// The linear value of each code.
+/// Returns the linear value of each 8-bit code.
 const std::array<float, 256>& srgb_table();
 
-/// The linear value of v in [0, 1].
+/// Returns the linear value of an sRGB value in [0, 1].
 double srgb_decode(double v);
 
-/// The code of a linear value: round(255 f(x)). Below 0 and NaN: 0; above 1: 255. Gives back every
-/// code of srgb_table().
+/// Returns the 8-bit code of a linear value, round(255 f(x)); 0 for negative values and NaN, 255
+/// above 1. Inverts srgb_table() exactly.
 std::uint8_t srgb_encode(float linear);
 
 }  // namespace bandsaw

@@ -1,8 +1,8 @@
 #pragma once
 
-// The distance at which a light is asked in a stretch of medium: some of them where light is
-// scattered, the others where lights seem to be, as one density (one-sample balance heuristic:
-// Veach 1997, section 9.2.4).
+// Samples the distance for light sampling in a segment of a medium: a mixture of equiangular
+// sampling towards up to four pivots on lights and of free-flight sampling. All its strategies are
+// evaluated as one pdf (one-sample model with the balance heuristic: Veach 1997, section 9.2.4).
 
 #include <algorithm>
 #include <array>
@@ -14,32 +14,36 @@
 
 namespace bandsaw {
 
+/// Mixture pdf of the distance at which light is sampled in one segment.
 class AskedDistance {
  public:
-  /// More pivots than these are not taken.
+  /// Maximum number of pivots; further ones are ignored.
   static constexpr std::size_t kMostPivots = 4;
 
-  /// The flight MUST outlive this, its chance() not be 0. Until a pivot is added distances are
-  /// those of the flight.
+  /// Starts without pivots: the pdf is that of `flight`. `flight` MUST outlive this object, and its
+  /// `chance()` MUST NOT be 0. `medium` is the medium of the segment.
   AskedDistance(const Flight& flight, const Medium& medium)
       : flight_(flight), extinction_(mean_extinction(medium)) {}
 
-  /// A point of a light, over the stretch that Equiangular's other arguments say; each counts
-  /// alike.
+  /// Adds equiangular sampling towards `pivot`, a point on a light; the arguments are those of
+  /// `Equiangular`. All pivots have the same total weight in the mixture; within it, the share of
+  /// free-flight sampling is between 1/16 and 1/2 and grows with the optical depth up to the pivot.
   void add(const Vec3& origin, const Vec3& way, double length, const Vec3& pivot) {
     if (pivots_ == kMostPivots) {
       return;
     }
     angles_[size_] = Equiangular(origin, way, length, pivot);
-    // As far as a lamp is in sight distances by its angle are nearly exact; behind many free paths
-    // it is the near end that is bright.
+    // As long as the light is visible through the medium, equiangular distances are nearly
+    // proportional to the integrand. Behind many mean free paths the near end of the segment
+    // dominates, and free-flight sampling is the better strategy.
     const double depth = extinction_ * bandsaw::length(pivot - origin);
     const double flown = std::clamp(0.5 - 0.5 / (1 + depth), kLeastFlown, 0.5);
     share_[size_++] = 1 - flown;
     flown_ += flown;
     ++pivots_;
   }
-  /// A light without a place: as bright everywhere.
+  /// Adds a light without a position (distant or environment). Its irradiance does not vary along
+  /// the segment, so its share of the mixture is free-flight sampling.
   void add_distant() {
     if (pivots_ < kMostPivots) {
       flown_ += 1;
@@ -47,7 +51,8 @@ class AskedDistance {
     }
   }
 
-  /// In [0, length]; choice, u in [0, 1).
+  /// Returns a distance in [0, length]. `choice` selects the strategy, `u` the distance; both in
+  /// [0, 1).
   double sample(double choice, double u) const {
     double left = choice * static_cast<double>(std::max<std::size_t>(pivots_, 1));
     for (std::size_t i = 0; i < size_; ++i) {
@@ -59,7 +64,7 @@ class AskedDistance {
     const double flown = pivots_ == 0 ? 1 : flown_;
     return flight_.sample(std::min(left / flown, 1 - 0x1p-53), u);
   }
-  /// By length.
+  /// Returns the pdf of `sample()` with respect to length.
   double pdf(double distance) const {
     if (size_ == 0) {
       return flight_.pdf(distance);
@@ -78,9 +83,9 @@ class AskedDistance {
   double extinction_;
   std::array<Equiangular, kMostPivots> angles_;
   std::array<double, kMostPivots> share_{};
-  std::size_t size_ = 0;    ///< of both
-  std::size_t pivots_ = 0;  ///< distant ones, too
-  double flown_ = 0;        ///< share of the flight, of as many as there are pivots
+  std::size_t size_ = 0;    ///< number of entries in `angles_` and `share_`
+  std::size_t pivots_ = 0;  ///< number of pivots, including distant lights
+  double flown_ = 0;        ///< weight of free-flight sampling; with `share_` it sums to `pivots_`
 };
 
 }  // namespace bandsaw

@@ -9,7 +9,7 @@
 namespace bandsaw {
 namespace {
 
-/// Of a weight that is 0 but for rounding.
+/// A barycentric coordinate below this is 0 up to rounding.
 constexpr double kRim = 1e-12;
 
 }  // namespace
@@ -57,8 +57,8 @@ std::optional<MediumId> MediumWalk::Around::medium() const {
 
 MediumWalk::MediumWalk(const Scene& scene, const Ray& ray, double length, std::uint64_t& rays)
     : scene_(scene), ray_(ray), length_(length), rays_(rays) {
-  // Beyond its end, too, boundaries tell what the origin is inside of; and the surface that the ray
-  // starts on is no boundary by its number.
+  // The boundaries beyond the end of the segment also determine what contains the origin.
+  // `ray.from` refers to the scene's primitives, not to the boundaries', so it is cleared.
   ray_.t_max = kInfinity;
   ray_.from = kNoPrimitive;
   if (scene.media().has_boundaries()) {
@@ -88,7 +88,8 @@ std::optional<MediumWalk::Crossing> MediumWalk::find_next(Search& search) {
     crossing.shape = {hit.id.instance, hit.id.instance == 0 ? hit.id.primitive : 0};
     crossing.medium = medium_in(point.material);
     crossing.inwards = slope < 0;
-    // Through an edge or a corner that triangles of a mesh share a ray goes once.
+    // A ray crosses an edge or corner shared by triangles of a mesh only once; further hits there
+    // are skipped.
     crossing.on_rim = is_of_mesh(hit) && std::min({hit.u, hit.v, 1 - hit.u - hit.v}) < kRim;
     const double same = 4 * point.offset / std::max(0.01, std::abs(slope));
     const auto known = static_cast<std::ptrdiff_t>(std::min(search.found, Search::kRecent));

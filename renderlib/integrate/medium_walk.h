@@ -1,11 +1,11 @@
 #pragma once
 
-// A ray, cut where it passes the boundaries of media (scene/media.h).
+// Splits a ray into segments at the boundaries of media (scene/media.h).
 //
-// What a point is inside of is found anew for every ray, from the boundaries ahead: a medium that
-// the ray leaves more often than it enters it is around the ray's origin. Nothing is carried along
-// a path, so nothing can go wrong on the way: cameras and lights inside of media, surfaces that
-// touch a boundary or lie in it, and reflections at a filled glass need no rules of their own.
+// The set of media around the ray's origin is computed for each ray from the boundaries ahead of
+// it: if the ray leaves a medium more often than it enters it, the origin is inside. A path carries
+// no medium state. So cameras and lights inside media, surfaces that touch a boundary or lie in it,
+// and reflections at a filled glass need no special cases.
 
 #include <array>
 #include <cstddef>
@@ -16,7 +16,7 @@
 
 namespace bandsaw {
 
-/// A part of a ray in one medium. Distances from the ray's origin, scene units; `end` may be
+/// A part of a ray inside one medium. Distances from the ray's origin, in scene units; `end` may be
 /// infinite.
 struct Stretch {
   double begin = 0;
@@ -24,31 +24,35 @@ struct Stretch {
   const Medium* medium = nullptr;
 };
 
+/// Iterates over the segments of a ray that lie in a medium.
 class MediumWalk {
  public:
-  /// More media than these around one point are not kept.
+  /// Maximum number of different media that may surround a point; further ones are ignored.
   static constexpr std::size_t kMostMedia = 16;
 
-  /// `ray` has a unit direction and is followed for `length` (> 0, maybe infinite). The scene MUST
-  /// need media and outlive the walk. Adds the rays that it traced to `rays`.
+  /// `ray` has a unit direction; only its first `length` (> 0, may be infinite) is split. The scene
+  /// MUST need media (`Needs::media`) and outlive this object. Adds the number of rays traced to
+  /// `rays`.
   MediumWalk(const Scene& scene, const Ray& ray, double length, std::uint64_t& rays);
 
-  /// The next part that is in a medium, in order; nothing at the end.
+  /// Returns the next segment inside a medium, in order along the ray; std::nullopt at the end.
   std::optional<Stretch> next();
 
  private:
   struct Crossing {
     double t = 0;
-    PrimitiveId shape;  ///< primitive 0 for all of what is placed
+    PrimitiveId shape;  ///< one id for all faces of a shape: the primitive is 0 for an instance
     MediumId medium{};
     bool inwards = false;
-    bool on_rim = false;  ///< of a mesh's triangle
+    bool on_rim = false;  ///< on an edge or corner of a mesh's triangle
   };
-  /// How many shapes of each medium are around a point; below 0 between faces of one distance.
+  /// Nesting count for each medium around a point. A count may be negative while boundaries at
+  /// equal distance are processed.
   class Around {
    public:
     void add(MediumId medium, int shapes);
-    /// Shapes that are not closed may be entered more often than they are left.
+    /// Clamps negative counts to 0: a ray may enter a shape that is not closed more often than it
+    /// leaves it.
     void forget_negative();
     std::optional<MediumId> medium() const;
 
@@ -61,7 +65,7 @@ class MediumWalk {
     std::array<Entry, kMostMedia> entries_;
     std::size_t size_ = 0;
   };
-  /// How far the boundaries have been looked for.
+  /// State of the search for boundaries along the ray.
   struct Search {
     static constexpr std::size_t kRecent = 4;
     Hit last;
@@ -72,7 +76,7 @@ class MediumWalk {
   static constexpr std::size_t kKept = 8;
 
   bool is_of_mesh(const Hit& hit) const;
-  /// The next crossing; none at the end.
+  /// Returns the next boundary crossing; std::nullopt at the end.
   std::optional<Crossing> find_next(Search& search);
   void find_around_origin();
   std::optional<Crossing> take_crossing();
@@ -84,7 +88,7 @@ class MediumWalk {
   std::uint64_t& rays_;
   Around around_;
   double at_ = 0;
-  /// The first crossings, so that most rays are traced once.
+  /// The first crossings are stored, so that most rays are traced only once.
   std::array<Crossing, kKept> kept_;
   std::size_t kept_size_ = 0;
   std::size_t taken_ = 0;
@@ -92,8 +96,9 @@ class MediumWalk {
   bool all_kept_ = true;
 };
 
-/// The share of light that the media along the ray let pass, from its origin to t_max; the
-/// direction need not be a unit vector. The scene MUST need media.
+/// Returns the transmittance of the media along the ray from its origin to `t_max`, by channel. The
+/// direction need not be a unit vector. The scene MUST need media. Adds the number of rays traced
+/// to `rays`.
 Rgb media_transmittance(const Scene& scene, const Ray& ray, std::uint64_t& rays);
 
 }  // namespace bandsaw

@@ -1,9 +1,9 @@
 #pragma once
 
-// The radiance along a camera ray by path tracing: at every surface with a density of directions
-// one light is asked for light and one direction is followed; what both could find is weighed by
-// the power heuristic (Veach 1997, "Robust Monte Carlo Methods for Light Transport Simulation",
-// sections 9.2 and 10.2).
+// Unidirectional path tracing with next-event estimation and multiple importance sampling: at each
+// surface that has a pdf over directions, one light is sampled and one direction is sampled from
+// the BSDF; both estimates are weighted by the power heuristic (Veach 1997, "Robust Monte Carlo
+// Methods for Light Transport Simulation", sections 9.2 and 10.2).
 
 #include <cstdint>
 #include <optional>
@@ -16,52 +16,57 @@
 
 namespace bandsaw {
 
-/// How light is looked for. All have the same mean; all but the first exist to be compared with it.
+/// Strategies used to find light. All have the same expected value; the second and third exist only
+/// so that tests can compare them with the first.
 enum class Technique {
-  kBoth,            ///< both, weighed
-  kLightsOnly,      ///< asking lights alone, where there is a density
-  kScatteringOnly,  ///< following directions alone
+  kBoth,            ///< light sampling and BSDF sampling, with MIS weights
+  kLightsOnly,      ///< light sampling alone, where the BSDF has a pdf
+  kScatteringOnly,  ///< BSDF sampling alone
 };
 
 struct PathOptions {
-  std::uint32_t max_depth = 32;  ///< most times a path scatters, at surfaces and in media
+  /// Maximum number of scatterings of a path, at surfaces and in media.
+  std::uint32_t max_depth = 32;
   Technique technique = Technique::kBoth;
   bool russian_roulette = true;
-  /// Local shading: what surfaces with a density scatter of the lights and of the scene's ambient
-  /// term, nothing of each other; only mirrors, glass and fuzzy metal are followed.
+  /// Local shading (the integrator `direct`): the path ends at the first surface that has a pdf,
+  /// which reflects the lights and the scene's ambient term but no indirect light. Only mirrors,
+  /// glass and fuzzy metal are followed.
   bool local = false;
-  /// A power of two: in how many directions a path goes on from the first surface with a density,
-  /// each for its share (splitting: Arvo, Kirk 1990, "Particle Transport and Image Synthesis").
-  /// Direction i of sample n takes the numbers of sample n * branches + i.
+  /// Number of directions in which a path continues from the first surface that has a pdf, each
+  /// with an equal share (splitting: Arvo and Kirk 1990, "Particle Transport and Image Synthesis").
+  /// A power of two. Direction i of sample n uses the random numbers of sample n * branches + i.
   std::uint32_t branches = 1;
 };
 
-/// How many `branches` serve the scene: README.md, "Why".
+/// Returns the value of `PathOptions::branches` that is most efficient for the scene (README.md,
+/// "Splitting").
 std::uint32_t branches_for(const Scene& scene);
 
-/// What following paths comes to.
+/// Counters of path tracing; functions add to them.
 struct PathCounts {
   std::uint64_t rays = 0;
-  /// Paths that would have been scattered once more than `max_depth` allows: what they would have
-  /// brought is missing.
+  /// Number of paths that `max_depth` cut off before another scattering: the light that they would
+  /// have carried is missing.
   std::uint64_t truncated = 0;
 };
 
-/// Scattering from this one on may end by Russian roulette.
+/// Russian roulette may end a path from this scattering on.
 inline constexpr std::uint32_t kRouletteDepth = 3;
 
-/// What a sample of a pixel looks along.
+/// A camera ray for one sample of a pixel.
 struct CameraRay {
-  /// Not explicit: any ray is one.
+  /// Implicit, so that a plain ray can be passed where no lens is involved.
   CameraRay(const Ray& of_camera) : ray(of_camera) {}
 
-  Ray ray;  ///< of unit direction
-  /// The lens it came through, where lamps beyond its focus are to be asked as well.
+  Ray ray;  ///< unit direction
+  /// The view of the lens through which the ray passes; set if lights beyond the plane of focus are
+  /// to be sampled through the lens as well (through_lens.h).
   std::optional<LensView> lens = std::nullopt;
 };
 
-/// The radiance that comes back along `camera_ray` by sample number `sample` of the pixel. Adds to
-/// `counts`. Deterministic, allocates nothing.
+/// Returns the radiance arriving along `camera_ray` for sample number `sample` of the pixel. Adds
+/// to `counts`. Deterministic; allocates nothing.
 Rgb path_radiance(const Scene& scene, const CameraRay& camera_ray, const PixelSampler& sampler,
                   std::uint64_t sample, const PathOptions& options, PathCounts& counts);
 

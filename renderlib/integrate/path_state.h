@@ -1,6 +1,6 @@
 #pragma once
 
-// A path on its way: what the steps through surfaces and through media hand to each other.
+// State of a path under construction, shared by the steps at surfaces and in media.
 
 #include <algorithm>
 #include <cstdint>
@@ -11,41 +11,47 @@
 
 namespace bandsaw {
 
-/// Where the path scattered last and how it left; of a ray through a lens that lights were asked
-/// through, the point in focus.
+/// The previous vertex of the path and the pdf with which the path left it: the inputs of the MIS
+/// weight at the next hit. For a camera ray whose lens was used for light sampling, the vertex is
+/// the point in focus.
 struct Departure {
   Receiver from;
   double pdf = 0;
-  bool delta = true;  ///< what is met was not asked for: of the camera, too
-  /// How many times denser this place was chosen for asking a light than for going on; 1 on
-  /// surfaces, where it is the same place.
+  /// True if light sampling could not have produced the next hit (camera rays, specular
+  /// directions): its MIS weight is 1.
+  bool delta = true;
+  /// Ratio of the distance pdf used for light sampling to the free-flight pdf at this vertex; 1 on
+  /// surfaces, where both strategies use the same point.
   double asked = 1;
 };
 
 struct PathState {
-  /// What begins with this ray. (An aggregate would be zeroed as a whole first, glasses and all.)
+  /// Starts a path with this ray. (As an aggregate, all of it would be zeroed first, including the
+  /// large `Nesting`.)
   explicit PathState(const Ray& from) : ray(from) {}
 
-  Ray ray;  ///< of unit direction
+  Ray ray;  ///< unit direction
   Rgb radiance = {};
   Rgb throughput = gray(1);
-  /// What refraction did to the throughput; roulette must not mistake it for loss.
+  /// Product of the factors by which refraction scaled the throughput. Russian roulette divides it
+  /// out, because it is no loss of energy.
   double compression = 1;
   Departure departure = {};
-  bool truncated = false;  ///< PathCounts::truncated
-  Nesting nesting = {};    ///< the glasses it is inside of
+  bool truncated = false;  ///< see PathCounts::truncated
+  Nesting nesting = {};    ///< glasses that contain the path
 };
 
-/// What all steps of one path share.
+/// Constants of one path.
 struct PathContext {
   const Scene& scene;
   const PixelSampler& sampler;
   std::uint64_t sample = 0;
   const PathOptions& options;
   std::uint64_t& rays;
-  std::uint32_t branches = 1;  ///< that the path has before it: PathOptions::branches, then 1
+  /// Directions to split into at the next surface with a pdf: PathOptions::branches, then 1.
+  std::uint32_t branches = 1;
 
-  /// Of one of the directions that the path goes on in.
+  /// Returns the context of one of the directions of a split.
   PathContext branch(std::uint32_t which) const {
     return {scene, sampler, sample * branches + which, options, rays};
   }
@@ -55,10 +61,12 @@ struct PathContext {
   }
 };
 
-/// Russian roulette leaves paths alone whose throughput is at least this: README.md, "Why".
+/// Paths whose throughput is at least this always survive Russian roulette (README.md, "Russian
+/// roulette").
 inline constexpr double kRouletteThroughput = 0.25;
 
-/// Russian roulette after scattering `depth`; false: the path ends.
+/// Applies Russian roulette after scattering `depth`, with the random number `number` in [0, 1).
+/// Returns false if the path ends.
 inline bool survives(const PathContext& context, std::uint32_t depth, double number,
                      PathState& path) {
   if (context.options.russian_roulette && depth + 1 >= kRouletteDepth) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// The steps of a path, for those who put paths together: path.cpp and shared_paths.cpp.
+// Steps from which path.cpp and shared_paths.cpp build their paths.
 
 #include <cstdint>
 #include <optional>
@@ -11,32 +11,36 @@
 
 namespace bandsaw {
 
-/// The first surface along the path's ray, on the way to scattering `depth`.
+/// Returns the first visible surface along the path's ray, towards scattering `depth`; std::nullopt
+/// if the ray leaves the scene.
 inline std::optional<SurfacePoint> next_surface(const PathContext& context, std::uint32_t depth,
                                                 PathState& path) {
   std::optional<SurfacePoint> seen = first_surface(
       context.scene, path.ray, context.sampler, context.sample, depth, path.nesting, context.rays);
-  // A boundary that a path passes unseen stops those who ask for light.
+  // Shadow rays stop at hidden boundaries of nested glass, so light sampling does not cover this
+  // hit.
   path.departure.delta = path.departure.delta || path.nesting.passed_unseen;
   return seen;
 }
 
-/// Adds the own light of the surface that the path's ray meets, faded by all media before it. What
-/// is added there is not left to whether the path passes them: a lamp is brighter than what is
-/// scattered before it, and costs no ray.
+/// Adds the emission of the surface at `point`, which the path's ray hits, with its MIS weight and
+/// attenuated by all media on the ray. It is added deterministically, before the media decide
+/// whether the path passes them: a light is usually brighter than the light scattered in front of
+/// it, and the transmittance costs no extra path.
 void see_surface(const PathContext& context, const SurfacePoint& point, PathState& path);
 
-/// The path meets a surface as scattering `depth`. How the surface scatters; nothing: it does not,
-/// or the path may not go on.
+/// Returns the BSDF of the surface at `point` as scattering number `depth`. Returns std::nullopt if
+/// the surface does not scatter or if `max_depth` is reached; the latter marks the path as
+/// truncated.
 std::optional<Bsdf> arrive(const PathContext& context, const SurfacePoint& point,
                            std::uint32_t depth, PathState& path);
 
-/// Adds what the surface sends on of one asked light, and turns the path into a direction that it
-/// scatters to; false: there is none. `bsdf`: what arrive() gave.
+/// Adds the light-sampling estimate at the surface, then samples the BSDF and continues the path in
+/// the sampled direction. Returns false if the path ends. `bsdf` is the result of `arrive()`.
 bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& bsdf,
              std::uint32_t depth, PathState& path);
 
-/// All three.
+/// Runs `see_surface()`, `arrive()` and `scatter()`. Returns false if the path ends.
 inline bool scatter_at(const PathContext& context, const SurfacePoint& point, std::uint32_t depth,
                        PathState& path) {
   see_surface(context, point, path);
@@ -44,10 +48,10 @@ inline bool scatter_at(const PathContext& context, const SurfacePoint& point, st
   return bsdf && scatter(context, point, *bsdf, depth, path);
 }
 
-/// The path leaves the scene: adds what it sees there.
+/// Adds the background radiance with its MIS weight when the path leaves the scene.
 void leave_scene(const PathContext& context, PathState& path);
 
-/// Follows the path along its ray, to scattering `depth` and on until it ends.
+/// Traces the path along its ray, from scattering `depth` until it ends.
 void follow(const PathContext& context, std::uint32_t depth, PathState& path);
 
 }  // namespace bandsaw

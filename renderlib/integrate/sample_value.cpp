@@ -11,13 +11,13 @@
 namespace bandsaw {
 namespace {
 
-/// A direction as a colour, each channel in [0, 1].
+/// Maps a direction to a colour, each channel in [0, 1].
 Rgb as_color(const Vec3& n) {
   const auto channel = [](double v) { return static_cast<float>((v + 1) / 2); };
   return {channel(n.x), channel(n.y), channel(n.z)};
 }
 
-/// The shading normal, bent by the normal map where there is one.
+/// Returns the shading normal, perturbed by the normal map if there is one.
 Vec3 outside_normal(const Material& material, absl::Span<const Texture> textures,
                     const SurfacePoint& point) {
   const auto* principled = std::get_if<Principled>(&material);
@@ -26,7 +26,8 @@ Vec3 outside_normal(const Material& material, absl::Span<const Texture> textures
              : mapped_normal(point, textures, *principled->normal, principled->normal_scale);
 }
 
-/// 1 where a cosine-weighted direction on the viewer's side meets nothing near, else 0.
+/// Returns 1 if a cosine-weighted direction on the viewer's side hits nothing within the occlusion
+/// distance, otherwise 0.
 float openness(const Scene& scene, const SurfacePoint& point, const Vec3& wo, double u, double v) {
   const bool outside = dot(wo, point.geometric_normal) >= 0;
   const Vec3 normal = outside ? point.geometric_normal : -point.geometric_normal;

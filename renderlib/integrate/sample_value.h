@@ -1,6 +1,6 @@
 #pragma once
 
-// What one sample of a pixel adds to it, by any integrator.
+// The value of one sample of a pixel, for every integrator.
 
 #include <cstdint>
 
@@ -9,8 +9,8 @@
 
 namespace bandsaw {
 
-/// As path_radiance, whose arguments these are; of an integrator that follows no light only the
-/// camera ray, and for occlusion one more, is traced.
+/// Returns the sample's value; the arguments are those of `path_radiance()`. Integrators that do
+/// not follow light trace only the camera ray, ambient occlusion one more ray.
 Rgb sample_value(const Scene& scene, Integrator integrator, const CameraRay& camera_ray,
                  const PixelSampler& sampler, std::uint64_t sample, const PathOptions& options,
                  PathCounts& counts);

@@ -1,7 +1,7 @@
 #pragma once
 
-// Rays through what is not there: surfaces that alpha makes holes in, and boundaries of glass
-// inside a glass of higher priority.
+// Ray intersection that skips surfaces which are not there: holes cut by alpha, and boundaries of
+// glass inside a glass of higher priority.
 
 #include <cstdint>
 #include <optional>
@@ -13,24 +13,28 @@
 
 namespace bandsaw {
 
-/// Which glasses a path is inside of where it goes, and beyond the surface that it meets next.
+/// The glasses that contain a path on its current segment, and beyond the surface that it hits
+/// next.
 struct Nesting {
   Interiors here;
-  Interiors beyond;  ///< set where that surface is of a nested glass (material/interiors.h)
-  bool passed_unseen = false;  ///< whether boundaries were passed unseen on the way there
-  Interiors before;            ///< set where there were: which it was inside of where the way began
+  Interiors beyond;  ///< set if the hit surface belongs to a nested glass (material/interiors.h)
+  bool passed_unseen = false;  ///< true if hidden boundaries were skipped before the hit
+  Interiors before;            ///< glasses at the start of the ray; set if `passed_unseen`
 };
 
-/// The first surface along the ray that is there for this sample: (t, instance, primitive) still
-/// decides between those that are. Keeps account of boundaries that are passed unseen, all the way.
-/// Boundaries of nested glasses that touch are one: of the glass that is there on one side of all
-/// of them. uv directions are set where the material needs them.
+/// Returns the first surface along the ray that exists for this sample; among hits that exist, the
+/// order (t, instance, primitive) decides. Updates `nesting` for all hidden boundaries that are
+/// skipped. Boundaries of nested glasses that touch, within the offset of ray origins, are treated
+/// as one: the result belongs to the glass that is present on exactly one side of all of them. uv
+/// directions are set if the material needs them. Returns std::nullopt if nothing is hit. Adds the
+/// number of rays traced to `rays`.
 std::optional<SurfacePoint> first_surface(const Scene& scene, const Ray& ray,
                                           const PixelSampler& sampler, std::uint64_t sample,
                                           std::uint32_t bounce, Nesting& nesting,
                                           std::uint64_t& rays);
 
-/// The share of light that passes along the ray: 0 or 1 but for blended surfaces.
+/// Returns the visibility along the ray, in [0, 1]: 0 or 1 except for alpha-blended surfaces. Adds
+/// the number of rays traced to `rays`.
 float unoccluded(const Scene& scene, const Ray& ray, std::uint64_t& rays);
 
 }  // namespace bandsaw

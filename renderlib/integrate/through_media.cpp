@@ -14,26 +14,27 @@
 namespace bandsaw {
 namespace {
 
-/// One stretch of medium on the way to scattering `depth`.
+/// One segment of medium before scattering number `depth`.
 struct Step {
   const PathContext& context;
   std::uint32_t depth;
-  std::uint32_t number;  ///< of the stretch along its ray
+  std::uint32_t number;  ///< index of the segment along its ray
   const Medium& medium;
-  Vec3 origin;  ///< where the stretch begins
-  Vec3 way;     ///< unit
+  Vec3 origin;  ///< start of the segment
+  Vec3 way;     ///< direction; unit
   double time;
   Flight flight;
-  double chance;  ///< with which the path is scattered in it
+  double chance;  ///< probability that the path is scattered in the segment
 
   Sample4 numbers(std::uint32_t which) const {
     return context.numbers(group_medium(depth, number, which));
   }
 };
 
-/// Looks for light where some lights are, by points of them that are chosen by what they give all
-/// along; evenly over all choices, that no bright light is missed. These MUST NOT
-/// depend on where the path goes on, nor on the light that is asked then.
+/// Builds the distance pdf for light sampling: chooses up to four lights as pivots, by their
+/// contribution along the whole segment and stratified over the light-selection number, so that
+/// bright lights are not missed. The pivots MUST NOT depend on how the path continues, nor on the
+/// light that is sampled afterwards.
 AskedDistance asked_distance(const Step& step, double length) {
   AskedDistance asked(step.flight, step.medium);
   const Lights& lights = step.context.scene.lights();
@@ -55,7 +56,7 @@ AskedDistance asked_distance(const Step& step, double length) {
   return asked;
 }
 
-/// From a point of a medium to a light.
+/// Returns the shadow ray from a point in a medium to a light sample.
 Ray toward(const Step& step, const Vec3& position, const LightSample& light) {
   Ray ray{.origin = position, .direction = light.direction, .time = step.time};
   if (!light.distant) {
@@ -65,7 +66,8 @@ Ray toward(const Step& step, const Vec3& position, const LightSample& light) {
   return ray;
 }
 
-/// The light of one asked light that one point of the stretch sends back along it.
+/// Returns the light-sampling estimate of the radiance that one point of the segment scatters back
+/// along it.
 Rgb asked_light(const Step& step, const AskedDistance& asked, const Sample4& at) {
   const PathContext& context = step.context;
   const double distance = asked.sample(at[2], at[3]);
@@ -90,7 +92,7 @@ Rgb asked_light(const Step& step, const AskedDistance& asked, const Sample4& at)
          static_cast<float>(turned * weight / pdf);
 }
 
-/// Scatters the path at `distance` into a new direction.
+/// Scatters the path at `distance` into a sampled direction. `asked` is Departure::asked.
 Passage scatter(const Step& step, double distance, double asked, PathState& path) {
   const Sample4 at = step.context.numbers(group_bsdf(step.depth));
   path.throughput = step.flight.after_scattering(distance);
@@ -133,8 +135,8 @@ Passage through(const Step& step, double length, PathState& path) {
   return scatter(step, distance, asked.pdf(distance) / followed, path);
 }
 
-/// The path has scattered at the end of `ray`, before the surface that first_surface() found: only
-/// boundaries of nested glass up to there are passed.
+/// Recomputes the nesting of a path that scattered at the end of `ray`, before the surface that
+/// `first_surface()` found: only the boundaries of nested glass up to there are passed.
 void pass_again(const PathContext& context, const Ray& ray, std::uint32_t depth, Nesting& nesting) {
   nesting.here = nesting.before;
   first_surface(context.scene, ray, context.sampler, context.sample, depth, nesting, context.rays);

@@ -8,7 +8,7 @@ Rgb radiance(const Background& background, absl::Span<const Texture> textures,
     return radiance(*background.environment, textures, unit_direction);
   }
   if (background.bottom == background.top) {
-    return background.top;  // Exactly: a lerp between equal ends may round.
+    return background.top;  // Returned exactly: a lerp between equal colours may round.
   }
   return lerp(background.bottom, background.top, static_cast<float>((unit_direction.y + 1) / 2));
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a ray sees that leaves the scene.
+// Radiance seen by rays that leave the scene.
 
 #include <optional>
 
@@ -12,15 +12,15 @@
 
 namespace bandsaw {
 
-/// The environment, or where there is none: radiance(d) = lerp(bottom, top, (d.y + 1) / 2) for a
-/// unit direction d; constant when both are equal.
+/// An environment map or, without one, a vertical gradient: radiance(d) = lerp(bottom, top, (d.y +
+/// 1) / 2) for a unit direction d, which is constant if both colours are equal.
 struct Background {
   Rgb bottom;
   Rgb top;
   std::optional<Environment> environment = std::nullopt;
 };
 
-/// `textures` are those of the scene.
+/// Returns the background radiance in a unit direction. `textures` are the scene's textures.
 Rgb radiance(const Background& background, absl::Span<const Texture> textures,
              const Vec3& unit_direction);
 

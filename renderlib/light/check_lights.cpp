@@ -9,7 +9,7 @@
 namespace bandsaw {
 namespace {
 
-/// Squares of distances stay in the range of double.
+/// Within this bound, squares of distances do not overflow a double.
 constexpr double kMostCoordinate = 1e30;
 constexpr double kUnit = 1e-9;
 constexpr double kOrthonormal = 1e-9;

@@ -1,6 +1,6 @@
 #pragma once
 
-// Whether an environment and lights without size can be rendered.
+// Validation of environment maps and delta lights.
 
 #include <vector>
 
@@ -11,8 +11,9 @@
 
 namespace bandsaw {
 
-/// `textures` are valid. INVALID_ARGUMENT: "light[3]: spot.intensity: must be finite and >= 0, is
-/// [...]".
+/// Checks the background's environment and the delta lights. `textures` MUST be valid. Returns
+/// INVALID_ARGUMENT naming field, bound and value: "light[3]: spot.intensity: must be finite and >=
+/// 0, is [...]".
 absl::Status check_lights(const Background& background, absl::Span<const Texture> textures,
                           const std::vector<DeltaLight>& lights);
 

@@ -6,7 +6,7 @@
 namespace bandsaw {
 namespace {
 
-/// 0 at the light itself, which lights nothing there.
+/// Returns 1 / length^2, at most 1e30; 0 at the light itself, which receives no light from it.
 float over_distance2(const Vec3& way) {
   const double distance2 = length_squared(way);
   return distance2 > 0 ? static_cast<float>(std::min(1 / distance2, 1e30)) : 0.0f;

@@ -1,8 +1,8 @@
 #pragma once
 
-// Lights without size, as glTF's KHR_lights_punctual defines them: they light surfaces and throw
-// hard shadows, but nothing that follows a direction ever meets them, so they are not seen
-// themselves, nor in mirrors. A closed set.
+// Delta lights, as defined by glTF's KHR_lights_punctual: directional, point and spot lights. They
+// illuminate surfaces and cast hard shadows, but no sampled direction ever hits them, so they are
+// invisible to the camera and in mirrors. A closed set.
 
 #include <cstddef>
 #include <variant>
@@ -13,41 +13,42 @@
 
 namespace bandsaw {
 
-/// Parallel light, from infinitely far.
+/// Parallel light from infinitely far away.
 struct DirectionalLight {
-  Vec3 direction{0, 0, -1};  ///< unit, the way that the light goes
-  Rgb irradiance{1, 1, 1};   ///< of a surface that faces it; >= 0, finite
+  Vec3 direction{0, 0, -1};  ///< unit, the direction in which the light travels
+  Rgb irradiance{1, 1, 1};   ///< of a surface that faces the light; >= 0, finite
 };
 
-/// The same to all sides, falling off with the square of the distance.
+/// Emits equally in all directions; irradiance falls off with the square of the distance.
 struct PointLight {
   Vec3 position;
-  Rgb intensity{1, 1, 1};  ///< irradiance at distance 1; >= 0, finite
+  Rgb intensity{1, 1, 1};  ///< radiant intensity: the irradiance at distance 1; >= 0, finite
 };
 
-/// A point light within a cone: all of it up to the inner angle, none from the outer one on,
-/// between them the square of a ramp that is linear in the cosine.
+/// A point light restricted to a cone: full intensity within the inner angle, none beyond the outer
+/// angle, and between them the square of a ramp that is linear in the cosine.
 struct SpotLight {
   Vec3 position;
-  Vec3 direction{0, 0, -1};  ///< unit, the cone's axis, the way that the light goes
-  Rgb intensity{1, 1, 1};    ///< at the axis; >= 0, finite
-  double cos_inner = 1;      ///< cosines of the angles to the axis; inner > outer >= 0, or equal
+  Vec3 direction{0, 0, -1};  ///< unit, the cone's axis, the direction in which the light travels
+  Rgb intensity{1, 1, 1};    ///< radiant intensity on the axis; >= 0, finite
+  double cos_inner = 1;      ///< cosines of the angles to the axis; cos_inner >= cos_outer >= 0
   double cos_outer = 0.70710678118654752440;
 };
 
 using DeltaLight = std::variant<DirectionalLight, PointLight, SpotLight>;
 
-/// The light moved and turned with its surroundings. Its numbers stay as they are, whatever the map
-/// scales. `to` is regular.
+/// Returns the light transformed by `to`, which MUST be regular. Only position and direction
+/// change; intensity and irradiance are not scaled.
 DeltaLight placed(const DeltaLight& light, const Transform& to);
 
-/// Most directional lights of a scene: each is judged at every point that asks for light.
+/// Maximum number of directional lights in a scene: all of them are evaluated at every point that
+/// samples light.
 inline constexpr std::size_t kMostDirectionalLights = 8;
 
-/// What arrives at a point if nothing is between.
+/// Unoccluded illumination at a point.
 struct Arrival {
-  Vec3 way;        ///< to the light; unit if it is infinitely far
-  Rgb irradiance;  ///< of a surface that faces it
+  Vec3 way;        ///< vector to the light; a unit vector if the light is infinitely far away
+  Rgb irradiance;  ///< of a surface that faces the light
 };
 Arrival arrival(const DirectionalLight& light, const Vec3& at);
 Arrival arrival(const PointLight& light, const Vec3& at);

@@ -1,7 +1,8 @@
 #pragma once
 
-// Ellipsoids as lights: spheres that a placement has stretched. A uniform point of the unit sphere
-// is mapped along, so the density by area is that of the sphere over what the map does to areas.
+// Sampling of ellipsoids as area lights. An ellipsoid is a unit sphere under an affine map: a
+// uniform point of the sphere is mapped, so the area pdf is that of the sphere divided by the map's
+// local area scale.
 
 #include <optional>
 
@@ -9,10 +10,11 @@
 
 namespace bandsaw {
 
-/// As sample (light/shape_light.h), of a ShapeView::Kind::kEllipsoid.
+/// Samples a point of the ellipsoid; the contract is that of `sample()` in light/shape_light.h.
+/// `shape` MUST be a `ShapeView::Kind::kEllipsoid`.
 std::optional<ShapeSample> sample_ellipsoid(const ShapeView& shape, const Vec3& from, double u,
                                             double v);
-/// The density by area at `position`, a point of the ellipsoid.
+/// Returns the pdf with respect to area at `position`, a point on the ellipsoid.
 double ellipsoid_area_pdf(const ShapeView& shape, const Vec3& position);
 double ellipsoid_area(const ShapeView& shape);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// What an emissive surface gives.
+// Radiance emitted by surfaces.
 
 #include <algorithm>
 #include <cmath>
@@ -16,13 +16,13 @@
 
 namespace bandsaw {
 
-/// What of a material gives light.
+/// The emission of a material.
 struct Emission {
   Tint radiance;
   bool one_sided = false;
 };
 
-/// Nothing of a material that gives none.
+/// Returns std::nullopt if the material emits nothing.
 inline std::optional<Emission> emission_of(const Material& material) {
   if (const auto* emissive = std::get_if<Emissive>(&material); emissive != nullptr) {
     return Emission{{emissive->radiance, {1, 1, 1}}, emissive->one_sided};
@@ -34,8 +34,9 @@ inline std::optional<Emission> emission_of(const Material& material) {
   return Emission{principled->emissive, !principled->double_sided};
 }
 
-/// The share of an emission below a clear coat that leaves along `direction`, unit
-/// (KHR_materials_clearcoat, "Emission"; the normal is that of the mesh, whatever maps bend).
+/// Returns the share of the emission that leaves through a clear coat along the unit vector
+/// `direction` (KHR_materials_clearcoat, "Emission"). The normal is the mesh's shading normal,
+/// without normal maps.
 inline double through_coat(const Principled& material, absl::Span<const Texture> textures,
                            const SurfacePoint& point, const Vec3& direction) {
   if (material.coat.factor == 0) {
@@ -46,8 +47,8 @@ inline double through_coat(const Principled& material, absl::Span<const Texture>
   return 1 - std::clamp(coat, 0.0, 1.0) * (kCoatF0 + (1 - kCoatF0) * rim);
 }
 
-/// The radiance that `point` sends along `direction`, away from it; black unless its material is
-/// emissive. Where the surface is there at all (material/opacity.h).
+/// Returns the radiance emitted from `point` along `direction`, which points away from it; black
+/// unless the material is emissive. Opacity (material/opacity.h) is not included.
 inline Rgb emitted(const Material& material, absl::Span<const Texture> textures,
                    const SurfacePoint& point, const Vec3& direction) {
   const std::optional<Emission> emission = emission_of(material);

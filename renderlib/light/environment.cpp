@@ -17,7 +17,8 @@ const ImageTexture& image_of(const Environment& environment, absl::Span<const Te
   return std::get<ImageTexture>(textures[index_of(environment.images[image])]);
 }
 
-/// How an image of a cube map lies: the directions of its middle, of its right and of its top edge.
+/// Orientation of a cube map's image: the directions to its centre, its right edge and its top
+/// edge.
 struct Face {
   Vec3 middle;
   Vec3 right;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Images all around a scene, seen where a ray leaves it. Looked up by direction, linearly
-// interpolated between texels.
+// Environment maps: images around the scene, seen by rays that leave it. Looked up by direction
+// with bilinear interpolation between texels.
 
 #include <cstdint>
 #include <vector>
@@ -17,42 +17,43 @@ namespace bandsaw {
 
 struct Environment {
   enum class Kind : std::uint8_t {
-    /// One image: its middle lies towards +x, the middle of its right half towards +z, its top row
-    /// around +y. So three.js and Blender lay such images around a glTF model.
+    /// One latitude-longitude image: its centre points towards +x, the centre of its right half
+    /// towards +z, its top row is around +y. This is how three.js and Blender orient such images
+    /// around a glTF model.
     kEquirectangular,
-    /// Six square images of one size: towards +x, -x, +y, -y, +z, -z, each as the OpenGL 4.6
-    /// specification, table 8.19, lays it.
+    /// Six square images of equal size for +x, -x, +y, -y, +z, -z, each oriented as in the OpenGL
+    /// 4.6 specification, table 8.19.
     kCube,
   };
   Kind kind = Kind::kEquirectangular;
   std::vector<TextureId> images;  ///< 1 or 6, each an ImageTexture
-  float strength = 1;             ///< times what the images hold; >= 0, finite
-  /// Its own axes in world space: orthonormal; left-handed where it is mirrored.
+  float strength = 1;             ///< scales the images' radiance; >= 0, finite
+  /// The map's axes in world space: orthonormal; left-handed if it is mirrored.
   Basis axes{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 };
 
-/// A place in an environment's images; x from the left, y from the top, in texels.
+/// A position in an environment's images, in texels; x from the left, y from the top.
 struct EnvironmentPlace {
   std::uint32_t image = 0;
   double x = 0;
   double y = 0;
 };
 
-/// Unit directions in world space.
+/// Converts between unit directions in world space and positions in the images.
 EnvironmentPlace place_of(const Environment& environment, absl::Span<const Texture> textures,
                           const Vec3& unit_direction);
 Vec3 direction_of(const Environment& environment, absl::Span<const Texture> textures,
                   const EnvironmentPlace& place);
 
-/// The four texels around a place, as far apart as its fractions say. Equirectangular images go on
-/// at their other side; everywhere else the last texel stays.
+/// The four texels around a position and its bilinear weights. Latitude-longitude images wrap
+/// around horizontally; all other edges are clamped.
 struct FourTexels {
   std::uint32_t left = 0;
   std::uint32_t right = 0;
   std::uint32_t top = 0;
   std::uint32_t bottom = 0;
-  double fx = 0;  ///< share of the right ones
-  double fy = 0;  ///< share of the lower ones
+  double fx = 0;  ///< weight of the right column
+  double fy = 0;  ///< weight of the lower row
 };
 FourTexels texels_around(const Environment& environment, const ImageTexture& image,
                          const EnvironmentPlace& place);

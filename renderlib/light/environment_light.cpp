@@ -12,7 +12,8 @@
 namespace bandsaw {
 namespace {
 
-/// Less than this share of the light above the mean is rounding, or not worth a shadow ray.
+/// If the luminance above the mean is less than this share of the total, it is rounding or not
+/// worth a shadow ray, and the environment counts as uniform.
 constexpr double kLeastExcess = 1e-6;
 
 bool is_cube(const Environment& environment) {
@@ -29,7 +30,7 @@ double luminance_of(const ImageTexture& image, std::uint32_t x, std::uint32_t y)
   return 0.2126 * c.r + 0.7152 * c.g + 0.0722 * c.b;
 }
 
-/// Solid angle by area on a cube map's side, in texels, at coordinates in texels.
+/// Returns the solid angle per area of a cube map face at a position; both in texels.
 double cube_solid_angle(double x, double y, double side) {
   const double s = 2 * x / side - 1;
   const double t = 2 * y / side - 1;
@@ -37,8 +38,9 @@ double cube_solid_angle(double x, double y, double side) {
   return 4 / (side * side) / (distance2 * std::sqrt(distance2));
 }
 
-/// What the tents of the texels weigh: exactly, of an equirectangular image, where all of a row
-/// weigh the same; of a cube map as if all of a tent lay at its texel's centre.
+/// Solid angles of the texels' interpolation kernels (tents). Exact for a latitude-longitude image,
+/// where all texels of a row have the same; for a cube map the solid angle at the texel's centre is
+/// used.
 class TexelSolidAngles {
  public:
   TexelSolidAngles(const Environment& environment, const ImageTexture& image) : side_(image.width) {
@@ -97,7 +99,7 @@ double EnvironmentLight::weight(const ImageTexture& image, std::uint32_t x, std:
 double EnvironmentLight::weight_at(const EnvironmentPlace& place) const {
   const ImageTexture& image = image_of(environment_, textures_, place.image);
   const FourTexels four = texels_around(environment_, image, place);
-  // The density of the tents on a cube map's side is by area there.
+  // On a cube map face, the pdf of the tents is by area.
   const auto of = [&](std::uint32_t x, std::uint32_t y) {
     const double w = weight(image, x, y);
     return is_cube(environment_) && w > 0 ? w * cube_solid_angle(x + 0.5, y + 0.5, image.width) : w;

@@ -9,16 +9,18 @@
 namespace bandsaw {
 namespace {
 
-/// Beyond the cone of a spot light nothing is given; its rim has rounding.
+/// Cosine of the emission angle of a spot light: nothing is emitted beyond its cone, up to rounding
+/// at the rim.
 constexpr double kJustFacing = 1 - 0x1p-40;
 
-/// Of the distance to a light, how far it is beside a ray at least (medium/equiangular.h).
+/// Minimum distance of a light from a ray, relative to the distance to the light
+/// (medium/equiangular.h).
 constexpr double kLeastAside = 1e-6;
 
-/// Sums and shares of such numbers are finite.
+/// Upper bound of an importance, so that sums and ratios stay finite.
 constexpr double kMostGiven = 1e300;
 
-/// An angle in [0, 180] degrees by its sine and cosine.
+/// An angle in [0, 180] degrees, given by its sine and cosine.
 struct Angle {
   double sin;
   double cos;
@@ -29,7 +31,7 @@ Angle angle_of(double cosine) {
   return {std::sqrt((1 - c) * (1 + c)), c};
 }
 
-/// a - b, but not below 0.
+/// Returns a - b, clamped at 0.
 Angle reduced(const Angle& a, const Angle& b) {
   if (a.cos >= b.cos) {
     return {0, 1};
@@ -59,7 +61,8 @@ LightBound bound_of(const PointLight& light) {
 }
 
 LightBound bound_of(const SpotLight& light) {
-  // As if it faced every direction up to its outer angle: what it gives there is not a cosine.
+  // Treated as if its normals covered all directions up to the outer angle: a spot light's
+  // intensity is not a cosine.
   return {.ball = {light.position, 0},
           .intensity = brightness(light.intensity),
           .axis = light.direction,
@@ -73,7 +76,7 @@ double importance(const LightBound& bound, const Receiver& receiver) {
   const double radius = bound.ball.radius;
   const double near2 = std::max(distance2, radius * radius);
   if (!(near2 > 0)) {
-    return 0;  // On a light without size.
+    return 0;  // The receiver coincides with a light without extent.
   }
   const double given = std::min(bound.intensity / near2, kMostGiven);
   if (bound.flat) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Which of a scene's lights to ask at a point.
+// Selection of one of a scene's lights for light sampling.
 
 #include <cstddef>
 #include <optional>
@@ -11,42 +11,44 @@
 
 namespace bandsaw {
 
-/// What an infinitely far light gives at most, everywhere alike.
+/// Upper bound of the irradiance from an infinitely distant light; the same everywhere.
 struct DistantBound {
   double irradiance = 0;
-  std::optional<Vec3> way;  ///< unit, to the light; none: from all around
+  /// Unit vector to the light; std::nullopt for light from all directions.
+  std::optional<Vec3> way;
 };
 double importance(const DistantBound& bound, const Receiver& receiver);
 double importance(const DistantBound& bound, const LitStretch& stretch);
 
-/// Up to kFewLights lights are judged each on its own at every point; more by a tree, beside which
-/// the distant ones stand as before.
+/// Up to kFewLights lights are evaluated individually at every point. If there are more, the local
+/// ones are selected through a light tree, next to which the distant ones are evaluated
+/// individually.
 class LightChoice {
  public:
   static constexpr std::size_t kFewLights = 16;
 
-  /// A light is counted as `local` are, then as `distant` are.
+  /// Lights are numbered in the order of `local`, followed by `distant`.
   struct Choice {
     std::size_t light = 0;
     double probability = 0;  ///< > 0
   };
 
   LightChoice() = default;
-  /// Fewer than kFewLights distant ones.
+  /// `distant` MUST have fewer than kFewLights elements.
   LightChoice(std::vector<LightBound> local, std::vector<DistantBound> distant);
 
-  /// Whether any light may reach the receiver.
+  /// Returns true if any light may reach the receiver.
   bool any_for(const Receiver& receiver) const;
-  /// `number` in [0, 1), as fine as double: a light is chosen as often as its probability says down
-  /// to the spacing of the numbers. Nothing: no light reaches the receiver. From: Receiver or
-  /// LitStretch.
+  /// Selects a light. `number` is in [0, 1) and should have the resolution of a double: selection
+  /// frequencies are right down to the spacing of the numbers. Returns std::nullopt if no light
+  /// reaches the receiver. `From` is `Receiver` or `LitStretch`.
   template <typename From>
   std::optional<Choice> choose(const From& receiver, double number) const;
-  /// With which choose() answers this light.
+  /// Returns the probability with which `choose()` selects the light.
   double probability(const Receiver& receiver, std::size_t light) const;
 
  private:
-  /// One of few lights, or the tree, or a distant light.
+  /// Number of candidates: the few lights or the tree as a whole, and the distant lights.
   std::size_t candidates() const;
   template <typename From>
   double weight(std::size_t candidate, const From& receiver) const;

@@ -10,12 +10,12 @@
 namespace bandsaw {
 namespace {
 
-/// Above the rounding of the angles of one step.
+/// Larger than the rounding error of the angles in one merge.
 constexpr double kSlack = 1e-9;
 
 SinCos sincos(double radians) { return sincos_turns(radians * (0.5 * kInvPi)); }
 
-/// Between unit vectors, without loss near 0 and pi.
+/// Returns the angle between unit vectors, without loss of precision near 0 and pi.
 double angle_between(const Vec3& a, const Vec3& b) {
   return 2 * atan2(length(a - b), length(a + b));
 }
@@ -35,7 +35,7 @@ LightCone merged(const LightCone& a, const LightCone& b) {
   wide.reach = std::max(a.reach, b.reach);
   wide.two_sided = a.two_sided || b.two_sided;
   if (wide.two_sided && dot(wide.axis, narrow.axis) < 0) {
-    narrow.axis = -narrow.axis;  // The cone is the same around its other end.
+    narrow.axis = -narrow.axis;  // The cone around the opposite axis is the same.
   }
   const double between = angle_between(wide.axis, narrow.axis);
   if (std::min(between + narrow.spread, kPi) <= wide.spread) {
@@ -47,7 +47,7 @@ LightCone merged(const LightCone& a, const LightCone& b) {
     wide.spread = kPi;
     return wide;
   }
-  // The axis is turned so far that the wide cone touches the new one from inside.
+  // The axis is rotated until the wide cone touches the new one from inside.
   const SinCos turn = sincos(spread - wide.spread);
   wide.axis = normalize(wide.axis * turn.cos + normalize(across) * turn.sin);
   wide.spread = spread;

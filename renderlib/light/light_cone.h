@@ -1,12 +1,12 @@
 #pragma once
 
-// The directions that a group of lights faces, for building a light tree.
+// Orientation cones of groups of lights, for building a light tree.
 
 #include "renderlib/light/light_bound.h"
 
 namespace bandsaw {
 
-/// Angles in radians; the fields as LightBound has them.
+/// Angles in radians; the fields correspond to those of `LightBound`.
 struct LightCone {
   Vec3 axis{0, 0, 1};
   double spread = 0;  ///< in [0, pi]
@@ -16,11 +16,11 @@ struct LightCone {
 
 LightCone cone_of(const LightBound& bound);
 
-/// The smallest cone around both; the whole sphere where their axes are opposite.
+/// Returns the smallest cone that contains both; the whole sphere if their axes are opposite.
 LightCone merged(const LightCone& a, const LightCone& b);
 
-/// How much of the sphere lights within the cone reach, weighed by the cosine: M_Omega of Conty
-/// Estevez and Kulla 2018, section 4.4, equation (1).
+/// Returns the cosine-weighted measure of the directions that lights in the cone reach: M_Omega of
+/// Conty Estevez and Kulla 2018, section 4.4, equation (1).
 double orientation_measure(const LightCone& cone);
 
 }  // namespace bandsaw

@@ -1,11 +1,11 @@
 #pragma once
 
-// One of many lights, chosen by what each can give at a point: down a binary tree, at each node in
-// proportion to the importance of the two halves.
+// Light tree: selects one of many lights by descending a binary tree, at each node in proportion to
+// the importance of its two children.
 //
-// Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights with Adaptive Tree Splitting":
-// the tree is built by their surface area orientation heuristic (sections 4.3 and 4.4); of a light
-// the way down is known, so its probability is the same product again.
+// Conty Estevez and Kulla 2018, "Importance Sampling of Many Lights with Adaptive Tree Splitting".
+// The tree is built with the surface area orientation heuristic (sections 4.3 and 4.4). The path
+// from the root to a given light is known, so its probability can be computed as the same product.
 
 #include <cstdint>
 #include <optional>
@@ -17,7 +17,7 @@ namespace bandsaw {
 
 class LightTree {
  public:
-  /// No node lies deeper.
+  /// Maximum depth of a node.
   static constexpr std::uint32_t kMostDepth = 64;
 
   struct Choice {
@@ -26,33 +26,35 @@ class LightTree {
   };
 
   LightTree() = default;
-  /// At least one light, fewer than 2^31.
+  /// `lights` MUST have at least one and fewer than 2^31 elements.
   explicit LightTree(const std::vector<LightBound>& lights);
 
   bool empty() const { return nodes_.empty(); }
-  /// Of all lights together. From, here and below: Receiver or LitStretch.
+  /// Returns the importance of all lights together. `From`, here and below, is `Receiver` or
+  /// `LitStretch`.
   template <typename From>
   double importance(const From& receiver) const;
-  /// `number` in [0, 1). Nothing: no light reaches the receiver.
+  /// Selects a light. `number` is in [0, 1). Returns std::nullopt if no light reaches the receiver.
   template <typename From>
   std::optional<Choice> choose(const From& receiver, double number) const;
-  /// With which choose() answers this light.
+  /// Returns the probability with which `choose()` selects the light.
   double probability(const Receiver& receiver, std::uint32_t light) const;
 
  private:
   friend class LightTreeBuilder;
   struct Node {
     LightBound bound;
-    std::uint32_t first = 0;  ///< of two children that lie side by side; of a leaf: its light
+    /// Index of the first of two adjacent children; in a leaf, of its light.
+    std::uint32_t first = 0;
     std::uint32_t parent = 0;
     bool is_leaf = false;
   };
-  /// The share of the first of a node's children; nothing when neither gives anything.
+  /// Returns the probability of the first child; std::nullopt if neither child contributes.
   template <typename From>
   std::optional<double> share_of_first(const From& receiver, const Node& node) const;
 
-  std::vector<Node> nodes_;            ///< the root first
-  std::vector<std::uint32_t> leaves_;  ///< by light
+  std::vector<Node> nodes_;            ///< root first
+  std::vector<std::uint32_t> leaves_;  ///< leaf node of each light
 };
 
 }  // namespace bandsaw

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kBins = 12;
 
-/// What the cost of a half is judged by.
+/// The lights of a bin or of one half of a split, with the data for its cost.
 struct Group {
   Box box = {};
   LightCone cone = {};
@@ -33,7 +33,7 @@ struct Group {
     count += other.count;
   }
   double cost() const {
-    // Importance knows a ball around the lights, so its area counts, not that of the box.
+    // The importance uses a bounding sphere, so the area of the sphere counts, not that of the box.
     return intensity * orientation_measure(cone) * length_squared(box.hi - box.lo);
   }
 };
@@ -48,7 +48,7 @@ Group group_of(const LightBound& light) {
 
 struct Split {
   int axis = -1;
-  std::size_t bin = 0;  ///< the last of the first half
+  std::size_t bin = 0;  ///< last bin of the first half
   double cost = std::numeric_limits<double>::infinity();
 };
 
@@ -122,9 +122,9 @@ class LightTreeBuilder {
             .two_sided = cone.two_sided};
   }
 
-  /// Reorders the lights into two halves, neither empty; returns the size of the first.
+  /// Partitions the lights into two non-empty halves; returns the size of the first.
   std::size_t divide(absl::Span<std::uint32_t> range, std::uint32_t depth) const {
-    // Halving from here on ends in time, whatever the lights.
+    // Median splits from this depth on bound the tree's depth for any input.
     constexpr std::uint32_t kHalvings = 32;
     const bool deep = depth + kHalvings >= LightTree::kMostDepth;
     const Split split = deep || range.size() == 2 ? Split{} : best_split(range);
@@ -164,7 +164,7 @@ class LightTreeBuilder {
       for (const std::uint32_t light : range) {
         bins[bin_of(light, axis, box)].add(group_of(lights_[light]));
       }
-      // Thin slices are dearer: Conty Estevez and Kulla's K_r.
+      // Regularisation factor K_r of Conty Estevez and Kulla: it makes thin slices more expensive.
       try_splits(bins, axis, longest / extent, best);
     }
     return best;

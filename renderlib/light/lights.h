@@ -1,8 +1,8 @@
 #pragma once
 
-// The lights of a scene: which of them to ask for light at a point, where on it, and with which
-// density. Surfaces that emit, lights without size, and an environment as far as it is uneven; a
-// constant or gradient background is no light here, directions from scattering find it alone.
+// The lights of a scene and how they are sampled: which light, which point on it, and with which
+// pdf. Lights are emissive surfaces, delta lights and the non-uniform part of an environment map.
+// Constant and gradient backgrounds are not sampled; only BSDF sampling finds them.
 
 #include <cstdint>
 #include <map>
@@ -22,61 +22,65 @@
 
 namespace bandsaw {
 
+/// A direction sampled towards a light.
 struct LightSample {
-  Vec3 direction;  ///< unit, from the receiver
-  /// A point in space just off the light, on the receiver's side: the way to it meets no part of a
-  /// light that is in sight. Of distant lights: means nothing.
+  Vec3 direction;  ///< unit, from the receiver towards the light
+  /// End of the shadow ray: a point just off the light, on the receiver's side, so that the ray
+  /// does not hit the light itself. Unspecified for distant lights.
   Vec3 target;
-  /// Towards the receiver. Of delta lights: the irradiance of a surface that faces it.
+  /// Emitted towards the receiver. For delta lights: the irradiance of a surface that faces the
+  /// light.
   Rgb radiance;
-  /// Of the direction, by solid angle, the choice of the light included; > 0, finite. Of delta
-  /// lights: the probability of the choice.
+  /// Pdf of the direction by solid angle, including the selection of the light; > 0, finite. For
+  /// delta lights: the selection probability.
   double pdf = 0;
-  bool distant = false;  ///< infinitely far: the way to it never ends
-  bool delta = false;    ///< no other technique ever finds it
+  bool distant = false;  ///< infinitely far away: the shadow ray has no end
+  bool delta = false;    ///< no other sampling technique can find it
 };
 
+/// A point on a light, used as pivot of equiangular sampling.
 struct LightPlace {
-  Vec3 position = {};    ///< of distant lights: means nothing
-  bool distant = false;  ///< infinitely far
+  Vec3 position = {};    ///< unspecified for distant lights
+  bool distant = false;  ///< infinitely far away
 };
 
 class Lights {
  public:
   Lights() = default;
-  /// Every primitive that emits, but those without area or power; every delta light that gives
-  /// light; the environment unless it is even. The arguments MUST be valid (scene/validate.h),
-  /// outlive the result and not change. Receivers' times are within `interval`.
+  /// Collects every emissive primitive with area and power, every delta light that is not black,
+  /// and the environment unless it is uniform. The arguments MUST be valid (scene/validate.h),
+  /// outlive this object and not change. The times of receivers lie within `interval`.
   Lights(const Geometry& geometry, const std::vector<Material>& materials,
          const std::vector<Texture>& textures, const std::vector<DeltaLight>& delta_lights,
          const Background& background, const Interval& interval = {});
 
   std::size_t size() const { return ids_.size() + delta_.size() + (environment_.empty() ? 0 : 1); }
   bool empty() const { return size() == 0; }
-  /// Whether there are lights that nobody finds but who asks.
+  /// Returns true if the scene has delta lights, which only light sampling can find.
   bool any_delta() const { return !delta_.empty(); }
 
-  /// Whether sample() may find light for the receiver, and pdf() be more than 0.
+  /// Returns true if `sample()` may find light for the receiver and `pdf()` may be greater than 0.
   bool any_for(const Receiver& receiver) const { return choice_.any_for(receiver); }
 
-  /// `choice` in [0, 1), as fine as double where there are many lights; u, v in [0, 1). Nothing: no
-  /// light reaches the receiver by this sample.
+  /// Samples a light and a point on it. `choice` is in [0, 1), with the resolution of a double if
+  /// there are many lights; u, v in [0, 1). Returns std::nullopt if this sample carries no light to
+  /// the receiver.
   std::optional<LightSample> sample(const Receiver& receiver, double choice, double u,
                                     double v) const;
 
-  /// A place of a light, chosen by what lights give along a stretch of medium; nothing: none is of
-  /// use.
+  /// Samples a point on a light that is selected by its contribution along a segment of a medium.
+  /// Returns std::nullopt if no light contributes.
   std::optional<LightPlace> place(const LitStretch& stretch, double time, double choice, double u,
                                   double v) const;
 
-  /// The density with which sample() makes the direction from the receiver to `hit`, a point of an
-  /// emissive primitive; 0 when it never does.
+  /// Returns the pdf with which `sample()` samples the direction from the receiver to `hit`, a
+  /// point on an emissive primitive; 0 if it never does.
   double pdf(const Receiver& receiver, const SurfacePoint& hit) const;
 
-  /// The density with which sample() makes the unit direction as one towards the environment.
+  /// Returns the pdf with which `sample()` samples the unit direction towards the environment.
   double environment_pdf(const Receiver& receiver, const Vec3& direction) const;
 
-  /// The probability that sample() chooses the primitive at this receiver.
+  /// Returns the probability with which `sample()` selects the primitive at this receiver.
   double probability(const Receiver& receiver, PrimitiveId id) const;
 
  private:
@@ -100,15 +104,15 @@ class Lights {
   const std::vector<Material>* materials_ = nullptr;
   const std::vector<Texture>* textures_ = nullptr;
   const Background* background_ = nullptr;
-  bool uses_uv_ = true;  ///< of its points: some texture does
-  /// A light's number counts the surfaces, then the delta lights, those with a place first, then
-  /// the environment.
+  bool uses_uv_ = true;  ///< true if some texture depends on the uv coordinates of light points
+  /// Lights are numbered: surfaces first, then delta lights (those with a position before
+  /// directional ones), then the environment.
   std::vector<PrimitiveId> ids_;
   std::vector<DeltaLight> delta_;
   EnvironmentLight environment_;
   LightChoice choice_;
-  /// The light of primitive p of instance i is light_of_[first_of_instance_[i] + p]; kNoLight:
-  /// none.
+  /// The light of primitive p of instance i is light_of_[first_of_instance_[i] + p]; kNoLight if
+  /// there is none.
   std::vector<std::uint32_t> first_of_instance_;
   std::vector<std::uint32_t> light_of_;
 };

@@ -27,9 +27,9 @@ std::optional<SphericalTriangle> seen_triangle(const ShapeView& shape, const Vec
              : std::nullopt;
 }
 
-/// Coordinates of a uniform point: of the parallelogram themselves; of the triangle by the square
-/// root that makes the distance from `a` uniform in area (Pharr, Jakob, Humphreys, "Physically
-/// Based Rendering", A.5.4).
+/// Returns the coordinates of a uniform point: in a parallelogram (u, v) itself; in a triangle
+/// through the square root that makes the distance from `a` uniform in area (Pharr, Jakob and
+/// Humphreys, "Physically Based Rendering", A.5.4).
 Vec2 uniform_on(Kind kind, double u, double v) {
   if (kind == Kind::kQuad) {
     return {u, v};
@@ -82,7 +82,7 @@ Ball bounds(const ShapeView& shape) {
     return {shape.a, shape.radius};
   }
   if (shape.kind == Kind::kDisk || shape.kind == Kind::kEllipsoid) {
-    // No axis is longer than all three together.
+    // No semi-axis is longer than the root of the sum of all squared axes.
     const double square =
         length_squared(shape.u) + length_squared(shape.v) + length_squared(shape.w);
     return {shape.a, std::sqrt(square)};

@@ -10,7 +10,8 @@ namespace {
 
 using Kind = ShapeView::Kind;
 
-/// Axes that differ by less, in length or from a right angle, are those of a sphere.
+/// Relative tolerance, in squared length and in orthogonality, within which axes count as those of
+/// a sphere.
 constexpr double kRound = 0x1p-46;
 
 Vec3 vertex(const Mesh& mesh, std::uint32_t index) {
@@ -28,7 +29,7 @@ ShapeView mesh_view(const Mesh& mesh, std::uint32_t primitive, const Transform& 
                        to_world.point(vertex(mesh, t[2])), determinant(to_world) < 0);
 }
 
-/// In the space that the shapes lie in.
+/// Returns the shape in the space of `shapes`.
 ShapeView view_of(const Shapes& shapes, std::size_t primitive) {
   const auto [kind, index] = shape_ref(shapes, primitive);
   if (kind == ShapeKind::kSphere) {
@@ -51,7 +52,7 @@ ShapeView view_of(const Shapes& shapes, std::size_t primitive) {
   return triangle_view(triangle.a, triangle.b, triangle.c, false);
 }
 
-/// Whether the axes are those of a sphere.
+/// Returns true if the axes are those of a sphere.
 bool is_round(const ShapeView& shape) {
   const double square = length_squared(shape.u);
   const double slack = kRound * square;
@@ -81,7 +82,7 @@ ShapeView placed(const ShapeView& shape, const Transform& to_world) {
   return result;
 }
 
-/// Of a primitive in the space that its instance places.
+/// Returns the bounding sphere of a primitive in the space of its instance, before placement.
 Ball local_ball(const Geometry& geometry, const Instance& instance, std::uint32_t primitive) {
   const Shapes* group = group_of(geometry, instance);
   return bounds(group != nullptr
@@ -98,7 +99,7 @@ Ball moving_ball(const Geometry& geometry, PrimitiveId id, const Interval& inter
   const auto moving =
       moving_bounds(geometry, instance, {ball.center - half, ball.center + half}, interval);
   if (!moving) {
-    return ball;  // Nothing can be hit there.
+    return ball;  // The bounds cannot be computed, so the primitive cannot be hit.
   }
   Box box = moving->at_open;
   box.add(moving->at_close.lo);

@@ -1,6 +1,6 @@
 #pragma once
 
-// The colour of a surface without light.
+// Albedo of surfaces, for the integrator `albedo`.
 
 #include "absl/types/span.h"
 #include "renderlib/geometry/surface.h"
@@ -10,8 +10,8 @@
 
 namespace bandsaw {
 
-/// Reflectance of diffuse surfaces and metals, the base colour of glTF's, white for clear ones; of
-/// emissive ones the radiance, cut off at 1. Each channel in [0, 1].
+/// Returns the reflectance of diffuse surfaces and metals, the base colour of glTF materials, white
+/// for dielectrics, and the radiance of emissive surfaces, clamped to 1. Each channel is in [0, 1].
 Rgb albedo_at(const Material& material, absl::Span<const Texture> textures,
               const SurfacePoint& point);
 

@@ -16,21 +16,21 @@
 namespace bandsaw {
 namespace {
 
-/// Whether light can come from wi to the side that the normals are on.
+/// Returns true if light from wi can be reflected on the side of the normals.
 bool reflects(const SidedNormals& normal, const Vec3& wi) {
   return dot(wi, normal.geometric) > 0 && dot(wi, normal.shading) > 0;
 }
 
-/// For mirrors and glass: the geometric normal stands in where the interpolated one would have wo,
-/// or its mirror image, on the wrong side. Nothing is lost at the silhouettes of coarse meshes
-/// then.
+/// Returns the normals for specular reflection: the geometric normal replaces the shading normal
+/// where the latter would put wo or its mirror direction on the wrong side. So silhouettes of
+/// coarse meshes lose no light.
 SidedNormals for_mirror(const SidedNormals& normal, const Vec3& wo) {
   const bool usable =
       dot(wo, normal.shading) > 0 && dot(mirrored(wo, normal.shading), normal.geometric) > 0;
   return {normal.geometric, usable ? normal.shading : normal.geometric};
 }
 
-/// The same for glass, where the refracted direction has to be beyond the surface as well.
+/// The same for refraction, where the refracted direction must be beyond the surface as well.
 SidedNormals for_glass(const SidedNormals& normal, const Vec3& wo, double eta) {
   const SidedNormals sided = for_mirror(normal, wo);
   const std::optional<double> cos_t = refracted_cos(dot(wo, sided.shading), eta);
@@ -42,7 +42,8 @@ SidedNormals for_glass(const SidedNormals& normal, const Vec3& wo, double eta) {
 
 std::optional<BsdfSample> sample_diffuse(const DiffuseBsdf& bsdf, double u, double v) {
   const Vec3 local = sample_cosine_hemisphere(u, v);
-  std::optional<BsdfSample> sample(std::in_place);  // in place: a copy waits for stores
+  // Constructed in place: a copy would wait for the stores.
+  std::optional<BsdfSample> sample(std::in_place);
   sample->wi = orthonormal_basis(bsdf.normal.shading).to_world(local);
   sample->pdf = cosine_hemisphere_pdf(dot(sample->wi, bsdf.normal.shading));
   sample->weight = bsdf.reflectance;
@@ -52,7 +53,7 @@ std::optional<BsdfSample> sample_diffuse(const DiffuseBsdf& bsdf, double u, doub
   return sample;
 }
 
-/// The density of the direction of mirror + fuzz * (a uniform point of the unit ball): the ball's
+/// Returns the pdf of the direction of mirror + fuzz * (uniform point of the unit ball): the ball's
 /// density, integrated with t^2 along the chord that the direction cuts out of the ball around the
 /// mirror direction: (t1^3 - t0^3) / (4 pi fuzz^3).
 double fuzz_pdf(const Vec3& mirror, double fuzz, const Vec3& wi) {
@@ -110,7 +111,7 @@ Bsdf metal_at(const Rgb& reflectance, double fuzz, const SidedNormals& normal, c
   return FuzzyMetalBsdf{sided, reflectance, mirror, fuzz};
 }
 
-/// `index` and `roughness` as they are at the point.
+/// `index` and `roughness` are the values at the point.
 Bsdf glass_at(double index, double roughness, const SidedNormals& normal, bool outside,
               const Vec3& wo, double outside_index) {
   const double relative = outside_index == 1 ? index : index / outside_index;

@@ -1,9 +1,9 @@
 #pragma once
 
-// The GGX distribution of microfacet normals with height-correlated Smith shadowing (Walter et al.
+// The GGX microfacet distribution with height-correlated Smith masking-shadowing (Walter et al.
 // 2007, "Microfacet Models for Refraction through Rough Surfaces"; Heitz 2014, "Understanding the
-// Masking-Shadowing Function", JCGT 3(2), section 6.3), in the surface's own frame: z is the
-// normal, directions are unit vectors with z > 0. alpha in [kLeastAlpha, 1].
+// Masking-Shadowing Function", JCGT 3(2), section 6.3), in the local frame of the surface: z is the
+// normal, directions are unit vectors with z > 0. alpha is in [kLeastAlpha, 1].
 
 #include <algorithm>
 #include <cmath>
@@ -14,29 +14,29 @@
 
 namespace bandsaw {
 
-/// Smoother surfaces count as this smooth: it spreads light by a hundredth of a degree.
+/// Minimum alpha, for smoother surfaces too: it spreads light by a hundredth of a degree.
 inline constexpr double kLeastAlpha = 1e-4;
 
-/// The density of normals. In x and y, which stay exact where z is nearly 1: no cancellation
-/// however small alpha is.
+/// Returns D(h). Computed from x and y, which are precise where z is nearly 1: no cancellation for
+/// small alpha.
 inline double ggx_distribution(const Vec3& h, double alpha) {
   const double t = (h.x * h.x + h.y * h.y) / (alpha * alpha) + h.z * h.z;
   return 1 / (kPi * alpha * alpha * t * t);
 }
 
-/// z times the stretch that masking makes of it: G1 = 2 z / (z + ggx_stretched(w)).
+/// Returns z scaled by masking: G1 = 2 z / (z + ggx_stretched(w)).
 inline double ggx_stretched(const Vec3& w, double alpha) {
   return std::sqrt(alpha * alpha * (w.x * w.x + w.y * w.y) + w.z * w.z);
 }
 
-/// The share of facets that `o` sees.
+/// Returns G1(o), the share of microfacets visible from `o`.
 inline double ggx_masking(const Vec3& o, double alpha) {
   const double z = std::abs(o.z);
   return z > 0 ? 2 * z / (z + ggx_stretched(o, alpha)) : 0;
 }
 
-/// G2 / G1(o): of the facets that o sees, the share that i sees too, in [0, 1]. For transmission
-/// i.z is negative.
+/// Returns G2(o, i) / G1(o), in [0, 1]: among the microfacets visible from o, the share visible
+/// from i as well. For transmission i.z is negative.
 inline double ggx_shadowing(const Vec3& o, const Vec3& i, double alpha) {
   const double zo = std::abs(o.z);
   const double zi = std::abs(i.z);
@@ -45,13 +45,14 @@ inline double ggx_shadowing(const Vec3& o, const Vec3& i, double alpha) {
   return below > 0 ? zi * (zo + so) / below : 0;
 }
 
-/// The density of facet normals h as o sees them, divided by |dot(o, h)|; finite at grazing angles.
+/// Returns the pdf of visible normals h as seen from o, divided by |dot(o, h)|; finite at grazing
+/// angles.
 inline double ggx_visible_over_cos(const Vec3& o, const Vec3& h, double alpha) {
   return 2 * ggx_distribution(h, alpha) / (std::abs(o.z) + ggx_stretched(o, alpha));
 }
 
-/// A facet normal as o sees them: density ggx_visible_over_cos(o, h) dot(o, h). u, v in [0, 1).
-/// Dupuy and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", listing 3.
+/// Samples a visible normal with pdf ggx_visible_over_cos(o, h) dot(o, h); u, v in [0, 1). Dupuy
+/// and Benyoub 2023, "Sampling Visible GGX Normals with Spherical Caps", listing 3.
 inline Vec3 sample_ggx_visible(const Vec3& o, double alpha, double u, double v) {
   const Vec3 stretched = normalize({alpha * o.x, alpha * o.y, o.z});
   const SinCos phi = sincos_turns(u);

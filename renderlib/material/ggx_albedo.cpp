@@ -13,9 +13,9 @@ GgxAlbedo mixed(const GgxAlbedo& a, const GgxAlbedo& b, double t) {
   return {a.white + (b.white - a.white) * t, a.rim + (b.rim - a.rim) * t};
 }
 
-/// Midpoint rule over the square that visible normals are sampled from: the integrand is shadowing,
-/// which is at most 1. The tail of the distribution lies at the upper end of the second number:
-/// points are closer there.
+/// Integrates by the midpoint rule over the unit square from which visible normals are sampled: the
+/// integrand is the shadowing term, which is at most 1. The tail of the distribution lies at the
+/// upper end of the second number, so points are denser there.
 GgxAlbedo integrated(double cos_theta, double alpha) {
   constexpr int kTurns = 16;
   constexpr int kHeights = 48;
@@ -24,7 +24,7 @@ GgxAlbedo integrated(double cos_theta, double alpha) {
   for (int a = 0; a < kTurns; ++a) {
     for (int b = 0; b < kHeights; ++b) {
       const double left = 1 - (b + 0.5) / kHeights;
-      // Half of the turn: the surface is symmetric.
+      // Half a turn suffices: the surface is isotropic.
       const Vec3 h = sample_ggx_visible(o, alpha, 0.5 * (a + 0.5) / kTurns, 1 - left * left);
       const Vec3 i = mirrored(o, h);
       if (i.z <= 0) {
@@ -46,7 +46,7 @@ GgxAlbedoTable::GgxAlbedoTable() {
     const double alpha = std::max(kLeastAlpha, roughness * roughness);
     auto& row = values_[static_cast<std::size_t>(r)];
     for (int c = 0; c <= kCosines; ++c) {
-      // Closer together at grazing angles, where it changes most.
+      // Denser at grazing angles, where the albedo changes most.
       const double root = static_cast<double>(c) / kCosines;
       row[static_cast<std::size_t>(c)] = integrated(std::max(1e-4, root * root), alpha);
     }
@@ -71,7 +71,7 @@ GgxAlbedo GgxAlbedoTable::at(double cos_theta, double roughness) const {
     const auto left = static_cast<std::size_t>(column);
     return mixed(values[left], values[left + 1], x - column);
   };
-  // The last row stands alone while the table is made.
+  // While the table is computed, only the current row may be read.
   return y == row            ? of(row)
          : y == kRoughnesses ? of(kRoughnesses)
                              : mixed(of(row), of(row + 1), y - row);

@@ -1,8 +1,8 @@
 #pragma once
 
-// Which glasses a path is inside of (Schmidt and Budge 2002, "Simple Nested Dielectrics in Ray
-// Traced Images", JGT 7(2)): where several overlap, the one of the highest priority is there. Only
-// materials with a priority take part.
+// Nested dielectrics: the glasses that contain a path (Schmidt and Budge 2002, "Simple Nested
+// Dielectrics in Ray Traced Images", JGT 7(2)). Where several overlap, only the one of highest
+// priority is present. Only materials with a priority take part.
 
 #include <algorithm>
 #include <array>
@@ -13,20 +13,21 @@
 
 namespace bandsaw {
 
-/// A glass that takes part; null: the material is none.
+/// Returns the dielectric if it takes part; null for other materials.
 inline const Dielectric* nested_glass(const Material& material) {
   const auto* glass = std::get_if<Dielectric>(&material);
   return glass != nullptr && glass->priority > 0 ? glass : nullptr;
 }
 
+/// The set of glasses that contain a point of a path.
 class Interiors {
  public:
   /// No material.
   static constexpr MaterialId kNothing{0xffffffffu};
-  /// More than these inside each other are not kept.
+  /// Maximum number of nested glasses; further ones are ignored.
   static constexpr std::size_t kMost = 8;
 
-  // Most paths never enter one: what is not there is neither set nor copied.
+  // Most paths never enter one, so unused entries are neither initialised nor copied.
   Interiors() {}
   Interiors(const Interiors& other) { *this = other; }
   Interiors& operator=(const Interiors& other) {
@@ -35,8 +36,8 @@ class Interiors {
     return *this;
   }
 
-  /// Whether passing a boundary of `glass` changes nothing: something of higher priority is there,
-  /// or another body of the same.
+  /// Returns true if crossing a boundary of `glass` changes nothing: a glass of higher priority is
+  /// present, or another body of the same material.
   bool hides(MaterialId id, const Dielectric& glass, bool inwards) const {
     const auto bodies = std::count_if(entries_.begin(), entries_.begin() + size_,
                                       [id](const Entry& entry) { return entry.id == id; });
@@ -44,19 +45,19 @@ class Interiors {
     return bodies > (inwards ? 0 : 1) || (top != nullptr && top->priority > glass.priority);
   }
 
-  /// The index of refraction where `id` is not.
+  /// Returns the index of refraction that would be present without material `id`.
   double index_without(MaterialId id) const {
     const Entry* top = highest_but(id);
     return top != nullptr ? top->index : 1;
   }
 
-  /// The glass that is there; kNothing: none.
+  /// Returns the glass that is present; kNothing if there is none.
   MaterialId there() const {
     const Entry* top = highest_but(kNothing);
     return top != nullptr ? top->id : kNothing;
   }
 
-  /// Passing a boundary of `glass`.
+  /// Crosses a boundary of `glass`.
   void pass(MaterialId id, const Dielectric& glass, bool inwards) {
     if (inwards) {
       if (size_ < kMost) {
@@ -82,7 +83,7 @@ class Interiors {
   const Entry* highest_but(MaterialId id) const {
     const Entry* top = nullptr;
     for (std::size_t i = 0; i < size_; ++i) {
-      // Of equals the lower material: the order of entering must not matter.
+      // Among equal priorities the lower material wins: the order of entering must not matter.
       if (entries_[i].id != id &&
           (top == nullptr || entries_[i].priority > top->priority ||
            (entries_[i].priority == top->priority && entries_[i].id < top->id))) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// A texture at a point of a surface.
+// Texture lookup at a point of a surface.
 
 #include <algorithm>
 #include <optional>
@@ -15,7 +15,7 @@ inline TextureCoordinates texture_coordinates(const SurfacePoint& point) {
   return {point.uv, point.uv2, point.position, point.object_position};
 }
 
-/// The colour of textures[id] at the point. Constant colours cost nothing more.
+/// Returns the colour of textures[id] at the point. Constant colours have a fast path.
 inline Rgb look_up(absl::Span<const Texture> textures, TextureId id, const SurfacePoint& point) {
   if (const auto* constant = std::get_if<ConstantTexture>(&textures[index_of(id)])) {
     return constant->value;
@@ -23,20 +23,20 @@ inline Rgb look_up(absl::Span<const Texture> textures, TextureId id, const Surfa
   return evaluate(textures, id, texture_coordinates(point));
 }
 
-/// A reflectance times the colour of the vertices, each channel at most 1.
+/// Returns a reflectance times the vertex colour, each channel clamped to 1.
 inline Rgb tinted(const Rgb& reflectance, const Rgb& vertices) {
   const Rgb c = reflectance * vertices;
   return {std::min(c.r, 1.0f), std::min(c.g, 1.0f), std::min(c.b, 1.0f)};
 }
 
-/// A number of a material, times the luminance of its map where it has one, in [0, 1].
+/// Returns a material parameter times the luminance of its map, if it has one; in [0, 1].
 inline double mapped_number(absl::Span<const Texture> textures, double number,
                             const std::optional<TextureId>& map, const SurfacePoint& point) {
   return map ? std::clamp(number * double{luminance(look_up(textures, *map, point))}, 0.0, 1.0)
              : number;
 }
 
-/// An index of refraction: 1 where its map is black, `index` where it is white.
+/// Returns an index of refraction: 1 where its map is black, `index` where it is white.
 inline double mapped_index(absl::Span<const Texture> textures, double index,
                            const std::optional<TextureId>& map, const SurfacePoint& point) {
   return map ? 1 + mapped_number(textures, 1, map, point) * (index - 1) : index;

@@ -1,7 +1,7 @@
 #pragma once
 
-// How surfaces scatter. A closed set of parameters as the scene holds them; material/bsdf.h turns
-// one, at a point, into something that can be sampled.
+// Parameters of surface materials, as the scene stores them. A closed set; material/bsdf.h turns a
+// material at a point into a BSDF that can be sampled.
 
 #include <cstdint>
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace bandsaw {
 
-/// Lambertian reflection. Colours of vertices multiply the reflectance.
+/// Lambertian reflection. Vertex colours multiply the reflectance.
 struct Diffuse {
   TextureId reflectance{};
 };
@@ -20,7 +20,7 @@ struct Diffuse {
 /// The mirror direction plus a uniform point in a ball of radius `fuzz` (Shirley et al., "Ray
 /// Tracing in One Weekend", 10.6).
 struct Metal {
-  TextureId reflectance{};                           ///< colours of vertices multiply it
+  TextureId reflectance{};                           ///< vertex colours multiply it
   double fuzz = 0;                                   ///< [0, 1]
   std::optional<TextureId> fuzz_map = std::nullopt;  ///< its luminance multiplies `fuzz`
 };
@@ -29,22 +29,22 @@ struct Metal {
 struct Dielectric {
   double index_of_refraction = 1.5;  ///< inside over outside, [1, 5]
   double roughness = 0;              ///< [0, 1], the square root of GGX's alpha; 0: smooth
-  /// Where glasses overlap, the one of the highest priority is there and the others are not. 0:
-  /// takes no part, its outside is always empty space.
+  /// If glasses overlap, only the one of highest priority is present. 0: the glass takes no part in
+  /// this, and its outside is always empty space.
   std::uint32_t priority = 0;
   std::optional<TextureId> roughness_map = std::nullopt;  ///< its luminance multiplies `roughness`
-  /// The index is 1 where its luminance is 0, index_of_refraction where it is 1, linear between.
-  /// None where there is a priority: what a path is inside of has one index.
+  /// The index is 1 where the map's luminance is 0, index_of_refraction where it is 1, and linear
+  /// in between. Not allowed with a priority: a glass that contains a path has one index.
   std::optional<TextureId> index_map = std::nullopt;
 };
 
-/// Gives light, scatters none.
+/// Emits light and scatters none.
 struct Emissive {
   TextureId radiance{};
   bool one_sided = false;  ///< only to the side of the geometric normal
 };
 
-/// A number that may vary over a surface: one channel of the texture, times `factor`.
+/// A number that may vary over a surface: one channel of the texture times `factor`.
 struct Channel {
   TextureId texture{};
   double factor = 0;
@@ -58,30 +58,31 @@ struct Tint {
 
 enum class AlphaMode : std::uint8_t {
   kOpaque,
-  kMask,   ///< there where alpha >= cutoff, else not there
-  kBlend,  ///< there with probability alpha
+  kMask,   ///< present where alpha >= cutoff
+  kBlend,  ///< present with probability alpha
 };
 
-/// glTF 2.0's metallic-roughness material (appendix B) with KHR_materials_ior, _clearcoat,
-/// _transmission (thin) and _emissive_strength. Alpha of GGX is the square of a roughness.
+/// The metallic-roughness material of glTF 2.0 (appendix B) with KHR_materials_ior, _clearcoat,
+/// _transmission (thin) and _emissive_strength. GGX's alpha is the square of a roughness.
 struct Principled {
   Tint base_color;                   ///< [0, 1]; vertex colours multiply it
   Channel metallic;                  ///< channel b; [0, 1]
   Channel roughness;                 ///< channel g; [0, 1]
-  double index_of_refraction = 1.5;  ///< of what is not metal, [1, 5]
-  /// Directions in the frame of the uvs, 0.5 + 0.5 n; b towards the outside.
+  double index_of_refraction = 1.5;  ///< of the dielectric part, [1, 5]
+  /// Normal map: tangent-space directions stored as 0.5 + 0.5 n; b points outwards.
   std::optional<TextureId> normal;
-  double normal_scale = 1;       ///< finite; of the part along the surface
+  double normal_scale = 1;       ///< finite; scales the tangential part
   Tint emissive{{}, {0, 0, 0}};  ///< radiance, >= 0, below the coat
   bool double_sided = false;     ///< emits to both sides; scattering always does
   AlphaMode alpha_mode = AlphaMode::kOpaque;
   Channel alpha{{}, 1};       ///< channel r; [0, 1]
-  double alpha_cutoff = 0.5;  ///< of kMask
-  Channel coat;               ///< channel r; [0, 1]: a clear coat of index 1.5
+  double alpha_cutoff = 0.5;  ///< for kMask
+  Channel coat;               ///< channel r; [0, 1]: weight of a clear coat of index 1.5
   Channel coat_roughness;     ///< channel g; [0, 1]
-  Channel transmission;       ///< channel r; [0, 1]: what passes instead of being diffused
-  std::optional<TextureId> index_map = std::nullopt;  ///< as Dielectric's
-  /// As `normal`, of the clear coat alone; without it the coat is as smooth as the mesh.
+  Channel transmission;  ///< channel r; [0, 1]: share transmitted instead of diffusely reflected
+  std::optional<TextureId> index_map = std::nullopt;  ///< as in Dielectric
+  /// Like `normal`, for the clear coat alone; without it the coat follows the mesh's shading
+  /// normal.
   std::optional<TextureId> coat_normal = std::nullopt;
   double coat_normal_scale = 1;  ///< finite
 };

@@ -1,7 +1,6 @@
 #pragma once
 
-// How much of a surface is there at a point: what glTF calls alpha, and nothing of glass that does
-// not bend light.
+// Opacity of a surface at a point: glTF's alpha, and 0 for glass that does not refract.
 
 #include <algorithm>
 #include <cmath>
@@ -14,18 +13,18 @@
 
 namespace bandsaw {
 
-/// Boundaries whose relative index of refraction is nearer to 1 bend nothing.
+/// Boundaries whose relative index of refraction is closer to 1 do not refract.
 inline constexpr double kLeastRefraction = 1e-6;
 
-/// Glass as dense as what is around it: light goes straight on. With a priority it keeps other glass
-/// out, and is there.
+/// Returns true for glass with the same index as its surroundings, through which light goes
+/// straight on. Glass with a priority excludes other glass and therefore counts as present.
 inline bool bends_nothing(const Material& material) {
   const auto* glass = std::get_if<Dielectric>(&material);
   return glass != nullptr && glass->priority == 0 && !glass->index_map &&
          std::abs(glass->index_of_refraction - 1) < kLeastRefraction;
 }
 
-/// Whether opacity() can be other than 1.
+/// Returns true if opacity() can be other than 1.
 inline bool has_alpha(const Material& material) {
   if (bends_nothing(material)) {
     return true;
@@ -34,7 +33,7 @@ inline bool has_alpha(const Material& material) {
   return principled != nullptr && principled->alpha_mode != AlphaMode::kOpaque;
 }
 
-/// The probability that a ray is stopped here, in [0, 1].
+/// Returns the probability that a ray is stopped here, in [0, 1].
 inline double opacity(const Material& material, absl::Span<const Texture> textures,
                       const SurfacePoint& point) {
   if (!has_alpha(material)) {

@@ -27,7 +27,7 @@ Local local(const Vec3& normal, const Vec3& wo, const Vec3& wi) {
   return {frame.to_local(wo), frame.to_local(wi)};
 }
 
-/// A reflection without Fresnel: its density and value, and the rim that Schlick's Fresnel needs.
+/// A reflection without its Fresnel factor: pdf, value, and Schlick's (1 - cos)^5.
 struct Reflection {
   double pdf = 0;
   double value = 0;
@@ -48,7 +48,7 @@ Reflection reflection(const Vec3& o, const Vec3& i, double alpha) {
   return out;
 }
 
-/// How much of the light the coat lets through, the same if wo and wi change places.
+/// Returns the share of light that the coat transmits; symmetric in wo and wi.
 double below_coat(const PrincipledBsdf& bsdf, const Vec3& wi) {
   if (bsdf.coat == 0) {
     return 1;
@@ -92,7 +92,7 @@ void add_below(const PrincipledBsdf& bsdf, const Local& way, double through, Bsd
   sum.pdf += bsdf.chances[kTransmission] * straight.pdf;
 }
 
-/// Chances by what each lobe sends to wo at most.
+/// Sets the lobes' selection probabilities to their maximum contributions towards wo, normalised.
 void choose_chances(PrincipledBsdf& bsdf, const GgxAlbedo& albedo) {
   const double through = 1 - bsdf.coat_albedo;
   const double base = max_component(bsdf.base);
@@ -167,7 +167,7 @@ std::optional<BsdfSample> sample(const PrincipledBsdf& bsdf, double u, double v,
     left -= bsdf.chances[chosen];
   }
   if (bsdf.chances[chosen] == 0) {
-    return std::nullopt;  // all black, or rounding past the last
+    return std::nullopt;  // all lobes are black, or rounding went past the last one
   }
   const Basis frame = orthonormal_basis(chosen == kCoat ? bsdf.coat_normal : bsdf.normal.shading);
   Vec3 i;
@@ -185,7 +185,7 @@ std::optional<BsdfSample> sample(const PrincipledBsdf& bsdf, double u, double v,
   BsdfSample sample;
   sample.wi = normalize(frame.to_world(i));
   if ((dot(sample.wi, bsdf.normal.geometric) < 0) != (chosen == kTransmission)) {
-    return std::nullopt;  // a bent normal took it to the wrong side
+    return std::nullopt;  // a perturbed normal moved the direction to the wrong side
   }
   const BsdfValue value = evaluate(bsdf, sample.wi);
   if (!(value.pdf > 0) || !std::isfinite(value.pdf)) {

@@ -1,13 +1,13 @@
 #pragma once
 
-// glTF's metallic-roughness material at a point: diffuse or thin transmission under a rough
-// dielectric reflection, mixed with a rough metal, below a clear coat. One scattering at each GGX
-// lobe, as glTF 2.0, appendix B.
+// BSDF of glTF's metallic-roughness material: a diffuse or thin transmissive layer below a rough
+// dielectric reflection, mixed with a rough metal, below a clear coat. Each GGX lobe has single
+// scattering, as in glTF 2.0, appendix B.
 //
-// Where glTF's mixing would give more light than arrives, less is given: what the reflection takes
-// is taken from the layer below by the albedo of the reflection in both directions (Kelemen and
-// Szirmay-Kalos 2001, "A Microfacet Based Coupled Specular-Matte BRDF Model", eq. 5), so that no
-// direction sends out more than comes in, and exchanging wo and wi changes nothing. Fresnel is
+// Where glTF's mixing would not conserve energy, less is reflected: the layer below gets what the
+// reflection leaves, according to the reflection's albedo in both directions (Kelemen and
+// Szirmay-Kalos 2001, "A Microfacet Based Coupled Specular-Matte BRDF Model", eq. 5). So no
+// direction sends out more than comes in, and the BSDF is reciprocal. Fresnel reflectance is
 // Schlick's.
 
 #include <array>
@@ -21,7 +21,7 @@
 
 namespace bandsaw {
 
-/// A GGX lobe as wo sees it.
+/// Parameters of a GGX lobe.
 struct GgxLobe {
   double roughness = 1;
   double alpha = 1;
@@ -29,22 +29,25 @@ struct GgxLobe {
 
 struct PrincipledBsdf {
   SidedNormals normal;
-  Vec3 coat_normal;  ///< without the normal map of what is below; with its own
+  /// Shading normal of the coat: with its own normal map, without that of the layer below.
+  Vec3 coat_normal;
   Vec3 wo;
   Rgb base;
   double metallic = 0;
   double transmission = 0;
-  double f0 = 0.04;  ///< of what is not metal
+  double f0 = 0.04;  ///< reflectance of the dielectric part at normal incidence
   GgxLobe surface;
   double coat = 0;
   GgxLobe coating;
-  double coat_albedo = 0;  ///< what the coat reflects of wo's light, times `coat`
-  double matte_share = 1;  ///< what the reflection leaves, seen along wo, over the mean of that
-  /// Which lobe is sampled: coat, reflection, diffuse, transmission. Their sum is 1, or 0: black.
+  double coat_albedo = 0;  ///< albedo of the coat seen along wo, times `coat`
+  /// Share that the reflection leaves along wo, divided by its mean over all directions.
+  double matte_share = 1;
+  /// Selection probabilities of the lobes: coat, reflection, diffuse, transmission. They sum to 1,
+  /// or to 0 if the BSDF is black.
   std::array<double, 4> chances{};
 };
 
-/// `normal` is the side of wo.
+/// Returns the BSDF; `normal` is on the side of wo.
 PrincipledBsdf principled_at(const Principled& material, absl::Span<const Texture> textures,
                              const SurfacePoint& point, const SidedNormals& normal, const Vec3& wo);
 

@@ -10,14 +10,15 @@
 namespace bandsaw {
 namespace {
 
-/// Density of wi by refraction at the facet h, over the density of visible facets divided by dot(o,
-/// h), and over 1 - F: the Jacobian of refraction (Walter et al. 2007, eq. 17) times dot(o, h).
+/// Returns the Jacobian of refraction (Walter et al. 2007, eq. 17) times dot(o, h): the pdf of wi
+/// by refraction at the microfacet h, divided by ggx_visible_over_cos() and by 1 - F.
 double refraction_jacobian(double o_h, double i_h, double eta) {
   const double way = o_h + eta * i_h;  // i_h < 0
   return eta * eta * std::abs(i_h) * o_h / (way * way);
 }
 
-/// On the side of the geometric normal that the direction in the shading frame promises.
+/// Returns true if wi is on the side of the geometric normal that its z in the shading frame
+/// indicates.
 bool is_consistent(const RoughDielectricBsdf& bsdf, const Vec3& wi, double local_z) {
   return dot(wi, bsdf.normal.geometric) * local_z > 0;
 }
@@ -71,7 +72,8 @@ BsdfValue evaluate(const RoughDielectricBsdf& bsdf, const Vec3& wi) {
     return {};
   }
   const bool reflects = i.z > 0;
-  // Bent by both sides towards the denser: away from the normal where eta > 1.
+  // For a refraction, the half vector -(o + eta i) points to the side of smaller index (Walter et
+  // al. 2007, eq. 16); below it is flipped to the side of the normal.
   Vec3 h = reflects ? o + i : -(o + i * bsdf.eta);
   const double size = length(h);
   if (!(size > 0)) {

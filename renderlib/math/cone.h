@@ -4,13 +4,13 @@
 
 namespace bandsaw {
 
-/// The directions that are at most an angle below 90 degrees away from an axis.
+/// The directions within an angle below 90 degrees of an axis.
 struct Cone {
   Vec3 axis;       ///< unit
-  double sin = 0;  ///< of the angle
+  double sin = 0;  ///< sine of the angle
   double cos = 1;
 
-  /// Of any length but 0.
+  /// Returns true if `way`, of any length except 0, lies within the cone.
   bool contains(const Vec3& way) const {
     const double along = dot(axis, way);
     return along > 0 && along * along >= cos * cos * length_squared(way);

@@ -4,9 +4,9 @@
 #include "renderlib/math/elementary.h"
 #include "renderlib/math/polynomial.h"
 
-// atan(y / x) = atan(t) + atan((y - t x) / (x + t y)) for the multiple t of 1/8 nearest to y / x: t
-// has so few bits that the numerator is rounded once. asin and acos are angles of (sqrt(1 - x^2),
-// x), where 1 - x^2 is rounded once as well.
+// atan(y / x) = atan(t) + atan((y - t x) / (x + t y)), where t is the multiple of 1/8 nearest to y
+// / x. t has so few bits that the numerator is rounded only once. asin and acos are angles of
+// (sqrt(1 - x^2), x), where 1 - x^2 is rounded once as well.
 
 namespace bandsaw {
 namespace {
@@ -41,7 +41,7 @@ TwoDoubles atan_octant(double y, double x) {
   const double numerator = std::fma(-t, x, y);
   const double denominator = std::fma(t, y, x);
   const double z = numerator / denominator;
-  // What the division rounded away.
+  // Rounding error of the division.
   const double z_rest = std::fma(-z, denominator, numerator) / denominator;
   const TwoDoubles& base = kAtanEighths[static_cast<int>(k)];
   const TwoDoubles sum = two_sum(base.hi, z);
@@ -54,7 +54,7 @@ double from_quarter(double quarters, double sign, const TwoDoubles& a) {
   return sum.hi + (sum.lo + std::fma(quarters, kHalfPi.lo, sign * a.lo));
 }
 
-/// The angle of (x, y) for y >= 0, in [0, pi].
+/// Returns the angle of (x, y) for y >= 0, in [0, pi].
 double upper_angle(double y, double x) {
   const double width = std::abs(x);
   if (y <= width) {
@@ -79,7 +79,7 @@ double atan2(double y, double x) {
   if (y == 0) {
     return x < 0 ? 2 * kHalfPi.hi : 0;
   }
-  // Away from the ends of the range, where sums overflow and products lose digits.
+  // Rescales away from the ends of the range, where sums overflow and products lose precision.
   const double size = std::abs(x) > std::abs(y) ? std::abs(x) : std::abs(y);
   if (size > 0x1p1000 || size < 0x1p-900) {
     const double scale = size > 1 ? 0x1p-100 : 0x1p150;

@@ -9,8 +9,8 @@
 namespace bandsaw {
 namespace {
 
-/// Below this angle, in radians, the sine in the denominator would lose digits; the chord is right
-/// to 1e-17 there.
+/// Below this angle, in radians, the sine in the denominator would lose precision; the chord is
+/// accurate to 1e-17 there.
 constexpr double kLeastAngle = 1e-8;
 
 double dot(const Quaternion& a, const Quaternion& b) {
@@ -26,12 +26,13 @@ double length(const Quaternion& q) { return std::sqrt(dot(q, q)); }
 
 Quaternion unit(const Quaternion& q) { return mix(q, 1 / length(q), {}, 0); }
 
-/// The one of b and -b that is nearer to a: both are the same rotation.
+/// Returns whichever of b and -b is nearer to a; both are the same rotation.
 Quaternion nearer(const Quaternion& a, const Quaternion& b) {
   return dot(a, b) < 0 ? mix(b, -1, {}, 0) : b;
 }
 
-/// Between two on the same side, in radians, without cancellation at 0 and pi.
+/// Returns the angle between two quaternions of one hemisphere, in radians, without cancellation
+/// near 0 and pi.
 double angle(const Quaternion& a, const Quaternion& b) {
   return 2 * bandsaw::atan2(length(mix(a, 1, b, -1)), length(mix(a, 1, b, 1)));
 }

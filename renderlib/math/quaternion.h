@@ -1,6 +1,6 @@
 #pragma once
 
-// Rotations as unit quaternions, for turning evenly from one into another.
+// Rotations as unit quaternions, for interpolation.
 
 #include "renderlib/math/transform.h"
 
@@ -14,15 +14,15 @@ struct Quaternion {
   friend bool operator==(const Quaternion&, const Quaternion&) = default;
 };
 
-/// Of a rotation matrix (the linear part of `t`); unit (Shepperd 1978, "Quaternion from Rotation
-/// Matrix": the largest component first, so nothing cancels).
+/// Returns the unit quaternion of a rotation matrix, the linear part of `t` (Shepperd 1978,
+/// "Quaternion from Rotation Matrix": starts with the largest component, so nothing cancels).
 Quaternion quaternion(const Transform& t);
-/// The rotation matrix of a unit quaternion.
+/// Returns the rotation matrix of a unit quaternion.
 Transform rotation(const Quaternion& q);
-/// How far a is turned to become b by the shorter way, in turns: [0, 0.5].
+/// Returns the angle of the shorter rotation from a to b, in turns: [0, 0.5].
 double turn_between(const Quaternion& a, const Quaternion& b);
-/// From a (u = 0) to b (u = 1) by the shorter way at constant speed (Shoemake 1985, "Animating
-/// Rotation with Quaternion Curves", section 3.3).
+/// Interpolates from a (u = 0) to b (u = 1) along the shorter arc at constant speed (Shoemake 1985,
+/// "Animating Rotation with Quaternion Curves", section 3.3).
 Quaternion slerp(const Quaternion& a, const Quaternion& b, double u);
 
 }  // namespace bandsaw

@@ -1,6 +1,7 @@
 #pragma once
 
-// A colour or radiance: linear, sRGB primaries. float: what a sample carries; sums over samples are double (render/film.h).
+// Colours and radiance: linear, sRGB primaries, float. Sums over samples are double
+// (render/film.h).
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +25,7 @@ constexpr Rgb& operator*=(Rgb& a, const Rgb& b) { return a = a * b; }
 constexpr Rgb lerp(const Rgb& a, const Rgb& b, float t) { return a * (1 - t) + b * t; }
 constexpr float max_component(const Rgb& a) { return std::max({a.r, a.g, a.b}); }
 constexpr bool is_black(const Rgb& a) { return a.r == 0 && a.g == 0 && a.b == 0; }
-/// Rec. 709 luminance.
+/// Returns the Rec. 709 luminance.
 constexpr float luminance(const Rgb& a) { return 0.2126f * a.r + 0.7152f * a.g + 0.0722f * a.b; }
 inline bool is_finite(const Rgb& a) {
   return std::isfinite(a.r) && std::isfinite(a.g) && std::isfinite(a.b);

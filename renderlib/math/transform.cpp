@@ -11,7 +11,8 @@ constexpr double kMaxCondition = 1e12;
 
 using Matrix3 = std::array<std::array<double, 3>, 3>;
 
-/// a b - c d with one rounding of each product's error (Kahan): 1.5 units in the last place.
+/// Returns a b - c d with one rounding of each product's error (Kahan): 1.5 units in the last
+/// place.
 double difference_of_products(double a, double b, double c, double d) {
   const double cd = c * d;
   const double error = std::fma(-c, d, cd);
@@ -129,8 +130,8 @@ std::optional<Transform> inverse(const Transform& t) {
   if (!(size > 0) || !std::isfinite(size)) {
     return std::nullopt;
   }
-  // A power of two brings the entries near 1, so that the determinant can neither overflow nor
-  // underflow.
+  // A power of two scales the entries close to 1, so that the determinant neither overflows nor
+  // underflows.
   const int exponent = std::ilogb(size);
   for (auto& row : m) {
     for (double& v : row) {
@@ -139,7 +140,7 @@ std::optional<Transform> inverse(const Transform& t) {
   }
   const Matrix3 c = cofactors(m);
   const double det = determinant(m, c);
-  // The condition number, |M| |M^-1| in Frobenius norms.
+  // The condition number is |M| |M^-1| in Frobenius norms.
   if (!(frobenius(m) * frobenius(c) <= kMaxCondition * std::abs(det)) || det == 0) {
     return std::nullopt;
   }

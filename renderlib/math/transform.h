@@ -1,6 +1,6 @@
 #pragma once
 
-// An affine map of space, in double: p -> M p + t.
+// Affine maps of space in double: p -> M p + t.
 
 #include <array>
 #include <optional>
@@ -18,20 +18,23 @@ struct Transform {
   friend bool operator==(const Transform&, const Transform&) = default;
 };
 
-/// a after b.
+/// Returns the composition that applies b, then a.
 Transform operator*(const Transform& a, const Transform& b);
 
 Transform translation(const Vec3& by);
 Transform scaling(const Vec3& by);
-/// Counter-clockwise about axis (not zero), looking against it. Angle in degrees.
+/// Returns the rotation by an angle in degrees about `axis` (not zero), counter-clockwise when seen
+/// against the axis.
 Transform rotation(const Vec3& axis, double degrees);
 
 double determinant(const Transform& t);
 
-/// Nothing when the map is singular to working precision: a non-finite entry, determinant 0, or a condition number above 1e12.
+/// Returns std::nullopt if the map is singular to working precision: a non-finite entry,
+/// determinant 0, or a condition number above 1e12.
 std::optional<Transform> inverse(const Transform& t);
 
-/// How normals go under a map whose inverse is `inverse`: the transpose of its linear part times n, not normalised.
+/// Transforms a normal by a map whose inverse is `inverse`: the transpose of its linear part times
+/// n, not normalised.
 Vec3 normal_to_world(const Transform& inverse, const Vec3& n);
 
 }  // namespace bandsaw

@@ -5,8 +5,8 @@
 #include "renderlib/math/elementary.h"
 #include "renderlib/math/polynomial.h"
 
-// sin and cos: exact reduction to an eighth of a turn, then Taylor series of an angle that is kept
-// as a sum of two doubles. The first term left out is below 2^-58 of the result; the roundings
+// sin and cos: exact reduction to an eighth of a turn, then Taylor series of an angle in
+// double-double precision. The first omitted term is below 2^-58 of the result; rounding errors
 // dominate.
 
 namespace bandsaw {
@@ -15,19 +15,19 @@ namespace {
 constexpr TwoDoubles kTwoPi = {0x1.921fb54442d18p+2, 0x1.1a62633145c07p-52};
 constexpr TwoDoubles kDegree = {0x1.1df46a2529d39p-6, 0x1.5c1d8becdd291p-62};
 
-/// unit * r.
+/// Returns unit * r.
 TwoDoubles scaled(const TwoDoubles& unit, double r) {
   const TwoDoubles product = two_product(unit.hi, r);
   return {product.hi, std::fma(unit.lo, r, product.lo)};
 }
 
-/// sin and cos, each as a sum that is not rounded yet.
+/// Sine and cosine as unevaluated sums.
 struct Parts {
   TwoDoubles sin;
   TwoDoubles cos;
 };
 
-/// |x| <= pi/4 and a little more.
+/// For |x| <= pi/4 and slightly above.
 Parts parts_reduced(const TwoDoubles& x) {
   static constexpr double kSin[] = {
       -1.0 / 6,        1.0 / 120,        -1.0 / 5040,          1.0 / 362880,
@@ -52,7 +52,7 @@ SinCos sincos_reduced(const TwoDoubles& x) {
   return {p.sin.hi + p.sin.lo, p.cos.hi + p.cos.lo};
 }
 
-/// Turns the result by a number of quarter turns, an integer in double.
+/// Rotates the result by `count` quarter turns; `count` is an integer.
 SinCos quarter_turns(const SinCos& a, double count) {
   const double sign_free = count - 4 * std::floor(count / 4);
   switch (static_cast<int>(sign_free)) {

@@ -1,6 +1,7 @@
 #pragma once
 
-// Three numbers: positions, directions and normals in double; colours are Rgb (renderlib/math/rgb.h).
+// Vectors of three numbers: positions, directions and normals in double. Colours are Rgb
+// (renderlib/math/rgb.h).
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +30,7 @@ constexpr Vec3 cross(const Vec3& a, const Vec3& b) {
 }
 constexpr double length_squared(const Vec3& a) { return dot(a, a); }
 inline double length(const Vec3& a) { return std::sqrt(dot(a, a)); }
-/// a / |a|; a MUST NOT be zero.
+/// Returns a / |a|; a MUST NOT be zero.
 inline Vec3 normalize(const Vec3& a) { return a / length(a); }
 inline double max_abs(const Vec3& a) {
   return std::max({std::abs(a.x), std::abs(a.y), std::abs(a.z)});

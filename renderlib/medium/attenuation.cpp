@@ -5,10 +5,10 @@
 namespace bandsaw {
 namespace {
 
-/// Beyond this exp(-x) is 0 in float and in double.
+/// For larger x, exp(-x) is 0 in float and in double.
 constexpr double kOpaque = 800;
 
-/// 0 where there is no extinction, however long the way.
+/// Returns sigma * length, and 0 if sigma is 0, even for an infinite length.
 double optical_length(double sigma, double length) {
   if (sigma == 0) {
     return 0;
@@ -33,7 +33,7 @@ double transmittance(double sigma, double length) {
 
 double reach(double sigma, double length) {
   const double depth = optical_length(sigma, length);
-  // Below, expm1(-depth) / sigma is the length to the last bit, or has lost itself to underflow.
+  // For smaller depths, -expm1(-depth) / sigma equals the length to the last bit or underflows.
   constexpr double kShort = 1e-17;
   if (depth < kShort) {
     return length;

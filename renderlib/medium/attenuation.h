@@ -1,33 +1,34 @@
 #pragma once
 
-// How light fades on a way through a medium: exp(-sigma s), in closed form (Bouguer 1729, Lambert
-// 1760). Lengths are in scene units and may be infinite.
+// Attenuation in a homogeneous medium: transmittance exp(-sigma s) in closed form (Bouguer 1729,
+// Lambert 1760). Lengths are in scene units and may be infinite.
 
 #include "renderlib/math/rgb.h"
 #include "renderlib/medium/medium.h"
 
 namespace bandsaw {
 
-/// Absorption and scattering of one channel, in double: sums of floats of any size.
+/// Returns the extinction coefficient of one channel. In double, because the sum of two large
+/// floats may overflow.
 inline double extinction(float absorption, float scattering) {
   return double{absorption} + scattering;
 }
 
-/// Over the channels.
+/// Returns the mean extinction coefficient over the channels.
 double mean_extinction(const Medium& medium);
 
-/// The share of light that passes a length of extinction sigma; exactly 1 where there is none.
+/// Returns the transmittance exp(-sigma length); exactly 1 if sigma is 0, for any length.
 double transmittance(double sigma, double length);
 
-/// The integral of exp(-sigma s) over s in [0, length]: the length, as far as light gets.
-/// Infinite where sigma is 0 and the length infinite.
+/// Returns the integral of exp(-sigma s) over s in [0, length], i.e. an effective length. Infinite
+/// if sigma is 0 and the length is infinite.
 double reach(double sigma, double length);
 
-/// The share of light that passes, by channel.
+/// Returns the transmittance over `length` by channel.
 Rgb transmittance(const Medium& medium, double length);
 
-/// The radiance that the medium itself gives along a length of it, without its scattering. MUST
-/// NOT be asked of an infinite length where a channel emits and fades nowhere.
+/// Returns the radiance that the medium emits along `length`, attenuated by itself, without
+/// scattering. MUST NOT be called with an infinite length if a channel emits and has no extinction.
 Rgb own_radiance(const Medium& medium, double length);
 
 }  // namespace bandsaw

@@ -16,7 +16,7 @@ Equiangular::Equiangular(const Vec3& origin, const Vec3& way, double length, con
   const double around = std::isfinite(length) ? length : 0;
   const double least = 1e-6 * std::max({around, std::abs(nearest), 1e-94});
   aside_ = std::max(bandsaw::length(to_pivot - way * nearest), least);
-  // The difference of two arctangents, as one: without cancellation.
+  // The difference of two arctangents as a single one, without cancellation.
   angle_ = std::isfinite(length)
                ? atan2(aside_ * length, aside_ * aside_ + start_ * (start_ + length))
                : atan2(aside_, start_);
@@ -26,7 +26,7 @@ double Equiangular::sample(double u) const {
   const SinCos turn = sincos_turns(u * angle_ / (2 * kPi));
   const double divisor = aside_ * turn.cos - start_ * turn.sin;
   const double distance = (aside_ * aside_ + start_ * start_) * turn.sin / divisor;
-  // At the far end rounding may lead past infinity.
+  // Rounding at the far end may make the divisor 0 or negative.
   constexpr double kFarthest = 1e30;
   const double farthest = std::min(length_, kFarthest);
   return divisor > 0 && distance <= farthest ? std::max(distance, 0.0) : farthest;

@@ -1,8 +1,8 @@
 #pragma once
 
-// Distances along a ray that a point beside it sees at equal angles: the density follows 1 / r^2,
-// the light of a small lamp there (Kulla and Fajardo 2012, "Importance Sampling Techniques for Path
-// Tracing in Participating Media", section 4.1).
+// Equiangular sampling of distances along a ray: the pdf is proportional to 1 / r^2, where r is the
+// distance to a pivot point on a light (Kulla and Fajardo 2012, "Importance Sampling Techniques for
+// Path Tracing in Participating Media", section 4.1).
 
 #include "renderlib/math/vec.h"
 
@@ -11,21 +11,22 @@ namespace bandsaw {
 class Equiangular {
  public:
   Equiangular() = default;
-  /// Over [0, length] (> 0, maybe infinite) along the unit direction `way` from `origin`, as
-  /// `pivot`, a finite point, sees it. A pivot nearly on the ray counts as beside it by a millionth
-  /// of the lengths around, so that the density is finite everywhere.
+  /// Samples [0, length] (> 0, may be infinite) along the unit direction `way` from `origin`, for
+  /// the finite point `pivot`. The distance of the pivot from the ray is clamped to at least a
+  /// millionth of the other lengths, so that the pdf is finite everywhere.
   Equiangular(const Vec3& origin, const Vec3& way, double length, const Vec3& pivot);
 
-  /// Where, in [0, length], finite; u in [0, 1).
+  /// Returns a finite distance in [0, length]; u in [0, 1).
   double sample(double u) const;
-  /// The density of sample() there, by length.
+  /// Returns the pdf of `sample()` with respect to length.
   double pdf(double distance) const;
 
  private:
   double length_ = 0;
-  double start_ = 0;  ///< of the stretch, from the point nearest to the pivot
+  /// Signed distance of the segment's start from the point of the ray closest to the pivot.
+  double start_ = 0;
   double aside_ = 1;  ///< distance of the pivot from the ray
-  double angle_ = 0;  ///< of the stretch, as the pivot sees it
+  double angle_ = 0;  ///< angle that the segment subtends at the pivot
 };
 
 }  // namespace bandsaw

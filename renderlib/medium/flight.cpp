@@ -16,7 +16,7 @@ Flight::Flight(const Medium& medium, const Rgb& throughput, double length) : len
   for (std::size_t c = 0; c < 3; ++c) {
     extinction_[c] = extinction(absorption[c], scattering[c]);
     entering_[c] = double{weight[c]} * scattering[c];
-    // Nothing, not nothing times infinity, where a channel has no extinction.
+    // 0 and not 0 * infinity if a channel has no extinction.
     all_scattered_[c] = entering_[c] == 0 ? 0 : entering_[c] * reach(extinction_[c], length);
     passing_[c] = weight[c] * transmittance(extinction_[c], length);
   }
@@ -47,11 +47,11 @@ double Flight::sample(double choice, double u) const {
     left -= all_scattered_[c];
     ++c;
   }
-  // Rounding may lead past the last channel that scatters.
+  // Rounding may select a channel beyond the last one that scatters.
   while (all_scattered_[c] == 0) {
     --c;
   }
-  // The share that does not pass, 1 - exp(-sigma length), without cancellation.
+  // 1 - exp(-sigma * length), without cancellation.
   const double share = std::min(1.0, extinction_[c] * reach(extinction_[c], length_));
   return std::min(-log1p(-u * share) / extinction_[c], length_);
 }

@@ -1,14 +1,15 @@
 #pragma once
 
-// How far light goes through a stretch of a medium before it is scattered, or that it passes.
+// Free-flight sampling in one segment of a medium: whether light is scattered there, and at which
+// distance.
 //
-// Light carries three channels with three extinctions. A distance is drawn for one of them and
-// weighed by the mean of all densities (the balance heuristic over wavelengths: Wilkie, Nawaz,
-// Droske, Weidlich and Hanika 2014, "Hero Wavelength Spectral Sampling", section 3.1). Each channel
-// is chosen by how much of its light is scattered on the stretch, and scattering rather than
-// passing by how much of all light is: absorption is in the weights and ends nothing. So the sum of
-// the channels after the choice is the same whatever was chosen, and never larger than before: no
-// channel grows by more than a factor of 3.
+// Light has three channels with three extinction coefficients. A distance is drawn for one channel
+// and weighted by the mean of all channels' pdfs (balance heuristic over wavelengths: Wilkie,
+// Nawaz, Droske, Weidlich and Hanika 2014, "Hero Wavelength Spectral Sampling", section 3.1). The
+// channel is selected by how much of its light is scattered in the segment, and scattering versus
+// passing by how much of all light is scattered. Absorption is contained in the weights and ends no
+// path. So the sum of the channels is the same for every outcome and never larger than before, and
+// no channel grows by more than a factor of 3.
 
 #include <array>
 
@@ -19,27 +20,29 @@ namespace bandsaw {
 
 class Flight {
  public:
-  /// Light of weight `throughput` (>= 0, finite) that enters a stretch of this length, scene units
-  /// > 0, maybe infinite.
+  /// Light of weight `throughput` (>= 0, finite) enters a segment of the given length (scene units,
+  /// > 0, may be infinite).
   Flight(const Medium& medium, const Rgb& throughput, double length);
 
-  /// The probability with which light should be scattered here, in [0, 1]; 0 where nothing is.
+  /// Returns the probability of scattering in the segment, in [0, 1]; 0 if nothing is scattered.
   double chance() const;
 
-  /// Where it is scattered, in [0, length]; choice, u in [0, 1). chance() MUST NOT be 0.
+  /// Samples the distance at which light is scattered, in [0, length]. `choice` selects the
+  /// channel, u the distance; both in [0, 1). chance() MUST NOT be 0.
   double sample(double choice, double u) const;
-  /// The density of sample() there, by length. chance() MUST NOT be 0.
+  /// Returns the pdf of `sample()` with respect to length. chance() MUST NOT be 0.
   double pdf(double distance) const;
 
-  /// throughput scattering exp(-extinction distance): what is scattered there, over the length.
+  /// Returns throughput * scattering * exp(-extinction * distance): the weight scattered per
+  /// length.
   Rgb scattered(double distance) const;
-  /// The weight after scattering there by choice: scattered() / (chance() pdf()).
+  /// Returns the weight after scattering was chosen: scattered() / (chance() * pdf()).
   Rgb after_scattering(double distance) const;
-  /// The weight after passing by choice: what passes over 1 - chance().
+  /// Returns the weight after passing was chosen: passing() / (1 - chance()).
   Rgb after_passing() const;
-  /// The weight of what passes.
+  /// Returns the weight of the light that passes the whole segment: throughput * transmittance.
   Rgb passing() const;
-  /// throughput scattering reach: what is scattered along all of the stretch.
+  /// Returns the weight scattered along the whole segment: throughput * scattering * reach.
   Rgb all_scattered() const;
 
  private:

@@ -1,27 +1,27 @@
 #pragma once
 
-// What fills a part of space: smoke, fog, milk. The same everywhere in it.
+// Homogeneous participating media: smoke, fog, milk.
 
 #include "renderlib/math/rgb.h"
 
 namespace bandsaw {
 
-/// Everything is per scene unit and channel, >= 0. An absorption and scattering of 0 is empty
-/// space.
+/// Coefficients per scene unit and channel, >= 0. With absorption and scattering 0 the medium is
+/// empty space.
 struct Medium {
-  Rgb absorption = {};  ///< share of the light that is lost on a short way, over its length
-  Rgb scattering = {};  ///< share of the light that is sent elsewhere, over the length
-  Rgb emission = {};    ///< radiance that is added on a short way, over its length
-  double g = 0;         ///< mean cosine of scattering (medium/phase.h), in [-kMostG, kMostG]
+  Rgb absorption = {};  ///< absorption coefficient
+  Rgb scattering = {};  ///< scattering coefficient
+  Rgb emission = {};    ///< emitted radiance per length
+  double g = 0;  ///< mean cosine of the phase function (medium/phase.h), in [-kMostG, kMostG]
   friend bool operator==(const Medium&, const Medium&) = default;
 };
 
-/// |g| nearer to 1 would make a beam of what is no longer scattering.
+/// Maximum of |g|; closer to 1, scattering would degenerate to a beam.
 inline constexpr double kMostG = 0.999;
-/// Coefficients beyond this are refused: a millionth of a millionth of a scene unit is opaque.
+/// Maximum coefficient: at this value 1e-12 scene units are already opaque.
 inline constexpr float kMostPerUnit = 1e12f;
 
-/// Whether a channel gives light and fades nowhere: a medium without end would be infinitely
+/// Returns true if a channel emits and has no extinction: an infinite medium would be infinitely
 /// bright.
 constexpr bool is_endless_glow(const Medium& m) {
   const auto endless = [](float emission, float absorption, float scattering) {
@@ -32,7 +32,7 @@ constexpr bool is_endless_glow(const Medium& m) {
          endless(m.emission.b, m.absorption.b, m.scattering.b);
 }
 
-/// Whether light passes as through nothing.
+/// Returns true if the medium has no effect on light.
 constexpr bool is_clear(const Medium& medium) {
   return is_black(medium.absorption) && is_black(medium.scattering) && is_black(medium.emission);
 }

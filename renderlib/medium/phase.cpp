@@ -10,8 +10,8 @@
 namespace bandsaw {
 namespace {
 
-/// The inverse of the distribution of the cosine, k = 2 u - 1, multiplied out: the usual form
-/// divides by g.
+/// Inverts the distribution function of the cosine for k = 2 u - 1. This polynomial form avoids the
+/// division by g of the usual one.
 double sample_cosine(double g, double k) {
   const double numerator = 2 * k + g * (k * k + 3) + 2 * g * g * k + g * g * g * (k * k - 1);
   const double denominator = 1 + g * k;
@@ -21,7 +21,7 @@ double sample_cosine(double g, double k) {
 }  // namespace
 
 double phase(double g, double cosine) {
-  // (1 - g)^2 + 2 g (1 - cosine), so that nothing cancels near the peak.
+  // (1 - g)^2 + 2 g (1 - cosine): no cancellation near the peak.
   const double base =
       g >= 0 ? (1 - g) * (1 - g) + 2 * g * (1 - cosine) : (1 + g) * (1 + g) - 2 * g * (1 + cosine);
   return 0.25 * kInvPi * (1 - g) * (1 + g) / (base * std::sqrt(base));

@@ -10,15 +10,16 @@
 namespace bandsaw {
 namespace {
 
-/// No half tile is planned for more than so many times the mean: a plan that a few dominate is
-/// drawn out over many passes in which most of the machines have little to do.
+/// Maximum weight of a half tile over the mean: a plan dominated by a few half tiles takes many
+/// passes in which most machines have little to do.
 constexpr double kMostOverMean = 8;
-/// What a tile itself says counts as much as all tiles around: they make it surer.
+/// Weight of a tile's own error; its neighbours have the rest, which reduces the noise of the
+/// estimate.
 constexpr double kOwnTile = 0.5;
-/// The gain in error at equal samples below which a plan is not worth having: a sample where noise
-/// is takes 1.1 to 1.4 times the time of others (tests/bench/README.md).
+/// Minimum gain in error at equal samples for which a plan pays: samples in noisy regions take 1.1
+/// to 1.4 times the time of others (tests/bench/README.md).
 constexpr double kLeastGain = 1.25;
-/// A plan is judged by what it comes to after so many times the pilot's samples.
+/// A plan is evaluated at this multiple of the pilot's samples.
 constexpr double kJudgedAfter = 8;
 
 constexpr int kLevels = 16;
@@ -26,7 +27,7 @@ constexpr int kLevels = 16;
 int level_of_digit(char digit) { return digit <= '9' ? digit - '0' : digit - 'a' + 10; }
 char digit_of(int level) { return "0123456789abcdef"[level]; }
 
-/// 2^((6 - level) / 2).
+/// Returns 2^((6 - level) / 2).
 double share_of(int level) {
   constexpr double kRoot = 0.70710678118654752440;
   double share = 8;
@@ -44,7 +45,7 @@ int level_of(double share) {
   return level;
 }
 
-/// Means over pixels.
+/// Mean errors, weighted by pixels.
 class Mean {
  public:
   void add(const TileError& tile) {
@@ -52,7 +53,7 @@ class Mean {
     variance_ += tile.pixels * tile.variance;
     relative_ += tile.pixels * tile.relative;
   }
-  /// Of all of them together.
+  /// Returns the mean over all tiles added.
   TileError value() const {
     return pixels_ > 0 ? TileError{pixels_, variance_ / pixels_, relative_ / pixels_} : TileError{};
   }
@@ -63,9 +64,9 @@ class Mean {
   double relative_ = 0;
 };
 
-/// One a tile. The same for all would be their root mean square: then the last sample of a tile
-/// takes off as much of the error as the last of one that is dealt out to evenly, in the other half
-/// of the image, say, where it is the root of the mean variance that counts.
+/// Returns one level per tile. Weights are divided by their root mean square, so that the marginal
+/// error reduction of a sample equals that of a uniformly sampled tile (e.g. in the other half of
+/// the image), which depends on the root of the mean variance.
 std::vector<int> levels_of(std::vector<double> weights) {
   const auto count = static_cast<double>(weights.size());
   const double most = kMostOverMean * std::accumulate(weights.begin(), weights.end(), 0.0) / count;
@@ -82,7 +83,7 @@ std::vector<int> levels_of(std::vector<double> weights) {
   return levels;
 }
 
-/// What some pixels of every tile say.
+/// The pilot's errors over some pixels of every tile.
 class Pilot {
  public:
   Pilot(const TileGrid& grid, std::vector<TileError> tiles)
@@ -96,7 +97,7 @@ class Pilot {
 
   const std::vector<TileError>& tiles() const { return tiles_; }
 
-  /// How samples are dealt out to the tiles.
+  /// Returns the sample allocation that these errors suggest.
   std::vector<int> levels() const {
     std::vector<double> weights;
     for (std::size_t i = 0; i < tiles_.size(); ++i) {
@@ -106,12 +107,12 @@ class Pilot {
   }
 
  private:
-  /// By which samples are dealt out to a tile whose errors are these.
+  /// Returns the weight of a tile with these errors.
   double weight(const TileError& tile) const {
     return std::sqrt((mean_.variance > 0 ? tile.variance / mean_.variance : 0) +
                      (mean_.relative > 0 ? tile.relative / mean_.relative : 0));
   }
-  /// The errors of the tiles around tile i; of all tiles where there are none.
+  /// Returns the mean error of the tiles adjacent to tile i; of all tiles if these have no pixels.
   TileError around(std::size_t i) const {
     const auto row = static_cast<std::uint32_t>(i) / grid_.columns();
     const auto column = static_cast<std::uint32_t>(i) % grid_.columns();
@@ -127,7 +128,7 @@ class Pilot {
     const TileError value = mean.value();
     return value.pixels > 0 ? value : mean_;
   }
-  /// The same with the tile itself.
+  /// Returns the same blended with the tile's own error.
   TileError here(std::size_t i) const {
     const TileError others = around(i);
     const TileError& own = tiles_[i];
@@ -142,8 +143,8 @@ class Pilot {
   TileError mean_;
 };
 
-/// By how much the larger of the two errors falls below that of as many samples dealt out evenly,
-/// where each half of the rows is dealt out to as the other shows.
+/// Returns the factor by which the error falls below that of uniform sampling with as many samples;
+/// the smaller factor of the two errors. Each half of the rows is planned from the other.
 double gain(const std::array<Pilot, 2>& rows) {
   double samples = 0;
   Mean evenly;
@@ -166,7 +167,7 @@ double gain(const std::array<Pilot, 2>& rows) {
   return std::min(fall(before.variance, after.variance), fall(before.relative, after.relative));
 }
 
-/// Of the tiles, as this half of them shows.
+/// Plans the tiles from one half of their pixels.
 std::vector<int> plan_by(const TileGrid& grid, absl::Span<const HalfTileErrors> tiles,
                          std::size_t half) {
   std::vector<TileError> all;

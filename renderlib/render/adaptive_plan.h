@@ -1,20 +1,21 @@
 #pragma once
 
-// Adaptive sampling: more samples where there is more noise, without bias.
+// Adaptive sampling: more samples for pixels with more noise, without bias.
 //
-// A rule that looks at a pixel's samples to decide whether it needs more stops where it happened to
-// see little, and keeps too little: a pixel lit by one of a hundred samples can come out at 14 % of
-// its value. Here nothing that a pixel's samples show decides how many it gets. All pixels take
-// part in a pilot, the first samples. Then the even pixels of every tile are planned, once, from
-// the pilot of the odd pixels of the image alone, and the odd ones from that of the even ones.
-// Scrambles of different pixels are independent (sampling/sampler.h), so given the plan a pixel's
-// mean is that of all its samples, and right on average.
+// A rule that decides from a pixel's own samples whether it needs more stops where it happened to
+// see little light, and is biased: a pixel lit by one of a hundred samples can converge to 14 % of
+// its value. Here a pixel's own samples never decide how many it gets. All pixels take part in a
+// pilot, the first samples. Then the even pixels of every tile are planned, once, from the pilot of
+// the image's odd pixels alone, and the odd ones from that of the even ones. The Owen scrambles of
+// different pixels are independent (sampling/sampler.h), so given the plan, a pixel's value is the
+// mean of all its samples and unbiased.
 //
-// Samples are dealt out for two errors at once: the mean of the squared errors, which --error
-// promises, and the same over the squared values (relMSE), which is what eyes see in the dark. For
-// one of them the best share is the root of the variance of one sample (Neyman 1934, "On the Two
-// Different Aspects of the Representative Method", optimum allocation); for both, the root of the
-// sum of the two variances, each over its mean over the image.
+// Samples are distributed for two errors at once: the mean squared error, which --error bounds, and
+// the mean of squared errors over squared values (relMSE), which corresponds to visible noise in
+// dark regions. For a single one the optimal allocation is proportional to the standard deviation
+// of one sample (Neyman 1934, "On the Two Different Aspects of the Representative Method"); for
+// both, to the square root of the sum of the two variances, each divided by its mean over the
+// image.
 
 #include <array>
 #include <cstdint>
@@ -27,40 +28,40 @@
 
 namespace bandsaw {
 
-/// What a pilot shows of some pixels: means over them and their channels.
+/// Error of the pilot over some pixels of a tile: means over the pixels and their channels.
 struct TileError {
-  std::uint32_t pixels = 0;  ///< 0 at the edge of an image, perhaps
-  double variance = 0;       ///< of the pilot's mean, >= 0
-  double relative = 0;       ///< the same over value^2 + 0.01
+  std::uint32_t pixels = 0;  ///< may be 0 at the edge of an image
+  double variance = 0;       ///< variance of the pilot's mean, >= 0
+  double relative = 0;       ///< variance / (value^2 + 0.01)
 };
 
-/// Of a half tile: of its pixels in even rows of the image, and of those in odd ones.
+/// Errors of a half tile: of its pixels in even rows of the image, and of those in odd rows.
 using HalfTileErrors = std::array<TileError, 2>;
 
 inline constexpr char kEvenLevel = '6';
 
-/// How many samples each half tile is to have after the pilot.
+/// Sample allocation of each half tile after the pilot.
 struct TilePlan {
   std::uint64_t pilot = 0;  ///< samples of all pixels
-  /// A digit 0 … f a half tile, in the order of TileGrid: of the samples of a half tile that is
-  /// dealt out to evenly, level l is to have 2^((6 - l) / 2), but not fewer than the pilot.
+  /// One digit 0 to f for each half tile, in the order of TileGrid. Level l gives 2^((6 - l) / 2)
+  /// times the samples of uniform sampling, but at least the pilot's.
   std::string levels;
 
-  /// No tile is to have other samples than another.
+  /// Returns true if all tiles get the same number of samples.
   bool even() const { return levels.find_first_not_of(kEvenLevel) == std::string::npos; }
   friend bool operator==(const TilePlan&, const TilePlan&) = default;
 };
 
-/// `tiles`: one a half tile, of a pilot of `samples` samples. A pure function, the same on every
-/// machine.
+/// Computes the plan from the pilot. `tiles` has one entry for each half tile; `samples` is the
+/// number of samples of the pilot. A pure function, with the same result on every machine.
 ///
-/// Whether it pays is asked of the pilot itself: what even rows would plan is judged by the noise
-/// of odd ones, and the other way round. Where both errors would not fall well below those of as
-/// many samples dealt out evenly, every level of a half is 6.
+/// The pilot itself decides whether the plan pays: the plan from even rows is evaluated on the
+/// errors of odd rows, and vice versa. Unless both errors fall well below those of uniform sampling
+/// with as many samples, all levels of a half of the image are 6.
 TilePlan plan_tiles(const TileGrid& grid, absl::Span<const HalfTileErrors> tiles,
                     std::uint64_t samples);
 
-/// What this half tile is to have, over the samples of one that is dealt out to evenly.
+/// Returns the factor of this half tile's samples over uniform sampling.
 double share_of(const TilePlan& plan, std::size_t half_tile);
 
 }  // namespace bandsaw

@@ -10,7 +10,7 @@
 namespace bandsaw {
 
 bool is_node(const SampleRange& range) {
-  // The upper bound keeps blocks() from wrapping; no job comes near it.
+  // The upper bound prevents overflow in blocks(); no job comes near it.
   if (range.first >= range.last || range.last > (std::uint64_t{1} << 62)) {
     return false;
   }
@@ -22,8 +22,8 @@ std::vector<SampleRange> maximal_nodes(std::uint64_t samples) {
   std::vector<SampleRange> nodes;
   std::uint64_t first = 0;
   while (first < samples) {
-    // What was taken so far is a multiple of every smaller power of two, so the largest one that
-    // fits is aligned.
+    // The samples taken so far are a multiple of every smaller power of two, so the largest node
+    // that fits is aligned.
     const std::uint64_t blocks = std::bit_floor(SampleRange{first, samples}.blocks());
     const std::uint64_t last = std::min(first + blocks * kBlockSamples, samples);
     nodes.push_back({first, last});
@@ -34,7 +34,7 @@ std::vector<SampleRange> maximal_nodes(std::uint64_t samples) {
 
 Halves split(const SampleRange& node) {
   BANDSAW_CHECK(is_node(node) && node.blocks() >= 2, "only nodes above the leaves have halves");
-  // The cut-off lies in the last block, so the right half is never empty.
+  // The truncation lies in the last block, so the right half is never empty.
   const std::uint64_t middle = node.first + node.blocks() / 2 * kBlockSamples;
   return {{node.first, middle}, {middle, node.last}};
 }

@@ -33,7 +33,7 @@ class Writer {
   std::vector<std::byte>& bytes_;
 };
 
-/// Takes numbers from bytes whose size was checked before.
+/// Reads numbers from bytes whose size has been checked.
 class Reader {
  public:
   explicit Reader(const std::byte* at) : at_(at) {}
@@ -66,7 +66,7 @@ std::uint64_t hash_of(absl::Span<const std::byte> bytes) {
   return hash.value();
 }
 
-/// Everything but the sums themselves.
+/// Checks everything except the sums.
 absl::Status check(const BandRecord& record) {
   if (!is_digest(record.package_digest)) {
     return absl::InvalidArgumentError("package_digest: must be 64 lower-case hexadecimal digits");
@@ -77,7 +77,8 @@ absl::Status check(const BandRecord& record) {
     return absl::InvalidArgumentError(absl::StrCat("width: the pixels have ", pixels.width,
                                                    ", the settings ", record.settings.width));
   }
-  // Which samples of its own a half tile takes is not in the record (render/tile_samples.h).
+  // The record does not contain which samples a half tile took (render/tile_samples.h), so only
+  // upper bounds can be checked.
   const Counters& counters = pixels.counters;
   const RowRange& rows = pixels.band.rows;
   const std::uint64_t most = kMaxSamples * rows.count() * pixels.width;
@@ -98,7 +99,7 @@ absl::Status check(const BandRecord& record) {
   return absl::OkStatus();
 }
 
-/// Reads the header after magic and size; the sums are left to the caller.
+/// Reads the header after magic and size; the caller reads the sums.
 Reader read_header(Reader reader, BandRecord& record) {
   record.package_digest = reader.text(kDigestSize);
   RenderSettings& settings = record.settings;

@@ -1,8 +1,7 @@
 #pragma once
 
-// Band sums as bytes: what `bandsaw render --rows` writes, `bandsaw stitch` reads, and the
-// coordinator keeps. A file is any number of records, one after the other; each says all that is
-// needed to know what it belongs to.
+// Serialised band sums: written by `bandsaw render --rows`, read by `bandsaw stitch`, and stored by
+// the coordinator. A file is a sequence of records; each is self-describing.
 //
 // A record, little-endian, no padding:
 //   "BSWBAND3"                                          8 bytes: magic and format version
@@ -36,35 +35,36 @@
 
 namespace bandsaw {
 
-/// What a record begins with: to find the next one after a damaged one.
+/// First bytes of a record; also used to find the next record after a damaged one.
 inline constexpr std::array<char, 8> kBandRecordMagic = {'B', 'S', 'W', 'B', 'A', 'N', 'D', '3'};
 
 struct BandRecord {
   std::string package_digest;  ///< 64 lower-case hexadecimal digits
   RenderSettings settings;
   BandPixels pixels;
-  double cpu_s = 0;            ///< what it cost, summed over threads, >= 0; 0: not said
-  std::uint64_t renderer = 0;  ///< names who rendered it, to tell one from another; 0: not said
+  double cpu_s = 0;            ///< CPU time, summed over threads, >= 0; 0: unknown
+  std::uint64_t renderer = 0;  ///< identifies the process that rendered the band; 0: unknown
 };
 
-/// The size of the record of a band, bytes.
+/// Returns the size of a band's record in bytes.
 std::uint64_t band_record_size(const Band& band, std::uint32_t width);
 
-/// INVALID_ARGUMENT: the record contradicts itself (digest, band, number of sums, cost).
+/// Serialises a record. Returns INVALID_ARGUMENT if the record is inconsistent (digest, band,
+/// number of sums, cost).
 absl::StatusOr<std::vector<std::byte>> encode_band_record(const BandRecord& record);
 
 struct DecodedBandRecord {
   BandRecord record;
-  std::uint64_t size = 0;  ///< bytes it took: the next record begins there
+  std::uint64_t size = 0;  ///< size in bytes; the next record begins after it
 };
 
-/// The record at byte `offset` of `bytes`; every field is checked. Both errors begin with "byte N:
-/// ", N counted in `bytes`. OUT_OF_RANGE: the bytes end before the record does (a file that was cut
-/// off). DATA_LOSS: the bytes are not such a record.
+/// Parses the record at byte `offset` of `bytes` and checks every field. Messages begin with "byte
+/// N: ", where N counts from the start of `bytes`. Returns OUT_OF_RANGE if the bytes end before the
+/// record does (a truncated file), DATA_LOSS if they are no such record.
 absl::StatusOr<DecodedBandRecord> decode_band_record(absl::Span<const std::byte> bytes,
                                                      std::uint64_t offset = 0);
 
-/// One digest a row of its sums' bits: equal for equal pixels.
+/// Returns one digest for each row, of its sums' bits: equal for equal pixels.
 std::vector<std::uint64_t> row_digests(const BandPixels& pixels);
 
 }  // namespace bandsaw

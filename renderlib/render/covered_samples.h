@@ -1,6 +1,6 @@
 #pragma once
 
-// Which passes' samples of a row a film has: rendered, or left out by all that plan says.
+// Samples of a row that a film has covered: rendered, or skipped by the plan in all their tiles.
 
 #include <cstdint>
 #include <optional>
@@ -8,19 +8,20 @@
 
 #include "renderlib/render/band.h"
 
+/// A set of sample ranges; adjacent ranges are merged.
 namespace bandsaw {
 
 class CoveredSamples {
  public:
-  /// What of these is there already, with all that it touches.
+  /// Returns the covered range (after merging) that overlaps `samples`, if any.
   std::optional<SampleRange> overlap(const SampleRange& samples) const;
-  /// None of them is there yet.
+  /// Adds `samples`, none of which may be covered.
   void add(const SampleRange& samples);
-  /// The largest n of which [0, n) is there.
+  /// Returns the largest n for which [0, n) is covered.
   std::uint64_t from_start() const;
 
  private:
-  std::vector<SampleRange> ranges_;  ///< in order; none touch
+  std::vector<SampleRange> ranges_;  ///< in ascending order; no two are adjacent
 };
 
 }  // namespace bandsaw

@@ -12,21 +12,23 @@
 namespace bandsaw {
 namespace {
 
-constexpr double kSmallest = 0.01;  // Keeps ratios to dark pixels from deciding all.
+constexpr double kSmallest = 0.01;  // Prevents relative errors of dark pixels from dominating.
 
-// One image is off by a squared error T, of which its nodes tell V. Both are sums over half rows of
-// tiles, which do not depend on each other (sampling/sampler.h, integrate/shared_paths.h). Let the
-// errors within one be normal and, at worst, the same for all its pixels: s its variance. Its parts
-// of T and V are independent, the first has the variance 2 s^2, the second r s^2: r = 2 from two
-// halves, about 1 with further nodes. So the variance of T - V is (2 + r) s^2, where the square of
-// its part of V is (1 + r) s^2 on average: between 4/3 and 3/2 of that. Where its pixels have
-// nothing in common the margin is too wide, by the root of 10 / 3 at most: little in an image of
-// many pixels, and one bright pixel of eight is most of its half row's square either way. Rare
-// bright samples are in T and in V, which makes the difference smaller.
+// Let T be the squared error of one image and V its estimate from the nodes. Both are sums over
+// half rows of tiles, which are independent (sampling/sampler.h, integrate/shared_paths.h). Let the
+// errors within a half row be normal and, in the worst case, the same for all its pixels, with
+// variance s. Its contributions to T and V are independent; the first has variance 2 s^2, the
+// second r s^2, where r = 2 for two halves and about 1 with further nodes. So the variance of T - V
+// is (2 + r) s^2, while the expected square of its contribution to V is (1 + r) s^2: the ratio is
+// between 4/3 and 3/2. If the pixels of a half row are independent, the margin is too wide, by at
+// most sqrt(10 / 3): little in an image of many pixels, and if one of eight pixels is bright it
+// dominates its half row's square either way. Rare bright samples occur in both T and V, which
+// makes the difference smaller.
 constexpr double kOfSquares = 1.5;
-// Of 1.64 standard deviations a normal T - V is below 19 times of 20. The rest is for looking more
-// than once, and for few pixels, whose sums are skew, and whose squares are too small together with
-// V (tests/unit/cli/stop_at_error_test.cpp; README.md has what was tried).
+// A normal T - V is below 1.64 standard deviations 19 times of 20. The rest covers repeated
+// stopping decisions and small numbers of pixels, whose sums are skewed and whose squares are too
+// small together with V (tests/unit/cli/stop_at_error_test.cpp; NOTES.md lists the alternatives
+// that were tried).
 constexpr double kDeviations = 3;
 
 struct Estimated {
@@ -53,7 +55,7 @@ Estimated of_channel(absl::Span<const NodeSums> nodes, std::size_t k) {
   return {sum / samples, weighed / (samples * samples)};
 }
 
-// The value that `share` of all stay below.
+// Returns the value below which a share `share` of all values lies.
 double quantile(std::vector<float>& values, double share) {
   const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), values.begin() + at, values.end());
@@ -61,7 +63,7 @@ double quantile(std::vector<float>& values, double share) {
 }
 
 double share_of_worst(std::vector<float> variances) {
-  constexpr std::size_t kFew = 64;  // Where one pixel is much of the image by itself.
+  constexpr std::size_t kFew = 64;  // In smaller images one pixel is a large part of the image.
   if (variances.size() < kFew) {
     return 0;
   }
@@ -85,7 +87,7 @@ void ErrorSums::add_row(absl::Span<const NodeSums> nodes, std::size_t step) {
                 "the error is told from halves");
   const std::size_t pixels = nodes[0].sums.size() / 3;
   const std::size_t together =
-      step * kTileSide / 2;  // So many pixels in a row are `step` half rows.
+      step * kTileSide / 2;  // This many adjacent pixels are `step` half rows.
   for (std::size_t first = 0; first < pixels; first += together) {
     for (std::size_t half = first; half < std::min(first + step, pixels); ++half) {
       double of_half_row = 0;
@@ -114,7 +116,8 @@ double ErrorSums::add_pixel(const double (&variances)[3], const double (&means)[
     value += means[c];
   }
   sum_ += value;
-  // One sample of 1e30 is worth more than a float holds, and infinity would make the shares NaN.
+  // The sum of one sample of 1e30 exceeds the range of float, and infinity would make the shares
+  // NaN.
   constexpr double kMost = std::numeric_limits<float>::max();
   variances_.push_back(static_cast<float>(std::clamp(of_pixel / 3, 0.0, kMost)));
   means_.push_back(static_cast<float>(value / 3));

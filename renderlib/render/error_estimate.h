@@ -1,17 +1,17 @@
 #pragma once
 
-// How wrong an image is, told without a reference: from sums of samples that are independent of
-// each other, or better than that.
+// Error estimate of an image without a reference, from sums of samples that are independent or
+// stratified.
 //
-// With Owen-scrambled points the spread of single samples says little (it is 3 to 54 times too
-// large); two halves of a power-of-two number of samples differ by as much as random halves of that
-// error would, or more. So the estimate is right for noise and too large, up to about 2.5 times,
-// where sampling is stratified well.
+// With Owen-scrambled points the variance of single samples is 3 to 54 times too large. The
+// difference of the two halves of a power-of-two number of samples is at least as large as that of
+// independent halves with the same error. So the estimate is right for pure noise and up to about
+// 2.5 times too large where sampling is well stratified.
 //
-// An estimate scatters, and so does the error of one image about that of all seeds. Who goes on
-// until an estimate is small enough stops where it happens to be too small: an image whose noise is
-// in 70 of its pixels and that stops so is above its target three times in ten. What can be asked
-// for is therefore a bound: the estimate and a margin.
+// An estimate scatters, and so does the error of one image around that of all seeds. A job that
+// stops as soon as the estimate is small enough stops where it happens to be too small: an image
+// whose noise is in 70 of its pixels is then above its target three times in ten. So the stop rule
+// uses an upper bound: the estimate plus a margin.
 
 #include <cstdint>
 #include <optional>
@@ -21,69 +21,71 @@
 
 namespace bandsaw {
 
-/// Errors are standard deviations of the image from the mean that more samples would give, over all
-/// channels of all pixels.
+/// Errors are standard deviations of the image from its expected value, over all channels of all
+/// pixels.
 struct ErrorEstimate {
-  double mean = 0;           ///< of the image
-  double rmse = 0;           ///< sqrt(mean variance)
-  double relative_rmse = 0;  ///< rmse / mean; 0 where the image is black
-  double margin = 0;         ///< what at_most() adds to relative_rmse, >= 0
+  double mean = 0;           ///< mean value of the image
+  double rmse = 0;           ///< square root of the mean variance
+  double relative_rmse = 0;  ///< rmse / mean; 0 if the image is black
+  double margin = 0;         ///< difference between at_most() and relative_rmse, >= 0
   double relative_mse = 0;   ///< mean(variance / (value^2 + 0.01))
-  /// Of the pixels' errors, each over its value plus a hundredth of the mean: what half, 95 and 99
-  /// of a hundred pixels stay below.
+  /// Quantiles (50 %, 95 %, 99 %) of the pixels' errors, each relative to the pixel's value plus a
+  /// hundredth of the mean.
   double median = 0;
   double percentile_95 = 0;
   double percentile_99 = 0;
-  /// The share of the variance that the worst thousandth of the pixels (at least one) has; 0 of
-  /// images of fewer than 64.
+  /// Share of the total variance in the worst thousandth of the pixels (at least one); 0 for images
+  /// of fewer than 64 pixels.
   double worst_share = 0;
 
-  /// What the relative RMSE of this very image is below, 19 times of 20 or more, also where samples
-  /// are added until this reaches a target. Not where doubtful().
+  /// Returns an upper bound of this image's relative RMSE that holds in at least 19 of 20 cases,
+  /// also if samples are added until it reaches a target. Not valid if doubtful().
   double at_most() const { return relative_rmse + margin; }
 
-  /// Rare bright paths decide the error: pixels that none has met yet show nothing of theirs, and
-  /// the estimate is likely too low.
+  /// Returns true if rare bright paths dominate the error. Pixels that have not sampled such a path
+  /// show none of this variance, so the estimate is likely too low.
   bool doubtful() const { return worst_share > 0.3; }
 
   friend bool operator==(const ErrorEstimate&, const ErrorEstimate&) = default;
 };
 
-/// A black image of fewer samples says nothing: none may have met its light yet.
+/// A black image with fewer samples than this is inconclusive: no path may have reached its lights.
 inline constexpr std::uint64_t kBlackSamples = 1024;
 
-/// What the error of an image of so many samples a pixel is below (ErrorEstimate::at_most); below
-/// 0: not known.
+/// Returns ErrorEstimate::at_most() of an image with `samples` samples per pixel; a negative number
+/// if the error is unknown.
 double known_error(const std::optional<ErrorEstimate>& estimate, std::uint64_t samples);
 
-/// One pixel row's sums, of one node of its samples.
+/// Sums of one row of pixels over one node of its samples.
 struct NodeSums {
   std::uint64_t samples = 0;
   absl::Span<const double> sums;  ///< width x 3
 };
 
+/// Accumulates the variances of pixels.
 class ErrorSums {
  public:
-  /// A row whose first two nodes have equally many samples; all rows have equally many pixels. With
-  /// a and b their means and v = (a - b)^2 / 4 the variance of both together, the variance of a
-  /// further node of mean e is taken as (e - (a + b) / 2)^2 - v, which is right on average.
-  /// Pixels of one half row of a tile (render/tile_samples.h) may have found their light together,
-  /// as no others may; the margin allows for it. `step`: 2 for rows of an image, where the pixels
-  /// of two half rows take turns, 1 for a half row.
+  /// Adds a row whose first two nodes have equally many samples; all rows MUST have equally many
+  /// pixels. With the means a and b of the first two nodes, v = (a - b)^2 / 4 is the variance of
+  /// their common mean. The variance of a further node of mean e is estimated by (e - (a + b) /
+  /// 2)^2 - v, which is unbiased. The errors of pixels in one half row of a tile
+  /// (render/tile_samples.h) may be correlated by path reuse, those of other pixels are not; the
+  /// margin accounts for it. `step` is 2 for rows of an image, in which the pixels of two half rows
+  /// alternate, and 1 for a half row.
   void add_row(absl::Span<const NodeSums> nodes, std::size_t step);
 
-  /// At least one row MUST have been added.
+  /// Returns the estimate. At least one row MUST have been added.
   ErrorEstimate estimate() const;
 
  private:
-  /// Returns the pixel's variance, summed over its channels.
+  /// Adds a pixel; returns its variance, summed over its channels.
   double add_pixel(const double (&variances)[3], const double (&means)[3]);
 
-  double squares_ = 0;            ///< the variances of all pixels
-  double squared_variances_ = 0;  ///< the square of that of each half row
+  double squares_ = 0;            ///< sum of the pixels' variances
+  double squared_variances_ = 0;  ///< sum of the squared variances of half rows
   double relative_squares_ = 0;
   double sum_ = 0;
-  std::vector<float> variances_;  ///< mean over the channels, >= 0
+  std::vector<float> variances_;  ///< per pixel, mean over the channels, >= 0
   std::vector<float> means_;
 };
 

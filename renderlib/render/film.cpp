@@ -16,8 +16,8 @@ namespace bandsaw {
 struct Film::Rows {
   FilmStrips strips;
   RowStore store;
-  std::vector<StripNodes> nodes;        ///< of all strips, row by row
-  std::vector<CoveredSamples> covered;  ///< of all rows
+  std::vector<StripNodes> nodes;        ///< all strips, row by row
+  std::vector<CoveredSamples> covered;  ///< all rows
 
   std::uint32_t width() const { return strips.grid().width; }
   std::uint32_t height() const { return strips.grid().height; }
@@ -27,7 +27,7 @@ struct Film::Rows {
   const StripNodes& of(std::uint32_t y, std::uint32_t index) const {
     return nodes[std::size_t{y} * strips.per_row() + index];
   }
-  /// Calls f(row, strip's index, strip, nodes) for each strip that has pixels, row by row.
+  /// Calls f(row, strip index, strip, nodes) for each strip with pixels, row by row.
   template <class F>
   void each(F f) const {
     for (std::uint32_t y = 0; y < height(); ++y) {
@@ -40,12 +40,12 @@ struct Film::Rows {
   }
 
   absl::Status check(const BandPixels& pixels, const TileSamples& tiles) const;
-  /// `row`: the sums of a row's pixels.
+  /// Inserts the sums of a row; `row` holds the sums of its pixels.
   void insert(std::uint32_t y, const SampleRange& samples, absl::Span<const double> row,
               const TileSamples& tiles);
-  /// The nodes that follow each other from the first, as the error is told from; in `out`.
+  /// Collects in `out` the contiguous nodes from the first sample on, for the error estimate.
   void node_sums(const Strip& strip, const StripNodes& from, std::vector<NodeSums>& out) const;
-  /// The sum of these nodes, left to right: 3 numbers a pixel of the strip.
+  /// Adds the contiguous nodes from left to right: 3 numbers for each pixel of the strip.
   void add_up(const StripNodes& from, std::vector<double>& total) const;
 };
 

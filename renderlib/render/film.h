@@ -1,10 +1,11 @@
 #pragma once
 
-// The accumulators of an image: takes bands in any order, holds every row's sums as nodes of the
-// summation tree (render/band.h), merges siblings as they meet, and gives the image.
+// The accumulation buffer of an image. Accepts bands in any order, stores every row's sums as nodes
+// of the summation tree (render/band.h), merges siblings when both are present, and produces the
+// image.
 //
-// Where half tiles take samples of their own in a pass (render/tile_samples.h), a pixel's sum is
-// the tree of those, and its mean is over them.
+// If half tiles take their own samples in a pass (render/tile_samples.h), a pixel's sum is the tree
+// of those samples, and its value is their mean.
 
 #include <cstdint>
 #include <memory>
@@ -23,45 +24,48 @@ namespace bandsaw {
 
 class Film {
  public:
-  /// Which pixels may have other samples than their neighbours: rows, or half tiles.
+  /// Granularity at which pixels may have different samples: rows, or half tiles.
   enum class Grain { kRows, kHalfTiles };
 
-  /// Memory grows as rows arrive: 24 bytes a pixel for each node that is not merged yet; at the end
-  /// two halves. `spill_folder`: where to put the (unlinked) files the sums are mapped from; empty:
-  /// plain memory. RESOURCE_EXHAUSTED: no memory or disk.
+  /// Creates an empty film. Memory grows as rows arrive: 24 bytes per pixel for each unmerged node;
+  /// in the end two halves remain. `spill_folder` is the folder of the (unlinked) files that back
+  /// the sums; empty: anonymous memory. Returns RESOURCE_EXHAUSTED if memory or disk is full.
   static absl::StatusOr<Film> create(std::uint32_t width, std::uint32_t height,
                                      std::string spill_folder, Grain grain = Grain::kRows);
   Film(Film&&) noexcept;
   Film& operator=(Film&&) noexcept;
   ~Film();
 
-  /// Adds rows that are not covered yet. FAILED_PRECONDITION: a row's samples, or some of them, are
-  /// there already; then nothing was changed. RESOURCE_EXHAUSTED: no memory or disk. `tiles`: of
-  /// the band, who took which samples; whole for a film of rows.
+  /// Adds rows of samples that are not covered. Returns FAILED_PRECONDITION, without changing
+  /// anything, if some samples of a row are covered already; RESOURCE_EXHAUSTED if memory or disk
+  /// is full. `tiles` says which samples the half tiles of the band took; it MUST be whole for a
+  /// film of rows.
   absl::Status add(const BandPixels& pixels, const TileSamples& tiles = {});
 
-  /// Whether samples [0, samples) of every row's passes are there, or were left out.
+  /// Returns true if samples [0, samples) of the passes are covered in every row: rendered or
+  /// skipped.
   bool complete(std::uint64_t samples) const;
 
-  /// The image so far: mean of each pixel's first n samples, n the largest count whose maximal
-  /// nodes are all there, as the fixed tree adds them, rounded to float once. Rows with none are
-  /// `missing`, black.
+  /// The image so far. A pixel is the mean of its first n samples, rounded to float once, where n
+  /// is the largest count whose maximal nodes are all present, summed as the fixed tree prescribes.
+  /// Rows without samples are black and counted in `missing_rows`.
   struct Snapshot {
     Image image;
-    std::uint64_t least_samples = 0;  ///< of passes, over the rows
+    std::uint64_t least_samples = 0;  ///< minimum over the rows, in samples of the passes
     std::uint32_t missing_rows = 0;
   };
-  /// Of every row_step-th row (> 0): an image of so many rows; the counts are over those, too.
+  /// Returns an image of every row_step-th row (> 0); the counts are over these rows, too.
   Snapshot snapshot(std::uint32_t row_step = 1) const;
 
-  /// Of the samples that a snapshot shows. Nothing until every row has two halves of equal size.
+  /// Returns the error of the samples that a snapshot shows; std::nullopt until every row has two
+  /// halves of equal size.
   std::optional<ErrorEstimate> error() const;
 
-  /// The same of each half tile, of a film of half tiles: what plan_tiles reads. Empty where
-  /// error() is nothing.
+  /// Returns the errors of each half tile, for a film of half tiles: the input of plan_tiles. Empty
+  /// if error() is std::nullopt.
   std::vector<HalfTileErrors> tile_errors() const;
 
-  /// How many samples of each pixel a snapshot shows.
+  /// Returns the number of samples of each pixel that a snapshot shows.
   Image counts() const;
 
   std::uint32_t width() const;

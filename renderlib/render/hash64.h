@@ -1,9 +1,9 @@
 #pragma once
 
-// A 64-bit hash of bytes: finds damage and differences, resists no attacker. Each word is folded in
-// by multiply and rotate and the end is finished with the mixer of Steele, Lea, Flood 2014, "Fast
-// Splittable Pseudorandom Number Generators", section 3. Its values are part of the band file
-// format and of the canary: they never change.
+// A 64-bit hash of bytes that detects damage and differences; not cryptographic. Each word is
+// folded in by a multiplication and a rotation; the end uses the mixer of Steele, Lea and Flood
+// 2014, "Fast Splittable Pseudorandom Number Generators", section 3. Its values are part of the
+// band file format and of the canary, so they MUST NOT change.
 
 #include <bit>
 #include <cstddef>
@@ -20,7 +20,7 @@ class Hash64 {
     state_ = std::rotl(state_ ^ (word * 0x9e3779b97f4a7c15u), 29) * 0xbf58476d1ce4e5b9u + 1;
   }
   void add(double value) { add(std::bit_cast<std::uint64_t>(value)); }
-  /// The bytes as little-endian words, the last filled up with zeros, then their number.
+  /// Adds the bytes as little-endian words, the last padded with zeros, then their number.
   void add(absl::Span<const std::byte> bytes) {
     std::size_t done = 0;
     for (; done + 8 <= bytes.size(); done += 8) {

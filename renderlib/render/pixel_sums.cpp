@@ -52,7 +52,7 @@ void PixelSums::add_run(std::uint32_t y, std::uint32_t first, std::uint32_t last
   }
 }
 
-/// Leaves in order, two siblings added as soon as both are there.
+/// Processes leaves in order and adds two siblings as soon as both are present.
 void PixelSums::add_group(std::uint32_t y, const HalfRow& group, const SampleRange& samples,
                           absl::Span<double> row, Desk& desk, Counters& counters) const {
   if (samples.samples() == 0) {
@@ -106,7 +106,8 @@ PixelSums::Sums PixelSums::leaf(std::uint32_t y, const HalfRow& group, const Sam
       sums[i] = sums[i] + Sum{value.r, value.g, value.b};
     }
   }
-  // The others stand for what was left out: as black it would darken the pixel.
+  // The mean of the other samples replaces those left out; counting them as black would darken the
+  // pixel.
   const auto taken = static_cast<double>(samples.samples());
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     if (left_out[i] > 0 && left_out[i] < taken) {

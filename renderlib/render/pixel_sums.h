@@ -1,7 +1,7 @@
 #pragma once
 
-// The sums of a band's pixels, as band.h defines them: each alone, or where the scene's pixels
-// share their paths, those of half a row of a tile together.
+// Computes the sums of a band's pixels as defined in band.h: pixel by pixel or, if the scene shares
+// paths, half a row of a tile at a time.
 
 #include <array>
 #include <atomic>
@@ -18,20 +18,22 @@
 
 namespace bandsaw {
 
-/// Shared by the threads that render the band.
+/// Immutable; shared by the threads that render the band.
 class PixelSums {
  public:
-  /// `scene` and `stop` MUST outlive this. `settings` and `band` MUST be valid.
+  /// `scene` and `stop` MUST outlive this object. `settings` and `band` MUST be valid.
   PixelSums(const Scene& scene, const RenderSettings& settings, const Band& band,
             const std::atomic<bool>& stop);
 
   bool stopped() const { return stop_.load(std::memory_order_relaxed); }
 
-  /// Where a run of pixels may begin and end: at multiples of this, and at the end of the row.
+  /// Returns the alignment of runs: a run begins at a multiple of it and ends at one or at the end
+  /// of the row.
   std::uint32_t run_step() const { return shares_ ? kTileSide : 1; }
 
-  /// Sets three sums a pixel of those of [first, last) in row y that take samples; `row`: of the
-  /// whole row. Checks `stop` at least once a block of samples; sums mean nothing once it is set.
+  /// Writes three sums for each pixel of [first, last) in row y that takes samples; `row` holds the
+  /// sums of the whole row. Checks `stop` at least once per block; once it is set, the sums are
+  /// unspecified.
   void add_run(std::uint32_t y, std::uint32_t first, std::uint32_t last, const TileSamples& tiles,
                absl::Span<double> row, Counters& counters) const;
 
@@ -44,7 +46,7 @@ class PixelSums {
     friend Sum operator*(double s, const Sum& p) { return {s * p.r, s * p.g, s * p.b}; }
   };
   using Sums = std::array<Sum, kMostShared>;
-  /// What a group works in: allocated once a run.
+  /// Scratch memory of add_group(), allocated once per run.
   struct Desk {
     std::vector<SharedPixel> pixels;
     std::vector<Sums> stack;
@@ -52,7 +54,7 @@ class PixelSums {
 
   void add_group(std::uint32_t y, const HalfRow& group, const SampleRange& samples,
                  absl::Span<double> row, Desk& desk, Counters& counters) const;
-  /// Of one block, or what is there of it.
+  /// Returns the sums of one block, which may be truncated.
   Sums leaf(std::uint32_t y, const HalfRow& group, const SampleRange& samples,
             absl::Span<SharedPixel> pixels, Counters& counters) const;
   void sample(std::uint32_t y, const HalfRow& group, std::uint64_t sample,

@@ -1,6 +1,6 @@
 #pragma once
 
-// The facade: one band of an image, on all threads of a pool.
+// Facade of the renderer: renders one band of an image on all threads of a pool.
 
 #include <atomic>
 #include <functional>
@@ -14,13 +14,14 @@
 
 namespace bandsaw {
 
-/// Called from a pool thread each time a whole row has been finished, with the number of rows
-/// finished so far (each value 1..rows once, possibly out of order); MUST be quick and thread-safe.
+/// Called from a pool thread each time a row is complete, with the number of complete rows (each
+/// value 1..rows once, possibly out of order); MUST be fast and thread-safe.
 using RowsDone = std::function<void(std::uint32_t)>;
 
-/// Renders the band. The pixels depend on scene, settings and band alone. Checks `stop` at least
-/// once a row of a tile: CANCELLED when it was set. INVALID_ARGUMENT: settings or band out of
-/// range. `tiles`: what half tiles take, of rows that include the band's; sums of nothing are zero.
+/// Renders the band. The pixels depend only on scene, settings and band. `tiles` says which samples
+/// half tiles take, for rows that include the band's; sums of pixels without samples are zero.
+/// Checks `stop` at least once per row of a tile and returns CANCELLED if it is set. Returns
+/// INVALID_ARGUMENT if settings or band are out of range.
 absl::StatusOr<BandPixels> render_band(const Scene& scene, const RenderSettings& settings,
                                        const Band& band, Pool& pool, const std::atomic<bool>& stop,
                                        const RowsDone& progress, const TileSamples& tiles = {});

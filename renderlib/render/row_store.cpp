@@ -8,7 +8,7 @@
 namespace bandsaw {
 namespace {
 
-/// Large enough that a big image needs few maps, small enough that a small image wastes little.
+/// Large enough for few mappings in a big image, small enough to waste little in a small one.
 constexpr std::size_t kSlabBytes = std::size_t{8} << 20;
 
 }  // namespace

@@ -1,7 +1,6 @@
 #pragma once
 
-// Room for rows of sums, all of one length, taken and given back one by one; mapped in slabs
-// (base/mapped_buffer.h).
+// Allocator for rows of sums of equal length, memory-mapped in slabs (base/mapped_buffer.h).
 
 #include <cstdint>
 #include <string>
@@ -18,13 +17,14 @@ class RowStore {
  public:
   using Slot = std::uint32_t;
 
-  /// `length` >= 1: doubles a row. `folder`: as MappedBuffer::create takes it.
+  /// `length` (>= 1) is the number of doubles in a row; `folder` is that of MappedBuffer::create.
   RowStore(std::size_t length, std::string folder);
 
-  /// Makes sure that the next `rows` calls of take() find room. RESOURCE_EXHAUSTED, NOT_FOUND,
-  /// PERMISSION_DENIED: as MappedBuffer::create; what was there stays as it was.
+  /// Ensures that the next `rows` calls of take() succeed. Returns the errors of
+  /// MappedBuffer::create (RESOURCE_EXHAUSTED, NOT_FOUND, PERMISSION_DENIED); existing rows are
+  /// unchanged.
   absl::Status reserve(std::size_t rows);
-  /// A row of any content. It MUST have been reserved.
+  /// Returns a row with unspecified content. It MUST have been reserved.
   Slot take();
   void give_back(Slot slot) { free_.push_back(slot); }
 

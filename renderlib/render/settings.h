@@ -1,6 +1,6 @@
 #pragma once
 
-// Everything but the scene that decides pixels.
+// All settings besides the scene that determine pixels.
 
 #include <cstdint>
 
@@ -12,7 +12,7 @@ namespace bandsaw {
 struct RenderSettings {
   std::uint32_t width = 600;     ///< pixels, [1, 65536]
   std::uint32_t height = 400;    ///< pixels, [1, 65536]; width x height <= kMaxPixels
-  std::uint32_t max_depth = 32;  ///< most times a path scatters, [1, 1024]
+  std::uint32_t max_depth = 32;  ///< maximum number of scatterings of a path, [1, 1024]
   std::uint64_t seed = 0;
   Integrator integrator = Integrator::kPath;
   friend bool operator==(const RenderSettings&, const RenderSettings&) = default;
@@ -23,7 +23,7 @@ inline constexpr std::uint64_t kMaxPixels = 64'000'000;
 inline constexpr std::uint32_t kMaxDepth = 1024;
 inline constexpr std::uint64_t kMaxSamples = std::uint64_t{1} << 30;
 
-/// INVALID_ARGUMENT naming the field, its range and what was found.
+/// Returns INVALID_ARGUMENT naming the field, its range and the value.
 absl::Status validate(const RenderSettings& settings);
 
 }  // namespace bandsaw

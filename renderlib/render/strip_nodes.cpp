@@ -12,9 +12,10 @@ bool siblings(const SampleRange& left, const SampleRange& right) {
          left.first_block() % (2 * left.blocks()) == 0;
 }
 
-/// Whether nodes i and i + 1 are to become one. The two at the start of the strip are halves that
-/// the error estimate needs: they stay apart until a node with as many samples as both makes new
-/// halves. Adding from left to right gives the same bits either way.
+/// Returns true if nodes i and i + 1 are to be merged. The first two nodes of a strip are the
+/// halves of the error estimate: they stay separate until a node with as many samples as both of
+/// them is present to be the new second half. Adding from left to right gives the same bits either
+/// way.
 bool should_merge(const StripNodes& nodes, std::size_t i) {
   if (!siblings(nodes[i].range, nodes[i + 1].range)) {
     return false;
@@ -47,7 +48,8 @@ void merge_all(StripNodes& nodes, RowStore& store) {
     merge_into(nodes[i], nodes[i + 1], store);
     nodes.erase(nodes.begin() + static_cast<std::ptrdiff_t>(i) + 1);
     i = i >= 2 ? i - 2
-               : 0;  // A merge can make a sibling of the node before, or of the halves before that.
+               // A merge can create a sibling of the previous node, or of the halves before it.
+               : 0;
   }
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// The nodes of the summation tree (render/band.h) that a film has of a strip of pixels.
+// The nodes of the summation tree (render/band.h) that a film holds for one strip of pixels.
 
 #include <cstdint>
 #include <vector>
@@ -15,20 +15,20 @@ struct Node {
   RowStore::Slot slot = 0;
 };
 
-/// In order of their samples; none overlap.
+/// In order of their samples; disjoint.
 using StripNodes = std::vector<Node>;
 
-/// Adds a node that overlaps none, and merges siblings as far as the halves that the error estimate
-/// needs allow.
+/// Inserts a node that overlaps none, and merges siblings except the two halves that the error
+/// estimate needs.
 void insert_node(const Node& node, StripNodes& nodes, RowStore& store);
 
-/// How many nodes from the first sample on follow each other without a gap.
+/// Returns the number of nodes, from the first sample on, that are contiguous.
 std::size_t prefix(const StripNodes& nodes);
 
-/// Whether these begin with two of equally many samples.
+/// Returns true if the first two nodes are contiguous from sample 0 and have equally many samples.
 bool has_halves(const StripNodes& nodes);
 
-/// How many samples these are.
+/// Returns the number of samples in the contiguous nodes.
 std::uint64_t samples(const StripNodes& nodes);
 
 }  // namespace bandsaw

@@ -12,7 +12,8 @@ std::uint32_t tile_rows(const RowRange& rows) {
   return (rows.last + kTileSide - 1) / kTileSide - first_tile_row(rows);
 }
 
-/// Of a node that is taken in a pass, what is taken in a node within the pass.
+/// Returns the part of `taken`, the node taken in `pass`, that belongs to the node `within` of the
+/// pass.
 SampleRange part_of(const SampleRange& taken, const SampleRange& pass, const SampleRange& within) {
   const std::uint64_t parts = pass.blocks() / within.blocks();
   const std::uint64_t part = (within.first_block() - pass.first_block()) / within.blocks();

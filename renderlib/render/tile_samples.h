@@ -1,15 +1,15 @@
 #pragma once
 
-// Tiles, and which samples of theirs are taken in a pass.
+// Tiles, and the samples that they take in a pass.
 //
-// A tile is a square of 16 x 16 pixels of the image, counted from its top left; those at the right
-// and lower edge may be smaller. Its pixels are two halves, as the squares of a chess board: those
-// with x + y even, and the others. A half tile is the unit of adaptive sampling
-// (render/adaptive_plan.h): what is decided for one half is read from the other.
+// A tile is a square of 16 x 16 pixels of the image, counted from its top left; tiles at the right
+// and lower edge may be smaller. Its pixels form two halves like the squares of a checkerboard:
+// those with x + y even, and the others. A half tile is the unit of adaptive sampling
+// (render/adaptive_plan.h): the samples of one half are decided from the errors of the other.
 //
-// The samples of a pass say when it is rendered; which samples of its own sequence a half tile
-// takes then is up to the plan: a node (render/band.h) that follows what it has, or none. So what a
-// half tile has are always the first samples of its sequence.
+// A pass determines when samples are rendered; the plan decides which samples of its own sequence a
+// half tile takes in it: a node (render/band.h) that follows those it has, or none. So a half tile
+// always has the first samples of its sequence.
 
 #include <cstdint>
 #include <vector>
@@ -22,7 +22,7 @@ namespace bandsaw {
 
 inline constexpr std::uint32_t kTileSide = 16;  ///< pixels
 
-/// The half tiles of an image, numbered row by row, the even half of a tile first.
+/// The half tiles of an image, numbered row by row, the even half of each tile first.
 struct TileGrid {
   std::uint32_t width = 0;   ///< pixels, > 0
   std::uint32_t height = 0;  ///< pixels, > 0
@@ -39,49 +39,51 @@ struct HalfRow {
   std::uint32_t last = 0;
   std::uint32_t count() const { return first < last ? (last - first + 1) / 2 : 0; }
 };
-/// `half`: 0 or 1.
+/// Returns the part of row y in a half tile; `half` is 0 or 1.
 HalfRow half_row(const TileGrid& grid, std::uint32_t column, std::uint32_t half, std::uint32_t y);
 
-/// What each half tile of some rows of an image takes: a value, by default the samples of the band.
+/// The samples that each half tile of some rows of an image takes. A value type; by default all
+/// half tiles take the samples of the band.
 class TileSamples {
  public:
   TileSamples() = default;
-  /// Nothing, of the tiles that the rows meet.
+  /// Half tiles of the tiles that the rows overlap; none takes samples.
   TileSamples(std::uint32_t width, const RowRange& rows);
-  /// What numbers() gave for the same width and rows. INVALID_ARGUMENT: too few or too many of
-  /// them, or two that are no node of at most kMaxSamples.
+  /// Restores the result of numbers() for the same width and rows. Returns INVALID_ARGUMENT if
+  /// their count is wrong, or a pair of them is no node of at most kMaxSamples.
   static absl::StatusOr<TileSamples> from_numbers(absl::Span<const std::uint32_t> numbers,
                                                   std::uint32_t width, const RowRange& rows);
 
-  /// All half tiles take the samples of the band.
+  /// Returns true if all half tiles take the samples of the band.
   bool whole() const { return taken_.empty(); }
-  /// The samples that this pixel takes in a band of these: a node, or empty. y MUST lie in a tile
-  /// that the rows meet.
+  /// Returns the samples that this pixel takes in a band with samples `band`: a node, or empty. y
+  /// MUST lie in a tile that the rows overlap.
   SampleRange of_pixel(std::uint32_t x, std::uint32_t y, const SampleRange& band) const {
     return whole() ? band : range(taken_[index_of(x, y)]);
   }
-  /// Half tile i of those that the rows meet, in the order of TileGrid, takes these: a node of at
-  /// most kMaxSamples.
+  /// Sets the samples of half tile i, counted in the order of TileGrid from the first tile that the
+  /// rows overlap: a node of at most kMaxSamples.
   void set(std::size_t i, const SampleRange& samples) {
     taken_[i] = {static_cast<std::uint32_t>(samples.first),
                  static_cast<std::uint32_t>(samples.last)};
   }
 
-  /// How many samples the pixels of the band take, in an image of this width.
+  /// Returns the number of samples of all pixels in the band, in an image of this width.
   std::uint64_t count(std::uint32_t width, const Band& band) const;
-  /// The same for some of the rows.
+  /// Returns the part for some of the rows.
   TileSamples of(const RowRange& rows) const;
-  /// For a band of some of the rows and a node within the pass: halves of a pass take the halves of
-  /// what a half tile takes; a single block goes to the left one.
+  /// Returns the part for a band with some of the rows and a node within the pass. The halves of a
+  /// pass take the halves of what a half tile takes; a single block goes to the left one.
   TileSamples of(const SampleRange& pass, const Band& band) const;
 
-  /// Two a half tile in the order of TileGrid: its first sample, and how many. Empty: whole.
+  /// Returns two numbers for each half tile in the order of TileGrid: its first sample and its
+  /// sample count. Empty if whole().
   std::vector<std::uint32_t> numbers() const;
 
   friend bool operator==(const TileSamples&, const TileSamples&) = default;
 
  private:
-  /// Half as large as a SampleRange: there is one for every half tile of every pass.
+  /// Half the size of a SampleRange, because every pass has one for each half tile.
   struct Taken {
     std::uint32_t first = 0;
     std::uint32_t last = 0;
@@ -99,11 +101,12 @@ class TileSamples {
   std::vector<Taken> taken_;
 };
 
-/// INVALID_ARGUMENT: the sums of a pixel that takes no samples are not zero. `tiles`: of the band's
-/// rows, or more.
+/// Returns INVALID_ARGUMENT if the sums of a pixel without samples are not zero. `tiles` covers at
+/// least the band's rows.
 absl::Status check_left_out(const BandPixels& pixels, const TileSamples& tiles);
 
-/// INVALID_ARGUMENT: the counters count samples that the band does not have. `tiles`: likewise.
+/// Returns INVALID_ARGUMENT if the counters exceed the samples of the band or locate a bad sample
+/// outside it. `tiles` covers at least the band's rows.
 absl::Status check_counters(const BandPixels& pixels, const TileSamples& tiles);
 
 }  // namespace bandsaw

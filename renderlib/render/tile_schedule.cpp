@@ -8,14 +8,14 @@
 namespace bandsaw {
 namespace {
 
-/// Numbers in [0, 1), as even as can be over neighbours, and over any number of them: multiples of
-/// the golden ratio.
+/// Returns numbers in [0, 1) that are evenly distributed over neighbours and over any range:
+/// multiples of the golden ratio.
 double spread(std::size_t i) {
   return static_cast<std::uint32_t>(i * 2'654'435'769u) / 4'294'967'296.0;
 }
 
-/// The longest node that follows `samples` samples (whole blocks), of at most a quarter of the
-/// octave they are in, or of as many as are owed.
+/// Returns the length of the next node after `samples` samples (whole blocks): the longest aligned
+/// one, limited to a quarter of the current octave or to the samples owed, whichever is larger.
 std::uint64_t next_step(std::uint64_t samples, double owed) {
   const std::uint64_t aligned = longest_at(samples / kBlockSamples) * kBlockSamples;
   const std::uint64_t quarter = std::bit_floor(samples) / 4;

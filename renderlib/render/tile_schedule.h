@@ -1,6 +1,6 @@
 #pragma once
 
-// When half tiles take what a plan gives them.
+// Schedule of the samples that a plan gives to half tiles.
 
 #include <array>
 #include <cstdint>
@@ -12,29 +12,31 @@
 
 namespace bandsaw {
 
-/// Which samples half tiles take in which pass after the pilot.
+/// Decides which samples half tiles take in each pass after the pilot.
 ///
-/// A half tile has the first samples of its own sequence, 4, 5, 6 or 7 quarters of 2^k: samples
-/// left out here and there would be no nets of Sobol' points, and where an image is smooth its
-/// error falls by nets. It takes the next quarter when its share is due; which of two half tiles of
-/// equal shares does so earlier is dealt out evenly over the image, so that the mean is what is
-/// due. A half of the image whose levels are all 6 takes the passes as they are.
+/// A half tile has the first samples of its own sequence: 4, 5, 6 or 7 quarters of 2^k. If samples
+/// were left out here and there, the rest would not form nets of Sobol' points, and in smooth
+/// regions the error falls by nets. A half tile takes its next quarter when its share is due. Half
+/// tiles of equal share take it in different passes, spread evenly over the image, so that on
+/// average they have what is due. If all levels of a half of the image are 6, it takes the passes
+/// as they are.
 class TileSchedule {
  public:
-  /// `plan.levels` has one digit 0 … f a half tile.
+  /// `plan.levels` has one digit 0 to f for each half tile.
   TileSchedule(const TileGrid& grid, const TilePlan& plan);
 
-  /// The pass that follows the last.
+  /// Returns the samples for `pass`, which MUST follow the previous one.
   TileSamples next(const SampleRange& pass);
 
  private:
-  /// What half tile i takes: the longest node after what it has, or nothing.
+  /// Returns the samples of half tile i: the longest node after what it has, or none.
   SampleRange node_of(std::size_t i, const SampleRange& pass) const;
 
   TileGrid grid_;
   TilePlan plan_;
-  std::array<bool, 2> even_{true, true};  ///< each half of the image: all levels are 6
-  std::vector<std::uint64_t> taken_;      ///< samples of each half tile
+  /// For each half of the image: true if all its levels are 6.
+  std::array<bool, 2> even_{true, true};
+  std::vector<std::uint64_t> taken_;  ///< samples taken so far by each half tile
 };
 
 }  // namespace bandsaw

@@ -1,7 +1,7 @@
 #pragma once
 
-// Of what pixels are, beside their place: a job's number may come to mean another job, where a
-// coordinator's journal is restored from a copy or begun anew.
+// Hash that identifies what was rendered, independently of the job's number: job numbers are reused
+// after a coordinator's journal is restored from a copy or reset.
 
 #include <cstdint>
 
@@ -10,7 +10,7 @@
 
 namespace bandsaw {
 
-/// A hash of the package's digest, in hexadecimal, and the settings; never 0.
+/// Returns a hash of the package's digest, in hexadecimal, and of the settings; never 0.
 std::uint64_t work_hash(absl::string_view manifest, const RenderSettings& settings);
 
 }  // namespace bandsaw

@@ -1,6 +1,6 @@
 #pragma once
 
-// An orthonormal, right-handed frame around a direction.
+// Right-handed orthonormal bases around a direction.
 
 #include "renderlib/math/vec.h"
 
@@ -15,8 +15,8 @@ struct Basis {
   Vec3 to_local(const Vec3& world) const { return {dot(x, world), dot(y, world), dot(z, world)}; }
 };
 
-/// The frame whose z is the unit vector n; no direction is special but the sign of n.z (Duff et al.
-/// 2017, "Building an Orthonormal Basis, Revisited", JCGT 6(1), listing 3).
+/// Returns a basis whose z is the unit vector n. Only the sign of n.z is a special case (Duff et
+/// al. 2017, "Building an Orthonormal Basis, Revisited", JCGT 6(1), listing 3).
 inline Basis orthonormal_basis(const Vec3& n) {
   const double sign = std::copysign(1.0, n.z);
   const double a = -1.0 / (sign + n.z);

@@ -14,11 +14,12 @@ struct Step {
   double rest;
 };
 
-/// The step of the running sum that number * its end lies in.
+/// Finds the step of the cumulative sum that contains number * its total.
 Step invert(absl::Span<const double> ends, double number) {
   const double target = number * ends.back();
   auto end = std::upper_bound(ends.begin(), ends.end(), target);
-  if (end == ends.end()) {  // The product was rounded up to the end: the last step that has any.
+  // The product was rounded up to the total: use the last step of non-zero weight.
+  if (end == ends.end()) {
     end = std::lower_bound(ends.begin(), ends.end(), ends.back());
   }
   const double before = end == ends.begin() ? 0 : *(end - 1);

@@ -1,9 +1,9 @@
 #pragma once
 
-// A cell of a grid, chosen in proportion to its weight: the row by the sums of rows, the column by
-// the sums within the row, both by inverting the running sum, which keeps stratification (Pharr,
-// Jakob, Humphreys, "Physically Based Rendering", A.5.3). Sums are double: a tail of small weights
-// is still chosen as often as it should be.
+// Piecewise-constant 2D distribution: samples a cell of a grid in proportion to its weight, first
+// the row by its marginal, then the column. Both invert the cumulative sum, which preserves
+// stratification (Pharr, Jakob and Humphreys, "Physically Based Rendering", A.5.3). Sums are
+// double, so that a tail of small weights keeps its probability.
 
 #include <cstdint>
 #include <vector>
@@ -17,24 +17,24 @@ class GridDistribution {
   struct Cell {
     std::uint32_t column = 0;
     std::uint32_t row = 0;
-    double u = 0;  ///< what is left of the numbers that chose, in [0, 1)
+    double u = 0;  ///< remainders of the random numbers, rescaled to [0, 1)
     double v = 0;
   };
 
   GridDistribution() = default;
-  /// `weight(column, row)` is finite and >= 0. Keeps 8 bytes a cell.
+  /// `weight(column, row)` must be finite and >= 0. Stores 8 bytes per cell.
   GridDistribution(std::uint32_t width, std::uint32_t height,
                    absl::FunctionRef<double(std::uint32_t, std::uint32_t)> weight);
 
-  /// Of all weights.
+  /// Returns the sum of all weights.
   double total() const { return row_ends_.empty() ? 0 : row_ends_.back(); }
-  /// u, v in [0, 1); total() > 0. Cells without weight are never chosen.
+  /// Samples a cell; u, v in [0, 1). total() MUST be > 0. Cells of weight 0 are never returned.
   Cell sample(double u, double v) const;
 
  private:
   std::uint32_t width_ = 0;
-  std::vector<double> row_ends_;     ///< running sum over the rows
-  std::vector<double> column_ends_;  ///< of each row, running sum over its columns
+  std::vector<double> row_ends_;     ///< cumulative sum over the rows
+  std::vector<double> column_ends_;  ///< for each row, cumulative sum over its columns
 };
 
 }  // namespace bandsaw

@@ -8,7 +8,7 @@
 namespace bandsaw {
 namespace {
 
-/// The finaliser of SplitMix64 (Steele, Lea, Flood 2014; constants of Stafford's variant 13).
+/// Finaliser of SplitMix64 (Steele, Lea and Flood 2014; constants of Stafford's variant 13).
 std::uint64_t mix(std::uint64_t x) {
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
   x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
@@ -24,8 +24,8 @@ constexpr std::uint32_t reverse_bits(std::uint32_t x) {
   return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
 }
 
-/// Owen scrambling of a number whose bits are reversed: every step lets a bit depend on lower bits
-/// alone (Laine and Karras 2011; constants of Vegdahl 2021).
+/// Owen scrambling of a bit-reversed number: every step makes a bit depend only on lower bits
+/// (Laine and Karras 2011; constants of Vegdahl 2021).
 template <class UInt>
 UInt scramble_reversed(UInt x, UInt seed) {
   x ^= x * 0x3d20adeau;
@@ -36,7 +36,8 @@ UInt scramble_reversed(UInt x, UInt seed) {
   return x;
 }
 
-/// A Sobol' dimension by its recurrence (Joe and Kuo 2008): v[i] from the `degree` before it.
+/// Recurrence of a Sobol' dimension (Joe and Kuo 2008): direction number v[i] from the previous
+/// `degree` ones.
 struct Polynomial {
   int degree;
   std::uint32_t coefficients;
@@ -48,7 +49,7 @@ constexpr std::array<Polynomial, 3> kPolynomials = {{
     {3, 1, {1, 3, 1}},
 }};
 
-/// The direction numbers of one dimension, bits reversed.
+/// Returns the bit-reversed direction numbers of one dimension.
 constexpr std::array<std::uint32_t, 32> reversed_directions(const Polynomial& p) {
   std::array<std::uint32_t, 32> direction{};
   const auto s = static_cast<std::size_t>(p.degree);
@@ -70,8 +71,8 @@ constexpr std::array<std::uint32_t, 32> reversed_directions(const Polynomial& p)
   return direction;
 }
 
-/// For four bits of an index whose bits are reversed, what they add (xor) to all four dimensions,
-/// bits reversed: 2 KB in all. Dimension 0 is the index itself.
+/// For each group of four bits of a bit-reversed index, the xor contribution to all four
+/// dimensions, bit-reversed; 2 KB in all. Dimension 0 is the index itself.
 using Points = std::array<std::uint32_t, 4>;
 using PointTable = std::array<std::array<Points, 16>, 8>;
 
@@ -93,7 +94,7 @@ constexpr PointTable make_table() {
 
 alignas(64) constexpr PointTable kTable = make_table();
 
-/// The point of an index, both with their bits reversed.
+/// Returns the Sobol' point of an index; both are bit-reversed.
 UInt4 sobol_reversed(std::uint32_t index) {
   UInt4 point = {};
   for (std::size_t i = 0; i < 8; ++i) {
@@ -108,7 +109,7 @@ PixelSampler::PixelSampler(std::uint64_t seed, std::uint32_t x, std::uint32_t y)
     : pixel_hash_(mix(mix(seed + kGolden) + ((std::uint64_t{y} << 32) | x))) {}
 
 Sample4 PixelSampler::group(std::uint64_t sample, std::uint32_t group) const {
-  // A sequence has 2^32 points; sample numbers beyond go on with another one.
+  // A sequence has 2^32 points; larger sample numbers use another sequence.
   const std::uint64_t sequence = ((sample >> 32) << 32) | group;
   const std::uint64_t base = mix(pixel_hash_ + sequence * kGolden);
   const std::uint64_t seeds01 = mix(base + kGolden);

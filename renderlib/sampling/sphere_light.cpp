@@ -8,15 +8,16 @@
 namespace bandsaw {
 namespace {
 
-/// Below this distance from the surface, relative to the radius, the cone is so wide that area
-/// sampling is no worse; both the sample and its density decide by it.
+/// At distances from the centre below this multiple of the radius, the cone is so wide that area
+/// sampling is equally good. The sample and its pdf use the same criterion.
 constexpr double kNear = 1 + 0x1p-20;
 
 bool sees_cone(double distance2, double radius) {
   return distance2 > radius * radius * (kNear * kNear);
 }
 
-/// Where a sample is on the rim, its normal is this far from upright at most.
+/// Tolerance for the cosine of a sampled point's normal on the rim, which may be positive by
+/// rounding.
 constexpr double kRimCosine = 1e-6;
 
 double area_pdf(double radius) { return kSpherePdf / (radius * radius); }
@@ -38,9 +39,9 @@ std::optional<SphereSample> sample_sphere_light(const Vec3& center, double radiu
   const double sin2_max = radius * radius / distance2;
   const double spread = one_minus_cos_from_sin2(sin2_max);
   const Vec3 local = sample_cone(u, v, spread);
-  // The angle alpha at the center, between the axis to the point and the normal where the direction
-  // (angle theta to the axis) meets the sphere first: cos alpha = (d sin^2 theta + cos theta
-  // sqrt(r^2 - d^2 sin^2 theta)) / r.
+  // Angle alpha at the centre between the axis to the point and the normal at the first
+  // intersection of the direction (at angle theta to the axis): cos alpha = (d sin^2 theta + cos
+  // theta sqrt(r^2 - d^2 sin^2 theta)) / r.
   const double sin2 = local.x * local.x + local.y * local.y;
   const double chord2 = std::max(0.0, 1 - sin2 / sin2_max);
   const double sin_max = radius / distance;

@@ -10,7 +10,7 @@ namespace bandsaw {
 namespace {
 
 constexpr double kRightAngle = 1e-9;
-/// Below, the inversion has too few digits left, and area sampling is as good.
+/// Below this the inversion loses precision, and area sampling is equally good. Steradians.
 constexpr double kLeastSolidAngle = 1e-9;
 
 }  // namespace
@@ -34,9 +34,9 @@ std::optional<SphericalRectangle> SphericalRectangle::seen_from(const Vec3& poin
   r.y1_ = r.y0_ + height;
   r.z0_ = -std::abs(dot(to_corner, cross(x, y)));
   const double z2 = r.z0_ * r.z0_;
-  // The z components of the unit normals of the planes through the point and each edge, y0, x1, y1,
-  // x0 in turn. Neighbours have no other component in common, so their product is the cosine of the
-  // angle between the planes.
+  // z components of the unit normals of the planes through the point and each edge, in the order
+  // y0, x1, y1, x0. The normals of adjacent planes have no other component in common, so the
+  // product is the cosine of the angle between the planes.
   const std::array<double, 4> n = {
       -r.y0_ / std::sqrt(r.y0_ * r.y0_ + z2), r.x1_ / std::sqrt(r.x1_ * r.x1_ + z2),
       r.y1_ / std::sqrt(r.y1_ * r.y1_ + z2), -r.x0_ / std::sqrt(r.x0_ * r.x0_ + z2)};
@@ -51,8 +51,8 @@ std::optional<SphericalRectangle> SphericalRectangle::seen_from(const Vec3& poin
 }
 
 Vec2 SphericalRectangle::sample(double u, double v) const {
-  // Section 4 of the paper with phi_u = pi + phi: the part of the rectangle up to x has solid angle
-  // u S.
+  // Section 4 of the paper, with phi_u = pi + phi: the part of the rectangle up to x has solid
+  // angle u S.
   const SinCos phi = sincos_turns((u * solid_angle_ - angle_) * (0.5 * kInvPi));
   const double f = (phi.cos * b0_ + b1_) / phi.sin;
   // x = |z0| c / sqrt(1 - c^2) with c = 1 / sqrt(f^2 + b0^2), and 1 - b0^2 = g^2.

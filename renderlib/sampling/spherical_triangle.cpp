@@ -9,7 +9,7 @@
 namespace bandsaw {
 namespace {
 
-/// What of `v` is at right angles to the unit vector n, as a unit vector.
+/// Returns the normalised component of `v` perpendicular to the unit vector n.
 Vec3 across(const Vec3& v, const Vec3& n) { return normalize(v - n * dot(v, n)); }
 
 double root(double square) { return std::sqrt(std::max(0.0, square)); }
@@ -54,8 +54,8 @@ Vec2 SphericalTriangle::on_plane(const Vec3& direction) const {
 }
 
 Vec2 SphericalTriangle::sample(double s, double t) const {
-  // Arvo's algorithm, with phi = share - alpha: first the side of the part whose area is a share of
-  // the whole, then a point between it and b.
+  // Arvo's algorithm with phi = share - alpha: first the side of the sub-triangle with the given
+  // share of the area, then a point between it and b.
   const SinCos share = sincos_turns(s * solid_angle_ * (0.5 * kInvPi));
   const double sin_phi = share.sin * cos_alpha_ - share.cos * sin_alpha_;
   const double cos_phi = share.cos * cos_alpha_ + share.sin * sin_alpha_;

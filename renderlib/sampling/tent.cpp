@@ -11,16 +11,16 @@ namespace {
 
 constexpr double kTurnsPerRadian = 0.5 * kInvPi;
 
-/// One side of a tent in latitude: from the row's centre over `width` radians towards a pole (sign
-/// -1) or away from theta = 0 (sign +1), where it is (1 - s / width) sin(centre + sign s).
+/// One side of a tent in latitude: from the row's centre over `width` radians towards theta = 0
+/// (sign -1) or away from it (sign +1). Its density is (1 - s / width) sin(centre + sign s).
 struct Side {
   SinCos centre;
   double sign;
   double width;
 
   struct At {
-    double mass;     ///< the integral from 0 to s
-    double density;  ///< what is integrated, at s
+    double mass;     ///< integral of the density from 0 to s
+    double density;  ///< density at s
   };
   At at(double s) const {
     const SinCos turned = sincos_turns(s * kTurnsPerRadian);
@@ -32,12 +32,12 @@ struct Side {
   }
   double mass() const { return at(width).mass; }
 
-  /// Where the integral is u of the whole: Newton's method, kept inside the bracket found so far.
+  /// Returns s at which the integral is the share u of the total: Newton's method within a bracket.
   double inverse(double u) const {
     const double target = u * mass();
     double low = 0;
     double high = width;
-    double s = width * (1 - std::sqrt(1 - u));  // Right where the sine is constant.
+    double s = width * (1 - std::sqrt(1 - u));  // Exact where the sine is constant.
     constexpr int kMostSteps = 12;
     for (int i = 0; i < kMostSteps; ++i) {
       const At here = at(s);
@@ -54,7 +54,7 @@ struct Side {
   }
 };
 
-/// A row's tent: half of it to each side. At a pole the row goes on unchanged up to the pole.
+/// The tent of a row, with both sides. At a pole the row is constant from its centre to the pole.
 struct LatitudeTent {
   LatitudeTent(std::uint32_t row, std::uint32_t rows)
       : width(kPi / rows),
@@ -64,7 +64,8 @@ struct LatitudeTent {
         last(row + 1 == rows) {}
 
   Side side(double sign) const { return {centre, sign, width}; }
-  /// Solid angle of a cap of one radian of longitude that reaches half a row down from a pole.
+  /// Returns the solid angle, per radian of longitude, of the cap that extends half a row from a
+  /// pole.
   double cap() const {
     const double half = sincos_turns(width * (0.25 * kTurnsPerRadian)).sin;
     return 2 * half * half;
@@ -87,7 +88,8 @@ double sample_tent(std::uint32_t index, std::uint32_t texels, Ends ends, double 
   const double rest = below ? 2 * u : 2 * u - 1;
   const bool flat = ends == Ends::kClamped && index == (below ? 0 : texels - 1);
   if (flat) {
-    // Half a texel that stays at 1 weighs as much as a whole one that falls to 0.
+    // The half texel at the border, constant 1, has the same weight as a whole texel that falls to
+    // 0.
     return below ? 0.5 * rest : centre + 0.5 * rest;
   }
   const double x = below ? centre - 1 + std::sqrt(rest) : centre + 1 - std::sqrt(1 - rest);
@@ -111,7 +113,7 @@ double sample_latitude_tent(std::uint32_t row, std::uint32_t rows, double v) {
   const double rest =
       std::clamp(up ? target / above : (target - above) / (total - above), 0.0, kOneMinusEpsilon);
   if (up ? tent.first : tent.last) {
-    // 1 - cos of the angle from the pole is uniform.
+    // 1 - cos of the angle from the pole is uniformly distributed.
     const double from_pole = 2 * asin(std::sqrt(0.5 * rest * tent.cap()));
     return up ? from_pole : kPi - from_pole;
   }

@@ -1,24 +1,24 @@
 #pragma once
 
-// The share that a texel has in a linearly interpolated image: 1 at its centre, falling to 0 at the
-// centres of its neighbours. To draw a point with the density of an interpolated image, draw a
-// texel by its weight and then a point from its tent.
+// Tent-shaped interpolation kernel of a texel: 1 at its centre, falling to 0 at the centres of its
+// neighbours. To sample the pdf of a linearly interpolated image, sample a texel by its weight and
+// then a point from its tent.
 
 #include <cstdint>
 
 namespace bandsaw {
 
-/// How an axis of an image ends: it goes on at its other end, or its last texel stays.
+/// Boundary mode of an image axis: wrapped around, or clamped to the last texel.
 enum class Ends : std::uint8_t { kWrapped, kClamped };
 
-/// A coordinate in [0, texels] with the density of the tent of texel `index`, in texels; u in [0,
-/// 1).
+/// Samples a coordinate in [0, texels], in texels, with the pdf of the tent of texel `index`; u in
+/// [0, 1).
 double sample_tent(std::uint32_t index, std::uint32_t texels, Ends ends, double u);
 
-/// The tent times sin(theta), along a column of an equirectangular image of `rows` rows, theta in
-/// [0, pi] from its top row. What a row has in common: its tent's solid angle for a whole turn.
+/// Returns the integral of tent * sin(theta) over a full turn: the solid angle of the tent of a row
+/// of a latitude-longitude image with `rows` rows, where theta in [0, pi] is measured from its top.
 double latitude_tent_solid_angle(std::uint32_t row, std::uint32_t rows);
-/// theta with that density; v in [0, 1).
+/// Samples theta with the pdf tent * sin(theta); v in [0, 1).
 double sample_latitude_tent(std::uint32_t row, std::uint32_t rows, double v);
 
 }  // namespace bandsaw

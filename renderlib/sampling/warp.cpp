@@ -9,8 +9,8 @@
 namespace bandsaw {
 namespace {
 
-/// sin and cos of x pi / 4, x in [-1, 1], to a few units in the last place: Taylor's series. A
-/// third of the work of sincos_turns, which does better.
+/// Returns sine and cosine of x pi / 4 for x in [-1, 1] to a few units in the last place, by Taylor
+/// series. A third of the cost of `sincos_turns`, which is more accurate.
 SinCos sincos_eighths(double x) {
   static constexpr double kSin[] = {
       0x1.921fb54442d18p-1,  -0x1.4abbce625be53p-4,  0x1.466bc6775aae2p-9,  -0x1.32d2cce62bd86p-15,
@@ -28,7 +28,7 @@ SinCos sincos_eighths(double x) {
   return {x * polynomial(square, kSin), polynomial(square, kCos)};
 }
 
-/// (y, x) where `mask` is all ones, (x, y) where it is none.
+/// Returns (y, x) if all bits of `mask` are set, (x, y) if none is. Branch-free.
 Vec2 swapped(const Vec2& v, std::uint64_t mask) {
   const auto x = std::bit_cast<std::uint64_t>(v.x);
   const auto y = std::bit_cast<std::uint64_t>(v.y);
@@ -36,8 +36,8 @@ Vec2 swapped(const Vec2& v, std::uint64_t mask) {
   return {std::bit_cast<double>(x ^ change), std::bit_cast<double>(y ^ change)};
 }
 
-/// The point of the unit circle at `turn` in [0, 1]. Which quarter it is in is anybody's guess: no
-/// branch.
+/// Returns the point of the unit circle at `turn` in [0, 1]. The quadrant is unpredictable, so
+/// there is no branch.
 Vec2 on_circle(double turn) {
   const double quarters = std::floor(4 * turn + 0.5);
   const SinCos angle = sincos_eighths(2 * (4 * turn - quarters));
@@ -55,7 +55,8 @@ Vec2 sample_disk(double u, double v) {
   if (a == 0 && b == 0) {
     return {0, 0};
   }
-  // The angle is pi / 4 b / a, or pi / 2 - pi / 4 a / b. Which is anybody's guess: no branch.
+  // The angle is pi / 4 b / a or pi / 2 - pi / 4 a / b. Which one is unpredictable, so there is no
+  // branch.
   const std::uint64_t swap = std::abs(a) > std::abs(b) ? 0 : ~std::uint64_t{0};
   const Vec2 ordered = swapped({a, b}, swap);
   const SinCos angle = sincos_eighths(ordered.y / ordered.x);
@@ -64,7 +65,7 @@ Vec2 sample_disk(double u, double v) {
 
 Vec3 sample_cosine_hemisphere(double u, double v) {
   const Vec2 d = sample_disk(u, v);
-  // On the rim rounding may leave nothing for z; a density of 0 is never sampled.
+  // On the rim rounding may leave 0 for z; a direction of pdf 0 must not be sampled.
   constexpr double kLeastSquare = 0x1p-64;
   const double z = std::sqrt(std::max(kLeastSquare, 1 - d.x * d.x - d.y * d.y));
   return {d.x, d.y, z};

@@ -7,7 +7,7 @@ namespace bandsaw {
 namespace {
 
 bool has_area(const Vec3& u, const Vec3& v) {
-  // Scaled, so that tiny shapes do not lose their area to underflow.
+  // Scaled, so that the area of tiny shapes does not underflow.
   const double size = std::max(max_abs(u), max_abs(v));
   if (!(size > 0) || !std::isfinite(size)) {
     return false;

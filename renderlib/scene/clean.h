@@ -1,7 +1,7 @@
 #pragma once
 
-// Takes out of a valid geometry what no ray can hit, and mends what would spread: before the trees
-// are built.
+// Cleans a valid geometry before the BVHs are built: removes primitives that no ray can hit, and
+// replaces values that are not finite.
 
 #include <cstddef>
 
@@ -9,9 +9,10 @@
 
 namespace bandsaw {
 
-/// Drops quads and triangles without area and mesh triangles that touch a vertex that is not
-/// finite; the rest keep their order. Normals and uvs that are not finite become zero. Returns how
-/// many primitives were dropped, those of a mesh once for each time it is placed.
+/// Removes quads and triangles, including those of meshes, whose area is zero or not finite (e.g.
+/// because a vertex is not finite); the others keep their order. Normals, uvs and colours that are
+/// not finite become zero. Returns the number of removed primitives; those of a mesh or group count
+/// once per instance.
 std::size_t clean(Geometry& geometry);
 
 }  // namespace bandsaw

@@ -1,7 +1,7 @@
 #pragma once
 
-// A scene as plain values: what packages decode to and tests write by hand. Scene::build checks it
-// and makes it renderable.
+// A scene as plain values: the result of decoding a package, or written by hand in tests.
+// Scene::build validates it and makes it renderable.
 
 #include <vector>
 
@@ -26,7 +26,7 @@ struct SceneDescription {
   Media media;
   PixelFilter filter;
   LocalShading local_shading;
-  std::vector<DeltaLight> lights;  ///< those without size; surfaces shine by their material
+  std::vector<DeltaLight> lights;  ///< delta lights; surfaces emit by their material
 };
 
 }  // namespace bandsaw

@@ -1,6 +1,6 @@
 #pragma once
 
-// What an image shows: the light that arrives, or something simpler about the first surface.
+// Integrators: the arriving light, or simpler properties of the first surface.
 
 #include <optional>
 
@@ -10,34 +10,36 @@
 
 namespace bandsaw {
 
-/// The numbers are those of the protocols and files.
+/// The values are used in protocols and files.
 enum class Integrator {
-  kPath = 0,              ///< path tracing (integrate/path.h)
-  kDirect = 1,            ///< light of lamps and the ambient term; mirrors and glass are followed
-  kNormals = 2,           ///< (n + 1) / 2 of the shading normal, in world space; a miss is black
-  kDepth = 3,             ///< distance to the surface along the ray, scene units; a miss is 0
-  kAlbedo = 4,            ///< colour without light (material/albedo.h); a miss is black
-  kAmbientOcclusion = 5,  ///< share of cosine-weighted directions without a surface near; a miss: 1
-  kPathLights = 6,        ///< kPath that only asks lights, where a surface has a density
-  kPathScattering = 7,    ///< kPath that asks no light and waits until it meets one
+  kPath = 0,     ///< path tracing (integrate/path.h)
+  kDirect = 1,   ///< direct light and the ambient term; mirrors and glass are followed
+  kNormals = 2,  ///< (n + 1) / 2 of the shading normal in world space; black for a miss
+  kDepth = 3,    ///< distance to the surface along the ray, scene units; 0 for a miss
+  kAlbedo = 4,   ///< albedo (material/albedo.h); black for a miss
+  /// Share of cosine-weighted directions without a nearby surface; 1 for a miss.
+  kAmbientOcclusion = 5,
+  kPathLights = 6,      ///< kPath with light sampling alone, where a BSDF has a pdf
+  kPathScattering = 7,  ///< kPath with BSDF sampling alone
 };
 inline constexpr int kLastIntegrator = 7;
 
-/// Those that path_radiance (integrate/path.h) computes.
+/// Returns true for those that path_radiance (integrate/path.h) computes.
 constexpr bool follows_light(Integrator integrator) {
   return integrator == Integrator::kPath || integrator == Integrator::kDirect ||
          integrator == Integrator::kPathLights || integrator == Integrator::kPathScattering;
 }
 
-/// "path", "direct", "normals", "depth", "albedo", "ambient_occlusion", "path_lights",
+/// Returns "path", "direct", "normals", "depth", "albedo", "ambient_occlusion", "path_lights" or
 /// "path_scattering".
 absl::string_view integrator_name(Integrator integrator);
 std::optional<Integrator> integrator_named(absl::string_view name);
 
-/// What the simpler integrators want to know of a scene.
+/// Scene parameters of kDirect and kAmbientOcclusion.
 struct LocalShading {
-  Rgb ambient;  ///< radiance from everywhere, unshadowed; of kDirect; >= 0
-  double occlusion_distance = kInfinity;  ///< what is farther occludes nothing, scene units, > 0
+  Rgb ambient;  ///< for kDirect: radiance from all directions, unshadowed; >= 0
+  /// For kAmbientOcclusion: maximum distance of occluders, scene units, > 0.
+  double occlusion_distance = kInfinity;
 };
 
 }  // namespace bandsaw

@@ -1,10 +1,10 @@
 #pragma once
 
-// Where the media of a scene are: inside closed shapes, and around everything.
+// Media of a scene and the regions they fill: closed shapes, and everything around them.
 //
-// Which medium a point is in depends on the point alone, not on how light came there: of all
-// closed shapes that contain it the medium with the highest number is there, the one that the scene
-// names last; where there is none, the fog; without fog, nothing.
+// The medium at a point depends on the point alone, not on the path of the light. Among the closed
+// shapes that contain the point, the medium with the highest number counts, i.e. the one that the
+// scene names last; outside all shapes the fog; without fog, none.
 
 #include <optional>
 #include <vector>
@@ -18,19 +18,19 @@ namespace bandsaw {
 
 struct Media {
   std::vector<Medium> media;
-  /// Spheres, and placements of closed meshes and of groups of one sphere, nothing else. Their
-  /// `material` is no material: it is the medium inside, an index into `media`. What is seen of
-  /// them lies in the scene's own geometry as well, or nothing is: then the boundary is invisible.
-  /// Placements change where a medium is, not how dense: coefficients are per unit of the world.
+  /// Spheres, and instances of closed meshes and of groups of one sphere; nothing else. Their
+  /// `material` is not a material but the medium inside, an index into `media`. If a boundary is
+  /// visible, the scene's own geometry contains it as well; otherwise it is invisible. Placements
+  /// change the region of a medium, not its density: coefficients are per unit of world space.
   Geometry boundaries;
-  std::optional<MediumId> fog;  ///< without end; MUST NOT be is_endless_glow
+  std::optional<MediumId> fog;  ///< unbounded; MUST NOT be is_endless_glow
 
   bool has_boundaries() const {
     return !boundaries.spheres.empty() || !boundaries.instances.empty();
   }
 };
 
-/// The medium inside of a boundary.
+/// Converts between the medium inside a boundary and the boundary's `material`.
 constexpr MediumId medium_in(MaterialId of_boundary) {
   return MediumId{static_cast<std::uint32_t>(of_boundary)};
 }
@@ -38,14 +38,14 @@ constexpr MaterialId filled_with(MediumId medium) {
   return MaterialId{static_cast<std::uint32_t>(medium)};
 }
 
-/// The unit cube [0, 1]^3, normals to the outside: a box is a placement of it.
+/// Returns the unit cube [0, 1]^3 with outward normals; a box is an instance of it.
 Mesh unit_cube();
 
-/// The sphere of radius 1 around 0, as a group: any sphere is a placement of it.
+/// Returns the sphere of radius 1 around the origin, as a group; a sphere is an instance of it.
 Shapes unit_ball();
 
-/// INVALID_ARGUMENT: "media[1].g: must be in [-0.999, 0.999], is 2",
-/// "boundaries.meshes[0]: must be closed, has 4 open edges".
+/// Returns INVALID_ARGUMENT: "media[1].g: must be in [-0.999, 0.999], is 2", "boundaries.meshes[0]:
+/// must be closed, has 4 open edges".
 absl::Status validate(const Media& media);
 
 }  // namespace bandsaw

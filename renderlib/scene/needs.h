@@ -1,19 +1,19 @@
 #pragma once
 
-// The set of features that a scene really uses: what it does not need costs it nothing. A need only
-// ever leaves out work that would change nothing: with more needs than its own a scene has the same
-// pixels to the bit. What a need gains stands in integrate/README.md.
+// The features that a scene uses; unused features cost nothing. A flag only skips work that would
+// change nothing: with additional flags a scene has the same pixels to the bit. integrate/NOTES.md
+// has the cost of each.
 
 #include <array>
 
 namespace bandsaw {
 
 struct Needs {
-  bool lights = false;  ///< anything to ask for light: next-event estimation
-  bool alpha = false;   ///< surfaces that are not there everywhere
-  bool motion = false;  ///< something moves while the shutter is open
-  bool media = false;   ///< something between the surfaces
-  bool uv = false;      ///< textures that are looked up by it
+  bool lights = false;  ///< lights that can be sampled (next-event estimation)
+  bool alpha = false;   ///< surfaces that are not fully opaque
+  bool motion = false;  ///< instances that move during the shutter interval
+  bool media = false;   ///< participating media
+  bool uv = false;      ///< textures that use uv coordinates
   friend bool operator==(const Needs&, const Needs&) = default;
 };
 
@@ -31,7 +31,7 @@ inline constexpr std::array<NamedNeed, 5> kEachNeed = {{
 }};
 static_assert(sizeof(Needs) == kEachNeed.size(), "every need is in the table");
 
-/// The general kernel's.
+/// All features: those of the general kernel.
 inline constexpr Needs kAllNeeds = [] {
   Needs all;
   for (const NamedNeed& each : kEachNeed) {
@@ -40,7 +40,7 @@ inline constexpr Needs kAllNeeds = [] {
   return all;
 }();
 
-/// What either needs.
+/// Returns the union of both.
 constexpr Needs operator|(Needs a, const Needs& b) {
   for (const NamedNeed& each : kEachNeed) {
     a.*each.need = a.*each.need || b.*each.need;

@@ -7,7 +7,8 @@
 namespace bandsaw {
 namespace {
 
-/// Whether the frame, without its parents, is where it is at `interval.open` all the time.
+/// Returns true if the frame, without its parents, has the same transform as at `interval.open`
+/// throughout.
 bool stands(const Frame& frame, const Interval& interval) {
   const Transform at_open = motion_at(frame, interval.open);
   const bool ends_there = motion_at(frame, interval.close) == at_open;

@@ -1,17 +1,18 @@
 #pragma once
 
-// Takes motion out of what does not move while the shutter is open: it costs nothing then.
+// Removes motion from instances that do not move during the shutter interval, so that it costs
+// nothing.
 
 #include "renderlib/geometry/moving_bounds.h"
 #include "renderlib/geometry/shapes.h"
 
 namespace bandsaw {
 
-/// Instances whose frames stand still during the interval get their place in the world for good,
-/// the same to the bit as at any time of it.
+/// Gives instances whose frames are static during the interval a fixed placement, equal to the bit
+/// to the animated one at any time of it.
 void rest(const Interval& interval, Geometry& geometry);
 
-/// Whether any instance is left that moves.
+/// Returns true if any instance still moves.
 bool moves(const Geometry& geometry);
 
 }  // namespace bandsaw

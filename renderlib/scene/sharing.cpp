@@ -8,7 +8,7 @@
 namespace bandsaw {
 namespace {
 
-/// Whether what is of this material hides all that is behind it, for shadow rays and for paths
+/// Returns true if the material fully occludes what is behind it, for shadow rays and for paths
 /// alike.
 bool is_opaque(const Material& material) {
   return !has_alpha(material) && nested_glass(material) == nullptr;

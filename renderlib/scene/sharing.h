@@ -1,6 +1,6 @@
 #pragma once
 
-// Whether the pixels of a scene may share what their paths find (integrate/shared_paths.h).
+// Decides whether pixels of a scene may share paths (integrate/shared_paths.h).
 
 #include "renderlib/light/lights.h"
 #include "renderlib/scene/description.h"
@@ -8,8 +8,9 @@
 
 namespace bandsaw {
 
-/// Where lamps give all the light, so that paths stay among the surfaces, nothing moves, and what
-/// is between two points hides one from the other or is not there. `needs`: the scene's own.
+/// Returns true if area and delta lights emit all the light (the background is black), nothing
+/// moves, there are no media, and every surface is either opaque or absent, for paths and shadow
+/// rays alike. `needs` are those of the scene.
 bool shares_paths(const SceneDescription& scene, const Lights& lights, const Needs& needs);
 
 }  // namespace bandsaw

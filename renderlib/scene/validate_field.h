@@ -1,6 +1,7 @@
 #pragma once
 
-// What the checks of a description share: each names the field, what is allowed and what was found.
+// Checks shared by the validation of all parts of a description. Errors name the field, the allowed
+// range and the value.
 
 #include <cmath>
 #include <string>
@@ -49,7 +50,7 @@ inline absl::Status check_color(const std::string& field, const Rgb& color, floa
   return absl::OkStatus();
 }
 
-/// Textures and materials (validate_surfaces.cpp).
+/// Checks textures and materials (validate_surfaces.cpp).
 absl::Status check_surfaces(const SceneDescription& scene);
 
 }  // namespace bandsaw

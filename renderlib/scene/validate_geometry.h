@@ -1,6 +1,6 @@
 #pragma once
 
-// The part of a description's check that is about what can be hit.
+// Validation of a description's geometry.
 
 #include <cstddef>
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace bandsaw {
 
-/// As validate (scene/validate.h), of shapes, meshes, groups, frames and instances. Errors name
-/// fields from `prefix` on; there are so many materials.
+/// Checks shapes, meshes, groups, frames and instances, like validate() (scene/validate.h).
+/// `prefix` is prepended to the names of fields in errors; `materials` is the number of materials.
 absl::Status check_geometry(const std::string& prefix, const Geometry& geometry,
                             std::size_t materials);
 

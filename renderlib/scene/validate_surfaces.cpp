@@ -38,7 +38,7 @@ absl::Status check_textures(const std::vector<Texture>& textures) {
   return absl::OkStatus();
 }
 
-/// All values that a texture can take.
+/// Checks all values that a texture can take.
 absl::Status check_values(const std::string& field, const std::vector<Texture>& textures,
                           TextureId id, float most) {
   const Texture& texture = textures[index_of(id)];
@@ -53,7 +53,7 @@ absl::Status check_values(const std::string& field, const std::vector<Texture>& 
   }
   const auto& image = std::get<ImageTexture>(texture);
   if (image.format != ImageTexture::Format::kFloat32) {
-    return absl::OkStatus();  // Codes are in [0, 1] whatever they are.
+    return absl::OkStatus();  // Decoded 8-bit values are always in [0, 1].
   }
   for (std::size_t i = 0; i < image.texels.size() / sizeof(float); ++i) {
     float value;

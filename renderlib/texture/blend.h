@@ -4,7 +4,7 @@
 
 namespace bandsaw {
 
-/// a + (b - a) t: exact when a == b, so that what is made of equal colours is that colour to the
+/// Returns a + (b - a) t: exact if a == b, so that blends of equal colours are that colour to the
 /// bit.
 inline Rgb blend(const Rgb& a, const Rgb& b, float t) {
   return {a.r + (b.r - a.r) * t, a.g + (b.g - a.g) * t, a.b + (b.b - a.b) * t};

@@ -1,6 +1,6 @@
 #pragma once
 
-// Whether a texture that is made of others or computed can be evaluated.
+// Validation of composite and procedural textures.
 
 #include <string>
 
@@ -10,14 +10,15 @@
 
 namespace bandsaw {
 
-/// Most textures that one look-up may evaluate.
+/// Maximum number of textures that one lookup may evaluate.
 inline constexpr std::uint64_t kMaxTextureParts = 256;
 inline constexpr std::size_t kMaxRampStops = 256;
 inline constexpr std::uint32_t kMaxOctaves = 16;
 
-/// textures[index]: parts stand before it, numbers are in their ranges; says nothing of constants
-/// and of texels. `cost` is how many textures each one before it evaluates; its own is appended.
-/// INVALID_ARGUMENT: "checker.even: must be below 3, is 4".
+/// Checks textures[index]: the textures it refers to precede it, and numbers are in their ranges.
+/// Constants and texels are not checked. `cost` holds the number of textures that each preceding
+/// one evaluates; its own is appended. Returns INVALID_ARGUMENT: "checker.even: must be below 3, is
+/// 4".
 absl::Status check_parts(absl::Span<const Texture> textures, std::size_t index,
                          std::vector<std::uint64_t>& cost);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Where on a surface a texture is looked up.
+// Coordinates of texture lookups on a surface.
 
 #include <cstdint>
 
@@ -8,17 +8,17 @@
 
 namespace bandsaw {
 
-/// The two sets of uv of a surface.
+/// Sets of uv coordinates of a surface.
 enum class UvSet : std::uint8_t { kFirst, kSecond };
 
-/// In which space a solid texture lies still. World: scene units. Object: the mesh's own space,
-/// before its placement; of a sphere, scene units from its centre; of a quad and a triangle, which
-/// have no other space, the world.
+/// The space of a solid texture. World: scene units. Object: the mesh's own space, before its
+/// placement; for a sphere, scene units from its centre; for a quad and a triangle, which have no
+/// other space, the world.
 enum class Space : std::uint8_t { kWorld, kObject };
 
 struct TextureCoordinates {
-  Vec2 uv = {};               ///< the first set
-  Vec2 uv2 = {};              ///< the second set; the first where the surface has no second
+  Vec2 uv = {};               ///< first set
+  Vec2 uv2 = {};              ///< second set; the first if the surface has no second
   Vec3 position = {};         ///< world space
   Vec3 object_position = {};  ///< object space
 

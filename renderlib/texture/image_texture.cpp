@@ -31,7 +31,7 @@ Rgb texel(const ImageTexture& image, std::uint32_t x, std::uint32_t y) {
 
 namespace {
 
-/// A coordinate brought into [0, 1] by the wrap mode. x - floor(x) may round up to 1; the index is
+/// Maps a coordinate to [0, 1] by the wrap mode. x - floor(x) may round up to 1; the index is
 /// wrapped again later.
 double wrapped(double x, ImageTexture::Wrap wrap) {
   if (!std::isfinite(x)) {
@@ -50,8 +50,8 @@ double wrapped(double x, ImageTexture::Wrap wrap) {
   return std::clamp(x, 0.0, 1.0);
 }
 
-/// The texel column or row of an index that is at most one step outside. At the edge of a mirror
-/// the neighbour is the texel itself.
+/// Maps an index that is at most one step outside to a texel's column or row. At the edge of a
+/// mirrored image the neighbour is the texel itself.
 std::uint32_t wrapped_index(std::int64_t i, std::uint32_t size, ImageTexture::Wrap wrap) {
   const std::int64_t last = std::int64_t{size} - 1;
   if (wrap == ImageTexture::Wrap::kRepeat) {
@@ -64,7 +64,8 @@ Rgb nearest(const ImageTexture& image, double x, double y) {
   const auto column = static_cast<std::int64_t>(std::floor(x * image.width));
   const auto row = static_cast<std::int64_t>(std::floor(y * image.height));
   return texel(image, wrapped_index(column, image.width, image.wrap),
-               static_cast<std::uint32_t>(std::min<std::int64_t>(row, image.height - 1)));  // v = 0
+               // At v = 0, row is the height.
+               static_cast<std::uint32_t>(std::min<std::int64_t>(row, image.height - 1)));
 }
 
 Rgb bilinear(const ImageTexture& image, double x, double y) {

@@ -6,7 +6,7 @@
 namespace bandsaw {
 namespace {
 
-/// The mixer of Steele, Lea, Flood 2014, "Fast Splittable Pseudorandom Number Generators",
+/// The mixer of Steele, Lea and Flood 2014, "Fast Splittable Pseudorandom Number Generators",
 /// section 3.
 std::uint64_t mixed(std::uint64_t z) {
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -18,7 +18,7 @@ constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15u;
 constexpr std::size_t kGradients = 256;
 using Gradients = std::array<Vec3, kGradients>;
 
-/// Directions that are uniform on the sphere: points of the cube, those outside the ball left out.
+/// Directions uniform on the sphere, by rejection sampling from the cube.
 Gradients make_gradients() {
   Gradients gradients;
   std::uint64_t state = 0;

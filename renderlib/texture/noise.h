@@ -1,8 +1,8 @@
 #pragma once
 
 // Gradient noise in space: Perlin 1985, "An Image Synthesizer", with Hermite weights and unit
-// gradients as in Shirley et al., "Ray Tracing: The Next Week", chapter 5. Gradients are chosen by
-// a hash of the lattice point instead of a permutation: the noise does not repeat.
+// gradients as in Shirley et al., "Ray Tracing: The Next Week", chapter 5. Gradients are selected
+// by a hash of the lattice point instead of a permutation, so the noise does not repeat.
 
 #include <cstdint>
 
@@ -10,11 +10,11 @@
 
 namespace bandsaw {
 
-/// In [-0.87, 0.87], zero at lattice points, once differentiable. Zero where |p| leaves no fraction
-/// (2^51 and beyond, or not finite).
+/// Returns noise in [-0.87, 0.87], zero at lattice points, once differentiable. Returns 0 where |p|
+/// has no fractional part (2^51 and above) or is not finite.
 double noise(const Vec3& p);
 
-/// |sum of noise(2^i p) / 2^i, i < octaves|, in [0, 1.74].
+/// Returns |sum of noise(2^i p) / 2^i over i < octaves|, in [0, 1.74].
 double turbulence(const Vec3& p, std::uint32_t octaves);
 
 }  // namespace bandsaw

@@ -11,17 +11,17 @@
 namespace bandsaw {
 namespace {
 
-/// 0 or 1, in turn from cell to cell. `slack` is how much nearer the next cell begins.
+/// Returns 0 or 1, alternating from cell to cell. The next cell begins `slack` early.
 double parity(double x, double slack) {
   const double cell = std::floor(x + slack);
   const double bit = cell - 2 * std::floor(cell / 2);
   return std::isfinite(bit) ? bit : 0;
 }
 
-/// What is left of rounding in a coordinate, in cells, and more than that.
+/// Returns a bound above the rounding error of a coordinate, in cells.
 double slack_of(double largest) { return 0x1p-20 + 0x1p-40 * largest; }
 
-/// t of NoiseTexture, before it is brought into [0, 1].
+/// Returns t of NoiseTexture before clamping to [0, 1].
 double strength_at(const NoiseTexture& texture, const Vec3& p) {
   switch (texture.kind) {
     case NoiseTexture::Kind::kNoise:

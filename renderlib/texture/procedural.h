@@ -1,19 +1,19 @@
 #pragma once
 
-// Textures that are computed, but for those they are made of.
+// Procedural textures. Composite ones (mix, product) are in texture.cpp.
 
 #include "renderlib/texture/texture.h"
 
 namespace bandsaw {
 
-/// Whether the point lies in a cell of `even`.
+/// Returns true if the point lies in a cell of texture `even`.
 bool is_even(const CheckerTexture& checker, const TextureCoordinates& at);
 
 Rgb evaluate(const NoiseTexture& noise, const TextureCoordinates& at);
 
-/// The coordinate that a ramp goes over; not of kTexture.
+/// Returns the coordinate that the ramp maps to a colour; not for kTexture.
 double coordinate(const RampTexture& ramp, const TextureCoordinates& at);
-/// NaN counts as the first stop.
+/// Returns the ramp's colour at `value`; NaN maps to the first stop.
 Rgb evaluate(const RampTexture& ramp, double value);
 
 }  // namespace bandsaw

@@ -1,7 +1,7 @@
 #pragma once
 
-// A colour that may vary over a surface or through space. A closed set. Textures may be made of
-// others, which stand before them in the scene's list: so there are no cycles.
+// Textures: colours that may vary over a surface or through space. A closed set. Textures may refer
+// to others, which precede them in the scene's list, so there are no cycles.
 
 #include <array>
 #include <cstddef>
@@ -23,7 +23,7 @@ struct ConstantTexture {
   Rgb value;
 };
 
-/// Where in an image a uv is looked up: (a u + b v + c, d u + e v + f).
+/// Affine transform of uv coordinates: (a u + b v + c, d u + e v + f).
 struct UvTransform {
   std::array<double, 6> m{1, 0, 0, 0, 1, 0};
   Vec2 operator()(const Vec2& uv) const {
@@ -32,8 +32,8 @@ struct UvTransform {
   friend bool operator==(const UvTransform&, const UvTransform&) = default;
 };
 
-/// Texels stay in the format they came in: an 8-bit image costs a byte a channel and texel. They
-/// may lie in a mapped file.
+/// Texels keep their original format: an 8-bit image takes a byte per channel and texel. They may
+/// lie in a mapped file.
 struct ImageTexture {
   enum class Format : std::uint8_t { kSrgb8, kLinear8, kFloat32 };
   enum class Wrap : std::uint8_t { kRepeat, kClamp, kMirror };
@@ -44,34 +44,34 @@ struct ImageTexture {
   Format format = Format::kSrgb8;
   Wrap wrap = Wrap::kRepeat;
   Filter filter = Filter::kBilinear;
-  SharedBytes texels;         ///< rows from the top (v = 1) down, no padding
+  SharedBytes texels;         ///< rows from the top (v = 1) down, without padding
   std::uint8_t channels = 3;  ///< 3, or 1: grey
   UvSet uv_set = UvSet::kFirst;
   UvTransform uv_transform;
-  std::optional<Wrap> wrap_v =
-      std::nullopt;  ///< where it is not that of u: a map on a sphere repeats in u alone
+  /// Vertical wrap mode if it differs from `wrap`: a map on a sphere repeats in u alone.
+  std::optional<Wrap> wrap_v = std::nullopt;
 
   Wrap v_wrap() const { return wrap_v.value_or(wrap); }
 };
 
-/// How many bytes the texels of an image of this size take.
+/// Returns the size of the texels of an image, in bytes.
 std::uint64_t texel_bytes(const ImageTexture& image);
 
-/// Two textures by turns: in squares of the uv plane, or in boxes of space. A coordinate counts to
-/// the next cell when it is nearer to it than 2^-20 of a cell (or its rounding), so that a plane
-/// that lies on a border between cells has one side.
+/// Alternates two textures in squares of the uv plane or in boxes of space. A coordinate belongs to
+/// the next cell if it is closer to it than 2^-20 of a cell (or its rounding error), so that a
+/// plane on a border between cells has one texture.
 struct CheckerTexture {
   enum class Mapping : std::uint8_t { kUv, kPosition };
-  TextureId even{};  ///< of the cell that begins at the origin
+  TextureId even{};  ///< texture of the cell that begins at the origin
   TextureId odd{};
   Mapping mapping = Mapping::kUv;
-  Vec3 size{1, 1, 1};  ///< of a cell, each > 0; z is of kPosition alone
+  Vec3 size{1, 1, 1};  ///< size of a cell, each component > 0; z is used by kPosition alone
   UvSet uv_set = UvSet::kFirst;
   Space space = Space::kWorld;
 };
 
-/// low + (high - low) t with t in [0, 1] from texture/noise.h, as Shirley et al., "Ray Tracing: The
-/// Next Week", chapter 5.
+/// low + (high - low) t, with t in [0, 1] from texture/noise.h, as in Shirley et al., "Ray Tracing:
+/// The Next Week", chapter 5.
 struct NoiseTexture {
   enum class Kind : std::uint8_t {
     kNoise,       ///< t = (1 + noise(scale p)) / 2
@@ -80,7 +80,7 @@ struct NoiseTexture {
   };
   Kind kind = Kind::kNoise;
   Space space = Space::kWorld;
-  std::uint32_t octaves = 7;    ///< of the turbulence, [1, 16]
+  std::uint32_t octaves = 7;    ///< octaves of the turbulence, [1, 16]
   double scale = 1;             ///< finite
   double strength = 10;         ///< finite
   double turbulence_scale = 1;  ///< finite
@@ -89,7 +89,7 @@ struct NoiseTexture {
   Rgb high{1, 1, 1};
 };
 
-/// A colour by a number: another texture's luminance, or a coordinate.
+/// Maps a number to a colour: another texture's luminance, or a coordinate.
 struct RampTexture {
   enum class Over : std::uint8_t { kTexture, kU, kV, kX, kY, kZ };
   struct Stop {
@@ -97,22 +97,24 @@ struct RampTexture {
     Rgb color;
   };
   Over over = Over::kTexture;
-  TextureId texture{};  ///< of kTexture alone
+  TextureId texture{};  ///< for kTexture alone
   UvSet uv_set = UvSet::kFirst;
   Space space = Space::kWorld;
-  bool steps = false;       ///< each colour from its stop to the next; else linear between stops
-  std::vector<Stop> stops;  ///< at least one; `at` finite and rising. Before the first and after
-                            ///< the last: their colour.
+  /// True: piecewise constant from each stop to the next; otherwise linear between stops.
+  bool steps = false;
+  /// At least one stop; `at` is finite and strictly increasing. Values before the first and after
+  /// the last stop get their colour.
+  std::vector<Stop> stops;
 };
 
-/// a + (b - a) t, t the luminance of `amount` brought into [0, 1].
+/// a + (b - a) t, where t is the luminance of `amount` clamped to [0, 1].
 struct MixTexture {
   TextureId a{};
   TextureId b{};
   TextureId amount{};
 };
 
-/// a times b, channel by channel.
+/// a times b, by channel.
 struct ProductTexture {
   TextureId a{};
   TextureId b{};
@@ -121,18 +123,18 @@ struct ProductTexture {
 using Texture = std::variant<ConstantTexture, ImageTexture, CheckerTexture, NoiseTexture,
                              RampTexture, MixTexture, ProductTexture>;
 
-/// The colour of textures[id] there. Any coordinates; those that are not finite count as 0.
-/// Filtering is done on linear values.
+/// Returns the colour of textures[id]. Coordinates that are not finite count as 0. Filtering is
+/// done on linear values.
 Rgb evaluate(absl::Span<const Texture> textures, TextureId id, const TextureCoordinates& at);
 
-/// No channel is larger anywhere: what energy checks and light power bounds use. 8-bit images: 1.
+/// Returns an upper bound of all channels, for energy checks and light bounds; 1 for 8-bit images.
 float max_value(absl::Span<const Texture> textures, TextureId id);
 
-/// The mean, linear: of images exactly, over all texels; of others an estimate that is black only
-/// where they are black everywhere.
+/// Returns the linear mean: exact for images; for other textures an estimate that is black only if
+/// they are black everywhere.
 Rgb mean(absl::Span<const Texture> textures, TextureId id);
 
-/// Whether the texture itself, not one that it refers to, is looked up by uv.
+/// Returns true if the texture itself, not one that it refers to, uses uv coordinates.
 bool uses_uv(const Texture& texture);
 
 }  // namespace bandsaw
