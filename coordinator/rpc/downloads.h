@@ -1,6 +1,6 @@
 #pragma once
 
-// What goes out in chunks: blobs to workers, results to people.
+// Streams from the server in chunks: blobs to workers, images to users.
 
 #include <functional>
 #include <utility>
@@ -10,8 +10,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Work.GetBlob. Each chunk is copied out of the mapped file on the file executor: touching a
-/// mapped page may wait for the disk.
+/// Work.GetBlob. Each chunk is copied out of the mapped file by the file executor, because touching
+/// a mapped page may wait for the disk.
 class GetBlobCall final : public SelfOwned<grpc::ServerWriteReactor<farm::BlobChunk>, GetBlobCall> {
  public:
   GetBlobCall(const Doors& doors, const farm::GetBlobRequest& request)
@@ -30,10 +30,10 @@ class GetBlobCall final : public SelfOwned<grpc::ServerWriteReactor<farm::BlobCh
   farm::BlobChunk chunk_;
 };
 
-/// Farm.GetResult and Farm.Preview: an image that is made on the file executor.
+/// Farm.GetResult and Farm.Preview: sends an image that the file executor makes.
 class ImageCall final : public SelfOwned<grpc::ServerWriteReactor<farm::ResultChunk>, ImageCall> {
  public:
-  /// May wait, for the engine too.
+  /// May block, also on the engine.
   using Make = std::function<absl::StatusOr<StoredResult>()>;
   ImageCall(const Doors& doors, Make make) : doors_(doors), make_(std::move(make)) {}
   void begin();

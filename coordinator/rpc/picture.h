@@ -1,6 +1,6 @@
 #pragma once
 
-// What is there of a job's image, for people to look at.
+// The current picture of a job, for display.
 
 #include <cstdint>
 
@@ -9,18 +9,19 @@
 
 namespace bandsaw::coordinator {
 
-/// The job as it is now. NOT_FOUND. Waits for the engine, as all here.
+/// Returns the job's current state. NOT_FOUND: no such job. Waits for the engine, as do all
+/// functions here.
 absl::StatusOr<JobView> look_at(Engine& engine, JobId job);
 
-/// The finished image, or how many samples each pixel has. Errors as Engine::result.
+/// Returns the finished image, or the number of samples of each pixel. Errors as Engine::result.
 absl::StatusOr<StoredResult> result_of(Engine& engine, JobId job,
                                        FinishedPart part = FinishedPart::kImage);
 
-/// What is there of the job, or its finished image, at most about `most_side` pixels a side, >= 1;
-/// without `digest`. NOT_FOUND: nothing of it is there.
+/// Returns the job's current picture, or its finished image, at most about `most_side` pixels a
+/// side, >= 1; `digest` is not set. NOT_FOUND: no pixel of it is stored.
 absl::StatusOr<StoredResult> picture_of(Engine& engine, const JobView& job,
                                         std::uint32_t most_side);
-/// The same of the job as it is now, with `digest`.
+/// The same for the job's current state, with `digest`.
 absl::StatusOr<StoredResult> preview_of(Engine& engine, JobId job, std::uint32_t most_side);
 
 }  // namespace bandsaw::coordinator

@@ -10,7 +10,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr int kFileThreads = 4;  // they wait for the disk more than they work
+constexpr int kFileThreads = 4;  // they wait for the disk most of the time
 constexpr auto kShutdownTime = std::chrono::seconds(4);
 
 std::shared_ptr<grpc::ServerCredentials> credentials(const link::Identity& identity,
@@ -19,7 +19,7 @@ std::shared_ptr<grpc::ServerCredentials> credentials(const link::Identity& ident
     return grpc::InsecureServerCredentials();
   }
   grpc::SslServerCredentialsOptions
-      options;  // who may call is decided by secrets, not by client certificates
+      options;  // clients are authenticated by secrets, not by certificates
   options.pem_key_cert_pairs.push_back(
       {.private_key = identity.key_pem, .cert_chain = identity.certificate_pem});
   return grpc::SslServerCredentials(options);
@@ -64,9 +64,9 @@ class Server::Impl {
   int port() const { return port_; }
 
  private:
-  const link::Identity identity_;  ///< as at the start: the certificate does not change
+  const link::Identity identity_;  ///< as at start; the certificate does not change
   Gate gate_;
-  FileExecutor files_;  // before the server: calls that end post to it
+  FileExecutor files_;  // constructed before the server, because calls that end post tasks to it
   LongStreams streams_;
   FarmService farm_;
   WorkService work_;

@@ -6,7 +6,8 @@ namespace bandsaw::coordinator {
 namespace {
 
 constexpr std::size_t kMaxStreams =
-    2 * wire::kWorkers + 1024;  // a worker: orders and bands; the rest: watched jobs
+    // two for each worker (session and bands); the rest for watched jobs
+    2 * wire::kWorkers + 1024;
 
 }  // namespace
 

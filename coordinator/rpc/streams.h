@@ -1,7 +1,7 @@
 #pragma once
 
-// How a reactor of gRPC's callback API lives, and the register of the long ones, which a stopping
-// server must end.
+// Lifetime of reactors of gRPC's callback API, and the registry of long streams, which the server
+// must end when it stops.
 
 #include <grpcpp/grpcpp.h>
 
@@ -18,23 +18,23 @@
 
 namespace bandsaw::coordinator {
 
-/// A stream without an end of its own: a worker's session, a watched job.
+/// A stream that does not end by itself: a worker's session, a watched job.
 class LongStream {
  public:
   virtual ~LongStream() = default;
-  /// Ends the call with this status once what is being written is out. Any thread; more than once
-  /// does nothing.
+  /// Ends the call with this status after the write in progress. Any thread; repeated calls have no
+  /// effect.
   virtual void stop(const absl::Status& why) = 0;
-  /// Whose secret opened it.
+  /// The role whose secret opened the stream.
   virtual link::Role role() const = 0;
 };
 
 class LongStreams {
  public:
-  /// UNAVAILABLE once stopped; RESOURCE_EXHAUSTED when there are too many.
+  /// UNAVAILABLE after stop_all(); RESOURCE_EXHAUSTED: too many streams.
   absl::Status add(std::weak_ptr<LongStream> stream) EXCLUDES(mutex_);
   void stop_all(const absl::Status& why) EXCLUDES(mutex_);
-  /// Those of one role that are open now.
+  /// Stops the open streams of one role.
   void stop_those_of(link::Role role, const absl::Status& why) EXCLUDES(mutex_);
 
  private:
@@ -43,7 +43,7 @@ class LongStreams {
   std::vector<std::weak_ptr<LongStream>> streams_ GUARDED_BY(mutex_);
 };
 
-/// What the services share. All of it outlives every call.
+/// Dependencies shared by the services. All of them outlive every call.
 struct Doors {
   Engine& engine;
   Gate& gate;
@@ -51,8 +51,8 @@ struct Doors {
   LongStreams& streams;
 };
 
-/// A reactor that keeps itself until OnDone, which is gRPC's last word. Whatever may come later
-/// than that (an answer of the engine, a task of the file executor) holds it by shared_from_this().
+/// A reactor that owns itself until OnDone, gRPC's last callback. Callbacks that may run after that
+/// (an answer of the engine, a task of the file executor) hold it by shared_from_this().
 template <class Base, class Derived>
 class SelfOwned : public Base, public std::enable_shared_from_this<Derived> {
  public:
@@ -75,7 +75,7 @@ class SelfOwned : public Base, public std::enable_shared_from_this<Derived> {
   std::shared_ptr<Derived> self_;
 };
 
-/// The answer to a call of one message that ends before it began.
+/// Completes a unary call at once with a status.
 inline grpc::ServerUnaryReactor* finished(grpc::CallbackServerContext* context,
                                           const absl::Status& status) {
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
@@ -83,7 +83,7 @@ inline grpc::ServerUnaryReactor* finished(grpc::CallbackServerContext* context,
   return reactor;
 }
 
-/// A call that ends before it began.
+/// A streaming call that is refused at once.
 template <class Base>
 class RefusedCall final : public Base {
  public:

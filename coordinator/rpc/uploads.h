@@ -6,8 +6,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Farm.PutBlob: what people send in chunks. A chunk is read only when the one before is in the
-/// file, which the file executor writes.
+/// Farm.PutBlob: receives a blob in chunks. The next chunk is read only after the file executor has
+/// written the previous one.
 class PutBlobCall final : public SelfOwned<grpc::ServerReadReactor<farm::BlobChunk>, PutBlobCall> {
  public:
   PutBlobCall(const Doors& doors, grpc::CallbackServerContext* context)
