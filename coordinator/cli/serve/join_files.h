@@ -1,6 +1,6 @@
 #pragma once
 
-// The files that hold the farm's join strings, in the data folder.
+// The files with the farm's join strings, in the data folder.
 
 #include <string>
 #include <vector>
@@ -11,17 +11,18 @@
 
 namespace bandsaw::coordinator {
 
-/// `DATA/join` for workers, `DATA/farm` for people.
+/// Returns `DATA/join` for workers, `DATA/farm` for users.
 std::string join_file_of(const std::string& data_folder, link::Role role);
 
-/// Writes the role's join string; returns it. `insecure`: without the certificate.
+/// Writes the role's join string and returns it. `insecure`: without the certificate.
 absl::StatusOr<std::string> write_join_file(const std::string& data_folder, link::Role role,
                                             const link::Identity& identity,
                                             const std::vector<std::string>& addresses,
                                             bool insecure);
 
-/// A new secret in the identity and in the role's join string, if there is one. Errors as
-/// link::renew_secret; from then on the two files may differ until the next `serve`.
+/// Renews the secret in the identity and in the role's join string, if that file exists. Errors as
+/// link::renew_secret. If writing the join string fails (`written`), the files differ until the
+/// next `serve`.
 absl::StatusOr<RenewedSecret> rotate_secret(const std::string& data_folder, link::Role role);
 
 }  // namespace bandsaw::coordinator
