@@ -29,7 +29,8 @@ class Survival {
 
   /// Returns the number of bands that one worker had stored and another rendered as well, except
   /// backup tasks and stolen work, and of bands that one worker rendered twice. Bands rendered in
-  /// vain by the worker `cut_off` do not count, because it could not know what others did meanwhile.
+  /// vain by the worker `cut_off` do not count, because it could not know what others did
+  /// meanwhile.
   int rendered_again(const std::string& cut_off = "");
 
   /// Expects rendered_again() to be 0; otherwise prints every log.
