@@ -39,7 +39,7 @@ absl::Status BandIntake::begin(const farm::BandHeader& header) {
     return absl::InvalidArgumentError("header.counters: times must be finite and >= 0");
   }
   pixels_.width = static_cast<std::uint32_t>(row_bytes / kPixelBytes);
-  // reserves address space; pages are touched only as bytes arrive
+  // Reserves address space; pages are touched only as bytes arrive.
   pixels_.sums.reserve(header.size() / sizeof(double));
   pixels_.counters = {.rays = header.counters().rays(),
                       .bad_samples = header.counters().bad_samples(),

@@ -6,7 +6,7 @@ namespace bandsaw::coordinator {
 namespace {
 
 constexpr std::size_t kMaxStreams =
-    // two for each worker (session and bands); the rest for watched jobs
+    // Two for each worker (session and bands); the rest for watched jobs.
     2 * wire::kWorkers + 1024;
 
 }  // namespace

@@ -90,7 +90,7 @@ absl::StatusOr<Connected> connect_plain(const std::string& address,
 absl::StatusOr<Connected> connect(const JoinString& join, std::chrono::milliseconds timeout) {
   std::vector<std::string> reasons;
   std::size_t wrong = 0;  // number of addresses that presented another certificate
-  // one of these is not on loopback (this machine may run another farm)
+  // One of these is not on loopback (this machine may run another farm).
   bool wrong_elsewhere = false;
   for (const std::string& address : join.addresses) {
     absl::StatusOr<Connected> connected = join.certificate

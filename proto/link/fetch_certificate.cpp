@@ -75,7 +75,7 @@ absl::StatusOr<std::string> fetch_certificate_pem(const std::string& address,
   SSL_set_bio(session.get(), BIO_new(BIO_s_mem()), BIO_new(BIO_s_mem()));
   SSL_set_verify(session.get(), SSL_VERIFY_NONE, nullptr);
   SSL_set_tlsext_host_name(session.get(), kServerName);
-  // a gRPC server closes the connection without it
+  // A gRPC server closes the connection without it.
   static constexpr unsigned char kAlpn[] = {2, 'h', '2'};
   SSL_set_alpn_protos(session.get(), kAlpn, sizeof(kAlpn));
   while (true) {

@@ -3,9 +3,8 @@
 // The join string: one line with everything that a machine needs to connect to a farm.
 //
 //   bsw1-w-192.168.1.5:7878,10.0.0.5:7878-<43>-<22>
-//   format version, role (w worker, f farm user), addresses, base64url of the certificate's
-//   SHA-256,
-//   base64url of the secret (128 bits)
+//   format version, role (w worker, f farm user), addresses,
+//   base64url of the certificate's SHA-256, base64url of the secret (128 bits)
 //
 // An IPv6 address is written in brackets. A coordinator without TLS (--insecure) writes "plain"
 // instead of the digest.

@@ -84,7 +84,7 @@ void Executor::execute(Running& running) {
   absl::StatusOr<FinishedBand> band = absl::InternalError("not rendered");
   try {
     band = render(running);
-    // the standard library's: the scene or band may need more memory than there is
+    // Thrown by the standard library: the scene or the band needs too much memory.
   } catch (const std::bad_alloc&) {
     band = absl::ResourceExhaustedError("not enough memory for the scene or the band");
   }

@@ -38,7 +38,7 @@ absl::Status upload(FarmClient& client, ImportedPackage& package, ProgressDispla
   }
   ASSIGN_OR_RETURN(const std::vector<FarmClient::MissingBlob> lacking,
                    client.missing_blobs(digests));
-  // for each missing blob, number of bytes that the farm already has
+  // For each missing blob, number of bytes that the farm already has.
   std::map<wire::Digest, std::uint64_t> missing;
   for (const FarmClient::MissingBlob& blob : lacking) {
     missing[blob.digest] = blob.there;

@@ -42,7 +42,7 @@ Codes codes_at(const Image& image, const Display& display, const Grid& grid, std
   for (std::uint32_t v = top; v < bottom; ++v) {
     for (std::uint32_t u = left; u < right; ++u) {
       const Rgb light = shown(image.at(u, v), display);
-      // clamped, so that one very bright pixel does not make the whole cell bright
+      // Clamped, so that one very bright pixel does not make the whole cell bright.
       sum[0] += std::min(light.r, 1.0F);
       sum[1] += std::min(light.g, 1.0F);
       sum[2] += std::min(light.b, 1.0F);

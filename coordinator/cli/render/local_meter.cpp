@@ -67,7 +67,7 @@ Progress LocalMeter::progress(Clocks now) const {
   if (job.counters.bad_samples > 0) {
     progress.bad_sample_at = bad_sample_text(job.counters);
   }
-  // only the caller decides that the render is done
+  // Only the caller decides that the render is done.
   job.fraction = std::min(fraction_of(job), 0.999);
   if (job.elapsed_s > 0) {
     job.samples_per_s = static_cast<double>(job.samples_done) / job.elapsed_s;

@@ -14,7 +14,7 @@ namespace bandsaw::coordinator {
 namespace {
 
 absl::StatusOr<SceneSummary> summary_of_file(const InfoOptions& options, Process& process) {
-  // quiet, because the summary contains the warnings
+  // Quiet, because the summary contains the warnings.
   ASSIGN_OR_RETURN(ImportedPackage package,
                    import_scene_file(options.scene, {.quiet = true}, process));
   ASSIGN_OR_RETURN(SceneDescription scene, decode_package(package.manifest(), package.blobs()));
