@@ -84,8 +84,8 @@ void Executor::execute(Running& running) {
   absl::StatusOr<FinishedBand> band = absl::InternalError("not rendered");
   try {
     band = render(running);
-    // Thrown by the standard library: the scene or the band needs too much memory.
   } catch (const std::bad_alloc&) {
+    // Thrown by the standard library: the scene or the band needs too much memory.
     band = absl::ResourceExhaustedError("not enough memory for the scene or the band");
   }
   if (running.stop) {
