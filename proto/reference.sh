@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Writes scene.md, the reference of the scene file, from the comments of scene.proto.
-# Usage: proto/reference.sh [--check]    with --check nothing is written: fails where it is not up to date
+# Usage: proto/reference.sh [--check]    --check writes nothing and fails if scene.md is not up to date
 set -euo pipefail
 cd "$(dirname "$0")"
 
@@ -35,7 +35,7 @@ reference() {
       rows[name, ++count[name]] = type
       row_words[name, count[name]] = words
     }
-    # A comment belongs to what follows; the second line of one at the end of a line would go to the wrong field.
+    # A comment line belongs to the following field, so a trailing comment must not continue on the next line.
     match($0, /^ *\/\//) && RLENGTH > 2 * depth + 2 {
       print "proto/scene.proto:" NR ": a comment that goes on must stand above its field" > "/dev/stderr"
       exit bad = 1

@@ -1,6 +1,7 @@
 #!/bin/sh
-# Links a program with archives wherever there is one beside the shared library: COMPILER ARGUMENT...
-# CMake's packages of Debian name shared libraries only; their order on the line is right for archives too.
+# Links a program with static archives instead of shared libraries where an archive exists.
+# Usage: link_archives.sh COMPILER ARGUMENT...
+# CMake's packages of Debian name shared libraries only; their order on the command line is right for archives too.
 set -eu
 compiler=$1
 shift
@@ -13,7 +14,7 @@ for argument; do
     *) name= ;;
   esac
   archive=lib$name.a
-  # The compiler says the name as it is where it knows no such file.
+  # The compiler prints the name unchanged if it finds no such file.
   if [ -n "$name" ] && [ "$("$compiler" -print-file-name="$archive")" != "$archive" ]; then
     argument=-l:$archive
   fi

@@ -1,6 +1,6 @@
 #pragma once
 
-// A log sink from which the lines are taken that the coordinator has not got yet.
+// A log sink that queues lines until they are sent to the coordinator.
 
 #include <spdlog/sinks/base_sink.h>
 
@@ -12,12 +12,14 @@
 
 namespace bandsaw::worker {
 
-/// Bounded: while nobody takes them, the oldest lines go, and their number is told in their place.
+/// A bounded queue: when it is full, the oldest lines are dropped, and a line with their number
+/// takes their place.
 class LogQueue final : public spdlog::sinks::base_sink<std::mutex> {
  public:
-  /// The oldest `most` lines at most, which are forgotten here. Any thread.
+  /// Removes and returns the oldest lines, at most `most`. Thread-safe.
   std::vector<std::string> take(std::size_t most);
-  /// The last lines that were taken are to be taken again: who had them has lost them. Any thread.
+  /// Puts the lines that were taken last (at most 50) back into the queue, because the coordinator
+  /// lost them in a restart. Thread-safe.
   void again();
 
  protected:
@@ -27,8 +29,8 @@ class LogQueue final : public spdlog::sinks::base_sink<std::mutex> {
  private:
   static constexpr std::size_t kKept = 500;
   static constexpr std::size_t kTakenKept = 50;
-  std::deque<std::string> lines_;  ///< under the base's lock, as all
-  std::deque<std::string> taken_;  ///< the newest
+  std::deque<std::string> lines_;  ///< protected by the base class's mutex, as are all members
+  std::deque<std::string> taken_;  ///< the newest taken lines
   std::uint64_t lost_ = 0;
 };
 

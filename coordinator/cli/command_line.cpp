@@ -44,7 +44,8 @@ struct Entry {
   const char* name;
   const char* what;
   void (*add)(CLI::App&, RawOptions&);
-  absl::StatusOr<Command> (*check)(const RawOptions&);  ///< null: completion, made of this table
+  /// Nullptr: completion, generated from this table.
+  absl::StatusOr<Command> (*check)(const RawOptions&);
   const char* example;
 };
 
@@ -130,7 +131,7 @@ absl::StatusOr<Command> completion(const CLI::App& app, const RawOptions& raw) {
 absl::StatusOr<Command> parse_with(CLI::App& app, const std::vector<CLI::App*>& commands,
                                    const RawOptions& raw,
                                    const std::vector<std::string>& arguments) {
-  // CLI11 reports by exceptions; they end here.
+  // CLI11 reports by exceptions; they are converted here.
   try {
     std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
     app.parse(std::move(reversed));
@@ -160,7 +161,7 @@ absl::StatusOr<Command> parse_with(CLI::App& app, const std::vector<CLI::App*>& 
   return absl::InvalidArgumentError("no command; see: bandsaw --help");
 }
 
-// "help" is "--help", "help submit" is "submit --help".
+// "help" becomes "--help", "help submit" becomes "submit --help".
 std::vector<std::string> without_help_word(std::vector<std::string> arguments) {
   if (!arguments.empty() && arguments.front() == "help") {
     arguments.erase(arguments.begin());

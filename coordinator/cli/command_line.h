@@ -1,6 +1,6 @@
 #pragma once
 
-// From arguments to a checked command. The table of commands and options is here and nowhere else.
+// Parses arguments into a checked command. The only table of commands and options.
 
 #include <string>
 #include <vector>
@@ -10,8 +10,8 @@
 
 namespace bandsaw::coordinator {
 
-/// `arguments` without the program's name. INVALID_ARGUMENT: one line that says what is wrong and,
-/// where there is one, the command or option that was probably meant.
+/// `arguments` without the program's name. INVALID_ARGUMENT: one line with the error and, if there
+/// is one, the command or option that was probably meant.
 absl::StatusOr<Command> parse_command_line(const std::vector<std::string>& arguments);
 
 }  // namespace bandsaw::coordinator

@@ -29,7 +29,7 @@ constexpr char kEnd[] = R"(      esac ;;
 complete -o default -F _bandsaw bandsaw
 )";
 
-// Where nothing fits, bash offers files; this says that no file is meant.
+// If nothing matches, bash offers file names; this disables it where no file is expected.
 constexpr char kNoFiles[] = "compopt +o default 2>/dev/null || true; return";
 
 std::vector<std::string> names_of(const CLI::Option& option) {
@@ -48,7 +48,7 @@ bool takes_file(const CLI::Option& option) {
   return type == "TEXT" || type == "FILE" || type == "DIR";
 }
 
-/// What comes after an option that takes something, by the option's name.
+/// Maps the name of each option with a value to the completion of that value.
 std::map<std::string, std::string> after_options(const CLI::App& app) {
   std::map<std::string, std::string> cases;
   for (const CLI::App* command : app.get_subcommands({})) {
@@ -67,7 +67,7 @@ std::map<std::string, std::string> after_options(const CLI::App& app) {
   return cases;
 }
 
-/// The words that an argument without a name takes.
+/// Returns the words that positional arguments accept.
 std::vector<std::string> arguments_of(const CLI::App& command) {
   std::vector<std::string> words;
   for (const CLI::Option* option : command.get_options()) {

@@ -1,14 +1,14 @@
 #pragma once
 
-// Words for a shell to complete, made of the table of commands itself.
+// Shell completion, generated from the table of commands.
 
 #include <CLI/CLI.hpp>
 #include <string>
 
 namespace bandsaw::coordinator {
 
-/// A script for bash: commands, their options, the words that options take (cli/options/choices.h),
-/// and files where a file is meant.
+/// Returns a script for bash that completes commands, their options, the words that options accept
+/// (cli/options/choices.h), and file names where a file is expected.
 std::string bash_completion(const CLI::App& app);
 
 }  // namespace bandsaw::coordinator

@@ -39,7 +39,8 @@ absl::Status BandIntake::begin(const farm::BandHeader& header) {
     return absl::InvalidArgumentError("header.counters: times must be finite and >= 0");
   }
   pixels_.width = static_cast<std::uint32_t>(row_bytes / kPixelBytes);
-  pixels_.sums.reserve(header.size() / sizeof(double));  // touched only as far as bytes come
+  // Reserves address space; pages are touched only as bytes arrive.
+  pixels_.sums.reserve(header.size() / sizeof(double));
   pixels_.counters = {.rays = header.counters().rays(),
                       .bad_samples = header.counters().bad_samples(),
                       .bad_x = header.counters().bad_x(),

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the chunks of one band say, each checked against the ones before.
+// Assembles one band from its chunks and checks each chunk against the previous ones.
 
 #include "absl/status/statusor.h"
 #include "proto/farm.pb.h"
@@ -11,15 +11,16 @@ namespace bandsaw::coordinator {
 
 class BandIntake {
  public:
-  /// INVALID_ARGUMENT: the field, what is allowed and what was found.
+  /// Adds a chunk. INVALID_ARGUMENT names the field, the allowed range and the value.
   absl::Status add(const farm::BandChunk& chunk);
-  /// Chunks came, but not all.
+  /// Some chunks have arrived, but not all.
   bool cut() const { return begun_ && !whole(); }
   bool whole() const { return begun_ && received_ == header_.size(); }
   std::uint64_t received() const { return received_; }
 
-  const farm::BandHeader& header() const { return header_; }  ///< once a chunk came
-  /// Of a whole band, once. INVALID_ARGUMENT: not the bytes that were announced, or not sums.
+  const farm::BandHeader& header() const { return header_; }  ///< valid after the first chunk
+  /// Returns the pixels of a complete band; callable once. INVALID_ARGUMENT: the bytes do not match
+  /// the announced digest, or a sum is not finite and >= 0.
   absl::StatusOr<BandPixels> take();
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the chunks of one blob say, each checked against the ones before.
+// Checks the chunks of one blob, each against the previous ones.
 
 #include <cstdint>
 #include <optional>
@@ -13,17 +13,18 @@ namespace bandsaw::coordinator {
 
 class BlobIntake {
  public:
-  /// INVALID_ARGUMENT, RESOURCE_EXHAUSTED: the field, what is allowed and what was found; nothing
-  /// of the chunk counts then.
+  /// Checks a chunk. INVALID_ARGUMENT, RESOURCE_EXHAUSTED: names the field, the allowed range and
+  /// the value; the chunk is then ignored.
   absl::Status add(const farm::BlobChunk& chunk);
-  /// No more chunks come. INVALID_ARGUMENT: bytes are missing.
+  /// Checks that the blob is complete. INVALID_ARGUMENT: bytes are missing.
   absl::Status end() const;
 
   bool begun() const { return digest_.has_value(); }
-  const wire::Digest& digest() const { return *digest_; }  ///< once begun
-  std::uint64_t size() const { return size_; }             ///< of the whole blob
-  std::uint64_t first_offset() const { return first_; }    ///< where the first chunk began
-  std::uint64_t received() const { return received_; }     ///< with what was there before it
+  const wire::Digest& digest() const { return *digest_; }  ///< valid once begun
+  std::uint64_t size() const { return size_; }             ///< size of the whole blob
+  std::uint64_t first_offset() const { return first_; }    ///< offset of the first chunk
+  /// Including the bytes before the first chunk.
+  std::uint64_t received() const { return received_; }
 
  private:
   absl::Status begin(const farm::BlobChunk& chunk);
@@ -34,7 +35,7 @@ class BlobIntake {
   std::uint64_t received_ = 0;
 };
 
-/// The data of a chunk MUST fit what was announced.
+/// INVALID_ARGUMENT: the chunk is too long, or longer than the rest of the announced size.
 absl::Status check_chunk(const std::string& data, std::uint64_t received, std::uint64_t size);
 absl::Status cut_short(std::uint64_t received, std::uint64_t size);
 

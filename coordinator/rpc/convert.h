@@ -1,8 +1,8 @@
 #pragma once
 
-// Messages <-> the core's words. What comes from the wire is checked here, field by field, against
-// proto/wire/limits.h and render/settings.h: INVALID_ARGUMENT names the field, its range and what
-// was found.
+// Converts between messages and the scheduler's types. Input from the network is checked here,
+// field by field, against proto/wire/limits.h and render/settings.h: INVALID_ARGUMENT names the
+// field, its range and the value.
 
 #include "absl/status/statusor.h"
 #include "coordinator/core/messages.h"
@@ -11,13 +11,13 @@
 
 namespace bandsaw::coordinator {
 
-// ---- from the wire ----
+// ---- from messages ----
 
 absl::StatusOr<wire::Digest> digest_field(const char* field, const std::string& raw);
 absl::StatusOr<JobSpec> job_spec(const farm::SubmitRequest& request);
-/// Its form only: whether it is a band of its job is known to the engine.
+/// Checks the form only; the engine decides if it is a band of its job.
 absl::StatusOr<Band> band(const char* field, const farm::Band& message);
-/// `address`: of the peer, for people.
+/// `address`: the peer's address, for display.
 absl::StatusOr<WorkerHello> worker_hello(const farm::Hello& message, std::string address);
 absl::StatusOr<input::Heartbeat> heartbeat(const farm::Heartbeat& message);
 absl::StatusOr<std::vector<std::string>> log_lines(
@@ -25,7 +25,7 @@ absl::StatusOr<std::vector<std::string>> log_lines(
 absl::StatusOr<input::BandFailed> band_failed(const farm::BandFailed& message);
 absl::StatusOr<std::string> reason_field(const char* field, const std::string& text);
 
-// ---- to the wire ----
+// ---- to messages ----
 
 farm::ErrorPoint to_message(const ErrorPoint& point);
 farm::JobStatus to_message(const JobView& job);

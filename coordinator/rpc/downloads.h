@@ -1,6 +1,6 @@
 #pragma once
 
-// What goes out in chunks: blobs to workers, results to people.
+// Streams from the server in chunks: blobs to workers, images to users.
 
 #include <functional>
 #include <optional>

@@ -38,7 +38,7 @@ void FileExecutor::run() {
     tasks_.pop_front();
     mutex_.unlock();
     task();
-    task = nullptr;  // what it holds may take the queue's lock when it goes
+    task = nullptr;  // its captures may take the queue's lock in their destructors
     mutex_.lock();
   }
 }

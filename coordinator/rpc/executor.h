@@ -14,13 +14,13 @@ namespace bandsaw::coordinator {
 class FileExecutor {
  public:
   explicit FileExecutor(int threads);
-  /// Does what is still queued, then ends. Nothing may be posted any more.
+  /// Runs the tasks that are still queued, then ends. No task may be posted any more.
   ~FileExecutor();
   FileExecutor(const FileExecutor&) = delete;
   FileExecutor& operator=(const FileExecutor&) = delete;
 
-  /// Tasks begin in the order they were posted; those of one stream never overlap, because each
-  /// posts its next one itself.
+  /// Tasks start in the order in which they were posted. Tasks of one stream never overlap, because
+  /// each posts the next one itself.
   void post(std::function<void()> task) EXCLUDES(mutex_);
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
 
-// Wrong secrets, counted by address, so that whoever tries many is turned away.
+// Counts wrong secrets per address, to limit the rate of attempts.
 
 #include <cstddef>
 #include <map>
@@ -8,15 +8,15 @@
 
 namespace bandsaw::coordinator {
 
-/// A pure counter: the time comes with each call, in seconds since any start. Used by one thread at
-/// a time.
+/// Has no clock: the time is passed with each call, in seconds since an arbitrary start. Used by
+/// one thread at a time.
 class Failures {
  public:
-  /// More than `most` within a minute is too many.
+  /// More than `most` failures within a minute are too many.
   explicit Failures(std::size_t most) : most_(most) {}
 
   enum class Verdict { kFirst, kMore, kTooMany };
-  /// Counts one more of this address. kFirst: of its minute.
+  /// Counts one more failure of the address. kFirst: the first one in its minute.
   Verdict add(const std::string& address, double now);
 
  private:

@@ -1,4 +1,4 @@
-// What people ask of the farm itself: logs, who is kept away, what it is, new secrets.
+// RPCs for administration: logs, quarantine, description of the coordinator, new secrets.
 
 #include <algorithm>
 #include <chrono>

@@ -1,4 +1,4 @@
-// What people tell a job, and ask of it.
+// RPCs that control or explain one job.
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/rpc/convert.h"
@@ -10,7 +10,8 @@ namespace {
 
 using Unary = grpc::ServerUnaryReactor;
 
-/// Tells the engine; the reply is the job as it is then. `tell` is called with the answer to give.
+/// Runs a command on the engine and replies with the job's status after it. `tell` is called with
+/// the callback that receives the job.
 template <class Tell>
 Unary* told(const Doors& doors, grpc::CallbackServerContext* context, farm::JobStatus* reply,
             Tell tell) {

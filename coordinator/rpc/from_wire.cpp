@@ -24,7 +24,7 @@ absl::Status check_range(const char* field, std::uint64_t value, std::uint64_t l
   return absl::OkStatus();
 }
 
-/// Names and reasons are shown on terminals: no control characters.
+/// Names and reasons are printed on terminals, so control characters are refused.
 absl::Status check_text(const char* field, const std::string& text, std::size_t most) {
   if (text.size() > most) {
     return invalid(field, "at most ", most, " bytes, has ", text.size());

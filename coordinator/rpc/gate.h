@@ -1,6 +1,6 @@
 #pragma once
 
-// Who may call: the secret of each call, checked before anything else of it is looked at.
+// Authentication: checks the secret of each call before anything else in the call is read.
 
 #include <grpcpp/grpcpp.h>
 
@@ -15,13 +15,14 @@
 
 namespace bandsaw::coordinator {
 
-/// A secret that was made anew and written down.
+/// A renewed secret, already written to disk.
 struct RenewedSecret {
   link::Identity identity;
   std::string join_file;
-  absl::Status written = {};  ///< of the files beside the identity: the secret is new all the same
+  /// Status of writing the files beside the identity; the secret is renewed even if this failed.
+  absl::Status written = {};
 };
-/// May be nothing: then secrets cannot be renewed. Waits for the disk.
+/// nullptr: secrets cannot be renewed. May block on the disk.
 using RenewSecret = std::function<absl::StatusOr<RenewedSecret>(link::Role)>;
 
 /// Thread-safe.
@@ -29,8 +30,9 @@ class Gate {
  public:
   Gate(link::Identity identity, RenewSecret renew);
 
-  /// UNAUTHENTICATED: no or wrong secret. RESOURCE_EXHAUSTED: that, too often from one address.
-  /// PERMISSION_DENIED: the other role's.
+  /// Checks that the call carries the secret of role `needed`. UNAUTHENTICATED: no secret, or a
+  /// wrong one. RESOURCE_EXHAUSTED: the same, but too often from one address. PERMISSION_DENIED:
+  /// the other role's secret.
   absl::Status check(const grpc::CallbackServerContext& context, link::Role needed)
       EXCLUDES(mutex_);
   /// Whether check would let the call in now. A wrong secret is not counted.
@@ -38,8 +40,9 @@ class Gate {
   /// As check, where both roles may call.
   absl::Status check_any(const grpc::CallbackServerContext& context) EXCLUDES(mutex_);
 
-  /// From its return on the old secret is refused; the file of the new join string.
-  /// FAILED_PRECONDITION: there is no way to renew. Not for gRPC's own threads.
+  /// Renews a role's secret and returns the file with the new join string. The old secret is
+  /// refused from the moment this returns. FAILED_PRECONDITION: this server cannot renew secrets.
+  /// MUST NOT be called on gRPC's threads, because it waits for the disk.
   absl::StatusOr<std::string> rotate(link::Role role) EXCLUDES(rotating_);
 
  private:
@@ -53,8 +56,8 @@ class Gate {
   Failures failures_ GUARDED_BY(mutex_);
 };
 
-/// gRPC's "ipv4:10.0.0.7:51234" or "ipv6:%5B::1%5D:51234" as people write it, without the port,
-/// which says nothing.
+/// Converts gRPC's "ipv4:10.0.0.7:51234" or "ipv6:%5B::1%5D:51234" to a readable address without
+/// the port, which is ephemeral.
 std::string address_of(const std::string& peer);
 
 }  // namespace bandsaw::coordinator

@@ -1,6 +1,6 @@
 #pragma once
 
-// Whether the coordinator serves, for probes: proto/health.proto.
+// Health check for probes: proto/health.proto.
 
 #include <grpcpp/grpcpp.h>
 
@@ -8,8 +8,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Answers whoever asks: it says only that the port is served, which the open port says too. That
-/// it answers at all means that the engine has read its journal.
+/// Answers without a secret: the reply reveals only that the port is served, as the open port does.
+/// The service is registered after the engine has replayed its journal, so an answer implies that.
 class HealthService final : public grpc::health::v1::Health::CallbackService {
  public:
   grpc::ServerUnaryReactor* Check(grpc::CallbackServerContext* context,

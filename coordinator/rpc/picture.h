@@ -1,6 +1,6 @@
 #pragma once
 
-// What is there of a job's image, for people to look at.
+// The current picture of a job, for display.
 
 #include <cstdint>
 
@@ -9,7 +9,8 @@
 
 namespace bandsaw::coordinator {
 
-/// The job as it is now. NOT_FOUND. Waits for the engine, as all here.
+/// Returns the job's current state. NOT_FOUND: no such job. Waits for the engine, as do all
+/// functions here.
 absl::StatusOr<JobView> look_at(Engine& engine, JobId job);
 
 /// An image, and its bytes of Engine::images.

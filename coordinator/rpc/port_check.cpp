@@ -21,7 +21,7 @@ int try_bind(const addrinfo& info) {
   }
   const int on = 1;
   setsockopt(fd, SOL_SOCKET, SO_REUSEADDR, &on,
-             sizeof(on));  // as gRPC does: not held up by closed connections
+             sizeof(on));  // as gRPC does, so that connections in TIME_WAIT do not matter
   int error = bind(fd, info.ai_addr, info.ai_addrlen) == 0 ? 0 : errno;
   if (error == 0 && listen(fd, 1) != 0) {
     error = errno;

@@ -7,9 +7,10 @@
 
 namespace bandsaw::coordinator {
 
-/// Work.PutBands. One thing at a time: a band is read only when the one before is answered, so that
-/// a worker has the memory of one. Chunks are copied and hashed where gRPC calls, which is less
-/// than handing them to another thread takes where bands are small; the engine writes them.
+/// Work.PutBands. Flow control: the next band is read only after the previous one is answered, so a
+/// worker's stream needs the memory of one band. Chunks are copied and hashed on gRPC's thread,
+/// which for small bands costs less than handing them to another thread; the engine writes them to
+/// disk.
 class PutBandsCall final
     : public SelfOwned<grpc::ServerBidiReactor<farm::BandChunk, farm::PutBandReply>, PutBandsCall>,
       public LongStream {
@@ -20,7 +21,7 @@ class PutBandsCall final
   void OnReadDone(bool ok) override;
   void OnWriteDone(bool ok) override;
 
-  /// A band that the engine has is answered first.
+  /// Ends the call. A band that the engine already has is answered first.
   void stop(const absl::Status& why) override EXCLUDES(mutex_);
   link::Role role() const override { return link::Role::kWorker; }
 
@@ -33,11 +34,12 @@ class PutBandsCall final
   void advance() REQUIRES(mutex_);
 
   const Doors doors_;
-  farm::BandChunk chunk_;  ///< this and the next: touched in the order of reads only
+  farm::BandChunk chunk_;  ///< this and intake_: accessed in the order of reads only
   BandIntake intake_;
-  farm::PutBandReply reply_;  ///< by the one who answers
+  farm::PutBandReply reply_;  ///< accessed by the thread that answers
   Mutex mutex_;
-  bool handed_over_ GUARDED_BY(mutex_) = false;  ///< a band, whose answer is not out yet
+  /// A band is with the engine, or its answer is being written.
+  bool handed_over_ GUARDED_BY(mutex_) = false;
   bool finished_ GUARDED_BY(mutex_) = false;
   std::optional<absl::Status> end_ GUARDED_BY(mutex_);
 };

@@ -4,9 +4,8 @@
 
 namespace bandsaw::coordinator {
 
-/// The server tells whoever asks which services, calls and messages it has (gRPC server
-/// reflection), or does not. What libgrpc++_reflection does by being linked is undone: it would
-/// tell in any case.
+/// Enables or disables gRPC server reflection, which lists services, calls and messages to any
+/// client. libgrpc++_reflection enables it by being linked; this function removes that plugin.
 void set_reflection(grpc::ServerBuilder& builder, bool wanted);
 
 }  // namespace bandsaw::coordinator

@@ -20,7 +20,7 @@ std::shared_ptr<grpc::ServerCredentials> credentials(const link::Identity& ident
     return grpc::InsecureServerCredentials();
   }
   grpc::SslServerCredentialsOptions
-      options;  // who may call is decided by secrets, not by client certificates
+      options;  // clients are authenticated by secrets, not by certificates
   options.pem_key_cert_pairs.push_back(
       {.private_key = identity.key_pem, .cert_chain = identity.certificate_pem});
   return grpc::SslServerCredentials(options);
@@ -66,7 +66,7 @@ class Server::Impl {
   int port() const { return port_; }
 
  private:
-  const link::Identity identity_;  ///< as at the start: the certificate does not change
+  const link::Identity identity_;  ///< as at start; the certificate does not change
   Gate gate_;
   FileExecutor files_;  // before the server, as the next: calls that end post to them
   FileExecutor images_;

@@ -1,6 +1,6 @@
 #pragma once
 
-// The doors for machines: both gRPC services on one port.
+// Runs the gRPC services on one port.
 
 #include <memory>
 #include <string>
@@ -13,19 +13,20 @@
 namespace bandsaw::coordinator {
 
 struct ServerOptions {
-  std::string listen = "0.0.0.0:7878";  ///< port 0 picks one
+  std::string listen = "0.0.0.0:7878";  ///< port 0: any free port
   bool insecure = false;                ///< plaintext
-  bool reflection = false;              ///< tells which calls there are, to anybody who asks
-  RenewSecret renew = nullptr;          ///< what RotateSecret does; nothing: it is refused
+  bool reflection = false;              ///< lists the services and calls to any client
+  RenewSecret renew = nullptr;          ///< implements RotateSecret; nullptr: it is refused
 };
 
 class Server {
  public:
-  /// FAILED_PRECONDITION: the port is taken (says by whom to look for).
+  /// FAILED_PRECONDITION: the port is taken (the message says how to find the process).
   static absl::StatusOr<std::unique_ptr<Server>> start(Engine& engine,
                                                        const link::Identity& identity,
                                                        const ServerOptions& options);
-  /// Tells workers nothing is wrong with them, ends every stream within 5 s.
+  /// Ends every stream with UNAVAILABLE, which tells workers that they may keep their bands; takes
+  /// at most 5 s.
   ~Server();
   int port() const;
 

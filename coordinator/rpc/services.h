@@ -1,6 +1,7 @@
 #pragma once
 
-// The two services of proto/farm.proto: who may call, and which call is made of it.
+// The two services of proto/farm.proto: each method authenticates the caller and creates the call
+// object.
 
 #include "coordinator/rpc/streams.h"
 #include "proto/farm.grpc.pb.h"
@@ -58,7 +59,8 @@ class FarmService final : public farm::Farm::CallbackService {
                                          farm::RotateSecretReply* reply) override;
 
  private:
-  /// The worker that a person names. The gate's refusal; INVALID_ARGUMENT: no name of one.
+  /// Checks the caller and the name of a worker given by a user. Returns the gate's error, or
+  /// INVALID_ARGUMENT if it cannot be a name.
   absl::StatusOr<std::string> worker_named(const grpc::CallbackServerContext& context,
                                            const std::string& name) const;
 

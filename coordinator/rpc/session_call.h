@@ -9,8 +9,9 @@
 
 namespace bandsaw::coordinator {
 
-/// Work.Session: a worker's messages to the engine, the engine's actions to the worker. The engine
-/// hears `lost` exactly once, in OnDone, when nothing of the stream can come any more.
+/// Work.Session: forwards a worker's messages to the engine and the engine's actions to the worker.
+/// The engine receives `lost` exactly once, in OnDone, after which no message of the stream can
+/// arrive.
 class SessionCall final
     : public SelfOwned<grpc::ServerBidiReactor<farm::FromWorker, farm::ToWorker>, SessionCall>,
       public WorkerLink,
@@ -35,17 +36,17 @@ class SessionCall final
  private:
   absl::Status receive(const farm::FromWorker& message);
   void send(farm::ToWorker message) EXCLUDES(mutex_);
-  /// Ends the call after all that was sent before.
+  /// Ends the call after all messages queued before.
   void end_with(const absl::Status& status) EXCLUDES(mutex_);
   void advance() REQUIRES(mutex_);
 
   const Doors doors_;
   const std::string peer_;
   farm::FromWorker incoming_;
-  std::optional<SessionId> session_;  ///< touched in the order of reads only, then by done()
+  std::optional<SessionId> session_;  ///< accessed in the order of reads only, then by done()
   Mutex mutex_;
   std::deque<farm::ToWorker> outgoing_
-      GUARDED_BY(mutex_);  ///< the front one is being written while writing_
+      GUARDED_BY(mutex_);  ///< the front message is being written while writing_
   bool writing_ GUARDED_BY(mutex_) = false;
   bool finished_ GUARDED_BY(mutex_) = false;
   std::optional<absl::Status> end_ GUARDED_BY(mutex_);

@@ -25,16 +25,16 @@ class LongStream {
   /// Ends the call with this status as soon as the write or the task that is under way has ended;
   /// nothing is begun after it. Any thread; the first status counts.
   virtual void stop(const absl::Status& why) = 0;
-  /// Whose secret opened it.
+  /// The role whose secret opened the stream.
   virtual link::Role role() const = 0;
 };
 
 class LongStreams {
  public:
-  /// UNAVAILABLE once stopped; RESOURCE_EXHAUSTED when there are too many.
+  /// UNAVAILABLE after stop_all(); RESOURCE_EXHAUSTED: too many streams.
   absl::Status add(std::weak_ptr<LongStream> stream) EXCLUDES(mutex_);
   void stop_all(const absl::Status& why) EXCLUDES(mutex_);
-  /// Those of one role that are open now.
+  /// Stops the open streams of one role.
   void stop_those_of(link::Role role, const absl::Status& why) EXCLUDES(mutex_);
 
  private:
@@ -43,7 +43,7 @@ class LongStreams {
   std::vector<std::weak_ptr<LongStream>> streams_ GUARDED_BY(mutex_);
 };
 
-/// What the services share. All of it outlives every call.
+/// Dependencies shared by the services. All of them outlive every call.
 struct Doors {
   Engine& engine;
   Gate& gate;
@@ -84,7 +84,7 @@ class SelfOwned : public Base, public std::enable_shared_from_this<Derived> {
   std::shared_ptr<Derived> self_;
 };
 
-/// The answer to a call of one message that ends before it began.
+/// Completes a unary call at once with a status.
 inline grpc::ServerUnaryReactor* finished(grpc::CallbackServerContext* context,
                                           const absl::Status& status) {
   grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
@@ -92,7 +92,7 @@ inline grpc::ServerUnaryReactor* finished(grpc::CallbackServerContext* context,
   return reactor;
 }
 
-/// A call that ends before it began.
+/// A streaming call that is refused at once.
 template <class Base>
 class RefusedCall final : public Base {
  public:

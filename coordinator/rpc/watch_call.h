@@ -7,8 +7,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Farm.Watch. Holds at most one state that is not sent yet: a slow reader sees fewer states, never
-/// old ones.
+/// Farm.Watch. Keeps at most one unsent status (a conflating queue): a slow reader receives fewer
+/// statuses, never stale ones.
 class WatchCall final : public SelfOwned<grpc::ServerWriteReactor<farm::JobStatus>, WatchCall>,
                         public LongStream {
  public:
@@ -20,7 +20,7 @@ class WatchCall final : public SelfOwned<grpc::ServerWriteReactor<farm::JobStatu
   link::Role role() const override { return link::Role::kFarm; }
 
  private:
-  /// False: nothing more is wanted.
+  /// Returns false if no more statuses are wanted.
   bool changed(const absl::StatusOr<JobView>& job) EXCLUDES(mutex_);
   void advance() REQUIRES(mutex_);
 
@@ -30,8 +30,8 @@ class WatchCall final : public SelfOwned<grpc::ServerWriteReactor<farm::JobStatu
   bool writing_ GUARDED_BY(mutex_) = false;
   bool finished_ GUARDED_BY(mutex_) = false;
   std::optional<farm::JobStatus> next_ GUARDED_BY(mutex_);
-  std::optional<absl::Status> end_ GUARDED_BY(mutex_);  ///< after `next_` is sent
-  farm::JobStatus sending_;                             ///< untouched while writing_
+  std::optional<absl::Status> end_ GUARDED_BY(mutex_);  ///< sent after `next_`
+  farm::JobStatus sending_;                             ///< not modified while writing_
 };
 
 }  // namespace bandsaw::coordinator

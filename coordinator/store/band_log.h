@@ -13,43 +13,44 @@
 
 namespace bandsaw::coordinator {
 
-/// What reading a log found.
+/// Result of reading a log.
 struct BandLogReport {
-  std::uint64_t records = 0;        ///< whole ones, handed on
-  std::uint64_t damaged_bytes = 0;  ///< of no record: skipped, and cut off where they are the end
+  std::uint64_t records = 0;  ///< complete records, passed to the callback
+  /// Bytes that belong to no record: skipped, or truncated if they are at the end.
+  std::uint64_t damaged_bytes = 0;
 };
 
 class BandLog {
  public:
-  /// Opens or makes the log `path` in `folder`, hands on every whole record with the byte it begins
-  /// at, and cuts off what is left of an append that was interrupted. A damaged record is skipped
-  /// and the reading goes on at the next one that is whole.
+  /// Opens or creates the log `path` in `folder`, calls `each` with every complete record and its
+  /// byte offset, and truncates the remains of an interrupted append. A damaged record is skipped;
+  /// reading continues at the next complete one.
   static absl::StatusOr<BandLog> open(const std::string& folder, const std::string& path,
                                       absl::FunctionRef<void(BandRecord, std::uint64_t)> each,
                                       BandLogReport& report);
 
-  /// The byte where the record begins. Not durable before sync. RESOURCE_EXHAUSTED: disk full; the
-  /// log is as it was.
+  /// Appends a record and returns its byte offset. Not durable before sync(). RESOURCE_EXHAUSTED:
+  /// the disk is full; the log is unchanged.
   absl::StatusOr<std::uint64_t> append(const BandRecord& record);
-  /// One fdatasync for all appends since the last. On an error all of them are taken back: none of
-  /// them is in the log.
+  /// Makes all appends since the last call durable, with one fdatasync. If it fails, all of them
+  /// are removed from the log.
   absl::Status sync();
 
   const std::string& path() const { return file_.path(); }
 
  private:
   BandLog(File file, std::uint64_t size) : file_(std::move(file)), synced_(size), size_(size) {}
-  /// Back to a length that is known to be sound.
+  /// Truncates the log to a length that is known to be valid.
   absl::Status take_back(std::uint64_t size);
 
   File file_;
-  std::uint64_t synced_ = 0;  ///< bytes on disk for sure
-  std::uint64_t size_ = 0;    ///< bytes of whole records written
-  bool torn_ = false;         ///< the file may be longer than size_: cut it before the next write
+  std::uint64_t synced_ = 0;  ///< bytes known to be on disk
+  std::uint64_t size_ = 0;    ///< bytes of complete records written
+  bool torn_ = false;  ///< the file may be longer than size_; truncate it before the next write
 };
 
-/// The record that begins at this byte of a log. NOT_FOUND: no such log. DATA_LOSS, OUT_OF_RANGE:
-/// there is no whole one.
+/// Reads the record at this byte offset of a log. NOT_FOUND: no such log. DATA_LOSS, OUT_OF_RANGE:
+/// there is no complete record.
 absl::StatusOr<BandRecord> read_band(const std::string& path, std::uint64_t offset);
 
 }  // namespace bandsaw::coordinator

@@ -18,7 +18,7 @@ namespace {
 
 constexpr char kStaging[] = "/incoming";
 
-/// 256 folders, so that none holds very many files.
+/// Distributes the blobs over 256 folders, so that none becomes very large.
 std::string folder_of(const std::string& root, const wire::Digest& digest) {
   return absl::StrCat(root, "/", digest.hex().substr(0, 2));
 }
@@ -130,7 +130,7 @@ BlobStore::Writer::~Writer() {
   }
 }
 
-/// Only hashed: whether they are right is known at the end.
+/// Only hashes the earlier bytes; whether they are right is known when the digest is complete.
 absl::Status BlobStore::Writer::take_earlier(std::uint64_t bytes) {
   std::vector<std::byte> buffer(std::min<std::uint64_t>(bytes, 1 << 20));
   while (written_ < bytes) {
@@ -158,7 +158,7 @@ absl::Status BlobStore::Writer::append(absl::Span<const std::byte> bytes) {
 }
 
 absl::Status BlobStore::Writer::commit() {
-  intact_ = false;  // whole or wrong: nothing to go on from
+  intact_ = false;  // after commit there is nothing to resume: the blob is complete or wrong
   if (written_ != size_) {
     return absl::InvalidArgumentError(absl::StrCat(
         "blob ", digest_.hex(), " ended after ", written_, " of the ", size_, " bytes announced"));

@@ -1,6 +1,6 @@
 #pragma once
 
-// Blobs by digest, as files. Thread-safe; calls may block on the disk.
+// Stores blobs as files named by digest. Thread-safe; calls may block on the disk.
 
 #include <cstdint>
 #include <memory>
@@ -21,42 +21,44 @@ namespace bandsaw::coordinator {
 
 class BlobStore : public BlobSource {
  public:
-  /// `folder` MUST exist and belong to this store.
+  /// `folder` MUST exist and be used by this store only.
   static absl::StatusOr<std::unique_ptr<BlobStore>> open(const std::string& folder);
 
   bool has(const wire::Digest& digest) const;
-  /// How many bytes of a blob that is not there are kept of an upload that was cut.
+  /// Number of bytes that are kept of an interrupted upload of a blob that is not stored.
   std::uint64_t partial(const wire::Digest& digest) const { return partials_->size(digest); }
 
-  /// The blob, mapped. Its digest is checked the first time in this life. NOT_FOUND: no such blob.
-  /// DATA_LOSS: the file is damaged; it has been removed, so that the blob can be sent again.
+  /// Returns the blob, memory-mapped. Its digest is checked at the first call since the process
+  /// started. NOT_FOUND: no such blob. DATA_LOSS: the file is damaged; it was removed, so that the
+  /// blob can be uploaded again.
   absl::StatusOr<std::unique_ptr<BlobBytes>> get(const wire::Digest& digest) override;
 
   struct Stored {
     wire::Digest digest;
     std::uint64_t size = 0;
-    double used_at = 0;  ///< seconds since 1970: written or touched last
+    double used_at = 0;  ///< seconds since 1970: last written or touched
   };
-  /// All blobs, in no order. Those that come or go meanwhile may be among them.
+  /// Returns all blobs, in no order. Blobs added or removed during the call may be listed or not.
   std::vector<Stored> list() const;
-  /// It is needed now, as if it had just come.
+  /// Marks the blob as just used.
   void touch(const wire::Digest& digest) const;
-  /// Fine when it is not there. Who has it mapped keeps it.
+  /// Removes the blob; OK if it does not exist. Existing mappings stay valid.
   absl::Status remove(const wire::Digest& digest) EXCLUDES(mutex_);
 
-  /// Partial blobs that nobody wrote to for so long go. `now`: seconds since 1970.
+  /// Removes partial blobs that were not written to for `seconds`. `now`: seconds since 1970.
   void remove_partials(double now, double seconds) { partials_->remove_unused(now, seconds); }
 
-  /// A blob that arrives in pieces. Without commit its bytes are kept as a partial blob, unless
-  /// something was wrong with them. The store MUST outlive it.
+  /// Writes a blob that arrives in pieces. If it is destroyed without commit, the bytes are kept as
+  /// a partial blob, unless an error occurred. The store MUST outlive it.
   class Writer {
    public:
     Writer(Writer&&) noexcept = default;
     ~Writer();
-    /// INVALID_ARGUMENT: more than the announced size. RESOURCE_EXHAUSTED: the disk is full.
+    /// INVALID_ARGUMENT: more bytes than announced. RESOURCE_EXHAUSTED: the disk is full.
     absl::Status append(absl::Span<const std::byte> bytes);
-    /// INVALID_ARGUMENT: digest or size differ. DATA_LOSS: the digest does, and some of the bytes
-    /// are of an earlier upload: they may have been damaged since. OK: on disk.
+    /// OK: the blob is on disk. INVALID_ARGUMENT: the digest or the size differs. DATA_LOSS: the
+    /// digest differs and some of the bytes are from an earlier upload, so they may have been
+    /// damaged since.
     absl::Status commit();
 
    private:
@@ -72,15 +74,17 @@ class BlobStore : public BlobSource {
     std::string folder_;
     wire::Digest digest_;
     std::uint64_t size_ = 0;
-    std::uint64_t earlier_ = 0;  ///< bytes of an earlier upload
-    std::uint64_t written_ = 0;  ///< with those
+    std::uint64_t earlier_ = 0;  ///< bytes from an earlier upload
+    std::uint64_t written_ = 0;  ///< including those
     bool intact_ = true;
     wire::Hasher hasher_;
-    std::unique_ptr<PartialBlobs::Claim> claim_;  ///< goes after the file; none: moved from
+    /// Released after the file is closed; nullptr after a move.
+    std::unique_ptr<PartialBlobs::Claim> claim_;
     StagedFile file_;
   };
-  /// `offset`: goes on behind so many bytes of an earlier upload. FAILED_PRECONDITION: there are
-  /// fewer. RESOURCE_EXHAUSTED: over the limit of a blob, or no room for it.
+  /// Starts writing a blob. `offset` > 0 resumes after that many bytes of an earlier upload.
+  /// FAILED_PRECONDITION: fewer bytes are there. RESOURCE_EXHAUSTED: the blob is too large, or the
+  /// disk has no room for it.
   absl::StatusOr<Writer> write(const wire::Digest& digest, std::uint64_t size,
                                std::uint64_t offset = 0);
 

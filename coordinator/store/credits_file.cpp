@@ -12,7 +12,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Far more than all rows of the tallest image with the longest names take.
+/// More than all rows of the tallest image with the longest names need.
 constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 26;
 
 }  // namespace

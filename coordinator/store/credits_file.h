@@ -1,7 +1,7 @@
 #pragma once
 
-// Who rendered which rows of an image, kept beside it. For people to look at: an image without it
-// is as good.
+// Stores which worker rendered which rows of an image, in a file beside it. For display only: the
+// image is valid without it.
 
 #include <string>
 #include <vector>
@@ -12,17 +12,18 @@
 
 namespace bandsaw::coordinator {
 
-/// Rows that one worker rendered last.
+/// Rows of the image and the worker that rendered them last.
 struct RowsBy {
   RowRange rows;
-  std::string worker;  ///< its name; empty: not known
+  std::string worker;  ///< its name; empty: unknown
   friend bool operator==(const RowsBy&, const RowsBy&) = default;
 };
 
-/// Whole or not at all.
+/// Writes the file atomically.
 absl::Status write_credits(const std::vector<RowsBy>& credits, const std::string& path);
 
-/// NOT_FOUND: no such file. DATA_LOSS: damaged, saying how. RESOURCE_EXHAUSTED: far too long.
+/// Reads the file. NOT_FOUND: no such file. DATA_LOSS: damaged, with the reason.
+/// RESOURCE_EXHAUSTED: far too long.
 absl::StatusOr<std::vector<RowsBy>> read_credits(const std::string& path);
 
 }  // namespace bandsaw::coordinator

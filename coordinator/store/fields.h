@@ -1,7 +1,7 @@
 #pragma once
 
-// Named values as lines of text: "name value\n", values escaped as in C. Written and read in one
-// fixed order.
+// Named values as lines of text: "name value
+// ", values escaped as in C, in a fixed order.
 
 #include <charconv>
 #include <cstdint>
@@ -16,7 +16,7 @@ class FieldWriter {
  public:
   void text(absl::string_view name, absl::string_view value);
   void number(absl::string_view name, std::uint64_t value);
-  /// The shortest digits that read back as the same double.
+  /// Writes the shortest decimal that reads back as the same double.
   void real(absl::string_view name, double value);
   std::string take() { return std::move(out_); }
 
@@ -24,19 +24,20 @@ class FieldWriter {
   std::string out_;
 };
 
-/// Reads what FieldWriter wrote, in the same order. The first thing that is wrong stays in
-/// `status()`; after it all values are empty or zero.
+/// Reads the output of FieldWriter in the same order. The first error is kept in the status; after
+/// it all values are empty or zero.
 class FieldReader {
  public:
   explicit FieldReader(absl::string_view fields) : rest_(fields) {}
   std::string text(absl::string_view name);
   std::uint64_t number(absl::string_view name, std::uint64_t most = UINT64_MAX);
   double real(absl::string_view name);
-  /// Whether the next field bears this name; of fields that older writers did not know.
+  /// True if the next field has this name. For fields that older versions did not write.
   bool next_is(absl::string_view name) const;
-  /// DATA_LOSS: a field was missing, malformed, out of range, or left over at the end.
+  /// Returns the status. DATA_LOSS: a field is missing, malformed, out of range, or left over at
+  /// the end.
   absl::Status finish();
-  /// Marks the record as wrong for a reason of the caller's.
+  /// Sets the error, for a reason found by the caller.
   void refuse(std::string reason);
 
  private:

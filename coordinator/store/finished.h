@@ -1,6 +1,6 @@
 #pragma once
 
-// What a job leaves when it is done.
+// The results of a finished job.
 
 #include <optional>
 #include <vector>
@@ -12,10 +12,10 @@ namespace bandsaw::coordinator {
 
 struct Finished {
   Image image;
-  /// How many samples each pixel has, in all channels; of an adaptive job alone, as in all others
-  /// all have as many.
+  /// Number of samples of each pixel, the same in all channels. Only for an adaptive job; in other
+  /// jobs all pixels have the same number.
   std::optional<Image> samples;
-  std::vector<RowsBy> credits;  ///< who rendered which rows
+  std::vector<RowsBy> credits;  ///< which worker rendered which rows
 };
 
 }  // namespace bandsaw::coordinator

@@ -1,6 +1,6 @@
 #pragma once
 
-// What must survive of the core: its records, in order. One of the four open doors.
+// Interface of the journal: the scheduler's durable records, in order.
 
 #include "absl/functional/function_ref.h"
 #include "absl/status/status.h"
@@ -9,18 +9,20 @@
 
 namespace bandsaw::coordinator {
 
-/// Used by one thread at a time.
+/// Not thread-safe.
 class Journal {
  public:
   virtual ~Journal() = default;
-  /// All of the records or none. OK: they are on disk, after everything appended before.
-  /// RESOURCE_EXHAUSTED, INTERNAL, …: none of them is there; the same append may be tried again.
+  /// Appends all of the records or none. OK: they are on disk, after all records appended before.
+  /// RESOURCE_EXHAUSTED, INTERNAL, …: none of them is in the journal; the same append may be
+  /// retried.
   virtual absl::Status append(absl::Span<const Record> records) = 0;
-  /// Every record, in the order written. DATA_LOSS naming the record that is damaged or not known.
+  /// Calls `each` with every record in the order written. DATA_LOSS names a record that is damaged
+  /// or of an unknown kind.
   virtual absl::Status replay(absl::FunctionRef<void(const Record&)> each) = 0;
-  /// These in the place of all that is there, or nothing changes. Errors as append.
+  /// Atomically replaces all records by these. Errors as append.
   virtual absl::Status rewrite(absl::Span<const Record> records) = 0;
-  /// Records that are there.
+  /// Number of records in the journal.
   virtual std::uint64_t size() const = 0;
 };
 

@@ -1,8 +1,8 @@
 #pragma once
 
-// Blobs whose upload was cut: as many of their bytes as came, a file each, for a sender who goes on
-// from there. Nothing is known of these bytes until the whole has its digest. Thread-safe; calls
-// may block on the disk.
+// Blobs whose upload was interrupted: one file each with the bytes received, so that the sender can
+// resume. The bytes are not verified until the blob is complete and its digest is checked.
+// Thread-safe; calls may block on the disk.
 
 #include <cstdint>
 #include <memory>
@@ -17,26 +17,27 @@ namespace bandsaw::coordinator {
 
 class PartialBlobs {
  public:
-  /// What is worth keeping: less is sent again as soon.
+  /// Minimum size to keep; fewer bytes are quickly sent again.
   static constexpr std::uint64_t kLeastBytes = 1 << 20;
 
-  /// Makes the folder; what is in it and is no partial blob is removed.
+  /// Creates the folder; removes everything in it that is not a partial blob.
   static absl::StatusOr<std::unique_ptr<PartialBlobs>> open(const std::string& folder);
 
-  /// How many bytes of it are there to go on from; 0 while somebody sends it.
+  /// Number of bytes from which an upload can resume; 0 while an upload is in progress.
   std::uint64_t size(const wire::Digest& digest) const EXCLUDES(mutex_);
 
-  /// A file for a blob that comes in. While it is held no other claim gets this file.
+  /// A file for an incoming blob. No other claim gets the same file while it is held.
   class Claim {
    public:
     Claim(PartialBlobs& all, std::string path, bool resumable)
         : all_(all), path_(std::move(path)), resumable_(resumable) {}
     Claim(const Claim&) = delete;
     Claim& operator=(const Claim&) = delete;
-    /// What was left there counts as a partial blob from now on.
+    /// Makes the bytes left in the file available as a partial blob.
     ~Claim();
     const std::string& path() const { return path_; }
-    /// Whether what is left there is found again: not where another claim has the blob's own file.
+    /// True if bytes left in the file can be resumed later. False if another claim already has the
+    /// blob's own file.
     bool resumable() const { return resumable_; }
 
    private:
@@ -46,14 +47,14 @@ class PartialBlobs {
   };
   std::unique_ptr<Claim> claim(const wire::Digest& digest) EXCLUDES(mutex_);
 
-  /// Removes what was not written to for so long. `now`: seconds since 1970.
+  /// Removes files that were not written to for `seconds`. `now`: seconds since 1970.
   void remove_unused(double now, double seconds) EXCLUDES(mutex_);
 
  private:
   explicit PartialBlobs(std::string folder) : folder_(std::move(folder)) {}
   std::string path_of(const wire::Digest& digest) const;
   void release(const Claim& claim) EXCLUDES(mutex_);
-  /// Removes the oldest beyond wire::kPartialBlobs and wire::kPartialBytes.
+  /// Removes the oldest files that exceed wire::kPartialBlobs or wire::kPartialBytes.
   void trim() REQUIRES(mutex_);
 
   const std::string folder_;

@@ -65,7 +65,7 @@ void write_figures(FieldWriter& out, const record::Figures& r) {
   out.number("bad_sample", r.counters.bad_sample);
 }
 
-/// Records from before do not count what is left out.
+/// Records of older versions lack these counters.
 Counters read_counters(FieldReader& in) {
   Counters counters;
   if (in.next_is("negative_samples")) {
@@ -112,7 +112,7 @@ Record read_record(absl::string_view kind, FieldReader& in) {
         .job = in.number("job"), .state = state_field(in, "state"), .reason = in.text("reason")};
   }
   if (kind == "priority_changed") {
-    // Written from 0 to twice the most: fields hold no signed numbers.
+    // Stored with an offset, in [0, 2 * kMostPriority], because fields hold no signed numbers.
     return record::PriorityChanged{
         .job = in.number("job"),
         .priority = static_cast<std::int32_t>(in.number("priority_plus_most", 2 * kMostPriority)) -

@@ -1,7 +1,7 @@
 #pragma once
 
-// A record of the journal as text: a kind and named fields. The form is written down in this
-// folder's README.
+// A journal record as text: a kind and named fields. The format is specified in this folder's
+// README.
 
 #include <string>
 
@@ -11,14 +11,16 @@
 namespace bandsaw::coordinator {
 
 struct RecordText {
-  std::string kind;    ///< "job_added", …
-  std::string fields;  ///< a line "name value" each, in a fixed order; values escaped as in C
+  std::string kind;  ///< "job_added", …
+  /// One line "name value" per field, in a fixed order; values escaped as in C.
+  std::string fields;
   friend bool operator==(const RecordText&, const RecordText&) = default;
 };
 
 RecordText to_text(const Record& record);
 
-/// DATA_LOSS naming the field: unknown kind or field, a field missing, a value out of range.
+/// Parses a record. DATA_LOSS names the field: unknown kind or field, missing field, value out of
+/// range.
 absl::StatusOr<Record> from_text(const RecordText& text);
 
 }  // namespace bandsaw::coordinator

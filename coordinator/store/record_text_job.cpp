@@ -22,7 +22,8 @@ void write_stop(FieldWriter& out, const StopRule& stop) {
   }
 }
 
-// Braced initialisers are evaluated in the order they are written: that of the fields.
+// Braced initialisers are evaluated in the order in which they are written, which is the order of
+// the fields.
 
 StopRule read_stop(FieldReader& in) {
   const std::string kind = in.text("stop");
@@ -46,7 +47,7 @@ RenderSettings read_settings(FieldReader& in) {
           .height = static_cast<std::uint32_t>(in.number("height", kMaxSide)),
           .max_depth = static_cast<std::uint32_t>(in.number("max_depth", kMaxDepth)),
           .seed = in.number("seed"),
-          // Journals written before there was a choice do not say.
+          // Journals of versions with a single integrator lack this field.
           .integrator = in.next_is("integrator")
                             ? static_cast<Integrator>(in.number("integrator", kLastIntegrator))
                             : Integrator::kPath};

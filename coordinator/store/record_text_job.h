@@ -1,6 +1,6 @@
 #pragma once
 
-// What a job is, and the plan of an adaptive one, as fields (record_text.h).
+// A job's specification, and the plan of an adaptive job, as fields (record_text.h).
 
 #include "coordinator/core/messages.h"
 #include "coordinator/store/fields.h"
@@ -11,7 +11,7 @@ void write_job(FieldWriter& out, const record::JobAdded& added);
 record::JobAdded read_job(FieldReader& in);
 
 void write_tiles(FieldWriter& out, const record::TilesPlanned& r);
-/// Refuses, in `in`, levels that are no digits.
+/// Reports an error in `in` if a level is not a digit.
 record::TilesPlanned read_tiles(FieldReader& in);
 
 }  // namespace bandsaw::coordinator

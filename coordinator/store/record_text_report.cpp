@@ -19,8 +19,8 @@ void write_error(FieldWriter& out, const record::ErrorMeasured& r) {
   out.real("worst_share", estimate.worst_share);
 }
 
-// Braced initialisers are evaluated in the order they are written, which is the order of the
-// fields. Records from before have no margin.
+// Braced initialisers are evaluated in the order in which they are written, which is the order of
+// the fields. Records of older versions lack the margin.
 
 record::ErrorMeasured read_error(FieldReader& in) {
   return {.job = in.number("job"),

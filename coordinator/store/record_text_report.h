@@ -1,6 +1,6 @@
 #pragma once
 
-// The records that a job's report is made of, as fields.
+// The records from which a job's report is made, as fields.
 
 #include "coordinator/core/messages.h"
 #include "coordinator/store/fields.h"

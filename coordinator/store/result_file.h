@@ -1,7 +1,7 @@
 #pragma once
 
-// A finished image, or its pixels' numbers of samples, on disk: a header, then linear RGB float32,
-// rows from the top. The form is in this folder's README.
+// A finished image, or the number of samples of each pixel, on disk: a header, then linear RGB
+// float32, rows from the top. The format is specified in this folder's README.
 
 #include <string>
 
@@ -13,20 +13,20 @@
 
 namespace bandsaw::coordinator {
 
-/// Which of a job's pictures: its image, or how many samples each pixel has.
+/// Selects a job's image or the number of samples of each pixel.
 enum class FinishedPart { kImage, kSamples };
 
 /// A finished image as it is kept: linear RGB float.
 struct StoredResult {
   Image image;
-  wire::Digest digest;   ///< of the pixels' bytes
-  Display display = {};  ///< as the scene wants it shown; not in the file
+  wire::Digest digest;   ///< digest of the pixels' bytes
+  Display display = {};  ///< the scene's display settings; not in the file
 };
 
-/// Whole or not at all: OK means on disk in `folder` as `path`.
+/// Writes the file atomically. OK: it is on disk in `folder` as `path`.
 absl::Status write_result(const Image& image, const std::string& folder, const std::string& path);
 
-/// NOT_FOUND: no such file. DATA_LOSS: damaged, saying how.
+/// Reads the file. NOT_FOUND: no such file. DATA_LOSS: damaged, with the reason.
 absl::StatusOr<StoredResult> read_result(const std::string& path);
 
 }  // namespace bandsaw::coordinator

@@ -14,7 +14,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// A file system that cannot reserve says so at the first write instead.
+/// Reserves disk space. A file system that does not support this reports a full disk at the first
+/// write instead.
 absl::Status reserve(const File& file, std::uint64_t size, int mode = 0) {
   if (size == 0 || ::fallocate(file.fd(), mode, 0, static_cast<off_t>(size)) == 0 ||
       errno == EOPNOTSUPP || errno == ENOSYS) {
@@ -40,8 +41,9 @@ absl::StatusOr<StagedFile> StagedFile::resume(const std::string& staging, std::u
     return absl::OutOfRangeError(absl::StrCat(there, " bytes are there, not ", offset));
   }
   StagedFile staged(std::move(file));
-  // Once as long as it will be, for the limit of a file's length; then reserved, and as long as
-  // what is written: whatever ends this process, the length says how far it came.
+  // Extends the file to its full length first, so that a limit on file sizes is detected. Then
+  // truncates it to the bytes written and reserves the rest without changing the length: if this
+  // process is killed, the length shows how far it came.
   RETURN_IF_ERROR(reserve(staged.file_, size));
   RETURN_IF_ERROR(staged.file_.truncate(offset));
   RETURN_IF_ERROR(reserve(staged.file_, size, FALLOC_FL_KEEP_SIZE));

@@ -1,6 +1,6 @@
 #pragma once
 
-// A file that grows under another name and takes its own only when it is whole and on disk.
+// A file that is written under a temporary name and renamed only when it is complete and on disk.
 
 #include <cstdint>
 #include <string>
@@ -14,16 +14,16 @@ namespace bandsaw::coordinator {
 
 class StagedFile {
  public:
-  /// Makes `staging` and reserves `size` bytes for it, so that a full disk is known before the
-  /// bytes come.
+  /// Creates `staging` and reserves `size` bytes, so that a full disk is detected before any bytes
+  /// arrive.
   static absl::StatusOr<StagedFile> create(const std::string& staging, std::uint64_t size);
-  /// Likewise, but keeps the first `offset` bytes of what is there and goes on behind them.
-  /// OUT_OF_RANGE: there are fewer.
+  /// The same, but keeps the first `offset` bytes of an existing file and appends after them.
+  /// OUT_OF_RANGE: the file is shorter.
   static absl::StatusOr<StagedFile> resume(const std::string& staging, std::uint64_t size,
                                            std::uint64_t offset);
   StagedFile(StagedFile&&) noexcept;
   StagedFile& operator=(StagedFile&&) = delete;
-  /// Without commit or leave the file is removed.
+  /// Removes the file unless commit() or leave() was called.
   ~StagedFile();
 
   absl::Status append(absl::Span<const std::byte> bytes) { return file_.write(bytes); }
@@ -31,9 +31,11 @@ class StagedFile {
     return file_.read(offset, bytes);
   }
   absl::Status sync() { return file_.sync(); }
-  /// Leaves its `size` bytes under the other name, without what was reserved beyond.
+  /// Keeps the first `size` bytes under the temporary name and frees the space reserved beyond
+  /// them.
   void leave(std::uint64_t size);
-  /// fsync, rename to `target` (in `folder`), fsync of `folder`. OK: on disk under its name.
+  /// fsync, rename to `target` (in `folder`), fsync of `folder`. OK: the file is on disk under its
+  /// final name.
   absl::Status commit(const std::string& folder, const std::string& target);
 
  private:

@@ -20,7 +20,7 @@ using Key = std::unique_ptr<EVP_PKEY, decltype(&EVP_PKEY_free)>;
 using Certificate = std::unique_ptr<X509, decltype(&X509_free)>;
 using Extension = std::unique_ptr<X509_EXTENSION, decltype(&X509_EXTENSION_free)>;
 
-constexpr long kDay = 24 * 60 * 60;  // seconds; `long` is what OpenSSL takes
+constexpr long kDay = 24 * 60 * 60;  // seconds; OpenSSL takes `long`
 constexpr long kTwentyYears = 20 * 365 * kDay;
 
 absl::Status failed(absl::string_view what) {
@@ -44,7 +44,8 @@ Certificate parse_certificate(const std::string& pem) {
 
 absl::Status unreadable() { return absl::InvalidArgumentError("the certificate cannot be read"); }
 
-/// Of what OpenSSL wrote, which is freed; a size that is not positive: it could not.
+/// Hashes a DER buffer written by OpenSSL and frees it. INTERNAL if size <= 0, which means that
+/// OpenSSL failed.
 absl::StatusOr<wire::Digest> digest_of_der(unsigned char* der, int size) {
   if (size <= 0) {
     return failed("write a certificate as DER");

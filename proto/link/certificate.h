@@ -1,6 +1,6 @@
 #pragma once
 
-// What OpenSSL makes and reads: keys, self-signed certificates.
+// Keys and self-signed certificates, by OpenSSL.
 
 #include <string>
 
@@ -14,18 +14,18 @@ struct KeyAndCertificate {
   std::string certificate_pem;
 };
 
-/// An EC P-256 key and its self-signed certificate for `name`, valid for 20 years, beginning a day
-/// ago because clocks differ.
+/// Creates an EC P-256 key and its self-signed certificate for `name`. It is valid for 20 years,
+/// from a day before now on because clocks differ.
 absl::StatusOr<KeyAndCertificate> make_certificate(const std::string& name);
 
-/// SHA-256 of the DER form. INVALID_ARGUMENT: not a certificate.
+/// Returns the SHA-256 of the DER form. INVALID_ARGUMENT: not a certificate.
 absl::StatusOr<wire::Digest> certificate_digest(const std::string& certificate_pem);
 
-/// SHA-256 of the public key (SubjectPublicKeyInfo, RFC 7469, section 2.4). INVALID_ARGUMENT: not a
-/// certificate.
+/// Returns the SHA-256 of the public key (SubjectPublicKeyInfo, RFC 7469, section 2.4).
+/// INVALID_ARGUMENT: not a certificate.
 absl::StatusOr<wire::Digest> public_key_digest(const std::string& certificate_pem);
 
-/// From when until when it is valid, in seconds since 1970.
+/// Validity period of a certificate, seconds since 1970.
 struct Validity {
   double from = 0;
   double until = 0;
@@ -33,7 +33,8 @@ struct Validity {
 /// INVALID_ARGUMENT: not a certificate.
 absl::StatusOr<Validity> certificate_validity(const std::string& certificate_pem);
 
-/// INVALID_ARGUMENT: not a private key, or not this certificate's.
+/// Checks that the key belongs to the certificate. INVALID_ARGUMENT: not a private key, or of
+/// another certificate.
 absl::Status check_key(const std::string& key_pem, const std::string& certificate_pem);
 
 }  // namespace bandsaw::link

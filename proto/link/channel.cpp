@@ -11,9 +11,10 @@
 namespace bandsaw::link {
 namespace {
 
-// A frozen machine or a pulled cable is noticed after time plus timeout.
+// A frozen machine or a pulled cable is detected after kKeepaliveMs + kKeepaliveTimeoutMs.
 constexpr int kKeepaliveMs = 2000;
-/// Of the server: whoever connects and does not come to the point holds a file no longer than this.
+/// Server side: a connection that does not complete its handshake in this time is closed, which
+/// frees its file descriptor.
 constexpr int kHandshakeMs = 10'000;
 constexpr int kKeepaliveTimeoutMs = 4000;
 
@@ -21,15 +22,15 @@ grpc::ChannelArguments channel_arguments(bool own_connection) {
   grpc::ChannelArguments args;
   args.SetInt(GRPC_ARG_KEEPALIVE_TIME_MS, kKeepaliveMs);
   args.SetInt(GRPC_ARG_KEEPALIVE_TIMEOUT_MS, kKeepaliveTimeoutMs);
-  args.SetInt(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);  // as many as it takes
+  args.SetInt(GRPC_ARG_HTTP2_MAX_PINGS_WITHOUT_DATA, 0);  // unlimited
   args.SetInt(GRPC_ARG_ENABLE_HTTP_PROXY, 0);
   args.SetInt(GRPC_ARG_INITIAL_RECONNECT_BACKOFF_MS, 200);
-  // Also the least time that one attempt is given: a handshake with a busy machine takes longer
-  // than the first backoff.
+  // This is also the minimum time that gRPC gives one connection attempt; a handshake with a busy
+  // machine takes longer than the first backoff.
   args.SetInt(GRPC_ARG_MIN_RECONNECT_BACKOFF_MS, 2000);
   args.SetInt(GRPC_ARG_MAX_RECONNECT_BACKOFF_MS, 5000);
   args.SetMaxReceiveMessageSize(static_cast<int>(wire::kMessageBytes));
-  // Channels with equal arguments would share one connection, and a big scene would delay
+  // Channels with equal arguments would share one connection, and a large scene would delay
   // heartbeats.
   args.SetInt(GRPC_ARG_USE_LOCAL_SUBCHANNEL_POOL, own_connection ? 1 : 0);
   return args;
@@ -88,8 +89,9 @@ absl::StatusOr<Connected> connect_plain(const std::string& address,
 
 absl::StatusOr<Connected> connect(const JoinString& join, std::chrono::milliseconds timeout) {
   std::vector<std::string> reasons;
-  std::size_t wrong = 0;         // addresses where another certificate is shown
-  bool wrong_elsewhere = false;  // not on this machine, which may have a farm of its own
+  std::size_t wrong = 0;  // number of addresses that presented another certificate
+  // One of these is not on loopback (this machine may run another farm).
+  bool wrong_elsewhere = false;
   for (const std::string& address : join.addresses) {
     absl::StatusOr<Connected> connected = join.certificate
                                               ? connect_tls(address, *join.certificate, timeout)

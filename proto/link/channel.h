@@ -1,8 +1,8 @@
 #pragma once
 
-// Channels to the coordinator, with everything that gRPC's defaults get wrong for a LAN: keepalive
-// both ways, no proxy, quick reconnects, the certificate checked against the join string before any
-// trust.
+// gRPC channels to the coordinator, configured for a LAN where gRPC's defaults do not fit:
+// keepalive on both sides, no proxy, quick reconnects, and a certificate that is checked against
+// the join string before it is trusted.
 
 #include <chrono>
 #include <memory>
@@ -18,32 +18,34 @@ namespace bandsaw::link {
 /// Metadata key of the secret.
 inline constexpr char kSecretKey[] = "bandsaw-secret";
 
-/// What a join string turned into after one address answered with the right certificate.
+/// A connection to the address that answered with the certificate of the join string.
 struct Connected {
   std::string address;
-  std::shared_ptr<grpc::Channel> control;  ///< streams and small calls
-  std::shared_ptr<grpc::Channel> bulk;     ///< blobs and pixels: a connection of its own
+  std::shared_ptr<grpc::Channel> control;  ///< For streams and small calls.
+  std::shared_ptr<grpc::Channel> bulk;     ///< For blobs and pixels; a connection of its own.
 };
 
 /// Tries the addresses in order, each for at most `timeout` (a refused connection fails at once).
-/// Only the address is proven here; a wrong secret or role shows at the first call. UNAVAILABLE:
-/// none answered (names each with its reason). UNAUTHENTICATED: one answered with another
-/// certificate.
+/// Verifies the server's identity only; a wrong secret or role is detected by the first call.
+/// UNAVAILABLE: no address answered (the message gives the reason for each). UNAUTHENTICATED: a
+/// server answered with another certificate.
 absl::StatusOr<Connected> connect(const JoinString& join, std::chrono::milliseconds timeout);
 
-/// The certificate a server shows, without trusting it. UNAVAILABLE with the reason.
+/// Fetches the certificate that a server presents, as PEM, without trusting it. UNAVAILABLE with
+/// the reason.
 absl::StatusOr<std::string> fetch_certificate_pem(const std::string& address,
                                                   std::chrono::milliseconds timeout);
 
-/// Sets secret and deadline on a call's context; a deadline of zero: none (long streams).
+/// Sets the secret and the deadline on a call's context. A deadline of zero means none (for long
+/// streams).
 void prepare(grpc::ClientContext& context, const JoinString& join,
              std::chrono::milliseconds deadline);
 
-/// gRPC's statuses and ours carry the same codes.
+/// Converts between gRPC's and Abseil's status, whose codes are equal.
 grpc::Status to_grpc(const absl::Status& status);
 absl::Status from_grpc(const grpc::Status& status);
 
-/// Arguments for servers: keepalive, no SO_REUSEPORT, message limits.
+/// Sets a server's channel arguments: keepalive, no SO_REUSEPORT, message limits.
 void configure_server(grpc::ServerBuilder& builder);
 
 }  // namespace bandsaw::link

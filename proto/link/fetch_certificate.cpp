@@ -1,6 +1,6 @@
-// A TLS handshake that trusts nobody, only to see the certificate: gRPC does not hand over one that
-// it does not trust. The records go through memory, so that each wait has a deadline and no write
-// can raise SIGPIPE.
+// Fetches a server's certificate by a TLS handshake without verification, because gRPC does not
+// expose a certificate that it does not trust. The TLS records go through memory buffers, so that
+// every wait has a deadline and no write can raise SIGPIPE.
 
 #include <openssl/bio.h>
 #include <openssl/pem.h>
@@ -27,8 +27,8 @@ std::string take_all(BIO* bio) {
   return bytes;
 }
 
-/// One round: let OpenSSL go on, carry what it says out and the answer in. True: the handshake is
-/// over.
+/// One round of the handshake: runs OpenSSL, sends its output and feeds it the answer. Returns true
+/// once the handshake is complete.
 absl::StatusOr<bool> advance(SSL* session, Socket& socket, Deadline deadline) {
   const int result = SSL_connect(session);
   const int reason = SSL_get_error(session, result);
@@ -75,7 +75,8 @@ absl::StatusOr<std::string> fetch_certificate_pem(const std::string& address,
   SSL_set_bio(session.get(), BIO_new(BIO_s_mem()), BIO_new(BIO_s_mem()));
   SSL_set_verify(session.get(), SSL_VERIFY_NONE, nullptr);
   SSL_set_tlsext_host_name(session.get(), kServerName);
-  static constexpr unsigned char kAlpn[] = {2, 'h', '2'};  // a gRPC server hangs up without it
+  // A gRPC server closes the connection without it.
+  static constexpr unsigned char kAlpn[] = {2, 'h', '2'};
   SSL_set_alpn_protos(session.get(), kAlpn, sizeof(kAlpn));
   while (true) {
     absl::StatusOr<bool> over = advance(session.get(), *socket, deadline);

@@ -23,7 +23,7 @@ constexpr char kCertificateBegin[] = "-----BEGIN CERTIFICATE-----";
 constexpr char kCertificateEnd[] = "-----END CERTIFICATE-----\n";
 constexpr std::size_t kSecretLength = 22;
 
-/// One file, so that key, certificate and secrets are always those of one another.
+/// Key, certificate and secrets are written to one file, so that they always belong together.
 std::string to_text(const Identity& identity) {
   return absl::StrCat(kHeading, "\n", kWorkerLine, identity.worker_secret, "\n", kFarmLine,
                       identity.farm_secret, "\n", identity.certificate_pem, identity.key_pem);
@@ -130,7 +130,7 @@ absl::StatusOr<Identity> renew_secret(const std::string& folder, Role role) {
 }
 
 absl::StatusOr<Role> role_of_secret(const Identity& identity, const std::string& secret) {
-  // Both are compared always: the time taken tells nothing of which role came near.
+  // Always compares both, so that the time does not reveal which secret was close.
   const bool worker = equal_in_constant_time(identity.worker_secret, secret);
   const bool farm = equal_in_constant_time(identity.farm_secret, secret);
   if (worker) {

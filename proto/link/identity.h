@@ -1,7 +1,7 @@
 #pragma once
 
-// The coordinator's key, certificate and secrets, made at first start under the data folder (mode
-// 0600).
+// The coordinator's key, certificate and secrets. They are created at the first start in the data
+// folder (file mode 0600).
 
 #include <string>
 
@@ -19,18 +19,20 @@ struct Identity {
   std::string farm_secret;
 };
 
-/// Loads `folder`/identity, or makes a new one (EC P-256, self-signed, for the name kServerName).
-/// DATA_LOSS: there is one that cannot be read.
+/// Loads `folder`/identity, or creates a new one (EC P-256, self-signed, for the name kServerName).
+/// DATA_LOSS: the file exists but cannot be parsed.
 absl::StatusOr<Identity> load_or_make_identity(const std::string& folder);
 
-/// A new secret for one role, written before it is returned; the other role's and the certificate
-/// stay. NOT_FOUND: the folder has no identity.
+/// Creates a new secret for one role and writes it to the file before returning. The other role's
+/// secret and the certificate do not change. NOT_FOUND: the folder has no identity.
 absl::StatusOr<Identity> renew_secret(const std::string& folder, Role role);
 
-/// The name in the certificate; clients set it as the expected name, so that addresses may change.
+/// Host name in the certificate. Clients expect this name at every address, so addresses may
+/// change.
 inline constexpr char kServerName[] = "bandsaw";
 
-/// Which role a secret opens, compared in constant time. UNAUTHENTICATED.
+/// Returns the role to which a secret belongs. Compares in constant time. UNAUTHENTICATED: the
+/// secret belongs to no role.
 absl::StatusOr<Role> role_of_secret(const Identity& identity, const std::string& secret);
 
 }  // namespace bandsaw::link

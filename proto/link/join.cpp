@@ -69,8 +69,8 @@ absl::StatusOr<std::vector<std::string>> parse_addresses(absl::string_view text)
   return addresses;
 }
 
-/// Splits "-TAIL" off the end of `rest`, the tail `length` characters long: digest and secret may
-/// hold dashes themselves.
+/// Splits "-TAIL" off the end of `rest`; the tail has `length` characters. Digest and secret may
+/// contain dashes, so the string cannot be split at dashes.
 bool take_tail(absl::string_view& rest, std::size_t length, absl::string_view& tail) {
   if (rest.size() < length + 1 || rest[rest.size() - length - 1] != '-') {
     return false;
@@ -80,7 +80,8 @@ bool take_tail(absl::string_view& rest, std::size_t length, absl::string_view& t
   return true;
 }
 
-/// "plain" after an address: a digest has no colon, so nothing else ends in ":PORT-plain".
+/// True if `rest` ends in "-plain" after a port. A digest contains no colon, so nothing else ends
+/// in ":PORT-plain".
 bool is_plain(absl::string_view rest) {
   if (!absl::ConsumeSuffix(&rest, absl::StrCat("-", kPlain))) {
     return false;
@@ -162,7 +163,7 @@ absl::StatusOr<JoinString> join_string_from(const std::string& text) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(text.c_str(), "rb"),
                                                              &std::fclose);
   if (file == nullptr) {
-    // What looks like a mistyped join string holds a secret: it is not repeated.
+    // The text may be a mistyped join string with a secret, so it is not repeated.
     const bool may_be_secret = text.size() > kSecretLength && absl::StrContains(text, ':');
     return absl::InvalidArgumentError(
         absl::StrCat(may_be_secret ? "the join string given" : absl::StrCat("'", text, "'"),

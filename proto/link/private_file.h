@@ -1,8 +1,8 @@
 #pragma once
 
-// Small files that only their owner may read: mode 0600 in a folder of mode 0700, written whole or
-// not at all. (renderlib/base/atomic_file.h makes files for everybody, and proto does not depend on
-// renderlib.)
+// Small files that only their owner may read: mode 0600 in a folder of mode 0700, written
+// atomically. (renderlib/base/atomic_file.h writes files readable by everybody, and proto does not
+// depend on renderlib.)
 
 #include <string>
 
@@ -10,16 +10,16 @@
 
 namespace bandsaw::link {
 
-/// Makes the folder (and its parents) when there is none, with mode 0700. One that exists is left
-/// as it is.
+/// Creates the folder and its parents with mode 0700. An existing folder is not changed.
 absl::Status make_private_folder(const std::string& folder);
 
-/// NOT_FOUND: no such file. PERMISSION_DENIED: not ours to read, or readable by others (says how to
-/// mend it).
+/// Reads a file of at most 1 MiB; the rest of a longer file is ignored. NOT_FOUND: no such file.
+/// PERMISSION_DENIED: not readable by this user, or readable by others (the message says how to
+/// repair it).
 absl::StatusOr<std::string> read_private_file(const std::string& path);
 
-/// Temporary file of mode 0600, fsync, rename, fsync of the folder. Keeps what is there when it
-/// fails.
+/// Writes a file of mode 0600 by temporary file, fsync, rename and fsync of the folder. If it
+/// fails, the previous file is kept.
 absl::Status write_private_file(const std::string& path, const std::string& text);
 
 }  // namespace bandsaw::link

@@ -11,7 +11,7 @@ namespace bandsaw::link {
 std::string random_bytes(std::size_t count) {
   std::string bytes(count, '\0');
   if (getentropy(bytes.data(), bytes.size()) != 0) {
-    std::abort();  // never: Linux gives up to 256 random bytes at any time
+    std::abort();  // does not happen: Linux returns up to 256 random bytes at any time
   }
   return bytes;
 }

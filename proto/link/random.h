@@ -5,13 +5,14 @@
 
 namespace bandsaw::link {
 
-/// So many bytes that nobody can guess, from the system. 0 < count <= 256.
+/// Returns `count` random bytes from the operating system's cryptographic generator. 0 < count <=
+/// 256.
 std::string random_bytes(std::size_t count);
 
-/// The same as 2 x count hexadecimal digits: a name that nobody else chooses.
+/// Returns `count` random bytes as 2 x count hexadecimal digits, for unique ids.
 std::string random_hex(std::size_t count);
 
-/// 128 random bits as 22 characters of base64url.
+/// Returns 128 random bits as 22 characters of base64url.
 std::string make_secret();
 
 }  // namespace bandsaw::link

@@ -1,7 +1,7 @@
 #pragma once
 
-// A plain TCP connection with a deadline: to see who answers at an address before gRPC is let near
-// it.
+// A TCP connection with deadlines, used to see which server answers at an address before gRPC
+// connects.
 
 #include <chrono>
 #include <string>
@@ -15,15 +15,15 @@ using Deadline = std::chrono::steady_clock::time_point;
 /// Owns a connected, non-blocking socket. Every wait ends at the deadline with UNAVAILABLE.
 class Socket {
  public:
-  /// `address` is HOST:PORT or [IPv6]:PORT. UNAVAILABLE: "connection refused", "no such host", "no
-  /// answer", ….
+  /// Connects to `address`, HOST:PORT or [IPv6]:PORT. UNAVAILABLE: "connection refused", "no such
+  /// host", "no answer", ….
   static absl::StatusOr<Socket> connect(const std::string& address, Deadline deadline);
   Socket(Socket&& other) noexcept;
   Socket& operator=(Socket&&) = delete;
   ~Socket();
 
   absl::Status send(const std::string& bytes, Deadline deadline);
-  /// At least one byte. UNAVAILABLE: closed by the other side, or no answer.
+  /// Returns at least one byte. UNAVAILABLE: closed by the other side, or no answer in time.
   absl::StatusOr<std::string> receive(Deadline deadline);
 
  private:

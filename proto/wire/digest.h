@@ -1,6 +1,6 @@
 #pragma once
 
-// SHA-256: the name of a blob and the seal of a band.
+// SHA-256: the name of a blob and the checksum of a band.
 
 #include <array>
 #include <compare>
@@ -18,17 +18,17 @@ struct Digest {
   friend auto operator<=>(const Digest&, const Digest&) = default;
 
   std::string hex() const;  ///< 64 lower-case hexadecimal digits
-  std::string raw() const;  ///< 32 bytes, as protobuf carries them
+  std::string raw() const;  ///< 32 bytes, as in protobuf messages
 };
 
 Digest sha256(absl::Span<const std::byte> bytes);
 Digest sha256(const std::string& bytes);
 
-/// INVALID_ARGUMENT when not 32 bytes / 64 hexadecimal digits.
+/// Parse a digest. INVALID_ARGUMENT: not 32 bytes / not 64 hexadecimal digits.
 absl::StatusOr<Digest> digest_from_raw(const std::string& raw);
 absl::StatusOr<Digest> digest_from_hex(const std::string& hex);
 
-/// For bytes that come in pieces.
+/// Computes the digest of bytes that arrive in pieces.
 class Hasher {
  public:
   Hasher();

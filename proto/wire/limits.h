@@ -1,8 +1,8 @@
 #pragma once
 
-// Every bound that a message or a file is held to, in one place. Passing one is INVALID_ARGUMENT or
-// RESOURCE_EXHAUSTED with the bound's name and value; nothing is truncated in silence. Bounds of an
-// image are in renderlib/render/settings.h.
+// Upper bounds of all messages and files, in one place. Exceeding one is INVALID_ARGUMENT or
+// RESOURCE_EXHAUSTED with the bound's name and value; data is never truncated silently. Bounds of
+// an image are in renderlib/render/settings.h.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,10 +12,10 @@ namespace bandsaw::wire {
 inline constexpr std::size_t kChunkBytes = 1 << 20;      ///< data in one chunk of a stream
 inline constexpr std::size_t kMessageBytes = 4 << 20;    ///< any gRPC message
 inline constexpr std::uint64_t kBlobBytes = 8ull << 30;  ///< one blob
-inline constexpr std::size_t kPartialBlobs = 64;  ///< kept of uploads that were cut, the newest
-inline constexpr std::uint64_t kPartialBytes = 16ull << 30;   ///< of them, in all
+inline constexpr std::size_t kPartialBlobs = 64;  ///< partial uploads that are kept, the newest
+inline constexpr std::uint64_t kPartialBytes = 16ull << 30;   ///< total size of the partial uploads
 inline constexpr std::uint64_t kManifestBytes = 64ull << 20;  ///< a package's manifest
-inline constexpr std::uint64_t kPackageBytes = 32ull << 30;   ///< a package's blobs in all
+inline constexpr std::uint64_t kPackageBytes = 32ull << 30;   ///< total size of a package's blobs
 inline constexpr std::uint64_t kBandBytes = 64ull << 20;      ///< pixels of one band
 inline constexpr std::size_t kBlobsPerPackage = 100'000;
 inline constexpr std::size_t kDigestsPerMessage = 10'000;
@@ -26,11 +26,12 @@ inline constexpr std::size_t kThreadsPerWorker = 4'096;
 inline constexpr std::size_t kJobNameBytes = 200;
 inline constexpr std::size_t kWorkerNameBytes = 64;
 inline constexpr std::size_t kWrongSecretsPerMinute =
-    120;  ///< of one address; beyond, calls are turned away unread
+    120;  ///< per address; beyond, calls with a wrong secret get RESOURCE_EXHAUSTED
 inline constexpr std::size_t kLogLines = 50;
 inline constexpr std::size_t kLogLineBytes = 500;
-inline constexpr std::size_t kLogLinesKept = 200;       ///< of one worker's log, by the coordinator
-inline constexpr std::size_t kLogBytesKept = 64 << 20;  ///< of all workers' logs
+/// Lines of one worker's log kept by the coordinator.
+inline constexpr std::size_t kLogLinesKept = 200;
+inline constexpr std::size_t kLogBytesKept = 64 << 20;  ///< total size of all workers' logs there
 inline constexpr std::size_t kReasonBytes = 2'000;
 
 }  // namespace bandsaw::wire

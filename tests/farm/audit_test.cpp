@@ -1,4 +1,4 @@
-// A real farm in which one machine sends wrong pixels.
+// A farm of real processes in which one machine sends wrong pixels.
 
 #include <gtest/gtest.h>
 
@@ -55,7 +55,7 @@ TEST_F(AuditedFarm, AMachineThatSendsWrongPixelsIsFoundAndTheImageIsRight) {
   EXPECT_EQ(say({"quarantine", "--lift", "liar"}).code, 0);
   farm_.worker("liar").signal(SIGKILL);
   farm_.worker("liar").wait();
-  farm_.add_worker("liar", 1);  // mended: it joins
+  farm_.add_worker("liar", 1);  // repaired: it joins
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #pragma once
 
-// What a worker's log says of bands: "rendered job=7 rows=0:12 samples=0:16", "stored job=7 …".
+// Parses the lines about bands in a worker's log: "rendered job=7 rows=0:12 samples=0:16", "stored
+// job=7 …".
 
 #include <cstdint>
 #include <string>
@@ -21,7 +22,7 @@ struct LoggedBand {
   }
 };
 
-/// `verb`: "rendered" (all pixels computed) or "stored" (the coordinator has them on disk).
+/// `verb`: "rendered" (all pixels are computed) or "stored" (they are on the coordinator's disk).
 std::vector<LoggedBand> logged_bands(const std::string& log, const std::string& verb);
 
 }  // namespace bandsaw::test

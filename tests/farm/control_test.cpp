@@ -1,4 +1,4 @@
-// What people tell a running job: pause, resume, priority, why.
+// Commands that control a running job: pause, resume, priority, why.
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ class Control : public testing::Test {
     return finished.out;
   }
 
-  // Asks until the answer holds `text`; the test's own time limit ends it.
+  // Repeats the command until its output contains `text`; limited only by the test's own timeout.
   std::string ask_until(const std::vector<std::string>& arguments, const std::string& text) {
     std::string out;
     while (!testing::Test::HasFailure() && out.find(text) == std::string::npos) {

@@ -47,12 +47,14 @@ void write_program(const fs::path& path, const std::string& text) {
 
 FakeMachines::FakeMachines() {
   write_program(folder_ / "bin/ssh", kSsh);
-  // Beside other tests a worker that gives way to all would not come to its turn.
+  // Makes `nice` run the command at normal priority: at low priority the worker would get no CPU
+  // time beside other tests.
   replace("all", "nice", "shift 2; exec \"$@\"\n");
 }
 
 FakeMachines::~FakeMachines() {
-  // By the numbers that they left: what is not theirs any more has another program.
+  // Ends the processes whose ids were written to files. If an id was reused, the process runs
+  // another program and is left alone.
   run({"/bin/sh", "-c",
        "for file in '" + folder_.path() + "'/homes/*/.local/share/bandsaw-worker/pid '" +
            folder_.path() +

@@ -1,7 +1,7 @@
 #pragma once
 
-// Machines behind an `ssh` that is a script: each is a HOME below a folder, and what the command
-// would run elsewhere runs here.
+// Simulated machines behind an `ssh` that is a script: each is a home folder below a temporary
+// folder, and remote commands run locally.
 
 #include <string>
 #include <vector>
@@ -13,17 +13,17 @@ namespace bandsaw::test {
 class FakeMachines {
  public:
   FakeMachines();
-  /// Ends the workers that are still there.
+  /// Ends the workers that are still running.
   ~FakeMachines();
   FakeMachines(const FakeMachines&) = delete;
   FakeMachines& operator=(const FakeMachines&) = delete;
 
-  /// A command of this machine's that runs `script` (of a shell) in the place of its own.
+  /// Replaces a command of this machine by a shell script.
   void replace(const std::string& host, const std::string& command, const std::string& script);
-  /// systemctl and loginctl that keep one user service, and write down what they are asked.
+  /// Adds a systemctl and a loginctl that manage one user service and log their calls.
   void add_systemd(const std::string& host);
-  /// With our `ssh` before the real one. A host "nobody" cannot be reached, "stranger" has an
-  /// unknown key, "frozen" never answers.
+  /// Environment in which the `ssh` script precedes the real one. Host "nobody" cannot be reached,
+  /// "stranger" has an unknown key, "frozen" never answers.
   std::vector<std::string> environment() const;
   std::string home(const std::string& host) const { return folder_ / ("homes/" + host); }
   std::string worker_folder(const std::string& host) const {

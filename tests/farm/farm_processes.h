@@ -1,7 +1,7 @@
 #pragma once
 
-// A real farm for one test: a coordinator on a port of its own, workers, and the command; all on
-// loopback, or each on a machine of its own.
+// A farm of real processes for one test: a coordinator on a free port, workers, and the command;
+// all on loopback, or each on a machine of its own.
 
 #include <map>
 #include <string>
@@ -15,9 +15,9 @@ namespace bandsaw::test {
 
 class FarmProcesses {
  public:
-  /// Starts the coordinator, with `options` besides (none that renders bands twice: tests count
-  /// them); on the machine "house" where there are
-  /// `hosts`, which MUST stay. A worker is then started on the machine of its name.
+  /// Starts the coordinator with additional `options` (the default disables audits, because tests
+  /// count rendered bands). If `hosts` is given, the coordinator runs on machine "house" and each
+  /// worker on the machine of its name; `hosts` MUST outlive this object.
   explicit FarmProcesses(const Hosts* hosts = nullptr,
                          std::vector<std::string> options = {"--audit", "0%"});
 
@@ -25,19 +25,19 @@ class FarmProcesses {
   Process& add_worker(const std::string& name, int threads,
                       const std::string& program = BANDSAW_WORKER_BIN);
   Process& worker(const std::string& name) { return workers_.at(name); }
-  /// Everything the worker has logged.
+  /// Returns the worker's whole log.
   std::string worker_log(const std::string& name) { return worker(name).err(); }
   std::vector<std::string> worker_names() const;
 
   Process& coordinator() { return *coordinator_; }
-  /// Everything that it has logged, in all its lives.
+  /// Returns the coordinator's log, including that of earlier processes.
   std::string coordinator_log() const { return earlier_log_ + coordinator_->err(); }
-  /// Starts the coordinator again, on the same data and port.
+  /// Restarts the coordinator with the same data folder and port.
   void restart_coordinator();
 
-  /// `bandsaw ARGUMENTS --farm …`
+  /// Returns the command line `bandsaw ARGUMENTS --farm …`.
   std::vector<std::string> command(std::vector<std::string> arguments) const;
-  /// The command as it is started on the machine `host`, where there are hosts.
+  /// Returns the command line that runs the command on machine `host`, if there are hosts.
   std::vector<std::string> on(const std::string& host, std::vector<std::string> argv) const;
   std::string path(const std::string& name) const { return folder_ / name; }
   std::string join_file() const { return folder_ / "data/join"; }
@@ -54,7 +54,7 @@ class FarmProcesses {
   std::map<std::string, Process> workers_;
 };
 
-/// The bytes of a file; the test fails when it cannot be read.
+/// Returns the bytes of a file; the test fails if it cannot be read.
 std::string file_bytes(const std::string& path);
 
 }  // namespace bandsaw::test

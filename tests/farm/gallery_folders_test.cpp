@@ -1,5 +1,5 @@
-// The gallery's folders, the study and the books: every scene loads, and a farm gives the bytes
-// that `render` gives.
+// Folders of the gallery, the study and the books: every scene loads, and a farm gives the same
+// bytes as `render`.
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Copies of the scenes, beside the maps that they use and that are not kept in the repository.
+// Copies the scenes next to the maps that they use and that are not stored in the repository.
 std::vector<std::string> scenes_in(const std::string& folder) {
   const Finished made = run({BANDSAW_GALLERY_BIN, folder});
   EXPECT_EQ(made.code, 0) << made.err;

@@ -12,7 +12,8 @@ namespace {
 
 const std::string kIp = "/usr/sbin/ip";
 
-// The switch is a machine of its own, so that no name or route of the test's machine is touched.
+// The switch has a namespace of its own, so that no interface name or route of the test's machine
+// is changed.
 const std::string kSwitch = "switch";
 
 }  // namespace
@@ -86,7 +87,7 @@ void Hosts::plug(const std::string& name) const {
 }
 
 void Hosts::deafen(const std::string& from, const std::string& to) const {
-  // A neighbour that is nobody: frames are sent, no machine takes them.
+  // A neighbour entry with an unused address: frames are sent, but no machine receives them.
   BANDSAW_CHECK(ip(from, {"neighbour", "replace", address(to), "lladdr", "02:00:00:00:00:99", "dev",
                           "cable", "nud", "permanent"}),
                 from.c_str());

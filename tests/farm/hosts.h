@@ -1,7 +1,7 @@
 #pragma once
 
-// Machines of one test: network namespaces, each with one cable to a switch of its own, which this
-// test makes and takes away. Addresses are 10.77.0.1, .2, … in the order of the names.
+// Simulated machines of one test: network namespaces, each connected to a switch of its own,
+// created and removed by the test. Addresses are 10.77.0.1, .2, … in the order of the names.
 
 #include <memory>
 #include <string>
@@ -13,32 +13,34 @@ namespace bandsaw::test {
 
 class Hosts {
  public:
-  /// PERMISSION_DENIED: namespaces may not be made here (it takes root and the command `ip`).
+  /// PERMISSION_DENIED: namespaces cannot be created here (this needs root and the command `ip`).
   static absl::StatusOr<std::unique_ptr<Hosts>> create(std::vector<std::string> names);
   ~Hosts();
   Hosts(const Hosts&) = delete;
   Hosts& operator=(const Hosts&) = delete;
 
   std::string address(const std::string& name) const;
-  /// The command as it is started on that machine; the process is the command's own.
+  /// Returns the command line that runs the command on that machine. The process id is that of the
+  /// command itself.
   std::vector<std::string> on(const std::string& name, std::vector<std::string> argv) const;
 
-  /// The cable: packets vanish both ways, connections stay as they are.
+  /// Disconnects the cable: packets are dropped in both directions, connections are not reset.
   void unplug(const std::string& name) const;
   void plug(const std::string& name) const;
-  /// Packets of `from` to `to` vanish, those the other way arrive.
+  /// Drops packets from `from` to `to`; the other direction works.
   void deafen(const std::string& from, const std::string& to) const;
-  /// Shapes what the machine sends: arguments of `tc qdisc … root`. False: this kernel cannot.
+  /// Applies traffic shaping to what the machine sends; `discipline` holds the arguments of `tc
+  /// qdisc … root`. Returns false if the kernel does not support it.
   bool shape(const std::string& name, const std::vector<std::string>& discipline) const;
 
  private:
   explicit Hosts(std::vector<std::string> names);
   std::string space_of(const std::string& name) const;
-  /// `ip` in the namespace of the switch, or of a machine; true: it worked.
+  /// Runs `ip` in the namespace of the switch or of a machine; returns true on success.
   bool ip(const std::string& space, std::vector<std::string> arguments) const;
   bool add(const std::string& name) const;
   std::vector<std::string> names_;
-  std::string prefix_;  ///< of the names of the namespaces
+  std::string prefix_;  ///< prefix of the namespaces' names
 };
 
 }  // namespace bandsaw::test

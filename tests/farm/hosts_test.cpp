@@ -1,5 +1,5 @@
-// The farm over cables that are pulled, deaf one way, slow or lossy: machines are network
-// namespaces which the test makes where it may.
+// Tests a farm with cables that are pulled, drop packets in one direction, are slow or lose
+// packets. Machines are network namespaces (needs root).
 
 #include <gtest/gtest.h>
 
@@ -40,7 +40,7 @@ class Cables : public testing::Test {
     job_->expect_nothing_rendered_again("desk");
   }
 
-  // In this order they go: what uses the machines before the machines.
+  // Destroyed in reverse order: the processes before the machines that they run on.
   std::unique_ptr<Hosts> hosts_;
   std::unique_ptr<FarmProcesses> farm_;
   std::unique_ptr<Survival> job_;

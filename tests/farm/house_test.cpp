@@ -1,4 +1,4 @@
-// Looking after a farm: logs, doctor, new secrets; and a band that ends its workers.
+// Administration of a farm: logs, doctor, secret rotation; and a band that crashes its workers.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ class House : public testing::Test {
     return run(arguments);
   }
 
-  // Asks until the answer holds `text`; the test's own time limit ends it.
+  // Repeats the command until its output contains `text`; limited only by the test's own timeout.
   std::string ask_until(const std::vector<std::string>& arguments, const std::string& text) {
     std::string out;
     while (!HasFailure() && out.find(text) == std::string::npos) {
@@ -43,7 +43,7 @@ TEST_F(House, AWorkersLogIsReadFromAfar) {
   farm_.coordinator().signal(SIGKILL);
   farm_.coordinator().wait();
   farm_.restart_coordinator();
-  ask_until({"logs", "desk"}, "stored job=1");  // sent again to the next life
+  ask_until({"logs", "desk"}, "stored job=1");  // sent again to the restarted coordinator
   const Finished unknown = say({"logs", "nobody"});
   EXPECT_EQ(unknown.code, 1);
   EXPECT_NE(unknown.err.find("desk"), std::string::npos) << unknown.err;
@@ -97,7 +97,7 @@ TEST_F(House, PeoplesSecretIsRenewedWithAndWithoutACoordinator) {
   EXPECT_EQ(say({"jobs"}).code, 0);
 }
 
-// One band of a million samples, so that each worker is killed in the midst of it.
+// One band of a million samples, so that each worker is killed while rendering it.
 TEST_F(House, ABandThatEndsThreeWorkersFailsItsJob) {
   EXPECT_EQ(
       say({"submit", kScene, "--width", "65536", "--height", "1", "--samples", "16", "--detach"})

@@ -1,5 +1,5 @@
-// bandsaw invite and dismiss through the real ssh and a real sshd, which ssh starts itself: no
-// port, no daemon.
+// bandsaw invite and dismiss through the real ssh and a real sshd that ssh starts itself, without a
+// port or a daemon.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ constexpr char kSshd[] = "/usr/sbin/sshd";
 
 void write(const std::string& path, const std::string& text) { std::ofstream(path) << text; }
 
-// An `ssh` on PATH with a configuration of its own, behind it an account whose HOME is the test's.
+// An `ssh` on PATH with its own configuration; the account behind it has the test's HOME.
 std::string make_account(const TempDir& folder) {
   for (const char* key : {"key", "host"}) {
     run({"/usr/bin/ssh-keygen", "-q", "-t", "ed25519", "-N", "", "-f", folder / key});
@@ -39,7 +39,8 @@ std::string make_account(const TempDir& folder) {
   write(folder / "bin/ssh",
         "#!/bin/sh\nexec /usr/bin/ssh -F " + folder / "ssh_config" + " \"$@\"\n");
   fs::permissions(folder / "bin/ssh", fs::perms::owner_all);
-  // Beside other tests a worker that gives way to all would not come to its turn.
+  // Makes `nice` run the command at normal priority: at low priority the worker would get no CPU
+  // time beside other tests.
   fs::create_directories(folder / "there");
   write(folder / "there/nice", "#!/bin/sh\nshift 2; exec \"$@\"\n");
   fs::permissions(folder / "there/nice", fs::perms::owner_all);
@@ -51,7 +52,8 @@ TEST(InviteSsh, ThroughARealServer) {
     GTEST_SKIP() << "needs the packages openssh-server and openssh-client";
   }
   if (geteuid() == 0) {
-    fs::create_directories("/run/sshd");  // sshd wants it as root; the package makes it at boot
+    // sshd requires it as root; the package creates it at boot
+    fs::create_directories("/run/sshd");
   }
   FarmProcesses farm;
   const TempDir folder;

@@ -1,5 +1,4 @@
-// What an image's report says does not depend on where it was rendered, and what it says can be
-// done again.
+// An image's report does not depend on where it was rendered, and its values can be reproduced.
 
 #include <google/protobuf/struct.pb.h>
 #include <google/protobuf/util/json_util.h>
@@ -34,8 +33,8 @@ double number(const Struct& json, const std::string& of, const std::string& fiel
   return section(json, of).fields().at(field).number_value();
 }
 
-/// Without what depends on the machines: times and who did it. The error on the way too: a farm
-/// measures it while rows of the next pass come in.
+/// Removes the fields that depend on the machines: times and names. Also the intermediate error
+/// values, because a farm measures them while rows of the next pass arrive.
 Struct comparable(Struct json) {
   for (const char* field : {"time", "machines", "outputs", "curve"}) {
     EXPECT_EQ(json.mutable_fields()->erase(field), 1u) << field;
@@ -59,7 +58,7 @@ class ReportOfAFarm : public testing::Test {
   FarmProcesses farm_;
 };
 
-// A reader that went away does not cost the image.
+// A closed output pipe does not prevent the image from being written.
 TEST(Render, OutlivesTheReaderOfItsProgress) {
   const TempDir folder;
   const std::string image = folder / "a.pfm";
@@ -108,7 +107,7 @@ TEST_F(ReportOfAFarm, IsTheSameAfterARestart) {
       << second.ShortDebugString();
 }
 
-// --time is not a promise of bytes, but what it took is one.
+// --time does not promise the same bytes, but rendering the reported number of samples does.
 TEST_F(ReportOfAFarm, TheSamplesOfATimeLimitGiveTheSameBytes) {
   farm_.add_worker("desk", 2);
   const std::vector<std::string> limited = {"--width", "64", "--time", "0.3s"};
@@ -121,7 +120,7 @@ TEST_F(ReportOfAFarm, TheSamplesOfATimeLimitGiveTheSameBytes) {
     ASSERT_GT(samples, 0);
     render({"--width", "64", "--samples", std::to_string(samples)}, "again.pfm");
     EXPECT_TRUE(file_bytes(of + ".pfm") == file_bytes(farm_.path("again.pfm"))) << name;
-    // Of a single block of samples nothing is known, there as here.
+    // The error is unknown for a single block of samples, in both cases.
     const auto error = [](const std::string& file) { return report(file).fields().at("error"); };
     EXPECT_TRUE(google::protobuf::util::MessageDifferencer::Equals(error(of + ".json"),
                                                                    error(farm_.path("again.json"))))

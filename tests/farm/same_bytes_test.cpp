@@ -1,5 +1,5 @@
-// The pixels depend on the scene and the settings alone: `render`, a farm of any size, and parts
-// put together by `stitch` give PFM files equal to the byte.
+// Pixels depend only on the scene and the settings: `render`, a farm of any size, and parts
+// combined by `stitch` give equal PFM files, byte for byte.
 
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ void expect_success(const Finished& finished) { ASSERT_EQ(finished.code, 0) << f
 
 class SameBytes : public testing::Test {
  protected:
-  // The image that every other way must equal.
+  // The image that all other methods must equal.
   std::string rendered(const std::string& scene) {
     const std::string& file = rendered_[scene];
     if (file.empty()) {
@@ -72,8 +72,8 @@ TEST_F(SameBytes, OnFarmsOfOneTwoAndFiveWorkers) {
   expect_farm_gives_the_same();
 }
 
-// Tiles are planned by what is measured: the same on every farm, and after a restart. So is the
-// layer that shows the plan.
+// Tiles are planned from measured errors: the plan is equal on every farm and after a restart, as
+// is the layer that shows it.
 TEST_F(SameBytes, WithAdaptiveSampling) {
   const auto adaptive = [&](const std::string& command, const std::string& file) {
     return std::vector<std::string>{command,    std::string(BANDSAW_GALLERY) + "/spheres.textproto",

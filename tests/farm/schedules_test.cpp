@@ -1,7 +1,7 @@
-// Random schedules of what befalls a farm of real processes: workers are killed, frozen, asked to
-// leave and cut off, others join, the coordinator is killed; the image has the same bytes each
-// time. 20 schedules, BANDSAW_SCHEDULES=n so many, BANDSAW_SEED=n that one alone. What a schedule
-// does is a function of its seed; when exactly it meets which band is not.
+// Random schedules of events on a farm of real processes: workers are killed, frozen, drained and
+// disconnected, others join, the coordinator is killed; the image has the same bytes each time. 20
+// schedules by default; BANDSAW_SCHEDULES=n runs n, BANDSAW_SEED=n runs only that one. The events
+// are a function of the seed; their timing relative to bands is not.
 
 #include <gtest/gtest.h>
 
@@ -34,10 +34,10 @@ const std::string kScene = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
 
 class Schedule {
  public:
-  /// Cables are pulled where there are `hosts`, which MUST stay.
+  /// Cables are pulled if `hosts` is given, which MUST outlive this object.
   Schedule(std::uint64_t seed, const Hosts* hosts) : random_(seed), hosts_(hosts), farm_(hosts) {}
 
-  /// The image's bytes; empty: the job did not end well, see told().
+  /// Returns the image's bytes; empty: the job failed, see told().
   std::string run() {
     const std::uint32_t count = 2 + random_.below(2);
     while (names_.size() < count) {
@@ -61,7 +61,7 @@ class Schedule {
  private:
   void tell(std::string what) { told_.push_back(std::move(what)); }
 
-  /// Until a worker has stored one more. False: the job is over.
+  /// Waits until a worker has stored another band. Returns false if the job is over.
   bool wait_for_a_band(Process& client) {
     while (!client.wait(Process::Milliseconds(0))) {
       const std::string name = one_of(working());
@@ -95,7 +95,7 @@ class Schedule {
     farm_.add_worker(names_.back(), 1 + static_cast<int>(random_.below(2)));
   }
 
-  // At least one that works is left.
+  // Keeps at least one working worker.
   void one_thing_happens() {
     const std::string name = one_of(working());
     const bool others = working().size() > 1;

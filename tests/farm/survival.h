@@ -1,6 +1,7 @@
 #pragma once
 
-// One job on a farm that loses machines, cables or its coordinator, and what must hold of it.
+// One job on a farm that loses machines, cables or its coordinator, and the invariants it must
+// satisfy.
 
 #include <string>
 
@@ -11,27 +12,28 @@ namespace bandsaw::test {
 
 class Survival {
  public:
-  /// `farm` MUST stay.
+  /// `farm` MUST outlive this object.
   explicit Survival(FarmProcesses& farm) : farm_(farm) {}
 
-  /// Starts a job of some seconds; the command that watches it, on the machine `host`.
+  /// Starts a job that takes several seconds, and the command that watches it on machine `host`.
   Process submit(const std::string& host = "house");
 
-  /// Waits until so many bands of the worker are on the coordinator's disk.
+  /// Waits until `bands` bands of the worker are on the coordinator's disk.
   void wait_until_stored(const std::string& worker, std::size_t bands);
 
-  /// Waits until the worker has joined so many times.
+  /// Waits until the worker has joined `times` times.
   void wait_until_joined(const std::string& worker, int times);
 
-  /// The job ends well, and with the bytes of a local render.
+  /// Expects that the job succeeds with the same bytes as a local render.
   void expect_the_same_bytes(Process& client);
 
-  /// Bands that some worker had stored and another rendered too, without having been asked to help
-  /// it; and bands one worker rendered twice. What a worker that was `cut_off` rendered in vain
-  /// does not count: it could not know what others did meanwhile.
+  /// Returns the number of bands that one worker had stored and another rendered as well, except
+  /// backup tasks and stolen work, and of bands that one worker rendered twice. Bands rendered in
+  /// vain by the worker `cut_off` do not count, because it could not know what others did
+  /// meanwhile.
   int rendered_again(const std::string& cut_off = "");
 
-  /// None of the above; where there are, every log is printed.
+  /// Expects rendered_again() to be 0; otherwise prints every log.
   void expect_nothing_rendered_again(const std::string& cut_off = "");
 
  private:

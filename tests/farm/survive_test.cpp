@@ -1,5 +1,5 @@
-// Kill any worker, freeze it, kill the coordinator, join in the middle: the job ends with the same
-// bytes, and no finished band is rendered again because of it.
+// A worker is killed or frozen, the coordinator is killed, a worker joins late: the job ends with
+// the same bytes, and no finished band is rendered again because of it.
 
 #include <gtest/gtest.h>
 
@@ -69,7 +69,7 @@ TEST_F(Survive, AWorkerThatIsAskedToLeave) {
   job_.wait_until_stored("leaving", 2);
   farm_.worker("leaving").signal(SIGTERM);
   EXPECT_EQ(farm_.worker("leaving").wait(), 0);
-  // Drained: what it had rendered it handed over.
+  // A drained worker has delivered all that it rendered.
   EXPECT_EQ(logged_bands(farm_.worker_log("leaving"), "rendered").size(),
             logged_bands(farm_.worker_log("leaving"), "stored").size());
   job_.expect_the_same_bytes(client);

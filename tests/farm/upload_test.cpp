@@ -1,4 +1,4 @@
-// A submitter that goes away in the middle of an upload, and one that comes back.
+// A submitter that disconnects during an upload, and one that resumes it.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ class Upload : public testing::Test {
     return *FarmClient::connect(*link::join_string_from(farm_.farm_file()));
   }
 
-  /// How many bytes the farm has of it; nothing: all.
+  /// Returns the number of bytes of the blob that the farm has; std::nullopt: all.
   std::optional<std::uint64_t> there() {
     const auto missing = connect()->missing_blobs({digest()});
     EXPECT_TRUE(missing.ok()) << missing.status();
@@ -50,7 +50,8 @@ TEST_F(Upload, GoesOnWhereItWasCutAlsoAfterTheCoordinatorsEnd) {
   leave_in_the_middle();
   std::uint64_t kept = 0;
   while (kept == 0 && !HasFailure()) {
-    kept = there().value_or(bytes_.size());  // the coordinator hears of the end a moment later
+    // the coordinator notices the disconnection a moment later
+    kept = there().value_or(bytes_.size());
   }
   ASSERT_LT(kept, bytes_.size());
   farm_.coordinator().signal(SIGKILL);

@@ -1,4 +1,4 @@
-// An image as it forms: in the terminal, in a viewer, and over the wire.
+// Views of an image in progress: in the terminal, in a viewer, and over the network.
 
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
@@ -23,7 +23,7 @@ using testing::StartsWith;
 
 const std::string kScene = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
 
-/// What listens where a viewer would; takes one connection and keeps all of its bytes.
+/// A fake viewer that accepts one connection and stores all bytes received.
 class FakeViewer {
  public:
   FakeViewer() : listening_(socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
@@ -46,7 +46,7 @@ class FakeViewer {
     close(listening_);
   }
   const std::string& address() const { return address_; }
-  /// All packets, once the other side has closed.
+  /// Returns all packets after the other side has closed the connection.
   std::vector<std::string> packets() {
     thread_.join();
     std::vector<std::string> out;
@@ -80,7 +80,7 @@ class FakeViewer {
   std::thread thread_;
 };
 
-/// The pixels of a PFM file, rows from the top as a viewer has them.
+/// Returns the pixels of a PFM file, with rows from the top as in a viewer.
 std::string pixels_of_pfm(const std::string& file, std::size_t width, std::size_t height) {
   const std::string bytes = file_bytes(file);
   const std::size_t row = width * 12;
@@ -92,7 +92,8 @@ std::string pixels_of_pfm(const std::string& file, std::size_t width, std::size_
 }
 
 constexpr std::size_t kSide = 16;
-constexpr std::size_t kHeader = 4 + 1 + 1 + 14 + 4 + 6 + 16 + 48;  // of a job's update
+// header of a job's update packet
+constexpr std::size_t kHeader = 4 + 1 + 1 + 14 + 4 + 6 + 16 + 48;
 
 void expect_the_image(std::vector<std::string> packets, std::size_t header,
                       const std::string& pfm) {
@@ -141,7 +142,7 @@ TEST(Views, AViewerThatIsNotThereIsSaidOnceAndTheImageIsRendered) {
   EXPECT_FALSE(file_bytes(folder / "a.pfm").empty());
 }
 
-// What a person sees: `script` gives the command a terminal.
+// Tests the terminal output; `script` gives the command a terminal.
 Finished on_terminal(const std::vector<std::string>& command, const std::string& environment) {
   std::string line;
   for (const std::string& word : command) {
@@ -184,7 +185,7 @@ TEST(Views, APreviewIsWhatIsThereOfTheImage) {
     early = (*client)->preview(1, 20);
   }
   ASSERT_TRUE(early.ok()) << early.status();
-  EXPECT_EQ(early->image.width, 16u);  // every fourth of 64
+  EXPECT_EQ(early->image.width, 16u);  // every fourth of 64 pixels
   EXPECT_EQ(early->image.height, 16u);
   EXPECT_EQ((*client)->preview(1, 0)->image.width, 64u);
   EXPECT_TRUE(absl::IsInvalidArgument((*client)->preview(1, 65'537).status()));

@@ -1,4 +1,4 @@
-// Whatever a person gets wrong: one clear sentence, the documented exit code, nothing half-written.
+// Every wrong input gives one clear sentence, the documented exit code, and no partial output.
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ void write(const std::string& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
 }
 
-// One line on standard error that says each of `words`, and the exit code.
+// Expects one line on standard error that contains each of `words`, and the exit code.
 void expect_error(const Finished& finished, int code, const std::vector<std::string>& words) {
   EXPECT_EQ(finished.code, code) << finished.err;
   EXPECT_EQ(std::count(finished.err.begin(), finished.err.end(), '\n'), 1) << finished.err;

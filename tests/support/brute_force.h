@@ -1,6 +1,6 @@
 #pragma once
 
-// The closest hit without any tree: what every tree must find to the bit.
+// Finds the closest hit without a BVH. Every BVH must find the same hit, bit for bit.
 
 #include "renderlib/geometry/ray.h"
 #include "renderlib/geometry/shapes.h"
@@ -9,7 +9,7 @@ namespace bandsaw::test {
 
 Hit closest_by_brute_force(const Geometry& geometry, const Ray& ray);
 
-/// Bits equal: id, t, u, v.
+/// True if id, t, u and v are equal, bit for bit.
 bool same_hit(const Hit& a, const Hit& b);
 
 }  // namespace bandsaw::test

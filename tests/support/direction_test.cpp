@@ -14,12 +14,12 @@
 namespace bandsaw::test {
 namespace {
 
-constexpr std::size_t kBands = 10;  // of z, equal in area
+constexpr std::size_t kBands = 10;  // in z, of equal area
 constexpr std::size_t kSectors = 20;
-constexpr std::size_t kSteps = 48;  // of the quadrature, a cell and axis
+constexpr std::size_t kSteps = 48;  // quadrature points per cell and axis
 constexpr int kSamples = 100000;
 
-/// The cell of a unit vector; the poles' numbering is turned so that no axis lies on a border.
+/// Returns the cell of a unit vector: bands of equal height in z, sectors of equal azimuth.
 std::size_t cell_of(const Vec3& d) {
   const double turn = atan2(d.y, d.x) / (2 * kPi) + 0.5;
   const auto band = static_cast<std::size_t>((d.z + 1) * 0.5 * kBands);
@@ -27,7 +27,7 @@ std::size_t cell_of(const Vec3& d) {
   return std::min(band, kBands - 1) * kSectors + std::min(sector, kSectors - 1);
 }
 
-/// The density's integral over each cell, by the midpoint rule.
+/// Integrates the pdf over each cell by the midpoint rule.
 std::vector<double> integrate(absl::FunctionRef<double(const Vec3&)> density) {
   std::vector<double> cells(kBands * kSectors);
   const double step = 4 * kPi / static_cast<double>(cells.size() * kSteps * kSteps);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Images of light for tests.
+// Environment maps for tests.
 
 #include <cstdint>
 
@@ -9,7 +9,7 @@
 
 namespace bandsaw::test {
 
-/// A grey float image of these texels; (0, 0) is the top left.
+/// Makes a grey float image from these texels; (0, 0) is the top left.
 ImageTexture float_image(std::uint32_t width, std::uint32_t height,
                          absl::FunctionRef<float(std::uint32_t, std::uint32_t)> texel);
 

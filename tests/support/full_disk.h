@@ -1,7 +1,7 @@
 #pragma once
 
-// A disk that takes no more, without a disk: this process may not write any file beyond a size.
-// What fails is the real call in the real place (EFBIG instead of ENOSPC).
+// Simulates a full disk by limiting the size of files that this process may write. The real call
+// fails in the real place (with EFBIG instead of ENOSPC).
 
 #include <cstdint>
 
@@ -9,7 +9,7 @@ namespace bandsaw::test {
 
 class FullDisk {
  public:
-  /// From now on no file grows beyond `bytes`, in the whole process, until `release` or the end.
+  /// Until `release` or the destructor, no file of the whole process can grow beyond `bytes`.
   explicit FullDisk(std::uint64_t bytes);
   ~FullDisk() { release(); }
   FullDisk(const FullDisk&) = delete;

@@ -16,7 +16,7 @@ std::string text(double number) {
   return digits;
 }
 
-/// The folder of the sources is cut off the file's name.
+/// Removes the source folder from the file's name.
 std::string here() {
   const std::string file = ::testing::UnitTest::GetInstance()->current_test_info()->file();
   const std::size_t tests = file.rfind("/tests/");

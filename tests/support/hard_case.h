@@ -1,25 +1,25 @@
 #pragma once
 
 // Figures of the hard cases (tests/hard_cases/cases.txt). Each is printed with its test on a line
-// of its own; tests/hard_cases/run.sh gathers these into the table of tests/hard_cases/README.md.
+// of its own; tests/hard_cases/run.sh collects them for the table of tests/hard_cases/README.md.
 
 #include <string_view>
 
 namespace bandsaw::test {
 
-/// Fails unless `figure` <= `limit`; NaN fails. `id`: "S1". `what`: what the figure is, in words.
+/// Fails unless `figure` <= `limit`; NaN fails. `id`: "S1". `what`: description of the figure.
 void at_most(std::string_view id, std::string_view what, double figure, double limit);
 /// Fails unless `figure` >= `limit`; NaN fails.
 void at_least(std::string_view id, std::string_view what, double figure, double limit);
-/// What this test has asserted one by one, in words with its count: "no leak of 20,000 rays".
-/// Printed unless the test has failed.
+/// Reports a property that the test has asserted case by case, with the count: "no leak of 20,000
+/// rays". Not printed if the test has failed.
 void holds(std::string_view id, std::string_view what);
 
-/// How often a test tries: few times in the default tests, as often as the case asks for in the
-/// same ones with BANDSAW_FULL_COUNTS in the environment (label hard_cases_full).
+/// Returns the number of tries: `few` in the default tests, `full` if BANDSAW_FULL_COUNTS is set in
+/// the environment (label hard_cases_full).
 int tries(int few, int full);
 
-/// The largest of the numbers that it has seen; NaN once it has seen one.
+/// Maximum of the numbers seen; NaN once a NaN was seen.
 class Worst {
  public:
   void see(double x) {

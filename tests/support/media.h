@@ -19,12 +19,12 @@ inline void fog(SceneMaker& maker, const Medium& medium) {
   maker.scene.media.fog = add(maker, medium);
 }
 
-/// A ball of medium, its surface invisible.
+/// Adds a sphere of medium with an invisible surface.
 inline void fill_sphere(SceneMaker& maker, const Vec3& center, double radius, MediumId inside) {
   maker.scene.media.boundaries.spheres.push_back({center, radius, filled_with(inside)});
 }
 
-/// Closed.
+/// The mesh MUST be closed.
 inline void fill_mesh(SceneMaker& maker, Mesh mesh, const Transform& to_world, MediumId inside) {
   Geometry& boundaries = maker.scene.media.boundaries;
   const MeshId id{static_cast<std::uint32_t>(boundaries.meshes.size())};

@@ -13,7 +13,7 @@ std::array<float, 3> to_float(const Vec3& p) {
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 
-/// Splits every triangle at the middles of its edges, on the unit sphere.
+/// Splits every triangle at the midpoints of its edges, projected to the unit sphere.
 class Splitter {
  public:
   explicit Splitter(std::vector<Vec3>& points) : points_(points) {}

@@ -1,6 +1,6 @@
 #pragma once
 
-// Meshes that several tests trace.
+// Meshes used by several tests.
 
 #include <cstdint>
 
@@ -9,18 +9,19 @@
 
 namespace bandsaw::test {
 
-/// The unit sphere from an icosahedron whose triangles are split in four `levels` times: 20 *
-/// 4^levels triangles, closed, normals outwards. Vertices are shared.
+/// A unit sphere from an icosahedron whose triangles are subdivided `levels` times: 20 * 4^levels
+/// triangles, closed, normals outwards, shared vertices.
 Mesh icosphere(int levels);
 
-/// A sphere of latitudes and longitudes with shared vertices, its radii drawn from [1, spread]:
-/// spread 1 is round, 6 is spikes. Closed; slices much finer than stacks make needles.
+/// A sphere of latitudes and longitudes with shared vertices and random radii in [1, spread]:
+/// spread 1 is round, 6 gives spikes. Closed. Many more slices than stacks give needle-shaped
+/// triangles.
 Mesh rough_sphere(int slices, int stacks, double spread, std::uint64_t seed);
 
-/// `count` triangles of edges up to `size` at random places of the cube [-1, 1]^3.
+/// `count` triangles with edges up to `size`, at random places of the cube [-1, 1]^3.
 Mesh triangle_soup(int count, double size, std::uint64_t seed);
 
-/// Everything moved by `by`, rounded to float.
+/// Translates all vertices by `by`; the results are rounded to float.
 Mesh moved(Mesh mesh, const Vec3& by);
 Mesh scaled(Mesh mesh, double by);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Bytes that nobody takes for others: no two pieces of them are alike.
+// A pattern of bytes in which no two pieces are alike.
 
 #include <cstddef>
 #include <string>

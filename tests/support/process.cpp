@@ -63,8 +63,8 @@ std::vector<char*> pointers(std::vector<std::string>& strings) {
   return out;
 }
 
-// Adds what the test itself has and `environment` does not set: of two entries of one name, shells
-// take the later.
+// Adds the test's own variables that `environment` does not set. If a name occurred twice, shells
+// would use the later one.
 void inherit(std::vector<std::string>& environment) {
   const std::size_t given = environment.size();
   for (char** e = environ; *e != nullptr; ++e) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// A child process whose output is read while it runs. Killed and reaped when the object goes.
+// A child process whose output is read while it runs. The destructor kills and reaps it.
 
 #include <sys/types.h>
 
@@ -17,8 +17,8 @@ class Process {
  public:
   using Milliseconds = std::chrono::milliseconds;
 
-  /// argv[0] is a path. `environment`: "NAME=value", in addition to the test's own, and in the place
-  /// of those of the same name.
+  /// Starts argv[0], a path. `environment`: "NAME=value", added to the test's own environment,
+  /// replacing variables of the same name.
   static Process start(std::vector<std::string> argv, std::vector<std::string> environment = {});
   Process(Process&&) noexcept;
   Process& operator=(Process&&) noexcept;
@@ -27,19 +27,20 @@ class Process {
   pid_t pid() const;
   void signal(int number);
 
-  /// Standard output, and standard error, so far.
+  /// Standard output and standard error so far.
   std::string out() const;
   std::string err() const;
 
-  /// Waits until either output holds `text`. False: the process ended without it, or the time
-  /// passed.
+  /// Waits until either output contains `text`. Returns false if the process ended without it, or
+  /// the time expired.
   bool wait_for(const std::string& text, Milliseconds timeout = std::chrono::seconds(60));
 
-  /// Waits until `holds(standard output, standard error)`. False: as above.
+  /// Waits until `holds(standard output, standard error)` is true. Returns false as above.
   bool wait_until(const std::function<bool(const std::string&, const std::string&)>& holds,
                   Milliseconds timeout = std::chrono::seconds(60));
 
-  /// The exit code, 128 + the signal's number where one ended it; nothing when the time passed.
+  /// Waits for the end. Returns the exit code, or 128 + the signal's number; std::nullopt if the
+  /// time expired.
   std::optional<int> wait(Milliseconds timeout = std::chrono::seconds(250));
 
  private:
@@ -48,9 +49,9 @@ class Process {
   std::unique_ptr<State> state_;
 };
 
-/// Runs to the end.
+/// Result of a process that was run to its end.
 struct Finished {
-  int code = -1;  ///< -1: it did not end in time and was killed
+  int code = -1;  ///< -1: killed because the time expired
   std::string out;
   std::string err;
 };

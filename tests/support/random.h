@@ -1,7 +1,7 @@
 #pragma once
 
-// Random numbers for tests: the same for every library and compiler (distributions of the standard
-// library are not).
+// Random numbers for tests, equal for all libraries and compilers (unlike the distributions of the
+// standard library).
 
 #include <cstdint>
 

@@ -13,7 +13,7 @@ Vec3 corner(const Mesh& mesh, std::uint32_t index) {
   return {p[0], p[1], p[2]};
 }
 
-/// Empty: left out.
+/// Returns the triangle's bounding box; empty if the triangle is invalid and must be omitted.
 Box bounds(const Mesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
   Box box;
   const auto& [a, b, c] = triangle;
@@ -31,7 +31,8 @@ Box bounds(const Mesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
   return box;
 }
 
-/// Whether the ray may meet the box up to `bound`, with room for far more than rounding.
+/// Conservative test of a ray against a box up to `bound`, with a margin far larger than rounding
+/// errors.
 bool may_meet(const Box& box, const TracedRay& ray, double bound) {
   const double lo[3] = {box.lo.x, box.lo.y, box.lo.z};
   const double hi[3] = {box.hi.x, box.hi.y, box.hi.z};

@@ -1,7 +1,7 @@
 #pragma once
 
-// What Accel must answer, found by the plainest means: every primitive, or a two-wide tree of
-// double boxes cut at the middle, and the double tests of renderlib/geometry alone.
+// Reference for Accel by the simplest means: brute force, or a binary tree of double boxes split at
+// the middle, with the double-precision intersection tests of renderlib/geometry only.
 
 #include <cstdint>
 #include <optional>
@@ -16,7 +16,7 @@ namespace bandsaw::test {
 
 class ReferenceAccel {
  public:
-  /// `geometry` MUST outlive this. `brute_force`: no trees.
+  /// `geometry` MUST outlive this object. `brute_force`: test every primitive, without trees.
   explicit ReferenceAccel(const Geometry& geometry, bool brute_force = false);
 
   Hit closest(const Ray& ray) const;
@@ -26,7 +26,7 @@ class ReferenceAccel {
   struct Node {
     Box box;
     std::uint32_t first = 0;
-    std::uint32_t count = 0;  // 0: an inner node, its left child the next one
+    std::uint32_t count = 0;  // 0: an inner node, whose left child is the next node
     std::uint32_t right = 0;
   };
   struct Tree {

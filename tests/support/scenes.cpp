@@ -13,7 +13,7 @@ Id append(std::vector<T>& list, T value) {
   return Id{static_cast<std::uint32_t>(list.size() - 1)};
 }
 
-/// Five sides of a box whose floor is corner + [u, v], turned about the y axis.
+/// Adds five sides of a box whose floor is corner + [u, v], rotated about the y axis.
 void add_block(SceneMaker& maker, const Vec3& corner, const Vec3& u, const Vec3& v, double height,
                MaterialId material) {
   const Vec3 up{0, height, 0};

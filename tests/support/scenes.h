@@ -1,6 +1,6 @@
 #pragma once
 
-// Scenes for tests, put together a line a shape.
+// Builds scenes for tests, one line per shape.
 
 #include <memory>
 
@@ -31,7 +31,7 @@ class SceneMaker {
   std::shared_ptr<const Scene> build() const;
 };
 
-/// The Cornell box, 555 units wide: a quad that shines down and two boxes of diffuse quads.
+/// The Cornell box, 555 units wide: a quad that emits downwards and two boxes of diffuse quads.
 SceneMaker cornell_box();
 
 /// A grid of n x n squares in z = 0 over [-1, 1]^2, two triangles each, normal +z.

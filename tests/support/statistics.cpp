@@ -53,7 +53,7 @@ ChiSquared chi_squared(const std::vector<std::uint64_t>& counts,
     add_cell(pooled_count, pooled_expected);
   } else if (pooled_count > 4 * kLeastExpected) {
     result.statistic =
-        std::numeric_limits<double>::infinity();  // what is all but impossible happened
+        std::numeric_limits<double>::infinity();  // a practically impossible event happened
   }
   result.degrees = std::max(1, result.degrees - 1);
   const double k = result.degrees;

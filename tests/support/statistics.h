@@ -1,6 +1,6 @@
 #pragma once
 
-// Statistical tests with fixed seeds: what fails, fails every time.
+// Statistical tests with fixed seeds, so that a failure is reproducible.
 
 #include <cstddef>
 #include <cstdint>
@@ -14,11 +14,12 @@ class Moments {
   void add(double x);
   std::size_t count() const { return count_; }
   double mean() const { return mean_; }
-  /// Of the samples, unbiased; 0 for fewer than two.
+  /// Unbiased variance of the samples; 0 for fewer than two.
   double variance() const;
-  /// Of the mean.
+  /// Standard error of the mean.
   double standard_error() const;
-  /// How many standard errors the mean is off; samples that are all equal and right give 0.
+  /// Returns the deviation of the mean in standard errors; 0 if all samples are equal to the
+  /// expected value.
   double z(double expected) const;
 
  private:
@@ -27,20 +28,20 @@ class Moments {
   double sum_of_squares_ = 0;
 };
 
-/// Pearson's chi-squared test of counts against expected counts (of equal sum). Cells that expect
-/// fewer than 5 are pooled.
+/// Pearson's chi-squared test of counts against expected counts with the same sum. Cells with fewer
+/// than 5 expected counts are pooled.
 struct ChiSquared {
   double statistic = 0;
   int degrees = 0;
-  /// The probability of a statistic this large or larger, from the cube-root normal approximation
-  /// (Wilson and Hilferty 1931).
+  /// Probability of a statistic at least this large, by the cube-root normal approximation (Wilson
+  /// and Hilferty 1931).
   double p_value = 1;
 };
 ChiSquared chi_squared(const std::vector<std::uint64_t>& counts,
                        const std::vector<double>& expected);
 
-/// The level at which each of `tests` independent tests must be judged for all together to fail
-/// falsely with probability `level` (Sidak 1967).
+/// Returns the level for each of `tests` independent tests such that the probability of at least
+/// one false alarm is `level` (Sidak 1967).
 double sidak(double level, std::size_t tests);
 
 }  // namespace bandsaw::test

@@ -1,6 +1,6 @@
 #pragma once
 
-// A folder that is gone with everything in it when the test ends.
+// A temporary folder that the destructor removes with its contents.
 
 #include <string>
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Numbers of 113 bits, for the truth about geometry: inputs are taken as exact, results as if there
-// were no rounding.
+// 113-bit numbers for reference results of geometry: inputs are taken as exact, results as free of
+// rounding errors.
 
 #include <cmath>
 
@@ -11,7 +11,7 @@ namespace bandsaw::test {
 
 __extension__ using Wide = __float128;
 
-/// From double's root by two steps of Newton's method; 0 for what is not positive.
+/// Refines double's square root by two steps of Newton's method; returns 0 if x is not positive.
 inline Wide wide_sqrt(Wide x) {
   if (!(x > 0)) {
     return 0;

@@ -28,13 +28,13 @@ struct Entry {
   }
 };
 
-/// Whether the cache made it: a folder that somebody named by mistake loses nothing else.
+/// True if the cache created the file. A folder that was given by mistake loses nothing else.
 bool is_ours(const std::filesystem::path& path) {
   const bool whole_or_part = path.extension().empty() || path.extension() == ".part";
   return whole_or_part && wire::digest_from_hex(path.stem().string()).ok();
 }
 
-/// Files that vanish meanwhile are left out.
+/// Lists the cache's files. Files that are removed during the scan are left out.
 std::vector<Entry> entries(const std::string& folder) {
   std::vector<Entry> found;
   std::error_code error;
@@ -53,7 +53,7 @@ std::vector<Entry> entries(const std::string& folder) {
   return found;
 }
 
-/// Whether `fd` is still the file of that name: another worker may have renamed it while this one
+/// True if `fd` is still the file of that name: another worker may have renamed it while this one
 /// waited for its lock.
 bool is_at(int fd, const std::string& path) {
   struct stat open_file {};
@@ -62,10 +62,10 @@ bool is_at(int fd, const std::string& path) {
          open_file.st_ino == named.st_ino && open_file.st_dev == named.st_dev;
 }
 
-/// Not one that is being downloaded: another worker's commit would give the blob's name to a part
-/// that a third has begun anew.
+/// Removes a file unless it is being downloaded. Otherwise another worker's commit could give the
+/// blob's name to a partial file that a third worker has started again.
 bool remove_unused(const std::string& path) {
-  // NFS locks only what is open for writing.
+  // NFS grants exclusive locks only on files that are open for writing.
   const int fd = ::open(path.c_str(), O_RDWR | O_CLOEXEC | O_NOFOLLOW);
   if (fd < 0) {
     return false;
@@ -76,8 +76,8 @@ bool remove_unused(const std::string& path) {
   return removed;
 }
 
-/// Removes what was used longest ago, `wanted` bytes of it or all that there is, but not `kept`.
-/// Returns how many.
+/// Removes the least recently used files, `wanted` bytes of them or all, except `kept`. Returns the
+/// number of bytes removed.
 std::uint64_t remove_oldest(std::vector<Entry> all, std::uint64_t wanted, const std::string& kept) {
   std::sort(all.begin(), all.end());
   std::uint64_t freed = 0;
@@ -123,7 +123,7 @@ absl::StatusOr<std::unique_ptr<BlobBytes>> BlobCache::get(const wire::Digest& di
   absl::StatusOr<std::unique_ptr<BlobBytes>> blob = blobs_.get(digest);
   const std::string path = blobs_.path_of(digest);
   if (blob.ok()) {
-    utimensat(AT_FDCWD, path.c_str(), nullptr, 0);  // used now
+    utimensat(AT_FDCWD, path.c_str(), nullptr, 0);  // marks it as used
   } else if (absl::IsDataLoss(blob.status())) {
     unlink(path.c_str());
   }
@@ -215,7 +215,7 @@ absl::Status BlobCache::Download::commit() {
   }
   const std::string path = cache_.blobs_.path_of(digest_);
   if (rename(part.c_str(), path.c_str()) != 0) {
-    // Thrown away by a person who made room: it is fetched again.
+    // The partial file was removed by a user who needed space; the blob is fetched again.
     return absl::UnavailableError(errno_status(errno, part).message());
   }
   cache_.make_room(offset_, path);

@@ -1,9 +1,9 @@
 #pragma once
 
-// Blobs on the worker's disk: `<folder>/<digest in hexadecimal>`, whole or not at all, the least
-// recently used thrown away when there are too many bytes. Several workers of one machine may share
-// a folder: names are digests, files appear by rename, a download holds a lock on its partial file,
-// and a file that vanishes under a reader only means fetching it again.
+// The worker's cache of blobs on disk: `<folder>/<digest in hexadecimal>`, files written
+// atomically, least recently used removed when the size limit is exceeded. Several workers of one
+// machine may share a folder: names are digests, files appear by rename, a download holds a lock on
+// its partial file, and a file that is removed during a read only has to be fetched again.
 
 #include <cstdint>
 #include <memory>
@@ -18,17 +18,17 @@ namespace bandsaw::worker {
 
 class BlobCache : public BlobSource {
  public:
-  /// Makes the folder. Any error names it.
+  /// Creates the folder if necessary. Every error names it.
   static absl::StatusOr<std::unique_ptr<BlobCache>> open(std::string folder,
                                                          std::uint64_t max_bytes);
 
   bool has(const wire::Digest& digest) const;
-  /// Checks the digest each time; a damaged file is removed before DATA_LOSS is returned. Counts as
-  /// a use.
+  /// Returns the blob and marks it as used. Checks the digest at each call; a damaged file is
+  /// removed before DATA_LOSS is returned.
   absl::StatusOr<std::unique_ptr<BlobBytes>> get(const wire::Digest& digest) override;
 
-  /// A blob on its way here. What was written stays when it is dropped, and the next download goes
-  /// on from there.
+  /// A download in progress. The bytes written so far are kept when it is destroyed, and the next
+  /// download resumes after them.
   class Download {
    public:
     Download(BlobCache& cache, const wire::Digest& digest, int fd, std::uint64_t offset);
@@ -36,10 +36,11 @@ class BlobCache : public BlobSource {
     Download(const Download&) = delete;
     Download& operator=(const Download&) = delete;
 
-    std::uint64_t offset() const { return offset_; }  ///< of the next byte wanted
-    /// RESOURCE_EXHAUSTED: the disk is full.
+    std::uint64_t offset() const { return offset_; }  ///< offset of the next byte to fetch
+    /// Appends the next bytes. RESOURCE_EXHAUSTED: the disk is full and nothing is left to evict.
     absl::Status append(absl::Span<const std::byte> bytes);
-    /// DATA_LOSS: the bytes do not have the digest; they are thrown away.
+    /// Publishes the blob under its name. DATA_LOSS: the bytes do not match the digest; they are
+    /// deleted.
     absl::Status commit();
 
    private:
@@ -48,16 +49,17 @@ class BlobCache : public BlobSource {
     const int fd_;
     std::uint64_t offset_;
   };
-  /// Nothing: another worker of this machine is fetching it now; look again a little later.
+  /// Starts or resumes a download. Returns nullptr if another worker of this machine is fetching
+  /// the blob; check again a little later.
   absl::StatusOr<std::unique_ptr<Download>> begin(const wire::Digest& digest);
 
  private:
   BlobCache(std::string folder, std::uint64_t max_bytes);
   std::string part_of(const wire::Digest& digest) const;
-  /// Throws away until the rest fits; keeps `newest`.
+  /// Accounts for `added` bytes and evicts the oldest files until the rest fits; keeps `newest`.
   void make_room(std::uint64_t added, const std::string& newest) EXCLUDES(mutex_);
-  /// Throws away what was used longest ago, where the disk is full: `wanted` bytes, or more. False:
-  /// there is nothing left to throw away.
+  /// Evicts the least recently used files because the disk is full: `wanted` bytes, or more.
+  /// Returns false if there is nothing left to evict.
   bool give_up_some(std::uint64_t wanted) EXCLUDES(mutex_);
 
   const std::string folder_;
@@ -65,7 +67,7 @@ class BlobCache : public BlobSource {
   BlobFolder blobs_;
   Mutex mutex_;
   std::uint64_t bytes_ GUARDED_BY(mutex_) =
-      0;  ///< when last counted, plus what was added since by this worker
+      0;  ///< size at the last scan of the folder plus what this worker added since
 };
 
 }  // namespace bandsaw::worker

@@ -6,8 +6,9 @@
 
 namespace bandsaw::worker {
 
-/// Waiting times that double from 200 ms to 5 s, each shortened by a random half at most: a
-/// restarted coordinator is not met by all its workers in the same moment.
+/// Exponential backoff from 200 ms to 5 s with jitter: each wait is shortened by a random amount of
+/// up to one half, so that the workers do not all reconnect at the same moment after a restart of
+/// the coordinator.
 class Backoff {
  public:
   explicit Backoff(std::uint64_t seed) : random_(seed) {}

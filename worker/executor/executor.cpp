@@ -84,8 +84,8 @@ void Executor::execute(Running& running) {
   absl::StatusOr<FinishedBand> band = absl::InternalError("not rendered");
   try {
     band = render(running);
-  } catch (const std::bad_alloc&) {  // from the standard library: a scene may be larger than this
-                                     // machine
+  } catch (const std::bad_alloc&) {
+    // Thrown by the standard library: the scene or the band needs too much memory.
     band = absl::ResourceExhaustedError("not enough memory for the scene or the band");
   }
   if (running.stop) {
@@ -100,8 +100,8 @@ void Executor::execute(Running& running) {
 
 absl::StatusOr<FinishedBand> Executor::render(Running& running) {
   const Task& task = running.task;
-  // The earliest task loads, so that the progress of loading is that of the lease which must
-  // advance first.
+  // The earliest task loads the scene, so that the progress of loading counts for the lease that
+  // must advance first.
   RETURN_IF_ERROR(wait_for_earlier(running, Reached::kScene));
   ASSIGN_OR_RETURN(const std::shared_ptr<const Scene> scene,
                    scenes_.get(task.manifest, running.stop, [&](std::uint64_t prepared) {

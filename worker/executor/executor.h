@@ -1,8 +1,8 @@
 #pragma once
 
-// Renders tasks in the order they came, each on all cores. Two are under way at once, so that the
-// first tiles of one fill the cores that the last tiles of the one before leave idle; the later one
-// begins only when the earlier one's rows are coming.
+// Renders tasks in their order of arrival, each on all cores. Two tasks run at the same time, so
+// that the first tiles of the later one fill the cores that the last tiles of the earlier one leave
+// idle. The later task begins only when rows of the earlier one are being finished.
 
 #include <atomic>
 #include <deque>
@@ -17,8 +17,9 @@
 
 namespace bandsaw::worker {
 
-/// Told from the executor's and the pool's threads; MUST be quick. For each task: preparing and
-/// rendering any number of times, then finished or failed once, unless it was stopped.
+/// Callbacks, called from the executor's and the pool's threads; MUST be quick. For each task:
+/// preparing and rendering any number of times, then finished or failed once. A task that is
+/// stopped gets no further callbacks.
 struct ExecutorEvents {
   std::function<void(TaskId, std::uint64_t prepared)> preparing;
   std::function<void(TaskId, std::uint32_t rows_done)> rendering;
@@ -28,15 +29,16 @@ struct ExecutorEvents {
 
 class Executor {
  public:
-  /// `pool` outlives it.
+  /// `pool` MUST outlive the executor.
   Executor(Pool& pool, LoadScene load, ExecutorEvents events);
-  /// Stops what is running and waits for it; nothing is told of it any more.
+  /// Stops the running tasks and waits for them, without further callbacks.
   ~Executor();
   Executor(const Executor&) = delete;
   Executor& operator=(const Executor&) = delete;
 
   void add(const Task& task) EXCLUDES(mutex_);
-  /// Waiting: forgotten. Running: ends at the next row of a tile, and nothing more is told of it.
+  /// Cancels a task. A waiting task is removed; a running one ends at the next row of a tile. No
+  /// further callbacks for it.
   void stop(TaskId task) EXCLUDES(mutex_);
 
  private:
@@ -53,7 +55,7 @@ class Executor {
   void execute(Running& running) EXCLUDES(mutex_);
   absl::StatusOr<FinishedBand> render(Running& running) EXCLUDES(mutex_);
   void reach(Running& running, Reached reached) EXCLUDES(mutex_);
-  /// Until every earlier task has come so far. CANCELLED: this one was stopped.
+  /// Waits until every earlier task has reached `reached`. CANCELLED: this task was stopped.
   absl::Status wait_for_earlier(const Running& running, Reached reached) EXCLUDES(mutex_);
   RenderCost cost_since(double began_s) EXCLUDES(mutex_);
 
@@ -64,7 +66,7 @@ class Executor {
   CondVar changed_;
   bool closing_ GUARDED_BY(mutex_) = false;
   std::deque<Task> waiting_ GUARDED_BY(mutex_);
-  RunningList running_ GUARDED_BY(mutex_);  ///< in the order they were taken
+  RunningList running_ GUARDED_BY(mutex_);  ///< in the order in which they were started
   double last_end_s_ GUARDED_BY(mutex_) = 0;
   double last_cpu_s_ GUARDED_BY(mutex_) = 0;
   std::vector<std::thread> threads_;

@@ -20,7 +20,7 @@ absl::StatusOr<std::shared_ptr<const Scene>> SceneShelf::get(const wire::Digest&
     }
   }
   while (entries_.size() >= kScenes) {
-    entries_.pop_back();  // before the next is built: memory for one more is not needed
+    entries_.pop_back();  // before the next scene is built, so that memory never holds one more
   }
   ASSIGN_OR_RETURN(std::shared_ptr<const Scene> scene, load_(manifest, stop, prepared));
   entries_.push_front({.manifest = manifest, .scene = scene});

@@ -1,7 +1,7 @@
 #pragma once
 
-// The scenes that are ready to render: the last two packages, so that a worker that goes to and fro
-// between two jobs does not build its trees again for every band.
+// Cache of the last two scenes that are ready to render, so that a worker that alternates between
+// two jobs does not rebuild their BVHs for every band.
 
 #include <atomic>
 #include <functional>
@@ -15,18 +15,19 @@
 
 namespace bandsaw::worker {
 
-/// Told how far preparation is: a number that only grows (bytes fetched, steps done).
+/// Callback with the progress of preparation: a number that only increases (bytes fetched, steps
+/// done).
 using Prepared = std::function<void(std::uint64_t)>;
 
-/// Makes a scene of the package with this manifest. CANCELLED soon after `stop` is set.
+/// Builds the scene of the package with this manifest. CANCELLED soon after `stop` is set.
 using LoadScene = std::function<absl::StatusOr<std::shared_ptr<const Scene>>(
     const wire::Digest& manifest, const std::atomic<bool>& stop, const Prepared& prepared)>;
 
 class SceneShelf {
  public:
   explicit SceneShelf(LoadScene load) : load_(std::move(load)) {}
-  /// One scene is loaded at a time, because loading uses all cores; who wants the same one waits
-  /// for it. A failure is not kept.
+  /// Returns the scene, loading it if necessary. One scene is loaded at a time, because loading
+  /// uses all cores; other callers wait. A failure is not cached.
   absl::StatusOr<std::shared_ptr<const Scene>> get(const wire::Digest& manifest,
                                                    const std::atomic<bool>& stop,
                                                    const Prepared& prepared) EXCLUDES(mutex_);
@@ -38,7 +39,7 @@ class SceneShelf {
   };
   const LoadScene load_;
   Mutex mutex_;
-  std::list<Entry> entries_ GUARDED_BY(mutex_);  ///< last used first
+  std::list<Entry> entries_ GUARDED_BY(mutex_);  ///< most recently used first
 };
 
 }  // namespace bandsaw::worker

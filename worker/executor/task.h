@@ -1,6 +1,6 @@
 #pragma once
 
-// A band that this worker holds, by names of its own: lease ids change when the coordinator is
+// A band that this worker holds, under an id of its own: lease ids change when the coordinator is
 // restarted, task ids do not.
 
 #include <cstdint>
@@ -20,17 +20,17 @@ struct Task {
   wire::Digest manifest;
   RenderSettings settings;
   Band band;
-  TileSamples tiles = {};  ///< of the band
+  TileSamples tiles = {};  ///< samples of the band's half tiles
 };
 
-/// What rendering a band took. Where two bands overlap each moment is counted once, for the one
-/// that ends first.
+/// Cost of rendering a band. While two bands overlap, the time is counted once, for the one that
+/// ends first.
 struct RenderCost {
   double render_s = 0;  ///< wall clock
   double cpu_s = 0;     ///< summed over threads
 };
 
-/// A band whose pixels wait for the coordinator's acknowledgement.
+/// A band whose pixels are not acknowledged by the coordinator.
 struct FinishedBand {
   Task task;
   BandPixels pixels;

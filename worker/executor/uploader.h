@@ -1,7 +1,7 @@
 #pragma once
 
-// Keeps finished bands until the coordinator has them, and sends them from a thread of its own, so
-// that rendering goes on.
+// Keeps finished bands until the coordinator has acknowledged them, and sends them from a thread of
+// its own, so that rendering continues.
 
 #include <deque>
 #include <functional>
@@ -15,27 +15,28 @@
 
 namespace bandsaw::worker {
 
-/// One attempt. INVALID_ARGUMENT, NOT_FOUND, FAILED_PRECONDITION: it will never be taken.
-/// RESOURCE_EXHAUSTED: the coordinator has no room now. Anything else: try again.
+/// One attempt to send a band. INVALID_ARGUMENT, NOT_FOUND, FAILED_PRECONDITION: permanent, the
+/// band will never be accepted. RESOURCE_EXHAUSTED: the coordinator's disk is full now. All other
+/// errors: retry.
 using PutBand = std::function<absl::StatusOr<farm::PutBandReply::Outcome>(const FinishedBand&)>;
 
-/// How a band ended: acknowledged, or with the error for which it will never be. Told from the
-/// uploader's thread.
+/// Called from the uploader's thread when a band is finally acknowledged, or rejected with a
+/// permanent error.
 using Settled =
     std::function<void(TaskId, const absl::StatusOr<farm::PutBandReply::Outcome>& outcome)>;
 
 class Uploader {
  public:
   Uploader(PutBand put, Settled settled, std::uint64_t seed);
-  /// What is not acknowledged by now is lost. An attempt under way is waited for.
+  /// Waits for the attempt in progress. Bands that are not acknowledged by then are lost.
   ~Uploader();
   Uploader(const Uploader&) = delete;
   Uploader& operator=(const Uploader&) = delete;
 
   void add(FinishedBand band) EXCLUDES(mutex_);
-  /// Not wanted any more.
+  /// Drops a band that is no longer wanted.
   void drop(TaskId task) EXCLUDES(mutex_);
-  /// The coordinator is back: try now, however long the wait was to be.
+  /// Ends the current backoff: the coordinator is reachable again.
   void retry_now() EXCLUDES(mutex_);
 
  private:
@@ -48,10 +49,10 @@ class Uploader {
   CondVar changed_;
   bool closing_ GUARDED_BY(mutex_) = false;
   bool retry_now_ GUARDED_BY(mutex_) = false;
-  /// Few and bounded: the coordinator leases no more bands than a worker's credits while these are
-  /// open.
+  /// Bounded: while these are unacknowledged, the coordinator leases no more bands than the
+  /// worker's credit allows.
   std::deque<std::shared_ptr<const FinishedBand>> bands_ GUARDED_BY(mutex_);
-  Backoff backoff_;  ///< the thread's own
+  Backoff backoff_;  ///< used by the thread only
   std::thread thread_;
 };
 

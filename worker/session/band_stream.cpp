@@ -9,7 +9,7 @@
 namespace bandsaw::worker {
 namespace {
 
-// A band has at least the second minute; what breaks off is sent again.
+// Every band has at least the second of the two minutes; an interrupted one is sent again.
 constexpr std::chrono::milliseconds kDeadline{120'000};
 constexpr std::chrono::milliseconds kServes{60'000};
 
@@ -49,7 +49,7 @@ BandStream::BandStream(FarmCalls& calls, std::shared_ptr<grpc::Channel> channel)
     : channel_(std::move(channel)),
       stub_(farm::Work::NewStub(channel_)),
       context_(calls, kDeadline) {
-  (*context_).set_initial_metadata_corked(true);  // with the first chunk
+  (*context_).set_initial_metadata_corked(true);  // sent with the first chunk
   stream_ = stub_->PutBands(context_.get());
 }
 

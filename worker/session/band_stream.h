@@ -1,6 +1,7 @@
 #pragma once
 
-// Work.PutBands, open for a minute: to open a call costs more than to send a small band.
+// A Work.PutBands call that is used for a minute, because opening a call costs more than sending a
+// small band.
 
 #include <chrono>
 #include <memory>
@@ -11,16 +12,17 @@ namespace bandsaw::worker {
 
 class BandStream {
  public:
-  /// `calls` MUST outlive it.
+  /// `calls` MUST outlive the stream.
   BandStream(FarmCalls& calls, std::shared_ptr<grpc::Channel> channel);
-  /// Cancels what is under way.
+  /// Cancels a transfer in progress.
   ~BandStream();
 
-  /// Whether the next band may go through it: opened on this channel, and with time enough left
-  /// before its deadline for a slow line.
+  /// True if the next band may be sent on it: it was opened on this channel, and the time to its
+  /// deadline is sufficient for a slow connection.
   bool serves(const std::shared_ptr<grpc::Channel>& channel) const;
 
-  /// Returns when the coordinator has answered. With an error the stream is over.
+  /// Sends a band and waits for the coordinator's answer. After an error the stream must not be
+  /// used again.
   absl::StatusOr<farm::PutBandReply::Outcome> put(const FinishedBand& band,
                                                   const std::string& instance,
                                                   const LeaseName& lease);

@@ -1,6 +1,7 @@
 #pragma once
 
-// The session as the worker's threads share it: one lock, and the outbox of the present stream.
+// The session as shared by the worker's threads: one lock, and the send queue of the current
+// stream.
 
 #include <memory>
 
@@ -14,35 +15,35 @@ class Desk {
  public:
   explicit Desk(Self self) : session_(std::move(self)), outbox_(std::make_shared<Outbox>()) {}
 
-  // The stream's threads.
-  /// A new stream begins: its outbox, which opens with Hello.
+  // For the threads of the stream.
+  /// Starts a new stream. Returns its send queue, whose first message is Hello.
   std::shared_ptr<Outbox> open_stream() EXCLUDES(mutex_);
   void close_stream() EXCLUDES(mutex_);
-  /// What the session makes of it; its answers are in the outbox already.
+  /// Processes a message. The answers are already in the send queue.
   Reaction receive(const farm::ToWorker& message) EXCLUDES(mutex_);
   std::chrono::milliseconds heartbeat_interval() EXCLUDES(mutex_);
-  /// Nothing before Welcome.
+  /// std::nullopt before Welcome.
   std::optional<farm::FromWorker> heartbeat() EXCLUDES(mutex_);
   bool was_welcomed() EXCLUDES(mutex_);
   std::string name() EXCLUDES(mutex_);
 
-  // Rendering.
+  // For the rendering threads.
   void preparing(TaskId task, std::uint64_t prepared) EXCLUDES(mutex_);
   void rendering(TaskId task, std::uint32_t rows_done) EXCLUDES(mutex_);
-  /// False: throw its pixels away.
+  /// False: the band is no longer wanted, discard its pixels.
   bool finished(TaskId task) EXCLUDES(mutex_);
   void failed(TaskId task, const std::string& reason, const std::vector<std::string>& log)
       EXCLUDES(mutex_);
   void settled(TaskId task) EXCLUDES(mutex_);
-  /// UNAVAILABLE: no coordinator is there to take it.
+  /// UNAVAILABLE: not connected to a coordinator.
   absl::StatusOr<LeaseName> lease_of(TaskId task) EXCLUDES(mutex_);
 
-  // Leaving.
+  // For shutdown.
   void drain(const std::string& reason) EXCLUDES(mutex_);
   void leave() EXCLUDES(mutex_);
-  /// Drained or told to leave.
+  /// True once drained or told to leave.
   bool over() EXCLUDES(mutex_);
-  /// Waits, but not longer than until it is over.
+  /// Sleeps, but returns early when over() becomes true.
   void pause(std::chrono::milliseconds time) EXCLUDES(mutex_);
 
  private:

@@ -7,7 +7,7 @@
 namespace bandsaw::worker {
 namespace {
 
-// Long enough for a slow line; what breaks off at it goes on from there.
+// Sufficient for a slow connection; an interrupted transfer resumes at its offset.
 constexpr std::chrono::milliseconds kTransferDeadline{60'000};
 
 absl::Status not_connected() { return absl::UnavailableError("not connected"); }

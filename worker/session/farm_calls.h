@@ -1,7 +1,7 @@
 #pragma once
 
-// The worker's calls on the bulk channel, and the calls under way, so that leaving need not wait
-// for them.
+// The worker's calls on the bulk channel. Calls in progress are registered, so that shutdown can
+// cancel them.
 
 #include <memory>
 #include <optional>
@@ -18,28 +18,28 @@ namespace bandsaw::worker {
 
 class BandStream;
 
-/// Where the farm is now; changes with every reconnect.
+/// Holds the channel of the current connection; it changes with every reconnect.
 class FarmCalls {
  public:
   explicit FarmCalls(link::JoinString join);
   ~FarmCalls();
 
   const link::JoinString& join() const { return join_; }
-  /// Nothing: not connected; calls fail with UNAVAILABLE at once.
+  /// nullptr: not connected; calls then fail with UNAVAILABLE at once.
   void set_channel(std::shared_ptr<grpc::Channel> bulk) EXCLUDES(mutex_);
-  /// Cancels all calls that are under way or begin later.
+  /// Cancels all calls in progress and all later ones.
   void leave() EXCLUDES(mutex_);
 
   absl::Status get_blob(const wire::Digest& digest, std::uint64_t offset, const TakeBytes& take);
-  /// One at a time.
+  /// One call at a time.
   absl::StatusOr<farm::PutBandReply::Outcome> put_band(const FinishedBand& band,
                                                        const std::string& instance,
                                                        const LeaseName& lease);
 
-  /// A context for one call that leave() can cancel.
+  /// A context for one call, which leave() can cancel.
   class Context {
    public:
-    /// deadline zero: none
+    /// A deadline of zero means none.
     Context(FarmCalls& calls, std::chrono::milliseconds deadline);
     ~Context();
     Context(const Context&) = delete;
@@ -53,7 +53,7 @@ class FarmCalls {
   };
 
  private:
-  /// Null: not connected.
+  /// nullptr: not connected.
   std::shared_ptr<grpc::Channel> bulk() EXCLUDES(mutex_);
 
   const link::JoinString join_;
@@ -61,7 +61,7 @@ class FarmCalls {
   bool left_ GUARDED_BY(mutex_) = false;
   std::shared_ptr<grpc::Channel> bulk_ GUARDED_BY(mutex_);
   std::set<grpc::ClientContext*> open_ GUARDED_BY(mutex_);
-  std::unique_ptr<BandStream> bands_;  ///< put_band's own
+  std::unique_ptr<BandStream> bands_;  ///< used by put_band only
 };
 
 }  // namespace bandsaw::worker

@@ -1,6 +1,6 @@
 #pragma once
 
-// What goes out on one stream: messages in order, and a heartbeat whenever one is due.
+// Send queue of one stream: messages in order, and a heartbeat whenever one is due.
 
 #include <chrono>
 #include <deque>
@@ -14,13 +14,14 @@ namespace bandsaw::worker {
 class Outbox {
  public:
   void push(farm::FromWorker message) EXCLUDES(mutex_);
-  /// Something of note changed: the next heartbeat is due now.
+  /// Makes a heartbeat due now, because a state changed.
   void beat_now() EXCLUDES(mutex_);
-  /// Nothing more is taken; what is there is still given out.
+  /// Accepts no more messages; those in the queue are still returned.
   void close() EXCLUDES(mutex_);
 
   enum class Next { kMessage, kHeartbeat, kClosed };
-  /// Waits for the first of: a message (moved to `message`), the heartbeat's time, the end.
+  /// Waits for the first of: a message (moved to `message`), the time of a heartbeat, the end of
+  /// the queue.
   Next next(std::chrono::milliseconds heartbeat_interval, farm::FromWorker& message)
       EXCLUDES(mutex_);
 

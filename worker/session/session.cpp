@@ -13,7 +13,7 @@
 namespace bandsaw::worker {
 namespace {
 
-/// What the coordinator takes: bounded, UTF-8, on one line.
+/// Makes text acceptable to the coordinator: bounded, UTF-8, on one line.
 std::string plain(absl::string_view text, std::size_t most) {
   std::string line(absl::StripAsciiWhitespace(text));
   std::replace_if(line.begin(), line.end(), absl::ascii_iscntrl, ' ');
@@ -122,7 +122,7 @@ Reaction Session::receive(const farm::ToWorker& message) {
                            .for_ever = message.bye().retry_after_ms() == 0};
       break;
     case farm::ToWorker::KIND_NOT_SET:
-      break;  // a later coordinator's word of the same protocol: it may be left out
+      break;  // an optional message of a newer coordinator with the same protocol; ignored
   }
   return reaction;
 }
@@ -144,7 +144,7 @@ void Session::take_lease(const farm::Lease& lease, Reaction& reaction) {
     reaction.send.push_back(failure(lease.lease(), std::string(task.status().message()), {}));
     return;
   }
-  // The same band again is the answer to a Hello: go on, under the name it has now.
+  // The same band again is the coordinator's answer to Hello: continue, under the new lease id.
   const auto same = std::find_if(held_.begin(), held_.end(), [&](const Held& held) {
     return held.task.job == task->job && held.task.band == task->band;
   });
@@ -153,7 +153,7 @@ void Session::take_lease(const farm::Lease& lease, Reaction& reaction) {
       same->name = {.lease = lease.lease(), .epoch = epoch_};
       return;
     }
-    reaction.stop.push_back(same->task.id);  // of another job that bore the number
+    reaction.stop.push_back(same->task.id);  // it belonged to another job with the same number
     held_.erase(same);
   }
   if (held_.size() >= wire::kBandsPerWorker) {
@@ -167,8 +167,8 @@ void Session::take_lease(const farm::Lease& lease, Reaction& reaction) {
 
 void Session::take_revoke(const farm::Revoke& revoke, Reaction& reaction) {
   for (const std::uint64_t lease : revoke.lease()) {
-    // Ids are unique within an epoch; one of an earlier epoch can only be meant where the present
-    // one has none.
+    // Ids are unique within an epoch. An id of an earlier epoch is meant only if the current epoch
+    // has none that is equal.
     auto meant = std::find_if(held_.begin(), held_.end(), [&](const Held& held) {
       return held.name.lease == lease && held.name.epoch == epoch_;
     });
@@ -189,7 +189,7 @@ farm::FromWorker Session::heartbeat() const {
   beat->set_doing(doing());
   for (const Held& held : held_) {
     if (held.name.epoch != epoch_) {
-      continue;  // the present coordinator has not said yet what it calls it
+      continue;  // the current coordinator has not assigned an id to it
     }
     farm::LeaseProgress* progress = beat->add_lease();
     progress->set_lease(held.name.lease);
@@ -228,7 +228,7 @@ void Session::preparing(TaskId task, std::uint64_t prepared) {
 void Session::rendering(TaskId task, std::uint32_t rows_done) {
   if (Held* held = find(task)) {
     held->stage = Stage::kRendering;
-    held->rows_done = std::max(held->rows_done, rows_done);  // reports may overtake one another
+    held->rows_done = std::max(held->rows_done, rows_done);  // calls may arrive out of order
   }
 }
 

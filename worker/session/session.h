@@ -1,8 +1,8 @@
 #pragma once
 
-// What a worker holds and what it has to say, apart from the world: no clock, thread or socket.
-// Messages of the coordinator and events of rendering go in; messages to send and orders for the
-// executor come out.
+// State machine of a worker's session: the leases it holds and the messages it sends, without
+// clock, thread or socket. Inputs are the coordinator's messages and events of rendering; outputs
+// are messages to send and orders for the executor.
 
 #include <chrono>
 #include <optional>
@@ -15,9 +15,9 @@
 
 namespace bandsaw::worker {
 
-/// What Hello says of this process.
+/// This process's identity and capabilities, as sent in Hello.
 struct Self {
-  std::string instance;  ///< 32 hexadecimal digits, for the life of the process
+  std::string instance;  ///< 32 hexadecimal digits, constant for the life of the process
   std::string name;
   std::string build;
   std::uint32_t threads = 1;
@@ -26,28 +26,28 @@ struct Self {
   std::uint64_t canary = 0;
 };
 
-/// The coordinator sent it away.
+/// The coordinator dismissed this worker.
 struct Away {
   std::string reason;
-  std::chrono::milliseconds wait{0};  ///< before it may come back
+  std::chrono::milliseconds wait{0};  ///< minimum wait before it reconnects
   bool for_ever = false;
 };
 
-/// What a message of the coordinator leads to, in this order.
+/// Effects of a message from the coordinator, to be applied in this order.
 struct Reaction {
-  std::vector<TaskId> stop;  ///< not wanted any more: rendering or result
-  std::vector<Task> start;   ///< in the order to render
+  std::vector<TaskId> stop;  ///< no longer wanted: cancel rendering or drop the result
+  std::vector<Task> start;   ///< in rendering order
   std::vector<farm::FromWorker> send;
   std::optional<Away> away;
 };
 
-/// A lease as the coordinator that gave it knows it.
+/// A lease as identified by the coordinator that assigned it.
 struct LeaseName {
   std::uint64_t lease = 0;
   std::string epoch;
 };
 
-/// Lines of the log as they are sent: bounded, each on one line.
+/// Makes a LogLines message; each line is bounded in length and contains no line break.
 farm::FromWorker log_message(const std::vector<std::string>& lines);
 
 class Session {
@@ -55,31 +55,32 @@ class Session {
   explicit Session(Self self);
 
   // The stream.
-  /// The first message of a stream, with all that is held.
+  /// Returns the first message of a stream, which lists all leases held.
   farm::FromWorker hello() const;
   Reaction receive(const farm::ToWorker& message);
   void disconnected() { connected_ = false; }
   farm::FromWorker heartbeat() const;
   std::chrono::milliseconds heartbeat_interval() const { return heartbeat_; }
-  bool connected() const { return connected_; }         ///< welcomed, on this stream
-  bool was_welcomed() const { return !name_.empty(); }  ///< ever
-  const std::string& name() const { return name_; }     ///< the coordinator's name for it
+  bool connected() const { return connected_; }  ///< Welcome was received on the current stream
+  bool was_welcomed() const { return !name_.empty(); }  ///< Welcome was received at some time
+  const std::string& name() const { return name_; }     ///< name assigned by the coordinator
 
   // Rendering.
   void preparing(TaskId task, std::uint64_t prepared);
   void rendering(TaskId task, std::uint32_t rows_done);
-  /// False: it was revoked meanwhile, its pixels are to be thrown away.
+  /// Marks a band as finished. False: its lease was revoked, discard the pixels.
   bool finished(TaskId task);
-  /// Forgets it. What to send; nothing where no one listens (the next Hello does not name it: that
-  /// says it too).
+  /// Removes a failed band. Returns the message to send, or std::nullopt if not connected; the next
+  /// Hello then does not list the band, which reports the same.
   std::optional<farm::FromWorker> failed(TaskId task, const std::string& reason,
                                          const std::vector<std::string>& log);
-  /// Its pixels are acknowledged.
+  /// Removes a band whose pixels are acknowledged.
   void settled(TaskId task);
   std::optional<LeaseName> lease_of(TaskId task) const;
 
-  // Leaving.
-  /// Wants no more; the message to send, if someone listens. On later streams it follows Welcome.
+  // Shutdown.
+  /// Requests no more leases. Returns the message to send, or std::nullopt if not connected. On
+  /// later streams the message follows Welcome.
   std::optional<farm::FromWorker> drain(const std::string& reason);
   bool drained() const { return drain_reason_.has_value() && held_.empty(); }
 

@@ -24,11 +24,10 @@ using Clock = std::chrono::steady_clock;
 
 struct Child {
   pid_t pid = -1;
-  int output = -1;  ///< what it says, read end
+  int output = -1;  ///< read end of the pipe with its output
 };
 
-// Signals that this process blocks or ignores reach the child all the same: Ctrl-C in a terminal
-// ends it at once.
+// Resets blocked and ignored signals in the child, so that Ctrl-C in a terminal ends it at once.
 absl::StatusOr<Child> spawn(const std::vector<std::string>& arguments,
                             const ChildStreams& streams) {
   std::array<int, 2> ends{};
@@ -72,8 +71,8 @@ absl::StatusOr<Child> spawn(const std::vector<std::string>& arguments,
   return child;
 }
 
-// Waits for the child, reading what it says, until it ends, `seconds` have passed or
-// `stop` is set; then it is gone in every case.
+// Reads the child's output until it ends, `seconds` have passed or `stop` is set. The child has
+// ended when this returns.
 ChildOutcome wait_for(const Child& child, double seconds, const std::atomic<bool>* stop) {
   constexpr int kLookEveryMs = 20;
   constexpr std::size_t kMostOutput = 64 << 10;
@@ -89,7 +88,7 @@ ChildOutcome wait_for(const Child& child, double seconds, const std::atomic<bool
       break;
     }
     pollfd ready{open ? child.output : -1, POLLIN, 0};
-    // After the end of its output the process itself ends within moments.
+    // A child that closed its output normally exits within moments.
     if (poll(&ready, 1, open ? kLookEveryMs : 1) > 0) {
       std::array<char, 4096> buffer{};
       const ssize_t got = read(child.output, buffer.data(), buffer.size());
@@ -98,7 +97,7 @@ ChildOutcome wait_for(const Child& child, double seconds, const std::atomic<bool
       outcome.output.resize(std::min(outcome.output.size(), kMostOutput));
     }
   }
-  // What it has said; children of its own may hold the pipe open, and are not waited for.
+  // Reads the rest of the output. Grandchildren may keep the pipe open; they are not waited for.
   pollfd left{child.output, POLLIN, 0};
   std::array<char, 4096> rest{};
   while (outcome.output.size() < kMostOutput && poll(&left, 1, 0) > 0) {

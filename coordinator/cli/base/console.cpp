@@ -14,7 +14,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// A reader that went away is not worth an error: nobody would read it.
+// Errors are ignored: if the reader is gone, no one would see a message.
 void write_all(int fd, absl::string_view text) {
   while (!text.empty()) {
     const ssize_t n = ::write(fd, text.data(), text.size());

@@ -1,6 +1,6 @@
 #pragma once
 
-// Standard output and standard error, and what is known of the terminal behind them.
+// Standard output and standard error, and the properties of the terminal.
 
 #include <functional>
 #include <string>
@@ -15,34 +15,34 @@ struct TerminalSize {
   std::size_t rows = 24;
 };
 
-/// From now on writing where nobody reads any more does not end the process: for commands that
-/// leave a file. Others end with their reader.
+/// Ignores SIGPIPE, so that writing to a closed pipe no longer ends the process. For commands that
+/// write a file; other commands end with their reader.
 void outlive_reader();
 
 class Console {
  public:
   using Write = std::function<void(absl::string_view)>;
 
-  /// For tests: what is written goes to the functions; `is_terminal` and `colour` as told.
+  /// For tests: output is passed to the functions.
   Console(Write out, Write err, bool is_terminal, bool colour);
 
-  /// This process's own. A terminal: standard output is one and TERM is not "dumb". Colour: that,
-  /// and NO_COLOR is not set (no-color.org).
+  /// Returns the process's own console. It is a terminal if standard output is one and TERM is not
+  /// "dumb". It has colour if it is a terminal and NO_COLOR is not set (no-color.org).
   static Console standard();
 
   bool is_terminal() const { return is_terminal_; }
   bool colour() const { return colour_; }
-  /// Asked anew each time: windows change.
+  /// Queried at each call, because windows are resized.
   TerminalSize size() const;
 
-  /// As it is, at once.
+  /// Writes the text unchanged and unbuffered.
   void write(absl::string_view text) const { out_(text); }
-  /// With a line end.
+  /// Writes the text and a line end.
   void line(absl::string_view text) const;
 
-  /// "bandsaw: text" on standard error, on one line whatever the text holds.
+  /// Writes "bandsaw: text" to standard error, on one line even if the text contains line ends.
   void complain(absl::string_view text) const;
-  /// The same, and returns `code`.
+  /// Calls complain() and returns `code`.
   ExitCode fail(ExitCode code, absl::string_view text) const;
 
  private:

@@ -4,7 +4,7 @@
 
 namespace bandsaw::coordinator {
 
-/// Seconds that all threads of this process have computed.
+/// Returns the CPU time of all threads of this process, in seconds.
 inline double process_cpu_seconds() {
   timespec time{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Where a coordinator keeps its data, and where its join strings lie.
+// Locations of the coordinator's data folder and of its join strings.
 
 #include <string>
 
@@ -8,14 +8,14 @@
 
 namespace bandsaw::coordinator {
 
-/// The folder when none is named: $XDG_DATA_HOME/bandsaw or ~/.local/share/bandsaw.
+/// Returns the default data folder: $XDG_DATA_HOME/bandsaw or ~/.local/share/bandsaw.
 /// FAILED_PRECONDITION: neither variable is set.
 absl::StatusOr<std::string> default_data_folder();
 
-/// Files in the data folder: the join string of workers, and of people.
+/// Return the files with the join strings of workers and of users.
 std::string worker_join_file(const std::string& data_folder);
 std::string farm_join_file(const std::string& data_folder);
-/// The link to the dashboard, with people's secret in it.
+/// Returns the file with the link to the dashboard, which contains the users' secret.
 std::string dashboard_file(const std::string& data_folder);
 
 }  // namespace bandsaw::coordinator

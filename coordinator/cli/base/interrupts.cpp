@@ -19,7 +19,8 @@ Interrupts::Interrupts() {
   sigemptyset(&set);
   sigaddset(&set, SIGINT);
   sigaddset(&set, SIGTERM);
-  // A terminal that is closed asks to end as these do, but for who began it with nohup.
+  // SIGHUP of a closed terminal ends the program like the others, except if it was started with
+  // nohup.
   struct sigaction hang_up {};
   if (sigaction(SIGHUP, nullptr, &hang_up) == 0 && hang_up.sa_handler != SIG_IGN) {
     sigaddset(&set, SIGHUP);
@@ -55,7 +56,7 @@ void Interrupts::read() {
 void Interrupts::took_signal(int signal) {
   MutexLock lock(mutex_);
   if (seen_ && signal == SIGHUP) {
-    return;  // The shell and the system both send it; neither is a person who waits.
+    return;  // The shell and the kernel both send it; neither is a user who wants to force the end.
   }
   if (seen_ || !first_) {
     _exit(static_cast<int>(ExitCode::kInterrupted));

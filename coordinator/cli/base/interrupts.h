@@ -1,7 +1,7 @@
 #pragma once
 
-// SIGINT, SIGTERM and SIGHUP without signal handlers: they are blocked in every thread and read by
-// one.
+// Handles SIGINT, SIGTERM and SIGHUP without signal handlers: the signals are blocked in all
+// threads and read by one thread.
 
 #include <functional>
 #include <thread>
@@ -10,9 +10,9 @@
 
 namespace bandsaw::coordinator {
 
-/// Made first thing in main, before any other thread: threads inherit the blocked signals. While
-/// nobody listens a signal ends the process at once with status 130; a second one does so
-/// always, but for a second SIGHUP.
+/// MUST be constructed first in main, before any other thread, because threads inherit the signal
+/// mask. Without a listener, a signal ends the process at once with status 130. A second signal
+/// always does, except a second SIGHUP.
 class Interrupts {
  public:
   Interrupts();
@@ -20,8 +20,9 @@ class Interrupts {
   Interrupts(const Interrupts&) = delete;
   Interrupts& operator=(const Interrupts&) = delete;
 
-  /// While it lives, the first signal calls `first` on the reading thread instead; of several the
-  /// newest.
+  /// While it exists, the first signal calls `first` on the reading thread instead of ending the
+  /// process. If there are several listeners, only the newest is called. `first` MUST NOT call
+  /// Interrupts.
   class Listener {
    public:
     Listener(Interrupts& interrupts, std::function<void()> first);
@@ -34,7 +35,7 @@ class Interrupts {
     std::function<void()> before_;
   };
 
-  /// Waits for a signal; returns at once when one has come while somebody listened.
+  /// Waits for a signal; returns at once if one has already been received with a listener.
   void wait() EXCLUDES(mutex_);
   bool seen() const EXCLUDES(mutex_);
 

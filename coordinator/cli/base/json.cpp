@@ -15,7 +15,8 @@ unsigned byte_at(absl::string_view text, std::size_t i) {
   return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U;
 }
 
-// Bytes of the UTF-8 sequence that begins at i (RFC 3629, section 4); 0 when none does.
+// Returns the length of the UTF-8 sequence that begins at i (RFC 3629, section 4), or 0 if there is
+// none.
 std::size_t sequence_at(absl::string_view text, std::size_t i) {
   const unsigned a = byte_at(text, i);
   const unsigned b = byte_at(text, i + 1);

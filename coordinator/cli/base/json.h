@@ -1,6 +1,6 @@
 #pragma once
 
-// JSON objects (RFC 8259): one a line for --json, and reports.
+// JSON objects (RFC 8259): one per line for --json, and reports.
 
 #include <cstdint>
 #include <string>
@@ -10,26 +10,26 @@
 
 namespace bandsaw::coordinator {
 
-/// Fields in the order they are added. Numbers are written so that reading them gives the same
-/// double; a number that is not finite becomes null. Text that is not UTF-8 keeps its valid parts;
-/// each other byte becomes U+FFFD.
+/// Builds an object with fields in the order in which they are added. Numbers are written so that
+/// reading them gives the same double; a number that is not finite becomes null. In text that is
+/// not UTF-8, each invalid byte becomes U+FFFD.
 class JsonObject {
  public:
   JsonObject& text(absl::string_view key, absl::string_view value);
   JsonObject& number(absl::string_view key, double value);
   JsonObject& whole(absl::string_view key, std::uint64_t value);
   JsonObject& flag(absl::string_view key, bool value);
-  /// Negative means "not known": null.
+  /// Writes null if the value is negative, which means "unknown".
   JsonObject& known_number(absl::string_view key, double value);
   JsonObject& texts(absl::string_view key, const std::vector<std::string>& values);
   JsonObject& objects(absl::string_view key, const std::vector<JsonObject>& values);
   JsonObject& object(absl::string_view key, const JsonObject& value);
-  /// null.
+  /// Writes null.
   JsonObject& unknown(absl::string_view key);
 
-  /// "{…}" without a line end.
+  /// Returns "{…}" on one line, without a line end.
   std::string str() const;
-  /// For people: a field a line, indented, with a line end.
+  /// Returns an indented form with one field per line, with a line end.
   std::string lines() const;
 
  private:

@@ -12,7 +12,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// Two significant digits below ten, none after the point from ten on; "1.0" is "1".
+// Formats with one decimal below ten, without decimals from ten on; "1.0" becomes "1".
 std::string short_number(double value) {
   const std::string text =
       value < 9.95 ? absl::StrFormat("%.1f", value) : absl::StrFormat("%.0f", value);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Numbers and words as people read them. UTF-8; pure functions.
+// Formats numbers and text for display. UTF-8; pure functions.
 
 #include <cstdint>
 #include <string>
@@ -10,14 +10,15 @@
 
 namespace bandsaw::coordinator {
 
-/// A whole number or two digits, and an SI letter: "0", "950", "1.2 k", "5.2 M", "48 M".
+/// Formats a number with two significant digits or as a whole number, with an SI prefix: "0",
+/// "950", "1.2 k", "5.2 M", "48 M".
 std::string si(double value);
 
-/// "48 Msamples", "950 samples".
+/// The same with a unit: "48 Msamples", "950 samples".
 std::string si_with(double value, absl::string_view unit);
 
-/// "1:05", "1:02:03": minutes and seconds, hours when there are any; rounded up, so that 0:00 means
-/// over.
+/// "1:05", "1:02:03": minutes and seconds, with hours if there are any. Rounded up, so that 0:00
+/// means finished.
 std::string clock_time(double seconds);
 
 /// "0.42 s", "21.4 s", "3 min 20 s", "2 h 5 min".
@@ -26,20 +27,20 @@ std::string duration(double seconds);
 /// "1.6 %", "0.99 %", "12 %": a fraction as a percentage with two significant digits.
 std::string percent(double fraction);
 
-/// "64 samples", "error ≤ 1 %", "2 min": what a job runs until.
+/// Describes the stop rule of a job: "64 samples", "error ≤ 1 %", "2 min".
 std::string stop_text(const StopRule& stop);
 
-/// What came from elsewhere, safe to show on a terminal: control characters become '?', line ends a
-/// space.
+/// Makes text from other sources safe for a terminal: control characters become '?', line ends
+/// become spaces.
 std::string printable(absl::string_view text);
 
-/// Columns on a terminal, one for each code point.
+/// Returns the number of terminal columns, counting one per code point.
 std::size_t columns(absl::string_view text);
 
-/// The text cut to at most `width` columns; the last of them is '…' where something was cut.
+/// Truncates the text to at most `width` columns; the last column is '…' if text was removed.
 std::string fit(absl::string_view text, std::size_t width);
 
-/// The text followed by spaces (or after them) to `width` columns.
+/// Pad the text with spaces after (or before) it to `width` columns.
 std::string pad_right(absl::string_view text, std::size_t width);
 std::string pad_left(absl::string_view text, std::size_t width);
 

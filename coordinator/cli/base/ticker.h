@@ -1,6 +1,6 @@
 #pragma once
 
-// Calls a function again and again from a thread of its own, until it goes out of scope.
+// Calls a function periodically from a thread of its own until destroyed.
 
 #include <chrono>
 #include <functional>
@@ -12,9 +12,10 @@ namespace bandsaw::coordinator {
 
 class Ticker {
  public:
-  /// The first call comes at once, the next one `interval` after the last has returned.
+  /// The first call is made at once, each further call `interval` after the previous one has
+  /// returned.
   Ticker(std::chrono::milliseconds interval, std::function<void()> tick);
-  /// Waits for a running call.
+  /// Waits for a call in progress.
   ~Ticker();
   Ticker(const Ticker&) = delete;
   Ticker& operator=(const Ticker&) = delete;

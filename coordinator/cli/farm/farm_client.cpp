@@ -142,7 +142,7 @@ absl::Status FarmClient::watch(JobId job, const std::function<void(const Progres
 }
 
 bool FarmClient::wait_for_farm(milliseconds timeout) {
-  constexpr milliseconds kSlice{100};  // how late stop() may be noticed
+  constexpr milliseconds kSlice{100};  // upper bound of the delay before stop() is noticed
   const auto end = std::chrono::system_clock::now() + timeout;
   while (!stopped() && std::chrono::system_clock::now() < end) {
     if (connected_.control->WaitForConnected(std::chrono::system_clock::now() + kSlice)) {
@@ -239,7 +239,7 @@ absl::StatusOr<std::string> FarmClient::rotate_secret(link::Role role) {
   farm::RotateSecretRequest request;
   request.set_role(role == link::Role::kWorker ? farm::SECRET_ROLE_WORKER : farm::SECRET_ROLE_FARM);
   farm::RotateSecretReply reply;
-  // Once: a second try would be made with a secret that the first may have made void.
+  // Not retried: the first attempt may have made the secret void that a second would use.
   RETURN_IF_ERROR(try_once(kCallTimeout, [&](grpc::ClientContext& context) {
     return control_->RotateSecret(&context, request, &reply);
   }));

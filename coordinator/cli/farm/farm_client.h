@@ -1,8 +1,8 @@
 #pragma once
 
-// The farm as a person's program sees it: typed calls over the gRPC stub. A call whose outcome is
-// unknown is tried again with the same arguments (farm.proto: every call is idempotent). Blocking;
-// one call at a time, `stop` from any thread.
+// Client of the farm's user service: typed calls over the gRPC stub. A call with an unknown outcome
+// is retried with the same arguments (farm.proto: every call is idempotent). Calls block; one call
+// at a time, except stop(), which is thread-safe.
 
 #include <chrono>
 #include <functional>
@@ -23,7 +23,7 @@
 
 namespace bandsaw::coordinator {
 
-/// A finished image and how its scene wants it shown.
+/// A finished image and the scene's display settings.
 struct FarmImage {
   Image image;
   Display display;
@@ -31,43 +31,45 @@ struct FarmImage {
 
 class FarmClient {
  public:
-  /// UNAVAILABLE: no address answered. UNAUTHENTICATED: another farm answered.
+  /// Connects. UNAVAILABLE: no address answered. UNAUTHENTICATED: another farm answered.
   static absl::StatusOr<std::unique_ptr<FarmClient>> connect(const link::JoinString& join);
-  /// Another one over the same connection, for calls at the same time.
+  /// Returns another client on the same connection, for concurrent calls.
   std::unique_ptr<FarmClient> another() const;
   FarmClient(const FarmClient&) = delete;
   FarmClient& operator=(const FarmClient&) = delete;
 
   struct MissingBlob {
     wire::Digest digest;
-    std::uint64_t there = 0;  ///< bytes from its beginning, of an upload that was cut
+    /// Number of leading bytes that the farm has from an interrupted upload.
+    std::uint64_t there = 0;
   };
-  /// Those of the digests whose blobs the farm lacks.
+  /// Returns those of the digests whose blobs the farm lacks.
   absl::StatusOr<std::vector<MissingBlob>> missing_blobs(const std::vector<wire::Digest>& digests);
 
-  /// Sends one blob on the bulk channel, from `there` on, and where that is cut, from where it was;
-  /// `sent` hears how far it is.
+  /// Uploads one blob on the bulk channel, beginning at `there`. After an interruption, resumes at
+  /// the point that the farm reports. `sent` is called with the number of bytes sent so far.
   absl::Status put_blob(const wire::Digest& digest, absl::Span<const std::byte> bytes,
                         std::uint64_t there, const std::function<void(std::uint64_t)>& sent);
 
   absl::StatusOr<JobId> submit(const farm::SubmitRequest& request);
 
-  /// Calls `changed` with each state until the last; OK after a final state. UNAVAILABLE: the farm
-  /// went away before it.
+  /// Calls `changed` with each status. Returns OK after a final state. UNAVAILABLE: the connection
+  /// was lost before.
   absl::Status watch(JobId job, const std::function<void(const Progress&)>& changed);
 
-  /// Waits until the connection is there again. False: the time passed, or stop() was called.
+  /// Waits until the connection is re-established. False: the timeout expired, or stop() was
+  /// called.
   bool wait_for_farm(std::chrono::milliseconds timeout);
 
-  /// Waits that long, or until stop() is called.
+  /// Sleeps for `time`, or until stop() is called.
   void pause(std::chrono::milliseconds time) EXCLUDES(mutex_);
 
-  /// The finished image, its digest checked. DATA_LOSS: it does not match.
+  /// Fetches the finished image and checks its digest. DATA_LOSS: it does not match.
   absl::StatusOr<FarmImage> result(JobId job);
-  /// How many samples each of its pixels has, of an adaptive job. DATA_LOSS as above.
+  /// Fetches the number of samples of each pixel of an adaptive job. DATA_LOSS as above.
   absl::StatusOr<Image> samples(JobId job);
-  /// What is there of it, at most about `most_side` pixels a side; 0: the image's own. NOT_FOUND:
-  /// nothing is. DATA_LOSS as above.
+  /// Fetches the current state of the image, at most about `most_side` pixels a side; 0: full
+  /// resolution. NOT_FOUND: no pixel is stored. DATA_LOSS as above.
   absl::StatusOr<FarmImage> preview(JobId job, std::uint32_t most_side);
 
   absl::StatusOr<std::vector<Progress>> jobs();
@@ -76,19 +78,19 @@ class FarmClient {
   absl::StatusOr<Progress> pause_job(JobId job);
   absl::StatusOr<Progress> resume_job(JobId job);
   absl::StatusOr<Progress> set_priority(JobId job, std::int32_t priority);
-  /// The last lines of a worker's log. NOT_FOUND.
+  /// Fetches the last lines of a worker's log. NOT_FOUND: no log of that name.
   absl::StatusOr<std::vector<std::string>> logs(const std::string& worker);
-  /// Keeps a worker's machine away, or lets it in again. NOT_FOUND.
+  /// Quarantines a worker's machine, or lifts the quarantine. NOT_FOUND: no such worker.
   absl::Status quarantine(const std::string& worker, bool lift);
   absl::StatusOr<farm::AboutReply> about();
-  /// The file of the new join string, on the coordinator's machine.
+  /// Renews a secret and returns the file with the new join string, on the coordinator's machine.
   absl::StatusOr<std::string> rotate_secret(link::Role role);
-  /// Sentences, at least one. NOT_FOUND.
+  /// Returns the reasons why the job is not done, at least one. NOT_FOUND: no such job.
   absl::StatusOr<std::vector<std::string>> why(JobId job);
 
   const std::string& address() const { return connected_.address; }
 
-  /// Ends the call that runs, and every later one, with CANCELLED. For an interrupt.
+  /// Cancels the call in progress, and every later one, with CANCELLED. For an interrupt.
   void stop() EXCLUDES(mutex_);
   bool stopped() const EXCLUDES(mutex_);
 
@@ -102,15 +104,15 @@ class FarmClient {
       std::function<std::unique_ptr<grpc::ClientReader<farm::ResultChunk>>(grpc::ClientContext&)>;
   absl::StatusOr<FarmImage> receive(JobId job, const OpenImage& open);
 
-  /// Makes a context for each try, and tries again while the farm does not answer.
+  /// Calls `body` with a new context for each attempt, and retries while the farm does not answer.
   absl::Status call(std::chrono::milliseconds deadline,
                     const std::function<grpc::Status(grpc::ClientContext&)>& body) EXCLUDES(mutex_);
-  /// Of streams: keepalive ends a dead one, and what is big takes its time.
+  /// For streams: keepalive detects a dead connection, and large transfers take long.
   static constexpr std::chrono::milliseconds kNoDeadline{0};
   static constexpr std::chrono::milliseconds kRetryPause{500};
   static constexpr int kTries = 4;
   static bool outcome_unknown(const absl::Status& status);
-  /// What people are told where nothing more is tried.
+  /// Converts the status of the last attempt to the error shown to the user.
   absl::Status given_up(const absl::Status& status) const;
   absl::Status put_rest(const wire::Digest& digest, absl::Span<const std::byte> bytes,
                         std::uint64_t offset, const std::function<void(std::uint64_t)>& sent)

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a farm's answers mean for a command.
+// Maps errors of a farm to exit codes of a command.
 
 #include <memory>
 
@@ -13,14 +13,14 @@
 
 namespace bandsaw::coordinator {
 
-/// Finds the farm and connects. Errors as find_farm and FarmClient::connect.
+/// Finds the farm and connects to it. Errors as find_farm and FarmClient::connect.
 absl::StatusOr<std::unique_ptr<FarmClient>> connect_to_farm(const FarmOption& option);
 
-/// UNAVAILABLE, DEADLINE_EXCEEDED: no farm. INVALID_ARGUMENT, UNAUTHENTICATED, PERMISSION_DENIED:
-/// wrong use (the wrong join string among it). CANCELLED: interrupted. Others: failed.
+/// UNAVAILABLE, DEADLINE_EXCEEDED: kNoFarm. INVALID_ARGUMENT, UNAUTHENTICATED, PERMISSION_DENIED:
+/// kWrong (for example, the wrong join string). CANCELLED: kInterrupted. Others: kFailed.
 ExitCode exit_code_of(const absl::Status& status);
 
-/// How a command ends; complains of an error.
+/// Prints the error, if any, and returns the exit code of a command.
 ExitCode finished(const absl::Status& status, const Console& console);
 
 }  // namespace bandsaw::coordinator

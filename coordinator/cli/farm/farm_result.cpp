@@ -1,4 +1,4 @@
-// FarmClient::result, samples and preview: an image in chunks, checked before anybody sees it.
+// FarmClient::result, samples and preview: receives an image in chunks and verifies it.
 
 #include <bit>
 #include <cmath>
@@ -25,7 +25,7 @@ struct Received {
   std::uint64_t size() const { return std::uint64_t{width} * height * sizeof(Rgb); }
 };
 
-// What is out of range is as if it had not been said.
+// Ignores settings that are out of range.
 Display display_of(const Received& received) {
   const bool known = std::abs(received.exposure) <= kMostExposure &&
                      received.tone <= static_cast<std::uint32_t>(kLastTone);

@@ -1,4 +1,4 @@
-// FarmClient::put_blob: a blob in chunks, again from where the farm has it when the line was cut.
+// FarmClient::put_blob: sends a blob in chunks and resumes after an interruption.
 
 #include <algorithm>
 
@@ -9,7 +9,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// The farm has less of a blob than was thought, or threw away what was damaged.
+/// True if the farm has fewer bytes of the blob than assumed, or has deleted damaged ones.
 bool other_is_there(const absl::Status& status) {
   return absl::IsFailedPrecondition(status) || absl::IsDataLoss(status);
 }
@@ -27,7 +27,8 @@ absl::Status FarmClient::put_blob(const wire::Digest& digest, absl::Span<const s
     if (missing.empty()) {
       return absl::OkStatus();
     }
-    // A bad line may be tried for ever, as long as it brings something.
+    // The retry limit counts only attempts without progress, so that a bad connection still
+    // completes.
     tries = missing.front().there > there ? 0 : tries;
     there = missing.front().there;
     status = put_rest(digest, bytes, there, sent);
@@ -54,7 +55,7 @@ absl::Status FarmClient::put_rest(const wire::Digest& digest, absl::Span<const s
       chunk.set_offset(at);
       chunk.set_data(piece.data(), piece.size());
       if (!stream->Write(chunk)) {
-        break;  // Finish tells why.
+        break;  // Finish() returns the reason
       }
       at += piece.size();
       sent(at);

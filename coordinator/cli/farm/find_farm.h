@@ -1,6 +1,6 @@
 #pragma once
 
-// Which farm a command means, and the way to it.
+// Determines the farm that a command should use.
 
 #include <string>
 
@@ -10,9 +10,9 @@
 
 namespace bandsaw::coordinator {
 
-/// The join string of --farm, then of BANDSAW_FARM, then of the default data folder. UNAVAILABLE:
-/// nothing names a farm. INVALID_ARGUMENT: it is not a join string, or not one for people. Others:
-/// the file cannot be read.
+/// Returns the join string given by --farm, else by BANDSAW_FARM, else by the default data folder.
+/// UNAVAILABLE: none of them names a farm. INVALID_ARGUMENT: not a join string, or one for workers.
+/// Other errors: the file cannot be read.
 absl::StatusOr<link::JoinString> find_farm(const FarmOption& option);
 
 }  // namespace bandsaw::coordinator

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kTick{100};
 constexpr double kInterval_s = 1;
-/// A look takes at most this share of the time: large images are looked at less often.
+/// Fetching takes at most this share of the time, so large images are fetched less often.
 constexpr double kMostShare = 0.1;
 
 }  // namespace
@@ -33,7 +33,8 @@ void FollowedImage::look() {
   if (begin < next_ || !views_.any()) {
     return;
   }
-  // There may be nothing yet, or the farm may be gone for a moment: that is told where the job is.
+  // Errors are ignored: there may be no pixels, or the farm may be unreachable for a moment, which
+  // the job's display reports.
   if (const auto picture = client_->preview(job_, views_.most_side()); picture.ok()) {
     views_.show(picture->image, picture->display);
   }

@@ -1,6 +1,6 @@
 #pragma once
 
-// The image of a job while it forms, for the views of the command that watches it.
+// Shows the current image of a job in the views of the command that watches it.
 
 #include <memory>
 #include <optional>
@@ -11,8 +11,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Fetches a job's image from the farm again and again, over a connection of its own, until it goes
-/// out of scope, and shows it. Does nothing where there is no view.
+/// Periodically fetches a job's image from the farm, over a client of its own, and shows it, until
+/// destroyed. Does nothing if there is no view.
 class FollowedImage {
  public:
   FollowedImage(FarmClient& client, JobId job, Views& views);
@@ -24,7 +24,7 @@ class FollowedImage {
   Views& views_;
   const JobId job_;
   const std::unique_ptr<FarmClient> client_;
-  double next_ = 0;  ///< when to look again, in seconds of a steady clock
+  double next_ = 0;  ///< time of the next fetch, in seconds of a steady clock
   std::optional<Ticker> ticker_;
 };
 

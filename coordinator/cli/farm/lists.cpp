@@ -1,4 +1,4 @@
-// bandsaw jobs, workers, logs: one question to the farm, and the answer.
+// bandsaw jobs, workers, logs: commands that query the farm and print the answer.
 
 #include "coordinator/cli/base/text.h"
 #include "coordinator/cli/farm/farm_client.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-// Jobs and workers as tables, and as one JSON object a line. Pure functions.
+// Formats jobs and workers as tables, and as one JSON object per line. Pure functions.
 
 #include <string>
 #include <vector>
@@ -17,8 +17,8 @@ std::string log_json(const std::string& worker, const std::vector<std::string>& 
 std::vector<std::string> workers_table(const farm::ListWorkersReply& reply);
 std::vector<std::string> workers_json(const farm::ListWorkersReply& reply);
 
-/// Rows of cells with columns as wide as their widest cell, two spaces apart; the first row is the
-/// heading.
+/// Formats rows of cells as a table whose columns are as wide as their widest cell, two spaces
+/// apart. The first row is the heading.
 std::vector<std::string> table(const std::vector<std::vector<std::string>>& rows);
 
 }  // namespace bandsaw::coordinator

@@ -1,4 +1,4 @@
-// bandsaw submit: a scene file to the farm, and its image back.
+// bandsaw submit: sends a scene to the farm and fetches the image.
 
 #include <atomic>
 
@@ -24,12 +24,12 @@ absl::StatusOr<JobId> send_image(FarmClient& client, ImportedPackage& package,
                                  const farm::SubmitRequest& request, Verbosity verbosity,
                                  Process& process) {
   const Interrupts::Listener listener(process.interrupts, [&] { client.stop(); });
-  verbosity.preview = false;  // there is nothing to see yet
+  verbosity.preview = false;  // there is no image to show at this stage
   ProgressDisplay display(process.console, verbosity);
   return send(client, package, request, display);
 }
 
-/// Layers are jobs of their own: the same package, another integrator.
+/// Renders a layer as a job of its own: the same package with another integrator.
 absl::StatusOr<Image> render_on_farm(FarmClient& client, ImportedPackage& package,
                                      farm::SubmitRequest request, ProgressDisplay& display) {
   request.set_request_id(link::random_hex(16));
@@ -67,7 +67,7 @@ ExitCode run(const SubmitOptions& options, Process& process) {
   if (!reports.ok()) {
     return console.fail(ExitCode::kWrong, std::string(reports.status().message()));
   }
-  // The farm first: a big scene takes long to read, and a farm that is not there makes that vain.
+  // Connects first: importing a large scene takes long, and would be useless without a farm.
   const auto client = connect_to_farm(options.farm);
   if (!client.ok()) {
     return console.fail(exit_code_of(client.status()), std::string(client.status().message()));

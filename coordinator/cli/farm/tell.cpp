@@ -1,5 +1,5 @@
-// bandsaw cancel, pause, resume, priority, why: a word to one job, and what it is then. And
-// quarantine: a word about a worker.
+// bandsaw cancel, pause, resume, priority, why: commands that control or explain one job. bandsaw
+// quarantine: excludes a worker's machine.
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/base/json.h"
@@ -20,7 +20,7 @@ void say(const Progress& progress, Verbosity verbosity, const Console& console) 
     console.line(jobs_json({progress}).front());
     return;
   }
-  // What it is, not what was asked for: a job that is over is not cancelled.
+  // Prints the actual state, not the requested one: a job that is over is not cancelled.
   console.line(absl::StrCat("job ", job.id, " is ", state_name(job.state), ", priority ",
                             job.priority, job.reason.empty() ? "" : ": ", printable(job.reason)));
 }

@@ -12,7 +12,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// Tells the display of bytes sent, over all blobs.
+// Reports the bytes sent, over all blobs, to the display.
 class Meter {
  public:
   Meter(ProgressDisplay& display, std::uint64_t all) : display_(display), all_(all) {}
@@ -38,7 +38,8 @@ absl::Status upload(FarmClient& client, ImportedPackage& package, ProgressDispla
   }
   ASSIGN_OR_RETURN(const std::vector<FarmClient::MissingBlob> lacking,
                    client.missing_blobs(digests));
-  std::map<wire::Digest, std::uint64_t> missing;  // how many bytes of each are there
+  // For each missing blob, number of bytes that the farm already has.
+  std::map<wire::Digest, std::uint64_t> missing;
   for (const FarmClient::MissingBlob& blob : lacking) {
     missing[blob.digest] = blob.there;
   }
@@ -73,8 +74,8 @@ farm::SubmitRequest request_for(const ImportedPackage& package, const RenderSett
   return request;
 }
 
-// A blob may be dropped by the farm between its upload and the job that needs it: then all is sent
-// once more.
+// The farm may delete an unused blob between its upload and the submission of the job. Then the
+// package is uploaded once more.
 absl::StatusOr<JobId> send(FarmClient& client, ImportedPackage& package,
                            const farm::SubmitRequest& request, ProgressDisplay& display) {
   RETURN_IF_ERROR(upload(client, package, display));

@@ -1,6 +1,6 @@
 #pragma once
 
-// A scene package to the farm, only the blobs that it lacks, and a job of it.
+// Uploads a scene package to the farm, sending only the blobs it lacks, and submits jobs.
 
 #include "absl/status/status.h"
 #include "coordinator/cli/farm/farm_client.h"
@@ -9,15 +9,14 @@
 
 namespace bandsaw::coordinator {
 
-/// Afterwards the farm has the manifest and every blob that it names. Errors of the farm, and of
-/// the package.
+/// Uploads the manifest and all blobs that it names. Returns errors of the farm and of the package.
 absl::Status upload(FarmClient& client, ImportedPackage& package, ProgressDisplay& display);
 
-/// A job of this package, with a new request id.
+/// Makes a request for a job of this package, with a new request id.
 farm::SubmitRequest request_for(const ImportedPackage& package, const RenderSettings& settings,
                                 const StopRule& stop);
 
-/// Uploads the package and submits the job. Errors of both.
+/// Uploads the package and submits the job. Returns errors of both.
 absl::StatusOr<JobId> send(FarmClient& client, ImportedPackage& package,
                            const farm::SubmitRequest& request, ProgressDisplay& display);
 

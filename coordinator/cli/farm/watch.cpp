@@ -1,4 +1,4 @@
-// bandsaw watch: takes up a job again.
+// bandsaw watch: follows an existing job.
 
 #include "coordinator/cli/farm/farm_errors.h"
 #include "coordinator/cli/farm/watch_job.h"

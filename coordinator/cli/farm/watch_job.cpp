@@ -14,7 +14,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr double kPatience = 60;  // seconds that a farm may be gone
+constexpr double kPatience = 60;  // seconds for which the farm may be unreachable
 constexpr std::chrono::milliseconds kPause{200};
 
 std::string come_back(JobId job, const std::vector<std::string>& outputs) {
@@ -27,7 +27,7 @@ class Watch {
   Watch(FarmClient& client, JobId job, ProgressDisplay& display)
       : client_(client), job_(job), display_(display) {}
 
-  // The last state. UNAVAILABLE: the farm was gone too long. CANCELLED: stopped.
+  // Returns the last status. UNAVAILABLE: the farm was unreachable too long. CANCELLED: stopped.
   absl::StatusOr<Progress> to_the_end() {
     for (;;) {
       const absl::Status status =
@@ -77,7 +77,7 @@ class Watch {
   std::optional<double> gone_since_;
 };
 
-// What is said when a job is not followed to its image.
+// Prints why the command ends before the job's image was fetched, and returns the exit code.
 ExitCode left_early(const absl::Status& status, JobId job, const std::vector<std::string>& outputs,
                     const Console& console) {
   const ExitCode code = exit_code_of(status);
@@ -93,7 +93,7 @@ ExitCode left_early(const absl::Status& status, JobId job, const std::vector<std
   return console.fail(code, std::string(status.message()));
 }
 
-// The farm has the image, the one who waits for it has not.
+// Prints an error that occurred after the farm had finished the image.
 ExitCode not_fetched(const absl::Status& status, JobId job, const Console& console) {
   return console.fail(
       ExitCode::kFailed,

@@ -1,6 +1,6 @@
 #pragma once
 
-// Follows a job to its end and brings its image home.
+// Follows a job to its end and fetches its image.
 
 #include <cstdint>
 #include <functional>
@@ -14,25 +14,26 @@
 
 namespace bandsaw::coordinator {
 
-/// Where a job's image goes, and how.
+/// Files to write for a job, and their settings.
 struct Wanted {
   std::vector<std::string> outputs;  ///< may be empty: the image is not fetched
-  std::vector<std::string> reports;  ///< checked by report_files
-  DisplayOptions display;            ///< of 8-bit files; what it does not say the scene does
-  std::string tev;                   ///< HOST:PORT of a viewer; empty: none
+  std::vector<std::string> reports;  ///< already checked by report_files
+  DisplayOptions display;            ///< for 8-bit files; unset values are taken from the scene
+  std::string tev;                   ///< HOST:PORT of a tev viewer; empty: none
 };
 
-/// Shows the job's progress until it is final: its last state. A farm that goes away is waited for,
-/// a minute long: UNAVAILABLE. CANCELLED: `client` was stopped.
+/// Displays the job's progress until its state is final, and returns the last status. If the farm
+/// is unreachable, retries for one minute. UNAVAILABLE: it did not come back. CANCELLED: `client`
+/// was stopped.
 absl::StatusOr<Progress> follow_job(FarmClient& client, JobId job, ProgressDisplay& display);
 
-/// What stands beside an image that has so many samples a pixel.
+/// Returns additional layers to be written with an image of that many samples per pixel.
 using BesideImage =
     std::function<absl::StatusOr<Layers>(std::uint64_t samples, ProgressDisplay& display)>;
 
-/// Shows the job's progress until it is final, then fetches its image and writes what is wanted,
-/// with what `beside` makes of it, if given. A signal detaches: the job goes on. A farm that goes
-/// away is waited for, a minute long.
+/// Displays the job's progress until its state is final, then fetches its image and writes the
+/// files, with the layers made by `beside`, if given. A signal detaches from the job, which
+/// continues. If the farm is unreachable, retries for one minute.
 ExitCode watch_job(FarmClient& client, JobId job, const Wanted& wanted, Verbosity verbosity,
                    Process& process, const BesideImage& beside = {});
 

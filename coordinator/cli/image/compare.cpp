@@ -18,7 +18,7 @@ struct Pair {
   Image reference;
 };
 
-/// While it reads, a signal ends it; nothing is left to tidy up after.
+/// A signal during reading cancels; nothing has to be cleaned up.
 absl::StatusOr<Pair> read_pair(const CompareOptions& options, Interrupts& interrupts) {
   std::atomic<bool> stop{false};
   const Interrupts::Listener listener(interrupts, [&] { stop = true; });

@@ -1,6 +1,6 @@
 #pragma once
 
-// What `bandsaw compare` says of an image and a reference.
+// Metrics computed by `bandsaw compare` for an image and a reference.
 
 #include <string>
 
@@ -16,16 +16,16 @@ struct Comparison {
   BiasTest bias;
   double ssim = 1;
   Plane flip;        ///< per pixel
-  bool hdr = false;  ///< the reference is brighter than a screen: flip is HDR-FLIP
+  bool hdr = false;  ///< the reference exceeds the range of a display: flip is HDR-FLIP
 };
 
 /// INVALID_ARGUMENT: the sizes differ.
 absl::StatusOr<Comparison> compare_images(const Image& image, const Image& reference);
 
-/// Four lines, the last without a line end; or "identical".
+/// Formats the metrics in four lines, the last without a line end; or "identical".
 std::string comparison_text(const Comparison& comparison);
 
-/// One JSON object.
+/// Formats the metrics as one JSON object.
 std::string comparison_json(const Comparison& comparison);
 
 }  // namespace bandsaw::coordinator

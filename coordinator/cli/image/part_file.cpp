@@ -46,7 +46,7 @@ struct Beginning {
 };
 static_assert(sizeof(Beginning) == 32, "it is written as it lies in memory");
 
-/// Takes the beginning off `offset`, where there is one.
+/// Parses the header, if there is one, and sets `offset` to its end.
 absl::StatusOr<Display> display_of(const std::vector<std::byte>& bytes, std::uint64_t& offset) {
   Beginning from;
   if (bytes.size() < sizeof from || std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0) {

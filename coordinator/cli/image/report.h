@@ -1,7 +1,7 @@
 #pragma once
 
-// What is said of an image beside it: how wrong it is, what it cost, and what it was made of. The
-// fields and their units are documented in coordinator/README.md.
+// The report of an image: its error, its cost, and its inputs. The fields and their units are
+// documented in coordinator/README.md.
 
 #include <cstdint>
 #include <string>
@@ -13,20 +13,20 @@
 namespace bandsaw::coordinator {
 
 struct Report {
-  Progress progress;                 ///< of the finished job
-  std::string pixels_sha256;         ///< empty: there is no whole image
-  std::vector<std::string> outputs;  ///< the files of the image
-  std::uint64_t cut_off_values = 0;  ///< of the image, in these files (output.h)
+  Progress progress;                 ///< status of the finished job
+  std::string pixels_sha256;         ///< empty: the image is incomplete
+  std::vector<std::string> outputs;  ///< files of the image
+  std::uint64_t cut_off_values = 0;  ///< values clipped in these files (output.h)
 };
 
-/// SHA-256 of the pixels as the farm sends them: linear RGB, float32, little-endian, rows from the
-/// top; 64 hexadecimal digits.
+/// Returns the SHA-256 of the pixels in the form in which the farm sends them: linear RGB, float32,
+/// little-endian, rows from the top; 64 hexadecimal digits.
 std::string pixels_sha256(const Image& image);
 
-/// What a report's bytes begin with, in every version of this program.
+/// The first bytes of a report, in every version of this program.
 inline constexpr char kReportBegins[] = "{\n  \"schema\":\"bandsaw.report/";
 
-/// The report as a file's text. What is not known is null.
+/// Returns the content of the report file. Unknown values are null.
 std::string report_text(const Report& report);
 
 }  // namespace bandsaw::coordinator

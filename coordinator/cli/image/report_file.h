@@ -1,6 +1,6 @@
 #pragma once
 
-// Where reports go. A report never takes the place of a file that is not one.
+// Chooses and writes report files. A report never replaces a file that is not a report.
 
 #include <string>
 #include <vector>
@@ -10,23 +10,25 @@
 
 namespace bandsaw::coordinator {
 
-/// The files that the report of these images goes to: the one asked for, or beside each image with
-/// its name and .json, or .report.json where .json is there and is something else (a scene may be);
-/// each once. INVALID_ARGUMENT: a file is there and is no report. Other errors: its folder is not
-/// there or cannot be written.
+/// Returns the files for the report of these images, each once: the requested file, or for each
+/// image a file of the same name with .json, or with .report.json if the .json file exists and is
+/// not a report (it may be a scene). INVALID_ARGUMENT: a file exists and is not a report. Other
+/// errors: the folder does not exist or is not writable.
 absl::StatusOr<std::vector<std::string>> report_files(const ReportOption& asked,
                                                       const std::vector<std::string>& outputs);
 
-/// Whether an image may go to the file that is taken where none is named: a picture beside a model
-/// may be its texture. INVALID_ARGUMENT: something is there, and no report of a render beside it.
-/// Scene files own no picture of their name.
+/// Checks if an image may be written to the default output file. A picture beside a model may be
+/// its texture, so an existing file is replaced only if it has a render report beside it.
+/// INVALID_ARGUMENT: the file exists and has no report. Not checked for scene files, which do not
+/// use a picture of their own name.
 absl::Status check_default_output(const std::string& scene, const std::string& output);
 
-/// check_outputs_writable (options/output.h), and check_default_output where none was asked for.
+/// Calls check_outputs_writable (options/output.h), and check_default_output if no output was
+/// given.
 absl::Status check_outputs(const std::string& scene, const std::vector<std::string>& asked,
                            const std::vector<std::string>& outputs);
 
-/// Each whole or not at all; stops at the first error, which says that the image is there.
+/// Writes each file atomically. Stops at the first error, whose message says that the image exists.
 absl::Status write_reports(const std::string& text, const std::vector<std::string>& files);
 
 }  // namespace bandsaw::coordinator

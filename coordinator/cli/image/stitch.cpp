@@ -1,4 +1,4 @@
-// bandsaw stitch: parts that were rendered by rows, put together.
+// bandsaw stitch: combines parts that were rendered by rows.
 
 #include <optional>
 
@@ -43,7 +43,8 @@ class Stitcher {
     return film_->add(record.pixels);
   }
 
-  /// As if the image had been rendered in one go. What is not in the parts is not known.
+  /// Returns the status as if the image had been rendered in one run. Values that the parts do not
+  /// contain are unknown.
   absl::StatusOr<Progress> progress() const {
     ASSIGN_OR_RETURN(const std::uint64_t samples, coverage_->samples());
     Progress progress;
@@ -88,7 +89,7 @@ class Stitcher {
 struct Stitched {
   Image image;
   Progress progress;
-  Display display;  ///< as the first part says
+  Display display;  ///< display settings of the first part
 };
 
 absl::StatusOr<Stitched> stitched(const std::vector<std::string>& parts) {

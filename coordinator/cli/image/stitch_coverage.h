@@ -1,6 +1,7 @@
 #pragma once
 
-// Which rows and samples the parts of an image bring, and what is missing or there twice.
+// Determines which rows and samples the parts of an image contain, and what is missing or
+// duplicate.
 
 #include <string>
 #include <vector>
@@ -14,12 +15,12 @@ class StitchCoverage {
  public:
   explicit StitchCoverage(std::uint32_t height) : rows_(height) {}
 
-  /// `part`: the file's name. INVALID_ARGUMENT: samples of one of its rows are there already; names
-  /// both files.
+  /// Adds a band. `part`: the file's name. INVALID_ARGUMENT: samples of one of its rows were added
+  /// before; the message names both files.
   absl::Status add(const std::string& part, const Band& band);
 
-  /// The samples a pixel. INVALID_ARGUMENT: rows are missing (all of them named), a row lacks
-  /// samples, or rows have different numbers of samples.
+  /// Returns the samples per pixel. INVALID_ARGUMENT: rows are missing (the message lists all), a
+  /// row lacks samples, or rows have different numbers of samples.
   absl::StatusOr<std::uint64_t> samples() const;
 
  private:

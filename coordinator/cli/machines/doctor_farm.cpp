@@ -1,4 +1,4 @@
-// The checks of `bandsaw doctor` that need a farm.
+// The checks of `bandsaw doctor` that need a connection to a farm.
 
 #include <chrono>
 #include <cstdlib>

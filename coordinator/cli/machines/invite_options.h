@@ -1,6 +1,6 @@
 #pragma once
 
-// What `invite` and `dismiss` can be told.
+// Options of `invite` and `dismiss`.
 
 #include <CLI/CLI.hpp>
 

@@ -1,4 +1,4 @@
-// The commands that look after a farm.
+// Checks the options of administration commands.
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/options/checked_options.h"

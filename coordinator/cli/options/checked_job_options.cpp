@@ -1,4 +1,4 @@
-// The commands that tell a job something.
+// Checks the options of commands that control a job.
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"

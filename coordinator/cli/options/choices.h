@@ -1,6 +1,6 @@
 #pragma once
 
-// Options that take one of a few words: what the words are, for errors, help and shells.
+// Options that accept one of a few words: the words, for error messages, help and shell completion.
 
 #include <string>
 #include <vector>
@@ -9,14 +9,14 @@
 
 namespace bandsaw::coordinator {
 
-/// The words that an option ("--tone") or an argument ("role") takes; empty: anything.
+/// Returns the words that an option ("--tone") or an argument ("role") accepts; empty: anything.
 std::vector<std::string> choices_of(const std::string& name);
 
-/// "none or filmic".
+/// Joins the words to a phrase: "none or filmic".
 std::string one_of(const std::vector<std::string>& words);
 
-/// INVALID_ARGUMENT: "--tone: must be none or filmic, is 'flimic'; did you mean filmic?" `called`:
-/// how the error calls it.
+/// INVALID_ARGUMENT: "--tone: must be none or filmic, is 'flimic'; did you mean filmic?" `called`
+/// is the name used in the message.
 absl::Status wrong_choice(const std::string& called, const std::string& name,
                           const std::string& text);
 inline absl::Status wrong_choice(const std::string& option, const std::string& text) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// What each command does. They print what there is to say and return the exit status.
+// Entry points of the commands. They print their results and return the exit status.
 
 #include "coordinator/cli/base/console.h"
 #include "coordinator/cli/base/exit_code.h"
@@ -9,7 +9,7 @@
 
 namespace bandsaw::coordinator {
 
-/// What commands may use of the process.
+/// Parts of the process that commands use.
 struct Process {
   const Console& console;
   Interrupts& interrupts;

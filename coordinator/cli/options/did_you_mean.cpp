@@ -6,7 +6,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// Optimal string alignment distance (Damerau 1964 without repeated edits of a place), by dynamic
+// Optimal string alignment distance (Damerau 1964, without repeated edits of one place), by dynamic
 // programming.
 std::size_t edits(const std::string& a, const std::string& b) {
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));

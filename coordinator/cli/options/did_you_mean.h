@@ -1,6 +1,6 @@
 #pragma once
 
-// The word that was probably meant.
+// Suggests a correction of a mistyped word.
 
 #include <optional>
 #include <string>
@@ -8,8 +8,9 @@
 
 namespace bandsaw::coordinator {
 
-/// The known word with the fewest single-letter edits (insert, remove, replace, swap of neighbours)
-/// from `word`, if that is at most a third of its length; the first such on ties.
+/// Returns the known word with the smallest edit distance (insertion, deletion, substitution,
+/// transposition of neighbours) from `word`, if that is at most a third of its length, but at least
+/// 1 is allowed; the first one on ties.
 std::optional<std::string> did_you_mean(const std::string& word,
                                         const std::vector<std::string>& known);
 

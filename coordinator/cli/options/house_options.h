@@ -1,6 +1,6 @@
 #pragma once
 
-// What the commands that look after a farm can be told.
+// Options of the administration commands.
 
 #include <CLI/CLI.hpp>
 
@@ -8,14 +8,14 @@
 
 namespace bandsaw::coordinator {
 
-// Each adds a command's options.
+// Each function adds a command's options.
 void add_serve(CLI::App& app, RawOptions& raw);
 void add_logs(CLI::App& app, RawOptions& raw);
 void add_quarantine(CLI::App& app, RawOptions& raw);
 void add_doctor(CLI::App& app, RawOptions& raw);
 void add_secret(CLI::App& app, RawOptions& raw);
 
-// Shared by several commands.
+// Options shared by several commands.
 void add_data(CLI::App& app, RawOptions& raw);
 void add_keep(CLI::App& app, RawOptions& raw);
 void add_farm(CLI::App& app, RawOptions& raw);

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the commands that make or judge images can be told.
+// Options of the commands that make or examine images.
 
 #include <CLI/CLI.hpp>
 
@@ -8,7 +8,7 @@
 
 namespace bandsaw::coordinator {
 
-// Each adds a command's options.
+// Each function adds a command's options.
 void add_submit(CLI::App& app, RawOptions& raw);
 void add_watch(CLI::App& app, RawOptions& raw);
 void add_render(CLI::App& app, RawOptions& raw);

@@ -13,7 +13,7 @@ namespace {
 
 struct Kind {
   const char* name;
-  Integrator integrator;  ///< not of samples
+  Integrator integrator;  ///< not used for samples
   bool is_number;
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
-// Layers of an EXR file: pictures of the same scene by integrators that follow no light.
+// Layers of an EXR file: additional pictures of the same scene by integrators without light
+// transport.
 
 #include <cstdint>
 #include <functional>
@@ -14,26 +15,27 @@
 
 namespace bandsaw::coordinator {
 
-/// More samples than these make a layer no better to look at.
+/// More samples than this do not visibly improve a layer.
 inline constexpr std::uint64_t kMostLayerSamples = 64;
 
-/// "albedo", "normal", "depth", "samples".
+/// Returns the names of all layers: "albedo", "normal", "depth", "samples".
 std::vector<std::string> layer_names();
 
-/// "albedo,normal,depth,samples": each at most once. INVALID_ARGUMENT.
+/// Parses a list such as "albedo,normal,depth,samples", each at most once. INVALID_ARGUMENT:
+/// unknown or repeated name.
 absl::StatusOr<std::vector<LayerKind>> parse_layers(const std::string& list);
 
-/// Renders the scene by these settings with so many samples, here or on a farm.
+/// Renders the scene with these settings and this number of samples, here or on a farm.
 using LayerRenderer =
     std::function<absl::StatusOr<Image>(const RenderSettings& settings, std::uint64_t samples)>;
 
-/// How many samples each pixel of an adaptive image has.
+/// Returns the number of samples of each pixel of an adaptive image.
 using SampleCounts = std::function<absl::StatusOr<Image>()>;
 
-/// Has them rendered with the image's settings and min(`samples`, kMostLayerSamples) samples: to
-/// the bit what `--integrator albedo`, `normals` and `depth` give for that number. `samples` is
-/// what the image has: kSamples shows it where there are no `counts`. Errors are those of `render`
-/// and `counts`.
+/// Renders the layers with the image's settings and min(`samples`, kMostLayerSamples) samples, with
+/// the same bits as `--integrator albedo`, `normals` and `depth` for that number. `samples` is the
+/// image's number of samples per pixel; layer kSamples shows it if there are no `counts`. Returns
+/// errors of `render` and `counts`.
 absl::StatusOr<Layers> make_layers(const std::vector<LayerKind>& kinds, RenderSettings settings,
                                    std::uint64_t samples, const LayerRenderer& render,
                                    const SampleCounts& counts);

@@ -1,6 +1,6 @@
 #pragma once
 
-// The files that an image goes to.
+// Writes the files of an image.
 
 #include <cstdint>
 #include <string>
@@ -13,26 +13,28 @@
 
 namespace bandsaw::coordinator {
 
-/// Whether the name ends in .band (any case): the sums of some rows rather than a picture.
+/// True if the name ends in .band (any case): a file with the sums of some rows instead of a
+/// picture.
 bool is_part_name(const std::string& path);
 
-/// "scenes/cornell.textproto", ".png" -> "cornell.png": the file's stem, in the current folder.
+/// Returns the default file name: the scene's stem in the current folder.
+/// "scenes/cornell.textproto", ".png" -> "cornell.png".
 std::string default_output(const std::string& scene, const std::string& suffix);
 
-/// Whether every output can be written, before any work. The error names the file.
+/// Checks that every output can be written, before any work is done. The error names the file.
 absl::Status check_outputs_writable(const std::vector<std::string>& outputs);
 
-/// Writes the image, and its layers where the format has room for them, to every output, each whole
-/// or not at all; stops at the first error.
+/// Writes the image to every output, with its layers if the format supports them, each file
+/// atomically. Tries all outputs and returns the first error.
 absl::Status write_outputs(const Image& image, const std::vector<std::string>& outputs,
                            const Display& display, const Layers& layers = {});
 
-/// Numbers of the image that were cut off since an EXR file of halves has no room for them; 0 where
-/// no such file is among the outputs.
+/// Returns the number of values that were clipped because an EXR file with half-precision numbers
+/// cannot represent them; 0 if there is no such file among the outputs.
 std::uint64_t cut_off_values(const Image& image, const std::vector<std::string>& outputs,
                              const Display& display);
 
-/// "cornell.png, cornell.pfm", fit for a terminal.
+/// Joins the names for display: "cornell.png, cornell.pfm".
 std::string names_of(const std::vector<std::string>& outputs);
 
 }  // namespace bandsaw::coordinator

@@ -17,7 +17,7 @@ absl::Status must_be(const std::string& name, absl::string_view allowed, const s
       absl::StrCat(name, ": must be ", allowed, ", is '", found, "'"));
 }
 
-// Plain decimal notation only: neither "inf", "nan" nor "0x10" is meant by anybody.
+// Accepts plain decimal notation only: not "inf", "nan" or "0x10".
 bool parse_decimal(absl::string_view text, double& value) {
   return !text.empty() && text.find_first_not_of("0123456789.") == absl::string_view::npos &&
          absl::SimpleAtod(text, &value) && std::isfinite(value);

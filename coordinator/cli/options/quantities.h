@@ -1,8 +1,8 @@
 #pragma once
 
-// The quantities people type, read strictly: the whole text, in range, or an error that says what
-// is allowed and what was found. `name` is the option they were given to, for the error. All errors
-// are INVALID_ARGUMENT.
+// Strict parsers for quantities given by the user: the whole text must match and be in range,
+// otherwise the error states the allowed values and the text found. `name` is the option's name,
+// for the error. All errors are INVALID_ARGUMENT.
 
 #include <cstdint>
 #include <optional>
@@ -13,11 +13,11 @@
 
 namespace bandsaw::coordinator {
 
-/// A whole number in [least, most].
+/// Parses a whole number in [least, most].
 absl::StatusOr<std::uint64_t> parse_whole(const std::string& name, const std::string& text,
                                           std::uint64_t least, std::uint64_t most);
 
-/// The same into `value`, which stays as it is where nothing was given.
+/// The same, stored in `value`, which is unchanged if `text` is std::nullopt.
 template <class T>
 absl::Status read_whole(const std::string& name, const std::optional<std::string>& text,
                         std::uint64_t least, std::uint64_t most, T& value) {
@@ -36,14 +36,14 @@ absl::Status read_whole(const std::string& name, const std::optional<std::string
   return text ? read_whole(name, text, least, most, value.emplace()) : absl::OkStatus();
 }
 
-/// "1%", "0.5 %": a percentage in (0, 100], as a fraction. The sign is required: 0.01 alone could
-/// mean either.
+/// Parses a percentage in (0, 100], "1%" or "0.5 %", as a fraction. The sign is required, because
+/// 0.01 alone would be ambiguous.
 absl::StatusOr<double> parse_percent(const std::string& name, const std::string& text);
 
-/// "5s", "2m", "1h", "1.5h", "90" (seconds): seconds in [0.1, 30 days].
+/// Parses a time in [0.1 s, 30 days]: "5s", "2m", "1h", "1.5h", "90" (seconds). Returns seconds.
 absl::StatusOr<double> parse_seconds(const std::string& name, const std::string& text);
 
-/// "y0:y1": rows [y0, y1), y0 < y1 <= 65536.
+/// Parses "y0:y1": rows [y0, y1), y0 < y1 <= 65536.
 absl::StatusOr<RowRange> parse_rows(const std::string& name, const std::string& text);
 
 }  // namespace bandsaw::coordinator

@@ -1,6 +1,6 @@
 #pragma once
 
-// --report, of every command that writes images.
+// The option --report, for all commands that write images.
 
 #include <CLI/CLI.hpp>
 

@@ -4,10 +4,10 @@
 
 namespace bandsaw::coordinator {
 
-/// What somebody chose beside the scene; empty: as the scene says.
+/// Choices of the user that override the scene; empty: as in the scene.
 struct SceneChoices {
-  std::string environment = {};  ///< an image that becomes the background; it may lie anywhere
-  std::string camera = {};       ///< the name of one of its models' cameras
+  std::string environment = {};  ///< image file that becomes the background; may be in any folder
+  std::string camera = {};       ///< name of a camera of one of the scene's models
 };
 
 }  // namespace bandsaw::coordinator

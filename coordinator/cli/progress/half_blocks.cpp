@@ -14,8 +14,8 @@ namespace {
 using Codes = std::array<std::uint8_t, 3>;
 
 struct Grid {
-  std::uint32_t width = 0;   ///< pixels = columns
-  std::uint32_t height = 0;  ///< pixels = two a line
+  std::uint32_t width = 0;   ///< one pixel per column
+  std::uint32_t height = 0;  ///< two pixels per line
 };
 
 Grid grid_of(const Image& image, TerminalSize room) {
@@ -27,7 +27,7 @@ Grid grid_of(const Image& image, TerminalSize room) {
   return {scaled(image.width), scaled(image.height)};
 }
 
-/// The first of `side` pixels that belongs to cell `i` of `cells`.
+/// Returns the first of `side` pixels that belongs to cell `i` of `cells`.
 std::uint32_t edge(std::uint32_t side, std::uint32_t i, std::uint32_t cells) {
   return static_cast<std::uint32_t>(std::uint64_t{side} * i / cells);
 }
@@ -42,7 +42,8 @@ Codes codes_at(const Image& image, const Display& display, const Grid& grid, std
   for (std::uint32_t v = top; v < bottom; ++v) {
     for (std::uint32_t u = left; u < right; ++u) {
       const Rgb light = shown(image.at(u, v), display);
-      sum[0] += std::min(light.r, 1.0F);  // one bright pixel is no bright cell
+      // Clamped, so that one very bright pixel does not make the whole cell bright.
+      sum[0] += std::min(light.r, 1.0F);
       sum[1] += std::min(light.g, 1.0F);
       sum[2] += std::min(light.b, 1.0F);
     }

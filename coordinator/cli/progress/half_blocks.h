@@ -1,6 +1,6 @@
 #pragma once
 
-// A picture as text: two pixels a character, in 24-bit colours. Pure.
+// Draws a picture as text: two pixels per character, in 24-bit colours. Pure functions.
 
 #include <string>
 #include <vector>
@@ -11,9 +11,9 @@
 
 namespace bandsaw::coordinator {
 
-/// Lines of at most `room` (each pixel of the picture is a mean of the image's), with its aspect
-/// ratio where a character is twice as high as it is wide; never larger than the image. Each line
-/// leaves the colours as they were (ECMA-48 SGR, colours by ISO 8613-6).
+/// Returns lines that fit into `room`. Each pixel drawn is a mean of image pixels; the aspect ratio
+/// is kept, assuming characters twice as high as wide; the picture is never larger than the image.
+/// Each line resets the colours (ECMA-48 SGR, colours by ISO 8613-6).
 std::vector<std::string> half_blocks(const Image& image, const Display& display, TerminalSize room);
 
 }  // namespace bandsaw::coordinator

@@ -13,7 +13,7 @@ std::string Painter::frame(const std::vector<std::string>& lines, TerminalSize s
   const std::size_t room = std::max<std::size_t>(size.rows, 2) - 1;
   drawn_ = std::min(picture.size() + lines.size(), room);
   for (std::size_t i = 0; i < drawn_; ++i) {
-    // One column less than there are: a full line would wrap on some terminals.
+    // One column is left free, because a full line wraps on some terminals.
     const std::string line = i < picture.size() ? picture[i]
                                                 : fit(lines[i - picture.size()],
                                                       std::max<std::size_t>(size.columns, 2) - 1);
@@ -22,7 +22,7 @@ std::string Painter::frame(const std::vector<std::string>& lines, TerminalSize s
   return out + "\x1b[J";
 }
 
-// The carriage return: a terminal echoes ^C where the cursor is.
+// The carriage return is needed because a terminal echoes ^C at the cursor.
 std::string Painter::back_to_first() const {
   return drawn_ > 0 ? absl::StrCat("\r\x1b[", drawn_, "A") : "";
 }

@@ -1,7 +1,6 @@
 #pragma once
 
-// A few lines at the bottom of a terminal that are drawn again in place. Pure: makes the bytes,
-// writes nothing.
+// Redraws a few lines at the bottom of a terminal in place. Pure: returns the bytes to write.
 
 #include <string>
 #include <vector>
@@ -10,17 +9,17 @@
 
 namespace bandsaw::coordinator {
 
-/// Only moves up over lines that it drew itself, and always leaves the cursor at the start of the
-/// line below them, so that a program that ends at any moment leaves a usable terminal. (ECMA-48:
-/// CUU, EL, ED.)
+/// Moves the cursor up only over lines that it drew itself, and always leaves it at the start of
+/// the line below them, so that the terminal stays usable if the program ends at any moment.
+/// (ECMA-48: CUU, EL, ED.)
 class Painter {
  public:
-  /// The bytes that replace the last frame by these lines, each cut to the terminal's width, at
-  /// most rows - 1 of them. `picture`: lines that come before and fit already, with what colours
-  /// them.
+  /// Returns the bytes that replace the last frame by these lines, each cut to the terminal's
+  /// width, at most rows - 1 of them. `picture`: lines drawn first; they MUST already fit and may
+  /// contain colour codes.
   std::string frame(const std::vector<std::string>& lines, TerminalSize size,
                     const std::vector<std::string>& picture = {});
-  /// The bytes that take the last frame away.
+  /// Returns the bytes that erase the last frame.
   std::string clear();
 
  private:

@@ -1,7 +1,6 @@
 #pragma once
 
-// What is known of a render while it goes on, wherever it goes on: the model that the texts and the
-// JSON lines are made of.
+// State of a render in progress, local or on a farm: the model for the text and JSON output.
 
 #include <string>
 
@@ -13,14 +12,14 @@ namespace bandsaw::coordinator {
 /// A farm's job, or a local render (id 0, no workers).
 struct Progress {
   JobView job;
-  std::string bad_sample_at;  ///< the pixel and sample of the first bad sample; empty: none
-  int threads = 0;            ///< of a local render; 0: a farm's job
+  std::string bad_sample_at;  ///< pixel and sample of the first bad sample; empty: none
+  int threads = 0;            ///< threads of a local render; 0: a farm's job
 };
 
-/// The job as the coordinator tells it. What the message leaves out becomes "not known".
+/// Converts the coordinator's status. Fields that the message lacks become "unknown".
 Progress progress_of(const farm::JobStatus& status);
 
-/// Settings and stop rule as they travel.
+/// Convert settings and stop rule to messages.
 farm::Settings to_proto(const RenderSettings& settings);
 farm::StopRule to_proto(const StopRule& stop);
 

@@ -13,7 +13,7 @@ namespace bandsaw::coordinator {
 namespace {
 
 constexpr double kPipeInterval =
-    0.95;  // one line a second, of a source that tells about one a second
+    0.95;  // just below one second, because the source reports about once a second
 constexpr double kTerminalInterval = 0.1;
 
 constexpr char kBold[] = "\x1b[1m";
@@ -57,7 +57,7 @@ void ProgressDisplay::update(const Progress& progress, double now) {
                   : console_.colour() ? absl::StrCat(kBold, header, kPlain)
                                       : header);
   }
-  // The first pixels are what people wait for: they are told at once.
+  // The first pixels are shown at once, because users wait for them.
   if (!has_pixels_ && progress.job.samples_done > 0) {
     has_pixels_ = true;
     has_shown_ = false;
@@ -76,7 +76,7 @@ void ProgressDisplay::update(const Progress& progress, double now) {
 
 void ProgressDisplay::show_terminal(const Progress& progress) {
   const TerminalSize size = console_.size();
-  constexpr std::size_t kKept = 3;  // for the header, the bar and the cursor
+  constexpr std::size_t kKept = 3;  // rows kept free for the header, the bar and the cursor
   std::vector<std::string> lines = {bar_line(progress, std::max<std::size_t>(size.columns, 1) - 1)};
   constexpr std::size_t kBesidePicture = 4;
   const std::size_t room =
@@ -110,7 +110,7 @@ void ProgressDisplay::note(const std::string& text) {
 void ProgressDisplay::preparing(const std::string& what, std::uint64_t bytes_done,
                                 std::uint64_t bytes_in_all, double now) {
   MutexLock lock(mutex_);
-  // What is over within a moment is not worth a line.
+  // A step that takes only a moment is not shown.
   if (!has_shown_) {
     has_shown_ = true;
     shown_at_ = now;

@@ -1,7 +1,7 @@
 #pragma once
 
-// Shows progress the way that was asked for: redrawn in place on a terminal, a line a second in a
-// pipe and one with the first pixels, JSON lines likewise, or not.
+// Shows progress as requested by the options: redrawn in place on a terminal, one line per second
+// in a pipe, with an extra line for the first pixels, the same as JSON lines, or nothing.
 
 #include <string>
 
@@ -18,42 +18,42 @@ namespace bandsaw::coordinator {
 /// Thread-safe.
 class ProgressDisplay {
  public:
-  /// A preview that is wanted where none can be drawn is said.
+  /// Prints a warning if a preview is requested but cannot be drawn.
   ProgressDisplay(const Console& console, Verbosity verbosity);
-  /// Takes away what was drawn.
+  /// Erases the drawn lines.
   ~ProgressDisplay();
   ProgressDisplay(const ProgressDisplay&) = delete;
   ProgressDisplay& operator=(const ProgressDisplay&) = delete;
 
-  /// Shows the progress at `now` (seconds of any steady clock); the first call shows the header
-  /// too. Calls that come sooner than is useful to show are skipped.
+  /// Shows the progress at `now` (seconds of any steady clock); the first call also shows the
+  /// header. Calls that come too soon after the previous output are skipped.
   void update(const Progress& progress, double now) EXCLUDES(mutex_);
 
-  /// Whether a picture is wanted and can be drawn.
+  /// True if a picture is requested and can be drawn.
   bool draws() const { return draws_; }
-  /// What is there of the image: drawn above the progress from now on, and left on the terminal by
-  /// done(). Does nothing where none is drawn.
+  /// Sets the picture to be drawn above the progress; done() leaves it on the terminal. No effect
+  /// if pictures are not drawn.
   void picture(Image image, const Display& display) EXCLUDES(mutex_);
 
-  /// A line for people, above what is redrawn: "the coordinator is gone; trying again". JSON: a
-  /// "note" event.
+  /// Prints a message above the redrawn lines, for example "the coordinator is gone; trying again".
+  /// JSON: a "note" event.
   void note(const std::string& text) EXCLUDES(mutex_);
 
-  /// How much of something that comes before the render is done: "sending the scene". Shown like
-  /// progress.
+  /// Shows the progress of a step before the render, for example "sending the scene". Rate-limited
+  /// like update().
   void preparing(const std::string& what, std::uint64_t bytes_done, std::uint64_t bytes_in_all,
                  double now) EXCLUDES(mutex_);
 
-  /// Ends the display, and says that the image is there (`outputs` may be empty), and its reports.
-  /// The last line is said even when quiet.
+  /// Ends the display and prints the final line with the image files (`outputs` may be empty) and
+  /// the reports. The final line is printed even if quiet.
   void done(const Progress& progress, const std::vector<std::string>& outputs,
             const std::vector<std::string>& reports = {}) EXCLUDES(mutex_);
 
-  /// Ends the display of a render that gives no image; JSON: an "ended" event. The error is said by
-  /// the caller.
+  /// Ends the display of a render without an image; JSON: an "ended" event. The caller prints the
+  /// error.
   void ended(const Progress& progress) EXCLUDES(mutex_);
 
-  /// Takes away what was drawn.
+  /// Erases the drawn lines.
   void clear() EXCLUDES(mutex_);
 
  private:
@@ -63,7 +63,7 @@ class ProgressDisplay {
 
   const Console& console_;
   const Verbosity verbosity_;
-  const bool draws_;  ///< the picture too
+  const bool draws_;  ///< the picture is drawn as well
   Mutex mutex_;
   Painter painter_ GUARDED_BY(mutex_);
   Image image_ GUARDED_BY(mutex_);

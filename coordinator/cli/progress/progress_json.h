@@ -1,6 +1,6 @@
 #pragma once
 
-// Progress for programs. The events are documented in coordinator/README.md.
+// Progress as JSON. The events are documented in coordinator/README.md.
 
 #include <string>
 #include <vector>
@@ -10,10 +10,10 @@
 
 namespace bandsaw::coordinator {
 
-/// What every event about a render holds. `event`: "job", "progress", "done", …
+/// Returns the fields common to all events of a render. `event`: "job", "progress", "done", …
 JsonObject progress_json(const Progress& progress, const std::string& event);
 
-/// One of stop_samples, stop_error and stop_time_s.
+/// Adds one of stop_samples, stop_error and stop_time_s.
 void add_stop(JsonObject& out, const StopRule& stop);
 
 }  // namespace bandsaw::coordinator

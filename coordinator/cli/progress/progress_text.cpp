@@ -14,7 +14,7 @@ constexpr char kDot[] = " · ";
 constexpr std::size_t kBarColumns = 20;
 
 std::string percent_done(const JobView& job) {
-  // Rounded down: 100 % means that nothing is left.
+  // Rounded down, so that 100 % means that nothing is left.
   const double fraction = std::clamp(job.fraction, 0.0, 1.0);
   return pad_left(absl::StrCat(static_cast<int>(std::floor(fraction * 100)), " %"), 5);
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Progress as lines of text, UTF-8, without colours and without line ends. Pure functions.
+// Formats progress as lines of text: UTF-8, without colours and line ends. Pure functions.
 
 #include <string>
 #include <vector>
@@ -9,41 +9,41 @@
 
 namespace bandsaw::coordinator {
 
-/// "job 7 · cornell · 600×600 · until error ≤ 1 %"; a local render has no job.
+/// "job 7 · cornell · 600×600 · until error ≤ 1 %"; without the job for a local render.
 std::string header_line(const Progress& progress);
 
 /// " 62 % ━━━━━━━━━━━━╸        error 1.6 % · 48 Msamples · 5.2 M/s · 0:09 left"; the bar is
-/// shorter where `width` columns have no room for all of it.
+/// shortened to fit `width` columns.
 std::string bar_line(const Progress& progress, std::size_t width);
 
-/// The same without the bar, with the number of workers and what the job waits for: one line says
-/// all, for a pipe.
+/// The same without the bar, with the number of workers and the reason for waiting: a complete
+/// status in one line, for a pipe.
 std::string plain_line(const Progress& progress);
 
-/// "   desk     16 threads  3.1 M/s   rows 320–352": at most `most` lines, the last of them says
-/// how many more there are. What the job waits for comes first, when it waits.
+/// "   desk     16 threads  3.1 M/s   rows 320–352": at most `most` lines; the last one states how
+/// many workers are omitted. If the job is waiting, the reason comes first.
 std::vector<std::string> worker_lines(const Progress& progress, std::size_t most);
 
 /// "cornell.png · error 0.99 % · 21.4 s · 4 workers · report cornell.json". `name`: of the image,
-/// or of the job; `reports`: their names, or empty.
+/// or of the job; `reports`: file names, or empty.
 std::string final_line(const Progress& progress, const std::string& name,
                        const std::string& reports = {});
 
 /// "256 samples a pixel · 8 M rays, 2 M/CPU s · 4.0 s of CPU · 1 % after 11.6 s of CPU · half of
-/// the pixels within 1.2 %, 95 % within 5 %": what the image cost and where its error lies.
+/// the pixels within 1.2 %, 95 % within 5 %": cost and error distribution of the image.
 std::string cost_line(const Progress& progress);
 
-/// What must not be overlooked about the error; empty when it can be trusted.
+/// Returns a warning if the error estimate may be too low; empty if it can be trusted.
 std::string doubt_line(const Progress& progress);
 
-/// What must not be overlooked about samples that were not numbers; empty when all were.
+/// Returns a warning about samples that were not finite or negative; empty if there are none.
 std::string bad_samples_line(const Progress& progress);
 
-/// Those of the two that are not empty.
+/// Returns the non-empty ones of these two warnings.
 std::vector<std::string> warning_lines(const Progress& progress);
 
-/// "0.2 % of the paths were cut off at depth 32 · 3 primitives without area left out"; empty when
-/// neither is so.
+/// "0.2 % of the paths were cut off at depth 32 · 3 primitives without area left out"; empty if
+/// both counts are 0.
 std::string left_out_line(const Progress& progress);
 
 }  // namespace bandsaw::coordinator

@@ -25,7 +25,7 @@ constexpr const char* kChannels[] = {"R", "G", "B"};
 class Packet {
  public:
   explicit Packet(Operation operation) {
-    number(std::uint32_t{0});  // the length, once it is known
+    number(std::uint32_t{0});  // placeholder for the length
     number(static_cast<std::uint8_t>(operation));
   }
   template <class T>
@@ -61,7 +61,7 @@ namespace tev {
 
 std::string create_image(const std::string& name, std::uint32_t width, std::uint32_t height) {
   Packet packet(Operation::kCreateImage);
-  packet.number(std::uint8_t{1});  // it becomes the image that is looked at
+  packet.number(std::uint8_t{1});  // selects the new image
   packet.text(name);
   packet.number(static_cast<std::int32_t>(width));
   packet.number(static_cast<std::int32_t>(height));
@@ -79,10 +79,10 @@ std::string update_rows(const std::string& name, const Image& image, std::uint32
     packet.number(static_cast<std::int32_t>(place));
   }
   for (std::int64_t channel = 0; channel < 3; ++channel) {
-    packet.number(channel);  // where its first value is, in floats
+    packet.number(channel);  // index of its first value, in floats
   }
   for (int channel = 0; channel < 3; ++channel) {
-    packet.number(std::int64_t{3});  // from one value to the next
+    packet.number(std::int64_t{3});  // stride between values
   }
   const std::size_t pixels = std::size_t{last - first} * image.width;
   packet.bytes(&image.pixels[std::size_t{first} * image.width], pixels * sizeof(Rgb));

@@ -1,8 +1,8 @@
 #pragma once
 
-// The viewer tev (https://github.com/Tom94/tev), which shows images that other programs send it.
-// Its protocol: packets over TCP, each a 32-bit length of the whole packet, an operation in one
-// byte, then fields; numbers little-endian, strings end in a zero byte.
+// Client of the viewer tev (https://github.com/Tom94/tev), which shows images sent by other
+// programs. Protocol: packets over TCP, each with a 32-bit length of the whole packet, an operation
+// in one byte, then fields; numbers are little-endian, strings end with a zero byte.
 
 #include <cstdint>
 #include <string>
@@ -14,25 +14,24 @@
 
 namespace bandsaw::coordinator {
 
-/// What is sent. Pure; the length has 32 bits, which the caller below does not come near.
+/// Encodes packets. Pure functions. The length field has 32 bits; TevViewer stays far below.
 namespace tev {
 
-/// A new image of this size, black, with the channels R, G and B; shown at once.
+/// Creates a black image of this size with the channels R, G and B, and shows it at once.
 std::string create_image(const std::string& name, std::uint32_t width, std::uint32_t height);
-/// Rows [first, last) of the image, linear.
+/// Updates rows [first, last) of the image with linear values.
 std::string update_rows(const std::string& name, const Image& image, std::uint32_t first,
                         std::uint32_t last);
 
 }  // namespace tev
 
-/// A viewer that shows one image. Each call waits for the viewer a few seconds at most.
+/// Connection to a viewer that shows one image. Each call blocks for a few seconds at most.
 class TevViewer {
  public:
-  /// `address` is HOST:PORT; `name` is what the viewer calls the image. UNAVAILABLE.
+  /// `address` is HOST:PORT; `name` is the image's name in the viewer. UNAVAILABLE: not reachable.
   static absl::StatusOr<TevViewer> connect(const std::string& address, const std::string& name);
 
-  /// Shows it in place of the one before, which had the same size. UNAVAILABLE: the viewer has
-  /// gone.
+  /// Replaces the image shown by one of the same size. UNAVAILABLE: the viewer is gone.
   absl::Status show(const Image& image);
 
  private:

@@ -8,7 +8,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// What no terminal shows need not be sent.
+/// Upper bound of what a terminal can show; larger pictures are reduced.
 constexpr std::uint32_t kTerminalSide = 256;
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
 
-// Where an image is shown while it forms: the terminal (--preview), a viewer (--tev).
+// Shows an image while it is rendered: in the terminal (--preview) or in a viewer (--tev).
 
 #include <optional>
 #include <string>
@@ -11,17 +11,18 @@
 
 namespace bandsaw::coordinator {
 
-/// Used by one thread at a time, while others may use the display. A viewer that is not there, or
-/// goes away, is said once and left out from then on: the image does not wait for it.
+/// Not thread-safe, but other threads may use the display at the same time. If the viewer cannot be
+/// reached, this is reported once and the viewer is not used any more; rendering does not wait for
+/// it.
 class Views {
  public:
-  /// `tev` is the viewer's HOST:PORT, or empty; `name` is the image's, for it. `picture` stands
-  /// over what the scene says of how it is shown.
+  /// `tev` is the viewer's HOST:PORT, or empty; `name` is the image's name there. Options in
+  /// `picture` override the scene's display settings.
   Views(ProgressDisplay& display, const DisplayOptions& picture, const std::string& tev,
         const std::string& name);
 
   bool any() const { return display_.draws() || tev_; }
-  /// What is needed of the image: at most so many pixels a side; 0: all of them.
+  /// Returns the resolution needed, as a maximum number of pixels a side; 0: full resolution.
   std::uint32_t most_side() const;
   void show(const Image& image, const Display& of_scene);
 

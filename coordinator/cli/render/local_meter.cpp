@@ -34,7 +34,7 @@ void LocalMeter::add(const Counters& counters) {
 }
 
 double LocalMeter::fraction_of(const JobView& job) const {
-  const double done = static_cast<double>(job.samples_done) / pixels_;  // samples a pixel
+  const double done = static_cast<double>(job.samples_done) / pixels_;  // samples per pixel
   if (const auto* rule = std::get_if<StopAtSamples>(&spec_.stop)) {
     return done / static_cast<double>(rule->samples);
   }
@@ -43,7 +43,7 @@ double LocalMeter::fraction_of(const JobView& job) const {
   }
   const auto& rule = std::get<StopAtError>(spec_.stop);
   const auto end = expected_end(job.curve, rule.relative_rmse, planned_, rule.max_samples);
-  // Of an adaptive render, the complete passes: not all pixels are in each.
+  // For an adaptive render, counts complete passes, because a pass does not contain all pixels.
   const double so_far = rule.adaptive && end ? static_cast<double>(job.curve.back().samples) : done;
   return end ? so_far / static_cast<double>(*end) : 0;
 }
@@ -67,7 +67,8 @@ Progress LocalMeter::progress(Clocks now) const {
   if (job.counters.bad_samples > 0) {
     progress.bad_sample_at = bad_sample_text(job.counters);
   }
-  job.fraction = std::min(fraction_of(job), 0.999);  // the caller knows when it is done
+  // Only the caller decides that the render is done.
+  job.fraction = std::min(fraction_of(job), 0.999);
   if (job.elapsed_s > 0) {
     job.samples_per_s = static_cast<double>(job.samples_done) / job.elapsed_s;
   }

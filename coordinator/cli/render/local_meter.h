@@ -1,6 +1,6 @@
 #pragma once
 
-// How far a render on this machine is: advanced by its threads, read by a display.
+// Progress of a render on this machine: updated by its threads, read by a display.
 
 #include <atomic>
 
@@ -11,21 +11,21 @@ namespace bandsaw::coordinator {
 
 class LocalMeter {
  public:
-  /// Seconds of a steady clock, and those that all threads of the process have computed.
+  /// Seconds of a steady clock, and CPU time of all threads of the process.
   struct Clocks {
     double steady_s = 0;
     double cpu_s = 0;
   };
 
-  /// `rows`: those that are rendered. `start`: when they were begun.
+  /// `rows`: the rows that are rendered. `start`: clocks at the start of the render.
   LocalMeter(const JobSpec& spec, RowRange rows, int threads, Clocks start);
 
-  /// Pixel samples done in all, the unfinished pass among them. From any thread; lower values than
-  /// before are ignored.
+  /// Reports the number of pixel samples done, including the unfinished pass. Thread-safe; values
+  /// lower than before are ignored.
   void reached(std::uint64_t samples);
-  /// Passes are planned up to here, in samples a pixel.
+  /// Reports the end of the last planned pass, in samples per pixel.
   void plans(std::uint64_t samples) { planned_ = samples; }
-  /// Samples [0, samples) of all rows are there; error: nothing when it is not known.
+  /// Reports that samples [0, samples) of all rows are done. `error`: std::nullopt if unknown.
   void passed(std::uint64_t samples, const std::optional<ErrorEstimate>& error, Clocks now)
       EXCLUDES(mutex_);
   void add(const Counters& counters) EXCLUDES(mutex_);

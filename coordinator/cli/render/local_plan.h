@@ -1,7 +1,7 @@
 #pragma once
 
-// The passes of a render on this machine: what the coordinator's core does for a farm, for one
-// image and one stop rule.
+// Plans the passes of a render on this machine: the counterpart of the coordinator's scheduler, for
+// one image and one stop rule.
 
 #include <deque>
 #include <optional>
@@ -15,19 +15,20 @@ namespace bandsaw::coordinator {
 
 class LocalPlan {
  public:
-  /// `grid`: of the image; asked of adaptive stop rules only.
+  /// `grid`: tiles of the image; used by adaptive stop rules only.
   explicit LocalPlan(const StopRule& stop, const TileGrid& grid = {}) : stop_(stop), grid_(grid) {}
 
-  /// The next pass, after samples [0, samples) were rendered in `seconds`; `error` is their
-  /// estimated relative RMSE, negative when it is not known. Nothing: the image is done.
+  /// Returns the next pass, after samples [0, samples) were rendered in `seconds`. `error` is their
+  /// estimated relative RMSE, negative if unknown. Returns std::nullopt if the image is done.
   std::optional<SampleRange> next(std::uint64_t samples, double error, double seconds);
-  /// Where the last planned pass ends.
+  /// Returns the end of the last planned pass.
   std::uint64_t planned() const { return planned_; }
 
-  /// Whether the tiles are to be planned now, before next() is asked with the same error.
+  /// True if the tiles are to be planned now, before the call of next() with the same error.
   bool wants_tiles(double error) const;
   void plan(absl::Span<const HalfTileErrors> tiles, std::uint64_t samples);
-  /// What half tiles take in the pass that next() gave. Once for each.
+  /// Returns the samples of half tiles in the pass returned by next(). Must be called once per
+  /// pass.
   TileSamples tiles(const SampleRange& pass) {
     return schedule_ ? schedule_->next(pass) : TileSamples();
   }
@@ -38,7 +39,7 @@ class LocalPlan {
   StopRule stop_;
   TileGrid grid_;
   std::optional<TileSchedule> schedule_;
-  std::deque<SampleRange> passes_;  ///< planned, not begun
+  std::deque<SampleRange> passes_;  ///< planned, not started
   std::uint64_t planned_ = 0;
 };
 

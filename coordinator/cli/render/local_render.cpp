@@ -14,7 +14,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// `done`: pixel samples before this pass; grows by those of the pass.
+// `done`: pixel samples before this pass; increased by those of the pass.
 absl::Status render_pass(const LocalJob& job, const SampleRange& pass, const RowRange& rows,
                          const TileSamples& tiles, std::uint64_t& done,
                          absl::FunctionRef<absl::Status(BandPixels)> take) {
@@ -74,7 +74,7 @@ absl::StatusOr<std::vector<BandPixels>> render_part(const LocalJob& job, const R
   std::vector<BandPixels> bands;
   std::vector<SampleRange> nodes = maximal_nodes(samples);
   if (nodes.front().blocks() > 1) {
-    // The error of the whole is told from its halves, as render has them.
+    // The error of the whole image is estimated from its halves, as in `render`.
     const Halves halves = split(nodes.front());
     nodes.front() = halves.right;
     nodes.insert(nodes.begin(), halves.left);

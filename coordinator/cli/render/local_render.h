@@ -1,6 +1,6 @@
 #pragma once
 
-// Renders an image, or some of its rows, on this machine: the same bits as a farm.
+// Renders an image, or some of its rows, on this machine, with the same bits as on a farm.
 
 #include <atomic>
 #include <functional>
@@ -14,29 +14,29 @@
 
 namespace bandsaw::coordinator {
 
-/// Those of this process, now.
+/// Returns the current clocks of this process.
 LocalMeter::Clocks clocks();
 
 struct LocalJob {
   const Scene& scene;
   const RenderSettings& settings;
   Pool& pool;
-  const std::atomic<bool>& stop;  ///< when it becomes true the render ends with CANCELLED
+  const std::atomic<bool>& stop;  ///< setting it to true ends the render with CANCELLED
   LocalMeter& meter;
-  /// Hears of each band that was added to a whole image; may be nothing.
+  /// Called after each band added to a whole image; may be nullptr.
   std::function<void(const Film&)> grown = nullptr;
 };
 
-/// The whole image, pass by pass until the stop rule holds. CANCELLED; RESOURCE_EXHAUSTED: no
-/// memory.
+/// Renders the whole image, pass by pass until the stop rule is satisfied. CANCELLED;
+/// RESOURCE_EXHAUSTED: out of memory.
 absl::StatusOr<Film> render_whole(const LocalJob& job, const StopRule& stop);
 
-/// Samples [0, samples) of some rows: one band for each maximal node of the samples, of the first
-/// one for each half, and as many rows as a band may hold.
+/// Renders samples [0, samples) of some rows. Returns one band for each maximal node of the samples
+/// (two for the first, one per half), each with as many rows as a band may contain.
 absl::StatusOr<std::vector<BandPixels>> render_part(const LocalJob& job, const RowRange& rows,
                                                     std::uint64_t samples);
 
-/// The picture of these rows alone. The bands are those of render_part.
+/// Makes the picture of these rows from the bands of render_part().
 absl::StatusOr<Image> image_of_part(const std::vector<BandPixels>& bands,
                                     const RenderSettings& settings, const RowRange& rows);
 

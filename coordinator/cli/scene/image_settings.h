@@ -1,6 +1,6 @@
 #pragma once
 
-// What is rendered: the scene's wishes, and what the command line changed.
+// Render settings: the scene's defaults, overridden by the command line.
 
 #include "absl/status/statusor.h"
 #include "coordinator/cli/options/options.h"
@@ -9,8 +9,8 @@
 
 namespace bandsaw::coordinator {
 
-/// A width or height alone keeps the scene's aspect ratio, rounded to the nearest pixel.
-/// INVALID_ARGUMENT: too large.
+/// If only a width or a height is given, the scene's aspect ratio is kept, rounded to the nearest
+/// pixel. INVALID_ARGUMENT: too large.
 absl::StatusOr<RenderSettings> image_settings(const ImageOptions& options,
                                               const PackageInfo& scene);
 

@@ -63,7 +63,7 @@ absl::StatusOr<std::unique_ptr<ScratchFolder>> make_scratch(const std::string& w
   return std::make_unique<ScratchFolder>(pattern);
 }
 
-// "NOT_FOUND: message" as the importer wrote it.
+// Parses an error in the form "NOT_FOUND: message", as printed by the importer.
 absl::Status reported(const std::string& output) {
   for (int code = 1; code <= 16; ++code) {
     const auto status_code = static_cast<absl::StatusCode>(code);
@@ -107,7 +107,7 @@ absl::Status judge(const ChildOutcome& outcome, const std::string& file,
                                                          " while reading this file"));
 }
 
-// Runs the importer on `file`; what it made lies in the folder.
+// Runs the importer on `file`. Returns the folder with its output.
 absl::StatusOr<std::unique_ptr<ScratchFolder>> run_importer(const char* what,
                                                             const std::string& file,
                                                             const ImportLimits& limits,

@@ -1,7 +1,7 @@
 #pragma once
 
-// Runs `bandsaw-import`: foreign files are read in a process of their own, confined and bounded, so
-// that a crash, a hang or an allocation bomb in a parser is one clear error here.
+// Runs `bandsaw-import`, which reads foreign files in a confined process with resource limits. A
+// crash, a hang or excessive memory use in a parser becomes one clear error here.
 
 #include <atomic>
 #include <cstdint>
@@ -17,21 +17,21 @@
 namespace bandsaw::coordinator {
 
 struct ImportLimits {
-  double seconds = 300;                     ///< wall clock, and CPU time of the child
+  double seconds = 300;                     ///< wall-clock time, and CPU time of the child
   std::uint64_t memory_bytes = 8ull << 30;  ///< address space of the child
-  /// The program to run; empty: `bandsaw-import` in the folder of the running program.
+  /// Program to run; empty: `bandsaw-import` in the folder of the running program.
   std::string program;
-  /// Where the temporary folder is made; empty: the system's.
+  /// Parent folder of the temporary folder; empty: the system's default.
   std::string scratch;
-  /// When it becomes true the child is killed and the call returns CANCELLED. May be null.
+  /// Setting it to true kills the child and makes the call return CANCELLED. May be nullptr.
   const std::atomic<bool>* stop = nullptr;
 };
 
-/// A folder that is removed, with everything in it, by the last owner.
+/// A temporary folder that is removed with its contents by the destructor.
 class ScratchFolder;
 
-/// An imported scene: its manifest, byte for byte as the importer serialised it, and its blobs in a
-/// temporary folder that lives as long as this value.
+/// An imported scene: its manifest, byte for byte as serialised by the importer, and its blobs in a
+/// temporary folder that is removed with this object.
 class ImportedPackage {
  public:
   ImportedPackage(std::unique_ptr<ScratchFolder> folder, std::string manifest, PackageInfo info);
@@ -50,18 +50,20 @@ class ImportedPackage {
   BlobFolder blobs_;
 };
 
-/// The program that would be run. FAILED_PRECONDITION: it is missing.
+/// Returns the path of the import program. FAILED_PRECONDITION: it is missing.
 absl::StatusOr<std::string> import_program(const ImportLimits& limits = {});
 
-/// Blocks until the scene file or model is imported. Errors name the file and, in a scene file,
-/// line and column: INVALID_ARGUMENT, NOT_FOUND, PERMISSION_DENIED: what is wrong with the file, or
-/// with one that it refers to. DEADLINE_EXCEEDED, RESOURCE_EXHAUSTED: past a limit. DATA_LOSS: the
-/// importer crashed. CANCELLED: `stop`, or Ctrl-C. FAILED_PRECONDITION: the program is missing.
+/// Imports a scene file or model; blocks until done. Errors name the file and, for a scene file,
+/// line and column. INVALID_ARGUMENT, NOT_FOUND, PERMISSION_DENIED: a problem with the file, or
+/// with one that it references. DEADLINE_EXCEEDED, RESOURCE_EXHAUSTED: a limit was exceeded.
+/// DATA_LOSS: the importer crashed. CANCELLED: `stop`, or Ctrl-C. FAILED_PRECONDITION: the program
+/// is missing.
 absl::StatusOr<ImportedPackage> import_in_process(const std::string& scene_path,
                                                   const ImportLimits& limits = {},
                                                   const SceneChoices& choices = {});
 
-/// A picture, linear: PNG, JPEG, TGA, BMP, PNM, HDR, PFM. The same limits and errors.
+/// Reads a picture and converts it to linear values: PNG, JPEG, TGA, BMP, PNM, HDR, PFM. Same
+/// limits and errors.
 absl::StatusOr<Image> read_image_in_process(const std::string& path,
                                             const ImportLimits& limits = {});
 

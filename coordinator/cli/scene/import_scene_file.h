@@ -1,6 +1,6 @@
 #pragma once
 
-// A scene file to a package, for submit and render alike.
+// Imports a scene file, for submit and render.
 
 #include <string>
 
@@ -10,14 +10,14 @@
 
 namespace bandsaw::coordinator {
 
-/// Imports in the confined process; a signal stops it. The importer's warnings are said unless
-/// quiet. Errors as of import_in_process.
+/// Imports in the confined process; a signal cancels it. Prints the importer's warnings unless
+/// quiet. Errors as import_in_process.
 absl::StatusOr<ImportedPackage> import_scene_file(const std::string& scene, Verbosity verbosity,
                                                   Process& process,
                                                   const SceneChoices& choices = {});
 
-/// A scene that cannot be read is wrong input, whatever the reason; an interrupt and a broken
-/// installation are not.
+/// Maps an import error to an exit code: a scene that cannot be read is wrong input for whatever
+/// reason; an interrupt and a broken installation are not.
 ExitCode import_exit_code(const absl::Status& status);
 
 }  // namespace bandsaw::coordinator

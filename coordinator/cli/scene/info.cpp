@@ -1,4 +1,4 @@
-// bandsaw info: what is in a scene or model, and what of it is left out.
+// bandsaw info: summarises a scene or model and reports unsupported features.
 
 #include <algorithm>
 #include <thread>
@@ -14,7 +14,7 @@ namespace bandsaw::coordinator {
 namespace {
 
 absl::StatusOr<SceneSummary> summary_of_file(const InfoOptions& options, Process& process) {
-  // Warnings are part of the summary.
+  // Quiet, because the summary contains the warnings.
   ASSIGN_OR_RETURN(ImportedPackage package,
                    import_scene_file(options.scene, {.quiet = true}, process));
   ASSIGN_OR_RETURN(SceneDescription scene, decode_package(package.manifest(), package.blobs()));
@@ -24,7 +24,7 @@ absl::StatusOr<SceneSummary> summary_of_file(const InfoOptions& options, Process
     bytes += blob.size;
   }
   SceneSummary summary = summary_of(scene, package.info(), bytes);
-  // The trees are built for their size alone: nothing else tells it.
+  // The BVHs are built only to determine their size.
   Pool pool(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
   ASSIGN_OR_RETURN(const auto built, Scene::build(std::move(scene), pool));
   summary.tree_bytes = built->accel().bytes();

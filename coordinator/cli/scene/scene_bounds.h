@@ -5,8 +5,9 @@
 
 namespace bandsaw::coordinator {
 
-/// The box around all that can be hit, in the world; of what moves, where it is when the shutter
-/// opens and closes. Instances count as the boxes of what they place.
+/// Returns a bounding box of all geometry in world space. Moving objects are bounded at the times
+/// when the shutter opens and closes only. Instances are bounded by the transformed boxes of their
+/// meshes or groups.
 Box bounds_of(const SceneDescription& scene);
 
 }  // namespace bandsaw::coordinator

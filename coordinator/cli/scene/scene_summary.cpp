@@ -10,7 +10,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Counts by name, in the order the names first came.
+/// Counts by name, in the order of first occurrence.
 class Tally {
  public:
   void add(const std::string& what, std::uint64_t count = 1) {
@@ -156,7 +156,7 @@ std::uint64_t lights_in(const SceneDescription& scene) {
   return lights;
 }
 
-/// Of meshes and groups, once for each time that they are placed.
+/// Counts triangles of meshes and groups once per placement.
 std::uint64_t triangles_in(const Geometry& g) {
   std::uint64_t triangles = g.triangles.size();
   for (const Instance& instance : g.instances) {

@@ -9,7 +9,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Of a scene that somebody waits for in front of a browser.
+/// Shorter than for a command, because a user waits in a browser.
 constexpr double kPatience_s = 120;
 constexpr std::size_t kPieceBytes = 16 << 20;
 

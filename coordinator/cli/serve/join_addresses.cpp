@@ -30,7 +30,7 @@ int rank(const LocalAddress& address) {
          (address.ipv6 ? 1 : 0);
 }
 
-// Nothing for an address that is of no use in a join string.
+// Returns an empty string for an address that cannot be used in a join string.
 std::string text_of(const sockaddr& address) {
   std::array<char, INET6_ADDRSTRLEN> text{};
   if (address.sa_family == AF_INET) {
@@ -82,7 +82,7 @@ std::vector<std::string> join_addresses(const std::string& host, int port,
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const LocalAddress& a, const LocalAddress& b) { return rank(a) < rank(b); });
   if (sorted.size() > kMostAddresses) {
-    // The last stays: loopback is what this machine's own workers and commands can always use.
+    // Keeps the last one: loopback always works for workers and commands on this machine.
     sorted.erase(sorted.begin() + kMostAddresses - 1, sorted.end() - 1);
   }
   std::vector<std::string> out;

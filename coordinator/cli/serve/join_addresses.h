@@ -1,6 +1,6 @@
 #pragma once
 
-// The addresses under which other machines reach this one.
+// Addresses under which other machines can reach this one.
 
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace bandsaw::coordinator {
 
-/// An address of this machine, as numbers and dots (or colons).
+/// An address of this machine in numeric form.
 struct LocalAddress {
   std::string interface_name;
   std::string address;
@@ -17,14 +17,13 @@ struct LocalAddress {
   bool loopback = false;
 };
 
-/// Those of the interfaces that are up; without IPv6 link-local ones, which need a scope. INTERNAL:
-/// the system's reason.
+/// Returns the addresses of the interfaces that are up, without IPv6 link-local addresses, which
+/// need a scope. INTERNAL: the system's error.
 absl::StatusOr<std::vector<LocalAddress>> local_addresses();
 
-/// host:port for a join string, best first, at most 8. A named host is itself; 0.0.0.0 stands for
-/// every IPv4 address,
-/// [::] for every address: LAN interfaces first, then those of containers and bridges, loopback
-/// last.
+/// Returns host:port for a join string, best first, at most 8. A host name or address stands for
+/// itself; 0.0.0.0 stands for every IPv4 address, [::] for every address: LAN interfaces first,
+/// then those of containers and bridges, loopback last.
 std::vector<std::string> join_addresses(const std::string& host, int port,
                                         const std::vector<LocalAddress>& local);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// The files that hold the farm's join strings, in the data folder.
+// The files with the farm's join strings, in the data folder.
 
 #include <string>
 #include <vector>
@@ -12,7 +12,7 @@
 
 namespace bandsaw::coordinator {
 
-/// `DATA/join` for workers, `DATA/farm` for people.
+/// Returns `DATA/join` for workers, `DATA/farm` for users.
 std::string join_file_of(const std::string& data_folder, link::Role role);
 
 /// What a worker, or a person, joins the farm with. `insecure`: without the certificate.
@@ -23,8 +23,9 @@ link::JoinString join_string(link::Role role, const link::Identity& identity,
 /// file is as it was.
 absl::Status write_join_file(const std::string& data_folder, const link::JoinString& join);
 
-/// A new secret in the identity and in the role's join string, if there is one. Errors as
-/// link::renew_secret; from then on the two files may differ until the next `serve`.
+/// Renews the secret in the identity and in the role's join string, if that file exists. Errors as
+/// link::renew_secret. If writing the join string fails (`written`), the files differ until the
+/// next `serve`.
 absl::StatusOr<RenewedSecret> rotate_secret(const std::string& data_folder, link::Role role);
 
 }  // namespace bandsaw::coordinator

@@ -1,4 +1,4 @@
-// bandsaw secret rotate: through the coordinator when it runs, else in its folder.
+// bandsaw secret rotate: asks the running coordinator, or changes the data folder if none runs.
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -22,8 +22,8 @@ namespace {
 
 std::string identity_file(const std::string& folder) { return folder + "/identity"; }
 
-/// What root writes into the folder of another user, as of the service that is installed, is that
-/// user's.
+/// Gives a file written by root to the owner of its folder, such as the user of an installed
+/// service.
 absl::Status give_to_owner(const std::string& folder, const std::string& file) {
   struct stat owner {};
   if (geteuid() == 0 && (stat(folder.c_str(), &owner) != 0 ||
@@ -33,7 +33,7 @@ absl::Status give_to_owner(const std::string& folder, const std::string& file) {
   return absl::OkStatus();
 }
 
-/// While nobody serves the folder. FAILED_PRECONDITION: somebody does.
+/// Renews the secret in the folder. FAILED_PRECONDITION: a coordinator is using it.
 absl::StatusOr<std::string> rotate_here(const std::string& folder, link::Role role) {
   ASSIGN_OR_RETURN(const DataFolder locked, DataFolder::open(folder));
   ASSIGN_OR_RETURN(const RenewedSecret renewed, rotate_secret(folder, role));
@@ -51,7 +51,7 @@ absl::StatusOr<std::string> rotate(const std::string& folder, link::Role role) {
         absl::StrCat(folder, " is no data folder of a coordinator; name it with --data DIR"));
   }
   umask(S_IRWXG | S_IRWXO);
-  // The lock says whether a coordinator runs; only it can shut out those who are connected.
+  // The lock shows if a coordinator is running; then only it can end existing connections.
   auto here = rotate_here(folder, role);
   if (!absl::IsFailedPrecondition(here.status())) {
     return here;

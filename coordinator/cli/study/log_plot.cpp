@@ -12,7 +12,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// Pixels.
+// In pixels.
 constexpr double kWidth = 460;
 constexpr double kHeight = 380;
 constexpr double kLeft = 62;
@@ -21,7 +21,7 @@ constexpr double kTop = 34;
 constexpr double kBottom = 46;
 constexpr double kLegendLine = 15;
 
-// Told apart by people who see colours differently: Okabe and Ito 2008, "Color Universal Design".
+// Distinguishable with colour vision deficiencies: Okabe and Ito 2008, "Color Universal Design".
 constexpr std::array<const char*, 7> kColours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7",
                                                  "#e69f00", "#56b4e9", "#000000"};
 
@@ -30,10 +30,10 @@ std::string escaped(const std::string& text) {
 }
 
 struct Axis {
-  int first = 0;  ///< powers of ten
+  int first = 0;  ///< exponent of ten
   int last = 1;
 
-  /// [0, 1] along the axis.
+  /// Returns the position along the axis, in [0, 1].
   double place(double value) const { return (std::log10(value) - first) / (last - first); }
 };
 
@@ -125,7 +125,8 @@ class Panel {
     return out;
   }
 
-  /// Lines that fall leave room at the bottom left, lines that rise at the top left.
+  /// True if the legend goes to the top left: rising lines leave room there, falling lines at the
+  /// bottom left.
   bool names_on_top() const {
     int below = 0;
     for (const PlotLine& line : panel_.lines) {

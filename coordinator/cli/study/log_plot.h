@@ -1,7 +1,7 @@
 #pragma once
 
-// Lines in panels with logarithmic axes, as SVG: text, so that it is small, sharp and can be read
-// in a review. No scripts, no fonts, no other files.
+// Plots lines in panels with logarithmic axes, as SVG, which is small, scalable and can be read in
+// a review. No scripts, no fonts, no other files.
 
 #include <string>
 #include <utility>
@@ -11,22 +11,24 @@ namespace bandsaw::coordinator {
 
 struct PlotLine {
   std::string name;
-  std::string note;                               ///< after the name in the legend: "n^-0.52"
-  std::vector<std::pair<double, double>> points;  ///< x, y; those not above 0 are left out
+  std::string note;  ///< shown after the name in the legend: "n^-0.52"
+  /// (x, y); points with a coordinate <= 0 are omitted.
+  std::vector<std::pair<double, double>> points;
 };
 
 struct PlotPanel {
   std::string title;
-  std::vector<PlotLine> lines;  ///< a line has the same colour in each panel by its place
+  /// The n-th line has the same colour in each panel.
+  std::vector<PlotLine> lines;
 };
 
 struct Plot {
-  std::string x;  ///< what is along the axes, with units
+  std::string x;  ///< axis labels, with units
   std::string y;
-  std::vector<PlotPanel> panels;  ///< two in a row
+  std::vector<PlotPanel> panels;  ///< arranged in rows of two
 };
 
-/// The whole file. Any text may be in names.
+/// Returns the whole file. Names may contain any text; it is escaped.
 std::string svg_of(const Plot& plot);
 
 }  // namespace bandsaw::coordinator

@@ -1,6 +1,6 @@
 #pragma once
 
-// The power that figures follow.
+// Fits a power law.
 
 #include <cmath>
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace bandsaw::coordinator {
 
-/// p of "y ~ x^p" by least squares in logarithms over the points with x, y > 0. Nothing where these
-/// have not two different x.
+/// Returns p of "y ~ x^p" by least squares in logarithms over the points with x, y > 0. Returns
+/// std::nullopt if they do not have at least two different x.
 inline std::optional<double> power_of(const std::vector<std::pair<double, double>>& points) {
   double n = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (const auto& [at, value] : points) {

@@ -1,4 +1,4 @@
-// bandsaw study: speed against error, with and without each technique.
+// bandsaw study: measures error against cost, with and without each technique.
 
 #include <algorithm>
 #include <atomic>
@@ -24,7 +24,8 @@ struct Prepared {
   SceneDescription scene;
 };
 
-/// All scenes before the first is rendered: what is wrong with the last is said at once.
+/// Imports all scenes before the first is rendered, so that an error in any of them is reported at
+/// once.
 absl::StatusOr<std::vector<Prepared>> prepare(const StudyOptions& options, Process& process) {
   std::vector<Prepared> out;
   for (const std::string& scene : options.scenes) {

@@ -1,7 +1,7 @@
 #pragma once
 
-// An adaptive image of about so many samples a pixel: what `--error E --adaptive` does, for a study
-// that counts samples.
+// Renders an adaptive image with about a given number of samples per pixel: like `--error E
+// --adaptive`, for a study with a fixed number of samples.
 
 #include <atomic>
 #include <cstdint>
@@ -16,12 +16,13 @@ namespace bandsaw::coordinator {
 
 struct AdaptiveImage {
   Image image;
-  double samples = 0;  ///< a pixel, on average: as many as were asked for, or a few more
+  /// Samples per pixel, on average: the requested number or slightly more.
+  double samples = 0;
   double rays = 0;
 };
 
-/// The pilot has a sixteenth of the samples, but not fewer than 32. CANCELLED; RESOURCE_EXHAUSTED:
-/// no memory.
+/// The pilot pass takes a sixteenth of the samples, but at least 32. CANCELLED; RESOURCE_EXHAUSTED:
+/// out of memory.
 absl::StatusOr<AdaptiveImage> render_adaptively(const Scene& scene, const RenderSettings& settings,
                                                 std::uint64_t samples, Pool& pool,
                                                 const std::atomic<bool>& stop);

@@ -28,7 +28,7 @@ double mean_of(const Image& image) {
   return sum / (3 * static_cast<double>(image.pixels.size()));
 }
 
-/// Sums over the seeds.
+/// Accumulates the results over the seeds.
 class Seeds {
  public:
   Seeds(const Image& reference, double mean) : reference_(reference), mean_(mean) {}
@@ -79,7 +79,7 @@ class Study {
         const std::atomic<bool>& stop)
       : scene_(scene), settings_(settings), plan_(plan), pool_(pool), stop_(stop) {}
 
-  /// The estimated error of the reference.
+  /// Renders the reference and returns its estimated error.
   absl::StatusOr<double> make_reference() {
     RenderSettings settings = settings_;
     settings.seed = settings_.seed ^ kReferenceSeed;
@@ -143,7 +143,8 @@ class Study {
       const double start = process_cpu_seconds();
       ASSIGN_OR_RETURN(const StoppedImages stopped,
                        stop_by_pixels(scene_, settings, plan_.samples, pool_, stop_));
-      // All tolerances look at one set of samples; each pays for those that it took.
+      // All tolerances are evaluated on one set of samples; the cost is attributed by the samples
+      // that each used.
       const double cpu_s = process_cpu_seconds() - start;
       const auto all = static_cast<double>(plan_.samples);
       for (std::size_t i = 0; i < seeds.size(); ++i) {

@@ -1,8 +1,8 @@
 #pragma once
 
-// Speed against error: renders a scene with and without each technique that can be switched off, at
-// rising numbers of samples and with several seeds, and compares each image with a converged one of
-// another seed.
+// Measures error against cost: renders a scene with and without each technique that can be
+// disabled, with increasing numbers of samples and several seeds, and compares each image with a
+// converged reference that has another seed.
 
 #include <atomic>
 #include <cstdint>
@@ -18,19 +18,19 @@
 
 namespace bandsaw::coordinator {
 
-/// How the image is made. All but kPixelStops have the same mean.
+/// Technique with which the image is made. All except kPixelStops have the same expected value.
 enum class Method {
-  kFull,         ///< as render does it
-  kNoMis,        ///< lights are found by asking them alone, where there is a density
-  kNoLights,     ///< … by following directions alone: no next-event estimation
-  kAdaptive,     ///< more samples where there is more noise, about as many in all
-  kIndependent,  ///< random numbers that know nothing of each other in place of Owen-scrambled nets
-  /// Independent numbers, and each pixel ends at the first multiple of 16 samples where 1.96
-  /// standard errors of its mean are within a tolerance of it. What many ray tracers do; it is
-  /// biased, since the samples decide themselves how many they are, and it is here to show by how
-  /// much.
+  kFull,         ///< as in `bandsaw render`
+  kNoMis,        ///< light sampling only, without MIS, for lights that have a pdf
+  kNoLights,     ///< BSDF sampling only: no next-event estimation
+  kAdaptive,     ///< samples distributed by noise, with about the same total
+  kIndependent,  ///< independent random numbers instead of Owen-scrambled nets
+  /// Independent random numbers; each pixel stops at the first multiple of 16 samples at which 1.96
+  /// standard errors of its mean are within a tolerance of it, as in many ray tracers. The result
+  /// is biased, because the samples determine their own number; the method is included to show the
+  /// amount of bias.
   kPixelStops,
-  /// As kFull, to the bit; each ray is tested against every object of the scene. Where asked for.
+  /// Same bits as kFull; each ray is tested against every object of the scene. Only if requested.
   kEveryObject,
 };
 inline constexpr Method kMethods[] = {Method::kFull,     Method::kNoMis,       Method::kNoLights,
@@ -39,18 +39,19 @@ const char* method_name(Method method);
 
 /// Means over the seeds.
 struct StudyPoint {
-  double samples = 0;        ///< a pixel
-  double relative_rmse = 0;  ///< root of the mean square
+  double samples = 0;        ///< per pixel
+  double relative_rmse = 0;  ///< root of the mean square over the seeds
   double relative_mse = 0;
-  double bias = 0;        ///< (mean of the image - mean of the reference) / mean of the reference
-  double bias_error = 0;  ///< one standard error of that, over the seeds; 0: one seed
+  /// Relative bias: (mean of the image - mean of the reference) / mean of the reference.
+  double bias = 0;
+  double bias_error = 0;  ///< one standard error of bias over the seeds; 0: one seed
   double cpu_s = 0;       ///< summed over threads
   double rays = 0;
 };
 
 struct StudyLine {
   Method method = Method::kFull;
-  std::vector<StudyPoint> points;  ///< by rising samples
+  std::vector<StudyPoint> points;  ///< sorted by samples
 };
 
 struct StudyOfScene {
@@ -60,34 +61,36 @@ struct StudyOfScene {
 };
 
 struct StudyPlan {
-  std::uint64_t samples = 64;  ///< the most: 1, 4, 16, … up to these
+  std::uint64_t samples = 64;  ///< maximum: 1, 4, 16, … up to this
   std::uint64_t seeds = 4;
-  std::uint64_t reference = 1024;  ///< samples of the reference
+  std::uint64_t reference = 1024;  ///< samples per pixel of the reference
 };
 
-/// Each ray is tested against at most so many objects, or a study takes too long.
+/// Maximum number of objects for kEveryObject; with more, a study takes too long.
 inline constexpr std::uint64_t kMostObjects = 2'000;
 
-/// Spheres, quads, triangles and disks as often as they are placed, boundaries of media too: what a
-/// ray meets without a tree.
+/// Counts spheres, quads, triangles and disks once per placement, and boundaries of media: the
+/// number of intersection tests of a ray without a BVH.
 std::uint64_t objects_of(const SceneDescription& scene);
 
-/// 1, 4, 16, …: powers of four up to `most`, which is the last.
+/// Returns 1, 4, 16, …: powers of four below `most`, then `most`.
 std::vector<std::uint64_t> study_samples(std::uint64_t most);
 
-/// Errors: as render_image; CANCELLED. `settings.seed` is the first of the seeds. `doing` hears
-/// what comes next. `every_object`: the same scene, built to test everything (Tested); may be null.
+/// Runs the study of one scene. `settings.seed` is the first of the seeds. `doing` is called with a
+/// description of the next step. `every_object`: the same scene, built to test every object
+/// (Tested); may be nullptr. Errors: as render_image; CANCELLED.
 absl::StatusOr<StudyOfScene> study_scene(const std::string& name, const Scene& scene,
                                          const Scene* every_object, const RenderSettings& settings,
                                          const StudyPlan& plan, Pool& pool,
                                          const std::atomic<bool>& stop,
                                          const std::function<void(const std::string&)>& doing);
 
-/// p of "error ~ samples^p" over the line's points; nothing with less than two.
+/// Returns p of "error ~ samples^p" over the line's points; std::nullopt with fewer than two.
 std::optional<double> slope_of(const StudyLine& line);
 
-/// CPU seconds until the error is 1 %, as a report foresees it (core/error_curve.h). Nothing of
-/// pixels that stop themselves: their error is no matter of samples alone.
+/// Returns the CPU seconds until the error is 1 %, as predicted in a report (core/error_curve.h).
+/// Returns std::nullopt for kPixelStops, whose error does not depend on the number of samples
+/// alone.
 std::optional<double> cpu_s_to_1_percent(const StudyLine& line);
 
 }  // namespace bandsaw::coordinator

@@ -1,6 +1,6 @@
 #pragma once
 
-// What `bandsaw study` can be told.
+// Options of `bandsaw study`.
 
 #include <CLI/CLI.hpp>
 

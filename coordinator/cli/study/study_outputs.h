@@ -1,6 +1,6 @@
 #pragma once
 
-// The files of a study: figures (.csv) and a plot (.svg).
+// Output files of a study: data (.csv) and a plot (.svg).
 
 #include <string>
 #include <vector>
@@ -10,13 +10,13 @@
 
 namespace bandsaw::coordinator {
 
-/// INVALID_ARGUMENT: a name that ends in neither.
+/// INVALID_ARGUMENT: a name has another suffix.
 absl::Status check_study_outputs(const std::vector<std::string>& outputs);
 
-/// Whether each can be written, before any work.
+/// Checks that each file can be written, before any work is done.
 absl::Status check_study_writable(const std::vector<std::string>& outputs);
 
-/// Each file whole or not at all; stops at the first error.
+/// Writes each file atomically; stops at the first error.
 absl::Status write_study(const std::vector<std::string>& outputs, const std::string& csv,
                          const Plot& plot);
 

@@ -1,4 +1,4 @@
-// bandsaw study --phone: the images of a study of ray tracing on phones, timed on this machine and
+// bandsaw study --phone: times the images of a study of ray tracing on phones on this machine and
 // on a farm.
 
 #include <sys/resource.h>
@@ -28,7 +28,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr std::uint64_t kSamples = 1;  // a pixel, as the study had it
+constexpr std::uint64_t kSamples = 1;  // per pixel, as in the study
 
 double peak_mb() {
   rusage used{};
@@ -62,7 +62,8 @@ class PhoneRun {
         process_.console.line(absl::StrCat(table.title, ": ", images.size(), " images, ",
                                            options_.runs, " times each"));
       }
-      // Run by run, so that what else goes on on the machine slows all rows of a table alike.
+      // Runs alternate between the images, so that other load on the machine affects all rows of a
+      // table equally.
       for (int run = 0; run < options_.runs; ++run) {
         for (Prepared& image : images) {
           RETURN_IF_ERROR(time_once(image));
@@ -142,8 +143,8 @@ class PhoneRun {
     return absl::OkStatus();
   }
 
-  /// As the dashboard tells it: from the first lease until the image is whole. What a worker does
-  /// with a scene that it has not met yet is in the first run.
+  /// Uses the time from the first lease until the image is complete, as shown on the dashboard. The
+  /// first run includes a worker's preparation of a scene that it has not loaded.
   absl::Status there(Prepared& image) {
     ProgressDisplay display(process_.console, {.quiet = true});
     ASSIGN_OR_RETURN(
@@ -161,14 +162,14 @@ class PhoneRun {
 
   const PhoneStudyOptions& options_;
   Process& process_;
-  FarmClient* const client_;  ///< null: no farm
+  FarmClient* const client_;  ///< nullptr: no farm
   const std::atomic<bool>& stop_;
   Pool one_;
   Pool all_;
 };
 
-/// Those whose names begin with one of the words; all, where there are none. NOT_FOUND: a word that
-/// begins none.
+/// Returns the images whose names begin with one of the words, or all images if there are no words.
+/// NOT_FOUND: a word matches no image.
 absl::StatusOr<std::set<std::string>> chosen(const std::vector<std::string>& words) {
   std::set<std::string> names;
   for (const PhoneTable& table : phone_tables()) {

@@ -1,4 +1,4 @@
-// What the phone study's images took: tables and figures.
+// Formats the results of the phone study: tables and answers.
 
 #include <algorithm>
 
@@ -50,7 +50,7 @@ std::string table_text(const PhoneStudy& study, const PhoneTable& table) {
                                      "| --- | --- | --- | --- | --- | --- |\n", rows, "\n");
 }
 
-/// Of all images, one after the other.
+/// Sum of the median render times of all images.
 double sum(const PhoneStudy& study, PhoneTimes PhoneImage::*where) {
   double all = 0;
   for (const PhoneImage& image : study.images) {
@@ -79,8 +79,8 @@ std::string machines_text(const PhoneStudy& study) {
                       " |\n\n");
 }
 
-/// How much longer `b` takes than `a` on one thread, in words that begin with `what`; nothing where
-/// one of them was not rendered.
+/// States how much longer `b` takes than `a` on one thread, in a sentence that begins with `what`.
+/// Returns an empty string if one of them was not rendered.
 std::string compared(const PhoneStudy& study, const std::string& what, const char* a, const char* b,
                      const std::string& then) {
   const PhoneImage* const first = image_of(study, a);
@@ -91,7 +91,7 @@ std::string compared(const PhoneStudy& study, const std::string& what, const cha
                                median(last->one.render) / median(first->one.render), then);
 }
 
-/// How many times the rays of `a` those of `b` are; both were rendered where it is shown.
+/// States the ratio of the rays of `b` to those of `a`; empty if one of them was not rendered.
 std::string rays_text(const PhoneStudy& study, const char* a, const char* b) {
   const PhoneImage* const first = image_of(study, a);
   const PhoneImage* const last = image_of(study, b);
@@ -101,7 +101,7 @@ std::string rays_text(const PhoneStudy& study, const char* a, const char* b) {
                                last->rays / first->rays);
 }
 
-/// What the study's author asked for, in figures.
+/// Answers the questions of the study's author in numbers.
 std::string answers(const PhoneStudy& study) {
   double most_build = 0;
   for (const PhoneImage& image : study.images) {

@@ -13,9 +13,9 @@ namespace {
 constexpr std::uint64_t kLookEvery = 16;
 constexpr double kNinetyFivePercent = 1.96;  // standard errors
 
-/// One pixel under one tolerance.
+/// State of one pixel with one tolerance.
 struct Pixel {
-  std::uint64_t samples = 0;  ///< not 0: it has ended
+  std::uint64_t samples = 0;  ///< 0: not stopped
   Rgb value;
 };
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Samples that know nothing of each other, one image of one sample a pixel after the other; and
-// what becomes of an image whose pixels decide for themselves when they have enough of them.
+// Renders independent samples as a sequence of images with one sample per pixel, and images in
+// which each pixel decides itself when to stop.
 
 #include <array>
 #include <atomic>
@@ -16,18 +16,18 @@
 
 namespace bandsaw::coordinator {
 
-/// Sample i is the first one of a seed of its own: a point of a scramble that no other shares, so
-/// uniform and independent.
+/// Sample i is the first sample of a seed of its own: a point of a scramble that no other sample
+/// shares, and therefore uniform and independent.
 class IndependentSamples {
  public:
-  /// What is given MUST outlive it.
+  /// All arguments MUST outlive the object.
   IndependentSamples(const Scene& scene, const RenderSettings& settings, Pool& pool,
                      const std::atomic<bool>& stop)
       : scene_(scene), settings_(settings), pool_(pool), stop_(stop) {}
 
-  /// r, g, b of the next sample of every pixel. CANCELLED.
+  /// Renders the next sample of every pixel and returns its r, g, b. CANCELLED.
   absl::StatusOr<std::vector<double>> next();
-  /// Of all so far.
+  /// Returns the mean of all samples rendered so far.
   Image mean() const;
   double rays() const { return rays_; }
 
@@ -41,18 +41,19 @@ class IndependentSamples {
   double rays_ = 0;
 };
 
-/// Of a pixel's mean: 1.96 of its standard errors stay within this fraction of it.
+/// Tolerances: 1.96 standard errors of a pixel's mean must be within this fraction of it.
 inline constexpr std::array<double, 4> kTolerances = {0.4, 0.2, 0.1, 0.05};
 
 struct StoppedImages {
   std::array<Image, kTolerances.size()> images;
-  std::array<double, kTolerances.size()> samples = {};  ///< a pixel, on average
-  double rays = 0;  ///< of as many samples as no pixel goes beyond, in every pixel
+  std::array<double, kTolerances.size()> samples = {};  ///< per pixel, on average
+  /// Rays of the full number of samples in every pixel.
+  double rays = 0;
 };
 
-/// Each pixel ends at the first multiple of 16 samples that fulfils the tolerance, or at `most`.
-/// The rule of Berkeley's CS184 course and of many ray tracers that follow it; the value it looks
-/// at is the mean of the channels.
+/// Stops each pixel at the first multiple of 16 samples that satisfies the tolerance, or at `most`.
+/// This is the rule of Berkeley's CS184 course and of many ray tracers that follow it; it is
+/// applied to the mean of the channels.
 absl::StatusOr<StoppedImages> stop_by_pixels(const Scene& scene, const RenderSettings& settings,
                                              std::uint64_t most, Pool& pool,
                                              const std::atomic<bool>& stop);

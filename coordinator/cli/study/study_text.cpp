@@ -19,7 +19,7 @@ std::string bias_text(const StudyPoint& point) {
 
 std::string percent_text(double fraction) { return absl::StrFormat("%.3g %%", 100 * fraction); }
 
-/// A table's cell ends at a bar.
+/// Replaces bars, which would end a table's cell.
 std::string cell(const std::string& name) { return absl::StrReplaceAll(name, {{"|", "/"}}); }
 
 std::string worth_row(const StudyOfScene& study, const StudyLine& line) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a study found, for people, for programs and as a picture. Pure functions.
+// Formats the results of a study as tables, CSV and plot. Pure functions.
 
 #include <string>
 #include <vector>
@@ -10,13 +10,14 @@
 
 namespace bandsaw::coordinator {
 
-/// Two tables in Markdown: what each technique is worth, and how the error falls. With a line end.
+/// Two tables in Markdown: the benefit of each technique, and the decrease of the error. Ends with
+/// a line end.
 std::string study_table(const std::vector<StudyOfScene>& studies);
 
-/// A line a point (RFC 4180), fractions and seconds, with a header.
+/// One line per point (RFC 4180), fractions and seconds, with a header.
 std::string study_csv(const std::vector<StudyOfScene>& studies);
 
-/// Error over CPU seconds, a panel a scene.
+/// Error against CPU seconds, one panel per scene.
 Plot study_plot(const std::vector<StudyOfScene>& studies);
 
 }  // namespace bandsaw::coordinator

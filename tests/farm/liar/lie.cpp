@@ -1,6 +1,6 @@
-// A worker whose memory is bad: what it renders is right, as its canary is, and what it sends is
-// not. The linker puts `lie` in the place of FarmCalls::put_band (tests/CMakeLists.txt), so that
-// the worker itself knows nothing of tests.
+// A worker with defective memory: it renders correctly, and its canary is right, but it sends wrong
+// pixels. The linker replaces FarmCalls::put_band by `lie` (tests/CMakeLists.txt), so that the
+// worker's code contains nothing for tests.
 
 #include "worker/session/farm_calls.h"
 
