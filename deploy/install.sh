@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 packages that building, testing, packing or the demo need, if any is missing.
-# Usage: deploy/install.sh build|demo|packages|test|browser    browser: what the tests of that label need besides, 400 MB
+# Usage: deploy/install.sh build|demo|packages|test|browser|old_cpu
+# browser: what the tests of that label need besides, 400 MB. old_cpu: the emulator of that label's test.
 set -euo pipefail
 
 build=(g++ cmake ninja-build pkg-config libgrpc++-dev protobuf-compiler protobuf-compiler-grpc libprotobuf-dev
@@ -10,6 +11,7 @@ demo=("${build[@]}" assimp-testmodels)
 packages=("${build[@]}" dpkg-dev file fakeroot)
 test=("${demo[@]}" libgtest-dev libgmock-dev git iproute2 curl)
 browser=("${test[@]}" chromium chromium-driver)
+old_cpu=("${test[@]}" qemu-user-static)
 
 case "${1:-}" in
   build) wanted=("${build[@]}") ;;
@@ -17,7 +19,8 @@ case "${1:-}" in
   packages) wanted=("${packages[@]}") ;;
   test) wanted=("${test[@]}") ;;
   browser) wanted=("${browser[@]}") ;;
-  *) echo "usage: deploy/install.sh build|demo|packages|test|browser" >&2; exit 2 ;;
+  old_cpu) wanted=("${old_cpu[@]}") ;;
+  *) echo "usage: deploy/install.sh build|demo|packages|test|browser|old_cpu" >&2; exit 2 ;;
 esac
 
 missing=()

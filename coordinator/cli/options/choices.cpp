@@ -6,6 +6,7 @@
 #include "coordinator/cli/options/did_you_mean.h"
 #include "coordinator/cli/options/layers.h"
 #include "renderlib/image/display.h"
+#include "renderlib/render/kernel.h"
 #include "renderlib/scene/integrator.h"
 
 namespace bandsaw::coordinator {
@@ -31,6 +32,13 @@ std::vector<std::string> choices_of(const std::string& name) {
   }
   if (name == "--layers") {
     return layer_names();
+  }
+  if (name == "--kernel") {
+    std::vector<std::string> names;
+    for (const Kernel* kernel : kernels()) {
+      names.emplace_back(kernel->name);
+    }
+    return names;
   }
   if (name == "action") {
     return {"rotate"};
