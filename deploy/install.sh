@@ -1,7 +1,9 @@
 #!/usr/bin/env bash
 # Installs the Debian 12 packages that building, testing, packing or the demo need, if any is missing.
-# Usage: deploy/install.sh build|demo|packages|test|browser|old_cpu
-# browser: what the tests of that label need besides, 400 MB. old_cpu: the emulator of that label's test.
+# Usage: deploy/install.sh build|demo|packages|test|browser|old_cpu|arm64
+# browser: what the tests of that label need besides, 400 MB. old_cpu: the emulator of that label's test. arm64: the cross compiler,
+# Debian's libraries for ARM64 and an emulator, 800 MB; it adds the architecture to this system, and updates those of its
+# libraries that must have one version in all architectures.
 set -euo pipefail
 
 build=(g++ cmake ninja-build pkg-config libgrpc++-dev protobuf-compiler protobuf-compiler-grpc libprotobuf-dev
@@ -12,6 +14,13 @@ packages=("${build[@]}" dpkg-dev file fakeroot)
 test=("${demo[@]}" libgtest-dev libgmock-dev git iproute2 curl)
 browser=("${test[@]}" chromium chromium-driver)
 old_cpu=("${test[@]}" qemu-user-static)
+arm64=("${test[@]}" g++-aarch64-linux-gnu qemu-user-static)
+for package in "${test[@]}"; do
+  case $package in
+    libcli11-dev) ;;  # headers alone, for all architectures
+    lib*-dev) arm64+=("$package:arm64") ;;
+  esac
+done
 
 case "${1:-}" in
   build) wanted=("${build[@]}") ;;
@@ -20,7 +29,8 @@ case "${1:-}" in
   test) wanted=("${test[@]}") ;;
   browser) wanted=("${browser[@]}") ;;
   old_cpu) wanted=("${old_cpu[@]}") ;;
-  *) echo "usage: deploy/install.sh build|demo|packages|test|browser|old_cpu" >&2; exit 2 ;;
+  arm64) wanted=("${arm64[@]}") ;;
+  *) echo "usage: deploy/install.sh build|demo|packages|test|browser|old_cpu|arm64" >&2; exit 2 ;;
 esac
 
 missing=()
@@ -35,5 +45,6 @@ if [ "$(id -u)" -ne 0 ]; then
   sudo=(sudo)
 fi
 echo "installing ${#missing[@]} packages: ${missing[*]}"
+[ "$1" != arm64 ] || "${sudo[@]}" dpkg --add-architecture arm64
 "${sudo[@]}" apt-get update -qq
 "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null

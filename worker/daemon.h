@@ -14,7 +14,7 @@
 
 namespace bandsaw {
 struct Kernel;  // renderlib/render/kernel.h
-}
+}  // namespace bandsaw
 
 namespace bandsaw::worker {
 

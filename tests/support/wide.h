@@ -9,7 +9,11 @@
 
 namespace bandsaw::test {
 
+#if defined(__aarch64__)
+using Wide = long double;  // 113 bits there; 64 on x86-64
+#else
 __extension__ using Wide = __float128;
+#endif
 
 /// From double's root by two steps of Newton's method; 0 for what is not positive.
 inline Wide wide_sqrt(Wide x) {

@@ -14,7 +14,6 @@
 #include "proto/wire/limits.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/image/write_image.h"
-#include "renderlib/render/kernel.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -246,13 +245,7 @@ absl::StatusOr<Command> checked_render(const RawOptions& raw) {
   ASSIGN_OR_RETURN(options.tev, checked_tev(raw));
   RETURN_IF_ERROR(
       read_whole("--threads", raw.threads, 1, wire::kThreadsPerWorker, options.threads));
-  if (raw.kernel) {
-    const absl::StatusOr<const Kernel*> kernel = find_kernel(*raw.kernel);
-    if (!kernel.ok()) {
-      return wrong_choice("--kernel", *raw.kernel);
-    }
-    options.kernel = *kernel;
-  }
+  ASSIGN_OR_RETURN(options.kernel, chosen_kernel(raw.kernel));
   RETURN_IF_ERROR(check_outputs(options.outputs, raw.rows.has_value()));
   if (raw.rows) {
     ASSIGN_OR_RETURN(options.rows, parse_rows("--rows", *raw.rows));

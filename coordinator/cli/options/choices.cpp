@@ -6,7 +6,6 @@
 #include "coordinator/cli/options/did_you_mean.h"
 #include "coordinator/cli/options/layers.h"
 #include "renderlib/image/display.h"
-#include "renderlib/render/kernel.h"
 #include "renderlib/scene/integrator.h"
 
 namespace bandsaw::coordinator {
@@ -50,6 +49,14 @@ std::vector<std::string> choices_of(const std::string& name) {
     return {"bash"};
   }
   return {};
+}
+
+absl::StatusOr<const Kernel*> chosen_kernel(const std::optional<std::string>& name) {
+  if (!name) {
+    return nullptr;
+  }
+  const absl::StatusOr<const Kernel*> kernel = find_kernel(*name);
+  return kernel.ok() ? kernel : wrong_choice("--kernel", *name);
 }
 
 std::string one_of(const std::vector<std::string>& words) {

@@ -16,7 +16,7 @@
 
 namespace bandsaw {
 struct Kernel;  // renderlib/render/kernel.h
-}
+}  // namespace bandsaw
 
 namespace bandsaw::coordinator {
 
