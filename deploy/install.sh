@@ -1,8 +1,11 @@
 #!/usr/bin/env bash
 # Installs the packages of Debian 12 or 13 that building, testing, packing or the demo need, if any is missing.
-# Usage: deploy/install.sh build|demo|packages|test|browser|clang
+# Usage: deploy/install.sh build|demo|packages|test|browser|clang|old_cpu|arm64
 #   browser  what the tests of that label need besides `test`, 400 MB
 #   clang    what the presets clang and fuzz need besides `test`
+#   old_cpu  the emulator of that label's test
+#   arm64    the cross compiler, Debian's libraries for ARM64 and an emulator, 800 MB; it adds the architecture to this system,
+#            and updates those of its libraries that must have one version in all architectures
 set -euo pipefail
 
 build=(g++ cmake ninja-build pkg-config libgrpc++-dev protobuf-compiler protobuf-compiler-grpc libprotobuf-dev
@@ -13,6 +16,14 @@ packages=("${build[@]}" dpkg-dev file fakeroot)
 test=("${demo[@]}" libgtest-dev libgmock-dev git iproute2 curl)
 browser=("${test[@]}" chromium chromium-driver)
 clang=("${test[@]}" clang libclang-rt-dev)
+old_cpu=("${test[@]}" qemu-user-static)
+arm64=("${test[@]}" g++-aarch64-linux-gnu qemu-user-static)
+for package in "${test[@]}"; do
+  case $package in
+    libcli11-dev) ;;  # headers alone, for all architectures
+    lib*-dev) arm64+=("$package:arm64") ;;
+  esac
+done
 
 case "${1:-}" in
   build) wanted=("${build[@]}") ;;
@@ -21,7 +32,9 @@ case "${1:-}" in
   test) wanted=("${test[@]}") ;;
   browser) wanted=("${browser[@]}") ;;
   clang) wanted=("${clang[@]}") ;;
-  *) echo "usage: deploy/install.sh build|demo|packages|test|browser|clang" >&2; exit 2 ;;
+  old_cpu) wanted=("${old_cpu[@]}") ;;
+  arm64) wanted=("${arm64[@]}") ;;
+  *) echo "usage: deploy/install.sh build|demo|packages|test|browser|clang|old_cpu|arm64" >&2; exit 2 ;;
 esac
 
 missing=()
@@ -36,5 +49,6 @@ if [ "$(id -u)" -ne 0 ]; then
   sudo=(sudo)
 fi
 echo "installing ${#missing[@]} packages: ${missing[*]}"
+[ "$1" != arm64 ] || "${sudo[@]}" dpkg --add-architecture arm64
 "${sudo[@]}" apt-get update -qq
 "${sudo[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null

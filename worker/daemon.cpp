@@ -34,8 +34,8 @@ class Daemon::Impl {
         calls_(options_.join),
         desk_(options_.self),
         backoff_(seed_of(options_.self)),
-        workshop_(desk_, std::move(cache), static_cast<int>(options_.self.threads), doors(),
-                  options_.log_tail, seed_of(options_.self) + 1) {}
+        workshop_(desk_, std::move(cache), static_cast<int>(options_.self.threads), options_.kernel,
+                  doors(), options_.log_tail, seed_of(options_.self) + 1) {}
   ~Impl() { leave(); }
 
   absl::Status run();

@@ -12,11 +12,16 @@
 #include "proto/link/join.h"
 #include "worker/session/session.h"
 
+namespace bandsaw {
+struct Kernel;  // renderlib/render/kernel.h
+}  // namespace bandsaw
+
 namespace bandsaw::worker {
 
 struct DaemonOptions {
   link::JoinString join;
-  Self self;  ///< threads is the size of the pool too
+  Self self;                       ///< threads is the size of the pool too
+  const Kernel* kernel = nullptr;  ///< what renders the scenes; as in Scene::build
   std::string cache_folder;
   std::uint64_t cache_bytes = 16ull << 30;
   /// The last lines of the log, for a failure's report; may be nothing.

@@ -14,12 +14,14 @@
 #include <cstdio>
 #include <thread>
 
+#include "absl/strings/str_cat.h"
 #include "proto/link/join.h"
 #include "proto/link/random.h"
 #include "proto/wire/limits.h"
 #include "proto/wire/worker_mark.h"
 #include "renderlib/base/clean_text.h"
 #include "renderlib/render/canary.h"
+#include "renderlib/render/kernel.h"
 #include "renderlib/render/pixel_version.h"
 #include "worker/daemon.h"
 #include "worker/log_queue.h"
@@ -42,6 +44,7 @@ struct Arguments {
   std::string name = host_name();
   std::string cache = default_cache_folder();
   double cache_gb = 16;
+  std::string kernel = kernels().front()->name;
   bool quiet = false;
 };
 
@@ -58,6 +61,9 @@ void describe(CLI::App& app, Arguments& arguments) {
                  "Folder for scenes; workers of one machine may share it");
   app.add_option("--cache-size", arguments.cache_gb, "Most gigabytes to keep there")
       ->check(CLI::Range(0.001, 1e6));
+  app.add_option("--kernel", arguments.kernel,
+                 "The renderer's code: avx2, neon or plain, as far as the program has it and the "
+                 "machine runs it; the image is the same. Default: the fastest");
   app.add_flag("--quiet", arguments.quiet, "Log warnings and errors only");
 }
 
@@ -148,6 +154,11 @@ int run(const Arguments& arguments) {
                 absl::InvalidArgumentError(
                     "--name must have 1 to 64 bytes of UTF-8 without control characters"));
   }
+  const absl::StatusOr<const Kernel*> kernel = find_kernel(arguments.kernel);
+  if (!kernel.ok()) {
+    return fail(kWrongUsage,
+                absl::InvalidArgumentError(absl::StrCat("--kernel: ", kernel.status().message())));
+  }
   const sigset_t set = watched_signals();
   pthread_sigmask(SIG_BLOCK, &set, nullptr);  // before any thread is made: all inherit it
   const Log log = start_log(arguments.quiet);
@@ -155,10 +166,11 @@ int run(const Arguments& arguments) {
       .join = *std::move(join),
       .self = {.instance = link::random_hex(16),
                .name = arguments.name,
-               .build = build_description(),
+               .build = build_description(**kernel),
                .threads = arguments.threads,
                .pixel_version = kPixelVersion,
-               .canary = canary()},
+               .canary = canary(*kernel)},
+      .kernel = *kernel,
       .cache_folder = arguments.cache,
       .cache_bytes = static_cast<std::uint64_t>(arguments.cache_gb * 1e9),
       .log_tail = [tail = log.tail] { return tail->last_formatted(); },

@@ -18,12 +18,13 @@ std::string text_of(const absl::Status& status) { return std::string(status.mess
 
 }  // namespace
 
-Workshop::Workshop(Desk& desk, std::unique_ptr<BlobCache> cache, int threads, FarmDoors farm,
-                   LogTail log_tail, std::uint64_t seed)
+Workshop::Workshop(Desk& desk, std::unique_ptr<BlobCache> cache, int threads, const Kernel* kernel,
+                   FarmDoors farm, LogTail log_tail, std::uint64_t seed)
     : desk_(desk),
       cache_(std::move(cache)),
       farm_(std::move(farm)),
       log_tail_(std::move(log_tail)),
+      kernel_(kernel),
       pool_(threads),
       uploader_([this](const FinishedBand& band) { return put(band); },
                 [this](TaskId task, const auto& outcome) { settled(task, outcome); }, seed),
@@ -44,7 +45,8 @@ absl::StatusOr<std::shared_ptr<const Scene>> Workshop::load(const wire::Digest& 
   const std::string name = manifest.hex().substr(0, 12);
   spdlog::info("scene {}: loading", name);
   FetchingSource blobs(*cache_, farm_.get_blob, stop, prepared);
-  ASSIGN_OR_RETURN(std::shared_ptr<const Scene> scene, load_package(manifest, blobs, pool_));
+  ASSIGN_OR_RETURN(std::shared_ptr<const Scene> scene,
+                   load_package(manifest, blobs, pool_, kernel_));
   spdlog::info("scene {}: ready", name);
   return scene;
 }

@@ -28,8 +28,9 @@ using LogTail = std::function<std::vector<std::string>()>;
 
 class Workshop {
  public:
-  Workshop(Desk& desk, std::unique_ptr<BlobCache> cache, int threads, FarmDoors farm,
-           LogTail log_tail, std::uint64_t seed);
+  /// `kernel`: what renders the scenes; as in Scene::build.
+  Workshop(Desk& desk, std::unique_ptr<BlobCache> cache, int threads, const Kernel* kernel,
+           FarmDoors farm, LogTail log_tail, std::uint64_t seed);
 
   void start(const Task& task) { executor_.add(task); }
   void stop(TaskId task);
@@ -49,6 +50,7 @@ class Workshop {
   const std::unique_ptr<BlobCache> cache_;
   const FarmDoors farm_;
   const LogTail log_tail_;
+  const Kernel* const kernel_;
   Pool pool_;
   Uploader uploader_;
   Executor executor_;  ///< last: its threads use all of the above

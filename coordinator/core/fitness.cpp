@@ -21,7 +21,7 @@ std::optional<std::string> unfit(const Fitness& farm, const WorkerHello& worker)
   if (worker.canary != farm.canary) {
     return absl::StrFormat(
         "its test render gives other pixels (canary %016x, the coordinator's is %016x): build %s; "
-        "compile both from the same sources with the same BANDSAW_ARCH",
+        "compile both from the same sources",
         worker.canary, farm.canary, worker.build);
   }
   return std::nullopt;

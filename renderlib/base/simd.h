@@ -1,18 +1,27 @@
 #pragma once
 
-// Eight floats at a time on whatever the build is for (-DBANDSAW_ARCH). Every choice computes the
-// same bits.
+// Eight floats at a time with the instructions that this file is compiled for. Every choice
+// computes the same bits; renderlib/base/simd_plain.h says what the operations mean.
 
 #if defined(__AVX2__) && defined(__FMA__)
 #include "renderlib/base/simd_avx2.h"
 namespace bandsaw {
 using simd_avx2::Float8;
 using simd_avx2::Mask8;
+inline constexpr const char* kSimdName = "avx2";
+}  // namespace bandsaw
+#elif defined(__aarch64__) && defined(__ARM_NEON)
+#include "renderlib/base/simd_neon.h"
+namespace bandsaw {
+using simd_neon::Float8;
+using simd_neon::Mask8;
+inline constexpr const char* kSimdName = "neon";
 }  // namespace bandsaw
 #else
 #include "renderlib/base/simd_plain.h"
 namespace bandsaw {
 using simd_plain::Float8;
 using simd_plain::Mask8;
+inline constexpr const char* kSimdName = "plain";
 }  // namespace bandsaw
 #endif

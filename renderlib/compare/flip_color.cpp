@@ -27,14 +27,14 @@ int kernel_radius(double pixels_per_degree) {
 }
 
 // exp(-pi^2 d^2 / b), with d in degrees.
-Kernel part(double b, double pixels_per_degree, int radius) {
+FilterWeights part(double b, double pixels_per_degree, int radius) {
   return gaussian(std::sqrt(b / 2) / kPi * pixels_per_degree, radius);
 }
 
 // Equation 3, normalised.
 Plane blurred(const Plane& plane, const Sensitivity& s, double pixels_per_degree) {
   const int radius = kernel_radius(pixels_per_degree);
-  const Kernel first = part(s.b1, pixels_per_degree, radius);
+  const FilterWeights first = part(s.b1, pixels_per_degree, radius);
   const double w1 = s.a1 * std::sqrt(kPi / s.b1);
   Plane out = filtered(plane, first, first);
   if (s.a2 == 0) {
@@ -44,7 +44,7 @@ Plane blurred(const Plane& plane, const Sensitivity& s, double pixels_per_degree
     }
     return out;
   }
-  const Kernel second = part(s.b2, pixels_per_degree, radius);
+  const FilterWeights second = part(s.b2, pixels_per_degree, radius);
   const double w2 = s.a2 * std::sqrt(kPi / s.b2);
   const double total = w1 * sum(first) * sum(first) + w2 * sum(second) * sum(second);
   const Plane other = filtered(plane, second, second);

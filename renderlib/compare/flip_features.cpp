@@ -18,7 +18,7 @@ struct Features {
 
 // Scales positive weights to sum to 1 and negative ones to -1, so that a feature's strength is in
 // units of contrast.
-Kernel balanced(Kernel kernel, double across) {
+FilterWeights balanced(FilterWeights kernel, double across) {
   double above = 0;
   double below = 0;
   for (const double weight : kernel) {
@@ -49,9 +49,9 @@ Plane length(const Plane& x, const Plane& y) {
 Features features_of(const Image& image, double pixels_per_degree) {
   const double deviation = 0.5 * kFeatureWidth * pixels_per_degree;
   const int radius = static_cast<int>(std::ceil(3 * deviation));
-  const Kernel across = gaussian(deviation, radius);
-  Kernel edge = across;
-  Kernel point = across;
+  const FilterWeights across = gaussian(deviation, radius);
+  FilterWeights edge = across;
+  FilterWeights point = across;
   for (int x = -radius; x <= radius; ++x) {
     const auto i = static_cast<std::size_t>(x + radius);
     edge[i] *= -x;

@@ -8,10 +8,10 @@
 namespace bandsaw {
 namespace {
 
-int radius_of(const Kernel& kernel) { return static_cast<int>(kernel.size() / 2); }
+int radius_of(const FilterWeights& kernel) { return static_cast<int>(kernel.size() / 2); }
 
 // Filters `count` values with a stride of `step`.
-void filter_line(const double* from, double* to, int count, int step, const Kernel& kernel) {
+void filter_line(const double* from, double* to, int count, int step, const FilterWeights& kernel) {
   const int radius = radius_of(kernel);
   for (int i = 0; i < count; ++i) {
     double total = 0;
@@ -26,8 +26,8 @@ void filter_line(const double* from, double* to, int count, int step, const Kern
 
 }  // namespace
 
-Kernel gaussian(double deviation, int radius) {
-  Kernel kernel;
+FilterWeights gaussian(double deviation, int radius) {
+  FilterWeights kernel;
   for (int x = -radius; x <= radius; ++x) {
     const double far = x / deviation;
     kernel.push_back(exp(-0.5 * far * far));
@@ -39,9 +39,11 @@ double mean(const Plane& plane) {
   return sum(plane.values) / static_cast<double>(plane.values.size());
 }
 
-double sum(const Kernel& kernel) { return std::accumulate(kernel.begin(), kernel.end(), 0.0); }
+double sum(const FilterWeights& kernel) {
+  return std::accumulate(kernel.begin(), kernel.end(), 0.0);
+}
 
-Plane filtered(const Plane& plane, const Kernel& along_x, const Kernel& along_y) {
+Plane filtered(const Plane& plane, const FilterWeights& along_x, const FilterWeights& along_y) {
   const auto width = static_cast<int>(plane.width);
   const auto height = static_cast<int>(plane.height);
   Plane rows(plane.width, plane.height);

@@ -23,15 +23,15 @@ struct Plane {
 double mean(const Plane& plane);
 
 /// Weights for offsets -radius to radius.
-using Kernel = std::vector<double>;
+using FilterWeights = std::vector<double>;
 
 /// Returns exp(-(x / deviation)^2 / 2) for |x| <= radius, not normalised.
-Kernel gaussian(double deviation, int radius);
+FilterWeights gaussian(double deviation, int radius);
 
-double sum(const Kernel& kernel);
+double sum(const FilterWeights& kernel);
 
 /// Filters the plane by one kernel along x and another along y; edges are clamped. Kernels have an
 /// odd size.
-Plane filtered(const Plane& plane, const Kernel& along_x, const Kernel& along_y);
+Plane filtered(const Plane& plane, const FilterWeights& along_x, const FilterWeights& along_y);
 
 }  // namespace bandsaw

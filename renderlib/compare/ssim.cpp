@@ -30,7 +30,7 @@ Plane product(const Plane& a, const Plane& b) {
 }  // namespace
 
 double ssim(const Image& image, const Image& reference) {
-  Kernel window = gaussian(1.5, 5);
+  FilterWeights window = gaussian(1.5, 5);
   const double total = sum(window);
   for (double& weight : window) {
     weight /= total;

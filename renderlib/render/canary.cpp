@@ -5,30 +5,14 @@
 
 #include "renderlib/base/check.h"
 #include "renderlib/base/pool.h"
-#include "renderlib/math/elementary.h"
 #include "renderlib/render/hash64.h"
+#include "renderlib/render/kernel.h"
 #include "renderlib/render/pixel_version.h"
 #include "renderlib/render/render_band.h"
 #include "renderlib/scene/scene.h"
 
 namespace bandsaw {
 namespace {
-
-void add_elementary_functions(Hash64& hash) {
-  constexpr int kPoints = 200;
-  for (int i = 0; i < kPoints; ++i) {
-    const double x = (i + 0.5) / kPoints;
-    const SinCos turns = sincos_turns(x * 3 - 1);
-    const SinCos degrees = sincos_degrees(x * 1000 - 500);
-    for (const double value :
-         {turns.sin, turns.cos, degrees.sin, degrees.cos, tan_degrees(x * 178 - 89),
-          bandsaw::atan2(x - 0.5, x * x - 0.2), bandsaw::asin(2 * x - 1), bandsaw::acos(2 * x - 1),
-          bandsaw::exp(x * 80 - 40), bandsaw::expm1(x * 4 - 2), bandsaw::log(x * 1000),
-          bandsaw::log1p(x * 4 - 0.9), bandsaw::pow(x * 3, 2.4)}) {
-      hash.add(value);
-    }
-  }
-}
 
 Texture checked_image() {
   ImageTexture image;
@@ -189,9 +173,10 @@ SceneDescription outdoors() {
   return scene;
 }
 
-void add_render(Hash64& hash, const SceneDescription& description, const RenderSettings& settings) {
+void add_render(Hash64& hash, const SceneDescription& description, const RenderSettings& settings,
+                const Kernel& kernel) {
   Pool pool(1);
-  const auto scene = Scene::build(description, pool);
+  const auto scene = Scene::build(description, pool, {}, Tested::kOnItsWay, &kernel);
   BANDSAW_CHECK(scene.ok(), "the built-in scene is valid");
   const std::atomic<bool> stop = false;
   const auto pixels = render_band(**scene, settings, {{0, 2 * kBlockSamples}, {0, settings.height}},
@@ -205,21 +190,25 @@ void add_render(Hash64& hash, const SceneDescription& description, const RenderS
 
 }  // namespace
 
-std::uint64_t canary() {
+std::uint64_t canary(const Kernel* kernel) {
+  const Kernel& chosen = kernel != nullptr ? *kernel : *kernels().front();
   Hash64 hash;
   hash.add(std::uint64_t{kPixelVersion});
-  add_elementary_functions(hash);
-  add_render(hash, every_feature(), {.width = 12, .height = 9, .max_depth = 8, .seed = 20260});
-  add_render(hash, through_a_lens(), {.width = 4, .height = 3, .max_depth = 3, .seed = 1});
-  add_render(hash, flat_view(), {.width = 4, .height = 3, .max_depth = 3, .seed = 2});
-  add_render(hash, lit_from_outside(), {.width = 6, .height = 4, .max_depth = 4, .seed = 4});
-  add_render(hash, in_smoke(), {.width = 6, .height = 4, .max_depth = 5, .seed = 4});
-  add_render(hash, room(), {.width = 20, .height = 4, .max_depth = 5, .seed = 5});
-  add_render(hash, outdoors(), {.width = 8, .height = 6, .max_depth = 5, .seed = 6});
+  chosen.add_elementary_functions(hash);
+  add_render(hash, every_feature(), {.width = 12, .height = 9, .max_depth = 8, .seed = 20260},
+             chosen);
+  add_render(hash, through_a_lens(), {.width = 4, .height = 3, .max_depth = 3, .seed = 1}, chosen);
+  add_render(hash, flat_view(), {.width = 4, .height = 3, .max_depth = 3, .seed = 2}, chosen);
+  add_render(hash, lit_from_outside(), {.width = 6, .height = 4, .max_depth = 4, .seed = 4},
+             chosen);
+  add_render(hash, in_smoke(), {.width = 6, .height = 4, .max_depth = 5, .seed = 4}, chosen);
+  add_render(hash, room(), {.width = 20, .height = 4, .max_depth = 5, .seed = 5}, chosen);
+  add_render(hash, outdoors(), {.width = 8, .height = 6, .max_depth = 5, .seed = 6}, chosen);
   for (const Integrator integrator : {Integrator::kDirect, Integrator::kNormals, Integrator::kDepth,
                                       Integrator::kAlbedo, Integrator::kAmbientOcclusion}) {
     add_render(hash, flat_view(),
-               {.width = 4, .height = 3, .max_depth = 3, .seed = 3, .integrator = integrator});
+               {.width = 4, .height = 3, .max_depth = 3, .seed = 3, .integrator = integrator},
+               chosen);
   }
   return hash.value();
 }

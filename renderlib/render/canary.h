@@ -7,8 +7,11 @@
 
 namespace bandsaw {
 
+struct Kernel;  // renderlib/render/kernel.h
+
 /// The hash of the sums of a built-in scene that uses every feature, and of the elementary
-/// functions. A few milliseconds.
-std::uint64_t canary();
+/// functions, as `kernel` computes them. A few milliseconds. `kernel`: one of kernels(); null: the
+/// first of them.
+std::uint64_t canary(const Kernel* kernel = nullptr);
 
 }  // namespace bandsaw

@@ -1,10 +1,9 @@
-#include "renderlib/render/render_band.h"
-
 #include <algorithm>
 #include <atomic>
 #include <vector>
 
 #include "renderlib/base/status_macros.h"
+#include "renderlib/render/kernel_code.h"
 #include "renderlib/render/pixel_sums.h"
 
 namespace bandsaw {
@@ -32,9 +31,11 @@ struct Units {
 
 }  // namespace
 
-absl::StatusOr<BandPixels> render_band(const Scene& scene, const RenderSettings& settings,
-                                       const Band& band, Pool& pool, const std::atomic<bool>& stop,
-                                       const RowsDone& progress, const TileSamples& tiles) {
+absl::StatusOr<BandPixels> render_band_with_kernel(const Scene& scene,
+                                                   const RenderSettings& settings, const Band& band,
+                                                   Pool& pool, const std::atomic<bool>& stop,
+                                                   const RowsDone& progress,
+                                                   const TileSamples& tiles) {
   RETURN_IF_ERROR(validate(band, settings));
   const PixelSums pixel_sums(scene, settings, band, stop);
   const Units units(band, settings.width, pixel_sums.run_step());

@@ -24,11 +24,13 @@ Needs needs_of(const SceneDescription& scene, const Lights& lights) {
 
 }  // namespace
 
-absl::StatusOr<std::shared_ptr<const Scene>> Scene::build(SceneDescription description, Pool& pool,
-                                                          const Needs& forced, Tested tested) {
+absl::StatusOr<std::shared_ptr<const Scene>> Scene::build_with(const Kernel& kernel,
+                                                               SceneDescription description,
+                                                               Pool& pool, const Needs& forced,
+                                                               Tested tested) {
   RETURN_IF_ERROR(validate(description));
   // Trees and lights point into the scene: it has its place before they are made.
-  std::shared_ptr<Scene> scene(new Scene(std::move(description)));
+  std::shared_ptr<Scene> scene(new Scene(kernel, std::move(description)));
   SceneDescription& own = scene->description_;
   scene->dropped_ = clean(own.geometry);
   const Shutter& shutter = shutter_of(own.camera);

@@ -16,6 +16,8 @@
 
 namespace bandsaw {
 
+struct Kernel;  // renderlib/render/kernel.h
+
 class Scene {
  public:
   /// Checks the description (indices, ranges, finiteness), drops what cannot be hit or cannot shine
@@ -23,10 +25,15 @@ class Scene {
   /// and lights. INVALID_ARGUMENT: "spheres[3].radius: must be > 0, is -1".
   /// `forced`: needs that it is to have beside its own; costs time and changes no pixel. For tests.
   /// `tested`: the same, for comparison.
+  /// `kernel`: the code that builds the scene and renders its bands; it changes no pixel. One of
+  /// kernels() (renderlib/render/kernel.h); null: the first of them.
   static absl::StatusOr<std::shared_ptr<const Scene>> build(SceneDescription description,
                                                             Pool& pool, const Needs& forced = {},
-                                                            Tested tested = Tested::kOnItsWay);
+                                                            Tested tested = Tested::kOnItsWay,
+                                                            const Kernel* kernel = nullptr);
 
+  /// The kernel that built it and renders it.
+  const Kernel& kernel() const { return *kernel_; }
   const Geometry& geometry() const { return description_.geometry; }
   const Accel& accel() const { return *accel_; }
   const Lights& lights() const { return lights_; }
@@ -49,7 +56,17 @@ class Scene {
   std::size_t dropped_primitives() const { return dropped_; }
 
  private:
-  explicit Scene(SceneDescription description) : description_(std::move(description)) {}
+  friend struct Kernel;  // it holds `build_with`, compiled for its instruction set
+
+  /// What `build` does in the kernel that it chose, which is `kernel`.
+  static absl::StatusOr<std::shared_ptr<const Scene>> build_with(const Kernel& kernel,
+                                                                 SceneDescription description,
+                                                                 Pool& pool, const Needs& forced,
+                                                                 Tested tested);
+
+  Scene(const Kernel& kernel, SceneDescription description)
+      : kernel_(&kernel), description_(std::move(description)) {}
+  const Kernel* kernel_;
   SceneDescription description_;
   std::unique_ptr<Accel> accel_;
   std::unique_ptr<Accel> boundary_accel_;

@@ -7,6 +7,7 @@
 #include <csignal>
 #include <filesystem>
 
+#include "renderlib/render/kernel.h"
 #include "tests/farm/farm_processes.h"
 #include "tests/support/hard_case.h"
 
@@ -70,6 +71,16 @@ TEST_F(SameBytes, OnFarmsOfOneTwoAndFiveWorkers) {
   farm_.add_worker("four", 2);
   farm_.add_worker("five", 1);
   expect_farm_gives_the_same();
+}
+
+TEST_F(SameBytes, ByEachKernel) {
+  const std::string scene = std::string(BANDSAW_GALLERY) + "/everything.textproto";
+  for (const Kernel* kernel : kernels()) {
+    const std::string file = farm_.path(std::string(kernel->name) + ".pfm");
+    expect_success(
+        run(with_settings({BANDSAW_BIN, "render", scene, "--kernel", kernel->name, "-o", file})));
+    EXPECT_TRUE(file_bytes(file) == rendered(scene)) << kernel->name;
+  }
 }
 
 // Tiles are planned from measured errors: the plan is equal on every farm and after a restart, as

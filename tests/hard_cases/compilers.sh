@@ -8,6 +8,6 @@ presets=("$@")
 ((${#presets[@]})) || presets=(clang dev)
 for preset in "${presets[@]}"; do
   cmake --preset "$preset" -DBANDSAW_TESTS=ON > /dev/null
-  cmake --build --preset "$preset" --target hard_cases
-  "build/$preset/tests/hard_cases" --gtest_filter='SameBits.*'
+  cmake --build --preset "$preset" --target same_bits
+  "build/$preset/tests/same_bits" --gtest_filter='SameBits.*'
 done

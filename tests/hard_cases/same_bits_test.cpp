@@ -13,6 +13,7 @@
 #include "absl/strings/str_format.h"
 #include "renderlib/import/import.h"
 #include "renderlib/render/hash64.h"
+#include "renderlib/render/kernel.h"
 #include "renderlib/render/pixel_version.h"
 #include "renderlib/render/render_band.h"
 #include "tests/support/hard_case.h"
@@ -34,12 +35,13 @@ struct Rendering {
   std::uint32_t rows = kHeight;  ///< of a band
   Needs forced = {};
   Tested tested = Tested::kOnItsWay;
+  const Kernel* kernel = nullptr;  ///< null: the fastest
 };
 
 std::string hash_of(const ImportedScene& imported, const Rendering& how) {
   Pool building(how.building_threads);
   Pool pool(how.threads);
-  const auto scene = Scene::build(imported.scene, building, how.forced, how.tested);
+  const auto scene = Scene::build(imported.scene, building, how.forced, how.tested, how.kernel);
   EXPECT_TRUE(scene.ok()) << scene.status();
   const RenderSettings settings{.width = kWidth,
                                 .height = kHeight,
@@ -100,6 +102,9 @@ TEST(SameBits, C5R6R10B12Y3_TwelveScenesHaveTheirHashes) {
       EXPECT_EQ(hash_of(*imported, {.threads = 2, .rows = rows}), hash) << rows;
     }
     EXPECT_EQ(hash_of(*imported, {.forced = kAllNeeds}), hash) << "the general kernel";
+    for (const Kernel* kernel : kernels()) {
+      EXPECT_EQ(hash_of(*imported, {.kernel = kernel}), hash) << kernel->name;
+    }
     if (is_small(imported->scene.geometry)) {
       EXPECT_EQ(hash_of(*imported, {.tested = Tested::kEverything}), hash) << "no tree";
     }
@@ -112,7 +117,7 @@ TEST(SameBits, C5R6R10B12Y3_TwelveScenesHaveTheirHashes) {
       "B12",
       "12 scenes: one hash for trees built by 1, 2, 3, 8 threads, and for the general kernel; "
       "small ones without a tree too");
-  test::holds("Y3", "12 scenes: the hashes of the table in this build");
+  test::holds("Y3", "12 scenes: the hashes of the table in this build, by each kernel of it");
   test::holds("R10", "12 scenes: the hashes of the table in this build");
 }
 

@@ -217,10 +217,8 @@ TEST(House, ATypeIsDefinedInOneHeader) {
   EXPECT_GT(found.size(), 300u);
   EXPECT_TRUE(found.contains("bandsaw::coordinator::action::Lease"));
   for (const auto& [name, where] : found) {
-    const std::set<std::string> either_is_built = {"renderlib/base/simd_avx2.h",
-                                                   "renderlib/base/simd_plain.h"};
-    EXPECT_TRUE(where.size() == 1 || where == either_is_built)
-        << name << " is defined in " << *where.begin() << " and in " << *where.rbegin();
+    EXPECT_EQ(where.size(), 1u) << name << " is defined in " << *where.begin() << " and in "
+                                << *where.rbegin();
   }
 }
 

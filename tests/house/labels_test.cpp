@@ -24,8 +24,8 @@ std::string text_of(const std::string& file) {
 
 /// LABELS default, LABELS "default;tsan" … Comments say them too, of no test.
 std::set<std::string> labels_of_tests() {
-  static const std::regex kLabels(R"re(LABELS "?([a-z_]+(;[a-z_]+)*))re");
-  static const std::regex kWord("[a-z_]+");
+  static const std::regex kLabels(R"re(LABELS "?([a-z0-9_]+(;[a-z0-9_]+)*))re");
+  static const std::regex kWord("[a-z0-9_]+");
   std::set<std::string> labels;
   for (const char* file : {"tests/CMakeLists.txt", "tests/fuzz/CMakeLists.txt"}) {
     static const std::regex kComment("#[^\n]*");
@@ -42,7 +42,7 @@ std::set<std::string> labels_of_tests() {
 
 /// The table | label | what runs | time |.
 std::map<std::string, std::string> times_of_labels() {
-  static const std::regex kRow(R"re(\| `([a-z_]+)` \|[^|\n]*\| ([^|\n]*) \|)re");
+  static const std::regex kRow(R"re(\| `([a-z0-9_]+)` \|[^|\n]*\| ([^|\n]*) \|)re");
   const std::string readme = text_of("tests/README.md");
   const std::size_t table = readme.find("| label | what runs | time |");
   EXPECT_NE(table, std::string::npos);

@@ -9,7 +9,11 @@
 
 namespace bandsaw::test {
 
+#if defined(__aarch64__)
+using Wide = long double;  // 113 bits there; 64 on x86-64
+#else
 __extension__ using Wide = __float128;
+#endif
 
 /// Refines double's square root by two steps of Newton's method; returns 0 if x is not positive.
 inline Wide wide_sqrt(Wide x) {

@@ -98,7 +98,8 @@ absl::Status FetchingSource::download(const wire::Digest& digest, BlobCache::Dow
 }
 
 absl::StatusOr<std::shared_ptr<const Scene>> load_package(const wire::Digest& manifest,
-                                                          FetchingSource& blobs, Pool& pool) {
+                                                          FetchingSource& blobs, Pool& pool,
+                                                          const Kernel* kernel) {
   ASSIGN_OR_RETURN(const std::unique_ptr<BlobBytes> bytes, blobs.get(manifest));
   if (bytes->bytes().size() > wire::kManifestBytes) {
     return absl::InvalidArgumentError(
@@ -107,7 +108,7 @@ absl::StatusOr<std::shared_ptr<const Scene>> load_package(const wire::Digest& ma
   const std::string text(reinterpret_cast<const char*>(bytes->bytes().data()),
                          bytes->bytes().size());
   ASSIGN_OR_RETURN(SceneDescription description, decode_package(text, blobs));
-  return Scene::build(std::move(description), pool);
+  return Scene::build(std::move(description), pool, {}, Tested::kOnItsWay, kernel);
 }
 
 }  // namespace bandsaw::worker

@@ -45,7 +45,9 @@ class FetchingSource : public BlobSource {
 };
 
 /// Errors as above, and INVALID_ARGUMENT: the package is not one that this worker can render.
+/// `kernel`: as in Scene::build.
 absl::StatusOr<std::shared_ptr<const Scene>> load_package(const wire::Digest& manifest,
-                                                          FetchingSource& blobs, Pool& pool);
+                                                          FetchingSource& blobs, Pool& pool,
+                                                          const Kernel* kernel = nullptr);
 
 }  // namespace bandsaw::worker

@@ -245,6 +245,7 @@ absl::StatusOr<Command> checked_render(const RawOptions& raw) {
   ASSIGN_OR_RETURN(options.tev, checked_tev(raw));
   RETURN_IF_ERROR(
       read_whole("--threads", raw.threads, 1, wire::kThreadsPerWorker, options.threads));
+  ASSIGN_OR_RETURN(options.kernel, chosen_kernel(raw.kernel));
   RETURN_IF_ERROR(check_outputs(options.outputs, raw.rows.has_value()));
   if (raw.rows) {
     ASSIGN_OR_RETURN(options.rows, parse_rows("--rows", *raw.rows));

@@ -18,7 +18,8 @@ struct RawOptions {
   std::optional<std::string> job, listen, priority, worker, action, role, keep_days, keep_size,
       keep_jobs;
   std::vector<std::string> outputs, parts, scenes, hosts;
-  std::optional<std::string> samples, error, time, seed, width, height, depth, threads, rows;
+  std::optional<std::string> samples, error, time, seed, width, height, depth, threads, kernel,
+      rows;
   std::optional<std::string> integrator, exposure, tone, layers, report, seeds, reference_samples;
   std::optional<std::string> runs, tev;
   std::optional<std::string> web, shell, audit;

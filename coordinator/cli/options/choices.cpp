@@ -32,6 +32,13 @@ std::vector<std::string> choices_of(const std::string& name) {
   if (name == "--layers") {
     return layer_names();
   }
+  if (name == "--kernel") {
+    std::vector<std::string> names;
+    for (const Kernel* kernel : kernels()) {
+      names.emplace_back(kernel->name);
+    }
+    return names;
+  }
   if (name == "action") {
     return {"rotate"};
   }
@@ -42,6 +49,14 @@ std::vector<std::string> choices_of(const std::string& name) {
     return {"bash"};
   }
   return {};
+}
+
+absl::StatusOr<const Kernel*> chosen_kernel(const std::optional<std::string>& name) {
+  if (!name) {
+    return nullptr;
+  }
+  const absl::StatusOr<const Kernel*> kernel = find_kernel(*name);
+  return kernel.ok() ? kernel : wrong_choice("--kernel", *name);
 }
 
 std::string one_of(const std::vector<std::string>& words) {

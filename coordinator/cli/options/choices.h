@@ -2,15 +2,21 @@
 
 // Options that accept one of a few words: the words, for error messages, help and shell completion.
 
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "renderlib/render/kernel.h"
 
 namespace bandsaw::coordinator {
 
 /// Returns the words that an option ("--tone") or an argument ("role") accepts; empty: anything.
 std::vector<std::string> choices_of(const std::string& name);
+
+/// Returns the kernel that --kernel names; nullptr if the option is not given, which stands for the
+/// fastest. INVALID_ARGUMENT: this machine runs no kernel of that name.
+absl::StatusOr<const Kernel*> chosen_kernel(const std::optional<std::string>& name);
 
 /// Joins the words to a phrase: "none or filmic".
 std::string one_of(const std::vector<std::string>& words);

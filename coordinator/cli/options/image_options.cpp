@@ -113,6 +113,10 @@ void add_render(CLI::App& app, RawOptions& raw) {
   add_display(app, raw, "the scene's");
   add_layers(app, raw);
   app.add_option("--threads", raw.threads, "Threads [default: one for each CPU]")->type_name("N");
+  app.add_option("--kernel", raw.kernel,
+                 "The renderer's code, for comparison; the image is the same: " +
+                     one_of(choices_of("--kernel")) + " [default: the first]")
+      ->type_name("NAME");
   app.add_option("--rows", raw.rows,
                  "Only rows y0 to y1 - 1, from the top; parts are joined by stitch")
       ->type_name("y0:y1");

@@ -14,6 +14,10 @@
 #include "renderlib/image/display.h"
 #include "renderlib/render/band.h"
 
+namespace bandsaw {
+struct Kernel;  // renderlib/render/kernel.h
+}  // namespace bandsaw
+
 namespace bandsaw::coordinator {
 
 /// How much a command says.
@@ -186,9 +190,10 @@ struct RenderOptions {
   ReportOption report;
   std::string tev;  ///< HOST:PORT of a viewer; empty: none
   Verbosity verbosity;
-  int threads = 0;                ///< 0: one for each CPU
-  std::optional<RowRange> rows;   ///< a part of the image
-  std::vector<LayerKind> layers;  ///< of EXR files
+  int threads = 0;                 ///< 0: one for each CPU
+  const Kernel* kernel = nullptr;  ///< null: the fastest that this machine runs
+  std::optional<RowRange> rows;    ///< a part of the image
+  std::vector<LayerKind> layers;   ///< of EXR files
 };
 
 struct InfoOptions {

@@ -115,8 +115,9 @@ class LocalRun {
       const LocalMeter::Clocks now = clocks();
       display_.update(meter_.progress(now), now.steady_s);
     });
-    ASSIGN_OR_RETURN(const std::shared_ptr<const Scene> scene,
-                     Scene::build(std::move(description), pool_));
+    ASSIGN_OR_RETURN(
+        const std::shared_ptr<const Scene> scene,
+        Scene::build(std::move(description), pool_, {}, Tested::kOnItsWay, options_.kernel));
     LocalJob job{*scene, spec_.settings, pool_, stop_, meter_};
     if (views_.any()) {
       job.grown = [this](const Film& film) { show(film); };

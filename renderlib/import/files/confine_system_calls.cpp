@@ -17,6 +17,14 @@
 namespace bandsaw {
 namespace {
 
+#if defined(__x86_64__)
+constexpr std::uint32_t kArchitecture = AUDIT_ARCH_X86_64;
+#elif defined(__aarch64__)
+constexpr std::uint32_t kArchitecture = AUDIT_ARCH_AARCH64;
+#else
+#error "say which system calls these numbers are of"
+#endif
+
 // A list of what is forbidden, not of what is allowed: allocators, the C library and sanitizers are
 // free to change what they use, while the ways to the network and to other processes are few.
 constexpr std::array kForbidden = {
@@ -37,8 +45,10 @@ constexpr std::array kForbidden = {
     // programs and processes
     SYS_execve,
     SYS_execveat,
+#if defined(SYS_fork)  // newer architectures have clone alone
     SYS_fork,
     SYS_vfork,
+#endif
     SYS_ptrace,
     SYS_process_vm_readv,
     SYS_process_vm_writev,
@@ -84,10 +94,10 @@ std::vector<sock_filter> program() {
   constexpr std::uint32_t kX32 = 0x40000000;
   std::vector<sock_filter> filter = {
       statement(kLoad, offsetof(seccomp_data, arch)),
-      jump(kEqual, AUDIT_ARCH_X86_64, 1, 0),
+      jump(kEqual, kArchitecture, 1, 0),
       statement(BPF_RET | BPF_K, SECCOMP_RET_KILL_PROCESS),
       statement(kLoad, offsetof(seccomp_data, nr)),
-      // The x32 numbers are other names of the same calls.
+      // On x86-64 the x32 numbers are other names of the same calls; elsewhere there are none.
       jump(kAtLeast, kX32, 0, 1),
       answer(EPERM),
       // The C library falls back to clone, whose flags can be looked at: threads are allowed,

@@ -1,10 +1,11 @@
 // The floating-point contract that the build settings are there for.
 
 #include <gtest/gtest.h>
-#include <immintrin.h>
 
+#include <cfenv>
 #include <cmath>
 
+#include "renderlib/base/float_mode.h"
 #include "renderlib/base/pool.h"
 #include "tests/support/hard_case.h"
 
@@ -56,15 +57,20 @@ TEST(Compiler, DoesNotReorderSums) {
   EXPECT_EQ(sum_of_three(1, large, -large), 0);
 }
 
-/// Default rounding, exceptions masked, no flush to zero; the low six bits are sticky flags.
-constexpr unsigned kDefaultMxcsr = 0x1f80;
-constexpr unsigned kFlags = 0x3f;
-
 TEST(FloatingPointState, Y2_IsTheDefaultInEveryThread) {
-  EXPECT_EQ(_mm_getcsr() & ~kFlags, kDefaultMxcsr);
+  EXPECT_TRUE(float_mode_is_default());
   Pool pool(3);
-  pool.parallel_for(30, [](std::int64_t) { EXPECT_EQ(_mm_getcsr() & ~kFlags, kDefaultMxcsr); });
-  test::holds("Y2", "0x1f80 in every thread of a pool");
+  pool.parallel_for(30, [](std::int64_t) { EXPECT_TRUE(float_mode_is_default()); });
+  test::holds("Y2", "the default mode in every thread of a pool");
+}
+
+TEST(FloatingPointState, AnotherModeIsSeen) {
+  const int before = std::fegetround();
+  ASSERT_EQ(std::fesetround(FE_UPWARD), 0);
+  const bool seen = !float_mode_is_default();
+  ASSERT_EQ(std::fesetround(before), 0);
+  EXPECT_TRUE(seen);
+  EXPECT_TRUE(float_mode_is_default());
 }
 
 TEST(FloatingPointState, KeepsDenormals) {

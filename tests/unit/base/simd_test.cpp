@@ -121,6 +121,22 @@ TEST(Simd, EveryOperationIsEqualToPlain) {
   }
 }
 
+// The second operand, as the instructions of x86 have it; those of NEON would give NaN and order
+// the zeros.
+TEST(Simd, MinAndMaxReturnTheSecondOperandWhereNeitherIsLess) {
+  const float nan = std::nanf("");
+  const Lanes a = {nan, 1, nan, 0.0f, -0.0f, 2, nan, -HUGE_VALF};
+  const Lanes b = {1, nan, nan, -0.0f, 0.0f, 2, HUGE_VALF, nan};
+  const Float8 first = Float8::load(a.data());
+  const Float8 second = Float8::load(b.data());
+  Lanes expected = b;
+  expect_same(stored(min(first, second)), expected);
+  expect_same(stored(max(first, second)), expected);
+  expected = a;
+  expect_same(stored(min(second, first)), expected);
+  expect_same(stored(max(second, first)), expected);
+}
+
 TEST(Simd, TruncatesTowardsZeroAndSwapsHalves) {
   const Lanes lanes = {-1.9f, 2.9f, -0.0f, 0x1p30f, 0.99f, -0x1p30f, 15, 16.5f};
   const std::array<std::int32_t, 8> expected = {-1, 2, 0, 1 << 30, 0, -(1 << 30), 15, 16};

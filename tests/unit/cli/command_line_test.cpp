@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "absl/strings/str_split.h"
+#include "renderlib/render/kernel.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -279,11 +280,20 @@ TEST(CommandLine, TheHelpOfEachCommandHasAnExampleOfItAndTheExitCodes) {
   }
 }
 
+TEST(CommandLine, RenderTakesEachKernelOfThisMachine) {
+  EXPECT_EQ(parsed<RenderOptions>("render a.glb").kernel, nullptr);
+  for (const Kernel* kernel : kernels()) {
+    EXPECT_EQ(parsed<RenderOptions>(std::string("render a.glb --kernel ") + kernel->name).kernel,
+              kernel);
+  }
+}
+
 TEST(CommandLine, TheNearestWordIsNamed) {
   expect_wrong("rendr a.glb", "did you mean render?");
   expect_wrong("render a.glb --sample 4", "did you mean --samples?");
   expect_wrong("render a.glb --integrator pth", "did you mean path?");
   expect_wrong("render a.glb --tone flimic", "must be none or filmic, is 'flimic'; did you mean");
+  expect_wrong("render a.glb --kernel sse2", "--kernel: must be ");
   expect_wrong("render a.glb -o a.exr --layers albedo,normals", "did you mean normal?");
   expect_wrong("render a.glb -o a.exr --layers depth,depth", "depth twice");
   expect_wrong("secret rotate wroker", "did you mean worker?");

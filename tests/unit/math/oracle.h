@@ -1,17 +1,17 @@
 #pragma once
 
-// Elementary functions in more precision than double: libquadmath with g++, the long double of the
-// C library elsewhere.
+// Elementary functions in more precision than double: libquadmath with g++ on x86-64, elsewhere the
+// long double of the C library (80 bits with clang on x86-64, 128 on ARM64).
 
 #include <cmath>
 
-#if defined(__GNUC__) && !defined(__clang__)
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__)
 #include <quadmath.h>
 #endif
 
 namespace bandsaw::test {
 
-#if defined(__GNUC__) && !defined(__clang__)
+#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__)
 __extension__ using Quad = __float128;
 inline Quad pi() { return 4 * atanq(1); }
 inline Quad quad_sin(Quad x) { return sinq(x); }

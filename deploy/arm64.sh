@@ -1,0 +1,14 @@
+#!/usr/bin/env bash
+# The programs for ARM64, built on this machine: installs what that needs (deploy/install.sh arm64), builds the programs of both
+# architectures, and runs the tests of the label arm64. The programs are in build/arm64/bin.
+# Usage: deploy/arm64.sh
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+deploy/install.sh arm64
+for preset in release arm64; do
+  cmake --preset "$preset" -DBANDSAW_TESTS=ON
+done
+cmake --build --preset release --target bandsaw bandsaw-worker bandsaw-import
+cmake --build --preset arm64 --target bandsaw bandsaw-worker bandsaw-import unit_base unit_math unit_kernel same_bits
+exec ctest --test-dir build/release --label-regex '^arm64$' --no-tests=error --output-on-failure

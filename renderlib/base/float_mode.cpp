@@ -1,0 +1,24 @@
+#include "renderlib/base/float_mode.h"
+
+#include <cstdint>
+#if defined(__x86_64__)
+#include <xmmintrin.h>
+#endif
+
+namespace bandsaw {
+
+bool float_mode_is_default() {
+#if defined(__x86_64__)
+  constexpr unsigned kFlags = 0x3f;      // what happened, not how to round
+  constexpr unsigned kDefault = 0x1f80;  // all exceptions masked, to nearest, no flushing
+  return (_mm_getcsr() & ~kFlags) == kDefault;
+#elif defined(__aarch64__)
+  std::uint64_t fpcr = 0;  // Arm Architecture Reference Manual, FPCR: no bit is set by default
+  asm volatile("mrs %0, fpcr" : "=r"(fpcr));
+  return fpcr == 0;
+#else
+#error "say how this processor's floating-point mode is read"
+#endif
+}
+
+}  // namespace bandsaw

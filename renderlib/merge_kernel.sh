@@ -1,0 +1,39 @@
+#!/bin/sh
+# Makes one object of a kernel's objects, of which other code sees one symbol only.
+# Usage: merge_kernel.sh LD OBJCOPY READELF SYMBOL OUTPUT OBJECT...
+#
+# The objects hold inline functions and templates that code compiled for older processors has too. A linker keeps one copy of
+# such a function for the whole program, and it must never be the one that an older processor cannot run. So all that the objects
+# define becomes local, but for SYMBOL. What they do not define they take from the rest of the program.
+#
+# Fails where the kernel has code that would run before the program has looked at the processor.
+set -eu
+ld=$1 objcopy=$2 readelf=$3 symbol=$4 output=$5
+shift 5
+rm -f "$output"
+merged=$output.tmp
+trap 'rm -f "$merged"' EXIT
+
+fail() {
+  echo "merge_kernel.sh: $*" >&2
+  exit 1
+}
+
+"$ld" -r --force-group-allocation -o "$merged" "$@"
+"$objcopy" --keep-global-symbol="$symbol" "$merged"
+
+sections=$("$readelf" --wide --section-headers "$merged")
+case $sections in
+  *.init_array* | *.fini_array* | *.preinit_array* | *.ctors* | *.dtors*)
+    "$readelf" --wide --relocs "$merged" | grep -A 3 -E "'\.rela?\.(init_array|fini_array|preinit_array|ctors|dtors)" >&2 || true
+    fail "the kernel has static initialisers: these functions would run on any processor when the program starts" ;;
+  *" GROUP "*) fail "the kernel still has section groups, which the linker may take for those of other objects" ;;
+esac
+symbols=$("$readelf" --wide --symbols "$merged")
+case $symbols in
+  *" IFUNC "*) fail "the kernel has an indirect function, whose resolver runs when the program starts" ;;
+esac
+# Columns: number, value, size, type, binding, visibility, section, name.
+visible=$(echo "$symbols" | awk '$5 ~ /^(GLOBAL|WEAK|UNIQUE)$/ && $7 != "UND" { print $8 }')
+[ "$visible" = "$symbol" ] || fail "these symbols are visible, instead of $symbol alone: $visible"
+mv "$merged" "$output"

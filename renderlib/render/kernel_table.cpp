@@ -1,0 +1,20 @@
+// The table of one kernel. Compiled once for each kernel, with the flags of that kernel.
+
+#include "renderlib/base/simd.h"
+#include "renderlib/render/kernel.h"
+#include "renderlib/render/kernel_code.h"
+
+namespace bandsaw {
+
+#if defined(BANDSAW_IN_AVX2_KERNEL)
+constinit const Kernel Kernel::kAvx2 = {
+#else
+constinit const Kernel Kernel::kBase = {
+#endif
+    .name = kSimdName,
+    .build = &Scene::build_with,
+    .render_band = &render_band_with_kernel,
+    .add_elementary_functions = &bandsaw::add_elementary_functions,
+};
+
+}  // namespace bandsaw

@@ -1,0 +1,38 @@
+#!/usr/bin/env bash
+# A machine without AVX2 renders and joins a farm: the programs run on an emulated Nehalem (2008: SSE4.2, no AVX), where any
+# instruction that it does not have ends them. Files are compared byte by byte with those of this machine.
+# Usage: old_cpu.sh BIN-FOLDER      Exit 77: qemu-user-static is not installed.
+set -euo pipefail
+bin=$(cd "$1" && pwd)
+gallery=$(cd "$(dirname "$0")/../../renderlib/gallery" && pwd)
+command -v qemu-x86_64-static > /dev/null || { echo "skipped: qemu-x86_64-static is not installed (deploy/install.sh old_cpu)"; exit 77; }
+old=(qemu-x86_64-static -cpu Nehalem)
+work=$(mktemp -d)
+jobs=()
+trap 'for job in "${jobs[@]}"; do kill "$job" 2> /dev/null || true; wait "$job" 2> /dev/null || true; done; rm -rf "$work"' EXIT
+cd "$work"
+fail() { echo "old_cpu.sh: $*" >&2; exit 1; }
+
+how=(--width 24 --samples 16 --report none --quiet)
+"$bin/bandsaw" render "$gallery/materials.textproto" "${how[@]}" -o here.pfm
+
+"${old[@]}" "$bin/bandsaw" render "$gallery/materials.textproto" "${how[@]}" -o old.pfm
+cmp here.pfm old.pfm
+"${old[@]}" "$bin/bandsaw" render "$gallery/materials.textproto" "${how[@]}" --kernel avx2 -o none.pfm 2> refused && fail "--kernel avx2 was taken"
+grep -q "must be plain, is 'avx2'" refused || fail "--kernel avx2 was refused otherwise: $(cat refused)"
+# The importer starts. It reads nothing here: the emulator has no seccomp. So the scenes above are imported by this processor.
+"${old[@]}" "$bin/bandsaw-import" > usage && fail "bandsaw-import took no arguments"
+grep -q "usage: bandsaw-import" usage || fail "bandsaw-import does not start: $(cat usage)"
+
+# A farm of one worker, the old machine; this one coordinates and submits.
+"$bin/bandsaw" serve --data farm --listen 127.0.0.1:0 --web none > serve.log 2>&1 &
+jobs+=($!)
+for _ in $(seq 600); do [ -s farm/farm ] && break; sleep 0.1; done
+[ -s farm/farm ] || fail "the coordinator did not start: $(cat serve.log)"
+"${old[@]}" "$bin/bandsaw-worker" --join farm/join --name old --cache cache --threads 2 > worker.log 2>&1 &
+jobs+=($!)
+"$bin/bandsaw" submit "$gallery/materials.textproto" --farm farm/farm "${how[@]}" -o farm.pfm
+cmp here.pfm farm.pfm
+"$bin/bandsaw" workers --farm farm/farm > workers
+grep -q "plain kernel" workers || fail "the list of workers does not name the kernel: $(cat workers)"
+echo "the same bytes: here, rendered by an old machine, and by a farm of it"

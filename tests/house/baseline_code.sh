@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# Only the AVX2 kernel holds instructions that older processors do not have: disassembles our own objects (those of system
+# libraries look at the processor themselves). Usage: baseline_code.sh BUILD-FOLDER
+set -euo pipefail
+cd "$1"
+# VEX-coded instructions (AVX, AVX2, FMA, F16C), and those of BMI1, BMI2, LZCNT and MOVBE. Not tzcnt: older processors run it as
+# bsf, which gives the same for what is not zero, and compilers write it so for all.
+newer=$'\t''(v[a-z0-9]+|andn|bextr|blsi|blsmsk|blsr|bzhi|mulx|pdep|pext|rorx|sarx|shlx|shrx|lzcnt|movbe)[lqwb]?( |$)'
+count() { objdump --disassemble --no-show-raw-insn "$@" | grep --extended-regexp --count "$newer" || true; }
+
+kernel=renderlib/kernel_avx2.o
+[ "$(count "$kernel")" -gt 1000 ] || { echo "$kernel has few of the instructions that are looked for: this test finds nothing"; exit 1; }
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+status=0
+for archive in proto/*.a renderlib/*.a coordinator/*.a worker/*.a; do
+  cp "$archive" "$work/archive.a"
+  ar d "$work/archive.a" kernel_avx2.o
+  found=$(count "$work/archive.a")
+  [ "$found" -eq 0 ] || { echo "$archive: $found instructions that x86-64 does not have"; status=1; }
+done
+for object in worker/CMakeFiles/*main*/*.o coordinator/CMakeFiles/bandsaw.dir/cli/*.o renderlib/CMakeFiles/bandsaw-import.dir/import/*.o; do
+  found=$(count "$object")
+  [ "$found" -eq 0 ] || { echo "$object: $found instructions that x86-64 does not have"; status=1; }
+done
+exit $status
