@@ -26,8 +26,9 @@ std::string host_of(const std::string& address) {
   return host.front() == '[' && host.back() == ']' ? host.substr(1, host.size() - 2) : host;
 }
 
-/// The workers' programs that lie with this one; none where workers come by another way. Logs each
-/// that is missing or cannot be handed out.
+/// Reads the workers' programs beside this one. Warns of a file that cannot be handed out. A
+/// missing file is not worth a line: few farms have machines of every architecture, and the page
+/// that a worker would be fetched from says where to put the file.
 WorkerPrograms load_workers() {
   WorkerPrograms workers;
   for (const Machine machine : kMachines) {
@@ -35,7 +36,7 @@ WorkerPrograms load_workers() {
     if (worker.ok()) {
       workers.push_back(*std::move(worker));
     } else {
-      spdlog::log(absl::IsNotFound(worker.status()) ? spdlog::level::info : spdlog::level::warn,
+      spdlog::log(absl::IsNotFound(worker.status()) ? spdlog::level::debug : spdlog::level::warn,
                   "no worker for {} is handed out: {}", std::string(machine_name(machine)),
                   std::string(worker.status().message()));
     }
