@@ -37,11 +37,11 @@ constexpr std::size_t kPieceSize = 1 << 12;
 
 /// Returns the size up to which a range is built by one thread.
 std::uint32_t task_size(std::uint32_t count, Pool* pool) {
-  constexpr std::uint32_t kLeast = 1 << 13;
+  constexpr std::uint32_t kMinPiece = 1 << 13;
   constexpr std::uint32_t kTasksOfAThread = 8;
   return pool == nullptr
              ? count
-             : std::max(kLeast,
+             : std::max(kMinPiece,
                         count / (kTasksOfAThread * static_cast<std::uint32_t>(pool->threads())));
 }
 

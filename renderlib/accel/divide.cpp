@@ -25,7 +25,7 @@ bool must_split(absl::Span<const TreeItem> items) {
 /// Returns true if halving must begin: it needs log2(count) levels, and two more to separate kinds,
 /// and no more are left.
 bool is_deep(const Range& range) {
-  return range.depth + static_cast<std::size_t>(std::bit_width(range.count())) + 2 >= kMaxDepth;
+  return range.depth + static_cast<std::size_t>(std::bit_width(range.count())) + 2 >= kMaxTreeDepth;
 }
 
 /// Moves the median along the widest axis to the middle; ties are broken by index, so that the tree

@@ -36,7 +36,7 @@ inline unsigned enter_children(const WideNode& node, const FloatRay& ray, float 
 }
 
 /// Each level pushes at most seven children.
-inline constexpr std::size_t kStackSize = 7 * kMaxDepth + 1;
+inline constexpr std::size_t kStackSize = 7 * kMaxTreeDepth + 1;
 
 /// Traversal stack. The high half of an entry is its entry distance (non-negative floats order as
 /// integers do), the low half is the child.

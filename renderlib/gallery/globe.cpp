@@ -73,10 +73,10 @@ Vec3 land(double height, double rain, double latitude) {
 /// are not computed: most of a planet is sea.
 Vec3 uncovered(const Vec3& p, double latitude, double rain, int octaves) {
   constexpr int kBroad = 4;
-  constexpr double kMostOfTheFine = 2 * 0.87 / (1 << kBroad);
+  constexpr double kMaxFine = 2 * 0.87 / (1 << kBroad);
   const Vec3 at = p * kContinents + kLandAt;
   const double broad = fractal(at, 0, kBroad) - kSeaLevel;
-  if (broad + kMostOfTheFine < -kShelfDepth) {
+  if (broad + kMaxFine < -kShelfDepth) {
     return sea(-kShelfDepth, broad);
   }
   const double height = broad + fractal(at, kBroad, octaves);

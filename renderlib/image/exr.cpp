@@ -14,7 +14,7 @@
 namespace bandsaw {
 namespace {
 
-constexpr float kMostHalf = 65504;
+constexpr float kMaxHalf = 65504;
 
 struct Free {
   void operator()(unsigned char* bytes) const { std::free(bytes); }
@@ -31,7 +31,7 @@ Channel channel(const std::string& name, const Image& image, float Rgb::*of, boo
   to.values.reserve(image.pixels.size());
   for (const Rgb& pixel : image.pixels) {
     const float value = pixel.*of;
-    to.values.push_back(half ? std::clamp(value, -kMostHalf, kMostHalf) : value);
+    to.values.push_back(half ? std::clamp(value, -kMaxHalf, kMaxHalf) : value);
   }
   return to;
 }
@@ -63,7 +63,7 @@ std::uint64_t beyond_half(const Image& image) {
   std::uint64_t count = 0;
   for (const Rgb& pixel : image.pixels) {
     for (const float value : {pixel.r, pixel.g, pixel.b}) {
-      count += std::abs(value) > kMostHalf ? 1 : 0;
+      count += std::abs(value) > kMaxHalf ? 1 : 0;
     }
   }
   return count;

@@ -18,7 +18,7 @@ namespace bandsaw {
 class AskedDistance {
  public:
   /// Maximum number of pivots; further ones are ignored.
-  static constexpr std::size_t kMostPivots = 4;
+  static constexpr std::size_t kMaxPivots = 4;
 
   /// Starts without pivots: the pdf is that of `flight`. `flight` MUST outlive this object, and its
   /// `chance()` MUST NOT be 0. `medium` is the medium of the segment.
@@ -29,7 +29,7 @@ class AskedDistance {
   /// `Equiangular`. All pivots have the same total weight in the mixture; within it, the share of
   /// free-flight sampling is between 1/16 and 1/2 and grows with the optical depth up to the pivot.
   void add(const Vec3& origin, const Vec3& way, double length, const Vec3& pivot) {
-    if (pivots_ == kMostPivots) {
+    if (pivots_ == kMaxPivots) {
       return;
     }
     angles_[size_] = Equiangular(origin, way, length, pivot);
@@ -37,7 +37,7 @@ class AskedDistance {
     // proportional to the integrand. Behind many mean free paths the near end of the segment
     // dominates, and free-flight sampling is the better strategy.
     const double depth = extinction_ * bandsaw::length(pivot - origin);
-    const double flown = std::clamp(0.5 - 0.5 / (1 + depth), kLeastFlown, 0.5);
+    const double flown = std::clamp(0.5 - 0.5 / (1 + depth), kMinFreeFlightShare, 0.5);
     share_[size_++] = 1 - flown;
     flown_ += flown;
     ++pivots_;
@@ -45,7 +45,7 @@ class AskedDistance {
   /// Adds a light without a position (distant or environment). Its irradiance does not vary along
   /// the segment, so its share of the mixture is free-flight sampling.
   void add_distant() {
-    if (pivots_ < kMostPivots) {
+    if (pivots_ < kMaxPivots) {
       flown_ += 1;
       ++pivots_;
     }
@@ -77,12 +77,12 @@ class AskedDistance {
   }
 
  private:
-  static constexpr double kLeastFlown = 0.0625;
+  static constexpr double kMinFreeFlightShare = 0.0625;
 
   const Flight& flight_;
   double extinction_;
-  std::array<Equiangular, kMostPivots> angles_;
-  std::array<double, kMostPivots> share_{};
+  std::array<Equiangular, kMaxPivots> angles_;
+  std::array<double, kMaxPivots> share_{};
   std::size_t size_ = 0;    ///< number of entries in `angles_` and `share_`
   std::size_t pivots_ = 0;  ///< number of pivots, including distant lights
   double flown_ = 0;        ///< weight of free-flight sampling; with `share_` it sums to `pivots_`

@@ -26,7 +26,7 @@ int* MediumWalk::Around::count_of(MediumId medium) {
       return &entries_[i].shapes;
     }
   }
-  if (size_ == kMostMedia) {
+  if (size_ == kMaxMedia) {
     return nullptr;
   }
   entries_[size_] = {medium, 0};

@@ -28,7 +28,7 @@ struct Stretch {
 class MediumWalk {
  public:
   /// Maximum number of different media that may surround a point; further ones are ignored.
-  static constexpr std::size_t kMostMedia = 16;
+  static constexpr std::size_t kMaxMedia = 16;
 
   /// `ray` has a unit direction; only its first `length` (> 0, may be infinite) is split. The scene
   /// MUST need media (`Needs::media`) and outlive this object. Adds the number of rays traced to
@@ -62,7 +62,7 @@ class MediumWalk {
       MediumId medium{};
       int shapes = 0;
     };
-    std::array<Entry, kMostMedia> entries_;
+    std::array<Entry, kMaxMedia> entries_;
     std::size_t size_ = 0;
   };
   /// State of the search for boundaries along the ray.

@@ -74,7 +74,7 @@ void follow_own(const PathContext& context, PathState& path, std::optional<Taker
   }
 }
 
-using Takers = std::array<std::optional<Taker>, kMostShared>;
+using Takers = std::array<std::optional<Taker>, kMaxShared>;
 
 /// What a taker scatters from there by solid angle, and the solid angle of an area there; no
 /// density where it would not be found from the side that it was found from.
@@ -97,7 +97,7 @@ View view_of(const Taker& taker, const Finding& found) {
 /// Adds what pixel `finder` found to all that see it.
 void deal_out(const Scene& scene, const Takers& takers, const Finding& found, std::size_t finder,
               absl::Span<SharedPixel> pixels, std::uint64_t& rays) {
-  std::array<View, kMostShared> views;
+  std::array<View, kMaxShared> views;
   double density = 0;  // Of all pixels, by area.
   for (std::size_t j = 0; j < pixels.size(); ++j) {
     if (!takers[j]) {
@@ -123,9 +123,9 @@ void deal_out(const Scene& scene, const Takers& takers, const Finding& found, st
 
 void shared_radiance(const Scene& scene, absl::Span<SharedPixel> pixels, std::uint64_t sample,
                      const PathOptions& options, PathCounts& counts) {
-  BANDSAW_CHECK(pixels.size() <= kMostShared, "more pixels than may share");
+  BANDSAW_CHECK(pixels.size() <= kMaxShared, "more pixels than may share");
   Takers takers;
-  std::array<std::optional<Finding>, kMostShared> found;
+  std::array<std::optional<Finding>, kMaxShared> found;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const PathContext context{scene, pixels[i].sampler, sample, options, counts.rays};
     PathState path(pixels[i].camera_ray.ray);

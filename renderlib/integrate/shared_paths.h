@@ -22,7 +22,7 @@
 namespace bandsaw {
 
 /// Maximum number of pixels that share their paths.
-inline constexpr std::size_t kMostShared = 8;
+inline constexpr std::size_t kMaxShared = 8;
 
 struct SharedPixel {
   PixelSampler sampler;
@@ -30,7 +30,7 @@ struct SharedPixel {
   Rgb radiance = {};  ///< result: radiance arriving along `camera_ray`; set by `shared_radiance()`
 };
 
-/// Computes sample number `sample` of up to kMostShared pixels. The scene MUST be one that shares
+/// Computes sample number `sample` of up to kMaxShared pixels. The scene MUST be one that shares
 /// paths (`Scene::shares_paths`), and `options.local` MUST be false. Adds to `counts`.
 /// Deterministic; allocates nothing.
 void shared_radiance(const Scene& scene, absl::Span<SharedPixel> pixels, std::uint64_t sample,

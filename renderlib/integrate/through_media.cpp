@@ -43,7 +43,7 @@ AskedDistance asked_distance(const Step& step, double length) {
   }
   const LitStretch stretch{step.origin, step.way, length, mean_extinction(step.medium)};
   const Sample4 at = step.numbers(1);
-  const std::size_t pivots = std::min(lights.size(), AskedDistance::kMostPivots);
+  const std::size_t pivots = std::min(lights.size(), AskedDistance::kMaxPivots);
   for (std::size_t i = 0; i < pivots; ++i) {
     const double choice = (at[0] + static_cast<double>(i)) / static_cast<double>(pivots);
     const std::optional<LightPlace> place = lights.place(stretch, step.time, choice, at[1], at[2]);

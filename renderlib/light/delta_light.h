@@ -43,7 +43,7 @@ DeltaLight placed(const DeltaLight& light, const Transform& to);
 
 /// Maximum number of directional lights in a scene: all of them are evaluated at every point that
 /// samples light.
-inline constexpr std::size_t kMostDirectionalLights = 8;
+inline constexpr std::size_t kMaxDirectionalLights = 8;
 
 /// Unoccluded illumination at a point.
 struct Arrival {

@@ -15,10 +15,10 @@ constexpr double kJustFacing = 1 - 0x1p-40;
 
 /// Minimum distance of a light from a ray, relative to the distance to the light
 /// (medium/equiangular.h).
-constexpr double kLeastAside = 1e-6;
+constexpr double kMinAside = 1e-6;
 
 /// Upper bound of an importance, so that sums and ratios stay finite.
-constexpr double kMostGiven = 1e300;
+constexpr double kMaxImportance = 1e300;
 
 /// An angle in [0, 180] degrees, given by its sine and cosine.
 struct Angle {
@@ -78,7 +78,7 @@ double importance(const LightBound& bound, const Receiver& receiver) {
   if (!(near2 > 0)) {
     return 0;  // The receiver coincides with a light without extent.
   }
-  const double given = std::min(bound.intensity / near2, kMostGiven);
+  const double given = std::min(bound.intensity / near2, kMaxImportance);
   if (bound.flat) {
     const double height = -dot(bound.axis, way);
     if (height == 0 || (height < 0 && !bound.two_sided)) {
@@ -120,15 +120,15 @@ double importance(const LightBound& bound, const Receiver& receiver) {
 double importance(const LightBound& bound, const LitStretch& stretch) {
   const Vec3 to_light = bound.ball.center - stretch.origin;
   const double nearest = stretch.nearest(bound.ball.center);
-  const double aside = std::max({length(to_light - stretch.way * nearest), bound.ball.radius,
-                                 kLeastAside * length(to_light)});
+  const double aside = std::max(
+      {length(to_light - stretch.way * nearest), bound.ball.radius, kMinAside * length(to_light)});
   if (!(aside > 0)) {
-    return kMostGiven;
+    return kMaxImportance;
   }
   const double angle = std::min(kPi, stretch.length / aside);
   const double given =
       bound.intensity * exp(-stretch.extinction * (nearest + aside)) * angle / aside;
-  return std::min(given, kMostGiven);
+  return std::min(given, kMaxImportance);
 }
 
 }  // namespace bandsaw

@@ -24,8 +24,8 @@ double importance(const DistantBound& bound, const LitStretch& stretch) {
 
 LightChoice::LightChoice(std::vector<LightBound> local, std::vector<DistantBound> distant)
     : distant_(std::move(distant)) {
-  BANDSAW_CHECK(distant_.size() < kFewLights, "a scene has few distant lights");
-  if (local.size() + distant_.size() <= kFewLights) {
+  BANDSAW_CHECK(distant_.size() < kMaxIndividualLights, "a scene has few distant lights");
+  if (local.size() + distant_.size() <= kMaxIndividualLights) {
     few_ = std::move(local);
     return;
   }
@@ -57,7 +57,7 @@ bool LightChoice::any_for(const Receiver& receiver) const {
 
 template <typename From>
 std::optional<LightChoice::Choice> LightChoice::choose(const From& receiver, double number) const {
-  std::array<double, kFewLights> sums;
+  std::array<double, kMaxIndividualLights> sums;
   const std::size_t count = candidates();
   double sum = 0;
   for (std::size_t i = 0; i < count; ++i) {

@@ -20,12 +20,12 @@ struct DistantBound {
 double importance(const DistantBound& bound, const Receiver& receiver);
 double importance(const DistantBound& bound, const LitStretch& stretch);
 
-/// Up to kFewLights lights are evaluated individually at every point. If there are more, the local
-/// ones are selected through a light tree, next to which the distant ones are evaluated
+/// Up to kMaxIndividualLights lights are evaluated individually at every point. If there are more,
+/// the local ones are selected through a light tree, next to which the distant ones are evaluated
 /// individually.
 class LightChoice {
  public:
-  static constexpr std::size_t kFewLights = 16;
+  static constexpr std::size_t kMaxIndividualLights = 16;
 
   /// Lights are numbered in the order of `local`, followed by `distant`.
   struct Choice {
@@ -34,7 +34,7 @@ class LightChoice {
   };
 
   LightChoice() = default;
-  /// `distant` MUST have fewer than kFewLights elements.
+  /// `distant` MUST have fewer than kMaxIndividualLights elements.
   LightChoice(std::vector<LightBound> local, std::vector<DistantBound> distant);
 
   /// Returns true if any light may reach the receiver.

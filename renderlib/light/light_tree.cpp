@@ -40,7 +40,7 @@ template std::optional<LightTree::Choice> LightTree::choose(const Receiver&, dou
 template std::optional<LightTree::Choice> LightTree::choose(const LitStretch&, double) const;
 
 double LightTree::probability(const Receiver& receiver, std::uint32_t light) const {
-  std::array<std::uint32_t, kMostDepth> way;
+  std::array<std::uint32_t, kMaxDepth> way;
   std::size_t steps = 0;
   for (std::uint32_t at = leaves_[light]; at != 0; at = nodes_[at].parent) {
     way[steps++] = at;

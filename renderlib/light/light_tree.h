@@ -18,7 +18,7 @@ namespace bandsaw {
 class LightTree {
  public:
   /// Maximum depth of a node.
-  static constexpr std::uint32_t kMostDepth = 64;
+  static constexpr std::uint32_t kMaxDepth = 64;
 
   struct Choice {
     std::uint32_t light = 0;

@@ -126,7 +126,7 @@ class LightTreeBuilder {
   std::size_t divide(absl::Span<std::uint32_t> range, std::uint32_t depth) const {
     // Median splits from this depth on bound the tree's depth for any input.
     constexpr std::uint32_t kHalvings = 32;
-    const bool deep = depth + kHalvings >= LightTree::kMostDepth;
+    const bool deep = depth + kHalvings >= LightTree::kMaxDepth;
     const Split split = deep || range.size() == 2 ? Split{} : best_split(range);
     if (split.axis < 0) {
       return range.size() / 2;

@@ -105,7 +105,7 @@ std::optional<BsdfSample> sample_dielectric(const DielectricBsdf& bsdf, double l
 Bsdf metal_at(const Rgb& reflectance, double fuzz, const SidedNormals& normal, const Vec3& wo) {
   const SidedNormals sided = for_mirror(normal, wo);
   const Vec3 mirror = normalize(mirrored(wo, sided.shading));
-  if (fuzz < kLeastFuzz) {
+  if (fuzz < kMinFuzz) {
     return MirrorBsdf{reflectance, mirror};
   }
   return FuzzyMetalBsdf{sided, reflectance, mirror, fuzz};
@@ -117,7 +117,7 @@ Bsdf glass_at(double index, double roughness, const SidedNormals& normal, bool o
   const double relative = outside_index == 1 ? index : index / outside_index;
   const double eta = outside ? relative : 1 / relative;
   const double alpha = roughness * roughness;
-  if (alpha < kLeastAlpha || std::abs(eta - 1) < kLeastRefraction) {
+  if (alpha < kMinAlpha || std::abs(eta - 1) < kMinRefraction) {
     return DielectricBsdf{for_glass(normal, wo, eta), wo, eta};
   }
   const Vec3 shading = visible_normal(normal.shading, normal.geometric, wo);

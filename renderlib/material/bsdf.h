@@ -56,7 +56,7 @@ using Bsdf = std::variant<BlackBsdf, DiffuseBsdf, FuzzyMetalBsdf, MirrorBsdf, Di
                           RoughDielectricBsdf, PrincipledBsdf>;
 
 /// Smaller fuzz is treated as a mirror: it would spread light by less than a thousandth of a pixel.
-inline constexpr double kLeastFuzz = 1e-6;
+inline constexpr double kMinFuzz = 1e-6;
 
 /// Returns the BSDF of `material` at `point`, seen along `wo`. `outside_index` is the index of
 /// refraction on the side of the normal (nested dielectrics; material/interiors.h).

@@ -112,7 +112,7 @@ void choose_chances(PrincipledBsdf& bsdf, const GgxAlbedo& albedo) {
 }
 
 GgxLobe lobe_of(double roughness) {
-  return {roughness, std::max(kLeastAlpha, roughness * roughness)};
+  return {roughness, std::max(kMinAlpha, roughness * roughness)};
 }
 
 }  // namespace

@@ -135,10 +135,10 @@ struct CheckMaterial {
     RETURN_IF_ERROR(check_map(m.normal, path + ".normal"));
     RETURN_IF_ERROR(check_map(m.coat_normal, path + ".coat_normal"));
     RETURN_IF_ERROR(check_map(m.index_map, path + ".index_texture"));
-    constexpr double kMost = 1e30;
-    RETURN_IF_ERROR(check_number(m.coat_normal_scale, -kMost, kMost, path + ".coat_normal_scale"));
-    RETURN_IF_ERROR(check_number(m.normal_scale, -kMost, kMost, path + ".normal_scale"));
-    RETURN_IF_ERROR(check_number(m.alpha_cutoff, 0, kMost, path + ".alpha_cutoff"));
+    constexpr double kMax = 1e30;
+    RETURN_IF_ERROR(check_number(m.coat_normal_scale, -kMax, kMax, path + ".coat_normal_scale"));
+    RETURN_IF_ERROR(check_number(m.normal_scale, -kMax, kMax, path + ".normal_scale"));
+    RETURN_IF_ERROR(check_number(m.alpha_cutoff, 0, kMax, path + ".alpha_cutoff"));
     return check_number(m.index_of_refraction, 1, 5, path + ".index_of_refraction");
   }
   absl::Status check_map(const std::optional<TextureId>& map, const std::string& path) const {

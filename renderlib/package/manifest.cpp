@@ -54,9 +54,9 @@ absl::Status check_head(const package::Manifest& manifest) {
     return manifest_error("integrator", absl::StrCat("must lie in [0, ", kLastIntegrator, "], is ",
                                                      manifest.integrator()));
   }
-  if (!(std::abs(manifest.exposure()) <= kMostExposure)) {
-    return manifest_error("exposure", absl::StrCat("must lie in [-", kMostExposure, ", ",
-                                                   kMostExposure, "], is ", manifest.exposure()));
+  if (!(std::abs(manifest.exposure()) <= kMaxExposure)) {
+    return manifest_error("exposure", absl::StrCat("must lie in [-", kMaxExposure, ", ",
+                                                   kMaxExposure, "], is ", manifest.exposure()));
   }
   if (manifest.tone() > static_cast<std::uint32_t>(kLastTone)) {
     return manifest_error("tone",

@@ -42,9 +42,9 @@ absl::StatusOr<Frame> decode_frame(const package::Frame& from, const std::string
   frame.parent = from.has_parent() ? FrameId{from.parent()} : kNoFrame;
   ASSIGN_OR_RETURN(frame.placement, decode_transform(from.placement(), field + ".placement"));
   if (from.at_size() != from.times_size() * kNumbers) {
-    return manifest_error(field + ".at", absl::StrCat("must have 12 numbers for each of ",
-                                                      from.times_size(), " times, has ",
-                                                      from.at_size()));
+    return manifest_error(field + ".at",
+                          absl::StrCat("must have 12 numbers for each of ", from.times_size(),
+                                       " times, has ", from.at_size()));
   }
   for (int i = 0; i < from.times_size(); ++i) {
     frame.keys.emplace_back(from.times(i), transform_at(from.at(), i * kNumbers));
@@ -62,9 +62,9 @@ absl::Status check_regular(const Transform& transform, const std::string& field)
 
 absl::Status check_below(std::uint32_t index, std::size_t count, const std::string& field,
                          const char* what) {
-  return index < count ? absl::OkStatus()
-                       : manifest_error(field, absl::StrCat("is ", index, ", there are ", count,
-                                                            " ", what));
+  return index < count
+             ? absl::OkStatus()
+             : manifest_error(field, absl::StrCat("is ", index, ", there are ", count, " ", what));
 }
 
 absl::Status check_keys(const Frame& frame, const std::string& field) {
@@ -73,7 +73,7 @@ absl::Status check_keys(const Frame& frame, const std::string& field) {
   }
   for (std::size_t i = 0; i < frame.keys.size(); ++i) {
     const Key& key = frame.keys[i];
-    if (!(std::abs(key.time) <= kMostTime) || (i > 0 && !(key.time > frame.keys[i - 1].time))) {
+    if (!(std::abs(key.time) <= kMaxTime) || (i > 0 && !(key.time > frame.keys[i - 1].time))) {
       return manifest_error(absl::StrCat(field, ".times[", i, "]"),
                             absl::StrCat("must rise and lie in [-1e9, 1e9], is ", key.time));
     }
@@ -135,15 +135,14 @@ void encode_placements(const Geometry& geometry, Frames& frames, Instances& inst
 absl::Status decode_placements(const Frames& frames, const Instances& instances,
                                const std::string& prefix, Geometry& geometry) {
   for (int i = 0; i < frames.size(); ++i) {
-    ASSIGN_OR_RETURN(Frame frame,
-                     decode_frame(frames[i], absl::StrCat(prefix, "frame[", i, "]")));
+    ASSIGN_OR_RETURN(Frame frame, decode_frame(frames[i], absl::StrCat(prefix, "frame[", i, "]")));
     geometry.frames.push_back(std::move(frame));
   }
   for (int i = 0; i < instances.size(); ++i) {
     const package::Instance& from = instances[i];
-    ASSIGN_OR_RETURN(const Transform to_world,
-                     decode_transform(from.transform(),
-                                      absl::StrCat(prefix, "instance[", i, "].transform")));
+    ASSIGN_OR_RETURN(
+        const Transform to_world,
+        decode_transform(from.transform(), absl::StrCat(prefix, "instance[", i, "].transform")));
     geometry.instances.push_back({MeshId{from.mesh()}, MaterialId{from.material()}, to_world,
                                   from.has_group() ? GroupId{from.group()} : kNoGroup,
                                   from.has_frame() ? FrameId{from.frame()} : kNoFrame});
@@ -156,8 +155,8 @@ absl::Status check_placements(const Geometry& geometry, std::size_t materials) {
     const Frame& frame = geometry.frames[i];
     const std::string field = absl::StrCat("frame[", i, "]");
     if (frame.parent != kNoFrame && index_of(frame.parent) >= i) {
-      return manifest_error(field + ".parent", absl::StrCat("must be below ", i, ", is ",
-                                                            index_of(frame.parent)));
+      return manifest_error(field + ".parent",
+                            absl::StrCat("must be below ", i, ", is ", index_of(frame.parent)));
     }
     RETURN_IF_ERROR(check_regular(frame.placement, field + ".placement"));
     RETURN_IF_ERROR(check_keys(frame, field));

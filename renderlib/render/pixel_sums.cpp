@@ -34,7 +34,7 @@ void PixelSums::add_run(std::uint32_t y, std::uint32_t first, std::uint32_t last
                         const TileSamples& tiles, absl::Span<double> row,
                         Counters& counters) const {
   Desk desk;
-  desk.pixels.reserve(kMostShared);
+  desk.pixels.reserve(kMaxShared);
   if (!shares_) {
     for (std::uint32_t x = first; x < last && !stopped(); ++x) {
       add_group(y, {x, x + 1}, tiles.of_pixel(x, y, samples_), row, desk, counters);
@@ -87,7 +87,7 @@ void PixelSums::add_group(std::uint32_t y, const HalfRow& group, const SampleRan
 PixelSums::Sums PixelSums::leaf(std::uint32_t y, const HalfRow& group, const SampleRange& samples,
                                 absl::Span<SharedPixel> pixels, Counters& counters) const {
   Sums sums{};
-  std::array<double, kMostShared> left_out{};
+  std::array<double, kMaxShared> left_out{};
   PathCounts counts;
   for (std::uint64_t number = samples.first; number < samples.last; ++number) {
     sample(y, group, number, pixels, counts);

@@ -45,7 +45,7 @@ class PixelSums {
     friend Sum operator+(const Sum& p, const Sum& q) { return {p.r + q.r, p.g + q.g, p.b + q.b}; }
     friend Sum operator*(double s, const Sum& p) { return {s * p.r, s * p.g, s * p.b}; }
   };
-  using Sums = std::array<Sum, kMostShared>;
+  using Sums = std::array<Sum, kMaxShared>;
   /// Scratch memory of add_group(), allocated once per run.
   struct Desk {
     std::vector<SharedPixel> pixels;

@@ -14,8 +14,8 @@ namespace {
 
 absl::Status check_rates(const std::string& field, const Rgb& rates) {
   for (const float rate : {rates.r, rates.g, rates.b}) {
-    if (!(rate >= 0 && rate <= kMostPerUnit)) {
-      return invalid(field, absl::StrCat("must be in [0, ", kMostPerUnit, "], is ", rate));
+    if (!(rate >= 0 && rate <= kMaxPerUnit)) {
+      return invalid(field, absl::StrCat("must be in [0, ", kMaxPerUnit, "], is ", rate));
     }
   }
   return absl::OkStatus();
@@ -25,9 +25,9 @@ absl::Status check_medium(const std::string& field, const Medium& medium) {
   RETURN_IF_ERROR(check_rates(field + ".absorption", medium.absorption));
   RETURN_IF_ERROR(check_rates(field + ".scattering", medium.scattering));
   RETURN_IF_ERROR(check_rates(field + ".emission", medium.emission));
-  if (!(std::abs(medium.g) <= kMostG)) {
+  if (!(std::abs(medium.g) <= kMaxG)) {
     return invalid(field + ".g",
-                   absl::StrCat("must be in [", -kMostG, ", ", kMostG, "], is ", medium.g));
+                   absl::StrCat("must be in [", -kMaxG, ", ", kMaxG, "], is ", medium.g));
   }
   return absl::OkStatus();
 }

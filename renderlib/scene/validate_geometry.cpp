@@ -136,7 +136,7 @@ absl::Status check_frame(const std::string& field, const Frame& frame, std::size
   for (std::size_t i = 0; i < frame.keys.size(); ++i) {
     const Key& key = frame.keys[i];
     const std::string name = absl::StrCat(field, ".keys[", i, "]");
-    if (!(std::abs(key.time) <= kMostTime) || (i > 0 && !(key.time > frame.keys[i - 1].time))) {
+    if (!(std::abs(key.time) <= kMaxTime) || (i > 0 && !(key.time > frame.keys[i - 1].time))) {
       return invalid(name + ".time", absl::StrCat("must be within +-1e9 and rise, is ", key.time));
     }
     RETURN_IF_ERROR(check_placement(name + ".at", key.at));

@@ -16,11 +16,11 @@ namespace bandsaw {
 namespace {
 
 constexpr int kBins = 400;  // Of the ratio, evenly in its logarithm.
-constexpr double kLeast = 0.01;
-constexpr double kMost = 2.05;
+constexpr double kMin = 0.01;
+constexpr double kMax = 2.05;
 
 int bin_of(double ratio) {
-  const double at = std::log(ratio / kLeast) / std::log(kMost / kLeast);
+  const double at = std::log(ratio / kMin) / std::log(kMax / kMin);
   return std::clamp(static_cast<int>(at * kBins), 0, kBins - 1);
 }
 

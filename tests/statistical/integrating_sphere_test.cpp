@@ -104,9 +104,9 @@ TEST(IntegratingSphere, IsAsBrightForPixelsThatShareTheirPaths) {
   const std::vector<float> values = albedos();
   const LitSphere lit = lit_sphere(values);
   ASSERT_TRUE(lit.scene->shares_paths());
-  const std::array<std::pair<std::uint32_t, std::uint32_t>, kMostShared> texels = {
+  const std::array<std::pair<std::uint32_t, std::uint32_t>, kMaxShared> texels = {
       {{1, 1}, {2, 1}, {1, 2}, {2, 2}, {1, 3}, {2, 3}, {5, 2}, {6, 4}}};
-  std::array<Ray, kMostShared> rays;
+  std::array<Ray, kMaxShared> rays;
   for (std::size_t i = 0; i < texels.size(); ++i) {
     rays[i] = toward_texel(texels[i].first, texels[i].second);
   }

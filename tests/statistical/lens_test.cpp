@@ -159,13 +159,13 @@ TEST(Lens, IsAskedThroughWherePixelsShareTheirPaths) {
   ASSERT_TRUE(scene->shares_paths());
   const RayGenerator rays(camera(0.4), 20, 20);
   constexpr double kRow = 10.3;
-  std::array<Moments, kMostShared> shared;
+  std::array<Moments, kMaxShared> shared;
   for (std::uint64_t seed = 0; seed < 32; ++seed) {
     std::vector<SharedPixel> pixels;
-    for (std::uint32_t x = 0; x < kMostShared; ++x) {
+    for (std::uint32_t x = 0; x < kMaxShared; ++x) {
       pixels.push_back({.sampler = PixelSampler(seed, x, 3), .camera_ray = Ray{}});
     }
-    std::array<double, kMostShared> sums{};
+    std::array<double, kMaxShared> sums{};
     PathCounts counts;
     for (std::uint64_t sample = 0; sample < 512; ++sample) {
       for (std::size_t i = 0; i < pixels.size(); ++i) {

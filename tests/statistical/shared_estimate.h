@@ -12,17 +12,17 @@ namespace bandsaw::test {
 
 /// Green channel of each ray, seeds [0, seeds), samples [0, samples) of each; `samples` a power of
 /// two.
-inline std::array<Moments, kMostShared> shared_radiance_along(
-    const Scene& scene, const std::array<Ray, kMostShared>& camera_rays, const PathOptions& options,
+inline std::array<Moments, kMaxShared> shared_radiance_along(
+    const Scene& scene, const std::array<Ray, kMaxShared>& camera_rays, const PathOptions& options,
     std::uint64_t samples, std::uint64_t seeds = 32) {
-  std::array<Moments, kMostShared> means;
+  std::array<Moments, kMaxShared> means;
   for (std::uint64_t seed = 0; seed < seeds; ++seed) {
     std::vector<SharedPixel> pixels;
     for (const Ray& ray : camera_rays) {
       const auto x = static_cast<std::uint32_t>(pixels.size());
       pixels.push_back({.sampler = PixelSampler(seed, x, 7), .camera_ray = ray});
     }
-    std::array<double, kMostShared> sums{};
+    std::array<double, kMaxShared> sums{};
     PathCounts counts;
     for (std::uint64_t sample = 0; sample < samples; ++sample) {
       shared_radiance(scene, absl::MakeSpan(pixels), sample, options, counts);

@@ -17,17 +17,17 @@ namespace {
 constexpr std::uint64_t kSamples = 1024;
 
 /// From the camera to points of the back of the room.
-std::array<Ray, kMostShared> rays_across(double from, double to, double height) {
-  std::array<Ray, kMostShared> rays;
+std::array<Ray, kMaxShared> rays_across(double from, double to, double height) {
+  std::array<Ray, kMaxShared> rays;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const Vec3 origin = {278, 278, -800};
-    const double x = from + (to - from) * static_cast<double>(i) / (kMostShared - 1);
+    const double x = from + (to - from) * static_cast<double>(i) / (kMaxShared - 1);
     rays[i] = {.origin = origin, .direction = normalize(Vec3{x, height, 400} - origin)};
   }
   return rays;
 }
 
-void expect_equal_means(const Scene& scene, const std::array<Ray, kMostShared>& rays,
+void expect_equal_means(const Scene& scene, const std::array<Ray, kMaxShared>& rays,
                         const PathOptions& options, double precision) {
   const auto shared = test::shared_radiance_along(scene, rays, options, kSamples);
   for (std::size_t i = 0; i < rays.size(); ++i) {

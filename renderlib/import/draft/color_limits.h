@@ -5,7 +5,7 @@
 
 namespace bandsaw {
 
-inline constexpr float kMostReflectance = 1;
-inline constexpr float kMostRadiance = 1e30f;
+inline constexpr float kMaxReflectance = 1;
+inline constexpr float kMaxRadiance = 1e30f;
 
 }  // namespace bandsaw

@@ -12,7 +12,7 @@
 namespace bandsaw {
 namespace {
 
-bool is_light(float value) { return value >= 0 && value <= kMostRadiance; }
+bool is_light(float value) { return value >= 0 && value <= kMaxRadiance; }
 
 }  // namespace
 

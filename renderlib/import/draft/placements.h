@@ -24,7 +24,7 @@ struct Contents {
 };
 
 /// More placements than this are refused: each travels in the manifest.
-inline constexpr std::size_t kMostPlacements = 500'000;
+inline constexpr std::size_t kMaxPlacements = 500'000;
 
 /// Where something is put: at `to_frame` in a frame of `to`, or in its space.
 struct Place {

@@ -47,8 +47,8 @@ absl::Status check_size(const unsigned char* data, std::size_t size) {
   const std::int64_t width = std::int64_t{header.data_window.max_x} - header.data_window.min_x + 1;
   const std::int64_t height = std::int64_t{header.data_window.max_y} - header.data_window.min_y + 1;
   FreeEXRHeader(&header);
-  constexpr std::int64_t kMost = kMaxTextureSide;
-  if (width < 1 || height < 1 || width > kMost || height > kMost ||
+  constexpr std::int64_t kMax = kMaxTextureSide;
+  if (width < 1 || height < 1 || width > kMax || height > kMax ||
       width * height > static_cast<std::int64_t>(kMaxPixels)) {
     return absl::InvalidArgumentError(
         absl::StrCat("is ", width, " x ", height, " pixels, at most ", kMaxPixels, " are read"));

@@ -15,7 +15,7 @@ namespace {
 
 using As = MaterialReader::As;
 using Slot = MaterialReader::Slot;
-constexpr float kMostRadiance = 1e30f;
+constexpr float kMaxRadiance = 1e30f;
 
 /// Its numbers, as far as they say anything.
 struct Classic {
@@ -70,7 +70,7 @@ Classic read_numbers(MaterialReader& reader) {
   }
   const double index = reader.number("$mat.refracti", 0, 5).value_or(0);
   from.index = index > 1 ? std::optional(index) : std::nullopt;
-  from.glow = reader.color("$clr.emissive", kMostRadiance).value_or(Rgb{});
+  from.glow = reader.color("$clr.emissive", kMaxRadiance).value_or(Rgb{});
   from.glow_map = reader.has({aiTextureType_EMISSIVE});
   from.glow = from.glow_map && is_black(from.glow) ? Rgb{1, 1, 1} : from.glow;
   from.opacity_map = reader.has({aiTextureType_OPACITY});

@@ -15,10 +15,10 @@ namespace {
 /// Beer and Lambert: after the distance the light that is left is the colour.
 Rgb absorption_of(const GltfVolume& volume) {
   const auto channel = [&](double color) {
-    constexpr double kLeastColor = 1e-6;  // darker is as opaque
+    constexpr double kMinColor = 1e-6;  // darker is as opaque
     const double rate =
-        -log(std::clamp(color, kLeastColor, 1.0)) / std::max(volume.attenuation_distance, 1e-12);
-    return std::clamp(static_cast<float>(rate), 0.0f, kMostPerUnit);
+        -log(std::clamp(color, kMinColor, 1.0)) / std::max(volume.attenuation_distance, 1e-12);
+    return std::clamp(static_cast<float>(rate), 0.0f, kMaxPerUnit);
   };
   const auto [r, g, b] = volume.attenuation_color;
   return std::isfinite(volume.attenuation_distance) ? Rgb{channel(r), channel(g), channel(b)}

@@ -19,7 +19,7 @@ Vec3 vector_of(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 /// intensity and irradiance as they are.
 Rgb brightness_of(const aiLight& from) {
   const auto channel = [](float value) {
-    return std::isfinite(value) ? std::clamp(value, 0.0f, kMostRadiance) : 0.0f;
+    return std::isfinite(value) ? std::clamp(value, 0.0f, kMaxRadiance) : 0.0f;
   };
   return {channel(from.mColorDiffuse.r), channel(from.mColorDiffuse.g),
           channel(from.mColorDiffuse.b)};
@@ -79,7 +79,7 @@ void add_model_light(const aiLight& from, const Transform& node, ModelFile& file
       if (!direction) {
         return leave_out("it has no direction");
       }
-      if (directional_lights(model) == kMostDirectionalLights) {
+      if (directional_lights(model) == kMaxDirectionalLights) {
         return leave_out("there are too many directional ones");
       }
       model.lights.emplace_back(DirectionalLight{*direction, brightness_of(from)});

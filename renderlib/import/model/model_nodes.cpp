@@ -15,7 +15,7 @@
 namespace bandsaw {
 namespace {
 
-constexpr std::size_t kMostInstances = 1'000'000;
+constexpr std::size_t kMaxInstances = 1'000'000;
 
 Vec3 vector_of(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
@@ -81,7 +81,7 @@ class Walk {
   }
 
   void run() {
-    while (!stack_.empty() && model.instances.size() <= kMostInstances) {
+    while (!stack_.empty() && model.instances.size() <= kMaxInstances) {
       const auto [node, parent] = stack_.back();
       stack_.pop_back();
       visit(*node, parent * transform_of(node->mTransformation));
@@ -175,9 +175,9 @@ Transform transform_of(const aiMatrix4x4& m) {
 absl::StatusOr<Model> read_nodes(ModelFile& file, const ModelMeshes& meshes) {
   Walk walk(file, meshes);
   walk.run();
-  if (walk.model.instances.size() > kMostInstances) {
+  if (walk.model.instances.size() > kMaxInstances) {
     return absl::ResourceExhaustedError(
-        absl::StrCat(file.name(), ": has more than ", kMostInstances, " placements of meshes"));
+        absl::StrCat(file.name(), ": has more than ", kMaxInstances, " placements of meshes"));
   }
   if (walk.flattened > 0) {
     file.warn(

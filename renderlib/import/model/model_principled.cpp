@@ -19,7 +19,7 @@ namespace {
 
 using As = MaterialReader::As;
 using Slot = MaterialReader::Slot;
-constexpr float kMostRadiance = 1e30f;
+constexpr float kMaxRadiance = 1e30f;
 
 Slot either(const MaterialReader& reader, Slot first, Slot second) {
   return reader.has(first) ? first : second;
@@ -50,10 +50,10 @@ absl::Status read_emission(MaterialReader& reader, Principled& to) {
   const double strength =
       reader.gltf() != nullptr && reader.gltf()->emissive_strength
           ? *reader.gltf()->emissive_strength
-          : reader.number("$mat.emissiveIntensity", 0, double{kMostRadiance}).value_or(1);
-  const Rgb color = reader.color("$clr.emissive", kMostRadiance).value_or(Rgb{}) *
+          : reader.number("$mat.emissiveIntensity", 0, double{kMaxRadiance}).value_or(1);
+  const Rgb color = reader.color("$clr.emissive", kMaxRadiance).value_or(Rgb{}) *
                     static_cast<float>(std::clamp(strength, 0.0, 1e8));
-  const auto least = [](float v) { return std::min(v, kMostRadiance); };
+  const auto least = [](float v) { return std::min(v, kMaxRadiance); };
   to.emissive.factor = {least(color.r), least(color.g), least(color.b)};
   int both = reader.kind() == ModelKind::kGltf ? 0 : 1;
   reader.material().Get(AI_MATKEY_TWOSIDED, both);
@@ -117,8 +117,8 @@ void read_specular(const GltfSpecular& from, MaterialReader& reader, Principled&
   const double amount = from.factor * (0.2126 * r + 0.7152 * g + 0.0722 * b);
   const double root = (to.index_of_refraction - 1) / (to.index_of_refraction + 1);
   // The root of F0 at an index of 5, the highest that there is.
-  constexpr double kMostRoot = 4.0 / 6;
-  const double f = std::clamp(root * std::sqrt(std::max(0.0, amount)), 0.0, kMostRoot);
+  constexpr double kMaxRoot = 4.0 / 6;
+  const double f = std::clamp(root * std::sqrt(std::max(0.0, amount)), 0.0, kMaxRoot);
   to.index_of_refraction = std::clamp((1 + f) / (1 - f), 1.0, 5.0);
 }
 

@@ -19,8 +19,8 @@ namespace {
 
 // Raw texels as a TGA file of 32 bits a pixel from the top: its order of bytes is Assimp's own.
 std::string tga_of(const aiTexture& raw) {
-  constexpr unsigned kMostSide = 0xffff;
-  if (raw.mWidth > kMostSide || raw.mHeight > kMostSide) {
+  constexpr unsigned kMaxImageSide = 0xffff;
+  if (raw.mWidth > kMaxImageSide || raw.mHeight > kMaxImageSide) {
     return "";
   }
   const auto low = [](unsigned v) { return static_cast<char>(v & 0xff); };

@@ -43,14 +43,14 @@ absl::StatusOr<Grid> read_grid(const Field& in, const scene::Grid& from) {
   }
   std::uint64_t all = 1;
   for (int k = 0; k < 3; ++k) {
-    if (from.count(k) < 1 || from.count(k) > kMostPlacements) {
-      return in.error("count", absl::StrCat("must be at least 1 and at most ", kMostPlacements,
+    if (from.count(k) < 1 || from.count(k) > kMaxPlacements) {
+      return in.error("count", absl::StrCat("must be at least 1 and at most ", kMaxPlacements,
                                             ", is ", from.count(k)));
     }
     grid.count[k] = from.count(k);
     all *= grid.count[k];
-    if (all > kMostPlacements) {
-      return in.error("count", absl::StrCat("makes more than ", kMostPlacements, " copies"));
+    if (all > kMaxPlacements) {
+      return in.error("count", absl::StrCat("makes more than ", kMaxPlacements, " copies"));
     }
   }
   ASSIGN_OR_RETURN(grid.step, read_vec3(in, "step", from.step()));

@@ -32,9 +32,9 @@ absl::StatusOr<TextureId> read_image(const Field& in, const std::string& name,
 
 template <class Message>
 absl::Status read_placement(const Field& in, const Message& from, Environment& to) {
-  constexpr double kMostStrength = 1e6;
+  constexpr double kMaxStrength = 1e6;
   const double strength = from.has_strength() ? from.strength() : 1;
-  RETURN_IF_ERROR(check_range(in, "strength", strength, 0, kMostStrength));
+  RETURN_IF_ERROR(check_range(in, "strength", strength, 0, kMaxStrength));
   to.strength = static_cast<float>(strength);
   ASSIGN_OR_RETURN(const Transform turn, read_rotation(in, from.rotate()));
   to.axes = {turn.direction({1, 0, 0}), turn.direction({0, 1, 0}), turn.direction({0, 0, 1})};

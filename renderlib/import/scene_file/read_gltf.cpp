@@ -22,18 +22,18 @@ absl::Status read_colors(const Field& in, const scene::Gltf& from, SceneDraft& d
                          Principled& to) {
   ASSIGN_OR_RETURN(to.base_color.texture,
                    texture_or_white(in, "base_color_texture", from.has_base_color_texture(),
-                                    from.base_color_texture(), kMostReflectance, draft));
+                                    from.base_color_texture(), kMaxReflectance, draft));
   if (from.has_base_color()) {
     ASSIGN_OR_RETURN(to.base_color.factor,
-                     read_color(in.child("base_color"), from.base_color(), kMostReflectance));
+                     read_color(in.child("base_color"), from.base_color(), kMaxReflectance));
   }
   ASSIGN_OR_RETURN(to.emissive.texture,
                    texture_or_white(in, "emissive_texture", from.has_emissive_texture(),
-                                    from.emissive_texture(), kMostRadiance, draft));
+                                    from.emissive_texture(), kMaxRadiance, draft));
   to.emissive.factor = gray(from.has_emissive_texture() ? 1 : 0);
   if (from.has_emissive()) {
     ASSIGN_OR_RETURN(to.emissive.factor,
-                     read_color(in.child("emissive"), from.emissive(), kMostRadiance));
+                     read_color(in.child("emissive"), from.emissive(), kMaxRadiance));
   }
   return absl::OkStatus();
 }
@@ -51,15 +51,15 @@ absl::Status read_metallic_roughness(const Field& in, const scene::Gltf& from, S
   if (both) {
     ASSIGN_OR_RETURN(to.metallic.texture,
                      read_texture(in.child("metallic_roughness_texture"),
-                                  from.metallic_roughness_texture(), kMostReflectance, draft));
+                                  from.metallic_roughness_texture(), kMaxReflectance, draft));
     to.roughness.texture = to.metallic.texture;
   } else {
     ASSIGN_OR_RETURN(to.metallic.texture,
                      texture_or_white(in, "metallic_texture", metallic, from.metallic_texture(),
-                                      kMostReflectance, draft));
+                                      kMaxReflectance, draft));
     ASSIGN_OR_RETURN(to.roughness.texture,
                      texture_or_white(in, "roughness_texture", rough, from.roughness_texture(),
-                                      kMostReflectance, draft));
+                                      kMaxReflectance, draft));
   }
   to.metallic.factor = from.has_metallic() ? from.metallic() : metallic ? 1 : 0;
   to.roughness.factor = from.has_roughness() ? from.roughness() : rough ? 1 : 0.5;
@@ -81,7 +81,7 @@ absl::StatusOr<Channel> read_channel(const Field& in, const OptionalNumber& from
   Channel to;
   ASSIGN_OR_RETURN(to.texture,
                    texture_or_white(in, absl::StrCat(from.name, "_texture"), from.textured,
-                                    from.texture, kMostReflectance, draft));
+                                    from.texture, kMaxReflectance, draft));
   to.factor = from.given ? from.value : from.textured ? 1 : 0;
   RETURN_IF_ERROR(check_range(in, from.name, to.factor, 0, 1));
   return to;
@@ -110,7 +110,7 @@ absl::Status read_layers(const Field& in, const scene::Gltf& from, SceneDraft& d
   if (from.has_index_of_refraction_texture()) {
     ASSIGN_OR_RETURN(to.index_map,
                      read_texture(in.child("index_of_refraction_texture"),
-                                  from.index_of_refraction_texture(), kMostReflectance, draft));
+                                  from.index_of_refraction_texture(), kMaxReflectance, draft));
   }
   return check_range(in, "index_of_refraction", to.index_of_refraction, 1, 5);
 }
@@ -119,12 +119,12 @@ absl::Status read_normals(const Field& in, const scene::Gltf& from, SceneDraft& 
                           Principled& to) {
   if (from.has_normal_texture()) {
     ASSIGN_OR_RETURN(to.normal, read_texture(in.child("normal_texture"), from.normal_texture(),
-                                             kMostReflectance, draft));
+                                             kMaxReflectance, draft));
   }
   if (from.has_clearcoat_normal_texture()) {
     ASSIGN_OR_RETURN(to.coat_normal,
                      read_texture(in.child("clearcoat_normal_texture"),
-                                  from.clearcoat_normal_texture(), kMostReflectance, draft));
+                                  from.clearcoat_normal_texture(), kMaxReflectance, draft));
   }
   to.normal_scale = from.has_normal_scale() ? from.normal_scale() : 1;
   to.coat_normal_scale = from.has_clearcoat_normal_scale() ? from.clearcoat_normal_scale() : 1;
@@ -141,7 +141,7 @@ absl::Status read_alpha(const Field& in, const scene::Gltf& from, SceneDraft& dr
   to.alpha_mode = static_cast<AlphaMode>(from.alpha_mode());
   ASSIGN_OR_RETURN(to.alpha.texture,
                    texture_or_white(in, "alpha_texture", from.has_alpha_texture(),
-                                    from.alpha_texture(), kMostReflectance, draft));
+                                    from.alpha_texture(), kMaxReflectance, draft));
   to.alpha.factor = from.has_alpha() ? from.alpha() : 1;
   to.alpha_cutoff = from.has_alpha_cutoff() ? from.alpha_cutoff() : 0.5;
   RETURN_IF_ERROR(check_range(in, "alpha", to.alpha.factor, 0, 1));

@@ -98,9 +98,9 @@ absl::Status read_instance(const Field& in, const scene::Instance& from, SceneDr
   ASSIGN_OR_RETURN(const std::vector<Key> keys, read_keys(in, from));
   ASSIGN_OR_RETURN(const std::vector<Transform> copies, read_copies(in, from));
   Contents& to = *draft.placed;
-  if (to.size() + copies.size() * group->size() > kMostPlacements) {
-    return in.error("of", absl::StrCat("makes more than ", kMostPlacements,
-                                       " placements of meshes and groups"));
+  if (to.size() + copies.size() * group->size() > kMaxPlacements) {
+    return in.error(
+        "of", absl::StrCat("makes more than ", kMaxPlacements, " placements of meshes and groups"));
   }
   for (const Transform& copy : copies) {
     // What a medium is inside of has no material to be replaced.

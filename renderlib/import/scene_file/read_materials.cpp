@@ -23,11 +23,10 @@ absl::StatusOr<TextureId> read_reflectance(const Field& in, const From& from, fl
     return in.error("color", "write texture or color, not both");
   }
   if (from.has_texture()) {
-    return read_texture(in.child("texture"), from.texture(), kMostReflectance, draft);
+    return read_texture(in.child("texture"), from.texture(), kMaxReflectance, draft);
   }
   if (from.has_color()) {
-    ASSIGN_OR_RETURN(const Rgb color,
-                     read_color(in.child("color"), from.color(), kMostReflectance));
+    ASSIGN_OR_RETURN(const Rgb color, read_color(in.child("color"), from.color(), kMaxReflectance));
     return draft.textures.constant(color);
   }
   return draft.textures.constant(gray(otherwise));
@@ -40,7 +39,7 @@ absl::StatusOr<std::optional<TextureId>> read_map(const Field& in, const std::st
   if (!given) {
     return std::optional<TextureId>();
   }
-  ASSIGN_OR_RETURN(const TextureId id, read_texture(in.child(name), from, kMostReflectance, draft));
+  ASSIGN_OR_RETURN(const TextureId id, read_texture(in.child(name), from, kMaxReflectance, draft));
   return std::optional(id);
 }
 
@@ -84,14 +83,14 @@ absl::StatusOr<Material> read_emissive(const Field& in, const scene::Emissive& f
   }
   if (from.has_texture()) {
     ASSIGN_OR_RETURN(const TextureId id,
-                     read_texture(in.child("texture"), from.texture(), kMostRadiance, draft));
+                     read_texture(in.child("texture"), from.texture(), kMaxRadiance, draft));
     return Emissive{id, from.one_sided()};
   }
   if (!from.has_radiance()) {
     return in.error("radiance", "is required, for example radiance { rgb: [15, 15, 15] }");
   }
   ASSIGN_OR_RETURN(const Rgb radiance,
-                   read_color(in.child("radiance"), from.radiance(), kMostRadiance));
+                   read_color(in.child("radiance"), from.radiance(), kMaxRadiance));
   return Emissive{draft.textures.constant(radiance), from.one_sided()};
 }
 

@@ -14,8 +14,8 @@ namespace {
 
 /// Of a turn about one axis this much goes between two keys; the shortest way is the whole way
 /// then.
-constexpr double kMostTurn = 90;  // degrees
-constexpr double kMostKeys = 100'000;
+constexpr double kMaxTurn = 90;  // degrees
+constexpr double kMaxKeys = 100'000;
 
 struct Turn {
   Vec3 axis;
@@ -105,7 +105,7 @@ void add_keys(const WrittenKey& a, const WrittenKey& b, std::vector<Key>& keys) 
   const std::optional<Turn> to = only_turn(b.pose, a.pose);
   const bool one_axis = from && to && from->axis == to->axis;
   const double turn = one_axis ? to->degrees - from->degrees : 0;
-  const double steps = std::clamp(std::ceil(std::abs(turn) / kMostTurn), 1.0, kMostKeys);
+  const double steps = std::clamp(std::ceil(std::abs(turn) / kMaxTurn), 1.0, kMaxKeys);
   for (double step = 1; step < steps; ++step) {
     const double u = step / steps;
     Written between;
@@ -121,7 +121,7 @@ absl::StatusOr<WrittenKey> read_key(const Field& in, const scene::Key& from,
                                     const std::vector<WrittenKey>& earlier) {
   WrittenKey key;
   key.time = from.time();
-  RETURN_IF_ERROR(check_range(in, "time", key.time, -kMostTime, kMostTime));
+  RETURN_IF_ERROR(check_range(in, "time", key.time, -kMaxTime, kMaxTime));
   if (!earlier.empty() && !(key.time > earlier.back().time)) {
     return in.error("time", absl::StrCat("must be after that of the key before, ",
                                          earlier.back().time, ", is ", key.time));

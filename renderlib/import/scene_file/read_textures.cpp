@@ -61,7 +61,7 @@ MaybeId read_checker(const Field& in, const scene::CheckerTexture& from, float m
 
 MaybeId read_noise(const Field& in, const scene::NoiseTexture& from, float most,
                    SceneDraft& draft) {
-  constexpr double kMost = 1e30;
+  constexpr double kMax = 1e30;
   NoiseTexture to;
   ASSIGN_OR_RETURN(to.kind, read_enum<NoiseTexture::Kind>(in, "kind", from.kind(),
                                                           scene::NoiseTexture::Kind_MAX));
@@ -76,7 +76,7 @@ MaybeId read_noise(const Field& in, const scene::NoiseTexture& from, float most,
         std::tuple("turbulence_scale", from.has_turbulence_scale(), from.turbulence_scale(),
                    &to.turbulence_scale)}) {
     if (written) {
-      RETURN_IF_ERROR(check_range(in, name, value, -kMost, kMost));
+      RETURN_IF_ERROR(check_range(in, name, value, -kMax, kMax));
       *ours = value;
     }
   }
@@ -124,7 +124,7 @@ MaybeId read_ramp(const Field& in, const scene::RampTexture& from, float most, S
   }
   if (from.has_texture()) {
     ASSIGN_OR_RETURN(to.texture,
-                     read_texture(in.child("texture"), from.texture(), kMostRadiance, draft));
+                     read_texture(in.child("texture"), from.texture(), kMaxRadiance, draft));
     return draft.textures.add(std::move(to));
   }
   // Ours count from 0, which is the texture, as the file's "not said" is.
@@ -140,15 +140,15 @@ MaybeId read_mix(const Field& in, const scene::MixTexture& from, float most, Sce
   MixTexture to;
   ASSIGN_OR_RETURN(to.a, read_part(in, "a", from.a(), most, -1, draft));
   ASSIGN_OR_RETURN(to.b, read_part(in, "b", from.b(), most, -1, draft));
-  ASSIGN_OR_RETURN(to.amount, read_part(in, "amount", from.amount(), kMostRadiance, 0.5f, draft));
+  ASSIGN_OR_RETURN(to.amount, read_part(in, "amount", from.amount(), kMaxRadiance, 0.5f, draft));
   return draft.textures.add(to);
 }
 
 // Its factors may be above `most`, their product may not: checked by read_texture.
 MaybeId read_product(const Field& in, const scene::ProductTexture& from, SceneDraft& draft) {
   ProductTexture to;
-  ASSIGN_OR_RETURN(to.a, read_part(in, "a", from.a(), kMostRadiance, -1, draft));
-  ASSIGN_OR_RETURN(to.b, read_part(in, "b", from.b(), kMostRadiance, -1, draft));
+  ASSIGN_OR_RETURN(to.a, read_part(in, "a", from.a(), kMaxRadiance, -1, draft));
+  ASSIGN_OR_RETURN(to.b, read_part(in, "b", from.b(), kMaxRadiance, -1, draft));
   return draft.textures.add(to);
 }
 
@@ -208,8 +208,8 @@ absl::StatusOr<TextureId> read_texture(const Field& in, const scene::Texture& fr
     if (const float found = draft.textures.max_value(id); found > most) {
       const std::string place = from.has_image() ? "image" : from.has_product() ? "product" : "use";
       const std::string what =
-          absl::StrCat(most == kMostReflectance ? "a reflectance must lie in [0, 1], "
-                                                : absl::StrCat("must be at most ", most, ", "),
+          absl::StrCat(most == kMaxReflectance ? "a reflectance must lie in [0, 1], "
+                                               : absl::StrCat("must be at most ", most, ", "),
                        from.has_image() ? "the image holds " : "it reaches ", found);
       return from.has_image() ? in.child("image").error("file", what) : in.error(place, what);
     }
@@ -224,7 +224,7 @@ absl::Status read_textures(const Field& root, const scene::Scene& from, SceneDra
     if (name.empty()) {
       return in.error("name", "is required, so that a material can use it");
     }
-    ASSIGN_OR_RETURN(const TextureId id, read_kind(in, from.texture(i), kMostRadiance, draft));
+    ASSIGN_OR_RETURN(const TextureId id, read_kind(in, from.texture(i), kMaxRadiance, draft));
     if (!draft.named_textures.emplace(name, id).second) {
       return in.error("name", absl::StrCat("\"", name, "\" is the name of another texture"));
     }

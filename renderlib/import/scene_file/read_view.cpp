@@ -61,11 +61,10 @@ absl::StatusOr<Camera> read_perspective(const Field& in, const scene::Camera& fr
                     absl::StrCat("must lie in (0, 180) degrees, is ", camera.vertical_fov));
   }
   camera.aperture = from.aperture();
-  RETURN_IF_ERROR(check_range(in, "aperture", camera.aperture, 0, kMostLens));
+  RETURN_IF_ERROR(check_range(in, "aperture", camera.aperture, 0, kMaxLens));
   if (from.has_focus_distance()) {
     camera.focus_distance = from.focus_distance();
-    RETURN_IF_ERROR(
-        check_range(in, "focus_distance", camera.focus_distance, kLeastFocus, kMostLens));
+    RETURN_IF_ERROR(check_range(in, "focus_distance", camera.focus_distance, kMinFocus, kMaxLens));
   } else if (camera.aperture > 0) {
     if (from.rotate_size() > 0) {
       return in.error("focus_distance", "is required where rotate stands instead of look_at");
@@ -87,7 +86,7 @@ absl::StatusOr<Camera> read_orthographic(const Field& in, const scene::Camera& f
   if (!from.orthographic().has_height()) {
     return orthographic.error("height", "is required: how high the image is, in scene units");
   }
-  if (!(height > 0 && height <= kMostLens)) {
+  if (!(height > 0 && height <= kMaxLens)) {
     return orthographic.error("height", absl::StrCat("must be > 0, at most 1e30, is ", height));
   }
   return Camera(OrthographicCamera{view.position, view.look_at, view.up, height,
@@ -102,8 +101,8 @@ absl::StatusOr<Shutter> read_shutter(const Field& root, const scene::Scene& from
     return shutter;
   }
   const Field in = root.child("camera");
-  RETURN_IF_ERROR(check_range(in, "shutter_open", shutter.open, -kMostTime, kMostTime));
-  RETURN_IF_ERROR(check_range(in, "shutter_close", shutter.close, -kMostTime, kMostTime));
+  RETURN_IF_ERROR(check_range(in, "shutter_open", shutter.open, -kMaxTime, kMaxTime));
+  RETURN_IF_ERROR(check_range(in, "shutter_close", shutter.close, -kMaxTime, kMaxTime));
   if (shutter.close < shutter.open) {
     return in.error("shutter_close", absl::StrCat("must not be before shutter_open, ", shutter.open,
                                                   ", is ", shutter.close));
@@ -171,8 +170,8 @@ absl::Status read_settings(const Field& root, const scene::Scene& from, PackageI
     info.display.tone = static_cast<Tone>(static_cast<int>(from.image().tone()) - 1);
   }
   info.display.exposure = from.image().exposure();
-  RETURN_IF_ERROR(check_range(root.child("image"), "exposure", info.display.exposure,
-                              -kMostExposure, kMostExposure));
+  RETURN_IF_ERROR(check_range(root.child("image"), "exposure", info.display.exposure, -kMaxExposure,
+                              kMaxExposure));
   if (from.integrator().has_max_depth()) {
     info.max_depth = from.integrator().max_depth();
     RETURN_IF_ERROR(
@@ -186,7 +185,7 @@ absl::StatusOr<LocalShading> read_local_shading(const Field& root, const scene::
   const Field in = root.child("integrator");
   if (from.integrator().has_ambient()) {
     ASSIGN_OR_RETURN(local.ambient,
-                     read_color(in.child("ambient"), from.integrator().ambient(), kMostRadiance));
+                     read_color(in.child("ambient"), from.integrator().ambient(), kMaxRadiance));
   }
   if (from.integrator().has_occlusion_distance()) {
     local.occlusion_distance = from.integrator().occlusion_distance();
@@ -204,7 +203,7 @@ absl::StatusOr<Background> read_background(const Field& root, const scene::Scene
   switch (from.background().kind_case()) {
     case scene::Background::kConstant: {
       ASSIGN_OR_RETURN(const Rgb radiance, read_color(in.child("constant"),
-                                                      from.background().constant(), kMostRadiance));
+                                                      from.background().constant(), kMaxRadiance));
       return Background{radiance, radiance};
     }
     case scene::Background::kGradient: {
@@ -215,8 +214,8 @@ absl::StatusOr<Background> read_background(const Field& root, const scene::Scene
       }
       Background background;
       ASSIGN_OR_RETURN(background.bottom,
-                       read_color(gradient.child("bottom"), of.bottom(), kMostRadiance));
-      ASSIGN_OR_RETURN(background.top, read_color(gradient.child("top"), of.top(), kMostRadiance));
+                       read_color(gradient.child("bottom"), of.bottom(), kMaxRadiance));
+      ASSIGN_OR_RETURN(background.top, read_color(gradient.child("top"), of.top(), kMaxRadiance));
       return background;
     }
     case scene::Background::kEnvironment: {

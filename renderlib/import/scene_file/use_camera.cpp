@@ -58,14 +58,13 @@ absl::StatusOr<Camera> find_camera(const std::string& name, const SceneDraft& dr
 
 absl::Status set_lens(const Field& in, const scene::Camera& from, PerspectiveCamera& camera) {
   camera.aperture = from.aperture();
-  RETURN_IF_ERROR(check_range(in, "aperture", camera.aperture, 0, kMostLens));
+  RETURN_IF_ERROR(check_range(in, "aperture", camera.aperture, 0, kMaxLens));
   if (camera.aperture > 0 && !from.has_focus_distance()) {
     return in.error("focus_distance", "is required where a model's camera gets an aperture");
   }
   if (from.has_focus_distance()) {
     camera.focus_distance = from.focus_distance();
-    RETURN_IF_ERROR(
-        check_range(in, "focus_distance", camera.focus_distance, kLeastFocus, kMostLens));
+    RETURN_IF_ERROR(check_range(in, "focus_distance", camera.focus_distance, kMinFocus, kMaxLens));
   }
   return absl::OkStatus();
 }

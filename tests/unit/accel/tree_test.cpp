@@ -105,7 +105,7 @@ std::vector<FloatBox> nested_boxes() {
 }
 
 TEST(Tree, B7_IsNeverDeeperThanItsStack) {
-  EXPECT_LE(build_tree(nested_boxes()).depth, kMaxDepth);
+  EXPECT_LE(build_tree(nested_boxes()).depth, kMaxTreeDepth);
   const std::vector<FloatBox> same(100000, FloatBox{{0, 0, 0}, {1, 1, 1}});
   const WideTree tree = build_tree(same);
   EXPECT_LE(tree.depth, 18u);

@@ -70,14 +70,14 @@ TEST(LensView, IsNoneOfAPinholeParallelRaysAndALensAsWideAsItsFocusIsFar) {
   camera.aperture = 8;
   EXPECT_FALSE(RayGenerator(camera, 60, 40).lens_view(30, 20));
   EXPECT_FALSE(RayGenerator(OrthographicCamera{}, 60, 40).lens_view(30, 20));
-  camera.aperture = kMostLens;
-  camera.focus_distance = kLeastFocus;
+  camera.aperture = kMaxLens;
+  camera.focus_distance = kMinFocus;
   EXPECT_FALSE(RayGenerator(camera, 60, 40).lens_view(30, 20));
 }
 
 TEST(LensView, OfAFocusOutOfReachSeesNothingButIsFinite) {
   PerspectiveCamera camera = lens();
-  camera.focus_distance = kMostLens;
+  camera.focus_distance = kMaxLens;
   const auto view = RayGenerator(camera, 60, 40).lens_view(30, 20);
   ASSERT_TRUE(view);
   EXPECT_FALSE(view->beyond().contains(camera.position - view->focus()));

@@ -27,7 +27,7 @@ TEST(Phase, IsTheDensityOfItsSamples) {
 /// Up to the largest |g| everything is finite and the mean cosine is g.
 TEST(Phase, V5MeanCosineIsG) {
   const Vec3 way = normalize({-0.2, 0.1, -0.9});
-  for (const double g : {-kMostG, -0.9, -0.5, 0.0, 1e-4, 0.5, 0.9, kMostG}) {
+  for (const double g : {-kMaxG, -0.9, -0.5, 0.0, 1e-4, 0.5, 0.9, kMaxG}) {
     // The midpoints of equal parts of [0, 1): a quadrature of the inverse, not an estimate.
     constexpr int kParts = 20000;
     double sum = 0;
