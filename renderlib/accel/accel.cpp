@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "renderlib/accel/open_boxes.h"
+#include "renderlib/accel/disable_culling.h"
 #include "renderlib/accel/query.h"
 #include "renderlib/accel/top_tree.h"
 #include "renderlib/accel/trace.h"
@@ -56,15 +56,15 @@ struct Accel::Trees {
            (!moving.tree.empty && trace_moving(moving, *geometry, ray, query));
   }
 
-  void open_boxes() {
+  void disable_culling() {
     for (MeshTree& mesh : prototypes.meshes) {
-      bandsaw::open_boxes(mesh.tree);
+      bandsaw::disable_culling(mesh.tree);
     }
     for (ShapesTree& group : prototypes.groups) {
-      bandsaw::open_boxes(group.tree);
+      bandsaw::disable_culling(group.tree);
     }
-    bandsaw::open_boxes(top.tree);
-    bandsaw::open_boxes(moving);
+    bandsaw::disable_culling(top.tree);
+    bandsaw::disable_culling(moving);
   }
 };
 
@@ -73,7 +73,8 @@ Accel::Accel(Accel&&) noexcept = default;
 Accel& Accel::operator=(Accel&&) noexcept = default;
 Accel::~Accel() = default;
 
-Accel Accel::build(const Geometry& geometry, Pool& pool, const Interval& interval, Tested tested) {
+Accel Accel::build(const Geometry& geometry, Pool& pool, const Interval& interval,
+                   Traversal traversal) {
   auto trees = std::make_unique<Trees>();
   trees->geometry = &geometry;
   Prototypes& prototypes = trees->prototypes;
@@ -81,8 +82,8 @@ Accel Accel::build(const Geometry& geometry, Pool& pool, const Interval& interva
   prototypes.groups = build_groups(geometry.groups, pool);
   trees->top = build_top_tree(geometry, prototypes, &pool);
   trees->moving = build_moving_tree(geometry, prototypes, interval, &pool);
-  if (tested == Tested::kEverything) {
-    trees->open_boxes();
+  if (traversal == Traversal::kBruteForce) {
+    trees->disable_culling();
   }
   return Accel(std::move(trees));
 }

@@ -17,8 +17,7 @@ bool trace_moving_instance(const MovingInstance& moving, const Geometry& geometr
   if (moving.slides) {
     // The same as the result of inverse(), to the bit.
     Transform to_object = moving.to_object;
-    const Vec3 back =
-        -to_object.direction({to_world.m[0][3], to_world.m[1][3], to_world.m[2][3]});
+    const Vec3 back = -to_object.direction({to_world.m[0][3], to_world.m[1][3], to_world.m[2][3]});
     to_object.m[0][3] = back.x;
     to_object.m[1][3] = back.y;
     to_object.m[2][3] = back.z;
@@ -41,9 +40,8 @@ template <class Query>
   const auto enter = [&](std::uint32_t node, Float8& at) {
     return enter_moving_children(tree, node, share, floats, bound, at);
   };
-  return walk<!Query::kAny>(tree.tree, bound, enter, [&](ChildRef leaf) {
-    const bool stop =
-        trace_moving_instance(tree.moving[leaf.leaf_index()], geometry, ray, query);
+  return traverse<!Query::kAny>(tree.tree, bound, enter, [&](ChildRef leaf) {
+    const bool stop = trace_moving_instance(tree.moving[leaf.leaf_index()], geometry, ray, query);
     bound = floats.above(query.bound());
     return stop;
   });

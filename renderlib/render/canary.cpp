@@ -176,7 +176,7 @@ SceneDescription outdoors() {
 void add_render(Hash64& hash, const SceneDescription& description, const RenderSettings& settings,
                 const Kernel& kernel) {
   Pool pool(1);
-  const auto scene = Scene::build(description, pool, {}, Tested::kOnItsWay, &kernel);
+  const auto scene = Scene::build(description, pool, {}, Traversal::kBvh, &kernel);
   BANDSAW_CHECK(scene.ok(), "the built-in scene is valid");
   const std::atomic<bool> stop = false;
   const auto pixels = render_band(**scene, settings, {{0, 2 * kBlockSamples}, {0, settings.height}},

@@ -32,10 +32,10 @@ absl::StatusOr<const Kernel*> find_kernel(absl::string_view name) {
 }
 
 absl::StatusOr<std::shared_ptr<const Scene>> Scene::build(SceneDescription description, Pool& pool,
-                                                          const Needs& forced, Tested tested,
+                                                          const Needs& forced, Traversal traversal,
                                                           const Kernel* kernel) {
   const Kernel& chosen = kernel != nullptr ? *kernel : *kernels().front();
-  return chosen.build(chosen, std::move(description), pool, forced, tested);
+  return chosen.build(chosen, std::move(description), pool, forced, traversal);
 }
 
 absl::StatusOr<BandPixels> render_band(const Scene& scene, const RenderSettings& settings,

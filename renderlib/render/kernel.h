@@ -21,7 +21,7 @@ struct Kernel {
   const char* name;
   absl::StatusOr<std::shared_ptr<const Scene>> (*build)(const Kernel& kernel,
                                                         SceneDescription description, Pool& pool,
-                                                        const Needs& forced, Tested tested);
+                                                        const Needs& forced, Traversal traversal);
   absl::StatusOr<BandPixels> (*render_band)(const Scene& scene, const RenderSettings& settings,
                                             const Band& band, Pool& pool,
                                             const std::atomic<bool>& stop, const RowsDone& progress,

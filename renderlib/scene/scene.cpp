@@ -27,7 +27,7 @@ Needs needs_of(const SceneDescription& scene, const Lights& lights) {
 absl::StatusOr<std::shared_ptr<const Scene>> Scene::build_with(const Kernel& kernel,
                                                                SceneDescription description,
                                                                Pool& pool, const Needs& forced,
-                                                               Tested tested) {
+                                                               Traversal traversal) {
   RETURN_IF_ERROR(validate(description));
   // Trees and lights point into the scene: it has its place before they are made.
   std::shared_ptr<Scene> scene(new Scene(kernel, std::move(description)));
@@ -38,7 +38,7 @@ absl::StatusOr<std::shared_ptr<const Scene>> Scene::build_with(const Kernel& ker
   rest(interval, own.geometry);
   rest(interval, own.media.boundaries);
   prepare_surfaces(own.geometry);
-  scene->accel_ = std::make_unique<Accel>(Accel::build(own.geometry, pool, interval, tested));
+  scene->accel_ = std::make_unique<Accel>(Accel::build(own.geometry, pool, interval, traversal));
   scene->lights_ =
       Lights(own.geometry, own.materials, own.textures, own.lights, own.background, interval);
   const Needs needs = needs_of(own, scene->lights_);
@@ -46,7 +46,7 @@ absl::StatusOr<std::shared_ptr<const Scene>> Scene::build_with(const Kernel& ker
   scene->needs_ = needs | forced;
   if (scene->needs_.media) {
     scene->boundary_accel_ =
-        std::make_unique<Accel>(Accel::build(own.media.boundaries, pool, interval, tested));
+        std::make_unique<Accel>(Accel::build(own.media.boundaries, pool, interval, traversal));
   }
   return std::shared_ptr<const Scene>(std::move(scene));
 }

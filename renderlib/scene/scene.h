@@ -24,12 +24,12 @@ class Scene {
   /// (degenerate triangles, triangles with non-finite vertices) and counts it, and builds the trees
   /// and lights. INVALID_ARGUMENT: "spheres[3].radius: must be > 0, is -1".
   /// `forced`: needs that it is to have beside its own; costs time and changes no pixel. For tests.
-  /// `tested`: the same, for comparison.
+  /// `traversal`: the same, for comparison.
   /// `kernel`: the code that builds the scene and renders its bands; it changes no pixel. One of
   /// kernels() (renderlib/render/kernel.h); null: the first of them.
   static absl::StatusOr<std::shared_ptr<const Scene>> build(SceneDescription description,
                                                             Pool& pool, const Needs& forced = {},
-                                                            Tested tested = Tested::kOnItsWay,
+                                                            Traversal traversal = Traversal::kBvh,
                                                             const Kernel* kernel = nullptr);
 
   /// The kernel that built it and renders it.
@@ -62,7 +62,7 @@ class Scene {
   static absl::StatusOr<std::shared_ptr<const Scene>> build_with(const Kernel& kernel,
                                                                  SceneDescription description,
                                                                  Pool& pool, const Needs& forced,
-                                                                 Tested tested);
+                                                                 Traversal traversal);
 
   Scene(const Kernel& kernel, SceneDescription description)
       : kernel_(&kernel), description_(std::move(description)) {}

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "renderlib/accel/collapse.h"
-#include "renderlib/accel/walk.h"
+#include "renderlib/accel/traverse.h"
 #include "tests/support/hard_case.h"
 #include "tests/support/meshes.h"
 #include "tests/support/wide.h"

@@ -34,14 +34,14 @@ struct Rendering {
   int threads = 1;
   std::uint32_t rows = kHeight;  ///< of a band
   Needs forced = {};
-  Tested tested = Tested::kOnItsWay;
+  Traversal traversal = Traversal::kBvh;
   const Kernel* kernel = nullptr;  ///< null: the fastest
 };
 
 std::string hash_of(const ImportedScene& imported, const Rendering& how) {
   Pool building(how.building_threads);
   Pool pool(how.threads);
-  const auto scene = Scene::build(imported.scene, building, how.forced, how.tested, how.kernel);
+  const auto scene = Scene::build(imported.scene, building, how.forced, how.traversal, how.kernel);
   EXPECT_TRUE(scene.ok()) << scene.status();
   const RenderSettings settings{.width = kWidth,
                                 .height = kHeight,
@@ -61,7 +61,7 @@ std::string hash_of(const ImportedScene& imported, const Rendering& how) {
   return absl::StrFormat("%016x", hash.value());
 }
 
-/// Whether each ray can be tested against all there is.
+/// True if each ray can be tested against all primitives of the scene.
 bool is_small(const Geometry& geometry) {
   const auto few = [](const Mesh& mesh) { return mesh.triangles.size() <= 2'000; };
   return geometry.instances.size() <= 10 &&
@@ -106,7 +106,7 @@ TEST(SameBits, C5R6R10B12Y3_TwelveScenesHaveTheirHashes) {
       EXPECT_EQ(hash_of(*imported, {.kernel = kernel}), hash) << kernel->name;
     }
     if (is_small(imported->scene.geometry)) {
-      EXPECT_EQ(hash_of(*imported, {.tested = Tested::kEverything}), hash) << "no tree";
+      EXPECT_EQ(hash_of(*imported, {.traversal = Traversal::kBruteForce}), hash) << "no tree";
     }
   }
   if (HasFailure()) {

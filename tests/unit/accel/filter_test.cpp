@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "renderlib/accel/sphere_pack.h"
-#include "renderlib/accel/walk.h"
+#include "renderlib/accel/traverse.h"
 #include "renderlib/base/simd_plain.h"
 #include "renderlib/geometry/intersect.h"
 #include "tests/unit/accel/agreement.h"

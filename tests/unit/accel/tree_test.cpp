@@ -11,7 +11,7 @@
 #include "absl/types/span.h"
 #include "renderlib/accel/collapse.h"
 #include "renderlib/accel/mesh_tree.h"
-#include "renderlib/accel/walk.h"
+#include "renderlib/accel/traverse.h"
 #include "tests/support/hard_case.h"
 #include "tests/support/meshes.h"
 
@@ -38,7 +38,7 @@ std::set<std::uint32_t> visited(const WideTree& tree, const Ray& ray) {
   const FloatRay floats(trace_setup(ray.origin, ray.direction, ray.t_max), tree.reach);
   const float bound = floats.above(ray.t_max);
   std::set<std::uint32_t> items;
-  walk<true>(tree, floats, bound, [&](ChildRef leaf) {
+  traverse<true>(tree, floats, bound, [&](ChildRef leaf) {
     items.insert(leaf.leaf_index());
     return false;
   });

@@ -94,7 +94,7 @@ TEST(Kernels, RenderTheSameSums) {
   Pool pool(2);
   std::vector<double> sums;
   for (const Kernel* kernel : kernels()) {
-    const auto scene = Scene::build(mixed_scene(), pool, {}, Tested::kOnItsWay, kernel);
+    const auto scene = Scene::build(mixed_scene(), pool, {}, Traversal::kBvh, kernel);
     ASSERT_TRUE(scene.ok()) << scene.status();
     EXPECT_EQ(&(*scene)->kernel(), kernel);
     const auto pixels = render_band(**scene, settings, {{0, 32}, {0, 40}}, pool, stop, {});

@@ -1,4 +1,4 @@
-#include "renderlib/accel/divide.h"
+#include "renderlib/accel/partition.h"
 
 #include <algorithm>
 #include <bit>
@@ -57,7 +57,7 @@ Range bounded(const TwoLists& lists, Range range) {
   return range;
 }
 
-Division::Division(const TwoLists& lists, const Range& range, absl::Span<Piece> pieces)
+Partition::Partition(const TwoLists& lists, const Range& range, absl::Span<Piece> pieces)
     : lists_(lists),
       range_(range),
       pieces_(pieces),
@@ -65,13 +65,13 @@ Division::Division(const TwoLists& lists, const Range& range, absl::Span<Piece> 
       deep_(is_deep(range)),
       binning_(range.centres) {}
 
-void Division::bin(Piece& piece) const {
+void Partition::bin(Piece& piece) const {
   if (!deep_) {
     piece.bins.add(piece.items, binning_);
   }
 }
 
-Split Division::find_split() const {
+Split Partition::find_split() const {
   if (deep_) {
     return {};
   }
@@ -85,9 +85,9 @@ Split Division::find_split() const {
   return bins.best_split(binning_);
 }
 
-bool Division::has_plane() const { return std::isfinite(split_.cost); }
+bool Partition::has_plane() const { return std::isfinite(split_.cost); }
 
-bool Division::choose() {
+bool Partition::choose() {
   split_ = find_split();
   if (!must_ && !(split_.cost < kWorthSplitting * range_.box.area())) {
     return false;
@@ -109,13 +109,13 @@ bool Division::choose() {
   return true;
 }
 
-void Division::move(Piece& piece) const {
+void Partition::move(Piece& piece) const {
   if (has_plane()) {
     piece.centres = part(piece.items, binning_, split_, piece.to);
   }
 }
 
-void Division::parts(Range& left, Range& right) const {
+void Partition::parts(Range& left, Range& right) const {
   if (!has_plane()) {
     part_without_plane(left, right);
     return;
@@ -134,7 +134,7 @@ void Division::parts(Range& left, Range& right) const {
 }
 
 /// Divides by kind, or in halves.
-void Division::part_without_plane(Range& left, Range& right) const {
+void Partition::part_without_plane(Range& left, Range& right) const {
   const absl::Span<TreeItem> all = items_of(lists_, range_);
   std::uint32_t middle = range_.first + range_.count() / 2;
   if (range_.count() <= kPackSize && !one_kind(all)) {
@@ -149,19 +149,19 @@ void Division::part_without_plane(Range& left, Range& right) const {
   right = bounded(lists_, {middle, range_.end, range_.depth + 1, range_.list, {}, {}});
 }
 
-bool divide(const TwoLists& lists, const Range& range, Range& left, Range& right) {
+bool partition_range(const TwoLists& lists, const Range& range, Range& left, Range& right) {
   const absl::Span<const TreeItem> items = items_of(lists, range);
   if (items.size() < 3 && !must_split(items)) {
     return false;
   }
-  Division::Piece piece = {items};
-  Division division(lists, range, {&piece, 1});
-  division.bin(piece);
-  if (!division.choose()) {
+  Partition::Piece piece = {items};
+  Partition partition(lists, range, {&piece, 1});
+  partition.bin(piece);
+  if (!partition.choose()) {
     return false;
   }
-  division.move(piece);
-  division.parts(left, right);
+  partition.move(piece);
+  partition.parts(left, right);
   return true;
 }
 

@@ -40,7 +40,7 @@ inline constexpr std::size_t kStackSize = 7 * kMaxTreeDepth + 1;
 
 /// Traversal stack. The high half of an entry is its entry distance (non-negative floats order as
 /// integers do), the low half is the child.
-class WalkStack {
+class TraversalStack {
  public:
   void push(std::uint64_t entry) { entries_[size_++] = entry; }
   /// Pops the top entry that is entered before `bound`; returns false if there is none.
@@ -75,7 +75,7 @@ class WalkStack {
 
 /// Returns the nearest of the children in `hits` (not 0) and pushes the others, nearest on top.
 inline ChildRef nearest_child(const WideNode& node, unsigned hits, const Float8& enter,
-                              WalkStack& stack) {
+                              TraversalStack& stack) {
   auto i = static_cast<std::size_t>(std::countr_zero(hits));
   hits &= hits - 1;
   if (hits == 0) {
@@ -137,7 +137,7 @@ inline ChildRef nearest_child(const WideNode& node, unsigned hits, const Float8&
 }
 
 /// The same as nearest_child without an order, for any-hit traversal.
-inline ChildRef some_child(const WideNode& node, unsigned hits, WalkStack& stack) {
+inline ChildRef some_child(const WideNode& node, unsigned hits, TraversalStack& stack) {
   auto i = static_cast<std::size_t>(std::countr_zero(hits));
   for (hits &= hits - 1; hits != 0; hits &= hits - 1) {
     stack.push(node.child[i].bits());
@@ -150,12 +150,12 @@ inline ChildRef some_child(const WideNode& node, unsigned hits, WalkStack& stack
 /// lower. Stops and returns true as soon as leaf() does. kSorted visits nearer boxes first.
 /// enter(index, at) is enter_children() for a node.
 template <bool kSorted, class Enter, class Leaf>
-[[gnu::always_inline]] inline bool walk(const WideTree& tree, const float& bound,
-                                        const Enter& enter, Leaf&& leaf) {
+[[gnu::always_inline]] inline bool traverse(const WideTree& tree, const float& bound,
+                                            const Enter& enter, Leaf&& leaf) {
   if (tree.empty) {
     return false;
   }
-  WalkStack stack;
+  TraversalStack stack;
   ChildRef next = tree.root;
   while (true) {
     while (!next.is_leaf()) {
@@ -179,12 +179,12 @@ template <bool kSorted, class Enter, class Leaf>
 
 /// The same for a tree without motion.
 template <bool kSorted, class Leaf>
-[[gnu::always_inline]] inline bool walk(const WideTree& tree, const FloatRay& ray,
-                                        const float& bound, Leaf&& leaf) {
+[[gnu::always_inline]] inline bool traverse(const WideTree& tree, const FloatRay& ray,
+                                            const float& bound, Leaf&& leaf) {
   const auto enter = [&](std::uint32_t node, Float8& at) {
     return enter_children(tree.nodes[node], ray, bound, at);
   };
-  return walk<kSorted>(tree, bound, enter, leaf);
+  return traverse<kSorted>(tree, bound, enter, leaf);
 }
 
 }  // namespace bandsaw

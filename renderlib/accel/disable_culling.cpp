@@ -1,4 +1,4 @@
-#include "renderlib/accel/open_boxes.h"
+#include "renderlib/accel/disable_culling.h"
 
 #include <cstddef>
 #include <limits>
@@ -23,7 +23,7 @@ void open(WideNode& node, std::size_t child) {
 
 }  // namespace
 
-void open_boxes(WideTree& tree) {
+void disable_culling(WideTree& tree) {
   for (WideNode& node : tree.nodes) {
     for (std::size_t child = 0; child < WideNode::kChildren; ++child) {
       if (used(node, child)) {
@@ -33,8 +33,8 @@ void open_boxes(WideTree& tree) {
   }
 }
 
-void open_boxes(MovingTree& tree) {
-  open_boxes(tree.tree);
+void disable_culling(MovingTree& tree) {
+  disable_culling(tree.tree);
   for (MovingTree::Change& change : tree.change) {
     change = {};
   }

@@ -1,6 +1,6 @@
 // Rays that are tested against everything hit what those hit that are led by trees.
 
-#include "renderlib/accel/open_boxes.h"
+#include "renderlib/accel/disable_culling.h"
 
 #include <gtest/gtest.h>
 
@@ -43,11 +43,11 @@ Geometry scene() {
   return g;
 }
 
-TEST(OpenBoxes, HitsAreTheSameToTheBit) {
+TEST(DisableCulling, HitsAreTheSameToTheBit) {
   const Geometry geometry = scene();
   Pool pool(1);
   const Accel tree = Accel::build(geometry, pool, {0, 1});
-  const Accel everything = Accel::build(geometry, pool, {0, 1}, Tested::kEverything);
+  const Accel everything = Accel::build(geometry, pool, {0, 1}, Traversal::kBruteForce);
   Random random(6);
   int hits = 0;
   for (int i = 0; i < 3'000; ++i) {
@@ -67,7 +67,7 @@ TEST(OpenBoxes, HitsAreTheSameToTheBit) {
 
 // Two spheres far apart: a ray past both enters neither of their boxes, and both when these are
 // open.
-TEST(OpenBoxes, NothingIsLeftOut) {
+TEST(DisableCulling, NothingIsLeftOut) {
   WideTree tree;
   WideNode node;
   for (auto& row : node.bounds) {
@@ -86,7 +86,7 @@ TEST(OpenBoxes, NothingIsLeftOut) {
   const FloatRay past(trace_setup({0, 50, 0}, {0, 1e-30, 1}, 100), 11);
   Float8 enter;
   EXPECT_EQ(enter_children(tree.nodes[0], past, 100, enter), 0u);
-  open_boxes(tree);
+  disable_culling(tree);
   EXPECT_EQ(enter_children(tree.nodes[0], past, 100, enter), 3u);
 }
 

@@ -10,7 +10,7 @@ namespace bandsaw {
 
 /// Makes a ray traced through the tree test all primitives in it. The hits stay the same, to the
 /// bit.
-void open_boxes(WideTree& tree);
-void open_boxes(MovingTree& tree);
+void disable_culling(WideTree& tree);
+void disable_culling(MovingTree& tree);
 
 }  // namespace bandsaw

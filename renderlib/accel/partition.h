@@ -1,6 +1,6 @@
 #pragma once
 
-// One step of a build: divides a range of items in two, or makes it a leaf.
+// One step of a build: partitions a range of items in two, or makes it a leaf.
 
 #include <array>
 #include <cstddef>
@@ -33,10 +33,10 @@ inline absl::Span<TreeItem> items_of(const TwoLists& lists, const Range& range) 
 /// Returns `range` with both boxes set.
 Range bounded(const TwoLists& lists, Range range);
 
-/// Division of a range in steps: bin() for each piece, choose(), move() for each piece, parts().
+/// Partition of a range in steps: bin() for each piece, choose(), move() for each piece, parts().
 /// Pieces can be processed in parallel, and the result does not depend on how the range is cut into
 /// pieces: minimum, maximum and count are independent of order, and items keep their order.
-class Division {
+class Partition {
  public:
   struct Piece {
     absl::Span<const TreeItem> items;
@@ -46,7 +46,7 @@ class Division {
   };
 
   /// The items of all pieces, in order, MUST be those of the range.
-  Division(const TwoLists& lists, const Range& range, absl::Span<Piece> pieces);
+  Partition(const TwoLists& lists, const Range& range, absl::Span<Piece> pieces);
 
   void bin(Piece& piece) const;
   /// Selects the split. Returns false if the range becomes a leaf; then nothing else is to be
@@ -69,7 +69,7 @@ class Division {
   Split split_;
 };
 
-/// Divides a range on this thread; returns false if it becomes a leaf.
-bool divide(const TwoLists& lists, const Range& range, Range& left, Range& right);
+/// Partitions a range on this thread; returns false if it becomes a leaf.
+bool partition_range(const TwoLists& lists, const Range& range, Range& left, Range& right);
 
 }  // namespace bandsaw
