@@ -135,16 +135,17 @@ SurfacePoint surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit
   return p;
 }
 
-Ray toward(const SurfacePoint& from, const Vec3& target, double target_offset) {
-  const Ray ray = leave(from, target - from.position);
+Ray spawn_ray_to(const SurfacePoint& from, const Vec3& target, double target_offset) {
+  const Ray ray = spawn_ray(from, target - from.position);
   const Vec3 way = target - ray.origin;
   const double shorter = target_offset > 0 ? target_offset / length(way) : 0;
   return {ray.origin, way, 1 - shorter, from.id, from.time};
 }
 
-Ray toward(const SurfacePoint& from, const SurfacePoint& target) {
+Ray spawn_ray_to(const SurfacePoint& from, const SurfacePoint& target) {
   const bool behind = dot(from.position - target.position, target.geometric_normal) < 0;
-  return toward(from, behind ? target.position - target.away : target.position + target.away, 0);
+  return spawn_ray_to(from, behind ? target.position - target.away : target.position + target.away,
+                      0);
 }
 
 }  // namespace bandsaw

@@ -65,7 +65,7 @@ inline double distance_along(const Ray& ray, const SurfacePoint& met) {
 
 /// A ray that leaves the surface: starts off it on the side of `direction` and cannot hit the flat
 /// primitive again. (Here, so that what waits for the ray has it in registers.)
-inline Ray leave(const SurfacePoint& from, const Vec3& direction, double t_max = kInfinity) {
+inline Ray spawn_ray(const SurfacePoint& from, const Vec3& direction, double t_max = kInfinity) {
   const bool inwards = dot(direction, from.geometric_normal) < 0;
   return {inwards ? from.position - from.away : from.position + from.away, direction, t_max,
           from.id, from.time};
@@ -74,11 +74,11 @@ inline Ray leave(const SurfacePoint& from, const Vec3& direction, double t_max =
 /// A ray from `from` to `target`, for asking whether anything lies between; t is in (0, 1), ends
 /// short of the target surface by `target_offset` (its SurfacePoint::offset; 0 for a point in
 /// space).
-Ray toward(const SurfacePoint& from, const Vec3& target, double target_offset);
+Ray spawn_ray_to(const SurfacePoint& from, const Vec3& target, double target_offset);
 
 /// The same to another surface: ends off it, on the side that faces `from`, so that
 /// the surface itself is never between, however edge-on it is seen.
-Ray toward(const SurfacePoint& from, const SurfacePoint& target);
+Ray spawn_ray_to(const SurfacePoint& from, const SurfacePoint& target);
 
 /// SurfacePoint::offset of a point at `position` on a primitive of `size`, in world space without
 /// instances.

@@ -84,7 +84,8 @@ Rgb asked_light(const Scene& scene, const SurfacePoint& point, const Receiver& r
   if (is_black(scattered.value)) {
     return {};
   }
-  const Ray way = light->distant ? leave(point, light->direction) : toward(point, light->target, 0);
+  const Ray way =
+      light->distant ? spawn_ray(point, light->direction) : spawn_ray_to(point, light->target, 0);
   const Rgb passing = passing_light(scene, way, rays);
   if (is_black(passing)) {
     return {};
@@ -97,7 +98,7 @@ Rgb asked_light(const Scene& scene, const SurfacePoint& point, const Receiver& r
 /// What local shading sees of an environment in a direction that scattering found.
 Rgb followed_environment(const Scene& scene, const SurfacePoint& point, const Departure& departure,
                          const Vec3& direction, std::uint64_t& rays) {
-  const Rgb passing = passing_light(scene, leave(point, direction), rays);
+  const Rgb passing = passing_light(scene, spawn_ray(point, direction), rays);
   return is_black(passing)
              ? Rgb{}
              : background_light(scene, departure, direction, Technique::kBoth) * passing;
@@ -191,7 +192,7 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
   if (passes && nested_glass(material) != nullptr) {
     path.nesting.here = path.nesting.beyond;
   }
-  path.ray = leave(point, next->wi);
+  path.ray = spawn_ray(point, next->wi);
   return true;
 }
 

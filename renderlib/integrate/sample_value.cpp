@@ -36,7 +36,7 @@ float openness(const Scene& scene, const SurfacePoint& point, const Vec3& wo, do
     return 0;
   }
   const double distance = scene.local_shading().occlusion_distance;
-  return scene.accel().occluded(leave(point, normalize(direction), distance)) ? 0.0f : 1.0f;
+  return scene.accel().occluded(spawn_ray(point, normalize(direction), distance)) ? 0.0f : 1.0f;
 }
 
 Rgb value_at(const Scene& scene, Integrator integrator, const Ray& ray, const PixelSampler& sampler,

@@ -106,7 +106,7 @@ void deal_out(const Scene& scene, const Takers& takers, const Finding& found, st
     const View view = view_of(*takers[j], found);
     if (j != finder && view.scattered.pdf > 0) {
       ++rays;
-      if (scene.accel().occluded(toward(takers[j]->point, found.point))) {
+      if (scene.accel().occluded(spawn_ray_to(takers[j]->point, found.point))) {
         continue;
       }
     }

@@ -72,8 +72,8 @@ TEST(Offset, O1_NoRayHitsThePlaneItLeaves) {
         ++bounces;
         const Vec3 d = test::random_direction(random);
         const Vec3 flat = normalize(d - (1 - 1e-4 * random.uniform()) * dot(d, up) * up);
-        hits += accel.closest(leave(p, d)) ? 1 : 0;
-        hits += accel.closest(leave(p, flat)) ? 1 : 0;
+        hits += accel.closest(spawn_ray(p, d)) ? 1 : 0;
+        hits += accel.closest(spawn_ray(p, flat)) ? 1 : 0;
       }
     }
   }
@@ -134,7 +134,7 @@ TEST(Offset, O5_NoPathEscapesFromACrease) {
         const SurfacePoint p = surface_at(crease.geometry, ray, hit);
         const Basis basis = orthonormal_basis(crease.inwards[hit.id.primitive]);
         const double u = random.uniform();
-        ray = leave(p, basis.to_world(sample_cosine_hemisphere(u, random.uniform())));
+        ray = spawn_ray(p, basis.to_world(sample_cosine_hemisphere(u, random.uniform())));
         hit = accel.closest(ray);
       }
       escapes += hit || crease.leaves_by_opening(ray) ? 0 : 1;
@@ -162,7 +162,7 @@ TEST(Offset, O7_RefractedRaysStartOnTheFarSide) {
     const Vec3 wo = test::random_direction(random);
     const auto drawn = sample(bsdf_at(Dielectric{1.5}, none, p, wo), 0, 0, random.uniform());
     if (drawn) {
-      const Vec3 moved = leave(p, drawn->wi).origin - p.position;
+      const Vec3 moved = spawn_ray(p, drawn->wi).origin - p.position;
       wrong += dot(moved, p.geometric_normal) * dot(drawn->wi, p.geometric_normal) > 0 ? 0 : 1;
     }
   }
@@ -222,7 +222,7 @@ TEST(Box, Q8_NothingEscapesFromSixQuads) {
       const Vec3& n = p.geometric_normal;
       const Basis basis = orthonormal_basis(dot(n, ray.direction) > 0 ? -n : n);
       const double u = random.uniform();
-      ray = leave(p, basis.to_world(sample_cosine_hemisphere(u, random.uniform())));
+      ray = spawn_ray(p, basis.to_world(sample_cosine_hemisphere(u, random.uniform())));
     }
     test::at_most("Q8", "escapes of " + std::to_string(bounces), escapes, 0);
   }

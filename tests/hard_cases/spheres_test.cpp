@@ -131,7 +131,7 @@ TEST(Sphere, S2_HitPointsLieOnItHoweverLarge) {
         height.see(std::abs(static_cast<double>(off)) / (radius + 1));
       }
       const Vec3 up = test::random_direction(random);
-      const Ray away = leave(p, dot(up, p.geometric_normal) < 0 ? -up : up);
+      const Ray away = spawn_ray(p, dot(up, p.geometric_normal) < 0 ? -up : up);
       again += hit(away, g.spheres[0], true) || hit(away, g.spheres[0], false) ? 1 : 0;
     }
   }
@@ -226,10 +226,10 @@ TEST(Sphere, S7_TinyOnesAreSolid) {
       const Vec3 target = g.spheres[0].center + 0.99 * radius * test::random_direction(random);
       const Ray ray = {origin, normalize(target - origin)};
       const auto t = hit(ray, g.spheres[0]);
-      holes +=
-          t && hit(leave(surface_at(g, ray, {*t, {0, 0}, 0, 0}), ray.direction), g.spheres[0], true)
-              ? 0
-              : 1;
+      holes += t && hit(spawn_ray(surface_at(g, ray, {*t, {0, 0}, 0, 0}), ray.direction),
+                        g.spheres[0], true)
+                   ? 0
+                   : 1;
     }
     test::at_most("S7", "exits missed of " + std::to_string(rays), holes, 0);
   }
@@ -281,7 +281,7 @@ std::string pass_through(const Geometry& g, const Accel& accel, Vec3& direction,
     if (!next) {
       return order + "?";
     }
-    ray = leave(p, next->wi);
+    ray = spawn_ray(p, next->wi);
   }
   direction = ray.direction;
   return order;

@@ -139,8 +139,8 @@ TEST(Group, X2_AStretchedSphereIsAnEllipsoid) {
     ASSERT_GT(dot(turn.direction(gradient), p.geometric_normal), 0);
     ASSERT_LE(length(p.position - (ray.origin + hit.t * ray.direction)), 1e-11);
     // Rays that leave do not meet it again; those that go inwards meet its other side.
-    ASSERT_FALSE(accel.occluded(leave(p, p.geometric_normal + 1e-3 * ray.direction)));
-    ASSERT_TRUE(accel.occluded(leave(p, -p.geometric_normal)));
+    ASSERT_FALSE(accel.occluded(spawn_ray(p, p.geometric_normal + 1e-3 * ray.direction)));
+    ASSERT_TRUE(accel.occluded(spawn_ray(p, -p.geometric_normal)));
   }
   EXPECT_GT(hits, 3000);
 }

@@ -53,7 +53,7 @@ TEST(Offset, O1_NoRayHitsTheMeshPlaneItLeaves) {
       const Hit hit = accel.closest(ray);
       ASSERT_TRUE(hit);
       const SurfacePoint p = surface_at(g, ray, hit);
-      const Hit again = accel.closest(leave(p, test::random_direction(random)));
+      const Hit again = accel.closest(spawn_ray(p, test::random_direction(random)));
       // Positions are rounded to float, so the mesh is not quite flat: what is hit must be a little
       // way off.
       ASSERT_TRUE(!again || again.t > 1e3 * p.offset) << again.t << " " << p.offset;
@@ -79,7 +79,7 @@ TEST(Offset, O2_NarrowGapsAreNotPassedOver) {
         const Ray ray = {on_plane - Vec3{0, 1, 0}, {0, 1, 0}};
         const Hit hit = accel.closest(ray);
         ASSERT_EQ(hit.id, (PrimitiveId{0, 1}));
-        const Ray up = leave(surface_at(g, ray, hit), {0, 1, 0});
+        const Ray up = spawn_ray(surface_at(g, ray, hit), {0, 1, 0});
         const Hit under = accel.closest(up);
         ASSERT_EQ(under.id, (PrimitiveId{0, 0}));
         ASSERT_NEAR(under.t / gap, 1, 0.3);  // the sphere curves away by up to a quarter
@@ -117,12 +117,12 @@ TEST(Offset, O4_NothingStandsBetweenAPointAndALightItSees) {
       const Quad& quad = g.quads[0];
       const Vec3 on_quad = quad.corner + u * quad.u + v * quad.v;
       const Vec3 normal = normalize(cross(quad.u, quad.v));
-      const Ray to_quad = toward(p, surface(on_quad, normal, 1));
+      const Ray to_quad = spawn_ray_to(p, surface(on_quad, normal, 1));
       // The sphere may hide the quad; the quad never hides itself.
       ASSERT_NE(accel.closest(to_quad).id, (PrimitiveId{0, 1}));
       const auto s = sample_sphere_light(g.spheres[0].center, 0.7, p.position, u, v);
       ASSERT_TRUE(s);
-      const Ray to_sphere = toward(p, surface(s->position, s->normal, 0.7));
+      const Ray to_sphere = spawn_ray_to(p, surface(s->position, s->normal, 0.7));
       ASSERT_NE(accel.closest(to_sphere).id, (PrimitiveId{0, 0}));
     }
   }
@@ -137,9 +137,9 @@ TEST(Offset, O3_ABlockerNearAReceiverCountsHoweverFarTheLight) {
   const Accel accel = Accel::build(g, pool);
   const Ray down = {{0, 0.1, 0}, {0, -1, 0}};
   const SurfacePoint p = surface_at(g, down, accel.closest(down));
-  EXPECT_TRUE(accel.occluded(toward(p, {0, 1000, 0}, 0)));
-  EXPECT_FALSE(accel.occluded(toward(p, {0, 0.5, 0}, 1e-9)));
-  EXPECT_FALSE(accel.occluded(toward(p, {0, 0.4, 0}, 0)));
+  EXPECT_TRUE(accel.occluded(spawn_ray_to(p, {0, 1000, 0}, 0)));
+  EXPECT_FALSE(accel.occluded(spawn_ray_to(p, {0, 0.5, 0}, 1e-9)));
+  EXPECT_FALSE(accel.occluded(spawn_ray_to(p, {0, 0.4, 0}, 0)));
 }
 
 }  // namespace

@@ -90,8 +90,9 @@ Lost bounce(const Geometry& g, const Transform& to_world, int rays, std::uint64_
     for (int k = 0; hit && k < 20; ++k) {
       const SurfacePoint p = surface_at(g, ray, hit);
       ++lost.rays;
-      lost.outside += accel.occluded(leave(p, direction_from(p, false, to_world, random))) ? 1 : 0;
-      ray = leave(p, direction_from(p, true, to_world, random));
+      lost.outside +=
+          accel.occluded(spawn_ray(p, direction_from(p, false, to_world, random))) ? 1 : 0;
+      ray = spawn_ray(p, direction_from(p, true, to_world, random));
       hit = accel.closest(ray);
       const bool exits = hit && dot(surface_at(g, ray, hit).geometric_normal, ray.direction) > 0;
       lost.inside += exits ? 0 : 1;
@@ -132,7 +133,7 @@ TEST(Squashed, S12_ChordsAreAsLongAsTheyAre) {
       const Vec3 target = c.to_world.point(0.6 * test::random_point(random));
       const Ray in = {origin, target - origin};
       const SurfacePoint p = surface_at(g, in, accel.closest(in));
-      const Ray ray = leave(p, direction_from(p, true, c.to_world, random));
+      const Ray ray = spawn_ray(p, direction_from(p, true, c.to_world, random));
       const Vec3 d = to_object.direction(ray.direction);
       const double along = -dot(p.object_position, d) / length(d);
       if (along > 0.1) {  // flatter ones are shorter by more than the offset

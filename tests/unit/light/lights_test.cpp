@@ -120,7 +120,7 @@ TEST(Lights, O4_NoSampleThatIsInSightIsInItsOwnShadow) {
       const double choice = random.uniform();
       const double u = random.uniform();
       const auto light = scene->lights().sample({point.position, kUp}, choice, u, random.uniform());
-      occluded += light && scene->accel().occluded(toward(point, light->target, 0)) ? 1 : 0;
+      occluded += light && scene->accel().occluded(spawn_ray_to(point, light->target, 0)) ? 1 : 0;
     }
     EXPECT_EQ(occluded, 0) << test_case.name;
   }
