@@ -31,8 +31,8 @@ class MediumWalk {
   static constexpr std::size_t kMaxMedia = 16;
 
   /// `ray` has a unit direction; only its first `length` (> 0, may be infinite) is split. The scene
-  /// MUST need media (`Needs::media`) and outlive this object. Adds the number of rays traced to
-  /// `rays`.
+  /// MUST need media (`SceneFeatures::media`) and outlive this object. Adds the number of rays
+  /// traced to `rays`.
   MediumWalk(const Scene& scene, const Ray& ray, double length, std::uint64_t& rays);
 
   /// Returns the next segment inside a medium, in order along the ray; std::nullopt at the end.

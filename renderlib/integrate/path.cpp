@@ -44,7 +44,7 @@ void follow(const PathContext& context, std::uint32_t depth, PathState& path) {
     if (seen) {
       see_surface(context, *seen, path);
     }
-    if (context.scene.needs().media) {
+    if (context.scene.features().media) {
       const double way = seen ? distance_along(path.ray, *seen) : kInfinity;
       const Passage passage = through_media(context, way, depth, path);
       if (passage == Passage::kEnded) {

@@ -57,7 +57,7 @@ struct PathContext {
   }
   Sample4 numbers(std::uint32_t group) const { return sampler.group(sample, group); }
   bool asks_lights() const {
-    return scene.needs().lights && options.technique != Technique::kScatteringOnly;
+    return scene.features().lights && options.technique != Technique::kScatteringOnly;
   }
 };
 

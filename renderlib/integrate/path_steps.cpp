@@ -116,7 +116,7 @@ void see_surface(const PathContext& context, const SurfacePoint& point, PathStat
     return;
   }
   Rgb passing = gray(1);
-  if (scene.needs().media) {
+  if (scene.features().media) {
     Ray way = path.ray;
     way.t_max = distance_along(way, point);
     passing = media_transmittance(scene, way, context.rays);

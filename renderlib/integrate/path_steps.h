@@ -1,6 +1,6 @@
 #pragma once
 
-// Steps from which path.cpp and shared_paths.cpp build their paths.
+// Steps from which path.cpp and path_reuse.cpp build their paths.
 
 #include <cstdint>
 #include <optional>

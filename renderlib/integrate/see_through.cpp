@@ -10,7 +10,7 @@ namespace bandsaw {
 namespace {
 
 SurfacePoint point_at(const Scene& scene, const Ray& ray, const Hit& hit) {
-  SurfacePoint point = surface_at(scene.geometry(), ray, hit, scene.needs().uv);
+  SurfacePoint point = surface_at(scene.geometry(), ray, hit, scene.features().uv);
   if (const auto* principled = std::get_if<Principled>(&scene.material(point.material))) {
     const NormalUvSets sets = normal_uv_sets(*principled, scene.textures());
     if (sets.first) {
@@ -84,8 +84,9 @@ std::optional<SurfacePoint> first_surface(const Scene& scene, const Ray& ray,
   Hit hit = scene.accel().closest(ray);
   for (std::uint32_t passed = 0; hit; ++passed) {
     const SurfacePoint point = point_at(scene, ray, hit);
-    const double there =
-        scene.needs().alpha ? opacity(scene.material(point.material), scene.textures(), point) : 1;
+    const double there = scene.features().alpha
+                             ? opacity(scene.material(point.material), scene.textures(), point)
+                             : 1;
     const bool is_there =
         there >= 1 || (there > 0 && sampler.group(sample, group_alpha(bounce, passed))[0] < there);
     if (is_there && nested_glass(scene.material(point.material)) == nullptr) {
@@ -109,7 +110,7 @@ std::optional<SurfacePoint> first_surface(const Scene& scene, const Ray& ray,
 
 float unoccluded(const Scene& scene, const Ray& ray, std::uint64_t& rays) {
   ++rays;
-  if (!scene.needs().alpha) {
+  if (!scene.features().alpha) {
     return scene.accel().occluded(ray) ? 0.0f : 1.0f;
   }
   double share = 1;

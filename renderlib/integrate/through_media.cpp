@@ -172,7 +172,7 @@ Passage through_media(const PathContext& context, double length, std::uint32_t d
 
 Rgb passing_light(const Scene& scene, const Ray& ray, std::uint64_t& rays) {
   const float share = unoccluded(scene, ray, rays);
-  if (share == 0 || !scene.needs().media) {
+  if (share == 0 || !scene.features().media) {
     return gray(share);
   }
   return media_transmittance(scene, ray, rays) * share;

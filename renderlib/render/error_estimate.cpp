@@ -15,7 +15,7 @@ namespace {
 constexpr double kSmallest = 0.01;  // Prevents relative errors of dark pixels from dominating.
 
 // Let T be the squared error of one image and V its estimate from the nodes. Both are sums over
-// half rows of tiles, which are independent (sampling/sampler.h, integrate/shared_paths.h). Let the
+// half rows of tiles, which are independent (sampling/sampler.h, integrate/path_reuse.h). Let the
 // errors within a half row be normal and, in the worst case, the same for all its pixels, with
 // variance s. Its contributions to T and V are independent; the first has variance 2 s^2, the
 // second r s^2, where r = 2 for two halves and about 1 with further nodes. So the variance of T - V

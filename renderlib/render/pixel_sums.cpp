@@ -28,14 +28,15 @@ PixelSums::PixelSums(const Scene& scene, const RenderSettings& settings, const B
                .branches = settings.integrator == Integrator::kDirect ? 1 : branches_for(scene)},
       camera_(scene.camera(), static_cast<int>(settings.width), static_cast<int>(settings.height)),
       asks_through_lens_(!scene.lights().empty() && follows_light(settings.integrator)),
-      shares_(scene.shares_paths() && follows_light(settings.integrator) && !options_.local) {}
+      reuses_paths_(scene.reuses_paths() && follows_light(settings.integrator) && !options_.local) {
+}
 
 void PixelSums::add_run(std::uint32_t y, std::uint32_t first, std::uint32_t last,
                         const TileSamples& tiles, absl::Span<double> row,
                         Counters& counters) const {
   Desk desk;
-  desk.pixels.reserve(kMaxShared);
-  if (!shares_) {
+  desk.pixels.reserve(kMaxReusePixels);
+  if (!reuses_paths_) {
     for (std::uint32_t x = first; x < last && !stopped(); ++x) {
       add_group(y, {x, x + 1}, tiles.of_pixel(x, y, samples_), row, desk, counters);
     }
@@ -85,9 +86,9 @@ void PixelSums::add_group(std::uint32_t y, const HalfRow& group, const SampleRan
 }
 
 PixelSums::Sums PixelSums::leaf(std::uint32_t y, const HalfRow& group, const SampleRange& samples,
-                                absl::Span<SharedPixel> pixels, Counters& counters) const {
+                                absl::Span<ReusePixel> pixels, Counters& counters) const {
   Sums sums{};
-  std::array<double, kMaxShared> left_out{};
+  std::array<double, kMaxReusePixels> left_out{};
   PathCounts counts;
   for (std::uint64_t number = samples.first; number < samples.last; ++number) {
     sample(y, group, number, pixels, counts);
@@ -120,17 +121,17 @@ PixelSums::Sums PixelSums::leaf(std::uint32_t y, const HalfRow& group, const Sam
 }
 
 void PixelSums::sample(std::uint32_t y, const HalfRow& group, std::uint64_t sample,
-                       absl::Span<SharedPixel> pixels, PathCounts& counts) const {
+                       absl::Span<ReusePixel> pixels, PathCounts& counts) const {
   std::uint32_t x = group.first;
-  for (SharedPixel& pixel : pixels) {
+  for (ReusePixel& pixel : pixels) {
     pixel.camera_ray = camera_ray(pixel.sampler, x, y, sample);
     x += 2;
   }
-  if (shares_) {
-    shared_radiance(scene_, pixels, sample, options_, counts);
+  if (reuses_paths_) {
+    radiance_with_reuse(scene_, pixels, sample, options_, counts);
     return;
   }
-  for (SharedPixel& pixel : pixels) {
+  for (ReusePixel& pixel : pixels) {
     pixel.radiance = sample_value(scene_, settings_.integrator, pixel.camera_ray, pixel.sampler,
                                   sample, options_, counts);
   }
@@ -140,7 +141,7 @@ CameraRay PixelSums::camera_ray(const PixelSampler& sampler, std::uint32_t x, st
                                 std::uint64_t sample) const {
   const Sample4 at = sampler.group(sample, kGroupCamera);
   const Vec2 offset = bandsaw::sample(scene_.filter(), at[0], at[1]);
-  const double when = scene_.needs().motion ? sampler.group(sample, kGroupTime)[0] : 0;
+  const double when = scene_.features().motion ? sampler.group(sample, kGroupTime)[0] : 0;
   const Vec2 place{x + 0.5 + offset.x, y + 0.5 + offset.y};
   CameraRay looks(camera_.ray(place.x, place.y, at[2], at[3], when));
   if (asks_through_lens_) {

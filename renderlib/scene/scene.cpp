@@ -3,33 +3,71 @@
 #include <algorithm>
 
 #include "renderlib/base/status_macros.h"
+#include "renderlib/material/interiors.h"
 #include "renderlib/material/opacity.h"
 #include "renderlib/scene/clean.h"
 #include "renderlib/scene/rest.h"
-#include "renderlib/scene/sharing.h"
 #include "renderlib/scene/validate.h"
 
 namespace bandsaw {
 namespace {
 
-Needs needs_of(const SceneDescription& scene, const Lights& lights) {
-  Needs needs;
-  needs.lights = !lights.empty();
-  needs.alpha = std::any_of(scene.materials.begin(), scene.materials.end(), has_alpha);
-  needs.motion = moves(scene.geometry) || moves(scene.media.boundaries);
-  needs.uv = std::any_of(scene.textures.begin(), scene.textures.end(), uses_uv);
-  needs.media = scene.media.fog || scene.media.has_boundaries();
-  return needs;
+SceneFeatures features_of(const SceneDescription& scene, const Lights& lights) {
+  SceneFeatures features;
+  features.lights = !lights.empty();
+  features.alpha = std::any_of(scene.materials.begin(), scene.materials.end(), has_alpha);
+  features.motion = moves(scene.geometry) || moves(scene.media.boundaries);
+  features.uv = std::any_of(scene.textures.begin(), scene.textures.end(), uses_uv);
+  features.media = scene.media.fog || scene.media.has_boundaries();
+  return features;
+}
+
+/// Returns true if the material fully occludes what is behind it, for shadow rays and for paths
+/// alike.
+bool is_opaque(const Material& material) {
+  return !has_alpha(material) && nested_glass(material) == nullptr;
+}
+
+template <class OfMaterial>
+bool all_of_shapes(const Shapes& shapes, const OfMaterial& test) {
+  const auto all = [&](const auto& kind) {
+    return std::all_of(kind.begin(), kind.end(),
+                       [&](const auto& shape) { return test(shape.material); });
+  };
+  return all(shapes.spheres) && all(shapes.quads) && all(shapes.triangles) && all(shapes.disks);
+}
+
+/// Returns true if area and delta lights emit all the light (the background is black), nothing
+/// moves, there are no media, and every surface is either opaque or absent, for paths and shadow
+/// rays alike. `features` are those that the scene uses.
+bool can_reuse_paths(const SceneDescription& scene, const Lights& lights,
+                     const SceneFeatures& features) {
+  const Background& background = scene.background;
+  if (lights.empty() || background.environment || !is_black(background.bottom) ||
+      !is_black(background.top) || features.media || features.motion) {
+    return false;
+  }
+  const Geometry& geometry = scene.geometry;
+  const auto opaque = [&](MaterialId id) {
+    return id == kOwnMaterial || is_opaque(scene.materials[index_of(id)]);
+  };
+  return all_of_shapes(geometry, opaque) &&
+         std::all_of(geometry.groups.begin(), geometry.groups.end(),
+                     [&](const Shapes& group) { return all_of_shapes(group, opaque); }) &&
+         std::all_of(geometry.instances.begin(), geometry.instances.end(),
+                     [&](const Instance& instance) { return opaque(instance.material); });
 }
 
 }  // namespace
 
 absl::StatusOr<std::shared_ptr<const Scene>> Scene::build_with(const Kernel& kernel,
                                                                SceneDescription description,
-                                                               Pool& pool, const Needs& forced,
+                                                               Pool& pool,
+                                                               const SceneFeatures& forced,
                                                                Traversal traversal) {
   RETURN_IF_ERROR(validate(description));
-  // Trees and lights point into the scene: it has its place before they are made.
+  // BVHs and lights hold pointers into the scene, so the scene gets its final place in memory
+  // first.
   std::shared_ptr<Scene> scene(new Scene(kernel, std::move(description)));
   SceneDescription& own = scene->description_;
   scene->dropped_ = clean(own.geometry);
@@ -41,10 +79,10 @@ absl::StatusOr<std::shared_ptr<const Scene>> Scene::build_with(const Kernel& ker
   scene->accel_ = std::make_unique<Accel>(Accel::build(own.geometry, pool, interval, traversal));
   scene->lights_ =
       Lights(own.geometry, own.materials, own.textures, own.lights, own.background, interval);
-  const Needs needs = needs_of(own, scene->lights_);
-  scene->shares_paths_ = bandsaw::shares_paths(own, scene->lights_, needs);
-  scene->needs_ = needs | forced;
-  if (scene->needs_.media) {
+  const SceneFeatures features = features_of(own, scene->lights_);
+  scene->reuses_paths_ = can_reuse_paths(own, scene->lights_, features);
+  scene->features_ = features | forced;
+  if (scene->features_.media) {
     scene->boundary_accel_ =
         std::make_unique<Accel>(Accel::build(own.media.boundaries, pool, interval, traversal));
   }

@@ -33,7 +33,7 @@ struct Rendering {
   int building_threads = 1;
   int threads = 1;
   std::uint32_t rows = kHeight;  ///< of a band
-  Needs forced = {};
+  SceneFeatures forced = {};
   Traversal traversal = Traversal::kBvh;
   const Kernel* kernel = nullptr;  ///< null: the fastest
 };
@@ -101,7 +101,7 @@ TEST(SameBits, C5R6R10B12Y3_TwelveScenesHaveTheirHashes) {
     for (const std::uint32_t rows : {1u, 3u, 7u}) {
       EXPECT_EQ(hash_of(*imported, {.threads = 2, .rows = rows}), hash) << rows;
     }
-    EXPECT_EQ(hash_of(*imported, {.forced = kAllNeeds}), hash) << "the general kernel";
+    EXPECT_EQ(hash_of(*imported, {.forced = kAllFeatures}), hash) << "all features";
     for (const Kernel* kernel : kernels()) {
       EXPECT_EQ(hash_of(*imported, {.kernel = kernel}), hash) << kernel->name;
     }

@@ -10,7 +10,7 @@
 
 #include "renderlib/math/constants.h"
 #include "tests/statistical/estimate.h"
-#include "tests/statistical/shared_estimate.h"
+#include "tests/statistical/path_reuse_estimate.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
 
@@ -103,14 +103,14 @@ TEST(IntegratingSphere, OfAnyTextureIsAsBrightAsItsMeanAlbedoSays) {
 TEST(IntegratingSphere, IsAsBrightForPixelsThatShareTheirPaths) {
   const std::vector<float> values = albedos();
   const LitSphere lit = lit_sphere(values);
-  ASSERT_TRUE(lit.scene->shares_paths());
-  const std::array<std::pair<std::uint32_t, std::uint32_t>, kMaxShared> texels = {
+  ASSERT_TRUE(lit.scene->reuses_paths());
+  const std::array<std::pair<std::uint32_t, std::uint32_t>, kMaxReusePixels> texels = {
       {{1, 1}, {2, 1}, {1, 2}, {2, 2}, {1, 3}, {2, 3}, {5, 2}, {6, 4}}};
-  std::array<Ray, kMaxShared> rays;
+  std::array<Ray, kMaxReusePixels> rays;
   for (std::size_t i = 0; i < texels.size(); ++i) {
     rays[i] = toward_texel(texels[i].first, texels[i].second);
   }
-  const auto seen = test::shared_radiance_along(*lit.scene, rays, {.max_depth = 1000}, 2048);
+  const auto seen = test::radiance_with_reuse_along(*lit.scene, rays, {.max_depth = 1000}, 2048);
   for (std::size_t i = 0; i < texels.size(); ++i) {
     SCOPED_TRACE(i);
     const double albedo = values[texels[i].second * kColumns + texels[i].first];

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "renderlib/camera/camera.h"
-#include "renderlib/integrate/shared_paths.h"
+#include "renderlib/integrate/path_reuse.h"
 #include "tests/statistical/estimate.h"
 #include "tests/support/media.h"
 #include "tests/support/scenes.h"
@@ -156,16 +156,16 @@ SceneMaker room() {
 
 TEST(Lens, IsAskedThroughWherePixelsShareTheirPaths) {
   const auto scene = room().build();
-  ASSERT_TRUE(scene->shares_paths());
+  ASSERT_TRUE(scene->reuses_paths());
   const RayGenerator rays(camera(0.4), 20, 20);
   constexpr double kRow = 10.3;
-  std::array<Moments, kMaxShared> shared;
+  std::array<Moments, kMaxReusePixels> shared;
   for (std::uint64_t seed = 0; seed < 32; ++seed) {
-    std::vector<SharedPixel> pixels;
-    for (std::uint32_t x = 0; x < kMaxShared; ++x) {
+    std::vector<ReusePixel> pixels;
+    for (std::uint32_t x = 0; x < kMaxReusePixels; ++x) {
       pixels.push_back({.sampler = PixelSampler(seed, x, 3), .camera_ray = Ray{}});
     }
-    std::array<double, kMaxShared> sums{};
+    std::array<double, kMaxReusePixels> sums{};
     PathCounts counts;
     for (std::uint64_t sample = 0; sample < 512; ++sample) {
       for (std::size_t i = 0; i < pixels.size(); ++i) {
@@ -174,7 +174,7 @@ TEST(Lens, IsAskedThroughWherePixelsShareTheirPaths) {
         pixels[i].camera_ray = rays.ray(place, kRow, at[2], at[3]);
         pixels[i].camera_ray.lens = rays.lens_view(place, kRow);
       }
-      shared_radiance(*scene, absl::MakeSpan(pixels), sample, {.max_depth = 3}, counts);
+      radiance_with_reuse(*scene, absl::MakeSpan(pixels), sample, {.max_depth = 3}, counts);
       for (std::size_t i = 0; i < pixels.size(); ++i) {
         sums[i] += pixels[i].radiance.g;
       }

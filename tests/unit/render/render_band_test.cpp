@@ -6,7 +6,7 @@
 #include <numeric>
 #include <set>
 
-#include "renderlib/integrate/shared_paths.h"
+#include "renderlib/integrate/path_reuse.h"
 #include "renderlib/render/canary.h"
 #include "renderlib/render/render_image.h"
 #include "tests/support/hard_case.h"
@@ -92,7 +92,7 @@ TEST(RenderBand, EveryIntegratorGivesTheSameBitsInAnyBandsAndThreads) {
 // A tile and a part of one; of the second half a row of two pixels and one of three.
 TEST(RenderBand, C5_PixelsThatShareTheirPathsHaveTheSameBitsInAnyBandsThreadsAndTiles) {
   const auto box = test::cornell_box().build();
-  ASSERT_TRUE(box->shares_paths());
+  ASSERT_TRUE(box->reuses_paths());
   RenderSettings settings = kSettings;
   settings.width = 21;
   const auto rendered = [&](const Band& band, int threads, const TileSamples& tiles) {

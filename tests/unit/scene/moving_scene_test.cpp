@@ -45,8 +45,8 @@ SceneMaker ball_in_frame(std::vector<Key> keys, const Shutter& shutter) {
 std::vector<double> pixels(const Scene& scene) {
   Pool pool(1);
   const std::atomic<bool> stop = false;
-  const auto band =
-      render_band(scene, {.width = 24, .height = 16, .seed = 3}, {{0, 32}, {0, 16}}, pool, stop, {});
+  const auto band = render_band(scene, {.width = 24, .height = 16, .seed = 3}, {{0, 32}, {0, 16}},
+                                pool, stop, {});
   return band.ok() ? band->sums : std::vector<double>{};
 }
 
@@ -55,7 +55,7 @@ const std::vector<Key> kMoving = {Key(0, {}), Key(2, translation({1, 0, 0}))};
 // C8: a shutter that opens and closes at once shows what stands there, to the bit.
 TEST(MovingScene, C8_AtOneMomentIsTheSceneOfThatMoment) {
   const auto moving = ball_in_frame(kMoving, {1, 1}).build();
-  EXPECT_FALSE(moving->needs().motion);
+  EXPECT_FALSE(moving->features().motion);
   SceneMaker still = ball_in_frame(kMoving, {});
   still.scene.geometry.frames.clear();
   still.scene.geometry.instances = {of_group(0, translation({0.5, 0, 0}))};
@@ -67,10 +67,10 @@ TEST(MovingScene, WhatRestsNeedsNoTime) {
   const std::vector<Key> still = {Key(-1, translation({0.5, 0, 0})),
                                   Key(7, translation({0.5, 0, 0}))};
   const auto open = ball_in_frame(still, {0, 1}).build();
-  EXPECT_FALSE(open->needs().motion);
+  EXPECT_FALSE(open->features().motion);
   EXPECT_EQ(pixels(*open), pixels(*ball_in_frame(still, {}).build()));
   const auto moving = ball_in_frame(kMoving, {0, 1}).build();
-  EXPECT_TRUE(moving->needs().motion);
+  EXPECT_TRUE(moving->features().motion);
   EXPECT_NE(pixels(*moving), pixels(*open));
 }
 
@@ -105,7 +105,9 @@ TEST(MovingScene, WhatCannotBeIsRefusedWithTheField) {
   EXPECT_EQ(message_after([](auto&) {}), "");
   EXPECT_EQ(message_after([](auto& s) { s.geometry.disks[0].radius = 0; }),
             "disks[0].radius: must be > 0, is 0");
-  EXPECT_THAT(message_after([](auto& s) { s.geometry.disks[0].normal = {0, 2, 0}; }),
+  EXPECT_THAT(message_after([](auto& s) {
+                s.geometry.disks[0].normal = {0, 2, 0};
+              }),
               HasSubstr("disks[0].normal: must have length 1"));
   EXPECT_THAT(message_after([](auto& s) { s.geometry.groups[0].spheres[0].radius = -1; }),
               HasSubstr("groups[0].spheres[0].radius"));
@@ -124,7 +126,9 @@ TEST(MovingScene, WhatCannotBeIsRefusedWithTheField) {
                     Key(2, rotation({0, 0, 1}, 45) * scaling({1, 2, 1}) * rotation({0, 0, 1}, 9));
               }),
               HasSubstr("frames[0].keys[1].at: must be a scale, then a rotation"));
-  EXPECT_THAT(message_after([](auto& s) { s.geometry.frames[0].placement = scaling({1, 0, 1}); }),
+  EXPECT_THAT(message_after([](auto& s) {
+                s.geometry.frames[0].placement = scaling({1, 0, 1});
+              }),
               HasSubstr("frames[0].placement: must have an inverse"));
   EXPECT_THAT(message_after([](auto& s) {
                 std::get<PerspectiveCamera>(s.camera).shutter = {1, 0};

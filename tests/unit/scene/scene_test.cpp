@@ -137,16 +137,16 @@ TEST(Scene, T10_WhatCannotBeHitIsDroppedAndCountedAndTheRestStaysInOrder) {
   test::holds("T10", "dropped and counted");
 }
 
-TEST(Scene, NeedsAreWhatIsThere) {
+TEST(Scene, FeaturesAreThoseThatItUses) {
   SceneMaker empty;
-  EXPECT_EQ(empty.build()->needs(), Needs{});
+  EXPECT_EQ(empty.build()->features(), SceneFeatures{});
   SceneMaker maker = valid();
   maker.background({}, {0, 0, 1});
-  const Needs needs = maker.build()->needs();
-  EXPECT_EQ(needs, Needs{.lights = true});
+  const SceneFeatures features = maker.build()->features();
+  EXPECT_EQ(features, SceneFeatures{.lights = true});
   SceneMaker dark;
   dark.sphere({0, 0, 0}, 1, dark.lamp(0));
-  EXPECT_FALSE(dark.build()->needs().lights) << "a lamp that is off is no light";
+  EXPECT_FALSE(dark.build()->features().lights) << "a lamp that is off is no light";
 }
 
 TEST(Scene, AnEmptySceneShowsItsBackground) {

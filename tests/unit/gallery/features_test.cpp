@@ -1,5 +1,5 @@
-// A need only leaves out work that would change nothing: every scene of the gallery has the same
-// bits by its own kernel and by the general one.
+// A feature that is not set only skips work that would change nothing: every scene of the gallery
+// has the same bits with its own features and with all features.
 
 #include <gtest/gtest.h>
 
@@ -25,10 +25,10 @@ struct Loaded {
   PackageInfo info;
 };
 
-class GalleryNeeds : public testing::Test {
+class GalleryFeatures : public testing::Test {
  protected:
-  // A copy of the gallery beside maps of the globe, which are not kept in the repository. Small
-  // ones do: no need depends on how many texels there are.
+  // A copy of the gallery with maps of the globe, which are not in the repository. Small maps
+  // suffice: no feature depends on the number of texels.
   void SetUp() override {
     fs::copy(BANDSAW_GALLERY, folder_.path(), fs::copy_options::recursive);
     constexpr std::uint32_t kRows = 64;
@@ -62,10 +62,11 @@ class GalleryNeeds : public testing::Test {
   }
 
   // The sums of a block of samples of a small picture.
-  std::vector<double> sums(const Loaded& scene, Integrator integrator, const Needs& forced) {
+  std::vector<double> sums(const Loaded& scene, Integrator integrator,
+                           const SceneFeatures& forced) {
     const auto built = Scene::build(scene.description, pool_, forced);
     EXPECT_TRUE(built.ok()) << built.status();
-    EXPECT_EQ((*built)->needs(), (*built)->needs() | forced);
+    EXPECT_EQ((*built)->features(), (*built)->features() | forced);
     const RenderSettings settings{.width = 16,
                                   .height = 16,
                                   .max_depth = std::min(scene.info.max_depth, 8u),
@@ -80,29 +81,29 @@ class GalleryNeeds : public testing::Test {
   Pool pool_{2};
 };
 
-TEST_F(GalleryNeeds, TheGeneralKernelGivesTheSameBitsOnEveryScene) {
+TEST_F(GalleryFeatures, AllTogetherGiveTheSameBitsOnEveryScene) {
   const std::vector<std::string> all = scenes();
   EXPECT_GE(all.size(), 60u);
   for (const std::string& scene : all) {
     const Loaded loaded = load(scene);
-    EXPECT_TRUE(sums(loaded, loaded.info.integrator, kAllNeeds) ==
+    EXPECT_TRUE(sums(loaded, loaded.info.integrator, kAllFeatures) ==
                 sums(loaded, loaded.info.integrator, {}))
         << scene;
   }
 }
 
-// Scenes that need little, so that most needs are forced; and every integrator.
-TEST_F(GalleryNeeds, EachAloneGivesTheSameBitsByEveryIntegrator) {
+// Scenes with few features, so that most are forced; all integrators.
+TEST_F(GalleryFeatures, EachAloneGivesTheSameBitsByEveryIntegrator) {
   for (const char* scene : {"cornell.textproto", "spheres.textproto", "textured.textproto",
                             "study/lights_0.textproto"}) {
     const Loaded loaded = load(scene);
     for (int i = 0; i <= kLastIntegrator; ++i) {
       const auto integrator = static_cast<Integrator>(i);
       const std::vector<double> own = sums(loaded, integrator, {});
-      EXPECT_TRUE(sums(loaded, integrator, kAllNeeds) == own) << scene;
-      for (const NamedNeed& each : kEachNeed) {
-        Needs forced;
-        forced.*each.need = true;
+      EXPECT_TRUE(sums(loaded, integrator, kAllFeatures) == own) << scene;
+      for (const NamedFeature& each : kEachFeature) {
+        SceneFeatures forced;
+        forced.*each.feature = true;
         EXPECT_TRUE(sums(loaded, integrator, forced) == own)
             << scene << ", " << each.name << ", " << integrator_name(integrator);
       }

@@ -22,18 +22,19 @@
 namespace bandsaw {
 
 /// Maximum number of pixels that share their paths.
-inline constexpr std::size_t kMaxShared = 8;
+inline constexpr std::size_t kMaxReusePixels = 8;
 
-struct SharedPixel {
+struct ReusePixel {
   PixelSampler sampler;
   CameraRay camera_ray;  ///< camera ray of this sample
-  Rgb radiance = {};  ///< result: radiance arriving along `camera_ray`; set by `shared_radiance()`
+  Rgb radiance =
+      {};  ///< result: radiance arriving along `camera_ray`; set by `radiance_with_reuse()`
 };
 
-/// Computes sample number `sample` of up to kMaxShared pixels. The scene MUST be one that shares
-/// paths (`Scene::shares_paths`), and `options.local` MUST be false. Adds to `counts`.
+/// Computes sample number `sample` of up to kMaxReusePixels pixels. The scene MUST be one that
+/// shares paths (`Scene::reuses_paths`), and `options.local` MUST be false. Adds to `counts`.
 /// Deterministic; allocates nothing.
-void shared_radiance(const Scene& scene, absl::Span<SharedPixel> pixels, std::uint64_t sample,
-                     const PathOptions& options, PathCounts& counts);
+void radiance_with_reuse(const Scene& scene, absl::Span<ReusePixel> pixels, std::uint64_t sample,
+                         const PathOptions& options, PathCounts& counts);
 
 }  // namespace bandsaw

@@ -1,7 +1,7 @@
-// What each need gains: gallery scenes by their own kernel and with needs forced that they have
-// not, in turns. Markdown on standard output.
+// Measures the cost of each scene feature: scenes are rendered with their own features and with
+// unused features forced, in turns. Writes Markdown to standard output.
 //
-//   needs_bench SCENE...    scene files or models
+//   features_bench SCENE...    scene files or models
 
 #include <algorithm>
 #include <atomic>
@@ -27,8 +27,8 @@ double cpu_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// One scene with some needs, and what each of its renders took, relative to the scene's own kernel
-/// in the same round.
+/// One scene with some features, and the time of each of its renders relative to the scene with its
+/// own features in the same round.
 struct Variant {
   std::string name;
   std::shared_ptr<const Scene> scene;
@@ -37,16 +37,16 @@ struct Variant {
 
 std::vector<Variant> variants_of(const SceneDescription& description, Pool& pool) {
   std::vector<Variant> out = {{"own", Scene::build(description, pool).value(), {}}};
-  const Needs own = out[0].scene->needs();
+  const SceneFeatures own = out[0].scene->features();
   out.push_back({"own again", Scene::build(description, pool).value(), {}});
-  for (const NamedNeed& each : kEachNeed) {
-    if (!(own.*each.need)) {
-      Needs forced;
-      forced.*each.need = true;
+  for (const NamedFeature& each : kEachFeature) {
+    if (!(own.*each.feature)) {
+      SceneFeatures forced;
+      forced.*each.feature = true;
       out.push_back({each.name, Scene::build(description, pool, forced).value(), {}});
     }
   }
-  out.push_back({"all", Scene::build(description, pool, kAllNeeds).value(), {}});
+  out.push_back({"all", Scene::build(description, pool, kAllFeatures).value(), {}});
   return out;
 }
 

@@ -1,4 +1,4 @@
-#include "renderlib/integrate/shared_paths.h"
+#include "renderlib/integrate/path_reuse.h"
 
 #include <array>
 #include <cmath>
@@ -20,7 +20,7 @@ struct Taker {
 };
 
 /// What a path met second, the normal on the side that it came from, and what comes from there.
-struct Finding {
+struct SharedVertex {
   SurfacePoint point;
   Vec3 to_finder;
   Rgb radiance;
@@ -34,7 +34,7 @@ Vec3 facing(const SurfacePoint& point, const Ray& ray) {
 /// Follows a pixel's path, and leaves in it the radiance that is the pixel's alone; `found` is what
 /// is shared, by the pixel as well.
 void follow_own(const PathContext& context, PathState& path, std::optional<Taker>& taker,
-                std::optional<Finding>& found) {
+                std::optional<SharedVertex>& found) {
   const Ray camera_ray = path.ray;
   const std::optional<SurfacePoint> first = next_surface(context, 0, path);
   if (!first) {
@@ -61,7 +61,7 @@ void follow_own(const PathContext& context, PathState& path, std::optional<Taker
   const bool shared = taker && !path.departure.delta &&
                       std::holds_alternative<Diffuse>(context.scene.material(second->material));
   if (shared) {
-    found = Finding{*second, facing(*second, path.ray), {}};
+    found = SharedVertex{*second, facing(*second, path.ray), {}};
     path.radiance = {};
     path.throughput = gray(1);
   }
@@ -74,7 +74,7 @@ void follow_own(const PathContext& context, PathState& path, std::optional<Taker
   }
 }
 
-using Takers = std::array<std::optional<Taker>, kMaxShared>;
+using Takers = std::array<std::optional<Taker>, kMaxReusePixels>;
 
 /// What a taker scatters from there by solid angle, and the solid angle of an area there; no
 /// density where it would not be found from the side that it was found from.
@@ -83,7 +83,7 @@ struct View {
   double per_area = 0;
 };
 
-View view_of(const Taker& taker, const Finding& found) {
+View view_of(const Taker& taker, const SharedVertex& found) {
   const Vec3 way = found.point.position - taker.point.position;
   const double facing_way = -dot(way, found.to_finder);
   if (!(dot(way, taker.to_viewer) > 0) || !(facing_way > 0)) {
@@ -95,9 +95,9 @@ View view_of(const Taker& taker, const Finding& found) {
 }
 
 /// Adds what pixel `finder` found to all that see it.
-void deal_out(const Scene& scene, const Takers& takers, const Finding& found, std::size_t finder,
-              absl::Span<SharedPixel> pixels, std::uint64_t& rays) {
-  std::array<View, kMaxShared> views;
+void deal_out(const Scene& scene, const Takers& takers, const SharedVertex& found,
+              std::size_t finder, absl::Span<ReusePixel> pixels, std::uint64_t& rays) {
+  std::array<View, kMaxReusePixels> views;
   double density = 0;  // Of all pixels, by area.
   for (std::size_t j = 0; j < pixels.size(); ++j) {
     if (!takers[j]) {
@@ -121,11 +121,11 @@ void deal_out(const Scene& scene, const Takers& takers, const Finding& found, st
 
 }  // namespace
 
-void shared_radiance(const Scene& scene, absl::Span<SharedPixel> pixels, std::uint64_t sample,
-                     const PathOptions& options, PathCounts& counts) {
-  BANDSAW_CHECK(pixels.size() <= kMaxShared, "more pixels than may share");
+void radiance_with_reuse(const Scene& scene, absl::Span<ReusePixel> pixels, std::uint64_t sample,
+                         const PathOptions& options, PathCounts& counts) {
+  BANDSAW_CHECK(pixels.size() <= kMaxReusePixels, "more pixels than may share");
   Takers takers;
-  std::array<std::optional<Finding>, kMaxShared> found;
+  std::array<std::optional<SharedVertex>, kMaxReusePixels> found;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const PathContext context{scene, pixels[i].sampler, sample, options, counts.rays};
     PathState path(pixels[i].camera_ray.ray);
