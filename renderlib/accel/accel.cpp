@@ -51,7 +51,7 @@ struct Accel::Trees {
 
   /// Returns true if the query is finished.
   template <class Query>
-  bool ask(const Ray& ray, Query& query) const {
+  bool intersect(const Ray& ray, Query& query) const {
     return trace(top, *geometry, ray, query) ||
            (!moving.tree.empty && trace_moving(moving, *geometry, ray, query));
   }
@@ -90,19 +90,19 @@ Accel Accel::build(const Geometry& geometry, Pool& pool, const Interval& interva
 
 Hit Accel::closest(const Ray& ray) const {
   ClosestQuery query(ray);
-  trees_->ask(ray, query);
+  trees_->intersect(ray, query);
   return query.result();
 }
 
 Hit Accel::closest_after(const Ray& ray, const Hit& after) const {
   AfterQuery query(ray, after);
-  trees_->ask(ray, query);
+  trees_->intersect(ray, query);
   return query.result();
 }
 
 bool Accel::occluded(const Ray& ray) const {
   AnyQuery query(ray);
-  return trees_->ask(ray, query);
+  return trees_->intersect(ray, query);
 }
 
 std::size_t Accel::bytes() const {

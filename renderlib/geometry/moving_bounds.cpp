@@ -51,9 +51,9 @@ Course through(const Key& a, const Key& b, const Course& c) {
   const double turning = 2 * kPi * turn_between(a.pose.rotate, b.pose.rotate) / duration;
   const Course p = {scale * c.distance, growth * c.distance + scale * c.speed,
                     2 * growth * c.speed + scale * c.bend};
-  const double way = length(b.pose.translate - a.pose.translate) / duration;
+  const double speed = length(b.pose.translate - a.pose.translate) / duration;
   const double far = std::max(length(a.pose.translate), length(b.pose.translate));
-  return {far + p.distance, way + turning * p.distance + p.speed,
+  return {far + p.distance, speed + turning * p.distance + p.speed,
           turning * turning * p.distance + 2 * turning * p.speed + p.bend};
 }
 

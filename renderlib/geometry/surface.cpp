@@ -137,9 +137,9 @@ SurfacePoint surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit
 
 Ray spawn_ray_to(const SurfacePoint& from, const Vec3& target, double target_offset) {
   const Ray ray = spawn_ray(from, target - from.position);
-  const Vec3 way = target - ray.origin;
-  const double shorter = target_offset > 0 ? target_offset / length(way) : 0;
-  return {ray.origin, way, 1 - shorter, from.id, from.time};
+  const Vec3 to_target = target - ray.origin;
+  const double shorter = target_offset > 0 ? target_offset / length(to_target) : 0;
+  return {ray.origin, to_target, 1 - shorter, from.id, from.time};
 }
 
 Ray spawn_ray_to(const SurfacePoint& from, const SurfacePoint& target) {

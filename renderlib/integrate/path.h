@@ -51,9 +51,6 @@ struct PathCounts {
   std::uint64_t truncated = 0;
 };
 
-/// Russian roulette may end a path from this scattering on.
-inline constexpr std::uint32_t kRouletteDepth = 3;
-
 /// A camera ray for one sample of a pixel.
 struct CameraRay {
   /// Implicit, so that a plain ray can be passed where no lens is involved.

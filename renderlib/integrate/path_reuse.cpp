@@ -11,111 +11,114 @@
 namespace bandsaw {
 namespace {
 
-/// What a pixel sees first, where it can scatter light of others; `to_viewer`: its geometric normal
-/// on the side that is seen.
-struct Taker {
+/// The first vertex of a pixel's path, if its BSDF has a pdf, so that light from the second
+/// vertices of other pixels can be scattered there.
+struct PrimaryVertex {
   SurfacePoint point;
-  Vec3 to_viewer;
+  Vec3 normal;  ///< geometric normal on the viewer's side
   Bsdf bsdf;
 };
 
-/// What a path met second, the normal on the side that it came from, and what comes from there.
+/// The second vertex of a pixel's path, if all pixels may use it.
 struct SharedVertex {
   SurfacePoint point;
-  Vec3 to_finder;
-  Rgb radiance;
+  Vec3 normal;   ///< geometric normal on the side from which the path arrived
+  Rgb radiance;  ///< radiance that leaves the vertex, the same in all directions
 };
 
+/// Returns the geometric normal on the side from which the ray arrives.
 Vec3 facing(const SurfacePoint& point, const Ray& ray) {
   return dot(point.geometric_normal, ray.direction) <= 0 ? point.geometric_normal
                                                          : -point.geometric_normal;
 }
 
-/// Follows a pixel's path, and leaves in it the radiance that is the pixel's alone; `found` is what
-/// is shared, by the pixel as well.
-void follow_own(const PathContext& context, PathState& path, std::optional<Taker>& taker,
-                std::optional<SharedVertex>& found) {
+/// Traces a pixel's path and leaves in `path` the radiance that belongs to this pixel alone. Sets
+/// `primary` if the pixel can receive light from shared vertices, and `shared` if its second vertex
+/// is shared; the light of that vertex is not in `path`.
+void trace_own_path(const PathContext& context, PathState& path,
+                    std::optional<PrimaryVertex>& primary, std::optional<SharedVertex>& shared) {
   const Ray camera_ray = path.ray;
   const std::optional<SurfacePoint> first = next_surface(context, 0, path);
   if (!first) {
-    leave_scene(context, path);
+    add_background(context, path);
     return;
   }
-  see_surface(context, *first, path);
-  const std::optional<Bsdf> bsdf = arrive(context, *first, 0, path);
+  add_emission(context, *first, path);
+  const std::optional<Bsdf> bsdf = make_bsdf(context, *first, 0, path);
   if (!bsdf) {
     return;
   }
-  if (has_density(*bsdf)) {
-    taker = Taker{*first, facing(*first, camera_ray), *bsdf};
+  if (has_pdf(*bsdf)) {
+    primary = PrimaryVertex{*first, facing(*first, camera_ray), *bsdf};
   }
   if (!scatter(context, *first, *bsdf, 0, path)) {
     return;
   }
   const std::optional<SurfacePoint> second = next_surface(context, 1, path);
   if (!second) {
-    leave_scene(context, path);
+    add_background(context, path);
     return;
   }
   const Rgb own = path.radiance;
-  const bool shared = taker && !path.departure.delta &&
-                      std::holds_alternative<Diffuse>(context.scene.material(second->material));
-  if (shared) {
-    found = SharedVertex{*second, facing(*second, path.ray), {}};
+  const bool is_shared = primary && !path.previous.delta &&
+                         std::holds_alternative<Diffuse>(context.scene.material(second->material));
+  if (is_shared) {
+    shared = SharedVertex{*second, facing(*second, path.ray), {}};
     path.radiance = {};
     path.throughput = gray(1);
   }
   if (scatter_at(context, *second, 1, path)) {
-    follow(context, 2, path);
+    trace_path(context, 2, path);
   }
-  if (shared) {
-    found->radiance = path.radiance;
+  if (is_shared) {
+    shared->radiance = path.radiance;
     path.radiance = own;
   }
 }
 
-using Takers = std::array<std::optional<Taker>, kMaxReusePixels>;
+using PrimaryVertices = std::array<std::optional<PrimaryVertex>, kMaxReusePixels>;
 
-/// What a taker scatters from there by solid angle, and the solid angle of an area there; no
-/// density where it would not be found from the side that it was found from.
-struct View {
+/// The connection of a primary vertex to a shared vertex: BSDF value and pdf by solid angle, and
+/// the factor to area measure. All zero if one vertex is behind the other one's surface.
+struct Connection {
   BsdfValue scattered;
-  double per_area = 0;
+  double solid_angle_per_area = 0;
 };
 
-View view_of(const Taker& taker, const SharedVertex& found) {
-  const Vec3 way = found.point.position - taker.point.position;
-  const double facing_way = -dot(way, found.to_finder);
-  if (!(dot(way, taker.to_viewer) > 0) || !(facing_way > 0)) {
+Connection connect(const PrimaryVertex& primary, const SharedVertex& shared) {
+  const Vec3 to_shared = shared.point.position - primary.point.position;
+  const double cosine = -dot(to_shared, shared.normal);  // times the distance
+  if (!(dot(to_shared, primary.normal) > 0) || !(cosine > 0)) {
     return {};
   }
-  const double distance2 = length_squared(way);
+  const double distance2 = length_squared(to_shared);
   const double distance = std::sqrt(distance2);
-  return {evaluate(taker.bsdf, way / distance), facing_way / (distance2 * distance)};
+  return {evaluate(primary.bsdf, to_shared / distance), cosine / (distance2 * distance)};
 }
 
-/// Adds what pixel `finder` found to all that see it.
-void deal_out(const Scene& scene, const Takers& takers, const SharedVertex& found,
-              std::size_t finder, absl::Span<ReusePixel> pixels, std::uint64_t& rays) {
-  std::array<View, kMaxReusePixels> views;
-  double density = 0;  // Of all pixels, by area.
+/// Adds the light of the shared vertex of pixel `owner` to all pixels whose primary vertex sees it,
+/// with balance-heuristic weights.
+void distribute(const Scene& scene, const PrimaryVertices& primary, const SharedVertex& shared,
+                std::size_t owner, absl::Span<ReusePixel> pixels, std::uint64_t& rays) {
+  std::array<Connection, kMaxReusePixels> connections;
+  double pdf_sum = 0;  // over all pixels, by area
   for (std::size_t j = 0; j < pixels.size(); ++j) {
-    if (!takers[j]) {
+    if (!primary[j]) {
       continue;
     }
-    const View view = view_of(*takers[j], found);
-    if (j != finder && view.scattered.pdf > 0) {
+    const Connection connection = connect(*primary[j], shared);
+    if (j != owner && connection.scattered.pdf > 0) {
       ++rays;
-      if (scene.accel().occluded(spawn_ray_to(takers[j]->point, found.point))) {
+      if (scene.accel().occluded(spawn_ray_to(primary[j]->point, shared.point))) {
         continue;
       }
     }
-    views[j] = view;
-    density += view.scattered.pdf * view.per_area;
+    connections[j] = connection;
+    pdf_sum += connection.scattered.pdf * connection.solid_angle_per_area;
   }
-  for (std::size_t j = 0; density > 0 && j < pixels.size(); ++j) {
-    pixels[j].radiance +=
-        views[j].scattered.value * found.radiance * static_cast<float>(views[j].per_area / density);
+  for (std::size_t j = 0; pdf_sum > 0 && j < pixels.size(); ++j) {
+    pixels[j].radiance += connections[j].scattered.value * shared.radiance *
+                          static_cast<float>(connections[j].solid_angle_per_area / pdf_sum);
   }
 }
 
@@ -123,22 +126,22 @@ void deal_out(const Scene& scene, const Takers& takers, const SharedVertex& foun
 
 void radiance_with_reuse(const Scene& scene, absl::Span<ReusePixel> pixels, std::uint64_t sample,
                          const PathOptions& options, PathCounts& counts) {
-  BANDSAW_CHECK(pixels.size() <= kMaxReusePixels, "more pixels than may share");
-  Takers takers;
-  std::array<std::optional<SharedVertex>, kMaxReusePixels> found;
+  BANDSAW_CHECK(pixels.size() <= kMaxReusePixels, "more pixels than can reuse paths together");
+  PrimaryVertices primary;
+  std::array<std::optional<SharedVertex>, kMaxReusePixels> shared;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const PathContext context{scene, pixels[i].sampler, sample, options, counts.rays};
     PathState path(pixels[i].camera_ray.ray);
     if (pixels[i].camera_ray.lens) {
-      ask_through_lens(context, *pixels[i].camera_ray.lens, path);
+      sample_light_through_lens(context, *pixels[i].camera_ray.lens, path);
     }
-    follow_own(context, path, takers[i], found[i]);
+    trace_own_path(context, path, primary[i], shared[i]);
     pixels[i].radiance = path.radiance;
     counts.truncated += path.truncated ? 1 : 0;
   }
   for (std::size_t i = 0; i < pixels.size(); ++i) {
-    if (found[i] && !is_black(found[i]->radiance)) {
-      deal_out(scene, takers, *found[i], i, pixels, counts.rays);
+    if (shared[i] && !is_black(shared[i]->radiance)) {
+      distribute(scene, primary, *shared[i], i, pixels, counts.rays);
     }
   }
 }

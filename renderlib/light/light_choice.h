@@ -15,10 +15,10 @@ namespace bandsaw {
 struct DistantBound {
   double irradiance = 0;
   /// Unit vector to the light; std::nullopt for light from all directions.
-  std::optional<Vec3> way;
+  std::optional<Vec3> direction;
 };
 double importance(const DistantBound& bound, const Receiver& receiver);
-double importance(const DistantBound& bound, const LitStretch& stretch);
+double importance(const DistantBound& bound, const ReceiverSegment& segment);
 
 /// Up to kMaxIndividualLights lights are evaluated individually at every point. If there are more,
 /// the local ones are selected through a light tree, next to which the distant ones are evaluated
@@ -41,7 +41,7 @@ class LightChoice {
   bool any_for(const Receiver& receiver) const;
   /// Selects a light. `number` is in [0, 1) and should have the resolution of a double: selection
   /// frequencies are right down to the spacing of the numbers. Returns std::nullopt if no light
-  /// reaches the receiver. `From` is `Receiver` or `LitStretch`.
+  /// reaches the receiver. `From` is `Receiver` or `ReceiverSegment`.
   template <typename From>
   std::optional<Choice> choose(const From& receiver, double number) const;
   /// Returns the probability with which `choose()` selects the light.

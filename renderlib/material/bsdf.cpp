@@ -67,13 +67,13 @@ double fuzz_pdf(const Vec3& mirror, double fuzz, const Vec3& wi) {
 }
 
 std::optional<BsdfSample> sample_fuzzy(const FuzzyMetalBsdf& bsdf, double u, double v, double w) {
-  const Vec3 way = bsdf.mirror + bsdf.fuzz * sample_ball(u, v, w);
-  const double size = length(way);
+  const Vec3 direction = bsdf.mirror + bsdf.fuzz * sample_ball(u, v, w);
+  const double size = length(direction);
   if (size < 1e-100) {
     return std::nullopt;
   }
   BsdfSample sample;
-  sample.wi = way / size;
+  sample.wi = direction / size;
   sample.pdf = fuzz_pdf(bsdf.mirror, bsdf.fuzz, sample.wi);
   sample.weight = bsdf.reflectance;
   if (sample.pdf <= 0 || !reflects(bsdf.normal, sample.wi)) {
@@ -196,12 +196,12 @@ BsdfValue evaluate(const Bsdf& bsdf, const Vec3& wi) {
   return {};
 }
 
-bool has_density(const Bsdf& bsdf) {
+bool has_pdf(const Bsdf& bsdf) {
   return !std::holds_alternative<BlackBsdf>(bsdf) && !std::holds_alternative<MirrorBsdf>(bsdf) &&
          !std::holds_alternative<DielectricBsdf>(bsdf);
 }
 
-bool has_density_behind(const Bsdf& bsdf) {
+bool has_pdf_behind(const Bsdf& bsdf) {
   const auto* principled = std::get_if<PrincipledBsdf>(&bsdf);
   return std::holds_alternative<RoughDielectricBsdf>(bsdf) ||
          (principled != nullptr && principled->transmission > 0 && principled->metallic < 1);

@@ -70,9 +70,9 @@ std::optional<BsdfSample> sample(const Bsdf& bsdf, double u, double v, double lo
 BsdfValue evaluate(const Bsdf& bsdf, const Vec3& wi);
 
 /// Returns true if evaluate() can be non-zero, so that light sampling is useful.
-bool has_density(const Bsdf& bsdf);
+bool has_pdf(const Bsdf& bsdf);
 
 /// Returns true if evaluate() can be non-zero for light from behind the surface.
-bool has_density_behind(const Bsdf& bsdf);
+bool has_pdf_behind(const Bsdf& bsdf);
 
 }  // namespace bandsaw

@@ -47,13 +47,13 @@ class PixelSums {
   };
   using Sums = std::array<Sum, kMaxReusePixels>;
   /// Scratch memory of add_group(), allocated once per run.
-  struct Desk {
+  struct Scratch {
     std::vector<ReusePixel> pixels;
     std::vector<Sums> stack;
   };
 
   void add_group(std::uint32_t y, const HalfRow& group, const SampleRange& samples,
-                 absl::Span<double> row, Desk& desk, Counters& counters) const;
+                 absl::Span<double> row, Scratch& scratch, Counters& counters) const;
   /// Returns the sums of one block, which may be truncated.
   Sums leaf(std::uint32_t y, const HalfRow& group, const SampleRange& samples,
             absl::Span<ReusePixel> pixels, Counters& counters) const;
@@ -68,7 +68,7 @@ class PixelSums {
   const std::atomic<bool>& stop_;
   PathOptions options_;
   RayGenerator camera_;
-  bool asks_through_lens_;
+  bool samples_through_lens_;
   bool reuses_paths_;
 };
 

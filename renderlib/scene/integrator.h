@@ -25,7 +25,7 @@ enum class Integrator {
 inline constexpr int kLastIntegrator = 7;
 
 /// Returns true for those that path_radiance (integrate/path.h) computes.
-constexpr bool follows_light(Integrator integrator) {
+constexpr bool computes_radiance(Integrator integrator) {
   return integrator == Integrator::kPath || integrator == Integrator::kDirect ||
          integrator == Integrator::kPathLights || integrator == Integrator::kPathScattering;
 }

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "renderlib/import/import.h"
-#include "renderlib/integrate/medium_walk.h"
+#include "renderlib/integrate/medium_traversal.h"
 #include "renderlib/scene/scene.h"
 #include "tests/unit/import/files.h"
 

@@ -27,7 +27,7 @@ TEST(Attenuation, V1OfNothingIsExactlyOneAndOfLittleIsExact) {
   test::holds("V1", "T = 1 at 0; within 1e-12");
 }
 
-/// What is opaque is opaque, without overflow on the way.
+/// What is opaque is opaque, without overflow on the direction.
 TEST(Attenuation, V3OfVeryDenseMediaIsZero) {
   for (const double sigma : {1e6, 1e12, 2e12}) {
     EXPECT_EQ(transmittance(sigma, kInfinity), 0);

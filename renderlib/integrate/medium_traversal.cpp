@@ -1,4 +1,4 @@
-#include "renderlib/integrate/medium_walk.h"
+#include "renderlib/integrate/medium_traversal.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@ constexpr double kRim = 1e-12;
 
 }  // namespace
 
-int* MediumWalk::Around::count_of(MediumId medium) {
+int* MediumTraversal::Around::count_of(MediumId medium) {
   for (std::size_t i = 0; i < size_; ++i) {
     if (entries_[i].medium == medium) {
       return &entries_[i].shapes;
@@ -26,26 +26,26 @@ int* MediumWalk::Around::count_of(MediumId medium) {
       return &entries_[i].shapes;
     }
   }
-  if (size_ == kMaxMedia) {
+  if (size_ == kMaxOverlappingMedia) {
     return nullptr;
   }
   entries_[size_] = {medium, 0};
   return &entries_[size_++].shapes;
 }
 
-void MediumWalk::Around::add(MediumId medium, int shapes) {
+void MediumTraversal::Around::add(MediumId medium, int shapes) {
   if (int* const count = count_of(medium)) {
     *count += shapes;
   }
 }
 
-void MediumWalk::Around::forget_negative() {
+void MediumTraversal::Around::forget_negative() {
   for (std::size_t i = 0; i < size_; ++i) {
     entries_[i].shapes = std::max(0, entries_[i].shapes);
   }
 }
 
-std::optional<MediumId> MediumWalk::Around::medium() const {
+std::optional<MediumId> MediumTraversal::Around::medium() const {
   std::optional<MediumId> top;
   for (std::size_t i = 0; i < size_; ++i) {
     if (entries_[i].shapes > 0 && (!top || entries_[i].medium > *top)) {
@@ -55,7 +55,8 @@ std::optional<MediumId> MediumWalk::Around::medium() const {
   return top;
 }
 
-MediumWalk::MediumWalk(const Scene& scene, const Ray& ray, double length, std::uint64_t& rays)
+MediumTraversal::MediumTraversal(const Scene& scene, const Ray& ray, double length,
+                                 std::uint64_t& rays)
     : scene_(scene), ray_(ray), length_(length), rays_(rays) {
   // The boundaries beyond the end of the segment also determine what contains the origin.
   // `ray.from` refers to the scene's primitives, not to the boundaries', so it is cleared.
@@ -66,12 +67,12 @@ MediumWalk::MediumWalk(const Scene& scene, const Ray& ray, double length, std::u
   }
 }
 
-bool MediumWalk::is_of_mesh(const Hit& hit) const {
+bool MediumTraversal::is_of_mesh(const Hit& hit) const {
   return hit.id.instance != 0 &&
          scene_.media().boundaries.instances[hit.id.instance - 1].group == kNoGroup;
 }
 
-std::optional<MediumWalk::Crossing> MediumWalk::find_next(Search& search) {
+std::optional<MediumTraversal::Crossing> MediumTraversal::find_next(Search& search) {
   const Accel& boundaries = scene_.boundary_accel();
   for (;;) {
     ++rays_;
@@ -105,7 +106,7 @@ std::optional<MediumWalk::Crossing> MediumWalk::find_next(Search& search) {
   }
 }
 
-void MediumWalk::find_around_origin() {
+void MediumTraversal::find_around_origin() {
   Search all;
   while (const std::optional<Crossing> crossing = find_next(all)) {
     if (kept_size_ < kKept) {
@@ -121,7 +122,7 @@ void MediumWalk::find_around_origin() {
   around_.forget_negative();
 }
 
-std::optional<MediumWalk::Crossing> MediumWalk::take_crossing() {
+std::optional<MediumTraversal::Crossing> MediumTraversal::take_crossing() {
   if (taken_ < kept_size_) {
     return kept_[taken_++];
   }
@@ -133,7 +134,7 @@ std::optional<MediumWalk::Crossing> MediumWalk::take_crossing() {
   return crossing;
 }
 
-const Medium* MediumWalk::here() const {
+const Medium* MediumTraversal::here() const {
   const Media& media = scene_.media();
   const std::optional<MediumId> inside = around_.medium();
   const std::optional<MediumId> id = inside ? inside : media.fog;
@@ -144,7 +145,7 @@ const Medium* MediumWalk::here() const {
   return is_clear(medium) ? nullptr : &medium;
 }
 
-std::optional<Stretch> MediumWalk::next() {
+std::optional<MediumSegment> MediumTraversal::next() {
   while (at_ < length_) {
     const double begin = at_;
     const Medium* const medium = here();
@@ -154,7 +155,7 @@ std::optional<Stretch> MediumWalk::next() {
       around_.add(crossing->medium, crossing->inwards ? 1 : -1);
     }
     if (medium != nullptr && at_ > begin) {
-      return Stretch{begin, at_, medium};
+      return MediumSegment{begin, at_, medium};
     }
   }
   return std::nullopt;
@@ -164,10 +165,10 @@ Rgb media_transmittance(const Scene& scene, const Ray& ray, std::uint64_t& rays)
   const double size = length(ray.direction);
   Ray unit = ray;
   unit.direction = ray.direction / size;
-  MediumWalk walk(scene, unit, ray.t_max * size, rays);
+  MediumTraversal walk(scene, unit, ray.t_max * size, rays);
   Rgb share = gray(1);
-  while (const std::optional<Stretch> stretch = walk.next()) {
-    share *= transmittance(*stretch->medium, stretch->end - stretch->begin);
+  while (const std::optional<MediumSegment> segment = walk.next()) {
+    share *= transmittance(*segment->medium, segment->end - segment->begin);
     if (is_black(share)) {
       break;
     }

@@ -18,25 +18,25 @@ namespace bandsaw {
 
 /// A part of a ray inside one medium. Distances from the ray's origin, in scene units; `end` may be
 /// infinite.
-struct Stretch {
+struct MediumSegment {
   double begin = 0;
   double end = 0;
   const Medium* medium = nullptr;
 };
 
 /// Iterates over the segments of a ray that lie in a medium.
-class MediumWalk {
+class MediumTraversal {
  public:
   /// Maximum number of different media that may surround a point; further ones are ignored.
-  static constexpr std::size_t kMaxMedia = 16;
+  static constexpr std::size_t kMaxOverlappingMedia = 16;
 
   /// `ray` has a unit direction; only its first `length` (> 0, may be infinite) is split. The scene
-  /// MUST need media (`SceneFeatures::media`) and outlive this object. Adds the number of rays
+  /// MUST have media (`SceneFeatures::media`) and outlive this object. Adds the number of rays
   /// traced to `rays`.
-  MediumWalk(const Scene& scene, const Ray& ray, double length, std::uint64_t& rays);
+  MediumTraversal(const Scene& scene, const Ray& ray, double length, std::uint64_t& rays);
 
   /// Returns the next segment inside a medium, in order along the ray; std::nullopt at the end.
-  std::optional<Stretch> next();
+  std::optional<MediumSegment> next();
 
  private:
   struct Crossing {
@@ -46,8 +46,8 @@ class MediumWalk {
     bool inwards = false;
     bool on_rim = false;  ///< on an edge or corner of a mesh's triangle
   };
-  /// Nesting count for each medium around a point. A count may be negative while boundaries at
-  /// equal distance are processed.
+  /// Nesting count for each medium around a point. A count may be negative while
+  /// boundaries at equal distance are processed.
   class Around {
    public:
     void add(MediumId medium, int shapes);
@@ -62,7 +62,7 @@ class MediumWalk {
       MediumId medium{};
       int shapes = 0;
     };
-    std::array<Entry, kMaxMedia> entries_;
+    std::array<Entry, kMaxOverlappingMedia> entries_;
     std::size_t size_ = 0;
   };
   /// State of the search for boundaries along the ray.
@@ -97,7 +97,7 @@ class MediumWalk {
 };
 
 /// Returns the transmittance of the media along the ray from its origin to `t_max`, by channel. The
-/// direction need not be a unit vector. The scene MUST need media. Adds the number of rays traced
+/// direction need not be a unit vector. The scene MUST have media. Adds the number of rays traced
 /// to `rays`.
 Rgb media_transmittance(const Scene& scene, const Ray& ray, std::uint64_t& rays);
 

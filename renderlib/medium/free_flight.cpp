@@ -1,4 +1,4 @@
-#include "renderlib/medium/flight.h"
+#include "renderlib/medium/free_flight.h"
 
 #include <algorithm>
 
@@ -7,7 +7,8 @@
 
 namespace bandsaw {
 
-Flight::Flight(const Medium& medium, const Rgb& throughput, double length) : length_(length) {
+FreeFlight::FreeFlight(const Medium& medium, const Rgb& throughput, double length)
+    : length_(length) {
   const std::array<float, 3> weight = {throughput.r, throughput.g, throughput.b};
   const std::array<float, 3> absorption = {medium.absorption.r, medium.absorption.g,
                                            medium.absorption.b};
@@ -22,12 +23,12 @@ Flight::Flight(const Medium& medium, const Rgb& throughput, double length) : len
   }
 }
 
-Rgb Flight::color(const Channels& c, double scale) {
+Rgb FreeFlight::color(const Channels& c, double scale) {
   return {static_cast<float>(c[0] * scale), static_cast<float>(c[1] * scale),
           static_cast<float>(c[2] * scale)};
 }
 
-Flight::Channels Flight::scattered_channels(double distance) const {
+FreeFlight::Channels FreeFlight::scattered_channels(double distance) const {
   Channels result;
   for (std::size_t c = 0; c < 3; ++c) {
     result[c] = entering_[c] == 0 ? 0 : entering_[c] * transmittance(extinction_[c], distance);
@@ -35,12 +36,12 @@ Flight::Channels Flight::scattered_channels(double distance) const {
   return result;
 }
 
-double Flight::chance() const {
+double FreeFlight::scatter_probability() const {
   const double scatters = sum(all_scattered_);
   return scatters > 0 ? scatters / (scatters + sum(passing_)) : 0;
 }
 
-double Flight::sample(double choice, double u) const {
+double FreeFlight::sample(double choice, double u) const {
   double left = choice * sum(all_scattered_);
   std::size_t c = 0;
   while (c < 2 && (left >= all_scattered_[c] || all_scattered_[c] == 0)) {
@@ -56,25 +57,25 @@ double Flight::sample(double choice, double u) const {
   return std::min(-log1p(-u * share) / extinction_[c], length_);
 }
 
-double Flight::pdf(double distance) const {
+double FreeFlight::pdf(double distance) const {
   return sum(scattered_channels(distance)) / sum(all_scattered_);
 }
 
-Rgb Flight::scattered(double distance) const { return color(scattered_channels(distance), 1); }
+Rgb FreeFlight::scattered(double distance) const { return color(scattered_channels(distance), 1); }
 
-Rgb Flight::after_scattering(double distance) const {
+Rgb FreeFlight::after_scattering(double distance) const {
   const Channels channels = scattered_channels(distance);
   const double all = sum(channels);
   return all > 0 ? color(channels, (sum(all_scattered_) + sum(passing_)) / all) : Rgb{};
 }
 
-Rgb Flight::after_passing() const {
+Rgb FreeFlight::after_passing() const {
   const double all = sum(passing_);
   return all > 0 ? color(passing_, (sum(all_scattered_) + all) / all) : Rgb{};
 }
 
-Rgb Flight::passing() const { return color(passing_, 1); }
+Rgb FreeFlight::passing() const { return color(passing_, 1); }
 
-Rgb Flight::all_scattered() const { return color(all_scattered_, 1); }
+Rgb FreeFlight::all_scattered() const { return color(all_scattered_, 1); }
 
 }  // namespace bandsaw

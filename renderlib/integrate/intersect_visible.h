@@ -15,11 +15,11 @@ namespace bandsaw {
 
 /// The glasses that contain a path on its current segment, and beyond the surface that it hits
 /// next.
-struct Nesting {
+struct NestedDielectrics {
   Interiors here;
   Interiors beyond;  ///< set if the hit surface belongs to a nested glass (material/interiors.h)
-  bool passed_unseen = false;  ///< true if hidden boundaries were skipped before the hit
-  Interiors before;            ///< glasses at the start of the ray; set if `passed_unseen`
+  bool skipped_hidden = false;  ///< true if hidden boundaries were skipped before the hit
+  Interiors before;             ///< glasses at the start of the ray; set if `skipped_hidden`
 };
 
 /// Returns the first surface along the ray that exists for this sample; among hits that exist, the
@@ -28,13 +28,9 @@ struct Nesting {
 /// as one: the result belongs to the glass that is present on exactly one side of all of them. uv
 /// directions are set if the material needs them. Returns std::nullopt if nothing is hit. Adds the
 /// number of rays traced to `rays`.
-std::optional<SurfacePoint> first_surface(const Scene& scene, const Ray& ray,
-                                          const PixelSampler& sampler, std::uint64_t sample,
-                                          std::uint32_t bounce, Nesting& nesting,
-                                          std::uint64_t& rays);
-
-/// Returns the visibility along the ray, in [0, 1]: 0 or 1 except for alpha-blended surfaces. Adds
-/// the number of rays traced to `rays`.
-float unoccluded(const Scene& scene, const Ray& ray, std::uint64_t& rays);
+std::optional<SurfacePoint> intersect_visible(const Scene& scene, const Ray& ray,
+                                              const PixelSampler& sampler, std::uint64_t sample,
+                                              std::uint32_t bounce, NestedDielectrics& nesting,
+                                              std::uint64_t& rays);
 
 }  // namespace bandsaw

@@ -1,4 +1,4 @@
-#include "renderlib/integrate/see_through.h"
+#include "renderlib/integrate/intersect_visible.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +9,7 @@
 namespace bandsaw {
 namespace {
 
+/// Returns the surface at the hit, with the uv directions that its material needs.
 SurfacePoint point_at(const Scene& scene, const Ray& ray, const Hit& hit) {
   SurfacePoint point = surface_at(scene.geometry(), ray, hit, scene.features().uv);
   if (const auto* principled = std::get_if<Principled>(&scene.material(point.material))) {
@@ -23,13 +24,15 @@ SurfacePoint point_at(const Scene& scene, const Ray& ray, const Hit& hit) {
   return point;
 }
 
-/// The next boundary of a nested glass that touches the one of `hit`: so near that a ray which
-/// leaves that one starts beyond both.
-std::optional<SurfacePoint> touching(const Scene& scene, const Ray& ray, double most_t, Hit& hit,
+/// Returns the next boundary of a nested glass that touches the boundary of `hit`, and advances
+/// `hit` to it. Two boundaries touch if a ray that leaves the first one starts beyond both.
+/// Distances above `max_t` do not touch. Returns std::nullopt if the next surface does not touch or
+/// is not a boundary of a nested glass.
+std::optional<SurfacePoint> touching(const Scene& scene, const Ray& ray, double max_t, Hit& hit,
                                      std::uint64_t& rays) {
   ++rays;
   const Hit next = scene.accel().closest_after(ray, hit);
-  if (!next || next.t > most_t) {
+  if (!next || next.t > max_t) {
     return std::nullopt;
   }
   SurfacePoint point = point_at(scene, ray, next);
@@ -40,21 +43,24 @@ std::optional<SurfacePoint> touching(const Scene& scene, const Ray& ray, double 
   return point;
 }
 
-/// What is seen of the boundaries that touch `first`; nothing: the same glass is there on both
-/// sides. `hit` becomes the last of them.
+/// Treats the boundary `first` and all boundaries that touch it as one. Returns the surface of the
+/// glass that is present on exactly one side of them; std::nullopt if the same glass is present on
+/// both sides. `hit` becomes the last of the boundaries, and `nesting.beyond` the glasses beyond
+/// it.
 std::optional<SurfacePoint> nested_surface(const Scene& scene, const Ray& ray,
-                                           const SurfacePoint& first, Hit& hit, Nesting& nesting,
-                                           std::uint64_t& rays) {
-  // Not flatter than that: along the surface others are met that do not touch it.
+                                           const SurfacePoint& first, Hit& hit,
+                                           NestedDielectrics& nesting, std::uint64_t& rays) {
+  // The slope is bounded below: a grazing ray would otherwise count boundaries further along the
+  // surface that do not touch it.
   const double slope = std::max(0.01, std::abs(dot(ray.direction, first.geometric_normal)));
-  const double most_t = hit.t + 0.5 * first.offset / slope;
+  const double max_t = hit.t + 0.5 * first.offset / slope;
   const MaterialId before = nesting.here.there();
   std::optional<SurfacePoint> entered;
   std::optional<SurfacePoint> left;
   std::optional<SurfacePoint> point = first;
   std::size_t boundaries = 0;
   nesting.beyond = nesting.here;
-  for (; point; point = touching(scene, ray, most_t, hit, rays), ++boundaries) {
+  for (; point; point = touching(scene, ray, max_t, hit, rays), ++boundaries) {
     const Dielectric& glass = *nested_glass(scene.material(point->material));
     const bool inwards = dot(ray.direction, point->geometric_normal) < 0;
     nesting.beyond.pass(point->material, glass, inwards);
@@ -75,29 +81,30 @@ std::optional<SurfacePoint> nested_surface(const Scene& scene, const Ray& ray,
 
 }  // namespace
 
-std::optional<SurfacePoint> first_surface(const Scene& scene, const Ray& ray,
-                                          const PixelSampler& sampler, std::uint64_t sample,
-                                          std::uint32_t bounce, Nesting& nesting,
-                                          std::uint64_t& rays) {
+std::optional<SurfacePoint> intersect_visible(const Scene& scene, const Ray& ray,
+                                              const PixelSampler& sampler, std::uint64_t sample,
+                                              std::uint32_t bounce, NestedDielectrics& nesting,
+                                              std::uint64_t& rays) {
   ++rays;
-  nesting.passed_unseen = false;
+  nesting.skipped_hidden = false;
   Hit hit = scene.accel().closest(ray);
   for (std::uint32_t passed = 0; hit; ++passed) {
     const SurfacePoint point = point_at(scene, ray, hit);
-    const double there = scene.features().alpha
-                             ? opacity(scene.material(point.material), scene.textures(), point)
-                             : 1;
-    const bool is_there =
-        there >= 1 || (there > 0 && sampler.group(sample, group_alpha(bounce, passed))[0] < there);
-    if (is_there && nested_glass(scene.material(point.material)) == nullptr) {
+    const double presence = scene.features().alpha
+                                ? opacity(scene.material(point.material), scene.textures(), point)
+                                : 1;
+    const bool is_present =
+        presence >= 1 ||
+        (presence > 0 && sampler.group(sample, group_alpha(bounce, passed))[0] < presence);
+    if (is_present && nested_glass(scene.material(point.material)) == nullptr) {
       return point;
     }
-    if (is_there) {
-      if (auto seen = nested_surface(scene, ray, point, hit, nesting, rays)) {
-        return seen;
+    if (is_present) {
+      if (auto surface = nested_surface(scene, ray, point, hit, nesting, rays)) {
+        return surface;
       }
-      if (!nesting.passed_unseen) {
-        nesting.passed_unseen = true;
+      if (!nesting.skipped_hidden) {
+        nesting.skipped_hidden = true;
         nesting.before = nesting.here;
       }
       nesting.here = nesting.beyond;
@@ -106,21 +113,6 @@ std::optional<SurfacePoint> first_surface(const Scene& scene, const Ray& ray,
     hit = scene.accel().closest_after(ray, hit);
   }
   return std::nullopt;
-}
-
-float unoccluded(const Scene& scene, const Ray& ray, std::uint64_t& rays) {
-  ++rays;
-  if (!scene.features().alpha) {
-    return scene.accel().occluded(ray) ? 0.0f : 1.0f;
-  }
-  double share = 1;
-  for (Hit hit = scene.accel().closest(ray); hit && share > 0;
-       hit = scene.accel().closest_after(ray, hit)) {
-    const SurfacePoint point = surface_at(scene.geometry(), ray, hit);
-    share *= 1 - opacity(scene.material(point.material), scene.textures(), point);
-    ++rays;
-  }
-  return static_cast<float>(share);
 }
 
 }  // namespace bandsaw

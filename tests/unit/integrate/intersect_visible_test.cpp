@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "renderlib/integrate/intersect_visible.h"
 #include "renderlib/integrate/path.h"
-#include "renderlib/integrate/see_through.h"
 #include "renderlib/material/bsdf.h"
 #include "renderlib/material/interiors.h"
 #include "tests/support/hard_case.h"
@@ -198,8 +198,8 @@ TEST(SeeThrough, LightsWithoutSizeShineThroughWhatScattersThem) {
     const Ray ray{.origin = {0, 0, 3}, .direction = {0, 0, -1}};
     const auto scene = maker.build();
     std::uint64_t rays = 0;
-    Nesting nesting;
-    const auto point = first_surface(*scene, ray, PixelSampler(5, 0, 3), 0, 0, nesting, rays);
+    NestedDielectrics nesting;
+    const auto point = intersect_visible(*scene, ray, PixelSampler(5, 0, 3), 0, 0, nesting, rays);
     ASSERT_TRUE(point);
     const Bsdf bsdf =
         bsdf_at(scene->material(point->material), scene->textures(), *point, -ray.direction);

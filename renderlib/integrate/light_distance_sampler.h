@@ -10,43 +10,43 @@
 
 #include "renderlib/medium/attenuation.h"
 #include "renderlib/medium/equiangular.h"
-#include "renderlib/medium/flight.h"
+#include "renderlib/medium/free_flight.h"
 
 namespace bandsaw {
 
 /// Mixture pdf of the distance at which light is sampled in one segment.
-class AskedDistance {
+class LightDistanceSampler {
  public:
   /// Maximum number of pivots; further ones are ignored.
   static constexpr std::size_t kMaxPivots = 4;
 
   /// Starts without pivots: the pdf is that of `flight`. `flight` MUST outlive this object, and its
-  /// `chance()` MUST NOT be 0. `medium` is the medium of the segment.
-  AskedDistance(const Flight& flight, const Medium& medium)
+  /// `scatter_probability()` MUST NOT be 0. `medium` is the medium of the segment.
+  LightDistanceSampler(const FreeFlight& flight, const Medium& medium)
       : flight_(flight), extinction_(mean_extinction(medium)) {}
 
   /// Adds equiangular sampling towards `pivot`, a point on a light; the arguments are those of
   /// `Equiangular`. All pivots have the same total weight in the mixture; within it, the share of
   /// free-flight sampling is between 1/16 and 1/2 and grows with the optical depth up to the pivot.
-  void add(const Vec3& origin, const Vec3& way, double length, const Vec3& pivot) {
+  void add(const Vec3& origin, const Vec3& direction, double length, const Vec3& pivot) {
     if (pivots_ == kMaxPivots) {
       return;
     }
-    angles_[size_] = Equiangular(origin, way, length, pivot);
+    angles_[size_] = Equiangular(origin, direction, length, pivot);
     // As long as the light is visible through the medium, equiangular distances are nearly
     // proportional to the integrand. Behind many mean free paths the near end of the segment
     // dominates, and free-flight sampling is the better strategy.
     const double depth = extinction_ * bandsaw::length(pivot - origin);
-    const double flown = std::clamp(0.5 - 0.5 / (1 + depth), kMinFreeFlightShare, 0.5);
-    share_[size_++] = 1 - flown;
-    flown_ += flown;
+    const double free_flight = std::clamp(0.5 - 0.5 / (1 + depth), kMinFreeFlightShare, 0.5);
+    share_[size_++] = 1 - free_flight;
+    free_flight_share_ += free_flight;
     ++pivots_;
   }
   /// Adds a light without a position (distant or environment). Its irradiance does not vary along
   /// the segment, so its share of the mixture is free-flight sampling.
   void add_distant() {
     if (pivots_ < kMaxPivots) {
-      flown_ += 1;
+      free_flight_share_ += 1;
       ++pivots_;
     }
   }
@@ -61,15 +61,15 @@ class AskedDistance {
       }
       left -= share_[i];
     }
-    const double flown = pivots_ == 0 ? 1 : flown_;
-    return flight_.sample(std::min(left / flown, 1 - 0x1p-53), u);
+    const double free_flight = pivots_ == 0 ? 1 : free_flight_share_;
+    return flight_.sample(std::min(left / free_flight, 1 - 0x1p-53), u);
   }
   /// Returns the pdf of `sample()` with respect to length.
   double pdf(double distance) const {
     if (size_ == 0) {
       return flight_.pdf(distance);
     }
-    double sum = flown_ * flight_.pdf(distance);
+    double sum = free_flight_share_ * flight_.pdf(distance);
     for (std::size_t i = 0; i < size_; ++i) {
       sum += share_[i] * angles_[i].pdf(distance);
     }
@@ -79,13 +79,14 @@ class AskedDistance {
  private:
   static constexpr double kMinFreeFlightShare = 0.0625;
 
-  const Flight& flight_;
+  const FreeFlight& flight_;
   double extinction_;
   std::array<Equiangular, kMaxPivots> angles_;
   std::array<double, kMaxPivots> share_{};
   std::size_t size_ = 0;    ///< number of entries in `angles_` and `share_`
   std::size_t pivots_ = 0;  ///< number of pivots, including distant lights
-  double flown_ = 0;        ///< weight of free-flight sampling; with `share_` it sums to `pivots_`
+  double free_flight_share_ =
+      0;  ///< weight of free-flight sampling; with `share_` it sums to `pivots_`
 };
 
 }  // namespace bandsaw

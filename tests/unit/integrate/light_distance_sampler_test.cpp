@@ -1,6 +1,6 @@
 // Where lights are asked in a medium: what the mixture costs and gains, by quadrature.
 
-#include "renderlib/integrate/asked_distance.h"
+#include "renderlib/integrate/light_distance_sampler.h"
 
 #include <gtest/gtest.h>
 
@@ -37,13 +37,13 @@ struct Spread {
 /// Of the light of a small lamp, `aside` of the middle of a stretch.
 Spread spread(float sigma, double aside) {
   const Medium smoke = test::medium(0, sigma);
-  const Flight flight(smoke, gray(1), kLength);
+  const FreeFlight flight(smoke, gray(1), kLength);
   const Vec3 origin{};
-  const Vec3 way{1, 0, 0};
+  const Vec3 direction{1, 0, 0};
   const Vec3 lamp{3, aside, 0};
-  AskedDistance both(flight, smoke);
-  both.add(origin, way, kLength, lamp);
-  const Equiangular angles(origin, way, kLength, lamp);
+  LightDistanceSampler both(flight, smoke);
+  both.add(origin, direction, kLength, lamp);
+  const Equiangular angles(origin, direction, kLength, lamp);
   const auto light = [&](double s) {
     const double r = std::hypot(3 - s, aside);
     return flight.scattered(s).g * std::exp(-sigma * r) / (r * r);
@@ -57,7 +57,7 @@ Spread spread(float sigma, double aside) {
           of([&](double s) { return both.pdf(s); })};
 }
 
-TEST(AskedDistance, IsNeverFarFromTheBetterOfItsTwo) {
+TEST(LightDistanceSampler, IsNeverFarFromTheBetterOfItsTwo) {
   for (const float sigma : {0.01f, 0.1f, 1.0f, 10.0f}) {
     for (const double aside : {2.0, 0.5, 0.05, 0.005}) {
       const Spread found = spread(sigma, aside);
@@ -70,7 +70,7 @@ TEST(AskedDistance, IsNeverFarFromTheBetterOfItsTwo) {
 }
 
 /// The gains that the README of this folder states.
-TEST(AskedDistance, NearALampGainsMuch) {
+TEST(LightDistanceSampler, NearALampGainsMuch) {
   const auto gain = [](float sigma, double aside) {
     const Spread found = spread(sigma, aside);
     return found.flown / found.both;

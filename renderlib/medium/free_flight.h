@@ -18,27 +18,27 @@
 
 namespace bandsaw {
 
-class Flight {
+class FreeFlight {
  public:
   /// Light of weight `throughput` (>= 0, finite) enters a segment of the given length (scene units,
   /// > 0, may be infinite).
-  Flight(const Medium& medium, const Rgb& throughput, double length);
+  FreeFlight(const Medium& medium, const Rgb& throughput, double length);
 
   /// Returns the probability of scattering in the segment, in [0, 1]; 0 if nothing is scattered.
-  double chance() const;
+  double scatter_probability() const;
 
   /// Samples the distance at which light is scattered, in [0, length]. `choice` selects the
-  /// channel, u the distance; both in [0, 1). chance() MUST NOT be 0.
+  /// channel, u the distance; both in [0, 1). scatter_probability() MUST NOT be 0.
   double sample(double choice, double u) const;
-  /// Returns the pdf of `sample()` with respect to length. chance() MUST NOT be 0.
+  /// Returns the pdf of `sample()` with respect to length. scatter_probability() MUST NOT be 0.
   double pdf(double distance) const;
 
   /// Returns throughput * scattering * exp(-extinction * distance): the weight scattered per
   /// length.
   Rgb scattered(double distance) const;
-  /// Returns the weight after scattering was chosen: scattered() / (chance() * pdf()).
+  /// Returns the weight after scattering was chosen: scattered() / (scatter_probability() * pdf()).
   Rgb after_scattering(double distance) const;
-  /// Returns the weight after passing was chosen: passing() / (1 - chance()).
+  /// Returns the weight after passing was chosen: passing() / (1 - scatter_probability()).
   Rgb after_passing() const;
   /// Returns the weight of the light that passes the whole segment: throughput * transmittance.
   Rgb passing() const;

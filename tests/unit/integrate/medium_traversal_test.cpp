@@ -1,6 +1,6 @@
 // Which medium a ray is in, and where: against what the shapes themselves contain.
 
-#include "renderlib/integrate/medium_walk.h"
+#include "renderlib/integrate/medium_traversal.h"
 
 #include <gtest/gtest.h>
 
@@ -26,8 +26,8 @@ using Inside = std::function<int(const Vec3&)>;
 /// Points nearer to a boundary than rounding are left to either side.
 void expect_walk(const Scene& scene, const Ray& ray, double length, const Inside& inside) {
   std::uint64_t rays = 0;
-  MediumWalk walk(scene, ray, length, rays);
-  std::vector<Stretch> stretches;
+  MediumTraversal walk(scene, ray, length, rays);
+  std::vector<MediumSegment> stretches;
   while (const auto stretch = walk.next()) {
     ASSERT_LT(stretch->begin, stretch->end);
     ASSERT_GE(stretch->begin, stretches.empty() ? 0 : stretches.back().end);
@@ -45,7 +45,7 @@ void expect_walk(const Scene& scene, const Ray& ray, double length, const Inside
       continue;
     }
     int found = -1;
-    for (const Stretch& stretch : stretches) {
+    for (const MediumSegment& stretch : stretches) {
       if (t >= stretch.begin && t < stretch.end) {
         found = static_cast<int>(stretch.medium - scene.media().media.data());
       }
@@ -64,7 +64,7 @@ Ray random_ray(test::Random& random, double spread) {
 }
 
 /// Overlapping, nested and disjoint balls of five media; rays begin anywhere.
-TEST(MediumWalk, V6V7OfOverlappingBallsTheMediumNamedLastIsThere) {
+TEST(MediumTraversal, V6V7OfOverlappingBallsTheMediumNamedLastIsThere) {
   test::Random random(1);
   for (int round = 0; round < 40; ++round) {
     SceneMaker maker;
@@ -121,7 +121,7 @@ Mesh corner_prism() {
 
 /// A ray may leave and enter a mesh that is not convex several times; boxes and placements that
 /// mirror are closed shapes like others.
-TEST(MediumWalk, V6OfMeshesFollowsTheirInside) {
+TEST(MediumTraversal, V6OfMeshesFollowsTheirInside) {
   SceneMaker maker;
   const MediumId smoke = test::add(maker, test::medium(1, 1));
   const MediumId dust = test::add(maker, test::medium(1, 1));
@@ -144,7 +144,7 @@ TEST(MediumWalk, V6OfMeshesFollowsTheirInside) {
   test::holds("V6", "segments of meshes follow their inside");
 }
 
-TEST(MediumWalk, AClearMediumKeepsOthersOut) {
+TEST(MediumTraversal, AClearMediumKeepsOthersOut) {
   SceneMaker maker;
   test::fog(maker, test::medium(1, 0));
   const MediumId air = test::add(maker, {});
@@ -156,7 +156,7 @@ TEST(MediumWalk, AClearMediumKeepsOthersOut) {
 }
 
 /// More crossings than are kept on the first way along a ray.
-TEST(MediumWalk, OfManyBallsInARowSeesEach) {
+TEST(MediumTraversal, OfManyBallsInARowSeesEach) {
   SceneMaker maker;
   const MediumId smoke = test::add(maker, test::medium(0.125f, 0));
   for (int i = 0; i < 100; ++i) {
@@ -171,7 +171,7 @@ TEST(MediumWalk, OfManyBallsInARowSeesEach) {
 }
 
 /// More shapes around one point than anybody would list.
-TEST(MediumWalk, OfACloudOfPuffsItSeesTheUnion) {
+TEST(MediumTraversal, OfACloudOfPuffsItSeesTheUnion) {
   SceneMaker maker;
   const MediumId smoke = test::add(maker, test::medium(1, 0));
   for (int i = 0; i < 40; ++i) {
@@ -193,7 +193,7 @@ TEST(MediumWalk, OfACloudOfPuffsItSeesTheUnion) {
 
 /// A mesh of two cubes that overlap is their union, from wherever it is seen; also where faces of
 /// both lie in one plane.
-TEST(MediumWalk, OverlappingPartsOfOneMeshAreOne) {
+TEST(MediumTraversal, OverlappingPartsOfOneMeshAreOne) {
   for (const Vec3& by : {Vec3{0.5, 0.5, 0.5}, Vec3{0.5, 0, 0}, Vec3{0, 0.5, 0.5}}) {
     SceneMaker maker;
     const MediumId smoke = test::add(maker, test::medium(1, 0));
@@ -222,7 +222,7 @@ TEST(MediumWalk, OverlappingPartsOfOneMeshAreOne) {
 }
 
 /// Rays through the edges and corners that the triangles of a face share.
-TEST(MediumWalk, SharedEdgesArePassedOnce) {
+TEST(MediumTraversal, SharedEdgesArePassedOnce) {
   SceneMaker maker;
   const MediumId smoke = test::add(maker, test::medium(1, 0));
   test::fill_box(maker, {0, 0, 0}, {1, 1, 1}, smoke);
@@ -237,7 +237,7 @@ TEST(MediumWalk, SharedEdgesArePassedOnce) {
 }
 
 /// Many media one after the other; the one around all of them is left last.
-TEST(MediumWalk, OfManyMediaInARowSeesEach) {
+TEST(MediumTraversal, OfManyMediaInARowSeesEach) {
   SceneMaker maker;
   const MediumId mist = test::add(maker, test::medium(0.125f, 0));
   test::fill_sphere(maker, {0, 0, 0}, 500, mist);
@@ -251,7 +251,7 @@ TEST(MediumWalk, OfManyMediaInARowSeesEach) {
 }
 
 /// A ray that touches an edge, in the plane of the diagonal, passes nothing.
-TEST(MediumWalk, AnEdgeThatIsTouchedIsNotEntered) {
+TEST(MediumTraversal, AnEdgeThatIsTouchedIsNotEntered) {
   SceneMaker maker;
   const MediumId smoke = test::add(maker, test::medium(1, 0));
   test::fill_box(maker, {0, 0, 0}, {1, 1, 1}, smoke);
@@ -265,7 +265,7 @@ TEST(MediumWalk, AnEdgeThatIsTouchedIsNotEntered) {
 }
 
 /// Two shapes of one medium that overlap are one: it is not twice as dense there.
-TEST(MediumWalk, OverlapOfOneMediumIsNotDenser) {
+TEST(MediumTraversal, OverlapOfOneMediumIsNotDenser) {
   SceneMaker maker;
   const MediumId smoke = test::add(maker, test::medium(1, 0));
   test::fill_sphere(maker, {0, 0, 0}, 1, smoke);
