@@ -14,6 +14,7 @@
 #include "renderlib/render/film.h"
 #include "renderlib/sampling/sampler.h"
 #include "renderlib/sampling/spherical_rectangle.h"
+#include "renderlib/sampling/warp.h"
 #include "tests/support/hard_case.h"
 #include "tests/support/random.h"
 #include "tests/support/statistics.h"

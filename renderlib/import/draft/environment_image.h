@@ -12,10 +12,10 @@ namespace bandsaw {
 
 /// Brings texels of a float image into [0, 1e30]: NaN and negative numbers become 0, larger ones
 /// the largest that is not. Returns how many were altered. Light must be finite.
-std::size_t mend_light(ImageTexture& image);
+std::size_t repair_light(ImageTexture& image);
 
-/// Adds the image of a file to the draft's textures. What was mended is a warning that begins with
-/// `name`. INVALID_ARGUMENT: not an image.
+/// Adds the image of a file to the draft's textures. What was repaired is a warning that begins
+/// with `name`. INVALID_ARGUMENT: not an image.
 absl::StatusOr<TextureId> add_environment_image(const std::string& bytes, const std::string& name,
                                                 SceneDraft& draft);
 

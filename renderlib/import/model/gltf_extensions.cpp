@@ -100,7 +100,7 @@ std::optional<GltfVolume> volume_of(const Json& material) {
 }
 
 /// What an extension adds to the material, where it adds anything, and nothing here shows.
-std::vector<std::string> left_out_of(const Json& material) {
+std::vector<std::string> unsupported_features_of(const Json& material) {
   std::vector<std::string> out;
   const auto has = [&](const char* name, const char* factor) {
     const Json* from = extension(material, name);
@@ -153,7 +153,7 @@ GltfMaterial material_of(const Json& from) {
     to.index_of_refraction = number(*ior, "ior").value_or(1.5);
   }
   to.volume = volume_of(from);
-  to.left_out = left_out_of(from);
+  to.unsupported = unsupported_features_of(from);
   to.unlit = extension(from, "KHR_materials_unlit") != nullptr;
   return to;
 }

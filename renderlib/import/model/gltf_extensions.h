@@ -41,7 +41,8 @@ struct GltfVolume {
 struct GltfMaterial {
   std::string name;
   std::optional<GltfVolume> volume;
-  std::vector<std::string> left_out;  ///< as LeftOut: what it has that nothing here shows
+  std::vector<std::string>
+      unsupported;  ///< as UnsupportedFeatures: what it has that nothing here shows
   std::map<std::string, GltfTexture> textures;
   std::optional<double> emissive_strength;    ///< KHR_materials_emissive_strength
   std::optional<double> index_of_refraction;  ///< KHR_materials_ior

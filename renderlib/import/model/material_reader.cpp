@@ -63,7 +63,7 @@ void MaterialReader::name_dead_files() {
       const absl::Status found = file.empty() ? absl::OkStatus() : textures_.locate(file);
       const bool dead = absl::IsNotFound(found) || absl::IsPermissionDenied(found);
       if (dead && dead_files_.insert(file).second) {
-        leave_out(absl::StrCat(found.message(), "; it is shown without"));
+        unsupported(absl::StrCat(found.message(), "; it is shown without"));
       }
     }
   }
@@ -118,7 +118,7 @@ std::string MaterialReader::file_of(Slot slot) const {
 UvSet MaterialReader::uv_set_of(unsigned assimp_set) {
   const auto found = std::find(uv_sets_.begin(), uv_sets_.end(), assimp_set);
   if (found == uv_sets_.end() && uv_sets_.size() == 2) {
-    leave_out("its third set of uvs is left out: the first is used");
+    unsupported("its third set of uvs is left out: the first is used");
     return UvSet::kFirst;
   }
   const auto place = found - uv_sets_.begin();

@@ -57,7 +57,7 @@ class MaterialReader {
   bool holds_normals(Slot slot) const;
 
   /// A warning: "its specular map is left out".
-  void leave_out(const std::string& what) { file_.left_out.add(what, called_); }
+  void unsupported(const std::string& what) { file_.unsupported.add(what, called_); }
 
   ModelMaterial add(const Material& material) const;
 

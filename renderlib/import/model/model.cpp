@@ -209,7 +209,7 @@ absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, S
     for (const unsigned used : used_materials(*scene)) {
       ASSIGN_OR_RETURN(materials[used], read_model_material(file, used));
     }
-    file.left_out.tell(name, draft.out.info.warnings);
+    file.unsupported.add_warnings(name, draft.out.info.warnings);
   } else {
     // The scene's own material may use either.
     std::fill(materials.begin(), materials.end(), ModelMaterial{.second_uv_set = 1});

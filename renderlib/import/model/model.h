@@ -36,7 +36,7 @@ Camera placed(Camera camera, const Transform& placement);
 bool is_model_file(const std::string& path);
 
 /// `path` is real and below the draft's folder. Without `with_materials` no texture is read, and
-/// the placements' materials mean nothing. What is left out or mended is a warning of the draft.
+/// the placements' materials mean nothing. What is left out or repaired is a warning of the draft.
 /// Messages begin with the file's name: INVALID_ARGUMENT: broken, or without triangles. NOT_FOUND,
 /// PERMISSION_DENIED: a file that it needs.
 absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, SceneDraft& draft);

@@ -47,7 +47,7 @@ double opacity_of(MaterialReader& reader, bool mapped) {
   const double opacity = reader.number("$mat.opacity", 0, 1).value_or(1);
   if (opacity == 0 && !mapped) {
     // The commonest mistake of exporters: transparency and opacity exchanged.
-    reader.leave_out("it is not there at all (opacity 0), which is taken as a mistake");
+    reader.unsupported("it is not there at all (opacity 0), which is taken as a mistake");
     return 1;
   }
   return opacity;

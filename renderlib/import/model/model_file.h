@@ -6,7 +6,7 @@
 
 #include "renderlib/import/draft/scene_draft.h"
 #include "renderlib/import/model/gltf_extensions.h"
-#include "renderlib/import/model/left_out.h"
+#include "renderlib/import/model/unsupported_features.h"
 
 struct aiScene;
 
@@ -26,7 +26,7 @@ struct ModelFile {
   ModelKind kind = ModelKind::kOther;
   GltfExtensions gltf;  ///< of kGltf
   SceneDraft& draft;
-  LeftOut left_out = {};
+  UnsupportedFeatures unsupported = {};
 
   std::string name() const { return name_of(path); }
   void warn(const std::string& what) {

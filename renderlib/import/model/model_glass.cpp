@@ -45,11 +45,11 @@ std::optional<ModelMaterial::Glass> glass_of(MaterialReader& reader, const Princ
   const bool is_metal = material.metallic.factor > 0 && !reader.has({aiTextureType_UNKNOWN});
   if (material.transmission.factor < 1 || reader.has({aiTextureType_TRANSMISSION}) || is_metal ||
       material.alpha_mode != AlphaMode::kOpaque) {
-    reader.leave_out("its volume is left out: what it transmits passes as through a thin pane");
+    reader.unsupported("its volume is left out: what it transmits passes as through a thin pane");
     return std::nullopt;
   }
   if (has_more_than_glass(reader, material)) {
-    reader.leave_out(
+    reader.unsupported(
         "is solid glass: its base colour, its maps, its clear coat and its emission are left out");
   }
   Dielectric glass;

@@ -12,8 +12,8 @@
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/image/srgb.h"
-#include "renderlib/import/model/mend_mesh.h"
 #include "renderlib/import/model/model_pose.h"
+#include "renderlib/import/model/repair_mesh.h"
 
 namespace bandsaw {
 namespace {
@@ -119,13 +119,13 @@ class MeshReader {
     return mesh;
   }
 
-  void mend(Mesh& mesh) {
+  void repair(Mesh& mesh) {
     drop_unused_vertices(mesh);
-    if (const std::size_t mended = mend_normals(mesh); mended > 0) {
-      warn(absl::StrCat(mended, " normals are zero or not finite and are made anew"));
+    if (const std::size_t repaired = repair_normals(mesh); repaired > 0) {
+      warn(absl::StrCat(repaired, " normals are zero or not finite and are recomputed"));
     }
-    if (const std::size_t mended = mend_uvs(mesh); mended > 0) {
-      warn(absl::StrCat(mended, " uvs are not finite and become 0"));
+    if (const std::size_t repaired = repair_uvs(mesh); repaired > 0) {
+      warn(absl::StrCat(repaired, " uvs are not finite and become 0"));
     }
   }
 
@@ -210,7 +210,7 @@ absl::StatusOr<ModelMeshes> add_meshes(ModelFile& file, const std::vector<ModelM
     } else if (from.HasBones()) {
       reader.warn("its skin is left out: a bone has no node");
     }
-    reader.mend(mesh);
+    reader.repair(mesh);
     if (mesh.triangles.empty()) {
       continue;
     }

@@ -19,9 +19,9 @@ struct ModelMesh {
 using ModelMeshes = std::vector<std::optional<ModelMesh>>;
 
 /// Adds the meshes to the draft, in their rest pose: triangles only, and none with a vertex that is
-/// not finite (a warning tells how many). Normals, uvs and colours that are not finite are mended.
-/// Vertex colours come with the materials of the file alone. INVALID_ARGUMENT: an index is out of
-/// range.
+/// not finite (a warning tells how many). Normals, uvs and colours that are not finite are
+/// repaired. Vertex colours come with the materials of the file alone. INVALID_ARGUMENT: an index
+/// is out of range.
 absl::StatusOr<ModelMeshes> add_meshes(ModelFile& file, const std::vector<ModelMaterial>& materials,
                                        bool with_colors);
 

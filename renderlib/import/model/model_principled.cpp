@@ -109,10 +109,10 @@ absl::Status read_alpha(MaterialReader& reader, Principled& to) {
 void read_specular(const GltfSpecular& from, MaterialReader& reader, Principled& to) {
   const auto [r, g, b] = from.color;
   if (r != g || g != b) {
-    reader.leave_out("its specular colour is taken as grey");
+    reader.unsupported("its specular colour is taken as grey");
   }
   if (from.has_maps) {
-    reader.leave_out("its specular map is left out");
+    reader.unsupported("its specular map is left out");
   }
   const double amount = from.factor * (0.2126 * r + 0.7152 * g + 0.0722 * b);
   const double root = (to.index_of_refraction - 1) / (to.index_of_refraction + 1);
@@ -151,7 +151,7 @@ void from_glossiness(MaterialReader& reader, double glossiness, Principled& to) 
   const Rgb specular = reader.color("$clr.specular", 1).value_or(Rgb{1, 1, 1});
   to.base_color.factor = diffuse;
   if (reader.has({aiTextureType_SPECULAR})) {
-    reader.leave_out("its specular-glossiness map is left out: it is taken as not metallic");
+    reader.unsupported("its specular-glossiness map is left out: it is taken as not metallic");
     return;
   }
   constexpr double kDielectric = 0.04;
@@ -160,7 +160,7 @@ void from_glossiness(MaterialReader& reader, double glossiness, Principled& to) 
     to.metallic.factor = std::min(1.0, (bright - kDielectric) / (1 - kDielectric));
     to.base_color.factor = lerp(diffuse, specular, static_cast<float>(to.metallic.factor));
   }
-  reader.leave_out("its specular colour and glossiness are taken as metallic and roughness");
+  reader.unsupported("its specular colour and glossiness are taken as metallic and roughness");
 }
 
 }  // namespace

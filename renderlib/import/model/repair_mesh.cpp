@@ -1,4 +1,4 @@
-#include "renderlib/import/model/mend_mesh.h"
+#include "renderlib/import/model/repair_mesh.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,44 +58,44 @@ void drop_unused_vertices(Mesh& mesh) {
   }
 }
 
-std::size_t mend_normals(Mesh& mesh) {
-  std::map<std::uint32_t, Vec3> mended;
+std::size_t repair_normals(Mesh& mesh) {
+  std::map<std::uint32_t, Vec3> repaired;
   for (std::uint32_t i = 0; i < mesh.normals.size(); ++i) {
     if (!is_good_normal(mesh.normals[i])) {
-      mended[i] = {};
+      repaired[i] = {};
     }
   }
-  if (mended.empty()) {
+  if (repaired.empty()) {
     return 0;
   }
   for (const auto& [a, b, c] : mesh.triangles) {
     const Vec3 p = wide(mesh.positions[a]);
     const Vec3 normal = cross(wide(mesh.positions[b]) - p, wide(mesh.positions[c]) - p);
     for (const std::uint32_t corner : {a, b, c}) {
-      if (const auto found = mended.find(corner); found != mended.end()) {
+      if (const auto found = repaired.find(corner); found != repaired.end()) {
         found->second = found->second + normal;
       }
     }
   }
-  for (const auto& [vertex, sum] : mended) {
+  for (const auto& [vertex, sum] : repaired) {
     const Vec3 unit = length_squared(sum) > 0 ? normalize(sum) : Vec3{0, 1, 0};
     mesh.normals[vertex] = {static_cast<float>(unit.x), static_cast<float>(unit.y),
                             static_cast<float>(unit.z)};
   }
-  return mended.size();
+  return repaired.size();
 }
 
-std::size_t mend_uvs(Mesh& mesh) {
-  std::size_t mended = 0;
+std::size_t repair_uvs(Mesh& mesh) {
+  std::size_t repaired = 0;
   for (auto* uvs : {&mesh.uvs, &mesh.uvs2}) {
     for (auto& uv : *uvs) {
       if (!std::isfinite(uv[0]) || !std::isfinite(uv[1])) {
         uv = {0, 0};
-        ++mended;
+        ++repaired;
       }
     }
   }
-  return mended;
+  return repaired;
 }
 
 }  // namespace bandsaw
