@@ -24,7 +24,6 @@
 #include "renderlib/import/scene_file/read_textures.h"
 #include "renderlib/import/scene_file/read_view.h"
 #include "renderlib/import/scene_file/use_camera.h"
-#include "renderlib/package/check.h"
 #include "renderlib/scene/validate.h"
 
 namespace bandsaw {
@@ -152,11 +151,9 @@ absl::StatusOr<ImportedScene> import_scene(const std::string& path, const Import
     draft.out.scene.background = {};
     draft.out.scene.background.environment = Environment{.images = {image}};
   }
-  // What a worker would refuse is refused here, before anybody waits for it.
-  absl::Status good = check_description(draft.out.scene);
-  good.Update(validate(draft.out.scene));
-  if (!good.ok()) {
-    return absl::InvalidArgumentError(absl::StrCat(draft.file, ": ", good.message()));
+  // A scene that a worker would refuse is refused here, before anybody waits for it.
+  if (const absl::Status valid = validate(draft.out.scene, MeshVertices::kFinite); !valid.ok()) {
+    return absl::InvalidArgumentError(absl::StrCat(draft.file, ": ", valid.message()));
   }
   return std::move(draft.out);
 }

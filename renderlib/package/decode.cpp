@@ -5,13 +5,13 @@
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/package/arrays.h"
-#include "renderlib/package/check.h"
 #include "renderlib/package/decode_surface.h"
 #include "renderlib/package/decode_texture.h"
 #include "renderlib/package/lights.h"
 #include "renderlib/package/manifest.h"
 #include "renderlib/package/media.h"
 #include "renderlib/package/placements.h"
+#include "renderlib/scene/validate.h"
 
 namespace bandsaw {
 namespace {
@@ -225,7 +225,9 @@ absl::StatusOr<SceneDescription> decode_package(const std::string& manifest_byte
   ASSIGN_OR_RETURN(scene.geometry, decode_geometry(manifest, decoder));
   ASSIGN_OR_RETURN(scene.lights, decode_lights(manifest));
   ASSIGN_OR_RETURN(scene.media, media_with_boundaries(manifest, decoder));
-  RETURN_IF_ERROR(check_description(scene));
+  if (const absl::Status valid = validate(scene, MeshVertices::kFinite); !valid.ok()) {
+    return absl::InvalidArgumentError(absl::StrCat("scene package: ", valid.message()));
+  }
   return scene;
 }
 

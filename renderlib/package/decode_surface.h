@@ -1,7 +1,7 @@
 #pragma once
 
-// The parts of a manifest that are not geometry, as values. Form only: check_description judges the
-// values.
+// Decodes the parts of a manifest that are not geometry. Checks only the form, not the values
+// (scene/validate.h).
 
 #include "absl/status/statusor.h"
 #include "proto/package.pb.h"

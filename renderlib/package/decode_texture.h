@@ -9,8 +9,9 @@
 
 namespace bandsaw {
 
-/// Appends the texture that `from` describes, without its texels. Form only: check_materials judges
-/// the values. INVALID_ARGUMENT: of no kind, an enum out of range, a list of the wrong length.
+/// Appends the texture that `from` describes, without its texels. Checks only the
+/// form, not the values (scene/validate.h). Returns INVALID_ARGUMENT for an unknown kind, an enum
+/// out of range, or a list of a wrong length.
 absl::Status decode_texture(const package::Texture& from, const std::string& field,
                             std::vector<Texture>& textures);
 

@@ -12,6 +12,5 @@ inline constexpr std::size_t kMaxWarnings = 100;
 inline constexpr std::size_t kMaxWarningBytes = 1'000;
 inline constexpr std::size_t kMaxCameraNames = 100;
 inline constexpr std::size_t kMaxCameraNameBytes = 200;
-inline constexpr std::uint32_t kMaxTextureSide = 65536;  ///< texels
 
 }  // namespace bandsaw

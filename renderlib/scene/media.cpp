@@ -7,7 +7,6 @@
 #include "renderlib/base/status_macros.h"
 #include "renderlib/geometry/closed.h"
 #include "renderlib/scene/validate_field.h"
-#include "renderlib/scene/validate_geometry.h"
 
 namespace bandsaw {
 namespace {
@@ -59,7 +58,8 @@ absl::Status check_closed(const std::string& field, const Mesh& mesh) {
 
 absl::Status check_boundaries(const Media& media) {
   const Geometry& boundaries = media.boundaries;
-  RETURN_IF_ERROR(check_geometry("boundaries.", boundaries, media.media.size()));
+  RETURN_IF_ERROR(
+      check_geometry("boundaries.", boundaries, media.media.size(), MeshVertices::kAny));
   if (boundaries.size() != boundaries.spheres.size()) {
     return invalid("boundaries", "must be spheres and meshes alone: other shapes are open");
   }

@@ -11,8 +11,8 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
-#include "renderlib/package/limits.h"
 #include "renderlib/render/settings.h"
+#include "renderlib/texture/check_texture.h"
 
 namespace bandsaw {
 namespace {

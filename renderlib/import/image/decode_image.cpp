@@ -14,7 +14,7 @@
 #include "renderlib/import/image/decode_exr.h"
 #include "renderlib/import/image/decode_pfm.h"
 #include "renderlib/import/image/decode_webp.h"
-#include "renderlib/package/limits.h"
+#include "renderlib/texture/check_texture.h"
 
 namespace bandsaw {
 namespace {
