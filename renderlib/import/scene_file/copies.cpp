@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "absl/strings/str_cat.h"
+#include "renderlib/base/split_mix.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/import/draft/placements.h"
 #include "renderlib/import/scene_file/numbers.h"
@@ -12,15 +13,11 @@
 namespace bandsaw {
 namespace {
 
-/// Numbers in [0, 1) that depend on seed, copy and use alone (SplitMix64: Steele, Lea, Flood 2014,
-/// "Fast Splittable Pseudorandom Number Generators").
+/// Returns a number in [0, 1) that depends on seed, copy and use alone.
 double random_number(std::uint64_t seed, std::uint64_t copy, std::uint64_t use) {
   std::uint64_t x = seed;
   for (const std::uint64_t next : {copy, use}) {
-    x += 0x9e3779b97f4a7c15u * (next + 1);
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-    x = x ^ (x >> 31);
+    x = split_mix(x + kSplitMixIncrement * (next + 1));
   }
   return static_cast<double>(x >> 11) * 0x1p-53;
 }
