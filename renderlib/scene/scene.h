@@ -21,7 +21,7 @@ struct Kernel;  // renderlib/render/kernel.h
 class Scene {
  public:
   /// Validates the description (scene/validate.h), removes and counts primitives that no ray can
-  /// hit (scene/clean.h), and builds the BVHs and lights. Returns INVALID_ARGUMENT:
+  /// hit, and builds the BVHs and lights. Returns INVALID_ARGUMENT:
   /// "spheres[3].radius: must be > 0, is -1". `forced`: features to enable in addition to those
   /// that the scene uses; this costs time and changes no pixel; for tests. `traversal`: how rays
   /// find their primitives; changes no pixel. `kernel`: the code that builds the scene and renders

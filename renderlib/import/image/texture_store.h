@@ -36,7 +36,7 @@ class TextureStore {
     UvTransform uv_transform;
     std::optional<ImageTexture::Wrap> wrap_v = std::nullopt;  ///< where it differs from `wrap`
     /// What the texels become: themselves, normals of heights by a strength, or index_map of
-    /// amounts of reflection by an index (derived_images.h).
+    /// amounts of reflection by an index (texture_store.cpp).
     enum class Become { kThemselves, kNormals, kIndexMap } become = Become::kThemselves;
     double by = 1;
     bool alpha_is_known = false;  ///< no warning: the material says what becomes of the alpha
