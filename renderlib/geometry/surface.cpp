@@ -12,7 +12,7 @@ namespace {
 
 Vec3 vec(const std::array<float, 3>& p) { return {p[0], p[1], p[2]}; }
 
-/// A mesh triangle in its own space.
+/// A mesh triangle in the mesh's space.
 struct Corners {
   Vec3 a;
   Vec3 e1;
@@ -39,7 +39,7 @@ Vec3 interpolate(const std::array<float, 3>& a, const std::array<float, 3>& b,
   return vec(a) * (1 - hit.u - hit.v) + vec(b) * hit.u + vec(c) * hit.v;
 }
 
-/// `otherwise` where the mesh has no such uvs.
+/// Returns the interpolated uv, or `otherwise` if the mesh has no such uvs.
 Vec2 mesh_uv(const std::vector<std::array<float, 2>>& uvs,
              const std::array<std::uint32_t, 3>& index, const Hit& hit, const Vec2& otherwise) {
   if (uvs.empty()) {
@@ -61,7 +61,7 @@ Rgb mesh_color(const Mesh& mesh, const std::array<std::uint32_t, 3>& index, cons
          color(2) * static_cast<float>(hit.v);
 }
 
-/// In the mesh's own space.
+/// Returns the surface in the mesh's space.
 SurfacePoint on_triangle(const Mesh& mesh, const Ray& ray, const Hit& hit) {
   const Corners local = corners(mesh, hit);
   const std::array<std::uint32_t, 3>& index = mesh.triangles[hit.id.primitive];

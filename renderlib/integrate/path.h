@@ -30,8 +30,8 @@ struct PathOptions {
   Technique technique = Technique::kBoth;
   bool russian_roulette = true;
   /// Local shading (the integrator `direct`): the path ends at the first surface that has a pdf,
-  /// which reflects the lights and the scene's ambient term but no indirect light. Only mirrors,
-  /// glass and fuzzy metal are followed.
+  /// which reflects the lights and the scene's ambient term but no indirect light. Paths continue
+  /// only at mirrors, glass and fuzzy metal.
   bool local = false;
   /// Number of directions in which a path continues from the first surface that has a pdf, each
   /// with an equal share (splitting: Arvo and Kirk 1990, "Particle Transport and Image Synthesis").
