@@ -8,7 +8,7 @@
 #include "renderlib/geometry/shapes.h"
 #include "renderlib/material/interiors.h"
 #include "renderlib/material/opacity.h"
-#include "renderlib/scene/rest.h"
+#include "renderlib/scene/static_instances.h"
 #include "renderlib/scene/validate.h"
 
 namespace bandsaw {
@@ -141,8 +141,8 @@ absl::StatusOr<std::shared_ptr<const Scene>> Scene::build_with(const Kernel& ker
   scene->dropped_ = clean(own.geometry);
   const Shutter& shutter = shutter_of(own.camera);
   const Interval interval = {shutter.open, shutter.close};
-  rest(interval, own.geometry);
-  rest(interval, own.media.boundaries);
+  make_static(interval, own.geometry);
+  make_static(interval, own.media.boundaries);
   prepare_surfaces(own.geometry);
   scene->accel_ = std::make_unique<Accel>(Accel::build(own.geometry, pool, interval, traversal));
   scene->lights_ =

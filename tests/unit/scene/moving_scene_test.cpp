@@ -8,7 +8,7 @@
 #include <string>
 
 #include "renderlib/render/render_band.h"
-#include "renderlib/scene/rest.h"
+#include "renderlib/scene/static_instances.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
 
@@ -84,7 +84,7 @@ TEST(MovingScene, RestsOnlyWhatStandsStillAllTheTime) {
     g.instances.push_back(of_group(0, {}));
     g.instances[i].frame = FrameId{i};
   }
-  rest({0, 2}, g);
+  make_static({0, 2}, g);
   EXPECT_EQ(g.instances[0].frame, FrameId{0}) << "it is at its start again, but moved between";
   EXPECT_EQ(g.instances[1].frame, kNoFrame) << "it moves later";
   EXPECT_EQ(g.instances[2].frame, FrameId{2}) << "it stands in what moves";

@@ -10,7 +10,7 @@ namespace bandsaw {
 
 /// Gives instances whose frames are static during the interval a fixed placement, equal to the bit
 /// to the animated one at any time of it.
-void rest(const Interval& interval, Geometry& geometry);
+void make_static(const Interval& interval, Geometry& geometry);
 
 /// Returns true if any instance still moves.
 bool moves(const Geometry& geometry);

@@ -1,4 +1,4 @@
-#include "renderlib/scene/rest.h"
+#include "renderlib/scene/static_instances.h"
 
 #include <algorithm>
 
@@ -20,7 +20,7 @@ bool stands(const Frame& frame, const Interval& interval) {
 
 }  // namespace
 
-void rest(const Interval& interval, Geometry& geometry) {
+void make_static(const Interval& interval, Geometry& geometry) {
   std::vector<bool> still;
   for (const Frame& frame : geometry.frames) {
     const bool parent = frame.parent == kNoFrame || still[index_of(frame.parent)];
