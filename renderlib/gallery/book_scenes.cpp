@@ -47,7 +47,7 @@ std::string material(absl::string_view name, absl::string_view kind) {
 
 std::string color(const Vec3& rgb) { return absl::StrCat("color { rgb: ", list(rgb), " }"); }
 
-/// One of the small spheres, and the material that it alone has; glass is shared.
+/// Returns one of the small spheres and its material; glass is one material for all.
 std::string small_sphere(int number, const Vec3& center, bool bouncing, Numbers& numbers) {
   constexpr double kRadius = 0.2;
   const std::string name = absl::StrCat("s", number);
@@ -156,7 +156,7 @@ shape { sphere { center: [4, 1, 0]  radius: 1 }  material: "bronze" }
 }  // namespace
 
 std::string many_spheres(bool bouncing) {
-  // A defocus angle of 0.6 degrees is a lens of 2 x 10 x tan(0.3 degrees).
+  // A defocus angle of 0.6 degrees corresponds to a lens diameter of 2 x 10 x tan(0.3 degrees).
   std::string out = absl::StrCat(
       bouncing ? kBouncing : kOneWeekend,
       "camera { position: [13, 2, 3]  look_at: [0, 0, 0]  vertical_fov: 20  aperture: 0.10472  "

@@ -117,7 +117,7 @@ absl::StatusOr<RampTexture> ramp(const package::RampTexture& from, const std::st
   return to;
 }
 
-// Each kind's reader, appended.
+// Appends the texture that the decoder of a kind returned.
 template <class T>
 absl::Status append(absl::StatusOr<T> texture, std::vector<Texture>& textures) {
   RETURN_IF_ERROR(texture.status());
@@ -125,9 +125,9 @@ absl::Status append(absl::StatusOr<T> texture, std::vector<Texture>& textures) {
   return absl::OkStatus();
 }
 
-/// Appends the texture that `from` describes, without its texels. Checks only the
-/// form, not the values (scene/validate.h). Returns INVALID_ARGUMENT for an unknown kind, an enum
-/// out of range, or a list of a wrong length.
+/// Appends the texture that `from` describes, without its texels. Checks only the form, not the
+/// values (scene/validate.h). Returns INVALID_ARGUMENT for an unknown kind, an enum out of range,
+/// or a list of a wrong length.
 absl::Status decode_texture(const package::Texture& from, const std::string& field,
                             std::vector<Texture>& textures) {
   switch (from.kind_case()) {
@@ -162,8 +162,8 @@ class Decoder {
  public:
   explicit Decoder(BlobSource& blobs) : blobs_(blobs) {}
 
-  // The whole blob, where it lies: a mapped file stays mapped. Its size has been compared with what
-  // the manifest says.
+  // Returns the whole blob without copying it: a mapped file stays mapped. Its size has been
+  // compared with the manifest.
   absl::StatusOr<SharedBytes> bytes(const package::Blob& blob, const std::string& field) {
     ASSIGN_OR_RETURN(const BlobRef ref, blob_ref(blob, field));
     ASSIGN_OR_RETURN(std::shared_ptr<const BlobBytes> held, blobs_.get(ref.digest));
@@ -175,7 +175,7 @@ class Decoder {
     return SharedBytes(std::move(held), bytes);
   }
 
-  // The same as an array of T.
+  // Returns the same as an array of T.
   template <class T>
   absl::StatusOr<std::vector<T>> array(const package::Blob& blob, const std::string& field) {
     if (blob.size() % sizeof(T) != 0) {
@@ -186,7 +186,7 @@ class Decoder {
     return from_bytes<T>(whole.span());
   }
 
-  // The same, with one entry for each of `count` shapes.
+  // Returns the same; there must be one entry for each of `count` shapes.
   template <class T>
   absl::StatusOr<std::vector<T>> array_of(std::size_t count, const package::Blob& blob,
                                           const std::string& field) {
@@ -253,7 +253,7 @@ class Decoder {
     return disks;
   }
 
-  // Those of the manifest or of a group.
+  // Decodes the shapes of the manifest or of a group.
   template <class Message>
   absl::Status shapes(const Message& from, const std::string& prefix, Shapes& to) {
     if (from.has_spheres()) {
@@ -293,7 +293,8 @@ class Decoder {
     return mesh;
   }
 
-  // Appends: g++ 12 takes a StatusOr of this variant for uninitialised.
+  // Appends the texture; returning a StatusOr of this variant makes g++ 12 warn of uninitialised
+  // memory.
   absl::Status texture(const package::Texture& from, const std::string& field,
                        std::vector<Texture>& textures) {
     RETURN_IF_ERROR(decode_texture(from, field, textures));
@@ -346,7 +347,7 @@ absl::StatusOr<Media> media_with_boundaries(const package::Manifest& manifest, D
 
 absl::StatusOr<SceneDescription> decode_package(const std::string& manifest_bytes,
                                                 BlobSource& blobs) {
-  // The bounds on the blobs together, before any of them is read.
+  // Checks the limits on all blobs together before any of them is read.
   RETURN_IF_ERROR(package_blobs(manifest_bytes).status());
   ASSIGN_OR_RETURN(const package::Manifest manifest, parse_manifest(manifest_bytes));
   Decoder decoder(blobs);

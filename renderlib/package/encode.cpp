@@ -28,7 +28,8 @@ void encode(const Rgb& color, package::Rgb& to) {
   }
 }
 
-/// Enums are declared in the same order; some of the protocol's begin with a zero for "not said".
+/// Enums are declared in the same order; some of the protocol's have an additional 0 for
+/// "unspecified".
 template <class Theirs, class Ours>
 Theirs as(Ours ours, int first = 0) {
   return static_cast<Theirs>(static_cast<int>(ours) + first);
@@ -114,7 +115,7 @@ struct EncodeTexture {
   }
 };
 
-/// Texels go into `blobs`, uncopied.
+/// Encodes a texture. Its texels are added to `blobs` without being copied.
 void encode_texture(const Texture& texture, BlobMap& blobs, package::Texture& to) {
   std::visit(EncodeTexture{blobs, to}, texture);
 }
@@ -128,7 +129,7 @@ class Encoder {
     ref.set_sha256(blobs_.put(std::move(bytes)).raw());
   }
 
-  // One array out of a list of shapes: `Value` is what an entry of the blob holds.
+  // Makes one array from a list of shapes; `Value` is the type of the blob's entries.
   template <class Value, class Shape, class Of>
   void put_each(const std::vector<Shape>& shapes, package::Blob& ref, Of of) {
     std::vector<Value> values(shapes.size());
@@ -143,7 +144,7 @@ class Encoder {
     put_each<MaterialId>(spheres, *to.mutable_material(), &Sphere::material);
   }
 
-  // Into the manifest or a group.
+  // Encodes shapes into the manifest or into a group.
   template <class Message>
   void put_shapes(const Shapes& geometry, Message& manifest) {
     if (!geometry.spheres.empty()) {
@@ -221,7 +222,7 @@ void encode(const Camera& camera, package::Camera& to) {
 
 void encode(const PixelFilter& filter, package::Manifest& manifest) {
   if (filter != PixelFilter{}) {
-    // The enums are declared in the same order, after the protocol's zero.
+    // The enums are declared in the same order; the protocol's has an additional 0.
     const int kind = static_cast<int>(filter.kind) + 1;
     manifest.mutable_filter()->set_kind(static_cast<package::PixelFilter::Kind>(kind));
     manifest.mutable_filter()->set_radius(filter.radius);

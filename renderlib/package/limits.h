@@ -1,7 +1,6 @@
 #pragma once
 
-// Bounds of a manifest that are nobody else's; the others are in proto/wire/limits.h and
-// renderlib/render/settings.h.
+// Limits of a manifest; further limits are in proto/wire/limits.h and renderlib/render/settings.h.
 
 #include <cstddef>
 #include <cstdint>

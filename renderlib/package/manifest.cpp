@@ -20,13 +20,13 @@
 namespace bandsaw {
 namespace {
 
-/// How many entries of the type T a blob has.
+/// Returns the number of entries of type T in a blob.
 template <class T>
 std::uint64_t entries(const package::Blob& blob) {
   return blob.size() / sizeof(T);
 }
 
-/// The shapes of the manifest or of a group.
+/// Returns the numbers of shapes of the manifest or of a group.
 template <class Message>
 ShapeCounts counts_of(const Message& from) {
   return {.spheres = entries<Vec3>(from.spheres().centers()),
@@ -68,8 +68,9 @@ absl::Status check_all(const package::Manifest& manifest) {
   return check_meshes("boundaries.", boundaries.mesh());
 }
 
-/// INVALID_ARGUMENT: a mesh, a group or the loose shapes are more than a tree holds
-/// (scene/check_counts.h). No blob is read, so nothing is taken for what cannot be rendered.
+/// Returns INVALID_ARGUMENT if a mesh, a group or the loose shapes are more than a BVH can hold
+/// (scene/check_counts.h). The counts follow from the sizes of the blobs, so no blob is read and no
+/// memory is allocated.
 absl::Status check_counts(const package::Manifest& manifest) {
   const absl::Status good = check_all(manifest);
   return good.ok() ? good
@@ -159,7 +160,7 @@ absl::Status for_each_mesh_blob(const Meshes& meshes, const std::string& name, V
   return absl::OkStatus();
 }
 
-// Those of the manifest's or a group's shapes.
+// Appends the blobs of the manifest's or of a group's shapes.
 template <class Message, class Visit>
 absl::Status for_each_shape_blob(const Message& m, const std::string& prefix, Visit& visit) {
   if (m.has_spheres()) {
@@ -184,7 +185,7 @@ absl::Status for_each_shape_blob(const Message& m, const std::string& prefix, Vi
   return absl::OkStatus();
 }
 
-// Every blob field of a manifest with its path, in one order.
+// Returns all blob fields of a manifest with their paths, in a fixed order.
 template <class Visit>
 absl::Status for_each_blob(const package::Manifest& m, Visit visit) {
   for (int i = 0; i < m.texture_size(); ++i) {
@@ -266,7 +267,7 @@ absl::StatusOr<std::vector<BlobRef>> package_blobs(const std::string& manifest_b
     if (!ref.ok()) {
       return ref.status();
     }
-    // Counted each time it is named: a reader copies it each time.
+    // A blob counts each time it is named, because a reader may copy it each time.
     total += ref->size;
     if (total > wire::kPackageBytes) {
       return manifest_error(field, absl::StrCat("passes the bound of ", wire::kPackageBytes,

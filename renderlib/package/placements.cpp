@@ -10,7 +10,7 @@ namespace {
 
 using Doubles = google::protobuf::RepeatedField<double>;
 
-constexpr int kNumbers = 12;  // of a transform
+constexpr int kNumbers = 12;  // numbers of a transform
 
 void add(const Transform& transform, Doubles& to) {
   for (const auto& row : transform.m) {
