@@ -45,7 +45,8 @@ Camera framed(const ImportedScene& out) {
   return frame(geometry, geometry.instances, static_cast<double>(out.info.width) / out.info.height);
 }
 
-/// Where the scene file gives no view of its own.
+/// Returns the camera of a scene file that defines none: one of a model's, or one that frames the
+/// model.
 absl::StatusOr<Camera> camera_of_a_model(const Field& root, const scene::Scene& from,
                                          const SceneDraft& draft) {
   if (from.has_camera()) {
@@ -64,7 +65,7 @@ absl::StatusOr<Camera> camera_of_a_model(const Field& root, const scene::Scene& 
 absl::Status read_scene(const Field& root, const scene::Scene& from, SceneDraft& draft) {
   SceneDescription& scene = draft.out.scene;
   RETURN_IF_ERROR(read_settings(root, from, draft.out.info));
-  // What is cheap to check comes before what takes time.
+  // Cheap checks come before slow ones.
   ASSIGN_OR_RETURN(draft.shutter, read_shutter(root, from));
   const bool own_camera = from.has_camera() && from.camera().use().empty();
   if (own_camera) {

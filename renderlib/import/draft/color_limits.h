@@ -1,7 +1,7 @@
 #pragma once
 
-// What a channel of a colour may be at most, wherever it was written: beyond, products of a few of
-// them would overflow.
+// Maximum values of a colour's channel, for all formats: beyond them, products of a few channels
+// would overflow.
 
 namespace bandsaw {
 

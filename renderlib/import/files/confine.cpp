@@ -32,8 +32,9 @@ constexpr std::uint32_t kArchitecture = AUDIT_ARCH_AARCH64;
 #error "say which system calls these numbers are of"
 #endif
 
-// A list of what is forbidden, not of what is allowed: allocators, the C library and sanitizers are
-// free to change what they use, while the ways to the network and to other processes are few.
+// Forbidden system calls. There is no list of allowed calls, because allocators, the C library and
+// sanitizers may change the calls they use, while there are few calls for network and other
+// processes.
 constexpr std::array kForbidden = {
     // network
     SYS_socket,
@@ -63,7 +64,7 @@ constexpr std::array kForbidden = {
     SYS_pidfd_open,
     SYS_pidfd_getfd,
     SYS_pidfd_send_signal,
-    // doors around the rules above
+    // ways around the rules above
     SYS_io_uring_setup,
     SYS_io_uring_enter,
     SYS_io_uring_register,
@@ -104,10 +105,10 @@ std::vector<sock_filter> program() {
       jump(kEqual, kArchitecture, 1, 0),
       statement(BPF_RET | BPF_K, SECCOMP_RET_KILL_PROCESS),
       statement(kLoad, offsetof(seccomp_data, nr)),
-      // On x86-64 the x32 numbers are other names of the same calls; elsewhere there are none.
+      // On x86-64, the x32 numbers are aliases of the same calls; other architectures have none.
       jump(kAtLeast, kX32, 0, 1),
       answer(EPERM),
-      // The C library falls back to clone, whose flags can be looked at: threads are allowed,
+      // The C library falls back to clone, whose flags can be checked: threads are allowed,
       // processes are not.
       jump(kEqual, SYS_clone3, 0, 1),
       answer(ENOSYS),
@@ -125,7 +126,7 @@ std::vector<sock_filter> program() {
   return filter;
 }
 
-/// The seccomp part of confine_this_process; "no new privileges" has been set.
+/// Installs the seccomp filter; "no new privileges" MUST be set.
 absl::Status forbid_system_calls() {
   std::vector<sock_filter> filter = program();
   const sock_fprog whole = {static_cast<unsigned short>(filter.size()), filter.data()};
@@ -157,12 +158,12 @@ absl::Status limit_resources(const Confinement& to) {
   RETURN_IF_ERROR(limit(RLIMIT_NOFILE, 64, "cannot limit open files"));
   RETURN_IF_ERROR(limit(RLIMIT_CPU, to.cpu_seconds, "cannot limit CPU time"));
   RETURN_IF_ERROR(limit(RLIMIT_FSIZE, to.file_bytes, "cannot limit file sizes"));
-  // A sanitizer's shadow memory takes terabytes of address space.
+  // A sanitizer's shadow memory uses terabytes of address space.
   return kShadowMemory ? absl::OkStatus()
                        : limit(RLIMIT_AS, to.memory_bytes, "cannot limit memory");
 }
 
-// If the machine runs out of memory all the same, this process is the one to end.
+// If the machine runs out of memory, the kernel ends this process first.
 void volunteer_for_out_of_memory() {
   const int fd = open("/proc/self/oom_score_adj", O_WRONLY | O_CLOEXEC);
   if (fd >= 0) {
@@ -171,7 +172,7 @@ void volunteer_for_out_of_memory() {
   }
 }
 
-// The rights of the first version of Landlock's interface, which every kernel with Landlock knows.
+// The rights of Landlock's first version, which every kernel with Landlock supports.
 constexpr std::uint64_t kRead = LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR;
 constexpr std::uint64_t kWrite = kRead | LANDLOCK_ACCESS_FS_WRITE_FILE |
                                  LANDLOCK_ACCESS_FS_MAKE_REG | LANDLOCK_ACCESS_FS_REMOVE_FILE;

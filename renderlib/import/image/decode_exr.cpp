@@ -21,7 +21,7 @@ struct Free {
   void operator()(float* values) const { std::free(values); }
 };
 
-/// Takes over the message.
+/// Takes ownership of the message.
 absl::Status failure(const char* error) {
   const absl::Status status = absl::InvalidArgumentError(
       absl::StrCat("is not an EXR file that can be read, or is damaged (",

@@ -27,7 +27,7 @@
 namespace bandsaw {
 namespace {
 
-// The next word of the header and the one white space after it.
+// Removes the next word of the header and one white-space character after it.
 absl::string_view take_word(absl::string_view& rest) {
   std::size_t end = 0;
   while (end < rest.size() && !absl::ascii_isspace(static_cast<unsigned char>(rest[end]))) {
@@ -49,9 +49,10 @@ bool is_pfm(absl::string_view bytes) {
          absl::ascii_isspace(static_cast<unsigned char>(bytes[2]));
 }
 
-/// "PF" (or "Pf", expanded), width, height, scale (its sign is the byte order), then rows from the
-/// bottom. Values of any kind, also NaN: it is a measurement, not a colour of a scene.
-/// INVALID_ARGUMENT: broken or truncated.
+/// Decodes a portable float map, the exact format that renderlib/image writes and stb_image does
+/// not support: "PF" (or "Pf", which is expanded), width, height, scale (its sign is the byte
+/// order), then rows from the bottom. Values may be anything including NaN: it is a measurement,
+/// not a colour of a scene. Returns INVALID_ARGUMENT if it is broken or truncated.
 absl::StatusOr<Image> decode_pfm(absl::string_view bytes) {
   const std::size_t channels = take_word(bytes) == "PF" ? 3 : 1;
   Image image;
@@ -127,8 +128,8 @@ absl::StatusOr<Shape> shape_of(absl::string_view bytes) {
   return shape;
 }
 
-// A file that seems never to end: after its last byte come line feeds, and that they were asked for
-// is remembered. stb_image 2.27 loops for ever on a Radiance file that ends within a run; line
+// A source that never ends: after the last byte of the file it returns line feeds and records that
+// they were read. stb_image 2.27 loops for ever on a Radiance file that ends within a run; line
 // feeds end every header line and every run.
 struct Endless {
   absl::string_view rest;
@@ -141,8 +142,8 @@ int read_endless(void* user, char* to, int size) {
   const std::size_t real = std::min(wanted, source.rest.size());
   std::memcpy(to, source.rest.data(), real);
   source.rest.remove_prefix(real);
-  // A large request fills stb_image's buffer ahead of need and may come back short; a pixel of four
-  // bytes may not.
+  // A large request fills stb_image's buffer ahead and may be truncated; a pixel of four bytes may
+  // not.
   constexpr std::size_t kPixel = 4;
   if (real == wanted || (real > 0 && wanted > kPixel)) {
     return static_cast<int>(real);
@@ -161,7 +162,7 @@ void skip_endless(void* user, int size) {
 
 int at_end(void*) { return 0; }
 
-// The decoder's own memory, held for as long as the texels are.
+// Bytes in the decoder's memory, which is freed with the last reference.
 template <class T>
 ImageTexture texture_of(Pixels<T> pixels, const Shape& shape, int channels,
                         ImageTexture::Format format) {
@@ -190,7 +191,8 @@ absl::StatusOr<ImageTexture> decode_radiance(absl::string_view bytes) {
   return texture_of(std::move(pixels), shape, 3, ImageTexture::Format::kFloat32);
 }
 
-/// Pixels of `channels` bytes. Of `shape` what the decoder found is set.
+/// Decodes to pixels of `channels` bytes, and sets the properties of `shape` that the decoder
+/// found.
 absl::StatusOr<Pixels<stbi_uc>> decode_pixels(absl::string_view bytes, int channels, Shape& shape) {
   if (is_webp(bytes)) {
     ASSIGN_OR_RETURN(shape, shape_of(bytes));
@@ -244,7 +246,7 @@ absl::StatusOr<ImageTexture> decode_alpha(absl::string_view bytes) {
   alpha.height = 1;
   std::vector<std::byte> texels{std::byte{255}};
   if (shape.channels == 2 || shape.channels == 4) {
-    // The last channel of four, whatever the file has.
+    // The last of four channels, whatever the file contains.
     Shape found;
     ASSIGN_OR_RETURN(const Pixels<stbi_uc> pixels, decode_pixels(bytes, 4, found));
     alpha.width = static_cast<std::uint32_t>(found.width);

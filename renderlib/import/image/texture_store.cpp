@@ -19,7 +19,7 @@ namespace {
 using Format = ImageTexture::Format;
 using Wrap = ImageTexture::Wrap;
 
-/// A texel's channel: a code over 255, sRGB decoded if `decoded`, or a float.
+/// Returns a texel's channel: a code divided by 255, decoded from sRGB if `decoded`, or a float.
 double channel(const ImageTexture& image, std::size_t number, bool decoded) {
   if (image.format == Format::kFloat32) {
     float value = 0;
@@ -31,7 +31,7 @@ double channel(const ImageTexture& image, std::size_t number, bool decoded) {
                                                    : static_cast<double>(code) / 255;
 }
 
-/// The neighbour `by` (1 or -1) texels on, as the image goes on at its borders.
+/// Returns the index of the neighbour at distance `by` (1 or -1), according to the wrap mode.
 std::size_t neighbour(std::size_t at, int by, std::size_t count, Wrap wrap) {
   const std::size_t last = count - 1;
   if (by < 0 ? at > 0 : at < last) {
@@ -40,7 +40,7 @@ std::size_t neighbour(std::size_t at, int by, std::size_t count, Wrap wrap) {
   return wrap == Wrap::kRepeat ? last - at : at;
 }
 
-/// The same image with other texels.
+/// Returns the same image with other texels.
 ImageTexture with_texels(const ImageTexture& image, Format format, std::uint8_t channels,
                          std::vector<std::byte> texels) {
   ImageTexture out = image;
@@ -50,10 +50,10 @@ ImageTexture with_texels(const ImageTexture& image, Format format, std::uint8_t 
   return out;
 }
 
-/// The normals of a surface whose heights are the image's mean channel: codes over 255 as they
-/// stand, floats as they are. `strength` is how many texels high a height of 1 is; finite. Slopes
-/// are central differences, at the borders as the image wraps (Blinn 1978, "Simulation of Wrinkled
-/// Surfaces"). Floats: a step of one code is a slope that 8 bits do not hold.
+/// Converts a height map to a normal map. The height is the image's mean channel: a code divided by
+/// 255, or a float. `strength` is the height in texels of the value 1; finite. Slopes are central
+/// differences, with the image's wrap mode at the borders (Blinn 1978, "Simulation of Wrinkled
+/// Surfaces"). The result is float, because 8 bits cannot represent the slope of one code.
 ImageTexture normals_of_heights(const ImageTexture& heights, double strength) {
   const std::size_t width = heights.width;
   const std::size_t height = heights.height;
@@ -67,7 +67,7 @@ ImageTexture normals_of_heights(const ImageTexture& heights, double strength) {
   std::vector<std::byte> texels(3 * sizeof(float) * width * height);
   std::byte* out = texels.data();
   for (std::size_t y = 0; y < height; ++y) {
-    // Rows come from the top, v goes up.
+    // Rows are stored from the top; v increases upwards.
     const std::size_t above = neighbour(y, -1, height, heights.v_wrap());
     const std::size_t below = neighbour(y, 1, height, heights.v_wrap());
     for (std::size_t x = 0; x < width; ++x) {
@@ -86,11 +86,11 @@ ImageTexture normals_of_heights(const ImageTexture& heights, double strength) {
   return with_texels(heights, Format::kFloat32, 3, std::move(texels));
 }
 
-/// What index_map needs so that F0, the reflectance along the normal, is that of `index` (> 1)
-/// times the luminance of the image: one channel of 8 bits, or of floats where the image has
-/// floats.
+/// Converts an image to an index_map for which F0, the reflectance along the normal, is that of
+/// `index` (> 1) times the luminance of the image: one channel of 8 bits, or of floats if the image
+/// has floats.
 ImageTexture index_map_of_reflectance(const ImageTexture& amounts, double index) {
-  const double root = (index - 1) / (index + 1);  // of F0
+  const double root = (index - 1) / (index + 1);  // square root of F0
   const std::size_t count = std::size_t{amounts.width} * amounts.height;
   const bool floats = amounts.format == Format::kFloat32;
   std::vector<std::byte> texels(count * (floats ? sizeof(float) : 1));
@@ -111,8 +111,8 @@ ImageTexture index_map_of_reflectance(const ImageTexture& amounts, double index)
   return with_texels(amounts, floats ? Format::kFloat32 : Format::kLinear8, 1, std::move(texels));
 }
 
-// Texels times factor. 8-bit texels are multiplied in linear values and rounded to a code again: at
-// most half a code off.
+// Multiplies the texels by a factor. 8-bit texels are multiplied as linear values and rounded to a
+// code: the error is at most half a code.
 void scale(ImageTexture& image, const Rgb& factor) {
   if (factor == Rgb{1, 1, 1}) {
     return;
@@ -173,7 +173,7 @@ absl::StatusOr<TextureId> TextureStore::image(
   }
   ASSIGN_OR_RETURN(const std::string bytes, read());
   std::vector<std::string> warnings;
-  // A grey image stays one unless it is tinted.
+  // A grey image stays grey unless it is tinted.
   const bool tints = use.factor.r != use.factor.g || use.factor.g != use.factor.b;
   auto image = use.alpha ? decode_alpha(bytes)
                          : decode_image(bytes, warnings, tints ? Gray::kExpanded : Gray::kKept);
