@@ -15,7 +15,7 @@
 namespace bandsaw {
 namespace {
 
-/// Extensions whose meaning reaches the scene, or that say nothing about how it looks.
+/// Extensions that are supported, or that do not affect the image.
 constexpr absl::string_view kKnown[] = {
     "KHR_materials_clearcoat",
     "KHR_materials_emissive_strength",
@@ -32,7 +32,7 @@ constexpr absl::string_view kKnown[] = {
     "KHR_mesh_quantization",
     "EXT_meshopt_compression",
     "EXT_texture_webp",
-    // Left out; each material that has something of them says so.
+    // Not rendered; each material that uses one adds a warning.
     "KHR_materials_sheen",
     "KHR_materials_iridescence",
     "KHR_materials_anisotropy",
@@ -40,7 +40,7 @@ constexpr absl::string_view kKnown[] = {
     "KHR_materials_diffuse_transmission",
 };
 
-/// The extensions that the file uses and that change nothing here.
+/// Returns the used extensions that have no effect.
 std::vector<std::string> ignored_extensions(const gltf::Json& root) {
   std::vector<std::string> names;
   for (const gltf::Json& used : gltf::items(root, "extensionsUsed")) {
@@ -62,7 +62,7 @@ using gltf::name_in;
 using gltf::number;
 using gltf::object;
 
-// Two numbers, or what stands there.
+// Reads two numbers; absent ones keep their value.
 void read_pair(const Json& in, const std::string& name, double& x, double& y) {
   const Json* values = list(in, name);
   if (values != nullptr && values->size() == 2 && (*values)[0].is_number() &&
@@ -72,8 +72,8 @@ void read_pair(const Json& in, const std::string& name, double& x, double& y) {
   }
 }
 
-// offset + rotation (scale uv) with the image's top at v = 0, seen from uvs whose v = 0 is the
-// bottom: v -> 1 - v before and after. The rotation is counter-clockwise as the image is seen.
+// Converts offset + rotation (scale uv) with v = 0 at the top of the image to uvs with v = 0 at the
+// bottom: v -> 1 - v before and after. The rotation is counter-clockwise in the image.
 UvTransform transform_of(const Json& from) {
   double offset_u = 0;
   double offset_v = 0;
@@ -109,7 +109,7 @@ void read_textures_of(const Json& from, GltfMaterial& to) {
   }
 }
 
-/// Three numbers, each as it stands or as in `otherwise`.
+/// Reads three numbers; absent ones are those of `otherwise`.
 std::array<double, 3> triple_of(const Json& in, const std::string& name,
                                 std::array<double, 3> otherwise) {
   const Json* values = list(in, name);
@@ -140,7 +140,7 @@ std::optional<GltfVolume> volume_of(const Json& material) {
   return to;
 }
 
-/// What an extension adds to the material, where it adds anything, and nothing here shows.
+/// Adds the features of an extension that are not rendered.
 std::vector<std::string> unsupported_features_of(const Json& material) {
   std::vector<std::string> out;
   const auto has = [&](const char* name, const char* factor) {

@@ -45,7 +45,7 @@ UvTransform uv_transform_of(const aiUVTransform& from) {
   const double b = -turn.sin * sv;
   const double c = turn.sin * su;
   const double d = turn.cos * sv;
-  // Turned around the middle: R (s uv - m) + m, m = (1/2, 1/2).
+  // Rotation around the middle: R (s uv - m) + m, m = (1/2, 1/2).
   const double mu = 0.5 - 0.5 * (turn.cos - turn.sin);
   const double mv = 0.5 - 0.5 * (turn.sin + turn.cos);
   return {{a, b, mu + from.mTranslation.x, c, d, mv + from.mTranslation.y}};
@@ -69,7 +69,7 @@ bool looks_like_normals(const ImageTexture& image) {
   return is_about_half(mean(0)) && is_about_half(mean(1)) && mean(2) > 0.8;
 }
 
-/// What glTF calls the textureInfo that Assimp keeps in this slot.
+/// Returns glTF's name of the textureInfo that Assimp stores in this slot.
 const char* gltf_name(MaterialReader::Slot slot) {
   switch (slot.type) {
     case aiTextureType_BASE_COLOR:
@@ -110,7 +110,7 @@ MaterialReader::MaterialReader(ModelFile& file, unsigned index)
   }
 }
 
-// Where dead names are the rule a texture that is not found is as if it had not been named.
+// In formats in which dead names are common, a missing texture is ignored with a warning.
 void MaterialReader::name_dead_files() {
   for (unsigned type = aiTextureType_DIFFUSE; type <= AI_TEXTURE_TYPE_MAX; ++type) {
     for (unsigned index = 0; index < material_.GetTextureCount(aiTextureType(type)); ++index) {
@@ -132,7 +132,7 @@ const GltfMaterial* MaterialReader::gltf() const {
   if (index_ < all.size() && (all[index_].name.empty() || is_this(all[index_]))) {
     return &all[index_];
   }
-  // What has no name, as Assimp's material for primitives without one, is none of the others.
+  // A material without a name, such as Assimp's default material, is not one of the JSON's.
   const auto found = name.length == 0 ? all.end() : std::find_if(all.begin(), all.end(), is_this);
   return found == all.end() ? nullptr : &*found;
 }
@@ -241,7 +241,7 @@ absl::StatusOr<TextureId> MaterialReader::bump_map(Slot slot) {
   TextureStore::Use use = use_of(slot);
   use.linear = true;
   use.become = TextureStore::Use::Become::kNormals;
-  // Formats give no unit of a height. One texel keeps what is drawn for bumps visible and shallow.
+  // Formats define no unit of heights. One texel keeps bumps visible and shallow.
   float strength = 1;
   material_.Get(AI_MATKEY_OBJ_BUMPMULT(slot.type, slot.index), strength);
   use.by = std::isfinite(strength) ? std::clamp(double{strength}, -1e6, 1e6) : 1;

@@ -1,6 +1,6 @@
 #pragma once
 
-// A model while it is being read: what its parts share.
+// State that the parts of the model reader share.
 
 #include <string>
 
@@ -12,19 +12,19 @@ struct aiScene;
 
 namespace bandsaw {
 
-/// What kind of file it is, as far as that matters.
+/// Kind of a model file, as far as it affects reading.
 enum class ModelKind {
   kGltf,
   kObj,
-  kPlain,  ///< ply, stl, off: geometry, at most with vertex colours
+  kPlain,  ///< ply, stl, off: geometry and possibly vertex colours
   kOther,
 };
 
 struct ModelFile {
   const aiScene& scene;
-  const std::string& path;  ///< real
+  const std::string& path;  ///< real path
   ModelKind kind = ModelKind::kOther;
-  GltfExtensions gltf;  ///< of kGltf
+  GltfExtensions gltf;  ///< set for kGltf
   SceneDraft& draft;
   UnsupportedFeatures unsupported = {};
 

@@ -7,7 +7,7 @@
 namespace bandsaw {
 namespace {
 
-// Textures of which nothing is rendered, by what they are called.
+// Textures that are not rendered, with their names in messages.
 void name_unused_textures(MaterialReader& reader) {
   constexpr struct {
     aiTextureType type;
@@ -27,7 +27,8 @@ void name_unused_textures(MaterialReader& reader) {
   }
 }
 
-// KHR_materials_unlit: meant to show its base colour whatever the light, which no surface does.
+// KHR_materials_unlit is meant to show its base colour independently of light, which no surface
+// does.
 absl::StatusOr<ModelMaterial> read_unlit(MaterialReader& reader) {
   reader.unsupported("is unlit, which is taken as a diffuse surface");
   const Rgb base = reader.color("$clr.base", 1).value_or(Rgb{1, 1, 1});

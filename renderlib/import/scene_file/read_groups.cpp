@@ -97,7 +97,7 @@ Transform copy_of(const Grid& grid, std::uint64_t number) {
   return translation(to) * rotation({0, 1, 0}, grid.turn * random(3)) * scaling({size, size, size});
 }
 
-/// How each copy of an instance is moved: one at least.
+/// Reads the transforms of an instance's copies; at least one.
 absl::StatusOr<std::vector<Transform>> read_copies(const Field& in, const scene::Instance& from) {
   std::vector<Transform> copies;
   if (from.has_grid()) {
@@ -121,7 +121,7 @@ absl::StatusOr<std::vector<Transform>> read_copies(const Field& in, const scene:
   return copies;
 }
 
-/// While it lives, what is read goes into a group.
+/// While an object exists, shapes and placements that are read are added to a group.
 class InGroup {
  public:
   InGroup(SceneDraft& draft, Shapes& shapes, Contents& placed)
@@ -151,7 +151,7 @@ absl::StatusOr<Contents> read_group(const Field& in, const scene::Group& from, S
     RETURN_IF_ERROR(read_models(in, from.model(), draft));
     RETURN_IF_ERROR(read_instances(in, from.instance(), draft));
   }
-  draft.cameras.resize(cameras);  // A camera in a group is nowhere.
+  draft.cameras.resize(cameras);  // cameras in groups are ignored
   if (shapes.size() > 0) {
     Geometry& geometry = draft.out.scene.geometry;
     geometry.groups.push_back(std::move(shapes));
@@ -183,7 +183,8 @@ absl::StatusOr<const Contents*> find_group(const Field& in, const std::string& n
                                      "; within a group only earlier ones are known"));
 }
 
-/// Adds `what` where the placement, or the keys, say, moved by `copy`. False: as `place`.
+/// Adds `what` at the placement or with the keys of `in`, transformed by `copy`. Returns false like
+/// place().
 bool place_copy(const Placements& what, const Transform& placement, const Transform& copy,
                 const std::vector<Key>& keys, std::optional<MaterialId> material, Placements& to) {
   if (what.instances.empty()) {
@@ -209,7 +210,7 @@ absl::Status read_instance(const Field& in, const scene::Instance& from, SceneDr
         "of", absl::StrCat("makes more than ", kMaxPlacements, " placements of meshes and groups"));
   }
   for (const Transform& copy : copies) {
-    // What a medium is inside of has no material to be replaced.
+    // Boundaries of media have no material that could be replaced.
     if (!place_copy(group->seen, placement, copy, keys, material, to.seen) ||
         !place_copy(group->filled, placement, copy, keys, std::nullopt, to.filled)) {
       return in.error("scale", "is too large or too small for what is placed");

@@ -46,7 +46,7 @@ absl::Status read_colors(const Field& in, const scene::Gltf& from, SceneDraft& d
   return absl::OkStatus();
 }
 
-// Which of metallic and roughness are textures: one for both, or one for each.
+// Sets the textures of metallic and roughness: one for both, or one for each.
 absl::Status read_metallic_roughness(const Field& in, const scene::Gltf& from, SceneDraft& draft,
                                      Principled& to) {
   const bool both = from.has_metallic_roughness_texture();
@@ -75,7 +75,7 @@ absl::Status read_metallic_roughness(const Field& in, const scene::Gltf& from, S
   return check_range(in, "roughness", to.roughness.factor, 0, 1);
 }
 
-// A number that is 0 unless it or its texture is given.
+// A number that is 0 unless it or its texture is present.
 struct OptionalNumber {
   const char* name;
   bool given;
@@ -156,7 +156,7 @@ absl::Status read_alpha(const Field& in, const scene::Gltf& from, SceneDraft& dr
   return check_range(in, "alpha_cutoff", to.alpha_cutoff, 0, 1e30);
 }
 
-/// A material of kind `gltf`, which `in` stands for.
+/// Reads the material of kind `gltf` of `in`.
 absl::StatusOr<Material> read_gltf(const Field& in, const scene::Gltf& from, SceneDraft& draft) {
   Principled to;
   RETURN_IF_ERROR(read_colors(in, from, draft, to));
@@ -168,7 +168,7 @@ absl::StatusOr<Material> read_gltf(const Field& in, const scene::Gltf& from, Sce
   return Material(to);
 }
 
-// A material's colour: `texture`, or its short form `short_name`, or the default.
+// Reads a material's colour: `texture`, or its short form `short_name`, or the default.
 template <class From>
 absl::StatusOr<TextureId> read_reflectance(const Field& in, const From& from, float otherwise,
                                            SceneDraft& draft) {
@@ -185,7 +185,7 @@ absl::StatusOr<TextureId> read_reflectance(const Field& in, const From& from, fl
   return draft.textures.constant(gray(otherwise));
 }
 
-// The texture of a number, where it is given.
+// Reads the texture of a number, if it is present.
 absl::StatusOr<std::optional<TextureId>> read_map(const Field& in, const std::string& name,
                                                   bool given, const scene::Texture& from,
                                                   SceneDraft& draft) {

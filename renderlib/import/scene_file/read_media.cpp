@@ -112,7 +112,7 @@ Instance boundary_of(const Sphere& sphere, MediumId inside, SceneDraft& draft) {
 
 Instance boundary_of(const Vec3& low, const Vec3& high, MediumId inside, SceneDraft& draft) {
   Geometry& boundaries = draft.out.scene.media.boundaries;
-  constexpr MeshId kCube{0xffffffffu};  // a name that no mesh of the scene has
+  constexpr MeshId kCube{0xffffffffu};  // an id that no mesh of the scene has
   const auto [known, is_new] = draft.boundary_meshes.try_emplace(
       kCube, MeshId{static_cast<std::uint32_t>(boundaries.meshes.size())});
   if (is_new) {

@@ -12,8 +12,8 @@
 namespace bandsaw {
 namespace {
 
-/// Of a turn about one axis this much goes between two keys; the shortest way is the whole way
-/// then.
+/// Maximum rotation about one axis between two keys, so that the shortest rotation is the whole
+/// rotation.
 constexpr double kMaxTurn = 90;  // degrees
 constexpr double kMaxKeys = 100'000;
 
@@ -22,7 +22,7 @@ struct Turn {
   double degrees = 0;
 };
 
-/// What is written of a placement.
+/// The fields of a placement.
 struct Written {
   Vec3 scale{1, 1, 1};
   std::vector<Turn> turns;
@@ -89,7 +89,8 @@ bool same_sign(const Vec3& a, const Vec3& b) {
   return a.x * b.x > 0 && a.y * b.y > 0 && a.z * b.z > 0;
 }
 
-/// The one turn of a pose; of a pose that does not turn, none about the axis of the other.
+/// Returns the rotation of a pose about one axis; a pose without rotation has a rotation of 0 about
+/// the axis of the other pose.
 std::optional<Turn> only_turn(const Written& pose, const Written& other) {
   if (pose.turns.size() == 1) {
     return pose.turns[0];
@@ -98,8 +99,8 @@ std::optional<Turn> only_turn(const Written& pose, const Written& other) {
   return rests ? std::optional(Turn{other.turns[0].axis, 0}) : std::nullopt;
 }
 
-/// Keys from one after a up to b: more than one where both turn about one axis by more than the
-/// shortest way would.
+/// Returns keys after a up to b: more than one if both rotate about one axis by more than the
+/// shortest rotation.
 void add_keys(const WrittenKey& a, const WrittenKey& b, std::vector<Key>& keys) {
   const std::optional<Turn> from = only_turn(a.pose, b.pose);
   const std::optional<Turn> to = only_turn(b.pose, a.pose);

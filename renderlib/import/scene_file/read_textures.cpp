@@ -21,7 +21,7 @@
 namespace bandsaw {
 namespace {
 
-/// `value` of an enum whose values are 0 to `last`.
+/// Returns the value of an enum whose values are 0 to `last`.
 template <class Ours>
 absl::StatusOr<Ours> read_enum(const Field& in, const std::string& name, int value, int last) {
   if (value < 0 || value > last) {
@@ -30,7 +30,7 @@ absl::StatusOr<Ours> read_enum(const Field& in, const std::string& name, int val
   return static_cast<Ours>(value);
 }
 
-// One or two finite numbers; one stands for both where `one_for_both`.
+// Reads one or two finite numbers; one counts for both if `one_for_both`.
 absl::StatusOr<Vec2> read_vec2(const Field& in, const std::string& name, const Numbers& list,
                                bool one_for_both, double otherwise) {
   if (list.empty()) {
@@ -65,7 +65,7 @@ absl::StatusOr<TextureStore::Use> read_use(const Field& in, const scene::ImageTe
   ASSIGN_OR_RETURN(const auto wrap, read_enum<int>(in, "wrap", from.wrap(), Proto::Wrap_MAX));
   ASSIGN_OR_RETURN(const auto filter,
                    read_enum<int>(in, "filter", from.filter(), Proto::Filter_MAX));
-  // Ours count from 0 in the same order, after the file's "not said".
+  // Our values count from 0 in the same order; the file's have an additional 0 for "unspecified".
   if (wrap != Proto::WRAP_UNSPECIFIED) {
     use.wrap = static_cast<ImageTexture::Wrap>(wrap - 1);
   }
@@ -84,7 +84,7 @@ absl::StatusOr<TextureStore::Use> read_use(const Field& in, const scene::ImageTe
   return use;
 }
 
-/// The image that `in` stands for. INVALID_ARGUMENT: its file, or a field.
+/// Reads the image of `in`. Returns INVALID_ARGUMENT for its file or for a field.
 absl::StatusOr<TextureId> read_image_texture(const Field& in, const scene::ImageTexture& from,
                                              SceneDraft& draft) {
   ASSIGN_OR_RETURN(const TextureStore::Use use, read_use(in, from));
@@ -105,8 +105,8 @@ absl::StatusOr<TextureId> read_image_texture(const Field& in, const scene::Image
 
 using MaybeId = absl::StatusOr<TextureId>;
 
-// A texture inside another; `otherwise` is the colour it has where nothing was written, below 0
-// where it is required.
+// Reads a texture that another texture contains; `otherwise` is its colour if it is absent, or
+// below 0 if it is required.
 MaybeId read_part(const Field& in, const std::string& name, const scene::Texture& from, float most,
                   float otherwise, SceneDraft& draft) {
   if (in.has(name)) {
@@ -215,7 +215,7 @@ MaybeId read_ramp(const Field& in, const scene::RampTexture& from, float most, S
                      read_texture(in.child("texture"), from.texture(), kMaxRadiance, draft));
     return draft.textures.add(std::move(to));
   }
-  // Ours count from 0, which is the texture, as the file's "not said" is.
+  // Our values count from 0, which is the texture, like the file's "unspecified".
   ASSIGN_OR_RETURN(to.over, read_enum<RampTexture::Over>(in, "coordinate", from.coordinate(),
                                                          scene::RampTexture::Coordinate_MAX));
   if (to.over == RampTexture::Over::kTexture) {
@@ -232,7 +232,7 @@ MaybeId read_mix(const Field& in, const scene::MixTexture& from, float most, Sce
   return draft.textures.add(to);
 }
 
-// Its factors may be above `most`, their product may not: checked by read_texture.
+// The factors may be above `most`, their product may not; read_texture() checks it.
 MaybeId read_product(const Field& in, const scene::ProductTexture& from, SceneDraft& draft) {
   ProductTexture to;
   ASSIGN_OR_RETURN(to.a, read_part(in, "a", from.a(), kMaxRadiance, -1, draft));
@@ -279,7 +279,7 @@ MaybeId read_kind(const Field& in, const scene::Texture& from, float most, Scene
   return in.error("is empty: write color, image, checker, noise, ramp, mix, product or use");
 }
 
-// Kinds whose colours are written elsewhere or come together from several.
+// Kinds whose colours are defined elsewhere or are combined from several.
 bool may_pass(const scene::Texture& from) {
   return from.has_image() || from.has_product() || from.kind_case() == scene::Texture::kUse;
 }

@@ -50,8 +50,8 @@ absl::Status read_placement(const Field& in, const Message& from, Environment& t
   return absl::OkStatus();
 }
 
-/// The images that `in`, a background, is made of; their texels are added to the draft.
-/// INVALID_ARGUMENT: a field, or a file.
+/// Reads the images of `in`, a background, and adds their texels to the draft. Returns
+/// INVALID_ARGUMENT for a field or a file.
 absl::StatusOr<Environment> read_environment(const Field& in, const scene::EnvironmentMap& from,
                                              SceneDraft& draft) {
   Environment to;
@@ -83,13 +83,13 @@ absl::StatusOr<Environment> read_cube_map(const Field& in, const scene::CubeMap&
   return to;
 }
 
-/// The view of a camera that is turned out of the view along -z.
+/// Returns the view of a camera that is rotated from the view along -z.
 absl::StatusOr<View> read_turned(const Field& in, const scene::Camera& from, View view) {
   if (!from.look_at().empty() || !from.up().empty()) {
     return in.error("rotate", "stands instead of look_at and up: write one or the other");
   }
   ASSIGN_OR_RETURN(const Transform turn, read_rotation(in, from.rotate()));
-  // Far enough ahead that the sum keeps the direction's digits.
+  // The point is so far ahead that the sum keeps the precision of the direction.
   const double ahead = std::max(1.0, max_abs(view.position));
   view.look_at = view.position + turn.direction({0, 0, -1}) * ahead;
   view.up = turn.direction({0, 1, 0});
@@ -230,7 +230,7 @@ absl::Status read_settings(const Field& root, const scene::Scene& from, PackageI
                                       " pixels, at most ", kMaxPixels, " are allowed"));
     }
   }
-  // Ours count from 0 in the same order; 0 means "not written".
+  // Our values count from 0 in the same order; the file's 0 means "unspecified".
   if (from.integrator().kind() != scene::Integrator::KIND_UNSPECIFIED) {
     info.integrator = static_cast<Integrator>(static_cast<int>(from.integrator().kind()) - 1);
   }

@@ -16,7 +16,7 @@ std::string with_file(const FoundCamera& camera) {
   return absl::StrCat(camera.model, "/", camera.name);
 }
 
-/// Those that `name` means: the first way of calling cameras that any answers to decides.
+/// Returns the cameras with this name, by the first kind of name that any camera has.
 std::vector<const FoundCamera*> called(const std::string& name,
                                        const std::vector<FoundCamera>& cameras) {
   const auto all = [&](auto name_of) {
