@@ -48,7 +48,7 @@ Moments light_along(const SceneMaker& maker, const Ray& ray, int samples,
   return sum;
 }
 
-/// White texture 0, so that factors alone say what a material is.
+/// Texture 0 is white, so that factors alone define a material.
 SceneMaker white_sky() {
   SceneMaker maker;
   maker.scene.textures.insert(maker.scene.textures.begin(), ConstantTexture{{1, 1, 1}});
@@ -56,7 +56,7 @@ SceneMaker white_sky() {
   return maker;
 }
 
-TEST(Alpha, BlendedSurfacesInTheSamePlaceAreMetOneAfterTheOther) {
+TEST(Alpha, CoplanarBlendedSurfacesAreHitOneAfterTheOther) {
   for (const int layers : {1, 2, 5}) {
     SceneMaker maker = white_sky();
     const MaterialId half = add(maker, blended(0.25));
@@ -65,7 +65,7 @@ TEST(Alpha, BlendedSurfacesInTheSamePlaceAreMetOneAfterTheOther) {
       maker.triangle({-9, -9, 0}, {9, -9, 0}, {0, 9, 0}, half);
     }
     const Ray ray{.origin = {0.1, 0.2, 3}, .direction = {0, 0, -1}};
-    // Black where it is there, up to the reflection at the surface.
+    // Black if the surface is present, except for the reflection at it.
     const double through = std::pow(0.75, 2 * layers);
     const Moments sum = light_along(maker, ray, 20000);
     EXPECT_NEAR(sum.mean(), through, 0.045 * (1 - through) + 4 * sum.standard_error());
@@ -73,7 +73,7 @@ TEST(Alpha, BlendedSurfacesInTheSamePlaceAreMetOneAfterTheOther) {
   }
 }
 
-TEST(Alpha, BothSidesOfASphereAreMet) {
+TEST(Alpha, BothSidesOfASphereAreHit) {
   SceneMaker maker = white_sky();
   const MaterialId half = add(maker, blended(0.5));
   maker.sphere({0, 0, 0}, 1, half);
@@ -83,7 +83,7 @@ TEST(Alpha, BothSidesOfASphereAreMet) {
   EXPECT_GT(sum.mean(), 0.0625 - 4 * sum.standard_error());
 }
 
-TEST(Alpha, AMaskIsThereOrNot) {
+TEST(Alpha, AMaskedSurfaceIsPresentOrAbsent) {
   for (const double cutoff : {0.4, 0.6}) {
     SceneMaker maker = white_sky();
     Principled mask = blended(0.5);
@@ -96,7 +96,8 @@ TEST(Alpha, AMaskIsThereOrNot) {
   }
 }
 
-/// Whether asking alone, following alone and both together have the same mean along the ray.
+/// Checks that light sampling alone, BSDF sampling alone and both together have the same mean along
+/// the ray.
 void expect_techniques_agree(const SceneMaker& maker, const Ray& ray, double at_least) {
   const Moments both = light_along(maker, ray, 20000);
   const Moments asked = light_along(maker, ray, 20000, Technique::kLightsOnly);
@@ -109,7 +110,7 @@ void expect_techniques_agree(const SceneMaker& maker, const Ray& ray, double at_
   EXPECT_TRUE(agree(both, found)) << both.mean() << " " << found.mean();
 }
 
-TEST(Alpha, ShadowsSeeItAndEveryTechniqueAgrees) {
+TEST(Alpha, AttenuatesShadowRaysAndAllTechniquesAgree) {
   SceneMaker maker;
   maker.scene.textures.insert(maker.scene.textures.begin(), ConstantTexture{{1, 1, 1}});
   maker.background({0, 0, 0}, {0, 0, 0});
@@ -123,8 +124,9 @@ TEST(Alpha, ShadowsSeeItAndEveryTechniqueAgrees) {
   expect_techniques_agree(maker, ray, 0.1);
 }
 
-// Half of each side of the ball is there: the far one gives a third of its light.
-TEST(Alpha, ALampThatIsSeenThroughItselfGivesTheLightOfBothSides) {
+// Each side of the ball is present with probability 1/2: the far one contributes a third of the
+// light.
+TEST(Alpha, ATransparentLightEmitsFromBothSides) {
   SceneMaker maker;
   maker.scene.textures.insert(maker.scene.textures.begin(), ConstantTexture{{1, 1, 1}});
   maker.background({0, 0, 0}, {0, 0, 0});
@@ -136,8 +138,9 @@ TEST(Alpha, ALampThatIsSeenThroughItselfGivesTheLightOfBothSides) {
   expect_techniques_agree(maker, {.origin = {2, 3, 0}, .direction = normalize({-0.5, -1, 0})}, 0.1);
 }
 
-// A ball between a lamp, a light without size and a floor, rough or not: the same bits as without.
-TEST(SeeThrough, M6GlassOfIndexOneShadowsNothing) {
+// A ball of index 1 between an area light, a delta light and a floor, rough or not: the same bits
+// as without it.
+TEST(SeeThrough, M6_GlassOfIndexOneCastsNoShadow) {
   const auto light = [](std::optional<double> roughness) {
     SceneMaker maker;
     maker.quad({-kFar, 0, -kFar}, {0, 0, 2 * kFar}, {2 * kFar, 0, 0}, maker.diffuse(0.5f));
@@ -156,7 +159,7 @@ TEST(SeeThrough, M6GlassOfIndexOneShadowsNothing) {
   test::holds("M6", "a ball of it before lamps: the same bits as without");
 }
 
-TEST(Emission, OfAScatteringSurfaceIsAddedToWhatItReflects) {
+TEST(Emission, OfAScatteringSurfaceIsAddedToItsReflection) {
   SceneMaker maker = white_sky();
   Principled glow;
   glow.roughness.factor = 1;
@@ -169,8 +172,8 @@ TEST(Emission, OfAScatteringSurfaceIsAddedToWhatItReflects) {
   EXPECT_LT(light_along(maker, back, 2000).mean(), 0.1);
 }
 
-// What the coat does not let out at 0 and at 60 degrees: 0.04, and 0.04 + 0.96 / 32.
-TEST(Emission, IsSeenThroughTheClearCoat) {
+// The share that the coat reflects at 0 and at 60 degrees: 0.04, and 0.04 + 0.96 / 32.
+TEST(Emission, IsAttenuatedByTheClearCoat) {
   SceneMaker maker = white_sky();
   maker.background({0, 0, 0}, {0, 0, 0});
   Principled glow;
@@ -185,8 +188,9 @@ TEST(Emission, IsSeenThroughTheClearCoat) {
   EXPECT_NEAR(light_along(maker, aside, 10).mean(), 3 * (1 - 0.5 * 0.07), 1e-6);
 }
 
-// Behind a pane only asking finds a light without size: the pane sends on what its value says.
-TEST(SeeThrough, LightsWithoutSizeShineThroughWhatScattersThem) {
+// Behind a rough pane only light sampling reaches a delta light: the pane transmits according to
+// its BSDF value.
+TEST(SeeThrough, DeltaLightsShineThroughRoughTransmission) {
   Principled paper;
   paper.roughness.factor = 0.7;
   paper.transmission.factor = 1;
@@ -211,8 +215,8 @@ TEST(SeeThrough, LightsWithoutSizeShineThroughWhatScattersThem) {
   }
 }
 
-TEST(NestedGlass, M9RaysBendAsIfOnlyTheHigherPriorityWereWhereTheyOverlap) {
-  // Water (1) that reaches into its tumbler (2): a slab of each, overlapping by 0.1.
+TEST(NestedGlass, M9_TheHigherPriorityRefractsInOverlaps) {
+  // Water (priority 1) that overlaps its tumbler (priority 2): a slab of each, overlapping by 0.1.
   const auto stack = [](double overlap) {
     SceneMaker maker = white_sky();
     const MaterialId water = add(maker, Dielectric{1.33, 0, 1});
@@ -223,7 +227,7 @@ TEST(NestedGlass, M9RaysBendAsIfOnlyTheHigherPriorityWereWhereTheyOverlap) {
     };
     slab(1 - overlap, 2, water);
     slab(0, 1, glass);
-    // Bright only beside where the bent ray leaves.
+    // Emission only next to the point where the refracted ray leaves.
     maker.background({0, 0, 0}, {0, 0, 0});
     const double s0 = std::sqrt(0.5);
     const double tan_water = (s0 / 1.33) / std::sqrt(1 - s0 * s0 / 1.33 / 1.33);
@@ -241,7 +245,7 @@ TEST(NestedGlass, M9RaysBendAsIfOnlyTheHigherPriorityWereWhereTheyOverlap) {
   test::holds("M9", "overlap: rays bend at the higher priority alone");
 }
 
-TEST(NestedGlass, M9ABubbleOfAirInGlassBendsOutwards) {
+TEST(NestedGlass, M9_AnAirBubbleInGlassRefractsOutwards) {
   Interiors inside;
   const Dielectric glass{1.5, 0, 1};
   const Dielectric air{1, 0, 2};
@@ -257,8 +261,8 @@ TEST(NestedGlass, M9ABubbleOfAirInGlassBendsOutwards) {
   test::holds("M9", "bubble of air");
 }
 
-// The walls inside of two bodies of one glass are not there: on the axis it is one pane.
-TEST(NestedGlass, BodiesOfOneGlassThatOverlapAreOne) {
+// Walls inside two overlapping bodies of one glass are not present: on the axis it is one pane.
+TEST(NestedGlass, OverlappingBodiesOfOneGlassAreOne) {
   SceneMaker maker = white_sky();
   maker.background({0, 0, 0}, {0, 0, 0});
   const MaterialId glass = add(maker, Dielectric{1.5, 0, 1});
@@ -271,9 +275,9 @@ TEST(NestedGlass, BodiesOfOneGlassThatOverlapAreOne) {
   EXPECT_LE(seen.standard_error(), 0.002);
 }
 
-// A bubble that sticks out of a block of glass. The block's face in the bubble is not there for
-// paths, but stops those who ask: what is behind it is found by following alone.
-TEST(NestedGlass, LampsBehindAHiddenBoundaryAreFound) {
+// A bubble that extends out of a block of glass. The part of the block's face inside the bubble is
+// not present for paths, but occludes shadow rays: light behind it is found by BSDF sampling alone.
+TEST(NestedGlass, EmissionBehindAHiddenBoundaryCounts) {
   SceneMaker maker = white_sky();
   maker.background({0, 0, 0}, {0, 0, 0});
   maker.sphere({0, 0, 0}, 2, add(maker, Dielectric{1.5, 0, 1}));
@@ -284,8 +288,9 @@ TEST(NestedGlass, LampsBehindAHiddenBoundaryAreFound) {
   expect_techniques_agree(maker, ray, 0.05);
 }
 
-// Milk in a tumbler of glass (2) with water (1) that reaches into its wall, all without loss in a
-// white sky. Who is scattered before the hidden boundary of the water has not passed it.
+// Milk in a tumbler of glass (priority 2) with water (priority 1) that overlaps its wall, all
+// without loss in a white sky. A path that scatters before the hidden boundary of the water has not
+// passed it.
 TEST(NestedGlass, ScatteringBeforeAHiddenBoundaryIsStillInTheGlass) {
   SceneMaker maker = white_sky();
   maker.sphere({0, 0, 0}, 1, add(maker, Dielectric{1.5, 0, 2}));

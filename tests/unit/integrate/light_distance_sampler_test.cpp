@@ -1,4 +1,4 @@
-// Where lights are asked in a medium: what the mixture costs and gains, by quadrature.
+// Efficiency of the mixture of distance strategies for light sampling in a medium, by quadrature.
 
 #include "renderlib/integrate/light_distance_sampler.h"
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kLength = 6;
 
-/// The integral over the stretch; steps are small where a lamp 3 ahead is near.
+/// Returns the integral over the segment; steps are small near a light source 3 ahead.
 double integral(double aside, const std::function<double(double)>& f) {
   constexpr int kSteps = 20000;
   const double low = std::atan(-3 / aside);
@@ -34,7 +34,7 @@ struct Spread {
   double both;    ///< the same of the mixture
 };
 
-/// Of the light of a small lamp, `aside` of the middle of a stretch.
+/// Variances for the light of a small source at distance `aside` from the middle of a segment.
 Spread spread(float sigma, double aside) {
   const Medium smoke = test::medium(0, sigma);
   const FreeFlight flight(smoke, gray(1), kLength);
@@ -57,7 +57,7 @@ Spread spread(float sigma, double aside) {
           of([&](double s) { return both.pdf(s); })};
 }
 
-TEST(LightDistanceSampler, IsNeverFarFromTheBetterOfItsTwo) {
+TEST(LightDistanceSampler, IsNeverMuchWorseThanItsBetterStrategy) {
   for (const float sigma : {0.01f, 0.1f, 1.0f, 10.0f}) {
     for (const double aside : {2.0, 0.5, 0.05, 0.005}) {
       const Spread found = spread(sigma, aside);
@@ -69,8 +69,8 @@ TEST(LightDistanceSampler, IsNeverFarFromTheBetterOfItsTwo) {
   }
 }
 
-/// The gains that the README of this folder states.
-TEST(LightDistanceSampler, NearALampGainsMuch) {
+/// The gains stated in the NOTES.md of renderlib/integrate.
+TEST(LightDistanceSampler, ReducesVarianceNearALight) {
   const auto gain = [](float sigma, double aside) {
     const Spread found = spread(sigma, aside);
     return found.flown / found.both;

@@ -1,4 +1,4 @@
-// Which medium a ray is in, and where: against what the shapes themselves contain.
+// The segments of a ray inside media, compared with the shapes that contain each point.
 
 #include "renderlib/integrate/medium_traversal.h"
 
@@ -19,11 +19,11 @@ namespace {
 
 using test::SceneMaker;
 
-/// The medium at a point; -1 for none.
+/// Returns the medium at a point; -1 for none.
 using Inside = std::function<int(const Vec3&)>;
 
-/// Stretches in order, never empty, and at every point of the ray in the medium that is there.
-/// Points nearer to a boundary than rounding are left to either side.
+/// Checks that segments are in order, not empty, and have the right medium at every point of the
+/// ray. Points closer to a boundary than rounding may belong to either side.
 void expect_walk(const Scene& scene, const Ray& ray, double length, const Inside& inside) {
   std::uint64_t rays = 0;
   MediumTraversal walk(scene, ray, length, rays);
@@ -64,7 +64,7 @@ Ray random_ray(test::Random& random, double spread) {
 }
 
 /// Overlapping, nested and disjoint balls of five media; rays begin anywhere.
-TEST(MediumTraversal, V6V7OfOverlappingBallsTheMediumNamedLastIsThere) {
+TEST(MediumTraversal, V6V7_InOverlapsTheMediumNamedLastCounts) {
   test::Random random(1);
   for (int round = 0; round < 40; ++round) {
     SceneMaker maker;
@@ -119,9 +119,9 @@ Mesh corner_prism() {
   return mesh;
 }
 
-/// A ray may leave and enter a mesh that is not convex several times; boxes and placements that
-/// mirror are closed shapes like others.
-TEST(MediumTraversal, V6OfMeshesFollowsTheirInside) {
+/// A ray may enter and leave a non-convex mesh several times; boxes and mirrored placements are
+/// closed shapes like others.
+TEST(MediumTraversal, V6_SegmentsAreInsideMeshes) {
   SceneMaker maker;
   const MediumId smoke = test::add(maker, test::medium(1, 1));
   const MediumId dust = test::add(maker, test::medium(1, 1));
@@ -144,7 +144,7 @@ TEST(MediumTraversal, V6OfMeshesFollowsTheirInside) {
   test::holds("V6", "segments of meshes follow their inside");
 }
 
-TEST(MediumTraversal, AClearMediumKeepsOthersOut) {
+TEST(MediumTraversal, AClearMediumDisplacesOthers) {
   SceneMaker maker;
   test::fog(maker, test::medium(1, 0));
   const MediumId air = test::add(maker, {});
@@ -155,8 +155,8 @@ TEST(MediumTraversal, AClearMediumKeepsOthersOut) {
   EXPECT_FLOAT_EQ(media_transmittance(*scene, ray, rays).g, std::exp(-4.0f));
 }
 
-/// More crossings than are kept on the first way along a ray.
-TEST(MediumTraversal, OfManyBallsInARowSeesEach) {
+/// More crossings than the traversal stores in its first pass along the ray.
+TEST(MediumTraversal, FindsEachOfManyBallsInARow) {
   SceneMaker maker;
   const MediumId smoke = test::add(maker, test::medium(0.125f, 0));
   for (int i = 0; i < 100; ++i) {
@@ -170,8 +170,8 @@ TEST(MediumTraversal, OfManyBallsInARowSeesEach) {
   EXPECT_FLOAT_EQ(media_transmittance(*scene, inside, rays).g, std::exp(-7 * 0.125f));
 }
 
-/// More shapes around one point than anybody would list.
-TEST(MediumTraversal, OfACloudOfPuffsItSeesTheUnion) {
+/// Many shapes of one medium around one point.
+TEST(MediumTraversal, ACloudOfBallsIsTheirUnion) {
   SceneMaker maker;
   const MediumId smoke = test::add(maker, test::medium(1, 0));
   for (int i = 0; i < 40; ++i) {
@@ -191,8 +191,8 @@ TEST(MediumTraversal, OfACloudOfPuffsItSeesTheUnion) {
   }
 }
 
-/// A mesh of two cubes that overlap is their union, from wherever it is seen; also where faces of
-/// both lie in one plane.
+/// A mesh of two overlapping cubes is their union, from every direction; also if faces of both are
+/// coplanar.
 TEST(MediumTraversal, OverlappingPartsOfOneMeshAreOne) {
   for (const Vec3& by : {Vec3{0.5, 0.5, 0.5}, Vec3{0.5, 0, 0}, Vec3{0, 0.5, 0.5}}) {
     SceneMaker maker;
@@ -222,7 +222,7 @@ TEST(MediumTraversal, OverlappingPartsOfOneMeshAreOne) {
 }
 
 /// Rays through the edges and corners that the triangles of a face share.
-TEST(MediumTraversal, SharedEdgesArePassedOnce) {
+TEST(MediumTraversal, SharedEdgesAreCrossedOnce) {
   SceneMaker maker;
   const MediumId smoke = test::add(maker, test::medium(1, 0));
   test::fill_box(maker, {0, 0, 0}, {1, 1, 1}, smoke);
@@ -236,8 +236,8 @@ TEST(MediumTraversal, SharedEdgesArePassedOnce) {
   }
 }
 
-/// Many media one after the other; the one around all of them is left last.
-TEST(MediumTraversal, OfManyMediaInARowSeesEach) {
+/// Many media one after the other; the outermost is left last.
+TEST(MediumTraversal, FindsEachOfManyMediaInARow) {
   SceneMaker maker;
   const MediumId mist = test::add(maker, test::medium(0.125f, 0));
   test::fill_sphere(maker, {0, 0, 0}, 500, mist);
@@ -250,8 +250,8 @@ TEST(MediumTraversal, OfManyMediaInARowSeesEach) {
   EXPECT_NEAR(std::log(media_transmittance(*scene, ray, rays).g), -40 * (2 * 0.25 + 0.125), 1e-4);
 }
 
-/// A ray that touches an edge, in the plane of the diagonal, passes nothing.
-TEST(MediumTraversal, AnEdgeThatIsTouchedIsNotEntered) {
+/// A ray that touches an edge, in the plane of the diagonal, crosses nothing.
+TEST(MediumTraversal, ATouchedEdgeIsNotCrossed) {
   SceneMaker maker;
   const MediumId smoke = test::add(maker, test::medium(1, 0));
   test::fill_box(maker, {0, 0, 0}, {1, 1, 1}, smoke);
@@ -264,8 +264,8 @@ TEST(MediumTraversal, AnEdgeThatIsTouchedIsNotEntered) {
   }
 }
 
-/// Two shapes of one medium that overlap are one: it is not twice as dense there.
-TEST(MediumTraversal, OverlapOfOneMediumIsNotDenser) {
+/// Two overlapping shapes of one medium are one: the medium is not denser there.
+TEST(MediumTraversal, OverlapsOfOneMediumAreNotDenser) {
   SceneMaker maker;
   const MediumId smoke = test::add(maker, test::medium(1, 0));
   test::fill_sphere(maker, {0, 0, 0}, 1, smoke);

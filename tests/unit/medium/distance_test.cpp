@@ -1,5 +1,4 @@
-// Distances in a medium: whether samples have the density that is claimed, and what the weights
-// keep.
+// Sampling of distances in a medium: pdfs of samples and bounds of weights.
 
 #include <gtest/gtest.h>
 
@@ -20,8 +19,8 @@ namespace {
 constexpr std::size_t kCells = 100;
 constexpr int kSamples = 100000;
 
-/// Samples against the density integrated over 100 cells, equal ones or, of an infinite length,
-/// longer and longer.
+/// Compares samples with the pdf integrated over 100 cells: equal ones or, for an infinite length,
+/// cells of increasing length.
 void expect_density(const std::function<double(double, double)>& sample,
                     const std::function<double(double)>& pdf, double length, std::uint64_t seed) {
   std::vector<double> edges = {0};
@@ -73,7 +72,7 @@ void expect_flight_density(const Medium& medium, const Rgb& throughput, double l
                  [&](double s) { return flight.pdf(s); }, length, seed);
 }
 
-TEST(FreeFlight, DistancesHaveTheirDensity) {
+TEST(FreeFlight, DistancesFollowThePdf) {
   const Medium grey{.absorption = gray(0.2f), .scattering = gray(0.8f)};
   expect_flight_density(grey, gray(1), kInfinity, 1);
   expect_flight_density(grey, gray(1), 0.5, 2);
@@ -84,8 +83,8 @@ TEST(FreeFlight, DistancesHaveTheirDensity) {
   expect_flight_density({.scattering = gray(1e-12f)}, gray(1), 3, 6);
 }
 
-/// The share that is scattered and the mean of what is: both as the closed form says.
-TEST(FreeFlight, ChanceIsTheShareThatIsScattered) {
+/// The probability of scattering and the mean weight follow the closed form.
+TEST(FreeFlight, ScatterProbabilityIsTheScatteredShare) {
   const FreeFlight flight({.absorption = gray(0.5f), .scattering = gray(1.5f)}, gray(1), 0.7);
   const double stopped = -std::expm1(-1.4);
   const double scattered = 0.75 * stopped;
@@ -96,9 +95,9 @@ TEST(FreeFlight, ChanceIsTheShareThatIsScattered) {
   EXPECT_EQ(FreeFlight({.scattering = gray(1)}, gray(1), kInfinity).scatter_probability(), 1);
 }
 
-/// However different the channels, no weight grows by more than 3, and the sum of the channels
-/// does not depend on what was chosen.
-TEST(FreeFlight, V10WeightsStayBounded) {
+/// For any channels, no weight grows by more than a factor of 3, and the sum of the channels does
+/// not depend on the outcome.
+TEST(FreeFlight, V10_WeightsStayBounded) {
   test::Random random(9);
   const std::vector<Medium> media = {
       {.scattering = {0, 1, 1000}},
@@ -129,7 +128,7 @@ TEST(FreeFlight, V10WeightsStayBounded) {
             const Rgb passed = flight.after_passing();
             EXPECT_NEAR(sum_after, double{passed.r} + passed.g + passed.b, 1e-5 * sum);
           }
-          // The weight is what is scattered there over the density of getting there.
+          // The weight is the scattered light divided by the pdf of the distance.
           const double followed = flight.scatter_probability() * flight.pdf(distance);
           EXPECT_NEAR(after.g, flight.scattered(distance).g / followed, 1e-5 * sum);
         }
@@ -139,8 +138,8 @@ TEST(FreeFlight, V10WeightsStayBounded) {
   test::holds("V10", "24,000 weights <= 3");
 }
 
-/// The ends of the range of u give finite distances.
-TEST(FreeFlight, V2EndsOfTheNumbersAreFinite) {
+/// Both ends of the range of u give finite distances.
+TEST(FreeFlight, V2_ExtremeNumbersGiveFiniteDistances) {
   for (const double sigma : {1e-30, 1e-8, 1.0, 1e12}) {
     for (const double length : {1e-3, 1.0, kInfinity}) {
       const FreeFlight flight({.scattering = gray(static_cast<float>(sigma))}, gray(1), length);
@@ -154,7 +153,7 @@ TEST(FreeFlight, V2EndsOfTheNumbersAreFinite) {
   test::holds("V2", "finite at u = 0 and the largest");
 }
 
-TEST(Equiangular, DistancesHaveTheirDensity) {
+TEST(Equiangular, DistancesFollowThePdf) {
   const Vec3 origin{1, 2, 3};
   const Vec3 direction = normalize({1, 0.2, -0.4});
   std::uint64_t seed = 40;
@@ -162,7 +161,7 @@ TEST(Equiangular, DistancesHaveTheirDensity) {
     for (const double length : {2.0, kInfinity}) {
       const Vec3 pivot = origin + direction * along + Vec3{0, 0.9, 0.45};
       const Equiangular angles(origin, direction, length, pivot);
-      // The tail 1 / s^2 of an infinite ray is cut at 1e4: a share of about 1e-4 lies beyond.
+      // The tail 1 / s^2 of an infinite ray is cut at 1e4: a share of about 1e-4 is beyond.
       expect_density([&](double, double u) { return angles.sample(u); },
                      [&](double s) { return angles.pdf(s); }, length, ++seed);
     }
@@ -170,7 +169,7 @@ TEST(Equiangular, DistancesHaveTheirDensity) {
 }
 
 /// A light on the ray itself, at its start, and far away.
-TEST(Equiangular, V8OfALightOnTheRayIsFinite) {
+TEST(Equiangular, V8_IsFiniteForALightOnTheRay) {
   const Vec3 direction{0, 0, 1};
   for (const double length : {1e-3, 1.0, kInfinity}) {
     for (const Vec3& pivot : {Vec3{0, 0, 0.5}, Vec3{0, 0, 0}, Vec3{0, 0, -4}, Vec3{0, 0, 1e9},

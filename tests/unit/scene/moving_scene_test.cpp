@@ -1,4 +1,4 @@
-// Scenes of many placements, and scenes that move: what they cost, and what costs nothing.
+// Scenes with many instances and with motion, and their cost.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ Instance of_group(std::uint32_t group, const Transform& to_world) {
   return instance;
 }
 
-/// A ball over a floor under a sky; the ball is placed by a frame.
+/// A ball over a floor under a sky; a frame places the ball.
 SceneMaker ball_in_frame(std::vector<Key> keys, const Shutter& shutter) {
   SceneMaker maker;
   maker.quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}, maker.diffuse(0.5f));
@@ -52,8 +52,8 @@ std::vector<double> pixels(const Scene& scene) {
 
 const std::vector<Key> kMoving = {Key(0, {}), Key(2, translation({1, 0, 0}))};
 
-// C8: a shutter that opens and closes at once shows what stands there, to the bit.
-TEST(MovingScene, C8_AtOneMomentIsTheSceneOfThatMoment) {
+// A shutter without duration gives the pixels of the static scene, to the bit.
+TEST(MovingScene, C8_AnInstantEqualsTheStaticScene) {
   const auto moving = ball_in_frame(kMoving, {1, 1}).build();
   EXPECT_FALSE(moving->features().motion);
   SceneMaker still = ball_in_frame(kMoving, {});
@@ -62,8 +62,8 @@ TEST(MovingScene, C8_AtOneMomentIsTheSceneOfThatMoment) {
   EXPECT_EQ(pixels(*moving), pixels(*still.build()));
 }
 
-// What stands still has the pixels that it has without a shutter.
-TEST(MovingScene, WhatRestsNeedsNoTime) {
+// Static instances have the same pixels with and without a shutter.
+TEST(MovingScene, StaticInstancesDoNotSetTheMotionFeature) {
   const std::vector<Key> still = {Key(-1, translation({0.5, 0, 0})),
                                   Key(7, translation({0.5, 0, 0}))};
   const auto open = ball_in_frame(still, {0, 1}).build();
@@ -74,7 +74,7 @@ TEST(MovingScene, WhatRestsNeedsNoTime) {
   EXPECT_NE(pixels(*moving), pixels(*open));
 }
 
-TEST(MovingScene, RestsOnlyWhatStandsStillAllTheTime) {
+TEST(MovingScene, OnlyInstancesThatNeverMoveBecomeStatic) {
   Geometry g;
   g.frames = {{kNoFrame, {}, {Key(0, {}), Key(1, translation({1, 0, 0})), Key(2, {})}},
               {kNoFrame, {}, {Key(5, {}), Key(6, translation({1, 0, 0}))}},
@@ -100,8 +100,8 @@ std::string message_after(void (*spoil)(SceneDescription&)) {
   return std::string(Scene::build(maker.scene, pool).status().message());
 }
 
-// X3 among them: placements that cannot be turned back.
-TEST(MovingScene, WhatCannotBeIsRefusedWithTheField) {
+// Including placements without an inverse (X3).
+TEST(MovingScene, InvalidMotionIsRefusedWithTheField) {
   EXPECT_EQ(message_after([](auto&) {}), "");
   EXPECT_EQ(message_after([](auto& s) { s.geometry.disks[0].radius = 0; }),
             "disks[0].radius: must be > 0, is 0");
@@ -136,7 +136,7 @@ TEST(MovingScene, WhatCannotBeIsRefusedWithTheField) {
               HasSubstr("camera.shutter_close: must not be before shutter_open"));
 }
 
-/// The most memory that this process has had, in bytes.
+/// Returns the maximum memory of this process so far, in bytes.
 std::size_t peak_memory() {
   std::ifstream status("/proc/self/status");
   std::string word;
@@ -150,7 +150,7 @@ std::size_t peak_memory() {
   return 0;
 }
 
-TEST(ManyInstances, AHundredThousandOfAHundredThousandTrianglesFitInAGigabyte) {
+TEST(ManyInstances, ManyInstancesOfALargeMeshFitInAGigabyte) {
   SceneMaker maker;
   maker.instance(test::grid(224), {}, maker.diffuse(0.5f));
   std::vector<Instance>& instances = maker.scene.geometry.instances;

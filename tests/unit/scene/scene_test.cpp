@@ -16,7 +16,7 @@ namespace {
 using test::SceneMaker;
 using ::testing::StartsWith;
 
-/// One of everything.
+/// A valid scene with one of everything.
 SceneMaker valid() {
   SceneMaker maker;
   const MaterialId white = maker.diffuse(0.5f);
@@ -43,7 +43,7 @@ std::string message_after(Change change) {
   return message(maker.scene);
 }
 
-TEST(Scene, S9_WhatIsWrongIsNamedWithPlaceRangeAndValue) {
+TEST(Scene, S9_ErrorsNameFieldRangeAndValue) {
   EXPECT_EQ(message(valid().scene), "");
   EXPECT_EQ(message_after([](auto& s) { s.geometry.spheres[0].radius = -1; }),
             "spheres[0].radius: must be > 0, is -1");
@@ -77,7 +77,7 @@ TEST(Scene, S9_WhatIsWrongIsNamedWithPlaceRangeAndValue) {
   test::holds("X3", "a scale of 0 is refused with the field");
 }
 
-TEST(Scene, M13_MaterialsAndTexturesAreCheckedWithTheirRanges) {
+TEST(Scene, M13_MaterialsAndTexturesAreValidated) {
   EXPECT_EQ(message_after([](auto& s) {
               s.textures[0] = ConstantTexture{{0, 1.5f, 0}};
             }),
@@ -135,7 +135,7 @@ TEST(Scene, M13_MaterialsAndTexturesAreCheckedWithTheirRanges) {
   test::holds("TX6", "no texel, or a NaN one: refused");
 }
 
-TEST(Scene, T10_WhatCannotBeHitIsDroppedAndCountedAndTheRestStaysInOrder) {
+TEST(Scene, T10_PrimitivesWithoutAreaAreDroppedAndCounted) {
   SceneMaker maker = valid();
   const MaterialId white{0};
   maker.quad({5, 0, 0}, {1, 1, 0}, {2, 2, 0}, white);
