@@ -1,4 +1,4 @@
-// Rays that are tested against everything hit what those hit that are led by trees.
+// Brute-force traversal gives the same hits as traversal with culling.
 
 #include "renderlib/accel/disable_culling.h"
 
@@ -14,7 +14,7 @@ namespace {
 
 using test::Random;
 
-/// Shapes, groups and meshes, at rest and in motion.
+/// Static and moving shapes, groups and meshes.
 Geometry scene() {
   Random random(5);
   Geometry g;
@@ -65,9 +65,8 @@ TEST(DisableCulling, HitsAreTheSameToTheBit) {
   EXPECT_GT(hits, 1'000);
 }
 
-// Two spheres far apart: a ray past both enters neither of their boxes, and both when these are
-// open.
-TEST(DisableCulling, NothingIsLeftOut) {
+// Two spheres far apart: a ray past both enters neither of their boxes, and both without culling.
+TEST(DisableCulling, EveryBoxIsEntered) {
   WideTree tree;
   WideNode node;
   for (auto& row : node.bounds) {

@@ -16,7 +16,7 @@ using test::sample_info;
 using test::sample_scene;
 using ::testing::HasSubstr;
 
-TEST(Package, ComesBackBitForBit) {
+TEST(Package, RoundTripsBitForBit) {
   BlobMap blobs;
   const SceneDescription scene = sample_scene();
   const std::string manifest = encode_package(scene, sample_info(), blobs);
@@ -56,13 +56,13 @@ TEST(Package, ComesBackBitForBit) {
   EXPECT_EQ(decoded->media.boundaries.instances[0].to_world,
             scene.media.boundaries.instances[0].to_world);
 
-  // Whatever the lines above leave out: the same scene gives the same blobs and the same bytes.
+  // Covers fields not compared above: the same scene gives the same blobs and the same bytes.
   BlobMap again;
   EXPECT_EQ(encode_package(*decoded, sample_info(), again), manifest);
   EXPECT_EQ(again.all(), blobs.all());
 }
 
-TEST(Package, CarriesWhatIsShownAndHow) {
+TEST(Package, RoundTripsImageSettings) {
   SceneDescription scene = sample_scene();
   scene.local_shading = {{0.1f, 0.2f, 0.3f}, 4.5};
   PackageInfo info = sample_info();
@@ -87,7 +87,7 @@ TEST(Package, CarriesWhatIsShownAndHow) {
               HasSubstr("scene package: integrator: must lie in"));
 }
 
-TEST(Package, CarriesEveryCameraAndFilter) {
+TEST(Package, RoundTripsEveryCameraAndFilter) {
   const auto carried = [](const Camera& camera, const PixelFilter& filter) {
     SceneDescription scene = sample_scene();
     scene.camera = camera;
@@ -114,7 +114,7 @@ TEST(Package, CarriesEveryCameraAndFilter) {
       HasSubstr("scene package: filter: filter.radius"));
 }
 
-TEST(Package, KeepsWhatItSaysBesideTheScene) {
+TEST(Package, RoundTripsItsInfo) {
   BlobMap blobs;
   const auto info = package_info(encode_package(sample_scene(), sample_info(), blobs));
   ASSERT_TRUE(info.ok()) << info.status();
@@ -125,7 +125,7 @@ TEST(Package, KeepsWhatItSaysBesideTheScene) {
   EXPECT_EQ(info->warnings, std::vector<std::string>{"a warning"});
 }
 
-TEST(Package, BoundsNamesAndWarningsOfForeignFiles) {
+TEST(Package, LimitsNamesAndWarningsOfForeignFiles) {
   PackageInfo info = sample_info();
   info.name = std::string(1000, 'n') + "\xff";
   info.warnings.assign(5000, "\x1b[2J a mesh's name \xc3");
@@ -138,7 +138,7 @@ TEST(Package, BoundsNamesAndWarningsOfForeignFiles) {
   EXPECT_EQ(kept->warnings[99], "and 4901 more warnings");
 }
 
-TEST(Package, BoundsTheNamesOfCameras) {
+TEST(Package, LimitsTheNamesOfCameras) {
   PackageInfo info = sample_info();
   info.model_cameras.assign(500, "\x1b" + std::string(300, 'c'));
   BlobMap blobs;
@@ -171,7 +171,7 @@ TEST(Package, NamesEachBlobOnce) {
   }
 }
 
-TEST(Package, SaysWhichBlobIsMissing) {
+TEST(Package, ReportsAMissingBlob) {
   BlobMap blobs;
   const std::string manifest = encode_package(sample_scene(), sample_info(), blobs);
   BlobMap none;
@@ -179,7 +179,7 @@ TEST(Package, SaysWhichBlobIsMissing) {
   EXPECT_EQ(decoded.status().code(), absl::StatusCode::kNotFound) << decoded.status();
 }
 
-TEST(Package, CarriesGroupsAndWhatMoves) {
+TEST(Package, RoundTripsGroupsAndFrames) {
   const SceneDescription scene = sample_scene();
   BlobMap blobs;
   const auto decoded = decode_package(encode_package(scene, sample_info(), blobs), blobs);
@@ -409,8 +409,7 @@ TEST(Package, RefusesArraysThatAreNotFinite) {
   EXPECT_THAT(decoded(scene), HasSubstr("textures[2].texels: texel (1, 0) must be finite"));
 }
 
-// Whoever sends a manifest may have made it by hand: it is read or refused, and nothing else
-// happens.
+// A manifest may be crafted: it is either decoded or refused.
 TEST(Package, SurvivesAnyByteThatIsChanged) {
   BlobMap blobs;
   const std::string manifest = encode_package(sample_scene(), sample_info(), blobs);
@@ -422,7 +421,8 @@ TEST(Package, SurvivesAnyByteThatIsChanged) {
       changed[at] = static_cast<char>(random());
       refused += decode_package(changed, blobs).ok() ? 0u : 1u;
     }
-    // Cut between two fields it may be the manifest of a smaller scene: only its digest can tell.
+    // If it is truncated between two fields, it may be the manifest of a smaller scene: only its
+    // digest can detect that.
     (void)decode_package(manifest.substr(0, at), blobs);
   }
   EXPECT_GT(refused, manifest.size());

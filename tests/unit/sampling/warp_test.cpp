@@ -33,7 +33,7 @@ TEST(Warp, DiskIsUniform) {
   EXPECT_GT(test::chi_squared(counts, std::vector<double>(64, 100000.0 / 64)).p_value, 0.01);
 }
 
-TEST(Warp, PointsLieWhereExactAnglesPutThem) {
+TEST(Warp, PointsMatchExactAngles) {
   test::Random random(8);
   for (int i = 0; i < 100000; ++i) {
     const double u = random.uniform();
@@ -56,17 +56,17 @@ TEST(Warp, PointsLieWhereExactAnglesPutThem) {
   }
 }
 
-TEST(Warp, CosineHemisphereHasItsDensity) {
+TEST(Warp, CosineHemisphereMatchesItsPdf) {
   expect_samples_match_density([](double u, double v) { return sample_cosine_hemisphere(u, v); },
                                [](const Vec3& d) { return cosine_hemisphere_pdf(d.z); }, 2);
 }
 
-TEST(Warp, SphereHasItsDensity) {
+TEST(Warp, SphereMatchesItsPdf) {
   expect_samples_match_density([](double u, double v) { return sample_sphere(u, v); },
                                [](const Vec3&) { return kSpherePdf; }, 3);
 }
 
-TEST(Warp, ConeHasItsDensity) {
+TEST(Warp, ConeMatchesItsPdf) {
   const double spread = 0.4;
   expect_samples_match_density(
       [=](double u, double v) { return sample_cone(u, v, spread); },
@@ -112,7 +112,7 @@ TEST(Warp, NarrowConesKeepTheirWidth) {
   }
 }
 
-TEST(Warp, M15BasisIsOrthonormalInEveryDirection) {
+TEST(Warp, M15_BasisIsOrthonormalInEveryDirection) {
   test::Random random(6);
   std::vector<Vec3> normals = {{0, 0, 1},       {0, 0, -1},    {1, 0, 0},
                                {0, -1, 0},      {1e-9, 0, -1}, normalize(Vec3{1e-5, 1e-5, -1}),
