@@ -59,7 +59,7 @@ double seconds_of(const Scene& scene, const RenderSettings& settings, std::uint6
   return done.ok() ? cpu_seconds() - start : 0;
 }
 
-/// The samples, a power of two, that take about kSecondsARender.
+/// Returns the number of samples, a power of two, that take about kSecondsARender.
 std::uint64_t samples_for(const Scene& scene, const RenderSettings& settings, Pool& pool) {
   std::uint64_t samples = 16;
   while (seconds_of(scene, settings, samples, pool) < kSecondsARender / 1.5) {

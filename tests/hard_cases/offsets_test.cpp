@@ -21,7 +21,7 @@ namespace {
 using test::Random;
 using test::tries;
 
-/// A flat square of 8 x 8 cells of edge `size`, turned, its middle at `at`: as triangles or quads.
+/// A flat square of 8 x 8 cells of edge `size`, rotated, its middle at `at`: as triangles or quads.
 Geometry flat_patch(double size, const Vec3& at, bool triangles) {
   const Transform turn = rotation({1, 2, 3}, 33);
   const auto point = [&](int i, int j) {
@@ -80,7 +80,7 @@ TEST(Offset, O1_NoRayHitsThePlaneItLeaves) {
   test::at_most("O1", "hits in 14 rows of " + std::to_string(rays), hits, 0);
 }
 
-/// Two planes that meet in the z axis, at 0 and `angle` from x, for paths between them.
+/// Two planes that intersect in the z axis, at 0 and `angle` from x, for paths between them.
 struct Crease {
   Geometry geometry;
   Vec3 inwards[2];
@@ -95,7 +95,7 @@ struct Crease {
   bool holds(const Vec3& p) const {
     return p.x > 0 && dot(p, inwards[0]) > 0 && dot(p, inwards[1]) > 0;
   }
-  /// Whether a ray that hits neither plane leaves by the opening: between them where it is 0.9 from
+  /// Returns true if a ray that hits neither plane leaves by the opening: between them at 0.9 from
   /// the axis, or beyond their ends.
   bool leaves_by_opening(const Ray& ray) const {
     const Vec3& o = ray.origin;
@@ -111,7 +111,7 @@ struct Crease {
   }
 };
 
-// Paths that are scattered again and again between the planes never get behind either.
+// Paths that scatter repeatedly between the planes never get behind them.
 TEST(Offset, O5_NoPathEscapesFromACrease) {
   Pool pool(1);
   Random random(2);
@@ -126,7 +126,7 @@ TEST(Offset, O5_NoPathEscapesFromACrease) {
       const double middle = angle * random.uniform(0.1, 0.9);
       const double r = random.uniform(0.01, 0.5);
       const Vec3 from = {r * std::cos(middle), r * std::sin(middle), 0};
-      // Towards the crease, at about the height at which it starts.
+      // Towards the crease, at about the height of its origin.
       const Vec3 aim = {0, 0.2 * r * angle * random.uniform(-1, 1), 0.1 * random.uniform(-1, 1)};
       Ray ray = {from, normalize(aim - from)};
       Hit hit = accel.closest(ray);

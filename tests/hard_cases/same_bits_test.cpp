@@ -1,6 +1,6 @@
-// The sums of twelve gallery scenes are those of same_bits.txt, in any build by any compiler:
-// C5, R6, R10, B12, Y3. The table changes only when kPixelVersion is raised; what it becomes is
-// printed by the test that then fails.
+// The sums of twelve gallery scenes are those of same_bits.txt, in any build by any compiler: C5,
+// R6, R10, B12, Y3. The table changes only when kPixelVersion is raised; the failing test prints
+// the new table.
 
 #include <gtest/gtest.h>
 
@@ -32,10 +32,10 @@ const char* const kScenes[] = {"cornell",     "spheres",     "glass_and_metal", 
 struct Rendering {
   int building_threads = 1;
   int threads = 1;
-  std::uint32_t rows = kHeight;  ///< of a band
+  std::uint32_t rows = kHeight;  ///< rows of a band
   SceneFeatures forced = {};
   Traversal traversal = Traversal::kBvh;
-  const Kernel* kernel = nullptr;  ///< null: the fastest
+  const Kernel* kernel = nullptr;  ///< nullptr for the fastest
 };
 
 std::string hash_of(const ImportedScene& imported, const Rendering& how) {
