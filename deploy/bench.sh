@@ -15,7 +15,7 @@ mkdir -p "$folder"
 if [ -z "${BANDSAW_BUILD:-}" ]; then
   cmake --preset release -DBANDSAW_TESTS=ON >/dev/null
 fi
-cmake --build "$build" --target bandsaw bandsaw-import kernel_bench needs_bench growth_bench
+cmake --build "$build" --target bandsaw bandsaw-import kernel_bench features_bench growth_bench
 
 gallery=renderlib/gallery
 if [ -n "$quick" ]; then
@@ -39,7 +39,7 @@ section() { printf '\n## %s\n\n' "$1"; }
   if [ -z "$quick" ]; then
     section 'Beside Cycles'
     tests/bench/peers.sh "$build/bin/bandsaw"
-    section 'What each need costs a scene that has it not'
-    "$build/tests/needs_bench" "$gallery/cornell.textproto" "$gallery/spheres.textproto" "$gallery/mesh.textproto"
+    section 'Cost of each feature for a scene that does not use it'
+    "$build/tests/features_bench" "$gallery/cornell.textproto" "$gallery/spheres.textproto" "$gallery/mesh.textproto"
   fi
 } | tee "$folder/bench.md"

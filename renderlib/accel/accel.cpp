@@ -3,14 +3,55 @@
 #include <utility>
 #include <vector>
 
-#include "renderlib/accel/open_boxes.h"
+#include "renderlib/accel/disable_culling.h"
+#include "renderlib/accel/moving_tree.h"
 #include "renderlib/accel/query.h"
 #include "renderlib/accel/top_tree.h"
 #include "renderlib/accel/trace.h"
-#include "renderlib/accel/trace_moving.h"
+#include "renderlib/geometry/placement.h"
 
 namespace bandsaw {
 namespace {
+
+template <class Query>
+bool trace_moving_instance(const MovingInstance& moving, const Geometry& geometry, const Ray& ray,
+                           Query& query) {
+  const Instance& instance = geometry.instances[moving.instance - 1];
+  const Transform to_world = to_world_at(geometry, instance, ray.time);
+  if (moving.slides) {
+    // The same as the result of inverse(), to the bit.
+    Transform to_object = moving.to_object;
+    const Vec3 back = -to_object.direction({to_world.m[0][3], to_world.m[1][3], to_world.m[2][3]});
+    to_object.m[0][3] = back.x;
+    to_object.m[1][3] = back.y;
+    to_object.m[2][3] = back.z;
+    return trace_placed(moving.prototype, to_object, ray, moving.instance, query);
+  }
+  const std::optional<Transform> to_object = inverse(to_world);
+  return to_object && trace_placed(moving.prototype, *to_object, ray, moving.instance, query);
+}
+
+/// Traces the ray through the moving instances at the ray's time. Returns true if the query is
+/// finished. Not inlined, so that scenes without motion run the same machine code as if motion were
+/// not supported.
+template <class Query>
+[[gnu::noinline]] bool trace_moving(const MovingTree& tree, const Geometry& geometry,
+                                    const Ray& ray, Query& query) {
+  if (!is_traceable(ray)) {
+    return false;
+  }
+  const FloatRay floats(trace_setup(ray.origin, ray.direction, ray.t_max), tree.tree.reach);
+  float bound = floats.above(query.bound());
+  const float share = tree.share(ray.time);
+  const auto enter = [&](std::uint32_t node, Float8& at) {
+    return enter_moving_children(tree, node, share, floats, bound, at);
+  };
+  return traverse<!Query::kAny>(tree.tree, bound, enter, [&](ChildRef leaf) {
+    const bool stop = trace_moving_instance(tree.moving[leaf.leaf_index()], geometry, ray, query);
+    bound = floats.above(query.bound());
+    return stop;
+  });
+}
 
 /// Larger meshes are built one after another by all threads, smaller ones in parallel, each by one
 /// thread.
@@ -51,20 +92,20 @@ struct Accel::Trees {
 
   /// Returns true if the query is finished.
   template <class Query>
-  bool ask(const Ray& ray, Query& query) const {
+  bool intersect(const Ray& ray, Query& query) const {
     return trace(top, *geometry, ray, query) ||
            (!moving.tree.empty && trace_moving(moving, *geometry, ray, query));
   }
 
-  void open_boxes() {
+  void disable_culling() {
     for (MeshTree& mesh : prototypes.meshes) {
-      bandsaw::open_boxes(mesh.tree);
+      bandsaw::disable_culling(mesh.tree);
     }
     for (ShapesTree& group : prototypes.groups) {
-      bandsaw::open_boxes(group.tree);
+      bandsaw::disable_culling(group.tree);
     }
-    bandsaw::open_boxes(top.tree);
-    bandsaw::open_boxes(moving);
+    bandsaw::disable_culling(top.tree);
+    bandsaw::disable_culling(moving);
   }
 };
 
@@ -73,7 +114,8 @@ Accel::Accel(Accel&&) noexcept = default;
 Accel& Accel::operator=(Accel&&) noexcept = default;
 Accel::~Accel() = default;
 
-Accel Accel::build(const Geometry& geometry, Pool& pool, const Interval& interval, Tested tested) {
+Accel Accel::build(const Geometry& geometry, Pool& pool, const Interval& interval,
+                   Traversal traversal) {
   auto trees = std::make_unique<Trees>();
   trees->geometry = &geometry;
   Prototypes& prototypes = trees->prototypes;
@@ -81,27 +123,27 @@ Accel Accel::build(const Geometry& geometry, Pool& pool, const Interval& interva
   prototypes.groups = build_groups(geometry.groups, pool);
   trees->top = build_top_tree(geometry, prototypes, &pool);
   trees->moving = build_moving_tree(geometry, prototypes, interval, &pool);
-  if (tested == Tested::kEverything) {
-    trees->open_boxes();
+  if (traversal == Traversal::kBruteForce) {
+    trees->disable_culling();
   }
   return Accel(std::move(trees));
 }
 
 Hit Accel::closest(const Ray& ray) const {
   ClosestQuery query(ray);
-  trees_->ask(ray, query);
+  trees_->intersect(ray, query);
   return query.result();
 }
 
 Hit Accel::closest_after(const Ray& ray, const Hit& after) const {
   AfterQuery query(ray, after);
-  trees_->ask(ray, query);
+  trees_->intersect(ray, query);
   return query.result();
 }
 
 bool Accel::occluded(const Ray& ray) const {
   AnyQuery query(ray);
-  return trees_->ask(ray, query);
+  return trees_->intersect(ray, query);
 }
 
 std::size_t Accel::bytes() const {

@@ -14,10 +14,10 @@
 
 namespace bandsaw {
 
-/// Selects the primitives that a ray is tested against.
-enum class Tested {
-  kOnItsWay,    ///< primitives in boxes that the ray enters
-  kEverything,  ///< all primitives, as without a BVH: the same hits, slowly; for comparison
+/// Selects how a ray finds its primitives.
+enum class Traversal {
+  kBvh,         ///< tests the primitives in boxes that the ray enters
+  kBruteForce,  ///< tests all primitives: the same hits, slowly; for comparison
 };
 
 class Accel {
@@ -25,7 +25,7 @@ class Accel {
   /// Builds the BVHs. `geometry` MUST outlive the result and not change. Moving instances are only
   /// found by rays whose time is within `interval`.
   static Accel build(const Geometry& geometry, Pool& pool, const Interval& interval = {},
-                     Tested tested = Tested::kOnItsWay);
+                     Traversal traversal = Traversal::kBvh);
 
   Accel(Accel&&) noexcept;
   Accel& operator=(Accel&&) noexcept;

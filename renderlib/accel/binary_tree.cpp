@@ -5,7 +5,7 @@
 
 #include "absl/functional/function_ref.h"
 #include "absl/types/span.h"
-#include "renderlib/accel/divide.h"
+#include "renderlib/accel/partition.h"
 
 namespace bandsaw {
 namespace {
@@ -17,7 +17,7 @@ void build_subtree(const TwoLists& lists, const Range& range, absl::Span<ItemRef
   nodes.push_back({range.box.box()});
   Range left;
   Range right;
-  if (!divide(lists, range, left, right)) {
+  if (!partition_range(lists, range, left, right)) {
     nodes[index].first = range.first;
     nodes[index].count = range.count();
     const absl::Span<const TreeItem> items = items_of(lists, range);
@@ -37,11 +37,11 @@ constexpr std::size_t kPieceSize = 1 << 12;
 
 /// Returns the size up to which a range is built by one thread.
 std::uint32_t task_size(std::uint32_t count, Pool* pool) {
-  constexpr std::uint32_t kLeast = 1 << 13;
+  constexpr std::uint32_t kMinPiece = 1 << 13;
   constexpr std::uint32_t kTasksOfAThread = 8;
   return pool == nullptr
              ? count
-             : std::max(kLeast,
+             : std::max(kMinPiece,
                         count / (kTasksOfAThread * static_cast<std::uint32_t>(pool->threads())));
 }
 
@@ -65,25 +65,25 @@ class Level {
       const absl::Span<const TreeItem> items = items_of(lists, task.range);
       const std::size_t first = pieces_.size();
       for (std::size_t i = 0; i < items.size(); i += kPieceSize) {
-        owner_.push_back(divisions_.size());
+        owner_.push_back(partitions_.size());
         pieces_.push_back({items.subspan(i, kPieceSize)});
       }
-      divisions_.emplace_back(lists, task.range, absl::MakeSpan(pieces_).subspan(first));
+      partitions_.emplace_back(lists, task.range, absl::MakeSpan(pieces_).subspan(first));
     }
   }
 
   /// Divides all ranges and links their nodes to the new children.
   std::vector<Task> next(Pool& pool, std::vector<BinaryNode>& nodes) {
-    for_each(pool, [&](Division& division, Division::Piece& piece) { division.bin(piece); });
-    for (Division& division : divisions_) {
-      division.choose();
+    for_each(pool, [&](Partition& partition, Partition::Piece& piece) { partition.bin(piece); });
+    for (Partition& partition : partitions_) {
+      partition.choose();
     }
-    for_each(pool, [&](Division& division, Division::Piece& piece) { division.move(piece); });
+    for_each(pool, [&](Partition& partition, Partition::Piece& piece) { partition.move(piece); });
     std::vector<Task> children;
     for (std::size_t i = 0; i < tasks_.size(); ++i) {
       Range left;
       Range right;
-      divisions_[i].parts(left, right);
+      partitions_[i].parts(left, right);
       const auto place = static_cast<std::uint32_t>(nodes.size());
       nodes[tasks_[i].node].left = place;
       nodes[tasks_[i].node].right = place + 1;
@@ -96,17 +96,17 @@ class Level {
   }
 
  private:
-  void for_each(Pool& pool, absl::FunctionRef<void(Division&, Division::Piece&)> body) {
+  void for_each(Pool& pool, absl::FunctionRef<void(Partition&, Partition::Piece&)> body) {
     pool.parallel_for(static_cast<std::int64_t>(pieces_.size()), [&](std::int64_t i) {
       const auto piece = static_cast<std::size_t>(i);
-      body(divisions_[owner_[piece]], pieces_[piece]);
+      body(partitions_[owner_[piece]], pieces_[piece]);
     });
   }
 
   std::vector<Task> tasks_;
-  std::vector<Division> divisions_;
-  std::vector<Division::Piece> pieces_;
-  std::vector<std::size_t> owner_;  ///< for each piece, the index of its division
+  std::vector<Partition> partitions_;
+  std::vector<Partition::Piece> pieces_;
+  std::vector<std::size_t> owner_;  ///< for each piece, the index of its partition
 };
 
 /// Divides ranges level by level until all are small enough to be tasks.

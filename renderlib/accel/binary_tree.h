@@ -29,7 +29,7 @@ inline constexpr std::uint32_t kPackSize = 8;
 
 /// Builds the tree by the binned surface area heuristic (Wald 2007, "On fast Construction of
 /// SAH-based Bounding Volume Hierarchies"), with items counted in packs. Items whose box cannot be
-/// hit MUST have been removed. The depth is at most kMaxDepth. The result is the same for any
+/// hit MUST have been removed. The depth is at most kMaxTreeDepth. The result is the same for any
 /// number of threads; if `pool` is null, the build runs on this thread.
 BinaryTree build_binary_tree(TreeItems items, Pool* pool);
 

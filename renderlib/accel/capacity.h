@@ -1,7 +1,7 @@
 #pragma once
 
-// How much one tree can hold. Whoever takes geometry from outside refuses more
-// (scene/check_counts.h): a build asserts it.
+// Capacity of one BVH. Validation refuses larger geometry (scene/check_counts.h); building a BVH
+// asserts it.
 
 #include <cstddef>
 
@@ -9,8 +9,9 @@
 
 namespace bandsaw {
 
-/// Items of one tree: of a mesh its triangles; of a group its shapes; of a scene its loose shapes
-/// and its instances. A quad is two items, one for each half. Leaves are numbered in 29 bits.
+/// Maximum number of items in one BVH: the triangles of a mesh, the shapes of a group, or the loose
+/// shapes and instances of a scene. A quad is two items, one for each half. Leaves are numbered in
+/// 29 bits.
 inline constexpr std::size_t kMaxTreeItems = ChildRef::kMaxLeaves - 1;
 
 }  // namespace bandsaw

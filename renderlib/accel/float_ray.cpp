@@ -58,7 +58,7 @@ FloatRay::FloatRay(const TracedRay& ray, float reach) {
     floor = kInf;
   }
   if (!(largest < kLargestBox)) [[unlikely]] {
-    open_boxes();
+    disable_culling();
   } else if (!(steepest <= kSteepest)) [[unlikely]] {
     for (std::size_t k = 0; k < 3; ++k) {
       if (!(std::abs(ray.inverse[k] * scale) <= kSteepest)) {
@@ -82,7 +82,7 @@ void FloatRay::set_planes(std::size_t k, double from, float factor, double slack
   far_offset[k] = static_cast<float>(-far_at + room);
 }
 
-void FloatRay::open_boxes() {
+void FloatRay::disable_culling() {
   for (std::size_t k = 0; k < 3; ++k) {
     near_factor[k] = 0;
     far_factor[k] = 0;

@@ -42,7 +42,7 @@ struct FloatRay {
 
  private:
   void set_planes(std::size_t k, double from, float factor, double slack);
-  void open_boxes();
+  void disable_culling();
 };
 
 }  // namespace bandsaw

@@ -32,7 +32,7 @@ FlatPacker::Corners corners_of(const Mesh& mesh, std::size_t triangle) {
   return {mesh.positions[a], mesh.positions[b], mesh.positions[c]};
 }
 
-/// Empty: the triangle is left out.
+/// Returns an empty box if the triangle is omitted.
 FloatBox bounds(const Mesh& mesh, std::size_t triangle) {
   const auto& indices = mesh.triangles[triangle];
   if (*std::max_element(indices.begin(), indices.end()) >= mesh.positions.size()) {

@@ -24,12 +24,12 @@ Box both(const Box& a, const Box& b) {
   return box;
 }
 
-/// Halfway: what the tree is built by.
+/// Returns the box at the middle of the interval, by which the tree is built.
 Box middle(const MovingBox& box) {
   return {0.5 * (box.at_open.lo + box.at_close.lo), 0.5 * (box.at_open.hi + box.at_close.hi)};
 }
 
-/// Sets the bounds of all nodes from those of what moves.
+/// Sets the bounds of all nodes from those of the moving instances.
 class Bounds {
  public:
   Bounds(const std::vector<MovingBox>& boxes, MovingTree& tree) : boxes_(boxes), tree_(tree) {
@@ -45,7 +45,7 @@ class Bounds {
     }
     MovingBox all;
     for (std::size_t i = 0; i < WideNode::kChildren; ++i) {
-      // Not kept across the recursion: it needs no more than the index.
+      // The node is not referenced across the recursion, which needs only its index.
       const bool used = tree_.tree.nodes[ref.node_index()].bounds[0][i] != FloatBox::kInf;
       if (used) {
         const MovingBox child = set(tree_.tree.nodes[ref.node_index()].child[i]);
@@ -87,7 +87,7 @@ bool same_linear_part(const Transform& a, const Transform& b) {
   return a == moved;
 }
 
-/// Whether all that the frame and its parents do is to move straight.
+/// Returns true if the frame and its parents only translate.
 bool slides(const Geometry& geometry, FrameId id) {
   for (; id != kNoFrame; id = geometry.frames[index_of(id)].parent) {
     const std::vector<Key>& keys = geometry.frames[index_of(id)].keys;

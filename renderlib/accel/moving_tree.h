@@ -2,9 +2,9 @@
 
 // BVH over moving instances: boxes whose sides move linearly during the shutter interval.
 
-#include "renderlib/geometry/moving_bounds.h"
 #include "renderlib/accel/top_tree.h"
-#include "renderlib/accel/walk.h"
+#include "renderlib/accel/traverse.h"
+#include "renderlib/geometry/moving_bounds.h"
 
 namespace bandsaw {
 
@@ -41,7 +41,7 @@ struct MovingTree {
 MovingTree build_moving_tree(const Geometry& geometry, const Prototypes& prototypes,
                              const Interval& interval, Pool* pool);
 
-/// The same as enter_children() (accel/walk.h) for node `index` at `share` of the interval.
+/// The same as enter_children() (accel/traverse.h) for node `index` at `share` of the interval.
 template <class Float = Float8>
 inline unsigned enter_moving_children(const MovingTree& tree, std::uint32_t index, float share,
                                       const FloatRay& ray, float bound, Float& enter) {
@@ -54,7 +54,8 @@ inline unsigned enter_moving_children(const MovingTree& tree, std::uint32_t inde
   Float first(0.0f);
   Float last(bound);
   for (std::size_t k = 0; k < 3; ++k) {
-    const Float in = fused(plane(ray.near[k]), Float(ray.near_factor[k]), Float(ray.near_offset[k]));
+    const Float in =
+        fused(plane(ray.near[k]), Float(ray.near_factor[k]), Float(ray.near_offset[k]));
     const Float out = fused(plane(ray.far[k]), Float(ray.far_factor[k]), Float(ray.far_offset[k]));
     first = max(in, first);
     last = min(out, last);

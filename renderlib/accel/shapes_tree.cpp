@@ -16,7 +16,7 @@ std::array<float, 3> rounded(const Vec3& p) {
   return {static_cast<float>(p.x), static_cast<float>(p.y), static_cast<float>(p.z)};
 }
 
-/// The triangles that the test of a quad consists of (geometry/intersect.h).
+/// Returns the two triangles that the intersection test of a quad uses (geometry/intersect.h).
 std::array<Triangle, 2> halves(const Quad& quad) {
   const Vec3 along_u = quad.corner + quad.u;
   const Vec3 opposite = along_u + quad.v;
@@ -24,7 +24,7 @@ std::array<Triangle, 2> halves(const Quad& quad) {
           Triangle{quad.corner, opposite, quad.corner + quad.v, {}}};
 }
 
-/// All hits of a disk lie on rays that meet this.
+/// Returns a sphere that every ray which hits the disk also hits.
 Sphere around(const Disk& disk) { return {disk.center, disk.radius, disk.material}; }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include "renderlib/accel/query.h"
 #include "renderlib/accel/sphere_pack.h"
 #include "renderlib/accel/top_tree.h"
-#include "renderlib/accel/walk.h"
+#include "renderlib/accel/traverse.h"
 #include "renderlib/geometry/disk.h"
 
 namespace bandsaw {
@@ -59,7 +59,7 @@ inline bool trace_mesh(const MeshTree& mesh, const TracedRay& ray, std::uint32_t
   const FloatRay floats(ray, mesh.tree.reach);
   float bound = floats.above(query.bound());
   const std::uint32_t skipped = from.instance == instance ? from.primitive : kNoneSkipped;
-  return walk<!Query::kAny>(mesh.tree, floats, bound, [&](ChildRef leaf) {
+  return traverse<!Query::kAny>(mesh.tree, floats, bound, [&](ChildRef leaf) {
     const FlatPack& pack = mesh.packs[leaf.leaf_index()];
     return test_flats(
         pack, floats, instance, skipped, bound, query, [&](std::size_t lane, Crossing& crossing) {
@@ -149,7 +149,7 @@ template <class Query>
   const FloatRay floats(ray, group.group->tree.reach);
   float bound = floats.above(query.bound());
   const Started started(instance, from);
-  return walk<!Query::kAny>(group.group->tree, floats, bound, [&](ChildRef leaf) {
+  return traverse<!Query::kAny>(group.group->tree, floats, bound, [&](ChildRef leaf) {
     return trace_leaf(leaf, *group.group, *group.shapes, ray, floats, started, bound, query);
   });
 }
@@ -195,7 +195,7 @@ inline bool trace(const TopTree& top, const Geometry& geometry, const Ray& ray, 
   const FloatRay floats(traced, top.tree.reach);
   float bound = floats.above(query.bound());
   const Started started(0, ray.from);
-  return walk<!Query::kAny>(top.tree, floats, bound, [&](ChildRef leaf) {
+  return traverse<!Query::kAny>(top.tree, floats, bound, [&](ChildRef leaf) {
     if (leaf.kind() != LeafKind::kInstance) {
       return trace_leaf(leaf, top, geometry, traced, floats, started, bound, query);
     }

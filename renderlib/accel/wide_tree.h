@@ -62,6 +62,6 @@ struct WideTree {
 
 /// Maximum depth of any tree, whatever it is built from (accel/binary_tree.h); it determines the
 /// size of the traversal stack.
-inline constexpr std::size_t kMaxDepth = 64;
+inline constexpr std::size_t kMaxTreeDepth = 64;
 
 }  // namespace bandsaw

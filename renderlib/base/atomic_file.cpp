@@ -15,10 +15,10 @@ namespace bandsaw {
 namespace {
 
 constexpr int kAttempts = 1000;
-/// Of ".4194304.999.part", Linux's largest process number.
+/// Length of ".4194304.999.part", which contains Linux's largest process id.
 constexpr std::size_t kTemporarySuffix = 17;
 
-/// "a/b" -> "a", "b" -> ".", "/b" -> "/".
+/// Returns the folder of a path: "a/b" -> "a", "b" -> ".", "/b" -> "/".
 std::string folder_of(const std::string& path) {
   const std::size_t slash = path.rfind('/');
   if (slash == std::string::npos) {
@@ -41,8 +41,8 @@ absl::Status write_all(int file, absl::Span<const std::byte> bytes, const std::s
   return absl::OkStatus();
 }
 
-/// A new file beside `path`. (Not mkstemp: its mode ignores the umask, which cannot be asked for
-/// without changing it.)
+/// Creates a new file in the folder of `path`. (mkstemp is not used because its mode ignores the
+/// umask, which cannot be read without changing it.)
 struct Temporary {
   int file = -1;
   std::string path;
@@ -102,7 +102,7 @@ absl::Status check_can_be_written(const std::string& path) {
                ? errno_status(EISDIR, path)
                : absl::FailedPreconditionError(absl::StrCat(path, " is not a regular file"));
   }
-  // The file that is renamed at the end has a longer name.
+  // The temporary file has a longer name than the target.
   if (path.size() - (path.rfind('/') + 1) + kTemporarySuffix > NAME_MAX) {
     return errno_status(ENAMETOOLONG, path);
   }

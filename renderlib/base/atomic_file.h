@@ -1,6 +1,6 @@
 #pragma once
 
-// Whole files or none: temporary file in the same folder, fsync, rename, fsync of the folder.
+// Writes files atomically: temporary file in the same folder, fsync, rename, fsync of the folder.
 
 #include <cstddef>
 #include <string>
@@ -11,11 +11,11 @@
 
 namespace bandsaw {
 
-/// On any error nothing is left behind and the target is unchanged.
+/// Writes the file. On any error the target is unchanged and no temporary file remains.
 absl::Status write_file_atomically(const std::string& path, absl::Span<const std::byte> bytes);
 
-/// Whether write_file_atomically would be able to begin: the folder exists and can be written, and
-/// the path is no folder. Otherwise the system's reason.
+/// Returns OK if write_file_atomically() could begin: the folder exists and is writable, and the
+/// path is not a folder. Otherwise returns the system's error.
 absl::Status check_can_be_written(const std::string& path);
 
 }  // namespace bandsaw

@@ -5,7 +5,8 @@
 namespace bandsaw {
 namespace {
 
-// Bytes of the well-formed UTF-8 character at the front of `text`, or 0 (Unicode 15, table 3-7).
+// Returns the length in bytes of the well-formed UTF-8 character at the front of `text`, or 0 if
+// there is none (Unicode 15, table 3-7).
 std::size_t character_bytes(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const auto follows = [&](std::size_t i, unsigned low, unsigned high) {
@@ -31,7 +32,7 @@ std::size_t character_bytes(std::string_view text) {
   return 0;
 }
 
-// C0, DEL and C1: what a terminal obeys instead of showing.
+// Returns true for C0, DEL and C1, which a terminal executes instead of showing.
 bool is_control(std::string_view character) {
   const auto lead = static_cast<unsigned char>(character[0]);
   return lead < 0x20 || lead == 0x7F ||

@@ -1,6 +1,6 @@
 #pragma once
 
-// Names that come out of foreign files, made fit for a message and a terminal.
+// Cleans names from foreign files, so that they can be printed in messages and on a terminal.
 
 #include <cstddef>
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace bandsaw {
 
-/// `text` as valid UTF-8 without control characters (each offending byte becomes '?'), cut between
-/// characters to at most `most_bytes`.
+/// Returns `text` as valid UTF-8 without control characters (each offending byte becomes '?'), cut
+/// between characters to at most `most_bytes`.
 std::string clean_text(std::string_view text, std::size_t most_bytes);
 
 }  // namespace bandsaw

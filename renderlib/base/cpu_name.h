@@ -4,8 +4,8 @@
 
 namespace bandsaw {
 
-/// The processor as Linux names it, for people: "AMD EPYC-Milan Processor". "unknown CPU" where it
-/// says nothing.
+/// Returns Linux's name of the processor, for display: "AMD EPYC-Milan Processor"; "unknown CPU" if
+/// Linux reports none.
 std::string cpu_name();
 
 }  // namespace bandsaw

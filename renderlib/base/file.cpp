@@ -11,7 +11,7 @@
 namespace bandsaw {
 
 absl::Status errno_status(int error, const std::string& what) {
-  if (error == EFBIG) {  // a limit on the size of files is as much "no room" as a full disk
+  if (error == EFBIG) {  // a limit on file sizes is treated like a full disk
     return absl::ResourceExhaustedError(absl::ErrnoToStatus(error, what).message());
   }
   return absl::ErrnoToStatus(error, what);
@@ -129,7 +129,7 @@ absl::Status make_folder(const std::string& path) {
 
 absl::Status sync_folder(const std::string& path) {
   ASSIGN_OR_RETURN(const File folder, File::open(path, O_RDONLY | O_DIRECTORY));
-  // Some file systems cannot sync folders; they have nothing to lose then.
+  // Some file systems cannot sync folders; that is not an error.
   if (::fsync(folder.fd()) != 0 && errno != EINVAL && errno != EROFS) {
     return errno_status(errno, absl::StrCat("cannot sync the folder ", path));
   }

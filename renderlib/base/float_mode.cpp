@@ -9,7 +9,7 @@ namespace bandsaw {
 
 bool float_mode_is_default() {
 #if defined(__x86_64__)
-  constexpr unsigned kFlags = 0x3f;      // what happened, not how to round
+  constexpr unsigned kFlags = 0x3f;      // status flags, which do not affect rounding
   constexpr unsigned kDefault = 0x1f80;  // all exceptions masked, to nearest, no flushing
   return (_mm_getcsr() & ~kFlags) == kDefault;
 #elif defined(__aarch64__)

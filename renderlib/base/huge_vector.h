@@ -1,8 +1,8 @@
 #pragma once
 
-// std::vector for tables of megabytes that are read at random: from 2 MiB on it lies on huge pages
-// where the system gives them, so that a read seldom misses the address cache. resize() and the
-// like leave new elements as `T x;` would: nothing is written that will be written over.
+// std::vector for tables of megabytes that are read at random: from 2 MiB on, its memory is on huge
+// pages if the system provides them, so that a read seldom misses the TLB. resize() and similar
+// functions default-initialise new elements, so memory is not written twice.
 
 #include <sys/mman.h>
 
@@ -28,7 +28,7 @@ struct HugePages {
     const std::size_t bytes = count * sizeof(T);
     void* memory = ::operator new(bytes, alignment(bytes));
     if (bytes >= kPage) {
-      ::madvise(memory, bytes, MADV_HUGEPAGE);  // a hint: refused, pages are small
+      ::madvise(memory, bytes, MADV_HUGEPAGE);  // a hint: if it is refused, pages are small
     }
     return static_cast<T*>(memory);
   }

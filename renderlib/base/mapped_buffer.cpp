@@ -16,7 +16,7 @@
 namespace bandsaw {
 namespace {
 
-/// A file without a name in `folder` with `size` bytes of disk reserved.
+/// Creates a file without a name in `folder` and reserves `size` bytes of disk space for it.
 absl::StatusOr<int> open_unlinked(std::size_t size, const std::string& folder) {
   std::string name = absl::StrCat(folder, "/.bandsaw-XXXXXX");
   const int file = ::mkostemp(name.data(), O_CLOEXEC);
@@ -24,8 +24,8 @@ absl::StatusOr<int> open_unlinked(std::size_t size, const std::string& folder) {
     return errno_status(errno, absl::StrCat("cannot make a file in ", folder));
   }
   ::unlink(name.c_str());
-  // Without the reservation a full disk would be a SIGBUS at the first touch of a page. (Not
-  // posix_fallocate: where a file system cannot reserve, it would write every block.)
+  // Without the reservation, a full disk would cause a SIGBUS at the first access to a page.
+  // (posix_fallocate is not used: on file systems that cannot reserve space it writes every block.)
   const auto length = static_cast<off_t>(size);
   int result = ::fallocate(file, 0, 0, length);
   if (result != 0 && errno == EOPNOTSUPP) {
@@ -60,7 +60,7 @@ absl::StatusOr<MappedBuffer> MappedBuffer::create(std::size_t size, const std::s
     ::close(file);
   }
   if (data == MAP_FAILED) {
-    // ENOMEM has the canonical code of exhausted resources only in some Abseil versions.
+    // Only some Abseil versions map ENOMEM to RESOURCE_EXHAUSTED.
     return absl::ResourceExhaustedError(
         errno_status(error, absl::StrCat("cannot map ", size, " bytes")).message());
   }

@@ -1,8 +1,8 @@
 #pragma once
 
-// Large memory that the operating system gives page by page: anonymous, or backed by a file so that
-// it may be written out instead of filling memory. The file has no name: it is gone when the buffer
-// is, also after a crash.
+// Large memory that the operating system provides page by page: anonymous, or backed by a file, so
+// that it can be written out instead of filling memory. The file has no name and disappears with
+// the buffer, also after a crash.
 
 #include <cstddef>
 #include <string>
@@ -14,13 +14,14 @@ namespace bandsaw {
 
 class MappedBuffer {
  public:
-  /// Nothing: size 0.
+  /// Empty: size 0.
   MappedBuffer() = default;
 
-  /// `size` zero bytes, aligned to pages. `folder` empty: anonymous memory, taken from the system
-  /// as it is touched. Otherwise a file in `folder`, its disk space reserved now, so that touching
-  /// it cannot fail later. RESOURCE_EXHAUSTED: no memory or disk; NOT_FOUND, PERMISSION_DENIED: the
-  /// folder.
+  /// Creates a buffer of `size` zero bytes, aligned to pages. With an empty `folder` the memory is
+  /// anonymous and allocated when it is first touched. Otherwise it is backed by a file in
+  /// `folder`, whose disk space is reserved now, so that touching it cannot fail later. Returns
+  /// RESOURCE_EXHAUSTED if there is no memory or disk space, and NOT_FOUND or PERMISSION_DENIED if
+  /// the folder cannot be used.
   static absl::StatusOr<MappedBuffer> create(std::size_t size, const std::string& folder);
 
   MappedBuffer(MappedBuffer&& other) noexcept;
@@ -31,7 +32,7 @@ class MappedBuffer {
   std::byte* data() { return data_; }
   const std::byte* data() const { return data_; }
 
-  /// As numbers; T MUST be a type for which zero bytes are a value.
+  /// Returns the buffer as an array of T; zero bytes MUST be a valid value of T.
   template <class T>
   absl::Span<T> as() {
     return {reinterpret_cast<T*>(data_), size_ / sizeof(T)};

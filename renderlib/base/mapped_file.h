@@ -1,6 +1,6 @@
 #pragma once
 
-// A whole file as bytes, read-only.
+// A memory-mapped, read-only file.
 
 #include <cstddef>
 #include <string>
@@ -10,10 +10,10 @@
 
 namespace bandsaw {
 
-/// The file MUST NOT be cut while it is mapped: what is mapped is only ever replaced or removed.
+/// The file MUST NOT be truncated while it is mapped; it may be replaced or removed.
 class MappedFile {
  public:
-  /// `flags`: as File::open_regular. NOT_FOUND: no such file.
+  /// `flags` are those of File::open_regular. Returns NOT_FOUND if the file does not exist.
   static absl::StatusOr<MappedFile> open(const std::string& path, int flags = 0);
   MappedFile(MappedFile&& other) noexcept;
   MappedFile& operator=(MappedFile&&) = delete;

@@ -1,12 +1,12 @@
 #pragma once
 
-// std::mutex with the names that clang's thread-safety analysis understands. (absl::Mutex from Debian is not instrumented
-// for ThreadSanitizer and makes it report races that are none.)
+// std::mutex with annotations for clang's thread-safety analysis. (Debian's absl::Mutex is not
+// instrumented for ThreadSanitizer, which then reports false races.)
 
 #include <condition_variable>
 #include <mutex>
 
-#include "absl/base/thread_annotations.h"  // comes with gRPC's headers too, and defines GUARDED_BY itself
+#include "absl/base/thread_annotations.h"  // also included by gRPC; defines GUARDED_BY
 
 #if defined(__clang__)
 #define BANDSAW_TSA(x) __attribute__((x))
@@ -44,7 +44,8 @@ class BANDSAW_TSA(scoped_lockable) MutexLock {
   Mutex& mutex_;
 };
 
-/// Waits with the mutex held by the caller; spurious wake-ups happen, so wait in a loop over the condition.
+/// Condition variable. The caller holds the mutex. Wake-ups can be spurious, so wait in a loop over
+/// the condition.
 class CondVar {
  public:
   void wait(Mutex& mutex) REQUIRES(mutex) {
@@ -52,7 +53,7 @@ class CondVar {
     condition_.wait(lock);
     lock.release();
   }
-  /// False: the time passed.
+  /// Returns false if the time has passed.
   template <class Rep, class Period>
   bool wait_for(Mutex& mutex, std::chrono::duration<Rep, Period> time) REQUIRES(mutex) {
     std::unique_lock<std::mutex> lock(mutex.mutex_, std::adopt_lock);

@@ -2,7 +2,7 @@
 
 namespace bandsaw {
 
-/// Several lambdas as one visitor of a variant.
+/// Combines several lambdas into one visitor of a variant.
 template <class... Cases>
 struct Overloaded : Cases... {
   using Cases::operator()...;

@@ -1,7 +1,8 @@
 #pragma once
 
-// Threads that share index ranges. Several callers may run ranges at once: a free thread takes its next index from the
-// oldest range that has one left, so that the end of one band and the start of the next overlap.
+// Thread pool that processes index ranges. Several callers may run ranges at the same time: a free
+// thread takes its next index from the oldest range that has one left, so that the end of one band
+// and the start of the next overlap.
 
 #include <cstdint>
 #include <deque>
@@ -15,18 +16,19 @@ namespace bandsaw {
 
 class Pool {
  public:
-  /// threads >= 1: the number of threads that work in all, the callers of parallel_for not counted.
+  /// `threads` (>= 1) is the number of threads of the pool; callers of parallel_for() do no work.
   explicit Pool(int threads);
-  /// Every parallel_for MUST have returned.
+  /// Every parallel_for() MUST have returned.
   ~Pool();
   Pool(const Pool&) = delete;
   Pool& operator=(const Pool&) = delete;
 
   int threads() const { return static_cast<int>(threads_.size()); }
 
-  /// Calls body(i) once for each i in [0, count), in any order, from the pool's threads; returns when all have returned.
-  /// MUST NOT be called from within a body.
-  void parallel_for(std::int64_t count, absl::FunctionRef<void(std::int64_t)> body) EXCLUDES(mutex_);
+  /// Calls body(i) once for each i in [0, count), in any order, from the pool's threads; returns
+  /// when all calls have returned. MUST NOT be called from within a body.
+  void parallel_for(std::int64_t count, absl::FunctionRef<void(std::int64_t)> body)
+      EXCLUDES(mutex_);
 
  private:
   struct Range;

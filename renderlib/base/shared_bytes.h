@@ -1,7 +1,7 @@
 #pragma once
 
-// Bytes that never change and that several may hold: what a blob, a mapped file and a scene's
-// texels have in common. Copying shares; nothing is copied but the reference.
+// Immutable bytes with shared ownership: used for blobs, mapped files and the texels of a scene.
+// Copying an object copies a reference, not the bytes.
 
 #include <algorithm>
 #include <cstddef>
@@ -17,15 +17,15 @@ class SharedBytes {
  public:
   using value_type = std::byte;
 
-  /// None.
+  /// Empty.
   SharedBytes() = default;
-  /// Takes the vector over.
-  SharedBytes(std::vector<std::byte> bytes) {  // NOLINT: a vector is one way to write such bytes
+  /// Takes ownership of the vector.
+  SharedBytes(std::vector<std::byte> bytes) {  // NOLINT: implicit on purpose
     auto owner = std::make_shared<const std::vector<std::byte>>(std::move(bytes));
     bytes_ = absl::MakeConstSpan(*owner);
     owner_ = std::move(owner);
   }
-  /// `bytes`, valid while `owner` lives.
+  /// Refers to `bytes`, which are valid as long as `owner` exists.
   SharedBytes(std::shared_ptr<const void> owner, absl::Span<const std::byte> bytes)
       : owner_(std::move(owner)), bytes_(bytes) {}
 
@@ -37,7 +37,7 @@ class SharedBytes {
   const std::byte* end() const { return bytes_.data() + bytes_.size(); }
   absl::Span<const std::byte> span() const { return bytes_; }
 
-  /// The same bytes, wherever they lie.
+  /// Compares the bytes, not their addresses.
   friend bool operator==(const SharedBytes& a, const SharedBytes& b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end());
   }

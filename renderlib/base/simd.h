@@ -1,7 +1,7 @@
 #pragma once
 
-// Eight floats at a time with the instructions that this file is compiled for. Every choice
-// computes the same bits; renderlib/base/simd_plain.h says what the operations mean.
+// Selects Float8, eight floats at a time, for the instruction set of the compilation. All versions
+// compute the same bits; renderlib/base/simd_plain.h defines the operations.
 
 #if defined(__AVX2__) && defined(__FMA__)
 #include "renderlib/base/simd_avx2.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-// Float8 on AVX2 with FMA. The contract is that of renderlib/base/simd_plain.h.
+// Float8 for AVX2 with FMA. renderlib/base/simd_plain.h defines the operations.
 
 #include <immintrin.h>
 

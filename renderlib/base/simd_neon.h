@@ -1,7 +1,7 @@
 #pragma once
 
-// Float8 on NEON (AArch64), as two vectors of four. The contract is that of
-// renderlib/base/simd_plain.h.
+// Float8 for NEON (AArch64), as two vectors of four. renderlib/base/simd_plain.h defines the
+// operations.
 
 #include <arm_neon.h>
 
@@ -12,9 +12,9 @@ namespace bandsaw::simd_neon {
 
 class Mask8 {
  public:
-  /// All bits of a lane are 1, or all are 0. `low`: lanes 0 to 3.
+  /// In each lane all bits are 1 or all are 0. `low` holds lanes 0 to 3.
   Mask8(uint32x4_t low, uint32x4_t high) : low_(low), high_(high) {}
-  /// Bit i: lane i.
+  /// Returns the mask as bits; bit i is lane i.
   unsigned bits() const {
     static constexpr std::uint32_t kLow[] = {1, 2, 4, 8};
     static constexpr std::uint32_t kHigh[] = {16, 32, 64, 128};
@@ -73,7 +73,8 @@ class Float8 {
     return {vfmaq_f32(vnegq_f32(c.low_), a.low_, b.low_),
             vfmaq_f32(vnegq_f32(c.high_), a.high_, b.high_)};
   }
-  /// Not vminq_f32 and vmaxq_f32: those return NaN where either is NaN, and order the zeros.
+  /// vminq_f32 and vmaxq_f32 are not used: they return NaN if either operand is NaN, and order the
+  /// zeros.
   friend Float8 min(Float8 a, Float8 b) {
     return {vbslq_f32(vcltq_f32(a.low_, b.low_), a.low_, b.low_),
             vbslq_f32(vcltq_f32(a.high_, b.high_), a.high_, b.high_)};

@@ -1,8 +1,8 @@
 #pragma once
 
-// Eight floats side by side, in plain C++: what Float8 means. Another instruction set is another
-// file like this one, equal to the bit (tests/unit/base/simd_test.cpp); renderlib/base/simd.h
-// picks.
+// Float8, eight floats at a time, in plain C++. This file defines the operations. The versions for
+// other instruction sets are equal to the bit (tests/unit/base/simd_test.cpp);
+// renderlib/base/simd.h selects one.
 
 #include <algorithm>
 #include <array>
@@ -15,8 +15,8 @@ namespace bandsaw::simd_plain {
 
 inline constexpr std::size_t kLanes = 8;
 
-/// a b + c, rounded once, without a fused instruction. The product of two floats is exact in
-/// double; the sum is rounded to odd in double, which makes the rounding to float right (Boldo,
+/// Returns a b + c, rounded once, without a fused instruction. The product of two floats is exact
+/// in double; the sum is rounded to odd in double, which makes the rounding to float right (Boldo,
 /// Melquiond 2008, "Emulation of FMA and correctly rounded sums: proved algorithms using rounding
 /// to odd").
 inline float fused(float a, float b, float c) {
@@ -26,7 +26,7 @@ inline float fused(float a, float b, float c) {
   const double error = (product - (sum - part)) + (double{c} - part);
   auto bits = std::bit_cast<std::uint64_t>(sum);
   if (error != 0 && std::isfinite(sum) && (bits & 1) == 0) {
-    // Toward the exact sum: away from zero when the error has the sign of the sum.
+    // Rounds towards the exact sum: away from zero if the error has the sign of the sum.
     bits += (error > 0) == (sum > 0) ? std::uint64_t{1} : ~std::uint64_t{0};
   }
   return static_cast<float>(std::bit_cast<double>(bits));
@@ -35,7 +35,7 @@ inline float fused(float a, float b, float c) {
 class Mask8 {
  public:
   explicit Mask8(unsigned bits) : bits_(bits) {}
-  /// Bit i: lane i.
+  /// Returns the mask as bits; bit i is lane i.
   unsigned bits() const { return bits_; }
   friend Mask8 operator&(Mask8 a, Mask8 b) { return Mask8(a.bits_ & b.bits_); }
   friend Mask8 operator|(Mask8 a, Mask8 b) { return Mask8(a.bits_ | b.bits_); }
@@ -48,11 +48,11 @@ class Float8 {
  public:
   Float8() = default;
   explicit Float8(float all) { v_.fill(all); }
-  /// Eight floats from any address.
+  /// Loads eight floats from any address.
   static Float8 load(const float* from) {
     return lanes([from](std::size_t i) { return from[i]; });
   }
-  /// The 32 bytes of any object.
+  /// Loads the 32 bytes of an object.
   template <class Object>
   static Float8 from_bytes(const Object& object) {
     return Float8(std::bit_cast<std::array<float, kLanes>>(object));
@@ -62,7 +62,7 @@ class Float8 {
     object = std::bit_cast<Object>(v_);
   }
   void store(float* to) const { std::copy(v_.begin(), v_.end(), to); }
-  /// Rounded towards zero; anything for what is then no int32, NaN among it.
+  /// Converts to int32, rounded towards zero; the result is unspecified if it is no int32 or NaN.
   void store_truncated(std::int32_t* to) const {
     for (std::size_t i = 0; i < kLanes; ++i) {
       to[i] = std::abs(v_[i]) < 0x1p31f ? static_cast<std::int32_t>(v_[i]) : 0;
@@ -78,32 +78,32 @@ class Float8 {
   friend Float8 operator*(const Float8& a, const Float8& b) {
     return lanes([&](std::size_t i) { return a.v_[i] * b.v_[i]; });
   }
-  /// a b + c and a b - c, rounded once.
+  /// Return a b + c and a b - c, rounded once.
   friend Float8 fused(const Float8& a, const Float8& b, const Float8& c) {
     return lanes([&](std::size_t i) { return simd_plain::fused(a.v_[i], b.v_[i], c.v_[i]); });
   }
   friend Float8 fused_minus(const Float8& a, const Float8& b, const Float8& c) {
     return lanes([&](std::size_t i) { return simd_plain::fused(a.v_[i], b.v_[i], -c.v_[i]); });
   }
-  /// b where either is NaN.
+  /// Return b in lanes where either is NaN.
   friend Float8 min(const Float8& a, const Float8& b) {
     return lanes([&](std::size_t i) { return a.v_[i] < b.v_[i] ? a.v_[i] : b.v_[i]; });
   }
   friend Float8 max(const Float8& a, const Float8& b) {
     return lanes([&](std::size_t i) { return a.v_[i] > b.v_[i] ? a.v_[i] : b.v_[i]; });
   }
-  /// Lanes 4 to 7, then 0 to 3.
+  /// Returns lanes 4 to 7, then 0 to 3.
   friend Float8 swap_halves(const Float8& a) {
     return lanes([&](std::size_t i) { return a.v_[(i + kLanes / 2) % kLanes]; });
   }
   friend Float8 abs(const Float8& a) {
     return lanes([&](std::size_t i) { return std::abs(a.v_[i]); });
   }
-  /// -a in the lanes where `sign` has its sign bit set, else a.
+  /// Returns -a in the lanes in which `sign` has its sign bit set, otherwise a.
   friend Float8 flip_by_sign(const Float8& a, const Float8& sign) {
     return lanes([&](std::size_t i) { return std::signbit(sign.v_[i]) ? -a.v_[i] : a.v_[i]; });
   }
-  /// False where either is NaN.
+  /// Comparisons are false in lanes where either is NaN.
   friend Mask8 operator<(const Float8& a, const Float8& b) {
     return mask([&](std::size_t i) { return a.v_[i] < b.v_[i]; });
   }

@@ -9,7 +9,7 @@ namespace bandsaw {
 #if defined(__x86_64__)
 namespace {
 
-// Bits of CPUID (Intel SDM, volume 2A, "CPUID"). Each compiler has other names for them.
+// Bits of CPUID (Intel SDM, volume 2A, "CPUID"). Their names differ between compilers.
 constexpr unsigned kBasicEcx = 1u << 0 |     // SSE3
                                1u << 9 |     // SSSE3
                                1u << 12 |    // FMA
@@ -25,7 +25,7 @@ constexpr unsigned kExtendedEbx = 1u << 3 |  // BMI1
                                   1u << 5 |  // AVX2
                                   1u << 8;   // BMI2
 constexpr unsigned kAmdEcx = 1u << 0 |       // LAHF and SAHF
-                             1u << 5;        // LZCNT: older processors take it for BSR, silently
+                             1u << 5;        // LZCNT: older processors silently execute BSR instead
 
 bool has(unsigned found, unsigned wanted) { return (found & wanted) == wanted; }
 
@@ -45,7 +45,8 @@ bool runs_x86_64_v3() {
   if (__get_cpuid(0x80000001u, &eax, &ebx, &ecx, &edx) == 0 || !has(ecx, kAmdEcx)) {
     return false;
   }
-  return __builtin_cpu_supports("avx2");  // asks XGETBV too: the system saves the registers
+  return __builtin_cpu_supports(
+      "avx2");  // also checks with XGETBV that the system saves the registers
 }
 #else
 bool runs_x86_64_v3() { return false; }

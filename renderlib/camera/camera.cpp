@@ -13,7 +13,7 @@ namespace {
 
 /// Minimum sine of the angle between view direction and `up`; the sideways direction then still has
 /// ten digits.
-constexpr double kLeastUpSine = 1e-6;
+constexpr double kMinUpSine = 1e-6;
 
 absl::Status invalid(absl::string_view field, absl::string_view why) {
   return absl::InvalidArgumentError(absl::StrCat("camera.", field, ": ", why));
@@ -38,7 +38,7 @@ absl::Status validate_view(const View& camera) {
   if (!(up_length > 0 && up_length < kInfinity)) {
     return invalid("up", "must have a length that is finite and not zero");
   }
-  if (length(cross(view / distance, camera.up / up_length)) < kLeastUpSine) {
+  if (length(cross(view / distance, camera.up / up_length)) < kMinUpSine) {
     return invalid("up", "must not be parallel to the view direction");
   }
   return absl::OkStatus();
@@ -46,7 +46,7 @@ absl::Status validate_view(const View& camera) {
 
 absl::Status validate_shutter(const Shutter& shutter) {
   for (const double time : {shutter.open, shutter.close}) {
-    if (!(std::abs(time) <= kMostTime)) {
+    if (!(std::abs(time) <= kMaxTime)) {
       return invalid("shutter_open, shutter_close",
                      absl::StrCat("must be in [-1e9, 1e9], one is ", time));
     }
@@ -63,10 +63,10 @@ absl::Status validate_kind(const PerspectiveCamera& camera) {
     return invalid("vertical_fov",
                    absl::StrCat("must be in (0, 180) degrees, is ", camera.vertical_fov));
   }
-  if (!(camera.aperture >= 0 && camera.aperture <= kMostLens)) {
+  if (!(camera.aperture >= 0 && camera.aperture <= kMaxLens)) {
     return invalid("aperture", absl::StrCat("must be in [0, 1e30], is ", camera.aperture));
   }
-  if (!(camera.focus_distance >= kLeastFocus && camera.focus_distance <= kMostLens)) {
+  if (!(camera.focus_distance >= kMinFocus && camera.focus_distance <= kMaxLens)) {
     return invalid("focus_distance",
                    absl::StrCat("must be in [1e-9, 1e30], is ", camera.focus_distance));
   }
@@ -74,7 +74,7 @@ absl::Status validate_kind(const PerspectiveCamera& camera) {
 }
 
 absl::Status validate_kind(const OrthographicCamera& camera) {
-  if (!(camera.height > 0 && camera.height <= kMostLens)) {
+  if (!(camera.height > 0 && camera.height <= kMaxLens)) {
     return invalid("orthographic.height",
                    absl::StrCat("must be > 0 and at most 1e30, is ", camera.height));
   }

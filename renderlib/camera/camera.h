@@ -35,22 +35,22 @@ struct PerspectiveCamera {
   Vec3 look_at{0, 0, -1};
   Vec3 up{0, 1, 0};
   double vertical_fov = 40;  ///< degrees, (0, 180)
-  double aperture = 0;       ///< diameter of the lens, [0, kMostLens]; 0: a pinhole
-  /// Distance of the plane of focus along the view direction, [kLeastFocus, kMostLens].
+  double aperture = 0;       ///< diameter of the lens, [0, kMaxLens]; 0: a pinhole
+  /// Distance of the plane of focus along the view direction, [kMinFocus, kMaxLens].
   double focus_distance = 1;
   Shutter shutter = {};
 };
 
-inline constexpr double kMostTime = 1e9;
-inline constexpr double kLeastFocus = 1e-9;
-inline constexpr double kMostLens = 1e30;
+inline constexpr double kMaxTime = 1e9;
+inline constexpr double kMinFocus = 1e-9;
+inline constexpr double kMaxLens = 1e30;
 
 /// Parallel rays from the plane through `position`, which is the centre of the image.
 struct OrthographicCamera {
   Vec3 position{0, 0, 0};
   Vec3 look_at{0, 0, -1};
   Vec3 up{0, 1, 0};
-  double height = 2;      ///< height of the visible region in scene units, > 0, at most kMostLens
+  double height = 2;      ///< height of the visible region in scene units, > 0, at most kMaxLens
   bool mirrored = false;  ///< left and right are exchanged
   Shutter shutter = {};
 };

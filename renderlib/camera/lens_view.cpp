@@ -7,11 +7,11 @@
 namespace bandsaw {
 
 std::optional<LensView> LensView::make(const Vec3& middle, const Vec3& forward, double radius,
-                                       double distance, const Vec3& way) {
+                                       double distance, const Vec3& direction) {
   LensView view;
   view.middle_ = middle;
   view.forward_ = forward;
-  view.to_focus_ = way * distance;
+  view.to_focus_ = direction * distance;
   view.focus_ = middle + view.to_focus_;
   view.radius_ = radius;
   view.distance_ = distance;

@@ -14,11 +14,11 @@ namespace bandsaw {
 class LensView {
  public:
   /// Describes a round lens of `radius` > 0 around `middle`, perpendicular to the unit vector
-  /// `forward`, focused at `distance` > 0 along it. `way` leads from `middle` towards the point in
-  /// focus; its component along `forward` is 1, i.e. it is in units of `distance`. Returns
+  /// `forward`, focused at `distance` > 0 along it. `direction` leads from `middle` towards the
+  /// point in focus; its component along `forward` is 1, i.e. it is in units of `distance`. Returns
   /// std::nullopt if the radius is not less than the distance to the point.
   static std::optional<LensView> make(const Vec3& middle, const Vec3& forward, double radius,
-                                      double distance, const Vec3& way);
+                                      double distance, const Vec3& direction);
 
   const Vec3& focus() const { return focus_; }
   /// Returns a cone that contains all directions in which rays continue beyond the point.

@@ -9,7 +9,7 @@
 namespace bandsaw {
 namespace {
 
-constexpr std::uint64_t kLeastValues = 8;
+constexpr std::uint64_t kMinValues = 8;
 
 /// Running mean and variance (Welford 1962).
 struct Moments {
@@ -113,7 +113,7 @@ BiasTest test_bias(const Image& image, const Image& reference) {
   for (std::uint32_t y = 0; y < image.height; y += kBiasBlock) {
     for (std::uint32_t x = 0; x < image.width; x += kBiasBlock) {
       const Moments block = block_of(image, reference, x, y, totals);
-      if (block.count < kLeastValues) {
+      if (block.count < kMinValues) {
         continue;
       }
       ++test.blocks;

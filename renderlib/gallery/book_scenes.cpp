@@ -1,12 +1,37 @@
 #include "renderlib/gallery/book_scenes.h"
 
+#include <cstdint>
+
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/string_view.h"
-#include "renderlib/gallery/numbers.h"
+#include "renderlib/base/split_mix.h"
+#include "renderlib/math/vec.h"
 
 namespace bandsaw::gallery {
 namespace {
+
+/// A fixed sequence of numbers by which the shapes of a generated scene are placed.
+class Numbers {
+ public:
+  explicit Numbers(std::uint64_t seed) : state_(seed) {}
+
+  /// Returns a number in [0, 1).
+  double next() {
+    state_ += kSplitMixIncrement;
+    return static_cast<double>(split_mix(state_) >> 11) * 0x1p-53;
+  }
+  double between(double low, double high) { return low + (high - low) * next(); }
+  /// Returns a vector whose coordinates lie between the two numbers.
+  Vec3 vec(double low, double high) {
+    const double x = between(low, high);
+    const double y = between(low, high);
+    return {x, y, between(low, high)};
+  }
+
+ private:
+  std::uint64_t state_;
+};
 
 std::string list(const Vec3& v) { return absl::StrFormat("[%.4g, %.4g, %.4g]", v.x, v.y, v.z); }
 
@@ -22,7 +47,7 @@ std::string material(absl::string_view name, absl::string_view kind) {
 
 std::string color(const Vec3& rgb) { return absl::StrCat("color { rgb: ", list(rgb), " }"); }
 
-/// One of the small spheres, and the material that it alone has; glass is shared.
+/// Returns one of the small spheres and its material; glass is one material for all.
 std::string small_sphere(int number, const Vec3& center, bool bouncing, Numbers& numbers) {
   constexpr double kRadius = 0.2;
   const std::string name = absl::StrCat("s", number);
@@ -131,7 +156,7 @@ shape { sphere { center: [4, 1, 0]  radius: 1 }  material: "bronze" }
 }  // namespace
 
 std::string many_spheres(bool bouncing) {
-  // A defocus angle of 0.6 degrees is a lens of 2 x 10 x tan(0.3 degrees).
+  // A defocus angle of 0.6 degrees corresponds to a lens diameter of 2 x 10 x tan(0.3 degrees).
   std::string out = absl::StrCat(
       bouncing ? kBouncing : kOneWeekend,
       "camera { position: [13, 2, 3]  look_at: [0, 0, 0]  vertical_fov: 20  aperture: 0.10472  "

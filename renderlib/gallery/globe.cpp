@@ -10,7 +10,7 @@
 namespace bandsaw::gallery {
 namespace {
 
-/// sRGB codes, as a painter picks them: the map is a picture, not a measurement.
+/// Colours as sRGB codes.
 constexpr Vec3 kDeepSea{10, 34, 82};
 constexpr Vec3 kOpenSea{18, 62, 124};
 constexpr Vec3 kShelf{58, 142, 172};
@@ -21,20 +21,20 @@ constexpr Vec3 kTundra{142, 134, 112};
 constexpr Vec3 kRock{112, 98, 86};
 constexpr Vec3 kIce{240, 244, 248};
 
-/// Where the noise is looked up, so that no lattice point lies at a pole.
+/// Offset of noise lookups, so that no lattice point lies at a pole.
 constexpr Vec3 kLandAt{11.3, 4.7, 8.1};
 constexpr Vec3 kRainAt{-5.2, 9.4, 2.6};
 constexpr double kContinents = 1.35;  // features of the coarsest octave per radius
 constexpr double kSeaLevel = 0.06;
 constexpr double kShelfDepth = 0.075;
 
-/// 0 below `from`, 1 above `to`, smooth between.
+/// Returns 0 below `from`, 1 above `to`, and a smooth transition between them.
 double rise(double from, double to, double x) {
   const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
   return t * t * (3 - 2 * t);
 }
 
-/// Octaves whose features are no smaller than two texels of the equator.
+/// Returns the number of octaves whose features are at least as large as two texels at the equator.
 int octaves_of(std::uint32_t rows) {
   int octaves = 1;
   for (double rate = 2 * kContinents; rate <= rows / (2 * kPi); rate *= 2) {
@@ -43,7 +43,7 @@ int octaves_of(std::uint32_t rows) {
   return octaves;
 }
 
-/// Sum of noise(2^i p) / 2^i over the octaves first <= i < last.
+/// Returns the sum of noise(2^i p) / 2^i over the octaves first <= i < last.
 double fractal(const Vec3& p, int first, int last) {
   double sum = 0;
   double scale = static_cast<double>(1 << first);
@@ -53,7 +53,7 @@ double fractal(const Vec3& p, int first, int last) {
   return sum;
 }
 
-/// `broad`: the height without its finer octaves; the floor of the sea is smooth.
+/// `broad` is the height without its finer octaves; the sea floor is smooth.
 Vec3 sea(double height, double broad) {
   const Vec3 open = lerp(kDeepSea, kOpenSea, rise(-0.55, -0.1, broad));
   return lerp(open, kShelf, rise(-kShelfDepth, 0, height));
@@ -69,21 +69,21 @@ Vec3 land(double height, double rain, double latitude) {
   return lerp(color, kIce, rise(0.44, 0.56, height + 0.2 * latitude));
 }
 
-/// Of a point on the unit sphere that is not below the ice of a pole. Octaves that cannot be seen
-/// are not computed: most of a planet is sea.
+/// Returns the colour of a point on the unit sphere that is not below polar ice. Octaves that
+/// cannot be seen are not computed, because most of the planet is sea.
 Vec3 uncovered(const Vec3& p, double latitude, double rain, int octaves) {
   constexpr int kBroad = 4;
-  constexpr double kMostOfTheFine = 2 * 0.87 / (1 << kBroad);
+  constexpr double kMaxFine = 2 * 0.87 / (1 << kBroad);
   const Vec3 at = p * kContinents + kLandAt;
   const double broad = fractal(at, 0, kBroad) - kSeaLevel;
-  if (broad + kMostOfTheFine < -kShelfDepth) {
+  if (broad + kMaxFine < -kShelfDepth) {
     return sea(-kShelfDepth, broad);
   }
   const double height = broad + fractal(at, kBroad, octaves);
   return height < 0 ? sea(height, broad) : land(height, rain, latitude);
 }
 
-/// `p` on the unit sphere.
+/// Returns the colour of the point `p` on the unit sphere.
 Vec3 color_at(const Vec3& p, int octaves) {
   const double latitude = std::abs(p.y);  // its sine: 0 at the equator, 1 at the poles
   const double rain = fractal(p * 2.3 + kRainAt, 0, 3);

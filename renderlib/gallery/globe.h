@@ -1,6 +1,6 @@
 #pragma once
 
-// A planet that never was, as a map: what the study's texture scenes wrap around a sphere.
+// A map of an invented planet, which the study's texture scenes wrap around a sphere.
 
 #include <cstdint>
 #include <vector>
@@ -9,9 +9,9 @@
 
 namespace bandsaw::gallery {
 
-/// sRGB codes of an equirectangular map of 2 rows x rows texels, three a texel, north on top.
-/// Continents, shelves, deserts, mountains and ice are gradient noise on the unit sphere: the same
-/// planet at every size, with finer coasts the more rows there are. 8 <= rows <= 8192.
+/// Returns an equirectangular map of 2 rows x rows texels, three sRGB codes for each, with north on
+/// top. Continents, shelves, deserts, mountains and ice are gradient noise on the unit sphere: the
+/// planet is the same at every size; more rows give finer coasts. 8 <= rows <= 8192.
 std::vector<std::uint8_t> globe_map(std::uint32_t rows, Pool& pool);
 
 }  // namespace bandsaw::gallery

@@ -22,8 +22,8 @@ struct Ring {
   double v = 0;
 };
 
-/// The rings of a profile's pieces: a piece spans the rings `low` and `low` + 1. Where two pieces
-/// meet smoothly, they share a ring.
+/// The rings of a profile's pieces: a piece spans the rings `low` and `low` + 1. Two pieces that
+/// join smoothly share a ring.
 struct Rings {
   std::vector<Ring> rings;
   std::vector<std::size_t> low;
@@ -65,7 +65,8 @@ void append_ring(std::string& out, const Ring& ring, int around) {
 
 std::string corner(int vertex) { return absl::StrCat(" ", vertex, "/", vertex, "/", vertex); }
 
-/// Between the rings whose vertices begin at `low` and `high`; towards the axis, triangles.
+/// Adds the faces between the rings whose vertices begin at `low` and `high`; triangles at the
+/// axis.
 void append_faces(std::string& out, int low, int high, bool low_on_axis, bool high_on_axis,
                   int around) {
   for (int i = 0; i < around; ++i) {

@@ -1,9 +1,10 @@
-// bandsaw-gallery: makes the files of the gallery that come from formulas: globe maps, which are
-// too large to be kept, turned meshes, and scenes of hundreds of shapes.
+// bandsaw-gallery: generates the files of the gallery that are defined by formulas: globe maps,
+// which are too large for the repository, surfaces of revolution, and scenes of hundreds of shapes.
 //
-//   bandsaw-gallery FOLDER    FOLDER/study/globe_512.png …; files that are there are replaced
+//   bandsaw-gallery FOLDER    FOLDER/study/globe_512.png …; replaces existing files
 //
-// Every run on every machine makes the same bytes. Exit 0: done, 1: failed, 2: wrong usage.
+// Every run on every machine writes the same bytes. Exit status 0: success, 1: failure, 2: wrong
+// usage.
 
 #include <sys/stat.h>
 

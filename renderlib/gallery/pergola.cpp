@@ -14,9 +14,9 @@
 namespace bandsaw::gallery {
 namespace {
 
-enum Mesh : int { kStone, kWood, kWater };  // each the cube, with a material of its own
+enum Mesh : int { kStone, kWood, kWater };  // each is the cube with another material
 
-/// [-1/2, 1/2]^3: 24 positions, 24 normals, 36 indices of 16 bits.
+/// Returns the cube [-1/2, 1/2]^3: 24 positions, 24 normals, 36 indices of 16 bits.
 std::string cube_bytes() {
   std::vector<float> positions;
   std::vector<float> normals;
@@ -56,8 +56,8 @@ std::string block(Mesh mesh, const Vec3& centre, const Vec3& size) {
                          list(size));
 }
 
-/// A node at `from` whose -z points to `to`, as glTF's cameras look (glTF 2.0, 5.12): the columns
-/// of its matrix are where its axes point.
+/// Returns a node at `from` whose -z axis, the direction of glTF's cameras (glTF 2.0, 5.12), points
+/// to `to`: the columns of its matrix are its axes.
 std::string stand(const char* name, int camera, const Vec3& from, const Vec3& to, const Vec3& up) {
   const Vec3 z = normalize(from - to);
   const Vec3 x = normalize(cross(up, z));
@@ -88,7 +88,7 @@ std::vector<std::string> nodes() {
   return nodes;
 }
 
-// Buffer views: positions, normals, indices, as cube_bytes() lays them.
+// Buffer views: positions, normals, indices, in the order of cube_bytes().
 constexpr char kCube[] = R"("meshes": [
   {"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1}, "indices": 2, "material": 0}]},
   {"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1}, "indices": 2, "material": 1}]},

@@ -10,7 +10,8 @@
 namespace bandsaw::gallery {
 namespace {
 
-/// An environment of one image of that size, or of six: it knows where its texels lie.
+/// Returns an environment of one image of that size, or of six, which yields the directions of
+/// texels.
 struct Frame {
   Frame(Environment::Kind kind, std::uint32_t width, std::uint32_t height) {
     ImageTexture image;
@@ -47,15 +48,15 @@ Image draw(Rgb (*sky)(const Vec3&), const Frame& frame, std::uint32_t face, std:
 
 constexpr double kSunAzimuth = 40;
 
-/// Unit; degrees from +x towards +z, and above the horizon.
+/// Returns a unit direction; angles in degrees from +x towards +z, and above the horizon.
 Vec3 direction(double azimuth_degrees, double height_degrees) {
   const SinCos azimuth = sincos_degrees(azimuth_degrees);
   const SinCos height = sincos_degrees(height_degrees);
   return {height.cos * azimuth.cos, height.sin, height.cos * azimuth.sin};
 }
 
-/// How much cloud is in a direction above the horizon, in [0, 1]: turbulence in a layer above,
-/// where the direction meets it, drawn out along x.
+/// Returns the amount of cloud in a direction above the horizon, in [0, 1]: turbulence at the point
+/// where the direction intersects a layer above, stretched along x.
 float cover(const Vec3& unit, double from) {
   const double layer = 1 / (unit.y + 0.12);
   const double cloud =
@@ -85,7 +86,7 @@ Rgb evening_sky(const Vec3& unit) {
 }
 
 Rgb dusk_sky(const Vec3& unit) {
-  // 1 above where the sun went down, 0 opposite.
+  // 1 at the azimuth of sunset, 0 opposite.
   const double flat = std::sqrt(unit.x * unit.x + unit.z * unit.z);
   const double side =
       flat > 0 ? (1 + dot({unit.x, 0, unit.z}, direction(kSunAzimuth, 0)) / flat) / 2 : 0.5;
@@ -99,7 +100,7 @@ Rgb dusk_sky(const Vec3& unit) {
   const auto high = static_cast<float>(std::min(1.0, unit.y / 0.6));
   const Rgb air = lerp(lerp(middle, Rgb{0.02f, 0.045f, 0.13f}, high), horizon, low * low);
   const Rgb cloud = lerp(Rgb{0.05f, 0.07f, 0.15f}, Rgb{1.1f, 0.42f, 0.28f}, warm);
-  // A high cloud that still sees the sun: a soft light from the side.
+  // A high cloud that the sun still lights: a soft light from the side.
   const double bank = std::max(0.0, dot(unit, direction(kSunAzimuth - 88, 42)));
   const Rgb lit = Rgb{5.0f, 3.9f, 2.9f} * static_cast<float>(pow(bank, 10));
   return lit + lerp(air, cloud, 0.8f * cover(unit, 0.75));

@@ -1,6 +1,6 @@
 #pragma once
 
-// An evening sky that never was, all around: what the gallery's environments show.
+// An invented evening sky, for the gallery's environments.
 
 #include <cstdint>
 
@@ -9,21 +9,22 @@
 
 namespace bandsaw::gallery {
 
-/// Radiance from a unit direction: orange at the horizon, blue above, clouds of turbulence, dark
-/// ground, and a sun of 3 degrees' radius at azimuth 40 degrees from +x towards +z, 25 degrees
-/// high.
+/// Returns the radiance from a unit direction: orange at the horizon, blue above, clouds of
+/// turbulence, dark ground, and a sun of 3 degrees' radius at azimuth 40 degrees from +x towards
+/// +z, 25 degrees high.
 Rgb evening_sky(const Vec3& unit);
 
-/// The same place after the sun has set: a glow at the horizon where it went down, deep blue above,
-/// and a high cloud that still shines, as a soft light from the side.
+/// Returns the radiance at the same place after sunset: a glow at the horizon, deep blue above, and
+/// a high bright cloud, which is a soft light from the side.
 Rgb dusk_sky(const Vec3& unit);
 
-/// The same as equirectangular images, 2 rows wide; each texel the mean of 8 x 8 directions.
+/// Return the skies as equirectangular images, 2 rows wide; each texel is the mean of 8 x 8
+/// directions.
 Image evening_sky_map(std::uint32_t rows);
 Image dusk_sky_map(std::uint32_t rows);
 
-/// The same as one side of a cube map: 0 to 5 are +x, -x, +y, -y, +z, -z, laid as
-/// renderlib/light/environment.h says.
+/// Returns the evening sky as one side of a cube map: 0 to 5 are +x, -x, +y, -y, +z, -z, oriented
+/// as in renderlib/light/environment.h.
 Image evening_sky_side(std::uint32_t face, std::uint32_t side);
 
 }  // namespace bandsaw::gallery

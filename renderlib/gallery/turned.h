@@ -1,6 +1,6 @@
 #pragma once
 
-// The turned things that the room is furnished with, as OBJ files; lengths in centimetres.
+// Surfaces of revolution in the scene `room`, as OBJ files; lengths in centimetres.
 
 #include <string>
 

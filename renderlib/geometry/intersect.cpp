@@ -52,7 +52,8 @@ bool intersect(const TracedRay& ray, const Quad& quad, Crossing& crossing) {
                                            sheared(ray, to_u), at_opposite, first);
   const bool hit_second = intersect_sheared(ray, corner, opposite, to_v, at_corner, at_opposite,
                                             sheared(ray, to_v), second);
-  // On the diagonal both triangles are hit; the nearer counts, and the first one if t is equal.
+  // On the diagonal both triangles are hit; the nearer hit is taken, and the first one if t is
+  // equal.
   if (hit_first && (!hit_second || first.t <= second.t)) {
     crossing = {first.t, std::min(1.0, first.u + first.v), first.v};
     return true;

@@ -1,8 +1,7 @@
 #pragma once
 
-// Whether and where a ray meets a primitive: for each kind one function of (ray, primitive) in
-// double, always the same operations. That, not real-number exactness, makes the closest hit
-// independent of the tree that leads there.
+// Ray-primitive intersection: for each kind of primitive one deterministic function of (ray,
+// primitive) in double. Determinism, not exactness, makes the closest hit independent of the BVH.
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +12,7 @@
 
 namespace bandsaw {
 
-/// t in (0, t_max), and the coordinates that Hit describes.
+/// An intersection: t in (0, t_max), and the coordinates that `Hit` describes.
 struct Crossing {
   double t;
   double u;
@@ -21,21 +20,21 @@ struct Crossing {
   const float* corners = nullptr;
 };
 
-/// a b - c d with the exact sign, within 1.5 units in the last place (Kahan). The sign of an edge
-/// that two triangles share is therefore the same in both.
+/// Returns a b - c d with the exact sign, within 1.5 units in the last place (Kahan). So the sign
+/// of an edge function is the same for two triangles that share the edge.
 inline double difference_of_products(double a, double b, double c, double d) {
   const double cd = c * d;
   const double error = std::fma(-c, d, cd);
   return std::fma(a, b, -cd) + error;
 }
 
-/// cross(a, b), each component within 1.5 units in the last place, also where products cancel.
+/// Returns cross(a, b), each component within 1.5 units in the last place, also if products cancel.
 inline Vec3 exact_cross(const Vec3& a, const Vec3& b) {
   return {difference_of_products(a.y, b.z, a.z, b.y), difference_of_products(a.z, b.x, a.x, b.z),
           difference_of_products(a.x, b.y, a.y, b.x)};
 }
 
-/// A point as the ray sees it: the ray is the z axis, its origin the origin.
+/// A point in the ray's space: the ray is the z axis, its origin the origin.
 struct Sheared {
   double x;
   double y;
@@ -53,9 +52,9 @@ template <class Point>
           z};
 }
 
-/// Woop, Benthin, Wald 2013, "Watertight Ray/Triangle Intersection", JCGT 2(1), both sides, edges
-/// included: where triangles share an edge, a ray through it hits one of them at least. The corners
-/// come as they are and sheared.
+/// Intersects a triangle, from both sides and including its edges: a ray through an edge that
+/// triangles share hits at least one of them (Woop, Benthin, Wald 2013, "Watertight Ray/Triangle
+/// Intersection", JCGT 2(1)). Takes the corners in their space and in the ray's.
 template <class Point>
 [[gnu::always_inline]] inline bool intersect_sheared(const TracedRay& ray, const Point& a,
                                                      const Point& b, const Point& c,
@@ -95,23 +94,25 @@ inline bool intersect_triangle(const TracedRay& ray, const Point& a, const Point
                            crossing);
 }
 
-/// The boxes that hits are confined to (clip_to_box); what a tree's boxes must hold. A sphere's is
-/// a little larger than the sphere, by more than the rounding of center and radius.
+/// Return the boxes to which hits are confined (clip_to_box) and which the boxes of a BVH must
+/// contain. The box of a sphere is larger than the sphere by more than the rounding of center and
+/// radius.
 Box bounds(const Sphere& sphere);
 Box bounds(const Quad& quad);
 Box bounds(const Triangle& triangle);
 
 bool intersect(const TracedRay& ray, const Triangle& triangle, Crossing& crossing);
 
-/// As two triangles that share the diagonal from `corner`.
+/// Intersects the quad as two triangles that share the diagonal from `corner`.
 bool intersect(const TracedRay& ray, const Quad& quad, Crossing& crossing);
 
-/// Haines, Günther, Akenine-Möller 2019, "Precision Improvements for Ray/Sphere Intersection", Ray
-/// Tracing Gems, ch. 7: the discriminant from the vector to the closest approach, the roots without
-/// cancellation. `starts_on_it`: the ray starts on this very sphere (Ray::from); then the near
-/// root, which is the start or lies behind it, is no hit. Origins lie 2^-40 off the surface
-/// (geometry/surface.h), so the far root is clear of rounding as well: it is negative for a ray
-/// that leaves outwards, and at least 2^-20 of the radius for one that goes inwards.
+/// Intersects a sphere (Haines, Günther, Akenine-Möller 2019, "Precision Improvements for
+/// Ray/Sphere Intersection", Ray Tracing Gems, ch. 7): the discriminant is computed from the vector
+/// to the closest approach, the roots without cancellation. `starts_on_it` is true if the ray
+/// starts on this sphere (Ray::from); then the near root, which is the start or lies behind it, is
+/// no hit. Origins lie 2^-40 off the surface (geometry/surface.h), so the far root is not affected
+/// by rounding either: it is negative for a ray that leaves outwards, and at least 2^-20 of the
+/// radius for one that goes inwards.
 bool intersect(const TracedRay& ray, const Sphere& sphere, bool starts_on_it, Crossing& crossing);
 
 }  // namespace bandsaw

@@ -11,9 +11,9 @@ namespace bandsaw {
 namespace {
 
 /// Maximum deviation of a corner's path from a chord, relative to the box; intervals between keys
-/// are cut into pieces accordingly, at most kMostPieces.
+/// are cut into pieces accordingly, at most kMaxPieces.
 constexpr double kBend = 0x1p-6;
-constexpr double kMostPieces = 64;
+constexpr double kMaxPieces = 64;
 /// Rounding margin: between the sampled times rounding errors may be larger than at them.
 constexpr double kTrips = 8;
 
@@ -51,9 +51,9 @@ Course through(const Key& a, const Key& b, const Course& c) {
   const double turning = 2 * kPi * turn_between(a.pose.rotate, b.pose.rotate) / duration;
   const Course p = {scale * c.distance, growth * c.distance + scale * c.speed,
                     2 * growth * c.speed + scale * c.bend};
-  const double way = length(b.pose.translate - a.pose.translate) / duration;
+  const double speed = length(b.pose.translate - a.pose.translate) / duration;
   const double far = std::max(length(a.pose.translate), length(b.pose.translate));
-  return {far + p.distance, way + turning * p.distance + p.speed,
+  return {far + p.distance, speed + turning * p.distance + p.speed,
           turning * turning * p.distance + 2 * turning * p.speed + p.bend};
 }
 
@@ -187,7 +187,7 @@ std::optional<MovingBox> moving_bounds(const Geometry& geometry, const Instance&
     // A path with second derivative c deviates from its chord over h by at most c h^2 / 8.
     const double bend = course.bend * duration * duration / 8;
     const double wanted = std::ceil(std::sqrt(bend / (kBend * size)));
-    const double pieces = wanted >= 1 && wanted <= kMostPieces ? wanted : bend > 0 ? kMostPieces : 1;
+    const double pieces = wanted >= 1 && wanted <= kMaxPieces ? wanted : bend > 0 ? kMaxPieces : 1;
     const double room = bend / (pieces * pieces) * (1 + 0x1p-20);
     for (double k = 0; k <= pieces; ++k) {
       const double time = k == pieces ? times[i + 1] : times[i] + duration * (k / pieces);

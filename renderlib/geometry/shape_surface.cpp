@@ -11,9 +11,10 @@ namespace bandsaw {
 namespace {
 
 constexpr double kOffset = 0x1p-40;
-/// Up to this condition of a placement kOffset is far above the rounding of rays that come back.
+/// Up to this condition number of a placement, kOffset is far above the rounding of rays that are
+/// transformed back.
 constexpr double kMaxPlainCondition = 0x1p8;
-/// Beyond it, what of kOffset is enough in the primitive's own space.
+/// Share of kOffset that suffices in the primitive's own space above that condition number.
 constexpr double kSquashedShare = 0x1p-5;
 
 double norm(const std::array<Vec3, 3>& m) {
@@ -36,7 +37,7 @@ SurfacePoint on_sphere(const Sphere& sphere, const Ray& ray, const Hit& hit, boo
   return p;
 }
 
-/// `ready`: its unit normal, or nothing. Zero: there is none.
+/// `ready` is its precomputed unit normal, if there is one; zero if it has no normal.
 SurfacePoint on_flat(const Vec3& a, const Vec3& e1, const Vec3& e2, const Vec3* ready,
                      MaterialId material, const Ray& ray, const Hit& hit) {
   SurfacePoint p;
@@ -88,7 +89,7 @@ Placement::Placement(const Transform& t) {
     cofactors[i] = cross(rows[(i + 1) % 3], rows[(i + 2) % 3]);
   }
   determinant = dot(rows[0], cofactors[0]);
-  // With a determinant of mere rounding, too, this is above the limit.
+  // This is above the limit even if the determinant is nothing but rounding error.
   squashes = !(norm(rows) * norm(cofactors) <= kMaxPlainCondition * std::abs(determinant));
   if (squashes) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -99,9 +100,9 @@ Placement::Placement(const Transform& t) {
   moved = max_abs(Vec3{t.m[0][3], t.m[1][3], t.m[2][3]});
 }
 
-// Rays come back through the inverse, and with them the rounding of their origins, which is a few
-// 2^-53 of `scale`, the largest number that went into the position. README.md, "Squashed space",
-// derives the constants.
+// Rays are transformed back by the inverse, together with the rounding error of their origins: a
+// few 2^-53 of `scale`, the largest number from which the position was computed. README.md,
+// "Squashed space", derives the constants.
 void Placement::set_offset(const SurfacePoint& local, SurfacePoint& placed) const {
   const double largest_in_object = local.offset / kOffset;
   const double scale = std::max({max_abs(placed.position), largest_in_object * norm(rows), moved});

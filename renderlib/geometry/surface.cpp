@@ -12,7 +12,7 @@ namespace {
 
 Vec3 vec(const std::array<float, 3>& p) { return {p[0], p[1], p[2]}; }
 
-/// A mesh triangle in its own space.
+/// A mesh triangle in the mesh's space.
 struct Corners {
   Vec3 a;
   Vec3 e1;
@@ -39,7 +39,7 @@ Vec3 interpolate(const std::array<float, 3>& a, const std::array<float, 3>& b,
   return vec(a) * (1 - hit.u - hit.v) + vec(b) * hit.u + vec(c) * hit.v;
 }
 
-/// `otherwise` where the mesh has no such uvs.
+/// Returns the interpolated uv, or `otherwise` if the mesh has no such uvs.
 Vec2 mesh_uv(const std::vector<std::array<float, 2>>& uvs,
              const std::array<std::uint32_t, 3>& index, const Hit& hit, const Vec2& otherwise) {
   if (uvs.empty()) {
@@ -61,7 +61,7 @@ Rgb mesh_color(const Mesh& mesh, const std::array<std::uint32_t, 3>& index, cons
          color(2) * static_cast<float>(hit.v);
 }
 
-/// In the mesh's own space.
+/// Returns the surface in the mesh's space.
 SurfacePoint on_triangle(const Mesh& mesh, const Ray& ray, const Hit& hit) {
   const Corners local = corners(mesh, hit);
   const std::array<std::uint32_t, 3>& index = mesh.triangles[hit.id.primitive];
@@ -135,16 +135,17 @@ SurfacePoint surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit
   return p;
 }
 
-Ray toward(const SurfacePoint& from, const Vec3& target, double target_offset) {
-  const Ray ray = leave(from, target - from.position);
-  const Vec3 way = target - ray.origin;
-  const double shorter = target_offset > 0 ? target_offset / length(way) : 0;
-  return {ray.origin, way, 1 - shorter, from.id, from.time};
+Ray spawn_ray_to(const SurfacePoint& from, const Vec3& target, double target_offset) {
+  const Ray ray = spawn_ray(from, target - from.position);
+  const Vec3 to_target = target - ray.origin;
+  const double shorter = target_offset > 0 ? target_offset / length(to_target) : 0;
+  return {ray.origin, to_target, 1 - shorter, from.id, from.time};
 }
 
-Ray toward(const SurfacePoint& from, const SurfacePoint& target) {
+Ray spawn_ray_to(const SurfacePoint& from, const SurfacePoint& target) {
   const bool behind = dot(from.position - target.position, target.geometric_normal) < 0;
-  return toward(from, behind ? target.position - target.away : target.position + target.away, 0);
+  return spawn_ray_to(from, behind ? target.position - target.away : target.position + target.away,
+                      0);
 }
 
 }  // namespace bandsaw

@@ -16,7 +16,7 @@ struct Directions {
 
 Vec3 vec(const std::array<float, 3>& p) { return {p[0], p[1], p[2]}; }
 
-/// dp/du and dp/dv of the affine map that takes the triangle's uvs to its corners.
+/// Returns dp/du and dp/dv of the affine map from the triangle's uvs to its corners.
 Directions along_mesh(const Geometry& geometry, const Transform& to_world, bool second,
                       const SurfacePoint& point) {
   const Instance& instance = geometry.instances[point.id.instance - 1];
@@ -46,7 +46,7 @@ Directions along_mesh(const Geometry& geometry, const Transform& to_world, bool 
   return is_finite(u) && is_finite(v) ? Directions{u, v} : Directions{};
 }
 
-/// In the space the shapes lie in; `normal` is a sphere's there.
+/// Returns the directions in the space of the shapes; `normal` is the normal of a sphere there.
 Directions along_shape(const Shapes& shapes, const Vec3& normal, const SurfacePoint& point) {
   const auto [kind, index] = shape_ref(shapes, point.id.primitive);
   switch (kind) {
@@ -77,9 +77,9 @@ Directions uv_directions(const Geometry& geometry, bool second, const SurfacePoi
   if (instance.group == kNoGroup) {
     return along_mesh(geometry, to_world, second, point);
   }
-  // A sphere's point from its centre is along the normal in its own space.
-  const Directions along = along_shape(*group_of(geometry, instance),
-                                       unit_or(point.object_position, {0, 0, 1}), point);
+  // In its own space, a sphere's point is along the normal from its centre.
+  const Directions along =
+      along_shape(*group_of(geometry, instance), unit_or(point.object_position, {0, 0, 1}), point);
   return {to_world.direction(along.u), to_world.direction(along.v)};
 }
 

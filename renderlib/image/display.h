@@ -22,10 +22,10 @@ inline constexpr int kLastTone = 1;
 absl::string_view tone_name(Tone tone);
 std::optional<Tone> tone_named(absl::string_view name);
 
-inline constexpr double kMostExposure = 30;
+inline constexpr double kMaxExposure = 30;
 
 struct Display {
-  double exposure = 0;  ///< for 8-bit files: stops, [-kMostExposure, kMostExposure]
+  double exposure = 0;  ///< for 8-bit files: stops, [-kMaxExposure, kMaxExposure]
   Tone tone = Tone::kNone;
   bool half = false;  ///< EXR files store halves instead of floats
   friend bool operator==(const Display&, const Display&) = default;

@@ -14,7 +14,9 @@
 namespace bandsaw {
 namespace {
 
-constexpr float kMostHalf = 65504;
+constexpr float kMaxHalf = 65504;
+/// Maximum length of a layer's name, in bytes: a channel's name has 255 at most.
+constexpr std::size_t kMaxLayerName = 200;
 
 struct Free {
   void operator()(unsigned char* bytes) const { std::free(bytes); }
@@ -31,7 +33,7 @@ Channel channel(const std::string& name, const Image& image, float Rgb::*of, boo
   to.values.reserve(image.pixels.size());
   for (const Rgb& pixel : image.pixels) {
     const float value = pixel.*of;
-    to.values.push_back(half ? std::clamp(value, -kMostHalf, kMostHalf) : value);
+    to.values.push_back(half ? std::clamp(value, -kMaxHalf, kMaxHalf) : value);
   }
   return to;
 }
@@ -63,7 +65,7 @@ std::uint64_t beyond_half(const Image& image) {
   std::uint64_t count = 0;
   for (const Rgb& pixel : image.pixels) {
     for (const float value : {pixel.r, pixel.g, pixel.b}) {
-      count += std::abs(value) > kMostHalf ? 1 : 0;
+      count += std::abs(value) > kMaxHalf ? 1 : 0;
     }
   }
   return count;
@@ -72,9 +74,14 @@ std::uint64_t beyond_half(const Image& image) {
 absl::StatusOr<std::vector<std::byte>> encode_exr(const Image& image, bool half,
                                                   const Layers& layers) {
   for (const Layer& layer : layers) {
-    if (layer.image.pixels.size() != image.pixels.size() || layer.name.size() > 200) {
+    if (layer.image.pixels.size() != image.pixels.size()) {
       return absl::InvalidArgumentError(
           absl::StrCat("the layer ", layer.name, " is not as large as the image"));
+    }
+    if (layer.name.size() > kMaxLayerName) {
+      return absl::InvalidArgumentError(absl::StrCat("the name of a layer has ", layer.name.size(),
+                                                     " bytes, at most ", kMaxLayerName,
+                                                     " are allowed"));
     }
   }
   std::vector<Channel> channels = channels_of(image, half, layers);

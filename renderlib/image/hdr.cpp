@@ -14,12 +14,12 @@ namespace {
 using Rgbe = std::array<std::uint8_t, 4>;
 
 /// Above this value the shared exponent would overflow.
-constexpr float kMost = 0x1.fep126f;
+constexpr float kMax = 0x1.fep126f;
 
-float mendable(float v) { return v > 0 ? std::min(v, kMost) : 0; }
+float repaired(float v) { return v > 0 ? std::min(v, kMax) : 0; }
 
 Rgbe rgbe(const Rgb& pixel) {
-  const Rgb p = {mendable(pixel.r), mendable(pixel.g), mendable(pixel.b)};
+  const Rgb p = {repaired(pixel.r), repaired(pixel.g), repaired(pixel.b)};
   const float largest = max_component(p);
   if (largest < 0x1p-127f) {
     return {};

@@ -21,7 +21,7 @@ namespace bandsaw {
 namespace {
 
 // stb counts bytes in int, and its compressor doubles its buffer; this size is safe.
-constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 29;
+constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 29;
 
 void append(void* context, void* data, int size) {
   auto& bytes = *static_cast<std::vector<std::byte>*>(context);
@@ -36,7 +36,7 @@ absl::StatusOr<std::vector<std::byte>> encode_png(std::uint32_t width, std::uint
   const std::uint64_t size = std::uint64_t{width} * height * 3;
   BANDSAW_CHECK(codes.size() == size, "three codes a pixel");
   std::vector<std::byte> bytes;
-  if (size > kMostBytes ||
+  if (size > kMaxBytes ||
       stbi_write_png_to_func(append, &bytes, static_cast<int>(width), static_cast<int>(height), 3,
                              codes.data(), static_cast<int>(3 * width)) == 0) {
     return absl::ResourceExhaustedError(

@@ -1,7 +1,7 @@
 #pragma once
 
-// Scene files and models to a scene package. Runs in its own confined process (import/main.cpp);
-// coordinator and workers never do this.
+// Imports scene files and models. Runs in its own confined process (import/main.cpp); coordinator
+// and workers never do this.
 
 #include <optional>
 #include <string>
@@ -11,22 +11,24 @@
 
 namespace bandsaw {
 
-/// A file that somebody named beside the scene: it may lie anywhere, so its bytes come with it.
+/// A file that the user named in addition to the scene. It may be in any folder, so its bytes are
+/// passed.
 struct GivenFile {
   std::string name;  ///< for messages
   std::string bytes;
 };
 
-/// What somebody chose beside the scene.
+/// Choices of the user in addition to the scene.
 struct ImportChoices {
-  std::optional<GivenFile> environment = {};  ///< equirectangular image, instead of its background
-  std::string camera = {};  ///< the name of one of its models' cameras; empty: the scene's own
+  std::optional<GivenFile> environment =
+      {};                   ///< equirectangular image that replaces its background
+  std::string camera = {};  ///< name of one of its models' cameras; empty for the scene's own
 };
 
-/// Reads a scene file (*.textproto, *.json) or a model alone (then framed under a default sky,
-/// unless it brings cameras and lights). Files are read only below the folder of `path`.
-/// INVALID_ARGUMENT: "cornell.textproto:12:3: shape[4].sphere.radius: must be > 0, is -1".
-/// NOT_FOUND, PERMISSION_DENIED: naming the file.
+/// Reads a scene file (*.textproto, *.json) or a single model, which is framed under a default sky
+/// unless it has cameras and lights. Only files below the folder of `path` are read. Returns
+/// INVALID_ARGUMENT: "cornell.textproto:12:3: shape[4].sphere.radius: must be > 0, is -1", and
+/// NOT_FOUND or PERMISSION_DENIED with the file's name.
 absl::StatusOr<ImportedScene> import_scene(const std::string& path,
                                            const ImportChoices& choices = {});
 

@@ -24,7 +24,6 @@
 #include "renderlib/import/scene_file/read_textures.h"
 #include "renderlib/import/scene_file/read_view.h"
 #include "renderlib/import/scene_file/use_camera.h"
-#include "renderlib/package/check.h"
 #include "renderlib/scene/validate.h"
 
 namespace bandsaw {
@@ -46,7 +45,8 @@ Camera framed(const ImportedScene& out) {
   return frame(geometry, geometry.instances, static_cast<double>(out.info.width) / out.info.height);
 }
 
-/// Where the scene file gives no view of its own.
+/// Returns the camera of a scene file that defines none: one of a model's, or one that frames the
+/// model.
 absl::StatusOr<Camera> camera_of_a_model(const Field& root, const scene::Scene& from,
                                          const SceneDraft& draft) {
   if (from.has_camera()) {
@@ -65,7 +65,7 @@ absl::StatusOr<Camera> camera_of_a_model(const Field& root, const scene::Scene& 
 absl::Status read_scene(const Field& root, const scene::Scene& from, SceneDraft& draft) {
   SceneDescription& scene = draft.out.scene;
   RETURN_IF_ERROR(read_settings(root, from, draft.out.info));
-  // What is cheap to check comes before what takes time.
+  // Cheap checks come before slow ones.
   ASSIGN_OR_RETURN(draft.shutter, read_shutter(root, from));
   const bool own_camera = from.has_camera() && from.camera().use().empty();
   if (own_camera) {
@@ -152,11 +152,9 @@ absl::StatusOr<ImportedScene> import_scene(const std::string& path, const Import
     draft.out.scene.background = {};
     draft.out.scene.background.environment = Environment{.images = {image}};
   }
-  // What a worker would refuse is refused here, before anybody waits for it.
-  absl::Status good = check_description(draft.out.scene);
-  good.Update(validate(draft.out.scene));
-  if (!good.ok()) {
-    return absl::InvalidArgumentError(absl::StrCat(draft.file, ": ", good.message()));
+  // A scene that a worker would refuse is refused here, before anybody waits for it.
+  if (const absl::Status valid = validate(draft.out.scene, MeshVertices::kFinite); !valid.ok()) {
+    return absl::InvalidArgumentError(absl::StrCat(draft.file, ": ", valid.message()));
   }
   return std::move(draft.out);
 }

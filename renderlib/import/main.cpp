@@ -43,7 +43,7 @@
 namespace bandsaw {
 namespace {
 
-// No fsync: what is written here is read once and removed.
+// Writes a file. There is no fsync, because the file is read once and removed.
 absl::Status write_file(const std::string& path,
                         std::initializer_list<absl::Span<const std::byte>> parts) {
   std::FILE* file = std::fopen(path.c_str(), "wb");
@@ -64,7 +64,7 @@ absl::Status import_to(const std::string& path, const std::string& folder,
   ASSIGN_OR_RETURN(const ImportedScene imported, import_scene(path, choices));
   BlobMap blobs;
   const std::string manifest = encode_package(imported.scene, imported.info, blobs);
-  // The bounds that a coordinator would hold it to.
+  // Checks the limits that a coordinator would check.
   RETURN_IF_ERROR(package_blobs(manifest).status());
   const BlobFolder out(folder);
   for (const auto& [digest, bytes] : blobs.all()) {
@@ -99,7 +99,7 @@ absl::Status run(int argc, char** argv) {
   limits.read_folder = folder.path();
   limits.write_folder = argv[3];
   limits.file_bytes = wire::kBlobBytes;
-  // Named by the one who asked, not by a file: it may lie anywhere. Here it is only copied.
+  // The user named this file, not another file, so it may be in any folder. Here it is only copied.
   ImportChoices choices;
   if (argc > 6 && argv[6][0] != '\0') {
     ASSIGN_OR_RETURN(std::string bytes, read_whole_file(argv[6], kMaxImageFileBytes));
@@ -110,7 +110,7 @@ absl::Status run(int argc, char** argv) {
   return what == "scene" ? import_to(path, argv[3], choices) : read_picture_to(path, argv[3]);
 }
 
-// Foreign code throws.
+// Runs the import and converts exceptions of foreign code to errors.
 absl::Status run_without_exceptions(int argc, char** argv) {
   try {
     return run(argc, argv);
@@ -128,7 +128,7 @@ absl::Status run_without_exceptions(int argc, char** argv) {
 }  // namespace bandsaw
 
 int main(int argc, char** argv) {
-  // Without a parent there is nobody to tell the result to.
+  // Without a parent process nobody would read the result.
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   const absl::Status status = bandsaw::run_without_exceptions(argc, argv);
   if (!status.ok()) {
@@ -138,6 +138,6 @@ int main(int argc, char** argv) {
     std::puts(message.c_str());
   }
   std::fflush(stdout);
-  // Gigabytes of arrays need not be taken apart.
+  // Exits without destructors, which would free gigabytes of arrays one by one.
   std::_Exit(status.ok() ? 0 : 1);
 }

@@ -3,25 +3,128 @@
 #include <optional>
 
 #include "renderlib/geometry/surface.h"
+#include "renderlib/integrate/medium_traversal.h"
+#include "renderlib/integrate/mis.h"
 #include "renderlib/integrate/path_state.h"
 #include "renderlib/integrate/path_steps.h"
+#include "renderlib/integrate/russian_roulette.h"
 #include "renderlib/integrate/through_lens.h"
 #include "renderlib/integrate/through_media.h"
+#include "renderlib/integrate/visibility.h"
+#include "renderlib/light/emission.h"
+#include "renderlib/material/albedo.h"
 #include "renderlib/material/bsdf.h"
 
 namespace bandsaw {
 namespace {
 
-/// Goes on from a surface, as scattering `depth`, in all directions that the path has before it.
-void follow_branches(const PathContext& context, const SurfacePoint& point, const Bsdf& bsdf,
-                     std::uint32_t depth, PathState& path) {
+Receiver receiver_of(const SurfacePoint& point, const Vec3& wo) {
+  const bool outside = dot(wo, point.geometric_normal) >= 0;
+  return {point.position, outside ? point.geometric_normal : -point.geometric_normal, point.time};
+}
+
+/// Returns the MIS weight of the emission at `light`, which the path hit from `previous`.
+float emission_weight(const Scene& scene, const PreviousVertex& previous, const SurfacePoint& light,
+                      Technique technique) {
+  if (previous.delta || technique == Technique::kScatteringOnly) {
+    return 1;
+  }
+  const double light_pdf = scene.lights().pdf(previous.receiver, light);
+  if (technique == Technique::kLightsOnly) {
+    // Light sampling never samples the far side of a sphere through its near side.
+    return light_pdf > 0 ? 0 : 1;
+  }
+  return static_cast<float>(bsdf_sampling_weight(previous, light_pdf));
+}
+
+/// Returns the background radiance in a direction in which a ray leaves the scene, times its MIS
+/// weight.
+Rgb weighted_background(const Scene& scene, const PreviousVertex& previous, const Vec3& direction,
+                        Technique technique) {
+  const Rgb background = radiance(scene.background(), scene.textures(), direction);
+  if (previous.delta || !scene.background().environment ||
+      technique == Technique::kScatteringOnly) {
+    return background;
+  }
+  const double light_pdf = scene.lights().environment_pdf(previous.receiver, direction);
+  if (technique == Technique::kLightsOnly) {
+    // Light sampling never samples the uniform part of an environment.
+    return light_pdf > 0 ? Rgb{} : background;
+  }
+  return background * static_cast<float>(bsdf_sampling_weight(previous, light_pdf));
+}
+
+/// Describes BSDF sampling at the surface at which a light is sampled: the inputs of the MIS weight
+/// of light sampling.
+struct CompetingBsdfSampling {
+  Technique technique = Technique::kBoth;
+  /// Local shading: sampled directions contribute only the environment.
+  bool reaches_distant_only = false;
+  /// True if light is sampled on the far side of the surface. There, directions that pass the
+  /// surface have MIS weight 1, so light sampling covers only lights that they cannot reach.
+  bool beyond_surface = false;
+};
+
+/// Returns true if BSDF sampling alone accounts for the light on the far side of the surface.
+bool is_left_to_bsdf_sampling(const LightSample& light, const CompetingBsdfSampling& bsdf) {
+  return bsdf.beyond_surface && !light.delta && (!bsdf.reaches_distant_only || light.distant);
+}
+
+/// Returns true if BSDF sampling samples the light as well, on the near side of the surface.
+bool is_also_sampled_by_bsdf(const LightSample& light, const CompetingBsdfSampling& bsdf) {
+  return !light.delta && !bsdf.beyond_surface &&
+         (bsdf.technique == Technique::kBoth || (bsdf.reaches_distant_only && light.distant));
+}
+
+/// Returns the light-sampling estimate of the radiance scattered at the point: samples one light,
+/// traces a shadow ray to it and applies the MIS weight.
+Rgb sample_light(const Scene& scene, const SurfacePoint& point, const Receiver& receiver,
+                 const Bsdf& bsdf, const Sample4& numbers, const CompetingBsdfSampling& competing,
+                 std::uint64_t& rays) {
+  // The fourth number refines the selection among many lights.
+  const double choice = numbers[0] + numbers[3] * 0x1p-32;
+  const std::optional<LightSample> light =
+      scene.lights().sample(receiver, choice, numbers[1], numbers[2]);
+  if (!light || is_left_to_bsdf_sampling(*light, competing)) {
+    return {};
+  }
+  const BsdfValue scattered = evaluate(bsdf, light->direction);
+  if (is_black(scattered.value)) {
+    return {};
+  }
+  const Ray shadow_ray =
+      light->distant ? spawn_ray(point, light->direction) : spawn_ray_to(point, light->target, 0);
+  const Rgb passing = transmittance(scene, shadow_ray, rays);
+  if (is_black(passing)) {
+    return {};
+  }
+  const double weight =
+      is_also_sampled_by_bsdf(*light, competing) ? power_heuristic(light->pdf, scattered.pdf) : 1;
+  return scattered.value * light->radiance * static_cast<float>(weight / light->pdf) * passing;
+}
+
+/// Returns the environment's radiance in a direction that local shading sampled from the BSDF, with
+/// its MIS weight and the transmittance of the ray.
+Rgb environment_along(const Scene& scene, const SurfacePoint& point, const PreviousVertex& previous,
+                      const Vec3& direction, std::uint64_t& rays) {
+  const Rgb passing = transmittance(scene, spawn_ray(point, direction), rays);
+  return is_black(passing)
+             ? Rgb{}
+             : weighted_background(scene, previous, direction, Technique::kBoth) * passing;
+}
+
+bool is_metal(const Material& material) { return std::holds_alternative<Metal>(material); }
+
+/// Continues from a surface, as scattering `depth`, in all directions into which the path is split.
+void trace_branches(const PathContext& context, const SurfacePoint& point, const Bsdf& bsdf,
+                    std::uint32_t depth, PathState& path) {
   Rgb sum;
   for (std::uint32_t i = 0; i < context.branches; ++i) {
     const PathContext of_branch = context.branch(i);
     PathState branch = path;
     branch.radiance = {};
     if (scatter(of_branch, point, bsdf, depth, branch)) {
-      follow(of_branch, depth + 1, branch);
+      trace_path(of_branch, depth + 1, branch);
     }
     sum += branch.radiance;
     path.truncated |= branch.truncated;
@@ -38,35 +141,145 @@ std::uint32_t branches_for(const Scene& scene) {
   return scene.geometry().meshes.empty() ? 2 : 4;
 }
 
-void follow(const PathContext& context, std::uint32_t depth, PathState& path) {
-  for (;; ++depth) {
-    const std::optional<SurfacePoint> seen = next_surface(context, depth, path);
-    if (seen) {
-      see_surface(context, *seen, path);
+void add_emission(const PathContext& context, const SurfacePoint& point, PathState& path) {
+  const Scene& scene = context.scene;
+  const Rgb light =
+      emitted(scene.material(point.material), scene.textures(), point, -path.ray.direction);
+  if (is_black(light)) {
+    return;
+  }
+  Rgb passing = gray(1);
+  if (scene.features().media) {
+    Ray up_to_light = path.ray;
+    up_to_light.t_max = distance_along(up_to_light, point);
+    passing = media_transmittance(scene, up_to_light, context.rays);
+  }
+  path.radiance += path.throughput * light * passing *
+                   emission_weight(scene, path.previous, point, context.options.technique);
+}
+
+void add_background(const PathContext& context, PathState& path) {
+  path.radiance +=
+      path.throughput * weighted_background(context.scene, path.previous, path.ray.direction,
+                                            context.options.technique);
+}
+
+std::optional<Bsdf> make_bsdf(const PathContext& context, const SurfacePoint& point,
+                              std::uint32_t depth, PathState& path) {
+  const Scene& scene = context.scene;
+  const Material& material = scene.material(point.material);
+  const Vec3 wo = -path.ray.direction;
+  if (std::holds_alternative<Emissive>(material)) {
+    return std::nullopt;
+  }
+  if (depth == context.options.max_depth) {
+    path.truncated = true;
+    return std::nullopt;
+  }
+  double outside_index = 1;
+  if (nested_glass(material) != nullptr) {
+    const bool enters = dot(wo, point.geometric_normal) >= 0;
+    const Interiors& outside = enters ? path.nesting.here : path.nesting.beyond;
+    outside_index = outside.index_without(point.material);
+  }
+  return bsdf_at(material, scene.textures(), point, wo, outside_index);
+}
+
+bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& bsdf,
+             std::uint32_t depth, PathState& path) {
+  const Scene& scene = context.scene;
+  const PathOptions& options = context.options;
+  const Material& material = scene.material(point.material);
+  const Receiver receiver = receiver_of(point, -path.ray.direction);
+  // Local shading ends here; the sampled direction only collects the environment.
+  const bool is_last = options.local && has_pdf(bsdf) && !is_metal(material);
+
+  // Light sampling, on the side from which the path came and, where only light sampling reaches
+  // some lights, on the far side.
+  if (context.samples_lights() && has_pdf(bsdf)) {
+    const Sample4 numbers = context.numbers(group_light(depth));
+    CompetingBsdfSampling competing = is_last ? CompetingBsdfSampling{Technique::kLightsOnly, true}
+                                              : CompetingBsdfSampling{options.technique, false};
+    path.radiance += path.throughput *
+                     sample_light(scene, point, receiver, bsdf, numbers, competing, context.rays);
+    if (has_pdf_behind(bsdf) && (is_last || scene.lights().any_delta())) {
+      const Receiver behind{point.position, -*receiver.normal, point.time};
+      competing.beyond_surface = true;
+      path.radiance += path.throughput *
+                       sample_light(scene, point, behind, bsdf, numbers, competing, context.rays);
     }
-    if (context.scene.needs().media) {
-      const double way = seen ? distance_along(path.ray, *seen) : kInfinity;
-      const Passage passage = through_media(context, way, depth, path);
-      if (passage == Passage::kEnded) {
+  }
+  if (is_last) {
+    const Rgb albedo = albedo_at(material, scene.textures(), point);
+    path.radiance += path.throughput * albedo * scene.local_shading().ambient;
+  }
+
+  // BSDF sampling.
+  const Sample4 numbers = context.numbers(group_bsdf(depth));
+  const std::optional<BsdfSample> next = sample(bsdf, numbers[0], numbers[1], numbers[2]);
+  if (!next) {
+    return false;
+  }
+  // Light sampling did not cover the transmission side, so transmitted directions keep MIS weight
+  // 1.
+  const bool passes = dot(next->wi, *receiver.normal) <= 0;
+  path.previous = {receiver, next->pdf, next->delta || passes};
+  path.throughput *= next->weight;
+  if (is_last && !next->delta) {
+    if (scene.background().environment) {
+      path.radiance +=
+          path.throughput * environment_along(scene, point, path.previous, next->wi, context.rays);
+    }
+    return false;
+  }
+  path.compression *= next->compression;
+  if (!survives_roulette(context, depth, numbers[3], path)) {
+    return false;
+  }
+  if (passes && nested_glass(material) != nullptr) {
+    path.nesting.here = path.nesting.beyond;
+  }
+  path.ray = spawn_ray(point, next->wi);
+  return true;
+}
+
+void trace_path(const PathContext& context, std::uint32_t depth, PathState& path) {
+  for (;; ++depth) {
+    // Find the first visible surface along the ray.
+    const std::optional<SurfacePoint> hit = next_surface(context, depth, path);
+    // Add its emission, weighted against light sampling at the previous vertex.
+    if (hit) {
+      add_emission(context, *hit, path);
+    }
+    // Sample light in the media before the surface. The path may scatter there and continue from a
+    // point in a medium.
+    if (context.scene.features().media) {
+      const double length = hit ? distance_along(path.ray, *hit) : kInfinity;
+      const MediumEvent event = through_media(context, length, depth, path);
+      if (event == MediumEvent::kEnded) {
         return;
       }
-      if (passage == Passage::kScattered) {
+      if (event == MediumEvent::kScattered) {
         continue;
       }
     }
-    if (!seen) {
-      leave_scene(context, path);
+    // Add the background where the ray leaves the scene.
+    if (!hit) {
+      add_background(context, path);
       return;
     }
-    const std::optional<Bsdf> bsdf = arrive(context, *seen, depth, path);
+    // Evaluate the material. Emitters do not scatter, and paths end at the maximum depth.
+    const std::optional<Bsdf> bsdf = make_bsdf(context, *hit, depth, path);
     if (!bsdf) {
       return;
     }
-    if (context.branches > 1 && has_density(*bsdf)) {
-      follow_branches(context, *seen, *bsdf, depth, path);
+    // Split the path at the first surface with a pdf, if the options ask for it.
+    if (context.branches > 1 && has_pdf(*bsdf)) {
+      trace_branches(context, *hit, *bsdf, depth, path);
       return;
     }
-    if (!scatter(context, *seen, *bsdf, depth, path)) {
+    // Sample a light, then a direction from the BSDF; Russian roulette may end the path.
+    if (!scatter(context, *hit, *bsdf, depth, path)) {
       return;
     }
   }
@@ -77,9 +290,9 @@ Rgb path_radiance(const Scene& scene, const CameraRay& camera_ray, const PixelSa
   const PathContext context{scene, sampler, sample, options, counts.rays, options.branches};
   PathState path(camera_ray.ray);
   if (camera_ray.lens) {
-    ask_through_lens(context, *camera_ray.lens, path);
+    sample_light_through_lens(context, *camera_ray.lens, path);
   }
-  follow(context, 0, path);
+  trace_path(context, 0, path);
   counts.truncated += path.truncated ? 1 : 0;
   return path.radiance;
 }

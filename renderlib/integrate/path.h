@@ -30,8 +30,8 @@ struct PathOptions {
   Technique technique = Technique::kBoth;
   bool russian_roulette = true;
   /// Local shading (the integrator `direct`): the path ends at the first surface that has a pdf,
-  /// which reflects the lights and the scene's ambient term but no indirect light. Only mirrors,
-  /// glass and fuzzy metal are followed.
+  /// which reflects the lights and the scene's ambient term but no indirect light. Paths continue
+  /// only at mirrors, glass and fuzzy metal.
   bool local = false;
   /// Number of directions in which a path continues from the first surface that has a pdf, each
   /// with an equal share (splitting: Arvo and Kirk 1990, "Particle Transport and Image Synthesis").
@@ -50,9 +50,6 @@ struct PathCounts {
   /// have carried is missing.
   std::uint64_t truncated = 0;
 };
-
-/// Russian roulette may end a path from this scattering on.
-inline constexpr std::uint32_t kRouletteDepth = 3;
 
 /// A camera ray for one sample of a pixel.
 struct CameraRay {

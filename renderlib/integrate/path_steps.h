@@ -1,6 +1,7 @@
 #pragma once
 
-// Steps from which path.cpp and shared_paths.cpp build their paths.
+// The steps of a path, from which path.cpp and path_reuse.cpp build their paths. Defined in
+// path.cpp.
 
 #include <cstdint>
 #include <optional>
@@ -15,43 +16,44 @@ namespace bandsaw {
 /// if the ray leaves the scene.
 inline std::optional<SurfacePoint> next_surface(const PathContext& context, std::uint32_t depth,
                                                 PathState& path) {
-  std::optional<SurfacePoint> seen = first_surface(
+  std::optional<SurfacePoint> hit = intersect_visible(
       context.scene, path.ray, context.sampler, context.sample, depth, path.nesting, context.rays);
   // Shadow rays stop at hidden boundaries of nested glass, so light sampling does not cover this
   // hit.
-  path.departure.delta = path.departure.delta || path.nesting.passed_unseen;
-  return seen;
+  path.previous.delta = path.previous.delta || path.nesting.skipped_hidden;
+  return hit;
 }
 
 /// Adds the emission of the surface at `point`, which the path's ray hits, with its MIS weight and
 /// attenuated by all media on the ray. It is added deterministically, before the media decide
 /// whether the path passes them: a light is usually brighter than the light scattered in front of
 /// it, and the transmittance costs no extra path.
-void see_surface(const PathContext& context, const SurfacePoint& point, PathState& path);
+void add_emission(const PathContext& context, const SurfacePoint& point, PathState& path);
+
+/// Adds the background radiance with its MIS weight when the path leaves the scene.
+void add_background(const PathContext& context, PathState& path);
 
 /// Returns the BSDF of the surface at `point` as scattering number `depth`. Returns std::nullopt if
 /// the surface does not scatter or if `max_depth` is reached; the latter marks the path as
 /// truncated.
-std::optional<Bsdf> arrive(const PathContext& context, const SurfacePoint& point,
-                           std::uint32_t depth, PathState& path);
+std::optional<Bsdf> make_bsdf(const PathContext& context, const SurfacePoint& point,
+                              std::uint32_t depth, PathState& path);
 
-/// Adds the light-sampling estimate at the surface, then samples the BSDF and continues the path in
-/// the sampled direction. Returns false if the path ends. `bsdf` is the result of `arrive()`.
+/// Adds the light-sampling estimate at the surface, samples the BSDF, applies Russian roulette, and
+/// continues the path in the sampled direction. Returns false if the path ends. `bsdf` is the
+/// result of `make_bsdf()`.
 bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& bsdf,
              std::uint32_t depth, PathState& path);
 
-/// Runs `see_surface()`, `arrive()` and `scatter()`. Returns false if the path ends.
+/// Runs `add_emission()`, `make_bsdf()` and `scatter()`. Returns false if the path ends.
 inline bool scatter_at(const PathContext& context, const SurfacePoint& point, std::uint32_t depth,
                        PathState& path) {
-  see_surface(context, point, path);
-  const std::optional<Bsdf> bsdf = arrive(context, point, depth, path);
+  add_emission(context, point, path);
+  const std::optional<Bsdf> bsdf = make_bsdf(context, point, depth, path);
   return bsdf && scatter(context, point, *bsdf, depth, path);
 }
 
-/// Adds the background radiance with its MIS weight when the path leaves the scene.
-void leave_scene(const PathContext& context, PathState& path);
-
 /// Traces the path along its ray, from scattering `depth` until it ends.
-void follow(const PathContext& context, std::uint32_t depth, PathState& path);
+void trace_path(const PathContext& context, std::uint32_t depth, PathState& path);
 
 }  // namespace bandsaw

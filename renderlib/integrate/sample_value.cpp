@@ -1,7 +1,7 @@
 #include "renderlib/integrate/sample_value.h"
 
 #include "renderlib/geometry/surface.h"
-#include "renderlib/integrate/see_through.h"
+#include "renderlib/integrate/intersect_visible.h"
 #include "renderlib/material/albedo.h"
 #include "renderlib/material/look_up.h"
 #include "renderlib/material/shading_normal.h"
@@ -36,17 +36,17 @@ float openness(const Scene& scene, const SurfacePoint& point, const Vec3& wo, do
     return 0;
   }
   const double distance = scene.local_shading().occlusion_distance;
-  return scene.accel().occluded(leave(point, normalize(direction), distance)) ? 0.0f : 1.0f;
+  return scene.accel().occluded(spawn_ray(point, normalize(direction), distance)) ? 0.0f : 1.0f;
 }
 
 Rgb value_at(const Scene& scene, Integrator integrator, const Ray& ray, const PixelSampler& sampler,
              std::uint64_t sample, std::uint64_t& rays) {
-  Nesting nesting;
-  const auto seen = first_surface(scene, ray, sampler, sample, 0, nesting, rays);
-  if (!seen) {
+  NestedDielectrics nesting;
+  const auto hit = intersect_visible(scene, ray, sampler, sample, 0, nesting, rays);
+  if (!hit) {
     return gray(integrator == Integrator::kAmbientOcclusion ? 1.0f : 0.0f);
   }
-  const SurfacePoint& point = *seen;
+  const SurfacePoint& point = *hit;
   if (integrator == Integrator::kDepth) {
     return gray(static_cast<float>(length(point.position - ray.origin)));
   }
@@ -66,7 +66,7 @@ Rgb value_at(const Scene& scene, Integrator integrator, const Ray& ray, const Pi
 Rgb sample_value(const Scene& scene, Integrator integrator, const CameraRay& camera_ray,
                  const PixelSampler& sampler, std::uint64_t sample, const PathOptions& options,
                  PathCounts& counts) {
-  if (follows_light(integrator)) {
+  if (computes_radiance(integrator)) {
     return path_radiance(scene, camera_ray, sampler, sample, options, counts);
   }
   return value_at(scene, integrator, camera_ray.ray, sampler, sample, counts.rays);

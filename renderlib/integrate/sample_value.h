@@ -10,7 +10,7 @@
 namespace bandsaw {
 
 /// Returns the sample's value; the arguments are those of `path_radiance()`. Integrators that do
-/// not follow light trace only the camera ray, ambient occlusion one more ray.
+/// not compute radiance trace only the camera ray, ambient occlusion one more ray.
 Rgb sample_value(const Scene& scene, Integrator integrator, const CameraRay& camera_ray,
                  const PixelSampler& sampler, std::uint64_t sample, const PathOptions& options,
                  PathCounts& counts);

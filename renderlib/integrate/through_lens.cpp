@@ -2,12 +2,12 @@
 
 #include <optional>
 
-#include "renderlib/integrate/through_media.h"
-#include "renderlib/sampling/warp.h"
+#include "renderlib/integrate/mis.h"
+#include "renderlib/integrate/visibility.h"
 
 namespace bandsaw {
 
-void ask_through_lens(const PathContext& context, const LensView& lens, PathState& path) {
+void sample_light_through_lens(const PathContext& context, const LensView& lens, PathState& path) {
   if (context.options.technique != Technique::kBoth) {
     return;
   }
@@ -16,19 +16,19 @@ void ask_through_lens(const PathContext& context, const LensView& lens, PathStat
   if (!lights.any_for(focus)) {
     return;
   }
-  path.departure = {.from = focus, .pdf = lens.pdf(path.ray.direction), .delta = false};
+  path.previous = {.receiver = focus, .pdf = lens.pdf(path.ray.direction), .delta = false};
   const Sample4 numbers = context.numbers(kGroupTime);
   const std::optional<LightSample> light = lights.sample(focus, numbers[1], numbers[2], numbers[3]);
   if (!light || light->delta) {
     return;
   }
-  const std::optional<Vec3> from = lens.on_lens(light->direction);
-  if (!from) {
+  const std::optional<Vec3> on_lens = lens.on_lens(light->direction);
+  if (!on_lens) {
     return;
   }
-  const Ray way{
-      .origin = *from, .direction = light->target - *from, .t_max = 1, .time = path.ray.time};
-  const Rgb passing = passing_light(context.scene, way, context.rays);
+  const Ray shadow_ray{
+      .origin = *on_lens, .direction = light->target - *on_lens, .t_max = 1, .time = path.ray.time};
+  const Rgb passing = transmittance(context.scene, shadow_ray, context.rays);
   const double pdf = lens.pdf(light->direction);
   const double weight = power_heuristic(light->pdf, pdf);
   path.radiance += light->radiance * passing * static_cast<float>(weight * pdf / light->pdf);

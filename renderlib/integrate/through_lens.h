@@ -13,9 +13,9 @@
 namespace bandsaw {
 
 /// Adds a light-sampling estimate for one light beyond the plane of focus, and sets the path's
-/// departure so that the next hit gets the matching MIS weight. The path's ray MUST pass through
-/// the point in focus of `lens`. Does nothing unless the technique is `kBoth` and some light may be
-/// in the cone beyond the point in focus. `lens` MUST outlive the path's first step.
-void ask_through_lens(const PathContext& context, const LensView& lens, PathState& path);
+/// previous vertex so that the next hit gets the matching MIS weight. The path's ray MUST pass
+/// through the point in focus of `lens`. Does nothing unless the technique is `kBoth` and some
+/// light may be in the cone beyond the point in focus. `lens` MUST outlive the path's first step.
+void sample_light_through_lens(const PathContext& context, const LensView& lens, PathState& path);
 
 }  // namespace bandsaw

@@ -4,7 +4,8 @@
 //
 // In each segment of a medium, light is sampled at one distance, and the path is scattered at
 // another distance or passes. The distance for light sampling comes from a mixture of free-flight
-// sampling (medium/flight.h) and equiangular sampling (medium/equiangular.h), see asked_distance.h.
+// sampling (medium/free_flight.h) and equiangular sampling (medium/equiangular.h), see
+// light_distance_sampler.h.
 // Emission that the scattered path hits is weighted against light sampling by the power heuristic,
 // over the product of distance pdf and direction pdf.
 
@@ -12,20 +13,17 @@
 
 namespace bandsaw {
 
-enum class Passage {
-  kThrough,    ///< the path reaches the end of the ray; its throughput is attenuated
-  kScattered,  ///< the path continues from a point inside a medium, with a new ray and departure
+/// What happened to a path in the media along its ray.
+enum class MediumEvent {
+  kPassed,     ///< the path reaches the end of the ray; its throughput is attenuated
+  kScattered,  ///< the path continues from a point inside a medium, with a new ray and vertex
   kEnded,      ///< the path ends
 };
 
 /// Advances the path along its ray by `length` (scene units, > 0, may be infinite), towards or as
 /// scattering number `depth`. At the maximum depth and with local shading the path is not
-/// scattered. The scene MUST need media.
-Passage through_media(const PathContext& context, double length, std::uint32_t depth,
-                      PathState& path);
-
-/// Returns the transmittance along the ray: visibility between surfaces times the transmittance of
-/// media. Adds the number of rays traced to `rays`.
-Rgb passing_light(const Scene& scene, const Ray& ray, std::uint64_t& rays);
+/// scattered. The scene MUST have media (`SceneFeatures::media`).
+MediumEvent through_media(const PathContext& context, double length, std::uint32_t depth,
+                          PathState& path);
 
 }  // namespace bandsaw

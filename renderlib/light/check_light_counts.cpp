@@ -10,29 +10,29 @@
 namespace bandsaw {
 namespace {
 
-/// Of each material.
-using Shines = std::vector<bool>;
+/// For each material, true if it emits light.
+using Emits = std::vector<bool>;
 
-/// Of each group, whether any of its shapes shines by its own material.
-std::vector<bool> shining_groups(const Geometry& geometry, const Shines& shines) {
+/// Returns for each group whether any of its shapes emits light by its own material.
+std::vector<bool> emitting_groups(const Geometry& geometry, const Emits& emits) {
   std::vector<bool> groups;
   for (const Shapes& group : geometry.groups) {
     bool any = false;
     for (std::size_t shape = 0; shape < group.size() && !any; ++shape) {
-      any = shines[index_of(material_of(group, shape))];
+      any = emits[index_of(material_of(group, shape))];
     }
     groups.push_back(any);
   }
   return groups;
 }
 
-/// How many primitives Lights gives numbers to.
-std::uint64_t numbered(const Geometry& geometry, const Shines& shines) {
-  const std::vector<bool> groups = shining_groups(geometry, shines);
+/// Returns the number of primitives that `Lights` numbers.
+std::uint64_t numbered(const Geometry& geometry, const Emits& emits) {
+  const std::vector<bool> groups = emitting_groups(geometry, emits);
   std::uint64_t count = geometry.size();
   for (const Instance& instance : geometry.instances) {
     const bool own = instance.group != kNoGroup && instance.material == kOwnMaterial;
-    const bool any = own ? groups[index_of(instance.group)] : shines[index_of(instance.material)];
+    const bool any = own ? groups[index_of(instance.group)] : emits[index_of(instance.material)];
     count += any ? primitives_of(geometry, instance) : 0;
   }
   return count;
@@ -41,22 +41,23 @@ std::uint64_t numbered(const Geometry& geometry, const Shines& shines) {
 }  // namespace
 
 absl::Status check_light_counts(const Geometry& geometry, absl::Span<const Material> materials,
-                                absl::Span<const Texture> textures, std::uint64_t without_size) {
-  Shines shines;
+                                absl::Span<const Texture> textures, std::uint64_t delta_lights) {
+  Emits emits;
   for (const Material& material : materials) {
-    shines.push_back(emission_of(material).has_value());
+    emits.push_back(emission_of(material).has_value());
   }
-  if (numbered(geometry, shines) + without_size <= kMaxLights) {
+  if (numbered(geometry, emits) + delta_lights <= kMaxLights) {
     return absl::OkStatus();
   }
-  // Textures that are black all over are looked at only where that matters: it takes long.
+  // Completely black textures are detected only if that can change the result, because it takes
+  // long.
   for (std::size_t i = 0; i < materials.size(); ++i) {
     if (const auto emission = emission_of(materials[i])) {
       const Tint& radiance = emission->radiance;
-      shines[i] = !is_black(mean(textures, radiance.texture) * radiance.factor);
+      emits[i] = !is_black(mean(textures, radiance.texture) * radiance.factor);
     }
   }
-  const std::uint64_t count = numbered(geometry, shines) + without_size;
+  const std::uint64_t count = numbered(geometry, emits) + delta_lights;
   if (count <= kMaxLights) {
     return absl::OkStatus();
   }

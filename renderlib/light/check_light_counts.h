@@ -1,6 +1,6 @@
 #pragma once
 
-// Whether a scene has no more lights than have numbers (light/lights.h).
+// Checks that a scene does not have more lights than can be numbered (light/lights.h).
 
 #include <cstdint>
 
@@ -12,13 +12,14 @@
 
 namespace bandsaw {
 
-/// Lights are numbered in 31 bits, and so are the primitives of what shines, dark ones among them.
+/// Maximum number of lights: they are numbered in 31 bits, and so are the primitives of instances
+/// that emit light, including those that emit none themselves.
 inline constexpr std::uint64_t kMaxLights = (std::uint64_t{1} << 31) - 1;
 
-/// INVALID_ARGUMENT: the loose shapes, the primitives of all instances that shine, and
-/// `without_size` lights without size are more than kMaxLights. Nothing is allocated for them.
-/// Indices into the geometry, of materials and of textures MUST be valid.
+/// Returns INVALID_ARGUMENT if the loose shapes, the primitives of all instances that emit light
+/// and `delta_lights` together are more than kMaxLights. Indices of meshes, groups, materials and
+/// textures MUST be valid.
 absl::Status check_light_counts(const Geometry& geometry, absl::Span<const Material> materials,
-                                absl::Span<const Texture> textures, std::uint64_t without_size);
+                                absl::Span<const Texture> textures, std::uint64_t delta_lights);
 
 }  // namespace bandsaw

@@ -10,7 +10,7 @@ namespace bandsaw {
 namespace {
 
 /// Within this bound, squares of distances do not overflow a double.
-constexpr double kMostCoordinate = 1e30;
+constexpr double kMaxCoordinate = 1e30;
 constexpr double kUnit = 1e-9;
 constexpr double kOrthonormal = 1e-9;
 
@@ -42,10 +42,10 @@ absl::Status check_unit(const std::string& field, const Vec3& d) {
 }
 
 absl::Status check_position(const std::string& field, const Vec3& p) {
-  if (is_finite(p) && max_abs(p) <= kMostCoordinate) {
+  if (is_finite(p) && max_abs(p) <= kMaxCoordinate) {
     return absl::OkStatus();
   }
-  return invalid(field, absl::StrCat("must be within +-", kMostCoordinate, ", is [", p.x, ", ", p.y,
+  return invalid(field, absl::StrCat("must be within +-", kMaxCoordinate, ", is [", p.x, ", ", p.y,
                                      ", ", p.z, "]"));
 }
 
@@ -127,8 +127,8 @@ absl::Status check_lights(const Background& background, absl::Span<const Texture
     }
     directional += std::holds_alternative<DirectionalLight>(lights[i]) ? 1 : 0;
   }
-  if (directional > kMostDirectionalLights) {
-    return invalid("light", absl::StrCat("at most ", kMostDirectionalLights,
+  if (directional > kMaxDirectionalLights) {
+    return invalid("light", absl::StrCat("at most ", kMaxDirectionalLights,
                                          " may be directional, there are ", directional));
   }
   return absl::OkStatus();

@@ -43,11 +43,11 @@ DeltaLight placed(const DeltaLight& light, const Transform& to);
 
 /// Maximum number of directional lights in a scene: all of them are evaluated at every point that
 /// samples light.
-inline constexpr std::size_t kMostDirectionalLights = 8;
+inline constexpr std::size_t kMaxDirectionalLights = 8;
 
 /// Unoccluded illumination at a point.
 struct Arrival {
-  Vec3 way;        ///< vector to the light; a unit vector if the light is infinitely far away
+  Vec3 to_light;   ///< vector to the light; a unit vector if the light is infinitely far away
   Rgb irradiance;  ///< of a surface that faces the light
 };
 Arrival arrival(const DirectionalLight& light, const Vec3& at);

@@ -14,7 +14,7 @@ namespace {
 
 /// If the luminance above the mean is less than this share of the total, it is rounding or not
 /// worth a shadow ray, and the environment counts as uniform.
-constexpr double kLeastExcess = 1e-6;
+constexpr double kMinExcess = 1e-6;
 
 bool is_cube(const Environment& environment) {
   return environment.kind == Environment::Kind::kCube;
@@ -88,7 +88,7 @@ EnvironmentLight::EnvironmentLight(Environment environment, absl::Span<const Tex
     return weight(image_of(environment_, textures_, row / first.height), x, y) * solid_angle(x, y);
   });
   const double excess = texels_.total() * environment_.strength;
-  const bool is_even = texels_.total() <= kLeastExcess * 4 * kPi * mean_;
+  const bool is_even = texels_.total() <= kMinExcess * 4 * kPi * mean_;
   excess_ = is_even || !std::isfinite(excess) ? 0 : excess;
 }
 

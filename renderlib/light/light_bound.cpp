@@ -15,10 +15,10 @@ constexpr double kJustFacing = 1 - 0x1p-40;
 
 /// Minimum distance of a light from a ray, relative to the distance to the light
 /// (medium/equiangular.h).
-constexpr double kLeastAside = 1e-6;
+constexpr double kMinAside = 1e-6;
 
 /// Upper bound of an importance, so that sums and ratios stay finite.
-constexpr double kMostGiven = 1e300;
+constexpr double kMaxImportance = 1e300;
 
 /// An angle in [0, 180] degrees, given by its sine and cosine.
 struct Angle {
@@ -71,16 +71,16 @@ LightBound bound_of(const SpotLight& light) {
 }
 
 double importance(const LightBound& bound, const Receiver& receiver) {
-  const Vec3 way = bound.ball.center - receiver.position;
-  const double distance2 = length_squared(way);
+  const Vec3 to_light = bound.ball.center - receiver.position;
+  const double distance2 = length_squared(to_light);
   const double radius = bound.ball.radius;
   const double near2 = std::max(distance2, radius * radius);
   if (!(near2 > 0)) {
     return 0;  // The receiver coincides with a light without extent.
   }
-  const double given = std::min(bound.intensity / near2, kMostGiven);
+  const double given = std::min(bound.intensity / near2, kMaxImportance);
   if (bound.flat) {
-    const double height = -dot(bound.axis, way);
+    const double height = -dot(bound.axis, to_light);
     if (height == 0 || (height < 0 && !bound.two_sided)) {
       return 0;
     }
@@ -93,21 +93,21 @@ double importance(const LightBound& bound, const Receiver& receiver) {
   const Angle seen{sin_seen, std::sqrt((1 - sin_seen) * (1 + sin_seen))};
   if (receiver.within != nullptr) {
     const Cone& cone = *receiver.within;
-    const Angle off = angle_of(dot(cone.axis, way) / distance);
+    const Angle off = angle_of(dot(cone.axis, to_light) / distance);
     if (reduced(reduced(off, {cone.sin, cone.cos}), seen).cos < 1) {
       return 0;
     }
   }
   double cosines = 1;
   if (receiver.normal) {
-    cosines = reduced(angle_of(dot(*receiver.normal, way) / distance), seen).cos;
+    cosines = reduced(angle_of(dot(*receiver.normal, to_light) / distance), seen).cos;
     if (cosines <= 0) {
       return 0;
     }
   }
   if (bound.cos_spread > -1) {
-    const double toward = -dot(bound.axis, way) / distance;
-    const Angle off = angle_of(bound.two_sided ? std::abs(toward) : toward);
+    const double along_axis = -dot(bound.axis, to_light) / distance;
+    const Angle off = angle_of(bound.two_sided ? std::abs(along_axis) : along_axis);
     const double facing = reduced(reduced(off, angle_of(bound.cos_spread)), seen).cos;
     if (facing <= bound.cos_reach) {
       return 0;
@@ -117,18 +117,18 @@ double importance(const LightBound& bound, const Receiver& receiver) {
   return given * cosines;
 }
 
-double importance(const LightBound& bound, const LitStretch& stretch) {
-  const Vec3 to_light = bound.ball.center - stretch.origin;
-  const double nearest = stretch.nearest(bound.ball.center);
-  const double aside = std::max({length(to_light - stretch.way * nearest), bound.ball.radius,
-                                 kLeastAside * length(to_light)});
+double importance(const LightBound& bound, const ReceiverSegment& segment) {
+  const Vec3 to_light = bound.ball.center - segment.origin;
+  const double nearest = segment.nearest(bound.ball.center);
+  const double aside = std::max({length(to_light - segment.direction * nearest), bound.ball.radius,
+                                 kMinAside * length(to_light)});
   if (!(aside > 0)) {
-    return kMostGiven;
+    return kMaxImportance;
   }
-  const double angle = std::min(kPi, stretch.length / aside);
+  const double angle = std::min(kPi, segment.length / aside);
   const double given =
-      bound.intensity * exp(-stretch.extinction * (nearest + aside)) * angle / aside;
-  return std::min(given, kMostGiven);
+      bound.intensity * exp(-segment.extinction * (nearest + aside)) * angle / aside;
+  return std::min(given, kMaxImportance);
 }
 
 }  // namespace bandsaw

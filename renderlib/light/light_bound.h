@@ -38,7 +38,7 @@ double importance(const LightBound& bound, const Receiver& receiver);
 /// as if it were centred on its point closest to the light; attenuated by the medium along the path
 /// through that point to the light. Orientation is ignored, because the segment may cross a spot
 /// light's cone anywhere.
-double importance(const LightBound& bound, const LitStretch& stretch);
+double importance(const LightBound& bound, const ReceiverSegment& segment);
 
 /// Returns the mean of the channels.
 inline double brightness(const Rgb& c) { return (double{c.r} + c.g + c.b) / 3; }

@@ -12,20 +12,20 @@ double importance(const DistantBound& bound, const Receiver& receiver) {
   if (receiver.within != nullptr) {
     return 0;
   }
-  if (!bound.way || !receiver.normal) {
+  if (!bound.direction || !receiver.normal) {
     return bound.irradiance;
   }
-  return bound.irradiance * std::max(0.0, dot(*receiver.normal, *bound.way));
+  return bound.irradiance * std::max(0.0, dot(*receiver.normal, *bound.direction));
 }
 
-double importance(const DistantBound& bound, const LitStretch& stretch) {
-  return bound.irradiance * std::min(stretch.length, 1 / stretch.extinction);
+double importance(const DistantBound& bound, const ReceiverSegment& segment) {
+  return bound.irradiance * std::min(segment.length, 1 / segment.extinction);
 }
 
 LightChoice::LightChoice(std::vector<LightBound> local, std::vector<DistantBound> distant)
     : distant_(std::move(distant)) {
-  BANDSAW_CHECK(distant_.size() < kFewLights, "a scene has few distant lights");
-  if (local.size() + distant_.size() <= kFewLights) {
+  BANDSAW_CHECK(distant_.size() < kMaxIndividualLights, "a scene has few distant lights");
+  if (local.size() + distant_.size() <= kMaxIndividualLights) {
     few_ = std::move(local);
     return;
   }
@@ -57,7 +57,7 @@ bool LightChoice::any_for(const Receiver& receiver) const {
 
 template <typename From>
 std::optional<LightChoice::Choice> LightChoice::choose(const From& receiver, double number) const {
-  std::array<double, kFewLights> sums;
+  std::array<double, kMaxIndividualLights> sums;
   const std::size_t count = candidates();
   double sum = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -89,7 +89,8 @@ std::optional<LightChoice::Choice> LightChoice::choose(const From& receiver, dou
 }
 
 template std::optional<LightChoice::Choice> LightChoice::choose(const Receiver&, double) const;
-template std::optional<LightChoice::Choice> LightChoice::choose(const LitStretch&, double) const;
+template std::optional<LightChoice::Choice> LightChoice::choose(const ReceiverSegment&,
+                                                                double) const;
 
 double LightChoice::probability(const Receiver& receiver, std::size_t light) const {
   const bool is_in_tree = light < in_tree_;

@@ -15,17 +15,17 @@ namespace bandsaw {
 struct DistantBound {
   double irradiance = 0;
   /// Unit vector to the light; std::nullopt for light from all directions.
-  std::optional<Vec3> way;
+  std::optional<Vec3> direction;
 };
 double importance(const DistantBound& bound, const Receiver& receiver);
-double importance(const DistantBound& bound, const LitStretch& stretch);
+double importance(const DistantBound& bound, const ReceiverSegment& segment);
 
-/// Up to kFewLights lights are evaluated individually at every point. If there are more, the local
-/// ones are selected through a light tree, next to which the distant ones are evaluated
+/// Up to kMaxIndividualLights lights are evaluated individually at every point. If there are more,
+/// the local ones are selected through a light tree, next to which the distant ones are evaluated
 /// individually.
 class LightChoice {
  public:
-  static constexpr std::size_t kFewLights = 16;
+  static constexpr std::size_t kMaxIndividualLights = 16;
 
   /// Lights are numbered in the order of `local`, followed by `distant`.
   struct Choice {
@@ -34,14 +34,14 @@ class LightChoice {
   };
 
   LightChoice() = default;
-  /// `distant` MUST have fewer than kFewLights elements.
+  /// `distant` MUST have fewer than kMaxIndividualLights elements.
   LightChoice(std::vector<LightBound> local, std::vector<DistantBound> distant);
 
   /// Returns true if any light may reach the receiver.
   bool any_for(const Receiver& receiver) const;
   /// Selects a light. `number` is in [0, 1) and should have the resolution of a double: selection
   /// frequencies are right down to the spacing of the numbers. Returns std::nullopt if no light
-  /// reaches the receiver. `From` is `Receiver` or `LitStretch`.
+  /// reaches the receiver. `From` is `Receiver` or `ReceiverSegment`.
   template <typename From>
   std::optional<Choice> choose(const From& receiver, double number) const;
   /// Returns the probability with which `choose()` selects the light.

@@ -35,20 +35,20 @@ std::optional<LightTree::Choice> LightTree::choose(const From& receiver, double 
 }
 
 template double LightTree::importance(const Receiver&) const;
-template double LightTree::importance(const LitStretch&) const;
+template double LightTree::importance(const ReceiverSegment&) const;
 template std::optional<LightTree::Choice> LightTree::choose(const Receiver&, double) const;
-template std::optional<LightTree::Choice> LightTree::choose(const LitStretch&, double) const;
+template std::optional<LightTree::Choice> LightTree::choose(const ReceiverSegment&, double) const;
 
 double LightTree::probability(const Receiver& receiver, std::uint32_t light) const {
-  std::array<std::uint32_t, kMostDepth> way;
+  std::array<std::uint32_t, kMaxDepth> path;
   std::size_t steps = 0;
   for (std::uint32_t at = leaves_[light]; at != 0; at = nodes_[at].parent) {
-    way[steps++] = at;
+    path[steps++] = at;
   }
   // From the root down, in the same order of multiplication as in choose().
   double probability = 1;
   while (steps > 0 && probability > 0) {
-    const std::uint32_t at = way[--steps];
+    const std::uint32_t at = path[--steps];
     const Node& parent = nodes_[nodes_[at].parent];
     const std::optional<double> share = share_of_first(receiver, parent);
     probability *= !share ? 0 : at == parent.first ? *share : 1 - *share;

@@ -18,7 +18,7 @@ namespace bandsaw {
 class LightTree {
  public:
   /// Maximum depth of a node.
-  static constexpr std::uint32_t kMostDepth = 64;
+  static constexpr std::uint32_t kMaxDepth = 64;
 
   struct Choice {
     std::uint32_t light = 0;
@@ -31,7 +31,7 @@ class LightTree {
 
   bool empty() const { return nodes_.empty(); }
   /// Returns the importance of all lights together. `From`, here and below, is `Receiver` or
-  /// `LitStretch`.
+  /// `ReceiverSegment`.
   template <typename From>
   double importance(const From& receiver) const;
   /// Selects a light. `number` is in [0, 1). Returns std::nullopt if no light reaches the receiver.

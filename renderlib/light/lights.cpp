@@ -14,9 +14,9 @@
 namespace bandsaw {
 namespace {
 
-LightPlace place_of(const DeltaLight& light) {
+LightPivot pivot_of(const DeltaLight& light) {
   return std::visit(
-      [](const auto& kind) -> LightPlace {
+      [](const auto& kind) -> LightPivot {
         if constexpr (std::is_same_v<std::decay_t<decltype(kind)>, DirectionalLight>) {
           return {.distant = true};
         } else {
@@ -168,21 +168,21 @@ std::optional<LightSample> Lights::sample(const Receiver& receiver, double choic
   return sample->pdf > 0 ? sample : std::nullopt;
 }
 
-std::optional<LightPlace> Lights::place(const LitStretch& stretch, double time, double choice,
-                                        double u, double v) const {
-  const auto chosen = choice_.choose(stretch, choice);
+std::optional<LightPivot> Lights::sample_pivot(const ReceiverSegment& segment, double time,
+                                               double choice, double u, double v) const {
+  const auto chosen = choice_.choose(segment, choice);
   if (!chosen) {
     return std::nullopt;
   }
   const std::size_t delta = chosen->light - ids_.size();
   if (chosen->light >= ids_.size()) {
-    return delta < delta_.size() ? place_of(delta_[delta]) : LightPlace{.distant = true};
+    return delta < delta_.size() ? pivot_of(delta_[delta]) : LightPivot{.distant = true};
   }
   const ShapeView shape = shape_view(*geometry_, ids_[chosen->light], time);
   const Vec3 middle = bounds(shape).center;
-  const Vec3 from = stretch.origin + stretch.way * stretch.nearest(middle);
+  const Vec3 from = segment.origin + segment.direction * segment.nearest(middle);
   const std::optional<ShapeSample> on_light = bandsaw::sample(shape, from, u, v);
-  return LightPlace{on_light ? on_light->position : middle};
+  return LightPivot{on_light ? on_light->position : middle};
 }
 
 std::optional<LightSample> Lights::sample_surface(PrimitiveId id, const Receiver& receiver,
@@ -192,17 +192,17 @@ std::optional<LightSample> Lights::sample_surface(PrimitiveId id, const Receiver
   if (!on_light) {
     return std::nullopt;
   }
-  const Vec3 way = on_light->position - receiver.position;
-  const double facing = -dot(on_light->normal, way);
-  if (!receiver.faces(way) || facing == 0) {
+  const Vec3 to_light = on_light->position - receiver.position;
+  const double facing = -dot(on_light->normal, to_light);
+  if (!receiver.faces(to_light) || facing == 0) {
     return std::nullopt;
   }
-  const Ray ray{.origin = receiver.position, .direction = way, .time = receiver.time};
+  const Ray ray{.origin = receiver.position, .direction = to_light, .time = receiver.time};
   const Hit hit{.t = 1, .id = id, .u = on_light->on_shape.x, .v = on_light->on_shape.y};
   const SurfacePoint point = surface_at(*geometry_, ray, hit, uses_uv_);
   const Material& material = (*materials_)[index_of(point.material)];
   LightSample sample;
-  sample.direction = normalize(way);
+  sample.direction = normalize(to_light);
   sample.target = on_light->position + (facing < 0 ? -point.away : point.away);
   sample.radiance = emitted(material, *textures_, point, -sample.direction) *
                     static_cast<float>(opacity(material, *textures_, point));
@@ -214,11 +214,11 @@ std::optional<LightSample> Lights::sample_delta(const DeltaLight& light,
                                                 const Receiver& receiver) const {
   const Arrival arrives =
       std::visit([&](const auto& kind) { return arrival(kind, receiver.position); }, light);
-  if (!receiver.faces(arrives.way)) {
+  if (!receiver.faces(arrives.to_light)) {
     return std::nullopt;
   }
-  return LightSample{.direction = normalize(arrives.way),
-                     .target = receiver.position + arrives.way,
+  return LightSample{.direction = normalize(arrives.to_light),
+                     .target = receiver.position + arrives.to_light,
                      .radiance = arrives.irradiance,
                      .pdf = 1,
                      .distant = std::holds_alternative<DirectionalLight>(light),

@@ -39,7 +39,7 @@ struct LightSample {
 };
 
 /// A point on a light, used as pivot of equiangular sampling.
-struct LightPlace {
+struct LightPivot {
   Vec3 position = {};    ///< unspecified for distant lights
   bool distant = false;  ///< infinitely far away
 };
@@ -70,8 +70,8 @@ class Lights {
 
   /// Samples a point on a light that is selected by its contribution along a segment of a medium.
   /// Returns std::nullopt if no light contributes.
-  std::optional<LightPlace> place(const LitStretch& stretch, double time, double choice, double u,
-                                  double v) const;
+  std::optional<LightPivot> sample_pivot(const ReceiverSegment& segment, double time, double choice,
+                                         double u, double v) const;
 
   /// Returns the pdf with which `sample()` samples the direction from the receiver to `hit`, a
   /// point on an emissive primitive; 0 if it never does.

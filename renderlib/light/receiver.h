@@ -10,14 +10,16 @@ namespace bandsaw {
 
 /// A ray segment in a scattering medium, for which lights are weighted by their contribution along
 /// all of it.
-struct LitStretch {
+struct ReceiverSegment {
   Vec3 origin;
-  Vec3 way;               ///< direction; unit
+  Vec3 direction;         ///< unit
   double length = 0;      ///< > 0, maybe infinite
   double extinction = 0;  ///< > 0, the mean of the channels
 
   /// Returns the distance along the segment at which it is closest to a point.
-  double nearest(const Vec3& to) const { return std::clamp(dot(to - origin, way), 0.0, length); }
+  double nearest(const Vec3& to) const {
+    return std::clamp(dot(to - origin, direction), 0.0, length);
+  }
 };
 
 /// A point that receives light: on one side of a surface or, without a normal, in a medium, from
@@ -32,9 +34,10 @@ struct Receiver {
   /// outlive the receiver.
   const Cone* within = nullptr;
 
-  /// Returns true if light can arrive from direction `way`, which may have any length.
-  bool faces(const Vec3& way) const {
-    return (!normal || dot(*normal, way) > 0) && (within == nullptr || within->contains(way));
+  /// Returns true if light can arrive from `direction`, which may have any length.
+  bool faces(const Vec3& direction) const {
+    return (!normal || dot(*normal, direction) > 0) &&
+           (within == nullptr || within->contains(direction));
   }
 };
 

@@ -67,13 +67,13 @@ double fuzz_pdf(const Vec3& mirror, double fuzz, const Vec3& wi) {
 }
 
 std::optional<BsdfSample> sample_fuzzy(const FuzzyMetalBsdf& bsdf, double u, double v, double w) {
-  const Vec3 way = bsdf.mirror + bsdf.fuzz * sample_ball(u, v, w);
-  const double size = length(way);
+  const Vec3 direction = bsdf.mirror + bsdf.fuzz * sample_ball(u, v, w);
+  const double size = length(direction);
   if (size < 1e-100) {
     return std::nullopt;
   }
   BsdfSample sample;
-  sample.wi = way / size;
+  sample.wi = direction / size;
   sample.pdf = fuzz_pdf(bsdf.mirror, bsdf.fuzz, sample.wi);
   sample.weight = bsdf.reflectance;
   if (sample.pdf <= 0 || !reflects(bsdf.normal, sample.wi)) {
@@ -105,7 +105,7 @@ std::optional<BsdfSample> sample_dielectric(const DielectricBsdf& bsdf, double l
 Bsdf metal_at(const Rgb& reflectance, double fuzz, const SidedNormals& normal, const Vec3& wo) {
   const SidedNormals sided = for_mirror(normal, wo);
   const Vec3 mirror = normalize(mirrored(wo, sided.shading));
-  if (fuzz < kLeastFuzz) {
+  if (fuzz < kMinFuzz) {
     return MirrorBsdf{reflectance, mirror};
   }
   return FuzzyMetalBsdf{sided, reflectance, mirror, fuzz};
@@ -117,7 +117,7 @@ Bsdf glass_at(double index, double roughness, const SidedNormals& normal, bool o
   const double relative = outside_index == 1 ? index : index / outside_index;
   const double eta = outside ? relative : 1 / relative;
   const double alpha = roughness * roughness;
-  if (alpha < kLeastAlpha || std::abs(eta - 1) < kLeastRefraction) {
+  if (alpha < kMinAlpha || std::abs(eta - 1) < kMinRefraction) {
     return DielectricBsdf{for_glass(normal, wo, eta), wo, eta};
   }
   const Vec3 shading = visible_normal(normal.shading, normal.geometric, wo);
@@ -196,12 +196,12 @@ BsdfValue evaluate(const Bsdf& bsdf, const Vec3& wi) {
   return {};
 }
 
-bool has_density(const Bsdf& bsdf) {
+bool has_pdf(const Bsdf& bsdf) {
   return !std::holds_alternative<BlackBsdf>(bsdf) && !std::holds_alternative<MirrorBsdf>(bsdf) &&
          !std::holds_alternative<DielectricBsdf>(bsdf);
 }
 
-bool has_density_behind(const Bsdf& bsdf) {
+bool has_pdf_behind(const Bsdf& bsdf) {
   const auto* principled = std::get_if<PrincipledBsdf>(&bsdf);
   return std::holds_alternative<RoughDielectricBsdf>(bsdf) ||
          (principled != nullptr && principled->transmission > 0 && principled->metallic < 1);

@@ -56,7 +56,7 @@ using Bsdf = std::variant<BlackBsdf, DiffuseBsdf, FuzzyMetalBsdf, MirrorBsdf, Di
                           RoughDielectricBsdf, PrincipledBsdf>;
 
 /// Smaller fuzz is treated as a mirror: it would spread light by less than a thousandth of a pixel.
-inline constexpr double kLeastFuzz = 1e-6;
+inline constexpr double kMinFuzz = 1e-6;
 
 /// Returns the BSDF of `material` at `point`, seen along `wo`. `outside_index` is the index of
 /// refraction on the side of the normal (nested dielectrics; material/interiors.h).
@@ -70,9 +70,9 @@ std::optional<BsdfSample> sample(const Bsdf& bsdf, double u, double v, double lo
 BsdfValue evaluate(const Bsdf& bsdf, const Vec3& wi);
 
 /// Returns true if evaluate() can be non-zero, so that light sampling is useful.
-bool has_density(const Bsdf& bsdf);
+bool has_pdf(const Bsdf& bsdf);
 
 /// Returns true if evaluate() can be non-zero for light from behind the surface.
-bool has_density_behind(const Bsdf& bsdf);
+bool has_pdf_behind(const Bsdf& bsdf);
 
 }  // namespace bandsaw

@@ -3,7 +3,7 @@
 // The GGX microfacet distribution with height-correlated Smith masking-shadowing (Walter et al.
 // 2007, "Microfacet Models for Refraction through Rough Surfaces"; Heitz 2014, "Understanding the
 // Masking-Shadowing Function", JCGT 3(2), section 6.3), in the local frame of the surface: z is the
-// normal, directions are unit vectors with z > 0. alpha is in [kLeastAlpha, 1].
+// normal, directions are unit vectors with z > 0. alpha is in [kMinAlpha, 1].
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@
 namespace bandsaw {
 
 /// Minimum alpha, for smoother surfaces too: it spreads light by a hundredth of a degree.
-inline constexpr double kLeastAlpha = 1e-4;
+inline constexpr double kMinAlpha = 1e-4;
 
 /// Returns D(h). Computed from x and y, which are precise where z is nearly 1: no cancellation for
 /// small alpha.

@@ -43,7 +43,7 @@ GgxAlbedo integrated(double cos_theta, double alpha) {
 GgxAlbedoTable::GgxAlbedoTable() {
   for (int r = 0; r <= kRoughnesses; ++r) {
     const double roughness = static_cast<double>(r) / kRoughnesses;
-    const double alpha = std::max(kLeastAlpha, roughness * roughness);
+    const double alpha = std::max(kMinAlpha, roughness * roughness);
     auto& row = values_[static_cast<std::size_t>(r)];
     for (int c = 0; c <= kCosines; ++c) {
       // Denser at grazing angles, where the albedo changes most.

@@ -25,7 +25,7 @@ class Interiors {
   /// No material.
   static constexpr MaterialId kNothing{0xffffffffu};
   /// Maximum number of nested glasses; further ones are ignored.
-  static constexpr std::size_t kMost = 8;
+  static constexpr std::size_t kMaxNested = 8;
 
   // Most paths never enter one, so unused entries are neither initialised nor copied.
   Interiors() {}
@@ -60,7 +60,7 @@ class Interiors {
   /// Crosses a boundary of `glass`.
   void pass(MaterialId id, const Dielectric& glass, bool inwards) {
     if (inwards) {
-      if (size_ < kMost) {
+      if (size_ < kMaxNested) {
         entries_[size_++] = {id, glass.priority, glass.index_of_refraction};
       }
       return;
@@ -93,7 +93,7 @@ class Interiors {
     return top;
   }
 
-  std::array<Entry, kMost> entries_;
+  std::array<Entry, kMaxNested> entries_;
   std::size_t size_ = 0;
 };
 

@@ -14,14 +14,14 @@
 namespace bandsaw {
 
 /// Boundaries whose relative index of refraction is closer to 1 do not refract.
-inline constexpr double kLeastRefraction = 1e-6;
+inline constexpr double kMinRefraction = 1e-6;
 
 /// Returns true for glass with the same index as its surroundings, through which light goes
 /// straight on. Glass with a priority excludes other glass and therefore counts as present.
 inline bool bends_nothing(const Material& material) {
   const auto* glass = std::get_if<Dielectric>(&material);
   return glass != nullptr && glass->priority == 0 && !glass->index_map &&
-         std::abs(glass->index_of_refraction - 1) < kLeastRefraction;
+         std::abs(glass->index_of_refraction - 1) < kMinRefraction;
 }
 
 /// Returns true if opacity() can be other than 1.

@@ -61,31 +61,34 @@ double below_coat(const PrincipledBsdf& bsdf, const Vec3& wi) {
 Rgb scaled(const Rgb& color, double by) { return color * static_cast<float>(by); }
 
 void add_coat(const PrincipledBsdf& bsdf, const Vec3& wi, BsdfValue& sum) {
-  const Local way = local(bsdf.coat_normal, bsdf.wo, wi);
-  const Reflection coat = reflection(way.o, way.i, bsdf.coating.alpha);
+  const Local directions = local(bsdf.coat_normal, bsdf.wo, wi);
+  const Reflection coat = reflection(directions.o, directions.i, bsdf.coating.alpha);
   const double fresnel = kCoatF0 + (1 - kCoatF0) * coat.rim;
   sum.value += gray(static_cast<float>(bsdf.coat * coat.value * fresnel));
   sum.pdf += bsdf.chances[kCoat] * coat.pdf;
 }
 
-void add_above(const PrincipledBsdf& bsdf, const Local& way, double through, BsdfValue& sum) {
-  const Reflection mirror = reflection(way.o, way.i, bsdf.surface.alpha);
+void add_above(const PrincipledBsdf& bsdf, const Local& directions, double through,
+               BsdfValue& sum) {
+  const Reflection mirror = reflection(directions.o, directions.i, bsdf.surface.alpha);
   const Rgb f0 =
       lerp(gray(static_cast<float>(bsdf.f0)), bsdf.base, static_cast<float>(bsdf.metallic));
   const auto rim = static_cast<float>(mirror.rim);
   sum.value += scaled(f0 * (1 - rim) + gray(rim), mirror.value * through);
   sum.pdf += bsdf.chances[kReflection] * mirror.pdf;
   const double matte = (1 - bsdf.metallic) * (1 - bsdf.transmission);
-  const double pdf = cosine_hemisphere_pdf(way.i.z);
+  const double pdf = cosine_hemisphere_pdf(directions.i.z);
   if (matte > 0) {
-    const double left = 1 - ggx_albedo_table().at(way.i.z, bsdf.surface.roughness)(bsdf.f0);
+    const double left = 1 - ggx_albedo_table().at(directions.i.z, bsdf.surface.roughness)(bsdf.f0);
     sum.value += scaled(bsdf.base, matte * pdf * bsdf.matte_share * left * through);
   }
   sum.pdf += bsdf.chances[kDiffuse] * pdf;
 }
 
-void add_below(const PrincipledBsdf& bsdf, const Local& way, double through, BsdfValue& sum) {
-  const Reflection straight = reflection(way.o, {way.i.x, way.i.y, -way.i.z}, bsdf.surface.alpha);
+void add_below(const PrincipledBsdf& bsdf, const Local& directions, double through,
+               BsdfValue& sum) {
+  const Reflection straight = reflection(
+      directions.o, {directions.i.x, directions.i.y, -directions.i.z}, bsdf.surface.alpha);
   const double passed = (1 - bsdf.f0) * (1 - straight.rim);
   const double share = (1 - bsdf.metallic) * bsdf.transmission;
   sum.value += scaled(bsdf.base, share * passed * straight.value * through);
@@ -112,7 +115,7 @@ void choose_chances(PrincipledBsdf& bsdf, const GgxAlbedo& albedo) {
 }
 
 GgxLobe lobe_of(double roughness) {
-  return {roughness, std::max(kLeastAlpha, roughness * roughness)};
+  return {roughness, std::max(kMinAlpha, roughness * roughness)};
 }
 
 }  // namespace
@@ -198,17 +201,17 @@ std::optional<BsdfSample> sample(const PrincipledBsdf& bsdf, double u, double v,
 
 BsdfValue evaluate(const PrincipledBsdf& bsdf, const Vec3& wi) {
   const double side = dot(wi, bsdf.normal.geometric);
-  const Local way = local(bsdf.normal.shading, bsdf.wo, wi);
+  const Local directions = local(bsdf.normal.shading, bsdf.wo, wi);
   BsdfValue sum;
   if (side > 0) {
     if (bsdf.coat > 0) {
       add_coat(bsdf, wi, sum);
     }
-    if (way.i.z > 0) {
-      add_above(bsdf, way, below_coat(bsdf, wi), sum);
+    if (directions.i.z > 0) {
+      add_above(bsdf, directions, below_coat(bsdf, wi), sum);
     }
-  } else if (side < 0 && way.i.z < 0 && bsdf.transmission > 0) {
-    add_below(bsdf, way, below_coat(bsdf, wi), sum);
+  } else if (side < 0 && directions.i.z < 0 && bsdf.transmission > 0) {
+    add_below(bsdf, directions, below_coat(bsdf, wi), sum);
   }
   return sum;
 }

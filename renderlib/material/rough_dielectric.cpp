@@ -13,8 +13,8 @@ namespace {
 /// Returns the Jacobian of refraction (Walter et al. 2007, eq. 17) times dot(o, h): the pdf of wi
 /// by refraction at the microfacet h, divided by ggx_visible_over_cos() and by 1 - F.
 double refraction_jacobian(double o_h, double i_h, double eta) {
-  const double way = o_h + eta * i_h;  // i_h < 0
-  return eta * eta * std::abs(i_h) * o_h / (way * way);
+  const double along_half = o_h + eta * i_h;  // i_h < 0
+  return eta * eta * std::abs(i_h) * o_h / (along_half * along_half);
 }
 
 /// Returns true if wi is on the side of the geometric normal that its z in the shading frame

@@ -12,8 +12,8 @@ namespace bandsaw {
 
 /// Returns the shading normal bent by a texel of a normal map (0.5 + 0.5 n in the frame of the uvs
 /// and the shading normal; glTF 2.0, 3.9.3), on the outside. Any frame around the normal where the
-/// uvs give none. Unit. `placed`: how the map lies on its uvs; the axes of the map count. `set`: the
-/// uvs of the map.
+/// uvs give none. Unit. `placed`: how the map lies on its uvs; the axes of the map count. `set`:
+/// the uvs of the map.
 Vec3 mapped_normal(const SurfacePoint& point, const Rgb& texel, double scale,
                    const UvTransform& placed = {}, UvSet set = UvSet::kFirst);
 

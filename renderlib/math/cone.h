@@ -10,10 +10,10 @@ struct Cone {
   double sin = 0;  ///< sine of the angle
   double cos = 1;
 
-  /// Returns true if `way`, of any length except 0, lies within the cone.
-  bool contains(const Vec3& way) const {
-    const double along = dot(axis, way);
-    return along > 0 && along * along >= cos * cos * length_squared(way);
+  /// Returns true if `direction`, of any length except 0, lies within the cone.
+  bool contains(const Vec3& direction) const {
+    const double along = dot(axis, direction);
+    return along > 0 && along * along >= cos * cos * length_squared(direction);
   }
 };
 

@@ -11,7 +11,7 @@ namespace {
 
 /// Below this angle, in radians, the sine in the denominator would lose precision; the chord is
 /// accurate to 1e-17 there.
-constexpr double kLeastAngle = 1e-8;
+constexpr double kMinAngle = 1e-8;
 
 double dot(const Quaternion& a, const Quaternion& b) {
   return a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z;
@@ -73,7 +73,7 @@ double turn_between(const Quaternion& a, const Quaternion& b) {
 Quaternion slerp(const Quaternion& a, const Quaternion& b, double u) {
   const Quaternion to = nearer(a, b);
   const double whole = angle(a, to);
-  if (whole < kLeastAngle) {
+  if (whole < kMinAngle) {
     return unit(mix(a, 1 - u, to, u));
   }
   const double turns = whole * (0.5 * kInvPi);

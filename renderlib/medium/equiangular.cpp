@@ -8,14 +8,15 @@
 
 namespace bandsaw {
 
-Equiangular::Equiangular(const Vec3& origin, const Vec3& way, double length, const Vec3& pivot)
+Equiangular::Equiangular(const Vec3& origin, const Vec3& direction, double length,
+                         const Vec3& pivot)
     : length_(length) {
   const Vec3 to_pivot = pivot - origin;
-  const double nearest = dot(to_pivot, way);
+  const double nearest = dot(to_pivot, direction);
   start_ = -nearest;
   const double around = std::isfinite(length) ? length : 0;
   const double least = 1e-6 * std::max({around, std::abs(nearest), 1e-94});
-  aside_ = std::max(bandsaw::length(to_pivot - way * nearest), least);
+  aside_ = std::max(bandsaw::length(to_pivot - direction * nearest), least);
   // The difference of two arctangents as a single one, without cancellation.
   angle_ = std::isfinite(length)
                ? atan2(aside_ * length, aside_ * aside_ + start_ * (start_ + length))

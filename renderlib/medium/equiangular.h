@@ -11,10 +11,10 @@ namespace bandsaw {
 class Equiangular {
  public:
   Equiangular() = default;
-  /// Samples [0, length] (> 0, may be infinite) along the unit direction `way` from `origin`, for
-  /// the finite point `pivot`. The distance of the pivot from the ray is clamped to at least a
+  /// Samples [0, length] (> 0, may be infinite) along the unit direction `direction` from `origin`,
+  /// for the finite point `pivot`. The distance of the pivot from the ray is clamped to at least a
   /// millionth of the other lengths, so that the pdf is finite everywhere.
-  Equiangular(const Vec3& origin, const Vec3& way, double length, const Vec3& pivot);
+  Equiangular(const Vec3& origin, const Vec3& direction, double length, const Vec3& pivot);
 
   /// Returns a finite distance in [0, length]; u in [0, 1).
   double sample(double u) const;

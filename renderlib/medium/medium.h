@@ -12,14 +12,14 @@ struct Medium {
   Rgb absorption = {};  ///< absorption coefficient
   Rgb scattering = {};  ///< scattering coefficient
   Rgb emission = {};    ///< emitted radiance per length
-  double g = 0;  ///< mean cosine of the phase function (medium/phase.h), in [-kMostG, kMostG]
+  double g = 0;         ///< mean cosine of the phase function (medium/phase.h), in [-kMaxG, kMaxG]
   friend bool operator==(const Medium&, const Medium&) = default;
 };
 
 /// Maximum of |g|; closer to 1, scattering would degenerate to a beam.
-inline constexpr double kMostG = 0.999;
+inline constexpr double kMaxG = 0.999;
 /// Maximum coefficient: at this value 1e-12 scene units are already opaque.
-inline constexpr float kMostPerUnit = 1e12f;
+inline constexpr float kMaxPerUnit = 1e12f;
 
 /// Returns true if a channel emits and has no extinction: an infinite medium would be infinitely
 /// bright.

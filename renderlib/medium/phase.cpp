@@ -27,11 +27,12 @@ double phase(double g, double cosine) {
   return 0.25 * kInvPi * (1 - g) * (1 + g) / (base * std::sqrt(base));
 }
 
-Vec3 sample_phase(double g, const Vec3& way, double u, double v) {
+Vec3 sample_phase(double g, const Vec3& direction, double u, double v) {
   const double cosine = sample_cosine(g, 2 * u - 1);
   const double sine = std::sqrt(std::max(0.0, (1 - cosine) * (1 + cosine)));
   const SinCos turn = sincos_turns(v);
-  return normalize(orthonormal_basis(way).to_world({sine * turn.cos, sine * turn.sin, cosine}));
+  return normalize(
+      orthonormal_basis(direction).to_world({sine * turn.cos, sine * turn.sin, cosine}));
 }
 
 }  // namespace bandsaw

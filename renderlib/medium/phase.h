@@ -11,8 +11,8 @@ namespace bandsaw {
 /// Returns the pdf by solid angle of directions at this cosine to the previous direction. |g| < 1.
 double phase(double g, double cosine);
 
-/// Samples a unit direction of travel after scattering, with that pdf. `way` is the unit direction
-/// before; u, v in [0, 1).
-Vec3 sample_phase(double g, const Vec3& way, double u, double v);
+/// Samples a unit direction of travel after scattering, with that pdf. `direction` is the unit
+/// direction before; u, v in [0, 1).
+Vec3 sample_phase(double g, const Vec3& direction, double u, double v);
 
 }  // namespace bandsaw

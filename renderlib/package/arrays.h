@@ -1,6 +1,7 @@
 #pragma once
 
-// Flat arrays <-> bytes. Blobs are little-endian, and so is every machine that this is built for.
+// Conversion between flat arrays and bytes. Blobs are little-endian, and so is every supported
+// machine.
 
 #include <bit>
 #include <cstddef>

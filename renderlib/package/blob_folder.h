@@ -1,6 +1,6 @@
 #pragma once
 
-// Blobs as files: `<folder>/<digest in hexadecimal>`, written once and never changed.
+// Blobs as files named `<folder>/<digest in hexadecimal>`, written once and never changed.
 
 #include <string>
 #include <utility>
@@ -9,11 +9,11 @@
 
 namespace bandsaw {
 
-/// Each get maps the file and hashes it; nothing is kept. Safe from any number of threads.
+/// Each call of get() maps the file and hashes it; nothing is cached. Thread-safe.
 class BlobFolder : public BlobSource {
  public:
   explicit BlobFolder(std::string folder) : folder_(std::move(folder)) {}
-  /// NOT_FOUND, DATA_LOSS as BlobSource says, or the system's reason, naming the file.
+  /// Returns NOT_FOUND or DATA_LOSS as in BlobSource, or the system's error, with the file's name.
   absl::StatusOr<std::unique_ptr<BlobBytes>> get(const wire::Digest& digest) override;
   std::string path_of(const wire::Digest& digest) const { return folder_ + "/" + digest.hex(); }
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Where the bytes behind a digest come from: a folder, a worker's cache, a test's map. One of the
-// four open doors.
+// Interface that returns the bytes of a digest: implemented by a folder, by a worker's cache and by
+// a map in memory. One of the four interfaces with virtual functions.
 
 #include <cstddef>
 #include <map>
@@ -16,7 +16,7 @@
 
 namespace bandsaw {
 
-/// Bytes that stay valid while the object lives (memory, or a mapped file).
+/// Bytes that are valid as long as the object exists (memory, or a mapped file).
 class BlobBytes {
  public:
   virtual ~BlobBytes() = default;
@@ -26,11 +26,11 @@ class BlobBytes {
 class BlobSource {
  public:
   virtual ~BlobSource() = default;
-  /// NOT_FOUND: no such blob. DATA_LOSS: there is one, but its bytes do not have the digest.
+  /// Returns NOT_FOUND if there is no such blob, and DATA_LOSS if its bytes do not have the digest.
   virtual absl::StatusOr<std::unique_ptr<BlobBytes>> get(const wire::Digest& digest) = 0;
 };
 
-/// Blobs in memory: what the importer fills, and tests.
+/// Blobs in memory; used by the importer and by tests.
 class BlobMap : public BlobSource {
  public:
   wire::Digest put(SharedBytes bytes);

@@ -8,8 +8,8 @@
 
 namespace bandsaw {
 
-/// Ours count from 0 in the same order; `first` is where the protocol begins: 1 where its 0 means
-/// "not said".
+/// Converts an enum of the protocol to the enum `To`, whose values count from 0 in the same order.
+/// `first` is the protocol's first value: 1 if its 0 means "unspecified".
 template <class Ours>
 absl::StatusOr<Ours> decode_enum(int value, int first, int last, const std::string& field) {
   if (value < first || value > last) {
@@ -18,7 +18,7 @@ absl::StatusOr<Ours> decode_enum(int value, int first, int last, const std::stri
   return static_cast<Ours>(value - first);
 }
 
-/// The same from 1.
+/// The same for enums of the protocol that start at 1.
 template <class Ours>
 absl::StatusOr<Ours> decode_enum(int value, int last, const std::string& field) {
   return decode_enum<Ours>(value, 1, last, field);

@@ -1,7 +1,7 @@
 #pragma once
 
-// The parts of a manifest that are not geometry, as values. Form only: check_description judges the
-// values.
+// Decodes the parts of a manifest that are not geometry. Checks only the form, not the values
+// (scene/validate.h).
 
 #include "absl/status/statusor.h"
 #include "proto/package.pb.h"
@@ -9,9 +9,9 @@
 
 namespace bandsaw {
 
-/// INVALID_ARGUMENT: missing, or a list of the wrong length.
+/// Return INVALID_ARGUMENT if the part is missing or a list has a wrong length.
 absl::StatusOr<Camera> decode_camera(const package::Manifest& manifest);
-/// The default where there is none.
+/// Returns the default filter if the manifest has none.
 absl::StatusOr<PixelFilter> decode_filter(const package::Manifest& manifest);
 absl::StatusOr<LocalShading> decode_local_shading(const package::Manifest& manifest);
 absl::StatusOr<Background> decode_background(const package::Manifest& manifest);
@@ -20,7 +20,7 @@ absl::StatusOr<Vec3> decode_vec3(const google::protobuf::RepeatedField<double>& 
 absl::StatusOr<Rgb> decode_rgb(const google::protobuf::RepeatedField<float>& list,
                                const std::string& field);
 
-/// INVALID_ARGUMENT: of no kind.
+/// Returns INVALID_ARGUMENT for an unknown kind.
 absl::StatusOr<Material> decode_material(const package::Material& material,
                                          const std::string& field);
 

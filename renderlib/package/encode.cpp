@@ -9,15 +9,116 @@
 #include "proto/wire/versions.h"
 #include "renderlib/base/clean_text.h"
 #include "renderlib/package/arrays.h"
-#include "renderlib/package/encode_texture.h"
+#include "renderlib/package/blob_source.h"
 #include "renderlib/package/lights.h"
 #include "renderlib/package/limits.h"
 #include "renderlib/package/media.h"
 #include "renderlib/package/placements.h"
 #include "renderlib/package/principled.h"
+#include "renderlib/texture/texture.h"
 
 namespace bandsaw {
 namespace {
+
+std::uint32_t number(TextureId id) { return static_cast<std::uint32_t>(id); }
+
+void encode(const Rgb& color, package::Rgb& to) {
+  for (const float channel : {color.r, color.g, color.b}) {
+    to.add_rgb(channel);
+  }
+}
+
+/// Enums are declared in the same order; some of the protocol's have an additional 0 for
+/// "unspecified".
+template <class Theirs, class Ours>
+Theirs as(Ours ours, int first = 0) {
+  return static_cast<Theirs>(static_cast<int>(ours) + first);
+}
+
+struct EncodeTexture {
+  BlobMap& blobs;
+  package::Texture& to;
+
+  void operator()(const ConstantTexture& t) const { encode(t.value, *to.mutable_constant()); }
+
+  void operator()(const ImageTexture& t) const {
+    using Proto = package::ImageTexture;
+    auto& image = *to.mutable_image();
+    image.set_width(t.width);
+    image.set_height(t.height);
+    image.set_format(as<Proto::Format>(t.format, 1));
+    image.set_wrap(as<Proto::Wrap>(t.wrap, 1));
+    if (t.wrap_v) {
+      image.set_wrap_v(as<Proto::Wrap>(*t.wrap_v, 1));
+    }
+    image.set_filter(as<Proto::Filter>(t.filter, 1));
+    image.set_channels(t.channels);
+    image.set_uv_set(as<package::UvSet>(t.uv_set));
+    if (!(t.uv_transform == UvTransform{})) {
+      image.mutable_uv_transform()->Add(t.uv_transform.m.begin(), t.uv_transform.m.end());
+    }
+    image.mutable_texels()->set_size(t.texels.size());
+    image.mutable_texels()->set_sha256(blobs.put(t.texels).raw());
+  }
+
+  void operator()(const CheckerTexture& t) const {
+    auto& checker = *to.mutable_checker();
+    checker.set_even(number(t.even));
+    checker.set_odd(number(t.odd));
+    checker.set_mapping(as<package::CheckerTexture::Mapping>(t.mapping));
+    for (const double size : {t.size.x, t.size.y, t.size.z}) {
+      checker.add_size(size);
+    }
+    checker.set_uv_set(as<package::UvSet>(t.uv_set));
+    checker.set_space(as<package::Space>(t.space));
+  }
+
+  void operator()(const NoiseTexture& t) const {
+    auto& noise = *to.mutable_noise();
+    noise.set_kind(as<package::NoiseTexture::Kind>(t.kind));
+    noise.set_space(as<package::Space>(t.space));
+    noise.set_octaves(t.octaves);
+    noise.set_scale(t.scale);
+    noise.set_strength(t.strength);
+    noise.set_turbulence_scale(t.turbulence_scale);
+    for (const double entry : {t.axis.x, t.axis.y, t.axis.z}) {
+      noise.add_axis(entry);
+    }
+    encode(t.low, *noise.mutable_low());
+    encode(t.high, *noise.mutable_high());
+  }
+
+  void operator()(const RampTexture& t) const {
+    auto& ramp = *to.mutable_ramp();
+    ramp.set_over(as<package::RampTexture::Over>(t.over));
+    ramp.set_texture(number(t.texture));
+    ramp.set_uv_set(as<package::UvSet>(t.uv_set));
+    ramp.set_space(as<package::Space>(t.space));
+    ramp.set_steps(t.steps);
+    for (const RampTexture::Stop& stop : t.stops) {
+      ramp.add_at(stop.at);
+      for (const float channel : {stop.color.r, stop.color.g, stop.color.b}) {
+        ramp.add_color(channel);
+      }
+    }
+  }
+
+  void operator()(const MixTexture& t) const {
+    to.mutable_mix()->set_a(number(t.a));
+    to.mutable_mix()->set_b(number(t.b));
+    to.mutable_mix()->set_amount(number(t.amount));
+  }
+
+  void operator()(const ProductTexture& t) const {
+    to.mutable_product()->set_a(number(t.a));
+    to.mutable_product()->set_b(number(t.b));
+  }
+};
+
+/// Encodes a texture. Its texels are added to `blobs` without being copied.
+void encode_texture(const Texture& texture, BlobMap& blobs, package::Texture& to) {
+  std::visit(EncodeTexture{blobs, to}, texture);
+}
 
 class Encoder {
  public:
@@ -28,7 +129,7 @@ class Encoder {
     ref.set_sha256(blobs_.put(std::move(bytes)).raw());
   }
 
-  // One array out of a list of shapes: `Value` is what an entry of the blob holds.
+  // Makes one array from a list of shapes; `Value` is the type of the blob's entries.
   template <class Value, class Shape, class Of>
   void put_each(const std::vector<Shape>& shapes, package::Blob& ref, Of of) {
     std::vector<Value> values(shapes.size());
@@ -43,7 +144,7 @@ class Encoder {
     put_each<MaterialId>(spheres, *to.mutable_material(), &Sphere::material);
   }
 
-  // Into the manifest or a group.
+  // Encodes shapes into the manifest or into a group.
   template <class Message>
   void put_shapes(const Shapes& geometry, Message& manifest) {
     if (!geometry.spheres.empty()) {
@@ -121,7 +222,7 @@ void encode(const Camera& camera, package::Camera& to) {
 
 void encode(const PixelFilter& filter, package::Manifest& manifest) {
   if (filter != PixelFilter{}) {
-    // The enums are declared in the same order, after the protocol's zero.
+    // The enums are declared in the same order; the protocol's has an additional 0.
     const int kind = static_cast<int>(filter.kind) + 1;
     manifest.mutable_filter()->set_kind(static_cast<package::PixelFilter::Kind>(kind));
     manifest.mutable_filter()->set_radius(filter.radius);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Environments and lights without size <-> proto/package.proto.
+// Conversion of environments and delta lights to and from proto/package.proto.
 
 #include <vector>
 
@@ -14,8 +14,8 @@ namespace bandsaw {
 void encode_environment(const Environment& from, package::Environment& to);
 void encode_light(const DeltaLight& from, package::Light& to);
 
-/// Form only: check_description judges the values. INVALID_ARGUMENT: of no kind, or a list of the
-/// wrong length.
+/// Checks only the form, not the values (scene/validate.h). Returns INVALID_ARGUMENT for an unknown
+/// kind or a list of a wrong length.
 absl::StatusOr<Environment> decode_environment(const package::Environment& from);
 absl::StatusOr<std::vector<DeltaLight>> decode_lights(const package::Manifest& manifest);
 

@@ -1,7 +1,6 @@
 #pragma once
 
-// Bounds of a manifest that are nobody else's; the others are in proto/wire/limits.h and
-// renderlib/render/settings.h.
+// Limits of a manifest; further limits are in proto/wire/limits.h and renderlib/render/settings.h.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,6 +11,5 @@ inline constexpr std::size_t kMaxWarnings = 100;
 inline constexpr std::size_t kMaxWarningBytes = 1'000;
 inline constexpr std::size_t kMaxCameraNames = 100;
 inline constexpr std::size_t kMaxCameraNameBytes = 200;
-inline constexpr std::uint32_t kMaxTextureSide = 65536;  ///< texels
 
 }  // namespace bandsaw

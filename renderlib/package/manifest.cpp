@@ -1,18 +1,81 @@
 #include "renderlib/package/manifest.h"
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <map>
+#include <string>
 
+#include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
+#include "proto/package.pb.h"
 #include "proto/wire/limits.h"
 #include "proto/wire/versions.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/geometry/shapes.h"
 #include "renderlib/package/limits.h"
-#include "renderlib/package/manifest_counts.h"
 #include "renderlib/render/settings.h"
+#include "renderlib/scene/check_counts.h"
 
 namespace bandsaw {
 namespace {
+
+/// Returns the number of entries of type T in a blob.
+template <class T>
+std::uint64_t entries(const package::Blob& blob) {
+  return blob.size() / sizeof(T);
+}
+
+/// Returns the numbers of shapes of the manifest or of a group.
+template <class Message>
+ShapeCounts counts_of(const Message& from) {
+  return {.spheres = entries<Vec3>(from.spheres().centers()),
+          .quads = entries<Vec3>(from.quads().corners()),
+          .triangles = entries<std::array<Vec3, 3>>(from.triangles().vertices()),
+          .disks = entries<Vec3>(from.disks().centers())};
+}
+
+template <class Meshes>
+absl::Status check_meshes(const std::string& prefix, const Meshes& meshes) {
+  for (int i = 0; i < meshes.size(); ++i) {
+    RETURN_IF_ERROR(check_mesh_counts(absl::StrCat(prefix, "mesh[", i, "]"),
+                                      entries<std::array<std::uint32_t, 3>>(meshes[i].indices()),
+                                      entries<std::array<float, 3>>(meshes[i].positions())));
+  }
+  return absl::OkStatus();
+}
+
+template <class Groups>
+absl::Status check_groups(const std::string& prefix, const Groups& groups) {
+  for (int i = 0; i < groups.size(); ++i) {
+    RETURN_IF_ERROR(
+        check_shape_counts(absl::StrCat(prefix, "group[", i, "]"), counts_of(groups[i])));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status check_all(const package::Manifest& manifest) {
+  ShapeCounts loose = counts_of(manifest);
+  loose.instances = static_cast<std::uint64_t>(manifest.instance_size());
+  RETURN_IF_ERROR(check_shape_counts("shapes", loose));
+  RETURN_IF_ERROR(check_groups("", manifest.group()));
+  RETURN_IF_ERROR(check_meshes("", manifest.mesh()));
+  const package::Boundaries& boundaries = manifest.boundaries();
+  const ShapeCounts spheres = {.spheres = entries<Vec3>(boundaries.spheres().centers()),
+                               .instances = static_cast<std::uint64_t>(boundaries.instance_size())};
+  RETURN_IF_ERROR(check_shape_counts("boundaries.shapes", spheres));
+  RETURN_IF_ERROR(check_groups("boundaries.", boundaries.group()));
+  return check_meshes("boundaries.", boundaries.mesh());
+}
+
+/// Returns INVALID_ARGUMENT if a mesh, a group or the loose shapes are more than a BVH can hold
+/// (scene/check_counts.h). The counts follow from the sizes of the blobs, so no blob is read and no
+/// memory is allocated.
+absl::Status check_counts(const package::Manifest& manifest) {
+  const absl::Status good = check_all(manifest);
+  return good.ok() ? good
+                   : absl::InvalidArgumentError(absl::StrCat("scene package: ", good.message()));
+}
 
 absl::Status check_range(const std::string& field, std::uint64_t value, std::uint64_t most) {
   if (value >= 1 && value <= most) {
@@ -54,9 +117,9 @@ absl::Status check_head(const package::Manifest& manifest) {
     return manifest_error("integrator", absl::StrCat("must lie in [0, ", kLastIntegrator, "], is ",
                                                      manifest.integrator()));
   }
-  if (!(std::abs(manifest.exposure()) <= kMostExposure)) {
-    return manifest_error("exposure", absl::StrCat("must lie in [-", kMostExposure, ", ",
-                                                   kMostExposure, "], is ", manifest.exposure()));
+  if (!(std::abs(manifest.exposure()) <= kMaxExposure)) {
+    return manifest_error("exposure", absl::StrCat("must lie in [-", kMaxExposure, ", ",
+                                                   kMaxExposure, "], is ", manifest.exposure()));
   }
   if (manifest.tone() > static_cast<std::uint32_t>(kLastTone)) {
     return manifest_error("tone",
@@ -97,7 +160,7 @@ absl::Status for_each_mesh_blob(const Meshes& meshes, const std::string& name, V
   return absl::OkStatus();
 }
 
-// Those of the manifest's or a group's shapes.
+// Appends the blobs of the manifest's or of a group's shapes.
 template <class Message, class Visit>
 absl::Status for_each_shape_blob(const Message& m, const std::string& prefix, Visit& visit) {
   if (m.has_spheres()) {
@@ -122,7 +185,7 @@ absl::Status for_each_shape_blob(const Message& m, const std::string& prefix, Vi
   return absl::OkStatus();
 }
 
-// Every blob field of a manifest with its path, in one order.
+// Returns all blob fields of a manifest with their paths, in a fixed order.
 template <class Visit>
 absl::Status for_each_blob(const package::Manifest& m, Visit visit) {
   for (int i = 0; i < m.texture_size(); ++i) {
@@ -204,7 +267,7 @@ absl::StatusOr<std::vector<BlobRef>> package_blobs(const std::string& manifest_b
     if (!ref.ok()) {
       return ref.status();
     }
-    // Counted each time it is named: a reader copies it each time.
+    // A blob counts each time it is named, because a reader may copy it each time.
     total += ref->size;
     if (total > wire::kPackageBytes) {
       return manifest_error(field, absl::StrCat("passes the bound of ", wire::kPackageBytes,

@@ -1,6 +1,6 @@
 #pragma once
 
-// The manifest's own form: what can be checked without its blobs.
+// Parsing of manifests, with all checks that need no blobs.
 
 #include <string>
 
@@ -11,14 +11,15 @@
 
 namespace bandsaw {
 
-/// INVALID_ARGUMENT: too large, not a manifest, another format, or its name, size, depth or
-/// warnings are out of range.
+/// Returns INVALID_ARGUMENT if the bytes are too many, no manifest or of another format, or if
+/// name, size, depth or warnings are out of range.
 absl::StatusOr<package::Manifest> parse_manifest(const std::string& bytes);
 
-/// "scene package: <field>: <what is wrong>"
+/// Returns INVALID_ARGUMENT: "scene package: <field>: <what is wrong>".
 absl::Status manifest_error(const std::string& field, const std::string& what);
 
-/// INVALID_ARGUMENT naming `field`: the digest's length or the size is out of range.
+/// Returns the blob's digest and size. Returns INVALID_ARGUMENT naming `field` if the digest's
+/// length or the size is out of range.
 absl::StatusOr<BlobRef> blob_ref(const package::Blob& blob, const std::string& field);
 
 }  // namespace bandsaw

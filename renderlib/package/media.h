@@ -1,6 +1,7 @@
 #pragma once
 
-// Media in a manifest. Shapes of their boundaries are blobs and come with the others.
+// Conversion of media to and from a manifest. The shapes of their boundaries are blobs, which
+// encode.cpp and decode.cpp convert.
 
 #include "absl/status/statusor.h"
 #include "proto/package.pb.h"
@@ -8,10 +9,10 @@
 
 namespace bandsaw {
 
-/// All but the shapes of the boundaries.
+/// Encodes everything except the shapes of the boundaries.
 void encode_media(const Media& media, package::Manifest& manifest);
 
-/// The same back; form only. INVALID_ARGUMENT: a list of the wrong length.
+/// Decodes the same. Checks only the form; returns INVALID_ARGUMENT for a list of a wrong length.
 absl::StatusOr<Media> decode_media(const package::Manifest& manifest);
 
 }  // namespace bandsaw

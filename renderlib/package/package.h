@@ -1,7 +1,7 @@
 #pragma once
 
-// Scene packages (proto/package.proto): encode a description, and decode one with every index,
-// count and digest checked.
+// Scene packages (proto/package.proto): encodes scene descriptions, and decodes them with every
+// index, count, value and digest checked.
 
 #include <string>
 #include <vector>
@@ -14,7 +14,7 @@
 
 namespace bandsaw {
 
-/// What a package says beside the scene itself.
+/// The data of a package besides the scene itself.
 struct PackageInfo {
   std::string name;
   std::uint32_t width = 600;
@@ -23,27 +23,28 @@ struct PackageInfo {
   std::vector<std::string> warnings;
   Integrator integrator = Integrator::kPath;
   Display display = {};
-  std::vector<std::string> model_cameras = {};  ///< names of cameras that its models bring
+  std::vector<std::string> model_cameras = {};  ///< names of the cameras of its models
 };
 
-/// A blob that a manifest names.
+/// A blob to which a manifest refers.
 struct BlobRef {
   wire::Digest digest;
   std::uint64_t size = 0;
 };
 
-/// Puts the scene's arrays into `blobs` and returns the manifest's bytes (not yet a blob
-/// themselves).
+/// Adds the scene's arrays to `blobs` and returns the bytes of the manifest, which are not added.
 std::string encode_package(const SceneDescription& scene, const PackageInfo& info, BlobMap& blobs);
 
-/// What a manifest says, without its blobs; checks its form. INVALID_ARGUMENT naming the field.
+/// Returns the data of a manifest that needs no blobs; checks its form. Returns INVALID_ARGUMENT
+/// naming the field.
 absl::StatusOr<PackageInfo> package_info(const std::string& manifest);
 
-/// Every blob that a manifest names, each once. INVALID_ARGUMENT: a broken manifest, or past a
-/// limit.
+/// Returns every blob to which a manifest refers, each once. Returns INVALID_ARGUMENT if the
+/// manifest is broken or exceeds a limit.
 absl::StatusOr<std::vector<BlobRef>> package_blobs(const std::string& manifest);
 
-/// The scene. INVALID_ARGUMENT naming the field that is wrong; NOT_FOUND, DATA_LOSS: from `blobs`.
+/// Returns the scene, which is valid (scene/validate.h). Returns INVALID_ARGUMENT naming the field
+/// that is wrong, and NOT_FOUND or DATA_LOSS from `blobs`.
 absl::StatusOr<SceneDescription> decode_package(const std::string& manifest, BlobSource& blobs);
 
 }  // namespace bandsaw

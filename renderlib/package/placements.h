@@ -1,6 +1,6 @@
 #pragma once
 
-// What is where, and what moves how: instances and frames, to and from a manifest.
+// Conversion of instances and frames to and from a manifest.
 
 #include <string>
 
@@ -15,12 +15,10 @@ using Instances = google::protobuf::RepeatedPtrField<package::Instance>;
 
 void encode_placements(const Geometry& geometry, Frames& frames, Instances& instances);
 
-/// Adds them to `geometry`. Form only: check_placements judges the values. INVALID_ARGUMENT: a list
-/// of the wrong length, its name from `prefix` on.
+/// Appends the frames and instances to `geometry`. Checks only the form, not the values
+/// (scene/validate.h). Returns INVALID_ARGUMENT if a list has a wrong length; `prefix` is prepended
+/// to its name.
 absl::Status decode_placements(const Frames& frames, const Instances& instances,
                                const std::string& prefix, Geometry& geometry);
-
-/// Indices, ranges and finiteness, of a geometry whose other parts have been checked.
-absl::Status check_placements(const Geometry& geometry, std::size_t materials);
 
 }  // namespace bandsaw

@@ -1,6 +1,6 @@
 #pragma once
 
-// glTF's material <-> proto/package.proto.
+// Conversion of glTF's material to and from proto/package.proto.
 
 #include <string>
 
@@ -12,7 +12,8 @@ namespace bandsaw {
 
 void encode_principled(const Principled& from, package::Gltf& to);
 
-/// INVALID_ARGUMENT: not of the stated form. Ranges and indices are checked by check_materials.
+/// Checks only the form, not the values (scene/validate.h). Returns INVALID_ARGUMENT for a list of
+/// a wrong length.
 absl::StatusOr<Principled> decode_principled(const package::Gltf& from, const std::string& field);
 
 }  // namespace bandsaw

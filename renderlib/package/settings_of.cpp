@@ -5,7 +5,7 @@
 namespace bandsaw {
 namespace {
 
-// value x numerator / denominator, to the nearest whole number, at least 1.
+// Returns value x numerator / denominator, rounded to the nearest integer, at least 1.
 std::uint32_t scaled(std::uint32_t value, std::uint32_t numerator, std::uint32_t denominator) {
   const std::uint64_t exact =
       (2 * std::uint64_t{value} * numerator + denominator) / (2 * std::uint64_t{denominator});

@@ -8,8 +8,9 @@
 
 namespace bandsaw {
 
-/// What a package asks for, at this size in pixels. A width or height alone keeps the aspect ratio,
-/// rounded to the nearest pixel. A side past kMaxSide is left for validate(RenderSettings).
+/// Returns the render settings of a package, at the given size in pixels. If only a width or only a
+/// height is given, the aspect ratio is kept, rounded to the nearest pixel.
+/// validate(RenderSettings) refuses sides above kMaxSide.
 RenderSettings settings_of(const PackageInfo& scene, std::optional<std::uint32_t> width,
                            std::optional<std::uint32_t> height);
 

@@ -12,13 +12,13 @@ namespace {
 
 /// Maximum weight of a half tile over the mean: a plan dominated by a few half tiles takes many
 /// passes in which most machines have little to do.
-constexpr double kMostOverMean = 8;
+constexpr double kMaxOverMean = 8;
 /// Weight of a tile's own error; its neighbours have the rest, which reduces the noise of the
 /// estimate.
 constexpr double kOwnTile = 0.5;
 /// Minimum gain in error at equal samples for which a plan pays: samples in noisy regions take 1.1
 /// to 1.4 times the time of others (tests/bench/README.md).
-constexpr double kLeastGain = 1.25;
+constexpr double kMinGain = 1.25;
 /// A plan is evaluated at this multiple of the pilot's samples.
 constexpr double kJudgedAfter = 8;
 
@@ -69,7 +69,7 @@ class Mean {
 /// the image), which depends on the root of the mean variance.
 std::vector<int> levels_of(std::vector<double> weights) {
   const auto count = static_cast<double>(weights.size());
-  const double most = kMostOverMean * std::accumulate(weights.begin(), weights.end(), 0.0) / count;
+  const double most = kMaxOverMean * std::accumulate(weights.begin(), weights.end(), 0.0) / count;
   double squares = 0;
   for (double& weight : weights) {
     weight = std::min(weight, most);
@@ -181,7 +181,7 @@ std::vector<int> plan_by(const TileGrid& grid, absl::Span<const HalfTileErrors> 
     all.push_back(mean.value());
   }
   const bool pays =
-      gain({Pilot(grid, std::move(rows[0])), Pilot(grid, std::move(rows[1]))}) >= kLeastGain;
+      gain({Pilot(grid, std::move(rows[0])), Pilot(grid, std::move(rows[1]))}) >= kMinGain;
   return pays ? Pilot(grid, std::move(all)).levels() : std::vector<int>(all.size(), level_of(1));
 }
 

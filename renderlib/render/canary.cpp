@@ -33,7 +33,8 @@ Mesh pyramid() {
           .uvs = {{0, 0}, {2, 0}, {2, 2}, {0, 2}, {1, 1}}};
 }
 
-/// A group that turns as it goes, in a frame that moves; one more of it stands.
+/// Adds a group that rotates and moves, within a moving frame, and a static instance of the same
+/// group.
 void add_what_moves(SceneDescription& scene) {
   std::get<PerspectiveCamera>(scene.camera).shutter = {0.5, 1.5};
   Geometry& g = scene.geometry;
@@ -54,8 +55,8 @@ void add_what_moves(SceneDescription& scene) {
   g.instances.push_back(placed);
 }
 
-/// Every kind of shape, material, light and texture, in a room small enough that most paths meet
-/// several.
+/// A scene with every kind of shape, material, light and texture, small enough that most paths hit
+/// several of them.
 SceneDescription every_feature() {
   SceneDescription scene;
   scene.camera = PerspectiveCamera{.position = {0.3, 1.7, 5.1}, .look_at = {0, 1, 0}};
@@ -93,7 +94,7 @@ SceneDescription every_feature() {
   return scene;
 }
 
-/// The same seen through a lens and a wide filter.
+/// The same scene through a lens and with a wide pixel filter.
 SceneDescription through_a_lens() {
   SceneDescription scene = every_feature();
   auto& camera = std::get<PerspectiveCamera>(scene.camera);
@@ -103,7 +104,7 @@ SceneDescription through_a_lens() {
   return scene;
 }
 
-/// The same without perspective.
+/// The same scene with an orthographic camera.
 SceneDescription flat_view() {
   SceneDescription scene = every_feature();
   scene.camera =
@@ -113,8 +114,8 @@ SceneDescription flat_view() {
   return scene;
 }
 
-/// The same lit from outside: by an environment, and by so many lights without size that a tree
-/// chooses among them.
+/// The same scene lit by an environment and by so many delta lights that a light tree selects among
+/// them.
 SceneDescription lit_from_outside() {
   SceneDescription scene = every_feature();
   Environment environment;
@@ -129,7 +130,7 @@ SceneDescription lit_from_outside() {
   return scene;
 }
 
-/// The same with media in a ball, in a cube and around everything.
+/// The same scene with media in a ball, in a cube and everywhere else.
 SceneDescription in_smoke() {
   SceneDescription scene = every_feature();
   Media& media = scene.media;
@@ -144,7 +145,7 @@ SceneDescription in_smoke() {
   return scene;
 }
 
-/// A lamp, a ball and a wall on a floor, in the dark: its pixels share their paths.
+/// An area light, a ball and a wall on a floor, with a black background: pixels reuse paths.
 SceneDescription room() {
   SceneDescription scene;
   scene.textures = {ConstantTexture{{0.7f, 0.5f, 0.3f}}, ConstantTexture{gray(5)}};
@@ -158,7 +159,8 @@ SceneDescription room() {
   return scene;
 }
 
-/// A ball and a pyramid on a floor under a sky and no lamp: paths go on in several directions.
+/// A ball and a pyramid on a floor under a sky, without lights: paths are split into several
+/// directions.
 SceneDescription outdoors() {
   SceneDescription scene;
   scene.background = {{0.9f, 0.8f, 0.7f}, {0.4f, 0.5f, 0.7f}};
@@ -176,7 +178,7 @@ SceneDescription outdoors() {
 void add_render(Hash64& hash, const SceneDescription& description, const RenderSettings& settings,
                 const Kernel& kernel) {
   Pool pool(1);
-  const auto scene = Scene::build(description, pool, {}, Tested::kOnItsWay, &kernel);
+  const auto scene = Scene::build(description, pool, {}, Traversal::kBvh, &kernel);
   BANDSAW_CHECK(scene.ok(), "the built-in scene is valid");
   const std::atomic<bool> stop = false;
   const auto pixels = render_band(**scene, settings, {{0, 2 * kBlockSamples}, {0, settings.height}},

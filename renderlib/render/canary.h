@@ -1,7 +1,7 @@
 #pragma once
 
-// A small render that every program makes at start: machines whose hash differs do not render the
-// same pixels.
+// The canary: a small render that every program performs at start. Machines whose hashes differ do
+// not render the same pixels.
 
 #include <cstdint>
 
@@ -9,9 +9,9 @@ namespace bandsaw {
 
 struct Kernel;  // renderlib/render/kernel.h
 
-/// The hash of the sums of a built-in scene that uses every feature, and of the elementary
-/// functions, as `kernel` computes them. A few milliseconds. `kernel`: one of kernels(); null: the
-/// first of them.
+/// Returns a hash of the pixel sums of built-in scenes that use every feature, and of the
+/// elementary functions, as `kernel` computes them. Takes a few milliseconds. `kernel` is one of
+/// kernels(); nullptr selects the first of them.
 std::uint64_t canary(const Kernel* kernel = nullptr);
 
 }  // namespace bandsaw

@@ -15,7 +15,7 @@ namespace {
 constexpr double kSmallest = 0.01;  // Prevents relative errors of dark pixels from dominating.
 
 // Let T be the squared error of one image and V its estimate from the nodes. Both are sums over
-// half rows of tiles, which are independent (sampling/sampler.h, integrate/shared_paths.h). Let the
+// half rows of tiles, which are independent (sampling/sampler.h, integrate/path_reuse.h). Let the
 // errors within a half row be normal and, in the worst case, the same for all its pixels, with
 // variance s. Its contributions to T and V are independent; the first has variance 2 s^2, the
 // second r s^2, where r = 2 for two halves and about 1 with further nodes. So the variance of T - V
@@ -63,8 +63,9 @@ double quantile(std::vector<float>& values, double share) {
 }
 
 double share_of_worst(std::vector<float> variances) {
-  constexpr std::size_t kFew = 64;  // In smaller images one pixel is a large part of the image.
-  if (variances.size() < kFew) {
+  constexpr std::size_t kMinPixels =
+      64;  // In smaller images one pixel is a large part of the image.
+  if (variances.size() < kMinPixels) {
     return 0;
   }
   const double all = std::accumulate(variances.begin(), variances.end(), 0.0);
@@ -118,8 +119,8 @@ double ErrorSums::add_pixel(const double (&variances)[3], const double (&means)[
   sum_ += value;
   // The sum of one sample of 1e30 exceeds the range of float, and infinity would make the shares
   // NaN.
-  constexpr double kMost = std::numeric_limits<float>::max();
-  variances_.push_back(static_cast<float>(std::clamp(of_pixel / 3, 0.0, kMost)));
+  constexpr double kMax = std::numeric_limits<float>::max();
+  variances_.push_back(static_cast<float>(std::clamp(of_pixel / 3, 0.0, kMax)));
   means_.push_back(static_cast<float>(value / 3));
   return of_pixel;
 }

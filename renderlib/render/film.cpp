@@ -2,17 +2,100 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/check.h"
 #include "renderlib/base/status_macros.h"
-#include "renderlib/render/covered_samples.h"
-#include "renderlib/render/film_strips.h"
+#include "renderlib/render/band.h"
 #include "renderlib/render/row_store.h"
 #include "renderlib/render/strip_nodes.h"
+#include "renderlib/render/tile_samples.h"
 
 namespace bandsaw {
+namespace {
+
+/// The samples of a row that a film has covered: rendered, or skipped by the plan in all their
+/// tiles. A set of sample ranges; adjacent ranges are merged.
+class CoveredSamples {
+ public:
+  /// Returns the covered range (after merging) that overlaps `samples`, if any.
+  std::optional<SampleRange> overlap(const SampleRange& samples) const;
+  /// Adds `samples`, none of which may be covered.
+  void add(const SampleRange& samples);
+  /// Returns the largest n for which [0, n) is covered.
+  std::uint64_t from_start() const;
+
+ private:
+  std::vector<SampleRange> ranges_;  ///< in ascending order; no two are adjacent
+};
+
+std::optional<SampleRange> CoveredSamples::overlap(const SampleRange& samples) const {
+  for (const SampleRange& range : ranges_) {
+    if (range.first < samples.last && samples.first < range.last) {
+      return range;
+    }
+  }
+  return std::nullopt;
+}
+
+void CoveredSamples::add(const SampleRange& samples) {
+  const auto after = std::find_if(ranges_.begin(), ranges_.end(), [&](const SampleRange& range) {
+    return range.first >= samples.last;
+  });
+  auto at = ranges_.insert(after, samples);
+  if (const auto next = std::next(at); next != ranges_.end() && next->first == at->last) {
+    at->last = next->last;
+    ranges_.erase(next);
+  }
+  if (at != ranges_.begin() && std::prev(at)->last == at->first) {
+    std::prev(at)->last = at->last;
+    ranges_.erase(at);
+  }
+}
+
+std::uint64_t CoveredSamples::from_start() const {
+  return ranges_.empty() || ranges_.front().first > 0 ? 0 : ranges_.front().last;
+}
+
+/// Pixels of one row that always have the same samples: first, first + step, …
+struct Strip {
+  std::uint32_t first = 0;
+  std::uint32_t step = 1;
+  std::uint32_t count = 0;  ///< may be 0
+};
+
+/// Strips are whole rows, or each row's part of each half tile, in order.
+class FilmStrips {
+ public:
+  FilmStrips(const TileGrid& grid, bool half_tiles) : grid_(grid), half_tiles_(half_tiles) {}
+
+  std::uint32_t per_row() const { return half_tiles_ ? 2 * grid_.columns() : 1; }
+  /// Returns the maximum number of pixels in a strip.
+  std::uint32_t longest() const { return half_tiles_ ? kTileSide / 2 : grid_.width; }
+  Strip strip(std::uint32_t y, std::uint32_t index) const {
+    if (!half_tiles_) {
+      return {0, 1, grid_.width};
+    }
+    const HalfRow row = half_row(grid_, index / 2, index % 2, y);
+    return {row.first, 2, row.count()};
+  }
+  /// Returns the half tile that contains strip `index` of row y, in the order of TileGrid.
+  std::size_t half_tile(std::uint32_t y, std::uint32_t index) const {
+    return std::size_t{y / kTileSide} * per_row() + index;
+  }
+  bool half_tiles() const { return half_tiles_; }
+  const TileGrid& grid() const { return grid_; }
+
+ private:
+  TileGrid grid_;
+  bool half_tiles_;
+};
+
+}  // namespace
 struct Film::Rows {
   FilmStrips strips;
   RowStore store;

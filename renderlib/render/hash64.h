@@ -1,9 +1,8 @@
 #pragma once
 
 // A 64-bit hash of bytes that detects damage and differences; not cryptographic. Each word is
-// folded in by a multiplication and a rotation; the end uses the mixer of Steele, Lea and Flood
-// 2014, "Fast Splittable Pseudorandom Number Generators", section 3. Its values are part of the
-// band file format and of the canary, so they MUST NOT change.
+// folded in by a multiplication and a rotation; the end uses the finaliser of SplitMix64. Its
+// values are part of the band file format and of the canary, so they MUST NOT change.
 
 #include <bit>
 #include <cstddef>
@@ -11,13 +10,14 @@
 #include <cstring>
 
 #include "absl/types/span.h"
+#include "renderlib/base/split_mix.h"
 
 namespace bandsaw {
 
 class Hash64 {
  public:
   void add(std::uint64_t word) {
-    state_ = std::rotl(state_ ^ (word * 0x9e3779b97f4a7c15u), 29) * 0xbf58476d1ce4e5b9u + 1;
+    state_ = std::rotl(state_ ^ (word * kSplitMixIncrement), 29) * 0xbf58476d1ce4e5b9u + 1;
   }
   void add(double value) { add(std::bit_cast<std::uint64_t>(value)); }
   /// Adds the bytes as little-endian words, the last padded with zeros, then their number.
@@ -36,12 +36,7 @@ class Hash64 {
     add(static_cast<std::uint64_t>(bytes.size()));
   }
 
-  std::uint64_t value() const {
-    std::uint64_t z = state_;
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-    return z ^ (z >> 31);
-  }
+  std::uint64_t value() const { return split_mix(state_); }
 
  private:
   std::uint64_t state_ = 0x2545f4914f6cdd1du;

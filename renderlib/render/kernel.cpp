@@ -1,5 +1,4 @@
-// The choice of the kernel. This file is compiled for the oldest processor that the program runs
-// on.
+// Selects the kernel. This file is compiled for the oldest processor that the program runs on.
 
 #include "renderlib/render/kernel.h"
 
@@ -32,10 +31,11 @@ absl::StatusOr<const Kernel*> find_kernel(absl::string_view name) {
 }
 
 absl::StatusOr<std::shared_ptr<const Scene>> Scene::build(SceneDescription description, Pool& pool,
-                                                          const Needs& forced, Tested tested,
+                                                          const SceneFeatures& forced,
+                                                          Traversal traversal,
                                                           const Kernel* kernel) {
   const Kernel& chosen = kernel != nullptr ? *kernel : *kernels().front();
-  return chosen.build(chosen, std::move(description), pool, forced, tested);
+  return chosen.build(chosen, std::move(description), pool, forced, traversal);
 }
 
 absl::StatusOr<BandPixels> render_band(const Scene& scene, const RenderSettings& settings,

@@ -1,8 +1,8 @@
 #pragma once
 
-// The code that builds scenes and renders them, compiled for one instruction set. A program holds
-// one kernel or two (renderlib/README.md, "Kernels"), and a scene uses one of them. All kernels
-// give the same bits.
+// A kernel: the code that builds scenes and renders them, compiled for one instruction set. A
+// program holds one kernel or two (renderlib/README.md, "Kernels"), and a scene uses one of them.
+// All kernels give the same bits.
 
 #include <memory>
 #include <vector>
@@ -15,13 +15,14 @@
 
 namespace bandsaw {
 
-/// The functions behind Scene::build, render_band and canary, which have the same parameters.
+/// Implementations of Scene::build, render_band and canary, which have the same parameters.
 struct Kernel {
   /// "avx2", "neon" or "plain".
   const char* name;
   absl::StatusOr<std::shared_ptr<const Scene>> (*build)(const Kernel& kernel,
                                                         SceneDescription description, Pool& pool,
-                                                        const Needs& forced, Tested tested);
+                                                        const SceneFeatures& forced,
+                                                        Traversal traversal);
   absl::StatusOr<BandPixels> (*render_band)(const Scene& scene, const RenderSettings& settings,
                                             const Band& band, Pool& pool,
                                             const std::atomic<bool>& stop, const RowsDone& progress,
@@ -29,18 +30,18 @@ struct Kernel {
   /// Adds values of all functions of renderlib/math/elementary.h to the hash.
   void (*add_elementary_functions)(Hash64& hash);
 
-  /// Compiled like the rest of the program, so every machine that runs the program runs it.
+  /// Compiled like the rest of the program: runs on every machine that the program runs on.
   static const Kernel kBase;
-  /// Compiled for x86-64-v3. Only programs for every x86-64 processor have it: its definition is
+  /// Compiled for x86-64-v3. Exists only in programs for every x86-64 processor; its definition is
   /// the one symbol that merge_kernel.sh leaves visible.
   static const Kernel kAvx2;
 };
 
-/// The kernels of this program that this machine runs, the fastest first. Never empty.
+/// Returns the kernels of this program that this machine can run, fastest first; at least one.
 std::vector<const Kernel*> kernels();
 
-/// The kernel of that name. INVALID_ARGUMENT: it is not among kernels(); the message names those
-/// that are.
+/// Returns the kernel with this name. Returns INVALID_ARGUMENT, with the names of all kernels(), if
+/// it is not one of them.
 absl::StatusOr<const Kernel*> find_kernel(absl::string_view name);
 
 }  // namespace bandsaw

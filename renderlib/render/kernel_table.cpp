@@ -1,4 +1,4 @@
-// The table of one kernel. Compiled once for each kernel, with the flags of that kernel.
+// Defines the function table of one kernel. Compiled once for each kernel, with its flags.
 
 #include "renderlib/base/simd.h"
 #include "renderlib/render/kernel.h"

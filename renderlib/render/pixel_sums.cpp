@@ -27,17 +27,18 @@ PixelSums::PixelSums(const Scene& scene, const RenderSettings& settings, const B
                .local = settings.integrator == Integrator::kDirect,
                .branches = settings.integrator == Integrator::kDirect ? 1 : branches_for(scene)},
       camera_(scene.camera(), static_cast<int>(settings.width), static_cast<int>(settings.height)),
-      asks_through_lens_(!scene.lights().empty() && follows_light(settings.integrator)),
-      shares_(scene.shares_paths() && follows_light(settings.integrator) && !options_.local) {}
+      samples_through_lens_(!scene.lights().empty() && computes_radiance(settings.integrator)),
+      reuses_paths_(scene.reuses_paths() && computes_radiance(settings.integrator) &&
+                    !options_.local) {}
 
 void PixelSums::add_run(std::uint32_t y, std::uint32_t first, std::uint32_t last,
                         const TileSamples& tiles, absl::Span<double> row,
                         Counters& counters) const {
-  Desk desk;
-  desk.pixels.reserve(kMostShared);
-  if (!shares_) {
+  Scratch scratch;
+  scratch.pixels.reserve(kMaxReusePixels);
+  if (!reuses_paths_) {
     for (std::uint32_t x = first; x < last && !stopped(); ++x) {
-      add_group(y, {x, x + 1}, tiles.of_pixel(x, y, samples_), row, desk, counters);
+      add_group(y, {x, x + 1}, tiles.of_pixel(x, y, samples_), row, scratch, counters);
     }
     return;
   }
@@ -46,7 +47,7 @@ void PixelSums::add_run(std::uint32_t y, std::uint32_t first, std::uint32_t last
     for (const std::uint32_t half : {0u, 1u}) {
       const HalfRow group = half_row(grid, column, half, y);
       if (group.count() > 0 && !stopped()) {
-        add_group(y, group, tiles.of_pixel(group.first, y, samples_), row, desk, counters);
+        add_group(y, group, tiles.of_pixel(group.first, y, samples_), row, scratch, counters);
       }
     }
   }
@@ -54,11 +55,11 @@ void PixelSums::add_run(std::uint32_t y, std::uint32_t first, std::uint32_t last
 
 /// Processes leaves in order and adds two siblings as soon as both are present.
 void PixelSums::add_group(std::uint32_t y, const HalfRow& group, const SampleRange& samples,
-                          absl::Span<double> row, Desk& desk, Counters& counters) const {
+                          absl::Span<double> row, Scratch& scratch, Counters& counters) const {
   if (samples.samples() == 0) {
     return;
   }
-  auto& [pixels, stack] = desk;
+  auto& [pixels, stack] = scratch;
   stack.resize(static_cast<std::size_t>(std::bit_width(samples.blocks())) + 1);
   pixels.clear();
   for (std::uint32_t x = group.first; x < group.last; x += 2) {
@@ -85,9 +86,9 @@ void PixelSums::add_group(std::uint32_t y, const HalfRow& group, const SampleRan
 }
 
 PixelSums::Sums PixelSums::leaf(std::uint32_t y, const HalfRow& group, const SampleRange& samples,
-                                absl::Span<SharedPixel> pixels, Counters& counters) const {
+                                absl::Span<ReusePixel> pixels, Counters& counters) const {
   Sums sums{};
-  std::array<double, kMostShared> left_out{};
+  std::array<double, kMaxReusePixels> bad{};
   PathCounts counts;
   for (std::uint64_t number = samples.first; number < samples.last; ++number) {
     sample(y, group, number, pixels, counts);
@@ -100,18 +101,17 @@ PixelSums::Sums PixelSums::leaf(std::uint32_t y, const HalfRow& group, const Sam
                       .bad_y = y,
                       .bad_sample = number,
                       .negative_samples = finite ? 1u : 0u});
-        left_out[i] += 1;
+        bad[i] += 1;
         continue;
       }
       sums[i] = sums[i] + Sum{value.r, value.g, value.b};
     }
   }
-  // The mean of the other samples replaces those left out; counting them as black would darken the
-  // pixel.
+  // The mean of the other samples replaces bad ones; counting them as black would darken the pixel.
   const auto taken = static_cast<double>(samples.samples());
   for (std::size_t i = 0; i < pixels.size(); ++i) {
-    if (left_out[i] > 0 && left_out[i] < taken) {
-      sums[i] = taken / (taken - left_out[i]) * sums[i];
+    if (bad[i] > 0 && bad[i] < taken) {
+      sums[i] = taken / (taken - bad[i]) * sums[i];
     }
   }
   counters.rays += counts.rays;
@@ -120,17 +120,17 @@ PixelSums::Sums PixelSums::leaf(std::uint32_t y, const HalfRow& group, const Sam
 }
 
 void PixelSums::sample(std::uint32_t y, const HalfRow& group, std::uint64_t sample,
-                       absl::Span<SharedPixel> pixels, PathCounts& counts) const {
+                       absl::Span<ReusePixel> pixels, PathCounts& counts) const {
   std::uint32_t x = group.first;
-  for (SharedPixel& pixel : pixels) {
+  for (ReusePixel& pixel : pixels) {
     pixel.camera_ray = camera_ray(pixel.sampler, x, y, sample);
     x += 2;
   }
-  if (shares_) {
-    shared_radiance(scene_, pixels, sample, options_, counts);
+  if (reuses_paths_) {
+    radiance_with_reuse(scene_, pixels, sample, options_, counts);
     return;
   }
-  for (SharedPixel& pixel : pixels) {
+  for (ReusePixel& pixel : pixels) {
     pixel.radiance = sample_value(scene_, settings_.integrator, pixel.camera_ray, pixel.sampler,
                                   sample, options_, counts);
   }
@@ -140,13 +140,13 @@ CameraRay PixelSums::camera_ray(const PixelSampler& sampler, std::uint32_t x, st
                                 std::uint64_t sample) const {
   const Sample4 at = sampler.group(sample, kGroupCamera);
   const Vec2 offset = bandsaw::sample(scene_.filter(), at[0], at[1]);
-  const double when = scene_.needs().motion ? sampler.group(sample, kGroupTime)[0] : 0;
+  const double when = scene_.features().motion ? sampler.group(sample, kGroupTime)[0] : 0;
   const Vec2 place{x + 0.5 + offset.x, y + 0.5 + offset.y};
-  CameraRay looks(camera_.ray(place.x, place.y, at[2], at[3], when));
-  if (asks_through_lens_) {
-    looks.lens = camera_.lens_view(place.x, place.y);
+  CameraRay ray(camera_.ray(place.x, place.y, at[2], at[3], when));
+  if (samples_through_lens_) {
+    ray.lens = camera_.lens_view(place.x, place.y);
   }
-  return looks;
+  return ray;
 }
 
 }  // namespace bandsaw

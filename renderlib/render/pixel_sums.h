@@ -10,7 +10,7 @@
 
 #include "absl/types/span.h"
 #include "renderlib/camera/camera.h"
-#include "renderlib/integrate/shared_paths.h"
+#include "renderlib/integrate/path_reuse.h"
 #include "renderlib/render/band.h"
 #include "renderlib/render/settings.h"
 #include "renderlib/render/tile_samples.h"
@@ -29,7 +29,7 @@ class PixelSums {
 
   /// Returns the alignment of runs: a run begins at a multiple of it and ends at one or at the end
   /// of the row.
-  std::uint32_t run_step() const { return shares_ ? kTileSide : 1; }
+  std::uint32_t run_step() const { return reuses_paths_ ? kTileSide : 1; }
 
   /// Writes three sums for each pixel of [first, last) in row y that takes samples; `row` holds the
   /// sums of the whole row. Checks `stop` at least once per block; once it is set, the sums are
@@ -45,20 +45,20 @@ class PixelSums {
     friend Sum operator+(const Sum& p, const Sum& q) { return {p.r + q.r, p.g + q.g, p.b + q.b}; }
     friend Sum operator*(double s, const Sum& p) { return {s * p.r, s * p.g, s * p.b}; }
   };
-  using Sums = std::array<Sum, kMostShared>;
+  using Sums = std::array<Sum, kMaxReusePixels>;
   /// Scratch memory of add_group(), allocated once per run.
-  struct Desk {
-    std::vector<SharedPixel> pixels;
+  struct Scratch {
+    std::vector<ReusePixel> pixels;
     std::vector<Sums> stack;
   };
 
   void add_group(std::uint32_t y, const HalfRow& group, const SampleRange& samples,
-                 absl::Span<double> row, Desk& desk, Counters& counters) const;
+                 absl::Span<double> row, Scratch& scratch, Counters& counters) const;
   /// Returns the sums of one block, which may be truncated.
   Sums leaf(std::uint32_t y, const HalfRow& group, const SampleRange& samples,
-            absl::Span<SharedPixel> pixels, Counters& counters) const;
+            absl::Span<ReusePixel> pixels, Counters& counters) const;
   void sample(std::uint32_t y, const HalfRow& group, std::uint64_t sample,
-              absl::Span<SharedPixel> pixels, PathCounts& counts) const;
+              absl::Span<ReusePixel> pixels, PathCounts& counts) const;
   CameraRay camera_ray(const PixelSampler& sampler, std::uint32_t x, std::uint32_t y,
                        std::uint64_t sample) const;
 
@@ -68,8 +68,8 @@ class PixelSums {
   const std::atomic<bool>& stop_;
   PathOptions options_;
   RayGenerator camera_;
-  bool asks_through_lens_;
-  bool shares_;
+  bool samples_through_lens_;
+  bool reuses_paths_;
 };
 
 }  // namespace bandsaw

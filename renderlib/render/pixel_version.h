@@ -4,8 +4,8 @@
 
 namespace bandsaw {
 
-/// Raised by hand with every change that alters pixels. A worker renders for a farm only when it is
-/// equal.
+/// Incremented by hand with every change that alters pixels. A worker renders for a farm only if
+/// both have the same version.
 inline constexpr std::uint32_t kPixelVersion = 17;
 
 }  // namespace bandsaw

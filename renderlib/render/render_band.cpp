@@ -13,8 +13,8 @@ namespace {
 /// together.
 constexpr std::uint64_t kSamplesPerUnit = 1024;
 
-/// How the pixels of a band are dealt out: runs of neighbours in a row, that rays may find the same
-/// things in the caches.
+/// Partition of a band's pixels among threads: runs of neighbours in a row, whose rays use the same
+/// cached data.
 struct Units {
   Units(const Band& band, std::uint32_t width, std::uint32_t step)
       : run(static_cast<std::uint32_t>(

@@ -3,19 +3,11 @@
 #include <bit>
 #include <cstddef>
 
+#include "renderlib/base/split_mix.h"
 #include "renderlib/base/uint4.h"
 
 namespace bandsaw {
 namespace {
-
-/// Finaliser of SplitMix64 (Steele, Lea and Flood 2014; constants of Stafford's variant 13).
-std::uint64_t mix(std::uint64_t x) {
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
-}
-
-constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15u;
 
 constexpr std::uint32_t reverse_bits(std::uint32_t x) {
   x = __builtin_bswap32(x);
@@ -106,14 +98,15 @@ UInt4 sobol_reversed(std::uint32_t index) {
 }  // namespace
 
 PixelSampler::PixelSampler(std::uint64_t seed, std::uint32_t x, std::uint32_t y)
-    : pixel_hash_(mix(mix(seed + kGolden) + ((std::uint64_t{y} << 32) | x))) {}
+    : pixel_hash_(
+          split_mix(split_mix(seed + kSplitMixIncrement) + ((std::uint64_t{y} << 32) | x))) {}
 
 Sample4 PixelSampler::group(std::uint64_t sample, std::uint32_t group) const {
   // A sequence has 2^32 points; larger sample numbers use another sequence.
   const std::uint64_t sequence = ((sample >> 32) << 32) | group;
-  const std::uint64_t base = mix(pixel_hash_ + sequence * kGolden);
-  const std::uint64_t seeds01 = mix(base + kGolden);
-  const std::uint64_t seeds23 = mix(base + 2 * kGolden);
+  const std::uint64_t base = split_mix(pixel_hash_ + sequence * kSplitMixIncrement);
+  const std::uint64_t seeds01 = split_mix(base + kSplitMixIncrement);
+  const std::uint64_t seeds23 = split_mix(base + 2 * kSplitMixIncrement);
   const std::uint32_t index = scramble_reversed(reverse_bits(static_cast<std::uint32_t>(sample)),
                                                 static_cast<std::uint32_t>(base >> 32));
   const UInt4 points = sobol_reversed(index);

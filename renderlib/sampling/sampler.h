@@ -51,13 +51,13 @@ constexpr std::uint32_t group_light(std::uint32_t bounce) { return 3 + 2 * bounc
 constexpr std::uint32_t group_alpha(std::uint32_t bounce, std::uint32_t passed) {
   return 0x80000000u | (bounce & 0x7ffu) << 20 | (passed & 0xfffffu);
 }
-/// Media segment number `stretch` (below 2^17) on the ray towards scattering `bounce` (below 2^11).
+/// Media segment number `segment` (below 2^17) on the ray towards scattering `bounce` (below 2^11).
 /// `which` selects one of three groups. 0: scatter or pass and channel, free-flight distance,
 /// strategy and distance of light sampling. 1: pivots of equiangular sampling (choice, u, v). 2:
 /// light sampling (choice, u, v, low bits of the choice).
-constexpr std::uint32_t group_medium(std::uint32_t bounce, std::uint32_t stretch,
+constexpr std::uint32_t group_medium(std::uint32_t bounce, std::uint32_t segment,
                                      std::uint32_t which) {
-  return 0x40000000u | (bounce & 0x7ffu) << 19 | (stretch & 0x1ffffu) << 2 | which;
+  return 0x40000000u | (bounce & 0x7ffu) << 19 | (segment & 0x1ffffu) << 2 | which;
 }
 
 }  // namespace bandsaw

@@ -60,8 +60,8 @@ double sphere_light_pdf(const Vec3& center, double radius, const Vec3& point, co
                         const Vec3& normal) {
   const double distance2 = length_squared(center - point);
   if (sees_cone(distance2, radius)) {
-    const Vec3 way = position - point;
-    if (dot(normal, way) > kRimCosine * length(way)) {
+    const Vec3 to_position = position - point;
+    if (dot(normal, to_position) > kRimCosine * length(to_position)) {
       return 0;
     }
     return cone_pdf(one_minus_cos_from_sin2(radius * radius / distance2));

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kRightAngle = 1e-9;
 /// Below this the inversion loses precision, and area sampling is equally good. Steradians.
-constexpr double kLeastSolidAngle = 1e-9;
+constexpr double kMinSolidAngle = 1e-9;
 
 }  // namespace
 
@@ -44,7 +44,7 @@ std::optional<SphericalRectangle> SphericalRectangle::seen_from(const Vec3& poin
   r.b1_ = n[2];
   r.angle_ = asin(n[2] * n[3]) + asin(n[3] * n[0]);
   r.solid_angle_ = asin(n[0] * n[1]) + asin(n[1] * n[2]) + r.angle_;
-  if (!(r.z0_ < 0) || !(r.solid_angle_ >= kLeastSolidAngle)) {
+  if (!(r.z0_ < 0) || !(r.solid_angle_ >= kMinSolidAngle)) {
     return std::nullopt;
   }
   return r;

@@ -31,7 +31,7 @@ std::optional<SphericalTriangle> SphericalTriangle::seen_from(const Vec3& point,
   const double beside =
       la * lb * lc + dot(t.to_a_, to_b) * lc + dot(to_b, to_c) * la + dot(to_c, t.to_a_) * lb;
   t.solid_angle_ = 2 * atan2(volume, beside);
-  if (!(t.solid_angle_ >= kLeastSolidAngle) || !(volume > 0)) {
+  if (!(t.solid_angle_ >= kMinSolidAngle) || !(volume > 0)) {
     return std::nullopt;
   }
   t.a_ = t.to_a_ / la;

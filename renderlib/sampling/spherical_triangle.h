@@ -15,10 +15,10 @@ class SphericalTriangle {
  public:
   /// Minimum solid angle in steradians. Below it the triangle is small or a sliver: the inversion
   /// loses precision, and sampling uniformly by area is nearly uniform in solid angle.
-  static constexpr double kLeastSolidAngle = 1e-3;
+  static constexpr double kMinSolidAngle = 1e-3;
 
   /// Creates the triangle a, a + u, a + v as seen from `point`. Returns std::nullopt if its solid
-  /// angle is below kLeastSolidAngle or it is seen edge-on: sample its area instead.
+  /// angle is below kMinSolidAngle or it is seen edge-on: sample its area instead.
   static std::optional<SphericalTriangle> seen_from(const Vec3& point, const Vec3& a, const Vec3& u,
                                                     const Vec3& v);
 

@@ -38,8 +38,8 @@ struct Side {
     double low = 0;
     double high = width;
     double s = width * (1 - std::sqrt(1 - u));  // Exact where the sine is constant.
-    constexpr int kMostSteps = 12;
-    for (int i = 0; i < kMostSteps; ++i) {
+    constexpr int kMaxSteps = 12;
+    for (int i = 0; i < kMaxSteps; ++i) {
       const At here = at(s);
       (here.mass > target ? high : low) = s;
       const double newton = s - (here.mass - target) / here.density;

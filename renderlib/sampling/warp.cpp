@@ -66,8 +66,8 @@ Vec2 sample_disk(double u, double v) {
 Vec3 sample_cosine_hemisphere(double u, double v) {
   const Vec2 d = sample_disk(u, v);
   // On the rim rounding may leave 0 for z; a direction of pdf 0 must not be sampled.
-  constexpr double kLeastSquare = 0x1p-64;
-  const double z = std::sqrt(std::max(kLeastSquare, 1 - d.x * d.x - d.y * d.y));
+  constexpr double kMinSquare = 0x1p-64;
+  const double z = std::sqrt(std::max(kMinSquare, 1 - d.x * d.x - d.y * d.y));
   return {d.x, d.y, z};
 }
 

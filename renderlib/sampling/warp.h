@@ -46,16 +46,9 @@ inline double one_minus_cos_from_sin2(double sin2) {
 /// direction from `from`; infinite if that direction lies in the surface.
 inline double solid_angle_pdf(double area_pdf, const Vec3& from, const Vec3& to,
                               const Vec3& normal) {
-  const Vec3 way = to - from;
-  const double distance2 = length_squared(way);
-  return area_pdf * distance2 * std::sqrt(distance2) / std::abs(dot(way, normal));
-}
-
-/// Returns the MIS weight p^2 / (p^2 + q^2) of a sample with pdf p > 0 that another technique
-/// samples with pdf q; does not overflow. (Power heuristic: Veach 1997, section 9.2.3.)
-inline double power_heuristic(double p, double q) {
-  const double ratio = q / p;
-  return 1 / (1 + ratio * ratio);
+  const Vec3 direction = to - from;
+  const double distance2 = length_squared(direction);
+  return area_pdf * distance2 * std::sqrt(distance2) / std::abs(dot(direction, normal));
 }
 
 }  // namespace bandsaw

@@ -1,7 +1,7 @@
 #pragma once
 
-// Whether trees and the numbers of primitives can hold what a scene has. Counts alone are judged,
-// so that this can be done before memory is taken for what is counted.
+// Checks that BVHs and the numbers of primitives can hold a scene. Only counts are needed, so the
+// check can run before memory is allocated.
 
 #include <cstdint>
 
@@ -11,10 +11,10 @@
 
 namespace bandsaw {
 
-/// A triangle names its corners by numbers of 32 bits.
+/// Maximum number of positions of a mesh: triangles refer to their corners by 32-bit indices.
 inline constexpr std::uint64_t kMaxMeshPositions = std::uint64_t{1} << 32;
 
-/// The shapes that lie loose in one space, and the instances that are placed there.
+/// Numbers of loose shapes and instances in one space.
 struct ShapeCounts {
   std::uint64_t spheres = 0;
   std::uint64_t quads = 0;
@@ -23,16 +23,16 @@ struct ShapeCounts {
   std::uint64_t instances = 0;
 };
 
-/// INVALID_ARGUMENT: "meshes[3]: has 600000000 triangles, a mesh holds at most 536870911: split it
-/// into several meshes". `field` names the mesh.
+/// Returns INVALID_ARGUMENT if a BVH cannot hold the mesh, which `field` names: "meshes[3]: has
+/// 600000000 triangles, a mesh holds at most 536870911: split it into several meshes".
 absl::Status check_mesh_counts(absl::string_view field, std::uint64_t triangles,
                                std::uint64_t positions);
 
-/// INVALID_ARGUMENT where one tree (accel/capacity.h) cannot hold the shapes and instances of the
-/// scene or group that `field` names.
+/// Returns INVALID_ARGUMENT if one BVH (accel/capacity.h) cannot hold the shapes and instances of
+/// the scene or group that `field` names.
 absl::Status check_shape_counts(absl::string_view field, const ShapeCounts& counts);
 
-/// Both of the above for all of a geometry. Names of fields begin with `prefix`.
+/// Runs both checks for a whole geometry. `prefix` is prepended to the names of fields.
 absl::Status check_geometry_counts(absl::string_view prefix, const Geometry& geometry);
 
 }  // namespace bandsaw

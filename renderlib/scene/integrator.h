@@ -13,7 +13,7 @@ namespace bandsaw {
 /// The values are used in protocols and files.
 enum class Integrator {
   kPath = 0,     ///< path tracing (integrate/path.h)
-  kDirect = 1,   ///< direct light and the ambient term; mirrors and glass are followed
+  kDirect = 1,   ///< direct light and the ambient term; paths continue at mirrors and glass
   kNormals = 2,  ///< (n + 1) / 2 of the shading normal in world space; black for a miss
   kDepth = 3,    ///< distance to the surface along the ray, scene units; 0 for a miss
   kAlbedo = 4,   ///< albedo (material/albedo.h); black for a miss
@@ -25,7 +25,7 @@ enum class Integrator {
 inline constexpr int kLastIntegrator = 7;
 
 /// Returns true for those that path_radiance (integrate/path.h) computes.
-constexpr bool follows_light(Integrator integrator) {
+constexpr bool computes_radiance(Integrator integrator) {
   return integrator == Integrator::kPath || integrator == Integrator::kDirect ||
          integrator == Integrator::kPathLights || integrator == Integrator::kPathScattering;
 }

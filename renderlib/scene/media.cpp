@@ -7,15 +7,14 @@
 #include "renderlib/base/status_macros.h"
 #include "renderlib/geometry/closed.h"
 #include "renderlib/scene/validate_field.h"
-#include "renderlib/scene/validate_geometry.h"
 
 namespace bandsaw {
 namespace {
 
 absl::Status check_rates(const std::string& field, const Rgb& rates) {
   for (const float rate : {rates.r, rates.g, rates.b}) {
-    if (!(rate >= 0 && rate <= kMostPerUnit)) {
-      return invalid(field, absl::StrCat("must be in [0, ", kMostPerUnit, "], is ", rate));
+    if (!(rate >= 0 && rate <= kMaxPerUnit)) {
+      return invalid(field, absl::StrCat("must be in [0, ", kMaxPerUnit, "], is ", rate));
     }
   }
   return absl::OkStatus();
@@ -25,9 +24,9 @@ absl::Status check_medium(const std::string& field, const Medium& medium) {
   RETURN_IF_ERROR(check_rates(field + ".absorption", medium.absorption));
   RETURN_IF_ERROR(check_rates(field + ".scattering", medium.scattering));
   RETURN_IF_ERROR(check_rates(field + ".emission", medium.emission));
-  if (!(std::abs(medium.g) <= kMostG)) {
+  if (!(std::abs(medium.g) <= kMaxG)) {
     return invalid(field + ".g",
-                   absl::StrCat("must be in [", -kMostG, ", ", kMostG, "], is ", medium.g));
+                   absl::StrCat("must be in [", -kMaxG, ", ", kMaxG, "], is ", medium.g));
   }
   return absl::OkStatus();
 }
@@ -59,7 +58,8 @@ absl::Status check_closed(const std::string& field, const Mesh& mesh) {
 
 absl::Status check_boundaries(const Media& media) {
   const Geometry& boundaries = media.boundaries;
-  RETURN_IF_ERROR(check_geometry("boundaries.", boundaries, media.media.size()));
+  RETURN_IF_ERROR(
+      check_geometry("boundaries.", boundaries, media.media.size(), MeshVertices::kAny));
   if (boundaries.size() != boundaries.spheres.size()) {
     return invalid("boundaries", "must be spheres and meshes alone: other shapes are open");
   }

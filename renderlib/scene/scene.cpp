@@ -1,52 +1,158 @@
 #include "renderlib/scene/scene.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 
 #include "renderlib/base/status_macros.h"
+#include "renderlib/geometry/shapes.h"
+#include "renderlib/material/interiors.h"
 #include "renderlib/material/opacity.h"
-#include "renderlib/scene/clean.h"
-#include "renderlib/scene/rest.h"
-#include "renderlib/scene/sharing.h"
+#include "renderlib/scene/static_instances.h"
 #include "renderlib/scene/validate.h"
 
 namespace bandsaw {
 namespace {
 
-Needs needs_of(const SceneDescription& scene, const Lights& lights) {
-  Needs needs;
-  needs.lights = !lights.empty();
-  needs.alpha = std::any_of(scene.materials.begin(), scene.materials.end(), has_alpha);
-  needs.motion = moves(scene.geometry) || moves(scene.media.boundaries);
-  needs.uv = std::any_of(scene.textures.begin(), scene.textures.end(), uses_uv);
-  needs.media = scene.media.fog || scene.media.has_boundaries();
-  return needs;
+bool has_area(const Vec3& u, const Vec3& v) {
+  // Scaled, so that the area of tiny shapes does not underflow.
+  const double size = std::max(max_abs(u), max_abs(v));
+  if (!(size > 0) || !std::isfinite(size)) {
+    return false;
+  }
+  const Vec3 normal = cross(u / size, v / size);
+  return is_finite(normal) && max_abs(normal) > 0;
+}
+
+template <std::size_t N>
+bool all_finite(const std::array<float, N>& values) {
+  return std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
+}
+
+template <std::size_t N>
+void zero_if_not_finite(std::vector<std::array<float, N>>& list) {
+  for (std::array<float, N>& values : list) {
+    if (!all_finite(values)) {
+      values.fill(0);
+    }
+  }
+}
+
+std::size_t clean_mesh(Mesh& mesh) {
+  zero_if_not_finite(mesh.normals);
+  zero_if_not_finite(mesh.uvs);
+  zero_if_not_finite(mesh.uvs2);
+  zero_if_not_finite(mesh.colors);
+  return std::erase_if(mesh.triangles, [&](const std::array<std::uint32_t, 3>& triangle) {
+    std::array<Vec3, 3> corners;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::array<float, 3>& p = mesh.positions[triangle[i]];
+      corners[i] = {p[0], p[1], p[2]};
+    }
+    return !has_area(corners[1] - corners[0], corners[2] - corners[0]);
+  });
+}
+
+std::size_t clean_shapes(Shapes& shapes) {
+  return std::erase_if(shapes.quads, [](const Quad& q) { return !has_area(q.u, q.v); }) +
+         std::erase_if(shapes.triangles,
+                       [](const Triangle& t) { return !has_area(t.b - t.a, t.c - t.a); });
+}
+
+/// Removes quads and triangles, including those of meshes, whose area is zero or not finite (e.g.
+/// because a vertex is not finite); the others keep their order. Normals, uvs and colours that are
+/// not finite become zero. Returns the number of removed primitives; those of a mesh or group count
+/// once per instance.
+std::size_t clean(Geometry& geometry) {
+  std::size_t dropped = clean_shapes(geometry);
+  std::vector<std::size_t> dropped_of_group;
+  for (Shapes& group : geometry.groups) {
+    dropped_of_group.push_back(clean_shapes(group));
+  }
+  std::vector<std::size_t> dropped_of_mesh;
+  for (Mesh& mesh : geometry.meshes) {
+    dropped_of_mesh.push_back(clean_mesh(mesh));
+  }
+  for (const Instance& instance : geometry.instances) {
+    dropped += instance.group == kNoGroup ? dropped_of_mesh[index_of(instance.mesh)]
+                                          : dropped_of_group[index_of(instance.group)];
+  }
+  return dropped;
+}
+
+SceneFeatures features_of(const SceneDescription& scene, const Lights& lights) {
+  SceneFeatures features;
+  features.lights = !lights.empty();
+  features.alpha = std::any_of(scene.materials.begin(), scene.materials.end(), has_alpha);
+  features.motion = moves(scene.geometry) || moves(scene.media.boundaries);
+  features.uv = std::any_of(scene.textures.begin(), scene.textures.end(), uses_uv);
+  features.media = scene.media.fog || scene.media.has_boundaries();
+  return features;
+}
+
+/// Returns true if the material fully occludes what is behind it, for shadow rays and for paths
+/// alike.
+bool is_opaque(const Material& material) {
+  return !has_alpha(material) && nested_glass(material) == nullptr;
+}
+
+template <class OfMaterial>
+bool all_of_shapes(const Shapes& shapes, const OfMaterial& test) {
+  const auto all = [&](const auto& kind) {
+    return std::all_of(kind.begin(), kind.end(),
+                       [&](const auto& shape) { return test(shape.material); });
+  };
+  return all(shapes.spheres) && all(shapes.quads) && all(shapes.triangles) && all(shapes.disks);
+}
+
+/// Returns true if area and delta lights emit all the light (the background is black), nothing
+/// moves, there are no media, and every surface is either opaque or absent, for paths and shadow
+/// rays alike. `features` are those that the scene uses.
+bool can_reuse_paths(const SceneDescription& scene, const Lights& lights,
+                     const SceneFeatures& features) {
+  const Background& background = scene.background;
+  if (lights.empty() || background.environment || !is_black(background.bottom) ||
+      !is_black(background.top) || features.media || features.motion) {
+    return false;
+  }
+  const Geometry& geometry = scene.geometry;
+  const auto opaque = [&](MaterialId id) {
+    return id == kOwnMaterial || is_opaque(scene.materials[index_of(id)]);
+  };
+  return all_of_shapes(geometry, opaque) &&
+         std::all_of(geometry.groups.begin(), geometry.groups.end(),
+                     [&](const Shapes& group) { return all_of_shapes(group, opaque); }) &&
+         std::all_of(geometry.instances.begin(), geometry.instances.end(),
+                     [&](const Instance& instance) { return opaque(instance.material); });
 }
 
 }  // namespace
 
 absl::StatusOr<std::shared_ptr<const Scene>> Scene::build_with(const Kernel& kernel,
                                                                SceneDescription description,
-                                                               Pool& pool, const Needs& forced,
-                                                               Tested tested) {
+                                                               Pool& pool,
+                                                               const SceneFeatures& forced,
+                                                               Traversal traversal) {
   RETURN_IF_ERROR(validate(description));
-  // Trees and lights point into the scene: it has its place before they are made.
+  // BVHs and lights hold pointers into the scene, so the scene gets its final place in memory
+  // first.
   std::shared_ptr<Scene> scene(new Scene(kernel, std::move(description)));
   SceneDescription& own = scene->description_;
   scene->dropped_ = clean(own.geometry);
   const Shutter& shutter = shutter_of(own.camera);
   const Interval interval = {shutter.open, shutter.close};
-  rest(interval, own.geometry);
-  rest(interval, own.media.boundaries);
+  make_static(interval, own.geometry);
+  make_static(interval, own.media.boundaries);
   prepare_surfaces(own.geometry);
-  scene->accel_ = std::make_unique<Accel>(Accel::build(own.geometry, pool, interval, tested));
+  scene->accel_ = std::make_unique<Accel>(Accel::build(own.geometry, pool, interval, traversal));
   scene->lights_ =
       Lights(own.geometry, own.materials, own.textures, own.lights, own.background, interval);
-  const Needs needs = needs_of(own, scene->lights_);
-  scene->shares_paths_ = bandsaw::shares_paths(own, scene->lights_, needs);
-  scene->needs_ = needs | forced;
-  if (scene->needs_.media) {
+  const SceneFeatures features = features_of(own, scene->lights_);
+  scene->reuses_paths_ = can_reuse_paths(own, scene->lights_, features);
+  scene->features_ = features | forced;
+  if (scene->features_.media) {
     scene->boundary_accel_ =
-        std::make_unique<Accel>(Accel::build(own.media.boundaries, pool, interval, tested));
+        std::make_unique<Accel>(Accel::build(own.media.boundaries, pool, interval, traversal));
   }
   return std::shared_ptr<const Scene>(std::move(scene));
 }

@@ -1,7 +1,7 @@
 #pragma once
 
-// The immutable scene that is rendered. Shared by the threads that render it; the only object of
-// renderlib that is.
+// The immutable scene that is rendered. It is the only object of renderlib that rendering threads
+// share.
 
 #include <memory>
 #include <utility>
@@ -12,7 +12,7 @@
 #include "renderlib/base/pool.h"
 #include "renderlib/light/lights.h"
 #include "renderlib/scene/description.h"
-#include "renderlib/scene/needs.h"
+#include "renderlib/scene/scene_features.h"
 
 namespace bandsaw {
 
@@ -20,26 +20,27 @@ struct Kernel;  // renderlib/render/kernel.h
 
 class Scene {
  public:
-  /// Checks the description (indices, ranges, finiteness), drops what cannot be hit or cannot shine
-  /// (degenerate triangles, triangles with non-finite vertices) and counts it, and builds the trees
-  /// and lights. INVALID_ARGUMENT: "spheres[3].radius: must be > 0, is -1".
-  /// `forced`: needs that it is to have beside its own; costs time and changes no pixel. For tests.
-  /// `tested`: the same, for comparison.
-  /// `kernel`: the code that builds the scene and renders its bands; it changes no pixel. One of
-  /// kernels() (renderlib/render/kernel.h); null: the first of them.
+  /// Validates the description (scene/validate.h), removes and counts primitives that no ray can
+  /// hit, and builds the BVHs and lights. Returns INVALID_ARGUMENT:
+  /// "spheres[3].radius: must be > 0, is -1". `forced`: features to enable in addition to those
+  /// that the scene uses; this costs time and changes no pixel; for tests. `traversal`: how rays
+  /// find their primitives; changes no pixel. `kernel`: the code that builds the scene and renders
+  /// its bands, one of kernels() (renderlib/render/kernel.h); changes no pixel. nullptr selects the
+  /// first of them.
   static absl::StatusOr<std::shared_ptr<const Scene>> build(SceneDescription description,
-                                                            Pool& pool, const Needs& forced = {},
-                                                            Tested tested = Tested::kOnItsWay,
+                                                            Pool& pool,
+                                                            const SceneFeatures& forced = {},
+                                                            Traversal traversal = Traversal::kBvh,
                                                             const Kernel* kernel = nullptr);
 
-  /// The kernel that built it and renders it.
+  /// Returns the kernel that built the scene and renders it.
   const Kernel& kernel() const { return *kernel_; }
   const Geometry& geometry() const { return description_.geometry; }
   const Accel& accel() const { return *accel_; }
   const Lights& lights() const { return lights_; }
   const Media& media() const { return description_.media; }
-  /// Of the media's boundaries, which the scene's own trees do not hold. MUST NOT be asked without
-  /// needs().media.
+  /// Returns the BVHs of the boundaries of media, which accel() does not contain. features().media
+  /// MUST be set.
   const Accel& boundary_accel() const { return *boundary_accel_; }
   const Background& background() const { return description_.background; }
   const Camera& camera() const { return description_.camera; }
@@ -48,21 +49,23 @@ class Scene {
   const Material& material(MaterialId id) const { return description_.materials[index_of(id)]; }
   const Texture& texture(TextureId id) const { return description_.textures[index_of(id)]; }
   const std::vector<Texture>& textures() const { return description_.textures; }
-  const Needs& needs() const { return needs_; }
-  /// Whether pixels share what their paths find (sharing.h). A property of what the scene holds:
-  /// forced needs do not change it.
-  bool shares_paths() const { return shares_paths_; }
-  /// Primitives that were left out because no ray can hit them.
+  /// Returns the features that the scene uses, and those that were forced.
+  const SceneFeatures& features() const { return features_; }
+  /// Returns true if neighbouring pixels reuse each other's path vertices
+  /// (integrate/path_reuse.h). Forced features do not change it.
+  bool reuses_paths() const { return reuses_paths_; }
+  /// Returns the number of primitives that were removed because no ray can hit them.
   std::size_t dropped_primitives() const { return dropped_; }
 
  private:
-  friend struct Kernel;  // it holds `build_with`, compiled for its instruction set
+  friend struct Kernel;  // refers to `build_with`, which is compiled for each kernel
 
-  /// What `build` does in the kernel that it chose, which is `kernel`.
+  /// The part of `build` that is compiled for each kernel; `kernel` is the chosen one.
   static absl::StatusOr<std::shared_ptr<const Scene>> build_with(const Kernel& kernel,
                                                                  SceneDescription description,
-                                                                 Pool& pool, const Needs& forced,
-                                                                 Tested tested);
+                                                                 Pool& pool,
+                                                                 const SceneFeatures& forced,
+                                                                 Traversal traversal);
 
   Scene(const Kernel& kernel, SceneDescription description)
       : kernel_(&kernel), description_(std::move(description)) {}
@@ -71,8 +74,8 @@ class Scene {
   std::unique_ptr<Accel> accel_;
   std::unique_ptr<Accel> boundary_accel_;
   Lights lights_;
-  Needs needs_;
-  bool shares_paths_ = false;
+  SceneFeatures features_;
+  bool reuses_paths_ = false;
   std::size_t dropped_ = 0;
 };
 

@@ -8,7 +8,6 @@
 #include "renderlib/light/check_light_counts.h"
 #include "renderlib/light/check_lights.h"
 #include "renderlib/scene/validate_field.h"
-#include "renderlib/scene/validate_geometry.h"
 
 namespace bandsaw {
 namespace {
@@ -31,7 +30,7 @@ absl::Status check_local_shading(const LocalShading& local) {
 
 }  // namespace
 
-absl::Status validate(const SceneDescription& scene) {
+absl::Status validate(const SceneDescription& scene, MeshVertices vertices) {
   RETURN_IF_ERROR(check_camera(scene.camera));
   RETURN_IF_ERROR(validate(scene.filter));
   RETURN_IF_ERROR(check_local_shading(scene.local_shading));
@@ -40,7 +39,7 @@ absl::Status validate(const SceneDescription& scene) {
   RETURN_IF_ERROR(check_color("background.top", scene.background.top, infinite));
   RETURN_IF_ERROR(check_surfaces(scene));
   RETURN_IF_ERROR(check_lights(scene.background, scene.textures, scene.lights));
-  RETURN_IF_ERROR(check_geometry("", scene.geometry, scene.materials.size()));
+  RETURN_IF_ERROR(check_geometry("", scene.geometry, scene.materials.size(), vertices));
   RETURN_IF_ERROR(
       check_light_counts(scene.geometry, scene.materials, scene.textures, scene.lights.size()));
   return validate(scene.media);

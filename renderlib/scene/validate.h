@@ -1,6 +1,7 @@
 #pragma once
 
-// Validation of scene descriptions: every index, range and number.
+// Validation of scene descriptions: every index, range and number. Descriptions from anywhere are
+// judged here and nowhere else: by Scene::build, by the decoder of packages and by the importer.
 
 #include "absl/status/status.h"
 #include "renderlib/scene/description.h"
@@ -11,9 +12,14 @@ namespace bandsaw {
 /// double.
 inline constexpr double kMaxCoordinate = 1e30;
 
+/// Selects how vertices of meshes (positions, normals, uvs, colours) are judged.
+enum class MeshVertices {
+  kAny,     ///< any value: Scene::build removes triangles without a finite area
+  kFinite,  ///< finite values only, as in scene packages
+};
+
 /// Returns INVALID_ARGUMENT with the field's path, the allowed range and the value:
-/// "spheres[3].radius: must be > 0, is -1". Vertices of meshes may have any value: triangles
-/// without a finite area are removed when the scene is built.
-absl::Status validate(const SceneDescription& scene);
+/// "spheres[3].radius: must be > 0, is -1".
+absl::Status validate(const SceneDescription& scene, MeshVertices vertices = MeshVertices::kAny);
 
 }  // namespace bandsaw

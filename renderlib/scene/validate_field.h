@@ -9,6 +9,7 @@
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/ids.h"
+#include "renderlib/geometry/shapes.h"
 #include "renderlib/math/rgb.h"
 #include "renderlib/math/vec.h"
 #include "renderlib/scene/validate.h"
@@ -52,5 +53,10 @@ inline absl::Status check_color(const std::string& field, const Rgb& color, floa
 
 /// Checks textures and materials (validate_surfaces.cpp).
 absl::Status check_surfaces(const SceneDescription& scene);
+
+/// Checks shapes, meshes, groups, frames and instances (validate_geometry.cpp). `prefix` is
+/// prepended to the names of fields in errors; `materials` is the number of materials.
+absl::Status check_geometry(const std::string& prefix, const Geometry& geometry,
+                            std::size_t materials, MeshVertices vertices);
 
 }  // namespace bandsaw

@@ -1,5 +1,4 @@
-#include "renderlib/scene/validate_geometry.h"
-
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -13,7 +12,7 @@
 namespace bandsaw {
 namespace {
 
-/// What a unit normal may be off by: it is normalised again where that matters.
+/// Tolerance of the length of unit normals; code that depends on it normalises them again.
 constexpr double kUnitSlack = 1e-6;
 
 absl::Status check_radius(const std::string& field, double radius) {
@@ -77,12 +76,43 @@ absl::Status check_one_a_position(const std::string& field, std::size_t count,
   return absl::OkStatus();
 }
 
-absl::Status check_mesh(const std::string& field, const Mesh& mesh) {
+template <std::size_t N>
+absl::Status check_finite(const std::string& field,
+                          const std::vector<std::array<float, N>>& values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    for (const float value : values[i]) {
+      if (!std::isfinite(value)) {
+        return invalid(item(field, i), absl::StrCat("must be finite, is ", value));
+      }
+    }
+  }
+  return absl::OkStatus();
+}
+
+absl::Status check_finite_vertices(const std::string& field, const Mesh& mesh) {
+  RETURN_IF_ERROR(check_finite(field + ".positions", mesh.positions));
+  RETURN_IF_ERROR(check_finite(field + ".normals", mesh.normals));
+  RETURN_IF_ERROR(check_finite(field + ".uvs", mesh.uvs));
+  RETURN_IF_ERROR(check_finite(field + ".uvs2", mesh.uvs2));
+  return check_finite(field + ".colors", mesh.colors);
+}
+
+absl::Status check_mesh(const std::string& field, const Mesh& mesh, MeshVertices vertices_are) {
+  if (vertices_are == MeshVertices::kFinite) {
+    RETURN_IF_ERROR(check_finite_vertices(field, mesh));
+  }
   const std::size_t vertices = mesh.positions.size();
   RETURN_IF_ERROR(check_one_a_position(field + ".normals", mesh.normals.size(), vertices));
   RETURN_IF_ERROR(check_one_a_position(field + ".uvs", mesh.uvs.size(), vertices));
   RETURN_IF_ERROR(check_one_a_position(field + ".uvs2", mesh.uvs2.size(), vertices));
   RETURN_IF_ERROR(check_one_a_position(field + ".colors", mesh.colors.size(), vertices));
+  for (std::size_t i = 0; i < mesh.colors.size(); ++i) {
+    for (const float channel : mesh.colors[i]) {
+      if (channel < 0) {
+        return invalid(item(field + ".colors", i), absl::StrCat("must be >= 0, has ", channel));
+      }
+    }
+  }
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     for (const std::uint32_t index : mesh.triangles[i]) {
       if (index >= vertices) {
@@ -131,12 +161,12 @@ absl::Status check_frame(const std::string& field, const Frame& frame, std::size
   }
   RETURN_IF_ERROR(check_placement(field + ".placement", frame.placement));
   if (frame.keys.empty()) {
-    return invalid(field + ".keys", "must be one at least");
+    return invalid(field + ".keys", "must be at least one");
   }
   for (std::size_t i = 0; i < frame.keys.size(); ++i) {
     const Key& key = frame.keys[i];
     const std::string name = absl::StrCat(field, ".keys[", i, "]");
-    if (!(std::abs(key.time) <= kMostTime) || (i > 0 && !(key.time > frame.keys[i - 1].time))) {
+    if (!(std::abs(key.time) <= kMaxTime) || (i > 0 && !(key.time > frame.keys[i - 1].time))) {
       return invalid(name + ".time", absl::StrCat("must be within +-1e9 and rise, is ", key.time));
     }
     RETURN_IF_ERROR(check_placement(name + ".at", key.at));
@@ -151,14 +181,14 @@ absl::Status check_frame(const std::string& field, const Frame& frame, std::size
 }  // namespace
 
 absl::Status check_geometry(const std::string& prefix, const Geometry& geometry,
-                            std::size_t materials) {
+                            std::size_t materials, MeshVertices vertices) {
   RETURN_IF_ERROR(check_geometry_counts(prefix, geometry));
   RETURN_IF_ERROR(check_shapes(prefix, geometry, materials));
   for (std::size_t i = 0; i < geometry.groups.size(); ++i) {
     RETURN_IF_ERROR(check_shapes(item(prefix + "groups", i) + ".", geometry.groups[i], materials));
   }
   for (std::size_t i = 0; i < geometry.meshes.size(); ++i) {
-    RETURN_IF_ERROR(check_mesh(item(prefix + "meshes", i), geometry.meshes[i]));
+    RETURN_IF_ERROR(check_mesh(item(prefix + "meshes", i), geometry.meshes[i], vertices));
   }
   for (std::size_t i = 0; i < geometry.frames.size(); ++i) {
     RETURN_IF_ERROR(check_frame(item(prefix + "frames", i), geometry.frames[i], i));

@@ -12,15 +12,33 @@
 namespace bandsaw {
 namespace {
 
+absl::Status check_side(const std::string& field, std::uint32_t side) {
+  return side >= 1 && side <= kMaxTextureSide
+             ? absl::OkStatus()
+             : invalid(field, absl::StrCat("must be in [1, ", kMaxTextureSide, "], is ", side));
+}
+
 absl::Status check_image(const std::string& field, const ImageTexture& image) {
-  if (image.width < 1 || image.height < 1) {
-    return invalid(
-        field, absl::StrCat("must have at least one texel, is ", image.width, " x ", image.height));
-  }
+  RETURN_IF_ERROR(check_side(field + ".width", image.width));
+  RETURN_IF_ERROR(check_side(field + ".height", image.height));
   const std::uint64_t size = texel_bytes(image);
   if (image.texels.size() != size) {
-    return invalid(absl::StrCat(field, ".texels"),
-                   absl::StrCat("must have ", size, " bytes, has ", image.texels.size()));
+    return invalid(field + ".texels",
+                   absl::StrCat("must have ", size, " bytes for ", image.width, " x ", image.height,
+                                " texels, has ", image.texels.size()));
+  }
+  if (image.format != ImageTexture::Format::kFloat32) {
+    return absl::OkStatus();  // Decoded 8-bit values are always in [0, 1].
+  }
+  for (std::size_t i = 0; i < image.texels.size() / sizeof(float); ++i) {
+    float value = 0;
+    std::memcpy(&value, image.texels.data() + i * sizeof value, sizeof value);
+    if (!std::isfinite(value) || value < 0) {
+      const std::size_t texel = i / image.channels;
+      return invalid(field + ".texels",
+                     absl::StrCat("texel (", texel % image.width, ", ", texel / image.width,
+                                  ") must be finite and not negative, is ", value));
+    }
   }
   return absl::OkStatus();
 }
@@ -28,52 +46,43 @@ absl::Status check_image(const std::string& field, const ImageTexture& image) {
 absl::Status check_textures(const std::vector<Texture>& textures) {
   std::vector<std::uint64_t> cost;
   for (std::size_t i = 0; i < textures.size(); ++i) {
+    const std::string field = item("textures", i);
     if (const absl::Status parts = check_parts(textures, i, cost); !parts.ok()) {
-      return absl::InvalidArgumentError(absl::StrCat(item("textures", i), ".", parts.message()));
+      return absl::InvalidArgumentError(absl::StrCat(field, ".", parts.message()));
+    }
+    if (const auto* constant = std::get_if<ConstantTexture>(&textures[i])) {
+      RETURN_IF_ERROR(check_color(field, constant->value, static_cast<float>(kInfinity)));
     }
     if (const auto* image = std::get_if<ImageTexture>(&textures[i])) {
-      RETURN_IF_ERROR(check_image(item("textures", i), *image));
+      RETURN_IF_ERROR(check_image(field, *image));
     }
   }
   return absl::OkStatus();
 }
 
-/// Checks all values that a texture can take.
-absl::Status check_values(const std::string& field, const std::vector<Texture>& textures,
-                          TextureId id, float most) {
-  const Texture& texture = textures[index_of(id)];
-  if (const auto* constant = std::get_if<ConstantTexture>(&texture)) {
-    return check_color(field, constant->value, most);
-  }
-  if (!std::holds_alternative<ImageTexture>(texture)) {
-    const float found = max_value(textures, id);
-    return found <= most
-               ? absl::OkStatus()
-               : invalid(field, absl::StrCat("must be in [0, ", most, "], reaches ", found));
-  }
-  const auto& image = std::get<ImageTexture>(texture);
-  if (image.format != ImageTexture::Format::kFloat32) {
-    return absl::OkStatus();  // Decoded 8-bit values are always in [0, 1].
-  }
-  for (std::size_t i = 0; i < image.texels.size() / sizeof(float); ++i) {
-    float value;
-    std::memcpy(&value, image.texels.data() + i * sizeof value, sizeof value);
-    if (!(value >= 0 && value <= most) || !std::isfinite(value)) {
-      return check_color(absl::StrCat(field, ": texel ", i / image.channels), gray(value), most);
-    }
-  }
-  return absl::OkStatus();
-}
-
+/// Checks the index of a texture and that it reaches no value above `max`. The texture itself has
+/// been checked.
 absl::Status check_texture(const std::string& field, TextureId id,
-                           const std::vector<Texture>& textures, float most) {
+                           const std::vector<Texture>& textures, float max) {
   RETURN_IF_ERROR(check_index(field, id, textures.size()));
-  return check_values(field, textures, id, most);
+  const float reached = max_value(textures, id);
+  return reached <= max ? absl::OkStatus()
+                        : invalid(field, absl::StrCat("must be in [0, ", max, "], texture ",
+                                                      index_of(id), " reaches ", reached));
 }
 
 absl::Status check_unit(const std::string& field, double value) {
   return value >= 0 && value <= 1 ? absl::OkStatus()
                                   : invalid(field, absl::StrCat("must be in [0, 1], is ", value));
+}
+
+/// Maximum magnitude of the scale of a normal map and of an alpha cutoff.
+constexpr double kMaxScale = 1e30;
+
+absl::Status check_range(const std::string& field, double value, double min) {
+  return value >= min && value <= kMaxScale
+             ? absl::OkStatus()
+             : invalid(field, absl::StrCat("must be in [", min, ", ", kMaxScale, "], is ", value));
 }
 
 absl::Status check_channel(const std::string& field, const Channel& channel,
@@ -109,12 +118,9 @@ absl::Status check_principled(const std::string& field, const Principled& m,
   RETURN_IF_ERROR(check_map(field + ".normal", m.normal, textures));
   RETURN_IF_ERROR(check_map(field + ".coat_normal", m.coat_normal, textures));
   RETURN_IF_ERROR(check_map(field + ".index_map", m.index_map, textures));
-  if (!std::isfinite(m.normal_scale) || !std::isfinite(m.coat_normal_scale)) {
-    return invalid(field + ".normal_scale", "must be finite");
-  }
-  if (!(m.alpha_cutoff >= 0)) {
-    return invalid(field + ".alpha_cutoff", absl::StrCat("must be >= 0, is ", m.alpha_cutoff));
-  }
+  RETURN_IF_ERROR(check_range(field + ".normal_scale", m.normal_scale, -kMaxScale));
+  RETURN_IF_ERROR(check_range(field + ".coat_normal_scale", m.coat_normal_scale, -kMaxScale));
+  RETURN_IF_ERROR(check_range(field + ".alpha_cutoff", m.alpha_cutoff, 0));
   return check_refraction(field, m.index_of_refraction);
 }
 

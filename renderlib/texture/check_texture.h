@@ -12,6 +12,8 @@ namespace bandsaw {
 
 /// Maximum number of textures that one lookup may evaluate.
 inline constexpr std::uint64_t kMaxTextureParts = 256;
+/// Maximum width and height of an image, in texels.
+inline constexpr std::uint32_t kMaxTextureSide = 65536;
 inline constexpr std::size_t kMaxRampStops = 256;
 inline constexpr std::uint32_t kMaxOctaves = 16;
 

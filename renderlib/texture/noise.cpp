@@ -3,18 +3,11 @@
 #include <array>
 #include <cmath>
 
+#include "renderlib/base/split_mix.h"
+
 namespace bandsaw {
 namespace {
 
-/// The mixer of Steele, Lea and Flood 2014, "Fast Splittable Pseudorandom Number Generators",
-/// section 3.
-std::uint64_t mixed(std::uint64_t z) {
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
-  return z ^ (z >> 31);
-}
-
-constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15u;
 constexpr std::size_t kGradients = 256;
 using Gradients = std::array<Vec3, kGradients>;
 
@@ -23,8 +16,8 @@ Gradients make_gradients() {
   Gradients gradients;
   std::uint64_t state = 0;
   const auto next = [&state] {
-    state += kGolden;
-    return static_cast<double>(mixed(state) >> 11) * 0x1p-52 - 1;
+    state += kSplitMixIncrement;
+    return static_cast<double>(split_mix(state) >> 11) * 0x1p-52 - 1;
   };
   for (Vec3& gradient : gradients) {
     double size2 = 0;
@@ -51,7 +44,8 @@ struct Lattice {
 };
 
 std::uint64_t hash(const Lattice& p) {
-  return mixed(mixed(mixed(p.x * kGolden) + p.y * kGolden) + p.z * kGolden);
+  return split_mix(split_mix(split_mix(p.x * kSplitMixIncrement) + p.y * kSplitMixIncrement) +
+                   p.z * kSplitMixIncrement);
 }
 
 std::uint64_t lattice(double whole) {

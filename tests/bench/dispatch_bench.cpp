@@ -1,8 +1,8 @@
-// What the real coordinator takes for a band, through gRPC with TLS and down to the disk, and for a
-// worker that is connected: null renderers that answer each lease at once with black rows.
+// Measures the real coordinator's cost of a band, through gRPC with TLS and to the disk, and of a
+// connected worker: null renderers answer each lease at once with black rows.
 //
 //   dispatch_bench [SECONDS [WORKERS]]    10 seconds of bands with 1 to 16 workers;
-//                                         then so many connected, 1000
+//                                         then so many connected workers, 1000
 
 #include <unistd.h>
 
@@ -40,7 +40,7 @@ constexpr std::chrono::milliseconds kLong{600'000};
 constexpr std::uint32_t kWidth = 64;
 constexpr std::uint32_t kHeight = 4096;
 
-/// Of the coordinator's process: CPU seconds so far, and MB resident.
+/// CPU seconds and resident MB of the coordinator's process.
 struct Usage {
   double cpu_s = 0;
   double resident_mb = 0;
@@ -54,7 +54,7 @@ Usage usage_of(pid_t pid) {
   for (std::string word; fields >> word;) {
     field.push_back(word);
   }
-  // proc(5): utime and stime are fields 14 and 15, rss is 24; the third is the first here.
+  // proc(5): utime and stime are fields 14 and 15, rss is 24; field 3 has index 0 here.
   const double ticks = std::stod(field.at(11)) + std::stod(field.at(12));
   const double pages = std::stod(field.at(21));
   return {ticks / static_cast<double>(sysconf(_SC_CLK_TCK)),
@@ -153,7 +153,8 @@ class NullWorker {
     stream_->Write(message);
   }
 
-  /// Answers leases until the time is up; seconds from lease to acknowledged, of each.
+  /// Answers leases until the time is up. Returns for each the seconds from lease to
+  /// acknowledgement.
   std::vector<double> work(Clock::time_point until) {
     std::vector<double> took;
     farm::ToWorker message;
@@ -185,7 +186,7 @@ class NullWorker {
     header.set_instance(instance_);
     header.set_size(black.size());
     header.set_sha256(wire::sha256(black).raw());
-    // So slow that a band is a row: what is measured is bands, not bytes.
+    // Reports a speed for which a band is one row, so that bands are measured and not bytes.
     header.mutable_counters()->set_render_s(2.0 * (band.last_row() - band.first_row()));
     chunk.set_data(black);
     farm::PutBandReply reply;
@@ -247,7 +248,7 @@ void bands(double seconds, int workers) {
       1e6 * (after.cpu_s - before.cpu_s) / static_cast<double>(all.size()), after.resident_mb);
 }
 
-/// What each band waits for, whoever writes it: a row appended and synced, with nothing else to do.
+/// Measures the lower bound for a band: appending and syncing a row, with nothing else to do.
 void disk(double seconds) {
   const test::TempDir folder;
   auto file = File::open(folder / "rows", O_CREAT | O_WRONLY);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Embree behind the two questions that Accel answers. Without it (BANDSAW_EMBREE) there is none.
+// Embree with the interface of Accel's two queries. Without BANDSAW_EMBREE there is none.
 
 #include <memory>
 
@@ -11,7 +11,7 @@ namespace bandsaw::bench {
 
 class EmbreeKernel {
  public:
-  /// Null: built without Embree. `config`: of the device, "isa=avx2,threads=2".
+  /// Returns nullptr if built without Embree. `config` configures the device: "isa=avx2,threads=2".
   static std::unique_ptr<EmbreeKernel> create(const Mesh& mesh, bool robust, const char* config);
   ~EmbreeKernel();
 

@@ -1,5 +1,5 @@
-// What a farm's scheduler makes of its workers' time: workers that sleep by a cost map, in virtual
-// time, so that nothing of this machine is in the figures but the last column.
+// Measures how well the scheduler uses its workers' time: workers that sleep according to a cost
+// map, in virtual time, so that only the last column depends on this machine.
 
 #include <algorithm>
 #include <cstdio>
@@ -19,10 +19,10 @@ constexpr std::uint32_t kHeight = 1080;
 constexpr std::uint64_t kSamples = 64;
 
 double even(std::uint32_t) { return 1; }
-/// 20:1 from the top to the bottom, with the mean 1.
+/// Costs that fall 20:1 from the top to the bottom, with mean 1.
 double uneven(std::uint32_t row) { return row < kHeight / 2 ? 40.0 / 21 : 2.0 / 21; }
 
-/// Workers that need `seconds` together; every second one four times as fast where not equal.
+/// Workers that need `seconds` together; unless `equal`, every second one is four times as fast.
 std::vector<double> speeds(std::size_t count, double seconds, bool equal) {
   const double mean = double{kWidth} * kHeight * kSamples / seconds / static_cast<double>(count);
   std::vector<double> out;

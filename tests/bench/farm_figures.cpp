@@ -1,8 +1,6 @@
-// What must be seen to hold of a farm, as far as processes on one machine show it, as a table.
+// Measures a farm of real processes on one machine, as a table.
 //
-//   farm_figures [loss|pixels|again|left]...    all of them: ten minutes on two cores
-//
-// Cables are pulled where the user may make network namespaces (root).
+//   farm_figures [loss|pixels|again|left]...    default: all of them, ten minutes on two cores
 
 #include "tests/bench/farm_figures.h"
 
@@ -40,7 +38,7 @@ void print(const std::vector<Figure>& figures) {
 
 int main(int argc, char** argv) {
   using namespace bandsaw::bench;
-  GTEST_FLAG_SET(throw_on_failure, true);  // what the tests' farm finds wrong ends this program
+  GTEST_FLAG_SET(throw_on_failure, true);  // failed assertions of the tests' farm end this program
   testing::InitGoogleTest(&argc, argv);
   const std::set<std::string> asked(argv + 1, argv + argc);
   const auto wanted = [&](const char* name) { return asked.empty() || asked.contains(name); };

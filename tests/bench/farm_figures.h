@@ -1,6 +1,6 @@
 #pragma once
 
-// What a farm of real processes is measured by, one row of a table each.
+// Measurements of a farm of real processes, one row of a table each.
 
 #include <chrono>
 #include <optional>
@@ -14,21 +14,20 @@ struct Figure {
   std::string aim;
   std::string unit;
   std::vector<double> measured;
-  std::string remark;  ///< why it is empty, or what was seen beside it
+  std::string remark;  ///< reason for an empty result, or another observation
 };
 
-/// From the moment that a worker is killed, frozen (SIGSTOP) or cut off to the coordinator's word
-/// that it is gone.
+/// Time from the moment at which a worker is killed, frozen (SIGSTOP) or cut off to the
+/// coordinator's report of its loss.
 std::vector<Figure> loss_figures();
 
-/// From the start of `bandsaw submit` to the first finished rows that it tells of.
+/// Time from the start of `bandsaw submit` to the first finished rows that it reports.
 std::vector<Figure> first_pixel_figures();
 
-/// Bands that were finished and rendered again after the coordinator's kill -9.
+/// Number of bands that were finished and rendered again after the coordinator's kill -9.
 Figure rendered_again_figure();
 
-/// The error of the time left that is told once a quarter of a job's time has passed, over what was
-/// left in truth.
+/// Relative error of the remaining time that is reported after a quarter of a job's time.
 Figure time_left_figure();
 
 using Clock = std::chrono::steady_clock;

@@ -1,5 +1,5 @@
-// How long a coordinator takes to see that a worker is gone, and what it loses when itself is
-// killed.
+// Time until a coordinator detects the loss of a worker, and work that is lost when the coordinator
+// is killed.
 
 #include <csignal>
 #include <functional>
@@ -17,9 +17,9 @@ using test::Hosts;
 using test::Process;
 
 constexpr int kKills = 10;
-constexpr int kSilences = 3;  // each takes seconds to be noticed
+constexpr int kSilences = 3;  // each takes seconds to be detected
 
-/// A job that does not end meanwhile.
+/// A job that does not end during the measurement.
 void keep_busy(const FarmProcesses& farm) {
   const test::Finished finished = test::run(
       farm.on("house", farm.command({"submit", std::string(BANDSAW_GALLERY) + "/cornell.textproto",
@@ -27,7 +27,7 @@ void keep_busy(const FarmProcesses& farm) {
   BANDSAW_CHECK(finished.code == 0, finished.err.c_str());
 }
 
-/// Seconds from `lose` to the coordinator's word.
+/// Returns the seconds from `lose` to the coordinator's report.
 double seen_after(FarmProcesses& farm, const std::string& worker,
                   const std::function<void()>& lose) {
   farm.add_worker(worker, 1);

@@ -1,4 +1,4 @@
-// How long a person waits for the first pixels, and how well the time left is told.
+// Time until the first pixels arrive, and accuracy of the reported remaining time.
 
 #include <algorithm>
 #include <array>
@@ -20,13 +20,13 @@ using test::FarmProcesses;
 using test::Process;
 
 constexpr int kRuns = 5;
-constexpr int kSeeds = 4;  // of the jobs whose time left is asked for
+constexpr int kSeeds = 4;  // seeds of the jobs whose remaining time is measured
 
 std::string gallery(const std::string& scene) {
   return std::string(BANDSAW_GALLERY) + "/" + scene + ".textproto";
 }
 
-/// The number of a field of a line of JSON; NaN: it is not there, or null.
+/// Returns the number in a field of a line of JSON; NaN if it is absent or null.
 double number(const std::string& line, const std::string& field) {
   std::smatch found;
   const std::regex pattern("\"" + field + "\":([-+.e0-9]+)");
@@ -51,7 +51,7 @@ double first_pixels(const FarmProcesses& farm, const std::string& scene, int see
   return took;
 }
 
-/// A hilly field of 522,242 triangles: 10 MB as a file, 9.4 MB as blobs; other hills for each
+/// A height field of 522,242 triangles: 10 MB as a file, 9.4 MB as blobs; different for each
 /// `seed`.
 std::string hills(const FarmProcesses& farm, int seed) {
   constexpr int kSide = 512;
@@ -90,7 +90,8 @@ struct Job {
   std::vector<std::string> options;
 };
 
-/// The time left as told at a quarter of the job's time, over what was left then, less one.
+/// Returns the relative error of the remaining time that is reported after a quarter of the job's
+/// time.
 double error_of_time_left(const FarmProcesses& farm, const Job& job, int seed) {
   std::vector<std::string> arguments = {
       "submit", gallery(job.scene),   "--json", "--seed", std::to_string(seed),

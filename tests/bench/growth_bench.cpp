@@ -1,5 +1,5 @@
-// How time and memory grow with what a scene has: growth_bench [--quick] FOLDER
-// (README.md). A table on standard output; growth.json and growth_*.svg in the folder.
+// Measures the growth of time and memory with the size of a scene: growth_bench [--quick] FOLDER
+// (README.md). Writes a table to standard output, and growth.json and growth_*.svg to the folder.
 
 #include <unistd.h>
 
@@ -37,7 +37,7 @@ double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// What a bench cannot go on without.
+/// Returns the value, or exits with the error.
 template <class T>
 T must(absl::StatusOr<T> result) {
   if (!result.ok()) {
@@ -83,8 +83,8 @@ Figures packed(const Family& family, double size, const std::string& folder) {
   return {};
 }
 
-/// What a worker does with a package that it has: from the files to the first eight rows of a
-/// picture of 600 x 400.
+/// Measures what a worker does with a cached package: from the files to the first eight rows of an
+/// image of 600 x 400.
 Figures begun(const std::string& folder) {
   const double start = wall_seconds();
   Pool pool(threads());
@@ -108,7 +108,7 @@ Figures from_disk(const Family& family, double size) {
   return out;
 }
 
-/// The exponent: the slope of the line through the points in logarithms, by least squares.
+/// Returns the exponent: the slope of the line through the points in logarithms, by least squares.
 double exponent(const std::vector<std::pair<double, double>>& points) {
   double x = 0, y = 0, xx = 0, xy = 0;
   for (const auto& [size, value] : points) {
@@ -174,7 +174,7 @@ Grown measure(const Family& family) {
     if (family.name == "triangles") {
       const Figures disk = from_disk(family, size);
       figures.first_rows_s = disk.first_rows_s;
-      figures.peak_bytes = disk.peak_bytes;  // without the mesh that was generated
+      figures.peak_bytes = disk.peak_bytes;  // without the generated mesh
     }
     char name[64];
     std::snprintf(name, sizeof name, "%s: %.0f", family.name.c_str(), size);
@@ -189,7 +189,7 @@ Grown measure(const Family& family) {
   return out;
 }
 
-/// Speed of all threads over that of one: the least times of rounds in turns.
+/// Returns the speed of all threads relative to one: minimum times of alternating rounds.
 double thread_speedup() {
   const Family cornell = families(true).back();
   GrownScene grown = cornell.scene(8);
@@ -227,7 +227,7 @@ void write_json(const std::vector<Grown>& all, double speedup, const std::string
   std::ofstream(folder + "/growth.json") << json.lines();
 }
 
-/// A picture a column, a line a family.
+/// Writes a plot for each column, with a line for each family.
 void draw(const std::vector<Grown>& all, const std::string& folder) {
   for (const Column& column : kColumns) {
     Plot plot{.x = "how many", .y = column.name, .panels = {{.title = column.name, .lines = {}}}};

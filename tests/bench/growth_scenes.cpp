@@ -21,7 +21,7 @@ GrownScene grown(SceneMaker maker, std::uint32_t max_depth = 8) {
           .settings = {.width = kSide, .height = kSide, .max_depth = max_depth}};
 }
 
-/// Seen from above by a constant sky, so that the rays are alike at every size.
+/// A camera above the scene and a constant sky, so that the rays are similar at every size.
 SceneMaker outdoors() {
   SceneMaker maker;
   maker.background(gray(1), gray(1));
@@ -29,7 +29,7 @@ SceneMaker outdoors() {
   return maker;
 }
 
-/// Hills of about so many triangles.
+/// A height field of about this many triangles.
 GrownScene hills(double triangles) {
   Mesh mesh = test::grid(std::max(1, static_cast<int>(std::lround(std::sqrt(triangles / 2)))));
   mesh.uvs.clear();
@@ -41,7 +41,7 @@ GrownScene hills(double triangles) {
   return grown(std::move(maker));
 }
 
-/// Spheres, or placements of one mesh, that fill a cube equally dense at every count.
+/// Spheres, or instances of one mesh, that fill a cube with the same density at every count.
 double radius_of(double count) { return 0.6 / std::cbrt(count); }
 
 GrownScene spheres(double count) {
@@ -69,7 +69,7 @@ GrownScene instances(double count) {
   return grown(std::move(maker));
 }
 
-/// Lamps over a plain, together as bright at every count.
+/// Lights over a plane, with the same total power at every count.
 GrownScene lamps(double count) {
   SceneMaker maker = outdoors();
   maker.background(gray(0), gray(0));
@@ -84,7 +84,7 @@ GrownScene lamps(double count) {
   return grown(std::move(maker), 2);
 }
 
-/// A floor under an image of so many texels.
+/// A floor with an image of this many texels.
 GrownScene textured(double texels) {
   const auto side = static_cast<std::uint32_t>(std::lround(std::sqrt(texels)));
   std::vector<std::byte> bytes(std::size_t{3} * side * side);
@@ -102,7 +102,7 @@ GrownScene textured(double texels) {
   return grown(std::move(maker));
 }
 
-/// As many samples in all at every resolution.
+/// The same total number of samples at every resolution.
 GrownScene pixels(double count) {
   GrownScene out = grown(test::cornell_box());
   const auto side = static_cast<std::uint32_t>(std::lround(std::sqrt(count)));

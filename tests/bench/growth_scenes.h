@@ -1,6 +1,6 @@
 #pragma once
 
-// Scenes that grow in one thing each.
+// Scenes that grow in one respect each.
 
 #include <cstdint>
 #include <functional>
@@ -18,14 +18,14 @@ struct GrownScene {
   std::uint64_t samples = 16;
 };
 
-/// One thing to have more and more of; of everything else the scene keeps as much.
+/// A quantity that grows while everything else stays the same.
 struct Family {
   std::string name;  ///< "triangles"
   std::vector<double> sizes;
   std::function<GrownScene(double size)> scene;
 };
 
-/// `quick`: without the largest sizes.
+/// If `quick`, the largest sizes are omitted.
 std::vector<Family> families(bool quick);
 
 }  // namespace bandsaw::bench

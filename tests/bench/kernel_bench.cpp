@@ -24,13 +24,13 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 struct Kernel {
   std::string name;
-  std::function<std::size_t(const Ray*, const Ray*)> trace;  ///< how many of the rays hit
-  double seconds = 0;  ///< sum over chunks of the least time of any pass
+  std::function<std::size_t(const Ray*, const Ray*)> trace;  ///< number of rays that hit
+  double seconds = 0;  ///< sum over chunks of the minimum time of any pass
   std::size_t hits = 0;
 };
 
-/// The kernels take turns chunk by chunk, so that all see the same machine; of each chunk the best
-/// of several passes counts. Each begins a chunk in another place of the row in every pass.
+/// The kernels take turns chunk by chunk, so that the machine is the same for all; for each chunk
+/// the best of several passes counts. The order of the kernels changes with every pass.
 void race(const std::vector<Ray>& rays, std::vector<Kernel>& kernels) {
   for (std::size_t first = 0; first < rays.size(); first += kChunk) {
     const Ray* begin = rays.data() + first;
@@ -73,7 +73,7 @@ Kernel any_kernel(const std::string& name, const Traced& traced) {
           }};
 }
 
-/// One line: millions of rays a second, and how many times those of each Embree ours are.
+/// Prints one line: millions of rays a second, and our speed relative to each Embree.
 void report(const char* set, const std::vector<Ray>& rays, std::vector<Kernel> kernels) {
   race(rays, kernels);
   std::printf("%-8s", set);
@@ -97,7 +97,7 @@ struct BuildSeconds {
   double embree = 1e9;
 };
 
-/// The least of several builds, in turns.
+/// Returns the minimum time of several builds, in turns.
 BuildSeconds build_seconds(const Geometry& geometry, Pool& pool) {
   BuildSeconds least;
   for (int pass = 0; pass < kPasses; ++pass) {

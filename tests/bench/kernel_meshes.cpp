@@ -33,7 +33,7 @@ Mesh from_file(const std::string& path) {
   return mesh;
 }
 
-/// Twelve triangles around everything.
+/// A box of twelve triangles around everything.
 Mesh in_a_room(Mesh mesh) {
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
   for (std::uint32_t i = 0; i < 8; ++i) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// What the kernel is measured on.
+// Meshes for measuring ray tracing.
 
 #include <string>
 
@@ -8,8 +8,8 @@
 
 namespace bandsaw::bench {
 
-/// A mesh by name (icosphere, needles, soup, room: the icosphere between six walls), or from a file
-/// that assimp reads. Empty: there is no such.
+/// Returns a mesh by name (icosphere, needles, soup, room: the icosphere between six walls), or
+/// from a file that Assimp reads; empty if there is none.
 Mesh bench_mesh(const std::string& name);
 
 }  // namespace bandsaw::bench

@@ -1,7 +1,7 @@
 #pragma once
 
-// Rays as a renderer shoots them. Their origins and directions are floats, so that every kernel
-// traces the very same ray.
+// Rays as in a renderer. Their origins and directions are floats, so that every kernel traces the
+// same rays.
 
 #include <vector>
 
@@ -11,8 +11,8 @@ namespace bandsaw::bench {
 
 struct RaySets {
   std::vector<Ray> primary;  ///< 1024 x 1024 pixels in tiles of 8 x 8
-  std::vector<Ray> bounce;   ///< cosine hemisphere from where those hit
-  std::vector<Ray> shadow;   ///< from there to points of a light; t in (0, 1)
+  std::vector<Ray> bounce;   ///< cosine-weighted, from the hits of `primary`
+  std::vector<Ray> shadow;   ///< from these hits to points of a light; t in (0, 1)
 };
 
 RaySets make_rays(const Mesh& mesh, const Accel& accel, bool from_within);

@@ -1,20 +1,20 @@
 #pragma once
 
-// Figures of work that is done in a process of its own, so that its memory is its own, too.
+// Measures work in a separate process, so that its memory is measured separately.
 
 #include <functional>
 
 namespace bandsaw::bench {
 
 struct Figures {
-  double build_s = 0;        ///< description to scene, wall clock, all threads
+  double build_s = 0;        ///< from description to scene, wall clock, all threads
   double ns_per_sample = 0;  ///< CPU time
-  double ns_per_ray = 0;     ///< CPU time, shading and all
-  double first_rows_s = 0;   ///< of its package, from the disk to pixels, wall clock; 0: not asked
-  double peak_bytes = 0;     ///< resident, of the whole process; filled in by measured_apart
+  double ns_per_ray = 0;     ///< CPU time, including shading
+  double first_rows_s = 0;   ///< from the package on disk to pixels, wall clock; 0 if not measured
+  double peak_bytes = 0;     ///< resident memory of the whole process; set by measured_apart
 };
 
-/// What `work` gives. Exits with a message when it fails: this is a bench.
+/// Returns the result of `work`. Exits with a message if it fails, because this is a benchmark.
 Figures measured_apart(const std::function<Figures()>& work);
 
 }  // namespace bandsaw::bench

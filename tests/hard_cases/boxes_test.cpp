@@ -1,4 +1,4 @@
-// Boxes and trees: B1 to B4, B6.
+// Boxes and BVHs: B1 to B4, B6.
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <string>
 
 #include "renderlib/accel/collapse.h"
-#include "renderlib/accel/walk.h"
+#include "renderlib/accel/traverse.h"
 #include "tests/support/hard_case.h"
 #include "tests/support/meshes.h"
 #include "tests/support/wide.h"
@@ -53,7 +53,7 @@ TEST(Tree, B1B4_RaysWithinAFaceMeetTheBox) {
   test::holds("B1", "met in 4 of 4, with 0 and -0, and with denormals");
 }
 
-/// Whether a ray meets a box, without rounding.
+/// Returns true if a ray intersects a box, computed without rounding.
 bool truly_meets(const FloatBox& box, const Ray& ray) {
   Wide enter = 0;
   Wide leave = Wide{1e30};
@@ -74,7 +74,7 @@ bool truly_meets(const FloatBox& box, const Ray& ray) {
   return enter <= leave;
 }
 
-/// A box about `center` and a ray through a point of one of its edges, from anywhere.
+/// Returns a box about `center` and a ray through a point of one of its edges, from anywhere.
 std::pair<FloatBox, Ray> aimed(const Vec3& center, test::Random& random) {
   const auto extent = [&] { return std::pow(10, random.uniform(-6, 1)); };
   const double x = extent();
@@ -106,7 +106,7 @@ TEST(Tree, B2B3_NeverMissesABoxThatIsMet) {
     for (int i = 0; i < boxes; ++i) {
       const double offset = at_any_distance ? std::pow(10, random.uniform(-6, 6)) : 1e4;
       const auto [box, ray] = aimed(offset * test::random_direction(random), random);
-      // The exact test is asked only where ours says no.
+      // The exact test is needed only if ours finds no intersection.
       const bool found = meets(box, ray);
       if (found) {
         ++met;
@@ -133,7 +133,7 @@ TreeItems items_of(const Mesh& mesh) {
   return items;
 }
 
-/// How many boxes of the tree a ray meets.
+/// Returns the number of boxes of the tree that a ray intersects.
 double boxes_met(const BinaryTree& tree, const std::vector<Ray>& rays) {
   double met = 0;
   for (const Ray& ray : rays) {
@@ -144,7 +144,7 @@ double boxes_met(const BinaryTree& tree, const std::vector<Ray>& rays) {
   return met / static_cast<double>(rays.size());
 }
 
-// Two triangles a million times as wide as what stands on them.
+// Two triangles a million times as wide as the mesh on them.
 TEST(Tree, B6_FineOnVastKeepsItsTree) {
   const Mesh fine = test::icosphere(4);
   Mesh vast = fine;

@@ -1,4 +1,4 @@
-// Materials: M2, M7, M8, M11, M12, and the masking term on its own.
+// Materials: M2, M7, M8, M11, M12, and the masking term.
 
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ Principled layered(double roughness) {
   return m;
 }
 
-// M2: nothing is 0 / 0 where a density is nearly zero, also at the edges of the numbers' range.
+// M2: no 0 / 0 if a pdf is nearly zero, also at the limits of the number range.
 TEST(MaterialHardCases, M2DensitiesNearZeroGiveFiniteNumbers) {
   const Material materials[] = {layered(0.01), layered(1), Dielectric{1.5, 0.02},
                                 Dielectric{1.0000001, 0.5}, Metal{TextureId{0}, 1e-5}};
@@ -87,7 +87,8 @@ TEST(MaterialHardCases, M7AroundTheCriticalAngleFresnelIsExact) {
       for (const double sign : {-1.0, 1.0}) {
         const double cosine = critical + sign * std::pow(10.0, -k);
         const long double exact = exact_fresnel(cosine, eta);
-        // Just beyond the angle F falls like a square root: what the cosine's last bit is worth.
+        // Just beyond the critical angle F falls like a square root: the tolerance is the effect of
+        // the cosine's last bit.
         const double bit = 1e-15 * std::pow(10.0, k / 2.0);
         const auto off = static_cast<double>(std::abs(fresnel(cosine, eta) - exact));
         EXPECT_LE(off, 1e-12 + bit);
@@ -120,8 +121,8 @@ TEST(MaterialHardCases, M8DirectionsStayUnitOverAThousandMirrors) {
   test::holds("M8", "squared length within 8 u over 1,000 mirrors");
 }
 
-// M11: nothing is lost in a closed white sphere; the path ends at its longest. M12: of little
-// reflectance it ends by roulette after few surfaces.
+// M11: in a closed white sphere nothing is lost; the path ends at the maximum depth. M12: with a
+// low reflectance Russian roulette ends it after few surfaces.
 TEST(MaterialHardCases, M11M12PathsEnd) {
   for (const float reflectance : {1.0f, 1e-3f}) {
     test::SceneMaker maker;
@@ -145,8 +146,8 @@ TEST(MaterialHardCases, M11M12PathsEnd) {
   test::holds("M12", "64 paths of 200 bounces end within 8 rays");
 }
 
-// Weak white furnace (Heitz 2014, section 5.3): the facets that a direction sees, each by its
-// projected area, make up the whole of it: the integral of G1 D max(0, o.h) / |o.z| over h is 1.
+// Weak white furnace (Heitz 2014, section 5.3): the visible facets, each by its projected area, sum
+// up to the projected area: the integral of G1 D max(0, o.h) / |o.z| over h is 1.
 TEST(Ggx, SeenFacetsCoverTheWholeDirection) {
   for (const double alpha : {0.05, 0.2, 0.5, 1.0}) {
     for (const double z : {1.0, 0.7, 0.3, 0.1}) {

@@ -12,7 +12,7 @@
 namespace bandsaw::test {
 namespace {
 
-/// Rays from within a closed mesh at its corners and edges: how many get out.
+/// Returns how many rays from inside a closed mesh at its corners and edges escape.
 int leaks(const Mesh& mesh, const Vec3& origin_at, double origin_size, int count) {
   Pool pool(2);
   const Geometry geometry = scene_of(mesh);
@@ -53,8 +53,8 @@ TEST(Leaks, T1T2_NoneAtCornersAndEdgesOfClosedMeshes) {
   check("T2", "spikes", rough_sphere(200, 100, 6, 2), {}, 0.2, most / 2);
 }
 
-// The test of a triangle may meet a line of three points on that line, as a sliver of rounding;
-// scenes leave out what has no area.
+// The triangle test may hit a line of three points, as a sliver of rounding; scenes remove
+// triangles without area.
 TEST(Triangle, T4_WithoutAreaIsNeverHit) {
   Random random(1);
   const Vec3 bad = {-1113.45459, -79.049614, -56.2431908};
@@ -98,7 +98,7 @@ Wide plane_distance(const Ray& ray, const Triangle& t) {
   return dot(n, WideVec(t.a) - ray.origin) / dot(n, ray.direction);
 }
 
-/// By how much that moves when the last bit of the corners' heights is another.
+/// Returns the change if the last bit of the corners' heights changes.
 double worth_of_last_bits(const Ray& ray, Triangle t) {
   const Wide distance = plane_distance(ray, t);
   for (Vec3* corner : {&t.a, &t.b, &t.c}) {

@@ -1,4 +1,4 @@
-// Numbers that lose their digits, and sums: A1, A2, A8, C7, L2, L5, L10, P2, P3, P4, R3, R9.
+// Numbers that lose precision, and sums: A1, A2, A8, C7, L2, L5, L10, P2, P3, P4, R3, R9.
 
 #include <gtest/gtest.h>
 
@@ -10,6 +10,7 @@
 #include "renderlib/image/exr.h"
 #include "renderlib/image/srgb.h"
 #include "renderlib/import/image/decode_exr.h"
+#include "renderlib/integrate/mis.h"
 #include "renderlib/render/film.h"
 #include "renderlib/sampling/sampler.h"
 #include "renderlib/sampling/spherical_rectangle.h"
@@ -40,8 +41,8 @@ TEST(Cone, L2_NarrowOnesKeepTheirDigits) {
   test::at_most("L2", "relative error of 1 - cos", error.value(), 1e-12);
 }
 
-/// The solid angle of a square of side 2 h whose middle is (aside, 0) at height 1, by Gauss's rule
-/// of 5 x 5 points: exact to the tenth power of h.
+/// Returns the solid angle of a square of side 2 h whose middle is (aside, 0) at height 1, by
+/// Gauss's rule of 5 x 5 points: exact to the tenth power of h.
 Wide solid_angle(double h, double aside) {
   const double nodes[] = {0, 0.5384693101056831, -0.5384693101056831, 0.9061798459386640,
                           -0.9061798459386640};
@@ -101,8 +102,8 @@ TEST(Sampler, C7_PixelsOfTheLargestImageHaveStreamsOfTheirOwn) {
                 static_cast<double>(pixels.size() - seen.size()), 0);
 }
 
-// Where a pixel's sample is its neighbour's next one, means over 2 x 2 pixels vary more than the
-// quarter that they should.
+// If a pixel's sample were its neighbour's next one, means over 2 x 2 pixels would vary by more
+// than the expected quarter.
 TEST(Sampler, R3_NeighboursShareNoSamples) {
   constexpr std::uint32_t kSide = 512;
   test::Moments pixel;

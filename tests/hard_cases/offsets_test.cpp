@@ -21,7 +21,7 @@ namespace {
 using test::Random;
 using test::tries;
 
-/// A flat square of 8 x 8 cells of edge `size`, turned, its middle at `at`: as triangles or quads.
+/// A flat square of 8 x 8 cells of edge `size`, rotated, its middle at `at`: as triangles or quads.
 Geometry flat_patch(double size, const Vec3& at, bool triangles) {
   const Transform turn = rotation({1, 2, 3}, 33);
   const auto point = [&](int i, int j) {
@@ -72,15 +72,15 @@ TEST(Offset, O1_NoRayHitsThePlaneItLeaves) {
         ++bounces;
         const Vec3 d = test::random_direction(random);
         const Vec3 flat = normalize(d - (1 - 1e-4 * random.uniform()) * dot(d, up) * up);
-        hits += accel.closest(leave(p, d)) ? 1 : 0;
-        hits += accel.closest(leave(p, flat)) ? 1 : 0;
+        hits += accel.closest(spawn_ray(p, d)) ? 1 : 0;
+        hits += accel.closest(spawn_ray(p, flat)) ? 1 : 0;
       }
     }
   }
   test::at_most("O1", "hits in 14 rows of " + std::to_string(rays), hits, 0);
 }
 
-/// Two planes that meet in the z axis, at 0 and `angle` from x, for paths between them.
+/// Two planes that intersect in the z axis, at 0 and `angle` from x, for paths between them.
 struct Crease {
   Geometry geometry;
   Vec3 inwards[2];
@@ -95,7 +95,7 @@ struct Crease {
   bool holds(const Vec3& p) const {
     return p.x > 0 && dot(p, inwards[0]) > 0 && dot(p, inwards[1]) > 0;
   }
-  /// Whether a ray that hits neither plane leaves by the opening: between them where it is 0.9 from
+  /// Returns true if a ray that hits neither plane leaves by the opening: between them at 0.9 from
   /// the axis, or beyond their ends.
   bool leaves_by_opening(const Ray& ray) const {
     const Vec3& o = ray.origin;
@@ -111,7 +111,7 @@ struct Crease {
   }
 };
 
-// Paths that are scattered again and again between the planes never get behind either.
+// Paths that scatter repeatedly between the planes never get behind them.
 TEST(Offset, O5_NoPathEscapesFromACrease) {
   Pool pool(1);
   Random random(2);
@@ -126,7 +126,7 @@ TEST(Offset, O5_NoPathEscapesFromACrease) {
       const double middle = angle * random.uniform(0.1, 0.9);
       const double r = random.uniform(0.01, 0.5);
       const Vec3 from = {r * std::cos(middle), r * std::sin(middle), 0};
-      // Towards the crease, at about the height at which it starts.
+      // Towards the crease, at about the height of its origin.
       const Vec3 aim = {0, 0.2 * r * angle * random.uniform(-1, 1), 0.1 * random.uniform(-1, 1)};
       Ray ray = {from, normalize(aim - from)};
       Hit hit = accel.closest(ray);
@@ -134,7 +134,7 @@ TEST(Offset, O5_NoPathEscapesFromACrease) {
         const SurfacePoint p = surface_at(crease.geometry, ray, hit);
         const Basis basis = orthonormal_basis(crease.inwards[hit.id.primitive]);
         const double u = random.uniform();
-        ray = leave(p, basis.to_world(sample_cosine_hemisphere(u, random.uniform())));
+        ray = spawn_ray(p, basis.to_world(sample_cosine_hemisphere(u, random.uniform())));
         hit = accel.closest(ray);
       }
       escapes += hit || crease.leaves_by_opening(ray) ? 0 : 1;
@@ -162,7 +162,7 @@ TEST(Offset, O7_RefractedRaysStartOnTheFarSide) {
     const Vec3 wo = test::random_direction(random);
     const auto drawn = sample(bsdf_at(Dielectric{1.5}, none, p, wo), 0, 0, random.uniform());
     if (drawn) {
-      const Vec3 moved = leave(p, drawn->wi).origin - p.position;
+      const Vec3 moved = spawn_ray(p, drawn->wi).origin - p.position;
       wrong += dot(moved, p.geometric_normal) * dot(drawn->wi, p.geometric_normal) > 0 ? 0 : 1;
     }
   }
@@ -222,7 +222,7 @@ TEST(Box, Q8_NothingEscapesFromSixQuads) {
       const Vec3& n = p.geometric_normal;
       const Basis basis = orthonormal_basis(dot(n, ray.direction) > 0 ? -n : n);
       const double u = random.uniform();
-      ray = leave(p, basis.to_world(sample_cosine_hemisphere(u, random.uniform())));
+      ray = spawn_ray(p, basis.to_world(sample_cosine_hemisphere(u, random.uniform())));
     }
     test::at_most("Q8", "escapes of " + std::to_string(bounces), escapes, 0);
   }

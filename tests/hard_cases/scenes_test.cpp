@@ -22,7 +22,7 @@ std::shared_ptr<const Scene> white_ball(int slices, int stacks, bool smooth) {
   }
   test::SceneMaker maker;
   maker.instance(std::move(mesh), {}, maker.diffuse(1));
-  // From the side and a little from behind: its terminator and its silhouette are seen.
+  // From the side and a little from behind: its terminator and its silhouette are visible.
   maker.scene.lights = {DirectionalLight{normalize(Vec3{-1, -0.2, 0.1}), gray(1)}};
   return maker.build();
 }
@@ -45,7 +45,7 @@ TEST(SmoothNormals, T13_CoarseMeshesAreShadedAlmostAsFineOnes) {
     const double x = 0.96 * (2 * (i % kSide + 0.5) / kSide - 1);
     const double y = 0.96 * (2 * (i / kSide + 0.5) / kSide - 1);
     if (x * x + y * y > 0.92) {
-      continue;  // outside of the coarse one
+      continue;  // outside of the coarse mesh
     }
     const double truth = radiance(*fine, x, y);
     bright += truth > 0 ? 1 : 0;
@@ -57,9 +57,9 @@ TEST(SmoothNormals, T13_CoarseMeshesAreShadedAlmostAsFineOnes) {
                 smooth_error / flat_error, 2);
 }
 
-// A lamp in the very plane of the ceiling: the ceiling neither hides nor shades it. Seen from the
-// middle of the floor, each quarter of the lamp gives
-// E = a / sqrt(1 + a^2) atan(a / sqrt(1 + a^2)), a its side over its height.
+// A light in the plane of the ceiling: the ceiling neither hides nor occludes it. At the middle of
+// the floor, each quarter of the light gives E = a / sqrt(1 + a^2) atan(a / sqrt(1 + a^2)), where a
+// is its side over its height.
 TEST(Ceiling, Q4_LampInItsPlaneShinesAsTheFormulaSays) {
   test::SceneMaker maker;
   maker.quad({-9, 0, -9}, {0, 0, 18}, {18, 0, 0}, maker.diffuse(1));
@@ -76,7 +76,7 @@ TEST(Ceiling, Q4_LampInItsPlaneShinesAsTheFormulaSays) {
   EXPECT_EQ(test::radiance_along(*maker.build(), up, {}, 16).mean(), 1);
 }
 
-// (1 - R) / (1 + R) with R = 0.04: whatever goes back and forth within the pane, counted out.
+// (1 - R) / (1 + R) with R = 0.04: the sum over all reflections within the pane.
 TEST(Pane, O6_PassesItsShareHoweverThin) {
   for (const double thickness : {1e-3, 1e-6, 1e-9}) {
     test::SceneMaker maker;
@@ -94,7 +94,7 @@ TEST(Pane, O6_PassesItsShareHoweverThin) {
 }
 
 /// A slab of water from 2 down to 1 - overlap on a slab of glass from 1 to 0, seen at 45 degrees:
-/// what reaches the only light, a strip where the ray leaves if it was bent as Snell says.
+/// light from the only emitter, a strip at the point where a correctly refracted ray leaves.
 test::Moments through_water_and_glass(double overlap) {
   constexpr double kFar = 100;
   test::SceneMaker maker;

@@ -34,7 +34,7 @@ std::optional<double> hit(const Ray& ray, const Sphere& sphere, bool starts_on_i
   return crossing.t;
 }
 
-/// The impact parameter squared and both roots, without rounding.
+/// The squared impact parameter and both roots, without rounding.
 struct Truth {
   Wide offset2;
   Wide near;
@@ -131,7 +131,7 @@ TEST(Sphere, S2_HitPointsLieOnItHoweverLarge) {
         height.see(std::abs(static_cast<double>(off)) / (radius + 1));
       }
       const Vec3 up = test::random_direction(random);
-      const Ray away = leave(p, dot(up, p.geometric_normal) < 0 ? -up : up);
+      const Ray away = spawn_ray(p, dot(up, p.geometric_normal) < 0 ? -up : up);
       again += hit(away, g.spheres[0], true) || hit(away, g.spheres[0], false) ? 1 : 0;
     }
   }
@@ -139,7 +139,8 @@ TEST(Sphere, S2_HitPointsLieOnItHoweverLarge) {
   test::at_most("S2", "self-hits of " + std::to_string(3 * rays), again, 0);
 }
 
-/// By how much of itself the far root moves when the origin does by the last bit of a coordinate.
+/// Returns the relative change of the far root if the last bit of a coordinate of the origin
+/// changes.
 double worth_of_last_bits(const Ray& ray, const Sphere& sphere) {
   const Wide far = truth(ray, sphere).far;
   double most = 0;
@@ -177,7 +178,7 @@ TEST(Sphere, S4_IsLeftOnTheFarSideFromWithin) {
     }
   }
   test::at_most("S4", "relative error of the far root", error.value(), 1e-12);
-  // Of a flat chord the last bit of the discriminant, u R^2, is 1 / cos^2 of the whole.
+  // For a grazing chord, the last bit of the discriminant, u R^2, is 1 / cos^2 of the whole.
   test::at_most("S4", "times cos^2, for chords flatter than 1.7 degrees", flat_error.value(),
                 1e-15);
   test::at_most("S4", "these over what the last bit of the origin is worth", over_last_bits.value(),
@@ -226,10 +227,10 @@ TEST(Sphere, S7_TinyOnesAreSolid) {
       const Vec3 target = g.spheres[0].center + 0.99 * radius * test::random_direction(random);
       const Ray ray = {origin, normalize(target - origin)};
       const auto t = hit(ray, g.spheres[0]);
-      holes +=
-          t && hit(leave(surface_at(g, ray, {*t, {0, 0}, 0, 0}), ray.direction), g.spheres[0], true)
-              ? 0
-              : 1;
+      holes += t && hit(spawn_ray(surface_at(g, ray, {*t, {0, 0}, 0, 0}), ray.direction),
+                        g.spheres[0], true)
+                   ? 0
+                   : 1;
     }
     test::at_most("S7", "exits missed of " + std::to_string(rays), holes, 0);
   }
@@ -258,7 +259,7 @@ TEST(SphereUv, S8_StaysInTheUnitSquare) {
       n = normalize(Vec3{-1, n.y, n.z * 1e-17});  // along the seam
     }
     if (i % 5 == 0) {
-      n.y = std::copysign(1 + kUnit * 2, n.y);  // a pole, one rounding too far
+      n.y = std::copysign(1 + kUnit * 2, n.y);  // a pole, beyond it by one rounding
     }
     const Vec2 uv = sphere_uv(n);
     outside += uv.x >= 0 && uv.x < 1 && uv.y >= 0 && uv.y <= 1 ? 0 : 1;
@@ -266,7 +267,7 @@ TEST(SphereUv, S8_StaysInTheUnitSquare) {
   test::at_most("S8", "NaN or outside of " + std::to_string(points), outside, 0);
 }
 
-/// Straight through everything: refracted at each hit, never reflected. Returns the hits' spheres.
+/// Traces a ray that is refracted at each hit and never reflected. Returns the spheres of the hits.
 std::string pass_through(const Geometry& g, const Accel& accel, Vec3& direction, Vec3 origin) {
   const Material glass = Dielectric{1.5};
   const Material air = Dielectric{1};
@@ -281,14 +282,14 @@ std::string pass_through(const Geometry& g, const Accel& accel, Vec3& direction,
     if (!next) {
       return order + "?";
     }
-    ray = leave(p, next->wi);
+    ray = spawn_ray(p, next->wi);
   }
   direction = ray.direction;
   return order;
 }
 
-// A ray at distance b of the centre is bent by asin(b / R) - asin(b / nR) where it enters the
-// glass, back by the same at radius r where it leaves it, and once more on its way out.
+// A ray at distance b from the centre is bent by asin(b / R) - asin(b / nR) where it enters the
+// glass, back by the same at radius r where it leaves the glass, and once more when it leaves.
 TEST(Sphere, S10M9_ShellsAndBubblesBendAsSnellSays) {
   for (const long double inner : {1 - 1e-9L, 0.5L}) {
     Geometry g;
@@ -298,7 +299,7 @@ TEST(Sphere, S10M9_ShellsAndBubblesBendAsSnellSays) {
     test::Random random(8);
     test::Worst error;
     for (int i = 0; i < 20'000; ++i) {
-      // Beyond the critical angle of the bubble all is reflected.
+      // Beyond the critical angle of the bubble everything is reflected.
       const double b = 0.95 * random.uniform() * static_cast<double>(inner);
       Vec3 direction = {0, 0, 1};
       ASSERT_EQ(pass_through(g, accel, direction, {b, 0, -3}), "oiio");

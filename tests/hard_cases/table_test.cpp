@@ -32,7 +32,7 @@ std::vector<std::string> lines_of(const std::string& path) {
   return lines;
 }
 
-/// How many cases each section has.
+/// Returns the ids of all cases; the table gives the number of cases of each section.
 std::vector<std::string> known_ids() {
   const std::pair<const char*, int> sections[] = {
       {"S", 12}, {"T", 15}, {"Q", 8},  {"B", 12}, {"O", 8}, {"C", 10}, {"X", 9}, {"M", 15},
@@ -46,7 +46,7 @@ std::vector<std::string> known_ids() {
   return ids;
 }
 
-/// The ids at the beginning of each test's name: TEST(Media, V6V7_…).
+/// Returns the files of each id that begins a test's name: TEST(Media, V6V7_…).
 std::map<std::string, std::set<std::string>> files_by_id() {
   std::map<std::string, std::set<std::string>> files;
   const std::regex test(R"(\bTEST(?:_F|_P)?\(\w+,\s*((?:[A-Z]{1,2}[0-9]+)+)(?=[_A-Z]))");

@@ -1,7 +1,8 @@
-// Q5: why the criterion is not met. Two techniques, asking a light by solid angle and following the
-// cosine, both weighed by what a heuristic can know in any scene: the ratio of their densities.
-// Near the light following is nearly exact, far from it asking is; the same ratios are met at both
-// places. So the best weights that there can be are computed, and they do not meet it either.
+// Q5: why the criterion is not met. Two techniques, light sampling by solid angle and
+// cosine-weighted sampling, are weighted by what a heuristic can know in any scene: the ratio of
+// their pdfs. Near the light cosine-weighted sampling is nearly exact, far from it light sampling
+// is; the same ratios occur at both places. The optimal weights are computed here, and they do not
+// meet the criterion either.
 
 #include <gtest/gtest.h>
 
@@ -15,27 +16,27 @@
 namespace bandsaw {
 namespace {
 
-constexpr int kBins = 400;  // Of the ratio, evenly in its logarithm.
-constexpr double kLeast = 0.01;
-constexpr double kMost = 2.05;
+constexpr int kBins = 400;  // bins of the ratio, uniform in its logarithm
+constexpr double kMin = 0.01;
+constexpr double kMax = 2.05;
 
 int bin_of(double ratio) {
-  const double at = std::log(ratio / kLeast) / std::log(kMost / kLeast);
+  const double at = std::log(ratio / kMin) / std::log(kMax / kMin);
   return std::clamp(static_cast<int>(at * kBins), 0, kBins - 1);
 }
 
-/// The irradiance f of a square light of radiance 1 / pi, seen from below its middle, by the ratio
-/// p / q of the densities of following and asking.
+/// Integrals of the irradiance f of a square light of radiance 1 / pi below its middle, binned by
+/// the ratio p / q of the pdfs of cosine-weighted and light sampling.
 struct Seen {
-  std::vector<double> following = std::vector<double>(kBins);  ///< integral of f^2 / p
-  std::vector<double> asking = std::vector<double>(kBins);     ///< integral of f^2 / q
+  std::vector<double> cosine_sampling = std::vector<double>(kBins);  ///< integral of f^2 / p
+  std::vector<double> light_sampling = std::vector<double>(kBins);   ///< integral of f^2 / q
 };
 
-/// The light is 2 x 2, `height` above. p = cos / pi, q = 1 / its solid angle, f = p.
+/// The light is 2 x 2, at `height`. p = cos / pi, q = 1 / its solid angle, f = p.
 Seen seen_from(double height) {
   constexpr int kSteps = 600;
   const double solid_angle = 4 * std::atan(1 / (height * std::sqrt(2 + height * height)));
-  const double range = std::asinh(1 / height);  // x = height sinh(s): fine where it is near.
+  const double range = std::asinh(1 / height);  // x = height sinh(s): fine steps near the light
   Seen seen;
   for (int i = 0; i < kSteps; ++i) {
     for (int j = 0; j < kSteps; ++j) {
@@ -49,8 +50,8 @@ Seen seen_from(double height) {
       const double area = 4 * step * step * std::cosh(s) * std::cosh(t);
       const double p = cosine * kInvPi;
       const double share = p * area * cosine / distance2;
-      seen.following[bin_of(p * solid_angle)] += share;
-      seen.asking[bin_of(p * solid_angle)] += share * p * solid_angle;
+      seen.cosine_sampling[bin_of(p * solid_angle)] += share;
+      seen.light_sampling[bin_of(p * solid_angle)] += share * p * solid_angle;
     }
   }
   return seen;
@@ -64,17 +65,19 @@ double sum(const std::vector<double>& values) {
   return all;
 }
 
-/// Of one sample of each technique, by the weight of following in each bin.
+/// Variance of one sample of each technique, with the weight of cosine-weighted sampling in each
+/// bin.
 double variance(const Seen& seen, const std::vector<double>& weights) {
   double squares = 0;
-  double followed = 0;
+  double by_cosine = 0;
   for (int k = 0; k < kBins; ++k) {
-    const double asked = 1 - weights[k];
-    squares += weights[k] * weights[k] * seen.following[k] + asked * asked * seen.asking[k];
-    followed += weights[k] * seen.following[k];
+    const double by_light = 1 - weights[k];
+    squares += weights[k] * weights[k] * seen.cosine_sampling[k] +
+               by_light * by_light * seen.light_sampling[k];
+    by_cosine += weights[k] * seen.cosine_sampling[k];
   }
-  const double asked = sum(seen.following) - followed;
-  return squares - followed * followed - asked * asked;
+  const double by_light = sum(seen.cosine_sampling) - by_cosine;
+  return squares - by_cosine * by_cosine - by_light * by_light;
 }
 
 double of_better_technique(const Seen& seen) {
@@ -84,25 +87,25 @@ double of_better_technique(const Seen& seen) {
 
 struct Place {
   Seen seen;
-  double scale = 0;  ///< what the variance is multiplied by
+  double scale = 0;  ///< factor of the variance
 };
 
-/// The weights that make the sum of the scaled variances least: where its gradient is zero, a
+/// Returns the weights that minimise the sum of the scaled variances: where its gradient is zero, a
 /// system of equations whose matrix is positive definite.
 std::vector<double> best_weights(const std::vector<Place>& places) {
   std::vector<std::vector<double>> rows(kBins, std::vector<double>(kBins + 1));
   for (const auto& [seen, scale] : places) {
-    const double all = sum(seen.following);
+    const double all = sum(seen.cosine_sampling);
     for (int k = 0; k < kBins; ++k) {
-      rows[k][k] += scale * (seen.following[k] + seen.asking[k]);
-      rows[k][kBins] += scale * (seen.asking[k] - all * seen.following[k]);
+      rows[k][k] += scale * (seen.cosine_sampling[k] + seen.light_sampling[k]);
+      rows[k][kBins] += scale * (seen.light_sampling[k] - all * seen.cosine_sampling[k]);
       for (int j = 0; j < kBins; ++j) {
-        rows[k][j] -= 2 * scale * seen.following[k] * seen.following[j];
+        rows[k][j] -= 2 * scale * seen.cosine_sampling[k] * seen.cosine_sampling[j];
       }
     }
   }
   for (int k = 0; k < kBins; ++k) {
-    rows[k][k] += rows[k][k] == 0 ? 1 : 0;  // No direction has this ratio.
+    rows[k][k] += rows[k][k] == 0 ? 1 : 0;  // no direction has this ratio
     for (int below = k + 1; below < kBins; ++below) {
       const double factor = rows[below][k] / rows[k][k];
       for (int j = k; j <= kBins; ++j) {
@@ -122,8 +125,9 @@ std::vector<double> best_weights(const std::vector<Place>& places) {
 }
 
 TEST(Weights, Q5_NoneOfTheRatioOfDensitiesAreNearTheBetterTechniqueEverywhere) {
-  // The larger of two ratios is at least any mean of them, so the least mean is a bound for the
-  // least larger one (duality: the variances are convex). The shares were sought; any are a bound.
+  // The larger of two ratios is at least any mean of them, so the minimal mean is a bound for the
+  // minimal larger one (duality: the variances are convex). The shares were found by a search; any
+  // shares give a bound.
   constexpr double kShareNear = 0.96;
   std::vector<Place> places;
   for (const auto& [height, share] :

@@ -1,6 +1,6 @@
-// Irradiance under single lights against closed forms, within 4 standard errors, the standard error
-// at most 1e-3 of the value. With 4 standard errors of 32 seeds each test alarms falsely once in
-// about 2 700 changes of the sampling.
+// Irradiance under single lights against closed forms, within 4 standard errors; the standard error
+// is at most 1e-3 of the value. With 4 standard errors of 32 seeds, a test has a false alarm in one
+// of about 2 700 changes of the sampling.
 
 #include <gtest/gtest.h>
 
@@ -16,20 +16,21 @@ namespace {
 using test::Moments;
 using test::SceneMaker;
 
-/// The radiance of a white diffuse patch at the origin that faces +y, times pi: its irradiance.
+/// Returns the irradiance at the origin with normal +y: pi times the radiance of a white diffuse
+/// patch.
 void expect_irradiance(SceneMaker maker, double expected, std::uint64_t samples = 1024) {
   maker.quad({-0.01, 0, -0.01}, {0, 0, 0.02}, {0.02, 0, 0}, maker.diffuse(1));
   const auto scene = maker.build();
   const Ray down{.origin = {0, 1e-3, 0}, .direction = {0, -1, 0}};
   const Moments radiance = test::radiance_along(*scene, down, {.max_depth = 1}, samples);
   const double value = expected / kPi;
-  // Colours are floats: without any noise they are right to a millionth.
+  // Colours are floats: without noise they are accurate to a millionth.
   EXPECT_NEAR(radiance.mean(), value, 4 * radiance.standard_error() + 1e-6 * value)
       << "is " << radiance.mean() * kPi << ", expected " << expected;
   EXPECT_LE(radiance.standard_error(), 1e-3 * value);
 }
 
-/// The center of a light at distance d, `angle` away from the normal.
+/// Returns the center of a light at distance d, at `angle` from the normal.
 Vec3 at(double d, double angle) { return {d * std::sin(angle), d * std::cos(angle), 0}; }
 
 TEST(DirectLight, OfASphereAboveTheHorizon) {
@@ -77,8 +78,8 @@ TEST(DirectLight, OfASquareAboveItsCenterAndItsCorner) {
   expect_irradiance(square(1, 1), 0.652688257754);
 }
 
-/// The same square of other shapes: two loose triangles, a parallelogram pair, and a mesh placed
-/// with a mirrored, scaled map.
+/// The same square as other shapes: two loose triangles, a pair of parallelograms, and a mesh with
+/// a mirrored, scaled placement.
 TEST(DirectLight, OfASquareIsTheSameWhateverItIsMadeOf) {
   const double expected = 1.740839502734;
   SceneMaker triangles;

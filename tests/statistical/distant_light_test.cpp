@@ -1,5 +1,5 @@
-// Light of environments and of lights without size against closed forms and quadrature, within 4
-// standard errors, the standard error at most 1e-3 of the value.
+// Light of environments and delta lights against closed forms and quadrature, within 4 standard
+// errors; the standard error is at most 1e-3 of the value.
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ void add_patch(SceneMaker& maker, double tilt, MaterialId material) {
   maker.quad(along * -0.5 + Vec3{0, 0, -0.01}, {0, 0, 0.02}, along, material);
 }
 
-/// A ray down onto the patch.
+/// A ray down to the patch.
 Ray onto_patch(double tilt) {
   const SinCos turn = sincos_degrees(tilt);
   const Vec3 normal{-turn.sin, turn.cos, 0};
@@ -56,7 +56,7 @@ TEST(EnvironmentLight, AHalfWhiteOneOnATiltedPlane) {
     set_environment(maker, half_white());
     add_patch(maker, tilt, maker.diffuse(1));
     const double expected = (1 + sincos_degrees(tilt).cos) / 2;
-    for (const bool local : {false, true}) {  // Local shading sees all of an environment.
+    for (const bool local : {false, true}) {  // local shading uses the whole environment
       expect_radiance(maker, onto_patch(tilt), expected, {.max_depth = 1, .local = local}, 4096);
     }
   }
@@ -71,7 +71,7 @@ TEST(EnvironmentLight, L8OneTexel) {
                       return x == 20 && y == row ? 1e5f : 0.0f;
                     }));
     add_patch(maker, 0, maker.diffuse(1));
-    // Its light, seen as it is interpolated, by quadrature: L times solid angle times cosine.
+    // Light of the interpolated image by quadrature: L times solid angle times cosine.
     double expected = 0;
     constexpr int kFine = 2000;
     for (int i = 0; i < kFine; ++i) {
@@ -89,7 +89,7 @@ TEST(EnvironmentLight, L8OneTexel) {
   test::holds("L8", "within 4 SE of L x solid angle");
 }
 
-/// A sun on a sky of bands, above a dark ground.
+/// A sun on a sky with bands, above a dark ground.
 ImageTexture sunny() {
   return float_image(32, 16, [](auto x, auto y) {
     return x == 5 && y == 4 ? 300.0f
@@ -98,7 +98,7 @@ ImageTexture sunny() {
   });
 }
 
-/// Without a scene in between: radiance seen times cosine over pi, by quadrature.
+/// Returns the integral of radiance times cosine over pi without a scene, by quadrature.
 double reflected(const SceneMaker& maker, const Vec3& normal) {
   constexpr int kBands = 1600;
   double sum = 0;
@@ -227,7 +227,7 @@ TEST(DeltaLight, BelowTheHorizonOrBehindSomethingThereIsNone) {
 }
 
 TEST(DeltaLight, OfAllKindsAndLampsAndAnEnvironmentAddsUp) {
-  for (const int points : {1, 40}) {  // Few lights, and a tree of them.
+  for (const int points : {1, 40}) {  // few lights, and a light tree
     SceneMaker maker;
     set_environment(maker, half_white());
     add_patch(maker, 0, maker.diffuse(1));
@@ -239,7 +239,7 @@ TEST(DeltaLight, OfAllKindsAndLampsAndAnEnvironmentAddsUp) {
       const double distance = length(at);
       expected += 9 * at.y / (distance * distance * distance) / kPi;
     }
-    // At the horizon it shades nothing of the others: 1e-4 of the sky, below the tolerance.
+    // At the horizon it occludes almost nothing: 1e-4 of the sky, below the tolerance.
     maker.sphere({-30, 3, 0}, 0.2, maker.lamp(2000));
     const Vec3 lamp{-30, 3, 0};
     expected += 2000 * 0.04 * lamp.y / std::pow(length(lamp), 3);

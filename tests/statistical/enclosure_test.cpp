@@ -1,5 +1,5 @@
-// Closed rooms, whose light is known as a whole: form factors, the balance of energy, and a
-// radiosity solution. Irradiance is measured over whole surfaces, within 4 standard errors.
+// Closed rooms, whose total light is known: form factors, the balance of energy, and a radiosity
+// solution. Irradiance is averaged over whole surfaces, within 4 standard errors.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace {
 using test::Moments;
 using test::SceneMaker;
 
-/// A parallelogram whose front (u x v) is seen from inside of the room.
+/// A parallelogram whose front (u x v) faces the inside of the room.
 struct Wall {
   Vec3 corner;
   Vec3 u;
@@ -27,8 +27,8 @@ struct Wall {
   double area() const { return length(cross(u, v)); }
 };
 
-/// The walls of [0, x] x [0, y] x [0, z] seen from inside: floor, ceiling, left, right, back,
-/// front.
+/// Returns the walls of [0, x] x [0, y] x [0, z], facing inwards: floor, ceiling, left, right,
+/// back, front.
 std::array<Wall, 6> room(double x, double y, double z) {
   return {Wall{{0, 0, 0}, {0, 0, z}, {x, 0, 0}}, Wall{{0, y, 0}, {x, 0, 0}, {0, 0, z}},
           Wall{{0, 0, 0}, {0, y, 0}, {0, 0, z}}, Wall{{x, 0, 0}, {0, 0, z}, {0, y, 0}},
@@ -39,7 +39,7 @@ void add(SceneMaker& maker, const Wall& wall, MaterialId material) {
   maker.quad(wall.corner, wall.u, wall.v, material);
 }
 
-/// The mean over all points of a wall of what it sends back along its normal.
+/// Returns the mean over all points of a wall of the radiance along its normal.
 Moments mean_radiance(const Scene& scene, const Wall& wall, const PathOptions& options,
                       std::uint64_t samples) {
   Moments means;
@@ -63,7 +63,7 @@ void expect_mean(const Moments& seen, double expected, double slack = 2e-6) {
   EXPECT_LE(seen.standard_error(), 1e-3 * expected);
 }
 
-/// A white wall sends back the share of a lamp's light that reaches it: the form factor.
+/// A white wall reflects the share of a light's power that reaches it: the form factor.
 TEST(Enclosure, FormFactorsOfACube) {
   const std::array<Wall, 6> walls = room(1, 1, 1);
   for (const auto& [receiver, factor] :
@@ -78,8 +78,8 @@ TEST(Enclosure, FormFactorsOfACube) {
   }
 }
 
-/// A light of intensity I in the middle of a sphere: I / R^2 from it, and 1 / (1 - rho) of that
-/// with all that the wall sends to itself.
+/// A light of intensity I in the middle of a sphere: the direct irradiance is I / R^2, and
+/// interreflection multiplies it by 1 / (1 - rho).
 TEST(Enclosure, APointLightInASphere) {
   SceneMaker maker;
   maker.sphere({0, 0, 0}, 2, maker.diffuse(0.5f));
@@ -90,7 +90,7 @@ TEST(Enclosure, APointLightInASphere) {
   EXPECT_LE(seen.standard_error(), 1e-3);
 }
 
-/// What all surfaces take up is what the lamp gives: the sum of (1 - rho) E A over the walls of a
+/// All surfaces together absorb the light's power: the sum of (1 - rho) E A over the walls of a
 /// room and the sides of a block that floats in it is the flux.
 void expect_balance(const std::array<float, 7>& albedos, std::uint64_t samples) {
   SceneMaker maker;
@@ -101,7 +101,7 @@ void expect_balance(const std::array<float, 7>& albedos, std::uint64_t samples) 
   }
   for (Wall side : room(0.5, 0.6, 0.7)) {
     side.corner = side.corner + Vec3{0.3, 0.2, 0.4};
-    std::swap(side.u, side.v);  // seen from outside
+    std::swap(side.u, side.v);  // faces outwards
     surfaces.emplace_back(side, albedos[6]);
   }
   for (const auto& [wall, albedo] : surfaces) {
@@ -132,7 +132,7 @@ TEST(Enclosure, OfManyAlbedosTakesUpWhatTheLampGives) {
   expect_balance({0.8f, 0.7f, 0.4f, 0.5f, 0.75f, 0.45f, 0.6f}, 4096);
 }
 
-/// E / L at a point with a normal, of a parallelogram in front of it: Lambert's formula.
+/// Returns E / L at a point with a normal, for a parallelogram in front of it: Lambert's formula.
 double irradiance_of(const Wall& lamp, const Vec3& point, const Vec3& normal) {
   const std::array<Vec3, 4> corners = {lamp.corner, lamp.corner + lamp.u,
                                        lamp.corner + lamp.u + lamp.v, lamp.corner + lamp.v};
@@ -147,8 +147,9 @@ double irradiance_of(const Wall& lamp, const Vec3& point, const Vec3& normal) {
   return std::abs(sum) / 2;
 }
 
-/// Radiosity by finite elements: each wall in n x n patches, the factor from the middle of one to
-/// the whole of another in closed form. The mean radiosity of each wall; the ceiling shines 1.
+/// Solves radiosity with finite elements: each wall has n x n patches, and the form factor from the
+/// middle of one patch to another patch is in closed form. Returns the mean radiosity of each wall;
+/// the ceiling emits 1.
 std::array<double, 6> radiosity(const std::array<Wall, 6>& walls,
                                 const std::array<float, 6>& albedos, int n) {
   std::vector<Wall> patches;
@@ -199,7 +200,8 @@ TEST(Enclosure, WallsAreAsBrightAsRadiositySays) {
   }
   const auto scene = maker.build();
   for (const std::size_t i : {0, 2, 3, 4, 5}) {
-    // The error of the solution falls with the square of the patches' size: the limit.
+    // The error of the solution is proportional to the square of the patches' size: extrapolates to
+    // the limit.
     const double expected = (4 * fine[i] - coarse[i]) / 3;
     EXPECT_NEAR(expected, fine[i], 1e-3 * expected) << i;
     expect_mean(mean_radiance(*scene, walls[i], {.max_depth = 1000}, 8192), expected, 5e-4);

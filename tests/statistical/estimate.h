@@ -1,6 +1,6 @@
 #pragma once
 
-// The mean radiance along one ray, with an honest standard error: Owen-scrambled samples of one
+// Estimates the mean radiance along one ray with its standard error: Owen-scrambled samples of one
 // seed are correlated, so the mean of each of many seeds counts as one observation.
 
 #include "renderlib/integrate/path.h"
@@ -8,7 +8,8 @@
 
 namespace bandsaw::test {
 
-/// Green channel, seeds [0, seeds), samples [0, samples) of each; `samples` a power of two.
+/// Returns the moments of the green channel over the seeds [0, seeds), each with the samples [0,
+/// samples). `samples` is a power of two.
 inline Moments radiance_along(const Scene& scene, const Ray& ray, const PathOptions& options,
                               std::uint64_t samples, std::uint64_t seeds = 32) {
   Moments means;

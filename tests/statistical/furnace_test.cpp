@@ -23,9 +23,9 @@ void expect_value(const Moments& radiance, double expected, double relative_erro
   EXPECT_LE(radiance.standard_error(), relative_error * expected);
 }
 
-/// A diffuse sphere of radius 1 around a lamp of radius r in its middle: from every point of the
-/// wall the lamp covers the share f = r^2 of the cosine-weighted hemisphere and the wall the rest,
-/// and the wall is equally bright everywhere.
+/// A diffuse sphere of radius 1 around a light of radius r in its middle: from every point of the
+/// wall, the light covers the share f = r^2 of the cosine-weighted hemisphere and the wall the
+/// rest, and the wall has the same radiance everywhere.
 SceneMaker enclosure(float reflectance, double f) {
   SceneMaker maker;
   maker.sphere({0, 0, 0}, 1, maker.diffuse(reflectance));
@@ -66,7 +66,8 @@ TEST(Furnace, ASmallLampMakesTheEnclosureOneOverOneMinusRho) {
   const double f = 1e-3;
   const auto scene = enclosure(rho, f).build();
   const double expected =
-      rho * f / (1 - rho * (1 - f));  // f rho / (1 - rho), but for the lamp's own shadow
+      rho * f /
+      (1 - rho * (1 - f));  // f rho / (1 - rho), except for the shadow of the light itself
   expect_value(test::radiance_along(*scene, kAtWall, {.max_depth = 1000}, 16384), expected, 1e-3);
 }
 
@@ -96,7 +97,7 @@ TEST(Furnace, O6_APaneOfGlassTransmitsAsTheSumOverItsReflectionsSays) {
   test::holds("O6", "a pane 0.1 thick: within 1e-3");
 }
 
-/// Diffuse, glossy and glass under a sphere, a rectangle and a mesh of light.
+/// Diffuse, glossy and glass surfaces under a sphere, a rectangle and a mesh that emit light.
 std::shared_ptr<const Scene> mixed(double fuzz) {
   SceneMaker maker;
   maker.quad({-3, 0, -3}, {0, 0, 6}, {6, 0, 0}, maker.metal(0.8f, fuzz));
@@ -133,16 +134,16 @@ TEST(Techniques, AskingLightsFollowingDirectionsAndBothHaveTheSameMean) {
 }
 
 TEST(Techniques, Q5_NearALampBothAreNeverFarFromTheBetterOne) {
-  // From close to the plane of a 2 x 2 lamp, where following directions is nearly exact, to far
-  // from it, where asking is. Sampling by area would be noisier than the mean by a factor of 32 at
-  // the nearest point.
+  // From close to the plane of a 2 x 2 light, where BSDF sampling is nearly exact, to far from it,
+  // where light sampling is. Sampling by area would have more noise than the mean by a factor of 32
+  // at the nearest point.
   for (const double h : {0.02, 0.3, 3.0}) {
     SceneMaker maker;
     maker.quad({-0.01, 0, -0.01}, {0, 0, 0.02}, {0.02, 0, 0}, maker.diffuse(1));
     maker.quad({-1, h, -1}, {2, 0, 0}, {0, 0, 2}, maker.lamp(1));
     const auto scene = maker.build();
     const Ray down{.origin = {0, 1e-3, 0}, .direction = {0, -1, 0}};
-    // One sample of each of many seeds: relative spread of a single sample.
+    // One sample of each of many seeds: relative standard deviation of a single sample.
     const auto spread = [&](Technique technique) {
       const Moments moments =
           test::radiance_along(*scene, down, {.max_depth = 1, .technique = technique}, 1, 20000);

@@ -1,8 +1,9 @@
-// Half-spaces that scatter, under a white sky: Chandrasekhar, "Radiative Transfer", R = 1 - H(mu)
-// sqrt(1 - albedo) of the cosine mu under which they are seen. Within 4 standard errors. H is, by
-// Stibbs and Weir 1959, "On the H-functions for isotropic scattering", MNRAS 119, the exponential
-// of -mu / pi times the integral over x in [0, pi / 2] of ln(1 - albedo x cot x) / (cos^2 x + mu^2
-// sin^2 x): integrated to 20 digits. That albedos are floats changes R by less than 1e-7 of it.
+// Scattering half-spaces under a white sky: Chandrasekhar, "Radiative Transfer", R = 1 - H(mu)
+// sqrt(1 - albedo), where mu is the cosine of the viewing direction. Within 4 standard errors. H
+// is, by Stibbs and Weir 1959, "On the H-functions for isotropic scattering", MNRAS 119, the
+// exponential of -mu / pi times the integral over x in [0, pi / 2] of ln(1 - albedo x cot x) /
+// (cos^2 x + mu^2 sin^2 x): integrated to 20 digits. Rounding albedos to floats changes R by less
+// than 1e-7 of it.
 
 #include <gtest/gtest.h>
 
@@ -24,11 +25,11 @@ struct Seen {
   double reflectance;
 };
 
-/// The sky is a lamp that covers all of it and is asked wherever a path is scattered: a background
-/// would be met by chance alone, which takes many times the samples. It is 8e6 free paths wide and
-/// misses 5e-7 of the sky. A wider one is worse: shadow rays end 2^-40 of its size before it, and
-/// at 8e9 that is a hundredth of a free path, which makes the flat ways through the medium longer
-/// and the half-space darker by 0.1 %.
+/// The sky is an area light that covers all of it, so that it is sampled at every scattering; a
+/// background would be found by path sampling alone, which takes many times the samples. It is 8e6
+/// mean free paths wide and misses 5e-7 of the sky. A wider one is worse: shadow rays end 2^-40 of
+/// its size before it, and at 8e9 that is a hundredth of a mean free path, which makes grazing
+/// segments through the medium longer and the half-space darker by 0.1 %.
 std::shared_ptr<const Scene> half_space(float albedo, float density) {
   SceneMaker maker;
   const double far = 4000 / density;
@@ -50,7 +51,7 @@ void expect_half_space(const Seen& seen, float density, double error, std::uint6
   EXPECT_LE(radiance.standard_error(), error * seen.reflectance) << seen.albedo << " " << seen.mu;
 }
 
-/// The errors are what a second of samples gives.
+/// The errors are those of a second of sampling.
 TEST(HalfSpace, ReflectsAsItsHFunctionSays) {
   for (const Seen& seen :
        {Seen{0.5f, 1, 0.11522588}, Seen{0.5f, 0.5, 0.16014443}, Seen{0.8f, 1, 0.28525450},
@@ -63,7 +64,7 @@ TEST(HalfSpace, ReflectsAsItsHFunctionSaysToAThousandth) {
   expect_half_space({0.8f, 0.5, 0.36796976}, 1, 1e-3, 16384);
 }
 
-/// Very dense, measured in units of the scene: the same, and no path goes on for ever.
+/// A very dense medium, in units of the scene: the same result, and every path ends.
 TEST(HalfSpace, V3IsTheSameHoweverDense) {
   for (const float density : {1e6f, 1e10f}) {
     expect_half_space({0.8f, 1, 0.28525450}, density, 4e-3, 1024);

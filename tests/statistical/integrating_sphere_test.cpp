@@ -1,6 +1,7 @@
-// Inside a sphere each point of the wall lights every other alike: whatever the albedo's texture, a
-// lamp of flux Phi on the wall makes the irradiance Phi / (4 pi R^2 (1 - mean albedo)) everywhere.
-// Looks up textures by the sphere's uvs, asks lights and follows paths. Within 4 standard errors.
+// Inside a sphere each point of the wall illuminates every other equally: for any albedo texture, a
+// light of flux Phi at the wall gives the irradiance Phi / (4 pi R^2 (1 - mean albedo)) everywhere.
+// Covers texture lookups by the sphere's uvs, light sampling and BSDF sampling. Within 4 standard
+// errors.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +11,7 @@
 
 #include "renderlib/math/constants.h"
 #include "tests/statistical/estimate.h"
-#include "tests/statistical/shared_estimate.h"
+#include "tests/statistical/path_reuse_estimate.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
 
@@ -20,7 +21,7 @@ namespace {
 constexpr std::uint32_t kColumns = 8;
 constexpr std::uint32_t kRows = 6;
 
-/// Albedos without any order, rows from the top.
+/// Random albedos, rows from the top.
 std::vector<float> albedos() {
   test::Random random(77);
   std::vector<float> values(kColumns * kRows);
@@ -42,7 +43,7 @@ ImageTexture image_of(const std::vector<float>& values) {
   return image;
 }
 
-/// Rows of equal angle are not of equal area.
+/// Returns the mean albedo; rows of equal angle do not have equal area.
 double area_mean(const std::vector<float>& values) {
   double sum = 0;
   for (std::uint32_t y = 0; y < kRows; ++y) {
@@ -54,8 +55,8 @@ double area_mean(const std::vector<float>& values) {
   return sum;
 }
 
-/// A lamp in a sphere of these albedos, and what it makes everywhere: a lamp so small that it hides
-/// nothing, just off the wall, facing the middle.
+/// A light in a sphere of these albedos, and its irradiance everywhere: the light is so small that
+/// it occludes nothing, close to the wall, facing the middle.
 struct LitSphere {
   std::shared_ptr<const Scene> scene;
   double irradiance = 0;
@@ -73,8 +74,8 @@ LitSphere lit_sphere(const std::vector<float>& values) {
   return {maker.build(), flux / (4 * kPi * (1 - area_mean(values)))};
 }
 
-/// From the middle to that of a texel: u counts from -x over +z, as geometry/surface.h says of its
-/// poles.
+/// Returns the ray from the middle to the centre of a texel: u counts from -x over +z, as
+/// geometry/surface.h defines.
 Ray toward_texel(std::uint32_t x, std::uint32_t y) {
   const double theta = kPi * (y + 0.5) / kRows;
   const double phi = 2 * kPi * (x + 0.5) / kColumns;
@@ -98,19 +99,19 @@ TEST(IntegratingSphere, OfAnyTextureIsAsBrightAsItsMeanAlbedoSays) {
   }
 }
 
-// Most of the pixels see one corner of the texture, two the other side: the shares of what is found
-// are uneven.
+// Most of the pixels see one corner of the texture, two the other side: the balance-heuristic
+// weights of the shared vertices are unequal.
 TEST(IntegratingSphere, IsAsBrightForPixelsThatShareTheirPaths) {
   const std::vector<float> values = albedos();
   const LitSphere lit = lit_sphere(values);
-  ASSERT_TRUE(lit.scene->shares_paths());
-  const std::array<std::pair<std::uint32_t, std::uint32_t>, kMostShared> texels = {
+  ASSERT_TRUE(lit.scene->reuses_paths());
+  const std::array<std::pair<std::uint32_t, std::uint32_t>, kMaxReusePixels> texels = {
       {{1, 1}, {2, 1}, {1, 2}, {2, 2}, {1, 3}, {2, 3}, {5, 2}, {6, 4}}};
-  std::array<Ray, kMostShared> rays;
+  std::array<Ray, kMaxReusePixels> rays;
   for (std::size_t i = 0; i < texels.size(); ++i) {
     rays[i] = toward_texel(texels[i].first, texels[i].second);
   }
-  const auto seen = test::shared_radiance_along(*lit.scene, rays, {.max_depth = 1000}, 2048);
+  const auto seen = test::radiance_with_reuse_along(*lit.scene, rays, {.max_depth = 1000}, 2048);
   for (std::size_t i = 0; i < texels.size(); ++i) {
     SCOPED_TRACE(i);
     const double albedo = values[texels[i].second * kColumns + texels[i].first];

@@ -1,5 +1,5 @@
-// Lamps out of focus: disks of the brightness that the share of the lens says from which they are
-// seen, and the same mean whether or not they are asked through the lens.
+// Lights out of focus: disks whose brightness is the share of the lens from which they are visible,
+// and the same mean with and without light sampling through the lens.
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "renderlib/camera/camera.h"
-#include "renderlib/integrate/shared_paths.h"
+#include "renderlib/integrate/path_reuse.h"
 #include "tests/statistical/estimate.h"
 #include "tests/support/media.h"
 #include "tests/support/scenes.h"
@@ -19,14 +19,14 @@ namespace {
 using test::Moments;
 using test::SceneMaker;
 
-/// From the origin along -z, focused at 4.
+/// A camera at the origin along -z, focused at 4.
 PerspectiveCamera camera(double aperture) {
   return {.look_at = {0, 0, -1}, .aperture = aperture, .focus_distance = 4};
 }
 
 enum class Lamps { kFoundByChance, kAsked };
 
-/// What position (x, y) of an image of 20 x 20 pixels sees.
+/// Returns the radiance at position (x, y) of an image of 20 x 20 pixels.
 Moments seen(const SceneMaker& maker, const PerspectiveCamera& camera, double x, double y,
              Lamps lamps, std::uint64_t samples, const PathOptions& options = {.max_depth = 8}) {
   const auto scene = maker.build();
@@ -54,8 +54,8 @@ void expect_value(const Moments& radiance, double expected, double relative_erro
   EXPECT_LE(radiance.standard_error(), relative_error * expected);
 }
 
-/// A ball of this radius straight ahead is seen from the part of the lens that its cone, through
-/// the focus, cuts out.
+/// Returns the share of the lens from which a ball of this radius straight ahead is visible: its
+/// cone through the focus intersects the lens.
 double share_of_lens(double radius, double distance, double aperture) {
   const double sine = radius / std::abs(distance - 4);
   const double on_lens = 4 * sine / std::sqrt((1 - sine) * (1 + sine));
@@ -63,7 +63,7 @@ double share_of_lens(double radius, double distance, double aperture) {
 }
 
 TEST(Lens, MakesADiskOfALampBeyondItsFocus) {
-  // The last is seen from a millionth of the lens: of 8,192 rays, hardly one would meet it.
+  // The last is visible from a millionth of the lens: of 8,192 rays, hardly one would hit it.
   for (const double radius : {0.1, 0.01, 3e-4}) {
     SceneMaker maker;
     maker.sphere({0, 0, -10}, radius, maker.lamp(7));
@@ -96,8 +96,8 @@ void expect_the_same(const SceneMaker& maker, const PerspectiveCamera& camera,
   }
 }
 
-/// Lamps of all kinds before, in and beyond the focus, one behind a ball, among lights that no
-/// camera sees.
+/// Lights of all kinds before, in and beyond the focus, one behind a ball, among lights that the
+/// camera does not see.
 SceneMaker lamps() {
   SceneMaker maker;
   maker.quad({-9, -2, -30}, {18, 0, 0}, {0, 0, 40}, maker.diffuse(0.6f));
@@ -132,7 +132,7 @@ TEST(Lens, AskedAndFoundByChanceHaveTheSameMeanInFogAndUnderASky) {
   expect_the_same(maker, camera(0.4), 512);
 }
 
-/// A closed room: pixels share their paths there.
+/// A closed room, in which pixels reuse paths.
 SceneMaker room() {
   SceneMaker maker;
   const MaterialId wall = maker.diffuse(0.5f);
@@ -156,16 +156,16 @@ SceneMaker room() {
 
 TEST(Lens, IsAskedThroughWherePixelsShareTheirPaths) {
   const auto scene = room().build();
-  ASSERT_TRUE(scene->shares_paths());
+  ASSERT_TRUE(scene->reuses_paths());
   const RayGenerator rays(camera(0.4), 20, 20);
   constexpr double kRow = 10.3;
-  std::array<Moments, kMostShared> shared;
+  std::array<Moments, kMaxReusePixels> shared;
   for (std::uint64_t seed = 0; seed < 32; ++seed) {
-    std::vector<SharedPixel> pixels;
-    for (std::uint32_t x = 0; x < kMostShared; ++x) {
+    std::vector<ReusePixel> pixels;
+    for (std::uint32_t x = 0; x < kMaxReusePixels; ++x) {
       pixels.push_back({.sampler = PixelSampler(seed, x, 3), .camera_ray = Ray{}});
     }
-    std::array<double, kMostShared> sums{};
+    std::array<double, kMaxReusePixels> sums{};
     PathCounts counts;
     for (std::uint64_t sample = 0; sample < 512; ++sample) {
       for (std::size_t i = 0; i < pixels.size(); ++i) {
@@ -174,7 +174,7 @@ TEST(Lens, IsAskedThroughWherePixelsShareTheirPaths) {
         pixels[i].camera_ray = rays.ray(place, kRow, at[2], at[3]);
         pixels[i].camera_ray.lens = rays.lens_view(place, kRow);
       }
-      shared_radiance(*scene, absl::MakeSpan(pixels), sample, {.max_depth = 3}, counts);
+      radiance_with_reuse(*scene, absl::MakeSpan(pixels), sample, {.max_depth = 3}, counts);
       for (std::size_t i = 0; i < pixels.size(); ++i) {
         sums[i] += pixels[i].radiance.g;
       }

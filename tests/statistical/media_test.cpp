@@ -1,5 +1,5 @@
-// Media against closed forms and quadratures, within 4 standard errors; where there is no noise,
-// to the digits of a float.
+// Media against closed forms and quadratures, within 4 standard errors; if there is no noise, to
+// the precision of a float.
 
 #include <gtest/gtest.h>
 
@@ -37,7 +37,7 @@ SceneMaker white_sky() {
 }
 
 TEST(Media, V6AbsorbAsTheExponentialSays) {
-  // Through spheres at every distance from the middle, alone and two of them.
+  // Through one and two spheres at every distance from the middle.
   for (const double b : {0.0, 0.3, 0.9, 0.999999}) {
     SceneMaker maker = white_sky();
     const MediumId smoke = test::add(maker, medium(0.7f, 0));
@@ -60,7 +60,7 @@ TEST(Media, V6AbsorbAsTheExponentialSays) {
   test::holds("V6", "T within 4 SE");
 }
 
-/// Camera and lamp inside, the lamp in the boundary, and the camera in endless fog.
+/// Camera and light inside, the light in the boundary, and the camera in endless fog.
 TEST(Media, V7AroundTheCameraAbsorbOnTheWayToALamp) {
   const Ray ray{.origin = {0, 0, 0}, .direction = {0, 0, -1}};
   for (const double distance : {0.5, 2.0, 3.0}) {
@@ -80,8 +80,8 @@ TEST(Media, V7AroundTheCameraAbsorbOnTheWayToALamp) {
   test::holds("V7", "within 4 SE");
 }
 
-/// What scatters light before a lamp does not make its edge noisy: half of these paths are
-/// scattered before they reach it, and all of them have its light.
+/// Scattering in front of a light does not make its edge noisy: half of these paths are scattered
+/// before they reach it, and all of them have its light.
 TEST(Media, BeforeALampLetThroughTheSameOfEverySample) {
   SceneMaker maker;
   maker.sphere({10, 0, 0}, 1e-3, maker.lamp(5));
@@ -102,7 +102,7 @@ TEST(Media, ThatEmitGiveTheirReach) {
   EXPECT_NEAR(one_sample(*maker.build(), ray), passing + 3 * (1 - passing), 1e-5);
 }
 
-/// The integral over [0, inf) of f, by the substitution s = x / (1 - x) and Simpson's rule.
+/// Returns the integral over [0, inf) of f, by the substitution s = x / (1 - x) and Simpson's rule.
 double integral(const std::function<double(double)>& f) {
   constexpr int kSteps = 200000;
   double sum = 0;
@@ -114,7 +114,7 @@ double integral(const std::function<double(double)>& f) {
   return sum;
 }
 
-/// What a ray along x sees of a light of this intensity at (ahead, aside), scattered once.
+/// Returns the singly scattered radiance along x for a light of this intensity at (ahead, aside).
 double scattered_once(const Medium& fog, double ahead, double aside, double intensity) {
   const double sigma = double{fog.absorption.g} + fog.scattering.g;
   const double g = fog.g;
@@ -128,7 +128,7 @@ double scattered_once(const Medium& fog, double ahead, double aside, double inte
   });
 }
 
-/// A ray that passes a small lamp at distance `aside`, `ahead` of its origin, in endless fog.
+/// A ray that passes a small light at distance `aside`, `ahead` of its origin, in endless fog.
 void expect_single_scattering(const Medium& fog, double ahead, double aside, double error,
                               std::uint64_t samples = 1024) {
   constexpr double kRadius = 1e-6;  // less than the standard error of any length
@@ -159,7 +159,7 @@ TEST(Media, ScatterLightsWithoutSize) {
   expect_value(test::radiance_along(*point.build(), ray, {.max_depth = 1}, 1024),
                scattered_once(smoke, 2, 0.7, 5), 1e-3);
 
-  // The sun straight above a slab that is seen from there: the light goes in and back out.
+  // The sun directly above a slab that is viewed from above: the light goes in and back out.
   SceneMaker sun;
   const MediumId inside = test::add(sun, medium(0.2f, 0.6f));
   test::fill_box(sun, {-1e6, 0, -1e6}, {1e6, 2, 1e6}, inside);
@@ -169,17 +169,17 @@ TEST(Media, ScatterLightsWithoutSize) {
   expect_value(test::radiance_along(*sun.build(), down, {.max_depth = 1}, 1024), expected, 1e-3);
 }
 
-/// What a ray along x sees of a light, scattered once in isotropic fog.
+/// Returns the singly scattered radiance along x for a light in isotropic fog.
 double scattered_once(const Medium& fog, const DeltaLight& light) {
   const double sigma = double{fog.absorption.g} + fog.scattering.g;
   return integral([&](double s) {
     const Arrival arrives = std::visit([&](const auto& l) { return arrival(l, {s, 0, 0}); }, light);
-    return fog.scattering.g / (4 * kPi) * std::exp(-sigma * (s + length(arrives.way))) *
+    return fog.scattering.g / (4 * kPi) * std::exp(-sigma * (s + length(arrives.to_light))) *
            arrives.irradiance.g;
   });
 }
 
-/// A ray meets the cone of a spot close to its tip, far from where most light is scattered.
+/// A ray crosses the cone of a spot light close to its tip, far from where most light is scattered.
 TEST(Media, ScatterASpotAmongOtherLightsWithoutFireflies) {
   const Medium smoke = medium(0.02f, 0.1f);
   SceneMaker maker;
@@ -196,7 +196,7 @@ TEST(Media, ScatterASpotAmongOtherLightsWithoutFireflies) {
   expect_value(test::radiance_along(*maker.build(), ray, {.max_depth = 1}, 1024), expected, 1e-2);
 }
 
-/// A ball of a size that is enormous in free paths ends, for its depth is counted.
+/// Paths in a ball of an enormous number of mean free paths end, because the depth is limited.
 TEST(Media, V3V11OpaqueBallEndsByItsDepth) {
   SceneMaker maker = white_sky();
   test::fill_sphere(maker, {0, 0, 0}, 1, test::add(maker, medium(0, 1e12f)));
@@ -221,7 +221,7 @@ TEST(Media, V3V11OpaqueBallEndsByItsDepth) {
   test::at_least("V11", "radiance of a ball of scattering 1e12 at 512 bounces", last, 0.9);
 }
 
-/// Without absorption nothing of a closed shape is seen under a white sky, not even as noise.
+/// Without absorption a closed shape is invisible under a white sky, without any noise.
 TEST(Media, O8WithoutLossAreInvisibleInAWhiteSky) {
   for (const double g : {0.0, 0.8, -0.5}) {
     SceneMaker ball = white_sky();
@@ -239,7 +239,7 @@ TEST(Media, O8WithoutLossAreInvisibleInAWhiteSky) {
   test::holds("O8", "invisible in a white sky");
 }
 
-/// The same slab loses what its thickness says.
+/// The same slab absorbs according to its thickness.
 TEST(Media, O8ThinSlabIsNotSteppedOver) {
   SceneMaker maker = white_sky();
   test::fill_box(maker, {-9, 0, -9}, {9, 1e-5, 9}, test::add(maker, medium(1e5f, 0)));
@@ -248,7 +248,7 @@ TEST(Media, O8ThinSlabIsNotSteppedOver) {
   test::holds("O8", "thin slab as the exponential says");
 }
 
-/// A pane whose two faces lie in the boundary of an absorbing medium, exactly.
+/// A pane whose two faces lie exactly in the boundary of an absorbing medium.
 TEST(Media, V9InGlassFadeBetweenItsReflections) {
   SceneMaker maker = white_sky();
   const MaterialId glass = maker.glass(1.5);
@@ -265,7 +265,7 @@ TEST(Media, V9InGlassFadeBetweenItsReflections) {
   test::holds("V9", "in a pane, within 4 SE");
 }
 
-/// A glass ball that is filled, seen through its middle.
+/// A filled glass ball, viewed through its middle.
 TEST(Media, V9InAGlassBallFade) {
   SceneMaker maker = white_sky();
   maker.sphere({0, 0, 0}, 1, maker.glass(1.5));
@@ -279,8 +279,7 @@ TEST(Media, V9InAGlassBallFade) {
   test::holds("V9", "in a ball, within 4 SE");
 }
 
-/// A room with a lamp, a floor and two smokes, one inside the other, coloured and not isotropic,
-/// and fog around.
+/// A room with a light, a floor and two nested smokes, coloured and anisotropic, with fog around.
 std::shared_ptr<const Scene> smoky_room(bool with_fog) {
   SceneMaker maker;
   maker.quad({-4, 0, -4}, {0, 0, 8}, {8, 0, 0}, maker.diffuse(0.6f));
@@ -331,7 +330,7 @@ TEST(MediaTechniques, R8_RouletteKeepsTheMean) {
   test::holds("R8", "same mean with and without, within 4 SE");
 }
 
-/// Where nothing absorbs or scatters the light is the same to the bit.
+/// Without absorption and scattering the light is the same to the bit.
 TEST(Media, V1OfNothingChangeNoBit) {
   SceneMaker without;
   without.quad({-4, 0, -4}, {0, 0, 8}, {8, 0, 0}, without.diffuse(0.6f));
@@ -370,7 +369,7 @@ TEST(MediaTechniques, AgreeUnderAnUnevenSky) {
   }
 }
 
-/// A lamp that the ray meets in its middle.
+/// A light whose centre the ray hits.
 TEST(MediaTechniques, V8AgreeOnARayThroughTheMiddleOfALamp) {
   SceneMaker maker;
   maker.sphere({3, 0, 0}, 0.1, maker.lamp(50));

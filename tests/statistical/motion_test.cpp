@@ -1,5 +1,5 @@
-// Disks, lamps that are placed and lamps that move against closed forms; what moves is blurred as
-// much as it moved.
+// Disks, instanced lights and moving lights against closed forms; motion blur is proportional to
+// the motion.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,8 @@ Instance of_group(std::uint32_t group, const Transform& to_world) {
   return instance;
 }
 
-/// The irradiance of a patch at the origin that faces +y, over all times that the shutter is open.
+/// Returns the irradiance of a patch at the origin with normal +y, averaged over the time that the
+/// shutter is open.
 void expect_irradiance(SceneMaker maker, double expected, std::uint64_t samples = 1024,
                        Technique technique = Technique::kBoth) {
   maker.quad({-0.01, 0, -0.01}, {0, 0, 0.02}, {0.02, 0, 0}, maker.diffuse(1));
@@ -64,7 +65,7 @@ TEST(DiskLight, IsItsClosedForm) {
   expect_irradiance(behind, 0);
 }
 
-// X9: lamps that are placed shine by their size in the world.
+// X9: instanced lights emit according to their size in the world.
 TEST(PlacedLight, X9_ShinesByItsSizeInTheWorld) {
   SceneMaker disk;
   disk.scene.geometry.groups.resize(1);
@@ -89,8 +90,7 @@ TEST(PlacedLight, X9_ShinesByItsSizeInTheWorld) {
   test::holds("X9", "within 4 SE");
 }
 
-// An ellipsoid over a point: what asking finds and what scattering finds is the same. A flat one is
-// nearly a disk.
+// An ellipsoid over a point: light sampling and BSDF sampling agree. A flat one is nearly a disk.
 TEST(PlacedLight, OfAnEllipsoidIsTheSameByEveryTechnique) {
   SceneMaker maker;
   maker.scene.geometry.groups.resize(1);
@@ -119,7 +119,7 @@ TEST(PlacedLight, OfAnEllipsoidIsTheSameByEveryTechnique) {
   }
 }
 
-/// A lamp that moves from one placement to another while the shutter is open.
+/// A light that moves from one placement to another while the shutter is open.
 SceneMaker moving_lamp(const Shapes& lamp, const Key& from, const Key& to) {
   SceneMaker maker;
   maker.lamp(1);
@@ -141,7 +141,7 @@ TEST(MovingLight, ShinesFromWhereItIs) {
         moving_lamp(ball, Key(-1, translation({0, 1.5, 0})), Key(3, translation({0, 4, 0}))),
         kPi * 0.25 / (1.5 * 4), 4096, technique);
   }
-  // A square that turns about its own middle: of its two sides one is always seen.
+  // A square that rotates about its middle: one of its two sides is always visible.
   Shapes disk;
   disk.disks.push_back({{0, 0, 0}, {0, 1, 0}, 0.05, MaterialId{0}});
   // E = A |cos| / d^2 for a small one; the mean of |cos| over half a turn is 2 / pi.
@@ -167,7 +167,7 @@ TEST(MovingLight, ShinesFromWhereItIs) {
     }
     means.add(sum / 4096);
   }
-  // The disk is not quite small: 1e-4 of the value.
+  // The disk is not infinitely small: 1e-4 of the value.
   EXPECT_NEAR(means.mean() * kPi, closed_form,
               4 * kPi * means.standard_error() + 2e-4 * closed_form);
 }
@@ -200,8 +200,8 @@ TEST(MotionBlur, C9_AMovingEdgeIsALinearRamp) {
       pixels[x].add(band->sums[3 * x + 1] / kSamples);
     }
   }
-  // The share of times at which the edge, at 5 + 10 t, is beyond a point of the pixel.
-  const auto integral = [](double x) {  // of clamp(x, 0, 10) / 10
+  // The share of the time in which the edge, at 5 + 10 t, is beyond a point of the pixel.
+  const auto integral = [](double x) {  // integral of clamp(x, 0, 10) / 10
     return x < 0 ? 0 : x < 10 ? x * x / 20 : x - 5;
   };
   for (int x = 0; x < kWidth; ++x) {

@@ -1,4 +1,4 @@
-// Media whose boundaries are placed and move, over the time that the shutter is open.
+// Media with instanced and moving boundaries, over the time that the shutter is open.
 
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ SceneMaker moving_ball(const Medium& medium, const Transform& from, const Transf
   return maker;
 }
 
-/// What the ray sees while the shutter is open.
+/// Returns the radiance along the ray while the shutter is open.
 Moments seen_along(const Scene& scene, Ray ray, std::uint64_t samples) {
   Moments means;
   for (std::uint64_t seed = 0; seed < 32; ++seed) {
@@ -62,8 +62,8 @@ TEST(MovingMedia, V6GrowingBallAbsorbsByTheMeanOverTheShutter) {
               (std::exp(-s) - std::exp(-3 * s)) / (2 * s));
 }
 
-// A ball that flies by: with y from -2 to 2, the mean of exp(-2 s sqrt(1 - y^2)) over those that
-// meet the ray and 1 over the others; the first by Simpson's rule in the angle.
+// A ball that moves past: with y from -2 to 2, the mean of exp(-2 s sqrt(1 - y^2)) over those that
+// intersect the ray and 1 over the others; the first by Simpson's rule in the angle.
 TEST(MovingMedia, V6BallThatFliesByAbsorbsByTheMeanOverTheShutter) {
   const double s = 0.8;
   const auto scene =

@@ -17,8 +17,8 @@ using test::SceneMaker;
 
 constexpr Vec3 kUp{0, 1, 0};
 
-/// E / L at the origin, normal `n`, of a polygon above the horizon: half the sum over its edges of
-/// the angle times the cosine of the edge's plane.
+/// Returns E / L at the origin with normal `n` for a polygon above the horizon: half the sum over
+/// its edges of the angle times the cosine of the edge's plane.
 double irradiance_of(const std::vector<Vec3>& corners, const Vec3& n) {
   double sum = 0;
   for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -64,7 +64,7 @@ TEST(PolygonLight, TrianglesOfAnySizeAndSlant) {
   }
 }
 
-// A blocker halfway, whose edge is seen against the lamp: of the lamp the part before it counts.
+// An occluder halfway, whose edge is in front of the light: the visible part of the light counts.
 TEST(PolygonLight, OfOneThatIsPartlyHiddenTheRestShines) {
   for (const double edge : {-0.6, 0.1, 0.9}) {
     SceneMaker maker;
@@ -77,7 +77,7 @@ TEST(PolygonLight, OfOneThatIsPartlyHiddenTheRestShines) {
 
 TEST(PolygonLight, X9AnInstanceOfALampShinesByTheAreaThatItIsPlacedWith) {
   const double expected = 1.740839502734;
-  for (const int n : {1, 8}) {  // Few lights, and many.
+  for (const int n : {1, 8}) {  // few lights, and many
     for (const double scale : {1e-3, 1e3}) {
       SceneMaker maker;
       Mesh mesh = test::grid(n);
@@ -93,7 +93,7 @@ TEST(PolygonLight, X9AnInstanceOfALampShinesByTheAreaThatItIsPlacedWith) {
 }
 
 TEST(PolygonLight, L12LampsAreSeenOnceHoweverTheyAreFound) {
-  // A lamp of triangles, a mirror and a pane of glass: each technique has the same mean.
+  // A light of triangles, a mirror and a pane of glass: each technique has the same mean.
   SceneMaker maker;
   maker.quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}, maker.diffuse(0.5f));
   maker.instance(test::grid(4), translation({0, 2, -1}) * rotation({1, 0, 0}, 60), maker.lamp(3));

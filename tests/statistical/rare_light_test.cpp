@@ -1,6 +1,6 @@
-// Adaptive sampling of rendered scenes whose light few paths find: a pixel that met some of it and
-// one that met none have different noise to show, but the image is right on average. 64 seeds, a
-// bias of at most 3 standard errors (hard case A5 has the same for pixels without a scene).
+// Adaptive sampling of scenes in which few paths find light: pixels that found light and pixels
+// that found none have different noise estimates, but the image is unbiased. 64 seeds, a bias of at
+// most 3 standard errors (hard case A5 tests the same for pixels without a scene).
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ using test::SceneMaker;
 constexpr TileGrid kGrid{128, 2};
 constexpr std::uint64_t kSeeds = 64;
 
-/// A strip of floor, seen from above. The lamp is small, lights one end of it, and is not asked.
+/// A strip of floor from above. The light is small, illuminates one end of it, and is not sampled.
 SceneMaker strip(const Vec3& lamp, double radius) {
   SceneMaker maker;
   maker.camera({0, 2, 0}, {0, 0, 0.001}, 1);

@@ -1,4 +1,4 @@
-// Balls of glass and of media that are squashed or stretched by many orders of magnitude, under a
+// Balls of glass and media that are squashed or stretched by many orders of magnitude, under a
 // white sky, against closed forms.
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ using test::SceneMaker;
 
 constexpr double kThin[] = {1e-3, 1e-6, 1e-7, 1e-9};
 
-/// A ball of radius 1, squashed along one axis and stretched along another, turned and moved.
+/// A ball of radius 1, squashed along one axis and stretched along another, rotated and moved.
 Transform squashed(double by) {
   return translation({0.3, -0.2, 0.1}) * rotation({1, 2, 3}, 40) * scaling({1, by, 3}) *
          rotation({2, 1, -1}, 70);
@@ -52,16 +52,16 @@ void fill(SceneMaker& maker, const Transform& to_world, const Medium& medium) {
   boundaries.instances.push_back(ball(to_world, filled_with(test::add(maker, medium))));
 }
 
-/// From outside to a point within.
+/// Returns a ray from outside to a point inside.
 Ray random_ray(const Transform& to_world, Random& random) {
   const Vec3 target = to_world.point(0.57 * test::random_point(random));
   const Vec3 origin = target + 4 * test::random_direction(random);
   return {.origin = origin, .direction = normalize(target - origin)};
 }
 
-/// Radiance is compressed by the square of the index within glass: a path that enters and is not
-/// seen to leave brings 2.25 or 0.44 in place of 1. A few are reflected along the rim within the
-/// ball for thousands of times, and are cut off.
+/// Radiance scales with the squared index in glass: a path that enters and is not detected to leave
+/// carries 2.25 or 0.44 instead of 1. A few paths are reflected along the rim inside the ball
+/// thousands of times, and are truncated.
 TEST(Squashed, S12_AGlassBallIsInvisibleInAWhiteSky) {
   int wrong = 0;
   int paths = 0;
@@ -88,8 +88,8 @@ TEST(Squashed, S12_AGlassBallIsInvisibleInAWhiteSky) {
                 wrong, 0);
 }
 
-/// What absorbs lets exp(-sigma chord) pass: the chord, from the sphere's equation in its own
-/// space.
+/// An absorbing ball transmits exp(-sigma chord), with the chord from the sphere's equation in its
+/// own space.
 TEST(Squashed, S12_AnAbsorbingBallLetsPassWhatItsChordSays) {
   test::Worst error;
   for (const double by : kThin) {
@@ -106,7 +106,7 @@ TEST(Squashed, S12_AnAbsorbingBallLetsPassWhatItsChordSays) {
         ray.origin = target;
       }
       const Vec3 d = to_object.direction(ray.direction);
-      const Vec3 o = to_object.point(target);  // not far away, where digits are lost
+      const Vec3 o = to_object.point(target);  // not far away, where precision is lost
       const double b = dot(o, d) / length_squared(d);
       const double half = std::sqrt(b * b + (1 - length_squared(o)) / length_squared(d));
       const double chord = i % 2 == 1 ? half - b : 2 * half;
@@ -119,9 +119,9 @@ TEST(Squashed, S12_AnAbsorbingBallLetsPassWhatItsChordSays) {
   test::at_most("S12", "error of what absorbing balls let pass", error.value(), 1e-4);
 }
 
-/// Straight through the middle a glass ball is a pane with parallel faces: of light that meets it a
-/// share F is reflected at each face and a share a is left after each passage, which sums up to
-/// F + (1 - F)^2 a (1 + F a) / (1 - F^2 a^2) from both sides.
+/// Through its middle a glass ball is a pane with parallel faces: a share F is reflected at each
+/// face and a share a remains after each pass, which sums up to F + (1 - F)^2 a (1 + F a) / (1 -
+/// F^2 a^2) from both sides.
 TEST(Squashed, S12_AbsorbingGlassIsAPaneInItsMiddle) {
   for (const double by : kThin) {
     const Transform to_world = rotation({1, 2, 3}, 40) * scaling({1, by, 2});

@@ -5,6 +5,8 @@
 
 #include <cstdint>
 
+#include "renderlib/base/split_mix.h"
+
 namespace bandsaw::test {
 
 class Random {
@@ -13,10 +15,8 @@ class Random {
 
   /// SplitMix64.
   std::uint64_t bits() {
-    std::uint64_t x = state_ += 0x9e3779b97f4a7c15u;
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-    return x ^ (x >> 31);
+    state_ += kSplitMixIncrement;
+    return split_mix(state_);
   }
   /// [0, 1)
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }

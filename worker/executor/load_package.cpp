@@ -108,7 +108,7 @@ absl::StatusOr<std::shared_ptr<const Scene>> load_package(const wire::Digest& ma
   const std::string text(reinterpret_cast<const char*>(bytes->bytes().data()),
                          bytes->bytes().size());
   ASSIGN_OR_RETURN(SceneDescription description, decode_package(text, blobs));
-  return Scene::build(std::move(description), pool, {}, Tested::kOnItsWay, kernel);
+  return Scene::build(std::move(description), pool, {}, Traversal::kBvh, kernel);
 }
 
 }  // namespace bandsaw::worker

@@ -27,7 +27,7 @@ struct Received {
 
 // Ignores settings that are out of range.
 Display display_of(const Received& received) {
-  const bool known = std::abs(received.exposure) <= kMostExposure &&
+  const bool known = std::abs(received.exposure) <= kMaxExposure &&
                      received.tone <= static_cast<std::uint32_t>(kLastTone);
   return known ? Display{received.exposure, static_cast<Tone>(received.tone), false} : Display();
 }

@@ -88,9 +88,9 @@ absl::StatusOr<DisplayOptions> checked_display(const RawOptions& raw) {
   display.half = raw.half;
   if (raw.exposure) {
     double stops = 0;
-    if (!absl::SimpleAtod(*raw.exposure, &stops) || !(std::abs(stops) <= kMostExposure)) {
-      return wrong(absl::StrCat("--exposure: must be a number in [-", kMostExposure, ", ",
-                                kMostExposure, "], is '", *raw.exposure, "'"));
+    if (!absl::SimpleAtod(*raw.exposure, &stops) || !(std::abs(stops) <= kMaxExposure)) {
+      return wrong(absl::StrCat("--exposure: must be a number in [-", kMaxExposure, ", ",
+                                kMaxExposure, "], is '", *raw.exposure, "'"));
     }
     display.exposure = stops;
   }

@@ -117,7 +117,7 @@ class LocalRun {
     });
     ASSIGN_OR_RETURN(
         const std::shared_ptr<const Scene> scene,
-        Scene::build(std::move(description), pool_, {}, Tested::kOnItsWay, options_.kernel));
+        Scene::build(std::move(description), pool_, {}, Traversal::kBvh, options_.kernel));
     LocalJob job{*scene, spec_.settings, pool_, stop_, meter_};
     if (views_.any()) {
       job.grown = [this](const Film& film) { show(film); };

@@ -57,7 +57,8 @@ absl::StatusOr<std::vector<StudyOfScene>> studied(const StudyOptions& options,
   for (Prepared& prepared : scenes) {
     std::shared_ptr<const Scene> every_object;
     if (options.every_object) {
-      ASSIGN_OR_RETURN(every_object, Scene::build(prepared.scene, pool, {}, Tested::kEverything));
+      ASSIGN_OR_RETURN(every_object,
+                       Scene::build(prepared.scene, pool, {}, Traversal::kBruteForce));
     }
     ASSIGN_OR_RETURN(const std::shared_ptr<const Scene> scene,
                      Scene::build(std::move(prepared.scene), pool));

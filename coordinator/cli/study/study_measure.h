@@ -78,7 +78,7 @@ std::vector<std::uint64_t> study_samples(std::uint64_t most);
 
 /// Runs the study of one scene. `settings.seed` is the first of the seeds. `doing` is called with a
 /// description of the next step. `every_object`: the same scene, built to test every object
-/// (Tested); may be nullptr. Errors: as render_image; CANCELLED.
+/// (Traversal::kBruteForce); may be nullptr. Errors: as render_image; CANCELLED.
 absl::StatusOr<StudyOfScene> study_scene(const std::string& name, const Scene& scene,
                                          const Scene* every_object, const RenderSettings& settings,
                                          const StudyPlan& plan, Pool& pool,

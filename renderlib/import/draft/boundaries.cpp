@@ -7,13 +7,13 @@
 namespace bandsaw {
 namespace {
 
-/// Six times the volume that the mesh encloses; negative where its normals point inwards.
+/// Returns six times the volume that the mesh encloses; negative if its normals point inwards.
 double signed_volume(const Mesh& mesh) {
   const auto corner = [&](std::uint32_t index) {
     const std::array<float, 3>& p = mesh.positions[index];
     return Vec3{p[0], p[1], p[2]};
   };
-  // From a corner of the mesh, that a far origin takes no digits.
+  // Relative to a corner of the mesh, so that a distant origin costs no precision.
   const Vec3 from = corner(mesh.triangles[0][0]);
   double sum = 0;
   for (const auto& [a, b, c] : mesh.triangles) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// The surfaces that media are inside of.
+// Boundaries of media.
 
 #include <optional>
 
@@ -8,8 +8,8 @@
 
 namespace bandsaw {
 
-/// The placed mesh of the scene as an instance of Media::boundaries with `inside` in it, turned
-/// outwards. Nothing where the mesh is open.
+/// Returns the placed mesh of the scene as an instance of Media::boundaries that contains `inside`,
+/// with its normals outwards; std::nullopt if the mesh is open.
 std::optional<Instance> mesh_boundary(const Instance& placed, MediumId inside, SceneDraft& draft);
 
 }  // namespace bandsaw

@@ -1,11 +1,11 @@
 #pragma once
 
-// What a channel of a colour may be at most, wherever it was written: beyond, products of a few of
-// them would overflow.
+// Maximum values of a colour's channel, for all formats: beyond them, products of a few channels
+// would overflow.
 
 namespace bandsaw {
 
-inline constexpr float kMostReflectance = 1;
-inline constexpr float kMostRadiance = 1e30f;
+inline constexpr float kMaxReflectance = 1;
+inline constexpr float kMaxRadiance = 1e30f;
 
 }  // namespace bandsaw

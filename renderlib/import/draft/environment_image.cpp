@@ -12,11 +12,11 @@
 namespace bandsaw {
 namespace {
 
-bool is_light(float value) { return value >= 0 && value <= kMostRadiance; }
+bool is_light(float value) { return value >= 0 && value <= kMaxRadiance; }
 
 }  // namespace
 
-std::size_t mend_light(ImageTexture& image) {
+std::size_t repair_light(ImageTexture& image) {
   if (image.format != ImageTexture::Format::kFloat32) {
     return 0;
   }
@@ -47,10 +47,10 @@ absl::StatusOr<TextureId> add_environment_image(const std::string& bytes, const 
   if (!image.ok()) {
     return absl::Status(image.status().code(), absl::StrCat(name, ": ", image.status().message()));
   }
-  if (const std::size_t mended = mend_light(*image); mended > 0) {
-    warnings.push_back(absl::StrCat(mended,
+  if (const std::size_t repaired = repair_light(*image); repaired > 0) {
+    warnings.push_back(absl::StrCat(repaired,
                                     " numbers that no light can have (not finite, negative ",
-                                    "or above 1e30) are mended"));
+                                    "or above 1e30) are repaired"));
   }
   for (const std::string& warning : warnings) {
     draft.out.info.warnings.push_back(absl::StrCat(name, ": ", warning));

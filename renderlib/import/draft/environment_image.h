@@ -1,6 +1,6 @@
 #pragma once
 
-// Image files as light all around a scene.
+// Environment maps from image files.
 
 #include <string>
 
@@ -10,12 +10,12 @@
 
 namespace bandsaw {
 
-/// Brings texels of a float image into [0, 1e30]: NaN and negative numbers become 0, larger ones
-/// the largest that is not. Returns how many were altered. Light must be finite.
-std::size_t mend_light(ImageTexture& image);
+/// Clamps texels of a float image to [0, 1e30], because light must be finite: NaN and negative
+/// numbers become 0, larger ones 1e30. Returns the number of changed texels.
+std::size_t repair_light(ImageTexture& image);
 
-/// Adds the image of a file to the draft's textures. What was mended is a warning that begins with
-/// `name`. INVALID_ARGUMENT: not an image.
+/// Adds the image of a file to the draft's textures. Repaired texels cause a warning that begins
+/// with `name`. Returns INVALID_ARGUMENT if it is not an image.
 absl::StatusOr<TextureId> add_environment_image(const std::string& bytes, const std::string& name,
                                                 SceneDraft& draft);
 

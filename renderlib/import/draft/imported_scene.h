@@ -1,6 +1,6 @@
 #pragma once
 
-// What an import makes.
+// Result of an import.
 
 #include "renderlib/package/package.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// The scene while it is being imported.
+// The scene under construction.
 
 #include <map>
 #include <memory>
@@ -17,10 +17,10 @@ namespace bandsaw {
 
 struct Model;
 
-/// A camera that a model of the scene brings, in the world.
+/// A camera of one of the scene's models, in world space.
 struct FoundCamera {
-  std::string model;  ///< its file
-  std::string name;   ///< of its node
+  std::string model;  ///< file of the model
+  std::string name;   ///< name of its node
   std::string own_name;
   Camera camera;
 };
@@ -32,22 +32,23 @@ struct SceneDraft {
   SceneDraft& operator=(const SceneDraft&) = delete;
 
   SceneFolder folder;
-  std::string file;  ///< what errors call the scene file
+  std::string file;  ///< name of the scene file in errors
   ImportedScene out;
   TextureStore textures{out.scene.textures, out.info.warnings};
-  std::map<std::string, MaterialId> materials;      ///< by the names in the scene file
+  std::map<std::string, MaterialId> materials;      ///< keyed by name in the scene file
   std::map<std::string, TextureId> named_textures;  ///< the same
   std::map<std::string, Contents> groups;           ///< the same
   std::map<std::string, MediumId> media;            ///< the same
-  /// By the meshes of the scene, those of the boundaries of media that are the same.
+  /// Meshes of the boundaries of media, keyed by the mesh of the scene that is the same.
   std::map<MeshId, MeshId> boundary_meshes;
-  /// Models that have been read, by file and whether with materials.
+  /// Models that have been read, keyed by file and by whether their materials were read.
   std::map<std::pair<std::string, bool>, std::shared_ptr<const Model>> models;
-  std::vector<FoundCamera> cameras;  ///< of a model placed many times, those of its first place
+  std::vector<FoundCamera> cameras;  ///< for a model with several placements, those of the first
   Shutter shutter;
 
   Contents world;
-  /// Where what is read goes: the scene, or the group that is being read.
+  /// Destination of shapes and placements that are read: the scene, or the group that is being read
+  /// (see InGroup in scene_file/read_groups.cpp).
   Shapes* shapes = &out.scene.geometry;
   Contents* placed = &world;
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// What keeps a parser of foreign files from doing harm: the process gives up what it does not need
-// before it reads anything.
+// Confinement of the process that parses foreign files: it gives up all rights that it does not
+// need before it reads anything.
 
 #include <cstdint>
 #include <string>
@@ -15,14 +15,14 @@ struct Confinement {
   std::string write_folder;        ///< files are written only below it
   std::uint64_t memory_bytes = 0;  ///< address space
   std::uint64_t cpu_seconds = 0;
-  std::uint64_t file_bytes = 0;  ///< largest file that is written
+  std::uint64_t file_bytes = 0;  ///< maximum size of a written file
 };
 
-/// Resource limits; no core dump; no new privileges; no network, no new program, no new process, no
-/// signal to or look into another process (seccomp, answered with EPERM); and, where the kernel has
-/// Landlock (5.13), the two folders and nothing else of the disk. A kernel without Landlock is not
-/// an error: then SceneFolder alone decides what is opened. Cannot be undone. The error is the
-/// system's.
+/// Confines this process; cannot be undone. Sets resource limits and forbids core dumps and new
+/// privileges. With seccomp, calls for network, new programs, new processes, signals to other
+/// processes and access to them fail with EPERM. If the kernel has Landlock (5.13), only the two
+/// folders are accessible. A kernel without Landlock is not an error: then SceneFolder alone
+/// restricts which files are opened. Returns the system's error.
 absl::Status confine_this_process(const Confinement& to);
 
 }  // namespace bandsaw

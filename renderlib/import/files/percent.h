@@ -6,7 +6,8 @@
 
 namespace bandsaw {
 
-/// A URI's path as a file name: %20 becomes a space (RFC 3986, 2.1). What is no escape stays.
+/// Returns a URI's path as a file name: %20 becomes a space (RFC 3986, 2.1). Invalid escapes stay
+/// unchanged.
 std::string percent_decoded(absl::string_view text);
 
 }  // namespace bandsaw

@@ -1,6 +1,6 @@
 #pragma once
 
-// The only folder that an import reads: that of the scene file, and what lies below it.
+// The only folder that an import reads: the scene file's folder and the folders below it.
 
 #include <cstdint>
 #include <string>
@@ -11,18 +11,18 @@ namespace bandsaw {
 
 class SceneFolder {
  public:
-  /// The folder in which `scene_path` really lies, symbolic links followed. NOT_FOUND,
-  /// PERMISSION_DENIED: naming the file.
+  /// Returns the folder of `scene_path`, with symbolic links resolved. Returns NOT_FOUND or
+  /// PERMISSION_DENIED with the file's name.
   static absl::StatusOr<SceneFolder> of(const std::string& scene_path);
 
-  /// The real path of the regular file that `name` means in a file that lies in `folder` (absolute,
-  /// below this one). The messages name `name` and what to do, not who referred to it.
-  /// PERMISSION_DENIED: absolute, or outside of the scene's folder, be it by a symbolic link.
-  /// NOT_FOUND: there is no such file.
+  /// Returns the real path of the regular file to which `name` refers in a file of `folder`
+  /// (absolute, below this one). Messages contain `name` and a remedy, but not the referring file.
+  /// Returns PERMISSION_DENIED if the path is absolute or outside the scene's folder, also by a
+  /// symbolic link, and NOT_FOUND if there is no such file.
   absl::StatusOr<std::string> resolve(const std::string& name, const std::string& folder) const;
 
-  /// The same, where `name` lies in `folder` itself; letters of either case count as equal. Of
-  /// several, the first in the order of their bytes.
+  /// The same for a file in `folder` itself, ignoring case. Of several files, the first in byte
+  /// order is taken.
   absl::StatusOr<std::string> resolve_any_case(const std::string& name,
                                                const std::string& folder) const;
 
@@ -34,9 +34,9 @@ class SceneFolder {
   std::string path_;  ///< absolute, without links, without a slash at the end
 };
 
-/// The folder part of an absolute path.
+/// Returns the folder of an absolute path.
 std::string folder_of(const std::string& path);
-/// The last part of a path.
+/// Returns the last part of a path.
 std::string name_of(const std::string& path);
 
 }  // namespace bandsaw

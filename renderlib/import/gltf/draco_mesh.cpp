@@ -18,13 +18,13 @@ namespace {
 constexpr int kMaxComponents = 4;
 using Raw = std::array<std::int64_t, kMaxComponents>;
 
-/// The components of one value as integers, whatever the size of their type.
+/// Returns the components of one value as integers of any size.
 bool load(const draco::PointAttribute& from, draco::AttributeValueIndex at, Raw& to) {
   return from.ConvertValue<std::int64_t>(at, from.num_components(), to.data());
 }
 
-/// How an attribute's integers become floats. libdraco does this too, but its floats depend on how
-/// it was compiled (fused multiply-add on some architectures), ours do not.
+/// Converts an attribute's integers to floats. libdraco does this too, but its floats depend on how
+/// it was compiled (fused multiply-add on some architectures).
 class Dequantizer {
  public:
   static absl::StatusOr<Dequantizer> of(const draco::PointAttribute& from,
@@ -79,8 +79,8 @@ class Dequantizer {
   Dequantizer(const draco::PointAttribute& from, const AccessorShape& shape)
       : from_(from), shape_(shape) {}
 
-  /// The unit vector of octahedral coordinates in [0, largest_] whose middle is +x (Cigolle et al.
-  /// 2014, "A Survey of Efficient Representations for Independent Unit Vectors").
+  /// Returns the unit vector of octahedral coordinates in [0, largest_] whose middle is +x (Cigolle
+  /// et al. 2014, "A Survey of Efficient Representations for Independent Unit Vectors").
   std::array<float, kMaxComponents> direction(float s, float t) const {
     const float scale = 2.0f / static_cast<float>(largest_);
     float y = s * scale - 1;
@@ -96,9 +96,9 @@ class Dequantizer {
 
   const draco::PointAttribute& from_;
   const AccessorShape& shape_;
-  std::vector<float> least_;  ///< of a quantised attribute
+  std::vector<float> least_;  ///< minima of a quantised attribute
   float step_ = 0;
-  int largest_ = 0;  ///< of octahedral coordinates; 0: it is not of them
+  int largest_ = 0;  ///< maximum of octahedral coordinates; 0 for other attributes
 };
 
 }  // namespace

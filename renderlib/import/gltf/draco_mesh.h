@@ -1,6 +1,6 @@
 #pragma once
 
-// A primitive of KHR_draco_mesh_compression, decoded by libdraco.
+// Decodes primitives of KHR_draco_mesh_compression with libdraco.
 
 #include <cstdint>
 #include <memory>
@@ -20,21 +20,22 @@ namespace bandsaw::gltf {
 
 class DracoMesh {
  public:
-  /// `place` begins its messages. INVALID_ARGUMENT: not a mesh, or damaged.
+  /// Decodes a stream. Messages begin with `place`. Returns INVALID_ARGUMENT if it is not a mesh or
+  /// is damaged.
   static absl::StatusOr<DracoMesh> decode(absl::string_view bytes, std::string place);
   DracoMesh(DracoMesh&&) noexcept;
   DracoMesh& operator=(DracoMesh&&) noexcept;
   ~DracoMesh();
 
-  /// How many vertices every attribute has.
+  /// Returns the number of vertices, which all attributes share.
   std::size_t vertices() const;
-  /// Three for each triangle, each below vertices().
+  /// Returns three indices for each triangle, each below vertices().
   std::vector<std::uint32_t> indices() const;
-  /// The attribute that the stream numbers `id`, as many components of it as `shape` has; integers
-  /// as `shape` says they are normalised. INVALID_ARGUMENT: there is no such attribute, it has
-  /// fewer components, or its count is not that of `shape`.
+  /// Returns the attribute with the number `id` in the stream, with the number of components of
+  /// `shape`; integers are normalised as `shape` says. Returns INVALID_ARGUMENT if there is no such
+  /// attribute, it has fewer components, or its count differs from that of `shape`.
   absl::StatusOr<std::vector<float>> floats(std::size_t id, const AccessorShape& shape) const;
-  /// The same for integers that are not negative.
+  /// The same for non-negative integers.
   absl::StatusOr<std::vector<std::uint32_t>> whole_numbers(std::size_t id,
                                                            const AccessorShape& shape) const;
 

@@ -10,7 +10,7 @@ namespace bandsaw::gltf {
 namespace {
 
 constexpr std::size_t kMaxElements = std::size_t{1} << 31;
-constexpr std::size_t kMaxStride = 252;  ///< of glTF 2.0, 5.11.4
+constexpr std::size_t kMaxStride = 252;  ///< glTF 2.0, 5.11.4
 
 std::size_t size_of(Component type) {
   switch (type) {
@@ -43,7 +43,7 @@ T load(const char* from) {
   return value;
 }
 
-/// One component at `from`.
+/// Returns the component at `from`.
 std::int64_t load_integer(const char* from, Component type) {
   switch (type) {
     case Component::kByte:
@@ -70,12 +70,13 @@ void convert(const char* from, const AccessorShape& shape, std::uint32_t& to) {
 
 /// Elements in a buffer view.
 struct Elements {
-  absl::string_view bytes;  ///< from the first one on
+  absl::string_view bytes;  ///< beginning with the first element
   std::size_t stride = 0;
   const char* at(std::size_t i) const { return bytes.data() + i * stride; }
 };
 
-/// Where `count` elements of `element_bytes` lie: `in.bufferView` from `in.byteOffset` on.
+/// Returns the bytes of `count` elements of `element_bytes` in `in.bufferView`, beginning at
+/// `in.byteOffset`.
 absl::StatusOr<Elements> elements_of(const Json& root, const Json& in, const std::string& place,
                                      std::size_t count, std::size_t element_bytes,
                                      Buffers& buffers) {
@@ -99,7 +100,7 @@ absl::StatusOr<Elements> elements_of(const Json& root, const Json& in, const std
   return Elements{bytes.substr(offset), stride};
 }
 
-/// Replaces the elements that the accessor's `sparse` names (glTF 2.0, 3.6.2.3).
+/// Replaces the elements to which the accessor's `sparse` refers (glTF 2.0, 3.6.2.3).
 template <class T>
 absl::Status replace_sparse(const Json& root, const Json& sparse, const AccessorShape& shape,
                             Buffers& buffers, std::vector<T>& values) {

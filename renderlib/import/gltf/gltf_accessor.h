@@ -1,7 +1,7 @@
 #pragma once
 
-// Accessors of a glTF file as plain numbers: any component type, normalised or not, strided, sparse
-// or without a buffer view.
+// Reads accessors of a glTF file as plain numbers: any component type, normalised or not, strided,
+// sparse or without a buffer view.
 
 #include <array>
 #include <cstdint>
@@ -25,32 +25,35 @@ enum class Component : int {
   kFloat = 5126,
 };
 
-/// What an accessor says about its elements, checked; not yet where they lie.
+/// Checked description of an accessor's elements, without their location.
 struct AccessorShape {
   std::string place;  ///< "accessors[3]"
   Component component = Component::kFloat;
   bool normalized = false;
   std::size_t components = 1;  ///< 3 of a VEC3, 16 of a MAT4
-  std::size_t count = 0;       ///< elements, at most 2^31
+  std::size_t count = 0;       ///< number of elements, at most 2^31
 
   std::size_t values() const { return count * components; }
 };
 
-/// `place` names what refers to it. INVALID_ARGUMENT: there is no such accessor, or its type,
-/// component type or count is not one of glTF 2.0.
+/// Returns the shape of an accessor. `place` names the referring object in messages. Returns
+/// INVALID_ARGUMENT if there is no such accessor, or if its type, component type or count is not
+/// valid in glTF 2.0.
 absl::StatusOr<AccessorShape> accessor_shape(const Json& root, std::size_t index,
                                              absl::string_view place);
 
-/// The value of a component: of a normalised integer by the formulas of glTF 2.0, 3.6.2.2.
+/// Returns the value of a component; normalised integers are converted by the formulas of glTF 2.0,
+/// 3.6.2.2.
 float value_of(std::int64_t component, Component type, bool normalized);
 
-/// All components of all elements; integers as value_of gives them. INVALID_ARGUMENT: the elements
-/// do not lie within their buffer view, or a sparse index is not below the count.
+/// Returns all components of all elements; integers are converted by value_of(). Returns
+/// INVALID_ARGUMENT if the elements are not within their buffer view, or if a sparse index is not
+/// below the count.
 absl::StatusOr<std::vector<float>> read_floats(const Json& root, std::size_t index,
                                                const AccessorShape& shape, Buffers& buffers);
 
-/// The same for integers that are not negative: indices and joints. INVALID_ARGUMENT also: floats
-/// or signed integers.
+/// The same for non-negative integers: indices and joints. Returns INVALID_ARGUMENT also for floats
+/// and signed integers.
 absl::StatusOr<std::vector<std::uint32_t>> read_whole_numbers(const Json& root, std::size_t index,
                                                               const AccessorShape& shape,
                                                               Buffers& buffers);

@@ -89,7 +89,7 @@ absl::StatusOr<absl::string_view> Buffers::buffer(std::size_t index) {
   return bytes.substr(0, size);
 }
 
-/// `of.byteOffset` and `of.byteLength` of the buffer `of.buffer`.
+/// Returns the range of the buffer `of.buffer` given by `of.byteOffset` and `of.byteLength`.
 absl::StatusOr<absl::string_view> Buffers::slice(const Json& of, const std::string& place) {
   ASSIGN_OR_RETURN(const std::size_t number, whole_of(of, "buffer", place));
   ASSIGN_OR_RETURN(const std::size_t offset, whole_of(of, "byteOffset", place, 0));

@@ -1,6 +1,6 @@
 #pragma once
 
-// The bytes of a glTF file's buffers and buffer views.
+// Access to a glTF file's buffers and buffer views.
 
 #include <cstdint>
 #include <map>
@@ -15,22 +15,23 @@
 
 namespace bandsaw::gltf {
 
-/// The bytes that a data URI holds (RFC 2397, base64 or percent-encoded); nothing if `uri` is none,
-/// or its base64 is broken.
+/// Returns the bytes of a data URI (RFC 2397, base64 or percent-encoded); std::nullopt if `uri` is
+/// not one or its base64 is broken.
 std::optional<std::string> data_of_uri(absl::string_view uri);
 
 class Buffers {
  public:
-  /// All outlive this. `folder` is that of the model, below the scene's.
+  /// All arguments MUST outlive this object. `folder` is that of the model, below the scene's.
   Buffers(const GltfFile& file, const SceneFolder& scene, std::string folder)
       : file_(file), scene_(scene), folder_(std::move(folder)) {}
 
-  /// The bytes of bufferViews[index], decompressed, valid as long as this. `place` names what
-  /// refers to it. INVALID_ARGUMENT: it does not exist or does not lie within its buffer.
-  /// NOT_FOUND, PERMISSION_DENIED: the buffer's file.
+  /// Returns the decompressed bytes of bufferViews[index], valid as long as this object. `place`
+  /// names the referring object in messages. Returns INVALID_ARGUMENT if the view does not exist or
+  /// is not within its buffer, and NOT_FOUND or PERMISSION_DENIED for the buffer's file.
   absl::StatusOr<absl::string_view> view(std::size_t index, absl::string_view place);
 
-  /// Counts bytes that are about to be made. RESOURCE_EXHAUSTED: more than kMaxModelBytes in all.
+  /// Counts bytes that are about to be allocated. Returns RESOURCE_EXHAUSTED if they are more than
+  /// kMaxModelBytes in total.
   absl::Status take(std::uint64_t bytes, absl::string_view place);
 
  private:
@@ -44,7 +45,7 @@ class Buffers {
   const SceneFolder& scene_;
   std::string folder_;
   std::uint64_t taken_ = 0;
-  std::map<std::size_t, std::string> buffers_;  ///< those that are not the binary chunk
+  std::map<std::size_t, std::string> buffers_;  ///< buffers other than the binary chunk
   std::map<std::size_t, std::string> decoded_;  ///< buffer views that were compressed
 };
 

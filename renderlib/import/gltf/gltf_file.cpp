@@ -28,7 +28,7 @@ struct Chunk {
   absl::string_view bytes;
 };
 
-/// Takes the next chunk (glTF 2.0, 4.4.3) from the front of `rest`.
+/// Removes the next chunk (glTF 2.0, 4.4.3) from the front of `rest`.
 absl::StatusOr<Chunk> take_chunk(absl::string_view& rest) {
   const std::size_t left = rest.size();
   const std::uint32_t size = left < kChunkHeaderBytes ? 0 : number_at(rest, 0);
@@ -41,7 +41,7 @@ absl::StatusOr<Chunk> take_chunk(absl::string_view& rest) {
   return chunk;
 }
 
-/// The JSON of a .glb; sets the binary chunk.
+/// Returns the JSON of a .glb and sets the binary chunk.
 absl::StatusOr<absl::string_view> take_apart(GltfFile& file) {
   absl::string_view rest = absl::string_view(file.bytes).substr(kHeaderBytes);
   ASSIGN_OR_RETURN(const Chunk json, take_chunk(rest));
@@ -58,7 +58,7 @@ absl::StatusOr<absl::string_view> take_apart(GltfFile& file) {
   return json.bytes;
 }
 
-/// glTF 1.0 and 1.0.1; some of their writers give the version as a number.
+/// Returns true for glTF 1.0 and 1.0.1; some writers store the version as a number.
 bool is_first_version(const Json& root) {
   const Json* asset = object(root, "asset");
   return asset != nullptr && (absl::StartsWith(text(*asset, "version"), "1") ||
@@ -81,7 +81,7 @@ absl::StatusOr<bool> read_gltf_file(const std::string& path, GltfFile& to) {
     ASSIGN_OR_RETURN(json, take_apart(to));
   }
   while (absl::EndsWith(json, absl::string_view("\0", 1))) {
-    json.remove_suffix(1);  // some writers fill the chunk with zeros
+    json.remove_suffix(1);  // some writers pad the chunk with zeros
   }
   ASSIGN_OR_RETURN(to.root, parse_json(json));
   return !is_first_version(to.root);

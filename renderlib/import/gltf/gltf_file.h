@@ -1,6 +1,6 @@
 #pragma once
 
-// A glTF 2.0 file (.gltf or .glb) taken apart into its JSON and its binary chunk.
+// Splits a glTF 2.0 file (.gltf or .glb) into its JSON and its binary chunk.
 
 #include <cstdint>
 #include <optional>
@@ -12,11 +12,11 @@
 
 namespace bandsaw::gltf {
 
-/// Largest file of a model that is read, and the most bytes that its buffers become.
+/// Maximum size of a model's file, and of its decoded buffers in total.
 inline constexpr std::uint64_t kMaxModelBytes = std::uint64_t{8} << 30;
 
 struct GltfFile {
-  std::string bytes;  ///< of the whole file
+  std::string bytes;  ///< the whole file
   Json root;
   std::optional<absl::string_view> binary;  ///< the binary chunk of a .glb; points into `bytes`
 
@@ -25,9 +25,9 @@ struct GltfFile {
   GltfFile& operator=(const GltfFile&) = delete;
 };
 
-/// Reads the file into `to`. Returns false where it is of glTF 1; of a binary one `to` then has no
-/// JSON.
-/// INVALID_ARGUMENT: its container or its JSON is broken. Errors of the disk: as read_whole_file.
+/// Reads the file into `to`. Returns false for glTF 1; for a binary one, `to` then has no JSON.
+/// Returns INVALID_ARGUMENT if the container or the JSON is broken, and the errors of
+/// read_whole_file().
 absl::StatusOr<bool> read_gltf_file(const std::string& path, GltfFile& to);
 
 }  // namespace bandsaw::gltf

@@ -8,12 +8,12 @@
 namespace bandsaw::gltf {
 namespace {
 
-/// Buffers in data URIs are a part of the JSON.
+/// Maximum size of the JSON, which includes buffers in data URIs.
 constexpr std::size_t kMaxJsonBytes = std::size_t{256} << 20;
-/// Functions that walk the JSON, ours and those of the library, call themselves for each level.
+/// Maximum nesting depth: functions that traverse the JSON, ours and the library's, are recursive.
 constexpr int kMaxDepth = 100;
 
-/// How deep brackets are nested outside of strings.
+/// Returns the nesting depth of brackets outside of strings.
 int depth_of(absl::string_view text) {
   int depth = 0;
   int deepest = 0;

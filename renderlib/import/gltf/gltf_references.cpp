@@ -12,17 +12,16 @@
 namespace bandsaw::gltf {
 namespace {
 
-/// Assimp calls itself for each level of nodes.
+/// Maximum depth of nodes: Assimp's functions are recursive.
 constexpr std::size_t kMaxNodeDepth = 1000;
 constexpr char kLights[] = "KHR_lights_punctual";
 
-/// The lists of the root; every one of them holds objects.
+/// The lists of the root, all of which contain objects.
 constexpr const char* kLists[] = {"accessors", "buffers",   "bufferViews", "cameras",
                                   "images",    "materials", "meshes",      "nodes",
                                   "samplers",  "scenes",    "skins",       "textures"};
 
-/// A member of the objects of a list, and the list that its index (or its list of indices) refers
-/// to.
+/// A member of a list's objects, and the list to which its index (or list of indices) refers.
 struct Reference {
   const char* list;
   const char* member;
@@ -58,7 +57,7 @@ absl::Status check_lists(const Json& root) {
   return absl::OkStatus();
 }
 
-/// `index` is a number below the size of `of`, whose name is `target`.
+/// Checks that `index` is a number below the size of `of`, whose name is `target`.
 absl::Status check_index(const Json& index, const Json& of, absl::string_view target,
                          const std::string& place) {
   const auto number = whole(index);
@@ -89,7 +88,8 @@ absl::Status check_member(const Json& root, const Json& in, const Reference& ref
   return absl::OkStatus();
 }
 
-/// Every member "…Texture" at any depth refers to a texture. The depth is that of the JSON.
+/// Checks that every member "…Texture" at any depth refers to a texture. The depth is that of the
+/// JSON.
 absl::Status check_textures(const Json& root, const Json& in, const std::string& place) {
   if (!in.is_object()) {
     return absl::OkStatus();
@@ -126,8 +126,8 @@ absl::Status check_primitives(const Json& root) {
   return absl::OkStatus();
 }
 
-/// Each node is the child of at most one and all are reached from
-/// those that are nobody's child in at most kMaxNodeDepth steps.
+/// Checks that each node is the child of at most one node, and that all are reached from the nodes
+/// without a parent in at most kMaxNodeDepth steps.
 absl::Status check_tree(const Json& root) {
   const Json& nodes = items(root, "nodes");
   std::vector<bool> is_child(nodes.size(), false);

@@ -5,9 +5,9 @@
 
 namespace bandsaw::gltf {
 
-/// Checks every index by which an object of the file refers to another one, except for accessors of
-/// meshes, and that the nodes are trees of at most 1,000 levels in which no node stands twice.
-/// INVALID_ARGUMENT: "nodes[3].mesh: meshes[7] does not exist, …".
+/// Checks every index by which an object of the file refers to another one, except accessors of
+/// meshes, and that the nodes form trees of at most 1,000 levels that contain each node at most
+/// once. Returns INVALID_ARGUMENT: "nodes[3].mesh: meshes[7] does not exist, …".
 absl::Status check_references(const Json& root);
 
 }  // namespace bandsaw::gltf

@@ -21,7 +21,7 @@ void store(const std::array<T, 4>& values, std::string& bytes, std::size_t at) {
   std::memcpy(bytes.data() + at, values.data(), sizeof values);
 }
 
-/// `value` in [-1, 1] as a normalised integer, halves away from zero.
+/// Returns `value` in [-1, 1] as a normalised integer, halves rounded away from zero.
 template <class T>
 T normalized(double value) {
   const double scaled = value * std::numeric_limits<T>::max();
@@ -61,7 +61,8 @@ void decode_quaternions(std::string& bytes) {
   constexpr double kRootOfHalf = 0.70710678118654752440;
   for (std::size_t at = 0; at < bytes.size(); at += 8) {
     const std::array<std::int16_t, 4> from = load<std::int16_t>(bytes, at);
-    // The fourth holds what stands for 1, but for its two lowest bits: which component is missing.
+    // The fourth component holds the value that stands for 1, except for its two lowest bits, which
+    // are the index of the missing component.
     const double one = from[3] | 3;
     const std::size_t missing = static_cast<std::size_t>(from[3] & 3);
     double left = 1;

@@ -47,8 +47,8 @@ absl::Status check_elements(const MeshoptView& view, std::size_t bytes) {
   return absl::OkStatus();
 }
 
-/// The first byte of a stream of the version that the extension knows. Newer versions of the
-/// library decode others too; which they are must not depend on it.
+/// The first byte of a stream of the extension's version. Newer versions of the library decode
+/// others too; the set of accepted streams must not depend on the library.
 unsigned char header_of(Mode mode) {
   return mode == Mode::kAttributes ? 0xa0 : mode == Mode::kTriangles ? 0xe1 : 0xd1;
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// The one buffer of a plain glTF document while it is filled.
+// The single buffer of a plain glTF document under construction.
 
 #include <cstdint>
 #include <string>
@@ -13,16 +13,16 @@ namespace bandsaw::gltf {
 
 class PlainBuffer {
  public:
-  /// Each returns the number of a new accessor over a copy of the values. `components`: 1 to 4, or
-  /// 16 of a matrix.
+  /// Return the number of a new accessor with a copy of the values. `components` is 1 to 4, or 16
+  /// for a matrix.
   std::size_t add(absl::Span<const float> values, std::size_t components);
   std::size_t add(absl::Span<const std::uint16_t> values, std::size_t components);
   std::size_t add(absl::Span<const std::uint32_t> values);
-  /// Returns the number of a new buffer view over a copy of the bytes.
+  /// Returns the number of a new buffer view with a copy of the bytes.
   std::size_t add_bytes(absl::string_view bytes);
 
-  /// Puts accessors, buffer views and the buffer called `uri` into `root`, and returns its bytes.
-  /// May be called once.
+  /// Adds accessors, buffer views and the buffer with the name `uri` to `root`, and returns the
+  /// buffer's bytes. May be called once.
   std::string finish(const std::string& uri, Json& root);
 
  private:

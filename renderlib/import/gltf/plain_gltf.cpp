@@ -17,8 +17,8 @@
 namespace bandsaw::gltf {
 namespace {
 
-/// Extensions that put other bytes in the place of vertices or images. A file that only offers one
-/// of them has something else beside it.
+/// Extensions that replace the bytes of vertices or images. A file that uses but does not require
+/// them has a fallback.
 constexpr absl::string_view kUnreadable[] = {"KHR_meshopt_compression", "KHR_texture_basisu",
                                              "EXT_texture_avif", "MSFT_texture_dds"};
 constexpr char kWebp[] = "EXT_texture_webp";
@@ -61,7 +61,7 @@ class Rewriter {
   }
 
  private:
-  /// A skin without matrices has those that change nothing (glTF 2.0, 3.7.3.1).
+  /// Adds identity matrices to a skin without matrices (glTF 2.0, 3.7.3.1).
   absl::Status rewrite_skin(std::size_t index) {
     const std::string place = absl::StrCat("skins[", index, "]");
     const Json& skin = from_["skins"][index];
@@ -148,7 +148,7 @@ class Rewriter {
     return absl::OkStatus();
   }
 
-  /// What the bytes are is found by looking at them, not by the type that the file gives.
+  /// The format of an image is detected from its bytes, not from the type in the file.
   void embed(absl::string_view bytes, Json& image) {
     image = {{"bufferView", out_.add_bytes(bytes)}, {"mimeType", "image/png"}};
   }

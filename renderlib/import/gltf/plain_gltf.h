@@ -1,6 +1,6 @@
 #pragma once
 
-// A glTF 2.0 file rewritten so that any reader understands it: attributes are floats, indices are
+// Rewrites a glTF 2.0 file so that any reader understands it: attributes are floats, indices are
 // 32-bit, nothing is sparse, compressed or outside of one buffer.
 
 #include <cstddef>
@@ -13,20 +13,21 @@
 namespace bandsaw::gltf {
 
 struct PlainGltf {
-  /// Of glTF 1: it has not been rewritten, `root` is its JSON (empty of a binary file), the rest is
-  /// empty.
+  /// True for glTF 1, which is not rewritten: `root` is its JSON (empty for a binary file), the
+  /// rest is empty.
   bool is_first_version = false;
   Json root;                   ///< refers to one buffer, whose uri is kPlainBuffer
-  std::string buffer;          ///< its bytes
-  std::size_t animations = 0;  ///< of the file; they are left out
+  std::string buffer;          ///< bytes of that buffer
+  std::size_t animations = 0;  ///< number of animations in the file, which are omitted
 };
 inline constexpr char kPlainBuffer[] = "plain.bin";
 
-/// Reads the model at `path` (real, below `scene`) and the buffers that it refers to. Images in
-/// files stay in them; all others lie in the buffer. Left out: animations, tangents, attributes
-/// that glTF does not define. All else keeps its place and number. INVALID_ARGUMENT: it is damaged,
-/// or requires an extension that puts unreadable bytes in the place of vertices or images.
-/// NOT_FOUND, PERMISSION_DENIED: a buffer's file. RESOURCE_EXHAUSTED: more than 8 GiB of vertices.
+/// Reads the model at `path` (real, below `scene`) and the buffers to which it refers. Images in
+/// files stay there; all others are moved to the buffer. Animations, tangents and attributes that
+/// glTF does not define are omitted. Everything else keeps its place and number. Returns
+/// INVALID_ARGUMENT if the file is damaged or requires an extension that replaces vertices or
+/// images by unreadable bytes, NOT_FOUND or PERMISSION_DENIED for a buffer's file, and
+/// RESOURCE_EXHAUSTED for more than 8 GiB of vertices.
 absl::StatusOr<PlainGltf> read_plain_gltf(const std::string& path, const SceneFolder& scene);
 
 }  // namespace bandsaw::gltf

@@ -40,7 +40,7 @@ absl::Status check_shape(const std::string& attribute, const AccessorShape& shap
                                                  attribute, " needs ", semantic.least_components));
 }
 
-/// Three channels get a fourth, so that readers need not agree on what it is without one.
+/// Three channels get a fourth, so that its default does not depend on the reader.
 std::vector<float> with_alpha(const std::vector<float>& rgb) {
   std::vector<float> rgba;
   rgba.reserve(rgb.size() / 3 * 4);
@@ -75,7 +75,7 @@ absl::StatusOr<PlainMeshes::Added> PlainMeshes::floats(const std::string& name,
   }
   ASSIGN_OR_RETURN(AccessorShape shape, accessor_shape(root_, accessor, place));
   RETURN_IF_ERROR(check_shape(name, shape));
-  // Colours that are integers are normalised whatever the file says: glTF has no others.
+  // Integer colours are always normalised, whatever the file says: glTF has no others.
   shape.normalized |= is_color;
   ASSIGN_OR_RETURN(std::vector<float> values, float_values(name, accessor, shape, stream));
   if (is_color && shape.components == 3) {
@@ -88,7 +88,7 @@ absl::StatusOr<PlainMeshes::Added> PlainMeshes::floats(const std::string& name,
   return added;
 }
 
-/// Joints of weight 0 become joint 0: files may name any there.
+/// Replaces joints of weight 0 by joint 0, because files may have any number there.
 absl::StatusOr<PlainMeshes::Added> PlainMeshes::joints_with_weight(const Json& attributes,
                                                                    const std::string& name,
                                                                    const Stream& stream,
@@ -201,7 +201,7 @@ absl::StatusOr<Json> PlainMeshes::primitive(const Json& from, const std::string&
                    attributes(given == nullptr ? kNone : *given, stream, place, vertices, joints));
   const Json& targets = items(from, "targets");
   for (std::size_t t = 0; t < targets.size(); ++t) {
-    // Targets of texture coordinates and colours are rendered by nobody here.
+    // Morph targets of texture coordinates and colours are not rendered.
     Json kept = Json::object();
     for (const char* name : {"POSITION", "NORMAL"}) {
       if (const Json* index = find(targets[t], name)) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// The meshes of a glTF file rewritten for a plain one.
+// Rewrites the meshes of a glTF file for a plain document.
 
 #include <cstdint>
 #include <map>
@@ -16,17 +16,17 @@ namespace bandsaw::gltf {
 
 class PlainMeshes {
  public:
-  /// All outlive this. `root` is that of the file as it came.
+  /// All arguments MUST outlive this object. `root` is that of the original file.
   PlainMeshes(const Json& root, Buffers& buffers, PlainBuffer& out)
       : root_(root), buffers_(buffers), out_(out) {}
 
-  /// meshes[index] with accessors of `out`. Attributes that glTF does not define and tangents are
-  /// left out. INVALID_ARGUMENT: counts or types of attributes do not fit, an index is not below
-  /// the number of vertices.
+  /// Returns meshes[index] with accessors of `out`. Omits tangents and attributes that glTF does
+  /// not define. Returns INVALID_ARGUMENT if counts or types of attributes do not match, or if an
+  /// index is not below the number of vertices.
   absl::StatusOr<Json> mesh(std::size_t index);
 
-  /// The joints that the vertices of meshes[index] name with a weight that is not zero are below
-  /// this number; 0 of a mesh that mesh() has not been called for.
+  /// Returns a number above all joints to which the vertices of meshes[index] refer with a weight
+  /// other than zero; 0 if mesh() has not been called for it.
   std::uint32_t joints_of(std::size_t index) const;
 
  private:
@@ -34,9 +34,9 @@ class PlainMeshes {
   struct Added {
     std::size_t accessor = 0;
     std::size_t count = 0;
-    std::uint32_t largest = 0;  ///< of indices
+    std::uint32_t largest = 0;  ///< largest index
   };
-  /// A Draco stream and the numbers of its attributes; nothing of another primitive.
+  /// A Draco stream and the numbers of its attributes; empty for other primitives.
   struct Stream {
     std::optional<DracoMesh> mesh;
     const Json* attributes = nullptr;
@@ -58,8 +58,8 @@ class PlainMeshes {
   const Json& root_;
   Buffers& buffers_;
   PlainBuffer& out_;
-  /// What has been added, by the file's accessor and whether it is of colours: primitives share
-  /// accessors.
+  /// Added accessors, keyed by the file's accessor and by whether it contains colours, because
+  /// primitives share accessors.
   std::map<std::pair<std::size_t, bool>, Added> floats_;
   std::map<std::size_t, Added> indices_;
   std::map<std::size_t, std::uint32_t> joints_;

@@ -11,8 +11,8 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
-#include "renderlib/package/limits.h"
 #include "renderlib/render/settings.h"
+#include "renderlib/texture/check_texture.h"
 
 namespace bandsaw {
 namespace {
@@ -21,7 +21,7 @@ struct Free {
   void operator()(float* values) const { std::free(values); }
 };
 
-/// Takes over the message.
+/// Takes ownership of the message.
 absl::Status failure(const char* error) {
   const absl::Status status = absl::InvalidArgumentError(
       absl::StrCat("is not an EXR file that can be read, or is damaged (",
@@ -47,8 +47,8 @@ absl::Status check_size(const unsigned char* data, std::size_t size) {
   const std::int64_t width = std::int64_t{header.data_window.max_x} - header.data_window.min_x + 1;
   const std::int64_t height = std::int64_t{header.data_window.max_y} - header.data_window.min_y + 1;
   FreeEXRHeader(&header);
-  constexpr std::int64_t kMost = kMaxTextureSide;
-  if (width < 1 || height < 1 || width > kMost || height > kMost ||
+  constexpr std::int64_t kMax = kMaxTextureSide;
+  if (width < 1 || height < 1 || width > kMax || height > kMax ||
       width * height > static_cast<std::int64_t>(kMaxPixels)) {
     return absl::InvalidArgumentError(
         absl::StrCat("is ", width, " x ", height, " pixels, at most ", kMaxPixels, " are read"));

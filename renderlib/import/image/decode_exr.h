@@ -1,6 +1,6 @@
 #pragma once
 
-// OpenEXR files, by tinyexr; stb_image does not know them.
+// Decodes OpenEXR files with tinyexr; stb_image does not support them.
 
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
@@ -10,9 +10,10 @@ namespace bandsaw {
 
 bool is_exr(absl::string_view bytes);
 
-/// A picture with channels R, G, B, or one channel for all; halves or floats, scan lines or tiles.
-/// Alpha is left out. Linear floats, rows from the top, values of any kind, also NaN. The size is
-/// checked before anything is decoded. INVALID_ARGUMENT: the reason, without the file's name.
+/// Decodes an image with channels R, G, B, or one channel for all; halves or floats, scan lines or
+/// tiles. Alpha is omitted. Returns linear floats, rows from the top, of any value including NaN.
+/// The size is checked before anything is decoded. Returns INVALID_ARGUMENT with the reason,
+/// without the file's name.
 absl::StatusOr<ImageTexture> decode_exr(absl::string_view bytes);
 
 }  // namespace bandsaw

@@ -4,20 +4,87 @@
 #include <stb_image.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
 #include <cstring>
 #include <memory>
 #include <utility>
 
+#include "absl/status/statusor.h"
+#include "absl/strings/ascii.h"
+#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/string_view.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/image/image.h"
 #include "renderlib/image/srgb.h"
 #include "renderlib/import/image/decode_exr.h"
-#include "renderlib/import/image/decode_pfm.h"
 #include "renderlib/import/image/decode_webp.h"
-#include "renderlib/package/limits.h"
+#include "renderlib/render/settings.h"
+#include "renderlib/texture/check_texture.h"
 
 namespace bandsaw {
 namespace {
+
+// Removes the next word of the header and one white-space character after it.
+absl::string_view take_word(absl::string_view& rest) {
+  std::size_t end = 0;
+  while (end < rest.size() && !absl::ascii_isspace(static_cast<unsigned char>(rest[end]))) {
+    ++end;
+  }
+  const absl::string_view word = rest.substr(0, end);
+  rest.remove_prefix(std::min(rest.size(), end + 1));
+  return word;
+}
+
+float float_at(absl::string_view bytes, std::size_t index, bool big_endian) {
+  std::uint32_t bits = 0;
+  std::memcpy(&bits, bytes.data() + index * sizeof(bits), sizeof(bits));
+  return std::bit_cast<float>(big_endian ? __builtin_bswap32(bits) : bits);
+}
+
+bool is_pfm(absl::string_view bytes) {
+  return bytes.size() > 2 && bytes[0] == 'P' && (bytes[1] == 'F' || bytes[1] == 'f') &&
+         absl::ascii_isspace(static_cast<unsigned char>(bytes[2]));
+}
+
+/// Decodes a portable float map, the exact format that renderlib/image writes and stb_image does
+/// not support: "PF" (or "Pf", which is expanded), width, height, scale (its sign is the byte
+/// order), then rows from the bottom. Values may be anything including NaN: it is a measurement,
+/// not a colour of a scene. Returns INVALID_ARGUMENT if it is broken or truncated.
+absl::StatusOr<Image> decode_pfm(absl::string_view bytes) {
+  const std::size_t channels = take_word(bytes) == "PF" ? 3 : 1;
+  Image image;
+  double scale = 0;
+  const bool sizes = absl::SimpleAtoi(take_word(bytes), &image.width) &&
+                     absl::SimpleAtoi(take_word(bytes), &image.height);
+  if (!sizes || !absl::SimpleAtod(take_word(bytes), &scale) || scale == 0) {
+    return absl::InvalidArgumentError("has a broken PFM header");
+  }
+  const std::uint64_t pixels = std::uint64_t{image.width} * image.height;
+  if (image.width < 1 || image.height < 1 || pixels > kMaxPixels) {
+    return absl::InvalidArgumentError(absl::StrCat("is ", image.width, " x ", image.height,
+                                                   " pixels, at most ", kMaxPixels, " are read"));
+  }
+  if (bytes.size() != pixels * channels * sizeof(float)) {
+    return absl::InvalidArgumentError(absl::StrCat("has ", bytes.size(), " bytes of pixels, ",
+                                                   pixels * channels * sizeof(float),
+                                                   " belong to its size"));
+  }
+  image.pixels.resize(pixels);
+  for (std::size_t y = 0; y < image.height; ++y) {
+    for (std::size_t x = 0; x < image.width; ++x) {
+      const std::size_t from = ((image.height - 1 - y) * image.width + x) * channels;
+      std::array<float, 3> value{};
+      for (std::size_t c = 0; c < 3; ++c) {
+        value[c] = float_at(bytes, from + (channels == 3 ? c : 0), scale > 0);
+      }
+      image.pixels[y * image.width + x] = {value[0], value[1], value[2]};
+    }
+  }
+  return image;
+}
 
 template <class T>
 using Pixels = std::shared_ptr<T>;
@@ -61,8 +128,8 @@ absl::StatusOr<Shape> shape_of(absl::string_view bytes) {
   return shape;
 }
 
-// A file that seems never to end: after its last byte come line feeds, and that they were asked for
-// is remembered. stb_image 2.27 loops for ever on a Radiance file that ends within a run; line
+// A source that never ends: after the last byte of the file it returns line feeds and records that
+// they were read. stb_image 2.27 loops for ever on a Radiance file that ends within a run; line
 // feeds end every header line and every run.
 struct Endless {
   absl::string_view rest;
@@ -75,8 +142,8 @@ int read_endless(void* user, char* to, int size) {
   const std::size_t real = std::min(wanted, source.rest.size());
   std::memcpy(to, source.rest.data(), real);
   source.rest.remove_prefix(real);
-  // A large request fills stb_image's buffer ahead of need and may come back short; a pixel of four
-  // bytes may not.
+  // A large request fills stb_image's buffer ahead and may be truncated; a pixel of four bytes may
+  // not.
   constexpr std::size_t kPixel = 4;
   if (real == wanted || (real > 0 && wanted > kPixel)) {
     return static_cast<int>(real);
@@ -95,7 +162,7 @@ void skip_endless(void* user, int size) {
 
 int at_end(void*) { return 0; }
 
-// The decoder's own memory, held for as long as the texels are.
+// Bytes in the decoder's memory, which is freed with the last reference.
 template <class T>
 ImageTexture texture_of(Pixels<T> pixels, const Shape& shape, int channels,
                         ImageTexture::Format format) {
@@ -124,7 +191,8 @@ absl::StatusOr<ImageTexture> decode_radiance(absl::string_view bytes) {
   return texture_of(std::move(pixels), shape, 3, ImageTexture::Format::kFloat32);
 }
 
-/// Pixels of `channels` bytes. Of `shape` what the decoder found is set.
+/// Decodes to pixels of `channels` bytes, and sets the properties of `shape` that the decoder
+/// found.
 absl::StatusOr<Pixels<stbi_uc>> decode_pixels(absl::string_view bytes, int channels, Shape& shape) {
   if (is_webp(bytes)) {
     ASSIGN_OR_RETURN(shape, shape_of(bytes));
@@ -178,7 +246,7 @@ absl::StatusOr<ImageTexture> decode_alpha(absl::string_view bytes) {
   alpha.height = 1;
   std::vector<std::byte> texels{std::byte{255}};
   if (shape.channels == 2 || shape.channels == 4) {
-    // The last channel of four, whatever the file has.
+    // The last of four channels, whatever the file contains.
     Shape found;
     ASSIGN_OR_RETURN(const Pixels<stbi_uc> pixels, decode_pixels(bytes, 4, found));
     alpha.width = static_cast<std::uint32_t>(found.width);

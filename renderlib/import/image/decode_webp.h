@@ -1,6 +1,6 @@
 #pragma once
 
-// WebP files, by libwebp; stb_image does not know them.
+// Decodes WebP files with libwebp; stb_image does not support them.
 
 #include <cstdint>
 #include <memory>
@@ -18,11 +18,13 @@ struct WebpHeader {
   bool has_alpha = false;
 };
 
-/// Decodes nothing. INVALID_ARGUMENT: broken, or an animation; the reason, without the file's name.
+/// Reads the properties of an image without decoding it. Returns INVALID_ARGUMENT if it is broken
+/// or an animation, with the reason, without the file's name.
 absl::StatusOr<WebpHeader> webp_header(absl::string_view bytes);
 
-/// 8-bit sRGB, lossy or lossless: `channels` (3, or 4 with alpha) bytes a pixel, rows from the top.
-/// INVALID_ARGUMENT: broken or truncated; the reason, without the file's name.
+/// Decodes 8-bit sRGB, lossy or lossless: `channels` (3, or 4 with alpha) bytes a pixel, rows from
+/// the top. Returns INVALID_ARGUMENT if it is broken or truncated, with the reason, without the
+/// file's name.
 absl::StatusOr<std::shared_ptr<std::uint8_t>> decode_webp(absl::string_view bytes, int channels);
 
 }  // namespace bandsaw

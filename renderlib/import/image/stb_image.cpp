@@ -1,4 +1,4 @@
-// The one place where stb_image is compiled. What is not named in scene.proto is left out.
+// Compiles stb_image, without the formats that scene.proto does not list.
 #define STBI_NO_PSD
 #define STBI_NO_GIF
 #define STBI_NO_PIC

@@ -1,6 +1,6 @@
 #pragma once
 
-// The textures of the scene that is being imported; the same image under the same use is kept once.
+// Textures of the imported scene; the same image with the same use is stored once.
 
 #include <array>
 #include <map>
@@ -19,7 +19,7 @@ namespace bandsaw {
 
 class TextureStore {
  public:
-  /// Both outlive this.
+  /// Both arguments MUST outlive this object.
   TextureStore(std::vector<Texture>& textures, std::vector<std::string>& warnings)
       : textures_(textures), warnings_(warnings) {}
 
@@ -29,20 +29,20 @@ class TextureStore {
   struct Use {
     ImageTexture::Wrap wrap = ImageTexture::Wrap::kRepeat;
     ImageTexture::Filter filter = ImageTexture::Filter::kBilinear;
-    Rgb factor{1, 1, 1};  ///< what the texels are multiplied with, each channel in [0, 1]
+    Rgb factor{1, 1, 1};  ///< multiplied with the texels; each channel in [0, 1]
     bool linear = false;  ///< 8-bit texels are numbers, not sRGB colours
-    bool alpha = false;   ///< of the image its alpha alone, as a grey number
+    bool alpha = false;   ///< use only the image's alpha, as a grey value
     UvSet uv_set = UvSet::kFirst;
     UvTransform uv_transform;
-    std::optional<ImageTexture::Wrap> wrap_v = std::nullopt;  ///< where it differs from `wrap`
-    /// What the texels become: themselves, normals of heights by a strength, or index_map of
-    /// amounts of reflection by an index (derived_images.h).
+    std::optional<ImageTexture::Wrap> wrap_v = std::nullopt;  ///< set if it differs from `wrap`
+    /// Conversion of the texels: none, heights to normals with a strength, or amounts of reflection
+    /// to an index_map with an index (texture_store.cpp).
     enum class Become { kThemselves, kNormals, kIndexMap } become = Become::kThemselves;
     double by = 1;
-    bool alpha_is_known = false;  ///< no warning: the material says what becomes of the alpha
+    bool alpha_is_known = false;  ///< no warning, because the material defines the use of alpha
   };
-  /// `key` tells images apart, `name` is what errors and warnings call it; `read` is called when it
-  /// is not here yet.
+  /// Adds an image unless it is already stored. `key` identifies the image, `name` is its name in
+  /// errors and warnings; `read` is called if the image is not stored yet.
   absl::StatusOr<TextureId> image(const std::string& key, const std::string& name, const Use& use,
                                   absl::FunctionRef<absl::StatusOr<std::string>()> read);
 

@@ -15,10 +15,10 @@ namespace {
 
 constexpr std::uint64_t kMaxModelFileBytes = std::uint64_t{8} << 30;
 
-// Bytes in memory: Assimp seeks about, and a file is closed at once.
+// Reads from bytes in memory: Assimp seeks often, and so the file can be closed at once.
 class BytesStream : public Assimp::IOStream {
  public:
-  /// `bytes` outlive this.
+  /// `bytes` MUST outlive this object.
   explicit BytesStream(absl::string_view bytes) : bytes_(bytes) {}
   explicit BytesStream(std::string bytes) : owned_(std::move(bytes)), bytes_(owned_) {}
 
@@ -36,7 +36,7 @@ class BytesStream : public Assimp::IOStream {
     const std::size_t base = origin == aiOrigin_SET   ? 0
                              : origin == aiOrigin_CUR ? at_
                                                       : bytes_.size();
-    // Offsets from the end and backwards come as wrapped unsigned numbers.
+    // Offsets from the end and backwards are passed as wrapped unsigned numbers.
     const std::size_t target = base + offset;
     if (target > bytes_.size()) {
       return aiReturn_FAILURE;
@@ -57,7 +57,7 @@ class BytesStream : public Assimp::IOStream {
 }  // namespace
 
 absl::StatusOr<std::string> AssimpFiles::find(const std::string& file) const {
-  // Assimp puts the model's folder before a name, and asks for the model itself by its whole path.
+  // Assimp prepends the model's folder to names, and opens the model itself by its whole path.
   absl::string_view name = file;
   if (absl::StartsWith(name, model_folder_)) {
     name.remove_prefix(model_folder_.size());

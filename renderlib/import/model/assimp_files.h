@@ -1,6 +1,7 @@
 #pragma once
 
-// The files that Assimp sees: those of the scene's folder, read only, or a glTF document in memory.
+// The files that Assimp can open: those of the scene's folder, read only, or a glTF document in
+// memory.
 
 #include <assimp/IOSystem.hpp>
 
@@ -12,10 +13,10 @@
 
 namespace bandsaw {
 
-/// What a model referred to and did not get. Outlives the Assimp importer, which owns its
-/// AssimpFiles.
+/// Files to which a model referred and which it could not open. MUST outlive the Assimp importer,
+/// which owns its AssimpFiles.
 struct RefusedFiles {
-  std::vector<std::string> missing;  ///< names as the model writes them
+  std::vector<std::string> missing;  ///< names as in the model
   std::vector<std::string> outside;  ///< messages
 };
 
@@ -37,11 +38,11 @@ class AssimpFiles : public Assimp::IOSystem {
   RefusedFiles& refused_;
 };
 
-/// A glTF document that is in memory: its JSON as kDocument, its buffer under any other name.
+/// A glTF document in memory: its JSON under the name kDocument, its buffer under any other name.
 class PlainGltfFiles : public Assimp::IOSystem {
  public:
   static constexpr char kDocument[] = "plain.gltf";
-  /// Both outlive this and what it opens.
+  /// Both arguments MUST outlive this object and the streams that it opens.
   PlainGltfFiles(absl::string_view json, absl::string_view buffer) : json_(json), buffer_(buffer) {}
 
   bool Exists(const char*) const override { return true; }

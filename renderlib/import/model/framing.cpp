@@ -60,7 +60,8 @@ PerspectiveCamera frame(const Geometry& geometry, const std::vector<Instance>& i
     high.add(dot(p, up), dot(p, back));
   });
   double distance = std::max(wide.distance(), high.distance());
-  // The plane through the middle of what is seen, along the view: where the camera looks at.
+  // The point in the middle of the visible points along the view direction, at which the camera
+  // looks.
   double nearest = -std::numeric_limits<double>::infinity();
   double farthest = std::numeric_limits<double>::infinity();
   for_each_vertex(geometry, instances, [&](const Vec3& p) {
@@ -68,7 +69,7 @@ PerspectiveCamera frame(const Geometry& geometry, const std::vector<Instance>& i
     farthest = std::min(farthest, dot(p, back));
   });
   if (!(distance > nearest)) {
-    distance = nearest + 1;  // All of it is one point.
+    distance = nearest + 1;  // all points are equal
   }
   const Vec3 axis = right * wide.centre() + up * high.centre();
   PerspectiveCamera camera;

@@ -1,6 +1,6 @@
 #pragma once
 
-// How a model is shown that brings neither camera nor light.
+// Camera and background for a model that has neither camera nor light.
 
 #include <vector>
 
@@ -10,13 +10,13 @@
 
 namespace bandsaw {
 
-/// A camera from the front, a little right of it and above (the front of a model is +z, as glTF has
-/// it), that holds all vertices of the instances and is as near as that allows, with a margin of 6
-/// % of the picture.
+/// Returns a camera in front of the model (+z, as in glTF), a little to the right and above, that
+/// contains all vertices of the instances and is as close as that allows, with a margin of 6 % of
+/// the image.
 PerspectiveCamera frame(const Geometry& geometry, const std::vector<Instance>& instances,
                         double aspect_ratio);
 
-/// Brighter and bluer from above than from below.
+/// Returns a sky that is brighter and bluer above than below.
 Background default_sky();
 
 }  // namespace bandsaw

@@ -2,15 +2,56 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "absl/strings/match.h"
+#include "absl/strings/string_view.h"
 #include "renderlib/import/gltf/gltf_json.h"
-#include "renderlib/import/model/gltf_support.h"
 #include "renderlib/math/elementary.h"
 
 namespace bandsaw {
 namespace {
+
+/// Extensions that are supported, or that do not affect the image.
+constexpr absl::string_view kKnown[] = {
+    "KHR_materials_clearcoat",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
+    "KHR_materials_volume",
+    "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_unlit",
+    "KHR_texture_transform",
+    "KHR_lights_punctual",
+    "KHR_xmp_json_ld",
+    "KHR_draco_mesh_compression",
+    "KHR_mesh_quantization",
+    "EXT_meshopt_compression",
+    "EXT_texture_webp",
+    // Not rendered; each material that uses one adds a warning.
+    "KHR_materials_sheen",
+    "KHR_materials_iridescence",
+    "KHR_materials_anisotropy",
+    "KHR_materials_dispersion",
+    "KHR_materials_diffuse_transmission",
+};
+
+/// Returns the used extensions that have no effect.
+std::vector<std::string> ignored_extensions(const gltf::Json& root) {
+  std::vector<std::string> names;
+  for (const gltf::Json& used : gltf::items(root, "extensionsUsed")) {
+    const std::string name = used.is_string() ? used.get<std::string>() : "";
+    if (!name.empty() &&
+        std::find(std::begin(kKnown), std::end(kKnown), name) == std::end(kKnown)) {
+      names.push_back(name);
+    }
+  }
+  return names;
+}
 
 using gltf::extension;
 using gltf::find;
@@ -21,7 +62,7 @@ using gltf::name_in;
 using gltf::number;
 using gltf::object;
 
-// Two numbers, or what stands there.
+// Reads two numbers; absent ones keep their value.
 void read_pair(const Json& in, const std::string& name, double& x, double& y) {
   const Json* values = list(in, name);
   if (values != nullptr && values->size() == 2 && (*values)[0].is_number() &&
@@ -31,8 +72,8 @@ void read_pair(const Json& in, const std::string& name, double& x, double& y) {
   }
 }
 
-// offset + rotation (scale uv) with the image's top at v = 0, seen from uvs whose v = 0 is the
-// bottom: v -> 1 - v before and after. The rotation is counter-clockwise as the image is seen.
+// Converts offset + rotation (scale uv) with v = 0 at the top of the image to uvs with v = 0 at the
+// bottom: v -> 1 - v before and after. The rotation is counter-clockwise in the image.
 UvTransform transform_of(const Json& from) {
   double offset_u = 0;
   double offset_v = 0;
@@ -68,7 +109,7 @@ void read_textures_of(const Json& from, GltfMaterial& to) {
   }
 }
 
-/// Three numbers, each as it stands or as in `otherwise`.
+/// Reads three numbers; absent ones are those of `otherwise`.
 std::array<double, 3> triple_of(const Json& in, const std::string& name,
                                 std::array<double, 3> otherwise) {
   const Json* values = list(in, name);
@@ -99,8 +140,8 @@ std::optional<GltfVolume> volume_of(const Json& material) {
   return to;
 }
 
-/// What an extension adds to the material, where it adds anything, and nothing here shows.
-std::vector<std::string> left_out_of(const Json& material) {
+/// Adds the features of an extension that are not rendered.
+std::vector<std::string> unsupported_features_of(const Json& material) {
   std::vector<std::string> out;
   const auto has = [&](const char* name, const char* factor) {
     const Json* from = extension(material, name);
@@ -153,7 +194,7 @@ GltfMaterial material_of(const Json& from) {
     to.index_of_refraction = number(*ior, "ior").value_or(1.5);
   }
   to.volume = volume_of(from);
-  to.left_out = left_out_of(from);
+  to.unsupported = unsupported_features_of(from);
   to.unlit = extension(from, "KHR_materials_unlit") != nullptr;
   return to;
 }

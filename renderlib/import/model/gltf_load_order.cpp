@@ -18,7 +18,7 @@ using gltf::number;
 
 constexpr char kLights[] = "KHR_lights_punctual";
 
-// The tree is walked with a stack of its own; a node that is met again is not entered.
+// Traverses the tree with an explicit stack; a node that is reached again is not entered.
 class Walk {
  public:
   explicit Walk(const Json& root) : root_(root) {}
@@ -26,7 +26,7 @@ class Walk {
   void run() {
     const Json* scene = item(root_, "scenes", number(root_, "scene").value_or(0));
     const Json* roots = scene == nullptr ? nullptr : list(*scene, "nodes");
-    // Assimp puts a node above several.
+    // Assimp adds a root above several root nodes.
     const std::size_t above = roots != nullptr && roots->size() == 1 ? 0 : 1;
     push_all(roots);
     while (!stack_.empty()) {
@@ -36,7 +36,7 @@ class Walk {
         const Json* mesh = item_of(root_, "meshes", *node, "mesh");
         add_mesh(mesh);
         if (const Json* skin = item_of(root_, "skins", *node, "skin"); skin && mesh) {
-          skins_[mesh] = skin;  // Assimp keeps the last
+          skins_[mesh] = skin;  // Assimp uses the last skin
         }
         add(item_of(root_, "cameras", *node, "camera"), numbers_[node], cameras_, order.cameras);
         if (const Json* light = extension(*node, kLights);
@@ -75,7 +75,7 @@ class Walk {
       }
     }
   }
-  // Joints may lie behind the meshes that they hold.
+  // Joints may come after the meshes that use them.
   void add_bones() {
     for (const auto& [mesh, skin] : skins_) {
       std::vector<std::size_t> nodes;
@@ -102,14 +102,14 @@ class Walk {
 
   const Json& root_;
   const Json* lights_in_ = extension(root_, kLights);
-  std::vector<std::pair<const Json*, bool>> stack_;  ///< and whether its children are done
-  std::map<const Json*, std::size_t> numbers_;       ///< of the nodes, parents first
+  std::vector<std::pair<const Json*, bool>> stack_;  ///< with a flag: children have been visited
+  std::map<const Json*, std::size_t> numbers_;       ///< indices of the nodes, parents first
   std::set<const Json*> seen_;
-  Loaded cameras_;  ///< and the how manieth each is
+  Loaded cameras_;  ///< with their indices
   Loaded lights_;
-  Loaded first_meshes_;                       ///< and Assimp's mesh of their first primitive
-  std::size_t meshes_ = 0;                    ///< of Assimp's
-  std::map<const Json*, const Json*> skins_;  ///< of meshes
+  Loaded first_meshes_;                       ///< with Assimp's number of their first primitive
+  std::size_t meshes_ = 0;                    ///< number of Assimp's meshes
+  std::map<const Json*, const Json*> skins_;  ///< skins of meshes
 };
 
 }  // namespace

@@ -2,19 +2,74 @@
 
 #include <assimp/GltfMaterial.h>
 #include <assimp/ObjMaterial.h>
+#include <assimp/material.h>
 #include <assimp/scene.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
-#include "renderlib/import/model/texture_look.h"
+#include "renderlib/math/elementary.h"
+#include "renderlib/texture/texture.h"
 
 namespace bandsaw {
 namespace {
 
-/// What glTF calls the textureInfo that Assimp keeps in this slot.
+ImageTexture::Wrap wrap_of(aiTextureMapMode mode) {
+  switch (mode) {
+    case aiTextureMapMode_Clamp:
+    case aiTextureMapMode_Decal:
+      return ImageTexture::Wrap::kClamp;
+    case aiTextureMapMode_Mirror:
+      return ImageTexture::Wrap::kMirror;
+    default:
+      return ImageTexture::Wrap::kRepeat;
+  }
+}
+
+/// Returns the transform that scales, rotates around (0.5, 0.5) and translates, as
+/// assimp/material.h describes it; the identity if a number is not finite.
+UvTransform uv_transform_of(const aiUVTransform& from) {
+  const double su = from.mScaling.x;
+  const double sv = from.mScaling.y;
+  constexpr double kTurn = 6.283185307179586;
+  const double turns = from.mRotation / kTurn;
+  if (!std::isfinite(su) || !std::isfinite(sv) || !std::isfinite(turns) ||
+      !std::isfinite(from.mTranslation.x) || !std::isfinite(from.mTranslation.y)) {
+    return {};
+  }
+  const SinCos turn = sincos_turns(turns - std::floor(turns));
+  const double a = turn.cos * su;
+  const double b = -turn.sin * sv;
+  const double c = turn.sin * su;
+  const double d = turn.cos * sv;
+  // Rotation around the middle: R (s uv - m) + m, m = (1/2, 1/2).
+  const double mu = 0.5 - 0.5 * (turn.cos - turn.sin);
+  const double mv = 0.5 - 0.5 * (turn.sin + turn.cos);
+  return {{a, b, mu + from.mTranslation.x, c, d, mv + from.mTranslation.y}};
+}
+
+/// Returns true if the image is 8-bit and its texels look like directions, 0.5 + 0.5 n, that mostly
+/// point away from the surface.
+bool looks_like_normals(const ImageTexture& image) {
+  if (image.format == ImageTexture::Format::kFloat32 || image.channels != 3) {
+    return false;
+  }
+  const std::size_t texels = image.texels.size() / 3;
+  std::array<std::uint64_t, 3> sums{};
+  for (std::size_t i = 0; i < 3 * texels; ++i) {
+    sums[i % 3] += static_cast<std::uint64_t>(image.texels[i]);
+  }
+  const auto mean = [&](std::size_t channel) {
+    return static_cast<double>(sums[channel]) / (255.0 * static_cast<double>(texels));
+  };
+  const auto is_about_half = [](double v) { return std::abs(v - 0.5) < 0.1; };
+  return is_about_half(mean(0)) && is_about_half(mean(1)) && mean(2) > 0.8;
+}
+
+/// Returns glTF's name of the textureInfo that Assimp stores in this slot.
 const char* gltf_name(MaterialReader::Slot slot) {
   switch (slot.type) {
     case aiTextureType_BASE_COLOR:
@@ -55,7 +110,7 @@ MaterialReader::MaterialReader(ModelFile& file, unsigned index)
   }
 }
 
-// Where dead names are the rule a texture that is not found is as if it had not been named.
+// In formats in which dead names are common, a missing texture is ignored with a warning.
 void MaterialReader::name_dead_files() {
   for (unsigned type = aiTextureType_DIFFUSE; type <= AI_TEXTURE_TYPE_MAX; ++type) {
     for (unsigned index = 0; index < material_.GetTextureCount(aiTextureType(type)); ++index) {
@@ -63,7 +118,7 @@ void MaterialReader::name_dead_files() {
       const absl::Status found = file.empty() ? absl::OkStatus() : textures_.locate(file);
       const bool dead = absl::IsNotFound(found) || absl::IsPermissionDenied(found);
       if (dead && dead_files_.insert(file).second) {
-        leave_out(absl::StrCat(found.message(), "; it is shown without"));
+        unsupported(absl::StrCat(found.message(), "; it is shown without"));
       }
     }
   }
@@ -77,7 +132,7 @@ const GltfMaterial* MaterialReader::gltf() const {
   if (index_ < all.size() && (all[index_].name.empty() || is_this(all[index_]))) {
     return &all[index_];
   }
-  // What has no name, as Assimp's material for primitives without one, is none of the others.
+  // A material without a name, such as Assimp's default material, is not one of the JSON's.
   const auto found = name.length == 0 ? all.end() : std::find_if(all.begin(), all.end(), is_this);
   return found == all.end() ? nullptr : &*found;
 }
@@ -118,7 +173,7 @@ std::string MaterialReader::file_of(Slot slot) const {
 UvSet MaterialReader::uv_set_of(unsigned assimp_set) {
   const auto found = std::find(uv_sets_.begin(), uv_sets_.end(), assimp_set);
   if (found == uv_sets_.end() && uv_sets_.size() == 2) {
-    leave_out("its third set of uvs is left out: the first is used");
+    unsupported("its third set of uvs is left out: the first is used");
     return UvSet::kFirst;
   }
   const auto place = found - uv_sets_.begin();
@@ -186,7 +241,7 @@ absl::StatusOr<TextureId> MaterialReader::bump_map(Slot slot) {
   TextureStore::Use use = use_of(slot);
   use.linear = true;
   use.become = TextureStore::Use::Become::kNormals;
-  // Formats give no unit of a height. One texel keeps what is drawn for bumps visible and shallow.
+  // Formats define no unit of heights. One texel keeps bumps visible and shallow.
   float strength = 1;
   material_.Get(AI_MATKEY_OBJ_BUMPMULT(slot.type, slot.index), strength);
   use.by = std::isfinite(strength) ? std::clamp(double{strength}, -1e6, 1e6) : 1;

@@ -1,6 +1,6 @@
 #pragma once
 
-// One material of a model: its numbers, colours and textures as Assimp has them.
+// Reads one material of a model: its numbers, colours and textures as Assimp stores them.
 
 #include <assimp/material.h>
 
@@ -19,45 +19,47 @@ namespace bandsaw {
 
 class MaterialReader {
  public:
-  /// `file` outlives this.
+  /// `file` MUST outlive this object.
   MaterialReader(ModelFile& file, unsigned index);
 
   const aiMaterial& material() const { return material_; }
   ModelKind kind() const { return file_.kind; }
-  /// Nothing of other formats than glTF 2.
+  /// Returns nullptr for formats other than glTF 2.
   const GltfMaterial* gltf() const;
   SceneDraft& draft() const { return file_.draft; }
 
-  /// A number that the file gives, brought into [least, most]; one that is not finite is none.
+  /// Returns a number of the material, clamped to [least, most]; std::nullopt if it is absent or
+  /// not finite.
   std::optional<double> number(const char* key, double least, double most) const;
-  /// A colour that the file gives, each channel in [0, most].
+  /// Returns a colour of the material, each channel clamped to [0, most].
   std::optional<Rgb> color(const char* key, float most) const;
-  /// The fourth number of such a colour, in [0, 1]; 1 where there is none.
+  /// Returns the fourth number of such a colour, in [0, 1]; 1 if there is none.
   double alpha_of(const char* key) const;
 
-  /// A texture by Assimp's kind and number, and what its texels are.
+  /// A texture by Assimp's kind and number, and the meaning of its texels.
   struct Slot {
     aiTextureType type;
     unsigned index = 0;
   };
   enum class As { kColor, kNumber, kAlpha };
-  /// Not where its file is missing and that is only a warning.
+  /// Returns true if the material has the texture; false if its file is missing and that is only a
+  /// warning.
   bool has(Slot slot) const;
-  /// Its texture with its wrapping, filter, transform and uv set, or white. Errors name the
-  /// material.
+  /// Returns the texture with its wrap mode, filter, transform and uv set, or a white one. Errors
+  /// name the material.
   absl::StatusOr<TextureId> map(Slot slot, As as, const Rgb& factor = {1, 1, 1});
   absl::StatusOr<TextureId> white() const { return file_.draft.textures.constant({1, 1, 1}); }
-  /// An opacity map: the alpha of its image, else its brightness.
+  /// Returns an opacity map: the alpha of the image, or its brightness if it has none.
   absl::StatusOr<TextureId> opacity_map(Slot slot);
-  /// The normals of a map of heights.
+  /// Returns the normal map of a height map.
   absl::StatusOr<TextureId> bump_map(Slot slot);
-  /// What makes F0 of `index` (> 1) as much as a map says (Principled::index_map).
+  /// Returns an index_map that gives F0 of `index` (> 1) times the map (Principled::index_map).
   absl::StatusOr<TextureId> index_map(Slot slot, double index);
-  /// Whether a map of heights in fact holds normals, as files often have it.
+  /// Returns true if a height map actually contains normals, which is common.
   bool holds_normals(Slot slot) const;
 
-  /// A warning: "its specular map is left out".
-  void leave_out(const std::string& what) { file_.left_out.add(what, called_); }
+  /// Adds a warning such as "its specular map is left out".
+  void unsupported(const std::string& what) { file_.unsupported.add(what, called_); }
 
   ModelMaterial add(const Material& material) const;
 
@@ -73,9 +75,9 @@ class MaterialReader {
   const unsigned index_;
   const aiMaterial& material_;
   ModelTextures textures_;
-  std::string called_;                ///< "\"steel\"", or its number
-  std::set<std::string> dead_files_;  ///< as the model writes them
-  std::vector<unsigned> uv_sets_;     ///< Assimp's numbers of the two that the material uses
+  std::string called_;                ///< name in messages: "\"steel\"", or its number
+  std::set<std::string> dead_files_;  ///< names as in the model
+  std::vector<unsigned> uv_sets_;  ///< Assimp's numbers of the two uv sets that the material uses
 };
 
 }  // namespace bandsaw

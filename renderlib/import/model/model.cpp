@@ -29,7 +29,7 @@
 namespace bandsaw {
 namespace {
 
-// Assimp's reason, or what it was not allowed or able to open, which is mostly the true reason.
+// Returns Assimp's error, or the files that it could not open, which are mostly the cause.
 absl::Status read_failure(const std::string& name, const RefusedFiles& refused,
                           absl::string_view reason) {
   if (!refused.outside.empty()) {
@@ -76,8 +76,8 @@ ModelKind kind_of(const std::string& path) {
                                                   : ModelKind::kOther;
 }
 
-// FBX files name the axes that point up, to the viewer and to the right; Assimp 5.2 does not turn
-// the scene by them. glTF's are +y, +z and +x, as ours.
+// Returns the rotation of an FBX file to +y up, +z front and +x right: the file names its axes, but
+// Assimp 5.2 does not rotate the scene.
 Transform upright(const aiScene& scene) {
   struct Axis {
     const char* name;
@@ -131,12 +131,12 @@ absl::Status gltf_failure(const std::string& name, const absl::Status& why) {
                       absl::StrCat(name, is_broken ? ": cannot be read: " : ": ", why.message()));
 }
 
-/// Null where Assimp fails. Of a plain glTF document Assimp sees nothing but that; the document is
-/// given up afterwards, but for its JSON.
+/// Reads the file with Assimp; nullptr on failure. For glTF, Assimp reads only the plain document,
+/// whose buffer is freed afterwards.
 const aiScene* read_by_assimp(const std::string& path, const SceneFolder& folder,
                               std::optional<gltf::PlainGltf>& plain, RefusedFiles& refused,
                               Assimp::Importer& importer) {
-  // Nothing that alters geometry: faces become triangles, that is all.
+  // Faces are triangulated; no other post-processing changes the geometry.
   constexpr unsigned kFlags = aiProcess_Triangulate;
   if (!plain || plain->is_first_version) {
     importer.SetIOHandler(std::make_unique<AssimpFiles>(folder, path, refused).release());
@@ -188,7 +188,7 @@ absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, S
   }
   RefusedFiles refused;
   Assimp::Importer importer;
-  // No meshes that stand for the bones of files without any.
+  // No placeholder meshes for the bones of files without meshes.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   const aiScene* scene = read_by_assimp(path, draft.folder, plain, refused, importer);
   if (scene == nullptr || scene->mRootNode == nullptr || !refused.outside.empty()) {
@@ -204,14 +204,13 @@ absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, S
 
   std::vector<ModelMaterial> materials(scene->mNumMaterials);
   if (with_materials) {
-    // Assimp adds a material of its own, and files hold more than they use; what is not used is not
-    // read.
+    // Assimp adds a default material, and files contain unused ones; only used ones are read.
     for (const unsigned used : used_materials(*scene)) {
       ASSIGN_OR_RETURN(materials[used], read_model_material(file, used));
     }
-    file.left_out.tell(name, draft.out.info.warnings);
+    file.unsupported.add_warnings(name, draft.out.info.warnings);
   } else {
-    // The scene's own material may use either.
+    // The scene's material may use both uv sets.
     std::fill(materials.begin(), materials.end(), ModelMaterial{.second_uv_set = 1});
   }
   ASSIGN_OR_RETURN(const ModelMeshes meshes, add_meshes(file, materials, with_materials));

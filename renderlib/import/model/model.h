@@ -1,6 +1,7 @@
 #pragma once
 
-// Model files, of every format that Assimp reads, as meshes, materials and placements of the scene.
+// Reads model files of every format that Assimp supports, as meshes, materials and placements of
+// the scene.
 
 #include <string>
 #include <vector>
@@ -14,31 +15,32 @@
 namespace bandsaw {
 
 struct ModelCamera {
-  std::string name;      ///< of its node
-  std::string own_name;  ///< may be empty, and be that of other nodes' cameras too
+  std::string name;      ///< name of its node
+  std::string own_name;  ///< may be empty or shared with other nodes' cameras
   Camera camera;         ///< in the model's own space
 };
 
-/// A model in the draft: its meshes, materials and textures have been added there, its placements
-/// have not.
+/// A model whose meshes, materials and textures have been added to the draft; its placements have
+/// not.
 struct Model {
   std::vector<Instance> instances = {};   ///< in the model's own space
-  std::vector<Instance> filled = {};      ///< likewise, of Media::boundaries
-  std::vector<ModelCamera> cameras = {};  ///< in the order of its nodes
+  std::vector<Instance> filled = {};      ///< the same for Media::boundaries
+  std::vector<ModelCamera> cameras = {};  ///< in the order of the nodes
   std::vector<DeltaLight> lights = {};
 };
 
-/// The same camera where `placement` puts it.
+/// Returns the camera transformed by `placement`.
 Camera placed(Camera camera, const Transform& placement);
 
-/// Whether the suffix is that of a model that is read: .gltf, .glb, .obj, .fbx, .dae, .3ds, .ply,
-/// .stl and whatever else Assimp knows.
+/// Returns true if the suffix is that of a supported model format: .gltf, .glb, .obj, .fbx, .dae,
+/// .3ds, .ply, .stl and all others of Assimp.
 bool is_model_file(const std::string& path);
 
-/// `path` is real and below the draft's folder. Without `with_materials` no texture is read, and
-/// the placements' materials mean nothing. What is left out or mended is a warning of the draft.
-/// Messages begin with the file's name: INVALID_ARGUMENT: broken, or without triangles. NOT_FOUND,
-/// PERMISSION_DENIED: a file that it needs.
+/// Reads a model. `path` is a real path below the draft's folder. Without `with_materials` no
+/// texture is read, and the materials of the placements are unspecified. Omitted and repaired parts
+/// are warnings of the draft. Messages begin with the file's name. Returns INVALID_ARGUMENT if the
+/// model is broken or has no triangles, and NOT_FOUND or PERMISSION_DENIED for a file that it
+/// needs.
 absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, SceneDraft& draft);
 
 }  // namespace bandsaw

@@ -1,4 +1,5 @@
-// The older kind of material, Kd, Ks, Ns, Ke, Ni, d: of OBJ, FBX, DAE, 3DS and the rest.
+// Reads the older kind of materials (Kd, Ks, Ns, Ke, Ni, d) of OBJ, FBX, DAE, 3DS and other
+// formats.
 
 #include <assimp/material.h>
 
@@ -15,14 +16,14 @@ namespace {
 
 using As = MaterialReader::As;
 using Slot = MaterialReader::Slot;
-constexpr float kMostRadiance = 1e30f;
+constexpr float kMaxRadiance = 1e30f;
 
-/// Its numbers, as far as they say anything.
+/// The numbers of the material that have a meaning.
 struct Classic {
   Rgb base;
   bool textured = false;
-  Rgb specular;         ///< black: it does not shine
-  double exponent = 0;  ///< of Blinn's highlight
+  Rgb specular;         ///< black if there is no highlight
+  double exponent = 0;  ///< exponent of Blinn's highlight
   std::optional<double> index;
   Rgb glow;
   bool glow_map = false;
@@ -30,14 +31,15 @@ struct Classic {
   bool opacity_map = false;
 };
 
-// Many exporters write a highlight's colour and switch it off by the exponent or by the model.
+// Returns true if the highlight is disabled by the exponent or by the illumination model; many
+// exporters write its colour nevertheless.
 bool shines(const MaterialReader& reader, double exponent) {
   int model = aiShadingMode_Phong;
   reader.material().Get(AI_MATKEY_SHADING_MODEL, model);
   const bool matte = model == aiShadingMode_Flat || model == aiShadingMode_Gouraud ||
                      model == aiShadingMode_NoShading || model == aiShadingMode_OrenNayar ||
                      model == aiShadingMode_Minnaert;
-  // Of MTL's models Assimp knows 0 to 2; from 2 on all have a highlight.
+  // Assimp supports MTL's illumination models 0 to 2; from 2 on they have a highlight.
   int mtl_model = 0;
   reader.material().Get("$mat.illum", 0, 0, mtl_model);
   return (!matte || mtl_model >= 2) && exponent >= 1 && reader.kind() != ModelKind::kPlain;
@@ -46,8 +48,8 @@ bool shines(const MaterialReader& reader, double exponent) {
 double opacity_of(MaterialReader& reader, bool mapped) {
   const double opacity = reader.number("$mat.opacity", 0, 1).value_or(1);
   if (opacity == 0 && !mapped) {
-    // The commonest mistake of exporters: transparency and opacity exchanged.
-    reader.leave_out("it is not there at all (opacity 0), which is taken as a mistake");
+    // The most common mistake of exporters: transparency and opacity are exchanged.
+    reader.unsupported("it is not there at all (opacity 0), which is taken as a mistake");
     return 1;
   }
   return opacity;
@@ -55,13 +57,13 @@ double opacity_of(MaterialReader& reader, bool mapped) {
 
 Classic read_numbers(MaterialReader& reader) {
   Classic from;
-  // What formats without materials are given by Assimp is white.
+  // Assimp's default material for formats without materials is white.
   constexpr float kUnpainted = 0.8f;
   from.base = reader.kind() == ModelKind::kPlain
                   ? gray(kUnpainted)
                   : reader.color("$clr.diffuse", 1).value_or(gray(kUnpainted));
   from.textured = reader.has({aiTextureType_DIFFUSE}) || reader.has({aiTextureType_BASE_COLOR});
-  // Exporters that mean "the texture alone" write a black Kd.
+  // Some exporters write a black Kd to mean "the texture alone".
   from.base = from.textured && is_black(from.base) ? Rgb{1, 1, 1} : from.base;
   from.exponent = reader.number("$mat.shininess", 0, 1e6).value_or(0);
   if (shines(reader, from.exponent)) {
@@ -70,7 +72,7 @@ Classic read_numbers(MaterialReader& reader) {
   }
   const double index = reader.number("$mat.refracti", 0, 5).value_or(0);
   from.index = index > 1 ? std::optional(index) : std::nullopt;
-  from.glow = reader.color("$clr.emissive", kMostRadiance).value_or(Rgb{});
+  from.glow = reader.color("$clr.emissive", kMaxRadiance).value_or(Rgb{});
   from.glow_map = reader.has({aiTextureType_EMISSIVE});
   from.glow = from.glow_map && is_black(from.glow) ? Rgb{1, 1, 1} : from.glow;
   from.opacity_map = reader.has({aiTextureType_OPACITY});
@@ -78,7 +80,8 @@ Classic read_numbers(MaterialReader& reader) {
   return from;
 }
 
-// A highlight (n.h)^exponent is as wide as GGX of this alpha (Walter et al. 2007, section 5.1).
+// Returns the GGX alpha with the same width as a highlight (n.h)^exponent (Walter et al. 2007,
+// section 5.1).
 double roughness_of(double exponent) { return std::sqrt(std::sqrt(2 / (exponent + 2))); }
 
 void set_gloss(const Classic& from, Principled& to) {
@@ -89,15 +92,15 @@ void set_gloss(const Classic& from, Principled& to) {
     to.base_color.factor = from.specular;
     return;
   }
-  // What reflects without being metal reflects little, whatever Ks says: as its index, or no more
-  // than glass.
+  // A material that is not a metal reflects little, whatever Ks is: according to its index, or at
+  // most like glass.
   constexpr double kGlass = 0.04;
   const double f0 = std::sqrt(std::min(kGlass, double{luminance(from.specular)}));
   to.index_of_refraction =
       !is_black(from.specular) && from.index ? *from.index : (1 + f0) / (1 - f0);
 }
 
-// What does not shine has no use for a map of how much.
+// A specular map without a highlight is ignored.
 absl::Status read_specular_map(MaterialReader& reader, const Classic& from, Principled& to) {
   const Slot slot{aiTextureType_SPECULAR};
   if (!reader.has(slot) || is_black(from.specular)) {
@@ -126,7 +129,7 @@ absl::Status read_bump(MaterialReader& reader, Principled& to) {
   return absl::OkStatus();
 }
 
-// Whether it is a lamp: it shines, and what it reflects besides is not worth having.
+// Returns true if the material becomes Emissive: it emits, and its reflection is negligible.
 bool is_lamp(const Classic& from) {
   return !is_black(from.glow) && !from.textured && !from.glow_map && is_black(from.specular) &&
          (max_component(from.glow) >= 1 || is_black(from.base));

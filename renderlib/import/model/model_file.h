@@ -1,32 +1,32 @@
 #pragma once
 
-// A model while it is being read: what its parts share.
+// State that the parts of the model reader share.
 
 #include <string>
 
 #include "renderlib/import/draft/scene_draft.h"
 #include "renderlib/import/model/gltf_extensions.h"
-#include "renderlib/import/model/left_out.h"
+#include "renderlib/import/model/unsupported_features.h"
 
 struct aiScene;
 
 namespace bandsaw {
 
-/// What kind of file it is, as far as that matters.
+/// Kind of a model file, as far as it affects reading.
 enum class ModelKind {
   kGltf,
   kObj,
-  kPlain,  ///< ply, stl, off: geometry, at most with vertex colours
+  kPlain,  ///< ply, stl, off: geometry and possibly vertex colours
   kOther,
 };
 
 struct ModelFile {
   const aiScene& scene;
-  const std::string& path;  ///< real
+  const std::string& path;  ///< real path
   ModelKind kind = ModelKind::kOther;
-  GltfExtensions gltf;  ///< of kGltf
+  GltfExtensions gltf;  ///< set for kGltf
   SceneDraft& draft;
-  LeftOut left_out = {};
+  UnsupportedFeatures unsupported = {};
 
   std::string name() const { return name_of(path); }
   void warn(const std::string& what) {

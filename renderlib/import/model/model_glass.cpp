@@ -12,13 +12,14 @@
 namespace bandsaw {
 namespace {
 
-/// Beer and Lambert: after the distance the light that is left is the colour.
+/// Returns the absorption for which white light has the colour after the distance (Beer and
+/// Lambert).
 Rgb absorption_of(const GltfVolume& volume) {
   const auto channel = [&](double color) {
-    constexpr double kLeastColor = 1e-6;  // darker is as opaque
+    constexpr double kMinColor = 1e-6;  // darker colours are practically opaque
     const double rate =
-        -log(std::clamp(color, kLeastColor, 1.0)) / std::max(volume.attenuation_distance, 1e-12);
-    return std::clamp(static_cast<float>(rate), 0.0f, kMostPerUnit);
+        -log(std::clamp(color, kMinColor, 1.0)) / std::max(volume.attenuation_distance, 1e-12);
+    return std::clamp(static_cast<float>(rate), 0.0f, kMaxPerUnit);
   };
   const auto [r, g, b] = volume.attenuation_color;
   return std::isfinite(volume.attenuation_distance) ? Rgb{channel(r), channel(g), channel(b)}
@@ -27,7 +28,7 @@ Rgb absorption_of(const GltfVolume& volume) {
 
 bool is_white(const Rgb& color) { return color == Rgb{1, 1, 1}; }
 
-/// What glass has no place for.
+/// Adds warnings for features of the material that glass does not have.
 bool has_more_than_glass(const MaterialReader& reader, const Principled& material) {
   return !is_white(material.base_color.factor) || reader.has({aiTextureType_BASE_COLOR}) ||
          reader.has({aiTextureType_UNKNOWN}) || material.normal || material.coat.factor > 0 ||
@@ -45,11 +46,11 @@ std::optional<ModelMaterial::Glass> glass_of(MaterialReader& reader, const Princ
   const bool is_metal = material.metallic.factor > 0 && !reader.has({aiTextureType_UNKNOWN});
   if (material.transmission.factor < 1 || reader.has({aiTextureType_TRANSMISSION}) || is_metal ||
       material.alpha_mode != AlphaMode::kOpaque) {
-    reader.leave_out("its volume is left out: what it transmits passes as through a thin pane");
+    reader.unsupported("its volume is left out: what it transmits passes as through a thin pane");
     return std::nullopt;
   }
   if (has_more_than_glass(reader, material)) {
-    reader.leave_out(
+    reader.unsupported(
         "is solid glass: its base colour, its maps, its clear coat and its emission are left out");
   }
   Dielectric glass;

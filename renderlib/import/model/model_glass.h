@@ -12,13 +12,13 @@
 
 namespace bandsaw {
 
-/// The glass that a material is where it bounds a volume: smooth or rough, with what it absorbs.
-/// Nothing where it has no volume, or is not as a whole transparent; that it has a volume is then a
-/// warning.
+/// Returns the glass of a material that bounds a volume: smooth or rough, with its absorption.
+/// Returns std::nullopt if the material has no volume or is not fully transmissive; the latter adds
+/// a warning.
 std::optional<ModelMaterial::Glass> glass_of(MaterialReader& reader, const Principled& material);
 
-/// Makes glass of what of `model` has such a material and is closed. What is open stays a thin
-/// pane, with a warning.
+/// Converts the closed meshes of `model` with such a material to glass. Open ones stay thin panes,
+/// with a warning.
 void fill_glass(const std::vector<ModelMaterial>& materials, ModelFile& file, Model& model);
 
 }  // namespace bandsaw

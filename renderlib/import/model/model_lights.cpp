@@ -15,18 +15,18 @@ namespace {
 
 Vec3 vector_of(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
-/// Assimp multiplies colour and intensity: candela or lux of glTF, which become our radiant
-/// intensity and irradiance as they are.
+/// Returns colour times intensity, which Assimp has multiplied: glTF's candela and lux become
+/// radiant intensity and irradiance unchanged.
 Rgb brightness_of(const aiLight& from) {
   const auto channel = [](float value) {
-    return std::isfinite(value) ? std::clamp(value, 0.0f, kMostRadiance) : 0.0f;
+    return std::isfinite(value) ? std::clamp(value, 0.0f, kMaxRadiance) : 0.0f;
   };
   return {channel(from.mColorDiffuse.r), channel(from.mColorDiffuse.g),
           channel(from.mColorDiffuse.b)};
 }
 
-/// Intensity at distance 1 of a light that falls off as c + l r + q r^2 says, q > 0. Other falloffs
-/// are known to few formats and are not light's; they are taken at distance 1 too.
+/// Returns the intensity at distance 1 of a light with the falloff c + l r + q r^2, q > 0. Other
+/// falloffs, which few formats have and which are not physical, are evaluated at distance 1 too.
 Rgb intensity_of(const aiLight& from, ModelFile& file) {
   const float square = from.mAttenuationQuadratic;
   const bool is_square =
@@ -40,7 +40,7 @@ Rgb intensity_of(const aiLight& from, ModelFile& file) {
   return brightness_of(from) * (at_one > 0 && std::isfinite(at_one) ? 1 / at_one : 1.0f);
 }
 
-/// A unit vector, or nothing where a node flattens the light.
+/// Returns a unit vector; std::nullopt if the node's transform is singular.
 std::optional<Vec3> direction_of(const aiLight& from, const Transform& node) {
   const Vec3 d = node.direction(vector_of(from.mDirection));
   const double size = length(d);
@@ -79,7 +79,7 @@ void add_model_light(const aiLight& from, const Transform& node, ModelFile& file
       if (!direction) {
         return leave_out("it has no direction");
       }
-      if (directional_lights(model) == kMostDirectionalLights) {
+      if (directional_lights(model) == kMaxDirectionalLights) {
         return leave_out("there are too many directional ones");
       }
       model.lights.emplace_back(DirectionalLight{*direction, brightness_of(from)});

@@ -1,6 +1,6 @@
 #pragma once
 
-// Lights without size of a model file.
+// Delta lights of a model file.
 
 #include "renderlib/import/model/model.h"
 #include "renderlib/import/model/model_file.h"
@@ -9,9 +9,9 @@ struct aiLight;
 
 namespace bandsaw {
 
-/// Appends the light that stands at a node with this transform. What our lights cannot be (an area
-/// or ambient light, another falloff than with the square of the distance) is left out or mended
-/// with a warning.
+/// Appends the light of a node with this transform. Lights that are not supported (area or ambient
+/// lights, other falloffs than with the square of the distance) are omitted or approximated with a
+/// warning.
 void add_model_light(const aiLight& from, const Transform& node, ModelFile& file, Model& model);
 
 }  // namespace bandsaw

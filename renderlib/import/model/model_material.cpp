@@ -7,7 +7,7 @@
 namespace bandsaw {
 namespace {
 
-// Textures of which nothing is rendered, by what they are called.
+// Textures that are not rendered, with their names in messages.
 void name_unused_textures(MaterialReader& reader) {
   constexpr struct {
     aiTextureType type;
@@ -19,17 +19,18 @@ void name_unused_textures(MaterialReader& reader) {
   for (const auto& [type, what] : kUnused) {
     const bool is_named = type == aiTextureType_SHEEN && reader.kind() == ModelKind::kGltf;
     if (reader.has({type}) && !is_named) {
-      reader.leave_out(absl::StrCat("its ", what, " map is left out"));
+      reader.unsupported(absl::StrCat("its ", what, " map is left out"));
     }
   }
   if (reader.has({aiTextureType_LIGHTMAP}) || reader.has({aiTextureType_AMBIENT_OCCLUSION})) {
-    reader.leave_out("its occlusion map is left out: light is followed instead");
+    reader.unsupported("its occlusion map is left out: light is followed instead");
   }
 }
 
-// KHR_materials_unlit: meant to show its base colour whatever the light, which no surface does.
+// KHR_materials_unlit is meant to show its base colour independently of light, which no surface
+// does.
 absl::StatusOr<ModelMaterial> read_unlit(MaterialReader& reader) {
-  reader.leave_out("is unlit, which is taken as a diffuse surface");
+  reader.unsupported("is unlit, which is taken as a diffuse surface");
   const Rgb base = reader.color("$clr.base", 1).value_or(Rgb{1, 1, 1});
   if (!reader.has({aiTextureType_BASE_COLOR})) {
     return reader.add(Diffuse{reader.draft().textures.constant(base)});
@@ -45,8 +46,8 @@ absl::StatusOr<ModelMaterial> read_model_material(ModelFile& file, unsigned inde
   MaterialReader reader(file, index);
   name_unused_textures(reader);
   if (reader.gltf() != nullptr) {
-    for (const std::string& what : reader.gltf()->left_out) {
-      reader.leave_out(what);
+    for (const std::string& what : reader.gltf()->unsupported) {
+      reader.unsupported(what);
     }
   }
   if (reader.gltf() != nullptr && reader.gltf()->unlit) {

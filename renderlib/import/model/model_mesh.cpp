@@ -12,15 +12,15 @@
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/image/srgb.h"
-#include "renderlib/import/model/mend_mesh.h"
 #include "renderlib/import/model/model_pose.h"
+#include "renderlib/import/model/repair_mesh.h"
 
 namespace bandsaw {
 namespace {
 
 struct Counts {
   std::size_t other_faces = 0;  ///< points and lines
-  std::size_t not_finite = 0;   ///< triangles with a vertex that is not
+  std::size_t not_finite = 0;   ///< triangles with a vertex that is not finite
 };
 
 std::vector<std::array<float, 3>> vectors(const aiVector3D* from, std::size_t count) {
@@ -65,7 +65,7 @@ std::vector<std::array<float, 2>> uvs(const aiMesh& from, unsigned uv_set) {
   if (uv_set >= AI_MAX_NUMBER_OF_TEXTURECOORDS || !from.HasTextureCoords(uv_set)) {
     return {};
   }
-  // Assimp's v = 0 is the image's bottom row for every format, and so is ours.
+  // In Assimp, v = 0 is the bottom row of an image for every format, as here.
   std::vector<std::array<float, 2>> to(from.mNumVertices);
   for (unsigned i = 0; i < from.mNumVertices; ++i) {
     const aiVector3D& uv = from.mTextureCoords[uv_set][i];
@@ -74,7 +74,7 @@ std::vector<std::array<float, 2>> uvs(const aiMesh& from, unsigned uv_set) {
   return to;
 }
 
-// What files other than glTF give are codes of a picture's kind, sRGB.
+// Decodes vertex colours of formats other than glTF, which are sRGB.
 std::vector<std::array<float, 3>> colors(const aiMesh& from, ModelKind kind) {
   if (!from.HasVertexColors(0)) {
     return {};
@@ -98,7 +98,7 @@ std::vector<std::array<float, 3>> colors(const aiMesh& from, ModelKind kind) {
   return all_white || unset ? std::vector<std::array<float, 3>>() : to;
 }
 
-// One mesh of the file; `title` begins its messages.
+// Reads one mesh of the file; messages begin with `title`.
 class MeshReader {
  public:
   MeshReader(const aiMesh& from, std::string title, std::vector<std::string>& warnings)
@@ -119,13 +119,13 @@ class MeshReader {
     return mesh;
   }
 
-  void mend(Mesh& mesh) {
+  void repair(Mesh& mesh) {
     drop_unused_vertices(mesh);
-    if (const std::size_t mended = mend_normals(mesh); mended > 0) {
-      warn(absl::StrCat(mended, " normals are zero or not finite and are made anew"));
+    if (const std::size_t repaired = repair_normals(mesh); repaired > 0) {
+      warn(absl::StrCat(repaired, " normals are zero or not finite and are recomputed"));
     }
-    if (const std::size_t mended = mend_uvs(mesh); mended > 0) {
-      warn(absl::StrCat(mended, " uvs are not finite and become 0"));
+    if (const std::size_t repaired = repair_uvs(mesh); repaired > 0) {
+      warn(absl::StrCat(repaired, " uvs are not finite and become 0"));
     }
   }
 
@@ -147,7 +147,7 @@ class MeshReader {
   std::vector<std::string>& warnings_;
 };
 
-// Colours of three channels come from Assimp with an alpha of 0.
+// Assimp gives colours of three channels an alpha of 0.
 bool has_clear_colors(const aiMesh& from) {
   const auto any = [&](auto has) {
     return from.HasVertexColors(0) &&
@@ -157,8 +157,8 @@ bool has_clear_colors(const aiMesh& from) {
          any([](const aiColor4D& c) { return c.a != 0; });
 }
 
-// Where the bones of a mesh stand; nothing: one has no node. By their names where the file does not
-// say it better: names need not be unique.
+// Returns the transforms of a mesh's bones; std::nullopt if a bone has no node. Bones are found by
+// the file's numbers if it has them, otherwise by name, because names need not be unique.
 std::optional<std::vector<Transform>> bone_places(const ModelFile& file, unsigned number,
                                                   const NodePlaces& places) {
   const aiMesh& mesh = *file.scene.mMeshes[number];
@@ -210,7 +210,7 @@ absl::StatusOr<ModelMeshes> add_meshes(ModelFile& file, const std::vector<ModelM
     } else if (from.HasBones()) {
       reader.warn("its skin is left out: a bone has no node");
     }
-    reader.mend(mesh);
+    reader.repair(mesh);
     if (mesh.triangles.empty()) {
       continue;
     }

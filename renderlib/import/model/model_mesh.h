@@ -12,16 +12,16 @@ namespace bandsaw {
 struct ModelMesh {
   MeshId mesh{};
   MaterialId material{};
-  bool skinned = false;  ///< its vertices stand in the model's own space, whatever node bears it
+  bool skinned = false;  ///< its vertices are in the model's space, whatever its node is
 };
 
-/// By Assimp's number; nothing where a mesh has no triangle that can be rendered.
+/// Keyed by Assimp's number; absent for meshes without a triangle that can be rendered.
 using ModelMeshes = std::vector<std::optional<ModelMesh>>;
 
-/// Adds the meshes to the draft, in their rest pose: triangles only, and none with a vertex that is
-/// not finite (a warning tells how many). Normals, uvs and colours that are not finite are mended.
-/// Vertex colours come with the materials of the file alone. INVALID_ARGUMENT: an index is out of
-/// range.
+/// Adds the meshes to the draft, in their rest pose: triangles only. Triangles with a vertex that
+/// is not finite are omitted (a warning counts them); normals, uvs and colours that are not finite
+/// are repaired. Vertex colours are only read together with the file's materials. Returns
+/// INVALID_ARGUMENT if an index is out of range.
 absl::StatusOr<ModelMeshes> add_meshes(ModelFile& file, const std::vector<ModelMaterial>& materials,
                                        bool with_colors);
 

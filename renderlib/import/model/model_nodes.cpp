@@ -15,12 +15,13 @@
 namespace bandsaw {
 namespace {
 
-constexpr std::size_t kMostInstances = 1'000'000;
+constexpr std::size_t kMaxInstances = 1'000'000;
 
 Vec3 vector_of(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
-// Assimp's glTF reader keeps the vertical angle times the aspect ratio, and the vertical angle
-// itself where the file gives no ratio; those of other formats the horizontal angle.
+// Returns the vertical field of view. Assimp's glTF reader stores the vertical angle times the
+// aspect ratio, or the vertical angle itself if the file has no ratio; other readers store the
+// horizontal angle.
 double vertical_fov_degrees(const aiCamera& camera, bool gltf) {
   const double aspect = camera.mAspect > 0 ? camera.mAspect : 1;
   if (gltf) {
@@ -30,10 +31,10 @@ double vertical_fov_degrees(const aiCamera& camera, bool gltf) {
   return atan2(half.sin, half.cos * aspect) * 360 / kPi;
 }
 
-// Nothing where it makes no rays.
+// Returns std::nullopt if the camera is invalid.
 std::optional<Camera> camera_of(const aiCamera& camera, const Transform& node, bool gltf) {
   View view;
-  // Assimp 5.2 copies the node's translation into the camera of some files; cameras stand at their
+  // Assimp 5.2 copies the node's translation into the camera of some files; cameras are at the
   // node's origin.
   view.position = node.point({0, 0, 0});
   view.look_at = view.position + node.direction(vector_of(camera.mLookAt));
@@ -41,7 +42,7 @@ std::optional<Camera> camera_of(const aiCamera& camera, const Transform& node, b
   Camera out =
       PerspectiveCamera{view.position, view.look_at, view.up, vertical_fov_degrees(camera, gltf)};
   if (camera.mOrthographicWidth > 0) {
-    // glTF's xmag, half of the width; its aspect is xmag over ymag.
+    // glTF's xmag is half of the width; the aspect ratio is xmag over ymag.
     const double aspect = camera.mAspect > 0 ? camera.mAspect : 1;
     out = OrthographicCamera{view.position, view.look_at, view.up,
                              2 * camera.mOrthographicWidth / aspect};
@@ -49,13 +50,13 @@ std::optional<Camera> camera_of(const aiCamera& camera, const Transform& node, b
   return validate(out).ok() ? std::optional(out) : std::nullopt;
 }
 
-// Those of 3DS files and the like look at a target that Assimp does not pass on.
+// Cameras of 3DS and similar files look at a target that Assimp does not pass on.
 bool has_usable_cameras(const ModelFile& file) {
   return file.kind != ModelKind::kOther || absl::EndsWithIgnoreCase(file.path, ".dae") ||
          absl::EndsWithIgnoreCase(file.path, ".fbx");
 }
 
-// The tree is walked with a stack of its own: its depth comes from the file.
+// Traverses the tree with an explicit stack, because its depth is determined by the file.
 class Walk {
  public:
   Walk(ModelFile& file, const ModelMeshes& meshes) : file_(file), meshes_(meshes) {
@@ -81,7 +82,7 @@ class Walk {
   }
 
   void run() {
-    while (!stack_.empty() && model.instances.size() <= kMostInstances) {
+    while (!stack_.empty() && model.instances.size() <= kMaxInstances) {
       const auto [node, parent] = stack_.back();
       stack_.pop_back();
       visit(*node, parent * transform_of(node->mTransformation));
@@ -98,7 +99,7 @@ class Walk {
   };
   struct CameraAtNode {
     const aiCamera* camera = nullptr;
-    std::string name = {};  ///< its own
+    std::string name = {};  ///< its own name
   };
 
   void visit(const aiNode& node, const Transform& to_model) {
@@ -124,7 +125,7 @@ class Walk {
     add_camera(node, to_model);
     add_lights(node, to_model);
     ++visited_;
-    // Backwards, so that children are visited in the order of the file.
+    // In reverse order, so that children are visited in the order of the file.
     for (unsigned i = node.mNumChildren; i-- > 0;) {
       stack_.push_back({node.mChildren[i], to_model});
     }
@@ -157,13 +158,16 @@ class Walk {
 
   ModelFile& file_;
   const ModelMeshes& meshes_;
-  std::size_t visited_ = 0;                         ///< nodes
-  std::map<std::size_t, CameraAtNode> standing_;    ///< glTF's, by the visit of their nodes
-  std::map<std::string, const aiCamera*> cameras_;  ///< others, by the names of their nodes
-  std::map<std::size_t, const aiLight*> shining_;   ///< glTF's lights, likewise
+  std::size_t visited_ = 0;  ///< number of visited nodes
+  std::map<std::size_t, CameraAtNode>
+      standing_;  ///< cameras of glTF, keyed by the index of their node
+  std::map<std::string, const aiCamera*>
+      cameras_;  ///< other cameras, keyed by the name of their node
+  std::map<std::size_t, const aiLight*> shining_;  ///< lights of glTF, keyed in the same way
   std::multimap<std::string, const aiLight*> lights_;
   std::vector<Entry> stack_;
-  std::set<unsigned> skinned_;  ///< those that are placed: their bones place them, not their nodes
+  std::set<unsigned>
+      skinned_;  ///< skinned meshes that have been placed, by their bones and not by their nodes
 };
 
 }  // namespace
@@ -175,9 +179,9 @@ Transform transform_of(const aiMatrix4x4& m) {
 absl::StatusOr<Model> read_nodes(ModelFile& file, const ModelMeshes& meshes) {
   Walk walk(file, meshes);
   walk.run();
-  if (walk.model.instances.size() > kMostInstances) {
+  if (walk.model.instances.size() > kMaxInstances) {
     return absl::ResourceExhaustedError(
-        absl::StrCat(file.name(), ": has more than ", kMostInstances, " placements of meshes"));
+        absl::StrCat(file.name(), ": has more than ", kMaxInstances, " placements of meshes"));
   }
   if (walk.flattened > 0) {
     file.warn(

@@ -1,7 +1,6 @@
 #pragma once
 
-// Morph targets and skins, as the file leaves them: at the weights it starts with and with every
-// bone where its node stands.
+// Morph targets and skins in the rest pose: with the initial weights, and every bone at its node.
 
 #include <map>
 #include <string>
@@ -15,20 +14,21 @@ struct aiScene;
 
 namespace bandsaw {
 
-/// Where the nodes of a model stand, in the model's own space.
+/// Transforms of a model's nodes, in the model's space.
 struct NodePlaces {
   std::vector<Transform> by_number;          ///< parents first
-  std::map<std::string, Transform> by_name;  ///< of several the first
-  std::map<unsigned, Transform> of_meshes;   ///< the first node that bears each
+  std::map<std::string, Transform> by_name;  ///< if several share a name, the first
+  std::map<unsigned, Transform> of_meshes;   ///< the first node of each mesh
 };
 NodePlaces node_places(const aiScene& scene);
 
-/// Moves vertices and normals (empty, or one a vertex) by the targets whose weight is not 0.
+/// Applies the morph targets whose weight is not 0 to vertices and normals (empty, or one a
+/// vertex).
 void add_morph_targets(const aiMesh& from, Mesh& mesh);
 
-/// Moves vertices and normals to where the bones hold them, in the model's own space: each by the
-/// weighted mean of its bones' transforms (linear blend skinning; glTF 2.0, 3.7.3.3); vertices
-/// without a bone as a whole by `place`. `bones`: where those of the mesh stand, in its order.
+/// Transforms vertices and normals into the model's space, each by the weighted mean of its bones'
+/// transforms (linear blend skinning; glTF 2.0, 3.7.3.3); vertices without a bone by `place`.
+/// `bones` are the transforms of the mesh's bones, in their order.
 void add_skin(const aiMesh& from, const std::vector<Transform>& bones, const Transform& place,
               Mesh& mesh);
 

@@ -1,5 +1,5 @@
-// Metallic-roughness materials: of glTF, of MTL files with the PBR extension, of FBX files by Maya
-// and 3ds Max.
+// Reads metallic-roughness materials of glTF, of MTL files with the PBR extension, and of FBX files
+// by Maya and 3ds Max.
 
 #include <assimp/GltfMaterial.h>
 
@@ -19,7 +19,7 @@ namespace {
 
 using As = MaterialReader::As;
 using Slot = MaterialReader::Slot;
-constexpr float kMostRadiance = 1e30f;
+constexpr float kMaxRadiance = 1e30f;
 
 Slot either(const MaterialReader& reader, Slot first, Slot second) {
   return reader.has(first) ? first : second;
@@ -30,7 +30,7 @@ absl::Status read_base(MaterialReader& reader, Principled& to) {
   ASSIGN_OR_RETURN(to.base_color.texture, reader.map(slot, As::kColor));
   const auto base = reader.color("$clr.base", 1);
   to.base_color.factor = base ? *base : reader.color("$clr.diffuse", 1).value_or(Rgb{1, 1, 1});
-  // glTF keeps both in one image; elsewhere each has its own.
+  // glTF stores both in one image; other formats have an image for each.
   const Slot both{aiTextureType_UNKNOWN};
   const bool one = reader.kind() == ModelKind::kGltf && reader.has(both);
   const Slot metal = one ? both : Slot{aiTextureType_METALNESS};
@@ -50,10 +50,10 @@ absl::Status read_emission(MaterialReader& reader, Principled& to) {
   const double strength =
       reader.gltf() != nullptr && reader.gltf()->emissive_strength
           ? *reader.gltf()->emissive_strength
-          : reader.number("$mat.emissiveIntensity", 0, double{kMostRadiance}).value_or(1);
-  const Rgb color = reader.color("$clr.emissive", kMostRadiance).value_or(Rgb{}) *
+          : reader.number("$mat.emissiveIntensity", 0, double{kMaxRadiance}).value_or(1);
+  const Rgb color = reader.color("$clr.emissive", kMaxRadiance).value_or(Rgb{}) *
                     static_cast<float>(std::clamp(strength, 0.0, 1e8));
-  const auto least = [](float v) { return std::min(v, kMostRadiance); };
+  const auto least = [](float v) { return std::min(v, kMaxRadiance); };
   to.emissive.factor = {least(color.r), least(color.g), least(color.b)};
   int both = reader.kind() == ModelKind::kGltf ? 0 : 1;
   reader.material().Get(AI_MATKEY_TWOSIDED, both);
@@ -104,21 +104,21 @@ absl::Status read_alpha(MaterialReader& reader, Principled& to) {
   return absl::OkStatus();
 }
 
-// F0 times its factor and the luminance of its colour is the F0 of another index. Towards the edge
-// all of the light is reflected still, but where nothing is.
+// Sets the index whose F0 is the material's F0 times its factor and the luminance of its colour. At
+// grazing angles all light is still reflected, unless F0 is 0.
 void read_specular(const GltfSpecular& from, MaterialReader& reader, Principled& to) {
   const auto [r, g, b] = from.color;
   if (r != g || g != b) {
-    reader.leave_out("its specular colour is taken as grey");
+    reader.unsupported("its specular colour is taken as grey");
   }
   if (from.has_maps) {
-    reader.leave_out("its specular map is left out");
+    reader.unsupported("its specular map is left out");
   }
   const double amount = from.factor * (0.2126 * r + 0.7152 * g + 0.0722 * b);
   const double root = (to.index_of_refraction - 1) / (to.index_of_refraction + 1);
-  // The root of F0 at an index of 5, the highest that there is.
-  constexpr double kMostRoot = 4.0 / 6;
-  const double f = std::clamp(root * std::sqrt(std::max(0.0, amount)), 0.0, kMostRoot);
+  // The square root of F0 for an index of 5, the maximum.
+  constexpr double kMaxRoot = 4.0 / 6;
+  const double f = std::clamp(root * std::sqrt(std::max(0.0, amount)), 0.0, kMaxRoot);
   to.index_of_refraction = std::clamp((1 + f) / (1 - f), 1.0, 5.0);
 }
 
@@ -126,7 +126,7 @@ absl::Status read_layers(MaterialReader& reader, Principled& to) {
   to.index_of_refraction = reader.number("$mat.refracti", 1, 5).value_or(1.5);
   if (const GltfMaterial* gltf = reader.gltf(); gltf != nullptr && gltf->index_of_refraction) {
     const double index = *gltf->index_of_refraction;
-    // KHR_materials_ior: 0 stands for the old kind, whose reflection knows no angle.
+    // KHR_materials_ior: 0 means a reflection that does not depend on the angle.
     to.index_of_refraction = index >= 1 && index <= 5 ? index : 1.5;
   }
   if (const GltfMaterial* gltf = reader.gltf(); gltf != nullptr && gltf->specular) {
@@ -142,8 +142,8 @@ absl::Status read_layers(MaterialReader& reader, Principled& to) {
   return absl::OkStatus();
 }
 
-// KHR_materials_pbrSpecularGlossiness without images, as its appendix converts it: the metallic
-// share whose mixture of 0.04 and base colour is as bright as the specular colour.
+// Converts KHR_materials_pbrSpecularGlossiness without images as in its appendix: the metallic
+// share for which the mixture of 0.04 and the base colour is as bright as the specular colour.
 void from_glossiness(MaterialReader& reader, double glossiness, Principled& to) {
   to.roughness.factor = 1 - glossiness;
   to.metallic.factor = 0;
@@ -151,7 +151,7 @@ void from_glossiness(MaterialReader& reader, double glossiness, Principled& to) 
   const Rgb specular = reader.color("$clr.specular", 1).value_or(Rgb{1, 1, 1});
   to.base_color.factor = diffuse;
   if (reader.has({aiTextureType_SPECULAR})) {
-    reader.leave_out("its specular-glossiness map is left out: it is taken as not metallic");
+    reader.unsupported("its specular-glossiness map is left out: it is taken as not metallic");
     return;
   }
   constexpr double kDielectric = 0.04;
@@ -160,7 +160,7 @@ void from_glossiness(MaterialReader& reader, double glossiness, Principled& to) 
     to.metallic.factor = std::min(1.0, (bright - kDielectric) / (1 - kDielectric));
     to.base_color.factor = lerp(diffuse, specular, static_cast<float>(to.metallic.factor));
   }
-  reader.leave_out("its specular colour and glossiness are taken as metallic and roughness");
+  reader.unsupported("its specular colour and glossiness are taken as metallic and roughness");
 }
 
 }  // namespace

@@ -17,10 +17,10 @@
 namespace bandsaw {
 namespace {
 
-// Raw texels as a TGA file of 32 bits a pixel from the top: its order of bytes is Assimp's own.
+// Returns raw texels as a TGA file with 32 bits a pixel, rows from the top, in Assimp's byte order.
 std::string tga_of(const aiTexture& raw) {
-  constexpr unsigned kMostSide = 0xffff;
-  if (raw.mWidth > kMostSide || raw.mHeight > kMostSide) {
+  constexpr unsigned kMaxImageSide = 0xffff;
+  if (raw.mWidth > kMaxImageSide || raw.mHeight > kMaxImageSide) {
     return "";
   }
   const auto low = [](unsigned v) { return static_cast<char>(v & 0xff); };
@@ -57,8 +57,8 @@ std::string last_part(const std::string& name) {
   return slash == std::string::npos ? name : name.substr(slash + 1);
 }
 
-// The file that the name means, by ever more forgiving readings of it. The error is that of the
-// name as it stands.
+// Finds the file by increasingly tolerant interpretations of the name. The error is that of the
+// unchanged name.
 absl::StatusOr<std::string> find_file(const SceneFolder& in, const std::string& file,
                                       const std::string& model_folder) {
   const std::string name = absl::StrReplaceAll(file, {{"\\", "/"}});

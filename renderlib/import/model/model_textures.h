@@ -1,6 +1,6 @@
 #pragma once
 
-// The images that a model refers to, embedded or beside it, as textures of the draft.
+// Images of a model, embedded or in files, as textures of the draft.
 
 #include <string>
 
@@ -13,29 +13,30 @@ namespace bandsaw {
 
 class ModelTextures {
  public:
-  /// All outlive this. `model_path` is real and below the draft's folder.
+  /// All arguments MUST outlive this object. `model_path` is a real path below the draft's folder.
   ModelTextures(const aiScene& scene, const std::string& model_path, SceneDraft& draft)
       : scene_(scene), path_(model_path), draft_(draft) {}
 
-  /// `file` is a name as the model writes it: of an embedded image, or of a file as it stands, with
-  /// backslashes, percent-encoded, in other case, or by a path of another machine, whose last part
-  /// lies beside the model. NOT_FOUND, PERMISSION_DENIED, INVALID_ARGUMENT: the reason.
+  /// Finds an image by its name in the model: an embedded image, or a file by its name as it is,
+  /// with backslashes, percent-encoded, in other case, or by a path of another machine whose last
+  /// part is in the model's folder. Returns NOT_FOUND, PERMISSION_DENIED or INVALID_ARGUMENT with
+  /// the reason.
   absl::StatusOr<TextureId> find(const std::string& file, const TextureStore::Use& use) const;
 
-  /// Whether find() would find a file, or the image within the model.
+  /// Returns true if find() would find a file or an embedded image.
   absl::Status locate(const std::string& file) const { return source_of(file).status(); }
 
-  /// Its texels alone, for a look at them. Errors: as find.
+  /// Returns the texels only. Errors are those of find().
   absl::StatusOr<ImageTexture> decoded(const std::string& file) const;
 
-  /// Whether the image has an alpha channel. Errors: as find.
+  /// Returns true if the image has an alpha channel. Errors are those of find().
   absl::StatusOr<bool> has_alpha(const std::string& file) const;
 
  private:
   struct Source {
-    std::string key;    ///< tells images apart
-    std::string name;   ///< for people
-    int embedded = -1;  ///< Assimp's number, or -1: a file
+    std::string key;    ///< identifies the image
+    std::string name;   ///< name for messages
+    int embedded = -1;  ///< Assimp's number; -1 for a file
     absl::StatusOr<std::string> bytes(const aiScene& scene) const;
   };
   absl::StatusOr<Source> source_of(const std::string& file) const;

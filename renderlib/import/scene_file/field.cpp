@@ -28,14 +28,14 @@ Field::At Field::at(const std::string& name, int index) const {
   const int count = field->is_repeated()
                         ? message_->GetReflection()->FieldSize(*message_, field)
                         : (message_->GetReflection()->HasField(*message_, field) ? 1 : 0);
-  // A list that is wrong as a whole is shown where it begins.
+  // An error about a whole list refers to its beginning.
   const int shown = field->is_repeated() && index < 0 && count > 0 ? 0 : index;
   if (count == 0 || shown >= count) {
     return at_;
   }
   auto location = tree_->GetLocation(field, shown);
   if (location.line < 0 && shown > 0) {
-    // Of a list in brackets only the beginning is known.
+    // For a list in brackets only the position of its beginning is known.
     location = tree_->GetLocation(field, 0);
   }
   return location.line < 0 ? at_ : At{location.line, location.column};

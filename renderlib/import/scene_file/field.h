@@ -1,7 +1,6 @@
 #pragma once
 
-// A place in a scene file: the message that was read there, its path, and its line and column, for
-// errors that say where.
+// A field of a scene file: its message, its path, and its line and column for errors.
 
 #include <google/protobuf/message.h>
 #include <google/protobuf/text_format.h>
@@ -16,29 +15,29 @@ namespace bandsaw {
 
 class Field {
  public:
-  /// The whole file. `locations` is null where the format has none (JSON). All MUST outlive this
-  /// and its children.
+  /// The whole file. `locations` is nullptr if the format has none (JSON). All arguments MUST
+  /// outlive this object and its children.
   Field(const std::string& file, const google::protobuf::Message& root,
         const google::protobuf::TextFormat::ParseInfoTree* locations)
       : file_(&file), message_(&root), tree_(locations) {}
 
-  /// A message field of this one; `index` is -1 where it is not repeated.
+  /// Returns a message field of this one; `index` is -1 if the field is not repeated.
   Field child(const std::string& name, int index = -1) const;
-  /// Whether a singular field was written.
+  /// Returns true if a singular field is present.
   bool has(const std::string& name) const;
 
-  /// "cornell.textproto:12:3: shape[4].sphere.radius: <what>", at the field where it was written,
-  /// else at its message.
+  /// Returns INVALID_ARGUMENT: "cornell.textproto:12:3: shape[4].sphere.radius: <what>", with the
+  /// position of the field or, if it is absent, of its message.
   absl::Status error(const std::string& name, absl::string_view what, int index = -1) const;
-  /// The same about this message itself.
+  /// The same for this message itself.
   absl::Status error(absl::string_view what) const;
 
-  /// "shape[4].sphere.radius"
+  /// Returns the path: "shape[4].sphere.radius".
   std::string path(const std::string& name, int index = -1) const;
 
  private:
   struct At {
-    int line = -1;  ///< from 0, as protobuf counts
+    int line = -1;  ///< counted from 0, as in protobuf
     int column = -1;
   };
   At at(const std::string& name, int index) const;

@@ -9,7 +9,7 @@
 namespace bandsaw {
 namespace {
 
-constexpr double kMostCoordinate = 1e30;
+constexpr double kMaxCoordinate = 1e30;
 
 absl::Status check_three(const Field& in, const std::string& name, const Numbers& list) {
   if (list.empty()) {
@@ -26,7 +26,7 @@ absl::Status check_three(const Field& in, const std::string& name, const Numbers
 absl::StatusOr<Vec3> read_vec3(const Field& in, const std::string& name, const Numbers& list) {
   RETURN_IF_ERROR(check_three(in, name, list));
   for (int i = 0; i < 3; ++i) {
-    if (!(std::abs(list[i]) <= kMostCoordinate)) {
+    if (!(std::abs(list[i]) <= kMaxCoordinate)) {
       return in.error(name, absl::StrCat("must be finite, at most 1e30, is ", list[i]), i);
     }
   }
@@ -63,7 +63,7 @@ absl::StatusOr<Rgb> read_color(const Field& in, const scene::Color& color, float
     const double value = color.rgb(i);
     if (!(value >= 0 && value <= most)) {
       const std::string allowed =
-          most == kMostReflectance ? "must lie in [0, 1]" : "must be finite and >= 0";
+          most == kMaxReflectance ? "must lie in [0, 1]" : "must be finite and >= 0";
       return in.error("rgb", absl::StrCat(allowed, ", is ", value), i);
     }
   }

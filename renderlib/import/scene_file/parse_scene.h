@@ -1,6 +1,6 @@
 #pragma once
 
-// The text of a scene file as proto/scene.proto, before it means anything.
+// Parses the text of a scene file to proto/scene.proto, without interpreting it.
 
 #include <google/protobuf/text_format.h>
 
@@ -14,14 +14,15 @@ namespace bandsaw {
 
 struct ParsedScene {
   scene::Scene scene;
-  /// Where each field was written; null for JSON.
+  /// Positions of the fields; nullptr for JSON.
   std::unique_ptr<google::protobuf::TextFormat::ParseInfoTree> locations;
 };
 
-/// `file` is what errors call it. INVALID_ARGUMENT: "cornell.textproto:12:3: <cause>; <cure>", the
-/// first that is wrong.
+/// `file` is the name in errors. Returns INVALID_ARGUMENT: "cornell.textproto:12:3: <cause>;
+/// <cure>", for the first error.
 absl::StatusOr<ParsedScene> parse_textproto(const std::string& text, const std::string& file);
-/// INVALID_ARGUMENT with the field's path, or the line and column where the JSON itself is broken.
+/// Returns INVALID_ARGUMENT with the field's path, or with line and column if the JSON itself is
+/// broken.
 absl::StatusOr<ParsedScene> parse_json(const std::string& text, const std::string& file);
 
 }  // namespace bandsaw

@@ -16,8 +16,7 @@
 namespace bandsaw {
 namespace {
 
-// The parser's complaint about an unknown field, with the fields that there are; other complaints
-// as they come.
+// Returns the parser's error; for an unknown field, with the known fields.
 std::string explain(const std::string& message) {
   absl::string_view rest = message;
   const auto until_quote = [&rest] {
@@ -42,7 +41,7 @@ std::string explain(const std::string& message) {
                       " (its fields: ", absl::StrJoin(fields, ", "), ")");
 }
 
-// Keeps the first error: what follows is mostly its echo.
+// Stores the first error; later ones mostly follow from it.
 class FirstError : public google::protobuf::io::ErrorCollector {
  public:
   FirstError(const std::string& text, const std::string& file) : text_(text), file_(file) {}
@@ -60,8 +59,8 @@ class FirstError : public google::protobuf::io::ErrorCollector {
   const absl::Status& status() const { return status_; }
 
  private:
-  // From 1. The parser complains of a field's name after it has read it, so its place is looked for
-  // backwards.
+  // Counted from 1. The parser reports a field's name after it has read it, so its position is
+  // searched backwards.
   std::size_t column_of(int line, int column, const std::string& message) const {
     const auto from = static_cast<std::size_t>(column);
     const std::size_t open = message.find("named \"");

@@ -9,11 +9,12 @@ namespace bandsaw {
 
 using InstanceList = google::protobuf::RepeatedPtrField<scene::Instance>;
 
-/// All groups of a scene file, into SceneDraft::groups; materials and shutter have been read.
+/// Reads all groups of a scene file into SceneDraft::groups. Materials and shutter MUST have been
+/// read.
 absl::Status read_groups(const Field& root, const scene::Scene& from, SceneDraft& draft);
 
-/// The instances of the scene or of a group, into SceneDraft::placed; the groups that they may name
-/// have been read.
+/// Reads the instances of the scene or of a group into SceneDraft::placed. The groups to which they
+/// refer MUST have been read.
 absl::Status read_instances(const Field& parent, const InstanceList& instances, SceneDraft& draft);
 
 }  // namespace bandsaw

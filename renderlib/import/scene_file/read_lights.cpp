@@ -14,7 +14,7 @@ absl::StatusOr<Rgb> read_brightness(const Field& in, const std::string& name, bo
   if (!given) {
     return in.error(name, absl::StrCat("is required, for example ", name, " { rgb: [1, 1, 1] }"));
   }
-  return read_color(in.child(name), from, kMostRadiance);
+  return read_color(in.child(name), from, kMaxRadiance);
 }
 
 absl::StatusOr<DeltaLight> read_directional(const Field& in, const scene::DirectionalLight& from) {
@@ -89,8 +89,8 @@ absl::Status read_lights(const Field& root, const scene::Scene& from, SceneDraft
     const Field in = root.child("light", i);
     ASSIGN_OR_RETURN(const DeltaLight light, read_light(in, from.light(i)));
     directional += std::holds_alternative<DirectionalLight>(light) ? 1 : 0;
-    if (directional > kMostDirectionalLights) {
-      return in.error("directional", absl::StrCat("is one more than the ", kMostDirectionalLights,
+    if (directional > kMaxDirectionalLights) {
+      return in.error("directional", absl::StrCat("is one more than the ", kMaxDirectionalLights,
                                                   " directional lights that a scene may have"));
     }
     draft.out.scene.lights.push_back(light);

@@ -7,7 +7,7 @@
 
 namespace bandsaw {
 
-/// Adds the written lights to the scene. INVALID_ARGUMENT: a field.
+/// Adds the file's delta lights to the scene. Returns INVALID_ARGUMENT with the field's name.
 absl::Status read_lights(const Field& root, const scene::Scene& from, SceneDraft& draft);
 
 }  // namespace bandsaw

@@ -7,11 +7,11 @@
 
 namespace bandsaw {
 
-/// All materials of a scene file with their textures.
+/// Reads all materials of a scene file with their textures.
 absl::Status read_materials(const Field& root, const scene::Scene& from, SceneDraft& draft);
 
-/// The material called `name`, which is the value of `in`'s field "material". INVALID_ARGUMENT:
-/// none is called so.
+/// Returns the material with this name, which is the value of `in`'s field "material". Returns
+/// INVALID_ARGUMENT if there is none.
 absl::StatusOr<MaterialId> find_material(const Field& in, const std::string& name,
                                          const SceneDraft& draft);
 

@@ -19,10 +19,10 @@ absl::StatusOr<Rgb> read_rates(const Field& in, const std::string& name, bool gi
   if (!given) {
     return Rgb{};
   }
-  ASSIGN_OR_RETURN(const Rgb rates, read_color(in.child(name), color, kMostPerUnit));
+  ASSIGN_OR_RETURN(const Rgb rates, read_color(in.child(name), color, kMaxPerUnit));
   const Rgb scaled = rates * static_cast<float>(density);
-  if (!(max_component(scaled) <= kMostPerUnit)) {
-    return in.error(name, absl::StrCat("must be at most ", kMostPerUnit, " per scene unit, is ",
+  if (!(max_component(scaled) <= kMaxPerUnit)) {
+    return in.error(name, absl::StrCat("must be at most ", kMaxPerUnit, " per scene unit, is ",
                                        max_component(scaled)));
   }
   return scaled;
@@ -35,7 +35,7 @@ absl::StatusOr<Medium> read_medium(const Field& in, const scene::Medium& from) {
   }
   const double density = from.has_density() ? from.density() : 1;
   RETURN_IF_ERROR(check_range(in, "density", density, 0, 1e12));
-  RETURN_IF_ERROR(check_range(in, "anisotropy", from.anisotropy(), -kMostG, kMostG));
+  RETURN_IF_ERROR(check_range(in, "anisotropy", from.anisotropy(), -kMaxG, kMaxG));
   Medium medium;
   medium.g = from.anisotropy();
   ASSIGN_OR_RETURN(medium.absorption,
@@ -46,7 +46,7 @@ absl::StatusOr<Medium> read_medium(const Field& in, const scene::Medium& from) {
                    read_rates(in, "emission", from.has_emission(), from.emission(), density));
   if (from.has_albedo()) {
     ASSIGN_OR_RETURN(const Rgb albedo,
-                     read_color(in.child("albedo"), from.albedo(), kMostReflectance));
+                     read_color(in.child("albedo"), from.albedo(), kMaxReflectance));
     const auto scale = static_cast<float>(density);
     medium.scattering = albedo * scale;
     medium.absorption = Rgb{1 - albedo.r, 1 - albedo.g, 1 - albedo.b} * scale;
@@ -112,7 +112,7 @@ Instance boundary_of(const Sphere& sphere, MediumId inside, SceneDraft& draft) {
 
 Instance boundary_of(const Vec3& low, const Vec3& high, MediumId inside, SceneDraft& draft) {
   Geometry& boundaries = draft.out.scene.media.boundaries;
-  constexpr MeshId kCube{0xffffffffu};  // a name that no mesh of the scene has
+  constexpr MeshId kCube{0xffffffffu};  // an id that no mesh of the scene has
   const auto [known, is_new] = draft.boundary_meshes.try_emplace(
       kCube, MeshId{static_cast<std::uint32_t>(boundaries.meshes.size())});
   if (is_new) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Media of a scene file, and what they are inside of.
+// Reads media of a scene file and their boundaries.
 
 #include <optional>
 
@@ -11,16 +11,17 @@
 
 namespace bandsaw {
 
-/// All media, and the fog.
+/// Reads all media and the fog.
 absl::Status read_media(const Field& root, const scene::Scene& from, SceneDraft& draft);
 
-/// The medium called `name`, which is the value of `in`'s field `field`. INVALID_ARGUMENT: none is
-/// called so.
+/// Returns the medium with this name, which is the value of `in`'s field `field`. Returns
+/// INVALID_ARGUMENT if there is none.
 absl::StatusOr<MediumId> find_medium(const Field& in, const std::string& field,
                                      const std::string& name, const SceneDraft& draft);
 
-/// What the medium is inside of, as an instance of Media::boundaries: a sphere; a box from `low` to
-/// `high`; a mesh of the scene. INVALID_ARGUMENT, about `in`'s field "interior": the mesh is open.
+/// Adds the boundary of a medium as an instance of Media::boundaries: a sphere, a box from `low` to
+/// `high`, or a mesh of the scene. Returns INVALID_ARGUMENT for `in`'s field "interior" if the mesh
+/// is open.
 Instance boundary_of(const Sphere& sphere, MediumId inside, SceneDraft& draft);
 Instance boundary_of(const Vec3& low, const Vec3& high, MediumId inside, SceneDraft& draft);
 absl::StatusOr<Instance> boundary_of(const Field& in, const Instance& mesh, MediumId inside,

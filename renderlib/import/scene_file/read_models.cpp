@@ -15,7 +15,7 @@
 namespace bandsaw {
 namespace {
 
-// What may be wrong with a model's file, at the field that names it.
+// Returns an error about a model's file at the field that names it.
 absl::StatusOr<std::shared_ptr<const Model>> read_file(const Field& in, const scene::Model& from,
                                                        SceneDraft& draft) {
   if (from.file().empty()) {
@@ -37,7 +37,7 @@ absl::StatusOr<std::shared_ptr<const Model>> read_file(const Field& in, const sc
   return std::make_shared<const Model>(*std::move(model));
 }
 
-/// Read once, however often it is named.
+/// Reads each model once, even if it is named several times.
 absl::StatusOr<std::shared_ptr<const Model>> find_file(const Field& in, const scene::Model& from,
                                                        SceneDraft& draft) {
   std::shared_ptr<const Model>& model = draft.models[{from.file(), !from.material().empty()}];
@@ -47,7 +47,8 @@ absl::StatusOr<std::shared_ptr<const Model>> find_file(const Field& in, const sc
   return model;
 }
 
-/// Lights without size stand still in the world: where the shutter opens, if their model moves.
+/// Adds the delta lights of a model. They do not move; for moving models, they are placed as when
+/// the shutter opens.
 void add_lights(const std::string& file, const Model& model, const Transform& to_world,
                 SceneDraft& draft) {
   if (draft.placed != &draft.world) {
@@ -72,7 +73,7 @@ absl::Status place_model(const Field& in, const Placements& what, const Transfor
              : in.error("scale", "is too large or too small for this model");
 }
 
-/// What is inside of a model's meshes, each placed by itself.
+/// Adds the media inside a model's meshes, each with its own placement.
 absl::StatusOr<Placements> read_interior(const Field& in, const scene::Model& from,
                                          const Model& model, SceneDraft& draft) {
   ASSIGN_OR_RETURN(const MediumId medium, find_medium(in, "interior", from.interior(), draft));

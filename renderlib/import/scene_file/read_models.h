@@ -9,9 +9,8 @@ namespace bandsaw {
 
 using ModelList = google::protobuf::RepeatedPtrField<scene::Model>;
 
-/// All model entries of the scene or of a group, into SceneDraft::placed; what cameras they bring,
-/// into SceneDraft::cameras. A file that is named twice is read once. The scene's materials have
-/// been read.
+/// Reads all models of the scene or of a group into SceneDraft::placed, and their cameras into
+/// SceneDraft::cameras. Each file is read once. The scene's materials MUST have been read.
 absl::Status read_models(const Field& parent, const ModelList& models, SceneDraft& draft);
 
 }  // namespace bandsaw

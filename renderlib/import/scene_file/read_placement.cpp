@@ -12,17 +12,17 @@
 namespace bandsaw {
 namespace {
 
-/// Of a turn about one axis this much goes between two keys; the shortest way is the whole way
-/// then.
-constexpr double kMostTurn = 90;  // degrees
-constexpr double kMostKeys = 100'000;
+/// Maximum rotation about one axis between two keys, so that the shortest rotation is the whole
+/// rotation.
+constexpr double kMaxTurn = 90;  // degrees
+constexpr double kMaxKeys = 100'000;
 
 struct Turn {
   Vec3 axis;
   double degrees = 0;
 };
 
-/// What is written of a placement.
+/// The fields of a placement.
 struct Written {
   Vec3 scale{1, 1, 1};
   std::vector<Turn> turns;
@@ -89,7 +89,8 @@ bool same_sign(const Vec3& a, const Vec3& b) {
   return a.x * b.x > 0 && a.y * b.y > 0 && a.z * b.z > 0;
 }
 
-/// The one turn of a pose; of a pose that does not turn, none about the axis of the other.
+/// Returns the rotation of a pose about one axis; a pose without rotation has a rotation of 0 about
+/// the axis of the other pose.
 std::optional<Turn> only_turn(const Written& pose, const Written& other) {
   if (pose.turns.size() == 1) {
     return pose.turns[0];
@@ -98,14 +99,14 @@ std::optional<Turn> only_turn(const Written& pose, const Written& other) {
   return rests ? std::optional(Turn{other.turns[0].axis, 0}) : std::nullopt;
 }
 
-/// Keys from one after a up to b: more than one where both turn about one axis by more than the
-/// shortest way would.
+/// Returns keys after a up to b: more than one if both rotate about one axis by more than the
+/// shortest rotation.
 void add_keys(const WrittenKey& a, const WrittenKey& b, std::vector<Key>& keys) {
   const std::optional<Turn> from = only_turn(a.pose, b.pose);
   const std::optional<Turn> to = only_turn(b.pose, a.pose);
   const bool one_axis = from && to && from->axis == to->axis;
   const double turn = one_axis ? to->degrees - from->degrees : 0;
-  const double steps = std::clamp(std::ceil(std::abs(turn) / kMostTurn), 1.0, kMostKeys);
+  const double steps = std::clamp(std::ceil(std::abs(turn) / kMaxTurn), 1.0, kMaxKeys);
   for (double step = 1; step < steps; ++step) {
     const double u = step / steps;
     Written between;
@@ -121,7 +122,7 @@ absl::StatusOr<WrittenKey> read_key(const Field& in, const scene::Key& from,
                                     const std::vector<WrittenKey>& earlier) {
   WrittenKey key;
   key.time = from.time();
-  RETURN_IF_ERROR(check_range(in, "time", key.time, -kMostTime, kMostTime));
+  RETURN_IF_ERROR(check_range(in, "time", key.time, -kMaxTime, kMaxTime));
   if (!earlier.empty() && !(key.time > earlier.back().time)) {
     return in.error("time", absl::StrCat("must be after that of the key before, ",
                                          earlier.back().time, ", is ", key.time));

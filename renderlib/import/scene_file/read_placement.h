@@ -1,6 +1,6 @@
 #pragma once
 
-// Placements in a scene file: by scale, then rotate, then translate, once or at times.
+// Reads placements of a scene file: scale, then rotate, then translate, once or at several times.
 
 #include <vector>
 
@@ -11,12 +11,12 @@
 
 namespace bandsaw {
 
-/// What `in` stands for: a Model, an Instance, a Copy or a Key.
+/// Reads the placement of `in`: a Model, an Instance, a Copy or a Key.
 absl::StatusOr<Transform> read_placement(const Field& in, const scene::Model& from);
 absl::StatusOr<Transform> read_placement(const Field& in, const scene::Instance& from);
 absl::StatusOr<Transform> read_placement(const Field& in, const scene::Copy& from);
 
-/// The keys of a Model or an Instance; none: it has none.
+/// Reads the keys of a Model or an Instance; empty if it has none.
 absl::StatusOr<std::vector<Key>> read_keys(const Field& in, const scene::Model& from);
 absl::StatusOr<std::vector<Key>> read_keys(const Field& in, const scene::Instance& from);
 

@@ -9,7 +9,7 @@
 
 namespace bandsaw {
 
-/// The rotations of the field `rotate` of `in`, applied in the order written.
+/// Reads the rotations of the field `rotate` of `in`, applied in the order written.
 absl::StatusOr<Transform> read_rotation(
     const Field& in, const google::protobuf::RepeatedPtrField<scene::Rotation>& list);
 

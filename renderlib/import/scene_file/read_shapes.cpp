@@ -112,7 +112,7 @@ absl::Status read_shape(const Field& in, const scene::Shape& from, MaterialId ma
   return in.error("is of no kind: write sphere, quad, triangle, box or disk");
 }
 
-/// A shape that is seen at one moment only.
+/// Returns true if the shape is seen at one moment only.
 void add_moved(const Shapes& shape, const Vec3& by, Shapes& to) {
   for (Sphere sphere : shape.spheres) {
     sphere.center = sphere.center + by;
@@ -131,7 +131,7 @@ void add_moved(const Shapes& shape, const Vec3& by, Shapes& to) {
   }
 }
 
-/// What moves evenly while the shutter, which does not close at once, is open.
+/// Returns the keys of a linear motion while the shutter is open; it MUST have a duration.
 Frame sliding(const Vec3& velocity, const Shutter& shutter) {
   Frame frame;
   frame.keys.emplace_back(shutter.open, translation(velocity * shutter.open));
@@ -139,7 +139,7 @@ Frame sliding(const Vec3& velocity, const Shutter& shutter) {
   return frame;
 }
 
-/// A shape that moves becomes a group of its own, placed in a frame of its own.
+/// Adds a moving shape as a group, placed in its own frame.
 void add_moving(Shapes shape, const Vec3& velocity, SceneDraft& draft) {
   Geometry& geometry = draft.out.scene.geometry;
   Placements& to = draft.placed->seen;
@@ -151,7 +151,7 @@ void add_moving(Shapes shape, const Vec3& velocity, SceneDraft& draft) {
   to.instances.push_back(instance);
 }
 
-/// The medium inside of a sphere or a box.
+/// Returns the medium inside a sphere or a box.
 absl::StatusOr<Instance> read_boundary(const Field& in, const scene::Shape& from,
                                        SceneDraft& draft) {
   if (from.kind_case() != scene::Shape::kSphere && from.kind_case() != scene::Shape::kBox) {
@@ -171,13 +171,13 @@ absl::StatusOr<Instance> read_boundary(const Field& in, const scene::Shape& from
   return boundary_of(low, high, medium, draft);
 }
 
-/// One that rests in the world needs no placement.
+/// A static boundary in the world needs no placement.
 absl::Status read_filled_sphere(const Field& in, const scene::Shape& from, SceneDraft& draft) {
   ASSIGN_OR_RETURN(const MediumId medium, find_medium(in, "interior", from.interior(), draft));
   return read_shape(in, from, filled_with(medium), draft.out.scene.media.boundaries);
 }
 
-/// What is inside of a sphere or a box.
+/// Adds the medium inside a sphere or a box.
 absl::Status read_interior(const Field& in, const scene::Shape& from, SceneDraft& draft) {
   const bool loose = draft.placed == &draft.world && from.velocity().empty();
   if (loose && from.kind_case() == scene::Shape::kSphere) {
@@ -207,7 +207,7 @@ absl::Status read_shapes(const Field& parent, const ShapeList& shapes, SceneDraf
     if (!from.interior().empty()) {
       RETURN_IF_ERROR(read_interior(in, from, draft));
       if (from.material().empty()) {
-        continue;  // Its surface is invisible.
+        continue;  // its surface is invisible
       }
     }
     ASSIGN_OR_RETURN(const MaterialId material, find_material(in, from.material(), draft));

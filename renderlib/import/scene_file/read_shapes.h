@@ -9,8 +9,8 @@ namespace bandsaw {
 
 using ShapeList = google::protobuf::RepeatedPtrField<scene::Shape>;
 
-/// All shapes of the scene or of a group, into SceneDraft::shapes and placed; materials and shutter
-/// have been read.
+/// Reads all shapes of the scene or of a group into SceneDraft::shapes and SceneDraft::placed.
+/// Materials and shutter MUST have been read.
 absl::Status read_shapes(const Field& parent, const ShapeList& shapes, SceneDraft& draft);
 
 }  // namespace bandsaw

@@ -5,20 +5,108 @@
 #include <utility>
 #include <vector>
 
+#include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
+#include "proto/scene.pb.h"
+#include "renderlib/base/file.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/import/draft/color_limits.h"
+#include "renderlib/import/draft/scene_draft.h"
+#include "renderlib/import/image/decode_image.h"
+#include "renderlib/import/scene_file/field.h"
 #include "renderlib/import/scene_file/numbers.h"
-#include "renderlib/import/scene_file/read_image_texture.h"
 #include "renderlib/import/scene_file/suggest.h"
+#include "renderlib/math/elementary.h"
 
 namespace bandsaw {
 namespace {
 
+/// Returns the value of an enum whose values are 0 to `last`.
+template <class Ours>
+absl::StatusOr<Ours> read_enum(const Field& in, const std::string& name, int value, int last) {
+  if (value < 0 || value > last) {
+    return in.error(name, "is none of the values that it can have");
+  }
+  return static_cast<Ours>(value);
+}
+
+// Reads one or two finite numbers; one counts for both if `one_for_both`.
+absl::StatusOr<Vec2> read_vec2(const Field& in, const std::string& name, const Numbers& list,
+                               bool one_for_both, double otherwise) {
+  if (list.empty()) {
+    return Vec2{otherwise, otherwise};
+  }
+  if (list.size() > 2 || (list.size() == 1 && !one_for_both)) {
+    return in.error(name, absl::StrCat("must be ", one_for_both ? "1 or 2" : "2", " numbers, has ",
+                                       list.size()));
+  }
+  for (int i = 0; i < list.size(); ++i) {
+    if (!std::isfinite(list[i])) {
+      return in.error(name, absl::StrCat("must be finite, is ", list[i]), i);
+    }
+  }
+  return Vec2{list[0], list[list.size() - 1]};
+}
+
+absl::StatusOr<UvTransform> read_uv_transform(const Field& in, const scene::ImageTexture& from) {
+  ASSIGN_OR_RETURN(const Vec2 scale, read_vec2(in, "uv_scale", from.uv_scale(), true, 1));
+  ASSIGN_OR_RETURN(const Vec2 offset, read_vec2(in, "uv_offset", from.uv_offset(), false, 0));
+  if (!std::isfinite(from.uv_rotate())) {
+    return in.error("uv_rotate", absl::StrCat("must be finite, is ", from.uv_rotate()));
+  }
+  const SinCos turn = sincos_degrees(from.uv_rotate());
+  return UvTransform{{turn.cos * scale.x, -turn.sin * scale.y, offset.x, turn.sin * scale.x,
+                      turn.cos * scale.y, offset.y}};
+}
+
+absl::StatusOr<TextureStore::Use> read_use(const Field& in, const scene::ImageTexture& from) {
+  using Proto = scene::ImageTexture;
+  TextureStore::Use use;
+  ASSIGN_OR_RETURN(const auto wrap, read_enum<int>(in, "wrap", from.wrap(), Proto::Wrap_MAX));
+  ASSIGN_OR_RETURN(const auto filter,
+                   read_enum<int>(in, "filter", from.filter(), Proto::Filter_MAX));
+  // Our values count from 0 in the same order; the file's have an additional 0 for "unspecified".
+  if (wrap != Proto::WRAP_UNSPECIFIED) {
+    use.wrap = static_cast<ImageTexture::Wrap>(wrap - 1);
+  }
+  ASSIGN_OR_RETURN(const auto wrap_v, read_enum<int>(in, "wrap_v", from.wrap_v(), Proto::Wrap_MAX));
+  if (wrap_v != Proto::WRAP_UNSPECIFIED) {
+    use.wrap_v = static_cast<ImageTexture::Wrap>(wrap_v - 1);
+  }
+  if (filter != Proto::FILTER_UNSPECIFIED) {
+    use.filter = static_cast<ImageTexture::Filter>(filter - 1);
+  }
+  ASSIGN_OR_RETURN(const auto encoding,
+                   read_enum<int>(in, "encoding", from.encoding(), Proto::Encoding_MAX));
+  use.linear = encoding == Proto::ENCODING_LINEAR;
+  ASSIGN_OR_RETURN(use.uv_set, read_enum<UvSet>(in, "uv_set", from.uv_set(), scene::UvSet_MAX));
+  ASSIGN_OR_RETURN(use.uv_transform, read_uv_transform(in, from));
+  return use;
+}
+
+/// Reads the image of `in`. Returns INVALID_ARGUMENT for its file or for a field.
+absl::StatusOr<TextureId> read_image_texture(const Field& in, const scene::ImageTexture& from,
+                                             SceneDraft& draft) {
+  ASSIGN_OR_RETURN(const TextureStore::Use use, read_use(in, from));
+  if (from.file().empty()) {
+    return in.error("file", "is required: the name of an image file");
+  }
+  const auto path = draft.folder.resolve(from.file(), draft.folder.path());
+  if (!path.ok()) {
+    return in.error("file", path.status().message());
+  }
+  auto texture = draft.textures.image(*path, from.file(), use,
+                                      [&] { return read_whole_file(*path, kMaxImageFileBytes); });
+  if (!texture.ok()) {
+    return in.error("file", texture.status().message());
+  }
+  return texture;
+}
+
 using MaybeId = absl::StatusOr<TextureId>;
 
-// A texture inside another; `otherwise` is the colour it has where nothing was written, below 0
-// where it is required.
+// Reads a texture that another texture contains; `otherwise` is its colour if it is absent, or
+// below 0 if it is required.
 MaybeId read_part(const Field& in, const std::string& name, const scene::Texture& from, float most,
                   float otherwise, SceneDraft& draft) {
   if (in.has(name)) {
@@ -61,7 +149,7 @@ MaybeId read_checker(const Field& in, const scene::CheckerTexture& from, float m
 
 MaybeId read_noise(const Field& in, const scene::NoiseTexture& from, float most,
                    SceneDraft& draft) {
-  constexpr double kMost = 1e30;
+  constexpr double kMax = 1e30;
   NoiseTexture to;
   ASSIGN_OR_RETURN(to.kind, read_enum<NoiseTexture::Kind>(in, "kind", from.kind(),
                                                           scene::NoiseTexture::Kind_MAX));
@@ -76,7 +164,7 @@ MaybeId read_noise(const Field& in, const scene::NoiseTexture& from, float most,
         std::tuple("turbulence_scale", from.has_turbulence_scale(), from.turbulence_scale(),
                    &to.turbulence_scale)}) {
     if (written) {
-      RETURN_IF_ERROR(check_range(in, name, value, -kMost, kMost));
+      RETURN_IF_ERROR(check_range(in, name, value, -kMax, kMax));
       *ours = value;
     }
   }
@@ -124,10 +212,10 @@ MaybeId read_ramp(const Field& in, const scene::RampTexture& from, float most, S
   }
   if (from.has_texture()) {
     ASSIGN_OR_RETURN(to.texture,
-                     read_texture(in.child("texture"), from.texture(), kMostRadiance, draft));
+                     read_texture(in.child("texture"), from.texture(), kMaxRadiance, draft));
     return draft.textures.add(std::move(to));
   }
-  // Ours count from 0, which is the texture, as the file's "not said" is.
+  // Our values count from 0, which is the texture, like the file's "unspecified".
   ASSIGN_OR_RETURN(to.over, read_enum<RampTexture::Over>(in, "coordinate", from.coordinate(),
                                                          scene::RampTexture::Coordinate_MAX));
   if (to.over == RampTexture::Over::kTexture) {
@@ -140,15 +228,15 @@ MaybeId read_mix(const Field& in, const scene::MixTexture& from, float most, Sce
   MixTexture to;
   ASSIGN_OR_RETURN(to.a, read_part(in, "a", from.a(), most, -1, draft));
   ASSIGN_OR_RETURN(to.b, read_part(in, "b", from.b(), most, -1, draft));
-  ASSIGN_OR_RETURN(to.amount, read_part(in, "amount", from.amount(), kMostRadiance, 0.5f, draft));
+  ASSIGN_OR_RETURN(to.amount, read_part(in, "amount", from.amount(), kMaxRadiance, 0.5f, draft));
   return draft.textures.add(to);
 }
 
-// Its factors may be above `most`, their product may not: checked by read_texture.
+// The factors may be above `most`, their product may not; read_texture() checks it.
 MaybeId read_product(const Field& in, const scene::ProductTexture& from, SceneDraft& draft) {
   ProductTexture to;
-  ASSIGN_OR_RETURN(to.a, read_part(in, "a", from.a(), kMostRadiance, -1, draft));
-  ASSIGN_OR_RETURN(to.b, read_part(in, "b", from.b(), kMostRadiance, -1, draft));
+  ASSIGN_OR_RETURN(to.a, read_part(in, "a", from.a(), kMaxRadiance, -1, draft));
+  ASSIGN_OR_RETURN(to.b, read_part(in, "b", from.b(), kMaxRadiance, -1, draft));
   return draft.textures.add(to);
 }
 
@@ -191,7 +279,7 @@ MaybeId read_kind(const Field& in, const scene::Texture& from, float most, Scene
   return in.error("is empty: write color, image, checker, noise, ramp, mix, product or use");
 }
 
-// Kinds whose colours are written elsewhere or come together from several.
+// Kinds whose colours are defined elsewhere or are combined from several.
 bool may_pass(const scene::Texture& from) {
   return from.has_image() || from.has_product() || from.kind_case() == scene::Texture::kUse;
 }
@@ -208,8 +296,8 @@ absl::StatusOr<TextureId> read_texture(const Field& in, const scene::Texture& fr
     if (const float found = draft.textures.max_value(id); found > most) {
       const std::string place = from.has_image() ? "image" : from.has_product() ? "product" : "use";
       const std::string what =
-          absl::StrCat(most == kMostReflectance ? "a reflectance must lie in [0, 1], "
-                                                : absl::StrCat("must be at most ", most, ", "),
+          absl::StrCat(most == kMaxReflectance ? "a reflectance must lie in [0, 1], "
+                                               : absl::StrCat("must be at most ", most, ", "),
                        from.has_image() ? "the image holds " : "it reaches ", found);
       return from.has_image() ? in.child("image").error("file", what) : in.error(place, what);
     }
@@ -224,7 +312,7 @@ absl::Status read_textures(const Field& root, const scene::Scene& from, SceneDra
     if (name.empty()) {
       return in.error("name", "is required, so that a material can use it");
     }
-    ASSIGN_OR_RETURN(const TextureId id, read_kind(in, from.texture(i), kMostRadiance, draft));
+    ASSIGN_OR_RETURN(const TextureId id, read_kind(in, from.texture(i), kMaxRadiance, draft));
     if (!draft.named_textures.emplace(name, id).second) {
       return in.error("name", absl::StrCat("\"", name, "\" is the name of another texture"));
     }

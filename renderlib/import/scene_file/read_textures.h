@@ -7,10 +7,11 @@
 
 namespace bandsaw {
 
-/// The named textures of the scene, into the draft: before its materials.
+/// Reads the named textures of the scene into the draft, before its materials.
 absl::Status read_textures(const Field& root, const scene::Scene& from, SceneDraft& draft);
 
-/// The texture that `in` stands for, written out or used by name; no channel above `most` anywhere.
+/// Reads the texture of `in`, which is defined there or referred to by name. No channel may be
+/// above `most` anywhere.
 absl::StatusOr<TextureId> read_texture(const Field& in, const scene::Texture& from, float most,
                                        SceneDraft& draft);
 

@@ -1,12 +1,19 @@
 #include "renderlib/import/scene_file/read_view.h"
 
 #include <algorithm>
+#include <utility>
 
+#include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
+#include "proto/scene.pb.h"
+#include "renderlib/base/file.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/import/draft/color_limits.h"
+#include "renderlib/import/draft/environment_image.h"
+#include "renderlib/import/draft/scene_draft.h"
+#include "renderlib/import/image/decode_image.h"
+#include "renderlib/import/scene_file/field.h"
 #include "renderlib/import/scene_file/numbers.h"
-#include "renderlib/import/scene_file/read_environment.h"
 #include "renderlib/import/scene_file/read_rotation.h"
 #include "renderlib/math/transform.h"
 #include "renderlib/render/settings.h"
@@ -15,13 +22,74 @@ namespace bandsaw {
 
 namespace {
 
-/// The view of a camera that is turned out of the view along -z.
+absl::StatusOr<TextureId> read_image(const Field& in, const std::string& name,
+                                     const std::string& file, SceneDraft& draft) {
+  if (file.empty()) {
+    return in.error(name, "is required: the name of an image file");
+  }
+  const auto path = draft.folder.resolve(file, draft.folder.path());
+  if (!path.ok()) {
+    return in.error(name, path.status().message());
+  }
+  const auto bytes = read_whole_file(*path, kMaxImageFileBytes);
+  if (!bytes.ok()) {
+    return in.error(name, bytes.status().message());
+  }
+  auto image = add_environment_image(*bytes, file, draft);
+  return image.ok() ? image : in.error(name, image.status().message());
+}
+
+template <class Message>
+absl::Status read_placement(const Field& in, const Message& from, Environment& to) {
+  constexpr double kMaxStrength = 1e6;
+  const double strength = from.has_strength() ? from.strength() : 1;
+  RETURN_IF_ERROR(check_range(in, "strength", strength, 0, kMaxStrength));
+  to.strength = static_cast<float>(strength);
+  ASSIGN_OR_RETURN(const Transform turn, read_rotation(in, from.rotate()));
+  to.axes = {turn.direction({1, 0, 0}), turn.direction({0, 1, 0}), turn.direction({0, 0, 1})};
+  return absl::OkStatus();
+}
+
+/// Reads the images of `in`, a background, and adds their texels to the draft. Returns
+/// INVALID_ARGUMENT for a field or a file.
+absl::StatusOr<Environment> read_environment(const Field& in, const scene::EnvironmentMap& from,
+                                             SceneDraft& draft) {
+  Environment to;
+  RETURN_IF_ERROR(read_placement(in, from, to));
+  ASSIGN_OR_RETURN(const TextureId image, read_image(in, "file", from.file(), draft));
+  to.images = {image};
+  return to;
+}
+
+absl::StatusOr<Environment> read_cube_map(const Field& in, const scene::CubeMap& from,
+                                          SceneDraft& draft) {
+  Environment to;
+  to.kind = Environment::Kind::kCube;
+  RETURN_IF_ERROR(read_placement(in, from, to));
+  to.axes.x = from.left_handed() ? -to.axes.x : to.axes.x;
+  for (const auto& [name, file] :
+       {std::pair("positive_x", from.positive_x()), std::pair("negative_x", from.negative_x()),
+        std::pair("positive_y", from.positive_y()), std::pair("negative_y", from.negative_y()),
+        std::pair("positive_z", from.positive_z()), std::pair("negative_z", from.negative_z())}) {
+    ASSIGN_OR_RETURN(const TextureId id, read_image(in, name, file, draft));
+    to.images.push_back(id);
+    const auto& image = std::get<ImageTexture>(draft.textures[id]);
+    const auto& first = std::get<ImageTexture>(draft.textures[to.images.front()]);
+    if (image.width != image.height || image.width != first.width) {
+      return in.error(name, absl::StrCat("images of a cube map must be square and of one size; \"",
+                                         file, "\" is ", image.width, " x ", image.height));
+    }
+  }
+  return to;
+}
+
+/// Returns the view of a camera that is rotated from the view along -z.
 absl::StatusOr<View> read_turned(const Field& in, const scene::Camera& from, View view) {
   if (!from.look_at().empty() || !from.up().empty()) {
     return in.error("rotate", "stands instead of look_at and up: write one or the other");
   }
   ASSIGN_OR_RETURN(const Transform turn, read_rotation(in, from.rotate()));
-  // Far enough ahead that the sum keeps the direction's digits.
+  // The point is so far ahead that the sum keeps the precision of the direction.
   const double ahead = std::max(1.0, max_abs(view.position));
   view.look_at = view.position + turn.direction({0, 0, -1}) * ahead;
   view.up = turn.direction({0, 1, 0});
@@ -61,11 +129,10 @@ absl::StatusOr<Camera> read_perspective(const Field& in, const scene::Camera& fr
                     absl::StrCat("must lie in (0, 180) degrees, is ", camera.vertical_fov));
   }
   camera.aperture = from.aperture();
-  RETURN_IF_ERROR(check_range(in, "aperture", camera.aperture, 0, kMostLens));
+  RETURN_IF_ERROR(check_range(in, "aperture", camera.aperture, 0, kMaxLens));
   if (from.has_focus_distance()) {
     camera.focus_distance = from.focus_distance();
-    RETURN_IF_ERROR(
-        check_range(in, "focus_distance", camera.focus_distance, kLeastFocus, kMostLens));
+    RETURN_IF_ERROR(check_range(in, "focus_distance", camera.focus_distance, kMinFocus, kMaxLens));
   } else if (camera.aperture > 0) {
     if (from.rotate_size() > 0) {
       return in.error("focus_distance", "is required where rotate stands instead of look_at");
@@ -87,7 +154,7 @@ absl::StatusOr<Camera> read_orthographic(const Field& in, const scene::Camera& f
   if (!from.orthographic().has_height()) {
     return orthographic.error("height", "is required: how high the image is, in scene units");
   }
-  if (!(height > 0 && height <= kMostLens)) {
+  if (!(height > 0 && height <= kMaxLens)) {
     return orthographic.error("height", absl::StrCat("must be > 0, at most 1e30, is ", height));
   }
   return Camera(OrthographicCamera{view.position, view.look_at, view.up, height,
@@ -102,8 +169,8 @@ absl::StatusOr<Shutter> read_shutter(const Field& root, const scene::Scene& from
     return shutter;
   }
   const Field in = root.child("camera");
-  RETURN_IF_ERROR(check_range(in, "shutter_open", shutter.open, -kMostTime, kMostTime));
-  RETURN_IF_ERROR(check_range(in, "shutter_close", shutter.close, -kMostTime, kMostTime));
+  RETURN_IF_ERROR(check_range(in, "shutter_open", shutter.open, -kMaxTime, kMaxTime));
+  RETURN_IF_ERROR(check_range(in, "shutter_close", shutter.close, -kMaxTime, kMaxTime));
   if (shutter.close < shutter.open) {
     return in.error("shutter_close", absl::StrCat("must not be before shutter_open, ", shutter.open,
                                                   ", is ", shutter.close));
@@ -163,7 +230,7 @@ absl::Status read_settings(const Field& root, const scene::Scene& from, PackageI
                                       " pixels, at most ", kMaxPixels, " are allowed"));
     }
   }
-  // Ours count from 0 in the same order; 0 means "not written".
+  // Our values count from 0 in the same order; the file's 0 means "unspecified".
   if (from.integrator().kind() != scene::Integrator::KIND_UNSPECIFIED) {
     info.integrator = static_cast<Integrator>(static_cast<int>(from.integrator().kind()) - 1);
   }
@@ -171,8 +238,8 @@ absl::Status read_settings(const Field& root, const scene::Scene& from, PackageI
     info.display.tone = static_cast<Tone>(static_cast<int>(from.image().tone()) - 1);
   }
   info.display.exposure = from.image().exposure();
-  RETURN_IF_ERROR(check_range(root.child("image"), "exposure", info.display.exposure,
-                              -kMostExposure, kMostExposure));
+  RETURN_IF_ERROR(check_range(root.child("image"), "exposure", info.display.exposure, -kMaxExposure,
+                              kMaxExposure));
   if (from.integrator().has_max_depth()) {
     info.max_depth = from.integrator().max_depth();
     RETURN_IF_ERROR(
@@ -186,7 +253,7 @@ absl::StatusOr<LocalShading> read_local_shading(const Field& root, const scene::
   const Field in = root.child("integrator");
   if (from.integrator().has_ambient()) {
     ASSIGN_OR_RETURN(local.ambient,
-                     read_color(in.child("ambient"), from.integrator().ambient(), kMostRadiance));
+                     read_color(in.child("ambient"), from.integrator().ambient(), kMaxRadiance));
   }
   if (from.integrator().has_occlusion_distance()) {
     local.occlusion_distance = from.integrator().occlusion_distance();
@@ -204,7 +271,7 @@ absl::StatusOr<Background> read_background(const Field& root, const scene::Scene
   switch (from.background().kind_case()) {
     case scene::Background::kConstant: {
       ASSIGN_OR_RETURN(const Rgb radiance, read_color(in.child("constant"),
-                                                      from.background().constant(), kMostRadiance));
+                                                      from.background().constant(), kMaxRadiance));
       return Background{radiance, radiance};
     }
     case scene::Background::kGradient: {
@@ -215,8 +282,8 @@ absl::StatusOr<Background> read_background(const Field& root, const scene::Scene
       }
       Background background;
       ASSIGN_OR_RETURN(background.bottom,
-                       read_color(gradient.child("bottom"), of.bottom(), kMostRadiance));
-      ASSIGN_OR_RETURN(background.top, read_color(gradient.child("top"), of.top(), kMostRadiance));
+                       read_color(gradient.child("bottom"), of.bottom(), kMaxRadiance));
+      ASSIGN_OR_RETURN(background.top, read_color(gradient.child("top"), of.top(), kMaxRadiance));
       return background;
     }
     case scene::Background::kEnvironment: {

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a scene file says beside surfaces: camera, size of the image, background, depth.
+// Reads the other settings of a scene file: camera, size of the image, background, depth.
 
 #include "absl/status/statusor.h"
 #include "proto/scene.pb.h"
@@ -10,16 +10,16 @@
 
 namespace bandsaw {
 
-/// The written camera; the scene MUST have one.
+/// Reads the camera; the scene MUST have one.
 absl::StatusOr<Camera> read_camera(const Field& root, const scene::Scene& from);
-/// The written shutter, or the default.
+/// Reads the shutter, or returns the default.
 absl::StatusOr<Shutter> read_shutter(const Field& root, const scene::Scene& from);
-/// The written filter, or the default.
+/// Reads the pixel filter, or returns the default.
 absl::StatusOr<PixelFilter> read_filter(const Field& root, const scene::Scene& from);
 absl::StatusOr<LocalShading> read_local_shading(const Field& root, const scene::Scene& from);
-/// Image and integrator, where written.
+/// Reads image and integrator settings that are present.
 absl::Status read_settings(const Field& root, const scene::Scene& from, PackageInfo& info);
-/// The written background; the scene MUST have one.
+/// Reads the background; the scene MUST have one.
 absl::StatusOr<Background> read_background(const Field& root, const scene::Scene& from,
                                            SceneDraft& draft);
 

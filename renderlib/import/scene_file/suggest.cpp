@@ -9,7 +9,7 @@
 namespace bandsaw {
 namespace {
 
-// Levenshtein distance, row by row.
+// Returns the Levenshtein distance, computed row by row.
 std::size_t distance(const std::string& a, const std::string& b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -28,7 +28,7 @@ std::size_t distance(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& known) {
-  constexpr std::size_t kLongest = 100;  // A name of a megabyte deserves no search.
+  constexpr std::size_t kLongest = 100;  // longer names are not searched
   if (name.size() > kLongest) {
     return "";
   }

@@ -16,7 +16,7 @@ std::string with_file(const FoundCamera& camera) {
   return absl::StrCat(camera.model, "/", camera.name);
 }
 
-/// Those that `name` means: the first way of calling cameras that any answers to decides.
+/// Returns the cameras with this name, by the first kind of name that any camera has.
 std::vector<const FoundCamera*> called(const std::string& name,
                                        const std::vector<FoundCamera>& cameras) {
   const auto all = [&](auto name_of) {
@@ -58,14 +58,13 @@ absl::StatusOr<Camera> find_camera(const std::string& name, const SceneDraft& dr
 
 absl::Status set_lens(const Field& in, const scene::Camera& from, PerspectiveCamera& camera) {
   camera.aperture = from.aperture();
-  RETURN_IF_ERROR(check_range(in, "aperture", camera.aperture, 0, kMostLens));
+  RETURN_IF_ERROR(check_range(in, "aperture", camera.aperture, 0, kMaxLens));
   if (camera.aperture > 0 && !from.has_focus_distance()) {
     return in.error("focus_distance", "is required where a model's camera gets an aperture");
   }
   if (from.has_focus_distance()) {
     camera.focus_distance = from.focus_distance();
-    RETURN_IF_ERROR(
-        check_range(in, "focus_distance", camera.focus_distance, kLeastFocus, kMostLens));
+    RETURN_IF_ERROR(check_range(in, "focus_distance", camera.focus_distance, kMinFocus, kMaxLens));
   }
   return absl::OkStatus();
 }

@@ -1,7 +1,7 @@
 #pragma once
 
-// Cameras that models bring, by their names: that of the node, else the camera's own where several
-// nodes are called so, else "FILE/NODE" where several models have such a node.
+// Selects cameras of models by name: the name of the node, or the camera's own if several nodes
+// share that name, or "FILE/NODE" if several models have such a node.
 
 #include <string>
 #include <vector>
@@ -15,20 +15,22 @@
 
 namespace bandsaw {
 
-/// Makes a model's cameras known where `to_world` puts them: once for each file, and not those of
-/// models in groups, which stand nowhere by themselves.
+/// Adds a model's cameras, transformed by `to_world`, to the draft: once for each file, and not for
+/// models in groups, which have no place of their own.
 void add_cameras(const std::string& file, const Model& model, const Transform& to_world,
                  SceneDraft& draft);
 
-/// A name for each camera that has one of its own; of more than a package says, for the first.
+/// Returns the names of the cameras that have a unique name; only the first ones if there are more
+/// than a package can list.
 std::vector<std::string> names_of(const std::vector<FoundCamera>& cameras);
 
-/// The camera that the scene file names, with lens and shutter as the file says; the models have
-/// been read. INVALID_ARGUMENT: no camera or several are called so; the error lists what there is.
+/// Returns the camera that the scene file names, with the lens and shutter of the scene file. The
+/// models MUST have been read. Returns INVALID_ARGUMENT, with the names of all cameras, if no
+/// camera or several have this name.
 absl::StatusOr<Camera> use_camera(const Field& root, const scene::Scene& from,
                                   const SceneDraft& draft);
 
-/// The camera that somebody named beside the scene, as its file describes it. The same errors.
+/// Returns the camera that the user named, with the lens of its file. The same errors.
 absl::StatusOr<Camera> chosen_camera(const std::string& name, const SceneDraft& draft);
 
 }  // namespace bandsaw

@@ -21,7 +21,7 @@ TEST(Accel, FindsTheNearestOfASphereAndAQuad) {
   const SurfacePoint p = surface_at(g, ray, hit);
   EXPECT_EQ(p.geometric_normal, (Vec3{0, 0, 1}));
   EXPECT_EQ(p.uv, (Vec2{0.5, 0.5}));
-  const Hit behind = accel.closest(leave(p, {0, 0, -1}));
+  const Hit behind = accel.closest(spawn_ray(p, {0, 0, -1}));
   EXPECT_NEAR(behind.t, 2, 1e-9);
   EXPECT_EQ(behind.id, (PrimitiveId{0, 0}));
   EXPECT_TRUE(accel.occluded({{0, 0, 0}, {0, 0, -1}, 2.5}));

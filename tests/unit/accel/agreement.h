@@ -1,6 +1,6 @@
 #pragma once
 
-// Accel against the reference on the same rays.
+// Compares Accel with the reference implementation on the same rays.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ inline bool same(const Hit& a, const Hit& b) {
   return a.t == b.t && a.id == b.id && a.u == b.u && a.v == b.v;
 }
 
-/// A scene of one mesh where it lies.
+/// Returns a scene of one mesh with an identity placement.
 inline Geometry scene_of(Mesh mesh) {
   Geometry geometry;
   geometry.meshes.push_back(std::move(mesh));
@@ -26,10 +26,10 @@ inline Geometry scene_of(Mesh mesh) {
 struct Agreement {
   int rays = 0;
   int hits = 0;
-  int different = 0;  ///< another t, id, u or v, or an any-hit query that says otherwise
+  int different = 0;  ///< hits with another t, id, u or v, or another result of the any-hit query
 };
 
-/// Shoots `count` rays from next(), each also with an end drawn around the hit and from the hit on.
+/// Traces `count` rays from next(), each also with an end near the hit and from the hit on.
 template <class Next>
 Agreement compare(const Accel& accel, const ReferenceAccel& reference, int count, Next&& next) {
   Agreement result;
@@ -60,7 +60,7 @@ Agreement compare(const Accel& accel, const ReferenceAccel& reference, int count
   return result;
 }
 
-/// The box of all corners.
+/// Returns the bounding box of all corners.
 inline Box box_of(const Mesh& mesh) {
   Box box;
   for (const auto& p : mesh.positions) {
@@ -78,7 +78,8 @@ inline Vec3 inside(const Box& box, Random& random) {
   return middle + Vec3{p.x * half.x, p.y * half.y, p.z * half.z};
 }
 
-/// A ray that starts in or around the mesh and aims at a corner, an edge, a face or anywhere.
+/// Returns a ray that starts in or around the mesh and aims at a corner, an edge, a face or
+/// anywhere.
 inline Ray aimed_ray(const Mesh& mesh, const Box& box, Random& random) {
   const Box around = {box.lo * 2 - box.hi, box.hi * 2 - box.lo};
   const bool within = random.below(2) == 0;

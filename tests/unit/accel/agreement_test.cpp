@@ -14,7 +14,7 @@ struct Case {
   Mesh mesh;
 };
 
-/// Hills over a square.
+/// A height field over a square.
 Mesh terrain(int side) {
   Random random(5);
   Mesh mesh;
@@ -50,7 +50,7 @@ Mesh flattened(Mesh mesh, float by) {
   return mesh;
 }
 
-/// Points of a small grid joined at random: many degenerate, collinear and coplanar triangles.
+/// Points of a small grid connected at random: many degenerate, collinear and coplanar triangles.
 Mesh grid_soup(int count) {
   Random random(17);
   Mesh mesh;
@@ -123,7 +123,7 @@ TEST(Agreement, WithATwoWideTreeOfDoubles) {
   for (const Case& c : cases(4)) {
     SCOPED_TRACE(c.name);
     if (c.name == "beyond float" || c.name == "denormal") {
-      continue;  // nothing is decided in float there: right, as above, but slow
+      continue;  // there nothing is decided in float: correct, as above, but slow
     }
     const Geometry geometry = scene_of(c.mesh);
     const Accel accel = Accel::build(geometry, pool);
@@ -184,7 +184,7 @@ TEST(Agreement, B4_ForRaysAlongAxesAndWithinFaces) {
 
 Vec3 scatter(Random& random, double size) { return size * random_point(random); }
 
-/// Loose shapes of all kinds, and a mesh placed turned, mirrored, stretched and small.
+/// Loose shapes of all kinds, and instances of a mesh: rotated, mirrored, stretched and small.
 Geometry mixed_scene(const Vec3& at, double size) {
   Random random(21);
   Geometry g;
@@ -261,7 +261,7 @@ TEST(Agreement, ForLooseShapesAndInstances) {
   }
 }
 
-TEST(Agreement, OfTreesBuiltByAnyNumberOfThreads) {
+TEST(Agreement, ForAnyNumberOfBuildThreads) {
   const Mesh mesh = rough_sphere(300, 200, 1.1, 7);
   const Geometry geometry = scene_of(mesh);
   Pool one(1);

@@ -1,4 +1,4 @@
-// The corners that a tree keeps near at hand are those of the mesh, to the bit.
+// The corners that a BVH stores are those of the mesh, to the bit.
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 namespace bandsaw {
 namespace {
 
-/// A ball of triangles in place, another that is placed, and a loose sphere and quad.
+/// A mesh with an identity placement, another instance of it, and a loose sphere and quad.
 Geometry mixed() {
   Geometry geometry;
   geometry.meshes = {test::icosphere(3)};
@@ -21,7 +21,7 @@ Geometry mixed() {
   return geometry;
 }
 
-TEST(Corners, AreTheMeshesOwn) {
+TEST(Corners, EqualThoseOfTheMesh) {
   const Geometry geometry = mixed();
   Pool pool(1);
   const Accel accel = Accel::build(geometry, pool);

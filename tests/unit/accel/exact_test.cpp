@@ -1,5 +1,5 @@
-// Accel against brute force, to the bit, where trees go wrong: ties, borders, planes, extreme
-// shapes and rays.
+// Compares Accel with brute force, to the bit, in hard cases: ties, borders, planes, extreme shapes
+// and rays.
 
 #include <gtest/gtest.h>
 
@@ -165,8 +165,8 @@ TEST(AccelExact, RaysThatStartOnAPrimitiveDoNotHitItAgain) {
   expect_exact(g, rays);
 }
 
-// Every triangle twice, in another order each: the lowest id wins.
-TEST(AccelExact, T7_TiesGoToTheLowestIdWhateverTheOrder) {
+// Every triangle twice, in different orders: the lowest id is hit.
+TEST(AccelExact, T7_TiesGoToTheLowestIdInAnyOrder) {
   test::Random random(11);
   const Mesh mesh = test::icosphere(2);
   Mesh doubled = mesh;

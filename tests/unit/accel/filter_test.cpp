@@ -1,10 +1,10 @@
-// The float filters against the double tests they stand before, and their arithmetic on every
-// Float8 against plain C++.
+// Compares the float filters with the double tests, and their arithmetic on every Float8 with plain
+// C++.
 
 #include <cmath>
 
 #include "renderlib/accel/sphere_pack.h"
-#include "renderlib/accel/walk.h"
+#include "renderlib/accel/traverse.h"
 #include "renderlib/base/simd_plain.h"
 #include "renderlib/geometry/intersect.h"
 #include "tests/unit/accel/agreement.h"
@@ -14,12 +14,12 @@ namespace {
 
 using Corner = std::array<double, 3>;
 
-/// 10^lo to 10^hi, about evenly over the exponents.
+/// Returns a number in 10^lo to 10^hi, about uniform in the exponent.
 double magnitude(Random& random, double lo, double hi) {
   return std::ldexp(random.uniform(1, 2), static_cast<int>(random.uniform(lo, hi) * 3.32));
 }
 
-/// A triangle that may be a sliver, far off, or both, and a ray aimed at a corner, an edge, near
+/// A triangle that may be a sliver, distant, or both, and a ray aimed at a corner, an edge, near
 /// them or anywhere.
 struct Pair {
   std::array<Corner, 3> corner;
@@ -70,7 +70,7 @@ struct Verdicts {
   int false_sure = 0;
 };
 
-/// Both with no end, and with an end a little before and after the hit.
+/// Runs both tests without an end, and with an end just before and just after the hit.
 void judge(const FlatPack& pack, const Pair& pair, double reach, Verdicts& verdicts) {
   Crossing crossing;
   const bool hit =
@@ -82,7 +82,7 @@ void judge(const FlatPack& pack, const Pair& pair, double reach, Verdicts& verdi
     const bool counts = hit && t < end;
     verdicts.hits += counts ? 1 : 0;
     verdicts.sure += lanes.surely != 0 ? 1 : 0;
-    // A hit at the very end counts as well: a lower id may win there.
+    // A hit exactly at the end counts too, because a lower id may win there.
     verdicts.false_rejects += hit && t <= end && lanes.maybe == 0 ? 1 : 0;
     verdicts.false_sure += lanes.surely != 0 && !counts ? 1 : 0;
   }
@@ -98,7 +98,7 @@ FlatPacker::Corners to_float(const std::array<Corner, 3>& corner) {
   return result;
 }
 
-TEST(FlatFilter, NeverLeavesOutWhatTheDoubleTestHits) {
+TEST(FlatFilter, NeverRejectsAHitOfTheDoubleTest) {
   for (const bool in_float : {true, false}) {
     SCOPED_TRACE(in_float ? "float corners" : "double corners");
     Random random(41);
@@ -121,7 +121,7 @@ TEST(FlatFilter, NeverLeavesOutWhatTheDoubleTestHits) {
   }
 }
 
-TEST(SphereFilter, NeverLeavesOutWhatTheDoubleTestHits) {
+TEST(SphereFilter, NeverRejectsAHitOfTheDoubleTest) {
   Random random(42);
   int hits = 0;
   for (int i = 0; i < 500'000; ++i) {
@@ -146,7 +146,7 @@ TEST(SphereFilter, NeverLeavesOutWhatTheDoubleTestHits) {
   EXPECT_GT(hits, 100'000);
 }
 
-TEST(Filters, AreEqualOnEveryFloat8) {
+TEST(Filters, AreTheSameForEveryFloat8) {
   Random random(43);
   for (int i = 0; i < 50'000; ++i) {
     const Pair pair = adversarial_pair(random, true);

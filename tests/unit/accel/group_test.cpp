@@ -1,4 +1,4 @@
-// Groups of shapes, placed: disks, ellipsoids, groups of all kinds.
+// Instances of groups: disks, ellipsoids, groups of all kinds.
 
 #include <gtest/gtest.h>
 
@@ -51,7 +51,7 @@ void expect_exact(const Geometry& g, int rays, double size, std::uint64_t seed) 
       continue;
     }
     ++hits;
-    // On from there, and what comes after it.
+    // From the hit on, and the hit after it.
     const Ray on{ray.origin + expected.t * ray.direction, ray.direction, kInfinity, expected.id};
     ASSERT_TRUE(test::same_hit(test::closest_by_brute_force(g, on), accel.closest(on)));
     const Hit next = accel.closest_after(ray, expected);
@@ -60,7 +60,7 @@ void expect_exact(const Geometry& g, int rays, double size, std::uint64_t seed) 
   EXPECT_GT(hits, rays / 10);
 }
 
-TEST(Group, DisksAreFoundAsByTestingAll) {
+TEST(Group, DiskHitsEqualBruteForce) {
   Geometry g;
   static_cast<Shapes&>(g) = mixed_shapes(100, 1);
   expect_exact(g, 6'000, 1, 2);
@@ -69,7 +69,7 @@ TEST(Group, DisksAreFoundAsByTestingAll) {
   expect_exact(disks, 6'000, 1, 4);
 }
 
-TEST(Group, PlacementsAreFoundAsByTestingAll) {
+TEST(Group, InstanceHitsEqualBruteForce) {
   Geometry g;
   g.groups = {mixed_shapes(20, 5), mixed_shapes(1, 6), {}};
   g.meshes.push_back(test::icosphere(1));
@@ -87,7 +87,7 @@ TEST(Group, PlacementsAreFoundAsByTestingAll) {
   expect_exact(g, 4'000, 1.5, 8);
 }
 
-TEST(Group, AllSurfacesAlongARayAreMetInOrder) {
+TEST(Group, AllSurfacesAlongARayAreHitInOrder) {
   Geometry g;
   g.groups.resize(1);
   g.groups[0].spheres.push_back({{0, 0, 0}, 1, {}});
@@ -110,7 +110,7 @@ TEST(Group, AllSurfacesAlongARayAreMetInOrder) {
   }
 }
 
-// X2: a sphere that is stretched has the normals of the ellipsoid's gradient.
+// A stretched sphere has the normals of the ellipsoid's gradient.
 TEST(Group, X2_AStretchedSphereIsAnEllipsoid) {
   const Vec3 axes = {1, 1, 1e-3};
   const Transform turn = rotation({1, 2, 3}, 40);
@@ -138,15 +138,15 @@ TEST(Group, X2_AStretchedSphereIsAnEllipsoid) {
     ASSERT_LE(length(cross(normalize(turn.direction(gradient)), p.geometric_normal)), 1e-10);
     ASSERT_GT(dot(turn.direction(gradient), p.geometric_normal), 0);
     ASSERT_LE(length(p.position - (ray.origin + hit.t * ray.direction)), 1e-11);
-    // Rays that leave do not meet it again; those that go inwards meet its other side.
-    ASSERT_FALSE(accel.occluded(leave(p, p.geometric_normal + 1e-3 * ray.direction)));
-    ASSERT_TRUE(accel.occluded(leave(p, -p.geometric_normal)));
+    // Rays that leave outwards do not hit it again; those that go inwards hit its other side.
+    ASSERT_FALSE(accel.occluded(spawn_ray(p, p.geometric_normal + 1e-3 * ray.direction)));
+    ASSERT_TRUE(accel.occluded(spawn_ray(p, -p.geometric_normal)));
   }
   EXPECT_GT(hits, 3000);
 }
 
-// X1: mirrored shapes keep their outside outside.
-TEST(Group, X1_MirroredShapesAreThoseMirroredByHand) {
+// Mirrored shapes keep their outside.
+TEST(Group, X1_MirroredInstancesEqualMirroredShapes) {
   Geometry mirrored;
   mirrored.groups.resize(1);
   Shapes& group = mirrored.groups[0];
@@ -186,8 +186,8 @@ TEST(Group, X1_MirroredShapesAreThoseMirroredByHand) {
   EXPECT_GT(hits, 2000);
 }
 
-// X6: two in one place: the first is hit, in any order of the others.
-TEST(Group, X6_OfTwoInOnePlaceTheFirstIsHit) {
+// Of two coincident instances the first is hit, in any order of the others.
+TEST(Group, X6_OfCoincidentInstancesTheFirstIsHit) {
   Geometry g;
   g.groups.push_back(mixed_shapes(3, 12));
   for (int copies = 0; copies < 20; ++copies) {

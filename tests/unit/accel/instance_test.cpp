@@ -10,7 +10,7 @@
 namespace bandsaw {
 namespace {
 
-/// An icosphere with its own points as normals, and uvs.
+/// An icosphere with uvs, whose normals are its points.
 Mesh smooth_sphere(int levels) {
   Mesh mesh = test::icosphere(levels);
   mesh.normals = mesh.positions;
@@ -32,7 +32,7 @@ Ray aimed(test::Random& random, const Vec3& center, double spread) {
   return {origin, center + spread * test::random_point(random) - origin};
 }
 
-// A mirrored placement is the mesh mirrored by hand with its winding turned round: outside stays
+// A mirrored instance equals a mesh mirrored explicitly with reversed winding: the outside stays
 // outside.
 TEST(Instance, X1_MirroredKeepsItsOutside) {
   const Mesh mesh = smooth_sphere(2);
@@ -70,8 +70,8 @@ TEST(Instance, X1_MirroredKeepsItsOutside) {
   test::holds("X1", "5,000 normals within 1e-12 of those mirrored by hand");
 }
 
-// Normals of an ellipsoid made by a placement are its gradient.
-TEST(Instance, X2_StretchedHasTheNormalsOfItsShape) {
+// Normals of an instance that is an ellipsoid are its gradient.
+TEST(Instance, X2_StretchedInstancesHaveTheNormalsOfTheirShape) {
   const Vec3 axes = {1, 1, 1e-3};
   const Transform turn = rotation({1, 2, 3}, 40);
   const Geometry g = placed(smooth_sphere(3), turn * scaling(axes));
@@ -107,7 +107,7 @@ TEST(Instance, X2_StretchedHasTheNormalsOfItsShape) {
   test::holds("X2", "more than 1,000 geometric normals within 1e-10 rad");
 }
 
-TEST(Instance, X5_DistancesAreThoseOfTheWorldAtEveryScale) {
+TEST(Instance, X5_DistancesAreInWorldSpaceAtEveryScale) {
   Geometry g;
   g.meshes = {test::scaled(test::icosphere(1), 0x1p10), test::scaled(test::icosphere(1), 0x1p-10)};
   g.instances.push_back({MeshId{0}, {}, scaling({0x1p-10, 0x1p-10, 0x1p-10})});
@@ -133,7 +133,7 @@ TEST(Instance, X5_DistancesAreThoseOfTheWorldAtEveryScale) {
   test::holds("X5", "5,000 distances equal to the bit");
 }
 
-TEST(Instance, X6_OfTwoInOnePlaceTheFirstIsHit) {
+TEST(Instance, X6_OfCoincidentInstancesTheFirstIsHit) {
   Geometry g = placed(test::icosphere(2), rotation({1, 1, 0}, 30) * scaling({1, 2, 0.3}));
   for (int copies = 0; copies < 20; ++copies) {
     g.instances.push_back(g.instances[0]);
@@ -148,8 +148,8 @@ TEST(Instance, X6_OfTwoInOnePlaceTheFirstIsHit) {
   test::holds("X6", "the first of 21 in one place in 3,000 rays");
 }
 
-// The world box of a turned instance holds it: rays at its outermost corners hit it.
-TEST(Instance, B11_BoxesHoldWhatIsInThem) {
+// The world box of a rotated instance contains it: rays at its outermost corners hit it.
+TEST(Instance, B11_BoxesContainTheirInstances) {
   Pool pool(1);
   test::Random random(5);
   const Mesh mesh = test::icosphere(1);
@@ -164,7 +164,7 @@ TEST(Instance, B11_BoxesHoldWhatIsInThem) {
     for (const auto& p : mesh.positions) {
       const Vec3 corner = to_world.point({p[0], p[1], p[2]});
       const Vec3 middle = to_world.point({0, 0, 0});
-      // From the middle outwards: a closed mesh around the origin cannot be missed.
+      // From the middle outwards: a closed mesh around the origin must be hit.
       ASSERT_TRUE(accel.closest({middle, corner - middle}));
       ASSERT_TRUE(accel.occluded({middle, corner - middle}));
     }
@@ -174,7 +174,7 @@ TEST(Instance, B11_BoxesHoldWhatIsInThem) {
 
 TEST(Instance, X3_SingularOnesAreNeverHit) {
   Geometry g = placed(test::icosphere(1), scaling({1, 0, 1}));
-  g.instances.push_back({MeshId{7}, {}, {}});  // no such mesh
+  g.instances.push_back({MeshId{7}, {}, {}});  // does not exist
   Pool pool(1);
   const Accel accel = Accel::build(g, pool);
   EXPECT_FALSE(accel.closest({{0, -3, 0}, {0, 1, 0}}));

@@ -1,4 +1,4 @@
-// What moves: found at the time of the ray, to the bit as by testing everything then.
+// Moving instances: hits at the ray's time equal brute force, to the bit.
 
 #include <gtest/gtest.h>
 
@@ -31,7 +31,8 @@ Transform pose(Random& random, double size) {
          scaling({s, random.uniform(0.5, 2), s});
 }
 
-/// Spheres, disks, quads, triangles and a mesh that move straight, turn, and move within others.
+/// Spheres, disks, quads, triangles and a mesh that translate, rotate, and move within moving
+/// frames.
 Geometry moving_scene(double size, const Vec3& at) {
   Random random(31);
   Geometry g;
@@ -89,7 +90,7 @@ double time_of(int i, Random& random) {
   }
 }
 
-TEST(Moving, AgreesWithTestingEverythingAtTheRaysTime) {
+TEST(Moving, EqualsBruteForceAtTheRaysTime) {
   Pool pool(2);
   for (const double offset : {0.0, 1e4}) {
     for (const double size : {1.0, 1e-3}) {
@@ -123,8 +124,9 @@ TEST(Moving, AgreesWithTestingEverythingAtTheRaysTime) {
   }
 }
 
-// S11, B10: a million rays at the rims of a moving ball are decided as by the ball where it is then.
-TEST(Moving, S11_ABallIsWhereItIsAtTheRaysTime) {
+// A million rays at the silhouette of a moving ball hit it as they hit a ball at its place at that
+// time (S11, B10).
+TEST(Moving, S11_ABallIsHitAtItsPlaceAtTheRaysTime) {
   Pool pool(1);
   Random random(8);
   for (const double speed : {1.0, 1e3, 1e-3}) {
@@ -133,7 +135,7 @@ TEST(Moving, S11_ABallIsWhereItIsAtTheRaysTime) {
     const Vec3 way = speed * Vec3{1, 0.3, -0.2};
     g.groups.resize(1);
     g.groups[0].spheres.push_back({center, 0.5, {}});
-    // Two, so that there is a node whose sides move.
+    // Two balls, so that there is a node with moving sides.
     for (const Vec3& v : {way, -way}) {
       Instance moving;
       moving.group = GroupId{0};
@@ -149,7 +151,7 @@ TEST(Moving, S11_ABallIsWhereItIsAtTheRaysTime) {
       const Vec3 now = center + (i % 2 == 0 ? way : -way) * time;
       const Vec3 from = now + 3 * test::random_direction(random);
       const Vec3 aside = normalize(cross(now - from, test::random_direction(random)));
-      // At a tangent the rim is seen under asin(1/6).
+      // The silhouette is at an angle of asin(1/6).
       const double rim = 0.5 / std::sqrt(1 - 1 / 36.0) * (1 + 1e-9 * random.uniform(-2, 1));
       Ray ray{from, now + rim * aside - from};
       ray.time = time;
@@ -164,8 +166,8 @@ TEST(Moving, S11_ABallIsWhereItIsAtTheRaysTime) {
   test::holds("S11", "0 misses of 1,050,000");
 }
 
-// B10: the sides of a node, computed in float, hold what is within at every time.
-TEST(Moving, B10_SidesHoldTheirShapesAtEveryTime) {
+// The sides of a node, computed in float, contain its shapes at every time.
+TEST(Moving, B10_BoxesContainTheirShapesAtEveryTime) {
   Pool pool(1);
   Random random(9);
   std::int64_t checked = 0;
@@ -193,8 +195,7 @@ TEST(Moving, B10_SidesHoldTheirShapesAtEveryTime) {
             continue;
           }
           const MovingInstance& moving = tree.moving[node.child[child].leaf_index()];
-          const Transform to_world =
-              to_world_at(g, g.instances[moving.instance - 1], time);
+          const Transform to_world = to_world_at(g, g.instances[moving.instance - 1], time);
           const Box& box = moving.prototype.box();
           const auto side = [&](std::size_t row) {
             return std::fma(tree.change[n][row][child], share, node.bounds[row][child]);
@@ -218,8 +219,8 @@ TEST(Moving, B10_SidesHoldTheirShapesAtEveryTime) {
                 static_cast<double>(outside), 0);
 }
 
-// X8: at a key the moving instance is the one that stands there, to the bit.
-TEST(Moving, X8_AtAKeyIsTheInstanceThatStandsThere) {
+// At the time of a key, a moving instance equals a static one with the key's placement, to the bit.
+TEST(Moving, X8_AtAKeyEqualsTheStaticInstance) {
   Random random(10);
   Geometry moving;
   moving.meshes.push_back(test::rough_sphere(16, 8, 2, 3));
@@ -258,7 +259,8 @@ TEST(Moving, NothingMovesBeforeTheFirstKeyAndAfterTheLast) {
   Pool pool(1);
   const Accel accel = Accel::build(g, pool, {0, 1});
   const auto hit_at = [&](double x, double time) {
-    return static_cast<bool>(accel.closest({.origin = {x, 0, 5}, .direction = {0, 0, -1}, .time = time}));
+    return static_cast<bool>(
+        accel.closest({.origin = {x, 0, 5}, .direction = {0, 0, -1}, .time = time}));
   };
   EXPECT_TRUE(hit_at(0, 0) && hit_at(0, 0.5) && hit_at(5, 0.55) && hit_at(10, 0.6));
   EXPECT_TRUE(hit_at(10, 0.7) && hit_at(10, 1));

@@ -1,5 +1,5 @@
-// Where rays leave a surface (geometry/surface.h): no hit of the surface they leave, no near thing
-// passed over.
+// Origins of rays that leave surfaces (geometry/surface.h): the surface is not hit again, and near
+// surfaces are not skipped.
 
 #include <gtest/gtest.h>
 
@@ -15,8 +15,8 @@
 namespace bandsaw {
 namespace {
 
-// Rays that leave a flat mesh hit no neighbour in its plane, though its placement squashes, mirrors
-// and moves it.
+// Rays that leave a flat mesh hit no neighbour in its plane, also if its placement squashes,
+// mirrors and moves it.
 TEST(Offset, O1_NoRayHitsTheMeshPlaneItLeaves) {
   Mesh mesh;
   for (int i = 0; i <= 8; ++i) {
@@ -53,17 +53,17 @@ TEST(Offset, O1_NoRayHitsTheMeshPlaneItLeaves) {
       const Hit hit = accel.closest(ray);
       ASSERT_TRUE(hit);
       const SurfacePoint p = surface_at(g, ray, hit);
-      const Hit again = accel.closest(leave(p, test::random_direction(random)));
-      // Positions are rounded to float, so the mesh is not quite flat: what is hit must be a little
-      // way off.
+      const Hit again = accel.closest(spawn_ray(p, test::random_direction(random)));
+      // Positions are rounded to float, so the mesh is not exactly flat: a hit must be at some
+      // distance.
       ASSERT_TRUE(!again || again.t > 1e3 * p.offset) << again.t << " " << p.offset;
     }
   }
   test::holds("O1", "80,000 bounces off squashed, mirrored and moved meshes: none");
 }
 
-// A sphere that all but touches a plane: rays from the plane under it see it.
-TEST(Offset, O2_NarrowGapsAreNotPassedOver) {
+// A sphere that nearly touches a plane: rays from the plane below hit it.
+TEST(Offset, O2_NarrowGapsAreNotSkipped) {
   Pool pool(1);
   test::Random random(3);
   for (const double gap : {1e-4, 1e-6, 1e-9}) {
@@ -79,10 +79,11 @@ TEST(Offset, O2_NarrowGapsAreNotPassedOver) {
         const Ray ray = {on_plane - Vec3{0, 1, 0}, {0, 1, 0}};
         const Hit hit = accel.closest(ray);
         ASSERT_EQ(hit.id, (PrimitiveId{0, 1}));
-        const Ray up = leave(surface_at(g, ray, hit), {0, 1, 0});
+        const Ray up = spawn_ray(surface_at(g, ray, hit), {0, 1, 0});
         const Hit under = accel.closest(up);
         ASSERT_EQ(under.id, (PrimitiveId{0, 0}));
-        ASSERT_NEAR(under.t / gap, 1, 0.3);  // the sphere curves away by up to a quarter
+        ASSERT_NEAR(under.t / gap, 1,
+                    0.3);  // the sphere's curvature changes the gap by up to a quarter
       }
     }
   }
@@ -98,7 +99,7 @@ SurfacePoint surface(const Vec3& position, const Vec3& normal, double size) {
   return p;
 }
 
-TEST(Offset, O4_NothingStandsBetweenAPointAndALightItSees) {
+TEST(Offset, O4_VisibleLightsAreNotSelfShadowed) {
   Pool pool(1);
   test::Random random(4);
   for (const double offset : {0.0, 1e4}) {
@@ -117,19 +118,19 @@ TEST(Offset, O4_NothingStandsBetweenAPointAndALightItSees) {
       const Quad& quad = g.quads[0];
       const Vec3 on_quad = quad.corner + u * quad.u + v * quad.v;
       const Vec3 normal = normalize(cross(quad.u, quad.v));
-      const Ray to_quad = toward(p, surface(on_quad, normal, 1));
-      // The sphere may hide the quad; the quad never hides itself.
+      const Ray to_quad = spawn_ray_to(p, surface(on_quad, normal, 1));
+      // The sphere may occlude the quad; the quad never occludes itself.
       ASSERT_NE(accel.closest(to_quad).id, (PrimitiveId{0, 1}));
       const auto s = sample_sphere_light(g.spheres[0].center, 0.7, p.position, u, v);
       ASSERT_TRUE(s);
-      const Ray to_sphere = toward(p, surface(s->position, s->normal, 0.7));
+      const Ray to_sphere = spawn_ray_to(p, surface(s->position, s->normal, 0.7));
       ASSERT_NE(accel.closest(to_sphere).id, (PrimitiveId{0, 0}));
     }
   }
   test::holds("O4", "200,000 shadow rays never end at their own light");
 }
 
-TEST(Offset, O3_ABlockerNearAReceiverCountsHoweverFarTheLight) {
+TEST(Offset, O3_ANearOccluderBlocksALightAtAnyDistance) {
   Geometry g;
   g.quads.push_back({{-1, 0, -1}, {0, 0, 2}, {2, 0, 0}, {}});
   g.quads.push_back({{-1, 0.5, -1}, {0, 0, 2}, {2, 0, 0}, {}});
@@ -137,9 +138,9 @@ TEST(Offset, O3_ABlockerNearAReceiverCountsHoweverFarTheLight) {
   const Accel accel = Accel::build(g, pool);
   const Ray down = {{0, 0.1, 0}, {0, -1, 0}};
   const SurfacePoint p = surface_at(g, down, accel.closest(down));
-  EXPECT_TRUE(accel.occluded(toward(p, {0, 1000, 0}, 0)));
-  EXPECT_FALSE(accel.occluded(toward(p, {0, 0.5, 0}, 1e-9)));
-  EXPECT_FALSE(accel.occluded(toward(p, {0, 0.4, 0}, 0)));
+  EXPECT_TRUE(accel.occluded(spawn_ray_to(p, {0, 1000, 0}, 0)));
+  EXPECT_FALSE(accel.occluded(spawn_ray_to(p, {0, 0.5, 0}, 1e-9)));
+  EXPECT_FALSE(accel.occluded(spawn_ray_to(p, {0, 0.4, 0}, 0)));
 }
 
 }  // namespace

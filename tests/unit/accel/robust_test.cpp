@@ -1,4 +1,4 @@
-// Bad input costs nothing but itself.
+// Bad input does not affect other geometry.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ Geometry of_mesh(Mesh mesh) {
   return g;
 }
 
-TEST(AccelRobust, Q7B8_EmptyAndSingle) {
+TEST(AccelRobust, Q7B8_EmptyAndSinglePrimitives) {
   Pool pool(1);
   const Geometry nothing;
   EXPECT_FALSE(Accel::build(nothing, pool).closest({{0, 0, 0}, {0, 0, 1}}));
@@ -30,14 +30,14 @@ TEST(AccelRobust, Q7B8_EmptyAndSingle) {
   const Geometry empty_mesh = of_mesh({});
   EXPECT_FALSE(Accel::build(empty_mesh, pool).closest({{0, 0, 0}, {0, 0, 1}}));
   Geometry one;
-  one.quads.push_back({{-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, {}});  // a box without thickness
+  one.quads.push_back({{-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, {}});  // its box has no thickness
   const Accel accel = Accel::build(one, pool);
   EXPECT_EQ(accel.closest({{0.3, 0, -1}, {0, 0, 1}}).t, 1);
   EXPECT_FALSE(accel.closest({{0.3, 2, -1}, {0, 0, 1}}));
   test::holds("Q7", "a quad of no thickness is hit, without padding");
 }
 
-TEST(AccelRobust, B5_RaysThatAreNoRaysHitNothing) {
+TEST(AccelRobust, B5_InvalidRaysHitNothing) {
   const Geometry g = of_mesh(test::icosphere(3));
   Pool pool(1);
   const Accel accel = Accel::build(g, pool);
@@ -96,7 +96,7 @@ TEST(AccelRobust, OneHundredThousandEqualTriangles) {
   EXPECT_FALSE(accel.closest({{0.8, 0.8, -1}, {0, 0, 1}}));
 }
 
-TEST(AccelRobust, B12_IsTheSameHoweverManyThreadsBuildIt) {
+TEST(AccelRobust, B12_IsTheSameForAnyNumberOfBuildThreads) {
   Geometry g;
   for (int i = 0; i < 8; ++i) {
     g.meshes.push_back(test::triangle_soup(500, 0.2, static_cast<std::uint64_t>(i)));

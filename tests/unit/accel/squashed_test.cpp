@@ -1,6 +1,6 @@
 // Spheres and boxes whose placement squashes or stretches space by many orders of magnitude: a ray
-// that leaves their surface inwards meets their other side, one that leaves outwards meets them no
-// more.
+// that leaves their surface inwards hits their other side, and one that leaves outwards does not
+// hit them again.
 
 #include <gtest/gtest.h>
 
@@ -59,7 +59,8 @@ Geometry placed(const Transform& to_world, bool cube) {
   return g;
 }
 
-/// A direction on one side of the surface, drawn evenly in the world or in the object's own space.
+/// Returns a direction on one side of the surface, uniform in the world or in the object's own
+/// space.
 Vec3 direction_from(const SurfacePoint& p, bool inwards, const Transform& to_world,
                     Random& random) {
   Vec3 d = test::random_direction(random);
@@ -71,12 +72,12 @@ Vec3 direction_from(const SurfacePoint& p, bool inwards, const Transform& to_wor
 
 struct Lost {
   int rays = 0;
-  int inside = 0;   ///< of rays that left inwards: they met nothing, or the surface from outside
-  int outside = 0;  ///< of rays that left outwards: they met it again
+  int inside = 0;   ///< rays that left inwards and hit nothing, or the surface from outside
+  int outside = 0;  ///< rays that left outwards and hit it again
 };
 
-/// Rays that come from outside, and go on from each surface inwards several times; at each also one
-/// that leaves outwards.
+/// Traces rays from outside, which continue inwards from each surface several times; at each hit
+/// also one that leaves outwards.
 Lost bounce(const Geometry& g, const Transform& to_world, int rays, std::uint64_t seed) {
   Pool pool(1);
   const Accel accel = Accel::build(g, pool);
@@ -90,8 +91,9 @@ Lost bounce(const Geometry& g, const Transform& to_world, int rays, std::uint64_
     for (int k = 0; hit && k < 20; ++k) {
       const SurfacePoint p = surface_at(g, ray, hit);
       ++lost.rays;
-      lost.outside += accel.occluded(leave(p, direction_from(p, false, to_world, random))) ? 1 : 0;
-      ray = leave(p, direction_from(p, true, to_world, random));
+      lost.outside +=
+          accel.occluded(spawn_ray(p, direction_from(p, false, to_world, random))) ? 1 : 0;
+      ray = spawn_ray(p, direction_from(p, true, to_world, random));
       hit = accel.closest(ray);
       const bool exits = hit && dot(surface_at(g, ray, hit).geometric_normal, ray.direction) > 0;
       lost.inside += exits ? 0 : 1;
@@ -119,7 +121,7 @@ TEST(Squashed, S12_CrossingsOfASphereAlternate) {
 
 /// The chord from one surface of the sphere to the other, in the sphere's own space: p + t d with
 /// |p| = 1 ends at t = -2 (p.d) / (d.d).
-TEST(Squashed, S12_ChordsAreAsLongAsTheyAre) {
+TEST(Squashed, S12_ChordsHaveTheirExactLength) {
   test::Worst error;
   for (const Case& c : cases()) {
     const Geometry g = placed(c.to_world, false);
@@ -132,10 +134,10 @@ TEST(Squashed, S12_ChordsAreAsLongAsTheyAre) {
       const Vec3 target = c.to_world.point(0.6 * test::random_point(random));
       const Ray in = {origin, target - origin};
       const SurfacePoint p = surface_at(g, in, accel.closest(in));
-      const Ray ray = leave(p, direction_from(p, true, c.to_world, random));
+      const Ray ray = spawn_ray(p, direction_from(p, true, c.to_world, random));
       const Vec3 d = to_object.direction(ray.direction);
       const double along = -dot(p.object_position, d) / length(d);
-      if (along > 0.1) {  // flatter ones are shorter by more than the offset
+      if (along > 0.1) {  // grazing chords are shorter by more than the offset
         error.see(std::abs(accel.closest(ray).t * length(d) - 2 * along));
       }
     }
@@ -152,8 +154,8 @@ TEST(Squashed, CrossingsOfACubeAlternate) {
   }
 }
 
-// From within a lamp all of it is in sight.
-TEST(Squashed, S12_ALampFromWithinIsNotInItsOwnShadow) {
+// From inside an area light all of it is visible.
+TEST(Squashed, S12_ALightAroundTheReceiverDoesNotShadowItself) {
   int rays = 0;
   int shadows = 0;
   for (const Case& c : cases()) {

@@ -11,7 +11,7 @@
 #include "absl/types/span.h"
 #include "renderlib/accel/collapse.h"
 #include "renderlib/accel/mesh_tree.h"
-#include "renderlib/accel/walk.h"
+#include "renderlib/accel/traverse.h"
 #include "tests/support/hard_case.h"
 #include "tests/support/meshes.h"
 
@@ -20,7 +20,7 @@ namespace {
 
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
-/// A tree with one item a leaf.
+/// A tree with one item in each leaf.
 WideTree build_tree(absl::Span<const FloatBox> boxes) {
   TreeItems items;
   for (std::uint32_t i = 0; i < boxes.size(); ++i) {
@@ -38,7 +38,7 @@ std::set<std::uint32_t> visited(const WideTree& tree, const Ray& ray) {
   const FloatRay floats(trace_setup(ray.origin, ray.direction, ray.t_max), tree.reach);
   const float bound = floats.above(ray.t_max);
   std::set<std::uint32_t> items;
-  walk<true>(tree, floats, bound, [&](ChildRef leaf) {
+  traverse<true>(tree, floats, bound, [&](ChildRef leaf) {
     items.insert(leaf.leaf_index());
     return false;
   });
@@ -47,13 +47,13 @@ std::set<std::uint32_t> visited(const WideTree& tree, const Ray& ray) {
 
 bool is_used(const WideNode& node, std::size_t child) { return node.bounds[0][child] != kInf; }
 
-TEST(Tree, OfNothingIsEmpty) {
+TEST(Tree, IsEmptyWithoutItems) {
   const WideTree tree = build_tree({});
   EXPECT_TRUE(tree.empty);
   EXPECT_TRUE(visited(tree, {{0, 0, 0}, {0, 0, 1}}).empty());
 }
 
-TEST(Tree, LeavesOutBoxesThatAreEmptyOrNotFinite) {
+TEST(Tree, OmitsBoxesThatAreEmptyOrNotFinite) {
   const std::vector<FloatBox> boxes = {{{1, 1, 1}, {0, 0, 0}},
                                        {{0, NAN, 0}, {1, 1, 1}},
                                        {{-kInf, 0, 0}, {1, 1, 1}},
@@ -62,7 +62,7 @@ TEST(Tree, LeavesOutBoxesThatAreEmptyOrNotFinite) {
   EXPECT_EQ(visited(tree, {{0.5, 0.5, -1}, {0, 0, 1}}), std::set<std::uint32_t>{3});
 }
 
-TEST(Tree, HoldsEveryItemOnceInBoxesThatHoldIt) {
+TEST(Tree, ContainsEveryItemOnceInBoxesThatContainIt) {
   const Mesh soup = test::triangle_soup(5000, 0.1, 2);
   std::vector<FloatBox> boxes;
   for (const auto& t : soup.triangles) {
@@ -105,7 +105,7 @@ std::vector<FloatBox> nested_boxes() {
 }
 
 TEST(Tree, B7_IsNeverDeeperThanItsStack) {
-  EXPECT_LE(build_tree(nested_boxes()).depth, kMaxDepth);
+  EXPECT_LE(build_tree(nested_boxes()).depth, kMaxTreeDepth);
   const std::vector<FloatBox> same(100000, FloatBox{{0, 0, 0}, {1, 1, 1}});
   const WideTree tree = build_tree(same);
   EXPECT_LE(tree.depth, 18u);
@@ -115,7 +115,7 @@ TEST(Tree, B7_IsNeverDeeperThanItsStack) {
   test::holds("B7", "1,000 nested boxes no deeper than the stack");
 }
 
-/// Enough for pieces and tasks, and a heap of equal boxes that no plane parts.
+/// Enough items for several pieces and tasks, and many equal boxes that no plane separates.
 Mesh mesh_of_pieces() {
   Mesh mesh = test::triangle_soup(60'000, 0.05, 4);
   mesh.triangles.insert(mesh.triangles.end(), 20'000, mesh.triangles.front());

@@ -160,7 +160,7 @@ TEST(Camera, C4_APointOutOfFocusSpreadsOverADiskOfTheRightRadius) {
 TEST(Camera, C4_FocusAtAnyDistanceGivesFiniteUnitDirections) {
   PerspectiveCamera lens = camera(40);
   for (const double aperture : {1e-300, 1.0, 1e30}) {
-    for (const double focus : {kLeastFocus, 1e-6, 1e30}) {
+    for (const double focus : {kMinFocus, 1e-6, 1e30}) {
       lens.aperture = aperture;
       lens.focus_distance = focus;
       const Ray ray = RayGenerator(lens, 8, 8).ray(1, 2, 0.9, 0.1);

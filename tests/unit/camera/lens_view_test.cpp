@@ -31,12 +31,12 @@ TEST(LensView, IsPassedByAllRaysOfItsPlace) {
     const auto view = rays.lens_view(60 * at[0], 40 * at[1]);
     ASSERT_TRUE(view);
     const Ray ray = rays.ray(60 * at[0], 40 * at[1], at[2], at[3]);
-    const Vec3 way = view->focus() - ray.origin;
-    EXPECT_LE(length(cross(way, ray.direction)), 1e-14 * length(way));
+    const Vec3 direction = view->focus() - ray.origin;
+    EXPECT_LE(length(cross(direction, ray.direction)), 1e-14 * length(direction));
     EXPECT_TRUE(view->beyond().contains(ray.direction));
     EXPECT_FALSE(view->beyond().contains(-ray.direction));
     const double cosine = dot(ray.direction, forward);
-    EXPECT_NEAR(view->pdf(ray.direction), length_squared(way) / (area * cosine),
+    EXPECT_NEAR(view->pdf(ray.direction), length_squared(direction) / (area * cosine),
                 1e-12 * view->pdf(ray.direction));
     // But for rays of the very rim.
     const Vec3 inwards = normalize(view->focus() - (ray.origin * 0.999 + camera.position * 0.001));
@@ -70,14 +70,14 @@ TEST(LensView, IsNoneOfAPinholeParallelRaysAndALensAsWideAsItsFocusIsFar) {
   camera.aperture = 8;
   EXPECT_FALSE(RayGenerator(camera, 60, 40).lens_view(30, 20));
   EXPECT_FALSE(RayGenerator(OrthographicCamera{}, 60, 40).lens_view(30, 20));
-  camera.aperture = kMostLens;
-  camera.focus_distance = kLeastFocus;
+  camera.aperture = kMaxLens;
+  camera.focus_distance = kMinFocus;
   EXPECT_FALSE(RayGenerator(camera, 60, 40).lens_view(30, 20));
 }
 
 TEST(LensView, OfAFocusOutOfReachSeesNothingButIsFinite) {
   PerspectiveCamera camera = lens();
-  camera.focus_distance = kMostLens;
+  camera.focus_distance = kMaxLens;
   const auto view = RayGenerator(camera, 60, 40).lens_view(30, 20);
   ASSERT_TRUE(view);
   EXPECT_FALSE(view->beyond().contains(camera.position - view->focus()));

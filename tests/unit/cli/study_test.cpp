@@ -87,7 +87,7 @@ TEST(Study, PixelsThatStopThemselvesLoseRareLight) {
 
 TEST(Study, WithoutATreeThePixelsAreTheSame) {
   Pool pool(1);
-  const auto everything = Scene::build(test::cornell_box().scene, pool, {}, Tested::kEverything);
+  const auto everything = Scene::build(test::cornell_box().scene, pool, {}, Traversal::kBruteForce);
   ASSERT_TRUE(everything.ok());
   const StudyOfScene study =
       study_of(*test::cornell_box().build(), {.samples = 16, .seeds = 1, .reference = 64},

@@ -8,10 +8,10 @@
 namespace bandsaw {
 namespace {
 
-TEST(Closed, ACubeIsAndStaysSoWithSplitCorners) {
+TEST(Closed, ACubeIsClosedAlsoWithSplitCorners) {
   Mesh cube = unit_cube();
   EXPECT_EQ(open_edges(cube), 0u);
-  // Every triangle with corners of its own, as files have them; -0 is 0.
+  // Every triangle has its own corners, as in files; -0 equals 0.
   Mesh split;
   for (auto& triangle : cube.triangles) {
     for (std::uint32_t& corner : triangle) {
@@ -25,7 +25,7 @@ TEST(Closed, ACubeIsAndStaysSoWithSplitCorners) {
   EXPECT_EQ(open_edges(split), 0u);
 }
 
-TEST(Closed, AHoleHasItsEdges) {
+TEST(Closed, CountsTheEdgesOfAHole) {
   Mesh cube = unit_cube();
   cube.triangles.pop_back();
   EXPECT_EQ(open_edges(cube), 3u);
@@ -34,7 +34,7 @@ TEST(Closed, AHoleHasItsEdges) {
   EXPECT_EQ(open_edges(test::grid(3)), 12u);
 }
 
-TEST(Closed, ATriangleThatIsTurnedOverIsNone) {
+TEST(Closed, AFlippedTriangleIsNotClosed) {
   Mesh cube = unit_cube();
   std::swap(cube.triangles[4][0], cube.triangles[4][1]);
   EXPECT_EQ(open_edges(cube), 3u);

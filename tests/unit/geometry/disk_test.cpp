@@ -35,8 +35,8 @@ TEST(Disk, FacingUpHasItsAxesAlongXAndMinusZ) {
   }
 }
 
-// A normal as exported files have it, which is not quite along an axis: the box holds the rim.
-TEST(Disk, NearlyAlongAnAxisIsNotCutByItsBox) {
+// A normal that is nearly along an axis, as in exported files: the box contains the rim.
+TEST(Disk, IsNotClippedByItsBoxNearlyAlongAnAxis) {
   for (const double tilt : {1e-9, 1e-8, 4.371139e-8, 1e-7, 1e-6, 1e-3}) {
     const Disk disk{{0, 4, 0}, normalize(Vec3{tilt, -1, 0}), 1, {}};
     const Box box = bounds(disk);
@@ -50,8 +50,8 @@ TEST(Disk, NearlyAlongAnAxisIsNotCutByItsBox) {
   }
 }
 
-// A hit is within the rim and where the ray is; decided as without rounding unless at the very rim.
-TEST(Disk, IsHitWhereTheRayPassesIt) {
+// A hit is within the rim and on the ray; the decision is exact except close to the rim.
+TEST(Disk, IsHitWithinItsRim) {
   Random random(2);
   int hits = 0;
   int misses = 0;
@@ -66,14 +66,14 @@ TEST(Disk, IsHitWhereTheRayPassesIt) {
     const TracedRay ray = trace_setup(origin, target - origin, kInfinity);
     Crossing c;
     const bool hit = intersect(ray, disk, c);
-    // In wide numbers.
+    // In higher precision.
     const WideVec o(origin);
     const WideVec d = WideVec(target - origin);
     const WideVec n(disk.normal);
     const WideVec center(disk.center);
     const Wide slope = dot(d, n);
     if (std::abs(static_cast<double>(slope)) < 1e-6 * length(target - origin)) {
-      continue;  // Nearly within the plane.
+      continue;  // nearly within the plane
     }
     const Wide t = dot(center - o, n) / slope;
     const WideVec p = o + d * t - center;
@@ -94,7 +94,7 @@ TEST(Disk, IsHitWhereTheRayPassesIt) {
   EXPECT_GT(misses, 50'000);
 }
 
-TEST(Disk, WithinItsPlaneIsMissed) {
+TEST(Disk, IsMissedWithinItsPlane) {
   const Disk disk = {{1, 2, 3}, {0, 1, 0}, 2, {}};
   Crossing c;
   EXPECT_FALSE(intersect(trace_setup({-5, 2, 3}, {1, 0, 0}, kInfinity), disk, c));
@@ -104,7 +104,7 @@ TEST(Disk, WithinItsPlaneIsMissed) {
   EXPECT_EQ(c.t, 2);
 }
 
-TEST(Disk, SurfacesLieInThePlaneWithTheirUv) {
+TEST(Disk, SurfacePointsLieInThePlaneWithTheirUv) {
   Geometry g;
   g.disks.push_back({{1, 2, 3}, {0, 1, 0}, 2, MaterialId{7}});
   const Ray ray{{1.5, 5, 2}, {0, -1, 0}};

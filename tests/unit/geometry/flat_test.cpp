@@ -1,4 +1,4 @@
-// Triangles and quads one by one; meshes as a whole are in tests/unit/accel.
+// Single triangles and quads; meshes are tested in tests/unit/accel.
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ std::optional<Crossing> hit(const Vec3& origin, const Vec3& direction, const Sha
   return crossing;
 }
 
-TEST(Triangle, HasTheWeightsOfItsSecondAndThirdCorner) {
+TEST(Triangle, ReturnsTheWeightsOfItsSecondAndThirdCorner) {
   const Triangle t = {{0, 0, 1}, {2, 0, 1}, {0, 4, 1}, {}};
   const auto inside = hit({0.5, 1, 0}, {0, 0, 3}, t);
   ASSERT_TRUE(inside);
@@ -58,7 +58,7 @@ TEST(Triangle, T5_EdgeOnHitsAreFiniteAndInsideTheBox) {
   test::holds("T5", "20,000 rays within the plane: hits finite and inside the box");
 }
 
-// An edge seen by both its triangles from anywhere: one of them at least is hit.
+// A ray through an edge hits at least one of its two triangles, from anywhere.
 TEST(Triangle, SharedEdgesDoNotLeak) {
   test::Random random(3);
   for (int i = 0; i < 100000; ++i) {
@@ -72,7 +72,7 @@ TEST(Triangle, SharedEdgesDoNotLeak) {
     const Vec3 target = lerp(a, b, random.uniform(0.01, 0.99));
     const bool left = hit(origin, target - origin, Triangle{a, b, c, {}}).has_value();
     const bool right = hit(origin, target - origin, Triangle{b, a, d, {}}).has_value();
-    // Seen from where both lie on the same side of the edge, a ray may pass both.
+    // If both are on the same side of the edge as seen by the ray, it may miss both.
     const Vec3 across = cross(b - a, target - origin);
     if (dot(across, c - a) * dot(across, d - a) < -1e-6 * length_squared(across)) {
       ASSERT_TRUE(left || right) << offset;
@@ -80,7 +80,7 @@ TEST(Triangle, SharedEdgesDoNotLeak) {
   }
 }
 
-TEST(Quad, HasTheCoordinatesAlongItsSides) {
+TEST(Quad, ReturnsTheCoordinatesAlongItsSides) {
   const Quad q = {{1, 1, 0}, {4, 0, 0}, {0, 2, 0}, {}};
   const auto lower = hit({4, 1.5, 7}, {0, 0, -1}, q);
   ASSERT_TRUE(lower);
@@ -97,7 +97,7 @@ TEST(Quad, HasTheCoordinatesAlongItsSides) {
   EXPECT_FALSE(hit({5.01, 2, 1}, {0, 0, -1}, q));
 }
 
-/// Coordinates of where a ray meets the plane of a quad, without rounding.
+/// Returns the coordinates of the intersection of a ray with the plane of a quad, without rounding.
 struct Truth {
   Wide t;
   Wide u;
@@ -113,7 +113,7 @@ Truth truth(const Vec3& origin, const Vec3& direction, const Quad& q) {
   return {t, dot(cross(p, WideVec(q.v)), n) / n2, dot(cross(WideVec(q.u), p), n) / n2};
 }
 
-TEST(Quad, Q2_SliversKeepTheirCoordinates) {
+TEST(Quad, Q2_SliversHaveAccurateCoordinates) {
   test::Random random(5);
   const std::vector<Quad> slivers = {
       {{1, 2, 3}, {1, 0, 0}, {1, 1e-6, 0}, {}},
@@ -138,7 +138,7 @@ TEST(Quad, Q2_SliversKeepTheirCoordinates) {
   test::holds("Q2", "15,000 coordinates within 1e-9");
 }
 
-TEST(Quad, Q3_GrazingRaysFromFarAwayHitWhatTheyShould) {
+TEST(Quad, Q3_GrazingRaysFromFarAwayHitCorrectly) {
   test::Random random(6);
   const Quad q = {{-1, 0, -1}, {2, 0, 0}, {0, 0, 2}, {}};
   int hits = 0;
@@ -162,7 +162,7 @@ TEST(Quad, Q3_GrazingRaysFromFarAwayHitWhatTheyShould) {
   test::holds("Q3", "20,000 hits and misses as in 113 bits, but for 1e-9 of the edge");
 }
 
-// A light that lies in the ceiling: both at the very same t, so the lower id wins and the shadow
+// A light in the plane of the ceiling: both have the same t, so the lower id wins and the shadow
 // ray ends before the ceiling.
 TEST(Quad, Q4_CoplanarQuadsAreHitAtTheSameDistance) {
   test::Random random(7);

@@ -1,4 +1,4 @@
-// Moving frames: decomposed keys, and what is between them.
+// Moving frames: decomposed keys and interpolation.
 
 #include "renderlib/geometry/frame.h"
 
@@ -25,10 +25,10 @@ double difference(const Transform& a, const Transform& b) {
   return most;
 }
 
-TEST(Quaternions, AreTheRotationsTheyComeFrom) {
+TEST(Quaternions, RepresentTheirRotations) {
   Random random(1);
   for (int i = 0; i < 10'000; ++i) {
-    // Half turns, where the trace is least, among them.
+    // Including half turns, for which the trace is smallest.
     const double degrees = i % 3 == 0 ? 180 : random.uniform(-360, 360);
     const Transform turn = rotation(test::random_direction(random), degrees);
     const Quaternion q = quaternion(turn);
@@ -37,7 +37,7 @@ TEST(Quaternions, AreTheRotationsTheyComeFrom) {
   }
 }
 
-TEST(Quaternions, TurnEvenlyByTheShorterWay) {
+TEST(Quaternions, InterpolateEvenlyAlongTheShorterArc) {
   Random random(2);
   for (int i = 0; i < 2000; ++i) {
     const Vec3 axis = test::random_direction(random);
@@ -52,8 +52,8 @@ TEST(Quaternions, TurnEvenlyByTheShorterWay) {
   }
 }
 
-// X7: many small turns are the whole one.
-TEST(Transforms, X7_ManySmallTurnsDoNotDrift) {
+// Many small rotations equal the whole rotation.
+TEST(Transforms, X7_ManySmallRotationsDoNotDrift) {
   Transform sum;
   for (int i = 0; i < 360; ++i) {
     sum = rotation({1, 2, -0.5}, 1) * sum;
@@ -61,8 +61,8 @@ TEST(Transforms, X7_ManySmallTurnsDoNotDrift) {
   test::at_most("X7", "entries off", difference(sum, {}), 1e-13);
 }
 
-// X4: eight placements within each other, far away and back.
-TEST(Transforms, X4_ChainsOfPlacementsKeepTheirDigits) {
+// Eight nested placements, far away and back.
+TEST(Transforms, X4_ChainsOfPlacementsKeepTheirPrecision) {
   Transform chain;
   for (int i = 0; i < 8; ++i) {
     const Vec3 away = {1e6, -1e6, 1e6};
@@ -72,7 +72,7 @@ TEST(Transforms, X4_ChainsOfPlacementsKeepTheirDigits) {
   test::at_most("X4", "off, by the largest coordinate", length(chain.point(p) - p) / 1e6, 1e-9);
 }
 
-TEST(Frames, DecomposeWhatIsAScaleARotationAndATranslation) {
+TEST(Frames, DecomposeIntoScaleRotationAndTranslation) {
   Random random(3);
   for (int i = 0; i < 2000; ++i) {
     const double mirror = i % 2 == 0 ? 1 : -1;
@@ -90,11 +90,12 @@ TEST(Frames, DecomposeWhatIsAScaleARotationAndATranslation) {
   EXPECT_FALSE(decompose(scaling({1, 0, 1})));
 }
 
-TEST(Frames, ChangeScaleAndPlaceLinearlyAndTurnEvenly) {
-  const Frame frame = {kNoFrame, {},
-                       {Key(1, translation({1, 0, 0}) * rotation({0, 1, 0}, 20)),
-                        Key(3, translation({5, 2, 0}) * rotation({0, 1, 0}, 100) *
-                                   scaling({3, 1, 2}))}};
+TEST(Frames, InterpolateScaleAndTranslationLinearly) {
+  const Frame frame = {
+      kNoFrame,
+      {},
+      {Key(1, translation({1, 0, 0}) * rotation({0, 1, 0}, 20)),
+       Key(3, translation({5, 2, 0}) * rotation({0, 1, 0}, 100) * scaling({3, 1, 2}))}};
   const Transform middle = translation({3, 1, 0}) * rotation({0, 1, 0}, 60) * scaling({2, 1, 1.5});
   EXPECT_LE(difference(motion_at(frame, 2), middle), 1e-14);
   EXPECT_EQ(motion_at(frame, 1), frame.keys[0].at);
@@ -103,11 +104,10 @@ TEST(Frames, ChangeScaleAndPlaceLinearlyAndTurnEvenly) {
   EXPECT_EQ(motion_at(frame, 8), frame.keys[1].at);
 }
 
-// Mirrored keys go the way that the turn alone would go.
-TEST(Frames, MirroredOnesTurnAsOthersDo) {
+// Mirrored keys interpolate the rotation as without mirroring.
+TEST(Frames, MirroredKeysRotateLikeOthers) {
   const Transform mirror = scaling({-1, 1, 1});
-  const Frame frame = {
-      kNoFrame, {}, {Key(0, mirror), Key(1, rotation({0, 1, 0}, 90) * mirror)}};
+  const Frame frame = {kNoFrame, {}, {Key(0, mirror), Key(1, rotation({0, 1, 0}, 90) * mirror)}};
   EXPECT_LE(difference(motion_at(frame, 0.5), rotation({0, 1, 0}, 45) * mirror), 1e-15);
 }
 
@@ -115,7 +115,7 @@ TEST(Frames, MoveWithinFramesThatMove) {
   const std::vector<Frame> frames = {
       {kNoFrame, translation({0, 1, 0}), {Key(0, {}), Key(1, rotation({0, 0, 1}, 90))}},
       {FrameId{0}, translation({2, 0, 0}), {Key(0, {}), Key(1, translation({1, 0, 0}))}}};
-  // Half way: 2.5 out along a direction 45 degrees up, around (0, 1, 0).
+  // At half time: 2.5 along a direction 45 degrees up, around (0, 1, 0).
   const double s = 2.5 * std::sqrt(0.5);
   EXPECT_LE(length(frame_at(frames, FrameId{1}, 0.5).point({}) - Vec3{s, 1 + s, 0}), 1e-15);
 }

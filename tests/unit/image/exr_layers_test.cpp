@@ -72,5 +72,12 @@ TEST(ExrLayers, OfAnotherSizeAreRefused) {
   EXPECT_EQ(encode_exr(kImage, false, wrong).status().code(), absl::StatusCode::kInvalidArgument);
 }
 
+TEST(ExrLayers, LongNamesAreRefused) {
+  const Layers wrong = {{std::string(201, 'a'), kImage, false}};
+  EXPECT_EQ(
+      encode_exr(kImage, false, wrong).status(),
+      absl::InvalidArgumentError("the name of a layer has 201 bytes, at most 200 are allowed"));
+}
+
 }  // namespace
 }  // namespace bandsaw

@@ -158,21 +158,21 @@ TEST_F(SceneLights, AnEnvironmentThatIsGivenBesideTheSceneReplacesItsBackground)
       HasSubstr("x.hdr: is not an image"));
 }
 
-TEST(MendLight, L9WhatIsNoLightIsMendedAndCounted) {
+TEST(RepairLight, L9InvalidTexelsAreRepairedAndCounted) {
   constexpr float kInf = std::numeric_limits<float>::infinity();
   const float values[] = {1, -1, std::nanf(""), 7, kInf, 2e30f, -kInf, 0};
   ImageTexture image = test::float_image(8, 1, [&](auto x, auto) { return values[x]; });
-  EXPECT_EQ(mend_light(image), 5u);
+  EXPECT_EQ(repair_light(image), 5u);
   const float expected[] = {1, 0, 0, 7, 7, 7, 0, 0};
   for (std::size_t i = 0; i < 8; ++i) {
     float value = 0;
     std::memcpy(&value, image.texels.data() + i * sizeof value, sizeof value);
     EXPECT_EQ(value, expected[i]) << i;
   }
-  EXPECT_EQ(mend_light(image), 0u);
+  EXPECT_EQ(repair_light(image), 0u);
   ImageTexture bad = test::float_image(2, 2, [&](auto, auto) { return kInf; });
-  EXPECT_EQ(mend_light(bad), 4u) << "nothing is left, but nothing is infinite either";
-  test::holds("L9", "mended and counted");
+  EXPECT_EQ(repair_light(bad), 4u) << "nothing is left, but nothing is infinite either";
+  test::holds("L9", "repaired and counted");
 }
 
 /// One triangle, and lights at two nodes, one of them moved, turned and scaled.

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "renderlib/import/import.h"
-#include "renderlib/integrate/medium_walk.h"
+#include "renderlib/integrate/medium_traversal.h"
 #include "renderlib/scene/scene.h"
 #include "tests/unit/import/files.h"
 
@@ -70,7 +70,7 @@ instance { of: "turned"  scale: [1, 1, -5]  translate: [10, 20, 0] }
   EXPECT_NEAR(smoke_along(*scene, {0, 21, 1}, {1, 0, 0}), 3, kError);
   EXPECT_NEAR(smoke_along(*scene, {11, 21, -9}, {0, 0, 1}), 5, kError);
   EXPECT_TRUE(scene->geometry().instances.empty());
-  EXPECT_FALSE(scene->needs().motion);
+  EXPECT_FALSE(scene->features().motion);
 }
 
 TEST(PlacedMedia, OfABallInAGroupFillsTheEllipsoidThatIsSeen) {
@@ -102,7 +102,7 @@ shape { box { min: [-1, -1, -1] max: [1, 1, 1] } interior: "smoke" velocity: [0,
 shape { sphere { center: [9, 0, 0] radius: 1 } interior: "smoke" velocity: [0, -2, 0] }
 )";
   const auto scene = scene_of(kOpenFor1 + shapes);
-  EXPECT_TRUE(scene->needs().motion);
+  EXPECT_TRUE(scene->features().motion);
   for (const double time : {0.0, 0.2, 0.499, 0.501, 1.0}) {
     EXPECT_NEAR(smoke_along(*scene, {0, 2, -9}, {0, 0, 1}, time), time > 0.5 ? 2 : 0, kError);
     const double aside = -0.5 + 2 * time;
@@ -113,7 +113,7 @@ shape { sphere { center: [9, 0, 0] radius: 1 } interior: "smoke" velocity: [0, -
   const auto moment = scene_of(
       "camera { position: [0, 1, 5] look_at: [0, 0, 0] shutter_open: 0.75 shutter_close: 0.75 }" +
       shapes);
-  EXPECT_FALSE(moment->needs().motion);
+  EXPECT_FALSE(moment->features().motion);
   EXPECT_NEAR(smoke_along(*moment, {0, 2, -9}, {0, 0, 1}), 2, kError);
   EXPECT_NEAR(smoke_along(*moment, {9, -1.5, -9}, {0, 0, 1}), 2, kError);
 }
@@ -144,7 +144,7 @@ TEST(PlacedMedia, OfAGroupThatIsNowherePlacedAreNowhere) {
 group { name: "box"  shape { box { min: [0, 0, 0] max: [1, 2, 3] } interior: "smoke" } }
 shape { sphere { radius: 1 } material: "white" }
 )");
-  EXPECT_FALSE(scene->needs().media);
+  EXPECT_FALSE(scene->features().media);
 }
 
 TEST(PlacedMedia, WhatIsTooFlatIsRefused) {

@@ -1,4 +1,4 @@
-// Paths that go on in several directions from the first surface with a density.
+// Path splitting at the first surface with a pdf.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ using test::SceneMaker;
 
 const Ray kDown{.origin = {0.1, 3, 0.2}, .direction = {0, -1, 0}};
 
-/// A floor beside a wall, under a sky that is not even, seen through a pane where `behind_glass`.
+/// A floor and a wall under a non-uniform sky, seen through a pane if `behind_glass`.
 SceneMaker corner(bool behind_glass) {
   SceneMaker maker;
   const MaterialId gray = maker.diffuse({0.7f, 0.5f, 0.6f});
@@ -33,7 +33,7 @@ Rgb sample_of(const Scene& scene, std::uint64_t sample, std::uint32_t branches,
   return path_radiance(scene, kDown, PixelSampler(1, 2, 3), sample, {.branches = branches}, counts);
 }
 
-TEST(Branches, AreThePathsOfTheirNumbers) {
+TEST(Branches, EqualPathsWithTheirSampleNumbers) {
   const auto scene = corner(false).build();
   PathCounts whole;
   PathCounts parts;
@@ -47,11 +47,11 @@ TEST(Branches, AreThePathsOfTheirNumbers) {
                 sum * (1 / static_cast<float>(branches)));
     }
   }
-  // The first ray is one for all of them.
+  // The first ray is shared by all branches.
   EXPECT_EQ(whole.rays, parts.rays - 100 * (1 + 3));
 }
 
-/// Of one sample each of many pixels, which are independent of each other.
+/// Moments over one sample of each of many pixels, which are independent.
 test::Moments moments_of(const Scene& scene, std::uint64_t sample, std::uint32_t branches) {
   test::Moments moments;
   PathCounts counts;
@@ -62,20 +62,20 @@ test::Moments moments_of(const Scene& scene, std::uint64_t sample, std::uint32_t
   return moments;
 }
 
-TEST(Branches, HaveTheSameMean) {
+TEST(Branches, HaveTheMeanOfUnsplitPaths) {
   for (const bool behind_glass : {false, true}) {
     const auto scene = corner(behind_glass).build();
     const test::Moments one = moments_of(*scene, 0, 1);
     const test::Moments four = moments_of(*scene, 7, 4);
     const double deviation = std::hypot(one.standard_error(), four.standard_error());
     EXPECT_LE(std::abs(one.mean() - four.mean()), 4 * deviation) << behind_glass;
-    // Four that are stratified are better than four that are independent; whether glass reflects
-    // they have in common.
+    // Four stratified branches have less variance than four independent samples; the choice of
+    // reflection at the glass is shared by all branches.
     EXPECT_LT(four.variance(), (behind_glass ? 0.7 : 0.25) * one.variance());
   }
 }
 
-TEST(Branches, APathIsCutOffOnce) {
+TEST(Branches, ATruncatedPathCountsOnce) {
   SceneMaker closed;
   closed.sphere({0, 0, 0}, 10, closed.diffuse(0.5f));
   PathCounts counts;
@@ -84,7 +84,7 @@ TEST(Branches, APathIsCutOffOnce) {
   EXPECT_EQ(counts.truncated, 1u);
 }
 
-TEST(Branches, OnlyWhereNothingIsAskedForLight) {
+TEST(Branches, OnlyInScenesWithoutLightSampling) {
   SceneMaker shapes = corner(false);
   EXPECT_EQ(branches_for(*shapes.build()), 2u);
   SceneMaker lit = shapes;

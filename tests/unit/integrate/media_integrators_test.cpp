@@ -1,4 +1,4 @@
-// What integrators other than `path` show of media.
+// Media with integrators other than `path`.
 
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ TEST(MediaIntegrators, ABoundaryWithoutASurfaceIsInvisible) {
   }
 }
 
-TEST(MediaIntegrators, DirectShowsWhatFadesAndWhatTheAmbientTermLightsUp) {
+TEST(MediaIntegrators, DirectAttenuatesAndAddsTheAmbientTerm) {
   SceneMaker maker;
   maker.background(gray(1), gray(1));
   maker.scene.local_shading.ambient = gray(0.5f);
@@ -46,7 +46,7 @@ TEST(MediaIntegrators, DirectShowsWhatFadesAndWhatTheAmbientTermLightsUp) {
               1e-6);
 }
 
-TEST(MediaIntegrators, DirectShowsLampsScatteredOnceAsPathsOfOneScatteringDo) {
+TEST(MediaIntegrators, DirectEqualsPathsOfOneScattering) {
   SceneMaker maker;
   maker.sphere({1, 0.5, 0}, 0.2, maker.lamp(10));
   test::fog(maker, test::medium(0.1f, 0.3f, 0.4));

@@ -20,7 +20,8 @@ Rgb trace(const Scene& scene, const Ray& ray, std::uint64_t sample, const PathOp
 
 const Ray kAhead{.origin = {0.1, 0.2, 5}, .direction = {0, 0, -1}};
 
-/// Every sample of the ray gives this, for every technique: nothing about it is random but the way.
+/// Checks that every sample of the ray has this value, for every technique: nothing except the path
+/// is random.
 void expect_always(const Scene& scene, const Ray& ray, double expected, double tolerance,
                    std::uint32_t max_depth = 64) {
   for (const Technique technique :
@@ -32,13 +33,13 @@ void expect_always(const Scene& scene, const Ray& ray, double expected, double t
   }
 }
 
-TEST(Path, ALampIsSeenAsItIs) {
+TEST(Path, AnEmitterHasItsRadiance) {
   SceneMaker maker;
   maker.sphere({0, 0, 0}, 1, maker.lamp(7));
   expect_always(*maker.build(), kAhead, 7, 0);
 }
 
-TEST(Path, L11_AOneSidedLampIsBlackFromBehind) {
+TEST(Path, L11_AOneSidedEmitterIsBlackFromBehind) {
   SceneMaker front;
   front.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, front.lamp(7, true));
   expect_always(*front.build(), kAhead, 7, 0);
@@ -48,14 +49,14 @@ TEST(Path, L11_AOneSidedLampIsBlackFromBehind) {
   test::holds("L11", "600 samples exactly 0");
 }
 
-TEST(Path, ALampInAMirrorIsTheLampTimesTheReflectance) {
+TEST(Path, AMirroredEmitterIsScaledByTheReflectance) {
   SceneMaker maker;
   maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.metal(0.5f, 0));
   maker.sphere({0.1, 0.2, 9}, 1, maker.lamp(7));
   expect_always(*maker.build(), kAhead, 3.5, 1e-6);
 }
 
-TEST(Path, WithoutLossGlassAndMirrorsAreInvisibleInAUniformSky) {
+TEST(Path, LosslessGlassAndMirrorsAreInvisibleInAUniformSky) {
   for (const double x : {0.0, 0.5, 0.9, 0.99, 0.999}) {
     const Ray ray{.origin = {x, 0, 5}, .direction = {0, 0, -1}};
     SceneMaker glass;
@@ -91,7 +92,7 @@ TEST(Path, ATinyGlassSphereAndAThinPaneAreEnteredAndLeft) {
   }
 }
 
-TEST(Path, InsideOfGlassRadianceIsTheSquareOfTheIndexOfWhatItIsOutside) {
+TEST(Path, RadianceInGlassScalesWithTheSquaredIndex) {
   SceneMaker maker;
   maker.background(gray(1), gray(1));
   maker.sphere({0, 0, 0}, 1, maker.glass(1.5));
@@ -99,9 +100,9 @@ TEST(Path, InsideOfGlassRadianceIsTheSquareOfTheIndexOfWhatItIsOutside) {
   expect_always(*maker.build(), ray, 2.25, 1e-5, 1000);
 }
 
-TEST(Path, MaxDepthIsTheMostSurfacesThatScatter) {
-  // Two mirrors face each other; every reflection halves what comes from the lamp around the
-  // corner. The ray is reflected three times before it meets the lamp.
+TEST(Path, MaxDepthLimitsTheNumberOfScatterings) {
+  // Two mirrors face each other; every reflection halves the light of a source around the corner.
+  // The ray is reflected three times before it hits the source.
   SceneMaker maker;
   const MaterialId mirror = maker.metal(0.5f, 0);
   maker.quad({-9, -9, 0}, {18, 0, 0}, {0, 18, 0}, mirror);
@@ -115,7 +116,7 @@ TEST(Path, MaxDepthIsTheMostSurfacesThatScatter) {
   }
 }
 
-TEST(Path, O3_AnOpaqueBlockerShadowsExactlyHoweverFarTheLamp) {
+TEST(Path, O3_AnOccluderCastsAnExactShadowAtAnyDistance) {
   SceneMaker maker;
   maker.quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}, maker.diffuse(1));
   maker.quad({-50, 0.5, -50}, {0, 0, 100}, {100, 0, 0}, maker.diffuse(0));
@@ -125,7 +126,7 @@ TEST(Path, O3_AnOpaqueBlockerShadowsExactlyHoweverFarTheLamp) {
   test::holds("O3", "600 samples exactly 0");
 }
 
-TEST(Path, TX8ConstantColorAndConstantTextureMakeTheSameBits) {
+TEST(Path, TX8_ConstantColorAndConstantTextureGiveTheSameBits) {
   SceneMaker plain;
   const MaterialId gray_plain = plain.diffuse(1);
   SceneMaker textured;
@@ -158,8 +159,8 @@ TEST(Path, CountsItsRays) {
   EXPECT_EQ(counts.rays, 42u);
 }
 
-// Inside of a closed sphere every path is cut off: once, wherever that is. In the open none is.
-TEST(Path, CountsThePathsThatItCutsOff) {
+// In a closed sphere every path is truncated, and counted once. In the open none is.
+TEST(Path, CountsTruncatedPaths) {
   SceneMaker closed;
   closed.sphere({0, 0, 0}, 10, closed.diffuse(0.5f));
   SceneMaker misty = closed;

@@ -19,7 +19,7 @@ Rgb value(const SceneMaker& maker, Integrator integrator, const Ray& ray,
                       {.max_depth = 16, .local = integrator == Integrator::kDirect}, counts);
 }
 
-/// False alarms: 4 standard errors, 6e-5 each.
+/// Checks the mean within 4 standard errors: a false-alarm rate of 6e-5 for each check.
 double mean(const SceneMaker& maker, Integrator integrator, const Ray& ray, double expected) {
   const auto scene = maker.build();
   test::Moments moments;
@@ -35,7 +35,7 @@ double mean(const SceneMaker& maker, Integrator integrator, const Ray& ray, doub
 
 const Ray kAhead{.origin = {0.1, 0.2, 5}, .direction = {0, 0, -1}};
 
-/// A wall in z = 0 that shows its front.
+/// A wall in z = 0 whose front is visible.
 void wall(SceneMaker& maker, MaterialId material, double z = 0) {
   maker.quad({-50, -50, z}, {100, 0, 0}, {0, 100, 0}, material);
 }
@@ -51,7 +51,7 @@ TEST(SampleValue, NormalsDepthAndAlbedoAreThoseOfTheFirstSurface) {
   EXPECT_EQ(value(maker, Integrator::kAlbedo, kAhead), gray(0.75f));
 }
 
-TEST(SampleValue, ALampsAlbedoIsCutOffAndGlassIsWhite) {
+TEST(SampleValue, AlbedoOfAnEmitterIsClampedAndOfGlassWhite) {
   SceneMaker maker;
   maker.sphere({0.1, 0.2, 0}, 1, maker.lamp(3));
   EXPECT_EQ(value(maker, Integrator::kAlbedo, kAhead), gray(1));
@@ -60,7 +60,7 @@ TEST(SampleValue, ALampsAlbedoIsCutOffAndGlassIsWhite) {
   EXPECT_EQ(value(glass, Integrator::kAlbedo, kAhead), gray(1));
 }
 
-TEST(SampleValue, TheAlbedoOfAGltfMaterialIsItsBaseColour) {
+TEST(SampleValue, AlbedoOfAGltfMaterialIsItsBaseColour) {
   SceneMaker maker;
   const TextureId gold = maker.texture(ConstantTexture{{0.8f, 0.6f, 0.4f}});
   Principled material;
@@ -75,7 +75,7 @@ TEST(SampleValue, TheAlbedoOfAGltfMaterialIsItsBaseColour) {
   EXPECT_EQ(value(maker, Integrator::kAlbedo, kAhead), (Rgb{0.4f, 0.6f, 0.1f}));
 }
 
-TEST(SampleValue, NormalsAreThoseOfTheNormalMapAndWhatIsNotThereIsSeenThrough) {
+TEST(SampleValue, UsesNormalMapsAndSkipsHoles) {
   SceneMaker maker;
   wall(maker, maker.diffuse({0.2f, 0.4f, 0.6f}), -2);
   Principled bent;
@@ -93,8 +93,8 @@ TEST(SampleValue, NormalsAreThoseOfTheNormalMapAndWhatIsNotThereIsSeenThrough) {
   EXPECT_EQ(value(maker, Integrator::kAlbedo, kAhead), (Rgb{0.2f, 0.4f, 0.6f}));
 }
 
-// A normal map that tilts along its u lies on the second uvs, whose u grows along y.
-TEST(SampleValue, ANormalMapTiltsAlongTheUvsThatItLiesOn) {
+// A normal map that tilts along u uses the second uv set, whose u grows along y.
+TEST(SampleValue, ANormalMapTiltsAlongItsUvSet) {
   SceneMaker maker;
   ImageTexture map;
   map.width = map.height = 1;
@@ -131,7 +131,7 @@ TEST(SampleValue, AMissIsBlackAndOpen) {
   EXPECT_EQ(value(maker, Integrator::kDirect, kAhead), gray(3));
 }
 
-TEST(SampleValue, ABallAboveHidesItsShareOfTheSky) {
+TEST(SampleValue, ABallAboveOccludesItsViewFactor) {
   SceneMaker maker;
   wall(maker, maker.diffuse(0.5f));
   maker.sphere({0, 0, 4}, 2, maker.diffuse(0.5f));
@@ -140,7 +140,7 @@ TEST(SampleValue, ABallAboveHidesItsShareOfTheSky) {
   mean(maker, Integrator::kAmbientOcclusion, below, 0.75);
   maker.scene.local_shading.occlusion_distance = 2.5;
   const double near = mean(maker, Integrator::kAmbientOcclusion, below,
-                           // Rays that meet the ball before 2.5: within the cone of tan^2 given by
+                           // Rays that hit the ball before 2.5: within the cone of tan^2 given by
                            // the sphere of radius 2.5 about the point; z of the circle they share
                            // is (2.5^2 + 4^2 - 2^2) / 8, and sin^2 of its cone 1 - (z / 2.5)^2.
                            std::pow((2.5 * 2.5 + 12) / 8 / 2.5, 2));
@@ -149,7 +149,7 @@ TEST(SampleValue, ABallAboveHidesItsShareOfTheSky) {
   EXPECT_EQ(mean(maker, Integrator::kAmbientOcclusion, below, 1), 1);
 }
 
-TEST(SampleValue, DirectIsTheLampsIrradianceAndTheAmbientTerm) {
+TEST(SampleValue, DirectIsIrradianceAndAmbientTerm) {
   SceneMaker maker;
   wall(maker, maker.diffuse(0.5f));
   maker.sphere({0, 0, 4}, 2, maker.lamp(3));
@@ -159,7 +159,7 @@ TEST(SampleValue, DirectIsTheLampsIrradianceAndTheAmbientTerm) {
   mean(maker, Integrator::kDirect, below, 0.5 * 3 * 0.25 + 0.5 * 0.25);
 }
 
-TEST(SampleValue, DirectKnowsNoLightFromSurfaceToSurface) {
+TEST(SampleValue, DirectHasNoInterreflection) {
   SceneMaker maker;
   wall(maker, maker.diffuse(0.5f));
   wall(maker, maker.diffuse(0.9f), 20);
@@ -170,7 +170,7 @@ TEST(SampleValue, DirectKnowsNoLightFromSurfaceToSurface) {
   }
 }
 
-TEST(SampleValue, DirectFollowsMirrorsAndGlass) {
+TEST(SampleValue, DirectContinuesAtMirrorsAndGlass) {
   SceneMaker maker;
   wall(maker, maker.metal(0.5f, 0));
   wall(maker, maker.diffuse(0.5f), 20);

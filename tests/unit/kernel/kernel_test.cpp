@@ -22,13 +22,13 @@ namespace {
 using testing::HasSubstr;
 
 // This file is compiled like the rest of the program, so its Float8 is that of the base kernel.
-TEST(Kernels, EndWithTheOneThatEveryMachineRuns) {
+TEST(Kernels, EndWithTheBaseKernel) {
   EXPECT_EQ(kernels().back(), &Kernel::kBase);
   EXPECT_STREQ(Kernel::kBase.name, kSimdName);
 }
 
 #if defined(__x86_64__) && !defined(__AVX2__)
-TEST(Kernels, BeginWithAvx2WhereTheMachineRunsIt) {
+TEST(Kernels, BeginWithAvx2IfTheMachineRunsIt) {
   EXPECT_STREQ(Kernel::kBase.name, "plain");
   ASSERT_EQ(kernels().size(), runs_x86_64_v3() ? 2u : 1u);
   if (runs_x86_64_v3()) {
@@ -36,8 +36,8 @@ TEST(Kernels, BeginWithAvx2WhereTheMachineRunsIt) {
   }
 }
 
-// What `grep` finds in /proc/cpuinfo is the kernel's own judgement of processor and registers.
-TEST(Kernels, RunsX86_64V3IsWhatLinuxSays) {
+// The flags in /proc/cpuinfo are the Linux kernel's own judgement of processor and registers.
+TEST(Kernels, RunsX86_64V3AgreesWithLinux) {
   std::ifstream info("/proc/cpuinfo");
   std::set<std::string> flags;
   for (std::string line; flags.empty() && std::getline(info, line);) {
@@ -76,7 +76,7 @@ TEST(Kernels, HaveTheSameCanary) {
   }
 }
 
-/// A box with glass and metal, and a mesh that is large enough for a tree of several levels.
+/// A box with glass and metal, and a mesh that is large enough for a BVH of several levels.
 SceneDescription mixed_scene() {
   test::SceneMaker maker = test::cornell_box();
   maker.sphere({180, 90, 180}, 90, maker.glass(1.5));
@@ -94,7 +94,7 @@ TEST(Kernels, RenderTheSameSums) {
   Pool pool(2);
   std::vector<double> sums;
   for (const Kernel* kernel : kernels()) {
-    const auto scene = Scene::build(mixed_scene(), pool, {}, Tested::kOnItsWay, kernel);
+    const auto scene = Scene::build(mixed_scene(), pool, {}, Traversal::kBvh, kernel);
     ASSERT_TRUE(scene.ok()) << scene.status();
     EXPECT_EQ(&(*scene)->kernel(), kernel);
     const auto pixels = render_band(**scene, settings, {{0, 32}, {0, 40}}, pool, stop, {});
@@ -107,7 +107,7 @@ TEST(Kernels, RenderTheSameSums) {
   }
 }
 
-TEST(Kernels, TheFirstIsTakenWhereNoneIsNamed) {
+TEST(Kernels, TheFirstIsTheDefault) {
   Pool pool(1);
   const auto scene = Scene::build(mixed_scene(), pool);
   ASSERT_TRUE(scene.ok()) << scene.status();

@@ -22,7 +22,7 @@ namespace {
 using test::float_image;
 using test::Random;
 
-/// An environment and its textures.
+/// An environment with its textures.
 struct Sky {
   std::string name;
   std::vector<Texture> textures;
@@ -58,7 +58,7 @@ std::vector<Sky> skies() {
   all.push_back(equirectangular("noise", 17, 9, [](auto x, auto y) { return noise(x, y, 1); }));
   all.push_back(equirectangular("one row", 6, 1, [](auto x, auto y) { return noise(x, y, 2); }));
   all.push_back(equirectangular("one column", 1, 7, [](auto x, auto y) { return noise(x, y, 3); }));
-  // One texel, across the seam. At a pole, where it would be too narrow to be integrated over the
+  // One texel, across the seam. At a pole, where it would be too narrow to integrate over the
   // test's cells, a whole row.
   all.push_back(equirectangular("L8 one texel", 20, 10,
                                 [&](auto x, auto y) { return x == 19 && y == 3 ? 7.0f : 0; }));
@@ -97,7 +97,7 @@ TEST(Environment, PlacesAndDirectionsAreInverse) {
   }
 }
 
-TEST(Environment, C10TheMiddleOfAnImageLiesTowardsXAndItsRightHalfTowardsZ) {
+TEST(Environment, C10_TheMiddleOfAnImageIsAtXAndItsRightHalfAtZ) {
   const Sky sky = equirectangular("numbered", 4, 2,
                                   [](auto x, auto y) { return static_cast<float>(10 * y + x); });
   const auto seen = [&](double column, double row) {
@@ -117,7 +117,7 @@ TEST(Environment, C10TheMiddleOfAnImageLiesTowardsXAndItsRightHalfTowardsZ) {
   EXPECT_NEAR(at({1e-9, 1, 0}), (1 + 2) / 2.0, 1e-6) << "at a pole the last row stays";
 }
 
-TEST(Environment, C10TheSidesOfACubeMapLieAsTheirNamesSay) {
+TEST(Environment, C10_SidesOfACubeMapHaveTheirDirections) {
   const Sky sky = cube("numbered", 2, [](auto i, auto, auto) { return static_cast<float>(i); });
   const Vec3 axes[] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   for (std::size_t i = 0; i < 6; ++i) {
@@ -144,7 +144,7 @@ TEST(Environment, AGradientAcrossACubeMapHasNoSeams) {
   }
 }
 
-TEST(EnvironmentLight, DirectionsFollowTheDensity) {
+TEST(EnvironmentLight, DirectionsFollowThePdf) {
   const std::vector<Sky> all = skies();
   for (const Sky& sky : all) {
     const EnvironmentLight light(sky.environment, sky.textures);
@@ -156,7 +156,7 @@ TEST(EnvironmentLight, DirectionsFollowTheDensity) {
   }
 }
 
-TEST(EnvironmentLight, SamplesCarryTheDensityOfTheirDirection) {
+TEST(EnvironmentLight, SamplesHaveThePdfOfTheirDirection) {
   Random random(6);
   for (const Sky& sky : skies()) {
     const EnvironmentLight light(sky.environment, sky.textures);
@@ -164,16 +164,17 @@ TEST(EnvironmentLight, SamplesCarryTheDensityOfTheirDirection) {
       const double u = random.uniform();
       const auto sample = light.sample(u, random.uniform());
       ASSERT_GT(sample.pdf, 0);
-      // Where the sample lies at a texel's very rim, the last digits of its place decide.
+      // If the sample is at the border of a texel, rounding decides.
       ASSERT_NEAR(light.pdf(sample.direction), sample.pdf, 1e-6 * sample.pdf + 1e-9) << sky.name;
     }
   }
 }
 
-/// The integral of f over the directions around texel (x, y), by the midpoint rule between knots.
+/// Returns the integral of f over the directions around texel (x, y), by the midpoint rule between
+/// knots.
 double around_texel(const Sky& sky, std::uint32_t column, std::uint32_t row,
                     absl::FunctionRef<double(const Vec3&)> f) {
-  constexpr int kFine = 400;  // along a column; along a row all is linear between knots
+  constexpr int kFine = 400;  // along a column; along a row everything is linear between knots
   constexpr int kCoarse = 4;
   const auto& image = std::get<ImageTexture>(sky.textures[0]);
   double sum = 0;
@@ -194,7 +195,7 @@ double around_texel(const Sky& sky, std::uint32_t column, std::uint32_t row,
   return sum;
 }
 
-TEST(EnvironmentLight, L8OneTexelIsSampledWithoutAnySpreadOfWeights) {
+TEST(EnvironmentLight, L8_OneTexelIsSampledWithEqualWeights) {
   for (const std::uint32_t row : {0u, 1u, 4u, 9u}) {
     const Sky sky = equirectangular("L8", 100, 10,
                                     [&](auto x, auto y) { return x == 30 && y == row ? 5.0f : 0; });
@@ -213,7 +214,7 @@ TEST(EnvironmentLight, L8OneTexelIsSampledWithoutAnySpreadOfWeights) {
   test::holds("L8", "weights without spread, at the pole too");
 }
 
-TEST(EnvironmentLight, WhatIsEvenIsNeverAsked) {
+TEST(EnvironmentLight, TheUniformPartIsNotSampled) {
   for (const float value : {0.0f, 1.0f, 0.3f, 1e30f}) {
     const Sky even = equirectangular("even", 33, 17, [&](auto, auto) { return value; });
     const EnvironmentLight light(even.environment, even.textures);
@@ -232,7 +233,7 @@ TEST(EnvironmentLight, TheExcessIsTheLightAboveTheMean) {
   EXPECT_NEAR(light.excess(), 2 * kPi, 1e-4);
 }
 
-TEST(Environment, WhatCannotBeRenderedIsRefusedWithItsPlace) {
+TEST(Environment, InvalidOnesAreRefusedWithTheField) {
   const Sky good = skies().front();
   const auto message = [](const Sky& sky) {
     Background background;

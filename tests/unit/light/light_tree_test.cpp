@@ -50,7 +50,7 @@ std::vector<Receiver> receivers() {
   return {{{0, 0, 0}, Vec3{0, 1, 0}}, {{20, -5, 3}, Vec3{1, 0, 0}}, {{0, 40, 0}, std::nullopt}};
 }
 
-TEST(LightTree, L7ProbabilitiesOfAHundredThousandLightsAddUpToOne) {
+TEST(LightTree, L7_ProbabilitiesOfManyLightsSumToOne) {
   const std::vector<LightBound> lights = lights_of_all_kinds(100000);
   const LightTree tree(lights);
   {
@@ -61,8 +61,8 @@ TEST(LightTree, L7ProbabilitiesOfAHundredThousandLightsAddUpToOne) {
       ASSERT_TRUE(probability > 0 || importance(lights[i], receiver) == 0) << i;
       sum += probability;
     }
-    // Where lights face every way, both halves of a node may be out of reach though the node as a
-    // whole seemed to give something: then no light is asked.
+    // If lights face in all directions, both halves of a node may contribute nothing although the
+    // bound of the whole node does: then no light is selected.
     EXPECT_LE(sum, 1 + 1e-12);
     EXPECT_GE(sum, 0.5);
   }
@@ -81,7 +81,7 @@ TEST(LightTree, L7ProbabilitiesOfAHundredThousandLightsAddUpToOne) {
   test::holds("L7", "100,000 probabilities add up to 1");
 }
 
-TEST(LightTree, L7LightsAreChosenAsOftenAsTheirProbabilitySays) {
+TEST(LightTree, L7_SelectionFrequenciesEqualProbabilities) {
   const std::vector<LightBound> lights = lights_of_all_kinds(20000);
   const LightTree tree(lights);
   constexpr int kSamples = 100000;
@@ -110,7 +110,7 @@ TEST(LightTree, L7LightsAreChosenAsOftenAsTheirProbabilitySays) {
   test::holds("L7", "chi-squared passes");
 }
 
-TEST(LightTree, ANearLightIsChosenBeforeABrightOneFarAway) {
+TEST(LightTree, PrefersANearLightToABrightDistantOne) {
   std::vector<LightBound> lights(1000);
   for (std::size_t i = 0; i < lights.size(); ++i) {
     lights[i].ball = {{static_cast<double>(i), 1, 0}, 0.01};
@@ -118,12 +118,12 @@ TEST(LightTree, ANearLightIsChosenBeforeABrightOneFarAway) {
   }
   const LightTree tree(lights);
   const Receiver receiver{{500, 0, 0}, Vec3{0, 1, 0}};
-  // Alone: 1 of 2 sum 1 / (k^2 + 1)^(3/2), about 0.43; the tree's bounds are looser.
+  // Exact importance: 1 of 2 sum 1 / (k^2 + 1)^(3/2), about 0.43; the tree's bounds are looser.
   EXPECT_GT(tree.probability(receiver, 500), 0.1);
   EXPECT_LT(tree.probability(receiver, 0), 1e-4);
 }
 
-TEST(LightTree, LightsAllInOnePlaceAreATreeToo) {
+TEST(LightTree, HandlesCoincidentLights) {
   std::vector<LightBound> lights(50000);
   for (LightBound& light : lights) {
     light.ball = {{1, 2, 3}, 0.5};
@@ -133,7 +133,7 @@ TEST(LightTree, LightsAllInOnePlaceAreATreeToo) {
   EXPECT_NEAR(tree.probability({{0, 0, 0}, std::nullopt}, 777), 1.0 / 50000, 1e-6);
 }
 
-TEST(LightTree, NestedLightsStayWithinItsDepth) {
+TEST(LightTree, NestedLightsStayWithinTheMaximumDepth) {
   std::vector<LightBound> lights;
   for (int i = 0; i < 900; ++i) {
     LightBound light;
@@ -149,9 +149,9 @@ TEST(LightTree, NestedLightsStayWithinItsDepth) {
   EXPECT_NEAR(sum, 1, 1e-12);
 }
 
-/// A ball that a direction within the cone meets may be chosen, one beyond the sum of the angles is
-/// not: to the angle that cosines can tell, 1.5e-8.
-TEST(LightChoice, WithinAConeThereIsWhatMayBeSeenInIt) {
+/// A ball that a direction within the cone hits may be selected, and a ball beyond the sum of the
+/// angles may not: up to the angle that cosines resolve, 1.5e-8.
+TEST(LightChoice, AConeSelectsTheLightsThatOverlapIt) {
   Random random(4);
   int met = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -175,7 +175,7 @@ TEST(LightChoice, WithinAConeThereIsWhatMayBeSeenInIt) {
   EXPECT_LT(met, 15000);
 }
 
-TEST(LightChoice, DistantLightsStandBesideFewAndBesideATree) {
+TEST(LightChoice, DistantLightsAreCandidatesNextToTheTree) {
   for (const std::size_t count : {3u, 300u}) {
     const std::vector<LightBound> local = lights_of_all_kinds(count);
     const LightChoice choice(local, {{5, Vec3{0, 1, 0}}, {2, std::nullopt}});

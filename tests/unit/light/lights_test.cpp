@@ -72,7 +72,7 @@ std::vector<Case> cases() {
 
 constexpr Vec3 kUp{0, 1, 0};
 
-TEST(Lights, SamplesHaveTheDensityAndRadianceOfTheSurfaceTheyPointAt) {
+TEST(Lights, SamplesHaveThePdfAndRadianceOfTheirSurface) {
   for (const Case& test_case : cases()) {
     const auto scene = test_case.maker.build();
     Random random(2);
@@ -92,7 +92,7 @@ TEST(Lights, SamplesHaveTheDensityAndRadianceOfTheSurfaceTheyPointAt) {
       const Hit hit = scene->accel().closest(ray);
       const SurfacePoint point = hit ? surface_at(scene->geometry(), ray, hit) : SurfacePoint{};
       if (!hit || length(point.position - light->target) > 1e-6 * (1 + length(light->target))) {
-        continue;  // An edge, or another light in front.
+        continue;  // an edge, or another light in front
       }
       ASSERT_NEAR(scene->lights().pdf(receiver, point) / light->pdf, 1, 1e-6) << test_case.name;
       const Rgb radiance =
@@ -103,10 +103,10 @@ TEST(Lights, SamplesHaveTheDensityAndRadianceOfTheSurfaceTheyPointAt) {
   }
 }
 
-TEST(Lights, O4_NoSampleThatIsInSightIsInItsOwnShadow) {
+TEST(Lights, O4_VisibleSamplesAreNotSelfShadowed) {
   for (const Case& test_case : cases()) {
     if (test_case.name == "textured" || test_case.name == "many") {
-      continue;  // These lights shade each other.
+      continue;  // these lights occlude each other
     }
     SceneMaker maker = test_case.maker;
     maker.quad({-0.4, 0, -0.4}, {0, 0, 0.8}, {0.8, 0, 0}, maker.diffuse(1));
@@ -120,14 +120,14 @@ TEST(Lights, O4_NoSampleThatIsInSightIsInItsOwnShadow) {
       const double choice = random.uniform();
       const double u = random.uniform();
       const auto light = scene->lights().sample({point.position, kUp}, choice, u, random.uniform());
-      occluded += light && scene->accel().occluded(toward(point, light->target, 0)) ? 1 : 0;
+      occluded += light && scene->accel().occluded(spawn_ray_to(point, light->target, 0)) ? 1 : 0;
     }
     EXPECT_EQ(occluded, 0) << test_case.name;
   }
   test::holds("O4", "0 of 100,000 occluded, for each of ten kinds of light");
 }
 
-TEST(Lights, DirectionsFollowTheDensity) {
+TEST(Lights, DirectionsFollowThePdf) {
   constexpr int kRings = 12;
   constexpr int kSectors = 16;
   constexpr int kSteps = 24;
@@ -135,7 +135,7 @@ TEST(Lights, DirectionsFollowTheDensity) {
   for (const Case& test_case : cases()) {
     if (test_case.name == "small far sphere" || test_case.name == "near rectangle" ||
         test_case.name == "many" || test_case.name == "textured") {
-      continue;  // Too small for the cells, or not the first surface in every direction.
+      continue;  // too small for the cells, or not the first surface in every direction
     }
     const auto scene = test_case.maker.build();
     const Receiver receiver{{0.05, 0, 0.1}, kUp};
@@ -176,19 +176,19 @@ TEST(Lights, DirectionsFollowTheDensity) {
     EXPECT_LT(inside, 1.005) << test_case.name;
     expected.back() = kSamples * std::max(0.0, 1 - inside);
     if (expected.back() < kSamples * 0.005) {
-      expected.back() = 0;  // What the sum over the cells is off; no sample is ever lost there.
+      expected.back() = 0;  // error of the sum over the cells; no sample falls there
       EXPECT_EQ(counts.back(), 0u) << test_case.name;
     }
     EXPECT_GT(test::chi_squared(counts, expected).p_value, test::sidak(0.01, 8)) << test_case.name;
   }
 }
 
-TEST(Lights, ManyLightsAreChosenAsOftenAsTheirProbabilitySays) {
+TEST(Lights, SelectionFrequenciesEqualProbabilities) {
   SceneMaker maker;
   Random random(8);
   const int count = 200;
   for (int i = 0; i < count; ++i) {
-    // One after the other: the order in which arguments are evaluated is the compiler's.
+    // In separate statements: the evaluation order of arguments is unspecified.
     const double x = random.uniform(-9, 9);
     const double z = random.uniform(-9, 9);
     const double power = std::exp2(random.uniform(-6, 2));
@@ -222,7 +222,7 @@ TEST(Lights, ManyLightsAreChosenAsOftenAsTheirProbabilitySays) {
   EXPECT_GT(test::chi_squared(counts, expected).p_value, 0.001);
 }
 
-TEST(Lights, L1T4_WithoutAreaOrPowerThereIsNoLight) {
+TEST(Lights, L1T4_SurfacesWithoutAreaOrPowerAreNoLights) {
   SceneMaker maker;
   maker.sphere({0, 2, 0}, 1, maker.lamp(0));
   maker.quad({0, 1, 0}, {1, 0, 0}, {2, 0, 0}, maker.lamp(5));
@@ -237,7 +237,7 @@ TEST(Lights, L1T4_WithoutAreaOrPowerThereIsNoLight) {
   test::holds("T4", "a quad without area is no light");
 }
 
-TEST(Lights, L11_OneSidedLightsShineToTheirFrontAlone) {
+TEST(Lights, L11_OneSidedLightsEmitOnlyToTheirFront) {
   for (const bool facing : {true, false}) {
     SceneMaker maker;
     const Vec3 u{2, 0, 0};
@@ -252,7 +252,7 @@ TEST(Lights, L11_OneSidedLightsShineToTheirFrontAlone) {
   test::holds("L11", "no sample from behind");
 }
 
-TEST(Lights, BelowTheHorizonTheyAreNotAsked) {
+TEST(Lights, LightsBelowTheHorizonAreNotSampled) {
   SceneMaker maker;
   maker.sphere({0, -2, 0}, 1, maker.lamp(1000));
   maker.sphere({0, 3, 0}, 1, maker.lamp(1));
@@ -261,7 +261,7 @@ TEST(Lights, BelowTheHorizonTheyAreNotAsked) {
   EXPECT_EQ(scene->lights().probability({{0, 0, 0}, kUp}, {0, 1}), 1);
 }
 
-TEST(Lights, Q6_AReceiverInThePlaneOfALightGetsNothingAndNoNan) {
+TEST(Lights, Q6_AReceiverInThePlaneOfALightGetsZero) {
   SceneMaker maker;
   maker.quad({1, 0, -1}, {2, 0, 0}, {0, 0, 2}, maker.lamp(1));
   const auto scene = maker.build();

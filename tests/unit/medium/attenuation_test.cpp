@@ -10,8 +10,8 @@
 namespace bandsaw {
 namespace {
 
-/// Nothing is lost of small numbers, and where there is no extinction all light passes.
-TEST(Attenuation, V1OfNothingIsExactlyOneAndOfLittleIsExact) {
+/// Small extinctions keep their precision, and without extinction all light passes.
+TEST(Attenuation, V1_IsExactForLittleExtinctionAndOneForNone) {
   EXPECT_EQ(transmittance(0, 1), 1);
   EXPECT_EQ(transmittance(0, kInfinity), 1);
   EXPECT_EQ(reach(0, 7), 7);
@@ -27,8 +27,8 @@ TEST(Attenuation, V1OfNothingIsExactlyOneAndOfLittleIsExact) {
   test::holds("V1", "T = 1 at 0; within 1e-12");
 }
 
-/// What is opaque is opaque, without overflow on the way.
-TEST(Attenuation, V3OfVeryDenseMediaIsZero) {
+/// Very dense media are opaque, without overflow in between.
+TEST(Attenuation, V3_IsZeroForVeryDenseMedia) {
   for (const double sigma : {1e6, 1e12, 2e12}) {
     EXPECT_EQ(transmittance(sigma, kInfinity), 0);
     EXPECT_EQ(transmittance(sigma, 1e30), 0);
@@ -37,7 +37,7 @@ TEST(Attenuation, V3OfVeryDenseMediaIsZero) {
   EXPECT_EQ(transmittance(1e-30, kInfinity), 0);
 }
 
-TEST(Attenuation, GoesByChannel) {
+TEST(Attenuation, IsComputedByChannel) {
   const Medium medium{.absorption = {0.5f, 0, 1}, .scattering = {0.5f, 0, 2}};
   const Rgb share = transmittance(medium, 2);
   EXPECT_FLOAT_EQ(share.r, std::exp(-2.0f));
@@ -45,7 +45,7 @@ TEST(Attenuation, GoesByChannel) {
   EXPECT_FLOAT_EQ(share.b, std::exp(-6.0f));
 }
 
-TEST(Attenuation, OwnRadianceIsEmissionOverTheReach) {
+TEST(Attenuation, OwnRadianceIsEmissionTimesEffectiveLength) {
   const Medium medium{.absorption = {0.5f, 0, 2}, .emission = {1, 3, 4}};
   const Rgb along = own_radiance(medium, 2);
   EXPECT_FLOAT_EQ(along.r, (1 - std::exp(-1.0f)) / 0.5f);

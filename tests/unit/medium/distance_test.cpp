@@ -1,5 +1,4 @@
-// Distances in a medium: whether samples have the density that is claimed, and what the weights
-// keep.
+// Sampling of distances in a medium: pdfs of samples and bounds of weights.
 
 #include <gtest/gtest.h>
 
@@ -9,7 +8,7 @@
 #include "renderlib/math/constants.h"
 #include "renderlib/medium/attenuation.h"
 #include "renderlib/medium/equiangular.h"
-#include "renderlib/medium/flight.h"
+#include "renderlib/medium/free_flight.h"
 #include "tests/support/hard_case.h"
 #include "tests/support/random.h"
 #include "tests/support/statistics.h"
@@ -20,8 +19,8 @@ namespace {
 constexpr std::size_t kCells = 100;
 constexpr int kSamples = 100000;
 
-/// Samples against the density integrated over 100 cells, equal ones or, of an infinite length,
-/// longer and longer.
+/// Compares samples with the pdf integrated over 100 cells: equal ones or, for an infinite length,
+/// cells of increasing length.
 void expect_density(const std::function<double(double, double)>& sample,
                     const std::function<double(double)>& pdf, double length, std::uint64_t seed) {
   std::vector<double> edges = {0};
@@ -68,12 +67,12 @@ void expect_density(const std::function<double(double, double)>& sample,
 
 void expect_flight_density(const Medium& medium, const Rgb& throughput, double length,
                            std::uint64_t seed) {
-  const Flight flight(medium, throughput, length);
+  const FreeFlight flight(medium, throughput, length);
   expect_density([&](double choice, double u) { return flight.sample(choice, u); },
                  [&](double s) { return flight.pdf(s); }, length, seed);
 }
 
-TEST(Flight, DistancesHaveTheirDensity) {
+TEST(FreeFlight, DistancesFollowThePdf) {
   const Medium grey{.absorption = gray(0.2f), .scattering = gray(0.8f)};
   expect_flight_density(grey, gray(1), kInfinity, 1);
   expect_flight_density(grey, gray(1), 0.5, 2);
@@ -84,21 +83,21 @@ TEST(Flight, DistancesHaveTheirDensity) {
   expect_flight_density({.scattering = gray(1e-12f)}, gray(1), 3, 6);
 }
 
-/// The share that is scattered and the mean of what is: both as the closed form says.
-TEST(Flight, ChanceIsTheShareThatIsScattered) {
-  const Flight flight({.absorption = gray(0.5f), .scattering = gray(1.5f)}, gray(1), 0.7);
+/// The probability of scattering and the mean weight follow the closed form.
+TEST(FreeFlight, ScatterProbabilityIsTheScatteredShare) {
+  const FreeFlight flight({.absorption = gray(0.5f), .scattering = gray(1.5f)}, gray(1), 0.7);
   const double stopped = -std::expm1(-1.4);
   const double scattered = 0.75 * stopped;
-  EXPECT_NEAR(flight.chance(), scattered / (scattered + std::exp(-1.4)), 1e-12);
+  EXPECT_NEAR(flight.scatter_probability(), scattered / (scattered + std::exp(-1.4)), 1e-12);
   EXPECT_FLOAT_EQ(flight.all_scattered().g, static_cast<float>(scattered));
-  EXPECT_EQ(Flight({.absorption = gray(1)}, gray(1), kInfinity).chance(), 0);
-  EXPECT_EQ(Flight({}, gray(1), kInfinity).chance(), 0);
-  EXPECT_EQ(Flight({.scattering = gray(1)}, gray(1), kInfinity).chance(), 1);
+  EXPECT_EQ(FreeFlight({.absorption = gray(1)}, gray(1), kInfinity).scatter_probability(), 0);
+  EXPECT_EQ(FreeFlight({}, gray(1), kInfinity).scatter_probability(), 0);
+  EXPECT_EQ(FreeFlight({.scattering = gray(1)}, gray(1), kInfinity).scatter_probability(), 1);
 }
 
-/// However different the channels, no weight grows by more than 3, and the sum of the channels
-/// does not depend on what was chosen.
-TEST(Flight, V10WeightsStayBounded) {
+/// For any channels, no weight grows by more than a factor of 3, and the sum of the channels does
+/// not depend on the outcome.
+TEST(FreeFlight, V10_WeightsStayBounded) {
   test::Random random(9);
   const std::vector<Medium> media = {
       {.scattering = {0, 1, 1000}},
@@ -111,13 +110,13 @@ TEST(Flight, V10WeightsStayBounded) {
         const Rgb before = {static_cast<float>(random.uniform()),
                             static_cast<float>(random.uniform()),
                             static_cast<float>(random.uniform())};
-        const Flight flight(medium, before, length);
+        const FreeFlight flight(medium, before, length);
         const double sum = double{before.r} + before.g + before.b;
-        if (flight.chance() < 1) {
+        if (flight.scatter_probability() < 1) {
           const Rgb passed = flight.after_passing();
           EXPECT_LE(passed.r + passed.g + passed.b, sum * (1 + 1e-6));
         }
-        if (flight.chance() > 0) {
+        if (flight.scatter_probability() > 0) {
           const double choice = random.uniform();
           const double distance = flight.sample(choice, random.uniform());
           const Rgb after = flight.after_scattering(distance);
@@ -125,12 +124,12 @@ TEST(Flight, V10WeightsStayBounded) {
           const double sum_after = double{after.r} + after.g + after.b;
           EXPECT_LE(sum_after, sum * (1 + 1e-6));
           EXPECT_LE(max_component(after), 3 * max_component(before) * (1 + 1e-6f));
-          if (flight.chance() < 1) {
+          if (flight.scatter_probability() < 1) {
             const Rgb passed = flight.after_passing();
             EXPECT_NEAR(sum_after, double{passed.r} + passed.g + passed.b, 1e-5 * sum);
           }
-          // The weight is what is scattered there over the density of getting there.
-          const double followed = flight.chance() * flight.pdf(distance);
+          // The weight is the scattered light divided by the pdf of the distance.
+          const double followed = flight.scatter_probability() * flight.pdf(distance);
           EXPECT_NEAR(after.g, flight.scattered(distance).g / followed, 1e-5 * sum);
         }
       }
@@ -139,11 +138,11 @@ TEST(Flight, V10WeightsStayBounded) {
   test::holds("V10", "24,000 weights <= 3");
 }
 
-/// The ends of the range of u give finite distances.
-TEST(Flight, V2EndsOfTheNumbersAreFinite) {
+/// Both ends of the range of u give finite distances.
+TEST(FreeFlight, V2_ExtremeNumbersGiveFiniteDistances) {
   for (const double sigma : {1e-30, 1e-8, 1.0, 1e12}) {
     for (const double length : {1e-3, 1.0, kInfinity}) {
-      const Flight flight({.scattering = gray(static_cast<float>(sigma))}, gray(1), length);
+      const FreeFlight flight({.scattering = gray(static_cast<float>(sigma))}, gray(1), length);
       EXPECT_EQ(flight.sample(0, 0), 0);
       const double far = flight.sample(1 - 0x1p-32, 1 - 0x1p-32);
       EXPECT_TRUE(std::isfinite(far)) << sigma << " " << length;
@@ -154,15 +153,15 @@ TEST(Flight, V2EndsOfTheNumbersAreFinite) {
   test::holds("V2", "finite at u = 0 and the largest");
 }
 
-TEST(Equiangular, DistancesHaveTheirDensity) {
+TEST(Equiangular, DistancesFollowThePdf) {
   const Vec3 origin{1, 2, 3};
-  const Vec3 way = normalize({1, 0.2, -0.4});
+  const Vec3 direction = normalize({1, 0.2, -0.4});
   std::uint64_t seed = 40;
   for (const double along : {-1.0, 0.0, 1.3, 5.0}) {
     for (const double length : {2.0, kInfinity}) {
-      const Vec3 pivot = origin + way * along + Vec3{0, 0.9, 0.45};
-      const Equiangular angles(origin, way, length, pivot);
-      // The tail 1 / s^2 of an infinite ray is cut at 1e4: a share of about 1e-4 lies beyond.
+      const Vec3 pivot = origin + direction * along + Vec3{0, 0.9, 0.45};
+      const Equiangular angles(origin, direction, length, pivot);
+      // The tail 1 / s^2 of an infinite ray is cut at 1e4: a share of about 1e-4 is beyond.
       expect_density([&](double, double u) { return angles.sample(u); },
                      [&](double s) { return angles.pdf(s); }, length, ++seed);
     }
@@ -170,12 +169,12 @@ TEST(Equiangular, DistancesHaveTheirDensity) {
 }
 
 /// A light on the ray itself, at its start, and far away.
-TEST(Equiangular, V8OfALightOnTheRayIsFinite) {
-  const Vec3 way{0, 0, 1};
+TEST(Equiangular, V8_IsFiniteForALightOnTheRay) {
+  const Vec3 direction{0, 0, 1};
   for (const double length : {1e-3, 1.0, kInfinity}) {
     for (const Vec3& pivot : {Vec3{0, 0, 0.5}, Vec3{0, 0, 0}, Vec3{0, 0, -4}, Vec3{0, 0, 1e9},
                               Vec3{1e-12, 0, 0.5}, Vec3{1e20, 0, 0}}) {
-      const Equiangular angles({0, 0, 0}, way, length, pivot);
+      const Equiangular angles({0, 0, 0}, direction, length, pivot);
       for (const double u : {0.0, 0x1p-32, 0.5, 1 - 0x1p-32}) {
         const double s = angles.sample(u);
         EXPECT_TRUE(std::isfinite(s) && s >= 0 && s <= length) << pivot.z << " " << u;

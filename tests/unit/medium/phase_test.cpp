@@ -13,37 +13,37 @@
 namespace bandsaw {
 namespace {
 
-TEST(Phase, IsTheDensityOfItsSamples) {
+TEST(Phase, PdfMatchesItsSamples) {
   const std::vector<double> gs = {-0.9, -0.3, -1e-5, 0, 1e-5, 0.3, 0.9};
-  const Vec3 way = normalize({0.3, -0.8, 0.4});
+  const Vec3 direction = normalize({0.3, -0.8, 0.4});
   for (std::size_t i = 0; i < gs.size(); ++i) {
     SCOPED_TRACE(gs[i]);
     test::expect_samples_match_density(
-        [&](double u, double v) { return sample_phase(gs[i], way, u, v); },
-        [&](const Vec3& d) { return phase(gs[i], dot(way, d)); }, 20 + i, gs.size());
+        [&](double u, double v) { return sample_phase(gs[i], direction, u, v); },
+        [&](const Vec3& d) { return phase(gs[i], dot(direction, d)); }, 20 + i, gs.size());
   }
 }
 
-/// Up to the largest |g| everything is finite and the mean cosine is g.
-TEST(Phase, V5MeanCosineIsG) {
-  const Vec3 way = normalize({-0.2, 0.1, -0.9});
-  for (const double g : {-kMostG, -0.9, -0.5, 0.0, 1e-4, 0.5, 0.9, kMostG}) {
-    // The midpoints of equal parts of [0, 1): a quadrature of the inverse, not an estimate.
+/// Up to the maximum |g| everything is finite and the mean cosine is g.
+TEST(Phase, V5_MeanCosineIsG) {
+  const Vec3 direction = normalize({-0.2, 0.1, -0.9});
+  for (const double g : {-kMaxG, -0.9, -0.5, 0.0, 1e-4, 0.5, 0.9, kMaxG}) {
+    // The midpoints of equal parts of [0, 1): a quadrature of the inverse, not a random estimate.
     constexpr int kParts = 20000;
     double sum = 0;
     for (int i = 0; i < kParts; ++i) {
-      const Vec3 d = sample_phase(g, way, (i + 0.5) / kParts, 0.3);
+      const Vec3 d = sample_phase(g, direction, (i + 0.5) / kParts, 0.3);
       ASSERT_NEAR(length(d), 1, 1e-14);
-      ASSERT_GT(phase(g, dot(way, d)), 0);
-      sum += dot(way, d);
+      ASSERT_GT(phase(g, dot(direction, d)), 0);
+      sum += dot(direction, d);
     }
     EXPECT_NEAR(sum / kParts, g, 1e-3) << g;
   }
   test::holds("V5", "mean cosine within 1e-3 up to the largest g");
 }
 
-/// Near 0 the cosine is right to the last digits; u = 0 and the largest u give the two poles.
-TEST(Phase, V4HasNoRoughPlaceNearIsotropic) {
+/// Near g = 0 the cosine is accurate to rounding; u = 0 and the largest u give the two poles.
+TEST(Phase, V4_IsAccurateNearIsotropic) {
   const Vec3 up{0, 0, 1};
   test::Random random(4);
   for (const double g : {1e-2, -1e-3, 1e-4, -1e-5, 1e-12, 0.0}) {

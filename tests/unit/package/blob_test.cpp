@@ -20,7 +20,7 @@ void write(const std::string& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
 }
 
-TEST(BlobMap, GivesBackWhatWasPut) {
+TEST(BlobMap, ReturnsStoredBlobs) {
   BlobMap blobs;
   const wire::Digest digest = blobs.put(bytes_of("band"));
   EXPECT_EQ(digest, wire::sha256(std::string("band")));
@@ -42,7 +42,7 @@ TEST(BlobFolder, ReadsFilesByDigest) {
   }
 }
 
-TEST(BlobFolder, TellsMissingFromDamaged) {
+TEST(BlobFolder, DistinguishesMissingFromDamagedBlobs) {
   const test::TempDir folder;
   BlobFolder blobs(folder.path());
   const wire::Digest digest = wire::sha256(std::string("band"));
@@ -56,11 +56,11 @@ TEST(BlobFolder, TellsMissingFromDamaged) {
   EXPECT_EQ(blobs.get(digest).status().code(), absl::StatusCode::kDataLoss);
 }
 
-TEST(CleanText, KeepsWhatIsText) {
+TEST(CleanText, KeepsValidText) {
   EXPECT_EQ(clean_text("Grüße, 世界 🪚", 100), "Grüße, 世界 🪚");
 }
 
-TEST(CleanText, ReplacesWhatIsNot) {
+TEST(CleanText, ReplacesInvalidBytes) {
   EXPECT_EQ(clean_text("a\nb\x1b[31m\x7f", 100), "a?b?[31m?");
   EXPECT_EQ(clean_text("\xc2\x9b", 100), "?");
   EXPECT_EQ(clean_text("\xff\xc0\xaf\xed\xa0\x80\xe4\xb8", 100), "????????");

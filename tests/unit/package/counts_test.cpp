@@ -1,4 +1,4 @@
-// Packages that have more than trees can hold are refused by their manifest alone.
+// Packages with more primitives than BVHs can hold are refused by their manifest alone.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ using test::sample_scene;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-/// Has no blob, and counts how often it was asked for one.
+/// A source without blobs that counts requests.
 class NoBlobs : public BlobSource {
  public:
   absl::StatusOr<std::unique_ptr<BlobBytes>> get(const wire::Digest&) override {
@@ -35,7 +35,7 @@ package::Manifest sample_manifest() {
   return manifest;
 }
 
-/// The error of a package so changed; no blob of it is asked for.
+/// Returns the error of a changed package; no blob may be requested.
 std::string error_after(const std::function<void(package::Manifest&)>& change) {
   package::Manifest manifest = sample_manifest();
   change(manifest);
@@ -48,7 +48,7 @@ std::string error_after(const std::function<void(package::Manifest&)>& change) {
   return std::string(status.message());
 }
 
-TEST(Counts, AMeshOfMoreTrianglesThanATreeHoldsIsRefusedUnread) {
+TEST(Counts, LargerMeshesThanABvhHoldsAreRefusedUnread) {
   EXPECT_EQ(error_after([](package::Manifest& m) {
               m.mutable_mesh(1)->mutable_indices()->set_size(12 * (kMaxTreeItems + 1));
             }),
@@ -61,7 +61,7 @@ TEST(Counts, AMeshOfMoreTrianglesThanATreeHoldsIsRefusedUnread) {
               StartsWith("scene package: boundaries.mesh[0]: has 536870912 triangles"));
 }
 
-TEST(Counts, LooseShapesThatATreeDoesNotHoldAreRefusedUnread) {
+TEST(Counts, MoreLooseShapesThanABvhHoldsAreRefusedUnread) {
   constexpr std::uint64_t kQuads = std::uint64_t{1} << 28;
   EXPECT_THAT(error_after([](package::Manifest& m) {
                 m.mutable_quads()->mutable_corners()->set_size(24 * kQuads);
@@ -78,11 +78,11 @@ TEST(Counts, LooseShapesThatATreeDoesNotHoldAreRefusedUnread) {
               StartsWith("scene package: shapes: has 268435456 spheres"));
 }
 
-TEST(Counts, WhatATreeJustHoldsIsRead) {
+TEST(Counts, TheMaximumThatABvhHoldsIsRead) {
   package::Manifest manifest = sample_manifest();
   package::Blob& indices = *manifest.mutable_mesh(1)->mutable_indices();
   indices.set_size(12 * kMaxTreeItems);
-  indices.set_sha256(std::string(32, 'x'));  // of no blob whose size is another
+  indices.set_sha256(std::string(32, 'x'));  // no blob has this digest
   NoBlobs blobs;
   EXPECT_EQ(decode_package(manifest.SerializeAsString(), blobs).status().code(),
             absl::StatusCode::kNotFound);

@@ -16,7 +16,7 @@ using test::sample_info;
 using test::sample_scene;
 using ::testing::HasSubstr;
 
-TEST(Package, ComesBackBitForBit) {
+TEST(Package, RoundTripsBitForBit) {
   BlobMap blobs;
   const SceneDescription scene = sample_scene();
   const std::string manifest = encode_package(scene, sample_info(), blobs);
@@ -56,13 +56,13 @@ TEST(Package, ComesBackBitForBit) {
   EXPECT_EQ(decoded->media.boundaries.instances[0].to_world,
             scene.media.boundaries.instances[0].to_world);
 
-  // Whatever the lines above leave out: the same scene gives the same blobs and the same bytes.
+  // Covers fields not compared above: the same scene gives the same blobs and the same bytes.
   BlobMap again;
   EXPECT_EQ(encode_package(*decoded, sample_info(), again), manifest);
   EXPECT_EQ(again.all(), blobs.all());
 }
 
-TEST(Package, CarriesWhatIsShownAndHow) {
+TEST(Package, RoundTripsImageSettings) {
   SceneDescription scene = sample_scene();
   scene.local_shading = {{0.1f, 0.2f, 0.3f}, 4.5};
   PackageInfo info = sample_info();
@@ -87,7 +87,7 @@ TEST(Package, CarriesWhatIsShownAndHow) {
               HasSubstr("scene package: integrator: must lie in"));
 }
 
-TEST(Package, CarriesEveryCameraAndFilter) {
+TEST(Package, RoundTripsEveryCameraAndFilter) {
   const auto carried = [](const Camera& camera, const PixelFilter& filter) {
     SceneDescription scene = sample_scene();
     scene.camera = camera;
@@ -114,7 +114,7 @@ TEST(Package, CarriesEveryCameraAndFilter) {
       HasSubstr("scene package: filter: filter.radius"));
 }
 
-TEST(Package, KeepsWhatItSaysBesideTheScene) {
+TEST(Package, RoundTripsItsInfo) {
   BlobMap blobs;
   const auto info = package_info(encode_package(sample_scene(), sample_info(), blobs));
   ASSERT_TRUE(info.ok()) << info.status();
@@ -125,7 +125,7 @@ TEST(Package, KeepsWhatItSaysBesideTheScene) {
   EXPECT_EQ(info->warnings, std::vector<std::string>{"a warning"});
 }
 
-TEST(Package, BoundsNamesAndWarningsOfForeignFiles) {
+TEST(Package, LimitsNamesAndWarningsOfForeignFiles) {
   PackageInfo info = sample_info();
   info.name = std::string(1000, 'n') + "\xff";
   info.warnings.assign(5000, "\x1b[2J a mesh's name \xc3");
@@ -138,7 +138,7 @@ TEST(Package, BoundsNamesAndWarningsOfForeignFiles) {
   EXPECT_EQ(kept->warnings[99], "and 4901 more warnings");
 }
 
-TEST(Package, BoundsTheNamesOfCameras) {
+TEST(Package, LimitsTheNamesOfCameras) {
   PackageInfo info = sample_info();
   info.model_cameras.assign(500, "\x1b" + std::string(300, 'c'));
   BlobMap blobs;
@@ -171,7 +171,7 @@ TEST(Package, NamesEachBlobOnce) {
   }
 }
 
-TEST(Package, SaysWhichBlobIsMissing) {
+TEST(Package, ReportsAMissingBlob) {
   BlobMap blobs;
   const std::string manifest = encode_package(sample_scene(), sample_info(), blobs);
   BlobMap none;
@@ -179,7 +179,7 @@ TEST(Package, SaysWhichBlobIsMissing) {
   EXPECT_EQ(decoded.status().code(), absl::StatusCode::kNotFound) << decoded.status();
 }
 
-TEST(Package, CarriesGroupsAndWhatMoves) {
+TEST(Package, RoundTripsGroupsAndFrames) {
   const SceneDescription scene = sample_scene();
   BlobMap blobs;
   const auto decoded = decode_package(encode_package(scene, sample_info(), blobs), blobs);
@@ -234,9 +234,9 @@ const std::vector<Wrong> kWrong = {
     {"short_list", [](auto& m) { m.mutable_camera()->mutable_up()->RemoveLast(); },
      "camera.up: must have 3 numbers, has 2"},
     {"no_background", [](auto& m) { m.clear_background(); }, "background: is missing"},
-    {"dark", [](auto& m) { m.mutable_background()->set_top(1, -1); }, "background: must be"},
+    {"dark", [](auto& m) { m.mutable_background()->set_top(1, -1); }, "background.top: must be"},
     {"environment", [](auto& m) { m.mutable_background()->mutable_environment()->set_image(0, 0); },
-     "lights: background.environment: images[0]: must be an image"},
+     "background.environment: images[0]: must be an image"},
     {"environment_index",
      [](auto& m) { m.mutable_background()->mutable_environment()->set_image(0, 77); },
      "images[0]: must be below 10, is 77"},
@@ -265,39 +265,39 @@ const std::vector<Wrong> kWrong = {
     {"texture_kind", [](auto& m) { m.mutable_texture(0)->clear_kind(); }, "texture[0]: is of no"},
     {"texture_nan",
      [](auto& m) { m.mutable_texture(0)->mutable_constant()->set_rgb(0, std::nanf("")); },
-     "texture[0].constant.rgb: must be finite"},
+     "textures[0]: must be finite"},
     {"texels", [](auto& m) { m.mutable_texture(1)->mutable_image()->set_width(4); },
-     "texture[1].image.texels: must have 24 bytes"},
+     "textures[1].texels: must have 24 bytes"},
     {"no_texels", [](auto& m) { m.mutable_texture(1)->mutable_image()->set_height(0); },
-     "texture[1].image.height: must lie in [1, 65536]"},
+     "textures[1].height: must be in [1, 65536]"},
     {"texel_format", [](auto& m) { m.mutable_texture(1)->mutable_image()->clear_format(); },
      "texture[1].image.format: must lie in [1, 3], is 0"},
     {"reflectance", [](auto& m) { m.mutable_texture(0)->mutable_constant()->set_rgb(0, 1.5f); },
-     "material[0].diffuse.reflectance: a reflectance must lie in [0, 1], texture 0 holds 1.5"},
+     "materials[0].reflectance: must be in [0, 1], texture 0 reaches 1.5"},
     {"texture_index",
      [](auto& m) { m.mutable_material(0)->mutable_diffuse()->set_reflectance(99); },
-     "material[0].diffuse.reflectance: is 99, there are 10 textures"},
+     "materials[0].reflectance: must be below 10, is 99"},
     {"fuzz", [](auto& m) { m.mutable_material(1)->mutable_metal()->set_fuzz(std::nan("")); },
-     "material[1].metal.fuzz: must lie in [0, 1]"},
+     "materials[1].fuzz: must be in [0, 1]"},
     {"glass",
      [](auto& m) { m.mutable_material(2)->mutable_dielectric()->set_index_of_refraction(0.5); },
-     "material[2].dielectric.index_of_refraction: must lie in [1, 5], is 0.5"},
+     "materials[2].index_of_refraction: must be in [1, 5], is 0.5"},
     {"fuzz_texture", [](auto& m) { m.mutable_material(4)->mutable_metal()->set_fuzz_texture(99); },
-     "material[4].metal.fuzz_texture: is 99, there are 10 textures"},
+     "materials[4].fuzz_map: must be below 10, is 99"},
     {"two_indices", [](auto& m) { m.mutable_material(5)->mutable_dielectric()->set_priority(1); },
-     "material[5].dielectric.index_texture: a glass with a priority has one index of refraction"},
+     "materials[5].index_map: a glass with a priority has one index of refraction"},
     {"coat_normal", [](auto& m) { m.mutable_material(6)->mutable_gltf()->set_coat_normal(99); },
-     "material[6].gltf.coat_normal: is 99, there are 10 textures"},
+     "materials[6].coat_normal: must be below 10, is 99"},
     {"material_kind", [](auto& m) { m.mutable_material(2)->clear_kind(); }, "material[2]: is of"},
     {"few_materials",
      [](auto& m) { m.mutable_material()->DeleteSubrange(3, m.material_size() - 3); },
-     "quads.material[0]: is 3, there are 3 materials"},
+     "quads[0].material: must be below 3, is 3"},
     {"counts", [](auto& m) { *m.mutable_spheres()->mutable_radii() = m.quads().corners(); },
      "spheres.radii: has 3 entries for 2 shapes"},
     {"mesh_counts", [](auto& m) { *m.mutable_mesh(0)->mutable_normals() = m.quads().corners(); },
-     "mesh[0].normals: has 2 entries for 4 vertices"},
+     "meshes[0].normals: must be none or one a position (4), are 2"},
     {"index", [](auto& m) { *m.mutable_mesh(0)->mutable_indices() = m.mesh(0).positions(); },
-     "mesh[0].indices[1]: is 1065353216, the mesh has 4 vertices"},
+     "meshes[0].triangles[1]: must be indices below 4, one is 1065353216"},
     {"odd_size",
      [](auto& m) {
        m.mutable_mesh(0)->mutable_positions()->set_size(7);
@@ -312,35 +312,35 @@ const std::vector<Wrong> kWrong = {
     {"too_large", [](auto& m) { m.mutable_mesh(0)->mutable_uvs()->set_size(1ull << 40); },
      "mesh[0].uvs.size"},
     {"mesh_index", [](auto& m) { m.mutable_instance(1)->set_mesh(2); },
-     "instance[1].mesh: is 2, there are 2 meshes"},
+     "instances[1].mesh: must be below 2, is 2"},
     {"instance_material", [](auto& m) { m.mutable_instance(0)->set_material(99); },
-     "instance[0].material: is 99"},
+     "instances[0].material: must be below"},
     {"transform", [](auto& m) { m.mutable_instance(0)->mutable_transform()->RemoveLast(); },
      "instance[0].transform: must have 12 numbers, has 11"},
     {"flat", [](auto& m) { m.mutable_instance(0)->set_transform(0, 0); },
-     "instance[0].transform: must be finite and regular"},
+     "instances[0].to_world: must have an inverse"},
     {"shutter", [](auto& m) { m.mutable_camera()->set_shutter_close(-3); }, "shutter_close"},
     {"disk_normal", [](auto& m) { *m.mutable_disks()->mutable_normals() = m.disks().centers(); },
-     "disks.normals[0]: must have length 1"},
+     "disks[0].normal: must have length 1"},
     {"group_shape",
      [](auto& m) {
        *m.mutable_group(0)->mutable_disks()->mutable_radii() = m.group(0).disks().centers();
      },
      "group[0].disks.radii: has 3 entries for 1 shapes"},
     {"group_index", [](auto& m) { m.mutable_instance(2)->set_group(2); },
-     "instance[2].group: is 2, there are 2 groups"},
+     "instances[2].group: must be below 2, is 2"},
     {"frame_index", [](auto& m) { m.mutable_instance(2)->set_frame(2); },
-     "instance[2].frame: is 2, there are 2 frames"},
+     "instances[2].frame: must be below 2, is 2"},
     {"frame_parent", [](auto& m) { m.mutable_frame(1)->set_parent(1); },
-     "frame[1].parent: must be below 1, is 1"},
+     "frames[1].parent: must be below 1, is 1"},
     {"key_times", [](auto& m) { m.mutable_frame(0)->set_times(1, -1); },
-     "frame[0].times[1]: must rise"},
+     "frames[0].keys[1].time: must be within +-1e9 and rise"},
     {"key_count", [](auto& m) { m.mutable_frame(0)->add_times(9); },
      "frame[0].at: must have 12 numbers for each of 3 times, has 24"},
     {"no_keys", [](auto& m) { m.mutable_frame(1)->clear_times(), m.mutable_frame(1)->clear_at(); },
-     "frame[1].times: must be one at least"},
+     "frames[1].keys: must be at least one"},
     {"shear", [](auto& m) { m.mutable_frame(1)->set_at(1, 0.5); },
-     "frame[1].at[0]: must be a scale"},
+     "frames[1].keys[0].at: must be a scale"},
     {"medium", [](auto& m) { m.mutable_medium(0)->set_g(1); },
      "media[0].g: must be in [-0.999, 0.999], is 1"},
     {"medium_list",
@@ -394,23 +394,22 @@ TEST(Package, RefusesArraysThatAreNotFinite) {
   };
   SceneDescription scene = sample_scene();
   scene.geometry.meshes[0].positions[2][1] = nan;
-  EXPECT_THAT(decoded(scene), HasSubstr("mesh[0].positions[2]: must be finite"));
+  EXPECT_THAT(decoded(scene), HasSubstr("meshes[0].positions[2]: must be finite"));
   scene = sample_scene();
   scene.geometry.spheres[1].radius = -1;
-  EXPECT_THAT(decoded(scene), HasSubstr("spheres.radii[1]: must be finite and > 0, is -1"));
+  EXPECT_THAT(decoded(scene), HasSubstr("spheres[1].radius: must be > 0, is -1"));
   scene = sample_scene();
   scene.geometry.quads[0].u.z = 1.0 / 0.0;
-  EXPECT_THAT(decoded(scene), HasSubstr("quads.u[0]: must be finite"));
+  EXPECT_THAT(decoded(scene), HasSubstr("quads[0].u: must be within"));
   scene = sample_scene();
   auto& image = std::get<ImageTexture>(scene.textures[2]);
   std::vector<std::byte> texels(image.texels.begin(), image.texels.end());
   std::memcpy(texels.data() + 16, &nan, sizeof(nan));
   image.texels = std::move(texels);
-  EXPECT_THAT(decoded(scene), HasSubstr("texture[2].image.texels: texel (1, 0) must be finite"));
+  EXPECT_THAT(decoded(scene), HasSubstr("textures[2].texels: texel (1, 0) must be finite"));
 }
 
-// Whoever sends a manifest may have made it by hand: it is read or refused, and nothing else
-// happens.
+// A manifest may be crafted: it is either decoded or refused.
 TEST(Package, SurvivesAnyByteThatIsChanged) {
   BlobMap blobs;
   const std::string manifest = encode_package(sample_scene(), sample_info(), blobs);
@@ -422,7 +421,8 @@ TEST(Package, SurvivesAnyByteThatIsChanged) {
       changed[at] = static_cast<char>(random());
       refused += decode_package(changed, blobs).ok() ? 0u : 1u;
     }
-    // Cut between two fields it may be the manifest of a smaller scene: only its digest can tell.
+    // If it is truncated between two fields, it may be the manifest of a smaller scene: only its
+    // digest can detect that.
     (void)decode_package(manifest.substr(0, at), blobs);
   }
   EXPECT_GT(refused, manifest.size());

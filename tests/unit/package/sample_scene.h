@@ -25,7 +25,7 @@ inline ImageTexture sample_image(ImageTexture::Format format) {
   return image;
 }
 
-/// A disk, a group, and frames in which both move.
+/// Adds a disk, a group, and frames in which both move.
 inline void add_motion(SceneDescription& scene) {
   std::get<PerspectiveCamera>(scene.camera).shutter = {-0.5, 1.0 / 3};
   Geometry& geometry = scene.geometry;
@@ -126,7 +126,7 @@ inline SceneDescription sample_scene() {
   scene.media.boundaries.frames = {{kNoFrame, {}, {Key(1.0 / 3, rotation({1, 0, 0}, 7))}}};
   scene.media.boundaries.meshes = {unit_cube()};
   scene.media.boundaries.instances = {{MeshId{0}, MaterialId{0}, translation({1.0 / 3, 0, 0})},
-                                          {{}, MaterialId{1}, {}, GroupId{0}, FrameId{0}}};
+                                      {{}, MaterialId{1}, {}, GroupId{0}, FrameId{0}}};
   scene.media.fog = MediumId{1};
   return scene;
 }

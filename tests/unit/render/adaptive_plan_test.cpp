@@ -31,7 +31,7 @@ std::vector<HalfTileErrors> errors(const TileGrid& grid,
   return tiles;
 }
 
-TEST(AdaptivePlan, WhereNoiseIsEvenEveryPassIsWhole) {
+TEST(AdaptivePlan, UniformNoiseGivesUniformPasses) {
   for (const double variance : {0.0, 1e-300, 0.3, 1e100}) {
     const TilePlan plan = plan_tiles(kGrid, errors(kGrid, [&](auto) { return variance; }), 64);
     EXPECT_TRUE(plan.even()) << variance;
@@ -41,18 +41,18 @@ TEST(AdaptivePlan, WhereNoiseIsEvenEveryPassIsWhole) {
   }
 }
 
-TEST(AdaptivePlan, SamplesAreDealtOutByTheRootOfTheVariance) {
-  // 32 columns: half of noise 1, half of noise 1/64, so an eighth of the samples.
+TEST(AdaptivePlan, SamplesAreProportionalToTheStandardDeviation) {
+  // 32 columns: half with noise 1, half with noise 1/64, so an eighth of the samples.
   const TileGrid grid{512, 32};
   const auto tiles = errors(grid, [](std::uint32_t column) { return column < 16 ? 1 : 1.0 / 64; });
   const TilePlan plan = plan_tiles(grid, tiles, 64);
   EXPECT_EQ(plan.pilot, 64u);
-  EXPECT_EQ(plan.levels[0], '5');  // Of the root of the mean variance, 2^(1/2) times.
+  EXPECT_EQ(plan.levels[0], '5');  // 2^(1/2) times the root of the mean variance
   EXPECT_EQ(plan.levels[2 * 31], 'b');
   EXPECT_NEAR(share_of(plan, 2 * 31) / share_of(plan, 0), 0.125, 1e-12);
 }
 
-TEST(AdaptivePlan, NothingOfAHalfPlansThatHalf) {
+TEST(AdaptivePlan, AHalfIsNotPlannedByItsOwnSamples) {
   const TileGrid grid{320, 48};
   Random random(5);
   std::vector<HalfTileErrors> tiles =
@@ -72,7 +72,7 @@ TEST(AdaptivePlan, NothingOfAHalfPlansThatHalf) {
   EXPECT_NE(after.levels, before.levels);
 }
 
-TEST(AdaptivePlan, NoiseOfOneTileIsPlannedForWhereBothHalvesOfItsRowsShowIt) {
+TEST(AdaptivePlan, NoiseOfOneTileIsPlannedIfBothHalvesShowIt) {
   const TileGrid grid{512, 128};
   const auto plan_of_rows = [&](double even_rows, double odd_rows) {
     std::vector<HalfTileErrors> tiles = errors(grid, [](auto) { return 1e-3; });
@@ -94,19 +94,19 @@ TEST(AdaptivePlan, ImagesOfOneTileOrOnePixelHaveAPlan) {
   }
 }
 
-// ---- bias: hard case A5, and A4 ----
+// Bias of adaptive sampling: hard cases A5 and A4.
 
-/// Tiles of which two rows are left, so that few pixels decide and each counts: 16 a half.
+/// Tiles of two rows, so that few pixels (16 in a half tile) determine the plan and each counts.
 constexpr TileGrid kThin{256, 2};
 /// A pixel's samples; expected value 1 on the left half of the image. The right half is black.
 using Pixel = std::function<double(Random&)>;
 
 struct Rendered {
-  double mean = 0;  ///< of the left half
+  double mean = 0;  ///< mean of the left half
   bool planned = false;
 };
 
-/// `naive`: each half tile is planned by its own samples instead of by its other half's.
+/// `naive`: each half tile is planned by its own samples instead of those of its other half.
 Rendered render(const Pixel& pixel, std::uint64_t seed, bool naive) {
   Random random(seed);
   Film film = *Film::create(kThin.width, kThin.height, "", Film::Grain::kHalfTiles);
@@ -180,7 +180,7 @@ TEST(AdaptivePlan, A5_RareLightIsNotBiased) {
   test::at_most("A5", "bias of the mean, in standard errors", worst.value(), 3);
 }
 
-// So the test above can fail.
+// Shows that the test above can fail.
 TEST(AdaptivePlan, A5_TheSameRuleOnOwnSamplesIsBiased) {
   const Result result = renders(bernoulli(0.0002), kRuns, true);
   EXPECT_LT(result.mean.z(1), -4);

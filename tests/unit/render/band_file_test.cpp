@@ -52,7 +52,7 @@ void expect_equal(const BandRecord& a, const BandRecord& b) {
   EXPECT_EQ(a.renderer, b.renderer);
 }
 
-TEST(BandFile, ARecordComesBackAndItsSizeIsKnownBefore) {
+TEST(BandFile, RecordsRoundTripWithAKnownSize) {
   const std::vector<std::byte> bytes = encoded();
   EXPECT_EQ(bytes.size(), band_record_size(record().pixels.band, 3));
   const auto decoded = decode_band_record(bytes);
@@ -70,7 +70,7 @@ TEST(BandFile, RecordsFollowEachOther) {
   expect_equal(decoded->record, record());
 }
 
-TEST(BandFile, EveryTruncationIsCutOffAndSaysWhereTheRecordBegins) {
+TEST(BandFile, TruncationsReportWhereTheRecordBegins) {
   const std::vector<std::byte> whole = encoded();
   std::vector<std::byte> file(11, std::byte{0});
   file.insert(file.end(), whole.begin(), whole.end());
@@ -83,7 +83,7 @@ TEST(BandFile, EveryTruncationIsCutOffAndSaysWhereTheRecordBegins) {
   EXPECT_FALSE(decode_band_record(file, file.size() + 5).ok());
 }
 
-TEST(BandFile, EveryFlippedBitIsFound) {
+TEST(BandFile, EveryFlippedBitIsDetected) {
   const std::vector<std::byte> whole = encoded();
   for (std::size_t at = 0; at < whole.size(); ++at) {
     for (int bit = 0; bit < 8; ++bit) {
@@ -104,7 +104,7 @@ TEST(BandFile, CountsOfAdaptiveBandsAreKept) {
   EXPECT_TRUE(encode_band_record(adaptive).ok()) << encode_band_record(adaptive).status();
 }
 
-TEST(BandFile, RecordsThatContradictThemselvesAreNotWritten) {
+TEST(BandFile, InconsistentRecordsAreNotWritten) {
   const auto refused = [](auto change) {
     BandRecord changed = record();
     change(changed);
@@ -124,7 +124,7 @@ TEST(BandFile, RecordsThatContradictThemselvesAreNotWritten) {
   EXPECT_TRUE(refused([](BandRecord& r) { r.cpu_s = -1; }));
 }
 
-TEST(BandFile, SumsThatNoRenderGivesAreNotRead) {
+TEST(BandFile, ImpossibleSumsAreNotRead) {
   for (const double bad : {-1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
     BandRecord changed = record();
     changed.pixels.sums[7] = bad;
@@ -134,7 +134,7 @@ TEST(BandFile, SumsThatNoRenderGivesAreNotRead) {
   }
 }
 
-TEST(BandFile, RowDigestsTellWhichRowDiffers) {
+TEST(BandFile, RowDigestsIdentifyTheDifferingRow) {
   BandPixels pixels = record().pixels;
   const std::vector<std::uint64_t> before = row_digests(pixels);
   ASSERT_EQ(before.size(), 2u);

@@ -7,8 +7,8 @@
 namespace bandsaw {
 namespace {
 
-/// The definition, spelled out: some level and index whose blocks the range covers, the last one
-/// perhaps cut off.
+/// The definition of a node: some level and index whose blocks the range covers, the last one
+/// possibly truncated.
 bool is_node_by_definition(std::uint64_t first, std::uint64_t last) {
   for (std::uint64_t blocks = 1; blocks <= 64; blocks *= 2) {
     for (std::uint64_t index = 0; index < 64; ++index) {
@@ -22,7 +22,7 @@ bool is_node_by_definition(std::uint64_t first, std::uint64_t last) {
   return false;
 }
 
-TEST(Band, ANodeIsAnAlignedPowerOfTwoOfBlocksWithTheLastPerhapsCutOff) {
+TEST(Band, NodesAreAlignedPowersOfTwoOfBlocks) {
   for (std::uint64_t first = 0; first < 300; ++first) {
     for (std::uint64_t last = 0; last < 600; ++last) {
       ASSERT_EQ(is_node({first, last}), is_node_by_definition(first, last))
@@ -31,12 +31,12 @@ TEST(Band, ANodeIsAnAlignedPowerOfTwoOfBlocksWithTheLastPerhapsCutOff) {
   }
 }
 
-TEST(Band, HugeRangesAreNoNodes) {
+TEST(Band, HugeRangesAreNotNodes) {
   EXPECT_FALSE(is_node({0, ~std::uint64_t{0}}));
   EXPECT_FALSE(is_node({~std::uint64_t{0} - 15, ~std::uint64_t{0}}));
 }
 
-TEST(Band, MaximalNodesAreNodesThatTileTheSamplesAndNoTwoNeighboursAreSiblings) {
+TEST(Band, MaximalNodesTileTheSamplesWithoutSiblings) {
   EXPECT_TRUE(maximal_nodes(0).empty());
   for (std::uint64_t samples = 1; samples < 3000; ++samples) {
     const std::vector<SampleRange> nodes = maximal_nodes(samples);
@@ -45,7 +45,7 @@ TEST(Band, MaximalNodesAreNodesThatTileTheSamplesAndNoTwoNeighboursAreSiblings) 
     for (const SampleRange& node : nodes) {
       ASSERT_TRUE(is_node(node));
       ASSERT_EQ(node.first, at);
-      ASSERT_LT(node.blocks(), blocks) << samples;  // ever smaller: nothing left to merge
+      ASSERT_LT(node.blocks(), blocks) << samples;  // sizes decrease, so no two nodes can be merged
       at = node.last;
       blocks = node.blocks();
     }
@@ -53,7 +53,7 @@ TEST(Band, MaximalNodesAreNodesThatTileTheSamplesAndNoTwoNeighboursAreSiblings) 
   }
 }
 
-TEST(Band, HalvesOfEveryNodeAreNodesThatTileItAndTheLeftOneIsWhole) {
+TEST(Band, HalvesOfANodeAreNodesThatTileIt) {
   for (std::uint64_t first = 0; first < 512; first += 16) {
     for (std::uint64_t last = first + 17; last <= 1024; ++last) {
       if (!is_node({first, last})) {
@@ -71,7 +71,7 @@ TEST(Band, HalvesOfEveryNodeAreNodesThatTileItAndTheLeftOneIsWhole) {
   }
 }
 
-TEST(Band, BandsOutsideTheImageOrOffTheTreeAreRefusedWithTheField) {
+TEST(Band, InvalidBandsAreRefusedWithTheField) {
   const RenderSettings settings{.width = 8, .height = 10};
   EXPECT_TRUE(validate(Band{{0, 32}, {0, 10}}, settings).ok());
   EXPECT_TRUE(validate(Band{{32, 40}, {3, 4}}, settings).ok());
@@ -96,7 +96,7 @@ TEST(Band, SettingsOutOfRangeAreRefusedWithTheField) {
             "max_depth: must be in [1, 1024], is 1025");
 }
 
-TEST(Band, CountersKeepTheFirstBadSampleInRowColumnSampleOrderWhateverTheOrderOfAdding) {
+TEST(Band, CountersKeepTheFirstBadSampleInAnyOrderOfAdding) {
   std::vector<Counters> parts = {
       {.rays = 1, .bad_samples = 1, .bad_x = 9, .bad_y = 2, .bad_sample = 0},
       {.rays = 2},
@@ -115,7 +115,7 @@ TEST(Band, CountersKeepTheFirstBadSampleInRowColumnSampleOrderWhateverTheOrderOf
                             [](const Counters& a, const Counters& b) { return a.rays < b.rays; }));
 }
 
-TEST(Band, CountersAddUpButForWhatIsOfTheScene) {
+TEST(Band, CountersAddUpExceptThoseOfTheScene) {
   Counters sum = {
       .bad_samples = 2, .negative_samples = 1, .truncated_paths = 7, .dropped_primitives = 3};
   sum.add({.bad_samples = 1, .negative_samples = 1, .truncated_paths = 1, .dropped_primitives = 3});

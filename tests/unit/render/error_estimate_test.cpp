@@ -25,7 +25,7 @@ struct Row {
   }
 };
 
-TEST(ErrorEstimate, IsHalfTheDifferenceOfTheHalves) {
+TEST(ErrorEstimate, IsHalfTheDifferenceBetweenTheHalves) {
   Row row;
   row.add(2, 0.1);
   row.add(2, 0.1);
@@ -41,11 +41,12 @@ double square_at_most(const ErrorEstimate& error) {
   return over * over;
 }
 
-// Three deviations of a sum of n equal squares: sqrt(1.5 n) of one of them.
-TEST(ErrorEstimate, TheMarginIsWiderTheFewerHalfRowsDecide) {
+// The margin is three standard deviations of a sum of n equal squares: sqrt(1.5 n) times one of
+// them.
+TEST(ErrorEstimate, TheMarginGrowsWithFewerHalfRows) {
   for (const std::size_t decide : {3, 150}) {
-    Row one_pixel;  // Of each of so many half rows,
-    Row all;        // or all eight, which may have the same error.
+    Row one_pixel;  // one pixel in each of so many half rows,
+    Row all;        // or all eight pixels, which may have the same error
     for (std::size_t x = 0; x < 2400; ++x) {
       const bool noisy = x / 16 < decide && x % 2 == 0;
       one_pixel.add(1, noisy && x % 16 == 4 ? 0.1 : 0);
@@ -57,7 +58,7 @@ TEST(ErrorEstimate, TheMarginIsWiderTheFewerHalfRowsDecide) {
   }
 }
 
-TEST(ErrorEstimate, AHalfRowByItselfIsEightPixels) {
+TEST(ErrorEstimate, ASingleHalfRowCountsAsEightPixels) {
   Row row;
   for (int x = 0; x < 80; ++x) {
     row.add(1, 0.1);
@@ -66,7 +67,7 @@ TEST(ErrorEstimate, AHalfRowByItselfIsEightPixels) {
   EXPECT_NEAR(square_at_most(row.estimate(2)), 1 + 3 * std::sqrt(1.5 / 10), 1e-9);
 }
 
-TEST(ErrorEstimate, APixelThatDecidesAllMakesItDoubtful) {
+TEST(ErrorEstimate, ADominantPixelMakesItUncertain) {
   Row even;
   Row uneven;
   for (int i = 0; i < 2000; ++i) {
@@ -90,7 +91,7 @@ TEST(ErrorEstimate, PercentilesAreOfThePixelsOwnErrors) {
   EXPECT_NEAR(error.percentile_99, 0.99 / 1.01, 1e-6);
 }
 
-TEST(ErrorEstimate, OfBlackIsKnownWhenManySamplesAreBlack) {
+TEST(ErrorEstimate, IsKnownForBlackWithManySamples) {
   Row row;
   row.add(0, 0);
   EXPECT_LT(known_error(row.estimate(), kBlackSamples - 1), 0);
@@ -108,8 +109,8 @@ TEST(ErrorEstimate, BlackIsCertain) {
   EXPECT_EQ(error.worst_share, 0);
 }
 
-// A further node that agrees with the halves lowers the error as its samples do; one that is far
-// off raises it.
+// A further node that agrees with the halves lowers the error according to its samples; one that
+// differs much raises it.
 TEST(ErrorEstimate, FurtherNodesCount) {
   const std::vector<double> a(3, 16 * 1.1);
   const std::vector<double> b(3, 16 * 0.9);

@@ -49,7 +49,7 @@ void expect_image(const Film& film, std::uint64_t samples) {
   }
 }
 
-TEST(Film, A6_AnyPartitionInAnyOrderGivesTheBitsOfTheDefinition) {
+TEST(Film, A6_AnyPartitionInAnyOrderGivesTheSameBits) {
   Random random(1);
   for (std::uint64_t samples = 1; samples <= 700; samples += 1 + samples / 9) {
     const std::uint32_t width = 2;
@@ -73,7 +73,7 @@ TEST(Film, A6_AnyPartitionInAnyOrderGivesTheBitsOfTheDefinition) {
   test::holds("A6", "any partition in any order: same bits");
 }
 
-TEST(Film, OnDiskItGivesTheSame) {
+TEST(Film, GivesTheSameOnDisk) {
   const test::TempDir folder;
   Film film = make_film(5, 4, folder.path());
   for (const Band& band : bands_of(100, {0, 4}, 5)) {
@@ -82,7 +82,7 @@ TEST(Film, OnDiskItGivesTheSame) {
   expect_image(film, 100);
 }
 
-TEST(Film, WhatIsThereAlreadyIsRefusedAndChangesNothing) {
+TEST(Film, DuplicatesAreRefusedAndChangeNothing) {
   Film film = make_film(2, 4);
   ASSERT_TRUE(film.add(band_pixels({{0, 32}, {1, 2}}, 2)).ok());
   for (const SampleRange& range : {SampleRange{0, 32}, {0, 16}, {16, 32}, {16, 20}, {0, 64}}) {
@@ -110,7 +110,7 @@ TEST(Film, BandsOfAnotherImageAreRefused) {
   EXPECT_EQ(film.add(pixels).code(), absl::StatusCode::kInvalidArgument);
 }
 
-TEST(Film, RowsWithoutTheFirstSampleAreMissingWhateverElseTheyHave) {
+TEST(Film, RowsWithoutTheFirstSampleAreMissing) {
   Film film = make_film(1, 3);
   ASSERT_TRUE(film.add(band_pixels({{16, 32}, {0, 3}}, 1)).ok());
   ASSERT_TRUE(film.add(band_pixels({{0, 16}, {2, 3}}, 1)).ok());
@@ -121,7 +121,7 @@ TEST(Film, RowsWithoutTheFirstSampleAreMissingWhateverElseTheyHave) {
   EXPECT_EQ(snapshot.image.at(0, 2).r, expected(2, 0, 32));
 }
 
-TEST(Film, TheErrorIsThereWhenEachRowHasTwoEqualHalves) {
+TEST(Film, TheErrorIsKnownWhenEachRowHasTwoEqualHalves) {
   Film film = make_film(1, 2);
   const auto add = [&](SampleRange samples, RowRange rows) {
     ASSERT_TRUE(film.add(band_pixels({samples, rows}, 1)).ok());
@@ -141,7 +141,7 @@ TEST(Film, TheErrorIsThereWhenEachRowHasTwoEqualHalves) {
   EXPECT_FALSE(whole.error()) << "one node has no halves";
 }
 
-// Whole halves, further nodes after them, and a last block that is cut off.
+// Whole halves, further nodes after them, and a truncated last block.
 TEST(Film, TheErrorOfIndependentSamplesIsTheirStandardError) {
   // Samples uniform in [0, 2): mean 1, variance 1/3. Of 128 x 96 x 3 estimates the relative error
   // of the estimate of the root of their mean square is 1 / sqrt(2 * 36864) = 0.4 %; 2 % is five of
@@ -170,7 +170,7 @@ TEST(Film, TheErrorOfIndependentSamplesIsTheirStandardError) {
   }
 }
 
-TEST(Film, AFolderThatIsNotThereIsAnErrorOnAdding) {
+TEST(Film, AMissingFolderIsAnErrorWhenAdding) {
   Film film = make_film(2, 2, "/nowhere/at/all");
   EXPECT_FALSE(film.add(band_pixels({{0, 16}, {0, 2}}, 2)).ok());
   EXPECT_EQ(film.snapshot().missing_rows, 2u);

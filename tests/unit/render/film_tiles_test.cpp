@@ -1,4 +1,4 @@
-// Half tiles that take samples of their own.
+// Half tiles with their own numbers of samples.
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ struct Pass {
   TileSamples tiles;
 };
 
-/// In each pass two thirds of the half tiles take the next node of their own.
+/// In each pass, two thirds of the half tiles take their next node.
 std::vector<Pass> random_passes(std::uint64_t samples, const TileGrid& grid, Random& random) {
   std::vector<std::vector<SampleRange>> nodes(grid.half_tiles());
   for (std::vector<SampleRange>& of_half_tile : nodes) {
@@ -49,7 +49,7 @@ BandPixels pixels_of(const Band& band, const TileGrid& grid, const TileSamples& 
   return pixels;
 }
 
-TEST(Film, WhatHalfTilesTakeIsTheTreeOfTheirOwnSamplesInAnyOrder) {
+TEST(Film, HalfTilesHaveTheTreeOfTheirOwnSamplesInAnyOrder) {
   const TileGrid grid{19, 18};
   Random random(3);
   for (const std::uint64_t samples : {96, 160, 256}) {
@@ -98,8 +98,8 @@ TEST(Film, WhatHalfTilesTakeIsTheTreeOfTheirOwnSamplesInAnyOrder) {
   }
 }
 
-// Right with uneven numbers of samples: the noise of each pixel is that of its own number.
-TEST(Film, TheErrorOfUnevenNumbersOfSamplesIsTheirStandardError) {
+// With different numbers of samples, the noise of each pixel is that of its own number.
+TEST(Film, TheErrorOfDifferentSampleCountsIsTheirStandardError) {
   const TileGrid grid{128, 96};
   // Every other tile.
   const auto some = [&](const SampleRange& samples) {

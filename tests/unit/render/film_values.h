@@ -1,6 +1,6 @@
 #pragma once
 
-// Films filled with values of which the sums are known from the definition of the tree.
+// Fills films with values whose sums are known from the definition of the tree.
 
 #include <cmath>
 #include <vector>
@@ -12,14 +12,14 @@ namespace bandsaw {
 
 using test::Random;
 
-/// A sample's value that is different everywhere and whose sums round, so that another order of
-/// adding shows.
+/// Returns a sample's value: different everywhere, and with rounding sums, so that another order of
+/// summation is detected.
 inline double value(std::uint32_t y, std::size_t k, std::uint64_t sample) {
   Random random(y * 1000003u + k * 4099u + sample * 77777777u);
   return static_cast<float>(random.uniform() * std::exp2(random.uniform(-20, 20)));
 }
 
-/// The sum of a node, straight from the definition of the tree.
+/// Returns the sum of a node according to the definition of the tree.
 inline double node_sum(std::uint32_t y, std::size_t k, const SampleRange& node) {
   if (node.blocks() > 1) {
     const Halves halves = split(node);
@@ -42,7 +42,7 @@ inline BandPixels band_pixels(const Band& band, std::uint32_t width) {
   return pixels;
 }
 
-/// Nodes that tile [0, samples): the maximal ones, some of them split again and again.
+/// Returns nodes that tile [0, samples): the maximal ones, some of them split repeatedly.
 inline std::vector<SampleRange> random_nodes(std::uint64_t samples, Random& random) {
   std::vector<SampleRange> open = maximal_nodes(samples);
   std::vector<SampleRange> nodes;

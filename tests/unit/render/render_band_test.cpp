@@ -6,7 +6,7 @@
 #include <numeric>
 #include <set>
 
-#include "renderlib/integrate/shared_paths.h"
+#include "renderlib/integrate/path_reuse.h"
 #include "renderlib/render/canary.h"
 #include "renderlib/render/render_image.h"
 #include "tests/support/hard_case.h"
@@ -19,7 +19,7 @@ namespace {
 constexpr RenderSettings kSettings{.width = 13, .height = 11, .max_depth = 6, .seed = 5};
 const std::atomic<bool> kGoOn = false;
 
-/// Diffuse, metal, glass and two lights; every kernel has something to do.
+/// A scene with diffuse, metal, glass and two lights.
 std::shared_ptr<const Scene> scene() {
   test::SceneMaker maker = test::cornell_box();
   maker.sphere({190, 245, 170}, 80, maker.glass(1.5));
@@ -50,7 +50,7 @@ TEST(RenderBand, AnyNumberOfThreadsGivesTheSameBits) {
   }
 }
 
-TEST(RenderBand, AHalfTilesOwnSamplesHaveTheBitsOfABandOfTheseAndTheRestIsZero) {
+TEST(RenderBand, SkippedHalfTilesAreZeroAndOthersHaveTheSameBits) {
   const auto rendered = scene();
   TileSamples tiles(13, {0, 11});
   tiles.set(1, {32, 64});
@@ -68,7 +68,7 @@ TEST(RenderBand, AHalfTilesOwnSamplesHaveTheBitsOfABandOfTheseAndTheRestIsZero) 
   EXPECT_LT(some->counters.rays, all.counters.rays * 6 / 10);
 }
 
-TEST(RenderBand, EveryIntegratorGivesTheSameBitsInAnyBandsAndThreads) {
+TEST(RenderBand, EveryIntegratorGivesTheSameBitsForAnyBandsAndThreads) {
   const auto rendered = scene();
   for (int i = 0; i <= kLastIntegrator; ++i) {
     RenderSettings settings = kSettings;
@@ -89,10 +89,10 @@ TEST(RenderBand, EveryIntegratorGivesTheSameBitsInAnyBandsAndThreads) {
   EXPECT_FALSE(validate(settings).ok());
 }
 
-// A tile and a part of one; of the second half a row of two pixels and one of three.
-TEST(RenderBand, C5_PixelsThatShareTheirPathsHaveTheSameBitsInAnyBandsThreadsAndTiles) {
+// One tile and a part of another; the half rows of the second have two and three pixels.
+TEST(RenderBand, C5_PathReuseGivesTheSameBitsForAnyBandsAndThreads) {
   const auto box = test::cornell_box().build();
-  ASSERT_TRUE(box->shares_paths());
+  ASSERT_TRUE(box->reuses_paths());
   RenderSettings settings = kSettings;
   settings.width = 21;
   const auto rendered = [&](const Band& band, int threads, const TileSamples& tiles) {
@@ -125,9 +125,9 @@ TEST(RenderBand, C5_PixelsThatShareTheirPathsHaveTheSameBitsInAnyBandsThreadsAnd
   test::holds("C5", "same bits in bands of 1, 3, 7 rows where pixels share paths");
 }
 
-// Asking lights, meeting them by chance, and both: one mean, three noises. A path that does not ask
-// traces fewer rays.
-TEST(RenderBand, TheTechniquesOfPathTracingHaveOneMean) {
+// Light sampling, BSDF sampling and both have one mean and three variances. Without light sampling
+// a path traces fewer rays.
+TEST(RenderBand, AllTechniquesHaveTheSameMean) {
   const auto box = test::cornell_box().build();
   const auto pixels = [&](Integrator integrator) {
     Pool pool(2);
@@ -144,13 +144,13 @@ TEST(RenderBand, TheTechniquesOfPathTracingHaveOneMean) {
   const BandPixels scattering = pixels(Integrator::kPathScattering);
   EXPECT_NE(both.sums, lights.sums);
   EXPECT_LT(scattering.counters.rays, both.counters.rays);
-  // Pixels of the box share what is found, and asking alone finds less.
+  // In the box, pixels reuse paths, and light sampling alone finds less.
   EXPECT_LE(lights.counters.rays, both.counters.rays);
   EXPECT_NEAR(total(lights) / total(both), 1, 0.02);
   EXPECT_NEAR(total(scattering) / total(both), 1, 0.04);
 }
 
-TEST(RenderBand, C5_RowsAreTheSameWhicheverBandTheyComeIn) {
+TEST(RenderBand, C5_RowsAreTheSameInEveryBand) {
   const auto rendered = scene();
   const BandPixels whole = render(*rendered, {{0, 16}, {0, 11}}, 2);
   for (const std::uint32_t rows : {1u, 3u, 7u}) {
@@ -179,7 +179,7 @@ TEST(RenderBand, A7_ANodeIsTheSumOfItsHalvesToTheBit) {
   test::holds("A7", "sums of halves equal to the bit");
 }
 
-TEST(RenderBand, R6A7_AnImageOfBandsInAnyOrderIsTheImageMadeInOneGo) {
+TEST(RenderBand, R6A7_BandsInAnyOrderEqualOneRender) {
   const auto rendered = scene();
   Pool pool(2);
   const std::uint64_t samples = 88;
@@ -208,7 +208,7 @@ TEST(RenderBand, R6A7_AnImageOfBandsInAnyOrderIsTheImageMadeInOneGo) {
   test::holds("R6", "bands in any order: same bits");
 }
 
-TEST(RenderBand, AnotherSeedAndAnotherPixelGiveOtherSamples) {
+TEST(RenderBand, SeedsAndPixelsGiveDifferentSamples) {
   const auto rendered = scene();
   Pool pool(1);
   RenderSettings other = kSettings;
@@ -243,7 +243,7 @@ TEST(RenderBand, StoppingIsCancelledAndLeavesThePoolUsable) {
   EXPECT_TRUE(render_band(*rendered, kSettings, {{0, 16}, {0, 1}}, pool, kGoOn, {}).ok());
 }
 
-TEST(RenderBand, BandsOfNoImageAreRefused) {
+TEST(RenderBand, InvalidBandsAreRefused) {
   const auto rendered = scene();
   Pool pool(1);
   EXPECT_EQ(render_band(*rendered, kSettings, {{0, 16}, {0, 12}}, pool, kGoOn, {}).status().code(),
@@ -252,9 +252,8 @@ TEST(RenderBand, BandsOfNoImageAreRefused) {
             absl::StatusCode::kInvalidArgument);
 }
 
-TEST(RenderBand, A3_SamplesThatOverflowAreCountedAndLeftOut) {
-  // Inside of glass radiance is n^2 of what it is outside: 25 times this is more than a float
-  // holds.
+TEST(RenderBand, A3_OverflowingSamplesAreCountedAndDiscarded) {
+  // Inside glass, radiance is n^2 times that outside: 25 times this value overflows a float.
   test::SceneMaker maker;
   maker.camera({0, 0, 0}, {0, 0, 1}, 20);
   maker.background({3e38f, 1, 0}, {3e38f, 1, 0});
@@ -275,7 +274,7 @@ TEST(RenderBand, A3_SamplesThatOverflowAreCountedAndLeftOut) {
 }
 
 TEST(RenderBand, A3_APixelIsTheMeanOfItsOtherSamples) {
-  // As above; a small lamp before the camera is seen by a quarter of the samples, which are 1.
+  // As above; a quarter of the samples hits a small emitter of radiance 1 in front of the camera.
   test::SceneMaker maker;
   maker.camera({0, 0, 0}, {0, 0, 1}, 20);
   maker.background({3e38f, 3e38f, 3e38f}, {3e38f, 3e38f, 3e38f});
@@ -293,7 +292,7 @@ TEST(RenderBand, A3_APixelIsTheMeanOfItsOtherSamples) {
   test::holds("A3", "the pixel is the mean of the others of each block");
 }
 
-TEST(RenderBand, CountsWhatIsLeftOut) {
+TEST(RenderBand, CountsTruncatedPathsAndDroppedPrimitives) {
   test::SceneMaker maker;
   maker.camera({0, 0, 0}, {0, 0, 1}, 20);
   maker.sphere({0, 0, 0}, 1, maker.diffuse(0.5f));
@@ -307,7 +306,7 @@ TEST(RenderBand, CountsWhatIsLeftOut) {
   EXPECT_EQ(pixels->counters.dropped_primitives, 1u);
 }
 
-TEST(RenderImage, PassesDoubleAndAreTheNodesOfTheWhole) {
+TEST(RenderImage, PassesDoubleAndAreNodes) {
   EXPECT_TRUE(passes_of(0).empty());
   EXPECT_EQ(passes_of(16), (std::vector<SampleRange>{{0, 16}}));
   EXPECT_EQ(passes_of(128), (std::vector<SampleRange>{{0, 16}, {16, 32}, {32, 64}, {64, 128}}));
@@ -316,7 +315,7 @@ TEST(RenderImage, PassesDoubleAndAreTheNodesOfTheWhole) {
   EXPECT_EQ(passes_of(24), (std::vector<SampleRange>{{0, 16}, {16, 24}}));
 }
 
-TEST(Canary, IsAFunctionOfTheProgramAlone) {
+TEST(Canary, DependsOnTheProgramAlone) {
   const std::uint64_t first = canary();
   EXPECT_EQ(canary(), first);
   EXPECT_NE(first, 0u);

@@ -18,7 +18,7 @@ SampleRange some_node(test::Random& random) {
   return random.below(3) == 0 ? SampleRange{} : SampleRange{first, first + size};
 }
 
-/// What some half tiles of an image take, and the same pixel by pixel.
+/// The samples of some half tiles of an image, and the same for each pixel.
 struct Some {
   TileSamples tiles;
   std::vector<SampleRange> of_pixel;
@@ -47,7 +47,7 @@ Some some(std::uint32_t width, std::uint32_t height) {
   return out;
 }
 
-TEST(TileSamples, AreOfHalfTilesOfAnyImageAndAnyOfItsRows) {
+TEST(TileSamples, DescribeHalfTilesOfAnyImageAndRows) {
   for (const std::uint32_t width : {1, 15, 16, 17, 70}) {
     for (const std::uint32_t height : {1, 16, 33, 50}) {
       const Some given = some(width, height);
@@ -73,7 +73,7 @@ TEST(TileSamples, AreOfHalfTilesOfAnyImageAndAnyOfItsRows) {
   }
 }
 
-TEST(TileSamples, ByDefaultAllTakeThoseOfTheBand) {
+TEST(TileSamples, DefaultToTheSamplesOfTheBand) {
   const TileSamples all;
   EXPECT_TRUE(all.whole());
   EXPECT_EQ(all.of_pixel(100, 7, kPass), kPass);
@@ -83,8 +83,8 @@ TEST(TileSamples, ByDefaultAllTakeThoseOfTheBand) {
   EXPECT_TRUE(TileSamples::from_numbers({}, 10, {2, 5})->whole());
 }
 
-// However a pass is cut, its bands take what it takes, once, in nodes.
-TEST(TileSamples, OfThePartsOfAPassAreThoseOfThePass) {
+// However a pass is split, its bands take its samples exactly once, in nodes.
+TEST(TileSamples, PartsOfAPassAddUpToThePass) {
   test::Random random(7);
   const RowRange row{0, 1};
   for (int i = 0; i < 200; ++i) {
@@ -118,7 +118,7 @@ TEST(TileSamples, OfThePartsOfAPassAreThoseOfThePass) {
   }
 }
 
-TEST(TileSamples, NumbersThatCannotBeAreRefused) {
+TEST(TileSamples, InvalidNumbersAreRefused) {
   const auto refused = [](const std::vector<std::uint32_t>& numbers, const RowRange& rows) {
     const auto tiles = TileSamples::from_numbers(numbers, 16, rows);
     EXPECT_EQ(tiles.status().code(), absl::StatusCode::kInvalidArgument);
@@ -132,7 +132,7 @@ TEST(TileSamples, NumbersThatCannotBeAreRefused) {
   EXPECT_THAT(refused({0, 0, 0xffffffff, 0xffffffff}, {0, 1}), HasSubstr("half tile 1"));
 }
 
-TEST(TileSamples, SumsOfNoSamplesMustBeZero) {
+TEST(TileSamples, SumsWithoutSamplesMustBeZero) {
   const Some given = some(20, 20);
   BandPixels pixels{.band = {{0, 16}, {3, 20}}, .width = 20, .sums = {}, .counters = {}};
   for (std::uint32_t y = 3; y < 20; ++y) {
@@ -150,7 +150,7 @@ TEST(TileSamples, SumsOfNoSamplesMustBeZero) {
               HasSubstr("its tile takes none"));
 }
 
-TEST(TileSamples, CountersCountSamplesThatThereAre) {
+TEST(TileSamples, CountersCountTheSamplesTaken) {
   TileSamples tiles(16, {0, 4});
   tiles.set(0, {64, 128});
   BandPixels pixels{.band = {{64, 80}, {0, 4}}, .width = 16, .sums = {}, .counters = {}};

@@ -14,8 +14,7 @@ using test::Moments;
 
 constexpr TileGrid kGrid{512, 32};
 
-/// The left half of the image has twice as many samples as a half that is even, the right an
-/// eighth.
+/// The left half of the image has twice the uniform number of samples, the right half an eighth.
 TilePlan half_noisy(std::uint64_t pilot) {
   TilePlan plan{.pilot = pilot, .levels = {}};
   for (std::size_t i = 0; i < kGrid.half_tiles(); ++i) {
@@ -30,7 +29,7 @@ SampleRange of_half_tile(const TileSamples& tiles, std::size_t i) {
                         tile / kGrid.columns() * kTileSide, {});
 }
 
-TEST(TileSchedule, TheMeanIsWhatIsDueInNodesThatFollowEachOther) {
+TEST(TileSchedule, HalfTilesTakeTheirShareInConsecutiveNodes) {
   const TilePlan plan = half_noisy(64);
   TileSchedule schedule(kGrid, plan);
   std::vector<std::uint64_t> taken(kGrid.half_tiles(), 64);
@@ -48,22 +47,23 @@ TEST(TileSchedule, TheMeanIsWhatIsDueInNodesThatFollowEachOther) {
       (plan.levels[i] == '4' ? noisy : quiet).add(static_cast<double>(taken[i]));
     }
     const auto due = static_cast<double>(first + 64);
-    if (first >= 256) {  // Until then they have not taken what they are owed at once.
+    if (first >= 256) {  // before that, they have not caught up yet
       EXPECT_NEAR(noisy.mean() / (2 * due), 1, 0.05) << due;
     }
     EXPECT_NEAR(quiet.mean() / std::max(64.0, due / 8), 1, 0.05) << due;
   }
 }
 
-// 48 samples are three blocks: what follows is one of its own, and then as many as there are.
-TEST(TileSchedule, WhatIsOwedIsTakenAtOnceWhereANodeOfItBegins) {
+// 48 samples are three blocks: the next node is one block, the following ones are as large as the
+// whole.
+TEST(TileSchedule, ArrearsAreTakenAtOnceWhereANodeBegins) {
   TileSchedule schedule(kGrid, half_noisy(48));
   EXPECT_EQ(of_half_tile(schedule.next({48, 64}), 0), (SampleRange{48, 64}));
   EXPECT_EQ(of_half_tile(schedule.next({64, 128}), 0), (SampleRange{64, 128}));
   EXPECT_EQ(of_half_tile(schedule.next({128, 192}), 0), (SampleRange{128, 256}));
 }
 
-TEST(TileSchedule, AHalfThatIsNotPlannedTakesThePassesAsTheyAre) {
+TEST(TileSchedule, AnUnplannedHalfTakesUniformPasses) {
   TilePlan plan = half_noisy(32);
   for (std::size_t i = 1; i < plan.levels.size(); i += 2) {
     plan.levels[i] = kEvenLevel;

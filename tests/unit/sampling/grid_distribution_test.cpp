@@ -12,7 +12,7 @@
 namespace bandsaw {
 namespace {
 
-TEST(GridDistribution, CellsAreChosenByTheirWeight) {
+TEST(GridDistribution, CellsAreSelectedByTheirWeight) {
   constexpr std::uint32_t kWidth = 7;
   constexpr std::uint32_t kHeight = 5;
   const auto weight = [](std::uint32_t x, std::uint32_t y) {
@@ -44,14 +44,14 @@ TEST(GridDistribution, CellsAreChosenByTheirWeight) {
   EXPECT_LE(std::abs(left_u.z(0.5)), 4) << "what is left of a number is uniform again";
 }
 
-TEST(GridDistribution, L7ATailOfSmallWeightsIsThere) {
+TEST(GridDistribution, L7_ATailOfSmallWeightsIsSampled) {
   const GridDistribution grid(1000, 1,
                               [](std::uint32_t x, std::uint32_t) { return x == 0 ? 1e9 : 1e-6; });
   const auto last = grid.sample(kOneMinusEpsilon, kOneMinusEpsilon);
   EXPECT_GT(last.column, 0u);
 }
 
-TEST(GridDistribution, TheEndsOfTheNumbersStayInside) {
+TEST(GridDistribution, ExtremeNumbersStayInside) {
   for (const double scale : {1e-300, 1.0, 1e200}) {
     const GridDistribution grid(
         3, 3, [&](std::uint32_t x, std::uint32_t y) { return x == 1 && y == 1 ? scale : 0.0; });

@@ -15,7 +15,7 @@
 namespace bandsaw {
 namespace {
 
-/// Whether a ray from `point` along d meets the quad.
+/// Returns true if a ray from `point` along d hits the quad.
 bool sees(const Vec3& point, const Vec3& d, const Quad& quad) {
   Crossing crossing;
   return intersect(trace_setup(point, d, kInfinity), quad, crossing);
@@ -50,7 +50,7 @@ TEST(SphericalRectangle, SamplesUniformlyInSolidAngle) {
           return normalize(quad.corner + at.x * quad.u + at.y * quad.v - point);
         },
         [&](const Vec3& d) {
-          // Borders are sampled up to their last bit.
+          // Samples may lie on the border up to rounding.
           const Vec3 inwards = quad.corner + 0.5 * quad.u + 0.5 * quad.v - point;
           const bool inside = sees(point, d, quad) || sees(point, d + 1e-9 * inwards, quad);
           return inside ? 1 / rectangle->solid_angle() : 0;
@@ -61,7 +61,7 @@ TEST(SphericalRectangle, SamplesUniformlyInSolidAngle) {
 
 // The solid angle of a rectangle of half sides a, b at distance d above its middle is 4 asin(a b /
 // sqrt((a^2+d^2)(b^2+d^2))).
-TEST(SphericalRectangle, KnowsSmallSolidAngles) {
+TEST(SphericalRectangle, ComputesSmallSolidAngles) {
   for (const double h : {1.0, 1e-1, 1e-2, 1e-3, 1e-4}) {
     const auto rectangle =
         SphericalRectangle::seen_from({0, 0, 0}, {-h, -h, 1}, {2 * h, 0, 0}, {0, 2 * h, 0});
@@ -69,8 +69,8 @@ TEST(SphericalRectangle, KnowsSmallSolidAngles) {
     const double truth = 4 * std::asin(h * h / (h * h + 1));
     EXPECT_NEAR(rectangle->solid_angle() / truth, 1, 1e-11) << h;
   }
-  // Off to the side, as the difference of rectangles with a corner below the point is too inexact:
-  // by distance and cosine.
+  // Off to the side, where the difference of rectangles with a corner below the point is too
+  // inexact: by distance and cosine.
   const double h = 1e-4;
   const auto aside =
       SphericalRectangle::seen_from({0, 0, 0}, {3 - h, -h, 1}, {2 * h, 0, 0}, {0, 2 * h, 0});
@@ -93,7 +93,7 @@ TEST(SphericalRectangle, L6_CornersOfTheUnitSquareStayInside) {
   test::holds("L6", "80 corners inside the rectangle");
 }
 
-TEST(SphericalRectangle, IsNoneForWhatIsEdgeOnOrTiny) {
+TEST(SphericalRectangle, IsAbsentForEdgeOnOrTinyOnes) {
   EXPECT_FALSE(SphericalRectangle::seen_from({0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}));
   EXPECT_FALSE(SphericalRectangle::seen_from({0, 0, 0}, {0, 0, 1e6}, {1, 0, 0}, {0, 1, 0}));
   EXPECT_FALSE(SphericalRectangle::seen_from({0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}));
@@ -126,8 +126,8 @@ TEST(SphereLight, SamplesUniformlyInSolidAngle) {
   }
 }
 
-// From inside, the mean of 1 / density is the whole sphere of directions.
-TEST(SphereLight, L3_IsSeenAllAroundFromInside) {
+// From inside, the mean of 1 / pdf is the whole sphere of directions.
+TEST(SphereLight, L3_CoversAllDirectionsFromInside) {
   test::Random random(30);
   for (const double radius_of_point : {0.0, 0.5, 0.99}) {
     test::Moments directions;

@@ -13,7 +13,7 @@
 namespace bandsaw {
 namespace {
 
-TEST(Sampler, DependsOnNothingButItsArguments) {
+TEST(Sampler, DependsOnItsArgumentsAlone) {
   const std::uint32_t order[] = {3, 0, 7, 1, 6, 2, 5, 4};
   const PixelSampler sampler(9, 4, 5);
   std::vector<Sample4> shuffled(8);
@@ -36,7 +36,7 @@ TEST(Sampler, ChangesWithEveryArgument) {
   EXPECT_NE(sample4({1, 2, 3, 4}, 5), sample4({1, 3, 2, 4}, 5));
 }
 
-/// Any change of these numbers changes every image: raise the pixel version with it.
+/// Changing these numbers changes every image: raise the pixel version with it.
 TEST(Sampler, GivesTheRecordedNumbers) {
   const auto in_units = [](const Sample4& s) {
     std::array<std::uint32_t, 4> units{};
@@ -65,7 +65,7 @@ std::vector<int> cells(const std::vector<Sample4>& samples, const std::array<int
   return counts;
 }
 
-/// 2^m aligned samples, the last of them the `block`th range of that size.
+/// Returns 2^m aligned samples, the `block`th range of that size.
 std::vector<Sample4> aligned_range(std::uint64_t seed, std::uint32_t group, int m,
                                    std::uint64_t block) {
   const PixelSampler sampler(seed, 11, 12);
@@ -145,7 +145,7 @@ TEST(Sampler, R4_IsUniformOverPairsOfDimensionsOfAnyGroups) {
     const std::uint64_t seed = random.bits();
     std::vector<std::uint64_t> counts(kSide * kSide);
     // One sample of each of many pixels: independent, as the test assumes (samples of one pixel are
-    // better than that).
+    // better).
     for (std::uint32_t i = 0; i < kSamples; ++i) {
       const PixelSampler sampler(seed, i % 64, i / 64);
       const double x = sampler.group(i, group_a)[a];

@@ -20,20 +20,20 @@ struct View {
 };
 
 const std::vector<View> kViews = {
-    {{0, 0, 0}, {-1, -1, 1}, {3, 0, 0}, {0, 3, 0}},            // above
-    {{0, 0, 0}, {-40, -40, 0.05}, {90, 0, 0}, {0, 90, 0}},     // nearly half of all directions
-    {{0, 0, 0}, {-1, -1, -0.1}, {3, 0, 0}, {0, 3, 0}},         // close, from the other side
-    {{1, 2, 3}, {3, 2, 1}, {0, 1, 1}, {3, 0, 0}},              // slanted
-    {{0, 0, 0}, {2, -4, 0.3}, {1, 0, 0}, {0, 9, 0.2}},         // grazing
-    {{0, 0, 1}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}},              // above a corner
-    {{0, 0, 0}, {-1, -0.25, 1}, {2, 0, 0}, {2, 0.5, 0}}  // thin
+    {{0, 0, 0}, {-1, -1, 1}, {3, 0, 0}, {0, 3, 0}},         // above
+    {{0, 0, 0}, {-40, -40, 0.05}, {90, 0, 0}, {0, 90, 0}},  // nearly half of all directions
+    {{0, 0, 0}, {-1, -1, -0.1}, {3, 0, 0}, {0, 3, 0}},      // close, from the other side
+    {{1, 2, 3}, {3, 2, 1}, {0, 1, 1}, {3, 0, 0}},           // slanted
+    {{0, 0, 0}, {2, -4, 0.3}, {1, 0, 0}, {0, 9, 0.2}},      // grazing
+    {{0, 0, 1}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}},           // above a corner
+    {{0, 0, 0}, {-1, -0.25, 1}, {2, 0, 0}, {2, 0.5, 0}}     // thin
 };
 
 Vec3 at(const View& view, const Vec2& on) {
   return normalize(view.a + view.u * on.x + view.v * on.y - view.point);
 }
 
-/// Whether the direction lies within all three edges' planes, as far as rounding can tell.
+/// Returns true if the direction is within the planes of all three edges, up to rounding.
 bool sees(const View& view, const Vec3& d) {
   const Vec3 a = view.a - view.point;
   const Vec3 b = a + view.u;
@@ -57,8 +57,9 @@ TEST(SphericalTriangle, SamplesUniformlyInSolidAngle) {
   }
 }
 
-TEST(SphericalTriangle, KnowsSolidAnglesInClosedForm) {
-  // An eighth of all directions; half of what a square is seen under; a cube's face is a sixth.
+TEST(SphericalTriangle, HasSolidAnglesOfClosedForms) {
+  // An eighth of all directions; half the solid angle of a square; a cube's face is a sixth of all
+  // directions.
   const auto octant = SphericalTriangle::seen_from({0, 0, 0}, {1, 0, 0}, {-1, 1, 0}, {-1, 0, 1});
   ASSERT_TRUE(octant);
   EXPECT_NEAR(octant->solid_angle(), kPi / 2, 1e-14);
@@ -73,14 +74,14 @@ TEST(SphericalTriangle, KnowsSolidAnglesInClosedForm) {
   }
 }
 
-TEST(SphericalTriangle, IsNoneForWhatIsEdgeOnOrSmall) {
+TEST(SphericalTriangle, IsAbsentForEdgeOnOrSmallOnes) {
   EXPECT_FALSE(SphericalTriangle::seen_from({0, 0, 0}, {1, 0, 0}, {1, 0, 0}, {0, 1, 0}));
   EXPECT_FALSE(SphericalTriangle::seen_from({0, 0, 0}, {0, 0, 1e3}, {1, 0, 0}, {0, 1, 0}));
   EXPECT_FALSE(SphericalTriangle::seen_from({0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}));
   EXPECT_FALSE(SphericalTriangle::seen_from({0, 0, 0}, {0.5, 0, 0}, {-1, 0, 0}, {0, 1, 0}));
 }
 
-TEST(SphericalTriangle, L6CornersOfTheUnitSquareStayInside) {
+TEST(SphericalTriangle, L6_CornersOfTheUnitSquareStayInside) {
   test::Random random(60);
   std::vector<View> views = kViews;
   for (int i = 0; i < 2000; ++i) {

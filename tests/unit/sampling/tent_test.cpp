@@ -17,7 +17,7 @@ constexpr int kCells = 400;
 constexpr int kSteps = 64;
 constexpr int kSamples = 100000;
 
-/// The share of texel `index` at x, in texels, by the definition of linear interpolation.
+/// Returns the weight of texel `index` at x, in texels, by the definition of linear interpolation.
 double tent(double x, std::uint32_t index, std::uint32_t texels, Ends ends) {
   const double centre = index + 0.5;
   if (ends == Ends::kClamped) {
@@ -31,7 +31,7 @@ double tent(double x, std::uint32_t index, std::uint32_t texels, Ends ends) {
   return sum;
 }
 
-/// 10^5 samples in [0, end) against a density that need not be normalised.
+/// Compares 10^5 samples in [0, end) with a pdf that need not be normalised.
 template <class Draw, class Density>
 void expect_density(double end, Draw draw, Density density, std::size_t tests) {
   std::vector<double> expected(kCells);
@@ -89,7 +89,7 @@ TEST(Tent, SamplesInLatitudeFollowInterpolationTimesTheSine) {
   }
 }
 
-TEST(Tent, TheSolidAnglesOfAllRowsAreTheSphere) {
+TEST(Tent, SolidAnglesOfAllRowsSumToTheSphere) {
   for (const std::uint32_t rows : {1u, 2u, 3u, 10u, 512u, 4096u, 65536u}) {
     double sum = 0;
     for (std::uint32_t row = 0; row < rows; ++row) {
@@ -104,7 +104,7 @@ TEST(Tent, TheSolidAngleOfARowIsItsIntegral) {
        {std::pair(0u, 10u), std::pair(1u, 10u), std::pair(4u, 10u), std::pair(0u, 1000u)}) {
     constexpr int kFine = 200000;
     const double width = kPi / rows;
-    // Three rows hold the tent; the pole's stops at the pole.
+    // The tent covers three rows; at the pole it ends at the pole.
     const double first = std::max(0.0, (row - 1.0) * width);
     const double step = ((row + 2.0) * width - first) / kFine;
     double sum = 0;

@@ -1,4 +1,4 @@
-// What trees and numbers of lights can hold, and what a scene says that has more.
+// Limits of counts: capacity of BVHs and of light numbers, and errors for larger scenes.
 
 #include "renderlib/scene/check_counts.h"
 
@@ -22,7 +22,7 @@ std::string message(const absl::Status& status) {
   return std::string(status.message());
 }
 
-TEST(Counts, OfAMesh) {
+TEST(Counts, LimitMeshes) {
   EXPECT_TRUE(check_mesh_counts("mesh", kMaxTreeItems, kMaxMeshPositions).ok());
   EXPECT_EQ(message(check_mesh_counts("meshes[3]", kMaxTreeItems + 1, 3)),
             "meshes[3]: has 536870912 triangles, a mesh holds at most 536870911: split it into "
@@ -32,7 +32,7 @@ TEST(Counts, OfAMesh) {
             "several meshes");
 }
 
-TEST(Counts, OfLooseShapes) {
+TEST(Counts, LimitLooseShapes) {
   constexpr std::uint64_t kHalf = kMaxTreeItems / 2;
   EXPECT_TRUE(check_shape_counts("shapes", {.quads = kHalf, .disks = 1}).ok());
   EXPECT_TRUE(check_shape_counts("shapes", {.spheres = kHalf, .instances = kHalf + 1}).ok());
@@ -45,14 +45,14 @@ TEST(Counts, OfLooseShapes) {
   }
 }
 
-/// A mesh of 131,072 triangles, placed so often that they are 2^31.
+/// A mesh of 131,072 triangles, with so many instances that they are 2^31.
 test::SceneMaker placed_many_times(MaterialId material, test::SceneMaker maker) {
   maker.instance(test::grid(256), {}, material);
   maker.scene.geometry.instances.resize(std::size_t{1} << 14, maker.scene.geometry.instances[0]);
   return maker;
 }
 
-TEST(Counts, OfLightsAreJudgedBeforeAnyIsMade) {
+TEST(Counts, LimitLightsBeforeTheyAreBuilt) {
   test::SceneMaker maker;
   const MaterialId lamp = maker.lamp(1);
   Pool pool(1);
@@ -61,7 +61,7 @@ TEST(Counts, OfLightsAreJudgedBeforeAnyIsMade) {
                     HasSubstr("at most 2147483647")));
 }
 
-TEST(Counts, OfWhatGivesNoLightAreNoLights) {
+TEST(Counts, DarkInstancesAreNotCountedAsLights) {
   const auto check = [](const test::SceneMaker& maker) {
     const SceneDescription& s = maker.scene;
     return check_light_counts(s.geometry, s.materials, s.textures, 0);
@@ -73,7 +73,7 @@ TEST(Counts, OfWhatGivesNoLightAreNoLights) {
   EXPECT_TRUE(check(placed_many_times(dark, maker)).ok());
 }
 
-TEST(Counts, OfLightsInGroups) {
+TEST(Counts, LimitLightsInGroups) {
   test::SceneMaker maker;
   const MaterialId lamp = maker.lamp(1);
   Geometry& geometry = maker.scene.geometry;

@@ -1,4 +1,4 @@
-// Scenes of many placements, and scenes that move: what they cost, and what costs nothing.
+// Scenes with many instances and with motion, and their cost.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <string>
 
 #include "renderlib/render/render_band.h"
-#include "renderlib/scene/rest.h"
+#include "renderlib/scene/static_instances.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
 
@@ -26,7 +26,7 @@ Instance of_group(std::uint32_t group, const Transform& to_world) {
   return instance;
 }
 
-/// A ball over a floor under a sky; the ball is placed by a frame.
+/// A ball over a floor under a sky; a frame places the ball.
 SceneMaker ball_in_frame(std::vector<Key> keys, const Shutter& shutter) {
   SceneMaker maker;
   maker.quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}, maker.diffuse(0.5f));
@@ -45,36 +45,36 @@ SceneMaker ball_in_frame(std::vector<Key> keys, const Shutter& shutter) {
 std::vector<double> pixels(const Scene& scene) {
   Pool pool(1);
   const std::atomic<bool> stop = false;
-  const auto band =
-      render_band(scene, {.width = 24, .height = 16, .seed = 3}, {{0, 32}, {0, 16}}, pool, stop, {});
+  const auto band = render_band(scene, {.width = 24, .height = 16, .seed = 3}, {{0, 32}, {0, 16}},
+                                pool, stop, {});
   return band.ok() ? band->sums : std::vector<double>{};
 }
 
 const std::vector<Key> kMoving = {Key(0, {}), Key(2, translation({1, 0, 0}))};
 
-// C8: a shutter that opens and closes at once shows what stands there, to the bit.
-TEST(MovingScene, C8_AtOneMomentIsTheSceneOfThatMoment) {
+// A shutter without duration gives the pixels of the static scene, to the bit.
+TEST(MovingScene, C8_AnInstantEqualsTheStaticScene) {
   const auto moving = ball_in_frame(kMoving, {1, 1}).build();
-  EXPECT_FALSE(moving->needs().motion);
+  EXPECT_FALSE(moving->features().motion);
   SceneMaker still = ball_in_frame(kMoving, {});
   still.scene.geometry.frames.clear();
   still.scene.geometry.instances = {of_group(0, translation({0.5, 0, 0}))};
   EXPECT_EQ(pixels(*moving), pixels(*still.build()));
 }
 
-// What stands still has the pixels that it has without a shutter.
-TEST(MovingScene, WhatRestsNeedsNoTime) {
+// Static instances have the same pixels with and without a shutter.
+TEST(MovingScene, StaticInstancesDoNotSetTheMotionFeature) {
   const std::vector<Key> still = {Key(-1, translation({0.5, 0, 0})),
                                   Key(7, translation({0.5, 0, 0}))};
   const auto open = ball_in_frame(still, {0, 1}).build();
-  EXPECT_FALSE(open->needs().motion);
+  EXPECT_FALSE(open->features().motion);
   EXPECT_EQ(pixels(*open), pixels(*ball_in_frame(still, {}).build()));
   const auto moving = ball_in_frame(kMoving, {0, 1}).build();
-  EXPECT_TRUE(moving->needs().motion);
+  EXPECT_TRUE(moving->features().motion);
   EXPECT_NE(pixels(*moving), pixels(*open));
 }
 
-TEST(MovingScene, RestsOnlyWhatStandsStillAllTheTime) {
+TEST(MovingScene, OnlyInstancesThatNeverMoveBecomeStatic) {
   Geometry g;
   g.frames = {{kNoFrame, {}, {Key(0, {}), Key(1, translation({1, 0, 0})), Key(2, {})}},
               {kNoFrame, {}, {Key(5, {}), Key(6, translation({1, 0, 0}))}},
@@ -84,7 +84,7 @@ TEST(MovingScene, RestsOnlyWhatStandsStillAllTheTime) {
     g.instances.push_back(of_group(0, {}));
     g.instances[i].frame = FrameId{i};
   }
-  rest({0, 2}, g);
+  make_static({0, 2}, g);
   EXPECT_EQ(g.instances[0].frame, FrameId{0}) << "it is at its start again, but moved between";
   EXPECT_EQ(g.instances[1].frame, kNoFrame) << "it moves later";
   EXPECT_EQ(g.instances[2].frame, FrameId{2}) << "it stands in what moves";
@@ -100,12 +100,14 @@ std::string message_after(void (*spoil)(SceneDescription&)) {
   return std::string(Scene::build(maker.scene, pool).status().message());
 }
 
-// X3 among them: placements that cannot be turned back.
-TEST(MovingScene, WhatCannotBeIsRefusedWithTheField) {
+// Including placements without an inverse (X3).
+TEST(MovingScene, InvalidMotionIsRefusedWithTheField) {
   EXPECT_EQ(message_after([](auto&) {}), "");
   EXPECT_EQ(message_after([](auto& s) { s.geometry.disks[0].radius = 0; }),
             "disks[0].radius: must be > 0, is 0");
-  EXPECT_THAT(message_after([](auto& s) { s.geometry.disks[0].normal = {0, 2, 0}; }),
+  EXPECT_THAT(message_after([](auto& s) {
+                s.geometry.disks[0].normal = {0, 2, 0};
+              }),
               HasSubstr("disks[0].normal: must have length 1"));
   EXPECT_THAT(message_after([](auto& s) { s.geometry.groups[0].spheres[0].radius = -1; }),
               HasSubstr("groups[0].spheres[0].radius"));
@@ -124,7 +126,9 @@ TEST(MovingScene, WhatCannotBeIsRefusedWithTheField) {
                     Key(2, rotation({0, 0, 1}, 45) * scaling({1, 2, 1}) * rotation({0, 0, 1}, 9));
               }),
               HasSubstr("frames[0].keys[1].at: must be a scale, then a rotation"));
-  EXPECT_THAT(message_after([](auto& s) { s.geometry.frames[0].placement = scaling({1, 0, 1}); }),
+  EXPECT_THAT(message_after([](auto& s) {
+                s.geometry.frames[0].placement = scaling({1, 0, 1});
+              }),
               HasSubstr("frames[0].placement: must have an inverse"));
   EXPECT_THAT(message_after([](auto& s) {
                 std::get<PerspectiveCamera>(s.camera).shutter = {1, 0};
@@ -132,7 +136,7 @@ TEST(MovingScene, WhatCannotBeIsRefusedWithTheField) {
               HasSubstr("camera.shutter_close: must not be before shutter_open"));
 }
 
-/// The most memory that this process has had, in bytes.
+/// Returns the maximum memory of this process so far, in bytes.
 std::size_t peak_memory() {
   std::ifstream status("/proc/self/status");
   std::string word;
@@ -146,7 +150,7 @@ std::size_t peak_memory() {
   return 0;
 }
 
-TEST(ManyInstances, AHundredThousandOfAHundredThousandTrianglesFitInAGigabyte) {
+TEST(ManyInstances, ManyInstancesOfALargeMeshFitInAGigabyte) {
   SceneMaker maker;
   maker.instance(test::grid(224), {}, maker.diffuse(0.5f));
   std::vector<Instance>& instances = maker.scene.geometry.instances;

@@ -16,7 +16,7 @@ namespace {
 using test::SceneMaker;
 using ::testing::StartsWith;
 
-/// One of everything.
+/// A valid scene with one of everything.
 SceneMaker valid() {
   SceneMaker maker;
   const MaterialId white = maker.diffuse(0.5f);
@@ -43,7 +43,7 @@ std::string message_after(Change change) {
   return message(maker.scene);
 }
 
-TEST(Scene, S9_WhatIsWrongIsNamedWithPlaceRangeAndValue) {
+TEST(Scene, S9_ErrorsNameFieldRangeAndValue) {
   EXPECT_EQ(message(valid().scene), "");
   EXPECT_EQ(message_after([](auto& s) { s.geometry.spheres[0].radius = -1; }),
             "spheres[0].radius: must be > 0, is -1");
@@ -77,43 +77,65 @@ TEST(Scene, S9_WhatIsWrongIsNamedWithPlaceRangeAndValue) {
   test::holds("X3", "a scale of 0 is refused with the field");
 }
 
-TEST(Scene, M13_MaterialsAndTexturesAreCheckedWithTheirRanges) {
+TEST(Scene, M13_MaterialsAndTexturesAreValidated) {
   EXPECT_EQ(message_after([](auto& s) {
               s.textures[0] = ConstantTexture{{0, 1.5f, 0}};
             }),
-            "materials[0].reflectance: must be in [0, 1], is 1.5");
+            "materials[0].reflectance: must be in [0, 1], texture 0 reaches 1.5");
   EXPECT_EQ(message_after([](auto& s) {
               s.textures[1] = ConstantTexture{{-0.1f, 0, 0}};
             }),
-            "materials[1].reflectance: must be in [0, 1], is -0.1");
+            "textures[1]: must be finite and not negative, is -0.1");
   EXPECT_EQ(message_after([](auto& s) {
               s.textures[2] = ConstantTexture{{0, 0, INFINITY}};
             }),
-            "materials[2].radiance: must be finite and not negative, is inf");
+            "textures[2]: must be finite and not negative, is inf");
   EXPECT_EQ(message_after([](auto& s) { std::get<Metal>(s.materials[1]).fuzz = 2; }),
             "materials[1].fuzz: must be in [0, 1], is 2");
   EXPECT_EQ(message_after([](auto& s) { s.materials[3] = Dielectric{0.9}; }),
             "materials[3].index_of_refraction: must be in [1, 5], is 0.9");
   EXPECT_EQ(message_after([](auto& s) { s.materials[0] = Diffuse{TextureId{3}}; }),
             "materials[0].reflectance: must be below 3, is 3");
+  const auto with_principled = [](double normal_scale, double coat_normal_scale,
+                                  double alpha_cutoff) {
+    return message_after([&](auto& s) {
+      Principled material;
+      material.base_color.texture = material.emissive.texture = TextureId{0};
+      material.normal_scale = normal_scale;
+      material.coat_normal_scale = coat_normal_scale;
+      material.alpha_cutoff = alpha_cutoff;
+      s.materials[0] = material;
+    });
+  };
+  EXPECT_EQ(with_principled(1, 1, 0.5), "");
+  EXPECT_THAT(with_principled(kInfinity, 1, 0), StartsWith("materials[0].normal_scale: must be"));
+  EXPECT_THAT(with_principled(1, std::nan(""), 0),
+              StartsWith("materials[0].coat_normal_scale: must be in [-1e+30, 1e+30], is nan"));
+  EXPECT_EQ(with_principled(1, 1, kInfinity),
+            "materials[0].alpha_cutoff: must be in [0, 1e+30], is inf");
+  EXPECT_EQ(message_after([](auto& s) {
+              s.geometry.meshes[0].colors.resize(9, {1, 1, 1});
+              s.geometry.meshes[0].colors[2] = {0, -0.5f, 0};
+            }),
+            "meshes[0].colors[2]: must be >= 0, has -0.5");
   ImageTexture image;
   EXPECT_EQ(message_after([&](auto& s) { s.textures[0] = image; }),
-            "textures[0]: must have at least one texel, is 0 x 0");
+            "textures[0].width: must be in [1, 65536], is 0");
   image.width = 1;
   image.height = 2;
   EXPECT_EQ(message_after([&](auto& s) { s.textures[0] = image; }),
-            "textures[0].texels: must have 6 bytes, has 0");
+            "textures[0].texels: must have 6 bytes for 1 x 2 texels, has 0");
   image.format = ImageTexture::Format::kFloat32;
   const float texels[6] = {0, 0, 0, 0, 0, std::numeric_limits<float>::quiet_NaN()};
   const auto* bytes = reinterpret_cast<const std::byte*>(texels);
   image.texels = std::vector<std::byte>(bytes, bytes + sizeof texels);
   EXPECT_EQ(message_after([&](auto& s) { s.textures[0] = image; }),
-            "materials[0].reflectance: texel 1: must be in [0, 1], is nan");
+            "textures[0].texels: texel (0, 1) must be finite and not negative, is nan");
   test::holds("M13", "refused with the field, texel by texel");
   test::holds("TX6", "no texel, or a NaN one: refused");
 }
 
-TEST(Scene, T10_WhatCannotBeHitIsDroppedAndCountedAndTheRestStaysInOrder) {
+TEST(Scene, T10_PrimitivesWithoutAreaAreDroppedAndCounted) {
   SceneMaker maker = valid();
   const MaterialId white{0};
   maker.quad({5, 0, 0}, {1, 1, 0}, {2, 2, 0}, white);
@@ -137,16 +159,16 @@ TEST(Scene, T10_WhatCannotBeHitIsDroppedAndCountedAndTheRestStaysInOrder) {
   test::holds("T10", "dropped and counted");
 }
 
-TEST(Scene, NeedsAreWhatIsThere) {
+TEST(Scene, FeaturesAreThoseThatItUses) {
   SceneMaker empty;
-  EXPECT_EQ(empty.build()->needs(), Needs{});
+  EXPECT_EQ(empty.build()->features(), SceneFeatures{});
   SceneMaker maker = valid();
   maker.background({}, {0, 0, 1});
-  const Needs needs = maker.build()->needs();
-  EXPECT_EQ(needs, Needs{.lights = true});
+  const SceneFeatures features = maker.build()->features();
+  EXPECT_EQ(features, SceneFeatures{.lights = true});
   SceneMaker dark;
   dark.sphere({0, 0, 0}, 1, dark.lamp(0));
-  EXPECT_FALSE(dark.build()->needs().lights) << "a lamp that is off is no light";
+  EXPECT_FALSE(dark.build()->features().lights) << "a lamp that is off is no light";
 }
 
 TEST(Scene, AnEmptySceneShowsItsBackground) {

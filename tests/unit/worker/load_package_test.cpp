@@ -71,7 +71,7 @@ TEST_F(LoadPackageTest, FetchesEachByteOnce) {
   const auto cache = open();
   const auto scene = load(*cache, manifest_);
   ASSERT_TRUE(scene.ok()) << scene.status();
-  EXPECT_EQ((*scene)->needs(), test::cornell_box().build()->needs());
+  EXPECT_EQ((*scene)->features(), test::cornell_box().build()->features());
   EXPECT_EQ(bytes_sent_, total_);
   EXPECT_GT(prepared_, 0U);
 }

@@ -1,0 +1,43 @@
+#include "renderlib/accel/disable_culling.h"
+
+#include <cstddef>
+#include <limits>
+
+namespace bandsaw {
+namespace {
+
+// Finite: infinite planes would give NaN for rays parallel to them.
+constexpr float kFarthest = std::numeric_limits<float>::max();
+
+/// Unused children stay empty.
+bool used(const WideNode& node, std::size_t child) {
+  return node.bounds[0][child] <= node.bounds[3][child];
+}
+
+void open(WideNode& node, std::size_t child) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    node.bounds[axis][child] = -kFarthest;
+    node.bounds[axis + 3][child] = kFarthest;
+  }
+}
+
+}  // namespace
+
+void disable_culling(WideTree& tree) {
+  for (WideNode& node : tree.nodes) {
+    for (std::size_t child = 0; child < WideNode::kChildren; ++child) {
+      if (used(node, child)) {
+        open(node, child);
+      }
+    }
+  }
+}
+
+void disable_culling(MovingTree& tree) {
+  disable_culling(tree.tree);
+  for (MovingTree::Change& change : tree.change) {
+    change = {};
+  }
+}
+
+}  // namespace bandsaw

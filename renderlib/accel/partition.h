@@ -1,0 +1,75 @@
+#pragma once
+
+// One step of a build: partitions a range of items in two, or makes it a leaf.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "absl/types/span.h"
+#include "renderlib/accel/best_split.h"
+#include "renderlib/accel/tree_item.h"
+
+namespace bandsaw {
+
+/// A range of items that becomes a subtree.
+struct Range {
+  std::uint32_t first;
+  std::uint32_t end;
+  std::size_t depth;
+  std::size_t list;  ///< index of the list that holds it
+  LaneBox box;
+  LaneBox centres;  ///< bounding box of twice_centre()
+
+  std::uint32_t count() const { return end - first; }
+};
+
+/// Double buffer of items: partitioning a range moves it to the same positions in the other list.
+using TwoLists = std::array<absl::Span<TreeItem>, 2>;
+
+inline absl::Span<TreeItem> items_of(const TwoLists& lists, const Range& range) {
+  return lists[range.list].subspan(range.first, range.count());
+}
+/// Returns `range` with both boxes set.
+Range bounded(const TwoLists& lists, Range range);
+
+/// Partition of a range in steps: bin() for each piece, choose(), move() for each piece, parts().
+/// Pieces can be processed in parallel, and the result does not depend on how the range is cut into
+/// pieces: minimum, maximum and count are independent of order, and items keep their order.
+class Partition {
+ public:
+  struct Piece {
+    absl::Span<const TreeItem> items;
+    Bins bins = {};
+    std::array<TreeItem*, 2> to = {};     ///< left and right destination
+    std::array<LaneBox, 2> centres = {};  ///< left and right
+  };
+
+  /// The items of all pieces, in order, MUST be those of the range.
+  Partition(const TwoLists& lists, const Range& range, absl::Span<Piece> pieces);
+
+  void bin(Piece& piece) const;
+  /// Selects the split. Returns false if the range becomes a leaf; then nothing else is to be
+  /// called.
+  bool choose();
+  void move(Piece& piece) const;
+  void parts(Range& left, Range& right) const;
+
+ private:
+  Split find_split() const;
+  bool has_plane() const;
+  void part_without_plane(Range& left, Range& right) const;
+
+  const TwoLists& lists_;
+  const Range& range_;
+  absl::Span<Piece> pieces_;
+  bool must_;
+  bool deep_;
+  Binning binning_;
+  Split split_;
+};
+
+/// Partitions a range on this thread; returns false if it becomes a leaf.
+bool partition_range(const TwoLists& lists, const Range& range, Range& left, Range& right);
+
+}  // namespace bandsaw

@@ -1,0 +1,101 @@
+#include "renderlib/import/model/repair_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace bandsaw {
+namespace {
+
+Vec3 wide(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
+
+bool is_good_normal(const std::array<float, 3>& n) {
+  const double squared = length_squared(wide(n));
+  return std::isfinite(squared) && squared > 0;
+}
+
+template <class T>
+void keep(std::vector<T>& values, const std::vector<std::uint32_t>& kept) {
+  if (values.empty()) {
+    return;
+  }
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    values[i] = values[kept[i]];
+  }
+  values.resize(kept.size());
+}
+
+}  // namespace
+
+void drop_unused_vertices(Mesh& mesh) {
+  const auto finite = [](const std::array<float, 3>& p) { return is_finite(wide(p)); };
+  if (std::all_of(mesh.positions.begin(), mesh.positions.end(), finite)) {
+    return;
+  }
+  std::vector<bool> used(mesh.positions.size());
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t corner : triangle) {
+      used[corner] = true;
+    }
+  }
+  std::vector<std::uint32_t> kept;
+  std::vector<std::uint32_t> renamed(used.size());
+  for (std::uint32_t i = 0; i < used.size(); ++i) {
+    if (used[i]) {
+      renamed[i] = static_cast<std::uint32_t>(kept.size());
+      kept.push_back(i);
+    }
+  }
+  keep(mesh.positions, kept);
+  keep(mesh.normals, kept);
+  keep(mesh.uvs, kept);
+  keep(mesh.uvs2, kept);
+  keep(mesh.colors, kept);
+  for (auto& triangle : mesh.triangles) {
+    for (std::uint32_t& corner : triangle) {
+      corner = renamed[corner];
+    }
+  }
+}
+
+std::size_t repair_normals(Mesh& mesh) {
+  std::map<std::uint32_t, Vec3> repaired;
+  for (std::uint32_t i = 0; i < mesh.normals.size(); ++i) {
+    if (!is_good_normal(mesh.normals[i])) {
+      repaired[i] = {};
+    }
+  }
+  if (repaired.empty()) {
+    return 0;
+  }
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Vec3 p = wide(mesh.positions[a]);
+    const Vec3 normal = cross(wide(mesh.positions[b]) - p, wide(mesh.positions[c]) - p);
+    for (const std::uint32_t corner : {a, b, c}) {
+      if (const auto found = repaired.find(corner); found != repaired.end()) {
+        found->second = found->second + normal;
+      }
+    }
+  }
+  for (const auto& [vertex, sum] : repaired) {
+    const Vec3 unit = length_squared(sum) > 0 ? normalize(sum) : Vec3{0, 1, 0};
+    mesh.normals[vertex] = {static_cast<float>(unit.x), static_cast<float>(unit.y),
+                            static_cast<float>(unit.z)};
+  }
+  return repaired.size();
+}
+
+std::size_t repair_uvs(Mesh& mesh) {
+  std::size_t repaired = 0;
+  for (auto* uvs : {&mesh.uvs, &mesh.uvs2}) {
+    for (auto& uv : *uvs) {
+      if (!std::isfinite(uv[0]) || !std::isfinite(uv[1])) {
+        uv = {0, 0};
+        ++repaired;
+      }
+    }
+  }
+  return repaired;
+}
+
+}  // namespace bandsaw

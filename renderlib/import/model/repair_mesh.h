@@ -1,0 +1,22 @@
+#pragma once
+
+// Repairs defects of foreign meshes that can be repaired without guessing what was meant.
+
+#include <cstddef>
+
+#include "renderlib/geometry/shapes.h"
+
+namespace bandsaw {
+
+/// If some vertex is not finite, removes all vertices that no triangle uses: a package holds finite
+/// vertices only.
+void drop_unused_vertices(Mesh& mesh);
+
+/// Replaces each normal that is zero or not finite by the area-weighted mean of the normals of its
+/// triangles. Returns the number of replaced normals.
+std::size_t repair_normals(Mesh& mesh);
+
+/// Replaces each uv that is not finite by (0, 0). Returns the number of replaced uvs.
+std::size_t repair_uvs(Mesh& mesh);
+
+}  // namespace bandsaw

@@ -1,0 +1,36 @@
+#pragma once
+
+// Ray intersection that skips surfaces which are not there: holes cut by alpha, and boundaries of
+// glass inside a glass of higher priority.
+
+#include <cstdint>
+#include <optional>
+
+#include "renderlib/geometry/surface.h"
+#include "renderlib/material/interiors.h"
+#include "renderlib/sampling/sampler.h"
+#include "renderlib/scene/scene.h"
+
+namespace bandsaw {
+
+/// The glasses that contain a path on its current segment, and beyond the surface that it hits
+/// next.
+struct NestedDielectrics {
+  Interiors here;
+  Interiors beyond;  ///< set if the hit surface belongs to a nested glass (material/interiors.h)
+  bool skipped_hidden = false;  ///< true if hidden boundaries were skipped before the hit
+  Interiors before;             ///< glasses at the start of the ray; set if `skipped_hidden`
+};
+
+/// Returns the first surface along the ray that exists for this sample; among hits that exist, the
+/// order (t, instance, primitive) decides. Updates `nesting` for all hidden boundaries that are
+/// skipped. Boundaries of nested glasses that touch, within the offset of ray origins, are treated
+/// as one: the result belongs to the glass that is present on exactly one side of all of them. uv
+/// directions are set if the material needs them. Returns std::nullopt if nothing is hit. Adds the
+/// number of rays traced to `rays`.
+std::optional<SurfacePoint> intersect_visible(const Scene& scene, const Ray& ray,
+                                              const PixelSampler& sampler, std::uint64_t sample,
+                                              std::uint32_t bounce, NestedDielectrics& nesting,
+                                              std::uint64_t& rays);
+
+}  // namespace bandsaw

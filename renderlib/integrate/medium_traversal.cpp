@@ -1,0 +1,179 @@
+#include "renderlib/integrate/medium_traversal.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "renderlib/geometry/surface.h"
+#include "renderlib/medium/attenuation.h"
+
+namespace bandsaw {
+namespace {
+
+/// A barycentric coordinate below this is 0 up to rounding.
+constexpr double kRim = 1e-12;
+
+}  // namespace
+
+int* MediumTraversal::Around::count_of(MediumId medium) {
+  for (std::size_t i = 0; i < size_; ++i) {
+    if (entries_[i].medium == medium) {
+      return &entries_[i].shapes;
+    }
+  }
+  for (std::size_t i = 0; i < size_; ++i) {
+    if (entries_[i].shapes == 0) {
+      entries_[i].medium = medium;
+      return &entries_[i].shapes;
+    }
+  }
+  if (size_ == kMaxOverlappingMedia) {
+    return nullptr;
+  }
+  entries_[size_] = {medium, 0};
+  return &entries_[size_++].shapes;
+}
+
+void MediumTraversal::Around::add(MediumId medium, int shapes) {
+  if (int* const count = count_of(medium)) {
+    *count += shapes;
+  }
+}
+
+void MediumTraversal::Around::forget_negative() {
+  for (std::size_t i = 0; i < size_; ++i) {
+    entries_[i].shapes = std::max(0, entries_[i].shapes);
+  }
+}
+
+std::optional<MediumId> MediumTraversal::Around::medium() const {
+  std::optional<MediumId> top;
+  for (std::size_t i = 0; i < size_; ++i) {
+    if (entries_[i].shapes > 0 && (!top || entries_[i].medium > *top)) {
+      top = entries_[i].medium;
+    }
+  }
+  return top;
+}
+
+MediumTraversal::MediumTraversal(const Scene& scene, const Ray& ray, double length,
+                                 std::uint64_t& rays)
+    : scene_(scene), ray_(ray), length_(length), rays_(rays) {
+  // The boundaries beyond the end of the segment also determine what contains the origin.
+  // `ray.from` refers to the scene's primitives, not to the boundaries', so it is cleared.
+  ray_.t_max = kInfinity;
+  ray_.from = kNoPrimitive;
+  if (scene.media().has_boundaries()) {
+    find_around_origin();
+  }
+}
+
+bool MediumTraversal::is_of_mesh(const Hit& hit) const {
+  return hit.id.instance != 0 &&
+         scene_.media().boundaries.instances[hit.id.instance - 1].group == kNoGroup;
+}
+
+std::optional<MediumTraversal::Crossing> MediumTraversal::find_next(Search& search) {
+  const Accel& boundaries = scene_.boundary_accel();
+  for (;;) {
+    ++rays_;
+    const Hit hit =
+        search.last ? boundaries.closest_after(ray_, search.last) : boundaries.closest(ray_);
+    if (!hit) {
+      return std::nullopt;
+    }
+    search.last = hit;
+    const SurfacePoint point = surface_at(scene_.media().boundaries, ray_, hit, false);
+    const double slope = dot(ray_.direction, point.geometric_normal);
+    Crossing crossing;
+    crossing.t = hit.t;
+    crossing.shape = {hit.id.instance, hit.id.instance == 0 ? hit.id.primitive : 0};
+    crossing.medium = medium_in(point.material);
+    crossing.inwards = slope < 0;
+    // A ray crosses an edge or corner shared by triangles of a mesh only once; further hits there
+    // are skipped.
+    crossing.on_rim = is_of_mesh(hit) && std::min({hit.u, hit.v, 1 - hit.u - hit.v}) < kRim;
+    const double same = 4 * point.offset / std::max(0.01, std::abs(slope));
+    const auto known = static_cast<std::ptrdiff_t>(std::min(search.found, Search::kRecent));
+    const bool again = std::any_of(
+        search.recent.begin(), search.recent.begin() + known, [&](const Crossing& other) {
+          return other.on_rim && crossing.on_rim && other.shape == crossing.shape &&
+                 other.inwards == crossing.inwards && crossing.t - other.t <= same;
+        });
+    if (!again) {
+      search.recent[search.found++ % Search::kRecent] = crossing;
+      return crossing;
+    }
+  }
+}
+
+void MediumTraversal::find_around_origin() {
+  Search all;
+  while (const std::optional<Crossing> crossing = find_next(all)) {
+    if (kept_size_ < kKept) {
+      kept_[kept_size_++] = *crossing;
+      if (kept_size_ == kKept) {
+        beyond_kept_ = all;
+      }
+    } else {
+      all_kept_ = false;
+    }
+    around_.add(crossing->medium, crossing->inwards ? -1 : 1);
+  }
+  around_.forget_negative();
+}
+
+std::optional<MediumTraversal::Crossing> MediumTraversal::take_crossing() {
+  if (taken_ < kept_size_) {
+    return kept_[taken_++];
+  }
+  if (all_kept_) {
+    return std::nullopt;
+  }
+  const std::optional<Crossing> crossing = find_next(beyond_kept_);
+  all_kept_ = !crossing;
+  return crossing;
+}
+
+const Medium* MediumTraversal::here() const {
+  const Media& media = scene_.media();
+  const std::optional<MediumId> inside = around_.medium();
+  const std::optional<MediumId> id = inside ? inside : media.fog;
+  if (!id) {
+    return nullptr;
+  }
+  const Medium& medium = media.media[index_of(*id)];
+  return is_clear(medium) ? nullptr : &medium;
+}
+
+std::optional<MediumSegment> MediumTraversal::next() {
+  while (at_ < length_) {
+    const double begin = at_;
+    const Medium* const medium = here();
+    const std::optional<Crossing> crossing = take_crossing();
+    at_ = crossing ? std::min(crossing->t, length_) : length_;
+    if (crossing) {
+      around_.add(crossing->medium, crossing->inwards ? 1 : -1);
+    }
+    if (medium != nullptr && at_ > begin) {
+      return MediumSegment{begin, at_, medium};
+    }
+  }
+  return std::nullopt;
+}
+
+Rgb media_transmittance(const Scene& scene, const Ray& ray, std::uint64_t& rays) {
+  const double size = length(ray.direction);
+  Ray unit = ray;
+  unit.direction = ray.direction / size;
+  MediumTraversal walk(scene, unit, ray.t_max * size, rays);
+  Rgb share = gray(1);
+  while (const std::optional<MediumSegment> segment = walk.next()) {
+    share *= transmittance(*segment->medium, segment->end - segment->begin);
+    if (is_black(share)) {
+      break;
+    }
+  }
+  return share;
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,104 @@
+#pragma once
+
+// Splits a ray into segments at the boundaries of media (scene/media.h).
+//
+// The set of media around the ray's origin is computed for each ray from the boundaries ahead of
+// it: if the ray leaves a medium more often than it enters it, the origin is inside. A path carries
+// no medium state. So cameras and lights inside media, surfaces that touch a boundary or lie in it,
+// and reflections at a filled glass need no special cases.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include "renderlib/scene/scene.h"
+
+namespace bandsaw {
+
+/// A part of a ray inside one medium. Distances from the ray's origin, in scene units; `end` may be
+/// infinite.
+struct MediumSegment {
+  double begin = 0;
+  double end = 0;
+  const Medium* medium = nullptr;
+};
+
+/// Iterates over the segments of a ray that lie in a medium.
+class MediumTraversal {
+ public:
+  /// Maximum number of different media that may surround a point; further ones are ignored.
+  static constexpr std::size_t kMaxOverlappingMedia = 16;
+
+  /// `ray` has a unit direction; only its first `length` (> 0, may be infinite) is split. The scene
+  /// MUST have media (`SceneFeatures::media`) and outlive this object. Adds the number of rays
+  /// traced to `rays`.
+  MediumTraversal(const Scene& scene, const Ray& ray, double length, std::uint64_t& rays);
+
+  /// Returns the next segment inside a medium, in order along the ray; std::nullopt at the end.
+  std::optional<MediumSegment> next();
+
+ private:
+  struct Crossing {
+    double t = 0;
+    PrimitiveId shape;  ///< one id for all faces of a shape: the primitive is 0 for an instance
+    MediumId medium{};
+    bool inwards = false;
+    bool on_rim = false;  ///< on an edge or corner of a mesh's triangle
+  };
+  /// Nesting count for each medium around a point. A count may be negative while
+  /// boundaries at equal distance are processed.
+  class Around {
+   public:
+    void add(MediumId medium, int shapes);
+    /// Clamps negative counts to 0: a ray may enter a shape that is not closed more often than it
+    /// leaves it.
+    void forget_negative();
+    std::optional<MediumId> medium() const;
+
+   private:
+    int* count_of(MediumId medium);
+    struct Entry {
+      MediumId medium{};
+      int shapes = 0;
+    };
+    std::array<Entry, kMaxOverlappingMedia> entries_;
+    std::size_t size_ = 0;
+  };
+  /// State of the search for boundaries along the ray.
+  struct Search {
+    static constexpr std::size_t kRecent = 4;
+    Hit last;
+    std::array<Crossing, kRecent> recent;
+    std::size_t found = 0;
+  };
+
+  static constexpr std::size_t kKept = 8;
+
+  bool is_of_mesh(const Hit& hit) const;
+  /// Returns the next boundary crossing; std::nullopt at the end.
+  std::optional<Crossing> find_next(Search& search);
+  void find_around_origin();
+  std::optional<Crossing> take_crossing();
+  const Medium* here() const;
+
+  const Scene& scene_;
+  Ray ray_;
+  double length_;
+  std::uint64_t& rays_;
+  Around around_;
+  double at_ = 0;
+  /// The first crossings are stored, so that most rays are traced only once.
+  std::array<Crossing, kKept> kept_;
+  std::size_t kept_size_ = 0;
+  std::size_t taken_ = 0;
+  Search beyond_kept_;
+  bool all_kept_ = true;
+};
+
+/// Returns the transmittance of the media along the ray from its origin to `t_max`, by channel. The
+/// direction need not be a unit vector. The scene MUST have media. Adds the number of rays traced
+/// to `rays`.
+Rgb media_transmittance(const Scene& scene, const Ray& ray, std::uint64_t& rays);
+
+}  // namespace bandsaw

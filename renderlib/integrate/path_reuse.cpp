@@ -1,0 +1,149 @@
+#include "renderlib/integrate/path_reuse.h"
+
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "renderlib/base/check.h"
+#include "renderlib/integrate/path_steps.h"
+#include "renderlib/integrate/through_lens.h"
+
+namespace bandsaw {
+namespace {
+
+/// The first vertex of a pixel's path, if its BSDF has a pdf, so that light from the second
+/// vertices of other pixels can be scattered there.
+struct PrimaryVertex {
+  SurfacePoint point;
+  Vec3 normal;  ///< geometric normal on the viewer's side
+  Bsdf bsdf;
+};
+
+/// The second vertex of a pixel's path, if all pixels may use it.
+struct SharedVertex {
+  SurfacePoint point;
+  Vec3 normal;   ///< geometric normal on the side from which the path arrived
+  Rgb radiance;  ///< radiance that leaves the vertex, the same in all directions
+};
+
+/// Returns the geometric normal on the side from which the ray arrives.
+Vec3 facing(const SurfacePoint& point, const Ray& ray) {
+  return dot(point.geometric_normal, ray.direction) <= 0 ? point.geometric_normal
+                                                         : -point.geometric_normal;
+}
+
+/// Traces a pixel's path and leaves in `path` the radiance that belongs to this pixel alone. Sets
+/// `primary` if the pixel can receive light from shared vertices, and `shared` if its second vertex
+/// is shared; the light of that vertex is not in `path`.
+void trace_own_path(const PathContext& context, PathState& path,
+                    std::optional<PrimaryVertex>& primary, std::optional<SharedVertex>& shared) {
+  const Ray camera_ray = path.ray;
+  const std::optional<SurfacePoint> first = next_surface(context, 0, path);
+  if (!first) {
+    add_background(context, path);
+    return;
+  }
+  add_emission(context, *first, path);
+  const std::optional<Bsdf> bsdf = make_bsdf(context, *first, 0, path);
+  if (!bsdf) {
+    return;
+  }
+  if (has_pdf(*bsdf)) {
+    primary = PrimaryVertex{*first, facing(*first, camera_ray), *bsdf};
+  }
+  if (!scatter(context, *first, *bsdf, 0, path)) {
+    return;
+  }
+  const std::optional<SurfacePoint> second = next_surface(context, 1, path);
+  if (!second) {
+    add_background(context, path);
+    return;
+  }
+  const Rgb own = path.radiance;
+  const bool is_shared = primary && !path.previous.delta &&
+                         std::holds_alternative<Diffuse>(context.scene.material(second->material));
+  if (is_shared) {
+    shared = SharedVertex{*second, facing(*second, path.ray), {}};
+    path.radiance = {};
+    path.throughput = gray(1);
+  }
+  if (scatter_at(context, *second, 1, path)) {
+    trace_path(context, 2, path);
+  }
+  if (is_shared) {
+    shared->radiance = path.radiance;
+    path.radiance = own;
+  }
+}
+
+using PrimaryVertices = std::array<std::optional<PrimaryVertex>, kMaxReusePixels>;
+
+/// The connection of a primary vertex to a shared vertex: BSDF value and pdf by solid angle, and
+/// the factor to area measure. All zero if one vertex is behind the other one's surface.
+struct Connection {
+  BsdfValue scattered;
+  double solid_angle_per_area = 0;
+};
+
+Connection connect(const PrimaryVertex& primary, const SharedVertex& shared) {
+  const Vec3 to_shared = shared.point.position - primary.point.position;
+  const double cosine = -dot(to_shared, shared.normal);  // times the distance
+  if (!(dot(to_shared, primary.normal) > 0) || !(cosine > 0)) {
+    return {};
+  }
+  const double distance2 = length_squared(to_shared);
+  const double distance = std::sqrt(distance2);
+  return {evaluate(primary.bsdf, to_shared / distance), cosine / (distance2 * distance)};
+}
+
+/// Adds the light of the shared vertex of pixel `owner` to all pixels whose primary vertex sees it,
+/// with balance-heuristic weights.
+void distribute(const Scene& scene, const PrimaryVertices& primary, const SharedVertex& shared,
+                std::size_t owner, absl::Span<ReusePixel> pixels, std::uint64_t& rays) {
+  std::array<Connection, kMaxReusePixels> connections;
+  double pdf_sum = 0;  // over all pixels, by area
+  for (std::size_t j = 0; j < pixels.size(); ++j) {
+    if (!primary[j]) {
+      continue;
+    }
+    const Connection connection = connect(*primary[j], shared);
+    if (j != owner && connection.scattered.pdf > 0) {
+      ++rays;
+      if (scene.accel().occluded(spawn_ray_to(primary[j]->point, shared.point))) {
+        continue;
+      }
+    }
+    connections[j] = connection;
+    pdf_sum += connection.scattered.pdf * connection.solid_angle_per_area;
+  }
+  for (std::size_t j = 0; pdf_sum > 0 && j < pixels.size(); ++j) {
+    pixels[j].radiance += connections[j].scattered.value * shared.radiance *
+                          static_cast<float>(connections[j].solid_angle_per_area / pdf_sum);
+  }
+}
+
+}  // namespace
+
+void radiance_with_reuse(const Scene& scene, absl::Span<ReusePixel> pixels, std::uint64_t sample,
+                         const PathOptions& options, PathCounts& counts) {
+  BANDSAW_CHECK(pixels.size() <= kMaxReusePixels, "more pixels than can reuse paths together");
+  PrimaryVertices primary;
+  std::array<std::optional<SharedVertex>, kMaxReusePixels> shared;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const PathContext context{scene, pixels[i].sampler, sample, options, counts.rays};
+    PathState path(pixels[i].camera_ray.ray);
+    if (pixels[i].camera_ray.lens) {
+      sample_light_through_lens(context, *pixels[i].camera_ray.lens, path);
+    }
+    trace_own_path(context, path, primary[i], shared[i]);
+    pixels[i].radiance = path.radiance;
+    counts.truncated += path.truncated ? 1 : 0;
+  }
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    if (shared[i] && !is_black(shared[i]->radiance)) {
+      distribute(scene, primary, *shared[i], i, pixels, counts.rays);
+    }
+  }
+}
+
+}  // namespace bandsaw

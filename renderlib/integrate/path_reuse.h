@@ -1,0 +1,40 @@
+#pragma once
+
+// Path tracing of several pixels with path reuse: the light that leaves the second vertex of one
+// path is connected to the first vertices of the other pixels as well (Bekaert, Sbert and Halton
+// 2002, "Accelerating Path Tracing by Re-Using Paths", EGWR).
+//
+// Let x_j be the first vertex of pixel j, y_i the second vertex of the path of pixel i, and L_i the
+// radiance arriving from y_i. Pixel i samples y with the area pdf p_i(y) = pdf(x_i to y) cos(y) V /
+// |y - x_i|^2, where V is the visibility of y from x_i. With the balance heuristic over the pdfs of
+// all pixels (Veach 1997, section 9.2.2), y_i contributes f_j(y_i) L_i / sum_k p_k(y_i) to pixel j;
+// f_j is p_j with the BSDF value of x_j (including its cosine) in place of the pdf. The expected
+// value of every pixel equals that of `path_radiance()`. L_i must not depend on the outgoing
+// direction: only diffuse vertices y are shared, and only the light that they scatter. All other
+// light stays with the pixel that sampled it.
+
+#include <cstddef>
+#include <cstdint>
+
+#include "absl/types/span.h"
+#include "renderlib/integrate/path.h"
+
+namespace bandsaw {
+
+/// Maximum number of pixels that share their paths.
+inline constexpr std::size_t kMaxReusePixels = 8;
+
+struct ReusePixel {
+  PixelSampler sampler;
+  CameraRay camera_ray;  ///< camera ray of this sample
+  Rgb radiance =
+      {};  ///< result: radiance arriving along `camera_ray`; set by `radiance_with_reuse()`
+};
+
+/// Computes sample number `sample` of up to kMaxReusePixels pixels. The scene MUST be one that
+/// shares paths (`Scene::reuses_paths`), and `options.local` MUST be false. Adds to `counts`.
+/// Deterministic; allocates nothing.
+void radiance_with_reuse(const Scene& scene, absl::Span<ReusePixel> pixels, std::uint64_t sample,
+                         const PathOptions& options, PathCounts& counts);
+
+}  // namespace bandsaw

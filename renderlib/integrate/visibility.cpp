@@ -1,0 +1,32 @@
+#include "renderlib/integrate/visibility.h"
+
+#include "renderlib/geometry/surface.h"
+#include "renderlib/integrate/medium_traversal.h"
+#include "renderlib/material/opacity.h"
+
+namespace bandsaw {
+
+float visibility(const Scene& scene, const Ray& ray, std::uint64_t& rays) {
+  ++rays;
+  if (!scene.features().alpha) {
+    return scene.accel().occluded(ray) ? 0.0f : 1.0f;
+  }
+  double share = 1;
+  for (Hit hit = scene.accel().closest(ray); hit && share > 0;
+       hit = scene.accel().closest_after(ray, hit)) {
+    const SurfacePoint point = surface_at(scene.geometry(), ray, hit);
+    share *= 1 - opacity(scene.material(point.material), scene.textures(), point);
+    ++rays;
+  }
+  return static_cast<float>(share);
+}
+
+Rgb transmittance(const Scene& scene, const Ray& ray, std::uint64_t& rays) {
+  const float share = visibility(scene, ray, rays);
+  if (share == 0 || !scene.features().media) {
+    return gray(share);
+  }
+  return media_transmittance(scene, ray, rays) * share;
+}
+
+}  // namespace bandsaw

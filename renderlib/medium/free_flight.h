@@ -1,0 +1,61 @@
+#pragma once
+
+// Free-flight sampling in one segment of a medium: whether light is scattered there, and at which
+// distance.
+//
+// Light has three channels with three extinction coefficients. A distance is drawn for one channel
+// and weighted by the mean of all channels' pdfs (balance heuristic over wavelengths: Wilkie,
+// Nawaz, Droske, Weidlich and Hanika 2014, "Hero Wavelength Spectral Sampling", section 3.1). The
+// channel is selected by how much of its light is scattered in the segment, and scattering versus
+// passing by how much of all light is scattered. Absorption is contained in the weights and ends no
+// path. So the sum of the channels is the same for every outcome and never larger than before, and
+// no channel grows by more than a factor of 3.
+
+#include <array>
+
+#include "renderlib/math/rgb.h"
+#include "renderlib/medium/medium.h"
+
+namespace bandsaw {
+
+class FreeFlight {
+ public:
+  /// Light of weight `throughput` (>= 0, finite) enters a segment of the given length (scene units,
+  /// > 0, may be infinite).
+  FreeFlight(const Medium& medium, const Rgb& throughput, double length);
+
+  /// Returns the probability of scattering in the segment, in [0, 1]; 0 if nothing is scattered.
+  double scatter_probability() const;
+
+  /// Samples the distance at which light is scattered, in [0, length]. `choice` selects the
+  /// channel, u the distance; both in [0, 1). scatter_probability() MUST NOT be 0.
+  double sample(double choice, double u) const;
+  /// Returns the pdf of `sample()` with respect to length. scatter_probability() MUST NOT be 0.
+  double pdf(double distance) const;
+
+  /// Returns throughput * scattering * exp(-extinction * distance): the weight scattered per
+  /// length.
+  Rgb scattered(double distance) const;
+  /// Returns the weight after scattering was chosen: scattered() / (scatter_probability() * pdf()).
+  Rgb after_scattering(double distance) const;
+  /// Returns the weight after passing was chosen: passing() / (1 - scatter_probability()).
+  Rgb after_passing() const;
+  /// Returns the weight of the light that passes the whole segment: throughput * transmittance.
+  Rgb passing() const;
+  /// Returns the weight scattered along the whole segment: throughput * scattering * reach.
+  Rgb all_scattered() const;
+
+ private:
+  using Channels = std::array<double, 3>;
+  static Rgb color(const Channels& c, double scale);
+  static double sum(const Channels& c) { return c[0] + c[1] + c[2]; }
+  Channels scattered_channels(double distance) const;
+
+  double length_;
+  Channels extinction_;
+  Channels entering_;  ///< throughput times scattering
+  Channels all_scattered_;
+  Channels passing_;
+};
+
+}  // namespace bandsaw

@@ -1,0 +1,51 @@
+#pragma once
+
+// The features that a scene uses; unused features cost nothing. A flag that is not set only skips
+// work that would change nothing: with additional flags a scene has the same pixels to the bit.
+// integrate/NOTES.md has the cost of each.
+
+#include <array>
+
+namespace bandsaw {
+
+struct SceneFeatures {
+  bool lights = false;  ///< lights that can be sampled (next-event estimation)
+  bool alpha = false;   ///< surfaces that are not fully opaque
+  bool motion = false;  ///< instances that move during the shutter interval
+  bool media = false;   ///< participating media
+  bool uv = false;      ///< textures that use uv coordinates
+  friend bool operator==(const SceneFeatures&, const SceneFeatures&) = default;
+};
+
+struct NamedFeature {
+  const char* name;
+  bool SceneFeatures::*feature;
+};
+
+inline constexpr std::array<NamedFeature, 5> kEachFeature = {{
+    {"lights", &SceneFeatures::lights},
+    {"alpha", &SceneFeatures::alpha},
+    {"motion", &SceneFeatures::motion},
+    {"media", &SceneFeatures::media},
+    {"uv", &SceneFeatures::uv},
+}};
+static_assert(sizeof(SceneFeatures) == kEachFeature.size(), "every feature is in the table");
+
+/// All features: those of the general kernel.
+inline constexpr SceneFeatures kAllFeatures = [] {
+  SceneFeatures all;
+  for (const NamedFeature& each : kEachFeature) {
+    all.*each.feature = true;
+  }
+  return all;
+}();
+
+/// Returns the union of both.
+constexpr SceneFeatures operator|(SceneFeatures a, const SceneFeatures& b) {
+  for (const NamedFeature& each : kEachFeature) {
+    a.*each.feature = a.*each.feature || b.*each.feature;
+  }
+  return a;
+}
+
+}  // namespace bandsaw

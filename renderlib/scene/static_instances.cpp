@@ -1,0 +1,42 @@
+#include "renderlib/scene/static_instances.h"
+
+#include <algorithm>
+
+#include "renderlib/geometry/placement.h"
+
+namespace bandsaw {
+namespace {
+
+/// Returns true if the frame, without its parents, has the same transform as at `interval.open`
+/// throughout.
+bool stands(const Frame& frame, const Interval& interval) {
+  const Transform at_open = motion_at(frame, interval.open);
+  const bool ends_there = motion_at(frame, interval.close) == at_open;
+  return ends_there && std::all_of(frame.keys.begin(), frame.keys.end(), [&](const Key& key) {
+           const bool within = key.time > interval.open && key.time < interval.close;
+           return !within || key.at == at_open;
+         });
+}
+
+}  // namespace
+
+void make_static(const Interval& interval, Geometry& geometry) {
+  std::vector<bool> still;
+  for (const Frame& frame : geometry.frames) {
+    const bool parent = frame.parent == kNoFrame || still[index_of(frame.parent)];
+    still.push_back(parent && (interval.open == interval.close || stands(frame, interval)));
+  }
+  for (Instance& instance : geometry.instances) {
+    if (instance.frame != kNoFrame && still[index_of(instance.frame)]) {
+      instance.to_world = to_world_at(geometry, instance, interval.open);
+      instance.frame = kNoFrame;
+    }
+  }
+}
+
+bool moves(const Geometry& geometry) {
+  return std::any_of(geometry.instances.begin(), geometry.instances.end(),
+                     [](const Instance& instance) { return instance.frame != kNoFrame; });
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,113 @@
+// Measures the cost of each scene feature: scenes are rendered with their own features and with
+// unused features forced, in turns. Writes Markdown to standard output.
+//
+//   features_bench SCENE...    scene files or models
+
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <ctime>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "renderlib/import/import.h"
+#include "renderlib/render/render_band.h"
+
+namespace bandsaw {
+namespace {
+
+constexpr int kRounds = 15;
+constexpr double kSecondsARender = 0.1;
+
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// One scene with some features, and the time of each of its renders relative to the scene with its
+/// own features in the same round.
+struct Variant {
+  std::string name;
+  std::shared_ptr<const Scene> scene;
+  std::vector<double> ratios;
+};
+
+std::vector<Variant> variants_of(const SceneDescription& description, Pool& pool) {
+  std::vector<Variant> out = {{"own", Scene::build(description, pool).value(), {}}};
+  const SceneFeatures own = out[0].scene->features();
+  out.push_back({"own again", Scene::build(description, pool).value(), {}});
+  for (const NamedFeature& each : kEachFeature) {
+    if (!(own.*each.feature)) {
+      SceneFeatures forced;
+      forced.*each.feature = true;
+      out.push_back({each.name, Scene::build(description, pool, forced).value(), {}});
+    }
+  }
+  out.push_back({"all", Scene::build(description, pool, kAllFeatures).value(), {}});
+  return out;
+}
+
+double seconds_of(const Scene& scene, const RenderSettings& settings, std::uint64_t samples,
+                  Pool& pool) {
+  const std::atomic<bool> stop = false;
+  const double start = cpu_seconds();
+  const auto done =
+      render_band(scene, settings, {{0, samples}, {0, settings.height}}, pool, stop, {});
+  return done.ok() ? cpu_seconds() - start : 0;
+}
+
+/// Returns the number of samples, a power of two, that take about kSecondsARender.
+std::uint64_t samples_for(const Scene& scene, const RenderSettings& settings, Pool& pool) {
+  std::uint64_t samples = 16;
+  while (seconds_of(scene, settings, samples, pool) < kSecondsARender / 1.5) {
+    samples *= 2;
+  }
+  return samples;
+}
+
+void measure(const std::string& path, Pool& pool) {
+  const auto imported = import_scene(path);
+  if (!imported.ok()) {
+    std::fprintf(stderr, "%s: %s\n", path.c_str(), imported.status().ToString().c_str());
+    return;
+  }
+  const RenderSettings settings{.width = 64,
+                                .height = 64,
+                                .max_depth = imported->info.max_depth,
+                                .integrator = imported->info.integrator};
+  std::vector<Variant> variants = variants_of(imported->scene, pool);
+  const std::uint64_t samples = samples_for(*variants[0].scene, settings, pool);
+  for (int round = 0; round < kRounds; ++round) {
+    const double own = seconds_of(*variants[0].scene, settings, samples, pool);
+    for (Variant& variant : variants) {
+      if (&variant != &variants[0]) {
+        variant.ratios.push_back(seconds_of(*variant.scene, settings, samples, pool) / own);
+      }
+    }
+  }
+  const std::string name = std::filesystem::path(path).stem();
+  for (Variant& variant : variants) {
+    std::sort(variant.ratios.begin(), variant.ratios.end());
+    if (!variant.ratios.empty()) {
+      std::printf("| %s | %s | %.3f | %.3f–%.3f |\n", name.c_str(), variant.name.c_str(),
+                  variant.ratios[kRounds / 2], variant.ratios[kRounds / 4],
+                  variant.ratios[kRounds - 1 - kRounds / 4]);
+      std::fflush(stdout);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace bandsaw
+
+int main(int argc, char** argv) {
+  bandsaw::Pool pool(1);
+  std::puts("| scene | forced | CPU time x own | middle half |\n| --- | --- | --- | --- |");
+  for (int i = 1; i < argc; ++i) {
+    bandsaw::measure(argv[i], pool);
+  }
+  return 0;
+}

@@ -1,0 +1,60 @@
+// Path reuse between pixels has the same means as path tracing without it, in a Cornell box in
+// which the pixels see different surfaces and parts of the box are occluded from some of them: |z|
+// of the difference is at most 4. The closed form is in integrating_sphere_test.cpp.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "tests/statistical/estimate.h"
+#include "tests/statistical/path_reuse_estimate.h"
+#include "tests/support/scenes.h"
+
+namespace bandsaw {
+namespace {
+
+constexpr std::uint64_t kSamples = 1024;
+
+/// Returns rays from the camera to points of the back wall.
+std::array<Ray, kMaxReusePixels> rays_across(double from, double to, double height) {
+  std::array<Ray, kMaxReusePixels> rays;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Vec3 origin = {278, 278, -800};
+    const double x = from + (to - from) * static_cast<double>(i) / (kMaxReusePixels - 1);
+    rays[i] = {.origin = origin, .direction = normalize(Vec3{x, height, 400} - origin)};
+  }
+  return rays;
+}
+
+void expect_equal_means(const Scene& scene, const std::array<Ray, kMaxReusePixels>& rays,
+                        const PathOptions& options, double precision) {
+  const auto shared = test::radiance_with_reuse_along(scene, rays, options, kSamples);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    SCOPED_TRACE(i);
+    const test::Moments alone = test::radiance_along(scene, rays[i], options, kSamples);
+    const double error = std::hypot(alone.standard_error(), shared[i].standard_error());
+    EXPECT_LE(std::abs(alone.mean() - shared[i].mean()), 4 * error)
+        << alone.mean() << " +- " << alone.standard_error() << ", shared " << shared[i].mean()
+        << " +- " << shared[i].standard_error();
+    EXPECT_LE(error, precision * alone.mean());
+  }
+}
+
+TEST(PathReuse, MeansEqualPathTracingAcrossACornerAndABox) {
+  const auto box = test::cornell_box().build();
+  ASSERT_TRUE(box->reuses_paths());
+  expect_equal_means(*box, rays_across(40, 440, 150), {.max_depth = 4}, 0.01);
+}
+
+TEST(PathReuse, MeansEqualPathTracingBehindFuzzyMetalAndGlass) {
+  test::SceneMaker maker = test::cornell_box();
+  maker.sphere({120, 240, 200}, 60, maker.glass(1.5));
+  maker.sphere({400, 240, 260}, 60, maker.metal(0.9f, 0.4));
+  const auto box = maker.build();
+  ASSERT_TRUE(box->reuses_paths());
+  expect_equal_means(*box, rays_across(60, 440, 240), {.max_depth = 4}, 0.03);
+}
+
+}  // namespace
+}  // namespace bandsaw

@@ -1,0 +1,312 @@
+// Alpha, nested glass and glTF's material along whole paths.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "renderlib/integrate/intersect_visible.h"
+#include "renderlib/integrate/path.h"
+#include "renderlib/material/bsdf.h"
+#include "renderlib/material/interiors.h"
+#include "tests/support/hard_case.h"
+#include "tests/support/media.h"
+#include "tests/support/scenes.h"
+#include "tests/support/statistics.h"
+
+namespace bandsaw {
+namespace {
+
+using test::Moments;
+using test::SceneMaker;
+
+constexpr double kFar = 100;
+
+Principled blended(double alpha) {
+  Principled m;
+  m.base_color.factor = {0, 0, 0};
+  m.roughness.factor = 1;
+  m.alpha_mode = AlphaMode::kBlend;
+  m.alpha.factor = alpha;
+  return m;
+}
+
+MaterialId add(SceneMaker& maker, const Material& material) {
+  maker.scene.materials.push_back(material);
+  return MaterialId{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)};
+}
+
+Moments light_along(const SceneMaker& maker, const Ray& ray, int samples,
+                    Technique technique = Technique::kBoth) {
+  const auto scene = maker.build();
+  Moments sum;
+  PathCounts counts;
+  const PathOptions options{.technique = technique};
+  for (int i = 0; i < samples; ++i) {
+    const PixelSampler sampler(5, static_cast<std::uint32_t>(i), 3);
+    sum.add(path_radiance(*scene, ray, sampler, 0, options, counts).g);
+  }
+  return sum;
+}
+
+/// Texture 0 is white, so that factors alone define a material.
+SceneMaker white_sky() {
+  SceneMaker maker;
+  maker.scene.textures.insert(maker.scene.textures.begin(), ConstantTexture{{1, 1, 1}});
+  maker.background({1, 1, 1}, {1, 1, 1});
+  return maker;
+}
+
+TEST(Alpha, CoplanarBlendedSurfacesAreHitOneAfterTheOther) {
+  for (const int layers : {1, 2, 5}) {
+    SceneMaker maker = white_sky();
+    const MaterialId half = add(maker, blended(0.25));
+    for (int i = 0; i < layers; ++i) {
+      maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, half);
+      maker.triangle({-9, -9, 0}, {9, -9, 0}, {0, 9, 0}, half);
+    }
+    const Ray ray{.origin = {0.1, 0.2, 3}, .direction = {0, 0, -1}};
+    // Black if the surface is present, except for the reflection at it.
+    const double through = std::pow(0.75, 2 * layers);
+    const Moments sum = light_along(maker, ray, 20000);
+    EXPECT_NEAR(sum.mean(), through, 0.045 * (1 - through) + 4 * sum.standard_error());
+    EXPECT_GT(sum.mean(), through - 4 * sum.standard_error());
+  }
+}
+
+TEST(Alpha, BothSidesOfASphereAreHit) {
+  SceneMaker maker = white_sky();
+  const MaterialId half = add(maker, blended(0.5));
+  maker.sphere({0, 0, 0}, 1, half);
+  maker.sphere({0, 0, 0.3}, 1, half);
+  const Moments sum = light_along(maker, {.origin = {0.1, 0.2, 5}, .direction = {0, 0, -1}}, 20000);
+  EXPECT_NEAR(sum.mean(), 0.0625, 0.045 + 4 * sum.standard_error());
+  EXPECT_GT(sum.mean(), 0.0625 - 4 * sum.standard_error());
+}
+
+TEST(Alpha, AMaskedSurfaceIsPresentOrAbsent) {
+  for (const double cutoff : {0.4, 0.6}) {
+    SceneMaker maker = white_sky();
+    Principled mask = blended(0.5);
+    mask.alpha_mode = AlphaMode::kMask;
+    mask.alpha_cutoff = cutoff;
+    maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, add(maker, mask));
+    const Moments sum =
+        light_along(maker, {.origin = {0.1, 0.2, 5}, .direction = {0, 0, -1}}, 2000);
+    EXPECT_NEAR(sum.mean(), cutoff > 0.5 ? 1 : 0, 0.07);
+  }
+}
+
+/// Checks that light sampling alone, BSDF sampling alone and both together have the same mean along
+/// the ray.
+void expect_techniques_agree(const SceneMaker& maker, const Ray& ray, double at_least) {
+  const Moments both = light_along(maker, ray, 20000);
+  const Moments asked = light_along(maker, ray, 20000, Technique::kLightsOnly);
+  const Moments found = light_along(maker, ray, 60000, Technique::kScatteringOnly);
+  const auto agree = [](const Moments& a, const Moments& b) {
+    return std::abs(a.mean() - b.mean()) <= 4 * std::hypot(a.standard_error(), b.standard_error());
+  };
+  EXPECT_GT(both.mean(), at_least);
+  EXPECT_TRUE(agree(both, asked)) << both.mean() << " " << asked.mean();
+  EXPECT_TRUE(agree(both, found)) << both.mean() << " " << found.mean();
+}
+
+TEST(Alpha, AttenuatesShadowRaysAndAllTechniquesAgree) {
+  SceneMaker maker;
+  maker.scene.textures.insert(maker.scene.textures.begin(), ConstantTexture{{1, 1, 1}});
+  maker.background({0, 0, 0}, {0, 0, 0});
+  Principled floor;
+  floor.roughness.factor = 0.6;
+  floor.base_color.factor = {0.7f, 0.7f, 0.7f};
+  maker.quad({-kFar, 0, -kFar}, {0, 0, 2 * kFar}, {2 * kFar, 0, 0}, add(maker, floor));
+  maker.quad({-1, 3, -1}, {2, 0, 0}, {0, 0, 2}, maker.lamp(5));
+  maker.quad({-4, 1, -4}, {8, 0, 0}, {0, 0, 8}, add(maker, blended(0.5)));
+  const Ray ray{.origin = {0.3, 0.9, 0.4}, .direction = normalize({0.1, -1, 0.05})};
+  expect_techniques_agree(maker, ray, 0.1);
+}
+
+// Each side of the ball is present with probability 1/2: the far one contributes a third of the
+// light.
+TEST(Alpha, ATransparentLightEmitsFromBothSides) {
+  SceneMaker maker;
+  maker.scene.textures.insert(maker.scene.textures.begin(), ConstantTexture{{1, 1, 1}});
+  maker.background({0, 0, 0}, {0, 0, 0});
+  maker.quad({-kFar, 0, -kFar}, {0, 0, 2 * kFar}, {2 * kFar, 0, 0}, maker.diffuse(0.5f));
+  Principled lamp = blended(0.5);
+  lamp.emissive.factor = {4, 4, 4};
+  lamp.double_sided = true;
+  maker.sphere({0, 2, 0}, 0.7, add(maker, lamp));
+  expect_techniques_agree(maker, {.origin = {2, 3, 0}, .direction = normalize({-0.5, -1, 0})}, 0.1);
+}
+
+// A ball of index 1 between an area light, a delta light and a floor, rough or not: the same bits
+// as without it.
+TEST(SeeThrough, M6_GlassOfIndexOneCastsNoShadow) {
+  const auto light = [](std::optional<double> roughness) {
+    SceneMaker maker;
+    maker.quad({-kFar, 0, -kFar}, {0, 0, 2 * kFar}, {2 * kFar, 0, 0}, maker.diffuse(0.5f));
+    maker.sphere({0.5, 3, 0}, 0.2, maker.lamp(9));
+    maker.scene.lights = {PointLight{{-0.5, 3, 0}, gray(4)}};
+    if (roughness) {
+      maker.sphere({0, 1, 0}, 0.8, add(maker, Dielectric{1 + 1e-7, *roughness}));
+    }
+    const Ray ray{.origin = {0, 1, 5}, .direction = normalize({0, -0.2, -1})};
+    return light_along(maker, ray, 256).mean();
+  };
+  const double alone = light(std::nullopt);
+  EXPECT_GT(alone, 0);
+  EXPECT_EQ(light(0), alone);
+  EXPECT_EQ(light(0.5), alone);
+  test::holds("M6", "a ball of it before lamps: the same bits as without");
+}
+
+TEST(Emission, OfAScatteringSurfaceIsAddedToItsReflection) {
+  SceneMaker maker = white_sky();
+  Principled glow;
+  glow.roughness.factor = 1;
+  glow.base_color.factor = {0, 0, 0};
+  glow.emissive.factor = {3, 3, 3};
+  maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, add(maker, glow));
+  const Ray front{.origin = {0.1, 0.2, 5}, .direction = {0, 0, -1}};
+  EXPECT_NEAR(light_along(maker, front, 2000).mean(), 3.02, 0.03);
+  const Ray back{.origin = {0.1, 0.2, -5}, .direction = {0, 0, 1}};
+  EXPECT_LT(light_along(maker, back, 2000).mean(), 0.1);
+}
+
+// The share that the coat reflects at 0 and at 60 degrees: 0.04, and 0.04 + 0.96 / 32.
+TEST(Emission, IsAttenuatedByTheClearCoat) {
+  SceneMaker maker = white_sky();
+  maker.background({0, 0, 0}, {0, 0, 0});
+  Principled glow;
+  glow.base_color.factor = {0, 0, 0};
+  glow.emissive.factor = {3, 3, 3};
+  glow.coat.factor = 0.5;
+  maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, add(maker, glow));
+  const Ray ahead{.origin = {0, 0, 5}, .direction = {0, 0, -1}};
+  EXPECT_NEAR(light_along(maker, ahead, 10).mean(), 3 * (1 - 0.5 * 0.04), 1e-6);
+  const Vec3 slanted{std::sqrt(0.75), 0, -0.5};
+  const Ray aside{.origin = slanted * -4, .direction = slanted};
+  EXPECT_NEAR(light_along(maker, aside, 10).mean(), 3 * (1 - 0.5 * 0.07), 1e-6);
+}
+
+// Behind a rough pane only light sampling reaches a delta light: the pane transmits according to
+// its BSDF value.
+TEST(SeeThrough, DeltaLightsShineThroughRoughTransmission) {
+  Principled paper;
+  paper.roughness.factor = 0.7;
+  paper.transmission.factor = 1;
+  for (const Material& material : {Material(paper), Material(Dielectric{1.5, 0.5})}) {
+    SceneMaker maker = white_sky();
+    maker.background({0, 0, 0}, {0, 0, 0});
+    maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, add(maker, material));
+    maker.scene.lights = {PointLight{{0.3, 0.1, -2}, gray(4)}};
+    const Ray ray{.origin = {0, 0, 3}, .direction = {0, 0, -1}};
+    const auto scene = maker.build();
+    std::uint64_t rays = 0;
+    NestedDielectrics nesting;
+    const auto point = intersect_visible(*scene, ray, PixelSampler(5, 0, 3), 0, 0, nesting, rays);
+    ASSERT_TRUE(point);
+    const Bsdf bsdf =
+        bsdf_at(scene->material(point->material), scene->textures(), *point, -ray.direction);
+    const Vec3 way = Vec3{0.3, 0.1, -2};
+    const double expected = evaluate(bsdf, normalize(way)).value.g * 4 / length_squared(way);
+    EXPECT_GT(expected, 0.01);
+    const Moments seen = light_along(maker, ray, 64);
+    EXPECT_NEAR(seen.mean(), expected, 1e-6 * expected);
+  }
+}
+
+TEST(NestedGlass, M9_TheHigherPriorityRefractsInOverlaps) {
+  // Water (priority 1) that overlaps its tumbler (priority 2): a slab of each, overlapping by 0.1.
+  const auto stack = [](double overlap) {
+    SceneMaker maker = white_sky();
+    const MaterialId water = add(maker, Dielectric{1.33, 0, 1});
+    const MaterialId glass = add(maker, Dielectric{1.5, 0, 2});
+    const auto slab = [&](double low, double high, MaterialId material) {
+      maker.quad({-kFar, high, -kFar}, {0, 0, 2 * kFar}, {2 * kFar, 0, 0}, material);
+      maker.quad({-kFar, low, -kFar}, {2 * kFar, 0, 0}, {0, 0, 2 * kFar}, material);
+    };
+    slab(1 - overlap, 2, water);
+    slab(0, 1, glass);
+    // Emission only next to the point where the refracted ray leaves.
+    maker.background({0, 0, 0}, {0, 0, 0});
+    const double s0 = std::sqrt(0.5);
+    const double tan_water = (s0 / 1.33) / std::sqrt(1 - s0 * s0 / 1.33 / 1.33);
+    const double tan_glass = (s0 / 1.5) / std::sqrt(1 - s0 * s0 / 2.25);
+    const double x = tan_water + tan_glass + 1;
+    maker.quad({x - 1e-6, -1, -1}, {2e-6, 0, 0}, {0, 0, 2}, maker.lamp(1));
+    const Ray ray{.origin = {-1, 3, 0}, .direction = normalize({1, -1, 0})};
+    return light_along(maker, ray, 20000).mean();
+  };
+  const double at_most = 1;
+  const double overlapping = stack(0.1);
+  EXPECT_GT(overlapping, 0.85);
+  EXPECT_LE(overlapping, at_most);
+  EXPECT_NEAR(stack(0.5), overlapping, 0.02);
+  test::holds("M9", "overlap: rays bend at the higher priority alone");
+}
+
+TEST(NestedGlass, M9_AnAirBubbleInGlassRefractsOutwards) {
+  Interiors inside;
+  const Dielectric glass{1.5, 0, 1};
+  const Dielectric air{1, 0, 2};
+  EXPECT_EQ(inside.index_without(MaterialId{0}), 1);
+  inside.pass(MaterialId{0}, glass, true);
+  EXPECT_FALSE(inside.hides(MaterialId{1}, air, true));
+  EXPECT_EQ(inside.index_without(MaterialId{1}), 1.5);
+  inside.pass(MaterialId{1}, air, true);
+  EXPECT_TRUE(inside.hides(MaterialId{0}, glass, false));
+  inside.pass(MaterialId{1}, air, false);
+  inside.pass(MaterialId{0}, glass, false);
+  EXPECT_EQ(inside.index_without(MaterialId{1}), 1);
+  test::holds("M9", "bubble of air");
+}
+
+// Walls inside two overlapping bodies of one glass are not present: on the axis it is one pane.
+TEST(NestedGlass, OverlappingBodiesOfOneGlassAreOne) {
+  SceneMaker maker = white_sky();
+  maker.background({0, 0, 0}, {0, 0, 0});
+  const MaterialId glass = add(maker, Dielectric{1.5, 0, 1});
+  for (const double z : {0.0, 1.0, -0.7}) {
+    maker.sphere({0, 0, z}, 1, glass);
+  }
+  maker.quad({-9, -9, -9}, {18, 0, 0}, {0, 18, 0}, maker.lamp(1));
+  const Moments seen = light_along(maker, {.origin = {0, 0, 5}, .direction = {0, 0, -1}}, 40000);
+  EXPECT_NEAR(seen.mean(), 0.96 / 1.04, 4 * seen.standard_error());
+  EXPECT_LE(seen.standard_error(), 0.002);
+}
+
+// A bubble that extends out of a block of glass. The part of the block's face inside the bubble is
+// not present for paths, but occludes shadow rays: light behind it is found by BSDF sampling alone.
+TEST(NestedGlass, EmissionBehindAHiddenBoundaryCounts) {
+  SceneMaker maker = white_sky();
+  maker.background({0, 0, 0}, {0, 0, 0});
+  maker.sphere({0, 0, 0}, 2, add(maker, Dielectric{1.5, 0, 1}));
+  maker.sphere({0, 0, 2}, 1, add(maker, Dielectric{1.2, 0, 2}));
+  maker.quad({-0.3, -0.3, 1.3}, {0, 0.6, 0}, {0, 0, 1.3}, maker.diffuse(0.8f));
+  maker.sphere({0.3, 0, 1.5}, 0.15, maker.lamp(10));
+  const Ray ray{.origin = {2.7, 0, 5.4}, .direction = normalize({-1, 0, -1})};
+  expect_techniques_agree(maker, ray, 0.05);
+}
+
+// Milk in a tumbler of glass (priority 2) with water (priority 1) that overlaps its wall, all
+// without loss in a white sky. A path that scatters before the hidden boundary of the water has not
+// passed it.
+TEST(NestedGlass, ScatteringBeforeAHiddenBoundaryIsStillInTheGlass) {
+  SceneMaker maker = white_sky();
+  maker.sphere({0, 0, 0}, 1, add(maker, Dielectric{1.5, 0, 2}));
+  maker.sphere({1.5, 0, 0}, 1, add(maker, Dielectric{1.33, 0, 1}));
+  test::fill_sphere(maker, {0, 0, 0}, 1, test::add(maker, test::medium(0, 2)));
+  const auto scene = maker.build();
+  PathCounts counts;
+  const PathOptions options{.max_depth = 1000};
+  Moments seen;
+  for (std::uint32_t i = 0; i < 4000; ++i) {
+    const Ray ray{.origin = {-3, 0.2, 0.1}, .direction = {1, 0, 0}};
+    seen.add(path_radiance(*scene, ray, PixelSampler(5, i, 3), 0, options, counts).g);
+  }
+  EXPECT_NEAR(seen.mean(), 1, 4 * seen.standard_error() + 1e-5);
+  EXPECT_LE(seen.standard_error(), 0.01);
+}
+
+}  // namespace
+}  // namespace bandsaw
