@@ -38,13 +38,13 @@ void Engine::submit(JobSpec spec, std::function<void(absl::StatusOr<JobId>)> don
                     std::int32_t priority) {
   // The package is read from the disk, so not on the caller's thread and not on the core's.
   impl_->on_store([impl = impl_.get(), spec = std::move(spec), priority,
-                   answer = Answer<JobId>(std::move(done))](StoreDesk&) mutable {
+                   answer = Answer<JobId>(std::move(done))](StoreThread&) mutable {
     if (const absl::Status fit = check_submit(spec, impl->blobs()); !fit.ok()) {
       answer(fit);
       return;
     }
     impl->on_core(
-        [spec = std::move(spec), priority, answer = std::move(answer)](CoreDesk& core) mutable {
+        [spec = std::move(spec), priority, answer = std::move(answer)](SchedulerThread& core) mutable {
           core.submit(std::move(spec), priority, std::move(answer));
         });
   });
@@ -72,7 +72,7 @@ void Engine::quarantine(std::string worker, bool lift, std::function<void(absl::
       [done = std::move(done)](const absl::StatusOr<bool>& told) { done(told.status()); });
   const Input input = lift ? Input(input::LiftQuarantine{std::move(worker)})
                            : Input(input::Quarantine{std::move(worker)});
-  impl_->on_core([input, answer = std::move(answer)](CoreDesk& core) mutable {
+  impl_->on_core([input, answer = std::move(answer)](SchedulerThread& core) mutable {
     core.tell_of_worker(input, std::move(answer));
   });
 }
@@ -82,11 +82,11 @@ void Engine::why(JobId job, std::function<void(std::vector<std::string>)> done) 
     done(lines.ok() ? *std::move(lines) : std::vector<std::string>());
   });
   impl_->on_core(
-      [job, answer = std::move(answer)](CoreDesk& core) mutable { answer(core.why(job)); });
+      [job, answer = std::move(answer)](SchedulerThread& core) mutable { answer(core.why(job)); });
 }
 
 void Engine::watch(JobId job, std::function<bool(absl::StatusOr<JobView>)> changed) {
-  impl_->on_core([job, changed = std::move(changed)](CoreDesk& core) mutable {
+  impl_->on_core([job, changed = std::move(changed)](SchedulerThread& core) mutable {
     core.watch(job, std::move(changed));
   });
 }
@@ -95,32 +95,32 @@ void Engine::jobs(std::function<void(std::vector<JobView>)> done) {
   Answer<std::vector<JobView>> answer([done = std::move(done)](auto jobs) {
     done(jobs.ok() ? *std::move(jobs) : std::vector<JobView>());
   });
-  impl_->on_core([answer = std::move(answer)](CoreDesk& core) mutable { answer(core.jobs()); });
+  impl_->on_core([answer = std::move(answer)](SchedulerThread& core) mutable { answer(core.jobs()); });
 }
 
 void Engine::workers(std::function<void(std::vector<WorkerView>)> done) {
   Answer<std::vector<WorkerView>> answer([done = std::move(done)](auto workers) {
     done(workers.ok() ? *std::move(workers) : std::vector<WorkerView>());
   });
-  impl_->on_core([answer = std::move(answer)](CoreDesk& core) mutable { answer(core.workers()); });
+  impl_->on_core([answer = std::move(answer)](SchedulerThread& core) mutable { answer(core.workers()); });
 }
 
 void Engine::logs(std::string worker,
                   std::function<void(absl::StatusOr<std::vector<std::string>>)> done) {
   impl_->on_core(
       [worker = std::move(worker), answer = Answer<std::vector<std::string>>(std::move(done))](
-          CoreDesk& core) mutable { answer(core.worker_log(worker)); });
+          SchedulerThread& core) mutable { answer(core.worker_log(worker)); });
 }
 
 void Engine::worker_log(SessionId session, std::vector<std::string> lines) {
-  impl_->on_core([session, lines = std::move(lines)](CoreDesk& core) mutable {
+  impl_->on_core([session, lines = std::move(lines)](SchedulerThread& core) mutable {
     core.worker_log(session, std::move(lines));
   });
 }
 
 void Engine::preview(JobId job, std::uint32_t row_step,
                      std::function<void(absl::StatusOr<Image>)> done) {
-  impl_->on_film([job, row_step, answer = Answer<Image>(std::move(done))](FilmDesk& film) mutable {
+  impl_->on_film([job, row_step, answer = Answer<Image>(std::move(done))](FilmThread& film) mutable {
     answer(film.preview(job, row_step));
   });
 }
@@ -130,13 +130,13 @@ void Engine::rendered_by(JobId job, std::function<void(std::vector<RowsBy>)> don
     done(rows.ok() ? *std::move(rows) : std::vector<RowsBy>());
   });
   impl_->on_film(
-      [job, answer = std::move(answer)](FilmDesk& film) mutable { answer(film.rendered_by(job)); });
+      [job, answer = std::move(answer)](FilmThread& film) mutable { answer(film.rendered_by(job)); });
 }
 
 void Engine::result(JobId job, FinishedPart part,
                     std::function<void(absl::StatusOr<StoredResult>)> done) {
   impl_->on_core([impl = impl_.get(), job, part,
-                  answer = Answer<StoredResult>(std::move(done))](CoreDesk& core) mutable {
+                  answer = Answer<StoredResult>(std::move(done))](SchedulerThread& core) mutable {
     const std::optional<JobView> view = core.job(job);
     if (!view) {
       answer(absl::NotFoundError(absl::StrCat("there is no job ", job)));
@@ -144,7 +144,7 @@ void Engine::result(JobId job, FinishedPart part,
       answer(absl::FailedPreconditionError(absl::StrCat("job ", job, " is not done")));
     } else {
       impl->on_store([impl, job, part, manifest = view->spec.manifest,
-                      answer = std::move(answer)](StoreDesk& store) mutable {
+                      answer = std::move(answer)](StoreThread& store) mutable {
         absl::StatusOr<StoredResult> result = store.read_result(job, part);
         if (result.ok()) {
           result->display = display_of(manifest, impl->blobs());
@@ -177,7 +177,7 @@ BlobSource& Engine::blobs() { return impl_->blobs(); }
 SessionId Engine::hello(std::shared_ptr<WorkerLink> link, WorkerHello hello) {
   const SessionId session = impl_->next_session();
   impl_->on_core(
-      [session, link = std::move(link), hello = std::move(hello)](CoreDesk& core) mutable {
+      [session, link = std::move(link), hello = std::move(hello)](SchedulerThread& core) mutable {
         core.hello(session, std::move(link), std::move(hello));
       });
   return session;
@@ -187,12 +187,12 @@ void Engine::heartbeat(SessionId session, std::vector<LeaseProgress> leases, std
   impl_->on_core(
       [beat = input::Heartbeat{.session = session,
                                .leases = std::move(leases),
-                               .doing = std::move(doing)}](CoreDesk& core) { core.hear(beat); });
+                               .doing = std::move(doing)}](SchedulerThread& core) { core.hear(beat); });
 }
 
 void Engine::draining(SessionId session, std::string reason) {
   impl_->on_core([in = input::Draining{.session = session, .reason = std::move(reason)}](
-                     CoreDesk& core) { core.hear(in); });
+                     SchedulerThread& core) { core.hear(in); });
 }
 
 void Engine::band_failed(SessionId session, LeaseId lease, std::string reason,
@@ -201,11 +201,11 @@ void Engine::band_failed(SessionId session, LeaseId lease, std::string reason,
       [in = input::BandFailed{.session = session,
                               .lease = lease,
                               .reason = std::move(reason),
-                              .log = std::move(log)}](CoreDesk& core) { core.hear(in); });
+                              .log = std::move(log)}](SchedulerThread& core) { core.hear(in); });
 }
 
 void Engine::lost(SessionId session, std::string reason) {
-  impl_->on_core([session, reason = std::move(reason)](CoreDesk& core) mutable {
+  impl_->on_core([session, reason = std::move(reason)](SchedulerThread& core) mutable {
     core.lost(session, std::move(reason));
   });
 }
@@ -230,7 +230,7 @@ void Engine::put_band(JobId job, std::uint64_t work, std::string instance, BandP
     return;
   }
   put.share = *std::move(share);
-  impl_->on_core([put = std::move(put)](CoreDesk& core) mutable { core.put_band(std::move(put)); });
+  impl_->on_core([put = std::move(put)](SchedulerThread& core) mutable { core.put_band(std::move(put)); });
 }
 
 MemoryBudget& Engine::images() { return impl_->images(); }

@@ -116,38 +116,38 @@ void Engine::Impl::collect(const std::vector<Collector::Job>& jobs) {
   collector_.sweep(jobs, now);
   std::vector<JobId> old = collector_.to_forget(jobs, now);
   if (!old.empty()) {
-    on_core([old = std::move(old)](CoreDesk& core) { core.forget(old); });
+    on_core([old = std::move(old)](SchedulerThread& core) { core.forget(old); });
   }
 }
 
-CoreDesk::Hooks Engine::Impl::core_hooks() {
+SchedulerThread::Hooks Engine::Impl::core_hooks() {
   return {
       .add_job =
           [this](JobId job, const JobSpec& spec) {
-            on_store([job, spec](StoreDesk& store) {
+            on_store([job, spec](StoreThread& store) {
               store.add_job(job, spec).IgnoreError();  // tried again at its first band
             });
             on_film([job, settings = spec.settings, adaptive = is_adaptive(spec.stop)](
-                        FilmDesk& film) { film.add_job(job, settings, adaptive); });
+                        FilmThread& film) { film.add_job(job, settings, adaptive); });
           },
       .plan_pass =
           [this](JobId job, std::uint64_t samples) {
-            on_film([job, samples](FilmDesk& film) { film.plan(job, samples); });
+            on_film([job, samples](FilmThread& film) { film.plan(job, samples); });
           },
       .store_band =
           [this](PutBand put) {
             on_store(
-                [put = std::move(put)](StoreDesk& store) mutable { store.append(std::move(put)); });
+                [put = std::move(put)](StoreThread& store) mutable { store.append(std::move(put)); });
           },
       .compare_band =
           [this](PutBand put) {
-            on_store([put = std::move(put)](StoreDesk& store) mutable {
+            on_store([put = std::move(put)](StoreThread& store) mutable {
               store.compare(std::move(put));
             });
           },
       .add_to_film =
           [this](PutBand put, std::vector<RowRange> rows) {
-            on_film([put = std::move(put), rows = std::move(rows)](FilmDesk& film) mutable {
+            on_film([put = std::move(put), rows = std::move(rows)](FilmThread& film) mutable {
               const JobId job = put.job;
               film.add(job, std::move(put), std::move(rows))
                   .IgnoreError();  // the hook has told the core
@@ -155,74 +155,74 @@ CoreDesk::Hooks Engine::Impl::core_hooks() {
           },
       .retract =
           [this](JobId job, std::uint64_t renderer) {
-            on_film([job, renderer](FilmDesk& film) { film.retract(job, renderer); });
+            on_film([job, renderer](FilmThread& film) { film.retract(job, renderer); });
           },
       .make_result =
           [this](JobId job, std::uint64_t samples) {
-            on_film([job, samples](FilmDesk& film) { film.want_image(job, samples); });
+            on_film([job, samples](FilmThread& film) { film.want_image(job, samples); });
           },
       .drop_bands =
           [this](JobId job) {
-            on_store([job](StoreDesk& store) { store.drop_bands(job); });
-            on_film([job](FilmDesk& film) { film.drop(job); });
+            on_store([job](StoreThread& store) { store.drop_bands(job); });
+            on_film([job](FilmThread& film) { film.drop(job); });
           },
-      .drop_job = [this](JobId job) { on_store([job](StoreDesk& store) { store.drop_job(job); }); },
+      .drop_job = [this](JobId job) { on_store([job](StoreThread& store) { store.drop_job(job); }); },
       .collect =
           [this](std::vector<Collector::Job> jobs) {
-            on_store([this, jobs = std::move(jobs)](StoreDesk&) { collect(jobs); });
+            on_store([this, jobs = std::move(jobs)](StoreThread&) { collect(jobs); });
           },
-      .expect_trouble = [this] { on_store([](StoreDesk& store) { store.expect_trouble(); }); },
+      .expect_trouble = [this] { on_store([](StoreThread& store) { store.expect_trouble(); }); },
       .room = [this](bool there) { room_ = there; },
-      .retry_film = [this] { on_film([](FilmDesk& film) { film.retry(); }); }};
+      .retry_film = [this] { on_film([](FilmThread& film) { film.retry(); }); }};
 }
 
-StoreDesk::Hooks Engine::Impl::store_hooks() {
+StoreThread::Hooks Engine::Impl::store_hooks() {
   return {
       .stored =
           [this](PutBand put, std::vector<std::uint64_t> digests) {
-            on_core([put = std::move(put), digests = std::move(digests)](CoreDesk& core) mutable {
+            on_core([put = std::move(put), digests = std::move(digests)](SchedulerThread& core) mutable {
               core.band_stored(std::move(put), std::move(digests));
             });
           },
       .failed =
           [this](PutBand put, absl::Status status) {
-            on_core([put = std::move(put), status = apart(status)](CoreDesk& core) mutable {
+            on_core([put = std::move(put), status = apart(status)](SchedulerThread& core) mutable {
               core.band_failed(std::move(put), status);
             });
           },
       .result_written =
           [this](JobId job, absl::Status status) {
-            on_core([job, status = apart(status)](CoreDesk& core) {
+            on_core([job, status = apart(status)](SchedulerThread& core) {
               core.result_written(job, status);
             });
           },
-      .disk_is_back = [this] { on_core([](CoreDesk& core) { core.disk_is_back(); }); }};
+      .disk_is_back = [this] { on_core([](SchedulerThread& core) { core.disk_is_back(); }); }};
 }
 
-FilmDesk::Hooks Engine::Impl::film_hooks() {
+FilmThread::Hooks Engine::Impl::film_hooks() {
   return {.merged =
               [this](input::PassMerged merged) {
-                on_core([merged](CoreDesk& core) { core.hear(merged); });
+                on_core([merged](SchedulerThread& core) { core.hear(merged); });
               },
           .image =
               [this](JobId job, Finished finished) {
-                on_store([job, finished = std::move(finished)](StoreDesk& store) {
+                on_store([job, finished = std::move(finished)](StoreThread& store) {
                   store.write_result(job, finished);
                 });
               },
           .failed =
               [this](JobId job, absl::Status status) {
                 // The core hears of it before the store can tell it that the disk is back.
-                on_core([job, status = apart(status)](CoreDesk& core) {
+                on_core([job, status = apart(status)](SchedulerThread& core) {
                   core.storage_failed(job, status);
                 });
-                on_store([](StoreDesk& store) { store.expect_trouble(); });
+                on_store([](StoreThread& store) { store.expect_trouble(); });
               },
           .damaged =
               [this](JobId job, std::vector<input::BandsDamaged::Lost> bands) {
                 // Before the first of them is leased again.
-                on_store([job](StoreDesk& store) { store.reopen(job); });
-                on_core([job, bands = std::move(bands)](CoreDesk& core) mutable {
+                on_store([job](StoreThread& store) { store.reopen(job); });
+                on_core([job, bands = std::move(bands)](SchedulerThread& core) mutable {
                   core.bands_damaged({.job = job, .bands = std::move(bands)});
                 });
               }};

@@ -13,14 +13,14 @@
 #include <string>
 
 #include "coordinator/engine/clock.h"
-#include "coordinator/engine/core_desk.h"
+#include "coordinator/engine/scheduler_thread.h"
 #include "coordinator/engine/doors.h"
 #include "coordinator/engine/engine.h"
-#include "coordinator/engine/film_desk.h"
+#include "coordinator/engine/film_thread.h"
 #include "coordinator/engine/mailbox.h"
 #include "coordinator/engine/memory_budget.h"
 #include "coordinator/engine/put_band.h"
-#include "coordinator/engine/store_desk.h"
+#include "coordinator/engine/store_thread.h"
 #include "coordinator/store/blob_store.h"
 #include "coordinator/store/data_folder.h"
 #include "coordinator/store/journal.h"
@@ -47,7 +47,7 @@ class Engine::Impl {
 
   void tell(JobId job, Input input, std::function<void(absl::StatusOr<JobView>)> done) {
     on_core([job, input = std::move(input), answer = Answer<JobView>(std::move(done))](
-                CoreDesk& core) mutable { core.tell(job, input, std::move(answer)); });
+                SchedulerThread& core) mutable { core.tell(job, input, std::move(answer)); });
   }
 
   BlobStore& blobs() { return *blobs_; }
@@ -64,9 +64,9 @@ class Engine::Impl {
        std::unique_ptr<BlobStore> blobs);
   /// On the store's thread.
   void collect(const std::vector<Collector::Job>& jobs);
-  CoreDesk::Hooks core_hooks();
-  StoreDesk::Hooks store_hooks();
-  FilmDesk::Hooks film_hooks();
+  SchedulerThread::Hooks core_hooks();
+  StoreThread::Hooks store_hooks();
+  FilmThread::Hooks film_hooks();
 
   const DataFolder folder_;
   const std::unique_ptr<BlobStore> blobs_;
@@ -77,10 +77,10 @@ class Engine::Impl {
   std::atomic<bool> room_{true};
   MemoryBudget bands_;   ///< bytes of the bands in memory
   MemoryBudget images_;  ///< bytes of the images that are made or downloaded
-  CoreDesk core_;
-  StoreDesk store_;
+  SchedulerThread core_;
+  StoreThread store_;
   Collector collector_;  ///< of the store's thread
-  FilmDesk film_;
+  FilmThread film_;
   Mailbox core_thread_;
   Mailbox store_thread_;
   Mailbox film_thread_;

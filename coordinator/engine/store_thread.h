@@ -21,7 +21,7 @@
 namespace bandsaw::coordinator {
 
 /// Used by one thread at a time.
-class StoreDesk {
+class StoreThread {
  public:
   /// Called on the store's thread. Every band that was given ends in `stored` or `failed`.
   struct Hooks {
@@ -30,7 +30,7 @@ class StoreDesk {
     std::function<void(JobId, absl::Status)> result_written;
     std::function<void()> disk_is_back;
   };
-  StoreDesk(const DataFolder& folder, const Clock& clock, Hooks hooks)
+  StoreThread(const DataFolder& folder, const Clock& clock, Hooks hooks)
       : folder_(folder), clock_(clock), hooks_(std::move(hooks)) {}
 
   /// Opens the log of a job and hands on what it holds, with the byte each begins at. Records of

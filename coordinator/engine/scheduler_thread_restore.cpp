@@ -4,14 +4,14 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "coordinator/engine/core_desk.h"
-#include "coordinator/engine/film_desk.h"
-#include "coordinator/engine/store_desk.h"
+#include "coordinator/engine/scheduler_thread.h"
+#include "coordinator/engine/film_thread.h"
+#include "coordinator/engine/store_thread.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
 
-absl::Status CoreDesk::restore(StoreDesk& store, FilmDesk& film, const absl::Status& room) {
+absl::Status SchedulerThread::restore(StoreThread& store, FilmThread& film, const absl::Status& room) {
   RETURN_IF_ERROR(journal_.replay([this](const Record& record) {
     core_.replay(record);
     note(record);
@@ -39,7 +39,7 @@ absl::Status CoreDesk::restore(StoreDesk& store, FilmDesk& film, const absl::Sta
 }
 
 /// RESOURCE_EXHAUSTED: the job is known, and the rest of it is read when there is room.
-absl::Status CoreDesk::restore_job(JobId id, const Known& known, StoreDesk& store, FilmDesk& film) {
+absl::Status SchedulerThread::restore_job(JobId id, const Known& known, StoreThread& store, FilmThread& film) {
   film.add_job(id, known.spec.settings, is_adaptive(known.spec.stop));
   for (const std::uint64_t samples : known.pass_ends) {
     film.plan(id, samples);

@@ -24,7 +24,7 @@
 namespace bandsaw::coordinator {
 
 /// Used by one thread at a time.
-class FilmDesk {
+class FilmThread {
  public:
   /// Called on the film's thread.
   struct Hooks {
@@ -35,7 +35,7 @@ class FilmDesk {
     /// The log does not hold what was added any more: it is left out of the film from now on.
     std::function<void(JobId, std::vector<input::BandsDamaged::Lost>)> damaged;
   };
-  FilmDesk(const DataFolder& folder, Hooks hooks) : folder_(folder), hooks_(std::move(hooks)) {}
+  FilmThread(const DataFolder& folder, Hooks hooks) : folder_(folder), hooks_(std::move(hooks)) {}
 
   void add_job(JobId job, const RenderSettings& settings, bool adaptive = false);
   /// A pass that ends at `samples` was begun: it is told when it is whole.

@@ -4,7 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/core/renderer.h"
-#include "coordinator/engine/core_desk.h"
+#include "coordinator/engine/scheduler_thread.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -28,23 +28,23 @@ absl::Status check_band(const BandPixels& pixels, const RenderSettings& settings
 
 }  // namespace
 
-void CoreDesk::hello(SessionId session, std::shared_ptr<WorkerLink> link, WorkerHello hello) {
+void SchedulerThread::hello(SessionId session, std::shared_ptr<WorkerLink> link, WorkerHello hello) {
   links_.add(session, std::move(link), hello);
   run(input::Hello{.session = session, .worker = std::move(hello)});
 }
 
-void CoreDesk::lost(SessionId session, std::string reason) {
+void SchedulerThread::lost(SessionId session, std::string reason) {
   links_.lost(session, reason);
   run(input::Lost{.session = session, .reason = std::move(reason)});
 }
 
-void CoreDesk::worker_log(SessionId session, std::vector<std::string> lines) {
+void SchedulerThread::worker_log(SessionId session, std::vector<std::string> lines) {
   if (const std::string name = links_.name(session); !name.empty()) {
     logs_.add(name, std::move(lines));
   }
 }
 
-void CoreDesk::put_band(PutBand put) {
+void SchedulerThread::put_band(PutBand put) {
   const auto known = known_.find(put.job);
   if (known == known_.end() || is_final(known->second.state) ||
       !known->second.spec.may_be(put.work)) {
@@ -74,7 +74,7 @@ void CoreDesk::put_band(PutBand put) {
   }
 }
 
-void CoreDesk::band_stored(PutBand put, std::vector<std::uint64_t> row_digests) {
+void SchedulerThread::band_stored(PutBand put, std::vector<std::uint64_t> row_digests) {
   const Step step = run(input::BandStored{.job = put.job,
                                           .band = put.pixels.band,
                                           .row_digests = std::move(row_digests),
@@ -99,7 +99,7 @@ void CoreDesk::band_stored(PutBand put, std::vector<std::uint64_t> row_digests) 
   });
 }
 
-void CoreDesk::band_failed(PutBand put, const absl::Status& status) {
+void SchedulerThread::band_failed(PutBand put, const absl::Status& status) {
   if (over(put.job)) {
     put.answer(BandOutcome::kUnwanted);
     return;

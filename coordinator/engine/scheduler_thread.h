@@ -25,11 +25,11 @@
 
 namespace bandsaw::coordinator {
 
-class FilmDesk;
-class StoreDesk;
+class FilmThread;
+class StoreThread;
 
 /// Used by one thread at a time.
-class CoreDesk {
+class SchedulerThread {
  public:
   /// Work for the other threads, handed over in the order of the calls.
   struct Hooks {
@@ -48,11 +48,11 @@ class CoreDesk {
     std::function<void()> retry_film;
   };
   /// `reserve`: is released when the journal has no room, and held again when there is.
-  CoreDesk(CoreOptions options, Journal& journal, Reserve reserve, const Clock& clock, Hooks hooks);
+  SchedulerThread(CoreOptions options, Journal& journal, Reserve reserve, const Clock& clock, Hooks hooks);
 
   /// Journal, bands and films as they were. Before any other call; the other threads MUST not run
   /// yet. `room`: OK, or why the disk is full (no_room).
-  absl::Status restore(StoreDesk& store, FilmDesk& film, const absl::Status& room);
+  absl::Status restore(StoreThread& store, FilmThread& film, const absl::Status& room);
 
   // People.
   void submit(JobSpec spec, std::int32_t priority, Answer<JobId> answer);
@@ -109,7 +109,7 @@ class CoreDesk {
   void no_room(const absl::Status& status);
   void pause_all(const absl::Status& status);
   void journal_failed(const absl::Status& status);
-  absl::Status restore_job(JobId id, const Known& known, StoreDesk& store, FilmDesk& film);
+  absl::Status restore_job(JobId id, const Known& known, StoreThread& store, FilmThread& film);
   bool over(JobId id) const;
   void collect();
   void compact();

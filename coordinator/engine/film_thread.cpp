@@ -1,4 +1,4 @@
-#include "coordinator/engine/film_desk.h"
+#include "coordinator/engine/film_thread.h"
 
 #include <algorithm>
 #include <span>
@@ -30,18 +30,18 @@ std::uint64_t digest_of(const BandPixels& pixels, const RowRange& rows) {
 
 }  // namespace
 
-void FilmDesk::add_job(JobId job, const RenderSettings& settings, bool adaptive) {
+void FilmThread::add_job(JobId job, const RenderSettings& settings, bool adaptive) {
   jobs_[job].settings = settings;
   jobs_[job].adaptive = adaptive;
 }
 
-void FilmDesk::plan(JobId id, std::uint64_t samples) {
+void FilmThread::plan(JobId id, std::uint64_t samples) {
   if (const auto job = jobs_.find(id); job != jobs_.end()) {
     job->second.pass_ends.insert(samples);
   }
 }
 
-absl::Status FilmDesk::add(JobId id, PutBand put, std::vector<RowRange> rows) {
+absl::Status FilmThread::add(JobId id, PutBand put, std::vector<RowRange> rows) {
   const auto job = jobs_.find(id);
   if (job == jobs_.end() || rows.empty()) {
     return absl::OkStatus();
@@ -50,7 +50,7 @@ absl::Status FilmDesk::add(JobId id, PutBand put, std::vector<RowRange> rows) {
   return work(id, job->second);
 }
 
-void FilmDesk::add_later(JobId id, const PutBand& put, const std::vector<RowRange>& rows) {
+void FilmThread::add_later(JobId id, const PutBand& put, const std::vector<RowRange>& rows) {
   const auto job = jobs_.find(id);
   if (job == jobs_.end()) {
     return;
@@ -62,14 +62,14 @@ void FilmDesk::add_later(JobId id, const PutBand& put, const std::vector<RowRang
   job->second.anew = true;
 }
 
-void FilmDesk::want_image(JobId id, std::uint64_t samples) {
+void FilmThread::want_image(JobId id, std::uint64_t samples) {
   if (const auto job = jobs_.find(id); job != jobs_.end()) {
     job->second.image_of = samples;
     work(id, job->second).IgnoreError();  // the hook has heard of it
   }
 }
 
-void FilmDesk::retry() {
+void FilmThread::retry() {
   for (auto& [id, job] : jobs_) {
     make_folder(folder_.job(id)).IgnoreError();  // where it is missing, `work` says so
     if (job.anew || !job.waiting.empty() || job.image_of) {
@@ -78,7 +78,7 @@ void FilmDesk::retry() {
   }
 }
 
-void FilmDesk::retract(JobId id, std::uint64_t renderer) {
+void FilmThread::retract(JobId id, std::uint64_t renderer) {
   const auto job = jobs_.find(id);
   if (job == jobs_.end()) {
     return;
@@ -91,17 +91,17 @@ void FilmDesk::retract(JobId id, std::uint64_t renderer) {
   work(id, job->second).IgnoreError();  // the hook has heard of it
 }
 
-void FilmDesk::drop(JobId job) {
+void FilmThread::drop(JobId job) {
   jobs_.erase(job);
   credits_.forget(job);
 }
 
-std::vector<RowsBy> FilmDesk::rendered_by(JobId job) const {
+std::vector<RowsBy> FilmThread::rendered_by(JobId job) const {
   return jobs_.contains(job) ? credits_.of(job)
                              : read_credits(folder_.credits(job)).value_or(std::vector<RowsBy>());
 }
 
-absl::StatusOr<Image> FilmDesk::preview(JobId id, std::uint32_t row_step) const {
+absl::StatusOr<Image> FilmThread::preview(JobId id, std::uint32_t row_step) const {
   const auto job = jobs_.find(id);
   if (job == jobs_.end() || !job->second.film) {
     return absl::NotFoundError(absl::StrCat("there is no picture of job ", id, " yet"));
@@ -109,7 +109,7 @@ absl::StatusOr<Image> FilmDesk::preview(JobId id, std::uint32_t row_step) const 
   return job->second.film->snapshot(row_step).image;
 }
 
-absl::Status FilmDesk::work(JobId id, OneJob& job) {
+absl::Status FilmThread::work(JobId id, OneJob& job) {
   absl::Status status = job.anew ? make_anew(id, job) : absl::OkStatus();
   while (status.ok() && !job.waiting.empty()) {
     status = merge(id, job, job.waiting.front());
@@ -127,7 +127,7 @@ absl::Status FilmDesk::work(JobId id, OneJob& job) {
   return status;
 }
 
-absl::Status FilmDesk::make_anew(JobId id, OneJob& job) {
+absl::Status FilmThread::make_anew(JobId id, OneJob& job) {
   job.film.reset();  // its room is needed
   ASSIGN_OR_RETURN(job.film, film_until(id, job, kMaxSamples));
   job.anew = false;
@@ -135,7 +135,7 @@ absl::Status FilmDesk::make_anew(JobId id, OneJob& job) {
   return absl::OkStatus();
 }
 
-absl::Status FilmDesk::merge(JobId id, OneJob& job, Waiting& waiting) {
+absl::Status FilmThread::merge(JobId id, OneJob& job, Waiting& waiting) {
   if (!job.film) {
     ASSIGN_OR_RETURN(job.film, new_film(id, job));
   }
@@ -151,7 +151,7 @@ absl::Status FilmDesk::merge(JobId id, OneJob& job, Waiting& waiting) {
   return absl::OkStatus();
 }
 
-void FilmDesk::tell_passes(JobId id, OneJob& job) {
+void FilmThread::tell_passes(JobId id, OneJob& job) {
   for (auto end = job.pass_ends.upper_bound(job.told);
        end != job.pass_ends.end() && job.film->complete(*end); ++end) {
     job.told = *end;
@@ -163,7 +163,7 @@ void FilmDesk::tell_passes(JobId id, OneJob& job) {
   }
 }
 
-absl::Status FilmDesk::give_image(JobId id, OneJob& job) {
+absl::Status FilmThread::give_image(JobId id, OneJob& job) {
   if (!job.image_of || !job.film || !job.film->complete(*job.image_of)) {
     return absl::OkStatus();
   }
@@ -188,12 +188,12 @@ absl::Status FilmDesk::give_image(JobId id, OneJob& job) {
   return absl::OkStatus();
 }
 
-absl::StatusOr<Film> FilmDesk::new_film(JobId id, const OneJob& job) const {
+absl::StatusOr<Film> FilmThread::new_film(JobId id, const OneJob& job) const {
   return Film::create(job.settings.width, job.settings.height, folder_.job(id),
                       job.adaptive ? Film::Grain::kHalfTiles : Film::Grain::kRows);
 }
 
-FilmDesk::Added FilmDesk::added(const PutBand& put, const RowRange& rows) {
+FilmThread::Added FilmThread::added(const PutBand& put, const RowRange& rows) {
   return {.offset = put.offset,
           .band = {put.pixels.band.samples, rows},
           .renderer = put.renderer,
@@ -205,7 +205,7 @@ FilmDesk::Added FilmDesk::added(const PutBand& put, const RowRange& rows) {
 /// from which a part cannot be taken out again. What the log does not hold any more is left out and
 /// told. Fails where the film cannot be made, or the log cannot be read for another reason than
 /// damage.
-absl::StatusOr<Film> FilmDesk::film_until(JobId id, OneJob& job, std::uint64_t samples) {
+absl::StatusOr<Film> FilmThread::film_until(JobId id, OneJob& job, std::uint64_t samples) {
   ASSIGN_OR_RETURN(Film film, new_film(id, job));
   std::vector<std::size_t> damaged;
   for (std::size_t i = 0; i < job.added.size(); ++i) {
@@ -226,7 +226,7 @@ absl::StatusOr<Film> FilmDesk::film_until(JobId id, OneJob& job, std::uint64_t s
 }
 
 /// Bit for bit what was added. DATA_LOSS: the record is sound, but it is another one.
-absl::StatusOr<BandPixels> FilmDesk::read_again(JobId id, const Added& added) const {
+absl::StatusOr<BandPixels> FilmThread::read_again(JobId id, const Added& added) const {
   ASSIGN_OR_RETURN(const BandRecord record, read_band(folder_.bands(id), added.offset));
   const Band& found = record.pixels.band;
   const RowRange& rows = added.band.rows;
@@ -238,7 +238,7 @@ absl::StatusOr<BandPixels> FilmDesk::read_again(JobId id, const Added& added) co
   return slice(record.pixels, rows);
 }
 
-void FilmDesk::leave_out(JobId id, OneJob& job, const std::vector<std::size_t>& damaged) {
+void FilmThread::leave_out(JobId id, OneJob& job, const std::vector<std::size_t>& damaged) {
   std::vector<input::BandsDamaged::Lost> lost;
   for (auto index = damaged.rbegin(); index != damaged.rend(); ++index) {
     const auto one = job.added.begin() + static_cast<std::ptrdiff_t>(*index);

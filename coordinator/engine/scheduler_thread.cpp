@@ -1,4 +1,4 @@
-#include "coordinator/engine/core_desk.h"
+#include "coordinator/engine/scheduler_thread.h"
 
 #include <spdlog/spdlog.h>
 
@@ -18,7 +18,7 @@ constexpr std::size_t kCollectEveryJobs = 1'000;
 
 }  // namespace
 
-CoreDesk::CoreDesk(CoreOptions options, Journal& journal, Reserve reserve, const Clock& clock,
+SchedulerThread::SchedulerThread(CoreOptions options, Journal& journal, Reserve reserve, const Clock& clock,
                    Hooks hooks)
     : core_(options),
       journal_(journal),
@@ -29,13 +29,13 @@ CoreDesk::CoreDesk(CoreOptions options, Journal& journal, Reserve reserve, const
       links_(options.epoch),
       logs_(wire::kLogLinesKept, wire::kLogBytesKept) {}
 
-Step CoreDesk::run(const Input& input, PutBand* put) {
+Step SchedulerThread::run(const Input& input, PutBand* put) {
   Step step = core_.step(input, clock_.now());
   absorb(step, put);
   return step;
 }
 
-void CoreDesk::absorb(const Step& step, PutBand* put) {
+void SchedulerThread::absorb(const Step& step, PutBand* put) {
   for (const Record& record : step.records) {
     note(record);
     log_record(record);
@@ -65,7 +65,7 @@ void CoreDesk::absorb(const Step& step, PutBand* put) {
   }
 }
 
-void CoreDesk::perform(const Action& action) {
+void SchedulerThread::perform(const Action& action) {
   if (const auto* result = std::get_if<action::WriteResult>(&action)) {
     if (results_on_the_way_.insert(result->job).second) {
       hooks_.make_result(result->job, result->samples);
@@ -92,7 +92,7 @@ void CoreDesk::perform(const Action& action) {
   }
 }
 
-void CoreDesk::note(const Record& record) {
+void SchedulerThread::note(const Record& record) {
   if (const auto* added = std::get_if<record::JobAdded>(&record)) {
     known_[added->job].spec = added->spec;
     ++added_since_;
@@ -105,7 +105,7 @@ void CoreDesk::note(const Record& record) {
   }
 }
 
-void CoreDesk::tell_others(const Record& record) {
+void SchedulerThread::tell_others(const Record& record) {
   if (const auto* added = std::get_if<record::JobAdded>(&record)) {
     hooks_.add_job(added->job, added->spec);
   } else if (const auto* pass = std::get_if<record::PassPlanned>(&record)) {
@@ -113,12 +113,12 @@ void CoreDesk::tell_others(const Record& record) {
   }
 }
 
-bool CoreDesk::over(JobId id) const {
+bool SchedulerThread::over(JobId id) const {
   const auto known = known_.find(id);
   return known == known_.end() || is_final(known->second.state);
 }
 
-void CoreDesk::settle() {
+void SchedulerThread::settle() {
   if (const Time now = clock_.now(); now - ticked_at_ >= kTick_s) {
     ticked_at_ = now;
     run(input::Tick{});
@@ -135,7 +135,7 @@ void CoreDesk::settle() {
   watchers_.update(view_of, !journal_status_.ok(), clock_.now());
 }
 
-void CoreDesk::collect() {
+void SchedulerThread::collect() {
   const Time now = clock_.now();
   if (collected_at_ && now - *collected_at_ < kCollectEvery_s && added_since_ < kCollectEveryJobs) {
     return;
@@ -150,7 +150,7 @@ void CoreDesk::collect() {
 }
 
 /// Only where nothing waits for the journal: then what the core knows is what the journal holds.
-void CoreDesk::compact() {
+void SchedulerThread::compact() {
   if (!outbox_.empty() || journal_.size() <= compact_above_) {
     return;
   }
@@ -166,7 +166,7 @@ void CoreDesk::compact() {
   compact_above_ = std::max<std::uint64_t>(kCompactAbove, 2 * journal_.size());
 }
 
-bool CoreDesk::flush() {
+bool SchedulerThread::flush() {
   if (const absl::Status written = outbox_.write();
       absl::IsResourceExhausted(written) && reserve_.release()) {
     no_room(written);
@@ -180,7 +180,7 @@ bool CoreDesk::flush() {
   return false;
 }
 
-void CoreDesk::journal_failed(const absl::Status& status) {
+void SchedulerThread::journal_failed(const absl::Status& status) {
   hooks_.expect_trouble();
   if (!journal_status_.ok()) {
     return;
@@ -191,7 +191,7 @@ void CoreDesk::journal_failed(const absl::Status& status) {
   pause_all(journal_status_);
 }
 
-void CoreDesk::no_room(const absl::Status& status) {
+void SchedulerThread::no_room(const absl::Status& status) {
   hooks_.expect_trouble();
   if (!room_.ok()) {
     return;
@@ -204,7 +204,7 @@ void CoreDesk::no_room(const absl::Status& status) {
   pause_all(room_);
 }
 
-void CoreDesk::pause_all(const absl::Status& status) {
+void SchedulerThread::pause_all(const absl::Status& status) {
   for (const auto& [id, known] : known_) {
     if (!is_final(known.state)) {
       storage_failed(id, status);
@@ -212,12 +212,12 @@ void CoreDesk::pause_all(const absl::Status& status) {
   }
 }
 
-void CoreDesk::storage_failed(JobId job, const absl::Status& status) {
+void SchedulerThread::storage_failed(JobId job, const absl::Status& status) {
   spdlog::warn("job={} storage failed: {}", job, status.ToString());
   run(input::StorageFailed{.job = job, .reason = std::string(status.message())});
 }
 
-void CoreDesk::disk_is_back() {
+void SchedulerThread::disk_is_back() {
   if (!flush()) {
     return;
   }
@@ -232,12 +232,12 @@ void CoreDesk::disk_is_back() {
   hooks_.retry_film();
 }
 
-void CoreDesk::bands_damaged(input::BandsDamaged damaged) {
+void SchedulerThread::bands_damaged(input::BandsDamaged damaged) {
   results_on_the_way_.erase(damaged.job);  // the film waits for the bands; the core asks again
   run(damaged);
 }
 
-void CoreDesk::result_written(JobId job, const absl::Status& status) {
+void SchedulerThread::result_written(JobId job, const absl::Status& status) {
   results_on_the_way_.erase(job);
   if (status.ok()) {
     run(input::ResultWritten{.job = job});

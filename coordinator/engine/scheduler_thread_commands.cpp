@@ -3,11 +3,11 @@
 #include <variant>
 
 #include "absl/strings/str_cat.h"
-#include "coordinator/engine/core_desk.h"
+#include "coordinator/engine/scheduler_thread.h"
 
 namespace bandsaw::coordinator {
 
-void CoreDesk::submit(JobSpec spec, std::int32_t priority, Answer<JobId> answer) {
+void SchedulerThread::submit(JobSpec spec, std::int32_t priority, Answer<JobId> answer) {
   if (!journal_status_.ok() || !room_.ok()) {
     answer(journal_status_.ok() ? room_ : journal_status_);
     return;
@@ -34,7 +34,7 @@ void CoreDesk::submit(JobSpec spec, std::int32_t priority, Answer<JobId> answer)
   });
 }
 
-void CoreDesk::tell(JobId id, const Input& input, Answer<JobView> answer) {
+void SchedulerThread::tell(JobId id, const Input& input, Answer<JobView> answer) {
   if (!journal_status_.ok()) {
     answer(journal_status_);
     return;
@@ -53,7 +53,7 @@ void CoreDesk::tell(JobId id, const Input& input, Answer<JobView> answer) {
   });
 }
 
-void CoreDesk::tell_of_worker(const Input& input, Answer<bool> answer) {
+void SchedulerThread::tell_of_worker(const Input& input, Answer<bool> answer) {
   if (!journal_status_.ok()) {
     answer(journal_status_);
     return;
@@ -69,7 +69,7 @@ void CoreDesk::tell_of_worker(const Input& input, Answer<bool> answer) {
       });
 }
 
-void CoreDesk::watch(JobId id, Watchers::Changed changed) {
+void SchedulerThread::watch(JobId id, Watchers::Changed changed) {
   watchers_.add(id, job(id), std::move(changed), clock_.now());
 }
 

@@ -1,4 +1,4 @@
-#include "coordinator/engine/store_desk.h"
+#include "coordinator/engine/store_thread.h"
 
 #include <spdlog/spdlog.h>
 
@@ -19,7 +19,7 @@ bool belongs(const BandRecord& record, const JobSpec& spec) {
 
 }  // namespace
 
-absl::StatusOr<BandLogReport> StoreDesk::open_job(
+absl::StatusOr<BandLogReport> StoreThread::open_job(
     JobId id, const JobSpec& spec, absl::FunctionRef<void(BandRecord, std::uint64_t)> each) {
   RETURN_IF_ERROR(add_job(id, spec));
   OpenJob& job = jobs_[id];
@@ -35,13 +35,13 @@ absl::StatusOr<BandLogReport> StoreDesk::open_job(
   return report;
 }
 
-absl::Status StoreDesk::add_job(JobId id, const JobSpec& spec) {
+absl::Status StoreThread::add_job(JobId id, const JobSpec& spec) {
   jobs_[id].spec = spec;
   RETURN_IF_ERROR(make_folder(folder_.job(id)));
   return sync_folder(folder_.jobs());
 }
 
-void StoreDesk::append(PutBand put) {
+void StoreThread::append(PutBand put) {
   const auto job = jobs_.find(put.job);
   if (job == jobs_.end()) {
     hooks_.failed(std::move(put), absl::CancelledError("the job is over"));
@@ -56,7 +56,7 @@ void StoreDesk::append(PutBand put) {
   job->second.written.push_back(std::move(put));
 }
 
-absl::Status StoreDesk::write(OpenJob& job, PutBand& put) {
+absl::Status StoreThread::write(OpenJob& job, PutBand& put) {
   RETURN_IF_ERROR(open_log(put.job, job));
   BandRecord record{.package_digest = job.spec.manifest,
                     .settings = job.spec.settings,
@@ -71,7 +71,7 @@ absl::Status StoreDesk::write(OpenJob& job, PutBand& put) {
   return absl::OkStatus();
 }
 
-absl::Status StoreDesk::open_log(JobId id, OpenJob& job) {
+absl::Status StoreThread::open_log(JobId id, OpenJob& job) {
   if (!job.log) {
     RETURN_IF_ERROR(add_job(id, job.spec));
     BandLogReport report;
@@ -82,12 +82,12 @@ absl::Status StoreDesk::open_log(JobId id, OpenJob& job) {
   return absl::OkStatus();
 }
 
-void StoreDesk::compare(PutBand put) {
+void StoreThread::compare(PutBand put) {
   std::vector<std::uint64_t> digests = row_digests(put.pixels);
   hooks_.stored(std::move(put), std::move(digests));
 }
 
-void StoreDesk::settle() {
+void StoreThread::settle() {
   for (auto& [id, job] : jobs_) {
     if (!job.written.empty()) {
       settle(job);
@@ -103,7 +103,7 @@ void StoreDesk::settle() {
   }
 }
 
-void StoreDesk::settle(OpenJob& job) {
+void StoreThread::settle(OpenJob& job) {
   const absl::Status synced = job.log->sync();
   for (PutBand& put : std::exchange(job.written, {})) {
     if (synced.ok()) {
@@ -115,7 +115,7 @@ void StoreDesk::settle(OpenJob& job) {
   }
 }
 
-void StoreDesk::write_result(JobId id, const Finished& finished) {
+void StoreThread::write_result(JobId id, const Finished& finished) {
   // The image does not depend on it.
   if (const absl::Status status = write_credits(finished.credits, folder_.credits(id));
       !status.ok()) {
@@ -134,7 +134,7 @@ void StoreDesk::write_result(JobId id, const Finished& finished) {
   hooks_.result_written(id, written);
 }
 
-absl::StatusOr<StoredResult> StoreDesk::read_result(JobId id, FinishedPart part) const {
+absl::StatusOr<StoredResult> StoreThread::read_result(JobId id, FinishedPart part) const {
   if (part == FinishedPart::kSamples) {
     absl::StatusOr<StoredResult> samples = coordinator::read_result(folder_.samples(id));
     return absl::IsNotFound(samples.status())
@@ -151,24 +151,24 @@ absl::StatusOr<StoredResult> StoreDesk::read_result(JobId id, FinishedPart part)
   return result;
 }
 
-void StoreDesk::reopen(JobId id) {
+void StoreThread::reopen(JobId id) {
   if (const auto job = jobs_.find(id); job != jobs_.end() && job->second.log) {
     settle(job->second);
     job->second.log.reset();
   }
 }
 
-void StoreDesk::drop_bands(JobId id) {
+void StoreThread::drop_bands(JobId id) {
   jobs_.erase(id);
   remove_file(folder_.bands(id)).IgnoreError();  // what is left is removed at the next start
 }
 
-void StoreDesk::drop_job(JobId id) {
+void StoreThread::drop_job(JobId id) {
   std::error_code error;  // what is left is removed by the next sweep
   std::filesystem::remove_all(folder_.job(id), error);
 }
 
-void StoreDesk::expect_trouble() {
+void StoreThread::expect_trouble() {
   if (!trouble_) {
     trouble_ = true;
     asked_at_ = clock_.now();

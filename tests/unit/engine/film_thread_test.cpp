@@ -1,4 +1,4 @@
-#include "coordinator/engine/film_desk.h"
+#include "coordinator/engine/film_thread.h"
 
 #include <gtest/gtest.h>
 
@@ -15,9 +15,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
-class FilmDeskTest : public testing::Test {
+class FilmThreadTest : public testing::Test {
  protected:
-  FilmDeskTest() {
+  FilmThreadTest() {
     EXPECT_TRUE(make_folder(folder_.job(1)).ok());
     BandLogReport report;
     log_.emplace(*BandLog::open(
@@ -70,7 +70,7 @@ class FilmDeskTest : public testing::Test {
   std::optional<Image> samples_;
   int failed_ = 0;
   std::vector<input::BandsDamaged::Lost> damaged_;
-  FilmDesk desk_{folder_,
+  FilmThread desk_{folder_,
                  {.merged =
                       [this](input::PassMerged m) {
                         merged_.push_back(m.samples);
@@ -89,7 +89,7 @@ class FilmDeskTest : public testing::Test {
                       }}};
 };
 
-TEST_F(FilmDeskTest, TellsEachPassOnceWhenItsLastRowsAreThere) {
+TEST_F(FilmThreadTest, TellsEachPassOnceWhenItsLastRowsAreThere) {
   desk_.plan(1, 16);
   desk_.plan(1, 32);
   ASSERT_TRUE(add({16, 32}, {0, 8}).ok());
@@ -100,7 +100,7 @@ TEST_F(FilmDeskTest, TellsEachPassOnceWhenItsLastRowsAreThere) {
   EXPECT_GT(errors_.back(), 0) << "two halves are there";
 }
 
-TEST_F(FilmDeskTest, WhatAMachineGaveCanBeTakenOutAgain) {
+TEST_F(FilmThreadTest, WhatAMachineGaveCanBeTakenOutAgain) {
   desk_.plan(1, 16);
   desk_.plan(1, 32);
   PutBand wrong = logged({0, 16}, {0, 4});
@@ -119,7 +119,7 @@ TEST_F(FilmDeskTest, WhatAMachineGaveCanBeTakenOutAgain) {
   EXPECT_EQ(images_[0].pixels, local(32));
 }
 
-TEST_F(FilmDeskTest, WhatIsDamagedInTheLogIsLeftOutAndTold) {
+TEST_F(FilmThreadTest, WhatIsDamagedInTheLogIsLeftOutAndTold) {
   desk_.plan(1, 16);
   ASSERT_TRUE(add({0, 16}, {0, 4}).ok());
   PutBand sound = logged({0, 16}, {4, 8});
@@ -141,7 +141,7 @@ TEST_F(FilmDeskTest, WhatIsDamagedInTheLogIsLeftOutAndTold) {
   EXPECT_EQ(images_[0].pixels, local(16));
 }
 
-TEST_F(FilmDeskTest, AnotherBandInThePlaceOfOneIsDamage) {
+TEST_F(FilmThreadTest, AnotherBandInThePlaceOfOneIsDamage) {
   ASSERT_TRUE(add({0, 16}, {0, 4}).ok());
   PutBand other = logged({0, 16}, {4, 8});
   PutBand wrong = logged({0, 16}, {4, 8});
@@ -153,7 +153,7 @@ TEST_F(FilmDeskTest, AnotherBandInThePlaceOfOneIsDamage) {
   EXPECT_EQ(damaged_[0].band.rows, (RowRange{4, 8}));
 }
 
-TEST_F(FilmDeskTest, AnImageOfADamagedLogIsAskedForAgain) {
+TEST_F(FilmThreadTest, AnImageOfADamagedLogIsAskedForAgain) {
   ASSERT_TRUE(add({0, 16}, {0, 8}).ok());
   ASSERT_TRUE(add({16, 32}, {0, 3}).ok());
   ASSERT_TRUE(remove_file(folder_.bands(1)).ok());
@@ -170,7 +170,7 @@ TEST_F(FilmDeskTest, AnImageOfADamagedLogIsAskedForAgain) {
   EXPECT_EQ(images_[0].pixels, local(16));
 }
 
-TEST_F(FilmDeskTest, WhatIsInTheLogIsReadWhenTheFilmHasRoom) {
+TEST_F(FilmThreadTest, WhatIsInTheLogIsReadWhenTheFilmHasRoom) {
   desk_.plan(1, 16);
   ASSERT_TRUE(add({0, 16}, {0, 4}).ok());
   desk_.add_later(1, logged({0, 16}, {4, 8}), {{4, 8}});
@@ -182,7 +182,7 @@ TEST_F(FilmDeskTest, WhatIsInTheLogIsReadWhenTheFilmHasRoom) {
   EXPECT_EQ(images_[0].pixels, local(16));
 }
 
-TEST_F(FilmDeskTest, AddsOnlyTheRowsThatAreNew) {
+TEST_F(FilmThreadTest, AddsOnlyTheRowsThatAreNew) {
   ASSERT_TRUE(add({0, 16}, {2, 5}).ok());
   ASSERT_TRUE(add({0, 16}, {0, 8}, {{0, 2}, {5, 8}}).ok());
   desk_.want_image(1, 16);
@@ -190,7 +190,7 @@ TEST_F(FilmDeskTest, AddsOnlyTheRowsThatAreNew) {
   EXPECT_EQ(images_[0].pixels, local(16));
 }
 
-TEST_F(FilmDeskTest, AnImageOfFewerSamplesThanSomeRowsHaveIsThatOfTheFewer) {
+TEST_F(FilmThreadTest, AnImageOfFewerSamplesThanSomeRowsHaveIsThatOfTheFewer) {
   ASSERT_TRUE(add({0, 16}, {0, 8}).ok());
   ASSERT_TRUE(add({16, 32}, {0, 3}).ok());
   ASSERT_TRUE(add({16, 32}, {2, 5}, {{3, 5}}).ok());
@@ -199,7 +199,7 @@ TEST_F(FilmDeskTest, AnImageOfFewerSamplesThanSomeRowsHaveIsThatOfTheFewer) {
   EXPECT_EQ(images_[0].pixels, local(16));
 }
 
-TEST_F(FilmDeskTest, AnImageWaitsForItsLastRows) {
+TEST_F(FilmThreadTest, AnImageWaitsForItsLastRows) {
   ASSERT_TRUE(add({0, 16}, {0, 7}).ok());
   desk_.want_image(1, 16);
   EXPECT_TRUE(images_.empty());
@@ -209,7 +209,7 @@ TEST_F(FilmDeskTest, AnImageWaitsForItsLastRows) {
   EXPECT_EQ(images_[0].pixels, local(16));
 }
 
-TEST_F(FilmDeskTest, AnAdaptiveJobLeavesEachPixelsNumberOfSamples) {
+TEST_F(FilmThreadTest, AnAdaptiveJobLeavesEachPixelsNumberOfSamples) {
   desk_.add_job(1, settings_, true);
   TileSamples even(settings_.width, {0, 8});
   even.set(0, {16, 32});
@@ -225,7 +225,7 @@ TEST_F(FilmDeskTest, AnAdaptiveJobLeavesEachPixelsNumberOfSamples) {
   }
 }
 
-TEST_F(FilmDeskTest, WhatAFullDiskRefusedIsAddedLater) {
+TEST_F(FilmThreadTest, WhatAFullDiskRefusedIsAddedLater) {
   PutBand first = logged({0, 16}, {0, 4});
   PutBand second = logged({0, 16}, {4, 8});
   desk_.plan(1, 16);
@@ -244,7 +244,7 @@ TEST_F(FilmDeskTest, WhatAFullDiskRefusedIsAddedLater) {
   EXPECT_EQ(images_[0].pixels, local(16));
 }
 
-TEST_F(FilmDeskTest, ADroppedJobTakesNothingMore) {
+TEST_F(FilmThreadTest, ADroppedJobTakesNothingMore) {
   ASSERT_TRUE(add({0, 16}, {0, 8}).ok());
   desk_.drop(1);
   EXPECT_TRUE(add({16, 32}, {0, 8}).ok());
@@ -263,7 +263,7 @@ TEST(Slice, TakesTheRowsAsked) {
   EXPECT_EQ(middle.width, 1u);
 }
 
-TEST_F(FilmDeskTest, APreviewShowsWhatIsThereAndWhoMadeIt) {
+TEST_F(FilmThreadTest, APreviewShowsWhatIsThereAndWhoMadeIt) {
   EXPECT_TRUE(absl::IsNotFound(desk_.preview(1, 1).status()));
   PutBand put = logged({0, 16}, {2, 5});
   put.worker = "anna";
@@ -281,7 +281,7 @@ TEST_F(FilmDeskTest, APreviewShowsWhatIsThereAndWhoMadeIt) {
   EXPECT_TRUE(absl::IsNotFound(desk_.preview(1, 1).status()));
 }
 
-TEST_F(FilmDeskTest, WhoMadeAnImageIsToldWithItAndReadFromBesideItLater) {
+TEST_F(FilmThreadTest, WhoMadeAnImageIsToldWithItAndReadFromBesideItLater) {
   PutBand put = logged({0, 16}, {0, 8});
   put.worker = "anna";
   ASSERT_TRUE(desk_.add(1, std::move(put), {{0, 8}}).ok());
