@@ -213,7 +213,7 @@ void Engine::lost(SessionId session, std::string reason) {
 void Engine::put_band(JobId job, std::uint64_t work, std::string instance, BandPixels pixels,
                       double render_s, double cpu_s,
                       std::function<void(absl::StatusOr<BandOutcome>)> done) {
-  PutBand put{.job = job,
+  IncomingBand incoming{.job = job,
               .work = work,
               .instance = std::move(instance),
               .pixels = std::move(pixels),
@@ -223,14 +223,14 @@ void Engine::put_band(JobId job, std::uint64_t work, std::string instance, BandP
               .answer = Answer<BandOutcome>(std::move(done)),
               .share = {}};
   std::optional<MemoryBudget::Share> share =
-      impl_->bands().take(put.pixels.sums.size() * sizeof(double));
+      impl_->bands().take(incoming.pixels.sums.size() * sizeof(double));
   if (!share) {
-    put.answer(absl::ResourceExhaustedError(
+    incoming.answer(absl::ResourceExhaustedError(
         "the coordinator holds as many bands in memory as it may; send this one again soon"));
     return;
   }
-  put.share = *std::move(share);
-  impl_->on_core([put = std::move(put)](SchedulerThread& core) mutable { core.put_band(std::move(put)); });
+  incoming.share = *std::move(share);
+  impl_->on_core([incoming = std::move(incoming)](SchedulerThread& core) mutable { core.put_band(std::move(incoming)); });
 }
 
 MemoryBudget& Engine::images() { return impl_->images(); }

@@ -13,7 +13,7 @@
 #include "absl/status/statusor.h"
 #include "coordinator/core/messages.h"
 #include "coordinator/engine/collector.h"
-#include "coordinator/engine/credits.h"
+#include "coordinator/engine/attribution.h"
 #include "coordinator/engine/memory_budget.h"
 #include "coordinator/engine/worker_link.h"
 #include "coordinator/store/result_file.h"

@@ -41,22 +41,22 @@ void FilmThread::plan(JobId id, std::uint64_t samples) {
   }
 }
 
-absl::Status FilmThread::add(JobId id, PutBand put, std::vector<RowRange> rows) {
+absl::Status FilmThread::add(JobId id, IncomingBand incoming, std::vector<RowRange> rows) {
   const auto job = jobs_.find(id);
   if (job == jobs_.end() || rows.empty()) {
     return absl::OkStatus();
   }
-  job->second.waiting.push_back({std::move(put), std::move(rows)});
+  job->second.waiting.push_back({std::move(incoming), std::move(rows)});
   return work(id, job->second);
 }
 
-void FilmThread::add_later(JobId id, const PutBand& put, const std::vector<RowRange>& rows) {
+void FilmThread::add_later(JobId id, const IncomingBand& incoming, const std::vector<RowRange>& rows) {
   const auto job = jobs_.find(id);
   if (job == jobs_.end()) {
     return;
   }
   for (const RowRange& range : rows) {
-    job->second.added.push_back(added(put, range));
+    job->second.added.push_back(added(incoming, range));
   }
   job->second.film.reset();
   job->second.anew = true;
@@ -84,7 +84,7 @@ void FilmThread::retract(JobId id, std::uint64_t renderer) {
     return;
   }
   const auto by = [&](const auto& one) { return one.renderer == renderer; };
-  std::erase_if(job->second.waiting, [&](const Waiting& waiting) { return by(waiting.put); });
+  std::erase_if(job->second.waiting, [&](const Waiting& waiting) { return by(waiting.incoming); });
   std::erase_if(job->second.added, by);
   job->second.anew = true;
   job->second.told = 0;
@@ -93,12 +93,12 @@ void FilmThread::retract(JobId id, std::uint64_t renderer) {
 
 void FilmThread::drop(JobId job) {
   jobs_.erase(job);
-  credits_.forget(job);
+  attribution_.forget(job);
 }
 
 std::vector<RowsBy> FilmThread::rendered_by(JobId job) const {
-  return jobs_.contains(job) ? credits_.of(job)
-                             : read_credits(folder_.credits(job)).value_or(std::vector<RowsBy>());
+  return jobs_.contains(job) ? attribution_.of(job)
+                             : read_attribution(folder_.attribution(job)).value_or(std::vector<RowsBy>());
 }
 
 absl::StatusOr<Image> FilmThread::preview(JobId id, std::uint32_t row_step) const {
@@ -139,13 +139,13 @@ absl::Status FilmThread::merge(JobId id, OneJob& job, Waiting& waiting) {
   if (!job.film) {
     ASSIGN_OR_RETURN(job.film, new_film(id, job));
   }
-  const BandPixels& pixels = waiting.put.pixels;
+  const BandPixels& pixels = waiting.incoming.pixels;
   while (!waiting.rows.empty()) {
     const RowRange rows = waiting.rows.back();
     RETURN_IF_ERROR(job.film->add(rows == pixels.band.rows ? pixels : slice(pixels, rows),
-                                  waiting.put.tiles.of(rows)));
-    credits_.add(id, rows, waiting.put.renderer, waiting.put.worker);
-    job.added.push_back(added(waiting.put, rows));
+                                  waiting.incoming.tiles.of(rows)));
+    attribution_.add(id, rows, waiting.incoming.renderer, waiting.incoming.worker);
+    job.added.push_back(added(waiting.incoming, rows));
     waiting.rows.pop_back();
   }
   return absl::OkStatus();
@@ -180,7 +180,7 @@ absl::Status FilmThread::give_image(JobId id, OneJob& job) {
   job.image_of.reset();
   // What was told on the way may have been of more samples.
   hooks_.merged({.job = id, .samples = samples, .error = job.film->error()});
-  Finished finished{job.film->snapshot().image, std::nullopt, credits_.of(id)};
+  Finished finished{job.film->snapshot().image, std::nullopt, attribution_.of(id)};
   if (job.adaptive) {
     finished.samples = job.film->counts();
   }
@@ -193,12 +193,12 @@ absl::StatusOr<Film> FilmThread::new_film(JobId id, const OneJob& job) const {
                       job.adaptive ? Film::Grain::kHalfTiles : Film::Grain::kRows);
 }
 
-FilmThread::Added FilmThread::added(const PutBand& put, const RowRange& rows) {
-  return {.offset = put.offset,
-          .band = {put.pixels.band.samples, rows},
-          .renderer = put.renderer,
-          .tiles = put.tiles.of(rows),
-          .digest = digest_of(put.pixels, rows)};
+FilmThread::Added FilmThread::added(const IncomingBand& incoming, const RowRange& rows) {
+  return {.offset = incoming.offset,
+          .band = {incoming.pixels.band.samples, rows},
+          .renderer = incoming.renderer,
+          .tiles = incoming.tiles.of(rows),
+          .digest = digest_of(incoming.pixels, rows)};
 }
 
 /// A film of what was added up to a sample, read from the log: nodes that met have become one sum,

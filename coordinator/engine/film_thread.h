@@ -14,8 +14,8 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "coordinator/core/messages.h"
-#include "coordinator/engine/credits.h"
-#include "coordinator/engine/put_band.h"
+#include "coordinator/engine/attribution.h"
+#include "coordinator/engine/incoming_band.h"
 #include "coordinator/store/data_folder.h"
 #include "coordinator/store/finished.h"
 #include "renderlib/image/image.h"
@@ -42,10 +42,10 @@ class FilmThread {
   void plan(JobId job, std::uint64_t samples);
   /// These rows of the band are new. OK: they are in the film; otherwise they wait for retry, which
   /// `failed` says too.
-  absl::Status add(JobId job, PutBand put, std::vector<RowRange> rows);
+  absl::Status add(JobId job, IncomingBand incoming, std::vector<RowRange> rows);
   /// The same of a band that is in the job's log, while the film cannot take any: it is read again
   /// at the next retry.
-  void add_later(JobId job, const PutBand& put, const std::vector<RowRange>& rows);
+  void add_later(JobId job, const IncomingBand& incoming, const std::vector<RowRange>& rows);
   /// The image of samples [0, samples) goes to the hook as soon as the film has them.
   void want_image(JobId job, std::uint64_t samples);
   void retry();
@@ -63,7 +63,7 @@ class FilmThread {
 
  private:
   struct Waiting {
-    PutBand put;
+    IncomingBand incoming;
     std::vector<RowRange> rows;
   };
   /// What was added: enough to add it again from the job's log.
@@ -85,7 +85,7 @@ class FilmThread {
     bool anew = false;       ///< the film has what is not in `added`
     std::optional<std::uint64_t> image_of;
   };
-  static Added added(const PutBand& put, const RowRange& rows);
+  static Added added(const IncomingBand& incoming, const RowRange& rows);
   absl::Status work(JobId id, OneJob& job);
   absl::Status make_anew(JobId id, OneJob& job);
   absl::Status merge(JobId id, OneJob& job, Waiting& waiting);
@@ -99,7 +99,7 @@ class FilmThread {
   const DataFolder& folder_;
   Hooks hooks_;
   std::map<JobId, OneJob> jobs_;
-  Credits credits_;
+  Attribution attribution_;
 };
 
 /// The part of a band that these rows are.

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "absl/strings/str_format.h"
-#include "coordinator/engine/apart.h"
+#include "coordinator/engine/answer.h"
 #include "coordinator/store/sqlite_journal.h"
 #include "proto/wire/versions.h"
 #include "renderlib/base/status_macros.h"
@@ -135,21 +135,21 @@ SchedulerThread::Hooks Engine::Impl::core_hooks() {
             on_film([job, samples](FilmThread& film) { film.plan(job, samples); });
           },
       .store_band =
-          [this](PutBand put) {
+          [this](IncomingBand incoming) {
             on_store(
-                [put = std::move(put)](StoreThread& store) mutable { store.append(std::move(put)); });
+                [incoming = std::move(incoming)](StoreThread& store) mutable { store.append(std::move(incoming)); });
           },
       .compare_band =
-          [this](PutBand put) {
-            on_store([put = std::move(put)](StoreThread& store) mutable {
-              store.compare(std::move(put));
+          [this](IncomingBand incoming) {
+            on_store([incoming = std::move(incoming)](StoreThread& store) mutable {
+              store.compare(std::move(incoming));
             });
           },
       .add_to_film =
-          [this](PutBand put, std::vector<RowRange> rows) {
-            on_film([put = std::move(put), rows = std::move(rows)](FilmThread& film) mutable {
-              const JobId job = put.job;
-              film.add(job, std::move(put), std::move(rows))
+          [this](IncomingBand incoming, std::vector<RowRange> rows) {
+            on_film([incoming = std::move(incoming), rows = std::move(rows)](FilmThread& film) mutable {
+              const JobId job = incoming.job;
+              film.add(job, std::move(incoming), std::move(rows))
                   .IgnoreError();  // the hook has told the core
             });
           },
@@ -179,20 +179,20 @@ SchedulerThread::Hooks Engine::Impl::core_hooks() {
 StoreThread::Hooks Engine::Impl::store_hooks() {
   return {
       .stored =
-          [this](PutBand put, std::vector<std::uint64_t> digests) {
-            on_core([put = std::move(put), digests = std::move(digests)](SchedulerThread& core) mutable {
-              core.band_stored(std::move(put), std::move(digests));
+          [this](IncomingBand incoming, std::vector<std::uint64_t> digests) {
+            on_core([incoming = std::move(incoming), digests = std::move(digests)](SchedulerThread& core) mutable {
+              core.band_stored(std::move(incoming), std::move(digests));
             });
           },
       .failed =
-          [this](PutBand put, absl::Status status) {
-            on_core([put = std::move(put), status = apart(status)](SchedulerThread& core) mutable {
-              core.band_failed(std::move(put), status);
+          [this](IncomingBand incoming, absl::Status status) {
+            on_core([incoming = std::move(incoming), status = unshared_status(status)](SchedulerThread& core) mutable {
+              core.band_failed(std::move(incoming), status);
             });
           },
       .result_written =
           [this](JobId job, absl::Status status) {
-            on_core([job, status = apart(status)](SchedulerThread& core) {
+            on_core([job, status = unshared_status(status)](SchedulerThread& core) {
               core.result_written(job, status);
             });
           },
@@ -213,7 +213,7 @@ FilmThread::Hooks Engine::Impl::film_hooks() {
           .failed =
               [this](JobId job, absl::Status status) {
                 // The core hears of it before the store can tell it that the disk is back.
-                on_core([job, status = apart(status)](SchedulerThread& core) {
+                on_core([job, status = unshared_status(status)](SchedulerThread& core) {
                   core.storage_failed(job, status);
                 });
                 on_store([](StoreThread& store) { store.expect_trouble(); });

@@ -19,7 +19,7 @@
 #include "coordinator/engine/film_thread.h"
 #include "coordinator/engine/mailbox.h"
 #include "coordinator/engine/memory_budget.h"
-#include "coordinator/engine/put_band.h"
+#include "coordinator/engine/incoming_band.h"
 #include "coordinator/engine/store_thread.h"
 #include "coordinator/store/blob_store.h"
 #include "coordinator/store/data_folder.h"

@@ -25,39 +25,39 @@ SchedulerThread::SchedulerThread(CoreOptions options, Journal& journal, Reserve 
       reserve_(std::move(reserve)),
       clock_(clock),
       hooks_(std::move(hooks)),
-      outbox_(journal),
+      commit_queue_(journal),
       links_(options.epoch),
       logs_(wire::kLogLinesKept, wire::kLogBytesKept) {}
 
-Step SchedulerThread::run(const Input& input, PutBand* put) {
+Step SchedulerThread::run(const Input& input, IncomingBand* incoming) {
   Step step = core_.step(input, clock_.now());
-  absorb(step, put);
+  absorb(step, incoming);
   return step;
 }
 
-void SchedulerThread::absorb(const Step& step, PutBand* put) {
+void SchedulerThread::absorb(const Step& step, IncomingBand* incoming) {
   for (const Record& record : step.records) {
     note(record);
     log_record(record);
-    outbox_.record(record);
-    outbox_.deed([this, record] { tell_others(record); });
+    commit_queue_.record(record);
+    commit_queue_.effect([this, record] { tell_others(record); });
   }
   for (const Action& action : step.actions) {
     const auto* add = std::get_if<action::AddToFilm>(&action);
-    if (add != nullptr && put != nullptr) {
-      PutBand band;
-      band.job = put->job;
+    if (add != nullptr && incoming != nullptr) {
+      IncomingBand band;
+      band.job = incoming->job;
       band.worker = add->worker;
-      band.renderer = put->renderer;
-      band.pixels = std::move(put->pixels);
-      band.share = std::move(put->share);
-      band.offset = put->offset;
+      band.renderer = incoming->renderer;
+      band.pixels = std::move(incoming->pixels);
+      band.share = std::move(incoming->share);
+      band.offset = incoming->offset;
       band.tiles = add->tiles;
-      outbox_.deed([this, rows = add->rows, band = std::move(band)]() mutable {
+      commit_queue_.effect([this, rows = add->rows, band = std::move(band)]() mutable {
         hooks_.add_to_film(std::move(band), std::move(rows));
       });
     } else {
-      outbox_.deed([this, action] { perform(action); });
+      commit_queue_.effect([this, action] { perform(action); });
     }
   }
   if (absl::IsInternal(step.status)) {
@@ -129,7 +129,7 @@ void SchedulerThread::settle() {
       compact();
     }
   } else {
-    outbox_.fail_replies(journal_status_);
+    commit_queue_.fail_completions(journal_status_);
   }
   const auto view_of = [this](JobId id) { return job(id); };
   watchers_.update(view_of, !journal_status_.ok(), clock_.now());
@@ -151,7 +151,7 @@ void SchedulerThread::collect() {
 
 /// Only where nothing waits for the journal: then what the core knows is what the journal holds.
 void SchedulerThread::compact() {
-  if (!outbox_.empty() || journal_.size() <= compact_above_) {
+  if (!commit_queue_.empty() || journal_.size() <= compact_above_) {
     return;
   }
   const std::vector<Record> records = core_.snapshot();
@@ -167,11 +167,11 @@ void SchedulerThread::compact() {
 }
 
 bool SchedulerThread::flush() {
-  if (const absl::Status written = outbox_.write();
+  if (const absl::Status written = commit_queue_.write();
       absl::IsResourceExhausted(written) && reserve_.release()) {
     no_room(written);
   }
-  const absl::Status flushed = outbox_.flush();
+  const absl::Status flushed = commit_queue_.flush();
   if (flushed.ok()) {
     journal_status_ = flushed;
     return true;

@@ -16,8 +16,8 @@
 #include "coordinator/engine/clock.h"
 #include "coordinator/engine/collector.h"
 #include "coordinator/engine/links.h"
-#include "coordinator/engine/outbox.h"
-#include "coordinator/engine/put_band.h"
+#include "coordinator/engine/commit_queue.h"
+#include "coordinator/engine/incoming_band.h"
 #include "coordinator/engine/watchers.h"
 #include "coordinator/engine/worker_logs.h"
 #include "coordinator/store/journal.h"
@@ -35,9 +35,9 @@ class SchedulerThread {
   struct Hooks {
     std::function<void(JobId, const JobSpec&)> add_job;
     std::function<void(JobId, std::uint64_t samples)> plan_pass;
-    std::function<void(PutBand)> store_band;
-    std::function<void(PutBand)> compare_band;
-    std::function<void(PutBand, std::vector<RowRange>)> add_to_film;
+    std::function<void(IncomingBand)> store_band;
+    std::function<void(IncomingBand)> compare_band;
+    std::function<void(IncomingBand, std::vector<RowRange>)> add_to_film;
     std::function<void(JobId, std::uint64_t renderer)> retract;
     std::function<void(JobId, std::uint64_t samples)> make_result;
     std::function<void(JobId)> drop_bands;
@@ -71,15 +71,15 @@ class SchedulerThread {
   void lost(SessionId session, std::string reason);
   /// Heartbeats and what else needs nothing but the core.
   void hear(const Input& input) { run(input); }
-  void put_band(PutBand put);
+  void put_band(IncomingBand incoming);
   void worker_log(SessionId session, std::vector<std::string> lines);
   absl::StatusOr<std::vector<std::string>> worker_log(const std::string& worker) const {
     return logs_.of(worker);
   }
 
   // The other threads.
-  void band_stored(PutBand put, std::vector<std::uint64_t> row_digests);
-  void band_failed(PutBand put, const absl::Status& status);
+  void band_stored(IncomingBand incoming, std::vector<std::uint64_t> row_digests);
+  void band_failed(IncomingBand incoming, const absl::Status& status);
   void bands_damaged(input::BandsDamaged damaged);
   void result_written(JobId job, const absl::Status& status);
   void storage_failed(JobId job, const absl::Status& status);
@@ -97,10 +97,10 @@ class SchedulerThread {
     JobState state = JobState::kRunning;
     std::vector<std::uint64_t> pass_ends;
   };
-  /// One step of the core; what it led to goes into the outbox. `put`: the band the input is about,
+  /// One step of the core; what it led to goes into the commit queue. `incoming`: the band the input is about,
   /// if any.
-  Step run(const Input& input, PutBand* put = nullptr);
-  void absorb(const Step& step, PutBand* put);
+  Step run(const Input& input, IncomingBand* incoming = nullptr);
+  void absorb(const Step& step, IncomingBand* incoming);
   void perform(const Action& action);
   void note(const Record& record);
   void tell_others(const Record& record);
@@ -119,7 +119,7 @@ class SchedulerThread {
   Reserve reserve_;
   const Clock& clock_;
   Hooks hooks_;
-  Outbox outbox_;
+  CommitQueue commit_queue_;
   Links links_;
   Watchers watchers_;
   WorkerLogs logs_;

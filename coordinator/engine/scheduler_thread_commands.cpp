@@ -16,7 +16,7 @@ void SchedulerThread::submit(JobSpec spec, std::int32_t priority, Answer<JobId> 
   const bool added = std::any_of(
       step.records.begin(), step.records.end(),
       [](const Record& record) { return std::holds_alternative<record::JobAdded>(record); });
-  outbox_.reply([this, job = step.job, added, decided = step.status,
+  commit_queue_.completion([this, job = step.job, added, decided = step.status,
                  answer = std::move(answer)](const absl::Status& journalled) mutable {
     if (!decided.ok()) {
       answer(decided);
@@ -40,7 +40,7 @@ void SchedulerThread::tell(JobId id, const Input& input, Answer<JobView> answer)
     return;
   }
   const Step step = run(input);
-  outbox_.reply([this, id, decided = step.status,
+  commit_queue_.completion([this, id, decided = step.status,
                  answer = std::move(answer)](const absl::Status& journalled) mutable {
     const std::optional<JobView> view = job(id);
     if (!decided.ok() || !journalled.ok()) {
@@ -59,7 +59,7 @@ void SchedulerThread::tell_of_worker(const Input& input, Answer<bool> answer) {
     return;
   }
   const Step step = run(input);
-  outbox_.reply(
+  commit_queue_.completion(
       [decided = step.status, answer = std::move(answer)](const absl::Status& journalled) mutable {
         if (!decided.ok() || !journalled.ok()) {
           answer(decided.ok() ? journalled : decided);

@@ -61,15 +61,15 @@ absl::Status SchedulerThread::restore_job(JobId id, const Known& known, StoreThr
                                    .cpu_s = record.cpu_s});
     // A band of a machine that is kept away is refused.
     if (const auto left = core_.wanted(id, band); left && left->empty()) {
-      PutBand put;
-      put.renderer = record.renderer;
-      put.pixels = std::move(pixels);
-      put.offset = offset;
-      put.tiles = core_.tiles(id, band);
+      IncomingBand incoming;
+      incoming.renderer = record.renderer;
+      incoming.pixels = std::move(pixels);
+      incoming.offset = offset;
+      incoming.tiles = core_.tiles(id, band);
       if (filmed.ok()) {
-        filmed = film.add(id, std::move(put), *std::move(rows));
+        filmed = film.add(id, std::move(incoming), *std::move(rows));
       } else {
-        film.add_later(id, put, *rows);
+        film.add_later(id, incoming, *rows);
       }
     }
   };

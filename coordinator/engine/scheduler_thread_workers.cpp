@@ -44,53 +44,53 @@ void SchedulerThread::worker_log(SessionId session, std::vector<std::string> lin
   }
 }
 
-void SchedulerThread::put_band(PutBand put) {
-  const auto known = known_.find(put.job);
+void SchedulerThread::put_band(IncomingBand incoming) {
+  const auto known = known_.find(incoming.job);
   if (known == known_.end() || is_final(known->second.state) ||
-      !known->second.spec.may_be(put.work)) {
-    put.answer(BandOutcome::kUnwanted);
+      !known->second.spec.may_be(incoming.work)) {
+    incoming.answer(BandOutcome::kUnwanted);
     return;
   }
-  if (const absl::Status valid = check_band(put.pixels, known->second.spec.settings,
-                                            core_.tiles(put.job, put.pixels.band));
+  if (const absl::Status valid = check_band(incoming.pixels, known->second.spec.settings,
+                                            core_.tiles(incoming.job, incoming.pixels.band));
       !valid.ok()) {
-    put.answer(valid);
+    incoming.answer(valid);
     return;
   }
   if (!journal_status_.ok()) {
-    put.answer(journal_status_);
+    incoming.answer(journal_status_);
     return;
   }
-  put.renderer = renderer_of(put.instance);
-  const std::optional<std::vector<RowRange>> wanted = core_.wanted(put.job, put.pixels.band);
+  incoming.renderer = renderer_of(incoming.instance);
+  const std::optional<std::vector<RowRange>> wanted = core_.wanted(incoming.job, incoming.pixels.band);
   if (!wanted) {
-    put.answer(BandOutcome::kUnwanted);
+    incoming.answer(BandOutcome::kUnwanted);
   } else if (wanted->empty()) {
-    hooks_.compare_band(std::move(put));
+    hooks_.compare_band(std::move(incoming));
   } else if (!room_.ok()) {
-    put.answer(room_);
+    incoming.answer(room_);
   } else {
-    hooks_.store_band(std::move(put));
+    hooks_.store_band(std::move(incoming));
   }
 }
 
-void SchedulerThread::band_stored(PutBand put, std::vector<std::uint64_t> row_digests) {
-  const Step step = run(input::BandStored{.job = put.job,
-                                          .band = put.pixels.band,
+void SchedulerThread::band_stored(IncomingBand incoming, std::vector<std::uint64_t> row_digests) {
+  const Step step = run(input::BandStored{.job = incoming.job,
+                                          .band = incoming.pixels.band,
                                           .row_digests = std::move(row_digests),
-                                          .instance = put.instance,
-                                          .counters = put.pixels.counters,
-                                          .render_s = put.render_s,
-                                          .cpu_s = put.cpu_s,
-                                          .written = put.written},
-                        &put);
+                                          .instance = incoming.instance,
+                                          .counters = incoming.pixels.counters,
+                                          .render_s = incoming.render_s,
+                                          .cpu_s = incoming.cpu_s,
+                                          .written = incoming.written},
+                        &incoming);
   const bool added = std::any_of(step.actions.begin(), step.actions.end(), [](const Action& a) {
     return std::holds_alternative<action::AddToFilm>(a);
   });
   const BandOutcome outcome = added           ? BandOutcome::kStored
-                              : over(put.job) ? BandOutcome::kUnwanted
+                              : over(incoming.job) ? BandOutcome::kUnwanted
                                               : BandOutcome::kDuplicate;
-  outbox_.reply([outcome, answer = std::move(put.answer)](const absl::Status& journalled) mutable {
+  commit_queue_.completion([outcome, answer = std::move(incoming.answer)](const absl::Status& journalled) mutable {
     if (journalled.ok()) {
       answer(outcome);
     } else {
@@ -99,13 +99,13 @@ void SchedulerThread::band_stored(PutBand put, std::vector<std::uint64_t> row_di
   });
 }
 
-void SchedulerThread::band_failed(PutBand put, const absl::Status& status) {
-  if (over(put.job)) {
-    put.answer(BandOutcome::kUnwanted);
+void SchedulerThread::band_failed(IncomingBand incoming, const absl::Status& status) {
+  if (over(incoming.job)) {
+    incoming.answer(BandOutcome::kUnwanted);
     return;
   }
-  storage_failed(put.job, status);
-  put.answer(absl::ResourceExhaustedError(
+  storage_failed(incoming.job, status);
+  incoming.answer(absl::ResourceExhaustedError(
       absl::StrCat("the coordinator cannot keep the band now: ", status.message())));
 }
 

@@ -41,33 +41,33 @@ absl::Status StoreThread::add_job(JobId id, const JobSpec& spec) {
   return sync_folder(folder_.jobs());
 }
 
-void StoreThread::append(PutBand put) {
-  const auto job = jobs_.find(put.job);
+void StoreThread::append(IncomingBand incoming) {
+  const auto job = jobs_.find(incoming.job);
   if (job == jobs_.end()) {
-    hooks_.failed(std::move(put), absl::CancelledError("the job is over"));
+    hooks_.failed(std::move(incoming), absl::CancelledError("the job is over"));
     return;
   }
-  const absl::Status written = write(job->second, put);
+  const absl::Status written = write(job->second, incoming);
   if (!written.ok()) {
     expect_trouble();
-    hooks_.failed(std::move(put), written);
+    hooks_.failed(std::move(incoming), written);
     return;
   }
-  job->second.written.push_back(std::move(put));
+  job->second.written.push_back(std::move(incoming));
 }
 
-absl::Status StoreThread::write(OpenJob& job, PutBand& put) {
-  RETURN_IF_ERROR(open_log(put.job, job));
+absl::Status StoreThread::write(OpenJob& job, IncomingBand& incoming) {
+  RETURN_IF_ERROR(open_log(incoming.job, job));
   BandRecord record{.package_digest = job.spec.manifest,
                     .settings = job.spec.settings,
-                    .pixels = std::move(put.pixels),
-                    .cpu_s = put.cpu_s,
-                    .renderer = put.renderer};
+                    .pixels = std::move(incoming.pixels),
+                    .cpu_s = incoming.cpu_s,
+                    .renderer = incoming.renderer};
   const absl::StatusOr<std::uint64_t> offset = job.log->append(record);
-  put.pixels = std::move(record.pixels);
+  incoming.pixels = std::move(record.pixels);
   RETURN_IF_ERROR(offset.status());
-  put.offset = *offset;
-  put.written = true;
+  incoming.offset = *offset;
+  incoming.written = true;
   return absl::OkStatus();
 }
 
@@ -82,9 +82,9 @@ absl::Status StoreThread::open_log(JobId id, OpenJob& job) {
   return absl::OkStatus();
 }
 
-void StoreThread::compare(PutBand put) {
-  std::vector<std::uint64_t> digests = row_digests(put.pixels);
-  hooks_.stored(std::move(put), std::move(digests));
+void StoreThread::compare(IncomingBand incoming) {
+  std::vector<std::uint64_t> digests = row_digests(incoming.pixels);
+  hooks_.stored(std::move(incoming), std::move(digests));
 }
 
 void StoreThread::settle() {
@@ -105,19 +105,19 @@ void StoreThread::settle() {
 
 void StoreThread::settle(OpenJob& job) {
   const absl::Status synced = job.log->sync();
-  for (PutBand& put : std::exchange(job.written, {})) {
+  for (IncomingBand& incoming : std::exchange(job.written, {})) {
     if (synced.ok()) {
-      compare(std::move(put));
+      compare(std::move(incoming));
     } else {
       expect_trouble();
-      hooks_.failed(std::move(put), synced);
+      hooks_.failed(std::move(incoming), synced);
     }
   }
 }
 
 void StoreThread::write_result(JobId id, const Finished& finished) {
   // The image does not depend on it.
-  if (const absl::Status status = write_credits(finished.credits, folder_.credits(id));
+  if (const absl::Status status = write_attribution(finished.attribution, folder_.attribution(id));
       !status.ok()) {
     spdlog::warn("job={} who rendered its rows could not be kept: {}", id, status.ToString());
   }

@@ -11,9 +11,9 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "coordinator/engine/clock.h"
-#include "coordinator/engine/put_band.h"
+#include "coordinator/engine/incoming_band.h"
 #include "coordinator/store/band_log.h"
-#include "coordinator/store/credits_file.h"
+#include "coordinator/store/attribution_file.h"
 #include "coordinator/store/data_folder.h"
 #include "coordinator/store/finished.h"
 #include "coordinator/store/result_file.h"
@@ -25,8 +25,8 @@ class StoreThread {
  public:
   /// Called on the store's thread. Every band that was given ends in `stored` or `failed`.
   struct Hooks {
-    std::function<void(PutBand, std::vector<std::uint64_t> row_digests)> stored;
-    std::function<void(PutBand, absl::Status)> failed;
+    std::function<void(IncomingBand, std::vector<std::uint64_t> row_digests)> stored;
+    std::function<void(IncomingBand, absl::Status)> failed;
     std::function<void(JobId, absl::Status)> result_written;
     std::function<void()> disk_is_back;
   };
@@ -41,9 +41,9 @@ class StoreThread {
   absl::Status add_job(JobId job, const JobSpec& spec);
 
   /// Written, but not answered before settle.
-  void append(PutBand put);
+  void append(IncomingBand incoming);
   /// Digests of a band that is there already; not written.
-  void compare(PutBand put);
+  void compare(IncomingBand incoming);
   /// After each batch: one fdatasync a log, then the hooks. Asks the disk now and then while it
   /// fails.
   void settle();
@@ -65,9 +65,9 @@ class StoreThread {
   struct OpenJob {
     JobSpec spec;
     std::optional<BandLog> log;    ///< opened at the first band
-    std::vector<PutBand> written;  ///< not synced yet
+    std::vector<IncomingBand> written;  ///< not synced yet
   };
-  absl::Status write(OpenJob& job, PutBand& put);
+  absl::Status write(OpenJob& job, IncomingBand& incoming);
   absl::Status open_log(JobId id, OpenJob& job);
   void settle(OpenJob& job);
 

@@ -16,11 +16,11 @@ namespace {
 constexpr std::size_t kMostJobs = 200;
 
 std::vector<JobView> all_jobs(Engine& engine) {
-  return ask<std::vector<JobView>>([&](auto answer) { engine.jobs(answer); });
+  return blocking_call<std::vector<JobView>>([&](auto answer) { engine.jobs(answer); });
 }
 
 std::vector<WorkerView> all_workers(Engine& engine) {
-  return ask<std::vector<WorkerView>>([&](auto answer) { engine.workers(answer); });
+  return blocking_call<std::vector<WorkerView>>([&](auto answer) { engine.workers(answer); });
 }
 
 web::Overview overview(Engine& engine) {
@@ -45,7 +45,7 @@ absl::StatusOr<web::Log> worker_log(Engine& engine, const HttpRequest& request) 
   ASSIGN_OR_RETURN(const std::string name, reason_field("name", request.parameter("name")));
   using Lines = absl::StatusOr<std::vector<std::string>>;
   ASSIGN_OR_RETURN(const std::vector<std::string> lines,
-                   ask<Lines>([&](auto answer) { engine.logs(name, answer); }));
+                   blocking_call<Lines>([&](auto answer) { engine.logs(name, answer); }));
   web::Log log;
   log.mutable_line()->Assign(lines.begin(), lines.end());
   return log;

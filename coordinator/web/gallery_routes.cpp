@@ -16,7 +16,7 @@ constexpr std::uint64_t kMostSamples = 4096;
 constexpr std::uint32_t kMostWidth = 4096;
 
 web::Gallery gallery_message(Engine& engine, const Gallery& gallery) {
-  const auto jobs = ask<std::vector<JobView>>([&](auto answer) { engine.jobs(answer); });
+  const auto jobs = blocking_call<std::vector<JobView>>([&](auto answer) { engine.jobs(answer); });
   web::Gallery message;
   for (const GalleryScene& scene : gallery.scenes()) {
     web::Scene* const card = message.add_scene();

@@ -28,7 +28,7 @@ void add_order(Router& router, Engine& engine, const char* order, TellJob tell) 
   router.post(absl::StrCat("/api/jobs/*/", order), [&engine, tell](const HttpRequest& request,
                                                                    const HttpBody&) {
     const auto job = job_of(request);
-    return answer_with(job.ok() ? ask<Told>([&](auto answer) { (engine.*tell)(*job, answer); })
+    return answer_with(job.ok() ? blocking_call<Told>([&](auto answer) { (engine.*tell)(*job, answer); })
                                 : Told(job.status()));
   });
 }
@@ -37,7 +37,7 @@ Told set_priority(Engine& engine, const HttpRequest& request, const HttpBody& bo
   ASSIGN_OR_RETURN(const JobId job, job_of(request));
   web::Priority wanted;
   RETURN_IF_ERROR(read_json(body, wanted));
-  return ask<Told>([&](auto answer) { engine.set_priority(job, wanted.priority(), answer); });
+  return blocking_call<Told>([&](auto answer) { engine.set_priority(job, wanted.priority(), answer); });
 }
 
 absl::StatusOr<web::JobPage> job_page(Engine& engine, const HttpRequest& request) {
@@ -46,11 +46,11 @@ absl::StatusOr<web::JobPage> job_page(Engine& engine, const HttpRequest& request
   web::JobPage page;
   *page.mutable_job()->mutable_status() = to_message(view);
   for (const std::string& reason :
-       ask<std::vector<std::string>>([&](auto answer) { engine.why(id, answer); })) {
+       blocking_call<std::vector<std::string>>([&](auto answer) { engine.why(id, answer); })) {
     page.add_why(reason);
   }
   for (const RowsBy& by :
-       ask<std::vector<RowsBy>>([&](auto answer) { engine.rendered_by(id, answer); })) {
+       blocking_call<std::vector<RowsBy>>([&](auto answer) { engine.rendered_by(id, answer); })) {
     web::RowsBy* const rows = page.add_rendered();
     rows->set_first_row(by.rows.first);
     rows->set_last_row(by.rows.last);

@@ -6,7 +6,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "coordinator/engine/ask.h"
+#include "coordinator/engine/blocking_call.h"
 #include "coordinator/web/http.h"
 
 namespace bandsaw::coordinator {

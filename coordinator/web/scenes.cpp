@@ -26,7 +26,7 @@ absl::StatusOr<web::Submitted> Scenes::submit(const std::string& path, const Sce
   RETURN_IF_ERROR(validate(spec.settings));
   using Answer = absl::StatusOr<JobId>;
   ASSIGN_OR_RETURN(const JobId job,
-                   ask<Answer>([&](auto answer) { engine_.submit(spec, answer); }));
+                   blocking_call<Answer>([&](auto answer) { engine_.submit(spec, answer); }));
   web::Submitted submitted;
   submitted.set_job(job);
   submitted.mutable_warning()->Assign(scene.info.warnings.begin(), scene.info.warnings.end());

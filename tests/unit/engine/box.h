@@ -27,7 +27,7 @@ class Box {
     wait_until(fits);
     return *value_;
   }
-  /// The next value, which is then the caller's alone (coordinator/engine/apart.h says why that
+  /// The next value, which is then the caller's alone (coordinator/engine/answer.h says why that
   /// matters).
   T take() EXCLUDES(mutex_) {
     MutexLock lock(mutex_);

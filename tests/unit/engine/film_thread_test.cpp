@@ -22,27 +22,27 @@ class FilmThreadTest : public testing::Test {
     BandLogReport report;
     log_.emplace(*BandLog::open(
         folder_.job(1), folder_.bands(1), [](BandRecord, std::uint64_t) {}, report));
-    desk_.add_job(1, settings_);
+    thread_.add_job(1, settings_);
   }
 
-  PutBand logged(const SampleRange& samples, const RowRange& rows, const TileSamples& tiles = {}) {
+  IncomingBand logged(const SampleRange& samples, const RowRange& rows, const TileSamples& tiles = {}) {
     Pool pool(1);
     const std::atomic<bool> stop{false};
     BandRecord record{.package_digest = std::string(64, 'a'), .settings = settings_, .pixels = {}};
     record.pixels = *render_band(
         *scene_, settings_, {samples, rows}, pool, stop, [](std::uint32_t) {}, tiles);
-    PutBand put;
-    put.tiles = tiles;
-    put.offset = *log_->append(record);
-    put.pixels = std::move(record.pixels);
-    return put;
+    IncomingBand incoming;
+    incoming.tiles = tiles;
+    incoming.offset = *log_->append(record);
+    incoming.pixels = std::move(record.pixels);
+    return incoming;
   }
   absl::Status add(const SampleRange& samples, const RowRange& rows,
                    std::vector<RowRange> new_rows = {}) {
     if (new_rows.empty()) {
       new_rows = {rows};
     }
-    return desk_.add(1, logged(samples, rows), std::move(new_rows));
+    return thread_.add(1, logged(samples, rows), std::move(new_rows));
   }
   void damage(std::uint64_t at) {
     std::fstream bands(folder_.bands(1), std::ios::in | std::ios::out | std::ios::binary);
@@ -66,11 +66,11 @@ class FilmThreadTest : public testing::Test {
   std::vector<std::uint64_t> merged_;
   std::vector<double> errors_;
   std::vector<Image> images_;
-  std::vector<RowsBy> credits_;
+  std::vector<RowsBy> attribution_;
   std::optional<Image> samples_;
   int failed_ = 0;
   std::vector<input::BandsDamaged::Lost> damaged_;
-  FilmThread desk_{folder_,
+  FilmThread thread_{folder_,
                  {.merged =
                       [this](input::PassMerged m) {
                         merged_.push_back(m.samples);
@@ -80,7 +80,7 @@ class FilmThreadTest : public testing::Test {
                       [this](JobId, Finished finished) {
                         images_.push_back(std::move(finished.image));
                         samples_ = std::move(finished.samples);
-                        credits_ = std::move(finished.credits);
+                        attribution_ = std::move(finished.attribution);
                       },
                   .failed = [this](JobId, absl::Status) { ++failed_; },
                   .damaged =
@@ -90,8 +90,8 @@ class FilmThreadTest : public testing::Test {
 };
 
 TEST_F(FilmThreadTest, TellsEachPassOnceWhenItsLastRowsAreThere) {
-  desk_.plan(1, 16);
-  desk_.plan(1, 32);
+  thread_.plan(1, 16);
+  thread_.plan(1, 32);
   ASSERT_TRUE(add({16, 32}, {0, 8}).ok());
   ASSERT_TRUE(add({0, 16}, {0, 5}).ok());
   EXPECT_TRUE(merged_.empty());
@@ -101,33 +101,33 @@ TEST_F(FilmThreadTest, TellsEachPassOnceWhenItsLastRowsAreThere) {
 }
 
 TEST_F(FilmThreadTest, WhatAMachineGaveCanBeTakenOutAgain) {
-  desk_.plan(1, 16);
-  desk_.plan(1, 32);
-  PutBand wrong = logged({0, 16}, {0, 4});
+  thread_.plan(1, 16);
+  thread_.plan(1, 32);
+  IncomingBand wrong = logged({0, 16}, {0, 4});
   wrong.pixels.sums[5] += 1;
   wrong.renderer = 7;
-  ASSERT_TRUE(desk_.add(1, std::move(wrong), {{0, 4}}).ok());
+  ASSERT_TRUE(thread_.add(1, std::move(wrong), {{0, 4}}).ok());
   ASSERT_TRUE(add({0, 16}, {4, 8}).ok());
   ASSERT_TRUE(add({16, 32}, {0, 8}).ok()) << "nodes that met are one sum in the film";
   EXPECT_EQ(merged_, (std::vector<std::uint64_t>{16, 32}));
-  desk_.retract(1, 7);
+  thread_.retract(1, 7);
   EXPECT_EQ(merged_.size(), 2u);
   ASSERT_TRUE(add({0, 16}, {0, 4}).ok());
   EXPECT_EQ(merged_, (std::vector<std::uint64_t>{16, 32, 16, 32}));
-  desk_.want_image(1, 32);
+  thread_.want_image(1, 32);
   ASSERT_EQ(images_.size(), 1u);
   EXPECT_EQ(images_[0].pixels, local(32));
 }
 
 TEST_F(FilmThreadTest, WhatIsDamagedInTheLogIsLeftOutAndTold) {
-  desk_.plan(1, 16);
+  thread_.plan(1, 16);
   ASSERT_TRUE(add({0, 16}, {0, 4}).ok());
-  PutBand sound = logged({0, 16}, {4, 8});
+  IncomingBand sound = logged({0, 16}, {4, 8});
   damage(sound.offset + 300);
   sound.renderer = 5;
-  ASSERT_TRUE(desk_.add(1, std::move(sound), {{4, 6}, {6, 8}}).ok());
+  ASSERT_TRUE(thread_.add(1, std::move(sound), {{4, 6}, {6, 8}}).ok());
   EXPECT_EQ(merged_, (std::vector<std::uint64_t>{16})) << "it was added from memory";
-  desk_.retract(1, 7);
+  thread_.retract(1, 7);
   EXPECT_EQ(failed_, 0);
   ASSERT_EQ(damaged_.size(), 2u);
   for (const auto& lost : damaged_) {
@@ -136,19 +136,19 @@ TEST_F(FilmThreadTest, WhatIsDamagedInTheLogIsLeftOutAndTold) {
   }
   ASSERT_TRUE(add({0, 16}, {4, 8}).ok());
   EXPECT_EQ(merged_, (std::vector<std::uint64_t>{16, 16}));
-  desk_.want_image(1, 16);
+  thread_.want_image(1, 16);
   ASSERT_EQ(images_.size(), 1u);
   EXPECT_EQ(images_[0].pixels, local(16));
 }
 
 TEST_F(FilmThreadTest, AnotherBandInThePlaceOfOneIsDamage) {
   ASSERT_TRUE(add({0, 16}, {0, 4}).ok());
-  PutBand other = logged({0, 16}, {4, 8});
-  PutBand wrong = logged({0, 16}, {4, 8});
+  IncomingBand other = logged({0, 16}, {4, 8});
+  IncomingBand wrong = logged({0, 16}, {4, 8});
   wrong.pixels.sums[7] += 1;  // sound in the log, but not what was added
   wrong.offset = other.offset;
-  ASSERT_TRUE(desk_.add(1, std::move(wrong), {{4, 8}}).ok());
-  desk_.retract(1, 7);
+  ASSERT_TRUE(thread_.add(1, std::move(wrong), {{4, 8}}).ok());
+  thread_.retract(1, 7);
   ASSERT_EQ(damaged_.size(), 1u);
   EXPECT_EQ(damaged_[0].band.rows, (RowRange{4, 8}));
 }
@@ -157,7 +157,7 @@ TEST_F(FilmThreadTest, AnImageOfADamagedLogIsAskedForAgain) {
   ASSERT_TRUE(add({0, 16}, {0, 8}).ok());
   ASSERT_TRUE(add({16, 32}, {0, 3}).ok());
   ASSERT_TRUE(remove_file(folder_.bands(1)).ok());
-  desk_.want_image(1, 16);
+  thread_.want_image(1, 16);
   EXPECT_TRUE(images_.empty());
   ASSERT_EQ(damaged_.size(), 1u) << "what lies beyond is not needed any more";
   BandLogReport report;
@@ -165,19 +165,19 @@ TEST_F(FilmThreadTest, AnImageOfADamagedLogIsAskedForAgain) {
       folder_.job(1), folder_.bands(1), [](BandRecord, std::uint64_t) {}, report));
   ASSERT_TRUE(add({0, 16}, {0, 8}).ok());
   EXPECT_TRUE(images_.empty());
-  desk_.want_image(1, 16);
+  thread_.want_image(1, 16);
   ASSERT_EQ(images_.size(), 1u);
   EXPECT_EQ(images_[0].pixels, local(16));
 }
 
 TEST_F(FilmThreadTest, WhatIsInTheLogIsReadWhenTheFilmHasRoom) {
-  desk_.plan(1, 16);
+  thread_.plan(1, 16);
   ASSERT_TRUE(add({0, 16}, {0, 4}).ok());
-  desk_.add_later(1, logged({0, 16}, {4, 8}), {{4, 8}});
+  thread_.add_later(1, logged({0, 16}, {4, 8}), {{4, 8}});
   EXPECT_TRUE(merged_.empty());
-  desk_.retry();
+  thread_.retry();
   EXPECT_EQ(merged_, (std::vector<std::uint64_t>{16}));
-  desk_.want_image(1, 16);
+  thread_.want_image(1, 16);
   ASSERT_EQ(images_.size(), 1u);
   EXPECT_EQ(images_[0].pixels, local(16));
 }
@@ -185,7 +185,7 @@ TEST_F(FilmThreadTest, WhatIsInTheLogIsReadWhenTheFilmHasRoom) {
 TEST_F(FilmThreadTest, AddsOnlyTheRowsThatAreNew) {
   ASSERT_TRUE(add({0, 16}, {2, 5}).ok());
   ASSERT_TRUE(add({0, 16}, {0, 8}, {{0, 2}, {5, 8}}).ok());
-  desk_.want_image(1, 16);
+  thread_.want_image(1, 16);
   ASSERT_EQ(images_.size(), 1u);
   EXPECT_EQ(images_[0].pixels, local(16));
 }
@@ -194,14 +194,14 @@ TEST_F(FilmThreadTest, AnImageOfFewerSamplesThanSomeRowsHaveIsThatOfTheFewer) {
   ASSERT_TRUE(add({0, 16}, {0, 8}).ok());
   ASSERT_TRUE(add({16, 32}, {0, 3}).ok());
   ASSERT_TRUE(add({16, 32}, {2, 5}, {{3, 5}}).ok());
-  desk_.want_image(1, 16);
+  thread_.want_image(1, 16);
   ASSERT_EQ(images_.size(), 1u);
   EXPECT_EQ(images_[0].pixels, local(16));
 }
 
 TEST_F(FilmThreadTest, AnImageWaitsForItsLastRows) {
   ASSERT_TRUE(add({0, 16}, {0, 7}).ok());
-  desk_.want_image(1, 16);
+  thread_.want_image(1, 16);
   EXPECT_TRUE(images_.empty());
   ASSERT_TRUE(add({0, 16}, {7, 8}).ok());
   ASSERT_EQ(images_.size(), 1u);
@@ -210,12 +210,12 @@ TEST_F(FilmThreadTest, AnImageWaitsForItsLastRows) {
 }
 
 TEST_F(FilmThreadTest, AnAdaptiveJobLeavesEachPixelsNumberOfSamples) {
-  desk_.add_job(1, settings_, true);
+  thread_.add_job(1, settings_, true);
   TileSamples even(settings_.width, {0, 8});
   even.set(0, {16, 32});
   ASSERT_TRUE(add({0, 16}, {0, 8}).ok());
-  ASSERT_TRUE(desk_.add(1, logged({16, 32}, {0, 8}, even), {{0, 8}}).ok());
-  desk_.want_image(1, 32);
+  ASSERT_TRUE(thread_.add(1, logged({16, 32}, {0, 8}, even), {{0, 8}}).ok());
+  thread_.want_image(1, 32);
   ASSERT_TRUE(samples_.has_value());
   ASSERT_EQ(samples_->pixels.size(), 48u);
   for (std::uint32_t y = 0; y < 8; ++y) {
@@ -226,19 +226,19 @@ TEST_F(FilmThreadTest, AnAdaptiveJobLeavesEachPixelsNumberOfSamples) {
 }
 
 TEST_F(FilmThreadTest, WhatAFullDiskRefusedIsAddedLater) {
-  PutBand first = logged({0, 16}, {0, 4});
-  PutBand second = logged({0, 16}, {4, 8});
-  desk_.plan(1, 16);
+  IncomingBand first = logged({0, 16}, {0, 4});
+  IncomingBand second = logged({0, 16}, {4, 8});
+  thread_.plan(1, 16);
   {
     const test::FullDisk full(0);
-    EXPECT_EQ(desk_.add(1, std::move(first), {{0, 4}}).code(),
+    EXPECT_EQ(thread_.add(1, std::move(first), {{0, 4}}).code(),
               absl::StatusCode::kResourceExhausted);
-    EXPECT_FALSE(desk_.add(1, std::move(second), {{4, 8}}).ok());
-    desk_.want_image(1, 16);
+    EXPECT_FALSE(thread_.add(1, std::move(second), {{4, 8}}).ok());
+    thread_.want_image(1, 16);
     EXPECT_GE(failed_, 2);
   }
   EXPECT_TRUE(merged_.empty());
-  desk_.retry();
+  thread_.retry();
   EXPECT_EQ(merged_, (std::vector<std::uint64_t>{16, 16})) << "the pass, and the finished image";
   ASSERT_EQ(images_.size(), 1u);
   EXPECT_EQ(images_[0].pixels, local(16));
@@ -246,9 +246,9 @@ TEST_F(FilmThreadTest, WhatAFullDiskRefusedIsAddedLater) {
 
 TEST_F(FilmThreadTest, ADroppedJobTakesNothingMore) {
   ASSERT_TRUE(add({0, 16}, {0, 8}).ok());
-  desk_.drop(1);
+  thread_.drop(1);
   EXPECT_TRUE(add({16, 32}, {0, 8}).ok());
-  desk_.want_image(1, 16);
+  thread_.want_image(1, 16);
   EXPECT_TRUE(images_.empty());
 }
 
@@ -264,34 +264,34 @@ TEST(Slice, TakesTheRowsAsked) {
 }
 
 TEST_F(FilmThreadTest, APreviewShowsWhatIsThereAndWhoMadeIt) {
-  EXPECT_TRUE(absl::IsNotFound(desk_.preview(1, 1).status()));
-  PutBand put = logged({0, 16}, {2, 5});
-  put.worker = "anna";
-  ASSERT_TRUE(desk_.add(1, std::move(put), {{2, 5}}).ok());
-  const Image whole = *desk_.preview(1, 1);
+  EXPECT_TRUE(absl::IsNotFound(thread_.preview(1, 1).status()));
+  IncomingBand incoming = logged({0, 16}, {2, 5});
+  incoming.worker = "anna";
+  ASSERT_TRUE(thread_.add(1, std::move(incoming), {{2, 5}}).ok());
+  const Image whole = *thread_.preview(1, 1);
   EXPECT_EQ(whole.height, 8u);
   EXPECT_EQ(whole.at(3, 1), Rgb());
   EXPECT_EQ(whole.at(3, 4), local(16)[4 * 6 + 3]);
-  const Image thirds = *desk_.preview(1, 3);
+  const Image thirds = *thread_.preview(1, 3);
   EXPECT_EQ(thirds.height, 3u);
   EXPECT_EQ(thirds.at(3, 1), whole.at(3, 3));
   const std::vector<RowsBy> by_anna = {{{2, 5}, "anna"}};
-  EXPECT_EQ(desk_.rendered_by(1), by_anna);
-  desk_.drop(1);
-  EXPECT_TRUE(absl::IsNotFound(desk_.preview(1, 1).status()));
+  EXPECT_EQ(thread_.rendered_by(1), by_anna);
+  thread_.drop(1);
+  EXPECT_TRUE(absl::IsNotFound(thread_.preview(1, 1).status()));
 }
 
 TEST_F(FilmThreadTest, WhoMadeAnImageIsToldWithItAndReadFromBesideItLater) {
-  PutBand put = logged({0, 16}, {0, 8});
-  put.worker = "anna";
-  ASSERT_TRUE(desk_.add(1, std::move(put), {{0, 8}}).ok());
-  desk_.want_image(1, 16);
+  IncomingBand incoming = logged({0, 16}, {0, 8});
+  incoming.worker = "anna";
+  ASSERT_TRUE(thread_.add(1, std::move(incoming), {{0, 8}}).ok());
+  thread_.want_image(1, 16);
   const std::vector<RowsBy> by_anna = {{{0, 8}, "anna"}};
-  EXPECT_EQ(credits_, by_anna);
-  desk_.drop(1);
-  EXPECT_TRUE(desk_.rendered_by(1).empty());
-  ASSERT_TRUE(write_credits(by_anna, folder_.credits(1)).ok());
-  EXPECT_EQ(desk_.rendered_by(1), by_anna);
+  EXPECT_EQ(attribution_, by_anna);
+  thread_.drop(1);
+  EXPECT_TRUE(thread_.rendered_by(1).empty());
+  ASSERT_TRUE(write_attribution(by_anna, folder_.attribution(1)).ok());
+  EXPECT_EQ(thread_.rendered_by(1), by_anna);
 }
 
 }  // namespace

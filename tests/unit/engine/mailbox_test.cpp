@@ -5,7 +5,7 @@
 #include <atomic>
 
 #include "coordinator/engine/answer.h"
-#include "coordinator/engine/put_band.h"
+#include "coordinator/engine/incoming_band.h"
 #include "tests/unit/engine/box.h"
 
 namespace bandsaw::coordinator {

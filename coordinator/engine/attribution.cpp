@@ -1,10 +1,10 @@
-#include "coordinator/engine/credits.h"
+#include "coordinator/engine/attribution.h"
 
 #include <iterator>
 
 namespace bandsaw::coordinator {
 
-void Credits::add(JobId job, const RowRange& rows, std::uint64_t renderer,
+void Attribution::add(JobId job, const RowRange& rows, std::uint64_t renderer,
                   const std::string& name) {
   if (!name.empty() && (names_.size() < kMostNames || names_.contains(renderer))) {
     names_[renderer] = name;
@@ -27,7 +27,7 @@ void Credits::add(JobId job, const RowRange& rows, std::uint64_t renderer,
   all[rows.first] = {rows, renderer};
 }
 
-std::vector<RowsBy> Credits::of(JobId job) const {
+std::vector<RowsBy> Attribution::of(JobId job) const {
   std::vector<RowsBy> out;
   const auto found = jobs_.find(job);
   if (found == jobs_.end()) {

@@ -20,10 +20,10 @@ struct RowsBy {
 };
 
 /// Writes the file atomically.
-absl::Status write_credits(const std::vector<RowsBy>& credits, const std::string& path);
+absl::Status write_attribution(const std::vector<RowsBy>& attribution, const std::string& path);
 
 /// Reads the file. NOT_FOUND: no such file. DATA_LOSS: damaged, with the reason.
 /// RESOURCE_EXHAUSTED: far too long.
-absl::StatusOr<std::vector<RowsBy>> read_credits(const std::string& path);
+absl::StatusOr<std::vector<RowsBy>> read_attribution(const std::string& path);
 
 }  // namespace bandsaw::coordinator

@@ -11,7 +11,7 @@ namespace bandsaw::coordinator {
 /// Waits on this thread for what `begin` is to call its argument with, once: the engine always
 /// answers (engine/answer.h). For threads that are there to wait, never the engine's or gRPC's own.
 template <class T, class Begin>
-T ask(Begin begin) {
+T blocking_call(Begin begin) {
   const auto answer = std::make_shared<std::promise<T>>();
   std::future<T> later = answer->get_future();
   begin([answer](T value) { answer->set_value(std::move(value)); });

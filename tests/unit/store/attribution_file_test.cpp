@@ -1,4 +1,4 @@
-#include "coordinator/store/credits_file.h"
+#include "coordinator/store/attribution_file.h"
 
 #include <gtest/gtest.h>
 
@@ -9,34 +9,34 @@
 namespace bandsaw::coordinator {
 namespace {
 
-class CreditsFileTest : public ::testing::Test {
+class AttributionFileTest : public ::testing::Test {
  protected:
   test::TempDir temp_;
   const std::string path_ = temp_ / "credits";
 };
 
-TEST_F(CreditsFileTest, ReadsWhatWasWritten) {
-  const std::vector<RowsBy> credits = {
+TEST_F(AttributionFileTest, ReadsWhatWasWritten) {
+  const std::vector<RowsBy> attribution = {
       {{0, 7}, "anna's \"desk\"\n"}, {{7, 9}, ""}, {{20, 65536}, "bj\u00f6rn"}};
-  ASSERT_TRUE(write_credits(credits, path_).ok());
-  const auto read = read_credits(path_);
+  ASSERT_TRUE(write_attribution(attribution, path_).ok());
+  const auto read = read_attribution(path_);
   ASSERT_TRUE(read.ok()) << read.status();
-  EXPECT_EQ(*read, credits);
-  ASSERT_TRUE(write_credits({}, path_).ok());
-  EXPECT_TRUE(read_credits(path_)->empty());
+  EXPECT_EQ(*read, attribution);
+  ASSERT_TRUE(write_attribution({}, path_).ok());
+  EXPECT_TRUE(read_attribution(path_)->empty());
 }
 
-TEST_F(CreditsFileTest, AMissingFileIsNotADamagedOne) {
-  EXPECT_TRUE(absl::IsNotFound(read_credits(path_).status()));
+TEST_F(AttributionFileTest, AMissingFileIsNotADamagedOne) {
+  EXPECT_TRUE(absl::IsNotFound(read_attribution(path_).status()));
 }
 
-TEST_F(CreditsFileTest, WhatIsDamagedIsNamed) {
+TEST_F(AttributionFileTest, WhatIsDamagedIsNamed) {
   for (const char* text :
        {"", "pieces 2\nfirst 0\nlast 7\nworker a\n", "pieces 1\nfirst 7\nlast 7\nworker a\n",
         "pieces 2\nfirst 5\nlast 7\nworker a\nfirst 6\nlast 8\nworker b\n",
         "pieces 1\nfirst 0\nlast 65537\nworker a\n", "pieces 0\nmore\n", "pieces 99999999\n"}) {
     std::ofstream(path_) << text;
-    const absl::Status status = read_credits(path_).status();
+    const absl::Status status = read_attribution(path_).status();
     EXPECT_TRUE(absl::IsDataLoss(status)) << text << status;
     EXPECT_NE(status.message().find(path_), std::string::npos);
   }

@@ -1,7 +1,7 @@
 #pragma once
 
 // Who rendered which rows of which job that is at work, for people to look at. When a job is over
-// they lie beside its image (store/credits_file.h).
+// they lie beside its image (store/attribution_file.h).
 
 #include <cstdint>
 #include <map>
@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "coordinator/core/types.h"
-#include "coordinator/store/credits_file.h"
+#include "coordinator/store/attribution_file.h"
 
 namespace bandsaw::coordinator {
 
 /// Of jobs at work. Used by one thread.
-class Credits {
+class Attribution {
  public:
   /// `renderer` names the worker in all lives of the coordinator. `name` may be empty: what a band
   /// on disk does not say is known again once the worker brings the next.

@@ -14,7 +14,7 @@
 
 namespace bandsaw::coordinator {
 
-struct PutBand {
+struct IncomingBand {
   JobId job = 0;
   std::uint64_t work = 0;      ///< that it says it is of (renderlib/render/work_hash.h); 0: nothing
   std::string instance;        ///< of the worker

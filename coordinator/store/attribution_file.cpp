@@ -1,4 +1,4 @@
-#include "coordinator/store/credits_file.h"
+#include "coordinator/store/attribution_file.h"
 
 #include <span>
 
@@ -17,10 +17,10 @@ constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 26;
 
 }  // namespace
 
-absl::Status write_credits(const std::vector<RowsBy>& credits, const std::string& path) {
+absl::Status write_attribution(const std::vector<RowsBy>& attribution, const std::string& path) {
   FieldWriter fields;
-  fields.number("pieces", credits.size());
-  for (const RowsBy& by : credits) {
+  fields.number("pieces", attribution.size());
+  for (const RowsBy& by : attribution) {
     fields.number("first", by.rows.first);
     fields.number("last", by.rows.last);
     fields.text("worker", by.worker);
@@ -29,11 +29,11 @@ absl::Status write_credits(const std::vector<RowsBy>& credits, const std::string
   return write_file_atomically(path, std::as_bytes(std::span(text)));
 }
 
-absl::StatusOr<std::vector<RowsBy>> read_credits(const std::string& path) {
+absl::StatusOr<std::vector<RowsBy>> read_attribution(const std::string& path) {
   ASSIGN_OR_RETURN(const std::string text, read_whole_file(path, kMostBytes));
   FieldReader fields(text);
   const std::uint64_t pieces = fields.number("pieces", kMaxSide);
-  std::vector<RowsBy> credits;
+  std::vector<RowsBy> attribution;
   std::uint64_t before = 0;
   for (std::uint64_t i = 0; i < pieces; ++i) {
     const std::uint64_t first = fields.number("first", kMaxSide);
@@ -42,14 +42,14 @@ absl::StatusOr<std::vector<RowsBy>> read_credits(const std::string& path) {
       fields.refuse(absl::StrCat("rows ", first, " to ", last, " after row ", before));
       break;
     }
-    credits.push_back({{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)},
+    attribution.push_back({{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)},
                        fields.text("worker")});
     before = last;
   }
   if (const absl::Status status = fields.finish(); !status.ok()) {
     return absl::DataLossError(absl::StrCat(path, " is damaged: ", status.message()));
   }
-  return credits;
+  return attribution;
 }
 
 }  // namespace bandsaw::coordinator

@@ -1,10 +1,10 @@
-#include "coordinator/engine/outbox.h"
+#include "coordinator/engine/commit_queue.h"
 
 #include <utility>
 
 namespace bandsaw::coordinator {
 
-absl::Status Outbox::write() {
+absl::Status CommitQueue::write() {
   const absl::Status written = journal_.append(records_);
   if (written.ok()) {
     records_.clear();
@@ -12,32 +12,32 @@ absl::Status Outbox::write() {
   return written;
 }
 
-absl::Status Outbox::flush() {
+absl::Status CommitQueue::flush() {
   if (const absl::Status written = write(); !written.ok()) {
-    fail_replies(written);
+    fail_completions(written);
     return written;
   }
-  // What is done here may put more into the outbox: that waits for the next flush.
+  // What an effect adds to the queue waits for the next flush.
   for (Waiting& next : std::exchange(waiting_, {})) {
-    if (next.deed) {
-      next.deed();
+    if (next.effect) {
+      next.effect();
     } else {
-      next.reply(absl::OkStatus());
+      next.completion(absl::OkStatus());
     }
   }
   return absl::OkStatus();
 }
 
-void Outbox::fail_replies(const absl::Status& status) {
+void CommitQueue::fail_completions(const absl::Status& status) {
   std::deque<Waiting> all = std::exchange(waiting_, {});
   for (Waiting& next : all) {
-    if (next.deed) {
+    if (next.effect) {
       waiting_.push_back(std::move(next));
     }
   }
   for (Waiting& next : all) {
-    if (next.reply) {
-      next.reply(status);
+    if (next.completion) {
+      next.completion(status);
     }
   }
 }

@@ -13,33 +13,33 @@
 namespace bandsaw::coordinator {
 
 /// Used by one thread.
-class Outbox {
+class CommitQueue {
  public:
   /// Done once everything recorded before is on disk.
-  using Deed = absl::AnyInvocable<void()>;
-  /// Called with OK as a deed is, or with the journal's error; then nothing may be acknowledged.
-  using Reply = absl::AnyInvocable<void(const absl::Status&)>;
+  using Effect = absl::AnyInvocable<void()>;
+  /// Called with OK as a effect is, or with the journal's error; then nothing may be acknowledged.
+  using Completion = absl::AnyInvocable<void(const absl::Status&)>;
 
-  explicit Outbox(Journal& journal) : journal_(journal) {}
+  explicit CommitQueue(Journal& journal) : journal_(journal) {}
 
   bool empty() const { return records_.empty() && waiting_.empty(); }
 
   void record(Record record) { records_.push_back(std::move(record)); }
-  void deed(Deed deed) { waiting_.push_back({std::move(deed), nullptr}); }
-  void reply(Reply reply) { waiting_.push_back({nullptr, std::move(reply)}); }
+  void effect(Effect effect) { waiting_.push_back({std::move(effect), nullptr}); }
+  void completion(Completion completion) { waiting_.push_back({nullptr, std::move(completion)}); }
 
   /// Appends all records at once, and no more. On an error they stay.
   absl::Status write();
   /// Appends all records at once, then does and answers everything in the order it came. On an
-  /// error the replies are given it, and records and deeds stay, in order, for the next flush.
+  /// error the completions are given it, and records and effects stay, in order, for the next flush.
   absl::Status flush();
-  /// Gives all replies that wait this error.
-  void fail_replies(const absl::Status& status);
+  /// Gives all completions that wait this error.
+  void fail_completions(const absl::Status& status);
 
  private:
   struct Waiting {
-    Deed deed;
-    Reply reply;
+    Effect effect;
+    Completion completion;
   };
   Journal& journal_;
   std::vector<Record> records_;
