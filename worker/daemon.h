@@ -10,6 +10,7 @@
 
 #include "absl/status/statusor.h"
 #include "proto/link/join.h"
+#include "worker/session/coordinator_api.h"
 #include "worker/session/session.h"
 
 namespace bandsaw {
@@ -18,9 +19,12 @@ struct Kernel;  // renderlib/render/kernel.h
 
 namespace bandsaw::worker {
 
+/// Returns an implementation that is used instead of `calls`, which outlives it.
+using WrapCalls = std::function<std::unique_ptr<CoordinatorApi>(CoordinatorApi& calls)>;
+
 struct DaemonOptions {
   link::JoinString join;
-  Self self;                       ///< threads is the size of the pool too
+  WorkerInfo info;                 ///< threads is the size of the pool too
   const Kernel* kernel = nullptr;  ///< what renders the scenes; as in Scene::build
   std::string cache_folder;
   std::uint64_t cache_bytes = 16ull << 30;
@@ -34,6 +38,8 @@ struct DaemonOptions {
   std::function<std::vector<std::string>(std::size_t most)> new_log_lines = nullptr;
   /// The coordinator was started again and has lost the lines that it was sent; may be nothing.
   std::function<void()> log_lines_lost = nullptr;
+  /// nullptr: rendering calls the coordinator directly.
+  WrapCalls wrap_calls = nullptr;
 };
 
 class Daemon {

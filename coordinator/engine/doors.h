@@ -10,7 +10,7 @@
 namespace bandsaw::coordinator {
 
 /// A door that is null is the real one: SQLite in the data folder, the steady clock.
-struct EngineDoors {
+struct EngineDependencies {
   std::unique_ptr<Journal> journal;
   std::unique_ptr<Clock> clock;
 };

@@ -26,11 +26,13 @@ Engine::Engine(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Engine::~Engine() = default;
 
 absl::StatusOr<std::unique_ptr<Engine>> Engine::start(EngineOptions options) {
-  return start(std::move(options), EngineDoors{});
+  return start(std::move(options), EngineDependencies{});
 }
 
-absl::StatusOr<std::unique_ptr<Engine>> Engine::start(EngineOptions options, EngineDoors doors) {
-  ASSIGN_OR_RETURN(std::unique_ptr<Impl> impl, Impl::start(std::move(options), std::move(doors)));
+absl::StatusOr<std::unique_ptr<Engine>> Engine::start(EngineOptions options,
+                                                      EngineDependencies dependencies) {
+  ASSIGN_OR_RETURN(std::unique_ptr<Impl> impl,
+                   Impl::start(std::move(options), std::move(dependencies)));
   return std::unique_ptr<Engine>(new Engine(std::move(impl)));
 }
 
@@ -43,10 +45,10 @@ void Engine::submit(JobSpec spec, std::function<void(absl::StatusOr<JobId>)> don
       answer(fit);
       return;
     }
-    impl->on_core(
-        [spec = std::move(spec), priority, answer = std::move(answer)](SchedulerThread& core) mutable {
-          core.submit(std::move(spec), priority, std::move(answer));
-        });
+    impl->on_core([spec = std::move(spec), priority,
+                   answer = std::move(answer)](SchedulerThread& core) mutable {
+      core.submit(std::move(spec), priority, std::move(answer));
+    });
   });
 }
 
@@ -95,14 +97,16 @@ void Engine::jobs(std::function<void(std::vector<JobView>)> done) {
   Answer<std::vector<JobView>> answer([done = std::move(done)](auto jobs) {
     done(jobs.ok() ? *std::move(jobs) : std::vector<JobView>());
   });
-  impl_->on_core([answer = std::move(answer)](SchedulerThread& core) mutable { answer(core.jobs()); });
+  impl_->on_core(
+      [answer = std::move(answer)](SchedulerThread& core) mutable { answer(core.jobs()); });
 }
 
 void Engine::workers(std::function<void(std::vector<WorkerView>)> done) {
   Answer<std::vector<WorkerView>> answer([done = std::move(done)](auto workers) {
     done(workers.ok() ? *std::move(workers) : std::vector<WorkerView>());
   });
-  impl_->on_core([answer = std::move(answer)](SchedulerThread& core) mutable { answer(core.workers()); });
+  impl_->on_core(
+      [answer = std::move(answer)](SchedulerThread& core) mutable { answer(core.workers()); });
 }
 
 void Engine::logs(std::string worker,
@@ -120,17 +124,17 @@ void Engine::worker_log(SessionId session, std::vector<std::string> lines) {
 
 void Engine::preview(JobId job, std::uint32_t row_step,
                      std::function<void(absl::StatusOr<Image>)> done) {
-  impl_->on_film([job, row_step, answer = Answer<Image>(std::move(done))](FilmThread& film) mutable {
-    answer(film.preview(job, row_step));
-  });
+  impl_->on_film([job, row_step, answer = Answer<Image>(std::move(done))](
+                     FilmThread& film) mutable { answer(film.preview(job, row_step)); });
 }
 
 void Engine::rendered_by(JobId job, std::function<void(std::vector<RowsBy>)> done) {
   Answer<std::vector<RowsBy>> answer([done = std::move(done)](auto rows) {
     done(rows.ok() ? *std::move(rows) : std::vector<RowsBy>());
   });
-  impl_->on_film(
-      [job, answer = std::move(answer)](FilmThread& film) mutable { answer(film.rendered_by(job)); });
+  impl_->on_film([job, answer = std::move(answer)](FilmThread& film) mutable {
+    answer(film.rendered_by(job));
+  });
 }
 
 void Engine::result(JobId job, FinishedPart part,
@@ -184,10 +188,11 @@ SessionId Engine::hello(std::shared_ptr<WorkerLink> link, WorkerHello hello) {
 }
 
 void Engine::heartbeat(SessionId session, std::vector<LeaseProgress> leases, std::string doing) {
-  impl_->on_core(
-      [beat = input::Heartbeat{.session = session,
-                               .leases = std::move(leases),
-                               .doing = std::move(doing)}](SchedulerThread& core) { core.hear(beat); });
+  impl_->on_core([beat = input::Heartbeat{.session = session,
+                                          .leases = std::move(leases),
+                                          .doing = std::move(doing)}](SchedulerThread& core) {
+    core.hear(beat);
+  });
 }
 
 void Engine::draining(SessionId session, std::string reason) {
@@ -214,14 +219,14 @@ void Engine::put_band(JobId job, std::uint64_t work, std::string instance, BandP
                       double render_s, double cpu_s,
                       std::function<void(absl::StatusOr<BandOutcome>)> done) {
   IncomingBand incoming{.job = job,
-              .work = work,
-              .instance = std::move(instance),
-              .pixels = std::move(pixels),
-              .worker = {},
-              .render_s = render_s,
-              .cpu_s = cpu_s,
-              .answer = Answer<BandOutcome>(std::move(done)),
-              .share = {}};
+                        .work = work,
+                        .instance = std::move(instance),
+                        .pixels = std::move(pixels),
+                        .worker = {},
+                        .render_s = render_s,
+                        .cpu_s = cpu_s,
+                        .answer = Answer<BandOutcome>(std::move(done)),
+                        .share = {}};
   std::optional<MemoryBudget::Share> share =
       impl_->bands().take(incoming.pixels.sums.size() * sizeof(double));
   if (!share) {
@@ -230,7 +235,9 @@ void Engine::put_band(JobId job, std::uint64_t work, std::string instance, BandP
     return;
   }
   incoming.share = *std::move(share);
-  impl_->on_core([incoming = std::move(incoming)](SchedulerThread& core) mutable { core.put_band(std::move(incoming)); });
+  impl_->on_core([incoming = std::move(incoming)](SchedulerThread& core) mutable {
+    core.put_band(std::move(incoming));
+  });
 }
 
 MemoryBudget& Engine::images() { return impl_->images(); }

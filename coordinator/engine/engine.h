@@ -12,8 +12,8 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "coordinator/core/messages.h"
-#include "coordinator/engine/collector.h"
 #include "coordinator/engine/attribution.h"
+#include "coordinator/engine/collector.h"
 #include "coordinator/engine/memory_budget.h"
 #include "coordinator/engine/worker_link.h"
 #include "coordinator/store/result_file.h"
@@ -37,7 +37,7 @@ struct EngineOptions {
 /// How a band's upload ended for its worker.
 enum class BandOutcome { kStored, kDuplicate, kUnwanted };
 
-struct EngineDoors;
+struct EngineDependencies;
 
 class Engine {
  public:
@@ -45,7 +45,8 @@ class Engine {
   /// FAILED_PRECONDITION: another coordinator uses the folder. DATA_LOSS: naming what is damaged.
   static absl::StatusOr<std::unique_ptr<Engine>> start(EngineOptions options);
   /// The same with other doors to the world (engine/doors.h), for tests.
-  static absl::StatusOr<std::unique_ptr<Engine>> start(EngineOptions options, EngineDoors doors);
+  static absl::StatusOr<std::unique_ptr<Engine>> start(EngineOptions options,
+                                                       EngineDependencies dependencies);
   /// Stops the threads; what was acknowledged is on disk.
   ~Engine();
 

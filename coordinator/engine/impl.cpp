@@ -62,12 +62,12 @@ absl::Status find_room(const DataFolder& folder) {
 
 }  // namespace
 
-Engine::Impl::Impl(const EngineOptions& options, EngineDoors doors, DataFolder folder,
+Engine::Impl::Impl(const EngineOptions& options, EngineDependencies dependencies, DataFolder folder,
                    std::unique_ptr<BlobStore> blobs)
     : folder_(std::move(folder)),
       blobs_(std::move(blobs)),
-      journal_(std::move(doors.journal)),
-      clock_(std::move(doors.clock)),
+      journal_(std::move(dependencies.journal)),
+      clock_(std::move(dependencies.clock)),
       epoch_(new_epoch()),
       bands_(kMaxBandBytes),
       images_(kMaxImageBytes),
@@ -81,21 +81,21 @@ Engine::Impl::Impl(const EngineOptions& options, EngineDoors doors, DataFolder f
       film_thread_([] {}, milliseconds(1000)) {}
 
 absl::StatusOr<std::unique_ptr<Engine::Impl>> Engine::Impl::start(EngineOptions options,
-                                                                  EngineDoors doors) {
+                                                                  EngineDependencies dependencies) {
   ASSIGN_OR_RETURN(DataFolder folder, DataFolder::open(options.data_folder));
   const absl::Status room = find_room(folder);
   if (!room.ok() && !absl::IsResourceExhausted(room)) {
     return room;
   }
   ASSIGN_OR_RETURN(std::unique_ptr<BlobStore> blobs, BlobStore::open(folder.blobs()));
-  if (doors.journal == nullptr) {
-    ASSIGN_OR_RETURN(doors.journal, SqliteJournal::open(folder.journal()));
+  if (dependencies.journal == nullptr) {
+    ASSIGN_OR_RETURN(dependencies.journal, SqliteJournal::open(folder.journal()));
   }
-  if (doors.clock == nullptr) {
-    doors.clock = std::make_unique<SteadyClock>();
+  if (dependencies.clock == nullptr) {
+    dependencies.clock = std::make_unique<SteadyClock>();
   }
   std::unique_ptr<Impl> impl(
-      new Impl(options, std::move(doors), std::move(folder), std::move(blobs)));
+      new Impl(options, std::move(dependencies), std::move(folder), std::move(blobs)));
   RETURN_IF_ERROR(impl->core_.restore(impl->store_, impl->film_, room));
   impl->film_thread_.start();
   impl->store_thread_.start();
@@ -136,8 +136,9 @@ SchedulerThread::Hooks Engine::Impl::core_hooks() {
           },
       .store_band =
           [this](IncomingBand incoming) {
-            on_store(
-                [incoming = std::move(incoming)](StoreThread& store) mutable { store.append(std::move(incoming)); });
+            on_store([incoming = std::move(incoming)](StoreThread& store) mutable {
+              store.append(std::move(incoming));
+            });
           },
       .compare_band =
           [this](IncomingBand incoming) {
@@ -147,11 +148,12 @@ SchedulerThread::Hooks Engine::Impl::core_hooks() {
           },
       .add_to_film =
           [this](IncomingBand incoming, std::vector<RowRange> rows) {
-            on_film([incoming = std::move(incoming), rows = std::move(rows)](FilmThread& film) mutable {
-              const JobId job = incoming.job;
-              film.add(job, std::move(incoming), std::move(rows))
-                  .IgnoreError();  // the hook has told the core
-            });
+            on_film(
+                [incoming = std::move(incoming), rows = std::move(rows)](FilmThread& film) mutable {
+                  const JobId job = incoming.job;
+                  film.add(job, std::move(incoming), std::move(rows))
+                      .IgnoreError();  // the hook has told the core
+                });
           },
       .retract =
           [this](JobId job, std::uint64_t renderer) {
@@ -166,7 +168,8 @@ SchedulerThread::Hooks Engine::Impl::core_hooks() {
             on_store([job](StoreThread& store) { store.drop_bands(job); });
             on_film([job](FilmThread& film) { film.drop(job); });
           },
-      .drop_job = [this](JobId job) { on_store([job](StoreThread& store) { store.drop_job(job); }); },
+      .drop_job =
+          [this](JobId job) { on_store([job](StoreThread& store) { store.drop_job(job); }); },
       .collect =
           [this](std::vector<Collector::Job> jobs) {
             on_store([this, jobs = std::move(jobs)](StoreThread&) { collect(jobs); });
@@ -177,26 +180,27 @@ SchedulerThread::Hooks Engine::Impl::core_hooks() {
 }
 
 StoreThread::Hooks Engine::Impl::store_hooks() {
-  return {
-      .stored =
-          [this](IncomingBand incoming, std::vector<std::uint64_t> digests) {
-            on_core([incoming = std::move(incoming), digests = std::move(digests)](SchedulerThread& core) mutable {
-              core.band_stored(std::move(incoming), std::move(digests));
-            });
-          },
-      .failed =
-          [this](IncomingBand incoming, absl::Status status) {
-            on_core([incoming = std::move(incoming), status = unshared_status(status)](SchedulerThread& core) mutable {
-              core.band_failed(std::move(incoming), status);
-            });
-          },
-      .result_written =
-          [this](JobId job, absl::Status status) {
-            on_core([job, status = unshared_status(status)](SchedulerThread& core) {
-              core.result_written(job, status);
-            });
-          },
-      .disk_is_back = [this] { on_core([](SchedulerThread& core) { core.disk_is_back(); }); }};
+  return {.stored =
+              [this](IncomingBand incoming, std::vector<std::uint64_t> digests) {
+                on_core([incoming = std::move(incoming),
+                         digests = std::move(digests)](SchedulerThread& core) mutable {
+                  core.band_stored(std::move(incoming), std::move(digests));
+                });
+              },
+          .failed =
+              [this](IncomingBand incoming, absl::Status status) {
+                on_core([incoming = std::move(incoming),
+                         status = unshared_status(status)](SchedulerThread& core) mutable {
+                  core.band_failed(std::move(incoming), status);
+                });
+              },
+          .result_written =
+              [this](JobId job, absl::Status status) {
+                on_core([job, status = unshared_status(status)](SchedulerThread& core) {
+                  core.result_written(job, status);
+                });
+              },
+          .disk_is_back = [this] { on_core([](SchedulerThread& core) { core.disk_is_back(); }); }};
 }
 
 FilmThread::Hooks Engine::Impl::film_hooks() {

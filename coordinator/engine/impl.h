@@ -13,13 +13,13 @@
 #include <string>
 
 #include "coordinator/engine/clock.h"
-#include "coordinator/engine/scheduler_thread.h"
 #include "coordinator/engine/doors.h"
 #include "coordinator/engine/engine.h"
 #include "coordinator/engine/film_thread.h"
+#include "coordinator/engine/incoming_band.h"
 #include "coordinator/engine/mailbox.h"
 #include "coordinator/engine/memory_budget.h"
-#include "coordinator/engine/incoming_band.h"
+#include "coordinator/engine/scheduler_thread.h"
 #include "coordinator/engine/store_thread.h"
 #include "coordinator/store/blob_store.h"
 #include "coordinator/store/data_folder.h"
@@ -29,7 +29,8 @@ namespace bandsaw::coordinator {
 
 class Engine::Impl {
  public:
-  static absl::StatusOr<std::unique_ptr<Impl>> start(EngineOptions options, EngineDoors doors);
+  static absl::StatusOr<std::unique_ptr<Impl>> start(EngineOptions options,
+                                                     EngineDependencies dependencies);
   ~Impl();
 
   template <class Task>
@@ -60,7 +61,7 @@ class Engine::Impl {
   const std::string& data_folder() const { return folder_.path(); }
 
  private:
-  Impl(const EngineOptions& options, EngineDoors doors, DataFolder folder,
+  Impl(const EngineOptions& options, EngineDependencies dependencies, DataFolder folder,
        std::unique_ptr<BlobStore> blobs);
   /// On the store's thread.
   void collect(const std::vector<Collector::Job>& jobs);

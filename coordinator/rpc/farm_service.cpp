@@ -33,7 +33,7 @@ absl::StatusOr<std::vector<wire::Digest>> digests(const farm::MissingBlobsReques
 Unary* FarmService::MissingBlobs(grpc::CallbackServerContext* context,
                                  const farm::MissingBlobsRequest* request,
                                  farm::MissingBlobsReply* reply) {
-  if (const auto status = doors_.gate.check(*context, link::Role::kFarm); !status.ok()) {
+  if (const auto status = deps_.gate.check(*context, link::Role::kFarm); !status.ok()) {
     return finished(context, status);
   }
   absl::StatusOr<std::vector<wire::Digest>> asked = digests(*request);
@@ -41,11 +41,11 @@ Unary* FarmService::MissingBlobs(grpc::CallbackServerContext* context,
     return finished(context, asked.status());
   }
   Unary* reactor = context->DefaultReactor();
-  doors_.files.post([this, reply, reactor, asked = *std::move(asked)] {
+  deps_.files.post([this, reply, reactor, asked = *std::move(asked)] {
     for (const wire::Digest& digest : asked) {
-      if (!doors_.engine.has_blob(digest)) {
+      if (!deps_.engine.has_blob(digest)) {
         reply->add_sha256(digest.raw());
-        reply->add_there(doors_.engine.partial_blob(digest));
+        reply->add_there(deps_.engine.partial_blob(digest));
       }
     }
     reactor->Finish(grpc::Status::OK);
@@ -55,12 +55,12 @@ Unary* FarmService::MissingBlobs(grpc::CallbackServerContext* context,
 
 grpc::ServerReadReactor<farm::BlobChunk>* FarmService::PutBlob(grpc::CallbackServerContext* context,
                                                                farm::PutBlobReply*) {
-  return admitted<PutBlobCall>(doors_, *context, link::Role::kFarm, context);
+  return admitted<PutBlobCall>(deps_, *context, link::Role::kFarm, context);
 }
 
 Unary* FarmService::Submit(grpc::CallbackServerContext* context, const farm::SubmitRequest* request,
                            farm::SubmitReply* reply) {
-  if (const auto status = doors_.gate.check(*context, link::Role::kFarm); !status.ok()) {
+  if (const auto status = deps_.gate.check(*context, link::Role::kFarm); !status.ok()) {
     return finished(context, status);
   }
   absl::StatusOr<JobSpec> spec = job_spec(*request);
@@ -68,7 +68,7 @@ Unary* FarmService::Submit(grpc::CallbackServerContext* context, const farm::Sub
     return finished(context, spec.status());
   }
   Unary* reactor = context->DefaultReactor();
-  doors_.engine.submit(
+  deps_.engine.submit(
       *std::move(spec),
       [reactor, reply](const absl::StatusOr<JobId>& job) {
         if (job.ok()) {
@@ -82,22 +82,22 @@ Unary* FarmService::Submit(grpc::CallbackServerContext* context, const farm::Sub
 
 grpc::ServerWriteReactor<farm::JobStatus>* FarmService::Watch(grpc::CallbackServerContext* context,
                                                               const farm::WatchRequest* request) {
-  return admitted<WatchCall>(doors_, *context, link::Role::kFarm, request->job());
+  return admitted<WatchCall>(deps_, *context, link::Role::kFarm, request->job());
 }
 
 grpc::ServerWriteReactor<farm::ResultChunk>* FarmService::GetResult(
     grpc::CallbackServerContext* context, const farm::GetResultRequest* request) {
   const FinishedPart part = request->samples() ? FinishedPart::kSamples : FinishedPart::kImage;
-  return admitted<ImageCall>(doors_, *context, link::Role::kFarm,
-                             [&engine = doors_.engine, job = request->job(), part] {
+  return admitted<ImageCall>(deps_, *context, link::Role::kFarm,
+                             [&engine = deps_.engine, job = request->job(), part] {
                                return result_of(engine, job, part);
                              });
 }
 
 grpc::ServerWriteReactor<farm::ResultChunk>* FarmService::Preview(
     grpc::CallbackServerContext* context, const farm::PreviewRequest* request) {
-  return admitted<ImageCall>(doors_, *context, link::Role::kFarm,
-                             [&engine = doors_.engine, job = request->job(),
+  return admitted<ImageCall>(deps_, *context, link::Role::kFarm,
+                             [&engine = deps_.engine, job = request->job(),
                               side = request->most_side()]() -> absl::StatusOr<HeldImage> {
                                if (side > kMaxSide) {
                                  return absl::InvalidArgumentError(absl::StrCat(
@@ -109,11 +109,11 @@ grpc::ServerWriteReactor<farm::ResultChunk>* FarmService::Preview(
 
 Unary* FarmService::ListJobs(grpc::CallbackServerContext* context, const farm::ListJobsRequest*,
                              farm::ListJobsReply* reply) {
-  if (const auto status = doors_.gate.check(*context, link::Role::kFarm); !status.ok()) {
+  if (const auto status = deps_.gate.check(*context, link::Role::kFarm); !status.ok()) {
     return finished(context, status);
   }
   Unary* reactor = context->DefaultReactor();
-  doors_.engine.jobs([reactor, reply](const std::vector<JobView>& jobs) {
+  deps_.engine.jobs([reactor, reply](const std::vector<JobView>& jobs) {
     for (const JobView& job : jobs) {
       *reply->add_job() = to_message(job);
     }
@@ -124,11 +124,11 @@ Unary* FarmService::ListJobs(grpc::CallbackServerContext* context, const farm::L
 
 Unary* FarmService::ListWorkers(grpc::CallbackServerContext* context,
                                 const farm::ListWorkersRequest*, farm::ListWorkersReply* reply) {
-  if (const auto status = doors_.gate.check(*context, link::Role::kFarm); !status.ok()) {
+  if (const auto status = deps_.gate.check(*context, link::Role::kFarm); !status.ok()) {
     return finished(context, status);
   }
   Unary* reactor = context->DefaultReactor();
-  doors_.engine.workers([reactor, reply](const std::vector<WorkerView>& workers) {
+  deps_.engine.workers([reactor, reply](const std::vector<WorkerView>& workers) {
     for (const WorkerView& worker : workers) {
       *reply->add_worker() = to_message(worker);
     }

@@ -23,7 +23,7 @@ double unix_seconds() {
 
 absl::StatusOr<std::string> FarmService::worker_named(const grpc::CallbackServerContext& context,
                                                       const std::string& name) const {
-  RETURN_IF_ERROR(doors_.gate.check(context, link::Role::kFarm));
+  RETURN_IF_ERROR(deps_.gate.check(context, link::Role::kFarm));
   return reason_field("worker", name);
 }
 
@@ -34,7 +34,7 @@ Unary* FarmService::Logs(grpc::CallbackServerContext* context, const farm::LogsR
     return finished(context, worker.status());
   }
   Unary* reactor = context->DefaultReactor();
-  doors_.engine.logs(*worker, [reactor, reply](absl::StatusOr<std::vector<std::string>> lines) {
+  deps_.engine.logs(*worker, [reactor, reply](absl::StatusOr<std::vector<std::string>> lines) {
     if (lines.ok()) {
       for (std::string& line : *lines) {
         reply->add_line(std::move(line));
@@ -52,7 +52,7 @@ Unary* FarmService::Quarantine(grpc::CallbackServerContext* context,
     return finished(context, worker.status());
   }
   Unary* reactor = context->DefaultReactor();
-  doors_.engine.quarantine(*worker, request->lift(), [reactor](const absl::Status& status) {
+  deps_.engine.quarantine(*worker, request->lift(), [reactor](const absl::Status& status) {
     reactor->Finish(link::to_grpc(status));
   });
   return reactor;
@@ -60,16 +60,16 @@ Unary* FarmService::Quarantine(grpc::CallbackServerContext* context,
 
 Unary* FarmService::About(grpc::CallbackServerContext* context, const farm::AboutRequest*,
                           farm::AboutReply* reply) {
-  if (const auto status = doors_.gate.check_any(*context); !status.ok()) {
+  if (const auto status = deps_.gate.check_any(*context); !status.ok()) {
     return finished(context, status);
   }
   Unary* reactor = context->DefaultReactor();
-  doors_.files.post([this, reactor, reply] {
+  deps_.files.post([this, reactor, reply] {
     reply->set_version(BANDSAW_VERSION);
     reply->set_protocol(wire::kProtocol);
     reply->set_pixel_version(kPixelVersion);
-    reply->set_free_bytes(doors_.engine.free_bytes());
-    doors_.engine.workers([reactor, reply](const std::vector<WorkerView>& workers) {
+    reply->set_free_bytes(deps_.engine.free_bytes());
+    deps_.engine.workers([reactor, reply](const std::vector<WorkerView>& workers) {
       reply->set_workers(static_cast<std::uint32_t>(
           std::count_if(workers.begin(), workers.end(), [](const WorkerView& worker) {
             return worker.state != "lost" && worker.state != "refused" &&
@@ -85,7 +85,7 @@ Unary* FarmService::About(grpc::CallbackServerContext* context, const farm::Abou
 Unary* FarmService::RotateSecret(grpc::CallbackServerContext* context,
                                  const farm::RotateSecretRequest* request,
                                  farm::RotateSecretReply* reply) {
-  if (const auto status = doors_.gate.check(*context, link::Role::kFarm); !status.ok()) {
+  if (const auto status = deps_.gate.check(*context, link::Role::kFarm); !status.ok()) {
     return finished(context, status);
   }
   if (request->role() != farm::SECRET_ROLE_WORKER && request->role() != farm::SECRET_ROLE_FARM) {
@@ -94,11 +94,11 @@ Unary* FarmService::RotateSecret(grpc::CallbackServerContext* context,
   const auto role =
       request->role() == farm::SECRET_ROLE_WORKER ? link::Role::kWorker : link::Role::kFarm;
   Unary* reactor = context->DefaultReactor();
-  doors_.files.post([this, reactor, reply, role] {
-    const absl::StatusOr<std::string> file = doors_.gate.rotate(role);
+  deps_.files.post([this, reactor, reply, role] {
+    const absl::StatusOr<std::string> file = deps_.gate.rotate(role);
     if (file.ok()) {
       reply->set_join_file(*file);
-      doors_.streams.stop_those_of(role, void_secret());
+      deps_.streams.stop_those_of(role, void_secret());
     }
     reactor->Finish(link::to_grpc(file.status()));
   });

@@ -13,9 +13,9 @@ using Unary = grpc::ServerUnaryReactor;
 /// Runs a command on the engine and replies with the job's status after it. `tell` is called with
 /// the callback that receives the job.
 template <class Tell>
-Unary* told(const Doors& doors, grpc::CallbackServerContext* context, farm::JobStatus* reply,
-            Tell tell) {
-  if (const auto status = doors.gate.check(*context, link::Role::kFarm); !status.ok()) {
+Unary* told(const ServiceDependencies& deps, grpc::CallbackServerContext* context,
+            farm::JobStatus* reply, Tell tell) {
+  if (const auto status = deps.gate.check(*context, link::Role::kFarm); !status.ok()) {
     return finished(context, status);
   }
   Unary* reactor = context->DefaultReactor();
@@ -32,37 +32,37 @@ Unary* told(const Doors& doors, grpc::CallbackServerContext* context, farm::JobS
 
 Unary* FarmService::Cancel(grpc::CallbackServerContext* context, const farm::CancelRequest* request,
                            farm::JobStatus* reply) {
-  return told(doors_, context, reply,
-              [&](auto answer) { doors_.engine.cancel(request->job(), answer); });
+  return told(deps_, context, reply,
+              [&](auto answer) { deps_.engine.cancel(request->job(), answer); });
 }
 
 Unary* FarmService::Pause(grpc::CallbackServerContext* context, const farm::PauseRequest* request,
                           farm::JobStatus* reply) {
-  return told(doors_, context, reply,
-              [&](auto answer) { doors_.engine.pause(request->job(), answer); });
+  return told(deps_, context, reply,
+              [&](auto answer) { deps_.engine.pause(request->job(), answer); });
 }
 
 Unary* FarmService::Resume(grpc::CallbackServerContext* context, const farm::ResumeRequest* request,
                            farm::JobStatus* reply) {
-  return told(doors_, context, reply,
-              [&](auto answer) { doors_.engine.resume(request->job(), answer); });
+  return told(deps_, context, reply,
+              [&](auto answer) { deps_.engine.resume(request->job(), answer); });
 }
 
 Unary* FarmService::SetPriority(grpc::CallbackServerContext* context,
                                 const farm::SetPriorityRequest* request, farm::JobStatus* reply) {
-  return told(doors_, context, reply, [&](auto answer) {
-    doors_.engine.set_priority(request->job(), request->priority(), answer);
+  return told(deps_, context, reply, [&](auto answer) {
+    deps_.engine.set_priority(request->job(), request->priority(), answer);
   });
 }
 
 Unary* FarmService::Why(grpc::CallbackServerContext* context, const farm::WhyRequest* request,
                         farm::WhyReply* reply) {
-  if (const auto status = doors_.gate.check(*context, link::Role::kFarm); !status.ok()) {
+  if (const auto status = deps_.gate.check(*context, link::Role::kFarm); !status.ok()) {
     return finished(context, status);
   }
   Unary* reactor = context->DefaultReactor();
   const JobId job = request->job();
-  doors_.engine.why(job, [reactor, reply, job](const std::vector<std::string>& reasons) {
+  deps_.engine.why(job, [reactor, reply, job](const std::vector<std::string>& reasons) {
     for (const std::string& reason : reasons) {
       reply->add_reason(reason);
     }

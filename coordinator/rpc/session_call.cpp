@@ -6,7 +6,7 @@
 namespace bandsaw::coordinator {
 
 void SessionCall::begin() {
-  if (const absl::Status status = doors_.streams.add(weak_from_this()); !status.ok()) {
+  if (const absl::Status status = deps_.streams.add(weak_from_this()); !status.ok()) {
     stop(status);
     return;
   }
@@ -24,7 +24,7 @@ void SessionCall::done() {
       reason = std::string(end_->message());
     }
   }
-  doors_.engine.lost(*session_, std::move(reason));
+  deps_.engine.lost(*session_, std::move(reason));
 }
 
 void SessionCall::OnReadDone(bool ok) {
@@ -49,29 +49,29 @@ absl::Status SessionCall::receive(const farm::FromWorker& message) {
   switch (message.kind_case()) {
     case farm::FromWorker::kHello: {
       ASSIGN_OR_RETURN(WorkerHello hello, worker_hello(message.hello(), peer_));
-      session_ = doors_.engine.hello(shared_from_this(), std::move(hello));
+      session_ = deps_.engine.hello(shared_from_this(), std::move(hello));
       return absl::OkStatus();
     }
     case farm::FromWorker::kHeartbeat: {
       ASSIGN_OR_RETURN(input::Heartbeat beat, heartbeat(message.heartbeat()));
-      doors_.engine.heartbeat(*session_, std::move(beat.leases), std::move(beat.doing));
+      deps_.engine.heartbeat(*session_, std::move(beat.leases), std::move(beat.doing));
       return absl::OkStatus();
     }
     case farm::FromWorker::kFailed: {
       ASSIGN_OR_RETURN(input::BandFailed failed, band_failed(message.failed()));
-      doors_.engine.band_failed(*session_, failed.lease, std::move(failed.reason),
-                                std::move(failed.log));
+      deps_.engine.band_failed(*session_, failed.lease, std::move(failed.reason),
+                               std::move(failed.log));
       return absl::OkStatus();
     }
     case farm::FromWorker::kDraining: {
       ASSIGN_OR_RETURN(std::string reason,
                        reason_field("draining.reason", message.draining().reason()));
-      doors_.engine.draining(*session_, std::move(reason));
+      deps_.engine.draining(*session_, std::move(reason));
       return absl::OkStatus();
     }
     case farm::FromWorker::kLog: {
       ASSIGN_OR_RETURN(std::vector<std::string> lines, log_lines("log.line", message.log().line()));
-      doors_.engine.worker_log(*session_, std::move(lines));
+      deps_.engine.worker_log(*session_, std::move(lines));
       return absl::OkStatus();
     }
     case farm::FromWorker::KIND_NOT_SET:

@@ -44,7 +44,7 @@ class LongStreams {
 };
 
 /// Dependencies shared by the services. All of them outlive every call.
-struct Doors {
+struct ServiceDependencies {
   Engine& engine;
   Gate& gate;
   FileExecutor& files;   ///< for what waits for the disk
@@ -100,18 +100,18 @@ class RefusedCall final : public Base {
   void OnDone() override { delete this; }
 };
 
-/// The reactor of a stream, made of `doors` and `args`, if the caller has this role's secret; else
+/// The reactor of a stream, made of `deps` and `args`, if the caller has this role's secret; else
 /// one that refuses. The secret is checked again when the stream is in the register: it may have
 /// been renewed meanwhile, and the streams that were registered then have been ended.
 template <class Call, class... Args>
-auto* admitted(const Doors& doors, const grpc::CallbackServerContext& context, link::Role role,
-               Args&&... args) {
+auto* admitted(const ServiceDependencies& deps, const grpc::CallbackServerContext& context,
+               link::Role role, Args&&... args) {
   using Base = typename Call::Reactor;
-  if (const absl::Status status = doors.gate.check(context, role); !status.ok()) {
+  if (const absl::Status status = deps.gate.check(context, role); !status.ok()) {
     return static_cast<Base*>(new RefusedCall<Base>(status));
   }
-  Call* const call = Call::make(doors, std::forward<Args>(args)...);
-  if (!doors.gate.holds(context, role)) {
+  Call* const call = Call::make(deps, std::forward<Args>(args)...);
+  if (!deps.gate.holds(context, role)) {
     call->stop(void_secret());
   }
   return static_cast<Base*>(call);

@@ -5,11 +5,11 @@
 namespace bandsaw::coordinator {
 
 void WatchCall::begin() {
-  if (const absl::Status status = doors_.streams.add(weak_from_this()); !status.ok()) {
+  if (const absl::Status status = deps_.streams.add(weak_from_this()); !status.ok()) {
     stop(status);
     return;
   }
-  doors_.engine.watch(job_, [self = shared_from_this()](const absl::StatusOr<JobView>& job) {
+  deps_.engine.watch(job_, [self = shared_from_this()](const absl::StatusOr<JobView>& job) {
     return self->changed(job);
   });
 }

@@ -8,7 +8,7 @@
 #include "absl/status/statusor.h"
 #include "renderlib/base/pool.h"
 #include "worker/cache/blob_cache.h"
-#include "worker/executor/scene_shelf.h"
+#include "worker/executor/scene_cache.h"
 
 namespace bandsaw::worker {
 

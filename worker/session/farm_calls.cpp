@@ -14,7 +14,8 @@ absl::Status not_connected() { return absl::UnavailableError("not connected"); }
 
 }  // namespace
 
-FarmCalls::FarmCalls(link::JoinString join) : join_(std::move(join)) {}
+FarmCalls::FarmCalls(link::JoinString join, std::string instance)
+    : join_(std::move(join)), instance_(std::move(instance)) {}
 
 FarmCalls::~FarmCalls() = default;
 
@@ -81,7 +82,6 @@ absl::Status FarmCalls::get_blob(const wire::Digest& digest, std::uint64_t offse
 }
 
 absl::StatusOr<farm::PutBandReply::Outcome> FarmCalls::put_band(const FinishedBand& band,
-                                                                const std::string& instance,
                                                                 const LeaseName& lease) {
   const std::shared_ptr<grpc::Channel> channel = bulk();
   if (bands_ == nullptr || !bands_->serves(channel)) {
@@ -91,7 +91,7 @@ absl::StatusOr<farm::PutBandReply::Outcome> FarmCalls::put_band(const FinishedBa
     }
     bands_ = std::make_unique<BandStream>(*this, channel);
   }
-  auto outcome = bands_->put(band, instance, lease);
+  auto outcome = bands_->put(band, instance_, lease);
   if (!outcome.ok()) {
     bands_.reset();
   }

@@ -17,9 +17,9 @@ TEST(Compaction, AJournalOfMoreThanTenThousandRecordsIsWrittenAnewAndTellsTheSam
   const auto disk = std::make_shared<JournalDisk>();
   TestFarm farm;
   const auto start = [&] {
-    EngineDoors doors;
-    doors.journal = std::make_unique<MemoryJournal>(disk);
-    ASSERT_TRUE(farm.start(std::move(doors)).ok());
+    EngineDependencies dependencies;
+    dependencies.journal = std::make_unique<MemoryJournal>(disk);
+    ASSERT_TRUE(farm.start(std::move(dependencies)).ok());
   };
   start();
   const JobId job = farm.begin(StopAtSamples{.samples = 64});

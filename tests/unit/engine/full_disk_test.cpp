@@ -21,10 +21,10 @@ class FullDiskTest : public testing::Test {
  protected:
   /// The engine's time stands still unless a test moves it; the journal is in memory.
   FullDiskTest() {
-    EngineDoors doors;
-    doors.clock = std::make_unique<FakeClock>(time_);
-    doors.journal = std::make_unique<MemoryJournal>(disk_);
-    EXPECT_TRUE(farm_.start(std::move(doors)).ok());
+    EngineDependencies dependencies;
+    dependencies.clock = std::make_unique<FakeClock>(time_);
+    dependencies.journal = std::make_unique<MemoryJournal>(disk_);
+    EXPECT_TRUE(farm_.start(std::move(dependencies)).ok());
   }
   BandPixels rendered(std::uint32_t first, std::uint32_t last) {
     Pool pool(1);
@@ -204,9 +204,9 @@ TEST(BrokenJournal, AfterEveryAppendItMayBreakAndTheNextLifeGoesOn) {
     TestFarm farm;
     const auto disk = std::make_shared<JournalDisk>();
     const auto start = [&] {
-      EngineDoors doors;
-      doors.journal = std::make_unique<MemoryJournal>(disk);
-      ASSERT_TRUE(farm.start(std::move(doors)).ok());
+      EngineDependencies dependencies;
+      dependencies.journal = std::make_unique<MemoryJournal>(disk);
+      ASSERT_TRUE(farm.start(std::move(dependencies)).ok());
     };
     start();
     disk->break_after(appends);

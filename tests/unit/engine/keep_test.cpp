@@ -16,9 +16,9 @@ namespace {
 class KeepTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    EngineDoors doors;
-    doors.journal = std::make_unique<MemoryJournal>(std::make_shared<JournalDisk>());
-    ASSERT_TRUE(farm_.start(std::move(doors), {.jobs = 5}).ok());
+    EngineDependencies dependencies;
+    dependencies.journal = std::make_unique<MemoryJournal>(std::make_shared<JournalDisk>());
+    ASSERT_TRUE(farm_.start(std::move(dependencies), {.jobs = 5}).ok());
     spec_ = farm_.spec(StopAtSamples{.samples = 64});
   }
 

@@ -15,7 +15,7 @@ TestFarm::TestFarm() : maker_(test::cornell_box()), scene_(maker_.build()) {
   spdlog::set_level(spdlog::level::off);
 }
 
-absl::Status TestFarm::start(EngineDoors doors, const Keep& keep) {
+absl::Status TestFarm::start(EngineDependencies dependencies, const Keep& keep) {
   engine_.reset();
   // Fake workers send no heartbeats; nothing here depends on how fast the machine is.
   absl::StatusOr<std::unique_ptr<Engine>> engine = Engine::start({.data_folder = folder_,
@@ -24,7 +24,7 @@ absl::Status TestFarm::start(EngineDoors doors, const Keep& keep) {
                                                                   .reattach_grace_s = 0,
                                                                   .audit_share = 0,
                                                                   .keep = keep},
-                                                                 std::move(doors));
+                                                                 std::move(dependencies));
   if (engine.ok()) {
     engine_ = *std::move(engine);
   }

@@ -18,7 +18,7 @@ class TestFarm {
  public:
   TestFarm();
   /// Starts it, or starts it again on the same folder.
-  absl::Status start(EngineDoors doors = {}, const Keep& keep = {});
+  absl::Status start(EngineDependencies dependencies = {}, const Keep& keep = {});
   void stop() { engine_.reset(); }
   Engine& engine() { return *engine_; }
   const std::string& folder() const { return folder_; }

@@ -89,7 +89,7 @@ class Worker {
  public:
   Worker(const link::JoinString& join, const std::string& cache, char id)
       : daemon_(*worker::Daemon::create({.join = join,
-                                         .self = {.instance = std::string(32, id),
+                                         .info = {.instance = std::string(32, id),
                                                   .name = "desk",
                                                   .build = "test",
                                                   .threads = 2,

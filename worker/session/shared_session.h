@@ -6,21 +6,22 @@
 #include <memory>
 
 #include "renderlib/base/mutex.h"
-#include "worker/session/outbox.h"
+#include "worker/session/send_queue.h"
 #include "worker/session/session.h"
 
 namespace bandsaw::worker {
 
-class Desk {
+class SharedSession {
  public:
-  explicit Desk(Self self) : session_(std::move(self)), outbox_(std::make_shared<Outbox>()) {}
+  explicit SharedSession(WorkerInfo info)
+      : session_(std::move(info)), queue_(std::make_shared<SendQueue>()) {}
 
   // For the threads of the stream.
   /// Starts a new stream. Returns its send queue, whose first message is Hello.
-  std::shared_ptr<Outbox> open_stream() EXCLUDES(mutex_);
+  std::shared_ptr<SendQueue> open_stream() EXCLUDES(mutex_);
   void close_stream() EXCLUDES(mutex_);
   /// Processes a message. The answers are already in the send queue.
-  Reaction receive(const farm::ToWorker& message) EXCLUDES(mutex_);
+  SessionEffects receive(const farm::ToWorker& message) EXCLUDES(mutex_);
   std::chrono::milliseconds heartbeat_interval() EXCLUDES(mutex_);
   /// std::nullopt before Welcome.
   std::optional<farm::FromWorker> heartbeat() EXCLUDES(mutex_);
@@ -53,7 +54,7 @@ class Desk {
   Mutex mutex_;
   CondVar changed_;
   Session session_ GUARDED_BY(mutex_);
-  std::shared_ptr<Outbox> outbox_ GUARDED_BY(mutex_);
+  std::shared_ptr<SendQueue> queue_ GUARDED_BY(mutex_);
   bool left_ GUARDED_BY(mutex_) = false;
 };
 

@@ -1,8 +1,8 @@
-#include "worker/session/outbox.h"
+#include "worker/session/send_queue.h"
 
 namespace bandsaw::worker {
 
-void Outbox::push(farm::FromWorker message) {
+void SendQueue::push(farm::FromWorker message) {
   MutexLock lock(mutex_);
   if (!closed_) {
     messages_.push_back(std::move(message));
@@ -10,19 +10,20 @@ void Outbox::push(farm::FromWorker message) {
   }
 }
 
-void Outbox::beat_now() {
+void SendQueue::beat_now() {
   MutexLock lock(mutex_);
   beat_now_ = true;
   changed_.notify_all();
 }
 
-void Outbox::close() {
+void SendQueue::close() {
   MutexLock lock(mutex_);
   closed_ = true;
   changed_.notify_all();
 }
 
-Outbox::Next Outbox::next(std::chrono::milliseconds heartbeat_interval, farm::FromWorker& message) {
+SendQueue::Next SendQueue::next(std::chrono::milliseconds heartbeat_interval,
+                                farm::FromWorker& message) {
   MutexLock lock(mutex_);
   while (true) {
     if (!messages_.empty()) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// The rendering half of a worker: cache, pool, executor and uploader, reporting to the desk.
+// The rendering half of a worker: cache, pool, executor and uploader, reporting to the session.
 
 #include <functional>
 #include <memory>
@@ -12,25 +12,20 @@
 #include "worker/executor/executor.h"
 #include "worker/executor/load_package.h"
 #include "worker/executor/uploader.h"
-#include "worker/session/desk.h"
+#include "worker/session/coordinator_api.h"
+#include "worker/session/shared_session.h"
 
 namespace bandsaw::worker {
-
-/// What it needs of the farm: the calls of the bulk channel, or a test's own.
-struct FarmDoors {
-  TransferBlob get_blob;
-  std::function<absl::StatusOr<farm::PutBandReply::Outcome>(const FinishedBand&, const LeaseName&)>
-      put_band;
-};
 
 /// The last lines of this process's log, for a failure's report.
 using LogTail = std::function<std::vector<std::string>()>;
 
-class Workshop {
+class BandPipeline {
  public:
-  /// `kernel`: what renders the scenes; as in Scene::build.
-  Workshop(Desk& desk, std::unique_ptr<BlobCache> cache, int threads, const Kernel* kernel,
-           FarmDoors farm, LogTail log_tail, std::uint64_t seed);
+  /// `kernel`: the code that renders the scenes, as in Scene::build. `calls` and `session` MUST
+  /// outlive the pipeline.
+  BandPipeline(SharedSession& session, std::unique_ptr<BlobCache> cache, int threads,
+               const Kernel* kernel, CoordinatorApi& calls, LogTail log_tail, std::uint64_t seed);
 
   void start(const Task& task) { executor_.add(task); }
   void stop(TaskId task);
@@ -46,9 +41,9 @@ class Workshop {
   absl::StatusOr<farm::PutBandReply::Outcome> put(const FinishedBand& band);
   void settled(TaskId task, const absl::StatusOr<farm::PutBandReply::Outcome>& outcome);
 
-  Desk& desk_;
+  SharedSession& session_;
   const std::unique_ptr<BlobCache> cache_;
-  const FarmDoors farm_;
+  CoordinatorApi& calls_;
   const LogTail log_tail_;
   const Kernel* const kernel_;
   Pool pool_;

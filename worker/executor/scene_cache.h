@@ -23,9 +23,9 @@ using Prepared = std::function<void(std::uint64_t)>;
 using LoadScene = std::function<absl::StatusOr<std::shared_ptr<const Scene>>(
     const wire::Digest& manifest, const std::atomic<bool>& stop, const Prepared& prepared)>;
 
-class SceneShelf {
+class SceneCache {
  public:
-  explicit SceneShelf(LoadScene load) : load_(std::move(load)) {}
+  explicit SceneCache(LoadScene load) : load_(std::move(load)) {}
   /// Returns the scene, loading it if necessary. One scene is loaded at a time, because loading
   /// uses all cores; other callers wait. A failure is not cached.
   absl::StatusOr<std::shared_ptr<const Scene>> get(const wire::Digest& manifest,

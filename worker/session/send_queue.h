@@ -11,7 +11,7 @@
 
 namespace bandsaw::worker {
 
-class Outbox {
+class SendQueue {
  public:
   void push(farm::FromWorker message) EXCLUDES(mutex_);
   /// Makes a heartbeat due now, because a state changed.

@@ -1,4 +1,4 @@
-#include "worker/executor/scene_shelf.h"
+#include "worker/executor/scene_cache.h"
 
 #include "renderlib/base/status_macros.h"
 
@@ -9,7 +9,7 @@ constexpr std::size_t kScenes = 2;
 
 }  // namespace
 
-absl::StatusOr<std::shared_ptr<const Scene>> SceneShelf::get(const wire::Digest& manifest,
+absl::StatusOr<std::shared_ptr<const Scene>> SceneCache::get(const wire::Digest& manifest,
                                                              const std::atomic<bool>& stop,
                                                              const Prepared& prepared) {
   MutexLock lock(mutex_);
