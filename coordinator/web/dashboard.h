@@ -20,7 +20,7 @@ struct DashboardOptions {
   int port = 8787;                 ///< 0 picks one
   bool insecure = false;           ///< plain HTTP beyond loopback too
   std::string gallery;             ///< folder of scene files; need not be there
-  BringScene bring;
+  ImportScene import_scene;
   WorkerPrograms workers;  ///< what is handed out to machines that are to join
   TellReport report;
 };

@@ -1,7 +1,7 @@
 #pragma once
 
 // From a scene file to a job. The file is read by the confined importer, as everywhere; how is
-// given from outside (BringScene), because the programs lie with the command.
+// given from outside (ImportScene), because the programs lie with the command.
 
 #include <atomic>
 #include <cstdint>
@@ -24,8 +24,8 @@ struct SceneOnFarm {
 
 /// Imports a scene file and stores its package. Blocks; CANCELLED soon after `stop` becomes true.
 /// Errors of the importer, naming the file, and of the store.
-using BringScene = std::function<absl::StatusOr<SceneOnFarm>(const std::string& path,
-                                                             const std::atomic<bool>& stop)>;
+using ImportScene = std::function<absl::StatusOr<SceneOnFarm>(const std::string& path,
+                                                              const std::atomic<bool>& stop)>;
 
 /// What is wanted of a scene.
 struct SceneWish {
@@ -40,16 +40,17 @@ class Scenes {
   /// So many files are read at the same time; more are refused.
   static constexpr int kAtOnce = 2;
 
-  Scenes(Engine& engine, BringScene bring) : engine_(engine), bring_(std::move(bring)) {}
+  Scenes(Engine& engine, ImportScene import_scene)
+      : engine_(engine), import_scene_(std::move(import_scene)) {}
 
-  /// Errors of BringScene and Engine::submit; RESOURCE_EXHAUSTED: busy with others.
+  /// Errors of ImportScene and Engine::submit; RESOURCE_EXHAUSTED: busy with others.
   absl::StatusOr<web::Submitted> submit(const std::string& path, const SceneWish& wanted);
   /// Ends what is being read; what comes later is refused.
   void stop() { stop_ = true; }
 
  private:
   Engine& engine_;
-  const BringScene bring_;
+  const ImportScene import_scene_;
   std::atomic<bool> stop_{false};
   std::atomic<int> reading_{0};
 };

@@ -11,7 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
-#include "coordinator/cli/machines/worker_program.h"
+#include "coordinator/cli/machines/worker_file.h"
 #include "coordinator/cli/scene/import_process.h"
 #include "coordinator/rpc/port_check.h"
 #include "coordinator/store/data_folder.h"

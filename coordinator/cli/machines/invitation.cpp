@@ -8,7 +8,7 @@
 #include "absl/strings/strip.h"
 #include "coordinator/cli/base/text.h"
 #include "coordinator/cli/machines/remote_scripts.h"
-#include "coordinator/cli/machines/worker_program.h"
+#include "coordinator/cli/machines/worker_file.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {

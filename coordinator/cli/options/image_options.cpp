@@ -1,8 +1,8 @@
 #include "coordinator/cli/options/image_options.h"
 
 #include "absl/strings/str_cat.h"
+#include "coordinator/cli/options/admin_options.h"
 #include "coordinator/cli/options/choices.h"
-#include "coordinator/cli/options/house_options.h"
 #include "coordinator/cli/options/report_options.h"
 
 namespace bandsaw::coordinator {

@@ -75,6 +75,8 @@ struct ServeOptions {
 
 /// What an EXR file holds beside the image.
 enum class LayerKind { kAlbedo, kNormal, kDepth, kSamples };
+/// Their names, in the order of LayerKind.
+inline constexpr const char* kLayerNames[] = {"albedo", "normal", "depth", "samples"};
 
 struct SubmitOptions {
   std::string scene;

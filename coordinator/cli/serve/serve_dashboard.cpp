@@ -10,8 +10,8 @@
 #include "coordinator/cli/base/data_folder.h"
 #include "coordinator/cli/base/program_folder.h"
 #include "coordinator/cli/image/report.h"
-#include "coordinator/cli/machines/worker_program.h"
-#include "coordinator/cli/serve/bring_scene.h"
+#include "coordinator/cli/machines/worker_file.h"
+#include "coordinator/cli/serve/import_and_store.h"
 #include "coordinator/cli/serve/join_addresses.h"
 #include "proto/link/certificate.h"
 #include "renderlib/base/atomic_file.h"
@@ -50,7 +50,7 @@ absl::StatusOr<std::unique_ptr<Dashboard>> start(const ServeOptions& options, En
   wanted.workers = workers;
   wanted.insecure = options.insecure;
   wanted.gallery = gallery_folder();
-  wanted.bring = bring_scene(engine);
+  wanted.import_scene = import_and_store(engine);
   wanted.report = [](const JobView& job, const Image& image) {
     const Progress progress{job, bad_sample_text(job.counters)};
     return report_text({progress, pixels_sha256(image), {}});

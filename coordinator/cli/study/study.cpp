@@ -6,8 +6,9 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "coordinator/cli/base/text.h"
+#include "coordinator/cli/image/output.h"
 #include "coordinator/cli/options/commands.h"
-#include "coordinator/cli/options/output.h"
 #include "coordinator/cli/scene/image_settings.h"
 #include "coordinator/cli/scene/import_scene_file.h"
 #include "coordinator/cli/study/study_measure.h"
@@ -98,7 +99,7 @@ ExitCode run(const StudyOptions& options, Process& process) {
     return console.fail(ExitCode::kFailed, std::string(written.message()));
   }
   console.write(absl::StrCat(options.verbosity.quiet ? "" : "\n", study_table(*studies)));
-  console.line(absl::StrCat("\n", names_of(options.outputs)));
+  console.line(absl::StrCat("\n", printable_list(options.outputs)));
   return ExitCode::kDone;
 }
 

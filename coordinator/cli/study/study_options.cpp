@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "coordinator/cli/options/house_options.h"
+#include "coordinator/cli/options/admin_options.h"
 #include "coordinator/cli/options/quantities.h"
 #include "coordinator/cli/study/study_outputs.h"
 #include "proto/wire/limits.h"

@@ -10,11 +10,12 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/base/program_folder.h"
+#include "coordinator/cli/base/text.h"
 #include "coordinator/cli/farm/farm_errors.h"
 #include "coordinator/cli/farm/upload.h"
 #include "coordinator/cli/farm/watch_job.h"
+#include "coordinator/cli/image/output.h"
 #include "coordinator/cli/options/commands.h"
-#include "coordinator/cli/options/output.h"
 #include "coordinator/cli/scene/image_settings.h"
 #include "coordinator/cli/scene/import_scene_file.h"
 #include "coordinator/cli/study/study_outputs.h"
@@ -237,7 +238,7 @@ ExitCode run(const PhoneStudyOptions& options, Process& process) {
     return fail(ExitCode::kFailed, written);
   }
   console.write(absl::StrCat(options.verbosity.quiet ? "" : "\n", phone_tables_text(*study)));
-  console.line(absl::StrCat("\n", names_of(options.outputs)));
+  console.line(absl::StrCat("\n", printable_list(options.outputs)));
   return ExitCode::kDone;
 }
 

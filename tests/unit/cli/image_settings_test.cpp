@@ -2,7 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "coordinator/cli/options/output.h"
+#include "coordinator/cli/base/text.h"
+#include "coordinator/cli/options/output_names.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -55,7 +56,7 @@ TEST(ImageSettings, TooLargeIsAnError) {
 TEST(Output, TheDefaultIsTheScenesNameHere) {
   EXPECT_EQ(default_output("scenes/cornell.textproto", ".png"), "cornell.png");
   EXPECT_EQ(default_output("helmet.glb", ".png"), "helmet.png");
-  EXPECT_EQ(names_of({"a.png", "b.pfm"}), "a.png, b.pfm");
+  EXPECT_EQ(printable_list({"a.png", "b.pfm"}), "a.png, b.pfm");
   EXPECT_TRUE(is_part_name("x.BAND"));
   EXPECT_FALSE(is_part_name("x.band.png"));
 }

@@ -1,8 +1,9 @@
-#include "coordinator/cli/options/layers.h"
+#include "coordinator/cli/image/layers.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "coordinator/cli/options/choices.h"
 #include "renderlib/render/render_image.h"
 #include "tests/support/scenes.h"
 

@@ -14,7 +14,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-void say(const Progress& progress, Verbosity verbosity, const Console& console) {
+void print_state(const Progress& progress, Verbosity verbosity, const Console& console) {
   const JobView& job = progress.job;
   if (verbosity.json) {
     console.line(jobs_json({progress}).front());
@@ -25,28 +25,28 @@ void say(const Progress& progress, Verbosity verbosity, const Console& console) 
                             job.priority, job.reason.empty() ? "" : ": ", printable(job.reason)));
 }
 
-absl::StatusOr<Progress> tell(FarmClient& client, const CancelOptions& options) {
+absl::StatusOr<Progress> apply(FarmClient& client, const CancelOptions& options) {
   return client.cancel(options.job);
 }
-absl::StatusOr<Progress> tell(FarmClient& client, const PauseOptions& options) {
+absl::StatusOr<Progress> apply(FarmClient& client, const PauseOptions& options) {
   return client.pause_job(options.job);
 }
-absl::StatusOr<Progress> tell(FarmClient& client, const ResumeOptions& options) {
+absl::StatusOr<Progress> apply(FarmClient& client, const ResumeOptions& options) {
   return client.resume_job(options.job);
 }
-absl::StatusOr<Progress> tell(FarmClient& client, const PriorityOptions& options) {
+absl::StatusOr<Progress> apply(FarmClient& client, const PriorityOptions& options) {
   return client.set_priority(options.job, options.priority);
 }
 
 template <class Options>
-absl::Status tell_and_say(const Options& options, const Console& console) {
+absl::Status apply_and_print(const Options& options, const Console& console) {
   ASSIGN_OR_RETURN(const auto client, connect_to_farm(options.farm));
-  ASSIGN_OR_RETURN(const Progress progress, tell(*client, options));
-  say(progress, options.verbosity, console);
+  ASSIGN_OR_RETURN(const Progress progress, apply(*client, options));
+  print_state(progress, options.verbosity, console);
   return absl::OkStatus();
 }
 
-absl::Status say_why(const WhyOptions& options, const Console& console) {
+absl::Status print_why(const WhyOptions& options, const Console& console) {
   ASSIGN_OR_RETURN(const auto client, connect_to_farm(options.farm));
   ASSIGN_OR_RETURN(const std::vector<std::string> reasons, client->why(options.job));
   for (const std::string& line :
@@ -56,7 +56,7 @@ absl::Status say_why(const WhyOptions& options, const Console& console) {
   return absl::OkStatus();
 }
 
-absl::Status tell_of_worker(const QuarantineOptions& options, const Console& console) {
+absl::Status set_quarantine(const QuarantineOptions& options, const Console& console) {
   ASSIGN_OR_RETURN(const auto client, connect_to_farm(options.farm));
   RETURN_IF_ERROR(client->quarantine(options.worker, options.lift));
   if (options.verbosity.json) {
@@ -78,27 +78,27 @@ absl::Status tell_of_worker(const QuarantineOptions& options, const Console& con
 }  // namespace
 
 ExitCode run(const QuarantineOptions& options, Process& process) {
-  return finished(tell_of_worker(options, process.console), process.console);
+  return finished(set_quarantine(options, process.console), process.console);
 }
 
 ExitCode run(const CancelOptions& options, Process& process) {
-  return finished(tell_and_say(options, process.console), process.console);
+  return finished(apply_and_print(options, process.console), process.console);
 }
 
 ExitCode run(const PauseOptions& options, Process& process) {
-  return finished(tell_and_say(options, process.console), process.console);
+  return finished(apply_and_print(options, process.console), process.console);
 }
 
 ExitCode run(const ResumeOptions& options, Process& process) {
-  return finished(tell_and_say(options, process.console), process.console);
+  return finished(apply_and_print(options, process.console), process.console);
 }
 
 ExitCode run(const PriorityOptions& options, Process& process) {
-  return finished(tell_and_say(options, process.console), process.console);
+  return finished(apply_and_print(options, process.console), process.console);
 }
 
 ExitCode run(const WhyOptions& options, Process& process) {
-  return finished(say_why(options, process.console), process.console);
+  return finished(print_why(options, process.console), process.console);
 }
 
 }  // namespace bandsaw::coordinator

@@ -18,13 +18,6 @@ namespace bandsaw::coordinator {
 /// More samples than this do not visibly improve a layer.
 inline constexpr std::uint64_t kMostLayerSamples = 64;
 
-/// Returns the names of all layers: "albedo", "normal", "depth", "samples".
-std::vector<std::string> layer_names();
-
-/// Parses a list such as "albedo,normal,depth,samples", each at most once. INVALID_ARGUMENT:
-/// unknown or repeated name.
-absl::StatusOr<std::vector<LayerKind>> parse_layers(const std::string& list);
-
 /// Renders the scene with these settings and this number of samples, here or on a farm.
 using LayerRenderer =
     std::function<absl::StatusOr<Image>(const RenderSettings& settings, std::uint64_t samples)>;

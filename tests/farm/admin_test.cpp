@@ -11,7 +11,7 @@ namespace {
 
 const std::string kScene = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
 
-class House : public testing::Test {
+class Administration : public testing::Test {
  protected:
   Finished say(std::vector<std::string> arguments) { return run(farm_.command(arguments)); }
   Finished here(std::vector<std::string> arguments) {
@@ -32,7 +32,7 @@ class House : public testing::Test {
   FarmProcesses farm_;
 };
 
-TEST_F(House, AWorkersLogIsReadFromAfar) {
+TEST_F(Administration, AWorkersLogIsReadFromAfar) {
   farm_.add_worker("desk", 1);
   ask_until({"logs", "desk"}, "joined");
   EXPECT_EQ(
@@ -49,7 +49,7 @@ TEST_F(House, AWorkersLogIsReadFromAfar) {
   EXPECT_NE(unknown.err.find("desk"), std::string::npos) << unknown.err;
 }
 
-TEST_F(House, TheDoctorFindsAFarmWellFromBothSides) {
+TEST_F(Administration, TheDoctorFindsAFarmWellFromBothSides) {
   farm_.add_worker("desk", 1);
   for (const std::string& join : {farm_.farm_file(), farm_.join_file()}) {
     const Finished well = run({BANDSAW_BIN, "doctor", "--farm", join, "--data", farm_.path("data"),
@@ -61,7 +61,7 @@ TEST_F(House, TheDoctorFindsAFarmWellFromBothSides) {
   }
 }
 
-TEST_F(House, TheDoctorNamesWhatIsWrong) {
+TEST_F(Administration, TheDoctorNamesWhatIsWrong) {
   farm_.coordinator().signal(SIGTERM);
   farm_.coordinator().wait();
   const Finished ill = say({"doctor", "--data", farm_.path("data"), "--listen", "192.0.2.1:7878"});
@@ -71,7 +71,7 @@ TEST_F(House, TheDoctorNamesWhatIsWrong) {
   EXPECT_NE(ill.out.find("ok       import"), std::string::npos) << ill.out;
 }
 
-TEST_F(House, AWorkersOldSecretIsVoidAtOnceAndTheNewOneJoins) {
+TEST_F(Administration, AWorkersOldSecretIsVoidAtOnceAndTheNewOneJoins) {
   Process& old = farm_.add_worker("old", 1);
   const std::string before = file_bytes(farm_.join_file());
   const Finished rotated = here({"secret", "rotate", "worker"});
@@ -83,7 +83,7 @@ TEST_F(House, AWorkersOldSecretIsVoidAtOnceAndTheNewOneJoins) {
   farm_.add_worker("new", 1);
 }
 
-TEST_F(House, PeoplesSecretIsRenewedWithAndWithoutACoordinator) {
+TEST_F(Administration, PeoplesSecretIsRenewedWithAndWithoutACoordinator) {
   const std::string first = file_bytes(farm_.farm_file());
   EXPECT_EQ(here({"secret", "rotate", "farm"}).code, 0);
   EXPECT_EQ(run({BANDSAW_BIN, "jobs", "--farm", first}).code, 2);
@@ -98,7 +98,7 @@ TEST_F(House, PeoplesSecretIsRenewedWithAndWithoutACoordinator) {
 }
 
 // One band of a million samples, so that each worker is killed while rendering it.
-TEST_F(House, ABandThatEndsThreeWorkersFailsItsJob) {
+TEST_F(Administration, ABandThatEndsThreeWorkersFailsItsJob) {
   EXPECT_EQ(
       say({"submit", kScene, "--width", "65536", "--height", "1", "--samples", "16", "--detach"})
           .code,

@@ -1,4 +1,4 @@
-#include "coordinator/cli/machines/worker_program.h"
+#include "coordinator/cli/machines/worker_file.h"
 
 #include <elf.h>
 

@@ -8,6 +8,6 @@
 namespace bandsaw::coordinator {
 
 /// Returns the import function for the dashboard. `engine` MUST outlive it.
-BringScene bring_scene(Engine& engine);
+ImportScene import_and_store(Engine& engine);
 
 }  // namespace bandsaw::coordinator

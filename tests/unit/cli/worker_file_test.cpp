@@ -1,6 +1,6 @@
 // Worker programs are known by their bytes, whatever their names, and none is run.
 
-#include "coordinator/cli/machines/worker_program.h"
+#include "coordinator/cli/machines/worker_file.h"
 
 #include <elf.h>
 #include <gmock/gmock.h>

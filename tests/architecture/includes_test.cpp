@@ -1,4 +1,4 @@
-// Holds the house's arrows: which folder may include which (the README of each part draws them).
+// Checks which folder includes which (the README of each part shows the allowed dependencies).
 
 #include <gtest/gtest.h>
 
@@ -108,12 +108,12 @@ std::vector<std::string> lines_of(const fs::path& source) {
   return lines;
 }
 
-TEST(House, EveryIncludeFollowsTheArrows) {
+TEST(Architecture, EveryIncludeFollowsTheAllowedDependencies) {
   const std::regex include("^#include \"([^\"]+)/[^/\"]+\"");
   std::size_t checked = 0;
   for (const fs::path& source : sources()) {
     const std::string folder = source.parent_path().string();
-    ASSERT_TRUE(kMayInclude.contains(folder)) << folder << " is not in the plan of the house";
+    ASSERT_TRUE(kMayInclude.contains(folder)) << folder << " is not in kMayInclude";
     const std::set<std::string> allowed = reachable(folder);
     for (const std::string& line : lines_of(source)) {
       std::smatch match;
@@ -127,7 +127,7 @@ TEST(House, EveryIncludeFollowsTheArrows) {
   EXPECT_GT(checked, 100u);
 }
 
-TEST(House, OnlyPackageAndImportKnowProtobufInRenderlib) {
+TEST(Architecture, OnlyPackageAndImportKnowProtobufInRenderlib) {
   for (const fs::path& source : sources()) {
     const std::string folder = source.parent_path().string();
     if (!folder.starts_with("renderlib/") || folder == "renderlib/package" ||
@@ -145,7 +145,7 @@ TEST(House, OnlyPackageAndImportKnowProtobufInRenderlib) {
 
 // Functions whose results depend on the CPU's libm, on the standard library's choice or on hidden
 // state.
-TEST(House, Y5_RenderlibCallsNothingWhoseResultDependsOnTheMachine) {
+TEST(Architecture, Y5_RenderlibCallsNothingWhoseResultDependsOnTheMachine) {
   const std::regex banned(
       R"(\bstd::(sin|cos|tan|asin|acos|atan|atan2|exp|exp2|expm1|log|log2|log10|log1p|pow|cbrt|hypot)\()"
       R"(|\bstd::(uniform_\w+_distribution|normal_distribution|shuffle|reduce|random_device|mt19937\w*)\b)"
@@ -166,7 +166,7 @@ TEST(House, Y5_RenderlibCallsNothingWhoseResultDependsOnTheMachine) {
 
 // Every dimension of a sample has its place (sampling/sampler.h), so nothing is drawn until it
 // fits: where samples are mapped there is no loop without a count.
-TEST(House, R7_NothingIsDrawnUntilItFits) {
+TEST(Architecture, R7_NothingIsDrawnUntilItFits) {
   const std::regex loop(R"(\b(while|do)\b\s*[({]|for \(;;\))");
   for (const fs::path& source : sources()) {
     const std::string folder = source.parent_path().string();
@@ -212,7 +212,7 @@ std::map<std::string, std::set<std::string>> types_of_headers() {
 
 // Two types of one name, in headers that no file includes together, would still be one to the
 // linker: their inline members would be mixed without a word.
-TEST(House, ATypeIsDefinedInOneHeader) {
+TEST(Architecture, ATypeIsDefinedInOneHeader) {
   const auto found = types_of_headers();
   EXPECT_GT(found.size(), 300u);
   EXPECT_TRUE(found.contains("bandsaw::coordinator::action::Lease"));
@@ -222,13 +222,13 @@ TEST(House, ATypeIsDefinedInOneHeader) {
   }
 }
 
-TEST(House, FilesStayReadable) {
+TEST(Architecture, FilesStayReadable) {
   for (const fs::path& source : sources()) {
     EXPECT_LE(lines_of(source).size(), 300u) << source << " wants to be two files";
   }
 }
 
-TEST(House, TheTopLevelHoldsWhatWasAgreed) {
+TEST(Architecture, TheTopLevelHoldsWhatWasAgreed) {
   const std::set<std::string> agreed = {
       "CMakeLists.txt", "CMakePresets.json", "LICENSE", "README.md", "proto", "coordinator",
       "worker",         "renderlib",         "deploy",  "tests",     "build", "out"};

@@ -1,4 +1,4 @@
-#include "coordinator/cli/serve/bring_scene.h"
+#include "coordinator/cli/serve/import_and_store.h"
 
 #include <span>
 
@@ -26,7 +26,7 @@ absl::Status store(Engine& engine, const wire::Digest& digest, absl::Span<const 
 
 }  // namespace
 
-BringScene bring_scene(Engine& engine) {
+ImportScene import_and_store(Engine& engine) {
   return [&engine](const std::string& path,
                    const std::atomic<bool>& stop) -> absl::StatusOr<SceneOnFarm> {
     ImportLimits limits;

@@ -13,14 +13,6 @@
 
 namespace bandsaw::coordinator {
 
-/// True if the name ends in .band (any case): a file with the sums of some rows instead of a
-/// picture.
-bool is_part_name(const std::string& path);
-
-/// Returns the default file name: the scene's stem in the current folder.
-/// "scenes/cornell.textproto", ".png" -> "cornell.png".
-std::string default_output(const std::string& scene, const std::string& suffix);
-
 /// Checks that every output can be written, before any work is done. The error names the file.
 absl::Status check_outputs_writable(const std::vector<std::string>& outputs);
 
@@ -33,8 +25,5 @@ absl::Status write_outputs(const Image& image, const std::vector<std::string>& o
 /// cannot represent them; 0 if there is no such file among the outputs.
 std::uint64_t cut_off_values(const Image& image, const std::vector<std::string>& outputs,
                              const Display& display);
-
-/// Joins the names for display: "cornell.png, cornell.pfm".
-std::string names_of(const std::vector<std::string>& outputs);
 
 }  // namespace bandsaw::coordinator

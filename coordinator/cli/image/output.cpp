@@ -1,23 +1,15 @@
-#include "coordinator/cli/options/output.h"
+#include "coordinator/cli/image/output.h"
 
 #include <algorithm>
-#include <filesystem>
 
 #include "absl/strings/match.h"
-#include "absl/strings/str_join.h"
-#include "coordinator/cli/base/text.h"
+#include "coordinator/cli/options/output_names.h"
 #include "renderlib/base/atomic_file.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/image/exr.h"
 #include "renderlib/image/write_image.h"
 
 namespace bandsaw::coordinator {
-
-bool is_part_name(const std::string& path) { return absl::EndsWithIgnoreCase(path, ".band"); }
-
-std::string default_output(const std::string& scene, const std::string& suffix) {
-  return std::filesystem::path(scene).stem().string() + suffix;
-}
 
 absl::Status check_outputs_writable(const std::vector<std::string>& outputs) {
   for (const std::string& output : outputs) {
@@ -42,10 +34,6 @@ std::uint64_t cut_off_values(const Image& image, const std::vector<std::string>&
   };
   return display.half && std::any_of(outputs.begin(), outputs.end(), is_exr) ? beyond_half(image)
                                                                              : 0;
-}
-
-std::string names_of(const std::vector<std::string>& outputs) {
-  return printable(absl::StrJoin(outputs, ", "));
 }
 
 }  // namespace bandsaw::coordinator
