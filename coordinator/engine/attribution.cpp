@@ -5,7 +5,7 @@
 namespace bandsaw::coordinator {
 
 void Attribution::add(JobId job, const RowRange& rows, std::uint64_t renderer,
-                  const std::string& name) {
+                      const std::string& name) {
   if (!name.empty() && (names_.size() < kMostNames || names_.contains(renderer))) {
     names_[renderer] = name;
   }

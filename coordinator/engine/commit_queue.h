@@ -31,7 +31,8 @@ class CommitQueue {
   /// Appends all records at once, and no more. On an error they stay.
   absl::Status write();
   /// Appends all records at once, then does and answers everything in the order it came. On an
-  /// error the completions are given it, and records and effects stay, in order, for the next flush.
+  /// error the completions are given it, and records and effects stay, in order, for the next
+  /// flush.
   absl::Status flush();
   /// Gives all completions that wait this error.
   void fail_completions(const absl::Status& status);

@@ -13,8 +13,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Whether a band is not in the log any more, however often it is read. UNKNOWN is what an
-/// unreadable sector (EIO) says.
+/// True if reading the band again cannot succeed. UNKNOWN is the code of an unreadable sector
+/// (EIO).
 bool is_damage(const absl::Status& status) {
   return absl::IsDataLoss(status) || absl::IsOutOfRange(status) || absl::IsNotFound(status) ||
          absl::IsUnknown(status);
@@ -50,7 +50,8 @@ absl::Status FilmThread::add(JobId id, IncomingBand incoming, std::vector<RowRan
   return work(id, job->second);
 }
 
-void FilmThread::add_later(JobId id, const IncomingBand& incoming, const std::vector<RowRange>& rows) {
+void FilmThread::add_later(JobId id, const IncomingBand& incoming,
+                           const std::vector<RowRange>& rows) {
   const auto job = jobs_.find(id);
   if (job == jobs_.end()) {
     return;
@@ -59,21 +60,21 @@ void FilmThread::add_later(JobId id, const IncomingBand& incoming, const std::ve
     job->second.added.push_back(added(incoming, range));
   }
   job->second.film.reset();
-  job->second.anew = true;
+  job->second.rebuild = true;
 }
 
 void FilmThread::want_image(JobId id, std::uint64_t samples) {
   if (const auto job = jobs_.find(id); job != jobs_.end()) {
     job->second.image_of = samples;
-    work(id, job->second).IgnoreError();  // the hook has heard of it
+    work(id, job->second).IgnoreError();  // the scheduler was informed
   }
 }
 
 void FilmThread::retry() {
   for (auto& [id, job] : jobs_) {
     make_folder(folder_.job(id)).IgnoreError();  // where it is missing, `work` says so
-    if (job.anew || !job.waiting.empty() || job.image_of) {
-      work(id, job).IgnoreError();  // the hook has heard of it
+    if (job.rebuild || !job.waiting.empty() || job.image_of) {
+      work(id, job).IgnoreError();  // the scheduler was informed
     }
   }
 }
@@ -86,9 +87,9 @@ void FilmThread::retract(JobId id, std::uint64_t renderer) {
   const auto by = [&](const auto& one) { return one.renderer == renderer; };
   std::erase_if(job->second.waiting, [&](const Waiting& waiting) { return by(waiting.incoming); });
   std::erase_if(job->second.added, by);
-  job->second.anew = true;
-  job->second.told = 0;
-  work(id, job->second).IgnoreError();  // the hook has heard of it
+  job->second.rebuild = true;
+  job->second.reported = 0;
+  work(id, job->second).IgnoreError();  // the scheduler was informed
 }
 
 void FilmThread::drop(JobId job) {
@@ -97,8 +98,9 @@ void FilmThread::drop(JobId job) {
 }
 
 std::vector<RowsBy> FilmThread::rendered_by(JobId job) const {
-  return jobs_.contains(job) ? attribution_.of(job)
-                             : read_attribution(folder_.attribution(job)).value_or(std::vector<RowsBy>());
+  return jobs_.contains(job)
+             ? attribution_.of(job)
+             : read_attribution(folder_.attribution(job)).value_or(std::vector<RowsBy>());
 }
 
 absl::StatusOr<Image> FilmThread::preview(JobId id, std::uint32_t row_step) const {
@@ -110,28 +112,30 @@ absl::StatusOr<Image> FilmThread::preview(JobId id, std::uint32_t row_step) cons
 }
 
 absl::Status FilmThread::work(JobId id, OneJob& job) {
-  absl::Status status = job.anew ? make_anew(id, job) : absl::OkStatus();
+  absl::Status status = job.rebuild ? rebuild_film(id, job) : absl::OkStatus();
   while (status.ok() && !job.waiting.empty()) {
     status = merge(id, job, job.waiting.front());
     if (status.ok()) {
       job.waiting.pop_front();
-      tell_passes(id, job);
+      report_passes(id, job);
     }
   }
   if (status.ok()) {
-    status = give_image(id, job);
+    status = send_image(id, job);
   }
   if (!status.ok()) {
-    hooks_.failed(id, status);
+    // The scheduler pauses the job before the store can report that the disk is back.
+    scheduler_.storage_failed(id, status);
+    store_.expect_trouble();
   }
   return status;
 }
 
-absl::Status FilmThread::make_anew(JobId id, OneJob& job) {
-  job.film.reset();  // its room is needed
+absl::Status FilmThread::rebuild_film(JobId id, OneJob& job) {
+  job.film.reset();  // frees its disk space for the new film
   ASSIGN_OR_RETURN(job.film, film_until(id, job, kMaxSamples));
-  job.anew = false;
-  tell_passes(id, job);
+  job.rebuild = false;
+  report_passes(id, job);
   return absl::OkStatus();
 }
 
@@ -151,19 +155,19 @@ absl::Status FilmThread::merge(JobId id, OneJob& job, Waiting& waiting) {
   return absl::OkStatus();
 }
 
-void FilmThread::tell_passes(JobId id, OneJob& job) {
-  for (auto end = job.pass_ends.upper_bound(job.told);
+void FilmThread::report_passes(JobId id, OneJob& job) {
+  for (auto end = job.pass_ends.upper_bound(job.reported);
        end != job.pass_ends.end() && job.film->complete(*end); ++end) {
-    job.told = *end;
-    hooks_.merged(
+    job.reported = *end;
+    scheduler_.pass_merged(
         {.job = id,
-         .samples = job.told,
+         .samples = job.reported,
          .error = job.film->error(),
          .tiles = job.adaptive ? job.film->tile_errors() : std::vector<HalfTileErrors>()});
   }
 }
 
-absl::Status FilmThread::give_image(JobId id, OneJob& job) {
+absl::Status FilmThread::send_image(JobId id, OneJob& job) {
   if (!job.image_of || !job.film || !job.film->complete(*job.image_of)) {
     return absl::OkStatus();
   }
@@ -173,18 +177,18 @@ absl::Status FilmThread::give_image(JobId id, OneJob& job) {
     ASSIGN_OR_RETURN(job.film, film_until(id, job, samples));
     std::erase_if(job.added, is_beyond);
     if (!job.film->complete(samples)) {
-      job.image_of.reset();  // it is asked for again when what is damaged is there again
+      job.image_of.reset();  // the scheduler requests it again after the damaged bands are replaced
       return absl::OkStatus();
     }
   }
   job.image_of.reset();
-  // What was told on the way may have been of more samples.
-  hooks_.merged({.job = id, .samples = samples, .error = job.film->error()});
+  // Earlier reports may have included more samples than the image has.
+  scheduler_.pass_merged({.job = id, .samples = samples, .error = job.film->error()});
   Finished finished{job.film->snapshot().image, std::nullopt, attribution_.of(id)};
   if (job.adaptive) {
     finished.samples = job.film->counts();
   }
-  hooks_.image(id, std::move(finished));
+  store_.write_result(id, std::move(finished));
   return absl::OkStatus();
 }
 
@@ -201,10 +205,10 @@ FilmThread::Added FilmThread::added(const IncomingBand& incoming, const RowRange
           .digest = digest_of(incoming.pixels, rows)};
 }
 
-/// A film of what was added up to a sample, read from the log: nodes that met have become one sum,
-/// from which a part cannot be taken out again. What the log does not hold any more is left out and
-/// told. Fails where the film cannot be made, or the log cannot be read for another reason than
-/// damage.
+/// Builds a film of the bands up to a sample, read from the log, because nodes that were merged
+/// have become one sum from which no part can be removed. Bands that the log no longer holds are
+/// left out and reported. Fails if the film cannot be created, or the log cannot be read for a
+/// reason other than damage.
 absl::StatusOr<Film> FilmThread::film_until(JobId id, OneJob& job, std::uint64_t samples) {
   ASSIGN_OR_RETURN(Film film, new_film(id, job));
   std::vector<std::size_t> damaged;
@@ -225,7 +229,8 @@ absl::StatusOr<Film> FilmThread::film_until(JobId id, OneJob& job, std::uint64_t
   return film;
 }
 
-/// Bit for bit what was added. DATA_LOSS: the record is sound, but it is another one.
+/// Reads rows from the log, bit for bit as they were added. DATA_LOSS: the record is sound, but it
+/// is another one.
 absl::StatusOr<BandPixels> FilmThread::read_again(JobId id, const Added& added) const {
   ASSIGN_OR_RETURN(const BandRecord record, read_band(folder_.bands(id), added.offset));
   const Band& found = record.pixels.band;
@@ -246,7 +251,8 @@ void FilmThread::leave_out(JobId id, OneJob& job, const std::vector<std::size_t>
     job.added.erase(one);
   }
   if (!lost.empty()) {
-    hooks_.damaged(id, std::move(lost));
+    store_.reopen(id);  // before the first of them is leased again
+    scheduler_.bands_damaged({.job = id, .bands = std::move(lost)});
   }
 }
 

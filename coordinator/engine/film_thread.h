@@ -1,11 +1,10 @@
 #pragma once
 
-// What the film thread does: a film a job, its passes as they become whole, and the image at the
-// end.
+// What runs on the film's thread: one film per job, its passes as they become complete, and the
+// image at the end.
 
 #include <cstdint>
 #include <deque>
-#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -15,7 +14,7 @@
 #include "absl/status/statusor.h"
 #include "coordinator/core/messages.h"
 #include "coordinator/engine/attribution.h"
-#include "coordinator/engine/incoming_band.h"
+#include "coordinator/engine/inboxes.h"
 #include "coordinator/store/data_folder.h"
 #include "coordinator/store/finished.h"
 #include "renderlib/image/image.h"
@@ -26,39 +25,33 @@ namespace bandsaw::coordinator {
 /// Used by one thread at a time.
 class FilmThread {
  public:
-  /// Called on the film's thread.
-  struct Hooks {
-    std::function<void(input::PassMerged)> merged;
-    std::function<void(JobId, Finished)> image;
-    /// The film could not take a band: it is kept in memory until retry.
-    std::function<void(JobId, absl::Status)> failed;
-    /// The log does not hold what was added any more: it is left out of the film from now on.
-    std::function<void(JobId, std::vector<input::BandsDamaged::Lost>)> damaged;
-  };
-  FilmThread(const DataFolder& folder, Hooks hooks) : folder_(folder), hooks_(std::move(hooks)) {}
+  /// All references MUST outlive it.
+  FilmThread(const DataFolder& folder, SchedulerInbox& scheduler, StoreInbox& store)
+      : folder_(folder), scheduler_(scheduler), store_(store) {}
 
   void add_job(JobId job, const RenderSettings& settings, bool adaptive = false);
-  /// A pass that ends at `samples` was begun: it is told when it is whole.
+  /// Announces a pass that ends at `samples`. It is reported when the film has all of it.
   void plan(JobId job, std::uint64_t samples);
-  /// These rows of the band are new. OK: they are in the film; otherwise they wait for retry, which
-  /// `failed` says too.
+  /// Adds these rows of a band. OK: they are in the film. Otherwise they wait in memory for retry,
+  /// and SchedulerInbox::storage_failed is called.
   absl::Status add(JobId job, IncomingBand incoming, std::vector<RowRange> rows);
-  /// The same of a band that is in the job's log, while the film cannot take any: it is read again
-  /// at the next retry.
+  /// The same for a band that is in the job's log while the film cannot take any: it is read from
+  /// the log at the next retry.
   void add_later(JobId job, const IncomingBand& incoming, const std::vector<RowRange>& rows);
-  /// The image of samples [0, samples) goes to the hook as soon as the film has them.
+  /// Sends the image of samples [0, samples) to the store as soon as the film has them.
   void want_image(JobId job, std::uint64_t samples);
+  /// Tries again what failed.
   void retry();
-  /// What this renderer gave is left out: the film is made anew from the log of the others, and its
-  /// passes are told again as they become whole.
+  /// Removes the bands of this renderer: builds the film again from the log of the others, and
+  /// reports its passes again as they become complete.
   void retract(JobId job, std::uint64_t renderer);
   void drop(JobId job);
 
-  /// What is there of a job's image, of every row_step-th row. NOT_FOUND: no band is, or the job is
-  /// over.
+  /// Returns the present image of a job, every row_step-th row. NOT_FOUND: no band is there, or the
+  /// job is over.
   absl::StatusOr<Image> preview(JobId job, std::uint32_t row_step) const;
-  /// Who rendered the rows, as far as they are there; of jobs that are over from what lies beside
-  /// the image.
+  /// Returns who rendered the rows that are there; for a job that is over, from the file beside its
+  /// image.
   std::vector<RowsBy> rendered_by(JobId job) const;
 
  private:
@@ -66,13 +59,13 @@ class FilmThread {
     IncomingBand incoming;
     std::vector<RowRange> rows;
   };
-  /// What was added: enough to add it again from the job's log.
+  /// Rows that were added, with what is needed to read them again from the job's log.
   struct Added {
-    std::uint64_t offset = 0;  ///< of the record that holds the band
+    std::uint64_t offset = 0;  ///< offset of the record that holds the band
     Band band;
     std::uint64_t renderer = 0;
-    TileSamples tiles;         ///< of these rows
-    std::uint64_t digest = 0;  ///< of the rows' sums
+    TileSamples tiles;         ///< tiles of these rows
+    std::uint64_t digest = 0;  ///< digest of the rows' sums
   };
   struct OneJob {
     RenderSettings settings;
@@ -81,28 +74,29 @@ class FilmThread {
     std::deque<Waiting> waiting;
     std::vector<Added> added;
     std::set<std::uint64_t> pass_ends;
-    std::uint64_t told = 0;  ///< the end of the last pass that was told
-    bool anew = false;       ///< the film has what is not in `added`
+    std::uint64_t reported = 0;  ///< end of the last pass that was reported
+    bool rebuild = false;        ///< the film must be built again, from `added`
     std::optional<std::uint64_t> image_of;
   };
   static Added added(const IncomingBand& incoming, const RowRange& rows);
   absl::Status work(JobId id, OneJob& job);
-  absl::Status make_anew(JobId id, OneJob& job);
+  absl::Status rebuild_film(JobId id, OneJob& job);
   absl::Status merge(JobId id, OneJob& job, Waiting& waiting);
-  void tell_passes(JobId id, OneJob& job);
-  absl::Status give_image(JobId id, OneJob& job);
+  void report_passes(JobId id, OneJob& job);
+  absl::Status send_image(JobId id, OneJob& job);
   absl::StatusOr<Film> new_film(JobId id, const OneJob& job) const;
   absl::StatusOr<Film> film_until(JobId id, OneJob& job, std::uint64_t samples);
   absl::StatusOr<BandPixels> read_again(JobId id, const Added& added) const;
   void leave_out(JobId id, OneJob& job, const std::vector<std::size_t>& damaged);
 
   const DataFolder& folder_;
-  Hooks hooks_;
+  SchedulerInbox& scheduler_;
+  StoreInbox& store_;
   std::map<JobId, OneJob> jobs_;
   Attribution attribution_;
 };
 
-/// The part of a band that these rows are.
+/// Returns the part of a band that consists of these rows.
 BandPixels slice(const BandPixels& pixels, const RowRange& rows);
 
 }  // namespace bandsaw::coordinator

@@ -18,13 +18,14 @@ constexpr std::size_t kCollectEveryJobs = 1'000;
 
 }  // namespace
 
-SchedulerThread::SchedulerThread(CoreOptions options, Journal& journal, Reserve reserve, const Clock& clock,
-                   Hooks hooks)
+SchedulerThread::SchedulerThread(CoreOptions options, Journal& journal, Reserve reserve,
+                                 const Clock& clock, StoreInbox& store, FilmInbox& film)
     : core_(options),
       journal_(journal),
       reserve_(std::move(reserve)),
       clock_(clock),
-      hooks_(std::move(hooks)),
+      store_(store),
+      film_(film),
       commit_queue_(journal),
       links_(options.epoch),
       logs_(wire::kLogLinesKept, wire::kLogBytesKept) {}
@@ -40,7 +41,7 @@ void SchedulerThread::absorb(const Step& step, IncomingBand* incoming) {
     note(record);
     log_record(record);
     commit_queue_.record(record);
-    commit_queue_.effect([this, record] { tell_others(record); });
+    commit_queue_.effect([this, record] { announce(record); });
   }
   for (const Action& action : step.actions) {
     const auto* add = std::get_if<action::AddToFilm>(&action);
@@ -54,7 +55,7 @@ void SchedulerThread::absorb(const Step& step, IncomingBand* incoming) {
       band.offset = incoming->offset;
       band.tiles = add->tiles;
       commit_queue_.effect([this, rows = add->rows, band = std::move(band)]() mutable {
-        hooks_.add_to_film(std::move(band), std::move(rows));
+        film_.add(std::move(band), std::move(rows));
       });
     } else {
       commit_queue_.effect([this, action] { perform(action); });
@@ -68,15 +69,16 @@ void SchedulerThread::absorb(const Step& step, IncomingBand* incoming) {
 void SchedulerThread::perform(const Action& action) {
   if (const auto* result = std::get_if<action::WriteResult>(&action)) {
     if (results_on_the_way_.insert(result->job).second) {
-      hooks_.make_result(result->job, result->samples);
+      film_.want_image(result->job, result->samples);
     }
   } else if (const auto* drop = std::get_if<action::DropBands>(&action)) {
     results_on_the_way_.erase(drop->job);
-    hooks_.drop_bands(drop->job);
+    store_.drop_bands(drop->job);
+    film_.drop(drop->job);
   } else if (const auto* retracted = std::get_if<action::Retract>(&action)) {
-    hooks_.retract(retracted->job, retracted->renderer);
+    film_.retract(retracted->job, retracted->renderer);
   } else if (const auto* forgotten = std::get_if<action::DropJob>(&action)) {
-    hooks_.drop_job(forgotten->job);
+    store_.drop_job(forgotten->job);
   } else if (const auto* shared = std::get_if<action::Shared>(&action)) {
     log_shared(*shared);
   } else if (const auto* fault = std::get_if<action::Faulted>(&action)) {
@@ -105,11 +107,12 @@ void SchedulerThread::note(const Record& record) {
   }
 }
 
-void SchedulerThread::tell_others(const Record& record) {
+void SchedulerThread::announce(const Record& record) {
   if (const auto* added = std::get_if<record::JobAdded>(&record)) {
-    hooks_.add_job(added->job, added->spec);
+    store_.add_job(added->job, added->spec);
+    film_.add_job(added->job, added->spec.settings, is_adaptive(added->spec.stop));
   } else if (const auto* pass = std::get_if<record::PassPlanned>(&record)) {
-    hooks_.plan_pass(pass->job, pass->samples.last);
+    film_.plan(pass->job, pass->samples.last);
   }
 }
 
@@ -146,7 +149,7 @@ void SchedulerThread::collect() {
   for (const auto& [id, known] : known_) {
     jobs.push_back({id, known.spec.manifest, is_final(known.state)});
   }
-  hooks_.collect(std::move(jobs));
+  store_.collect(std::move(jobs));
 }
 
 /// Only where nothing waits for the journal: then what the core knows is what the journal holds.
@@ -181,7 +184,7 @@ bool SchedulerThread::flush() {
 }
 
 void SchedulerThread::journal_failed(const absl::Status& status) {
-  hooks_.expect_trouble();
+  store_.expect_trouble();
   if (!journal_status_.ok()) {
     return;
   }
@@ -192,7 +195,7 @@ void SchedulerThread::journal_failed(const absl::Status& status) {
 }
 
 void SchedulerThread::no_room(const absl::Status& status) {
-  hooks_.expect_trouble();
+  store_.expect_trouble();
   if (!room_.ok()) {
     return;
   }
@@ -200,7 +203,7 @@ void SchedulerThread::no_room(const absl::Status& status) {
       "the coordinator's disk is full: ", status.message(),
       "; jobs are paused and nothing new is taken until there is room: cancel jobs, or free some"));
   spdlog::error("{}", room_.ToString());
-  hooks_.room(false);
+  has_room_ = false;
   pause_all(room_);
 }
 
@@ -226,10 +229,10 @@ void SchedulerThread::disk_is_back() {
     return;
   }
   room_ = absl::OkStatus();
-  hooks_.room(true);
+  has_room_ = true;
   spdlog::info("the disk takes data again");
   run(input::StorageBack{});
-  hooks_.retry_film();
+  film_.retry();
 }
 
 void SchedulerThread::bands_damaged(input::BandsDamaged damaged) {

@@ -1,10 +1,10 @@
 #pragma once
 
-// What the engine's thread does: it owns the core and the journal, and turns what the core decides
-// into work for others.
+// What runs on the scheduler's thread: it owns the scheduler and the journal, writes the records of
+// each step, and turns the step's actions into messages to the other threads and to workers.
 
+#include <atomic>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <memory>
 #include <set>
@@ -15,9 +15,9 @@
 #include "coordinator/core/core.h"
 #include "coordinator/engine/clock.h"
 #include "coordinator/engine/collector.h"
-#include "coordinator/engine/links.h"
 #include "coordinator/engine/commit_queue.h"
-#include "coordinator/engine/incoming_band.h"
+#include "coordinator/engine/inboxes.h"
+#include "coordinator/engine/links.h"
 #include "coordinator/engine/watchers.h"
 #include "coordinator/engine/worker_logs.h"
 #include "coordinator/store/journal.h"
@@ -31,35 +31,21 @@ class StoreThread;
 /// Used by one thread at a time.
 class SchedulerThread {
  public:
-  /// Work for the other threads, handed over in the order of the calls.
-  struct Hooks {
-    std::function<void(JobId, const JobSpec&)> add_job;
-    std::function<void(JobId, std::uint64_t samples)> plan_pass;
-    std::function<void(IncomingBand)> store_band;
-    std::function<void(IncomingBand)> compare_band;
-    std::function<void(IncomingBand, std::vector<RowRange>)> add_to_film;
-    std::function<void(JobId, std::uint64_t renderer)> retract;
-    std::function<void(JobId, std::uint64_t samples)> make_result;
-    std::function<void(JobId)> drop_bands;
-    std::function<void(JobId)> drop_job;
-    std::function<void(std::vector<Collector::Job>)> collect;
-    std::function<void()> expect_trouble;
-    std::function<void(bool there)> room;  ///< whether the disk has room for what is new
-    std::function<void()> retry_film;
-  };
-  /// `reserve`: is released when the journal has no room, and held again when there is.
-  SchedulerThread(CoreOptions options, Journal& journal, Reserve reserve, const Clock& clock, Hooks hooks);
+  /// `reserve` is released when the journal has no room, and held again when it has. All references
+  /// MUST outlive it.
+  SchedulerThread(CoreOptions options, Journal& journal, Reserve reserve, const Clock& clock,
+                  StoreInbox& store, FilmInbox& film);
 
-  /// Journal, bands and films as they were. Before any other call; the other threads MUST not run
-  /// yet. `room`: OK, or why the disk is full (no_room).
+  /// Restores the state from the journal and the band logs. Call before any other method, while the
+  /// other threads do not run yet. `room`: OK, or the reason why the disk is full (no_room).
   absl::Status restore(StoreThread& store, FilmThread& film, const absl::Status& room);
 
-  // People.
+  // Users.
   void submit(JobSpec spec, std::int32_t priority, Answer<JobId> answer);
-  /// Cancel, Pause, Resume or SetPriority of a job; answered with what it is then.
-  void tell(JobId job, const Input& input, Answer<JobView> answer);
-  /// Quarantine or LiftQuarantine of a worker.
-  void tell_of_worker(const Input& input, Answer<bool> answer);
+  /// Runs Cancel, Pause, Resume or SetPriority; the answer is the job after it.
+  void command(JobId job, const Input& input, Answer<JobView> answer);
+  /// Runs Quarantine or LiftQuarantine.
+  void command_worker(const Input& input, Answer<bool> answer);
   void watch(JobId job, Watchers::Changed changed);
   std::optional<JobView> job(JobId id) const { return core_.job(id, clock_.now()); }
   std::vector<std::string> why(JobId id) const { return core_.why(id, clock_.now()); }
@@ -69,15 +55,15 @@ class SchedulerThread {
   // Workers.
   void hello(SessionId session, std::shared_ptr<WorkerLink> link, WorkerHello hello);
   void lost(SessionId session, std::string reason);
-  /// Heartbeats and what else needs nothing but the core.
-  void hear(const Input& input) { run(input); }
+  /// Heartbeats and other inputs that concern only the scheduler.
+  void observe(const Input& input) { run(input); }
   void put_band(IncomingBand incoming);
-  void worker_log(SessionId session, std::vector<std::string> lines);
+  void add_worker_log(SessionId session, std::vector<std::string> lines);
   absl::StatusOr<std::vector<std::string>> worker_log(const std::string& worker) const {
     return logs_.of(worker);
   }
 
-  // The other threads.
+  // The other threads; see SchedulerInbox.
   void band_stored(IncomingBand incoming, std::vector<std::uint64_t> row_digests);
   void band_failed(IncomingBand incoming, const absl::Status& status);
   void bands_damaged(input::BandsDamaged damaged);
@@ -86,26 +72,30 @@ class SchedulerThread {
   void disk_is_back();
   void forget(std::vector<JobId> jobs) { run(input::Forget{std::move(jobs)}); }
 
-  /// After each batch: the clock's tick, the journal, everything that waited for it, and those who
-  /// watch.
+  /// Call after each batch: runs the clock's tick, writes the journal, runs the effects that waited
+  /// for it, and informs the watchers.
   void settle();
 
+  /// True if the disk has room for new data. Any thread.
+  bool has_room() const { return has_room_; }
+
  private:
-  /// What is known of a job beside the core.
+  /// Facts about a job that are needed without the scheduler.
   struct Known {
     JobSpec spec;
     JobState state = JobState::kRunning;
     std::vector<std::uint64_t> pass_ends;
   };
-  /// One step of the core; what it led to goes into the commit queue. `incoming`: the band the input is about,
-  /// if any.
+  /// Runs one step of the scheduler and puts its records and effects into the commit queue.
+  /// `incoming`: the band that the input is about, if any.
   Step run(const Input& input, IncomingBand* incoming = nullptr);
   void absorb(const Step& step, IncomingBand* incoming);
   void perform(const Action& action);
   void note(const Record& record);
-  void tell_others(const Record& record);
+  /// Informs the store and the film of a new job or pass.
+  void announce(const Record& record);
   bool flush();
-  /// The disk is full: until `disk_is_back` jobs are paused, and submits and bands refused.
+  /// The disk is full: pauses all jobs and refuses submits and bands until disk_is_back.
   void no_room(const absl::Status& status);
   void pause_all(const absl::Status& status);
   void journal_failed(const absl::Status& status);
@@ -118,19 +108,21 @@ class SchedulerThread {
   Journal& journal_;
   Reserve reserve_;
   const Clock& clock_;
-  Hooks hooks_;
+  StoreInbox& store_;
+  FilmInbox& film_;
   CommitQueue commit_queue_;
   Links links_;
   Watchers watchers_;
   WorkerLogs logs_;
   std::map<JobId, Known> known_;
-  std::set<JobId> results_on_the_way_;  ///< asked for by the core, not answered yet
+  std::set<JobId> results_on_the_way_;  ///< requested by the scheduler, not written yet
   absl::Status journal_status_;         ///< an error: nothing is acknowledged
-  absl::Status room_;                   ///< an error: the reserve is released, nothing new is taken
+  absl::Status room_;  ///< an error: the reserve is released, no new data is accepted
+  std::atomic<bool> has_room_{true};  ///< room_.ok(), for other threads
   Time ticked_at_ = 0;
   std::optional<Time> collected_at_;
-  std::size_t added_since_ = 0;                           ///< jobs, since then
-  static constexpr std::uint64_t kCompactAbove = 10'000;  ///< records in the journal
+  std::size_t added_since_ = 0;                           ///< jobs added since collected_at_
+  static constexpr std::uint64_t kCompactAbove = 10'000;  ///< number of records in the journal
   std::uint64_t compact_above_ = kCompactAbove;
 };
 

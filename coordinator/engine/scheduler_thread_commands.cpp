@@ -17,7 +17,7 @@ void SchedulerThread::submit(JobSpec spec, std::int32_t priority, Answer<JobId> 
       step.records.begin(), step.records.end(),
       [](const Record& record) { return std::holds_alternative<record::JobAdded>(record); });
   commit_queue_.completion([this, job = step.job, added, decided = step.status,
-                 answer = std::move(answer)](const absl::Status& journalled) mutable {
+                            answer = std::move(answer)](const absl::Status& journalled) mutable {
     if (!decided.ok()) {
       answer(decided);
     } else if (!journalled.ok()) {
@@ -34,14 +34,14 @@ void SchedulerThread::submit(JobSpec spec, std::int32_t priority, Answer<JobId> 
   });
 }
 
-void SchedulerThread::tell(JobId id, const Input& input, Answer<JobView> answer) {
+void SchedulerThread::command(JobId id, const Input& input, Answer<JobView> answer) {
   if (!journal_status_.ok()) {
     answer(journal_status_);
     return;
   }
   const Step step = run(input);
   commit_queue_.completion([this, id, decided = step.status,
-                 answer = std::move(answer)](const absl::Status& journalled) mutable {
+                            answer = std::move(answer)](const absl::Status& journalled) mutable {
     const std::optional<JobView> view = job(id);
     if (!decided.ok() || !journalled.ok()) {
       answer(decided.ok() ? journalled : decided);
@@ -53,7 +53,7 @@ void SchedulerThread::tell(JobId id, const Input& input, Answer<JobView> answer)
   });
 }
 
-void SchedulerThread::tell_of_worker(const Input& input, Answer<bool> answer) {
+void SchedulerThread::command_worker(const Input& input, Answer<bool> answer) {
   if (!journal_status_.ok()) {
     answer(journal_status_);
     return;

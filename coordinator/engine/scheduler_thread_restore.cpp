@@ -4,14 +4,15 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
-#include "coordinator/engine/scheduler_thread.h"
 #include "coordinator/engine/film_thread.h"
+#include "coordinator/engine/scheduler_thread.h"
 #include "coordinator/engine/store_thread.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
 
-absl::Status SchedulerThread::restore(StoreThread& store, FilmThread& film, const absl::Status& room) {
+absl::Status SchedulerThread::restore(StoreThread& store, FilmThread& film,
+                                      const absl::Status& room) {
   RETURN_IF_ERROR(journal_.replay([this](const Record& record) {
     core_.replay(record);
     note(record);
@@ -32,14 +33,15 @@ absl::Status SchedulerThread::restore(StoreThread& store, FilmThread& film, cons
     no_room(room);
   }
   for (const auto& [id, status] : failed) {
-    hooks_.expect_trouble();
+    store_.expect_trouble();
     storage_failed(id, status);
   }
   return absl::OkStatus();
 }
 
 /// RESOURCE_EXHAUSTED: the job is known, and the rest of it is read when there is room.
-absl::Status SchedulerThread::restore_job(JobId id, const Known& known, StoreThread& store, FilmThread& film) {
+absl::Status SchedulerThread::restore_job(JobId id, const Known& known, StoreThread& store,
+                                          FilmThread& film) {
   film.add_job(id, known.spec.settings, is_adaptive(known.spec.stop));
   for (const std::uint64_t samples : known.pass_ends) {
     film.plan(id, samples);

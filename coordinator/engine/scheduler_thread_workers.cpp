@@ -28,7 +28,8 @@ absl::Status check_band(const BandPixels& pixels, const RenderSettings& settings
 
 }  // namespace
 
-void SchedulerThread::hello(SessionId session, std::shared_ptr<WorkerLink> link, WorkerHello hello) {
+void SchedulerThread::hello(SessionId session, std::shared_ptr<WorkerLink> link,
+                            WorkerHello hello) {
   links_.add(session, std::move(link), hello);
   run(input::Hello{.session = session, .worker = std::move(hello)});
 }
@@ -38,7 +39,7 @@ void SchedulerThread::lost(SessionId session, std::string reason) {
   run(input::Lost{.session = session, .reason = std::move(reason)});
 }
 
-void SchedulerThread::worker_log(SessionId session, std::vector<std::string> lines) {
+void SchedulerThread::add_worker_log(SessionId session, std::vector<std::string> lines) {
   if (const std::string name = links_.name(session); !name.empty()) {
     logs_.add(name, std::move(lines));
   }
@@ -62,15 +63,16 @@ void SchedulerThread::put_band(IncomingBand incoming) {
     return;
   }
   incoming.renderer = renderer_of(incoming.instance);
-  const std::optional<std::vector<RowRange>> wanted = core_.wanted(incoming.job, incoming.pixels.band);
+  const std::optional<std::vector<RowRange>> wanted =
+      core_.wanted(incoming.job, incoming.pixels.band);
   if (!wanted) {
     incoming.answer(BandOutcome::kUnwanted);
   } else if (wanted->empty()) {
-    hooks_.compare_band(std::move(incoming));
+    store_.compare(std::move(incoming));
   } else if (!room_.ok()) {
     incoming.answer(room_);
   } else {
-    hooks_.store_band(std::move(incoming));
+    store_.append(std::move(incoming));
   }
 }
 
@@ -87,16 +89,17 @@ void SchedulerThread::band_stored(IncomingBand incoming, std::vector<std::uint64
   const bool added = std::any_of(step.actions.begin(), step.actions.end(), [](const Action& a) {
     return std::holds_alternative<action::AddToFilm>(a);
   });
-  const BandOutcome outcome = added           ? BandOutcome::kStored
+  const BandOutcome outcome = added                ? BandOutcome::kStored
                               : over(incoming.job) ? BandOutcome::kUnwanted
-                                              : BandOutcome::kDuplicate;
-  commit_queue_.completion([outcome, answer = std::move(incoming.answer)](const absl::Status& journalled) mutable {
-    if (journalled.ok()) {
-      answer(outcome);
-    } else {
-      answer(absl::ResourceExhaustedError(journalled.message()));
-    }
-  });
+                                                   : BandOutcome::kDuplicate;
+  commit_queue_.completion(
+      [outcome, answer = std::move(incoming.answer)](const absl::Status& journalled) mutable {
+        if (journalled.ok()) {
+          answer(outcome);
+        } else {
+          answer(absl::ResourceExhaustedError(journalled.message()));
+        }
+      });
 }
 
 void SchedulerThread::band_failed(IncomingBand incoming, const absl::Status& status) {

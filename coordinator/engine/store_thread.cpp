@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <chrono>
 #include <filesystem>
 #include <utility>
 
@@ -11,7 +12,11 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr double kAskEvery_s = 2;
+constexpr double kTestEvery_s = 2;
+
+double unix_seconds() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
 
 bool belongs(const BandRecord& record, const JobSpec& spec) {
   return record.package_digest == spec.manifest && record.settings == spec.settings;
@@ -44,13 +49,13 @@ absl::Status StoreThread::add_job(JobId id, const JobSpec& spec) {
 void StoreThread::append(IncomingBand incoming) {
   const auto job = jobs_.find(incoming.job);
   if (job == jobs_.end()) {
-    hooks_.failed(std::move(incoming), absl::CancelledError("the job is over"));
+    scheduler_.band_failed(std::move(incoming), absl::CancelledError("the job is over"));
     return;
   }
   const absl::Status written = write(job->second, incoming);
   if (!written.ok()) {
     expect_trouble();
-    hooks_.failed(std::move(incoming), written);
+    scheduler_.band_failed(std::move(incoming), written);
     return;
   }
   job->second.written.push_back(std::move(incoming));
@@ -84,7 +89,7 @@ absl::Status StoreThread::open_log(JobId id, OpenJob& job) {
 
 void StoreThread::compare(IncomingBand incoming) {
   std::vector<std::uint64_t> digests = row_digests(incoming.pixels);
-  hooks_.stored(std::move(incoming), std::move(digests));
+  scheduler_.band_stored(std::move(incoming), std::move(digests));
 }
 
 void StoreThread::settle() {
@@ -93,13 +98,13 @@ void StoreThread::settle() {
       settle(job);
     }
   }
-  if (!trouble_ || clock_.now() - asked_at_ < kAskEvery_s) {
+  if (!trouble_ || clock_.now() - tested_at_ < kTestEvery_s) {
     return;
   }
-  asked_at_ = clock_.now();
+  tested_at_ = clock_.now();
   if (probe_disk(folder_.path()).ok()) {
     trouble_ = false;
-    hooks_.disk_is_back();
+    scheduler_.disk_is_back();
   }
 }
 
@@ -110,16 +115,17 @@ void StoreThread::settle(OpenJob& job) {
       compare(std::move(incoming));
     } else {
       expect_trouble();
-      hooks_.failed(std::move(incoming), synced);
+      scheduler_.band_failed(std::move(incoming), synced);
     }
   }
 }
 
 void StoreThread::write_result(JobId id, const Finished& finished) {
-  // The image does not depend on it.
+  // The image is valid without the attribution.
   if (const absl::Status status = write_attribution(finished.attribution, folder_.attribution(id));
       !status.ok()) {
-    spdlog::warn("job={} who rendered its rows could not be kept: {}", id, status.ToString());
+    spdlog::warn("job={} the names of those who rendered its rows could not be stored: {}", id,
+                 status.ToString());
   }
   absl::Status written;
   if (finished.samples) {
@@ -131,7 +137,7 @@ void StoreThread::write_result(JobId id, const Finished& finished) {
   if (!written.ok()) {
     expect_trouble();
   }
-  hooks_.result_written(id, written);
+  scheduler_.result_written(id, written);
 }
 
 absl::StatusOr<StoredResult> StoreThread::read_result(JobId id, FinishedPart part) const {
@@ -168,10 +174,20 @@ void StoreThread::drop_job(JobId id) {
   std::filesystem::remove_all(folder_.job(id), error);
 }
 
+void StoreThread::collect(const std::vector<Collector::Job>& jobs) {
+  const double now = unix_seconds();
+  // The files of a forgotten job are removed after the journal has the record (action::DropJob),
+  // its blobs at the next sweep.
+  collector_.sweep(jobs, now);
+  if (std::vector<JobId> old = collector_.to_forget(jobs, now); !old.empty()) {
+    scheduler_.forget(std::move(old));
+  }
+}
+
 void StoreThread::expect_trouble() {
   if (!trouble_) {
     trouble_ = true;
-    asked_at_ = clock_.now();
+    tested_at_ = clock_.now();
   }
 }
 

@@ -15,6 +15,53 @@
 namespace bandsaw::coordinator {
 namespace {
 
+/// Records what the film reports.
+class RecordedScheduler : public SchedulerInbox {
+ public:
+  void band_stored(IncomingBand, std::vector<std::uint64_t>) override {}
+  void band_failed(IncomingBand, const absl::Status&) override {}
+  void result_written(JobId, const absl::Status&) override {}
+  void disk_is_back() override {}
+  void forget(std::vector<JobId>) override {}
+  void pass_merged(input::PassMerged pass) override {
+    merged.push_back(pass.samples);
+    errors.push_back(pass.error ? pass.error->relative_rmse : -1);
+  }
+  void storage_failed(JobId, const absl::Status&) override { ++failed; }
+  void bands_damaged(input::BandsDamaged lost) override {
+    damaged.insert(damaged.end(), lost.bands.begin(), lost.bands.end());
+  }
+
+  std::vector<std::uint64_t> merged;
+  std::vector<double> errors;
+  int failed = 0;
+  std::vector<input::BandsDamaged::Lost> damaged;
+};
+
+/// Records the finished images.
+class RecordedStore : public StoreInbox {
+ public:
+  void add_job(JobId, const JobSpec&) override {}
+  void append(IncomingBand) override {}
+  void compare(IncomingBand) override {}
+  void write_result(JobId, Finished finished) override {
+    images.push_back(std::move(finished.image));
+    samples = std::move(finished.samples);
+    attribution = std::move(finished.attribution);
+  }
+  void reopen(JobId) override { ++reopened; }
+  void drop_bands(JobId) override {}
+  void drop_job(JobId) override {}
+  void collect(std::vector<Collector::Job>) override {}
+  void expect_trouble() override { ++troubles; }
+
+  std::vector<Image> images;
+  std::optional<Image> samples;
+  std::vector<RowsBy> attribution;
+  int reopened = 0;
+  int troubles = 0;
+};
+
 class FilmThreadTest : public testing::Test {
  protected:
   FilmThreadTest() {
@@ -63,30 +110,9 @@ class FilmThreadTest : public testing::Test {
   const std::shared_ptr<const Scene> scene_ = test::cornell_box().build();
   const RenderSettings settings_{.width = 6, .height = 8, .max_depth = 3, .seed = 1};
   std::optional<BandLog> log_;
-  std::vector<std::uint64_t> merged_;
-  std::vector<double> errors_;
-  std::vector<Image> images_;
-  std::vector<RowsBy> attribution_;
-  std::optional<Image> samples_;
-  int failed_ = 0;
-  std::vector<input::BandsDamaged::Lost> damaged_;
-  FilmThread thread_{folder_,
-                 {.merged =
-                      [this](input::PassMerged m) {
-                        merged_.push_back(m.samples);
-                        errors_.push_back(m.error ? m.error->relative_rmse : -1);
-                      },
-                  .image =
-                      [this](JobId, Finished finished) {
-                        images_.push_back(std::move(finished.image));
-                        samples_ = std::move(finished.samples);
-                        attribution_ = std::move(finished.attribution);
-                      },
-                  .failed = [this](JobId, absl::Status) { ++failed_; },
-                  .damaged =
-                      [this](JobId, std::vector<input::BandsDamaged::Lost> bands) {
-                        damaged_.insert(damaged_.end(), bands.begin(), bands.end());
-                      }}};
+  RecordedScheduler scheduler_;
+  RecordedStore store_;
+  FilmThread thread_{folder_, scheduler_, store_};
 };
 
 TEST_F(FilmThreadTest, TellsEachPassOnceWhenItsLastRowsAreThere) {
@@ -94,10 +120,10 @@ TEST_F(FilmThreadTest, TellsEachPassOnceWhenItsLastRowsAreThere) {
   thread_.plan(1, 32);
   ASSERT_TRUE(add({16, 32}, {0, 8}).ok());
   ASSERT_TRUE(add({0, 16}, {0, 5}).ok());
-  EXPECT_TRUE(merged_.empty());
+  EXPECT_TRUE(scheduler_.merged.empty());
   ASSERT_TRUE(add({0, 16}, {5, 8}).ok());
-  EXPECT_EQ(merged_, (std::vector<std::uint64_t>{16, 32}));
-  EXPECT_GT(errors_.back(), 0) << "two halves are there";
+  EXPECT_EQ(scheduler_.merged, (std::vector<std::uint64_t>{16, 32}));
+  EXPECT_GT(scheduler_.errors.back(), 0) << "two halves are there";
 }
 
 TEST_F(FilmThreadTest, WhatAMachineGaveCanBeTakenOutAgain) {
@@ -109,14 +135,14 @@ TEST_F(FilmThreadTest, WhatAMachineGaveCanBeTakenOutAgain) {
   ASSERT_TRUE(thread_.add(1, std::move(wrong), {{0, 4}}).ok());
   ASSERT_TRUE(add({0, 16}, {4, 8}).ok());
   ASSERT_TRUE(add({16, 32}, {0, 8}).ok()) << "nodes that met are one sum in the film";
-  EXPECT_EQ(merged_, (std::vector<std::uint64_t>{16, 32}));
+  EXPECT_EQ(scheduler_.merged, (std::vector<std::uint64_t>{16, 32}));
   thread_.retract(1, 7);
-  EXPECT_EQ(merged_.size(), 2u);
+  EXPECT_EQ(scheduler_.merged.size(), 2u);
   ASSERT_TRUE(add({0, 16}, {0, 4}).ok());
-  EXPECT_EQ(merged_, (std::vector<std::uint64_t>{16, 32, 16, 32}));
+  EXPECT_EQ(scheduler_.merged, (std::vector<std::uint64_t>{16, 32, 16, 32}));
   thread_.want_image(1, 32);
-  ASSERT_EQ(images_.size(), 1u);
-  EXPECT_EQ(images_[0].pixels, local(32));
+  ASSERT_EQ(store_.images.size(), 1u);
+  EXPECT_EQ(store_.images[0].pixels, local(32));
 }
 
 TEST_F(FilmThreadTest, WhatIsDamagedInTheLogIsLeftOutAndTold) {
@@ -126,19 +152,19 @@ TEST_F(FilmThreadTest, WhatIsDamagedInTheLogIsLeftOutAndTold) {
   damage(sound.offset + 300);
   sound.renderer = 5;
   ASSERT_TRUE(thread_.add(1, std::move(sound), {{4, 6}, {6, 8}}).ok());
-  EXPECT_EQ(merged_, (std::vector<std::uint64_t>{16})) << "it was added from memory";
+  EXPECT_EQ(scheduler_.merged, (std::vector<std::uint64_t>{16})) << "it was added from memory";
   thread_.retract(1, 7);
-  EXPECT_EQ(failed_, 0);
-  ASSERT_EQ(damaged_.size(), 2u);
-  for (const auto& lost : damaged_) {
+  EXPECT_EQ(scheduler_.failed, 0);
+  ASSERT_EQ(scheduler_.damaged.size(), 2u);
+  for (const auto& lost : scheduler_.damaged) {
     EXPECT_EQ(lost.renderer, 5u);
     EXPECT_EQ(lost.band.rows.count(), 2u);
   }
   ASSERT_TRUE(add({0, 16}, {4, 8}).ok());
-  EXPECT_EQ(merged_, (std::vector<std::uint64_t>{16, 16}));
+  EXPECT_EQ(scheduler_.merged, (std::vector<std::uint64_t>{16, 16}));
   thread_.want_image(1, 16);
-  ASSERT_EQ(images_.size(), 1u);
-  EXPECT_EQ(images_[0].pixels, local(16));
+  ASSERT_EQ(store_.images.size(), 1u);
+  EXPECT_EQ(store_.images[0].pixels, local(16));
 }
 
 TEST_F(FilmThreadTest, AnotherBandInThePlaceOfOneIsDamage) {
@@ -149,8 +175,8 @@ TEST_F(FilmThreadTest, AnotherBandInThePlaceOfOneIsDamage) {
   wrong.offset = other.offset;
   ASSERT_TRUE(thread_.add(1, std::move(wrong), {{4, 8}}).ok());
   thread_.retract(1, 7);
-  ASSERT_EQ(damaged_.size(), 1u);
-  EXPECT_EQ(damaged_[0].band.rows, (RowRange{4, 8}));
+  ASSERT_EQ(scheduler_.damaged.size(), 1u);
+  EXPECT_EQ(scheduler_.damaged[0].band.rows, (RowRange{4, 8}));
 }
 
 TEST_F(FilmThreadTest, AnImageOfADamagedLogIsAskedForAgain) {
@@ -158,36 +184,36 @@ TEST_F(FilmThreadTest, AnImageOfADamagedLogIsAskedForAgain) {
   ASSERT_TRUE(add({16, 32}, {0, 3}).ok());
   ASSERT_TRUE(remove_file(folder_.bands(1)).ok());
   thread_.want_image(1, 16);
-  EXPECT_TRUE(images_.empty());
-  ASSERT_EQ(damaged_.size(), 1u) << "what lies beyond is not needed any more";
+  EXPECT_TRUE(store_.images.empty());
+  ASSERT_EQ(scheduler_.damaged.size(), 1u) << "what lies beyond is not needed any more";
   BandLogReport report;
   log_.emplace(*BandLog::open(
       folder_.job(1), folder_.bands(1), [](BandRecord, std::uint64_t) {}, report));
   ASSERT_TRUE(add({0, 16}, {0, 8}).ok());
-  EXPECT_TRUE(images_.empty());
+  EXPECT_TRUE(store_.images.empty());
   thread_.want_image(1, 16);
-  ASSERT_EQ(images_.size(), 1u);
-  EXPECT_EQ(images_[0].pixels, local(16));
+  ASSERT_EQ(store_.images.size(), 1u);
+  EXPECT_EQ(store_.images[0].pixels, local(16));
 }
 
 TEST_F(FilmThreadTest, WhatIsInTheLogIsReadWhenTheFilmHasRoom) {
   thread_.plan(1, 16);
   ASSERT_TRUE(add({0, 16}, {0, 4}).ok());
   thread_.add_later(1, logged({0, 16}, {4, 8}), {{4, 8}});
-  EXPECT_TRUE(merged_.empty());
+  EXPECT_TRUE(scheduler_.merged.empty());
   thread_.retry();
-  EXPECT_EQ(merged_, (std::vector<std::uint64_t>{16}));
+  EXPECT_EQ(scheduler_.merged, (std::vector<std::uint64_t>{16}));
   thread_.want_image(1, 16);
-  ASSERT_EQ(images_.size(), 1u);
-  EXPECT_EQ(images_[0].pixels, local(16));
+  ASSERT_EQ(store_.images.size(), 1u);
+  EXPECT_EQ(store_.images[0].pixels, local(16));
 }
 
 TEST_F(FilmThreadTest, AddsOnlyTheRowsThatAreNew) {
   ASSERT_TRUE(add({0, 16}, {2, 5}).ok());
   ASSERT_TRUE(add({0, 16}, {0, 8}, {{0, 2}, {5, 8}}).ok());
   thread_.want_image(1, 16);
-  ASSERT_EQ(images_.size(), 1u);
-  EXPECT_EQ(images_[0].pixels, local(16));
+  ASSERT_EQ(store_.images.size(), 1u);
+  EXPECT_EQ(store_.images[0].pixels, local(16));
 }
 
 TEST_F(FilmThreadTest, AnImageOfFewerSamplesThanSomeRowsHaveIsThatOfTheFewer) {
@@ -195,18 +221,18 @@ TEST_F(FilmThreadTest, AnImageOfFewerSamplesThanSomeRowsHaveIsThatOfTheFewer) {
   ASSERT_TRUE(add({16, 32}, {0, 3}).ok());
   ASSERT_TRUE(add({16, 32}, {2, 5}, {{3, 5}}).ok());
   thread_.want_image(1, 16);
-  ASSERT_EQ(images_.size(), 1u);
-  EXPECT_EQ(images_[0].pixels, local(16));
+  ASSERT_EQ(store_.images.size(), 1u);
+  EXPECT_EQ(store_.images[0].pixels, local(16));
 }
 
 TEST_F(FilmThreadTest, AnImageWaitsForItsLastRows) {
   ASSERT_TRUE(add({0, 16}, {0, 7}).ok());
   thread_.want_image(1, 16);
-  EXPECT_TRUE(images_.empty());
+  EXPECT_TRUE(store_.images.empty());
   ASSERT_TRUE(add({0, 16}, {7, 8}).ok());
-  ASSERT_EQ(images_.size(), 1u);
-  EXPECT_FALSE(samples_.has_value()) << "all pixels have as many";
-  EXPECT_EQ(images_[0].pixels, local(16));
+  ASSERT_EQ(store_.images.size(), 1u);
+  EXPECT_FALSE(store_.samples.has_value()) << "all pixels have as many";
+  EXPECT_EQ(store_.images[0].pixels, local(16));
 }
 
 TEST_F(FilmThreadTest, AnAdaptiveJobLeavesEachPixelsNumberOfSamples) {
@@ -216,11 +242,11 @@ TEST_F(FilmThreadTest, AnAdaptiveJobLeavesEachPixelsNumberOfSamples) {
   ASSERT_TRUE(add({0, 16}, {0, 8}).ok());
   ASSERT_TRUE(thread_.add(1, logged({16, 32}, {0, 8}, even), {{0, 8}}).ok());
   thread_.want_image(1, 32);
-  ASSERT_TRUE(samples_.has_value());
-  ASSERT_EQ(samples_->pixels.size(), 48u);
+  ASSERT_TRUE(store_.samples.has_value());
+  ASSERT_EQ(store_.samples->pixels.size(), 48u);
   for (std::uint32_t y = 0; y < 8; ++y) {
     for (std::uint32_t x = 0; x < 6; ++x) {
-      EXPECT_EQ(samples_->pixels[y * 6 + x], gray((x + y) % 2 == 0 ? 32 : 16)) << x << " " << y;
+      EXPECT_EQ(store_.samples->pixels[y * 6 + x], gray((x + y) % 2 == 0 ? 32 : 16)) << x << " " << y;
     }
   }
 }
@@ -235,13 +261,14 @@ TEST_F(FilmThreadTest, WhatAFullDiskRefusedIsAddedLater) {
               absl::StatusCode::kResourceExhausted);
     EXPECT_FALSE(thread_.add(1, std::move(second), {{4, 8}}).ok());
     thread_.want_image(1, 16);
-    EXPECT_GE(failed_, 2);
+    EXPECT_GE(scheduler_.failed, 2);
+    EXPECT_EQ(store_.troubles, scheduler_.failed) << "the store tests the disk";
   }
-  EXPECT_TRUE(merged_.empty());
+  EXPECT_TRUE(scheduler_.merged.empty());
   thread_.retry();
-  EXPECT_EQ(merged_, (std::vector<std::uint64_t>{16, 16})) << "the pass, and the finished image";
-  ASSERT_EQ(images_.size(), 1u);
-  EXPECT_EQ(images_[0].pixels, local(16));
+  EXPECT_EQ(scheduler_.merged, (std::vector<std::uint64_t>{16, 16})) << "the pass, and the finished image";
+  ASSERT_EQ(store_.images.size(), 1u);
+  EXPECT_EQ(store_.images[0].pixels, local(16));
 }
 
 TEST_F(FilmThreadTest, ADroppedJobTakesNothingMore) {
@@ -249,7 +276,7 @@ TEST_F(FilmThreadTest, ADroppedJobTakesNothingMore) {
   thread_.drop(1);
   EXPECT_TRUE(add({16, 32}, {0, 8}).ok());
   thread_.want_image(1, 16);
-  EXPECT_TRUE(images_.empty());
+  EXPECT_TRUE(store_.images.empty());
 }
 
 TEST(Slice, TakesTheRowsAsked) {
@@ -287,7 +314,7 @@ TEST_F(FilmThreadTest, WhoMadeAnImageIsToldWithItAndReadFromBesideItLater) {
   ASSERT_TRUE(thread_.add(1, std::move(incoming), {{0, 8}}).ok());
   thread_.want_image(1, 16);
   const std::vector<RowsBy> by_anna = {{{0, 8}, "anna"}};
-  EXPECT_EQ(attribution_, by_anna);
+  EXPECT_EQ(store_.attribution, by_anna);
   thread_.drop(1);
   EXPECT_TRUE(thread_.rendered_by(1).empty());
   ASSERT_TRUE(write_attribution(by_anna, folder_.attribution(1)).ok());

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "coordinator/engine/doors.h"
+#include "coordinator/engine/engine.h"
 #include "coordinator/engine/engine.h"
 #include "renderlib/image/image.h"
 #include "tests/support/scenes.h"
