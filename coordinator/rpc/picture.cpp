@@ -29,8 +29,9 @@ absl::StatusOr<HeldImage> finished_image(Engine& engine, const JobView& job, Fin
   const RenderSettings& settings = job.spec.settings;
   ASSIGN_OR_RETURN(MemoryBudget::Share share, share_for(engine, settings.width, settings.height));
   using Result = absl::StatusOr<StoredResult>;
-  ASSIGN_OR_RETURN(StoredResult result,
-                   blocking_call<Result>([&](auto answer) { engine.result(job.id, part, answer); }));
+  ASSIGN_OR_RETURN(StoredResult result, blocking_call<Result>([&](auto answer) {
+                     engine.result(job.id, part, answer);
+                   }));
   return HeldImage{std::move(result), std::move(share)};
 }
 

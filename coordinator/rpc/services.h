@@ -59,11 +59,6 @@ class FarmService final : public farm::Farm::CallbackService {
                                          farm::RotateSecretReply* reply) override;
 
  private:
-  /// Checks the caller and the name of a worker given by a user. Returns the gate's error, or
-  /// INVALID_ARGUMENT if it cannot be a name.
-  absl::StatusOr<std::string> worker_named(const grpc::CallbackServerContext& context,
-                                           const std::string& name) const;
-
   const ServiceDependencies deps_;
 };
 
