@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "absl/strings/str_cat.h"
-#include "coordinator/rpc/convert.h"
+#include "coordinator/rpc/checked_messages.h"
 #include "proto/wire/limits.h"
 #include "renderlib/base/status_macros.h"
 

@@ -1,5 +1,6 @@
 #include "absl/strings/str_cat.h"
-#include "coordinator/rpc/convert.h"
+#include "coordinator/convert/farm_messages.h"
+#include "coordinator/rpc/checked_messages.h"
 #include "coordinator/rpc/downloads.h"
 #include "coordinator/rpc/gate.h"
 #include "coordinator/rpc/picture.h"

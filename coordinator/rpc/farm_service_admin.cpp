@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include "coordinator/rpc/convert.h"
+#include "coordinator/rpc/checked_messages.h"
 #include "coordinator/rpc/gate.h"
 #include "coordinator/rpc/services.h"
 #include "proto/wire/versions.h"

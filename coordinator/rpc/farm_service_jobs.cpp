@@ -1,7 +1,7 @@
 // RPCs that control or explain one job.
 
 #include "absl/strings/str_cat.h"
-#include "coordinator/rpc/convert.h"
+#include "coordinator/convert/farm_messages.h"
 #include "coordinator/rpc/gate.h"
 #include "coordinator/rpc/services.h"
 

@@ -3,13 +3,13 @@
 #include <utility>
 
 #include "coordinator/rpc/blob_intake.h"
-#include "coordinator/rpc/convert.h"
+#include "coordinator/rpc/checked_messages.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
 namespace {
 
-farm::PutBandReply::Outcome to_wire(BandOutcome outcome) {
+farm::PutBandReply::Outcome to_message(BandOutcome outcome) {
   switch (outcome) {
     case BandOutcome::kStored:
       return farm::PutBandReply::OUTCOME_STORED;
@@ -73,7 +73,7 @@ bool PutBandsCall::hand_over() {
 void PutBandsCall::answer(const absl::StatusOr<BandOutcome>& outcome) {
   MutexLock lock(mutex_);
   if (outcome.ok()) {
-    reply_.set_outcome(to_wire(*outcome));
+    reply_.set_outcome(to_message(*outcome));
     StartWrite(&reply_);
     return;
   }

@@ -1,9 +1,52 @@
 #include "coordinator/rpc/session_call.h"
 
-#include "coordinator/rpc/convert.h"
+#include "coordinator/rpc/checked_messages.h"
+#include "proto/convert/render_values.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
+namespace {
+
+farm::ToWorker to_message(const action::Welcome& welcome, const std::string& epoch) {
+  farm::ToWorker message;
+  message.mutable_welcome()->set_name(welcome.name);
+  message.mutable_welcome()->set_heartbeat_ms(welcome.heartbeat_ms);
+  message.mutable_welcome()->set_epoch(epoch);
+  return message;
+}
+
+farm::ToWorker to_message(const action::Refuse& refuse) {
+  farm::ToWorker message;
+  message.mutable_refused()->set_reason(refuse.reason);
+  message.mutable_refused()->set_retry_after_ms(refuse.retry_after_ms);
+  return message;
+}
+
+absl::StatusOr<farm::ToWorker> to_message(const action::Lease& lease) {
+  ASSIGN_OR_RETURN(const wire::Digest manifest, wire::digest_from_hex(lease.manifest));
+  farm::ToWorker message;
+  farm::Lease* l = message.mutable_lease();
+  l->set_lease(lease.lease);
+  l->set_job(lease.job);
+  l->set_manifest_sha256(manifest.raw());
+  *l->mutable_settings() = bandsaw::to_message(lease.settings);
+  *l->mutable_band() = bandsaw::to_message(lease.band);
+  for (const std::uint32_t number : lease.tiles.numbers()) {
+    l->add_tile_samples(number);
+  }
+  l->set_attempt(lease.attempt);
+  return message;
+}
+
+farm::ToWorker to_message(const action::Revoke& revoke) {
+  farm::ToWorker message;
+  for (const LeaseId lease : revoke.leases) {
+    message.mutable_revoke()->add_lease(lease);
+  }
+  return message;
+}
+
+}  // namespace
 
 void SessionCall::begin() {
   if (const absl::Status status = deps_.streams.add(weak_from_this()); !status.ok()) {

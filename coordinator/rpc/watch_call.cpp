@@ -1,6 +1,6 @@
 #include "coordinator/rpc/watch_call.h"
 
-#include "coordinator/rpc/convert.h"
+#include "coordinator/convert/farm_messages.h"
 
 namespace bandsaw::coordinator {
 

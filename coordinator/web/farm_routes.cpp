@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "coordinator/rpc/convert.h"
+#include "coordinator/convert/farm_messages.h"
+#include "coordinator/rpc/checked_messages.h"
 #include "coordinator/web/metrics.h"
 #include "coordinator/web/reply.h"
 #include "coordinator/web/routes.h"

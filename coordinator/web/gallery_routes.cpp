@@ -1,7 +1,7 @@
 // The gallery: its scenes, what became of them here, and how to render one.
 
 #include "absl/strings/str_cat.h"
-#include "coordinator/rpc/convert.h"
+#include "coordinator/convert/farm_messages.h"
 #include "coordinator/web/reply.h"
 #include "coordinator/web/routes.h"
 #include "proto/link/random.h"

@@ -2,7 +2,7 @@
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
-#include "coordinator/rpc/convert.h"
+#include "coordinator/convert/farm_messages.h"
 #include "coordinator/rpc/picture.h"
 #include "coordinator/web/reply.h"
 #include "coordinator/web/routes.h"
@@ -28,8 +28,9 @@ void add_order(Router& router, Engine& engine, const char* order, TellJob tell) 
   router.post(absl::StrCat("/api/jobs/*/", order), [&engine, tell](const HttpRequest& request,
                                                                    const HttpBody&) {
     const auto job = job_of(request);
-    return answer_with(job.ok() ? blocking_call<Told>([&](auto answer) { (engine.*tell)(*job, answer); })
-                                : Told(job.status()));
+    return answer_with(job.ok()
+                           ? blocking_call<Told>([&](auto answer) { (engine.*tell)(*job, answer); })
+                           : Told(job.status()));
   });
 }
 
@@ -37,7 +38,8 @@ Told set_priority(Engine& engine, const HttpRequest& request, const HttpBody& bo
   ASSIGN_OR_RETURN(const JobId job, job_of(request));
   web::Priority wanted;
   RETURN_IF_ERROR(read_json(body, wanted));
-  return blocking_call<Told>([&](auto answer) { engine.set_priority(job, wanted.priority(), answer); });
+  return blocking_call<Told>(
+      [&](auto answer) { engine.set_priority(job, wanted.priority(), answer); });
 }
 
 absl::StatusOr<web::JobPage> job_page(Engine& engine, const HttpRequest& request) {

@@ -20,6 +20,7 @@ namespace fs = std::filesystem;
 const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"proto/wire", {}},
     {"proto/link", {"proto/wire"}},
+    {"proto/convert", {"renderlib/render"}},
     {"renderlib/base", {}},
     {"renderlib/math", {"renderlib/base"}},
     {"renderlib/sampling", {"renderlib/math"}},
@@ -46,13 +47,14 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"renderlib/import", {"renderlib/import/scene_file"}},
     {"renderlib/gallery", {"renderlib/texture", "renderlib/light"}},
     {"coordinator/core", {"renderlib/render", "proto/wire"}},
+    {"coordinator/convert", {"coordinator/core", "proto/convert"}},
     {"coordinator/store", {"coordinator/core", "renderlib/package"}},
     {"coordinator/engine", {"coordinator/store"}},
-    {"coordinator/rpc", {"coordinator/engine", "proto/link"}},
+    {"coordinator/rpc", {"coordinator/engine", "coordinator/convert", "proto/link"}},
     {"coordinator/web", {"coordinator/rpc"}},
     {"coordinator/cli/base", {"coordinator/core"}},
     {"coordinator/cli/options", {"coordinator/cli/base", "proto/link"}},
-    {"coordinator/cli/progress", {"coordinator/cli/options"}},
+    {"coordinator/cli/progress", {"coordinator/cli/options", "coordinator/convert"}},
     {"coordinator/cli/scene", {"coordinator/cli/options", "renderlib/package"}},
     {"coordinator/cli/image",
      {"coordinator/cli/progress", "coordinator/cli/scene", "renderlib/compare"}},
@@ -64,7 +66,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"coordinator/cli", {"coordinator/cli/machines", "coordinator/cli/study"}},
     {"worker/cache", {"renderlib/package"}},
     {"worker/executor", {"worker/cache", "renderlib/render"}},
-    {"worker/session", {"worker/executor", "proto/link"}},
+    {"worker/session", {"worker/executor", "proto/convert", "proto/link"}},
     {"worker", {"worker/session"}},
 };
 

@@ -2,7 +2,7 @@
 // little-endian): checked as the coordinator does, then told to a core with a job.
 
 #include "coordinator/core/core.h"
-#include "coordinator/rpc/convert.h"
+#include "coordinator/rpc/checked_messages.h"
 #include "renderlib/base/check.h"
 #include "tests/fuzz/fuzz.h"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <span>
 
+#include "proto/convert/render_values.h"
 #include "proto/wire/limits.h"
 #include "renderlib/render/work_hash.h"
 
@@ -19,10 +20,7 @@ farm::BandHeader header_of(const FinishedBand& band, const std::string& instance
   const absl::Span<const std::byte> bytes = std::as_bytes(std::span(pixels.sums));
   farm::BandHeader header;
   header.set_job(band.task.job);
-  header.mutable_band()->set_first_sample(pixels.band.samples.first);
-  header.mutable_band()->set_last_sample(pixels.band.samples.last);
-  header.mutable_band()->set_first_row(pixels.band.rows.first);
-  header.mutable_band()->set_last_row(pixels.band.rows.last);
+  *header.mutable_band() = to_message(pixels.band);
   header.set_lease(lease.lease);
   header.set_epoch(lease.epoch);
   header.set_instance(instance);
@@ -30,14 +28,7 @@ farm::BandHeader header_of(const FinishedBand& band, const std::string& instance
   header.set_sha256(wire::sha256(bytes).raw());
   header.set_work(work_hash(band.task.manifest.hex(), band.task.settings));
   farm::Counters* counters = header.mutable_counters();
-  counters->set_rays(pixels.counters.rays);
-  counters->set_bad_samples(pixels.counters.bad_samples);
-  counters->set_bad_x(pixels.counters.bad_x);
-  counters->set_bad_y(pixels.counters.bad_y);
-  counters->set_bad_sample(pixels.counters.bad_sample);
-  counters->set_negative_samples(pixels.counters.negative_samples);
-  counters->set_truncated_paths(pixels.counters.truncated_paths);
-  counters->set_dropped_primitives(pixels.counters.dropped_primitives);
+  *counters = to_message(pixels.counters);
   counters->set_render_s(band.cost.render_s);
   counters->set_cpu_s(band.cost.cpu_s);
   return header;

@@ -4,6 +4,7 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "proto/convert/render_values.h"
 #include "proto/wire/limits.h"
 #include "proto/wire/versions.h"
 #include "renderlib/base/clean_text.h"
@@ -37,14 +38,8 @@ absl::StatusOr<Task> task_of(const farm::Lease& lease) {
   Task task{.id = 0,
             .job = lease.job(),
             .manifest = {},
-            .settings = {.width = lease.settings().width(),
-                         .height = lease.settings().height(),
-                         .max_depth = lease.settings().max_depth(),
-                         .seed = lease.settings().seed(),
-                         .integrator = static_cast<Integrator>(lease.settings().integrator())},
-            .band = {.samples = {.first = lease.band().first_sample(),
-                                 .last = lease.band().last_sample()},
-                     .rows = {.first = lease.band().first_row(), .last = lease.band().last_row()}},
+            .settings = settings_of(lease.settings()),
+            .band = band_of(lease.band()),
             .tiles = {}};
   ASSIGN_OR_RETURN(task.manifest, wire::digest_from_raw(lease.manifest_sha256()));
   RETURN_IF_ERROR(validate(task.settings));
@@ -52,13 +47,6 @@ absl::StatusOr<Task> task_of(const farm::Lease& lease) {
   ASSIGN_OR_RETURN(task.tiles, TileSamples::from_numbers(lease.tile_samples(), task.settings.width,
                                                          task.band.rows));
   return task;
-}
-
-void set_band(const Band& band, farm::Band& message) {
-  message.set_first_sample(band.samples.first);
-  message.set_last_sample(band.samples.last);
-  message.set_first_row(band.rows.first);
-  message.set_last_row(band.rows.last);
 }
 
 }  // namespace
@@ -87,7 +75,7 @@ farm::FromWorker Session::hello() const {
   for (const Held& held : held_) {
     farm::Held* h = hello->add_held();
     h->set_job(held.task.job);
-    set_band(held.task.band, *h->mutable_band());
+    *h->mutable_band() = to_message(held.task.band);
     h->set_lease(held.name.lease);
     h->set_epoch(held.name.epoch);
     h->set_finished(held.stage == Stage::kFinished);

@@ -15,6 +15,7 @@
 #include "coordinator/cli/scene/image_settings.h"
 #include "coordinator/cli/scene/import_scene_file.h"
 #include "coordinator/core/state_name.h"
+#include "proto/convert/render_values.h"
 #include "proto/link/random.h"
 #include "renderlib/base/status_macros.h"
 
@@ -96,8 +97,8 @@ ExitCode run(const SubmitOptions& options, Process& process) {
   const auto layers = [&](std::uint64_t samples, ProgressDisplay& display) {
     const auto render = [&](const RenderSettings& layer, std::uint64_t count) {
       farm::SubmitRequest of_layer = request;
-      *of_layer.mutable_settings() = to_proto(layer);
-      *of_layer.mutable_stop() = to_proto(StopRule(StopAtSamples{count}));
+      *of_layer.mutable_settings() = bandsaw::to_message(layer);
+      *of_layer.mutable_stop() = to_message(StopRule(StopAtSamples{count}));
       return render_on_farm(**client, *package, std::move(of_layer), display);
     };
     SampleCounts counts;

@@ -54,7 +54,7 @@ TEST(Progress, StopRulesTravelThereAndBack) {
        {StopRule(StopAtSamples{5}), StopRule(StopAtError{.relative_rmse = 0.02}),
         StopRule(StopAtTime{.seconds = 9})}) {
     farm::JobStatus status;
-    *status.mutable_stop() = to_proto(stop);
+    *status.mutable_stop() = to_message(stop);
     EXPECT_EQ(progress_of(status).job.spec.stop, stop);
   }
 }

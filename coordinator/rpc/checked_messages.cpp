@@ -1,9 +1,10 @@
 #include <algorithm>
-#include <cmath>
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
-#include "coordinator/rpc/convert.h"
+#include "coordinator/convert/farm_messages.h"
+#include "coordinator/rpc/checked_messages.h"
+#include "proto/convert/render_values.h"
 #include "proto/wire/limits.h"
 #include "renderlib/base/clean_text.h"
 #include "renderlib/base/status_macros.h"
@@ -33,31 +34,6 @@ absl::Status check_text(const char* field, const std::string& text, std::size_t 
     return invalid(field, "must not hold control characters");
   }
   return absl::OkStatus();
-}
-
-absl::StatusOr<StopRule> stop_rule(const farm::StopRule& rule) {
-  const int given = (rule.samples() != 0) + (rule.error() != 0) + (rule.time_s() != 0);
-  if (given != 1) {
-    return invalid("stop", "exactly one of samples, error, time_s must be given, are ", given);
-  }
-  if (rule.adaptive() && rule.error() == 0) {
-    return invalid("stop.adaptive", "only with error");
-  }
-  RETURN_IF_ERROR(check_range("stop.max_samples", rule.max_samples(), 0, kMaxSamples));
-  const std::uint64_t most = rule.max_samples() != 0 ? rule.max_samples() : kMaxSamples;
-  if (rule.samples() != 0) {
-    RETURN_IF_ERROR(check_range("stop.samples", rule.samples(), 1, kMaxSamples));
-    return StopAtSamples{rule.samples()};
-  }
-  const double value = rule.error() != 0 ? rule.error() : rule.time_s();
-  const char* field = rule.error() != 0 ? "stop.error" : "stop.time_s";
-  if (!std::isfinite(value) || value <= 0) {
-    return invalid(field, "must be > 0 and finite, is ", value);
-  }
-  if (rule.error() != 0) {
-    return StopAtError{.relative_rmse = value, .max_samples = most, .adaptive = rule.adaptive()};
-  }
-  return StopAtTime{.seconds = value, .max_samples = most};
 }
 
 absl::StatusOr<WorkerHello::Held> held_lease(const farm::Held& message) {
@@ -93,14 +69,9 @@ absl::StatusOr<JobSpec> job_spec(const farm::SubmitRequest& request) {
   RETURN_IF_ERROR(check_text("name", request.name(), wire::kJobNameBytes));
   ASSIGN_OR_RETURN(const wire::Digest manifest,
                    digest_field("manifest_sha256", request.manifest_sha256()));
-  const RenderSettings settings{
-      .width = request.settings().width(),
-      .height = request.settings().height(),
-      .max_depth = request.settings().max_depth(),
-      .seed = request.settings().seed(),
-      .integrator = static_cast<Integrator>(request.settings().integrator())};
+  const RenderSettings settings = settings_of(request.settings());
   RETURN_IF_ERROR(validate(settings));
-  ASSIGN_OR_RETURN(StopRule stop, stop_rule(request.stop()));
+  ASSIGN_OR_RETURN(StopRule stop, stop_rule_of(request.stop()));
   return JobSpec{.request_id = id,
                  .name = request.name(),
                  .manifest = manifest.hex(),
@@ -109,8 +80,7 @@ absl::StatusOr<JobSpec> job_spec(const farm::SubmitRequest& request) {
 }
 
 absl::StatusOr<Band> band(const char* field, const farm::Band& message) {
-  const Band band{.samples = {.first = message.first_sample(), .last = message.last_sample()},
-                  .rows = {.first = message.first_row(), .last = message.last_row()}};
+  const Band band = band_of(message);
   if (band.samples.first >= band.samples.last || band.samples.last > kMaxSamples) {
     return invalid(field, "samples must be a range within [0, ", kMaxSamples, "], are [",
                    band.samples.first, ", ", band.samples.last, ")");

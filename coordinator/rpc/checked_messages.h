@@ -1,8 +1,8 @@
 #pragma once
 
-// Converts between messages and the scheduler's types. Input from the network is checked here,
-// field by field, against proto/wire/limits.h and render/settings.h: INVALID_ARGUMENT names the
-// field, its range and the value.
+// Converts messages from the network to the scheduler's values. Every field is checked here,
+// against proto/wire/limits.h and render/settings.h: INVALID_ARGUMENT names the field, its range
+// and the value.
 
 #include "absl/status/statusor.h"
 #include "coordinator/core/messages.h"
@@ -10,8 +10,6 @@
 #include "proto/wire/digest.h"
 
 namespace bandsaw::coordinator {
-
-// ---- from messages ----
 
 absl::StatusOr<wire::Digest> digest_field(const char* field, const std::string& raw);
 absl::StatusOr<JobSpec> job_spec(const farm::SubmitRequest& request);
@@ -24,16 +22,5 @@ absl::StatusOr<std::vector<std::string>> log_lines(
     const char* field, const google::protobuf::RepeatedPtrField<std::string>& lines);
 absl::StatusOr<input::BandFailed> band_failed(const farm::BandFailed& message);
 absl::StatusOr<std::string> reason_field(const char* field, const std::string& text);
-
-// ---- to messages ----
-
-farm::ErrorPoint to_message(const ErrorPoint& point);
-farm::JobStatus to_message(const JobView& job);
-farm::WorkerStatus to_message(const WorkerView& worker);
-farm::ToWorker to_message(const action::Welcome& welcome, const std::string& epoch);
-farm::ToWorker to_message(const action::Refuse& refuse);
-/// INVALID_ARGUMENT: the manifest is not a digest.
-absl::StatusOr<farm::ToWorker> to_message(const action::Lease& lease);
-farm::ToWorker to_message(const action::Revoke& revoke);
 
 }  // namespace bandsaw::coordinator
