@@ -6,7 +6,7 @@ namespace bandsaw::coordinator {
 
 void Attribution::add(JobId job, const RowRange& rows, std::uint64_t renderer,
                       const std::string& name) {
-  if (!name.empty() && (names_.size() < kMostNames || names_.contains(renderer))) {
+  if (!name.empty() && (names_.size() < kMaxNames || names_.contains(renderer))) {
     names_[renderer] = name;
   }
   Rows& all = jobs_[job];

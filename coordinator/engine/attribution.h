@@ -24,7 +24,7 @@ class Attribution {
   void forget(JobId job) { jobs_.erase(job); }
 
  private:
-  static constexpr std::size_t kMostNames = 65'536;
+  static constexpr std::size_t kMaxNames = 65'536;
 
   struct Piece {
     RowRange rows;

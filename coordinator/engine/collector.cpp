@@ -130,14 +130,19 @@ void Collector::sweep(const std::vector<Job>& jobs, double now) {
     remove_unneeded(needed, now);
   }
   blobs_.remove_partials(now, keep_.unused_seconds);
-  // A job that was added meanwhile has a higher number than any of these.
+  // A job that was added in the meantime has a higher id than any of these.
   std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder_.jobs(), error)) {
+  std::vector<std::filesystem::path> unknown;
+  for (std::filesystem::directory_iterator entry(folder_.jobs(), error), end;
+       !error && entry != end; entry.increment(error)) {
     JobId id = 0;
-    if (absl::SimpleAtoi(entry.path().filename().string(), &id) && !ids.contains(id) &&
+    if (absl::SimpleAtoi(entry->path().filename().string(), &id) && !ids.contains(id) &&
         !ids.empty() && id < *ids.rbegin()) {
-      std::filesystem::remove_all(entry.path(), error);
+      unknown.push_back(entry->path());
     }
+  }
+  for (const std::filesystem::path& path : unknown) {
+    std::filesystem::remove_all(path, error);
   }
 }
 

@@ -8,9 +8,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr double kShortest_s = 0.1;
+constexpr double kMinInterval_s = 0.1;
 /// A little less than a second, because time is looked at every tenth of one.
-constexpr double kLongest_s = 0.9;
+constexpr double kMaxInterval_s = 0.9;
 
 /// Whether something changed that does not change by itself as time goes by.
 bool changed(const JobView& a, const JobView& b) {
@@ -49,7 +49,7 @@ void Watchers::add(JobId job, const std::optional<JobView>& view, Changed change
 void Watchers::update(ViewOf view_of, bool hold_final, Time now) {
   for (auto it = jobs_.begin(); it != jobs_.end();) {
     Watched& watched = it->second;
-    if (now - watched.looked_at < kShortest_s) {
+    if (now - watched.looked_at < kMinInterval_s) {
       ++it;
       continue;
     }
@@ -63,7 +63,7 @@ void Watchers::update(ViewOf view_of, bool hold_final, Time now) {
       continue;
     }
     const bool final = is_final(view->state);
-    const bool due = changed(*view, watched.told) || now - watched.told_at >= kLongest_s;
+    const bool due = changed(*view, watched.told) || now - watched.told_at >= kMaxInterval_s;
     if (!due || (final && hold_final)) {
       ++it;
       continue;

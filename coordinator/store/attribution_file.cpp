@@ -13,7 +13,7 @@ namespace bandsaw::coordinator {
 namespace {
 
 /// More than all rows of the tallest image with the longest names need.
-constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 26;
+constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 26;
 
 }  // namespace
 
@@ -30,7 +30,7 @@ absl::Status write_attribution(const std::vector<RowsBy>& attribution, const std
 }
 
 absl::StatusOr<std::vector<RowsBy>> read_attribution(const std::string& path) {
-  ASSIGN_OR_RETURN(const std::string text, read_whole_file(path, kMostBytes));
+  ASSIGN_OR_RETURN(const std::string text, read_whole_file(path, kMaxBytes));
   FieldReader fields(text);
   const std::uint64_t pieces = fields.number("pieces", kMaxSide);
   std::vector<RowsBy> attribution;
@@ -43,7 +43,7 @@ absl::StatusOr<std::vector<RowsBy>> read_attribution(const std::string& path) {
       break;
     }
     attribution.push_back({{static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last)},
-                       fields.text("worker")});
+                           fields.text("worker")});
     before = last;
   }
   if (const absl::Status status = fields.finish(); !status.ok()) {

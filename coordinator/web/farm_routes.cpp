@@ -14,7 +14,7 @@ namespace bandsaw::coordinator {
 namespace {
 
 /// More is no overview; `bandsaw jobs` lists all.
-constexpr std::size_t kMostJobs = 200;
+constexpr std::size_t kMaxJobs = 200;
 
 std::vector<JobView> all_jobs(Engine& engine) {
   return blocking_call<std::vector<JobView>>([&](auto answer) { engine.jobs(answer); });
@@ -31,7 +31,7 @@ web::Overview overview(Engine& engine) {
   std::sort(jobs.begin(), jobs.end(), [](const JobView& a, const JobView& b) {
     return is_final(a.state) != is_final(b.state) ? is_final(b.state) : a.id > b.id;
   });
-  const std::size_t shown = std::min(jobs.size(), kMostJobs);
+  const std::size_t shown = std::min(jobs.size(), kMaxJobs);
   for (std::size_t i = 0; i < shown; ++i) {
     *overview.add_job()->mutable_status() = to_message(jobs[i]);
   }

@@ -12,8 +12,8 @@ namespace bandsaw::coordinator {
 namespace {
 
 /// A gallery is for looking; more is for `bandsaw submit`.
-constexpr std::uint64_t kMostSamples = 4096;
-constexpr std::uint32_t kMostWidth = 4096;
+constexpr std::uint64_t kMaxGallerySamples = 4096;
+constexpr std::uint32_t kMaxWidth = 4096;
 
 web::Gallery gallery_message(Engine& engine, const Gallery& gallery) {
   const auto jobs = blocking_call<std::vector<JobView>>([&](auto answer) { engine.jobs(answer); });
@@ -37,9 +37,9 @@ absl::StatusOr<web::Submitted> render(Scenes& scenes, const Gallery& gallery,
   if (scene == nullptr) {
     return absl::NotFoundError("there is no such scene in the gallery");
   }
-  if (wish.samples() < 1 || wish.samples() > kMostSamples || wish.width() > kMostWidth) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("samples: must lie in [1, ", kMostSamples, "]; width: at most ", kMostWidth));
+  if (wish.samples() < 1 || wish.samples() > kMaxGallerySamples || wish.width() > kMaxWidth) {
+    return absl::InvalidArgumentError(absl::StrCat("samples: must lie in [1, ", kMaxGallerySamples,
+                                                   "]; width: at most ", kMaxWidth));
   }
   return scenes.submit(scene->path, {.request_id = request_prefix(*scene) + link::random_hex(8),
                                      .width = wish.width(),

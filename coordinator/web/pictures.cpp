@@ -12,7 +12,7 @@ namespace bandsaw::coordinator {
 namespace {
 
 constexpr double kFresh_s = 0.9;
-constexpr std::size_t kMostBytes = 64 << 20;
+constexpr std::size_t kMaxBytes = 64 << 20;
 
 /// A file, and its bytes of Engine::images.
 struct HeldFile {
@@ -67,7 +67,7 @@ void Pictures::keep(const Key& key, Made made) {
   const auto size_of = [](const Made& one) { return one.png == nullptr ? 0 : one.png->size(); };
   bytes_ += size_of(made) - size_of(made_[key]);
   made_[key] = std::move(made);
-  while (bytes_ > kMostBytes && made_.size() > 1) {
+  while (bytes_ > kMaxBytes && made_.size() > 1) {
     const auto oldest = std::min_element(
         made_.begin(), made_.end(),
         [](const auto& a, const auto& b) { return a.second.used < b.second.used; });

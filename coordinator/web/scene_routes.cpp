@@ -87,7 +87,7 @@ class Upload {
 
 /// The file's own name as far as it is harmless. INVALID_ARGUMENT: not a kind that stands alone.
 absl::StatusOr<std::string> file_name(const std::string& given) {
-  constexpr std::size_t kMost = 80;
+  constexpr std::size_t kMaxStem = 80;
   std::string name = given.substr(given.find_last_of("/\\") + 1);
   for (char& c : name) {
     c = absl::ascii_isalnum(c) || c == '.' || c == '-' || c == '_' ? c : '_';
@@ -95,7 +95,7 @@ absl::StatusOr<std::string> file_name(const std::string& given) {
   for (const char* suffix : {".glb", ".textproto"}) {
     if (absl::EndsWithIgnoreCase(name, suffix)) {
       const std::string stem = name.substr(0, name.size() - std::string(suffix).size());
-      const std::string kept = stem.substr(0, kMost);
+      const std::string kept = stem.substr(0, kMaxStem);
       return absl::StrCat(kept.empty() || kept[0] == '.' ? "scene" : kept, suffix);
     }
   }

@@ -3,6 +3,7 @@
 // every wait has a deadline and no write can raise SIGPIPE.
 
 #include <openssl/bio.h>
+#include <openssl/err.h>
 #include <openssl/pem.h>
 #include <openssl/ssl.h>
 
@@ -30,6 +31,7 @@ std::string take_all(BIO* bio) {
 /// One round of the handshake: runs OpenSSL, sends its output and feeds it the answer. Returns true
 /// once the handshake is complete.
 absl::StatusOr<bool> advance(SSL* session, Socket& socket, Deadline deadline) {
+  ERR_clear_error();  // SSL_get_error reports errors that earlier calls of this thread have left
   const int result = SSL_connect(session);
   const int reason = SSL_get_error(session, result);
   if (absl::Status status = socket.send(take_all(SSL_get_wbio(session)), deadline); !status.ok()) {

@@ -55,7 +55,7 @@ TEST_F(Administration, TheDoctorFindsAFarmWellFromBothSides) {
     const Finished well = run({BANDSAW_BIN, "doctor", "--farm", join, "--data", farm_.path("data"),
                                "--listen", "127.0.0.1:0"});
     EXPECT_EQ(well.code, 0) << well.out << well.err;
-    for (const char* part : {"1 workers are connected", "certificate", "as here", "clock"}) {
+    for (const char* part : {"1 worker is connected", "certificate", "as here", "clock"}) {
       EXPECT_NE(well.out.find(part), std::string::npos) << part << " in: " << well.out;
     }
   }

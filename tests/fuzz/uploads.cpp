@@ -23,7 +23,7 @@ using namespace bandsaw::coordinator;
 
 /// Long enough to be cut at places that are worth keeping.
 const std::string& content() {
-  static const std::string bytes = test::pattern(PartialBlobs::kLeastBytes + 40'000);
+  static const std::string bytes = test::pattern(PartialBlobs::kMinBytes + 40'000);
   return bytes;
 }
 

@@ -32,7 +32,7 @@ double Moments::z(double expected) const {
 
 ChiSquared chi_squared(const std::vector<std::uint64_t>& counts,
                        const std::vector<double>& expected) {
-  constexpr double kLeastExpected = 5;
+  constexpr double kMinExpected = 5;
   ChiSquared result;
   double pooled_count = 0;
   double pooled_expected = 0;
@@ -42,16 +42,16 @@ ChiSquared chi_squared(const std::vector<std::uint64_t>& counts,
   };
   for (std::size_t i = 0; i < counts.size(); ++i) {
     const auto count = static_cast<double>(counts[i]);
-    if (expected[i] < kLeastExpected) {
+    if (expected[i] < kMinExpected) {
       pooled_count += count;
       pooled_expected += expected[i];
     } else {
       add_cell(count, expected[i]);
     }
   }
-  if (pooled_expected >= kLeastExpected) {
+  if (pooled_expected >= kMinExpected) {
     add_cell(pooled_count, pooled_expected);
-  } else if (pooled_count > 4 * kLeastExpected) {
+  } else if (pooled_count > 4 * kMinExpected) {
     result.statistic =
         std::numeric_limits<double>::infinity();  // a practically impossible event happened
   }

@@ -11,7 +11,7 @@ namespace {
 constexpr std::chrono::milliseconds kTick{100};
 constexpr double kInterval_s = 1;
 /// Fetching takes at most this share of the time, so large images are fetched less often.
-constexpr double kMostShare = 0.1;
+constexpr double kMaxShare = 0.1;
 
 }  // namespace
 
@@ -39,7 +39,7 @@ void FollowedImage::look() {
     views_.show(picture->image, picture->display);
   }
   const double end = steady_seconds();
-  next_ = end + std::max(kInterval_s, (end - begin) / kMostShare);
+  next_ = end + std::max(kInterval_s, (end - begin) / kMaxShare);
 }
 
 }  // namespace bandsaw::coordinator

@@ -41,7 +41,7 @@ absl::StatusOr<Layers> make_layers(const std::vector<LayerKind>& kinds, RenderSe
       continue;
     }
     settings.integrator = kind.integrator;
-    ASSIGN_OR_RETURN(Image image, render(settings, std::min(samples, kMostLayerSamples)));
+    ASSIGN_OR_RETURN(Image image, render(settings, std::min(samples, kMaxLayerSamples)));
     layers.push_back({name, std::move(image), kind.is_number});
   }
   return layers;

@@ -16,7 +16,7 @@
 namespace bandsaw::coordinator {
 
 /// More samples than this do not visibly improve a layer.
-inline constexpr std::uint64_t kMostLayerSamples = 64;
+inline constexpr std::uint64_t kMaxLayerSamples = 64;
 
 /// Renders the scene with these settings and this number of samples, here or on a farm.
 using LayerRenderer =
@@ -25,7 +25,7 @@ using LayerRenderer =
 /// Returns the number of samples of each pixel of an adaptive image.
 using SampleCounts = std::function<absl::StatusOr<Image>()>;
 
-/// Renders the layers with the image's settings and min(`samples`, kMostLayerSamples) samples, with
+/// Renders the layers with the image's settings and min(`samples`, kMaxLayerSamples) samples, with
 /// the same bits as `--integrator albedo`, `normals` and `depth` for that number. `samples` is the
 /// image's number of samples per pixel; layer kSamples shows it if there are no `counts`. Returns
 /// errors of `render` and `counts`.

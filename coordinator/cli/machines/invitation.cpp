@@ -29,9 +29,9 @@ absl::StatusOr<Machine> machine_of(absl::string_view said) {
   if (linux_system && machine) {
     return *machine;
   }
-  constexpr std::size_t kMostColumns = 60;  // enough for every real name
+  constexpr std::size_t kMaxColumns = 60;  // enough for every real name
   return absl::InvalidArgumentError(
-      absl::StrCat("it is a machine of another kind (uname says: ", fit(said, kMostColumns),
+      absl::StrCat("it is a machine of another kind (uname says: ", fit(said, kMaxColumns),
                    "); workers run on Linux, on ",
                    absl::StrJoin(kMachines, " or ", [](std::string* out, Machine one) {
                      absl::StrAppend(out, machine_name(one));

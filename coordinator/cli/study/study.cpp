@@ -33,10 +33,10 @@ absl::StatusOr<std::vector<Prepared>> prepare(const StudyOptions& options, Proce
     ASSIGN_OR_RETURN(ImportedPackage package, import_scene_file(scene, options.verbosity, process));
     ASSIGN_OR_RETURN(SceneDescription description,
                      decode_package(package.manifest(), package.blobs()));
-    if (options.every_object && objects_of(description) > kMostObjects) {
+    if (options.every_object && objects_of(description) > kMaxObjects) {
       return absl::InvalidArgumentError(
           absl::StrCat("--every-object: ", scene, " has ", objects_of(description),
-                       " objects, each to be tested against every ray; at most ", kMostObjects,
+                       " objects, each to be tested against every ray; at most ", kMaxObjects,
                        ": leave the option out, or choose a smaller scene"));
     }
     ImageOptions image;

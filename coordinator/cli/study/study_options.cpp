@@ -11,9 +11,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr std::uint64_t kMostSamples = 65'536;
-constexpr std::uint64_t kMostSeeds = 1'000;
-constexpr std::uint64_t kMostRuns = 10'000;
+constexpr std::uint64_t kMaxStudySamples = 65'536;
+constexpr std::uint64_t kMaxSeeds = 1'000;
+constexpr std::uint64_t kMaxRuns = 10'000;
 
 absl::StatusOr<Command> checked_phone_study(const RawOptions& raw) {
   if (raw.samples || raw.seeds || raw.seed || raw.reference_samples || raw.every_object) {
@@ -29,7 +29,7 @@ absl::StatusOr<Command> checked_phone_study(const RawOptions& raw) {
   RETURN_IF_ERROR(check_study_outputs(options.outputs));
   options.farm.farm = raw.farm;
   options.verbosity.quiet = raw.quiet;
-  RETURN_IF_ERROR(read_whole("--runs", raw.runs, 1, kMostRuns, options.runs));
+  RETURN_IF_ERROR(read_whole("--runs", raw.runs, 1, kMaxRuns, options.runs));
   RETURN_IF_ERROR(read_whole("--width", raw.width, 1, kMaxSide, options.width));
   RETURN_IF_ERROR(
       read_whole("--threads", raw.threads, 1, wire::kThreadsPerWorker, options.threads));
@@ -92,8 +92,8 @@ absl::StatusOr<Command> checked_study(const RawOptions& raw) {
   RETURN_IF_ERROR(check_study_outputs(options.outputs));
   options.every_object = raw.every_object;
   options.verbosity.quiet = raw.quiet;
-  RETURN_IF_ERROR(read_whole("--samples", raw.samples, 4, kMostSamples, options.samples));
-  RETURN_IF_ERROR(read_whole("--seeds", raw.seeds, 1, kMostSeeds, options.seeds));
+  RETURN_IF_ERROR(read_whole("--samples", raw.samples, 4, kMaxStudySamples, options.samples));
+  RETURN_IF_ERROR(read_whole("--seeds", raw.seeds, 1, kMaxSeeds, options.seeds));
   options.reference = 16 * options.samples;
   RETURN_IF_ERROR(read_whole("--reference", raw.reference_samples, 2 * options.samples, kMaxSamples,
                              options.reference));

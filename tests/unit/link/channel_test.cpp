@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <openssl/err.h>
 
 #include "proto/farm.grpc.pb.h"
 #include "proto/link/certificate.h"
@@ -121,6 +122,15 @@ TEST_F(ConnectTest, SaysThatAPlaintextServerSpeaksNoTls) {
   const absl::Status status =
       connect(join_to(server.port, identity_.certificate_digest), milliseconds(3'000)).status();
   EXPECT_EQ(status.code(), absl::StatusCode::kUnavailable);
+}
+
+TEST_F(ConnectTest, EarlierErrorsOfOpenSslDoNotMatter) {
+  const EchoServer server(tls(identity_));
+  ERR_raise(ERR_LIB_USER, ERR_R_INTERNAL_ERROR);
+  const auto pem =
+      fetch_certificate_pem("127.0.0.1:" + std::to_string(server.port), milliseconds(3'000));
+  ASSERT_TRUE(pem.ok()) << pem.status();
+  EXPECT_EQ(*pem, identity_.certificate_pem);
 }
 
 TEST_F(ConnectTest, SpeaksPlaintextOnlyWhenTheStringSaysSo) {

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "proto/link/certificate.h"
+#include "proto/link/private_file.h"
 #include "tests/support/temp_dir.h"
 
 namespace bandsaw::link {
@@ -135,6 +136,17 @@ TEST(Identity, WhenItCannotBeWrittenSaysWhere) {
   const absl::Status status = load_or_make_identity(folder / "file").status();
   EXPECT_FALSE(status.ok());
   EXPECT_THAT(std::string(status.message()), HasSubstr(folder / "file"));
+}
+
+TEST(PrivateFile, IsReadWholeOrNotAtAll) {
+  const test::TempDir folder;
+  const std::string longest(1 << 20, 'x');
+  ASSERT_TRUE(write_private_file(folder / "a", longest).ok());
+  EXPECT_EQ(*read_private_file(folder / "a"), longest);
+  ASSERT_TRUE(write_private_file(folder / "a", longest + "x").ok());
+  const absl::Status status = read_private_file(folder / "a").status();
+  EXPECT_TRUE(absl::IsResourceExhausted(status)) << status;
+  EXPECT_THAT(std::string(status.message()), HasSubstr(folder / "a"));
 }
 
 TEST(RoleOfSecret, TellsTheTwoApartAndRefusesOthers) {

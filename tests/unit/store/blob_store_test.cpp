@@ -35,9 +35,7 @@ class BlobStoreTest : public testing::Test {
   }
 
   /// Long enough that half of it is worth keeping.
-  static std::string long_text(char fill) {
-    return std::string(2 * PartialBlobs::kLeastBytes, fill);
-  }
+  static std::string long_text(char fill) { return std::string(2 * PartialBlobs::kMinBytes, fill); }
   static void leave_half(BlobStore& store, const std::string& text) {
     absl::StatusOr<BlobStore::Writer> writer = store.write(wire::sha256(text), text.size());
     ASSERT_TRUE(writer.ok()) << writer.status();
