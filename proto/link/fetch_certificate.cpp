@@ -41,6 +41,7 @@ absl::StatusOr<bool> advance(SSL* session, Socket& socket, Deadline deadline) {
     return true;
   }
   if (reason != SSL_ERROR_WANT_READ) {
+    ERR_clear_error();  // the thread's queue, which later calls of others would read
     return absl::UnavailableError("what answers there does not speak TLS");
   }
   absl::StatusOr<std::string> answer = socket.receive(deadline);

@@ -124,13 +124,18 @@ TEST_F(ConnectTest, SaysThatAPlaintextServerSpeaksNoTls) {
   EXPECT_EQ(status.code(), absl::StatusCode::kUnavailable);
 }
 
-TEST_F(ConnectTest, EarlierErrorsOfOpenSslDoNotMatter) {
+TEST_F(ConnectTest, FetchingACertificateNeitherReadsNorLeavesErrorsOfOpenSsl) {
   const EchoServer server(tls(identity_));
   ERR_raise(ERR_LIB_USER, ERR_R_INTERNAL_ERROR);
   const auto pem =
       fetch_certificate_pem("127.0.0.1:" + std::to_string(server.port), milliseconds(3'000));
   ASSERT_TRUE(pem.ok()) << pem.status();
   EXPECT_EQ(*pem, identity_.certificate_pem);
+  const EchoServer plaintext(grpc::InsecureServerCredentials());
+  EXPECT_FALSE(
+      fetch_certificate_pem("127.0.0.1:" + std::to_string(plaintext.port), milliseconds(3'000))
+          .ok());
+  EXPECT_EQ(ERR_peek_error(), 0u);
 }
 
 TEST_F(ConnectTest, SpeaksPlaintextOnlyWhenTheStringSaysSo) {
