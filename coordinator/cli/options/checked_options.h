@@ -21,11 +21,10 @@ struct RawOptions {
   std::optional<std::string> samples, error, time, seed, width, height, depth, threads, kernel,
       rows;
   std::optional<std::string> integrator, exposure, tone, layers, report, seeds, reference_samples;
-  std::optional<std::string> runs, tev;
+  std::optional<std::string> tev;
   std::optional<std::string> web, shell, audit;
   bool lift = false, adaptive = false, half = false, insecure = false, detach = false,
-       quiet = false, json = false, preview = false, phone = false, every_object = false,
-       reflection = false;
+       quiet = false, json = false, preview = false, every_object = false, reflection = false;
 };
 
 absl::StatusOr<Command> checked_serve(const RawOptions& raw);

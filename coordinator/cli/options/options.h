@@ -231,27 +231,15 @@ struct StudyOptions {
   Verbosity verbosity;
 };
 
-/// study --phone.
-struct PhoneStudyOptions {
-  std::vector<std::string> images;  ///< how their names begin; empty: all
-  std::vector<std::string> outputs = {"phone.csv", "phone.svg"};
-  int runs = 10;                       ///< of each image on each machine
-  std::optional<std::uint32_t> width;  ///< pixels; nothing: the study's own
-  int threads = 0;                     ///< of "all"; 0: one for each CPU
-  FarmOption farm;                     ///< need not be there where none is named
-  Verbosity verbosity;
-};
-
 /// --help and --version: print and leave.
 struct ShowText {
   std::string text;
 };
 
-using Command =
-    std::variant<ServeOptions, SubmitOptions, WatchOptions, JobsOptions, WorkersOptions,
-                 CancelOptions, PauseOptions, ResumeOptions, PriorityOptions, WhyOptions,
-                 LogsOptions, QuarantineOptions, DoctorOptions, RotateOptions, InviteOptions,
-                 DismissOptions, RenderOptions, InfoOptions, StitchOptions, CompareOptions,
-                 StudyOptions, PhoneStudyOptions, ShowText>;
+using Command = std::variant<ServeOptions, SubmitOptions, WatchOptions, JobsOptions, WorkersOptions,
+                             CancelOptions, PauseOptions, ResumeOptions, PriorityOptions,
+                             WhyOptions, LogsOptions, QuarantineOptions, DoctorOptions,
+                             RotateOptions, InviteOptions, DismissOptions, RenderOptions,
+                             InfoOptions, StitchOptions, CompareOptions, StudyOptions, ShowText>;
 
 }  // namespace bandsaw::coordinator

@@ -105,17 +105,6 @@ TEST(CommandLine, StudyTakesScenesAndFiles) {
   expect_wrong("study a.glb --samples 64 --reference 65", "--reference");
 }
 
-TEST(CommandLine, ThePhoneStudyTakesNamesOfItsImages) {
-  const auto options = parsed<PhoneStudyOptions>("study --phone objects size --runs 2 --farm f");
-  EXPECT_THAT(options.images, ElementsAre("objects", "size"));
-  EXPECT_THAT(options.outputs, ElementsAre("phone.csv", "phone.svg"));
-  EXPECT_EQ(options.runs, 2);
-  EXPECT_EQ(options.farm.farm, "f");
-  EXPECT_EQ(parsed<PhoneStudyOptions>("study --phone").runs, 10);
-  expect_wrong("study --phone --samples 4", "--runs");
-  expect_wrong("study a.glb --runs 4", "--phone");
-}
-
 TEST(CommandLine, AnImageMayBeLookedAtWhileItForms) {
   const auto options = parsed<SubmitOptions>("submit a.glb --preview --tev 127.0.0.1:14158");
   EXPECT_TRUE(options.verbosity.preview);

@@ -1,8 +1,9 @@
-// bandsaw study --phone: times the images of a study of ray tracing on phones on this machine and
-// on a farm.
+// Times the 23 images of a study of ray tracing on phones (gallery/study) on one thread, on all
+// threads, and on a farm if there is one.
 
 #include <sys/resource.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <set>
 #include <thread>
@@ -19,15 +20,25 @@
 #include "coordinator/cli/scene/image_settings.h"
 #include "coordinator/cli/scene/import_scene_file.h"
 #include "coordinator/cli/study/study_outputs.h"
-#include "coordinator/cli/study/study_phone.h"
 #include "coordinator/core/state_name.h"
 #include "coordinator/engine/clock.h"
 #include "renderlib/base/cpu_name.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/render/render_image.h"
+#include "tests/bench/phone_study.h"
 
 namespace bandsaw::coordinator {
 namespace {
+
+struct PhoneStudyOptions {
+  std::vector<std::string> images;  ///< beginnings of their names; empty: all
+  std::vector<std::string> outputs = {"phone.csv", "phone.svg"};
+  int runs = 10;                       ///< runs of each image on each machine
+  std::optional<std::uint32_t> width;  ///< pixels; std::nullopt: the study's own
+  int threads = 0;                     ///< threads of "all"; 0: one for each CPU
+  FarmOption farm;                     ///< if none is named, there need not be one
+  Verbosity verbosity;
+};
 
 constexpr std::uint64_t kSamples = 1;  // per pixel, as in the study
 
@@ -185,7 +196,7 @@ absl::StatusOr<std::set<std::string>> chosen(const std::vector<std::string>& wor
     if (std::none_of(names.begin(), names.end(),
                      [&](const std::string& name) { return begins(name, word); })) {
       return absl::NotFoundError(absl::StrCat(
-          "study --phone: no image's name begins with '", word,
+          "phone_bench: no image's name begins with '", word,
           "'; they begin with texture, objects, spheres, triangles, lights, kind, size"));
     }
   }
@@ -197,14 +208,14 @@ absl::StatusOr<std::set<std::string>> chosen(const std::vector<std::string>& wor
   return names;
 }
 
-}  // namespace
-
 ExitCode run(const PhoneStudyOptions& options, Process& process) {
   const Console& console = process.console;
   const auto fail = [&](ExitCode code, const absl::Status& status) {
     return console.fail(code, std::string(status.message()));
   };
-  if (const auto status = check_study_writable(options.outputs); !status.ok()) {
+  absl::Status status = check_study_outputs(options.outputs);
+  status.Update(check_study_writable(options.outputs));
+  if (!status.ok()) {
     return fail(ExitCode::kWrong, status);
   }
   const auto names = chosen(options.images);
@@ -242,4 +253,25 @@ ExitCode run(const PhoneStudyOptions& options, Process& process) {
   return ExitCode::kDone;
 }
 
+int phone_bench(int argc, char** argv) {
+  Interrupts interrupts;
+  const Console console = Console::standard();
+  Process process{console, interrupts};
+  PhoneStudyOptions options;
+  CLI::App app("Times the 23 images of a study of ray tracing on phones.", "phone_bench");
+  app.add_option("images", options.images, "Beginnings of the images' names [default: all]");
+  app.add_option("-o,--output", options.outputs, "Files for the figures (.csv) or the plot (.svg)");
+  app.add_option("--runs", options.runs, "How often each image is timed")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--width", options.width, "Pixels; the height keeps the aspect ratio");
+  app.add_option("--threads", options.threads, "Threads [default: one for each CPU]");
+  app.add_option("--farm", options.farm.farm, "Join string of the farm, or a file with it");
+  app.add_flag("--quiet", options.verbosity.quiet, "Print only the tables and errors");
+  CLI11_PARSE(app, argc, argv);
+  return static_cast<int>(run(options, process));
+}
+
+}  // namespace
 }  // namespace bandsaw::coordinator
+
+int main(int argc, char** argv) { return bandsaw::coordinator::phone_bench(argc, argv); }

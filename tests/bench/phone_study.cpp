@@ -1,4 +1,4 @@
-#include "coordinator/cli/study/study_phone.h"
+#include "tests/bench/phone_study.h"
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
-#include "coordinator/cli/study/study_phone.h"
+#include "tests/bench/phone_study.h"
 
 namespace bandsaw::coordinator {
 namespace {
