@@ -1,6 +1,7 @@
 #pragma once
 
-// The rendering half of a worker: cache, pool, executor and uploader, reporting to the session.
+// The rendering half of a worker: cache, thread pool, executor and uploader, which report to the
+// session.
 
 #include <functional>
 #include <memory>
@@ -17,7 +18,7 @@
 
 namespace bandsaw::worker {
 
-/// The last lines of this process's log, for a failure's report.
+/// Returns the last lines of this process's log, to be sent with a failed band.
 using LogTail = std::function<std::vector<std::string>()>;
 
 class BandPipeline {
@@ -29,7 +30,7 @@ class BandPipeline {
 
   void start(const Task& task) { executor_.add(task); }
   void stop(TaskId task);
-  /// The coordinator is there again.
+  /// The coordinator is reachable again.
   void connected() { uploader_.retry_now(); }
 
  private:

@@ -8,24 +8,66 @@
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
+#include <cstdlib>
+#include <string>
 #include <thread>
 
+#include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
 #include "proto/link/join.h"
 #include "proto/link/random.h"
 #include "proto/wire/limits.h"
 #include "proto/wire/worker_mark.h"
 #include "renderlib/base/clean_text.h"
+#include "renderlib/base/cpu_name.h"
+#include "renderlib/base/float_mode.h"
 #include "renderlib/render/canary.h"
 #include "renderlib/render/kernel.h"
 #include "renderlib/render/pixel_version.h"
 #include "worker/log_queue.h"
-#include "worker/machine.h"
 
 namespace bandsaw::worker {
 namespace {
 
-/// Coordinators read it from the program's file; nothing in the program does.
+std::string host_name() {
+  char name[65] = {};
+  return gethostname(name, sizeof(name) - 1) == 0 && name[0] != '\0' ? name : "worker";
+}
+
+/// Returns version, compiler, kernel and CPU, for display only.
+std::string build_description(const Kernel& kernel) {
+#if defined(__clang__)
+  const std::string compiler = absl::StrCat("clang ", __clang_major__, ".", __clang_minor__);
+#else
+  const std::string compiler = absl::StrCat("g++ ", __GNUC__, ".", __GNUC_MINOR__);
+#endif
+  return absl::StrCat(BANDSAW_VERSION, ", ", compiler, ", ", kernel.name, " kernel, ", cpu_name());
+}
+
+/// Returns $XDG_CACHE_HOME/bandsaw/blobs or ~/.cache/bandsaw/blobs, which all workers of a user
+/// share; empty if neither variable is set.
+std::string default_cache_folder() {
+  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache != nullptr && cache[0] == '/') {
+    return absl::StrCat(cache, "/bandsaw/blobs");
+  }
+  if (const char* home = std::getenv("HOME"); home != nullptr && home[0] == '/') {
+    return absl::StrCat(home, "/.cache/bandsaw/blobs");
+  }
+  return "";
+}
+
+/// FAILED_PRECONDITION: the floating-point unit is not in its default mode (round to nearest,
+/// nothing flushed to zero), which would change pixels.
+absl::Status check_machine() {
+  if (!float_mode_is_default()) {
+    return absl::FailedPreconditionError(
+        "the floating-point unit is not in its default mode: a library loaded with this program "
+        "has changed it");
+  }
+  return absl::OkStatus();
+}
+
+/// Coordinators read this from the program's file; the program itself does not use it.
 [[gnu::used]] constexpr wire::WorkerMark kMark{.pixel_version = kPixelVersion,
                                                .version = BANDSAW_VERSION};
 
@@ -67,10 +109,10 @@ int fail(int code, const absl::Status& status) {
   return code;
 }
 
-/// Where the log goes beside standard error.
+/// Sinks of the log besides standard error.
 struct Log {
-  std::shared_ptr<spdlog::sinks::ringbuffer_sink_mt> tail;  ///< for a failure's report
-  std::shared_ptr<LogQueue> news;                           ///< for the coordinator
+  std::shared_ptr<spdlog::sinks::ringbuffer_sink_mt> tail;  ///< sent with a failed band
+  std::shared_ptr<LogQueue> news;                           ///< sent to the coordinator
 };
 
 Log start_log(bool quiet) {
@@ -85,17 +127,17 @@ Log start_log(bool quiet) {
   return log;
 }
 
-/// Signals wait for the one thread that sits in sigwait: nothing is done inside a handler.
+/// Returns the signals that one thread reads with sigwait; there are no handlers.
 sigset_t watched_signals() {
   sigset_t set{};
   sigemptyset(&set);
   sigaddset(&set, SIGTERM);
   sigaddset(&set, SIGINT);
-  sigaddset(&set, SIGUSR2);  // the watch's own end
+  sigaddset(&set, SIGUSR2);  // ends the thread
   return set;
 }
 
-/// Drains at the first SIGTERM or SIGINT, leaves at once at the second. The signals MUST be blocked
+/// Drains at the first SIGTERM or SIGINT, exits at once at the second. The signals MUST be blocked
 /// in all threads.
 class SignalWatch {
  public:

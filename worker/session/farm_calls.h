@@ -15,8 +15,6 @@
 
 namespace bandsaw::worker {
 
-class BandStream;
-
 /// Holds the channel of the current connection; it changes with every reconnect.
 class FarmCalls final : public CoordinatorApi {
  public:
@@ -61,6 +59,7 @@ class FarmCalls final : public CoordinatorApi {
   bool left_ GUARDED_BY(mutex_) = false;
   std::shared_ptr<grpc::Channel> bulk_ GUARDED_BY(mutex_);
   std::set<grpc::ClientContext*> open_ GUARDED_BY(mutex_);
+  class BandStream;
   std::unique_ptr<BandStream> bands_;  ///< used by put_band only
 };
 

@@ -1,21 +1,112 @@
 // bandsaw invite, bandsaw dismiss: workers of other machines, by ssh.
 
+#include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
+#include <map>
+#include <string>
 
+#include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/strip.h"
 #include "coordinator/cli/base/data_folder.h"
 #include "coordinator/cli/base/json.h"
+#include "coordinator/cli/base/text.h"
 #include "coordinator/cli/farm/farm_errors.h"
-#include "coordinator/cli/machines/invitation.h"
 #include "coordinator/cli/machines/remote_hosts.h"
 #include "coordinator/cli/machines/remote_scripts.h"
+#include "coordinator/cli/machines/worker_file.h"
 #include "coordinator/cli/options/commands.h"
+#include "coordinator/web/worker_program.h"
 #include "proto/link/join.h"
 #include "renderlib/base/file.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
 namespace {
+
+/// Makes workers of other machines: asks a host for its architecture, then sends the program for
+/// that and no other.
+class Invitation {
+ public:
+  /// Reads the programs that lie with this one. `join`: the workers' join string. The error is that
+  /// of this machine's own architecture where there is no program that can be sent, else the
+  /// system's.
+  static absl::StatusOr<Invitation> create(const std::string& join);
+
+  /// Takes at most `seconds`. Else as RemoteScript::run; a host for which there is no program is
+  /// told how to get it.
+  RemoteOutcome invite(const std::string& host, double seconds,
+                       const std::atomic<bool>& stop) const;
+
+ private:
+  using Scripts = std::map<Machine, absl::StatusOr<RemoteScript>>;
+  Invitation(RemoteScript ask, Scripts scripts)
+      : ask_(std::move(ask)), scripts_(std::move(scripts)) {}
+  RemoteScript ask_;
+  Scripts scripts_;  // one for every architecture; an error says why its program cannot be sent
+};
+
+absl::StatusOr<RemoteScript> script_for(Machine machine, const std::string& join) {
+  ASSIGN_OR_RETURN(const WorkerProgram program, load_worker_program(machine));
+  return RemoteScript::create(invite_script(program.bytes.size(), program.digest),
+                              absl::StrCat(join, "\n", program.bytes));
+}
+
+/// The architecture in the answer to machine_script. INVALID_ARGUMENT: workers are not built for
+/// it.
+absl::StatusOr<Machine> machine_of(absl::string_view said) {
+  absl::string_view name = said;
+  const bool linux_system = absl::ConsumePrefix(&name, "Linux ");
+  const std::optional<Machine> machine = machine_named(name);
+  if (linux_system && machine) {
+    return *machine;
+  }
+  constexpr std::size_t kMaxColumns = 60;  // enough for every real name
+  return absl::InvalidArgumentError(
+      absl::StrCat("it is a machine of another kind (uname says: ", fit(said, kMaxColumns),
+                   "); workers run on Linux, on ",
+                   absl::StrJoin(kMachines, " or ", [](std::string* out, Machine one) {
+                     absl::StrAppend(out, machine_name(one));
+                   })));
+}
+
+absl::StatusOr<Invitation> Invitation::create(const std::string& join) {
+  ASSIGN_OR_RETURN(RemoteScript ask, RemoteScript::create(machine_script()));
+  Scripts scripts;
+  for (const Machine machine : kMachines) {
+    scripts.emplace(machine, script_for(machine, join));
+  }
+  if (std::none_of(scripts.begin(), scripts.end(),
+                   [](const auto& script) { return script.second.ok(); })) {
+    return scripts.at(kThisMachine).status();
+  }
+  return Invitation(std::move(ask), std::move(scripts));
+}
+
+RemoteOutcome Invitation::invite(const std::string& host, double seconds,
+                                 const std::atomic<bool>& stop) const {
+  const auto begin = std::chrono::steady_clock::now();
+  RemoteOutcome outcome = ask_.run(host, seconds, stop);
+  if (!outcome.ok) {
+    return outcome;
+  }
+  outcome.ok = false;
+  const absl::StatusOr<Machine> machine = machine_of(outcome.what);
+  if (!machine.ok()) {
+    outcome.what = std::string(machine.status().message());
+    return outcome;
+  }
+  const absl::StatusOr<RemoteScript>& script = scripts_.at(*machine);
+  if (!script.ok()) {
+    outcome.what = std::string(script.status().message());
+    return outcome;
+  }
+  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
+  return script->run(host, seconds - passed.count(), stop);
+}
 
 /// The workers' join string: as given, or of the farm that is served from this account.
 absl::StatusOr<link::JoinString> workers_join(const InviteOptions& options) {
