@@ -1,7 +1,7 @@
 #pragma once
 
-// Who rendered which rows of which job that is at work, for people to look at. When a job is over
-// they lie beside its image (store/attribution_file.h).
+// Which worker rendered which rows, for display. For a job that is over this is stored beside its
+// image (store/attribution_file.h).
 
 #include <cstdint>
 #include <map>
@@ -13,13 +13,14 @@
 
 namespace bandsaw::coordinator {
 
-/// Of jobs at work. Used by one thread.
+/// The jobs that are not over. Used by one thread.
 class Attribution {
  public:
-  /// `renderer` names the worker in all lives of the coordinator. `name` may be empty: what a band
-  /// on disk does not say is known again once the worker brings the next.
+  /// Adds rows of a job. `renderer` identifies the worker process in all lives of the coordinator.
+  /// `name` may be empty, because a band on disk does not contain it; it is known again when the
+  /// worker sends another band.
   void add(JobId job, const RowRange& rows, std::uint64_t renderer, const std::string& name);
-  /// By row, without those that nobody rendered; neighbours of one worker are one.
+  /// Returns the rows that are rendered, in order; adjacent rows of one worker are merged.
   std::vector<RowsBy> of(JobId job) const;
   void forget(JobId job) { jobs_.erase(job); }
 

@@ -1,15 +1,14 @@
 #pragma once
 
-// The engine's answer, waited for.
-
 #include <future>
 #include <memory>
 #include <utility>
 
 namespace bandsaw::coordinator {
 
-/// Waits on this thread for what `begin` is to call its argument with, once: the engine always
-/// answers (engine/answer.h). For threads that are there to wait, never the engine's or gRPC's own.
+/// Calls `begin` with a callback, waits until the callback is called, and returns its argument. The
+/// engine calls every callback exactly once (engine/answer.h). For threads that may wait, never the
+/// engine's or gRPC's own.
 template <class T, class Begin>
 T blocking_call(Begin begin) {
   const auto answer = std::make_shared<std::promise<T>>();

@@ -22,10 +22,10 @@ std::optional<std::set<wire::Digest>> Collector::blobs_of(const DigestHex& manif
   }
   const auto bytes = blobs_.get(*digest);
   if (absl::IsNotFound(bytes.status()) || absl::IsDataLoss(bytes.status())) {
-    return std::set<wire::Digest>();  // asked again: it may be sent anew
+    return std::set<wire::Digest>();  // not cached, because it may be sent again
   }
   if (!bytes.ok()) {
-    spdlog::warn("what the scene {} needs is not known, it cannot be read: {}", manifest,
+    spdlog::warn("cannot read the scene {} to find the blobs that it needs: {}", manifest,
                  bytes.status().ToString());
     return std::nullopt;
   }
@@ -42,7 +42,7 @@ std::set<wire::Digest> Collector::known_blobs_of(const DigestHex& manifest) {
   return blobs_of(manifest).value_or(std::set<wire::Digest>());
 }
 
-/// Its bands are removed when it becomes final, which is the last change of its folder.
+/// The last change of a job's folder is the removal of its bands when it becomes final.
 Collector::Final Collector::final_job(JobId id) const {
   Final job{.id = id};
   struct stat found {};
@@ -82,8 +82,8 @@ std::vector<JobId> Collector::to_forget(const std::vector<Job>& jobs, double now
   });
   std::vector<JobId> forget;
   for (const Final& job : final_jobs) {
-    // Its submitter may be about to fetch it, whatever else fills the disk.
-    const bool fresh = now - job.at < keep_.least_seconds;
+    // Its submitter may be about to fetch it.
+    const bool fresh = now - job.at < keep_.min_seconds;
     if (now - job.at <= keep_.seconds && (bytes <= keep_.bytes || fresh) &&
         final_jobs.size() - forget.size() <= keep_.jobs) {
       break;

@@ -152,7 +152,7 @@ void SchedulerThread::collect() {
   store_.collect(std::move(jobs));
 }
 
-/// Only where nothing waits for the journal: then what the core knows is what the journal holds.
+/// Only if nothing waits for the journal, because then the scheduler's state equals the journal's.
 void SchedulerThread::compact() {
   if (!commit_queue_.empty() || journal_.size() <= compact_above_) {
     return;
@@ -161,9 +161,9 @@ void SchedulerThread::compact() {
   const std::uint64_t before = journal_.size();
   if (2 * records.size() <= before) {
     if (const absl::Status status = journal_.rewrite(records); !status.ok()) {
-      spdlog::warn("the journal could not be written anew: {}", status.ToString());
+      spdlog::warn("the journal could not be rewritten: {}", status.ToString());
     } else {
-      spdlog::info("the journal was written anew: {} records, {} before", records.size(), before);
+      spdlog::info("the journal was rewritten: {} records, {} before", records.size(), before);
     }
   }
   compact_above_ = std::max<std::uint64_t>(kCompactAbove, 2 * journal_.size());
@@ -236,7 +236,8 @@ void SchedulerThread::disk_is_back() {
 }
 
 void SchedulerThread::bands_damaged(input::BandsDamaged damaged) {
-  results_on_the_way_.erase(damaged.job);  // the film waits for the bands; the core asks again
+  results_on_the_way_.erase(
+      damaged.job);  // the film waits for the bands; the scheduler requests it again
   run(damaged);
 }
 
@@ -245,7 +246,7 @@ void SchedulerThread::result_written(JobId job, const absl::Status& status) {
   if (status.ok()) {
     run(input::ResultWritten{.job = job});
   } else {
-    storage_failed(job, status);  // the core asks again when the disk is back
+    storage_failed(job, status);  // the scheduler requests it again when the disk is back
   }
 }
 

@@ -21,8 +21,8 @@ void SchedulerThread::submit(JobSpec spec, std::int32_t priority, Answer<JobId> 
     if (!decided.ok()) {
       answer(decided);
     } else if (!journalled.ok()) {
-      // Its submitter hears that it failed, so it must not begin by itself when the disk is back.
-      // Nor is it what a second try with the same request id is told of; one of before stays.
+      // Its submitter receives an error, so the job must not start when the disk is back, and a
+      // second submit with the same request id must not return it. A job that existed before stays.
       if (added) {
         run(input::Cancel{.job = job});
         forget({job});

@@ -39,7 +39,7 @@ absl::Status SchedulerThread::restore(StoreThread& store, FilmThread& film,
   return absl::OkStatus();
 }
 
-/// RESOURCE_EXHAUSTED: the job is known, and the rest of it is read when there is room.
+/// RESOURCE_EXHAUSTED: the job is restored, but its film is not; that happens when there is room.
 absl::Status SchedulerThread::restore_job(JobId id, const Known& known, StoreThread& store,
                                           FilmThread& film) {
   film.add_job(id, known.spec.settings, is_adaptive(known.spec.stop));
@@ -61,7 +61,7 @@ absl::Status SchedulerThread::restore_job(JobId id, const Known& known, StoreThr
                                    .renderer = record.renderer,
                                    .counters = pixels.counters,
                                    .cpu_s = record.cpu_s});
-    // A band of a machine that is kept away is refused.
+    // Bands of a machine in quarantine are refused.
     if (const auto left = core_.wanted(id, band); left && left->empty()) {
       IncomingBand incoming;
       incoming.renderer = record.renderer;
@@ -82,7 +82,7 @@ absl::Status SchedulerThread::restore_job(JobId id, const Known& known, StoreThr
         "job={} {} damaged bytes in its bands were left out; their rows are rendered again", id,
         report.damaged_bytes);
   }
-  spdlog::info("job={} taken up again, {} bands on disk", id, report.records);
+  spdlog::info("job={} resumed, {} bands on disk", id, report.records);
   return filmed.ok() ? filmed
                      : absl::Status(filmed.code(), absl::StrCat("cannot rebuild the film of job ",
                                                                 id, ": ", filmed.message()));

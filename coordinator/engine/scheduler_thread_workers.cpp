@@ -9,7 +9,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// INVALID_ARGUMENT: not a band of an image of these settings, or not all of its pixels.
+/// INVALID_ARGUMENT: not a band of an image with these settings, or not all of its pixels.
 absl::Status check_band(const BandPixels& pixels, const RenderSettings& settings,
                         const TileSamples& tiles) {
   if (absl::Status valid = validate(pixels.band, settings); !valid.ok()) {

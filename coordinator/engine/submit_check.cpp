@@ -82,7 +82,7 @@ absl::Status check_submit(const JobSpec& spec, BlobStore& blobs) {
   ASSIGN_OR_RETURN(const std::string manifest, read_manifest(spec.manifest, blobs));
   RETURN_IF_ERROR(package_info(manifest).status());
   ASSIGN_OR_RETURN(const std::vector<BlobRef> refs, package_blobs(manifest));
-  // Before the core has the job, the collector must find its blobs in use.
+  // The collector must not remove the blobs before the scheduler has the job.
   ASSIGN_OR_RETURN(const wire::Digest manifest_digest, wire::digest_from_hex(spec.manifest));
   blobs.touch(manifest_digest);
   for (const BlobRef& ref : refs) {

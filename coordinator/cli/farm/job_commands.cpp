@@ -67,10 +67,9 @@ absl::Status set_quarantine(const QuarantineOptions& options, const Console& con
                      .str());
   } else {
     console.line(absl::StrCat(printable(options.worker),
-                              options.lift
-                                  ? " may render again, once its worker is started anew"
-                                  : " gets no more work; what it rendered of jobs at work is "
-                                    "rendered again"));
+                              options.lift ? " may render again after its worker is restarted"
+                                           : " gets no more work; its rows of unfinished jobs are "
+                                             "rendered again"));
   }
   return absl::OkStatus();
 }

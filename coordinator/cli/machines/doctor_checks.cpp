@@ -35,7 +35,7 @@ std::string size(std::uint64_t bytes) {
   return absl::StrFormat("%.1f GB", static_cast<double>(bytes) / 1e9);
 }
 
-/// The folder itself, or the nearest one above it that is there.
+/// Returns the folder itself, or its nearest existing parent.
 std::string existing_part(std::string folder) {
   while (!file_exists(folder) && folder.size() > 1) {
     const std::size_t slash = folder.rfind('/');

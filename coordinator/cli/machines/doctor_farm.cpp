@@ -37,7 +37,7 @@ Check check_certificate(const std::string& address) {
 
 std::string secret_cure(const absl::Status& status) {
   return absl::IsUnauthenticated(status)
-             ? "; take the join string anew from the coordinator's data folder"
+             ? "; take the new join string from the coordinator's data folder"
              : "";
 }
 
@@ -65,7 +65,7 @@ std::vector<Check> check_farm(const link::JoinString& join) {
     return {failed("farm", client.status(),
                    absl::IsUnavailable(client.status())
                        ? "; does bandsaw serve run there, and does a firewall let its port through?"
-                       : "; take the join string anew from the coordinator's data folder")};
+                       : "; take the new join string from the coordinator's data folder")};
   }
   std::vector<Check> checks;
   if (join.certificate) {

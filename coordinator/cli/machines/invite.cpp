@@ -1,4 +1,4 @@
-// bandsaw invite, bandsaw dismiss: workers of other machines, by ssh.
+// bandsaw invite, bandsaw dismiss: install and remove workers on other machines by ssh.
 
 #include <algorithm>
 #include <atomic>
@@ -27,17 +27,16 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Makes workers of other machines: asks a host for its architecture, then sends the program for
-/// that and no other.
+/// Starts workers on other machines: asks a host for its architecture, then sends the program for
+/// that architecture only.
 class Invitation {
  public:
-  /// Reads the programs that lie with this one. `join`: the workers' join string. The error is that
-  /// of this machine's own architecture where there is no program that can be sent, else the
-  /// system's.
+  /// Reads the installed workers' programs. `join`: the workers' join string. If no program can be
+  /// sent, the error is that of this machine's own architecture; otherwise the system's.
   static absl::StatusOr<Invitation> create(const std::string& join);
 
-  /// Takes at most `seconds`. Else as RemoteScript::run; a host for which there is no program is
-  /// told how to get it.
+  /// Takes at most `seconds`. Otherwise as RemoteScript::run; if there is no program for a host,
+  /// its result says how to get one.
   RemoteOutcome invite(const std::string& host, double seconds,
                        const std::atomic<bool>& stop) const;
 
@@ -55,8 +54,8 @@ absl::StatusOr<RemoteScript> script_for(Machine machine, const std::string& join
                               absl::StrCat(join, "\n", program.bytes));
 }
 
-/// The architecture in the answer to machine_script. INVALID_ARGUMENT: workers are not built for
-/// it.
+/// Parses the architecture from the output of machine_script. INVALID_ARGUMENT: workers are not
+/// built for it.
 absl::StatusOr<Machine> machine_of(absl::string_view said) {
   absl::string_view name = said;
   const bool linux_system = absl::ConsumePrefix(&name, "Linux ");
@@ -108,7 +107,7 @@ RemoteOutcome Invitation::invite(const std::string& host, double seconds,
   return script->run(host, seconds - passed.count(), stop);
 }
 
-/// The workers' join string: as given, or of the farm that is served from this account.
+/// Returns the workers' join string: the given one, or that of the farm served from this account.
 absl::StatusOr<link::JoinString> workers_join(const InviteOptions& options) {
   std::string from = options.join;
   if (from.empty()) {
@@ -132,11 +131,11 @@ absl::StatusOr<link::JoinString> workers_join(const InviteOptions& options) {
   return join;
 }
 
-/// What is done to one host, until `stop` is set.
+/// The work for one host; ends soon after `stop` is set.
 using HostWork =
     std::function<RemoteOutcome(const std::string& host, const std::atomic<bool>& stop)>;
 
-/// Prints how it went on each host as soon as it is known, and at the end how many went well.
+/// Prints the result of each host as soon as it is known, and at the end the number of successes.
 ExitCode on_hosts(const std::vector<std::string>& hosts, const char* event, const HostWork& work,
                   const Verbosity& verbosity, Process& process) {
   std::atomic<bool> stop = false;
@@ -187,7 +186,7 @@ ExitCode run(const InviteOptions& options, Process& process) {
 }
 
 ExitCode run(const DismissOptions& options, Process& process) {
-  // Beside the drain the connection and the shell need their time.
+  // The connection and the shell need time in addition to the drain.
   constexpr double kAround = 30;
   const auto script =
       RemoteScript::create(dismiss_script(static_cast<int>(std::ceil(options.drain_s))));

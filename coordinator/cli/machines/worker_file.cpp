@@ -25,7 +25,7 @@ constexpr std::uint16_t elf_number(Machine machine) {
   return machine == Machine::kX86_64 ? EM_X86_64 : EM_AARCH64;
 }
 
-/// For a message: a name, or a number where the architecture is none of workers.
+/// Returns the name of an architecture for a message, or its number if workers do not run on it.
 std::string machine_of_number(std::uint16_t number) {
   for (const Machine machine : kMachines) {
     if (elf_number(machine) == number) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// The workers' programs that lie with this one, for each architecture.
+// The installed workers' programs, one for each architecture.
 
 #include <string>
 
@@ -10,19 +10,20 @@
 
 namespace bandsaw::coordinator {
 
-/// Where the program for `machine` lies: beside this one where it is of the same architecture, else
-/// ../lib/bandsaw/bandsaw-worker-MACHINE from there; in a build folder as installed.
+/// Returns the path of the program for `machine`: beside this program if it has the same
+/// architecture, otherwise ../lib/bandsaw/bandsaw-worker-MACHINE relative to it; in a build folder
+/// as installed.
 std::string worker_program_path(Machine machine);
 
-/// What `bytes`, a whole file, are: a worker for `machine` that fits this coordinator (equal
-/// protocol and pixel version). Known from the file alone, by its ELF header and its
-/// wire::WorkerMark; nothing is run. INVALID_ARGUMENT: another program, or for another
-/// architecture. DATA_LOSS: cut off. FAILED_PRECONDITION: of another version. Messages begin with a
-/// verb; the caller names the file.
+/// Checks that `bytes`, a whole file, are a worker for `machine` that is compatible with this
+/// coordinator (equal protocol and pixel version). Reads the ELF header and the wire::WorkerMark;
+/// runs nothing. INVALID_ARGUMENT: another program, or for another architecture. DATA_LOSS:
+/// truncated. FAILED_PRECONDITION: another version. Messages begin with a verb; the caller names
+/// the file.
 absl::StatusOr<WorkerProgram> checked_worker_program(std::string bytes, Machine machine);
 
-/// Reads the program for `machine` and checks it as above. NOT_FOUND: it does not lie there; the
-/// message says how to provide it. Others as above, and as File.
+/// Reads the program for `machine` and checks it as above. NOT_FOUND: missing; the message says how
+/// to provide it. Other errors as above, and as File.
 absl::StatusOr<WorkerProgram> load_worker_program(Machine machine);
 
 }  // namespace bandsaw::coordinator

@@ -11,7 +11,7 @@ void add_verbosity(CLI::App& app, RawOptions& raw, bool can_be_quiet) {
 
 void add_farm(CLI::App& app, RawOptions& raw) {
   app.add_option("--farm", raw.farm,
-                 "Join string, or the file that holds it, or - for standard input "
+                 "Join string, or the file that contains it, or - for standard input "
                  "[default: $BANDSAW_FARM, then the farm served from this account]");
 }
 
@@ -23,35 +23,34 @@ void add_data(CLI::App& app, RawOptions& raw) {
 
 void add_keep(CLI::App& app, RawOptions& raw) {
   app.add_option("--keep-days", raw.keep_days,
-                 "Forget jobs that have been over for this long, and their images [default: 30]")
+                 "Remove jobs that have been over for this long, with their images [default: 30]")
       ->type_name("N");
   app.add_option(
          "--keep-size", raw.keep_size,
-         "Forget the oldest of them when images and scenes take more than this [default: 100]")
+         "Remove the oldest of them when images and scenes take more than this [default: 100]")
       ->type_name("GB");
   app.add_option("--keep-jobs", raw.keep_jobs,
-                 "Forget the oldest of them when there are more than this [default: 10000]")
+                 "Remove the oldest of them when there are more than this [default: 10000]")
       ->type_name("N");
 }
 
 void add_serve(CLI::App& app, RawOptions& raw) {
   add_data(app, raw);
   app.add_option("--listen", raw.listen,
-                 "Address for workers and people; port 0 picks one [default: 0.0.0.0:7878]")
+                 "Address for workers and users; port 0: a free one [default: 0.0.0.0:7878]")
       ->type_name("HOST:PORT");
   app.add_option("--web", raw.web,
-                 "Address of the dashboard, or none; beyond loopback it speaks HTTPS [default: "
-                 "127.0.0.1:8787, or another port where that is taken]")
+                 "Address of the dashboard, or none; HTTPS beyond loopback [default: "
+                 "127.0.0.1:8787, or another port if that is taken]")
       ->type_name("HOST:PORT");
   add_keep(app, raw);
   app.add_option("--audit", raw.audit,
-                 "This share of all bands is rendered by two machines and compared [default: 1%]")
+                 "Share of all bands that two machines render and that are compared [default: 1%]")
       ->type_name("P%");
   app.add_flag("--reflection", raw.reflection,
-               "Tell whoever asks which gRPC calls there are, as grpcurl does; none works without "
-               "a secret all the same");
+               "List the gRPC calls to any client, such as grpcurl; the calls still need a secret");
   app.add_flag("--insecure", raw.insecure,
-               "No encryption: anybody on the network can read and change what passes");
+               "No encryption: anybody on the network can read and change the data");
 }
 
 void add_logs(CLI::App& app, RawOptions& raw) {
@@ -62,7 +61,7 @@ void add_logs(CLI::App& app, RawOptions& raw) {
 
 void add_quarantine(CLI::App& app, RawOptions& raw) {
   app.add_option("worker", raw.worker, "The worker's name, as in: bandsaw workers");
-  app.add_flag("--lift", raw.lift, "Let it in again, once its worker is started anew");
+  app.add_flag("--lift", raw.lift, "Admit it again, after its worker is restarted");
   add_farm(app, raw);
   add_verbosity(app, raw);
 }
@@ -70,19 +69,19 @@ void add_quarantine(CLI::App& app, RawOptions& raw) {
 void add_doctor(CLI::App& app, RawOptions& raw) {
   add_data(app, raw);
   app.add_option("--listen", raw.listen,
-                 "Where a coordinator would listen here [default: 0.0.0.0:7878]")
+                 "Address to test for a coordinator on this machine [default: 0.0.0.0:7878]")
       ->type_name("HOST:PORT");
   app.add_option(
       "--farm", raw.farm,
-      "Join string of people or of workers, or the file that holds it, or - for standard "
+      "Join string of users or of workers, or the file that contains it, or - for standard "
       "input [default: $BANDSAW_FARM, then $BANDSAW_JOIN, then the farm served from this "
       "account]");
   add_verbosity(app, raw);
 }
 
 void add_secret(CLI::App& app, RawOptions& raw) {
-  app.add_option("action", raw.action, "rotate: make a new one, make the old one void");
-  app.add_option("role", raw.role, "Whose: worker or farm (people)");
+  app.add_option("action", raw.action, "rotate: make a new secret, which invalidates the old one");
+  app.add_option("role", raw.role, "Whose secret: worker or farm (users)");
   add_data(app, raw);
   add_verbosity(app, raw);
 }

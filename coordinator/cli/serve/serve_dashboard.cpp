@@ -23,8 +23,6 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// Imports scenes for the dashboard: read by the confined importer, stored by the engine.
-
 /// Shorter than for a command, because a user waits in a browser.
 constexpr double kPatience_s = 120;
 constexpr std::size_t kPieceBytes = 16 << 20;
@@ -60,13 +58,13 @@ ImportScene import_and_store(Engine& engine) {
   };
 }
 
-/// Of HOST:PORT; IPv6 without its brackets.
+/// Returns the host of HOST:PORT, IPv6 without brackets.
 std::string host_of(const std::string& address) {
   const std::string host = address.substr(0, address.rfind(':'));
   return host.front() == '[' && host.back() == ']' ? host.substr(1, host.size() - 2) : host;
 }
 
-/// The workers' programs that lie with this one; none where workers come by another way. Logs each
+/// Returns the installed workers' programs; none if workers are installed in another way. Logs each
 /// that is missing or cannot be handed out.
 WorkerPrograms load_workers() {
   WorkerPrograms workers;
@@ -102,7 +100,7 @@ absl::StatusOr<std::unique_ptr<Dashboard>> start(const ServeOptions& options, En
     }
     wanted.port = 0;
     dashboard = Dashboard::start(engine, identity, wanted);
-    if (!dashboard.ok()) {  // nobody asked for it: a farm does without
+    if (!dashboard.ok()) {  // it was not requested, so the farm runs without it
       spdlog::warn("there is no dashboard: {}", std::string(dashboard.status().message()));
       return nullptr;
     }
@@ -129,7 +127,7 @@ absl::Status ServedDashboard::write_link(const std::string& data_folder,
     std::filesystem::remove(file, error);
     return error ? errno_status(error.value(), file) : absl::OkStatus();
   }
-  // Behind the #: browsers keep that to themselves.
+  // After the #, which browsers do not send.
   const std::string link = absl::StrCat(url, "/#key=", identity.farm_secret, "\n");
   const absl::StatusOr<std::string> there = read_whole_file(file, 2 * link.size());
   if (there.ok() && *there == link) {
