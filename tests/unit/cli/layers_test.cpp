@@ -21,7 +21,7 @@ TEST(Layers, AreNamedOnceEach) {
   }
 }
 
-TEST(Layers, AreWhatTheirIntegratorsShow) {
+TEST(Layers, EqualTheImagesOfTheirIntegrators) {
   test::SceneMaker maker;
   maker.sphere({0, 0, 0}, 1, maker.diffuse({0.25f, 0.5f, 0.75f}));
   const auto scene = maker.build();

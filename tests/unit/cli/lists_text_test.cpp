@@ -49,7 +49,7 @@ TEST(FarmErrors, HaveTheirExitCodes) {
   EXPECT_EQ(exit_code_of(absl::CancelledError("")), ExitCode::kInterrupted);
 }
 
-TEST(Progress, StopRulesTravelThereAndBack) {
+TEST(Progress, StopRulesComeBack) {
   for (const StopRule& stop :
        {StopRule(StopAtSamples{5}), StopRule(StopAtError{.relative_rmse = 0.02}),
         StopRule(StopAtTime{.seconds = 9})}) {

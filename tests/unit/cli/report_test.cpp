@@ -54,7 +54,7 @@ const google::protobuf::Value& at(const google::protobuf::Struct& json, const st
   return json.fields().at(section).struct_value().fields().at(field);
 }
 
-TEST(Report, IsJsonThatHoldsTheFigures) {
+TEST(Report, IsJsonWithAllFields) {
   const Image image{1, 1, {gray(0.5F)}};
   const std::string text = report_text({finished(), pixels_sha256(image), {"a.png"}});
   EXPECT_EQ(text.rfind(kReportBegins, 0), 0u);
@@ -81,7 +81,7 @@ TEST(Report, IsJsonThatHoldsTheFigures) {
   EXPECT_EQ(at(json, "hashes", "pixels_sha256").string_value().size(), 64u);
 }
 
-TEST(Report, WhatIsNotKnownIsNull) {
+TEST(Report, UnknownValuesAreNull) {
   Progress progress = finished();
   progress.job.curve.clear();
   progress.job.elapsed_s = -1;
@@ -112,7 +112,7 @@ TEST_F(ReportFiles, LieBesideTheImagesOnce) {
   EXPECT_FALSE(report_files({folder_ / "none/r.json"}, {}).ok());
 }
 
-TEST_F(ReportFiles, NeverTakeThePlaceOfSomethingElse) {
+TEST_F(ReportFiles, NeverReplaceOtherFiles) {
   const std::string scene = write("a.json", "{\"camera\":{}}");
   EXPECT_THAT(*report_files({}, {folder_ / "a.png"}), ElementsAre(folder_ / "a.report.json"));
   const auto asked = report_files({scene}, {folder_ / "a.png"});

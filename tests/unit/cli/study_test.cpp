@@ -49,12 +49,12 @@ std::shared_ptr<const Scene> rare_light() {
   return maker.build();
 }
 
-TEST(Study, SamplesAreThePowersOfFourUpToTheMost) {
+TEST(Study, SamplesArePowersOfFourUpToTheMaximum) {
   EXPECT_THAT(study_samples(64), ElementsAre(1, 4, 16, 64));
   EXPECT_THAT(study_samples(100), ElementsAre(1, 4, 16, 64, 100));
 }
 
-TEST(Study, TechniquesThatAreOffCostErrorAndBiasNothing) {
+TEST(Study, WithoutATechniqueTheErrorIsLargerAndTheMeanIsUnbiased) {
   const StudyOfScene study =
       study_of(*test::cornell_box().build(), {.samples = 64, .seeds = 6, .reference = 2048});
   ASSERT_EQ(study.lines.size(), std::size(kMethods));
@@ -101,7 +101,7 @@ TEST(Study, WithoutATreeThePixelsAreTheSame) {
   }
 }
 
-TEST(Study, ObjectsAreCountedAsOftenAsTheyArePlaced) {
+TEST(Study, ObjectsAreCountedPerPlacement) {
   SceneDescription scene = test::cornell_box().scene;
   const std::uint64_t loose = scene.geometry.size();
   EXPECT_EQ(objects_of(scene), loose);
@@ -133,7 +133,7 @@ std::vector<StudyOfScene> known() {
   return {study};
 }
 
-TEST(StudyText, SaysWhatOnePercentCosts) {
+TEST(StudyText, ShowsTheCostOfOnePercent) {
   const std::vector<StudyOfScene> studies = known();
   const std::vector<StudyLine>& lines = studies[0].lines;
   EXPECT_NEAR(*slope_of(lines[0]), -0.5, 1e-12);

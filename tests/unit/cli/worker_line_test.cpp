@@ -78,7 +78,7 @@ TEST_F(WorkerLine, TheProgramOfAnotherArchitectureIsNotStarted) {
   EXPECT_THAT(pasted.out, Not(HasSubstr("started")));
 }
 
-TEST_F(WorkerLine, WithoutAProgramForItNothingIsFetched) {
+TEST_F(WorkerLine, WithoutAProgramForItNothingIsDownloaded) {
   digests_.erase(Machine::kAarch64);
   const Finished pasted = paste("aarch64\n");
   EXPECT_EQ(pasted.code, 1);

@@ -8,13 +8,13 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-TEST(Attribution, TheLastWorkerOfARowIsItsOwn) {
+TEST(Attribution, TheLastWorkerOfARowIsReturned) {
   Attribution attribution;
   attribution.add(1, {0, 10}, 1, "anna");
   attribution.add(1, {20, 30}, 2, "ben");
   attribution.add(1, {5, 22}, 3, "cleo");
   EXPECT_THAT(attribution.of(1), ElementsAre(RowsBy{{0, 5}, "anna"}, RowsBy{{5, 22}, "cleo"},
-                                         RowsBy{{22, 30}, "ben"}));
+                                             RowsBy{{22, 30}, "ben"}));
   attribution.add(1, {7, 9}, 1, "anna");
   EXPECT_THAT(attribution.of(1),
               ElementsAre(RowsBy{{0, 5}, "anna"}, RowsBy{{5, 7}, "cleo"}, RowsBy{{7, 9}, "anna"},
@@ -23,7 +23,7 @@ TEST(Attribution, TheLastWorkerOfARowIsItsOwn) {
   EXPECT_THAT(attribution.of(1), ElementsAre(RowsBy{{0, 30}, "ben"}));
 }
 
-TEST(Attribution, NeighboursOfOneWorkerAreOne) {
+TEST(Attribution, AdjacentRowsOfOneWorkerAreMerged) {
   Attribution attribution;
   attribution.add(1, {10, 20}, 1, "anna");
   attribution.add(1, {0, 10}, 1, "anna");
@@ -40,7 +40,7 @@ TEST(Attribution, JobsThatAreOverAreForgotten) {
   EXPECT_EQ(attribution.of(2).size(), 1u);
 }
 
-TEST(Attribution, ANameThatComesLaterIsThatOfEarlierRows) {
+TEST(Attribution, ALaterNameAppliesToEarlierRows) {
   Attribution attribution;
   attribution.add(1, {0, 10}, 1, "");
   attribution.add(1, {20, 30}, 2, "ben");

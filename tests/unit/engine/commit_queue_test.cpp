@@ -18,7 +18,8 @@ class CommitQueueTest : public testing::Test {
     });
   }
   void completion(const std::string& name) {
-    commit_queue_.completion([this, name](const absl::Status& s) { done_ += s.ok() ? name : "!" + name; });
+    commit_queue_.completion(
+        [this, name](const absl::Status& s) { done_ += s.ok() ? name : "!" + name; });
   }
   std::shared_ptr<JournalDisk> disk_ = std::make_shared<JournalDisk>();
   MemoryJournal journal_{disk_};
@@ -53,7 +54,7 @@ TEST_F(CommitQueueTest, AFailedJournalFailsCompletionsAndKeepsEffectsInOrder) {
   EXPECT_EQ(disk_->records().size(), 1u);
 }
 
-TEST_F(CommitQueueTest, WhatAnEffectAddsWaitsForTheNextFlush) {
+TEST_F(CommitQueueTest, AdditionsOfAnEffectWaitForTheNextFlush) {
   commit_queue_.effect([this] {
     commit_queue_.record(record::WorkerLeft{"a"});
     effect("late");

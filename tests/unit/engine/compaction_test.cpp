@@ -12,7 +12,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-TEST(Compaction, AJournalOfMoreThanTenThousandRecordsIsWrittenAnewAndTellsTheSame) {
+TEST(Compaction, AJournalAbove10000RecordsIsRewrittenToTheSameState) {
   constexpr std::int32_t kChanges = 10'050;
   const auto disk = std::make_shared<JournalDisk>();
   TestFarm farm;

@@ -116,7 +116,7 @@ TEST_P(DamagedLog, FoundAtARestartIsRenderedAgain) {
   render_the_rest(job);
 }
 
-TEST_P(DamagedLog, WhatIsRenderedAgainIsThereAfterARestart) {
+TEST_P(DamagedLog, BandsRenderedAgainSurviveARestart) {
   const JobId job = begin_and_render_a_part();
   ASSERT_NO_FATAL_FAILURE(do_damage(farm_.bands_file(job), GetParam()));
   ASSERT_NO_FATAL_FAILURE(find_damage(job));

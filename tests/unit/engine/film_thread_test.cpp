@@ -72,7 +72,8 @@ class FilmThreadTest : public testing::Test {
     thread_.add_job(1, settings_);
   }
 
-  IncomingBand logged(const SampleRange& samples, const RowRange& rows, const TileSamples& tiles = {}) {
+  IncomingBand logged(const SampleRange& samples, const RowRange& rows,
+                      const TileSamples& tiles = {}) {
     Pool pool(1);
     const std::atomic<bool> stop{false};
     BandRecord record{.package_digest = std::string(64, 'a'), .settings = settings_, .pixels = {}};
@@ -115,7 +116,7 @@ class FilmThreadTest : public testing::Test {
   FilmThread thread_{folder_, scheduler_, store_};
 };
 
-TEST_F(FilmThreadTest, TellsEachPassOnceWhenItsLastRowsAreThere) {
+TEST_F(FilmThreadTest, ReportsEachPassOnceWhenItIsComplete) {
   thread_.plan(1, 16);
   thread_.plan(1, 32);
   ASSERT_TRUE(add({16, 32}, {0, 8}).ok());
@@ -126,7 +127,7 @@ TEST_F(FilmThreadTest, TellsEachPassOnceWhenItsLastRowsAreThere) {
   EXPECT_GT(scheduler_.errors.back(), 0) << "two halves are there";
 }
 
-TEST_F(FilmThreadTest, WhatAMachineGaveCanBeTakenOutAgain) {
+TEST_F(FilmThreadTest, BandsOfAWorkerCanBeRetracted) {
   thread_.plan(1, 16);
   thread_.plan(1, 32);
   IncomingBand wrong = logged({0, 16}, {0, 4});
@@ -145,7 +146,7 @@ TEST_F(FilmThreadTest, WhatAMachineGaveCanBeTakenOutAgain) {
   EXPECT_EQ(store_.images[0].pixels, local(32));
 }
 
-TEST_F(FilmThreadTest, WhatIsDamagedInTheLogIsLeftOutAndTold) {
+TEST_F(FilmThreadTest, DamagedBandsAreLeftOutAndReported) {
   thread_.plan(1, 16);
   ASSERT_TRUE(add({0, 16}, {0, 4}).ok());
   IncomingBand sound = logged({0, 16}, {4, 8});
@@ -167,7 +168,7 @@ TEST_F(FilmThreadTest, WhatIsDamagedInTheLogIsLeftOutAndTold) {
   EXPECT_EQ(store_.images[0].pixels, local(16));
 }
 
-TEST_F(FilmThreadTest, AnotherBandInThePlaceOfOneIsDamage) {
+TEST_F(FilmThreadTest, AnotherBandAtTheSameOffsetIsDamage) {
   ASSERT_TRUE(add({0, 16}, {0, 4}).ok());
   IncomingBand other = logged({0, 16}, {4, 8});
   IncomingBand wrong = logged({0, 16}, {4, 8});
@@ -179,7 +180,7 @@ TEST_F(FilmThreadTest, AnotherBandInThePlaceOfOneIsDamage) {
   EXPECT_EQ(scheduler_.damaged[0].band.rows, (RowRange{4, 8}));
 }
 
-TEST_F(FilmThreadTest, AnImageOfADamagedLogIsAskedForAgain) {
+TEST_F(FilmThreadTest, AnImageOfADamagedLogIsMadeOnTheNextRequest) {
   ASSERT_TRUE(add({0, 16}, {0, 8}).ok());
   ASSERT_TRUE(add({16, 32}, {0, 3}).ok());
   ASSERT_TRUE(remove_file(folder_.bands(1)).ok());
@@ -196,7 +197,7 @@ TEST_F(FilmThreadTest, AnImageOfADamagedLogIsAskedForAgain) {
   EXPECT_EQ(store_.images[0].pixels, local(16));
 }
 
-TEST_F(FilmThreadTest, WhatIsInTheLogIsReadWhenTheFilmHasRoom) {
+TEST_F(FilmThreadTest, LoggedBandsAreReadWhenTheFilmHasRoom) {
   thread_.plan(1, 16);
   ASSERT_TRUE(add({0, 16}, {0, 4}).ok());
   thread_.add_later(1, logged({0, 16}, {4, 8}), {{4, 8}});
@@ -216,7 +217,7 @@ TEST_F(FilmThreadTest, AddsOnlyTheRowsThatAreNew) {
   EXPECT_EQ(store_.images[0].pixels, local(16));
 }
 
-TEST_F(FilmThreadTest, AnImageOfFewerSamplesThanSomeRowsHaveIsThatOfTheFewer) {
+TEST_F(FilmThreadTest, AnImageLeavesOutRowsWithLaterSamples) {
   ASSERT_TRUE(add({0, 16}, {0, 8}).ok());
   ASSERT_TRUE(add({16, 32}, {0, 3}).ok());
   ASSERT_TRUE(add({16, 32}, {2, 5}, {{3, 5}}).ok());
@@ -235,7 +236,7 @@ TEST_F(FilmThreadTest, AnImageWaitsForItsLastRows) {
   EXPECT_EQ(store_.images[0].pixels, local(16));
 }
 
-TEST_F(FilmThreadTest, AnAdaptiveJobLeavesEachPixelsNumberOfSamples) {
+TEST_F(FilmThreadTest, AnAdaptiveJobHasTheNumberOfSamplesOfEachPixel) {
   thread_.add_job(1, settings_, true);
   TileSamples even(settings_.width, {0, 8});
   even.set(0, {16, 32});
@@ -246,12 +247,13 @@ TEST_F(FilmThreadTest, AnAdaptiveJobLeavesEachPixelsNumberOfSamples) {
   ASSERT_EQ(store_.samples->pixels.size(), 48u);
   for (std::uint32_t y = 0; y < 8; ++y) {
     for (std::uint32_t x = 0; x < 6; ++x) {
-      EXPECT_EQ(store_.samples->pixels[y * 6 + x], gray((x + y) % 2 == 0 ? 32 : 16)) << x << " " << y;
+      EXPECT_EQ(store_.samples->pixels[y * 6 + x], gray((x + y) % 2 == 0 ? 32 : 16))
+          << x << " " << y;
     }
   }
 }
 
-TEST_F(FilmThreadTest, WhatAFullDiskRefusedIsAddedLater) {
+TEST_F(FilmThreadTest, BandsRefusedByAFullDiskAreAddedLater) {
   IncomingBand first = logged({0, 16}, {0, 4});
   IncomingBand second = logged({0, 16}, {4, 8});
   thread_.plan(1, 16);
@@ -266,12 +268,13 @@ TEST_F(FilmThreadTest, WhatAFullDiskRefusedIsAddedLater) {
   }
   EXPECT_TRUE(scheduler_.merged.empty());
   thread_.retry();
-  EXPECT_EQ(scheduler_.merged, (std::vector<std::uint64_t>{16, 16})) << "the pass, and the finished image";
+  EXPECT_EQ(scheduler_.merged, (std::vector<std::uint64_t>{16, 16}))
+      << "the pass, and the finished image";
   ASSERT_EQ(store_.images.size(), 1u);
   EXPECT_EQ(store_.images[0].pixels, local(16));
 }
 
-TEST_F(FilmThreadTest, ADroppedJobTakesNothingMore) {
+TEST_F(FilmThreadTest, ADroppedJobIgnoresBands) {
   ASSERT_TRUE(add({0, 16}, {0, 8}).ok());
   thread_.drop(1);
   EXPECT_TRUE(add({16, 32}, {0, 8}).ok());
@@ -279,7 +282,7 @@ TEST_F(FilmThreadTest, ADroppedJobTakesNothingMore) {
   EXPECT_TRUE(store_.images.empty());
 }
 
-TEST(Slice, TakesTheRowsAsked) {
+TEST(Slice, ReturnsTheGivenRows) {
   BandPixels band{.band = {.samples = {0, 16}, .rows = {4, 7}},
                   .width = 1,
                   .sums = {1, 2, 3, 4, 5, 6, 7, 8, 9},
@@ -290,7 +293,7 @@ TEST(Slice, TakesTheRowsAsked) {
   EXPECT_EQ(middle.width, 1u);
 }
 
-TEST_F(FilmThreadTest, APreviewShowsWhatIsThereAndWhoMadeIt) {
+TEST_F(FilmThreadTest, APreviewShowsPresentRowsAndTheirWorkers) {
   EXPECT_TRUE(absl::IsNotFound(thread_.preview(1, 1).status()));
   IncomingBand incoming = logged({0, 16}, {2, 5});
   incoming.worker = "anna";
@@ -308,7 +311,7 @@ TEST_F(FilmThreadTest, APreviewShowsWhatIsThereAndWhoMadeIt) {
   EXPECT_TRUE(absl::IsNotFound(thread_.preview(1, 1).status()));
 }
 
-TEST_F(FilmThreadTest, WhoMadeAnImageIsToldWithItAndReadFromBesideItLater) {
+TEST_F(FilmThreadTest, AttributionIsSentWithTheImageAndReadFromItsFileLater) {
   IncomingBand incoming = logged({0, 16}, {0, 8});
   incoming.worker = "anna";
   ASSERT_TRUE(thread_.add(1, std::move(incoming), {{0, 8}}).ok());

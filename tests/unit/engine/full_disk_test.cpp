@@ -65,7 +65,7 @@ TEST_F(FullDiskTest, ABandThatDoesNotFitIsKeptByItsWorkerAndTheJobWaits) {
   expect_local_image(job);
 }
 
-TEST_F(FullDiskTest, AWorkerThatTriesAgainEndsTheJobWhenThereIsRoom) {
+TEST_F(FullDiskTest, ARetryEndsTheJobWhenThereIsRoom) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 16});
   auto full = std::make_unique<test::FullDisk>(0);
   FakeWorker worker(farm_.scene(), "one");
@@ -103,7 +103,7 @@ TEST_F(FullDiskTest, ASubmitThatCannotBeJournalledFailsAndDoesNotBeginLater) {
   expect_local_image(*job);
 }
 
-TEST_F(FullDiskTest, ASecondTryThatCannotBeJournalledLeavesTheJobAsItIs) {
+TEST_F(FullDiskTest, ASecondSubmitThatCannotBeJournalledLeavesTheJobUnchanged) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 16});
   ASSERT_TRUE(farm_.put(job, rendered(0, 14)).ok());
   wait_for(job, JobState::kDone);
@@ -144,7 +144,7 @@ TEST_F(FullDiskTest, NothingIsAcknowledgedThatTheJournalDoesNotHold) {
   expect_local_image(job);
 }
 
-TEST(StartOnAFullDisk, ServesWhatIsThereRefusesWhatIsNewAndGoesOn) {
+TEST(StartOnAFullDisk, ServesOldResultsRefusesNewDataAndContinues) {
   TestFarm farm;
   ASSERT_TRUE(farm.start().ok());
   JobSpec spec = farm.spec(StopAtSamples{.samples = 16});
@@ -199,7 +199,7 @@ TEST_F(FullDiskTest, TheReserveIsForTheJournal) {
   disk_->refuse_while(nullptr);
 }
 
-TEST(BrokenJournal, AfterEveryAppendItMayBreakAndTheNextLifeGoesOn) {
+TEST(BrokenJournal, TheNextLifeContinuesAfterAFailureOfAnyAppend) {
   for (int appends = 0; appends < 6; ++appends) {
     TestFarm farm;
     const auto disk = std::make_shared<JournalDisk>();

@@ -69,7 +69,7 @@ class KeepTest : public ::testing::Test {
   int requests_ = 0;
 };
 
-TEST_F(KeepTest, TheThousandthJobMakesTheOldestGo) {
+TEST_F(KeepTest, TheThousandthJobRemovesTheOldest) {
   EXPECT_TRUE(jobs().empty());  // It has looked once, and counts from here.
   const std::vector<JobId> over = submit(990);
   cancel(over);

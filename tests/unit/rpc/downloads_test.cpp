@@ -52,7 +52,7 @@ class DownloadsTest : public FarmTest {
   }
 };
 
-TEST_F(DownloadsTest, AnImageIsInTheMemoryBudgetWhileSomebodyReadsIt) {
+TEST_F(DownloadsTest, AnImageIsInTheMemoryBudgetWhileItIsDownloaded) {
   const std::uint64_t job = finish_job(kSide);
   const std::int64_t all = engine_->images().left();
   const auto call = context(link::Role::kFarm);
@@ -74,7 +74,7 @@ TEST_F(DownloadsTest, AnImageIsInTheMemoryBudgetWhileSomebodyReadsIt) {
   wait_until_left(all);
 }
 
-TEST_F(DownloadsTest, AReaderThatLeavesGivesTheMemoryBack) {
+TEST_F(DownloadsTest, ACancelledDownloadFreesTheMemory) {
   const std::uint64_t job = finish_job(kSide);
   const std::int64_t all = engine_->images().left();
   const auto call = context(link::Role::kFarm);
@@ -85,7 +85,7 @@ TEST_F(DownloadsTest, AReaderThatLeavesGivesTheMemoryBack) {
   wait_until_left(all);
 }
 
-TEST_F(DownloadsTest, APreviewIsCountedAsItIsHeld) {
+TEST_F(DownloadsTest, APreviewCountsWithItsActualSize) {
   const std::uint64_t done = finish_job(kSide);
   const std::uint64_t running = submit_job(kSide);
   put_rows(running, kSide, 0, kSide / 2);
@@ -104,7 +104,7 @@ TEST_F(DownloadsTest, APreviewIsCountedAsItIsHeld) {
 }
 
 // As many previews as wait for the film, workers get their scenes.
-TEST_F(DownloadsTest, ScenesGoOutWhilePreviewsWaitForTheFilm) {
+TEST_F(DownloadsTest, ScenesAreSentWhilePreviewsWaitForTheFilm) {
   const std::uint64_t job = submit_job(kSide);
   put_rows(job, kSide, 0, kSide / 2);
   const std::string scene = test::pattern(1 << 20);

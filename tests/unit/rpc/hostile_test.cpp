@@ -72,7 +72,7 @@ class HostileTest : public FarmTest {
 // The first bytes of a TLS handshake: a record of 512 bytes, of which these come.
 const std::string kHalfHello("\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03", 11);
 
-TEST_F(HostileTest, AThousandConnectionsLeaveRoomForOthersAndNothingBehind) {
+TEST_F(HostileTest, AThousandConnectionsDoNotBlockOthersAndLeakNothing) {
   if (!may_open(4096)) {
     GTEST_SKIP() << "needs 4,096 open files (ulimit -Hn)";
   }
@@ -90,7 +90,7 @@ TEST_F(HostileTest, AThousandConnectionsLeaveRoomForOthersAndNothingBehind) {
   }
 }
 
-TEST_F(HostileTest, AHandshakeThatDoesNotEndIsCutOff) {
+TEST_F(HostileTest, AnUnfinishedHandshakeIsClosed) {
   dial("");
   dial(kHalfHello);
   for (const int one : sockets_) {
@@ -102,7 +102,7 @@ TEST_F(HostileTest, AHandshakeThatDoesNotEndIsCutOff) {
   }
 }
 
-TEST_F(HostileTest, WhatIsSaidTwiceCountsOnce) {
+TEST_F(HostileTest, RepeatedMessagesCountOnce) {
   const wire::Digest manifest = put_cornell_box();
   const farm::SubmitRequest request = cornell_request(manifest);
   const std::uint64_t job = submit(request);

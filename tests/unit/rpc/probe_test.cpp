@@ -61,7 +61,7 @@ class ProbeTest : public FarmTest {
   }
 };
 
-TEST_F(ProbeTest, HealthIsToldWithoutASecret) {
+TEST_F(ProbeTest, HealthIsAnsweredWithoutASecret) {
   for (const char* service : {"", "bandsaw.farm.Farm", "bandsaw.farm.Work"}) {
     health::HealthCheckResponse reply;
     const grpc::Status status = check(channel(), service, reply);
@@ -72,7 +72,7 @@ TEST_F(ProbeTest, HealthIsToldWithoutASecret) {
   EXPECT_EQ(check(channel(), "nothing", reply).error_code(), grpc::StatusCode::NOT_FOUND);
 }
 
-TEST_F(ProbeTest, NobodyHoldsAStreamWithoutASecret) {
+TEST_F(ProbeTest, AStreamNeedsASecret) {
   grpc::ClientContext context;
   const auto reader = health::Health::NewStub(channel())->Watch(&context, {});
   health::HealthCheckResponse reply;
@@ -80,7 +80,7 @@ TEST_F(ProbeTest, NobodyHoldsAStreamWithoutASecret) {
   EXPECT_EQ(reader->Finish().error_code(), grpc::StatusCode::UNIMPLEMENTED);
 }
 
-TEST_F(ProbeTest, ReflectionIsThereWhereItWasAskedForOnly) {
+TEST_F(ProbeTest, ReflectionIsOffByDefault) {
   std::string answer;
   EXPECT_EQ(list_services(server_->port(), answer).error_code(), grpc::StatusCode::UNIMPLEMENTED);
   EXPECT_EQ(answer, "");

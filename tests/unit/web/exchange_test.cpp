@@ -98,7 +98,7 @@ TEST_F(ExchangeTest, ABodyEndsWithItsLength) {
               ::testing::EndsWith("\r\n\r\nPOST / body"));
 }
 
-TEST_F(ExchangeTest, ChunksArePutTogether) {
+TEST_F(ExchangeTest, ChunksAreJoined) {
   EXPECT_THAT(answer("POST / HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\n"
                      "3;x=y\r\nbod\r\n1\r\ny\r\n0\r\nTrailer: 1\r\n\r\n"),
               ::testing::EndsWith("\r\n\r\nPOST / body"));
@@ -118,7 +118,7 @@ TEST_F(ExchangeTest, ABodyOfWholeBuffersEnds) {
   EXPECT_THAT(all, ::testing::EndsWith("\r\n\r\nPOST / " + body));
 }
 
-TEST_F(ExchangeTest, WhoWaitsToBeToldToGoOnIsTold) {
+TEST_F(ExchangeTest, Expect100ContinueIsAnswered) {
   std::thread server([this] { serve(); });
   say("POST / HTTP/1.1\r\nExpect: 100-continue\r\nContent-Length: 4\r\n\r\n");
   const std::string go_on = "HTTP/1.1 100 Continue\r\n\r\n";
@@ -131,13 +131,13 @@ TEST_F(ExchangeTest, WhoWaitsToBeToldToGoOnIsTold) {
   server.join();
 }
 
-TEST_F(ExchangeTest, ABodyThatIsCutIsAnError) {
+TEST_F(ExchangeTest, ATruncatedBodyIsAnError) {
   const std::string all = answer("POST / HTTP/1.1\r\nContent-Length: 9\r\n\r\nbody");
   EXPECT_THAT(all, StartsWith("HTTP/1.1 400 "));
   EXPECT_THAT(all, HasSubstr("did not come whole"));
 }
 
-TEST_F(ExchangeTest, WhatIsNoHttpIsRefused) {
+TEST_F(ExchangeTest, MalformedHttpIsRefused) {
   const std::string all = answer("\x16\x03\x01 a TLS hello\r\n\r\n");
   EXPECT_THAT(all, StartsWith("HTTP/1.1 400 "));
   EXPECT_THAT(all, HasSubstr("\r\nX-Every: answer\r\n"));
@@ -155,17 +155,17 @@ TEST_F(ExchangeTest, AHeadThatIsTooLongIsRefused) {
               StartsWith("HTTP/1.1 431 "));
 }
 
-TEST_F(ExchangeTest, AHeadThatIsCutIsNotAnswered) {
+TEST_F(ExchangeTest, ATruncatedHeadIsNotAnswered) {
   EXPECT_EQ(answer("GET / HTTP/1.1\r\nHost: a\r\n"), "");
 }
 
-TEST_F(ExchangeTest, ASilentClientIsCutOff) {
+TEST_F(ExchangeTest, ASilentClientIsDisconnected) {
   serve(std::chrono::milliseconds(20));
   EXPECT_EQ(hear(), "");
 }
 
 // Each byte arrives in time, the whole never does: without a deadline of the whole this hangs.
-TEST_F(ExchangeTest, AClientThatSendsAByteNowAndThenIsCutOff) {
+TEST_F(ExchangeTest, ASlowSenderIsDisconnected) {
   std::thread client([this] {
     for (char next = 'G'; send(this->client(), &next, 1, MSG_NOSIGNAL) == 1; next = 'x') {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -176,7 +176,7 @@ TEST_F(ExchangeTest, AClientThatSendsAByteNowAndThenIsCutOff) {
 }
 
 // The answer is larger than what the system holds for somebody who does not read.
-TEST_F(ExchangeTest, AClientThatDoesNotReadIsCutOff) {
+TEST_F(ExchangeTest, AClientThatDoesNotReadIsDisconnected) {
   say("GET / HTTP/1.1\r\n\r\n");
   const int small = 1;  // each byte that the system takes is time for the next
   setsockopt(serving(), SOL_SOCKET, SO_SNDBUF, &small, sizeof(small));

@@ -53,13 +53,13 @@ farm::ToWorker revoke(std::uint64_t id) {
   return message;
 }
 
-TEST(LogMessage, HoldsCleanLinesOfBoundedLength) {
+TEST(LogMessage, HasCleanLinesOfBoundedLength) {
   const farm::FromWorker message =
       log_message({"a\tb\x1b[2J\n", std::string(wire::kLogLineBytes + 9, 'x')});
   EXPECT_THAT(message.log().line(), ElementsAre("a b [2J", std::string(wire::kLogLineBytes, 'x')));
 }
 
-TEST(Session, SaysWhoItIs) {
+TEST(Session, SendsItsIdentityInHello) {
   const farm::FromWorker message = Session(worker_info()).hello();
   const farm::Hello& hello = message.hello();
   EXPECT_EQ(hello.protocol(), wire::kProtocol);
@@ -123,7 +123,7 @@ TEST(Session, ATaskHasTheSamplesOfItsHalfTiles) {
   EXPECT_TRUE(session.receive(lease(11, 4)).start[0].tiles.whole());
 }
 
-TEST(Session, RefusesALeaseThatIsNoBand) {
+TEST(Session, RefusesAnInvalidLease) {
   Session session(worker_info());
   session.receive(welcome("e1"));
   farm::ToWorker bad = lease(10, 0);
@@ -157,7 +157,7 @@ TEST(Session, HoldsNoMoreThanTheLimit) {
   EXPECT_EQ(effects.send[0].failed().lease(), 100U);
 }
 
-TEST(Session, NamesWhatItHoldsAfterAReconnect) {
+TEST(Session, ListsHeldBandsAfterAReconnect) {
   Session session(worker_info());
   session.receive(welcome("e1"));
   const TaskId finished = session.receive(lease(10, 0)).start[0].id;
@@ -177,7 +177,7 @@ TEST(Session, NamesWhatItHoldsAfterAReconnect) {
 }
 
 // The coordinator's folder was begun anew: the number and the rows are those of another job.
-TEST(Session, ABandOfAnotherJobOfTheSameNumberIsNotTheSame) {
+TEST(Session, ABandOfAnotherJobWithTheSameIdIsDifferent) {
   Session session(worker_info());
   session.receive(welcome("e1"));
   const TaskId old = session.receive(lease(10, 0)).start[0].id;
@@ -191,7 +191,7 @@ TEST(Session, ABandOfAnotherJobOfTheSameNumberIsNotTheSame) {
   EXPECT_EQ(effects.start[0].settings.seed, 99U);
 }
 
-TEST(Session, GoesOnWithAHeldBandUnderItsNewName) {
+TEST(Session, KeepsAHeldBandUnderItsNewLease) {
   Session session(worker_info());
   session.receive(welcome("e1"));
   const TaskId task = session.receive(lease(10, 0)).start[0].id;
@@ -204,7 +204,7 @@ TEST(Session, GoesOnWithAHeldBandUnderItsNewName) {
   EXPECT_EQ(session.heartbeat().heartbeat().lease(0).lease(), 3U);
 }
 
-TEST(Session, TakesARevokeToMeanThePresentEpochFirst) {
+TEST(Session, ARevokeAppliesToThePresentEpochFirst) {
   Session session(worker_info());
   session.receive(welcome("e1"));
   const TaskId old = session.receive(lease(10, 0)).start[0].id;
@@ -216,7 +216,7 @@ TEST(Session, TakesARevokeToMeanThePresentEpochFirst) {
   EXPECT_THAT(session.receive(revoke(10)).stop, IsEmpty());
 }
 
-TEST(Session, ThrowsAwayWhatWasRevokedWhileItRendered) {
+TEST(Session, DiscardsABandRevokedWhileItRendered) {
   Session session(worker_info());
   session.receive(welcome("e1"));
   const TaskId task = session.receive(lease(10, 0)).start[0].id;
@@ -225,7 +225,7 @@ TEST(Session, ThrowsAwayWhatWasRevokedWhileItRendered) {
   EXPECT_FALSE(session.failed(task, "why", {}).has_value());
 }
 
-TEST(Session, TellsAFailureInWhatTheWireTakes) {
+TEST(Session, ReportsAFailureWithinTheLimitsOfTheMessage) {
   Session session(worker_info());
   session.receive(welcome("e1"));
   const TaskId task = session.receive(lease(10, 0)).start[0].id;
@@ -240,7 +240,7 @@ TEST(Session, TellsAFailureInWhatTheWireTakes) {
   EXPECT_EQ(session.hello().hello().held_size(), 0);
 }
 
-TEST(Session, SaysAFailureByNotHoldingTheBandWhereNobodyListens) {
+TEST(Session, ReportsAFailureByNotListingTheBandAfterAReconnect) {
   Session session(worker_info());
   session.receive(welcome("e1"));
   const TaskId task = session.receive(lease(10, 0)).start[0].id;
@@ -249,7 +249,7 @@ TEST(Session, SaysAFailureByNotHoldingTheBandWhereNobodyListens) {
   EXPECT_EQ(session.hello().hello().held_size(), 0);
 }
 
-TEST(Session, DrainsWhenAllItHoldsIsAcknowledged) {
+TEST(Session, IsDrainedWhenAllBandsAreAcknowledged) {
   Session session(worker_info());
   session.receive(welcome("e1"));
   const TaskId task = session.receive(lease(10, 0)).start[0].id;
@@ -263,7 +263,7 @@ TEST(Session, DrainsWhenAllItHoldsIsAcknowledged) {
   EXPECT_TRUE(session.drained());
 }
 
-TEST(Session, SaysThatItDrainsAgainOnALaterStream) {
+TEST(Session, RepeatsDrainingOnALaterStream) {
   Session session(worker_info());
   session.receive(welcome("e1"));
   session.receive(lease(10, 0));
@@ -274,7 +274,7 @@ TEST(Session, SaysThatItDrainsAgainOnALaterStream) {
   EXPECT_TRUE(effects.send[0].has_draining());
 }
 
-TEST(Session, KeepsWhatItHoldsWhenRefusedAndDropsItAtGoodbye) {
+TEST(Session, KeepsBandsWhenRefusedAndDropsThemAtBye) {
   Session session(worker_info());
   session.receive(welcome("e1"));
   const TaskId task = session.receive(lease(10, 0)).start[0].id;
