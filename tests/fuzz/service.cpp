@@ -1,4 +1,4 @@
-// Requests of people and bands of workers: one byte that says which, then the message.
+// Requests of users and bands of workers: one byte that selects the message, then the message.
 
 #include "coordinator/rpc/checked_messages.h"
 #include "renderlib/base/check.h"

@@ -33,7 +33,7 @@ const StudyLine& line(const StudyOfScene& study, Method method) {
   return study.lines.at(static_cast<std::size_t>(method));
 }
 
-/// A lamp in the middle of each pixel of kSettings, a twentieth of its area; else nothing.
+/// An area light in the middle of each pixel of kSettings, a twentieth of its area; nothing else.
 std::shared_ptr<const Scene> rare_light() {
   test::SceneMaker maker;
   const MaterialId lamp = maker.lamp(1);
@@ -123,7 +123,8 @@ TEST(Study, AStopEndsIt) {
             absl::StatusCode::kCancelled);
 }
 
-/// Full: 10 % at 16 samples and 1 s, halved by each fourfold; the comparator does not fall.
+/// The full renderer has 10 % at 16 samples and 1 s, halved by each factor of four; the variant
+/// does not fall.
 std::vector<StudyOfScene> known() {
   StudyOfScene study{.scene = "a|\"b\" & <c>", .reference_error = 0.001, .lines = {}};
   study.lines.push_back(

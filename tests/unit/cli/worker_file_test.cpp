@@ -1,4 +1,4 @@
-// Worker programs are known by their bytes, whatever their names, and none is run.
+// Worker programs are identified by their bytes, not their names, and are not run.
 
 #include "coordinator/cli/machines/worker_file.h"
 
@@ -52,7 +52,7 @@ TEST(WorkerProgram, CutOffAnywhereIsRefused) {
   }
 }
 
-// Whatever a header holds, it is an answer, and nothing beyond the file is read.
+// Any header gives a result or an error, and nothing beyond the file is read.
 TEST(WorkerProgram, AnyByteOfTheHeadersMayBeWrong) {
   const std::string bytes = worker_file(EM_AARCH64, fitting_mark());
   for (std::size_t at = 0; at < sizeof(Elf64_Ehdr) + sizeof(Elf64_Phdr); ++at) {
@@ -91,7 +91,7 @@ TEST(WorkerProgram, OfAnotherVersionIsRefused) {
   EXPECT_THAT(error_of(worker_file(EM_AARCH64, mark)), HasSubstr("but this farm needs protocol "));
 }
 
-// The version stands in a header of HTTP.
+// The version is sent in an HTTP header.
 TEST(WorkerProgram, TheVersionIsText) {
   for (const std::string& version :
        {std::string(), std::string("1\r\nX-Evil: 1"), std::string(24, '1')}) {

@@ -43,7 +43,7 @@ class CollectorTest : public testing::Test {
     return digest;
   }
 
-  // A package of its own for each name; all of them share the blobs of one scene.
+  // Stores a package for each name; they all share the blobs of one scene.
   DigestHex package(const std::string& name) {
     BlobMap blobs;
     PackageInfo info;

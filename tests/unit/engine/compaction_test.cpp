@@ -1,4 +1,4 @@
-// A journal that has grown long is written anew.
+// A long journal is rewritten.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// A disk that takes no more, in the middle of a job, and a journal that cannot be written.
+// A disk that becomes full during a job, and a journal that cannot be written.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ class FullDiskTest : public testing::Test {
     const Band band{.samples = {0, 16}, .rows = {first, last}};
     return *render_band(*farm_.scene(), farm_.settings(), band, pool, stop, [](std::uint32_t) {});
   }
-  /// Moves the time on until the job is in the state.
+  /// Advances the time until the job is in the state.
   JobView wait_for(JobId job, JobState state) {
     while (true) {
       time_->advance(0.5);
@@ -109,7 +109,7 @@ TEST_F(FullDiskTest, ASecondSubmitThatCannotBeJournalledLeavesTheJobUnchanged) {
   wait_for(job, JobState::kDone);
   JobSpec same = farm_.spec(StopAtSamples{.samples = 16});
   disk_->break_it();
-  // Journalled together with what is new.
+  // It is journalled together with the next records.
   JobSpec other = same;
   other.request_id = "another request id";
   Box<absl::Status> said;
@@ -137,7 +137,7 @@ TEST_F(FullDiskTest, ResumingIsRefusedWhileTheJournalIs) {
 TEST_F(FullDiskTest, NothingIsAcknowledgedThatTheJournalDoesNotHold) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 16});
   disk_->break_it();
-  // The last band: that the job is finishing must be journalled before the answer.
+  // This is the last band: the job's state kFinishing must be journalled before the answer.
   EXPECT_EQ(farm_.put(job, rendered(0, 14)).status().code(), absl::StatusCode::kResourceExhausted);
   EXPECT_EQ(farm_.result(job).status().code(), absl::StatusCode::kFailedPrecondition);
   disk_->mend();
@@ -184,7 +184,7 @@ TEST(StartOnAFullDisk, ServesOldResultsRefusesNewDataAndContinues) {
   EXPECT_EQ(farm.result(job)->image.pixels, farm.local(512).pixels);
 }
 
-// The file that holds the reserve is what the journal has no room beside.
+// The reserve takes the space that the journal lacks.
 TEST_F(FullDiskTest, TheReserveIsForTheJournal) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 16});
   JobSpec another = farm_.spec(StopAtSamples{.samples = 16});

@@ -1,4 +1,4 @@
-// A coordinator to which jobs are sent by the thousand forgets the oldest of those that are over.
+// A coordinator that receives thousands of jobs forgets the oldest that are over.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ class KeepTest : public ::testing::Test {
     spec_ = farm_.spec(StopAtSamples{.samples = 64});
   }
 
-  /// All at once: waiting for each would wait for the disk each time.
+  /// Submits all without waiting for each, which would wait for the disk each time.
   std::vector<JobId> submit(std::size_t jobs) {
     Box<std::vector<JobId>> box;
     std::vector<JobId> submitted;  // Of the engine's thread, which answers in order.
@@ -75,7 +75,7 @@ TEST_F(KeepTest, TheThousandthJobRemovesTheOldest) {
   cancel(over);
   EXPECT_EQ(jobs().size(), 990u);
   submit(20);
-  // The store's thread looks first at what there is.
+  // The store's thread runs its first collection before.
   for (int asked = 0; asked < 1'000'000 && is_known(over.front()); ++asked) {
   }
   const std::vector<JobView> left = jobs();

@@ -17,7 +17,7 @@ TestFarm::TestFarm() : maker_(test::cornell_box()), scene_(maker_.build()) {
 
 absl::Status TestFarm::start(EngineDependencies dependencies, const Keep& keep) {
   engine_.reset();
-  // Fake workers send no heartbeats; nothing here depends on how fast the machine is.
+  // Fake workers send no heartbeats; nothing here depends on the speed of the machine.
   absl::StatusOr<std::unique_ptr<Engine>> engine = Engine::start({.data_folder = folder_,
                                                                   .heartbeat_timeout_s = 1e6,
                                                                   .progress_timeout_s = 1e6,

@@ -16,7 +16,7 @@ class WatchersTest : public testing::Test {
         },
         now_);
   }
-  /// `count` steps of a hundredth of a second, with or without news.
+  /// Runs `count` steps of a hundredth of a second, with or without changes.
   void pass(int count, bool news, bool hold_final = false) {
     for (int i = 0; i < count; ++i) {
       now_ += 0.01;

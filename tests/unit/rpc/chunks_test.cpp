@@ -1,4 +1,4 @@
-// What comes and goes in chunks: whole or refused.
+// Transfers in chunks: complete or refused.
 
 #include <gmock/gmock.h>
 
@@ -28,7 +28,7 @@ class ChunksTest : public FarmTest {
   }
   bool is_there(const std::string& bytes) { return engine_->has_blob(wire::sha256(bytes)); }
 
-  /// The blob from `offset` on; status of the call in `status`.
+  /// Downloads the blob from `offset`; `status` is set to the status of the call.
   std::string get_blob(const wire::Digest& digest, std::uint64_t offset, grpc::Status& status) {
     const auto call = context(link::Role::kWorker);
     farm::GetBlobRequest request;
@@ -46,7 +46,7 @@ class ChunksTest : public FarmTest {
     return bytes;
   }
 
-  /// The blob's chunks from `offset` on.
+  /// Returns the blob's chunks from `offset`.
   static std::vector<farm::BlobChunk> chunks_from(const std::string& bytes, std::size_t offset) {
     std::vector<farm::BlobChunk> chunks;
     for (std::size_t at = offset; at < bytes.size(); at += wire::kChunkBytes) {
@@ -58,7 +58,7 @@ class ChunksTest : public FarmTest {
     return chunks;
   }
 
-  /// A sender that goes away when so many chunks are written.
+  /// Uploads so many chunks, then disconnects.
   void cut_after(const std::string& bytes, std::size_t count) {
     const auto call = context(link::Role::kFarm);
     farm::PutBlobReply reply;
@@ -86,7 +86,7 @@ class ChunksTest : public FarmTest {
     EXPECT_EQ(reply.there_size(), 1);
     return reply.there_size() == 1 ? reply.there(0) : 0;
   }
-  /// The coordinator hears of a sender's end a moment later.
+  /// Waits until the coordinator has noticed the end of the sender.
   std::uint64_t wait_until_there(const std::string& bytes) {
     std::uint64_t there = 0;
     while (there == 0 && !HasFailure()) {

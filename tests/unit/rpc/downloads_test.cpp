@@ -1,4 +1,4 @@
-// Images and scenes that are downloaded at the same time: the memory and the threads they take.
+// Concurrent downloads of images and scenes: their memory and threads.
 
 #include <gmock/gmock.h>
 
@@ -31,7 +31,7 @@ class DownloadsTest : public FarmTest {
     request.set_job(job);
     return people()->Preview(&call, request);
   }
-  /// The status of a whole download.
+  /// Downloads everything and returns the status.
   static grpc::Status read_all(const Reader& reader, std::size_t* bytes = nullptr) {
     farm::ResultChunk chunk;
     while (reader->Read(&chunk)) {
@@ -103,7 +103,7 @@ TEST_F(DownloadsTest, APreviewCountsWithItsActualSize) {
   wait_until_left(all);
 }
 
-// As many previews as wait for the film, workers get their scenes.
+// Workers get their scenes however many previews wait for the film.
 TEST_F(DownloadsTest, ScenesAreSentWhilePreviewsWaitForTheFilm) {
   const std::uint64_t job = submit_job(kSide);
   put_rows(job, kSide, 0, kSide / 2);

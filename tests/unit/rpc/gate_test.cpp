@@ -1,4 +1,4 @@
-// Who may call what: every RPC with each role's secret, a wrong one, and none.
+// Access control: calls every RPC with each role's secret, with a wrong secret and without one.
 
 #include <gmock/gmock.h>
 

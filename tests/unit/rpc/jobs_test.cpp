@@ -1,4 +1,4 @@
-// What people tell a job, through the wire.
+// Commands on jobs, by gRPC.
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-// Health for probes, and reflection for grpcurl.
+// The health service for probes, and reflection for grpcurl.
 
 #include <gmock/gmock.h>
 #include <grpcpp/generic/generic_stub.h>
@@ -22,7 +22,8 @@ class ProbeTest : public FarmTest {
     return health::Health::NewStub(channel)->Check(&context, request, &reply);
   }
 
-  /// What the server of this port answers to "list the services", as bytes; the status of the call.
+  /// Requests the list of services from the server on this port; returns the response's bytes, or
+  /// the status of the call.
   grpc::Status list_services(int port, std::string& answer) {
     link::JoinString where = join(link::Role::kFarm);
     where.addresses = {"127.0.0.1:" + std::to_string(port)};

@@ -1,4 +1,4 @@
-// Secrets that are made anew, and wrong ones that are tried often.
+// Renewed secrets, and repeated wrong ones.
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-// The streams: a worker's session and a watched job, and how a server ends them.
+// A worker's session and a watched job, and the end of both when the server stops.
 
 #include <gmock/gmock.h>
 
@@ -31,7 +31,7 @@ farm::FromWorker hello() {
 
 class StreamTest : public FarmTest {
  protected:
-  /// Says these, then reads to the end.
+  /// Sends these messages, then reads to the end.
   grpc::Status say(const std::vector<farm::FromWorker>& messages,
                    std::vector<farm::ToWorker>* answers = nullptr, bool hang_up = true) {
     const auto call = context(link::Role::kWorker);

@@ -35,7 +35,7 @@ class BandLogTest : public testing::Test {
     };
     return BandLog::open(folder_.path(), path_, each, report_);
   }
-  /// A log of the rows [0, rows) and its bytes.
+  /// Writes a log of the rows [0, rows) and returns its bytes.
   std::string make(std::uint32_t rows) {
     absl::StatusOr<BandLog> log = open();
     for (std::uint32_t row = 0; row < rows; ++row) {

@@ -34,7 +34,7 @@ class BlobStoreTest : public testing::Test {
     return writer->commit();
   }
 
-  /// Long enough that half of it is worth keeping.
+  /// Long enough that half of it is kept as a partial upload.
   static std::string long_text(char fill) { return std::string(2 * PartialBlobs::kMinBytes, fill); }
   static void leave_half(BlobStore& store, const std::string& text) {
     absl::StatusOr<BlobStore::Writer> writer = store.write(wire::sha256(text), text.size());

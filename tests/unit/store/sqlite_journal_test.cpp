@@ -170,7 +170,7 @@ TEST_F(SqliteJournalTest, AFullDiskLosesNothingAndTheSameAppendWorksLater) {
   EXPECT_EQ(replayed(*journal), expected);
 }
 
-/// A child that appends for ever and says on a pipe after each append that it is done.
+/// A child process that appends without end and reports each finished append on a pipe.
 pid_t start_appender(const std::string& path, int& acknowledged) {
   int ends[2];
   EXPECT_EQ(::pipe(ends), 0);

@@ -77,7 +77,7 @@ TEST_F(AccessTest, ManyWrongSecretsAreLimited) {
     ASSERT_TRUE(absl::IsUnauthenticated(access.log_in(request, "wrong", reply)));
   }
   EXPECT_TRUE(absl::IsResourceExhausted(access.log_in(request, "wrong", reply)));
-  // A whole office may be behind this address.
+  // Many users may share this address.
   EXPECT_TRUE(access.log_in(request, identity_.farm_secret, reply).ok());
 }
 
@@ -112,7 +112,7 @@ TEST_F(AccessTest, ANewSecretInvalidatesLogins) {
   EXPECT_EQ(status_of(get("/api/farm")), 401);
 }
 
-// An upload is let in by the login that it began with; the new secret ends it without an answer.
+// An upload was admitted by an earlier login; the new secret ends it without a response.
 TEST_F(AccessTest, ANewSecretClosesConnections) {
   log_in();
   const int one = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
@@ -139,7 +139,7 @@ TEST_F(AccessTest, ANewSecretClosesConnections) {
   close(one);
 }
 
-// Each would hold a thread for its whole patience; all together are as many as there are threads.
+// Each would occupy a thread until its deadline, and they are as many as there are threads.
 TEST_F(AccessTest, HalfOpenConnectionsOfOneAddressDoNotBlockOthers) {
   std::vector<int> sockets;
   sockaddr_in address{};
@@ -163,7 +163,7 @@ TEST_F(AccessTest, HalfOpenConnectionsOfOneAddressDoNotBlockOthers) {
   }
 }
 
-// Nobody has logged in: the answer comes before the body, which is never taken.
+// Without a login the response is sent before the body, which is never read.
 TEST_F(AccessTest, ABodyForAnUnknownPathIsNotAwaited) {
   for (const std::string path : {"/nowhere", "/%0A"}) {
     const int one = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);

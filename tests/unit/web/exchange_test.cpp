@@ -1,4 +1,4 @@
-// Bytes on a connection and what is answered: the parts of HTTP that browsers and attackers use.
+// Requests as bytes, and their responses: the parts of HTTP that browsers and attackers use.
 
 #include "coordinator/web/exchange.h"
 
@@ -19,7 +19,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-/// Answers with the method, the path, and the whole body.
+/// Responds with the method, the path and the whole body.
 HttpReply echo(const HttpRequest& request, const HttpBody& body) {
   std::string text = request.method + " " + request.path + " ";
   while (true) {
@@ -46,7 +46,7 @@ class ExchangeTest : public ::testing::Test {
     ASSERT_EQ(send(client(), bytes.data(), bytes.size(), MSG_NOSIGNAL),
               static_cast<ssize_t>(bytes.size()));
   }
-  /// All that the server says until it ends the connection.
+  /// Returns everything that the server sends until it closes the connection.
   std::string hear() const {
     std::string all;
     std::array<char, 4096> some;
@@ -60,7 +60,7 @@ class ExchangeTest : public ::testing::Test {
     exchange(connection, &echo, {{"X-Every", "answer"}});
     shutdown(sockets_[1], SHUT_RDWR);
   }
-  /// The answer to these bytes, after which the client sends no more.
+  /// Sends these bytes, ends the sending direction, and returns the response.
   std::string answer(const std::string& bytes) const {
     std::thread server([this] { serve(); });
     EXPECT_EQ(send(client(), bytes.data(), bytes.size(), MSG_NOSIGNAL),
@@ -104,7 +104,7 @@ TEST_F(ExchangeTest, ChunksAreJoined) {
               ::testing::EndsWith("\r\n\r\nPOST / body"));
 }
 
-// Twice the size of the buffer, exactly: the end falls together with the end of a read.
+// Exactly twice the size of the buffer: the end coincides with the end of a read.
 TEST_F(ExchangeTest, ABodyOfWholeBuffersEnds) {
   const std::string body(128 << 10, 'b');
   std::thread server([this] { serve(); });
@@ -164,7 +164,8 @@ TEST_F(ExchangeTest, ASilentClientIsDisconnected) {
   EXPECT_EQ(hear(), "");
 }
 
-// Each byte arrives in time, the whole never does: without a deadline of the whole this hangs.
+// Each byte arrives in time, but the whole request does not: without an overall deadline this
+// hangs.
 TEST_F(ExchangeTest, ASlowSenderIsDisconnected) {
   std::thread client([this] {
     for (char next = 'G'; send(this->client(), &next, 1, MSG_NOSIGNAL) == 1; next = 'x') {
@@ -175,7 +176,7 @@ TEST_F(ExchangeTest, ASlowSenderIsDisconnected) {
   client.join();
 }
 
-// The answer is larger than what the system holds for somebody who does not read.
+// The response is larger than the system's buffers for a client that does not read.
 TEST_F(ExchangeTest, AClientThatDoesNotReadIsDisconnected) {
   say("GET / HTTP/1.1\r\n\r\n");
   const int small = 1;  // each byte that the system takes is time for the next

@@ -1,4 +1,4 @@
-// Requests and answers without a server: targets, ranges, routes.
+// Requests and responses without a server: targets, ranges, routes.
 
 #include "coordinator/web/http.h"
 

@@ -66,7 +66,7 @@ TEST_F(RoutesTest, EachArchitectureHasItsProgram) {
   EXPECT_EQ(get("/bandsaw-worker/")->status, 404);
 }
 
-// Whatever a Range header says, no more than the bytes are sent.
+// No Range header makes the server send more than the bytes.
 TEST_F(RoutesTest, RangesEndWithTheBytes) {
   const std::size_t size = 3 << 20;
   headers_ = {{"Range", "bytes=5-9"}};

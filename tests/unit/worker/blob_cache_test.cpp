@@ -32,7 +32,7 @@ class BlobCacheTest : public ::testing::Test {
     ASSERT_TRUE((*download)->append(bytes).ok());
     ASSERT_TRUE((*download)->commit().ok());
   }
-  /// As if it had been used last so many seconds ago: no test waits for a clock.
+  /// Sets the last use to so many seconds ago, so that no test waits for a clock.
   void set_age(const wire::Digest& digest, int seconds) {
     timespec times[2];
     clock_gettime(CLOCK_REALTIME, &times[0]);
@@ -128,7 +128,7 @@ TEST_F(BlobCacheTest, KeepsABlobThatIsLargerThanItself) {
   EXPECT_FALSE(cache->has(wire::sha256(bytes_of('a'))));
 }
 
-// The disk may be fuller than the cache may be large.
+// The disk may be full before the cache has reached its limit.
 TEST_F(BlobCacheTest, FreesSpaceOnAFullDisk) {
   const std::string disk = folder_ / "cache";
   std::filesystem::create_directory(disk);
@@ -200,7 +200,7 @@ TEST_F(BlobCacheTest, IsSafeWithManyWorkersAndLittleSpace) {
         ASSERT_TRUE(download.ok()) << download.status();
         if (*download != nullptr && (*download)->offset() == 0) {
           ASSERT_TRUE((*download)->append(bytes).ok());
-          EXPECT_TRUE((*download)->commit().ok()) << "nobody threw the part away";
+          EXPECT_TRUE((*download)->commit().ok()) << "the part is still there";
         }
       }
     });

@@ -21,7 +21,7 @@ Task task(TaskId id, std::uint32_t first_row, std::uint32_t rows, char scene = '
                    .rows = {.first = first_row, .last = first_row + rows}}};
 }
 
-/// An executor that renders the Cornell box for every manifest, and what it told.
+/// An executor that renders the Cornell box for every manifest, and its recorded callbacks.
 class ExecutorTest : public ::testing::Test {
  protected:
   ~ExecutorTest() override { executor_.reset(); }

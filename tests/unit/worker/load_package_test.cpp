@@ -11,8 +11,8 @@
 namespace bandsaw::worker {
 namespace {
 
-/// A coordinator with one package, which counts the bytes it sends and breaks off as often as it is
-/// told to.
+/// A coordinator with one package, which counts the bytes that it sends and interrupts a given
+/// number of transfers.
 class LoadPackageTest : public ::testing::Test {
  protected:
   LoadPackageTest() {

@@ -176,7 +176,7 @@ TEST(Session, ListsHeldBandsAfterAReconnect) {
   EXPECT_EQ(hello.held(0).work(), hello.held(1).work()) << "of one job";
 }
 
-// The coordinator's folder was begun anew: the number and the rows are those of another job.
+// The coordinator has a new data folder: another job has the same id and rows.
 TEST(Session, ABandOfAnotherJobWithTheSameIdIsDifferent) {
   Session session(worker_info());
   session.receive(welcome("e1"));

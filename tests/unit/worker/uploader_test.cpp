@@ -16,7 +16,7 @@ FinishedBand band(TaskId id) {
   return band;
 }
 
-/// A coordinator that answers each attempt as it is told to.
+/// A coordinator that answers each attempt as the test specifies.
 class UploaderTest : public ::testing::Test {
  protected:
   Outcome put(const FinishedBand& band) {
