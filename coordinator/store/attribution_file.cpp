@@ -12,7 +12,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// More than all rows of the tallest image with the longest names need.
+/// More than the tallest image needs, with all rows by different workers of the longest names.
 constexpr std::uint64_t kMaxBytes = std::uint64_t{1} << 26;
 
 }  // namespace

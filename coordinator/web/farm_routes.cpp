@@ -13,7 +13,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// More is no overview; `bandsaw jobs` lists all.
+/// Maximum number of jobs in the overview; `bandsaw jobs` lists all.
 constexpr std::size_t kMaxJobs = 200;
 
 std::vector<JobView> all_jobs(Engine& engine) {

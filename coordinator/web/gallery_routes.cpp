@@ -1,4 +1,4 @@
-// The gallery: its scenes, what became of them here, and how to render one.
+// The gallery: its scenes, their newest jobs on this farm, and a request to render one.
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/convert/farm_messages.h"
@@ -11,7 +11,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// A gallery is for looking; more is for `bandsaw submit`.
+/// Limits of gallery jobs; larger ones need `bandsaw submit`.
 constexpr std::uint64_t kMaxGallerySamples = 4096;
 constexpr std::uint32_t kMaxWidth = 4096;
 
