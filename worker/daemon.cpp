@@ -6,10 +6,10 @@
 
 #include "proto/wire/limits.h"
 #include "renderlib/base/status_macros.h"
+#include "worker/band_pipeline.h"
 #include "worker/executor/backoff.h"
-#include "worker/session/desk.h"
 #include "worker/session/farm_calls.h"
-#include "worker/workshop.h"
+#include "worker/session/shared_session.h"
 
 namespace bandsaw::worker {
 namespace {
@@ -23,7 +23,7 @@ bool is_refused_for_good(const absl::Status& status) {
 }
 
 /// Differs between workers; nothing but waiting times depends on it.
-std::uint64_t seed_of(const Self& self) { return std::hash<std::string>()(self.instance); }
+std::uint64_t seed_of(const WorkerInfo& info) { return std::hash<std::string>()(info.instance); }
 
 }  // namespace
 
@@ -31,67 +31,60 @@ class Daemon::Impl {
  public:
   Impl(DaemonOptions options, std::unique_ptr<BlobCache> cache)
       : options_(std::move(options)),
-        calls_(options_.join),
-        desk_(options_.self),
-        backoff_(seed_of(options_.self)),
-        workshop_(desk_, std::move(cache), static_cast<int>(options_.self.threads), options_.kernel,
-                  doors(), options_.log_tail, seed_of(options_.self) + 1) {}
+        calls_(options_.join, options_.info.instance),
+        wrapped_calls_(options_.wrap_calls ? options_.wrap_calls(calls_) : nullptr),
+        session_(options_.info),
+        backoff_(seed_of(options_.info)),
+        pipeline_(session_, std::move(cache), static_cast<int>(options_.info.threads),
+                  options_.kernel, wrapped_calls_ ? *wrapped_calls_ : calls_, options_.log_tail,
+                  seed_of(options_.info) + 1) {}
   ~Impl() { leave(); }
 
   absl::Status run();
   void drain(const std::string& reason) {
     spdlog::info("draining: {}", reason);
-    desk_.drain(reason);
+    session_.drain(reason);
   }
   void leave() {
-    desk_.leave();
+    session_.leave();
     calls_.leave();
   }
 
  private:
   absl::Status talk(const link::Connected& connected);
-  void write_all(SessionStream& stream, Outbox& outbox);
+  void write_all(SessionStream& stream, SendQueue& queue);
   bool write_log(SessionStream& stream);
   void handle(const farm::ToWorker& message, const std::string& address);
   void log_loss(const absl::Status& status);
 
-  FarmDoors doors() {
-    return {
-        .get_blob = [this](const wire::Digest& digest, std::uint64_t offset,
-                           const TakeBytes& take) { return calls_.get_blob(digest, offset, take); },
-        .put_band =
-            [this](const FinishedBand& band, const LeaseName& lease) {
-              return calls_.put_band(band, options_.self.instance, lease);
-            }};
-  }
-
   const DaemonOptions options_;
   FarmCalls calls_;
-  Desk desk_;
+  const std::unique_ptr<CoordinatorApi> wrapped_calls_;  ///< nullptr: calls_ is used
+  SharedSession session_;
   // run()'s own.
   Backoff backoff_;
-  std::optional<Away> away_;
+  std::optional<Dismissal> dismissal_;
   std::string last_loss_;
   std::string epoch_;  ///< names the life of the coordinator that welcomed it last
   bool joined_ = false;
-  Workshop workshop_;  ///< last: its threads use the calls and the desk
+  BandPipeline pipeline_;  ///< last: its threads use the calls and the session
 };
 
 absl::Status Daemon::Impl::run() {
   while (true) {
     absl::StatusOr<link::Connected> connected = link::connect(options_.join, kConnectTime);
     const absl::Status status = connected.ok() ? talk(*connected) : connected.status();
-    if (desk_.over() || (away_ && away_->for_ever)) {
+    if (session_.over() || (dismissal_ && dismissal_->for_ever)) {
       return absl::OkStatus();
     }
-    if (is_refused_for_good(status) && !desk_.was_welcomed()) {
+    if (is_refused_for_good(status) && !session_.was_welcomed()) {
       return status;
     }
     log_loss(status);
-    const auto wait = away_ ? away_->wait : std::chrono::milliseconds(0);
-    away_.reset();
-    desk_.pause(std::max(wait, backoff_.next()));
-    if (desk_.over()) {
+    const auto wait = dismissal_ ? dismissal_->wait : std::chrono::milliseconds(0);
+    dismissal_.reset();
+    session_.pause(std::max(wait, backoff_.next()));
+    if (session_.over()) {
       return absl::OkStatus();
     }
   }
@@ -100,32 +93,32 @@ absl::Status Daemon::Impl::run() {
 absl::Status Daemon::Impl::talk(const link::Connected& connected) {
   FarmCalls::Context context(calls_, std::chrono::milliseconds(0));
   calls_.set_channel(connected.bulk);
-  const std::shared_ptr<Outbox> outbox = desk_.open_stream();
+  const std::shared_ptr<SendQueue> queue = session_.open_stream();
   const std::unique_ptr<farm::Work::Stub> stub = farm::Work::NewStub(connected.control);
   const std::unique_ptr<SessionStream> stream = stub->Session(context.get());
-  std::thread writer([&] { write_all(*stream, *outbox); });
+  std::thread writer([&] { write_all(*stream, *queue); });
   farm::ToWorker message;
   while (stream->Read(&message)) {
     handle(message, connected.address);
   }
-  outbox->close();
+  queue->close();
   writer.join();
   const absl::Status status = link::from_grpc(stream->Finish());
-  desk_.close_stream();
+  session_.close_stream();
   calls_.set_channel(nullptr);
   return status;
 }
 
-void Daemon::Impl::write_all(SessionStream& stream, Outbox& outbox) {
+void Daemon::Impl::write_all(SessionStream& stream, SendQueue& queue) {
   farm::FromWorker message;
   while (true) {
-    const Outbox::Next next = outbox.next(desk_.heartbeat_interval(), message);
-    if (next == Outbox::Next::kClosed) {
+    const SendQueue::Next next = queue.next(session_.heartbeat_interval(), message);
+    if (next == SendQueue::Next::kClosed) {
       stream.WritesDone();
       return;
     }
-    if (next == Outbox::Next::kHeartbeat) {
-      std::optional<farm::FromWorker> beat = desk_.heartbeat();
+    if (next == SendQueue::Next::kHeartbeat) {
+      std::optional<farm::FromWorker> beat = session_.heartbeat();
       if (!beat) {
         continue;
       }
@@ -134,7 +127,7 @@ void Daemon::Impl::write_all(SessionStream& stream, Outbox& outbox) {
     if (!stream.Write(message)) {
       return;  // the reader learns why
     }
-    if (next == Outbox::Next::kHeartbeat && !write_log(stream)) {
+    if (next == SendQueue::Next::kHeartbeat && !write_log(stream)) {
       return;
     }
   }
@@ -147,14 +140,14 @@ bool Daemon::Impl::write_log(SessionStream& stream) {
 }
 
 void Daemon::Impl::handle(const farm::ToWorker& message, const std::string& address) {
-  const Reaction reaction = desk_.receive(message);
+  const SessionEffects effects = session_.receive(message);
   if (message.has_welcome()) {
     backoff_.reset();
     last_loss_.clear();
-    workshop_.connected();
-    spdlog::info("joined {} as {}", address, desk_.name());
+    pipeline_.connected();
+    spdlog::info("joined {} as {}", address, session_.name());
     if (!joined_ && options_.joined) {
-      options_.joined(address, desk_.name());
+      options_.joined(address, session_.name());
     }
     if (joined_ && message.welcome().epoch() != epoch_ && options_.log_lines_lost) {
       options_.log_lines_lost();
@@ -162,18 +155,18 @@ void Daemon::Impl::handle(const farm::ToWorker& message, const std::string& addr
     epoch_ = message.welcome().epoch();
     joined_ = true;
   }
-  for (const TaskId task : reaction.stop) {
-    workshop_.stop(task);
+  for (const TaskId task : effects.stop) {
+    pipeline_.stop(task);
   }
-  if (!reaction.stop.empty()) {
-    spdlog::info("{} bands are not wanted any more", reaction.stop.size());
+  if (!effects.stop.empty()) {
+    spdlog::info("{} bands are not wanted any more", effects.stop.size());
   }
-  for (const Task& task : reaction.start) {
-    workshop_.start(task);
+  for (const Task& task : effects.start) {
+    pipeline_.start(task);
   }
-  if (reaction.away) {
-    spdlog::warn("sent away: {}", reaction.away->reason);
-    away_ = reaction.away;
+  if (effects.dismissal) {
+    spdlog::warn("sent away: {}", effects.dismissal->reason);
+    dismissal_ = effects.dismissal;
   }
 }
 

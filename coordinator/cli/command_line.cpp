@@ -8,10 +8,10 @@
 #include "absl/strings/str_replace.h"
 #include "coordinator/cli/completion.h"
 #include "coordinator/cli/machines/invite_options.h"
+#include "coordinator/cli/options/admin_options.h"
 #include "coordinator/cli/options/checked_options.h"
 #include "coordinator/cli/options/choices.h"
 #include "coordinator/cli/options/did_you_mean.h"
-#include "coordinator/cli/options/house_options.h"
 #include "coordinator/cli/options/image_options.h"
 #include "coordinator/cli/study/study_options.h"
 
@@ -37,7 +37,7 @@ void add_priority(CLI::App& app, RawOptions& raw) {
 }
 
 void add_completion(CLI::App& app, RawOptions& raw) {
-  app.add_option("shell", raw.shell, "Whose: " + one_of(choices_of("shell")));
+  app.add_option("shell", raw.shell, "Name of the shell: " + one_of(choices_of("shell")));
 }
 
 struct Entry {
@@ -62,33 +62,33 @@ constexpr Entry kCommands[] = {
     {"cancel", "End a job without an image", add_job, checked_cancel, "bandsaw cancel 7"},
     {"pause", "Render nothing more of a job until it is resumed", add_job, checked_pause,
      "bandsaw pause 7"},
-    {"resume", "Let a paused job go on", add_job, checked_resume, "bandsaw resume 7"},
-    {"priority", "Render a job before others, or after them", add_priority, checked_priority,
+    {"resume", "Resume a paused job", add_job, checked_resume, "bandsaw resume 7"},
+    {"priority", "Set the priority of a job", add_priority, checked_priority,
      "bandsaw priority 7 10    # before all jobs that are below 10"},
-    {"why", "Say why a job is not done yet", add_job, checked_why, "bandsaw why 7"},
+    {"why", "Explain why a job is not done", add_job, checked_why, "bandsaw why 7"},
     {"logs", "Show the last lines of a worker's log", add_logs, checked_logs, "bandsaw logs desk"},
-    {"quarantine", "Keep a machine away that renders wrongly, or let it in", add_quarantine,
+    {"quarantine", "Exclude a machine that renders wrong pixels, or admit it again", add_quarantine,
      checked_quarantine, "bandsaw quarantine --lift desk"},
     {"doctor", "Check this machine, and the farm that it uses", add_doctor, checked_doctor,
      "bandsaw doctor --farm join    # on a worker's machine"},
-    {"secret", "Make a new secret; who has the old one is shut out", add_secret, checked_secret,
+    {"secret", "Make a new secret; the old one becomes invalid", add_secret, checked_secret,
      "bandsaw secret rotate worker"},
-    {"invite", "Bring workers to other machines by ssh", add_invite, checked_invite,
+    {"invite", "Install and start workers on other machines by ssh", add_invite, checked_invite,
      "bandsaw invite anna@desk laptop"},
-    {"dismiss", "Take such workers away again", add_dismiss, checked_dismiss,
+    {"dismiss", "Stop and remove such workers", add_dismiss, checked_dismiss,
      "bandsaw dismiss anna@desk laptop"},
     {"render", "Render a scene on this machine, without a farm: the same bits", add_render,
      checked_render, "bandsaw render helmet.glb --width 640 --samples 256 -o helmet.exr"},
-    {"info", "Say what is in a scene or model, and what of it is left out", add_info, checked_info,
-     "bandsaw info helmet.glb"},
+    {"info", "Describe the contents of a scene or model, and what is not supported", add_info,
+     checked_info, "bandsaw info helmet.glb"},
     {"stitch", "Join parts of an image that were rendered by rows", add_stitch, checked_stitch,
      "bandsaw stitch top.band bottom.band -o whole.png"},
     {"compare", "Error metrics between two images", add_compare, checked_compare,
      "bandsaw compare mine.png reference.pfm -o differences.png"},
-    {"study", "Measure speed against error, with and without each technique", add_study,
+    {"study", "Measure error against time, with and without each technique", add_study,
      checked_study, "bandsaw study cornell.textproto spheres.textproto -o study.svg"},
-    {"completion", "Print what lets a shell complete these words", add_completion, nullptr,
-     "source <(bandsaw completion bash)    # in ~/.bashrc"},
+    {"completion", "Print the script that lets a shell complete commands and options",
+     add_completion, nullptr, "source <(bandsaw completion bash)    # in ~/.bashrc"},
 };
 
 constexpr char kExitCodes[] =

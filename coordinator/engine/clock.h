@@ -1,6 +1,6 @@
 #pragma once
 
-// The engine's time. One of the four open doors.
+// The engine's clock, an interface that tests replace.
 
 #include <chrono>
 
@@ -8,7 +8,7 @@
 
 namespace bandsaw::coordinator {
 
-/// Since an arbitrary start; never goes back.
+/// Returns seconds since an arbitrary start; never goes back.
 inline Time steady_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }

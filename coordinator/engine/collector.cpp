@@ -22,10 +22,10 @@ std::optional<std::set<wire::Digest>> Collector::blobs_of(const DigestHex& manif
   }
   const auto bytes = blobs_.get(*digest);
   if (absl::IsNotFound(bytes.status()) || absl::IsDataLoss(bytes.status())) {
-    return std::set<wire::Digest>();  // asked again: it may be sent anew
+    return std::set<wire::Digest>();  // not cached, because it may be sent again
   }
   if (!bytes.ok()) {
-    spdlog::warn("what the scene {} needs is not known, it cannot be read: {}", manifest,
+    spdlog::warn("cannot read the scene {} to find the blobs that it needs: {}", manifest,
                  bytes.status().ToString());
     return std::nullopt;
   }
@@ -42,7 +42,7 @@ std::set<wire::Digest> Collector::known_blobs_of(const DigestHex& manifest) {
   return blobs_of(manifest).value_or(std::set<wire::Digest>());
 }
 
-/// Its bands are removed when it becomes final, which is the last change of its folder.
+/// The last change of a job's folder is the removal of its bands when it becomes final.
 Collector::Final Collector::final_job(JobId id) const {
   Final job{.id = id};
   struct stat found {};
@@ -82,8 +82,8 @@ std::vector<JobId> Collector::to_forget(const std::vector<Job>& jobs, double now
   });
   std::vector<JobId> forget;
   for (const Final& job : final_jobs) {
-    // Its submitter may be about to fetch it, whatever else fills the disk.
-    const bool fresh = now - job.at < keep_.least_seconds;
+    // Its submitter may be about to fetch it.
+    const bool fresh = now - job.at < keep_.min_seconds;
     if (now - job.at <= keep_.seconds && (bytes <= keep_.bytes || fresh) &&
         final_jobs.size() - forget.size() <= keep_.jobs) {
       break;
@@ -130,14 +130,19 @@ void Collector::sweep(const std::vector<Job>& jobs, double now) {
     remove_unneeded(needed, now);
   }
   blobs_.remove_partials(now, keep_.unused_seconds);
-  // A job that was added meanwhile has a higher number than any of these.
+  // A job that was added in the meantime has a higher id than any of these.
   std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder_.jobs(), error)) {
+  std::vector<std::filesystem::path> unknown;
+  for (std::filesystem::directory_iterator entry(folder_.jobs(), error), end;
+       !error && entry != end; entry.increment(error)) {
     JobId id = 0;
-    if (absl::SimpleAtoi(entry.path().filename().string(), &id) && !ids.contains(id) &&
+    if (absl::SimpleAtoi(entry->path().filename().string(), &id) && !ids.contains(id) &&
         !ids.empty() && id < *ids.rbegin()) {
-      std::filesystem::remove_all(entry.path(), error);
+      unknown.push_back(entry->path());
     }
+  }
+  for (const std::filesystem::path& path : unknown) {
+    std::filesystem::remove_all(path, error);
   }
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 
-// Old jobs and blobs that nobody needs: which, and their removal. All that belongs to a job that is
-// not final stays.
+// Finds and removes old jobs and blobs that no job needs. Everything that belongs to a job that is
+// not final is kept.
 
 #include <cstddef>
 #include <cstdint>
@@ -16,14 +16,15 @@
 
 namespace bandsaw::coordinator {
 
-/// How long and how much of what is over is kept.
+/// How long, and how much, of the jobs that are over is kept.
 struct Keep {
-  double seconds = 30.0 * 24 * 60 * 60;   ///< a final job, since it became final
-  std::uint64_t bytes = 100'000'000'000;  ///< results and blobs in all; oldest jobs go first
-  double least_seconds = 60.0 * 60;       ///< a final job, whatever the bytes
-  std::size_t jobs = 10'000;              ///< final jobs; each takes some 4 kB of memory
-  double unused_seconds =
-      24.0 * 60 * 60;  ///< a blob of no job, since it was sent or asked for; a part of one
+  double seconds = 30.0 * 24 * 60 * 60;  ///< maximum age of a final job
+  std::uint64_t bytes =
+      100'000'000'000;             ///< results and blobs in total; oldest jobs are removed first
+  double min_seconds = 60.0 * 60;  ///< minimum age at which `bytes` removes a final job
+  std::size_t jobs = 10'000;       ///< final jobs; each takes some 4 kB of memory
+  /// Maximum age of a blob of no job, or of a part of one, since it was sent or requested.
+  double unused_seconds = 24.0 * 60 * 60;
 };
 
 /// Used by the store's thread.
@@ -38,21 +39,21 @@ class Collector {
   Collector(const DataFolder& folder, BlobStore& blobs, const Keep& keep)
       : folder_(folder), blobs_(blobs), keep_(keep) {}
 
-  /// Final jobs that are to be forgotten, oldest first. `now`: seconds since 1970.
+  /// Returns the final jobs that are to be forgotten, oldest first. `now`: seconds since 1970.
   std::vector<JobId> to_forget(const std::vector<Job>& jobs, double now);
 
-  /// Removes blobs that none of the jobs needs, and folders of jobs that are not known (any more).
+  /// Removes blobs that none of the jobs needs, and folders of unknown jobs.
   void sweep(const std::vector<Job>& jobs, double now);
 
  private:
   struct Final {
     JobId id = 0;
-    double at = 0;  ///< seconds since 1970; 0: nothing of it is left
+    double at = 0;  ///< seconds since 1970; 0: none of its files is left
     std::uint64_t bytes = 0;
   };
   Final final_job(JobId id) const;
-  /// The blobs of a package, its manifest among them; none when that is gone, nothing when it is
-  /// there and cannot be read.
+  /// Returns the blobs of a package including its manifest; an empty set if the manifest is
+  /// missing, std::nullopt if it exists and cannot be read.
   std::optional<std::set<wire::Digest>> blobs_of(const DigestHex& manifest);
   std::set<wire::Digest> known_blobs_of(const DigestHex& manifest);
   void remove_unneeded(const std::set<wire::Digest>& needed, double now);

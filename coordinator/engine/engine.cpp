@@ -1,14 +1,61 @@
 #include "coordinator/engine/engine.h"
 
+#include <spdlog/spdlog.h>
+
+#include <chrono>
+#include <random>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "coordinator/engine/impl.h"
+#include "absl/strings/str_format.h"
 #include "coordinator/engine/submit_check.h"
+#include "coordinator/store/sqlite_journal.h"
+#include "proto/wire/versions.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/render/canary.h"
+#include "renderlib/render/pixel_version.h"
 
 namespace bandsaw::coordinator {
 namespace {
+
+using std::chrono::milliseconds;
+
+constexpr std::uint64_t kMaxBandBytes = 2ull << 30;
+constexpr std::uint64_t kMaxImageBytes = 1ull << 30;
+static_assert(kMaxImageBytes > kMaxPixels * sizeof(Rgb), "the largest image can be downloaded");
+
+std::string new_epoch() {
+  std::random_device random;
+  std::string epoch;
+  for (int i = 0; i < 4; ++i) {
+    absl::StrAppendFormat(&epoch, "%08x", random());
+  }
+  return epoch;
+}
+
+CoreOptions core_options(const EngineOptions& options, const std::string& epoch) {
+  CoreOptions core;
+  core.fitness = {.protocol = wire::kProtocol, .pixel_version = kPixelVersion, .canary = canary()};
+  core.heartbeat_timeout_s = options.heartbeat_timeout_s;
+  core.progress_timeout_s = options.progress_timeout_s;
+  core.reattach_grace_s = options.reattach_grace_s;
+  core.audit_share = options.audit_share;
+  core.epoch = epoch;
+  return core;
+}
+
+/// OK if the disk takes a little data beside the reserve. Otherwise releases the reserve, so that
+/// the journal can be opened and the rest of the start has room for small files.
+absl::Status find_room(const DataFolder& folder) {
+  constexpr std::uint64_t kLittle = 1 << 20;
+  Reserve reserve(folder.reserve());
+  absl::Status room = reserve.hold();
+  room.Update(probe_disk(folder.path(), kLittle));
+  if (!room.ok()) {
+    reserve.release();
+  }
+  return room;
+}
 
 class BlobUpload : public Engine::BlobWriter {
  public:
@@ -20,134 +67,164 @@ class BlobUpload : public Engine::BlobWriter {
   BlobStore::Writer writer_;
 };
 
-}  // namespace
-
-Engine::Engine(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
-Engine::~Engine() = default;
-
-absl::StatusOr<std::unique_ptr<Engine>> Engine::start(EngineOptions options) {
-  return start(std::move(options), EngineDoors{});
+/// Makes an answer of a callback that takes an empty list instead of an error.
+template <class T>
+Answer<std::vector<T>> list_answer(std::function<void(std::vector<T>)> done) {
+  return Answer<std::vector<T>>([done = std::move(done)](absl::StatusOr<std::vector<T>> list) {
+    done(list.ok() ? *std::move(list) : std::vector<T>());
+  });
 }
 
-absl::StatusOr<std::unique_ptr<Engine>> Engine::start(EngineOptions options, EngineDoors doors) {
-  ASSIGN_OR_RETURN(std::unique_ptr<Impl> impl, Impl::start(std::move(options), std::move(doors)));
-  return std::unique_ptr<Engine>(new Engine(std::move(impl)));
+}  // namespace
+
+Engine::Engine(const EngineOptions& options, EngineDependencies dependencies, DataFolder folder,
+               std::unique_ptr<BlobStore> blobs)
+    : folder_(std::move(folder)),
+      blobs_(std::move(blobs)),
+      journal_(std::move(dependencies.journal)),
+      clock_(std::move(dependencies.clock)),
+      epoch_(new_epoch()),
+      bands_(kMaxBandBytes),
+      images_(kMaxImageBytes),
+      to_scheduler_(scheduler_, scheduler_mailbox_),
+      to_store_(store_, store_mailbox_),
+      to_film_(film_, film_mailbox_),
+      scheduler_(core_options(options, epoch_), *journal_, Reserve(folder_.reserve()), *clock_,
+                 to_store_, to_film_),
+      store_(folder_, *blobs_, options.keep, *clock_, to_scheduler_),
+      film_(folder_, to_scheduler_, to_store_),
+      scheduler_mailbox_([this] { scheduler_.settle(); }, milliseconds(100)),
+      store_mailbox_([this] { store_.settle(); }, milliseconds(100)),
+      film_mailbox_([] {}, milliseconds(1000)) {}
+
+absl::StatusOr<std::unique_ptr<Engine>> Engine::start(EngineOptions options,
+                                                      EngineDependencies dependencies) {
+  ASSIGN_OR_RETURN(DataFolder folder, DataFolder::open(options.data_folder));
+  const absl::Status room = find_room(folder);
+  if (!room.ok() && !absl::IsResourceExhausted(room)) {
+    return room;
+  }
+  ASSIGN_OR_RETURN(std::unique_ptr<BlobStore> blobs, BlobStore::open(folder.blobs()));
+  if (dependencies.journal == nullptr) {
+    ASSIGN_OR_RETURN(dependencies.journal, SqliteJournal::open(folder.journal()));
+  }
+  if (dependencies.clock == nullptr) {
+    dependencies.clock = std::make_unique<SteadyClock>();
+  }
+  std::unique_ptr<Engine> engine(
+      new Engine(options, std::move(dependencies), std::move(folder), std::move(blobs)));
+  RETURN_IF_ERROR(engine->scheduler_.restore(engine->store_, engine->film_, room));
+  engine->film_mailbox_.start();
+  engine->store_mailbox_.start();
+  engine->scheduler_mailbox_.start();
+  return engine;
+}
+
+Engine::~Engine() {
+  scheduler_mailbox_.stop();
+  store_mailbox_.stop();
+  film_mailbox_.stop();
 }
 
 void Engine::submit(JobSpec spec, std::function<void(absl::StatusOr<JobId>)> done,
                     std::int32_t priority) {
-  // The package is read from the disk, so not on the caller's thread and not on the core's.
-  impl_->on_store([impl = impl_.get(), spec = std::move(spec), priority,
-                   answer = Answer<JobId>(std::move(done))](StoreDesk&) mutable {
-    if (const absl::Status fit = check_submit(spec, impl->blobs()); !fit.ok()) {
+  // The package is read from the disk, so not on the caller's thread and not on the scheduler's.
+  to_store_.post([this, spec = std::move(spec), priority,
+                  answer = Answer<JobId>(std::move(done))](StoreThread&) mutable {
+    if (const absl::Status fit = check_submit(spec, *blobs_); !fit.ok()) {
       answer(fit);
-      return;
+    } else {
+      to_scheduler_.call(&SchedulerThread::submit, std::move(spec), priority, std::move(answer));
     }
-    impl->on_core(
-        [spec = std::move(spec), priority, answer = std::move(answer)](CoreDesk& core) mutable {
-          core.submit(std::move(spec), priority, std::move(answer));
-        });
   });
 }
 
+void Engine::command(JobId job, const Input& input,
+                     std::function<void(absl::StatusOr<JobView>)> done) {
+  to_scheduler_.call(&SchedulerThread::command, job, input, Answer<JobView>(std::move(done)));
+}
+
 void Engine::cancel(JobId job, std::function<void(absl::StatusOr<JobView>)> done) {
-  impl_->tell(job, input::Cancel{.job = job}, std::move(done));
+  command(job, input::Cancel{.job = job}, std::move(done));
 }
 
 void Engine::pause(JobId job, std::function<void(absl::StatusOr<JobView>)> done) {
-  impl_->tell(job, input::Pause{.job = job}, std::move(done));
+  command(job, input::Pause{.job = job}, std::move(done));
 }
 
 void Engine::resume(JobId job, std::function<void(absl::StatusOr<JobView>)> done) {
-  impl_->tell(job, input::Resume{.job = job}, std::move(done));
+  command(job, input::Resume{.job = job}, std::move(done));
 }
 
 void Engine::set_priority(JobId job, std::int32_t priority,
                           std::function<void(absl::StatusOr<JobView>)> done) {
-  impl_->tell(job, input::SetPriority{.job = job, .priority = priority}, std::move(done));
+  command(job, input::SetPriority{.job = job, .priority = priority}, std::move(done));
 }
 
 void Engine::quarantine(std::string worker, bool lift, std::function<void(absl::Status)> done) {
   Answer<bool> answer(
-      [done = std::move(done)](const absl::StatusOr<bool>& told) { done(told.status()); });
+      [done = std::move(done)](const absl::StatusOr<bool>& changed) { done(changed.status()); });
   const Input input = lift ? Input(input::LiftQuarantine{std::move(worker)})
                            : Input(input::Quarantine{std::move(worker)});
-  impl_->on_core([input, answer = std::move(answer)](CoreDesk& core) mutable {
-    core.tell_of_worker(input, std::move(answer));
-  });
+  to_scheduler_.call(&SchedulerThread::command_worker, input, std::move(answer));
 }
 
 void Engine::why(JobId job, std::function<void(std::vector<std::string>)> done) {
-  Answer<std::vector<std::string>> answer([done = std::move(done)](auto lines) {
-    done(lines.ok() ? *std::move(lines) : std::vector<std::string>());
-  });
-  impl_->on_core(
-      [job, answer = std::move(answer)](CoreDesk& core) mutable { answer(core.why(job)); });
+  to_scheduler_.post([job, answer = list_answer(std::move(done))](
+                         SchedulerThread& scheduler) mutable { answer(scheduler.why(job)); });
 }
 
 void Engine::watch(JobId job, std::function<bool(absl::StatusOr<JobView>)> changed) {
-  impl_->on_core([job, changed = std::move(changed)](CoreDesk& core) mutable {
-    core.watch(job, std::move(changed));
-  });
+  to_scheduler_.call(&SchedulerThread::watch, job, std::move(changed));
 }
 
 void Engine::jobs(std::function<void(std::vector<JobView>)> done) {
-  Answer<std::vector<JobView>> answer([done = std::move(done)](auto jobs) {
-    done(jobs.ok() ? *std::move(jobs) : std::vector<JobView>());
+  to_scheduler_.post([answer = list_answer(std::move(done))](SchedulerThread& scheduler) mutable {
+    answer(scheduler.jobs());
   });
-  impl_->on_core([answer = std::move(answer)](CoreDesk& core) mutable { answer(core.jobs()); });
 }
 
 void Engine::workers(std::function<void(std::vector<WorkerView>)> done) {
-  Answer<std::vector<WorkerView>> answer([done = std::move(done)](auto workers) {
-    done(workers.ok() ? *std::move(workers) : std::vector<WorkerView>());
+  to_scheduler_.post([answer = list_answer(std::move(done))](SchedulerThread& scheduler) mutable {
+    answer(scheduler.workers());
   });
-  impl_->on_core([answer = std::move(answer)](CoreDesk& core) mutable { answer(core.workers()); });
 }
 
 void Engine::logs(std::string worker,
                   std::function<void(absl::StatusOr<std::vector<std::string>>)> done) {
-  impl_->on_core(
+  to_scheduler_.post(
       [worker = std::move(worker), answer = Answer<std::vector<std::string>>(std::move(done))](
-          CoreDesk& core) mutable { answer(core.worker_log(worker)); });
-}
-
-void Engine::worker_log(SessionId session, std::vector<std::string> lines) {
-  impl_->on_core([session, lines = std::move(lines)](CoreDesk& core) mutable {
-    core.worker_log(session, std::move(lines));
-  });
+          SchedulerThread& scheduler) mutable { answer(scheduler.worker_log(worker)); });
 }
 
 void Engine::preview(JobId job, std::uint32_t row_step,
                      std::function<void(absl::StatusOr<Image>)> done) {
-  impl_->on_film([job, row_step, answer = Answer<Image>(std::move(done))](FilmDesk& film) mutable {
+  to_film_.post([job, row_step, answer = Answer<Image>(std::move(done))](FilmThread& film) mutable {
     answer(film.preview(job, row_step));
   });
 }
 
 void Engine::rendered_by(JobId job, std::function<void(std::vector<RowsBy>)> done) {
-  Answer<std::vector<RowsBy>> answer([done = std::move(done)](auto rows) {
-    done(rows.ok() ? *std::move(rows) : std::vector<RowsBy>());
+  to_film_.post([job, answer = list_answer(std::move(done))](FilmThread& film) mutable {
+    answer(film.rendered_by(job));
   });
-  impl_->on_film(
-      [job, answer = std::move(answer)](FilmDesk& film) mutable { answer(film.rendered_by(job)); });
 }
 
 void Engine::result(JobId job, FinishedPart part,
                     std::function<void(absl::StatusOr<StoredResult>)> done) {
-  impl_->on_core([impl = impl_.get(), job, part,
-                  answer = Answer<StoredResult>(std::move(done))](CoreDesk& core) mutable {
-    const std::optional<JobView> view = core.job(job);
+  to_scheduler_.post([this, job, part, answer = Answer<StoredResult>(std::move(done))](
+                         SchedulerThread& scheduler) mutable {
+    const std::optional<JobView> view = scheduler.job(job);
     if (!view) {
       answer(absl::NotFoundError(absl::StrCat("there is no job ", job)));
     } else if (view->state != JobState::kDone) {
       answer(absl::FailedPreconditionError(absl::StrCat("job ", job, " is not done")));
     } else {
-      impl->on_store([impl, job, part, manifest = view->spec.manifest,
-                      answer = std::move(answer)](StoreDesk& store) mutable {
+      to_store_.post([this, job, part, manifest = view->spec.manifest,
+                      answer = std::move(answer)](StoreThread& store) mutable {
         absl::StatusOr<StoredResult> result = store.read_result(job, part);
         if (result.ok()) {
-          result->display = display_of(manifest, impl->blobs());
+          result->display = display_of(manifest, *blobs_);
         }
         answer(std::move(result));
       });
@@ -155,90 +232,87 @@ void Engine::result(JobId job, FinishedPart part,
   });
 }
 
-bool Engine::has_blob(const wire::Digest& digest) const { return impl_->blobs().has(digest); }
+MemoryBudget& Engine::images() { return images_; }
+
+bool Engine::has_blob(const wire::Digest& digest) const { return blobs_->has(digest); }
 
 std::uint64_t Engine::partial_blob(const wire::Digest& digest) const {
-  return impl_->blobs().partial(digest);
+  return blobs_->partial(digest);
 }
 
 absl::StatusOr<std::unique_ptr<Engine::BlobWriter>> Engine::write_blob(const wire::Digest& digest,
                                                                        std::uint64_t size,
                                                                        std::uint64_t offset) {
-  if (!impl_->room()) {
+  if (!scheduler_.has_room()) {
     return absl::ResourceExhaustedError(
         "the coordinator's disk is full: it takes no scene now; cancel jobs, or free some room");
   }
-  ASSIGN_OR_RETURN(BlobStore::Writer writer, impl_->blobs().write(digest, size, offset));
+  ASSIGN_OR_RETURN(BlobStore::Writer writer, blobs_->write(digest, size, offset));
   return std::make_unique<BlobUpload>(std::move(writer));
 }
 
-BlobSource& Engine::blobs() { return impl_->blobs(); }
+BlobSource& Engine::blobs() { return *blobs_; }
 
 SessionId Engine::hello(std::shared_ptr<WorkerLink> link, WorkerHello hello) {
-  const SessionId session = impl_->next_session();
-  impl_->on_core(
-      [session, link = std::move(link), hello = std::move(hello)](CoreDesk& core) mutable {
-        core.hello(session, std::move(link), std::move(hello));
-      });
+  const SessionId session = ++last_session_;
+  to_scheduler_.call(&SchedulerThread::hello, session, std::move(link), std::move(hello));
   return session;
 }
 
 void Engine::heartbeat(SessionId session, std::vector<LeaseProgress> leases, std::string doing) {
-  impl_->on_core(
-      [beat = input::Heartbeat{.session = session,
-                               .leases = std::move(leases),
-                               .doing = std::move(doing)}](CoreDesk& core) { core.hear(beat); });
+  to_scheduler_.call(
+      &SchedulerThread::observe,
+      input::Heartbeat{.session = session, .leases = std::move(leases), .doing = std::move(doing)});
 }
 
 void Engine::draining(SessionId session, std::string reason) {
-  impl_->on_core([in = input::Draining{.session = session, .reason = std::move(reason)}](
-                     CoreDesk& core) { core.hear(in); });
+  to_scheduler_.call(&SchedulerThread::observe,
+                     input::Draining{.session = session, .reason = std::move(reason)});
 }
 
 void Engine::band_failed(SessionId session, LeaseId lease, std::string reason,
                          std::vector<std::string> log) {
-  impl_->on_core(
-      [in = input::BandFailed{.session = session,
-                              .lease = lease,
-                              .reason = std::move(reason),
-                              .log = std::move(log)}](CoreDesk& core) { core.hear(in); });
+  to_scheduler_.call(
+      &SchedulerThread::observe,
+      input::BandFailed{
+          .session = session, .lease = lease, .reason = std::move(reason), .log = std::move(log)});
 }
 
 void Engine::lost(SessionId session, std::string reason) {
-  impl_->on_core([session, reason = std::move(reason)](CoreDesk& core) mutable {
-    core.lost(session, std::move(reason));
-  });
+  to_scheduler_.call(&SchedulerThread::lost, session, std::move(reason));
+}
+
+void Engine::worker_log(SessionId session, std::vector<std::string> lines) {
+  to_scheduler_.call(&SchedulerThread::add_worker_log, session, std::move(lines));
 }
 
 void Engine::put_band(JobId job, std::uint64_t work, std::string instance, BandPixels pixels,
                       double render_s, double cpu_s,
                       std::function<void(absl::StatusOr<BandOutcome>)> done) {
-  PutBand put{.job = job,
-              .work = work,
-              .instance = std::move(instance),
-              .pixels = std::move(pixels),
-              .worker = {},
-              .render_s = render_s,
-              .cpu_s = cpu_s,
-              .answer = Answer<BandOutcome>(std::move(done)),
-              .share = {}};
+  IncomingBand incoming{.job = job,
+                        .work = work,
+                        .instance = std::move(instance),
+                        .pixels = std::move(pixels),
+                        .worker = {},
+                        .render_s = render_s,
+                        .cpu_s = cpu_s,
+                        .answer = Answer<BandOutcome>(std::move(done)),
+                        .share = {}};
   std::optional<MemoryBudget::Share> share =
-      impl_->bands().take(put.pixels.sums.size() * sizeof(double));
+      bands_.take(incoming.pixels.sums.size() * sizeof(double));
   if (!share) {
-    put.answer(absl::ResourceExhaustedError(
+    incoming.answer(absl::ResourceExhaustedError(
         "the coordinator holds as many bands in memory as it may; send this one again soon"));
     return;
   }
-  put.share = *std::move(share);
-  impl_->on_core([put = std::move(put)](CoreDesk& core) mutable { core.put_band(std::move(put)); });
+  incoming.share = *std::move(share);
+  to_scheduler_.call(&SchedulerThread::put_band, std::move(incoming));
 }
-
-MemoryBudget& Engine::images() { return impl_->images(); }
 
 std::uint64_t Engine::free_bytes() const {
-  return coordinator::free_bytes(impl_->data_folder()).value_or(0);
+  return coordinator::free_bytes(folder_.path()).value_or(0);
 }
 
-const std::string& Engine::epoch() const { return impl_->epoch(); }
+const std::string& Engine::epoch() const { return epoch_; }
 
 }  // namespace bandsaw::coordinator

@@ -1,9 +1,11 @@
 #pragma once
 
-// The thread that owns the core: command -> events -> journal -> apply -> actions. All calls may
-// come from any thread and return at once; answers come through callbacks, on the engine's or the
-// store's thread: they MUST be quick.
+// The coordinator without network and user interface: three threads that hand work to each other.
+//
+//   any thread -> scheduler (decides, writes the journal) -> store (files) -> scheduler -> film
+//   (pixels) -> store (result)
 
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <string>
@@ -12,10 +14,19 @@
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
 #include "coordinator/core/messages.h"
+#include "coordinator/engine/clock.h"
 #include "coordinator/engine/collector.h"
-#include "coordinator/engine/credits.h"
+#include "coordinator/engine/film_thread.h"
+#include "coordinator/engine/incoming_band.h"
+#include "coordinator/engine/mailbox.h"
 #include "coordinator/engine/memory_budget.h"
+#include "coordinator/engine/posted_inboxes.h"
+#include "coordinator/engine/scheduler_thread.h"
+#include "coordinator/engine/store_thread.h"
 #include "coordinator/engine/worker_link.h"
+#include "coordinator/store/blob_store.h"
+#include "coordinator/store/data_folder.h"
+#include "coordinator/store/journal.h"
 #include "coordinator/store/result_file.h"
 #include "renderlib/package/blob_source.h"
 #include "renderlib/render/band.h"
@@ -23,85 +34,91 @@
 namespace bandsaw::coordinator {
 
 struct EngineOptions {
-  std::string data_folder;         ///< made if it does not exist; one engine at a time (locked)
+  std::string data_folder;         ///< created if missing; locked against other engines
   double heartbeat_timeout_s = 4;  ///< a worker that is silent this long is lost
-  double progress_timeout_s =
-      30;  ///< a lease whose rows do not advance this long is given to another
-  double reattach_grace_s =
-      6;  ///< after a restart: how long to wait for workers that were there before
-  /// Of all bands, [0, 1]: rendered by two machines and compared.
-  double audit_share = 0.01;
-  Keep keep = {};  ///< of what is over; looked at every ten minutes and every 1,000 jobs
+  /// A lease whose rows do not advance this long is given to another worker.
+  double progress_timeout_s = 30;
+  double reattach_grace_s = 6;  ///< after a restart: time to wait for the workers from before
+  double audit_share = 0.01;    ///< share of all bands that two machines render, [0, 1]
+  Keep keep = {};  ///< retention of jobs that are over; applied every ten minutes and 1,000 jobs
 };
 
-/// How a band's upload ended for its worker.
-enum class BandOutcome { kStored, kDuplicate, kUnwanted };
+/// What tests replace. nullptr: the real one, which is SQLite in the data folder and the steady
+/// clock.
+struct EngineDependencies {
+  std::unique_ptr<Journal> journal;
+  std::unique_ptr<Clock> clock;
+};
 
-struct EngineDoors;
-
+/// All calls may come from any thread, and return at once unless it says otherwise. Results are
+/// passed to callbacks, on one of the engine's threads: callbacks MUST be quick. Each callback is
+/// called exactly once, with UNAVAILABLE if the engine stops before.
 class Engine {
  public:
-  /// Opens the folder, replays the journal and the band files, starts the threads.
-  /// FAILED_PRECONDITION: another coordinator uses the folder. DATA_LOSS: naming what is damaged.
-  static absl::StatusOr<std::unique_ptr<Engine>> start(EngineOptions options);
-  /// The same with other doors to the world (engine/doors.h), for tests.
-  static absl::StatusOr<std::unique_ptr<Engine>> start(EngineOptions options, EngineDoors doors);
-  /// Stops the threads; what was acknowledged is on disk.
+  /// Opens the data folder, replays the journal and the band logs, and starts the threads.
+  /// FAILED_PRECONDITION: another coordinator uses the folder. DATA_LOSS: names the damaged file.
+  static absl::StatusOr<std::unique_ptr<Engine>> start(EngineOptions options,
+                                                       EngineDependencies dependencies = {});
+  /// Stops the threads. Everything that was acknowledged is on disk.
   ~Engine();
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
 
-  // People.
-  /// The job id once the job is journalled. FAILED_PRECONDITION: a blob is missing (named).
-  /// INVALID_ARGUMENT: the priority is beyond kMostPriority.
+  // Users.
+  /// Returns the job id once the job is in the journal. FAILED_PRECONDITION: a blob is missing; the
+  /// message names it. INVALID_ARGUMENT: the priority is beyond kMostPriority.
   void submit(JobSpec spec, std::function<void(absl::StatusOr<JobId>)> done,
               std::int32_t priority = 0);
-  /// Answered with the job as it is then, once that is journalled. NOT_FOUND. All but cancel also
-  /// FAILED_PRECONDITION: the job is over.
+  /// These four return the job after the change, once that is in the journal. NOT_FOUND: no such
+  /// job. FAILED_PRECONDITION, except from cancel: the job is over.
   void cancel(JobId job, std::function<void(absl::StatusOr<JobView>)> done);
   void pause(JobId job, std::function<void(absl::StatusOr<JobView>)> done);
   void resume(JobId job, std::function<void(absl::StatusOr<JobView>)> done);
-  /// INVALID_ARGUMENT: beyond kMostPriority.
+  /// INVALID_ARGUMENT: the priority is beyond kMostPriority.
   void set_priority(JobId job, std::int32_t priority,
                     std::function<void(absl::StatusOr<JobView>)> done);
-  /// Keeps a machine away as if it had returned wrong pixels, or lets it in again. NOT_FOUND.
+  /// Puts a machine into quarantine as if it had returned wrong pixels, or lifts its quarantine.
+  /// NOT_FOUND: no such worker.
   void quarantine(std::string worker, bool lift, std::function<void(absl::Status)> done);
-  /// Why it is not done yet, in sentences; none: no such job.
+  /// Explains in sentences why the job is not done; empty: no such job.
   void why(JobId job, std::function<void(std::vector<std::string>)> done);
-  /// Calls `changed` with the state now and after each change (at most ten a second a job, at least
-  /// one a second), until it returns false or the job is final (that state is always delivered).
-  /// NOT_FOUND arrives through `changed` too.
+  /// Calls `changed` with the present state and after each change, at most ten times and at least
+  /// once a second, until it returns false or the job is final. The final state is always
+  /// delivered. NOT_FOUND is delivered to `changed` too.
   void watch(JobId job, std::function<bool(absl::StatusOr<JobView>)> changed);
   void jobs(std::function<void(std::vector<JobView>)> done);
   void workers(std::function<void(std::vector<WorkerView>)> done);
-  /// The last lines of a worker's log. NOT_FOUND.
+  /// Returns the last lines of a worker's log. NOT_FOUND: no lines of such a worker.
   void logs(std::string worker, std::function<void(absl::StatusOr<std::vector<std::string>>)> done);
-  /// What is there of the image of a job at work: every row_step-th row, `row_step` >= 1.
-  /// NOT_FOUND.
+  /// Returns the present image of a job that is not over, every row_step-th row, `row_step` >= 1.
+  /// NOT_FOUND: no such job, or none of its bands is there.
   void preview(JobId job, std::uint32_t row_step, std::function<void(absl::StatusOr<Image>)> done);
-  /// Who rendered the rows that are there, by row. Of a job at work a name is not known from before
-  /// a restart until its worker brings another band.
+  /// Returns who rendered the rows that are there, in the order of rows. After a restart, a
+  /// worker's name is empty in a job that is not over until the worker sends another band.
   void rendered_by(JobId job, std::function<void(std::vector<RowsBy>)> done);
-  /// NOT_FOUND: no such job, or samples of one that was not adaptive. FAILED_PRECONDITION: not
-  /// done. DATA_LOSS.
+  /// Returns the result of a job. NOT_FOUND: no such job, or kSamples of one that was not adaptive.
+  /// FAILED_PRECONDITION: the job is not done. DATA_LOSS: the file is missing or damaged.
   void result(JobId job, FinishedPart part, std::function<void(absl::StatusOr<StoredResult>)> done);
 
-  /// The memory that images may take while they are made for somebody and downloaded, 1 GiB.
-  /// Whoever calls result or preview takes the image's bytes of it before, and gives them back when
-  /// the image is not held any more.
+  /// Returns the budget of the memory for images that are made or downloaded, 1 GiB. A caller of
+  /// result or preview takes the image's bytes from it first, and returns them when it frees the
+  /// image.
   MemoryBudget& images();
 
-  // Blobs. Thread-safe, may block on the disk: not for gRPC's own threads.
+  // Blobs. These calls may block on the disk: not for gRPC's own threads.
   class BlobWriter {
    public:
-    virtual ~BlobWriter() = default;  ///< without commit: what came is kept for the next try
+    virtual ~BlobWriter() = default;  ///< without commit, the bytes are kept for the next upload
     virtual absl::Status append(absl::Span<const std::byte> bytes) = 0;
-    /// INVALID_ARGUMENT: digest or size differ. DATA_LOSS: so do bytes of an earlier try. OK: on
-    /// disk.
+    /// OK: the blob is on disk. INVALID_ARGUMENT: digest or size differ. DATA_LOSS: the same, and
+    /// the blob contains bytes of an earlier upload.
     virtual absl::Status commit() = 0;
   };
   bool has_blob(const wire::Digest& digest) const;
-  /// Bytes of a blob that is not there, from its beginning, of an upload that was cut.
+  /// Returns the number of bytes that an interrupted upload has left of a blob, from its beginning.
   std::uint64_t partial_blob(const wire::Digest& digest) const;
-  /// `offset`: goes on behind so many of those. FAILED_PRECONDITION: there are fewer.
+  /// `offset`: continues an interrupted upload after this many bytes. FAILED_PRECONDITION: fewer
+  /// are there. RESOURCE_EXHAUSTED: the disk is full.
   absl::StatusOr<std::unique_ptr<BlobWriter>> write_blob(const wire::Digest& digest,
                                                          std::uint64_t size,
                                                          std::uint64_t offset = 0);
@@ -114,27 +131,47 @@ class Engine {
   void band_failed(SessionId session, LeaseId lease, std::string reason,
                    std::vector<std::string> log);
   void lost(SessionId session, std::string reason);
-  /// New lines of its log, checked.
+  /// Adds lines to the worker's log. They MUST have been checked.
   void worker_log(SessionId session, std::vector<std::string> lines);
-  /// `done` once the pixels are on disk and in the journal's reach, or not wanted.
-  /// RESOURCE_EXHAUSTED: disk full, keep it and try again. INVALID_ARGUMENT: not a band of that
-  /// job. `work` (renderlib/render/work_hash.h): that it was rendered for, 0 where nobody says;
-  /// of another job that bore the number before it is not wanted.
+  /// Takes a band from a worker. OK once its pixels are on disk and the step about it is in the
+  /// journal, or the band is not wanted. RESOURCE_EXHAUSTED: disk full; keep the band and send it
+  /// again. INVALID_ARGUMENT: not a band of that job. `work`: hash of the scene and settings that
+  /// it was rendered for (renderlib/render/work_hash.h), 0 if unknown; a band of an earlier job
+  /// with the same id is not wanted.
   void put_band(JobId job, std::uint64_t work, std::string instance, BandPixels pixels,
                 double render_s, double cpu_s,
                 std::function<void(absl::StatusOr<BandOutcome>)> done);
 
-  /// Of the disk under the data folder; 0 when it cannot be told. Any thread; may wait for the
-  /// disk.
+  /// Returns the free bytes of the disk with the data folder, 0 if that is unknown. May wait for
+  /// the disk.
   std::uint64_t free_bytes() const;
 
-  /// Names this life of the coordinator.
+  /// Returns the name of this life of the coordinator.
   const std::string& epoch() const;
 
  private:
-  class Impl;
-  explicit Engine(std::unique_ptr<Impl> impl);
-  std::unique_ptr<Impl> impl_;
+  Engine(const EngineOptions& options, EngineDependencies dependencies, DataFolder folder,
+         std::unique_ptr<BlobStore> blobs);
+  void command(JobId job, const Input& input, std::function<void(absl::StatusOr<JobView>)> done);
+
+  const DataFolder folder_;
+  const std::unique_ptr<BlobStore> blobs_;
+  const std::unique_ptr<Journal> journal_;
+  const std::unique_ptr<Clock> clock_;
+  const std::string epoch_;
+  std::atomic<SessionId> last_session_{0};
+  MemoryBudget bands_;   ///< bytes of the bands in memory
+  MemoryBudget images_;  ///< bytes of the images that are made or downloaded
+  // The inboxes are the only way to the objects below them, each of which belongs to one thread.
+  PostedSchedulerInbox to_scheduler_;
+  PostedStoreInbox to_store_;
+  PostedFilmInbox to_film_;
+  SchedulerThread scheduler_;
+  StoreThread store_;
+  FilmThread film_;
+  Mailbox scheduler_mailbox_;
+  Mailbox store_mailbox_;
+  Mailbox film_mailbox_;
 };
 
 }  // namespace bandsaw::coordinator

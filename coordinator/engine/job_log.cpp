@@ -17,7 +17,7 @@ struct Line {
   }
   void operator()(const record::TilesPlanned& r) const {
     spdlog::info("job={} tiles planned from samples={} {}", r.job, r.plan.pilot,
-                 r.plan.even() ? "all in every pass" : "more where there is more noise");
+                 r.plan.even() ? "uniformly" : "more samples where there is more noise");
   }
   void operator()(const record::SamplesFixed& r) const {
     spdlog::info("job={} ends after samples={}", r.job, r.samples);
@@ -29,7 +29,7 @@ struct Line {
     spdlog::info("job={} priority={}", r.job, r.priority);
   }
   void operator()(const record::HoldChanged& r) const {
-    spdlog::info("job={} {} by a person", r.job, r.held ? "held" : "let go");
+    spdlog::info("job={} {} by a user", r.job, r.held ? "paused" : "resumed");
   }
   void operator()(const record::TimeSpent&) const {}
   void operator()(const record::Figures& r) const {
@@ -67,7 +67,7 @@ struct Line {
         r.job, r.band.rows.first, r.band.rows.last, r.band.samples.first, r.band.samples.last);
   }
   void operator()(const record::ErrorForgotten& r) const {
-    spdlog::warn("job={} wrong pixels are rendered again; its error is measured anew", r.job);
+    spdlog::warn("job={} wrong pixels are rendered again; its error is measured again", r.job);
   }
   void operator()(const record::WorkerQuarantined& r) const {
     spdlog::error("quarantined worker={} {}", r.name, r.reason);

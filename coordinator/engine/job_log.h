@@ -4,7 +4,7 @@
 
 namespace bandsaw::coordinator {
 
-/// A line in the log for what changed of a job.
+/// Logs a change of a job or a worker.
 void log_record(const Record& record);
 /// "copied job=7 rows=0:12 samples=0:16 from=desk to=laptop"; tests count these.
 void log_shared(const action::Shared& shared);

@@ -1,6 +1,6 @@
 #pragma once
 
-// The ways to the workers that are connected, by session.
+// The connected workers, by session.
 
 #include <map>
 #include <memory>
@@ -11,7 +11,7 @@
 
 namespace bandsaw::coordinator {
 
-/// Used by one thread. What is meant for a session that has gone is swallowed.
+/// Used by one thread. Messages to a session that has ended are dropped.
 class Links {
  public:
   explicit Links(std::string epoch) : epoch_(std::move(epoch)) {}
@@ -20,7 +20,7 @@ class Links {
   /// The stream ended by itself.
   void lost(SessionId session, const std::string& reason);
 
-  /// As it is shown; empty: no such session.
+  /// Returns the worker's displayed name; empty: no such session.
   std::string name(SessionId session) const;
 
   void perform(const action::Welcome& welcome);

@@ -15,8 +15,8 @@ void Mailbox::post(Task task) {
       tasks_.push_back(std::move(task));
     }
   }
-  // A task that came too late is dropped here, without the lock: dropping one may answer, and an
-  // answer may post.
+  // A task that came too late is destroyed here, without the lock: its destructor may call an
+  // Answer, whose callback may post.
   wake_.notify_one();
 }
 

@@ -1,10 +1,13 @@
 #pragma once
 
-// A thread and what it has to do: tasks, done one after the other in the order they were posted.
+// A thread and its queue of tasks, which are done one after the other in the order in which they
+// were posted.
 
 #include <chrono>
 #include <functional>
 #include <thread>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "absl/functional/any_invocable.h"
@@ -24,17 +27,17 @@ class Mailbox {
   Mailbox(const Mailbox&) = delete;
   Mailbox& operator=(const Mailbox&) = delete;
 
-  /// Tasks posted before wait for it. Call once.
+  /// Starts the thread. Tasks that were posted before wait for this. Call once.
   void start();
-  /// Any thread. After stop: the task is dropped. The queue has no bound of its own: what may pile
-  /// up is bounded by those who post (bands by their bytes, workers and jobs by their number).
+  /// Adds a task; any thread. After stop, the task is dropped. The queue has no bound of its own,
+  /// because the senders are bounded: bands by their bytes, workers and jobs by their number.
   void post(Task task) EXCLUDES(mutex_);
-  /// Ends after the batch it is at; what waits is dropped. Not from its own thread.
+  /// Ends the thread after its current batch and drops the waiting tasks. Not from its own thread.
   void stop() EXCLUDES(mutex_);
 
  private:
   void run() EXCLUDES(mutex_);
-  /// The next batch, empty after `period_`. False: stopped.
+  /// Takes all waiting tasks; none if `period_` passes without one. False: stopped.
   bool take(std::vector<Task>& batch) EXCLUDES(mutex_);
 
   std::function<void()> after_batch_;
@@ -44,6 +47,34 @@ class Mailbox {
   std::vector<Task> tasks_ GUARDED_BY(mutex_);
   bool stopped_ GUARDED_BY(mutex_) = false;
   std::thread thread_;
+};
+
+/// Calls methods of an object on the thread of a mailbox, which is the object's only user.
+template <class T>
+class Posting {
+ public:
+  /// Both MUST outlive it.
+  Posting(T& object, Mailbox& mailbox) : object_(object), mailbox_(mailbox) {}
+
+  /// Posts `task`, which is called with the object.
+  template <class Task>
+  void post(Task task) {
+    mailbox_.post([&object = object_, task = std::move(task)]() mutable { task(object); });
+  }
+  /// Posts a call of `method`. The arguments are kept in the task and moved into the call; a result
+  /// is dropped.
+  template <class Result, class... Parameters, class... Arguments>
+  void call(Result (T::*method)(Parameters...), Arguments&&... arguments) {
+    post([method,
+          kept = std::make_tuple(std::forward<Arguments>(arguments)...)](T& object) mutable {
+      std::apply([&](auto&... each) { static_cast<void>((object.*method)(std::move(each)...)); },
+                 kept);
+    });
+  }
+
+ private:
+  T& object_;
+  Mailbox& mailbox_;
 };
 
 }  // namespace bandsaw::coordinator

@@ -1,6 +1,6 @@
 #pragma once
 
-// A bound on the bytes of one kind of data that are in memory at the same time.
+// A limit on the bytes of one kind of data that are in memory at the same time.
 
 #include <atomic>
 #include <cstdint>
@@ -14,7 +14,8 @@ class MemoryBudget {
  public:
   explicit MemoryBudget(std::uint64_t bytes) : left_(static_cast<std::int64_t>(bytes)) {}
 
-  /// Gives its bytes back when it ends. MUST not outlive the budget. Used by one thread at a time.
+  /// Returns its bytes to the budget when it is destroyed. MUST NOT outlive the budget. Used by one
+  /// thread at a time.
   class Share {
    public:
     Share() = default;
@@ -27,8 +28,8 @@ class MemoryBudget {
     }
     ~Share() { resize(0); }
 
-    /// The data that the share stands for has another size now. Growing never fails: the data is
-    /// in memory already, and later shares are refused until the budget has room again.
+    /// Changes the size of the share. Growing never fails, because the data is in memory already;
+    /// later shares are refused until the budget has room again.
     void resize(std::uint64_t bytes) {
       if (budget_ != nullptr) {
         budget_->left_ += bytes_ - static_cast<std::int64_t>(bytes);
@@ -43,7 +44,7 @@ class MemoryBudget {
     std::int64_t bytes_ = 0;
   };
 
-  /// Nothing where fewer bytes are left.
+  /// Takes a share; std::nullopt if fewer bytes are left.
   std::optional<Share> take(std::uint64_t bytes) {
     const auto wanted = static_cast<std::int64_t>(bytes);
     if ((left_ -= wanted) < 0) {
@@ -53,7 +54,7 @@ class MemoryBudget {
     return Share(this, wanted);
   }
 
-  /// Bytes that a share may have now; negative after one has grown beyond the budget.
+  /// Returns the bytes that are left; negative after a share has grown beyond the budget.
   std::int64_t left() const { return left_; }
 
  private:

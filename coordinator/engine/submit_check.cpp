@@ -12,8 +12,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr std::size_t kShortestRequestId = 16;
-constexpr std::size_t kLongestRequestId = 64;
+constexpr std::size_t kMinRequestId = 16;
+constexpr std::size_t kMaxRequestId = 64;
 
 absl::Status check_samples(const char* name, std::uint64_t samples) {
   if (samples < 1 || samples > kMaxSamples) {
@@ -45,9 +45,9 @@ absl::Status check_stop(const StopRule& stop) {
 }
 
 absl::Status check_words(const JobSpec& spec) {
-  if (spec.request_id.size() < kShortestRequestId || spec.request_id.size() > kLongestRequestId) {
-    return absl::InvalidArgumentError(absl::StrCat("request_id must have ", kShortestRequestId,
-                                                   " to ", kLongestRequestId, " characters, found ",
+  if (spec.request_id.size() < kMinRequestId || spec.request_id.size() > kMaxRequestId) {
+    return absl::InvalidArgumentError(absl::StrCat("request_id must have ", kMinRequestId, " to ",
+                                                   kMaxRequestId, " characters, found ",
                                                    spec.request_id.size()));
   }
   if (spec.name.size() > wire::kJobNameBytes) {
@@ -82,7 +82,7 @@ absl::Status check_submit(const JobSpec& spec, BlobStore& blobs) {
   ASSIGN_OR_RETURN(const std::string manifest, read_manifest(spec.manifest, blobs));
   RETURN_IF_ERROR(package_info(manifest).status());
   ASSIGN_OR_RETURN(const std::vector<BlobRef> refs, package_blobs(manifest));
-  // Before the core has the job, the collector must find its blobs in use.
+  // The collector must not remove the blobs before the scheduler has the job.
   ASSIGN_OR_RETURN(const wire::Digest manifest_digest, wire::digest_from_hex(spec.manifest));
   blobs.touch(manifest_digest);
   for (const BlobRef& ref : refs) {

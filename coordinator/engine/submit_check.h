@@ -1,6 +1,6 @@
 #pragma once
 
-// What must hold of a job before the core hears of it.
+// Checks of a job before the scheduler receives it.
 
 #include "absl/status/status.h"
 #include "coordinator/core/types.h"
@@ -9,12 +9,12 @@
 
 namespace bandsaw::coordinator {
 
-/// INVALID_ARGUMENT: a field out of range, or a package that is none. FAILED_PRECONDITION: a blob
-/// of the package is missing; the first is named. DATA_LOSS: the manifest's file is damaged. Reads
-/// the disk.
+/// INVALID_ARGUMENT: a field is out of range, or the manifest is not a package.
+/// FAILED_PRECONDITION: a blob of the package is missing; names the first. DATA_LOSS: the
+/// manifest's file is damaged. Reads the disk, and marks the package's blobs as used.
 absl::Status check_submit(const JobSpec& spec, BlobStore& blobs);
 
-/// How the package wants its image shown; the default where its manifest cannot be read any more.
+/// Returns how the package wants its image displayed; the default if its manifest cannot be read.
 Display display_of(const DigestHex& manifest, BlobSource& blobs);
 
 }  // namespace bandsaw::coordinator

@@ -8,11 +8,11 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr double kShortest_s = 0.1;
-/// A little less than a second, because time is looked at every tenth of one.
-constexpr double kLongest_s = 0.9;
+constexpr double kMinInterval_s = 0.1;
+/// A little less than a second, because this is checked every tenth of a second.
+constexpr double kMaxInterval_s = 0.9;
 
-/// Whether something changed that does not change by itself as time goes by.
+/// True if something changed that does not change with time alone.
 bool changed(const JobView& a, const JobView& b) {
   return a.state != b.state || a.reason != b.reason || a.samples_done != b.samples_done ||
          a.samples_per_pixel != b.samples_per_pixel || a.error != b.error ||
@@ -39,9 +39,9 @@ void Watchers::add(JobId job, const std::optional<JobView>& view, Changed change
   }
   const auto [entry, is_new] = jobs_.try_emplace(job);
   if (is_new) {
-    entry->second.told = *view;
-    entry->second.told_at = now;
-    entry->second.looked_at = now;
+    entry->second.sent = *view;
+    entry->second.sent_at = now;
+    entry->second.checked_at = now;
   }
   entry->second.watchers.push_back(std::move(changed));
 }
@@ -49,28 +49,28 @@ void Watchers::add(JobId job, const std::optional<JobView>& view, Changed change
 void Watchers::update(ViewOf view_of, bool hold_final, Time now) {
   for (auto it = jobs_.begin(); it != jobs_.end();) {
     Watched& watched = it->second;
-    if (now - watched.looked_at < kShortest_s) {
+    if (now - watched.checked_at < kMinInterval_s) {
       ++it;
       continue;
     }
-    watched.looked_at = now;
+    watched.checked_at = now;
     const std::optional<JobView> view = view_of(it->first);
     if (!view) {
-      for (const Changed& tell : watched.watchers) {
-        tell(unknown(it->first));
+      for (const Changed& deliver : watched.watchers) {
+        deliver(unknown(it->first));
       }
       it = jobs_.erase(it);
       continue;
     }
     const bool final = is_final(view->state);
-    const bool due = changed(*view, watched.told) || now - watched.told_at >= kLongest_s;
+    const bool due = changed(*view, watched.sent) || now - watched.sent_at >= kMaxInterval_s;
     if (!due || (final && hold_final)) {
       ++it;
       continue;
     }
-    watched.told = *view;
-    watched.told_at = now;
-    std::erase_if(watched.watchers, [&](const Changed& tell) { return !tell(*view); });
+    watched.sent = *view;
+    watched.sent_at = now;
+    std::erase_if(watched.watchers, [&](const Changed& deliver) { return !deliver(*view); });
     it = final || watched.watchers.empty() ? jobs_.erase(it) : std::next(it);
   }
 }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Who watches which job, and when each is told.
+// The watchers of jobs.
 
 #include <functional>
 #include <map>
@@ -19,19 +19,20 @@ class Watchers {
   using Changed = std::function<bool(absl::StatusOr<JobView>)>;
   using ViewOf = absl::FunctionRef<std::optional<JobView>(JobId)>;
 
-  /// Tells the state now; NOT_FOUND when `view` is nothing. A final state ends the watch.
+  /// Adds a watcher and calls it with the present state; with NOT_FOUND if `view` is std::nullopt.
+  /// A final state ends the watch.
   void add(JobId job, const std::optional<JobView>& view, Changed changed, Time now);
 
-  /// Tells everybody whose job changed, at most ten times a second a job, and everybody at least
-  /// once a second; a final state always, and last; NOT_FOUND when the job was forgotten.
-  /// `hold_final`: not yet, it is not durable.
+  /// Calls the watchers of changed jobs, at most ten times per second and job, and all watchers at
+  /// least once a second. A final state is always delivered, and is the last. NOT_FOUND if the job
+  /// was forgotten. `hold_final`: do not deliver final states, because they are not durable.
   void update(ViewOf view_of, bool hold_final, Time now);
 
  private:
   struct Watched {
-    JobView told;      ///< what was told last
-    Time told_at = 0;  ///< when
-    Time looked_at = 0;
+    JobView sent;      ///< the state that was delivered last
+    Time sent_at = 0;  ///< when it was delivered
+    Time checked_at = 0;
     std::vector<Changed> watchers;
   };
   std::map<JobId, Watched> jobs_;

@@ -1,7 +1,7 @@
 #pragma once
 
-// The way to one worker: the gRPC stream, or a fake in tests. One of the four open doors. Calls
-// never block and never fail; a link that is gone swallows what is sent.
+// The connection to one worker: the gRPC stream, or a fake in tests. Calls never block and never
+// fail; a broken link drops its messages.
 
 #include "coordinator/core/messages.h"
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kNamesInError = 20;
 
-/// What a line takes beside its text.
+/// Memory of a line besides its text.
 constexpr std::size_t kLineOverhead = sizeof(std::string);
 
 }  // namespace
@@ -30,11 +30,11 @@ void WorkerLogs::add(const std::string& worker, std::vector<std::string> lines) 
     log.bytes += line.size() + kLineOverhead;
     bytes_ += line.size() + kLineOverhead;
     log.lines.push_back(std::move(line));
-    if (log.lines.size() > most_lines_) {
+    if (log.lines.size() > max_lines_) {
       drop_oldest_line(log);
     }
   }
-  while (bytes_ > most_bytes_ && logs_.size() > 1) {
+  while (bytes_ > max_bytes_ && logs_.size() > 1) {
     const auto silent = std::min_element(
         logs_.begin(), logs_.end(),
         [](const auto& a, const auto& b) { return a.second.added_at < b.second.added_at; });
@@ -56,9 +56,9 @@ absl::StatusOr<std::vector<std::string>> WorkerLogs::of(const std::string& worke
     names.push_back(name);
   }
   return absl::NotFoundError(
-      absl::StrCat("nothing was heard of a worker '", worker, "'; ",
-                   names.empty() ? "of no other either"
-                                 : absl::StrCat("of these: ", absl::StrJoin(names, ", "))));
+      absl::StrCat("no worker '", worker, "' has sent lines of its log; ",
+                   names.empty() ? "nor has any other"
+                                 : absl::StrCat("these have: ", absl::StrJoin(names, ", "))));
 }
 
 }  // namespace bandsaw::coordinator

@@ -1,6 +1,6 @@
 #pragma once
 
-// The last lines of each worker's log, as far as they were sent: bounded a worker, and in all.
+// The last lines that each worker has sent of its log; bounded per worker and in total.
 
 #include <cstddef>
 #include <deque>
@@ -15,25 +15,27 @@ namespace bandsaw::coordinator {
 /// Used by one thread.
 class WorkerLogs {
  public:
-  WorkerLogs(std::size_t most_lines, std::size_t most_bytes)
-      : most_lines_(most_lines), most_bytes_(most_bytes) {}
+  /// Limits: lines per worker, and bytes in total.
+  WorkerLogs(std::size_t max_lines, std::size_t max_bytes)
+      : max_lines_(max_lines), max_bytes_(max_bytes) {}
 
-  /// Past the lines of one worker its oldest go; past the bytes of all, the log that was silent for
-  /// the longest.
+  /// Adds lines. Beyond `max_lines` the worker's oldest lines are dropped; beyond `max_bytes` the
+  /// logs that got no line for the longest time.
   void add(const std::string& worker, std::vector<std::string> lines);
-  /// Oldest first. NOT_FOUND: nothing was heard of it; says of whom something was.
+  /// Returns the lines, oldest first. NOT_FOUND: no lines of such a worker; the message lists the
+  /// workers that have sent lines.
   absl::StatusOr<std::vector<std::string>> of(const std::string& worker) const;
 
  private:
   struct Log {
     std::deque<std::string> lines;
     std::size_t bytes = 0;
-    std::uint64_t added_at = 0;  ///< counts calls
+    std::uint64_t added_at = 0;  ///< value of calls_ at the last add
   };
   void drop_oldest_line(Log& log);
 
-  std::size_t most_lines_;
-  std::size_t most_bytes_;
+  std::size_t max_lines_;
+  std::size_t max_bytes_;
   std::map<std::string, Log> logs_;
   std::size_t bytes_ = 0;
   std::uint64_t calls_ = 0;

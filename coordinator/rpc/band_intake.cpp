@@ -7,7 +7,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/rpc/blob_intake.h"
-#include "coordinator/rpc/convert.h"
+#include "coordinator/rpc/checked_messages.h"
+#include "proto/convert/render_values.h"
 #include "proto/wire/limits.h"
 #include "renderlib/base/status_macros.h"
 
@@ -41,14 +42,7 @@ absl::Status BandIntake::begin(const farm::BandHeader& header) {
   pixels_.width = static_cast<std::uint32_t>(row_bytes / kPixelBytes);
   // Reserves address space; pages are touched only as bytes arrive.
   pixels_.sums.reserve(header.size() / sizeof(double));
-  pixels_.counters = {.rays = header.counters().rays(),
-                      .bad_samples = header.counters().bad_samples(),
-                      .bad_x = header.counters().bad_x(),
-                      .bad_y = header.counters().bad_y(),
-                      .bad_sample = header.counters().bad_sample(),
-                      .negative_samples = header.counters().negative_samples(),
-                      .truncated_paths = header.counters().truncated_paths(),
-                      .dropped_primitives = header.counters().dropped_primitives()};
+  pixels_.counters = counters_of(header.counters());
   header_ = header;
   begun_ = true;
   return absl::OkStatus();

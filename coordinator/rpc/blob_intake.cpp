@@ -1,7 +1,7 @@
 #include "coordinator/rpc/blob_intake.h"
 
 #include "absl/strings/str_cat.h"
-#include "coordinator/rpc/convert.h"
+#include "coordinator/rpc/checked_messages.h"
 #include "proto/wire/limits.h"
 #include "renderlib/base/status_macros.h"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "absl/strings/str_cat.h"
-#include "coordinator/rpc/convert.h"
+#include "coordinator/rpc/checked_messages.h"
 #include "proto/wire/limits.h"
 #include "renderlib/base/status_macros.h"
 
@@ -13,7 +13,7 @@ static_assert(sizeof(Rgb) == 3 * sizeof(float), "an image's pixels are its bytes
 
 absl::Status GetBlobCall::open() {
   ASSIGN_OR_RETURN(const wire::Digest digest, digest_field("sha256", request_.sha256()));
-  ASSIGN_OR_RETURN(blob_, doors_.engine.blobs().get(digest));
+  ASSIGN_OR_RETURN(blob_, deps_.engine.blobs().get(digest));
   if (request_.offset() > blob_->bytes().size()) {
     return absl::InvalidArgumentError(absl::StrCat("offset: the blob has ", blob_->bytes().size(),
                                                    " bytes, not ", request_.offset()));
@@ -25,10 +25,10 @@ absl::Status GetBlobCall::open() {
 }
 
 void GetBlobCall::begin() {
-  if (const absl::Status status = doors_.streams.add(weak_from_this()); !status.ok()) {
+  if (const absl::Status status = deps_.streams.add(weak_from_this()); !status.ok()) {
     stop(status);
   }
-  doors_.files.post([self = shared_from_this()] {
+  deps_.files.post([self = shared_from_this()] {
     absl::Status status = self->stopped();
     status = status.ok() ? self->open() : status;
     if (!status.ok()) {
@@ -54,7 +54,7 @@ void GetBlobCall::OnWriteDone(bool ok) {
     Finish(grpc::Status::CANCELLED);
     return;
   }
-  doors_.files.post([self = shared_from_this()] {
+  deps_.files.post([self = shared_from_this()] {
     self->chunk_.clear_sha256();
     self->chunk_.clear_size();
     self->write_next(false);
@@ -76,10 +76,10 @@ void GetBlobCall::write_next(bool first) {
 }
 
 void ImageCall::begin() {
-  if (const absl::Status status = doors_.streams.add(weak_from_this()); !status.ok()) {
+  if (const absl::Status status = deps_.streams.add(weak_from_this()); !status.ok()) {
     stop(status);
   }
-  doors_.images.post([self = shared_from_this()] { self->make_and_write(); });
+  deps_.images.post([self = shared_from_this()] { self->make_and_write(); });
 }
 
 void ImageCall::make_and_write() {

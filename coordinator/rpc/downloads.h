@@ -18,8 +18,8 @@ namespace bandsaw::coordinator {
 class GetBlobCall final : public SelfOwned<grpc::ServerWriteReactor<farm::BlobChunk>, GetBlobCall>,
                           public LongStream {
  public:
-  GetBlobCall(const Doors& doors, const farm::GetBlobRequest& request)
-      : doors_(doors), request_(request) {}
+  GetBlobCall(const ServiceDependencies& deps, const farm::GetBlobRequest& request)
+      : deps_(deps), request_(request) {}
   void begin();
   void OnWriteDone(bool ok) override;
   void stop(const absl::Status& why) override EXCLUDES(mutex_);
@@ -31,7 +31,7 @@ class GetBlobCall final : public SelfOwned<grpc::ServerWriteReactor<farm::BlobCh
   /// Of stop; OK: it was not called.
   absl::Status stopped() EXCLUDES(mutex_);
 
-  const Doors doors_;
+  const ServiceDependencies deps_;
   const farm::GetBlobRequest request_;
   std::unique_ptr<BlobBytes> blob_;
   std::uint64_t offset_ = 0;
@@ -47,7 +47,7 @@ class ImageCall final : public SelfOwned<grpc::ServerWriteReactor<farm::ResultCh
  public:
   /// May wait, for the engine too.
   using Make = std::function<absl::StatusOr<HeldImage>()>;
-  ImageCall(const Doors& doors, Make make) : doors_(doors), make_(std::move(make)) {}
+  ImageCall(const ServiceDependencies& deps, Make make) : deps_(deps), make_(std::move(make)) {}
   void begin();
   void OnWriteDone(bool ok) override;
   /// Gives the memory of the image back at once.
@@ -59,7 +59,7 @@ class ImageCall final : public SelfOwned<grpc::ServerWriteReactor<farm::ResultCh
   /// Writes the next chunk, or ends the call.
   void write_next() REQUIRES(mutex_);
 
-  const Doors doors_;
+  const ServiceDependencies deps_;
   const Make make_;
   farm::ResultChunk chunk_;
   Mutex mutex_;

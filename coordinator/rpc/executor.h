@@ -1,6 +1,7 @@
 #pragma once
 
-// A few threads for work that waits, for the disk or for the film: gRPC's reactions must not.
+// A few threads for work that waits for the disk or for the film, because gRPC's callbacks must not
+// block.
 
 #include <deque>
 #include <functional>

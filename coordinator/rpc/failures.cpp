@@ -4,12 +4,12 @@ namespace bandsaw::coordinator {
 namespace {
 
 constexpr double kMinute_s = 60;
-constexpr std::size_t kMostAddresses = 10'000;
+constexpr std::size_t kMaxAddresses = 10'000;
 
 }  // namespace
 
 Failures::Verdict Failures::add(const std::string& address, double now) {
-  if (counts_.size() >= kMostAddresses && !counts_.contains(address)) {
+  if (counts_.size() >= kMaxAddresses && !counts_.contains(address)) {
     forget_old(now);
   }
   Count& count = counts_[address];
@@ -26,7 +26,7 @@ Failures::Verdict Failures::add(const std::string& address, double now) {
 /// be one attacker, and all counts are cleared.
 void Failures::forget_old(double now) {
   std::erase_if(counts_, [&](const auto& one) { return now - one.second.since >= kMinute_s; });
-  if (counts_.size() >= kMostAddresses) {
+  if (counts_.size() >= kMaxAddresses) {
     counts_.clear();
   }
 }

@@ -1,5 +1,6 @@
 #include "absl/strings/str_cat.h"
-#include "coordinator/rpc/convert.h"
+#include "coordinator/convert/farm_messages.h"
+#include "coordinator/rpc/checked_messages.h"
 #include "coordinator/rpc/downloads.h"
 #include "coordinator/rpc/gate.h"
 #include "coordinator/rpc/picture.h"
@@ -33,71 +34,61 @@ absl::StatusOr<std::vector<wire::Digest>> digests(const farm::MissingBlobsReques
 Unary* FarmService::MissingBlobs(grpc::CallbackServerContext* context,
                                  const farm::MissingBlobsRequest* request,
                                  farm::MissingBlobsReply* reply) {
-  if (const auto status = doors_.gate.check(*context, link::Role::kFarm); !status.ok()) {
-    return finished(context, status);
-  }
-  absl::StatusOr<std::vector<wire::Digest>> asked = digests(*request);
-  if (!asked.ok()) {
-    return finished(context, asked.status());
-  }
-  Unary* reactor = context->DefaultReactor();
-  doors_.files.post([this, reply, reactor, asked = *std::move(asked)] {
-    for (const wire::Digest& digest : asked) {
-      if (!doors_.engine.has_blob(digest)) {
-        reply->add_sha256(digest.raw());
-        reply->add_there(doors_.engine.partial_blob(digest));
+  return unary(deps_, *context, link::Role::kFarm, [&](Unary* reactor) -> absl::Status {
+    ASSIGN_OR_RETURN(std::vector<wire::Digest> requested, digests(*request));
+    deps_.files.post([this, reply, reactor, requested = std::move(requested)] {
+      for (const wire::Digest& digest : requested) {
+        if (!deps_.engine.has_blob(digest)) {
+          reply->add_sha256(digest.raw());
+          reply->add_there(deps_.engine.partial_blob(digest));
+        }
       }
-    }
-    reactor->Finish(grpc::Status::OK);
+      reactor->Finish(grpc::Status::OK);
+    });
+    return absl::OkStatus();
   });
-  return reactor;
 }
 
 grpc::ServerReadReactor<farm::BlobChunk>* FarmService::PutBlob(grpc::CallbackServerContext* context,
                                                                farm::PutBlobReply*) {
-  return admitted<PutBlobCall>(doors_, *context, link::Role::kFarm, context);
+  return admitted<PutBlobCall>(deps_, *context, link::Role::kFarm, context);
 }
 
 Unary* FarmService::Submit(grpc::CallbackServerContext* context, const farm::SubmitRequest* request,
                            farm::SubmitReply* reply) {
-  if (const auto status = doors_.gate.check(*context, link::Role::kFarm); !status.ok()) {
-    return finished(context, status);
-  }
-  absl::StatusOr<JobSpec> spec = job_spec(*request);
-  if (!spec.ok()) {
-    return finished(context, spec.status());
-  }
-  Unary* reactor = context->DefaultReactor();
-  doors_.engine.submit(
-      *std::move(spec),
-      [reactor, reply](const absl::StatusOr<JobId>& job) {
-        if (job.ok()) {
-          reply->set_job(*job);
-        }
-        reactor->Finish(link::to_grpc(job.status()));
-      },
-      request->priority());
-  return reactor;
+  return unary(deps_, *context, link::Role::kFarm, [&](Unary* reactor) -> absl::Status {
+    ASSIGN_OR_RETURN(JobSpec spec, job_spec(*request));
+    deps_.engine.submit(
+        std::move(spec),
+        [reactor, reply](const absl::StatusOr<JobId>& job) {
+          if (job.ok()) {
+            reply->set_job(*job);
+          }
+          reactor->Finish(link::to_grpc(job.status()));
+        },
+        request->priority());
+    return absl::OkStatus();
+  });
 }
 
 grpc::ServerWriteReactor<farm::JobStatus>* FarmService::Watch(grpc::CallbackServerContext* context,
                                                               const farm::WatchRequest* request) {
-  return admitted<WatchCall>(doors_, *context, link::Role::kFarm, request->job());
+  return admitted<WatchCall>(deps_, *context, link::Role::kFarm, request->job());
 }
 
 grpc::ServerWriteReactor<farm::ResultChunk>* FarmService::GetResult(
     grpc::CallbackServerContext* context, const farm::GetResultRequest* request) {
   const FinishedPart part = request->samples() ? FinishedPart::kSamples : FinishedPart::kImage;
-  return admitted<ImageCall>(doors_, *context, link::Role::kFarm,
-                             [&engine = doors_.engine, job = request->job(), part] {
+  return admitted<ImageCall>(deps_, *context, link::Role::kFarm,
+                             [&engine = deps_.engine, job = request->job(), part] {
                                return result_of(engine, job, part);
                              });
 }
 
 grpc::ServerWriteReactor<farm::ResultChunk>* FarmService::Preview(
     grpc::CallbackServerContext* context, const farm::PreviewRequest* request) {
-  return admitted<ImageCall>(doors_, *context, link::Role::kFarm,
-                             [&engine = doors_.engine, job = request->job(),
+  return admitted<ImageCall>(deps_, *context, link::Role::kFarm,
+                             [&engine = deps_.engine, job = request->job(),
                               side = request->most_side()]() -> absl::StatusOr<HeldImage> {
                                if (side > kMaxSide) {
                                  return absl::InvalidArgumentError(absl::StrCat(
@@ -109,32 +100,28 @@ grpc::ServerWriteReactor<farm::ResultChunk>* FarmService::Preview(
 
 Unary* FarmService::ListJobs(grpc::CallbackServerContext* context, const farm::ListJobsRequest*,
                              farm::ListJobsReply* reply) {
-  if (const auto status = doors_.gate.check(*context, link::Role::kFarm); !status.ok()) {
-    return finished(context, status);
-  }
-  Unary* reactor = context->DefaultReactor();
-  doors_.engine.jobs([reactor, reply](const std::vector<JobView>& jobs) {
-    for (const JobView& job : jobs) {
-      *reply->add_job() = to_message(job);
-    }
-    reactor->Finish(grpc::Status::OK);
+  return unary(deps_, *context, link::Role::kFarm, [&](Unary* reactor) {
+    deps_.engine.jobs([reactor, reply](const std::vector<JobView>& jobs) {
+      for (const JobView& job : jobs) {
+        *reply->add_job() = to_message(job);
+      }
+      reactor->Finish(grpc::Status::OK);
+    });
+    return absl::OkStatus();
   });
-  return reactor;
 }
 
 Unary* FarmService::ListWorkers(grpc::CallbackServerContext* context,
                                 const farm::ListWorkersRequest*, farm::ListWorkersReply* reply) {
-  if (const auto status = doors_.gate.check(*context, link::Role::kFarm); !status.ok()) {
-    return finished(context, status);
-  }
-  Unary* reactor = context->DefaultReactor();
-  doors_.engine.workers([reactor, reply](const std::vector<WorkerView>& workers) {
-    for (const WorkerView& worker : workers) {
-      *reply->add_worker() = to_message(worker);
-    }
-    reactor->Finish(grpc::Status::OK);
+  return unary(deps_, *context, link::Role::kFarm, [&](Unary* reactor) {
+    deps_.engine.workers([reactor, reply](const std::vector<WorkerView>& workers) {
+      for (const WorkerView& worker : workers) {
+        *reply->add_worker() = to_message(worker);
+      }
+      reactor->Finish(grpc::Status::OK);
+    });
+    return absl::OkStatus();
   });
-  return reactor;
 }
 
 }  // namespace bandsaw::coordinator

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "coordinator/engine/ask.h"
+#include "coordinator/engine/blocking_call.h"
 #include "coordinator/engine/submit_check.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/image/shrink.h"
@@ -29,8 +29,9 @@ absl::StatusOr<HeldImage> finished_image(Engine& engine, const JobView& job, Fin
   const RenderSettings& settings = job.spec.settings;
   ASSIGN_OR_RETURN(MemoryBudget::Share share, share_for(engine, settings.width, settings.height));
   using Result = absl::StatusOr<StoredResult>;
-  ASSIGN_OR_RETURN(StoredResult result,
-                   ask<Result>([&](auto answer) { engine.result(job.id, part, answer); }));
+  ASSIGN_OR_RETURN(StoredResult result, blocking_call<Result>([&](auto answer) {
+                     engine.result(job.id, part, answer);
+                   }));
   return HeldImage{std::move(result), std::move(share)};
 }
 
@@ -45,7 +46,7 @@ void shrink(HeldImage& held, std::uint32_t across, std::uint32_t down) {
 
 absl::StatusOr<JobView> look_at(Engine& engine, JobId job) {
   using View = absl::StatusOr<JobView>;
-  return ask<View>([&](auto answer) {
+  return blocking_call<View>([&](auto answer) {
     engine.watch(job, [answer](View view) {
       answer(std::move(view));
       return false;
@@ -71,7 +72,7 @@ absl::StatusOr<HeldImage> picture_of(Engine& engine, const JobView& job, std::ui
   ASSIGN_OR_RETURN(MemoryBudget::Share share, share_for(engine, settings.width, rows));
   using Part = absl::StatusOr<Image>;
   ASSIGN_OR_RETURN(Image image,
-                   ask<Part>([&](auto answer) { engine.preview(job.id, step, answer); }));
+                   blocking_call<Part>([&](auto answer) { engine.preview(job.id, step, answer); }));
   HeldImage held{{.image = std::move(image),
                   .digest = {},
                   .display = display_of(job.spec.manifest, engine.blobs())},

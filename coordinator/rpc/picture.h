@@ -1,6 +1,6 @@
 #pragma once
 
-// The current picture of a job, for display.
+// The present picture of a job, for display.
 
 #include <cstdint>
 
@@ -19,15 +19,16 @@ struct HeldImage {
   MemoryBudget::Share share;
 };
 
-/// The finished image, or how many samples each pixel has. Errors as Engine::result; here and below
-/// also RESOURCE_EXHAUSTED: images that others look at or download leave no memory for it.
+/// Returns the finished image, or the number of samples of each pixel. Errors as Engine::result;
+/// here and below also RESOURCE_EXHAUSTED: other images that are viewed or downloaded leave no
+/// memory.
 absl::StatusOr<HeldImage> result_of(Engine& engine, JobId job,
                                     FinishedPart part = FinishedPart::kImage);
 
-/// What is there of the job, or its finished image, at most about `most_side` pixels a side, >= 1;
-/// without `digest`. NOT_FOUND: nothing of it is there.
+/// Returns the present image of the job, or its finished image, with at most about `most_side`
+/// pixels per side, >= 1; without `digest`. NOT_FOUND: none of its bands is there.
 absl::StatusOr<HeldImage> picture_of(Engine& engine, const JobView& job, std::uint32_t most_side);
-/// The same of the job as it is now, with `digest`.
+/// Returns the same for the job's present state, with `digest`.
 absl::StatusOr<HeldImage> preview_of(Engine& engine, JobId job, std::uint32_t most_side);
 
 }  // namespace bandsaw::coordinator

@@ -3,13 +3,13 @@
 #include <utility>
 
 #include "coordinator/rpc/blob_intake.h"
-#include "coordinator/rpc/convert.h"
+#include "coordinator/rpc/checked_messages.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
 namespace {
 
-farm::PutBandReply::Outcome to_wire(BandOutcome outcome) {
+farm::PutBandReply::Outcome to_message(BandOutcome outcome) {
   switch (outcome) {
     case BandOutcome::kStored:
       return farm::PutBandReply::OUTCOME_STORED;
@@ -24,7 +24,7 @@ farm::PutBandReply::Outcome to_wire(BandOutcome outcome) {
 }  // namespace
 
 void PutBandsCall::begin() {
-  if (const absl::Status status = doors_.streams.add(weak_from_this()); !status.ok()) {
+  if (const absl::Status status = deps_.streams.add(weak_from_this()); !status.ok()) {
     stop(status);
     return;
   }
@@ -48,11 +48,11 @@ absl::Status PutBandsCall::take(const farm::BandChunk& chunk) {
   ASSIGN_OR_RETURN(BandPixels pixels, intake_.take());
   const farm::BandHeader header = std::exchange(intake_, {}).header();
   if (hand_over()) {
-    doors_.engine.put_band(header.job(), header.work(), header.instance(), std::move(pixels),
-                           header.counters().render_s(), header.counters().cpu_s(),
-                           [self = shared_from_this()](const absl::StatusOr<BandOutcome>& outcome) {
-                             self->answer(outcome);
-                           });
+    deps_.engine.put_band(header.job(), header.work(), header.instance(), std::move(pixels),
+                          header.counters().render_s(), header.counters().cpu_s(),
+                          [self = shared_from_this()](const absl::StatusOr<BandOutcome>& outcome) {
+                            self->answer(outcome);
+                          });
   }
   return absl::OkStatus();
 }
@@ -73,7 +73,7 @@ bool PutBandsCall::hand_over() {
 void PutBandsCall::answer(const absl::StatusOr<BandOutcome>& outcome) {
   MutexLock lock(mutex_);
   if (outcome.ok()) {
-    reply_.set_outcome(to_wire(*outcome));
+    reply_.set_outcome(to_message(*outcome));
     StartWrite(&reply_);
     return;
   }

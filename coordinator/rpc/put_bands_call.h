@@ -15,7 +15,7 @@ class PutBandsCall final
     : public SelfOwned<grpc::ServerBidiReactor<farm::BandChunk, farm::PutBandReply>, PutBandsCall>,
       public LongStream {
  public:
-  explicit PutBandsCall(const Doors& doors) : doors_(doors) {}
+  explicit PutBandsCall(const ServiceDependencies& deps) : deps_(deps) {}
   void begin();
 
   void OnReadDone(bool ok) override;
@@ -33,7 +33,7 @@ class PutBandsCall final
   void answer(const absl::StatusOr<BandOutcome>& outcome) EXCLUDES(mutex_);
   void advance() REQUIRES(mutex_);
 
-  const Doors doors_;
+  const ServiceDependencies deps_;
   farm::BandChunk chunk_;  ///< this and intake_: accessed in the order of reads only
   BandIntake intake_;
   farm::PutBandReply reply_;  ///< accessed by the thread that answers

@@ -1,14 +1,73 @@
 #include "coordinator/rpc/server.h"
 
+#include <grpcpp/ext/proto_server_reflection_plugin.h>
+#include <grpcpp/grpcpp.h>
+#include <memory>
+#include <string>
+#include <vector>
+
 #include "absl/strings/str_cat.h"
-#include "coordinator/rpc/health_service.h"
 #include "coordinator/rpc/port_check.h"
-#include "coordinator/rpc/reflection.h"
 #include "coordinator/rpc/services.h"
+#include "proto/farm.grpc.pb.h"
+#include "proto/health.grpc.pb.h"
+#include "proto/link/channel.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
 namespace {
+
+using Plugin = grpc::reflection::ProtoServerReflectionPlugin;
+using Plugins = std::vector<std::unique_ptr<grpc::ServerBuilderPlugin>>;
+
+class ReflectionOption final : public grpc::ServerBuilderOption {
+ public:
+  explicit ReflectionOption(bool wanted) : wanted_(wanted) {}
+  void UpdateArguments(grpc::ChannelArguments*) override {}
+  void UpdatePlugins(Plugins* plugins) override {
+    auto ours = std::make_unique<Plugin>();
+    const std::string name = ours->name();
+    std::erase_if(*plugins, [&](const auto& plugin) { return plugin->name() == name; });
+    if (wanted_) {
+      plugins->push_back(std::move(ours));
+    }
+  }
+
+ private:
+  const bool wanted_;
+};
+
+/// Enables or disables gRPC server reflection, which lists services, calls and messages to any
+/// client. libgrpc++_reflection enables it by being linked; this function removes that plugin.
+void set_reflection(grpc::ServerBuilder& builder, bool wanted) {
+  builder.SetOption(std::make_unique<ReflectionOption>(wanted));
+}
+
+// Health check for probes: proto/health.proto.
+
+/// Answers without a secret: the reply reveals only that the port is served, as the open port does.
+/// The service is registered after the engine has replayed its journal, so an answer implies that.
+class HealthService final : public grpc::health::v1::Health::CallbackService {
+ public:
+  grpc::ServerUnaryReactor* Check(grpc::CallbackServerContext* context,
+                                  const grpc::health::v1::HealthCheckRequest* request,
+                                  grpc::health::v1::HealthCheckResponse* reply) override;
+};
+
+grpc::ServerUnaryReactor* HealthService::Check(grpc::CallbackServerContext* context,
+                                               const grpc::health::v1::HealthCheckRequest* request,
+                                               grpc::health::v1::HealthCheckResponse* reply) {
+  grpc::ServerUnaryReactor* const reactor = context->DefaultReactor();
+  const std::string& service = request->service();
+  if (!service.empty() && service != farm::Farm::service_full_name() &&
+      service != farm::Work::service_full_name()) {
+    reactor->Finish(link::to_grpc(absl::NotFoundError("there is no such service here")));
+    return reactor;
+  }
+  reply->set_status(grpc::health::v1::HealthCheckResponse::SERVING);
+  reactor->Finish(grpc::Status::OK);
+  return reactor;
+}
 
 constexpr int kFileThreads = 4;   // they wait for the disk more than they work
 constexpr int kImageThreads = 2;  // they wait for the film, or hold an image of up to 768 MB each

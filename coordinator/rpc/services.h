@@ -10,7 +10,7 @@ namespace bandsaw::coordinator {
 
 class FarmService final : public farm::Farm::CallbackService {
  public:
-  explicit FarmService(const Doors& doors) : doors_(doors) {}
+  explicit FarmService(const ServiceDependencies& deps) : deps_(deps) {}
 
   grpc::ServerUnaryReactor* MissingBlobs(grpc::CallbackServerContext* context,
                                          const farm::MissingBlobsRequest* request,
@@ -59,17 +59,12 @@ class FarmService final : public farm::Farm::CallbackService {
                                          farm::RotateSecretReply* reply) override;
 
  private:
-  /// Checks the caller and the name of a worker given by a user. Returns the gate's error, or
-  /// INVALID_ARGUMENT if it cannot be a name.
-  absl::StatusOr<std::string> worker_named(const grpc::CallbackServerContext& context,
-                                           const std::string& name) const;
-
-  const Doors doors_;
+  const ServiceDependencies deps_;
 };
 
 class WorkService final : public farm::Work::CallbackService {
  public:
-  explicit WorkService(const Doors& doors) : doors_(doors) {}
+  explicit WorkService(const ServiceDependencies& deps) : deps_(deps) {}
 
   grpc::ServerBidiReactor<farm::FromWorker, farm::ToWorker>* Session(
       grpc::CallbackServerContext* context) override;
@@ -79,7 +74,7 @@ class WorkService final : public farm::Work::CallbackService {
       grpc::CallbackServerContext* context) override;
 
  private:
-  const Doors doors_;
+  const ServiceDependencies deps_;
 };
 
 }  // namespace bandsaw::coordinator

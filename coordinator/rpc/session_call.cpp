@@ -1,12 +1,55 @@
 #include "coordinator/rpc/session_call.h"
 
-#include "coordinator/rpc/convert.h"
+#include "coordinator/rpc/checked_messages.h"
+#include "proto/convert/render_values.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
+namespace {
+
+farm::ToWorker to_message(const action::Welcome& welcome, const std::string& epoch) {
+  farm::ToWorker message;
+  message.mutable_welcome()->set_name(welcome.name);
+  message.mutable_welcome()->set_heartbeat_ms(welcome.heartbeat_ms);
+  message.mutable_welcome()->set_epoch(epoch);
+  return message;
+}
+
+farm::ToWorker to_message(const action::Refuse& refuse) {
+  farm::ToWorker message;
+  message.mutable_refused()->set_reason(refuse.reason);
+  message.mutable_refused()->set_retry_after_ms(refuse.retry_after_ms);
+  return message;
+}
+
+absl::StatusOr<farm::ToWorker> to_message(const action::Lease& lease) {
+  ASSIGN_OR_RETURN(const wire::Digest manifest, wire::digest_from_hex(lease.manifest));
+  farm::ToWorker message;
+  farm::Lease* l = message.mutable_lease();
+  l->set_lease(lease.lease);
+  l->set_job(lease.job);
+  l->set_manifest_sha256(manifest.raw());
+  *l->mutable_settings() = bandsaw::to_message(lease.settings);
+  *l->mutable_band() = bandsaw::to_message(lease.band);
+  for (const std::uint32_t number : lease.tiles.numbers()) {
+    l->add_tile_samples(number);
+  }
+  l->set_attempt(lease.attempt);
+  return message;
+}
+
+farm::ToWorker to_message(const action::Revoke& revoke) {
+  farm::ToWorker message;
+  for (const LeaseId lease : revoke.leases) {
+    message.mutable_revoke()->add_lease(lease);
+  }
+  return message;
+}
+
+}  // namespace
 
 void SessionCall::begin() {
-  if (const absl::Status status = doors_.streams.add(weak_from_this()); !status.ok()) {
+  if (const absl::Status status = deps_.streams.add(weak_from_this()); !status.ok()) {
     stop(status);
     return;
   }
@@ -24,7 +67,7 @@ void SessionCall::done() {
       reason = std::string(end_->message());
     }
   }
-  doors_.engine.lost(*session_, std::move(reason));
+  deps_.engine.lost(*session_, std::move(reason));
 }
 
 void SessionCall::OnReadDone(bool ok) {
@@ -49,29 +92,29 @@ absl::Status SessionCall::receive(const farm::FromWorker& message) {
   switch (message.kind_case()) {
     case farm::FromWorker::kHello: {
       ASSIGN_OR_RETURN(WorkerHello hello, worker_hello(message.hello(), peer_));
-      session_ = doors_.engine.hello(shared_from_this(), std::move(hello));
+      session_ = deps_.engine.hello(shared_from_this(), std::move(hello));
       return absl::OkStatus();
     }
     case farm::FromWorker::kHeartbeat: {
       ASSIGN_OR_RETURN(input::Heartbeat beat, heartbeat(message.heartbeat()));
-      doors_.engine.heartbeat(*session_, std::move(beat.leases), std::move(beat.doing));
+      deps_.engine.heartbeat(*session_, std::move(beat.leases), std::move(beat.doing));
       return absl::OkStatus();
     }
     case farm::FromWorker::kFailed: {
       ASSIGN_OR_RETURN(input::BandFailed failed, band_failed(message.failed()));
-      doors_.engine.band_failed(*session_, failed.lease, std::move(failed.reason),
-                                std::move(failed.log));
+      deps_.engine.band_failed(*session_, failed.lease, std::move(failed.reason),
+                               std::move(failed.log));
       return absl::OkStatus();
     }
     case farm::FromWorker::kDraining: {
       ASSIGN_OR_RETURN(std::string reason,
                        reason_field("draining.reason", message.draining().reason()));
-      doors_.engine.draining(*session_, std::move(reason));
+      deps_.engine.draining(*session_, std::move(reason));
       return absl::OkStatus();
     }
     case farm::FromWorker::kLog: {
       ASSIGN_OR_RETURN(std::vector<std::string> lines, log_lines("log.line", message.log().line()));
-      doors_.engine.worker_log(*session_, std::move(lines));
+      deps_.engine.worker_log(*session_, std::move(lines));
       return absl::OkStatus();
     }
     case farm::FromWorker::KIND_NOT_SET:

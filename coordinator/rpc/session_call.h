@@ -17,7 +17,8 @@ class SessionCall final
       public WorkerLink,
       public LongStream {
  public:
-  SessionCall(const Doors& doors, std::string peer) : doors_(doors), peer_(std::move(peer)) {}
+  SessionCall(const ServiceDependencies& deps, std::string peer)
+      : deps_(deps), peer_(std::move(peer)) {}
   void begin();
   void done();
 
@@ -40,7 +41,7 @@ class SessionCall final
   void end_with(const absl::Status& status) EXCLUDES(mutex_);
   void advance() REQUIRES(mutex_);
 
-  const Doors doors_;
+  const ServiceDependencies deps_;
   const std::string peer_;
   farm::FromWorker incoming_;
   std::optional<SessionId> session_;  ///< accessed in the order of reads only, then by done()

@@ -6,6 +6,7 @@
 #include <grpcpp/grpcpp.h>
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "absl/status/status.h"
@@ -44,22 +45,22 @@ class LongStreams {
 };
 
 /// Dependencies shared by the services. All of them outlive every call.
-struct Doors {
+struct ServiceDependencies {
   Engine& engine;
   Gate& gate;
-  FileExecutor& files;   ///< for what waits for the disk
-  FileExecutor& images;  ///< for what makes images, and waits for the film
+  FileExecutor& files;   ///< threads for work that waits for the disk
+  FileExecutor& images;  ///< threads that make images, which wait for the film
   LongStreams& streams;
 };
 
-/// Who holds a secret that was renewed is told so.
+/// The error of calls whose secret was renewed.
 inline absl::Status void_secret() {
   return absl::UnauthenticatedError(
       "this secret is void: there is a new join string on the coordinator's machine");
 }
 
-/// A reactor that keeps itself until OnDone, which is gRPC's last word. Whatever may come later
-/// than that (an answer of the engine, a task of the file executor) holds it by shared_from_this().
+/// A reactor that owns itself until OnDone, gRPC's last call to it. Callbacks that may come later
+/// (an answer of the engine, a task of the file executor) hold it by shared_from_this().
 template <class Base, class Derived>
 class SelfOwned : public Base, public std::enable_shared_from_this<Derived> {
  public:
@@ -84,15 +85,7 @@ class SelfOwned : public Base, public std::enable_shared_from_this<Derived> {
   std::shared_ptr<Derived> self_;
 };
 
-/// Completes a unary call at once with a status.
-inline grpc::ServerUnaryReactor* finished(grpc::CallbackServerContext* context,
-                                          const absl::Status& status) {
-  grpc::ServerUnaryReactor* reactor = context->DefaultReactor();
-  reactor->Finish(link::to_grpc(status));
-  return reactor;
-}
-
-/// A streaming call that is refused at once.
+/// A call that is refused at once.
 template <class Base>
 class RefusedCall final : public Base {
  public:
@@ -100,21 +93,44 @@ class RefusedCall final : public Base {
   void OnDone() override { delete this; }
 };
 
-/// The reactor of a stream, made of `doors` and `args`, if the caller has this role's secret; else
-/// one that refuses. The secret is checked again when the stream is in the register: it may have
-/// been renewed meanwhile, and the streams that were registered then have been ended.
+/// The one place where callers are let in: returns `make()` if the caller has the secret of `role`
+/// (std::nullopt: of any role), otherwise a reactor that refuses the call. `make` returns a Base*.
+template <class Base, class Make>
+Base* if_admitted(const ServiceDependencies& deps, const grpc::CallbackServerContext& context,
+                  std::optional<link::Role> role, Make make) {
+  const absl::Status status = role ? deps.gate.check(context, *role) : deps.gate.check_any(context);
+  return status.ok() ? make() : new RefusedCall<Base>(status);
+}
+
+/// Returns the reactor of a stream, made of `deps` and `args`, if the caller has this role's
+/// secret. The secret is checked again when the stream is in the register, because it may have been
+/// renewed in between, which ended only the streams that were registered then.
 template <class Call, class... Args>
-auto* admitted(const Doors& doors, const grpc::CallbackServerContext& context, link::Role role,
-               Args&&... args) {
+auto* admitted(const ServiceDependencies& deps, const grpc::CallbackServerContext& context,
+               link::Role role, Args&&... args) {
   using Base = typename Call::Reactor;
-  if (const absl::Status status = doors.gate.check(context, role); !status.ok()) {
-    return static_cast<Base*>(new RefusedCall<Base>(status));
-  }
-  Call* const call = Call::make(doors, std::forward<Args>(args)...);
-  if (!doors.gate.holds(context, role)) {
-    call->stop(void_secret());
-  }
-  return static_cast<Base*>(call);
+  return if_admitted<Base>(deps, context, role, [&]() -> Base* {
+    Call* const call = Call::make(deps, std::forward<Args>(args)...);
+    if (!deps.gate.holds(context, role)) {
+      call->stop(void_secret());
+    }
+    return call;
+  });
+}
+
+/// Runs a unary RPC if the caller has the secret of `role`. `handle` is called with the reactor. If
+/// it returns an error, the call ends with it; otherwise `handle` MUST see to Finish being called.
+template <class Handle>
+grpc::ServerUnaryReactor* unary(const ServiceDependencies& deps,
+                                grpc::CallbackServerContext& context,
+                                std::optional<link::Role> role, Handle handle) {
+  return if_admitted<grpc::ServerUnaryReactor>(deps, context, role, [&] {
+    grpc::ServerUnaryReactor* const reactor = context.DefaultReactor();
+    if (const absl::Status status = handle(reactor); !status.ok()) {
+      reactor->Finish(link::to_grpc(status));
+    }
+    return reactor;
+  });
 }
 
 }  // namespace bandsaw::coordinator

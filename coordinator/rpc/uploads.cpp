@@ -7,7 +7,7 @@
 namespace bandsaw::coordinator {
 
 void PutBlobCall::begin() {
-  if (const absl::Status status = doors_.streams.add(weak_from_this()); !status.ok()) {
+  if (const absl::Status status = deps_.streams.add(weak_from_this()); !status.ok()) {
     stop(status);
     return;
   }
@@ -22,7 +22,7 @@ void PutBlobCall::OnReadDone(bool ok) {
     }
     working_ = true;
   }
-  doors_.files.post([self = shared_from_this(), ok] { self->after_task(self->take(ok)); });
+  deps_.files.post([self = shared_from_this(), ok] { self->after_task(self->take(ok)); });
 }
 
 std::optional<absl::Status> PutBlobCall::take(bool ok) {
@@ -68,8 +68,8 @@ void PutBlobCall::advance() {
 absl::Status PutBlobCall::add(const farm::BlobChunk& chunk) {
   RETURN_IF_ERROR(intake_.add(chunk));
   if (writer_ == nullptr) {
-    ASSIGN_OR_RETURN(writer_, doors_.engine.write_blob(intake_.digest(), intake_.size(),
-                                                       intake_.first_offset()));
+    ASSIGN_OR_RETURN(
+        writer_, deps_.engine.write_blob(intake_.digest(), intake_.size(), intake_.first_offset()));
   }
   return writer_->append(std::as_bytes(std::span(chunk.data())));
 }

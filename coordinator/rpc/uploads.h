@@ -14,8 +14,8 @@ namespace bandsaw::coordinator {
 class PutBlobCall final : public SelfOwned<grpc::ServerReadReactor<farm::BlobChunk>, PutBlobCall>,
                           public LongStream {
  public:
-  PutBlobCall(const Doors& doors, grpc::CallbackServerContext* context)
-      : doors_(doors), context_(context) {}
+  PutBlobCall(const ServiceDependencies& deps, grpc::CallbackServerContext* context)
+      : deps_(deps), context_(context) {}
   void begin();
   void OnReadDone(bool ok) override;
   /// What came is kept for the next try.
@@ -30,7 +30,7 @@ class PutBlobCall final : public SelfOwned<grpc::ServerReadReactor<farm::BlobChu
   absl::Status end();
   void advance() REQUIRES(mutex_);
 
-  const Doors doors_;
+  const ServiceDependencies deps_;
   grpc::CallbackServerContext* const context_;
   farm::BlobChunk chunk_;  ///< this and the next two: of reads and tasks, which alternate
   BlobIntake intake_;

@@ -1,15 +1,15 @@
 #include "coordinator/rpc/watch_call.h"
 
-#include "coordinator/rpc/convert.h"
+#include "coordinator/convert/farm_messages.h"
 
 namespace bandsaw::coordinator {
 
 void WatchCall::begin() {
-  if (const absl::Status status = doors_.streams.add(weak_from_this()); !status.ok()) {
+  if (const absl::Status status = deps_.streams.add(weak_from_this()); !status.ok()) {
     stop(status);
     return;
   }
-  doors_.engine.watch(job_, [self = shared_from_this()](const absl::StatusOr<JobView>& job) {
+  deps_.engine.watch(job_, [self = shared_from_this()](const absl::StatusOr<JobView>& job) {
     return self->changed(job);
   });
 }

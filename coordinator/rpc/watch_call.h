@@ -12,7 +12,7 @@ namespace bandsaw::coordinator {
 class WatchCall final : public SelfOwned<grpc::ServerWriteReactor<farm::JobStatus>, WatchCall>,
                         public LongStream {
  public:
-  WatchCall(const Doors& doors, JobId job) : doors_(doors), job_(job) {}
+  WatchCall(const ServiceDependencies& deps, JobId job) : deps_(deps), job_(job) {}
   void begin();
   void OnWriteDone(bool ok) override;
   void OnCancel() override { stop(absl::CancelledError("the watcher left")); }
@@ -24,7 +24,7 @@ class WatchCall final : public SelfOwned<grpc::ServerWriteReactor<farm::JobStatu
   bool changed(const absl::StatusOr<JobView>& job) EXCLUDES(mutex_);
   void advance() REQUIRES(mutex_);
 
-  const Doors doors_;
+  const ServiceDependencies deps_;
   const JobId job_;
   Mutex mutex_;
   bool writing_ GUARDED_BY(mutex_) = false;

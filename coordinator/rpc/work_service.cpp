@@ -8,17 +8,17 @@ namespace bandsaw::coordinator {
 
 grpc::ServerBidiReactor<farm::FromWorker, farm::ToWorker>* WorkService::Session(
     grpc::CallbackServerContext* context) {
-  return admitted<SessionCall>(doors_, *context, link::Role::kWorker, address_of(context->peer()));
+  return admitted<SessionCall>(deps_, *context, link::Role::kWorker, address_of(context->peer()));
 }
 
 grpc::ServerWriteReactor<farm::BlobChunk>* WorkService::GetBlob(
     grpc::CallbackServerContext* context, const farm::GetBlobRequest* request) {
-  return admitted<GetBlobCall>(doors_, *context, link::Role::kWorker, *request);
+  return admitted<GetBlobCall>(deps_, *context, link::Role::kWorker, *request);
 }
 
 grpc::ServerBidiReactor<farm::BandChunk, farm::PutBandReply>* WorkService::PutBands(
     grpc::CallbackServerContext* context) {
-  return admitted<PutBandsCall>(doors_, *context, link::Role::kWorker);
+  return admitted<PutBandsCall>(deps_, *context, link::Role::kWorker);
 }
 
 }  // namespace bandsaw::coordinator

@@ -18,10 +18,11 @@ static_assert(std::endian::native == std::endian::little, "the file is little-en
 
 /// Magic and size (renderlib/render/band_file.h).
 constexpr std::size_t kSizeEnd = kBandRecordMagic.size() + sizeof(std::uint64_t);
-/// The largest band that a worker may send, and what a record says beside its sums.
+/// The largest band that a worker may send, plus the other fields of a record.
 constexpr std::uint64_t kMaxRecordBytes = wire::kBandBytes + 4096;
 
-/// Where the next record may begin at or after `offset`; the end when none does.
+/// Returns the offset of the next possible record at or after `offset`; the end of the file if
+/// there is none.
 std::uint64_t next_magic(absl::Span<const std::byte> bytes, std::uint64_t offset) {
   const auto* magic = reinterpret_cast<const std::byte*>(kBandRecordMagic.data());
   const auto found = std::search(bytes.begin() + static_cast<std::ptrdiff_t>(offset), bytes.end(),
@@ -29,7 +30,7 @@ std::uint64_t next_magic(absl::Span<const std::byte> bytes, std::uint64_t offset
   return static_cast<std::uint64_t>(found - bytes.begin());
 }
 
-/// Hands on every whole record; the end of the last one.
+/// Calls `each` with every complete record and returns the end of the last one.
 std::uint64_t read_records(absl::Span<const std::byte> bytes,
                            absl::FunctionRef<void(BandRecord, std::uint64_t)> each,
                            BandLogReport& report) {
@@ -92,8 +93,9 @@ absl::Status BandLog::sync() {
   }
   const absl::Status synced = file_.sync();
   if (!synced.ok()) {
-    // After a failed fdatasync the kernel may call the pages clean though they never reached the
-    // disk. So they are given up and written again by whoever still has them.
+    // After a failed fdatasync the kernel may mark the pages as clean although they were not
+    // written. So the log is truncated, and the callers, which still have the bytes, send them
+    // again.
     size_ = synced_;
     torn_ = true;
     take_back(synced_).IgnoreError();
@@ -111,8 +113,8 @@ absl::Status BandLog::take_back(std::uint64_t size) {
 
 absl::StatusOr<BandRecord> read_band(const std::string& path, std::uint64_t offset) {
   ASSIGN_OR_RETURN(const File file, File::open(path, O_RDONLY));
-  // Not mapped: a sector that cannot be read is an error of one band here, the end of the process
-  // there.
+  // The file is not mapped: an unreadable sector is then an error for one band, whereas in a
+  // mapping it would end the process.
   std::array<std::byte, kSizeEnd> head{};
   RETURN_IF_ERROR(file.read(offset, absl::MakeSpan(head)));
   std::uint64_t size = 0;

@@ -124,8 +124,7 @@ absl::StatusOr<BlobStore::Writer> BlobStore::write(const wire::Digest& digest, s
 }
 
 BlobStore::Writer::~Writer() {
-  if (claim_ != nullptr && claim_->resumable() && intact_ &&
-      written_ >= PartialBlobs::kLeastBytes) {
+  if (claim_ != nullptr && claim_->resumable() && intact_ && written_ >= PartialBlobs::kMinBytes) {
     file_.leave(written_);
   }
 }

@@ -22,7 +22,7 @@ namespace {
 constexpr absl::string_view kFormat = "bandsaw data 1\n";
 constexpr std::size_t kProbeBytes = 1 << 16;
 
-/// A small file's text, at most `limit` bytes of it.
+/// Reads at most `limit` bytes of a small file.
 absl::StatusOr<std::string> read_text(const File& file, std::uint64_t limit) {
   ASSIGN_OR_RETURN(const std::uint64_t size, file.size());
   std::string text(std::min(size, limit), '\0');
@@ -42,15 +42,15 @@ absl::StatusOr<File> take_lock(const std::string& path) {
         "another coordinator (process ", holder.ok() ? absl::StripAsciiWhitespace(*holder) : "?",
         ") uses the data folder ", path, "; stop it, or give this one its own with --data"));
   }
-  // As long as the one before it: what is written over needs no room on a full disk.
+  // It has the same length as the previous text, because overwriting needs no space on a full disk.
   const std::string holder = absl::StrFormat("%-20d\n", ::getpid());
-  const absl::Status told = lock.write(std::as_bytes(std::span(holder)));
-  // People read it; the lock itself holds without.
-  return absl::IsResourceExhausted(told) || told.ok() ? absl::StatusOr<File>(std::move(lock))
-                                                      : told;
+  const absl::Status written = lock.write(std::as_bytes(std::span(holder)));
+  // The text is for users; the lock works without it.
+  return absl::IsResourceExhausted(written) || written.ok() ? absl::StatusOr<File>(std::move(lock))
+                                                            : written;
 }
 
-/// Marks a new folder with the format, and refuses one that has another.
+/// Writes the format into a new folder, and refuses a folder with another format.
 absl::Status check_format(const std::string& path) {
   const std::string name = path + "/format";
   if (!file_exists(name)) {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "coordinator/store/credits_file.h"
+#include "coordinator/store/attribution_file.h"
 #include "renderlib/image/image.h"
 
 namespace bandsaw::coordinator {
@@ -15,7 +15,7 @@ struct Finished {
   /// Number of samples of each pixel, the same in all channels. Only for an adaptive job; in other
   /// jobs all pixels have the same number.
   std::optional<Image> samples;
-  std::vector<RowsBy> credits;  ///< which worker rendered which rows
+  std::vector<RowsBy> attribution;  ///< which worker rendered which rows
 };
 
 }  // namespace bandsaw::coordinator

@@ -28,14 +28,25 @@ bool is_partial(const std::filesystem::path& path) {
   return path.extension() == kSuffix && wire::digest_from_hex(path.stem().string()).ok();
 }
 
+/// Returns the paths in a folder; none, or only some, if it cannot be read. Does not throw, unlike
+/// a range over directory_iterator.
+std::vector<std::filesystem::path> paths_in(const std::string& folder) {
+  std::vector<std::filesystem::path> paths;
+  std::error_code error;
+  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    paths.push_back(entry->path());
+  }
+  return paths;
+}
+
 /// Newest first.
 std::vector<Partial> partials_in(const std::string& folder) {
   std::vector<Partial> all;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
+  for (const std::filesystem::path& path : paths_in(folder)) {
     struct stat found {};
-    if (is_partial(entry.path()) && ::stat(entry.path().c_str(), &found) == 0) {
-      all.push_back({entry.path().string(), static_cast<std::uint64_t>(found.st_size),
+    if (is_partial(path) && ::stat(path.c_str(), &found) == 0) {
+      all.push_back({path.string(), static_cast<std::uint64_t>(found.st_size),
                      static_cast<double>(found.st_mtim.tv_sec) + 1e-9 * found.st_mtim.tv_nsec});
     }
   }
@@ -49,15 +60,10 @@ std::vector<Partial> partials_in(const std::string& folder) {
 
 absl::StatusOr<std::unique_ptr<PartialBlobs>> PartialBlobs::open(const std::string& folder) {
   RETURN_IF_ERROR(make_folder(folder));
-  std::vector<std::filesystem::path> others;
-  std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
-    if (!is_partial(entry.path())) {
-      others.push_back(entry.path());
+  for (const std::filesystem::path& path : paths_in(folder)) {
+    if (std::error_code error; !is_partial(path)) {
+      std::filesystem::remove_all(path, error);
     }
-  }
-  for (const std::filesystem::path& path : others) {
-    std::filesystem::remove_all(path, error);
   }
   return std::unique_ptr<PartialBlobs>(new PartialBlobs(folder));
 }

@@ -18,7 +18,7 @@ namespace bandsaw::coordinator {
 class PartialBlobs {
  public:
   /// Minimum size to keep; fewer bytes are quickly sent again.
-  static constexpr std::uint64_t kLeastBytes = 1 << 20;
+  static constexpr std::uint64_t kMinBytes = 1 << 20;
 
   /// Creates the folder; removes everything in it that is not a partial blob.
   static absl::StatusOr<std::unique_ptr<PartialBlobs>> open(const std::string& folder);

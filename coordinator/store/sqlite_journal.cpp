@@ -11,14 +11,14 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr int kSchema = 7;  // those before it had fewer kinds and fields and are read as they are
+constexpr int kSchema = 7;  // earlier versions had fewer kinds and fields and can be read
 constexpr char kTables[] =
     "CREATE TABLE IF NOT EXISTS record (sequence INTEGER PRIMARY KEY, kind TEXT NOT NULL,"
     " fields TEXT NOT NULL, seal TEXT NOT NULL) STRICT;";
 
 std::string raise_version() { return absl::StrCat("PRAGMA user_version = ", kSchema, ";"); }
 
-/// SQLite itself does not notice a changed byte in a value; this does.
+/// Detects a changed byte in a value, which SQLite itself does not.
 std::string seal(std::uint64_t sequence, const RecordText& text) {
   return wire::sha256(absl::StrCat(sequence, "\n", text.kind, "\n", text.fields))
       .hex()
@@ -35,7 +35,7 @@ std::string column(sqlite3_stmt* row, int index) {
 absl::StatusCode code_of(int result) {
   switch (result) {
     case SQLITE_FULL:
-    case SQLITE_IOERR:  // what a full disk says too, when it is the log that does not fit
+    case SQLITE_IOERR:  // also the error of a full disk if the write-ahead log does not fit
     case SQLITE_NOMEM:
       return absl::StatusCode::kResourceExhausted;
     case SQLITE_CORRUPT:
@@ -133,7 +133,7 @@ absl::Status SqliteJournal::append(absl::Span<const Record> records) {
 
 absl::Status SqliteJournal::rewrite(absl::Span<const Record> records) {
   RETURN_IF_ERROR(transact("DELETE FROM record;", records, 0));
-  // Give back the room; where that fails it is used again by what comes.
+  // Frees the space; if that fails, later records reuse it.
   execute("PRAGMA wal_checkpoint(TRUNCATE);").IgnoreError();
   execute("VACUUM;").IgnoreError();
   return absl::OkStatus();

@@ -31,7 +31,8 @@ std::string machine_name() {
   return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
 }
 
-/// Cookies know no ports, so several coordinators on a machine would take each other's.
+/// The name contains the port, because cookies do not distinguish ports and several coordinators on
+/// a machine would overwrite each other's.
 std::string cookie_name(const HttpRequest& request) {
   return absl::StrCat("bandsaw-", request.local_port);
 }
@@ -47,7 +48,8 @@ std::string cookie_of(const HttpRequest& request) {
   return "";
 }
 
-/// A browser's pass: made of people's secret, so void with it, and useless at the other doors.
+/// Returns the cookie's value, derived from the users' secret: it becomes invalid with the secret,
+/// and is of no use for gRPC.
 std::string pass_of(const std::string& secret) {
   constexpr char kPurpose[] = "bandsaw dashboard 1";
   std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
@@ -71,7 +73,7 @@ absl::Status check_post(const HttpRequest& request) {
   return absl::OkStatus();
 }
 
-/// The page, its files, and the way in.
+/// Returns true for the page, its files and the login, which need no login.
 bool is_open(const HttpRequest& request) {
   return request.path == "/api/login" ||
          (request.path != "/metrics" && !absl::StartsWith(request.path, "/api/"));

@@ -1,7 +1,7 @@
 #pragma once
 
-// Which requests are served. The page itself is for everybody who can reach it; all else needs a
-// login, and what changes anything must come from the page.
+// Access control. Everybody who can reach the port may read the page itself; all other requests
+// need a login, and requests that change anything must come from the page.
 
 #include <string>
 
@@ -13,31 +13,33 @@
 
 namespace bandsaw::coordinator {
 
-/// What a POST must carry, with any value: other sites cannot set it without asking first.
+/// Header that a POST must have, with any value: pages of other sites cannot set it without a CORS
+/// preflight.
 inline constexpr char kOurHeader[] = "X-Bandsaw";
 
 /// Thread-safe.
 class Access {
  public:
-  /// `secure`: cookies go over TLS only.
+  /// `secure`: browsers send the cookie over TLS only.
   Access(link::Identity identity, bool secure);
 
-  /// Logins with the secrets of before are void. True: people's secret is another one.
+  /// Invalidates logins with earlier secrets. Returns true if the users' secret has changed.
   bool renew(link::Identity identity) EXCLUDES(mutex_);
 
-  /// INVALID_ARGUMENT: no HTTP of ours. PERMISSION_DENIED: under a foreign name, from another site.
-  /// UNAUTHENTICATED: not logged in. RESOURCE_EXHAUSTED: too many wrong secrets.
+  /// Checks a request. INVALID_ARGUMENT: the Host header is missing or malformed.
+  /// PERMISSION_DENIED: a foreign host name, or from another site. UNAUTHENTICATED: not logged in.
+  /// RESOURCE_EXHAUSTED: too many wrong secrets.
   absl::Status check(const HttpRequest& request) EXCLUDES(mutex_);
 
-  /// By the cookie.
+  /// True if the request has a valid cookie.
   bool logged_in(const HttpRequest& request) EXCLUDES(mutex_);
 
-  /// Sets the cookie in `reply`. `text`: people's join string, or the secret in it.
-  /// UNAUTHENTICATED: a wrong one. RESOURCE_EXHAUSTED: that, too often from one address.
-  /// PERMISSION_DENIED: the workers'.
+  /// Sets the cookie in `reply`. `text`: the users' join string, or the secret in it.
+  /// UNAUTHENTICATED: wrong secret. RESOURCE_EXHAUSTED: wrong, and too often from one address.
+  /// PERMISSION_DENIED: the workers' secret.
   absl::Status log_in(const HttpRequest& request, const std::string& text, HttpReply& reply)
       EXCLUDES(mutex_);
-  /// Takes the cookie away.
+  /// Deletes the cookie.
   void log_out(const HttpRequest& request, HttpReply& reply) const;
 
  private:
@@ -48,12 +50,12 @@ class Access {
   const bool secure_;
   Mutex mutex_;
   link::Identity identity_ GUARDED_BY(mutex_);
-  std::string pass_ GUARDED_BY(mutex_);  ///< what a browser holds: made of people's secret
+  std::string pass_ GUARDED_BY(mutex_);  ///< value of the cookie, derived from the users' secret
   Failures failures_ GUARDED_BY(mutex_);
 };
 
-/// Whether a Host header names this machine by number or by its own name. A page of another site
-/// that lets its name point here (DNS rebinding) comes under that name.
+/// Returns true if a Host header has an IP address, localhost or this machine's own name. Requests
+/// of a foreign page whose name resolves to this machine (DNS rebinding) have that foreign name.
 bool is_own_host(const std::string& host, const std::string& machine);
 
 }  // namespace bandsaw::coordinator

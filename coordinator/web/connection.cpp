@@ -21,7 +21,7 @@ struct Endpoint {
   int port = 0;
 };
 
-/// `name_of`: getpeername or getsockname. Empty where the socket has no address with numbers.
+/// `name_of`: getpeername or getsockname. Empty if the socket has no numeric address.
 Endpoint endpoint_of(int socket, int (*name_of)(int, sockaddr*, socklen_t*)) {
   sockaddr_storage address{};
   socklen_t size = sizeof(address);
@@ -85,7 +85,7 @@ bool Connection::shake_hands() {
   if (!encrypted_) {
     return true;
   }
-  while (ssl_ != nullptr) {  // null: there was no memory for it
+  while (ssl_ != nullptr) {  // nullptr: out of memory
     ERR_clear_error();
     const int result = SSL_accept(ssl_.get());
     if (result == 1) {

@@ -1,7 +1,8 @@
 #pragma once
 
-// One connection of a browser, for one request. It has a deadline as a whole, not for each read, so
-// that a peer which sends or takes a byte now and then holds a thread no longer than a silent one.
+// One connection of a client, for one request. The deadline applies to the connection as a whole,
+// not to each read, so that a peer that transfers a byte now and then occupies a thread no longer
+// than a silent one.
 
 #include <openssl/ssl.h>
 
@@ -13,40 +14,40 @@
 namespace bandsaw::coordinator {
 
 /// Used by one thread, in this order: shake_hands, reads of the head, begin_body, reads of the
-/// body, begin_answer, writes, finish. The socket stays the caller's. With TLS a write may raise
-/// SIGPIPE: the thread MUST block it.
+/// body, begin_answer, writes, finish. The caller keeps the ownership of the socket. With TLS a
+/// write may raise SIGPIPE: the thread MUST block it.
 class Connection {
  public:
   /// The request's head, with the TLS handshake, must come within this time.
   static constexpr std::chrono::milliseconds kPatience{10'000};
-  /// A body, in either direction, has the same time, and a second more for each so many bytes that
-  /// passed.
+  /// A body, in either direction, has the same time, plus a second for each so many transferred
+  /// bytes.
   static constexpr double kMinBytesPerSecond = 32 << 10;
-  /// How long finish() waits for the other end.
+  /// Time that finish() waits for the peer.
   static constexpr std::chrono::seconds kLastWords{2};
 
-  /// `tls` may be null: plaintext.
+  /// `tls` may be nullptr: plaintext.
   Connection(int socket, SSL_CTX* tls, std::chrono::milliseconds patience = kPatience);
 
-  /// False: the other end does not speak TLS, or not in time.
+  /// False: the peer does not speak TLS, or not in time.
   bool shake_hands();
-  /// The head was read: the body has a time of its own.
+  /// Call after the head was read: starts the time of the body.
   void begin_body();
-  /// The body was read, as far as it is wanted: the answer has a time of its own.
+  /// Call after the needed part of the body was read: starts the time of the response.
   void begin_answer();
-  /// Waits for bytes and reads at most `size`, which is not 0. Gives their number; 0: the
-  /// connection ended, or its time is over.
+  /// Waits for bytes and reads at most `size`, which is not 0. Returns their number; 0: the
+  /// connection has ended, or its deadline has passed.
   std::size_t read(char* bytes, std::size_t size);
   /// Writes at most `size` bytes, which is not 0, as soon as some can be written. Result as of
   /// read.
   std::size_t write(const char* bytes, std::size_t size);
-  /// Tells the other end that no more comes, and reads what it still sends: closing a socket with
-  /// unread bytes would make the system discard the answer.
+  /// Ends the sending direction and reads what the peer still sends, because closing a socket with
+  /// unread bytes would make the system discard the response.
   void finish();
 
-  /// Numeric; empty: not known.
+  /// Numeric address of the peer; empty: unknown.
   const std::string& remote_address() const { return remote_; }
-  /// 0: not known.
+  /// Port of this end; 0: unknown.
   int local_port() const { return local_port_; }
 
  private:
@@ -57,9 +58,9 @@ class Connection {
 
   /// Waits until the socket is ready for `events` of poll; false: the deadline passed.
   bool wait(short events) const;
-  /// Waits for what an unfinished read or write of this result needs; false: it failed for good.
+  /// Waits until an unfinished read or write with this result can continue; false: it has failed.
   bool wait_after(int tls_result, short plain_events) const;
-  /// The time that this many bytes of a body add to the deadline.
+  /// Returns the time that this many bytes of a body add to the deadline.
   void extend(std::size_t bytes);
 
   const int socket_;

@@ -35,7 +35,7 @@ class Dashboard::Impl {
         access_(identity, secure_),
         pictures_(engine),
         report_(options.report),
-        scenes_(engine, options.bring),
+        scenes_(engine, options.import_scene),
         gallery_(options.gallery),
         workers_(options.workers),
         server_(std::move(tls), headers_of_every_answer(),

@@ -1,7 +1,7 @@
 #pragma once
 
-// The dashboard: a page for people, and what it asks. On loopback in plain HTTP, elsewhere with
-// TLS; everywhere with a login by people's secret.
+// The dashboard: a web page and the requests that it makes. On loopback by plain HTTP, elsewhere
+// with TLS; always with a login by the users' secret.
 
 #include <memory>
 #include <string>
@@ -16,25 +16,25 @@
 namespace bandsaw::coordinator {
 
 struct DashboardOptions {
-  std::string host = "127.0.0.1";  ///< a number or a name; IPv6 without brackets
-  int port = 8787;                 ///< 0 picks one
-  bool insecure = false;           ///< plain HTTP beyond loopback too
-  std::string gallery;             ///< folder of scene files; need not be there
-  BringScene bring;
-  WorkerPrograms workers;  ///< what is handed out to machines that are to join
+  std::string host = "127.0.0.1";  ///< address or name; IPv6 without brackets
+  int port = 8787;                 ///< 0: a free one
+  bool insecure = false;           ///< plain HTTP also beyond loopback
+  std::string gallery;             ///< folder of scene files; may be missing
+  ImportScene import_scene;
+  WorkerPrograms workers;  ///< programs for machines that are to join
   TellReport report;
 };
 
 class Dashboard {
  public:
-  /// `engine` outlives it. FAILED_PRECONDITION: the port cannot be had.
+  /// `engine` outlives it. FAILED_PRECONDITION: the port cannot be used.
   static absl::StatusOr<std::unique_ptr<Dashboard>> start(Engine& engine,
                                                           const link::Identity& identity,
                                                           const DashboardOptions& options);
-  /// Cuts every connection.
+  /// Closes every connection.
   ~Dashboard();
-  /// There is a new secret. If it is people's, logins with the old one are void, and every
-  /// connection is cut: it may be under way with the old one.
+  /// Sets the new secrets. If the users' secret has changed, logins with the old one become invalid
+  /// and every connection is closed, because it may use the old one.
   void renew(const link::Identity& identity);
   int port() const;
   bool secure() const;
@@ -45,7 +45,7 @@ class Dashboard {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Whether only this machine reaches it.
+/// Returns true if only this machine can connect to the host.
 bool is_loopback(const std::string& host);
 
 }  // namespace bandsaw::coordinator

@@ -56,7 +56,7 @@ class Stream {
     return 0;
   }
 
-  // The concepts ask for these too.
+  // Required by the concepts.
   template <class Buffers>
   std::size_t read_some(const Buffers& buffers) {
     beast::error_code error;
@@ -84,7 +84,8 @@ class Exchange {
   Exchange(Connection& connection, const std::vector<HttpField>& headers)
       : connection_(connection), stream_(connection), headers_(headers) {
     parser_.header_limit(kMaxHeadBytes);
-    // Handlers bound what they take. (No limit, boost::none, is smaller than any in Boost 1.74.)
+    // Handlers limit the size of bodies. (No limit, boost::none, is smaller than any in
+    // Boost 1.74.)
     parser_.body_limit(std::numeric_limits<std::uint64_t>::max());
   }
 
@@ -164,7 +165,7 @@ class Exchange {
     response.content_length(reply.bytes.size());
     response.body() = Bytes::value_type(reply.bytes.data(), reply.bytes.size());
     http::response_serializer<Bytes> serializer(response);
-    beast::error_code ignored;  // whoever asked is gone
+    beast::error_code ignored;  // the client has disconnected
     connection_.begin_answer();
     http::write_header(stream_, serializer, ignored);
     if (!ignored && request.method != "HEAD") {
@@ -177,8 +178,8 @@ class Exchange {
   const std::vector<HttpField>& headers_;
   http::request_parser<http::buffer_body> parser_;
   beast::flat_static_buffer<kBufferBytes> buffer_;
-  // What was read last of the body. It is larger than what is parsed at once, so that it is never
-  // full: Beast would ask for another one (need_buffer) before it noticed the body's end.
+  // The bytes of the body that were read last. It is larger than the parser's buffer, so that it is
+  // never full: otherwise Beast would report need_buffer before the end of the body.
   std::array<char, kBufferBytes + 1> body_;
   bool awaits_continue_ = false;  ///< the client sends the body when it is told to
 };

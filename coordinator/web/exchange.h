@@ -1,6 +1,6 @@
 #pragma once
 
-// One request of a connection and its answer: HTTP/1.1 by Boost.Beast.
+// One request of a connection and its response: HTTP/1.1 by Boost.Beast.
 
 #include <vector>
 
@@ -9,12 +9,11 @@
 
 namespace bandsaw::coordinator {
 
-/// The request line and the headers together have at most so many bytes.
+/// Maximum size of the request line and the headers together, in bytes.
 inline constexpr std::uint32_t kMaxHeadBytes = 32 << 10;
 
-/// Reads one request, has it answered by `handler`, and writes the answer with `headers` added.
-/// What is no HTTP is answered with an error; a connection that ends, or whose time is over, is not
-/// answered.
+/// Reads one request, calls `handler`, and writes its response with `headers` added. Malformed HTTP
+/// gets an error response. A connection that ends, or whose deadline passes, gets none.
 void exchange(Connection& connection, const HttpHandler& handler,
               const std::vector<HttpField>& headers);
 

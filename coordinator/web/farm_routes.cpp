@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "coordinator/rpc/convert.h"
+#include "coordinator/convert/farm_messages.h"
+#include "coordinator/rpc/checked_messages.h"
 #include "coordinator/web/metrics.h"
 #include "coordinator/web/reply.h"
 #include "coordinator/web/routes.h"
@@ -12,15 +13,15 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// More is no overview; `bandsaw jobs` lists all.
-constexpr std::size_t kMostJobs = 200;
+/// Maximum number of jobs in the overview; `bandsaw jobs` lists all.
+constexpr std::size_t kMaxJobs = 200;
 
 std::vector<JobView> all_jobs(Engine& engine) {
-  return ask<std::vector<JobView>>([&](auto answer) { engine.jobs(answer); });
+  return blocking_call<std::vector<JobView>>([&](auto answer) { engine.jobs(answer); });
 }
 
 std::vector<WorkerView> all_workers(Engine& engine) {
-  return ask<std::vector<WorkerView>>([&](auto answer) { engine.workers(answer); });
+  return blocking_call<std::vector<WorkerView>>([&](auto answer) { engine.workers(answer); });
 }
 
 web::Overview overview(Engine& engine) {
@@ -30,7 +31,7 @@ web::Overview overview(Engine& engine) {
   std::sort(jobs.begin(), jobs.end(), [](const JobView& a, const JobView& b) {
     return is_final(a.state) != is_final(b.state) ? is_final(b.state) : a.id > b.id;
   });
-  const std::size_t shown = std::min(jobs.size(), kMostJobs);
+  const std::size_t shown = std::min(jobs.size(), kMaxJobs);
   for (std::size_t i = 0; i < shown; ++i) {
     *overview.add_job()->mutable_status() = to_message(jobs[i]);
   }
@@ -45,7 +46,7 @@ absl::StatusOr<web::Log> worker_log(Engine& engine, const HttpRequest& request) 
   ASSIGN_OR_RETURN(const std::string name, reason_field("name", request.parameter("name")));
   using Lines = absl::StatusOr<std::vector<std::string>>;
   ASSIGN_OR_RETURN(const std::vector<std::string> lines,
-                   ask<Lines>([&](auto answer) { engine.logs(name, answer); }));
+                   blocking_call<Lines>([&](auto answer) { engine.logs(name, answer); }));
   web::Log log;
   log.mutable_line()->Assign(lines.begin(), lines.end());
   return log;

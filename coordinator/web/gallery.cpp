@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostAbout = 300;
+constexpr std::size_t kMaxAboutBytes = 300;
 constexpr char kSuffix[] = ".textproto";
 
 std::string leading_comment(const std::string& path) {
@@ -26,7 +26,7 @@ std::string leading_comment(const std::string& path) {
     absl::StrAppend(&about, about.empty() ? "" : " ",
                     text == std::string::npos ? "" : line.substr(text));
   }
-  return clean_text(about, kMostAbout);
+  return clean_text(about, kMaxAboutBytes);
 }
 
 }  // namespace

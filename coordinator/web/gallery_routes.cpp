@@ -1,7 +1,7 @@
-// The gallery: its scenes, what became of them here, and how to render one.
+// The gallery: its scenes, their newest jobs on this farm, and a request to render one.
 
 #include "absl/strings/str_cat.h"
-#include "coordinator/rpc/convert.h"
+#include "coordinator/convert/farm_messages.h"
 #include "coordinator/web/reply.h"
 #include "coordinator/web/routes.h"
 #include "proto/link/random.h"
@@ -11,12 +11,12 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// A gallery is for looking; more is for `bandsaw submit`.
-constexpr std::uint64_t kMostSamples = 4096;
-constexpr std::uint32_t kMostWidth = 4096;
+/// Limits of gallery jobs; larger ones need `bandsaw submit`.
+constexpr std::uint64_t kMaxGallerySamples = 4096;
+constexpr std::uint32_t kMaxWidth = 4096;
 
 web::Gallery gallery_message(Engine& engine, const Gallery& gallery) {
-  const auto jobs = ask<std::vector<JobView>>([&](auto answer) { engine.jobs(answer); });
+  const auto jobs = blocking_call<std::vector<JobView>>([&](auto answer) { engine.jobs(answer); });
   web::Gallery message;
   for (const GalleryScene& scene : gallery.scenes()) {
     web::Scene* const card = message.add_scene();
@@ -37,9 +37,9 @@ absl::StatusOr<web::Submitted> render(Scenes& scenes, const Gallery& gallery,
   if (scene == nullptr) {
     return absl::NotFoundError("there is no such scene in the gallery");
   }
-  if (wish.samples() < 1 || wish.samples() > kMostSamples || wish.width() > kMostWidth) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("samples: must lie in [1, ", kMostSamples, "]; width: at most ", kMostWidth));
+  if (wish.samples() < 1 || wish.samples() > kMaxGallerySamples || wish.width() > kMaxWidth) {
+    return absl::InvalidArgumentError(absl::StrCat("samples: must lie in [1, ", kMaxGallerySamples,
+                                                   "]; width: at most ", kMaxWidth));
   }
   return scenes.submit(scene->path, {.request_id = request_prefix(*scene) + link::random_hex(8),
                                      .width = wish.width(),

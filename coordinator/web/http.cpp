@@ -42,7 +42,7 @@ struct ByteRange {
   std::uint64_t last = 0;  ///< inclusive; less than `first` where there are no such bytes
 };
 
-/// Nothing: the header is not one valid range of bytes.
+/// Parses the header; std::nullopt if it is not one valid range of bytes.
 std::optional<ByteRange> range_of(absl::string_view header, std::uint64_t size) {
   if (!absl::StartsWithIgnoreCase(header, "bytes=") || !absl::StrContains(header, '-')) {
     return std::nullopt;
@@ -57,7 +57,7 @@ std::optional<ByteRange> range_of(absl::string_view header, std::uint64_t size) 
       (ends.first.empty() && !has_last) || (!ends.first.empty() && has_last && last < first)) {
     return std::nullopt;
   }
-  if (ends.first.empty()) {  // so many bytes before the end
+  if (ends.first.empty()) {  // the last bytes
     return last == 0 || size == 0 ? ByteRange{1, 0}
                                   : ByteRange{size - std::min(last, size), size - 1};
   }
@@ -111,7 +111,7 @@ HttpReply text_reply(std::string text, std::string type) {
 
 HttpReply with_range(const HttpRequest& request, HttpReply reply) {
   if (request.method != "GET" || reply.status != 200 || !request.has_header("Range") ||
-      request.has_header("If-Range")) {  // no answer has a validator that it could name
+      request.has_header("If-Range")) {  // no response has a validator that it could match
     return reply;
   }
   const std::size_t size = reply.bytes.size();

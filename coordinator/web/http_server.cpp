@@ -31,16 +31,16 @@ void switch_on(int socket, int level, int option) {
   setsockopt(socket, level, option, &on, sizeof(on));
 }
 
-/// A socket that listens at this address, or -1 with errno.
+/// Returns a socket that listens at this address, or -1 with errno.
 int listen_at(const addrinfo& address) {
   const int one = socket(address.ai_family, address.ai_socktype | SOCK_CLOEXEC, 0);
   if (one < 0) {
     return -1;
   }
-  // Not SO_REUSEPORT: two coordinators would share the port in silence.
+  // Not SO_REUSEPORT: two coordinators would share the port without an error.
   switch_on(one, SOL_SOCKET, SO_REUSEADDR);
   if (address.ai_family == AF_INET6) {
-    const int off = 0;  // "::" takes IPv4 too
+    const int off = 0;  // "::" also accepts IPv4
     setsockopt(one, IPPROTO_IPV6, IPV6_V6ONLY, &off, sizeof(off));
   }
   if (bind(one, address.ai_addr, address.ai_addrlen) == 0 && listen(one, SOMAXCONN) == 0) {
@@ -52,7 +52,7 @@ int listen_at(const addrinfo& address) {
   return -1;
 }
 
-/// A socket that listens at the first address of the host that can be had.
+/// Returns a socket that listens at the first usable address of the host.
 absl::StatusOr<int> listen_on(const std::string& host, int port) {
   addrinfo hints{};
   hints.ai_family = AF_UNSPEC;

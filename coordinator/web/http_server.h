@@ -1,7 +1,7 @@
 #pragma once
 
-// The HTTP server under the dashboard: one request a connection, a bounded number of threads, a
-// bounded number of connections of one address, a deadline for each connection, TLS from memory.
+// The HTTP server of the dashboard: one request per connection, a limited number of threads and of
+// connections from one address, a deadline for each connection, TLS with keys from memory.
 
 #include <map>
 #include <string>
@@ -19,31 +19,31 @@ namespace bandsaw::coordinator {
 class HttpServer {
  public:
   static constexpr int kThreads = 32;
-  /// Further connections of an address that has so many are closed at once.
+  /// Maximum number of connections from one address; more are closed at once.
   static constexpr int kMaxOfOneAddress = 24;
 
-  /// `tls` may be null: plaintext. `headers` are added to every answer. `handler` is called on
-  /// several threads at once.
+  /// `tls` may be nullptr: plaintext. `headers` are added to every response. `handler` is called on
+  /// several threads at the same time.
   HttpServer(TlsContext tls, std::vector<HttpField> headers, HttpHandler handler);
-  /// Cuts every connection, and waits for the handlers.
+  /// Closes every connection and waits for the handlers.
   ~HttpServer();
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;
 
-  /// Listens from its return on; MUST be called at most once. `host`: a number or a name; `port`: 0
-  /// picks one. Gives the port. FAILED_PRECONDITION: it cannot be had.
+  /// Starts to listen and returns the port. Call at most once. `host`: address or name; `port`: 0
+  /// for a free one. FAILED_PRECONDITION: the port cannot be used.
   absl::StatusOr<int> start(const std::string& host, int port);
-  /// Cuts every connection that is open now.
+  /// Closes every open connection.
   void cut() EXCLUDES(mutex_);
 
  private:
-  /// What each thread does: accepts a connection, serves it, closes it.
+  /// Body of each thread: accepts a connection, serves it, closes it.
   void run() EXCLUDES(mutex_);
   void serve(int socket) EXCLUDES(mutex_);
   /// False: the server is being stopped, or the address has too many connections.
   bool enter(int socket, const std::string& address) EXCLUDES(mutex_);
   void leave(int socket) EXCLUDES(mutex_);
-  /// After an accept that gave no connection. False: the server is being stopped.
+  /// Waits after a failed accept. False: the server is being stopped.
   bool may_accept_again(int error) EXCLUDES(mutex_);
 
   const TlsContext tls_;

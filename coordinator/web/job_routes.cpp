@@ -1,8 +1,8 @@
-// One job: what it is, and what people tell it.
+// One job: its state, and commands on it.
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
-#include "coordinator/rpc/convert.h"
+#include "coordinator/convert/farm_messages.h"
 #include "coordinator/rpc/picture.h"
 #include "coordinator/web/reply.h"
 #include "coordinator/web/routes.h"
@@ -12,32 +12,34 @@
 namespace bandsaw::coordinator {
 namespace {
 
-using Told = absl::StatusOr<JobView>;
-using TellJob = void (Engine::*)(JobId, std::function<void(Told)>);
+using Changed = absl::StatusOr<JobView>;
+using JobCommand = void (Engine::*)(JobId, std::function<void(Changed)>);
 
-HttpReply answer_with(const Told& told) {
-  if (!told.ok()) {
-    return refuse(told.status());
+HttpReply answer_with(const Changed& changed) {
+  if (!changed.ok()) {
+    return refuse(changed.status());
   }
   web::Job job;
-  *job.mutable_status() = to_message(*told);
+  *job.mutable_status() = to_message(*changed);
   return reply(job);
 }
 
-void add_order(Router& router, Engine& engine, const char* order, TellJob tell) {
-  router.post(absl::StrCat("/api/jobs/*/", order), [&engine, tell](const HttpRequest& request,
-                                                                   const HttpBody&) {
+void add_command(Router& router, Engine& engine, const char* name, JobCommand command) {
+  router.post(absl::StrCat("/api/jobs/*/", name), [&engine, command](const HttpRequest& request,
+                                                                     const HttpBody&) {
     const auto job = job_of(request);
-    return answer_with(job.ok() ? ask<Told>([&](auto answer) { (engine.*tell)(*job, answer); })
-                                : Told(job.status()));
+    return answer_with(
+        job.ok() ? blocking_call<Changed>([&](auto answer) { (engine.*command)(*job, answer); })
+                 : Changed(job.status()));
   });
 }
 
-Told set_priority(Engine& engine, const HttpRequest& request, const HttpBody& body) {
+Changed set_priority(Engine& engine, const HttpRequest& request, const HttpBody& body) {
   ASSIGN_OR_RETURN(const JobId job, job_of(request));
   web::Priority wanted;
   RETURN_IF_ERROR(read_json(body, wanted));
-  return ask<Told>([&](auto answer) { engine.set_priority(job, wanted.priority(), answer); });
+  return blocking_call<Changed>(
+      [&](auto answer) { engine.set_priority(job, wanted.priority(), answer); });
 }
 
 absl::StatusOr<web::JobPage> job_page(Engine& engine, const HttpRequest& request) {
@@ -46,11 +48,11 @@ absl::StatusOr<web::JobPage> job_page(Engine& engine, const HttpRequest& request
   web::JobPage page;
   *page.mutable_job()->mutable_status() = to_message(view);
   for (const std::string& reason :
-       ask<std::vector<std::string>>([&](auto answer) { engine.why(id, answer); })) {
+       blocking_call<std::vector<std::string>>([&](auto answer) { engine.why(id, answer); })) {
     page.add_why(reason);
   }
   for (const RowsBy& by :
-       ask<std::vector<RowsBy>>([&](auto answer) { engine.rendered_by(id, answer); })) {
+       blocking_call<std::vector<RowsBy>>([&](auto answer) { engine.rendered_by(id, answer); })) {
     web::RowsBy* const rows = page.add_rendered();
     rows->set_first_row(by.rows.first);
     rows->set_last_row(by.rows.last);
@@ -72,9 +74,9 @@ absl::StatusOr<JobId> job_of(const HttpRequest& request) {
 void add_jobs(Router& router, Engine& engine) {
   router.get("/api/jobs/*",
              [&engine](const HttpRequest& request) { return answer(job_page(engine, request)); });
-  add_order(router, engine, "cancel", &Engine::cancel);
-  add_order(router, engine, "pause", &Engine::pause);
-  add_order(router, engine, "resume", &Engine::resume);
+  add_command(router, engine, "cancel", &Engine::cancel);
+  add_command(router, engine, "pause", &Engine::pause);
+  add_command(router, engine, "resume", &Engine::resume);
   router.post("/api/jobs/*/priority", [&engine](const HttpRequest& request, const HttpBody& body) {
     return answer_with(set_priority(engine, request, body));
   });

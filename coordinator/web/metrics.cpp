@@ -18,7 +18,7 @@ std::string label(const char* name, const std::string& value) {
 
 class Text {
  public:
-  /// The lines that follow are of this one.
+  /// Begins a metric; the following lines are its values.
   void gauge(const char* name, const char* help) {
     name_ = name;
     absl::StrAppend(&text_, "# HELP ", name, " ", help, "\n# TYPE ", name, " gauge\n");
@@ -61,7 +61,7 @@ void add_counts(Text& out, const std::vector<JobView>& jobs,
   }
 }
 
-/// One line for each job that is not over; a negative value is not known.
+/// Writes one line for each job that is not over; negative values are unknown and left out.
 template <class Value>
 void add_jobs(Text& out, const char* name, const char* help, const std::vector<JobView>& jobs,
               Value value) {

@@ -10,7 +10,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Of jobs: those that are not over have a line each. `free_bytes`: of the coordinator's disk.
+/// Formats the metrics. Each job that is not over has a line of its own. `free_bytes`: free space
+/// of the coordinator's disk.
 std::string metrics(const std::vector<JobView>& jobs, const std::vector<WorkerView>& workers,
                     std::uint64_t free_bytes, const std::string& version);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// The files of coordinator/web/page, as the build put them into the program (embed.cmake).
+// The files of coordinator/web/page, which the build embeds into the program (embed.cmake).
 
 #include "absl/strings/string_view.h"
 #include "absl/types/span.h"

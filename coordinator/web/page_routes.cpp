@@ -1,4 +1,4 @@
-// The page and the way in.
+// The page and the login.
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/web/page_files.h"

@@ -1,4 +1,4 @@
-// Previews, images, and what is said of them.
+// Previews, images and reports.
 
 #include <functional>
 #include <utility>
@@ -14,7 +14,7 @@ namespace {
 constexpr std::uint32_t kSmallestSide = 64;
 constexpr std::uint32_t kLargestSide = 2048;
 
-/// Few sizes, so that few are made.
+/// Rounds to one of few sizes, so that few pictures are made.
 std::uint32_t side_of(const HttpRequest& request) {
   std::uint32_t wanted = 0;
   if (!absl::SimpleAtoi(request.parameter("side"), &wanted)) {
@@ -36,7 +36,7 @@ HttpReply send(const absl::StatusOr<Pictures::Bytes>& bytes, const char* type) {
 
 using Make = std::function<absl::StatusOr<Pictures::Bytes>(JobId)>;
 
-/// A file of a finished job: `what`.`suffix`.
+/// Returns the name of a finished job's file: `what`.`suffix`.
 void add_file(Router& router, const std::string& what, const std::string& suffix, const char* type,
               Make make) {
   router.get(absl::StrCat("/api/jobs/*/", what, ".", suffix),

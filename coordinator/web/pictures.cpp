@@ -12,16 +12,16 @@ namespace bandsaw::coordinator {
 namespace {
 
 constexpr double kFresh_s = 0.9;
-constexpr std::size_t kMostBytes = 64 << 20;
+constexpr std::size_t kMaxBytes = 64 << 20;
 
-/// A file, and its bytes of Engine::images.
+/// A file and its share of Engine::images.
 struct HeldFile {
   std::string bytes;
   MemoryBudget::Share share;
 };
 
-/// The image as a file, which takes its place in memory. (While it is encoded both are there: that
-/// is one at a time.)
+/// Encodes the image as a file, which replaces it in memory. During encoding both are in memory,
+/// but only one image is encoded at a time.
 absl::StatusOr<Pictures::Bytes> encoded(HeldImage image, ImageFormat format) {
   ASSIGN_OR_RETURN(const std::vector<std::byte> bytes,
                    encode_image(image.result.image, format, image.result.display));
@@ -52,7 +52,7 @@ absl::StatusOr<Pictures::Bytes> Pictures::preview(JobId id, std::uint32_t most_s
   const absl::StatusOr<Bytes> png =
       picture.ok() ? encoded(*std::move(picture), ImageFormat::kPng) : picture.status();
   if (!png.ok()) {
-    // Between the last band and the result on disk there is nothing newer than what was shown.
+    // Between the last band and the result on disk there is no newer image than the last one.
     return found != made_.end() ? absl::StatusOr<Bytes>(found->second.png) : png;
   }
   keep(key, {.png = *png,
@@ -67,7 +67,7 @@ void Pictures::keep(const Key& key, Made made) {
   const auto size_of = [](const Made& one) { return one.png == nullptr ? 0 : one.png->size(); };
   bytes_ += size_of(made) - size_of(made_[key]);
   made_[key] = std::move(made);
-  while (bytes_ > kMostBytes && made_.size() > 1) {
+  while (bytes_ > kMaxBytes && made_.size() > 1) {
     const auto oldest = std::min_element(
         made_.begin(), made_.end(),
         [](const auto& a, const auto& b) { return a.second.used < b.second.used; });

@@ -1,6 +1,6 @@
 #pragma once
 
-// Which function answers which path.
+// The handlers of paths.
 
 #include <functional>
 #include <string>
@@ -10,24 +10,23 @@
 
 namespace bandsaw::coordinator {
 
-/// Filled first, then used by any threads.
+/// Filled by one thread first; then thread-safe.
 class Router {
  public:
-  /// Routes GET and HEAD of the paths that are equal to `pattern`. A "*" in it, of which there is
-  /// at most one, stands for one or more characters other than "/", which are
-  /// `HttpRequest::captured`.
+  /// Adds a route for GET and HEAD of paths equal to `pattern`. It may have one "*", which matches
+  /// one or more characters other than "/"; they become `HttpRequest::captured`.
   void get(std::string pattern, std::function<HttpReply(const HttpRequest&)> answer);
   /// The same for POST, whose handler may read the body.
   void post(std::string pattern, HttpHandler answer);
 
-  /// The answer of the first route that fits; a 404 where none does.
+  /// Returns the response of the first matching route, or a 404.
   HttpReply answer(HttpRequest request, const HttpBody& body) const;
 
  private:
   struct Route {
     bool post = false;
-    std::string prefix;  ///< of the path: what comes before "*"
-    std::string suffix;  ///< what comes after it
+    std::string prefix;  ///< part of the path before "*"
+    std::string suffix;  ///< part of the path after "*"
     bool captures = false;
     HttpHandler answer;
   };

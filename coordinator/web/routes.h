@@ -1,6 +1,6 @@
 #pragma once
 
-// The answers of the server by path. Access is checked before any of these runs.
+// The handlers of all paths. Access is checked before any of them runs.
 
 #include "coordinator/engine/engine.h"
 #include "coordinator/web/access.h"
@@ -12,10 +12,11 @@
 
 namespace bandsaw::coordinator {
 
-/// The page's files, which are part of the program.
+/// Adds the page's files, which are embedded in the program.
 void add_page(Router& router);
-/// The arguments outlive the server's threads, here and below. /bandsaw-worker/MACHINE is the
-/// program for the architecture of that name, /bandsaw-worker that for the coordinator's own.
+/// Adds the workers' programs: /bandsaw-worker/MACHINE for the architecture of that name,
+/// /bandsaw-worker for the coordinator's own. Here and below, the arguments MUST outlive the
+/// server's threads.
 void add_worker_programs(Router& router, const WorkerPrograms& programs);
 void add_login(Router& router, Access& access);
 void add_farm(Router& router, Engine& engine);
@@ -24,7 +25,7 @@ void add_pictures(Router& router, Pictures& pictures, const TellReport& report);
 void add_scenes(Router& router, Scenes& scenes);
 void add_gallery(Router& router, Engine& engine, Scenes& scenes, const Gallery& gallery);
 
-/// The job that the path names in place of "*". NOT_FOUND: this is no job's number.
+/// Returns the job id at the place of "*" in the path. NOT_FOUND: not a job id.
 absl::StatusOr<JobId> job_of(const HttpRequest& request);
 
 }  // namespace bandsaw::coordinator

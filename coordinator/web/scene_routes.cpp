@@ -1,4 +1,4 @@
-// Scene files that people drop on the page.
+// Scene files that users drop on the page.
 
 #include <cerrno>
 #include <cstdio>
@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint64_t kMaxSceneBytes = 512ull << 20;
 
-/// A folder of its own for one file, removed with it: the importer reads below it and nowhere else.
+/// A temporary folder for one file: the importer can read below this folder only.
 class Upload {
  public:
   Upload() = default;
@@ -50,7 +50,7 @@ class Upload {
     file_ = std::fopen(path_.c_str(), "wb");
     return file_ != nullptr ? absl::OkStatus() : errno_status(errno, "cannot keep the scene");
   }
-  /// Writes the whole body to the file, as it comes, and closes the file.
+  /// Writes the whole body to the file as it arrives, and closes the file.
   absl::Status receive(const HttpBody& body) {
     absl::Status status = copy(body);
     if (std::fclose(std::exchange(file_, nullptr)) != 0 && status.ok()) {
@@ -85,9 +85,10 @@ class Upload {
   std::FILE* file_ = nullptr;
 };
 
-/// The file's own name as far as it is harmless. INVALID_ARGUMENT: not a kind that stands alone.
+/// Returns the safe characters of the file's name. INVALID_ARGUMENT: a format that needs other
+/// files.
 absl::StatusOr<std::string> file_name(const std::string& given) {
-  constexpr std::size_t kMost = 80;
+  constexpr std::size_t kMaxStem = 80;
   std::string name = given.substr(given.find_last_of("/\\") + 1);
   for (char& c : name) {
     c = absl::ascii_isalnum(c) || c == '.' || c == '-' || c == '_' ? c : '_';
@@ -95,7 +96,7 @@ absl::StatusOr<std::string> file_name(const std::string& given) {
   for (const char* suffix : {".glb", ".textproto"}) {
     if (absl::EndsWithIgnoreCase(name, suffix)) {
       const std::string stem = name.substr(0, name.size() - std::string(suffix).size());
-      const std::string kept = stem.substr(0, kMost);
+      const std::string kept = stem.substr(0, kMaxStem);
       return absl::StrCat(kept.empty() || kept[0] == '.' ? "scene" : kept, suffix);
     }
   }

@@ -14,7 +14,7 @@ absl::StatusOr<web::Submitted> Scenes::submit(const std::string& path, const Sce
   if (++reading_ > kAtOnce) {
     return absl::ResourceExhaustedError("other scenes are being read; try again in a moment");
   }
-  ASSIGN_OR_RETURN(const SceneOnFarm scene, bring_(path, stop_));
+  ASSIGN_OR_RETURN(const SceneOnFarm scene, import_scene_(path, stop_));
   const JobSpec spec{
       .request_id =
           wanted.request_id.empty() ? "dashboard-" + link::random_hex(8) : wanted.request_id,
@@ -26,7 +26,7 @@ absl::StatusOr<web::Submitted> Scenes::submit(const std::string& path, const Sce
   RETURN_IF_ERROR(validate(spec.settings));
   using Answer = absl::StatusOr<JobId>;
   ASSIGN_OR_RETURN(const JobId job,
-                   ask<Answer>([&](auto answer) { engine_.submit(spec, answer); }));
+                   blocking_call<Answer>([&](auto answer) { engine_.submit(spec, answer); }));
   web::Submitted submitted;
   submitted.set_job(job);
   submitted.mutable_warning()->Assign(scene.info.warnings.begin(), scene.info.warnings.end());

@@ -1,7 +1,7 @@
 #pragma once
 
-// From a scene file to a job. The file is read by the confined importer, as everywhere; how is
-// given from outside (BringScene), because the programs lie with the command.
+// From a scene file to a job. The confined importer reads the file, as everywhere; the function
+// that runs it is passed in (ImportScene), because only the command knows where the importer is.
 
 #include <atomic>
 #include <cstdint>
@@ -24,12 +24,12 @@ struct SceneOnFarm {
 
 /// Imports a scene file and stores its package. Blocks; CANCELLED soon after `stop` becomes true.
 /// Errors of the importer, naming the file, and of the store.
-using BringScene = std::function<absl::StatusOr<SceneOnFarm>(const std::string& path,
-                                                             const std::atomic<bool>& stop)>;
+using ImportScene = std::function<absl::StatusOr<SceneOnFarm>(const std::string& path,
+                                                              const std::atomic<bool>& stop)>;
 
-/// What is wanted of a scene.
+/// Parameters of a job that renders a scene.
 struct SceneWish {
-  std::string request_id;   ///< as in farm.SubmitRequest; empty: a new one
+  std::string request_id;   ///< as in farm.SubmitRequest; empty: a random one
   std::uint32_t width = 0;  ///< pixels; 0: the scene's own; the height keeps the shape
   StopRule stop = StopAtSamples{64};
 };
@@ -37,19 +37,21 @@ struct SceneWish {
 /// Thread-safe.
 class Scenes {
  public:
-  /// So many files are read at the same time; more are refused.
+  /// Maximum number of files that are imported at the same time; more are refused.
   static constexpr int kAtOnce = 2;
 
-  Scenes(Engine& engine, BringScene bring) : engine_(engine), bring_(std::move(bring)) {}
+  Scenes(Engine& engine, ImportScene import_scene)
+      : engine_(engine), import_scene_(std::move(import_scene)) {}
 
-  /// Errors of BringScene and Engine::submit; RESOURCE_EXHAUSTED: busy with others.
+  /// Errors of ImportScene and Engine::submit; RESOURCE_EXHAUSTED: kAtOnce others are being
+  /// imported.
   absl::StatusOr<web::Submitted> submit(const std::string& path, const SceneWish& wanted);
-  /// Ends what is being read; what comes later is refused.
+  /// Stops current imports and refuses later ones.
   void stop() { stop_ = true; }
 
  private:
   Engine& engine_;
-  const BringScene bring_;
+  const ImportScene import_scene_;
   std::atomic<bool> stop_{false};
   std::atomic<int> reading_{0};
 };

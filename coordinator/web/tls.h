@@ -16,7 +16,7 @@ struct FreeTlsContext {
 };
 using TlsContext = std::unique_ptr<SSL_CTX, FreeTlsContext>;
 
-/// TLS 1.2 or later. INVALID_ARGUMENT: key or certificate cannot be used.
+/// Creates a context for TLS 1.2 or later. INVALID_ARGUMENT: key or certificate cannot be used.
 absl::StatusOr<TlsContext> make_tls_context(const link::Identity& identity);
 
 }  // namespace bandsaw::coordinator

@@ -1,6 +1,6 @@
 #pragma once
 
-// The worker's program as the coordinator hands it out: one file for each architecture of machines.
+// The worker's program that machines download from the coordinator: one file per architecture.
 
 #include <array>
 #include <optional>
@@ -25,17 +25,17 @@ inline constexpr Machine kThisMachine = Machine::kAarch64;
 #error "Machine (coordinator/web/worker_program.h) has no name for this architecture yet"
 #endif
 
-/// As `uname -m` says it on Linux: "x86_64", "aarch64".
+/// Returns the name that `uname -m` prints on Linux: "x86_64", "aarch64".
 constexpr absl::string_view machine_name(Machine machine) {
   return machine == Machine::kX86_64 ? "x86_64" : "aarch64";
 }
 
-/// As Debian and other systems say it: "amd64", "arm64".
+/// Returns the name that Debian and other systems use: "amd64", "arm64".
 constexpr absl::string_view other_machine_name(Machine machine) {
   return machine == Machine::kX86_64 ? "amd64" : "arm64";
 }
 
-/// The architecture of either name. nullopt: there is none of that name.
+/// Returns the architecture of either name; std::nullopt if there is none.
 constexpr std::optional<Machine> machine_named(absl::string_view name) {
   for (const Machine machine : kMachines) {
     if (name == machine_name(machine) || name == other_machine_name(machine)) {
@@ -45,19 +45,19 @@ constexpr std::optional<Machine> machine_named(absl::string_view name) {
   return std::nullopt;
 }
 
-/// Held in memory: what is handed out is what its digest was taken of, whatever becomes of the
-/// file. It holds no secret.
+/// The program is held in memory, so that the bytes that are handed out have this digest even if
+/// the file changes. It contains no secret.
 struct WorkerProgram {
   Machine machine = kThisMachine;
-  std::string version;  ///< as its file says
+  std::string version;  ///< from the mark in its file
   std::string bytes;
-  wire::Digest digest;  ///< of the bytes
+  wire::Digest digest;  ///< digest of `bytes`
 };
 
-/// At most one for each architecture.
+/// At most one per architecture.
 using WorkerPrograms = std::vector<WorkerProgram>;
 
-/// Its file name, and its path at the dashboard.
+/// File name of the program, and its path at the dashboard.
 inline constexpr char kWorkerProgram[] = "bandsaw-worker";
 
 }  // namespace bandsaw::coordinator

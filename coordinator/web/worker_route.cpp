@@ -1,4 +1,4 @@
-// Hands the worker's program to machines that have none yet.
+// Hands out the worker's program to machines that have none.
 
 #include <algorithm>
 
@@ -22,7 +22,7 @@ absl::Status no_program(const WorkerPrograms& programs) {
                    "says, and start the coordinator again"));
 }
 
-/// The program for `machine`; std::nullopt is an unknown architecture. 404 if there is none.
+/// Returns the program for `machine` (std::nullopt: unknown architecture), or a 404.
 HttpReply program_for(const WorkerPrograms& programs, std::optional<Machine> machine) {
   const auto found = std::find_if(programs.begin(), programs.end(),
                                   [&](const WorkerProgram& one) { return one.machine == machine; });
@@ -41,8 +41,7 @@ HttpReply program_for(const WorkerPrograms& programs, std::optional<Machine> mac
 
 void add_worker_programs(Router& router, const WorkerPrograms& programs) {
   const std::string path = absl::StrCat("/", kWorkerProgram);
-  router.get(path,
-             [&programs](const HttpRequest&) { return program_for(programs, kThisMachine); });
+  router.get(path, [&programs](const HttpRequest&) { return program_for(programs, kThisMachine); });
   router.get(path + "/*", [&programs](const HttpRequest& request) {
     return program_for(programs, machine_named(request.captured));
   });

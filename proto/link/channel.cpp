@@ -63,7 +63,7 @@ absl::StatusOr<Connected> connect_tls(const std::string& address, const wire::Di
   if (*digest != expected) {
     return absl::UnauthenticatedError(
         "it shows another certificate than the join string names: another farm, or one whose data "
-        "folder was made anew");
+        "folder was created again");
   }
   grpc::SslCredentialsOptions options;
   options.pem_root_certs = *std::move(pem);

@@ -3,6 +3,7 @@
 // every wait has a deadline and no write can raise SIGPIPE.
 
 #include <openssl/bio.h>
+#include <openssl/err.h>
 #include <openssl/pem.h>
 #include <openssl/ssl.h>
 
@@ -30,6 +31,7 @@ std::string take_all(BIO* bio) {
 /// One round of the handshake: runs OpenSSL, sends its output and feeds it the answer. Returns true
 /// once the handshake is complete.
 absl::StatusOr<bool> advance(SSL* session, Socket& socket, Deadline deadline) {
+  ERR_clear_error();  // SSL_get_error reports errors that earlier calls of this thread have left
   const int result = SSL_connect(session);
   const int reason = SSL_get_error(session, result);
   if (absl::Status status = socket.send(take_all(SSL_get_wbio(session)), deadline); !status.ok()) {
@@ -39,6 +41,7 @@ absl::StatusOr<bool> advance(SSL* session, Socket& socket, Deadline deadline) {
     return true;
   }
   if (reason != SSL_ERROR_WANT_READ) {
+    ERR_clear_error();  // the thread's queue, which later calls of others would read
     return absl::UnavailableError("what answers there does not speak TLS");
   }
   absl::StatusOr<std::string> answer = socket.receive(deadline);

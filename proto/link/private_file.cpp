@@ -81,7 +81,7 @@ absl::StatusOr<std::string> read_private_file(const std::string& path) {
     return absl::PermissionDeniedError(
         absl::StrCat(path, " holds secrets and can be read by others: chmod 600 it"));
   }
-  std::string text(kMaxSize, '\0');
+  std::string text(kMaxSize + 1, '\0');
   std::size_t size = 0;
   while (size < text.size()) {
     const ssize_t got = read(file.get(), text.data() + size, text.size() - size);
@@ -92,6 +92,10 @@ absl::StatusOr<std::string> read_private_file(const std::string& path) {
       break;
     }
     size += got > 0 ? static_cast<std::size_t>(got) : 0;
+  }
+  if (size > kMaxSize) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat(path, " has more than ", kMaxSize, " bytes: it is not the right file"));
   }
   text.resize(size);
   return text;

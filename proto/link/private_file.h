@@ -13,9 +13,8 @@ namespace bandsaw::link {
 /// Creates the folder and its parents with mode 0700. An existing folder is not changed.
 absl::Status make_private_folder(const std::string& folder);
 
-/// Reads a file of at most 1 MiB; the rest of a longer file is ignored. NOT_FOUND: no such file.
-/// PERMISSION_DENIED: not readable by this user, or readable by others (the message says how to
-/// repair it).
+/// Reads a file of at most 1 MiB. NOT_FOUND: no such file. PERMISSION_DENIED: not readable by this
+/// user, or readable by others (the message says how to repair it). RESOURCE_EXHAUSTED: longer.
 absl::StatusOr<std::string> read_private_file(const std::string& path);
 
 /// Writes a file of mode 0600 by temporary file, fsync, rename and fsync of the folder. If it

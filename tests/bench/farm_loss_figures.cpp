@@ -21,9 +21,9 @@ constexpr int kSilences = 3;  // each takes seconds to be detected
 
 /// A job that does not end during the measurement.
 void keep_busy(const FarmProcesses& farm) {
-  const test::Finished finished = test::run(
-      farm.on("house", farm.command({"submit", std::string(BANDSAW_GALLERY) + "/cornell.textproto",
-                                     "--samples", "65536", "--detach"})));
+  const test::Finished finished = test::run(farm.on(
+      "coordinator", farm.command({"submit", std::string(BANDSAW_GALLERY) + "/cornell.textproto",
+                                   "--samples", "65536", "--detach"})));
   BANDSAW_CHECK(finished.code == 0, finished.err.c_str());
 }
 
@@ -56,7 +56,7 @@ Figure signalled(const std::string& name, const std::string& aim, int number, in
 
 Figure cable_pulled() {
   Figure figure{"loss seen: cable pulled", "≤ 5 s", " s", {}, ""};
-  std::vector<std::string> names = {"house"};
+  std::vector<std::string> names = {"coordinator"};
   for (int i = 0; i < kSilences; ++i) {
     names.push_back("desk" + std::to_string(i));
   }

@@ -15,7 +15,8 @@ namespace bandsaw::test {
 FarmProcesses::FarmProcesses(const Hosts* hosts, std::vector<std::string> options)
     : hosts_(hosts),
       options_(std::move(options)),
-      listen_((hosts == nullptr ? std::string("127.0.0.1") : hosts->address("house")) + ":0") {
+      listen_((hosts == nullptr ? std::string("127.0.0.1") : hosts->address("coordinator")) +
+              ":0") {
   start_coordinator();
 }
 
@@ -28,7 +29,7 @@ void FarmProcesses::start_coordinator() {
   std::vector<std::string> argv = {BANDSAW_BIN,      "serve",    "--data",
                                    folder_ / "data", "--listen", listen_};
   argv.insert(argv.end(), options_.begin(), options_.end());
-  coordinator_ = std::make_unique<Process>(Process::start(on("house", argv)));
+  coordinator_ = std::make_unique<Process>(Process::start(on("coordinator", argv)));
   BANDSAW_CHECK(coordinator_->wait_for("join with:"), coordinator_->err().c_str());
   const auto join = link::join_string_from(join_file());
   BANDSAW_CHECK(join.ok(), join.status().ToString().c_str());

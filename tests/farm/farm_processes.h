@@ -16,8 +16,8 @@ namespace bandsaw::test {
 class FarmProcesses {
  public:
   /// Starts the coordinator with additional `options` (the default disables audits, because tests
-  /// count rendered bands). If `hosts` is given, the coordinator runs on machine "house" and each
-  /// worker on the machine of its name; `hosts` MUST outlive this object.
+  /// count rendered bands). If `hosts` is given, the coordinator runs on machine "coordinator" and
+  /// each worker on the machine of its name; `hosts` MUST outlive this object.
   explicit FarmProcesses(const Hosts* hosts = nullptr,
                          std::vector<std::string> options = {"--audit", "0%"});
 

@@ -14,7 +14,7 @@ namespace {
 class Cables : public testing::Test {
  protected:
   void SetUp() override {
-    auto hosts = Hosts::create({"house", "desk", "laptop", "person"});
+    auto hosts = Hosts::create({"coordinator", "desk", "laptop", "person"});
     if (!hosts.ok()) {
       GTEST_SKIP() << hosts.status().message();
     }
@@ -56,17 +56,17 @@ TEST_F(Cables, OneIsPulledAndPutBack) {
   job_->wait_until_joined("desk", 2);
 }
 
-TEST_F(Cables, AWorkerThatIsNotHeard) { expect_nothing_lost_when_deaf("desk", "house"); }
+TEST_F(Cables, AWorkerThatIsNotHeard) { expect_nothing_lost_when_deaf("desk", "coordinator"); }
 
-TEST_F(Cables, AWorkerThatDoesNotHear) { expect_nothing_lost_when_deaf("house", "desk"); }
+TEST_F(Cables, AWorkerThatDoesNotHear) { expect_nothing_lost_when_deaf("coordinator", "desk"); }
 
 TEST_F(Cables, TheCoordinatorsOwnIsPulled) {
   Process client = job_->submit("person");
   job_->wait_until_stored("desk", 2);
-  hosts_->unplug("house");
+  hosts_->unplug("coordinator");
   wait_until_lost("desk");
   wait_until_lost("laptop");
-  hosts_->plug("house");
+  hosts_->plug("coordinator");
   job_->expect_the_same_bytes(client);
   job_->expect_nothing_rendered_again();
   job_->wait_until_joined("desk", 2);

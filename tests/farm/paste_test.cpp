@@ -33,11 +33,11 @@ Process paste(const FarmProcesses& farm, const std::string& host, const std::str
 }
 
 TEST(Paste, ALineBringsAWorkerAlong) {
-  const auto hosts = Hosts::create({"house", "desk"});
+  const auto hosts = Hosts::create({"coordinator", "desk"});
   if (!hosts.ok()) {
     GTEST_SKIP() << hosts.status().message();
   }
-  FarmProcesses farm(hosts->get(), {"--web", (*hosts)->address("house") + ":0"});
+  FarmProcesses farm(hosts->get(), {"--web", (*hosts)->address("coordinator") + ":0"});
   const std::string line = pasted_line(farm.coordinator());
   EXPECT_NE(line.find(" --pinnedpubkey "), std::string::npos) << farm.coordinator().out();
   Process worker = paste(farm, "desk", farm.path("desk"), line);
@@ -52,20 +52,20 @@ TEST(Paste, ALineBringsAWorkerAlong) {
 }
 
 TEST(Paste, AnotherKeyOrAnotherProgramIsNotStarted) {
-  const auto hosts = Hosts::create({"house"});
+  const auto hosts = Hosts::create({"coordinator"});
   if (!hosts.ok()) {
     GTEST_SKIP() << hosts.status().message();
   }
-  FarmProcesses farm(hosts->get(), {"--web", (*hosts)->address("house") + ":0"});
+  FarmProcesses farm(hosts->get(), {"--web", (*hosts)->address("coordinator") + ":0"});
   const std::string line = pasted_line(farm.coordinator());
   const std::string zeros(43, 'A');
   const std::string other_key =
       std::regex_replace(line, std::regex("sha256//[^ ]*"), "sha256//" + zeros + "=");
-  Process impostor = paste(farm, "house", farm.path("one"), other_key);
+  Process impostor = paste(farm, "coordinator", farm.path("one"), other_key);
   EXPECT_EQ(impostor.wait(), 90) << impostor.err();  // curl: the pinned key does not match
   const std::string other_digest =
       std::regex_replace(line, std::regex("d=[0-9a-f]{64}"), "d=" + std::string(64, '0'));
-  Process damaged = paste(farm, "house", farm.path("two"), other_digest);
+  Process damaged = paste(farm, "coordinator", farm.path("two"), other_digest);
   EXPECT_EQ(damaged.wait(), 1);
   EXPECT_NE(damaged.out().find("FAILED"), std::string::npos) << damaged.out();
 }

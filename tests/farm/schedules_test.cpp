@@ -162,7 +162,7 @@ class Schedule {
 };
 
 TEST(Schedules, TheSameBytesWhateverBefallsTheFarm) {
-  const auto made = Hosts::create({"house", "person", "w0", "w1", "w2", "w3"});
+  const auto made = Hosts::create({"coordinator", "person", "w0", "w1", "w2", "w3"});
   const Hosts* hosts = made.ok() ? made->get() : nullptr;
   const TempDir folder;
   const std::string local = folder / "local.pfm";

@@ -67,42 +67,5 @@ TEST_F(StudyCommand, AnInterruptEndsItAndNothingIsWritten) {
   EXPECT_TRUE(nothing_written());
 }
 
-constexpr char kSmall[] = "8";
-
-TEST_F(StudyCommand, ThePhoneStudysImagesAreTimedHereAndOnTheFarm) {
-  FarmProcesses farm;
-  farm.add_worker("one", 1);
-  const Finished done = run(farm.command(
-      {"study", "--phone", "objects", "texture_512", "lights", "--runs", "2", "--width", kSmall,
-       "--threads", "2", "--quiet", "-o", folder_ / "s.csv", "-o", folder_ / "s.svg"}));
-  ASSERT_EQ(done.code, 0) << done.err;
-  EXPECT_NE(done.out.find("| a farm, 1 worker, 1 thread |"), std::string::npos) << done.out;
-  EXPECT_NE(done.out.find("in the study 11.34 times"), std::string::npos) << done.out;
-  const std::string csv = file_bytes(folder_ / "s.csv");
-  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + (6 + 1 + 2) * 3 * 2) << csv;
-  EXPECT_NE(csv.find("objects_24,farm,2,,"), std::string::npos) << csv;
-  EXPECT_NE(file_bytes(folder_ / "s.svg").find("by objects"), std::string::npos);
-}
-
-TEST_F(StudyCommand, ThePhoneStudyDoesWithoutAFarmButNotWithoutTheOneThatIsNamed) {
-  std::vector<std::string> alone = {"/usr/bin/env", "-u", "BANDSAW_FARM",
-                                    "XDG_DATA_HOME=" + folder_.path() + "/none"};
-  const auto command = study({"--phone", "size_125", "--runs", "1", "--width", kSmall});
-  alone.insert(alone.end(), command.begin(), command.end());
-  const Finished done = run(alone);
-  ASSERT_EQ(done.code, 0) << done.err;
-  EXPECT_NE(done.err.find("without a farm"), std::string::npos) << done.err;
-  EXPECT_NE(done.out.find("| a farm | – |"), std::string::npos) << done.out;
-  EXPECT_EQ(run(study({"--phone", "--farm", folder_ / "none"})).code, 2);
-  EXPECT_EQ(run(study({"--phone", "spheros"})).code, 2);
-}
-
-TEST_F(StudyCommand, AFarmWithoutWorkersIsNotWaitedFor) {
-  FarmProcesses farm;
-  const Finished done = run(farm.command({"study", "--phone", "size_125"}));
-  EXPECT_EQ(done.code, 1);
-  EXPECT_NE(done.err.find("no worker"), std::string::npos) << done.err;
-}
-
 }  // namespace
 }  // namespace bandsaw::test

@@ -16,7 +16,7 @@ class Survival {
   explicit Survival(FarmProcesses& farm) : farm_(farm) {}
 
   /// Starts a job that takes several seconds, and the command that watches it on machine `host`.
-  Process submit(const std::string& host = "house");
+  Process submit(const std::string& host = "coordinator");
 
   /// Waits until `bands` bands of the worker are on the coordinator's disk.
   void wait_until_stored(const std::string& worker, std::size_t bands);

@@ -6,7 +6,7 @@
 #include <set>
 #include <sstream>
 
-#include "coordinator/cli/machines/worker_program.h"
+#include "coordinator/cli/machines/worker_file.h"
 #include "tests/farm/farm_processes.h"
 #include "tests/support/process.h"
 #include "tests/support/sanitized.h"

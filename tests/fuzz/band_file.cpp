@@ -32,7 +32,8 @@ void bandsaw::fuzz::run(absl::Span<const std::uint8_t> input) {
     bytes.push_back(static_cast<std::byte>(byte));
   }
   read_all(bytes);
-  // No mutation guesses the hash at the end: what lies behind it is tried with the right one.
+  // No mutation guesses the hash at the end, so the code behind the check is reached with the
+  // correct hash.
   if (bytes.size() > sizeof(std::uint64_t)) {
     const std::size_t body = bytes.size() - sizeof(std::uint64_t);
     Hash64 hash;

@@ -1,5 +1,6 @@
-// Chunks of bands: any message; then a worker who begins, goes on, lies and sends too much as the
-// input says. What is taken is what came, of the digest that was announced, and sums.
+// Chunks of bands: any message; then a worker that begins, continues, sends wrong bytes and too
+// many, as the input selects. An accepted band has the bytes that were sent, the announced digest,
+// and valid sums.
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +21,7 @@ bool is_sum(double value) { return std::isfinite(value) && value >= 0; }
 
 class Sender {
  public:
-  /// Three bytes of the input: what is said, and a number.
+  /// Three bytes of the input: the kind of message, and a number.
   void step(std::uint8_t what, std::uint32_t number) {
     farm::BandChunk chunk;
     if ((what & 1) != 0) {

@@ -1,8 +1,8 @@
-// What a worker says on its stream, message after message (each after two bytes of its length,
-// little-endian): checked as the coordinator does, then told to a core with a job.
+// Messages of a worker's stream (each after two bytes with its length, little-endian): checked as
+// the coordinator does, then given to a scheduler with a job.
 
 #include "coordinator/core/core.h"
-#include "coordinator/rpc/convert.h"
+#include "coordinator/rpc/checked_messages.h"
 #include "renderlib/base/check.h"
 #include "tests/fuzz/fuzz.h"
 

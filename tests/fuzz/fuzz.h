@@ -1,7 +1,8 @@
 #pragma once
 
-// A fuzz target is one file with fuzz(): any bytes, no crash, no leak, and what it takes is what it
-// gives back. libFuzzer calls it through libfuzzer.cpp, CTest with the corpus through replay.cpp.
+// A fuzz target is one file with fuzz(). It takes any bytes without a crash or a leak, and accepted
+// input reads back unchanged. libFuzzer calls it through libfuzzer.cpp, CTest with the corpus
+// through replay.cpp.
 
 #include <algorithm>
 #include <cstddef>
@@ -12,10 +13,10 @@
 
 namespace bandsaw::fuzz {
 
-/// Ends the program when something that must hold does not.
+/// Ends the program if the condition does not hold.
 void run(absl::Span<const std::uint8_t> input);
 
-/// step(what, number) for every three bytes, `most` times at most: a sequence of events.
+/// Calls step(what, number) for every three bytes, at most `most` times: a sequence of events.
 template <class F>
 void each_step(absl::Span<const std::uint8_t> input, std::size_t most, F step) {
   for (std::size_t at = 0; at + 3 <= std::min(input.size(), 3 * most); at += 3) {

@@ -1,6 +1,5 @@
-// A request of a browser, twice: the input as it comes over a connection, and as lines "Name:
-// value" up to an empty one, then the body, so that little has to be guessed to get to the
-// handlers.
+// A request of a browser, in two ways: the input as the bytes of a connection, and as lines "Name:
+// value" up to an empty one and then the body, so that mutations reach the handlers easily.
 
 #include <sys/socket.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-// A manifest, and bytes that take the place of every blob that it names: two bytes of the
+// A manifest, and bytes that replace every blob that it names: two bytes with the
 // manifest's length, little-endian, the manifest, the blob's bytes.
 
 #include "renderlib/package/package.h"
@@ -19,7 +19,7 @@ class OneBlob : public bandsaw::BlobBytes {
   absl::Span<const std::byte> bytes_;
 };
 
-/// Whatever is asked for is there, with the bytes that there are.
+/// Has every blob, always with the same bytes.
 class AnyBlob : public bandsaw::BlobSource {
  public:
   explicit AnyBlob(absl::Span<const std::byte> bytes) : bytes_(bytes) {}

@@ -1,4 +1,4 @@
-// Runs a fuzz target over the files of a folder: what was found once is tried with every build.
+// Runs a fuzz target over the files of a folder, so that every build tests earlier findings.
 
 #include <cstdio>
 #include <filesystem>

@@ -1,4 +1,4 @@
-// A scene file, as text or JSON, through the importer as far as it goes without other files.
+// A scene file, as text or JSON, through the importer, without any other files.
 
 #include <unistd.h>
 
@@ -13,7 +13,7 @@
 
 namespace {
 
-/// A folder with nothing in it but the scene, for this process.
+/// A folder that contains only the scene, for this process.
 class Folder {
  public:
   Folder() {

@@ -1,6 +1,6 @@
-// Requests of people and bands of workers: one byte that says which, then the message.
+// Requests of users and bands of workers: one byte that selects the message, then the message.
 
-#include "coordinator/rpc/convert.h"
+#include "coordinator/rpc/checked_messages.h"
 #include "renderlib/base/check.h"
 #include "renderlib/render/settings.h"
 #include "tests/fuzz/fuzz.h"

@@ -1,5 +1,5 @@
-// What a coordinator says on a worker's stream, message after message (each after two bytes of its
-// length, little-endian).
+// Messages of a coordinator on a worker's stream (each after two bytes with its length,
+// little-endian).
 
 #include "renderlib/base/check.h"
 #include "tests/fuzz/fuzz.h"

@@ -1,6 +1,6 @@
-// Chunks of a blob: any message; then a sender who begins, goes on, skips, lies and is cut off as
-// the input says, and a disk that is damaged meanwhile. Whatever happens, a blob that is there is
-// the one of its digest.
+// Chunks of a blob: any message; then a sender that begins, continues, skips, sends wrong bytes and
+// is interrupted as the input selects, and a disk that is damaged in between. A stored blob always
+// has its digest.
 
 #include <algorithm>
 #include <cstring>
@@ -21,9 +21,9 @@ namespace {
 using namespace bandsaw;
 using namespace bandsaw::coordinator;
 
-/// Long enough to be cut at places that are worth keeping.
+/// Long enough that parts of an interrupted upload are kept.
 const std::string& content() {
-  static const std::string bytes = test::pattern(PartialBlobs::kLeastBytes + 40'000);
+  static const std::string bytes = test::pattern(PartialBlobs::kMinBytes + 40'000);
   return bytes;
 }
 
@@ -31,7 +31,7 @@ class Sender {
  public:
   explicit Sender(const std::string& folder) : folder_(folder), store_(*BlobStore::open(folder)) {}
 
-  /// Three bytes of the input: what happens, and a number.
+  /// Three bytes of the input: the kind of event, and a number.
   void step(std::uint8_t what, std::uint32_t number) {
     switch (what % 6) {
       case 0:

@@ -15,16 +15,16 @@ class Backoff {
 
   std::chrono::milliseconds next() {
     const auto wait = next_;
-    next_ = std::min(next_ * 2, kMost);
+    next_ = std::min(next_ * 2, kMax);
     return std::chrono::milliseconds(
         std::uniform_int_distribution<std::int64_t>(wait.count() / 2, wait.count())(random_));
   }
-  void reset() { next_ = kLeast; }
+  void reset() { next_ = kMin; }
 
  private:
-  static constexpr std::chrono::milliseconds kLeast{200};
-  static constexpr std::chrono::milliseconds kMost{5000};
-  std::chrono::milliseconds next_ = kLeast;
+  static constexpr std::chrono::milliseconds kMin{200};
+  static constexpr std::chrono::milliseconds kMax{5000};
+  std::chrono::milliseconds next_ = kMin;
   std::mt19937_64 random_;
 };
 

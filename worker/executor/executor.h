@@ -12,7 +12,7 @@
 
 #include "renderlib/base/mutex.h"
 #include "renderlib/base/pool.h"
-#include "worker/executor/scene_shelf.h"
+#include "worker/executor/scene_cache.h"
 #include "worker/executor/task.h"
 
 namespace bandsaw::worker {
@@ -60,7 +60,7 @@ class Executor {
   RenderCost cost_since(double began_s) EXCLUDES(mutex_);
 
   Pool& pool_;
-  SceneShelf scenes_;
+  SceneCache scenes_;
   const ExecutorEvents events_;
   Mutex mutex_;
   CondVar changed_;

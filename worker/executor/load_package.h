@@ -1,6 +1,7 @@
 #pragma once
 
-// Package -> scene on a worker: each missing blob once into the cache, then decode and build.
+// From a package to a scene: fetches each missing blob once into the cache, decodes the package and
+// builds the scene.
 
 #include <atomic>
 #include <functional>
@@ -8,19 +9,19 @@
 #include "absl/status/statusor.h"
 #include "renderlib/base/pool.h"
 #include "worker/cache/blob_cache.h"
-#include "worker/executor/scene_shelf.h"
+#include "worker/executor/scene_cache.h"
 
 namespace bandsaw::worker {
 
-/// Takes the bytes of a blob as they come; an error ends the transfer.
+/// Receives the next bytes of a blob; an error ends the transfer.
 using TakeBytes = std::function<absl::Status(absl::Span<const std::byte>)>;
 
-/// Sends the blob's bytes from `offset` on to `take`. UNAVAILABLE, DEADLINE_EXCEEDED: try again,
-/// from where it broke off.
+/// Passes the blob's bytes from `offset` on to `take`. UNAVAILABLE, DEADLINE_EXCEEDED: try again,
+/// from the last received byte.
 using TransferBlob = std::function<absl::Status(const wire::Digest& digest, std::uint64_t offset,
                                                 const TakeBytes& take)>;
 
-/// Blobs from the cache, and into it when they are not there.
+/// Reads blobs from the cache, fetching those that are missing.
 class FetchingSource : public BlobSource {
  public:
   /// All references MUST outlive it.
@@ -28,8 +29,8 @@ class FetchingSource : public BlobSource {
                  const Prepared& prepared)
       : cache_(cache), transfer_(transfer), stop_(stop), prepared_(prepared) {}
 
-  /// CANCELLED: stopped. NOT_FOUND: the coordinator has no such blob. RESOURCE_EXHAUSTED: no room
-  /// on the disk. A lost connection is waited out.
+  /// CANCELLED: stopped. NOT_FOUND: the coordinator has no such blob. RESOURCE_EXHAUSTED: the disk
+  /// is full. If the connection is lost, waits for the next one.
   absl::StatusOr<std::unique_ptr<BlobBytes>> get(const wire::Digest& digest) override;
 
  private:
@@ -44,7 +45,7 @@ class FetchingSource : public BlobSource {
   std::uint64_t progress_ = 0;
 };
 
-/// Errors as above, and INVALID_ARGUMENT: the package is not one that this worker can render.
+/// Builds the scene. Errors as above, and INVALID_ARGUMENT: this worker cannot render the package.
 /// `kernel`: as in Scene::build.
 absl::StatusOr<std::shared_ptr<const Scene>> load_package(const wire::Digest& manifest,
                                                           FetchingSource& blobs, Pool& pool,

@@ -12,8 +12,8 @@ bool is_final(const absl::Status& status) {
 
 }  // namespace
 
-Uploader::Uploader(PutBand put, Settled settled, std::uint64_t seed)
-    : put_(std::move(put)), settled_(std::move(settled)), backoff_(seed) {
+Uploader::Uploader(SendBand send, Settled settled, std::uint64_t seed)
+    : send_(std::move(send)), settled_(std::move(settled)), backoff_(seed) {
   thread_ = std::thread([this] { run(); });
 }
 
@@ -58,7 +58,7 @@ void Uploader::run() {
       band = bands_.front();
       retry_now_ = false;
     }
-    const absl::StatusOr<farm::PutBandReply::Outcome> outcome = put_(*band);
+    const absl::StatusOr<farm::PutBandReply::Outcome> outcome = send_(*band);
     if (is_final(outcome.status())) {
       backoff_.reset();
       drop(band->task.id);

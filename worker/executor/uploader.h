@@ -18,7 +18,7 @@ namespace bandsaw::worker {
 /// One attempt to send a band. INVALID_ARGUMENT, NOT_FOUND, FAILED_PRECONDITION: permanent, the
 /// band will never be accepted. RESOURCE_EXHAUSTED: the coordinator's disk is full now. All other
 /// errors: retry.
-using PutBand = std::function<absl::StatusOr<farm::PutBandReply::Outcome>(const FinishedBand&)>;
+using SendBand = std::function<absl::StatusOr<farm::PutBandReply::Outcome>(const FinishedBand&)>;
 
 /// Called from the uploader's thread when a band is finally acknowledged, or rejected with a
 /// permanent error.
@@ -27,7 +27,7 @@ using Settled =
 
 class Uploader {
  public:
-  Uploader(PutBand put, Settled settled, std::uint64_t seed);
+  Uploader(SendBand send, Settled settled, std::uint64_t seed);
   /// Waits for the attempt in progress. Bands that are not acknowledged by then are lost.
   ~Uploader();
   Uploader(const Uploader&) = delete;
@@ -43,7 +43,7 @@ class Uploader {
   void run() EXCLUDES(mutex_);
   void wait(std::chrono::milliseconds time) EXCLUDES(mutex_);
 
-  const PutBand put_;
+  const SendBand send_;
   const Settled settled_;
   Mutex mutex_;
   CondVar changed_;

@@ -1,11 +1,40 @@
 #include "worker/session/farm_calls.h"
 
+#include <algorithm>
+#include <chrono>
+#include <memory>
 #include <span>
 
-#include "worker/session/band_stream.h"
+#include "proto/convert/render_values.h"
+#include "proto/wire/limits.h"
+#include "renderlib/render/work_hash.h"
 
 namespace bandsaw::worker {
 namespace {
+
+// Every band has at least the second of the two minutes; an interrupted one is sent again.
+constexpr std::chrono::milliseconds kDeadline{120'000};
+constexpr std::chrono::milliseconds kServes{60'000};
+
+farm::BandHeader header_of(const FinishedBand& band, const std::string& instance,
+                           const LeaseName& lease) {
+  const BandPixels& pixels = band.pixels;
+  const absl::Span<const std::byte> bytes = std::as_bytes(std::span(pixels.sums));
+  farm::BandHeader header;
+  header.set_job(band.task.job);
+  *header.mutable_band() = to_message(pixels.band);
+  header.set_lease(lease.lease);
+  header.set_epoch(lease.epoch);
+  header.set_instance(instance);
+  header.set_size(bytes.size());
+  header.set_sha256(wire::sha256(bytes).raw());
+  header.set_work(work_hash(band.task.manifest.hex(), band.task.settings));
+  farm::Counters* counters = header.mutable_counters();
+  *counters = to_message(pixels.counters);
+  counters->set_render_s(band.cost.render_s);
+  counters->set_cpu_s(band.cost.cpu_s);
+  return header;
+}
 
 // Sufficient for a slow connection; an interrupted transfer resumes at its offset.
 constexpr std::chrono::milliseconds kTransferDeadline{60'000};
@@ -14,7 +43,84 @@ absl::Status not_connected() { return absl::UnavailableError("not connected"); }
 
 }  // namespace
 
-FarmCalls::FarmCalls(link::JoinString join) : join_(std::move(join)) {}
+/// A Work.PutBands call that is used for a minute, because opening a call costs more than sending a
+/// small band.
+class FarmCalls::BandStream {
+ public:
+  /// `calls` MUST outlive the stream.
+  BandStream(FarmCalls& calls, std::shared_ptr<grpc::Channel> channel);
+  /// Cancels a transfer in progress.
+  ~BandStream();
+
+  /// True if the next band may be sent on it: it was opened on this channel, and the time to its
+  /// deadline is sufficient for a slow connection.
+  bool serves(const std::shared_ptr<grpc::Channel>& channel) const;
+
+  /// Sends a band and waits for the coordinator's answer. After an error the stream must not be
+  /// used again.
+  absl::StatusOr<farm::PutBandReply::Outcome> put(const FinishedBand& band,
+                                                  const std::string& instance,
+                                                  const LeaseName& lease);
+
+ private:
+  bool send(const FinishedBand& band, const std::string& instance, const LeaseName& lease);
+
+  const std::shared_ptr<grpc::Channel> channel_;
+  const std::unique_ptr<farm::Work::Stub> stub_;
+  const std::chrono::steady_clock::time_point opened_ = std::chrono::steady_clock::now();
+  FarmCalls::Context context_;
+  std::unique_ptr<grpc::ClientReaderWriter<farm::BandChunk, farm::PutBandReply>> stream_;
+  bool finished_ = false;
+};
+
+FarmCalls::BandStream::BandStream(FarmCalls& calls, std::shared_ptr<grpc::Channel> channel)
+    : channel_(std::move(channel)),
+      stub_(farm::Work::NewStub(channel_)),
+      context_(calls, kDeadline) {
+  (*context_).set_initial_metadata_corked(true);  // sent with the first chunk
+  stream_ = stub_->PutBands(context_.get());
+}
+
+FarmCalls::BandStream::~BandStream() {
+  if (!finished_) {
+    (*context_).TryCancel();
+    stream_->Finish();
+  }
+}
+
+bool FarmCalls::BandStream::serves(const std::shared_ptr<grpc::Channel>& channel) const {
+  return channel == channel_ && std::chrono::steady_clock::now() - opened_ < kServes;
+}
+
+bool FarmCalls::BandStream::send(const FinishedBand& band, const std::string& instance,
+                                 const LeaseName& lease) {
+  const auto* data = reinterpret_cast<const char*>(band.pixels.sums.data());
+  const std::size_t size = band.pixels.sums.size() * sizeof(double);
+  farm::BandChunk chunk;
+  *chunk.mutable_header() = header_of(band, instance, lease);
+  bool open = true;
+  for (std::size_t offset = 0; open && offset < size; offset += wire::kChunkBytes) {
+    chunk.set_data(data + offset, std::min(wire::kChunkBytes, size - offset));
+    open = stream_->Write(chunk);
+    chunk.clear_header();
+  }
+  return open;
+}
+
+absl::StatusOr<farm::PutBandReply::Outcome> FarmCalls::BandStream::put(const FinishedBand& band,
+                                                                       const std::string& instance,
+                                                                       const LeaseName& lease) {
+  farm::PutBandReply reply;
+  if (send(band, instance, lease) && stream_->Read(&reply)) {
+    return reply.outcome();
+  }
+  finished_ = true;
+  const absl::Status why = link::from_grpc(stream_->Finish());
+  return why.ok() ? absl::UnavailableError("the coordinator ended the stream of bands") : why;
+}
+
+FarmCalls::FarmCalls(link::JoinString join, std::string instance)
+    : join_(std::move(join)), instance_(std::move(instance)) {}
 
 FarmCalls::~FarmCalls() = default;
 
@@ -81,7 +187,6 @@ absl::Status FarmCalls::get_blob(const wire::Digest& digest, std::uint64_t offse
 }
 
 absl::StatusOr<farm::PutBandReply::Outcome> FarmCalls::put_band(const FinishedBand& band,
-                                                                const std::string& instance,
                                                                 const LeaseName& lease) {
   const std::shared_ptr<grpc::Channel> channel = bulk();
   if (bands_ == nullptr || !bands_->serves(channel)) {
@@ -91,7 +196,7 @@ absl::StatusOr<farm::PutBandReply::Outcome> FarmCalls::put_band(const FinishedBa
     }
     bands_ = std::make_unique<BandStream>(*this, channel);
   }
-  auto outcome = bands_->put(band, instance, lease);
+  auto outcome = bands_->put(band, instance_, lease);
   if (!outcome.ok()) {
     bands_.reset();
   }

@@ -11,18 +11,16 @@
 #include "proto/farm.grpc.pb.h"
 #include "proto/link/channel.h"
 #include "renderlib/base/mutex.h"
-#include "worker/executor/load_package.h"
-#include "worker/session/session.h"
+#include "worker/session/coordinator_api.h"
 
 namespace bandsaw::worker {
 
-class BandStream;
-
 /// Holds the channel of the current connection; it changes with every reconnect.
-class FarmCalls {
+class FarmCalls final : public CoordinatorApi {
  public:
-  explicit FarmCalls(link::JoinString join);
-  ~FarmCalls();
+  /// `instance`: names this process in each band that is sent.
+  FarmCalls(link::JoinString join, std::string instance);
+  ~FarmCalls() override;
 
   const link::JoinString& join() const { return join_; }
   /// nullptr: not connected; calls then fail with UNAVAILABLE at once.
@@ -30,11 +28,10 @@ class FarmCalls {
   /// Cancels all calls in progress and all later ones.
   void leave() EXCLUDES(mutex_);
 
-  absl::Status get_blob(const wire::Digest& digest, std::uint64_t offset, const TakeBytes& take);
-  /// One call at a time.
+  absl::Status get_blob(const wire::Digest& digest, std::uint64_t offset,
+                        const TakeBytes& take) override;
   absl::StatusOr<farm::PutBandReply::Outcome> put_band(const FinishedBand& band,
-                                                       const std::string& instance,
-                                                       const LeaseName& lease);
+                                                       const LeaseName& lease) override;
 
   /// A context for one call, which leave() can cancel.
   class Context {
@@ -57,10 +54,12 @@ class FarmCalls {
   std::shared_ptr<grpc::Channel> bulk() EXCLUDES(mutex_);
 
   const link::JoinString join_;
+  const std::string instance_;
   Mutex mutex_;
   bool left_ GUARDED_BY(mutex_) = false;
   std::shared_ptr<grpc::Channel> bulk_ GUARDED_BY(mutex_);
   std::set<grpc::ClientContext*> open_ GUARDED_BY(mutex_);
+  class BandStream;
   std::unique_ptr<BandStream> bands_;  ///< used by put_band only
 };
 

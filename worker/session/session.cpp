@@ -4,6 +4,7 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/str_cat.h"
+#include "proto/convert/render_values.h"
 #include "proto/wire/limits.h"
 #include "proto/wire/versions.h"
 #include "renderlib/base/clean_text.h"
@@ -37,14 +38,8 @@ absl::StatusOr<Task> task_of(const farm::Lease& lease) {
   Task task{.id = 0,
             .job = lease.job(),
             .manifest = {},
-            .settings = {.width = lease.settings().width(),
-                         .height = lease.settings().height(),
-                         .max_depth = lease.settings().max_depth(),
-                         .seed = lease.settings().seed(),
-                         .integrator = static_cast<Integrator>(lease.settings().integrator())},
-            .band = {.samples = {.first = lease.band().first_sample(),
-                                 .last = lease.band().last_sample()},
-                     .rows = {.first = lease.band().first_row(), .last = lease.band().last_row()}},
+            .settings = settings_of(lease.settings()),
+            .band = band_of(lease.band()),
             .tiles = {}};
   ASSIGN_OR_RETURN(task.manifest, wire::digest_from_raw(lease.manifest_sha256()));
   RETURN_IF_ERROR(validate(task.settings));
@@ -52,13 +47,6 @@ absl::StatusOr<Task> task_of(const farm::Lease& lease) {
   ASSIGN_OR_RETURN(task.tiles, TileSamples::from_numbers(lease.tile_samples(), task.settings.width,
                                                          task.band.rows));
   return task;
-}
-
-void set_band(const Band& band, farm::Band& message) {
-  message.set_first_sample(band.samples.first);
-  message.set_last_sample(band.samples.last);
-  message.set_first_row(band.rows.first);
-  message.set_last_row(band.rows.last);
 }
 
 }  // namespace
@@ -71,23 +59,23 @@ farm::FromWorker log_message(const std::vector<std::string>& lines) {
   return message;
 }
 
-Session::Session(Self self) : self_(std::move(self)) {}
+Session::Session(WorkerInfo info) : info_(std::move(info)) {}
 
 farm::FromWorker Session::hello() const {
   farm::FromWorker message;
   farm::Hello* hello = message.mutable_hello();
   hello->set_protocol(wire::kProtocol);
-  hello->set_pixel_version(self_.pixel_version);
-  hello->set_canary(self_.canary);
-  hello->set_instance(self_.instance);
-  hello->set_name(self_.name);
-  hello->set_threads(self_.threads);
-  hello->set_max_bands(self_.max_bands);
-  hello->set_build(self_.build);
+  hello->set_pixel_version(info_.pixel_version);
+  hello->set_canary(info_.canary);
+  hello->set_instance(info_.instance);
+  hello->set_name(info_.name);
+  hello->set_threads(info_.threads);
+  hello->set_max_bands(info_.max_bands);
+  hello->set_build(info_.build);
   for (const Held& held : held_) {
     farm::Held* h = hello->add_held();
     h->set_job(held.task.job);
-    set_band(held.task.band, *h->mutable_band());
+    *h->mutable_band() = to_message(held.task.band);
     h->set_lease(held.name.lease);
     h->set_epoch(held.name.epoch);
     h->set_finished(held.stage == Stage::kFinished);
@@ -96,52 +84,54 @@ farm::FromWorker Session::hello() const {
   return message;
 }
 
-Reaction Session::receive(const farm::ToWorker& message) {
-  Reaction reaction;
+SessionEffects Session::receive(const farm::ToWorker& message) {
+  SessionEffects effects;
   switch (message.kind_case()) {
     case farm::ToWorker::kWelcome:
-      take_welcome(message.welcome(), reaction);
+      take_welcome(message.welcome(), effects);
       break;
     case farm::ToWorker::kLease:
-      take_lease(message.lease(), reaction);
+      take_lease(message.lease(), effects);
       break;
     case farm::ToWorker::kRevoke:
-      take_revoke(message.revoke(), reaction);
+      take_revoke(message.revoke(), effects);
       break;
     case farm::ToWorker::kRefused:
-      reaction.away = Away{.reason = message.refused().reason(),
-                           .wait = std::chrono::milliseconds(message.refused().retry_after_ms())};
+      effects.dismissal =
+          Dismissal{.reason = message.refused().reason(),
+                    .wait = std::chrono::milliseconds(message.refused().retry_after_ms())};
       break;
     case farm::ToWorker::kBye:
       for (const Held& held : held_) {
-        reaction.stop.push_back(held.task.id);
+        effects.stop.push_back(held.task.id);
       }
       held_.clear();
-      reaction.away = Away{.reason = message.bye().reason(),
-                           .wait = std::chrono::milliseconds(message.bye().retry_after_ms()),
-                           .for_ever = message.bye().retry_after_ms() == 0};
+      effects.dismissal =
+          Dismissal{.reason = message.bye().reason(),
+                    .wait = std::chrono::milliseconds(message.bye().retry_after_ms()),
+                    .for_ever = message.bye().retry_after_ms() == 0};
       break;
     case farm::ToWorker::KIND_NOT_SET:
       break;  // an optional message of a newer coordinator with the same protocol; ignored
   }
-  return reaction;
+  return effects;
 }
 
-void Session::take_welcome(const farm::Welcome& welcome, Reaction& reaction) {
+void Session::take_welcome(const farm::Welcome& welcome, SessionEffects& effects) {
   connected_ = true;
-  name_ = welcome.name().empty() ? self_.name : welcome.name();
+  name_ = welcome.name().empty() ? info_.name : welcome.name();
   epoch_ = welcome.epoch();
   heartbeat_ =
       std::chrono::milliseconds(std::clamp<std::uint32_t>(welcome.heartbeat_ms(), 50, 60'000));
   if (drain_reason_) {
-    reaction.send.push_back(draining_message());
+    effects.send.push_back(draining_message());
   }
 }
 
-void Session::take_lease(const farm::Lease& lease, Reaction& reaction) {
+void Session::take_lease(const farm::Lease& lease, SessionEffects& effects) {
   absl::StatusOr<Task> task = task_of(lease);
   if (!task.ok()) {
-    reaction.send.push_back(failure(lease.lease(), std::string(task.status().message()), {}));
+    effects.send.push_back(failure(lease.lease(), std::string(task.status().message()), {}));
     return;
   }
   // The same band again is the coordinator's answer to Hello: continue, under the new lease id.
@@ -153,19 +143,19 @@ void Session::take_lease(const farm::Lease& lease, Reaction& reaction) {
       same->name = {.lease = lease.lease(), .epoch = epoch_};
       return;
     }
-    reaction.stop.push_back(same->task.id);  // it belonged to another job with the same number
+    effects.stop.push_back(same->task.id);  // it belonged to another job with the same number
     held_.erase(same);
   }
   if (held_.size() >= wire::kBandsPerWorker) {
-    reaction.send.push_back(failure(lease.lease(), "this worker holds too many bands", {}));
+    effects.send.push_back(failure(lease.lease(), "this worker holds too many bands", {}));
     return;
   }
   task->id = ++last_task_;
   held_.push_back(Held{.task = *task, .name = {.lease = lease.lease(), .epoch = epoch_}});
-  reaction.start.push_back(*task);
+  effects.start.push_back(*task);
 }
 
-void Session::take_revoke(const farm::Revoke& revoke, Reaction& reaction) {
+void Session::take_revoke(const farm::Revoke& revoke, SessionEffects& effects) {
   for (const std::uint64_t lease : revoke.lease()) {
     // Ids are unique within an epoch. An id of an earlier epoch is meant only if the current epoch
     // has none that is equal.
@@ -177,7 +167,7 @@ void Session::take_revoke(const farm::Revoke& revoke, Reaction& reaction) {
                            [&](const Held& held) { return held.name.lease == lease; });
     }
     if (meant != held_.end()) {
-      reaction.stop.push_back(meant->task.id);
+      effects.stop.push_back(meant->task.id);
       held_.erase(meant);
     }
   }

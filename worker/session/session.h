@@ -16,7 +16,7 @@
 namespace bandsaw::worker {
 
 /// This process's identity and capabilities, as sent in Hello.
-struct Self {
+struct WorkerInfo {
   std::string instance;  ///< 32 hexadecimal digits, constant for the life of the process
   std::string name;
   std::string build;
@@ -27,18 +27,18 @@ struct Self {
 };
 
 /// The coordinator dismissed this worker.
-struct Away {
+struct Dismissal {
   std::string reason;
   std::chrono::milliseconds wait{0};  ///< minimum wait before it reconnects
   bool for_ever = false;
 };
 
 /// Effects of a message from the coordinator, to be applied in this order.
-struct Reaction {
+struct SessionEffects {
   std::vector<TaskId> stop;  ///< no longer wanted: cancel rendering or drop the result
   std::vector<Task> start;   ///< in rendering order
   std::vector<farm::FromWorker> send;
-  std::optional<Away> away;
+  std::optional<Dismissal> dismissal;
 };
 
 /// A lease as identified by the coordinator that assigned it.
@@ -52,12 +52,12 @@ farm::FromWorker log_message(const std::vector<std::string>& lines);
 
 class Session {
  public:
-  explicit Session(Self self);
+  explicit Session(WorkerInfo info);
 
   // The stream.
   /// Returns the first message of a stream, which lists all leases held.
   farm::FromWorker hello() const;
-  Reaction receive(const farm::ToWorker& message);
+  SessionEffects receive(const farm::ToWorker& message);
   void disconnected() { connected_ = false; }
   farm::FromWorker heartbeat() const;
   std::chrono::milliseconds heartbeat_interval() const { return heartbeat_; }
@@ -94,14 +94,14 @@ class Session {
     std::uint32_t rows_done = 0;
   };
 
-  void take_welcome(const farm::Welcome& welcome, Reaction& reaction);
-  void take_lease(const farm::Lease& lease, Reaction& reaction);
-  void take_revoke(const farm::Revoke& revoke, Reaction& reaction);
+  void take_welcome(const farm::Welcome& welcome, SessionEffects& effects);
+  void take_lease(const farm::Lease& lease, SessionEffects& effects);
+  void take_revoke(const farm::Revoke& revoke, SessionEffects& effects);
   Held* find(TaskId task);
   farm::FromWorker draining_message() const;
   std::string doing() const;
 
-  const Self self_;
+  const WorkerInfo info_;
   std::vector<Held> held_;  ///< in the order of their leases
   TaskId last_task_ = 0;
   bool connected_ = false;

@@ -75,7 +75,7 @@ absl::StatusOr<Child> spawn(const std::vector<std::string>& arguments,
 // ended when this returns.
 ChildOutcome wait_for(const Child& child, double seconds, const std::atomic<bool>* stop) {
   constexpr int kLookEveryMs = 20;
-  constexpr std::size_t kMostOutput = 64 << 10;
+  constexpr std::size_t kMaxOutput = 64 << 10;
   ChildOutcome outcome;
   const auto deadline = Clock::now() + std::chrono::duration<double>(seconds);
   bool open = true;
@@ -94,13 +94,13 @@ ChildOutcome wait_for(const Child& child, double seconds, const std::atomic<bool
       const ssize_t got = read(child.output, buffer.data(), buffer.size());
       open = got > 0;
       outcome.output.append(buffer.data(), static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
-      outcome.output.resize(std::min(outcome.output.size(), kMostOutput));
+      outcome.output.resize(std::min(outcome.output.size(), kMaxOutput));
     }
   }
   // Reads the rest of the output. Grandchildren may keep the pipe open; they are not waited for.
   pollfd left{child.output, POLLIN, 0};
   std::array<char, 4096> rest{};
-  while (outcome.output.size() < kMostOutput && poll(&left, 1, 0) > 0) {
+  while (outcome.output.size() < kMaxOutput && poll(&left, 1, 0) > 0) {
     const ssize_t got = read(child.output, rest.data(), rest.size());
     if (got <= 0) {
       break;

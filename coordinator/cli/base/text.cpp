@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_join.h"
 #include "absl/strings/strip.h"
 #include "renderlib/base/overloaded.h"
 
@@ -100,6 +101,10 @@ std::string printable(absl::string_view text) {
     }
   }
   return out;
+}
+
+std::string printable_list(const std::vector<std::string>& names) {
+  return printable(absl::StrJoin(names, ", "));
 }
 
 std::size_t columns(absl::string_view text) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "absl/strings/string_view.h"
 #include "coordinator/core/types.h"
@@ -33,6 +34,9 @@ std::string stop_text(const StopRule& stop);
 /// Makes text from other sources safe for a terminal: control characters become '?', line ends
 /// become spaces.
 std::string printable(absl::string_view text);
+
+/// Joins names, each safe for a terminal: "cornell.png, cornell.pfm".
+std::string printable_list(const std::vector<std::string>& names);
 
 /// Returns the number of terminal columns, counting one per code point.
 std::size_t columns(absl::string_view text);

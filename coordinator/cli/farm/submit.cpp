@@ -7,13 +7,15 @@
 #include "coordinator/cli/farm/farm_errors.h"
 #include "coordinator/cli/farm/upload.h"
 #include "coordinator/cli/farm/watch_job.h"
+#include "coordinator/cli/image/layers.h"
+#include "coordinator/cli/image/output.h"
 #include "coordinator/cli/image/report_file.h"
 #include "coordinator/cli/options/commands.h"
-#include "coordinator/cli/options/layers.h"
-#include "coordinator/cli/options/output.h"
+#include "coordinator/cli/options/output_names.h"
 #include "coordinator/cli/scene/image_settings.h"
 #include "coordinator/cli/scene/import_scene_file.h"
 #include "coordinator/core/state_name.h"
+#include "proto/convert/render_values.h"
 #include "proto/link/random.h"
 #include "renderlib/base/status_macros.h"
 
@@ -95,8 +97,8 @@ ExitCode run(const SubmitOptions& options, Process& process) {
   const auto layers = [&](std::uint64_t samples, ProgressDisplay& display) {
     const auto render = [&](const RenderSettings& layer, std::uint64_t count) {
       farm::SubmitRequest of_layer = request;
-      *of_layer.mutable_settings() = to_proto(layer);
-      *of_layer.mutable_stop() = to_proto(StopRule(StopAtSamples{count}));
+      *of_layer.mutable_settings() = bandsaw::to_message(layer);
+      *of_layer.mutable_stop() = to_message(StopRule(StopAtSamples{count}));
       return render_on_farm(**client, *package, std::move(of_layer), display);
     };
     SampleCounts counts;

@@ -5,6 +5,7 @@
 #include <span>
 
 #include "coordinator/engine/clock.h"
+#include "proto/convert/render_values.h"
 #include "proto/link/random.h"
 #include "proto/wire/digest.h"
 #include "renderlib/base/status_macros.h"
@@ -69,8 +70,8 @@ farm::SubmitRequest request_for(const ImportedPackage& package, const RenderSett
   request.set_request_id(link::random_hex(16));
   request.set_name(package.info().name);
   request.set_manifest_sha256(wire::sha256(package.manifest()).raw());
-  *request.mutable_settings() = to_proto(settings);
-  *request.mutable_stop() = to_proto(stop);
+  *request.mutable_settings() = bandsaw::to_message(settings);
+  *request.mutable_stop() = to_message(stop);
   return request;
 }
 

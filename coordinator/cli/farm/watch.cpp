@@ -2,9 +2,9 @@
 
 #include "coordinator/cli/farm/farm_errors.h"
 #include "coordinator/cli/farm/watch_job.h"
+#include "coordinator/cli/image/output.h"
 #include "coordinator/cli/image/report_file.h"
 #include "coordinator/cli/options/commands.h"
-#include "coordinator/cli/options/output.h"
 
 namespace bandsaw::coordinator {
 

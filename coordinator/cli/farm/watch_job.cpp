@@ -1,18 +1,76 @@
 #include "coordinator/cli/farm/watch_job.h"
 
+#include <algorithm>
+#include <chrono>
+#include <memory>
+#include <optional>
+
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/base/text.h"
+#include "coordinator/cli/base/ticker.h"
+#include "coordinator/cli/farm/farm_client.h"
 #include "coordinator/cli/farm/farm_errors.h"
-#include "coordinator/cli/farm/followed_image.h"
+#include "coordinator/cli/image/output.h"
 #include "coordinator/cli/image/report.h"
 #include "coordinator/cli/image/report_file.h"
-#include "coordinator/cli/options/output.h"
+#include "coordinator/cli/progress/views.h"
 #include "coordinator/core/state_name.h"
 #include "coordinator/engine/clock.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
 namespace {
+
+// Shows the current image of a job in the views of the command that watches it.
+
+/// Periodically fetches a job's image from the farm, over a client of its own, and shows it, until
+/// destroyed. Does nothing if there is no view.
+class FollowedImage {
+ public:
+  FollowedImage(FarmClient& client, JobId job, Views& views);
+  ~FollowedImage();
+
+ private:
+  void look();
+
+  Views& views_;
+  const JobId job_;
+  const std::unique_ptr<FarmClient> client_;
+  double next_ = 0;  ///< time of the next fetch, in seconds of a steady clock
+  std::optional<Ticker> ticker_;
+};
+
+constexpr std::chrono::milliseconds kTick{100};
+constexpr double kInterval_s = 1;
+/// Fetching takes at most this share of the time, so large images are fetched less often.
+constexpr double kMaxShare = 0.1;
+
+FollowedImage::FollowedImage(FarmClient& client, JobId job, Views& views)
+    : views_(views), job_(job), client_(views.any() ? client.another() : nullptr) {
+  if (client_ != nullptr) {
+    ticker_.emplace(kTick, [this] { look(); });
+  }
+}
+
+FollowedImage::~FollowedImage() {
+  if (client_ != nullptr) {
+    client_->stop();
+  }
+}
+
+void FollowedImage::look() {
+  const double begin = steady_seconds();
+  if (begin < next_ || !views_.any()) {
+    return;
+  }
+  // Errors are ignored: there may be no pixels, or the farm may be unreachable for a moment, which
+  // the job's display reports.
+  if (const auto picture = client_->preview(job_, views_.most_side()); picture.ok()) {
+    views_.show(picture->image, picture->display);
+  }
+  const double end = steady_seconds();
+  next_ = end + std::max(kInterval_s, (end - begin) / kMaxShare);
+}
 
 constexpr double kPatience = 60;  // seconds for which the farm may be unreachable
 constexpr std::chrono::milliseconds kPause{200};

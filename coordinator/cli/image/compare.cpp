@@ -3,8 +3,8 @@
 #include <atomic>
 
 #include "coordinator/cli/image/comparison.h"
+#include "coordinator/cli/image/output.h"
 #include "coordinator/cli/options/commands.h"
-#include "coordinator/cli/options/output.h"
 #include "coordinator/cli/scene/import_process.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/compare/false_color.h"

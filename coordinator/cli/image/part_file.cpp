@@ -1,33 +1,18 @@
 #include "coordinator/cli/image/part_file.h"
 
 #include <array>
-#include <cerrno>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
+#include <limits>
+#include <span>
 
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/atomic_file.h"
+#include "renderlib/base/file.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/render/hash64.h"
 
 namespace bandsaw::coordinator {
 namespace {
-
-absl::StatusOr<std::vector<std::byte>> read_file(const std::string& path) {
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error) {
-    return errno_status(error.value(), path);
-  }
-  std::vector<std::byte> bytes(size);
-  std::ifstream file(path, std::ios::binary);
-  file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  if (!file) {
-    return errno_status(errno == 0 ? EIO : errno, path);
-  }
-  return bytes;
-}
 
 constexpr std::array<char, 8> kMagic = {'B', 'S', 'W', 'P', 'A', 'R', 'T', '1'};
 
@@ -44,10 +29,10 @@ struct Beginning {
     return sum.value();
   }
 };
-static_assert(sizeof(Beginning) == 32, "it is written as it lies in memory");
+static_assert(sizeof(Beginning) == 32, "its bytes in memory are the file format");
 
 /// Parses the header, if there is one, and sets `offset` to its end.
-absl::StatusOr<Display> display_of(const std::vector<std::byte>& bytes, std::uint64_t& offset) {
+absl::StatusOr<Display> display_of(absl::Span<const std::byte> bytes, std::uint64_t& offset) {
   Beginning from;
   if (bytes.size() < sizeof from || std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) != 0) {
     return Display();
@@ -79,7 +64,9 @@ absl::Status write_part(const std::string& path, const std::vector<BandRecord>& 
 
 absl::StatusOr<Display> read_part(const std::string& path,
                                   const std::function<absl::Status(const BandRecord&)>& record) {
-  ASSIGN_OR_RETURN(const std::vector<std::byte> bytes, read_file(path));
+  ASSIGN_OR_RETURN(const std::string whole,
+                   read_whole_file(path, std::numeric_limits<std::uint64_t>::max()));
+  const absl::Span<const std::byte> bytes = std::as_bytes(std::span(whole));
   if (bytes.empty()) {
     return absl::DataLossError(absl::StrCat(path, ": is empty, not a part of an image"));
   }

@@ -7,8 +7,8 @@
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "coordinator/cli/image/output.h"
 #include "coordinator/cli/image/report.h"
-#include "coordinator/cli/options/output.h"
 #include "renderlib/base/atomic_file.h"
 #include "renderlib/base/status_macros.h"
 

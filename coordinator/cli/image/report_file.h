@@ -23,7 +23,7 @@ absl::StatusOr<std::vector<std::string>> report_files(const ReportOption& asked,
 /// use a picture of their own name.
 absl::Status check_default_output(const std::string& scene, const std::string& output);
 
-/// Calls check_outputs_writable (options/output.h), and check_default_output if no output was
+/// Calls check_outputs_writable (image/output.h), and check_default_output if no output was
 /// given.
 absl::Status check_outputs(const std::string& scene, const std::vector<std::string>& asked,
                            const std::vector<std::string>& outputs);

@@ -4,12 +4,13 @@
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/base/json.h"
+#include "coordinator/cli/base/text.h"
+#include "coordinator/cli/image/output.h"
 #include "coordinator/cli/image/part_file.h"
 #include "coordinator/cli/image/report.h"
 #include "coordinator/cli/image/report_file.h"
 #include "coordinator/cli/image/stitch_coverage.h"
 #include "coordinator/cli/options/commands.h"
-#include "coordinator/cli/options/output.h"
 #include "coordinator/cli/progress/progress_text.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/render/film.h"
@@ -143,10 +144,10 @@ ExitCode run(const StitchOptions& options, Process& process) {
                              .texts("reports", *reports)
                              .str());
   } else {
-    process.console.line(absl::StrCat(names_of(options.outputs), " · ", image.width, "×",
-                                      image.height, " · ", options.parts.size(),
-                                      options.parts.size() == 1 ? " part" : " parts",
-                                      reports->empty() ? "" : " · report ", names_of(*reports)));
+    process.console.line(
+        absl::StrCat(printable_list(options.outputs), " · ", image.width, "×", image.height, " · ",
+                     options.parts.size(), options.parts.size() == 1 ? " part" : " parts",
+                     reports->empty() ? "" : " · report ", printable_list(*reports)));
   }
   return ExitCode::kDone;
 }

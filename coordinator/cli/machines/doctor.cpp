@@ -1,4 +1,4 @@
-// bandsaw doctor: one line a check; done only when all is well.
+// bandsaw doctor: prints one line per check; succeeds only if all checks do.
 
 #include <algorithm>
 
@@ -22,7 +22,7 @@ std::vector<Check> all_checks(const DoctorOptions& options, const std::string& f
     of_farm = check_farm(*join);
     own = of_farm.front().ok ? join->addresses : own;
   } else {
-    // No farm at all is no illness: this may be the machine that is to have one.
+    // Having no farm is not an error: this may be the machine that will have one.
     of_farm = {{"farm", absl::IsNotFound(join.status()), std::string(join.status().message())}};
   }
   checks.push_back(check_port(options.listen, own));

@@ -11,7 +11,7 @@
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_join.h"
-#include "coordinator/cli/machines/worker_program.h"
+#include "coordinator/cli/machines/worker_file.h"
 #include "coordinator/cli/scene/import_process.h"
 #include "coordinator/rpc/port_check.h"
 #include "coordinator/store/data_folder.h"
@@ -22,9 +22,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr std::uint64_t kLeastRoom = 1ull << 30;    // bytes: some passes of a large image
-constexpr std::uint64_t kLeastMemory = 1ull << 30;  // bytes: a scene of some size and its trees
-constexpr double kMostClockDifference_s = 60;       // logs could not be put side by side
+constexpr std::uint64_t kMinRoom = 1ull << 30;    // bytes: some passes of a large image
+constexpr std::uint64_t kMinMemory = 1ull << 30;  // bytes: a scene of some size and its trees
+constexpr double kMaxClockDifference_s = 60;      // logs could not be put side by side
 constexpr double kDay_s = 24 * 60 * 60;
 
 Check problem(std::string name, std::string found) {
@@ -35,7 +35,7 @@ std::string size(std::uint64_t bytes) {
   return absl::StrFormat("%.1f GB", static_cast<double>(bytes) / 1e9);
 }
 
-/// The folder itself, or the nearest one above it that is there.
+/// Returns the folder itself, or its nearest existing parent.
 std::string existing_part(std::string folder) {
   while (!file_exists(folder) && folder.size() > 1) {
     const std::size_t slash = folder.rfind('/');
@@ -47,7 +47,7 @@ std::string existing_part(std::string folder) {
 }  // namespace
 
 Check room_check(const std::string& name, const std::string& where, std::uint64_t free_bytes) {
-  if (free_bytes < kLeastRoom) {
+  if (free_bytes < kMinRoom) {
     return problem(name, absl::StrCat(where, ": only ", size(free_bytes),
                                       " free; make room, or jobs "
                                       "will pause when the disk is full"));
@@ -77,7 +77,7 @@ Check check_memory() {
   while (file >> word) {
     if (word == "MemAvailable:" && file >> kilobytes) {
       const std::uint64_t bytes = kilobytes * 1024;
-      return bytes >= kLeastMemory
+      return bytes >= kMinMemory
                  ? Check{"memory", true, absl::StrCat(size(bytes), " available")}
                  : problem("memory", absl::StrCat("only ", size(bytes),
                                                   " available; end other programs, or render small "
@@ -136,7 +136,7 @@ Check certificate_check(double from, double until, double now) {
 
 Check clock_check(double ours_before, double theirs, double ours_after) {
   const double difference = theirs - (ours_before + ours_after) / 2;
-  if (std::abs(difference) > kMostClockDifference_s) {
+  if (std::abs(difference) > kMaxClockDifference_s) {
     return problem("clock", absl::StrFormat("the coordinator's is %+.0f s from this machine's; set "
                                             "both by the net: timedatectl set-ntp true",
                                             difference));

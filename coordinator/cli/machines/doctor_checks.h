@@ -1,7 +1,7 @@
 #pragma once
 
-// What `bandsaw doctor` looks at, one check a function. Each says what it found, and of a problem
-// the cure.
+// The checks of `bandsaw doctor`, one function each. A check states what it found and, for a
+// problem, the remedy.
 
 #include <string>
 #include <vector>
@@ -23,19 +23,19 @@ struct Check {
 Check check_data_folder(const std::string& folder);
 Check check_memory();
 Check check_import_program();
-/// The workers' programs that a coordinator here hands out to other machines. That there is none is
-/// no problem; one that cannot be handed out is.
+/// Checks the workers' programs that a coordinator on this machine hands out. A missing program is
+/// not a problem; one that cannot be handed out is.
 Check check_worker_programs();
-/// Free, or taken by the farm that answers at one of `own`.
+/// Checks that the port is free, or taken by the farm that answers at one of `own`.
 Check check_port(const std::string& listen, const std::vector<std::string>& own);
 
 // The farm.
-/// The join string that is named, of either role; nothing is named: NOT_FOUND.
+/// Returns the given join string, of either role. NOT_FOUND: none is given.
 absl::StatusOr<link::JoinString> doctor_join(const FarmOption& option, const std::string& folder);
-/// Whom it reaches, the certificate, the secret, versions, clocks, the coordinator's disk.
+/// Checks the connection, the certificate, the secret, versions, clocks and the coordinator's disk.
 std::vector<Check> check_farm(const link::JoinString& join);
 
-// Pure parts of it. Times in seconds since 1970, sizes in bytes.
+// Pure parts of these checks. Times in seconds since 1970, sizes in bytes.
 Check certificate_check(double from, double until, double now);
 Check clock_check(double ours_before, double theirs, double ours_after);
 Check versions_check(const farm::AboutReply& about);

@@ -37,7 +37,7 @@ Check check_certificate(const std::string& address) {
 
 std::string secret_cure(const absl::Status& status) {
   return absl::IsUnauthenticated(status)
-             ? "; take the join string anew from the coordinator's data folder"
+             ? "; take the new join string from the coordinator's data folder"
              : "";
 }
 
@@ -65,7 +65,7 @@ std::vector<Check> check_farm(const link::JoinString& join) {
     return {failed("farm", client.status(),
                    absl::IsUnavailable(client.status())
                        ? "; does bandsaw serve run there, and does a firewall let its port through?"
-                       : "; take the join string anew from the coordinator's data folder")};
+                       : "; take the new join string from the coordinator's data folder")};
   }
   std::vector<Check> checks;
   if (join.certificate) {
@@ -80,9 +80,11 @@ std::vector<Check> check_farm(const link::JoinString& join) {
     checks.push_back(failed("farm", about.status(), secret_cure(about.status())));
     return checks;
   }
-  checks.insert(checks.begin(), Check{"farm", true,
-                                      absl::StrCat((*client)->address(), " answers; ",
-                                                   about->workers(), " workers are connected")});
+  checks.insert(checks.begin(),
+                Check{"farm", true,
+                      absl::StrCat((*client)->address(), " answers; ", about->workers(),
+                                   about->workers() == 1 ? " worker is connected"
+                                                         : " workers are connected")});
   checks.push_back(versions_check(*about));
   checks.push_back(clock_check(before, about->unix_s(), after));
   checks.push_back(room_check("farm's disk", "at the coordinator", about->free_bytes()));

@@ -12,7 +12,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Whether `count` records of `size` bytes from `offset` lie within the file; no sum overflows.
+/// Returns true if `count` records of `size` bytes from `offset` are within the file. No sum
+/// overflows.
 bool holds(absl::string_view file, std::uint64_t offset, std::uint64_t size, std::uint64_t count) {
   return offset <= file.size() && (count == 0 || size <= (file.size() - offset) / count);
 }
@@ -51,7 +52,7 @@ absl::StatusOr<std::uint16_t> elf_machine(absl::string_view file) {
   if (header.e_phnum > 0 && header.e_phentsize != sizeof(Elf64_Phdr)) {
     return absl::InvalidArgumentError("has an ELF header that is damaged; copy it again");
   }
-  // The section headers are the last that linkers write, so a file that lost its end lacks them.
+  // Linkers write the section headers last, so a truncated file lacks them.
   if (!holds(file, header.e_phoff, header.e_phentsize, header.e_phnum) ||
       !holds(file, header.e_shoff, header.e_shentsize, header.e_shnum)) {
     return cut_off(file);

@@ -1,15 +1,25 @@
-// bandsaw invite, bandsaw dismiss: workers of other machines, by ssh.
+// bandsaw invite, bandsaw dismiss: install and remove workers on other machines by ssh.
 
+#include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cmath>
+#include <map>
+#include <string>
 
+#include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "absl/strings/strip.h"
 #include "coordinator/cli/base/data_folder.h"
 #include "coordinator/cli/base/json.h"
+#include "coordinator/cli/base/text.h"
 #include "coordinator/cli/farm/farm_errors.h"
-#include "coordinator/cli/machines/invitation.h"
 #include "coordinator/cli/machines/remote_hosts.h"
 #include "coordinator/cli/machines/remote_scripts.h"
+#include "coordinator/cli/machines/worker_file.h"
 #include "coordinator/cli/options/commands.h"
+#include "coordinator/web/worker_program.h"
 #include "proto/link/join.h"
 #include "renderlib/base/file.h"
 #include "renderlib/base/status_macros.h"
@@ -17,7 +27,87 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// The workers' join string: as given, or of the farm that is served from this account.
+/// Starts workers on other machines: asks a host for its architecture, then sends the program for
+/// that architecture only.
+class Invitation {
+ public:
+  /// Reads the installed workers' programs. `join`: the workers' join string. If no program can be
+  /// sent, the error is that of this machine's own architecture; otherwise the system's.
+  static absl::StatusOr<Invitation> create(const std::string& join);
+
+  /// Takes at most `seconds`. Otherwise as RemoteScript::run; if there is no program for a host,
+  /// its result says how to get one.
+  RemoteOutcome invite(const std::string& host, double seconds,
+                       const std::atomic<bool>& stop) const;
+
+ private:
+  using Scripts = std::map<Machine, absl::StatusOr<RemoteScript>>;
+  Invitation(RemoteScript ask, Scripts scripts)
+      : ask_(std::move(ask)), scripts_(std::move(scripts)) {}
+  RemoteScript ask_;
+  Scripts scripts_;  // one for every architecture; an error says why its program cannot be sent
+};
+
+absl::StatusOr<RemoteScript> script_for(Machine machine, const std::string& join) {
+  ASSIGN_OR_RETURN(const WorkerProgram program, load_worker_program(machine));
+  return RemoteScript::create(invite_script(program.bytes.size(), program.digest),
+                              absl::StrCat(join, "\n", program.bytes));
+}
+
+/// Parses the architecture from the output of machine_script. INVALID_ARGUMENT: workers are not
+/// built for it.
+absl::StatusOr<Machine> machine_of(absl::string_view said) {
+  absl::string_view name = said;
+  const bool linux_system = absl::ConsumePrefix(&name, "Linux ");
+  const std::optional<Machine> machine = machine_named(name);
+  if (linux_system && machine) {
+    return *machine;
+  }
+  constexpr std::size_t kMaxColumns = 60;  // enough for every real name
+  return absl::InvalidArgumentError(
+      absl::StrCat("it is a machine of another kind (uname says: ", fit(said, kMaxColumns),
+                   "); workers run on Linux, on ",
+                   absl::StrJoin(kMachines, " or ", [](std::string* out, Machine one) {
+                     absl::StrAppend(out, machine_name(one));
+                   })));
+}
+
+absl::StatusOr<Invitation> Invitation::create(const std::string& join) {
+  ASSIGN_OR_RETURN(RemoteScript ask, RemoteScript::create(machine_script()));
+  Scripts scripts;
+  for (const Machine machine : kMachines) {
+    scripts.emplace(machine, script_for(machine, join));
+  }
+  if (std::none_of(scripts.begin(), scripts.end(),
+                   [](const auto& script) { return script.second.ok(); })) {
+    return scripts.at(kThisMachine).status();
+  }
+  return Invitation(std::move(ask), std::move(scripts));
+}
+
+RemoteOutcome Invitation::invite(const std::string& host, double seconds,
+                                 const std::atomic<bool>& stop) const {
+  const auto begin = std::chrono::steady_clock::now();
+  RemoteOutcome outcome = ask_.run(host, seconds, stop);
+  if (!outcome.ok) {
+    return outcome;
+  }
+  outcome.ok = false;
+  const absl::StatusOr<Machine> machine = machine_of(outcome.what);
+  if (!machine.ok()) {
+    outcome.what = std::string(machine.status().message());
+    return outcome;
+  }
+  const absl::StatusOr<RemoteScript>& script = scripts_.at(*machine);
+  if (!script.ok()) {
+    outcome.what = std::string(script.status().message());
+    return outcome;
+  }
+  const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - begin;
+  return script->run(host, seconds - passed.count(), stop);
+}
+
+/// Returns the workers' join string: the given one, or that of the farm served from this account.
 absl::StatusOr<link::JoinString> workers_join(const InviteOptions& options) {
   std::string from = options.join;
   if (from.empty()) {
@@ -41,11 +131,11 @@ absl::StatusOr<link::JoinString> workers_join(const InviteOptions& options) {
   return join;
 }
 
-/// What is done to one host, until `stop` is set.
+/// The work for one host; ends soon after `stop` is set.
 using HostWork =
     std::function<RemoteOutcome(const std::string& host, const std::atomic<bool>& stop)>;
 
-/// Prints how it went on each host as soon as it is known, and at the end how many went well.
+/// Prints the result of each host as soon as it is known, and at the end the number of successes.
 ExitCode on_hosts(const std::vector<std::string>& hosts, const char* event, const HostWork& work,
                   const Verbosity& verbosity, Process& process) {
   std::atomic<bool> stop = false;
@@ -96,7 +186,7 @@ ExitCode run(const InviteOptions& options, Process& process) {
 }
 
 ExitCode run(const DismissOptions& options, Process& process) {
-  // Beside the drain the connection and the shell need their time.
+  // The connection and the shell need time in addition to the drain.
   constexpr double kAround = 30;
   const auto script =
       RemoteScript::create(dismiss_script(static_cast<int>(std::ceil(options.drain_s))));

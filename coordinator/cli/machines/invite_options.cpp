@@ -1,7 +1,7 @@
 #include "coordinator/cli/machines/invite_options.h"
 
 #include "absl/strings/str_cat.h"
-#include "coordinator/cli/options/house_options.h"
+#include "coordinator/cli/options/admin_options.h"
 #include "coordinator/cli/options/quantities.h"
 #include "renderlib/base/status_macros.h"
 

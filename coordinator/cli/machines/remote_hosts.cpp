@@ -26,8 +26,8 @@ namespace {
 constexpr std::size_t kAtOnce = 32;
 constexpr int kSshFailed = 255;  // what ssh itself ends with
 
-/// The script comes first on standard input, so that no shell on the way reads it; dd takes not a
-/// byte more of it.
+/// The script is sent first on standard input, so that no shell on the way parses it; dd reads not
+/// one byte more than the script.
 std::vector<std::string> ssh_command(const std::string& host, std::size_t script_size) {
   return {"ssh",
           "-T",
@@ -53,7 +53,7 @@ std::string last_line(const std::string& output) {
   return last;
 }
 
-/// Whether the script said how it went.
+/// Returns true if the script has printed its result.
 bool read_result(const std::string& output, RemoteOutcome& outcome) {
   for (absl::string_view line : absl::StrSplit(output, '\n')) {
     if (absl::ConsumePrefix(&line, kRemoteResult)) {
@@ -110,7 +110,7 @@ absl::StatusOr<RemoteScript> RemoteScript::create(const std::string& script,
 
 RemoteOutcome RemoteScript::run(const std::string& host, double seconds,
                                 const std::atomic<bool>& stop) const {
-  // Each child opens it anew, so that each reads from the beginning.
+  // Each child opens the file itself, so that each reads from the beginning.
   const ChildStreams streams{.input = absl::StrCat("/proc/self/fd/", file_.fd()),
                              .errors_too = true};
   return judge(host, run_child(ssh_command(host, script_size_), seconds, &stop, streams), seconds);

@@ -1,6 +1,6 @@
 #pragma once
 
-// Scripts on many machines at once, by the ssh of this one.
+// Runs scripts on many machines at the same time by ssh.
 
 #include <atomic>
 #include <functional>
@@ -12,24 +12,22 @@
 
 namespace bandsaw::coordinator {
 
-/// What became of one machine.
+/// The result of one machine.
 struct RemoteOutcome {
   std::string host;  ///< as given: HOST, USER@HOST or an ssh:// address
   bool ok = false;
   std::string what;  ///< one line, printable
 };
 
-/// A script (remote_scripts.h) and what it reads from standard input, held once in memory for any
-/// number of hosts.
+/// A script (remote_scripts.h) and its standard input, held in memory once for any number of hosts.
 class RemoteScript {
  public:
-  /// The error is the system's.
+  /// Returns the system's error if the file with the input cannot be created.
   static absl::StatusOr<RemoteScript> create(const std::string& script,
                                              const std::string& input = "");
 
-  /// Runs it on `host` for at most `seconds`; ends soon after `stop` is set. ssh never asks: a host
-  /// that wants a password or is not known yet has an error that says so. May be called from
-  /// several threads at once.
+  /// Runs the script on `host` for at most `seconds`; ends soon after `stop` is set. ssh asks no
+  /// questions: for a host that wants a password or is unknown the result is an error. Thread-safe.
   RemoteOutcome run(const std::string& host, double seconds, const std::atomic<bool>& stop) const;
 
  private:
@@ -39,8 +37,8 @@ class RemoteScript {
   std::size_t script_size_;
 };
 
-/// Calls `work` for each host, 32 at a time from several threads, and `tell` as each ends, one at a
-/// time. Returns when all have ended.
+/// Calls `work` for each host, for up to 32 hosts at the same time from several threads, and `tell`
+/// with each result, one call at a time. Returns when all hosts are done.
 void for_each_host(const std::vector<std::string>& hosts,
                    const std::function<RemoteOutcome(const std::string& host)>& work,
                    const std::function<void(const RemoteOutcome&)>& tell);

@@ -5,7 +5,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// What both scripts know. `result` ends the script: the first word says whether all went well.
+// The common part of both scripts. `result` ends the script; its first argument is ok or failed.
 constexpr char kCommon[] = R"sh(
 result() { echo "bandsaw-result: $*"; exit 0; }
 [ -n "${HOME:-}" ] || result failed "HOME is not set there"

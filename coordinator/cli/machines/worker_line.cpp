@@ -6,7 +6,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// A shell command that sets `d` to the digest of the program for this machine, or fails.
+/// Returns a shell command that sets `d` to the digest of the program for the machine, or fails.
 std::string choice_of_digest(const WorkerDigests& programs) {
   std::string arms;
   std::string names;
@@ -24,8 +24,8 @@ std::string choice_of_digest(const WorkerDigests& programs) {
 
 std::string worker_line(const std::string& url, const std::optional<wire::Digest>& public_key,
                         const WorkerDigests& programs, const std::string& join) {
-  // The certificate is the farm's own and signed by nobody else, so only its key counts. The file
-  // gets its name when it is whole: a program of that name may be running.
+  // The certificate is the farm's own and not signed by an authority, so only its key is checked.
+  // The file gets its name when it is complete, because a program of that name may be running.
   const std::string trust = public_key ? absl::StrCat(" -k --pinnedpubkey sha256//",
                                                       absl::Base64Escape(public_key->raw()))
                                        : "";

@@ -1,7 +1,7 @@
 #pragma once
 
-// Options as they were typed, and the checks that turn them into a command's options. All errors
-// are INVALID_ARGUMENT.
+// Options as typed, and the checks that convert them to a command's options. All errors are
+// INVALID_ARGUMENT.
 
 #include <optional>
 #include <string>
@@ -12,7 +12,7 @@
 
 namespace bandsaw::coordinator {
 
-/// The union of all commands' options, unread.
+/// The union of all commands' options, unparsed.
 struct RawOptions {
   std::string scene, environment, camera, image, reference, data, farm, join;
   std::optional<std::string> job, listen, priority, worker, action, role, keep_days, keep_size,
@@ -21,11 +21,10 @@ struct RawOptions {
   std::optional<std::string> samples, error, time, seed, width, height, depth, threads, kernel,
       rows;
   std::optional<std::string> integrator, exposure, tone, layers, report, seeds, reference_samples;
-  std::optional<std::string> runs, tev;
+  std::optional<std::string> tev;
   std::optional<std::string> web, shell, audit;
   bool lift = false, adaptive = false, half = false, insecure = false, detach = false,
-       quiet = false, json = false, preview = false, phone = false, every_object = false,
-       reflection = false;
+       quiet = false, json = false, preview = false, every_object = false, reflection = false;
 };
 
 absl::StatusOr<Command> checked_serve(const RawOptions& raw);
@@ -49,18 +48,18 @@ absl::StatusOr<Command> checked_compare(const RawOptions& raw);
 
 // Parts of several commands.
 absl::StatusOr<Verbosity> checked_verbosity(const RawOptions& raw);
-/// Only where there are images to report of.
+/// `has_images`: false if the command writes no image, so that there is nothing to report.
 absl::StatusOr<ReportOption> checked_report(const RawOptions& raw, bool has_images = true);
-/// HOST:PORT of a viewer; empty: not given.
+/// Returns HOST:PORT of a viewer; empty: not given.
 absl::StatusOr<std::string> checked_tev(const RawOptions& raw);
-/// HOST:PORT. `option` and `example` are for the error.
+/// Checks for HOST:PORT. `option` and `example` are used in the error.
 absl::Status check_address(const std::string& option, const std::string& address,
                            const std::string& example);
-/// A share of all bands; `standard` when none is given.
+/// Returns a share of all bands; `standard` if none is given.
 absl::StatusOr<double> checked_audit(const RawOptions& raw, double standard);
-/// Of the dashboard; empty: not given.
+/// Returns the dashboard's address; empty: not given.
 absl::StatusOr<std::string> checked_web(const RawOptions& raw);
-/// `command` is for the error.
+/// `command` is used in the error.
 absl::StatusOr<JobId> checked_job(const RawOptions& raw, const std::string& command);
 absl::StatusOr<std::int32_t> checked_priority_value(const std::string& name,
                                                     const std::string& text);

@@ -1,10 +1,13 @@
 #include "coordinator/cli/options/choices.h"
 
+#include <algorithm>
+#include <iterator>
+
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_join.h"
+#include "absl/strings/str_split.h"
 #include "absl/types/span.h"
 #include "coordinator/cli/options/did_you_mean.h"
-#include "coordinator/cli/options/layers.h"
 #include "renderlib/image/display.h"
 #include "renderlib/scene/integrator.h"
 
@@ -30,7 +33,7 @@ std::vector<std::string> choices_of(const std::string& name) {
     return names_of(kLastTone, tone_name);
   }
   if (name == "--layers") {
-    return layer_names();
+    return {std::begin(kLayerNames), std::end(kLayerNames)};
   }
   if (name == "--kernel") {
     std::vector<std::string> names;
@@ -57,6 +60,23 @@ absl::StatusOr<const Kernel*> chosen_kernel(const std::optional<std::string>& na
   }
   const absl::StatusOr<const Kernel*> kernel = find_kernel(*name);
   return kernel.ok() ? kernel : wrong_choice("--kernel", *name);
+}
+
+absl::StatusOr<std::vector<LayerKind>> parse_layers(const std::string& list) {
+  std::vector<LayerKind> kinds;
+  for (const absl::string_view name : absl::StrSplit(list, ',')) {
+    const auto* found = std::find(std::begin(kLayerNames), std::end(kLayerNames), name);
+    const auto kind = static_cast<LayerKind>(found - std::begin(kLayerNames));
+    if (found == std::end(kLayerNames)) {
+      return wrong_choice("--layers", std::string(name));
+    }
+    if (std::find(kinds.begin(), kinds.end(), kind) != kinds.end()) {
+      return absl::InvalidArgumentError(absl::StrCat("--layers: each once, with commas between; '",
+                                                     list, "' has ", name, " twice"));
+    }
+    kinds.push_back(kind);
+  }
+  return kinds;
 }
 
 std::string one_of(const std::vector<std::string>& words) {

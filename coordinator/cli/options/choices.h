@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "coordinator/cli/options/options.h"
 #include "renderlib/render/kernel.h"
 
 namespace bandsaw::coordinator {
@@ -17,6 +18,10 @@ std::vector<std::string> choices_of(const std::string& name);
 /// Returns the kernel that --kernel names; nullptr if the option is not given, which stands for the
 /// fastest. INVALID_ARGUMENT: this machine runs no kernel of that name.
 absl::StatusOr<const Kernel*> chosen_kernel(const std::optional<std::string>& name);
+
+/// Parses a list such as "albedo,normal,depth,samples", each at most once. INVALID_ARGUMENT:
+/// unknown or repeated name.
+absl::StatusOr<std::vector<LayerKind>> parse_layers(const std::string& list);
 
 /// Joins the words to a phrase: "none or filmic".
 std::string one_of(const std::vector<std::string>& words);

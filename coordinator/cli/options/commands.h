@@ -36,7 +36,6 @@ ExitCode run(const InfoOptions& options, Process& process);
 ExitCode run(const StitchOptions& options, Process& process);
 ExitCode run(const CompareOptions& options, Process& process);
 ExitCode run(const StudyOptions& options, Process& process);
-ExitCode run(const PhoneStudyOptions& options, Process& process);
 ExitCode run(const ShowText& options, Process& process);
 
 }  // namespace bandsaw::coordinator

@@ -30,8 +30,8 @@ std::size_t edits(const std::string& a, const std::string& b) {
 
 std::optional<std::string> did_you_mean(const std::string& word,
                                         const std::vector<std::string>& known) {
-  constexpr std::size_t kLongestWord = 64;
-  if (word.size() > kLongestWord) {
+  constexpr std::size_t kMaxWord = 64;
+  if (word.size() > kMaxWord) {
     return std::nullopt;
   }
   std::optional<std::string> best;

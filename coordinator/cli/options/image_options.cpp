@@ -1,12 +1,38 @@
 #include "coordinator/cli/options/image_options.h"
 
+#include <CLI/CLI.hpp>
+
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "coordinator/cli/options/admin_options.h"
+#include "coordinator/cli/options/checked_options.h"
 #include "coordinator/cli/options/choices.h"
-#include "coordinator/cli/options/house_options.h"
-#include "coordinator/cli/options/report_options.h"
 
 namespace bandsaw::coordinator {
 namespace {
+
+void add_report(CLI::App& app, RawOptions& raw);
+
+void add_report(CLI::App& app, RawOptions& raw) {
+  app.add_option("--report", raw.report,
+                 "File for the report of error and cost (.json), or none "
+                 "[default: beside each image, with its name]")
+      ->type_name("FILE|none");
+}
+
+absl::StatusOr<ReportOption> checked_report(const RawOptions& raw, bool has_images) {
+  if (!raw.report) {
+    return ReportOption();
+  }
+  if (!has_images) {
+    return absl::InvalidArgumentError("--report is written with the image: add -o FILE");
+  }
+  if (*raw.report != "none" && !absl::EndsWithIgnoreCase(*raw.report, ".json")) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--report: must end in .json, or be none, is '", *raw.report, "'"));
+  }
+  return ReportOption{*raw.report};
+}
 
 constexpr char kPictures[] = ".png, .ppm, .pfm, .hdr or .exr";
 
@@ -26,48 +52,50 @@ void add_image(CLI::App& app, RawOptions& raw) {
                  "[default: the scene's]")
       ->type_name("FILE");
   app.add_option("--camera", raw.camera,
-                 "One of the cameras that the scene's models bring, see bandsaw info "
+                 "One of the cameras of the scene's models, see bandsaw info "
                  "[default: the scene's, or a model's first]")
       ->type_name("NAME");
-  app.add_option("--samples", raw.samples, "Stop at N samples a pixel [default: 64]")
+  app.add_option("--samples", raw.samples, "Stop at N samples per pixel [default: 64]")
       ->type_name("N");
   app.add_option("--error", raw.error,
-                 "Stop where the relative RMSE is at most this, 19 times of 20, as in 1%")
+                 "Stop when the relative RMSE is at most this, in 19 of 20 cases, as in 1%")
       ->type_name("E%");
-  app.add_flag("--adaptive", raw.adaptive, "With --error: more samples where noise is");
+  app.add_flag("--adaptive", raw.adaptive, "With --error: more samples where there is more noise");
   app.add_option("--time", raw.time, "Stop before this much time, as in 5s, 2m, 1h")
       ->type_name("T");
-  app.add_option("--seed", raw.seed, "Another seed, another noise [default: 0]")->type_name("N");
+  app.add_option("--seed", raw.seed, "Seed of the noise [default: 0]")->type_name("N");
   app.add_option("--width", raw.width, "Pixels; alone it keeps the scene's aspect ratio")
       ->type_name("W");
   app.add_option("--height", raw.height, "Pixels; alone it keeps the scene's aspect ratio")
       ->type_name("H");
-  app.add_option("--depth", raw.depth, "Most times a path scatters [default: the scene's]")
+  app.add_option("--depth", raw.depth,
+                 "Maximum number of scatterings of a path [default: the scene's]")
       ->type_name("N");
 }
 
 void add_integrator(CLI::App& app, RawOptions& raw) {
   app.add_option("--integrator", raw.integrator,
-                 absl::StrCat("What is shown: ", one_of(choices_of("--integrator")),
+                 absl::StrCat("What the image shows: ", one_of(choices_of("--integrator")),
                               " [default: the scene's]"))
       ->type_name("I");
 }
 
 void add_display(CLI::App& app, RawOptions& raw, const char* standard) {
-  app.add_option("--exposure", raw.exposure,
-                 absl::StrCat("PNG and PPM show 2^STOPS times the light [default: ", standard, "]"))
+  app.add_option(
+         "--exposure", raw.exposure,
+         absl::StrCat("Multiply the light in PNG and PPM by 2^STOPS [default: ", standard, "]"))
       ->type_name("STOPS");
   app.add_option("--tone", raw.tone,
-                 absl::StrCat("Light above 1 in PNG and PPM: none (cut off) or filmic [default: ",
+                 absl::StrCat("Values above 1 in PNG and PPM: none (clipped) or filmic [default: ",
                               standard, "]"))
       ->type_name("T");
-  app.add_flag("--half", raw.half, "EXR files hold 16-bit numbers, not 32");
+  app.add_flag("--half", raw.half, "16-bit numbers in EXR files instead of 32-bit");
   add_report(app, raw);
 }
 
 void add_layers(CLI::App& app, RawOptions& raw) {
   app.add_option("--layers", raw.layers,
-                 "What EXR files hold besides, as in albedo,normal,depth,samples")
+                 "Additional layers of EXR files, as in albedo,normal,depth,samples")
       ->type_name("L,L,…");
 }
 
@@ -75,7 +103,7 @@ void add_views(CLI::App& app, RawOptions& raw) {
   app.add_flag("--preview", raw.preview,
                "Draw the image on the terminal while it forms, in half blocks of 24-bit colours");
   app.add_option("--tev", raw.tev,
-                 "Show it while it forms in the viewer tev, as in 127.0.0.1:14158")
+                 "Show the image while it forms in the viewer tev, as in 127.0.0.1:14158")
       ->type_name("HOST:PORT");
 }
 
@@ -87,9 +115,9 @@ void add_submit(CLI::App& app, RawOptions& raw) {
   add_output(app, raw, kPictures, " [default: the scene's name as .png]");
   add_display(app, raw, "the scene's");
   add_layers(app, raw);
-  app.add_flag("--detach", raw.detach, "Do not watch; say the job's number and leave");
+  app.add_flag("--detach", raw.detach, "Do not watch; print the job's number and exit");
   app.add_option("--priority", raw.priority,
-                 "The highest is rendered first, -1000 to 1000 [default: 0]")
+                 "Jobs of the highest priority are rendered first, -1000 to 1000 [default: 0]")
       ->type_name("N");
   add_farm(app, raw);
   add_views(app, raw);
@@ -117,8 +145,7 @@ void add_render(CLI::App& app, RawOptions& raw) {
                  "The renderer's code, for comparison; the image is the same: " +
                      one_of(choices_of("--kernel")) + " [default: the first]")
       ->type_name("NAME");
-  app.add_option("--rows", raw.rows,
-                 "Only rows y0 to y1 - 1, from the top; parts are joined by stitch")
+  app.add_option("--rows", raw.rows, "Only rows y0 to y1 - 1, from the top; stitch joins the parts")
       ->type_name("y0:y1");
   add_views(app, raw);
   add_verbosity(app, raw);

@@ -1,6 +1,6 @@
 #pragma once
 
-// What each command was asked to do: plain values, checked.
+// The checked options of each command, as plain values.
 
 #include <cstdint>
 #include <optional>
@@ -20,43 +20,43 @@ struct Kernel;  // renderlib/render/kernel.h
 
 namespace bandsaw::coordinator {
 
-/// How much a command says.
+/// How much a command prints.
 struct Verbosity {
   bool quiet = false;    ///< only the last line and errors
-  bool json = false;     ///< one JSON object a line instead of text
+  bool json = false;     ///< one JSON object per line instead of text
   bool preview = false;  ///< the image as it forms, on a terminal with colours
 };
 
-/// Everything beside the scene that decides an image, as far as it was given.
+/// All settings besides the scene that determine an image; unset: not given.
 struct ImageOptions {
   StopRule stop = StopAtSamples{64};
   std::uint64_t seed = 0;
   std::optional<std::uint32_t> width;   ///< alone: the height keeps the scene's aspect ratio
-  std::optional<std::uint32_t> height;  ///< alone: the width does
+  std::optional<std::uint32_t> height;  ///< alone: the width keeps the scene's aspect ratio
   std::optional<std::uint32_t> depth;
   std::optional<Integrator> integrator;
   SceneChoices choices;
 };
 
-/// How pictures are written, as far as it was given.
+/// How pictures are written; unset: not given.
 struct DisplayOptions {
   std::optional<double> exposure;  ///< stops
   std::optional<Tone> tone;
-  bool half = false;  ///< EXR with 16 bits a channel
+  bool half = false;  ///< EXR with 16 bits per channel
 
-  /// With what was not given from `standard`.
+  /// Takes unset values from `standard`.
   Display over(const Display& standard) const {
     return {exposure.value_or(standard.exposure), tone.value_or(standard.tone), half};
   }
 };
 
-/// Where the report goes, as given: a file, "none", or nothing (then beside each image).
+/// The report, as given: a file, "none", or empty (beside each image).
 struct ReportOption {
   std::string file;
 };
 
-/// Where the farm is, as given: a join string, a file, "-", or nothing (then environment and
-/// default folder are asked).
+/// The farm, as given: a join string, a file, "-", or empty (then the environment and the default
+/// folder are used).
 struct FarmOption {
   std::string farm;
 };
@@ -64,17 +64,19 @@ struct FarmOption {
 struct ServeOptions {
   std::string data;  ///< empty: the default data folder
   std::string listen = "0.0.0.0:7878";
-  std::string web;  ///< HOST:PORT of the dashboard; "none"; empty: loopback, on a port that is free
+  std::string web;  ///< HOST:PORT of the dashboard; "none"; empty: loopback, on a free port
   bool insecure = false;
   bool reflection = false;
-  double keep_days = 30;             ///< jobs that are over
-  double keep_gb = 100;              ///< results and scenes in all
-  std::uint64_t keep_jobs = 10'000;  ///< that are over
-  double audit_share = 0.01;         ///< of all bands, [0, 1]
+  double keep_days = 30;             ///< maximum age of jobs that are over
+  double keep_gb = 100;              ///< maximum size of results and scenes
+  std::uint64_t keep_jobs = 10'000;  ///< maximum number of jobs that are over
+  double audit_share = 0.01;         ///< share of all bands, [0, 1]
 };
 
-/// What an EXR file holds beside the image.
+/// Additional layers of an EXR file.
 enum class LayerKind { kAlbedo, kNormal, kDepth, kSamples };
+/// Their names, in the order of LayerKind.
+inline constexpr const char* kLayerNames[] = {"albedo", "normal", "depth", "samples"};
 
 struct SubmitOptions {
   std::string scene;
@@ -85,9 +87,9 @@ struct SubmitOptions {
   ReportOption report;
   std::string tev;  ///< HOST:PORT of a viewer; empty: none
   Verbosity verbosity;
-  bool detach = false;            ///< do not watch
+  bool detach = false;            ///< do not watch the job
   std::int32_t priority = 0;      ///< [-kMostPriority, kMostPriority]
-  std::vector<LayerKind> layers;  ///< of EXR files
+  std::vector<LayerKind> layers;  ///< layers of EXR files
 };
 
 struct WatchOptions {
@@ -150,8 +152,8 @@ struct QuarantineOptions {
 
 struct DoctorOptions {
   std::string data;                     ///< empty: the default data folder
-  std::string listen = "0.0.0.0:7878";  ///< where a coordinator would listen here
-  FarmOption farm;                      ///< people's or workers' join string
+  std::string listen = "0.0.0.0:7878";  ///< address to test for a coordinator on this machine
+  FarmOption farm;                      ///< users' or workers' join string
   Verbosity verbosity;
 };
 
@@ -163,15 +165,15 @@ struct RotateOptions {
 
 struct InviteOptions {
   std::vector<std::string> hosts;  ///< as ssh takes them; at least one
-  std::string join;                ///< workers' join string or its file; empty: of the data folder
-  std::string data;                ///< empty: the default data folder
-  double seconds = 300;            ///< most for one host
+  std::string join;      ///< workers' join string or its file; empty: from the data folder
+  std::string data;      ///< empty: the default data folder
+  double seconds = 300;  ///< maximum time for one host
   Verbosity verbosity;
 };
 
 struct DismissOptions {
   std::vector<std::string> hosts;  ///< as ssh takes them; at least one
-  double drain_s = 60;             ///< most for a worker to finish what it holds
+  double drain_s = 60;             ///< maximum time for a worker to finish its bands
   Verbosity verbosity;
 };
 
@@ -191,9 +193,9 @@ struct RenderOptions {
   std::string tev;  ///< HOST:PORT of a viewer; empty: none
   Verbosity verbosity;
   int threads = 0;                 ///< 0: one for each CPU
-  const Kernel* kernel = nullptr;  ///< null: the fastest that this machine runs
-  std::optional<RowRange> rows;    ///< a part of the image
-  std::vector<LayerKind> layers;   ///< of EXR files
+  const Kernel* kernel = nullptr;  ///< nullptr: the fastest that this machine can run
+  std::optional<RowRange> rows;    ///< only these rows
+  std::vector<LayerKind> layers;   ///< layers of EXR files
 };
 
 struct InfoOptions {
@@ -212,44 +214,32 @@ struct StitchOptions {
 struct CompareOptions {
   std::string image;
   std::string reference;
-  std::vector<std::string> outputs;  ///< of the picture of the differences
+  std::vector<std::string> outputs;  ///< files for the picture of the differences
   Verbosity verbosity;
 };
 
 struct StudyOptions {
   std::vector<std::string> scenes;
   std::vector<std::string> outputs = {"study.csv", "study.svg"};
-  std::uint64_t samples = 64;      ///< the most a pixel, [4, 65536]
-  std::uint64_t seeds = 4;         ///< images of each kind
-  std::uint64_t reference = 1024;  ///< samples a pixel of what is compared with
-  std::uint64_t seed = 0;          ///< the first
+  std::uint64_t samples = 64;      ///< maximum samples per pixel, [4, 65536]
+  std::uint64_t seeds = 4;         ///< number of seeds to average over
+  std::uint64_t reference = 1024;  ///< samples per pixel of the reference
+  std::uint64_t seed = 0;          ///< first seed
   std::uint32_t width = 96;        ///< pixels; the height keeps the scene's aspect ratio
   int threads = 0;                 ///< 0: one for each CPU
-  bool every_object = false;       ///< also without trees
+  bool every_object = false;       ///< also measure without BVHs
   Verbosity verbosity;
 };
 
-/// study --phone.
-struct PhoneStudyOptions {
-  std::vector<std::string> images;  ///< how their names begin; empty: all
-  std::vector<std::string> outputs = {"phone.csv", "phone.svg"};
-  int runs = 10;                       ///< of each image on each machine
-  std::optional<std::uint32_t> width;  ///< pixels; nothing: the study's own
-  int threads = 0;                     ///< of "all"; 0: one for each CPU
-  FarmOption farm;                     ///< need not be there where none is named
-  Verbosity verbosity;
-};
-
-/// --help and --version: print and leave.
+/// --help and --version: print a text and exit.
 struct ShowText {
   std::string text;
 };
 
-using Command =
-    std::variant<ServeOptions, SubmitOptions, WatchOptions, JobsOptions, WorkersOptions,
-                 CancelOptions, PauseOptions, ResumeOptions, PriorityOptions, WhyOptions,
-                 LogsOptions, QuarantineOptions, DoctorOptions, RotateOptions, InviteOptions,
-                 DismissOptions, RenderOptions, InfoOptions, StitchOptions, CompareOptions,
-                 StudyOptions, PhoneStudyOptions, ShowText>;
+using Command = std::variant<ServeOptions, SubmitOptions, WatchOptions, JobsOptions, WorkersOptions,
+                             CancelOptions, PauseOptions, ResumeOptions, PriorityOptions,
+                             WhyOptions, LogsOptions, QuarantineOptions, DoctorOptions,
+                             RotateOptions, InviteOptions, DismissOptions, RenderOptions,
+                             InfoOptions, StitchOptions, CompareOptions, StudyOptions, ShowText>;
 
 }  // namespace bandsaw::coordinator

@@ -47,8 +47,8 @@ absl::StatusOr<double> parse_percent(const std::string& name, const std::string&
 }
 
 absl::StatusOr<double> parse_seconds(const std::string& name, const std::string& text) {
-  constexpr double kLeast = 0.1;
-  constexpr double kMost = 30.0 * 24 * 3600;
+  constexpr double kMin = 0.1;
+  constexpr double kMax = 30.0 * 24 * 3600;
   absl::string_view number = text;
   double unit = 1;
   if (absl::ConsumeSuffix(&number, "h")) {
@@ -59,7 +59,7 @@ absl::StatusOr<double> parse_seconds(const std::string& name, const std::string&
     absl::ConsumeSuffix(&number, "s");
   }
   double count = 0;
-  if (!parse_decimal(number, count) || count * unit < kLeast || count * unit > kMost) {
+  if (!parse_decimal(number, count) || count * unit < kMin || count * unit > kMax) {
     return must_be(name, "a time from 0.1s to 720h, as in 5s, 2m, 1.5h", text);
   }
   return count * unit;

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "coordinator/convert/farm_messages.h"
 #include "coordinator/core/types.h"
 #include "proto/farm.pb.h"
 
@@ -17,13 +18,8 @@ struct Progress {
 };
 
 /// Converts the coordinator's status. Fields that the message lacks become "unknown".
-Progress progress_of(const farm::JobStatus& status);
-
-/// Convert settings and stop rule to messages.
-farm::Settings to_proto(const RenderSettings& settings);
-farm::StopRule to_proto(const StopRule& stop);
-
-/// "pixel (3, 4), sample 17".
-std::string bad_sample_text(const Counters& counters);
+inline Progress progress_of(const farm::JobStatus& status) {
+  return {.job = job_view_of(status), .bad_sample_at = status.bad_sample_at()};
+}
 
 }  // namespace bandsaw::coordinator

@@ -4,7 +4,6 @@
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/base/text.h"
-#include "coordinator/cli/options/output.h"
 #include "coordinator/cli/progress/half_blocks.h"
 #include "coordinator/cli/progress/progress_json.h"
 #include "coordinator/cli/progress/progress_text.h"
@@ -160,8 +159,8 @@ void ProgressDisplay::done(const Progress& progress, const std::vector<std::stri
     console_.line(line);
   }
   const std::string name =
-      outputs.empty() ? absl::StrCat("job ", progress.job.id) : names_of(outputs);
-  console_.line(final_line(progress, name, names_of(reports)));
+      outputs.empty() ? absl::StrCat("job ", progress.job.id) : printable_list(outputs);
+  console_.line(final_line(progress, name, printable_list(reports)));
 }
 
 void ProgressDisplay::ended(const Progress& progress) {

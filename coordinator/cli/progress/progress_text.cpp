@@ -93,16 +93,16 @@ std::string plain_line(const Progress& progress) {
 }
 
 std::vector<std::string> worker_lines(const Progress& progress, std::size_t most) {
-  constexpr std::size_t kLeastName = 8;
-  constexpr std::size_t kMostName = 24;
+  constexpr std::size_t kMinName = 8;
+  constexpr std::size_t kMaxName = 24;
   const std::vector<JobWorkerView>& workers = progress.job.workers;
   std::vector<std::string> lines;
   if (!progress.job.reason.empty()) {
     lines.push_back("   " + printable(progress.job.reason));
   }
-  std::size_t name_columns = kLeastName;
+  std::size_t name_columns = kMinName;
   for (const JobWorkerView& worker : workers) {
-    name_columns = std::clamp(columns(printable(worker.name)), name_columns, kMostName);
+    name_columns = std::clamp(columns(printable(worker.name)), name_columns, kMaxName);
   }
   for (std::size_t i = 0; i < workers.size() && lines.size() < most; ++i) {
     const bool no_room = lines.size() + 1 == most && i + 1 < workers.size();

@@ -129,18 +129,12 @@ absl::StatusOr<std::unique_ptr<ScratchFolder>> run_importer(const char* what,
   return folder;
 }
 
-absl::StatusOr<std::string> read_bytes(const std::string& path, std::uint64_t most) {
-  std::error_code error;
-  const std::uint64_t size = fs::file_size(path, error);
-  if (error || size > most) {
-    return absl::DataLossError(absl::StrCat("the importer did not leave ", path));
-  }
-  std::string bytes(size, '\0');
-  std::ifstream in(path, std::ios::binary);
-  if (!in.read(bytes.data(), static_cast<std::streamsize>(size))) {
-    return absl::DataLossError(absl::StrCat("cannot read ", path));
-  }
-  return bytes;
+// Reads a file that the importer has written, of at most `max_bytes`.
+absl::StatusOr<std::string> read_output(const std::string& path, std::uint64_t max_bytes) {
+  absl::StatusOr<std::string> bytes = read_whole_file(path, max_bytes);
+  return bytes.ok() ? std::move(bytes)
+                    : absl::DataLossError(absl::StrCat("the importer did not leave ", path, " (",
+                                                       bytes.status().message(), ")"));
 }
 
 }  // namespace
@@ -161,15 +155,15 @@ absl::StatusOr<ImportedPackage> import_in_process(const std::string& scene_path,
                                                   const SceneChoices& choices) {
   ASSIGN_OR_RETURN(auto folder, run_importer("scene", scene_path, limits, choices));
   ASSIGN_OR_RETURN(std::string manifest,
-                   read_bytes(folder->path() + "/manifest", wire::kManifestBytes));
+                   read_output(folder->path() + "/manifest", wire::kManifestBytes));
   ASSIGN_OR_RETURN(PackageInfo info, package_info(manifest));
   return ImportedPackage(std::move(folder), std::move(manifest), std::move(info));
 }
 
 absl::StatusOr<Image> read_image_in_process(const std::string& path, const ImportLimits& limits) {
   ASSIGN_OR_RETURN(const auto folder, run_importer("image", path, limits));
-  constexpr std::uint64_t kMost = (std::uint64_t{12} * kMaxPixels) + 8;
-  ASSIGN_OR_RETURN(const std::string bytes, read_bytes(folder->path() + "/image", kMost));
+  constexpr std::uint64_t kMaxBytes = (std::uint64_t{12} * kMaxPixels) + 8;
+  ASSIGN_OR_RETURN(const std::string bytes, read_output(folder->path() + "/image", kMaxBytes));
   Image image;
   const std::size_t head = 2 * sizeof(std::uint32_t);
   if (bytes.size() >= head) {

@@ -17,7 +17,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr std::size_t kMostAddresses = 8;
+constexpr std::size_t kMaxAddresses = 8;
 
 bool is_virtual(const std::string& name) {
   const std::array<const char*, 5> prefixes = {"docker", "veth", "br-", "virbr", "lxc"};
@@ -81,9 +81,9 @@ std::vector<std::string> join_addresses(const std::string& host, int port,
   std::erase_if(sorted, [&](const LocalAddress& address) { return address.ipv6 && !every; });
   std::stable_sort(sorted.begin(), sorted.end(),
                    [](const LocalAddress& a, const LocalAddress& b) { return rank(a) < rank(b); });
-  if (sorted.size() > kMostAddresses) {
+  if (sorted.size() > kMaxAddresses) {
     // Keeps the last one: loopback always works for workers and commands on this machine.
-    sorted.erase(sorted.begin() + kMostAddresses - 1, sorted.end() - 1);
+    sorted.erase(sorted.begin() + kMaxAddresses - 1, sorted.end() - 1);
   }
   std::vector<std::string> out;
   for (const LocalAddress& address : sorted) {

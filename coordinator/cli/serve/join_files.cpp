@@ -9,7 +9,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// What is there already is not written again: a full disk does not matter to it.
+/// An unchanged file is not written again, so a full disk does not matter then.
 absl::Status write(const std::string& file, const link::JoinString& join) {
   const std::string line = join.text() + "\n";
   const absl::StatusOr<std::string> there = read_whole_file(file, 2 * line.size());

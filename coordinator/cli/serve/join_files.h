@@ -15,12 +15,12 @@ namespace bandsaw::coordinator {
 /// Returns `DATA/join` for workers, `DATA/farm` for users.
 std::string join_file_of(const std::string& data_folder, link::Role role);
 
-/// What a worker, or a person, joins the farm with. `insecure`: without the certificate.
+/// Returns the join string of a role. `insecure`: without the certificate.
 link::JoinString join_string(link::Role role, const link::Identity& identity,
                              const std::vector<std::string>& addresses, bool insecure);
 
-/// Writes it to its role's file, unless the file has it. RESOURCE_EXHAUSTED: the disk is full; the
-/// file is as it was.
+/// Writes the join string to its role's file, unless the file already has it. RESOURCE_EXHAUSTED:
+/// the disk is full; the file is unchanged.
 absl::Status write_join_file(const std::string& data_folder, const link::JoinString& join);
 
 /// Renews the secret in the identity and in the role's join string, if that file exists. Errors as

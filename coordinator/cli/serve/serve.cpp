@@ -1,4 +1,4 @@
-// bandsaw serve: the coordinator, until a signal asks it to leave.
+// bandsaw serve: runs the coordinator until a signal.
 
 #include <spdlog/sinks/stdout_sinks.h>
 #include <spdlog/spdlog.h>
@@ -40,7 +40,7 @@ absl::Status make_folder(const std::string& folder) {
                : absl::OkStatus();
 }
 
-/// The dashboard's logins and link are made of people's secret.
+/// The dashboard's logins and link are derived from the users' secret.
 absl::StatusOr<RenewedSecret> renew_everywhere(const std::string& folder, link::Role role,
                                                const ServedDashboard& web) {
   ASSIGN_OR_RETURN(RenewedSecret renewed, rotate_secret(folder, role));
@@ -51,7 +51,7 @@ absl::StatusOr<RenewedSecret> renew_everywhere(const std::string& folder, link::
   return renewed;
 }
 
-/// A full disk keeps nobody from being served: the file is that of an earlier start.
+/// A full disk does not prevent the start: then the file of an earlier start remains.
 absl::Status unless_full(const absl::Status& written) {
   if (!absl::IsResourceExhausted(written)) {
     return written;
@@ -67,7 +67,7 @@ absl::StatusOr<Serving> start(const ServeOptions& options) {
   if (folder.empty()) {
     ASSIGN_OR_RETURN(folder, default_data_folder());
   }
-  // Secrets, scenes and images are nobody else's: every file that is made from here on is 0600.
+  // Secrets, scenes and images are private: every file that is created from here on has mode 0600.
   umask(S_IRWXG | S_IRWXO);
   RETURN_IF_ERROR(make_folder(folder));
   // The engine first: it locks the folder.
@@ -119,7 +119,7 @@ void raise_file_limit() {
 
 ExitCode run(const ServeOptions& options, Process& process) {
   raise_file_limit();
-  // Standard output is for people and scripts; the log goes beside it.
+  // Standard output is for users and scripts; the log goes to standard error.
   spdlog::set_default_logger(
       std::make_shared<spdlog::logger>("", std::make_shared<spdlog::sinks::stderr_sink_mt>()));
   auto serving = start(options);

@@ -10,17 +10,55 @@
 #include "coordinator/cli/base/data_folder.h"
 #include "coordinator/cli/base/program_folder.h"
 #include "coordinator/cli/image/report.h"
-#include "coordinator/cli/machines/worker_program.h"
-#include "coordinator/cli/serve/bring_scene.h"
+#include "coordinator/cli/machines/worker_file.h"
+#include "coordinator/cli/scene/import_process.h"
 #include "coordinator/cli/serve/join_addresses.h"
+#include "coordinator/engine/engine.h"
+#include "coordinator/web/scenes.h"
 #include "proto/link/certificate.h"
+#include "proto/wire/digest.h"
 #include "renderlib/base/atomic_file.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
 namespace {
 
-/// Of HOST:PORT; IPv6 without its brackets.
+/// Shorter than for a command, because a user waits in a browser.
+constexpr double kPatience_s = 120;
+constexpr std::size_t kPieceBytes = 16 << 20;
+
+absl::Status store(Engine& engine, const wire::Digest& digest, absl::Span<const std::byte> bytes) {
+  if (engine.has_blob(digest)) {
+    return absl::OkStatus();
+  }
+  ASSIGN_OR_RETURN(const auto writer, engine.write_blob(digest, bytes.size()));
+  for (std::size_t at = 0; at < bytes.size(); at += kPieceBytes) {
+    RETURN_IF_ERROR(writer->append(bytes.subspan(at, kPieceBytes)));
+  }
+  return writer->commit();
+}
+
+/// Returns the import function for the dashboard. `engine` MUST outlive it.
+ImportScene import_and_store(Engine& engine) {
+  return [&engine](const std::string& path,
+                   const std::atomic<bool>& stop) -> absl::StatusOr<SceneOnFarm> {
+    ImportLimits limits;
+    limits.seconds = kPatience_s;
+    limits.stop = &stop;
+    ASSIGN_OR_RETURN(ImportedPackage package, import_in_process(path, limits));
+    ASSIGN_OR_RETURN(const std::vector<BlobRef> blobs, package_blobs(package.manifest()));
+    for (const BlobRef& blob : blobs) {
+      ASSIGN_OR_RETURN(const std::unique_ptr<BlobBytes> bytes, package.blobs().get(blob.digest));
+      RETURN_IF_ERROR(store(engine, blob.digest, bytes->bytes()));
+    }
+    const std::string& manifest = package.manifest();
+    const wire::Digest digest = wire::sha256(manifest);
+    RETURN_IF_ERROR(store(engine, digest, std::as_bytes(std::span(manifest))));
+    return SceneOnFarm{digest.hex(), package.info()};
+  };
+}
+
+/// Returns the host of HOST:PORT, IPv6 without brackets.
 std::string host_of(const std::string& address) {
   const std::string host = address.substr(0, address.rfind(':'));
   return host.front() == '[' && host.back() == ']' ? host.substr(1, host.size() - 2) : host;
@@ -51,7 +89,7 @@ absl::StatusOr<std::unique_ptr<Dashboard>> start(const ServeOptions& options, En
   wanted.workers = workers;
   wanted.insecure = options.insecure;
   wanted.gallery = gallery_folder();
-  wanted.bring = bring_scene(engine);
+  wanted.import_scene = import_and_store(engine);
   wanted.report = [](const JobView& job, const Image& image) {
     const Progress progress{job, bad_sample_text(job.counters)};
     return report_text({progress, pixels_sha256(image), {}});
@@ -63,7 +101,7 @@ absl::StatusOr<std::unique_ptr<Dashboard>> start(const ServeOptions& options, En
     }
     wanted.port = 0;
     dashboard = Dashboard::start(engine, identity, wanted);
-    if (!dashboard.ok()) {  // nobody asked for it: a farm does without
+    if (!dashboard.ok()) {  // it was not requested, so the farm runs without it
       spdlog::warn("there is no dashboard: {}", std::string(dashboard.status().message()));
       return nullptr;
     }
@@ -90,7 +128,7 @@ absl::Status ServedDashboard::write_link(const std::string& data_folder,
     std::filesystem::remove(file, error);
     return error ? errno_status(error.value(), file) : absl::OkStatus();
   }
-  // Behind the #: browsers keep that to themselves.
+  // After the #, which browsers do not send.
   const std::string link = absl::StrCat(url, "/#key=", identity.farm_secret, "\n");
   const absl::StatusOr<std::string> there = read_whole_file(file, 2 * link.size());
   if (there.ok() && *there == link) {

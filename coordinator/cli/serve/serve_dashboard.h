@@ -1,6 +1,6 @@
 #pragma once
 
-// The dashboard as `bandsaw serve` starts it, and the file with the link to it.
+// The dashboard of `bandsaw serve`, and the file with the link to it.
 
 #include <memory>
 #include <string>
@@ -16,23 +16,23 @@
 namespace bandsaw::coordinator {
 
 struct ServedDashboard {
-  std::unique_ptr<Dashboard> dashboard;  ///< null: there is none
-  std::string url;                       ///< as people reach it, without a secret
+  std::unique_ptr<Dashboard> dashboard;  ///< nullptr: there is none
+  std::string url;                       ///< its address for users, without a secret
   WorkerDigests workers;                 ///< the workers' programs that it hands out
 
-  /// The link that logs in, in its file (0600 where the umask says so); without a dashboard there
-  /// is no such file afterwards.
+  /// Writes the file with the link that logs in (mode 0600 if the umask says so). Without a
+  /// dashboard, removes the file.
   absl::Status write_link(const std::string& data_folder, const link::Identity& identity) const;
 
-  /// What to paste on a machine that has no worker yet; empty: none is handed out, or machines that
-  /// reach the coordinator do not reach the dashboard.
+  /// Returns the line to paste on a machine without a worker; empty: no program is handed out, or
+  /// machines that reach the coordinator do not reach the dashboard.
   absl::StatusOr<std::string> worker_line(const ServeOptions& options,
                                           const link::Identity& identity,
                                           const std::string& join) const;
 };
 
-/// As the options say; null for "none", and where none was asked for and none can be had. `engine`
-/// outlives it. FAILED_PRECONDITION: the address that was asked for cannot be had.
+/// Starts the dashboard. Its pointer is nullptr for "none", and if no address was given and none
+/// can be used. `engine` MUST outlive it. FAILED_PRECONDITION: the given address cannot be used.
 absl::StatusOr<ServedDashboard> serve_dashboard(const ServeOptions& options, Engine& engine,
                                                 const link::Identity& identity);
 

@@ -6,8 +6,9 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "coordinator/cli/base/text.h"
+#include "coordinator/cli/image/output.h"
 #include "coordinator/cli/options/commands.h"
-#include "coordinator/cli/options/output.h"
 #include "coordinator/cli/scene/image_settings.h"
 #include "coordinator/cli/scene/import_scene_file.h"
 #include "coordinator/cli/study/study_measure.h"
@@ -32,10 +33,10 @@ absl::StatusOr<std::vector<Prepared>> prepare(const StudyOptions& options, Proce
     ASSIGN_OR_RETURN(ImportedPackage package, import_scene_file(scene, options.verbosity, process));
     ASSIGN_OR_RETURN(SceneDescription description,
                      decode_package(package.manifest(), package.blobs()));
-    if (options.every_object && objects_of(description) > kMostObjects) {
+    if (options.every_object && objects_of(description) > kMaxObjects) {
       return absl::InvalidArgumentError(
           absl::StrCat("--every-object: ", scene, " has ", objects_of(description),
-                       " objects, each to be tested against every ray; at most ", kMostObjects,
+                       " objects, each to be tested against every ray; at most ", kMaxObjects,
                        ": leave the option out, or choose a smaller scene"));
     }
     ImageOptions image;
@@ -99,7 +100,7 @@ ExitCode run(const StudyOptions& options, Process& process) {
     return console.fail(ExitCode::kFailed, std::string(written.message()));
   }
   console.write(absl::StrCat(options.verbosity.quiet ? "" : "\n", study_table(*studies)));
-  console.line(absl::StrCat("\n", names_of(options.outputs)));
+  console.line(absl::StrCat("\n", printable_list(options.outputs)));
   return ExitCode::kDone;
 }
 

@@ -67,7 +67,7 @@ struct StudyPlan {
 };
 
 /// Maximum number of objects for kEveryObject; with more, a study takes too long.
-inline constexpr std::uint64_t kMostObjects = 2'000;
+inline constexpr std::uint64_t kMaxObjects = 2'000;
 
 /// Counts spheres, quads, triangles and disks once per placement, and boundaries of media: the
 /// number of intersection tests of a ray without a BVH.

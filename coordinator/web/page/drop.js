@@ -35,10 +35,10 @@ export function takeDrops() {
   document.body.append(veil);
   const hasFiles = (event) => event.dataTransfer?.types.includes("Files") && !document.querySelector("nav").hidden;
   let depth = 0;
-  const on = (name, deed) => window.addEventListener(name, (event) => {
+  const on = (name, action) => window.addEventListener(name, (event) => {
     if (!hasFiles(event)) return;
     event.preventDefault();
-    deed(event);
+    action(event);
     veil.hidden = depth === 0;
   });
   on("dragenter", () => { ++depth; });

@@ -114,7 +114,7 @@ window.addEventListener("hashchange", () => {
   refresh();
   root.focus({preventScroll: true});
 });
-window.addEventListener("deed-done", refresh);
+window.addEventListener("action-done", refresh);
 window.addEventListener("login-needed", showLogin);
 document.addEventListener("visibilitychange", () => { if (!document.hidden && view) refresh(); });
 takeDrops();

@@ -1,4 +1,4 @@
-// The line under the header, and deeds whose failures it tells.
+// The line under the header, and actions whose failures it tells.
 
 const notice = document.getElementById("notice");
 let timer = 0;
@@ -12,12 +12,12 @@ export function say(words, {bad = false, stays = false} = {}) {
   if (!stays && words !== "") timer = setTimeout(() => say(""), 8000);
 }
 
-/// Does what a person asked for and says what went wrong with it. The window hears `deed-done`, or
+/// Does what a person asked for and says what went wrong with it. The window hears `action-done`, or
 /// `login-needed`.
-export async function attempt(deed) {
+export async function attempt(action) {
   try {
-    const result = await deed();
-    window.dispatchEvent(new Event("deed-done"));
+    const result = await action();
+    window.dispatchEvent(new Event("action-done"));
     return result;
   } catch (error) {
     if (error.login) window.dispatchEvent(new Event("login-needed"));

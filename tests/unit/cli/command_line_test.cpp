@@ -57,7 +57,7 @@ TEST(CommandLine, SkyAndCameraMayBeChosenBesideTheScene) {
   EXPECT_EQ(parsed<RenderOptions>("render a.glb").image.choices.camera, "");
 }
 
-TEST(CommandLine, AdaptiveSamplingIsOfAnErrorToBeReached) {
+TEST(CommandLine, AdaptiveSamplingNeedsAnErrorRule) {
   const auto adaptive = [](const StopRule& stop) { return std::get<StopAtError>(stop).adaptive; };
   EXPECT_TRUE(adaptive(parsed<RenderOptions>("render a.glb --error 1% --adaptive").image.stop));
   EXPECT_TRUE(adaptive(parsed<SubmitOptions>("submit a.glb --error 1% --adaptive").image.stop));
@@ -66,7 +66,7 @@ TEST(CommandLine, AdaptiveSamplingIsOfAnErrorToBeReached) {
   expect_wrong("submit a.glb --time 5s --adaptive", "--adaptive needs --error");
 }
 
-TEST(CommandLine, SaysWhatIsShownAndHow) {
+TEST(CommandLine, TakesIntegratorAndDisplayOptions) {
   const auto options = parsed<RenderOptions>(
       "render a.textproto --integrator ambient_occlusion --exposure -1.5 --tone filmic --half "
       "-o a.exr -o a.hdr");
@@ -105,18 +105,7 @@ TEST(CommandLine, StudyTakesScenesAndFiles) {
   expect_wrong("study a.glb --samples 64 --reference 65", "--reference");
 }
 
-TEST(CommandLine, ThePhoneStudyTakesNamesOfItsImages) {
-  const auto options = parsed<PhoneStudyOptions>("study --phone objects size --runs 2 --farm f");
-  EXPECT_THAT(options.images, ElementsAre("objects", "size"));
-  EXPECT_THAT(options.outputs, ElementsAre("phone.csv", "phone.svg"));
-  EXPECT_EQ(options.runs, 2);
-  EXPECT_EQ(options.farm.farm, "f");
-  EXPECT_EQ(parsed<PhoneStudyOptions>("study --phone").runs, 10);
-  expect_wrong("study --phone --samples 4", "--runs");
-  expect_wrong("study a.glb --runs 4", "--phone");
-}
-
-TEST(CommandLine, AnImageMayBeLookedAtWhileItForms) {
+TEST(CommandLine, AnImageCanBeDisplayedWhileItForms) {
   const auto options = parsed<SubmitOptions>("submit a.glb --preview --tev 127.0.0.1:14158");
   EXPECT_TRUE(options.verbosity.preview);
   EXPECT_EQ(options.tev, "127.0.0.1:14158");

@@ -35,7 +35,7 @@ TEST(Comparison, ABrightReferenceIsSeenAtSeveralExposures) {
   EXPECT_TRUE(compare_images(image(8, 8, 1), image(8, 8, 5)).value().hdr);
 }
 
-TEST(Comparison, ValuesThatAreNotFiniteAreSaid) {
+TEST(Comparison, NonFiniteValuesAreReported) {
   Image a = image(2, 1, 1);
   a.pixels[0].r = std::nanf("");
   EXPECT_THAT(comparison_text(compare_images(a, a).value()),

@@ -26,7 +26,7 @@ class CompletionTest : public testing::Test {
     std::ofstream(folder_ / "script") << std::get<ShowText>(*script).text;
   }
 
-  /// What bash offers for the last of these words.
+  /// Returns the completions that bash offers for the last of these words.
   std::vector<std::string> offered(const std::string& words) {
     const test::Finished finished =
         test::run({"/bin/bash", "-uc",

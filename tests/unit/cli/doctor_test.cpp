@@ -45,12 +45,12 @@ TEST(Doctor, ADiskNeedsRoom) {
   EXPECT_THAT(full.found, HasSubstr("only 0.1 GB"));
 }
 
-TEST(Doctor, AFolderThatIsNotThereYetIsLookedForAbove) {
+TEST(Doctor, AMissingFolderIsCheckedByItsParent) {
   const test::TempDir folder;
   EXPECT_THAT(check_data_folder(folder / "a/b").found, HasSubstr("not made yet"));
 }
 
-TEST(Doctor, NoFarmIsNotFoundAndAWrongOneIsSaid) {
+TEST(Doctor, NoFarmIsNotFoundAndAWrongOneIsReported) {
   const test::TempDir folder;
   EXPECT_TRUE(absl::IsNotFound(doctor_join({}, folder.path()).status()));
   EXPECT_TRUE(absl::IsInvalidArgument(doctor_join({.farm = "bsw1-x"}, folder.path()).status()));

@@ -44,7 +44,7 @@ TEST(HalfBlocks, AnOddLastRowHasNoBackground) {
                           "\x1b[38;2;255;0;0m▀\x1b[0m"));
 }
 
-TEST(HalfBlocks, FitsTheRoomAndKeepsItsShape) {
+TEST(HalfBlocks, FitsTheSpaceAndKeepsItsAspectRatio) {
   Image image{600, 300, {}};
   image.pixels.assign(600 * 300, kRed);
   const auto wide = half_blocks(image, {}, {80, 100});
@@ -57,7 +57,7 @@ TEST(HalfBlocks, FitsTheRoomAndKeepsItsShape) {
   EXPECT_THAT(half_blocks(Image{}, {}, {80, 24}), IsEmpty());
 }
 
-TEST(HalfBlocks, ACellIsAMeanOfLightThatIsShownAsAsked) {
+TEST(HalfBlocks, ACellIsTheMeanLightWithTheGivenDisplay) {
   const Image image{2, 4, {kWhite, kBlack, kBlack, kWhite, kRed, kRed, kRed, kRed}};
   // Half of the light is code 188 of sRGB (IEC 61966-2-1).
   EXPECT_THAT(half_blocks(image, {}, {1, 1}),
@@ -68,7 +68,7 @@ TEST(HalfBlocks, ACellIsAMeanOfLightThatIsShownAsAsked) {
   EXPECT_THAT(half_blocks(broken, {}, {1, 1})[0], HasSubstr("38;2;0;0;0"));
 }
 
-TEST(HalfBlocks, AColourIsSaidOnce) {
+TEST(HalfBlocks, AColourIsWrittenOnce) {
   const Image image{3, 1, {kRed, kRed, kRed}};
   EXPECT_THAT(half_blocks(image, {}, {80, 24}), ElementsAre("\x1b[38;2;255;0;0m▀▀▀\x1b[0m"));
 }

@@ -2,7 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "coordinator/cli/options/output.h"
+#include "coordinator/cli/base/text.h"
+#include "coordinator/cli/options/output_names.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -19,12 +20,12 @@ RenderSettings settings_for(std::optional<std::uint32_t> width,
   return image_settings(options, scene).value();
 }
 
-TEST(ImageSettings, AreTheScenesUnlessTold) {
+TEST(ImageSettings, AreTheScenesByDefault) {
   EXPECT_EQ(settings_for({}, {}),
             (RenderSettings{.width = 600, .height = 400, .max_depth = 9, .seed = 0}));
 }
 
-TEST(ImageSettings, TheIntegratorIsTheScenesUnlessTold) {
+TEST(ImageSettings, TheIntegratorIsTheScenesByDefault) {
   PackageInfo scene;
   scene.integrator = Integrator::kDirect;
   ImageOptions options;
@@ -52,10 +53,10 @@ TEST(ImageSettings, TooLargeIsAnError) {
   EXPECT_FALSE(image_settings(options, tall).ok());
 }
 
-TEST(Output, TheDefaultIsTheScenesNameHere) {
+TEST(Output, TheDefaultIsTheScenesNameInThisFolder) {
   EXPECT_EQ(default_output("scenes/cornell.textproto", ".png"), "cornell.png");
   EXPECT_EQ(default_output("helmet.glb", ".png"), "helmet.png");
-  EXPECT_EQ(names_of({"a.png", "b.pfm"}), "a.png, b.pfm");
+  EXPECT_EQ(printable_list({"a.png", "b.pfm"}), "a.png, b.pfm");
   EXPECT_TRUE(is_part_name("x.BAND"));
   EXPECT_FALSE(is_part_name("x.band.png"));
 }

@@ -1,8 +1,9 @@
-#include "coordinator/cli/options/layers.h"
+#include "coordinator/cli/image/layers.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "coordinator/cli/options/choices.h"
 #include "renderlib/render/render_image.h"
 #include "tests/support/scenes.h"
 
@@ -20,7 +21,7 @@ TEST(Layers, AreNamedOnceEach) {
   }
 }
 
-TEST(Layers, AreWhatTheirIntegratorsShow) {
+TEST(Layers, EqualTheImagesOfTheirIntegrators) {
   test::SceneMaker maker;
   maker.sphere({0, 0, 0}, 1, maker.diffuse({0.25f, 0.5f, 0.75f}));
   const auto scene = maker.build();

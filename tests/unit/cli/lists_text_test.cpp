@@ -49,12 +49,12 @@ TEST(FarmErrors, HaveTheirExitCodes) {
   EXPECT_EQ(exit_code_of(absl::CancelledError("")), ExitCode::kInterrupted);
 }
 
-TEST(Progress, StopRulesTravelThereAndBack) {
+TEST(Progress, StopRulesComeBack) {
   for (const StopRule& stop :
        {StopRule(StopAtSamples{5}), StopRule(StopAtError{.relative_rmse = 0.02}),
         StopRule(StopAtTime{.seconds = 9})}) {
     farm::JobStatus status;
-    *status.mutable_stop() = to_proto(stop);
+    *status.mutable_stop() = to_message(stop);
     EXPECT_EQ(progress_of(status).job.spec.stop, stop);
   }
 }

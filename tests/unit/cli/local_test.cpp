@@ -35,7 +35,7 @@ TEST(LocalPlan, AnErrorRuleEndsWhereTheErrorIsReached) {
   EXPECT_LE(done, 2 * 3200u);
 }
 
-TEST(LocalPlan, AnErrorRuleEndsAtItsMostSamples) {
+TEST(LocalPlan, AnErrorRuleEndsAtItsMaximumOfSamples) {
   LocalPlan plan(StopAtError{.relative_rmse = 0.01, .max_samples = 100});
   std::uint64_t done = 0;
   while (const auto pass = plan.next(done, 0.5, 1)) {
@@ -64,7 +64,7 @@ TEST(LocalPlan, ATimeRuleGivesAtLeastOneBlock) {
   EXPECT_FALSE(plan.next(16, -1, 5).has_value());
 }
 
-TEST(LocalMeter, TellsHowFarARenderIs) {
+TEST(LocalMeter, ReportsTheProgressOfARender) {
   JobSpec spec;
   spec.settings = {.width = 10, .height = 10, .max_depth = 1, .seed = 0};
   spec.stop = StopAtSamples{64};

@@ -61,7 +61,7 @@ TEST(ProgressDisplay, APipeGetsOneLineASecondAndNoEscapes) {
   EXPECT_EQ(screen.err, "");
 }
 
-TEST(ProgressDisplay, APipeIsToldOfTheFirstPixelsAtOnce) {
+TEST(ProgressDisplay, APipeGetsALineAtTheFirstPixels) {
   Screen screen;
   const Console console = screen.console(false);
   ProgressDisplay display(console, {});
@@ -105,7 +105,7 @@ TEST(ProgressDisplay, ColoursAreOnlyUsedWhereTheyAreWanted) {
   EXPECT_THAT(screen.out, StartsWith("\x1b[1mjob 3"));
 }
 
-TEST(ProgressDisplay, QuietSaysTheLastLineOnly) {
+TEST(ProgressDisplay, QuietPrintsTheLastLineOnly) {
   Screen screen;
   const Console console = screen.console(true);
   ProgressDisplay display(console, {.quiet = true, .json = false});
@@ -158,7 +158,7 @@ TEST(ProgressDisplay, BadSamplesAreAWarningOnStandardError) {
   EXPECT_THAT(screen.err, HasSubstr("pixel (1, 2), sample 3"));
 }
 
-TEST(Painter, CutsToTheWindowAndRemembersWhatItDrew) {
+TEST(Painter, TruncatesToTheWindowAndRedrawsInPlace) {
   Painter painter;
   EXPECT_EQ(painter.frame({"abcdef", "gh", "ij"}, {.columns = 5, .rows = 3}),
             "abc…\x1b[K\ngh\x1b[K\n\x1b[J");
@@ -167,7 +167,7 @@ TEST(Painter, CutsToTheWindowAndRemembersWhatItDrew) {
   EXPECT_EQ(painter.clear(), "");
 }
 
-TEST(Json, EscapesWhatMustBeAndMendsWhatIsNotUtf8) {
+TEST(Json, EscapesAndRepairsInvalidUtf8) {
   JsonObject object;
   object.text("a\"b", "\\ \x01 ü \xff \xc3")
       .number("inf", 1e308 * 10)
@@ -199,7 +199,7 @@ TEST(ProgressDisplay, APictureStandsAboveTheProgressAndStays) {
   EXPECT_THAT(screen.out, HasSubstr("▀▀\x1b[0m\nbox.png"));
 }
 
-TEST(ProgressDisplay, WithoutColoursNoPictureIsDrawnAndThatIsSaid) {
+TEST(ProgressDisplay, WithoutColoursAMessageReplacesThePicture) {
   Screen screen;
   const Console console = screen.console(true, false);
   ProgressDisplay display(console, {.preview = true});

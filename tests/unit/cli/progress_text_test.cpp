@@ -30,7 +30,7 @@ Progress sample() {
   return progress;
 }
 
-TEST(ProgressText, IsWhatTheDesignShows) {
+TEST(ProgressText, HasTheSpecifiedFormat) {
   EXPECT_EQ(header_line(sample()), "job 7 · cornell · 600×600 · until error ≤ 1 %");
   EXPECT_EQ(bar_line(sample(), 80),
             " 62 % ━━━━━━━━━━━━╸        error 1.6 % · 48 Msamples · 5.2 M/s · 0:09 left");
@@ -57,7 +57,7 @@ TEST(ProgressText, ANarrowWindowHasAShorterBar) {
   EXPECT_EQ(bar_line(sample(), 10), " 62 %  error 1.6 % · 48 Msamples · 5.2 M/s · 0:09 left");
 }
 
-TEST(ProgressText, WhatIsNotKnownIsNotShown) {
+TEST(ProgressText, UnknownValuesAreNotShown) {
   Progress progress = sample();
   progress.job.error = -1;
   progress.job.remaining_s = -1;
@@ -72,7 +72,7 @@ TEST(ProgressText, NinetyNineAndAHalfPercentIsNotDone) {
   EXPECT_THAT(plain_line(progress), HasSubstr(" 99 %"));
 }
 
-TEST(ProgressText, AJobThatWaitsSaysForWhat) {
+TEST(ProgressText, AWaitingJobShowsItsReason) {
   Progress progress = sample();
   progress.job.workers.clear();
   progress.job.reason = "no worker is connected";
@@ -80,7 +80,7 @@ TEST(ProgressText, AJobThatWaitsSaysForWhat) {
   EXPECT_THAT(plain_line(progress), HasSubstr("· no worker is connected"));
 }
 
-TEST(ProgressText, AWorkerThatDoesNotRenderSaysWhatItDoes) {
+TEST(ProgressText, AnIdleWorkerShowsItsState) {
   Progress progress = sample();
   progress.job.workers = {{"b\x1bx", 1, 0, {0, 0}, "fetching scene"}};
   EXPECT_THAT(worker_lines(progress, 5),
@@ -96,7 +96,7 @@ TEST(ProgressText, ManyWorkersAreCounted) {
   EXPECT_EQ(worker_lines(progress, 10).size(), 10u);
 }
 
-TEST(ProgressText, TheLastLineSaysWhatItCost) {
+TEST(ProgressText, TheLastLineShowsTheCost) {
   Progress progress = sample();
   progress.job.elapsed_s = 21.43;
   progress.job.error = 0.0099;
@@ -110,7 +110,7 @@ TEST(ProgressText, TheLastLineNamesTheReports) {
   EXPECT_THAT(final_line(sample(), "a.png", "a.json"), testing::EndsWith(" · report a.json"));
 }
 
-TEST(ProgressText, TheCostIsSaidWithWhatTheErrorIsMadeOf) {
+TEST(ProgressText, TheCostIsShownWithThePartsOfTheError) {
   Progress progress = sample();
   JobView& job = progress.job;
   job.samples_per_pixel = 256;
@@ -129,7 +129,7 @@ TEST(ProgressText, TheCostIsSaidWithWhatTheErrorIsMadeOf) {
   EXPECT_EQ(cost_line(progress), "256 samples a pixel · 8 M rays");
 }
 
-TEST(ProgressText, WhatIsLeftOutIsSaid) {
+TEST(ProgressText, DroppedPrimitivesAreReported) {
   Progress progress = sample();
   EXPECT_THAT(left_out_line(progress), IsEmpty());
   progress.job.samples_done = 1000;
@@ -141,7 +141,7 @@ TEST(ProgressText, WhatIsLeftOutIsSaid) {
             "2 % of the paths were cut off at depth 5 · 1 primitive without area left out");
 }
 
-TEST(ProgressText, BadSamplesAreSaidLoudly) {
+TEST(ProgressText, BadSamplesAreAWarning) {
   Progress progress = sample();
   EXPECT_THAT(bad_samples_line(progress), IsEmpty());
   progress.job.counters = {.rays = 1, .bad_samples = 3, .bad_x = 5, .bad_y = 6, .bad_sample = 9};

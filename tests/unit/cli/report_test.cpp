@@ -54,7 +54,7 @@ const google::protobuf::Value& at(const google::protobuf::Struct& json, const st
   return json.fields().at(section).struct_value().fields().at(field);
 }
 
-TEST(Report, IsJsonThatHoldsTheFigures) {
+TEST(Report, IsJsonWithAllFields) {
   const Image image{1, 1, {gray(0.5F)}};
   const std::string text = report_text({finished(), pixels_sha256(image), {"a.png"}});
   EXPECT_EQ(text.rfind(kReportBegins, 0), 0u);
@@ -67,8 +67,8 @@ TEST(Report, IsJsonThatHoldsTheFigures) {
   EXPECT_EQ(at(json, "error", "relative_rmse_at_most").number_value(), 0.05);
   EXPECT_TRUE(at(json, "error", "doubtful").bool_value());
   EXPECT_EQ(json.fields().at("curve").list_value().values_size(), 2);
-  // From 5 % by the steepest fall that is believed, 3/4: three octaves on it is 1.05 %, in the
-  // fourth 6.4 over the samples.
+  // From 5 % with the steepest accepted slope, 3/4: 1.05 % after three octaves, so 1 % is reached
+  // in the fourth.
   EXPECT_NEAR(at(json, "time", "cpu_s_to_1_percent").number_value(), 4.0 * 640 / 64, 1e-9);
   EXPECT_EQ(at(json, "machines", "mrays_per_cpu_s").number_value(), 2);
   const auto& workers = at(json, "machines", "workers").list_value().values();
@@ -81,7 +81,7 @@ TEST(Report, IsJsonThatHoldsTheFigures) {
   EXPECT_EQ(at(json, "hashes", "pixels_sha256").string_value().size(), 64u);
 }
 
-TEST(Report, WhatIsNotKnownIsNull) {
+TEST(Report, UnknownValuesAreNull) {
   Progress progress = finished();
   progress.job.curve.clear();
   progress.job.elapsed_s = -1;
@@ -112,7 +112,7 @@ TEST_F(ReportFiles, LieBesideTheImagesOnce) {
   EXPECT_FALSE(report_files({folder_ / "none/r.json"}, {}).ok());
 }
 
-TEST_F(ReportFiles, NeverTakeThePlaceOfSomethingElse) {
+TEST_F(ReportFiles, NeverReplaceOtherFiles) {
   const std::string scene = write("a.json", "{\"camera\":{}}");
   EXPECT_THAT(*report_files({}, {folder_ / "a.png"}), ElementsAre(folder_ / "a.report.json"));
   const auto asked = report_files({scene}, {folder_ / "a.png"});

@@ -26,7 +26,7 @@ SceneDescription scene() {
   return scene;
 }
 
-TEST(SceneSummary, CountsWhatIsThere) {
+TEST(SceneSummary, CountsTheParts) {
   const SceneSummary summary = summary_of(scene(), {}, 1234);
   EXPECT_EQ(summary.triangles, 5u);
   EXPECT_EQ(summary.lights, 3u);
@@ -61,7 +61,7 @@ TEST(SceneSummary, NamesLightsWithoutSizeTheSkyMediaAndCameras) {
   EXPECT_THAT(summary_json(summary), HasSubstr("\"model_cameras\":[\"front\",\"plan\"]"));
 }
 
-TEST(SceneSummary, SaysWhatIsLeftOut) {
+TEST(SceneSummary, ReportsUnsupportedParts) {
   PackageInfo info;
   EXPECT_THAT(summary_text(summary_of(scene(), info, 0)), Contains(HasSubstr("nothing")));
   info.warnings = {"no bones"};

@@ -62,7 +62,7 @@ BandRecord record() {
   return out;
 }
 
-TEST(PartFile, WhatIsWrittenIsRead) {
+TEST(PartFile, IsReadAsWritten) {
   const test::TempDir folder;
   const Display shown{-1.5, Tone::kFilmic, false};
   ASSERT_TRUE(write_part(folder / "a.band", {record(), record()}, shown).ok());
@@ -78,7 +78,7 @@ TEST(PartFile, WhatIsWrittenIsRead) {
   EXPECT_EQ(records, 2);
 }
 
-TEST(PartFile, MayBeRecordsAlone) {
+TEST(PartFile, MayHaveNoHeader) {
   const test::TempDir folder;
   const auto bytes = encode_band_record(record()).value();
   std::ofstream(folder / "a.band", std::ios::binary)
@@ -90,7 +90,7 @@ TEST(PartFile, MayBeRecordsAlone) {
   EXPECT_EQ(*display, Display());
 }
 
-TEST(PartFile, ADamagedBeginningIsFound) {
+TEST(PartFile, ADamagedHeaderIsDetected) {
   const test::TempDir folder;
   ASSERT_TRUE(write_part(folder / "a.band", {record()}, {2, Tone::kNone, false}).ok());
   std::fstream file(folder / "a.band", std::ios::binary | std::ios::in | std::ios::out);
@@ -101,7 +101,7 @@ TEST(PartFile, ADamagedBeginningIsFound) {
   EXPECT_EQ(read_part(folder / "a.band", ignore).status().code(), absl::StatusCode::kDataLoss);
 }
 
-TEST(PartFile, ABeginningAloneIsNoPart) {
+TEST(PartFile, AHeaderAloneIsNotAPart) {
   const test::TempDir folder;
   ASSERT_TRUE(write_part(folder / "a.band", {}, {2, Tone::kNone, false}).ok());
   const auto ignore = [](const BandRecord&) { return absl::OkStatus(); };

@@ -1,5 +1,5 @@
-// Who asks for an error gets it: jobs that go on until the estimate of their own film is small
-// enough, with samples whose truth is known.
+// Jobs that run until the estimate of their own film is small enough, with samples of known mean:
+// the true error meets the target.
 
 #include <gtest/gtest.h>
 
@@ -25,11 +25,12 @@ double normal(Random& random) {
   return sum;
 }
 
-/// Whose errors are the same: those of no two pixels, or of each half row of a tile, whose pixels
-/// may share their paths. Of kFew most of the noise is that of some 40 pixels: rare bright paths.
+/// Correlation of the pixels' errors: kOwn: independent; kFew: independent, and some 40 pixels have
+/// most of the noise (rare bright paths); kShared: equal within each half row of a tile, whose
+/// pixels may share their paths.
 enum class Errors { kOwn, kFew, kShared };
 
-/// An image that is 1 everywhere, whose noise is that of some 70 of its pixels or of its half rows.
+/// An image that is 1 everywhere, with the noise in some 70 of its pixels or of its half rows.
 class NoisyImage {
  public:
   NoisyImage(Errors errors, Random& random) : errors_(errors), random_(random) {
@@ -42,7 +43,7 @@ class NoisyImage {
       variance_ += deviation * deviation / kPixels;
     }
   }
-  /// So many samples a pixel have the target on average.
+  /// Number of samples per pixel that reach the target on average.
   double ideal_samples() const { return variance_ / (kTarget * kTarget); }
 
   BandPixels render(const SampleRange& samples, const TileSamples& tiles) {
@@ -64,7 +65,7 @@ class NoisyImage {
  private:
   static constexpr std::size_t kPixels = std::size_t{kGrid.width} * kGrid.height;
 
-  /// Where the error of a pixel comes from.
+  /// Index of the random error of a pixel.
   std::size_t source(std::size_t pixel) const {
     const std::size_t tile = pixel / kTileSide;  // Rows are whole tiles wide.
     return errors_ != Errors::kShared ? pixel : 2 * tile + (pixel + pixel / kGrid.width) % 2;
@@ -152,7 +153,7 @@ TEST(StopAtError, AlsoWhereRareBrightPathsDecide) {
   EXPECT_LE(even.cost, 2);
 }
 
-// Why there is a margin: those that are stopped are those whose estimate is too low.
+// The reason for the margin: jobs stop preferably when their estimate is too low.
 TEST(StopAtError, WithoutAMarginManyImagesAreNot) {
   EXPECT_LE(of_many(Errors::kOwn, false, false).met, 0.8 * kJobs);
   EXPECT_LE(of_many(Errors::kShared, false, false).met, 0.8 * kJobs);

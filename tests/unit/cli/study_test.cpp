@@ -33,7 +33,7 @@ const StudyLine& line(const StudyOfScene& study, Method method) {
   return study.lines.at(static_cast<std::size_t>(method));
 }
 
-/// A lamp in the middle of each pixel of kSettings, a twentieth of its area; else nothing.
+/// An area light in the middle of each pixel of kSettings, a twentieth of its area; nothing else.
 std::shared_ptr<const Scene> rare_light() {
   test::SceneMaker maker;
   const MaterialId lamp = maker.lamp(1);
@@ -49,12 +49,12 @@ std::shared_ptr<const Scene> rare_light() {
   return maker.build();
 }
 
-TEST(Study, SamplesAreThePowersOfFourUpToTheMost) {
+TEST(Study, SamplesArePowersOfFourUpToTheMaximum) {
   EXPECT_THAT(study_samples(64), ElementsAre(1, 4, 16, 64));
   EXPECT_THAT(study_samples(100), ElementsAre(1, 4, 16, 64, 100));
 }
 
-TEST(Study, TechniquesThatAreOffCostErrorAndBiasNothing) {
+TEST(Study, WithoutATechniqueTheErrorIsLargerAndTheMeanIsUnbiased) {
   const StudyOfScene study =
       study_of(*test::cornell_box().build(), {.samples = 64, .seeds = 6, .reference = 2048});
   ASSERT_EQ(study.lines.size(), std::size(kMethods));
@@ -101,7 +101,7 @@ TEST(Study, WithoutATreeThePixelsAreTheSame) {
   }
 }
 
-TEST(Study, ObjectsAreCountedAsOftenAsTheyArePlaced) {
+TEST(Study, ObjectsAreCountedPerPlacement) {
   SceneDescription scene = test::cornell_box().scene;
   const std::uint64_t loose = scene.geometry.size();
   EXPECT_EQ(objects_of(scene), loose);
@@ -123,7 +123,8 @@ TEST(Study, AStopEndsIt) {
             absl::StatusCode::kCancelled);
 }
 
-/// Full: 10 % at 16 samples and 1 s, halved by each fourfold; the comparator does not fall.
+/// The full renderer has 10 % at 16 samples and 1 s, halved by each factor of four; the variant
+/// does not fall.
 std::vector<StudyOfScene> known() {
   StudyOfScene study{.scene = "a|\"b\" & <c>", .reference_error = 0.001, .lines = {}};
   study.lines.push_back(
@@ -133,7 +134,7 @@ std::vector<StudyOfScene> known() {
   return {study};
 }
 
-TEST(StudyText, SaysWhatOnePercentCosts) {
+TEST(StudyText, ShowsTheCostOfOnePercent) {
   const std::vector<StudyOfScene> studies = known();
   const std::vector<StudyLine>& lines = studies[0].lines;
   EXPECT_NEAR(*slope_of(lines[0]), -0.5, 1e-12);

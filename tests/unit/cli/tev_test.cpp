@@ -5,7 +5,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// With the zero bytes in it.
+// The string contains zero bytes.
 template <std::size_t n>
 std::string bytes(const char (&text)[n]) {
   return std::string(text, n - 1);

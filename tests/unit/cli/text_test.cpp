@@ -42,7 +42,7 @@ TEST(Text, PercentagesHaveTwoSignificantDigits) {
   EXPECT_EQ(percent(0.00001234), "0.0012 %");
 }
 
-TEST(Text, NothingFromElsewhereReachesTheTerminalRaw) {
+TEST(Text, ControlCharactersAreReplaced) {
   EXPECT_EQ(printable("a\x1b[31mb\nc\x07"), "a?[31mb c?");
   EXPECT_EQ(printable("\xC2\x9B"
                       "1m"),
@@ -50,7 +50,7 @@ TEST(Text, NothingFromElsewhereReachesTheTerminalRaw) {
   EXPECT_EQ(printable("Büro · 2"), "Büro · 2");
 }
 
-TEST(Text, FittingCountsColumnsAndCutsBetweenCharacters) {
+TEST(Text, FitCountsColumnsAndTruncatesBetweenCharacters) {
   EXPECT_EQ(columns("a·b"), 3u);
   EXPECT_EQ(fit("Büro", 4), "Büro");
   EXPECT_EQ(fit("Bürotisch", 4), "Bür…");

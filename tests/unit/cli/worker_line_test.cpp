@@ -1,4 +1,4 @@
-// The line for machines that have no worker, in a real shell, on a machine whose uname and curl are
+// The line for machines without a worker, run by a real shell with uname and curl replaced by
 // scripts of the test.
 
 #include "coordinator/cli/machines/worker_line.h"
@@ -20,7 +20,7 @@ using test::Finished;
 using testing::HasSubstr;
 using testing::Not;
 
-/// What stands for the program: says for which architecture it is, and how it was called.
+/// A stand-in for the program: prints its architecture and its arguments.
 std::string program(Machine machine) {
   return absl::StrCat("#!/bin/sh\necho ", machine_name(machine), " started \"$@\"\n");
 }
@@ -35,7 +35,7 @@ class WorkerLine : public ::testing::Test {
       write(absl::StrCat("program-", other_machine_name(machine)), program(machine));
       digests_[machine] = wire::sha256(program(machine));
     }
-    // Hands out what the last part of the address names: curl -fsS URL -o FILE.
+    // Copies the file that the last part of the URL names: curl -fsS URL -o FILE.
     write("bin/curl", "#!/bin/sh\necho \"$2\" >>" + folder_.path() + "/asked\ncp \"" +
                           folder_.path() + "/program-${2##*/}\" \"$4\"\n");
   }
@@ -43,7 +43,7 @@ class WorkerLine : public ::testing::Test {
     std::ofstream(folder_ / name) << text;
     std::filesystem::permissions(folder_ / name, std::filesystem::perms::owner_all);
   }
-  /// In a home of its own, which is empty.
+  /// Runs the line in an empty home folder.
   Finished paste(const std::string& uname) {
     write("uname", uname);
     write("bin/uname", "#!/bin/sh\n[ \"$*\" = -m ] && cat " + folder_.path() + "/uname\n");
@@ -78,7 +78,7 @@ TEST_F(WorkerLine, TheProgramOfAnotherArchitectureIsNotStarted) {
   EXPECT_THAT(pasted.out, Not(HasSubstr("started")));
 }
 
-TEST_F(WorkerLine, WithoutAProgramForItNothingIsFetched) {
+TEST_F(WorkerLine, WithoutAProgramForItNothingIsDownloaded) {
   digests_.erase(Machine::kAarch64);
   const Finished pasted = paste("aarch64\n");
   EXPECT_EQ(pasted.code, 1);

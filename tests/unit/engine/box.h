@@ -1,6 +1,6 @@
 #pragma once
 
-// What a callback brings, to be waited for. A wait that takes a minute is a failure of the test.
+// Receives the values of a callback, and waits for them. A wait of a minute fails the test.
 
 #include <chrono>
 #include <functional>
@@ -20,15 +20,15 @@ class Box {
     value_ = std::move(value);
     changed_.notify_all();
   }
-  /// The newest value that fits; waits for it.
+  /// Waits for a value that fits, and returns the newest.
   T wait(const std::function<bool(const T&)>& fits = [](const T&) { return true; })
       EXCLUDES(mutex_) {
     MutexLock lock(mutex_);
     wait_until(fits);
     return *value_;
   }
-  /// The next value, which is then the caller's alone (coordinator/engine/apart.h says why that
-  /// matters).
+  /// Returns the next value, which then belongs to the caller alone (coordinator/engine/answer.h
+  /// says why that matters).
   T take() EXCLUDES(mutex_) {
     MutexLock lock(mutex_);
     wait_until([](const T&) { return true; });

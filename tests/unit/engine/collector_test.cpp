@@ -43,7 +43,7 @@ class CollectorTest : public testing::Test {
     return digest;
   }
 
-  // A package of its own for each name; all of them share the blobs of one scene.
+  // Stores a package for each name; they all share the blobs of one scene.
   DigestHex package(const std::string& name) {
     BlobMap blobs;
     PackageInfo info;
@@ -109,7 +109,7 @@ TEST_F(CollectorTest, ForgetsTheOldestBeyondTheNumber) {
   EXPECT_THAT(collector({.jobs = 3}).to_forget(jobs, kNow), IsEmpty());
 }
 
-TEST_F(CollectorTest, NeverRemovesWhatAKnownJobNeeds) {
+TEST_F(CollectorTest, NeverRemovesBlobsOfKnownJobs) {
   const DigestHex one = package("one");
   const DigestHex two = package("two");
   collector({}).sweep({{1, one, false}}, kNow);
@@ -126,7 +126,7 @@ TEST_F(CollectorTest, NeverRemovesWhatAKnownJobNeeds) {
   }
 }
 
-TEST_F(CollectorTest, NothingIsRemovedWhileWhatAJobNeedsCannotBeRead) {
+TEST_F(CollectorTest, RemovesNothingWhileAManifestCannotBeRead) {
   const DigestHex one = package("one");
   const wire::Digest other = put("of no job that can be read", kNow - 2 * kDay);
   const std::string path = folder_.blobs() + "/" + one.substr(0, 2) + "/" + one;
@@ -141,7 +141,7 @@ TEST_F(CollectorTest, NothingIsRemovedWhileWhatAJobNeedsCannotBeRead) {
   EXPECT_FALSE(blobs_->has(other)) << "a scene that is gone needs nothing";
 }
 
-TEST_F(CollectorTest, BlobsThatJustCameOrAreAskedForStay) {
+TEST_F(CollectorTest, KeepsRecentlySentOrRequestedBlobs) {
   const wire::Digest old = put("old", kNow - 2 * kDay);
   const wire::Digest young = put("young", kNow - kDay / 2);
   const wire::Digest asked = put("asked", kNow - 2 * kDay);
@@ -157,7 +157,7 @@ TEST_F(CollectorTest, BlobsThatJustCameOrAreAskedForStay) {
   EXPECT_TRUE(blobs_->has(young));
 }
 
-TEST_F(CollectorTest, FoldersOfForgottenJobsGo) {
+TEST_F(CollectorTest, RemovesFoldersOfForgottenJobs) {
   result(1, 10, kNow);
   result(2, 10, kNow);
   result(3, 10, kNow);

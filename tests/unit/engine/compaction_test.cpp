@@ -1,4 +1,4 @@
-// A journal that has grown long is written anew.
+// A long journal is rewritten.
 
 #include <gtest/gtest.h>
 
@@ -12,14 +12,14 @@
 namespace bandsaw::coordinator {
 namespace {
 
-TEST(Compaction, AJournalOfMoreThanTenThousandRecordsIsWrittenAnewAndTellsTheSame) {
+TEST(Compaction, AJournalAbove10000RecordsIsRewrittenToTheSameState) {
   constexpr std::int32_t kChanges = 10'050;
   const auto disk = std::make_shared<JournalDisk>();
   TestFarm farm;
   const auto start = [&] {
-    EngineDoors doors;
-    doors.journal = std::make_unique<MemoryJournal>(disk);
-    ASSERT_TRUE(farm.start(std::move(doors)).ok());
+    EngineDependencies dependencies;
+    dependencies.journal = std::make_unique<MemoryJournal>(disk);
+    ASSERT_TRUE(farm.start(std::move(dependencies)).ok());
   };
   start();
   const JobId job = farm.begin(StopAtSamples{.samples = 64});

@@ -1,5 +1,5 @@
-// The band log of a job at work is damaged on disk: found while the coordinator runs, or when it is
-// started again.
+// The band log of an unfinished job is damaged on disk, which is detected while the coordinator
+// runs, or when it is restarted.
 
 #include <gtest/gtest.h>
 
@@ -53,12 +53,13 @@ class DamagedLog : public testing::TestWithParam<Damage> {
     (farm_.engine().*what)(job, [&](const absl::StatusOr<JobView>& v) { said.put(v.status()); });
     return said.take();
   }
-  /// A worker renders some bands of a paused job's rest, and leaves it paused.
+  /// Resumes a paused job, lets a worker render some bands, and pauses it again.
   void render_some(JobId job, const std::string& worker) {
     std::atomic<int> stored{0};
     FakeWorker one(farm_.scene(), worker,
                    [&](const Band&, const absl::StatusOr<BandOutcome>& outcome) {
-                     // On the worker's thread, before its next band but one at the latest.
+                     // On the worker's thread; takes effect at the latest before its second next
+                     // band.
                      if (outcome.ok() && ++stored == 1) {
                        EXPECT_TRUE(tell(&Engine::pause, job).ok());
                      }
@@ -68,7 +69,7 @@ class DamagedLog : public testing::TestWithParam<Damage> {
     farm_.wait_until(job,
                      [&](const JobView& v) { return stored >= 1 && v.state == JobState::kPaused; });
   }
-  /// Two workers have rendered some of it, and it is paused.
+  /// Submits a job of which two workers render a part, and pauses it.
   JobId begin_and_render_a_part() {
     const JobId job = farm_.begin(StopAtSamples{.samples = kSamples});
     EXPECT_TRUE(tell(&Engine::pause, job).ok());
@@ -77,7 +78,7 @@ class DamagedLog : public testing::TestWithParam<Damage> {
     return job;
   }
   void find_damage(JobId job) {
-    ASSERT_TRUE(quarantine("wrong").ok());  // the film is made anew from the log
+    ASSERT_TRUE(quarantine("wrong").ok());  // the film is built again from the log
     std::string why;
     while (why.find("damaged on the coordinator's disk") == std::string::npos) {
       why = absl::StrJoin(farm_.why(job), "\n");
@@ -116,7 +117,7 @@ TEST_P(DamagedLog, FoundAtARestartIsRenderedAgain) {
   render_the_rest(job);
 }
 
-TEST_P(DamagedLog, WhatIsRenderedAgainIsThereAfterARestart) {
+TEST_P(DamagedLog, BandsRenderedAgainSurviveARestart) {
   const JobId job = begin_and_render_a_part();
   ASSERT_NO_FATAL_FAILURE(do_damage(farm_.bands_file(job), GetParam()));
   ASSERT_NO_FATAL_FAILURE(find_damage(job));

@@ -37,13 +37,13 @@ class EngineTest : public testing::Test {
   TestFarm farm_;
 };
 
-TEST_F(EngineTest, OneWorkerGivesTheImageThatIsRenderedLocally) {
+TEST_F(EngineTest, OneWorkerRendersTheSameImageAsALocalRender) {
   FakeWorker worker(farm_.scene(), "one");
   worker.join(farm_.engine());
   expect_done(farm_.begin(StopAtSamples{.samples = 40}), 40);
 }
 
-TEST_F(EngineTest, ManyWorkersThatComeAndGoGiveTheSameImage) {
+TEST_F(EngineTest, ManyWorkersThatJoinAndLeaveRenderTheSameImage) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 128});
   std::atomic<int> stored{0};
   const auto count = [&](const Band&, const absl::StatusOr<BandOutcome>& outcome) {
@@ -74,7 +74,7 @@ TEST_F(EngineTest, AnErrorRuleEndsAtThePassThatReachesIt) {
   EXPECT_EQ(farm_.result(job)->image.pixels, farm_.local(view.samples_per_pixel).pixels);
 }
 
-TEST_F(EngineTest, ATimeRuleEndsAtACompletePassWhateverWasBegunBeyond) {
+TEST_F(EngineTest, ATimeRuleEndsAtACompletePass) {
   FakeWorker worker(farm_.scene(), "one");
   FakeWorker other(farm_.scene(), "other");
   worker.join(farm_.engine());
@@ -129,7 +129,7 @@ TEST_F(EngineTest, ABandIsStoredOnceThenADuplicateAndUnwantedWhenTheJobIsOver) {
   EXPECT_EQ(*farm_.put(job + 1, top), BandOutcome::kUnwanted) << "no such job";
 }
 
-TEST_F(EngineTest, ABandOfAnotherJobOfTheNumberIsUnwanted) {
+TEST_F(EngineTest, ABandOfAnEarlierJobWithTheSameIdIsUnwanted) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 16});
   const BandPixels top = rendered({.samples = {0, 16}, .rows = {0, 7}});
   JobSpec spec = farm_.spec(StopAtSamples{.samples = 16});
@@ -138,7 +138,7 @@ TEST_F(EngineTest, ABandOfAnotherJobOfTheNumberIsUnwanted) {
   EXPECT_EQ(*farm_.put(job, top, work_hash(spec.manifest, spec.settings)), BandOutcome::kStored);
 }
 
-TEST_F(EngineTest, WhatIsNoBandOfTheJobIsRefused) {
+TEST_F(EngineTest, ABandThatIsNotOfTheJobIsRefused) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 16});
   BandPixels band = rendered({.samples = {0, 16}, .rows = {0, 2}});
   band.sums.pop_back();

@@ -51,7 +51,7 @@ class FakeWorker::Link : public WorkerLink {
     leases_.pop_front();
     return true;
   }
-  /// A short rest before a band is sent again. False: stopped.
+  /// A short pause before a band is sent again. False: stopped.
   bool rest() {
     MutexLock lock(mutex_);
     if (!stopped_) {

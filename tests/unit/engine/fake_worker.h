@@ -1,7 +1,6 @@
 #pragma once
 
-// A worker without a network: it renders what it is leased, on a thread of its own, with the real
-// renderer.
+// A worker without a network: it renders its leases on a thread of its own with the real renderer.
 
 #include <deque>
 #include <functional>
@@ -19,18 +18,18 @@ namespace bandsaw::coordinator {
 
 class FakeWorker {
  public:
-  /// Called with each answer to a band.
+  /// Called with the engine's answer to each band.
   using Answered = std::function<void(const Band&, const absl::StatusOr<BandOutcome>&)>;
 
   FakeWorker(std::shared_ptr<const Scene> scene, std::string name, Answered answered = nullptr);
-  /// Leaves.
+  /// Ends the session and the thread.
   ~FakeWorker();
 
   void join(Engine& engine);
-  /// The stream ends; what it was rendering is lost.
+  /// Ends the stream; the current band is lost.
   void leave();
 
-  /// All bands it was leased in its life.
+  /// Returns all bands that were leased to it.
   std::vector<Band> leased() const;
   std::string refused() const;
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// The engine's doors, in memory: time that tests move, and a journal that can refuse.
+// The engine's dependencies in memory: a clock that tests advance, and a journal that can fail.
 
 #include <atomic>
 #include <functional>
@@ -14,7 +14,7 @@
 
 namespace bandsaw::coordinator {
 
-/// Shared with the test, which moves it.
+/// Shared with the test, which advances it.
 class FakeTime {
  public:
   void advance(double seconds) { now_ = now_ + seconds; }
@@ -33,10 +33,10 @@ class FakeClock : public Clock {
   std::shared_ptr<FakeTime> time_;
 };
 
-/// What a MemoryJournal writes on: survives it, as a disk does. Thread-safe.
+/// The storage of a MemoryJournal, which it survives as a disk does. Thread-safe.
 class JournalDisk {
  public:
-  /// The next appends are refused until `mend`.
+  /// Appends fail until `mend`.
   void break_it() EXCLUDES(mutex_) {
     MutexLock lock(mutex_);
     broken_ = true;
@@ -46,12 +46,12 @@ class JournalDisk {
     broken_ = false;
     breaks_after_ = -1;
   }
-  /// The append after so many is refused, and all that follow.
+  /// After so many appends, all further ones fail.
   void break_after(int appends) EXCLUDES(mutex_) {
     MutexLock lock(mutex_);
     breaks_after_ = appends;
   }
-  /// Appends are refused while this holds; nothing: no more.
+  /// Appends fail while `holds` returns true; nullptr: never.
   void refuse_while(std::function<bool()> holds) EXCLUDES(mutex_) {
     MutexLock lock(mutex_);
     refuse_while_ = std::move(holds);

@@ -1,4 +1,4 @@
-// A disk that takes no more, in the middle of a job, and a journal that cannot be written.
+// A disk that becomes full during a job, and a journal that cannot be written.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -21,10 +21,10 @@ class FullDiskTest : public testing::Test {
  protected:
   /// The engine's time stands still unless a test moves it; the journal is in memory.
   FullDiskTest() {
-    EngineDoors doors;
-    doors.clock = std::make_unique<FakeClock>(time_);
-    doors.journal = std::make_unique<MemoryJournal>(disk_);
-    EXPECT_TRUE(farm_.start(std::move(doors)).ok());
+    EngineDependencies dependencies;
+    dependencies.clock = std::make_unique<FakeClock>(time_);
+    dependencies.journal = std::make_unique<MemoryJournal>(disk_);
+    EXPECT_TRUE(farm_.start(std::move(dependencies)).ok());
   }
   BandPixels rendered(std::uint32_t first, std::uint32_t last) {
     Pool pool(1);
@@ -32,7 +32,7 @@ class FullDiskTest : public testing::Test {
     const Band band{.samples = {0, 16}, .rows = {first, last}};
     return *render_band(*farm_.scene(), farm_.settings(), band, pool, stop, [](std::uint32_t) {});
   }
-  /// Moves the time on until the job is in the state.
+  /// Advances the time until the job is in the state.
   JobView wait_for(JobId job, JobState state) {
     while (true) {
       time_->advance(0.5);
@@ -65,7 +65,7 @@ TEST_F(FullDiskTest, ABandThatDoesNotFitIsKeptByItsWorkerAndTheJobWaits) {
   expect_local_image(job);
 }
 
-TEST_F(FullDiskTest, AWorkerThatTriesAgainEndsTheJobWhenThereIsRoom) {
+TEST_F(FullDiskTest, ARetryEndsTheJobWhenThereIsRoom) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 16});
   auto full = std::make_unique<test::FullDisk>(0);
   FakeWorker worker(farm_.scene(), "one");
@@ -103,13 +103,13 @@ TEST_F(FullDiskTest, ASubmitThatCannotBeJournalledFailsAndDoesNotBeginLater) {
   expect_local_image(*job);
 }
 
-TEST_F(FullDiskTest, ASecondTryThatCannotBeJournalledLeavesTheJobAsItIs) {
+TEST_F(FullDiskTest, ASecondSubmitThatCannotBeJournalledLeavesTheJobUnchanged) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 16});
   ASSERT_TRUE(farm_.put(job, rendered(0, 14)).ok());
   wait_for(job, JobState::kDone);
   JobSpec same = farm_.spec(StopAtSamples{.samples = 16});
   disk_->break_it();
-  // Journalled together with what is new.
+  // It is journalled together with the next records.
   JobSpec other = same;
   other.request_id = "another request id";
   Box<absl::Status> said;
@@ -137,14 +137,14 @@ TEST_F(FullDiskTest, ResumingIsRefusedWhileTheJournalIs) {
 TEST_F(FullDiskTest, NothingIsAcknowledgedThatTheJournalDoesNotHold) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 16});
   disk_->break_it();
-  // The last band: that the job is finishing must be journalled before the answer.
+  // This is the last band: the job's state kFinishing must be journalled before the answer.
   EXPECT_EQ(farm_.put(job, rendered(0, 14)).status().code(), absl::StatusCode::kResourceExhausted);
   EXPECT_EQ(farm_.result(job).status().code(), absl::StatusCode::kFailedPrecondition);
   disk_->mend();
   expect_local_image(job);
 }
 
-TEST(StartOnAFullDisk, ServesWhatIsThereRefusesWhatIsNewAndGoesOn) {
+TEST(StartOnAFullDisk, ServesOldResultsRefusesNewDataAndContinues) {
   TestFarm farm;
   ASSERT_TRUE(farm.start().ok());
   JobSpec spec = farm.spec(StopAtSamples{.samples = 16});
@@ -184,7 +184,7 @@ TEST(StartOnAFullDisk, ServesWhatIsThereRefusesWhatIsNewAndGoesOn) {
   EXPECT_EQ(farm.result(job)->image.pixels, farm.local(512).pixels);
 }
 
-// The file that holds the reserve is what the journal has no room beside.
+// The reserve takes the space that the journal lacks.
 TEST_F(FullDiskTest, TheReserveIsForTheJournal) {
   const JobId job = farm_.begin(StopAtSamples{.samples = 16});
   JobSpec another = farm_.spec(StopAtSamples{.samples = 16});
@@ -199,14 +199,14 @@ TEST_F(FullDiskTest, TheReserveIsForTheJournal) {
   disk_->refuse_while(nullptr);
 }
 
-TEST(BrokenJournal, AfterEveryAppendItMayBreakAndTheNextLifeGoesOn) {
+TEST(BrokenJournal, TheNextLifeContinuesAfterAFailureOfAnyAppend) {
   for (int appends = 0; appends < 6; ++appends) {
     TestFarm farm;
     const auto disk = std::make_shared<JournalDisk>();
     const auto start = [&] {
-      EngineDoors doors;
-      doors.journal = std::make_unique<MemoryJournal>(disk);
-      ASSERT_TRUE(farm.start(std::move(doors)).ok());
+      EngineDependencies dependencies;
+      dependencies.journal = std::make_unique<MemoryJournal>(disk);
+      ASSERT_TRUE(farm.start(std::move(dependencies)).ok());
     };
     start();
     disk->break_after(appends);

@@ -1,4 +1,4 @@
-// A coordinator to which jobs are sent by the thousand forgets the oldest of those that are over.
+// A coordinator that receives thousands of jobs forgets the oldest that are over.
 
 #include <gtest/gtest.h>
 
@@ -16,13 +16,13 @@ namespace {
 class KeepTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    EngineDoors doors;
-    doors.journal = std::make_unique<MemoryJournal>(std::make_shared<JournalDisk>());
-    ASSERT_TRUE(farm_.start(std::move(doors), {.jobs = 5}).ok());
+    EngineDependencies dependencies;
+    dependencies.journal = std::make_unique<MemoryJournal>(std::make_shared<JournalDisk>());
+    ASSERT_TRUE(farm_.start(std::move(dependencies), {.jobs = 5}).ok());
     spec_ = farm_.spec(StopAtSamples{.samples = 64});
   }
 
-  /// All at once: waiting for each would wait for the disk each time.
+  /// Submits all without waiting for each, which would wait for the disk each time.
   std::vector<JobId> submit(std::size_t jobs) {
     Box<std::vector<JobId>> box;
     std::vector<JobId> submitted;  // Of the engine's thread, which answers in order.
@@ -69,13 +69,13 @@ class KeepTest : public ::testing::Test {
   int requests_ = 0;
 };
 
-TEST_F(KeepTest, TheThousandthJobMakesTheOldestGo) {
+TEST_F(KeepTest, TheThousandthJobRemovesTheOldest) {
   EXPECT_TRUE(jobs().empty());  // It has looked once, and counts from here.
   const std::vector<JobId> over = submit(990);
   cancel(over);
   EXPECT_EQ(jobs().size(), 990u);
   submit(20);
-  // The store's thread looks first at what there is.
+  // The store's thread runs its first collection before.
   for (int asked = 0; asked < 1'000'000 && is_known(over.front()); ++asked) {
   }
   const std::vector<JobView> left = jobs();

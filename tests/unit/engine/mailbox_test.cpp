@@ -5,7 +5,7 @@
 #include <atomic>
 
 #include "coordinator/engine/answer.h"
-#include "coordinator/engine/put_band.h"
+#include "coordinator/engine/incoming_band.h"
 #include "tests/unit/engine/box.h"
 
 namespace bandsaw::coordinator {
@@ -36,7 +36,7 @@ TEST(Mailbox, AfterBatchRunsWithoutTasksToo) {
   box.wait([](int n) { return n >= 3; });
 }
 
-TEST(Mailbox, WhatWaitsWhenItStopsIsDroppedAndAnswered) {
+TEST(Mailbox, WaitingTasksAreDroppedAndAnsweredAtStop) {
   Box<absl::Status> box;
   const auto answer = [&] {
     return Answer<int>([&](absl::StatusOr<int> value) { box.put(value.status()); });
@@ -50,7 +50,7 @@ TEST(Mailbox, WhatWaitsWhenItStopsIsDroppedAndAnswered) {
   EXPECT_EQ(box.take().code(), absl::StatusCode::kUnavailable) << "too late";
 }
 
-TEST(Answer, IsGivenOnce) {
+TEST(Answer, IsCalledOnce) {
   int calls = 0;
   {
     Answer<int> answer([&](absl::StatusOr<int> value) { calls += value.ok() ? 1 : 100; });
@@ -61,7 +61,7 @@ TEST(Answer, IsGivenOnce) {
   EXPECT_EQ(calls, 1);
 }
 
-TEST(MemoryBudget, IsGivenBackWhenAShareEnds) {
+TEST(MemoryBudget, IsReturnedWhenAShareEnds) {
   MemoryBudget budget(100);
   std::optional<MemoryBudget::Share> most = budget.take(80);
   ASSERT_TRUE(most);

@@ -1,4 +1,4 @@
-// The coordinator stops, or is killed, in the middle of a job.
+// The coordinator is stopped or killed during a job.
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -21,7 +21,7 @@ bool overlap(const Band& a, const Band& b) {
          a.rows.first < b.rows.last && b.rows.first < a.rows.last;
 }
 
-/// How many of these leases are about pixels that were acknowledged before.
+/// Returns the number of leases of pixels that were acknowledged before.
 long rendered_again(const std::vector<Band>& leased, const std::vector<Band>& acknowledged) {
   return std::count_if(leased.begin(), leased.end(), [&](const Band& lease) {
     return std::any_of(acknowledged.begin(), acknowledged.end(),
@@ -29,7 +29,7 @@ long rendered_again(const std::vector<Band>& leased, const std::vector<Band>& ac
   });
 }
 
-/// Bands that were answered kStored.
+/// The bands that were answered with kStored.
 class Acknowledged {
  public:
   FakeWorker::Answered hook() {

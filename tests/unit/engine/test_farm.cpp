@@ -15,16 +15,16 @@ TestFarm::TestFarm() : maker_(test::cornell_box()), scene_(maker_.build()) {
   spdlog::set_level(spdlog::level::off);
 }
 
-absl::Status TestFarm::start(EngineDoors doors, const Keep& keep) {
+absl::Status TestFarm::start(EngineDependencies dependencies, const Keep& keep) {
   engine_.reset();
-  // Fake workers send no heartbeats; nothing here depends on how fast the machine is.
+  // Fake workers send no heartbeats; nothing here depends on the speed of the machine.
   absl::StatusOr<std::unique_ptr<Engine>> engine = Engine::start({.data_folder = folder_,
                                                                   .heartbeat_timeout_s = 1e6,
                                                                   .progress_timeout_s = 1e6,
                                                                   .reattach_grace_s = 0,
                                                                   .audit_share = 0,
                                                                   .keep = keep},
-                                                                 std::move(doors));
+                                                                 std::move(dependencies));
   if (engine.ok()) {
     engine_ = *std::move(engine);
   }

@@ -5,7 +5,6 @@
 #include <memory>
 #include <string>
 
-#include "coordinator/engine/doors.h"
 #include "coordinator/engine/engine.h"
 #include "renderlib/image/image.h"
 #include "tests/support/scenes.h"
@@ -17,13 +16,13 @@ namespace bandsaw::coordinator {
 class TestFarm {
  public:
   TestFarm();
-  /// Starts it, or starts it again on the same folder.
-  absl::Status start(EngineDoors doors = {}, const Keep& keep = {});
+  /// Starts the engine, or restarts it on the same folder.
+  absl::Status start(EngineDependencies dependencies = {}, const Keep& keep = {});
   void stop() { engine_.reset(); }
   Engine& engine() { return *engine_; }
   const std::string& folder() const { return folder_; }
 
-  /// Sends the blobs of the scene; the manifest's digest.
+  /// Sends the blobs of the scene and returns the manifest's digest.
   DigestHex send_package();
   JobSpec spec(StopRule stop);
   absl::StatusOr<JobId> submit(const JobSpec& spec);
@@ -41,7 +40,7 @@ class TestFarm {
 
   std::shared_ptr<const Scene> scene() const { return scene_; }
   const RenderSettings& settings() const { return settings_; }
-  /// The same image, without an engine.
+  /// Renders the same image without an engine.
   Image local(std::uint64_t samples) const;
 
  private:

@@ -16,7 +16,7 @@ class WatchersTest : public testing::Test {
         },
         now_);
   }
-  /// `count` steps of a hundredth of a second, with or without news.
+  /// Runs `count` steps of a hundredth of a second, with or without changes.
   void pass(int count, bool news, bool hold_final = false) {
     for (int i = 0; i < count; ++i) {
       now_ += 0.01;
@@ -39,12 +39,12 @@ class WatchersTest : public testing::Test {
   std::vector<absl::StatusOr<JobView>> told_;
 };
 
-TEST_F(WatchersTest, TheStateNowIsToldAtOnce) {
+TEST_F(WatchersTest, ThePresentStateIsDeliveredAtOnce) {
   watch();
   EXPECT_EQ(told_.size(), 1u);
 }
 
-TEST_F(WatchersTest, NewsComesAtMostTenTimesASecondAndTheLatest) {
+TEST_F(WatchersTest, ChangesAreDeliveredAtMostTenTimesASecond) {
   watch();
   pass(1000, true);
   EXPECT_LE(told_.size(), 101u);
@@ -52,14 +52,14 @@ TEST_F(WatchersTest, NewsComesAtMostTenTimesASecondAndTheLatest) {
   EXPECT_GE(told_.back()->samples_done, 980u);
 }
 
-TEST_F(WatchersTest, WithoutNewsItComesOnceASecond) {
+TEST_F(WatchersTest, AnUnchangedStateIsDeliveredOnceASecond) {
   watch();
   pass(1000, false);
   EXPECT_GE(told_.size(), 11u);
   EXPECT_LE(told_.size(), 13u);
 }
 
-TEST_F(WatchersTest, TheFinalStateAlwaysComesAndIsTheLast) {
+TEST_F(WatchersTest, TheFinalStateIsAlwaysDeliveredAndIsTheLast) {
   watch();
   pass(3, true);
   view_.state = JobState::kDone;
@@ -68,7 +68,7 @@ TEST_F(WatchersTest, TheFinalStateAlwaysComesAndIsTheLast) {
   EXPECT_EQ(told_.size(), 2u);
 }
 
-TEST_F(WatchersTest, AFinalStateThatIsNotDurableYetIsNotTold) {
+TEST_F(WatchersTest, AFinalStateIsNotDeliveredBeforeItIsDurable) {
   watch();
   view_.state = JobState::kDone;
   pass(100, false, true);
@@ -94,7 +94,7 @@ TEST_F(WatchersTest, AJobThatIsForgottenEndsTheWatch) {
   EXPECT_EQ(told_[1].status().code(), absl::StatusCode::kNotFound);
 }
 
-TEST_F(WatchersTest, WhoSaysNoIsNotToldAgainAndOthersAre) {
+TEST_F(WatchersTest, AWatcherThatReturnsFalseIsRemoved) {
   watch(2);
   watch();
   pass(50, true);

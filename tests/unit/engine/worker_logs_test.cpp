@@ -18,14 +18,14 @@ TEST(WorkerLogs, KeepsTheLastLinesOfEach) {
   EXPECT_THAT(*logs.of("laptop"), ElementsAre("a"));
 }
 
-TEST(WorkerLogs, SaysOfWhomItHeardSomething) {
+TEST(WorkerLogs, AnErrorListsTheWorkersWithLogs) {
   WorkerLogs logs(3, 1'000'000);
   EXPECT_TRUE(absl::IsNotFound(logs.of("desk").status()));
   logs.add("laptop", {"a"});
   EXPECT_THAT(std::string(logs.of("desk").status().message()), HasSubstr("laptop"));
 }
 
-TEST(WorkerLogs, PastTheBytesTheLogThatWasSilentLongestGoes) {
+TEST(WorkerLogs, BeyondTheBytesTheLongestSilentLogIsDropped) {
   WorkerLogs logs(100, 3'000);
   logs.add("one", {std::string(1'000, 'x')});
   logs.add("two", {std::string(1'000, 'x')});

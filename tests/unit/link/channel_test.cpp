@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <openssl/err.h>
 
 #include "proto/farm.grpc.pb.h"
 #include "proto/link/certificate.h"
@@ -92,7 +93,7 @@ TEST_F(ConnectTest, RefusesAnotherCertificateBeforeAnyCall) {
 
 // Every join string ends with this machine, which may have a farm of its own; the right one may
 // only be away.
-TEST_F(ConnectTest, AnotherFarmOnThisMachineSaysNothingOfOneThatIsAway) {
+TEST_F(ConnectTest, AnotherFarmAtOneAddressDoesNotHideAnUnreachableOne) {
   const EchoServer server(tls(identity_));
   JoinString join = join_to(server.port, wire::sha256("another"));
   join.addresses.insert(join.addresses.begin(), "127.0.0.2:1");
@@ -110,20 +111,34 @@ TEST_F(ConnectTest, TriesTheNextAddress) {
   EXPECT_EQ(connected->address, join.addresses[2]);
 }
 
-TEST_F(ConnectTest, SaysThatTheConnectionWasRefused) {
+TEST_F(ConnectTest, ReportsARefusedConnection) {
   const absl::Status status = connect(join_to(1, wire::Digest()), milliseconds(10'000)).status();
   EXPECT_EQ(status.code(), absl::StatusCode::kUnavailable);
   EXPECT_EQ(status.message(), "no coordinator answers at 127.0.0.1:1: connection refused");
 }
 
-TEST_F(ConnectTest, SaysThatAPlaintextServerSpeaksNoTls) {
+TEST_F(ConnectTest, ReportsAPlaintextServer) {
   const EchoServer server(grpc::InsecureServerCredentials());
   const absl::Status status =
       connect(join_to(server.port, identity_.certificate_digest), milliseconds(3'000)).status();
   EXPECT_EQ(status.code(), absl::StatusCode::kUnavailable);
 }
 
-TEST_F(ConnectTest, SpeaksPlaintextOnlyWhenTheStringSaysSo) {
+TEST_F(ConnectTest, FetchingACertificateNeitherReadsNorLeavesErrorsOfOpenSsl) {
+  const EchoServer server(tls(identity_));
+  ERR_raise(ERR_LIB_USER, ERR_R_INTERNAL_ERROR);
+  const auto pem =
+      fetch_certificate_pem("127.0.0.1:" + std::to_string(server.port), milliseconds(3'000));
+  ASSERT_TRUE(pem.ok()) << pem.status();
+  EXPECT_EQ(*pem, identity_.certificate_pem);
+  const EchoServer plaintext(grpc::InsecureServerCredentials());
+  EXPECT_FALSE(
+      fetch_certificate_pem("127.0.0.1:" + std::to_string(plaintext.port), milliseconds(3'000))
+          .ok());
+  EXPECT_EQ(ERR_peek_error(), 0u);
+}
+
+TEST_F(ConnectTest, UsesPlaintextOnlyIfTheJoinStringSaysSo) {
   const EchoServer server(grpc::InsecureServerCredentials());
   const JoinString join = join_to(server.port, std::nullopt);
   const absl::StatusOr<Connected> connected = connect(join, milliseconds(10'000));

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "proto/link/certificate.h"
+#include "proto/link/private_file.h"
 #include "tests/support/temp_dir.h"
 
 namespace bandsaw::link {
@@ -27,7 +28,7 @@ std::string slurp(const std::string& path) {
   return text.str();
 }
 
-TEST(Identity, IsForItsOwnerOnly) {
+TEST(Identity, IsReadableByItsOwnerOnly) {
   const test::TempDir folder;
   ASSERT_TRUE(load_or_make_identity(folder / "a/data").ok());
   EXPECT_EQ(mode_of(folder / "a/data"), 0700U);
@@ -94,7 +95,7 @@ TEST(Identity, IsTheSameTheNextTime) {
   EXPECT_EQ(first->farm_secret, second->farm_secret);
 }
 
-TEST(Identity, IsItsOwn) {
+TEST(Identity, DiffersBetweenFarms) {
   const test::TempDir folder;
   const absl::StatusOr<Identity> a = load_or_make_identity(folder / "a");
   const absl::StatusOr<Identity> b = load_or_make_identity(folder / "b");
@@ -107,7 +108,7 @@ TEST(Identity, IsItsOwn) {
   EXPECT_FALSE(check_key(a->key_pem, b->certificate_pem).ok());
 }
 
-TEST(Identity, RefusesOneThatOthersCanRead) {
+TEST(Identity, RefusesAFileThatOthersCanRead) {
   const test::TempDir folder;
   ASSERT_TRUE(load_or_make_identity(folder.path()).ok());
   ASSERT_EQ(chmod((folder / "identity").c_str(), 0644), 0);
@@ -116,7 +117,7 @@ TEST(Identity, RefusesOneThatOthersCanRead) {
   EXPECT_THAT(std::string(status.message()), HasSubstr("chmod 600"));
 }
 
-TEST(Identity, WhenDamagedIsNotReplaced) {
+TEST(Identity, IsNotReplacedWhenDamaged) {
   const test::TempDir folder;
   ASSERT_TRUE(load_or_make_identity(folder.path()).ok());
   const std::string whole = slurp(folder / "identity");
@@ -129,7 +130,7 @@ TEST(Identity, WhenDamagedIsNotReplaced) {
   }
 }
 
-TEST(Identity, WhenItCannotBeWrittenSaysWhere) {
+TEST(Identity, NamesThePathThatCannotBeWritten) {
   const test::TempDir folder;
   std::ofstream(folder / "file") << "x";
   const absl::Status status = load_or_make_identity(folder / "file").status();
@@ -137,7 +138,18 @@ TEST(Identity, WhenItCannotBeWrittenSaysWhere) {
   EXPECT_THAT(std::string(status.message()), HasSubstr(folder / "file"));
 }
 
-TEST(RoleOfSecret, TellsTheTwoApartAndRefusesOthers) {
+TEST(PrivateFile, IsReadWholeOrNotAtAll) {
+  const test::TempDir folder;
+  const std::string longest(1 << 20, 'x');
+  ASSERT_TRUE(write_private_file(folder / "a", longest).ok());
+  EXPECT_EQ(*read_private_file(folder / "a"), longest);
+  ASSERT_TRUE(write_private_file(folder / "a", longest + "x").ok());
+  const absl::Status status = read_private_file(folder / "a").status();
+  EXPECT_TRUE(absl::IsResourceExhausted(status)) << status;
+  EXPECT_THAT(std::string(status.message()), HasSubstr(folder / "a"));
+}
+
+TEST(RoleOfSecret, DistinguishesTheRolesAndRefusesOthers) {
   const test::TempDir folder;
   const absl::StatusOr<Identity> identity = load_or_make_identity(folder.path());
   ASSERT_TRUE(identity.ok()) << identity.status();

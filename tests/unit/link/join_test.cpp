@@ -64,7 +64,7 @@ TEST(JoinString, ComesBackWithoutACertificate) {
   expect_equal(*parsed, join);
 }
 
-TEST(JoinString, SaysWhatIsWrongAndNeverTheSecret) {
+TEST(JoinString, ReportsErrorsWithoutTheSecret) {
   const std::string tail = absl::StrCat("-", kDigest43, "-", kSecret);
   const std::vector<std::pair<std::string, std::string>> cases = {
       {"", "does not begin with"},
@@ -107,13 +107,13 @@ TEST(JoinStringFrom, TakesAStringOrAFile) {
   }
 }
 
-TEST(JoinStringFrom, NamesAFileThatIsNotThere) {
+TEST(JoinStringFrom, NamesAMissingFile) {
   const absl::StatusOr<JoinString> join = join_string_from("/nowhere/join");
   EXPECT_EQ(join.status().code(), absl::StatusCode::kInvalidArgument);
   EXPECT_THAT(std::string(join.status().message()), HasSubstr("/nowhere/join"));
 }
 
-TEST(JoinStringFrom, NamesAFileThatHoldsSomethingElse) {
+TEST(JoinStringFrom, NamesAFileWithOtherContents) {
   const test::TempDir folder;
   const std::string path = folder / "join";
   std::ofstream(path) << "hello\n";
@@ -128,7 +128,7 @@ TEST(JoinStringFrom, DoesNotRepeatAMistypedSecret) {
   EXPECT_THAT(std::string(join.status().message()), Not(HasSubstr(kSecret)));
 }
 
-TEST(HideJoinStrings, LeavesNothingOfASecretAmongTheArguments) {
+TEST(HideJoinStrings, RemovesSecretsFromTheArguments) {
   std::string name = "bandsaw-worker";
   std::string apart = example().text();
   std::string joined = absl::StrCat("--join=", example().text());

@@ -1,4 +1,4 @@
-// What comes and goes in chunks: whole or refused.
+// Transfers in chunks: complete or refused.
 
 #include <gmock/gmock.h>
 
@@ -28,7 +28,7 @@ class ChunksTest : public FarmTest {
   }
   bool is_there(const std::string& bytes) { return engine_->has_blob(wire::sha256(bytes)); }
 
-  /// The blob from `offset` on; status of the call in `status`.
+  /// Downloads the blob from `offset`; `status` is set to the status of the call.
   std::string get_blob(const wire::Digest& digest, std::uint64_t offset, grpc::Status& status) {
     const auto call = context(link::Role::kWorker);
     farm::GetBlobRequest request;
@@ -46,7 +46,7 @@ class ChunksTest : public FarmTest {
     return bytes;
   }
 
-  /// The blob's chunks from `offset` on.
+  /// Returns the blob's chunks from `offset`.
   static std::vector<farm::BlobChunk> chunks_from(const std::string& bytes, std::size_t offset) {
     std::vector<farm::BlobChunk> chunks;
     for (std::size_t at = offset; at < bytes.size(); at += wire::kChunkBytes) {
@@ -58,7 +58,7 @@ class ChunksTest : public FarmTest {
     return chunks;
   }
 
-  /// A sender that goes away when so many chunks are written.
+  /// Uploads so many chunks, then disconnects.
   void cut_after(const std::string& bytes, std::size_t count) {
     const auto call = context(link::Role::kFarm);
     farm::PutBlobReply reply;
@@ -86,7 +86,7 @@ class ChunksTest : public FarmTest {
     EXPECT_EQ(reply.there_size(), 1);
     return reply.there_size() == 1 ? reply.there(0) : 0;
   }
-  /// The coordinator hears of a sender's end a moment later.
+  /// Waits until the coordinator has noticed the end of the sender.
   std::uint64_t wait_until_there(const std::string& bytes) {
     std::uint64_t there = 0;
     while (there == 0 && !HasFailure()) {
@@ -96,7 +96,7 @@ class ChunksTest : public FarmTest {
   }
 };
 
-TEST_F(ChunksTest, BlobArrivesInPiecesAndLeavesFromAnyOffset) {
+TEST_F(ChunksTest, ABlobIsSentInChunksAndReadFromAnyOffset) {
   const std::string bytes = pattern((2 << 20) + 12345);
   farm::BlobChunk first = whole(bytes);
   first.set_data(bytes.substr(0, 1000));
@@ -120,7 +120,7 @@ TEST_F(ChunksTest, BlobArrivesInPiecesAndLeavesFromAnyOffset) {
   expect(status, StatusCode::INVALID_ARGUMENT, "offset");
 }
 
-TEST_F(ChunksTest, AnUploadThatWasCutGoesOnFromWhereItWas) {
+TEST_F(ChunksTest, AnInterruptedUploadContinues) {
   const std::string bytes = pattern((3 << 20) + 77);
   cut_after(bytes, 2);
   const std::uint64_t there = wait_until_there(bytes);
@@ -137,7 +137,7 @@ TEST_F(ChunksTest, AnUploadThatWasCutGoesOnFromWhereItWas) {
   EXPECT_TRUE(get_blob(wire::sha256(bytes), 0, status) == bytes);
 }
 
-TEST_F(ChunksTest, WhatIsNotThereCannotBeGoneOnFrom) {
+TEST_F(ChunksTest, AnUploadCannotContinueBeyondTheReceivedBytes) {
   const std::string bytes = pattern(3 << 20);
   expect(put_blob(chunks_from(bytes, 1 << 20)), StatusCode::FAILED_PRECONDITION, "0 bytes");
   farm::BlobChunk beyond = whole("x");
@@ -146,7 +146,7 @@ TEST_F(ChunksTest, WhatIsNotThereCannotBeGoneOnFrom) {
   EXPECT_FALSE(is_there(bytes));
 }
 
-TEST_F(ChunksTest, APartThatWasDamagedIsNamedAndSentAnew) {
+TEST_F(ChunksTest, ADamagedPartIsReportedAndSentAgain) {
   const std::string bytes = pattern(3 << 20);
   const wire::Digest digest = wire::sha256(bytes);
   cut_after(bytes, 2);
@@ -162,25 +162,25 @@ TEST_F(ChunksTest, APartThatWasDamagedIsNamedAndSentAnew) {
   EXPECT_TRUE(is_there(bytes));
 }
 
-TEST_F(ChunksTest, BlobThatIsNotThereIsNotFound) {
+TEST_F(ChunksTest, AMissingBlobIsNotFound) {
   grpc::Status status;
   get_blob(wire::Digest(), 0, status);
   EXPECT_EQ(status.error_code(), StatusCode::NOT_FOUND);
 }
 
-TEST_F(ChunksTest, EmptyBlobIsABlob) {
+TEST_F(ChunksTest, ABlobMayBeEmpty) {
   ASSERT_TRUE(put_blob({whole("")}).ok());
   grpc::Status status;
   EXPECT_EQ(get_blob(wire::sha256(std::string()), 0, status), "");
   EXPECT_TRUE(status.ok()) << status.error_message();
 }
 
-TEST_F(ChunksTest, SameBlobMayComeAgain) {
+TEST_F(ChunksTest, ABlobMayBeSentAgain) {
   EXPECT_TRUE(put_blob({whole("again")}).ok());
   EXPECT_TRUE(put_blob({whole("again")}).ok());
 }
 
-TEST_F(ChunksTest, BlobThatIsNotWhatItSaysIsRefused) {
+TEST_F(ChunksTest, ABlobThatDiffersFromItsHeaderIsRefused) {
   farm::BlobChunk tail;
   tail.set_offset(5);
   tail.set_data("world");
@@ -236,7 +236,7 @@ TEST_F(ChunksTest, MissingBlobsAreNamed) {
          StatusCode::INVALID_ARGUMENT, "32 bytes");
 }
 
-TEST_F(ChunksTest, BandThatIsNotWhatItSaysIsRefused) {
+TEST_F(ChunksTest, ABandThatDiffersFromItsHeaderIsRefused) {
   farm::BandChunk bare = band_chunk();
   bare.clear_header();
   expect(put_bands({bare}).status, StatusCode::INVALID_ARGUMENT, "header");
@@ -263,13 +263,13 @@ TEST_F(ChunksTest, BandThatIsNotWhatItSaysIsRefused) {
   }
 }
 
-TEST_F(ChunksTest, BandOfNoJobIsNotStored) {
+TEST_F(ChunksTest, ABandOfAnUnknownJobIsNotStored) {
   const PutBands put = put_bands({band_chunk()});
   EXPECT_TRUE(!put.status.ok() ||
               put.outcomes == std::vector{farm::PutBandReply::OUTCOME_UNWANTED});
 }
 
-TEST_F(ChunksTest, BandsThatFollowEachOtherAreAnsweredEach) {
+TEST_F(ChunksTest, EachOfSeveralBandsIsAnswered) {
   farm::BandChunk first = band_chunk();
   first.set_data(first.data().substr(0, 40));
   farm::BandChunk rest = band_chunk();

@@ -1,4 +1,4 @@
-// Images and scenes that are downloaded at the same time: the memory and the threads they take.
+// Concurrent downloads of images and scenes: their memory and threads.
 
 #include <gmock/gmock.h>
 
@@ -31,7 +31,7 @@ class DownloadsTest : public FarmTest {
     request.set_job(job);
     return people()->Preview(&call, request);
   }
-  /// The status of a whole download.
+  /// Downloads everything and returns the status.
   static grpc::Status read_all(const Reader& reader, std::size_t* bytes = nullptr) {
     farm::ResultChunk chunk;
     while (reader->Read(&chunk)) {
@@ -52,7 +52,7 @@ class DownloadsTest : public FarmTest {
   }
 };
 
-TEST_F(DownloadsTest, AnImageIsInTheMemoryBudgetWhileSomebodyReadsIt) {
+TEST_F(DownloadsTest, AnImageIsInTheMemoryBudgetWhileItIsDownloaded) {
   const std::uint64_t job = finish_job(kSide);
   const std::int64_t all = engine_->images().left();
   const auto call = context(link::Role::kFarm);
@@ -74,7 +74,7 @@ TEST_F(DownloadsTest, AnImageIsInTheMemoryBudgetWhileSomebodyReadsIt) {
   wait_until_left(all);
 }
 
-TEST_F(DownloadsTest, AReaderThatLeavesGivesTheMemoryBack) {
+TEST_F(DownloadsTest, ACancelledDownloadFreesTheMemory) {
   const std::uint64_t job = finish_job(kSide);
   const std::int64_t all = engine_->images().left();
   const auto call = context(link::Role::kFarm);
@@ -85,7 +85,7 @@ TEST_F(DownloadsTest, AReaderThatLeavesGivesTheMemoryBack) {
   wait_until_left(all);
 }
 
-TEST_F(DownloadsTest, APreviewIsCountedAsItIsHeld) {
+TEST_F(DownloadsTest, APreviewCountsWithItsActualSize) {
   const std::uint64_t done = finish_job(kSide);
   const std::uint64_t running = submit_job(kSide);
   put_rows(running, kSide, 0, kSide / 2);
@@ -103,8 +103,8 @@ TEST_F(DownloadsTest, APreviewIsCountedAsItIsHeld) {
   wait_until_left(all);
 }
 
-// As many previews as wait for the film, workers get their scenes.
-TEST_F(DownloadsTest, ScenesGoOutWhilePreviewsWaitForTheFilm) {
+// Workers get their scenes however many previews wait for the film.
+TEST_F(DownloadsTest, ScenesAreSentWhilePreviewsWaitForTheFilm) {
   const std::uint64_t job = submit_job(kSide);
   put_rows(job, kSide, 0, kSide / 2);
   const std::string scene = test::pattern(1 << 20);

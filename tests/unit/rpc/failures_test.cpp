@@ -19,7 +19,7 @@ TEST(Failures, AreCountedByAddressAndMinute) {
   EXPECT_EQ(failures.add("a", 160), Verdict::kFirst) << "a minute after its first";
 }
 
-TEST(Failures, OfAnyNumberOfAddressesTakeBoundedMemory) {
+TEST(Failures, TakeBoundedMemoryForAnyNumberOfAddresses) {
   Failures failures(2);
   for (int i = 0; i < 30'000; ++i) {
     EXPECT_EQ(failures.add(std::to_string(i), 0), Verdict::kFirst);

@@ -1,6 +1,6 @@
 #include "tests/unit/rpc/farm.h"
 
-#include "coordinator/engine/ask.h"
+#include "coordinator/engine/blocking_call.h"
 #include "renderlib/base/check.h"
 #include "tests/support/scenes.h"
 
@@ -139,7 +139,7 @@ void FarmTest::put_rows(std::uint64_t job, std::uint32_t side, std::uint32_t fir
                           .sums = std::vector<double>(std::size_t{side} * (last - first) * 3, 8.0),
                           .counters = {}};
   using Put = absl::StatusOr<BandOutcome>;
-  const Put put = ask<Put>(
+  const Put put = blocking_call<Put>(
       [&](auto answer) { engine_->put_band(job, 0, std::string(32, 'a'), pixels, 0, 0, answer); });
   ASSERT_TRUE(put.ok()) << put.status();
   EXPECT_EQ(*put, BandOutcome::kStored);

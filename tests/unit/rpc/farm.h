@@ -1,7 +1,7 @@
 #pragma once
 
-// A coordinator of its own for each test: engine on a temporary folder, server on a free port, and
-// calls to it.
+// A coordinator for each test: an engine on a temporary folder, a server on a free port, and calls
+// to it.
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ class FarmTest : public ::testing::Test {
 
   link::JoinString join(link::Role role) const;
   std::shared_ptr<grpc::Channel> channel() const { return channel_; }
-  /// A context with this role's secret and a deadline that only a bug reaches.
+  /// Returns a context with this role's secret and a deadline that expires only because of a bug.
   std::unique_ptr<grpc::ClientContext> context(link::Role role) const;
   std::unique_ptr<farm::Farm::Stub> people() const { return farm::Farm::NewStub(channel_); }
   std::unique_ptr<farm::Work::Stub> work() const { return farm::Work::NewStub(channel_); }
@@ -37,21 +37,21 @@ class FarmTest : public ::testing::Test {
     std::vector<farm::PutBandReply::Outcome> outcomes;
     grpc::Status status;
   };
-  /// Two rows of three pixels, of a job that is none.
+  /// Returns two rows of three pixels of an unknown job.
   static farm::BandChunk band_chunk(const std::vector<double>& sums = std::vector<double>(18, 0.5));
   PutBands put_bands(const std::vector<farm::BandChunk>& chunks);
-  /// One chunk that is the whole blob.
+  /// Returns one chunk with the whole blob.
   static farm::BlobChunk whole(const std::string& bytes);
 
   /// Stores the Cornell box's package; returns its manifest's digest.
   wire::Digest put_cornell_box();
   farm::SubmitRequest cornell_request(const wire::Digest& manifest) const;
 
-  /// A job of side x side pixels and 16 samples.
+  /// Submits a job of side x side pixels with 16 samples.
   std::uint64_t submit_job(std::uint32_t side);
-  /// Brings all samples of these rows as a worker would; waits until they are stored.
+  /// Uploads all samples of these rows and waits until they are stored.
   void put_rows(std::uint64_t job, std::uint32_t side, std::uint32_t first, std::uint32_t last);
-  /// A job that is done.
+  /// Submits and completes a job.
   std::uint64_t finish_job(std::uint32_t side);
 
   test::TempDir folder_;

@@ -1,4 +1,4 @@
-// Who may call what: every RPC with each role's secret, a wrong one, and none.
+// Access control: calls every RPC with each role's secret, with a wrong secret and without one.
 
 #include <gmock/gmock.h>
 
@@ -134,14 +134,14 @@ class GateTest : public FarmTest {
   }
 };
 
-TEST_F(GateTest, OpensEachCallToItsRole) {
+TEST_F(GateTest, AdmitsTheRoleOfEachCall) {
   for (const NamedCall& named : calls()) {
     const grpc::Status status = named.call(*context(named.role));
     EXPECT_FALSE(refused(status)) << named.name << ": " << status.error_message();
   }
 }
 
-TEST_F(GateTest, ClosesEachCallToTheOtherRole) {
+TEST_F(GateTest, RefusesTheOtherRole) {
   for (const NamedCall& named : calls()) {
     const auto other = named.role == link::Role::kFarm ? link::Role::kWorker : link::Role::kFarm;
     const grpc::Status status = named.call(*context(other));
@@ -150,7 +150,7 @@ TEST_F(GateTest, ClosesEachCallToTheOtherRole) {
   }
 }
 
-TEST_F(GateTest, ClosesEachCallToAWrongSecret) {
+TEST_F(GateTest, RefusesAWrongSecret) {
   for (const NamedCall& named : calls()) {
     for (const std::string& secret :
          {std::string(22, 'A'), std::string(), identity_.farm_secret + "A"}) {
@@ -161,7 +161,7 @@ TEST_F(GateTest, ClosesEachCallToAWrongSecret) {
   }
 }
 
-TEST_F(GateTest, ClosesEachCallToNoSecret) {
+TEST_F(GateTest, RefusesACallWithoutASecret) {
   for (const NamedCall& named : calls()) {
     grpc::ClientContext none;
     EXPECT_EQ(named.call(none).error_code(), grpc::StatusCode::UNAUTHENTICATED) << named.name;

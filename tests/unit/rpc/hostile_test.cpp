@@ -1,5 +1,5 @@
-// Who means harm: connections without end, requests once more, names that look like paths. Others
-// are served meanwhile, and nothing of it stays. (Wrong secrets and roles: gate_test; wrong
+// Hostile clients: many connections, repeated requests, names that look like paths. Other clients
+// are served at the same time, and nothing is leaked. (Wrong secrets and roles: gate_test; wrong
 // certificates: link/channel_test; sizes: chunks_test.)
 
 #include <arpa/inet.h>
@@ -21,7 +21,7 @@ class HostileTest : public FarmTest {
  protected:
   ~HostileTest() override { hang_up(); }
 
-  /// Room for both ends of so many connections.
+  /// Raises the limit of open files for both ends of so many connections.
   static bool may_open(std::size_t files) {
     rlimit limit{};
     getrlimit(RLIMIT_NOFILE, &limit);
@@ -29,7 +29,7 @@ class HostileTest : public FarmTest {
     return setrlimit(RLIMIT_NOFILE, &limit) == 0 && limit.rlim_cur >= files;
   }
 
-  /// A connection to the coordinator's port that says this and nothing more.
+  /// Connects to the coordinator's port and sends only this.
   void dial(const std::string& words) {
     sockaddr_in address{};
     address.sin_family = AF_INET;
@@ -69,10 +69,10 @@ class HostileTest : public FarmTest {
   std::vector<int> sockets_;
 };
 
-// The first bytes of a TLS handshake: a record of 512 bytes, of which these come.
+// The first bytes of a TLS handshake: the beginning of a record of 512 bytes.
 const std::string kHalfHello("\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03", 11);
 
-TEST_F(HostileTest, AThousandConnectionsLeaveRoomForOthersAndNothingBehind) {
+TEST_F(HostileTest, AThousandConnectionsDoNotBlockOthersAndLeakNothing) {
   if (!may_open(4096)) {
     GTEST_SKIP() << "needs 4,096 open files (ulimit -Hn)";
   }
@@ -90,7 +90,7 @@ TEST_F(HostileTest, AThousandConnectionsLeaveRoomForOthersAndNothingBehind) {
   }
 }
 
-TEST_F(HostileTest, AHandshakeThatDoesNotEndIsCutOff) {
+TEST_F(HostileTest, AnUnfinishedHandshakeIsClosed) {
   dial("");
   dial(kHalfHello);
   for (const int one : sockets_) {
@@ -102,7 +102,7 @@ TEST_F(HostileTest, AHandshakeThatDoesNotEndIsCutOff) {
   }
 }
 
-TEST_F(HostileTest, WhatIsSaidTwiceCountsOnce) {
+TEST_F(HostileTest, RepeatedMessagesCountOnce) {
   const wire::Digest manifest = put_cornell_box();
   const farm::SubmitRequest request = cornell_request(manifest);
   const std::uint64_t job = submit(request);

@@ -1,4 +1,4 @@
-// What people tell a job, through the wire.
+// Commands on jobs, by gRPC.
 
 #include <gmock/gmock.h>
 
@@ -79,7 +79,7 @@ TEST_F(JobsTest, WhyIsAnsweredInSentences) {
   EXPECT_THAT(reply.reason(), testing::ElementsAre("no worker is connected"));
 }
 
-TEST_F(JobsTest, WhatIsUnknownOrOverIsSaid) {
+TEST_F(JobsTest, UnknownAndFinishedJobsAreErrors) {
   EXPECT_EQ(pause(99).error_code(), grpc::StatusCode::NOT_FOUND);
   EXPECT_EQ(resume(99).error_code(), grpc::StatusCode::NOT_FOUND);
   EXPECT_EQ(set_priority(99, 1).error_code(), grpc::StatusCode::NOT_FOUND);

@@ -1,4 +1,4 @@
-// Health for probes, and reflection for grpcurl.
+// The health service for probes, and reflection for grpcurl.
 
 #include <gmock/gmock.h>
 #include <grpcpp/generic/generic_stub.h>
@@ -22,7 +22,8 @@ class ProbeTest : public FarmTest {
     return health::Health::NewStub(channel)->Check(&context, request, &reply);
   }
 
-  /// What the server of this port answers to "list the services", as bytes; the status of the call.
+  /// Requests the list of services from the server on this port; returns the response's bytes, or
+  /// the status of the call.
   grpc::Status list_services(int port, std::string& answer) {
     link::JoinString where = join(link::Role::kFarm);
     where.addresses = {"127.0.0.1:" + std::to_string(port)};
@@ -61,7 +62,7 @@ class ProbeTest : public FarmTest {
   }
 };
 
-TEST_F(ProbeTest, HealthIsToldWithoutASecret) {
+TEST_F(ProbeTest, HealthIsAnsweredWithoutASecret) {
   for (const char* service : {"", "bandsaw.farm.Farm", "bandsaw.farm.Work"}) {
     health::HealthCheckResponse reply;
     const grpc::Status status = check(channel(), service, reply);
@@ -72,7 +73,7 @@ TEST_F(ProbeTest, HealthIsToldWithoutASecret) {
   EXPECT_EQ(check(channel(), "nothing", reply).error_code(), grpc::StatusCode::NOT_FOUND);
 }
 
-TEST_F(ProbeTest, NobodyHoldsAStreamWithoutASecret) {
+TEST_F(ProbeTest, AStreamNeedsASecret) {
   grpc::ClientContext context;
   const auto reader = health::Health::NewStub(channel())->Watch(&context, {});
   health::HealthCheckResponse reply;
@@ -80,7 +81,7 @@ TEST_F(ProbeTest, NobodyHoldsAStreamWithoutASecret) {
   EXPECT_EQ(reader->Finish().error_code(), grpc::StatusCode::UNIMPLEMENTED);
 }
 
-TEST_F(ProbeTest, ReflectionIsThereWhereItWasAskedForOnly) {
+TEST_F(ProbeTest, ReflectionIsOffByDefault) {
   std::string answer;
   EXPECT_EQ(list_services(server_->port(), answer).error_code(), grpc::StatusCode::UNIMPLEMENTED);
   EXPECT_EQ(answer, "");

@@ -1,4 +1,4 @@
-// Secrets that are made anew, and wrong ones that are tried often.
+// Renewed secrets, and repeated wrong ones.
 
 #include <gmock/gmock.h>
 
@@ -60,7 +60,7 @@ class SecretTest : public FarmTest {
   link::Identity renewed_;
 };
 
-TEST_F(SecretTest, TheOldOneOfPeopleIsRefusedAndTheNewOneIsNot) {
+TEST_F(SecretTest, TheOldUsersSecretIsRefusedAndTheNewOneIsNot) {
   farm::RotateSecretReply reply;
   ASSERT_TRUE(rotate(farm::SECRET_ROLE_FARM, &reply).ok());
   EXPECT_EQ(reply.join_file(), "the file");
@@ -69,7 +69,7 @@ TEST_F(SecretTest, TheOldOneOfPeopleIsRefusedAndTheNewOneIsNot) {
   EXPECT_EQ(renewed_.worker_secret, identity_.worker_secret);
 }
 
-TEST_F(SecretTest, WorkersWithTheOldOneAreShutOutAndPeopleAreNot) {
+TEST_F(SecretTest, WorkersWithTheOldSecretAreDisconnectedAndUsersAreNot) {
   const auto call = context(link::Role::kWorker);
   const auto stream = work()->Session(call.get());
   farm::RotateSecretReply reply;
@@ -81,7 +81,7 @@ TEST_F(SecretTest, WorkersWithTheOldOneAreShutOutAndPeopleAreNot) {
   EXPECT_TRUE(list_jobs(identity_.farm_secret).ok());
 }
 
-TEST_F(SecretTest, NobodyGoesOnSendingBandsWithTheOldOne) {
+TEST_F(SecretTest, UploadsOfBandsWithTheOldSecretEnd) {
   const auto call = context(link::Role::kWorker);
   const auto stream = work()->PutBands(call.get());
   farm::PutBandReply outcome;
@@ -92,7 +92,7 @@ TEST_F(SecretTest, NobodyGoesOnSendingBandsWithTheOldOne) {
   EXPECT_EQ(stream->Finish().error_code(), StatusCode::UNAUTHENTICATED);
 }
 
-TEST_F(SecretTest, NobodyGoesOnDownloadingASceneWithTheOldOne) {
+TEST_F(SecretTest, DownloadsOfScenesWithTheOldSecretEnd) {
   const std::string scene = test::pattern(16 << 20);
   ASSERT_TRUE(put_blob(chunks_of(scene)).ok());
   const auto call = context(link::Role::kWorker);
@@ -108,7 +108,7 @@ TEST_F(SecretTest, NobodyGoesOnDownloadingASceneWithTheOldOne) {
   EXPECT_EQ(reader->Finish().error_code(), StatusCode::UNAUTHENTICATED);
 }
 
-TEST_F(SecretTest, NobodyGoesOnSendingASceneWithTheOldOne) {
+TEST_F(SecretTest, UploadsOfScenesWithTheOldSecretEnd) {
   const std::string scene = test::pattern(3 << 20);
   const auto call = context(link::Role::kFarm);
   farm::PutBlobReply put;
@@ -128,7 +128,7 @@ TEST_F(SecretTest, NobodyGoesOnSendingASceneWithTheOldOne) {
   }
 }
 
-TEST_F(SecretTest, NobodyGoesOnDownloadingAnImageWithTheOldOne) {
+TEST_F(SecretTest, DownloadsOfImagesWithTheOldSecretEnd) {
   const std::uint64_t job = finish_job(1024);
   const std::int64_t all = engine_->images().left();
   const auto call = context(link::Role::kFarm);
@@ -145,7 +145,7 @@ TEST_F(SecretTest, NobodyGoesOnDownloadingAnImageWithTheOldOne) {
   EXPECT_EQ(reader->Finish().error_code(), StatusCode::UNAUTHENTICATED);
 }
 
-TEST_F(SecretTest, ADownloadWithTheOtherSecretGoesOn) {
+TEST_F(SecretTest, ADownloadWithTheOtherSecretContinues) {
   const std::uint64_t job = finish_job(1024);
   const auto call = context(link::Role::kFarm);
   farm::GetResultRequest request;
@@ -160,13 +160,13 @@ TEST_F(SecretTest, ADownloadWithTheOtherSecretGoesOn) {
   EXPECT_TRUE(reader->Finish().ok());
 }
 
-TEST_F(SecretTest, ARoleThatIsNoneIsRefused) {
+TEST_F(SecretTest, AnUnknownRoleIsRefused) {
   farm::RotateSecretReply reply;
   EXPECT_EQ(rotate(farm::SECRET_ROLE_UNSPECIFIED, &reply).error_code(),
             StatusCode::INVALID_ARGUMENT);
 }
 
-TEST_F(SecretTest, WhoTriesManyIsTurnedAwayAndTheRightOneIsNot) {
+TEST_F(SecretTest, ManyWrongSecretsAreLimitedAndTheRightOneIsNot) {
   StatusCode last = StatusCode::OK;
   for (std::size_t i = 0; i <= wire::kWrongSecretsPerMinute; ++i) {
     last = list_jobs(std::string(22, 'A')).error_code();
@@ -185,7 +185,7 @@ TEST_F(WithoutRenewal, ItIsRefused) {
             StatusCode::FAILED_PRECONDITION);
 }
 
-TEST_F(WithoutRenewal, BothRolesMayAskWhatTheFarmIs) {
+TEST_F(WithoutRenewal, BothRolesMayCallAbout) {
   for (const link::Role role : {link::Role::kFarm, link::Role::kWorker}) {
     farm::AboutReply about;
     ASSERT_TRUE(people()->About(context(role).get(), {}, &about).ok());

@@ -19,7 +19,7 @@ using ::testing::HasSubstr;
 
 using ServerTest = FarmTest;
 
-TEST_F(ServerTest, SecondOneOnAPortSaysThatItIsTaken) {
+TEST_F(ServerTest, ASecondServerOnAPortReportsThatItIsTaken) {
   const std::string listen = "127.0.0.1:" + std::to_string(server_->port());
   const absl::Status status = Server::start(*engine_, identity_, {.listen = listen}).status();
   EXPECT_EQ(status.code(), absl::StatusCode::kFailedPrecondition);
@@ -27,7 +27,7 @@ TEST_F(ServerTest, SecondOneOnAPortSaysThatItIsTaken) {
   EXPECT_THAT(std::string(status.message()), HasSubstr("--listen"));
 }
 
-TEST_F(ServerTest, SaysWhatIsWrongWithAnAddress) {
+TEST_F(ServerTest, ReportsWhatIsWrongWithAnAddress) {
   for (const char* listen : {"7878", "host", "127.0.0.1:x", "127.0.0.1:70000", ":1"}) {
     EXPECT_EQ(Server::start(*engine_, identity_, {.listen = listen}).status().code(),
               absl::StatusCode::kInvalidArgument)
@@ -77,7 +77,7 @@ TEST_F(ServerTest, ChecksEachFieldOfASubmission) {
   }
 }
 
-TEST_F(ServerTest, SaysWhichBlobOfAJobIsMissing) {
+TEST_F(ServerTest, ReportsTheMissingBlobOfAJob) {
   farm::SubmitReply reply;
   const grpc::Status status =
       people()->Submit(context(link::Role::kFarm).get(), cornell_request(wire::Digest()), &reply);
@@ -89,7 +89,7 @@ class Worker {
  public:
   Worker(const link::JoinString& join, const std::string& cache, char id)
       : daemon_(*worker::Daemon::create({.join = join,
-                                         .self = {.instance = std::string(32, id),
+                                         .info = {.instance = std::string(32, id),
                                                   .name = "desk",
                                                   .build = "test",
                                                   .threads = 2,
@@ -187,7 +187,7 @@ TEST_F(WorkerTest, RendersAJobToTheSameBytes) {
   EXPECT_TRUE(second.drain().ok());
 }
 
-TEST_F(WorkerTest, OutlivesARestartOfTheCoordinator) {
+TEST_F(WorkerTest, SurvivesARestartOfTheCoordinator) {
   Worker worker(join(link::Role::kWorker), folder_ / "cache", 'a');
   const wire::Digest manifest = put_cornell_box();
   farm::SubmitRequest request = cornell_request(manifest);
@@ -206,7 +206,7 @@ TEST_F(WorkerTest, OutlivesARestartOfTheCoordinator) {
   EXPECT_TRUE(worker.drain().ok());
 }
 
-TEST_F(WorkerTest, LeavesWithOneErrorWhenItsJoinStringIsNotGood) {
+TEST_F(WorkerTest, EndsWithAnErrorIfItsJoinStringIsInvalid) {
   link::JoinString wrong_secret = join(link::Role::kWorker);
   wrong_secret.secret = std::string(22, 'A');
   Worker secret(wrong_secret, folder_ / "cache", 'a');
@@ -221,7 +221,7 @@ TEST_F(WorkerTest, LeavesWithOneErrorWhenItsJoinStringIsNotGood) {
   EXPECT_EQ(certificate.wait().code(), absl::StatusCode::kUnauthenticated);
 }
 
-TEST_F(WorkerTest, DrainsAtOnceWhereNobodyAnswers) {
+TEST_F(WorkerTest, DrainsAtOnceWithoutAConnection) {
   link::JoinString nowhere = join(link::Role::kWorker);
   nowhere.addresses = {"127.0.0.1:1"};
   Worker worker(nowhere, folder_ / "cache", 'a');

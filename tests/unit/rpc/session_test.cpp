@@ -1,4 +1,4 @@
-// The streams: a worker's session and a watched job, and how a server ends them.
+// A worker's session and a watched job, and the end of both when the server stops.
 
 #include <gmock/gmock.h>
 
@@ -31,7 +31,7 @@ farm::FromWorker hello() {
 
 class StreamTest : public FarmTest {
  protected:
-  /// Says these, then reads to the end.
+  /// Sends these messages, then reads to the end.
   grpc::Status say(const std::vector<farm::FromWorker>& messages,
                    std::vector<farm::ToWorker>* answers = nullptr, bool hang_up = true) {
     const auto call = context(link::Role::kWorker);
@@ -66,7 +66,7 @@ farm::FromWorker log(const std::vector<std::string>& lines) {
   return message;
 }
 
-TEST_F(StreamTest, KeepsWhatAWorkerLogsForPeople) {
+TEST_F(StreamTest, KeepsTheLogOfAWorker) {
   EXPECT_TRUE(say({hello(), log({"one", "two"}), log({"three"})}).ok());
   farm::LogsRequest request;
   request.set_worker("desk");
@@ -89,7 +89,7 @@ TEST_F(StreamTest, RefusesLogsThatAreTooLongOrHoldControlCharacters) {
   }
 }
 
-TEST_F(StreamTest, WelcomesAWorkerThatIsFit) {
+TEST_F(StreamTest, AdmitsACompatibleWorker) {
   const auto call = context(link::Role::kWorker);
   const auto stream = work()->Session(call.get());
   stream->Write(hello());
@@ -119,7 +119,7 @@ TEST_F(StreamTest, RefusesAWorkerOfOtherPixelsAndSaysWhy) {
   EXPECT_GT(answers[0].refused().retry_after_ms(), 0U);
 }
 
-TEST_F(StreamTest, WantsHelloFirstAndOnce) {
+TEST_F(StreamTest, RequiresHelloFirstAndOnce) {
   farm::FromWorker beat;
   beat.mutable_heartbeat();
   expect_refused(beat, "hello");
@@ -153,7 +153,7 @@ TEST_F(StreamTest, ChecksEachFieldOfHello) {
   }
 }
 
-TEST_F(StreamTest, ChecksWhatComesAfterHello) {
+TEST_F(StreamTest, ChecksMessagesAfterHello) {
   farm::FromWorker beat;
   for (std::size_t i = 0; i <= wire::kBandsPerWorker; ++i) {
     beat.mutable_heartbeat()->add_lease();
@@ -223,7 +223,7 @@ TEST_F(StreamTest, WatchEndsWithTheFinalState) {
   EXPECT_EQ(state.state(), farm::JOB_STATE_CANCELLED);
 }
 
-TEST_F(StreamTest, WatcherMayLeaveAtAnyTime) {
+TEST_F(StreamTest, AWatcherMayCancelAtAnyTime) {
   const wire::Digest manifest = put_cornell_box();
   farm::SubmitReply job;
   ASSERT_TRUE(
@@ -242,7 +242,7 @@ TEST_F(StreamTest, WatcherMayLeaveAtAnyTime) {
   }
 }
 
-TEST_F(StreamTest, SaysThatThereIsNoSuchJob) {
+TEST_F(StreamTest, ReportsAnUnknownJob) {
   farm::WatchRequest watch_request;
   watch_request.set_job(99);
   const auto call = context(link::Role::kFarm);

@@ -35,7 +35,7 @@ class BandLogTest : public testing::Test {
     };
     return BandLog::open(folder_.path(), path_, each, report_);
   }
-  /// A log of the rows [0, rows) and its bytes.
+  /// Writes a log of the rows [0, rows) and returns its bytes.
   std::string make(std::uint32_t rows) {
     absl::StatusOr<BandLog> log = open();
     for (std::uint32_t row = 0; row < rows; ++row) {
@@ -53,7 +53,7 @@ class BandLogTest : public testing::Test {
   BandLogReport report_;
 };
 
-TEST_F(BandLogTest, HandsOnWhatWasAppendedInOrder) {
+TEST_F(BandLogTest, ReadsAppendedRecordsInOrder) {
   make(3);
   ASSERT_TRUE(open().ok());
   EXPECT_EQ(rows_, (Rows{0, 1, 2}));
@@ -61,7 +61,7 @@ TEST_F(BandLogTest, HandsOnWhatWasAppendedInOrder) {
   EXPECT_EQ(report_.damaged_bytes, 0u);
 }
 
-TEST_F(BandLogTest, TellsWhereEachRecordBegins) {
+TEST_F(BandLogTest, ReturnsTheOffsetOfEachRecord) {
   const std::uint64_t one = make(1).size();
   absl::StatusOr<BandLog> log = open();
   EXPECT_EQ(*log->append(sample_band(1)), one);
@@ -70,7 +70,7 @@ TEST_F(BandLogTest, TellsWhereEachRecordBegins) {
   EXPECT_EQ(offsets_, (std::vector<std::uint64_t>{0, one, 2 * one}));
 }
 
-TEST_F(BandLogTest, CutAtAnyByteItKeepsTheWholeRecordsAndGoesOnAfterThem) {
+TEST_F(BandLogTest, TruncatedAtAnyByteItKeepsCompleteRecords) {
   const std::string whole = make(3);
   const std::size_t one = whole.size() / 3;
   for (std::size_t cut = 0; cut < whole.size(); ++cut) {
@@ -103,7 +103,7 @@ TEST_F(BandLogTest, AnyChangedByteLosesItsOwnRecordAlone) {
   }
 }
 
-TEST_F(BandLogTest, AFullDiskLeavesTheLogAsItWas) {
+TEST_F(BandLogTest, AFullDiskLeavesTheLogUnchanged) {
   const std::string whole = make(2);
   absl::StatusOr<BandLog> log = open();
   ASSERT_TRUE(log.ok());

@@ -34,10 +34,8 @@ class BlobStoreTest : public testing::Test {
     return writer->commit();
   }
 
-  /// Long enough that half of it is worth keeping.
-  static std::string long_text(char fill) {
-    return std::string(2 * PartialBlobs::kLeastBytes, fill);
-  }
+  /// Long enough that half of it is kept as a partial upload.
+  static std::string long_text(char fill) { return std::string(2 * PartialBlobs::kMinBytes, fill); }
   static void leave_half(BlobStore& store, const std::string& text) {
     absl::StatusOr<BlobStore::Writer> writer = store.write(wire::sha256(text), text.size());
     ASSERT_TRUE(writer.ok()) << writer.status();
@@ -65,7 +63,7 @@ class BlobStoreTest : public testing::Test {
   test::TempDir folder_;
 };
 
-TEST_F(BlobStoreTest, GivesBackWhatWasPutAlsoInItsNextLife) {
+TEST_F(BlobStoreTest, ReturnsStoredBlobsAlsoAfterARestart) {
   for (const std::string& text : {std::string(), std::string("a"), std::string(100'000, 'b')}) {
     const wire::Digest digest = wire::sha256(text);
     {
@@ -106,14 +104,14 @@ TEST_F(BlobStoreTest, WrongBytesAndWrongSizesAreRefusedAndLeaveNothing) {
   EXPECT_EQ(files(), 0u);
 }
 
-TEST_F(BlobStoreTest, AnAbandonedUploadIsGoneAtTheNextStart) {
+TEST_F(BlobStoreTest, AnAbandonedUploadIsRemovedAtTheNextStart) {
   open();
   write_all(folder_ / "incoming/7", "half");
   open();
   EXPECT_EQ(files(), 0u);
 }
 
-TEST_F(BlobStoreTest, AnUploadThatWasCutGoesOnInTheNextLife) {
+TEST_F(BlobStoreTest, AnInterruptedUploadContinuesAfterARestart) {
   const std::string text = long_text('a');
   const wire::Digest digest = wire::sha256(text);
   leave_half(*open(), text);
@@ -128,7 +126,7 @@ TEST_F(BlobStoreTest, AnUploadThatWasCutGoesOnInTheNextLife) {
   EXPECT_EQ(text_of(*store, digest), text);
 }
 
-TEST_F(BlobStoreTest, LessThanIsThereMayBeKeptAndMoreMayNot) {
+TEST_F(BlobStoreTest, AnUploadMayContinueBeforeTheEndAndNotBeyond) {
   const std::string text = long_text('b');
   const wire::Digest digest = wire::sha256(text);
   const auto store = open();
@@ -140,7 +138,7 @@ TEST_F(BlobStoreTest, LessThanIsThereMayBeKeptAndMoreMayNot) {
   EXPECT_TRUE(writer->commit().ok());
 }
 
-TEST_F(BlobStoreTest, APartThatWasDamagedIsNamedAndThrownAway) {
+TEST_F(BlobStoreTest, ADamagedPartIsReportedAndRemoved) {
   const std::string text = long_text('c');
   const wire::Digest digest = wire::sha256(text);
   const auto store = open();
@@ -157,7 +155,7 @@ TEST_F(BlobStoreTest, APartThatWasDamagedIsNamedAndThrownAway) {
   EXPECT_TRUE(put(*store, text).ok());
 }
 
-TEST_F(BlobStoreTest, PartsAreBoundedInNumberAndGoWhenTheyAreOld) {
+TEST_F(BlobStoreTest, PartsAreLimitedInNumberAndAge) {
   const auto store = open();
   std::vector<std::string> texts;
   for (std::size_t i = 0; i < wire::kPartialBlobs + 2; ++i) {
@@ -186,7 +184,7 @@ TEST_F(BlobStoreTest, ADamagedFileIsDataLossOnceAndCanBeSentAgain) {
   EXPECT_EQ(text_of(*store, digest), text);
 }
 
-TEST_F(BlobStoreTest, AFullDiskIsKnownBeforeTheBytesCome) {
+TEST_F(BlobStoreTest, AFullDiskIsDetectedBeforeTheUpload) {
   const auto store = open();
   const std::string text(100'000, 'x');
   {

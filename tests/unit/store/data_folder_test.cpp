@@ -15,7 +15,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(DataFolder, IsMadeForItsOwnerAlone) {
+TEST(DataFolder, IsReadableByItsOwnerOnly) {
   const test::TempDir temp;
   const auto folder = DataFolder::open(temp / "data");
   ASSERT_TRUE(folder.ok()) << folder.status();
@@ -80,7 +80,7 @@ TEST(Reserve, IsHeldReleasedAndHeldAgain) {
   EXPECT_TRUE(reserve.hold().ok());
 }
 
-TEST(DataFolder, TheProbeTellsWhetherTheDiskTakesData) {
+TEST(DataFolder, TheProbeTestsWhetherTheDiskTakesData) {
   const test::TempDir temp;
   EXPECT_TRUE(probe_disk(temp.path()).ok());
   {

@@ -10,7 +10,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(RecordText, EveryKindReadsBackAsItWasWritten) {
+TEST(RecordText, EveryKindComesBack) {
   for (const Record& record : sample_records()) {
     const RecordText text = to_text(record);
     const absl::StatusOr<Record> back = from_text(text);
@@ -30,7 +30,7 @@ TEST(RecordText, AJobKeepsEveryField) {
   EXPECT_EQ(std::get<record::JobAdded>(*back).spec, spec);
 }
 
-TEST(RecordText, AJobOfBeforeThereWereIntegratorsIsOfPath) {
+TEST(RecordText, AJobWithoutAnIntegratorUsesPath) {
   JobSpec spec = sample_spec(StopAtSamples{4});
   RecordText text = to_text(record::JobAdded{.job = 5, .spec = spec});
   const std::size_t at = text.fields.find("integrator ");
@@ -40,7 +40,7 @@ TEST(RecordText, AJobOfBeforeThereWereIntegratorsIsOfPath) {
   EXPECT_EQ(std::get<record::JobAdded>(from_text(text).value()).spec, spec);
 }
 
-TEST(RecordText, AJobOfBeforePixelVersionsWereNotedIsOfNone) {
+TEST(RecordText, AJobWithoutAPixelVersionHasNone) {
   RecordText text = to_text(
       record::JobAdded{.job = 5, .spec = sample_spec(StopAtSamples{4}), .pixel_version = 8});
   const std::string field = "pixel_version 8\n";
@@ -54,7 +54,7 @@ TEST(RecordText, AnUnknownKindIsNamed) {
   EXPECT_THAT(std::string(status.message()), HasSubstr("job_paused"));
 }
 
-TEST(RecordText, AMissingAWrongAndALeftOverFieldAreNamed) {
+TEST(RecordText, MissingWrongAndExtraFieldsAreNamed) {
   const auto message = [](const char* kind, const char* fields) {
     const absl::Status status = from_text({.kind = kind, .fields = fields}).status();
     EXPECT_EQ(status.code(), absl::StatusCode::kDataLoss);
@@ -69,7 +69,7 @@ TEST(RecordText, AMissingAWrongAndALeftOverFieldAreNamed) {
   EXPECT_THAT(message("worker_left", "instance a"), HasSubstr("instance"));
 }
 
-TEST(RecordText, EveryCutOfARecordIsRefused) {
+TEST(RecordText, EveryTruncatedRecordIsRefused) {
   for (const Record& record : sample_records()) {
     const RecordText text = to_text(record);
     for (std::size_t length = 0; length < text.fields.size(); ++length) {

@@ -55,7 +55,7 @@ TEST_F(ResultFileTest, EveryChangedByteAndEveryCutIsDataLoss) {
   }
 }
 
-TEST_F(ResultFileTest, AFullDiskLeavesTheOldOneAndNothingElse) {
+TEST_F(ResultFileTest, AFullDiskLeavesOnlyTheOldResult) {
   ASSERT_TRUE(write_result(sample_image(), folder_.path(), path_).ok());
   const std::string before = read_all(path_);
   {

@@ -1,6 +1,6 @@
 #pragma once
 
-// One record of every kind, with the values that are hardest to write down.
+// One record of every kind, with values that are difficult to write as text.
 
 #include <limits>
 #include <vector>

@@ -73,7 +73,7 @@ TEST_F(SqliteJournalTest, EveryKindOfRecordIsThereAfterReopeningInOrder) {
   EXPECT_EQ(replayed(*open()), texts(records));
 }
 
-TEST_F(SqliteJournalTest, IsReplacedByOtherRecordsAndGoesOn) {
+TEST_F(SqliteJournalTest, CanBeRewrittenAndContinued) {
   const std::vector<Record> all = sample_records();
   const std::vector<Record> few = {all[3], all[0]};
   {
@@ -105,7 +105,7 @@ TEST_F(SqliteJournalTest, AMissingRecordIsNamed) {
   EXPECT_THAT(std::string(status.message()), HasSubstr("record 2"));
 }
 
-TEST_F(SqliteJournalTest, TheOldSchemaIsReadAndBecomesTheNewOne) {
+TEST_F(SqliteJournalTest, AnOldSchemaIsReadAndUpgraded) {
   ASSERT_TRUE(open()->append(sample_records()).ok());
   run_sql(path_, "PRAGMA user_version = 1");
   for (int life = 0; life < 2; ++life) {
@@ -113,7 +113,7 @@ TEST_F(SqliteJournalTest, TheOldSchemaIsReadAndBecomesTheNewOne) {
   }
 }
 
-TEST_F(SqliteJournalTest, OneOfAnOldSchemaIsReadOnAFullDiskAndRaisedLater) {
+TEST_F(SqliteJournalTest, AnOldSchemaIsReadOnAFullDiskAndUpgradedLater) {
   const std::vector<Record> records = sample_records();
   ASSERT_TRUE(open()->append(records).ok());
   run_sql(path_, "PRAGMA user_version = 1");
@@ -150,7 +150,7 @@ TEST_F(SqliteJournalTest, AnotherSchemaIsRefused) {
   EXPECT_THAT(std::string(status.message()), HasSubstr("99"));
 }
 
-TEST_F(SqliteJournalTest, AFileThatIsNoDatabaseIsDataLoss) {
+TEST_F(SqliteJournalTest, AFileThatIsNotADatabaseIsDataLoss) {
   write_all(path_, std::string(8192, 'x'));
   EXPECT_EQ(SqliteJournal::open(path_).status().code(), absl::StatusCode::kDataLoss);
 }
@@ -170,7 +170,7 @@ TEST_F(SqliteJournalTest, AFullDiskLosesNothingAndTheSameAppendWorksLater) {
   EXPECT_EQ(replayed(*journal), expected);
 }
 
-/// A child that appends for ever and says on a pipe after each append that it is done.
+/// A child process that appends without end and reports each finished append on a pipe.
 pid_t start_appender(const std::string& path, int& acknowledged) {
   int ends[2];
   EXPECT_EQ(::pipe(ends), 0);

@@ -17,7 +17,7 @@ int status_of(const std::optional<test::HttpAnswer>& result) {
   return result ? result->status : -1;
 }
 
-TEST(OwnHost, IsANumberLocalhostOrTheMachine) {
+TEST(OwnHost, IsAnAddressLocalhostOrTheMachinesName) {
   for (const char* host : {"127.0.0.1", "127.0.0.1:8787", "192.168.1.5:80", "[::1]:8787", "[::1]",
                            "localhost:8787", "LOCALHOST", "desk", "desk.local:8787"}) {
     EXPECT_TRUE(is_own_host(host, "desk")) << host;
@@ -29,7 +29,7 @@ TEST(OwnHost, IsANumberLocalhostOrTheMachine) {
   EXPECT_FALSE(is_own_host("", ""));
 }
 
-TEST_F(AccessTest, ThePageIsOpenAllElseIsNot) {
+TEST_F(AccessTest, OnlyThePageNeedsNoLogin) {
   EXPECT_EQ(status_of(get("/")), 200);
   EXPECT_EQ(status_of(get("/style.css")), 200);
   EXPECT_FALSE(message<web::LoginState>(get("/api/login")).logged_in());
@@ -58,7 +58,7 @@ TEST_F(AccessTest, TheSecretOrTheJoinStringLogsIn) {
   EXPECT_EQ(cookie.find(identity_.farm_secret), std::string::npos);
 }
 
-TEST_F(AccessTest, AWrongSecretAndTheWorkersDoNot) {
+TEST_F(AccessTest, AWrongSecretAndTheWorkersSecretDoNotLogIn) {
   EXPECT_EQ(status_of(post("/api/login", "{\"secret\": \"wrong\"}")), 401);
   EXPECT_EQ(status_of(post("/api/login", "{\"secret\": \"" + identity_.worker_secret + "\"}")),
             403);
@@ -68,7 +68,7 @@ TEST_F(AccessTest, AWrongSecretAndTheWorkersDoNot) {
   EXPECT_EQ(status_of(get("/api/farm")), 401);
 }
 
-TEST_F(AccessTest, ManyWrongSecretsAreTurnedAway) {
+TEST_F(AccessTest, ManyWrongSecretsAreLimited) {
   Access access(identity_, false);
   HttpRequest request;
   request.remote_address = "10.0.0.7";
@@ -77,7 +77,7 @@ TEST_F(AccessTest, ManyWrongSecretsAreTurnedAway) {
     ASSERT_TRUE(absl::IsUnauthenticated(access.log_in(request, "wrong", reply)));
   }
   EXPECT_TRUE(absl::IsResourceExhausted(access.log_in(request, "wrong", reply)));
-  // A whole office may be behind this address.
+  // Many users may share this address.
   EXPECT_TRUE(access.log_in(request, identity_.farm_secret, reply).ok());
 }
 
@@ -104,7 +104,7 @@ TEST_F(AccessTest, AForeignNameForThisMachineIsRefused) {
   EXPECT_EQ(status_of(get("/")), 403);
 }
 
-TEST_F(AccessTest, ANewSecretVoidsLogins) {
+TEST_F(AccessTest, ANewSecretInvalidatesLogins) {
   log_in();
   link::Identity renewed = identity_;
   renewed.farm_secret = "another22characters000";
@@ -112,8 +112,8 @@ TEST_F(AccessTest, ANewSecretVoidsLogins) {
   EXPECT_EQ(status_of(get("/api/farm")), 401);
 }
 
-// An upload is let in by the login that it began with; the new secret ends it without an answer.
-TEST_F(AccessTest, ANewSecretCutsWhatIsUnderWay) {
+// An upload was admitted by an earlier login; the new secret ends it without a response.
+TEST_F(AccessTest, ANewSecretClosesConnections) {
   log_in();
   const int one = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   sockaddr_in address{};
@@ -139,8 +139,8 @@ TEST_F(AccessTest, ANewSecretCutsWhatIsUnderWay) {
   close(one);
 }
 
-// Each would hold a thread for its whole patience; all together are as many as there are threads.
-TEST_F(AccessTest, HalfOpenConnectionsOfOneAddressLeaveRoom) {
+// Each would occupy a thread until its deadline, and they are as many as there are threads.
+TEST_F(AccessTest, HalfOpenConnectionsOfOneAddressDoNotBlockOthers) {
   std::vector<int> sockets;
   sockaddr_in address{};
   address.sin_family = AF_INET;
@@ -163,8 +163,8 @@ TEST_F(AccessTest, HalfOpenConnectionsOfOneAddressLeaveRoom) {
   }
 }
 
-// Nobody has logged in: the answer comes before the body, which is never taken.
-TEST_F(AccessTest, ABodyForNowhereIsNotWaitedFor) {
+// Without a login the response is sent before the body, which is never read.
+TEST_F(AccessTest, ABodyForAnUnknownPathIsNotAwaited) {
   for (const std::string path : {"/nowhere", "/%0A"}) {
     const int one = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     sockaddr_in address{};
@@ -183,7 +183,7 @@ TEST_F(AccessTest, ABodyForNowhereIsNotWaitedFor) {
   }
 }
 
-TEST_F(AccessTest, AHeadWithoutEndIsCutOff) {
+TEST_F(AccessTest, AHeadWithoutEndIsRefused) {
   headers_.emplace("X-Long", std::string(4000, 'x'));
   EXPECT_EQ(status_of(get("/")), 200);
   for (int i = 0; i < 20; ++i) {

@@ -1,4 +1,4 @@
-// Bytes on a connection and what is answered: the parts of HTTP that browsers and attackers use.
+// Requests as bytes, and their responses: the parts of HTTP that browsers and attackers use.
 
 #include "coordinator/web/exchange.h"
 
@@ -19,7 +19,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-/// Answers with the method, the path, and the whole body.
+/// Responds with the method, the path and the whole body.
 HttpReply echo(const HttpRequest& request, const HttpBody& body) {
   std::string text = request.method + " " + request.path + " ";
   while (true) {
@@ -46,7 +46,7 @@ class ExchangeTest : public ::testing::Test {
     ASSERT_EQ(send(client(), bytes.data(), bytes.size(), MSG_NOSIGNAL),
               static_cast<ssize_t>(bytes.size()));
   }
-  /// All that the server says until it ends the connection.
+  /// Returns everything that the server sends until it closes the connection.
   std::string hear() const {
     std::string all;
     std::array<char, 4096> some;
@@ -60,7 +60,7 @@ class ExchangeTest : public ::testing::Test {
     exchange(connection, &echo, {{"X-Every", "answer"}});
     shutdown(sockets_[1], SHUT_RDWR);
   }
-  /// The answer to these bytes, after which the client sends no more.
+  /// Sends these bytes, ends the sending direction, and returns the response.
   std::string answer(const std::string& bytes) const {
     std::thread server([this] { serve(); });
     EXPECT_EQ(send(client(), bytes.data(), bytes.size(), MSG_NOSIGNAL),
@@ -98,13 +98,13 @@ TEST_F(ExchangeTest, ABodyEndsWithItsLength) {
               ::testing::EndsWith("\r\n\r\nPOST / body"));
 }
 
-TEST_F(ExchangeTest, ChunksArePutTogether) {
+TEST_F(ExchangeTest, ChunksAreJoined) {
   EXPECT_THAT(answer("POST / HTTP/1.1\r\nTransfer-Encoding: chunked\r\n\r\n"
                      "3;x=y\r\nbod\r\n1\r\ny\r\n0\r\nTrailer: 1\r\n\r\n"),
               ::testing::EndsWith("\r\n\r\nPOST / body"));
 }
 
-// Twice the size of the buffer, exactly: the end falls together with the end of a read.
+// Exactly twice the size of the buffer: the end coincides with the end of a read.
 TEST_F(ExchangeTest, ABodyOfWholeBuffersEnds) {
   const std::string body(128 << 10, 'b');
   std::thread server([this] { serve(); });
@@ -118,7 +118,7 @@ TEST_F(ExchangeTest, ABodyOfWholeBuffersEnds) {
   EXPECT_THAT(all, ::testing::EndsWith("\r\n\r\nPOST / " + body));
 }
 
-TEST_F(ExchangeTest, WhoWaitsToBeToldToGoOnIsTold) {
+TEST_F(ExchangeTest, Expect100ContinueIsAnswered) {
   std::thread server([this] { serve(); });
   say("POST / HTTP/1.1\r\nExpect: 100-continue\r\nContent-Length: 4\r\n\r\n");
   const std::string go_on = "HTTP/1.1 100 Continue\r\n\r\n";
@@ -131,13 +131,13 @@ TEST_F(ExchangeTest, WhoWaitsToBeToldToGoOnIsTold) {
   server.join();
 }
 
-TEST_F(ExchangeTest, ABodyThatIsCutIsAnError) {
+TEST_F(ExchangeTest, ATruncatedBodyIsAnError) {
   const std::string all = answer("POST / HTTP/1.1\r\nContent-Length: 9\r\n\r\nbody");
   EXPECT_THAT(all, StartsWith("HTTP/1.1 400 "));
   EXPECT_THAT(all, HasSubstr("did not come whole"));
 }
 
-TEST_F(ExchangeTest, WhatIsNoHttpIsRefused) {
+TEST_F(ExchangeTest, MalformedHttpIsRefused) {
   const std::string all = answer("\x16\x03\x01 a TLS hello\r\n\r\n");
   EXPECT_THAT(all, StartsWith("HTTP/1.1 400 "));
   EXPECT_THAT(all, HasSubstr("\r\nX-Every: answer\r\n"));
@@ -155,17 +155,18 @@ TEST_F(ExchangeTest, AHeadThatIsTooLongIsRefused) {
               StartsWith("HTTP/1.1 431 "));
 }
 
-TEST_F(ExchangeTest, AHeadThatIsCutIsNotAnswered) {
+TEST_F(ExchangeTest, ATruncatedHeadIsNotAnswered) {
   EXPECT_EQ(answer("GET / HTTP/1.1\r\nHost: a\r\n"), "");
 }
 
-TEST_F(ExchangeTest, ASilentClientIsCutOff) {
+TEST_F(ExchangeTest, ASilentClientIsDisconnected) {
   serve(std::chrono::milliseconds(20));
   EXPECT_EQ(hear(), "");
 }
 
-// Each byte arrives in time, the whole never does: without a deadline of the whole this hangs.
-TEST_F(ExchangeTest, AClientThatSendsAByteNowAndThenIsCutOff) {
+// Each byte arrives in time, but the whole request does not: without an overall deadline this
+// hangs.
+TEST_F(ExchangeTest, ASlowSenderIsDisconnected) {
   std::thread client([this] {
     for (char next = 'G'; send(this->client(), &next, 1, MSG_NOSIGNAL) == 1; next = 'x') {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -175,8 +176,8 @@ TEST_F(ExchangeTest, AClientThatSendsAByteNowAndThenIsCutOff) {
   client.join();
 }
 
-// The answer is larger than what the system holds for somebody who does not read.
-TEST_F(ExchangeTest, AClientThatDoesNotReadIsCutOff) {
+// The response is larger than the system's buffers for a client that does not read.
+TEST_F(ExchangeTest, AClientThatDoesNotReadIsDisconnected) {
   say("GET / HTTP/1.1\r\n\r\n");
   const int small = 1;  // each byte that the system takes is time for the next
   setsockopt(serving(), SOL_SOCKET, SO_SNDBUF, &small, sizeof(small));

@@ -1,4 +1,4 @@
-// Requests and answers without a server: targets, ranges, routes.
+// Requests and responses without a server: targets, ranges, routes.
 
 #include "coordinator/web/http.h"
 
@@ -72,7 +72,7 @@ TEST(HttpRange, BeyondTheEndIsRefused) {
   }
 }
 
-TEST(HttpRange, ThatIsNoneOfOursGivesAll) {
+TEST(HttpRange, ThatIsNotSupportedReturnsEverything) {
   for (const std::string range :
        {"", "bytes", "bytes=", "bytes=-", "bytes=5-2", "bytes=a-b", "bytes=1-2,4-5", "rows=1-2",
         "bytes=1", "bytes=99999999999999999999-", "bytes=--1"}) {
@@ -89,7 +89,7 @@ TEST(HttpRange, ThatIsNoneOfOursGivesAll) {
   EXPECT_EQ(with_range(conditional, text_reply("0123456789", "text")).status, 200);
 }
 
-TEST(HttpRouter, FindsTheFirstThatFits) {
+TEST(HttpRouter, UsesTheFirstMatchingRoute) {
   Router router;
   router.get("/", [](const HttpRequest&) { return text_reply("page", "text"); });
   router.get("/jobs/*", [](const HttpRequest& r) { return text_reply(r.captured, "text"); });

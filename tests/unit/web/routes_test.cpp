@@ -66,7 +66,7 @@ TEST_F(RoutesTest, EachArchitectureHasItsProgram) {
   EXPECT_EQ(get("/bandsaw-worker/")->status, 404);
 }
 
-// Whatever a Range header says, no more than the bytes are sent.
+// No Range header makes the server send more than the bytes.
 TEST_F(RoutesTest, RangesEndWithTheBytes) {
   const std::size_t size = 3 << 20;
   headers_ = {{"Range", "bytes=5-9"}};
@@ -104,7 +104,7 @@ TEST_F(RoutesTest, ADroppedSceneMayAskForAnError) {
   EXPECT_EQ(message<web::JobPage>(get("/api/jobs/1")).job().status().stop().error(), 0.02);
 }
 
-TEST_F(RoutesTest, WhatCannotBeDroppedSaysWhy) {
+TEST_F(RoutesTest, ARefusedDropStatesTheReason) {
   EXPECT_THAT(error_of(post("/api/scenes?name=a.obj", "v")), HasSubstr("bandsaw submit"));
   EXPECT_THAT(error_of(post("/api/scenes?name=a.glb", "broken")), HasSubstr("1:1: it is broken"));
   EXPECT_THAT(error_of(post("/api/scenes?name=a.glb&samples=0", "x")), HasSubstr("samples"));
@@ -128,7 +128,7 @@ TEST_F(RoutesTest, AJobIsPausedResumedRankedAndCancelled) {
   EXPECT_EQ(post(job + "/pause")->status, 409);
 }
 
-TEST_F(RoutesTest, WhatIsNotThereIsSaid) {
+TEST_F(RoutesTest, MissingThingsAre404) {
   EXPECT_EQ(get("/api/jobs/7")->status, 404);
   EXPECT_EQ(get("/api/jobs/99999999999999999999")->status, 404);
   EXPECT_THAT(error_of(post("/api/jobs/7/cancel")), HasSubstr("there is no job 7"));

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "absl/strings/match.h"
-#include "coordinator/engine/ask.h"
+#include "coordinator/engine/blocking_call.h"
 #include "renderlib/base/check.h"
 #include "tests/support/scenes.h"
 
@@ -63,7 +63,7 @@ WebTest::WebTest() : identity_(*link::load_or_make_identity(folder_ / "identity"
   options.workers = {
       {.version = "1.2.3", .bytes = bytes, .digest = wire::sha256(bytes)},
       {.machine = kOtherMachine, .version = "1.2.4", .bytes = "o", .digest = wire::sha256("o")}};
-  options.bring = [this](const std::string& path, const std::atomic<bool>&) {
+  options.import_scene = [this](const std::string& path, const std::atomic<bool>&) {
     return bring_box(*engine_, path);
   };
   options.report = [](const JobView& job, const Image&) { return job.spec.name; };
@@ -104,7 +104,7 @@ void WebTest::finish(std::uint64_t job, std::uint32_t width, std::uint32_t heigh
                             .sums = std::vector<double>(std::size_t{width} * height * 3, 8.0),
                             .counters = {}};
     using Put = absl::StatusOr<BandOutcome>;
-    const Put put = ask<Put>([&](auto answer) {
+    const Put put = blocking_call<Put>([&](auto answer) {
       engine_->put_band(job, 0, std::string(32, 'a'), pixels, 0, 0, answer);
     });
     ASSERT_TRUE(put.ok()) << put.status();

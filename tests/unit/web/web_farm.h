@@ -1,6 +1,6 @@
 #pragma once
 
-// A coordinator with a dashboard of its own for each test, and a browser's calls to it.
+// A coordinator with a dashboard for each test, and a browser's requests to it.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@
 
 namespace bandsaw::coordinator {
 
-/// The architecture that is not this program's.
+/// The architecture other than this program's.
 inline constexpr Machine kOtherMachine =
     kThisMachine == Machine::kX86_64 ? Machine::kAarch64 : Machine::kX86_64;
 
@@ -25,20 +25,20 @@ class WebTest : public ::testing::Test {
  protected:
   using Answer = std::optional<test::HttpAnswer>;
 
-  /// The gallery holds one scene, "box"; a scene file that holds "broken" cannot be read, and every
-  /// other is the Cornell box.
+  /// The gallery has one scene, "box". A scene file that contains "broken" cannot be read; every
+  /// other file is the Cornell box.
   WebTest();
   ~WebTest() override;
 
-  /// With our header and, after log_in(), the cookie.
+  /// Sends a request with the required header and, after log_in(), the cookie.
   Answer get(const std::string& path);
   Answer post(const std::string& path, const std::string& body = "{}");
   void log_in();
-  /// A job that nobody renders.
+  /// Submits a job that no worker renders.
   std::uint64_t submit_box();
-  /// Brings all samples of a job as a worker would, and waits until the job is done.
+  /// Uploads all samples of a job and waits until the job is done.
   void finish(std::uint64_t job, std::uint32_t width, std::uint32_t height);
-  /// The body as a message; the test fails when it is none.
+  /// Parses the body as a message; fails the test if it is not one.
   template <class Message>
   Message message(const Answer& result) {
     Message out;

@@ -32,7 +32,7 @@ class BlobCacheTest : public ::testing::Test {
     ASSERT_TRUE((*download)->append(bytes).ok());
     ASSERT_TRUE((*download)->commit().ok());
   }
-  /// As if it had been used last so many seconds ago: no test waits for a clock.
+  /// Sets the last use to so many seconds ago, so that no test waits for a clock.
   void set_age(const wire::Digest& digest, int seconds) {
     timespec times[2];
     clock_gettime(CLOCK_REALTIME, &times[0]);
@@ -44,7 +44,7 @@ class BlobCacheTest : public ::testing::Test {
   test::TempDir folder_;
 };
 
-TEST_F(BlobCacheTest, GivesBackWhatWasPut) {
+TEST_F(BlobCacheTest, ReturnsStoredBlobs) {
   const auto cache = open();
   const auto bytes = bytes_of('a');
   EXPECT_FALSE(cache->has(wire::sha256(bytes)));
@@ -62,13 +62,13 @@ TEST_F(BlobCacheTest, TakesAnEmptyBlob) {
   EXPECT_TRUE(cache->get(wire::sha256(std::string())).ok());
 }
 
-TEST_F(BlobCacheTest, IsThereAfterARestart) {
+TEST_F(BlobCacheTest, KeepsBlobsOverARestart) {
   const auto bytes = bytes_of('a');
   put(*open(), bytes);
   EXPECT_TRUE(open()->get(wire::sha256(bytes)).ok());
 }
 
-TEST_F(BlobCacheTest, GoesOnWhereADownloadBrokeOff) {
+TEST_F(BlobCacheTest, ContinuesAnInterruptedDownload) {
   const auto bytes = bytes_of('a');
   const auto digest = wire::sha256(bytes);
   ASSERT_TRUE((*open()->begin(digest))->append(absl::MakeConstSpan(bytes).first(300)).ok());
@@ -81,7 +81,7 @@ TEST_F(BlobCacheTest, GoesOnWhereADownloadBrokeOff) {
   EXPECT_TRUE(cache->get(digest).ok());
 }
 
-TEST_F(BlobCacheTest, ThrowsAwayBytesThatAreNotTheBlob) {
+TEST_F(BlobCacheTest, RemovesBytesWithAWrongDigest) {
   const auto cache = open();
   const auto digest = wire::sha256(bytes_of('a'));
   auto download = *cache->begin(digest);
@@ -104,7 +104,7 @@ TEST_F(BlobCacheTest, RemovesADamagedBlob) {
   EXPECT_TRUE(cache->get(digest).ok());
 }
 
-TEST_F(BlobCacheTest, ThrowsAwayTheLeastRecentlyUsed) {
+TEST_F(BlobCacheTest, RemovesTheLeastRecentlyUsed) {
   const auto cache = open(3000);
   const auto a = wire::sha256(bytes_of('a'));
   const auto b = wire::sha256(bytes_of('b'));
@@ -128,8 +128,8 @@ TEST_F(BlobCacheTest, KeepsABlobThatIsLargerThanItself) {
   EXPECT_FALSE(cache->has(wire::sha256(bytes_of('a'))));
 }
 
-// The disk may be fuller than the cache may be large.
-TEST_F(BlobCacheTest, MakesRoomWhereTheDiskIsFull) {
+// The disk may be full before the cache has reached its limit.
+TEST_F(BlobCacheTest, FreesSpaceOnAFullDisk) {
   const std::string disk = folder_ / "cache";
   std::filesystem::create_directory(disk);
   if (::mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=256k") != 0) {
@@ -152,7 +152,7 @@ TEST_F(BlobCacheTest, MakesRoomWhereTheDiskIsFull) {
   ::umount2(disk.c_str(), MNT_DETACH);
 }
 
-TEST_F(BlobCacheTest, LeavesFilesThatItDidNotMake) {
+TEST_F(BlobCacheTest, LeavesForeignFilesAlone) {
   std::filesystem::create_directory(folder_ / "cache");
   std::ofstream(folder_ / "cache/thesis.tex") << std::string(5000, 'x');
   const auto cache = open(1500);
@@ -162,7 +162,7 @@ TEST_F(BlobCacheTest, LeavesFilesThatItDidNotMake) {
   EXPECT_TRUE(cache->has(wire::sha256(bytes_of('b'))));
 }
 
-TEST_F(BlobCacheTest, LetsOneOfTwoWorkersFetch) {
+TEST_F(BlobCacheTest, LetsOnlyOneOfTwoWorkersDownload) {
   const auto mine = open();
   const auto theirs = open();
   const auto bytes = bytes_of('a');
@@ -173,7 +173,7 @@ TEST_F(BlobCacheTest, LetsOneOfTwoWorkersFetch) {
   EXPECT_TRUE(theirs->get(wire::sha256(bytes)).ok());
 }
 
-TEST_F(BlobCacheTest, MakesNoRoomOfWhatIsBeingFetched) {
+TEST_F(BlobCacheTest, KeepsBlobsThatAreBeingDownloaded) {
   const auto cache = open(500);
   const auto bytes = bytes_of('a');
   auto download = *cache->begin(wire::sha256(bytes));
@@ -184,7 +184,7 @@ TEST_F(BlobCacheTest, MakesNoRoomOfWhatIsBeingFetched) {
   EXPECT_TRUE(cache->has(wire::sha256(bytes)));
 }
 
-TEST_F(BlobCacheTest, IsSafeWithManyWorkersAndLittleRoom) {
+TEST_F(BlobCacheTest, IsSafeWithManyWorkersAndLittleSpace) {
   std::vector<std::thread> workers;
   for (int w = 0; w < 4; ++w) {
     workers.emplace_back([&, w] {
@@ -200,7 +200,7 @@ TEST_F(BlobCacheTest, IsSafeWithManyWorkersAndLittleRoom) {
         ASSERT_TRUE(download.ok()) << download.status();
         if (*download != nullptr && (*download)->offset() == 0) {
           ASSERT_TRUE((*download)->append(bytes).ok());
-          EXPECT_TRUE((*download)->commit().ok()) << "nobody threw the part away";
+          EXPECT_TRUE((*download)->commit().ok()) << "the part is still there";
         }
       }
     });
@@ -210,7 +210,7 @@ TEST_F(BlobCacheTest, IsSafeWithManyWorkersAndLittleRoom) {
   }
 }
 
-TEST_F(BlobCacheTest, SaysWhichFolderItCannotUse) {
+TEST_F(BlobCacheTest, NamesTheFolderThatItCannotUse) {
   std::ofstream(folder_ / "file") << "x";
   const absl::Status status = BlobCache::open(folder_ / "file", 1000).status();
   EXPECT_FALSE(status.ok());

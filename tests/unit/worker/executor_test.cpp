@@ -21,7 +21,7 @@ Task task(TaskId id, std::uint32_t first_row, std::uint32_t rows, char scene = '
                    .rows = {.first = first_row, .last = first_row + rows}}};
 }
 
-/// An executor that renders the Cornell box for every manifest, and what it told.
+/// An executor that renders the Cornell box for every manifest, and its recorded callbacks.
 class ExecutorTest : public ::testing::Test {
  protected:
   ~ExecutorTest() override { executor_.reset(); }
@@ -94,7 +94,7 @@ class ExecutorTest : public ::testing::Test {
   std::unique_ptr<Executor> executor_;
 };
 
-TEST_F(ExecutorTest, RendersWhatRenderBandRenders) {
+TEST_F(ExecutorTest, RendersTheSamePixelsAsRenderBand) {
   start();
   for (TaskId id = 1; id <= 4; ++id) {
     executor_->add(task(id, static_cast<std::uint32_t>(id - 1) * 6, 6));
@@ -130,7 +130,7 @@ TEST_F(ExecutorTest, KeepsTheLastTwoScenes) {
   EXPECT_EQ(loads_, expected);
 }
 
-TEST_F(ExecutorTest, TellsWhyASceneCannotBeLoadedAndTriesAgainForTheNextBand) {
+TEST_F(ExecutorTest, ReportsALoadFailureAndTriesAgainForTheNextBand) {
   load_error_ = absl::InvalidArgumentError("mesh[3]: index out of range");
   start();
   executor_->add(task(1, 0, 1));
@@ -177,7 +177,7 @@ TEST_F(ExecutorTest, ReportsLoadingUnderTheEarliestTask) {
   }
 }
 
-TEST_F(ExecutorTest, EndsWithoutFinishingWhatItHolds) {
+TEST_F(ExecutorTest, EndsWithoutFinishingItsBands) {
   gate_closed_ = true;
   start();
   for (TaskId id = 1; id <= 5; ++id) {

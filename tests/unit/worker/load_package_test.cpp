@@ -11,8 +11,8 @@
 namespace bandsaw::worker {
 namespace {
 
-/// A coordinator with one package, which counts the bytes it sends and breaks off as often as it is
-/// told to.
+/// A coordinator with one package, which counts the bytes that it sends and interrupts a given
+/// number of transfers.
 class LoadPackageTest : public ::testing::Test {
  protected:
   LoadPackageTest() {
@@ -84,13 +84,13 @@ TEST_F(LoadPackageTest, FetchesNothingAfterARestart) {
   EXPECT_EQ(bytes_sent_, 0U);
 }
 
-TEST_F(LoadPackageTest, GoesOnWhereTheLineBroke) {
+TEST_F(LoadPackageTest, ContinuesAfterALostConnection) {
   breaks_ = 2;
   EXPECT_TRUE(load(*open(), manifest_).ok());
   EXPECT_EQ(bytes_sent_, total_);
 }
 
-TEST_F(LoadPackageTest, WorksWithACacheThatHoldsNothing) {
+TEST_F(LoadPackageTest, WorksWithACacheWithoutSpace) {
   EXPECT_TRUE(load(*open(1), manifest_).ok());
 }
 
@@ -101,16 +101,16 @@ TEST_F(LoadPackageTest, FetchesADamagedBlobAgain) {
   EXPECT_TRUE(load(*open(), manifest_).ok());
 }
 
-TEST_F(LoadPackageTest, SaysThatTheFarmHasNoSuchBlob) {
+TEST_F(LoadPackageTest, ReportsABlobThatTheFarmLacks) {
   EXPECT_EQ(load(*open(), wire::Digest()).status().code(), absl::StatusCode::kNotFound);
 }
 
-TEST_F(LoadPackageTest, SaysThatAManifestIsNone) {
+TEST_F(LoadPackageTest, RefusesAnInvalidManifest) {
   const wire::Digest nonsense = farm_.put(std::vector<std::byte>(100, std::byte{0xff}));
   EXPECT_EQ(load(*open(), nonsense).status().code(), absl::StatusCode::kInvalidArgument);
 }
 
-TEST_F(LoadPackageTest, StopsWhenToldTo) {
+TEST_F(LoadPackageTest, StopsOnRequest) {
   stop_ = true;
   EXPECT_EQ(load(*open(), manifest_).status().code(), absl::StatusCode::kCancelled);
 }

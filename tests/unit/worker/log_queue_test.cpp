@@ -17,7 +17,7 @@ struct Logging {
   Logging() { logger.set_pattern("%l %v"); }
 };
 
-TEST(LogQueue, GivesEachLineOnceInOrder) {
+TEST(LogQueue, ReturnsEachLineOnceInOrder) {
   Logging log;
   log.logger.info("one");
   log.logger.warn("two");
@@ -27,7 +27,7 @@ TEST(LogQueue, GivesEachLineOnceInOrder) {
   EXPECT_THAT(log.queue->take(2), IsEmpty());
 }
 
-TEST(LogQueue, GivesTheLastOnesAgainBeforeWhatIsNew) {
+TEST(LogQueue, ReturnsTheLastLinesAgainBeforeNewOnes) {
   Logging log;
   for (int i = 0; i < 60; ++i) {
     log.logger.info("{}", i);
@@ -41,7 +41,7 @@ TEST(LogQueue, GivesTheLastOnesAgainBeforeWhatIsNew) {
   EXPECT_EQ(again.back(), "info new\n");
 }
 
-TEST(LogQueue, CountsWhatNobodyTookInTime) {
+TEST(LogQueue, CountsDroppedLines) {
   Logging log;
   for (int i = 0; i < 507; ++i) {
     log.logger.info("{}", i);

@@ -14,7 +14,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-Self self() {
+WorkerInfo worker_info() {
   return {.instance = std::string(32, 'a'),
           .name = "desk",
           .build = "test",
@@ -53,14 +53,14 @@ farm::ToWorker revoke(std::uint64_t id) {
   return message;
 }
 
-TEST(LogMessage, HoldsCleanLinesOfBoundedLength) {
+TEST(LogMessage, HasCleanLinesOfBoundedLength) {
   const farm::FromWorker message =
       log_message({"a\tb\x1b[2J\n", std::string(wire::kLogLineBytes + 9, 'x')});
   EXPECT_THAT(message.log().line(), ElementsAre("a b [2J", std::string(wire::kLogLineBytes, 'x')));
 }
 
-TEST(Session, SaysWhoItIs) {
-  const farm::FromWorker message = Session(self()).hello();
+TEST(Session, SendsItsIdentityInHello) {
+  const farm::FromWorker message = Session(worker_info()).hello();
   const farm::Hello& hello = message.hello();
   EXPECT_EQ(hello.protocol(), wire::kProtocol);
   EXPECT_EQ(hello.pixel_version(), 7U);
@@ -73,7 +73,7 @@ TEST(Session, SaysWhoItIs) {
 }
 
 TEST(Session, TakesItsNameAndHeartbeatFromTheWelcome) {
-  Session session(self());
+  Session session(worker_info());
   EXPECT_FALSE(session.connected());
   EXPECT_FALSE(session.was_welcomed());
   session.receive(welcome("e1"));
@@ -86,10 +86,10 @@ TEST(Session, TakesItsNameAndHeartbeatFromTheWelcome) {
 }
 
 TEST(Session, StartsLeasesAndReportsTheirRows) {
-  Session session(self());
+  Session session(worker_info());
   session.receive(welcome("e1"));
-  const Reaction first = session.receive(lease(10, 0));
-  const Reaction second = session.receive(lease(11, 2));
+  const SessionEffects first = session.receive(lease(10, 0));
+  const SessionEffects second = session.receive(lease(11, 2));
   ASSERT_EQ(first.start.size(), 1U);
   ASSERT_EQ(second.start.size(), 1U);
   EXPECT_NE(first.start[0].id, second.start[0].id);
@@ -109,7 +109,7 @@ TEST(Session, StartsLeasesAndReportsTheirRows) {
 }
 
 TEST(Session, ATaskHasTheSamplesOfItsHalfTiles) {
-  Session session(self());
+  Session session(worker_info());
   session.receive(welcome("e1"));
   farm::ToWorker message = lease(10, 2);
   TileSamples tiles(8, {2, 4});
@@ -117,14 +117,14 @@ TEST(Session, ATaskHasTheSamplesOfItsHalfTiles) {
   for (const std::uint32_t number : tiles.numbers()) {
     message.mutable_lease()->add_tile_samples(number);
   }
-  const Reaction reaction = session.receive(message);
-  ASSERT_EQ(reaction.start.size(), 1U);
-  EXPECT_EQ(reaction.start[0].tiles, tiles);
+  const SessionEffects effects = session.receive(message);
+  ASSERT_EQ(effects.start.size(), 1U);
+  EXPECT_EQ(effects.start[0].tiles, tiles);
   EXPECT_TRUE(session.receive(lease(11, 4)).start[0].tiles.whole());
 }
 
-TEST(Session, RefusesALeaseThatIsNoBand) {
-  Session session(self());
+TEST(Session, RefusesAnInvalidLease) {
+  Session session(worker_info());
   session.receive(welcome("e1"));
   farm::ToWorker bad = lease(10, 0);
   bad.mutable_lease()->mutable_band()->set_last_row(81);
@@ -137,28 +137,28 @@ TEST(Session, RefusesALeaseThatIsNoBand) {
   farm::ToWorker too_few = lease(13, 0);
   too_few.mutable_lease()->add_tile_samples(16);
   for (const farm::ToWorker& message : {bad, worse, no_node, too_few}) {
-    const Reaction reaction = session.receive(message);
-    EXPECT_THAT(reaction.start, IsEmpty());
-    ASSERT_EQ(reaction.send.size(), 1U);
-    EXPECT_EQ(reaction.send[0].failed().lease(), message.lease().lease());
-    EXPECT_FALSE(reaction.send[0].failed().reason().empty());
+    const SessionEffects effects = session.receive(message);
+    EXPECT_THAT(effects.start, IsEmpty());
+    ASSERT_EQ(effects.send.size(), 1U);
+    EXPECT_EQ(effects.send[0].failed().lease(), message.lease().lease());
+    EXPECT_FALSE(effects.send[0].failed().reason().empty());
   }
 }
 
 TEST(Session, HoldsNoMoreThanTheLimit) {
-  Session session(self());
+  Session session(worker_info());
   session.receive(welcome("e1"));
   for (std::uint32_t i = 0; i < wire::kBandsPerWorker; ++i) {
     EXPECT_EQ(session.receive(lease(i, 2 * i)).start.size(), 1U);
   }
-  const Reaction reaction = session.receive(lease(100, 70));
-  EXPECT_THAT(reaction.start, IsEmpty());
-  ASSERT_EQ(reaction.send.size(), 1U);
-  EXPECT_EQ(reaction.send[0].failed().lease(), 100U);
+  const SessionEffects effects = session.receive(lease(100, 70));
+  EXPECT_THAT(effects.start, IsEmpty());
+  ASSERT_EQ(effects.send.size(), 1U);
+  EXPECT_EQ(effects.send[0].failed().lease(), 100U);
 }
 
-TEST(Session, NamesWhatItHoldsAfterAReconnect) {
-  Session session(self());
+TEST(Session, ListsHeldBandsAfterAReconnect) {
+  Session session(worker_info());
   session.receive(welcome("e1"));
   const TaskId finished = session.receive(lease(10, 0)).start[0].id;
   session.receive(lease(11, 2));
@@ -176,23 +176,23 @@ TEST(Session, NamesWhatItHoldsAfterAReconnect) {
   EXPECT_EQ(hello.held(0).work(), hello.held(1).work()) << "of one job";
 }
 
-// The coordinator's folder was begun anew: the number and the rows are those of another job.
-TEST(Session, ABandOfAnotherJobOfTheSameNumberIsNotTheSame) {
-  Session session(self());
+// The coordinator has a new data folder: another job has the same id and rows.
+TEST(Session, ABandOfAnotherJobWithTheSameIdIsDifferent) {
+  Session session(worker_info());
   session.receive(welcome("e1"));
   const TaskId old = session.receive(lease(10, 0)).start[0].id;
   session.disconnected();
   session.receive(welcome("e2"));
   farm::ToWorker again = lease(1, 0);
   again.mutable_lease()->mutable_settings()->set_seed(99);
-  const Reaction reaction = session.receive(again);
-  EXPECT_THAT(reaction.stop, ElementsAre(old));
-  ASSERT_EQ(reaction.start.size(), 1U);
-  EXPECT_EQ(reaction.start[0].settings.seed, 99U);
+  const SessionEffects effects = session.receive(again);
+  EXPECT_THAT(effects.stop, ElementsAre(old));
+  ASSERT_EQ(effects.start.size(), 1U);
+  EXPECT_EQ(effects.start[0].settings.seed, 99U);
 }
 
-TEST(Session, GoesOnWithAHeldBandUnderItsNewName) {
-  Session session(self());
+TEST(Session, KeepsAHeldBandUnderItsNewLease) {
+  Session session(worker_info());
   session.receive(welcome("e1"));
   const TaskId task = session.receive(lease(10, 0)).start[0].id;
   session.disconnected();
@@ -204,8 +204,8 @@ TEST(Session, GoesOnWithAHeldBandUnderItsNewName) {
   EXPECT_EQ(session.heartbeat().heartbeat().lease(0).lease(), 3U);
 }
 
-TEST(Session, TakesARevokeToMeanThePresentEpochFirst) {
-  Session session(self());
+TEST(Session, ARevokeAppliesToThePresentEpochFirst) {
+  Session session(worker_info());
   session.receive(welcome("e1"));
   const TaskId old = session.receive(lease(10, 0)).start[0].id;
   session.disconnected();
@@ -216,8 +216,8 @@ TEST(Session, TakesARevokeToMeanThePresentEpochFirst) {
   EXPECT_THAT(session.receive(revoke(10)).stop, IsEmpty());
 }
 
-TEST(Session, ThrowsAwayWhatWasRevokedWhileItRendered) {
-  Session session(self());
+TEST(Session, DiscardsABandRevokedWhileItRendered) {
+  Session session(worker_info());
   session.receive(welcome("e1"));
   const TaskId task = session.receive(lease(10, 0)).start[0].id;
   EXPECT_THAT(session.receive(revoke(10)).stop, ElementsAre(task));
@@ -225,8 +225,8 @@ TEST(Session, ThrowsAwayWhatWasRevokedWhileItRendered) {
   EXPECT_FALSE(session.failed(task, "why", {}).has_value());
 }
 
-TEST(Session, TellsAFailureInWhatTheWireTakes) {
-  Session session(self());
+TEST(Session, ReportsAFailureWithinTheLimitsOfTheMessage) {
+  Session session(worker_info());
   session.receive(welcome("e1"));
   const TaskId task = session.receive(lease(10, 0)).start[0].id;
   const std::vector<std::string> log(200, std::string(1000, 'x') + "\n");
@@ -240,8 +240,8 @@ TEST(Session, TellsAFailureInWhatTheWireTakes) {
   EXPECT_EQ(session.hello().hello().held_size(), 0);
 }
 
-TEST(Session, SaysAFailureByNotHoldingTheBandWhereNobodyListens) {
-  Session session(self());
+TEST(Session, ReportsAFailureByNotListingTheBandAfterAReconnect) {
+  Session session(worker_info());
   session.receive(welcome("e1"));
   const TaskId task = session.receive(lease(10, 0)).start[0].id;
   session.disconnected();
@@ -249,8 +249,8 @@ TEST(Session, SaysAFailureByNotHoldingTheBandWhereNobodyListens) {
   EXPECT_EQ(session.hello().hello().held_size(), 0);
 }
 
-TEST(Session, DrainsWhenAllItHoldsIsAcknowledged) {
-  Session session(self());
+TEST(Session, IsDrainedWhenAllBandsAreAcknowledged) {
+  Session session(worker_info());
   session.receive(welcome("e1"));
   const TaskId task = session.receive(lease(10, 0)).start[0].id;
   const auto message = session.drain("SIGTERM");
@@ -263,35 +263,35 @@ TEST(Session, DrainsWhenAllItHoldsIsAcknowledged) {
   EXPECT_TRUE(session.drained());
 }
 
-TEST(Session, SaysThatItDrainsAgainOnALaterStream) {
-  Session session(self());
+TEST(Session, RepeatsDrainingOnALaterStream) {
+  Session session(worker_info());
   session.receive(welcome("e1"));
   session.receive(lease(10, 0));
   session.disconnected();
   EXPECT_FALSE(session.drain("SIGTERM").has_value());
-  const Reaction reaction = session.receive(welcome("e2"));
-  ASSERT_EQ(reaction.send.size(), 1U);
-  EXPECT_TRUE(reaction.send[0].has_draining());
+  const SessionEffects effects = session.receive(welcome("e2"));
+  ASSERT_EQ(effects.send.size(), 1U);
+  EXPECT_TRUE(effects.send[0].has_draining());
 }
 
-TEST(Session, KeepsWhatItHoldsWhenRefusedAndDropsItAtGoodbye) {
-  Session session(self());
+TEST(Session, KeepsBandsWhenRefusedAndDropsThemAtBye) {
+  Session session(worker_info());
   session.receive(welcome("e1"));
   const TaskId task = session.receive(lease(10, 0)).start[0].id;
   farm::ToWorker refused;
   refused.mutable_refused()->set_reason("other pixels");
   refused.mutable_refused()->set_retry_after_ms(700);
-  const Reaction first = session.receive(refused);
+  const SessionEffects first = session.receive(refused);
   EXPECT_THAT(first.stop, IsEmpty());
-  ASSERT_TRUE(first.away.has_value());
-  EXPECT_EQ(first.away->reason, "other pixels");
-  EXPECT_EQ(first.away->wait, std::chrono::milliseconds(700));
-  EXPECT_FALSE(first.away->for_ever);
+  ASSERT_TRUE(first.dismissal.has_value());
+  EXPECT_EQ(first.dismissal->reason, "other pixels");
+  EXPECT_EQ(first.dismissal->wait, std::chrono::milliseconds(700));
+  EXPECT_FALSE(first.dismissal->for_ever);
   farm::ToWorker bye;
   bye.mutable_bye()->set_reason("go home");
-  const Reaction second = session.receive(bye);
+  const SessionEffects second = session.receive(bye);
   EXPECT_THAT(second.stop, ElementsAre(task));
-  EXPECT_TRUE(second.away->for_ever);
+  EXPECT_TRUE(second.dismissal->for_ever);
 }
 
 TEST(Backoff, GrowsToItsCapAndStaysWithinHalfOfIt) {

@@ -16,7 +16,7 @@ FinishedBand band(TaskId id) {
   return band;
 }
 
-/// A coordinator that answers each attempt as it is told to.
+/// A coordinator that answers each attempt as the test specifies.
 class UploaderTest : public ::testing::Test {
  protected:
   Outcome put(const FinishedBand& band) {
@@ -84,7 +84,7 @@ TEST_F(UploaderTest, KeepsABandUntilItIsAcknowledged) {
   EXPECT_EQ(settled_.size(), 1U);
 }
 
-TEST_F(UploaderTest, GivesUpWhatWillNeverBeTaken) {
+TEST_F(UploaderTest, DropsABandAfterAPermanentError) {
   answer_ = [](TaskId task, int) -> Outcome {
     if (task == 1) {
       return absl::InvalidArgumentError("not a band of that job");
@@ -113,7 +113,7 @@ TEST_F(UploaderTest, TriesAtOnceWhenTheCoordinatorIsBack) {
   wait_for_settled(1);
 }
 
-TEST_F(UploaderTest, DropsWhatIsNotWanted) {
+TEST_F(UploaderTest, DropsUnwantedBands) {
   answer_ = [](TaskId task, int) -> Outcome {
     if (task == 1) {
       return absl::UnavailableError("away");

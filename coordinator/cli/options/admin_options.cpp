@@ -1,0 +1,89 @@
+#include "coordinator/cli/options/admin_options.h"
+
+namespace bandsaw::coordinator {
+
+void add_verbosity(CLI::App& app, RawOptions& raw, bool can_be_quiet) {
+  if (can_be_quiet) {
+    app.add_flag("--quiet", raw.quiet, "Say only the last line and errors");
+  }
+  app.add_flag("--json", raw.json, "One JSON object a line, for programs");
+}
+
+void add_farm(CLI::App& app, RawOptions& raw) {
+  app.add_option("--farm", raw.farm,
+                 "Join string, or the file that contains it, or - for standard input "
+                 "[default: $BANDSAW_FARM, then the farm served from this account]");
+}
+
+void add_data(CLI::App& app, RawOptions& raw) {
+  app.add_option("--data", raw.data,
+                 "Data folder [default: $XDG_DATA_HOME/bandsaw or ~/.local/share/bandsaw]")
+      ->type_name("DIR");
+}
+
+void add_keep(CLI::App& app, RawOptions& raw) {
+  app.add_option("--keep-days", raw.keep_days,
+                 "Remove jobs that have been over for this long, with their images [default: 30]")
+      ->type_name("N");
+  app.add_option(
+         "--keep-size", raw.keep_size,
+         "Remove the oldest of them when images and scenes take more than this [default: 100]")
+      ->type_name("GB");
+  app.add_option("--keep-jobs", raw.keep_jobs,
+                 "Remove the oldest of them when there are more than this [default: 10000]")
+      ->type_name("N");
+}
+
+void add_serve(CLI::App& app, RawOptions& raw) {
+  add_data(app, raw);
+  app.add_option("--listen", raw.listen,
+                 "Address for workers and users; port 0: a free one [default: 0.0.0.0:7878]")
+      ->type_name("HOST:PORT");
+  app.add_option("--web", raw.web,
+                 "Address of the dashboard, or none; HTTPS beyond loopback [default: "
+                 "127.0.0.1:8787, or another port if that is taken]")
+      ->type_name("HOST:PORT");
+  add_keep(app, raw);
+  app.add_option("--audit", raw.audit,
+                 "Share of all bands that two machines render and that are compared [default: 1%]")
+      ->type_name("P%");
+  app.add_flag("--reflection", raw.reflection,
+               "List the gRPC calls to any client, such as grpcurl; the calls still need a secret");
+  app.add_flag("--insecure", raw.insecure,
+               "No encryption: anybody on the network can read and change the data");
+}
+
+void add_logs(CLI::App& app, RawOptions& raw) {
+  app.add_option("worker", raw.worker, "The worker's name, as in: bandsaw workers");
+  add_farm(app, raw);
+  add_verbosity(app, raw, false);
+}
+
+void add_quarantine(CLI::App& app, RawOptions& raw) {
+  app.add_option("worker", raw.worker, "The worker's name, as in: bandsaw workers");
+  app.add_flag("--lift", raw.lift, "Admit it again, after its worker is restarted");
+  add_farm(app, raw);
+  add_verbosity(app, raw);
+}
+
+void add_doctor(CLI::App& app, RawOptions& raw) {
+  add_data(app, raw);
+  app.add_option("--listen", raw.listen,
+                 "Address to test for a coordinator on this machine [default: 0.0.0.0:7878]")
+      ->type_name("HOST:PORT");
+  app.add_option(
+      "--farm", raw.farm,
+      "Join string of users or of workers, or the file that contains it, or - for standard "
+      "input [default: $BANDSAW_FARM, then $BANDSAW_JOIN, then the farm served from this "
+      "account]");
+  add_verbosity(app, raw);
+}
+
+void add_secret(CLI::App& app, RawOptions& raw) {
+  app.add_option("action", raw.action, "rotate: make a new secret, which invalidates the old one");
+  app.add_option("role", raw.role, "Whose secret: worker or farm (users)");
+  add_data(app, raw);
+  add_verbosity(app, raw);
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,32 @@
+#pragma once
+
+// Converts between the messages of farm.proto that describe jobs and workers, and the scheduler's
+// values, both ways, for the server and for the commands.
+
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "coordinator/core/types.h"
+#include "proto/farm.pb.h"
+
+namespace bandsaw::coordinator {
+
+farm::StopRule to_message(const StopRule& stop);
+/// INVALID_ARGUMENT: not exactly one rule, or a value out of range; names the field, its range and
+/// the value.
+absl::StatusOr<StopRule> stop_rule_of(const farm::StopRule& message);
+
+farm::ErrorPoint to_message(const ErrorPoint& point);
+ErrorPoint error_point_of(const farm::ErrorPoint& message);
+
+farm::JobStatus to_message(const JobView& job);
+/// Fields that the message lacks become "unknown". The place of the first bad sample is a text in
+/// the message (bad_sample_at), so the view's counters do not have it.
+JobView job_view_of(const farm::JobStatus& message);
+
+farm::WorkerStatus to_message(const WorkerView& worker);
+
+/// "pixel (3, 4), sample 17": the place of the first bad sample.
+std::string bad_sample_text(const Counters& counters);
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,40 @@
+#pragma once
+
+// Which worker rendered which rows, for display. For a job that is over this is stored beside its
+// image (store/attribution_file.h).
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "coordinator/core/types.h"
+#include "coordinator/store/attribution_file.h"
+
+namespace bandsaw::coordinator {
+
+/// The jobs that are not over. Used by one thread.
+class Attribution {
+ public:
+  /// Adds rows of a job. `renderer` identifies the worker process in all lives of the coordinator.
+  /// `name` may be empty, because a band on disk does not contain it; it is known again when the
+  /// worker sends another band.
+  void add(JobId job, const RowRange& rows, std::uint64_t renderer, const std::string& name);
+  /// Returns the rows that are rendered, in order; adjacent rows of one worker are merged.
+  std::vector<RowsBy> of(JobId job) const;
+  void forget(JobId job) { jobs_.erase(job); }
+
+ private:
+  static constexpr std::size_t kMaxNames = 65'536;
+
+  struct Piece {
+    RowRange rows;
+    std::uint64_t renderer = 0;
+  };
+  /// Disjoint, by first row.
+  using Rows = std::map<std::uint32_t, Piece>;
+  std::map<JobId, Rows> jobs_;
+  std::map<std::uint64_t, std::string> names_;  ///< by renderer
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <future>
+#include <memory>
+#include <utility>
+
+namespace bandsaw::coordinator {
+
+/// Calls `begin` with a callback, waits until the callback is called, and returns its argument. The
+/// engine calls every callback exactly once (engine/answer.h). For threads that may wait, never the
+/// engine's or gRPC's own.
+template <class T, class Begin>
+T blocking_call(Begin begin) {
+  const auto answer = std::make_shared<std::promise<T>>();
+  std::future<T> later = answer->get_future();
+  begin([answer](T value) { answer->set_value(std::move(value)); });
+  return later.get();
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,102 @@
+#pragma once
+
+// What runs on the film's thread: one film per job, its passes as they become complete, and the
+// image at the end.
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "coordinator/core/messages.h"
+#include "coordinator/engine/attribution.h"
+#include "coordinator/engine/inboxes.h"
+#include "coordinator/store/data_folder.h"
+#include "coordinator/store/finished.h"
+#include "renderlib/image/image.h"
+#include "renderlib/render/film.h"
+
+namespace bandsaw::coordinator {
+
+/// Used by one thread at a time.
+class FilmThread {
+ public:
+  /// All references MUST outlive it.
+  FilmThread(const DataFolder& folder, SchedulerInbox& scheduler, StoreInbox& store)
+      : folder_(folder), scheduler_(scheduler), store_(store) {}
+
+  void add_job(JobId job, const RenderSettings& settings, bool adaptive = false);
+  /// Announces a pass that ends at `samples`. It is reported when the film has all of it.
+  void plan(JobId job, std::uint64_t samples);
+  /// Adds these rows of a band. OK: they are in the film. Otherwise they wait in memory for retry,
+  /// and SchedulerInbox::storage_failed is called.
+  absl::Status add(JobId job, IncomingBand incoming, std::vector<RowRange> rows);
+  /// The same for a band that is in the job's log while the film cannot take any: it is read from
+  /// the log at the next retry.
+  void add_later(JobId job, const IncomingBand& incoming, const std::vector<RowRange>& rows);
+  /// Sends the image of samples [0, samples) to the store as soon as the film has them.
+  void want_image(JobId job, std::uint64_t samples);
+  /// Tries again what failed.
+  void retry();
+  /// Removes the bands of this renderer: builds the film again from the log of the others, and
+  /// reports its passes again as they become complete.
+  void retract(JobId job, std::uint64_t renderer);
+  void drop(JobId job);
+
+  /// Returns the present image of a job, every row_step-th row. NOT_FOUND: no band is there, or the
+  /// job is over.
+  absl::StatusOr<Image> preview(JobId job, std::uint32_t row_step) const;
+  /// Returns who rendered the rows that are there; for a job that is over, from the file beside its
+  /// image.
+  std::vector<RowsBy> rendered_by(JobId job) const;
+
+ private:
+  struct Waiting {
+    IncomingBand incoming;
+    std::vector<RowRange> rows;
+  };
+  /// Rows that were added, with what is needed to read them again from the job's log.
+  struct Added {
+    std::uint64_t offset = 0;  ///< offset of the record that holds the band
+    Band band;
+    std::uint64_t renderer = 0;
+    TileSamples tiles;         ///< tiles of these rows
+    std::uint64_t digest = 0;  ///< digest of the rows' sums
+  };
+  struct OneJob {
+    RenderSettings settings;
+    bool adaptive = false;
+    std::optional<Film> film;  ///< from the first band on
+    std::deque<Waiting> waiting;
+    std::vector<Added> added;
+    std::set<std::uint64_t> pass_ends;
+    std::uint64_t reported = 0;  ///< end of the last pass that was reported
+    bool rebuild = false;        ///< the film must be built again, from `added`
+    std::optional<std::uint64_t> image_of;
+  };
+  static Added added(const IncomingBand& incoming, const RowRange& rows);
+  absl::Status work(JobId id, OneJob& job);
+  absl::Status rebuild_film(JobId id, OneJob& job);
+  absl::Status merge(JobId id, OneJob& job, Waiting& waiting);
+  void report_passes(JobId id, OneJob& job);
+  absl::Status send_image(JobId id, OneJob& job);
+  absl::StatusOr<Film> new_film(JobId id, const OneJob& job) const;
+  absl::StatusOr<Film> film_until(JobId id, OneJob& job, std::uint64_t samples);
+  absl::StatusOr<BandPixels> read_again(JobId id, const Added& added) const;
+  void leave_out(JobId id, OneJob& job, const std::vector<std::size_t>& damaged);
+
+  const DataFolder& folder_;
+  SchedulerInbox& scheduler_;
+  StoreInbox& store_;
+  std::map<JobId, OneJob> jobs_;
+  Attribution attribution_;
+};
+
+/// Returns the part of a band that consists of these rows.
+BandPixels slice(const BandPixels& pixels, const RowRange& rows);
+
+}  // namespace bandsaw::coordinator

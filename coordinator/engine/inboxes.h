@@ -1,0 +1,67 @@
+#pragma once
+
+// The messages that the engine's threads send to each other. SchedulerThread, StoreThread and
+// FilmThread call the inboxes of the others. Engine implements each inbox by posting to the
+// mailbox of its thread, so a call never blocks, and messages arrive in the order in which one
+// sender sent them. Tests implement inboxes that record the calls.
+
+#include <cstdint>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "coordinator/core/messages.h"
+#include "coordinator/engine/collector.h"
+#include "coordinator/engine/incoming_band.h"
+#include "coordinator/store/finished.h"
+
+namespace bandsaw::coordinator {
+
+/// Messages to the scheduler's thread.
+class SchedulerInbox {
+ public:
+  virtual ~SchedulerInbox() = default;
+  // From the store. Each band that the store was given ends in band_stored or band_failed.
+  virtual void band_stored(IncomingBand incoming, std::vector<std::uint64_t> row_digests) = 0;
+  virtual void band_failed(IncomingBand incoming, const absl::Status& status) = 0;
+  virtual void result_written(JobId job, const absl::Status& status) = 0;
+  /// The disk takes data again after StoreInbox::expect_trouble.
+  virtual void disk_is_back() = 0;
+  /// These jobs are final and older than is kept.
+  virtual void forget(std::vector<JobId> jobs) = 0;
+  // From the film.
+  virtual void pass_merged(input::PassMerged merged) = 0;
+  /// The film could not take a band, or make the image. It tries again after FilmInbox::retry.
+  virtual void storage_failed(JobId job, const absl::Status& status) = 0;
+  /// The band log no longer holds bands that were added. The film leaves them out.
+  virtual void bands_damaged(input::BandsDamaged damaged) = 0;
+};
+
+/// Messages to the store's thread; see StoreThread.
+class StoreInbox {
+ public:
+  virtual ~StoreInbox() = default;
+  virtual void add_job(JobId job, const JobSpec& spec) = 0;
+  virtual void append(IncomingBand incoming) = 0;
+  virtual void compare(IncomingBand incoming) = 0;
+  virtual void write_result(JobId job, Finished finished) = 0;
+  virtual void reopen(JobId job) = 0;
+  virtual void drop_bands(JobId job) = 0;
+  virtual void drop_job(JobId job) = 0;
+  virtual void collect(std::vector<Collector::Job> jobs) = 0;
+  virtual void expect_trouble() = 0;
+};
+
+/// Messages to the film's thread; see FilmThread.
+class FilmInbox {
+ public:
+  virtual ~FilmInbox() = default;
+  virtual void add_job(JobId job, const RenderSettings& settings, bool adaptive) = 0;
+  virtual void plan(JobId job, std::uint64_t samples) = 0;
+  virtual void add(IncomingBand incoming, std::vector<RowRange> rows) = 0;
+  virtual void want_image(JobId job, std::uint64_t samples) = 0;
+  virtual void retry() = 0;
+  virtual void retract(JobId job, std::uint64_t renderer) = 0;
+  virtual void drop(JobId job) = 0;
+};
+
+}  // namespace bandsaw::coordinator

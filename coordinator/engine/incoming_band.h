@@ -1,0 +1,41 @@
+#pragma once
+
+// A band on its way from a worker to the disk and the film.
+
+#include <cstdint>
+#include <string>
+
+#include "coordinator/core/types.h"
+#include "coordinator/engine/answer.h"
+#include "coordinator/engine/memory_budget.h"
+#include "renderlib/render/band.h"
+#include "renderlib/render/tile_samples.h"
+
+namespace bandsaw::coordinator {
+
+/// The answer to a worker's upload of a band.
+enum class BandOutcome {
+  kStored,     ///< it is on disk and in the journal
+  kDuplicate,  ///< all of its rows were there already
+  kUnwanted    ///< the job is over, or the band is not part of it
+};
+
+struct IncomingBand {
+  JobId job = 0;
+  /// Hash of the scene and settings that it was rendered for, as the worker reports it
+  /// (renderlib/render/work_hash.h); 0: unknown.
+  std::uint64_t work = 0;
+  std::string instance;        ///< instance of the worker
+  std::uint64_t renderer = 0;  ///< id of the worker process (core/renderer.h)
+  BandPixels pixels;
+  std::string worker;      ///< name of the worker, from action::AddToFilm
+  TileSamples tiles = {};  ///< samples of the band's half tiles, from action::AddToFilm
+  double render_s = 0;
+  double cpu_s = 0;
+  bool written = false;
+  std::uint64_t offset = 0;  ///< offset of its record in the job's log, once it is written
+  Answer<BandOutcome> answer;
+  MemoryBudget::Share share;
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,253 @@
+#include "coordinator/engine/scheduler_thread.h"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/engine/job_log.h"
+#include "proto/wire/limits.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+constexpr double kTick_s = 0.1;
+constexpr double kCollectEvery_s = 600;
+constexpr std::size_t kCollectEveryJobs = 1'000;
+
+}  // namespace
+
+SchedulerThread::SchedulerThread(CoreOptions options, Journal& journal, Reserve reserve,
+                                 const Clock& clock, StoreInbox& store, FilmInbox& film)
+    : core_(options),
+      journal_(journal),
+      reserve_(std::move(reserve)),
+      clock_(clock),
+      store_(store),
+      film_(film),
+      commit_queue_(journal),
+      links_(options.epoch),
+      logs_(wire::kLogLinesKept, wire::kLogBytesKept) {}
+
+Step SchedulerThread::run(const Input& input, IncomingBand* incoming) {
+  Step step = core_.step(input, clock_.now());
+  absorb(step, incoming);
+  return step;
+}
+
+void SchedulerThread::absorb(const Step& step, IncomingBand* incoming) {
+  for (const Record& record : step.records) {
+    note(record);
+    log_record(record);
+    commit_queue_.record(record);
+    commit_queue_.effect([this, record] { announce(record); });
+  }
+  for (const Action& action : step.actions) {
+    const auto* add = std::get_if<action::AddToFilm>(&action);
+    if (add != nullptr && incoming != nullptr) {
+      IncomingBand band;
+      band.job = incoming->job;
+      band.worker = add->worker;
+      band.renderer = incoming->renderer;
+      band.pixels = std::move(incoming->pixels);
+      band.share = std::move(incoming->share);
+      band.offset = incoming->offset;
+      band.tiles = add->tiles;
+      commit_queue_.effect([this, rows = add->rows, band = std::move(band)]() mutable {
+        film_.add(std::move(band), std::move(rows));
+      });
+    } else {
+      commit_queue_.effect([this, action] { perform(action); });
+    }
+  }
+  if (absl::IsInternal(step.status)) {
+    spdlog::error("the core: {}", step.status.ToString());
+  }
+}
+
+void SchedulerThread::perform(const Action& action) {
+  if (const auto* result = std::get_if<action::WriteResult>(&action)) {
+    if (results_on_the_way_.insert(result->job).second) {
+      film_.want_image(result->job, result->samples);
+    }
+  } else if (const auto* drop = std::get_if<action::DropBands>(&action)) {
+    results_on_the_way_.erase(drop->job);
+    store_.drop_bands(drop->job);
+    film_.drop(drop->job);
+  } else if (const auto* retracted = std::get_if<action::Retract>(&action)) {
+    film_.retract(retracted->job, retracted->renderer);
+  } else if (const auto* forgotten = std::get_if<action::DropJob>(&action)) {
+    store_.drop_job(forgotten->job);
+  } else if (const auto* shared = std::get_if<action::Shared>(&action)) {
+    log_shared(*shared);
+  } else if (const auto* fault = std::get_if<action::Faulted>(&action)) {
+    log_fault(*fault);
+  } else {
+    std::visit(
+        [this](const auto& one) {
+          if constexpr (requires { links_.perform(one); }) {
+            links_.perform(one);
+          }
+        },
+        action);
+  }
+}
+
+void SchedulerThread::note(const Record& record) {
+  if (const auto* added = std::get_if<record::JobAdded>(&record)) {
+    known_[added->job].spec = added->spec;
+    ++added_since_;
+  } else if (const auto* pass = std::get_if<record::PassPlanned>(&record)) {
+    known_[pass->job].pass_ends.push_back(pass->samples.last);
+  } else if (const auto* changed = std::get_if<record::StateChanged>(&record)) {
+    known_[changed->job].state = changed->state;
+  } else if (const auto* forgotten = std::get_if<record::JobForgotten>(&record)) {
+    known_.erase(forgotten->job);
+  }
+}
+
+void SchedulerThread::announce(const Record& record) {
+  if (const auto* added = std::get_if<record::JobAdded>(&record)) {
+    store_.add_job(added->job, added->spec);
+    film_.add_job(added->job, added->spec.settings, is_adaptive(added->spec.stop));
+  } else if (const auto* pass = std::get_if<record::PassPlanned>(&record)) {
+    film_.plan(pass->job, pass->samples.last);
+  }
+}
+
+bool SchedulerThread::over(JobId id) const {
+  const auto known = known_.find(id);
+  return known == known_.end() || is_final(known->second.state);
+}
+
+void SchedulerThread::settle() {
+  if (const Time now = clock_.now(); now - ticked_at_ >= kTick_s) {
+    ticked_at_ = now;
+    run(input::Tick{});
+  }
+  if (journal_status_.ok()) {
+    collect();
+    if (flush()) {
+      compact();
+    }
+  } else {
+    commit_queue_.fail_completions(journal_status_);
+  }
+  const auto view_of = [this](JobId id) { return job(id); };
+  watchers_.update(view_of, !journal_status_.ok(), clock_.now());
+}
+
+void SchedulerThread::collect() {
+  const Time now = clock_.now();
+  if (collected_at_ && now - *collected_at_ < kCollectEvery_s && added_since_ < kCollectEveryJobs) {
+    return;
+  }
+  collected_at_ = now;
+  added_since_ = 0;
+  std::vector<Collector::Job> jobs;
+  for (const auto& [id, known] : known_) {
+    jobs.push_back({id, known.spec.manifest, is_final(known.state)});
+  }
+  store_.collect(std::move(jobs));
+}
+
+/// Only if nothing waits for the journal, because then the scheduler's state equals the journal's.
+void SchedulerThread::compact() {
+  if (!commit_queue_.empty() || journal_.size() <= compact_above_) {
+    return;
+  }
+  const std::vector<Record> records = core_.snapshot();
+  const std::uint64_t before = journal_.size();
+  if (2 * records.size() <= before) {
+    if (const absl::Status status = journal_.rewrite(records); !status.ok()) {
+      spdlog::warn("the journal could not be rewritten: {}", status.ToString());
+    } else {
+      spdlog::info("the journal was rewritten: {} records, {} before", records.size(), before);
+    }
+  }
+  compact_above_ = std::max<std::uint64_t>(kCompactAbove, 2 * journal_.size());
+}
+
+bool SchedulerThread::flush() {
+  if (const absl::Status written = commit_queue_.write();
+      absl::IsResourceExhausted(written) && reserve_.release()) {
+    no_room(written);
+  }
+  const absl::Status flushed = commit_queue_.flush();
+  if (flushed.ok()) {
+    journal_status_ = flushed;
+    return true;
+  }
+  journal_failed(flushed);
+  return false;
+}
+
+void SchedulerThread::journal_failed(const absl::Status& status) {
+  store_.expect_trouble();
+  if (!journal_status_.ok()) {
+    return;
+  }
+  journal_status_ = absl::ResourceExhaustedError(
+      absl::StrCat("the coordinator cannot write its journal: ", status.message()));
+  spdlog::error("{}", journal_status_.ToString());
+  pause_all(journal_status_);
+}
+
+void SchedulerThread::no_room(const absl::Status& status) {
+  store_.expect_trouble();
+  if (!room_.ok()) {
+    return;
+  }
+  room_ = absl::ResourceExhaustedError(absl::StrCat(
+      "the coordinator's disk is full: ", status.message(),
+      "; jobs are paused and nothing new is taken until there is room: cancel jobs, or free some"));
+  spdlog::error("{}", room_.ToString());
+  has_room_ = false;
+  pause_all(room_);
+}
+
+void SchedulerThread::pause_all(const absl::Status& status) {
+  for (const auto& [id, known] : known_) {
+    if (!is_final(known.state)) {
+      storage_failed(id, status);
+    }
+  }
+}
+
+void SchedulerThread::storage_failed(JobId job, const absl::Status& status) {
+  spdlog::warn("job={} storage failed: {}", job, status.ToString());
+  run(input::StorageFailed{.job = job, .reason = std::string(status.message())});
+}
+
+void SchedulerThread::disk_is_back() {
+  if (!flush()) {
+    return;
+  }
+  if (const absl::Status held = reserve_.hold(); !held.ok()) {
+    no_room(held);
+    return;
+  }
+  room_ = absl::OkStatus();
+  has_room_ = true;
+  spdlog::info("the disk takes data again");
+  run(input::StorageBack{});
+  film_.retry();
+}
+
+void SchedulerThread::bands_damaged(input::BandsDamaged damaged) {
+  results_on_the_way_.erase(
+      damaged.job);  // the film waits for the bands; the scheduler requests it again
+  run(damaged);
+}
+
+void SchedulerThread::result_written(JobId job, const absl::Status& status) {
+  results_on_the_way_.erase(job);
+  if (status.ok()) {
+    run(input::ResultWritten{.job = job});
+  } else {
+    storage_failed(job, status);  // the scheduler requests it again when the disk is back
+  }
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,129 @@
+#pragma once
+
+// What runs on the scheduler's thread: it owns the scheduler and the journal, writes the records of
+// each step, and turns the step's actions into messages to the other threads and to workers.
+
+#include <atomic>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "coordinator/core/core.h"
+#include "coordinator/engine/clock.h"
+#include "coordinator/engine/collector.h"
+#include "coordinator/engine/commit_queue.h"
+#include "coordinator/engine/inboxes.h"
+#include "coordinator/engine/links.h"
+#include "coordinator/engine/watchers.h"
+#include "coordinator/engine/worker_logs.h"
+#include "coordinator/store/journal.h"
+#include "coordinator/store/reserve.h"
+
+namespace bandsaw::coordinator {
+
+class FilmThread;
+class StoreThread;
+
+/// Used by one thread at a time.
+class SchedulerThread {
+ public:
+  /// `reserve` is released when the journal has no room, and held again when it has. All references
+  /// MUST outlive it.
+  SchedulerThread(CoreOptions options, Journal& journal, Reserve reserve, const Clock& clock,
+                  StoreInbox& store, FilmInbox& film);
+
+  /// Restores the state from the journal and the band logs. Call before any other method, while the
+  /// other threads do not run yet. `room`: OK, or the reason why the disk is full (no_room).
+  absl::Status restore(StoreThread& store, FilmThread& film, const absl::Status& room);
+
+  // Users.
+  void submit(JobSpec spec, std::int32_t priority, Answer<JobId> answer);
+  /// Runs Cancel, Pause, Resume or SetPriority; the answer is the job after it.
+  void command(JobId job, const Input& input, Answer<JobView> answer);
+  /// Runs Quarantine or LiftQuarantine.
+  void command_worker(const Input& input, Answer<bool> answer);
+  void watch(JobId job, Watchers::Changed changed);
+  std::optional<JobView> job(JobId id) const { return core_.job(id, clock_.now()); }
+  std::vector<std::string> why(JobId id) const { return core_.why(id, clock_.now()); }
+  std::vector<JobView> jobs() const { return core_.jobs(clock_.now()); }
+  std::vector<WorkerView> workers() const { return core_.workers(clock_.now()); }
+
+  // Workers.
+  void hello(SessionId session, std::shared_ptr<WorkerLink> link, WorkerHello hello);
+  void lost(SessionId session, std::string reason);
+  /// Heartbeats and other inputs that concern only the scheduler.
+  void observe(const Input& input) { run(input); }
+  void put_band(IncomingBand incoming);
+  void add_worker_log(SessionId session, std::vector<std::string> lines);
+  absl::StatusOr<std::vector<std::string>> worker_log(const std::string& worker) const {
+    return logs_.of(worker);
+  }
+
+  // The other threads; see SchedulerInbox.
+  void band_stored(IncomingBand incoming, std::vector<std::uint64_t> row_digests);
+  void band_failed(IncomingBand incoming, const absl::Status& status);
+  void bands_damaged(input::BandsDamaged damaged);
+  void result_written(JobId job, const absl::Status& status);
+  void storage_failed(JobId job, const absl::Status& status);
+  void disk_is_back();
+  void forget(std::vector<JobId> jobs) { run(input::Forget{std::move(jobs)}); }
+
+  /// Call after each batch: runs the clock's tick, writes the journal, runs the effects that waited
+  /// for it, and informs the watchers.
+  void settle();
+
+  /// True if the disk has room for new data. Any thread.
+  bool has_room() const { return has_room_; }
+
+ private:
+  /// Facts about a job that are needed without the scheduler.
+  struct Known {
+    JobSpec spec;
+    JobState state = JobState::kRunning;
+    std::vector<std::uint64_t> pass_ends;
+  };
+  /// Runs one step of the scheduler and puts its records and effects into the commit queue.
+  /// `incoming`: the band that the input is about, if any.
+  Step run(const Input& input, IncomingBand* incoming = nullptr);
+  void absorb(const Step& step, IncomingBand* incoming);
+  void perform(const Action& action);
+  void note(const Record& record);
+  /// Informs the store and the film of a new job or pass.
+  void announce(const Record& record);
+  bool flush();
+  /// The disk is full: pauses all jobs and refuses submits and bands until disk_is_back.
+  void no_room(const absl::Status& status);
+  void pause_all(const absl::Status& status);
+  void journal_failed(const absl::Status& status);
+  absl::Status restore_job(JobId id, const Known& known, StoreThread& store, FilmThread& film);
+  bool over(JobId id) const;
+  void collect();
+  void compact();
+
+  Core core_;
+  Journal& journal_;
+  Reserve reserve_;
+  const Clock& clock_;
+  StoreInbox& store_;
+  FilmInbox& film_;
+  CommitQueue commit_queue_;
+  Links links_;
+  Watchers watchers_;
+  WorkerLogs logs_;
+  std::map<JobId, Known> known_;
+  std::set<JobId> results_on_the_way_;  ///< requested by the scheduler, not written yet
+  absl::Status journal_status_;         ///< an error: nothing is acknowledged
+  absl::Status room_;  ///< an error: the reserve is released, no new data is accepted
+  std::atomic<bool> has_room_{true};  ///< room_.ok(), for other threads
+  Time ticked_at_ = 0;
+  std::optional<Time> collected_at_;
+  std::size_t added_since_ = 0;                           ///< jobs added since collected_at_
+  static constexpr std::uint64_t kCompactAbove = 10'000;  ///< number of records in the journal
+  std::uint64_t compact_above_ = kCompactAbove;
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,91 @@
+#include <spdlog/spdlog.h>
+
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/engine/film_thread.h"
+#include "coordinator/engine/scheduler_thread.h"
+#include "coordinator/engine/store_thread.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+
+absl::Status SchedulerThread::restore(StoreThread& store, FilmThread& film,
+                                      const absl::Status& room) {
+  RETURN_IF_ERROR(journal_.replay([this](const Record& record) {
+    core_.replay(record);
+    note(record);
+  }));
+  std::vector<std::pair<JobId, absl::Status>> failed;
+  for (const auto& [id, known] : known_) {
+    if (is_final(known.state)) {
+      store.drop_bands(id);
+    } else if (const absl::Status restored = restore_job(id, known, store, film);
+               absl::IsResourceExhausted(restored)) {
+      failed.emplace_back(id, restored);
+    } else {
+      RETURN_IF_ERROR(restored);
+    }
+  }
+  absorb(core_.replayed(clock_.now()), nullptr);
+  if (!room.ok()) {
+    no_room(room);
+  }
+  for (const auto& [id, status] : failed) {
+    store_.expect_trouble();
+    storage_failed(id, status);
+  }
+  return absl::OkStatus();
+}
+
+/// RESOURCE_EXHAUSTED: the job is restored, but its film is not; that happens when there is room.
+absl::Status SchedulerThread::restore_job(JobId id, const Known& known, StoreThread& store,
+                                          FilmThread& film) {
+  film.add_job(id, known.spec.settings, is_adaptive(known.spec.stop));
+  for (const std::uint64_t samples : known.pass_ends) {
+    film.plan(id, samples);
+  }
+  absl::Status filmed;
+  const auto take = [&](BandRecord record, std::uint64_t offset) {
+    BandPixels& pixels = record.pixels;
+    std::optional<std::vector<RowRange>> rows = core_.wanted(id, pixels.band);
+    if (!rows || rows->empty()) {
+      return;
+    }
+    const Band band = pixels.band;
+    core_.replay(input::BandStored{.job = id,
+                                   .band = pixels.band,
+                                   .row_digests = row_digests(pixels),
+                                   .instance = {},
+                                   .renderer = record.renderer,
+                                   .counters = pixels.counters,
+                                   .cpu_s = record.cpu_s});
+    // Bands of a machine in quarantine are refused.
+    if (const auto left = core_.wanted(id, band); left && left->empty()) {
+      IncomingBand incoming;
+      incoming.renderer = record.renderer;
+      incoming.pixels = std::move(pixels);
+      incoming.offset = offset;
+      incoming.tiles = core_.tiles(id, band);
+      if (filmed.ok()) {
+        filmed = film.add(id, std::move(incoming), *std::move(rows));
+      } else {
+        film.add_later(id, incoming, *rows);
+      }
+    }
+  };
+  ASSIGN_OR_RETURN(const BandLogReport report, store.open_job(id, known.spec, take));
+  if (report.damaged_bytes > 0) {
+    core_.replay_damage(id, report.damaged_bytes);
+    spdlog::warn(
+        "job={} {} damaged bytes in its bands were left out; their rows are rendered again", id,
+        report.damaged_bytes);
+  }
+  spdlog::info("job={} resumed, {} bands on disk", id, report.records);
+  return filmed.ok() ? filmed
+                     : absl::Status(filmed.code(), absl::StrCat("cannot rebuild the film of job ",
+                                                                id, ": ", filmed.message()));
+}
+
+}  // namespace bandsaw::coordinator

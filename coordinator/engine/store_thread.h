@@ -1,0 +1,82 @@
+#pragma once
+
+// What runs on the store's thread: band logs with group commit, results, removal of old jobs, and
+// regular tests of a full disk.
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "coordinator/engine/clock.h"
+#include "coordinator/engine/collector.h"
+#include "coordinator/engine/inboxes.h"
+#include "coordinator/store/band_log.h"
+#include "coordinator/store/blob_store.h"
+#include "coordinator/store/data_folder.h"
+#include "coordinator/store/finished.h"
+#include "coordinator/store/result_file.h"
+
+namespace bandsaw::coordinator {
+
+/// Used by one thread at a time.
+class StoreThread {
+ public:
+  /// All references MUST outlive it.
+  StoreThread(const DataFolder& folder, BlobStore& blobs, const Keep& keep, const Clock& clock,
+              SchedulerInbox& scheduler)
+      : folder_(folder), clock_(clock), scheduler_(scheduler), collector_(folder, blobs, keep) {}
+
+  /// Opens the log of a job and calls `each` with every record and its offset. Records of another
+  /// job are left out and counted as damaged.
+  absl::StatusOr<BandLogReport> open_job(JobId job, const JobSpec& spec,
+                                         absl::FunctionRef<void(BandRecord, std::uint64_t)> each);
+  /// Creates the folder of a new job. If this fails, its first band tries again.
+  absl::Status add_job(JobId job, const JobSpec& spec);
+
+  /// Writes a band; it is answered at settle, after the log is synced.
+  void append(IncomingBand incoming);
+  /// Computes the row digests of a band that is there already. Does not write it.
+  void compare(IncomingBand incoming);
+  /// Call after each batch: one fdatasync per log, then the answers. Every two seconds, tests a
+  /// disk that has failed.
+  void settle();
+
+  void write_result(JobId job, const Finished& finished);
+  /// Reads a result. DATA_LOSS: missing or damaged. NOT_FOUND: kSamples of a job that was not
+  /// adaptive.
+  absl::StatusOr<StoredResult> read_result(JobId job, FinishedPart part) const;
+  /// The log was found damaged: later bands are appended after its last sound record, or to a new
+  /// log if it is missing.
+  void reopen(JobId job);
+  /// Removes the log of a final job.
+  void drop_bands(JobId job);
+  /// Removes all files of a forgotten job.
+  void drop_job(JobId job);
+  /// Removes blobs and folders that are no longer needed, and sends the scheduler the jobs that are
+  /// older than is kept. `jobs`: all jobs that are known.
+  void collect(const std::vector<Collector::Job>& jobs);
+  /// A write failed: sends disk_is_back once the disk takes data.
+  void expect_trouble();
+
+ private:
+  struct OpenJob {
+    JobSpec spec;
+    std::optional<BandLog> log;         ///< opened at the first band
+    std::vector<IncomingBand> written;  ///< not synced
+  };
+  absl::Status write(OpenJob& job, IncomingBand& incoming);
+  absl::Status open_log(JobId id, OpenJob& job);
+  void settle(OpenJob& job);
+
+  const DataFolder& folder_;
+  const Clock& clock_;
+  SchedulerInbox& scheduler_;
+  Collector collector_;
+  std::map<JobId, OpenJob> jobs_;
+  bool trouble_ = false;
+  Time tested_at_ = 0;  ///< when the disk was last tested
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,26 @@
+#pragma once
+
+// Converts messages from the network to the scheduler's values. Every field is checked here,
+// against proto/wire/limits.h and render/settings.h: INVALID_ARGUMENT names the field, its range
+// and the value.
+
+#include "absl/status/statusor.h"
+#include "coordinator/core/messages.h"
+#include "proto/farm.pb.h"
+#include "proto/wire/digest.h"
+
+namespace bandsaw::coordinator {
+
+absl::StatusOr<wire::Digest> digest_field(const char* field, const std::string& raw);
+absl::StatusOr<JobSpec> job_spec(const farm::SubmitRequest& request);
+/// Checks the form only; the engine decides if it is a band of its job.
+absl::StatusOr<Band> band(const char* field, const farm::Band& message);
+/// `address`: the peer's address, for display.
+absl::StatusOr<WorkerHello> worker_hello(const farm::Hello& message, std::string address);
+absl::StatusOr<input::Heartbeat> heartbeat(const farm::Heartbeat& message);
+absl::StatusOr<std::vector<std::string>> log_lines(
+    const char* field, const google::protobuf::RepeatedPtrField<std::string>& lines);
+absl::StatusOr<input::BandFailed> band_failed(const farm::BandFailed& message);
+absl::StatusOr<std::string> reason_field(const char* field, const std::string& text);
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,23 @@
+#pragma once
+
+// Converts between the messages of farm.proto and renderlib's values, for the coordinator, its
+// commands and the worker. Values from the network are not checked here: validate() of the value
+// does that.
+
+#include "proto/farm.pb.h"
+#include "renderlib/render/band.h"
+#include "renderlib/render/settings.h"
+
+namespace bandsaw {
+
+farm::Settings to_message(const RenderSettings& settings);
+RenderSettings settings_of(const farm::Settings& message);
+
+farm::Band to_message(const Band& band);
+Band band_of(const farm::Band& message);
+
+/// The times of the message, which Counters does not have, are left 0.
+farm::Counters to_message(const Counters& counters);
+Counters counters_of(const farm::Counters& message);
+
+}  // namespace bandsaw

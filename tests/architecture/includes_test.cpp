@@ -1,0 +1,227 @@
+// Checks which folder includes which (the README of each part shows the allowed dependencies).
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/support/hard_case.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// A folder may include itself and everything that the folders named here may include.
+const std::map<std::string, std::set<std::string>> kMayInclude = {
+    {"proto/wire", {}},
+    {"proto/link", {"proto/wire"}},
+    {"proto/convert", {"renderlib/render"}},
+    {"renderlib/base", {}},
+    {"renderlib/math", {"renderlib/base"}},
+    {"renderlib/sampling", {"renderlib/math"}},
+    {"renderlib/geometry", {"renderlib/math"}},
+    {"renderlib/accel", {"renderlib/geometry"}},
+    {"renderlib/image", {"renderlib/math"}},
+    {"renderlib/texture", {"renderlib/image"}},
+    {"renderlib/material", {"renderlib/texture", "renderlib/sampling", "renderlib/geometry"}},
+    {"renderlib/camera", {"renderlib/geometry", "renderlib/sampling"}},
+    {"renderlib/medium", {"renderlib/sampling"}},
+    {"renderlib/light", {"renderlib/material", "renderlib/geometry", "renderlib/sampling"}},
+    {"renderlib/scene",
+     {"renderlib/accel", "renderlib/light", "renderlib/camera", "renderlib/medium"}},
+    {"renderlib/integrate", {"renderlib/scene"}},
+    {"renderlib/render", {"renderlib/integrate"}},
+    {"renderlib/compare", {"renderlib/image"}},
+    {"renderlib/package", {"renderlib/render", "proto/wire"}},
+    {"renderlib/import/files", {"renderlib/base"}},
+    {"renderlib/import/image", {"renderlib/package"}},
+    {"renderlib/import/draft", {"renderlib/import/image", "renderlib/import/files"}},
+    {"renderlib/import/gltf", {"renderlib/import/files"}},
+    {"renderlib/import/model", {"renderlib/import/draft", "renderlib/import/gltf"}},
+    {"renderlib/import/scene_file", {"renderlib/import/model"}},
+    {"renderlib/import", {"renderlib/import/scene_file"}},
+    {"renderlib/gallery", {"renderlib/texture", "renderlib/light"}},
+    {"coordinator/core", {"renderlib/render", "proto/wire"}},
+    {"coordinator/convert", {"coordinator/core", "proto/convert"}},
+    {"coordinator/store", {"coordinator/core", "renderlib/package"}},
+    {"coordinator/engine", {"coordinator/store"}},
+    {"coordinator/rpc", {"coordinator/engine", "coordinator/convert", "proto/link"}},
+    {"coordinator/web", {"coordinator/rpc"}},
+    {"coordinator/cli/base", {"coordinator/core"}},
+    {"coordinator/cli/options", {"coordinator/cli/base", "proto/link"}},
+    {"coordinator/cli/progress", {"coordinator/cli/options", "coordinator/convert"}},
+    {"coordinator/cli/scene", {"coordinator/cli/options", "renderlib/package"}},
+    {"coordinator/cli/image",
+     {"coordinator/cli/progress", "coordinator/cli/scene", "renderlib/compare"}},
+    {"coordinator/cli/render", {"coordinator/cli/image", "coordinator/engine"}},
+    {"coordinator/cli/farm", {"coordinator/cli/image", "coordinator/engine"}},
+    {"coordinator/cli/machines", {"coordinator/cli/farm", "coordinator/web"}},
+    {"coordinator/cli/study", {"coordinator/cli/farm"}},
+    {"coordinator/cli/serve", {"coordinator/cli/machines"}},
+    {"coordinator/cli", {"coordinator/cli/machines", "coordinator/cli/study"}},
+    {"worker/cache", {"renderlib/package"}},
+    {"worker/executor", {"worker/cache", "renderlib/render"}},
+    {"worker/session", {"worker/executor", "proto/convert", "proto/link"}},
+    {"worker", {"worker/session"}},
+};
+
+std::set<std::string> reachable(const std::string& folder) {
+  std::set<std::string> seen = {folder};
+  std::vector<std::string> open = {folder};
+  while (!open.empty()) {
+    const std::string next = open.back();
+    open.pop_back();
+    for (const std::string& to : kMayInclude.at(next)) {
+      if (seen.insert(to).second) {
+        open.push_back(to);
+      }
+    }
+  }
+  return seen;
+}
+
+bool is_source(const fs::path& path) {
+  return path.extension() == ".h" || path.extension() == ".cpp";
+}
+
+std::vector<fs::path> sources() {
+  std::vector<fs::path> out;
+  for (const char* top : {"proto", "renderlib", "coordinator", "worker"}) {
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(BANDSAW_SOURCE) / top)) {
+      if (entry.is_regular_file() && is_source(entry.path())) {
+        out.push_back(fs::relative(entry.path(), BANDSAW_SOURCE));
+      }
+    }
+  }
+  return out;
+}
+
+std::vector<std::string> lines_of(const fs::path& source) {
+  std::ifstream file(fs::path(BANDSAW_SOURCE) / source);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(file, line);) {
+    lines.push_back(line);
+  }
+  return lines;
+}
+
+TEST(Architecture, EveryIncludeFollowsTheAllowedDependencies) {
+  const std::regex include("^#include \"([^\"]+)/[^/\"]+\"");
+  std::size_t checked = 0;
+  for (const fs::path& source : sources()) {
+    const std::string folder = source.parent_path().string();
+    ASSERT_TRUE(kMayInclude.contains(folder)) << folder << " is not in kMayInclude";
+    const std::set<std::string> allowed = reachable(folder);
+    for (const std::string& line : lines_of(source)) {
+      std::smatch match;
+      if (!std::regex_search(line, match, include) || !kMayInclude.contains(match[1])) {
+        continue;  // third-party, or generated (proto/*.pb.h: below)
+      }
+      ++checked;
+      EXPECT_TRUE(allowed.contains(match[1])) << source << " includes from " << match[1];
+    }
+  }
+  EXPECT_GT(checked, 100u);
+}
+
+TEST(Architecture, OnlyPackageAndImportUseProtobufInRenderlib) {
+  for (const fs::path& source : sources()) {
+    const std::string folder = source.parent_path().string();
+    if (!folder.starts_with("renderlib/") || folder == "renderlib/package" ||
+        folder.starts_with("renderlib/import")) {
+      continue;
+    }
+    for (const std::string& line : lines_of(source)) {
+      EXPECT_FALSE(line.starts_with("#include") && (line.find(".pb.h") != std::string::npos ||
+                                                    line.find("google/") != std::string::npos ||
+                                                    line.find("assimp/") != std::string::npos))
+          << source << ": " << line;
+    }
+  }
+}
+
+// Pixels are equal on every machine, so renderlib must not call functions whose results depend on
+// the C library, on the standard library's implementation or on hidden state.
+TEST(Architecture, Y5_RenderlibCallsNoMachineDependentFunction) {
+  const std::regex banned(
+      R"(\bstd::(sin|cos|tan|asin|acos|atan|atan2|exp|exp2|expm1|log|log2|log10|log1p|pow|cbrt|hypot)\()"
+      R"(|\bstd::(uniform_\w+_distribution|normal_distribution|shuffle|reduce|random_device|mt19937\w*)\b)"
+      R"(|\b(rand|srand|drand48|time|clock|getenv)\(|_mm\w*_(rcp|rsqrt)|\blong double\b|steady_clock|system_clock)");
+  for (const fs::path& source : sources()) {
+    const std::string folder = source.parent_path().string();
+    if (!folder.starts_with("renderlib/") || folder.starts_with("renderlib/import")) {
+      continue;
+    }
+    for (const std::string& line : lines_of(source)) {
+      const std::string code = line.substr(0, line.find("//"));
+      EXPECT_FALSE(std::regex_search(code, banned)) << source << ": " << line;
+    }
+  }
+  bandsaw::test::holds(
+      "Y5", "no approximate reciprocal, and no function of the machine's library, in any source");
+}
+
+// Every dimension of a sample has a fixed index (sampling/sampler.h), so there is no rejection
+// sampling: where samples are mapped, every loop has a count.
+TEST(Architecture, R7_NoRejectionSampling) {
+  const std::regex loop(R"(\b(while|do)\b\s*[({]|for \(;;\))");
+  for (const fs::path& source : sources()) {
+    const std::string folder = source.parent_path().string();
+    if (folder != "renderlib/sampling" && folder != "renderlib/material" &&
+        folder != "renderlib/camera") {
+      continue;
+    }
+    for (const std::string& line : lines_of(source)) {
+      const std::string code = line.substr(0, line.find("//"));
+      EXPECT_FALSE(std::regex_search(code, loop)) << source << ": " << line;
+    }
+  }
+  bandsaw::test::holds("R7", "no loop without a count where samples are mapped");
+}
+
+/// Returns the types that headers define, each as "namespace::name", with their headers.
+std::map<std::string, std::set<std::string>> types_of_headers() {
+  const std::regex opens(R"(^namespace ([\w:]+) \{$)");
+  const std::regex defines(R"(^(?:struct|class|enum class) (?:alignas\(\w+\) )?([\w:]+)[^;]*\{)");
+  std::map<std::string, std::set<std::string>> found;
+  for (const fs::path& source : sources()) {
+    if (source.extension() != ".h") {
+      continue;
+    }
+    std::vector<std::string> within;
+    for (const std::string& line : lines_of(source)) {
+      std::smatch match;
+      if (std::regex_search(line, match, opens)) {
+        within.push_back(match[1]);
+      } else if (line.starts_with("}  // namespace") && !within.empty()) {
+        within.pop_back();
+      } else if (std::regex_search(line, match, defines)) {
+        std::string name;
+        for (const std::string& space : within) {
+          name += space + "::";
+        }
+        found[name + match[1].str()].insert(source.string());
+      }
+    }
+  }
+  return found;
+}
+
+// Two types of one name in headers that no file includes together are one type to the linker, which
+// would mix their inline members without an error.
+TEST(Architecture, ATypeIsDefinedInOneHeader) {
+  const auto found = types_of_headers();
+  EXPECT_GT(found.size(), 300u);
+  EXPECT_TRUE(found.contains("bandsaw::coordinator::action::Lease"));
+  for (const auto& [name, where] : found) {
+    EXPECT_EQ(where.size(), 1u) << name << " is defined in " << *where.begin() << " and in "
+                                << *where.rbegin();
+  }
+}
+
+}  // namespace

@@ -1,0 +1,120 @@
+// Administration of a farm: logs, doctor, secret rotation; and a band that crashes its workers.
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+
+#include "tests/farm/farm_processes.h"
+
+namespace bandsaw::test {
+namespace {
+
+const std::string kScene = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
+
+class Administration : public testing::Test {
+ protected:
+  Finished say(std::vector<std::string> arguments) { return run(farm_.command(arguments)); }
+  Finished here(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), BANDSAW_BIN);
+    arguments.insert(arguments.end(), {"--data", farm_.path("data")});
+    return run(arguments);
+  }
+
+  // Repeats the command until its output contains `text`; limited only by the test's own timeout.
+  std::string ask_until(const std::vector<std::string>& arguments, const std::string& text) {
+    std::string out;
+    while (!HasFailure() && out.find(text) == std::string::npos) {
+      out = say(arguments).out;
+    }
+    return out;
+  }
+
+  FarmProcesses farm_;
+};
+
+TEST_F(Administration, AWorkersLogIsReadFromAfar) {
+  farm_.add_worker("desk", 1);
+  ask_until({"logs", "desk"}, "joined");
+  EXPECT_EQ(
+      say({"submit", kScene, "--width", "32", "--samples", "16", "-o", farm_.path("a.png")}).code,
+      0);
+  const std::string log = ask_until({"logs", "desk"}, "stored job=1");
+  EXPECT_NE(log.find("rendered job=1"), std::string::npos) << log;
+  farm_.coordinator().signal(SIGKILL);
+  farm_.coordinator().wait();
+  farm_.restart_coordinator();
+  ask_until({"logs", "desk"}, "stored job=1");  // sent again to the restarted coordinator
+  const Finished unknown = say({"logs", "nobody"});
+  EXPECT_EQ(unknown.code, 1);
+  EXPECT_NE(unknown.err.find("desk"), std::string::npos) << unknown.err;
+}
+
+TEST_F(Administration, TheDoctorFindsAFarmWellFromBothSides) {
+  farm_.add_worker("desk", 1);
+  for (const std::string& join : {farm_.farm_file(), farm_.join_file()}) {
+    const Finished well = run({BANDSAW_BIN, "doctor", "--farm", join, "--data", farm_.path("data"),
+                               "--listen", "127.0.0.1:0"});
+    EXPECT_EQ(well.code, 0) << well.out << well.err;
+    for (const char* part : {"1 worker is connected", "certificate", "as here", "clock"}) {
+      EXPECT_NE(well.out.find(part), std::string::npos) << part << " in: " << well.out;
+    }
+  }
+}
+
+TEST_F(Administration, TheDoctorNamesWhatIsWrong) {
+  farm_.coordinator().signal(SIGTERM);
+  farm_.coordinator().wait();
+  const Finished ill = say({"doctor", "--data", farm_.path("data"), "--listen", "192.0.2.1:7878"});
+  EXPECT_EQ(ill.code, 1) << ill.out;
+  EXPECT_NE(ill.out.find("problem  farm"), std::string::npos) << ill.out;
+  EXPECT_NE(ill.out.find("problem  port"), std::string::npos) << ill.out;
+  EXPECT_NE(ill.out.find("ok       import"), std::string::npos) << ill.out;
+}
+
+TEST_F(Administration, AWorkersOldSecretIsVoidAtOnceAndTheNewOneJoins) {
+  Process& old = farm_.add_worker("old", 1);
+  const std::string before = file_bytes(farm_.join_file());
+  const Finished rotated = here({"secret", "rotate", "worker"});
+  EXPECT_EQ(rotated.code, 0) << rotated.err;
+  EXPECT_TRUE(old.wait_for("void")) << old.err();
+  EXPECT_NE(file_bytes(farm_.join_file()), before);
+  const Finished stranger = run({BANDSAW_WORKER_BIN, "--join", before, "--cache", farm_.path("c")});
+  EXPECT_EQ(stranger.code, 2) << stranger.err;
+  farm_.add_worker("new", 1);
+}
+
+TEST_F(Administration, PeoplesSecretIsRenewedWithAndWithoutACoordinator) {
+  const std::string first = file_bytes(farm_.farm_file());
+  EXPECT_EQ(here({"secret", "rotate", "farm"}).code, 0);
+  EXPECT_EQ(run({BANDSAW_BIN, "jobs", "--farm", first}).code, 2);
+  EXPECT_EQ(say({"jobs"}).code, 0);
+  farm_.coordinator().signal(SIGTERM);
+  farm_.coordinator().wait();
+  const std::string second = file_bytes(farm_.farm_file());
+  EXPECT_EQ(here({"secret", "rotate", "farm"}).code, 0);
+  farm_.restart_coordinator();
+  EXPECT_EQ(run({BANDSAW_BIN, "jobs", "--farm", second}).code, 2);
+  EXPECT_EQ(say({"jobs"}).code, 0);
+}
+
+// One band of a million samples, so that each worker is killed while it renders this band. The
+// first loss makes the band suspect; five more are needed on a farm that has not stored a band
+// before (coordinator/core/loss_rate.h).
+TEST_F(Administration, ABandThatEndsEveryWorkerFailsItsJob) {
+  EXPECT_EQ(
+      say({"submit", kScene, "--width", "65536", "--height", "1", "--samples", "16", "--detach"})
+          .code,
+      0);
+  for (const char* name : {"one", "two", "three", "four", "five", "six"}) {
+    Process& worker = farm_.add_worker(name, 1);
+    ask_until({"jobs", "--json"}, std::string(R"("workers":[{"name":")") + name);
+    worker.signal(SIGKILL);
+    worker.wait();
+  }
+  const std::string jobs = ask_until({"jobs", "--json"}, R"("state":"failed")");
+  EXPECT_NE(jobs.find("6 workers were lost while they rendered rows 0–1"), std::string::npos)
+      << jobs;
+}
+
+}  // namespace
+}  // namespace bandsaw::test

@@ -1,0 +1,55 @@
+#pragma once
+
+// The rendering half of a worker: cache, thread pool, executor and uploader, which report to the
+// session.
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "renderlib/base/pool.h"
+#include "worker/cache/blob_cache.h"
+#include "worker/executor/executor.h"
+#include "worker/executor/load_package.h"
+#include "worker/executor/uploader.h"
+#include "worker/session/coordinator_api.h"
+#include "worker/session/shared_session.h"
+
+namespace bandsaw::worker {
+
+/// Returns the last lines of this process's log, to be sent with a failed band.
+using LogTail = std::function<std::vector<std::string>()>;
+
+class BandPipeline {
+ public:
+  /// `kernel`: the code that renders the scenes, as in Scene::build. `calls` and `session` MUST
+  /// outlive the pipeline.
+  BandPipeline(SharedSession& session, std::unique_ptr<BlobCache> cache, int threads,
+               const Kernel* kernel, CoordinatorApi& calls, LogTail log_tail, std::uint64_t seed);
+
+  void start(const Task& task) { executor_.add(task); }
+  void stop(TaskId task);
+  /// The coordinator is reachable again.
+  void connected() { uploader_.retry_now(); }
+
+ private:
+  absl::StatusOr<std::shared_ptr<const Scene>> load(const wire::Digest& manifest,
+                                                    const std::atomic<bool>& stop,
+                                                    const Prepared& prepared);
+  ExecutorEvents executor_events();
+  void failed(TaskId task, const absl::Status& status);
+  absl::StatusOr<farm::PutBandReply::Outcome> put(const FinishedBand& band);
+  void settled(TaskId task, const absl::StatusOr<farm::PutBandReply::Outcome>& outcome);
+
+  SharedSession& session_;
+  const std::unique_ptr<BlobCache> cache_;
+  CoordinatorApi& calls_;
+  const LogTail log_tail_;
+  const Kernel* const kernel_;
+  Pool pool_;
+  Uploader uploader_;
+  Executor executor_;  ///< last: its threads use all of the above
+};
+
+}  // namespace bandsaw::worker

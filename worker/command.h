@@ -1,0 +1,13 @@
+#pragma once
+
+#include "worker/daemon.h"
+
+namespace bandsaw::worker {
+
+/// Runs the command `bandsaw-worker` until it has drained, and returns its exit code: 0 drained, or
+/// dismissed for good; 1 the machine or the cache folder is not fit; 2 wrong usage, or a join
+/// string that is wrong or not good for this farm. A second signal ends the process with 130.
+/// Erases join strings from `argv`. `wrap_calls`: as in DaemonOptions.
+int run_command(int argc, char** argv, const WrapCalls& wrap_calls = nullptr);
+
+}  // namespace bandsaw::worker

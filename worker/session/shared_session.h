@@ -1,0 +1,61 @@
+#pragma once
+
+// The session as shared by the worker's threads: one lock, and the send queue of the current
+// stream.
+
+#include <memory>
+
+#include "renderlib/base/mutex.h"
+#include "worker/session/send_queue.h"
+#include "worker/session/session.h"
+
+namespace bandsaw::worker {
+
+class SharedSession {
+ public:
+  explicit SharedSession(WorkerInfo info)
+      : session_(std::move(info)), queue_(std::make_shared<SendQueue>()) {}
+
+  // For the threads of the stream.
+  /// Starts a new stream. Returns its send queue, whose first message is Hello.
+  std::shared_ptr<SendQueue> open_stream() EXCLUDES(mutex_);
+  void close_stream() EXCLUDES(mutex_);
+  /// Processes a message. The answers are already in the send queue.
+  SessionEffects receive(const farm::ToWorker& message) EXCLUDES(mutex_);
+  std::chrono::milliseconds heartbeat_interval() EXCLUDES(mutex_);
+  /// std::nullopt before Welcome.
+  std::optional<farm::FromWorker> heartbeat() EXCLUDES(mutex_);
+  bool was_welcomed() EXCLUDES(mutex_);
+  std::string name() EXCLUDES(mutex_);
+
+  // For the rendering threads.
+  void preparing(TaskId task, std::uint64_t prepared) EXCLUDES(mutex_);
+  void rendering(TaskId task, std::uint32_t rows_done) EXCLUDES(mutex_);
+  /// False: the band is no longer wanted, discard its pixels.
+  bool finished(TaskId task) EXCLUDES(mutex_);
+  void failed(TaskId task, const std::string& reason, const std::vector<std::string>& log)
+      EXCLUDES(mutex_);
+  void settled(TaskId task) EXCLUDES(mutex_);
+  /// UNAVAILABLE: not connected to a coordinator.
+  absl::StatusOr<LeaseName> lease_of(TaskId task) EXCLUDES(mutex_);
+
+  // For shutdown.
+  void drain(const std::string& reason) EXCLUDES(mutex_);
+  void leave() EXCLUDES(mutex_);
+  /// True once drained or told to leave.
+  bool over() EXCLUDES(mutex_);
+  /// Sleeps, but returns early when over() becomes true.
+  void pause(std::chrono::milliseconds time) EXCLUDES(mutex_);
+
+ private:
+  bool is_over() const REQUIRES(mutex_) { return left_ || session_.drained(); }
+  void tell_when_over() REQUIRES(mutex_);
+
+  Mutex mutex_;
+  CondVar changed_;
+  Session session_ GUARDED_BY(mutex_);
+  std::shared_ptr<SendQueue> queue_ GUARDED_BY(mutex_);
+  bool left_ GUARDED_BY(mutex_) = false;
+};
+
+}  // namespace bandsaw::worker
