@@ -18,7 +18,7 @@ constexpr std::size_t kCollectEveryJobs = 1'000;
 
 }  // namespace
 
-CoreDesk::CoreDesk(CoreOptions options, Journal& journal, Reserve reserve, const Clock& clock,
+CoreDesk::CoreDesk(SchedulerOptions options, Journal& journal, Reserve reserve, const Clock& clock,
                    Hooks hooks)
     : core_(options),
       journal_(journal),
@@ -74,12 +74,12 @@ void CoreDesk::perform(const Action& action) {
     results_on_the_way_.erase(drop->job);
     hooks_.drop_bands(drop->job);
   } else if (const auto* retracted = std::get_if<action::Retract>(&action)) {
-    hooks_.retract(retracted->job, retracted->renderer);
+    hooks_.retract(retracted->job, retracted->process);
   } else if (const auto* forgotten = std::get_if<action::DropJob>(&action)) {
     hooks_.drop_job(forgotten->job);
-  } else if (const auto* shared = std::get_if<action::Shared>(&action)) {
+  } else if (const auto* shared = std::get_if<action::LogReassignment>(&action)) {
     log_shared(*shared);
-  } else if (const auto* fault = std::get_if<action::Faulted>(&action)) {
+  } else if (const auto* fault = std::get_if<action::LogFailure>(&action)) {
     log_fault(*fault);
   } else {
     std::visit(

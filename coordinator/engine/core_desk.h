@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "coordinator/core/core.h"
 #include "coordinator/engine/clock.h"
 #include "coordinator/engine/collector.h"
 #include "coordinator/engine/links.h"
@@ -20,6 +19,7 @@
 #include "coordinator/engine/put_band.h"
 #include "coordinator/engine/watchers.h"
 #include "coordinator/engine/worker_logs.h"
+#include "coordinator/scheduler/scheduler.h"
 #include "coordinator/store/journal.h"
 #include "coordinator/store/reserve.h"
 
@@ -48,7 +48,8 @@ class CoreDesk {
     std::function<void()> retry_film;
   };
   /// `reserve`: is released when the journal has no room, and held again when there is.
-  CoreDesk(CoreOptions options, Journal& journal, Reserve reserve, const Clock& clock, Hooks hooks);
+  CoreDesk(SchedulerOptions options, Journal& journal, Reserve reserve, const Clock& clock,
+           Hooks hooks);
 
   /// Journal, bands and films as they were. Before any other call; the other threads MUST not run
   /// yet. `room`: OK, or why the disk is full (no_room).
@@ -114,7 +115,7 @@ class CoreDesk {
   void collect();
   void compact();
 
-  Core core_;
+  Scheduler core_;
   Journal& journal_;
   Reserve reserve_;
   const Clock& clock_;

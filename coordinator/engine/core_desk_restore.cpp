@@ -56,7 +56,7 @@ absl::Status CoreDesk::restore_job(JobId id, const Known& known, StoreDesk& stor
                                    .band = pixels.band,
                                    .row_digests = row_digests(pixels),
                                    .instance = {},
-                                   .renderer = record.renderer,
+                                   .process = record.renderer,
                                    .counters = pixels.counters,
                                    .cpu_s = record.cpu_s});
     // A band of a machine that is kept away is refused.

@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "coordinator/core/renderer.h"
 #include "coordinator/engine/core_desk.h"
+#include "coordinator/scheduler/api/worker_process.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -35,7 +35,7 @@ void CoreDesk::hello(SessionId session, std::shared_ptr<WorkerLink> link, Worker
 
 void CoreDesk::lost(SessionId session, std::string reason) {
   links_.lost(session, reason);
-  run(input::Lost{.session = session, .reason = std::move(reason)});
+  run(input::SessionEnded{.session = session, .reason = std::move(reason)});
 }
 
 void CoreDesk::worker_log(SessionId session, std::vector<std::string> lines) {
@@ -61,7 +61,7 @@ void CoreDesk::put_band(PutBand put) {
     put.answer(journal_status_);
     return;
   }
-  put.renderer = renderer_of(put.instance);
+  put.renderer = worker_process_id(put.instance);
   const std::optional<std::vector<RowRange>> wanted = core_.wanted(put.job, put.pixels.band);
   if (!wanted) {
     put.answer(BandOutcome::kUnwanted);

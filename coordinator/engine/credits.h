@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/core/types.h"
+#include "coordinator/scheduler/api/ids.h"
 #include "coordinator/store/credits_file.h"
 
 namespace bandsaw::coordinator {

@@ -11,11 +11,11 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "coordinator/core/messages.h"
 #include "coordinator/engine/collector.h"
 #include "coordinator/engine/credits.h"
 #include "coordinator/engine/memory_budget.h"
 #include "coordinator/engine/worker_link.h"
+#include "coordinator/scheduler/api/messages.h"
 #include "coordinator/store/result_file.h"
 #include "renderlib/package/blob_source.h"
 #include "renderlib/render/band.h"
@@ -51,7 +51,7 @@ class Engine {
 
   // People.
   /// The job id once the job is journalled. FAILED_PRECONDITION: a blob is missing (named).
-  /// INVALID_ARGUMENT: the priority is beyond kMostPriority.
+  /// INVALID_ARGUMENT: the priority is beyond kMaxPriority.
   void submit(JobSpec spec, std::function<void(absl::StatusOr<JobId>)> done,
               std::int32_t priority = 0);
   /// Answered with the job as it is then, once that is journalled. NOT_FOUND. All but cancel also
@@ -59,7 +59,7 @@ class Engine {
   void cancel(JobId job, std::function<void(absl::StatusOr<JobView>)> done);
   void pause(JobId job, std::function<void(absl::StatusOr<JobView>)> done);
   void resume(JobId job, std::function<void(absl::StatusOr<JobView>)> done);
-  /// INVALID_ARGUMENT: beyond kMostPriority.
+  /// INVALID_ARGUMENT: beyond kMaxPriority.
   void set_priority(JobId job, std::int32_t priority,
                     std::function<void(absl::StatusOr<JobView>)> done);
   /// Keeps a machine away as if it had returned wrong pixels, or lets it in again. NOT_FOUND.

@@ -13,9 +13,9 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "coordinator/core/messages.h"
 #include "coordinator/engine/credits.h"
 #include "coordinator/engine/put_band.h"
+#include "coordinator/scheduler/api/messages.h"
 #include "coordinator/store/data_folder.h"
 #include "coordinator/store/finished.h"
 #include "renderlib/image/image.h"
@@ -33,7 +33,7 @@ class FilmDesk {
     /// The film could not take a band: it is kept in memory until retry.
     std::function<void(JobId, absl::Status)> failed;
     /// The log does not hold what was added any more: it is left out of the film from now on.
-    std::function<void(JobId, std::vector<input::BandsDamaged::Lost>)> damaged;
+    std::function<void(JobId, std::vector<input::BandsDamaged::DamagedBand>)> damaged;
   };
   FilmDesk(const DataFolder& folder, Hooks hooks) : folder_(folder), hooks_(std::move(hooks)) {}
 

@@ -36,9 +36,10 @@ double unix_seconds() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-CoreOptions core_options(const EngineOptions& options, const std::string& epoch) {
-  CoreOptions core;
-  core.fitness = {.protocol = wire::kProtocol, .pixel_version = kPixelVersion, .canary = canary()};
+SchedulerOptions core_options(const EngineOptions& options, const std::string& epoch) {
+  SchedulerOptions core;
+  core.compatibility = {
+      .protocol = wire::kProtocol, .pixel_version = kPixelVersion, .canary = canary()};
   core.heartbeat_timeout_s = options.heartbeat_timeout_s;
   core.progress_timeout_s = options.progress_timeout_s;
   core.reattach_grace_s = options.reattach_grace_s;
@@ -219,7 +220,7 @@ FilmDesk::Hooks Engine::Impl::film_hooks() {
                 on_store([](StoreDesk& store) { store.expect_trouble(); });
               },
           .damaged =
-              [this](JobId job, std::vector<input::BandsDamaged::Lost> bands) {
+              [this](JobId job, std::vector<input::BandsDamaged::DamagedBand> bands) {
                 // Before the first of them is leased again.
                 on_store([job](StoreDesk& store) { store.reopen(job); });
                 on_core([job, bands = std::move(bands)](CoreDesk& core) mutable {

@@ -5,10 +5,10 @@
 #include <cstdint>
 #include <string>
 
-#include "coordinator/core/types.h"
 #include "coordinator/engine/answer.h"
 #include "coordinator/engine/engine.h"
 #include "coordinator/engine/memory_budget.h"
+#include "coordinator/scheduler/api/ids.h"
 #include "renderlib/render/band.h"
 #include "renderlib/render/tile_samples.h"
 
@@ -18,7 +18,7 @@ struct PutBand {
   JobId job = 0;
   std::uint64_t work = 0;      ///< that it says it is of (renderlib/render/work_hash.h); 0: nothing
   std::string instance;        ///< of the worker
-  std::uint64_t renderer = 0;  ///< of it (core/renderer.h)
+  std::uint64_t renderer = 0;  ///< of it (scheduler/api/worker_process.h)
   BandPixels pixels;
   std::string worker;      ///< as action::AddToFilm tells it
   TileSamples tiles = {};  ///< likewise

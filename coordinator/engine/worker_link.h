@@ -3,7 +3,7 @@
 // The way to one worker: the gRPC stream, or a fake in tests. One of the four open doors. Calls
 // never block and never fail; a link that is gone swallows what is sent.
 
-#include "coordinator/core/messages.h"
+#include "coordinator/scheduler/api/messages.h"
 
 namespace bandsaw::coordinator {
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "absl/strings/string_view.h"
-#include "coordinator/core/types.h"
+#include "coordinator/scheduler/api/job_spec.h"
 
 namespace bandsaw::coordinator {
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "coordinator/core/types.h"
+#include "coordinator/scheduler/api/job_view.h"
 #include "proto/farm.pb.h"
 
 namespace bandsaw::coordinator {

@@ -69,7 +69,7 @@ class FilmDeskTest : public testing::Test {
   std::vector<RowsBy> credits_;
   std::optional<Image> samples_;
   int failed_ = 0;
-  std::vector<input::BandsDamaged::Lost> damaged_;
+  std::vector<input::BandsDamaged::DamagedBand> damaged_;
   FilmDesk desk_{folder_,
                  {.merged =
                       [this](input::PassMerged m) {
@@ -84,7 +84,7 @@ class FilmDeskTest : public testing::Test {
                       },
                   .failed = [this](JobId, absl::Status) { ++failed_; },
                   .damaged =
-                      [this](JobId, std::vector<input::BandsDamaged::Lost> bands) {
+                      [this](JobId, std::vector<input::BandsDamaged::DamagedBand> bands) {
                         damaged_.insert(damaged_.end(), bands.begin(), bands.end());
                       }}};
 };
@@ -131,7 +131,7 @@ TEST_F(FilmDeskTest, WhatIsDamagedInTheLogIsLeftOutAndTold) {
   EXPECT_EQ(failed_, 0);
   ASSERT_EQ(damaged_.size(), 2u);
   for (const auto& lost : damaged_) {
-    EXPECT_EQ(lost.renderer, 5u);
+    EXPECT_EQ(lost.process, 5u);
     EXPECT_EQ(lost.band.rows.count(), 2u);
   }
   ASSERT_TRUE(add({0, 16}, {4, 8}).ok());
