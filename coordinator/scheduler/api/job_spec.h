@@ -1,6 +1,6 @@
 #pragma once
 
-// What a submitter asks for, and the states that a job goes through.
+// The specification of a job by its submitter, and the states of a job.
 
 #include <cstdint>
 #include <string>

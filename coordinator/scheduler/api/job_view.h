@@ -1,6 +1,6 @@
 #pragma once
 
-// What users are shown of jobs and workers.
+// Jobs and workers as they are displayed.
 
 #include <cstdint>
 #include <string>

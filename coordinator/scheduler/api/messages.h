@@ -18,7 +18,7 @@
 
 namespace bandsaw::coordinator {
 
-/// What a worker reports when it opens a session.
+/// A worker's report when it opens a session.
 struct WorkerHello {
   std::string instance;  ///< unique to its process, the same over reconnects
   std::string name;

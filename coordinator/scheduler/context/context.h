@@ -1,7 +1,7 @@
 #pragma once
 
-// What the parts of the scheduler share: jobs, workers, leases, clock, the durable facts about
-// workers, and the step that is being written.
+// State that the parts of the scheduler share: jobs, workers, leases, clock, the durable facts
+// about workers, and the step that is being written.
 
 #include <map>
 #include <set>

@@ -1,7 +1,7 @@
 #pragma once
 
-// Which worker may render which bands: not those that it failed, nor those at which its machine was
-// lost, as long as somebody else is left to render them.
+// Decides whether a worker may render a band. Bands that it failed, and bands at which its machine
+// was lost, are left to other workers as long as there are any.
 
 #include <cstdint>
 #include <vector>

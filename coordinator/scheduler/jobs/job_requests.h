@@ -1,6 +1,6 @@
 #pragma once
 
-// What users request of jobs. Each request sets the status of the step if it cannot be granted.
+// Requests of users about jobs. A request that cannot be granted sets the status of the step.
 
 #include "coordinator/scheduler/context/context.h"
 #include "coordinator/scheduler/dispatch/lease_ledger.h"

@@ -37,7 +37,7 @@ struct Reporter {
 
 class Audit {
  public:
-  /// What one machine returned for the band.
+  /// The result of one machine for the band.
   struct Result {
     Reporter reporter;
     std::vector<std::uint64_t> digests;  ///< one per row

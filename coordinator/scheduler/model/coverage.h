@@ -1,6 +1,6 @@
 #pragma once
 
-// Which rows of one pass are stored, leased and free.
+// The owner of each sample of each row of one pass: stored, leased or free.
 //
 // The rows are cut into strips of equal content, and the pass's samples in each strip into cells.
 // Each cell is a node of the summation tree and has one owner. Strips and cells partition the pass

@@ -70,7 +70,8 @@ struct Pass {
     Totals totals;  ///< of all bands
   };
   std::map<WorkerProcessId, Part> parts;
-  /// How often a band that begins at this sample and row was returned unfinished; for logs.
+  /// Number of times that a band which begins at this sample and row was returned unfinished; for
+  /// logs.
   std::map<std::pair<std::uint64_t, std::uint32_t>, std::uint32_t> returned;
 
   double mean_share() const;  ///< of tile_row_shares

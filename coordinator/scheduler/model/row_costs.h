@@ -1,7 +1,7 @@
 #pragma once
 
-// What the rows of one image cost to render: relative costs, by which bands are sized, and times,
-// by which the end of the job is predicted.
+// Render costs of the rows of one image: relative costs, by which bands are sized, and times, by
+// which the end of the job is predicted.
 
 #include <cstdint>
 #include <vector>

@@ -1,4 +1,4 @@
-// What users request: priorities, pausing and resuming, and why a job waits.
+// Requests of users: priorities, pausing and resuming, and why a job waits.
 
 #include "farm_driver.h"
 

@@ -29,7 +29,7 @@ struct Outcome {
   std::set<std::string> quarantined;
 };
 
-/// What may happen in a run.
+/// The events that may happen in a run.
 struct Weather {
   bool chaos = true;
   bool crashes = true;
