@@ -1,24 +1,13 @@
 #include "coordinator/scheduler/context/leases.h"
 
+#include "coordinator/scheduler/api/worker_process.h"
 #include "coordinator/scheduler/model/coverage.h"
 
 namespace bandsaw::coordinator {
-namespace {
-
-/// Returns the 64-bit FNV-1a hash (Fowler, Noll, Vo).
-std::uint64_t fnv1a(const std::string& text) {
-  std::uint64_t hash = 14695981039346656037ull;
-  for (const char c : text) {
-    hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ull;
-  }
-  return hash;
-}
-
-}  // namespace
 
 // 24 bits that depend on the epoch, then 2^39 ids; the sign bit is never used.
 Leases::Leases(const std::string& epoch)
-    : next_(epoch.empty() ? 1 : ((fnv1a(epoch) >> 40) << 39) + 1) {}
+    : next_(epoch.empty() ? 1 : ((text_hash(epoch) >> 40) << 39) + 1) {}
 
 LeaseId Leases::new_id() {
   while (next_ == kFree || next_ == kStored || all_.contains(next_)) {
