@@ -6,7 +6,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
-#include "coordinator/core/types.h"
+#include "coordinator/scheduler/api/job_view.h"
 #include "proto/farm.pb.h"
 
 namespace bandsaw::coordinator {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/core/types.h"
+#include "coordinator/scheduler/api/job_view.h"
 #include "coordinator/store/attribution_file.h"
 
 namespace bandsaw::coordinator {

@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-#include "coordinator/core/types.h"
+#include "coordinator/scheduler/api/ids.h"
 
 namespace bandsaw::coordinator {
 

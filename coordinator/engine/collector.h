@@ -10,7 +10,7 @@
 #include <set>
 #include <vector>
 
-#include "coordinator/core/types.h"
+#include "coordinator/scheduler/api/ids.h"
 #include "coordinator/store/blob_store.h"
 #include "coordinator/store/data_folder.h"
 

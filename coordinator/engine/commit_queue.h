@@ -7,7 +7,7 @@
 
 #include "absl/functional/any_invocable.h"
 #include "absl/status/status.h"
-#include "coordinator/core/messages.h"
+#include "coordinator/scheduler/api/messages.h"
 #include "coordinator/store/journal.h"
 
 namespace bandsaw::coordinator {

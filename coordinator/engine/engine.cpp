@@ -33,9 +33,10 @@ std::string new_epoch() {
   return epoch;
 }
 
-CoreOptions core_options(const EngineOptions& options, const std::string& epoch) {
-  CoreOptions core;
-  core.fitness = {.protocol = wire::kProtocol, .pixel_version = kPixelVersion, .canary = canary()};
+SchedulerOptions core_options(const EngineOptions& options, const std::string& epoch) {
+  SchedulerOptions core;
+  core.compatibility = {
+      .protocol = wire::kProtocol, .pixel_version = kPixelVersion, .canary = canary()};
   core.heartbeat_timeout_s = options.heartbeat_timeout_s;
   core.progress_timeout_s = options.progress_timeout_s;
   core.reattach_grace_s = options.reattach_grace_s;

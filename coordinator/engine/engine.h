@@ -13,7 +13,6 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "coordinator/core/messages.h"
 #include "coordinator/engine/clock.h"
 #include "coordinator/engine/collector.h"
 #include "coordinator/engine/film_thread.h"
@@ -24,6 +23,7 @@
 #include "coordinator/engine/scheduler_thread.h"
 #include "coordinator/engine/store_thread.h"
 #include "coordinator/engine/worker_link.h"
+#include "coordinator/scheduler/api/messages.h"
 #include "coordinator/store/blob_store.h"
 #include "coordinator/store/data_folder.h"
 #include "coordinator/store/journal.h"
@@ -66,7 +66,7 @@ class Engine {
 
   // Users.
   /// Returns the job id once the job is in the journal. FAILED_PRECONDITION: a blob is missing; the
-  /// message names it. INVALID_ARGUMENT: the priority is beyond kMostPriority.
+  /// message names it. INVALID_ARGUMENT: the priority is beyond kMaxPriority.
   void submit(JobSpec spec, std::function<void(absl::StatusOr<JobId>)> done,
               std::int32_t priority = 0);
   /// These four return the job after the change, once that is in the journal. NOT_FOUND: no such
@@ -74,7 +74,7 @@ class Engine {
   void cancel(JobId job, std::function<void(absl::StatusOr<JobView>)> done);
   void pause(JobId job, std::function<void(absl::StatusOr<JobView>)> done);
   void resume(JobId job, std::function<void(absl::StatusOr<JobView>)> done);
-  /// INVALID_ARGUMENT: the priority is beyond kMostPriority.
+  /// INVALID_ARGUMENT: the priority is beyond kMaxPriority.
   void set_priority(JobId job, std::int32_t priority,
                     std::function<void(absl::StatusOr<JobView>)> done);
   /// Puts a machine into quarantine as if it had returned wrong pixels, or lifts its quarantine.

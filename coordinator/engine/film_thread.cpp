@@ -244,7 +244,7 @@ absl::StatusOr<BandPixels> FilmThread::read_again(JobId id, const Added& added) 
 }
 
 void FilmThread::leave_out(JobId id, OneJob& job, const std::vector<std::size_t>& damaged) {
-  std::vector<input::BandsDamaged::Lost> lost;
+  std::vector<input::BandsDamaged::DamagedBand> lost;
   for (auto index = damaged.rbegin(); index != damaged.rend(); ++index) {
     const auto one = job.added.begin() + static_cast<std::ptrdiff_t>(*index);
     lost.push_back({one->band, one->renderer});

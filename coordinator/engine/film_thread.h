@@ -12,9 +12,9 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "coordinator/core/messages.h"
 #include "coordinator/engine/attribution.h"
 #include "coordinator/engine/inboxes.h"
+#include "coordinator/scheduler/api/messages.h"
 #include "coordinator/store/data_folder.h"
 #include "coordinator/store/finished.h"
 #include "renderlib/image/image.h"

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "absl/status/status.h"
-#include "coordinator/core/messages.h"
 #include "coordinator/engine/collector.h"
 #include "coordinator/engine/incoming_band.h"
+#include "coordinator/scheduler/api/messages.h"
 #include "coordinator/store/finished.h"
 
 namespace bandsaw::coordinator {

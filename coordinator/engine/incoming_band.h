@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <string>
 
-#include "coordinator/core/types.h"
 #include "coordinator/engine/answer.h"
 #include "coordinator/engine/memory_budget.h"
+#include "coordinator/scheduler/api/job_view.h"
 #include "renderlib/render/band.h"
 #include "renderlib/render/tile_samples.h"
 
@@ -26,7 +26,7 @@ struct IncomingBand {
   /// (renderlib/render/work_hash.h); 0: unknown.
   std::uint64_t work = 0;
   std::string instance;        ///< instance of the worker
-  std::uint64_t renderer = 0;  ///< id of the worker process (core/renderer.h)
+  std::uint64_t renderer = 0;  ///< id of the worker process (scheduler/api/worker_process.h)
   BandPixels pixels;
   std::string worker;      ///< name of the worker, from action::AddToFilm
   TileSamples tiles = {};  ///< samples of the band's half tiles, from action::AddToFilm

@@ -2,7 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
-#include "coordinator/core/state_name.h"
+#include "coordinator/scheduler/api/job_spec.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -32,7 +32,7 @@ struct Line {
     spdlog::info("job={} {} by a user", r.job, r.held ? "paused" : "resumed");
   }
   void operator()(const record::TimeSpent&) const {}
-  void operator()(const record::Figures& r) const {
+  void operator()(const record::JobSummary& r) const {
     spdlog::info("job={} elapsed={:.3f} s cpu={:.3f} s workers={} samples={}", r.job, r.elapsed_s,
                  r.cpu_s, r.workers_used, r.samples);
   }
@@ -44,7 +44,7 @@ struct Line {
     spdlog::info("job={} worker={} samples={} cpu={:.3f} s", r.job, r.share.name, r.share.samples,
                  r.share.cpu_s);
   }
-  void operator()(const record::LastWords& r) const {
+  void operator()(const record::FailureLog& r) const {
     for (const std::string& line : r.log) {
       spdlog::error("job={} worker={} | {}", r.job, r.worker, line);
     }
@@ -81,13 +81,13 @@ struct Line {
 
 void log_record(const Record& record) { std::visit(Line{}, record); }
 
-void log_fault(const action::Faulted& fault) {
+void log_fault(const action::LogFailure& fault) {
   spdlog::warn("failed job={} rows={}:{} samples={}:{} worker={}: {}", fault.job,
                fault.band.rows.first, fault.band.rows.last, fault.band.samples.first,
                fault.band.samples.last, fault.worker, fault.reason);
 }
 
-void log_shared(const action::Shared& shared) {
+void log_shared(const action::LogReassignment& shared) {
   spdlog::info("{} job={} rows={}:{} samples={}:{} from={} to={}",
                shared.begun ? "copied" : "moved", shared.job, shared.band.rows.first,
                shared.band.rows.last, shared.band.samples.first, shared.band.samples.last,

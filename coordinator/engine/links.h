@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "coordinator/core/messages.h"
 #include "coordinator/engine/worker_link.h"
+#include "coordinator/scheduler/api/messages.h"
 
 namespace bandsaw::coordinator {
 

@@ -18,7 +18,7 @@ constexpr std::size_t kCollectEveryJobs = 1'000;
 
 }  // namespace
 
-SchedulerThread::SchedulerThread(CoreOptions options, Journal& journal, Reserve reserve,
+SchedulerThread::SchedulerThread(SchedulerOptions options, Journal& journal, Reserve reserve,
                                  const Clock& clock, StoreInbox& store, FilmInbox& film)
     : core_(options),
       journal_(journal),
@@ -76,12 +76,12 @@ void SchedulerThread::perform(const Action& action) {
     store_.drop_bands(drop->job);
     film_.drop(drop->job);
   } else if (const auto* retracted = std::get_if<action::Retract>(&action)) {
-    film_.retract(retracted->job, retracted->renderer);
+    film_.retract(retracted->job, retracted->process);
   } else if (const auto* forgotten = std::get_if<action::DropJob>(&action)) {
     store_.drop_job(forgotten->job);
-  } else if (const auto* shared = std::get_if<action::Shared>(&action)) {
+  } else if (const auto* shared = std::get_if<action::LogReassignment>(&action)) {
     log_shared(*shared);
-  } else if (const auto* fault = std::get_if<action::Faulted>(&action)) {
+  } else if (const auto* fault = std::get_if<action::LogFailure>(&action)) {
     log_fault(*fault);
   } else {
     std::visit(

@@ -12,7 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include "coordinator/core/core.h"
 #include "coordinator/engine/clock.h"
 #include "coordinator/engine/collector.h"
 #include "coordinator/engine/commit_queue.h"
@@ -20,6 +19,7 @@
 #include "coordinator/engine/links.h"
 #include "coordinator/engine/watchers.h"
 #include "coordinator/engine/worker_logs.h"
+#include "coordinator/scheduler/scheduler.h"
 #include "coordinator/store/journal.h"
 #include "coordinator/store/reserve.h"
 
@@ -33,7 +33,7 @@ class SchedulerThread {
  public:
   /// `reserve` is released when the journal has no room, and held again when it has. All references
   /// MUST outlive it.
-  SchedulerThread(CoreOptions options, Journal& journal, Reserve reserve, const Clock& clock,
+  SchedulerThread(SchedulerOptions options, Journal& journal, Reserve reserve, const Clock& clock,
                   StoreInbox& store, FilmInbox& film);
 
   /// Restores the state from the journal and the band logs. Call before any other method, while the
@@ -104,7 +104,7 @@ class SchedulerThread {
   void collect();
   void compact();
 
-  Core core_;
+  Scheduler core_;
   Journal& journal_;
   Reserve reserve_;
   const Clock& clock_;

@@ -58,7 +58,7 @@ absl::Status SchedulerThread::restore_job(JobId id, const Known& known, StoreThr
                                    .band = pixels.band,
                                    .row_digests = row_digests(pixels),
                                    .instance = {},
-                                   .renderer = record.renderer,
+                                   .process = record.renderer,
                                    .counters = pixels.counters,
                                    .cpu_s = record.cpu_s});
     // Bands of a machine in quarantine are refused.

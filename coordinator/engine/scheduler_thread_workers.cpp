@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
-#include "coordinator/core/renderer.h"
 #include "coordinator/engine/scheduler_thread.h"
+#include "coordinator/scheduler/api/worker_process.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -36,7 +36,7 @@ void SchedulerThread::hello(SessionId session, std::shared_ptr<WorkerLink> link,
 
 void SchedulerThread::lost(SessionId session, std::string reason) {
   links_.lost(session, reason);
-  run(input::Lost{.session = session, .reason = std::move(reason)});
+  run(input::SessionEnded{.session = session, .reason = std::move(reason)});
 }
 
 void SchedulerThread::add_worker_log(SessionId session, std::vector<std::string> lines) {
@@ -62,7 +62,7 @@ void SchedulerThread::put_band(IncomingBand incoming) {
     incoming.answer(journal_status_);
     return;
   }
-  incoming.renderer = renderer_of(incoming.instance);
+  incoming.renderer = worker_process_id(incoming.instance);
   const std::optional<std::vector<RowRange>> wanted =
       core_.wanted(incoming.job, incoming.pixels.band);
   if (!wanted) {

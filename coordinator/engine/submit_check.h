@@ -3,7 +3,7 @@
 // Checks of a job before the scheduler receives it.
 
 #include "absl/status/status.h"
-#include "coordinator/core/types.h"
+#include "coordinator/scheduler/api/job_spec.h"
 #include "coordinator/store/blob_store.h"
 #include "renderlib/image/display.h"
 

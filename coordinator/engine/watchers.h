@@ -9,7 +9,7 @@
 
 #include "absl/functional/function_ref.h"
 #include "absl/status/statusor.h"
-#include "coordinator/core/types.h"
+#include "coordinator/scheduler/api/job_view.h"
 
 namespace bandsaw::coordinator {
 

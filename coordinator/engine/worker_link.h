@@ -3,7 +3,7 @@
 // The connection to one worker: the gRPC stream, or a fake in tests. Calls never block and never
 // fail; a broken link drops its messages.
 
-#include "coordinator/core/messages.h"
+#include "coordinator/scheduler/api/messages.h"
 
 namespace bandsaw::coordinator {
 

@@ -5,7 +5,7 @@
 // and the value.
 
 #include "absl/status/statusor.h"
-#include "coordinator/core/messages.h"
+#include "coordinator/scheduler/api/messages.h"
 #include "proto/farm.pb.h"
 #include "proto/wire/digest.h"
 

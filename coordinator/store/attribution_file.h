@@ -8,7 +8,7 @@
 
 #include "absl/status/status.h"
 #include "absl/status/statusor.h"
-#include "coordinator/core/types.h"
+#include "renderlib/render/band.h"
 
 namespace bandsaw::coordinator {
 

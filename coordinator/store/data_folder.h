@@ -5,7 +5,7 @@
 #include <string>
 
 #include "absl/status/statusor.h"
-#include "coordinator/core/types.h"
+#include "coordinator/scheduler/api/ids.h"
 #include "proto/wire/limits.h"
 #include "renderlib/base/file.h"
 

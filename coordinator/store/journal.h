@@ -5,7 +5,7 @@
 #include "absl/functional/function_ref.h"
 #include "absl/status/status.h"
 #include "absl/types/span.h"
-#include "coordinator/core/messages.h"
+#include "coordinator/scheduler/api/messages.h"
 
 namespace bandsaw::coordinator {
 

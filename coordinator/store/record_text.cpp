@@ -47,7 +47,7 @@ JobState state_field(FieldReader& in, absl::string_view name) {
   return JobState::kFailed;
 }
 
-void write_figures(FieldWriter& out, const record::Figures& r) {
+void write_figures(FieldWriter& out, const record::JobSummary& r) {
   out.number("job", r.job);
   out.real("elapsed_s", r.elapsed_s);
   out.real("cpu_s", r.cpu_s);
@@ -82,7 +82,7 @@ Counters read_counters(FieldReader& in) {
 }
 
 Record read_figures(FieldReader& in) {
-  return record::Figures{
+  return record::JobSummary{
       .job = in.number("job"),
       .elapsed_s = in.real("elapsed_s"),
       .cpu_s = in.real("cpu_s"),
@@ -112,11 +112,11 @@ Record read_record(absl::string_view kind, FieldReader& in) {
         .job = in.number("job"), .state = state_field(in, "state"), .reason = in.text("reason")};
   }
   if (kind == "priority_changed") {
-    // Stored with an offset, in [0, 2 * kMostPriority], because fields hold no signed numbers.
+    // Stored with an offset, in [0, 2 * kMaxPriority], because fields hold no signed numbers.
     return record::PriorityChanged{
         .job = in.number("job"),
-        .priority = static_cast<std::int32_t>(in.number("priority_plus_most", 2 * kMostPriority)) -
-                    kMostPriority};
+        .priority = static_cast<std::int32_t>(in.number("priority_plus_most", 2 * kMaxPriority)) -
+                    kMaxPriority};
   }
   if (kind == "hold_changed") {
     return record::HoldChanged{.job = in.number("job"), .held = in.number("held", 1) == 1};
@@ -134,9 +134,9 @@ Record read_record(absl::string_view kind, FieldReader& in) {
     return read_share(in);
   }
   if (kind == "last_words") {
-    return record::LastWords{.job = in.number("job"),
-                             .worker = in.text("worker"),
-                             .log = absl::StrSplit(in.text("log"), '\n', absl::SkipEmpty())};
+    return record::FailureLog{.job = in.number("job"),
+                              .worker = in.text("worker"),
+                              .log = absl::StrSplit(in.text("log"), '\n', absl::SkipEmpty())};
   }
   if (kind == "job_forgotten") {
     return record::JobForgotten{.job = in.number("job")};
@@ -187,7 +187,7 @@ RecordText to_text(const Record& record) {
                             [&](const record::PriorityChanged& r) {
                               out.number("job", r.job);
                               out.number("priority_plus_most",
-                                         static_cast<std::uint64_t>(r.priority + kMostPriority));
+                                         static_cast<std::uint64_t>(r.priority + kMaxPriority));
                               return "priority_changed";
                             },
                             [&](const record::HoldChanged& r) {
@@ -200,7 +200,7 @@ RecordText to_text(const Record& record) {
                               out.real("elapsed_s", r.elapsed_s);
                               return "time_spent";
                             },
-                            [&](const record::Figures& r) {
+                            [&](const record::JobSummary& r) {
                               write_figures(out, r);
                               return "figures";
                             },
@@ -212,7 +212,7 @@ RecordText to_text(const Record& record) {
                               write_share(out, r);
                               return "share_counted";
                             },
-                            [&](const record::LastWords& r) {
+                            [&](const record::FailureLog& r) {
                               out.number("job", r.job);
                               out.text("worker", r.worker);
                               out.text("log", absl::StrJoin(r.log, "\n"));

@@ -24,18 +24,18 @@ R read_stored(FieldReader& in) {
           .band = {.samples = {.first = in.number("first"), .last = in.number("last")},
                    .rows = {.first = static_cast<std::uint32_t>(in.number("first_row", UINT32_MAX)),
                             .last = static_cast<std::uint32_t>(in.number("last_row", UINT32_MAX))}},
-          .renderer = in.number("renderer")};
+          .process = in.number("renderer")};
 }
 
 }  // namespace
 
 const char* write_audit(FieldWriter& out, const record::BandAudited& r) {
-  write_stored(out, r.job, r.band, r.renderer);
+  write_stored(out, r.job, r.band, r.process);
   return "band_audited";
 }
 
 const char* write_audit(FieldWriter& out, const record::BandLost& r) {
-  write_stored(out, r.job, r.band, r.renderer);
+  write_stored(out, r.job, r.band, r.process);
   return "band_lost";
 }
 
@@ -45,7 +45,7 @@ const char* write_audit(FieldWriter& out, const record::ErrorForgotten& r) {
 }
 
 const char* write_audit(FieldWriter& out, const record::WorkerQuarantined& r) {
-  out.number("renderer", r.renderer);
+  out.number("renderer", r.process);
   out.text("name", r.name);
   out.text("reason", r.reason);
   return "worker_quarantined";
@@ -68,7 +68,7 @@ std::optional<Record> read_audit(absl::string_view kind, FieldReader& in) {
   }
   if (kind == "worker_quarantined") {
     return record::WorkerQuarantined{
-        .renderer = in.number("renderer"), .name = in.text("name"), .reason = in.text("reason")};
+        .process = in.number("renderer"), .name = in.text("name"), .reason = in.text("reason")};
   }
   if (kind == "quarantine_lifted") {
     return record::QuarantineLifted{.name = in.text("name")};

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "absl/strings/string_view.h"
-#include "coordinator/core/records.h"
+#include "coordinator/scheduler/api/records.h"
 #include "coordinator/store/fields.h"
 
 namespace bandsaw::coordinator {

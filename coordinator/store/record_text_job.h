@@ -2,7 +2,7 @@
 
 // A job's specification, and the plan of an adaptive job, as fields (record_text.h).
 
-#include "coordinator/core/messages.h"
+#include "coordinator/scheduler/api/messages.h"
 #include "coordinator/store/fields.h"
 
 namespace bandsaw::coordinator {

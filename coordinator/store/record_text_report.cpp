@@ -40,7 +40,7 @@ record::ErrorMeasured read_error(FieldReader& in) {
 
 void write_share(FieldWriter& out, const record::ShareCounted& r) {
   out.number("job", r.job);
-  out.number("renderer", r.share.renderer);
+  out.number("renderer", r.share.process);
   out.text("name", r.share.name);
   out.number("samples", r.share.samples);
   out.real("cpu_s", r.share.cpu_s);
@@ -48,7 +48,7 @@ void write_share(FieldWriter& out, const record::ShareCounted& r) {
 
 record::ShareCounted read_share(FieldReader& in) {
   return {.job = in.number("job"),
-          .share = {.renderer = in.number("renderer"),
+          .share = {.process = in.number("renderer"),
                     .name = in.text("name"),
                     .samples = in.number("samples"),
                     .cpu_s = in.real("cpu_s")}};

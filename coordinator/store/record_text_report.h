@@ -2,7 +2,7 @@
 
 // The records from which a job's report is made, as fields.
 
-#include "coordinator/core/messages.h"
+#include "coordinator/scheduler/api/messages.h"
 #include "coordinator/store/fields.h"
 
 namespace bandsaw::coordinator {

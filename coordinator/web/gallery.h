@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "coordinator/core/types.h"
+#include "coordinator/scheduler/api/job_view.h"
 
 namespace bandsaw::coordinator {
 

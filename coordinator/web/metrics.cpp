@@ -5,7 +5,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
-#include "coordinator/core/state_name.h"
+#include "coordinator/scheduler/api/job_spec.h"
 
 namespace bandsaw::coordinator {
 namespace {

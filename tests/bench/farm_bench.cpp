@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/unit/core/sim_bench.h"
+#include "tests/unit/scheduler/sim_bench.h"
 
 namespace {
 

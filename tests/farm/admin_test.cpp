@@ -99,7 +99,7 @@ TEST_F(Administration, PeoplesSecretIsRenewedWithAndWithoutACoordinator) {
 
 // One band of a million samples, so that each worker is killed while it renders this band. The
 // first loss makes the band suspect; five more are needed on a farm that has not stored a band
-// before (coordinator/core/loss_rate.h).
+// before (coordinator/scheduler/liveness/crash_attribution.h).
 TEST_F(Administration, ABandThatEndsEveryWorkerFailsItsJob) {
   EXPECT_EQ(
       say({"submit", kScene, "--width", "65536", "--height", "1", "--samples", "16", "--detach"})

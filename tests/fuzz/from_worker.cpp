@@ -1,8 +1,8 @@
 // Messages of a worker's stream (each after two bytes with its length, little-endian): checked as
 // the coordinator does, then given to a scheduler with a job.
 
-#include "coordinator/core/core.h"
 #include "coordinator/rpc/checked_messages.h"
+#include "coordinator/scheduler/scheduler.h"
 #include "renderlib/base/check.h"
 #include "tests/fuzz/fuzz.h"
 
@@ -11,18 +11,20 @@ namespace {
 using namespace bandsaw;
 using namespace bandsaw::coordinator;
 
-Core farm_with_a_job() {
-  CoreOptions options;
+SchedulerOptions fuzz_options() {
+  SchedulerOptions options;
   options.epoch = "fuzz";
   options.audit_share = 0.5;
-  Core core(options);
+  return options;
+}
+
+void submit_job(Scheduler& scheduler) {
   JobSpec spec;
   spec.request_id = "0123456789abcdef";
   spec.manifest = std::string(64, 'a');
   spec.settings = {.width = 8, .height = 8, .max_depth = 2, .seed = 0};
   spec.stop = StopAtSamples{64};
-  core.step(input::Submit{spec}, 0);
-  return core;
+  scheduler.step(input::Submit{spec}, 0);
 }
 
 std::optional<Input> as_input(const farm::FromWorker& message) {
@@ -65,17 +67,18 @@ std::optional<Input> as_input(const farm::FromWorker& message) {
 }  // namespace
 
 void bandsaw::fuzz::run(absl::Span<const std::uint8_t> in) {
-  Core core = farm_with_a_job();
+  Scheduler scheduler(fuzz_options());
+  submit_job(scheduler);
   double now = 0;
   while (in.size() >= 2) {
     const std::size_t length = std::min<std::size_t>(in[0] + 256u * in[1], in.size() - 2);
     farm::FromWorker message;
     if (message.ParseFromArray(in.data() + 2, static_cast<int>(length))) {
       if (const auto input = as_input(message)) {
-        core.step(*input, now += 0.25);
+        scheduler.step(*input, now += 0.25);
       }
-      core.step(input::Tick{}, now += 0.25);
-      const auto broken = core.broken_invariant();
+      scheduler.step(input::Tick{}, now += 0.25);
+      const auto broken = scheduler.broken_invariant();
       BANDSAW_CHECK(!broken, broken->c_str());
     }
     in.remove_prefix(2 + length);

@@ -8,7 +8,7 @@
 #include "coordinator/cli/farm/farm_errors.h"
 #include "coordinator/cli/farm/lists_text.h"
 #include "coordinator/cli/options/commands.h"
-#include "coordinator/core/state_name.h"
+#include "coordinator/scheduler/api/job_spec.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {

@@ -6,7 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/base/text.h"
 #include "coordinator/cli/progress/progress_json.h"
-#include "coordinator/core/state_name.h"
+#include "coordinator/scheduler/api/job_spec.h"
 
 namespace bandsaw::coordinator {
 

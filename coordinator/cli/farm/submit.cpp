@@ -14,7 +14,7 @@
 #include "coordinator/cli/options/output_names.h"
 #include "coordinator/cli/scene/image_settings.h"
 #include "coordinator/cli/scene/import_scene_file.h"
-#include "coordinator/core/state_name.h"
+#include "coordinator/scheduler/api/job_spec.h"
 #include "proto/convert/render_values.h"
 #include "proto/link/random.h"
 #include "renderlib/base/status_macros.h"

@@ -14,8 +14,8 @@
 #include "coordinator/cli/image/report.h"
 #include "coordinator/cli/image/report_file.h"
 #include "coordinator/cli/progress/views.h"
-#include "coordinator/core/state_name.h"
 #include "coordinator/engine/clock.h"
+#include "coordinator/scheduler/api/job_spec.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {

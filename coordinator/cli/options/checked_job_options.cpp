@@ -22,9 +22,9 @@ absl::StatusOr<Options> checked(const RawOptions& raw, const std::string& comman
 absl::StatusOr<std::int32_t> checked_priority_value(const std::string& name,
                                                     const std::string& text) {
   std::int32_t value = 0;
-  if (!absl::SimpleAtoi(text, &value) || value < -kMostPriority || value > kMostPriority) {
+  if (!absl::SimpleAtoi(text, &value) || value < -kMaxPriority || value > kMaxPriority) {
     return absl::InvalidArgumentError(absl::StrCat(name, ": must be a whole number in [",
-                                                   -kMostPriority, ", ", kMostPriority, "], is '",
+                                                   -kMaxPriority, ", ", kMaxPriority, "], is '",
                                                    text, "'"));
   }
   return value;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "coordinator/cli/options/scene_choices.h"
-#include "coordinator/core/types.h"
+#include "coordinator/scheduler/api/job_spec.h"
 #include "proto/link/join.h"
 #include "renderlib/image/display.h"
 #include "renderlib/render/band.h"
@@ -88,7 +88,7 @@ struct SubmitOptions {
   std::string tev;  ///< HOST:PORT of a viewer; empty: none
   Verbosity verbosity;
   bool detach = false;            ///< do not watch the job
-  std::int32_t priority = 0;      ///< [-kMostPriority, kMostPriority]
+  std::int32_t priority = 0;      ///< [-kMaxPriority, kMaxPriority]
   std::vector<LayerKind> layers;  ///< layers of EXR files
 };
 
@@ -132,7 +132,7 @@ struct ResumeOptions {
 
 struct PriorityOptions {
   JobId job = 0;
-  std::int32_t priority = 0;  ///< [-kMostPriority, kMostPriority]
+  std::int32_t priority = 0;  ///< [-kMaxPriority, kMaxPriority]
   FarmOption farm;
   Verbosity verbosity;
 };

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "coordinator/convert/farm_messages.h"
-#include "coordinator/core/types.h"
+#include "coordinator/scheduler/api/job_view.h"
 #include "proto/farm.pb.h"
 
 namespace bandsaw::coordinator {

@@ -1,6 +1,6 @@
 #include "coordinator/cli/progress/progress_json.h"
 
-#include "coordinator/core/state_name.h"
+#include "coordinator/scheduler/api/job_spec.h"
 
 namespace bandsaw::coordinator {
 namespace {

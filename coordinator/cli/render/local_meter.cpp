@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "coordinator/core/pass_plan.h"
+#include "coordinator/scheduler/model/pass_plan.h"
 
 namespace bandsaw::coordinator {
 

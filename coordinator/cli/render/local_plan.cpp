@@ -1,6 +1,6 @@
 #include "coordinator/cli/render/local_plan.h"
 
-#include "coordinator/core/pass_plan.h"
+#include "coordinator/scheduler/model/pass_plan.h"
 
 namespace bandsaw::coordinator {
 
@@ -28,7 +28,7 @@ std::optional<SampleRange> LocalPlan::next(std::uint64_t samples, double error, 
       return std::nullopt;
     }
     const double target = next_target(rule->relative_rmse, rule->adaptive && !schedule_);
-    return first_of(samples, next_look(samples, error, target, rule->max_samples));
+    return first_of(samples, next_checkpoint(samples, error, target, rule->max_samples));
   }
   const auto& rule = std::get<StopAtTime>(stop_);
   if (samples == 0) {

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "absl/functional/function_ref.h"
-#include "coordinator/core/types.h"
+#include "coordinator/scheduler/api/job_spec.h"
 #include "renderlib/render/band.h"
 #include "renderlib/render/tile_schedule.h"
 

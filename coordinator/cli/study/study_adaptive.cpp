@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "coordinator/core/pass_plan.h"
+#include "coordinator/scheduler/model/pass_plan.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/render/render_band.h"
 #include "renderlib/render/render_image.h"

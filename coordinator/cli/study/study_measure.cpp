@@ -10,7 +10,7 @@
 #include "coordinator/cli/base/cpu_time.h"
 #include "coordinator/cli/study/study_adaptive.h"
 #include "coordinator/cli/study/study_pixel_stops.h"
-#include "coordinator/core/error_curve.h"
+#include "coordinator/scheduler/api/error_curve.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/compare/error_metrics.h"
 #include "renderlib/geometry/placement.h"

@@ -88,9 +88,9 @@ absl::StatusOr<StudyOfScene> study_scene(const std::string& name, const Scene& s
 /// Returns p of "error ~ samples^p" over the line's points; std::nullopt with fewer than two.
 std::optional<double> slope_of(const StudyLine& line);
 
-/// Returns the CPU seconds until the error is 1 %, as predicted in a report (core/error_curve.h).
-/// Returns std::nullopt for kPixelStops, whose error does not depend on the number of samples
-/// alone.
+/// Returns the CPU seconds until the error is 1 %, as predicted in a report
+/// (scheduler/api/error_curve.h). Returns std::nullopt for kPixelStops, whose error does not depend
+/// on the number of samples alone.
 std::optional<double> cpu_s_to_1_percent(const StudyLine& line);
 
 }  // namespace bandsaw::coordinator

@@ -35,7 +35,7 @@ class RecordedScheduler : public SchedulerInbox {
   std::vector<std::uint64_t> merged;
   std::vector<double> errors;
   int failed = 0;
-  std::vector<input::BandsDamaged::Lost> damaged;
+  std::vector<input::BandsDamaged::DamagedBand> damaged;
 };
 
 /// Records the finished images.
@@ -158,7 +158,7 @@ TEST_F(FilmThreadTest, DamagedBandsAreLeftOutAndReported) {
   EXPECT_EQ(scheduler_.failed, 0);
   ASSERT_EQ(scheduler_.damaged.size(), 2u);
   for (const auto& lost : scheduler_.damaged) {
-    EXPECT_EQ(lost.renderer, 5u);
+    EXPECT_EQ(lost.process, 5u);
     EXPECT_EQ(lost.band.rows.count(), 2u);
   }
   ASSERT_TRUE(add({0, 16}, {4, 8}).ok());

@@ -5,7 +5,7 @@
 #include <limits>
 #include <vector>
 
-#include "coordinator/core/messages.h"
+#include "coordinator/scheduler/api/messages.h"
 
 namespace bandsaw::coordinator {
 
@@ -35,24 +35,24 @@ inline std::vector<Record> sample_records() {
           record::StateChanged{.job = 1, .state = JobState::kDone, .reason = ""},
           record::StateChanged{.job = 1, .state = JobState::kFailed, .reason = " "},
           record::StateChanged{.job = 1, .state = JobState::kCancelled, .reason = "by\\user"},
-          record::PriorityChanged{.job = 1, .priority = -kMostPriority},
+          record::PriorityChanged{.job = 1, .priority = -kMaxPriority},
           record::HoldChanged{.job = 1, .held = true},
           record::TimeSpent{.job = 1, .elapsed_s = 1e-3},
-          record::Figures{.job = 1,
-                          .elapsed_s = 3.25,
-                          .cpu_s = 1.0 / 3,
-                          .workers_used = UINT32_MAX,
-                          .samples = UINT64_MAX,
-                          .samples_per_pixel = 7,
-                          .error = -1,
-                          .counters = {.rays = 9,
-                                       .bad_samples = 8,
-                                       .bad_x = 7,
-                                       .bad_y = UINT32_MAX,
-                                       .bad_sample = 5,
-                                       .negative_samples = 4,
-                                       .truncated_paths = 3,
-                                       .dropped_primitives = UINT64_MAX}},
+          record::JobSummary{.job = 1,
+                             .elapsed_s = 3.25,
+                             .cpu_s = 1.0 / 3,
+                             .workers_used = UINT32_MAX,
+                             .samples = UINT64_MAX,
+                             .samples_per_pixel = 7,
+                             .error = -1,
+                             .counters = {.rays = 9,
+                                          .bad_samples = 8,
+                                          .bad_x = 7,
+                                          .bad_y = UINT32_MAX,
+                                          .bad_sample = 5,
+                                          .negative_samples = 4,
+                                          .truncated_paths = 3,
+                                          .dropped_primitives = UINT64_MAX}},
           record::ErrorMeasured{.job = 1,
                                 .point = {.samples = kMaxSamples,
                                           .elapsed_s = 1.5,
@@ -68,15 +68,15 @@ inline std::vector<Record> sample_records() {
                                                        .worst_share = 0.3}}},
           record::ShareCounted{
               .job = 1,
-              .share = {.renderer = UINT64_MAX, .name = "a\nb", .samples = UINT64_MAX, .cpu_s = 0}},
-          record::LastWords{.job = 1, .worker = "desk", .log = {"one \\ line", "another"}},
+              .share = {.process = UINT64_MAX, .name = "a\nb", .samples = UINT64_MAX, .cpu_s = 0}},
+          record::FailureLog{.job = 1, .worker = "desk", .log = {"one \\ line", "another"}},
           record::JobForgotten{.job = 3},
           record::WorkerJoined{.instance = "0123456789abcdef0123456789abcdef"},
           record::WorkerLeft{.instance = ""},
-          record::BandAudited{.job = 1, .band = {{16, 32}, {3, UINT32_MAX}}, .renderer = 7},
-          record::BandLost{.job = 1, .band = {{0, 16}, {0, UINT32_MAX}}, .renderer = UINT64_MAX},
+          record::BandAudited{.job = 1, .band = {{16, 32}, {3, UINT32_MAX}}, .process = 7},
+          record::BandLost{.job = 1, .band = {{0, 16}, {0, UINT32_MAX}}, .process = UINT64_MAX},
           record::ErrorForgotten{.job = 1},
-          record::WorkerQuarantined{.renderer = UINT64_MAX, .name = "a desk", .reason = "lied\n"},
+          record::WorkerQuarantined{.process = UINT64_MAX, .name = "a desk", .reason = "lied\n"},
           record::QuarantineLifted{.name = "a desk"}};
 }
 

@@ -1,0 +1,50 @@
+#pragma once
+
+// The error of a job's image over its samples, and its extrapolation. Pure functions.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "renderlib/render/error_estimate.h"
+
+namespace bandsaw::coordinator {
+
+/// Error of the image after a pass.
+struct ErrorPoint {
+  std::uint64_t samples = 0;  ///< per pixel, of the complete passes; > 0
+  double elapsed_s = 0;       ///< of the job so far
+  double cpu_s = 0;           ///< of rendering so far, summed over threads
+  ErrorEstimate estimate;
+  friend bool operator==(const ErrorPoint&, const ErrorPoint&) = default;
+};
+
+/// Ordered by rising samples.
+using ErrorCurve = std::vector<ErrorPoint>;
+
+/// Adds a point with at least as many samples as the last one. A point with as many replaces the
+/// last one's estimate and keeps its times, because it is a second measurement of the same image.
+/// Of points less than an eighth apart the later is kept, so a curve has at most about 160 points.
+void add_point(ErrorCurve& curve, const ErrorPoint& point);
+
+/// Returns the exponent p of "error falls as samples^-p" over the last octave: the mean of its
+/// points, each compared with half its samples, clamped to [0.5, 0.75]. 0.5, the exponent of random
+/// samples, if the curve does not span an octave.
+double fall_of(const ErrorCurve& curve);
+
+/// Returns the relative RMSE plus its margin at this many samples per pixel, > 0. Between points it
+/// is interpolated. Beyond the last point it is the error at half the samples, lowered by fall_of:
+/// so the steps of the last octave are expected again, because a whole net of 2^k samples is better
+/// than what lies between, and no power of the samples has such steps. The curve MUST have a point
+/// whose error is not 0.
+double error_at(const ErrorCurve& curve, double samples);
+
+/// Returns the samples per pixel at which error_at is at most `target`, > 0. std::nullopt: the
+/// curve has no point or is of a black image, or more than kMaxSamples would be needed.
+std::optional<double> samples_until(const ErrorCurve& curve, double target);
+
+/// Returns the same in CPU seconds, which are proportional to the samples. std::nullopt also if the
+/// CPU time is unknown.
+std::optional<double> cpu_s_until(const ErrorCurve& curve, double target);
+
+}  // namespace bandsaw::coordinator

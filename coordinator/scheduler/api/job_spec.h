@@ -1,0 +1,90 @@
+#pragma once
+
+// The specification of a job by its submitter, and the states of a job.
+
+#include <cstdint>
+#include <string>
+#include <variant>
+
+#include "coordinator/scheduler/api/ids.h"
+#include "renderlib/render/settings.h"
+#include "renderlib/render/work_hash.h"
+
+namespace bandsaw::coordinator {
+
+/// The job ends after this many samples per pixel.
+struct StopAtSamples {
+  std::uint64_t samples = 0;  ///< [1, kMaxSamples]
+  friend bool operator==(const StopAtSamples&, const StopAtSamples&) = default;
+};
+/// The job ends once the estimated relative RMSE of the image is at most `relative_rmse`.
+struct StopAtError {
+  double relative_rmse = 0;  ///< > 0; 0.01 is 1 %
+  std::uint64_t max_samples = kMaxSamples;
+  bool adaptive = false;  ///< more samples where there is more noise (render/adaptive_plan.h)
+  friend bool operator==(const StopAtError&, const StopAtError&) = default;
+};
+/// The job ends at the last complete pass before this much time has passed since its first lease.
+struct StopAtTime {
+  double seconds = 0;  ///< > 0
+  std::uint64_t max_samples = kMaxSamples;
+  friend bool operator==(const StopAtTime&, const StopAtTime&) = default;
+};
+using StopRule = std::variant<StopAtSamples, StopAtError, StopAtTime>;
+
+inline bool is_adaptive(const StopRule& rule) {
+  const auto* until = std::get_if<StopAtError>(&rule);
+  return until != nullptr && until->adaptive;
+}
+
+struct JobSpec {
+  std::string request_id;  ///< chosen by the submitter: the same id means the same job
+  std::string name;
+  DigestHex manifest;
+  RenderSettings settings;
+  StopRule stop;
+  /// Returns true if a band labelled with the hash `work` (render/work_hash.h) can belong to this
+  /// job. The job id alone does not tell, because ids are reused after the data folder is reset.
+  /// 0: the band is not labelled, and is accepted.
+  bool may_be(std::uint64_t work) const {
+    return work == 0 || work == work_hash(manifest, settings);
+  }
+  friend bool operator==(const JobSpec&, const JobSpec&) = default;
+};
+
+/// Priorities are in [-kMaxPriority, kMaxPriority]. Jobs of higher priority are leased first, jobs
+/// of equal priority in the order of their ids.
+inline constexpr std::int32_t kMaxPriority = 1'000;
+
+enum class JobState {
+  kRunning,    ///< has work left
+  kPaused,     ///< nothing is leased until it is resumed; the job's reason says why
+  kFinishing,  ///< every pixel is rendered; the result is being written
+  kDone,       ///< the result can be fetched; final
+  kFailed,     ///< the job's reason says why; final
+  kCancelled,  ///< final
+};
+constexpr bool is_final(JobState s) {
+  return s == JobState::kDone || s == JobState::kFailed || s == JobState::kCancelled;
+}
+
+/// Returns the word for a state in tables, logs, JSON and metrics.
+constexpr const char* state_name(JobState state) {
+  switch (state) {
+    case JobState::kRunning:
+      return "running";
+    case JobState::kPaused:
+      return "paused";
+    case JobState::kFinishing:
+      return "finishing";
+    case JobState::kDone:
+      return "done";
+    case JobState::kFailed:
+      return "failed";
+    case JobState::kCancelled:
+      return "cancelled";
+  }
+  return "unknown";
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,73 @@
+#pragma once
+
+// Jobs and workers as they are displayed.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "coordinator/scheduler/api/error_curve.h"
+#include "coordinator/scheduler/api/ids.h"
+#include "coordinator/scheduler/api/job_spec.h"
+#include "renderlib/render/band.h"
+
+namespace bandsaw::coordinator {
+
+/// A worker that has leases of a job.
+struct JobWorkerView {
+  std::string name;
+  std::uint32_t threads = 0;
+  double samples_per_s = 0;
+  RowRange rows;  ///< of its oldest lease of the job
+  std::string state;
+};
+
+/// The part of an image that one worker process rendered.
+struct WorkerShare {
+  WorkerProcessId process = 0;
+  std::string name;           ///< empty: the process has not connected in this epoch
+  std::uint64_t samples = 0;  ///< pixel samples
+  double cpu_s = 0;           ///< summed over its threads
+  friend bool operator==(const WorkerShare&, const WorkerShare&) = default;
+};
+
+struct JobView {
+  JobId id = 0;
+  JobSpec spec;
+  JobState state = JobState::kRunning;
+  std::string reason;
+  double fraction = 0;  ///< of the work that is done, [0, 1]
+  double elapsed_s = 0;
+  double remaining_s = -1;  ///< negative: unknown
+  double samples_per_s = 0;
+  std::uint64_t samples_done = 0;       ///< pixel samples stored
+  std::uint64_t samples_per_pixel = 0;  ///< of the complete passes
+  double error = -1;                    ///< negative: unknown
+  Counters counters;
+  double cpu_s = 0;
+  std::uint32_t workers_used = 0;
+  std::int32_t priority = 0;
+  std::string log_of;            ///< of a failed job: the worker that failed last
+  std::vector<std::string> log;  ///< the last lines of that worker's log
+  /// Backup tasks that were granted. The duplicate work is counted in no other number.
+  std::uint64_t bands_copied = 0;
+  /// Bands that two machines rendered with equal digests. 0 once the job is final.
+  std::uint64_t bands_audited = 0;
+  std::vector<JobWorkerView> workers;
+  ErrorCurve curve;                 ///< empty in lists of jobs
+  std::vector<WorkerShare> shares;  ///< of a final job; empty in lists of jobs
+};
+
+struct WorkerView {
+  std::string name;
+  std::string state;
+  std::string reason;
+  std::string address;
+  std::string build;
+  std::uint32_t threads = 0;
+  double samples_per_s = 0;
+  JobId job = 0;
+  double connected_s = 0;
+};
+
+}  // namespace bandsaw::coordinator

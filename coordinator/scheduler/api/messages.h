@@ -1,0 +1,254 @@
+#pragma once
+
+// Inputs of the scheduler (requests and observations), and the actions it returns, which MUST be
+// done only after the records of the same step are on disk.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "absl/status/status.h"
+#include "coordinator/scheduler/api/ids.h"
+#include "coordinator/scheduler/api/job_spec.h"
+#include "coordinator/scheduler/api/records.h"
+#include "renderlib/render/band.h"
+#include "renderlib/render/tile_samples.h"
+
+namespace bandsaw::coordinator {
+
+/// A worker's report when it opens a session.
+struct WorkerHello {
+  std::string instance;  ///< unique to its process, the same over reconnects
+  std::string name;
+  std::string address;
+  std::string build;
+  std::uint32_t protocol = 0;
+  std::uint32_t pixel_version = 0;
+  std::uint64_t canary = 0;
+  std::uint32_t threads = 1;
+  std::uint32_t max_bands = 2;
+  /// A lease that the worker held before it reconnected.
+  struct Held {
+    JobId job = 0;
+    Band band;
+    LeaseId lease = 0;
+    std::string epoch;
+    bool finished = false;
+    std::uint64_t work = 0;  ///< render/work_hash.h; 0: not reported
+  };
+  std::vector<Held> held;
+};
+
+struct LeaseProgress {
+  LeaseId lease = 0;
+  std::uint32_t rows_done = 0;
+  bool preparing = false;
+  std::uint64_t prepared = 0;  ///< grows while the scene is being fetched or built
+};
+
+// ---- inputs ----
+namespace input {
+/// REQUIRES: all blobs of the package are stored and the settings are in range.
+struct Submit {
+  JobSpec spec;
+  std::int32_t priority = 0;  ///< [-kMaxPriority, kMaxPriority]; used only if the job is new
+};
+/// Stops leasing the job, revokes leases that are not begun at once, and revokes those that are not
+/// rendered one second later.
+struct Pause {
+  JobId job = 0;
+};
+struct Resume {
+  JobId job = 0;
+};
+struct SetPriority {
+  JobId job = 0;
+  std::int32_t priority = 0;
+};
+struct Cancel {
+  JobId job = 0;
+};
+struct Hello {
+  SessionId session = 0;
+  WorkerHello worker;
+};
+struct Heartbeat {
+  SessionId session = 0;
+  std::vector<LeaseProgress> leases;
+  std::string doing;
+};
+/// The worker finishes its leases and takes no more.
+struct Draining {
+  SessionId session = 0;
+  std::string reason;
+};
+/// The worker's stream ended.
+struct SessionEnded {
+  SessionId session = 0;
+  std::string reason;
+};
+/// The worker could not render a band.
+struct BandFailed {
+  SessionId session = 0;
+  LeaseId lease = 0;
+  std::string reason;
+  std::vector<std::string> log;
+};
+/// A band's pixels are on disk. Send this for duplicates that were not written as well, so that
+/// their digests are compared.
+struct BandStored {
+  JobId job = 0;
+  Band band;
+  std::vector<std::uint64_t> row_digests;  ///< one per row, of the row's sums
+  std::string instance;         ///< of the worker that rendered it; empty if read back from disk
+  WorkerProcessId process = 0;  ///< that rendered it, if read back from disk
+  Counters counters;
+  double render_s = 0;
+  double cpu_s = 0;
+  bool written = true;  ///< false: all rows were stored already and it was only compared
+};
+/// The film has merged every row of samples [0, samples). Sent once more for the finished image.
+struct PassMerged {
+  JobId job = 0;
+  std::uint64_t samples = 0;
+  std::optional<ErrorEstimate> error;      ///< std::nullopt: cannot be estimated yet
+  std::vector<HalfTileErrors> tiles = {};  ///< of an adaptive job (Film::tile_errors)
+
+  /// Returns the upper bound of the error; negative: unknown.
+  double error_at_most() const { return known_error(error, samples); }
+};
+struct ResultWritten {
+  JobId job = 0;
+};
+/// Records of these bands on disk are damaged, and their pixels are no longer in the film.
+struct BandsDamaged {
+  struct DamagedBand {
+    Band band;  ///< consecutive rows that one AddToFilm named
+    WorkerProcessId process = 0;
+  };
+  JobId job = 0;
+  std::vector<DamagedBand> bands;
+};
+/// Writing to disk or allocating memory failed; the job is paused with the reason until
+/// StorageBack.
+struct StorageFailed {
+  JobId job = 0;
+  std::string reason;
+};
+struct StorageBack {};
+/// A user quarantines a machine, as if it had returned wrong pixels.
+struct Quarantine {
+  std::string worker;  ///< its name, as displayed or as the worker reports it
+};
+/// A user lifts a quarantine. Worker processes that were quarantined MUST be restarted.
+struct LiftQuarantine {
+  std::string worker;
+};
+/// Removes final jobs; jobs that are not final are skipped.
+struct Forget {
+  std::vector<JobId> jobs;
+};
+/// Time has passed. MUST be sent at least once per heartbeat interval.
+struct Tick {};
+}  // namespace input
+
+using Input =
+    std::variant<input::Submit, input::Cancel, input::Pause, input::Resume, input::SetPriority,
+                 input::Hello, input::Heartbeat, input::Draining, input::SessionEnded,
+                 input::BandFailed, input::BandStored, input::PassMerged, input::ResultWritten,
+                 input::BandsDamaged, input::StorageFailed, input::StorageBack, input::Quarantine,
+                 input::LiftQuarantine, input::Forget, input::Tick>;
+
+// ---- actions ----
+namespace action {
+struct Welcome {
+  SessionId session = 0;
+  std::string name;
+  std::uint32_t heartbeat_ms = 1000;
+};
+struct Refuse {
+  SessionId session = 0;
+  std::string reason;
+  std::uint32_t retry_after_ms = 0;
+};
+/// Closes a session: the worker opened another one, went silent, or is quarantined.
+struct Close {
+  SessionId session = 0;
+  std::string reason;
+};
+struct Lease {
+  SessionId session = 0;
+  LeaseId lease = 0;
+  JobId job = 0;
+  DigestHex manifest;
+  RenderSettings settings;
+  Band band;
+  TileSamples tiles = {};  ///< of the band
+  std::uint32_t attempt = 1;
+  bool audit = false;  ///< the rows are stored already; this result is compared with them
+};
+struct Revoke {
+  SessionId session = 0;
+  std::vector<LeaseId> leases;
+};
+/// Log that an idle worker was given rows that another worker holds a lease of.
+struct LogReassignment {
+  JobId job = 0;
+  Band band;
+  std::string from;
+  std::string to;
+  bool begun = false;  ///< true: backup task, both render it; false: stolen before it was begun
+};
+/// Log that a worker could not render a band.
+struct LogFailure {
+  JobId job = 0;
+  Band band;
+  std::string worker;
+  std::string reason;
+};
+/// Add these rows of the stored band to the film; its other rows were there already.
+struct AddToFilm {
+  JobId job = 0;
+  Band band;
+  std::vector<RowRange> rows;
+  std::string worker;      ///< displayed name; empty: the worker is not known any more
+  TileSamples tiles = {};  ///< of the band
+};
+/// Everything that this worker process rendered of the job is void: rebuild the film without it,
+/// and send PassMerged again for its passes as they become complete.
+struct Retract {
+  JobId job = 0;
+  WorkerProcessId process = 0;
+};
+/// Write the image of samples [0, samples), then send ResultWritten.
+struct WriteResult {
+  JobId job = 0;
+  std::uint64_t samples = 0;
+};
+/// The job was forgotten: its result is no longer needed.
+struct DropJob {
+  JobId job = 0;
+};
+/// The job is final: its bands and its film are no longer needed; the result is kept.
+struct DropBands {
+  JobId job = 0;
+};
+}  // namespace action
+
+using Action =
+    std::variant<action::Welcome, action::Refuse, action::Close, action::Lease, action::Revoke,
+                 action::LogReassignment, action::LogFailure, action::AddToFilm, action::Retract,
+                 action::WriteResult, action::DropBands, action::DropJob>;
+
+/// The outcome of one input. The records MUST be on disk before any action is done or the caller is
+/// answered.
+struct Step {
+  std::vector<Record> records;
+  std::vector<Action> actions;
+  absl::Status status;  ///< answer to a user's request; for other inputs INTERNAL: a bug
+  JobId job = 0;        ///< of Submit
+};
+
+}  // namespace bandsaw::coordinator

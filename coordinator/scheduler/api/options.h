@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace bandsaw::coordinator {
+
+/// The versions that a worker and the coordinator must have in common.
+struct Compatibility {
+  std::uint32_t protocol = 0;
+  std::uint32_t pixel_version = 0;
+  std::uint64_t canary = 0;
+};
+
+struct SchedulerOptions {
+  Compatibility compatibility;      ///< of this coordinator
+  double heartbeat_interval_s = 1;  ///< requested of workers
+  double heartbeat_timeout_s = 4;   ///< a worker that is silent for longer is disconnected
+  double progress_timeout_s = 30;   ///< a lease without progress for longer is revoked
+  /// After a restart, or after all workers were lost at once, nothing is leased for this long
+  /// unless all former workers have reconnected.
+  double reattach_grace_s = 6;
+  /// Time that a worker should need for a band; bands near the end of a job are shorter.
+  double band_target_s = 1;
+  /// Minimum number of machines that must be lost at a suspect band before its job fails. More are
+  /// required on farms that lose many workers, or of which little is known (CrashRate).
+  std::size_t min_crashes_per_band = 3;
+  double audit_share = 0;  ///< [0, 1], of all bands: rendered by two machines (model/audit.h)
+  std::string epoch;       ///< names this run of the coordinator; a held lease is named with it
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,138 @@
+#pragma once
+
+// The durable facts, as the journal holds them. The scheduler's durable state changes only by
+// applying a record, whether the record is new or replayed.
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "coordinator/scheduler/api/error_curve.h"
+#include "coordinator/scheduler/api/ids.h"
+#include "coordinator/scheduler/api/job_spec.h"
+#include "coordinator/scheduler/api/job_view.h"
+#include "renderlib/render/adaptive_plan.h"
+#include "renderlib/render/band.h"
+
+namespace bandsaw::coordinator {
+
+namespace record {
+struct JobAdded {
+  JobId job = 0;
+  JobSpec spec;
+  std::uint32_t pixel_version = 0;  ///< of the coordinator at that time; 0: not journalled
+};
+/// A pass over `samples` of the whole image is planned. It is journalled because the passes of jobs
+/// with an error target or a time limit depend on measurements.
+struct PassPlanned {
+  JobId job = 0;
+  SampleRange samples;
+};
+/// From the next pass on, half tiles take samples as planned.
+struct TilesPlanned {
+  JobId job = 0;
+  TilePlan plan;
+};
+/// The job ends after this many samples per pixel; there will be no further pass.
+struct SamplesFixed {
+  JobId job = 0;
+  std::uint64_t samples = 0;
+};
+struct StateChanged {
+  JobId job = 0;
+  JobState state = JobState::kRunning;
+  std::string reason;
+};
+/// Absent for a job that always had priority 0.
+struct PriorityChanged {
+  JobId job = 0;
+  std::int32_t priority = 0;
+};
+/// A user paused the job (or resumed it); only a user can resume a held job.
+struct HoldChanged {
+  JobId job = 0;
+  bool held = false;
+};
+/// Time that the job has been worked on, in all epochs together. The last record of a job counts.
+struct TimeSpent {
+  JobId job = 0;
+  double elapsed_s = 0;
+};
+/// Totals of a job that is about to become final, which drops its bands.
+struct JobSummary {
+  JobId job = 0;
+  double elapsed_s = 0;
+  double cpu_s = 0;
+  std::uint32_t workers_used = 0;
+  std::uint64_t samples = 0;            ///< pixel samples stored
+  std::uint64_t samples_per_pixel = 0;  ///< of the complete passes
+  double error = -1;                    ///< negative: unknown
+  Counters counters;
+};
+/// The error of the image after a pass.
+struct ErrorMeasured {
+  JobId job = 0;
+  ErrorPoint point;
+};
+/// A worker's share of a job that is about to become final; one record per worker.
+struct ShareCounted {
+  JobId job = 0;
+  WorkerShare share;
+};
+/// The last lines of the log of the worker that failed the job.
+struct FailureLog {
+  JobId job = 0;
+  std::string worker;
+  std::vector<std::string> log;
+};
+/// A final job is removed; its id is never reused.
+struct JobForgotten {
+  JobId job = 0;
+};
+/// A worker process connected. After a restart the scheduler waits for those that were connected,
+/// because they may hold finished bands.
+struct WorkerJoined {
+  std::string instance;
+};
+struct WorkerLeft {
+  std::string instance;
+};
+/// A second machine returned the same digests for rows that `process` had stored.
+struct BandAudited {
+  JobId job = 0;
+  Band band;
+  WorkerProcessId process = 0;
+};
+/// The pixels of the band that `process` had stored are damaged on disk. They are rendered again,
+/// and an earlier BandAudited of them does not hold for the new ones.
+struct BandLost {
+  JobId job = 0;
+  Band band;
+  WorkerProcessId process = 0;
+};
+/// The error measured so far came from pixels that have been retracted.
+struct ErrorForgotten {
+  JobId job = 0;
+};
+/// A machine returned wrong pixels, or a user quarantined it. All that this worker process rendered
+/// is void, and no worker that reports the name gets work.
+struct WorkerQuarantined {
+  WorkerProcessId process = 0;
+  std::string name;  ///< the name that the worker reports; empty: unknown
+  std::string reason;
+};
+struct QuarantineLifted {
+  std::string name;
+};
+}  // namespace record
+
+using Record =
+    std::variant<record::JobAdded, record::PassPlanned, record::TilesPlanned, record::SamplesFixed,
+                 record::StateChanged, record::PriorityChanged, record::HoldChanged,
+                 record::TimeSpent, record::JobSummary, record::ErrorMeasured, record::ShareCounted,
+                 record::FailureLog, record::JobForgotten, record::WorkerJoined, record::WorkerLeft,
+                 record::BandAudited, record::BandLost, record::ErrorForgotten,
+                 record::WorkerQuarantined, record::QuarantineLifted>;
+
+}  // namespace bandsaw::coordinator

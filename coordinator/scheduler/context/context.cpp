@@ -1,0 +1,170 @@
+#include "coordinator/scheduler/context/context.h"
+
+#include "coordinator/scheduler/api/worker_process.h"
+
+namespace bandsaw::coordinator {
+
+// One input advances the patience clock by at most a third of the heartbeat timeout.
+Context::Context(SchedulerOptions scheduler_options)
+    : options(std::move(scheduler_options)),
+      clock(options.heartbeat_timeout_s / 3),
+      leases(options.epoch) {}
+
+void Context::flush_revocations() {
+  for (auto& [session, ids] : revoked_) {
+    act(action::Revoke{session, std::move(ids)});
+  }
+  revoked_.clear();
+}
+
+bool Context::is_silent(const Worker& worker) const {
+  return clock.patience() - worker.heard_at > 2 * options.heartbeat_interval_s;
+}
+
+Reporter Context::reporter_of(const input::BandStored& in) const {
+  if (in.instance.empty()) {
+    return {.process = in.process, .machine = {}};
+  }
+  const Worker* worker = workers.by_instance(in.instance);
+  return worker == nullptr ? Reporter{.process = worker_process_id(in.instance), .machine = {}}
+                           : worker->reporter();
+}
+
+Reporter Context::reporter_of(WorkerProcessId process) const {
+  const Worker* worker = workers.by_process(process);
+  return worker == nullptr ? Reporter{.process = process, .machine = {}} : worker->reporter();
+}
+
+std::string Context::name_of(const Reporter& reporter) const {
+  if (const Worker* worker = workers.by_process(reporter.process)) {
+    return worker->name;
+  }
+  return reporter.machine.empty() ? "a worker that has left" : reporter.machine;
+}
+
+void Context::apply(const Record& record) {
+  std::visit([this](const auto& r) { apply(r); }, record);
+}
+
+void Context::apply(const record::JobAdded& r) { jobs.add(r.job, r.spec, r.pixel_version); }
+
+void Context::apply(const record::PassPlanned& r) {
+  Job* job = jobs.find(r.job);
+  if (job != nullptr && !is_final(job->state)) {
+    job->add_pass(r.samples);
+    jobs.mark_leasable(*job);
+  }
+}
+
+void Context::apply(const record::TilesPlanned& r) {
+  Job* job = jobs.find(r.job);
+  if (job != nullptr && !is_final(job->state)) {
+    job->plan_tiles(r.plan);
+  }
+}
+
+void Context::apply(const record::SamplesFixed& r) {
+  if (Job* job = jobs.find(r.job)) {
+    job->fix_samples(r.samples);
+  }
+}
+
+void Context::apply(const record::StateChanged& r) {
+  Job* job = jobs.find(r.job);
+  if (job == nullptr || is_final(job->state)) {
+    return;
+  }
+  if (is_final(r.state)) {
+    job->drop_details();
+    jobs.set_final(r.job);
+    for (auto& [id, worker] : workers.all()) {
+      worker.on_job.erase(r.job);
+    }
+  }
+  job->state = r.state;
+  job->reason = r.reason;
+  if (r.state != JobState::kRunning) {
+    jobs.unmark_leasable(*job);
+  }
+}
+
+void Context::apply(const record::PriorityChanged& r) {
+  if (Job* job = jobs.find(r.job)) {
+    jobs.set_priority(*job, r.priority);
+  }
+}
+
+void Context::apply(const record::HoldChanged& r) {
+  if (Job* job = jobs.find(r.job)) {
+    job->held = r.held;
+    job->held_at = clock.patience();
+  }
+}
+
+void Context::apply(const record::TimeSpent& r) {
+  if (Job* job = jobs.find(r.job)) {
+    job->elapsed_noted = r.elapsed_s;
+  }
+}
+
+void Context::apply(const record::JobSummary& r) {
+  if (Job* job = jobs.find(r.job); job != nullptr && !is_final(job->state)) {
+    job->summary = r;
+  }
+}
+
+void Context::apply(const record::ErrorMeasured& r) {
+  if (Job* job = jobs.find(r.job)) {
+    add_point(job->curve, r.point);
+  }
+}
+
+void Context::apply(const record::ShareCounted& r) {
+  Job* job = jobs.find(r.job);
+  if (job != nullptr && job->final_shares.size() < Job::kMaxFinalShares) {
+    job->final_shares.push_back(r.share);
+  }
+}
+
+void Context::apply(const record::FailureLog& r) {
+  if (Job* job = jobs.find(r.job)) {
+    job->log_of = r.worker;
+    job->log = r.log;
+  }
+}
+
+void Context::apply(const record::JobForgotten& r) { jobs.remove(r.job); }
+void Context::apply(const record::WorkerJoined& r) { joined.insert(r.instance); }
+void Context::apply(const record::WorkerLeft& r) { joined.erase(r.instance); }
+
+void Context::apply(const record::BandAudited& r) {
+  if (Job* job = jobs.find(r.job); job != nullptr && !is_final(job->state)) {
+    job->audited.insert({r.band, r.process});
+  }
+}
+
+void Context::apply(const record::BandLost& r) {
+  if (Job* job = jobs.find(r.job); job != nullptr && !is_final(job->state)) {
+    job->remove_stored(r.band, r.process);
+  }
+}
+
+// The number of samples of a job with an error target was fixed by the wrong error.
+void Context::apply(const record::ErrorForgotten& r) {
+  if (Job* job = jobs.find(r.job); job != nullptr && !is_final(job->state)) {
+    job->curve.clear();
+    job->error = -1;
+    job->error_samples = 0;
+    job->pending_checkpoint.reset();
+    if (std::holds_alternative<StopAtError>(job->spec.stop)) {
+      job->fixed_samples.reset();
+    }
+  }
+}
+
+void Context::apply(const record::WorkerQuarantined& r) {
+  quarantine.add(r.process, r.name, r.reason);
+}
+void Context::apply(const record::QuarantineLifted& r) { quarantine.lift(r.name); }
+
+}  // namespace bandsaw::coordinator

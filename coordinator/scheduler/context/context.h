@@ -1,0 +1,97 @@
+#pragma once
+
+// State that the parts of the scheduler share: jobs, workers, leases, clock, the durable facts
+// about workers, and the step that is being written.
+
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "coordinator/scheduler/api/messages.h"
+#include "coordinator/scheduler/api/options.h"
+#include "coordinator/scheduler/context/job_table.h"
+#include "coordinator/scheduler/context/leases.h"
+#include "coordinator/scheduler/context/quarantine_list.h"
+#include "coordinator/scheduler/context/scheduler_clock.h"
+#include "coordinator/scheduler/context/workers.h"
+
+namespace bandsaw::coordinator {
+
+class Context {
+ public:
+  explicit Context(SchedulerOptions scheduler_options);
+
+  /// Changes the durable state. It changes in no other way.
+  void apply(const Record& record);
+
+  /// Applies a new record and adds it to the step.
+  template <class R>
+  void emit(R record) {
+    apply(record);
+    step_.records.emplace_back(std::in_place_type<R>, std::move(record));
+  }
+  /// Adds an action to the step. In place, because g++ 12 warns of the other alternatives of a
+  /// variant that is moved.
+  template <class A>
+  void act(A action) {
+    step_.actions.emplace_back(std::in_place_type<A>, std::move(action));
+  }
+  /// Sets the answer to the request of this step.
+  void answer(absl::Status status) { step_.status = std::move(status); }
+  void answer_job(JobId id) { step_.job = id; }
+  /// Collects a lease that this step revokes.
+  void revoke(SessionId session, LeaseId lease) { revoked_[session].push_back(lease); }
+  /// Adds one Revoke action for each session with collected leases.
+  void flush_revocations();
+  /// Returns the step, and begins an empty one.
+  Step take_step() { return std::exchange(step_, Step{}); }
+  bool step_is_empty() const {
+    return revoked_.empty() && step_.records.empty() && step_.actions.empty();
+  }
+
+  /// Returns true if the worker has sent nothing for two heartbeat intervals.
+  bool is_silent(const Worker& worker) const;
+  /// Returns the origin of a result. After a restart only its process may be known.
+  Reporter reporter_of(const input::BandStored& in) const;
+  Reporter reporter_of(WorkerProcessId process) const;
+  /// Returns the displayed name of the machine that returned a result.
+  std::string name_of(const Reporter& reporter) const;
+
+  const SchedulerOptions options;
+  SchedulerClock clock;
+  JobTable jobs;
+  Workers workers;
+  AvailableWorkers available;
+  Leases leases;
+  QuarantineList quarantine;
+  std::set<std::string> joined;  ///< journalled: instances that were connected last
+
+ private:
+  void apply(const record::JobAdded& r);
+  void apply(const record::PassPlanned& r);
+  void apply(const record::TilesPlanned& r);
+  void apply(const record::SamplesFixed& r);
+  void apply(const record::StateChanged& r);
+  void apply(const record::PriorityChanged& r);
+  void apply(const record::HoldChanged& r);
+  void apply(const record::TimeSpent& r);
+  void apply(const record::JobSummary& r);
+  void apply(const record::ErrorMeasured& r);
+  void apply(const record::ShareCounted& r);
+  void apply(const record::FailureLog& r);
+  void apply(const record::JobForgotten& r);
+  void apply(const record::WorkerJoined& r);
+  void apply(const record::WorkerLeft& r);
+  void apply(const record::BandAudited& r);
+  void apply(const record::BandLost& r);
+  void apply(const record::ErrorForgotten& r);
+  void apply(const record::WorkerQuarantined& r);
+  void apply(const record::QuarantineLifted& r);
+
+  Step step_;
+  std::map<SessionId, std::vector<LeaseId>> revoked_;
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,56 @@
+#pragma once
+
+// All known jobs, and which of them are active and leasable.
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "coordinator/scheduler/model/job.h"
+
+namespace bandsaw::coordinator {
+
+class JobTable {
+ public:
+  /// Order in which jobs are leased: the highest priority, then the lowest id.
+  using Rank = std::pair<std::int32_t, JobId>;
+  static Rank rank(const Job& job) { return {-job.priority, job.id}; }
+
+  Job* find(JobId id);
+  const Job* find(JobId id) const;
+  Job& at(JobId id) { return all_.at(id); }
+  const Job& at(JobId id) const { return all_.at(id); }
+  std::map<JobId, Job>& all() { return all_; }
+  const std::map<JobId, Job>& all() const { return all_; }
+  /// Returns the job that was submitted with this request id.
+  std::optional<JobId> by_request(const std::string& request_id) const;
+  /// Returns the id of the next job that is added.
+  JobId next_id() const { return next_id_; }
+
+  void add(JobId id, const JobSpec& spec, std::uint32_t pixel_version);
+  /// Removes a job; a job that is not known only makes its id used.
+  void remove(JobId id);
+  void set_priority(Job& job, std::int32_t priority);
+
+  /// Jobs that are not final.
+  const std::set<JobId>& active() const { return active_; }
+  void set_final(JobId id) { active_.erase(id); }
+
+  /// Running jobs that may have free rows or waiting audits; the others have none.
+  const std::set<Rank>& leasable() const { return leasable_; }
+  /// MUST be called when rows become free or audits begin to wait. No effect unless it is running.
+  void mark_leasable(const Job& job);
+  void unmark_leasable(const Job& job) { leasable_.erase(rank(job)); }
+
+ private:
+  std::map<JobId, Job> all_;
+  std::map<std::string, JobId> by_request_;
+  std::set<JobId> active_;
+  std::set<Rank> leasable_;
+  JobId next_id_ = 1;
+};
+
+}  // namespace bandsaw::coordinator

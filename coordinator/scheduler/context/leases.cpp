@@ -1,0 +1,29 @@
+#include "coordinator/scheduler/context/leases.h"
+
+#include "coordinator/scheduler/api/worker_process.h"
+#include "coordinator/scheduler/model/coverage.h"
+
+namespace bandsaw::coordinator {
+
+// 24 bits that depend on the epoch, then 2^39 ids; the sign bit is never used.
+Leases::Leases(const std::string& epoch)
+    : next_(epoch.empty() ? 1 : ((text_hash(epoch) >> 40) << 39) + 1) {}
+
+LeaseId Leases::new_id() {
+  while (next_ == kFree || next_ == kStored || all_.contains(next_)) {
+    ++next_;
+  }
+  return next_++;
+}
+
+Lease* Leases::find(LeaseId id) {
+  const auto it = all_.find(id);
+  return it == all_.end() ? nullptr : &it->second;
+}
+
+const Lease* Leases::find(LeaseId id) const {
+  const auto it = all_.find(id);
+  return it == all_.end() ? nullptr : &it->second;
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,53 @@
+#pragma once
+
+// The leases that workers hold.
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "coordinator/scheduler/api/ids.h"
+#include "renderlib/render/band.h"
+
+namespace bandsaw::coordinator {
+
+/// Identifies a worker process over its reconnects; never reused in an epoch.
+using WorkerId = std::uint64_t;
+
+struct Lease {
+  LeaseId id = 0;
+  JobId job = 0;
+  WorkerId worker = 0;
+  Band band;
+  /// Not 0: this is a backup task for a part of that lease's band. The original keeps its lease and
+  /// owns the rows in the coverage.
+  LeaseId backup_of = 0;
+  bool audit = false;     ///< its rows are stored; it owns none (model/audit.h)
+  bool in_hello = false;  ///< named in a Hello: its result may come before the worker has the reply
+  std::uint32_t rows_done = 0;
+  std::uint64_t prepared = 0;
+  Time progress_at = 0;  ///< wall clock: when rows_done last grew
+  Time begun_at = 0;     ///< wall clock: when it became the first lease of its worker
+  /// Patience clock: when it, or a lease that its worker renders before it, last made progress.
+  Time advanced_at = 0;
+};
+
+class Leases {
+ public:
+  /// Ids begin at a place that depends on the epoch. Leases of other epochs are adopted with their
+  /// ids, so the ranges of two epochs should not overlap.
+  explicit Leases(const std::string& epoch);
+
+  LeaseId new_id();
+  Lease& add(const Lease& lease) { return all_.emplace(lease.id, lease).first->second; }
+  void erase(LeaseId id) { all_.erase(id); }
+  Lease* find(LeaseId id);
+  const Lease* find(LeaseId id) const;
+  const std::map<LeaseId, Lease>& all() const { return all_; }
+
+ private:
+  std::map<LeaseId, Lease> all_;
+  LeaseId next_;
+};
+
+}  // namespace bandsaw::coordinator

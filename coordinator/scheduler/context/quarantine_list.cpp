@@ -1,0 +1,71 @@
+#include "coordinator/scheduler/context/quarantine_list.h"
+
+#include <algorithm>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/scheduler/api/worker_process.h"
+
+namespace bandsaw::coordinator {
+
+void QuarantineList::add(WorkerProcessId process, const std::string& name,
+                         const std::string& reason) {
+  if (entries_.size() >= kMaxEntries) {
+    const auto lifted = std::find_if(entries_.begin(), entries_.end(),
+                                     [](const auto& entry) { return entry.second.lifted; });
+    entries_.erase(lifted == entries_.end() ? entries_.begin() : lifted);
+  }
+  entries_[process] = {.name = name, .reason = reason, .lifted = false};
+}
+
+void QuarantineList::lift(const std::string& name) {
+  for (auto& [process, entry] : entries_) {
+    entry.lifted = entry.lifted || entry.name == name;
+  }
+}
+
+std::optional<std::string> QuarantineList::reason_against(const std::string& instance,
+                                                          const std::string& reported_name) const {
+  if (const auto own = entries_.find(worker_process_id(instance)); own != entries_.end()) {
+    return own->second.lifted ? "its quarantine was lifted: start the worker again"
+                              : describe(own->second);
+  }
+  for (const auto& [process, entry] : entries_) {
+    if (!entry.lifted && !entry.name.empty() && entry.name == reported_name) {
+      return describe(entry);
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<record::WorkerQuarantined> QuarantineList::missing_name(
+    const WorkerHello& worker) const {
+  const auto own = entries_.find(worker_process_id(worker.instance));
+  if (own == entries_.end() || !own->second.name.empty()) {
+    return std::nullopt;
+  }
+  return record::WorkerQuarantined{own->first, worker.name, own->second.reason};
+}
+
+std::string QuarantineList::describe(const Entry& entry) {
+  return absl::StrCat("quarantined: it ", entry.reason,
+                      "; check the machine's memory and cooling, then: bandsaw quarantine --lift ",
+                      entry.name);
+}
+
+// The lifted entries come first, because lifting a name lifts all entries before it.
+void QuarantineList::add_records(std::vector<Record>& out) const {
+  for (const bool lifted : {true, false}) {
+    for (const auto& [process, entry] : entries_) {
+      if (entry.lifted == lifted) {
+        out.push_back(record::WorkerQuarantined{process, entry.name, entry.reason});
+      }
+    }
+    for (const auto& [process, entry] : entries_) {
+      if (lifted && entry.lifted) {
+        out.push_back(record::QuarantineLifted{entry.name});
+      }
+    }
+  }
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,50 @@
+#pragma once
+
+// Worker processes whose results are void, and machines that are not admitted because of them.
+// Journalled.
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coordinator/scheduler/api/ids.h"
+#include "coordinator/scheduler/api/messages.h"
+
+namespace bandsaw::coordinator {
+
+class QuarantineList {
+ public:
+  struct Entry {
+    std::string name;  ///< that the worker reports; empty: it has not connected since
+    std::string reason;
+    bool lifted = false;  ///< the machine is admitted again; the process's results stay void
+  };
+
+  /// Adds or replaces an entry. If the list is full, forgets a lifted one, or else any.
+  void add(WorkerProcessId process, const std::string& name, const std::string& reason);
+  /// Lifts the quarantine of all processes with this name.
+  void lift(const std::string& name);
+
+  /// Returns true if the process was ever quarantined.
+  bool contains(WorkerProcessId process) const { return entries_.contains(process); }
+  /// Returns why a worker is not admitted; std::nullopt: it is.
+  std::optional<std::string> reason_against(const std::string& instance,
+                                            const std::string& reported_name) const;
+  /// Returns the record that adds the name of a process that was quarantined before it connected,
+  /// as happens after a restart; std::nullopt: nothing is missing.
+  std::optional<record::WorkerQuarantined> missing_name(const WorkerHello& worker) const;
+  /// Returns the sentence that is shown for an entry.
+  static std::string describe(const Entry& entry);
+
+  const std::map<WorkerProcessId, Entry>& entries() const { return entries_; }
+  /// Appends the records that replay to this list.
+  void add_records(std::vector<Record>& out) const;
+
+ private:
+  static constexpr std::size_t kMaxEntries = 1'024;
+  std::map<WorkerProcessId, Entry> entries_;
+};
+
+}  // namespace bandsaw::coordinator

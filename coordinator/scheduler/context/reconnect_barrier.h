@@ -1,0 +1,46 @@
+#pragma once
+
+// Reconnect barrier: after a restart of the coordinator, or after all workers were lost at once,
+// nothing is leased until the former workers have reconnected or a grace time is over.
+//
+// The workers reconnect one by one, and hold rows that are free now. Without the barrier the first
+// would be given rows that another has rendered.
+
+#include <cstddef>
+#include <set>
+#include <string>
+
+#include "coordinator/scheduler/context/context.h"
+
+namespace bandsaw::coordinator {
+
+class ReconnectBarrier {
+ public:
+  explicit ReconnectBarrier(Context& context) : context_(context) {}
+
+  /// Begins the grace time for all instances that were connected when the coordinator stopped.
+  void begin_after_restart();
+  /// MUST be called after a worker was disconnected. If none is left, the coordinator's own network
+  /// failed rather than that of each worker; those that fell silent together are noted.
+  void worker_lost();
+  /// MUST be called when a worker connects. The first of workers that were lost together shows that
+  /// the network is back, and begins the grace time for the others.
+  void worker_connected(const Worker& worker);
+  /// Ends a grace time that is over: journals that the missing workers have left.
+  void expire();
+
+  /// Returns true while nothing may be leased.
+  bool active() const;
+  /// Returns the number of workers that are waited for.
+  std::size_t missing() const { return awaited_.size(); }
+
+ private:
+  void begin_grace();
+
+  Context& context_;
+  std::set<std::string> awaited_;        ///< instances
+  std::set<std::string> lost_together_;  ///< instances; no worker was left
+  Time until_ = 0;                       ///< patience clock
+};
+
+}  // namespace bandsaw::coordinator

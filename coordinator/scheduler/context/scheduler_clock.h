@@ -1,0 +1,35 @@
+#pragma once
+
+#include "coordinator/scheduler/api/ids.h"
+
+namespace bandsaw::coordinator {
+
+/// Two clocks made from the time that comes with the inputs. Neither ever goes back.
+class SchedulerClock {
+ public:
+  /// `max_patience_step`: by how much one input can advance the patience clock, in seconds.
+  explicit SchedulerClock(double max_patience_step) : max_patience_step_(max_patience_step) {}
+
+  void advance(Time now) {
+    const double passed = started_ && now > wall_ ? now - wall_ : 0;
+    wall_ = started_ ? wall_ + passed : now;
+    patience_ += passed < max_patience_step_ ? passed : max_patience_step_;
+    started_ = true;
+  }
+
+  /// Returns the time as users see it, for durations and rates.
+  Time wall() const { return wall_; }
+
+  /// Returns the time for timeouts. After the coordinator was stopped, or its clock was set, hours
+  /// can lie between two inputs while messages of the workers are still unread. So one input
+  /// advances this clock by at most max_patience_step.
+  Time patience() const { return patience_; }
+
+ private:
+  double max_patience_step_;
+  bool started_ = false;
+  Time wall_ = 0;
+  Time patience_ = 0;
+};
+
+}  // namespace bandsaw::coordinator

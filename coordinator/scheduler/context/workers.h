@@ -1,0 +1,150 @@
+#pragma once
+
+// The connected workers, and for a while those that have left; and which of them can take a lease.
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "coordinator/scheduler/api/ids.h"
+#include "coordinator/scheduler/context/leases.h"
+#include "coordinator/scheduler/model/audit.h"
+#include "coordinator/scheduler/model/rates.h"
+
+namespace bandsaw::coordinator {
+
+struct Worker {
+  WorkerId id = 0;
+  std::string instance;
+  WorkerProcessId process = 0;  ///< of the instance
+  std::string name;             ///< displayed; unique among the known workers
+  std::string reported_name;    ///< the name that it reports: that of its machine
+  std::string address;
+  std::string build;
+  std::uint32_t threads = 1;
+  std::uint32_t credits = 1;         ///< number of leases it may hold
+  std::optional<SessionId> session;  ///< std::nullopt: not connected
+  bool draining = false;
+  bool fell_silent = false;  ///< it was silent when it was disconnected last
+  bool quarantined = false;  ///< it gets no more work
+  std::string doing;
+  std::string reason;           ///< why it is disconnected, draining or quarantined
+  Time connected_at = 0;        ///< wall clock
+  Time heard_at = 0;            ///< patience clock: last message
+  std::vector<LeaseId> leases;  ///< in the order granted, in which it renders them
+  /// Revoked leases that its heartbeats may still name: it may be rendering one of them.
+  std::set<LeaseId> revoked;
+  MeanRate speed;  ///< pixel samples per second, for display
+
+  /// Statistics of one job that is not final.
+  struct OnJob {
+    MeanRate speed;              ///< pixel samples per second, for display
+    MeanRate work_rate;          ///< work per second (CostMap), by which bands are sized
+    std::uint32_t bands = 0;     ///< measured
+    std::uint32_t failures = 0;  ///< since it last stored a band of the job
+  };
+  std::map<JobId, OnJob> on_job;
+
+  Reporter reporter() const { return {.process = process, .machine = reported_name}; }
+  /// Returns true if it is connected and may get leases.
+  bool eligible() const { return session && !draining && !quarantined; }
+  bool has_spare_credit() const { return eligible() && leases.size() < credits; }
+};
+
+class Workers {
+ public:
+  Worker* by_id(WorkerId id);
+  const Worker* by_id(WorkerId id) const;
+  Worker* by_session(SessionId session);
+  Worker* by_instance(const std::string& instance);
+  const Worker* by_instance(const std::string& instance) const;
+  /// Searches all workers: only for rare events.
+  const Worker* by_process(WorkerProcessId process) const;
+  /// Returns the displayed name of an instance; the instance itself if it is not known any more.
+  std::string name_of(const std::string& instance) const;
+
+  /// Adds a worker that is not known yet, under a displayed name that no other has.
+  Worker& add(const std::string& instance, const std::string& name);
+  void connect(Worker& worker, SessionId session);
+  /// Keeps the worker among those that have left; forgets the oldest of more than kMaxGone.
+  void disconnect(Worker& worker);
+
+  std::map<WorkerId, Worker>& all() { return all_; }
+  const std::map<WorkerId, Worker>& all() const { return all_; }
+  std::size_t connected() const { return by_session_.size(); }
+
+ private:
+  static constexpr std::size_t kMaxGone = 512;
+  void forget_gone();
+
+  std::map<WorkerId, Worker> all_;
+  std::map<std::string, WorkerId> by_instance_;
+  std::map<SessionId, WorkerId> by_session_;
+  std::map<std::string, WorkerId> by_name_;
+  std::vector<WorkerId> gone_;  ///< the oldest first
+  WorkerId next_ = 1;
+};
+
+/// Index of the workers that can take a lease: those with spare credits, the ones with the fewest
+/// leases first, so that little work is spread over many workers. Also counts the farm's threads.
+class AvailableWorkers {
+ public:
+  /// Number of leases held, worker.
+  using Place = std::pair<std::size_t, WorkerId>;
+
+  /// MUST be called after each change of a worker's leases, session or state.
+  void update(const Worker& worker) {
+    forget(worker.id);
+    if (!worker.eligible()) {
+      return;
+    }
+    threads_ += worker.threads;
+    Known& known = known_[worker.id];
+    known.threads = worker.threads;
+    if (worker.has_spare_credit()) {
+      known.place = {worker.leases.size(), worker.id};
+      places_.insert(*known.place);
+    }
+  }
+
+  /// Returns the first place after `place`, or the very first if `place` is std::nullopt.
+  std::optional<Place> first_after(const std::optional<Place>& place) const {
+    const auto it = place ? places_.upper_bound(*place) : places_.begin();
+    return it == places_.end() ? std::nullopt : std::optional(*it);
+  }
+
+  bool contains(const Place& place) const { return places_.contains(place); }
+  std::size_t size() const { return places_.size(); }
+  /// Return the number of eligible workers, with or without spare credits, and of their threads.
+  std::size_t eligible() const { return known_.size(); }
+  std::uint64_t threads() const { return threads_; }
+
+ private:
+  struct Known {
+    std::uint32_t threads = 0;
+    std::optional<Place> place;
+  };
+
+  void forget(WorkerId id) {
+    const auto it = known_.find(id);
+    if (it == known_.end()) {
+      return;
+    }
+    threads_ -= it->second.threads;
+    if (it->second.place) {
+      places_.erase(*it->second.place);
+    }
+    known_.erase(it);
+  }
+
+  std::set<Place> places_;
+  std::map<WorkerId, Known> known_;
+  std::uint64_t threads_ = 0;
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,44 @@
+#pragma once
+
+// Leases of audits: which machine renders a stored band again.
+
+#include <cstdint>
+#include <string>
+
+#include "coordinator/scheduler/context/context.h"
+#include "coordinator/scheduler/context/reconnect_barrier.h"
+#include "coordinator/scheduler/dispatch/eligibility.h"
+#include "coordinator/scheduler/dispatch/lease_ledger.h"
+
+namespace bandsaw::coordinator {
+
+class AuditLeases {
+ public:
+  AuditLeases(Context& context, LeaseLedger& ledger, const Eligibility& eligibility,
+              const ReconnectBarrier& barrier)
+      : context_(context), ledger_(ledger), eligibility_(eligibility), barrier_(barrier) {}
+
+  /// Returns true if the worker's machine has returned no result yet. A machine that has one may
+  /// render the band once more if the audit is disputed and no other machine is left.
+  bool may_render(const Worker& worker, const Job& job, const Audit& audit) const;
+  /// Returns the first waiting audit that the worker may render; nullptr: none.
+  Audit* next_for(const Worker& worker, Job& job) const;
+  /// Leases the audit's rows up to `end_row` to the worker. The rows below become an audit of their
+  /// own, unless it is disputed. Invalidates `audit`.
+  void grant(Worker& worker, Job& job, Audit& audit, std::uint32_t end_row);
+  /// Ends an audit lease that the worker could not render. That says nothing about the job: another
+  /// machine is chosen, or none.
+  void give_up(const Lease& lease, const Worker& worker, const std::string& reason);
+  /// Returns true if an audit may still find that stored rows are wrong: then the job must not end,
+  /// and no error checkpoint be evaluated. An audit that no machine can render does not count,
+  /// unless it is disputed.
+  bool block(const Job& job) const;
+
+ private:
+  Context& context_;
+  LeaseLedger& ledger_;
+  const Eligibility& eligibility_;
+  const ReconnectBarrier& barrier_;
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,60 @@
+#pragma once
+
+// The end of a job, when nothing is free any more and workers are idle while others are late
+// (stragglers). A lease that its worker has not begun is stolen. One that is being rendered is also
+// given to idle workers, as backup tasks (speculative execution; Dean & Ghemawat 2004, "MapReduce",
+// section 3.6), in parts if that is sooner. The first result ends the others.
+
+#include <vector>
+
+#include "coordinator/scheduler/context/context.h"
+#include "coordinator/scheduler/dispatch/audit_leases.h"
+#include "coordinator/scheduler/dispatch/band_chooser.h"
+#include "coordinator/scheduler/dispatch/eligibility.h"
+#include "coordinator/scheduler/dispatch/lease_ledger.h"
+
+namespace bandsaw::coordinator {
+
+class BackupTasks {
+ public:
+  BackupTasks(Context& context, LeaseLedger& ledger, const Eligibility& eligibility,
+              const BandChooser& chooser, AuditLeases& audits)
+      : context_(context),
+        ledger_(ledger),
+        eligibility_(eligibility),
+        chooser_(chooser),
+        audits_(audits) {}
+
+  /// Gives work of late workers to idle ones. Returns true if some idle worker got work; the number
+  /// of idle workers falls with each success, so a loop on it ends. Returns early once a job has
+  /// free rows again.
+  bool share();
+
+ private:
+  /// A lease, and when it is expected to be done.
+  struct Straggler {
+    LeaseId lease = 0;
+    double begins_in_s = 0;
+    double done_in_s = 0;
+    bool has_no_backup = true;  ///< and is none
+  };
+
+  std::vector<Worker*> idle_workers();
+  std::vector<Straggler> stragglers() const;
+  double remaining(const Lease& lease) const;
+  std::vector<Worker*> helpers(const Job& job, const Lease& lease,
+                               const std::vector<Worker*>& idle) const;
+  bool steal(const Straggler& late, std::vector<Worker*>& idle);
+  bool back_up(const Straggler& late, std::vector<Worker*>& idle);
+  bool move_audit(const Straggler& late, std::vector<Worker*>& idle);
+  RowRange rows_without_backup(const Job& job, const Lease& lease) const;
+
+  Context& context_;
+  LeaseLedger& ledger_;
+  const Eligibility& eligibility_;
+  const BandChooser& chooser_;
+  AuditLeases& audits_;
+  Time next_scan_at_ = 0;  ///< wall clock
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,168 @@
+#include "coordinator/scheduler/dispatch/band_chooser.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "coordinator/scheduler/dispatch/probes.h"
+#include "coordinator/scheduler/dispatch/work_rate.h"
+#include "coordinator/scheduler/model/band_text.h"
+#include "proto/wire/limits.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+/// Lengths of a worker's first band and of the shortest band near the end, over the target.
+constexpr double kFirst = 0.2;
+constexpr double kMin = 0.125;
+
+constexpr std::uint64_t kBytesPerPixel = 3 * sizeof(double);
+
+/// Returns the first rows of `free` that are in none of `avoid`.
+std::optional<Band> without(Band free, const std::vector<Band>& avoid) {
+  const auto same_samples = [&](const Band& a) {
+    return a.samples.first < free.samples.last && free.samples.first < a.samples.last;
+  };
+  for (std::size_t i = 0; i < avoid.size(); ++i) {
+    const RowRange& rows = avoid[i].rows;
+    if (same_samples(avoid[i]) && rows.first <= free.rows.first && free.rows.first < rows.last) {
+      free.rows.first = rows.last;
+      i = static_cast<std::size_t>(-1);  // start again
+    }
+  }
+  for (const Band& a : avoid) {
+    if (same_samples(a) && a.rows.first > free.rows.first) {
+      free.rows.last = std::min(free.rows.last, a.rows.first);
+    }
+  }
+  return free.rows.first < free.rows.last ? std::optional(free) : std::nullopt;
+}
+
+/// Returns the work of the job that is neither leased nor stored. The free rows of this pass are
+/// taken to lie below `free`, and those of other passes all over the image; they are not counted
+/// row by row.
+double work_left(const Job& job, const Band& free) {
+  const std::uint32_t height = job.spec.settings.height;
+  const Pass* pass = job.pass_of(free);
+  const double here = static_cast<double>(pass->coverage.free_samples()) * job.spec.settings.width;
+  const double elsewhere = std::max(0.0, job.free_samples() - here * pass->mean_share());
+  return here * job.cost.of({free.rows.first, height}, pass->tile_row_shares) /
+             (height - free.rows.first) +
+         elsewhere * job.cost.of_all() / height;
+}
+
+/// Returns `band`, cut from the first row of `free`, without mixing suspect rows and others: either
+/// the rows before the next suspect band, or one piece of a suspect band. The piece stays the same
+/// at each attempt, so that crashes are counted against the same rows.
+Band separate_suspects(const Job& job, const Band& free, Band band) {
+  if (band.samples != free.samples) {
+    return band;  // a part of one row
+  }
+  const std::uint32_t first = band.rows.first;
+  std::uint32_t next = free.rows.last;  // where the next suspect band begins
+  std::optional<std::uint32_t> piece;
+  for (const Suspicion& one : job.suspicions) {
+    const RowRange& rows = one.band.rows;
+    if (!overlap(one.band, free)) {
+      continue;
+    }
+    if (rows.first > first) {
+      next = std::min(next, rows.first);
+    } else {
+      piece = std::min({piece.value_or(free.rows.last), rows.last, first + one.piece_rows});
+    }
+  }
+  band.rows.last = std::min(piece.value_or(band.rows.last), next);
+  return band;
+}
+
+}  // namespace
+
+std::uint32_t max_rows(std::uint32_t width) {
+  return static_cast<std::uint32_t>(
+      std::max<std::uint64_t>(1, wire::kBandBytes / (width * kBytesPerPixel)));
+}
+
+Band size_band(const Sizing& sizing) {
+  Band band = sizing.free;
+  const double full = sizing.work_rate * sizing.target_s;
+  const double first_row =
+      sizing.cost->of({band.rows.first, band.rows.first + 1}, sizing.tile_row_shares) *
+      static_cast<double>(sizing.width);
+  while (static_cast<double>(band.samples.samples()) * first_row > 2 * full &&
+         band.samples.blocks() > 1) {
+    band.samples = split(band.samples).left;
+  }
+  if (band.samples != sizing.free.samples) {
+    band.rows.last = band.rows.first + 1;
+    return band;
+  }
+  const double guided = sizing.work_left * sizing.farm_share / 2;
+  const double want =
+      std::min(full * (sizing.measured ? 1 : kFirst), std::max(guided, full * kMin));
+  const std::uint32_t fitting = sizing.cost->fitting(
+      band.rows, want / (static_cast<double>(band.samples.samples()) * sizing.width),
+      sizing.tile_row_shares);
+  band.rows.last = band.rows.first + std::min(fitting, max_rows(sizing.width));
+  return band;
+}
+
+std::optional<Band> BandChooser::choose(Job& job, const Worker& worker) const {
+  const auto probe = next_probe(job, worker);
+  return probe ? cut(job, worker, *probe) : choose_free(job, worker);
+}
+
+std::optional<Band> BandChooser::choose_free(const Job& job, const Worker& worker) const {
+  const auto free = first_free(job, worker);
+  return free ? std::optional(cut(job, worker, *free)) : std::nullopt;
+}
+
+Band BandChooser::cut(const Job& job, const Worker& worker, const Band& free) const {
+  return separate_suspects(job, free, sized(job, worker, free));
+}
+
+std::optional<Band> BandChooser::first_free(const Job& job, const Worker& worker) const {
+  const std::vector<Band> avoid = eligibility_.left_to_others(job, worker);
+  for (const Pass& pass : job.passes) {
+    for (auto free = pass.coverage.free_from(0); free;
+         free = pass.coverage.free_from(free->rows.last)) {
+      if (const auto piece = without(*free, avoid)) {
+        return piece;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<Band> BandChooser::next_probe(Job& job, const Worker& worker) const {
+  const std::uint32_t height = job.spec.settings.height;
+  while (job.probes < probes_of(height)) {
+    const RowRange rows = probe(height, job.probes++);
+    if (auto free = job.passes.front().coverage.free_at(rows.first)) {
+      free->rows.last = std::min(free->rows.last, rows.last);
+      if (const auto band = without(*free, eligibility_.left_to_others(job, worker))) {
+        return band;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+Band BandChooser::sized(const Job& job, const Worker& worker, const Band& free) const {
+  const auto own = worker.on_job.find(job.id);
+  Sizing sizing;
+  sizing.free = free;
+  sizing.width = job.spec.settings.width;
+  sizing.cost = &job.cost;
+  sizing.tile_row_shares = job.pass_of(free)->tile_row_shares;
+  sizing.work_rate = work_rate(worker, job);
+  sizing.measured = own != worker.on_job.end() && own->second.work_rate.measured();
+  const double farm =
+      std::max(sizing.work_rate,
+               work_rate_per_thread(job) * static_cast<double>(context_.available.threads()));
+  sizing.farm_share = sizing.work_rate / farm;
+  sizing.work_left = std::max(work_left(job, free), job.cost_of(free));
+  sizing.target_s = context_.options.band_target_s;
+  return size_band(sizing);
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,59 @@
+#pragma once
+
+// Chooses the next band of a job for a worker: which free rows, and how many of them.
+//
+// The size follows guided self-scheduling (Polychronopoulos & Kuck 1987, "Guided Self-Scheduling: A
+// Practical Scheduling Scheme for Parallel Supercomputers") with measured work rates and costs.
+// Bands take about the target time while much work is left, and get shorter toward the end, so that
+// all workers finish together. Work is counted in pixel samples of cost 1 (CostMap).
+
+#include <cstdint>
+#include <optional>
+
+#include "coordinator/scheduler/context/context.h"
+#include "coordinator/scheduler/dispatch/eligibility.h"
+
+namespace bandsaw::coordinator {
+
+struct Sizing {
+  Band free;                ///< the free piece; the band is cut from its first row
+  std::uint32_t width = 0;  ///< pixels
+  const CostMap* cost = nullptr;
+  absl::Span<const float> tile_row_shares = {};  ///< as in CostMap::of
+  double work_rate = 0;   ///< of the worker on this job, work per second, > 0
+  bool measured = false;  ///< false: the rate is a guess; the band is small, to measure it
+  double farm_share = 1;  ///< the worker's share of the farm's work rate, (0, 1]
+  double work_left = 0;   ///< of the job, not leased or stored
+  double target_s = 1;    ///< > 0
+};
+
+/// Returns a part of `free`: whole rows with all of its samples, or, if one row alone takes more
+/// than two target times, a part of the samples of one row.
+Band size_band(const Sizing& sizing);
+
+/// Returns the maximum number of rows of a band that fit into a message.
+std::uint32_t max_rows(std::uint32_t width);
+
+class BandChooser {
+ public:
+  BandChooser(const Context& context, const Eligibility& eligibility)
+      : context_(context), eligibility_(eligibility) {}
+
+  /// Returns the next probe, or else the first free band that is not left to others; std::nullopt:
+  /// there is none for this worker. Counts the probe.
+  std::optional<Band> choose(Job& job, const Worker& worker) const;
+  /// Returns the same without probes.
+  std::optional<Band> choose_free(const Job& job, const Worker& worker) const;
+  /// Returns the part of a free piece that is a band for this worker now.
+  Band sized(const Job& job, const Worker& worker, const Band& free) const;
+
+ private:
+  std::optional<Band> next_probe(Job& job, const Worker& worker) const;
+  std::optional<Band> first_free(const Job& job, const Worker& worker) const;
+  Band cut(const Job& job, const Worker& worker, const Band& free) const;
+
+  const Context& context_;
+  const Eligibility& eligibility_;
+};
+
+}  // namespace bandsaw::coordinator

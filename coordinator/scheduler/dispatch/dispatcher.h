@@ -1,0 +1,45 @@
+#pragma once
+
+// Gives work to the workers: the job of the highest priority, then the oldest, that has something
+// free, to the worker that holds the fewest leases. When nothing is free: backup tasks.
+
+#include "coordinator/scheduler/context/context.h"
+#include "coordinator/scheduler/dispatch/audit_leases.h"
+#include "coordinator/scheduler/dispatch/backup_tasks.h"
+#include "coordinator/scheduler/dispatch/band_chooser.h"
+#include "coordinator/scheduler/dispatch/eligibility.h"
+#include "coordinator/scheduler/dispatch/lease_ledger.h"
+#include "coordinator/scheduler/dispatch/pass_planner.h"
+
+namespace bandsaw::coordinator {
+
+class Dispatcher {
+ public:
+  Dispatcher(Context& context, LeaseLedger& ledger, const Eligibility& eligibility,
+             const BandChooser& chooser, AuditLeases& audits, PassPlanner& planner)
+      : context_(context),
+        ledger_(ledger),
+        eligibility_(eligibility),
+        chooser_(chooser),
+        audits_(audits),
+        planner_(planner),
+        backups_(context, ledger, eligibility, chooser, audits) {}
+
+  /// Grants leases until no worker can be given more.
+  void assign();
+
+ private:
+  void lease_free();
+  void lease_to(Worker& worker);
+  bool holds_suspect(const Worker& worker) const;
+
+  Context& context_;
+  LeaseLedger& ledger_;
+  const Eligibility& eligibility_;
+  const BandChooser& chooser_;
+  AuditLeases& audits_;
+  PassPlanner& planner_;
+  BackupTasks backups_;
+};
+
+}  // namespace bandsaw::coordinator

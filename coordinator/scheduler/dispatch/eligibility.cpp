@@ -1,0 +1,75 @@
+#include "coordinator/scheduler/dispatch/eligibility.h"
+
+#include <algorithm>
+
+#include "coordinator/scheduler/model/band_text.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+bool has_failed(const Worker& worker, const Job& job, const Band& band) {
+  return std::any_of(job.failures.begin(), job.failures.end(), [&](const FailedAttempt& failure) {
+    return failure.instance == worker.instance && overlap(failure.band, band);
+  });
+}
+
+bool machine_was_lost_at(const Worker& worker, const Job& job, const Band& band) {
+  return std::any_of(job.suspicions.begin(), job.suspicions.end(), [&](const Suspicion& one) {
+    return one.conclusive && one.machine == worker.reported_name && overlap(one.band, band);
+  });
+}
+
+/// Returns true if `condition` holds for some worker.
+template <class Condition>
+bool any_worker(const Context& context, const Condition& condition) {
+  const auto& all = context.workers.all();
+  return std::any_of(all.begin(), all.end(),
+                     [&](const auto& entry) { return condition(entry.second); });
+}
+
+}  // namespace
+
+bool Eligibility::may_render(const Worker& worker, const Job& job) const {
+  const auto on_job = worker.on_job.find(job.id);
+  return on_job == worker.on_job.end() || on_job->second.failures < kMaxFailuresPerWorker;
+}
+
+bool Eligibility::someone_may_render(const Job& job) const {
+  return any_worker(
+      context_, [&](const Worker& worker) { return worker.eligible() && may_render(worker, job); });
+}
+
+bool Eligibility::someone_else(const Job& job, const Band& band) const {
+  return any_worker(context_, [&](const Worker& worker) {
+    return worker.eligible() && may_render(worker, job) && !has_failed(worker, job, band);
+  });
+}
+
+bool Eligibility::another_machine(const Job& job, const Band& band) const {
+  return any_worker(context_, [&](const Worker& worker) {
+    return worker.eligible() && may_render(worker, job) &&
+           !machine_was_lost_at(worker, job, band) && !has_failed(worker, job, band);
+  });
+}
+
+std::vector<Band> Eligibility::left_to_others(const Job& job, const Worker& worker) const {
+  std::vector<Band> bands;
+  for (const FailedAttempt& failure : job.failures) {
+    if (failure.instance == worker.instance && someone_else(job, failure.band)) {
+      bands.push_back(failure.band);
+    }
+  }
+  for (const Suspicion& one : job.suspicions) {
+    if (one.conclusive && one.machine == worker.reported_name && another_machine(job, one.band)) {
+      bands.push_back(one.band);
+    }
+  }
+  return bands;
+}
+
+bool Eligibility::left_to_others(const Job& job, const Worker& worker, const Band& band) const {
+  const std::vector<Band> bands = left_to_others(job, worker);
+  return std::any_of(bands.begin(), bands.end(), [&](const Band& b) { return overlap(b, band); });
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,67 @@
+#include "coordinator/scheduler/dispatch/pass_planner.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "coordinator/scheduler/model/pass_plan.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+/// Passes of a job with a time limit that may be incomplete at a time.
+constexpr std::ptrdiff_t kMaxIncompletePasses = 3;
+
+}  // namespace
+
+void PassPlanner::plan_first(Job& job) {
+  if (const auto* rule = std::get_if<StopAtSamples>(&job.spec.stop)) {
+    if (!job.fixed_samples) {
+      fix_samples(job, rule->samples);
+    }
+    plan_until(job, rule->samples);
+  } else if (job.passes.empty()) {
+    plan_until(job, job.timed() ? std::min(kBlockSamples, job.max_samples())
+                                : next_checkpoint(0, -1, 0, job.max_samples()));
+  }
+}
+
+void PassPlanner::plan_until(Job& job, std::uint64_t samples) {
+  if (job.planned_samples() >= samples) {
+    return;
+  }
+  for (const SampleRange& pass : passes_between(job.planned_samples(), samples)) {
+    context_.emit(record::PassPlanned{job.id, pass});
+  }
+  context_.jobs.mark_leasable(job);
+}
+
+bool PassPlanner::plan_timed(Job& job) {
+  const auto* rule = std::get_if<StopAtTime>(&job.spec.stop);
+  if (rule == nullptr || job.fixed_samples || job.planned_samples() >= rule->max_samples) {
+    return false;
+  }
+  const Time now = context_.clock.wall();
+  const double left = rule->seconds - job.elapsed(now);
+  const auto incomplete = std::count_if(job.passes.begin(), job.passes.end(),
+                                        [](const Pass& pass) { return !pass.coverage.complete(); });
+  if (left <= 0 || incomplete >= kMaxIncompletePasses) {
+    return false;
+  }
+  const double fits = left * job.throughput.per_second(now) / static_cast<double>(job.pixels());
+  context_.emit(
+      record::PassPlanned{job.id, next_timed_pass(job.planned_samples(), fits, rule->max_samples)});
+  return true;
+}
+
+void PassPlanner::fix_samples(Job& job, std::uint64_t samples) {
+  std::vector<LeaseId> beyond;
+  for (const LeaseId id : job.leases) {
+    if (context_.leases.find(id)->band.samples.first >= samples) {
+      beyond.push_back(id);
+    }
+  }
+  ledger_.end_all(beyond, LeaseLedger::Revoke::kYes);
+  context_.emit(record::SamplesFixed{job.id, samples});
+}
+
+}  // namespace bandsaw::coordinator

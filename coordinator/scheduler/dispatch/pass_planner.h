@@ -1,0 +1,32 @@
+#pragma once
+
+// Plans the passes of jobs (model/pass_plan.h), and decides after how many samples a job ends.
+
+#include <cstdint>
+
+#include "coordinator/scheduler/context/context.h"
+#include "coordinator/scheduler/dispatch/lease_ledger.h"
+
+namespace bandsaw::coordinator {
+
+class PassPlanner {
+ public:
+  PassPlanner(Context& context, LeaseLedger& ledger) : context_(context), ledger_(ledger) {}
+
+  /// Plans what can be planned without measurements, unless it is planned already: all passes of a
+  /// job with a number of samples, the first ones of another.
+  void plan_first(Job& job);
+  /// Plans passes up to this sample.
+  void plan_until(Job& job, std::uint64_t samples);
+  /// Plans the next pass of a job with a time limit. Returns false if it is no such job, its time
+  /// is up, or enough passes are in progress.
+  bool plan_timed(Job& job);
+  /// Makes the job end after this many samples: revokes the leases beyond.
+  void fix_samples(Job& job, std::uint64_t samples);
+
+ private:
+  Context& context_;
+  LeaseLedger& ledger_;
+};
+
+}  // namespace bandsaw::coordinator

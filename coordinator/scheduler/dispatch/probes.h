@@ -1,0 +1,34 @@
+#pragma once
+
+// Probe bands: a few rows spread over the image that are rendered before the rest, which is
+// rendered from the top. Their times predict the remaining time of the job. They do not change the
+// cost map: bands are sized by bands that are rendered in sequence, each by the one before.
+
+#include <cstdint>
+
+#include "renderlib/render/band.h"
+
+namespace bandsaw::coordinator {
+
+inline constexpr std::uint32_t kProbes = 8;
+/// Returns the number of probes of an image; 0 for low images, whose bands they would cut up.
+inline std::uint32_t probes_of(std::uint32_t height) {
+  return height >= kProbes * kProbes ? kProbes : 0;
+}
+
+/// Returns the rows of a probe: few enough that it does not matter that their size is fixed. number
+/// < probes_of(height).
+inline RowRange probe(std::uint32_t height, std::uint32_t number) {
+  const std::uint32_t first = height * (2 * number + 1) / (2 * kProbes);
+  return {first, first + 1 + height / 512};
+}
+
+/// Returns true if the band begins at the first row of a probe: then it is one, because other bands
+/// are cut around probes.
+inline bool is_probe(std::uint32_t height, const Band& band) {
+  const std::uint32_t number = band.rows.first * kProbes / height;  // the only possible one
+  return band.samples.first == 0 && number < probes_of(height) &&
+         band.rows.first == probe(height, number).first;
+}
+
+}  // namespace bandsaw::coordinator

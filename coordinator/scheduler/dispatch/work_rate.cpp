@@ -1,0 +1,64 @@
+#include "coordinator/scheduler/dispatch/work_rate.h"
+
+#include <algorithm>
+
+#include "coordinator/scheduler/dispatch/probes.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+/// Work rate per thread before anything is measured. Too low rather than too high: a first band
+/// that is too small costs little, one that is too large delays the first rows.
+constexpr double kGuessedRate = 100'000;
+/// Minimum weight of a new measurement. A worker's rate changes less from band to band than the
+/// cost of the rows.
+constexpr double kMinWeight = 0.15;
+
+void measure_work_rate(Worker& worker, Job& job, const input::BandStored& in) {
+  Worker::OnJob& on_job = worker.on_job[job.id];
+  const double work = job.cost_of(in.band);  // as predicted
+  // For a worker that is new to the job, the rate of others with as many threads is used.
+  if (job.work_rate.measured()) {
+    const double expected = work_rate(worker, job);
+    job.cost.learn(in.band.rows, in.render_s * expected / work);
+    if (!on_job.work_rate.measured()) {
+      on_job.work_rate.measure(expected);
+    }
+  }
+  on_job.work_rate.measure(work / in.render_s, std::max(kMinWeight, 1.0 / (2 + on_job.bands++)));
+  job.work_rate.measure(on_job.work_rate.mean() / worker.threads);
+}
+
+}  // namespace
+
+double work_rate_per_thread(const Job& job) {
+  return job.work_rate.measured() ? job.work_rate.mean() : kGuessedRate;
+}
+
+double work_rate(const Worker& worker, const Job& job) {
+  const auto on_job = worker.on_job.find(job.id);
+  return on_job != worker.on_job.end() && on_job->second.work_rate.measured()
+             ? on_job->second.work_rate.mean()
+             : work_rate_per_thread(job) * worker.threads;
+}
+
+void measure(Worker& worker, Job& job, const input::BandStored& in) {
+  if (in.render_s <= 0) {
+    return;
+  }
+  const std::uint64_t samples = job.samples_of(in.band);
+  if (samples == 0) {
+    return;  // an adaptive job took no samples in these rows: the time says nothing about speed
+  }
+  const double speed = static_cast<double>(samples) / in.render_s;
+  worker.speed.measure(speed);
+  worker.on_job[job.id].speed.measure(speed);
+  if (!is_probe(job.spec.settings.height, in.band)) {
+    measure_work_rate(worker, job, in);
+  }
+  // The samples that the pixels took, as columns over all of the rows.
+  const double columns = static_cast<double>(samples) / in.band.rows.count();
+  job.row_times.measure(in.band.rows, in.render_s * worker.threads / columns);
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,18 @@
+#pragma once
+
+// Work rates: how much work (in units of CostMap) a worker does per second on a job. They are
+// learnt together with the costs of the rows.
+
+#include "coordinator/scheduler/context/workers.h"
+#include "coordinator/scheduler/model/job.h"
+
+namespace bandsaw::coordinator {
+
+/// Returns the mean work rate of the job's workers per thread; a guess until one is measured.
+double work_rate_per_thread(const Job& job);
+/// Returns the worker's own work rate on the job; if it has none yet, that of its thread count.
+double work_rate(const Worker& worker, const Job& job);
+/// Updates rates, costs and row times with the render time of a stored band.
+void measure(Worker& worker, Job& job, const input::BandStored& in);
+
+}  // namespace bandsaw::coordinator

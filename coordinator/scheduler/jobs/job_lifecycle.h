@@ -1,0 +1,55 @@
+#pragma once
+
+// The course of a job from its first pass to its end: error checkpoints, completion, failure,
+// pauses for want of disk space.
+
+#include <cstdint>
+#include <string>
+
+#include "coordinator/scheduler/context/context.h"
+#include "coordinator/scheduler/dispatch/audit_leases.h"
+#include "coordinator/scheduler/dispatch/lease_ledger.h"
+#include "coordinator/scheduler/dispatch/pass_planner.h"
+
+namespace bandsaw::coordinator {
+
+class JobLifecycle {
+ public:
+  JobLifecycle(Context& context, LeaseLedger& ledger, PassPlanner& planner,
+               const AuditLeases& audits)
+      : context_(context), ledger_(ledger), planner_(planner), audits_(audits) {}
+
+  /// Evaluates a pending error checkpoint or the time limit of a running job, and requests its
+  /// image once all passes are complete and no audit blocks. MUST be called after each change of
+  /// what is stored or audited.
+  void advance(Job& job);
+  /// Notes the error of merged passes, and evaluates it if this is a checkpoint.
+  void pass_merged(const input::PassMerged& in);
+  void result_written(const input::ResultWritten& in);
+  /// Makes the job final: revokes its leases, journals its summary, drops its bands.
+  void end(Job& job, JobState state, const std::string& reason);
+
+  void storage_failed(const input::StorageFailed& in);
+  /// Resumes the jobs that a failed disk has paused.
+  void storage_back();
+  /// Makes a paused job run again.
+  void resume(Job& job);
+  /// Revokes leases of jobs that a user paused a second ago or earlier, except of bands that are
+  /// rendered and being uploaded.
+  void revoke_from_held_jobs();
+  /// Journals the elapsed time now and then, so that a crash loses at most a second of it, or a
+  /// fiftieth. A long job has at most a few hundred such records.
+  void note_time(const Job& job);
+
+ private:
+  void note_error(const Job& job, std::uint64_t samples, const ErrorEstimate& error);
+  void evaluate_checkpoint(Job& job, const input::PassMerged& merged);
+  record::JobSummary summary(const Job& job) const;
+
+  Context& context_;
+  LeaseLedger& ledger_;
+  PassPlanner& planner_;
+  const AuditLeases& audits_;
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,166 @@
+#include "coordinator/scheduler/jobs/job_requests.h"
+
+#include <variant>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "proto/wire/limits.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+/// Maximum number of known jobs, final ones included; bounds the memory.
+constexpr std::size_t kMaxJobs = 100'000;
+
+bool in_range(const StopRule& stop) {
+  struct InRange {
+    static bool samples(std::uint64_t n) { return n >= 1 && n <= kMaxSamples; }
+    bool operator()(const StopAtSamples& rule) const { return samples(rule.samples); }
+    bool operator()(const StopAtError& rule) const {
+      return rule.relative_rmse > 0 && samples(rule.max_samples);
+    }
+    bool operator()(const StopAtTime& rule) const {
+      return rule.seconds > 0 && samples(rule.max_samples);
+    }
+  };
+  return std::visit(InRange{}, stop);
+}
+
+absl::Status check_priority(std::int32_t priority) {
+  if (priority < -kMaxPriority || priority > kMaxPriority) {
+    return absl::InvalidArgumentError(absl::StrCat("a priority lies in [", -kMaxPriority, ", ",
+                                                   kMaxPriority, "], is ", priority));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status no_such_job(JobId id) {
+  return absl::NotFoundError(absl::StrCat("there is no job ", id));
+}
+
+}  // namespace
+
+void JobRequests::submit(const input::Submit& in) {
+  if (const auto known = context_.jobs.by_request(in.spec.request_id)) {
+    context_.answer_job(*known);
+    if (context_.jobs.find(*known)->spec != in.spec) {
+      context_.answer(absl::AlreadyExistsError(
+          absl::StrCat("request id ", in.spec.request_id, " is job ", *known,
+                       " with another scene or other settings; submit with a new request id")));
+    }
+    return;
+  }
+  if (absl::Status status = refusal(in); !status.ok()) {
+    context_.answer(std::move(status));
+    return;
+  }
+  const JobId id = context_.jobs.next_id();
+  context_.answer_job(id);
+  context_.emit(record::JobAdded{id, in.spec, context_.options.compatibility.pixel_version});
+  if (in.priority != 0) {
+    context_.emit(record::PriorityChanged{id, in.priority});
+  }
+  planner_.plan_first(*context_.jobs.find(id));
+}
+
+absl::Status JobRequests::refusal(const input::Submit& in) const {
+  if (absl::Status status = check_priority(in.priority); !status.ok()) {
+    return status;
+  }
+  if (!in_range(in.spec.stop) || in.spec.settings.width == 0 || in.spec.settings.height == 0) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("the stop rule or the image size is out of range: samples are [1, ",
+                     kMaxSamples, "], error and time are above 0, width and height at least 1"));
+  }
+  const std::size_t active = context_.jobs.active().size();
+  const std::size_t known = context_.jobs.all().size();
+  if (active >= wire::kActiveJobs || known >= kMaxJobs) {
+    return absl::ResourceExhaustedError(
+        absl::StrCat(active, " jobs are not done yet (at most ", wire::kActiveJobs, "), ", known,
+                     " are known (at most ", kMaxJobs,
+                     "); wait for a job, cancel one, or keep old ones for a shorter time (bandsaw "
+                     "serve --keep-days)"));
+  }
+  return absl::OkStatus();
+}
+
+void JobRequests::cancel(const input::Cancel& in) {
+  Job* job = context_.jobs.find(in.job);
+  if (job == nullptr) {
+    context_.answer(no_such_job(in.job));
+  } else if (!is_final(job->state)) {
+    lifecycle_.end(*job, JobState::kCancelled, "");
+  }
+}
+
+/// Returns nullptr and sets the status if there is no such job or it is final.
+Job* JobRequests::find_active(JobId id) {
+  Job* job = context_.jobs.find(id);
+  if (job == nullptr) {
+    context_.answer(no_such_job(id));
+    return nullptr;
+  }
+  if (is_final(job->state)) {
+    context_.answer(absl::FailedPreconditionError(absl::StrCat("job ", id, " is over")));
+    return nullptr;
+  }
+  return job;
+}
+
+void JobRequests::pause(const input::Pause& in) {
+  const Job* job = find_active(in.job);
+  if (job == nullptr || job->held) {
+    return;
+  }
+  if (job->state == JobState::kFinishing) {
+    context_.answer(absl::FailedPreconditionError(
+        absl::StrCat("job ", in.job, " is finishing: all of it is rendered")));
+    return;
+  }
+  context_.emit(record::HoldChanged{job->id, true});
+  context_.emit(record::StateChanged{job->id, JobState::kPaused, kPausedByUser});
+  std::vector<LeaseId> not_begun;
+  for (const LeaseId id : job->leases) {
+    const Worker& worker = *context_.workers.by_id(context_.leases.find(id)->worker);
+    if (worker.leases.front() != id) {
+      not_begun.push_back(id);
+    }
+  }
+  ledger_.end_all(not_begun, LeaseLedger::Revoke::kYes);
+}
+
+void JobRequests::resume(const input::Resume& in) {
+  Job* job = find_active(in.job);
+  if (job == nullptr) {
+    return;
+  }
+  if (job->held) {
+    context_.emit(record::HoldChanged{job->id, false});
+  }
+  if (job->state == JobState::kPaused) {
+    lifecycle_.resume(*job);
+  }
+}
+
+void JobRequests::set_priority(const input::SetPriority& in) {
+  const Job* job = find_active(in.job);
+  if (job == nullptr || job->priority == in.priority) {
+    return;
+  }
+  if (absl::Status status = check_priority(in.priority); !status.ok()) {
+    context_.answer(std::move(status));
+    return;
+  }
+  context_.emit(record::PriorityChanged{job->id, in.priority});
+}
+
+void JobRequests::forget(const input::Forget& in) {
+  for (const JobId id : in.jobs) {
+    if (const Job* job = context_.jobs.find(id); job != nullptr && is_final(job->state)) {
+      context_.emit(record::JobForgotten{id});
+      context_.act(action::DropJob{id});
+    }
+  }
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,35 @@
+#pragma once
+
+// Bands that are on disk: counts them as stored, and frees those that are found damaged.
+
+#include <cstdint>
+
+#include "coordinator/scheduler/context/context.h"
+#include "coordinator/scheduler/dispatch/lease_ledger.h"
+
+namespace bandsaw::coordinator {
+
+class StoredBands {
+ public:
+  StoredBands(Context& context, LeaseLedger& ledger) : context_(context), ledger_(ledger) {}
+
+  /// Counts the rows of the band that were not stored yet. REQUIRES one digest per row.
+  Coverage::Change store(Job& job, Pass& pass, const input::BandStored& in,
+                         const Reporter& reporter);
+  /// Frees the damaged bands that are still counted as stored. A job that is finishing runs again,
+  /// because the film could not make its image.
+  void free_damaged(Job& job, const input::BandsDamaged& in);
+  /// After a restart: journals that audited bands are missing from the band log. The same process
+  /// may render them again, and they must be audited again then.
+  void note_missing_audited(const Job& job);
+
+ private:
+  void add_share(Job& job, const input::BandStored& in, WorkerProcessId process,
+                 std::uint64_t samples);
+  void close_audits(Job& job, const Band& band, WorkerProcessId process);
+
+  Context& context_;
+  LeaseLedger& ledger_;
+};
+
+}  // namespace bandsaw::coordinator

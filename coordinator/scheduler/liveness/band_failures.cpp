@@ -1,0 +1,120 @@
+#include "coordinator/scheduler/liveness/band_failures.h"
+
+#include <cmath>
+#include <set>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "coordinator/scheduler/model/band_text.h"
+#include "proto/wire/limits.h"
+#include "renderlib/base/clean_text.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+/// Number of failures of a band, on different workers or with no other worker left, that fail its
+/// job.
+constexpr std::size_t kMaxFailuresPerBand = 3;
+/// Factor on the progress timeout while a finished band is uploading, maybe over a slow line.
+constexpr double kUploadFactor = 20;
+
+}  // namespace
+
+void BandFailures::band_failed(const input::BandFailed& in) {
+  Worker* worker = context_.workers.by_session(in.session);
+  const Lease* lease = context_.leases.find(in.lease);
+  if (worker == nullptr || lease == nullptr || lease->worker != worker->id) {
+    return;
+  }
+  Job& job = context_.jobs.at(lease->job);
+  const Band band = lease->band;
+  worker->heard_at = context_.clock.patience();
+  if (lease->audit) {
+    audits_.give_up(*lease, *worker, in.reason);
+    return;
+  }
+  ledger_.end(in.lease, LeaseLedger::Revoke::kNo);
+  job.log_of = worker->name;
+  job.log = in.log;
+  add(job, *worker, band, in.reason);
+}
+
+void BandFailures::add(Job& job, Worker& worker, const Band& band, const std::string& reason) {
+  ++worker.on_job[job.id].failures;
+  job.failures.push_back({band, worker.instance, clean_text(reason, wire::kReasonBytes)});
+  if (job.failures.size() > Job::kMaxFailures) {
+    job.failures.pop_front();
+  }
+  std::set<std::string> names;
+  std::size_t count = 0;
+  for (const FailedAttempt& failure : job.failures) {
+    if (overlap(failure.band, band)) {
+      names.insert(context_.workers.name_of(failure.instance));
+      ++count;
+    }
+  }
+  context_.act(action::LogFailure{job.id, band, worker.name, reason});
+  job.notice = absl::StrCat(worker.name, " could not render ", name_of(band), ": ", reason);
+  if (names.size() >= kMaxFailuresPerBand ||
+      (count >= kMaxFailuresPerBand && !eligibility_.someone_else(job, band))) {
+    lifecycle_.end(job, JobState::kFailed,
+                   absl::StrCat(name_of(band), " failed ", count, " times, on ",
+                                absl::StrJoin(names, ", "), ": ", reason));
+  }
+}
+
+void BandFailures::check_progress() {
+  std::vector<LeaseId> stuck;
+  const auto is_late = [this](const Lease& lease) {
+    const bool rendered = lease.rows_done >= lease.band.rows.count();
+    return context_.clock.patience() - lease.advanced_at >
+           context_.options.progress_timeout_s * (rendered ? kUploadFactor : 1);
+  };
+  for (const auto& [id, lease] : context_.leases.all()) {
+    if (context_.jobs.at(lease.job).state == JobState::kRunning && is_late(lease)) {
+      stuck.push_back(id);
+    }
+  }
+  for (const LeaseId id : stuck) {
+    const Lease* lease = context_.leases.find(id);
+    // A lease behind a stuck one gets its time now; a job that has failed has no leases any more.
+    if (lease == nullptr || !is_late(*lease)) {
+      continue;
+    }
+    const Band band = lease->band;
+    Job& job = context_.jobs.at(lease->job);
+    Worker& worker = *context_.workers.by_id(lease->worker);
+    const std::string reason = absl::StrCat(
+        "no progress for ", std::lround(context_.clock.patience() - lease->advanced_at), " s");
+    if (lease->audit) {
+      audits_.give_up(*lease, worker, reason);
+      continue;
+    }
+    ledger_.end(id, LeaseLedger::Revoke::kYes);
+    add(job, worker, band, reason);
+  }
+}
+
+void BandFailures::check_renderable(Job& job) {
+  const bool unable = job.state == JobState::kRunning && job.leases.empty() && job.any_free() &&
+                      !barrier_.active() && !eligibility_.someone_may_render(job);
+  if (!unable) {
+    job.unable_since.reset();
+    return;
+  }
+  if (context_.available.eligible() == 0) {
+    return;  // no worker is connected: the time neither counts nor begins again
+  }
+  const Time now = context_.clock.patience();
+  job.unable_since = job.unable_since.value_or(now);
+  if (now - *job.unable_since >=
+      context_.options.heartbeat_timeout_s + context_.options.reattach_grace_s) {
+    lifecycle_.end(
+        job, JobState::kFailed,
+        absl::StrCat("each worker that is connected failed ", Eligibility::kMaxFailuresPerWorker,
+                     " of its bands, with none rendered between; the last: ", job.notice));
+  }
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,46 @@
+#pragma once
+
+// Bands that a worker could not render, or on which it makes no progress; and jobs that no
+// connected worker may render any more.
+
+#include <string>
+
+#include "coordinator/scheduler/context/context.h"
+#include "coordinator/scheduler/context/reconnect_barrier.h"
+#include "coordinator/scheduler/dispatch/audit_leases.h"
+#include "coordinator/scheduler/dispatch/eligibility.h"
+#include "coordinator/scheduler/dispatch/lease_ledger.h"
+#include "coordinator/scheduler/jobs/job_lifecycle.h"
+
+namespace bandsaw::coordinator {
+
+class BandFailures {
+ public:
+  BandFailures(Context& context, LeaseLedger& ledger, const Eligibility& eligibility,
+               AuditLeases& audits, const ReconnectBarrier& barrier, JobLifecycle& lifecycle)
+      : context_(context),
+        ledger_(ledger),
+        eligibility_(eligibility),
+        audits_(audits),
+        barrier_(barrier),
+        lifecycle_(lifecycle) {}
+
+  /// A worker reports that it could not render a band.
+  void band_failed(const input::BandFailed& in);
+  /// Ends leases without progress for the progress timeout, as failures of their worker.
+  void check_progress();
+  /// Fails a job that no connected worker may render, once workers have had time to reconnect.
+  void check_renderable(Job& job);
+
+ private:
+  void add(Job& job, Worker& worker, const Band& band, const std::string& reason);
+
+  Context& context_;
+  LeaseLedger& ledger_;
+  const Eligibility& eligibility_;
+  AuditLeases& audits_;
+  const ReconnectBarrier& barrier_;
+  JobLifecycle& lifecycle_;
+};
+
+}  // namespace bandsaw::coordinator

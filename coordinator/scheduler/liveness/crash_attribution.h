@@ -1,0 +1,78 @@
+#pragma once
+
+// Crash attribution: tells a band that crashes its workers from workers that are lost by chance.
+//
+// A lost worker proves nothing about its band: nobody sees whether its process, its machine or its
+// cable ended. So the bands that it held become suspect and are retried in pieces, each by a worker
+// that holds nothing else. If that worker is lost as well, its crash counts against the piece. A
+// job fails when more machines were lost at a piece than chance explains (CrashRate).
+
+#include <cstddef>
+#include <vector>
+
+#include "coordinator/scheduler/context/context.h"
+#include "coordinator/scheduler/dispatch/eligibility.h"
+#include "coordinator/scheduler/jobs/job_lifecycle.h"
+
+namespace bandsaw::coordinator {
+
+/// A band that a worker may have been rendering when it was lost.
+struct HeldBand {
+  JobId job = 0;
+  Band band;
+  bool alone = false;  ///< the worker held nothing else
+};
+
+/// Rate of workers that are lost at a band for reasons other than the band. It determines the
+/// number of crashes at one band that are needed to blame the band.
+class CrashRate {
+ public:
+  void add_band() { add(bands_); }
+  void add_crash() { add(crashes_); }
+
+  /// Returns how many workers must be lost at one band, each while it held nothing else, until the
+  /// probability that all were lost for other reasons is at most kMistake; at least `min_crashes`
+  /// and at most kMaxRequired. `own`: crashes that were counted and belong to this very band.
+  std::size_t required(std::size_t min_crashes, std::size_t own) const;
+
+ private:
+  static constexpr double kMistake = 1e-6;
+  static constexpr std::size_t kMaxRequired = 30;
+  /// Prior for a farm of which nothing is known: one crash besides twenty bands.
+  static constexpr double kPriorBands = 20;
+  static constexpr double kPriorCrashes = 1;
+  /// Both counts are halved when their sum exceeds this, so that old events lose weight.
+  static constexpr double kMaxCount = 2'000;
+
+  void add(double& count);
+
+  double bands_ = 0;  ///< stored
+  double crashes_ = 0;
+};
+
+class CrashAttribution {
+ public:
+  CrashAttribution(Context& context, const Eligibility& eligibility, JobLifecycle& lifecycle)
+      : context_(context), eligibility_(eligibility), lifecycle_(lifecycle) {}
+
+  /// Returns the bands that may have crashed the worker if it is lost now. MUST be called before
+  /// its leases are ended.
+  std::vector<HeldBand> held_bands(const Worker& worker) const;
+  /// Makes these bands suspect; fails their job if there are too many crashes at one of them.
+  void worker_lost(const Worker& worker, const std::vector<HeldBand>& held);
+  /// A worker that reconnects has not crashed: ends the suspicions that it caused.
+  void worker_connected(const Worker& worker);
+  /// Counts a stored band that was not suspect.
+  void count_band() { rate_.add_band(); }
+
+ private:
+  void add_suspicion(Job& job, const Worker& worker, const HeldBand& held);
+  void weigh(Job& job, const Worker& worker, const Band& band);
+
+  Context& context_;
+  const Eligibility& eligibility_;
+  JobLifecycle& lifecycle_;
+  CrashRate rate_;  ///< of this epoch
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,61 @@
+#pragma once
+
+// Sessions of workers: admission, leases held over a reconnect, heartbeats, and loss.
+
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "coordinator/scheduler/context/context.h"
+#include "coordinator/scheduler/context/reconnect_barrier.h"
+#include "coordinator/scheduler/dispatch/lease_ledger.h"
+#include "coordinator/scheduler/liveness/crash_attribution.h"
+
+namespace bandsaw::coordinator {
+
+/// A worker that was not admitted, as it is shown to users.
+struct Refusal {
+  std::string instance;
+  WorkerView worker;
+  Time at = 0;  ///< wall clock
+};
+
+class Sessions {
+ public:
+  Sessions(Context& context, LeaseLedger& ledger, ReconnectBarrier& barrier,
+           CrashAttribution& crashes)
+      : context_(context), ledger_(ledger), barrier_(barrier), crashes_(crashes) {}
+
+  /// Admits a worker, or refuses it with a reason. Leases that it still holds are kept or revoked;
+  /// those that it does not hold any more are ended.
+  void hello(const input::Hello& in);
+  void heartbeat(const input::Heartbeat& in);
+  void draining(const input::Draining& in);
+  void ended(const input::SessionEnded& in);
+
+  /// Ends the worker's session and leases.
+  void disconnect(Worker& worker, const std::string& reason);
+  /// Disconnects workers that have been silent for the heartbeat timeout.
+  void check_silence();
+  /// Forgets refusals of workers that do not try again: not for three times as long as they were
+  /// told to wait.
+  void forget_refusals();
+  /// The newest kMaxRefusals, the oldest first.
+  const std::deque<Refusal>& refusals() const { return refusals_; }
+
+ private:
+  static constexpr std::size_t kMaxRefusals = 32;
+
+  void refuse_incompatible(const input::Hello& in, const std::string& reason);
+  void admit(Worker& worker, const input::Hello& in);
+  void reconcile_leases(Worker& worker, const std::vector<WorkerHello::Held>& held);
+  bool keep_lease(Worker& worker, const WorkerHello::Held& held);
+
+  Context& context_;
+  LeaseLedger& ledger_;
+  ReconnectBarrier& barrier_;
+  CrashAttribution& crashes_;
+  std::deque<Refusal> refusals_;
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,89 @@
+#pragma once
+
+// A band that is rendered by two machines whose row digests are compared.
+//
+// Rendering is a pure function, so results that differ prove that a machine is wrong. Two machines
+// that agree are taken to be right, because two wrong results would differ from each other. A
+// machine that renders the band again and contradicts its own first result is wrong for certain.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "coordinator/scheduler/api/ids.h"
+#include "coordinator/scheduler/api/job_spec.h"
+#include "renderlib/render/band.h"
+
+namespace bandsaw::coordinator {
+
+/// Returns true if the band is selected for an audit. `share`: of all bands, [0, 1]. The selection
+/// is a hash of the band and of the submitter's request id. Workers never see the request id, so
+/// none can predict which bands are audited; and every epoch selects the same bands.
+bool is_audited(const JobSpec& spec, const Band& band, double share);
+
+/// Origin of a result: the worker process, and its machine under the name that the worker reports.
+/// The machine is the same when its worker is restarted.
+struct Reporter {
+  WorkerProcessId process = 0;
+  std::string machine;  ///< empty: the process has not connected in this epoch
+
+  bool same_machine(const Reporter& other) const {
+    return process == other.process || (!machine.empty() && machine == other.machine);
+  }
+};
+
+class Audit {
+ public:
+  /// The result of one machine for the band.
+  struct Result {
+    Reporter reporter;
+    std::vector<std::uint64_t> digests;  ///< one per row
+    bool repeated = false;               ///< the machine rendered it again with the same digests
+  };
+  struct Verdict {
+    bool stored_is_right = false;
+    std::vector<Result> wrong;  ///< results that differ from the right one
+  };
+
+  /// `stored`: the result whose rows are in the image.
+  Audit(const Band& band, Result stored) : band_(band) { results_.push_back(std::move(stored)); }
+
+  /// Adds a result. `requested`: it was rendered for this audit. If the machine contradicts its own
+  /// earlier result, returns that earlier result, and nothing is added.
+  std::optional<Result> add(Result result, bool requested);
+  /// Returns the verdict once two machines agree, else std::nullopt. Exception: the result of a
+  /// machine that repeated it wins against machines that have not connected in this epoch and so
+  /// cannot be asked again.
+  std::optional<Verdict> verdict() const;
+  /// Fills in the machine of a reporter of which only the process was known.
+  void identify(const Reporter& reporter);
+  /// Cuts off the rows from `row` on and returns them as an audit of their own. REQUIRES a row
+  /// inside the band.
+  Audit split_at(std::uint32_t row);
+  /// Removes the machine's result. It MUST NOT be the stored one.
+  void forget(const Reporter& reporter);
+
+  const Band& band() const { return band_; }
+  const std::vector<Result>& results() const { return results_; }
+  const Result& stored() const { return results_.front(); }
+  const Result* result_of(const Reporter& reporter) const;
+  /// Returns true if machines returned different results and none is known to be right.
+  bool disputed() const { return results_.size() > 1; }
+
+  LeaseId lease = 0;             ///< under which it is rendered again now; 0: none
+  std::set<std::string> given;   ///< machines that had such a lease
+  std::set<std::string> unable;  ///< those of them that could not render it
+
+ private:
+  Verdict verdict_for(const Result& right) const;
+  /// Returns the index of the machine's result, or results_.size().
+  std::size_t index_of(const Reporter& reporter) const;
+
+  Band band_;
+  std::vector<Result> results_;  ///< of different machines; the first is the stored one
+};
+
+}  // namespace bandsaw::coordinator

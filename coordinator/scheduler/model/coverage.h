@@ -1,0 +1,121 @@
+#pragma once
+
+// The owner of each sample of each row of one pass: stored, leased or free.
+//
+// The rows are cut into strips of equal content, and the pass's samples in each strip into cells.
+// Each cell is a node of the summation tree and has one owner. Strips and cells partition the pass
+// at all times, so no sample can be forgotten and none can have two owners. Most strips have one
+// cell; a row that is more work than a band should be has several.
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "coordinator/scheduler/api/ids.h"
+#include "renderlib/render/band.h"
+
+namespace bandsaw::coordinator {
+
+/// Owner of a cell: the id of a lease, or one of these two values.
+using Owner = LeaseId;
+inline constexpr Owner kFree = 0;
+inline constexpr Owner kStored = ~Owner{0};
+
+class Coverage {
+ public:
+  /// `pass` MUST be a node; height > 0.
+  Coverage(const SampleRange& pass, std::uint32_t height);
+
+  struct Change {
+    std::vector<RowRange> rows;      ///< that changed owner, ascending
+    std::vector<LeaseId> overtaken;  ///< leases that lost cells
+  };
+
+  /// Gives the band's rows to `owner`. Rows in which some of these samples are stored already keep
+  /// what they have, because the film cannot take a part of a node. A lease that loses a part of
+  /// its samples in a row loses the whole row: the rest becomes free.
+  Change assign(const Band& band, Owner owner);
+
+  /// Frees the part of the band that the lease still owns.
+  void give_back(const Band& band, LeaseId lease);
+
+  /// Frees the stored cells of the band's rows that overlap the band's node, as far as they lie in
+  /// it.
+  void reopen(const Band& band);
+
+  /// Returns the rows of the band in which none of its samples is stored, ascending.
+  std::vector<RowRange> wanted(const Band& band) const;
+  /// Returns true if some row is wanted and no wanted row is leased.
+  bool adoptable(const Band& band) const;
+  /// Returns true if the lease still owns a part of the band.
+  bool holds(const Band& band, LeaseId lease) const;
+
+  /// Returns the first free piece at or below `row`: a node, and consecutive rows in which it is
+  /// free. std::nullopt: nothing is free there.
+  std::optional<Band> free_from(std::uint32_t row) const;
+  /// Returns the free piece that begins exactly at `row`. std::nullopt: the row has none.
+  std::optional<Band> free_at(std::uint32_t row) const;
+
+  bool complete() const { return stored_ == total_; }
+  bool any_free() const { return !with_free_.empty(); }
+  /// Return the number of free or stored samples of a pixel column, summed over the rows.
+  std::uint64_t free_samples() const { return free_; }
+  std::uint64_t stored_samples() const { return stored_; }
+
+  const SampleRange& pass() const { return pass_; }
+  std::uint32_t height() const { return height_; }
+
+  /// Calls `f(lease, cell)` for each cell that a lease owns. Returns std::nullopt if strips and
+  /// cells partition the pass and the counts are right, else a sentence that says what is wrong.
+  template <class F>
+  std::optional<std::string> check(F f) const;
+
+ private:
+  struct Cell {
+    SampleRange node;
+    Owner owner = kFree;
+    friend bool operator==(const Cell&, const Cell&) = default;
+  };
+  struct Strip {
+    std::uint32_t last = 0;   ///< rows [key, last)
+    std::vector<Cell> cells;  ///< in the order of their samples
+  };
+  using Strips = std::map<std::uint32_t, Strip>;
+
+  static bool stored_in(const Strip& strip, const SampleRange& node);
+  static void put(Strip& strip, const SampleRange& node, Owner owner, std::vector<LeaseId>& lost);
+  static void open(Strip& strip, const SampleRange& node);
+  static void merge_siblings(Strip& strip);
+  static std::optional<SampleRange> free_in(const Strip& strip);
+  Strips::const_iterator strip_at(std::uint32_t row) const;
+  void cut_at(std::uint32_t row);
+  void join(const RowRange& rows);
+  void count(std::uint32_t first, const Strip& strip);
+  void uncount(std::uint32_t first, const Strip& strip);
+  std::optional<std::string> broken_partition() const;
+
+  SampleRange pass_;
+  std::uint32_t height_;
+  Strips strips_;
+  std::set<std::uint32_t> with_free_;  ///< keys of strips with a free cell
+  std::uint64_t total_;
+  std::uint64_t free_ = 0;
+  std::uint64_t stored_ = 0;
+};
+
+template <class F>
+std::optional<std::string> Coverage::check(F f) const {
+  for (const auto& [first, strip] : strips_) {
+    for (const Cell& cell : strip.cells) {
+      if (cell.owner != kFree && cell.owner != kStored) {
+        f(cell.owner, Band{cell.node, {first, strip.last}});
+      }
+    }
+  }
+  return broken_partition();
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,164 @@
+#pragma once
+
+// One job: its passes, what is stored of them, and what went wrong.
+
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "coordinator/scheduler/api/ids.h"
+#include "coordinator/scheduler/api/job_spec.h"
+#include "coordinator/scheduler/api/messages.h"
+#include "coordinator/scheduler/model/audit.h"
+#include "coordinator/scheduler/model/pass.h"
+#include "coordinator/scheduler/model/rates.h"
+#include "coordinator/scheduler/model/row_costs.h"
+#include "renderlib/render/tile_schedule.h"
+
+namespace bandsaw::coordinator {
+
+/// The reason of a job that a user paused.
+inline constexpr char kPausedByUser[] = "paused by a person; it goes on with: bandsaw resume";
+
+/// A worker reported that it could not render a band, or made no progress on it.
+struct FailedAttempt {
+  Band band;
+  std::string instance;
+  std::string reason;
+};
+
+/// A band that a worker held when it was lost. The band may have crashed the worker; the suspicion
+/// ends when the worker reconnects, and for rows that are stored.
+struct Suspicion {
+  Band band;                     ///< without the rows that were stored since
+  std::uint32_t piece_rows = 0;  ///< rows of it that are leased at a time when it is retried
+  std::string instance;
+  std::string machine;  ///< the name that the worker reports
+  /// The band was suspect already and was all that the worker held: this crash counts against it.
+  bool conclusive = false;
+};
+
+class Job {
+ public:
+  Job(JobId id, JobSpec spec, std::uint32_t pixel_version);
+
+  /// Returns the pass in which the band's samples are a node; nullptr: there is none, or the rows
+  /// are not in the image.
+  Pass* pass_of(const Band& band);
+  const Pass* pass_of(const Band& band) const;
+
+  /// Appends a pass; it MUST begin where the last one ends.
+  void add_pass(const SampleRange& samples);
+  /// Applies to the passes that are added from now on.
+  void plan_tiles(TilePlan plan);
+  /// Makes the job end after this many samples: removes the passes beyond.
+  void fix_samples(std::uint64_t samples);
+  /// Frees everything that the process stored in any pass, and drops its share and the audits of
+  /// its bands. Returns false if it had stored nothing.
+  bool retract(WorkerProcessId process);
+  /// Frees a band that the process stored, and forgets that it was audited. Frees nothing if
+  /// Pass::has_stored is false.
+  void remove_stored(const Band& band, WorkerProcessId process);
+  /// Advances the count of complete passes; forgets the digests of all but the last few of them.
+  void count_complete_passes();
+  /// Drops passes, plans, failures and digests of a job that becomes final.
+  void drop_details();
+
+  std::uint64_t planned_samples() const;   ///< of all passes
+  std::uint64_t complete_samples() const;  ///< of the complete passes, counted from the first
+  bool complete() const { return fixed_samples && complete_samples() >= *fixed_samples; }
+  bool any_free() const;
+  /// Returns true if an audited band waits for a machine.
+  bool audit_waits() const;
+  /// Returns the pixel samples of its passes that are neither leased nor stored.
+  double free_samples() const;
+  Totals totals() const;
+  /// Returns the largest shares, at most kMaxFinalShares, in descending order.
+  std::vector<WorkerShare> largest_shares() const;
+  std::uint64_t pixels() const;
+  /// Returns the pixel samples of the band.
+  std::uint64_t samples_of(const Band& band) const;
+  /// Returns the work of the band in units of CostMap: samples of columns of cost 1.
+  double cost_of(const Band& band) const;
+  std::uint64_t max_samples() const;
+  /// Returns the time in seconds that it has been worked on, in all epochs.
+  double elapsed(Time now) const;
+  /// Returns the open audit that is rendered under this lease; nullptr: none.
+  Audit* audit_under(LeaseId lease);
+  bool timed() const { return std::holds_alternative<StopAtTime>(spec.stop); }
+
+  /// Returns true if a worker was lost that held the band.
+  bool is_suspect(const Band& band) const;
+  /// Returns true if a worker was lost that held the band alone when it was suspect already.
+  bool has_conclusive_crash(const Band& band) const;
+  /// Ends the suspicion of stored rows: they did not crash their worker. Rows stored at an end of a
+  /// suspect range shrink it; rows in the middle leave it as it is.
+  void clear_suspicion(const Band& stored);
+
+  JobId id = 0;
+  JobSpec spec;
+  std::uint32_t pixel_version = 0;  ///< with which it was begun; 0: unknown
+  JobState state = JobState::kRunning;
+  std::int32_t priority = 0;
+  bool held = false;                           ///< paused by a user
+  Time held_at = 0;                            ///< patience clock
+  std::string reason;                          ///< of the state
+  std::string notice;                          ///< shown to users while the job runs
+  std::string damage;                          ///< damage of its bands on disk, in this epoch
+  std::uint64_t damaged_bands = 0;             ///< found while the coordinator ran, in this epoch
+  std::optional<std::uint64_t> fixed_samples;  ///< the job ends after this many samples per pixel
+  std::vector<Pass> passes;                    ///< from sample 0 on, without gaps
+  std::optional<TilePlan> tile_plan;           ///< of an adaptive job, from the end of its pilot on
+  bool image_requested = false;                ///< WriteResult was returned in this epoch
+  bool bands_on_disk = false;                  ///< bands were stored and not dropped
+
+  double error = -1;  ///< at `error_samples`; negative: unknown
+  std::uint64_t error_samples = 0;
+  ErrorCurve curve;
+  /// An error checkpoint that waits for audits, because it would decide from pixels that may be
+  /// wrong.
+  std::optional<input::PassMerged> pending_checkpoint;
+
+  std::set<LeaseId> leases;
+  std::set<LeaseId> backups;           ///< those of `leases` that are backup tasks
+  std::uint64_t backups_granted = 0;   ///< in this epoch
+  std::deque<FailedAttempt> failures;  ///< the newest kMaxFailures
+  std::deque<Suspicion> suspicions;    ///< the newest kMaxFailures
+  std::optional<Time> unable_since;    ///< patience clock: no connected worker may render it
+  std::string log_of;                  ///< the worker that failed a band last
+  std::vector<std::string> log;        ///< the last lines of its log
+  std::vector<Audit> audits;           ///< open, at most kMaxAudits
+  /// Bands confirmed by a second machine, keyed with the process whose result is stored, because
+  /// the stored result can be replaced by that of another process.
+  std::set<std::pair<Band, WorkerProcessId>> audited;
+
+  std::map<WorkerProcessId, WorkerShare> shares;  ///< at most kMaxShares
+  std::optional<record::JobSummary> summary;      ///< of a final job
+  std::vector<WorkerShare> final_shares;          ///< of a final job, descending
+
+  std::optional<Time> first_lease_at;  ///< in this epoch
+  double elapsed_before = 0;           ///< seconds, in earlier epochs
+  double elapsed_noted = 0;            ///< seconds in all epochs, as journalled last
+  RecentRate throughput;               ///< of pixel samples
+  CostMap cost;
+  RowTimes row_times;
+  std::uint32_t probes = 0;  ///< granted or skipped (dispatch/probes.h)
+  MeanRate work_rate;        ///< mean over its workers, per thread (dispatch/work_rate.h)
+
+  static constexpr std::size_t kMaxFailures = 1'000;
+  static constexpr std::size_t kMaxAudits = 4'096;
+  static constexpr std::size_t kMaxShares = 65'536;
+  static constexpr std::size_t kMaxFinalShares = 128;
+
+ private:
+  static constexpr std::size_t kPassesWithDigests = 8;
+  std::optional<TileSchedule> schedule_;
+  std::size_t complete_passes_ = 0;
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,95 @@
+#pragma once
+
+// One pass of a job: what is stored of it, and by which worker processes.
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "coordinator/scheduler/api/ids.h"
+#include "coordinator/scheduler/model/coverage.h"
+#include "renderlib/render/band.h"
+#include "renderlib/render/tile_samples.h"
+
+namespace bandsaw::coordinator {
+
+/// Sums over the stored bands of a pass or of a job. Each row is counted once, with the first valid
+/// result.
+struct Totals {
+  std::uint64_t samples = 0;  ///< pixel samples
+  Counters counters;
+  double cpu_s = 0;
+
+  void add(const Totals& other) {
+    samples += other.samples;
+    counters.add(other.counters);
+    cpu_s += other.cpu_s;
+  }
+};
+
+/// Digests of the stored rows of one pass. A second result for the same samples is compared with
+/// them.
+class RowDigests {
+ public:
+  /// Keeps the digests of `rows`. `digests`: one for each row of the band.
+  void keep(const Band& band, const std::vector<RowRange>& rows,
+            const std::vector<std::uint64_t>& digests);
+
+  /// Returns the first row of the band that is known with another digest for exactly these samples;
+  /// std::nullopt: there is none.
+  std::optional<std::uint32_t> first_difference(const Band& band,
+                                                const std::vector<std::uint64_t>& digests) const;
+
+  /// Returns the digest of a row of a node; std::nullopt: unknown.
+  std::optional<std::uint64_t> of(const SampleRange& samples, std::uint32_t row) const;
+  void forget(const Band& band);
+  void clear() { known_.clear(); }
+
+ private:
+  std::map<SampleRange, std::map<std::uint32_t, std::uint64_t>> known_;
+};
+
+struct Pass {
+  SampleRange samples;
+  Coverage coverage;
+  TileSamples tiles;  ///< of the whole image
+  /// For each tile row, the samples that its pixels take over those of uniform sampling; empty: 1.
+  std::vector<float> tile_row_shares;
+  Totals stored;
+  RowDigests digests;
+  /// Consecutive rows that were stored with one result.
+  struct StoredBand {
+    Band band;
+    Totals totals;  ///< of the whole result, counted at the first of its rows; 0 at the others
+  };
+  /// Everything that one worker process stored of the pass.
+  struct Part {
+    std::vector<StoredBand> bands;
+    Totals totals;  ///< of all bands
+  };
+  std::map<WorkerProcessId, Part> parts;
+  /// Number of times that a band which begins at this sample and row was returned unfinished; for
+  /// logs.
+  std::map<std::pair<std::uint64_t, std::uint32_t>, std::uint32_t> returned;
+
+  double mean_share() const;  ///< of tile_row_shares
+  TileSamples tiles_of(const Band& band) const { return tiles.of(samples, band); }
+  /// Counts rows of a band as stored by a worker process.
+  void add_stored(WorkerProcessId process, const Band& band, const std::vector<RowRange>& rows,
+                  const Totals& totals);
+  /// Frees everything that the process stored. Returns false if it had stored nothing.
+  bool retract(WorkerProcessId process);
+  /// Returns true if the process stored exactly this band and it was not freed since.
+  bool has_stored(const Band& band, WorkerProcessId process) const;
+  /// Frees such a band and returns its totals; std::nullopt: there is no such band.
+  std::optional<Totals> remove_stored(const Band& band, WorkerProcessId process);
+  /// Returns the process that stored a row of a node; 0: unknown.
+  WorkerProcessId process_of_row(const SampleRange& samples, std::uint32_t row) const;
+
+ private:
+  void recompute_totals();
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,80 @@
+#pragma once
+
+// Estimates of rates from results that arrive in lumps.
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include "coordinator/scheduler/api/ids.h"
+
+namespace bandsaw::coordinator {
+
+/// Exponentially weighted mean of measured rates. 0: nothing has been measured.
+class MeanRate {
+ public:
+  static constexpr double kDefaultWeight = 0.4;
+  /// `weight`: of this measurement, (0, 1].
+  void measure(double per_second, double weight = kDefaultWeight) {
+    mean_ = mean_ > 0 ? (1 - weight) * mean_ + weight * per_second : per_second;
+  }
+  double mean() const { return mean_; }
+  bool measured() const { return mean_ > 0; }
+
+ private:
+  double mean_ = 0;
+};
+
+/// Amount per second over the last ten seconds, or since the start if that is shorter.
+class RecentRate {
+ public:
+  void add(Time now, double amount) {
+    forget(now);
+    if (!started_) {
+      started_ = true;
+      since_ = now;
+    }
+    buckets_[index(now)] += amount;
+  }
+
+  double per_second(Time now) const {
+    RecentRate copy = *this;
+    copy.forget(now);
+    double sum = 0;
+    for (const double amount : copy.buckets_) {
+      sum += amount;
+    }
+    return sum / std::clamp(now - since_, 1.0, static_cast<double>(kSeconds));
+  }
+
+  /// Makes the time count from `now` on instead of from the first amount.
+  void start(Time now) {
+    started_ = true;
+    since_ = now;
+    newest_ = std::floor(now);
+  }
+
+ private:
+  static constexpr std::size_t kSeconds = 10;
+
+  static std::size_t index(Time now) {
+    const double second = std::floor(now);
+    return static_cast<std::size_t>(second - std::floor(second / kSeconds) * kSeconds);
+  }
+
+  void forget(Time now) {
+    const double second = std::floor(now);
+    for (double gone = std::max(newest_ + 1, second - kSeconds + 1); gone <= second; ++gone) {
+      buckets_[index(gone)] = 0;
+    }
+    newest_ = std::max(newest_, second);
+  }
+
+  std::array<double, kSeconds> buckets_{};
+  bool started_ = false;
+  Time since_ = 0;
+  double newest_ = 0;
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,82 @@
+#pragma once
+
+// Render costs of the rows of one image: relative costs, by which bands are sized, and times, by
+// which the end of the job is predicted.
+
+#include <cstdint>
+#include <vector>
+
+#include "absl/types/span.h"
+#include "renderlib/render/band.h"
+
+namespace bandsaw::coordinator {
+
+/// Relative cost of each row, learnt from the bands that were rendered: a band's time is the cost
+/// of its rows over its worker's work rate. Only ratios of costs have a meaning; every row costs 1
+/// until something is measured.
+class CostMap {
+ public:
+  CostMap() = default;
+  /// height > 0
+  explicit CostMap(std::uint32_t height);
+
+  /// Returns the cost of one sample of one pixel column, summed over the rows. `tile_row_shares`:
+  /// for each tile row of the image, the samples that its pixels take over those of uniform
+  /// sampling; empty: 1.
+  double of(const RowRange& rows, absl::Span<const float> tile_row_shares = {}) const;
+  double of_all() const { return of({0, static_cast<std::uint32_t>(rows_.size())}); }
+  /// Returns how many rows, counted from the first of `rows`, cost at most `max_cost`; at least 1.
+  std::uint32_t fitting(const RowRange& rows, double max_cost,
+                        absl::Span<const float> tile_row_shares = {}) const;
+
+  /// Corrects the cost of rows that took `ratio` times as long as predicted: it is multiplied by
+  /// ratio^0.75. The rest of the difference is attributed to the worker.
+  void learn(const RowRange& rows, double ratio);
+
+ private:
+  static constexpr std::uint32_t kGroup = 64;
+  float of_row(std::uint32_t row, absl::Span<const float> tile_row_shares) const;
+  double add(std::uint32_t first, std::uint32_t last,
+             absl::Span<const float> tile_row_shares) const;
+
+  std::vector<float> rows_;
+  std::vector<double> groups_;  ///< sums over kGroup rows each
+};
+
+/// Measured render time of each row. The cost map cannot predict the remaining time of a job,
+/// because its scale drifts and half of its rows are guesses. Here every number was measured, and
+/// rows without a measurement are interpolated.
+class RowTimes {
+ public:
+  /// height > 0
+  explicit RowTimes(std::uint32_t height) : rows_(height, kUnknown) {}
+
+  /// Records the time, in seconds of one thread, to render one sample of one pixel column over all
+  /// of `rows`.
+  void measure(const RowRange& rows, double seconds);
+  bool measured() const { return measured_; }
+
+  /// Returns the time, in seconds of one thread, of one sample of one pixel column, summed over the
+  /// rows; 0 if nothing was measured. `tile_row_shares` as in CostMap::of.
+  double of(const RowRange& rows, absl::Span<const float> tile_row_shares = {}) const;
+  double of_all() const { return of({0, static_cast<std::uint32_t>(rows_.size())}); }
+
+ private:
+  static constexpr float kUnknown = -1;
+  /// A run of rows without a measurement, and the times of the measured rows next to it.
+  struct Gap {
+    RowRange rows;
+    double before = 0;
+    double after = 0;
+    double of(std::uint32_t row) const {
+      return before + (after - before) * (row - rows.first + 1) / (rows.count() + 1);
+    }
+  };
+  /// REQUIRES that `row` has no measurement and some other row has one.
+  Gap gap_at(std::uint32_t row) const;
+
+  std::vector<float> rows_;
+  bool measured_ = false;
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,162 @@
+#include "coordinator/scheduler/replay/invariants.h"
+
+#include <algorithm>
+
+#include "absl/strings/str_cat.h"
+#include "proto/wire/limits.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+std::optional<std::string> broken_leases(const Context& context) {
+  for (const auto& [id, lease] : context.leases.all()) {
+    const Job* job = context.jobs.find(lease.job);
+    if (job == nullptr || is_final(job->state) || !job->leases.contains(id)) {
+      return absl::StrCat("lease ", id, " belongs to a job that does not know it");
+    }
+    const Pass* pass = job->pass_of(lease.band);
+    if (pass == nullptr ||
+        (lease.backup_of == 0 && !lease.audit) != pass->coverage.holds(lease.band, id)) {
+      return absl::StrCat("lease ", id, " owns nothing of its band, or is a backup task that does");
+    }
+    const auto is_its_audit = [&id = id, &lease = lease](const Audit& a) {
+      return a.lease == id && a.band() == lease.band;
+    };
+    if (lease.audit && std::count_if(job->audits.begin(), job->audits.end(), is_its_audit) != 1) {
+      return absl::StrCat("lease ", id, " is for an audit that its job does not know");
+    }
+    if ((lease.backup_of != 0) != job->backups.contains(id)) {
+      return absl::StrCat("lease ", id,
+                          " is a backup task that its job does not know, or the reverse");
+    }
+    if (const Lease* of = context.leases.find(lease.backup_of);
+        lease.backup_of != 0 &&
+        (of == nullptr || of->backup_of != 0 || of->worker == lease.worker ||
+         of->job != lease.job || of->band.samples != lease.band.samples ||
+         lease.band.rows.first < of->band.rows.first ||
+         lease.band.rows.last > of->band.rows.last)) {
+      return absl::StrCat("lease ", id, " is a backup task for no lease that contains its band");
+    }
+    const Worker* worker = context.workers.by_id(lease.worker);
+    if (worker == nullptr || !worker->session ||
+        std::count(worker->leases.begin(), worker->leases.end(), id) != 1) {
+      return absl::StrCat("lease ", id, " does not belong to a connected worker");
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> broken_workers(const Context& context) {
+  std::size_t available = 0;
+  std::uint64_t threads = 0;
+  for (const auto& [id, worker] : context.workers.all()) {
+    for (const LeaseId lease : worker.leases) {
+      if (context.leases.find(lease) == nullptr) {
+        return absl::StrCat(worker.name, " has a lease that does not exist");
+      }
+    }
+    if (worker.leases.size() > wire::kBandsPerWorker) {
+      return absl::StrCat(worker.name, " has too many leases");
+    }
+    if (worker.has_spare_credit() != context.available.contains({worker.leases.size(), id})) {
+      return absl::StrCat(worker.name,
+                          " has spare credits and is not listed as available, or the reverse");
+    }
+    available += worker.has_spare_credit() ? 1 : 0;
+    threads += worker.eligible() ? worker.threads : 0;
+    if (worker.session && !context.joined.contains(worker.instance)) {
+      return absl::StrCat(worker.name, " is connected and not journalled");
+    }
+  }
+  if (available != context.available.size() || threads != context.available.threads()) {
+    return "workers that have left are listed as available";
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> broken_pass(const Context& context, const Job& job, const Pass& pass) {
+  std::optional<std::string> broken;
+  auto partition = pass.coverage.check([&](LeaseId id, const Band& cell) {
+    const Lease* lease = context.leases.find(id);
+    if (lease == nullptr || lease->job != job.id || lease->band.samples != cell.samples ||
+        cell.rows.first < lease->band.rows.first || cell.rows.last > lease->band.rows.last) {
+      broken = absl::StrCat("row ", cell.rows.first, " is leased as ", id,
+                            ", and that lease does not contain it");
+    }
+  });
+  return broken ? broken : std::move(partition);
+}
+
+std::optional<std::string> broken_job(const Context& context, const Job& job) {
+  if (is_final(job.state) == context.jobs.active().contains(job.id)) {
+    return "it is counted as active and final, or as neither";
+  }
+  if (is_final(job.state)) {
+    return job.leases.empty() && job.passes.empty() ? std::nullopt
+                                                    : std::optional("it is final and has leases");
+  }
+  if (job.state == JobState::kFinishing && (!job.complete() || !job.leases.empty())) {
+    return "it is finishing and not all of it is stored";
+  }
+  if (job.state == JobState::kRunning && job.complete() && job.audits.empty()) {
+    return "all of it is stored and it is not finishing";
+  }
+  for (const Audit& audit : job.audits) {
+    if (audit.lease != 0 && !job.leases.contains(audit.lease)) {
+      return "an audit has a lease that the job does not know";
+    }
+    if (context.quarantine.contains(audit.stored().reporter.process)) {
+      return "it has rows of a machine that is under quarantine";
+    }
+  }
+  if (job.state == JobState::kRunning && (job.any_free() || job.audit_waits()) &&
+      !context.jobs.leasable().contains(JobTable::rank(job))) {
+    return "it has free rows and is not leasable";
+  }
+  if (job.state != JobState::kRunning && context.jobs.leasable().contains(JobTable::rank(job))) {
+    return "it is leasable and does not run";
+  }
+  if (job.held && job.state == JobState::kRunning) {
+    return "a user paused it and it runs";
+  }
+  if (job.passes.empty() || (job.fixed_samples && job.planned_samples() > *job.fixed_samples)) {
+    return "its passes do not follow from its stop rule";
+  }
+  std::uint64_t end = 0;
+  for (const Pass& pass : job.passes) {
+    if (pass.samples.first != end || !is_node(pass.samples)) {
+      return absl::StrCat("the pass after sample ", end, " does not follow it as a node");
+    }
+    end = pass.samples.last;
+    if (auto broken = broken_pass(context, job, pass)) {
+      return broken;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::string> broken_invariant(const Context& context) {
+  if (auto broken = broken_leases(context)) {
+    return broken;
+  }
+  if (auto broken = broken_workers(context)) {
+    return broken;
+  }
+  for (const auto& [id, job] : context.jobs.all()) {
+    if (auto broken = broken_job(context, job)) {
+      return absl::StrCat("job ", id, ": ", *broken);
+    }
+  }
+  if (!context.step_is_empty()) {
+    return "a step ended with actions or records left";
+  }
+  if (context.jobs.active().size() > wire::kActiveJobs ||
+      context.workers.connected() > wire::kWorkers) {
+    return "there are more jobs or workers than the limits allow";
+  }
+  return std::nullopt;
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "coordinator/scheduler/context/context.h"
+
+namespace bandsaw::coordinator {
+
+/// Returns a sentence about the first invariant that does not hold; std::nullopt: all hold. They
+/// hold between two steps.
+std::optional<std::string> broken_invariant(const Context& context);
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,98 @@
+#include "coordinator/scheduler/replay/restart.h"
+
+#include <string>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+/// Returns the reason for which a job fails that was begun with another pixel version; 0: the
+/// journal does not say with which.
+std::string other_pixel_version(std::uint32_t begun_with, std::uint32_t here) {
+  const std::string version =
+      begun_with == 0 ? "an earlier pixel version" : absl::StrCat("pixel version ", begun_with);
+  return absl::StrCat("begun with ", version, ", this coordinator has ", here,
+                      ": an image is of one version; submit it again");
+}
+
+}  // namespace
+
+void Restart::add_band(const input::BandStored& band) {
+  Job* job = context_.jobs.find(band.job);
+  if (job == nullptr) {
+    return;
+  }
+  job->bands_on_disk = true;
+  Pass* pass = is_final(job->state) ? nullptr : job->pass_of(band.band);
+  const Reporter reporter = context_.reporter_of(band);
+  if (pass == nullptr || band.row_digests.size() != band.band.rows.count() ||
+      context_.quarantine.contains(reporter.process)) {
+    return;
+  }
+  const bool is_new = pass->coverage.wanted(band.band) == std::vector<RowRange>{band.band.rows};
+  const Coverage::Change change = bands_.store(*job, *pass, band, reporter);
+  comparison_.open_audits(*job, band, reporter, change.rows);
+  if (!is_new) {
+    duplicates_.push_back(band);
+  }
+}
+
+void Restart::note_damage(JobId id, std::uint64_t bytes) {
+  if (Job* job = context_.jobs.find(id); job != nullptr && !is_final(job->state)) {
+    job->damage = absl::StrCat(bytes,
+                               " bytes of its bands on the coordinator's disk were damaged, or not "
+                               "written to the end; their rows are rendered again");
+  }
+}
+
+void Restart::compare_duplicates() {
+  for (const input::BandStored& band : std::exchange(duplicates_, {})) {
+    Job& job = context_.jobs.at(band.job);
+    const Reporter reporter = context_.reporter_of(band);
+    if (!context_.quarantine.contains(reporter.process)) {
+      comparison_.compare(job, *job.pass_of(band.band), band, reporter);
+    }
+  }
+}
+
+void Restart::finish() {
+  barrier_.begin_after_restart();
+  compare_duplicates();
+  for (auto& [id, job] : context_.jobs.all()) {
+    resume(job);
+  }
+}
+
+void Restart::resume(Job& job) {
+  if (is_final(job.state)) {
+    if (job.bands_on_disk) {
+      context_.act(action::DropBands{job.id});
+    }
+    return;
+  }
+  const std::uint32_t here = context_.options.compatibility.pixel_version;
+  if (job.pixel_version != here) {
+    lifecycle_.end(job, JobState::kFailed, other_pixel_version(job.pixel_version, here));
+    return;
+  }
+  planner_.plan_first(job);
+  bands_.note_missing_audited(job);
+  job.throughput = {};
+  job.elapsed_before = job.elapsed_noted;
+  if (job.held) {
+    if (job.state != JobState::kPaused) {
+      context_.emit(record::StateChanged{job.id, JobState::kPaused, kPausedByUser});
+    }
+    return;
+  }
+  if (job.state != JobState::kRunning) {
+    // Paused: the disk is tried again. Finishing: the result was not written yet.
+    context_.emit(record::StateChanged{job.id, JobState::kRunning, ""});
+  }
+  context_.jobs.mark_leasable(job);
+  lifecycle_.advance(job);
+}
+
+}  // namespace bandsaw::coordinator

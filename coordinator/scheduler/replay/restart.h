@@ -1,0 +1,52 @@
+#pragma once
+
+// Restart of the coordinator: rebuilds the state from the journal and the bands on disk, and lets
+// the jobs go on.
+
+#include <cstdint>
+#include <vector>
+
+#include "coordinator/scheduler/context/context.h"
+#include "coordinator/scheduler/context/reconnect_barrier.h"
+#include "coordinator/scheduler/dispatch/pass_planner.h"
+#include "coordinator/scheduler/jobs/job_lifecycle.h"
+#include "coordinator/scheduler/jobs/stored_bands.h"
+#include "coordinator/scheduler/trust/result_comparison.h"
+
+namespace bandsaw::coordinator {
+
+class Restart {
+ public:
+  Restart(Context& context, ReconnectBarrier& barrier, PassPlanner& planner,
+          JobLifecycle& lifecycle, StoredBands& bands, ResultComparison& comparison)
+      : context_(context),
+        barrier_(barrier),
+        planner_(planner),
+        lifecycle_(lifecycle),
+        bands_(bands),
+        comparison_(comparison) {}
+
+  /// Counts a band that was found on disk as stored, unless its worker process is quarantined.
+  void add_band(const input::BandStored& band);
+  /// Notes for users that this many bytes of the job's band log are damaged.
+  void note_damage(JobId id, std::uint64_t bytes);
+  /// Ends the replay: begins the reconnect barrier, compares duplicate bands, and makes each job go
+  /// on. A job that was begun with another pixel version fails.
+  void finish();
+
+ private:
+  void compare_duplicates();
+  void resume(Job& job);
+
+  Context& context_;
+  ReconnectBarrier& barrier_;
+  PassPlanner& planner_;
+  JobLifecycle& lifecycle_;
+  StoredBands& bands_;
+  ResultComparison& comparison_;
+  /// Bands with rows that were stored already. They are compared once all bands are replayed,
+  /// because the film takes all bands first and then what is retracted.
+  std::vector<input::BandStored> duplicates_;
+};
+
+}  // namespace bandsaw::coordinator

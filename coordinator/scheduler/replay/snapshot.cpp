@@ -1,0 +1,77 @@
+#include "coordinator/scheduler/replay/snapshot.h"
+
+#include <string>
+
+namespace bandsaw::coordinator {
+namespace {
+
+/// Appends the passes, and the tile plan before the first pass that it applies to.
+void add_passes(const Job& job, std::vector<Record>& out) {
+  bool plan_added = !job.tile_plan;
+  for (const Pass& pass : job.passes) {
+    if (!plan_added && pass.samples.first >= job.tile_plan->pilot) {
+      out.push_back(record::TilesPlanned{job.id, *job.tile_plan});
+      plan_added = true;
+    }
+    out.push_back(record::PassPlanned{job.id, pass.samples});
+  }
+  if (!plan_added) {
+    out.push_back(record::TilesPlanned{job.id, *job.tile_plan});
+  }
+}
+
+void add_job(const Job& job, std::vector<Record>& out) {
+  out.push_back(record::JobAdded{job.id, job.spec, job.pixel_version});
+  if (job.priority != 0) {
+    out.push_back(record::PriorityChanged{job.id, job.priority});
+  }
+  if (job.held) {
+    out.push_back(record::HoldChanged{job.id, true});
+  }
+  add_passes(job, out);
+  if (job.fixed_samples) {
+    out.push_back(record::SamplesFixed{job.id, *job.fixed_samples});
+  }
+  if (job.elapsed_noted > 0) {
+    out.push_back(record::TimeSpent{job.id, job.elapsed_noted});
+  }
+  for (const ErrorPoint& point : job.curve) {
+    out.push_back(record::ErrorMeasured{job.id, point});
+  }
+  for (const auto& [band, process] : job.audited) {
+    out.push_back(record::BandAudited{job.id, band, process});
+  }
+  if (job.summary) {
+    out.push_back(*job.summary);
+  }
+  for (const WorkerShare& share : job.final_shares) {
+    out.push_back(record::ShareCounted{job.id, share});
+  }
+  if (is_final(job.state) && !job.log.empty()) {
+    out.push_back(record::FailureLog{job.id, job.log_of, job.log});
+  }
+  if (job.state != JobState::kRunning || !job.reason.empty()) {
+    out.push_back(record::StateChanged{job.id, job.state, job.reason});
+  }
+}
+
+}  // namespace
+
+std::vector<Record> snapshot(const Context& context) {
+  std::vector<Record> records;
+  for (const auto& [id, job] : context.jobs.all()) {
+    add_job(job, records);
+  }
+  // The last id stays used though its job was forgotten.
+  if (const JobId next = context.jobs.next_id();
+      next > 1 && !context.jobs.all().contains(next - 1)) {
+    records.push_back(record::JobForgotten{next - 1});
+  }
+  context.quarantine.add_records(records);
+  for (const std::string& instance : context.joined) {
+    records.push_back(record::WorkerJoined{instance});
+  }
+  return records;
+}
+
+}  // namespace bandsaw::coordinator

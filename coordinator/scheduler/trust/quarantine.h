@@ -1,0 +1,36 @@
+#pragma once
+
+// Puts machines that returned wrong pixels under quarantine: they get no work until a user lifts
+// it, and what they rendered of active jobs is rendered again.
+
+#include <string>
+
+#include "coordinator/scheduler/context/context.h"
+#include "coordinator/scheduler/dispatch/lease_ledger.h"
+#include "coordinator/scheduler/liveness/sessions.h"
+
+namespace bandsaw::coordinator {
+
+class Quarantine {
+ public:
+  Quarantine(Context& context, LeaseLedger& ledger, Sessions& sessions)
+      : context_(context), ledger_(ledger), sessions_(sessions) {}
+
+  /// Quarantines the reporter's machine, that is, all worker processes that report its name. Jobs
+  /// whose image was requested keep their rows, since the image may be written already.
+  void impose(const Reporter& reporter, const std::string& reason);
+  /// A user quarantines a worker or machine. NOT_FOUND: no known worker has the name.
+  void request(const input::Quarantine& in);
+  /// NOT_FOUND: no worker of this name is under quarantine.
+  void lift(const input::LiftQuarantine& in);
+
+ private:
+  void expel(Worker& worker);
+  void retract(Job& job, WorkerProcessId process, const std::string& why);
+
+  Context& context_;
+  LeaseLedger& ledger_;
+  Sessions& sessions_;
+};
+
+}  // namespace bandsaw::coordinator

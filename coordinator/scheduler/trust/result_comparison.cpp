@@ -1,0 +1,140 @@
+#include "coordinator/scheduler/trust/result_comparison.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/scheduler/model/band_text.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+/// Returns the digests of the audit's rows; std::nullopt if the result does not have all of them.
+std::optional<std::vector<std::uint64_t>> digests_for(const Band& audited,
+                                                      const input::BandStored& in) {
+  if (audited.samples != in.band.samples || audited.rows.first < in.band.rows.first ||
+      audited.rows.last > in.band.rows.last) {
+    return std::nullopt;
+  }
+  const auto first = in.row_digests.begin() + (audited.rows.first - in.band.rows.first);
+  return std::vector(first, first + audited.rows.count());
+}
+
+/// Returns the rows of the band that no second machine has confirmed.
+std::vector<RowRange> not_audited(const Job& job, const Band& band, WorkerProcessId process) {
+  std::vector<RowRange> rows;
+  std::uint32_t next = band.rows.first;
+  for (const auto& [done, by] : job.audited) {
+    if (by == process && done.samples == band.samples && done.rows.last > next &&
+        done.rows.first < band.rows.last) {
+      if (done.rows.first > next) {
+        rows.push_back({next, done.rows.first});
+      }
+      next = done.rows.last;
+    }
+  }
+  if (next < band.rows.last) {
+    rows.push_back({next, band.rows.last});
+  }
+  return rows;
+}
+
+}  // namespace
+
+void ResultComparison::open_audits(Job& job, const input::BandStored& in, const Reporter& reporter,
+                                   const std::vector<RowRange>& rows) {
+  if (!is_audited(job.spec, in.band, context_.options.audit_share)) {
+    return;
+  }
+  for (const RowRange& range : rows) {
+    for (const RowRange& left : not_audited(job, {in.band.samples, range}, reporter.process)) {
+      const Band band{in.band.samples, left};
+      if (job.audits.size() < Job::kMaxAudits) {
+        job.audits.emplace_back(band, Audit::Result{reporter, *digests_for(band, in)});
+      }
+    }
+  }
+}
+
+/// Opens an audit of the first row that differs from what is stored, unless one is open. Needed for
+/// results that nobody requested for comparison.
+void ResultComparison::open_dispute(Job& job, const Pass& pass, const input::BandStored& in) {
+  const auto row = pass.digests.first_difference(in.band, in.row_digests);
+  if (!row) {
+    return;
+  }
+  const bool known = std::any_of(job.audits.begin(), job.audits.end(), [&](const Audit& audit) {
+    return digests_for(audit.band(), in) && audit.band().rows.first <= *row &&
+           *row < audit.band().rows.last;
+  });
+  if (!known) {
+    const Reporter stored = context_.reporter_of(pass.process_of_row(in.band.samples, *row));
+    job.audits.emplace_back(Band{in.band.samples, {*row, *row + 1}},
+                            Audit::Result{stored, {*pass.digests.of(in.band.samples, *row)}});
+    context_.jobs.mark_leasable(job);
+  }
+}
+
+void ResultComparison::compare(Job& job, const Pass& pass, const input::BandStored& in,
+                               const Reporter& reporter) {
+  if (job.image_requested) {
+    return;
+  }
+  open_dispute(job, pass, in);
+  const Worker* worker = context_.workers.by_instance(in.instance);
+  std::vector<LeaseId> rendered;
+  std::vector<std::pair<Band, Audit::Result>> contradicted;
+  for (Audit& audit : job.audits) {
+    const auto digests = digests_for(audit.band(), in);
+    if (!digests) {
+      continue;
+    }
+    const Lease* lease = context_.leases.find(audit.lease);
+    const bool requested = lease != nullptr && worker != nullptr && lease->worker == worker->id;
+    if (const auto before = audit.add({reporter, *digests}, requested)) {
+      contradicted.emplace_back(audit.band(), *before);
+    }
+    if (requested) {
+      rendered.push_back(audit.lease);
+    }
+  }
+  for (const LeaseId id : rendered) {
+    ledger_.end_rendered(id);
+  }
+  for (const auto& [band, result] : contradicted) {
+    quarantine_.impose(result.reporter,
+                       absl::StrCat("returned other pixels than it did before for ", name_of(band),
+                                    " of job ", job.id));
+  }
+  while (decide_one(job)) {
+  }
+}
+
+/// Closes an audit that has a verdict, and quarantines the machines that are wrong. Returns false
+/// if there is none.
+bool ResultComparison::decide_one(Job& job) {
+  for (auto audit = job.audits.begin(); audit != job.audits.end(); ++audit) {
+    const auto verdict = audit->verdict();
+    if (!verdict) {
+      continue;
+    }
+    const Band band = audit->band();
+    const WorkerProcessId stored_by = audit->stored().reporter.process;
+    if (audit->lease != 0) {
+      ledger_.end(audit->lease, LeaseLedger::Revoke::kYes);
+    }
+    job.audits.erase(audit);
+    if (verdict->stored_is_right) {
+      context_.emit(record::BandAudited{job.id, band, stored_by});
+    }
+    for (const Audit::Result& wrong : verdict->wrong) {
+      quarantine_.impose(wrong.reporter, absl::StrCat("returned other pixels than two others for ",
+                                                      name_of(band), " of job ", job.id));
+    }
+    return true;
+  }
+  return false;
+}
+
+}  // namespace bandsaw::coordinator

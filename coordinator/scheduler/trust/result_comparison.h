@@ -1,0 +1,35 @@
+#pragma once
+
+// Opens audits of stored bands, and compares results with the rows that are stored (model/audit.h).
+
+#include <vector>
+
+#include "coordinator/scheduler/context/context.h"
+#include "coordinator/scheduler/dispatch/lease_ledger.h"
+#include "coordinator/scheduler/trust/quarantine.h"
+
+namespace bandsaw::coordinator {
+
+class ResultComparison {
+ public:
+  ResultComparison(Context& context, LeaseLedger& ledger, Quarantine& quarantine)
+      : context_(context), ledger_(ledger), quarantine_(quarantine) {}
+
+  /// Opens audits of rows that were just stored, if the band is selected for one.
+  void open_audits(Job& job, const input::BandStored& in, const Reporter& reporter,
+                   const std::vector<RowRange>& rows);
+  /// Compares a result with what is stored of its rows. Adds it to the audits of these rows, opens
+  /// one for a row that differs, and quarantines machines that are proved wrong. No effect once the
+  /// job's image was requested: nothing can be decided any more.
+  void compare(Job& job, const Pass& pass, const input::BandStored& in, const Reporter& reporter);
+
+ private:
+  void open_dispute(Job& job, const Pass& pass, const input::BandStored& in);
+  bool decide_one(Job& job);
+
+  Context& context_;
+  LeaseLedger& ledger_;
+  Quarantine& quarantine_;
+};
+
+}  // namespace bandsaw::coordinator

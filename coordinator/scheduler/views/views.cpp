@@ -1,0 +1,299 @@
+#include "coordinator/scheduler/views/views.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <string>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
+#include "coordinator/scheduler/model/band_text.h"
+#include "coordinator/scheduler/views/progress.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+/// Maximum number of lines of one kind.
+constexpr std::size_t kMaxLines = 10;
+
+std::string priority_text(std::int32_t priority) {
+  return priority == 0 ? "" : absl::StrCat(" (priority ", priority, ")");
+}
+
+std::vector<std::string> failed_because(const Job& job, std::string reason) {
+  std::vector<std::string> lines = {std::move(reason)};
+  for (const std::string& line : job.log) {
+    lines.push_back(absl::StrCat(job.log_of, " | ", line));
+  }
+  return lines;
+}
+
+const char* state_of(const Worker& worker) {
+  return worker.quarantined      ? "quarantined"
+         : !worker.session       ? "lost"
+         : worker.draining       ? "draining"
+         : worker.leases.empty() ? "idle"
+                                 : "rendering";
+}
+
+}  // namespace
+
+std::optional<JobView> Views::job(JobId id, Time now) const {
+  const Job* job = context_.jobs.find(id);
+  return job == nullptr ? std::nullopt : std::optional(view(*job, now));
+}
+
+JobView Views::view(const Job& job, Time now) const {
+  const bool over = is_final(job.state);
+  const Totals totals = job.totals();
+  JobView view;
+  view.id = job.id;
+  view.spec = job.spec;
+  view.state = job.state;
+  view.reason = !job.reason.empty() ? job.reason : waiting_reason(job);
+  if (view.reason.empty()) {
+    view.reason = job.damage;
+  }
+  view.elapsed_s = job.elapsed(std::max(now, context_.clock.wall()));
+  view.fraction = fraction_done(job, now);
+  view.remaining_s = remaining_s(context_, job, now);
+  view.samples_per_s = over ? 0 : job.throughput.per_second(now);
+  view.samples_done = totals.samples;
+  const bool uneven = job.tile_plan || (over && is_adaptive(job.spec.stop));
+  view.samples_per_pixel = uneven ? totals.samples / job.pixels() : job.complete_samples();
+  view.error = over && job.summary ? job.summary->error : job.error;
+  view.counters = totals.counters;
+  view.cpu_s = totals.cpu_s;
+  view.workers_used = over && job.summary ? job.summary->workers_used
+                                          : static_cast<std::uint32_t>(job.shares.size());
+  view.priority = job.priority;
+  if (job.state == JobState::kFailed) {
+    view.log_of = job.log_of;
+    view.log = job.log;
+  }
+  view.bands_copied = job.backups_granted;
+  view.bands_audited = job.audited.size();
+  view.workers = workers_on(context_, job);
+  view.curve = job.curve;
+  view.shares = job.final_shares;
+  return view;
+}
+
+std::vector<JobView> Views::jobs(Time now) const {
+  std::vector<JobView> views;
+  for (const auto& [id, job] : context_.jobs.all()) {
+    views.push_back(view(job, now));
+    views.back().curve.clear();
+    views.back().log.clear();
+    views.back().shares.clear();
+  }
+  return views;
+}
+
+std::vector<WorkerView> Views::workers(Time now) const {
+  std::vector<WorkerView> views;
+  for (const auto& [id, worker] : context_.workers.all()) {
+    WorkerView view;
+    view.name = worker.name;
+    view.state = state_of(worker);
+    view.reason = worker.reason;
+    view.address = worker.address;
+    view.build = worker.build;
+    view.threads = worker.threads;
+    view.samples_per_s = worker.speed.mean();
+    view.job = worker.leases.empty() ? 0 : context_.leases.find(worker.leases.front())->job;
+    view.connected_s = worker.session ? std::max(0.0, now - worker.connected_at) : 0;
+    views.push_back(std::move(view));
+  }
+  for (const Refusal& refusal : sessions_.refusals()) {
+    views.push_back(refusal.worker);
+  }
+  for (WorkerView& view : absent_quarantined()) {
+    views.push_back(std::move(view));
+  }
+  std::sort(views.begin(), views.end(),
+            [](const WorkerView& a, const WorkerView& b) { return a.name < b.name; });
+  return views;
+}
+
+std::vector<WorkerView> Views::absent_quarantined() const {
+  std::map<std::string, WorkerView> views;
+  const auto& workers = context_.workers.all();
+  for (const auto& [process, entry] : context_.quarantine.entries()) {
+    const auto is_its_worker = [&name = entry.name](const auto& w) {
+      return w.second.quarantined && w.second.reported_name == name;
+    };
+    const bool shown = std::any_of(workers.begin(), workers.end(), is_its_worker);
+    if (!entry.lifted && !entry.name.empty() && !shown) {
+      WorkerView& view = views[entry.name];
+      view.name = entry.name;
+      view.state = "quarantined";
+      view.reason = QuarantineList::describe(entry);
+    }
+  }
+  std::vector<WorkerView> out;
+  for (auto& [name, view] : views) {
+    out.push_back(std::move(view));
+  }
+  return out;
+}
+
+std::string Views::waiting_reason(const Job& job) const {
+  if (job.state != JobState::kRunning || !job.leases.empty()) {
+    return job.notice;
+  }
+  if (!job.any_free() && audits_.block(job)) {
+    return audit_reason(job);
+  }
+  if (barrier_.active()) {
+    return absl::StrCat("waits for ", barrier_.missing(),
+                        " workers that were there before the coordinator's restart, or before "
+                        "all were lost at once");
+  }
+  if (context_.available.eligible() == 0) {
+    const auto& refusals = sessions_.refusals();
+    return refusals.empty() ? "no worker is connected"
+                            : absl::StrCat("no worker is connected; ", refusals.back().worker.name,
+                                           " was refused: ", refusals.back().worker.reason);
+  }
+  if (!eligibility_.someone_may_render(job)) {
+    return absl::StrCat("no connected worker can render it; the last: ", job.notice);
+  }
+  const std::string busy = job.any_free() ? busy_with_others(job) : "";
+  return busy.empty() ? job.notice : busy;
+}
+
+/// Returns what the audits of a job with nothing left to render wait for.
+std::string Views::audit_reason(const Job& job) const {
+  for (const Audit& audit : job.audits) {
+    if (audit.disputed() && audit.lease == 0) {
+      const auto append_name = [this](std::string* out, const Audit::Result& result) {
+        absl::StrAppend(out, context_.name_of(result.reporter));
+      };
+      return absl::StrCat(absl::StrJoin(audit.results(), ", ", append_name),
+                          " returned different pixels for ", name_of(audit.band()),
+                          "; another machine must decide: start a worker on one, or say which is "
+                          "wrong with: bandsaw quarantine NAME");
+    }
+  }
+  return absl::StrCat(job.audits.size(), job.audits.size() == 1 ? " band is" : " bands are",
+                      " being rendered a second time, by another machine, to compare");
+}
+
+/// Returns "all workers are busy with job 5 (priority 10)", or "" if some worker is idle.
+std::string Views::busy_with_others(const Job& job) const {
+  std::set<JobTable::Rank> jobs;
+  for (const auto& [id, worker] : context_.workers.all()) {
+    if (!worker.eligible()) {
+      continue;
+    }
+    if (worker.leases.empty()) {
+      return "";
+    }
+    for (const LeaseId lease : worker.leases) {
+      jobs.insert(JobTable::rank(context_.jobs.at(context_.leases.find(lease)->job)));
+    }
+  }
+  jobs.erase(JobTable::rank(job));
+  if (jobs.empty()) {
+    return "";
+  }
+  const auto append_job = [](std::string* out, const JobTable::Rank& other) {
+    absl::StrAppend(out, "job ", other.second, priority_text(-other.first));
+  };
+  return absl::StrCat("all workers are busy with ", absl::StrJoin(jobs, ", ", append_job));
+}
+
+std::vector<std::string> Views::why(JobId id, Time now) const {
+  const Job* job = context_.jobs.find(id);
+  if (job == nullptr) {
+    return {};
+  }
+  std::vector<std::string> lines = why_of_state(*job, now);
+  if (!job->damage.empty()) {
+    lines.push_back(job->damage);
+  }
+  return lines;
+}
+
+std::vector<std::string> Views::why_of_state(const Job& job, Time now) const {
+  const auto with_reason = [&](const char* what) {
+    return absl::StrCat(what, job.reason.empty() ? "" : ": ", job.reason);
+  };
+  switch (job.state) {
+    case JobState::kDone:
+      return {"it is done"};
+    case JobState::kFailed:
+      return failed_because(job, with_reason("it failed"));
+    case JobState::kCancelled:
+      return {"it was cancelled"};
+    case JobState::kFinishing:
+      return {"every pixel is there; the result is being written"};
+    case JobState::kPaused:
+      return {with_reason("it is paused")};
+    case JobState::kRunning:
+      break;
+  }
+  std::vector<std::string> lines = working_on(job);
+  if (const std::string reason = waiting_reason(job); !reason.empty()) {
+    lines.push_back(reason);
+  }
+  if (!job.any_free() && audits_.block(job)) {
+    lines.push_back(audit_reason(job));
+  } else if (job.leases.empty() && !job.any_free()) {
+    lines.push_back("all that is planned is rendered; how much more is needed is being measured");
+  }
+  if (lines.empty()) {
+    lines.push_back("it is about to be given to workers");
+  }
+  if (const double left = remaining_s(context_, job, now); left >= 0 && !job.leases.empty()) {
+    lines.push_back(
+        absl::StrCat("it needs about ", static_cast<std::uint64_t>(left + 0.5), " s more"));
+  }
+  const std::vector<std::string> not_working = not_working_on(job);
+  lines.insert(lines.end(), not_working.begin(), not_working.end());
+  return lines;
+}
+
+std::vector<std::string> Views::working_on(const Job& job) const {
+  std::vector<std::string> out;
+  const std::vector<JobWorkerView> workers = workers_on(context_, job);
+  for (const JobWorkerView& worker : workers) {
+    if (out.size() == kMaxLines) {
+      out.push_back(absl::StrCat("and ", workers.size() - kMaxLines, " more workers"));
+      break;
+    }
+    out.push_back(absl::StrCat(worker.name, " is at it: ", worker.state, ", rows ",
+                               worker.rows.first, "–", worker.rows.last));
+  }
+  return out;
+}
+
+std::vector<std::string> Views::not_working_on(const Job& job) const {
+  std::vector<std::string> out;
+  for (const auto& [id, worker] : context_.workers.all()) {
+    if (worker.quarantined || (worker.session && worker.draining)) {
+      out.push_back(absl::StrCat(
+          worker.name, worker.quarantined ? " gets no work: " : " is leaving: ", worker.reason));
+    } else if (worker.eligible() && !eligibility_.may_render(worker, job)) {
+      out.push_back(absl::StrCat(worker.name, " is not given it any more: it failed too often"));
+    } else if (worker.eligible() && !worker.leases.empty()) {
+      const Job& other = context_.jobs.at(context_.leases.find(worker.leases.front())->job);
+      if (other.id != job.id) {
+        out.push_back(absl::StrCat(worker.name, " is busy with job ", other.id,
+                                   priority_text(other.priority)));
+      }
+    }
+  }
+  for (const Refusal& refusal : sessions_.refusals()) {
+    out.push_back(absl::StrCat(refusal.worker.name, " was refused: ", refusal.worker.reason));
+  }
+  if (out.size() > kMaxLines) {
+    const std::size_t more = out.size() - kMaxLines;
+    out.resize(kMaxLines);
+    out.push_back(absl::StrCat("and ", more, " more workers that do not render it"));
+  }
+  return out;
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,53 @@
+#pragma once
+
+// Builds what users are shown of jobs and workers, and explains why a job is not done yet.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "coordinator/scheduler/context/context.h"
+#include "coordinator/scheduler/context/reconnect_barrier.h"
+#include "coordinator/scheduler/dispatch/audit_leases.h"
+#include "coordinator/scheduler/dispatch/eligibility.h"
+#include "coordinator/scheduler/liveness/sessions.h"
+
+namespace bandsaw::coordinator {
+
+class Views {
+ public:
+  Views(const Context& context, const Eligibility& eligibility, const AuditLeases& audits,
+        const ReconnectBarrier& barrier, const Sessions& sessions)
+      : context_(context),
+        eligibility_(eligibility),
+        audits_(audits),
+        barrier_(barrier),
+        sessions_(sessions) {}
+
+  std::optional<JobView> job(JobId id, Time now) const;
+  std::vector<JobView> jobs(Time now) const;        ///< by id
+  std::vector<WorkerView> workers(Time now) const;  ///< by name
+  /// Returns why a job is not done yet, in sentences, the most important first; empty: there is no
+  /// such job.
+  std::vector<std::string> why(JobId id, Time now) const;
+
+ private:
+  JobView view(const Job& job, Time now) const;
+  /// Returns machines that are under quarantine and have not connected in this epoch.
+  std::vector<WorkerView> absent_quarantined() const;
+  /// Returns what a job without leases waits for, or the notice of a job with leases; may be empty.
+  std::string waiting_reason(const Job& job) const;
+  std::vector<std::string> why_of_state(const Job& job, Time now) const;
+  std::string audit_reason(const Job& job) const;
+  std::string busy_with_others(const Job& job) const;
+  std::vector<std::string> working_on(const Job& job) const;
+  std::vector<std::string> not_working_on(const Job& job) const;
+
+  const Context& context_;
+  const Eligibility& eligibility_;
+  const AuditLeases& audits_;
+  const ReconnectBarrier& barrier_;
+  const Sessions& sessions_;
+};
+
+}  // namespace bandsaw::coordinator

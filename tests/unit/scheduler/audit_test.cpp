@@ -1,0 +1,349 @@
+// Audits: which bands are rendered twice, by which machines, and what happens if results differ.
+
+#include "coordinator/scheduler/model/audit.h"
+#include "coordinator/scheduler/api/worker_process.h"
+#include "farm_driver.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+SchedulerOptions audited() {
+  SchedulerOptions options = slow();
+  options.audit_share = 1;
+  return options;
+}
+
+/// A farm in which each lease is answered by a call of the test.
+struct AuditFarm : FarmDriver {
+  explicit AuditFarm(SchedulerOptions options = audited()) : FarmDriver(std::move(options)) {}
+
+  /// Returns the newest lease of a session, either of an audit or of another band.
+  action::Lease lease(SessionId session, bool audit) const {
+    action::Lease found;
+    for (const auto& lease : all<action::Lease>()) {
+      found = lease.session == session && lease.audit == audit ? lease : found;
+    }
+    EXPECT_NE(found.lease, 0u) << "session " << session;
+    return found;
+  }
+
+  Step result(const action::Lease& lease, const std::string& instance, std::uint64_t lie = 0) {
+    input::BandStored in;
+    in.job = lease.job;
+    in.band = lease.band;
+    in.row_digests = honest_digests(lease.band);
+    in.row_digests[0] += lie;
+    in.instance = instance;
+    in.render_s = 0.1;
+    in.written = !lease.audit;
+    return send(in);
+  }
+
+  std::string state_of(const std::string& name) const {
+    for (const WorkerView& worker : scheduler.workers(now)) {
+      if (worker.name == name) {
+        return worker.state;
+      }
+    }
+    return "unknown";
+  }
+};
+
+/// A job of one row, rendered by a and then by b; c may be connected as a third machine.
+AuditFarm two_results(std::uint64_t lie_of_a, std::uint64_t lie_of_b, bool third = false) {
+  AuditFarm farm;
+  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.hello(1, "a", 1);
+  farm.hello(2, "b", 1);
+  farm.result(farm.lease(1, false), "a", lie_of_a);
+  EXPECT_EQ(farm.job(1).state, JobState::kRunning) << "the audit is still open";
+  if (third) {
+    farm.hello(3, "c", 1);
+  }
+  farm.result(farm.lease(2, true), "b", lie_of_b);
+  return farm;
+}
+
+TEST(Audit, SelectsTheShareOfBandsAndTheSameInEveryEpoch) {
+  const JobSpec spec = test_job("a request that nobody guesses", StopAtSamples{16});
+  const JobSpec other = test_job("another", StopAtSamples{16});
+  int count = 0;
+  int both = 0;
+  for (std::uint32_t row = 0; row < 20'000; ++row) {
+    const Band band{{0, 16}, {row, row + 1}};
+    const bool one = is_audited(spec, band, 0.05);
+    count += one ? 1 : 0;
+    both += one && is_audited(other, band, 0.05) ? 1 : 0;
+    EXPECT_FALSE(is_audited(spec, band, 0));
+    EXPECT_TRUE(is_audited(spec, band, 1));
+  }
+  EXPECT_NEAR(count, 1'000, 4 * 31);
+  EXPECT_NEAR(both, 50, 4 * 7) << "the selections of two jobs are independent";
+}
+
+TEST(Audit, ASecondMachineRendersTheBandAndTheJobEnds) {
+  AuditFarm farm = two_results(0, 0);
+  EXPECT_EQ(farm.job(1).state, JobState::kFinishing);
+  EXPECT_EQ(farm.all_records<record::BandAudited>().size(), 1u);
+  EXPECT_TRUE(farm.all_records<record::WorkerQuarantined>().empty());
+}
+
+TEST(Audit, WithOneMachineAuditsDoNotBlockTheJob) {
+  AuditFarm farm;
+  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.hello(1, "a", 1);
+  farm.result(farm.lease(1, false), "a");
+  EXPECT_EQ(farm.job(1).state, JobState::kFinishing);
+  EXPECT_EQ(farm.all<action::Lease>().size(), 1u);
+}
+
+TEST(Audit, AnAuditWithoutAMachineDoesNotStopATimedJob) {
+  AuditFarm farm;
+  farm.submit(test_job("r1", StopAtTime{.seconds = 10}, 8, 1));
+  farm.hello(1, "a", 1);
+  for (int band = 0; band < 20; ++band) {
+    const std::size_t leases = farm.all<action::Lease>().size();
+    farm.now += 0.1;
+    farm.result(farm.all<action::Lease>().back(), "a");
+    EXPECT_EQ(farm.all<action::Lease>().size(), leases + 1);
+  }
+}
+
+TEST(Audit, AMachineDoesNotConfirmItself) {
+  AuditFarm farm;
+  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.hello(1, "a", 1);
+  WorkerHello sibling;
+  sibling.instance = "b";
+  sibling.name = "worker-a";
+  sibling.protocol = 1;
+  sibling.pixel_version = 2;
+  sibling.canary = 3;
+  farm.send(input::Hello{2, sibling});
+  farm.result(farm.lease(1, false), "a");
+  EXPECT_EQ(farm.job(1).state, JobState::kFinishing);
+}
+
+TEST(Audit, AThirdMachineDecidesAndWrongRowsAreRenderedAgain) {
+  AuditFarm farm = two_results(7, 0, true);
+  const Step step = farm.result(farm.lease(3, true), "c");
+  EXPECT_EQ(farm.state_of("worker-a"), "quarantined");
+  EXPECT_EQ(farm.state_of("worker-b"), "rendering");
+  ASSERT_EQ(in<action::Retract>(step).size(), 1u);
+  EXPECT_EQ(in<action::Retract>(step)[0].process, worker_process_id("a"));
+  EXPECT_EQ(farm.job(1).samples_done, 0u);
+  EXPECT_NE(farm.job(1).reason.find("other pixels than two others"), std::string::npos)
+      << farm.job(1).reason;
+  // One of b and c renders the row, the other audits it.
+  const SessionId again = farm.all<action::Lease>().back().session;
+  const std::string who[] = {"", "", "b", "c"};
+  farm.result(farm.lease(again, false), who[again]);
+  farm.result(farm.lease(5 - again, true), who[5 - again]);
+  EXPECT_EQ(farm.job(1).state, JobState::kFinishing);
+}
+
+TEST(Audit, AWrongAuditorIsQuarantinedAndTheRowsStay) {
+  AuditFarm farm = two_results(0, 7, true);
+  const Step step = farm.result(farm.lease(3, true), "c");
+  EXPECT_EQ(farm.state_of("worker-b"), "quarantined");
+  EXPECT_TRUE(in<action::Retract>(step).empty());
+  EXPECT_EQ(farm.job(1).state, JobState::kFinishing);
+}
+
+TEST(Audit, OfTwoMachinesTheOneThatContradictsItselfIsWrong) {
+  AuditFarm farm = two_results(7, 0);
+  // There is no third machine: each of the two renders it again.
+  farm.result(farm.lease(1, true), "a", 8);
+  EXPECT_EQ(farm.state_of("worker-a"), "quarantined");
+  EXPECT_EQ(farm.all_records<record::WorkerQuarantined>()[0].name, "worker-a");
+  farm.result(farm.lease(2, false), "b");
+  EXPECT_EQ(farm.job(1).state, JobState::kFinishing);
+}
+
+TEST(Audit, TwoThatRepeatTheirResultsWaitForAThird) {
+  AuditFarm farm = two_results(7, 0);
+  farm.result(farm.lease(1, true), "a", 7);
+  farm.result(farm.lease(2, true), "b", 0);
+  const std::size_t leases = farm.all<action::Lease>().size();
+  farm.pass_time(100, {1, 2});
+  EXPECT_EQ(farm.all<action::Lease>().size(), leases) << "each renders it again once";
+  EXPECT_EQ(farm.job(1).state, JobState::kRunning);
+  EXPECT_NE(farm.job(1).reason.find("another machine must decide"), std::string::npos)
+      << farm.job(1).reason;
+  farm.send(input::Quarantine{"worker-a"});
+  farm.result(farm.lease(2, false), "b");
+  EXPECT_EQ(farm.job(1).state, JobState::kFinishing);
+}
+
+TEST(Audit, ABackupTaskThatDiffersOpensADispute) {
+  FarmDriver farm;
+  const JobId job = farm.submit(test_job("r1", StopAtSamples{32}, 8, 1));
+  farm.hello(1, "a", 1);
+  const auto first = farm.all<action::Lease>();
+  farm.send(input::SessionEnded{1, "connection reset"});
+  farm.hello(2, "b", 1);
+  farm.stored(first[0], "b");
+  farm.hello(3, "a", 1);
+  farm.hello(4, "c", 1);
+  input::BandStored wrong;
+  wrong.job = job;
+  wrong.band = first[0].band;
+  wrong.row_digests = {42};
+  wrong.instance = "a";
+  wrong.written = false;
+  farm.send(wrong);
+  for (const auto& lease : farm.all<action::Lease>()) {
+    if (lease.audit) {
+      EXPECT_EQ(lease.session, 4u);
+      farm.stored(lease, "c");
+    }
+  }
+  ASSERT_EQ(farm.all_records<record::WorkerQuarantined>().size(), 1u);
+  EXPECT_EQ(farm.all_records<record::WorkerQuarantined>()[0].name, "worker-a");
+  EXPECT_EQ(farm.all<action::Close>().back().session, 3u);
+}
+
+TEST(Audit, AFailedAuditDoesNotFailTheJob) {
+  AuditFarm farm;
+  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.hello(1, "a", 1);
+  farm.hello(2, "b", 1);
+  farm.result(farm.lease(1, false), "a");
+  farm.send(input::BandFailed{2, farm.lease(2, true).lease, "out of memory", {}});
+  farm.pass_time(0.5, {1, 2});
+  EXPECT_EQ(farm.job(1).state, JobState::kFinishing) << "no other machine is left";
+}
+
+TEST(Quarantine, LastsOverRestartsUntilItIsLifted) {
+  AuditFarm farm = two_results(7, 0);
+  farm.result(farm.lease(1, true), "a", 8);
+  AuditFarm next;
+  for (const Record& record : farm.scheduler.snapshot()) {
+    next.scheduler.replay(record);
+  }
+  input::BandStored old;
+  old.job = 1;
+  old.band = farm.lease(1, false).band;
+  old.row_digests = {42};
+  old.process = worker_process_id("a");
+  next.scheduler.replay(old);
+  next.take(next.scheduler.replayed(next.now));
+  EXPECT_EQ(next.job(1).samples_done, 0u) << "what it rendered stays void";
+  EXPECT_EQ(next.state_of("worker-a"), "quarantined");
+  // The same process, and the same machine with a new process.
+  EXPECT_EQ(in<action::Refuse>(next.hello(1, "a")).size(), 1u);
+  WorkerHello again;
+  again.instance = "a2";
+  again.name = "worker-a";
+  again.protocol = 1;
+  again.pixel_version = 2;
+  again.canary = 3;
+  const auto refused = in<action::Refuse>(next.send(input::Hello{2, again}));
+  ASSERT_EQ(refused.size(), 1u);
+  EXPECT_NE(refused[0].reason.find("bandsaw quarantine --lift worker-a"), std::string::npos);
+  EXPECT_TRUE(absl::IsNotFound(next.send(input::LiftQuarantine{"nobody"}).status));
+  EXPECT_TRUE(next.send(input::LiftQuarantine{"worker-a"}).status.ok());
+  EXPECT_EQ(in<action::Welcome>(next.send(input::Hello{3, again})).size(), 1u);
+  EXPECT_NE(in<action::Refuse>(next.hello(4, "a"))[0].reason.find("start the worker again"),
+            std::string::npos);
+}
+
+TEST(Audit, AuditsTheRowsThatReplaceRetractedOnes) {
+  AuditFarm farm = two_results(0, 0);
+  farm.submit(test_job("r2", StopAtSamples{16}, 8, 2));
+  farm.hello(3, "c", 1);
+  farm.result(farm.lease(1, false), "a");
+  farm.send(input::Quarantine{"worker-a"});
+  const auto audits = farm.all_records<record::BandAudited>();
+  for (std::size_t i = 0; i < farm.all<action::Lease>().size(); ++i) {
+    const action::Lease lease = farm.all<action::Lease>()[i];
+    if (lease.job == 2 && lease.session != 1) {
+      farm.result(lease, lease.session == 2 ? "b" : "c");
+    }
+  }
+  EXPECT_EQ(farm.job(2).state, JobState::kFinishing);
+  EXPECT_EQ(farm.all_records<record::BandAudited>().size(), audits.size() + 2) << "both rows";
+}
+
+TEST(Audit, ALargeBandIsComparedInPartsAndNoPartTwice) {
+  SchedulerOptions options = audited();
+  options.band_target_s = 1;
+  AuditFarm farm(options);
+  farm.submit(test_job("r1", StopAtSamples{16}));
+  farm.hello(1, "a", 1);
+  farm.hello(2, "b", 1);
+  input::BandStored slow;
+  slow.job = 1;
+  slow.band = farm.lease(1, false).band;
+  ASSERT_GT(slow.band.rows.count(), 1u);
+  slow.row_digests = honest_digests(slow.band);
+  slow.instance = "a";
+  slow.render_s = 100;  // more than was thought
+  farm.send(slow);
+  const action::Lease part = farm.lease(2, true);
+  EXPECT_LT(part.band.rows.count(), slow.band.rows.count());
+  farm.result(part, "b");
+  EXPECT_EQ(farm.lease(2, true).band.rows.first, part.band.rows.last);
+  EXPECT_EQ(farm.job(1).bands_audited, 1u);
+
+  FarmDriver next(options);
+  for (const Record& record : farm.records) {
+    next.scheduler.replay(record);
+  }
+  slow.instance.clear();
+  slow.process = worker_process_id("a");
+  next.scheduler.replay(slow);
+  next.take(next.scheduler.replayed(next.now));
+  next.hello(1, "a", 1);
+  next.hello(2, "b", 1);
+  next.pass_time(60, {1, 2});  // the grace time for other workers is over
+  std::optional<RowRange> again;
+  for (const action::Lease& lease : next.all<action::Lease>()) {
+    again = lease.audit && !again ? std::optional(lease.band.rows) : again;
+  }
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->first, part.band.rows.last) << "the part before was vouched for";
+}
+
+TEST(Audit, DecidesNothingOnceTheImageIsRequested) {
+  AuditFarm farm(test_options());
+  farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
+  farm.hello(1, "a", 1);
+  farm.hello(2, "b", 1);
+  const action::Lease lease = farm.all<action::Lease>()[0];
+  farm.result(lease, lease.session == 1 ? "a" : "b");
+  ASSERT_EQ(farm.job(1).state, JobState::kFinishing);
+  farm.send(input::Quarantine{"worker-a"});
+  farm.send(input::Quarantine{"worker-b"});
+  farm.hello(3, "c", 1);
+  farm.result(lease, "c", 5);  // late, and different
+  farm.send(input::StorageFailed{1, "the disk is full"});
+  farm.send(input::StorageBack{});
+  farm.send(input::ResultWritten{1});
+  EXPECT_EQ(farm.job(1).state, JobState::kDone);
+}
+
+TEST(Quarantine, ForgetsAnErrorMeasuredWithWrongPixels) {
+  AuditFarm farm;
+  farm.submit(test_job("r1", StopAtError{.relative_rmse = 0.01}, 8, 1));
+  farm.hello(1, "a", 1);
+  farm.hello(2, "b", 1);
+  farm.hello(3, "c", 1);
+  const std::string who[] = {"", "a", "b", "c"};
+  for (std::size_t i = 0; i < 40 && farm.all<action::Retract>().empty(); ++i) {
+    const action::Lease lease = farm.all<action::Lease>().at(i);
+    farm.result(lease, who[lease.session], lease.session == 1 ? 7 : 0);
+    if (farm.all<action::Retract>().empty()) {
+      farm.send(input::PassMerged{1, 16 * (i + 1), ErrorEstimate{.relative_rmse = 1e-6}});
+      EXPECT_EQ(farm.job(1).error, 1e-6);
+      EXPECT_EQ(farm.job(1).state, JobState::kRunning) << "a look waits for the audits";
+    }
+  }
+  ASSERT_FALSE(farm.all<action::Retract>().empty());
+  EXPECT_LT(farm.job(1).error, 0);
+  EXPECT_TRUE(farm.job(1).curve.empty());
+  EXPECT_EQ(farm.job(1).state, JobState::kRunning);
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,140 @@
+// Efficiency and the length of a job's last phase, in virtual time: sixteen workers whose bands
+// take the time that a cost map says. The figures are printed.
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "gtest/gtest.h"
+#include "sim_bench.h"
+
+namespace bandsaw::coordinator::sim {
+namespace {
+
+constexpr std::uint32_t kHeight = 1080;
+double even(std::uint32_t) { return 1; }
+/// 20:1 from the top to the bottom, with the mean 1.
+double uneven(std::uint32_t row) { return row < kHeight / 2 ? 40.0 / 21 : 2.0 / 21; }
+
+std::vector<double> speeds(double seconds, bool equal) {
+  const double all = 1920.0 * kHeight * 64 / seconds;
+  std::vector<double> speeds;
+  for (int i = 0; i < 16; ++i) {
+    speeds.push_back(all / 16 * (equal ? 1 : i < 8 ? 0.4 : 1.6));
+  }
+  return speeds;
+}
+
+/// Returns the second worst result of 20 seeds: with random render times it is random which bands
+/// come last. 6 of 300 seeds of the noisy farm have a last phase above 2 % (8 with audits, 7 and 11
+/// without probes). A scheduler that has one in 10 % of all seeds would pass six times of ten if
+/// the worst of five seeds counted; with the second worst of 20 it passes four times of ten.
+BenchResult measure(const char* name, BenchFarm farm, std::size_t seeds = 20) {
+  BenchResult worst;
+  std::vector<double> efficiencies;
+  std::vector<double> tails;
+  for (farm.seed = 1; farm.seed <= seeds; ++farm.seed) {
+    const BenchResult one = run_bench(farm);
+    EXPECT_EQ(one.broken, "");
+    worst.seconds = std::max(worst.seconds, one.seconds);
+    efficiencies.push_back(one.efficiency);
+    tails.push_back(one.tail);
+    worst.bands = std::max(worst.bands, one.bands);
+    worst.wasted = std::max(worst.wasted, one.wasted);
+  }
+  std::sort(efficiencies.begin(), efficiencies.end());
+  std::sort(tails.rbegin(), tails.rend());
+  worst.efficiency = efficiencies[seeds / 20];
+  worst.tail = tails[seeds / 20];
+  std::printf("%-34s %6.2f s  efficiency %6.2f %%  tail %5.2f %%  %llu bands, %llu for nothing\n",
+              name, worst.seconds, 100 * worst.efficiency, 100 * worst.tail,
+              static_cast<unsigned long long>(worst.bands),
+              static_cast<unsigned long long>(worst.wasted));
+  return worst;
+}
+
+TEST(Efficiency, OfSixteenEqualWorkers) {
+  const BenchResult r = measure("equal", {.speeds = speeds(60, true), .cost_of = even});
+  EXPECT_GE(r.efficiency, 0.97);
+  EXPECT_LE(r.tail, 0.02);
+}
+
+TEST(Efficiency, OfAnUnevenImage) {
+  const BenchResult r = measure("uneven 20:1", {.speeds = speeds(60, true), .cost_of = uneven});
+  EXPECT_GE(r.efficiency, 0.95);
+  EXPECT_LE(r.tail, 0.02);
+}
+
+TEST(Efficiency, OfUnequalWorkers) {
+  const BenchResult r = measure("speeds 1:4", {.speeds = speeds(60, false), .cost_of = even});
+  EXPECT_GE(r.efficiency, 0.95);
+  EXPECT_LE(r.tail, 0.02);
+}
+
+TEST(Efficiency, OfUnequalWorkersOnAnUnevenImageThatTheyTakeUnevenTimesFor) {
+  const BenchResult r = measure("20:1, speeds 1:4, noise 30 %",
+                                {.speeds = speeds(60, false), .cost_of = uneven, .noise = 0.3});
+  EXPECT_GE(r.efficiency, 0.95);
+  EXPECT_LE(r.tail, 0.02);
+}
+
+TEST(Efficiency, OfAudits) {
+  const BenchResult r =
+      measure("the same with audits",
+              {.speeds = speeds(60, false), .cost_of = uneven, .noise = 0.3, .audit_share = 0.01});
+  EXPECT_GE(r.efficiency, 0.95);
+  EXPECT_LE(r.tail, 0.02);
+}
+
+TEST(Efficiency, OfAShortJob) {
+  const BenchResult r =
+      measure("20:1, speeds 1:4, short", {.speeds = speeds(10, false), .cost_of = uneven});
+  EXPECT_GE(r.efficiency, 0.75);
+  EXPECT_LE(r.tail, 0.05);
+}
+
+TEST(Efficiency, OfWorkersTwentyTimesSlowerThanGuessed) {
+  const BenchResult r =
+      measure("slow, 20:1, speeds 1:4", {.speeds = speeds(1200, false), .cost_of = uneven}, 5);
+  EXPECT_GE(r.efficiency, 0.95);
+  EXPECT_LE(r.tail, 0.02);
+}
+
+TEST(Efficiency, WhenAWorkerStallsNearTheEnd) {
+  const BenchResult r =
+      measure("one stalls", {.speeds = speeds(60, true), .cost_of = even, .stalls_at = 59});
+  EXPECT_GE(r.efficiency, 0.93);
+  EXPECT_LE(r.tail, 0.05);
+}
+
+/// Returns the relative error of the remaining time that is predicted after a quarter of the time;
+/// the worst of a few seeds.
+double worst_time_left(BenchFarm farm) {
+  double worst = 0;
+  for (farm.seed = 1; farm.seed <= 5; ++farm.seed) {
+    const BenchResult one = run_bench(farm);
+    EXPECT_EQ(one.broken, "");
+    worst = std::max(worst, std::abs(one.predicted_left - 1));
+  }
+  return worst;
+}
+
+/// 1:4 from the top to the bottom, with the mean 1.
+double rising(std::uint32_t row) { return 0.4 + 1.2 * row / kHeight; }
+
+TEST(TimeLeft, IsPredictedAfterAQuarterOfTheTime) {
+  const double two = 1920.0 * kHeight * 64 / 60 / 2;
+  EXPECT_LE(worst_time_left({.speeds = speeds(60, true), .cost_of = even}), 0.15);
+  EXPECT_LE(worst_time_left({.speeds = {two, two}, .cost_of = rising, .noise = 0.1}), 0.15);
+  EXPECT_LE(worst_time_left({.speeds = speeds(60, false), .cost_of = rising, .noise = 0.3}), 0.15);
+}
+
+TEST(TimeLeft, IsPredictedForRowsThatTakeMinutes) {
+  const double two = 1920.0 * kHeight * 64 / 600 / 2;
+  EXPECT_LE(worst_time_left({.speeds = {two, two}, .cost_of = rising, .noise = 0.1}), 0.15);
+  EXPECT_LE(worst_time_left({.speeds = {two, two}, .cost_of = uneven, .noise = 0.1}), 0.15);
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator::sim

@@ -1,0 +1,173 @@
+#pragma once
+
+// A scheduler that a test drives by hand: sends inputs and keeps all records and actions.
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "coordinator/scheduler/scheduler.h"
+#include "gtest/gtest.h"
+
+namespace bandsaw::coordinator {
+
+inline SchedulerOptions test_options() {
+  SchedulerOptions options;
+  options.compatibility = {1, 2, 3};
+  options.epoch = "one";
+  return options;
+}
+
+/// Options with which even rows of a small image are long: leases have one or two rows.
+inline SchedulerOptions slow() {
+  SchedulerOptions options = test_options();
+  options.band_target_s = 1e-3;
+  return options;
+}
+
+inline JobSpec test_job(std::string request, const StopRule& stop, std::uint32_t width = 8,
+                        std::uint32_t height = 8) {
+  JobSpec spec;
+  spec.request_id = std::move(request);
+  spec.name = "test";
+  spec.manifest = std::string(64, 'a');
+  spec.settings.width = width;
+  spec.settings.height = height;
+  spec.stop = stop;
+  return spec;
+}
+
+/// Returns the row digest of a worker that is right.
+inline std::uint64_t honest_digest(const SampleRange& samples, std::uint32_t row) {
+  return samples.first * 1'000'003 + samples.last * 7'919 + row + 1;
+}
+inline std::vector<std::uint64_t> honest_digests(const Band& band) {
+  std::vector<std::uint64_t> digests;
+  for (std::uint32_t row = band.rows.first; row < band.rows.last; ++row) {
+    digests.push_back(honest_digest(band.samples, row));
+  }
+  return digests;
+}
+
+class FarmDriver {
+  std::unique_ptr<Scheduler> owned_;  // before `scheduler`, which refers to it
+
+ public:
+  explicit FarmDriver(SchedulerOptions options = test_options())
+      : owned_(std::make_unique<Scheduler>(std::move(options))), scheduler(*owned_) {}
+
+  Step send(const Input& input) {
+    Step step = scheduler.step(input, now);
+    take(step);
+    return step;
+  }
+
+  void take(const Step& step) {
+    for (const Record& record : step.records) {
+      records.push_back(record);
+    }
+    for (const Action& action : step.actions) {
+      actions.push_back(action);
+    }
+    EXPECT_EQ(scheduler.broken_invariant().value_or(""), "");
+  }
+
+  JobId submit(JobSpec spec) { return send(input::Submit{std::move(spec)}).job; }
+
+  Step hello(SessionId session, const std::string& instance, std::uint32_t max_bands = 2,
+             std::vector<WorkerHello::Held> held = {}) {
+    WorkerHello worker;
+    worker.instance = instance;
+    worker.name = "worker-" + instance;
+    worker.build = "test build";
+    worker.protocol = 1;
+    worker.pixel_version = 2;
+    worker.canary = 3;
+    worker.max_bands = max_bands;
+    worker.held = std::move(held);
+    return send(input::Hello{session, std::move(worker)});
+  }
+
+  Step stored(const action::Lease& lease, const std::string& instance, double render_s = 0.5) {
+    input::BandStored in;
+    in.job = lease.job;
+    in.band = lease.band;
+    in.row_digests = honest_digests(lease.band);
+    in.instance = instance;
+    in.render_s = render_s;
+    in.cpu_s = render_s;
+    in.counters.rays = lease.band.rows.count() * lease.band.samples.samples();
+    return send(in);
+  }
+
+  void heartbeat(SessionId session) { send(input::Heartbeat{session, {}, "rendering"}); }
+
+  /// Sends a Tick each half second, with heartbeats of these sessions.
+  void pass_time(double seconds, const std::vector<SessionId>& sessions = {}) {
+    for (double passed = 0; passed < seconds; passed += 0.5) {
+      now += 0.5;
+      for (const SessionId session : sessions) {
+        heartbeat(session);
+      }
+      send(input::Tick{});
+    }
+  }
+
+  /// Renders all bands that one worker is leased until it gets no more.
+  void render_all(SessionId session, const std::string& instance) {
+    for (std::size_t i = 0; i < actions.size(); ++i) {
+      if (const auto* lease = std::get_if<action::Lease>(&actions[i]);
+          lease != nullptr && lease->session == session) {
+        now += 0.1;
+        stored(action::Lease(*lease), instance);
+      }
+    }
+  }
+
+  /// Returns all actions of a kind so far.
+  template <class A>
+  std::vector<A> all() const {
+    std::vector<A> found;
+    for (const Action& action : actions) {
+      if (const A* a = std::get_if<A>(&action)) {
+        found.push_back(*a);
+      }
+    }
+    return found;
+  }
+
+  template <class R>
+  std::vector<R> all_records() const {
+    std::vector<R> found;
+    for (const Record& record : records) {
+      if (const R* r = std::get_if<R>(&record)) {
+        found.push_back(*r);
+      }
+    }
+    return found;
+  }
+
+  JobView job(JobId id) const { return *scheduler.job(id, now); }
+
+  Scheduler& scheduler;
+  Time now = 1000;
+  std::vector<Record> records;
+  std::vector<Action> actions;
+};
+
+/// Returns the actions of a kind in one step.
+template <class A>
+std::vector<A> in(const Step& step) {
+  std::vector<A> found;
+  for (const Action& action : step.actions) {
+    if (const A* a = std::get_if<A>(&action)) {
+      found.push_back(*a);
+    }
+  }
+  return found;
+}
+
+}  // namespace bandsaw::coordinator

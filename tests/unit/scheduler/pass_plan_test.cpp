@@ -1,0 +1,151 @@
+// Pure functions: passes, error checkpoints, sizes of bands, rates and time.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "coordinator/scheduler/context/scheduler_clock.h"
+#include "coordinator/scheduler/dispatch/band_chooser.h"
+#include "coordinator/scheduler/model/pass_plan.h"
+#include "coordinator/scheduler/model/rates.h"
+#include "proto/wire/limits.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+TEST(Passes, AreNodesThatFollowEachOtherToTheLastSample) {
+  for (std::uint64_t samples = 1; samples < 3000; samples += samples < 300 ? 1 : 37) {
+    std::uint64_t end = 0;
+    for (const SampleRange& pass : passes_between(0, samples)) {
+      EXPECT_EQ(pass.first, end);
+      EXPECT_TRUE(is_node(pass)) << pass.first << " " << pass.last;
+      EXPECT_TRUE(pass.blocks() <= 1 || pass.blocks() * 4 <= (samples + 15) / 16) << samples;
+      end = pass.last;
+    }
+    EXPECT_EQ(end, samples);
+  }
+}
+
+TEST(Passes, BeginSmallAndDouble) {
+  const std::vector<SampleRange> expected = {{0, 16},   {16, 32},   {32, 64},
+                                             {64, 128}, {128, 192}, {192, 256}};
+  EXPECT_EQ(passes_between(0, 256), expected);
+}
+
+TEST(Passes, OfTheLargestJobAreFew) { EXPECT_LE(passes_between(0, kMaxSamples).size(), 64u); }
+
+TEST(Passes, OfATimedJobAreNodesNoLongerThanAQuarterOfWhatIsThere) {
+  std::uint64_t end = 0;
+  for (int i = 0; i < 40; ++i) {
+    const SampleRange pass = next_timed_pass(end, 1e12, kMaxSamples);
+    EXPECT_EQ(pass.first, end);
+    EXPECT_TRUE(is_node(pass));
+    EXPECT_TRUE(end < 64 || pass.samples() * 4 <= end);
+    end = pass.last;
+  }
+  EXPECT_EQ(next_timed_pass(1024, 100, kMaxSamples), (SampleRange{1024, 1088}));
+  EXPECT_EQ(next_timed_pass(1024, 0, kMaxSamples), (SampleRange{1024, 1040}));
+  EXPECT_EQ(next_timed_pass(64, 1000, 70), (SampleRange{64, 70}));
+}
+
+TEST(Checkpoints, AreFewAndTheLastIsAtMostAQuarterTooFar) {
+  for (const double power : {0.5, 0.75, 1.0}) {
+    for (const double target : {0.1, 0.01, 0.003}) {
+      const auto error = [&](std::uint64_t n) { return std::pow(static_cast<double>(n), -power); };
+      std::uint64_t samples = next_checkpoint(0, -1, target, kMaxSamples);
+      int looks = 1;
+      while (error(samples) > target) {
+        const std::uint64_t next = next_checkpoint(samples, error(samples), target, kMaxSamples);
+        ASSERT_GT(next, samples);
+        samples = next;
+        ++looks;
+      }
+      const double needed = std::max(32.0, std::pow(target, -1 / power));
+      EXPECT_LE(static_cast<double>(samples), needed * 1.25 + 16);
+      EXPECT_LE(looks, 16);
+    }
+  }
+}
+
+TEST(Checkpoints, ContinueWithoutAnErrorAndStayBelowTheMaximum) {
+  EXPECT_EQ(next_checkpoint(0, -1, 0.01, kMaxSamples), 32u);
+  EXPECT_EQ(next_checkpoint(32, std::nan(""), 0.01, kMaxSamples), 64u);
+  EXPECT_EQ(next_checkpoint(32, 1, 1e-300, 100), 100u);
+  EXPECT_EQ(next_checkpoint(0, -1, 0.01, 5), 5u);
+}
+
+Sizing sizing() {
+  static const CostMap even(2000);
+  Sizing s;
+  s.cost = &even;
+  s.free = {{0, 16}, {10, 1010}};
+  s.width = 100;
+  s.work_rate = 160'000;  // 100 rows a second
+  s.measured = true;
+  s.farm_share = 0.5;
+  s.work_left = 1'600'000;
+  return s;
+}
+
+TEST(BandSizes, AreTheTargetWhileMuchWorkIsLeft) {
+  EXPECT_EQ(size_band(sizing()), (Band{{0, 16}, {10, 110}}));
+}
+
+TEST(BandSizes, ShrinkTowardTheEndDownToAMinimum) {
+  Sizing s = sizing();
+  s.work_left = 160'000;
+  EXPECT_EQ(size_band(s).rows.count(), 25u);
+  s.work_left = 1600;
+  EXPECT_EQ(size_band(s).rows.count(), 12u);
+}
+
+TEST(BandSizes, AreSmallBeforeAnythingIsMeasured) {
+  Sizing s = sizing();
+  s.measured = false;
+  EXPECT_EQ(size_band(s).rows.count(), 20u);
+}
+
+TEST(BandSizes, ARowThatIsTooMuchWorkIsCutByItsSamples) {
+  Sizing s = sizing();
+  s.free.samples = {256, 512};
+  s.work_rate = 1600;  // a block of a row a second
+  EXPECT_EQ(size_band(s), (Band{{256, 288}, {10, 11}}));
+  s.work_rate = 1;
+  EXPECT_EQ(size_band(s), (Band{{256, 272}, {10, 11}}));
+}
+
+TEST(BandSizes, FitIntoAMessage) {
+  Sizing s = sizing();
+  s.width = 65536;
+  s.work_rate = 1e12;
+  s.work_left = 0x1p60;
+  const Band band = size_band(s);
+  EXPECT_LE(std::uint64_t{band.rows.count()} * s.width * 24, wire::kBandBytes);
+  EXPECT_GE(band.rows.count(), 42u);
+}
+
+TEST(RecentRate, CoversTheLastTenSeconds) {
+  RecentRate t;
+  t.start(100.5);
+  for (int i = 0; i < 40; ++i) {
+    t.add(100.5 + i * 0.5, 5);
+  }
+  EXPECT_NEAR(t.per_second(120.4), 10, 1);
+  EXPECT_EQ(t.per_second(140), 0);
+}
+
+TEST(SchedulerClock, NeverGoesBackAndLimitsThePatienceOfOneInput) {
+  SchedulerClock clock(1);
+  clock.advance(50);
+  clock.advance(50.5);
+  EXPECT_EQ(clock.wall(), 50.5);
+  EXPECT_EQ(clock.patience(), 0.5);
+  clock.advance(40);
+  EXPECT_EQ(clock.wall(), 50.5);
+  clock.advance(1050.5);
+  EXPECT_EQ(clock.wall(), 1050.5);
+  EXPECT_EQ(clock.patience(), 1.5);
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

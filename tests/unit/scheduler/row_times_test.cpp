@@ -1,0 +1,40 @@
+#include "coordinator/scheduler/model/row_costs.h"
+
+#include "gtest/gtest.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+TEST(RowTimes, AreZeroBeforeAnyMeasurement) {
+  const RowTimes times(10);
+  EXPECT_FALSE(times.measured());
+  EXPECT_EQ(times.of_all(), 0);
+}
+
+TEST(RowTimes, AreInterpolatedBetweenMeasuredRows) {
+  RowTimes times(12);
+  times.measure({2, 4}, 2);  // 1 each
+  times.measure({7, 8}, 5);
+  EXPECT_DOUBLE_EQ(times.of({2, 4}), 2);
+  EXPECT_DOUBLE_EQ(times.of({4, 7}), 2 + 3 + 4);
+  EXPECT_DOUBLE_EQ(times.of({5, 6}), 3) << "from within a gap too";
+  EXPECT_DOUBLE_EQ(times.of({0, 2}), 2) << "above the first: as the first";
+  EXPECT_DOUBLE_EQ(times.of({8, 12}), 20) << "below the last: as the last";
+}
+
+TEST(RowTimes, AverageTwoMeasurements) {
+  RowTimes times(1);
+  times.measure({0, 1}, 2);
+  times.measure({0, 1}, 4);
+  EXPECT_DOUBLE_EQ(times.of_all(), 3);
+}
+
+TEST(RowTimes, ScaleWithTheShareOfSamples) {
+  RowTimes times(64);
+  times.measure({0, 64}, 64);
+  std::vector<float> shares(64 / 8, 0.5F);
+  EXPECT_DOUBLE_EQ(times.of_all() / 2, times.of({0, 64}, shares));
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

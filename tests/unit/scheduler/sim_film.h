@@ -1,0 +1,113 @@
+#pragma once
+
+// Plain bookkeeping of the samples of each row, of the process that rendered them and of their
+// digests. The scheduler's own is checked against it.
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "coordinator/scheduler/api/messages.h"
+#include "coordinator/scheduler/api/worker_process.h"
+
+namespace bandsaw::coordinator::sim {
+
+class SimFilm {
+ public:
+  /// Returns false if a part of it is there already; then nothing changes.
+  bool add(const input::BandStored& band, const RowRange& rows) {
+    if (any_of(band.band.samples, rows)) {
+      return false;
+    }
+    const std::uint64_t process =
+        band.instance.empty() ? band.process : worker_process_id(band.instance);
+    if (void_.contains(process)) {
+      return true;
+    }
+    for (std::uint32_t row = rows.first; row < rows.last; ++row) {
+      rows_[row][band.band.samples] = {process, band.row_digests[row - band.band.rows.first]};
+    }
+    return true;
+  }
+
+  /// Removes what the process rendered, and ignores what it renders from now on.
+  void retract(std::uint64_t process) {
+    void_.insert(process);
+    for (auto& [row, there] : rows_) {
+      std::erase_if(there, [&](const auto& entry) { return entry.second.process == process; });
+    }
+  }
+
+  /// Removes rows that the process rendered.
+  void lose(const Band& band, std::uint64_t process) {
+    for (std::uint32_t row = band.rows.first; row < band.rows.last; ++row) {
+      if (const auto part = rows_[row].find(band.samples);
+          part != rows_[row].end() && part->second.process == process) {
+        rows_[row].erase(part);
+      }
+    }
+  }
+
+  bool any_of(const SampleRange& samples, const RowRange& rows) const {
+    for (auto it = rows_.lower_bound(rows.first); it != rows_.end() && it->first < rows.last;
+         ++it) {
+      for (const auto& [there, what] : it->second) {
+        if (there.first < samples.last && samples.first < there.last) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+  /// Returns the number of samples that every row has, counted from the first without a gap.
+  std::uint64_t least(std::uint32_t height) const {
+    std::uint64_t least = ~std::uint64_t{0};
+    for (std::uint32_t row = 0; row < height; ++row) {
+      const auto it = rows_.find(row);
+      std::uint64_t end = 0;
+      if (it != rows_.end()) {
+        for (const auto& [there, what] : it->second) {
+          end = there.first == end ? there.last : end;
+        }
+      }
+      least = std::min(least, end);
+    }
+    return least;
+  }
+
+  /// Returns the end of the last sample range of any row.
+  std::uint64_t last_sample() const {
+    std::uint64_t last = 0;
+    for (const auto& [row, there] : rows_) {
+      last = std::max(last, there.empty() ? 0 : there.rbegin()->first.last);
+    }
+    return last;
+  }
+
+  /// Returns a row whose digest in samples [0, end) is not honest(samples, row).
+  template <class Honest>
+  std::optional<std::uint32_t> wrong_row(std::uint64_t end, Honest honest) const {
+    for (const auto& [row, there] : rows_) {
+      for (const auto& [samples, what] : there) {
+        if (samples.first < end && what.digest != honest(samples, row)) {
+          return row;
+        }
+      }
+    }
+    return std::nullopt;
+  }
+
+ private:
+  struct Part {
+    std::uint64_t process = 0;
+    std::uint64_t digest = 0;
+  };
+  std::map<std::uint32_t, std::map<SampleRange, Part>> rows_;
+  std::set<std::uint64_t> void_;
+};
+
+}  // namespace bandsaw::coordinator::sim
