@@ -108,10 +108,10 @@ TEST(Package, RoundTripsEveryCameraAndFilter) {
   EXPECT_TRUE(std::get<OrthographicCamera>(flat->camera).mirrored);
   EXPECT_EQ(flat->filter, PixelFilter{});
   EXPECT_THAT(std::string(carried(PerspectiveCamera{.aperture = -1}, {}).status().message()),
-              HasSubstr("scene package: camera: camera.aperture"));
+              HasSubstr("scene package: camera.aperture"));
   EXPECT_THAT(
       std::string(carried(PerspectiveCamera{}, {PixelFilter::Kind::kBox, 17}).status().message()),
-      HasSubstr("scene package: filter: filter.radius"));
+      HasSubstr("scene package: filter.radius"));
 }
 
 TEST(Package, RoundTripsItsInfo) {
@@ -230,7 +230,8 @@ const std::vector<Wrong> kWrong = {
     {"pixels", [](auto& m) { m.set_width(65536), m.set_height(65536); }, "width x height"},
     {"depth", [](auto& m) { m.set_max_depth(5000); }, "max_depth: must lie in [1, 1024]"},
     {"no_camera", [](auto& m) { m.clear_camera(); }, "camera: is missing"},
-    {"camera", [](auto& m) { m.mutable_camera()->set_vertical_fov(180); }, "camera: "},
+    {"camera", [](auto& m) { m.mutable_camera()->set_vertical_fov(180); },
+     "camera.vertical_fov: must be in (0, 180)"},
     {"short_list", [](auto& m) { m.mutable_camera()->mutable_up()->RemoveLast(); },
      "camera.up: must have 3 numbers, has 2"},
     {"no_background", [](auto& m) { m.clear_background(); }, "background: is missing"},
