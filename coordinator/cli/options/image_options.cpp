@@ -11,27 +11,11 @@
 namespace bandsaw::coordinator {
 namespace {
 
-void add_report(CLI::App& app, RawOptions& raw);
-
 void add_report(CLI::App& app, RawOptions& raw) {
   app.add_option("--report", raw.report,
                  "File for the report of error and cost (.json), or none "
                  "[default: beside each image, with its name]")
       ->type_name("FILE|none");
-}
-
-absl::StatusOr<ReportOption> checked_report(const RawOptions& raw, bool has_images) {
-  if (!raw.report) {
-    return ReportOption();
-  }
-  if (!has_images) {
-    return absl::InvalidArgumentError("--report is written with the image: add -o FILE");
-  }
-  if (*raw.report != "none" && !absl::EndsWithIgnoreCase(*raw.report, ".json")) {
-    return absl::InvalidArgumentError(
-        absl::StrCat("--report: must end in .json, or be none, is '", *raw.report, "'"));
-  }
-  return ReportOption{*raw.report};
 }
 
 constexpr char kPictures[] = ".png, .ppm, .pfm, .hdr or .exr";
@@ -108,6 +92,20 @@ void add_views(CLI::App& app, RawOptions& raw) {
 }
 
 }  // namespace
+
+absl::StatusOr<ReportOption> checked_report(const RawOptions& raw, bool has_images) {
+  if (!raw.report) {
+    return ReportOption();
+  }
+  if (!has_images) {
+    return absl::InvalidArgumentError("--report is written with the image: add -o FILE");
+  }
+  if (*raw.report != "none" && !absl::EndsWithIgnoreCase(*raw.report, ".json")) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("--report: must end in .json, or be none, is '", *raw.report, "'"));
+  }
+  return ReportOption{*raw.report};
+}
 
 void add_submit(CLI::App& app, RawOptions& raw) {
   add_image(app, raw);
