@@ -103,7 +103,7 @@ TEST_F(SameBytes, WithAdaptiveSampling) {
   farm_.add_worker("two", 2);
   Process client = Process::start(farm_.command(adaptive("submit", "two.exr")));
   ASSERT_TRUE(farm_.coordinator().wait_until([](const std::string&, const std::string& log) {
-    constexpr char kPlanned[] = "more where there is more noise";
+    constexpr char kPlanned[] = "more samples where there is more noise";
     return log.find(kPlanned) != log.rfind(kPlanned);
   })) << farm_.coordinator_log();
   farm_.coordinator().signal(SIGKILL);

@@ -13,7 +13,7 @@
 #include "coordinator/cli/image/output.h"
 #include "coordinator/cli/image/report.h"
 #include "coordinator/cli/image/report_file.h"
-#include "coordinator/cli/progress/views.h"
+#include "coordinator/cli/progress/image_views.h"
 #include "coordinator/engine/clock.h"
 #include "coordinator/scheduler/api/job_spec.h"
 #include "renderlib/base/status_macros.h"
@@ -27,13 +27,13 @@ namespace {
 /// destroyed. Does nothing if there is no view.
 class FollowedImage {
  public:
-  FollowedImage(FarmClient& client, JobId job, Views& views);
+  FollowedImage(FarmClient& client, JobId job, ImageViews& views);
   ~FollowedImage();
 
  private:
   void look();
 
-  Views& views_;
+  ImageViews& views_;
   const JobId job_;
   const std::unique_ptr<FarmClient> client_;
   double next_ = 0;  ///< time of the next fetch, in seconds of a steady clock
@@ -45,7 +45,7 @@ constexpr double kInterval_s = 1;
 /// Fetching takes at most this share of the time, so large images are fetched less often.
 constexpr double kMaxShare = 0.1;
 
-FollowedImage::FollowedImage(FarmClient& client, JobId job, Views& views)
+FollowedImage::FollowedImage(FarmClient& client, JobId job, ImageViews& views)
     : views_(views), job_(job), client_(views.any() ? client.another() : nullptr) {
   if (client_ != nullptr) {
     ticker_.emplace(kTick, [this] { look(); });
@@ -177,7 +177,7 @@ ExitCode watch_job(FarmClient& client, JobId job, const Wanted& wanted, Verbosit
   const std::vector<std::string>& outputs = wanted.outputs;
   const Interrupts::Listener listener(process.interrupts, [&] { client.stop(); });
   ProgressDisplay display(process.console, verbosity);
-  Views views(display, wanted.display, wanted.tev, absl::StrCat("bandsaw job ", job));
+  ImageViews views(display, wanted.display, wanted.tev, absl::StrCat("bandsaw job ", job));
   const auto last = [&] {
     const FollowedImage followed(client, job, views);
     return follow_job(client, job, display);

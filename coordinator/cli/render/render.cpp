@@ -13,8 +13,8 @@
 #include "coordinator/cli/image/report_file.h"
 #include "coordinator/cli/options/commands.h"
 #include "coordinator/cli/options/output_names.h"
+#include "coordinator/cli/progress/image_views.h"
 #include "coordinator/cli/progress/progress_display.h"
-#include "coordinator/cli/progress/views.h"
 #include "coordinator/cli/render/local_render.h"
 #include "coordinator/cli/scene/image_settings.h"
 #include "coordinator/cli/scene/import_scene_file.h"
@@ -173,7 +173,7 @@ class LocalRun {
   LocalMeter meter_;
   ProgressDisplay display_;
   const Display picture_;
-  Views views_;
+  ImageViews views_;
   double shown_at_ = -1;  ///< seconds of a steady clock
   std::atomic<bool> stop_{false};
   Image image_;

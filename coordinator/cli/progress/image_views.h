@@ -14,12 +14,12 @@ namespace bandsaw::coordinator {
 /// Not thread-safe, but other threads may use the display at the same time. If the viewer cannot be
 /// reached, this is reported once and the viewer is not used any more; rendering does not wait for
 /// it.
-class Views {
+class ImageViews {
  public:
   /// `tev` is the viewer's HOST:PORT, or empty; `name` is the image's name there. Options in
   /// `picture` override the scene's display settings.
-  Views(ProgressDisplay& display, const DisplayOptions& picture, const std::string& tev,
-        const std::string& name);
+  ImageViews(ProgressDisplay& display, const DisplayOptions& picture, const std::string& tev,
+             const std::string& name);
 
   bool any() const { return display_.draws() || tev_; }
   /// Returns the resolution needed, as a maximum number of pixels a side; 0: full resolution.

@@ -1,4 +1,4 @@
-#include "coordinator/cli/progress/views.h"
+#include "coordinator/cli/progress/image_views.h"
 
 #include <algorithm>
 
@@ -13,8 +13,8 @@ constexpr std::uint32_t kTerminalSide = 256;
 
 }  // namespace
 
-Views::Views(ProgressDisplay& display, const DisplayOptions& picture, const std::string& tev,
-             const std::string& name)
+ImageViews::ImageViews(ProgressDisplay& display, const DisplayOptions& picture,
+                       const std::string& tev, const std::string& name)
     : display_(display), picture_(picture), address_(tev) {
   if (!address_.empty()) {
     auto viewer = TevViewer::connect(address_, name);
@@ -26,9 +26,9 @@ Views::Views(ProgressDisplay& display, const DisplayOptions& picture, const std:
   }
 }
 
-std::uint32_t Views::most_side() const { return tev_ ? 0 : kTerminalSide; }
+std::uint32_t ImageViews::most_side() const { return tev_ ? 0 : kTerminalSide; }
 
-void Views::show(const Image& image, const Display& of_scene) {
+void ImageViews::show(const Image& image, const Display& of_scene) {
   if (tev_) {
     if (const absl::Status shown = tev_->show(image); !shown.ok()) {
       tev_.reset();
@@ -42,7 +42,7 @@ void Views::show(const Image& image, const Display& of_scene) {
   }
 }
 
-void Views::lost(const absl::Status& why) {
+void ImageViews::lost(const absl::Status& why) {
   display_.note(absl::StrCat("warning: no viewer at ", address_, ": ", why.message(),
                              "; the image is rendered all the same"));
 }
