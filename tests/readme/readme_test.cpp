@@ -68,7 +68,7 @@ TEST(Readme, HasItsParts) {
   std::ifstream file(std::string(BANDSAW_SOURCE) + "/README.md");
   const std::string text((std::istreambuf_iterator<char>(file)), {});
   for (const char* part : {"deploy/demo.sh", "deploy/test.sh", "## Guarantees", "## Limits",
-                           "## Speed against error", "## Source tree"}) {
+                           "## Why one would use it", "## Source tree"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part;
   }
   const std::regex picture(R"(!\[[^\]]*\]\(([^)]+)\))");

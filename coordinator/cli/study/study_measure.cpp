@@ -193,17 +193,17 @@ const char* method_name(Method method) {
     case Method::kFull:
       return "all techniques";
     case Method::kNoMis:
-      return "lights asked alone (no MIS)";
+      return "light sampling without MIS";
     case Method::kNoLights:
-      return "no lights asked (no NEE)";
+      return "BSDF sampling only";
     case Method::kAdaptive:
       return "adaptive";
     case Method::kIndependent:
       return "independent numbers";
     case Method::kPixelStops:
-      return "pixels stop themselves";
+      return "stopping per pixel";
     case Method::kEveryObject:
-      return "every object tested (no tree)";
+      return "no BVH";
   }
   return "";
 }
