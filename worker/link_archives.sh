@@ -1,10 +1,14 @@
 #!/bin/sh
 # Links a program with static archives instead of shared libraries where an archive exists.
-# Usage: link_archives.sh COMPILER ARGUMENT...
+# Usage: link_archives.sh LIBRARIES COMPILER ARGUMENT...
+# LIBRARIES: names, in one argument, of libraries that the archives need besides those on the command line.
 # CMake's packages of Debian name shared libraries only; their order on the command line is right for archives too.
 set -eu
-compiler=$1
-shift
+libraries=$1 compiler=$2
+shift 2
+for library in $libraries; do
+  set -- "$@" "-l$library"
+done
 for argument; do
   shift
   case $argument in
