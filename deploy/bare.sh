@@ -1,4 +1,4 @@
-# Sourced: a bare Debian in a folder, for scripts that try what a new machine does. SceneFeatures root and debootstrap.
+# Sourced: a bare Debian in a folder, for scripts that try what a new machine does. Needs root and debootstrap.
 # BANDSAW_MIRROR: where its packages come from (default: http://deb.debian.org/debian).
 
 # bare_possible: whether this machine can make one; says why not.

@@ -1,5 +1,5 @@
-# Sourced: a farm on loopback for a script, of the programs on PATH. It ends with the script, and $scratch goes, in which $data is
-# the coordinator's folder.
+# Sourced: a farm on loopback for a script, of the programs on PATH. The farm ends with the script. The folder $scratch is removed
+# then; $data, the coordinator's folder, is in it.
 scratch=$(mktemp -d)
 data=$scratch/farm
 pids=()
@@ -15,14 +15,22 @@ serve_here() {
   local log=$1
   bandsaw serve --data "$data" --listen 127.0.0.1:0 "${@:2}" >"$log" 2>&1 &
   pids+=($!)
-  until [ -s "$data/farm" ]; do  # the last that it writes
+  until [ -s "$data/farm" ]; do  # written last
     kill -0 "${pids[0]}" 2>/dev/null || { cat "$log" >&2; exit 1; }
     sleep 0.05
   done
 }
 
-# work_here NAME LOG [OPTION...]: a worker of it.
-work_here() {
-  bandsaw-worker --join "$data/join" --name "$1" --cache "$scratch/cache-$1" "${@:3}" >"$2" 2>&1 &
+# join_here NAME LOG COMMAND...: a worker of it, started by a command; returns when it has joined.
+join_here() {
+  local name=$1 log=$2
+  BANDSAW_JOIN=$(cat "$data/join") "${@:3}" --name "$name" --cache "$scratch/cache-$name" >"$log" 2>&1 &
   pids+=($!)
+  until grep -q joined "$log"; do
+    kill -0 "${pids[-1]}" 2>/dev/null || { cat "$log" >&2; exit 1; }
+    sleep 0.05
+  done
 }
+
+# work_here NAME LOG [OPTION...]: a worker of it, of these programs.
+work_here() { join_here "$1" "$2" bandsaw-worker "${@:3}"; }

@@ -33,16 +33,16 @@ std::string new_epoch() {
   return epoch;
 }
 
-SchedulerOptions core_options(const EngineOptions& options, const std::string& epoch) {
-  SchedulerOptions core;
-  core.compatibility = {
+SchedulerOptions scheduler_options(const EngineOptions& options, const std::string& epoch) {
+  SchedulerOptions wanted;
+  wanted.compatibility = {
       .protocol = wire::kProtocol, .pixel_version = kPixelVersion, .canary = canary()};
-  core.heartbeat_timeout_s = options.heartbeat_timeout_s;
-  core.progress_timeout_s = options.progress_timeout_s;
-  core.reattach_grace_s = options.reattach_grace_s;
-  core.audit_share = options.audit_share;
-  core.epoch = epoch;
-  return core;
+  wanted.heartbeat_timeout_s = options.heartbeat_timeout_s;
+  wanted.progress_timeout_s = options.progress_timeout_s;
+  wanted.reattach_grace_s = options.reattach_grace_s;
+  wanted.audit_share = options.audit_share;
+  wanted.epoch = epoch;
+  return wanted;
 }
 
 /// OK if the disk takes a little data beside the reserve. Otherwise releases the reserve, so that
@@ -90,7 +90,7 @@ Engine::Engine(const EngineOptions& options, EngineDependencies dependencies, Da
       to_scheduler_(scheduler_, scheduler_mailbox_),
       to_store_(store_, store_mailbox_),
       to_film_(film_, film_mailbox_),
-      scheduler_(core_options(options, epoch_), *journal_, Reserve(folder_.reserve()), *clock_,
+      scheduler_(scheduler_options(options, epoch_), *journal_, Reserve(folder_.reserve()), *clock_,
                  to_store_, to_film_),
       store_(folder_, *blobs_, options.keep, *clock_, to_scheduler_),
       film_(folder_, to_scheduler_, to_store_),

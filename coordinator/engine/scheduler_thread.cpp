@@ -20,7 +20,7 @@ constexpr std::size_t kCollectEveryJobs = 1'000;
 
 SchedulerThread::SchedulerThread(SchedulerOptions options, Journal& journal, Reserve reserve,
                                  const Clock& clock, StoreInbox& store, FilmInbox& film)
-    : core_(options),
+    : scheduler_(options),
       journal_(journal),
       reserve_(std::move(reserve)),
       clock_(clock),
@@ -31,7 +31,7 @@ SchedulerThread::SchedulerThread(SchedulerOptions options, Journal& journal, Res
       logs_(wire::kLogLinesKept, wire::kLogBytesKept) {}
 
 Step SchedulerThread::run(const Input& input, IncomingBand* incoming) {
-  Step step = core_.step(input, clock_.now());
+  Step step = scheduler_.step(input, clock_.now());
   absorb(step, incoming);
   return step;
 }
@@ -62,7 +62,7 @@ void SchedulerThread::absorb(const Step& step, IncomingBand* incoming) {
     }
   }
   if (absl::IsInternal(step.status)) {
-    spdlog::error("the core: {}", step.status.ToString());
+    spdlog::error("the scheduler: {}", step.status.ToString());
   }
 }
 
@@ -157,7 +157,7 @@ void SchedulerThread::compact() {
   if (!commit_queue_.empty() || journal_.size() <= compact_above_) {
     return;
   }
-  const std::vector<Record> records = core_.snapshot();
+  const std::vector<Record> records = scheduler_.snapshot();
   const std::uint64_t before = journal_.size();
   if (2 * records.size() <= before) {
     if (const absl::Status status = journal_.rewrite(records); !status.ok()) {

@@ -47,10 +47,10 @@ class SchedulerThread {
   /// Runs Quarantine or LiftQuarantine.
   void command_worker(const Input& input, Answer<bool> answer);
   void watch(JobId job, Watchers::Changed changed);
-  std::optional<JobView> job(JobId id) const { return core_.job(id, clock_.now()); }
-  std::vector<std::string> why(JobId id) const { return core_.why(id, clock_.now()); }
-  std::vector<JobView> jobs() const { return core_.jobs(clock_.now()); }
-  std::vector<WorkerView> workers() const { return core_.workers(clock_.now()); }
+  std::optional<JobView> job(JobId id) const { return scheduler_.job(id, clock_.now()); }
+  std::vector<std::string> why(JobId id) const { return scheduler_.why(id, clock_.now()); }
+  std::vector<JobView> jobs() const { return scheduler_.jobs(clock_.now()); }
+  std::vector<WorkerView> workers() const { return scheduler_.workers(clock_.now()); }
 
   // Workers.
   void hello(SessionId session, std::shared_ptr<WorkerLink> link, WorkerHello hello);
@@ -104,7 +104,7 @@ class SchedulerThread {
   void collect();
   void compact();
 
-  Scheduler core_;
+  Scheduler scheduler_;
   Journal& journal_;
   Reserve reserve_;
   const Clock& clock_;

@@ -14,7 +14,7 @@ namespace bandsaw::coordinator {
 absl::Status SchedulerThread::restore(StoreThread& store, FilmThread& film,
                                       const absl::Status& room) {
   RETURN_IF_ERROR(journal_.replay([this](const Record& record) {
-    core_.replay(record);
+    scheduler_.replay(record);
     note(record);
   }));
   std::vector<std::pair<JobId, absl::Status>> failed;
@@ -28,7 +28,7 @@ absl::Status SchedulerThread::restore(StoreThread& store, FilmThread& film,
       RETURN_IF_ERROR(restored);
     }
   }
-  absorb(core_.replayed(clock_.now()), nullptr);
+  absorb(scheduler_.replayed(clock_.now()), nullptr);
   if (!room.ok()) {
     no_room(room);
   }
@@ -49,25 +49,25 @@ absl::Status SchedulerThread::restore_job(JobId id, const Known& known, StoreThr
   absl::Status filmed;
   const auto take = [&](BandRecord record, std::uint64_t offset) {
     BandPixels& pixels = record.pixels;
-    std::optional<std::vector<RowRange>> rows = core_.wanted(id, pixels.band);
+    std::optional<std::vector<RowRange>> rows = scheduler_.wanted(id, pixels.band);
     if (!rows || rows->empty()) {
       return;
     }
     const Band band = pixels.band;
-    core_.replay(input::BandStored{.job = id,
-                                   .band = pixels.band,
-                                   .row_digests = row_digests(pixels),
-                                   .instance = {},
-                                   .process = record.renderer,
-                                   .counters = pixels.counters,
-                                   .cpu_s = record.cpu_s});
+    scheduler_.replay(input::BandStored{.job = id,
+                                        .band = pixels.band,
+                                        .row_digests = row_digests(pixels),
+                                        .instance = {},
+                                        .process = record.renderer,
+                                        .counters = pixels.counters,
+                                        .cpu_s = record.cpu_s});
     // Bands of a machine in quarantine are refused.
-    if (const auto left = core_.wanted(id, band); left && left->empty()) {
+    if (const auto left = scheduler_.wanted(id, band); left && left->empty()) {
       IncomingBand incoming;
       incoming.renderer = record.renderer;
       incoming.pixels = std::move(pixels);
       incoming.offset = offset;
-      incoming.tiles = core_.tiles(id, band);
+      incoming.tiles = scheduler_.tiles(id, band);
       if (filmed.ok()) {
         filmed = film.add(id, std::move(incoming), *std::move(rows));
       } else {
@@ -77,7 +77,7 @@ absl::Status SchedulerThread::restore_job(JobId id, const Known& known, StoreThr
   };
   ASSIGN_OR_RETURN(const BandLogReport report, store.open_job(id, known.spec, take));
   if (report.damaged_bytes > 0) {
-    core_.replay_damage(id, report.damaged_bytes);
+    scheduler_.replay_damage(id, report.damaged_bytes);
     spdlog::warn(
         "job={} {} damaged bytes in its bands were left out; their rows are rendered again", id,
         report.damaged_bytes);

@@ -53,7 +53,7 @@ void SchedulerThread::put_band(IncomingBand incoming) {
     return;
   }
   if (const absl::Status valid = check_band(incoming.pixels, known->second.spec.settings,
-                                            core_.tiles(incoming.job, incoming.pixels.band));
+                                            scheduler_.tiles(incoming.job, incoming.pixels.band));
       !valid.ok()) {
     incoming.answer(valid);
     return;
@@ -64,7 +64,7 @@ void SchedulerThread::put_band(IncomingBand incoming) {
   }
   incoming.renderer = worker_process_id(incoming.instance);
   const std::optional<std::vector<RowRange>> wanted =
-      core_.wanted(incoming.job, incoming.pixels.band);
+      scheduler_.wanted(incoming.job, incoming.pixels.band);
   if (!wanted) {
     incoming.answer(BandOutcome::kUnwanted);
   } else if (wanted->empty()) {

@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <regex>
 
 #include "tests/farm/fake_machines.h"
 #include "tests/farm/farm_processes.h"
@@ -125,17 +124,6 @@ TEST_F(InviteArchitectures, WhateverAHostSaysItIsIsOneLine) {
 }
 #endif
 
-std::string line_of(Process& coordinator) {
-  const std::regex line("no bandsaw-worker:  ([^\n]*)\n");
-  std::smatch found;
-  EXPECT_TRUE(coordinator.wait_until([&](const std::string& out, const std::string&) {
-    return std::regex_search(out, line);
-  })) << coordinator.err();
-  const std::string out = coordinator.out();
-  std::regex_search(out, found, line);
-  return found[1];
-}
-
 TEST(PasteArchitectures, TheLineFetchesTheProgramForTheMachine) {
   const Installed installed;
   const std::string program = worker_file(EM_AARCH64, fitting_mark());
@@ -143,7 +131,7 @@ TEST(PasteArchitectures, TheLineFetchesTheProgramForTheMachine) {
   const TempDir folder;
   Process coordinator = Process::start({installed.bandsaw(), "serve", "--data", folder / "data",
                                         "--listen", "127.0.0.1:0", "--web", "127.0.0.1:0"});
-  const std::string line = line_of(coordinator);
+  const std::string line = line_to_paste(coordinator);
   std::filesystem::create_directory(folder / "bin");
   const Finished pasted =
       run({"/bin/sh", "-c", "cd " + folder.path() + " && uname() { echo arm64; }; " + line},
@@ -159,7 +147,7 @@ TEST(PasteArchitectures, AFileThatIsNotTheProgramIsNotHandedOut) {
   const TempDir folder;
   Process coordinator = Process::start({installed.bandsaw(), "serve", "--data", folder / "data",
                                         "--listen", "127.0.0.1:0", "--web", "127.0.0.1:0"});
-  EXPECT_EQ(line_of(coordinator).find("arm64"), std::string::npos);
+  EXPECT_EQ(line_to_paste(coordinator).find("arm64"), std::string::npos);
   EXPECT_THAT(
       coordinator.err(),
       HasSubstr("no worker for aarch64 is handed out: " + installed.aarch64_worker() + " is "));

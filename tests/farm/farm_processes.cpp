@@ -4,6 +4,7 @@
 
 #include <csignal>
 #include <fstream>
+#include <regex>
 #include <sstream>
 #include <utility>
 
@@ -62,6 +63,17 @@ std::vector<std::string> FarmProcesses::command(std::vector<std::string> argumen
   arguments.insert(arguments.begin(), BANDSAW_BIN);
   arguments.insert(arguments.end(), {"--farm", farm_file()});
   return arguments;
+}
+
+std::string line_to_paste(Process& coordinator) {
+  const std::regex line("no bandsaw-worker:  ([^\n]*)\n");
+  std::smatch found;
+  EXPECT_TRUE(coordinator.wait_until([&](const std::string& out, const std::string&) {
+    return std::regex_search(out, line);
+  })) << coordinator.err();
+  const std::string out = coordinator.out();
+  std::regex_search(out, found, line);
+  return found[1];
 }
 
 std::string file_bytes(const std::string& path) {

@@ -54,6 +54,10 @@ class FarmProcesses {
   std::map<std::string, Process> workers_;
 };
 
+/// Waits until `serve` has printed the line for a machine that has no worker, and returns the line.
+/// The test fails if it does not come.
+std::string line_to_paste(Process& coordinator);
+
 /// Returns the bytes of a file; the test fails if it cannot be read.
 std::string file_bytes(const std::string& path);
 

@@ -7,14 +7,13 @@ bin=$(cd "$1" && pwd)
 gallery=$(cd "$(dirname "$0")/../../renderlib/gallery" && pwd)
 command -v qemu-x86_64-static > /dev/null || { echo "skipped: qemu-x86_64-static is not installed (deploy/install.sh old_cpu)"; exit 77; }
 old=(qemu-x86_64-static -cpu Nehalem)
-work=$(mktemp -d)
-jobs=()
-trap 'for job in "${jobs[@]}"; do kill "$job" 2> /dev/null || true; wait "$job" 2> /dev/null || true; done; rm -rf "$work"' EXIT
-cd "$work"
+export PATH="$bin:$PATH"
+. "$(dirname "$0")/../../deploy/loopback.sh"
+cd "$scratch"
 fail() { echo "old_cpu.sh: $*" >&2; exit 1; }
 
 how=(--width 24 --samples 16 --report none --quiet)
-"$bin/bandsaw" render "$gallery/materials.textproto" "${how[@]}" -o here.pfm
+bandsaw render "$gallery/materials.textproto" "${how[@]}" -o here.pfm
 
 "${old[@]}" "$bin/bandsaw" render "$gallery/materials.textproto" "${how[@]}" -o old.pfm
 cmp here.pfm old.pfm
@@ -25,14 +24,10 @@ grep -q "must be plain, is 'avx2'" refused || fail "--kernel avx2 was refused ot
 grep -q "usage: bandsaw-import" usage || fail "bandsaw-import does not start: $(cat usage)"
 
 # A farm of one worker, the old machine; this one coordinates and submits.
-"$bin/bandsaw" serve --data farm --listen 127.0.0.1:0 --web none > serve.log 2>&1 &
-jobs+=($!)
-for _ in $(seq 600); do [ -s farm/farm ] && break; sleep 0.1; done
-[ -s farm/farm ] || fail "the coordinator did not start: $(cat serve.log)"
-"${old[@]}" "$bin/bandsaw-worker" --join farm/join --name old --cache cache --threads 2 > worker.log 2>&1 &
-jobs+=($!)
-"$bin/bandsaw" submit "$gallery/materials.textproto" --farm farm/farm "${how[@]}" -o farm.pfm
+serve_here serve.log --web none
+join_here old worker.log "${old[@]}" "$bin/bandsaw-worker" --threads 2
+bandsaw submit "$gallery/materials.textproto" --farm "$data/farm" "${how[@]}" -o farm.pfm
 cmp here.pfm farm.pfm
-"$bin/bandsaw" workers --farm farm/farm > workers
+bandsaw workers --farm "$data/farm" > workers
 grep -q "plain kernel" workers || fail "the list of workers does not name the kernel: $(cat workers)"
 echo "the same bytes: here, rendered by an old machine, and by a farm of it"

@@ -12,16 +12,13 @@ namespace {
 
 const std::string kScene = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
 
-// What stands for a person's shell is to become the worker, so that signals reach it.
+// The printed line, in which the shell that the test starts becomes the worker, so that signals
+// reach the worker.
 std::string pasted_line(Process& coordinator) {
-  const std::regex line("no bandsaw-worker:  (case [^\n]*&& )(\\./[^\n]*)\n");
-  std::smatch found;
-  EXPECT_TRUE(coordinator.wait_until([&](const std::string& out, const std::string&) {
-    return std::regex_search(out, line);
-  })) << coordinator.err();
-  const std::string out = coordinator.out();
-  std::regex_search(out, found, line);
-  return found[1].str() + "exec " + found[2].str();
+  const std::string line = line_to_paste(coordinator);
+  std::smatch parts;
+  EXPECT_TRUE(std::regex_match(line, parts, std::regex("(case .*&& )(\\./.*)"))) << line;
+  return parts[1].str() + "exec " + parts[2].str();
 }
 
 // A shell in an empty folder, with nothing of ours on its PATH.

@@ -13,29 +13,21 @@ lacks() { echo "skipped: $*"; exit 77; }
 [ "$(id -u)" -eq 0 ] || lacks "entering Debian 13 needs root"
 [ -x "$debian13/root/bandsaw/build/release/bin/bandsaw-worker" ] || lacks "no build in $debian13 (deploy/nightly.sh debian13)"
 [ -x "$arm64/bin/bandsaw-worker" ] || lacks "no build in $arm64 (deploy/arm64.sh)"
-command -v qemu-x86_64-static qemu-aarch64-static >/dev/null || lacks "qemu-user-static is not installed"
+for emulator in qemu-x86_64-static qemu-aarch64-static; do
+  command -v "$emulator" >/dev/null || lacks "$emulator is not installed (deploy/install.sh arm64)"
+done
 
 export PATH="$build/bin:$PATH"
 . deploy/loopback.sh
 mkdir -p "$scratch/logs"
 serve_here "$scratch/logs/coordinator"
 
-# joins NAME COMMAND...: starts a worker program by a command, and waits until it has joined.
-joins() {
-  local log=$scratch/logs/$1
-  BANDSAW_JOIN=$(cat "$data/join") "${@:2}" --name "$1" --cache "$scratch/cache-$1" --threads 1 >"$log" 2>&1 &
-  pids+=($!)
-  until grep -q joined "$log"; do
-    kill -0 $! 2>/dev/null || { echo "$1 did not join:"; cat "$log"; exit 1; }
-    sleep 0.1
-  done
-}
 mkdir -p "$debian13$scratch"
 trap 'rm -rf "$debian13$scratch"; stop' EXIT
-joins debian12 "$build/bin/bandsaw-worker"
-joins debian13 chroot "$debian13" /root/bandsaw/build/release/bin/bandsaw-worker
-joins no-avx2 qemu-x86_64-static -cpu Nehalem "$build/bin/bandsaw-worker"
-joins arm64 qemu-aarch64-static -L "${BANDSAW_ARM64_ROOT:-/}" "$arm64/bin/bandsaw-worker"
+join_here debian12 "$scratch/logs/debian12" "$build/bin/bandsaw-worker" --threads 1
+join_here debian13 "$scratch/logs/debian13" chroot "$debian13" /root/bandsaw/build/release/bin/bandsaw-worker --threads 1
+join_here no-avx2 "$scratch/logs/no-avx2" qemu-x86_64-static -cpu Nehalem "$build/bin/bandsaw-worker" --threads 1
+join_here arm64 "$scratch/logs/arm64" qemu-aarch64-static -L "${BANDSAW_ARM64_ROOT:-/}" "$arm64/bin/bandsaw-worker" --threads 1
 
 for scene in cornell materials; do
   options=(--width 64 --samples 64)

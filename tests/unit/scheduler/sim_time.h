@@ -8,18 +8,15 @@
 #include <map>
 #include <utility>
 
+#include "renderlib/base/split_mix.h"
+
 namespace bandsaw::coordinator::sim {
 
-/// SplitMix64 (Steele, Lea, Flood 2014, "Fast splittable pseudorandom number generators").
+/// Random numbers of SplitMix64 (renderlib/base/split_mix.h).
 class Chance {
  public:
-  explicit Chance(std::uint64_t seed) : state_(seed * 0x9E3779B97F4A7C15ull + 1) {}
-  std::uint64_t bits() {
-    std::uint64_t z = (state_ += 0x9E3779B97F4A7C15ull);
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
-    return z ^ (z >> 31);
-  }
+  explicit Chance(std::uint64_t seed) : state_(seed * kSplitMixIncrement + 1) {}
+  std::uint64_t bits() { return split_mix(state_ += kSplitMixIncrement); }
   double uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
   double between(double low, double high) { return low + (high - low) * uniform(); }
   /// Uniform in the logarithm.
