@@ -17,7 +17,7 @@ absl::Status CommitQueue::flush() {
     fail_completions(written);
     return written;
   }
-  // What an effect adds to the queue waits for the next flush.
+  // An effect may add entries to the queue; they wait for the next flush.
   for (Waiting& next : std::exchange(waiting_, {})) {
     if (next.effect) {
       next.effect();

@@ -43,8 +43,8 @@ struct EngineOptions {
   Keep keep = {};  ///< retention of jobs that are over; applied every ten minutes and 1,000 jobs
 };
 
-/// What tests replace. nullptr: the real one, which is SQLite in the data folder and the steady
-/// clock.
+/// Parts that tests replace. nullptr selects the real one: SQLite in the data folder, and the
+/// steady clock.
 struct EngineDependencies {
   std::unique_ptr<Journal> journal;
   std::unique_ptr<Clock> clock;

@@ -1,7 +1,7 @@
 #pragma once
 
-// What runs on the film's thread: one film per job, its passes as they become complete, and the
-// image at the end.
+// The film's thread: it holds one film per job, merges passes as they become complete, and writes
+// the image at the end.
 
 #include <cstdint>
 #include <deque>

@@ -1,6 +1,6 @@
 #pragma once
 
-// What runs on the scheduler's thread: it owns the scheduler and the journal, writes the records of
+// The scheduler's thread: it owns the scheduler and the journal, writes the records of
 // each step, and turns the step's actions into messages to the other threads and to workers.
 
 #include <atomic>

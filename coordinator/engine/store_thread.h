@@ -1,7 +1,7 @@
 #pragma once
 
-// What runs on the store's thread: band logs with group commit, results, removal of old jobs, and
-// regular tests of a full disk.
+// The store's thread: it writes band logs with group commit and results, removes old jobs, and
+// tests a full disk at intervals.
 
 #include <map>
 #include <string>

@@ -28,7 +28,7 @@ class GetBlobCall final : public SelfOwned<grpc::ServerWriteReactor<farm::BlobCh
  private:
   absl::Status open();
   void write_next(bool first);
-  /// Of stop; OK: it was not called.
+  /// Returns the status that stop() was called with; OK if it was not called.
   absl::Status stopped() EXCLUDES(mutex_);
 
   const ServiceDependencies deps_;

@@ -18,7 +18,7 @@ class PutBlobCall final : public SelfOwned<grpc::ServerReadReactor<farm::BlobChu
       : deps_(deps), context_(context) {}
   void begin();
   void OnReadDone(bool ok) override;
-  /// What came is kept for the next try.
+  /// The bytes that arrived are kept for the next attempt.
   void stop(const absl::Status& why) override EXCLUDES(mutex_);
   link::Role role() const override { return link::Role::kFarm; }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// What came of audits, as fields; each write gives the record's kind.
+// Results of audits as fields of journal records; each write function returns the record's kind.
 
 #include <optional>
 

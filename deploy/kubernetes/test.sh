@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What can be known of these files without a cluster: kustomize builds them, what must agree does, the programs know the options.
+# Checks these files without a cluster: kustomize builds them, values that must agree do, and the programs know the options.
 # Exit status 77 where there is no kubectl.
 # Usage: deploy/kubernetes/test.sh FOLDER-OF-THE-PROGRAMS
 set -euo pipefail

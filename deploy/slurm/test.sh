@@ -123,7 +123,7 @@ until_true 40 is_gone "${second}_3"
 log_holds "${second}_3" 'drain'
 echo "a cancelled worker drained"
 
-# What --signal=B:TERM@120 sends before the time is over.
+# The signal that --signal=B:TERM@120 sends before the time limit.
 scancel --batch --signal=TERM "${second}_4"
 until_true 40 is_gone "${second}_4"
 log_holds "${second}_4" 'drain'

@@ -13,7 +13,7 @@
 
 namespace bandsaw {
 
-/// What happened to a path in the media along its ray.
+/// Event of a path in the media along its ray.
 enum class MediumEvent {
   kPassed,     ///< the path reaches the end of the ray; its throughput is attenuated
   kScattered,  ///< the path continues from a point inside a medium, with a new ray and vertex

@@ -17,7 +17,7 @@ struct Cofactors {
         determinant(dot(shape.u, x)) {}
 
   Vec3 times(const Vec3& s) const { return x * s.x + y * s.y + z * s.z; }
-  /// Of a vector in the world, before the map.
+  /// Applies the inverse of the map to a vector in world space.
   Vec3 back(const Vec3& p) const { return Vec3{dot(x, p), dot(y, p), dot(z, p)} / determinant; }
 
   Vec3 x;

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# What adaptive sampling gains at equal CPU time: renders gallery scenes until an error, evenly, then adaptively until the error for
-# which that took as long, with several seeds in turn, and compares both with a reference of another seed, whose own noise is taken
-# off. Gain: error squared x CPU time of the even renders over that of the adaptive ones, each a mean over the seeds; above 1
-# adaptive sampling is better.
+# Measures the gain of adaptive sampling at equal CPU time. Renders each gallery scene evenly until an error, then adaptively until
+# the error for which that took as long, with several seeds in turn. Compares both with a reference of another seed and subtracts
+# the reference's own noise. Gain: error squared x CPU time of the even renders over that of the adaptive ones, each a mean over
+# the seeds. Above 1, adaptive sampling is better.
 # Usage: tests/bench/adaptive.sh PATH-TO-BANDSAW [WIDTH [ERROR [SEEDS [SCENE[:ERROR]...]]]]
 # An error should take some 200 samples a pixel or more: a pilot of fewer than 32 plans nothing.
 # TIMES in the environment: samples of a reference over those of an even image, default 8.
@@ -52,7 +52,8 @@ for wanted in "${scenes[@]}"; do
     echo "$even $adaptive"
   done | awk -v scene="$scene" -v reference="$((most * times))" '
     { cpu += $1; n += $2; rel += $3; mse += $4 ^ 2; acpu += $6; an += $7; arel += $8; amse += $9 ^ 2; told += $10; ++k }
-    # Of an error that falls with the root of n samples, what m have is n / (n + m) of what is measured.
+    # The squared error of n samples is proportional to 1 / n. So the share of the reference with m samples in the measured
+    # squared difference is n / (n + m).
     END { noise = n / k / (n / k + reference)
           printf "| %s | %.0f | %.0f | %.2f %% | %.2f %% | %.2f %% | %.2f | %.2f | %.2f |\n", scene, n / k, an / k,
           100 * sqrt((1 - noise) * mse / k), 100 * sqrt((amse - noise * mse) / k), 100 * told / k, cpu / acpu,

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# What a farm of one local worker costs over `bandsaw render`: paired runs of the same job, whose images must be the same, each
-# way first in turns. Wall clock, and CPU time of all processes (the farm's: coordinator, worker and submitter), which other work
-# on the machine changes less; the first two figures printed are the median ratios.
+# Measures the overhead of a farm of one local worker over `bandsaw render`, by paired runs of the same job in alternating order.
+# The images must be equal. Prints the median ratios of the wall clock time and of the CPU time of all processes (coordinator,
+# worker and submitter for the farm); other work on the machine changes CPU time less.
 # Usage: tests/bench/farm_overhead.sh FOLDER-OF-PROGRAMS [PAIRS [SCENE [OPTION-OF-RENDER...]]]
 #   60 s and more:            farm_overhead.sh build/release/bin 3 cornell --samples 256
 #   4K, 16 samples a pass:    farm_overhead.sh build/release/bin 1 books/one_weekend --width 3840 --height 2160 --samples 16

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Is the error that an image reports the error that it has? Renders gallery scenes 96 pixels wide until 5 % and 2 %, with 20 seeds
 # each, compares every image with a reference of many times as many samples, and writes the table of tests/statistical/README.md.
-# What was measured is kept in FOLDER and not measured again: an interrupted run goes on where it was.
+# Finished measurements are kept in FOLDER and not repeated, so an interrupted run continues.
 # Usage: tests/statistical/calibrate.sh BANDSAW FOLDER [--scenes a,b,…] [--seeds N] [--times N] [--seconds S] [--minutes M]
 #   --scenes   names as in the gallery's folder, "cornell,books/earth"; default: all
 #   --seeds    default 20

@@ -31,7 +31,7 @@ class Browser {
   Browser& operator=(const Browser&) = delete;
 
   void go(const std::string& url);
-  /// What the body of a function returns; `argument` is its `arguments[0]`.
+  /// Runs the body of a JavaScript function and returns its result; `argument` is `arguments[0]`.
   google::protobuf::Value run(const std::string& body, const std::string& argument = "");
   /// The same, as text.
   std::string text(const std::string& expression);
@@ -41,7 +41,7 @@ class Browser {
   void type(const std::string& selector, const std::string& keys);
   /// A PNG of what is in the window.
   void screenshot(const std::string& path);
-  /// What the console said that is an error, since the last call.
+  /// Returns the errors on the browser's console since the last call.
   std::vector<std::string> console_errors();
 
  private:

@@ -10,7 +10,8 @@ namespace bandsaw::coordinator {
 /// bandsaw-worker, the gallery in ../share, workers of other architectures in ../lib.
 std::string program_folder();
 
-/// Of the scenes that come with it, installed or in a build folder: bin beside share.
+/// Returns the folder of the scenes that come with the program: share/bandsaw/gallery beside the
+/// program's bin folder, both installed and in a build folder.
 std::string gallery_folder();
 
 }  // namespace bandsaw::coordinator

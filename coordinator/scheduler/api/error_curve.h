@@ -24,7 +24,8 @@ using ErrorCurve = std::vector<ErrorPoint>;
 
 /// Adds a point with at least as many samples as the last one. A point with as many replaces the
 /// last one's estimate and keeps its times, because it is a second measurement of the same image.
-/// Of points less than an eighth apart the later is kept, so a curve has at most about 160 points.
+/// If two points are less than an eighth apart, the later one is kept, so a curve has at most about
+/// 160 points.
 void add_point(ErrorCurve& curve, const ErrorPoint& point);
 
 /// Returns the exponent p of "error falls as samples^-p" over the last octave: the mean of its

@@ -5,7 +5,7 @@ import {el, isOver, keyed, percent, stateOf, text} from "./dom.js";
 import {attempt} from "./notice.js";
 import {preview} from "./picture.js";
 
-/// What fills this screen, in steps, so that a phone is not asked to look at a poster.
+/// Returns the image width for this screen, pixels, in steps: a phone does not load a large image.
 function screenWidth() {
   const wanted = Math.min(screen.width, window.innerWidth) * devicePixelRatio;
   return [320, 480, 640, 800, 1024, 1280, 1600, 1920].findLast((width) => width <= wanted) ?? 320;

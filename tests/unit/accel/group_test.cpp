@@ -186,7 +186,7 @@ TEST(Group, X1_MirroredInstancesEqualMirroredShapes) {
   EXPECT_GT(hits, 2000);
 }
 
-// Of two coincident instances the first is hit, in any order of the others.
+// A ray hits the first of two coincident instances, in any order of the others.
 TEST(Group, X6_OfCoincidentInstancesTheFirstIsHit) {
   Geometry g;
   g.groups.push_back(mixed_shapes(3, 12));

@@ -69,7 +69,7 @@ TEST(PixelFilter, SamplesFollowTheDensity) {
     std::vector<std::uint64_t> counts(kCells * kCells);
     const PixelFilter filter{kind, 2.5};
     for (std::uint64_t i = 0; i < kSamples; ++i) {
-      // Of different pixels: the samples of one are stratified, not independent.
+      // One sample of each pixel: samples of one pixel are stratified, not independent.
       const Sample4 at = sample4({.seed = 9, .x = static_cast<std::uint32_t>(i), .y = 7}, 0);
       const Vec2 offset = sample(filter, at[0], at[1]) * (1 / filter.radius);
       ASSERT_LE(std::max(std::abs(offset.x), std::abs(offset.y)), 1);

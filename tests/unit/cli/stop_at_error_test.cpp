@@ -133,7 +133,7 @@ Jobs of_many(Errors errors, bool adaptive, bool with_margin) {
   return jobs;
 }
 
-// Of 400 jobs a share of 95 % has a standard error of 1.1 %.
+// For 400 jobs, the standard error of a share of 95 % is 1.1 %.
 TEST(StopAtError, NineteenOfTwentyImagesAreAtTheirTarget) {
   const Jobs even = of_many(Errors::kOwn, false, true);
   EXPECT_GE(even.met, 0.95 * kJobs);

@@ -46,7 +46,7 @@ TEST(ErrorMetrics, OneChannelOfOnePixelIsFound) {
   EXPECT_EQ(metrics.max_y, 2u);
 }
 
-// Of 2,000 pixels two are left out.
+// The image has 2,000 pixels, so two are excluded.
 TEST(ErrorMetrics, TrimmingLeavesOutTheWorstThousandth) {
   Image a = uniform(50, 40, 1);
   a.pixels[7].r = 100;

@@ -73,7 +73,7 @@ Obj parse(const std::string& text) {
   return obj;
 }
 
-// Of each face: the corners' normals are unit vectors on the face's own outer side.
+// Expects that the corners' normals of each face are unit vectors on the face's outer side.
 void expect_normals_out(const Obj& obj) {
   for (const auto& face : obj.faces) {
     const Vec3& a = obj.points[face[0]];
