@@ -8,7 +8,7 @@
 namespace bandsaw::worker {
 namespace {
 
-/// How the log names a band, for people and for those who search it.
+/// Returns the name of a band in the log, in a form that is easy to search for.
 std::string name_of(const Task& task) {
   return absl::StrCat("job=", task.job, " rows=", task.band.rows.first, ":", task.band.rows.last,
                       " samples=", task.band.samples.first, ":", task.band.samples.last);

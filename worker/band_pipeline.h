@@ -30,7 +30,7 @@ class BandPipeline {
 
   void start(const Task& task) { executor_.add(task); }
   void stop(TaskId task);
-  /// The coordinator is reachable again.
+  /// Called when the coordinator is reachable again.
   void connected() { uploader_.retry_now(); }
 
  private:

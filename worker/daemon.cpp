@@ -61,11 +61,11 @@ class Daemon::Impl {
   FarmCalls calls_;
   const std::unique_ptr<CoordinatorApi> wrapped_calls_;  ///< nullptr: calls_ is used
   SharedSession session_;
-  // run()'s own.
+  // Used by run() only.
   Backoff backoff_;
   std::optional<Dismissal> dismissal_;
   std::string last_loss_;
-  std::string epoch_;  ///< names the life of the coordinator that welcomed it last
+  std::string epoch_;  ///< id of the epoch of the last coordinator that admitted this worker
   bool joined_ = false;
   BandPipeline pipeline_;  ///< last: its threads use the calls and the session
 };
@@ -125,7 +125,7 @@ void Daemon::Impl::write_all(SessionStream& stream, SendQueue& queue) {
       message = *std::move(beat);
     }
     if (!stream.Write(message)) {
-      return;  // the reader learns why
+      return;  // the reading thread gets the reason from Finish
     }
     if (next == SendQueue::Next::kHeartbeat && !write_log(stream)) {
       return;

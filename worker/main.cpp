@@ -1,4 +1,4 @@
-// bandsaw-worker: renders bands for a coordinator until it is told to stop.
+// bandsaw-worker: renders bands for a coordinator until it is stopped.
 
 #include "worker/command.h"
 

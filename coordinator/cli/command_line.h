@@ -1,6 +1,7 @@
 #pragma once
 
-// Parses arguments into a checked command. The only table of commands and options.
+// Parses arguments into a checked command. Its implementation has the only table of commands and
+// options.
 
 #include <string>
 #include <vector>
@@ -10,8 +11,8 @@
 
 namespace bandsaw::coordinator {
 
-/// `arguments` without the program's name. INVALID_ARGUMENT: one line with the error and, if there
-/// is one, the command or option that was probably meant.
+/// Parses `arguments`, which do not contain the program's name. INVALID_ARGUMENT: one line with the
+/// error and, if there is one, the command or option that was probably meant.
 absl::StatusOr<Command> parse_command_line(const std::vector<std::string>& arguments);
 
 }  // namespace bandsaw::coordinator

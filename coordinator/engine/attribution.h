@@ -1,7 +1,7 @@
 #pragma once
 
-// Which worker rendered which rows, for display. For a job that is over this is stored beside its
-// image (store/attribution_file.h).
+// Records which worker rendered which rows, for display. For a job that is over, the records are
+// stored beside its image (store/attribution_file.h).
 
 #include <cstdint>
 #include <map>
@@ -13,12 +13,12 @@
 
 namespace bandsaw::coordinator {
 
-/// The jobs that are not over. Used by one thread.
+/// Attribution of the jobs that are not over. Used by one thread.
 class Attribution {
  public:
-  /// Adds rows of a job. `renderer` identifies the worker process in all lives of the coordinator.
-  /// `name` may be empty, because a band on disk does not contain it; it is known again when the
-  /// worker sends another band.
+  /// Adds rows of a job. `renderer` identifies the worker process in all epochs (runs of the
+  /// coordinator). `name` may be empty, because a band on disk does not contain it; it becomes
+  /// known when the worker sends another band.
   void add(JobId job, const RowRange& rows, std::uint64_t renderer, const std::string& name);
   /// Returns the rows that are rendered, in order; adjacent rows of one worker are merged.
   std::vector<RowsBy> of(JobId job) const;

@@ -16,7 +16,7 @@
 
 namespace bandsaw::coordinator {
 
-/// How long, and how much, of the jobs that are over is kept.
+/// Limits on the age, size and number of the jobs that are over. Jobs beyond a limit are removed.
 struct Keep {
   double seconds = 30.0 * 24 * 60 * 60;  ///< maximum age of a final job
   std::uint64_t bytes =

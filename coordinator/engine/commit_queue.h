@@ -1,6 +1,7 @@
 #pragma once
 
-// Durable first: records wait here for the journal, and what they led to waits for them.
+// Write-ahead ordering: records wait here for the journal, and their effects are run only when the
+// records are on disk.
 
 #include <deque>
 #include <vector>
@@ -15,9 +16,10 @@ namespace bandsaw::coordinator {
 /// Used by one thread.
 class CommitQueue {
  public:
-  /// Done once everything recorded before is on disk.
+  /// Run once all records added before it are on disk.
   using Effect = absl::AnyInvocable<void()>;
-  /// Called with OK as a effect is, or with the journal's error; then nothing may be acknowledged.
+  /// Called with OK once all records added before it are on disk, or with the journal's error;
+  /// after an error nothing may be acknowledged.
   using Completion = absl::AnyInvocable<void(const absl::Status&)>;
 
   explicit CommitQueue(Journal& journal) : journal_(journal) {}
@@ -28,13 +30,14 @@ class CommitQueue {
   void effect(Effect effect) { waiting_.push_back({std::move(effect), nullptr}); }
   void completion(Completion completion) { waiting_.push_back({nullptr, std::move(completion)}); }
 
-  /// Appends all records at once, and no more. On an error they stay.
+  /// Appends all records to the journal at once, but runs no effects or completions. On an error
+  /// the records stay in the queue.
   absl::Status write();
-  /// Appends all records at once, then does and answers everything in the order it came. On an
-  /// error the completions are given it, and records and effects stay, in order, for the next
-  /// flush.
+  /// Appends all records to the journal at once, then runs all effects and completions in the order
+  /// in which they were added. On an error the completions are called with it, and records and
+  /// effects stay in the queue, in order, for the next flush.
   absl::Status flush();
-  /// Gives all completions that wait this error.
+  /// Calls all waiting completions with this error.
   void fail_completions(const absl::Status& status);
 
  private:

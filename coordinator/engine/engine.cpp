@@ -45,8 +45,8 @@ SchedulerOptions scheduler_options(const EngineOptions& options, const std::stri
   return wanted;
 }
 
-/// OK if the disk takes a little data beside the reserve. Otherwise releases the reserve, so that
-/// the journal can be opened and the rest of the start has room for small files.
+/// Returns OK if a little data can be written in addition to the reserve. Otherwise releases the
+/// reserve, so that the journal can be opened and the rest of the start has room for small files.
 absl::Status find_room(const DataFolder& folder) {
   constexpr std::uint64_t kLittle = 1 << 20;
   Reserve reserve(folder.reserve());

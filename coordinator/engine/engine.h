@@ -50,9 +50,9 @@ struct EngineDependencies {
   std::unique_ptr<Clock> clock;
 };
 
-/// All calls may come from any thread, and return at once unless it says otherwise. Results are
-/// passed to callbacks, on one of the engine's threads: callbacks MUST be quick. Each callback is
-/// called exactly once, with UNAVAILABLE if the engine stops before.
+/// All calls may come from any thread. They return at once unless their comment says that they may
+/// block. Results are passed to callbacks, on one of the engine's threads: callbacks MUST be quick.
+/// Each callback is called exactly once, with UNAVAILABLE if the engine stops before.
 class Engine {
  public:
   /// Opens the data folder, replays the journal and the band logs, and starts the threads.
@@ -91,9 +91,9 @@ class Engine {
   /// Returns the last lines of a worker's log. NOT_FOUND: no lines of such a worker.
   void logs(std::string worker, std::function<void(absl::StatusOr<std::vector<std::string>>)> done);
   /// Returns the present image of a job that is not over, every row_step-th row, `row_step` >= 1.
-  /// NOT_FOUND: no such job, or none of its bands is there.
+  /// NOT_FOUND: no such job, or none of its bands is stored.
   void preview(JobId job, std::uint32_t row_step, std::function<void(absl::StatusOr<Image>)> done);
-  /// Returns who rendered the rows that are there, in the order of rows. After a restart, a
+  /// Returns the workers of the rows that are rendered, in the order of rows. After a restart, a
   /// worker's name is empty in a job that is not over until the worker sends another band.
   void rendered_by(JobId job, std::function<void(std::vector<RowsBy>)> done);
   /// Returns the result of a job. NOT_FOUND: no such job, or kSamples of one that was not adaptive.
@@ -146,7 +146,7 @@ class Engine {
   /// the disk.
   std::uint64_t free_bytes() const;
 
-  /// Returns the name of this life of the coordinator.
+  /// Returns the id of this epoch (run of the coordinator).
   const std::string& epoch() const;
 
  private:

@@ -72,7 +72,7 @@ void FilmThread::want_image(JobId id, std::uint64_t samples) {
 
 void FilmThread::retry() {
   for (auto& [id, job] : jobs_) {
-    make_folder(folder_.job(id)).IgnoreError();  // where it is missing, `work` says so
+    make_folder(folder_.job(id)).IgnoreError();  // if the folder is missing, `work` reports it
     if (job.rebuild || !job.waiting.empty() || job.image_of) {
       work(id, job).IgnoreError();  // the scheduler was informed
     }
@@ -229,8 +229,8 @@ absl::StatusOr<Film> FilmThread::film_until(JobId id, OneJob& job, std::uint64_t
   return film;
 }
 
-/// Reads rows from the log, bit for bit as they were added. DATA_LOSS: the record is sound, but it
-/// is another one.
+/// Reads rows from the log, bit for bit as they were added. DATA_LOSS: the record at the offset is
+/// that of another band.
 absl::StatusOr<BandPixels> FilmThread::read_again(JobId id, const Added& added) const {
   ASSIGN_OR_RETURN(const BandRecord record, read_band(folder_.bands(id), added.offset));
   const Band& found = record.pixels.band;

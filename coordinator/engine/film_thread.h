@@ -30,7 +30,8 @@ class FilmThread {
       : folder_(folder), scheduler_(scheduler), store_(store) {}
 
   void add_job(JobId job, const RenderSettings& settings, bool adaptive = false);
-  /// Announces a pass that ends at `samples`. It is reported when the film has all of it.
+  /// Announces a pass that ends at `samples`. The pass is reported when the film contains all of
+  /// it.
   void plan(JobId job, std::uint64_t samples);
   /// Adds these rows of a band. OK: they are in the film. Otherwise they wait in memory for retry,
   /// and SchedulerInbox::storage_failed is called.
@@ -40,7 +41,7 @@ class FilmThread {
   void add_later(JobId job, const IncomingBand& incoming, const std::vector<RowRange>& rows);
   /// Sends the image of samples [0, samples) to the store as soon as the film has them.
   void want_image(JobId job, std::uint64_t samples);
-  /// Tries again what failed.
+  /// Retries the additions and images that failed.
   void retry();
   /// Removes the bands of this renderer: builds the film again from the log of the others, and
   /// reports its passes again as they become complete.
@@ -50,7 +51,7 @@ class FilmThread {
   /// Returns the present image of a job, every row_step-th row. NOT_FOUND: no band is there, or the
   /// job is over.
   absl::StatusOr<Image> preview(JobId job, std::uint32_t row_step) const;
-  /// Returns who rendered the rows that are there; for a job that is over, from the file beside its
+  /// Returns which worker rendered which rows; for a job that is over, from the file beside its
   /// image.
   std::vector<RowsBy> rendered_by(JobId job) const;
 

@@ -20,13 +20,13 @@ namespace bandsaw::coordinator {
 class SchedulerInbox {
  public:
   virtual ~SchedulerInbox() = default;
-  // From the store. Each band that the store was given ends in band_stored or band_failed.
+  // From the store. For each band that it received, the store calls band_stored or band_failed.
   virtual void band_stored(IncomingBand incoming, std::vector<std::uint64_t> row_digests) = 0;
   virtual void band_failed(IncomingBand incoming, const absl::Status& status) = 0;
   virtual void result_written(JobId job, const absl::Status& status) = 0;
   /// The disk takes data again after StoreInbox::expect_trouble.
   virtual void disk_is_back() = 0;
-  /// These jobs are final and older than is kept.
+  /// These jobs are final and exceed a limit of engine/collector.h.
   virtual void forget(std::vector<JobId> jobs) = 0;
   // From the film.
   virtual void pass_merged(input::PassMerged merged) = 0;

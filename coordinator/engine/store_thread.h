@@ -54,8 +54,8 @@ class StoreThread {
   void drop_bands(JobId job);
   /// Removes all files of a forgotten job.
   void drop_job(JobId job);
-  /// Removes blobs and folders that are no longer needed, and sends the scheduler the jobs that are
-  /// older than is kept. `jobs`: all jobs that are known.
+  /// Removes blobs and folders that are no longer needed, and sends the scheduler the jobs that
+  /// exceed a limit of engine/collector.h. `jobs`: all known jobs.
   void collect(const std::vector<Collector::Job>& jobs);
   /// A write failed: sends disk_is_back once the disk takes data.
   void expect_trouble();

@@ -12,9 +12,9 @@
 
 namespace bandsaw::coordinator {
 
-/// Work.GetBlob. Each chunk is copied out of the mapped file on the file executor: touching a
-/// mapped page may wait for the disk. From begin to Finish always either a task or a write is under
-/// way; the end of it looks whether the call was stopped.
+/// Work.GetBlob. Each chunk is copied out of the mapped file on the file executor, because touching
+/// a mapped page may wait for the disk. From begin() to Finish, either a task or a write is always
+/// in progress; when it ends, it checks whether stop() was called.
 class GetBlobCall final : public SelfOwned<grpc::ServerWriteReactor<farm::BlobChunk>, GetBlobCall>,
                           public LongStream {
  public:
@@ -41,7 +41,7 @@ class GetBlobCall final : public SelfOwned<grpc::ServerWriteReactor<farm::BlobCh
 };
 
 /// Farm.GetResult and Farm.Preview: an image that is made on the executor for images. As with
-/// GetBlobCall, a task or a write is always under way.
+/// GetBlobCall, a task or a write is always in progress.
 class ImageCall final : public SelfOwned<grpc::ServerWriteReactor<farm::ResultChunk>, ImageCall>,
                         public LongStream {
  public:
@@ -50,7 +50,7 @@ class ImageCall final : public SelfOwned<grpc::ServerWriteReactor<farm::ResultCh
   ImageCall(const ServiceDependencies& deps, Make make) : deps_(deps), make_(std::move(make)) {}
   void begin();
   void OnWriteDone(bool ok) override;
-  /// Gives the memory of the image back at once.
+  /// Also frees the memory of the image at once.
   void stop(const absl::Status& why) override EXCLUDES(mutex_);
   link::Role role() const override { return link::Role::kFarm; }
 

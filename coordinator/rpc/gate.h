@@ -35,9 +35,9 @@ class Gate {
   /// the other role's secret.
   absl::Status check(const grpc::CallbackServerContext& context, link::Role needed)
       EXCLUDES(mutex_);
-  /// Whether check would let the call in now. A wrong secret is not counted.
+  /// Returns true if check() would admit the call now. A wrong secret is not counted.
   bool holds(const grpc::CallbackServerContext& context, link::Role needed) EXCLUDES(mutex_);
-  /// As check, where both roles may call.
+  /// Like check(), for calls that both roles may make.
   absl::Status check_any(const grpc::CallbackServerContext& context) EXCLUDES(mutex_);
 
   /// Renews a role's secret and returns the file with the new join string. The old secret is

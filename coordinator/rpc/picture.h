@@ -13,20 +13,20 @@ namespace bandsaw::coordinator {
 /// functions here.
 absl::StatusOr<JobView> look_at(Engine& engine, JobId job);
 
-/// An image, and its bytes of Engine::images.
+/// An image, and its share of the memory budget Engine::images.
 struct HeldImage {
   StoredResult result;
   MemoryBudget::Share share;
 };
 
-/// Returns the finished image, or the number of samples of each pixel. Errors as Engine::result;
-/// here and below also RESOURCE_EXHAUSTED: other images that are viewed or downloaded leave no
-/// memory.
+/// Returns the finished image, or the number of samples of each pixel. Errors: those of
+/// Engine::result. This function and those below also return RESOURCE_EXHAUSTED if images that are
+/// viewed or downloaded at the same time leave too little memory.
 absl::StatusOr<HeldImage> result_of(Engine& engine, JobId job,
                                     FinishedPart part = FinishedPart::kImage);
 
 /// Returns the present image of the job, or its finished image, with at most about `most_side`
-/// pixels per side, >= 1; without `digest`. NOT_FOUND: none of its bands is there.
+/// pixels per side, >= 1; without `digest`. NOT_FOUND: none of its bands is stored.
 absl::StatusOr<HeldImage> picture_of(Engine& engine, const JobView& job, std::uint32_t most_side);
 /// Returns the same for the job's present state, with `digest`.
 absl::StatusOr<HeldImage> preview_of(Engine& engine, JobId job, std::uint32_t most_side);

@@ -28,13 +28,13 @@ class PutBandsCall final
  private:
   absl::Status take(const farm::BandChunk& chunk) EXCLUDES(mutex_);
   void read_next() EXCLUDES(mutex_);
-  /// False: the call is over.
+  /// Returns false if the call is over.
   bool hand_over() EXCLUDES(mutex_);
   void answer(const absl::StatusOr<BandOutcome>& outcome) EXCLUDES(mutex_);
   void advance() REQUIRES(mutex_);
 
   const ServiceDependencies deps_;
-  farm::BandChunk chunk_;  ///< this and intake_: accessed in the order of reads only
+  farm::BandChunk chunk_;  ///< this and intake_: used by read callbacks only
   BandIntake intake_;
   farm::PutBandReply reply_;  ///< accessed by the thread that answers
   Mutex mutex_;

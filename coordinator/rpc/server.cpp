@@ -125,9 +125,9 @@ class Server::Impl {
   int port() const { return port_; }
 
  private:
-  const link::Identity identity_;  ///< as at start; the certificate does not change
+  const link::Identity identity_;  ///< as at the start; the certificate does not change
   Gate gate_;
-  FileExecutor files_;  // before the server, as the next: calls that end post to them
+  FileExecutor files_;  // this and the next outlive the server: ending calls post tasks to them
   FileExecutor images_;
   LongStreams streams_;
   FarmService farm_;

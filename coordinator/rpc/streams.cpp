@@ -6,7 +6,7 @@ namespace bandsaw::coordinator {
 namespace {
 
 constexpr std::size_t kMaxStreams =
-    3 * wire::kWorkers + 1024;  // a worker: orders, bands and a blob; the rest: people
+    3 * wire::kWorkers + 1024;  // 3 for each worker (session, bands, a blob); 1024 for users
 
 }  // namespace
 

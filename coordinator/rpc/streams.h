@@ -1,7 +1,7 @@
 #pragma once
 
-// How a reactor of gRPC's callback API lives, and the register of all streams, which a stopping
-// server and a new secret must end.
+// Lifetime of reactors of gRPC's callback API, and the register of all streams, which are ended
+// when the server stops or a secret is renewed.
 
 #include <grpcpp/grpcpp.h>
 
@@ -23,8 +23,8 @@ namespace bandsaw::coordinator {
 class LongStream {
  public:
   virtual ~LongStream() = default;
-  /// Ends the call with this status as soon as the write or the task that is under way has ended;
-  /// nothing is begun after it. Any thread; the first status counts.
+  /// Ends the call with this status as soon as the write or the task in progress has ended; nothing
+  /// is started after it. May be called on any thread; the first status counts.
   virtual void stop(const absl::Status& why) = 0;
   /// The role whose secret opened the stream.
   virtual link::Role role() const = 0;
@@ -93,8 +93,9 @@ class RefusedCall final : public Base {
   void OnDone() override { delete this; }
 };
 
-/// The one place where callers are let in: returns `make()` if the caller has the secret of `role`
-/// (std::nullopt: of any role), otherwise a reactor that refuses the call. `make` returns a Base*.
+/// Authenticates a caller; every call passes through here. Returns `make()` if the caller has the
+/// secret of `role` (std::nullopt: of any role), otherwise a reactor that refuses the call. `make`
+/// returns a Base*.
 template <class Base, class Make>
 Base* if_admitted(const ServiceDependencies& deps, const grpc::CallbackServerContext& context,
                   std::optional<link::Role> role, Make make) {
@@ -103,8 +104,8 @@ Base* if_admitted(const ServiceDependencies& deps, const grpc::CallbackServerCon
 }
 
 /// Returns the reactor of a stream, made of `deps` and `args`, if the caller has this role's
-/// secret. The secret is checked again when the stream is in the register, because it may have been
-/// renewed in between, which ended only the streams that were registered then.
+/// secret. The secret is checked again when the stream is in the register: if it was renewed in
+/// between, only the streams that were registered then were ended.
 template <class Call, class... Args>
 auto* admitted(const ServiceDependencies& deps, const grpc::CallbackServerContext& context,
                link::Role role, Args&&... args) {
@@ -119,7 +120,8 @@ auto* admitted(const ServiceDependencies& deps, const grpc::CallbackServerContex
 }
 
 /// Runs a unary RPC if the caller has the secret of `role`. `handle` is called with the reactor. If
-/// it returns an error, the call ends with it; otherwise `handle` MUST see to Finish being called.
+/// it returns an error, the call ends with it; otherwise `handle` MUST ensure that Finish is
+/// called.
 template <class Handle>
 grpc::ServerUnaryReactor* unary(const ServiceDependencies& deps,
                                 grpc::CallbackServerContext& context,

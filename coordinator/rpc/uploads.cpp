@@ -41,7 +41,7 @@ void PutBlobCall::after_task(std::optional<absl::Status> ended) {
   MutexLock lock(mutex_);
   working_ = false;
   if (ended) {
-    end_ = *std::move(ended);  // an upload that is whole is whole, stopped or not
+    end_ = *std::move(ended);  // a complete upload succeeds even if stop() was called
   }
   if (end_) {
     advance();

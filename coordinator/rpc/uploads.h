@@ -9,8 +9,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Farm.PutBlob: what people send in chunks. A chunk is read only when the one before is in the
-/// file, which the file executor writes.
+/// Farm.PutBlob: receives a blob in chunks. The next chunk is read only when the previous one has
+/// been written to the file, on the file executor.
 class PutBlobCall final : public SelfOwned<grpc::ServerReadReactor<farm::BlobChunk>, PutBlobCall>,
                           public LongStream {
  public:
@@ -18,12 +18,12 @@ class PutBlobCall final : public SelfOwned<grpc::ServerReadReactor<farm::BlobChu
       : deps_(deps), context_(context) {}
   void begin();
   void OnReadDone(bool ok) override;
-  /// The bytes that arrived are kept for the next attempt.
+  /// Keeps the bytes that have arrived for the next attempt.
   void stop(const absl::Status& why) override EXCLUDES(mutex_);
   link::Role role() const override { return link::Role::kFarm; }
 
  private:
-  /// Nothing: the next chunk is to be read.
+  /// Returns std::nullopt if the next chunk is to be read.
   std::optional<absl::Status> take(bool ok);
   void after_task(std::optional<absl::Status> ended) EXCLUDES(mutex_);
   absl::Status add(const farm::BlobChunk& chunk);
@@ -32,7 +32,7 @@ class PutBlobCall final : public SelfOwned<grpc::ServerReadReactor<farm::BlobChu
 
   const ServiceDependencies deps_;
   grpc::CallbackServerContext* const context_;
-  farm::BlobChunk chunk_;  ///< this and the next two: of reads and tasks, which alternate
+  farm::BlobChunk chunk_;  ///< this and the next two: used by reads and tasks, which alternate
   BlobIntake intake_;
   std::unique_ptr<Engine::BlobWriter> writer_;
   Mutex mutex_;

@@ -60,8 +60,8 @@ void Scheduler::on(const input::Tick&) {
   }
 }
 
-/// Compares the result with what is stored of its rows first: that may show that its own machine is
-/// wrong. Then it is measured and stored, and the leases that it makes useless are ended.
+/// First compares the result with the stored digests of its rows, which may show that the sending
+/// machine is wrong. Then measures and stores the band, and ends the leases that it makes useless.
 void Scheduler::on(const input::BandStored& in) {
   Job* job = context_.jobs.find(in.job);
   Pass* pass = job == nullptr || is_final(job->state) ? nullptr : job->pass_of(in.band);

@@ -1,6 +1,6 @@
 #pragma once
 
-// The coordinator's folder: where everything lies in it, and that only one coordinator uses it.
+// The coordinator's folder: its layout, and a lock that lets only one coordinator use it.
 
 #include <string>
 
@@ -11,12 +11,12 @@
 
 namespace bandsaw::coordinator {
 
-/// Holds the folder's lock while it lives. Layout: README.md of this folder.
+/// Holds the folder's lock as long as the object exists. Layout: README.md of this folder.
 class DataFolder {
  public:
-  /// Makes the folder (0700) if it does not exist; its parent MUST. FAILED_PRECONDITION: another
-  /// coordinator uses it (its process id is named), or it was written by another version of the
-  /// format, or it is something else's folder.
+  /// Creates the folder (mode 0700) if it does not exist; its parent MUST exist.
+  /// FAILED_PRECONDITION: another coordinator uses it (the message names its process id), it was
+  /// written by another version of the format, or it is not a data folder.
   static absl::StatusOr<DataFolder> open(const std::string& path);
 
   const std::string& path() const { return path_; }
@@ -36,11 +36,11 @@ class DataFolder {
   File lock_;
 };
 
-/// Whether the disk has room for `bytes`, by default a band's, and takes data: reserves, writes,
-/// syncs, removes.
+/// Returns OK if the disk has room for `bytes`, by default those of the largest band, and accepts
+/// data. Tests this with a file: reserves space, writes, syncs, removes.
 absl::Status probe_disk(const std::string& folder, std::uint64_t bytes = wire::kBandBytes);
 
-/// Bytes that this user may still write on the disk of a folder. The system's reason otherwise.
+/// Returns the bytes that this user may still write on the disk of a folder, or the system's error.
 absl::StatusOr<std::uint64_t> free_bytes(const std::string& folder);
 
 }  // namespace bandsaw::coordinator

@@ -16,7 +16,7 @@ const char* write_audit(FieldWriter& out, const record::ErrorForgotten& r);
 const char* write_audit(FieldWriter& out, const record::WorkerQuarantined& r);
 const char* write_audit(FieldWriter& out, const record::QuarantineLifted& r);
 
-/// Nothing: the kind is none of these.
+/// Returns std::nullopt if the kind is none of these.
 std::optional<Record> read_audit(absl::string_view kind, FieldReader& in);
 
 }  // namespace bandsaw::coordinator

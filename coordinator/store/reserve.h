@@ -1,7 +1,7 @@
 #pragma once
 
-// Room on the disk that is kept for the time when it is full: the journal and other small files are
-// written then, so that a job can be cancelled and its room be given back.
+// A file that reserves disk space. When the disk is full the file is removed, so that the journal
+// and other small files can be written, and a job can be cancelled to free its space.
 
 #include <cstdint>
 #include <string>
@@ -11,18 +11,19 @@
 
 namespace bandsaw::coordinator {
 
-/// A file that holds room and nothing else. Used by one thread at a time.
+/// A file that only occupies disk space. Used by one thread at a time.
 class Reserve {
  public:
   static constexpr std::uint64_t kBytes = 16ull << 20;
 
-  /// `path`: of the file, which may be there from an earlier life.
+  /// `path`: of the file, which may exist from an earlier run.
   explicit Reserve(std::string path) : path_(std::move(path)) {}
 
-  /// Makes the file unless it is there and whole. RESOURCE_EXHAUSTED: the disk has no such room. A
-  /// file system that cannot reserve holds an empty file, and releasing it gives nothing.
+  /// Creates the file unless it exists with its full size. RESOURCE_EXHAUSTED: the disk has too
+  /// little space. On a file system that cannot reserve space the file is empty, and releasing it
+  /// frees nothing.
   absl::Status hold();
-  /// Removes the file. Returns false when there was none, or it cannot be removed.
+  /// Removes the file. Returns false if there was none, or it cannot be removed.
   bool release();
 
  private:

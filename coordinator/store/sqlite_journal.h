@@ -42,7 +42,7 @@ class SqliteJournal : public Journal {
   absl::Status check_version();
   absl::Status execute(const char* sql);
   absl::StatusOr<Statement> prepare(const char* sql);
-  /// The first column of the first row, as text.
+  /// Returns the first column of the first row, as text.
   absl::StatusOr<std::string> ask(const char* sql);
   absl::Status insert(const Record& record, std::uint64_t sequence);
   absl::Status transact(const char* first, absl::Span<const Record> records, std::uint64_t after);
@@ -51,8 +51,8 @@ class SqliteJournal : public Journal {
   std::unique_ptr<sqlite3, CloseDatabase> database_;
   std::string path_;
   std::uint64_t last_ = 0;  ///< the highest sequence number in the file
-  /// The file has an earlier schema still: the first transaction raises it. A full disk can be
-  /// read.
+  /// The file still has an earlier schema version, which the first transaction raises. It is not
+  /// raised when the file is opened, so that a journal can be read on a full disk.
   bool raise_version_ = false;
   Statement insert_;
 };

@@ -181,7 +181,7 @@ class Exchange {
   // The bytes of the body that were read last. It is larger than the parser's buffer, so that it is
   // never full: otherwise Beast would report need_buffer before the end of the body.
   std::array<char, kBufferBytes + 1> body_;
-  bool awaits_continue_ = false;  ///< the client sends the body when it is told to
+  bool awaits_continue_ = false;  ///< the client sends the body only after "100 Continue"
 };
 
 }  // namespace

@@ -30,7 +30,7 @@ using ImportScene = std::function<absl::StatusOr<SceneOnFarm>(const std::string&
 /// Parameters of a job that renders a scene.
 struct SceneWish {
   std::string request_id;   ///< as in farm.SubmitRequest; empty: a random one
-  std::uint32_t width = 0;  ///< pixels; 0: the scene's own; the height keeps the shape
+  std::uint32_t width = 0;  ///< pixels; 0: the scene's own; the height keeps the aspect ratio
   StopRule stop = StopAtSamples{64};
 };
 

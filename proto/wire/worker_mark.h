@@ -6,10 +6,10 @@
 
 namespace bandsaw::wire {
 
-/// Says which worker a program file holds, so that a coordinator knows it without running the
-/// program, which may be for another architecture. It stands in the read-only data of each
-/// bandsaw-worker and is found there by `magic`. Little-endian, without padding. Another layout
-/// gets another `magic`.
+/// Identifies the version of the worker in a program file, so that a coordinator need not run the
+/// program, which may be for another architecture. The mark is in the read-only data of each
+/// bandsaw-worker and is found by `magic`. Little-endian, without padding. Another layout gets
+/// another `magic`.
 struct WorkerMark {
   char magic[16] = "\177bandsaw-worker";
   std::uint32_t protocol = kProtocol;

@@ -45,8 +45,8 @@ double upper_tail(double x) {
   return exp(-0.5 * x * x) / std::sqrt(2 * kPi) * polynomial;
 }
 
-// Returns the two-sided bound that a standard normal value exceeds so rarely that any of `tests`
-// values does once in a hundred.
+// Returns the bound b for which the largest absolute value of `tests` independent standard normal
+// values exceeds b with probability 1 %.
 double bound_of(std::uint32_t tests) {
   const double one = -expm1(log1p(-0.01) / tests);
   double low = 0;

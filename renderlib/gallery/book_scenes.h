@@ -2,7 +2,8 @@
 
 // The scenes of the "weekend" books (Shirley, Black and Hollasch, "Ray Tracing in One Weekend",
 // "Ray Tracing: The Next Week") that consist of hundreds of shapes at random places, as text. The
-// books use random numbers of the C library and these use ours, so small shapes lie elsewhere.
+// books use random numbers of the C library and these scenes use ours, so the places of small
+// shapes differ.
 
 #include <string>
 

@@ -8,7 +8,8 @@
 namespace bandsaw {
 namespace {
 
-/// The map's cofactors: what it does to normals, and by their length to areas.
+/// Cofactors of the map. They transform normals; the length of a transformed normal is the map's
+/// local area scale.
 struct Cofactors {
   explicit Cofactors(const ShapeView& shape)
       : x(exact_cross(shape.v, shape.w)),
@@ -47,7 +48,7 @@ double ellipsoid_area_pdf(const ShapeView& shape, const Vec3& position) {
 
 double ellipsoid_area(const ShapeView& shape) {
   const Cofactors cofactors(shape);
-  // The mean over the sphere of what the map does to areas, by the cubature of degree 5 on the
+  // The mean over the sphere of the map's local area scale, by the cubature of degree 5 on the
   // corners and faces of a cube (weights 1/15 and 3/40).
   double sum = 0;
   for (const Vec3& face : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}) {

@@ -81,7 +81,7 @@ std::vector<LightBound> Lights::add_surfaces(const Interval& interval) {
   return bounds;
 }
 
-// Asked once for each group: it may be placed as often as it has primitives.
+// Evaluated once for each group, because a group may have as many instances as primitives.
 bool Lights::group_emits(std::uint32_t instance, const std::vector<double>& radiance,
                          std::map<GroupId, bool>& known) const {
   const Instance& placed = geometry_->instances[instance - 1];
@@ -108,7 +108,7 @@ void Lights::add_surface(PrimitiveId id, const std::vector<double>& radiance,
   LightBound bound = bound_of(shape_view(*geometry_, id, interval.open),
                               radiance[index_of(material)], emission.one_sided);
   if (id.instance != 0 && geometry_->instances[id.instance - 1].frame != kNoFrame) {
-    // It may be anywhere that it gets to, and face anywhere.
+    // The bound of a moving light covers its whole path and all orientations.
     bound = {.ball = moving_ball(*geometry_, id, interval), .intensity = bound.intensity};
   }
   if (!(bound.intensity > 0) || !std::isfinite(bound.intensity)) {

@@ -46,9 +46,10 @@ class Film {
   /// skipped.
   bool complete(std::uint64_t samples) const;
 
-  /// The image so far. A pixel is the mean of its first n samples, rounded to float once, where n
-  /// is the largest count whose maximal nodes are all present, summed as the fixed tree prescribes.
-  /// Rows without samples are black and counted in `missing_rows`.
+  /// The image of the samples that are present. A pixel is the mean of its first n samples, where n
+  /// is the largest count whose maximal nodes are all present. The nodes are summed as the fixed
+  /// tree prescribes, and the mean is rounded to float once. Rows without samples are black and
+  /// counted in `missing_rows`.
   struct Snapshot {
     Image image;
     std::uint64_t least_samples = 0;  ///< minimum over the rows, in samples of the passes

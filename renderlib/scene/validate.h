@@ -1,7 +1,7 @@
 #pragma once
 
-// Validation of scene descriptions: every index, range and number. Descriptions from anywhere are
-// judged here and nowhere else: by Scene::build, by the decoder of packages and by the importer.
+// Validation of scene descriptions: every index, range and number. All descriptions are validated
+// here, whatever their source: Scene::build, the decoder of packages and the importer call this.
 
 #include "absl/status/status.h"
 #include "renderlib/scene/description.h"

@@ -14,7 +14,7 @@ namespace {
 
 constexpr auto kLook = std::chrono::milliseconds(50);
 constexpr int kWrongBytesTimes =
-    3;  // a blob that comes wrong so often is wrong where it comes from
+    3;  // after so many downloads with a wrong digest, the source itself is wrong
 
 absl::Status stopped() { return absl::CancelledError("stopped"); }
 
@@ -34,8 +34,7 @@ bool is_passing(const absl::Status& status) {
 }  // namespace
 
 absl::StatusOr<std::unique_ptr<BlobBytes>> FetchingSource::get(const wire::Digest& digest) {
-  // A blob may be damaged on the disk, or thrown away between fetching and opening: then it is
-  // fetched again.
+  // A blob may be damaged on disk, or evicted after it was fetched; it is then fetched again.
   for (int attempt = 0;; ++attempt) {
     if (cache_.has(digest)) {
       absl::StatusOr<std::unique_ptr<BlobBytes>> blob = cache_.get(digest);
@@ -58,7 +57,7 @@ absl::Status FetchingSource::fetch(const wire::Digest& digest) {
     }
     ASSIGN_OR_RETURN(const std::unique_ptr<BlobCache::Download> place, cache_.begin(digest));
     if (place == nullptr) {
-      step(1);  // another worker of this machine fetches it: that is progress too
+      step(1);  // another worker of this machine fetches it, which is progress as well
       pause(kLook, stop_);
       continue;
     }

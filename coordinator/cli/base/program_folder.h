@@ -1,13 +1,14 @@
 #pragma once
 
-// Where this program lies, and with it the others.
+// Locates this program and the files that are installed with it.
 
 #include <string>
 
 namespace bandsaw::coordinator {
 
-/// The folder of the program that runs, links resolved: beside it lie bandsaw-import and
-/// bandsaw-worker, the gallery in ../share, workers of other architectures in ../lib.
+/// Returns the folder of the running program, with symbolic links resolved. It also contains
+/// bandsaw-import and bandsaw-worker; the gallery is in ../share, workers of other architectures
+/// are in ../lib.
 std::string program_folder();
 
 /// Returns the folder of the scenes that come with the program: share/bandsaw/gallery beside the

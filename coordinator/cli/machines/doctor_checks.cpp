@@ -23,8 +23,8 @@ namespace bandsaw::coordinator {
 namespace {
 
 constexpr std::uint64_t kMinRoom = 1ull << 30;    // bytes: some passes of a large image
-constexpr std::uint64_t kMinMemory = 1ull << 30;  // bytes: a scene of some size and its trees
-constexpr double kMaxClockDifference_s = 60;      // logs could not be put side by side
+constexpr std::uint64_t kMinMemory = 1ull << 30;  // bytes: a scene of moderate size and its BVHs
+constexpr double kMaxClockDifference_s = 60;      // beyond it, logs cannot be compared
 constexpr double kDay_s = 24 * 60 * 60;
 
 Check problem(std::string name, std::string found) {

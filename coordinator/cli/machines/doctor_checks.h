@@ -24,7 +24,8 @@ Check check_data_folder(const std::string& folder);
 Check check_memory();
 Check check_import_program();
 /// Checks the workers' programs that a coordinator on this machine hands out. A missing program is
-/// not a problem; one that cannot be handed out is.
+/// not a problem. A program that cannot be handed out (damaged, or of another version or
+/// architecture) is one.
 Check check_worker_programs();
 /// Checks that the port is free, or taken by the farm that answers at one of `own`.
 Check check_port(const std::string& listen, const std::vector<std::string>& own);

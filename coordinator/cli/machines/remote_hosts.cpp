@@ -24,10 +24,10 @@ namespace bandsaw::coordinator {
 namespace {
 
 constexpr std::size_t kAtOnce = 32;
-constexpr int kSshFailed = 255;  // what ssh itself ends with
+constexpr int kSshFailed = 255;  // exit status with which ssh reports its own errors
 
-/// The script is sent first on standard input, so that no shell on the way parses it; dd reads not
-/// one byte more than the script.
+/// Returns the command. The script is sent first on standard input, so that no intermediate shell
+/// parses it; dd reads exactly the bytes of the script.
 std::vector<std::string> ssh_command(const std::string& host, std::size_t script_size) {
   return {"ssh",
           "-T",

@@ -147,7 +147,7 @@ class LocalRun {
     return absl::OkStatus();
   }
 
-  /// Not so often that the showing takes long beside the rendering.
+  /// Shows the image at intervals, so that showing it takes little time compared with rendering.
   void show(const Film& film) {
     constexpr double kInterval_s = 0.3;
     if (steady_seconds() >= shown_at_ + kInterval_s) {

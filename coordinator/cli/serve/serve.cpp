@@ -25,11 +25,11 @@ namespace {
 
 struct Serving {
   std::unique_ptr<Engine> engine;
-  std::unique_ptr<ServedDashboard> web;  // after the engine: it goes first
-  std::unique_ptr<Server> server;        // after the dashboard, which it tells of new secrets
+  std::unique_ptr<ServedDashboard> web;  // destroyed before the engine
+  std::unique_ptr<Server> server;        // destroyed before `web`, which it notifies
   std::string folder;
-  std::string join;     // of workers
-  std::string line;     // brings a worker to a machine that has none; may be empty
+  std::string join;     // workers' join string
+  std::string line;     // shell line that fetches and starts a worker; may be empty
   std::string address;  // host:port
 };
 
@@ -70,7 +70,7 @@ absl::StatusOr<Serving> start(const ServeOptions& options) {
   // Secrets, scenes and images are private: every file that is created from here on has mode 0600.
   umask(S_IRWXG | S_IRWXO);
   RETURN_IF_ERROR(make_folder(folder));
-  // The engine first: it locks the folder.
+  // The engine is started first, because it locks the folder.
   EngineOptions engine_options;
   engine_options.data_folder = folder;
   engine_options.keep.seconds = options.keep_days * 24 * 60 * 60;
@@ -97,7 +97,7 @@ absl::StatusOr<Serving> start(const ServeOptions& options) {
   for (const link::Role role : {link::Role::kFarm, link::Role::kWorker}) {
     const link::JoinString join = join_string(role, identity, addresses, options.insecure);
     RETURN_IF_ERROR(unless_full(write_join_file(folder, join)));
-    serving.join = join.text();  // the last: of workers
+    serving.join = join.text();  // after the loop: the workers' join string
   }
   ASSIGN_OR_RETURN(serving.line, serving.web->worker_line(options, identity, serving.join));
   serving.address = absl::StrCat(host, ":", serving.server->port());

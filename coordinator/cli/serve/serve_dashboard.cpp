@@ -64,9 +64,9 @@ std::string host_of(const std::string& address) {
   return host.front() == '[' && host.back() == ']' ? host.substr(1, host.size() - 2) : host;
 }
 
-/// Reads the workers' programs beside this one. Warns of a file that cannot be handed out. A
-/// missing file is not worth a line: few farms have machines of every architecture, and the page
-/// that a worker would be fetched from says where to put the file.
+/// Reads the workers' programs in this program's folder. Warns of a file that cannot be handed out.
+/// No warning is given for a missing file: few farms have machines of every architecture, and a
+/// machine that requests the missing program is told where to install it.
 WorkerPrograms load_workers() {
   WorkerPrograms workers;
   for (const Machine machine : kMachines) {
@@ -128,7 +128,7 @@ absl::Status ServedDashboard::write_link(const std::string& data_folder,
     std::filesystem::remove(file, error);
     return error ? errno_status(error.value(), file) : absl::OkStatus();
   }
-  // After the #, which browsers do not send.
+  // The secret follows the #, because browsers do not send that part of a URL.
   const std::string link = absl::StrCat(url, "/#key=", identity.farm_secret, "\n");
   const absl::StatusOr<std::string> there = read_whole_file(file, 2 * link.size());
   if (there.ok() && *there == link) {

@@ -34,10 +34,10 @@ void add_point(ErrorCurve& curve, const ErrorPoint& point);
 double fall_of(const ErrorCurve& curve);
 
 /// Returns the relative RMSE plus its margin at this many samples per pixel, > 0. Between points it
-/// is interpolated. Beyond the last point it is the error at half the samples, lowered by fall_of:
-/// so the steps of the last octave are expected again, because a whole net of 2^k samples is better
-/// than what lies between, and no power of the samples has such steps. The curve MUST have a point
-/// whose error is not 0.
+/// is interpolated. Beyond the last point it is the error at half the samples, multiplied by
+/// 2^-fall_of(curve). This repeats the steps of the last octave: a complete net of 2^k samples has
+/// a smaller error than a power law through other sample counts predicts. The curve MUST have a
+/// point whose error is not 0.
 double error_at(const ErrorCurve& curve, double samples);
 
 /// Returns the samples per pixel at which error_at is at most `target`, > 0. std::nullopt: the

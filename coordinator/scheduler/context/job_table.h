@@ -31,7 +31,7 @@ class JobTable {
   JobId next_id() const { return next_id_; }
 
   void add(JobId id, const JobSpec& spec, std::uint32_t pixel_version);
-  /// Removes a job; a job that is not known only makes its id used.
+  /// Removes a job. If the job is unknown, only marks its id as used.
   void remove(JobId id);
   void set_priority(Job& job, std::int32_t priority);
 
@@ -39,9 +39,10 @@ class JobTable {
   const std::set<JobId>& active() const { return active_; }
   void set_final(JobId id) { active_.erase(id); }
 
-  /// Running jobs that may have free rows or waiting audits; the others have none.
+  /// Running jobs that may have free rows or waiting audits; all other jobs have neither.
   const std::set<Rank>& leasable() const { return leasable_; }
-  /// MUST be called when rows become free or audits begin to wait. No effect unless it is running.
+  /// MUST be called when rows become free or audits begin to wait. No effect unless the job is
+  /// running.
   void mark_leasable(const Job& job);
   void unmark_leasable(const Job& job) { leasable_.erase(rank(job)); }
 

@@ -28,14 +28,15 @@ struct Lease {
   std::uint64_t prepared = 0;
   Time progress_at = 0;  ///< wall clock: when rows_done last grew
   Time begun_at = 0;     ///< wall clock: when it became the first lease of its worker
-  /// Patience clock: when it, or a lease that its worker renders before it, last made progress.
+  /// Patience clock (scheduler_clock.h): when this lease, or a lease that its worker renders before
+  /// it, last made progress.
   Time advanced_at = 0;
 };
 
 class Leases {
  public:
-  /// Ids begin at a place that depends on the epoch. Leases of other epochs are adopted with their
-  /// ids, so the ranges of two epochs should not overlap.
+  /// The first id depends on the epoch. Leases of other epochs are adopted with their ids, so the
+  /// ranges of two epochs should not overlap.
   explicit Leases(const std::string& epoch);
 
   LeaseId new_id();

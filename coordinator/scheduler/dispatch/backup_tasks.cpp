@@ -9,14 +9,16 @@ namespace {
 
 /// Time that it takes to hand work over, in addition to rendering it.
 constexpr double kTransfer_s = 0.03;
-/// Backup tasks must be expected to take less than this part of the time that the original still
-/// needs. Idle workers are added until they need only the smaller part.
+/// A lease gets backup tasks only if they are expected to take less than kMaxBackupTime of the time
+/// that the original still needs. Idle workers are added until they need at most kTargetBackupTime
+/// of it.
 constexpr double kMaxBackupTime = 0.75;
 constexpr double kTargetBackupTime = 0.5;
 /// After a scan that found nothing, the next one waits this long per active lease; bounds the CPU
 /// time of scans on large farms.
 constexpr double kScanPause_s = 2e-5;
-/// Minimum remaining time of a lease that takes longer than expected, over its whole time.
+/// Minimum remaining time of a lease that takes longer than expected, as a fraction of its whole
+/// time.
 constexpr double kMinRemaining = 0.25;
 
 RowRange common_rows(const RowRange& a, const RowRange& b) {
@@ -132,8 +134,8 @@ std::vector<Worker*> BackupTasks::helpers(const Job& job, const Lease& lease,
   return able;
 }
 
-/// Moves a lease that is not begun to the fastest helper, if its first band of it would be done
-/// sooner. What that band leaves is free.
+/// Moves a lease that is not begun to the fastest helper, if the first band that the helper would
+/// render of it would be done sooner. The rows outside that band become free.
 bool BackupTasks::steal(const Straggler& late, std::vector<Worker*>& idle) {
   const Lease lease = *context_.leases.find(late.lease);
   Job& job = context_.jobs.at(lease.job);
@@ -160,9 +162,9 @@ bool BackupTasks::steal(const Straggler& late, std::vector<Worker*>& idle) {
   return true;
 }
 
-/// Moves an audit, begun or not, if idle workers are much sooner together: the fastest takes a part
-/// and the rest waits for the others. Each machine gets it at most once, so that it does not move
-/// for ever.
+/// Moves an audit, begun or not, if the idle workers together would finish it much sooner: the
+/// fastest one takes a part, and the rest waits for the others. Each machine gets an audit at most
+/// once, so that it is not moved indefinitely.
 bool BackupTasks::move_audit(const Straggler& late, std::vector<Worker*>& idle) {
   const Lease lease = *context_.leases.find(late.lease);
   Job& job = context_.jobs.at(lease.job);
@@ -233,7 +235,8 @@ bool BackupTasks::back_up(const Straggler& late, std::vector<Worker*>& idle) {
 }
 
 /// Returns the first rows of a lease that are wanted and have no backup task. If the lease is a
-/// backup task itself: that no later one has.
+/// backup task itself, only backup tasks of the same original that were granted later are
+/// considered.
 RowRange BackupTasks::rows_without_backup(const Job& job, const Lease& lease) const {
   for (RowRange rows : job.pass_of(lease.band)->coverage.wanted(lease.band)) {
     bool again = true;

@@ -16,16 +16,17 @@ class LeaseLedger {
 
   enum class Revoke { kNo, kYes };
 
-  /// Gives the band's rows to the worker. Ends leases that lose all of their rows by it.
+  /// Gives the band's rows to the worker. Ends leases that thereby lose all of their rows.
   void grant(Worker& worker, Job& job, Pass& pass, const Band& band, LeaseId id);
   /// Adds a lease that owns no rows: of a backup task or an audit.
   void add(Worker& worker, Job& job, const Pass& pass, Lease lease);
-  /// Frees the lease's rows, or passes them on to its backup tasks. kYes: the worker is told.
+  /// Frees the lease's rows, or passes them on to its backup tasks. kYes: also revokes the lease at
+  /// its worker.
   void end(LeaseId id, Revoke revoke);
-  /// Ends a lease whose result is here. Revokes it if it was named in the worker's Hello: the reply
-  /// to that may reach the worker after it has dropped the band.
+  /// Ends a lease whose result has arrived. Revokes it if it was named in the worker's Hello: the
+  /// reply to that may reach the worker after it has dropped the band.
   void end_rendered(LeaseId id);
-  /// Ends the worker's lease of exactly this band, if it has one, in the same way.
+  /// Calls end_rendered() for the worker's lease of exactly this band, if it has one.
   void end_rendered(const Worker& worker, JobId job, const Band& band);
   /// Ends those of the leases that still exist.
   void end_all(const std::vector<LeaseId>& leases, Revoke revoke);

@@ -78,7 +78,8 @@ void BandFailures::check_progress() {
   }
   for (const LeaseId id : stuck) {
     const Lease* lease = context_.leases.find(id);
-    // A lease behind a stuck one gets its time now; a job that has failed has no leases any more.
+    // When a stuck lease ends, the next lease of its worker starts its timeout again, so it is not
+    // late any more. The leases of a job that has failed no longer exist.
     if (lease == nullptr || !is_late(*lease)) {
       continue;
     }

@@ -37,10 +37,10 @@ class Sessions {
   void disconnect(Worker& worker, const std::string& reason);
   /// Disconnects workers that have been silent for the heartbeat timeout.
   void check_silence();
-  /// Forgets refusals of workers that do not try again: not for three times as long as they were
-  /// told to wait.
+  /// Forgets refusals of workers that have not tried again for three times the waiting time that
+  /// they were given.
   void forget_refusals();
-  /// The newest kMaxRefusals, the oldest first.
+  /// Returns the newest kMaxRefusals refusals, the oldest first.
   const std::deque<Refusal>& refusals() const { return refusals_; }
 
  private:

@@ -56,7 +56,7 @@ class Audit {
   std::optional<Result> add(Result result, bool requested);
   /// Returns the verdict once two machines agree, else std::nullopt. Exception: the result of a
   /// machine that repeated it wins against machines that have not connected in this epoch and so
-  /// cannot be asked again.
+  /// cannot render the band again.
   std::optional<Verdict> verdict() const;
   /// Fills in the machine of a reporter of which only the process was known.
   void identify(const Reporter& reporter);

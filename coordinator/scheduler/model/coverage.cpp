@@ -39,6 +39,7 @@ Coverage::Coverage(const SampleRange& pass, std::uint32_t height)
   count(it->first, it->second);
 }
 
+/// Adds a strip to the counts of samples and to the strips with a free cell.
 void Coverage::count(std::uint32_t first, const Strip& strip) {
   bool any = false;
   for (const Cell& cell : strip.cells) {
@@ -52,6 +53,7 @@ void Coverage::count(std::uint32_t first, const Strip& strip) {
   }
 }
 
+/// Reverses count().
 void Coverage::uncount(std::uint32_t first, const Strip& strip) {
   for (const Cell& cell : strip.cells) {
     const std::uint64_t samples = cell.node.samples() * (strip.last - first);
@@ -65,6 +67,7 @@ Coverage::Strips::const_iterator Coverage::strip_at(std::uint32_t row) const {
   return std::prev(strips_.upper_bound(row));
 }
 
+/// Makes `row` the first row of a strip.
 void Coverage::cut_at(std::uint32_t row) {
   if (row == 0 || row >= height_ || strips_.contains(row)) {
     return;
@@ -78,6 +81,7 @@ void Coverage::cut_at(std::uint32_t row) {
   strips_.emplace_hint(std::next(above), row, std::move(below));
 }
 
+/// Joins adjacent strips with equal cells, from the strip before `rows` to the end of `rows`.
 void Coverage::join(const RowRange& rows) {
   auto it = strips_.lower_bound(rows.first);
   if (it != strips_.begin()) {
@@ -101,6 +105,7 @@ bool Coverage::stored_in(const Strip& strip, const SampleRange& node) {
   });
 }
 
+/// Merges sibling cells that are both free or both stored.
 void Coverage::merge_siblings(Strip& strip) {
   std::vector<Cell> merged;
   for (Cell cell : strip.cells) {
@@ -115,6 +120,8 @@ void Coverage::merge_siblings(Strip& strip) {
   strip.cells = std::move(merged);
 }
 
+/// Gives `node` of a strip to `owner`. The rest of a cell that overlaps `node` becomes free; leases
+/// that lose a cell are appended to `lost`.
 void Coverage::put(Strip& strip, const SampleRange& node, Owner owner, std::vector<LeaseId>& lost) {
   std::vector<Cell> cells;
   for (const Cell& cell : strip.cells) {

@@ -1,7 +1,7 @@
 #pragma once
 
-// Restart of the coordinator: rebuilds the state from the journal and the bands on disk, and lets
-// the jobs go on.
+// Restart of the coordinator: rebuilds the state from the journal and the bands on disk, and
+// continues the jobs.
 
 #include <cstdint>
 #include <vector>
@@ -30,8 +30,8 @@ class Restart {
   void add_band(const input::BandStored& band);
   /// Notes for users that this many bytes of the job's band log are damaged.
   void note_damage(JobId id, std::uint64_t bytes);
-  /// Ends the replay: begins the reconnect barrier, compares duplicate bands, and makes each job go
-  /// on. A job that was begun with another pixel version fails.
+  /// Ends the replay: begins the reconnect barrier, compares duplicate bands, and continues each
+  /// job. A job that was begun with another pixel version fails.
   void finish();
 
  private:
@@ -45,7 +45,7 @@ class Restart {
   StoredBands& bands_;
   ResultComparison& comparison_;
   /// Bands with rows that were stored already. They are compared once all bands are replayed,
-  /// because the film takes all bands first and then what is retracted.
+  /// because the film adds all bands first and processes retractions afterwards.
   std::vector<input::BandStored> duplicates_;
 };
 

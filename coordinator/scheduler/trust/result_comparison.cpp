@@ -57,7 +57,7 @@ void ResultComparison::open_audits(Job& job, const input::BandStored& in, const 
   }
 }
 
-/// Opens an audit of the first row that differs from what is stored, unless one is open. Needed for
+/// Opens an audit of the first row that differs from the stored one, unless one is open. Needed for
 /// results that nobody requested for comparison.
 void ResultComparison::open_dispute(Job& job, const Pass& pass, const input::BandStored& in) {
   const auto row = pass.digests.first_difference(in.band, in.row_digests);

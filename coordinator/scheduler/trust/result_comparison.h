@@ -18,9 +18,9 @@ class ResultComparison {
   /// Opens audits of rows that were just stored, if the band is selected for one.
   void open_audits(Job& job, const input::BandStored& in, const Reporter& reporter,
                    const std::vector<RowRange>& rows);
-  /// Compares a result with what is stored of its rows. Adds it to the audits of these rows, opens
-  /// one for a row that differs, and quarantines machines that are proved wrong. No effect once the
-  /// job's image was requested: nothing can be decided any more.
+  /// Compares a result with the stored digests of its rows. Adds it to the audits of these rows,
+  /// opens an audit for a row that differs, and quarantines machines that are proved wrong. No
+  /// effect once the job's image was requested, because its rows cannot be replaced any more.
   void compare(Job& job, const Pass& pass, const input::BandStored& in, const Reporter& reporter);
 
  private:
