@@ -1,7 +1,8 @@
-# Sourced: a bare Debian in a folder, for scripts that try what a new machine does. Needs root and debootstrap.
-# BANDSAW_MIRROR: where its packages come from (default: http://deb.debian.org/debian).
+# To be sourced: functions for a bare Debian system in a folder, for scripts that test installations on a new machine. Need root and
+# debootstrap.
+# BANDSAW_MIRROR: address of the package mirror (default: http://deb.debian.org/debian).
 
-# bare_possible: whether this machine can make one; says why not.
+# bare_possible: succeeds if this machine can make one; otherwise prints the reason.
 bare_possible() {
   if [ "$(id -u)" -ne 0 ] || ! command -v debootstrap >/dev/null; then
     echo "a bare Debian needs root and debootstrap" >&2
@@ -10,7 +11,7 @@ bare_possible() {
 }
 
 # bare_make ROOT RELEASE: the minimal system of a release (bookworm is Debian 12, trixie is Debian 13) in the folder ROOT,
-# which stays as it is if it holds one already.
+# which is not changed if it contains a system already.
 bare_make() {
   local root=$1 release=$2
   if [ ! -e "$root/etc/debian_version" ]; then
@@ -22,18 +23,18 @@ bare_make() {
   mountpoint -q "$root/proc" || mount -t proc proc "$root/proc"
 }
 
-# bare_close ROOT: takes back what bare_make mounted. MUST come before the folder is removed.
+# bare_close ROOT: unmounts everything that bare_make mounted. MUST be called before the folder is removed.
 bare_close() {
   ! mountpoint -q "$1/proc" || umount "$1/proc"
 }
 
-# bare_run ROOT COMMAND: a shell command in it, in root's home folder, with the environment of a new login.
+# bare_run ROOT COMMAND: runs a shell command in it, in root's home folder, with the environment of a new login.
 bare_run() {
   chroot "$1" env -i HOME=/root PATH=/usr/sbin:/usr/bin:/sbin:/bin TERM=dumb LANG=C.UTF-8 bash -euo pipefail -c "cd; $2"
 }
 
-# bare_clone ROOT: a fresh clone of this checkout's last commit in its /root/bandsaw, in the place of an older one.
-# The old one's build folder stays.
+# bare_clone ROOT: makes a fresh clone of this checkout's last commit in its /root/bandsaw and replaces an older one, whose build
+# folder is kept.
 bare_clone() {
   local clone=$1/root/bandsaw kept=$1/root/build
   [ ! -e "$clone/build" ] || { rm -rf "$kept"; mv "$clone/build" "$kept"; }

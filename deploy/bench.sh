@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# Measures Bandsaw on this machine: its kernel beside Embree's, error against time, and the cost of each feature of a scene.
+# Measures Bandsaw on this machine: its kernel against Embree, error against time, and the cost of each feature of a scene.
 # Usage: deploy/bench.sh [--quick] [FOLDER]    (default out/bench; about a quarter of an hour on two cores, --quick: two minutes)
-# In the folder: bench.md (all tables), kernel.txt, study.csv, study.svg, growth.json, growth_*.svg.
-# Embree's columns are there where libembree-dev is installed, Cycles' lines where blender is. BANDSAW_BUILD=DIR: the build to use; otherwise build/release, made here.
+# Writes to the folder: bench.md (all tables), kernel.txt, study.csv, study.svg, growth.json, growth_*.svg.
+# Embree's columns are included if libembree-dev is installed, Cycles' lines if blender is. BANDSAW_BUILD=DIR: the build to use; otherwise build/release, made here.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 quick=

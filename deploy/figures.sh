@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# The comparison figures of the gallery's README, made again.
+# Makes the comparison figures of the gallery's README again.
 # Usage: deploy/figures.sh samples|defocus|lights|density|tone|all|sheet [FOLDER [WIDTH [SCENE...]]]   (default: out/figures, the width of one picture 300)
-# sheet: every scene of the gallery, or those given, as thumbnails of at most that width (160 by default); says which is where.
+# sheet: every scene of the gallery, or those given, as thumbnails of at most that width (160 by default); prints the place of each.
 # BANDSAW_BUILD=DIR: the build to use; otherwise build/release.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -13,7 +13,7 @@ gallery=renderlib/gallery
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-render() { # SCENE NAME [OPTION...]: $work/NAME.png
+render() { # SCENE NAME [OPTION...]: renders $work/NAME.png
   bandsaw render "$1" -o "$work/$2.png" --width "$width" --report none --quiet "${@:3}" >/dev/null
 }
 
@@ -22,14 +22,14 @@ size_of() { # PNG OFFSET: its width (16) or height (20), four bytes, big-endian.
 }
 height_of() { size_of "$1" 20; }
 
-picture() { # NUMBER FILE X Y WIDE HIGH [UV]: a lamp that shows the picture, its lower left corner at X Y.
+picture() { # NUMBER FILE X Y WIDE HIGH [UV]: prints a quad that emits the picture, its lower left corner at X Y.
   cat <<SCENE
 material { name: "m$1"  emissive { texture { image { file: "$2.png"  filter: FILTER_NEAREST  ${7:-} } } } }
 shape { quad { corner: [$3, $4, 0]  u: [$5, 0, 0]  v: [0, $6, 0] }  material: "m$1" }
 SCENE
 }
 
-panel() { # OUT WIDTH HEIGHT GREY: the pictures in $work/panel, pixel for pixel.
+panel() { # OUT WIDTH HEIGHT GREY: renders the pictures in $work/panel, pixel for pixel.
   cat - "$work/panel" >"$work/panel.textproto" <<SCENE
 camera { position: [$(awk "BEGIN { print $2 / 2 \", \" $3 / 2 }"), 1]  rotate { axis: [0, 1, 0]  degrees: 0 }
          orthographic { height: $3 } }
@@ -92,7 +92,7 @@ figure_sheet() { # [SCENE...]
   local scenes=("$@") high=$((width * 9 / 16)) gap=4 columns=8 number=0 row=-1 rows wide x y
   if [ ${#scenes[@]} = 0 ]; then
     cp -r "$gallery" "$work/gallery"
-    bandsaw-gallery "$work/gallery" >/dev/null # The globes are not kept.
+    bandsaw-gallery "$work/gallery" >/dev/null # makes the globes, which are not in the repository
     scenes=("$work"/gallery/*.textproto "$work"/gallery/{books,study}/*.textproto)
   fi
   rows=$(((${#scenes[@]} + columns - 1) / columns))

@@ -1,5 +1,5 @@
-# Sourced: a farm on loopback for a script, of the programs on PATH. The farm ends with the script. The folder $scratch is removed
-# then; $data, the coordinator's folder, is in it.
+# To be sourced: functions that start a farm on loopback for a script, with the programs on PATH. The farm ends with the script. Then
+# the folder $scratch is removed, which contains $data, the coordinator's folder.
 scratch=$(mktemp -d)
 data=$scratch/farm
 pids=()
@@ -10,7 +10,7 @@ stop() {
 }
 trap stop EXIT
 
-# serve_here LOG [OPTION...]: the coordinator, ready; $data/join and $data/farm are its join strings.
+# serve_here LOG [OPTION...]: starts the coordinator and waits until it is ready; $data/join and $data/farm are its join strings.
 serve_here() {
   local log=$1
   bandsaw serve --data "$data" --listen 127.0.0.1:0 "${@:2}" >"$log" 2>&1 &
@@ -21,7 +21,7 @@ serve_here() {
   done
 }
 
-# join_here NAME LOG COMMAND...: a worker of it, started by a command; returns when it has joined.
+# join_here NAME LOG COMMAND...: starts a worker by a command and waits until it has joined.
 join_here() {
   local name=$1 log=$2
   BANDSAW_JOIN=$(cat "$data/join") "${@:3}" --name "$name" --cache "$scratch/cache-$name" >"$log" 2>&1 &
@@ -32,5 +32,5 @@ join_here() {
   done
 }
 
-# work_here NAME LOG [OPTION...]: a worker of it, of these programs.
+# work_here NAME LOG [OPTION...]: the same with the worker on PATH.
 work_here() { join_here "$1" "$2" bandsaw-worker "${@:3}"; }

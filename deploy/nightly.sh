@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# The tests that are too long for CI: every label, sanitizers, the other compiler, the other Debian, ARM64, fuzzing. It goes on
-# after a part that fails, and leaves one table of what passed, failed and was skipped. Exit 1: a part failed.
+# The tests that are too long for CI: every label, sanitizers, the other compiler, the other Debian, ARM64, fuzzing. It continues
+# after a part that fails, and writes one table of the parts that passed, failed or were skipped. Exit 1: a part failed.
 # Usage: deploy/nightly.sh [--fuzz-minutes N] [--calibration-minutes N] [--out FOLDER] [PART...]
-#   N: minutes for each fuzz target (default 1), and for the calibration, which goes on from there the next night (default 60)
+#   N: minutes for each fuzz target (default 1), and for the calibration, which continues from there in the next run (default 60)
 #   FOLDER: table.md and a log for each part (default: out/nightly)
-#   PART: those to run, of: default labels browser asan-ubsan tsan clang fuzz debian12 debian13 compilers arm64 machines calibration
+#   PART: parts to run: default labels browser asan-ubsan tsan clang fuzz debian12 debian13 compilers arm64 machines calibration
 #         (default: all, in this order; about seven hours on two cores)
-# A part that needs what this machine lacks (root, debootstrap) is skipped, and the table says why. A compiler and a browser are
-# installed.
+# A part whose requirements this machine lacks (root, debootstrap) is skipped, and the table states the reason. A compiler and a browser
+# are installed if they are missing.
 set -uo pipefail
 cd "$(dirname "$0")/.."
 . deploy/bare.sh
@@ -37,7 +37,7 @@ out=$(cd "$out" && pwd)
 readonly kSkipped=77  # as CTest's SKIP_RETURN_CODE
 
 skip() { echo "skipped: $*"; exit $kSkipped; }
-# tests BUILD-FOLDER CTEST-OPTION...: runs them; the summary is read by `row`.
+# tests BUILD-FOLDER CTEST-OPTION...: runs the tests; `row` reads the summary.
 tests() { ctest --test-dir "$1" --no-tests=error --output-on-failure --parallel "$(nproc)" "${@:2}"; }
 # preset NAME TARGET...: configures and builds.
 preset() {
@@ -68,7 +68,7 @@ part_fuzz() {
     cmake --build --preset fuzz --target fuzz_targets && tests build/fuzz --label-regex '^fuzz$'
 }
 
-# debian RELEASE: both commands of the README in a fresh clone on the bare system.
+# debian RELEASE: runs both commands of the README in a fresh clone on the bare system.
 debian() {
   bare_possible || skip "no root or no debootstrap"
   local root=$PWD/build/$1
@@ -80,7 +80,7 @@ debian() {
 part_debian12() { debian bookworm; }
 part_debian13() { debian trixie; }
 
-# The hashes of same_bits.txt by both compilers of both releases, and by less optimisation.
+# Compares the hashes of same_bits.txt for both compilers of both releases, and for a lower optimisation level.
 part_compilers() {
   deploy/install.sh clang && tests/hard_cases/compilers.sh clang dev || return
   bare_possible || skip "Debian 13's compilers: no root or no debootstrap"
@@ -94,7 +94,7 @@ part_compilers() {
 
 part_arm64() { deploy/arm64.sh; }
 
-# A farm of all kinds of machines; takes what debian13 and arm64 built.
+# Runs a farm of all kinds of machines, with the programs that debian13 and arm64 built.
 part_machines() {
   bare_possible || skip "no root or no debootstrap"
   preset release all && tests build/release --label-regex '^machines$'
@@ -107,7 +107,7 @@ part_calibration() {
 
 count() { sed -n "$1" "$2" | awk '{ sum += $1 } END { print sum + 0 }'; }
 
-# row PART STATUS SECONDS LOG: a line of the table. Counts come from CTest's summary in the log.
+# row PART STATUS SECONDS LOG: prints a line of the table. Counts come from CTest's summary in the log.
 row() {
   local state=failed log=$4 total failed skipped
   [ "$2" -ne 0 ] || state=passed

@@ -1,12 +1,12 @@
 #!/bin/sh
-# Makes one object of a kernel's objects, of which other code sees one symbol only.
+# Merges a kernel's objects into one object that has one global symbol.
 # Usage: merge_kernel.sh LD OBJCOPY READELF SYMBOL OUTPUT OBJECT...
 #
-# The objects hold inline functions and templates that code compiled for older processors has too. A linker keeps one copy of
-# such a function for the whole program, and it must never be the one that an older processor cannot run. So all that the objects
-# define becomes local, but for SYMBOL. What they do not define they take from the rest of the program.
+# The objects contain inline functions and templates that code compiled for older processors contains too. A linker keeps one copy of
+# such a function for the whole program, and that must not be a copy that an older processor cannot run. So all symbols that the
+# objects define become local, except SYMBOL. Undefined symbols are resolved by the rest of the program.
 #
-# Fails where the kernel has code that would run before the program has looked at the processor.
+# Fails if the kernel has code that would run before the program has checked the processor.
 set -eu
 ld=$1 objcopy=$2 readelf=$3 symbol=$4 output=$5
 shift 5

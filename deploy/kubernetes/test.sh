@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Checks these files without a cluster: kustomize builds them, values that must agree do, and the programs know the options.
-# Exit status 77 where there is no kubectl.
+# Checks these files without a cluster: kustomize builds them, values that must agree are equal, and the programs accept the options.
+# Exit status 77: kubectl is not installed.
 # Usage: deploy/kubernetes/test.sh FOLDER-OF-THE-PROGRAMS
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
@@ -15,7 +15,7 @@ has() { grep -q -e "$1" <<<"$built" || { echo "missing: $1" >&2; exit 1; }; }
 for kind in Namespace Service StatefulSet Deployment NetworkPolicy; do
   has "^kind: $kind\$"
 done
-# The name that the join string gets: the pod's, below the service that governs its set.
+# The host name in the join string: the pod's name below the service of its StatefulSet.
 has '^  name: coordinator$'
 has '^  serviceName: bandsaw$'
 has '^        - 0.0.0.0:7878$'

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # A farm whose workers are jobs of a Slurm that this script runs on this machine, in a folder of its own: scale up, requeue,
-# drain, cancel; the image has the bytes of `bandsaw render`. Installs nothing: exit status 77 where there is no Slurm.
+# drain, cancel; the image has the bytes of `bandsaw render`. Installs nothing. Exit status 77: Slurm is not installed.
 # Usage: deploy/slurm/test.sh FOLDER-OF-THE-PROGRAMS
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
@@ -27,7 +27,7 @@ stop() {
 }
 trap stop EXIT
 
-# until_true SECONDS COMMAND...: looks five times a second.
+# until_true SECONDS COMMAND...: runs the command five times a second until it succeeds.
 until_true() {
   local left=$(($1 * 5))
   shift
@@ -86,7 +86,7 @@ start_coordinator() {
   export BANDSAW_FARM="$dir/data/farm"
 }
 
-# start_workers RANGE [PROGRAM]: an array of workers; prints its number.
+# start_workers RANGE [PROGRAM]: submits an array of workers; prints its job number.
 start_workers() {
   BANDSAW_JOIN="$dir/data/join" BANDSAW_CACHE="$dir/cache" BANDSAW_WORKER="${2:-bandsaw-worker}" sbatch --parsable --array="$1" --cpus-per-task=1 \
     --output="$dir/worker-%A_%a.log" "$here/worker.sbatch"

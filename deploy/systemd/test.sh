@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The units are understood by systemd, and what they keep a program from is what systemd calls safe. Exit status 77 where there is no
-# systemd-analyze.
+# Checks that systemd accepts the units, and that it rates their confinement as safe. Exit status 77: systemd-analyze is not
+# installed.
 # Usage: deploy/systemd/test.sh FOLDER-OF-THE-PROGRAMS
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)

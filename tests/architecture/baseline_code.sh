@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Only the AVX2 kernel holds instructions that older processors do not have: disassembles our own objects (those of system
-# libraries look at the processor themselves). Usage: baseline_code.sh BUILD-FOLDER
+# Only the AVX2 kernel holds instructions that older processors do not have: disassembles our own objects (system
+# libraries check the processor themselves). Usage: baseline_code.sh BUILD-FOLDER
 set -euo pipefail
 cd "$1"
-# VEX-coded instructions (AVX, AVX2, FMA, F16C), and those of BMI1, BMI2, LZCNT and MOVBE. Not tzcnt: older processors run it as
-# bsf, which gives the same for what is not zero, and compilers write it so for all.
+# VEX-coded instructions (AVX, AVX2, FMA, F16C), and those of BMI1, BMI2, LZCNT and MOVBE. tzcnt is allowed: older processors
+# execute it as bsf, which gives the same result for operands other than zero, and compilers emit it for all processors.
 newer=$'\t''(v[a-z0-9]+|andn|bextr|blsi|blsmsk|blsr|bzhi|mulx|pdep|pext|rorx|sarx|shlx|shrx|lzcnt|movbe)[lqwb]?( |$)'
 count() { objdump --disassemble --no-show-raw-insn "$@" | grep --extended-regexp --count "$newer" || true; }
 

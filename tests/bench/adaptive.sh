@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# Measures the gain of adaptive sampling at equal CPU time. Renders each gallery scene evenly until an error, then adaptively until
-# the error for which that took as long, with several seeds in turn. Compares both with a reference of another seed and subtracts
-# the reference's own noise. Gain: error squared x CPU time of the even renders over that of the adaptive ones, each a mean over
+# Measures the gain of adaptive sampling at equal CPU time. Renders each gallery scene uniformly to an error, then adaptively to
+# the error that takes the same time, with several seeds in turn. Compares both with a reference of another seed and subtracts
+# the reference's own noise. Gain: error squared x CPU time of the uniform renders over that of the adaptive ones, each a mean over
 # the seeds. Above 1, adaptive sampling is better.
 # Usage: tests/bench/adaptive.sh PATH-TO-BANDSAW [WIDTH [ERROR [SEEDS [SCENE[:ERROR]...]]]]
 # An error should take some 200 samples a pixel or more: a pilot of fewer than 32 plans nothing.
-# TIMES in the environment: samples of a reference over those of an even image, default 8.
+# TIMES in the environment: samples of a reference over those of a uniform image, default 8.
 set -euo pipefail
 bandsaw=${1:?usage: adaptive.sh PATH-TO-BANDSAW [WIDTH [ERROR [SEEDS [SCENE...]]]]}
 width=${2:-128}
@@ -16,7 +16,7 @@ shift $(($# < 4 ? $# : 4))
 scenes=("$@")
 ((${#scenes[@]})) || scenes=(defocus spheres glass_and_metal everything many_lights materials
   study/lights_0 mesh environment textures)
-gallery=$(dirname "$(realpath "$bandsaw")")/../share/bandsaw/gallery  # with the textures that are made when it is built
+gallery=$(dirname "$(realpath "$bandsaw")")/../share/bandsaw/gallery  # with the textures that the build generates
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
@@ -46,7 +46,7 @@ for wanted in "${scenes[@]}"; do
   for ((seed = 1; seed <= seeds; ++seed)); do
     even=$(measure "$error")
     adaptive=$(measure "$error" --adaptive)
-    # The square of the error is over the time, about; where no tile was left out the times differ by noise alone.
+    # The squared error is about proportional to 1 / time; if no tile was left out, the times differ only by noise.
     longer=$(echo "$even $adaptive ${error%\%}" | awk '{ if ($2 != $7) print $11 * sqrt($6 / $1) "%" }')
     if [ -n "$longer" ]; then adaptive=$(measure "$longer" --adaptive); fi
     echo "$even $adaptive"

@@ -214,7 +214,7 @@ def main():
     materials = {m["name"][0]: make_material(m) for m in scene["material"]}
     add_shapes(scene, materials, os.path.dirname(path))
     bpy.context.scene.render.filepath = os.path.abspath(output)
-    rendered(1)  # Loads what is loaded once.
+    rendered(1)  # the first render loads data that later renders reuse
     first = rendered(1)
     print(f"cpu_s={rendered(int(samples)) - first:.3f}")
 

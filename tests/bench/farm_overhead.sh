@@ -9,7 +9,7 @@ set -euo pipefail
 bin=$(cd "${1:?usage: farm_overhead.sh FOLDER-OF-PROGRAMS [PAIRS [SCENE [OPTION...]]]}" && pwd)
 pairs=${2:-5}
 top=$(cd "$(dirname "$0")/../.." && pwd)
-scene=$bin/../share/bandsaw/gallery/${3:-cornell}.textproto  # with the textures that are made when it is built
+scene=$bin/../share/bandsaw/gallery/${3:-cornell}.textproto  # with the textures that the build generates
 options=("${@:4}")
 ((${#options[@]})) || options=(--samples 128)
 PATH=$bin:$PATH
@@ -18,7 +18,7 @@ serve_here "$scratch/serve.log" --web none
 work_here local "$scratch/worker.log"
 until grep -q joined "$scratch/worker.log"; do sleep 0.05; done
 
-# CPU seconds so far: of what this shell started and has ended, and of the farm.
+# CPU seconds so far: of ended children of this shell, and of the farm.
 cpu() {
   {
     sed 's/.*) //' "/proc/$$/stat" | cut -d ' ' -f 14,15

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Efficiency beside Cycles, in one run: both render the same scenes in turns with two seeds. relMSE: half of what the two images
-# differ by, so no reference is needed; efficiency: 1 / (relMSE x CPU seconds / 2), as with two threads. Without blender on PATH
-# (Debian's package) Bandsaw alone.
+# Measures the efficiency against Cycles in one run: both render the same scenes in turns with two seeds. relMSE: half of the
+# difference of the two images, so no reference is needed; efficiency: 1 / (relMSE x CPU seconds / 2), as with two threads. Without blender on PATH
+# (Debian's package), only Bandsaw is measured.
 # Usage: tests/bench/peers.sh PATH-TO-BANDSAW [SAMPLES [SCENE.textproto...]]   (default: 64 samples of Cornell and Weekend)
-# A scene may have what cycles.py knows. Takes a minute a scene on two cores.
+# Scenes may only use the features that cycles.py supports. Takes a minute per scene on two cores.
 set -euo pipefail
 bandsaw=${1:?usage: peers.sh PATH-TO-BANDSAW [SAMPLES [SCENE.textproto...]]}
 samples=${2:-64}
@@ -16,7 +16,7 @@ trap 'rm -rf "$folder"' EXIT
 
 number() { sed -n "s/.*\"$1\":\([-0-9.e+]*\).*/\1/p"; }
 
-# Each prints CPU seconds and leaves $image.
+# Each function prints CPU seconds and writes $image.
 by_bandsaw() {
   image=$folder/bandsaw-$1.pfm
   "$bandsaw" render "$scene" --width "$width" --samples "$samples" --seed "$1" --json -o "$image" | tail -1 | number cpu_s

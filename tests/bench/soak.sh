@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Thousands of small jobs through one coordinator and one worker: what both keep in memory, and how fast jobs go through.
+# Sends thousands of small jobs through one coordinator and one worker; measures the memory of both and the jobs per second.
 # Usage: tests/bench/soak.sh BIN-FOLDER [JOBS [KEPT]]   (default 10,000 and 1,000; one job about 0.1 s on two cores)
-# KEPT: the coordinator's --keep-jobs; until there are so many that are over, it grows by each.
-# A line at each tenth: jobs done, resident MB of coordinator and worker, MB of the coordinator's folder. The last line says by
-# how much the second half grew both.
+# KEPT: the coordinator's --keep-jobs; until so many jobs are over, its memory grows with each job.
+# Prints a line after each tenth: jobs done, resident MB of coordinator and worker, MB of the coordinator's folder. The last line is
+# the growth of both processes in the second half.
 set -euo pipefail
 bin=$(cd "${1:?usage: soak.sh BIN-FOLDER [JOBS [KEPT]]}" && pwd)
 jobs=${2:-10000} kept=${3:-1000}

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs the renderer into a fresh folder, builds the example against it as a stranger would, and compares its picture with
+# Installs the renderer into a fresh folder, builds the example against it as an external user would, and compares its picture with
 # that of `bandsaw render`, byte by byte. Usage: run.sh BUILD-FOLDER
 set -euo pipefail
 build=$(cd "$1" && pwd)

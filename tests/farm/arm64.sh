@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# An ARM64 machine gives the same bits: tests of the cross build run in an emulator, and its worker joins a farm beside one of this
+# An ARM64 machine computes the same bits: tests of the cross build run in an emulator, and its worker joins a farm beside one of this
 # machine. Files are compared byte by byte with those of `bandsaw render` here.
 # Usage: arm64.sh BIN-FOLDER ARM64-BUILD      Exit 77: there is no emulator or no cross build (deploy/arm64.sh makes both).
 set -euo pipefail
@@ -21,7 +21,7 @@ cd "$scratch"
 scene=$gallery/materials.textproto
 how=(--width 32 --report none --quiet)
 serve_here serve.log --web none
-compare() {  # SAMPLES: a farm's image and that of `render`
+compare() {  # SAMPLES: compares a farm's image with that of `render`
   bandsaw render "$scene" "${how[@]}" --samples "$1" -o here.pfm
   bandsaw submit "$scene" --farm "$data/farm" "${how[@]}" --samples "$1" -o farm.pfm
   cmp here.pfm farm.pfm
@@ -31,5 +31,5 @@ bandsaw workers --farm "$data/farm" > workers
 grep -q "neon kernel" workers || fail "the list of workers does not name the kernel: $(cat workers)"
 compare 64
 work_here here here.log --threads 1
-compare 1024  # enough for both
+compare 1024  # enough samples that both workers get bands
 echo "the same bytes: here, by an ARM64 worker, and by a farm of both architectures"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # A machine without AVX2 renders and joins a farm: the programs run on an emulated Nehalem (2008: SSE4.2, no AVX), where any
-# instruction that it does not have ends them. Files are compared byte by byte with those of this machine.
+# newer instruction ends them. Files are compared byte by byte with those of this machine.
 # Usage: old_cpu.sh BIN-FOLDER      Exit 77: qemu-user-static is not installed.
 set -euo pipefail
 bin=$(cd "$1" && pwd)
@@ -17,17 +17,18 @@ bandsaw render "$gallery/materials.textproto" "${how[@]}" -o here.pfm
 
 "${old[@]}" "$bin/bandsaw" render "$gallery/materials.textproto" "${how[@]}" -o old.pfm
 cmp here.pfm old.pfm
-"${old[@]}" "$bin/bandsaw" render "$gallery/materials.textproto" "${how[@]}" --kernel avx2 -o none.pfm 2> refused && fail "--kernel avx2 was taken"
-grep -q "must be plain, is 'avx2'" refused || fail "--kernel avx2 was refused otherwise: $(cat refused)"
-# The importer starts. It reads nothing here: the emulator has no seccomp. So the scenes above are imported by this processor.
-"${old[@]}" "$bin/bandsaw-import" > usage && fail "bandsaw-import took no arguments"
+"${old[@]}" "$bin/bandsaw" render "$gallery/materials.textproto" "${how[@]}" --kernel avx2 -o none.pfm 2> refused && fail "--kernel avx2 was accepted"
+grep -q "must be plain, is 'avx2'" refused || fail "--kernel avx2 was refused for another reason: $(cat refused)"
+# The importer starts in the emulator. It cannot read scenes there, because the emulator does not support seccomp; so this machine's
+# importer reads the scenes.
+"${old[@]}" "$bin/bandsaw-import" > usage && fail "bandsaw-import accepted no arguments"
 grep -q "usage: bandsaw-import" usage || fail "bandsaw-import does not start: $(cat usage)"
 
-# A farm of one worker, the old machine; this one coordinates and submits.
+# A farm of one worker, on the emulated processor; this machine coordinates and submits.
 serve_here serve.log --web none
 join_here old worker.log "${old[@]}" "$bin/bandsaw-worker" --threads 2
 bandsaw submit "$gallery/materials.textproto" --farm "$data/farm" "${how[@]}" -o farm.pfm
 cmp here.pfm farm.pfm
 bandsaw workers --farm "$data/farm" > workers
 grep -q "plain kernel" workers || fail "the list of workers does not name the kernel: $(cat workers)"
-echo "the same bytes: here, rendered by an old machine, and by a farm of it"
+echo "the same bytes: rendered here, on the emulated processor, and by a farm with a worker on it"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The hashes of same_bits.txt by clang (preset clang, -O3) and by gcc at -O2 (preset dev), each in its own build folder; the
-# default tests hold them for gcc at -O3. Builds no more than the test needs.
+# Compares the hashes of same_bits.txt with builds by clang (preset clang, -O3) and by gcc at -O2 (preset dev), each in its own build
+# folder; the default tests compare gcc at -O3. Builds only the programs that the test needs.
 # Usage: tests/hard_cases/compilers.sh [PRESET…]      (default: clang dev)
 set -euo pipefail
 cd "$(dirname "$0")/../.."

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Runs every hard case at its full count and writes what it gave into README.md's table.
+# Runs every hard case with its full count and writes the figures into README.md's table.
 # Usage: tests/hard_cases/run.sh [BUILD_FOLDER [IDS]]      (default build/release; built with BANDSAW_TESTS=ON)
-# IDS: only these, as in "A4|A5"; the figures of the others are those of the run before in this build folder.
+# IDS: only these, as in "A4|A5"; the figures of the others are those of the previous run in this build folder.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 build=${1:-build/release}
@@ -15,12 +15,12 @@ ids=${2:-[STQBOCXMLVRAPY][0-9]+|TX[0-9]+}
 status=0
 ctest --test-dir "$build" --no-tests=error --parallel "$(nproc)" --extra-verbose \
   --tests-regex "\.([A-Z]+[0-9]+)*($ids)([^0-9]|$)" --label-exclude '^hard_cases$' > "$work/log" || status=$?
-# Tests end in any order; their figures stand in that of their numbers.
+# Tests end in any order; their figures are sorted by their numbers.
 sed -n 's/^\([0-9]*\): \(\[ case .*\)$/\1 \2/p' "$work/log" | sort --stable --numeric-sort --key=1,1 | cut -d ' ' -f 2- > "$work/new"
 cp "$work/new" "$work/figures"
 tail -n 3 "$work/log"
 if [ $# -ge 2 ] && [ -f "$kept" ]; then
-  # A test that ran replaces what it said before; one that is gone says nothing more.
+  # The figures of a test that ran replace its previous ones; those of a removed test are dropped.
   awk -v new="$work/new" '
     function says(file, id,   line) {
       if (!(file in text)) while ((getline line < file) > 0) text[file] = text[file] line

@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# A farm of four machines of different kinds gives the bytes of one: its workers are this build's, Debian 13's, this build's on a
+# A farm of four different machines gives the same bytes as one machine. Its workers are this build's, Debian 13's, this build's on a
 # processor without AVX2 (emulated), and an ARM64 one (emulated). Each must render a part of the image.
 # Usage: tests/machines/run.sh BUILD DEBIAN13 ARM64
 #   BUILD     this build's folder
-#   DEBIAN13  the root folder of a Debian 13 in which /root/bandsaw is built (deploy/nightly.sh debian13 leaves one)
-#   ARM64     the folder of the cross build (deploy/arm64.sh leaves one)
-# Exit status 77: one of them is not there, or this machine cannot run it (root and qemu-user-static are needed).
+#   DEBIAN13  the root folder of a Debian 13 in which /root/bandsaw is built (made by deploy/nightly.sh debian13)
+#   ARM64     the folder of the cross build (made by deploy/arm64.sh)
+# Exit status 77: one of them does not exist, or this machine cannot run it (root and qemu-user-static are needed).
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 build=$(realpath "$1") debian13=$2 arm64=$3

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs deploy/tutorial.md, block by block, on three machines made of network namespaces. Exit 77: they cannot be made here (run as root).
-# A block's first line says where: on=HOST; `stays`: it goes on in the background, once it has said "join"; `stops`: those on that
-# machine are told to end. Usage: tutorial.sh BUILD-FOLDER
+# A block's first line names its machine: on=HOST; `stays`: the block continues in the background after it has printed "join"; `stops`:
+# ends the background blocks of that machine. Usage: tutorial.sh BUILD-FOLDER
 set -euo pipefail
 build=$(cd "$1" && pwd)
 page=$(cd "$(dirname "$0")/../.." && pwd)/deploy/tutorial.md
@@ -34,7 +34,7 @@ make_hosts() {
   done
 }
 
-# The page's placeholders are what a person would paste.
+# Replaces the page's placeholders by the text that a user would paste.
 pasted() {
   local text=$1 farm=$work/studio/farm
   [ -s "$farm/join" ] && text=${text//--join JOIN/--join $(cat "$farm/join")}

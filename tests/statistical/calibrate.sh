@@ -1,20 +1,20 @@
 #!/usr/bin/env bash
-# Is the error that an image reports the error that it has? Renders gallery scenes 96 pixels wide until 5 % and 2 %, with 20 seeds
+# Compares the errors that images report with their true errors. Renders gallery scenes 96 pixels wide until 5 % and 2 %, with 20 seeds
 # each, compares every image with a reference of many times as many samples, and writes the table of tests/statistical/README.md.
 # Finished measurements are kept in FOLDER and not repeated, so an interrupted run continues.
 # Usage: tests/statistical/calibrate.sh BANDSAW FOLDER [--scenes a,b,…] [--seeds N] [--times N] [--seconds S] [--minutes M]
 #   --scenes   names as in the gallery's folder, "cornell,books/earth"; default: all
 #   --seeds    default 20
-#   --times    samples of a reference over those of an image of 2 %, default 16; its own noise is taken off
-#   --seconds  CPU time that one render may take; what would take more is left out and named (default 20)
-#   --minutes  begin no render after this time, leave the README as it is and say how far it came (default: until all is measured)
+#   --times    samples of a reference over those of an image of 2 %, default 16; its own noise is subtracted
+#   --seconds  CPU time that one render may take; renders that would take longer are left out and listed (default 20)
+#   --minutes  begin no render after this time, do not change the README, and print the progress (default: until all is measured)
 # Exit status 1: fewer images met their target than chance explains if 95 % of all do.
 set -euo pipefail
 bandsaw=$(realpath "${1:?usage: calibrate.sh BANDSAW FOLDER [options]}")
 folder=${2:?usage: calibrate.sh BANDSAW FOLDER [options]}
 shift 2
 root=$(cd "$(dirname "$0")/../.." && pwd)
-gallery=$(dirname "$bandsaw")/../share/bandsaw/gallery  # with the textures that are made when it is built
+gallery=$(dirname "$bandsaw")/../share/bandsaw/gallery  # with the textures that the build generates
 scenes=$(cd "$gallery" && find . -name '*.textproto' | sed 's,^\./,,; s,\.textproto$,,' | sort)
 seeds=20
 seconds=20
@@ -68,7 +68,7 @@ for scene in $scenes; do
   grep -q "^$scene$" "$folder/done" 2>/dev/null && continue
   echo "$scene" >&2
   reference=$folder/${scene//\//_}.pfm
-  # One render tells what the others take: 2 % costs about six times as much as 5 %.
+  # The time of the other renders is predicted from one: 2 % costs about six times as much as 5 %.
   pilot=$(render "$scene" 5 1001 "$folder/work.pfm") || { echo "$scene 5" >> "$folder/left_out"; echo "$scene" >> "$folder/done"; continue; }
   read -r _ _ cpu samples <<<"$pilot"
   targets=5
@@ -96,7 +96,7 @@ awk -v without="$folder/without" -v references="$folder/references" '
   function root_mean(sum, n) { return sqrt(sum / n) }
   { ++runs; scene[runs] = $1; goal[runs] = $2; guess[runs] = $5; spent[runs] = $6; count[runs] = $7; error[runs] = $8
     if ($7 >= most[$1]) { most[$1] = $7; most_goal[$1] = $2 } }
-  # The reference has noise of its own: of m samples, where n have the error e, n / m of e^2.
+  # The reference of m samples has noise of its own: n / m of e^2, if images of n samples have the error e.
   function own_noise(name,   i, sum, n, samples) {
     sum = n = samples = 0
     for (i = 1; i <= runs; ++i) if (scene[i] == name && goal[i] == most_goal[name]) { ++n; sum += error[i] ^ 2; samples += count[i] }
@@ -119,7 +119,7 @@ awk -v without="$folder/without" -v references="$folder/references" '
       square = error[i] ^ 2 - noise[scene[i]]
       add(i, sqrt(square > 0 ? square : 1e-12))
     }
-    # Wilson 1927: the interval of a share at 95 %.
+    # 95 % confidence interval of a share (Wilson 1927).
     p = all_met / all; z = 1.96; d = 1 + z * z / all
     middle = (p + z * z / (2 * all)) / d; half = z * sqrt(p * (1 - p) / all + z * z / (4 * all * all)) / d
     printf "\n%d renders of %d scenes: the true error is at most the target in **%d, %.1f %%** (95 %% interval %.1f to %.1f %%); the estimate is\n",
@@ -129,7 +129,7 @@ awk -v without="$folder/without" -v references="$folder/references" '
     print "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"
     for (i = 1; i <= keys_count; ++i) {
       key = keys[i]; split(key, name, " "); e = root_mean(squares[key], n[key]); m = samples[key] / n[key]
-      # How the error falls between the targets; 1/2 where there is only one.
+      # Exponent of the decrease of the error between the targets; 1/2 if there is only one target.
       slope = 0.5; a = name[1] " 5"; b = name[1] " 2"
       if ((a in n) && (b in n) && samples[b] / n[b] > samples[a] / n[a])
         slope = log(root_mean(squares[a], n[a]) / root_mean(squares[b], n[b])) / log(samples[b] / n[b] / (samples[a] / n[a]))

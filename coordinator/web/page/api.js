@@ -1,5 +1,5 @@
-// Calls to the coordinator. An error is an Error with a sentence in it; one that comes because nobody
-// is logged in has `login` set.
+// Calls to the coordinator. A failure is thrown as an Error whose message is a sentence; if a login is
+// needed, its property `login` is true.
 
 async function answer(response) {
   if (response.ok) return response;
@@ -21,7 +21,7 @@ async function call(path, options) {
 
 export const get = async (path) => (await call(path)).json();
 
-/// `body`: a File, or an object that goes as JSON.
+/// `body`: a File, or an object that is sent as JSON.
 export async function post(path, body = {}) {
   const isFile = body instanceof Blob;
   const options = {method: "POST", headers: {"X-Bandsaw": "1"}, body: isFile ? body : JSON.stringify(body)};

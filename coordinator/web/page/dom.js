@@ -1,4 +1,4 @@
-// The few lines that make elements and words.
+// Functions that create elements and format values.
 
 /// el("p.soft", {title: "x", onclick: f}, "text", child, …)
 export function el(what, attributes = {}, ...children) {
@@ -14,12 +14,12 @@ export function el(what, attributes = {}, ...children) {
   return element;
 }
 
-/// Sets only what differs, so that nothing flickers and a selection stays.
+/// Sets the text only if it differs, so that nothing flickers and a selection is kept.
 export function text(element, value) {
   if (element.textContent !== value) element.textContent = value;
 }
 
-/// A list of parts that live as long as their key: part = make(item), part.update(item).
+/// A list of parts, one for each key of the items: part = make(item), part.update(item).
 export function keyed(parent, parts, items, keyOf, make) {
   const seen = new Set();
   items.forEach((item, i) => {

@@ -1,4 +1,4 @@
-// Scenes from people's disks: dropped anywhere on the page, or chosen.
+// Uploads of scene files that are dropped anywhere on the page, or chosen in a dialog.
 
 import {post} from "./api.js";
 import {el} from "./dom.js";
@@ -14,7 +14,7 @@ async function render(file) {
   location.hash = `#/jobs/${submitted.job}`;
 }
 
-/// A button that opens a file, and how well it is to be rendered.
+/// A button that opens a file, and the choice of the quality of its image.
 export function chooser() {
   const input = el("input", {type: "file", accept: ".glb,.textproto", hidden: true, "aria-label": "Scene file"});
   input.addEventListener("change", () => { if (input.files.length > 0) render(input.files[0]); });

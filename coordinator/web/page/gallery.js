@@ -1,4 +1,4 @@
-// The scenes that came with the farm: a click renders one, and the time it took stays on its card.
+// The installed scenes: a click renders one, and its card shows the render time.
 
 import {get, post} from "./api.js";
 import {el, isOver, keyed, percent, stateOf, text} from "./dom.js";

@@ -1,4 +1,4 @@
-// One job: figures, and what can be told it.
+// The view of one job: its figures, and the commands on it.
 
 import {get, post} from "./api.js";
 import {count, duration, el, goal, isOver, percent, rate, stateOf, text} from "./dom.js";

@@ -1,4 +1,4 @@
-// Which view is shown, and the one poll that feeds it.
+// Selects the view that is shown, and polls the coordinator for its data.
 
 import {get, post} from "./api.js";
 import {count, text} from "./dom.js";
@@ -62,8 +62,8 @@ function lost(error) {
   say(`${error.message}; trying again`, {bad: true, stays: true});
 }
 
-/// Polls once a second while the page is looked at; that is cheap, and survives everything that cuts
-/// connections.
+/// Polls once a second while the page is visible. Polling is cheap, and works again after any
+/// interruption of the connection.
 async function refresh() {
   clearTimeout(timer);
   let wait = document.hidden ? 10000 : 1000;
@@ -90,7 +90,7 @@ function start() {
   refresh();
 }
 
-/// The link that `bandsaw serve` leaves carries the secret behind the #, which no server sees.
+/// The link that `bandsaw serve` writes contains the secret after the #, which browsers do not send.
 async function enter() {
   const key = location.hash.match(/^#key=(.+)$/);
   if (key) {

@@ -1,9 +1,9 @@
-// The line under the header, and actions whose failures it tells.
+// The message line under the header, and actions whose errors it shows.
 
 const notice = document.getElementById("notice");
 let timer = 0;
 
-/// Goes by itself unless it `stays`.
+/// Shows a message, which disappears after a while unless it `stays`.
 export function say(words, {bad = false, stays = false} = {}) {
   clearTimeout(timer);
   notice.hidden = words === "";
@@ -12,8 +12,8 @@ export function say(words, {bad = false, stays = false} = {}) {
   if (!stays && words !== "") timer = setTimeout(() => say(""), 8000);
 }
 
-/// Does what a person asked for and says what went wrong with it. The window hears `action-done`, or
-/// `login-needed`.
+/// Runs an action of the user and shows its error, if any. The window receives the event `action-done`,
+/// or `login-needed`.
 export async function attempt(action) {
   try {
     const result = await action();

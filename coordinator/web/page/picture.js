@@ -1,14 +1,14 @@
-// A job's picture: sharpens as passes arrive; on request with who rendered which rows.
+// A job's picture, updated as passes arrive; optionally with the worker of each row.
 
 import {el, isOver, stateOf, text} from "./dom.js";
 
-/// Colours that people tell apart whatever they see of colour (Okabe and Ito 2008).
+/// Colours that are distinguishable with colour vision deficiencies (Okabe and Ito 2008).
 const palette = ["#56b4e9", "#e69f00", "#009e73", "#cc79a7", "#f0e442", "#0072b2", "#d55e00", "#999999"];
 
-/// Whether something of the picture can be had.
+/// Returns true if the job has a preview or an image.
 const there = (status) => stateOf(status) === "done" || (Number(status.samples_done) > 0 && !isOver(status));
 
-/// Shows the newest preview; the old one stays until the new one is there.
+/// Shows the newest preview; the old one remains until the new one is loaded.
 export function preview(img, status, side) {
   if (!there(status)) return;
   const source = `/api/jobs/${status.job}/preview.png?side=${side}&at=${stateOf(status) === "done" ? "end" : status.samples_done}`;

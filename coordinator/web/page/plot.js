@@ -12,7 +12,7 @@ function draw(tag, attributes, words = "") {
   return element;
 }
 
-/// 1, 2 and 5 times powers of ten within [low, high]; fewer where there would be many.
+/// 1, 2 and 5 times powers of ten within [low, high]; fewer if there would be too many.
 function ticks(low, high) {
   const out = [];
   for (let power = Math.floor(Math.log10(low)); power <= Math.ceil(Math.log10(high)); ++power) {
