@@ -93,10 +93,10 @@ void describe(CLI::App& app, Arguments& arguments) {
       ->required();
   app.add_option("--threads", arguments.threads, "Threads to render with; default: all")
       ->check(CLI::Range(std::size_t{1}, wire::kThreadsPerWorker));
-  app.add_option("--name", arguments.name, "Its name, for people; default: the host's");
+  app.add_option("--name", arguments.name, "Displayed name; default: the host's");
   app.add_option("--cache", arguments.cache,
                  "Folder for scenes; workers of one machine may share it");
-  app.add_option("--cache-size", arguments.cache_gb, "Most gigabytes to keep there")
+  app.add_option("--cache-size", arguments.cache_gb, "Maximum size of that folder, gigabytes")
       ->check(CLI::Range(0.001, 1e6));
   app.add_option("--kernel", arguments.kernel,
                  "The renderer's code: avx2, neon or plain, as far as the program has it and the "
@@ -178,7 +178,7 @@ int run(const Arguments& arguments, const WrapCalls& wrap_calls) {
   }
   if (join->role != link::Role::kWorker) {
     return fail(kWrongUsage,
-                absl::InvalidArgumentError("this join string is for people: a worker needs the one "
+                absl::InvalidArgumentError("this join string is for users: a worker needs the one "
                                            "in the file `join` of the coordinator's data folder"));
   }
   if (arguments.cache.empty()) {

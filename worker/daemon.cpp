@@ -165,7 +165,7 @@ void Daemon::Impl::handle(const farm::ToWorker& message, const std::string& addr
     pipeline_.start(task);
   }
   if (effects.dismissal) {
-    spdlog::warn("sent away: {}", effects.dismissal->reason);
+    spdlog::warn("dismissed: {}", effects.dismissal->reason);
     dismissal_ = effects.dismissal;
   }
 }

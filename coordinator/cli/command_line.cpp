@@ -197,7 +197,8 @@ absl::StatusOr<Command> parse_command_line(const std::vector<std::string>& typed
       }
     } else if (first != "-h" && first != "--help" && first != "--version") {
       return absl::InvalidArgumentError(absl::StrCat("the command comes first, then its options; '",
-                                                     first, "' is none; see: bandsaw --help"));
+                                                     first,
+                                                     "' is not a command; see: bandsaw --help"));
     }
   }
   return parse_with(app, commands, raw, arguments);

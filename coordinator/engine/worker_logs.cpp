@@ -57,7 +57,7 @@ absl::StatusOr<std::vector<std::string>> WorkerLogs::of(const std::string& worke
   }
   return absl::NotFoundError(
       absl::StrCat("no worker '", worker, "' has sent lines of its log; ",
-                   names.empty() ? "nor has any other"
+                   names.empty() ? "no other worker has either"
                                  : absl::StrCat("these have: ", absl::StrJoin(names, ", "))));
 }
 

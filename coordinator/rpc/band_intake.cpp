@@ -69,7 +69,7 @@ absl::Status BandIntake::add(const farm::BandChunk& chunk) {
 
 absl::StatusOr<BandPixels> BandIntake::take() {
   if (hasher_.finish().raw() != header_.sha256()) {
-    return absl::InvalidArgumentError("header.sha256: the bytes that came do not have it");
+    return absl::InvalidArgumentError("header.sha256: the received bytes have another digest");
   }
   if (!std::all_of(pixels_.sums.begin(), pixels_.sums.end(), is_sum)) {
     return absl::InvalidArgumentError("data: a pixel's sum is not a finite number >= 0");

@@ -14,7 +14,7 @@ absl::Status check_chunk(const std::string& data, std::uint64_t received, std::u
   }
   if (data.size() > size - received) {
     return absl::InvalidArgumentError(
-        absl::StrCat("data: more bytes came than the announced size of ", size));
+        absl::StrCat("data: more bytes than the announced size of ", size));
   }
   return absl::OkStatus();
 }

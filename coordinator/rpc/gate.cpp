@@ -63,7 +63,7 @@ absl::Status Gate::check(const grpc::CallbackServerContext& context, link::Role 
         role == link::Role::kWorker
             ? "this join string is for workers: submitting, watching and cancelling need the "
               "farm's own (file `farm` in the coordinator's data folder)"
-            : "this join string is for people: a worker needs the workers' one (file `join` in the "
+            : "this join string is for users: a worker needs the workers' one (file `join` in the "
               "coordinator's data folder)");
   }
   return absl::OkStatus();
@@ -99,7 +99,7 @@ absl::StatusOr<std::string> Gate::rotate(link::Role role) {
                                      renewed.written.message(), "): rotate it again"));
   }
   spdlog::info("a new {} secret; the join string is in {}",
-               role == link::Role::kWorker ? "workers'" : "people's", renewed.join_file);
+               role == link::Role::kWorker ? "workers'" : "users'", renewed.join_file);
   return renewed.join_file;
 }
 

@@ -60,7 +60,7 @@ void SessionCall::done() {
   if (!session_) {
     return;
   }
-  std::string reason = "it left";
+  std::string reason = "it disconnected";
   {
     MutexLock lock(mutex_);
     if (end_ && !end_->ok()) {

@@ -56,7 +56,7 @@ struct ServiceDependencies {
 /// The error of calls whose secret was renewed.
 inline absl::Status void_secret() {
   return absl::UnauthenticatedError(
-      "this secret is void: there is a new join string on the coordinator's machine");
+      "this secret is void: a new join string is on the coordinator's machine");
 }
 
 /// A reactor that owns itself until OnDone, gRPC's last call to it. Callbacks that may come later

@@ -28,7 +28,7 @@ void PutBlobCall::OnReadDone(bool ok) {
 std::optional<absl::Status> PutBlobCall::take(bool ok) {
   if (!ok && context_->IsCancelled()) {
     writer_.reset();
-    return absl::CancelledError("the sender left");
+    return absl::CancelledError("the client disconnected");
   }
   if (!ok) {
     return end();

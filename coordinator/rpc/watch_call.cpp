@@ -36,7 +36,7 @@ void WatchCall::OnWriteDone(bool ok) {
   writing_ = false;
   if (!ok) {
     next_.reset();
-    end_ = absl::CancelledError("the watcher left");
+    end_ = absl::CancelledError("the client disconnected");
   }
   advance();
 }

@@ -15,7 +15,7 @@ class WatchCall final : public SelfOwned<grpc::ServerWriteReactor<farm::JobStatu
   WatchCall(const ServiceDependencies& deps, JobId job) : deps_(deps), job_(job) {}
   void begin();
   void OnWriteDone(bool ok) override;
-  void OnCancel() override { stop(absl::CancelledError("the watcher left")); }
+  void OnCancel() override { stop(absl::CancelledError("the client disconnected")); }
   void stop(const absl::Status& why) override EXCLUDES(mutex_);
   link::Role role() const override { return link::Role::kFarm; }
 

@@ -120,8 +120,8 @@ absl::StatusOr<BandRecord> read_band(const std::string& path, std::uint64_t offs
   std::uint64_t size = 0;
   std::memcpy(&size, head.data() + kBandRecordMagic.size(), sizeof size);
   if (size < head.size() || size > kMaxRecordBytes) {
-    return absl::DataLossError(
-        absl::StrCat(path, ": at byte ", offset, " is no record: it would have ", size, " bytes"));
+    return absl::DataLossError(absl::StrCat(path, ": no record begins at byte ", offset,
+                                            ": it would have ", size, " bytes"));
   }
   std::vector<std::byte> bytes(size);
   RETURN_IF_ERROR(file.read(offset, absl::MakeSpan(bytes)));

@@ -113,9 +113,9 @@ absl::StatusOr<BlobStore::Writer> BlobStore::write(const wire::Digest& digest, s
   std::unique_ptr<PartialBlobs::Claim> claim = partials_->claim(digest);
   absl::StatusOr<StagedFile> file = StagedFile::resume(claim->path(), size, offset);
   if (absl::IsOutOfRange(file.status())) {
-    return absl::FailedPreconditionError(absl::StrCat("blob ", digest.hex(), ": ",
-                                                      file.status().message(),
-                                                      "; ask again how many, and send the rest"));
+    return absl::FailedPreconditionError(
+        absl::StrCat("blob ", digest.hex(), ": ", file.status().message(),
+                     "; request the number of stored bytes again, and send the rest"));
   }
   RETURN_IF_ERROR(file.status());
   Writer writer(folder_, digest, size, std::move(claim), *std::move(file));
@@ -166,8 +166,8 @@ absl::Status BlobStore::Writer::commit() {
   if (!right && earlier_ > 0) {
     return absl::DataLossError(absl::StrCat(
         "blob ", digest_.hex(), " has another digest: the ", earlier_,
-        " bytes of an earlier upload were damaged, or those sent now; they have been thrown away, "
-        "send all of it"));
+        " bytes of an earlier upload were damaged, or those sent now; all were removed, send "
+        "the whole blob again"));
   }
   if (!right) {
     return absl::InvalidArgumentError(

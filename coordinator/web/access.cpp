@@ -145,11 +145,11 @@ absl::Status Access::check_login(const HttpRequest& request) {
 absl::Status Access::check_secret(const std::string& secret, const std::string& address) {
   const absl::StatusOr<link::Role> role = link::role_of_secret(identity_, secret);
   if (role.ok()) {
-    return *role == link::Role::kFarm
-               ? absl::OkStatus()
-               : absl::PermissionDeniedError(
-                     "this is the workers' join string: the dashboard needs people's (file `farm` "
-                     "in the coordinator's data folder)");
+    return *role == link::Role::kFarm ? absl::OkStatus()
+                                      : absl::PermissionDeniedError(
+                                            "this is the workers' join string: the dashboard needs "
+                                            "the users' one (file `farm` in the coordinator's data "
+                                            "folder)");
   }
   switch (failures_.add(address, steady_seconds())) {
     case Failures::Verdict::kFirst:

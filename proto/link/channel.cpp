@@ -62,7 +62,7 @@ absl::StatusOr<Connected> connect_tls(const std::string& address, const wire::Di
   }
   if (*digest != expected) {
     return absl::UnauthenticatedError(
-        "it shows another certificate than the join string names: another farm, or one whose data "
+        "it has another certificate than the join string names: another farm, or one whose data "
         "folder was created again");
   }
   grpc::SslCredentialsOptions options;
@@ -79,7 +79,7 @@ absl::StatusOr<Connected> connect_plain(const std::string& address,
   Connected connected = open_channels(address, grpc::InsecureChannelCredentials(), false);
   if (!connected.control->WaitForConnected(std::chrono::system_clock::now() + timeout)) {
     return absl::UnavailableError(
-        "what answers there does not speak plaintext gRPC: was the coordinator started with "
+        "the server there does not speak plaintext gRPC: was the coordinator started with "
         "--insecure?");
   }
   return connected;

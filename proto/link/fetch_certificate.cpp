@@ -42,7 +42,7 @@ absl::StatusOr<bool> advance(SSL* session, Socket& socket, Deadline deadline) {
   }
   if (reason != SSL_ERROR_WANT_READ) {
     ERR_clear_error();  // the thread's queue, which later calls of others would read
-    return absl::UnavailableError("what answers there does not speak TLS");
+    return absl::UnavailableError("the server there does not speak TLS");
   }
   absl::StatusOr<std::string> answer = socket.receive(deadline);
   if (!answer.ok()) {
@@ -56,7 +56,7 @@ absl::StatusOr<std::string> peer_certificate_pem(SSL* session) {
   const Certificate certificate(SSL_get1_peer_certificate(session), &X509_free);
   const Bio bio(BIO_new(BIO_s_mem()), &BIO_free_all);
   if (certificate == nullptr || PEM_write_bio_X509(bio.get(), certificate.get()) != 1) {
-    return absl::UnavailableError("what answers there shows no certificate");
+    return absl::UnavailableError("the server there has no certificate");
   }
   return take_all(bio.get());
 }

@@ -270,7 +270,7 @@ absl::StatusOr<std::vector<BlobRef>> package_blobs(const std::string& manifest_b
     // A blob counts each time it is named, because a reader may copy it each time.
     total += ref->size;
     if (total > wire::kPackageBytes) {
-      return manifest_error(field, absl::StrCat("passes the bound of ", wire::kPackageBytes,
+      return manifest_error(field, absl::StrCat("exceeds the limit of ", wire::kPackageBytes,
                                                 " bytes for all blobs of a package"));
     }
     const auto [known, is_new] = sizes.try_emplace(ref->digest, ref->size);

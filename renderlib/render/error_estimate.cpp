@@ -85,7 +85,7 @@ double known_error(const std::optional<ErrorEstimate>& estimate, std::uint64_t s
 
 void ErrorSums::add_row(absl::Span<const NodeSums> nodes, std::size_t step) {
   BANDSAW_CHECK(nodes.size() >= 2 && nodes[0].samples == nodes[1].samples,
-                "the error is told from halves");
+                "the error is computed from halves");
   const std::size_t pixels = nodes[0].sums.size() / 3;
   const std::size_t together =
       step * kTileSide / 2;  // This many adjacent pixels are `step` half rows.

@@ -140,14 +140,15 @@ absl::Status Film::Rows::check(const BandPixels& pixels, const TileSamples& tile
     return absl::InvalidArgumentError(
         absl::StrCat("band of rows [", band.rows.first, ", ", band.rows.last, "), samples [",
                      band.samples.first, ", ", band.samples.last, "), width ", pixels.width,
-                     ": is none of a film of ", width(), " x ", height()));
+                     ": does not fit a film of ", width(), " x ", height()));
   }
   BANDSAW_CHECK(strips.half_tiles() || tiles.whole(), "a film of rows has no tiles");
   for (std::uint32_t y = band.rows.first; y < band.rows.last; ++y) {
     if (const auto there = covered[y].overlap(band.samples)) {
-      return absl::FailedPreconditionError(absl::StrCat(
-          "row ", y, ": samples [", there->first, ", ", there->last,
-          ") are there already; came again: [", band.samples.first, ", ", band.samples.last, ")"));
+      return absl::FailedPreconditionError(
+          absl::StrCat("row ", y, ": samples [", there->first, ", ", there->last,
+                       ") are in the film already; added again: [", band.samples.first, ", ",
+                       band.samples.last, ")"));
     }
   }
   return absl::OkStatus();

@@ -151,7 +151,7 @@ absl::Status check_counters(const BandPixels& pixels, const TileSamples& tiles) 
   if (!inside || counters.bad_sample < taken.first || counters.bad_sample >= taken.last) {
     return absl::InvalidArgumentError(
         absl::StrCat("sample ", counters.bad_sample, " of pixel (", counters.bad_x, ", ",
-                     counters.bad_y, ") is said to be bad and does not lie in the band"));
+                     counters.bad_y, ") is counted as bad and does not lie in the band"));
   }
   return absl::OkStatus();
 }

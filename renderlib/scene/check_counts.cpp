@@ -41,7 +41,7 @@ absl::Status check_shape_counts(absl::string_view field, const ShapeCounts& coun
                                 counts.triangles, " triangles, ", counts.disks, " disks and ",
                                 counts.instances, " instances, which is ", items,
                                 " with quads counted twice; at most ", kMaxTreeItems,
-                                " may lie loose in one space: put some into groups or a mesh"));
+                                " are allowed in one space: put some into groups or a mesh"));
   }
   return absl::OkStatus();
 }

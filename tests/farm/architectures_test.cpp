@@ -118,7 +118,8 @@ TEST_F(InviteArchitectures, WhateverAHostSaysItIsIsOneLine) {
   EXPECT_EQ(invited.err.find('\033'), std::string::npos);
   EXPECT_LT(invited.err.size(), junk.size() * 300);
   for (const std::string& host : hosts) {
-    EXPECT_THAT(invited.err, HasSubstr(host + ": it is a machine of another kind (uname says: "));
+    EXPECT_THAT(invited.err,
+                HasSubstr(host + ": there is no worker for this machine (uname says: "));
     EXPECT_TRUE(got_nothing(host));
   }
 }

@@ -61,7 +61,7 @@ TEST_F(Control, APausedJobIsLeasedToNobodyAndGoesOnToTheSameBytes) {
   ask_until({"jobs", "--json"}, R"("workers":[])");
   const std::string paused = say({"jobs", "--json"});
   EXPECT_NE(paused.find(R"("state":"paused")"), std::string::npos) << paused;
-  EXPECT_NE(say({"why", "1"}).find("paused by a person"), std::string::npos);
+  EXPECT_NE(say({"why", "1"}).find("paused by a user"), std::string::npos);
   EXPECT_NE(say({"workers"}).find("idle"), std::string::npos);
   EXPECT_EQ(samples_done(say({"jobs", "--json"})), samples_done(paused));
   say({"resume", "1"});

@@ -96,8 +96,9 @@ TEST_F(Invite, EachHostSaysWhatIsWrongAndTheOthersJoin) {
   EXPECT_THAT(invited.err, HasSubstr("stranger: not reached: Host key verification failed. "
                                      "(connect once by hand: ssh stranger)"));
   EXPECT_THAT(invited.err, HasSubstr("ancient: the worker does not run there: no GLIBC_2.36"));
-  EXPECT_THAT(invited.err, HasSubstr("phone: it is a machine of another kind (uname says: Linux "
-                                     "riscv64); workers run on Linux, on x86_64 or aarch64"));
+  EXPECT_THAT(invited.err,
+              HasSubstr("phone: there is no worker for this machine (uname says: Linux "
+                        "riscv64); workers run on Linux, on x86_64 or aarch64"));
   EXPECT_THAT(invited.err, HasSubstr("full: no space: 1000 KiB are free"));
   EXPECT_THAT(invited.out, HasSubstr("invited: 1 of 6 hosts"));
   EXPECT_THAT(invited.out, HasSubstr("desk: bandsaw-worker "));
@@ -127,7 +128,7 @@ TEST_F(Invite, WrongUseIsAnsweredBeforeAnythingIsSent) {
   const Finished people =
       run({BANDSAW_BIN, "invite", "--join", farm_.farm_file(), "desk"}, machines_.environment());
   EXPECT_EQ(people.code, 2);
-  EXPECT_THAT(people.err, HasSubstr("for people"));
+  EXPECT_THAT(people.err, HasSubstr("for users"));
   const Finished no_farm =
       run({BANDSAW_BIN, "invite", "--data", farm_.path("none"), "desk"}, machines_.environment());
   EXPECT_EQ(no_farm.code, 2);

@@ -211,7 +211,7 @@ absl::Status BlobCache::Download::commit() {
   if (hasher.finish() != digest_) {
     unlink(part.c_str());
     return absl::DataLossError(
-        absl::StrCat("the bytes that came for blob ", digest_.hex(), " do not have that digest"));
+        absl::StrCat("the received bytes of blob ", digest_.hex(), " do not have that digest"));
   }
   const std::string path = cache_.blobs_.path_of(digest_);
   if (rename(part.c_str(), path.c_str()) != 0) {

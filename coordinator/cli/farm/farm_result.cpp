@@ -36,10 +36,10 @@ absl::StatusOr<FarmImage> image_of(const Received& received) {
   const absl::Span<const std::byte> span = std::as_bytes(std::span(received.bytes));
   if (received.bytes.size() != received.size() || wire::sha256(span).raw() != received.sha256) {
     return absl::DataLossError(
-        "the image came damaged over the network; try again with: bandsaw watch");
+        "the image was damaged on the network; try again with: bandsaw watch");
   }
   static_assert(std::endian::native == std::endian::little && sizeof(Rgb) == 3 * sizeof(float),
-                "the wire's form is the memory's");
+                "the wire format is the memory layout");
   Image image{.width = received.width, .height = received.height, .pixels = {}};
   image.pixels.resize(std::size_t{received.width} * received.height);
   std::memcpy(static_cast<void*>(image.pixels.data()), received.bytes.data(),
@@ -99,7 +99,8 @@ absl::StatusOr<FarmImage> FarmClient::receive(JobId job, const OpenImage& open) 
     return too_much ? grpc::Status::OK : status;
   }));
   if (too_much) {
-    return absl::DataLossError(absl::StrCat("job ", job, ": the farm sent more than an image"));
+    return absl::DataLossError(
+        absl::StrCat("job ", job, ": the farm sent more bytes than the image has"));
   }
   return image_of(received);
 }

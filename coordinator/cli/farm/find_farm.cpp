@@ -49,7 +49,7 @@ absl::StatusOr<link::JoinString> find_farm(const FarmOption& option) {
   if (join->role != link::Role::kFarm) {
     return absl::InvalidArgumentError(absl::StrCat(
         source.name,
-        ": this is the join string of workers; people use the one in the coordinator's DATA/farm"));
+        ": this is the join string of workers; users need the one in the coordinator's DATA/farm"));
   }
   return join;
 }

@@ -121,8 +121,8 @@ class Watch {
     const auto milliseconds = std::chrono::milliseconds(static_cast<std::int64_t>(left * 1000));
     if (left <= 0 || !client_.wait_for_farm(milliseconds)) {
       return client_.stopped() ? absl::CancelledError("interrupted")
-                               : absl::UnavailableError(
-                                     absl::StrCat("the farm at ", client_.address(), " is gone"));
+                               : absl::UnavailableError(absl::StrCat(
+                                     "the farm at ", client_.address(), " did not come back"));
     }
     client_.pause(kPause);
     return absl::OkStatus();
@@ -140,12 +140,12 @@ ExitCode left_early(const absl::Status& status, JobId job, const std::vector<std
                     const Console& console) {
   const ExitCode code = exit_code_of(status);
   if (code == ExitCode::kInterrupted) {
-    return console.fail(code,
-                        absl::StrCat("detached; job ", job, " goes on. ", come_back(job, outputs)));
+    return console.fail(
+        code, absl::StrCat("detached; job ", job, " continues. ", come_back(job, outputs)));
   }
   if (code == ExitCode::kNoFarm) {
     return console.fail(
-        code, absl::StrCat(status.message(), "; job ", job, " goes on when it is started again. ",
+        code, absl::StrCat(status.message(), "; job ", job, " continues when it is started again. ",
                            come_back(job, outputs)));
   }
   return console.fail(code, std::string(status.message()));

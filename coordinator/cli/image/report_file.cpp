@@ -34,7 +34,7 @@ bool is_free(const std::string& path) { return !is_there(path) || is_report(path
 
 absl::Status taken(const std::string& path) {
   return absl::InvalidArgumentError(absl::StrCat(
-      path, ": is there and is no report; choose another with --report FILE, or --report none"));
+      path, ": exists and is no report; choose another with --report FILE, or --report none"));
 }
 
 std::string beside(const std::string& output) {
@@ -79,7 +79,7 @@ absl::Status check_default_output(const std::string& scene, const std::string& o
   }
   return absl::InvalidArgumentError(
       absl::StrCat(output,
-                   ": is there and may be the model's own, as no report of a render lies "
+                   ": exists and may belong to the model, because no render report is "
                    "beside it; name a file with -o"));
 }
 

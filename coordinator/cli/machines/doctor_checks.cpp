@@ -67,7 +67,7 @@ Check check_data_folder(const std::string& folder) {
   if (!room.ok()) {
     return problem(name, std::string(room.status().message()));
   }
-  return room_check(name, there == folder ? folder : folder + " (not made yet)", *room);
+  return room_check(name, there == folder ? folder : folder + " (does not exist yet)", *room);
 }
 
 Check check_memory() {
@@ -84,7 +84,7 @@ Check check_memory() {
                                                   "scenes only"));
     }
   }
-  return problem("memory", "/proc/meminfo does not tell how much is available; is /proc mounted?");
+  return problem("memory", "/proc/meminfo does not list the available memory; is /proc mounted?");
 }
 
 Check check_import_program() {
@@ -104,8 +104,9 @@ Check check_worker_programs() {
     }
   }
   return {"workers", true,
-          found.empty() ? "no program to hand out here"
-                        : absl::StrCat("a program to hand out for ", absl::StrJoin(found, ", "))};
+          found.empty()
+              ? "no worker program to hand out"
+              : absl::StrCat("a worker program to hand out for ", absl::StrJoin(found, ", "))};
 }
 
 Check check_port(const std::string& listen, const std::vector<std::string>& own) {
@@ -126,8 +127,8 @@ Check certificate_check(double from, double until, double now) {
     return problem(
         "certificate",
         absl::StrCat(now < from ? "not valid yet" : "not valid any more",
-                     ": check this machine's clock; else move the coordinator's identity "
-                     "away, to have a new one, and join again"));
+                     ": check this machine's clock; if it is right, move the file identity "
+                     "out of the coordinator's data folder, start it again, and join again"));
   }
   return {
       "certificate", true,
@@ -138,7 +139,7 @@ Check clock_check(double ours_before, double theirs, double ours_after) {
   const double difference = theirs - (ours_before + ours_after) / 2;
   if (std::abs(difference) > kMaxClockDifference_s) {
     return problem("clock", absl::StrFormat("the coordinator's is %+.0f s from this machine's; set "
-                                            "both by the net: timedatectl set-ntp true",
+                                            "both by a time server: timedatectl set-ntp true",
                                             difference));
   }
   return {"clock", true, absl::StrFormat("%+.2f s from the coordinator's", difference)};

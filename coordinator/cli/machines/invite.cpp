@@ -65,7 +65,7 @@ absl::StatusOr<Machine> machine_of(absl::string_view said) {
   }
   constexpr std::size_t kMaxColumns = 60;  // enough for every real name
   return absl::InvalidArgumentError(
-      absl::StrCat("it is a machine of another kind (uname says: ", fit(said, kMaxColumns),
+      absl::StrCat("there is no worker for this machine (uname says: ", fit(said, kMaxColumns),
                    "); workers run on Linux, on ",
                    absl::StrJoin(kMachines, " or ", [](std::string* out, Machine one) {
                      absl::StrAppend(out, machine_name(one));
@@ -125,7 +125,7 @@ absl::StatusOr<link::JoinString> workers_join(const InviteOptions& options) {
   ASSIGN_OR_RETURN(link::JoinString join, link::join_string_from(from));
   if (join.role != link::Role::kWorker) {
     return absl::InvalidArgumentError(
-        "--join: this join string is for people; workers need the one in the file `join` of the "
+        "--join: this join string is for users; workers need the one in the file `join` of the "
         "coordinator's data folder");
   }
   return join;

@@ -34,14 +34,13 @@ void add_invite(CLI::App& app, RawOptions& raw) {
                  "The workers' join string, or the file that holds it [default: of the farm served "
                  "from this account]");
   add_data(app, raw);
-  app.add_option("--time", raw.time, "Give a host up after this much time [default: 5m]")
-      ->type_name("T");
+  app.add_option("--time", raw.time, "Time limit for each host [default: 5m]")->type_name("T");
   add_verbosity(app, raw);
 }
 
 void add_dismiss(CLI::App& app, RawOptions& raw) {
   add_hosts(app, raw);
-  app.add_option("--time", raw.time, "Most time for a worker to finish what it holds [default: 1m]")
+  app.add_option("--time", raw.time, "Maximum time for a worker to finish its bands [default: 1m]")
       ->type_name("T");
   add_verbosity(app, raw);
 }

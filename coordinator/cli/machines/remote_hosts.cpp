@@ -86,7 +86,7 @@ RemoteOutcome judge(const std::string& host, const absl::StatusOr<ChildOutcome>&
       absl::StrAppend(&outcome.what, " (a key is needed: ssh-copy-id ", outcome.host, ")");
     }
   } else {
-    outcome.what = absl::StrCat("its shell gave up: ", last_line(child->output));
+    outcome.what = absl::StrCat("its shell failed: ", last_line(child->output));
   }
   return outcome;
 }
@@ -97,7 +97,7 @@ absl::StatusOr<RemoteScript> RemoteScript::create(const std::string& script,
                                                   const std::string& input) {
   const int memory = memfd_create("bandsaw-input", MFD_CLOEXEC);
   if (memory < 0) {
-    return errno_status(errno, "what is to be sent");
+    return errno_status(errno, "the data to be sent");
   }
   const absl::Cleanup close_memory = [memory] { close(memory); };
   ASSIGN_OR_RETURN(File file, File::open(absl::StrCat("/proc/self/fd/", memory), O_RDWR));

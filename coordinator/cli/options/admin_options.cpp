@@ -4,7 +4,7 @@ namespace bandsaw::coordinator {
 
 void add_verbosity(CLI::App& app, RawOptions& raw, bool can_be_quiet) {
   if (can_be_quiet) {
-    app.add_flag("--quiet", raw.quiet, "Say only the last line and errors");
+    app.add_flag("--quiet", raw.quiet, "Print only the last line and errors");
   }
   app.add_flag("--json", raw.json, "One JSON object a line, for programs");
 }

@@ -38,7 +38,8 @@ absl::StatusOr<StopRule> checked_stop(const RawOptions& raw) {
     return wrong("--samples, --error and --time exclude each other: give one");
   }
   if (raw.adaptive && !raw.error) {
-    return wrong("--adaptive needs --error: with --samples and --time every pixel has as many");
+    return wrong(
+        "--adaptive needs --error: with --samples and --time all pixels have equally many");
   }
   if (raw.error) {
     ASSIGN_OR_RETURN(const double error, parse_percent("--error", *raw.error));
@@ -175,7 +176,7 @@ absl::StatusOr<std::vector<LayerKind>> checked_layers(const RawOptions& raw) {
     return absl::EndsWithIgnoreCase(name, ".exr");
   };
   if (raw.rows || std::none_of(raw.outputs.begin(), raw.outputs.end(), is_exr)) {
-    return wrong("--layers: are of whole images in EXR files; add -o FILE.exr");
+    return wrong("--layers: only EXR files of whole images have layers; add -o FILE.exr");
   }
   return parse_layers(*raw.layers);
 }
@@ -199,7 +200,7 @@ absl::StatusOr<Command> checked_submit(const RawOptions& raw) {
   ASSIGN_OR_RETURN(options.layers, checked_layers(raw));
   if (options.detach && !options.outputs.empty()) {
     return wrong(
-        "--detach does not wait for the image: leave -o away and fetch it with bandsaw watch JOB "
+        "--detach does not wait for the image: omit -o and fetch it with bandsaw watch JOB "
         "-o FILE");
   }
   return options;

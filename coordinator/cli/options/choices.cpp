@@ -71,8 +71,8 @@ absl::StatusOr<std::vector<LayerKind>> parse_layers(const std::string& list) {
       return wrong_choice("--layers", std::string(name));
     }
     if (std::find(kinds.begin(), kinds.end(), kind) != kinds.end()) {
-      return absl::InvalidArgumentError(absl::StrCat("--layers: each once, with commas between; '",
-                                                     list, "' has ", name, " twice"));
+      return absl::InvalidArgumentError(absl::StrCat(
+          "--layers: each name once, separated by commas; '", list, "' has ", name, " twice"));
     }
     kinds.push_back(kind);
   }

@@ -156,7 +156,7 @@ std::string doubt_line(const Progress& progress) {
   }
   return absl::StrCat("warning: ", percent(curve.back().estimate.worst_share),
                       " of the error is in the worst 0.1 % of the pixels: bright light that few "
-                      "paths find; the true error is likely larger than said");
+                      "paths find; the true error is likely larger than reported");
 }
 
 std::vector<std::string> warning_lines(const Progress& progress) {

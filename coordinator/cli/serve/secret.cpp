@@ -75,7 +75,7 @@ ExitCode run(const RotateOptions& options, Process& process) {
   if (!file.ok()) {
     return finished(file.status(), process.console);
   }
-  const char* const whose = options.role == link::Role::kWorker ? "workers'" : "people's";
+  const char* const whose = options.role == link::Role::kWorker ? "workers'" : "users'";
   if (options.verbosity.json) {
     process.console.line(JsonObject().text("event", "rotated").text("join_file", *file).str());
   } else {

@@ -143,10 +143,11 @@ ExitCode run(const ServeOptions& options, Process& process) {
   if (!serving->line.empty()) {
     process.console.line(absl::StrCat("or where there is no bandsaw-worker:  ", serving->line));
   } else if (!serving->web->workers.empty()) {
-    process.console.line("with --web 0.0.0.0:8787 there is a line that brings the worker along");
+    process.console.line(
+        "with --web 0.0.0.0:8787 a line is printed that fetches and starts a worker");
   }
   process.interrupts.wait();
-  process.console.line("stopping; jobs go on when the coordinator is started again");
+  process.console.line("stopping; jobs continue when the coordinator is started again");
   serving->server.reset();
   serving->web.reset();
   serving->engine.reset();

@@ -120,7 +120,7 @@ void CrashAttribution::weigh(Job& job, const Worker& worker, const Band& band) {
         absl::StrCat(
             reason,
             "; it seems to end every worker that renders it: by the memory that "
-            "it needs, or by a fault of the renderer; what the last one said: bandsaw logs ",
+            "it needs, or by a fault of the renderer; the log of the last one: bandsaw logs ",
             worker.name));
   }
 }

@@ -241,7 +241,7 @@ void Sessions::check_silence() {
   }
   for (const WorkerId id : silent) {
     Worker& worker = *context_.workers.by_id(id);
-    const std::string reason = absl::StrCat("not heard of for ", timeout_s, " s");
+    const std::string reason = absl::StrCat("no message for ", timeout_s, " s");
     context_.act(action::Close{*worker.session, reason});
     disconnect(worker, reason);
   }

@@ -301,7 +301,8 @@ std::optional<std::string> Coverage::broken_partition() const {
       any = any || cell.owner == kFree;
     }
     if (sample != pass_.last || any != with_free_.contains(first)) {
-      return absl::StrCat("a strip is short or not where free ones are found, at row ", first);
+      return absl::StrCat("a strip lacks samples, or is wrong in the index of free strips, at row ",
+                          first);
     }
     row = strip.last;
   }

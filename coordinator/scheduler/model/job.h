@@ -23,7 +23,7 @@
 namespace bandsaw::coordinator {
 
 /// The reason of a job that a user paused.
-inline constexpr char kPausedByUser[] = "paused by a person; it goes on with: bandsaw resume";
+inline constexpr char kPausedByUser[] = "paused by a user; continue it with: bandsaw resume";
 
 /// A worker reported that it could not render a band, or made no progress on it.
 struct FailedAttempt {

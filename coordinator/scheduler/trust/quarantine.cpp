@@ -75,11 +75,11 @@ void Quarantine::request(const input::Quarantine& in) {
     }
   }
   if (meant.empty()) {
-    context_.answer(absl::NotFoundError(
-        absl::StrCat("no worker of this name was here: ", in.worker, "; see: bandsaw workers")));
+    context_.answer(absl::NotFoundError(absl::StrCat(
+        "no worker of this name was connected: ", in.worker, "; see: bandsaw workers")));
   }
   for (const Reporter& reporter : meant) {
-    impose(reporter, "was sent away by a person");
+    impose(reporter, "was excluded by a user");
   }
 }
 

@@ -263,7 +263,7 @@ std::vector<std::string> Views::working_on(const Job& job) const {
       out.push_back(absl::StrCat("and ", workers.size() - kMaxLines, " more workers"));
       break;
     }
-    out.push_back(absl::StrCat(worker.name, " is at it: ", worker.state, ", rows ",
+    out.push_back(absl::StrCat(worker.name, " works on it: ", worker.state, ", rows ",
                                worker.rows.first, "–", worker.rows.last));
   }
   return out;
@@ -276,7 +276,7 @@ std::vector<std::string> Views::not_working_on(const Job& job) const {
       out.push_back(absl::StrCat(
           worker.name, worker.quarantined ? " gets no work: " : " is leaving: ", worker.reason));
     } else if (worker.eligible() && !eligibility_.may_render(worker, job)) {
-      out.push_back(absl::StrCat(worker.name, " is not given it any more: it failed too often"));
+      out.push_back(absl::StrCat(worker.name, " gets no more bands of it: it failed too often"));
     } else if (worker.eligible() && !worker.leases.empty()) {
       const Job& other = context_.jobs.at(context_.leases.find(worker.leases.front())->job);
       if (other.id != job.id) {

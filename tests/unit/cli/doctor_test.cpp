@@ -47,7 +47,7 @@ TEST(Doctor, ADiskNeedsRoom) {
 
 TEST(Doctor, AMissingFolderIsCheckedByItsParent) {
   const test::TempDir folder;
-  EXPECT_THAT(check_data_folder(folder / "a/b").found, HasSubstr("not made yet"));
+  EXPECT_THAT(check_data_folder(folder / "a/b").found, HasSubstr("does not exist yet"));
 }
 
 TEST(Doctor, NoFarmIsNotFoundAndAWrongOneIsReported) {

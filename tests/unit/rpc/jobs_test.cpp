@@ -55,7 +55,7 @@ TEST_F(JobsTest, APauseMayBeRepeatedAndEnded) {
   for (int i = 0; i < 2; ++i) {
     ASSERT_TRUE(pause(job).ok());
     EXPECT_EQ(job_.state(), farm::JOB_STATE_PAUSED);
-    EXPECT_THAT(job_.reason(), testing::HasSubstr("by a person"));
+    EXPECT_THAT(job_.reason(), testing::HasSubstr("by a user"));
   }
   for (int i = 0; i < 2; ++i) {
     ASSERT_TRUE(resume(job).ok());

@@ -113,10 +113,10 @@ TEST(Why, SaysWhatAJobWaitsFor) {
   EXPECT_EQ(farm.scheduler.why(job, farm.now).at(0),
             "all workers are busy with job 1 (priority 10)");
   EXPECT_EQ(farm.job(job).reason, "all workers are busy with job 1 (priority 10)");
-  EXPECT_NE(farm.scheduler.why(urgent, farm.now).at(0).find("worker-a is at it"),
+  EXPECT_NE(farm.scheduler.why(urgent, farm.now).at(0).find("worker-a works on it"),
             std::string::npos);
   farm.send(input::Pause{job});
-  EXPECT_NE(farm.scheduler.why(job, farm.now).at(0).find("paused by a person"), std::string::npos);
+  EXPECT_NE(farm.scheduler.why(job, farm.now).at(0).find("paused by a user"), std::string::npos);
   farm.send(input::Cancel{job});
   EXPECT_EQ(farm.scheduler.why(job, farm.now).at(0), "it was cancelled");
   EXPECT_TRUE(farm.scheduler.why(99, farm.now).empty());
