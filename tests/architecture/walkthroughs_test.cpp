@@ -1,5 +1,4 @@
-// Keeps the walkthroughs of the READMEs true: every file exists that is named in a section
-// "Walkthrough: …" or "Adding …".
+// Checks that every file named in a section "Walkthrough: …" or "Adding …" of a README exists.
 
 #include <gtest/gtest.h>
 

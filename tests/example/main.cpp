@@ -1,4 +1,4 @@
-// A ball under a sky, rendered by a program that is not ours: find_package(bandsaw).
+// Renders a ball under a sky in a program that uses the installed library: find_package(bandsaw).
 #include <renderlib/image/write_image.h>
 #include <renderlib/render/render_image.h>
 

@@ -1,6 +1,6 @@
-// A farm of x86-64 and ARM64 machines: each gets the worker for its architecture. The ARM64 ones
-// are machines of the test whose uname says so, and the program for them is a file that looks like
-// one.
+// A farm of x86-64 and ARM64 machines: each gets the worker for its architecture. The ARM64
+// machines are simulated by a uname that prints their architecture, and the program for them is a
+// file with an ARM64 ELF header.
 
 #include <elf.h>
 #include <gmock/gmock.h>
@@ -43,8 +43,8 @@ class InviteArchitectures : public ::testing::Test {
 TEST_F(InviteArchitectures, EachHostGetsTheProgramForIt) {
   const std::string program = worker_file(EM_AARCH64, fitting_mark());
   installed_.put_aarch64_worker(program);
-  // chmod comes after the check of what arrived. This one keeps that, and puts a worker that runs
-  // on the test's machine in its place.
+  // chmod is called after the received program is checked. This script keeps a copy of that
+  // program, and replaces it by a worker that runs on the test's machine.
   machines_.replace("phone", "chmod",
                     "cp \"$2\" \"$HOME/arrived\"; cp " BANDSAW_WORKER_BIN
                     " \"$2\"; exec /usr/bin/chmod \"$@\"\n");
@@ -84,7 +84,7 @@ TEST_F(InviteArchitectures, AFileThatIsNotTheProgramIsNotSent) {
   EXPECT_TRUE(got_nothing("phone"));
 }
 
-// uname names the kernel's architecture; the programs of a 32-bit system have another loader.
+// uname prints the kernel's architecture, but the programs of a 32-bit system have another loader.
 TEST_F(InviteArchitectures, AThirtyTwoBitSystemOnA64BitKernelSaysWhatItNeeds) {
   installed_.put_aarch64_worker(worker_file(EM_AARCH64, fitting_mark()));
   machines_.replace("phone", "chmod",

@@ -34,7 +34,7 @@ class FullDiskFarm : public testing::Test {
  protected:
   void SetUp() override {
     ASSERT_EQ(mkdir(disk_.c_str(), 0700), 0);
-    // The reserve, and the 64 MiB that must be free before jobs go on.
+    // The reserve, and the 64 MiB that must be free before jobs continue.
     if (mount("tmpfs", disk_.c_str(), "tmpfs", 0, "size=192m") != 0) {
       GTEST_SKIP() << "needs the right to mount a small tmpfs (run as root)";
     }
@@ -62,7 +62,8 @@ class FullDiskFarm : public testing::Test {
                                     "--threads", "1", "--cache", folder_ / "cache"}));
     ASSERT_TRUE(worker_->wait_for("joined")) << worker_->err();
   }
-  /// Job 1 is done, job 2 at work, job 3 waits; then the disk is filled and nobody runs.
+  /// Job 1 is done, job 2 is being rendered, job 3 waits; then the coordinator is stopped and the
+  /// disk filled.
   void stop_with_jobs_and_fill() {
     start_worker();
     ASSERT_EQ(say(with_settings({"submit", kScene, "-o", folder_ / "first.pfm"}, 16)).code, 0);
@@ -94,7 +95,7 @@ class FullDiskFarm : public testing::Test {
     arguments.insert(arguments.end(), {"--farm", data() + "/farm"});
     return run(arguments);
   }
-  /// Asks until the answer holds `text`; the test's own time limit ends it.
+  /// Repeats the command until its output contains `text`; limited only by the test's own timeout.
   void ask_until(const std::vector<std::string>& arguments, const std::string& text) {
     std::string out;
     while (!HasFailure() && out.find(text) == std::string::npos) {

@@ -42,7 +42,7 @@ TEST(GalleryFolders, RenderAndFarmGiveTheSameBytes) {
   const std::vector<std::string> scenes = scenes_in(farm.path("gallery"));
   EXPECT_EQ(std::count_if(scenes.begin(), scenes.end(),
                           [](const std::string& s) { return s.find("/study/") != s.npos; }),
-            24);  // the study's 23 images, and its first
+            24);  // the study's 23 images, and its first image
   for (const std::string& scene : scenes) {
     SCOPED_TRACE(scene);
     const std::vector<std::string> settings = {"--width", "20", "--samples", "16", "--quiet"};

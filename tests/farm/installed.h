@@ -6,13 +6,14 @@
 
 namespace bandsaw::test {
 
-/// The command and its worker, copied into a folder of the test's own, so that a test decides which
-/// programs of other architectures lie with them.
+/// The command and its worker, copied into a folder of the test, so that the test determines which
+/// programs of other architectures are installed with them.
 class Installed {
  public:
   Installed();
   std::string bandsaw() const { return folder_ / "bin/bandsaw"; }
-  /// Where the program for aarch64 machines is looked for; the folder is there, the file is not.
+  /// Path at which the program for aarch64 machines is expected; its folder exists, the file does
+  /// not.
   std::string aarch64_worker() const { return folder_ / "lib/bandsaw/bandsaw-worker-aarch64"; }
   void put_aarch64_worker(const std::string& bytes) const;
 

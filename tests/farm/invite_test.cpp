@@ -1,4 +1,4 @@
-// bandsaw invite and dismiss, on machines behind an ssh of the test's.
+// bandsaw invite and dismiss, with simulated machines behind an `ssh` that is a script of the test.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ class Invite : public ::testing::Test {
     arguments.insert(arguments.begin(), {BANDSAW_BIN, "dismiss"});
     return run(arguments, machines_.environment());
   }
-  /// Nothing but the folders above what was there.
+  /// Returns true, and fails the test, if the host's home folder contains a file of the worker.
   bool has_files(const std::string& host) {
     for (const auto& entry : std::filesystem::recursive_directory_iterator(machines_.home(host))) {
       if (!entry.is_directory() && entry.path().filename() != "asked" &&
@@ -61,7 +61,7 @@ TEST_F(Invite, ASecondInvitationTakesThePlaceOfTheFirst) {
   ASSERT_EQ(invite({"desk"}).code, 0);
   const std::string second = file_bytes(machines_.worker_folder("desk") + "/pid");
   EXPECT_NE(first, second);
-  // Ended, if nobody has asked yet how.
+  // The first worker has ended if its process does not exist or is a zombie.
   const std::string runs =
       "grep -qs '^State:[[:space:]][^ZX]' /proc/" + std::to_string(std::stoi(first)) + "/status";
   EXPECT_NE(run({"/bin/sh", "-c", runs}).code, 0) << "the first is still there";

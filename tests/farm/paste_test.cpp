@@ -1,4 +1,5 @@
-// The line that `bandsaw serve` prints for a machine that has no worker: as pasted into its shell.
+// The line that `bandsaw serve` prints for a machine without a worker, run by a shell as if it were
+// pasted.
 
 #include <gtest/gtest.h>
 
@@ -21,7 +22,7 @@ std::string pasted_line(Process& coordinator) {
   return parts[1].str() + "exec " + parts[2].str();
 }
 
-// A shell in an empty folder, with nothing of ours on its PATH.
+// A shell in an empty folder, without Bandsaw's programs on its PATH.
 Process paste(const FarmProcesses& farm, const std::string& host, const std::string& folder,
               const std::string& line) {
   return Process::start(

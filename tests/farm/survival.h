@@ -28,9 +28,9 @@ class Survival {
   void expect_the_same_bytes(Process& client);
 
   /// Returns the number of bands that one worker had stored and another rendered as well, except
-  /// backup tasks and stolen work, and of bands that one worker rendered twice. Bands rendered in
-  /// vain by the worker `cut_off` do not count, because it could not know what others did
-  /// meanwhile.
+  /// backup tasks and stolen work, and of bands that one worker rendered twice. Bands that the
+  /// worker `cut_off` rendered in vain do not count, because it could not know what the other
+  /// workers did meanwhile.
   int rendered_again(const std::string& cut_off = "");
 
   /// Expects rendered_again() to be 0; otherwise prints every log.

@@ -1,4 +1,4 @@
-// The worker is one file: what it needs of a machine beside the kernel is glibc.
+// The worker is one file: it needs only the kernel and glibc.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

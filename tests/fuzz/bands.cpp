@@ -88,7 +88,7 @@ class Sender {
   }
 
   BandIntake intake_;
-  std::string band_;  ///< what an honest worker would send
+  std::string band_;  ///< the bytes that a correct worker would send
   std::string came_;
 };
 

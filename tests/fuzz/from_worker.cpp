@@ -32,7 +32,7 @@ std::optional<Input> as_input(const farm::FromWorker& message) {
   switch (message.kind_case()) {
     case farm::FromWorker::kHello:
       if (auto hello = worker_hello(message.hello(), "address"); hello.ok()) {
-        hello->protocol = 0;  // fit, whatever it says
+        hello->protocol = 0;  // compatible with the coordinator, whatever the input contains
         hello->pixel_version = 0;
         hello->canary = 0;
         return input::Hello{kSession, *std::move(hello)};

@@ -78,8 +78,8 @@ class Sender {
     BANDSAW_CHECK(status.ok() || store_->partial(digest_) == 0, "wrong bytes are not kept");
   }
 
-  /// High bits of `what`: from the beginning or from what is there, bytes as they are or not, at
-  /// the place or beside it.
+  /// The high bits of `what` select: from the beginning or from the stored bytes on, correct or
+  /// damaged bytes, at the right offset or beside it.
   void send(std::uint8_t what, std::uint32_t number) {
     farm::BlobChunk chunk;
     std::uint64_t offset = intake_.received();

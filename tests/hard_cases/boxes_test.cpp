@@ -74,7 +74,7 @@ bool truly_meets(const FloatBox& box, const Ray& ray) {
   return enter <= leave;
 }
 
-/// Returns a box about `center` and a ray through a point of one of its edges, from anywhere.
+/// Returns a box around `center`, and a ray from anywhere through a point of one of its edges.
 std::pair<FloatBox, Ray> aimed(const Vec3& center, test::Random& random) {
   const auto extent = [&] { return std::pow(10, random.uniform(-6, 1)); };
   const double x = extent();
@@ -133,7 +133,7 @@ TreeItems items_of(const Mesh& mesh) {
   return items;
 }
 
-/// Returns the number of boxes of the tree that a ray intersects.
+/// Returns the number of boxes in the tree that a ray intersects.
 double boxes_met(const BinaryTree& tree, const std::vector<Ray>& rays) {
   double met = 0;
   for (const Ray& ray : rays) {

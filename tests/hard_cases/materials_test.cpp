@@ -152,8 +152,8 @@ TEST(Ggx, SeenFacetsCoverTheWholeDirection) {
   for (const double alpha : {0.05, 0.2, 0.5, 1.0}) {
     for (const double z : {1.0, 0.7, 0.3, 0.1}) {
       const Vec3 o{std::sqrt(1 - z * z), 0, z};
-      // Slopes tan = alpha sqrt(x / (1 - x)) make D cos dh uniform in x; x = 1 - s^2 spreads the
-      // steep ones.
+      // The substitution tan = alpha sqrt(x / (1 - x)) of the slopes makes D cos dh uniform in x; x
+      // = 1 - s^2 increases the density at steep slopes.
       constexpr int kSide = 600;
       double sum = 0;
       for (int a = 0; a < kSide; ++a) {

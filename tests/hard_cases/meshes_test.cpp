@@ -12,7 +12,7 @@
 namespace bandsaw::test {
 namespace {
 
-/// Returns how many rays from inside a closed mesh at its corners and edges escape.
+/// Returns the number of rays that escape from inside a closed mesh at its corners and edges.
 int leaks(const Mesh& mesh, const Vec3& origin_at, double origin_size, int count) {
   Pool pool(2);
   const Geometry geometry = scene_of(mesh);
@@ -53,8 +53,8 @@ TEST(Leaks, T1T2_NoneAtCornersAndEdgesOfClosedMeshes) {
   check("T2", "spikes", rough_sphere(200, 100, 6, 2), {}, 0.2, most / 2);
 }
 
-// The triangle test may hit a line of three points, as a sliver of rounding; scenes remove
-// triangles without area.
+// The triangle test may hit a triangle of three collinear points, because rounding makes it a
+// sliver; scenes remove triangles without area.
 TEST(Triangle, T4_WithoutAreaIsNeverHit) {
   Random random(1);
   const Vec3 bad = {-1113.45459, -79.049614, -56.2431908};

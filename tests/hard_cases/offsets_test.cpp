@@ -80,7 +80,8 @@ TEST(Offset, O1_NoRayHitsThePlaneItLeaves) {
   test::at_most("O1", "hits in 14 rows of " + std::to_string(rays), hits, 0);
 }
 
-/// Two planes that intersect in the z axis, at 0 and `angle` from x, for paths between them.
+/// Two planes that intersect in the z axis, at angles 0 and `angle` from x, between which paths
+/// scatter.
 struct Crease {
   Geometry geometry;
   Vec3 inwards[2];
@@ -95,8 +96,8 @@ struct Crease {
   bool holds(const Vec3& p) const {
     return p.x > 0 && dot(p, inwards[0]) > 0 && dot(p, inwards[1]) > 0;
   }
-  /// Returns true if a ray that hits neither plane leaves by the opening: between them at 0.9 from
-  /// the axis, or beyond their ends.
+  /// Returns true if a ray that hits neither plane leaves by the opening: between the planes at 0.9
+  /// from the axis, or beyond their ends.
   bool leaves_by_opening(const Ray& ray) const {
     const Vec3& o = ray.origin;
     const Vec3& d = ray.direction;

@@ -168,7 +168,7 @@ TEST(Sphere, S4_IsLeftOnTheFarSideFromWithin) {
     }
     const Ray ray = {sphere.center + 2 * just_off * n, d};
     const auto t = hit(ray, sphere, true);
-    ASSERT_TRUE(t);  // a near root would be 0
+    ASSERT_TRUE(t);  // t of the near root would be 0
     const double relative = std::abs(static_cast<double>(*t / truth(ray, sphere).far - 1));
     if (cosine > 0.03) {
       error.see(relative);

@@ -1,8 +1,8 @@
-// Q5: why the criterion is not met. Two techniques, light sampling by solid angle and
-// cosine-weighted sampling, are weighted by what a heuristic can know in any scene: the ratio of
-// their pdfs. Near the light cosine-weighted sampling is nearly exact, far from it light sampling
-// is; the same ratios occur at both places. The optimal weights are computed here, and they do not
-// meet the criterion either.
+// Q5: shows why the criterion is not met. Two techniques, light sampling by solid angle and
+// cosine-weighted sampling, are weighted by the ratio of their pdfs, which is all that a heuristic
+// can know in any scene. Near the light cosine-weighted sampling is nearly exact, far from it light
+// sampling is; the same ratios occur at both places. The optimal weights are computed here, and
+// they do not meet the criterion either.
 
 #include <gtest/gtest.h>
 

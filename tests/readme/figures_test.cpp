@@ -1,4 +1,4 @@
-// Every figure of the gallery's README is made by its command, and is there.
+// Every figure of the gallery's README exists, and its command makes it.
 
 #include <gtest/gtest.h>
 

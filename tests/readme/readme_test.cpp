@@ -1,4 +1,4 @@
-// Every `sh` block of the README runs, as it stands, in a fresh folder that holds the checkout's
+// Every `sh` block of the README runs, unchanged, in a new folder that contains the checkout's
 // files.
 
 #include <gtest/gtest.h>
@@ -34,7 +34,8 @@ std::vector<std::string> shell_blocks(const std::string& path) {
   return blocks;
 }
 
-// The checkout, as links, so that a block may write beside it without changing it.
+// The checkout, as symbolic links, so that a block may write files beside them without changing the
+// checkout.
 void link_checkout(const std::string& folder) {
   for (const char* name : {"renderlib", "deploy", "tests", "proto", "CMakeLists.txt"}) {
     fs::create_symlink(fs::path(BANDSAW_SOURCE) / name, fs::path(folder) / name);
@@ -47,7 +48,7 @@ TEST(Readme, EveryShellBlockRuns) {
   const std::string build = fs::path(BANDSAW_BIN).parent_path().parent_path();
   for (const std::string& block : blocks) {
     if (block == "deploy/test.sh\n") {
-      continue;  // is what runs this test
+      continue;  // this block runs the tests, and this test with them
     }
     TempDir folder;
     link_checkout(folder.path());
@@ -63,7 +64,7 @@ TEST(Readme, EveryShellBlockRuns) {
   }
 }
 
-// The headings that a reader relies on.
+// The headings that the README must have.
 TEST(Readme, HasItsParts) {
   std::ifstream file(std::string(BANDSAW_SOURCE) + "/README.md");
   const std::string text((std::istreambuf_iterator<char>(file)), {});

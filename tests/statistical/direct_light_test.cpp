@@ -1,6 +1,6 @@
 // Irradiance under single lights against closed forms, within 4 standard errors; the standard error
-// is at most 1e-3 of the value. With 4 standard errors of 32 seeds, a test has a false alarm in one
-// of about 2 700 changes of the sampling.
+// is at most 1e-3 of the value. With 4 standard errors of 32 seeds, a correct change of the
+// sampling fails a test with a probability of about 1 / 2 700.
 
 #include <gtest/gtest.h>
 

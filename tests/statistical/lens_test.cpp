@@ -96,8 +96,8 @@ void expect_the_same(const SceneMaker& maker, const PerspectiveCamera& camera,
   }
 }
 
-/// Lights of all kinds before, in and beyond the focus, one behind a ball, among lights that the
-/// camera does not see.
+/// Lights of all kinds in front of, in and beyond the focus, one behind a ball, among lights that
+/// the camera does not see.
 SceneMaker lamps() {
   SceneMaker maker;
   maker.quad({-9, -2, -30}, {18, 0, 0}, {0, 0, 40}, maker.diffuse(0.6f));

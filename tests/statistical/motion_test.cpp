@@ -119,7 +119,7 @@ TEST(PlacedLight, OfAnEllipsoidIsTheSameByEveryTechnique) {
   }
 }
 
-/// A light that moves from one placement to another while the shutter is open.
+/// A light that moves from one position to another while the shutter is open.
 SceneMaker moving_lamp(const Shapes& lamp, const Key& from, const Key& to) {
   SceneMaker maker;
   maker.lamp(1);

@@ -13,8 +13,8 @@ namespace {
 using test::Moments;
 using test::SceneMaker;
 
-/// A ball of radius 1 under a white sky: in a frame that goes from one placement to the other
-/// while the shutter is open, from 0 to 1, and mirrored in it.
+/// A ball of radius 1 under a white sky: in a frame that moves from one placement to the other
+/// while the shutter is open, from 0 to 1; also with the ball mirrored in the frame.
 SceneMaker moving_ball(const Medium& medium, const Transform& from, const Transform& to) {
   SceneMaker maker;
   maker.background(gray(1), gray(1));

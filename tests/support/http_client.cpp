@@ -58,7 +58,7 @@ std::optional<HttpAnswer> http_call(int port, const HttpCall& call) {
     request.set(name, value);
   }
   beast::error_code error;
-  // A server may answer before it has taken everything: what counts is the answer.
+  // A server may respond before it has read the whole request; then the response counts.
   if (server.connected()) {
     http::write(server.socket(), request, error);
   }

@@ -15,22 +15,22 @@ struct HttpAnswer {
   std::string body;
   HttpHeaders headers;
 
-  /// The value of the first header of this name, whose case does not matter; empty: there is none.
+  /// Returns the value of the first header of this name, ignoring case; empty: there is none.
   std::string header(const std::string& name) const;
 };
 
 struct HttpCall {
   std::string method = "GET";
   std::string target = "/";
-  HttpHeaders headers = {};  ///< Host and Content-Length come by themselves, unless they are given
+  HttpHeaders headers = {};  ///< Host and Content-Length are added unless they are given
   std::string body = {};
 };
 
-/// Makes a connection to 127.0.0.1 for this call alone, and waits for the whole answer. Nothing: no
-/// whole answer came.
+/// Opens a connection to 127.0.0.1 for this call only, and waits for the whole response. Returns
+/// std::nullopt if no complete response arrived.
 std::optional<HttpAnswer> http_call(int port, const HttpCall& call);
 
-/// Makes a connection to 127.0.0.1, sends these bytes, and gives all that is answered until the
+/// Opens a connection to 127.0.0.1, sends these bytes, and returns all bytes received until the
 /// server closes the connection.
 std::string send_bytes_to(int port, const std::string& bytes);
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// A pattern of bytes in which no two pieces are alike.
+// A byte pattern in which all pieces differ.
 
 #include <cstddef>
 #include <string>

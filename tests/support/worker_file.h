@@ -7,11 +7,13 @@
 
 namespace bandsaw::test {
 
-/// A file that is a worker as far as its bytes tell: an ELF header of the machine type (EM_AARCH64,
-/// … of <elf.h>), one segment with the mark in it, and section headers at its end. It does not run.
+/// Makes the bytes of a file that is accepted as a worker: an ELF header of the machine type
+/// (EM_AARCH64, … of <elf.h>), one segment with the mark in it, and section headers at its end. The
+/// file cannot be run.
 std::string worker_file(std::uint16_t machine, const wire::WorkerMark& mark);
 
-/// The mark of a worker that fits a coordinator of this build; its version is "7.8.9".
+/// Returns the mark of a worker that is compatible with a coordinator of this build; its version is
+/// "7.8.9".
 wire::WorkerMark fitting_mark();
 
 }  // namespace bandsaw::test

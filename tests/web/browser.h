@@ -11,7 +11,7 @@
 
 namespace bandsaw::test {
 
-/// Where the programs are; empty: not installed.
+/// Paths of the programs; empty: not installed.
 std::string chromedriver_program();
 
 struct BrowserOptions {
@@ -22,7 +22,8 @@ struct BrowserOptions {
   bool dark = false;
 };
 
-/// One session with a profile of its own. A call that fails, fails the test and gives nothing.
+/// One session with a profile of its own. A call that fails also fails the test, and returns an
+/// empty value.
 class Browser {
  public:
   explicit Browser(const BrowserOptions& options = {});
@@ -33,13 +34,13 @@ class Browser {
   void go(const std::string& url);
   /// Runs the body of a JavaScript function and returns its result; `argument` is `arguments[0]`.
   google::protobuf::Value run(const std::string& body, const std::string& argument = "");
-  /// The same, as text.
+  /// The same; returns the result as text.
   std::string text(const std::string& expression);
-  /// Waits in the page until the expression is true; false: three minutes passed.
+  /// Waits in the page until the expression is true. Returns false after three minutes.
   bool wait(const std::string& expression);
   void click(const std::string& selector);
   void type(const std::string& selector, const std::string& keys);
-  /// A PNG of what is in the window.
+  /// Returns a PNG of the window's content.
   void screenshot(const std::string& path);
   /// Returns the errors on the browser's console since the last call.
   std::vector<std::string> console_errors();

@@ -123,7 +123,7 @@ TEST(Agreement, WithATwoWideTreeOfDoubles) {
   for (const Case& c : cases(4)) {
     SCOPED_TRACE(c.name);
     if (c.name == "beyond float" || c.name == "denormal") {
-      continue;  // there nothing is decided in float: correct, as above, but slow
+      continue;  // float decides nothing at this size: correct, as above, but slow
     }
     const Geometry geometry = scene_of(c.mesh);
     const Accel accel = Accel::build(geometry, pool);

@@ -70,7 +70,7 @@ TEST(AtomicFile, RefusesTargetsThatAreNoFiles) {
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/full"));
 }
 
-// Before the work that the file is for.
+// The check is made before the work whose result the file will contain.
 TEST(AtomicFile, SaysBeforehandWhatCannotBeWritten) {
   const test::TempDir dir;
   EXPECT_TRUE(check_can_be_written(dir / "a").ok());

@@ -1,4 +1,4 @@
-// The floating-point contract that the build settings are there for.
+// The floating-point behaviour that the compiler options must ensure.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ struct DoublePair {
 TEST(Compiler, Y1_KeepsTheRoundingOfNeighbouringFloats) {
   const double in[2] = {15.123456789, -3.0000000001};
   DoublePair out;
-  // The compiler must not know the numbers, or it rounds them itself, and well.
+  // The compiler must not know the numbers, otherwise it rounds them itself, and correctly.
   const double* volatile unknown = in;
   round_to_float(unknown, &out);
   EXPECT_EQ(out.x, 15.123456954956055);

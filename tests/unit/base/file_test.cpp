@@ -14,7 +14,7 @@ TEST(File, WhatIsNoFileIsRefusedAtOnce) {
   const test::TempDir folder;
   const std::string pipe = folder / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  // Opened as a file would be, it would wait for somebody who writes.
+  // A plain open() of a pipe would wait for a writer.
   EXPECT_EQ(File::open_regular(pipe).status().code(), absl::StatusCode::kInvalidArgument);
   EXPECT_EQ(MappedFile::open(folder.path()).status().code(), absl::StatusCode::kInvalidArgument);
   EXPECT_EQ(File::open_regular(folder / "none").status().code(), absl::StatusCode::kNotFound);

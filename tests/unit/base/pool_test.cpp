@@ -55,7 +55,7 @@ TEST(Pool, FinishesOneRangeWhileAnotherIsHeldUp) {
   });
   held.wait(false);
   int done = 0;
-  pool.parallel_for(10, [&](std::int64_t) { ++done; });  // by the one thread that is free
+  pool.parallel_for(10, [&](std::int64_t) { ++done; });  // run by the one thread that is free
   EXPECT_EQ(done, 10);
   release = true;
   release.notify_all();

@@ -42,7 +42,7 @@ Lanes any_lanes(test::Random& random) {
   return lanes;
 }
 
-/// The same bits; NaN is NaN.
+/// Expects the same bits; all NaNs are equal.
 void expect_same(const Lanes& a, const Lanes& b) {
   for (std::size_t i = 0; i < a.size(); ++i) {
     if (!std::isnan(a[i]) || !std::isnan(b[i])) {
@@ -65,7 +65,7 @@ Lanes in_bytes(const Float& x) {
   return lanes;
 }
 
-/// Without lanes that no int32 can hold.
+/// Values whose conversion to int32 is defined.
 template <class Float>
 std::array<std::int32_t, 8> truncated(const Float& x) {
   const Lanes all = stored(x);
@@ -82,7 +82,7 @@ TEST(Simd, PlainFusedMultiplyAddRoundsOnce) {
   for (int i = 0; i < 2'000'000; ++i) {
     const float a = any_float(random);
     const float b = any_float(random);
-    // Half of them next to -a b, where nearly all cancels.
+    // Half of the values are close to -a b, so that the sum nearly cancels.
     const float c = i % 2 == 0 ? any_float(random) : std::nextafter(-a * b, any_float(random));
     expect_same(Lanes{simd_plain::fused(a, b, c)}, Lanes{std::fma(a, b, c)});
   }
@@ -121,8 +121,8 @@ TEST(Simd, EveryOperationIsEqualToPlain) {
   }
 }
 
-// The second operand, as the instructions of x86 have it; those of NEON would give NaN and order
-// the zeros.
+// x86 instructions return the second operand. NEON's min and max would return NaN, and order the
+// zeros.
 TEST(Simd, MinAndMaxReturnTheSecondOperandWhereNeitherIsLess) {
   const float nan = std::nanf("");
   const Lanes a = {nan, 1, nan, 0.0f, -0.0f, 2, nan, -HUGE_VALF};

@@ -127,8 +127,9 @@ TEST(Camera, C4_APointOutOfFocusSpreadsOverADiskOfTheRightRadius) {
   lens.aperture = 0.3;
   lens.focus_distance = 5;
   for (const double z : {1.0, 2.5, 4.9, 8.0, 100.0}) {
-    // The image positions whose ray through a place on the lens goes through the point (0, 0, -z):
-    // the plane of focus carries the image, so where that ray meets it tells the position.
+    // Returns the image positions whose ray through a given place on the lens passes the point (0,
+    // 0, -z). The image lies on the plane of focus, so the intersection of that ray with the plane
+    // gives the position.
     const RayGenerator rays(lens, 1000, 1000);
     const double pixel = 2 * std::tan(20 * 3.14159265358979 / 180) / 1000;
     double largest = 0;
@@ -151,7 +152,8 @@ TEST(Camera, C4_APointOutOfFocusSpreadsOverADiskOfTheRightRadius) {
     }
     const double expected = 0.15 * std::abs(z - 5) / z;
     EXPECT_NEAR(largest, expected, 0.01 * expected) << z;
-    // Uniform on a disk: the mean square radius is half the radius' square.
+    // For a uniform distribution on a disk, the mean square distance from the centre is half the
+    // squared radius.
     EXPECT_NEAR(std::sqrt(2 * squares), expected, 0.01 * expected) << z;
   }
   test::holds("C4", "radius within 1 % at five distances");

@@ -38,7 +38,7 @@ TEST(LensView, IsPassedByAllRaysOfItsPlace) {
     const double cosine = dot(ray.direction, forward);
     EXPECT_NEAR(view->pdf(ray.direction), length_squared(direction) / (area * cosine),
                 1e-12 * view->pdf(ray.direction));
-    // But for rays of the very rim.
+    // Rays at the very rim of the lens are excluded.
     const Vec3 inwards = normalize(view->focus() - (ray.origin * 0.999 + camera.position * 0.001));
     const std::optional<Vec3> from = view->on_lens(inwards);
     ASSERT_TRUE(from);

@@ -79,7 +79,7 @@ class NoisyImage {
 static_assert(kGrid.width % kTileSide == 0);
 
 struct Stopped {
-  double error = 0;  ///< the true one
+  double error = 0;  ///< true error
   double cost = 0;   ///< samples over the ideal number of a job that is not adaptive
 };
 
@@ -118,7 +118,7 @@ Stopped run(Errors errors, bool adaptive, bool with_margin, Random& random) {
 constexpr int kJobs = 400;
 
 struct Jobs {
-  int met = 0;      ///< those whose true error is at most the target
+  int met = 0;      ///< number of jobs whose true error is at most the target
   double cost = 0;  ///< mean
 };
 

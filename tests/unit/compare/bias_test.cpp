@@ -52,7 +52,7 @@ TEST(Bias, OneBadBlockIsFound) {
   EXPECT_GT(test.worst_t, 5);
 }
 
-// The level that the header states: once in a hundred images of independent noise.
+// The false-alarm rate that the header states: once in a hundred images of independent noise.
 TEST(Bias, FalseAlarmsAreAsRareAsStated) {
   int alarms = 0;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
@@ -62,8 +62,7 @@ TEST(Bias, FalseAlarmsAreAsRareAsStated) {
   EXPECT_LE(alarms, 12);  // 4 expected; more than 12 has a probability below 1e-3
 }
 
-// Every other pixel of sixteen in a row has the same noise, as where they find their light
-// together.
+// Every other pixel of sixteen in a row has the same noise, as if these pixels shared paths.
 TEST(Bias, HalfRowsThatShareTheirNoiseAreNone) {
   int alarms = 0;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {

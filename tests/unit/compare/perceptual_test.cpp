@@ -39,8 +39,8 @@ TEST(Flip, EqualImagesDoNotDiffer) {
   EXPECT_EQ(mean(hdr_flip(waves(40, 30), waves(40, 30))), 0);
 }
 
-// No features: equations 7 to 9 of the paper by hand. Black against white: HyAB 100; the largest
-// distance, green against blue, is 203.3.
+// Computed by hand from equations 7 to 9 of the paper, without features. Black against white: HyAB
+// 100; the largest distance, green against blue, is 203.3.
 TEST(Flip, BlackAgainstWhiteInClosedForm) {
   const double largest = std::pow(203.31, 0.7);
   const double expected = 0.95 + 0.05 * (std::pow(100, 0.7) - 0.4 * largest) / (0.6 * largest);
@@ -71,8 +71,8 @@ TEST(Flip, IsSymmetricAndGrowsWithTheDifference) {
   }
 }
 
-// A step answers with its height, equations 11 and 12, and raises the error beside it, where
-// colours differ no more than elsewhere.
+// The response to a step is its height (equations 11 and 12). The step raises the error beside it,
+// although the colours differ no more there than elsewhere.
 TEST(Flip, AMissingEdgeCountsMoreThanItsColour) {
   Image edge = uniform(60, 60, 0.3F);
   for (std::size_t i = 0; i < edge.pixels.size(); ++i) {
@@ -129,7 +129,7 @@ TEST(FalseColor, LightGrowsFromBlackToNearlyWhite) {
   }
 }
 
-// A lamp that is infinitely bright where there is none is as wrong as a very bright one.
+// An infinitely bright light that is missing in the reference counts as much as a very bright one.
 TEST(Flip, InfiniteIsVeryBright) {
   Image reference = uniform(32, 32, 0);
   reference.pixels[0] = gray(2);

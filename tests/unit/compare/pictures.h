@@ -1,6 +1,6 @@
 #pragma once
 
-// Small pictures to compare.
+// Small pictures for comparisons.
 
 #include <cmath>
 #include <cstdint>

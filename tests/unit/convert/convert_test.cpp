@@ -101,8 +101,8 @@ JobView full_job() {
   return job;
 }
 
-// Comparing the message of what came back with the first message finds a field that either
-// direction forgets, unless both do.
+// Converts the converted message back and compares it with the first message. This finds a field
+// that either direction forgets, unless both do.
 TEST(Convert, JobsComeBack) {
   const JobView job = full_job();
   const farm::JobStatus message = to_message(job);

@@ -20,7 +20,7 @@ class Box {
     value_ = std::move(value);
     changed_.notify_all();
   }
-  /// Waits for a value that fits, and returns the newest.
+  /// Waits for a value that satisfies the condition, and returns the newest.
   T wait(const std::function<bool(const T&)>& fits = [](const T&) { return true; })
       EXCLUDES(mutex_) {
     MutexLock lock(mutex_);

@@ -58,8 +58,8 @@ class DamagedLog : public testing::TestWithParam<Damage> {
     std::atomic<int> stored{0};
     FakeWorker one(farm_.scene(), worker,
                    [&](const Band&, const absl::StatusOr<BandOutcome>& outcome) {
-                     // On the worker's thread; takes effect at the latest before its second next
-                     // band.
+                     // Runs on the worker's thread; takes effect before its second next band at the
+                     // latest.
                      if (outcome.ok() && ++stored == 1) {
                        EXPECT_TRUE(tell(&Engine::pause, job).ok());
                      }

@@ -38,7 +38,7 @@ class FakeWorker::Link : public WorkerLink {
     stopped_ = true;
     changed_.notify_all();
   }
-  /// False: stopped.
+  /// Returns false if the worker was stopped.
   bool next(action::Lease& lease) {
     MutexLock lock(mutex_);
     while (leases_.empty() && !stopped_) {
@@ -51,7 +51,7 @@ class FakeWorker::Link : public WorkerLink {
     leases_.pop_front();
     return true;
   }
-  /// A short pause before a band is sent again. False: stopped.
+  /// Pauses shortly before a band is sent again. Returns false if the worker was stopped.
   bool rest() {
     MutexLock lock(mutex_);
     if (!stopped_) {

@@ -14,7 +14,7 @@
 
 namespace bandsaw::coordinator {
 
-/// Shared with the test, which advances it.
+/// The time, which the test shares and advances.
 class FakeTime {
  public:
   void advance(double seconds) { now_ = now_ + seconds; }

@@ -172,7 +172,7 @@ TEST_F(FilmThreadTest, AnotherBandAtTheSameOffsetIsDamage) {
   ASSERT_TRUE(add({0, 16}, {0, 4}).ok());
   IncomingBand other = logged({0, 16}, {4, 8});
   IncomingBand wrong = logged({0, 16}, {4, 8});
-  wrong.pixels.sums[7] += 1;  // sound in the log, but not what was added
+  wrong.pixels.sums[7] += 1;  // valid in the log, but not the pixels that were added
   wrong.offset = other.offset;
   ASSERT_TRUE(thread_.add(1, std::move(wrong), {{4, 8}}).ok());
   thread_.retract(1, 7);

@@ -22,10 +22,10 @@ class KeepTest : public ::testing::Test {
     spec_ = farm_.spec(StopAtSamples{.samples = 64});
   }
 
-  /// Submits all without waiting for each, which would wait for the disk each time.
+  /// Submits all jobs without waiting for each, because each wait would include a disk access.
   std::vector<JobId> submit(std::size_t jobs) {
     Box<std::vector<JobId>> box;
-    std::vector<JobId> submitted;  // Of the engine's thread, which answers in order.
+    std::vector<JobId> submitted;  // written by the engine's thread, which answers in order
     for (std::size_t i = 0; i < jobs; ++i) {
       spec_.request_id = absl::StrCat("one-of-many-requests-", ++requests_);
       farm_.engine().submit(spec_, [&, jobs](const absl::StatusOr<JobId>& job) {
@@ -70,12 +70,13 @@ class KeepTest : public ::testing::Test {
 };
 
 TEST_F(KeepTest, TheThousandthJobRemovesTheOldest) {
-  EXPECT_TRUE(jobs().empty());  // It has looked once, and counts from here.
+  EXPECT_TRUE(
+      jobs().empty());  // the first collection is done, and its time is the start of the interval
   const std::vector<JobId> over = submit(990);
   cancel(over);
   EXPECT_EQ(jobs().size(), 990u);
   submit(20);
-  // The store's thread runs its first collection before.
+  // Waits until the store's thread has run its first collection.
   for (int asked = 0; asked < 1'000'000 && is_known(over.front()); ++asked) {
   }
   const std::vector<JobView> left = jobs();

@@ -26,7 +26,7 @@ class TestFarm {
   DigestHex send_package();
   JobSpec spec(StopRule stop);
   absl::StatusOr<JobId> submit(const JobSpec& spec);
-  /// Sends the package and submits; the test ends if that fails.
+  /// Sends the package and submits a job; ends the test if that fails.
   JobId begin(StopRule stop);
   JobView view(JobId job);
   JobView wait_until(JobId job, const std::function<bool(const JobView&)>& fits);

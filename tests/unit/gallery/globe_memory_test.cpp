@@ -1,4 +1,4 @@
-// The study's largest globe costs its texels' bytes and little else.
+// The memory for the study's largest globe is little more than the bytes of its texels.
 
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ std::string scene_in(const TempDir& folder, std::uint32_t rows) {
   return folder / scene;
 }
 
-// The most memory that this process has had at once since the last call of forget_peak().
+// Returns the peak resident memory of this process since the last call of forget_peak().
 std::uint64_t peak_bytes() {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {
@@ -48,7 +48,7 @@ bool forget_peak() {
   return file.good();
 }
 
-// Renders the scene so large that every texel is looked at, and says what it took.
+// Renders the scene so large that every texel is read, and reports the memory.
 std::uint64_t peak_of_render(const std::string& scene_path) {
   coordinator::ImportLimits limits;
   limits.program = BANDSAW_IMPORT_BIN;
@@ -79,7 +79,7 @@ TEST(GlobeMemory, IsAtMostAFifthAboveTheTexels) {
   const std::uint64_t taken = peak_of_render(large) - base;
   RecordProperty("bytes_over_texel_bytes",
                  std::to_string(static_cast<double>(taken) / static_cast<double>(texels(4096))));
-  EXPECT_GE(taken, texels(4096));  // or nothing was measured
+  EXPECT_GE(taken, texels(4096));  // otherwise nothing was measured
   EXPECT_LE(static_cast<double>(taken), 1.2 * static_cast<double>(texels(4096)));
 }
 

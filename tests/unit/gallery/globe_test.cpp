@@ -23,7 +23,8 @@ TEST(Globe, IsTheSameFromAnyNumberOfThreads) {
   EXPECT_EQ(map_of(64).size(), 64u * 128 * 3);
 }
 
-// The first and last columns are neighbours on the sphere: no further apart than any two.
+// The first and last columns are neighbours on the sphere: they differ no more than any two
+// neighbours.
 TEST(Globe, HasNoSeam) {
   constexpr std::uint32_t kRows = 256;
   const Codes map = map_of(kRows);
@@ -56,7 +57,8 @@ TEST(Globe, HasIceAtThePolesAndSeaAndLandBetween) {
   EXPECT_LT(sea, 240);
 }
 
-// Four texels of the larger map make one of the smaller, but for details that only the larger has.
+// The mean of four texels of the larger map is one of the smaller, except for details that only the
+// larger map has.
 TEST(Globe, IsTheSamePlanetAtEverySize) {
   constexpr std::uint32_t kRows = 128;
   const Codes small = map_of(kRows);

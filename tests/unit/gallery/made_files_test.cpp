@@ -1,4 +1,4 @@
-// The files that bandsaw-gallery makes and that are kept in the repository are those that it makes.
+// The generated files in the repository are equal to the output of bandsaw-gallery.
 
 #include <gtest/gtest.h>
 
@@ -87,7 +87,8 @@ void expect_normals_out(const Obj& obj) {
 
 using Place = std::array<double, 3>;
 
-// Every edge is passed once in each direction, by where its ends lie.
+// Expects that every edge occurs once in each direction; edges are identified by the positions of
+// their ends.
 void expect_closed(const Obj& obj) {
   std::map<std::pair<Place, Place>, int> edges;
   const auto place = [&](std::size_t i) {

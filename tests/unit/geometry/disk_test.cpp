@@ -66,7 +66,7 @@ TEST(Disk, IsHitWithinItsRim) {
     const TracedRay ray = trace_setup(origin, target - origin, kInfinity);
     Crossing c;
     const bool hit = intersect(ray, disk, c);
-    // In higher precision.
+    // Computed in higher precision.
     const WideVec o(origin);
     const WideVec d = WideVec(target - origin);
     const WideVec n(disk.normal);

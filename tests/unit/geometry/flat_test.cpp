@@ -97,7 +97,7 @@ TEST(Quad, ReturnsTheCoordinatesAlongItsSides) {
   EXPECT_FALSE(hit({5.01, 2, 1}, {0, 0, -1}, q));
 }
 
-/// Returns the coordinates of the intersection of a ray with the plane of a quad, without rounding.
+/// The parameters of the intersection of a ray with the plane of a quad, without rounding.
 struct Truth {
   Wide t;
   Wide u;

@@ -18,7 +18,7 @@ struct ReadChannel {
   std::vector<float> values;
 };
 
-/// Every channel of the file, by name.
+/// Returns the channels of the file by name.
 std::map<std::string, ReadChannel> channels_of(const std::vector<std::byte>& file) {
   const auto* bytes = reinterpret_cast<const unsigned char*>(file.data());
   EXRVersion version;

@@ -58,8 +58,8 @@ std::vector<Sky> skies() {
   all.push_back(equirectangular("noise", 17, 9, [](auto x, auto y) { return noise(x, y, 1); }));
   all.push_back(equirectangular("one row", 6, 1, [](auto x, auto y) { return noise(x, y, 2); }));
   all.push_back(equirectangular("one column", 1, 7, [](auto x, auto y) { return noise(x, y, 3); }));
-  // One texel, across the seam. At a pole, where it would be too narrow to integrate over the
-  // test's cells, a whole row.
+  // The rectangle of one texel, across the seam. At a pole, where one texel would be too narrow to
+  // integrate over the test's cells, a whole row.
   all.push_back(equirectangular("L8 one texel", 20, 10,
                                 [&](auto x, auto y) { return x == 19 && y == 3 ? 7.0f : 0; }));
   all.push_back(

@@ -149,8 +149,9 @@ TEST(LightTree, NestedLightsStayWithinTheMaximumDepth) {
   EXPECT_NEAR(sum, 1, 1e-12);
 }
 
-/// A ball that a direction within the cone hits may be selected, and a ball beyond the sum of the
-/// angles may not: up to the angle that cosines resolve, 1.5e-8.
+/// A light whose ball is hit by a direction within the cone may be selected. A light that is
+/// further from the axis than the sum of the angles may not, up to 1.5e-8, the angle that cosines
+/// resolve.
 TEST(LightChoice, AConeSelectsTheLightsThatOverlapIt) {
   Random random(4);
   int met = 0;

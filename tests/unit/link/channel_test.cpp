@@ -15,7 +15,7 @@ namespace {
 using std::chrono::milliseconds;
 using ::testing::HasSubstr;
 
-/// A farm that knows nothing but the secret each call came with.
+/// A server that only records the secret of each call.
 class Echo : public farm::Farm::Service {
   grpc::Status ListJobs(grpc::ServerContext* context, const farm::ListJobsRequest*,
                         farm::ListJobsReply* reply) override {
@@ -91,8 +91,8 @@ TEST_F(ConnectTest, RefusesAnotherCertificateBeforeAnyCall) {
   EXPECT_THAT(std::string(status.message()), HasSubstr("another certificate"));
 }
 
-// Every join string ends with this machine, which may have a farm of its own; the right one may
-// only be away.
+// The last address of every join string is loopback, where another farm may run; the right farm may
+// only be unreachable.
 TEST_F(ConnectTest, AnotherFarmAtOneAddressDoesNotHideAnUnreachableOne) {
   const EchoServer server(tls(identity_));
   JoinString join = join_to(server.port, wire::sha256("another"));

@@ -75,7 +75,7 @@ void expect_samples_follow_density(const Bsdf& bsdf, const Vec3& axis, double re
   }
   EXPECT_LT(inside, 1 + 2e-3) << name;
   expected.back() = kSamples * std::max(0.0, 1 - inside);
-  // 14 such tests: one false alarm in a hundred runs of all with other seeds.
+  // There are 14 such tests: one false alarm in a hundred runs of all tests with other seeds.
   EXPECT_GT(test::chi_squared(counts, expected).p_value, test::sidak(0.01, 14)) << name;
 }
 

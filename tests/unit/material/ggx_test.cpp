@@ -34,7 +34,7 @@ TEST(Ggx, M3TheDistributionIsExactHoweverSmoothTheSurface) {
   test::holds("M3", "5,000 values within 1e-13");
 }
 
-// Weak white furnace: the facets that o sees, seen by their own mirror images, are all of them.
+// Weak white furnace: the facets that are visible from o cover the whole direction.
 TEST(Ggx, VisibleNormalsAreSampledWithTheirDensity) {
   for (const double alpha : {0.35, 0.6, 1.0}) {
     for (const double mu : {0.1, 0.4, 1.0}) {
@@ -67,7 +67,8 @@ TEST(Ggx, M5WeightsOfVisibleNormalsStayInTheUnitIntervalEvenAtGrazingDirections)
   test::holds("M5", "40,000 weights in [0, 1 + 1e-9]");
 }
 
-// Single scattering, F = 1, by quadrature elsewhere; 1 - ln 2 at alpha 1, straight on.
+// Single scattering with F = 1: by quadrature in another program; in closed form 1 - ln 2 at alpha
+// 1 and normal incidence.
 TEST(Ggx, TheAlbedoTableHoldsTheIntegrals) {
   struct Known {
     double alpha;

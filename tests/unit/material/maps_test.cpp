@@ -1,4 +1,4 @@
-// Numbers of materials that vary over a surface: where a map has a value, the material is the one
+// Material numbers that vary over a surface: where a map has a value, the material equals the one
 // with that number.
 
 #include <gtest/gtest.h>
@@ -50,8 +50,8 @@ ImageTexture tilted_map(UvSet set) {
   return map;
 }
 
-// The uvs of the second set are turned by a quarter, so the normal of the coat leans along y; that of
-// the base, whose map is the same in the first set, leans along x.
+// The uvs of the second set are turned by a quarter, so the normal of the coat leans along y; that
+// of the base, whose map is the same in the first set, leans along x.
 TEST(Maps, TheNormalMapOfTheCoatLiesOnItsOwnUvs) {
   const std::vector<Texture> textures = {ConstantTexture{{1, 1, 1}}, tilted_map(UvSet::kFirst),
                                          tilted_map(UvSet::kSecond)};
@@ -70,7 +70,7 @@ TEST(Maps, TheNormalMapOfTheCoatLiesOnItsOwnUvs) {
   EXPECT_NEAR(length(bsdf.coat_normal - Vec3{0, leaning.x, leaning.z}), 0, 1e-6);
 }
 
-/// Whether `mapped` is `there` at u = 0.5 and `next` at u = 1.5, from all sides.
+/// Returns true if `mapped` equals `there` at u = 0.5 and `next` at u = 1.5, from all sides.
 void expect_same(const Material& mapped, const Material& there, const Material& next) {
   Random random(3);
   for (int i = 0; i < 2000; ++i) {

@@ -1,4 +1,4 @@
-// glTF's material and rough glass: sampled, evaluated and bounded as they claim.
+// glTF's material and rough glass: samples, values and bounds agree.
 
 #include <gtest/gtest.h>
 
@@ -114,8 +114,8 @@ TEST(Principled, SamplesWeighWhatTheirValueSays) {
   }
 }
 
-// Light that comes from everywhere with radiance 1: no more may be sent on, and rough glass, whose
-// compression is divided out, sends nearly all of it.
+// Under light of radiance 1 from all directions no more may be scattered on. Rough glass, with the
+// compression of radiance divided out, scatters nearly all of it.
 TEST(Principled, NothingSendsOutMoreLightThanArrives) {
   constexpr int kSide = 48;
   for (const double roughness : {0.0, 0.1, 0.3, 0.6, 1.0}) {
@@ -144,7 +144,7 @@ TEST(Principled, ReflectionIsReciprocal) {
   Random random(6);
   for (const auto& [name, material] : all_materials(0.5)) {
     if (name == "bumped") {
-      continue;  // its normal is bent to what wo sees
+      continue;  // the shading normal is bent towards wo
     }
     const bool glass = std::holds_alternative<Dielectric>(material);
     for (int i = 0; i < 5000; ++i) {

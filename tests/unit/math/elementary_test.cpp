@@ -17,8 +17,8 @@ namespace {
 
 using test::Quad;
 
-/// A function of one number and where it is asked: uniform in [lo, hi], or uniform in the
-/// logarithm.
+/// A function of one number and the range in which it is tested: uniform in [lo, hi], or uniform in
+/// the logarithm.
 struct Case {
   std::string name;
   double (*function)(double);
@@ -28,7 +28,8 @@ struct Case {
   bool logarithmic;
 };
 
-/// x = quarters / 4 + rest: the oracle's argument stays small, where its own reduction cannot err.
+/// x = quarters / 4 + rest: the reference's argument stays small, where its own range reduction is
+/// exact.
 Quad rest_of_turn(Quad x) {
   return x - static_cast<Quad>(std::nearbyint(4 * static_cast<double>(x))) / 4;
 }
@@ -211,13 +212,14 @@ void hash_in(std::uint64_t& hash, double value) {
   hash = (hash ^ std::bit_cast<std::uint64_t>(value)) * 0x100000001b3u;
 }
 
-/// The same for every compiler, CPU and C library. It changes only together with the pixel version.
+/// The hash is the same for every compiler, CPU and C library. It changes only together with the
+/// pixel version.
 TEST(ElementaryBits, Y4_AreTheOnesRecorded) {
   test::Random random(19);
   std::uint64_t hash = 0xcbf29ce484222325u;
   for (const Case& c : cases()) {
     for (int i = 0; i < 20000; ++i) {
-      // Inputs without the C library's exp and log, whose bits differ.
+      // The inputs are made without the C library's exp and log, whose bits differ.
       const double u = random.uniform();
       const double x = c.logarithmic ? u * u * u * u * u * u * u * u : c.lo + (c.hi - c.lo) * u;
       hash_in(hash, c.function(x));

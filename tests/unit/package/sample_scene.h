@@ -1,6 +1,6 @@
 #pragma once
 
-// A scene with one of everything that a package can hold.
+// A scene that contains everything that a package can hold.
 
 #include <cstring>
 

@@ -96,7 +96,8 @@ TEST(AdaptivePlan, ImagesOfOneTileOrOnePixelHaveAPlan) {
 
 // Bias of adaptive sampling: hard cases A5 and A4.
 
-/// Tiles of two rows, so that few pixels (16 in a half tile) determine the plan and each counts.
+/// Tiles of two rows, so that few pixels (16 in a half tile) determine the plan and each of them
+/// counts.
 constexpr TileGrid kThin{256, 2};
 /// A pixel's samples; expected value 1 on the left half of the image. The right half is black.
 using Pixel = std::function<double(Random&)>;

@@ -143,9 +143,9 @@ TEST(Film, TheErrorIsKnownWhenEachRowHasTwoEqualHalves) {
 
 // Whole halves, further nodes after them, and a truncated last block.
 TEST(Film, TheErrorOfIndependentSamplesIsTheirStandardError) {
-  // Samples uniform in [0, 2): mean 1, variance 1/3. Of 128 x 96 x 3 estimates the relative error
-  // of the estimate of the root of their mean square is 1 / sqrt(2 * 36864) = 0.4 %; 2 % is five of
-  // them.
+  // Samples uniform in [0, 2): mean 1, variance 1/3. The estimate is a root of a mean of 128 x 96 x
+  // 3 squares, whose relative error is 1 / sqrt(2 * 36864) = 0.4 %; the tolerance of 2 % is five
+  // times that.
   const std::uint32_t width = 128;
   const std::uint32_t height = 96;
   for (const std::uint64_t samples : {64, 80, 96, 112, 72}) {

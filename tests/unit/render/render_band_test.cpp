@@ -125,8 +125,8 @@ TEST(RenderBand, C5_PathReuseGivesTheSameBitsForAnyBandsAndThreads) {
   test::holds("C5", "same bits in bands of 1, 3, 7 rows where pixels share paths");
 }
 
-// Light sampling, BSDF sampling and both have one mean and three variances. Without light sampling
-// a path traces fewer rays.
+// Light sampling, BSDF sampling and both have the same mean and different variances. Without light
+// sampling a path traces fewer rays.
 TEST(RenderBand, AllTechniquesHaveTheSameMean) {
   const auto box = test::cornell_box().build();
   const auto pixels = [&](Integrator integrator) {

@@ -29,7 +29,7 @@ class HostileTest : public FarmTest {
     return setrlimit(RLIMIT_NOFILE, &limit) == 0 && limit.rlim_cur >= files;
   }
 
-  /// Connects to the coordinator's port and sends only this.
+  /// Connects to the coordinator's port and sends only these bytes.
   void dial(const std::string& words) {
     sockaddr_in address{};
     address.sin_family = AF_INET;
@@ -85,7 +85,7 @@ TEST_F(HostileTest, AThousandConnectionsDoNotBlockOthersAndLeakNothing) {
   EXPECT_TRUE(asked.ok()) << asked.error_message();
   EXPECT_TRUE(put_blob({whole("still stored")}).ok());
   hang_up();
-  while (open_files() > before + 8) {  // the connections of newcomers may stay a moment
+  while (open_files() > before + 8) {  // the connections of other clients may remain for a moment
     ASSERT_TRUE(ask_as_newcomer().ok());
   }
 }

@@ -123,7 +123,8 @@ TEST_F(SecretTest, UploadsOfScenesWithTheOldSecretEnd) {
   farm::RotateSecretReply reply;
   ASSERT_TRUE(rotate(farm::SECRET_ROLE_FARM, &reply).ok());
   EXPECT_EQ(writer->Finish().error_code(), StatusCode::UNAUTHENTICATED);
-  while (engine_->partial_blob(digest) == 0) {  // what came is kept for who has the new one
+  while (engine_->partial_blob(digest) ==
+         0) {  // the received bytes are kept for a sender with the new secret
     std::this_thread::yield();
   }
 }

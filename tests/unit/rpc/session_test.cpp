@@ -31,7 +31,7 @@ farm::FromWorker hello() {
 
 class StreamTest : public FarmTest {
  protected:
-  /// Sends these messages, then reads to the end.
+  /// Sends these messages, then reads until the stream ends.
   grpc::Status say(const std::vector<farm::FromWorker>& messages,
                    std::vector<farm::ToWorker>* answers = nullptr, bool hang_up = true) {
     const auto call = context(link::Role::kWorker);

@@ -100,7 +100,7 @@ std::string message_after(void (*spoil)(SceneDescription&)) {
   return std::string(Scene::build(maker.scene, pool).status().message());
 }
 
-// Including placements without an inverse (X3).
+// Also covers placements without an inverse (X3).
 TEST(MovingScene, InvalidMotionIsRefusedWithTheField) {
   EXPECT_EQ(message_after([](auto&) {}), "");
   EXPECT_EQ(message_after([](auto& s) { s.geometry.disks[0].radius = 0; }),

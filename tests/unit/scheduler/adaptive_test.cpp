@@ -45,7 +45,7 @@ TEST(Adaptive, PassesAfterThePilotFollowTheTilePlan) {
   EXPECT_EQ(run.farm.job(run.job).state, JobState::kFinishing);
   const auto planned = run.farm.all_records<record::TilesPlanned>();
   ASSERT_EQ(planned.size(), 1u);
-  // 0.2 / sqrt(n) <= 4 x 0.01 from 25 samples on: tiles are planned at the first checkpoint.
+  // 0.2 / sqrt(n) <= 4 x 0.01 from 25 samples on, so tiles are planned at the first checkpoint.
   EXPECT_EQ(planned[0].plan, plan_tiles(kGrid, uneven(), 32));
   TileSchedule schedule(kGrid, planned[0].plan);
   std::map<SampleRange, TileSamples> tiles_of;

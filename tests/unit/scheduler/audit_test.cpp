@@ -278,7 +278,7 @@ TEST(Audit, ALargeBandIsComparedInPartsAndNoPartTwice) {
   ASSERT_GT(slow.band.rows.count(), 1u);
   slow.row_digests = honest_digests(slow.band);
   slow.instance = "a";
-  slow.render_s = 100;  // more than was thought
+  slow.render_s = 100;  // more than was predicted
   farm.send(slow);
   const action::Lease part = farm.lease(2, true);
   EXPECT_LT(part.band.rows.count(), slow.band.rows.count());

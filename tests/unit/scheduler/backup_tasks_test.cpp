@@ -7,7 +7,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// A job of one row that the first worker needs so long for that the second gets a backup task.
+/// A job of one row, for which the first worker needs so long that the second worker gets a backup
+/// task.
 struct OneRow {
   OneRow() {
     job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));

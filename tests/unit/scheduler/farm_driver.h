@@ -21,7 +21,8 @@ inline SchedulerOptions test_options() {
   return options;
 }
 
-/// Options with which even rows of a small image are long: leases have one or two rows.
+/// Options with which even single rows of a small image take long, so that leases have one or two
+/// rows.
 inline SchedulerOptions slow() {
   SchedulerOptions options = test_options();
   options.band_target_s = 1e-3;
@@ -40,7 +41,7 @@ inline JobSpec test_job(std::string request, const StopRule& stop, std::uint32_t
   return spec;
 }
 
-/// Returns the row digest of a worker that is right.
+/// Returns the row digest that a correct worker would send.
 inline std::uint64_t honest_digest(const SampleRange& samples, std::uint32_t row) {
   return samples.first * 1'000'003 + samples.last * 7'919 + row + 1;
 }

@@ -21,7 +21,7 @@ struct Before {
     band.row_digests = honest_digests(band.band);
   }
 
-  /// Returns the restarted scheduler before its `replayed`.
+  /// Returns the restarted scheduler before its `replayed` is called.
   FarmDriver restart(bool with_band = true) const {
     SchedulerOptions options = slow();
     options.epoch = "two";

@@ -1,8 +1,8 @@
 #pragma once
 
 // The scheduler in a simulated coordinator: a journal that is synced late, bands that are on disk
-// before the scheduler is told, a film that merges late, a disk that is full at times, and crashes
-// at any moment.
+// before the scheduler is informed, a film that merges late, a disk that is full at times, and
+// crashes at any moment.
 
 #include <deque>
 #include <functional>
@@ -46,15 +46,15 @@ class SimCoordinator {
   bool all_final() const;
   Scheduler& scheduler() { return *scheduler_; }
 
-  /// The first broken promise.
+  /// The first invariant that did not hold.
   std::optional<std::string> broken;
   std::uint64_t steps = 0;
   std::uint64_t damages = 0;               ///< found by a film
   std::map<JobId, std::uint64_t> results;  ///< samples per pixel
   double time_skew = 0;                    ///< of the coordinator's clock
   double audit_share = 0;
-  /// Images must have no wrong row. That can only be promised if every band is audited and machines
-  /// that are right stay until the end.
+  /// Requires that images have no wrong row. This holds only if every band is audited and machines
+  /// that are right stay connected until the end.
   bool must_be_right = false;
   std::set<std::string> quarantined;  ///< names, in all epochs
   bool tear_steps = false;            ///< a crash may keep a part of a step's records

@@ -1,7 +1,7 @@
 #pragma once
 
-// Plain bookkeeping of the samples of each row, of the process that rendered them and of their
-// digests. The scheduler's own is checked against it.
+// Plain bookkeeping of the samples of each row, with their digests and the process that rendered
+// them. The scheduler's own bookkeeping is checked against it.
 
 #include <algorithm>
 #include <cstdint>

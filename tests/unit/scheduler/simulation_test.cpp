@@ -90,7 +90,7 @@ class Simulation {
   }
 
   void submit(const JobSpec& job) {
-    // Again until the job is known: a crash may have lost it.
+    // Submits again until the job is known, because a crash may have lost it.
     if (coordinator_.up()) {
       coordinator_.input(input::Submit{job});
     }
@@ -101,7 +101,7 @@ class Simulation {
     });
   }
 
-  // Again until it was sent: the coordinator may be down.
+  // Repeats until it was sent, because the coordinator may be down.
   void resume(JobId job) {
     if (coordinator_.up()) {
       coordinator_.input(input::Resume{job});
@@ -312,7 +312,7 @@ std::vector<JobSpec> random_jobs(std::uint64_t seed) {
   return jobs;
 }
 
-/// Calls f for `seeds` seeds from `first` on, or for those that the environment names.
+/// Calls f for `seeds` seeds from `first` on, or for the seeds that the environment specifies.
 template <class F>
 void for_seeds(std::uint64_t first, std::uint64_t seeds, F f) {
   if (std::getenv("BANDSAW_SEED") != nullptr) {

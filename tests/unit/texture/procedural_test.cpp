@@ -20,7 +20,7 @@ constexpr Rgb kBlack{0, 0, 0};
 
 TextureId id(std::uint32_t i) { return TextureId{i}; }
 
-/// The last of the textures.
+/// Evaluates the last of the textures.
 Rgb at_point(const Textures& textures, const Vec3& p) {
   return evaluate(textures, id(static_cast<std::uint32_t>(textures.size() - 1)),
                   {.position = p, .object_position = p});
@@ -50,8 +50,8 @@ TEST(Checker, TakesTurnsInUvAndInSpace) {
 }
 
 TEST(Checker, TX4APlaneBetweenTwoLayersHasOneSide) {
-  // Whatever rounding does to the third coordinate: also far away from the origin and for cells
-  // that are no power of two.
+  // The result does not depend on the rounding of the third coordinate, also far away from the
+  // origin and for cells whose size is no power of two.
   std::mt19937_64 numbers(7);
   std::uniform_real_distribution<double> noise(-1, 1);
   for (const double size : {1.0, 0.3, 7.1}) {
@@ -95,9 +95,9 @@ TEST(Noise, IsZeroAtLatticePointsAndWithinItsBound) {
 }
 
 TEST(Noise, HasMeanZeroAndTheVarianceOfUnitGradients) {
-  // At the middle of a cell all weights are 1/8 and each product of a gradient with its offset has
-  // variance |offset|^2 / 3 = 1/4: the sum has variance 1/8 1/4. 2^14 cells: the tolerances are 5
-  // standard errors; false alarm 1e-6.
+  // At the middle of a cell all weights are 1/8, and each product of a gradient with its offset has
+  // variance |offset|^2 / 3 = 1/4, so the sum has variance 1/8 1/4. With 2^14 cells, the tolerances
+  // are 5 standard errors; false-alarm rate 1e-6.
   constexpr int kSide = 16;
   double sum = 0;
   double squares = 0;
@@ -114,8 +114,8 @@ TEST(Noise, HasMeanZeroAndTheVarianceOfUnitGradients) {
 }
 
 TEST(Noise, IsSmoothAcrossCells) {
-  // Gradients of unit length and Hermite weights of slope <= 3/2: no slope above 1 + 3 * 1.5 * 2 *
-  // sqrt(3).
+  // Gradients have unit length, and the slope of Hermite weights is at most 3/2, so no slope
+  // exceeds 1 + 3 * 1.5 * 2 * sqrt(3).
   std::mt19937_64 numbers(3);
   std::uniform_real_distribution<double> where(-10, 10);
   constexpr double kStep = 1e-4;

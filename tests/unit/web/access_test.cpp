@@ -125,7 +125,8 @@ TEST_F(AccessTest, ANewSecretClosesConnections) {
       "POST /api/scenes?name=a.glb HTTP/1.1\r\nHost: 127.0.0.1\r\nX-Bandsaw: 1\r\nCookie: " +
       headers_.find("Cookie")->second + "\r\nExpect: 100-continue\r\nContent-Length: 1000\r\n\r\n";
   ASSERT_EQ(send(one, head.data(), head.size(), MSG_NOSIGNAL), static_cast<ssize_t>(head.size()));
-  std::string told(25, '\0');  // "HTTP/1.1 100 Continue" and the empty line: it is let in
+  std::string told(25,
+                   '\0');  // "HTTP/1.1 100 Continue" and the empty line: the request is admitted
   ASSERT_EQ(recv(one, told.data(), told.size(), MSG_WAITALL), 25);
   ASSERT_EQ(told.substr(0, 12), "HTTP/1.1 100");
   link::Identity renewed = identity_;
@@ -139,7 +140,7 @@ TEST_F(AccessTest, ANewSecretClosesConnections) {
   close(one);
 }
 
-// Each would occupy a thread until its deadline, and they are as many as there are threads.
+// Each of them would occupy a thread until its deadline, and there are as many as threads.
 TEST_F(AccessTest, HalfOpenConnectionsOfOneAddressDoNotBlockOthers) {
   std::vector<int> sockets;
   sockaddr_in address{};

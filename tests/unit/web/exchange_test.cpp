@@ -179,7 +179,7 @@ TEST_F(ExchangeTest, ASlowSenderIsDisconnected) {
 // The response is larger than the system's buffers for a client that does not read.
 TEST_F(ExchangeTest, AClientThatDoesNotReadIsDisconnected) {
   say("GET / HTTP/1.1\r\n\r\n");
-  const int small = 1;  // each byte that the system takes is time for the next
+  const int small = 1;  // a small buffer: each byte that the system accepts gives time for the next
   setsockopt(serving(), SOL_SOCKET, SO_SNDBUF, &small, sizeof(small));
   Connection connection(serving(), nullptr, std::chrono::milliseconds(50));
   exchange(connection,

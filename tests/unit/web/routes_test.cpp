@@ -35,7 +35,7 @@ TEST_F(RoutesTest, ThePageHasItsFilesAndItsRules) {
 }
 
 TEST_F(RoutesTest, TheWorkersProgramIsHandedOutWithVersionAndDigest) {
-  headers_.clear();  // to whoever asks: it holds no secret
+  headers_.clear();  // no login is needed, because the reply contains no secret
   const auto got = get("/bandsaw-worker");
   ASSERT_TRUE(got);
   EXPECT_EQ(got->status, 200);
@@ -93,7 +93,7 @@ TEST_F(RoutesTest, ADroppedSceneBecomesAJob) {
   const auto page = message<web::JobPage>(get("/api/jobs/1"));
   EXPECT_EQ(page.job().status().name(), "my_box");
   EXPECT_EQ(page.job().status().settings().width(), 48u);
-  EXPECT_EQ(page.job().status().settings().height(), 32u);  // 600 x 400 in small
+  EXPECT_EQ(page.job().status().settings().height(), 32u);  // 600 x 400, scaled
   EXPECT_EQ(page.job().status().stop().samples(), 32u);
   EXPECT_EQ(page.why_size(), 1);
   EXPECT_EQ(message<web::Overview>(get("/api/farm")).job_size(), 1);

@@ -32,7 +32,7 @@ class BlobCacheTest : public ::testing::Test {
     ASSERT_TRUE((*download)->append(bytes).ok());
     ASSERT_TRUE((*download)->commit().ok());
   }
-  /// Sets the last use to so many seconds ago, so that no test waits for a clock.
+  /// Sets the time of the last use to so many seconds ago, so that no test waits.
   void set_age(const wire::Digest& digest, int seconds) {
     timespec times[2];
     clock_gettime(CLOCK_REALTIME, &times[0]);
@@ -113,7 +113,7 @@ TEST_F(BlobCacheTest, RemovesTheLeastRecentlyUsed) {
   }
   set_age(a, 30);
   set_age(b, 20);
-  EXPECT_TRUE(cache->get(a).ok());  // a use: b is the oldest now
+  EXPECT_TRUE(cache->get(a).ok());  // marks a as used, so b is the oldest now
   put(*cache, bytes_of('d'));
   EXPECT_TRUE(cache->has(a));
   EXPECT_FALSE(cache->has(b));
