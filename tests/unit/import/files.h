@@ -21,7 +21,7 @@ inline std::string small_ppm() {
          "\xff" + std::string(1, '\0') + std::string(2, '\0') + "\xff" + "\xff\xff\xff";
 }
 
-/// Where the package assimp-testmodels puts its files.
+/// Folder of the package assimp-testmodels.
 inline std::string test_model(const std::string& name) {
   return "/usr/share/assimp/models/" + name;
 }

@@ -1,5 +1,5 @@
-// Attributes of every type that glTF 2.0 and KHR_mesh_quantization allow reach the scene as the
-// numbers that they stand for, and files that are damaged are one clear error.
+// Attributes of every type that glTF 2.0 and KHR_mesh_quantization allow are converted to the
+// numbers that they represent, and a damaged file gives one clear error.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -30,7 +30,7 @@ class GltfAccessors : public ::testing::Test {
     EXPECT_TRUE(imported.ok()) << imported.status();
     return imported.ok() ? *std::move(imported) : ImportedScene();
   }
-  /// The only mesh of the file, whose image is used, so that its uvs are read.
+  /// Returns the only mesh of the file. Its image is used, so that its uvs are read.
   Mesh mesh(GltfWriter& file) {
     const ImportedScene imported = read(file);
     EXPECT_THAT(imported.info.warnings, IsEmpty());
@@ -39,7 +39,7 @@ class GltfAccessors : public ::testing::Test {
   TempDir folder_;
 };
 
-// glTF 2.0 itself, without any extension.
+// Types that glTF 2.0 allows without any extension.
 TEST_F(GltfAccessors, UvsAndColoursMayBeNormalisedBytesAndShorts) {
   GltfWriter bytes;
   bytes.attributes() = {
@@ -49,7 +49,7 @@ TEST_F(GltfAccessors, UvsAndColoursMayBeNormalisedBytesAndShorts) {
       {"COLOR_0",
        bytes.add<std::uint8_t>({0, 51, 255, 0, 0, 0, 0, 0, 255, 255, 255, 0}, 3, true, 1)}};
   const Mesh small = mesh(bytes);
-  // Our v = 0 is the image's bottom, glTF's its top.
+  // v = 0 is the bottom of the image here, and its top in glTF.
   EXPECT_THAT(small.uvs,
               ElementsAre(ElementsAre(0, 0), ElementsAre(0.2f, 1 - 0.4f), ElementsAre(1, 1)));
   EXPECT_THAT(small.colors,
@@ -71,7 +71,8 @@ class Quantised : public GltfAccessors {};
 using Types = ::testing::Types<std::int8_t, std::uint8_t, std::int16_t, std::uint16_t>;
 TYPED_TEST_SUITE(Quantised, Types);
 
-// KHR_mesh_quantization: integers as they stand, or over their largest value.
+// KHR_mesh_quantization: integers are used unchanged, or divided by their largest value if they are
+// normalised.
 TYPED_TEST(Quantised, PositionsAndUvsAreTheirIntegers) {
   using T = TypeParam;
   const T most = std::numeric_limits<T>::max();
@@ -146,8 +147,8 @@ TEST_F(GltfAccessors, SparseAccessorsAndThoseWithoutAViewAreFilled) {
   EXPECT_THAT(flat(mesh(file).positions), ElementsAre(1, 1, 1, 3, 0, 0, 0, 3, 0));
 }
 
-// One bone lifts by 2; the second vertex hangs on it with a weight of 1/5 of a byte's, the rest on
-// a bone that stays. A joint of weight 0 may be any.
+// One bone lifts by 2. The second vertex depends on it with a weight of 1/5 of a byte's range, the
+// other vertices on a bone that does not move. A joint of weight 0 may have any index.
 TEST_F(GltfAccessors, SkinsMayHaveWeightsOfBytes) {
   GltfWriter file;
   file.attributes() = {
@@ -178,7 +179,7 @@ TEST_F(GltfAccessors, MorphTargetsMayBeQuantised) {
   EXPECT_THAT(flat(mesh(file).positions), ElementsAre(0, 0, 0, 1, 0, 2, 0, 1, -3));
 }
 
-/// A change to a file that is sound, and the words of the error.
+/// A change to a valid file, and the words that the error must contain.
 struct Damage {
   const char* patch;  ///< JSON patch (RFC 6902) of one operation
   const char* error;
@@ -286,7 +287,7 @@ TEST_F(GltfAccessors, JsonThatIsBrokenOrTooDeepIsRefused) {
   EXPECT_THAT(message(R"({"a": 1e999})"), HasSubstr("a number that is too large"));
 }
 
-// Its lists are objects by name; some of its writers give the version as a number.
+// The lists of glTF 1.0 are objects by name; some programs write its version as a number.
 TEST_F(GltfAccessors, TheFirstVersionIsStillRead) {
   write_text(folder_, "f.bin", test::bytes_of(kTriangle));
   for (const std::string version : {"\"1.0\"", "1"}) {
@@ -306,7 +307,7 @@ TEST_F(GltfAccessors, TheFirstVersionIsStillRead) {
   }
 }
 
-// Wherever a .glb is cut off, it is an error.
+// A .glb that is truncated anywhere is an error.
 TEST_F(GltfAccessors, EveryTruncationIsAnError) {
   const std::string whole = WavySquare(1).plain().glb();
   ASSERT_TRUE(import_scene(write_text(folder_, "w.glb", whole)).ok());

@@ -1,5 +1,5 @@
 // Meshes in the encodings of EXT_meshopt_compression and KHR_draco_mesh_compression, made by the
-// libraries' own encoders, against the same meshes as they were.
+// libraries' own encoders, compared with the uncompressed meshes.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -41,7 +41,8 @@ const Mesh& mesh_of(const ImportedScene& imported) { return imported.scene.geome
 
 // --- meshopt
 
-/// The triangles, each turned so that its lowest index comes first: encoders may turn them.
+/// Returns the triangles, each rotated so that its lowest index comes first, because encoders may
+/// rotate them.
 std::vector<std::array<std::uint32_t, 3>> turned(std::vector<std::array<std::uint32_t, 3>> all) {
   for (auto& triangle : all) {
     std::rotate(triangle.begin(), std::min_element(triangle.begin(), triangle.end()),
@@ -65,7 +66,7 @@ TEST(Meshopt, BufferViewsAreReadAsTheyWere) {
   }
 }
 
-/// Whatever the view shows of the model, by normals and by albedo.
+/// Compares the normals and the albedo of the model as seen by a camera.
 std::vector<Rgb> seen(const ImportedScene& imported) {
   ImportedScene scene = imported;
   scene.scene.camera =
@@ -119,8 +120,8 @@ TEST(Meshopt, FilteredNormalsAndPositionsAreAsNearAsTheirBitsAllow) {
         add_attribute(file, exponential(square.positions, 15), 12, kFloats3, "EXPONENTIAL");
     file.root["buffers"][0]["byteLength"] = file.bytes.size();
     const Mesh mesh = mesh_of(read(file, folder));
-    // A step of the octahedral map moves a unit vector by at most 2 steps; one more is the rounding
-    // of what is decoded.
+    // A step of the octahedral map moves a unit vector by at most 2 steps; one more step is allowed
+    // for the rounding of the decoded values.
     const double step = 3.0 / (wide ? 32767 : 127);
     for (std::size_t i = 0; i < count; ++i) {
       for (std::size_t c = 0; c < 3; ++c) {
@@ -219,7 +220,7 @@ TEST(Draco, WhatIsNotQuantisedIsTheSameToTheBit) {
   EXPECT_EQ(seen(imported), seen(plain));
 }
 
-/// Vertices sorted by their uvs: edgebreaker numbers them anew.
+/// Vertices sorted by their uvs, because edgebreaker renumbers them.
 struct Vertex {
   std::array<float, 2> uv;
   std::array<float, 3> position;
@@ -250,7 +251,7 @@ TEST(Draco, QuantisedMeshesAreAsNearAsTheirBitsAllow) {
       ASSERT_EQ(mesh.triangles.size(), plain.triangles.size());
       const auto found = sorted_vertices(mesh, kSide);
       ASSERT_EQ(found.size(), expected.size());
-      // Half a step of the largest extent, 1; a step of the octahedral map of two.
+      // Tolerances: half a step of the largest extent, 1; a step of the octahedral map of two.
       const double step = 0.51 / ((1 << bits) - 1);
       for (std::size_t i = 0; i < found.size(); ++i) {
         for (std::size_t c = 0; c < 3; ++c) {
@@ -269,8 +270,8 @@ TEST(Draco, AQuantisedMeshIsRenderedWithinItsBound) {
   const auto plain = seen(read(square.plain(), folder));
   const auto quantised = seen(read(with_draco(square, 14, true), folder));
   ASSERT_EQ(plain.size(), quantised.size());
-  // The layer shows 0.5 + 0.5 n. The normals are 4 / 2^14 off at most, and those of neighbours
-  // differ by less than 1/12, over which a hit may move by 1 / 2^14 of the square.
+  // The layer shows 0.5 + 0.5 n. The normals are off by at most 4 / 2^14. Those of neighbouring
+  // vertices differ by less than 1/12, and a hit may move by 1 / 2^14 of the square.
   for (std::size_t i = 0; i < plain.size(); ++i) {
     EXPECT_NEAR(plain[i].r, quantised[i].r, 4.0 / (1 << 14)) << i;
     EXPECT_NEAR(plain[i].g, quantised[i].g, 4.0 / (1 << 14)) << i;

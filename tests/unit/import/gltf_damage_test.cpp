@@ -1,4 +1,4 @@
-// Compressed glTF files that have been damaged, in the process that reads foreign files.
+// Compressed glTF files that have been damaged, read by the confined import process.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -19,8 +19,8 @@ using test::with_meshopt;
 using test::write_text;
 using ::testing::HasSubstr;
 
-// Files in which bytes have been replaced at random are read, or are one error that names the file,
-// in the process that reads foreign files.
+// Files in which random bytes have been replaced are either read, or give one error that names the
+// file.
 TEST(CompressedGltf, RandomDamageIsAnErrorOrHarmless) {
   const TempDir folder;
   const WavySquare square(6);

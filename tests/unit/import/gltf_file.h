@@ -21,12 +21,12 @@ inline std::string floats(const std::vector<float>& values) {
 /// One triangle (0,0,0), (1,0,0), (0,1,0) with two sets of uvs, its vertex colours red, green and
 /// blue at a half, material 0. Buffer views 0 to 3: positions, uvs, second uvs, colours.
 struct GltfTriangle {
-  std::string materials = "{}";  ///< what stands in the list
-  std::string textures;          ///< the same
+  std::string materials = "{}";  ///< contents of the list
+  std::string textures;          ///< contents of the list
   std::string images;
   std::string samplers;
   bool colors = false;
-  std::string primitives;  ///< further ones of the mesh, each after a comma
+  std::string primitives;  ///< further primitives of the mesh, each after a comma
   std::string more;        ///< further members of the file, each followed by a comma
 
   std::string write(const TempDir& folder, const std::string& name) const {

@@ -1,5 +1,5 @@
-// KHR_materials_volume: closed meshes that transmit are solid glass with what it absorbs, and the
-// clear coat's normal map has its own uvs.
+// KHR_materials_volume: closed meshes that transmit become solid glass with an absorbing medium.
+// The clear coat's normal map uses its own uvs.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -78,8 +78,8 @@ TEST(GltfVolume, AClosedMeshIsGlassThatAbsorbs) {
   EXPECT_EQ(imported.scene.media.boundaries.instances.size(), 1u);
 }
 
-// Seen through its middle, glass of index 1 and a depth of 2 that turns white into the colour after
-// a length of 2 shows that colour, in the file alone and placed by a scene.
+// Glass of index 1 and depth 2, which turns white into its colour over a length of 2, shows that
+// colour through its middle, both as a file alone and placed by a scene.
 TEST(GltfVolume, WhiteLightHasTheColourAfterTheDistance) {
   const TempDir folder;
   cube().write(folder, "m.gltf");
@@ -122,8 +122,9 @@ TEST(GltfVolume, WithoutAThicknessItIsAThinPane) {
   EXPECT_TRUE(imported.scene.media.media.empty());
 }
 
-// The base's normal map, of scale 0, lies in the first set of uvs and bends nothing; the coat's
-// lies in the second, which is turned by a quarter. So the picture is that without the base's map.
+// The base's normal map has scale 0 and uses the first set of uvs, so it has no effect. The coat's
+// map uses the second set, which is rotated by a quarter turn. So the picture equals the one
+// without the base's map.
 TEST(GltfCoat, ItsNormalMapLiesOnItsOwnUvs) {
   const TempDir folder;
   write_text(folder, "lean.ppm", std::string("P6 1 1 255\n") + "\xe0\x80\xf0");

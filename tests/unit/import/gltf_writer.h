@@ -1,6 +1,6 @@
 #pragma once
 
-// glTF files that tests put together from vectors of numbers, and break.
+// glTF files that tests build from vectors of numbers, and damage.
 
 #include <array>
 #include <cmath>
@@ -35,7 +35,7 @@ std::string bytes_of(const std::vector<T>& values) {
   return bytes;
 }
 
-/// One mesh of one primitive at one node; everything else is for the test to add.
+/// One mesh of one primitive at one node; tests add everything else.
 class GltfWriter {
  public:
   GltfWriter() {
@@ -79,7 +79,7 @@ class GltfWriter {
     return accessor(members);
   }
 
-  /// The file with its buffer beside it.
+  /// Returns the file; its buffer is a file beside it.
   std::string write(const TempDir& folder, const std::string& name) {
     write_text(folder, name + ".bin", bytes);
     Json whole = root;
@@ -112,7 +112,7 @@ class GltfWriter {
   std::string bytes;
 };
 
-/// A wavy square of 2 n^2 triangles over [0, 1]^2: what encoders are tried on.
+/// A wavy square of 2 n^2 triangles over [0, 1]^2, as input for encoders.
 struct WavySquare {
   explicit WavySquare(int n = 12) {
     for (int y = 0; y <= n; ++y) {
@@ -152,7 +152,7 @@ struct WavySquare {
   std::vector<std::uint32_t> indices;
 };
 
-/// The values of a mesh of the scene in a row.
+/// Returns the values of an attribute of the scene's mesh in one list.
 template <class T, std::size_t n>
 std::vector<T> flat(const std::vector<std::array<T, n>>& values) {
   std::vector<T> out;

@@ -1,4 +1,4 @@
-// One tiny file of each image format, as its specification has it.
+// One tiny file of each image format, written according to its specification.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

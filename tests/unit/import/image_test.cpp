@@ -79,7 +79,7 @@ TEST(DecodeImage, ReadsRadianceAsLinearFloats) {
   EXPECT_EQ(texel[2], 0.5f);
 }
 
-// stb_image alone never returns from some of these.
+// stb_image alone does not terminate for some of these files.
 TEST(DecodeImage, EndsOnARadianceFileThatIsCutAnywhere) {
   const std::string whole = radiance(64, 8);
   std::vector<std::string> warnings;
@@ -165,7 +165,7 @@ TEST(DecodePicture, GivesBackAnHdrWithinHalfAMantissa) {
     ASSERT_TRUE(read.ok()) << read.status();
     ASSERT_EQ(read->pixels.size(), image.pixels.size());
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
-      // Half of a unit of 8 bits; the largest channel has at least 128 of them.
+      // Half a unit of 8 bits, because the largest channel has a mantissa of at least 128.
       const float bound = max_component(image.pixels[i]) / 255.0f;
       EXPECT_NEAR(read->pixels[i].r, image.pixels[i].r, bound) << i;
       EXPECT_NEAR(read->pixels[i].g, image.pixels[i].g, bound) << i;

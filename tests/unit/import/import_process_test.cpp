@@ -142,7 +142,8 @@ TEST(ImportProcess, MakesOneErrorOfAFileThatWantsAllMemory) {
   const TempDir folder;
   ImportLimits in = limits();
   in.memory_bytes = 256ull << 20;
-  // 20000 x 20000 texels: 1.2 GB once decoded, 400 MB of them in this file, which has holes.
+  // 20000 x 20000 texels: 1.2 GB when decoded. 400 MB of the texels are in this file, which is
+  // sparse.
   const std::string path = write_text(folder, "sky.pgm", "P5 20000 20000 255\n");
   std::filesystem::resize_file(path, 400'000'019);
   const auto picture = read_image_in_process(path, in);

@@ -1,6 +1,6 @@
 #pragma once
 
-// What a scene that was imported looks like, for tests.
+// Renders layers of an imported scene, for tests.
 
 #include <atomic>
 
@@ -9,7 +9,7 @@
 
 namespace bandsaw::test {
 
-/// One sample a pixel of what the integrator shows; `imported` has a scene.
+/// Renders one sample per pixel by the integrator; `imported` MUST have a scene.
 inline Image layer(const ImportedScene& imported, std::uint32_t width, std::uint32_t height,
                    Integrator integrator) {
   Pool pool(1);

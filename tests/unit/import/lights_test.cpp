@@ -1,4 +1,4 @@
-// Lights without size and environments: of scene files and of models.
+// Delta lights and environments of scene files and of models.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ void write_hdr(const std::string& path, std::uint32_t width, std::uint32_t heigh
   EXPECT_TRUE(write_file_atomically(path, encode_hdr(image)).ok());
 }
 
-/// A folder with images of light.
+/// A folder with environment maps.
 class SceneLights : public ::testing::Test {
  protected:
   SceneLights() {
@@ -175,7 +175,7 @@ TEST(RepairLight, L9InvalidTexelsAreRepairedAndCounted) {
   test::holds("L9", "repaired and counted");
 }
 
-/// One triangle, and lights at two nodes, one of them moved, turned and scaled.
+/// One triangle, and lights at two nodes, one of which is moved, rotated and scaled.
 std::string gltf_with_lights() {
   return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2, 3]}],
 "extensionsUsed": ["KHR_lights_punctual"],
@@ -226,7 +226,7 @@ TEST(ModelLights, OneAtSeveralNodesShinesFromEach) {
   };
   replace(R"({"light": 2})", R"({"light": 1})");
   replace(R"("name": "c")", R"("name": "b")");
-  replace(R"("name": "t")", R"("name": "b")");  // and no third one, where a node has that name
+  replace(R"("name": "t")", R"("name": "b")");  // no third light, although a node has that name
   const auto imported = import_scene(write_text(folder, "m.gltf", text));
   ASSERT_TRUE(imported.ok()) << imported.status();
   const auto& lights = imported->scene.lights;

@@ -1,4 +1,4 @@
-// Media in scene files: what is read, and what is said of what is wrong.
+// Media in scene files: valid ones are read, and errors state what is wrong.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ absl::StatusOr<ImportedScene> import_text(const std::string& text) {
   const TempDir folder;
   write_text(folder, "closed.obj", kCube + kLid);
   write_text(folder, "open.obj", kCube);
-  // Inside out.
+  // The mesh is inside out.
   write_text(folder, "turned.obj",
              "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\nf 1 3 4\n"
              "f 2 4 3\n");
@@ -63,7 +63,7 @@ model { file: "closed.obj" interior: "smoke" translate: [9, 0, 0] boundary_only:
   EXPECT_EQ(media.media[1].emission, (Rgb{0, 0, 8}));
   EXPECT_EQ(media.media[1].g, 0.3);
   EXPECT_EQ(media.fog, MediumId{0});
-  // Of what is seen there are the glass ball and the model that is not a boundary alone.
+  // Only the glass ball and the model that is not a boundary are part of the visible geometry.
   EXPECT_EQ(imported->scene.geometry.spheres.size(), 1u);
   EXPECT_EQ(imported->scene.geometry.quads.size(), 0u);
   EXPECT_EQ(imported->scene.geometry.instances.size(), 1u);
@@ -73,7 +73,7 @@ model { file: "closed.obj" interior: "smoke" translate: [9, 0, 0] boundary_only:
   EXPECT_EQ(medium_in(boundaries.spheres[0].material), MediumId{1});
   ASSERT_EQ(boundaries.instances.size(), 4u);
   EXPECT_EQ(boundaries.instances[0].to_world.point({1, 1, 1}), (Vec3{2, 4, 3}));
-  EXPECT_EQ(boundaries.meshes.size(), 2u);  // the cube of all boxes, and that of the file
+  EXPECT_EQ(boundaries.meshes.size(), 2u);  // the cube of all boxes, and the file's mesh
 }
 
 TEST(MediaFile, ABoxWithAMaterialAndAnInteriorIsBoth) {

@@ -1,4 +1,5 @@
-// Cameras of models by their names: of nodes, of their own, with their file.
+// Cameras of models, selected by the name of a node, by their own name, and by the name of their
+// file.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,7 +19,7 @@ using test::write_text;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-/// A triangle, "left" and "right" that share one camera, and "tower" with one below it, which
+/// A triangle; "left" and "right", which share one camera; and "tower" with another below it, which
 /// Assimp loads first.
 std::string write_cameras(const TempDir& folder, const std::string& name) {
   GltfTriangle file;
@@ -43,7 +44,7 @@ std::string write_cameras(const TempDir& folder, const std::string& name) {
 
 struct Seen {
   Vec3 from;
-  int degrees = 0;  ///< high, rounded
+  int degrees = 0;  ///< vertical field of view, rounded
   friend bool operator==(const Seen&, const Seen&) = default;
 };
 Seen seen(const ImportedScene& imported) {

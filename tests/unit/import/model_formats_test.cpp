@@ -1,4 +1,5 @@
-// Materials of the older formats, textures by the names that files have for them, which way up.
+// Materials of the older formats, textures whose file names differ from those in the model, and the
+// up axis.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -104,7 +105,7 @@ TEST_F(Obj, ABumpMapThatHoldsNormalsIsANormalMap) {
   EXPECT_THAT(read("Kd 1 1 1\nmap_Bump h.ppm\n").info.warnings, IsEmpty());
 }
 
-// Heights that rise by 51 codes a texel to the right: slopes of 0.2, with -bm 2 of 0.4.
+// Heights that rise by 51 codes per texel to the right: slopes of 0.2, with -bm 2 of 0.4.
 TEST_F(Obj, ABumpMapOfHeightsIsTheirSlope) {
   write_text(folder_, "h.pgm", std::string("P5 3 1 255\n") + '\x0a' + '\x3d' + '\x70');
   const auto middle = [&](const std::string& bump) {
@@ -117,7 +118,8 @@ TEST_F(Obj, ABumpMapOfHeightsIsTheirSlope) {
   EXPECT_LE(length(middle("map_Bump -bm 2 h.pgm\n") - normalize({-0.4, 0, 1})), 1e-6);
 }
 
-// About half of the reflection of glass, whose F0 is 0.04; the index is stored to half a code.
+// About half of the reflectance of glass, whose F0 is 0.04; the index is stored with an error of
+// half a code.
 TEST_F(Obj, ASpecularMapSaysHowMuchIsReflected) {
   write_text(folder_, "s.ppm", ppm_of(188, 188, 188));
   const ImportedScene imported = read("illum 2\nKd 0.5 0 0\nKs 1 1 1\nNs 100\nmap_Ks s.ppm\n");
@@ -205,7 +207,7 @@ TEST(Stl, HasAFaceAndItsNormal) {
   EXPECT_EQ(imported->scene.geometry.meshes[0].normals[0], (std::array<float, 3>{0, 0, 1}));
 }
 
-// A triangle whose third vertex is `up`; two units of a hundredth.
+// A triangle whose third vertex is `up`; two units of one hundredth of a metre.
 std::string dae(const std::string& up_axis, const std::string& up) {
   return R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
 <asset><unit name="centimetre" meter="0.01"/><up_axis>)" +
@@ -237,7 +239,7 @@ TEST(Fbx, StandsUpright) {
   if (!test::have_test_models()) {
     GTEST_SKIP() << "needs the package assimp-testmodels";
   }
-  // Its header says that z is up: its box stands on z = 0.
+  // The header states that z is up, so the box stands on z = 0.
   const auto imported = import_scene(test_model("FBX/embedded_ascii/box.FBX"));
   ASSERT_TRUE(imported.ok()) << imported.status();
   double lowest = 1e9;

@@ -1,5 +1,5 @@
-// What of a glTF file reaches the scene: its materials, the placing of its textures, what it says
-// beyond Assimp, its rest pose.
+// Contents of a glTF file that are imported: its materials, texture transforms, data beyond Assimp,
+// its rest pose.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -122,7 +122,7 @@ TEST_F(Gltf, TexturesAreTurnedScaledAndMovedAboutTheTopLeftCorner) {
     {"KHR_texture_transform": {"offset": [0, 1], "rotation": 1.5707963267948966, "scale": [0.5, 0.5]}}}}})";
   const ImportedScene imported = read(file);
   const ImageTexture& texture = image(imported, principled(imported).base_color.texture);
-  // glTF's (0, 0), its top left corner, is our (0, 1).
+  // (0, 0) of glTF, its top left corner, is (0, 1) here.
   const auto at = [&](double u, double v) {
     const Vec2 uv = texture.uv_transform({u, 1 - v});
     return Vec3{uv.x, 1 - uv.y, 0};
@@ -133,7 +133,7 @@ TEST_F(Gltf, TexturesAreTurnedScaledAndMovedAboutTheTopLeftCorner) {
   EXPECT_NEAR(length(at(1, 1) - Vec3{0.5, 0.5, 0}), 0, 1e-12);
 }
 
-// Assimp numbers materials as it meets them.
+// Assimp numbers materials in the order in which they occur.
 TEST_F(Gltf, EachMaterialHasItsOwnExtensionsWhateverTheOrderOfUse) {
   write_text(folder_, "o.bin", floats({0, 0, 0, 1, 0, 0, 0, 1, 0}));
   const auto imported = import_scene(write_text(folder_, "o.gltf", R"({"asset": {"version": "2.0"},
@@ -197,7 +197,7 @@ TEST_F(Gltf, WhatIsNotRenderedIsNamed) {
                           HasSubstr("its occlusion map is left out")));
 }
 
-// Each of them by one warning, however many materials have it; none where it adds nothing.
+// Each feature gives one warning, however many materials have it, and none if it has no effect.
 TEST_F(Gltf, WhatMaterialsHaveAndIsNotShownIsNamedOnceAFile) {
   GltfTriangle file;
   file.more = R"("extensionsUsed": ["KHR_materials_sheen", "KHR_materials_iridescence",
@@ -254,7 +254,7 @@ TEST_F(Gltf, ColoursOfThreeChannelsHaveNoAlphaToLeaveOut) {
   EXPECT_THAT(read(file).info.warnings, IsEmpty());
 }
 
-// An extension that puts unreadable bytes in the place of others is refused where it is required.
+// An extension that replaces data by bytes that cannot be read is refused if it is required.
 TEST_F(Gltf, WhatCannotBeReadIsRefused) {
   GltfTriangle file;
   file.more = R"("extensionsRequired": ["KHR_texture_basisu"],)";
@@ -264,9 +264,9 @@ TEST_F(Gltf, WhatCannotBeReadIsRefused) {
   EXPECT_TRUE(import_scene(file.write(folder_, "t.gltf")).ok());
 }
 
-// A skinned triangle: one bone that its node lifts by 2, whose inverse bind matrix lowers by 1; and
-// a morph target at weight 0.5 that moves the second vertex along z. The mesh's own node counts for
-// nothing.
+// A skinned triangle: one bone, which its node lifts by 2 and whose inverse bind matrix lowers it
+// by 1, and a morph target of weight 0.5 that moves the second vertex along z. The mesh's own node
+// has no effect.
 TEST_F(Gltf, StandsInItsRestPose) {
   const std::vector<float> lowered{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -1, 0, 1};
   const std::string joints = std::string(12, '\0');

@@ -1,5 +1,5 @@
-// A textured model seen straight on, a pixel a texel: its albedo layer is the image to the code,
-// its normal layer the normal map.
+// A textured model seen head-on with one pixel per texel: its albedo layer equals the image to the
+// code, its normal layer the normal map.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ using test::write_text;
 constexpr std::uint32_t kWidth = 7;
 constexpr std::uint32_t kHeight = 5;
 
-/// Codes without any order; of normals, such as point up.
+/// Random codes; those of normals are limited to upward normals.
 std::string codes(bool normals) {
   test::Random random(9);
   std::string bytes;
@@ -82,7 +82,7 @@ TEST_P(ModelLayers, AreTheImagesOfTheModel) {
     const auto along = [&](std::size_t c) {
       return 2 * static_cast<unsigned char>(bent[3 * i + c]) / 255.0 - 1;
     };
-    // x is stretched by 1.4; the frame of the uvs is not.
+    // x is scaled by 1.4; the uvs are not.
     const Vec3 n = normalize({along(0), along(1), along(2)});
     EXPECT_NEAR(2 * normals.pixels[i].r - 1, n.x, 1e-5);
     EXPECT_NEAR(2 * normals.pixels[i].g - 1, n.y, 1e-5);

@@ -1,5 +1,5 @@
-// A textured model of others, read here a second time from its text: what its albedo layer shows is
-// the texel at the uv of the hit, times Kd; its normal layer the normals of the file.
+// A textured model by other authors, which the test parses a second time from its text. Its albedo
+// layer is the texel at the uv of the hit times Kd; its normal layer shows the normals of the file.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ struct Look {
   ImageTexture image;
 };
 
-/// The texel between four, of an image that repeats; v = 0 is its bottom.
+/// Returns the bilinear interpolation of four texels of an image that repeats; v = 0 is its bottom.
 Vec3 looked_up(const ImageTexture& image, double u, double v) {
   const double x = (u - std::floor(u)) * image.width - 0.5;
   const double y = (1 - (v - std::floor(v))) * image.height - 0.5;
@@ -59,7 +59,8 @@ struct Corner {
 
 /// An OBJ of triangles whose corners have uvs and normals, with its MTL.
 struct Obj {
-  std::vector<std::pair<std::array<Corner, 3>, std::string>> triangles;  ///< and their materials
+  std::vector<std::pair<std::array<Corner, 3>, std::string>>
+      triangles;  ///< triangles and their materials
   std::map<std::string, Look> looks;
 };
 
@@ -126,8 +127,8 @@ struct Hit {
   Vec3 normal;
 };
 
-/// What is nearest to the viewer at (x, y), who looks along -z; nothing where that is doubtful: at
-/// an edge, or where two surfaces are equally near.
+/// Returns the nearest hit at (x, y) for a viewer who looks along -z; std::nullopt if it is
+/// ambiguous: at an edge, or if two surfaces are equally near.
 std::optional<Hit> hit_at(const Obj& obj, double x, double y, bool& doubtful) {
   std::optional<Hit> nearest;
   doubtful = false;
@@ -139,7 +140,7 @@ std::optional<Hit> hit_at(const Obj& obj, double x, double y, bool& doubtful) {
     const double area =
         side(a.position, b.position) + side(b.position, c.position) + side(c.position, a.position);
     if (!(std::abs(area) > 1e-9)) {
-      continue;  // seen from its edge
+      continue;  // seen edge-on
     }
     const double wa = side(b.position, c.position) / area;
     const double wb = side(c.position, a.position) / area;
@@ -191,12 +192,13 @@ TEST(ModelSource, TheSpidersLayersAreItsTexelsAndNormals) {
       }
       ++compared;
       const std::size_t i = row * kWidth + column;
-      // Codes times Kd are codes again: half a code off, which is at most 0.0045 of light.
+      // Codes times Kd are rounded to codes again: an error of half a code, which is at most 0.0045
+      // of linear light.
       const Rgb& seen = albedo.pixels[i];
       EXPECT_LE(max_abs(Vec3{seen.r, seen.g, seen.b} - hit->albedo), 0.0046)
           << "at " << column << ", " << row;
       const Rgb& n = normals.pixels[i];
-      // Surfaces are shown from the side that is seen.
+      // Normals are shown on the side that faces the viewer.
       EXPECT_GE(std::abs(dot(Vec3{2.0 * n.r - 1, 2.0 * n.g - 1, 2.0 * n.b - 1}, hit->normal)),
                 1 - 1e-4)
           << "at " << column << ", " << row;

@@ -55,9 +55,8 @@ TEST_P(TexturedBox, HasItsTrianglesUvsAndTexture) {
   ASSERT_NE(image, nullptr);
   EXPECT_EQ(image->width, 211u);
   EXPECT_EQ(image->height, 211u);
-  // Its front face shows the sky of the picture above and the ground below: right side up means
-  // that the texel at the vertex with the larger y is taken further up in the image, which is a
-  // larger v.
+  // The front face shows the sky of the picture above the ground. The image is the right way up if
+  // the vertex with the larger y has the larger v, which is further up in the image.
   for (const auto& [a, b, c] : mesh.triangles) {
     if (mesh.normals[a][2] > 0 && mesh.positions[a][1] != mesh.positions[b][1] &&
         mesh.positions[a][0] == mesh.positions[b][0]) {
@@ -78,7 +77,7 @@ TEST(Model, KeepsTheTreeOfPlacements) {
   ASSERT_TRUE(imported.ok()) << imported.status();
   EXPECT_EQ(triangles(*imported), 121496u);
   EXPECT_GT(imported->scene.geometry.instances.size(), imported->scene.geometry.meshes.size());
-  // The file's camera: 18 degrees high.
+  // The file's camera has a vertical field of view of 18 degrees.
   EXPECT_NEAR(std::get<PerspectiveCamera>(imported->scene.camera).vertical_fov, 18.0107, 1e-3);
 }
 
@@ -173,7 +172,7 @@ TEST(Model, MultipliesATextureWithItsColour) {
   ASSERT_TRUE(imported.ok()) << imported.status();
   const ImageTexture* image = first_image(*imported);
   ASSERT_NE(image, nullptr);
-  // White times (0.5, 1, 0) is the code of 0.5 (188), 255, 0; black stays.
+  // White times (0.5, 1, 0) has the codes 188 (of 0.5), 255, 0; black stays black.
   EXPECT_EQ(image->texels[9], std::byte{188});
   EXPECT_EQ(image->texels[10], std::byte{255});
   EXPECT_EQ(image->texels[11], std::byte{0});

@@ -1,4 +1,4 @@
-// Media whose boundaries lie in groups, are placed and move: how far a ray goes through them.
+// Media whose boundaries are in groups, are placed and move: checks the length of rays inside them.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ std::shared_ptr<const Scene> scene_of(const std::string& text) {
   return *scene;
 }
 
-/// The length of smoke along a ray that begins outside of everything.
+/// Returns the length inside the medium of a ray that begins outside of it.
 double smoke_along(const Scene& scene, const Vec3& origin, const Vec3& direction, double time = 0) {
   std::uint64_t rays = 0;
   const Ray ray{.origin = origin, .direction = direction, .time = time};
@@ -61,7 +61,8 @@ instance { of: "box"  scale: 2  translate: [10, 0, 0] }
 instance { of: "box"  scale: [-4, 1, 1]  translate: [10, 10, 0]  material: "glass" }
 instance { of: "turned"  scale: [1, 1, -5]  translate: [10, 20, 0] }
 )");
-  // 2 x 4 x 6 from (10, 0, 0); then 4 x 2 x 3, mirrored; then 3 x 2 x 5, turned and mirrored.
+  // Boxes of 2 x 4 x 6 from (10, 0, 0); then 4 x 2 x 3, mirrored; then 3 x 2 x 5, rotated and
+  // mirrored.
   EXPECT_NEAR(smoke_along(*scene, {0, 1, 1}, {1, 0, 0}), 2, kError);
   EXPECT_NEAR(smoke_along(*scene, {11, -9, 1}, {0, 1, 0}), 4 + 2, kError);
   EXPECT_NEAR(smoke_along(*scene, {11, 1, -9}, {0, 0, 1}), 6, kError);
@@ -109,7 +110,7 @@ shape { sphere { center: [9, 0, 0] radius: 1 } interior: "smoke" velocity: [0, -
     const double chord = std::abs(aside) < 1 ? 2 * std::sqrt(1 - aside * aside) : 0;
     EXPECT_NEAR(smoke_along(*scene, {9, -0.5, -9}, {0, 0, 1}, time), chord, kError) << time;
   }
-  // A shutter that opens for a moment makes the scene of that moment.
+  // With a shutter of zero duration, the scene is that of the moment.
   const auto moment = scene_of(
       "camera { position: [0, 1, 5] look_at: [0, 0, 0] shutter_open: 0.75 shutter_close: 0.75 }" +
       shapes);

@@ -1,4 +1,4 @@
-// What a scene file says of disks, groups, instances, motion and cameras of models.
+// Disks, groups, instances, motion and cameras of models in scene files.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -107,7 +107,7 @@ shape { box { min: [0, 0, 0] max: [1, 1, 1] } material: "white" velocity: [1, 0,
   EXPECT_EQ(to_world_at(g, g.instances[0], 2.5), translation({0, 5, 0}));
 }
 
-// C8: with a shutter that opens and closes at once nothing moves, and shapes are as any other.
+// C8: with a shutter of zero duration nothing moves, and shapes are ordinary shapes.
 TEST(Placement, C8_AtOneMomentNothingMoves) {
   const TempDir folder;
   const auto imported = import_scene(write_text(folder, "s.textproto", R"(
@@ -137,7 +137,8 @@ instance { of: "arm"
   EXPECT_LE(length(middle - Vec3{0, 2, 9}), 1e-15);
 }
 
-// Two keys that differ by more than half a turn about one axis go all the way round.
+// Two keys that differ by more than half a turn about one axis are interpolated over the whole
+// rotation.
 TEST(Placement, TurnsAboutOneAxisGoAllTheWay) {
   const auto imported = import_text(R"(
 instance { of: "pair" key { time: 0 } key { time: 4 rotate { axis: [0, 2, 0] degrees: 720 } } })");
@@ -167,7 +168,7 @@ TEST(Placement, ErrorsNameThePlaceAndTheCure) {
               HasSubstr("group[1].name: is required"));
   EXPECT_THAT(message("instance { of: \"pair\" scale: [1, 0, 1] }"),
               HasSubstr("instance[0].scale[1]: must be finite and not zero"));
-  // X3: what cannot be turned back is refused.
+  // X3: placements without an inverse are refused.
   EXPECT_THAT(message("instance { of: \"pair\" scale: [1, 1e-20, 1] }"),
               HasSubstr("instance[0].scale: flattens"));
   EXPECT_THAT(message("instance { of: \"pair\" key { time: 1 } key { time: 1 } }"),
@@ -197,7 +198,8 @@ TEST(Placement, C8_AShutterThatClosesBeforeItOpensIsRefused) {
               HasSubstr("camera.shutter_close: must not be before shutter_open, 2, is 1"));
 }
 
-/// A triangle and two cameras: 45 degrees high and twice as wide, and an orthographic one.
+/// A triangle and two cameras: one with a vertical field of view of 45 degrees and an aspect ratio
+/// of 2, and an orthographic one.
 const char kCameras[] = R"({
 "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2]}],
 "nodes": [{"mesh": 0},
@@ -237,7 +239,7 @@ TEST(ModelCamera, IsUsedByItsName) {
   EXPECT_TRUE(std::holds_alternative<PerspectiveCamera>(alone->scene.camera)) << "the first";
 }
 
-// Each number is fine; a worker would have refused what they make.
+// Each number is in range, but a worker would refuse their product.
 TEST(Placement, ProductsThatNoWorkerTakesAreRefusedHere) {
   const TempDir folder;
   const auto made = import_scene(write_text(folder, "s.textproto", R"(

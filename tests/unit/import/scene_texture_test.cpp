@@ -31,7 +31,7 @@ std::string message(const std::string& texture) {
   return std::string(import_diffuse(texture).status().message());
 }
 
-/// What the texture of the only material is.
+/// Returns the texture of the only material.
 template <class Kind>
 Kind texture_of(const absl::StatusOr<ImportedScene>& imported) {
   const SceneDescription& scene = imported->scene;
@@ -88,7 +88,7 @@ texture { name: "fire" ramp { texture { use: "veins" } stop { at: 0.5 color: [1,
 material { name: "a" diffuse { texture { use: "fire" } } }
 material { name: "b" diffuse { texture { mix { a { use: "fire" } b { color { } } amount { use: "veins" } } } } }
 )");
-  ASSERT_FALSE(imported.ok());  // An empty colour.
+  ASSERT_FALSE(imported.ok());  // an empty colour
   const auto good = import_text(R"(
 texture { name: "veins" noise { kind: KIND_TURBULENCE } }
 texture { name: "fire" ramp { texture { use: "veins" } stop { at: 0.5 color: [1, 0, 0] } steps: true } }

@@ -61,7 +61,8 @@ TEST(Webp, LosslessImagesAreTheirTexels) {
 }
 
 TEST(Webp, AlphaIsLeftOutOfTheColourAndReadByItself) {
-  // What is clear keeps its colour only where the encoder is told so: none is wholly clear here.
+  // The encoder keeps the colour of transparent texels only if it is told to; none of these is
+  // fully transparent.
   std::vector<std::uint8_t> rgba = codes(4);
   std::vector<std::uint8_t> rgb;
   std::vector<std::uint8_t> alpha;
@@ -82,7 +83,7 @@ TEST(Webp, AlphaIsLeftOutOfTheColourAndReadByItself) {
   EXPECT_EQ(texels(*read), alpha);
 }
 
-// A smooth ramp at quality 90: the error of such a file is a few codes.
+// A smooth ramp at quality 90, which has an error of a few codes.
 TEST(Webp, LossyImagesAreNearTheirTexels) {
   constexpr int kSide = 64;
   std::vector<std::uint8_t> ramp;
@@ -117,8 +118,8 @@ TEST(Webp, DamagedAndAnimatedOnesAreErrors) {
               HasSubstr("is an animated WebP image"));
 }
 
-// EXT_texture_webp: its source is read, whatever else the texture offers; beside the file, within
-// its buffer and as a data URI.
+// EXT_texture_webp: the WebP image is used even if the texture has another source: as a file,
+// within the buffer, and as a data URI.
 TEST(Webp, TexturesOfGltfFilesMayBeWebp) {
   const TempDir folder;
   const std::string webp = lossless(codes(3), false);
