@@ -230,7 +230,7 @@ void write_json(const std::vector<Grown>& all, double speedup, const std::string
 /// Writes a plot for each column, with a line for each family.
 void draw(const std::vector<Grown>& all, const std::string& folder) {
   for (const Column& column : kColumns) {
-    Plot plot{.x = "how many", .y = column.name, .panels = {{.title = column.name, .lines = {}}}};
+    Plot plot{.x = "size", .y = column.name, .panels = {{.title = column.name, .lines = {}}}};
     for (const Grown& grown : all) {
       if (auto points = grown.points(column); !points.empty()) {
         plot.panels[0].lines.push_back({grown.name, grown.exponent_of(column), std::move(points)});

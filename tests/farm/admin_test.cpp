@@ -32,7 +32,7 @@ class Administration : public testing::Test {
   FarmProcesses farm_;
 };
 
-TEST_F(Administration, AWorkersLogIsReadFromAfar) {
+TEST_F(Administration, AWorkersLogIsReadOverTheNetwork) {
   farm_.add_worker("desk", 1);
   ask_until({"logs", "desk"}, "joined");
   EXPECT_EQ(
@@ -49,7 +49,7 @@ TEST_F(Administration, AWorkersLogIsReadFromAfar) {
   EXPECT_NE(unknown.err.find("desk"), std::string::npos) << unknown.err;
 }
 
-TEST_F(Administration, TheDoctorFindsAFarmWellFromBothSides) {
+TEST_F(Administration, TheDoctorReportsNoProblemForUsersAndWorkers) {
   farm_.add_worker("desk", 1);
   for (const std::string& join : {farm_.farm_file(), farm_.join_file()}) {
     const Finished well = run({BANDSAW_BIN, "doctor", "--farm", join, "--data", farm_.path("data"),
@@ -61,7 +61,7 @@ TEST_F(Administration, TheDoctorFindsAFarmWellFromBothSides) {
   }
 }
 
-TEST_F(Administration, TheDoctorNamesWhatIsWrong) {
+TEST_F(Administration, TheDoctorNamesEachProblem) {
   farm_.coordinator().signal(SIGTERM);
   farm_.coordinator().wait();
   const Finished ill = say({"doctor", "--data", farm_.path("data"), "--listen", "192.0.2.1:7878"});
@@ -83,7 +83,7 @@ TEST_F(Administration, AWorkersOldSecretIsVoidAtOnceAndTheNewOneJoins) {
   farm_.add_worker("new", 1);
 }
 
-TEST_F(Administration, PeoplesSecretIsRenewedWithAndWithoutACoordinator) {
+TEST_F(Administration, TheUsersSecretIsRenewedWithAndWithoutACoordinator) {
   const std::string first = file_bytes(farm_.farm_file());
   EXPECT_EQ(here({"secret", "rotate", "farm"}).code, 0);
   EXPECT_EQ(run({BANDSAW_BIN, "jobs", "--farm", first}).code, 2);
@@ -100,7 +100,7 @@ TEST_F(Administration, PeoplesSecretIsRenewedWithAndWithoutACoordinator) {
 // One band of a million samples, so that each worker is killed while it renders this band. The
 // first loss makes the band suspect; five more are needed on a farm that has not stored a band
 // before (coordinator/scheduler/liveness/crash_attribution.h).
-TEST_F(Administration, ABandThatEndsEveryWorkerFailsItsJob) {
+TEST_F(Administration, ABandThatCrashesEveryWorkerFailsItsJob) {
   EXPECT_EQ(
       say({"submit", kScene, "--width", "65536", "--height", "1", "--samples", "16", "--detach"})
           .code,

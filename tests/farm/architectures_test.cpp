@@ -58,7 +58,7 @@ TEST_F(InviteArchitectures, EachHostGetsTheProgramForIt) {
   dismiss("phone");
 }
 
-TEST_F(InviteArchitectures, WithoutAProgramForItAHostSaysHowToGetOne) {
+TEST_F(InviteArchitectures, AMissingProgramIsReportedWithTheRemedy) {
   const Finished invited = invite({"desk", "phone"});
   EXPECT_EQ(invited.code, 1);
   EXPECT_THAT(
@@ -85,7 +85,7 @@ TEST_F(InviteArchitectures, AFileThatIsNotTheProgramIsNotSent) {
 }
 
 // uname prints the kernel's architecture, but the programs of a 32-bit system have another loader.
-TEST_F(InviteArchitectures, AThirtyTwoBitSystemOnA64BitKernelSaysWhatItNeeds) {
+TEST_F(InviteArchitectures, AThirtyTwoBitSystemOnA64BitKernelIsReported) {
   installed_.put_aarch64_worker(worker_file(EM_AARCH64, fitting_mark()));
   machines_.replace("phone", "chmod",
                     "echo '#!/lib/no-such-loader' >\"$2\"; exec /usr/bin/chmod \"$@\"\n");
@@ -96,7 +96,7 @@ TEST_F(InviteArchitectures, AThirtyTwoBitSystemOnA64BitKernelSaysWhatItNeeds) {
   EXPECT_EQ(invited.err.find('\n'), invited.err.size() - 1) << "one line: " << invited.err;
 }
 
-TEST_F(InviteArchitectures, WhateverAHostSaysItIsIsOneLine) {
+TEST_F(InviteArchitectures, TheOutputOfAHostIsPrintedOnOneLine) {
   const std::vector<std::string> junk = {"echo riscv64",
                                          "echo Darwin arm64",
                                          "printf 'a\\033[2Jb'",

@@ -48,7 +48,7 @@ class Control : public testing::Test {
   FarmProcesses farm_;
 };
 
-TEST_F(Control, APausedJobIsLeasedToNobodyAndGoesOnToTheSameBytes) {
+TEST_F(Control, APausedJobIsNotLeasedAndContinuesToTheSameBytes) {
   farm_.add_worker("one", 1);
   farm_.add_worker("two", 1);
   std::vector<std::string> submit = {"submit", kScene, "-o", farm_.path("farm.pfm")};

@@ -134,7 +134,7 @@ class FullDiskFarm : public testing::Test {
   std::optional<Process> worker_;
 };
 
-TEST_F(FullDiskFarm, StartsServesWhatIsThereAndGoesOnWhenThereIsRoom) {
+TEST_F(FullDiskFarm, StartsAndServesResultsAndContinuesWhenThereIsSpace) {
   ASSERT_NO_FATAL_FAILURE(stop_with_jobs_and_fill());
   fill();
   ASSERT_NO_FATAL_FAILURE(start());

@@ -46,7 +46,7 @@ class Cables : public testing::Test {
   std::unique_ptr<Survival> job_;
 };
 
-TEST_F(Cables, OneIsPulledAndPutBack) {
+TEST_F(Cables, AWorkersCableIsPulledAndPutBack) {
   Process client = job_->submit("person");
   job_->wait_until_stored("desk", 2);
   hosts_->unplug("desk");
@@ -56,11 +56,11 @@ TEST_F(Cables, OneIsPulledAndPutBack) {
   job_->wait_until_joined("desk", 2);
 }
 
-TEST_F(Cables, AWorkerThatIsNotHeard) { expect_nothing_lost_when_deaf("desk", "coordinator"); }
+TEST_F(Cables, PacketsFromAWorkerAreLost) { expect_nothing_lost_when_deaf("desk", "coordinator"); }
 
-TEST_F(Cables, AWorkerThatDoesNotHear) { expect_nothing_lost_when_deaf("coordinator", "desk"); }
+TEST_F(Cables, PacketsToAWorkerAreLost) { expect_nothing_lost_when_deaf("coordinator", "desk"); }
 
-TEST_F(Cables, TheCoordinatorsOwnIsPulled) {
+TEST_F(Cables, TheCoordinatorsCableIsPulled) {
   Process client = job_->submit("person");
   job_->wait_until_stored("desk", 2);
   hosts_->unplug("coordinator");
@@ -72,14 +72,14 @@ TEST_F(Cables, TheCoordinatorsOwnIsPulled) {
   job_->wait_until_joined("desk", 2);
 }
 
-TEST_F(Cables, AWorkerBehindAModem) {
+TEST_F(Cables, AWorkerHasASlowConnection) {
   ASSERT_TRUE(hosts_->shape("desk", {"tbf", "rate", "1mbit", "burst", "32kbit", "latency", "1s"}));
   Process client = job_->submit("person");
   job_->expect_the_same_bytes(client);
   job_->expect_nothing_rendered_again();
 }
 
-TEST_F(Cables, PacketsAreLateAndLost) {
+TEST_F(Cables, PacketsAreDelayedAndLost) {
   for (const char* host : {"desk", "person"}) {
     if (!hosts_->shape(host, {"netem", "delay", "50ms", "loss", "5%"})) {
       GTEST_SKIP() << "this kernel has no netem";

@@ -39,7 +39,7 @@ class Invite : public ::testing::Test {
   FakeMachines machines_;
 };
 
-TEST_F(Invite, WorkersComeRenderAndGo) {
+TEST_F(Invite, InstallsWorkersThatRenderAndDismissRemovesThem) {
   const Finished invited = invite({"anna@desk", "laptop"});
   EXPECT_EQ(invited.code, 0) << invited.out << invited.err;
   EXPECT_THAT(invited.out, HasSubstr("anna@desk: bandsaw-worker "));
@@ -55,7 +55,7 @@ TEST_F(Invite, WorkersComeRenderAndGo) {
   EXPECT_FALSE(has_files("laptop"));
 }
 
-TEST_F(Invite, ASecondInvitationTakesThePlaceOfTheFirst) {
+TEST_F(Invite, ASecondInvitationReplacesTheFirst) {
   ASSERT_EQ(invite({"desk"}).code, 0);
   const std::string first = file_bytes(machines_.worker_folder("desk") + "/pid");
   ASSERT_EQ(invite({"desk"}).code, 0);
@@ -68,7 +68,7 @@ TEST_F(Invite, ASecondInvitationTakesThePlaceOfTheFirst) {
   EXPECT_EQ(dismiss({"desk"}).code, 0);
 }
 
-TEST_F(Invite, BySystemdWhereTheUserHasIt) {
+TEST_F(Invite, UsesSystemdIfTheUserHasIt) {
   machines_.add_systemd("desk");
   const Finished invited = invite({"desk"});
   EXPECT_EQ(invited.code, 0) << invited.err;
@@ -84,7 +84,7 @@ TEST_F(Invite, BySystemdWhereTheUserHasIt) {
   EXPECT_FALSE(has_files("desk"));
 }
 
-TEST_F(Invite, EachHostSaysWhatIsWrongAndTheOthersJoin) {
+TEST_F(Invite, ReportsTheErrorOfEachHostAndTheOthersJoin) {
   machines_.replace("phone", "uname", "[ $1 = -s ] && echo Linux || echo riscv64\n");
   machines_.replace("full", "df", "echo H; echo '/dev/sda 9 9 1000 99% /'\n");
   machines_.replace("ancient", "chmod",
@@ -106,13 +106,13 @@ TEST_F(Invite, EachHostSaysWhatIsWrongAndTheOthersJoin) {
   EXPECT_EQ(dismiss({"desk"}).code, 0);
 }
 
-TEST_F(Invite, AHostThatNeverAnswersIsGivenUp) {
+TEST_F(Invite, AHostThatDoesNotAnswerTimesOut) {
   const Finished invited = invite({"frozen", "--time", "0.5s"});
   EXPECT_EQ(invited.code, 1);
   EXPECT_THAT(invited.err, HasSubstr("frozen: did not end within 0.50 s"));
 }
 
-TEST_F(Invite, AWorkerThatMayNotJoinSaysWhy) {
+TEST_F(Invite, ReportsWhyAWorkerCannotJoin) {
   const std::string before = file_bytes(farm_.join_file());
   ASSERT_EQ(run({BANDSAW_BIN, "secret", "rotate", "worker", "--data", farm_.path("data")}).code, 0);
   const Finished invited =
@@ -122,7 +122,7 @@ TEST_F(Invite, AWorkerThatMayNotJoinSaysWhy) {
   EXPECT_EQ(dismiss({"desk"}).code, 0);
 }
 
-TEST_F(Invite, WrongUseIsAnsweredBeforeAnythingIsSent) {
+TEST_F(Invite, WrongUseIsRefusedBeforeAnythingIsSent) {
   EXPECT_EQ(invite({}).code, 2);
   EXPECT_EQ(invite({""}).code, 2);
   const Finished people =

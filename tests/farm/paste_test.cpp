@@ -30,7 +30,7 @@ Process paste(const FarmProcesses& farm, const std::string& host, const std::str
       {"PATH=/usr/bin:/bin", "HOME=" + folder});
 }
 
-TEST(Paste, ALineBringsAWorkerAlong) {
+TEST(Paste, TheLineInstallsAndStartsAWorker) {
   const auto hosts = Hosts::create({"coordinator", "desk"});
   if (!hosts.ok()) {
     GTEST_SKIP() << hosts.status().message();

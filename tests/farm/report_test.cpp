@@ -128,7 +128,7 @@ TEST_F(ReportOfAFarm, TheSamplesOfATimeLimitGiveTheSameBytes) {
   }
 }
 
-TEST(ReportOfParts, IsThatOfTheWholeAsFarAsThePartsSay) {
+TEST(ReportOfParts, EqualsThatOfTheWholeExceptForUnknownFields) {
   const TempDir folder;
   const auto path = [&](const char* name) { return folder / name; };
   const std::vector<std::string> with = {"--width", "32", "--samples", "72", "--quiet"};

@@ -161,7 +161,7 @@ class Schedule {
   std::vector<std::string> told_;
 };
 
-TEST(Schedules, TheSameBytesWhateverBefallsTheFarm) {
+TEST(Schedules, RandomFailuresDoNotChangeTheBytes) {
   const auto made = Hosts::create({"coordinator", "person", "w0", "w1", "w2", "w3"});
   const Hosts* hosts = made.ok() ? made->get() : nullptr;
   const TempDir folder;

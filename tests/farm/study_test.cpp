@@ -49,7 +49,7 @@ TEST_F(StudyCommand, EveryObjectIsForSmallScenes) {
   EXPECT_TRUE(nothing_written());
 }
 
-TEST_F(StudyCommand, ABadSceneIsSaidBeforeAnythingIsRendered) {
+TEST_F(StudyCommand, ABadSceneIsReportedBeforeAnythingIsRendered) {
   const Finished done = run(study({kCornell, folder_ / "none.textproto"}));
   EXPECT_EQ(done.code, 2);
   EXPECT_NE(done.err.find("none.textproto"), std::string::npos);

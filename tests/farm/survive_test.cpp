@@ -62,7 +62,7 @@ TEST_F(Survive, AKilledCoordinator) {
   job_.expect_nothing_rendered_again();
 }
 
-TEST_F(Survive, AWorkerThatIsAskedToLeave) {
+TEST_F(Survive, ADrainedWorker) {
   farm_.add_worker("leaving", 1);
   farm_.add_worker("staying", 1);
   Process client = job_.submit();

@@ -46,7 +46,7 @@ class Upload : public testing::Test {
   const absl::Span<const std::byte> bytes_ = std::as_bytes(std::span(text_));
 };
 
-TEST_F(Upload, GoesOnWhereItWasCutAlsoAfterTheCoordinatorsEnd) {
+TEST_F(Upload, ResumesAlsoAfterARestartOfTheCoordinator) {
   leave_in_the_middle();
   std::uint64_t kept = 0;
   while (kept == 0 && !HasFailure()) {
@@ -66,7 +66,7 @@ TEST_F(Upload, GoesOnWhereItWasCutAlsoAfterTheCoordinatorsEnd) {
   EXPECT_EQ(there(), std::nullopt);
 }
 
-TEST_F(Upload, IsSentFromTheBeginningWhereTheFarmHasLostWhatItHad) {
+TEST_F(Upload, RestartsIfTheFarmLostThePart) {
   const absl::Status put = connect()->put_blob(digest(), bytes_, 8 << 20, [](std::uint64_t) {});
   EXPECT_TRUE(put.ok()) << put;
   EXPECT_EQ(there(), std::nullopt);

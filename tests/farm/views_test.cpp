@@ -106,7 +106,7 @@ void expect_the_image(std::vector<std::string> packets, std::size_t header,
   EXPECT_TRUE(packets.back().substr(header) == pixels_of_pfm(pfm, kSide, kSide));
 }
 
-TEST(Views, AViewerGetsTheImageOfAJobAsItForms) {
+TEST(Views, AViewerGetsTheImageOfAJobWhileItIsRendered) {
   FarmProcesses farm;
   farm.add_worker("one", 1);
   FakeViewer viewer;
@@ -117,7 +117,7 @@ TEST(Views, AViewerGetsTheImageOfAJobAsItForms) {
   expect_the_image(viewer.packets(), kHeader, farm.path("a.pfm"));
 }
 
-TEST(Views, AViewerGetsWhatIsRenderedHere) {
+TEST(Views, AViewerGetsTheImageOfALocalRender) {
   TempDir folder;
   FakeViewer viewer;
   const Finished done = run({BANDSAW_BIN, "render", kScene, "--width", "16", "--samples", "16",
@@ -127,7 +127,7 @@ TEST(Views, AViewerGetsWhatIsRenderedHere) {
   expect_the_image(viewer.packets(), kHeader - 14 + name, folder / "a.pfm");
 }
 
-TEST(Views, AViewerThatIsNotThereIsSaidOnceAndTheImageIsRendered) {
+TEST(Views, AMissingViewerIsReportedOnceAndTheImageIsRendered) {
   std::string address;
   {
     const FakeViewer gone;
@@ -171,7 +171,7 @@ TEST(Views, TheTerminalShowsTheImage) {
   EXPECT_EQ(std::count(piped.err.begin(), piped.err.end(), '\n'), 1) << piped.err;
 }
 
-TEST(Views, APreviewIsWhatIsThereOfTheImage) {
+TEST(Views, APreviewShowsTheRowsThatAreStored) {
   FarmProcesses farm;
   farm.add_worker("one", 1);
   const auto client = FarmClient::connect(*link::join_string_from(farm.farm_file()));

@@ -28,7 +28,7 @@ std::set<std::string> libraries_of(const std::string& program) {
   return libraries;
 }
 
-TEST(WorkerFile, NeedsNothingButGlibc) {
+TEST(WorkerFile, NeedsOnlyGlibc) {
   if (kSanitized) {
     GTEST_SKIP() << "a sanitizer brings libraries of its own";
   }
@@ -51,7 +51,7 @@ TEST(WorkerFile, TheCommandNeedsMore) {
   EXPECT_TRUE(libraries_of(BANDSAW_BIN).contains("libstdc++.so.6"));
 }
 
-TEST(WorkerFile, SaysItsVersionToThoseWhoCannotRunIt) {
+TEST(WorkerFile, ItsVersionIsReadWithoutRunningIt) {
   const auto program = coordinator::checked_worker_program(file_bytes(BANDSAW_WORKER_BIN),
                                                            coordinator::kThisMachine);
   ASSERT_TRUE(program.ok()) << program.status();
@@ -59,7 +59,7 @@ TEST(WorkerFile, SaysItsVersionToThoseWhoCannotRunIt) {
             "bandsaw-worker " + program->version + "\n");
 }
 
-TEST(WorkerFile, AnotherProgramOfTheSameMachineIsNone) {
+TEST(WorkerFile, AnotherProgramIsNotAWorker) {
   const auto command = coordinator::checked_worker_program(file_bytes(BANDSAW_IMPORT_BIN),
                                                            coordinator::kThisMachine);
   EXPECT_THAT(command.status().message(), ::testing::HasSubstr("is no bandsaw-worker"));

@@ -96,7 +96,7 @@ TEST_F(WrongInput, TruncatedModel) {
   EXPECT_TRUE(nothing_written());
 }
 
-TEST_F(WrongInput, UnwritableOutputIsSaidBeforeRendering) {
+TEST_F(WrongInput, UnwritableOutputIsReportedBeforeRendering) {
   expect_error(render({kScene, "-o", "/nonexistent/out.png"}), kWrongUse, {"/nonexistent"});
   expect_error(render({kScene, "-o", folder_ / "out.jpeg"}), kWrongUse, {"jpeg", "pfm"});
 }
@@ -129,7 +129,7 @@ TEST_F(WrongInput, WrongJoinString) {
   expect_error(run({BANDSAW_BIN, "jobs", "--farm", "bsw1-x"}), kWrongUse, {"join string"});
 }
 
-TEST_F(WrongInput, NobodyAtThePort) {
+TEST_F(WrongInput, NoCoordinatorAtThePort) {
   std::string farm;
   {
     FarmProcesses gone;

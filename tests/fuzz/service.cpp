@@ -26,13 +26,13 @@ void bandsaw::fuzz::run(absl::Span<const std::uint8_t> in) {
   switch (in[0] % 4) {
     case 0:
       if (const auto spec = coordinator::job_spec(parsed<farm::SubmitRequest>(rest)); spec.ok()) {
-        BANDSAW_CHECK(validate(spec->settings).ok(), "settings that were taken are in range");
+        BANDSAW_CHECK(validate(spec->settings).ok(), "accepted settings are in range");
       }
       break;
     case 1:
       if (const auto band = coordinator::band("band", parsed<farm::Band>(rest)); band.ok()) {
         BANDSAW_CHECK(is_node(band->samples) && band->rows.first < band->rows.last,
-                      "a band that was taken is one");
+                      "an accepted band is a node and has rows");
       }
       break;
     case 2:

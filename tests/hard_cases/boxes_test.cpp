@@ -36,7 +36,7 @@ bool meets(const FloatBox& box, const Ray& ray) {
 }
 
 // Rays within the faces of a box, where 0 times infinity is NaN.
-TEST(Tree, B1B4_RaysWithinAFaceMeetTheBox) {
+TEST(Tree, B1B4_RaysWithinAFaceHitTheBox) {
   const FloatBox box = {{0, 0, 0}, {1, 1, 1}};
   for (const double x : {0.0, 1.0}) {
     for (const double zero : {0.0, -0.0}) {
@@ -97,7 +97,7 @@ std::pair<FloatBox, Ray> aimed(const Vec3& center, test::Random& random) {
   return {box, {origin, d * std::ldexp(1, static_cast<int>(random.below(80)) - 40)}};
 }
 
-TEST(Tree, B2B3_NeverMissesABoxThatIsMet) {
+TEST(Tree, B2B3_NeverMissesABoxThatIsHit) {
   test::Random random(1);
   const int boxes = tries(200'000, 10'000'000);
   for (const bool at_any_distance : {true, false}) {
@@ -145,7 +145,7 @@ double boxes_met(const BinaryTree& tree, const std::vector<Ray>& rays) {
 }
 
 // Two triangles a million times as wide as the mesh on them.
-TEST(Tree, B6_FineOnVastKeepsItsTree) {
+TEST(Tree, B6_AFineObjectOnAVastGroundKeepsItsTree) {
   const Mesh fine = test::icosphere(4);
   Mesh vast = fine;
   const auto first = static_cast<std::uint32_t>(vast.positions.size());

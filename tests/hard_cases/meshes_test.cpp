@@ -145,7 +145,7 @@ TEST(Triangle, T6_AHugeOneJustBelowTheCamera) {
   }
 }
 
-TEST(Triangle, T8_OfTwoAlmostInOnePlaneTheNearerIsHit) {
+TEST(Triangle, T8_TheNearerOfTwoNearlyCoplanarIsHit) {
   Pool pool(1);
   Random random(3);
   int decided = 0;

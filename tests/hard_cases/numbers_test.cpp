@@ -75,7 +75,7 @@ TEST(SphericalRectangle, L5_SmallOnesKeepTheirSolidAngle) {
   }
 }
 
-TEST(PowerHeuristic, L10_NeitherOverflowsNorLoses) {
+TEST(PowerHeuristic, L10_NeitherOverflowsNorLosesEnergy) {
   Worst off;
   for (int i = -30; i <= 30; ++i) {
     for (int k = -30; k <= 30; ++k) {
@@ -181,7 +181,7 @@ ErrorEstimate estimate_of(const std::vector<double>& a, const std::vector<double
   return sums.estimate();
 }
 
-TEST(ErrorEstimate, A2_OfALittleSpreadAboutALargeValue) {
+TEST(ErrorEstimate, A2_ASmallSpreadAboutALargeValueIsAccurate) {
   const std::vector<double> a(30, 4096 * 100.01);
   const std::vector<double> b(30, 4096 * 99.99);
   test::at_most("A2", "relative error of a spread of 0.01 about 100",

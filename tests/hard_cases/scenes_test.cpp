@@ -60,7 +60,7 @@ TEST(SmoothNormals, T13_CoarseMeshesAreShadedAlmostAsFineOnes) {
 // A light in the plane of the ceiling: the ceiling neither hides nor occludes it. At the middle of
 // the floor, each quarter of the light gives E = a / sqrt(1 + a^2) atan(a / sqrt(1 + a^2)), where a
 // is its side over its height.
-TEST(Ceiling, Q4_LampInItsPlaneShinesAsTheFormulaSays) {
+TEST(Ceiling, Q4_ALightInItsPlaneGivesTheClosedForm) {
   test::SceneMaker maker;
   maker.quad({-9, 0, -9}, {0, 0, 18}, {18, 0, 0}, maker.diffuse(1));
   maker.quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}, maker.lamp(1, true));
@@ -77,7 +77,7 @@ TEST(Ceiling, Q4_LampInItsPlaneShinesAsTheFormulaSays) {
 }
 
 // (1 - R) / (1 + R) with R = 0.04: the sum over all reflections within the pane.
-TEST(Pane, O6_PassesItsShareHoweverThin) {
+TEST(Pane, O6_TransmitsTheSameShareAtAnyThickness) {
   for (const double thickness : {1e-3, 1e-6, 1e-9}) {
     test::SceneMaker maker;
     const MaterialId glass = maker.glass(1.5);
@@ -138,7 +138,7 @@ test::SceneMaker spheres_and_mesh(const Vec3& at) {
   return maker;
 }
 
-TEST(Camera, C1_AMillionAwayTheSameIsHit) {
+TEST(Camera, C1_AMillionUnitsAwayTheSamePrimitivesAreHit) {
   const auto near = spheres_and_mesh({0, 0, 0}).build();
   const auto far = spheres_and_mesh({1e6, -1e6, 1e6}).build();
   constexpr std::uint32_t kSide = 500;

@@ -109,7 +109,7 @@ TEST(Sphere, S3_TangentRaysAreDecidedRightAndNeverNan) {
   test::holds("S3", "26,000 rays right beyond 16 u (1 + L / R), none NaN");
 }
 
-TEST(Sphere, S2_HitPointsLieOnItHoweverLarge) {
+TEST(Sphere, S2_HitPointsLieOnSpheresOfAnySize) {
   test::Random random(3);
   const int rays = tries(20'000, 1'000'000);
   test::Worst height;
@@ -152,7 +152,7 @@ double worth_of_last_bits(const Ray& ray, const Sphere& sphere) {
   return most;
 }
 
-TEST(Sphere, S4_IsLeftOnTheFarSideFromWithin) {
+TEST(Sphere, S4_FromWithinTheFarSideIsHit) {
   test::Random random(4);
   const Sphere sphere = {{1, 2, 3}, 2, {}};
   test::Worst error;
@@ -196,7 +196,7 @@ TEST(Sphere, S5_TakesTheFirstRootAhead) {
   test::holds("S5", "exact roots before, inside and behind");
 }
 
-TEST(Sphere, S6_DoesNotCareForTheLengthOfTheDirection) {
+TEST(Sphere, S6_TheLengthOfTheDirectionDoesNotMatter) {
   test::Random random(5);
   const Sphere sphere = {{0.1, 0.2, 0.3}, 1, {}};
   for (int i = 0; i < 1000; ++i) {
@@ -290,7 +290,7 @@ std::string pass_through(const Geometry& g, const Accel& accel, Vec3& direction,
 
 // A ray at distance b from the centre is bent by asin(b / R) - asin(b / nR) where it enters the
 // glass, back by the same at radius r where it leaves the glass, and once more when it leaves.
-TEST(Sphere, S10M9_ShellsAndBubblesBendAsSnellSays) {
+TEST(Sphere, S10M9_ShellsAndBubblesRefractBySnellsLaw) {
   for (const long double inner : {1 - 1e-9L, 0.5L}) {
     Geometry g;
     g.spheres = {{{0, 0, 0}, 1, {}}, {{0, 0, 0}, static_cast<double>(inner), {}}};

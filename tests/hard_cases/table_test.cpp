@@ -83,7 +83,7 @@ TEST(HardCaseTable, ListsEveryCaseOnceInOrder) {
   EXPECT_EQ(rows, known_ids()) << "run tests/hard_cases/run.sh";
 }
 
-TEST(HardCaseTable, NamesTheTestOfEveryCaseOrSaysWhyThereIsNone) {
+TEST(HardCaseTable, NamesTheTestOfEveryCaseOrTheReasonForNone) {
   const auto files = files_by_id();
   const std::vector<std::string> ids = known_ids();
   for (const auto& [id, where] : files) {

@@ -124,7 +124,7 @@ std::vector<double> best_weights(const std::vector<Place>& places) {
   return weights;
 }
 
-TEST(Weights, Q5_NoneOfTheRatioOfDensitiesAreNearTheBetterTechniqueEverywhere) {
+TEST(Weights, Q5_NoWeightsByThePdfRatioAreCloseToTheBetterTechnique) {
   // The larger of two ratios is at least any mean of them, so the minimal mean is a bound for the
   // minimal larger one (duality: the variances are convex). The shares were found by a search; any
   // shares give a bound.

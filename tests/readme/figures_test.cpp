@@ -28,7 +28,7 @@ TEST(Figures, AreMadeByOneCommandEach) {
                                                             fs::directory_iterator())));
 }
 
-TEST(Figures, TheSheetShowsTheScenesAndSaysWhichIsWhere) {
+TEST(Figures, TheSheetShowsTheScenesAndListsTheirPlaces) {
   const TempDir folder;
   const std::string build = fs::path(BANDSAW_BIN).parent_path().parent_path();
   const std::string gallery = BANDSAW_GALLERY;

@@ -80,7 +80,7 @@ TEST(DirectLight, OfASquareAboveItsCenterAndItsCorner) {
 
 /// The same square as other shapes: two loose triangles, a pair of parallelograms, and a mesh with
 /// a mirrored, scaled placement.
-TEST(DirectLight, OfASquareIsTheSameWhateverItIsMadeOf) {
+TEST(DirectLight, ASquareGivesTheSameAsQuadTrianglesOrMesh) {
   const double expected = 1.740839502734;
   SceneMaker triangles;
   const MaterialId lamp = triangles.lamp(1);
@@ -104,7 +104,7 @@ TEST(DirectLight, OfASquareIsTheSameWhateverItIsMadeOf) {
   expect_irradiance(many, expected, 8192);
 }
 
-TEST(DirectLight, OfAOneSidedSquareIsThereOnItsFrontAndZeroOnItsBack) {
+TEST(DirectLight, OfAOneSidedSquareIsZeroOnItsBack) {
   for (const bool front : {true, false}) {
     SceneMaker maker;
     const Vec3 u{2, 0, 0};

@@ -117,7 +117,7 @@ double reflected(const SceneMaker& maker, const Vec3& normal) {
   return sum * 2 / kBands / kBands;
 }
 
-TEST(EnvironmentLight, AskingFollowingAndBothAgreeWithQuadrature) {
+TEST(EnvironmentLight, AllTechniquesAgreeWithQuadrature) {
   SceneMaker maker;
   set_environment(maker, sunny());
   add_patch(maker, 20, maker.diffuse(1));
@@ -133,7 +133,7 @@ TEST(EnvironmentLight, AskingFollowingAndBothAgreeWithQuadrature) {
   }
 }
 
-TEST(EnvironmentLight, AskingFollowingAndBothAgreeThroughASceneOfManyMaterials) {
+TEST(EnvironmentLight, AllTechniquesAgreeInASceneOfManyMaterials) {
   SceneMaker maker;
   set_environment(maker, sunny());
   maker.quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}, maker.diffuse(0.6f));
@@ -154,7 +154,7 @@ TEST(EnvironmentLight, AskingFollowingAndBothAgreeThroughASceneOfManyMaterials) 
   }
 }
 
-TEST(EnvironmentLight, C10AMirrorShowsWhatLiesInItsDirection) {
+TEST(EnvironmentLight, C10AMirrorShowsTheEnvironmentInItsDirection) {
   SceneMaker maker;
   set_environment(maker, sunny());
   maker.quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}, maker.metal(1, 0));
@@ -166,7 +166,7 @@ TEST(EnvironmentLight, C10AMirrorShowsWhatLiesInItsDirection) {
   test::holds("C10", "mirrors show what lies in their direction");
 }
 
-TEST(EnvironmentLight, C10WhateverLosesNoLightIsInvisibleInAWhiteOne) {
+TEST(EnvironmentLight, C10LosslessObjectsAreInvisibleInAWhiteOne) {
   SceneMaker maker;
   set_environment(maker, float_image(8, 4, [](auto, auto) { return 1.0f; }));
   maker.sphere({-2, 0, 0}, 0.9, maker.metal(1, 0));
@@ -180,7 +180,7 @@ TEST(EnvironmentLight, C10WhateverLosesNoLightIsInvisibleInAWhiteOne) {
   test::holds("C10", "invisible in a white one");
 }
 
-TEST(DeltaLight, OfEachKindInClosedForm) {
+TEST(DeltaLight, EachKindGivesTheClosedForm) {
   const double cosine = std::cos(0.6);
   const Vec3 way{std::sin(0.6), cosine, 0};
   const auto lit_by = [](const DeltaLight& light) {
@@ -209,7 +209,7 @@ TEST(DeltaLight, OfEachKindInClosedForm) {
   expect_radiance(lit_by(spot), ray, 50 * cosine / 49 / kPi, options, 4);
 }
 
-TEST(DeltaLight, BelowTheHorizonOrBehindSomethingThereIsNone) {
+TEST(DeltaLight, IsZeroBelowTheHorizonOrBehindAnOccluder) {
   const std::vector<DeltaLight> above = {DirectionalLight{{0, -1, 0}, {1, 1, 1}},
                                          PointLight{{0, 5, 0}, {1, 1, 1}},
                                          SpotLight{.position = {0, 5, 0}, .direction = {0, -1, 0}}};
@@ -226,7 +226,7 @@ TEST(DeltaLight, BelowTheHorizonOrBehindSomethingThereIsNone) {
   }
 }
 
-TEST(DeltaLight, OfAllKindsAndLampsAndAnEnvironmentAddsUp) {
+TEST(DeltaLight, AllKindsAreaLightsAndAnEnvironmentAddUp) {
   for (const int points : {1, 40}) {  // few lights, and a light tree
     SceneMaker maker;
     set_environment(maker, half_white());

@@ -128,7 +128,7 @@ TEST(Enclosure, OfOneAlbedoHoldsTheFluxOverOneMinusRho) {
   expect_balance({rho, rho, rho, rho, rho, rho, rho}, 2048);
 }
 
-TEST(Enclosure, OfManyAlbedosTakesUpWhatTheLampGives) {
+TEST(Enclosure, OfManyAlbedosAbsorbsTheFluxOfTheLight) {
   expect_balance({0.8f, 0.7f, 0.4f, 0.5f, 0.75f, 0.45f, 0.6f}, 4096);
 }
 
@@ -189,7 +189,7 @@ std::array<double, 6> radiosity(const std::array<Wall, 6>& walls,
   return means;
 }
 
-TEST(Enclosure, WallsAreAsBrightAsRadiositySays) {
+TEST(Enclosure, WallsHaveTheRadiositySolution) {
   const std::array<Wall, 6> walls = room(1, 1, 1);
   const std::array<float, 6> albedos = {0.8f, 0, 0.35f, 0.7f, 0.5f, 0.6f};
   const std::array<double, 6> coarse = radiosity(walls, albedos, 8);

@@ -61,7 +61,7 @@ TEST(Furnace, WithoutCutOffIsTheClosedForm) {
   }
 }
 
-TEST(Furnace, ASmallLampMakesTheEnclosureOneOverOneMinusRho) {
+TEST(Furnace, ASmallLightGivesOneOverOneMinusRho) {
   const float rho = 0.8f;
   const double f = 1e-3;
   const auto scene = enclosure(rho, f).build();
@@ -71,7 +71,7 @@ TEST(Furnace, ASmallLampMakesTheEnclosureOneOverOneMinusRho) {
   expect_value(test::radiance_along(*scene, kAtWall, {.max_depth = 1000}, 16384), expected, 1e-3);
 }
 
-TEST(Furnace, AWhiteSphereUnderAGradientSkyIsAsItsTiltSays) {
+TEST(Furnace, AWhiteSphereUnderAGradientSkyHasTheClosedForm) {
   // Under a sky of radiance (1 + cos) / 2 of the angle to +y a patch with normal n has radiosity
   // 1/2 + n.y / 3.
   SceneMaker maker;
@@ -85,7 +85,7 @@ TEST(Furnace, AWhiteSphereUnderAGradientSkyIsAsItsTiltSays) {
   }
 }
 
-TEST(Furnace, O6_APaneOfGlassTransmitsAsTheSumOverItsReflectionsSays) {
+TEST(Furnace, O6_APaneOfGlassTransmitsTheSumOverItsReflections) {
   SceneMaker maker;
   const MaterialId glass = maker.glass(1.5);
   maker.quad({-9, 1, -9}, {0, 0, 18}, {18, 0, 0}, glass);
@@ -111,7 +111,7 @@ std::shared_ptr<const Scene> mixed(double fuzz) {
   return maker.build();
 }
 
-TEST(Techniques, AskingLightsFollowingDirectionsAndBothHaveTheSameMean) {
+TEST(Techniques, AllTechniquesHaveTheSameMean) {
   for (const double fuzz : {0.3, 1.0}) {
     const auto scene = mixed(fuzz);
     for (const Vec3& target : {Vec3{0, 0, -1}, Vec3{-0.5, 2.5, -3}, Vec3{0.8, 1.2, -1}}) {
@@ -133,7 +133,7 @@ TEST(Techniques, AskingLightsFollowingDirectionsAndBothHaveTheSameMean) {
   }
 }
 
-TEST(Techniques, Q5_NearALampBothAreNeverFarFromTheBetterOne) {
+TEST(Techniques, Q5_NearALightMisIsCloseToTheBetterTechnique) {
   // From close to the plane of a 2 x 2 light, where BSDF sampling is nearly exact, to far from it,
   // where light sampling is. Sampling by area would have more noise than the mean by a factor of 32
   // at the nearest point.
@@ -155,8 +155,8 @@ TEST(Techniques, Q5_NearALampBothAreNeverFarFromTheBetterOne) {
     EXPECT_LE(both, std::min(lights, scattering) + 0.25) << h;
     EXPECT_LE(both, std::max(lights, scattering)) << h;
     std::ostringstream figure;
-    figure << "h = " << h << ": std / mean " << both << " of MIS, " << lights << " of asking, "
-           << scattering << " of following";
+    figure << "h = " << h << ": std / mean " << both << " of MIS, " << lights
+           << " of light sampling, " << scattering << " of BSDF sampling";
     test::holds("Q5", figure.str());
   }
 }

@@ -52,7 +52,7 @@ void expect_half_space(const Seen& seen, float density, double error, std::uint6
 }
 
 /// The errors are those of a second of sampling.
-TEST(HalfSpace, ReflectsAsItsHFunctionSays) {
+TEST(HalfSpace, ReflectanceIsThatOfTheHFunction) {
   for (const Seen& seen :
        {Seen{0.5f, 1, 0.11522588}, Seen{0.5f, 0.5, 0.16014443}, Seen{0.8f, 1, 0.28525450},
         Seen{0.9f, 0.5, 0.50793891}, Seen{0.99f, 1, 0.75272072}}) {
@@ -60,12 +60,12 @@ TEST(HalfSpace, ReflectsAsItsHFunctionSays) {
   }
 }
 
-TEST(HalfSpace, ReflectsAsItsHFunctionSaysToAThousandth) {
+TEST(HalfSpace, ReflectanceIsThatOfTheHFunctionWithinAThousandth) {
   expect_half_space({0.8f, 0.5, 0.36796976}, 1, 1e-3, 16384);
 }
 
 /// A very dense medium, in units of the scene: the same result, and every path ends.
-TEST(HalfSpace, V3IsTheSameHoweverDense) {
+TEST(HalfSpace, V3ReflectanceDoesNotDependOnDensity) {
   for (const float density : {1e6f, 1e10f}) {
     expect_half_space({0.8f, 1, 0.28525450}, density, 4e-3, 1024);
   }

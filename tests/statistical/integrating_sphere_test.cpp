@@ -90,7 +90,7 @@ void expect_mean(const test::Moments& seen, double expected) {
   EXPECT_LE(seen.standard_error(), 1e-3 * expected);
 }
 
-TEST(IntegratingSphere, OfAnyTextureIsAsBrightAsItsMeanAlbedoSays) {
+TEST(IntegratingSphere, OfAnyTextureHasTheIrradianceOfItsMeanAlbedo) {
   const std::vector<float> values = albedos();
   const LitSphere lit = lit_sphere(values);
   for (const auto& [x, y] : {std::pair(1u, 1u), std::pair(5u, 2u)}) {
@@ -101,7 +101,7 @@ TEST(IntegratingSphere, OfAnyTextureIsAsBrightAsItsMeanAlbedoSays) {
 
 // Most of the pixels see one corner of the texture, two the other side: the balance-heuristic
 // weights of the shared vertices are unequal.
-TEST(IntegratingSphere, IsAsBrightForPixelsThatShareTheirPaths) {
+TEST(IntegratingSphere, HasTheSameIrradianceWithPathReuse) {
   const std::vector<float> values = albedos();
   const LitSphere lit = lit_sphere(values);
   ASSERT_TRUE(lit.scene->reuses_paths());

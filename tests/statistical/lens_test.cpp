@@ -62,7 +62,7 @@ double share_of_lens(double radius, double distance, double aperture) {
   return on_lens * on_lens / (aperture * aperture / 4);
 }
 
-TEST(Lens, MakesADiskOfALampBeyondItsFocus) {
+TEST(Lens, ALightBeyondTheFocusIsADisk) {
   // The last is visible from a millionth of the lens: of 8,192 rays, hardly one would hit it.
   for (const double radius : {0.1, 0.01, 3e-4}) {
     SceneMaker maker;
@@ -72,7 +72,7 @@ TEST(Lens, MakesADiskOfALampBeyondItsFocus) {
   }
 }
 
-TEST(Lens, MakesADiskOfALampBeforeItsFocus) {
+TEST(Lens, ALightBeforeTheFocusIsADisk) {
   SceneMaker maker;
   maker.sphere({0, 0, -2}, 0.05, maker.lamp(7));
   for (const Lamps lamps : {Lamps::kAsked, Lamps::kFoundByChance}) {
@@ -112,12 +112,12 @@ SceneMaker lamps() {
   return maker;
 }
 
-TEST(Lens, AskedAndFoundByChanceHaveTheSameMean) {
+TEST(Lens, LightSamplingAndCameraRaysHaveTheSameMean) {
   expect_the_same(lamps(), camera(0.4));
   expect_the_same(lamps(), camera(3));
 }
 
-TEST(Lens, AskedAndFoundByChanceHaveTheSameMeanAmongMany) {
+TEST(Lens, LightSamplingAndCameraRaysHaveTheSameMeanAmongManyLights) {
   SceneMaker maker = lamps();
   for (int i = 0; i < 40; ++i) {
     maker.sphere({std::sin(i) * 3, std::cos(3 * i) * 2, -8.0 - i % 7}, 0.1, maker.lamp(3));
@@ -125,7 +125,7 @@ TEST(Lens, AskedAndFoundByChanceHaveTheSameMeanAmongMany) {
   expect_the_same(maker, camera(0.6));
 }
 
-TEST(Lens, AskedAndFoundByChanceHaveTheSameMeanInFogAndUnderASky) {
+TEST(Lens, LightSamplingAndCameraRaysHaveTheSameMeanInFogAndUnderASky) {
   SceneMaker maker = lamps();
   maker.background(gray(0.2f), gray(0.7f));
   test::fog(maker, test::medium(0.02f, 0.1f, 0.3));
@@ -154,7 +154,7 @@ SceneMaker room() {
   return maker;
 }
 
-TEST(Lens, IsAskedThroughWherePixelsShareTheirPaths) {
+TEST(Lens, LightsAreSampledThroughTheLensWithPathReuse) {
   const auto scene = room().build();
   ASSERT_TRUE(scene->reuses_paths());
   const RayGenerator rays(camera(0.4), 20, 20);

@@ -36,7 +36,7 @@ SceneMaker white_sky() {
   return maker;
 }
 
-TEST(Media, V6AbsorbAsTheExponentialSays) {
+TEST(Media, V6AbsorptionIsExponential) {
   // Through one and two spheres at every distance from the middle.
   for (const double b : {0.0, 0.3, 0.9, 0.999999}) {
     SceneMaker maker = white_sky();
@@ -61,7 +61,7 @@ TEST(Media, V6AbsorbAsTheExponentialSays) {
 }
 
 /// Camera and light inside, the light in the boundary, and the camera in endless fog.
-TEST(Media, V7AroundTheCameraAbsorbOnTheWayToALamp) {
+TEST(Media, V7AroundTheCameraAttenuateALight) {
   const Ray ray{.origin = {0, 0, 0}, .direction = {0, 0, -1}};
   for (const double distance : {0.5, 2.0, 3.0}) {
     const auto with_lamp = [&] {
@@ -82,7 +82,7 @@ TEST(Media, V7AroundTheCameraAbsorbOnTheWayToALamp) {
 
 /// Scattering in front of a light does not make its edge noisy: half of these paths are scattered
 /// before they reach it, and all of them have its light.
-TEST(Media, BeforeALampLetThroughTheSameOfEverySample) {
+TEST(Media, InFrontOfALightAttenuateEverySampleEqually) {
   SceneMaker maker;
   maker.sphere({10, 0, 0}, 1e-3, maker.lamp(5));
   test::fog(maker, medium(0.01f, 0.05f));
@@ -93,7 +93,7 @@ TEST(Media, BeforeALampLetThroughTheSameOfEverySample) {
   expect_value(seen, 5 * std::exp(-0.06 * (8 - 1e-3) - 0.25 * 2), 1e-6);
 }
 
-TEST(Media, ThatEmitGiveTheirReach) {
+TEST(Media, EmitInProportionToTheirEffectiveLength) {
   SceneMaker maker = white_sky();
   const MediumId flame = test::add(maker, {.absorption = {0, 1, 0}, .emission = {0, 3, 0}});
   test::fill_sphere(maker, {0, 0, 0}, 1, flame);
@@ -143,14 +143,14 @@ void expect_single_scattering(const Medium& fog, double ahead, double aside, dou
                error);
 }
 
-TEST(Media, ScatterOnceAsTheQuadratureSays) {
+TEST(Media, SingleScatteringEqualsQuadrature) {
   expect_single_scattering(medium(0.1f, 0.4f), 2, 1, 1e-3);
   expect_single_scattering(medium(0.3f, 1, 0.7), 1, 0.5, 1e-3);
   expect_single_scattering(medium(0, 0.05f, -0.5), 3, 0.05, 1e-3);
   expect_single_scattering(medium(0.2f, 3), -0.4, 0.3, 1e-3);
 }
 
-TEST(Media, ScatterLightsWithoutSize) {
+TEST(Media, ScatterDeltaLights) {
   const Medium smoke = medium(0.1f, 0.4f, 0.3);
   const Ray ray{.origin = {0, 0, 0}, .direction = {1, 0, 0}};
   SceneMaker point;
@@ -296,7 +296,7 @@ std::shared_ptr<const Scene> smoky_room(bool with_fog) {
   return maker.build();
 }
 
-TEST(MediaTechniques, AskingLightsFollowingDirectionsAndBothHaveTheSameMean) {
+TEST(MediaTechniques, AllTechniquesHaveTheSameMean) {
   for (const bool with_fog : {false, true}) {
     const auto scene = smoky_room(with_fog);
     for (const Vec3& target : {Vec3{0, 1, 0}, Vec3{-1.2, 0.2, 0.5}, Vec3{0.7, 1.6, 0}}) {
@@ -331,7 +331,7 @@ TEST(MediaTechniques, R8_RouletteKeepsTheMean) {
 }
 
 /// Without absorption and scattering the light is the same to the bit.
-TEST(Media, V1OfNothingChangeNoBit) {
+TEST(Media, V1EmptyMediaChangeNoBit) {
   SceneMaker without;
   without.quad({-4, 0, -4}, {0, 0, 8}, {8, 0, 0}, without.diffuse(0.6f));
   without.quad({-0.5, 3, -0.5}, {1, 0, 0}, {0, 0, 1}, without.lamp(8));
@@ -370,7 +370,7 @@ TEST(MediaTechniques, AgreeUnderAnUnevenSky) {
 }
 
 /// A light whose centre the ray hits.
-TEST(MediaTechniques, V8AgreeOnARayThroughTheMiddleOfALamp) {
+TEST(MediaTechniques, V8AgreeOnARayThroughTheMiddleOfALight) {
   SceneMaker maker;
   maker.sphere({3, 0, 0}, 0.1, maker.lamp(50));
   test::fog(maker, medium(0.05f, 0.2f));

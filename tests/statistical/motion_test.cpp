@@ -66,7 +66,7 @@ TEST(DiskLight, IsItsClosedForm) {
 }
 
 // X9: instanced lights emit according to their size in the world.
-TEST(PlacedLight, X9_ShinesByItsSizeInTheWorld) {
+TEST(PlacedLight, X9_EmitsAccordingToItsSizeInTheWorld) {
   SceneMaker disk;
   disk.scene.geometry.groups.resize(1);
   disk.scene.geometry.groups[0].disks.push_back({{0, 0, 0}, {0, 0, 1}, 0.5, disk.lamp(1)});
@@ -91,7 +91,7 @@ TEST(PlacedLight, X9_ShinesByItsSizeInTheWorld) {
 }
 
 // An ellipsoid over a point: light sampling and BSDF sampling agree. A flat one is nearly a disk.
-TEST(PlacedLight, OfAnEllipsoidIsTheSameByEveryTechnique) {
+TEST(PlacedLight, AllTechniquesAgreeForAnEllipsoid) {
   SceneMaker maker;
   maker.scene.geometry.groups.resize(1);
   maker.scene.geometry.groups[0].spheres.push_back({{0, 0, 0}, 1, maker.lamp(1)});
@@ -133,7 +133,7 @@ SceneMaker moving_lamp(const Shapes& lamp, const Key& from, const Key& to) {
 }
 
 // The mean of r^2 / (a + (b - a) t)^2 over t in [0, 1] is r^2 / (a b).
-TEST(MovingLight, ShinesFromWhereItIs) {
+TEST(MovingLight, EmitsFromItsPositionAtTheTime) {
   Shapes ball;
   ball.spheres.push_back({{0, 0, 0}, 0.5, MaterialId{0}});
   for (const Technique technique : {Technique::kBoth, Technique::kLightsOnly}) {

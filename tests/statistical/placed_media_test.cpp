@@ -64,7 +64,7 @@ TEST(MovingMedia, V6GrowingBallAbsorbsByTheMeanOverTheShutter) {
 
 // A ball that moves past: with y from -2 to 2, the mean of exp(-2 s sqrt(1 - y^2)) over those that
 // intersect the ray and 1 over the others; the first by Simpson's rule in the angle.
-TEST(MovingMedia, V6BallThatFliesByAbsorbsByTheMeanOverTheShutter) {
+TEST(MovingMedia, V6MovingBallAbsorbsByTheMeanOverTheShutter) {
   const double s = 0.8;
   const auto scene =
       moving_ball(test::medium(0.8f, 0), translation({0, -2, 0}), translation({0, 2, 0})).build();

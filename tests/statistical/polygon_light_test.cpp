@@ -65,7 +65,7 @@ TEST(PolygonLight, TrianglesOfAnySizeAndSlant) {
 }
 
 // An occluder halfway, whose edge is in front of the light: the visible part of the light counts.
-TEST(PolygonLight, OfOneThatIsPartlyHiddenTheRestShines) {
+TEST(PolygonLight, APartlyOccludedLightCountsByItsVisiblePart) {
   for (const double edge : {-0.6, 0.1, 0.9}) {
     SceneMaker maker;
     maker.quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}, maker.lamp(1));
@@ -75,7 +75,7 @@ TEST(PolygonLight, OfOneThatIsPartlyHiddenTheRestShines) {
   }
 }
 
-TEST(PolygonLight, X9AnInstanceOfALampShinesByTheAreaThatItIsPlacedWith) {
+TEST(PolygonLight, X9AnInstanceEmitsAccordingToItsPlacedArea) {
   const double expected = 1.740839502734;
   for (const int n : {1, 8}) {  // few lights, and many
     for (const double scale : {1e-3, 1e3}) {
@@ -92,7 +92,7 @@ TEST(PolygonLight, X9AnInstanceOfALampShinesByTheAreaThatItIsPlacedWith) {
   }
 }
 
-TEST(PolygonLight, L12LampsAreSeenOnceHoweverTheyAreFound) {
+TEST(PolygonLight, L12LightsCountOnceForEveryTechnique) {
   // A light of triangles, a mirror and a pane of glass: each technique has the same mean.
   SceneMaker maker;
   maker.quad({-5, 0, -5}, {0, 0, 10}, {10, 0, 0}, maker.diffuse(0.5f));

@@ -90,7 +90,7 @@ TEST(Squashed, S12_AGlassBallIsInvisibleInAWhiteSky) {
 
 /// An absorbing ball transmits exp(-sigma chord), with the chord from the sphere's equation in its
 /// own space.
-TEST(Squashed, S12_AnAbsorbingBallLetsPassWhatItsChordSays) {
+TEST(Squashed, S12_AnAbsorbingBallTransmitsTheExponentialOfItsChord) {
   test::Worst error;
   for (const double by : kThin) {
     const double sigma = 1 / by;

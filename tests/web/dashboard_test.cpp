@@ -86,7 +86,7 @@ constexpr char kPreview[] = "document.querySelector('.picture img').src";
 constexpr char kPictured[] = "document.querySelector('.picture img')?.naturalWidth > 0";
 constexpr char kDone[] = "document.querySelector('.title .state')?.textContent === 'done'";
 
-TEST_F(DashboardTest, AskForTheJoinString) {
+TEST_F(DashboardTest, RequiresTheJoinString) {
   Browser browser;
   browser.go(base_);
   ASSERT_TRUE(browser.wait("document.querySelector('form input')"));
@@ -104,7 +104,7 @@ TEST_F(DashboardTest, AskForTheJoinString) {
   EXPECT_THAT(browser.console_errors(), IsEmpty());
 }
 
-TEST_F(DashboardTest, ADroppedSceneSharpensAndCanBeTaken) {
+TEST_F(DashboardTest, ADroppedSceneIsRenderedAndItsImageDownloaded) {
   Browser browser;
   enter(browser);
   browser.run(
@@ -140,7 +140,7 @@ TEST_F(DashboardTest, ADroppedSceneSharpensAndCanBeTaken) {
   EXPECT_THAT(browser.console_errors(), IsEmpty());
 }
 
-TEST_F(DashboardTest, ABrokenSceneIsOneSentence) {
+TEST_F(DashboardTest, ABrokenSceneGivesOneErrorSentence) {
   Browser browser;
   enter(browser);
   drop(browser, "bad.textproto", "camera {");

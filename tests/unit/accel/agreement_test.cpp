@@ -102,7 +102,7 @@ std::vector<Case> cases(int level) {
   };
 }
 
-TEST(Agreement, WithEveryTriangleTestedOnSmallMeshes) {
+TEST(Agreement, EqualsBruteForceOnSmallMeshes) {
   Pool pool(2);
   for (const Case& c : cases(2)) {
     SCOPED_TRACE(c.name);
@@ -118,7 +118,7 @@ TEST(Agreement, WithEveryTriangleTestedOnSmallMeshes) {
   }
 }
 
-TEST(Agreement, WithATwoWideTreeOfDoubles) {
+TEST(Agreement, EqualsABinaryTreeInDouble) {
   Pool pool(2);
   for (const Case& c : cases(4)) {
     SCOPED_TRACE(c.name);
@@ -136,7 +136,7 @@ TEST(Agreement, WithATwoWideTreeOfDoubles) {
   }
 }
 
-TEST(Agreement, ForOriginsFarAway) {
+TEST(Agreement, HoldsForOriginsFarAway) {
   Pool pool(1);
   for (const double distance : {1e2, 1e4, 1e6, 1e9, 1e12, 1e15, 1e19}) {
     SCOPED_TRACE(distance);
@@ -158,7 +158,7 @@ TEST(Agreement, ForOriginsFarAway) {
   }
 }
 
-TEST(Agreement, B4_ForRaysAlongAxesAndWithinFaces) {
+TEST(Agreement, B4_HoldsForRaysAlongAxesAndWithinFaces) {
   Pool pool(1);
   const Mesh mesh = grid_soup(600);
   const Geometry geometry = scene_of(mesh);
@@ -221,7 +221,7 @@ Geometry mixed_scene(const Vec3& at, double size) {
   return g;
 }
 
-TEST(Agreement, ForLooseShapesAndInstances) {
+TEST(Agreement, HoldsForLooseShapesAndInstances) {
   Pool pool(2);
   const std::pair<double, double> places[] = {{0, 1},     {1e4, 1},    {1e6, 10}, {0, 1e-6},
                                               {3e5, 1e6}, {1e10, 1e6}, {0, 1e10}, {0, 1e15}};
@@ -261,7 +261,7 @@ TEST(Agreement, ForLooseShapesAndInstances) {
   }
 }
 
-TEST(Agreement, ForAnyNumberOfBuildThreads) {
+TEST(Agreement, HoldsForAnyNumberOfBuildThreads) {
   const Mesh mesh = rough_sphere(300, 200, 1.1, 7);
   const Geometry geometry = scene_of(mesh);
   Pool one(1);

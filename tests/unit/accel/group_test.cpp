@@ -187,7 +187,7 @@ TEST(Group, X1_MirroredInstancesEqualMirroredShapes) {
 }
 
 // A ray hits the first of two coincident instances, in any order of the others.
-TEST(Group, X6_OfCoincidentInstancesTheFirstIsHit) {
+TEST(Group, X6_TheFirstOfCoincidentInstancesIsHit) {
   Geometry g;
   g.groups.push_back(mixed_shapes(3, 12));
   for (int copies = 0; copies < 20; ++copies) {

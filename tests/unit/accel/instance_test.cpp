@@ -133,7 +133,7 @@ TEST(Instance, X5_DistancesAreInWorldSpaceAtEveryScale) {
   test::holds("X5", "5,000 distances equal to the bit");
 }
 
-TEST(Instance, X6_OfCoincidentInstancesTheFirstIsHit) {
+TEST(Instance, X6_TheFirstOfCoincidentInstancesIsHit) {
   Geometry g = placed(test::icosphere(2), rotation({1, 1, 0}, 30) * scaling({1, 2, 0.3}));
   for (int copies = 0; copies < 20; ++copies) {
     g.instances.push_back(g.instances[0]);

@@ -71,7 +71,7 @@ TEST(AtomicFile, RefusesTargetsThatAreNoFiles) {
 }
 
 // The check is made before the work whose result the file will contain.
-TEST(AtomicFile, SaysBeforehandWhatCannotBeWritten) {
+TEST(AtomicFile, ChecksBeforehandWhetherAFileCanBeWritten) {
   const test::TempDir dir;
   EXPECT_TRUE(check_can_be_written(dir / "a").ok());
   ASSERT_EQ(mkfifo((dir / "pipe").c_str(), 0600), 0);
@@ -81,7 +81,7 @@ TEST(AtomicFile, SaysBeforehandWhatCannotBeWritten) {
   EXPECT_FALSE(check_can_be_written(dir / std::string(250, 'n')).ok());
 }
 
-TEST(AtomicFile, LeavesNothingBehindInAFolderThatCannotBeWritten) {
+TEST(AtomicFile, LeavesNoFileInAReadOnlyFolder) {
   if (::geteuid() == 0) {
     GTEST_SKIP() << "root may write everywhere";
   }
@@ -112,7 +112,7 @@ TEST(AtomicFile, KeepsTheOldFileWhenWritingFailsHalfWay) {
   EXPECT_EQ(files_in(dir.path()), 1u);
 }
 
-TEST(AtomicFile, IsWholeWhenSeveralWriteTheSamePath) {
+TEST(AtomicFile, IsCompleteIfSeveralThreadsWriteTheSamePath) {
   const test::TempDir dir;
   std::vector<std::thread> writers;
   for (int writer = 0; writer < 4; ++writer) {

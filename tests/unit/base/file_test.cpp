@@ -10,7 +10,7 @@
 namespace bandsaw {
 namespace {
 
-TEST(File, WhatIsNoFileIsRefusedAtOnce) {
+TEST(File, OtherThanRegularFilesAreRefusedAtOnce) {
   const test::TempDir folder;
   const std::string pipe = folder / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
@@ -20,7 +20,7 @@ TEST(File, WhatIsNoFileIsRefusedAtOnce) {
   EXPECT_EQ(File::open_regular(folder / "none").status().code(), absl::StatusCode::kNotFound);
 }
 
-TEST(File, ALinkIsFollowedOnlyWhereItMay) {
+TEST(File, ALinkIsFollowedOnlyIfAllowed) {
   const test::TempDir folder;
   ASSERT_TRUE(File::open(folder / "file", O_WRONLY | O_CREAT).ok());
   ASSERT_EQ(symlink((folder / "file").c_str(), (folder / "link").c_str()), 0);

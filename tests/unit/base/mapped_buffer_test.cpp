@@ -27,7 +27,7 @@ TEST(MappedBuffer, IsZeroMemory) {
   expect_usable(*buffer, 80000);
 }
 
-TEST(MappedBuffer, LivesInAFileWithoutAName) {
+TEST(MappedBuffer, IsBackedByAFileWithoutAName) {
   const test::TempDir dir;
   absl::StatusOr<MappedBuffer> buffer = MappedBuffer::create(80000, dir.path());
   ASSERT_TRUE(buffer.ok()) << buffer.status();
@@ -41,14 +41,14 @@ TEST(MappedBuffer, MayBeEmpty) {
   EXPECT_EQ(buffer->size(), 0u);
 }
 
-TEST(MappedBuffer, SaysWhyItCannotBe) {
+TEST(MappedBuffer, ReportsTheSystemsError) {
   EXPECT_EQ(MappedBuffer::create(std::size_t{1} << 62, "").status().code(),
             absl::StatusCode::kResourceExhausted);
   EXPECT_EQ(MappedBuffer::create(8, "/no/such/folder").status().code(),
             absl::StatusCode::kNotFound);
 }
 
-TEST(MappedBuffer, FindsOutAtOnceThatTheDiskIsTooSmall) {
+TEST(MappedBuffer, AFullDiskIsDetectedAtOnce) {
   const test::TempDir dir;
   const absl::Status status = MappedBuffer::create(std::size_t{1} << 60, dir.path()).status();
   EXPECT_FALSE(status.ok());

@@ -60,7 +60,7 @@ TEST(Camera, C3_ExtremeAnglesGiveFiniteUnitDirections) {
   test::holds("C3", "unit directions at 1e-6 and 179.9 degrees");
 }
 
-TEST(Camera, C2C3_WhatMakesNoRaysIsRefusedWithTheField) {
+TEST(Camera, C2C3_CamerasThatCannotMakeRaysAreRefusedWithTheField) {
   const auto message = [](auto change) {
     PerspectiveCamera c = camera(40);
     change(c);

@@ -21,7 +21,7 @@ PerspectiveCamera lens() {
   return camera;
 }
 
-TEST(LensView, IsPassedByAllRaysOfItsPlace) {
+TEST(LensView, AllRaysThroughThePointInFocusAreInTheView) {
   const PerspectiveCamera camera = lens();
   const RayGenerator rays(camera, 60, 40);
   const double area = kPi * camera.aperture * camera.aperture / 4;
@@ -63,7 +63,7 @@ TEST(LensView, HasTheDensityOfItsSolidAngle) {
   EXPECT_NEAR(sum / kSamples, solid_angle, 1e-5 * solid_angle);
 }
 
-TEST(LensView, IsNoneOfAPinholeParallelRaysAndALensAsWideAsItsFocusIsFar) {
+TEST(LensView, DoesNotExistForPinholesParallelRaysAndVeryWideLenses) {
   PerspectiveCamera camera = lens();
   camera.aperture = 0;
   EXPECT_FALSE(RayGenerator(camera, 60, 40).lens_view(30, 20));
@@ -75,7 +75,7 @@ TEST(LensView, IsNoneOfAPinholeParallelRaysAndALensAsWideAsItsFocusIsFar) {
   EXPECT_FALSE(RayGenerator(camera, 60, 40).lens_view(30, 20));
 }
 
-TEST(LensView, OfAFocusOutOfReachSeesNothingButIsFinite) {
+TEST(LensView, OfAVeryDistantFocusIsFinite) {
   PerspectiveCamera camera = lens();
   camera.focus_distance = kMaxLens;
   const auto view = RayGenerator(camera, 60, 40).lens_view(30, 20);

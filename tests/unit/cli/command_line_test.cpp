@@ -48,7 +48,7 @@ TEST(CommandLine, SubmitTakesItsOptions) {
   EXPECT_FALSE(options.detach);
 }
 
-TEST(CommandLine, SkyAndCameraMayBeChosenBesideTheScene) {
+TEST(CommandLine, EnvironmentAndCameraOverrideTheScene) {
   const SceneChoices chosen =
       parsed<SubmitOptions>("submit a.glb --camera plan --environment e.hdr").image.choices;
   EXPECT_EQ(chosen.camera, "plan");
@@ -105,7 +105,7 @@ TEST(CommandLine, StudyTakesScenesAndFiles) {
   expect_wrong("study a.glb --samples 64 --reference 65", "--reference");
 }
 
-TEST(CommandLine, AnImageCanBeDisplayedWhileItForms) {
+TEST(CommandLine, AnImageCanBeDisplayedWhileItIsRendered) {
   const auto options = parsed<SubmitOptions>("submit a.glb --preview --tev 127.0.0.1:14158");
   EXPECT_TRUE(options.verbosity.preview);
   EXPECT_EQ(options.tev, "127.0.0.1:14158");

@@ -20,7 +20,7 @@ TEST(Comparison, EqualImagesAreIdentical) {
   EXPECT_THAT(comparison_json(same), testing::HasSubstr("\"identical\":true"));
 }
 
-TEST(Comparison, SaysWhatDiffers) {
+TEST(Comparison, ReportsTheMetricsOfTheDifference) {
   Image bad = image(32, 32, 0.5F);
   bad.pixels[5].g = 0.75F;
   const std::string text = comparison_text(compare_images(bad, image(32, 32, 0.5F)).value());

@@ -19,7 +19,7 @@ TEST(JoinAddresses, ANamedHostIsItself) {
   EXPECT_THAT(join_addresses("farm.example", 1, kLocal), ElementsAre("farm.example:1"));
 }
 
-TEST(JoinAddresses, EveryAddressIsTheLansFirstAndLoopbackLast) {
+TEST(JoinAddresses, LanAddressesComeFirstAndLoopbackLast) {
   EXPECT_THAT(join_addresses("0.0.0.0", 7, kLocal),
               ElementsAre("192.168.1.5:7", "172.17.0.1:7", "127.0.0.1:7"));
   EXPECT_THAT(

@@ -41,7 +41,7 @@ TEST(Lists, WorkersAreATable) {
   EXPECT_THAT(workers_json(reply).front(), HasSubstr("\"name\":\"anna\""));
 }
 
-TEST(FarmErrors, HaveTheirExitCodes) {
+TEST(FarmErrors, MapToExitCodes) {
   EXPECT_EQ(exit_code_of(absl::UnavailableError("")), ExitCode::kNoFarm);
   EXPECT_EQ(exit_code_of(absl::InvalidArgumentError("")), ExitCode::kWrong);
   EXPECT_EQ(exit_code_of(absl::UnauthenticatedError("")), ExitCode::kWrong);
@@ -49,7 +49,7 @@ TEST(FarmErrors, HaveTheirExitCodes) {
   EXPECT_EQ(exit_code_of(absl::CancelledError("")), ExitCode::kInterrupted);
 }
 
-TEST(Progress, StopRulesComeBack) {
+TEST(Progress, StopRulesRoundTrip) {
   for (const StopRule& stop :
        {StopRule(StopAtSamples{5}), StopRule(StopAtError{.relative_rmse = 0.02}),
         StopRule(StopAtTime{.seconds = 9})}) {

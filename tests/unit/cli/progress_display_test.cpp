@@ -179,7 +179,7 @@ TEST(Json, EscapesAndRepairsInvalidUtf8) {
   parsed(object.str());
 }
 
-TEST(Console, AnErrorIsOneLineWhateverItHolds) {
+TEST(Console, AnErrorIsPrintedOnOneLine) {
   Screen screen;
   EXPECT_EQ(screen.console(false).fail(ExitCode::kWrong, "a\nb\x1b"), ExitCode::kWrong);
   EXPECT_EQ(screen.err, "bandsaw: a b?\n");

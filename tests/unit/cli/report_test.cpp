@@ -103,7 +103,7 @@ class ReportFiles : public testing::Test {
   test::TempDir folder_;
 };
 
-TEST_F(ReportFiles, LieBesideTheImagesOnce) {
+TEST_F(ReportFiles, AreBesideTheImagesOnce) {
   EXPECT_THAT(*report_files({}, {folder_ / "a.png", folder_ / "a.exr", folder_ / "b.x.png"}),
               ElementsAre(folder_ / "a.json", folder_ / "b.x.json"));
   EXPECT_THAT(*report_files({"none"}, {folder_ / "a.png"}), IsEmpty());

@@ -38,7 +38,7 @@ TEST(SceneSummary, CountsTheParts) {
   EXPECT_EQ(summary.camera, "orthographic, 4 high, at [1, 2, 3], looking at [1, 2, 0]");
 }
 
-TEST(SceneSummary, NamesLightsWithoutSizeTheSkyMediaAndCameras) {
+TEST(SceneSummary, NamesDeltaLightsBackgroundMediaAndCameras) {
   SceneDescription lit = scene();
   lit.lights = {SpotLight{}, PointLight{}, SpotLight{}, DirectionalLight{}};
   lit.media.media = {{.absorption = {1, 1, 1}}, {.scattering = {1, 2, 3}}, {.emission = {1, 0, 0}}};

@@ -74,7 +74,7 @@ TEST(Study, WithoutATechniqueTheErrorIsLargerAndTheMeanIsUnbiased) {
   EXPECT_NEAR(*slope_of(line(study, Method::kIndependent)), -0.5, 0.1);
 }
 
-TEST(Study, PixelsThatStopThemselvesLoseRareLight) {
+TEST(Study, StoppingPerPixelLosesRareLight) {
   const StudyOfScene study =
       study_of(*rare_light(), {.samples = 256, .seeds = 2, .reference = 4096});
   const StudyPoint& fair = line(study, Method::kIndependent).points.back();

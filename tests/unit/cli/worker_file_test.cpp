@@ -23,7 +23,7 @@ std::string error_of(const std::string& bytes, Machine machine = Machine::kAarch
   return program.ok() ? "no error" : std::string(program.status().message());
 }
 
-TEST(WorkerProgram, IsKnownByItsHeaderAndItsMark) {
+TEST(WorkerProgram, IsIdentifiedByItsHeaderAndItsMark) {
   const std::string bytes = worker_file(EM_AARCH64, fitting_mark());
   const auto program = checked_worker_program(bytes, Machine::kAarch64);
   ASSERT_TRUE(program.ok()) << program.status();
@@ -53,7 +53,7 @@ TEST(WorkerProgram, CutOffAnywhereIsRefused) {
 }
 
 // Any header gives a result or an error, and nothing beyond the file is read.
-TEST(WorkerProgram, AnyByteOfTheHeadersMayBeWrong) {
+TEST(WorkerProgram, WrongHeaderBytesAreHandled) {
   const std::string bytes = worker_file(EM_AARCH64, fitting_mark());
   for (std::size_t at = 0; at < sizeof(Elf64_Ehdr) + sizeof(Elf64_Phdr); ++at) {
     for (const char wrong : {'\x00', '\x01', '\x7f', '\x80', '\xff'}) {

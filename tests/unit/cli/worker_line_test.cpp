@@ -87,7 +87,7 @@ TEST_F(WorkerLine, WithoutAProgramForItNothingIsDownloaded) {
   EXPECT_TRUE(home_is_empty());
 }
 
-TEST_F(WorkerLine, WhateverUnameSaysIsNeverRun) {
+TEST_F(WorkerLine, TheOutputOfUnameIsNeverExecuted) {
   for (const char* said : {"riscv64\n", "", "*\n", "-n\n", "x86_64 aarch64\n", "x86_64\naarch64\n",
                            "x86_64;touch run\n", "$(touch run)\n", "`touch run`\n",
                            "\"; touch run; \"\n", "../../x86_64\n"}) {

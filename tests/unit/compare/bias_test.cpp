@@ -20,7 +20,7 @@ Image noisy(const Image& image, float strength, std::uint64_t seed) {
   return out;
 }
 
-TEST(Bias, NoiseAloneIsNone) {
+TEST(Bias, NoiseAloneIsNotBias) {
   const BiasTest test = test_bias(noisy(waves(128, 96), 0.1F, kSeed), waves(128, 96));
   EXPECT_EQ(test.blocks, 48u);
   EXPECT_LT(std::abs(test.t), 4);
@@ -63,7 +63,7 @@ TEST(Bias, FalseAlarmsAreAsRareAsStated) {
 }
 
 // Every other pixel of sixteen in a row has the same noise, as if these pixels shared paths.
-TEST(Bias, HalfRowsThatShareTheirNoiseAreNone) {
+TEST(Bias, HalfRowsThatShareTheirNoiseAreNotBias) {
   int alarms = 0;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
     const Image image = uniform(64, 64, 0.5F);

@@ -21,16 +21,16 @@ const Counters kCounters{.rays = 1,
                          .truncated_paths = 7,
                          .dropped_primitives = 8};
 
-TEST(Convert, SettingsComeBack) { EXPECT_EQ(settings_of(to_message(kSettings)), kSettings); }
+TEST(Convert, SettingsRoundTrip) { EXPECT_EQ(settings_of(to_message(kSettings)), kSettings); }
 
-TEST(Convert, BandsComeBack) {
+TEST(Convert, BandsRoundTrip) {
   const Band band{.samples = {16, 32}, .rows = {7, 9}};
   EXPECT_EQ(band_of(to_message(band)), band);
 }
 
-TEST(Convert, CountersComeBack) { EXPECT_EQ(counters_of(to_message(kCounters)), kCounters); }
+TEST(Convert, CountersRoundTrip) { EXPECT_EQ(counters_of(to_message(kCounters)), kCounters); }
 
-TEST(Convert, StopRulesComeBack) {
+TEST(Convert, StopRulesRoundTrip) {
   const StopRule rules[] = {
       StopAtSamples{16}, StopAtError{.relative_rmse = 0.01, .max_samples = 77, .adaptive = true},
       StopAtError{.relative_rmse = 0.5}, StopAtTime{.seconds = 3, .max_samples = 4}};
@@ -53,7 +53,7 @@ TEST(Convert, WrongStopRulesAreRefusedByTheirField) {
   EXPECT_THAT(stop_rule_of(many).status().message(), HasSubstr("stop.samples"));
 }
 
-TEST(Convert, ErrorPointsComeBack) {
+TEST(Convert, ErrorPointsRoundTrip) {
   const ErrorPoint point{.samples = 16,
                          .elapsed_s = 1,
                          .cpu_s = 2,
@@ -103,7 +103,7 @@ JobView full_job() {
 
 // Converts the converted message back and compares it with the first message. This finds a field
 // that either direction forgets, unless both do.
-TEST(Convert, JobsComeBack) {
+TEST(Convert, JobsRoundTrip) {
   const JobView job = full_job();
   const farm::JobStatus message = to_message(job);
   const JobView back = job_view_of(message);
@@ -128,7 +128,7 @@ TEST(Convert, EveryFieldOfAJobIsSet) {
   }
 }
 
-TEST(Convert, EveryStateComesBack) {
+TEST(Convert, EveryStateRoundTrips) {
   for (const JobState state : {JobState::kRunning, JobState::kPaused, JobState::kFinishing,
                                JobState::kDone, JobState::kFailed, JobState::kCancelled}) {
     JobView job;

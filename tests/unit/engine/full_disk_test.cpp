@@ -199,7 +199,7 @@ TEST_F(FullDiskTest, TheReserveIsForTheJournal) {
   disk_->refuse_while(nullptr);
 }
 
-TEST(BrokenJournal, TheNextLifeContinuesAfterAFailureOfAnyAppend) {
+TEST(BrokenJournal, ARestartContinuesAfterAFailureOfAnyAppend) {
   for (int appends = 0; appends < 6; ++appends) {
     TestFarm farm;
     const auto disk = std::make_shared<JournalDisk>();

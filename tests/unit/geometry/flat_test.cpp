@@ -159,7 +159,7 @@ TEST(Quad, Q3_GrazingRaysFromFarAwayHitCorrectly) {
     }
   }
   EXPECT_GT(hits, 10000);
-  test::holds("Q3", "20,000 hits and misses as in 113 bits, but for 1e-9 of the edge");
+  test::holds("Q3", "20,000 hits and misses as in 113 bits, except within 1e-9 of the edge");
 }
 
 // A light in the plane of the ceiling: both have the same t, so the lower id wins and the shadow

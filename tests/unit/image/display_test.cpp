@@ -35,12 +35,12 @@ TEST(Display, FilmicRisesFromBlackToWhite) {
   EXPECT_EQ(before, 1);
 }
 
-TEST(Display, WhatIsNoNumberStaysNone) {
+TEST(Display, NanStaysNan) {
   const Rgb none = gray(std::numeric_limits<float>::quiet_NaN());
   EXPECT_TRUE(std::isnan(shown(none, {.exposure = 1, .tone = Tone::kFilmic}).g));
 }
 
-TEST(Display, OnlyEightBitFilesKnowOfIt) {
+TEST(Display, AppliesToEightBitFilesOnly) {
   const Image image{.width = 1, .height = 1, .pixels = {{0.1f, 0.2f, 0.4f}}};
   const Display display{.exposure = 1, .tone = Tone::kFilmic};
   for (const ImageFormat format : {ImageFormat::kPfm, ImageFormat::kHdr, ImageFormat::kExr}) {

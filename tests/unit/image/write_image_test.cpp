@@ -56,7 +56,7 @@ TEST(Srgb, TheTableIsTheStandardsCurve) {
   EXPECT_NEAR(srgb_table()[11], std::pow((11 / 255.0 + 0.055) / 1.055, 2.4), 1e-9);
 }
 
-TEST(Srgb, P1_WhatIsNoColorBecomesTheNearestOne) {
+TEST(Srgb, P1_ValuesOutOfRangeAreClamped) {
   EXPECT_EQ(srgb_encode(-1), 0);
   EXPECT_EQ(srgb_encode(std::nanf("")), 0);
   EXPECT_EQ(srgb_encode(1.0001f), 255);
@@ -109,7 +109,7 @@ TEST(WriteImage, TheSuffixDecidesInAnyCase) {
   }
 }
 
-TEST(WriteImage, FilesAreWhatWasEncodedAndReplaceWhatWasThere) {
+TEST(WriteImage, FilesContainTheEncodedBytesAndReplaceOlderFiles) {
   const test::TempDir folder;
   const std::string path = folder / "a.pfm";
   std::ofstream(path) << "old";
@@ -117,7 +117,7 @@ TEST(WriteImage, FilesAreWhatWasEncodedAndReplaceWhatWasThere) {
   EXPECT_EQ(file(path), encoded(two_by_two(), ImageFormat::kPfm));
 }
 
-TEST(WriteImage, WhatCannotBeWrittenIsKnownBefore) {
+TEST(WriteImage, UnwritableFilesAreDetectedBefore) {
   const test::TempDir folder;
   EXPECT_TRUE(check_writable(folder / "a.png").ok());
   EXPECT_TRUE(check_writable("a.png").ok());

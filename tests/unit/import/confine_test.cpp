@@ -86,7 +86,7 @@ TEST(Confine, LimitsCoreDumpsFilesAndTime) {
             0);
 }
 
-TEST(Confine, LeavesTheTwoFoldersOnlyWhereTheKernelHasLandlock) {
+TEST(Confine, AllowsOnlyTwoFoldersIfTheKernelHasLandlock) {
   if (syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION) < 0) {
     GTEST_SKIP() << "this kernel has no Landlock";
   }

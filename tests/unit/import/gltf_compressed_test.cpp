@@ -51,7 +51,7 @@ std::vector<std::array<std::uint32_t, 3>> turned(std::vector<std::array<std::uin
   return all;
 }
 
-TEST(Meshopt, BufferViewsAreReadAsTheyWere) {
+TEST(Meshopt, BufferViewsRoundTrip) {
   const TempDir folder;
   const WavySquare square;
   const Mesh plain = mesh_of(read(square.plain(), folder));
@@ -66,7 +66,7 @@ TEST(Meshopt, BufferViewsAreReadAsTheyWere) {
   }
 }
 
-/// Compares the normals and the albedo of the model as seen by a camera.
+/// Returns the normal layer of the scene as seen by an orthographic camera.
 std::vector<Rgb> seen(const ImportedScene& imported) {
   ImportedScene scene = imported;
   scene.scene.camera =
@@ -102,7 +102,7 @@ std::vector<float> fourth(const std::vector<float>& from, float value) {
   return to;
 }
 
-TEST(Meshopt, FilteredNormalsAndPositionsAreAsNearAsTheirBitsAllow) {
+TEST(Meshopt, FilteredNormalsAndPositionsAreWithinTheirPrecision) {
   const TempDir folder;
   const WavySquare square;
   const std::size_t count = square.vertices();
@@ -208,7 +208,7 @@ TEST(Meshopt, DamagedViewsAreOneClearError) {
 
 // --- Draco
 
-TEST(Draco, WhatIsNotQuantisedIsTheSameToTheBit) {
+TEST(Draco, UnquantisedValuesAreTheSameToTheBit) {
   const TempDir folder;
   const WavySquare square;
   const ImportedScene plain = read(square.plain(), folder);
@@ -239,7 +239,7 @@ std::vector<Vertex> sorted_vertices(const Mesh& mesh, int n) {
   return all;
 }
 
-TEST(Draco, QuantisedMeshesAreAsNearAsTheirBitsAllow) {
+TEST(Draco, QuantisedMeshesAreWithinTheirPrecision) {
   const TempDir folder;
   constexpr int kSide = 12;
   const WavySquare square(kSide);

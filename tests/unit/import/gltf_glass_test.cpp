@@ -96,7 +96,7 @@ TEST(GltfVolume, WhiteLightHasTheColourAfterTheDistance) {
   }
 }
 
-TEST(GltfVolume, WhatIsOpenOrNotWhollyClearStaysAThinPane) {
+TEST(GltfVolume, OpenOrPartlyOpaqueMeshesStayThinPanes) {
   const TempDir folder;
   const ImportedScene open = read(cube(true), folder);
   EXPECT_THAT(open.info.warnings, ElementsAre(HasSubstr("the volume of 1 placements of meshes")));
@@ -125,7 +125,7 @@ TEST(GltfVolume, WithoutAThicknessItIsAThinPane) {
 // The base's normal map has scale 0 and uses the first set of uvs, so it has no effect. The coat's
 // map uses the second set, which is rotated by a quarter turn. So the picture equals the one
 // without the base's map.
-TEST(GltfCoat, ItsNormalMapLiesOnItsOwnUvs) {
+TEST(GltfCoat, ItsNormalMapUsesItsOwnUvs) {
   const TempDir folder;
   write_text(folder, "lean.ppm", std::string("P6 1 1 255\n") + "\xe0\x80\xf0");
   const WavySquare square(2);

@@ -80,7 +80,7 @@ TEST(DecodeImage, ReadsRadianceAsLinearFloats) {
 }
 
 // stb_image alone does not terminate for some of these files.
-TEST(DecodeImage, EndsOnARadianceFileThatIsCutAnywhere) {
+TEST(DecodeImage, ATruncatedRadianceFileIsAnError) {
   const std::string whole = radiance(64, 8);
   std::vector<std::string> warnings;
   for (std::size_t size = 0; size < whole.size(); ++size) {
@@ -92,7 +92,7 @@ TEST(DecodeImage, EndsOnARadianceFileThatIsCutAnywhere) {
       HasSubstr("truncated"));
 }
 
-TEST(DecodeImage, SurvivesBytesThatAreChanged) {
+TEST(DecodeImage, ChangedBytesDoNotCrash) {
   std::mt19937_64 random(3);
   std::vector<std::string> warnings;
   const std::vector<std::string> files = {
@@ -174,7 +174,7 @@ TEST(DecodePicture, GivesBackAnHdrWithinHalfAMantissa) {
   }
 }
 
-TEST(DecodePicture, HdrTakesTheNearestOfWhatItCanSay) {
+TEST(DecodePicture, HdrRoundsToTheNearestRepresentableValue) {
   const float inf = std::numeric_limits<float>::infinity();
   const Image image{4, 1, {{-1, std::nanf(""), 0}, {inf, 1, 0}, {255.9f, 0, 0}, {1, 0.5f, 0.25f}}};
   const auto read = decode_picture(text_of(encode_image(image, ImageFormat::kHdr).value()));
@@ -218,7 +218,7 @@ TEST(DecodePicture, AnExrIsATextureToo) {
   EXPECT_EQ(std::memcmp(read->texels.data(), image.pixels.data(), read->texels.size()), 0);
 }
 
-TEST(DecodePicture, SaysOfABrokenExrThatItIsBroken) {
+TEST(DecodePicture, ABrokenExrIsAnError) {
   const std::string file = text_of(encode_image(varied(37, 21), ImageFormat::kExr).value());
   for (const std::size_t size : {std::size_t{4}, std::size_t{9}, std::size_t{100}}) {
     EXPECT_THAT(std::string(decode_picture(file.substr(0, size)).status().message()),

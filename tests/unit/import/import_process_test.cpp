@@ -31,7 +31,7 @@ std::size_t entries(const std::string& folder) {
   return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
 }
 
-TEST(ImportProcess, GivesTheBytesThatTheLibraryGives) {
+TEST(ImportProcess, GivesTheSameBytesAsTheLibrary) {
   const std::string path = std::string(BANDSAW_GALLERY) + "/mesh.textproto";
   auto imported = import_in_process(path, limits());
   ASSERT_TRUE(imported.ok()) << imported.status();
@@ -78,7 +78,7 @@ TEST(ImportProcess, ReadsAnEnvironmentFromAnywhere) {
       absl::StatusCode::kNotFound);
 }
 
-TEST(ImportProcess, TakesTheCameraThatIsAskedFor) {
+TEST(ImportProcess, UsesTheRequestedCamera) {
   const std::string model = std::string(BANDSAW_GALLERY) + "/pergola.gltf";
   auto imported = import_in_process(model, limits(), {.camera = "plan"});
   ASSERT_TRUE(imported.ok()) << imported.status();
@@ -91,7 +91,7 @@ TEST(ImportProcess, TakesTheCameraThatIsAskedFor) {
             "\"plan\"");
 }
 
-TEST(ImportProcess, PassesOnTheImportersError) {
+TEST(ImportProcess, ForwardsTheImportersError) {
   const TempDir folder;
   const auto wrong =
       import_in_process(write_text(folder, "s.textproto", "\n camera { fov: 3 }"), limits());
@@ -103,7 +103,7 @@ TEST(ImportProcess, PassesOnTheImportersError) {
   EXPECT_FALSE(import_in_process(folder.path(), limits()).ok());
 }
 
-TEST(ImportProcess, SaysThatTheProgramIsMissing) {
+TEST(ImportProcess, AMissingProgramIsAnError) {
   ImportLimits in;
   in.program = "/no/such/bandsaw-import";
   const auto imported = import_in_process("scene.textproto", in);
@@ -111,7 +111,7 @@ TEST(ImportProcess, SaysThatTheProgramIsMissing) {
   EXPECT_THAT(std::string(imported.status().message()), HasSubstr("/no/such/bandsaw-import"));
 }
 
-TEST(ImportProcess, EndsWhatTakesTooLong) {
+TEST(ImportProcess, EndsAfterTheTimeLimit) {
   ImportLimits in = limits();
   in.seconds = 0;
   const auto imported = import_in_process(std::string(BANDSAW_GALLERY) + "/mesh.textproto", in);
@@ -120,7 +120,7 @@ TEST(ImportProcess, EndsWhatTakesTooLong) {
               StartsWith("mesh.textproto: reading it took longer than 0 s"));
 }
 
-TEST(ImportProcess, EndsWhenItIsToldTo) {
+TEST(ImportProcess, EndsWhenItIsStopped) {
   const std::atomic<bool> stop{true};
   ImportLimits in = limits();
   in.stop = &stop;
@@ -135,7 +135,7 @@ TEST(ImportProcess, DoesNotBlockOnAPipe) {
   EXPECT_EQ(imported.status().code(), absl::StatusCode::kInvalidArgument) << imported.status();
 }
 
-TEST(ImportProcess, MakesOneErrorOfAFileThatWantsAllMemory) {
+TEST(ImportProcess, AFileThatNeedsTooMuchMemoryIsAnError) {
   if (test::kSanitized) {
     GTEST_SKIP() << "a sanitizer wants more address space than the limit";
   }
@@ -193,7 +193,7 @@ TEST(ReadImageInProcess, GivesAPictureOrOneError) {
   EXPECT_THAT(std::string(broken.status().message()), HasSubstr("b.png: is not an image"));
 }
 
-TEST(RunChild, TellsHowAChildEnded) {
+TEST(RunChild, ReportsHowAChildEnded) {
   const auto run = [](const std::string& script) {
     return run_child({"/bin/sh", "-c", script}, 20, nullptr).value();
   };

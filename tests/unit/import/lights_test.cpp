@@ -55,7 +55,7 @@ class SceneLights : public ::testing::Test {
   TempDir folder_;
 };
 
-TEST_F(SceneLights, OfEveryKind) {
+TEST_F(SceneLights, ReadsEveryKind) {
   const auto imported = read(R"(
 light { directional { direction: [0, -2, 0] irradiance { rgb: [1, 2, 3] } } }
 light { point { position: [1, 2, 3] intensity { rgb: [4, 5, 6] } } }
@@ -77,7 +77,7 @@ light { spot { position: [0, 5, 0] direction: [3, 0, 0] intensity { rgb: [1, 1, 
   EXPECT_TRUE(is_black(imported->scene.background.top)) << "no default sky beside lights";
 }
 
-TEST_F(SceneLights, WhatIsWrongIsSaidWithItsPlace) {
+TEST_F(SceneLights, ErrorsNameTheField) {
   EXPECT_THAT(error("light { }"),
               StartsWith("s.textproto:4:1: light[0]: is empty: write directional, point or spot"));
   EXPECT_THAT(error("light { directional { irradiance { rgb: [1, 1, 1] } } }"),
@@ -100,7 +100,7 @@ TEST_F(SceneLights, WhatIsWrongIsSaidWithItsPlace) {
   EXPECT_THAT(error(many), HasSubstr("light[8].directional: is one more than the 8"));
 }
 
-TEST_F(SceneLights, AnEnvironmentIsAnImageAllAround) {
+TEST_F(SceneLights, AnEnvironmentIsALatitudeLongitudeImage) {
   const auto imported = read(R"(background { environment { file: "sky.hdr" strength: 0.5
     rotate { axis: [0, 1, 0] degrees: 90 } } })");
   ASSERT_TRUE(imported.ok()) << imported.status();
@@ -112,7 +112,7 @@ TEST_F(SceneLights, AnEnvironmentIsAnImageAllAround) {
   EXPECT_THAT(imported->info.warnings, IsEmpty());
 }
 
-TEST_F(SceneLights, ACubeMapIsSix) {
+TEST_F(SceneLights, ACubeMapIsSixImages) {
   const std::string six =
       R"(positive_x: "px.hdr" negative_x: "nx.hdr" positive_y: "py.hdr" negative_y: "ny.hdr"
          positive_z: "pz.hdr" negative_z: "nz.hdr" )";
@@ -130,7 +130,7 @@ TEST_F(SceneLights, ACubeMapIsSix) {
                         "\"wide.hdr\" is 4 x 3"));
 }
 
-TEST_F(SceneLights, WhatIsWrongWithAnEnvironmentIsSaidWithItsPlace) {
+TEST_F(SceneLights, ErrorsOfAnEnvironmentNameTheField) {
   EXPECT_THAT(error("background { environment { } }"),
               StartsWith("s.textproto:4:14: background.environment.file: is required"));
   EXPECT_THAT(error(R"(background { environment { file: "../sky.hdr" } })"),
@@ -217,7 +217,7 @@ TEST(ModelLights, OfGltfHaveItsUnitsAndStandAtTheirNodes) {
   EXPECT_TRUE(is_black(imported->scene.background.top)) << "it brings its own light";
 }
 
-TEST(ModelLights, OneAtSeveralNodesShinesFromEach) {
+TEST(ModelLights, ALightAtSeveralNodesEmitsFromEach) {
   const TempDir folder;
   std::string text = gltf_with_lights();
   const auto replace = [&](const std::string& from, const std::string& to) {

@@ -43,7 +43,7 @@ std::string message_of(const std::string& text) {
   return std::string(import_text(text).status().message());
 }
 
-TEST(MediaFile, SaysWhatMediaAreAndWhere) {
+TEST(MediaFile, ReadsMediaAndTheirBoundaries) {
   const auto imported = import_text(R"(
 fog: "smoke"
 shape { sphere { center: [1, 2, 3] radius: 2 } interior: "milk" }
@@ -84,7 +84,7 @@ TEST(MediaFile, ABoxWithAMaterialAndAnInteriorIsBoth) {
   EXPECT_EQ(imported->scene.media.boundaries.instances.size(), 1u);
 }
 
-TEST(MediaFile, AMeshThatIsInsideOutIsTurned) {
+TEST(MediaFile, AMeshThatIsInsideOutIsInverted) {
   const auto imported = import_text(R"(model { file: "turned.obj" interior: "milk" })");
   ASSERT_TRUE(imported.ok()) << imported.status();
   const Mesh& mesh = imported->scene.media.boundaries.meshes.at(0);
@@ -92,7 +92,7 @@ TEST(MediaFile, AMeshThatIsInsideOutIsTurned) {
   EXPECT_EQ(mesh.triangles[0][1], seen.triangles[0][2]);
 }
 
-TEST(MediaFile, OpenShapesAreRefusedWithWhatClosesThem) {
+TEST(MediaFile, OpenShapesAreRefusedWithTheRemedy) {
   EXPECT_THAT(
       message_of(
           R"(shape { quad { corner: [0, 0, 0] u: [1, 0, 0] v: [0, 1, 0] } interior: "milk" })"),
@@ -104,7 +104,7 @@ TEST(MediaFile, OpenShapesAreRefusedWithWhatClosesThem) {
                         "edges: close its holes, or use a box or a sphere"));
 }
 
-TEST(MediaFile, WhatIsWrongIsNamed) {
+TEST(MediaFile, ErrorsNameTheField) {
   EXPECT_THAT(message_of(R"(fog: "smog")"), HasSubstr("fog: no medium is called \"smog\""));
   EXPECT_THAT(
       message_of(R"(shape { sphere { radius: 1 } interior: "smok" })"),

@@ -73,7 +73,7 @@ TEST_F(ModelCameraNames, ACameraOfTwoNodesStandsAtBoth) {
   EXPECT_EQ(by(""), (Seen{{-1, 0, 3}, 60})) << "the first node's";
 }
 
-TEST_F(ModelCameraNames, ItsOwnNameIsAsGoodAsItsNodes) {
+TEST_F(ModelCameraNames, ItsOwnNameOrItsNodesNameSelectsIt) {
   EXPECT_EQ(by("tower"), (Seen{{0, 5, 9}, 30}));
   EXPECT_EQ(by("narrow"), by("tower"));
   EXPECT_EQ(by("far"), (Seen{{0, 6, 9}, 15}));
@@ -83,20 +83,20 @@ TEST_F(ModelCameraNames, ItsOwnNameIsAsGoodAsItsNodes) {
                         "\"right\", \"tower\", \"top\""));
 }
 
-TEST_F(ModelCameraNames, AnErrorListsThoseThereAre) {
+TEST_F(ModelCameraNames, AnErrorListsTheExistingCameras) {
   EXPECT_THAT(error("back"), HasSubstr("m.gltf: no model brings a camera called \"back\"; there "
                                        "are \"left\", \"right\", \"tower\", \"top\""));
   GltfTriangle().write(folder_, "none.gltf");
   EXPECT_THAT(error("back", "none.gltf"), HasSubstr("the scene's models bring none"));
 }
 
-TEST_F(ModelCameraNames, AreListedForPeople) {
+TEST_F(ModelCameraNames, AreListedByInfo) {
   const auto imported = import_scene(folder_ / "m.gltf");
   ASSERT_TRUE(imported.ok()) << imported.status();
   EXPECT_THAT(imported->info.model_cameras, ElementsAre("left", "right", "tower", "top"));
 }
 
-TEST_F(ModelCameraNames, TwoModelsOfASceneAreToldApartByTheirFiles) {
+TEST_F(ModelCameraNames, TwoModelsOfASceneAreDistinguishedByTheirFiles) {
   write_cameras(folder_, "n.gltf");
   write_text(folder_, "s.textproto", R"(camera { position: [0, 0, 8] look_at: [0, 0, 0] }
 model { file: "m.gltf" } model { file: "m.gltf" translate: [0, 0, 50] }
@@ -107,7 +107,7 @@ model { file: "n.gltf" translate: [100, 0, 0] })");
               HasSubstr("several cameras are called \"left\"; there are \"m.gltf/left\""));
 }
 
-TEST_F(ModelCameraNames, AModelInAGroupStandsNowhereByItself) {
+TEST_F(ModelCameraNames, AModelInAGroupHasNoCameras) {
   write_text(folder_, "s.textproto", R"(camera { position: [0, 0, 8] look_at: [0, 0, 0] }
 group { name: "g" model { file: "m.gltf" } } instance { of: "g" })");
   EXPECT_THAT(error("left", "s.textproto"), HasSubstr("the scene's models bring none"));

@@ -55,7 +55,7 @@ TEST_F(Obj, BlackWithAHighlightIsMetal) {
   EXPECT_EQ(m.base_color.factor, (Rgb{1, 0.75f, 0.25f}));
 }
 
-TEST_F(Obj, AHighlightThatIsSwitchedOffLeavesItDiffuse) {
+TEST_F(Obj, ADisabledHighlightGivesDiffuse) {
   for (const char* off : {"Ks 1 1 1\nNs 0\nillum 2\n", "Ks 0 0 0\nNs 100\nillum 2\n",
                           "Ks 1 1 1\nNs 100\nillum 1\n"}) {
     const ImportedScene imported = read(std::string("Kd 0.5 0.5 0.5\n") + off);
@@ -63,7 +63,7 @@ TEST_F(Obj, AHighlightThatIsSwitchedOffLeavesItDiffuse) {
   }
 }
 
-TEST_F(Obj, OpacityIsAlphaAndNoneAtAllAMistake) {
+TEST_F(Obj, OpacityIsAlphaAndZeroIsTakenAsAMistake) {
   const Principled glass = principled("Kd 0.5 0.5 0.5\nd 0.25\n");
   EXPECT_EQ(glass.alpha_mode, AlphaMode::kBlend);
   EXPECT_EQ(glass.alpha.factor, 0.25);
@@ -81,7 +81,7 @@ TEST_F(Obj, AnOpacityMapIsItsBrightness) {
   EXPECT_EQ(m.alpha.factor, 1);
 }
 
-TEST_F(Obj, AFaintGlowIsAddedToWhatItReflects) {
+TEST_F(Obj, AWeakEmissionIsAddedToTheReflection) {
   const Principled m = principled("Kd 0.5 0.5 0.5\nKe 0.25 0.125 0\n");
   EXPECT_EQ(m.emissive.factor, (Rgb{0.25f, 0.125f, 0}));
   EXPECT_EQ(m.base_color.factor, gray(0.5f));
@@ -120,7 +120,7 @@ TEST_F(Obj, ABumpMapOfHeightsIsTheirSlope) {
 
 // About half of the reflectance of glass, whose F0 is 0.04; the index is stored with an error of
 // half a code.
-TEST_F(Obj, ASpecularMapSaysHowMuchIsReflected) {
+TEST_F(Obj, ASpecularMapScalesTheReflection) {
   write_text(folder_, "s.ppm", ppm_of(188, 188, 188));
   const ImportedScene imported = read("illum 2\nKd 0.5 0 0\nKs 1 1 1\nNs 100\nmap_Ks s.ppm\n");
   EXPECT_THAT(imported.info.warnings, IsEmpty());
@@ -167,7 +167,7 @@ TEST_F(Obj, VertexColoursAreSrgb) {
   EXPECT_EQ(mesh.colors[1][1], static_cast<float>(srgb_decode(0.5)));
 }
 
-TEST_F(Obj, ColoursOfVerticesGoWhereTheSceneReplacesTheMaterial) {
+TEST_F(Obj, VertexColoursAreIgnoredIfTheSceneReplacesTheMaterial) {
   write_text(folder_, "c.obj", "v 0 0 0 1 0 0\nv 1 0 0 0 0.5 0\nv 0 1 0 0 0 1\nf 1 2 3\n");
   const auto imported = import_scene(
       write_text(folder_, "s.textproto",
@@ -183,7 +183,7 @@ std::string ply(const std::string& properties, const std::string& vertices) {
          vertices + "3 0 1 2\n";
 }
 
-TEST(Ply, IsGreyOrAsItsVerticesAre) {
+TEST(Ply, IsGreyOrHasVertexColours) {
   const TempDir folder;
   const auto plain = import_scene(write_text(folder, "p.ply", ply("", "0 0 0\n1 0 0\n0 1 0\n")));
   ASSERT_TRUE(plain.ok()) << plain.status();
@@ -197,7 +197,7 @@ TEST(Ply, IsGreyOrAsItsVerticesAre) {
   EXPECT_NEAR(painted->scene.geometry.meshes[0].colors[1][1], 0.5, 0.005);
 }
 
-TEST(Stl, HasAFaceAndItsNormal) {
+TEST(Stl, HasATriangleAndItsNormal) {
   const TempDir folder;
   const auto imported = import_scene(
       write_text(folder, "t.stl",
@@ -223,7 +223,7 @@ std::string dae(const std::string& up_axis, const std::string& up) {
 <scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
 }
 
-TEST(Dae, StandsUprightInMetres) {
+TEST(Dae, UpAxisAndUnitAreConverted) {
   const TempDir folder;
   for (const auto& [axis, up] : {std::pair("Y_UP", "0 2 0"), std::pair("Z_UP", "0 0 2")}) {
     const auto imported = import_scene(write_text(folder, "t.dae", dae(axis, up)));
@@ -235,7 +235,7 @@ TEST(Dae, StandsUprightInMetres) {
   }
 }
 
-TEST(Fbx, StandsUpright) {
+TEST(Fbx, UpAxisIsConverted) {
   if (!test::have_test_models()) {
     GTEST_SKIP() << "needs the package assimp-testmodels";
   }

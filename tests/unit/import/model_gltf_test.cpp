@@ -101,7 +101,7 @@ TEST_F(Gltf, EveryParameterHasItsTextureAndItsNumber) {
   EXPECT_EQ(m.index_of_refraction, 1.25);
 }
 
-TEST_F(Gltf, WithoutAnythingIsItsDefaults) {
+TEST_F(Gltf, AnEmptyMaterialHasTheDefaults) {
   const ImportedScene imported = read({});
   const Principled& m = principled(imported);
   EXPECT_EQ(m.base_color.factor, (Rgb{1, 1, 1}));
@@ -185,7 +185,7 @@ TEST_F(Gltf, VertexColoursAreLinearAndWhiteOnesAreNone) {
   EXPECT_THAT(read({}).scene.geometry.meshes[0].colors, IsEmpty());
 }
 
-TEST_F(Gltf, WhatIsNotRenderedIsNamed) {
+TEST_F(Gltf, UnsupportedFeaturesAreNamed) {
   GltfTriangle file;
   file.textures = R"({"source": 0})";
   file.images = R"({"uri": "a.ppm"})";
@@ -198,7 +198,7 @@ TEST_F(Gltf, WhatIsNotRenderedIsNamed) {
 }
 
 // Each feature gives one warning, however many materials have it, and none if it has no effect.
-TEST_F(Gltf, WhatMaterialsHaveAndIsNotShownIsNamedOnceAFile) {
+TEST_F(Gltf, UnsupportedMaterialFeaturesAreNamedOncePerFile) {
   GltfTriangle file;
   file.more = R"("extensionsUsed": ["KHR_materials_sheen", "KHR_materials_iridescence",
     "KHR_materials_anisotropy", "KHR_materials_dispersion", "KHR_materials_diffuse_transmission"],)";
@@ -234,7 +234,7 @@ TEST_F(Gltf, AnUnlitMaterialIsDiffuseAndNamed) {
   EXPECT_TRUE(std::holds_alternative<Diffuse>(imported.scene.materials.at(0)));
 }
 
-TEST_F(Gltf, APrimitiveWithoutAMaterialHasNobodyElses) {
+TEST_F(Gltf, APrimitiveWithoutAMaterialGetsTheDefault) {
   GltfTriangle file;
   file.materials = R"({"extensions": {"KHR_materials_unlit": {}}})";
   file.primitives = R"(, {"attributes": {"POSITION": 0}})";
@@ -255,7 +255,7 @@ TEST_F(Gltf, ColoursOfThreeChannelsHaveNoAlphaToLeaveOut) {
 }
 
 // An extension that replaces data by bytes that cannot be read is refused if it is required.
-TEST_F(Gltf, WhatCannotBeReadIsRefused) {
+TEST_F(Gltf, UnreadableDataIsRefused) {
   GltfTriangle file;
   file.more = R"("extensionsRequired": ["KHR_texture_basisu"],)";
   EXPECT_THAT(std::string(import_scene(file.write(folder_, "t.gltf")).status().message()),
@@ -300,7 +300,7 @@ TEST_F(Gltf, StandsInItsRestPose) {
 }
 
 // Two triangles with a bone each; both bones have one name.
-TEST_F(Gltf, BonesOfOneNameAreToldApart) {
+TEST_F(Gltf, BonesOfOneNameAreDistinguished) {
   const std::string joints = std::string(12, '\0');
   write_text(folder_, "s.bin",
              floats({0, 0, 0, 1, 0, 0, 0, 1, 0}) + floats({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}) +

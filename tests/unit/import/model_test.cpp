@@ -106,13 +106,13 @@ TEST(Model, ReadsObjWithItsMaterialsAndTextures) {
   EXPECT_EQ(triangles(*box), 12u);
 }
 
-TEST(Model, WithInfiniteVerticesOnlySaysSo) {
+TEST(Model, WithInfiniteVerticesOnlyIsAnError) {
   NEED_TEST_MODELS();
   EXPECT_THAT(message_of(test_model("glTF2/BoxWithInfinites-glTF-Binary/BoxWithInfinites.glb")),
               HasSubstr("12 of 12 triangles have a vertex that is not a finite number"));
 }
 
-TEST(Model, DropsTrianglesWithNanVerticesAndSaysHowMany) {
+TEST(Model, DropsAndCountsTrianglesWithNanVertices) {
   const TempDir folder;
   const auto imported = import_scene(write_text(
       folder, "m.obj", "o roof\nv nan 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 2 3 4\n"));
@@ -179,7 +179,7 @@ TEST(Model, MultipliesATextureWithItsColour) {
   EXPECT_EQ(image->texels[1], std::byte{0});
 }
 
-TEST(Model, NamesATextureThatIsMissingOrElsewhere) {
+TEST(Model, NamesATextureThatIsMissingOrOutsideTheFolder) {
   const TempDir folder;
   const auto with_map = [&](const std::string& map) {
     write_text(folder, "m.mtl", "newmtl stone\nKd 1 1 1\nmap_Kd " + map + "\n");
@@ -194,7 +194,7 @@ TEST(Model, NamesATextureThatIsMissingOrElsewhere) {
   EXPECT_THAT(with_map("m.obj"), HasSubstr("m.obj: is not an image that can be read"));
 }
 
-TEST(Model, CannotReachOutOfItsFolder) {
+TEST(Model, CannotReadFilesOutsideItsFolder) {
   const TempDir folder;
   const std::string gltf = R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
     "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
@@ -215,7 +215,7 @@ TEST(Model, WarnsOfAMaterialFileThatIsMissing) {
   EXPECT_THAT(imported->info.warnings, Contains("m.obj: its file \"no.mtl\" is missing"));
 }
 
-TEST(Model, WithNothingLeftIsAnErrorThatSaysWhy) {
+TEST(Model, WithNothingLeftIsAnErrorWithTheReason) {
   const TempDir folder;
   EXPECT_EQ(message_of(write_text(folder, "m.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")),
             "m.obj: holds no triangle that can be rendered; m.obj: mesh \"defaultobject\": 1 of 1 "

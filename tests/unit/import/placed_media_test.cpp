@@ -53,7 +53,7 @@ double smoke_along(const Scene& scene, const Vec3& origin, const Vec3& direction
 
 constexpr double kError = 4e-6;  // of a transmittance in float
 
-TEST(PlacedMedia, OfABoxInNestedGroupsIsAsDenseHoweverPlaced) {
+TEST(PlacedMedia, TheDensityDoesNotDependOnThePlacement) {
   const auto scene = scene_of(kOpenFor1 + R"(
 group { name: "box"  shape { box { min: [0, 0, 0] max: [1, 2, 3] } interior: "smoke" } }
 group { name: "turned"  instance { of: "box"  rotate { axis: [0, 1, 0] degrees: 90 } } }
@@ -74,7 +74,7 @@ instance { of: "turned"  scale: [1, 1, -5]  translate: [10, 20, 0] }
   EXPECT_FALSE(scene->features().motion);
 }
 
-TEST(PlacedMedia, OfABallInAGroupFillsTheEllipsoidThatIsSeen) {
+TEST(PlacedMedia, ABallInAGroupFillsTheVisibleEllipsoid) {
   const auto scene = scene_of(kOpenFor1 + R"(
 group { name: "ball"  shape { sphere { center: [1, 0, 0] radius: 0.5 } material: "glass" interior: "smoke" } }
 instance { of: "ball"  scale: [3, 1, -1] }
@@ -85,7 +85,7 @@ instance { of: "ball"  scale: [3, 1, -1] }
   EXPECT_EQ(scene->geometry().groups.at(0).spheres.size(), 1u);
 }
 
-TEST(PlacedMedia, OfAModelInAGroupFillsItsMeshes) {
+TEST(PlacedMedia, AModelInAGroupFillsItsMeshes) {
   const auto scene = scene_of(kOpenFor1 + R"(
 group { name: "cube"  model { file: "cube.obj" interior: "smoke" boundary_only: true scale: [1, 1, 2] } }
 group { name: "hole"  shape { sphere { radius: 0.25 } interior: "air" } }
@@ -97,7 +97,7 @@ instance { of: "hole"  translate: [-1, 1, 1] }
   EXPECT_NEAR(smoke_along(*scene, {-9, 1, 1}, {1, 0, 0}), 3 - 0.5, kError);
 }
 
-TEST(PlacedMedia, OfWhatHasAVelocityIsWhereItIs) {
+TEST(PlacedMedia, ABoundaryWithAVelocityMovesTheMedium) {
   const std::string shapes = R"(
 shape { box { min: [-1, -1, -1] max: [1, 1, 1] } interior: "smoke" velocity: [0, 2, 0] }
 shape { sphere { center: [9, 0, 0] radius: 1 } interior: "smoke" velocity: [0, -2, 0] }
@@ -119,7 +119,7 @@ shape { sphere { center: [9, 0, 0] radius: 1 } interior: "smoke" velocity: [0, -
   EXPECT_NEAR(smoke_along(*moment, {9, -1.5, -9}, {0, 0, 1}), 2, kError);
 }
 
-TEST(PlacedMedia, OfWhatIsPlacedByKeysGrowsAndGoesWithIt) {
+TEST(PlacedMedia, ABoundaryPlacedByKeysScalesAndMovesTheMedium) {
   const auto scene = scene_of(kOpenFor1 + R"(
 group {
   name: "pair"
@@ -140,7 +140,7 @@ instance { of: "pair"  key { time: 0 scale: 1 } key { time: 1 scale: [3, 3, 3] }
   }
 }
 
-TEST(PlacedMedia, OfAGroupThatIsNowherePlacedAreNowhere) {
+TEST(PlacedMedia, AGroupThatIsNotPlacedHasNoMedium) {
   const auto scene = scene_of(kOpenFor1 + R"(
 group { name: "box"  shape { box { min: [0, 0, 0] max: [1, 2, 3] } interior: "smoke" } }
 shape { sphere { radius: 1 } material: "white" }
@@ -148,7 +148,7 @@ shape { sphere { radius: 1 } material: "white" }
   EXPECT_FALSE(scene->features().media);
 }
 
-TEST(PlacedMedia, WhatIsTooFlatIsRefused) {
+TEST(PlacedMedia, APlacementThatIsTooFlatIsRefused) {
   EXPECT_THAT(std::string(import_text(kOpenFor1 + R"(
 group { name: "box"  shape { box { min: [0, 0, 0] max: [1, 1, 1] } interior: "smoke" } }
 group { name: "small"  instance { of: "box"  scale: 1e-200 } }

@@ -108,7 +108,7 @@ shape { box { min: [0, 0, 0] max: [1, 1, 1] } material: "white" velocity: [1, 0,
 }
 
 // C8: with a shutter of zero duration nothing moves, and shapes are ordinary shapes.
-TEST(Placement, C8_AtOneMomentNothingMoves) {
+TEST(Placement, C8_WithAShutterOfZeroDurationNothingMoves) {
   const TempDir folder;
   const auto imported = import_scene(write_text(folder, "s.textproto", R"(
 camera { position: [0, 1, 5] look_at: [0, 0, 0] shutter_open: 2 shutter_close: 2 }
@@ -121,7 +121,7 @@ shape { sphere { center: [1, 0, 0] radius: 1 } material: "red" velocity: [0, 2, 
   EXPECT_TRUE(imported->scene.geometry.frames.empty());
 }
 
-TEST(Placement, KeysMoveInstancesAndWhatIsWithinThem) {
+TEST(Placement, KeysMoveInstancesAndTheirContents) {
   const auto imported = import_text(R"(
 group { name: "arm" instance { of: "pair"
   key { time: 1 translate: [1, 0, 0] } key { time: 3 translate: [3, 0, 0] } } }
@@ -139,7 +139,7 @@ instance { of: "arm"
 
 // Two keys that differ by more than half a turn about one axis are interpolated over the whole
 // rotation.
-TEST(Placement, TurnsAboutOneAxisGoAllTheWay) {
+TEST(Placement, RotationsAboutOneAxisAreNotShortened) {
   const auto imported = import_text(R"(
 instance { of: "pair" key { time: 0 } key { time: 4 rotate { axis: [0, 2, 0] degrees: 720 } } })");
   ASSERT_TRUE(imported.ok()) << imported.status();
@@ -155,7 +155,7 @@ instance { of: "pair" key { time: 0 rotate { axis: [0, 2, 0] degrees: 0 } }
             1e-15);
 }
 
-TEST(Placement, ErrorsNameThePlaceAndTheCure) {
+TEST(Placement, ErrorsNameThePlaceAndTheRemedy) {
   EXPECT_THAT(message("instance { of: \"pairs\" }"),
               HasSubstr("instance[0].of: no group is called \"pairs\"; did you mean \"pair\"?"));
   EXPECT_THAT(message("instance { }"), HasSubstr("instance[0].of: is required"));
@@ -240,7 +240,7 @@ TEST(ModelCamera, IsUsedByItsName) {
 }
 
 // Each number is in range, but a worker would refuse their product.
-TEST(Placement, ProductsThatNoWorkerTakesAreRefusedHere) {
+TEST(Placement, ProductsThatAWorkerWouldRefuseAreRefused) {
   const TempDir folder;
   const auto made = import_scene(write_text(folder, "s.textproto", R"(
 camera { position: [0, 0, 5] look_at: [0, 0, 0] }
@@ -253,7 +253,7 @@ instance { of: "h" scale: 1e20 }
   EXPECT_THAT(std::string(made.status().message()), HasSubstr("s.textproto: instances[0]"));
 }
 
-TEST(ModelCamera, ErrorsListThoseThereAre) {
+TEST(ModelCamera, ErrorsListTheExistingCameras) {
   const TempDir folder;
   write_text(folder, "m.gltf", kCameras);
   const auto message = [&](const std::string& text) {

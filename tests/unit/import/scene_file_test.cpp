@@ -23,7 +23,7 @@ const std::string kHead = R"(camera { position: [0, 1, 5] look_at: [0, 0, 0] }
 material { name: "white" diffuse { color { rgb: [0.7, 0.7, 0.7] } } }
 )";
 
-TEST(SceneFile, SaysEverythingThatSceneProtoCan) {
+TEST(SceneFile, ReadsEveryFieldOfSceneProto) {
   const auto imported = import_text(R"(
 camera { position: [1, 2, 3] look_at: [4, 5, 6] up: [0, 0, 1] vertical_fov: 30 }
 image { width: 64 height: 32 }
@@ -64,7 +64,7 @@ shape { triangle { a: [0, 0, 0] b: [1, 0, 0] c: [0, 1, 0] } material: "c" }
             1.5);
 }
 
-TEST(SceneFile, SaysHowACameraLooks) {
+TEST(SceneFile, ReadsTheCamera) {
   const auto lens = import_text(R"(camera { position: [0, 0, 5] look_at: [0, 0, 1] aperture: 0.5 }
 image { filter { gaussian { } } })");
   ASSERT_TRUE(lens.ok()) << lens.status();
@@ -90,7 +90,7 @@ image { filter { box { radius: 0 } } })");
   EXPECT_EQ(view.up, (Vec3{-1, 0, 0}));
 }
 
-TEST(SceneFile, SaysWhatIsShownAndHow) {
+TEST(SceneFile, ReadsIntegratorAndDisplaySettings) {
   const auto scene = import_text(kHead + R"(image { exposure: -1.5 tone: TONE_FILMIC }
 integrator { kind: KIND_DIRECT ambient { rgb: [0.1, 0.2, 0.3] } occlusion_distance: 2 })");
   ASSERT_TRUE(scene.ok()) << scene.status();
@@ -124,7 +124,7 @@ TEST(SceneFile, IsTheSameInJson) {
             encode_package(json->scene, json->info, json_blobs));
 }
 
-TEST(SceneFile, IsDarkOnlyWhereItHasALampOfItsOwn) {
+TEST(SceneFile, HasADefaultBackgroundUnlessItHasLights) {
   const auto lit =
       import_text(kHead + R"(material { name: "lamp" emissive { radiance { rgb: [1, 1, 1] } } })");
   ASSERT_TRUE(lit.ok()) << lit.status();
@@ -143,7 +143,7 @@ struct Wrong {
 
 class WrongScene : public ::testing::TestWithParam<Wrong> {};
 
-TEST_P(WrongScene, SaysWhereAndWhatAndWhatIsAllowed) {
+TEST_P(WrongScene, ErrorsNamePlaceFieldAndRange) {
   const auto imported = import_text(kHead + GetParam().text);
   ASSERT_EQ(imported.status().code(), absl::StatusCode::kInvalidArgument) << imported.status();
   EXPECT_THAT(std::string(imported.status().message()), StartsWith(GetParam().message));
@@ -246,7 +246,7 @@ const std::vector<Wrong> kWrong = {
 INSTANTIATE_TEST_SUITE_P(All, WrongScene, ::testing::ValuesIn(kWrong),
                          [](const auto& wrong) { return wrong.param.name; });
 
-TEST(SceneFile, NeedsACameraThatCanSee) {
+TEST(SceneFile, ACameraThatCannotMakeRaysIsRefused) {
   const auto message = [](const std::string& text) {
     return std::string(import_text(text).status().message());
   };
@@ -260,7 +260,7 @@ TEST(SceneFile, NeedsACameraThatCanSee) {
               StartsWith("s.textproto:1:29: camera.vertical_fov: must lie in (0, 180) degrees"));
 }
 
-TEST(SceneFile, SaysWhatIsWrongWithALensAFilterOrARotation) {
+TEST(SceneFile, ErrorsNameTheFieldOfLensFilterOrRotation) {
   const auto message = [](const std::string& in_camera, const std::string& image = "") {
     return std::string(import_text("camera { " + in_camera + " }\n" + image).status().message());
   };
@@ -283,7 +283,7 @@ TEST(SceneFile, SaysWhatIsWrongWithALensAFilterOrARotation) {
               HasSubstr("image.filter: is empty: write box, tent or gaussian"));
 }
 
-TEST(SceneFile, SaysInJsonWhatIsWrongAndWhere) {
+TEST(SceneFile, ErrorsInJsonNameTheField) {
   const auto message = [](const std::string& text) {
     return std::string(import_text(text, "s.json").status().message());
   };
@@ -293,7 +293,7 @@ TEST(SceneFile, SaysInJsonWhatIsWrongAndWhere) {
               StartsWith("s.json: camera.look_at: must be a list of 3 numbers, has 2"));
 }
 
-TEST(SceneFile, CannotReachOutThroughALink) {
+TEST(SceneFile, CannotReadOutsideItsFolderThroughALink) {
   const TempDir outside;
   const TempDir folder;
   write_text(outside, "secret.ppm", test::small_ppm());
@@ -322,7 +322,7 @@ material { name: "c" diffuse { texture { image { file: "small.ppm" wrap: WRAP_CL
   EXPECT_EQ(last.filter, ImageTexture::Filter::kNearest);
 }
 
-TEST(SceneFile, RefusesWhatItDoesNotKnow) {
+TEST(SceneFile, RefusesUnknownFormatsAndMissingFiles) {
   EXPECT_THAT(std::string(import_text("", "scene.max").status().message()),
               StartsWith("scene.max: is of a kind that is not read"));
   EXPECT_EQ(import_scene("/no/such/scene.textproto").status().code(), absl::StatusCode::kNotFound);

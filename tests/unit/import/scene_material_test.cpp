@@ -67,7 +67,7 @@ struct Wrong {
   std::string message;
 };
 
-TEST(SceneMaterial, SaysWhereAndWhatIsWrong) {
+TEST(SceneMaterial, ErrorsNamePlaceAndField) {
   const Wrong kWrong[] = {
       {"metal { fuzz_texture { color { rgb: [2, 0, 0] } } }", "material[0].metal.fuzz_texture"},
       {"metal { fuzz: 2 }", "material[0].metal.fuzz: must lie in [0, 1], is 2"},

@@ -43,7 +43,7 @@ Rgb color(const absl::StatusOr<ImportedScene>& imported, TextureId id) {
   return std::get<ConstantTexture>(imported->scene.textures[index_of(id)]).value;
 }
 
-TEST(SceneTexture, ChecksAreReadWithWhatTheyAreMadeOf) {
+TEST(SceneTexture, CheckersAreReadWithTheirTextures) {
   const auto imported = import_diffuse(
       "checker { mapping: MAPPING_POSITION size: [1, 2, 3] space: SPACE_OBJECT"
       " even { color { rgb: [0.5, 0, 0] } } odd { checker { size: 0.25 uv_set: UV_SET_SECOND } } "
@@ -122,7 +122,7 @@ TEST(SceneTexture, GreyImagesKeepOneChannel) {
   EXPECT_EQ(image.texels, (std::vector<std::byte>{std::byte{16}, std::byte{32}}));
 }
 
-TEST(SceneTexture, SaysWhereAndWhatIsWrong) {
+TEST(SceneTexture, ErrorsNamePlaceAndField) {
   EXPECT_THAT(message("checker { size: [1, 2, 3] }"), HasSubstr("s.textproto:2:"));
   EXPECT_THAT(message("checker { size: [1, 2, 3] }"),
               HasSubstr("material[0].diffuse.texture.checker.size: must be 1 or 2 numbers, has 3"));

@@ -190,7 +190,7 @@ TEST(Emission, IsAttenuatedByTheClearCoat) {
 
 // Behind a rough pane only light sampling reaches a delta light: the pane transmits according to
 // its BSDF value.
-TEST(SeeThrough, DeltaLightsShineThroughRoughTransmission) {
+TEST(SeeThrough, DeltaLightsAreVisibleThroughRoughTransmission) {
   Principled paper;
   paper.roughness.factor = 0.7;
   paper.transmission.factor = 1;

@@ -182,7 +182,7 @@ TEST(SampleValue, DirectContinuesAtMirrorsAndGlass) {
   mean(glass, Integrator::kDirect, kAhead, 2);
 }
 
-TEST(SampleValue, NamesAreReadBack) {
+TEST(SampleValue, NamesRoundTrip) {
   for (int i = 0; i <= kLastIntegrator; ++i) {
     const auto integrator = static_cast<Integrator>(i);
     EXPECT_EQ(integrator_named(integrator_name(integrator)), integrator);

@@ -110,7 +110,7 @@ TEST(LightTree, L7_SelectionFrequenciesEqualProbabilities) {
   test::holds("L7", "chi-squared passes");
 }
 
-TEST(LightTree, PrefersANearLightToABrightDistantOne) {
+TEST(LightTree, PrefersANearLightToABrighterDistantOne) {
   std::vector<LightBound> lights(1000);
   for (std::size_t i = 0; i < lights.size(); ++i) {
     lights[i].ball = {{static_cast<double>(i), 1, 0}, 0.01};

@@ -37,7 +37,7 @@ TEST(Identity, IsReadableByItsOwnerOnly) {
   EXPECT_EQ(std::distance(begin(entries), end(entries)), 1) << "no temporary file is left";
 }
 
-TEST(Identity, ARenewedSecretIsTheOnlyThingThatChanges) {
+TEST(Identity, RenewingASecretChangesNothingElse) {
   const test::TempDir folder;
   const std::string data = folder / "data";
   EXPECT_TRUE(absl::IsNotFound(renew_secret(data, Role::kWorker).status()));
@@ -82,7 +82,7 @@ TEST(Identity, ItsPublicKeyHasADigest) {
   EXPECT_FALSE(public_key_digest("nonsense").ok());
 }
 
-TEST(Identity, IsTheSameTheNextTime) {
+TEST(Identity, IsTheSameAfterARestart) {
   const test::TempDir folder;
   const absl::StatusOr<Identity> first = load_or_make_identity(folder.path());
   const absl::StatusOr<Identity> second = load_or_make_identity(folder.path());

@@ -37,14 +37,14 @@ void expect_equal(const JoinString& a, const JoinString& b) {
   EXPECT_EQ(a.secret, b.secret);
 }
 
-TEST(JoinString, ComesBackFromItsText) {
+TEST(JoinString, RoundTrips) {
   const JoinString join = example();
   const absl::StatusOr<JoinString> parsed = parse_join_string(join.text() + "\n");
   ASSERT_TRUE(parsed.ok()) << parsed.status();
   expect_equal(*parsed, join);
 }
 
-TEST(JoinString, ComesBackForEveryDigestByte) {
+TEST(JoinString, RoundTripsEveryDigestByte) {
   JoinString join = example();
   join.addresses = {"h:1"};
   for (int byte = 0; byte < 256; ++byte) {
@@ -55,7 +55,7 @@ TEST(JoinString, ComesBackForEveryDigestByte) {
   }
 }
 
-TEST(JoinString, ComesBackWithoutACertificate) {
+TEST(JoinString, RoundTripsWithoutACertificate) {
   JoinString join = example();
   join.role = Role::kWorker;
   join.certificate.reset();

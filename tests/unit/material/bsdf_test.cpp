@@ -112,7 +112,7 @@ TEST(Bsdf, M14ValuesAreTheReflectanceTimesTheDensity) {
               "is absorbed, as in the books");
 }
 
-TEST(Bsdf, M10NothingPassesThroughOpaqueSurfacesWhateverTheShadingNormal) {
+TEST(Bsdf, M10NoLightPassesOpaqueSurfacesForAnyShadingNormal) {
   Random random(4);
   for (int i = 0; i < 20000; ++i) {
     const double tilt = random.uniform(0, 1.5);
@@ -165,7 +165,7 @@ TEST(Bsdf, GlassReflectsTheFresnelShare) {
   EXPECT_LT(sample(bsdf(Dielectric{1.5}, -wo), 0, 0, kOneMinusEpsilon)->wi.z, 0);
 }
 
-TEST(Bsdf, M6GlassOfIndexOneIsNotThere) {
+TEST(Bsdf, M6GlassOfIndexOneIsInvisible) {
   const Vec3 wo = normalize({0.3, 0.4, -0.2});
   const auto through = sample(bsdf(Dielectric{1}, wo), 0, 0, 0);
   ASSERT_TRUE(through);

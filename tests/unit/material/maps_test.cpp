@@ -52,7 +52,7 @@ ImageTexture tilted_map(UvSet set) {
 
 // The uvs of the second set are turned by a quarter, so the normal of the coat leans along y; that
 // of the base, whose map is the same in the first set, leans along x.
-TEST(Maps, TheNormalMapOfTheCoatLiesOnItsOwnUvs) {
+TEST(Maps, TheNormalMapOfTheCoatUsesItsOwnUvs) {
   const std::vector<Texture> textures = {ConstantTexture{{1, 1, 1}}, tilted_map(UvSet::kFirst),
                                          tilted_map(UvSet::kSecond)};
   SurfacePoint p = point(0.5);

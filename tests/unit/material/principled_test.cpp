@@ -92,7 +92,7 @@ TEST(Principled, SamplesFollowTheirDensity) {
   }
 }
 
-TEST(Principled, SamplesWeighWhatTheirValueSays) {
+TEST(Principled, SamplesWeighValueOverPdf) {
   Random random(12);
   for (const double roughness : {0.0, 0.02, 0.3, 1.0}) {
     for (const auto& [name, material] : all_materials(roughness)) {
@@ -116,7 +116,7 @@ TEST(Principled, SamplesWeighWhatTheirValueSays) {
 
 // Under light of radiance 1 from all directions no more may be scattered on. Rough glass, with the
 // compression of radiance divided out, scatters nearly all of it.
-TEST(Principled, NothingSendsOutMoreLightThanArrives) {
+TEST(Principled, ReflectanceIsAtMostOne) {
   constexpr int kSide = 48;
   for (const double roughness : {0.0, 0.1, 0.3, 0.6, 1.0}) {
     for (const auto& [name, material] : all_materials(roughness)) {
@@ -163,7 +163,7 @@ TEST(Principled, ReflectionIsReciprocal) {
   }
 }
 
-TEST(Principled, M10NothingOpaquePassesLightWhateverTheNormals) {
+TEST(Principled, M10OpaqueSurfacesPassNoLightForAnyNormals) {
   Random random(4);
   for (const double roughness : {0.05, 0.6}) {
     for (const auto& [name, material] : all_materials(roughness)) {
@@ -211,7 +211,7 @@ TEST(Principled, M2M5EdgesOfTheirRangesGiveFiniteNumbers) {
   test::holds("M2", "0 NaN at the edges of every range (glTF)");
 }
 
-TEST(Principled, SmoothDielectricsReflectTheirShareStraightOn) {
+TEST(Principled, SmoothDielectricsReflectFresnelAtNormalIncidence) {
   Principled black = principled(0, 0.2);
   black.base_color.factor = {0, 0, 0};
   const Bsdf b = bsdf(black, {0, 0, 1});
@@ -236,7 +236,7 @@ TEST(Principled, ChannelsAreThoseOfGltf) {
   EXPECT_NEAR(b.surface.alpha, 0.35 * 0.35, 1e-7);
 }
 
-TEST(RoughGlass, M6OfIndexOneIsNotThere) {
+TEST(RoughGlass, M6OfIndexOneIsInvisible) {
   const Vec3 wo = normalize({0.3, 0.4, -0.2});
   const auto through = sample(bsdf(Dielectric{1, 0.5}, wo), 0.3, 0.2, 0.1);
   ASSERT_TRUE(through && through->delta);
@@ -257,7 +257,7 @@ TEST(ShadingNormal, AFlatTexelChangesNothingAndATiltedOneTiltsAlongTheUvs) {
 }
 
 // A map turned by a quarter shows its own right upwards; one mirrored in u tilts the other way.
-TEST(ShadingNormal, AMapThatIsPlacedTiltsAlongItsOwnAxes) {
+TEST(ShadingNormal, ATransformedMapTiltsAlongItsOwnAxes) {
   const SurfacePoint p = point({0, 0, 1});
   const Rgb tilted{1, 0.5f, 0.5f};
   const auto normal = [&](const std::array<double, 6>& m) {
@@ -281,7 +281,7 @@ TEST(ShadingNormal, T15_UvsWithoutAreaGiveAUnitNormal) {
   test::holds("T15", "a unit normal without NaN");
 }
 
-TEST(ShadingNormal, WhatIsSeenIsBentAsLittleAsNeeded) {
+TEST(ShadingNormal, NormalsThatFaceAwayAreBentAsLittleAsNeeded) {
   Random random(7);
   const Vec3 up{0, 0, 1};
   for (int i = 0; i < 100000; ++i) {

@@ -99,7 +99,7 @@ double draw(const Case& c, test::Random& random) {
 
 class Elementary : public testing::TestWithParam<Case> {};
 
-TEST_P(Elementary, IsWithinTwoUnitsInTheLastPlace) {
+TEST_P(Elementary, ErrorIsWithinTwoUnitsInTheLastPlace) {
   const Case& c = GetParam();
   test::Random random(17);
   double worst = 0;
@@ -127,7 +127,7 @@ TEST(ElementaryPow, IsExactEnoughForColours) {
   }
 }
 
-TEST(ElementaryPow, HasTheUsualEnds) {
+TEST(ElementaryPow, HasTheLimitsOfTheStandard) {
   EXPECT_EQ(pow(0, 0), 1);
   EXPECT_EQ(pow(0, 2.4), 0);
   EXPECT_EQ(pow(0, -1), kInfinity);
@@ -188,7 +188,7 @@ TEST(ElementaryArcs, ClampTheirArgument) {
   EXPECT_EQ(asin(0), 0);
 }
 
-TEST(ElementaryExp, HasTheUsualEnds) {
+TEST(ElementaryExp, HasTheLimitsOfTheStandard) {
   EXPECT_EQ(exp(0), 1);
   EXPECT_EQ(exp(1000), kInfinity);
   EXPECT_EQ(exp(709.79), kInfinity);

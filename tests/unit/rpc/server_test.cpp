@@ -27,7 +27,7 @@ TEST_F(ServerTest, ASecondServerOnAPortReportsThatItIsTaken) {
   EXPECT_THAT(std::string(status.message()), HasSubstr("--listen"));
 }
 
-TEST_F(ServerTest, ReportsWhatIsWrongWithAnAddress) {
+TEST_F(ServerTest, ReportsAnInvalidAddress) {
   for (const char* listen : {"7878", "host", "127.0.0.1:x", "127.0.0.1:70000", ":1"}) {
     EXPECT_EQ(Server::start(*engine_, identity_, {.listen = listen}).status().code(),
               absl::StatusCode::kInvalidArgument)

@@ -109,7 +109,7 @@ TEST_F(StreamTest, AdmitsACompatibleWorker) {
   EXPECT_TRUE(stream->Finish().ok());
 }
 
-TEST_F(StreamTest, RefusesAWorkerOfOtherPixelsAndSaysWhy) {
+TEST_F(StreamTest, RefusesAWorkerOfOtherPixelsWithTheReason) {
   farm::FromWorker other = hello();
   other.mutable_hello()->set_canary(canary() + 1);
   std::vector<farm::ToWorker> answers;

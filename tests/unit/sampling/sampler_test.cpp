@@ -222,7 +222,7 @@ TEST(Sampler, R2_DoesNotCorrelateNeighbouringPixels) {
   test::holds("R2", "24 correlations below 4 / 256");
 }
 
-TEST(Sampler, R5_GoesOnBeyondTwoToThe32Samples) {
+TEST(Sampler, R5_SupportsMoreThanTwoToThe32Samples) {
   const PixelSampler sampler(1, 2, 3);
   std::set<Sample4> seen;
   for (std::uint64_t high = 0; high < 4; ++high) {

@@ -72,7 +72,7 @@ TEST(Efficiency, OfUnequalWorkers) {
   EXPECT_LE(r.tail, 0.02);
 }
 
-TEST(Efficiency, OfUnequalWorkersOnAnUnevenImageThatTheyTakeUnevenTimesFor) {
+TEST(Efficiency, OfUnequalWorkersOnAnUnevenImageWithNoisyTimes) {
   const BenchResult r = measure("20:1, speeds 1:4, noise 30 %",
                                 {.speeds = speeds(60, false), .cost_of = uneven, .noise = 0.3});
   EXPECT_GE(r.efficiency, 0.95);

@@ -227,7 +227,8 @@ TEST(CrashAttribution, SixCrashesOnANewFarmFailTheJobAndNameTheBand) {
   const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
   const std::string names = "abcdef";
   for (SessionId session = 1; session <= 6; ++session) {
-    EXPECT_EQ(farm.job(job).state, JobState::kRunning) << "the first only made it suspect";
+    EXPECT_EQ(farm.job(job).state, JobState::kRunning)
+        << "the first crash only makes the band suspect";
     lose_one(farm, session, names.substr(session - 1, 1));
   }
   EXPECT_EQ(farm.job(job).state, JobState::kFailed);
@@ -332,7 +333,7 @@ TEST(CrashAttribution, TheSecondLeaseIsSuspectToo) {
   const std::vector<action::Lease> again = farm.all<action::Lease>();
   ASSERT_EQ(again.size(), 1u) << "a suspect band is given alone";
   farm.stored(again[0], "b");
-  ASSERT_EQ(farm.all<action::Lease>().size(), 2u) << "so is the other";
+  ASSERT_EQ(farm.all<action::Lease>().size(), 2u) << "and so is the other one";
   EXPECT_EQ(farm.job(job).state, JobState::kRunning);
 }
 
@@ -347,7 +348,8 @@ TEST(CrashAttribution, ABandIsNotBlamedForARevokedLease) {
     farm.send(input::Pause{deadly});
     farm.pass_time(1.5);  // the band is taken back, the sound one is given
     if (session > 1) {
-      EXPECT_NE(farm.all<action::Lease>().back().job, sound) << "not before it is heard of";
+      EXPECT_NE(farm.all<action::Lease>().back().job, sound)
+          << "not before a heartbeat omits the revoked lease";
     }
     farm.send(input::SessionEnded{session, "connection reset"});
     farm.send(input::Resume{deadly});
@@ -355,7 +357,7 @@ TEST(CrashAttribution, ABandIsNotBlamedForARevokedLease) {
   EXPECT_EQ(farm.job(sound).state, JobState::kRunning) << farm.job(sound).reason;
 }
 
-TEST(CrashAttribution, OneMachineIsNoProofWhileThereIsAnother) {
+TEST(CrashAttribution, CrashesOfOneMachineDoNotFailAJobThatAnotherCanRender) {
   FarmDriver farm(slow());
   const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 64));
   farm.hello(100, "good", 1);
@@ -376,7 +378,7 @@ TEST(CrashAttribution, OneMachineIsNoProofWhileThereIsAnother) {
   EXPECT_EQ(farm.job(job).state, JobState::kFinishing) << farm.job(job).reason;
 }
 
-TEST(CrashAttribution, OneMachineThatIsAloneIsProof) {
+TEST(CrashAttribution, CrashesOfTheOnlyMachineFailTheJob) {
   FarmDriver farm;
   const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
   for (SessionId session = 1; session <= 6; ++session) {
@@ -393,9 +395,9 @@ TEST(CrashAttribution, OneMachineThatIsAloneIsProof) {
   EXPECT_EQ(farm.job(job).state, JobState::kFailed);
 }
 
-TEST(CrashRate, RequiresMoreCrashesWhereMoreWorkersAreLost) {
+TEST(CrashRate, RequiresMoreCrashesIfMoreWorkersAreLost) {
   CrashRate calm;
-  EXPECT_EQ(calm.required(3, 0), 5u) << "nothing is known of a new farm";
+  EXPECT_EQ(calm.required(3, 0), 5u) << "the prior of a new farm";
   calm.add_crash();
   EXPECT_EQ(calm.required(3, 1), 5u) << "the band's own loss says nothing of the farm";
   EXPECT_GT(calm.required(3, 0), 5u);
@@ -413,7 +415,7 @@ TEST(CrashRate, RequiresMoreCrashesWhereMoreWorkersAreLost) {
   for (int i = 0; i < 100'000; ++i) {
     storm.add_band();
   }
-  EXPECT_EQ(storm.required(3, 0), 3u) << "what is long past is forgotten";
+  EXPECT_EQ(storm.required(3, 0), 3u) << "old events lose weight";
 }
 
 TEST(CrashAttribution, RandomKillsDoNotFailAJobThatAdvances) {

@@ -34,7 +34,7 @@ TEST(Passes, BeginSmallAndDouble) {
 
 TEST(Passes, OfTheLargestJobAreFew) { EXPECT_LE(passes_between(0, kMaxSamples).size(), 64u); }
 
-TEST(Passes, OfATimedJobAreNodesNoLongerThanAQuarterOfWhatIsThere) {
+TEST(Passes, OfATimedJobAreNodesOfAtMostAQuarterOfTheSamples) {
   std::uint64_t end = 0;
   for (int i = 0; i < 40; ++i) {
     const SampleRange pass = next_timed_pass(end, 1e12, kMaxSamples);

@@ -29,7 +29,7 @@ struct AllLost {
   }
 };
 
-TEST(ReconnectBarrier, TheFirstWorkerBackGetsNothingAnotherHasRendered) {
+TEST(ReconnectBarrier, TheFirstReconnectedWorkerGetsNothingAnotherHasRendered) {
   AllLost all;
   ASSERT_EQ(all.leases.size(), 2u);
   all.farm.stored(all.leases[0], "a");
@@ -55,7 +55,7 @@ TEST(ReconnectBarrier, EndsAfterTheGraceTime) {
   EXPECT_TRUE(share_rows(all.farm.all<action::Lease>()[0], all.leases[1]));
 }
 
-TEST(ReconnectBarrier, ANewWorkerWaitsForNobody) {
+TEST(ReconnectBarrier, ANewWorkerGetsWorkAtOnce) {
   AllLost all;
   all.farm.hello(3, "c", 1);
   EXPECT_EQ(all.farm.all<action::Lease>().size(), 1u);

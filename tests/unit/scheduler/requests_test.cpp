@@ -104,7 +104,7 @@ TEST(Pause, ByAUserIsNotEndedByTheDiskOrARestart) {
   EXPECT_EQ(next.job(job).state, JobState::kRunning);
 }
 
-TEST(Why, SaysWhatAJobWaitsFor) {
+TEST(Why, StatesWhatAJobWaitsFor) {
   FarmDriver farm;
   const JobId urgent = submit(farm, "r1", 10);
   const JobId job = submit(farm, "r2", 0);

@@ -328,7 +328,7 @@ void for_seeds(std::uint64_t first, std::uint64_t seeds, F f) {
   }
 }
 
-TEST(Simulation, EveryJobEndsWhateverHappens) {
+TEST(Simulation, EveryJobEndsUnderRandomFailures) {
   Outcome all;
   for_seeds(1, 2000, [&](std::uint64_t seed) {
     const Outcome one = Simulation(seed, {}).run(random_jobs(seed));
@@ -344,7 +344,7 @@ TEST(Simulation, EveryJobEndsWhateverHappens) {
   RecordProperty("rendered", static_cast<int>(all.rendered));
 }
 
-TEST(Simulation, AWorkerThatLiesHarmsNobodyElse) {
+TEST(Simulation, AWrongWorkerDoesNotAffectOthers) {
   for_seeds(10'001, 300, [&](std::uint64_t seed) {
     const Outcome one = Simulation(seed, {.lies = true}).run(random_jobs(seed));
     EXPECT_EQ(one.broken, "") << "again with BANDSAW_SEED=" << seed;
@@ -363,7 +363,7 @@ TEST(Simulation, DamagedBandsAreRenderedAgain) {
   EXPECT_GT(damages, 0u);
 }
 
-TEST(Simulation, AuditedImagesAreRightWithLiarsAndDamagedBands) {
+TEST(Simulation, AuditedImagesAreRightWithWrongWorkersAndDamagedBands) {
   for_seeds(60'001, 300, [&](std::uint64_t seed) {
     const Outcome one = Simulation(seed, {.chaos = seed % 2 == 1,
                                           .liars = seed % 3,
@@ -375,7 +375,7 @@ TEST(Simulation, AuditedImagesAreRightWithLiarsAndDamagedBands) {
   });
 }
 
-TEST(Simulation, AuditedImagesAreRightWithLiars) {
+TEST(Simulation, AuditedImagesAreRightWithWrongWorkers) {
   std::size_t found = 0;
   for_seeds(40'001, 300, [&](std::uint64_t seed) {
     const std::size_t liars = seed % 3;

@@ -10,7 +10,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(RecordText, EveryKindComesBack) {
+TEST(RecordText, EveryKindRoundTrips) {
   for (const Record& record : sample_records()) {
     const RecordText text = to_text(record);
     const absl::StatusOr<Record> back = from_text(text);

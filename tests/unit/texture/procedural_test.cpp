@@ -36,7 +36,7 @@ Textures checker(CheckerTexture::Mapping mapping, const Vec3& size) {
   return {ConstantTexture{kWhite}, ConstantTexture{kBlack}, checker};
 }
 
-TEST(Checker, TakesTurnsInUvAndInSpace) {
+TEST(Checker, AlternatesInUvAndInSpace) {
   const Textures squares = checker(CheckerTexture::Mapping::kUv, {0.5, 0.25, 1});
   EXPECT_EQ(at_uv(squares, 0.1, 0.1), kWhite);
   EXPECT_EQ(at_uv(squares, 0.6, 0.1), kBlack);
@@ -70,7 +70,7 @@ TEST(Checker, TX4APlaneBetweenTwoLayersHasOneSide) {
   test::holds("TX4", "one side");
 }
 
-TEST(Checker, TakesAnyCoordinate) {
+TEST(Checker, AcceptsAnyCoordinate) {
   const Textures boxes = checker(CheckerTexture::Mapping::kPosition, {1e-3, 1, 1});
   const Textures squares = checker(CheckerTexture::Mapping::kUv, {1e-3, 1, 1});
   for (const double x : {1e308, -1e300, std::numeric_limits<double>::infinity(), std::nan("")}) {
@@ -160,7 +160,7 @@ TEST(NoiseTexture, IsTheFormulaOfItsKind) {
   EXPECT_EQ(max_value(Textures{t}, id(0)), 2);
 }
 
-TEST(NoiseTexture, LiesStillInItsSpace) {
+TEST(NoiseTexture, DoesNotMoveInItsSpace) {
   NoiseTexture t;
   const TextureCoordinates moved{.position = {5.5, 1.2, 3.3}, .object_position = {0.4, 1.2, 3.3}};
   const Textures world{t};
@@ -170,7 +170,7 @@ TEST(NoiseTexture, LiesStillInItsSpace) {
   EXPECT_EQ(evaluate(object, id(0), moved), at_point(world, {0.4, 1.2, 3.3}));
 }
 
-TEST(Ramp, IsLinearBetweenStopsOrGoesInSteps) {
+TEST(Ramp, IsLinearOrConstantBetweenStops) {
   RampTexture ramp;
   ramp.over = RampTexture::Over::kV;
   ramp.stops = {{0, {1, 0, 0}}, {1, {0, 1, 0}}, {3, {0, 1, 8}}};
@@ -187,7 +187,7 @@ TEST(Ramp, IsLinearBetweenStopsOrGoesInSteps) {
   EXPECT_EQ(at(3), (Rgb{0, 1, 8}));
 }
 
-TEST(Ramp, GoesOverATextureAndOverEachCoordinate) {
+TEST(Ramp, AppliesToATextureAndToEachCoordinate) {
   RampTexture ramp;
   ramp.texture = id(0);
   ramp.stops = {{0, {0, 0, 0}}, {10, {10, 10, 10}}};
@@ -205,7 +205,7 @@ TEST(Ramp, GoesOverATextureAndOverEachCoordinate) {
   EXPECT_EQ(evaluate(Textures{ramp}, id(0), at).g, 8);
 }
 
-TEST(Mix, GoesFromOneToTheOther) {
+TEST(Mix, InterpolatesBetweenTwoTextures) {
   const Textures parts{ConstantTexture{{1, 2, 3}}, ConstantTexture{{3, 2, 1}},
                        ConstantTexture{{0.25f, 0.25f, 0.25f}}, ConstantTexture{{7, 7, 7}}};
   const auto mixed = [&](std::uint32_t amount) {
@@ -258,7 +258,7 @@ std::string fault(const Textures& textures) {
   return "";
 }
 
-TEST(CheckParts, RefusesCyclesAndWhatCannotBeComputed) {
+TEST(CheckParts, RefusesCyclesAndInvalidNumbers) {
   EXPECT_EQ(fault({CheckerTexture{}}),
             "checker.even: must be below 0 (a texture before this), is 0");
   EXPECT_EQ(fault({ConstantTexture{}, MixTexture{id(0), id(0), id(1)}}),

@@ -75,7 +75,7 @@ TEST(Texture, UvBeginsAtTheBottomLeft) {
   EXPECT_EQ(at(texture, 0.6, 0.5), 12);
 }
 
-TEST(Texture, TX2TX3EdgesAndBeyondNeverLeaveTheImage) {
+TEST(Texture, TX2TX3LookupsNeverReadOutsideTheImage) {
   for (const Wrap wrap : {Wrap::kRepeat, Wrap::kClamp, Wrap::kMirror}) {
     for (const Filter filter : {Filter::kBilinear, Filter::kNearest}) {
       const Texture texture = counted(4, 3, wrap, filter);

@@ -165,7 +165,7 @@ TEST_F(AccessTest, HalfOpenConnectionsOfOneAddressDoNotBlockOthers) {
 }
 
 // Without a login the response is sent before the body, which is never read.
-TEST_F(AccessTest, ABodyForAnUnknownPathIsNotAwaited) {
+TEST_F(AccessTest, ABodyForAnUnknownPathIsNotRead) {
   for (const std::string path : {"/nowhere", "/%0A"}) {
     const int one = socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
     sockaddr_in address{};

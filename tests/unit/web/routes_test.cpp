@@ -186,7 +186,7 @@ TEST_F(RoutesTest, ALongBodyIsRefused) {
   EXPECT_EQ(post("/api/gallery/render", std::string(100'000, ' '))->status, 400);
 }
 
-TEST(Metrics, EscapeNamesAndLeaveOutWhatIsNotKnown) {
+TEST(Metrics, EscapeNamesAndOmitUnknownValues) {
   JobView job;
   job.id = 3;
   job.spec.name = "a \"b\"\\";

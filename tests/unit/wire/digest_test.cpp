@@ -21,7 +21,7 @@ TEST(Digest, EqualsTheExamplesOfTheStandard) {
             "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
 }
 
-TEST(Digest, DoesNotDependOnHowTheBytesArePieced) {
+TEST(Digest, DoesNotDependOnTheDivisionIntoPieces) {
   const std::string text(100'000, 'x');
   for (const std::size_t piece : {1ul, 63ul, 64ul, 65ul, 99'999ul, 100'000ul}) {
     Hasher hasher;
@@ -32,7 +32,7 @@ TEST(Digest, DoesNotDependOnHowTheBytesArePieced) {
   }
 }
 
-TEST(Digest, SurvivesItsTwoWrittenForms) {
+TEST(Digest, RoundTripsInBothWrittenForms) {
   const Digest digest = sha256(std::string("bandsaw"));
   EXPECT_EQ(digest_from_raw(digest.raw()).value(), digest);
   EXPECT_EQ(digest_from_hex(digest.hex()).value(), digest);

@@ -152,7 +152,7 @@ TEST_F(BlobCacheTest, FreesSpaceOnAFullDisk) {
   ::umount2(disk.c_str(), MNT_DETACH);
 }
 
-TEST_F(BlobCacheTest, LeavesForeignFilesAlone) {
+TEST_F(BlobCacheTest, DoesNotRemoveForeignFiles) {
   std::filesystem::create_directory(folder_ / "cache");
   std::ofstream(folder_ / "cache/thesis.tex") << std::string(5000, 'x');
   const auto cache = open(1500);
