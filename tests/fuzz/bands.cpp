@@ -41,7 +41,7 @@ class Sender {
     }
     came_ += data;
     BANDSAW_CHECK(intake_.received() == came_.size() && came_.size() <= intake_.header().size(),
-                  "what was taken is within its size");
+                  "the accepted bytes are within the announced size");
     if (intake_.whole()) {
       take();
     }
@@ -72,11 +72,12 @@ class Sender {
       const std::size_t bytes = pixels->sums.size() * sizeof(double);
       BANDSAW_CHECK(
           bytes == came_.size() && std::memcmp(pixels->sums.data(), came_.data(), bytes) == 0,
-          "what was taken is what came");
-      BANDSAW_CHECK(wire::sha256(came_).raw() == header.sha256(), "of the digest announced");
+          "the accepted pixels are the received bytes");
+      BANDSAW_CHECK(wire::sha256(came_).raw() == header.sha256(),
+                    "the received bytes have the announced digest");
       BANDSAW_CHECK(
           pixels->sums.size() == std::size_t{3} * pixels->width * pixels->band.rows.count(),
-          "three sums a pixel");
+          "each pixel has three sums");
       BANDSAW_CHECK(std::all_of(pixels->sums.begin(), pixels->sums.end(), is_sum), "sums");
     }
     leave();
@@ -101,7 +102,7 @@ void bandsaw::fuzz::run(absl::Span<const std::uint8_t> in) {
     if (intake.add(message).ok()) {
       BANDSAW_CHECK(
           intake.received() <= intake.header().size() && intake.header().size() <= wire::kBandBytes,
-          "what was taken is within its size");
+          "the accepted bytes are within the announced size");
     }
   }
   Sender sender;

@@ -187,7 +187,7 @@ TEST_F(ExchangeTest, AClientThatDoesNotReadIsDisconnected) {
              return text_reply(std::string(8 << 20, 'x'), "text/plain");
            },
            {});
-  SUCCEED() << "it came back";
+  SUCCEED() << "the server ended the connection";
 }
 
 }  // namespace
