@@ -22,7 +22,7 @@ bool is_refused_for_good(const absl::Status& status) {
   return absl::IsUnauthenticated(status) || absl::IsPermissionDenied(status);
 }
 
-/// Differs between workers; nothing but waiting times depends on it.
+/// Returns a seed that differs between workers; it only affects waiting times.
 std::uint64_t seed_of(const WorkerInfo& info) { return std::hash<std::string>()(info.instance); }
 
 }  // namespace

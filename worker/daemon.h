@@ -47,9 +47,9 @@ class Daemon {
   static absl::StatusOr<std::unique_ptr<Daemon>> create(DaemonOptions options);
   ~Daemon();
 
-  /// Runs until the worker has drained or left, or the coordinator has dismissed it for good: OK.
-  /// UNAUTHENTICATED, PERMISSION_DENIED: the join string was never valid for this farm. After any
-  /// other error it reconnects.
+  /// Runs until the worker has drained or left, or the coordinator has dismissed it permanently:
+  /// OK. UNAUTHENTICATED, PERMISSION_DENIED: the join string was never valid for this farm. After
+  /// any other error it reconnects.
   absl::Status run();
 
   /// Finishes the held bands, then ends run(). Any thread.

@@ -16,7 +16,7 @@ namespace bandsaw::coordinator {
 /// The answer to a worker's upload of a band.
 enum class BandOutcome {
   kStored,     ///< it is on disk and in the journal
-  kDuplicate,  ///< all of its rows were there already
+  kDuplicate,  ///< all of its rows were stored already
   kUnwanted    ///< the job is over, or the band is not part of it
 };
 

@@ -166,11 +166,11 @@ void StoreThread::reopen(JobId id) {
 
 void StoreThread::drop_bands(JobId id) {
   jobs_.erase(id);
-  remove_file(folder_.bands(id)).IgnoreError();  // what is left is removed at the next start
+  remove_file(folder_.bands(id)).IgnoreError();  // remaining files are removed at the next start
 }
 
 void StoreThread::drop_job(JobId id) {
-  std::error_code error;  // what is left is removed by the next sweep
+  std::error_code error;  // remaining files are removed by the next sweep
   std::filesystem::remove_all(folder_.job(id), error);
 }
 

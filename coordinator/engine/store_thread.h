@@ -37,7 +37,7 @@ class StoreThread {
 
   /// Writes a band; it is answered at settle, after the log is synced.
   void append(IncomingBand incoming);
-  /// Computes the row digests of a band that is there already. Does not write it.
+  /// Computes the row digests of a band that is stored already. Does not write it.
   void compare(IncomingBand incoming);
   /// Call after each batch: one fdatasync per log, then the answers. Every two seconds, tests a
   /// disk that has failed.

@@ -13,7 +13,7 @@ class BandIntake {
  public:
   /// Adds a chunk. INVALID_ARGUMENT names the field, the allowed range and the value.
   absl::Status add(const farm::BandChunk& chunk);
-  /// Some chunks have arrived, but not all.
+  /// Returns true if some chunks have arrived, but not all.
   bool cut() const { return begun_ && !whole(); }
   bool whole() const { return begun_ && received_ == header_.size(); }
   std::uint64_t received() const { return received_; }

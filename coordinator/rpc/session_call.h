@@ -44,7 +44,7 @@ class SessionCall final
   const ServiceDependencies deps_;
   const std::string peer_;
   farm::FromWorker incoming_;
-  std::optional<SessionId> session_;  ///< accessed in the order of reads only, then by done()
+  std::optional<SessionId> session_;  ///< accessed by read callbacks, then by done()
   Mutex mutex_;
   std::deque<farm::ToWorker> outgoing_
       GUARDED_BY(mutex_);  ///< the front message is being written while writing_

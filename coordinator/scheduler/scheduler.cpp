@@ -35,7 +35,8 @@ Step Scheduler::step(const Input& input, Time now) {
   return finish_step();
 }
 
-/// Revokes what the input has ended, gives work to the workers, and revokes what that has ended.
+/// Revokes the leases that the input has ended, grants leases to the workers, and revokes the
+/// leases that this has ended.
 Step Scheduler::finish_step() {
   context_.flush_revocations();
   if (!barrier_.active()) {

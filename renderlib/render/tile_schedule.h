@@ -29,7 +29,7 @@ class TileSchedule {
   TileSamples next(const SampleRange& pass);
 
  private:
-  /// Returns the samples of half tile i: the longest node after what it has, or none.
+  /// Returns the samples of half tile i: the longest node after the samples that it has, or none.
   SampleRange node_of(std::size_t i, const SampleRange& pass) const;
 
   TileGrid grid_;

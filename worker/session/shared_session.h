@@ -42,7 +42,7 @@ class SharedSession {
   // For shutdown.
   void drain(const std::string& reason) EXCLUDES(mutex_);
   void leave() EXCLUDES(mutex_);
-  /// True once drained or told to leave.
+  /// Returns true once the worker has drained, or after leave().
   bool over() EXCLUDES(mutex_);
   /// Sleeps, but returns early when over() becomes true.
   void pause(std::chrono::milliseconds time) EXCLUDES(mutex_);

@@ -13,8 +13,8 @@ class PassPlanner {
  public:
   PassPlanner(Context& context, LeaseLedger& ledger) : context_(context), ledger_(ledger) {}
 
-  /// Plans what can be planned without measurements, unless it is planned already: all passes of a
-  /// job with a number of samples, the first ones of another.
+  /// Plans the passes that need no measurements, unless they are planned already: all passes of a
+  /// job with a number of samples, the first ones of other jobs.
   void plan_first(Job& job);
   /// Plans passes up to this sample.
   void plan_until(Job& job, std::uint64_t samples);

@@ -44,7 +44,7 @@ void JobLifecycle::advance(Job& job) {
 
 void JobLifecycle::pass_merged(const input::PassMerged& in) {
   Job* job = context_.jobs.find(in.job);
-  // If it has more samples than are complete, it was measured on pixels that were freed since.
+  // An error of more samples than are complete was measured on pixels that have been freed since.
   if (job == nullptr || is_final(job->state) || in.samples < job->error_samples ||
       in.samples > job->complete_samples()) {
     return;
@@ -61,7 +61,8 @@ void JobLifecycle::pass_merged(const input::PassMerged& in) {
   }
 }
 
-/// Journals the error, unless a restart has measured again what is journalled.
+/// Journals the error, unless it is a repeated measurement after a restart that is journalled
+/// already.
 void JobLifecycle::note_error(const Job& job, std::uint64_t samples, const ErrorEstimate& error) {
   const ErrorPoint point{samples, job.elapsed(context_.clock.wall()), job.totals().cpu_s, error};
   const bool known = !job.curve.empty() &&

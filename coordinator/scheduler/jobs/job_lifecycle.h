@@ -1,7 +1,7 @@
 #pragma once
 
-// The course of a job from its first pass to its end: error checkpoints, completion, failure,
-// pauses for want of disk space.
+// The course of a job from its first pass to its end: error checkpoints, completion, failure, and
+// pauses because of a full disk.
 
 #include <cstdint>
 #include <string>
@@ -21,7 +21,7 @@ class JobLifecycle {
 
   /// Evaluates a pending error checkpoint or the time limit of a running job, and requests its
   /// image once all passes are complete and no audit blocks. MUST be called after each change of
-  /// what is stored or audited.
+  /// the stored rows or of the audits.
   void advance(Job& job);
   /// Notes the error of merged passes, and evaluates it if this is a checkpoint.
   void pass_merged(const input::PassMerged& in);
@@ -37,7 +37,7 @@ class JobLifecycle {
   /// Revokes leases of jobs that a user paused a second ago or earlier, except of bands that are
   /// rendered and being uploaded.
   void revoke_from_held_jobs();
-  /// Journals the elapsed time now and then, so that a crash loses at most a second of it, or a
+  /// Journals the elapsed time at intervals, so that a crash loses at most a second of it, or a
   /// fiftieth. A long job has at most a few hundred such records.
   void note_time(const Job& job);
 

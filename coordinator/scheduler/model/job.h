@@ -1,6 +1,6 @@
 #pragma once
 
-// One job: its passes, what is stored of them, and what went wrong.
+// One job: its passes, their stored rows, and its failures.
 
 #include <cstdint>
 #include <deque>

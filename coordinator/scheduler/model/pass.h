@@ -1,6 +1,6 @@
 #pragma once
 
-// One pass of a job: what is stored of it, and by which worker processes.
+// One pass of a job: its stored rows, and the worker processes that rendered them.
 
 #include <cstdint>
 #include <map>
@@ -64,7 +64,7 @@ struct Pass {
     Band band;
     Totals totals;  ///< of the whole result, counted at the first of its rows; 0 at the others
   };
-  /// Everything that one worker process stored of the pass.
+  /// All bands of the pass that one worker process stored.
   struct Part {
     std::vector<StoredBand> bands;
     Totals totals;  ///< of all bands

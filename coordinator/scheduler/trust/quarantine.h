@@ -1,7 +1,7 @@
 #pragma once
 
 // Puts machines that returned wrong pixels under quarantine: they get no work until a user lifts
-// it, and what they rendered of active jobs is rendered again.
+// it, and their rows of active jobs are rendered again.
 
 #include <string>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Progress of a job: which part of it is done, when it will be done, who works on it.
+// Progress of a job: the fraction that is done, the remaining time, and the workers that render it.
 
 #include <vector>
 

@@ -163,7 +163,7 @@ std::string Views::waiting_reason(const Job& job) const {
   return busy.empty() ? job.notice : busy;
 }
 
-/// Returns what the audits of a job with nothing left to render wait for.
+/// Returns the reason why the audits of a job with nothing left to render wait.
 std::string Views::audit_reason(const Job& job) const {
   for (const Audit& audit : job.audits) {
     if (audit.disputed() && audit.lease == 0) {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Builds what users are shown of jobs and workers, and explains why a job is not done yet.
+// Builds the views of jobs and workers that users see, and explains why a job is not done yet.
 
 #include <optional>
 #include <string>
@@ -35,7 +35,8 @@ class Views {
   JobView view(const Job& job, Time now) const;
   /// Returns machines that are under quarantine and have not connected in this epoch.
   std::vector<WorkerView> absent_quarantined() const;
-  /// Returns what a job without leases waits for, or the notice of a job with leases; may be empty.
+  /// Returns the reason why a job without leases waits, or the notice of a job with leases; may be
+  /// empty.
   std::string waiting_reason(const Job& job) const;
   std::vector<std::string> why_of_state(const Job& job, Time now) const;
   std::string audit_reason(const Job& job) const;

@@ -11,7 +11,7 @@ using Call = std::function<grpc::Status(grpc::ClientContext&)>;
 
 struct NamedCall {
   std::string name;
-  link::Role role;  ///< whose secret opens it
+  link::Role role;  ///< the role whose secret is required
   Call call;
 };
 

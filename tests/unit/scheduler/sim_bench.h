@@ -30,7 +30,7 @@ struct BenchFarm {
 
 struct BenchResult {
   double seconds = 0;     ///< first lease to last result
-  double efficiency = 0;  ///< work done once, of what the workers could do in that time
+  double efficiency = 0;  ///< work of the job over the work that the workers could do in that time
   double tail = 0;        ///< time from the first idle worker to the last result, over all
   std::uint64_t bands = 0;
   std::uint64_t wasted = 0;   ///< bands or parts of bands rendered for nothing

@@ -29,7 +29,7 @@ class SimCoordinator {
   SimCoordinator(Agenda& agenda, Chance& chance) : agenda_(agenda), chance_(chance) {}
 
   void start();
-  /// Loses what is not synced, and all sessions.
+  /// Loses the data that is not synced, and all sessions.
   void crash();
   bool up() const { return scheduler_ != nullptr; }
   std::uint64_t epoch_number() const { return epoch_number_; }

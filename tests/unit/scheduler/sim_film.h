@@ -17,7 +17,7 @@ namespace bandsaw::coordinator::sim {
 
 class SimFilm {
  public:
-  /// Returns false if a part of it is there already; then nothing changes.
+  /// Returns false if a part of it is stored already; then nothing changes.
   bool add(const input::BandStored& band, const RowRange& rows) {
     if (any_of(band.band.samples, rows)) {
       return false;
@@ -33,7 +33,7 @@ class SimFilm {
     return true;
   }
 
-  /// Removes what the process rendered, and ignores what it renders from now on.
+  /// Removes the rows that the process rendered, and ignores its later ones.
   void retract(std::uint64_t process) {
     void_.insert(process);
     for (auto& [row, there] : rows_) {

@@ -229,7 +229,7 @@ class Simulation {
       if (!worker->running()) {
         worker->start();
       } else if (weather_.chaos) {
-        worker->cut_cable();  // one that drains comes back as one that does not
+        worker->cut_cable();  // a draining worker reconnects without draining
       }
     }
   }
