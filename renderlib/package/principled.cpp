@@ -59,7 +59,7 @@ void encode_principled(const Principled& from, package::Gltf& to) {
 absl::StatusOr<Principled> decode_principled(const package::Gltf& from, const std::string& field) {
   if (!package::Gltf::AlphaMode_IsValid(from.alpha_mode())) {
     return manifest_error(field + ".alpha_mode",
-                          absl::StrCat("is ", from.alpha_mode(), ", which is none"));
+                          absl::StrCat("is ", from.alpha_mode(), ", which is not a mode"));
   }
   Principled to;
   ASSIGN_OR_RETURN(to.base_color, decode(from.base_color(), field + ".base_color"));

@@ -93,8 +93,8 @@ TEST(AtomicFile, LeavesNoFileInAReadOnlyFolder) {
   EXPECT_EQ(files_in(dir.path()), 0u);
 }
 
-/// A file that may not grow fails in write() half-way, as a full disk does. In a child, since the
-/// limit is the process's.
+/// A file that may not grow fails in write() half-way, as a full disk does. The test runs in a
+/// child process, because the limit applies to the whole process.
 int write_with_limit(const std::string& path) {
   std::signal(SIGXFSZ, SIG_IGN);
   const rlimit limit = {1000, 1000};

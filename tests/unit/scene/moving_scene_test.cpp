@@ -85,9 +85,9 @@ TEST(MovingScene, OnlyInstancesThatNeverMoveBecomeStatic) {
     g.instances[i].frame = FrameId{i};
   }
   make_static({0, 2}, g);
-  EXPECT_EQ(g.instances[0].frame, FrameId{0}) << "it is at its start again, but moved between";
+  EXPECT_EQ(g.instances[0].frame, FrameId{0}) << "it ends at its start, but moves in between";
   EXPECT_EQ(g.instances[1].frame, kNoFrame) << "it moves later";
-  EXPECT_EQ(g.instances[2].frame, FrameId{2}) << "it stands in what moves";
+  EXPECT_EQ(g.instances[2].frame, FrameId{2}) << "its parent frame moves";
   EXPECT_EQ(g.instances[3].to_world, scaling({2, 2, 2}));
   EXPECT_TRUE(moves(g));
 }
