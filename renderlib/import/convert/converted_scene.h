@@ -1,0 +1,24 @@
+#pragma once
+
+// A scene of another renderer, as a scene file of ours: what the converters of pbrt and Mitsuba
+// scenes return. The importer reads it as it reads a scene file; `bandsaw import` writes it to disk.
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "proto/scene.pb.h"
+
+namespace bandsaw {
+
+struct ConvertedScene {
+  scene::Scene scene;
+  /// Files that the scene names and that the converter made (meshes, images): name -> bytes. Other
+  /// names are those of files below the folder of the foreign scene.
+  std::map<std::string, std::string> made_files;
+  /// What has no counterpart and what stands in its place, each with its place in the source:
+  /// "kitchen.pbrt:17: texture \"windy\" is shown as its mean colour".
+  std::vector<std::string> warnings;
+};
+
+}  // namespace bandsaw
