@@ -1,0 +1,46 @@
+#!/usr/bin/env bash
+# Tests the table of deploy/nightly.sh, with parts that only say how they ended: counts, failures, skips, and rows that --continue keeps.
+# Usage: nightly.sh SOURCE-FOLDER
+set -euo pipefail
+source=$(cd "$1" && pwd)
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+fail() { echo "nightly.sh: $*" >&2; cat out/nightly/table.md >&2; exit 1; }
+
+mkdir "$scratch/deploy" "$scratch/out"
+cd "$scratch"
+cp "$source/deploy/nightly.sh" deploy/
+echo 'bare_possible() { return 1; }' > deploy/bare.sh
+cat > deploy/test.sh << 'SCRIPT'
+echo " 3/7 Test #9: something .....***Skipped (Skipped)"
+echo "71% tests passed, 1 tests failed out of 7"
+exit 8
+SCRIPT
+printf 'echo ran >> out/arm64\necho "100%% tests passed, 0 tests failed out of 4"\n' > deploy/arm64.sh
+chmod +x deploy/*.sh
+echo /out/ > .gitignore
+commit() { git add . && git -c user.name=test -c user.email=test@localhost commit --quiet --allow-empty -m "$1"; }
+git init --quiet
+commit first
+
+# row PART TEXT: the part's row must begin so.
+row() { grep -qF "| $1 | $2 |" out/nightly/table.md || fail "no row of $1 with: $2"; }
+rows() { [ "$(grep -c '^| [a-z0-9-]* | [pfs][a-z:]*' out/nightly/table.md)" -eq "$1" ] || fail "not $1 rows"; }
+
+! deploy/nightly.sh default arm64 > out/log || fail "a failed part did not fail the run"
+row default "failed | 5 | 1 | 1"
+row arm64 "passed | 4 | 0 | 0"
+rows 2
+
+! deploy/nightly.sh --continue debian13 > out/log || fail "the kept failed part did not fail the run"
+row debian13 "skipped: no root or no debootstrap | 0 | 0 | 0"
+rows 3
+[ "$(wc -l < out/arm64)" -eq 1 ] || fail "a part with a row ran again"
+[ "$(sed -n 's/^| \(default\|debian13\|arm64\) .*/\1/p' out/nightly/table.md | tr '\n' ' ')" = "default debian13 arm64 " ] ||
+  fail "the rows are not in the order of the parts"
+
+commit second
+deploy/nightly.sh --continue arm64 > out/log || fail "passed parts fail the run"
+rows 1
+[ "$(head -n 1 out/nightly/table.md | cut -d, -f1)" = "# $(git describe --always)" ] || fail "the table does not name its commit"
+echo "the table holds"
