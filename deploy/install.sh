@@ -37,9 +37,16 @@ case "${1:-}" in
   *) echo "usage: deploy/install.sh build|demo|packages|test|browser|clang|old_cpu|arm64" >&2; exit 2 ;;
 esac
 
+# installed PACKAGE: a package may be installed for several architectures at once; without a suffix this machine's counts.
+architecture=$(dpkg --print-architecture)
+installed() {
+  local wanted=$architecture
+  [[ $1 != *:* ]] || wanted=${1#*:}
+  dpkg-query -W -f='${db:Status-Status} ${Architecture}\n' "$1" 2>/dev/null | grep -qE "^installed ($wanted|all)\$"
+}
 missing=()
 for package in "${wanted[@]}"; do
-  [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || missing+=("$package")
+  installed "$package" || missing+=("$package")
 done
 [ ${#missing[@]} -eq 0 ] && exit 0
 
