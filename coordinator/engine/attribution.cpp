@@ -4,10 +4,10 @@
 
 namespace bandsaw::coordinator {
 
-void Attribution::add(JobId job, const RowRange& rows, std::uint64_t renderer,
+void Attribution::add(JobId job, const RowRange& rows, std::uint64_t process,
                       const std::string& name) {
-  if (!name.empty() && (names_.size() < kMaxNames || names_.contains(renderer))) {
-    names_[renderer] = name;
+  if (!name.empty() && (names_.size() < kMaxNames || names_.contains(process))) {
+    names_[process] = name;
   }
   Rows& all = jobs_[job];
   auto next = all.lower_bound(rows.first);
@@ -18,13 +18,13 @@ void Attribution::add(JobId job, const RowRange& rows, std::uint64_t renderer,
     const Piece old = next->second;
     next = all.erase(next);
     if (old.rows.first < rows.first) {
-      all[old.rows.first] = {{old.rows.first, rows.first}, old.renderer};
+      all[old.rows.first] = {{old.rows.first, rows.first}, old.process};
     }
     if (old.rows.last > rows.last) {
-      all[rows.last] = {{rows.last, old.rows.last}, old.renderer};
+      all[rows.last] = {{rows.last, old.rows.last}, old.process};
     }
   }
-  all[rows.first] = {rows, renderer};
+  all[rows.first] = {rows, process};
 }
 
 std::vector<RowsBy> Attribution::of(JobId job) const {
@@ -34,7 +34,7 @@ std::vector<RowsBy> Attribution::of(JobId job) const {
     return out;
   }
   for (const auto& [first, one] : found->second) {
-    const auto name = names_.find(one.renderer);
+    const auto name = names_.find(one.process);
     const std::string worker = name == names_.end() ? "" : name->second;
     if (!out.empty() && out.back().rows.last == first && out.back().worker == worker) {
       out.back().rows.last = one.rows.last;

@@ -16,10 +16,10 @@ namespace bandsaw::coordinator {
 /// Attribution of the jobs that are not over. Used by one thread.
 class Attribution {
  public:
-  /// Adds rows of a job. `renderer` identifies the worker process in all epochs (runs of the
+  /// Adds rows of a job. `process` identifies the worker process in all epochs (runs of the
   /// coordinator). `name` may be empty, because a band on disk does not contain it; it becomes
   /// known when the worker sends another band.
-  void add(JobId job, const RowRange& rows, std::uint64_t renderer, const std::string& name);
+  void add(JobId job, const RowRange& rows, std::uint64_t process, const std::string& name);
   /// Returns the rows that are rendered, in order; adjacent rows of one worker are merged.
   std::vector<RowsBy> of(JobId job) const;
   void forget(JobId job) { jobs_.erase(job); }
@@ -29,12 +29,12 @@ class Attribution {
 
   struct Piece {
     RowRange rows;
-    std::uint64_t renderer = 0;
+    std::uint64_t process = 0;
   };
   /// Disjoint, by first row.
   using Rows = std::map<std::uint32_t, Piece>;
   std::map<JobId, Rows> jobs_;
-  std::map<std::uint64_t, std::string> names_;  ///< by renderer
+  std::map<std::uint64_t, std::string> names_;  ///< by process
 };
 
 }  // namespace bandsaw::coordinator

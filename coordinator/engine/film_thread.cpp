@@ -79,12 +79,12 @@ void FilmThread::retry() {
   }
 }
 
-void FilmThread::retract(JobId id, std::uint64_t renderer) {
+void FilmThread::retract(JobId id, std::uint64_t process) {
   const auto job = jobs_.find(id);
   if (job == jobs_.end()) {
     return;
   }
-  const auto by = [&](const auto& one) { return one.renderer == renderer; };
+  const auto by = [&](const auto& one) { return one.process == process; };
   std::erase_if(job->second.waiting, [&](const Waiting& waiting) { return by(waiting.incoming); });
   std::erase_if(job->second.added, by);
   job->second.rebuild = true;
@@ -98,9 +98,14 @@ void FilmThread::drop(JobId job) {
 }
 
 std::vector<RowsBy> FilmThread::rendered_by(JobId job) const {
-  return jobs_.contains(job)
-             ? attribution_.of(job)
-             : read_attribution(folder_.attribution(job)).value_or(std::vector<RowsBy>());
+  if (jobs_.contains(job)) {
+    return attribution_.of(job);
+  }
+  auto stored = read_attribution(folder_.attribution(job));
+  if (absl::IsNotFound(stored.status())) {
+    stored = read_attribution(folder_.old_attribution(job));
+  }
+  return std::move(stored).value_or(std::vector<RowsBy>());
 }
 
 absl::StatusOr<Image> FilmThread::preview(JobId id, std::uint32_t row_step) const {
@@ -148,7 +153,7 @@ absl::Status FilmThread::merge(JobId id, OneJob& job, Waiting& waiting) {
     const RowRange rows = waiting.rows.back();
     RETURN_IF_ERROR(job.film->add(rows == pixels.band.rows ? pixels : slice(pixels, rows),
                                   waiting.incoming.tiles.of(rows)));
-    attribution_.add(id, rows, waiting.incoming.renderer, waiting.incoming.worker);
+    attribution_.add(id, rows, waiting.incoming.process, waiting.incoming.worker);
     job.added.push_back(added(waiting.incoming, rows));
     waiting.rows.pop_back();
   }
@@ -200,7 +205,7 @@ absl::StatusOr<Film> FilmThread::new_film(JobId id, const OneJob& job) const {
 FilmThread::Added FilmThread::added(const IncomingBand& incoming, const RowRange& rows) {
   return {.offset = incoming.offset,
           .band = {incoming.pixels.band.samples, rows},
-          .renderer = incoming.renderer,
+          .process = incoming.process,
           .tiles = incoming.tiles.of(rows),
           .digest = digest_of(incoming.pixels, rows)};
 }
@@ -247,7 +252,7 @@ void FilmThread::leave_out(JobId id, OneJob& job, const std::vector<std::size_t>
   std::vector<input::BandsDamaged::DamagedBand> lost;
   for (auto index = damaged.rbegin(); index != damaged.rend(); ++index) {
     const auto one = job.added.begin() + static_cast<std::ptrdiff_t>(*index);
-    lost.push_back({one->band, one->renderer});
+    lost.push_back({one->band, one->process});
     job.added.erase(one);
   }
   if (!lost.empty()) {

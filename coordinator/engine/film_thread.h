@@ -43,9 +43,9 @@ class FilmThread {
   void want_image(JobId job, std::uint64_t samples);
   /// Retries the additions and images that failed.
   void retry();
-  /// Removes the bands of this renderer: builds the film again from the log of the others, and
+  /// Removes the bands of this worker process: builds the film again from the log of the others, and
   /// reports its passes again as they become complete.
-  void retract(JobId job, std::uint64_t renderer);
+  void retract(JobId job, std::uint64_t process);
   void drop(JobId job);
 
   /// Returns the present image of a job, every row_step-th row. NOT_FOUND: no band is there, or the
@@ -64,7 +64,7 @@ class FilmThread {
   struct Added {
     std::uint64_t offset = 0;  ///< offset of the record that holds the band
     Band band;
-    std::uint64_t renderer = 0;
+    std::uint64_t process = 0;
     TileSamples tiles;         ///< tiles of these rows
     std::uint64_t digest = 0;  ///< digest of the rows' sums
   };

@@ -60,7 +60,7 @@ class FilmInbox {
   virtual void add(IncomingBand incoming, std::vector<RowRange> rows) = 0;
   virtual void want_image(JobId job, std::uint64_t samples) = 0;
   virtual void retry() = 0;
-  virtual void retract(JobId job, std::uint64_t renderer) = 0;
+  virtual void retract(JobId job, std::uint64_t process) = 0;
   virtual void drop(JobId job) = 0;
 };
 

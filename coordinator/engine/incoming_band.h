@@ -25,8 +25,8 @@ struct IncomingBand {
   /// Hash of the scene and settings that it was rendered for, as the worker reports it
   /// (renderlib/render/work_hash.h); 0: unknown.
   std::uint64_t work = 0;
-  std::string instance;        ///< instance of the worker
-  std::uint64_t renderer = 0;  ///< id of the worker process (scheduler/api/worker_process.h)
+  std::string instance;       ///< instance of the worker
+  std::uint64_t process = 0;  ///< id of the worker process (scheduler/api/worker_process.h)
   BandPixels pixels;
   std::string worker;      ///< name of the worker, from action::AddToFilm
   TileSamples tiles = {};  ///< samples of the band's half tiles, from action::AddToFilm

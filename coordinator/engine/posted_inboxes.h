@@ -72,8 +72,8 @@ class PostedFilmInbox final : public FilmInbox, public Posting<FilmThread> {
     call(&FilmThread::want_image, job, samples);
   }
   void retry() override { call(&FilmThread::retry); }
-  void retract(JobId job, std::uint64_t renderer) override {
-    call(&FilmThread::retract, job, renderer);
+  void retract(JobId job, std::uint64_t process) override {
+    call(&FilmThread::retract, job, process);
   }
   void drop(JobId job) override { call(&FilmThread::drop, job); }
 };

@@ -49,7 +49,7 @@ void SchedulerThread::absorb(const Step& step, IncomingBand* incoming) {
       IncomingBand band;
       band.job = incoming->job;
       band.worker = add->worker;
-      band.renderer = incoming->renderer;
+      band.process = incoming->process;
       band.pixels = std::move(incoming->pixels);
       band.share = std::move(incoming->share);
       band.offset = incoming->offset;

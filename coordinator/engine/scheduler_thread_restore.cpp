@@ -58,13 +58,13 @@ absl::Status SchedulerThread::restore_job(JobId id, const Known& known, StoreThr
                                         .band = pixels.band,
                                         .row_digests = row_digests(pixels),
                                         .instance = {},
-                                        .process = record.renderer,
+                                        .process = record.process,
                                         .counters = pixels.counters,
                                         .cpu_s = record.cpu_s});
     // Bands of a machine in quarantine are refused.
     if (const auto left = scheduler_.wanted(id, band); left && left->empty()) {
       IncomingBand incoming;
-      incoming.renderer = record.renderer;
+      incoming.process = record.process;
       incoming.pixels = std::move(pixels);
       incoming.offset = offset;
       incoming.tiles = scheduler_.tiles(id, band);

@@ -62,7 +62,7 @@ void SchedulerThread::put_band(IncomingBand incoming) {
     incoming.answer(journal_status_);
     return;
   }
-  incoming.renderer = worker_process_id(incoming.instance);
+  incoming.process = worker_process_id(incoming.instance);
   const std::optional<std::vector<RowRange>> wanted =
       scheduler_.wanted(incoming.job, incoming.pixels.band);
   if (!wanted) {

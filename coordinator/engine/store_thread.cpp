@@ -67,7 +67,7 @@ absl::Status StoreThread::write(OpenJob& job, IncomingBand& incoming) {
                     .settings = job.spec.settings,
                     .pixels = std::move(incoming.pixels),
                     .cpu_s = incoming.cpu_s,
-                    .renderer = incoming.renderer};
+                    .process = incoming.process};
   const absl::StatusOr<std::uint64_t> offset = job.log->append(record);
   incoming.pixels = std::move(record.pixels);
   RETURN_IF_ERROR(offset.status());

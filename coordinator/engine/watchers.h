@@ -1,6 +1,6 @@
 #pragma once
 
-// The watchers of jobs.
+// The watchers of jobs: callbacks that are called when a job changes.
 
 #include <functional>
 #include <map>
@@ -16,6 +16,7 @@ namespace bandsaw::coordinator {
 /// Used by one thread.
 class Watchers {
  public:
+  /// Takes the new state of the job. Returns false if it wants no further calls.
   using Changed = std::function<bool(absl::StatusOr<JobView>)>;
   using ViewOf = absl::FunctionRef<std::optional<JobView>(JobId)>;
 

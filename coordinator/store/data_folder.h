@@ -28,7 +28,9 @@ class DataFolder {
   std::string bands(JobId id) const { return job(id) + "/bands"; }
   std::string result(JobId id) const { return job(id) + "/result"; }
   std::string samples(JobId id) const { return job(id) + "/samples"; }
-  std::string attribution(JobId id) const { return job(id) + "/credits"; }
+  std::string attribution(JobId id) const { return job(id) + "/attribution"; }
+  /// The name that older versions gave to the attribution.
+  std::string old_attribution(JobId id) const { return job(id) + "/credits"; }
 
  private:
   DataFolder(std::string path, File lock) : path_(std::move(path)), lock_(std::move(lock)) {}

@@ -47,7 +47,7 @@ JobState state_field(FieldReader& in, absl::string_view name) {
   return JobState::kFailed;
 }
 
-void write_figures(FieldWriter& out, const record::JobSummary& r) {
+void write_summary(FieldWriter& out, const record::JobSummary& r) {
   out.number("job", r.job);
   out.real("elapsed_s", r.elapsed_s);
   out.real("cpu_s", r.cpu_s);
@@ -81,7 +81,7 @@ Counters read_counters(FieldReader& in) {
   return counters;
 }
 
-Record read_figures(FieldReader& in) {
+Record read_summary(FieldReader& in) {
   return record::JobSummary{
       .job = in.number("job"),
       .elapsed_s = in.real("elapsed_s"),
@@ -124,8 +124,8 @@ Record read_record(absl::string_view kind, FieldReader& in) {
   if (kind == "time_spent") {
     return record::TimeSpent{.job = in.number("job"), .elapsed_s = in.real("elapsed_s")};
   }
-  if (kind == "figures") {
-    return read_figures(in);
+  if (kind == "job_summary" || kind == "figures") {  // before version 8
+    return read_summary(in);
   }
   if (kind == "error_measured") {
     return read_error(in);
@@ -133,7 +133,7 @@ Record read_record(absl::string_view kind, FieldReader& in) {
   if (kind == "share_counted") {
     return read_share(in);
   }
-  if (kind == "last_words") {
+  if (kind == "failure_log" || kind == "last_words") {  // before version 8
     return record::FailureLog{.job = in.number("job"),
                               .worker = in.text("worker"),
                               .log = absl::StrSplit(in.text("log"), '\n', absl::SkipEmpty())};
@@ -201,8 +201,8 @@ RecordText to_text(const Record& record) {
                               return "time_spent";
                             },
                             [&](const record::JobSummary& r) {
-                              write_figures(out, r);
-                              return "figures";
+                              write_summary(out, r);
+                              return "job_summary";
                             },
                             [&](const record::ErrorMeasured& r) {
                               write_error(out, r);
@@ -216,7 +216,7 @@ RecordText to_text(const Record& record) {
                               out.number("job", r.job);
                               out.text("worker", r.worker);
                               out.text("log", absl::StrJoin(r.log, "\n"));
-                              return "last_words";
+                              return "failure_log";
                             },
                             [&](const record::JobForgotten& r) {
                               out.number("job", r.job);

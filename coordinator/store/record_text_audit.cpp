@@ -2,18 +2,20 @@
 
 #include <cstdint>
 
+#include "coordinator/store/record_text_report.h"
+
 namespace bandsaw::coordinator {
 
 namespace {
 
-/// The fields of a band that a renderer stored.
-void write_stored(FieldWriter& out, JobId job, const Band& band, std::uint64_t renderer) {
+/// The fields of a stored band and of the worker process that rendered it.
+void write_stored(FieldWriter& out, JobId job, const Band& band, WorkerProcessId process) {
   out.number("job", job);
   out.number("first", band.samples.first);
   out.number("last", band.samples.last);
   out.number("first_row", band.rows.first);
   out.number("last_row", band.rows.last);
-  out.number("renderer", renderer);
+  write_process(out, process);
 }
 
 // Braced initialisers are evaluated in the order they are written, which is that of the fields.
@@ -24,7 +26,7 @@ R read_stored(FieldReader& in) {
           .band = {.samples = {.first = in.number("first"), .last = in.number("last")},
                    .rows = {.first = static_cast<std::uint32_t>(in.number("first_row", UINT32_MAX)),
                             .last = static_cast<std::uint32_t>(in.number("last_row", UINT32_MAX))}},
-          .process = in.number("renderer")};
+          .process = read_process(in)};
 }
 
 }  // namespace
@@ -45,7 +47,7 @@ const char* write_audit(FieldWriter& out, const record::ErrorForgotten& r) {
 }
 
 const char* write_audit(FieldWriter& out, const record::WorkerQuarantined& r) {
-  out.number("renderer", r.process);
+  write_process(out, r.process);
   out.text("name", r.name);
   out.text("reason", r.reason);
   return "worker_quarantined";
@@ -68,7 +70,7 @@ std::optional<Record> read_audit(absl::string_view kind, FieldReader& in) {
   }
   if (kind == "worker_quarantined") {
     return record::WorkerQuarantined{
-        .process = in.number("renderer"), .name = in.text("name"), .reason = in.text("reason")};
+        .process = read_process(in), .name = in.text("name"), .reason = in.text("reason")};
   }
   if (kind == "quarantine_lifted") {
     return record::QuarantineLifted{.name = in.text("name")};

@@ -2,6 +2,12 @@
 
 namespace bandsaw::coordinator {
 
+void write_process(FieldWriter& out, WorkerProcessId process) { out.number("process", process); }
+
+WorkerProcessId read_process(FieldReader& in) {
+  return in.number(in.next_is("renderer") ? "renderer" : "process");
+}
+
 void write_error(FieldWriter& out, const record::ErrorMeasured& r) {
   const ErrorEstimate& estimate = r.point.estimate;
   out.number("job", r.job);
@@ -40,7 +46,7 @@ record::ErrorMeasured read_error(FieldReader& in) {
 
 void write_share(FieldWriter& out, const record::ShareCounted& r) {
   out.number("job", r.job);
-  out.number("renderer", r.share.process);
+  write_process(out, r.share.process);
   out.text("name", r.share.name);
   out.number("samples", r.share.samples);
   out.real("cpu_s", r.share.cpu_s);
@@ -48,7 +54,7 @@ void write_share(FieldWriter& out, const record::ShareCounted& r) {
 
 record::ShareCounted read_share(FieldReader& in) {
   return {.job = in.number("job"),
-          .share = {.process = in.number("renderer"),
+          .share = {.process = read_process(in),
                     .name = in.text("name"),
                     .samples = in.number("samples"),
                     .cpu_s = in.real("cpu_s")}};

@@ -7,6 +7,10 @@
 
 namespace bandsaw::coordinator {
 
+/// The id of a worker process. Schema versions below 8 call the field "renderer".
+void write_process(FieldWriter& out, WorkerProcessId process);
+WorkerProcessId read_process(FieldReader& in);
+
 void write_error(FieldWriter& out, const record::ErrorMeasured& r);
 record::ErrorMeasured read_error(FieldReader& in);
 

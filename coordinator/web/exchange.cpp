@@ -148,7 +148,7 @@ class Exchange {
       }
     }
     return error ? absl::StatusOr<absl::string_view>(absl::InvalidArgumentError(
-                       absl::StrCat("the body did not come whole: ", error.message())))
+                       absl::StrCat("the body is incomplete: ", error.message())))
                  : absl::string_view();
   }
 

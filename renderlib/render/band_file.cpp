@@ -128,7 +128,7 @@ Reader read_header(Reader reader, BandRecord& record) {
   reader.number(counters.truncated_paths);
   reader.number(counters.dropped_primitives);
   reader.number(record.cpu_s);
-  reader.number(record.renderer);
+  reader.number(record.process);
   return reader;
 }
 
@@ -191,7 +191,7 @@ absl::StatusOr<std::vector<std::byte>> encode_band_record(const BandRecord& reco
   writer.number(pixels.counters.truncated_paths);
   writer.number(pixels.counters.dropped_primitives);
   writer.number(record.cpu_s);
-  writer.number(record.renderer);
+  writer.number(record.process);
   writer.put(pixels.sums.data(), pixels.sums.size() * sizeof(double));
   writer.number(hash_of(bytes));
   return bytes;

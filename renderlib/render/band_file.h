@@ -18,7 +18,7 @@
 //   negative_samples, truncated_paths                   u64 each
 //   dropped_primitives                                  u64
 //   cpu_s                                               f64
-//   renderer                                            u64
+//   id of the worker process                            u64
 //   sums                                                f64 x rows x width x 3
 //   hash of all bytes before (render/hash64.h)          u64
 
@@ -42,8 +42,8 @@ struct BandRecord {
   std::string package_digest;  ///< 64 lower-case hexadecimal digits
   RenderSettings settings;
   BandPixels pixels;
-  double cpu_s = 0;            ///< CPU time, summed over threads, >= 0; 0: unknown
-  std::uint64_t renderer = 0;  ///< identifies the process that rendered the band; 0: unknown
+  double cpu_s = 0;           ///< CPU time, summed over threads, >= 0; 0: unknown
+  std::uint64_t process = 0;  ///< identifies the process that rendered the band; 0: unknown
 };
 
 /// Returns the size of a band's record in bytes.

@@ -10,6 +10,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Stands in for ssh: runs the remote command here, in the home folder of the simulated host.
 constexpr char kSsh[] = R"sh(#!/bin/sh
 while [ "$1" != -- ]; do shift; done
 host=$2
@@ -24,6 +25,8 @@ exec env -i HOME="$MACHINES/homes/$host" PATH="$MACHINES/bin-$host:$MACHINES/bin
   XDG_RUNTIME_DIR=/nowhere sh -c "$*"
 )sh";
 
+// Stands in for systemctl --user: starts and stops the command of one unit file, and logs its
+// calls.
 constexpr char kSystemctl[] = R"sh(
 echo "systemctl $*" >>"$HOME/asked"
 unit=$HOME/.config/systemd/user/bandsaw-worker.service

@@ -1,4 +1,4 @@
-// Boxes and BVHs: B1 to B4, B6.
+// Cases of cases.txt: B1 to B4 and B6 (boxes and BVHs).
 
 #include <gtest/gtest.h>
 

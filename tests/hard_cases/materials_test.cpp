@@ -1,4 +1,4 @@
-// Materials: M2, M7, M8, M11, M12, and the masking term.
+// Cases of cases.txt: M2, M7, M8, M11, M12 (materials); and the masking term of microfacets.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,5 @@
-// Triangles and meshes: T1, T2, T4, T6, T8, T11, T14; sizes that halve a thousand times: B7.
+// Cases of cases.txt: T1, T2, T4, T6, T8, T11, T14 (triangles and meshes), B7 (sizes that halve a
+// thousand times).
 
 #include <cmath>
 #include <string>

@@ -1,4 +1,5 @@
-// Numbers that lose precision, and sums: A1, A2, A8, C7, L2, L5, L10, P2, P3, P4, R3, R9.
+// Cases of cases.txt in which numbers lose precision: A1, A2, A8, C7, L2, L5, L10, P2, P3, P4, R3,
+// R9.
 
 #include <gtest/gtest.h>
 

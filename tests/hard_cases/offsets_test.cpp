@@ -1,4 +1,5 @@
-// Rays that leave surfaces: O1, O5, O7; closed boxes: Q8; shared edges of quads: Q1.
+// Cases of cases.txt: O1, O5, O7 (rays that leave surfaces), Q8 (closed boxes), Q1 (shared edges of
+// quads).
 
 #include <gtest/gtest.h>
 

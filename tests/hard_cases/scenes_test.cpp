@@ -1,4 +1,4 @@
-// Whole scenes: C1, O6, Q4, T13.
+// Cases that need a whole scene: C1, M9, O6, Q4 and T13 of cases.txt.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Spheres: S1 to S8 and S10.
+// Cases of cases.txt: S1 to S8 and S10 (spheres), and M9 (a bubble in glass).
 
 #include <gtest/gtest.h>
 

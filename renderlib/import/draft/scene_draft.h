@@ -21,7 +21,7 @@ struct Model;
 struct FoundCamera {
   std::string model;  ///< file of the model
   std::string name;   ///< name of its node
-  std::string own_name;
+  std::string own_name;  ///< name of the camera itself; may be empty
   Camera camera;
 };
 

@@ -47,7 +47,7 @@ class Dequantizer {
                from.num_components() == 2) {
       out.largest_ = (1 << octahedron.quantization_bits()) - 2;
     } else if (is_octahedron || is_quantized) {
-      return damaged(place, "says of an attribute how it is quantised in a way that is not valid");
+      return damaged(place, "has an attribute whose quantisation is not valid");
     }
     return out;
   }

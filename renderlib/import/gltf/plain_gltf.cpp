@@ -29,8 +29,8 @@ absl::Status check_required(const Json& root) {
     if (std::find(std::begin(kUnreadable), std::end(kUnreadable), name) != std::end(kUnreadable)) {
       return absl::InvalidArgumentError(
           absl::StrCat("it requires the extension ", name,
-                       ", which is not read; gltf-transform (copy, ktxdecompress, webp) writes it "
-                       "without"));
+                       ", which is not read; convert it to a file without that extension, with "
+                       "gltf-transform copy, ktxdecompress or webp"));
     }
   }
   return absl::OkStatus();

@@ -18,7 +18,8 @@ using gltf::number;
 
 constexpr char kLights[] = "KHR_lights_punctual";
 
-// Traverses the tree with an explicit stack; a node that is reached again is not entered.
+/// Repeats the traversal of Assimp's glTF loader: nodes depth first, the objects of a node after
+/// its children. Uses an explicit stack; a node that is reached again is not entered.
 class Walk {
  public:
   explicit Walk(const Json& root) : root_(root) {}

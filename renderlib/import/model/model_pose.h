@@ -22,8 +22,8 @@ struct NodePlaces {
 };
 NodePlaces node_places(const aiScene& scene);
 
-/// Applies the morph targets whose weight is not 0 to vertices and normals (empty, or one a
-/// vertex).
+/// Applies the morph targets whose weight is not 0 to the vertices and to the normals, if there
+/// are any.
 void add_morph_targets(const aiMesh& from, Mesh& mesh);
 
 /// Transforms vertices and normals into the model's space, each by the weighted mean of its bones'

@@ -23,7 +23,7 @@ class ModelTextures {
   /// the reason.
   absl::StatusOr<TextureId> find(const std::string& file, const TextureStore::Use& use) const;
 
-  /// Returns true if find() would find a file or an embedded image.
+  /// Returns OK if find() would find a file or an embedded image, otherwise its error.
   absl::Status locate(const std::string& file) const { return source_of(file).status(); }
 
   /// Returns the texels only. Errors are those of find().

@@ -132,7 +132,7 @@ TEST_F(FilmThreadTest, BandsOfAWorkerCanBeRetracted) {
   thread_.plan(1, 32);
   IncomingBand wrong = logged({0, 16}, {0, 4});
   wrong.pixels.sums[5] += 1;
-  wrong.renderer = 7;
+  wrong.process = 7;
   ASSERT_TRUE(thread_.add(1, std::move(wrong), {{0, 4}}).ok());
   ASSERT_TRUE(add({0, 16}, {4, 8}).ok());
   ASSERT_TRUE(add({16, 32}, {0, 8}).ok()) << "nodes that met are one sum in the film";
@@ -151,7 +151,7 @@ TEST_F(FilmThreadTest, DamagedBandsAreLeftOutAndReported) {
   ASSERT_TRUE(add({0, 16}, {0, 4}).ok());
   IncomingBand sound = logged({0, 16}, {4, 8});
   damage(sound.offset + 300);
-  sound.renderer = 5;
+  sound.process = 5;
   ASSERT_TRUE(thread_.add(1, std::move(sound), {{4, 6}, {6, 8}}).ok());
   EXPECT_EQ(scheduler_.merged, (std::vector<std::uint64_t>{16})) << "it was added from memory";
   thread_.retract(1, 7);
@@ -320,8 +320,11 @@ TEST_F(FilmThreadTest, AttributionIsSentWithTheImageAndReadFromItsFileLater) {
   EXPECT_EQ(store_.attribution, by_anna);
   thread_.drop(1);
   EXPECT_TRUE(thread_.rendered_by(1).empty());
-  ASSERT_TRUE(write_attribution(by_anna, folder_.attribution(1)).ok());
+  ASSERT_TRUE(write_attribution(by_anna, folder_.old_attribution(1)).ok());
   EXPECT_EQ(thread_.rendered_by(1), by_anna);
+  const std::vector<RowsBy> by_ben = {{{0, 8}, "ben"}};
+  ASSERT_TRUE(write_attribution(by_ben, folder_.attribution(1)).ok());
+  EXPECT_EQ(thread_.rendered_by(1), by_ben);
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ BandRecord record() {
                             .truncated_paths = 168,
                             .dropped_primitives = 1ull << 40};
   record.cpu_s = 0.3;
-  record.renderer = 0xFEDCBA9876543210u;
+  record.process = 0xFEDCBA9876543210u;
   return record;
 }
 
@@ -49,7 +49,7 @@ void expect_equal(const BandRecord& a, const BandRecord& b) {
   EXPECT_EQ(a.pixels.sums, b.pixels.sums);
   EXPECT_EQ(a.pixels.counters, b.pixels.counters);
   EXPECT_EQ(a.cpu_s, b.cpu_s);
-  EXPECT_EQ(a.renderer, b.renderer);
+  EXPECT_EQ(a.process, b.process);
 }
 
 TEST(BandFile, RecordsRoundTripWithAKnownSize) {

@@ -12,7 +12,7 @@ namespace {
 class AttributionFileTest : public ::testing::Test {
  protected:
   test::TempDir temp_;
-  const std::string path_ = temp_ / "credits";
+  const std::string path_ = temp_ / "attribution";
 };
 
 TEST_F(AttributionFileTest, ReadsWhatWasWritten) {

@@ -48,6 +48,23 @@ TEST(RecordText, AJobWithoutAPixelVersionHasNone) {
   EXPECT_EQ(std::get<record::JobAdded>(from_text(text).value()).pixel_version, 0u);
 }
 
+TEST(RecordText, NamesOfOlderVersionsAreRead) {
+  for (const Record& record : sample_records()) {
+    const RecordText text = to_text(record);
+    RecordText old = text;
+    old.kind = text.kind == "job_summary"   ? "figures"
+               : text.kind == "failure_log" ? "last_words"
+                                            : text.kind;
+    const std::size_t process = old.fields.find("process ");
+    if (process != std::string::npos) {
+      old.fields.replace(process, 7, "renderer");
+    }
+    const absl::StatusOr<Record> back = from_text(old);
+    ASSERT_TRUE(back.ok()) << old.kind << ": " << back.status();
+    EXPECT_EQ(to_text(*back), text);
+  }
+}
+
 TEST(RecordText, AnUnknownKindIsNamed) {
   const absl::Status status = from_text({.kind = "job_paused", .fields = "job 1\n"}).status();
   EXPECT_EQ(status.code(), absl::StatusCode::kDataLoss);

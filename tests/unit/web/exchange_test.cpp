@@ -134,7 +134,7 @@ TEST_F(ExchangeTest, Expect100ContinueIsAnswered) {
 TEST_F(ExchangeTest, ATruncatedBodyIsAnError) {
   const std::string all = answer("POST / HTTP/1.1\r\nContent-Length: 9\r\n\r\nbody");
   EXPECT_THAT(all, StartsWith("HTTP/1.1 400 "));
-  EXPECT_THAT(all, HasSubstr("did not come whole"));
+  EXPECT_THAT(all, HasSubstr("the body is incomplete"));
 }
 
 TEST_F(ExchangeTest, MalformedHttpIsRefused) {
