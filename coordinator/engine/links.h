@@ -17,7 +17,7 @@ class Links {
   explicit Links(std::string epoch) : epoch_(std::move(epoch)) {}
 
   void add(SessionId session, std::shared_ptr<WorkerLink> link, const WorkerHello& hello);
-  /// Called when the stream has ended by itself.
+  /// MUST be called when the stream has ended by itself.
   void lost(SessionId session, const std::string& reason);
 
   /// Returns the worker's displayed name; empty: no such session.

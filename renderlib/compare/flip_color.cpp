@@ -1,3 +1,6 @@
+// The colour pipeline of FLIP. Symbols, tables and equations are those of Andersson et al. 2020
+// (compare/flip.h), section 4.1.
+
 #include <array>
 #include <cmath>
 

@@ -1,3 +1,6 @@
+// The feature pipeline of FLIP: differences of edges and points. Symbols and equations are those of
+// Andersson et al. 2020 (compare/flip.h), section 4.2.
+
 #include <algorithm>
 #include <cmath>
 

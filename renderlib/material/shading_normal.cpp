@@ -20,8 +20,8 @@ struct Directions {
   Vec3 v;
 };
 
-/// Where the map's own coordinates grow, of any length: the inverse of how it is placed, but for
-/// the size of its determinant.
+/// Returns the directions in which the map's own coordinates increase, of any length: the inverse
+/// of the map's transform, without the division by its determinant.
 Directions along_map(const Directions& uv, const UvTransform& placed) {
   const auto& [a, b, x, d, e, y] = placed.m;
   const double sign = a * e - b * d < 0 ? -1 : 1;

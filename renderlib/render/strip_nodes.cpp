@@ -47,9 +47,8 @@ void merge_all(StripNodes& nodes, RowStore& store) {
     }
     merge_into(nodes[i], nodes[i + 1], store);
     nodes.erase(nodes.begin() + static_cast<std::ptrdiff_t>(i) + 1);
-    i = i >= 2 ? i - 2
-               // A merge can create a sibling of the previous node, or of the halves before it.
-               : 0;
+    // A merge can create a sibling of the previous node, or of the halves before it.
+    i = i >= 2 ? i - 2 : 0;
   }
 }
 

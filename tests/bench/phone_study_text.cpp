@@ -108,7 +108,7 @@ std::string answers(const PhoneStudy& study) {
     most_build = std::max(most_build, median(image.one.build));
   }
   return absl::StrCat(
-      "### What it asked for\n\n",
+      "### The questions of the study\n\n",
       compared(study, "Many objects: 24 take on one thread", "objects_1", "objects_24",
                absl::StrCat(rays_text(study, "objects_1", "objects_24"),
                             "; in the study 11.34 times, 3,289 ms and 290 ms.")),

@@ -24,11 +24,12 @@ PerspectiveCamera camera(double aperture) {
   return {.look_at = {0, 0, -1}, .aperture = aperture, .focus_distance = 4};
 }
 
-enum class Lamps { kFoundByChance, kAsked };
+enum class Technique { kBsdfSampling, kLightSampling };
 
 /// Returns the radiance at position (x, y) of an image of 20 x 20 pixels.
 Moments seen(const SceneMaker& maker, const PerspectiveCamera& camera, double x, double y,
-             Lamps lamps, std::uint64_t samples, const PathOptions& options = {.max_depth = 8}) {
+             Technique technique, std::uint64_t samples,
+             const PathOptions& options = {.max_depth = 8}) {
   const auto scene = maker.build();
   const RayGenerator rays(camera, 20, 20);
   Moments means;
@@ -39,7 +40,7 @@ Moments seen(const SceneMaker& maker, const PerspectiveCamera& camera, double x,
     for (std::uint64_t sample = 0; sample < samples; ++sample) {
       const Sample4 at = sampler.group(sample, kGroupCamera);
       CameraRay ray(rays.ray(x, y, at[2], at[3]));
-      if (lamps == Lamps::kAsked) {
+      if (technique == Technique::kLightSampling) {
         ray.lens = rays.lens_view(x, y);
       }
       sum += path_radiance(*scene, ray, sampler, sample, options, counts).g;
@@ -67,7 +68,7 @@ TEST(Lens, ALightBeyondTheFocusIsADisk) {
   for (const double radius : {0.1, 0.01, 3e-4}) {
     SceneMaker maker;
     maker.sphere({0, 0, -10}, radius, maker.lamp(7));
-    expect_value(seen(maker, camera(0.4), 10, 10, Lamps::kAsked, 256),
+    expect_value(seen(maker, camera(0.4), 10, 10, Technique::kLightSampling, 256),
                  7 * share_of_lens(radius, 10, 0.4), 1e-3);
   }
 }
@@ -75,8 +76,8 @@ TEST(Lens, ALightBeyondTheFocusIsADisk) {
 TEST(Lens, ALightBeforeTheFocusIsADisk) {
   SceneMaker maker;
   maker.sphere({0, 0, -2}, 0.05, maker.lamp(7));
-  for (const Lamps lamps : {Lamps::kAsked, Lamps::kFoundByChance}) {
-    expect_value(seen(maker, camera(0.4), 10, 10, lamps, 4096), 7 * share_of_lens(0.05, 2, 0.4),
+  for (const Technique technique : {Technique::kLightSampling, Technique::kBsdfSampling}) {
+    expect_value(seen(maker, camera(0.4), 10, 10, technique, 4096), 7 * share_of_lens(0.05, 2, 0.4),
                  1e-2);
   }
 }
@@ -85,13 +86,14 @@ void expect_the_same(const SceneMaker& maker, const PerspectiveCamera& camera,
                      std::uint64_t samples = 4096) {
   // The middle, the edge of a disk, between disks, a corner.
   for (const double place : {10.0, 10.7, 12.5, 19.5}) {
-    const Moments asked = seen(maker, camera, place, 20 - place, Lamps::kAsked, samples);
+    const Moments sampled =
+        seen(maker, camera, place, 20 - place, Technique::kLightSampling, samples);
     const Moments by_chance =
-        seen(maker, camera, place, 20 - place, Lamps::kFoundByChance, samples);
-    EXPECT_NEAR(asked.mean(), by_chance.mean(),
-                4 * std::hypot(asked.standard_error(), by_chance.standard_error()))
+        seen(maker, camera, place, 20 - place, Technique::kBsdfSampling, samples);
+    EXPECT_NEAR(sampled.mean(), by_chance.mean(),
+                4 * std::hypot(sampled.standard_error(), by_chance.standard_error()))
         << "at " << place;
-    EXPECT_LE(asked.standard_error(), 1.1 * by_chance.standard_error() + 1e-4 * asked.mean())
+    EXPECT_LE(sampled.standard_error(), 1.1 * by_chance.standard_error() + 1e-4 * sampled.mean())
         << "at " << place;
   }
 }
@@ -185,7 +187,7 @@ TEST(Lens, LightsAreSampledThroughTheLensWithPathReuse) {
   }
   for (std::size_t i = 0; i < shared.size(); ++i) {
     const Moments alone = seen(room(), camera(0.4), 7 + static_cast<double>(i), kRow,
-                               Lamps::kFoundByChance, 512, {.max_depth = 3});
+                               Technique::kBsdfSampling, 512, {.max_depth = 3});
     EXPECT_NEAR(shared[i].mean(), alone.mean(),
                 4 * std::hypot(shared[i].standard_error(), alone.standard_error()))
         << "pixel " << i;

@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::array<char, 8> kMagic = {'B', 'S', 'W', 'P', 'A', 'R', 'T', '1'};
 
+/// The header of a part; the band records follow it. Its bytes in memory are those of the file.
 struct Beginning {
   std::array<char, 8> magic = kMagic;
   double exposure = 0;
@@ -29,7 +30,7 @@ struct Beginning {
     return sum.value();
   }
 };
-static_assert(sizeof(Beginning) == 32, "its bytes in memory are the file format");
+static_assert(sizeof(Beginning) == 32, "the header has no padding");
 
 /// Parses the header, if there is one, and sets `offset` to its end.
 absl::StatusOr<Display> display_of(absl::Span<const std::byte> bytes, std::uint64_t& offset) {

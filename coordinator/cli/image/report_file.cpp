@@ -45,14 +45,14 @@ std::string beside(const std::string& output) {
 
 }  // namespace
 
-absl::StatusOr<std::vector<std::string>> report_files(const ReportOption& asked,
+absl::StatusOr<std::vector<std::string>> report_files(const ReportOption& given,
                                                       const std::vector<std::string>& outputs) {
   std::vector<std::string> files;
-  if (asked.file == "none") {
+  if (given.file == "none") {
     return files;
   }
-  if (!asked.file.empty()) {
-    files.push_back(asked.file);
+  if (!given.file.empty()) {
+    files.push_back(given.file);
   } else {
     for (const std::string& output : outputs) {
       files.push_back(beside(output));
@@ -83,10 +83,10 @@ absl::Status check_default_output(const std::string& scene, const std::string& o
                    "beside it; name a file with -o"));
 }
 
-absl::Status check_outputs(const std::string& scene, const std::vector<std::string>& asked,
+absl::Status check_outputs(const std::string& scene, const std::vector<std::string>& given,
                            const std::vector<std::string>& outputs) {
   RETURN_IF_ERROR(check_outputs_writable(outputs));
-  return asked.empty() && !outputs.empty() ? check_default_output(scene, outputs.front())
+  return given.empty() && !outputs.empty() ? check_default_output(scene, outputs.front())
                                            : absl::OkStatus();
 }
 

@@ -14,7 +14,7 @@ namespace bandsaw::coordinator {
 /// image a file of the same name with .json, or with .report.json if the .json file exists and is
 /// not a report (it may be a scene). INVALID_ARGUMENT: a file exists and is not a report. Other
 /// errors: the folder does not exist or is not writable.
-absl::StatusOr<std::vector<std::string>> report_files(const ReportOption& asked,
+absl::StatusOr<std::vector<std::string>> report_files(const ReportOption& given,
                                                       const std::vector<std::string>& outputs);
 
 /// Checks if an image may be written to the default output file. A picture beside a model may be
@@ -25,7 +25,7 @@ absl::Status check_default_output(const std::string& scene, const std::string& o
 
 /// Calls check_outputs_writable (image/output.h), and check_default_output if no output was
 /// given.
-absl::Status check_outputs(const std::string& scene, const std::vector<std::string>& asked,
+absl::Status check_outputs(const std::string& scene, const std::vector<std::string>& given,
                            const std::vector<std::string>& outputs);
 
 /// Writes each file atomically. Stops at the first error, whose message says that the image exists.

@@ -1,6 +1,7 @@
 #pragma once
 
-// Hashes that name things in all epochs, so their values MUST NOT change.
+// Ids of worker processes: hashes that are stored on disk and compared after a restart of the
+// coordinator, so their values MUST NOT change.
 
 #include <cstddef>
 #include <cstdint>

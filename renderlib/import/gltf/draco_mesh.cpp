@@ -195,7 +195,7 @@ absl::StatusOr<std::vector<std::uint32_t>> DracoMesh::whole_numbers(
   ASSIGN_OR_RETURN(const draco::PointAttribute* from, attribute(id, shape));
   const auto components = static_cast<std::size_t>(from->num_components());
   if (components < shape.components || from->data_type() == draco::DT_FLOAT32) {
-    return damaged(shape.place, absl::StrCat("asks for ", shape.components, " integers, attribute ",
+    return damaged(shape.place, absl::StrCat("needs ", shape.components, " integers, attribute ",
                                              id, " of its Draco stream has others"));
   }
   std::vector<std::uint32_t> out(shape.values());

@@ -35,9 +35,12 @@ class TextureStore {
     UvSet uv_set = UvSet::kFirst;
     UvTransform uv_transform;
     std::optional<ImageTexture::Wrap> wrap_v = std::nullopt;  ///< set if it differs from `wrap`
-    /// Conversion of the texels: none, heights to normals with a strength, or amounts of reflection
-    /// to an index_map with an index (texture_store.cpp).
-    enum class Become { kThemselves, kNormals, kIndexMap } become = Become::kThemselves;
+    /// The values that the texels are converted to.
+    enum class Become {
+      kThemselves,  ///< no conversion
+      kNormals,     ///< the texels are heights; `by` is the strength of the bumps
+      kIndexMap,    ///< the texels scale the reflectance F0 of the index of refraction `by`
+    } become = Become::kThemselves;
     double by = 1;
     bool alpha_is_known = false;  ///< no warning, because the material defines the use of alpha
   };

@@ -11,6 +11,7 @@
 namespace bandsaw::coordinator::sim {
 namespace {
 
+/// One job on a farm in virtual time: workers that sleep for the time that their bands cost.
 class Bench {
  public:
   explicit Bench(const BenchFarm& farm)
