@@ -117,7 +117,7 @@ absl::Status write_private_file(const std::string& path, const std::string& text
   const Descriptor folder(
       open(parent.empty() ? "." : parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (folder.get() < 0 || fsync(folder.get()) != 0) {
-    return failed("make lasting", path, errno);
+    return failed("sync", path, errno);
   }
   return absl::OkStatus();
 }

@@ -21,8 +21,6 @@
 namespace bandsaw::coordinator {
 namespace {
 
-// Shows the current image of a job in the views of the command that watches it.
-
 /// Periodically fetches a job's image from the farm, over a client of its own, and shows it, until
 /// destroyed. Does nothing if there is no view.
 class FollowedImage {

@@ -14,7 +14,8 @@ unit=${XDG_CONFIG_HOME:-$HOME/.config}/systemd/user/bandsaw-worker.service
 XDG_RUNTIME_DIR=${XDG_RUNTIME_DIR:-/run/user/$(id -u)}
 export XDG_RUNTIME_DIR
 
-# The worker that runs on its own, if there is one; a number that was given to another process is none.
+# Sets pid to the process of a worker that runs without systemd. Fails if there is none, or if the id was
+# reused by another program.
 own_pid() {
   pid=$(cat "$dir/pid" 2>/dev/null) || return 1
   case $(readlink "/proc/$pid/exe" 2>/dev/null) in
