@@ -1,13 +1,15 @@
 #!/usr/bin/env bash
-# Makes the comparison figures of the gallery's README again.
-# Usage: deploy/figures.sh samples|defocus|lights|density|tone|all|sheet [FOLDER [WIDTH [SCENE...]]]   (default: out/figures, the width of one picture 300)
+# Makes the comparison figures of the gallery's README again, and the pictures of the main README.
+# Usage: deploy/figures.sh samples|defocus|lights|density|tone|strip|all|sheet [FOLDER [WIDTH [SCENE...]]]
+#   (default: out/figures, the width of one picture 300)
+# strip: the pictures of the main README, each a file of its own, of that width (480 by default).
 # sheet: every scene of the gallery, or those given, as thumbnails of at most that width (160 by default); prints the place of each.
 # BANDSAW_BUILD=DIR: the build to use; otherwise build/release.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 name=${1:-}
 folder=${2:-out/figures}
-case "$name" in sheet) width=${3:-160} ;; *) width=${3:-300} ;; esac
+case "$name" in sheet) width=${3:-160} ;; strip) width=${3:-480} ;; *) width=${3:-300} ;; esac
 export PATH="${BANDSAW_BUILD:-$PWD/build/release}/bin:$PATH"
 gallery=renderlib/gallery
 work=$(mktemp -d)
@@ -88,6 +90,16 @@ figure_tone() {
   side_by_side tone 4 none filmic
 }
 
+figure_strip() {
+  local scenes=(books/one_weekend orthographic smoke_in_motion cube_map motion instances)
+  mkdir -p "$folder"
+  for scene in "${scenes[@]}"; do
+    render "$gallery/$scene.textproto" strip --height $((width * 5 / 8)) --samples 256
+    mv "$work/strip.png" "$folder/strip_$(basename "$scene").png"
+    echo "$folder/strip_$(basename "$scene").png"
+  done
+}
+
 figure_sheet() { # [SCENE...]
   local scenes=("$@") high=$((width * 9 / 16)) gap=4 columns=8 number=0 row=-1 rows wide x y
   if [ ${#scenes[@]} = 0 ]; then
@@ -118,7 +130,7 @@ figure_sheet() { # [SCENE...]
 
 case "$name" in
   sheet) figure_sheet "${@:4}" ;;
-  samples | defocus | lights | density | tone) "figure_$name" ;;
-  all) for each in samples defocus lights density tone; do "figure_$each"; done ;;
+  samples | defocus | lights | density | tone | strip) "figure_$name" ;;
+  all) for each in samples defocus lights density tone strip; do "figure_$each"; done ;;
   *) sed -n 's/^# Usage: /usage: /p' "$0" >&2; exit 2 ;;
 esac

@@ -86,8 +86,8 @@ std::string when(const std::string& pattern, const std::vector<std::string>& wor
 
 std::string bash_completion(const CLI::App& app) {
   std::string out = kBegin;
-  for (const auto& [name, deed] : after_options(app)) {
-    absl::StrAppend(&out, "    ", name, ") ", deed, " ;;\n");
+  for (const auto& [name, reply] : after_options(app)) {
+    absl::StrAppend(&out, "    ", name, ") ", reply, " ;;\n");
   }
   absl::StrAppend(&out, kCommands);
   std::vector<std::string> commands;

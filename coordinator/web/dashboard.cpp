@@ -73,7 +73,7 @@ class Dashboard::Impl {
   const bool secure_;
   Access access_;
   Pictures pictures_;
-  const TellReport report_;
+  const MakeReport report_;
   Scenes scenes_;
   const Gallery gallery_;
   const WorkerPrograms workers_;

@@ -22,7 +22,7 @@ struct DashboardOptions {
   std::string gallery;             ///< folder of scene files; may be missing
   ImportScene import_scene;
   WorkerPrograms workers;  ///< programs for machines that are to join
-  TellReport report;
+  MakeReport report;
 };
 
 class Dashboard {

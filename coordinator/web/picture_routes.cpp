@@ -55,7 +55,7 @@ void add_file(Router& router, const std::string& what, const std::string& suffix
 
 }  // namespace
 
-void add_pictures(Router& router, Pictures& pictures, const TellReport& report) {
+void add_pictures(Router& router, Pictures& pictures, const MakeReport& report) {
   router.get("/api/jobs/*/preview.png", [&pictures](const HttpRequest& request) {
     const auto job = job_of(request);
     return job.ok() ? send(pictures.preview(*job, side_of(request)), "image/png")

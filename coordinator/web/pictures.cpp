@@ -82,11 +82,11 @@ absl::StatusOr<Pictures::Bytes> Pictures::image(JobId job, ImageFormat format) {
   return encoded(std::move(image), format);
 }
 
-absl::StatusOr<Pictures::Bytes> Pictures::report(JobId job, const TellReport& tell) {
+absl::StatusOr<Pictures::Bytes> Pictures::report(JobId job, const MakeReport& make) {
   ASSIGN_OR_RETURN(const JobView view, look_at(engine_, job));
   MutexLock lock(making_);
   ASSIGN_OR_RETURN(const HeldImage image, result_of(engine_, job));
-  return std::make_shared<const std::string>(tell(view, image.result.image));
+  return std::make_shared<const std::string>(make(view, image.result.image));
 }
 
 }  // namespace bandsaw::coordinator

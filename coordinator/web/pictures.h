@@ -17,7 +17,7 @@
 namespace bandsaw::coordinator {
 
 /// Formats the report of a finished job. Passed in by the command, which defines the format.
-using TellReport = std::function<std::string(const JobView& job, const Image& image)>;
+using MakeReport = std::function<std::string(const JobView& job, const Image& image)>;
 
 /// Thread-safe. Only one picture is made at a time, for all clients together, so that browsers
 /// cannot take the machine's CPU from the farm.
@@ -34,7 +34,7 @@ class Pictures {
   /// Returns the finished image. Errors as Engine::result.
   absl::StatusOr<Bytes> image(JobId job, ImageFormat format) EXCLUDES(making_);
   /// Returns the report of the finished image. Errors as Engine::result.
-  absl::StatusOr<Bytes> report(JobId job, const TellReport& tell) EXCLUDES(making_);
+  absl::StatusOr<Bytes> report(JobId job, const MakeReport& make) EXCLUDES(making_);
 
  private:
   using Key = std::pair<JobId, std::uint32_t>;  ///< job, most_side

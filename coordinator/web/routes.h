@@ -21,7 +21,7 @@ void add_worker_programs(Router& router, const WorkerPrograms& programs);
 void add_login(Router& router, Access& access);
 void add_farm(Router& router, Engine& engine);
 void add_jobs(Router& router, Engine& engine);
-void add_pictures(Router& router, Pictures& pictures, const TellReport& report);
+void add_pictures(Router& router, Pictures& pictures, const MakeReport& report);
 void add_scenes(Router& router, Scenes& scenes);
 void add_gallery(Router& router, Engine& engine, Scenes& scenes, const Gallery& gallery);
 

@@ -83,12 +83,12 @@ void CrashAttribution::add_suspicion(Job& job, const Worker& worker, const HeldB
   if (job.suspicions.size() > Job::kMaxFailures) {
     job.suspicions.pop_front();
   }
-  weigh(job, worker, held.band);
+  fail_if_blamed(job, worker, held.band);
 }
 
 /// Fails the job if more machines were lost at the band than chance explains. Processes of one
 /// machine are counted separately only if no other machine is left to render the band.
-void CrashAttribution::weigh(Job& job, const Worker& worker, const Band& band) {
+void CrashAttribution::fail_if_blamed(Job& job, const Worker& worker, const Band& band) {
   std::set<std::string> names;
   std::set<std::string> instances;  // of conclusive crashes
   std::set<std::string> machines;   // likewise

@@ -67,7 +67,7 @@ class CrashAttribution {
 
  private:
   void add_suspicion(Job& job, const Worker& worker, const HeldBand& held);
-  void weigh(Job& job, const Worker& worker, const Band& band);
+  void fail_if_blamed(Job& job, const Worker& worker, const Band& band);
 
   Context& context_;
   const Eligibility& eligibility_;
