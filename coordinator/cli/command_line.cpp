@@ -81,6 +81,8 @@ constexpr Entry kCommands[] = {
      checked_render, "bandsaw render helmet.glb --width 640 --samples 256 -o helmet.exr"},
     {"info", "Describe the contents of a scene or model, and what is not supported", add_info,
      checked_info, "bandsaw info helmet.glb"},
+    {"import", "Convert a scene of pbrt or Mitsuba, or a model, to a scene file", add_import,
+     checked_import, "bandsaw import kitchen.pbrt -o kitchen.textproto"},
     {"stitch", "Join parts of an image that were rendered by rows", add_stitch, checked_stitch,
      "bandsaw stitch top.band bottom.band -o whole.png"},
     {"compare", "Error metrics between two images", add_compare, checked_compare,

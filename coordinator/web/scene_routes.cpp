@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kMaxSceneBytes = 512ull << 20;
+constexpr std::uint64_t kMaxSceneBytes = 2048ull << 20;
 
 /// A temporary folder for one file: the importer can read below this folder only.
 class Upload {
@@ -93,7 +93,7 @@ absl::StatusOr<std::string> file_name(const std::string& given) {
   for (char& c : name) {
     c = absl::ascii_isalnum(c) || c == '.' || c == '-' || c == '_' ? c : '_';
   }
-  for (const char* suffix : {".glb", ".textproto"}) {
+  for (const char* suffix : {".glb", ".textproto", ".pbrt", ".xml", ".zip"}) {
     if (absl::EndsWithIgnoreCase(name, suffix)) {
       const std::string stem = name.substr(0, name.size() - std::string(suffix).size());
       const std::string kept = stem.substr(0, kMaxStem);
@@ -101,12 +101,13 @@ absl::StatusOr<std::string> file_name(const std::string& given) {
     }
   }
   return absl::InvalidArgumentError(
-      "a .glb or a .textproto that needs no other file can be dropped here; for all else there is: "
-      "bandsaw submit");
+      "a .zip of a scene with its files can be dropped here, or a .glb, .textproto, .pbrt or .xml "
+      "that needs no other file; for all else there is: bandsaw submit");
 }
 
 absl::StatusOr<SceneWish> wanted_of(const HttpRequest& request) {
   SceneWish wanted;
+  wanted.inside = request.parameter("scene");
   const std::string width = request.parameter("width");
   if (!width.empty() && (!absl::SimpleAtoi(width, &wanted.width) || wanted.width > kMaxSide)) {
     return absl::InvalidArgumentError("width: must be a number of pixels");

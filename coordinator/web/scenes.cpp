@@ -14,7 +14,7 @@ absl::StatusOr<web::Submitted> Scenes::submit(const std::string& path, const Sce
   if (++reading_ > kAtOnce) {
     return absl::ResourceExhaustedError("other scenes are being read; try again in a moment");
   }
-  ASSIGN_OR_RETURN(const SceneOnFarm scene, import_scene_(path, stop_));
+  ASSIGN_OR_RETURN(const SceneOnFarm scene, import_scene_(path, wanted.inside, stop_));
   const JobSpec spec{
       .request_id =
           wanted.request_id.empty() ? "dashboard-" + link::random_hex(8) : wanted.request_id,

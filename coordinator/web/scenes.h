@@ -22,16 +22,18 @@ struct SceneOnFarm {
   PackageInfo info;
 };
 
-/// Imports a scene file and stores its package. Blocks; CANCELLED soon after `stop` becomes true.
-/// Errors of the importer, naming the file, and of the store.
-using ImportScene = std::function<absl::StatusOr<SceneOnFarm>(const std::string& path,
-                                                              const std::atomic<bool>& stop)>;
+/// Imports a scene file, or of a zip file the scene `inside` (empty: the only one), and stores its
+/// package. Blocks; CANCELLED soon after `stop` becomes true. Errors of the importer, naming the
+/// file, and of the store.
+using ImportScene = std::function<absl::StatusOr<SceneOnFarm>(
+    const std::string& path, const std::string& inside, const std::atomic<bool>& stop)>;
 
 /// Parameters of a job that renders a scene.
 struct SceneWish {
   std::string request_id;   ///< as in farm.SubmitRequest; empty: a random one
   std::uint32_t width = 0;  ///< pixels; 0: the scene's own; the height keeps the aspect ratio
   StopRule stop = StopAtSamples{64};
+  std::string inside = {};  ///< name of the scene in a zip file; empty: the only one
 };
 
 /// Thread-safe.

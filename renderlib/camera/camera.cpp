@@ -58,6 +58,21 @@ absl::Status validate_shutter(const Shutter& shutter) {
   return absl::OkStatus();
 }
 
+absl::Status validate_window(const std::optional<ImageWindow>& window) {
+  if (!window) {
+    return absl::OkStatus();
+  }
+  for (const double side : {window->left, window->right, window->bottom, window->top}) {
+    if (!(std::abs(side) <= kMaxWindow)) {
+      return invalid("window", absl::StrCat("must be in [-1e6, 1e6], one number is ", side));
+    }
+  }
+  if (!(window->left < window->right && window->bottom < window->top)) {
+    return invalid("window", "left must be less than right, and bottom less than top");
+  }
+  return absl::OkStatus();
+}
+
 absl::Status validate_kind(const PerspectiveCamera& camera) {
   if (!(camera.vertical_fov > 0 && camera.vertical_fov < 180)) {
     return invalid("vertical_fov",
@@ -83,12 +98,15 @@ absl::Status validate_kind(const OrthographicCamera& camera) {
 
 /// Orthonormal axes of a camera.
 struct Axes {
-  explicit Axes(const View& view)
-      : forward(normalize(view.look_at - view.position)),
-        right(normalize(cross(forward, normalize(view.up)))),
-        up(cross(right, forward)) {}
+  explicit Axes(const Camera& camera) {
+    const View view = view_of(camera);
+    forward = normalize(view.look_at - view.position);
+    right = normalize(cross(forward, normalize(view.up)));
+    up = cross(right, forward);
+    right = is_mirrored(camera) ? -right : right;
+  }
   Vec3 forward;
-  Vec3 right;
+  Vec3 right;  ///< of the image: opposite for a mirrored camera
   Vec3 up;
 };
 
@@ -98,6 +116,15 @@ View view_of(const Camera& camera) {
   return std::visit([](const auto& c) { return View{c.position, c.look_at, c.up}; }, camera);
 }
 
+bool is_mirrored(const Camera& camera) {
+  return std::visit([](const auto& c) { return c.mirrored; }, camera);
+}
+
+const std::optional<ImageWindow>& window_of(const Camera& camera) {
+  return std::visit([](const auto& c) -> const std::optional<ImageWindow>& { return c.window; },
+                    camera);
+}
+
 const Shutter& shutter_of(const Camera& camera) {
   return std::visit([](const auto& c) -> const Shutter& { return c.shutter; }, camera);
 }
@@ -105,6 +132,7 @@ const Shutter& shutter_of(const Camera& camera) {
 absl::Status validate(const Camera& camera) {
   RETURN_IF_ERROR(validate_view(view_of(camera)));
   RETURN_IF_ERROR(validate_shutter(shutter_of(camera)));
+  RETURN_IF_ERROR(validate_window(window_of(camera)));
   return std::visit([](const auto& c) { return validate_kind(c); }, camera);
 }
 
@@ -113,15 +141,27 @@ RayGenerator::RayGenerator(const Camera& camera, int width, int height)
   std::visit([&](const auto& c) { prepare(c, width, height); }, camera);
 }
 
+void RayGenerator::set_image(const Vec3& centre, const Vec3& right, const Vec3& up, double half,
+                             const std::optional<ImageWindow>& window, int width, int height) {
+  if (!window) {  // pixels are square
+    const double pixel = 2 * half / height;
+    dx_ = right * pixel;
+    dy_ = up * -pixel;
+    corner_ = centre - dx_ * (width / 2.0) - dy_ * (height / 2.0);
+    return;
+  }
+  dx_ = right * (half * (window->right - window->left) / width);
+  dy_ = up * (-half * (window->top - window->bottom) / height);
+  corner_ = centre + right * (half * window->left) + up * (half * window->top);
+}
+
 void RayGenerator::prepare(const PerspectiveCamera& camera, int width, int height) {
-  const Axes axes(view_of(camera));
+  const Axes axes(camera);
   kind_ = camera.aperture > 0 ? Kind::kLens : Kind::kPinhole;
   origin_ = camera.position;
-  // The image plane at distance 1 has height 2 tan(fov / 2); pixels are square.
-  const double pixel = 2 * tan_degrees(camera.vertical_fov / 2) / height;
-  dx_ = axes.right * pixel;
-  dy_ = axes.up * -pixel;
-  corner_ = axes.forward - dx_ * (width / 2.0) - dy_ * (height / 2.0);
+  // The image plane at distance 1 has height 2 tan(fov / 2).
+  set_image(axes.forward, axes.right, axes.up, tan_degrees(camera.vertical_fov / 2), camera.window,
+            width, height);
   lens_x_ = axes.right * (camera.aperture / 2);
   lens_y_ = axes.up * (camera.aperture / 2);
   forward_ = axes.forward;
@@ -130,13 +170,10 @@ void RayGenerator::prepare(const PerspectiveCamera& camera, int width, int heigh
 }
 
 void RayGenerator::prepare(const OrthographicCamera& camera, int width, int height) {
-  const Axes axes(view_of(camera));
+  const Axes axes(camera);
   kind_ = Kind::kParallel;
   origin_ = axes.forward;
-  const double pixel = camera.height / height;
-  dx_ = axes.right * (camera.mirrored ? -pixel : pixel);
-  dy_ = axes.up * -pixel;
-  corner_ = camera.position - dx_ * (width / 2.0) - dy_ * (height / 2.0);
+  set_image(camera.position, axes.right, axes.up, camera.height / 2, camera.window, width, height);
 }
 
 Ray RayGenerator::ray(double x, double y, double lens_u, double lens_v, double share) const {

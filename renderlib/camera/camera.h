@@ -27,6 +27,16 @@ struct Shutter {
   friend bool operator==(const Shutter&, const Shutter&) = default;
 };
 
+/// The visible part of the image plane. 1 is half the height that the camera's angle or height
+/// shows; the view direction passes through (0, 0).
+struct ImageWindow {
+  double left = -1;
+  double right = 1;  ///< > left
+  double bottom = -1;
+  double top = 1;  ///< > bottom
+  friend bool operator==(const ImageWindow&, const ImageWindow&) = default;
+};
+
 /// A pinhole camera, or a thin lens (Potmesil and Chakravarty 1981): a point at distance z along
 /// the view direction is spread over a disk on the plane of focus, at distance f, of radius
 /// aperture / 2 |z - f| / z.
@@ -39,11 +49,15 @@ struct PerspectiveCamera {
   /// Distance of the plane of focus along the view direction, [kMinFocus, kMaxLens].
   double focus_distance = 1;
   Shutter shutter = {};
+  bool mirrored = false;  ///< left and right are exchanged
+  /// std::nullopt: the whole height and square pixels.
+  std::optional<ImageWindow> window = std::nullopt;
 };
 
 inline constexpr double kMaxTime = 1e9;
 inline constexpr double kMinFocus = 1e-9;
 inline constexpr double kMaxLens = 1e30;
+inline constexpr double kMaxWindow = 1e6;  ///< of each side of a window
 
 /// Parallel rays from the plane through `position`, which is the centre of the image.
 struct OrthographicCamera {
@@ -53,11 +67,14 @@ struct OrthographicCamera {
   double height = 2;      ///< height of the visible region in scene units, > 0, at most kMaxLens
   bool mirrored = false;  ///< left and right are exchanged
   Shutter shutter = {};
+  std::optional<ImageWindow> window = std::nullopt;  ///< as in PerspectiveCamera
 };
 
 using Camera = std::variant<PerspectiveCamera, OrthographicCamera>;
 
 View view_of(const Camera& camera);
+bool is_mirrored(const Camera& camera);
+const std::optional<ImageWindow>& window_of(const Camera& camera);
 const Shutter& shutter_of(const Camera& camera);
 
 /// Returns INVALID_ARGUMENT with the reason if the camera cannot generate rays.
@@ -81,6 +98,10 @@ class RayGenerator {
 
   enum class Kind { kPinhole, kLens, kParallel };
 
+  /// Sets the axes of the image: `centre` is the point where the view direction passes through it,
+  /// `half` is half its height.
+  void set_image(const Vec3& centre, const Vec3& right, const Vec3& up, double half,
+                 const std::optional<ImageWindow>& window, int width, int height);
   void prepare(const PerspectiveCamera& camera, int width, int height);
   void prepare(const OrthographicCamera& camera, int width, int height);
 

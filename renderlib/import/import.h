@@ -3,8 +3,10 @@
 // Imports scene files and models. Runs in its own confined process (import/main.cpp); coordinator
 // and workers never do this.
 
+#include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "renderlib/import/draft/imported_scene.h"
@@ -23,13 +25,30 @@ struct ImportChoices {
   std::optional<GivenFile> environment =
       {};                   ///< equirectangular image that replaces its background
   std::string camera = {};  ///< name of one of its models' cameras; empty for the scene's own
+  std::map<std::string, std::string> parameters = {};  ///< of a Mitsuba scene
+  bool strict = false;                                 ///< a warning is an error
 };
 
-/// Reads a scene file (*.textproto, *.json) or a single model, which is framed under a default sky
-/// unless it has cameras and lights. Only files below the folder of `path` are read. Returns
-/// INVALID_ARGUMENT: "cornell.textproto:12:3: shape[4].sphere.radius: must be > 0, is -1", and
-/// NOT_FOUND or PERMISSION_DENIED with the file's name.
+/// Reads a scene file (*.textproto, *.json), a scene of pbrt-v4 (*.pbrt, *.pbrt.gz) or Mitsuba
+/// (*.xml), or a single model, which is framed under a default sky unless it has cameras and
+/// lights. Only files below the folder of `path` are read. Returns INVALID_ARGUMENT:
+/// "cornell.textproto:12:3: shape[4].sphere.radius: must be > 0, is -1", and NOT_FOUND or
+/// PERMISSION_DENIED with the file's name.
 absl::StatusOr<ImportedScene> import_scene(const std::string& path,
                                            const ImportChoices& choices = {});
+
+/// A foreign scene or a model as a scene file of ours, for `bandsaw import`.
+struct SceneAsText {
+  std::string text;                                ///< protobuf text format
+  std::map<std::string, std::string> made_files;   ///< name in the scene -> bytes
+  std::map<std::string, std::string> found_files;  ///< name below the folder -> real path
+  std::vector<std::string> warnings;
+};
+
+/// Converts a scene of pbrt-v4 or Mitsuba, or a single model. The scene is read as import_scene
+/// does it, so that the text is known to be good; errors are the same. Ignores `environment` and
+/// `camera`. INVALID_ARGUMENT also for a scene file of ours.
+absl::StatusOr<SceneAsText> scene_as_text(const std::string& path,
+                                          const ImportChoices& choices = {});
 
 }  // namespace bandsaw

@@ -9,11 +9,14 @@
 #include "proto/wire/limits.h"
 #include "renderlib/base/file.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/import/convert/scene_text.h"
 #include "renderlib/import/draft/environment_image.h"
 #include "renderlib/import/draft/scene_draft.h"
 #include "renderlib/import/import.h"
+#include "renderlib/import/mitsuba/convert_mitsuba.h"
 #include "renderlib/import/model/framing.h"
 #include "renderlib/import/model/model.h"
+#include "renderlib/import/pbrt/convert_pbrt.h"
 #include "renderlib/import/scene_file/parse_scene.h"
 #include "renderlib/import/scene_file/read_groups.h"
 #include "renderlib/import/scene_file/read_lights.h"
@@ -107,6 +110,67 @@ absl::Status read_scene_file(const std::string& path, bool json, SceneDraft& dra
   return read_scene(root, parsed->scene, draft);
 }
 
+scene::Background as_proto(const Background& sky) {
+  scene::Background out;
+  const auto set = [](const Rgb& color, scene::Color* to) {
+    for (const float channel : {color.r, color.g, color.b}) {
+      to->add_rgb(channel);
+    }
+  };
+  set(sky.bottom, out.mutable_gradient()->mutable_bottom());
+  set(sky.top, out.mutable_gradient()->mutable_top());
+  return out;
+}
+
+/// Returns the scene file of a model that has been read alone (read_model_alone).
+scene::Scene scene_of_model(const SceneDraft& draft) {
+  scene::Scene scene;
+  scene.add_model()->set_file(draft.file);
+  if (!draft.cameras.empty()) {
+    scene.mutable_camera()->set_use(
+        absl::StrCat(draft.cameras.front().model, "/", draft.cameras.front().name));
+  } else {
+    const auto& camera = std::get<PerspectiveCamera>(draft.out.scene.camera);
+    const auto set = [](const Vec3& v, google::protobuf::RepeatedField<double>* to) {
+      to->Add(v.x);
+      to->Add(v.y);
+      to->Add(v.z);
+    };
+    set(camera.position, scene.mutable_camera()->mutable_position());
+    set(camera.look_at, scene.mutable_camera()->mutable_look_at());
+    scene.mutable_camera()->set_vertical_fov(camera.vertical_fov);
+  }
+  if (!has_light(draft.out.scene)) {
+    *scene.mutable_background() = as_proto(default_sky());
+  }
+  return scene;
+}
+
+bool is_pbrt(const std::string& lower) {
+  return absl::EndsWith(lower, ".pbrt") || absl::EndsWith(lower, ".pbrt.gz");
+}
+
+bool is_mitsuba(const std::string& lower) { return absl::EndsWith(lower, ".xml"); }
+
+bool is_foreign(const std::string& path) {
+  const std::string lower = absl::AsciiStrToLower(path);
+  return is_pbrt(lower) || is_mitsuba(lower);
+}
+
+absl::StatusOr<ConvertedScene> convert(const std::string& path, const ImportChoices& choices,
+                                       const SceneDraft& draft) {
+  ASSIGN_OR_RETURN(std::string real, draft.folder.resolve(name_of(path), draft.folder.path()));
+  const ForeignScene from{std::move(real), draft.file, draft.folder, choices.parameters};
+  return is_pbrt(absl::AsciiStrToLower(path)) ? convert_pbrt(from) : convert_mitsuba(from);
+}
+
+/// Reads what a converter returned. Its warnings come before those of the reader.
+absl::Status read_converted(ConvertedScene converted, SceneDraft& draft) {
+  draft.made_files = std::move(converted.made_files);
+  draft.out.info.warnings = std::move(converted.warnings);
+  return read_scene(Field(draft.file, converted.scene, nullptr), converted.scene, draft);
+}
+
 absl::Status read_model_alone(const std::string& path, SceneDraft& draft) {
   ASSIGN_OR_RETURN(const auto real, draft.folder.resolve(name_of(path), draft.folder.path()));
   ASSIGN_OR_RETURN(const Model model, read_model(real, true, draft));
@@ -121,7 +185,11 @@ absl::Status read_model_alone(const std::string& path, SceneDraft& draft) {
   return absl::OkStatus();
 }
 
-absl::Status read_any(const std::string& path, SceneDraft& draft) {
+absl::Status read_any(const std::string& path, const ImportChoices& choices, SceneDraft& draft) {
+  if (is_foreign(path)) {
+    ASSIGN_OR_RETURN(ConvertedScene converted, convert(path, choices, draft));
+    return read_converted(std::move(converted), draft);
+  }
   const std::string lower = absl::AsciiStrToLower(path);
   if (absl::EndsWith(lower, ".textproto") || absl::EndsWith(lower, ".json")) {
     return read_scene_file(path, absl::EndsWith(lower, ".json"), draft);
@@ -131,8 +199,25 @@ absl::Status read_any(const std::string& path, SceneDraft& draft) {
   }
   return absl::InvalidArgumentError(absl::StrCat(
       draft.file,
-      ": is of a kind that is not read; a scene is .textproto or .json, a "
+      ": is of a kind that is not read; a scene is .textproto or .json, .pbrt or Mitsuba's .xml, a "
       "model .gltf, .glb, .obj, .fbx, .dae, .3ds, .ply, .stl or another format of Assimp"));
+}
+
+/// What is left to check when everything has been read.
+absl::Status check_whole(const ImportChoices& choices, const SceneDraft& draft) {
+  const std::vector<std::string>& warnings = draft.out.info.warnings;
+  if (choices.strict && !warnings.empty()) {
+    const std::string others =
+        warnings.size() == 1
+            ? ""
+            : absl::StrCat("; ", warnings.size() - 1, " more, which are warnings without --strict");
+    return absl::InvalidArgumentError(absl::StrCat(warnings.front(), others));
+  }
+  // A scene that a worker would refuse is refused here, before anybody waits for it.
+  if (const absl::Status valid = validate(draft.out.scene, MeshVertices::kFinite); !valid.ok()) {
+    return absl::InvalidArgumentError(absl::StrCat(draft.file, ": ", valid.message()));
+  }
+  return absl::OkStatus();
 }
 
 }  // namespace
@@ -141,7 +226,7 @@ absl::StatusOr<ImportedScene> import_scene(const std::string& path, const Import
   ASSIGN_OR_RETURN(SceneFolder folder, SceneFolder::of(path));
   SceneDraft draft(std::move(folder), name_of(path));
   draft.out.info.name = std::filesystem::path(path).stem().string();
-  RETURN_IF_ERROR(read_any(path, draft));
+  RETURN_IF_ERROR(read_any(path, choices, draft));
   draft.out.info.model_cameras = names_of(draft.cameras);
   if (!choices.camera.empty()) {
     ASSIGN_OR_RETURN(draft.out.scene.camera, chosen_camera(choices.camera, draft));
@@ -152,11 +237,33 @@ absl::StatusOr<ImportedScene> import_scene(const std::string& path, const Import
     draft.out.scene.background = {};
     draft.out.scene.background.environment = Environment{.images = {image}};
   }
-  // A scene that a worker would refuse is refused here, before anybody waits for it.
-  if (const absl::Status valid = validate(draft.out.scene, MeshVertices::kFinite); !valid.ok()) {
-    return absl::InvalidArgumentError(absl::StrCat(draft.file, ": ", valid.message()));
-  }
+  RETURN_IF_ERROR(check_whole(choices, draft));
   return std::move(draft.out);
+}
+
+absl::StatusOr<SceneAsText> scene_as_text(const std::string& path, const ImportChoices& choices) {
+  ASSIGN_OR_RETURN(SceneFolder folder, SceneFolder::of(path));
+  SceneDraft draft(std::move(folder), name_of(path));
+  SceneAsText out;
+  scene::Scene scene;
+  if (is_foreign(path)) {
+    ASSIGN_OR_RETURN(ConvertedScene converted, convert(path, choices, draft));
+    scene = converted.scene;
+    draft.folder.record_to(&out.found_files);
+    RETURN_IF_ERROR(read_converted(std::move(converted), draft));
+  } else if (is_model_file(path)) {
+    draft.folder.record_to(&out.found_files);
+    RETURN_IF_ERROR(read_model_alone(path, draft));
+    scene = scene_of_model(draft);
+  } else {
+    return absl::InvalidArgumentError(absl::StrCat(
+        draft.file, ": only scenes of pbrt and Mitsuba and models are converted to a scene file"));
+  }
+  RETURN_IF_ERROR(check_whole(choices, draft));
+  out.text = text_of(scene, draft.file, draft.out.info.warnings);
+  out.made_files = std::move(draft.made_files);
+  out.warnings = std::move(draft.out.info.warnings);
+  return out;
 }
 
 }  // namespace bandsaw

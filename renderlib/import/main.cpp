@@ -2,9 +2,21 @@
 // or one error on standard output. Started by the client commands
 // (coordinator/cli/scene/import_process.h); can be run by hand.
 //
-//   bandsaw-import scene FILE FOLDER SECONDS BYTES [ENVIRONMENT [CAMERA]]
+//   bandsaw-import scene FILE FOLDER SECONDS BYTES [ENVIRONMENT [CAMERA [STRICT [NAME=VALUE ...]]]]
 //
-// leaves FOLDER/manifest and FOLDER/<digest> for each blob; an empty ENVIRONMENT is none;
+// leaves FOLDER/manifest and FOLDER/<digest> for each blob; an empty ENVIRONMENT is none, STRICT is
+// "strict" or empty, NAME=VALUE is a parameter of a Mitsuba scene;
+//
+//   bandsaw-import text FILE FOLDER SECONDS BYTES [ENVIRONMENT [CAMERA [STRICT [NAME=VALUE ...]]]]
+//
+// leaves a foreign scene as one of ours: FOLDER/text, FOLDER/warnings (one a line), and FOLDER/list
+// with a line for each file that the scene names: "made NAME", whose bytes are in FOLDER/0,
+// FOLDER/1 and so on, or "found NAME" for a file below the folder of FILE;
+//
+//   bandsaw-import unzip FILE FOLDER SECONDS BYTES
+//
+// leaves FOLDER/list with a line "made NAME" for each file in the archive, and their bytes as
+// above;
 //
 //   bandsaw-import image FILE FOLDER SECONDS BYTES
 //
@@ -29,6 +41,7 @@
 
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_replace.h"
 #include "proto/wire/limits.h"
 #include "renderlib/base/atomic_file.h"
 #include "renderlib/base/clean_text.h"
@@ -36,6 +49,7 @@
 #include "renderlib/base/status_macros.h"
 #include "renderlib/import/files/confine.h"
 #include "renderlib/import/files/scene_folder.h"
+#include "renderlib/import/files/zip_archive.h"
 #include "renderlib/import/image/decode_image.h"
 #include "renderlib/import/import.h"
 #include "renderlib/package/blob_folder.h"
@@ -85,29 +99,100 @@ absl::Status read_picture_to(const std::string& path, const std::string& folder)
                                         std::as_bytes(std::span(picture->pixels))});
 }
 
+absl::Span<const std::byte> bytes_of(const std::string& text) {
+  return std::as_bytes(std::span(text));
+}
+
+absl::Status text_to(const std::string& path, const std::string& folder,
+                     const ImportChoices& choices) {
+  ASSIGN_OR_RETURN(const SceneAsText scene, scene_as_text(path, choices));
+  std::string list;
+  int number = 0;
+  for (const auto& [name, bytes] : scene.made_files) {
+    absl::StrAppend(&list, "made ", name, "\n");
+    RETURN_IF_ERROR(write_file(absl::StrCat(folder, "/", number++), {bytes_of(bytes)}));
+  }
+  for (const auto& [name, real_path] : scene.found_files) {
+    if (!is_safe_name(name)) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("the file name \"", name, "\" cannot be in a scene file"));
+    }
+    absl::StrAppend(&list, "found ", name, "\n");
+  }
+  std::string warnings;
+  for (const std::string& warning : scene.warnings) {
+    absl::StrAppend(&warnings, absl::StrReplaceAll(warning, {{"\n", " "}}), "\n");
+  }
+  RETURN_IF_ERROR(write_file(folder + "/text", {bytes_of(scene.text)}));
+  RETURN_IF_ERROR(write_file(folder + "/warnings", {bytes_of(warnings)}));
+  return write_file(folder + "/list", {bytes_of(list)});
+}
+
+absl::Status unzip_to(const std::string& path, const std::string& folder) {
+  const auto unzip = [&]() -> absl::Status {
+    ASSIGN_OR_RETURN(const std::string bytes, read_whole_file(path, kMaxUnzippedBytes));
+    ASSIGN_OR_RETURN(const ZipArchive archive, ZipArchive::open(bytes));
+    std::string list;
+    int number = 0;
+    for (const ZipArchive::Entry& entry : archive.entries()) {
+      ASSIGN_OR_RETURN(const std::string file, archive.read(entry));
+      absl::StrAppend(&list, "made ", entry.name, "\n");
+      RETURN_IF_ERROR(write_file(absl::StrCat(folder, "/", number++), {bytes_of(file)}));
+    }
+    return write_file(folder + "/list", {bytes_of(list)});
+  };
+  const absl::Status status = unzip();
+  return status.ok()
+             ? status
+             : absl::Status(status.code(), absl::StrCat(name_of(path), ": ", status.message()));
+}
+
+constexpr char kUsage[] =
+    "usage: bandsaw-import scene|text|image|unzip FILE FOLDER SECONDS BYTES "
+    "[ENVIRONMENT [CAMERA [STRICT [NAME=VALUE ...]]]]";
+
+// Reads the arguments after the first six.
+absl::StatusOr<ImportChoices> read_choices(int argc, char** argv) {
+  ImportChoices choices;
+  if (argc > 6 && argv[6][0] != '\0') {
+    // The user named this file, not another file, so it may be in any folder. Here it is only
+    // copied.
+    ASSIGN_OR_RETURN(std::string bytes, read_whole_file(argv[6], kMaxImageFileBytes));
+    choices.environment = GivenFile{name_of(argv[6]), std::move(bytes)};
+  }
+  choices.camera = argc > 7 ? argv[7] : "";
+  choices.strict = argc > 8 && argv[8] == std::string("strict");
+  for (int i = 9; i < argc; ++i) {
+    const std::string parameter = argv[i];
+    const std::size_t equals = parameter.find('=');
+    if (equals == std::string::npos) {
+      return absl::InvalidArgumentError(kUsage);
+    }
+    choices.parameters[parameter.substr(0, equals)] = parameter.substr(equals + 1);
+  }
+  return choices;
+}
+
 absl::Status run(int argc, char** argv) {
   Confinement limits;
-  const std::string what =
-      argc == 6 || (argc > 6 && argc <= 8 && argv[1] == std::string("scene")) ? argv[1] : "";
-  if ((what != "scene" && what != "image") || !absl::SimpleAtoi(argv[4], &limits.cpu_seconds) ||
+  const std::string what = argc >= 6 ? argv[1] : "";
+  const bool has_choices = what == "scene" || what == "text";
+  const bool is_known = has_choices || ((what == "image" || what == "unzip") && argc == 6);
+  if (!is_known || !absl::SimpleAtoi(argv[4], &limits.cpu_seconds) ||
       !absl::SimpleAtoi(argv[5], &limits.memory_bytes)) {
-    return absl::InvalidArgumentError(
-        "usage: bandsaw-import scene|image FILE FOLDER SECONDS BYTES [ENVIRONMENT [CAMERA]]");
+    return absl::InvalidArgumentError(kUsage);
   }
   const std::string path = argv[2];
   ASSIGN_OR_RETURN(const SceneFolder folder, SceneFolder::of(path));
   limits.read_folder = folder.path();
   limits.write_folder = argv[3];
   limits.file_bytes = wire::kBlobBytes;
-  // The user named this file, not another file, so it may be in any folder. Here it is only copied.
-  ImportChoices choices;
-  if (argc > 6 && argv[6][0] != '\0') {
-    ASSIGN_OR_RETURN(std::string bytes, read_whole_file(argv[6], kMaxImageFileBytes));
-    choices.environment = GivenFile{name_of(argv[6]), std::move(bytes)};
-  }
-  choices.camera = argc > 7 ? argv[7] : "";
+  ASSIGN_OR_RETURN(const ImportChoices choices, read_choices(argc, argv));
   RETURN_IF_ERROR(confine_this_process(limits));
-  return what == "scene" ? import_to(path, argv[3], choices) : read_picture_to(path, argv[3]);
+  return what == "scene"   ? import_to(path, argv[3], choices)
+         : what == "text"  ? text_to(path, argv[3], choices)
+         : what == "unzip" ? unzip_to(path, argv[3])
+                           : read_picture_to(path, argv[3]);
 }
 
 // Runs the import and converts exceptions of foreign code to errors.

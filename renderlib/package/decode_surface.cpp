@@ -61,12 +61,21 @@ absl::StatusOr<Camera> decode_camera(const package::Manifest& manifest) {
   ASSIGN_OR_RETURN(view.look_at, decode_vec3(from.look_at(), "camera.look_at"));
   ASSIGN_OR_RETURN(view.up, decode_vec3(from.up(), "camera.up"));
   const Shutter shutter = {from.shutter_open(), from.shutter_close()};
+  std::optional<ImageWindow> window;
+  if (from.window_size() != 0) {
+    if (from.window_size() != 4) {
+      return manifest_error("camera.window", "must be 4 numbers");
+    }
+    window = {from.window(0), from.window(1), from.window(2), from.window(3)};
+  }
   if (from.orthographic_height() != 0) {
     return Camera(OrthographicCamera{view.position, view.look_at, view.up,
-                                     from.orthographic_height(), from.mirrored(), shutter});
+                                     from.orthographic_height(), from.mirrored(), shutter, window});
   }
   PerspectiveCamera camera{.position = view.position, .look_at = view.look_at, .up = view.up};
   camera.shutter = shutter;
+  camera.mirrored = from.mirrored();
+  camera.window = window;
   camera.vertical_fov = from.vertical_fov();
   camera.aperture = from.aperture();
   camera.focus_distance = from.aperture() == 0 ? camera.focus_distance : from.focus_distance();

@@ -209,6 +209,12 @@ void encode(const Camera& camera, package::Camera& to) {
   add_vector(view.position, *to.mutable_position());
   add_vector(view.look_at, *to.mutable_look_at());
   add_vector(view.up, *to.mutable_up());
+  to.set_mirrored(is_mirrored(camera));
+  if (const auto& window = window_of(camera)) {
+    for (const double side : {window->left, window->right, window->bottom, window->top}) {
+      to.add_window(side);
+    }
+  }
   if (const auto* perspective = std::get_if<PerspectiveCamera>(&camera)) {
     to.set_vertical_fov(perspective->vertical_fov);
     to.set_aperture(perspective->aperture);
@@ -216,7 +222,6 @@ void encode(const Camera& camera, package::Camera& to) {
   } else {
     const auto& orthographic = std::get<OrthographicCamera>(camera);
     to.set_orthographic_height(orthographic.height);
-    to.set_mirrored(orthographic.mirrored);
   }
 }
 

@@ -65,9 +65,19 @@ absl::Status read_positive(const char* name, const std::optional<std::string>& t
   return absl::OkStatus();
 }
 
+absl::StatusOr<SceneChoices> checked_choices(const RawOptions& raw) {
+  for (const std::string& parameter : raw.parameters) {
+    const std::size_t equals = parameter.find('=');
+    if (equals == 0 || equals == std::string::npos) {
+      return wrong(absl::StrCat("-D: must be NAME=VALUE, is '", parameter, "'"));
+    }
+  }
+  return SceneChoices{raw.environment, raw.camera, raw.parameters, raw.strict, raw.inside};
+}
+
 absl::StatusOr<ImageOptions> checked_image(const RawOptions& raw) {
   ImageOptions image;
-  image.choices = {raw.environment, raw.camera};
+  ASSIGN_OR_RETURN(image.choices, checked_choices(raw));
   ASSIGN_OR_RETURN(image.stop, checked_stop(raw));
   RETURN_IF_ERROR(
       read_whole("--seed", raw.seed, 0, std::numeric_limits<std::uint64_t>::max(), image.seed));
@@ -103,10 +113,11 @@ absl::StatusOr<DisplayOptions> checked_display(const RawOptions& raw) {
   return display;
 }
 
-absl::Status check_scene(const RawOptions& raw, const std::string& command) {
+absl::Status check_scene(const RawOptions& raw, const std::string& command,
+                         const std::string& example = "cornell.textproto") {
   if (raw.scene.empty()) {
-    return wrong(absl::StrCat(command, ": the scene is missing, as in: bandsaw ", command,
-                              " cornell.textproto"));
+    return wrong(
+        absl::StrCat(command, ": the scene is missing, as in: bandsaw ", command, " ", example));
   }
   return absl::OkStatus();
 }
@@ -261,7 +272,25 @@ absl::StatusOr<Command> checked_info(const RawOptions& raw) {
   InfoOptions options;
   options.scene = raw.scene;
   RETURN_IF_ERROR(check_scene(raw, "info"));
+  ASSIGN_OR_RETURN(options.choices, checked_choices(raw));
   ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
+  return options;
+}
+
+absl::StatusOr<Command> checked_import(const RawOptions& raw) {
+  ImportOptions options;
+  options.scene = raw.scene;
+  options.force = raw.force;
+  RETURN_IF_ERROR(check_scene(raw, "import", "kitchen.pbrt"));
+  ASSIGN_OR_RETURN(options.choices, checked_choices(raw));
+  ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
+  if (raw.outputs.size() > 1) {
+    return wrong("import: writes one scene file; give -o once");
+  }
+  options.output = raw.outputs.empty() ? "" : raw.outputs.front();
+  if (!options.output.empty() && !absl::EndsWith(options.output, ".textproto")) {
+    return wrong(absl::StrCat("import: -o must end in .textproto, is '", options.output, "'"));
+  }
   return options;
 }
 

@@ -22,6 +22,9 @@ struct RawOptions {
       rows;
   std::optional<std::string> integrator, exposure, tone, layers, report, seeds, reference_samples;
   std::optional<std::string> tev;
+  std::vector<std::string> parameters;
+  std::string inside;
+  bool strict = false, force = false;
   std::optional<std::string> web, shell, audit;
   bool lift = false, adaptive = false, half = false, insecure = false, detach = false,
        quiet = false, json = false, preview = false, every_object = false, reflection = false;
@@ -43,6 +46,7 @@ absl::StatusOr<Command> checked_doctor(const RawOptions& raw);
 absl::StatusOr<Command> checked_secret(const RawOptions& raw);
 absl::StatusOr<Command> checked_render(const RawOptions& raw);
 absl::StatusOr<Command> checked_info(const RawOptions& raw);
+absl::StatusOr<Command> checked_import(const RawOptions& raw);
 absl::StatusOr<Command> checked_stitch(const RawOptions& raw);
 absl::StatusOr<Command> checked_compare(const RawOptions& raw);
 

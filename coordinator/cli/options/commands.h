@@ -33,6 +33,7 @@ ExitCode run(const InviteOptions& options, Process& process);
 ExitCode run(const DismissOptions& options, Process& process);
 ExitCode run(const RenderOptions& options, Process& process);
 ExitCode run(const InfoOptions& options, Process& process);
+ExitCode run(const ImportOptions& options, Process& process);
 ExitCode run(const StitchOptions& options, Process& process);
 ExitCode run(const CompareOptions& options, Process& process);
 ExitCode run(const StudyOptions& options, Process& process);

@@ -29,8 +29,25 @@ void add_output(CLI::App& app, RawOptions& raw, const std::string& formats,
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
+// Options of all commands that read a scene.
+void add_scene(CLI::App& app, RawOptions& raw) {
+  app.add_option("scene", raw.scene,
+                 "Scene file (.textproto, .json), scene of pbrt (.pbrt) or Mitsuba (.xml), model "
+                 "file, or a .zip of one of them with its files");
+  app.add_flag("--strict", raw.strict,
+               "A warning is an error: about what a scene or model holds and is not rendered");
+  app.add_option("-D,--define", raw.parameters,
+                 "Value of a parameter of a Mitsuba scene; may be repeated")
+      ->type_name("NAME=VALUE")
+      ->allow_extra_args(false)
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_option("--inside", raw.inside, "Which scene of a .zip [default: the only one]")
+      ->type_name("NAME");
+}
+
 void add_image(CLI::App& app, RawOptions& raw) {
-  app.add_option("scene", raw.scene, "Scene file (.textproto, .json) or model file");
+  add_scene(app, raw);
   app.add_option("--environment", raw.environment,
                  "Equirectangular image (.hdr, .exr …) that lights the scene from all around "
                  "[default: the scene's]")
@@ -150,8 +167,19 @@ void add_render(CLI::App& app, RawOptions& raw) {
 }
 
 void add_info(CLI::App& app, RawOptions& raw) {
-  app.add_option("scene", raw.scene, "Scene file (.textproto, .json) or model file");
+  add_scene(app, raw);
   add_verbosity(app, raw, false);
+}
+
+void add_import(CLI::App& app, RawOptions& raw) {
+  add_scene(app, raw);
+  app.add_option("-o,--output", raw.outputs,
+                 "The scene file; meshes and images are written beside it [default: the scene's "
+                 "name as .textproto]")
+      ->type_name("FILE")
+      ->expected(1);
+  app.add_flag("--force", raw.force, "Replace files that exist");
+  add_verbosity(app, raw);
 }
 
 void add_stitch(CLI::App& app, RawOptions& raw) {

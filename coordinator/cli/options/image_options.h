@@ -13,6 +13,7 @@ void add_submit(CLI::App& app, RawOptions& raw);
 void add_watch(CLI::App& app, RawOptions& raw);
 void add_render(CLI::App& app, RawOptions& raw);
 void add_info(CLI::App& app, RawOptions& raw);
+void add_import(CLI::App& app, RawOptions& raw);
 void add_stitch(CLI::App& app, RawOptions& raw);
 void add_compare(CLI::App& app, RawOptions& raw);
 

@@ -200,6 +200,15 @@ struct RenderOptions {
 
 struct InfoOptions {
   std::string scene;
+  SceneChoices choices;
+  Verbosity verbosity;
+};
+
+struct ImportOptions {
+  std::string scene;
+  std::string output;  ///< empty: the scene's name as .textproto
+  bool force = false;  ///< files that exist are replaced
+  SceneChoices choices;
   Verbosity verbosity;
 };
 
@@ -236,10 +245,11 @@ struct ShowText {
   std::string text;
 };
 
-using Command = std::variant<ServeOptions, SubmitOptions, WatchOptions, JobsOptions, WorkersOptions,
-                             CancelOptions, PauseOptions, ResumeOptions, PriorityOptions,
-                             WhyOptions, LogsOptions, QuarantineOptions, DoctorOptions,
-                             RotateOptions, InviteOptions, DismissOptions, RenderOptions,
-                             InfoOptions, StitchOptions, CompareOptions, StudyOptions, ShowText>;
+using Command =
+    std::variant<ServeOptions, SubmitOptions, WatchOptions, JobsOptions, WorkersOptions,
+                 CancelOptions, PauseOptions, ResumeOptions, PriorityOptions, WhyOptions,
+                 LogsOptions, QuarantineOptions, DoctorOptions, RotateOptions, InviteOptions,
+                 DismissOptions, RenderOptions, InfoOptions, ImportOptions, StitchOptions,
+                 CompareOptions, StudyOptions, ShowText>;
 
 }  // namespace bandsaw::coordinator

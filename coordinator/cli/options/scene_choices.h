@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace bandsaw::coordinator {
 
@@ -8,6 +9,11 @@ namespace bandsaw::coordinator {
 struct SceneChoices {
   std::string environment = {};  ///< image file that becomes the background; may be in any folder
   std::string camera = {};       ///< name of a camera of one of the scene's models
+  /// Parameters of a Mitsuba scene, each "name=value".
+  std::vector<std::string> parameters = {};
+  bool strict = false;  ///< a warning of the import is an error
+  /// In a zip file, the name of the scene. Empty: the only one (scene/unpacked_scene.h).
+  std::string inside = {};
 };
 
 }  // namespace bandsaw::coordinator

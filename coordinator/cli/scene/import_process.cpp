@@ -10,10 +10,14 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <utility>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
+#include "absl/strings/str_split.h"
+#include "absl/strings/strip.h"
 #include "coordinator/cli/base/child_process.h"
 #include "coordinator/cli/base/program_folder.h"
 #include "proto/wire/limits.h"
@@ -121,12 +125,51 @@ absl::StatusOr<std::unique_ptr<ScratchFolder>> run_importer(const char* what,
                                         folder->path(),
                                         absl::StrCat(cpu_seconds),
                                         absl::StrCat(limits.memory_bytes)};
-  if (!choices.environment.empty() || !choices.camera.empty()) {
-    arguments.insert(arguments.end(), {choices.environment, choices.camera});
+  if (!choices.environment.empty() || !choices.camera.empty() || choices.strict ||
+      !choices.parameters.empty()) {
+    arguments.insert(arguments.end(),
+                     {choices.environment, choices.camera, choices.strict ? "strict" : ""});
+    arguments.insert(arguments.end(), choices.parameters.begin(), choices.parameters.end());
   }
   ASSIGN_OR_RETURN(const ChildOutcome outcome, run_child(arguments, limits.seconds, limits.stop));
   RETURN_IF_ERROR(judge(outcome, file, limits));
   return folder;
+}
+
+// Returns the names that lie in the fewest folders, all in the same number.
+std::vector<std::string> outermost(std::vector<std::string> names) {
+  const auto depth = [](const std::string& name) {
+    return std::count(name.begin(), name.end(), '/');
+  };
+  auto least = std::numeric_limits<std::ptrdiff_t>::max();
+  for (const std::string& name : names) {
+    least = std::min(least, depth(name));
+  }
+  std::erase_if(names, [&](const std::string& name) { return depth(name) > least; });
+  return names;
+}
+
+// Reads a list of files (renderlib/import/main.cpp). The names are checked again here, because the
+// process that wrote them read foreign bytes.
+absl::StatusOr<std::vector<ListedFile>> read_file_list(const std::string& list) {
+  std::vector<ListedFile> files;
+  int made = 0;
+  for (absl::string_view line : absl::StrSplit(list, '\n', absl::SkipEmpty())) {
+    ListedFile file;
+    if (absl::ConsumePrefix(&line, "made ")) {
+      file.number = made++;
+    } else if (!absl::ConsumePrefix(&line, "found ")) {
+      return absl::DataLossError("the importer left a broken list of files");
+    }
+    file.name = std::string(line);
+    const fs::path path(file.name);
+    const bool goes_up = std::find(path.begin(), path.end(), "..") != path.end();
+    if (path.is_absolute() || goes_up || path.empty()) {
+      return absl::DataLossError("the importer left a broken list of files");
+    }
+    files.push_back(std::move(file));
+  }
+  return files;
 }
 
 // Reads a file that the importer has written, of at most `max_bytes`.
@@ -135,6 +178,71 @@ absl::StatusOr<std::string> read_output(const std::string& path, std::uint64_t m
   return bytes.ok() ? std::move(bytes)
                     : absl::DataLossError(absl::StrCat("the importer did not leave ", path, " (",
                                                        bytes.status().message(), ")"));
+}
+
+bool is_zip(const std::string& path) { return absl::EndsWithIgnoreCase(path, ".zip"); }
+
+// Returns the only scene in the archive, or the only model, or an error that lists them.
+absl::StatusOr<std::string> only_scene(const std::vector<ListedFile>& files) {
+  const auto named = [&](std::initializer_list<const char*> suffixes) {
+    std::vector<std::string> found;
+    for (const ListedFile& file : files) {
+      if (std::any_of(suffixes.begin(), suffixes.end(), [&](const char* suffix) {
+            return absl::EndsWithIgnoreCase(file.name, suffix);
+          })) {
+        found.push_back(file.name);
+      }
+    }
+    return outermost(std::move(found));
+  };
+  for (const auto& found :
+       {named({".textproto"}), named({".pbrt", ".xml"}), named({".glb", ".gltf"}),
+        named({".obj", ".fbx", ".dae", ".3ds", ".ply", ".stl"})}) {
+    if (found.size() == 1) {
+      return found.front();
+    }
+    if (found.size() > 1) {
+      return absl::InvalidArgumentError(
+          absl::StrCat("holds ", found.size(), " scenes, ", found[0], " and ", found[1],
+                       found.size() > 2 ? " among them" : "", "; name one of them"));
+    }
+  }
+  return absl::InvalidArgumentError("holds no scene: .textproto, .pbrt, .xml, or a model");
+}
+
+// Unpacks an archive to `to`, an empty folder. Returns the path of the scene in it: `wanted`, or
+// the only one.
+absl::StatusOr<std::string> unpack_scene(const std::string& zip, const std::string& wanted,
+                                         const std::string& to, const ImportLimits& limits) {
+  const std::string name = fs::path(zip).filename().string();
+  ASSIGN_OR_RETURN(const auto folder, run_importer("unzip", zip, limits));
+  constexpr std::uint64_t kMaxListBytes = std::uint64_t{64} << 20;
+  ASSIGN_OR_RETURN(const std::string list, read_output(folder->path() + "/list", kMaxListBytes));
+  ASSIGN_OR_RETURN(const std::vector<ListedFile> files, read_file_list(list));
+  for (const ListedFile& file : files) {
+    const fs::path target = fs::path(to) / file.name;
+    std::error_code error;
+    fs::create_directories(target.parent_path(), error);
+    if (!error) {
+      fs::rename(fs::path(folder->path()) / absl::StrCat(file.number), target, error);
+    }
+    if (error) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(name, ": \"", file.name, "\" cannot be unpacked: ", error.message()));
+    }
+  }
+  const auto scene = wanted.empty() ? only_scene(files) : wanted;
+  if (!scene.ok()) {
+    return absl::InvalidArgumentError(absl::StrCat(name, ": ", scene.status().message()));
+  }
+  if (std::none_of(files.begin(), files.end(),
+                   [&](const ListedFile& file) { return file.name == *scene; })) {
+    return absl::NotFoundError(absl::StrCat(name, ": there is no \"", *scene, "\" in it"));
+  }
+  if (is_zip(*scene)) {  // an archive may contain itself
+    return absl::InvalidArgumentError(absl::StrCat(name, ": \"", *scene, "\" is no scene"));
+  }
+  return (fs::path(to) / *scene).string();
 }
 
 }  // namespace
@@ -153,11 +261,34 @@ ImportedPackage& ImportedPackage::operator=(ImportedPackage&&) noexcept = defaul
 absl::StatusOr<ImportedPackage> import_in_process(const std::string& scene_path,
                                                   const ImportLimits& limits,
                                                   const SceneChoices& choices) {
+  if (is_zip(scene_path)) {
+    ASSIGN_OR_RETURN(const auto unpacked, make_scratch(limits.scratch));
+    ASSIGN_OR_RETURN(const std::string inside,
+                     unpack_scene(scene_path, choices.inside, unpacked->path(), limits));
+    return import_in_process(inside, limits, choices);
+  }
   ASSIGN_OR_RETURN(auto folder, run_importer("scene", scene_path, limits, choices));
   ASSIGN_OR_RETURN(std::string manifest,
                    read_output(folder->path() + "/manifest", wire::kManifestBytes));
   ASSIGN_OR_RETURN(PackageInfo info, package_info(manifest));
   return ImportedPackage(std::move(folder), std::move(manifest), std::move(info));
+}
+
+absl::StatusOr<SceneFiles> scene_files_in_process(const std::string& scene_path,
+                                                  const ImportLimits& limits,
+                                                  const SceneChoices& choices) {
+  constexpr std::uint64_t kMaxListBytes = std::uint64_t{64} << 20;
+  ASSIGN_OR_RETURN(auto folder, run_importer("text", scene_path, limits, choices));
+  SceneFiles files;
+  ASSIGN_OR_RETURN(files.text, read_output(folder->path() + "/text", wire::kBlobBytes));
+  ASSIGN_OR_RETURN(const std::string warnings,
+                   read_output(folder->path() + "/warnings", kMaxListBytes));
+  files.warnings = absl::StrSplit(warnings, '\n', absl::SkipEmpty());
+  ASSIGN_OR_RETURN(const std::string list, read_output(folder->path() + "/list", kMaxListBytes));
+  ASSIGN_OR_RETURN(files.list, read_file_list(list));
+  files.folder_path = folder->path();
+  files.folder = std::shared_ptr<const ScratchFolder>(std::move(folder));
+  return files;
 }
 
 absl::StatusOr<Image> read_image_in_process(const std::string& path, const ImportLimits& limits) {

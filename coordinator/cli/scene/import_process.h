@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "coordinator/cli/options/scene_choices.h"
@@ -53,12 +54,34 @@ class ImportedPackage {
 /// Returns the path of the import program. FAILED_PRECONDITION: it is missing.
 absl::StatusOr<std::string> import_program(const ImportLimits& limits = {});
 
+/// A file that a scene or an archive names.
+struct ListedFile {
+  std::string name;   ///< relative, below the folder
+  int number = kOld;  ///< name of the file in SceneFiles::folder_path; kOld: it is not there
+  static constexpr int kOld = -1;  ///< the file lies below the folder of the foreign scene
+};
+
+/// A foreign scene as a scene file of ours and the files that it names.
+struct SceneFiles {
+  std::string text;
+  std::vector<std::string> warnings;
+  std::vector<ListedFile> list;
+  std::string folder_path;
+  std::shared_ptr<const ScratchFolder> folder;  ///< keeps folder_path
+};
+
 /// Imports a scene file or model; blocks until done. Errors name the file and, for a scene file,
 /// line and column. INVALID_ARGUMENT, NOT_FOUND, PERMISSION_DENIED: a problem with the file, or
 /// with one that it references. DEADLINE_EXCEEDED, RESOURCE_EXHAUSTED: a limit was exceeded.
 /// DATA_LOSS: the importer crashed. CANCELLED: `stop`, or Ctrl-C. FAILED_PRECONDITION: the program
-/// is missing.
+/// is missing. Of a zip file, the scene `choices.inside` is imported, or the only one: the
+/// outermost .textproto, else .pbrt or .xml, else model.
 absl::StatusOr<ImportedPackage> import_in_process(const std::string& scene_path,
+                                                  const ImportLimits& limits = {},
+                                                  const SceneChoices& choices = {});
+
+/// Converts a scene of pbrt or Mitsuba, or a model, to a scene file of ours. Same errors.
+absl::StatusOr<SceneFiles> scene_files_in_process(const std::string& scene_path,
                                                   const ImportLimits& limits = {},
                                                   const SceneChoices& choices = {});
 

@@ -20,14 +20,19 @@ absl::StatusOr<ImportedPackage> import_scene_file(const std::string& scene, Verb
   if (stop) {
     return absl::CancelledError("interrupted");
   }
-  for (const std::string& warning : package->info().warnings) {
+  print_warnings(package->info().warnings, verbosity, process);
+  return package;
+}
+
+void print_warnings(const std::vector<std::string>& warnings, Verbosity verbosity,
+                    Process& process) {
+  for (const std::string& warning : warnings) {
     if (verbosity.json) {
       process.console.line(JsonObject().text("event", "warning").text("text", warning).str());
     } else if (!verbosity.quiet) {
       process.console.complain(absl::StrCat("warning: ", warning));
     }
   }
-  return package;
 }
 
 ExitCode import_exit_code(const absl::Status& status) {

@@ -3,6 +3,7 @@
 // Imports a scene file, for submit and render.
 
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "coordinator/cli/options/commands.h"
@@ -15,6 +16,10 @@ namespace bandsaw::coordinator {
 absl::StatusOr<ImportedPackage> import_scene_file(const std::string& scene, Verbosity verbosity,
                                                   Process& process,
                                                   const SceneChoices& choices = {});
+
+/// Prints the importer's warnings unless quiet.
+void print_warnings(const std::vector<std::string>& warnings, Verbosity verbosity,
+                    Process& process);
 
 /// Maps an import error to an exit code: a scene that cannot be read is wrong input for whatever
 /// reason; an interrupt and a broken installation are not.

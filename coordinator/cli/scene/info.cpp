@@ -16,7 +16,7 @@ namespace {
 absl::StatusOr<SceneSummary> summary_of_file(const InfoOptions& options, Process& process) {
   // Quiet, because the summary contains the warnings.
   ASSIGN_OR_RETURN(ImportedPackage package,
-                   import_scene_file(options.scene, {.quiet = true}, process));
+                   import_scene_file(options.scene, {.quiet = true}, process, options.choices));
   ASSIGN_OR_RETURN(SceneDescription scene, decode_package(package.manifest(), package.blobs()));
   ASSIGN_OR_RETURN(const std::vector<BlobRef> blobs, package_blobs(package.manifest()));
   std::uint64_t bytes = package.manifest().size();

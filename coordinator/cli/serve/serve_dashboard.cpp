@@ -40,12 +40,12 @@ absl::Status store(Engine& engine, const wire::Digest& digest, absl::Span<const 
 
 /// Returns the import function for the dashboard. `engine` MUST outlive it.
 ImportScene import_and_store(Engine& engine) {
-  return [&engine](const std::string& path,
+  return [&engine](const std::string& path, const std::string& inside,
                    const std::atomic<bool>& stop) -> absl::StatusOr<SceneOnFarm> {
     ImportLimits limits;
     limits.seconds = kPatience_s;
     limits.stop = &stop;
-    ASSIGN_OR_RETURN(ImportedPackage package, import_in_process(path, limits));
+    ASSIGN_OR_RETURN(ImportedPackage package, import_in_process(path, limits, {.inside = inside}));
     ASSIGN_OR_RETURN(const std::vector<BlobRef> blobs, package_blobs(package.manifest()));
     for (const BlobRef& blob : blobs) {
       ASSIGN_OR_RETURN(const std::unique_ptr<BlobBytes> bytes, package.blobs().get(blob.digest));

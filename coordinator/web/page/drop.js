@@ -16,7 +16,7 @@ async function render(file) {
 
 /// A button that opens a file, and the choice of the quality of its image.
 export function chooser() {
-  const input = el("input", {type: "file", accept: ".glb,.textproto", hidden: true, "aria-label": "Scene file"});
+  const input = el("input", {type: "file", accept: ".zip,.glb,.textproto,.pbrt,.xml", hidden: true, "aria-label": "Scene file"});
   input.addEventListener("change", () => { if (input.files.length > 0) render(input.files[0]); });
   const select = el("select", {"aria-label": "How well"},
     el("option", {value: "samples=16"}, "16 samples, a draft"),
@@ -31,7 +31,7 @@ export function chooser() {
 }
 
 export function takeDrops() {
-  const veil = el("div", {id: "drop", hidden: true}, el("p", {}, "Drop a .glb or .textproto to render it"));
+  const veil = el("div", {id: "drop", hidden: true}, el("p", {}, "Drop a scene to render it: a .zip with its files, .glb, .textproto, .pbrt or .xml"));
   document.body.append(veil);
   const hasFiles = (event) => event.dataTransfer?.types.includes("Files") && !document.querySelector("nav").hidden;
   let depth = 0;

@@ -33,6 +33,9 @@ struct SceneDraft {
 
   SceneFolder folder;
   std::string file;  ///< name of the scene file in errors
+  /// Files that the converter of a foreign scene made, keyed by name. They are found before files
+  /// of the folder (named_file.h).
+  std::map<std::string, std::string> made_files;
   ImportedScene out;
   TextureStore textures{out.scene.textures, out.info.warnings};
   std::map<std::string, MaterialId> materials;      ///< keyed by name in the scene file

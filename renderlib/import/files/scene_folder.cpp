@@ -66,6 +66,9 @@ absl::StatusOr<std::string> SceneFolder::resolve(const std::string& name,
   if (!fs::is_regular_file(real, error)) {
     return absl::InvalidArgumentError(absl::StrCat("\"", name, "\" is not a file"));
   }
+  if (found_ != nullptr) {
+    found_->emplace(whole.lexically_relative(path_).string(), real.string());
+  }
   return real.string();
 }
 

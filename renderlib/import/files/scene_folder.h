@@ -3,6 +3,7 @@
 // The only folder that an import reads: the scene file's folder and the folders below it.
 
 #include <cstdint>
+#include <map>
 #include <string>
 
 #include "absl/status/statusor.h"
@@ -28,10 +29,15 @@ class SceneFolder {
 
   const std::string& path() const { return path_; }
 
+  /// From now on, each file that resolve() finds is added to `files`: its name below the folder ->
+  /// its real path. nullptr: no longer. `files` MUST outlive the calls.
+  void record_to(std::map<std::string, std::string>* files) { found_ = files; }
+
  private:
   explicit SceneFolder(std::string path) : path_(std::move(path)) {}
   bool holds(const std::string& real_path) const;
   std::string path_;  ///< absolute, without links, without a slash at the end
+  std::map<std::string, std::string>* found_ = nullptr;
 };
 
 /// Returns the folder of an absolute path.

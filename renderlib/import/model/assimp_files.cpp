@@ -68,6 +68,9 @@ absl::StatusOr<std::string> AssimpFiles::find(const std::string& file) const {
 }
 
 bool AssimpFiles::Exists(const char* file) const {
+  if (is_in_memory(file)) {
+    return true;
+  }
   const auto path = find(file);
   if (absl::IsPermissionDenied(path.status())) {
     refused_.outside.emplace_back(path.status().message());
@@ -76,6 +79,9 @@ bool AssimpFiles::Exists(const char* file) const {
 }
 
 Assimp::IOStream* AssimpFiles::Open(const char* file, const char* mode) {
+  if (is_in_memory(file) && std::strchr(mode, 'w') == nullptr) {
+    return std::make_unique<BytesStream>(*model_.bytes).release();
+  }
   const auto path = find(file);
   if (absl::IsPermissionDenied(path.status())) {
     refused_.outside.emplace_back(path.status().message());

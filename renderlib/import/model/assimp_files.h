@@ -5,6 +5,7 @@
 
 #include <assimp/IOSystem.hpp>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,11 +21,17 @@ struct RefusedFiles {
   std::vector<std::string> outside;  ///< messages
 };
 
+/// A model that Assimp opens.
+struct ModelSource {
+  std::string path;                        ///< real path; for one in memory, where it would be
+  std::optional<absl::string_view> bytes;  ///< set for a model in memory; MUST outlive the reading
+};
+
 class AssimpFiles : public Assimp::IOSystem {
  public:
-  /// `model` is the real path of the model; other files are relative to its folder.
-  AssimpFiles(const SceneFolder& folder, const std::string& model, RefusedFiles& refused)
-      : folder_(folder), model_folder_(folder_of(model)), refused_(refused) {}
+  /// Other files than the model are relative to its folder.
+  AssimpFiles(const SceneFolder& folder, const ModelSource& model, RefusedFiles& refused)
+      : folder_(folder), model_(model), model_folder_(folder_of(model.path)), refused_(refused) {}
 
   bool Exists(const char* file) const override;
   char getOsSeparator() const override { return '/'; }
@@ -33,7 +40,9 @@ class AssimpFiles : public Assimp::IOSystem {
 
  private:
   absl::StatusOr<std::string> find(const std::string& file) const;
+  bool is_in_memory(const char* file) const { return model_.bytes && file == model_.path; }
   const SceneFolder& folder_;
+  ModelSource model_;
   std::string model_folder_;
   RefusedFiles& refused_;
 };

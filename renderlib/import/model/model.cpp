@@ -133,14 +133,14 @@ absl::Status gltf_failure(const std::string& name, const absl::Status& why) {
 
 /// Reads the file with Assimp; nullptr on failure. For glTF, Assimp reads only the plain document,
 /// whose buffer is freed afterwards.
-const aiScene* read_by_assimp(const std::string& path, const SceneFolder& folder,
+const aiScene* read_by_assimp(const ModelSource& source, const SceneFolder& folder,
                               std::optional<gltf::PlainGltf>& plain, RefusedFiles& refused,
                               Assimp::Importer& importer) {
   // Faces are triangulated; no other post-processing changes the geometry.
   constexpr unsigned kFlags = aiProcess_Triangulate;
   if (!plain || plain->is_first_version) {
-    importer.SetIOHandler(std::make_unique<AssimpFiles>(folder, path, refused).release());
-    return importer.ReadFile(path, kFlags);
+    importer.SetIOHandler(std::make_unique<AssimpFiles>(folder, source, refused).release());
+    return importer.ReadFile(source.path, kFlags);
   }
   const std::string json = plain->root.dump();
   importer.SetIOHandler(std::make_unique<PlainGltfFiles>(json, plain->buffer).release());
@@ -150,31 +150,9 @@ const aiScene* read_by_assimp(const std::string& path, const SceneFolder& folder
   return scene;
 }
 
-}  // namespace
-
-Camera placed(Camera camera, const Transform& placement) {
-  if (auto* flat = std::get_if<OrthographicCamera>(&camera)) {
-    flat->height *= length(placement.direction(flat->up)) / length(flat->up);
-  }
-  std::visit(
-      [&](auto& c) {
-        c.position = placement.point(c.position);
-        c.look_at = placement.point(c.look_at);
-        c.up = placement.direction(c.up);
-      },
-      camera);
-  return camera;
-}
-
-bool is_model_file(const std::string& path) {
-  const std::size_t dot = path.rfind('.');
-  if (dot == std::string::npos || path.find('/', dot) != std::string::npos) {
-    return false;
-  }
-  return Assimp::Importer().IsExtensionSupported(absl::AsciiStrToLower(path.substr(dot)));
-}
-
-absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, SceneDraft& draft) {
+absl::StatusOr<Model> read_source(const ModelSource& source, bool with_materials,
+                                  SceneDraft& draft) {
+  const std::string& path = source.path;
   const std::string name = name_of(path);
   const std::size_t warnings_before = draft.out.info.warnings.size();
   const ModelKind kind = kind_of(path);
@@ -190,7 +168,7 @@ absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, S
   Assimp::Importer importer;
   // No placeholder meshes for the bones of files without meshes.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
-  const aiScene* scene = read_by_assimp(path, draft.folder, plain, refused, importer);
+  const aiScene* scene = read_by_assimp(source, draft.folder, plain, refused, importer);
   if (scene == nullptr || scene->mRootNode == nullptr || !refused.outside.empty()) {
     return read_failure(name, refused, importer.GetErrorString());
   }
@@ -224,6 +202,39 @@ absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, S
   fill_glass(materials, file, model);
   turn(upright(*scene), model);
   return model;
+}
+
+}  // namespace
+
+Camera placed(Camera camera, const Transform& placement) {
+  if (auto* flat = std::get_if<OrthographicCamera>(&camera)) {
+    flat->height *= length(placement.direction(flat->up)) / length(flat->up);
+  }
+  std::visit(
+      [&](auto& c) {
+        c.position = placement.point(c.position);
+        c.look_at = placement.point(c.look_at);
+        c.up = placement.direction(c.up);
+      },
+      camera);
+  return camera;
+}
+
+bool is_model_file(const std::string& path) {
+  const std::size_t dot = path.rfind('.');
+  if (dot == std::string::npos || path.find('/', dot) != std::string::npos) {
+    return false;
+  }
+  return Assimp::Importer().IsExtensionSupported(absl::AsciiStrToLower(path.substr(dot)));
+}
+
+absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, SceneDraft& draft) {
+  return read_source({path, std::nullopt}, with_materials, draft);
+}
+
+absl::StatusOr<Model> read_made_model(const std::string& name, absl::string_view bytes,
+                                      bool with_materials, SceneDraft& draft) {
+  return read_source({absl::StrCat(draft.folder.path(), "/", name), bytes}, with_materials, draft);
 }
 
 }  // namespace bandsaw

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
 #include "renderlib/camera/camera.h"
 #include "renderlib/geometry/shapes.h"
 #include "renderlib/import/draft/scene_draft.h"
@@ -42,5 +43,10 @@ bool is_model_file(const std::string& path);
 /// model is broken or has no triangles, and NOT_FOUND or PERMISSION_DENIED for a file that it
 /// needs.
 absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, SceneDraft& draft);
+
+/// Reads a model that a converter made, from its bytes; it may name files of the scene's folder.
+/// MUST NOT be glTF. Otherwise as read_model.
+absl::StatusOr<Model> read_made_model(const std::string& name, absl::string_view bytes,
+                                      bool with_materials, SceneDraft& draft);
 
 }  // namespace bandsaw

@@ -75,7 +75,7 @@ absl::StatusOr<DeltaLight> read_light(const Field& in, const scene::Light& from)
       return read_point(in.child("point"), from.point());
     case scene::Light::kSpot:
       return read_spot(in.child("spot"), from.spot());
-    case scene::Light::KIND_NOT_SET:
+    default:
       break;
   }
   return in.error("is empty: write directional, point or spot");

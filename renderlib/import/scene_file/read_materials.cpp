@@ -263,7 +263,7 @@ absl::StatusOr<Material> read_material(const Field& in, const scene::Material& f
       return read_gltf(in.child("gltf"), from.gltf(), draft);
     case scene::Material::kEmissive:
       return read_emissive(in.child("emissive"), from.emissive(), draft);
-    case scene::Material::KIND_NOT_SET:
+    default:
       break;
   }
   return in.error("is of no kind: write diffuse, metal, dielectric, emissive or gltf");

@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/import/draft/named_file.h"
 #include "renderlib/import/model/model.h"
 #include "renderlib/import/scene_file/read_materials.h"
 #include "renderlib/import/scene_file/read_media.h"
@@ -21,16 +22,19 @@ absl::StatusOr<std::shared_ptr<const Model>> read_file(const Field& in, const sc
   if (from.file().empty()) {
     return in.error("file", "is required: the name of a model file");
   }
-  const auto path = draft.folder.resolve(from.file(), draft.folder.path());
-  if (!path.ok()) {
-    return in.error("file", path.status().message());
+  const auto file = find_named_file(from.file(), draft);
+  if (!file.ok()) {
+    return in.error("file", file.status().message());
   }
-  if (!is_model_file(*path)) {
+  if (!is_model_file(from.file())) {
     return in.error("file", absl::StrCat("\"", from.file(),
                                          "\" is not a model that is read: .gltf, .glb, .obj, "
                                          ".fbx, .dae, .3ds, .ply, .stl …"));
   }
-  auto model = read_model(*path, from.material().empty(), draft);
+  const bool with_materials = from.material().empty();
+  auto model = file->made != nullptr
+                   ? read_made_model(from.file(), *file->made, with_materials, draft)
+                   : read_model(file->key, with_materials, draft);
   if (!model.ok()) {
     return in.error("file", model.status().message());
   }

@@ -80,6 +80,30 @@ absl::StatusOr<Transform> read_any_placement(const Field& in, const Message& fro
   return placement;
 }
 
+template <class Message>
+absl::StatusOr<Transform> read_matrix(const Field& in, const Message& from) {
+  constexpr int kNumbers = 12;
+  const Numbers& list = from.matrix();
+  if (list.size() != kNumbers) {
+    return in.error("matrix", absl::StrCat("must be 12 numbers, has ", list.size()));
+  }
+  if (!from.translate().empty() || !from.scale().empty() || from.rotate_size() > 0 ||
+      from.key_size() > 0) {
+    return in.error("matrix", "stands instead of translate, scale, rotate and key: write one");
+  }
+  Transform placement;
+  for (int i = 0; i < kNumbers; ++i) {
+    if (!std::isfinite(list[i])) {
+      return in.error("matrix", absl::StrCat("must be finite, is ", list[i]), i);
+    }
+    placement.m[static_cast<std::size_t>(i / 4)][static_cast<std::size_t>(i % 4)] = list[i];
+  }
+  if (!inverse(placement)) {
+    return in.error("matrix", "flattens the model: its determinant is 0, or nearly");
+  }
+  return placement;
+}
+
 struct WrittenKey {
   double time = 0;
   Written pose;
@@ -161,10 +185,10 @@ absl::StatusOr<std::vector<Key>> read_any_keys(const Field& in, const Message& f
 }  // namespace
 
 absl::StatusOr<Transform> read_placement(const Field& in, const scene::Model& from) {
-  return read_any_placement(in, from);
+  return from.matrix().empty() ? read_any_placement(in, from) : read_matrix(in, from);
 }
 absl::StatusOr<Transform> read_placement(const Field& in, const scene::Instance& from) {
-  return read_any_placement(in, from);
+  return from.matrix().empty() ? read_any_placement(in, from) : read_matrix(in, from);
 }
 absl::StatusOr<Transform> read_placement(const Field& in, const scene::Copy& from) {
   return read_any_placement(in, from);

@@ -8,9 +8,9 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
 #include "proto/scene.pb.h"
-#include "renderlib/base/file.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/import/draft/color_limits.h"
+#include "renderlib/import/draft/named_file.h"
 #include "renderlib/import/draft/scene_draft.h"
 #include "renderlib/import/image/decode_image.h"
 #include "renderlib/import/scene_file/field.h"
@@ -91,12 +91,12 @@ absl::StatusOr<TextureId> read_image_texture(const Field& in, const scene::Image
   if (from.file().empty()) {
     return in.error("file", "is required: the name of an image file");
   }
-  const auto path = draft.folder.resolve(from.file(), draft.folder.path());
-  if (!path.ok()) {
-    return in.error("file", path.status().message());
+  const auto file = find_named_file(from.file(), draft);
+  if (!file.ok()) {
+    return in.error("file", file.status().message());
   }
-  auto texture = draft.textures.image(*path, from.file(), use,
-                                      [&] { return read_whole_file(*path, kMaxImageFileBytes); });
+  auto texture = draft.textures.image(file->key, from.file(), use,
+                                      [&] { return file->read(kMaxImageFileBytes); });
   if (!texture.ok()) {
     return in.error("file", texture.status().message());
   }

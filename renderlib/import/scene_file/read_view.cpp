@@ -6,10 +6,10 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/str_cat.h"
 #include "proto/scene.pb.h"
-#include "renderlib/base/file.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/import/draft/color_limits.h"
 #include "renderlib/import/draft/environment_image.h"
+#include "renderlib/import/draft/named_file.h"
 #include "renderlib/import/draft/scene_draft.h"
 #include "renderlib/import/image/decode_image.h"
 #include "renderlib/import/scene_file/field.h"
@@ -27,11 +27,11 @@ absl::StatusOr<TextureId> read_image(const Field& in, const std::string& name,
   if (file.empty()) {
     return in.error(name, "is required: the name of an image file");
   }
-  const auto path = draft.folder.resolve(file, draft.folder.path());
-  if (!path.ok()) {
-    return in.error(name, path.status().message());
+  const auto found = find_named_file(file, draft);
+  if (!found.ok()) {
+    return in.error(name, found.status().message());
   }
-  const auto bytes = read_whole_file(*path, kMaxImageFileBytes);
+  const auto bytes = found->read(kMaxImageFileBytes);
   if (!bytes.ok()) {
     return in.error(name, bytes.status().message());
   }
@@ -161,6 +161,17 @@ absl::StatusOr<Camera> read_orthographic(const Field& in, const scene::Camera& f
                                    from.orthographic().mirrored()});
 }
 
+absl::StatusOr<std::optional<ImageWindow>> read_window(const Field& in, const Numbers& list) {
+  if (list.empty()) {
+    return std::nullopt;
+  }
+  if (list.size() != 4) {
+    return in.error(
+        "window", absl::StrCat("must be 4 numbers, [left, right, bottom, top], has ", list.size()));
+  }
+  return ImageWindow{list[0], list[1], list[2], list[3]};
+}
+
 }  // namespace
 
 absl::StatusOr<Shutter> read_shutter(const Field& root, const scene::Scene& from) {
@@ -185,7 +196,14 @@ absl::StatusOr<Camera> read_camera(const Field& root, const scene::Scene& from) 
                                       ? read_orthographic(in, from.camera(), view)
                                       : read_perspective(in, from.camera(), view));
   ASSIGN_OR_RETURN(const Shutter shutter, read_shutter(root, from));
-  std::visit([&](auto& c) { c.shutter = shutter; }, camera);
+  ASSIGN_OR_RETURN(const auto window, read_window(in, from.camera().window()));
+  std::visit(
+      [&](auto& c) {
+        c.shutter = shutter;
+        c.window = window;
+        c.mirrored = c.mirrored != from.camera().mirrored();
+      },
+      camera);
   if (const absl::Status valid = validate(camera); !valid.ok()) {
     return in.error(valid.message());
   }

@@ -99,6 +99,13 @@ TEST_F(RoutesTest, ADroppedSceneBecomesAJob) {
   EXPECT_EQ(message<web::Overview>(get("/api/farm")).job_size(), 1);
 }
 
+TEST_F(RoutesTest, ScenesOfOtherRenderersAndZipsMayBeDropped) {
+  for (const char* name : {"a.zip", "a.PBRT", "a.xml"}) {
+    EXPECT_GT(message<web::Submitted>(post(std::string("/api/scenes?name=") + name, "a")).job(), 0u)
+        << name;
+  }
+}
+
 TEST_F(RoutesTest, ADroppedSceneMayAskForAnError) {
   post("/api/scenes?name=a.GLB&error=0.02", "a box");
   EXPECT_EQ(message<web::JobPage>(get("/api/jobs/1")).job().status().stop().error(), 0.02);
@@ -108,6 +115,8 @@ TEST_F(RoutesTest, ARefusedDropStatesTheReason) {
   EXPECT_THAT(error_of(post("/api/scenes?name=a.obj", "v")), HasSubstr("bandsaw submit"));
   EXPECT_THAT(error_of(post("/api/scenes?name=a.glb", "broken")), HasSubstr("1:1: it is broken"));
   EXPECT_THAT(error_of(post("/api/scenes?name=a.glb&samples=0", "x")), HasSubstr("samples"));
+  EXPECT_THAT(error_of(post("/api/scenes?name=a.zip&scene=b.pbrt", "x")),
+              HasSubstr("no \"b.pbrt\" in it"));
   EXPECT_THAT(error_of(post("/api/scenes?name=a.glb&error=-1", "x")), HasSubstr("error"));
   EXPECT_THAT(error_of(post("/api/scenes?name=a.glb&width=x", "x")), HasSubstr("width"));
   EXPECT_THAT(error_of(post("/api/scenes?name=a.glb&width=65537", "x")), HasSubstr("width"));

@@ -63,7 +63,11 @@ WebTest::WebTest() : identity_(*link::load_or_make_identity(folder_ / "identity"
   options.workers = {
       {.version = "1.2.3", .bytes = bytes, .digest = wire::sha256(bytes)},
       {.machine = kOtherMachine, .version = "1.2.4", .bytes = "o", .digest = wire::sha256("o")}};
-  options.import_scene = [this](const std::string& path, const std::atomic<bool>&) {
+  options.import_scene = [this](const std::string& path, const std::string& inside,
+                                const std::atomic<bool>&) -> absl::StatusOr<SceneOnFarm> {
+    if (!inside.empty()) {
+      return absl::NotFoundError("there is no \"" + inside + "\" in it");
+    }
     return bring_box(*engine_, path);
   };
   options.report = [](const JobView& job, const Image&) { return job.spec.name; };

@@ -1,0 +1,23 @@
+#pragma once
+
+// Input of the converters of other renderers' scenes.
+
+#include <map>
+#include <string>
+
+#include "renderlib/import/files/scene_folder.h"
+
+namespace bandsaw {
+
+/// A scene file of another renderer. A converter reads the file and those that it names below the
+/// folder, each by SceneFolder::resolve, and returns a ConvertedScene (converted_scene.h).
+struct ForeignScene {
+  std::string path;  ///< real path of the file, in `folder`
+  std::string name;  ///< its name in errors and warnings: "kitchen.pbrt"
+  const SceneFolder& folder;
+  /// Values of the scene's parameters (`-D name=value`), for Mitsuba. A converter without
+  /// parameters refuses a map that is not empty.
+  std::map<std::string, std::string> parameters = {};
+};
+
+}  // namespace bandsaw

@@ -1,0 +1,57 @@
+#include "renderlib/import/convert/ply_mesh.h"
+
+#include <bit>
+#include <cstddef>
+#include <cstring>
+
+#include "absl/strings/str_cat.h"
+
+namespace bandsaw {
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+
+template <std::size_t n>
+void append(const std::vector<std::array<float, n>>& list, std::size_t i, std::string& to) {
+  if (!list.empty()) {
+    to.append(reinterpret_cast<const char*>(list[i].data()), n * sizeof(float));
+  }
+}
+
+std::string header_of(const PlyMesh& mesh) {
+  std::string header = absl::StrCat("ply\nformat binary_little_endian 1.0\nelement vertex ",
+                                    mesh.positions.size(), "\n");
+  const auto properties = [&header](bool are_there, std::initializer_list<const char*> names) {
+    for (const char* name : names) {
+      absl::StrAppend(&header, are_there ? absl::StrCat("property float ", name, "\n") : "");
+    }
+  };
+  properties(true, {"x", "y", "z"});
+  properties(!mesh.normals.empty(), {"nx", "ny", "nz"});
+  properties(!mesh.uvs.empty(), {"u", "v"});
+  properties(!mesh.colors.empty(), {"red", "green", "blue"});
+  absl::StrAppend(&header, "element face ", mesh.triangles.size(),
+                  "\nproperty list uchar int vertex_indices\nend_header\n");
+  return header;
+}
+
+}  // namespace
+
+std::string write_ply(const PlyMesh& mesh) {
+  std::string out = header_of(mesh);
+  const std::size_t per_vertex = (3 + 3 + 2 + 3) * sizeof(float);
+  out.reserve(out.size() + mesh.positions.size() * per_vertex + mesh.triangles.size() * 13);
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    append(mesh.positions, i, out);
+    append(mesh.normals, i, out);
+    append(mesh.uvs, i, out);
+    append(mesh.colors, i, out);
+  }
+  for (const auto& triangle : mesh.triangles) {
+    out.push_back(3);
+    out.append(reinterpret_cast<const char*>(triangle.data()), sizeof(triangle));
+  }
+  return out;
+}
+
+}  // namespace bandsaw

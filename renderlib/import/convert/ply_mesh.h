@@ -1,0 +1,26 @@
+#pragma once
+
+// Triangle meshes as binary PLY, the form in which converters pass meshes on.
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace bandsaw {
+
+/// Lists per vertex have the length of `positions` or are empty. v = 0 is the bottom row of an
+/// image.
+struct PlyMesh {
+  std::vector<std::array<float, 3>> positions;
+  std::vector<std::array<float, 3>> normals;
+  std::vector<std::array<float, 2>> uvs;
+  std::vector<std::array<float, 3>> colors;  ///< linear RGB
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// Returns the mesh as binary little-endian PLY. `mesh` MUST have a triangle, and each index MUST
+/// be that of a vertex.
+std::string write_ply(const PlyMesh& mesh);
+
+}  // namespace bandsaw

@@ -1,0 +1,26 @@
+#pragma once
+
+// Files that fields of a scene name: those that a converter of a foreign scene made, then those of
+// the scene's folder.
+
+#include <cstdint>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "renderlib/import/draft/scene_draft.h"
+
+namespace bandsaw {
+
+struct NamedFile {
+  std::string key;                    ///< identifies the file: its real path, or "made:NAME"
+  const std::string* made = nullptr;  ///< bytes of a file that a converter made, owned by the draft
+
+  /// Returns the bytes. RESOURCE_EXHAUSTED or INVALID_ARGUMENT: more than `max_bytes`; NOT_FOUND:
+  /// it disappeared.
+  absl::StatusOr<std::string> read(std::uint64_t max_bytes) const;
+};
+
+/// Finds a file. Errors as SceneFolder::resolve.
+absl::StatusOr<NamedFile> find_named_file(const std::string& name, const SceneDraft& draft);
+
+}  // namespace bandsaw

@@ -1,0 +1,27 @@
+#pragma once
+
+// Decompression with bounds: gzip, zlib and raw deflate.
+
+#include <cstdint>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+
+namespace bandsaw {
+
+enum class DeflateKind {
+  kGzip,  ///< gzip or zlib, by their headers
+  kRaw,   ///< without a header, as in zip files
+};
+
+/// Returns the decompressed bytes. INVALID_ARGUMENT: damaged or truncated, or bytes follow the end
+/// (except for further members of a gzip file); RESOURCE_EXHAUSTED: more than `max_bytes`. Messages
+/// have no file name.
+absl::StatusOr<std::string> inflate(absl::string_view bytes, DeflateKind kind,
+                                    std::uint64_t max_bytes);
+
+/// Returns true if the bytes begin as a gzip file does.
+bool is_gzip(absl::string_view bytes);
+
+}  // namespace bandsaw

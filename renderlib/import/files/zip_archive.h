@@ -1,0 +1,53 @@
+#pragma once
+
+// Reads zip archives whose entries are stored or deflated (APPNOTE.TXT of PKWARE, with zip64).
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+
+namespace bandsaw {
+
+/// Bounds of an archive that is read.
+inline constexpr std::size_t kMaxZipEntries = 20'000;
+inline constexpr std::uint64_t kMaxUnzippedBytes = std::uint64_t{4} << 30;
+
+class ZipArchive {
+ public:
+  /// A file in the archive; folders are left out.
+  struct Entry {
+    std::string name;  ///< safe: relative, with slashes, below the folder where it is unpacked
+    std::uint64_t packed_bytes = 0;
+    std::uint64_t bytes = 0;
+    std::uint64_t header_at = 0;  ///< offset of its local header
+    std::uint32_t crc = 0;
+    bool is_deflated = false;
+  };
+
+  /// Reads the directory of the archive. `bytes` MUST outlive the object. INVALID_ARGUMENT: not a
+  /// zip file, damaged, encrypted, an unknown compression, two files of one name, a name that is
+  /// not safe (absolute, with "..", a control character or a backslash), or a symbolic link.
+  /// RESOURCE_EXHAUSTED: a bound above is exceeded.
+  static absl::StatusOr<ZipArchive> open(absl::string_view bytes);
+
+  const std::vector<Entry>& entries() const { return entries_; }
+
+  /// Returns the bytes of an entry. INVALID_ARGUMENT: damaged, or not of the size or checksum that
+  /// the directory claims.
+  absl::StatusOr<std::string> read(const Entry& entry) const;
+
+ private:
+  explicit ZipArchive(absl::string_view bytes) : bytes_(bytes) {}
+  absl::string_view bytes_;
+  std::vector<Entry> entries_;
+};
+
+/// Returns true if a file of this name, joined to a folder, lies below the folder: not empty,
+/// relative, without empty parts, ".", "..", backslashes and control characters, at most 1,000
+/// bytes.
+bool is_safe_name(absl::string_view name);
+
+}  // namespace bandsaw

@@ -1,0 +1,16 @@
+#pragma once
+
+// Converts scenes of Mitsuba 3.
+
+#include "absl/status/statusor.h"
+#include "renderlib/import/convert/converted_scene.h"
+#include "renderlib/import/convert/foreign_scene.h"
+
+namespace bandsaw {
+
+/// Returns the scene as a scene file of ours. Errors name file and line: "kitchen.xml:17: …".
+/// INVALID_ARGUMENT: it is broken, or a bound is exceeded; NOT_FOUND, PERMISSION_DENIED: a file
+/// that it includes.
+absl::StatusOr<ConvertedScene> convert_mitsuba(const ForeignScene& from);
+
+}  // namespace bandsaw

@@ -1,0 +1,66 @@
+#pragma once
+
+// Spectra to linear RGB with sRGB primaries, by the CIE 1931 standard observer (2 degrees).
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+
+namespace bandsaw::spectrum {
+
+/// Linear RGB, sRGB primaries (IEC 61966-2-1). A channel may be negative.
+using Rgb3 = std::array<double, 3>;
+
+/// A spectrum by its values at increasing wavelengths (nm), linear between them.
+struct Sampled {
+  std::vector<double> wavelengths;
+  std::vector<double> values;
+
+  /// Returns the value; outside of the wavelengths that of the nearest one.
+  double at(double nm) const;
+};
+
+/// Returns the spectrum of "wavelength value" pairs. INVALID_ARGUMENT: an odd number of numbers,
+/// none, more than 100,000, not finite, or wavelengths that do not increase.
+absl::StatusOr<Sampled> from_pairs(const std::vector<double>& numbers);
+
+/// Parses a file of pairs, a pair a line (*.spd); # begins a comment.
+absl::StatusOr<Sampled> parse_spd(absl::string_view text);
+
+/// Returns the radiation of a black body in relative units: its largest value is 1. `kelvin` > 0.
+Sampled blackbody(double kelvin);
+
+/// Returns the colour of a light: the integral with the colour matching functions, scaled so that
+/// an equal-energy spectrum of value 1 has luminance 1.
+Rgb3 light_rgb(const Sampled& light);
+/// Returns the same scaled to luminance 1; [1, 1, 1] for a dark spectrum.
+Rgb3 light_rgb_of_luminance_1(const Sampled& light);
+/// Returns the luminance of linear RGB.
+double luminance(const Rgb3& rgb);
+
+/// Returns the colour of a reflectance, or any other factor: that of D65 times the spectrum over
+/// that of D65. A constant spectrum has three equal channels.
+Rgb3 factor_rgb(const Sampled& factor);
+
+/// Complex index of refraction of a metal for each channel.
+struct Metal {
+  Rgb3 eta;
+  Rgb3 k;
+};
+/// Returns the index whose reflectance at normal incidence is the colour of the spectral
+/// reflectance: what a spectral renderer shows. eta is factor_rgb of the spectrum.
+Metal metal_rgb(const Sampled& eta, const Sampled& k);
+
+/// Returns a spectrum by the name that it has in pbrt: "metal-Cu-eta", "metal-Cu-k" (Ag, Al, Au,
+/// Cu, CuZn, MgO, TiO2), "glass-BK7" (BAF10, FK51A, LASF9, F5, F10, F11), "stdillum-D65",
+/// "stdillum-A". std::nullopt: not known here.
+std::optional<Sampled> named(absl::string_view name);
+
+/// Wavelength of the d line, at which indices of refraction are stated.
+inline constexpr double kLineD = 587.56;
+
+}  // namespace bandsaw::spectrum
