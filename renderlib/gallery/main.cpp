@@ -24,6 +24,7 @@
 #include "renderlib/gallery/pergola.h"
 #include "renderlib/gallery/sky.h"
 #include "renderlib/gallery/turned.h"
+#include "renderlib/gallery/volumes.h"
 #include "renderlib/image/hdr.h"
 #include "renderlib/image/png.h"
 
@@ -56,6 +57,8 @@ absl::Status make_all(const std::string& folder) {
   RETURN_IF_ERROR(write(folder + "/lamp_foot.obj", lamp_foot()));
   RETURN_IF_ERROR(write(folder + "/lamp_shade.obj", lamp_shade()));
   RETURN_IF_ERROR(write(folder + "/pergola.gltf", pergola()));
+  RETURN_IF_ERROR(write(folder + "/campfire_smoke.vol", smoke_volume()));
+  RETURN_IF_ERROR(write(folder + "/campfire_flames.vol", flame_volume()));
   RETURN_IF_ERROR(write(folder + "/evening.hdr", encode_hdr(evening_sky_map(64))));
   RETURN_IF_ERROR(write(folder + "/dusk.hdr", encode_hdr(dusk_sky_map(128))));
   constexpr const char* kSides[] = {"px", "nx", "py", "ny", "pz", "nz"};

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "renderlib/geometry/surface.h"
 #include "renderlib/medium/attenuation.h"
+#include "renderlib/medium/tracking.h"
 
 namespace bandsaw {
 namespace {
@@ -14,27 +16,27 @@ constexpr double kRim = 1e-12;
 
 }  // namespace
 
-int* MediumTraversal::Around::count_of(MediumId medium) {
+int* MediumTraversal::Around::count_of(const Region& region) {
   for (std::size_t i = 0; i < size_; ++i) {
-    if (entries_[i].medium == medium) {
+    if (entries_[i].region == region) {
       return &entries_[i].shapes;
     }
   }
   for (std::size_t i = 0; i < size_; ++i) {
     if (entries_[i].shapes == 0) {
-      entries_[i].medium = medium;
+      entries_[i].region = region;
       return &entries_[i].shapes;
     }
   }
   if (size_ == kMaxOverlappingMedia) {
     return nullptr;
   }
-  entries_[size_] = {medium, 0};
+  entries_[size_] = {region, 0};
   return &entries_[size_++].shapes;
 }
 
-void MediumTraversal::Around::add(MediumId medium, int shapes) {
-  if (int* const count = count_of(medium)) {
+void MediumTraversal::Around::add(const Region& region, int shapes) {
+  if (int* const count = count_of(region)) {
     *count += shapes;
   }
 }
@@ -45,11 +47,12 @@ void MediumTraversal::Around::forget_negative() {
   }
 }
 
-std::optional<MediumId> MediumTraversal::Around::medium() const {
-  std::optional<MediumId> top;
+std::optional<MediumTraversal::Around::Region> MediumTraversal::Around::top() const {
+  const auto order = [](const Region& region) { return std::pair(region.medium, region.boundary); };
+  std::optional<Region> top;
   for (std::size_t i = 0; i < size_; ++i) {
-    if (entries_[i].shapes > 0 && (!top || entries_[i].medium > *top)) {
-      top = entries_[i].medium;
+    if (entries_[i].shapes > 0 && (!top || order(entries_[i].region) > order(*top))) {
+      top = entries_[i].region;
     }
   }
   return top;
@@ -72,6 +75,10 @@ bool MediumTraversal::is_of_mesh(const Hit& hit) const {
          scene_.media().boundaries.instances[hit.id.instance - 1].group == kNoGroup;
 }
 
+bool MediumTraversal::varies(MediumId medium) const {
+  return scene_.features().grids && scene_.grid_medium(medium) != nullptr;
+}
+
 std::optional<MediumTraversal::Crossing> MediumTraversal::find_next(Search& search) {
   const Accel& boundaries = scene_.boundary_accel();
   for (;;) {
@@ -88,6 +95,7 @@ std::optional<MediumTraversal::Crossing> MediumTraversal::find_next(Search& sear
     crossing.t = hit.t;
     crossing.shape = {hit.id.instance, hit.id.instance == 0 ? hit.id.primitive : 0};
     crossing.medium = medium_in(point.material);
+    crossing.boundary = varies(crossing.medium) ? hit.id.instance : 0;
     crossing.inwards = slope < 0;
     // A ray crosses an edge or corner shared by triangles of a mesh only once; further hits there
     // are skipped.
@@ -117,7 +125,7 @@ void MediumTraversal::find_around_origin() {
     } else {
       all_kept_ = false;
     }
-    around_.add(crossing->medium, crossing->inwards ? -1 : 1);
+    around_.add({crossing->medium, crossing->boundary}, crossing->inwards ? -1 : 1);
   }
   around_.forget_negative();
 }
@@ -134,41 +142,58 @@ std::optional<MediumTraversal::Crossing> MediumTraversal::take_crossing() {
   return crossing;
 }
 
-const Medium* MediumTraversal::here() const {
+MediumSegment MediumTraversal::here() const {
   const Media& media = scene_.media();
-  const std::optional<MediumId> inside = around_.medium();
-  const std::optional<MediumId> id = inside ? inside : media.fog;
-  if (!id) {
-    return nullptr;
+  const std::optional<Around::Region> inside = around_.top();
+  const std::optional<MediumId> id = inside ? std::optional(inside->medium) : media.fog;
+  if (!id || is_clear(media.media[index_of(*id)])) {
+    return {};
   }
-  const Medium& medium = media.media[index_of(*id)];
-  return is_clear(medium) ? nullptr : &medium;
+  MediumSegment segment;
+  segment.medium = &media.media[index_of(*id)];
+  if (varies(*id)) {
+    segment.varying = scene_.grid_medium(*id);
+    segment.boundary = inside->boundary;
+  }
+  return segment;
 }
 
 std::optional<MediumSegment> MediumTraversal::next() {
   while (at_ < length_) {
-    const double begin = at_;
-    const Medium* const medium = here();
+    MediumSegment segment = here();
+    segment.begin = at_;
     const std::optional<Crossing> crossing = take_crossing();
     at_ = crossing ? std::min(crossing->t, length_) : length_;
     if (crossing) {
-      around_.add(crossing->medium, crossing->inwards ? 1 : -1);
+      around_.add({crossing->medium, crossing->boundary}, crossing->inwards ? 1 : -1);
     }
-    if (medium != nullptr && at_ > begin) {
-      return MediumSegment{begin, at_, medium};
+    if (segment.medium != nullptr && at_ > segment.begin) {
+      segment.end = at_;
+      return segment;
     }
   }
   return std::nullopt;
 }
 
-Rgb media_transmittance(const Scene& scene, const Ray& ray, std::uint64_t& rays) {
+GridRay in_medium_space(const Scene& scene, const Ray& ray, const MediumSegment& segment) {
+  const Transform to_medium = scene.to_medium(segment.boundary, ray.time);
+  return {to_medium.point(ray.origin + ray.direction * segment.begin),
+          to_medium.direction(ray.direction)};
+}
+
+Rgb media_transmittance(const Scene& scene, const Ray& ray, NumberStream numbers,
+                        std::uint64_t& rays) {
   const double size = length(ray.direction);
   Ray unit = ray;
   unit.direction = ray.direction / size;
   MediumTraversal walk(scene, unit, ray.t_max * size, rays);
   Rgb share = gray(1);
   while (const std::optional<MediumSegment> segment = walk.next()) {
-    share *= transmittance(*segment->medium, segment->end - segment->begin);
+    const double part = segment->end - segment->begin;
+    share *= segment->varying == nullptr
+                 ? transmittance(*segment->medium, part)
+                 : estimate_transmittance(*segment->varying, in_medium_space(scene, unit, *segment),
+                                          part, numbers);
     if (is_black(share)) {
       break;
     }

@@ -12,6 +12,8 @@
 #include <cstdint>
 #include <optional>
 
+#include "renderlib/medium/region_walk.h"
+#include "renderlib/sampling/sampler.h"
 #include "renderlib/scene/scene.h"
 
 namespace bandsaw {
@@ -22,12 +24,20 @@ struct MediumSegment {
   double begin = 0;
   double end = 0;
   const Medium* medium = nullptr;
+  /// The same medium prepared for tracking if it varies in space; otherwise nullptr.
+  const GridMedium* varying = nullptr;
+  std::uint32_t boundary = 0;  ///< if it varies: the boundary, as in Scene::to_medium()
 };
+
+/// Returns the segment's part of the ray, beginning at the segment's begin, in the medium's space.
+/// The medium MUST vary in space; `ray` is the one that was split.
+GridRay in_medium_space(const Scene& scene, const Ray& ray, const MediumSegment& segment);
 
 /// Iterates over the segments of a ray that lie in a medium.
 class MediumTraversal {
  public:
-  /// Maximum number of different media that may surround a point; further ones are ignored.
+  /// Maximum number of different media, or boundaries of media that vary in space, that may
+  /// surround a point; further ones are ignored.
   static constexpr std::size_t kMaxOverlappingMedia = 16;
 
   /// `ray` has a unit direction; only its first `length` (> 0, may be infinite) is split. The scene
@@ -43,23 +53,31 @@ class MediumTraversal {
     double t = 0;
     PrimitiveId shape;  ///< one id for all faces of a shape: the primitive is 0 for an instance
     MediumId medium{};
+    std::uint32_t boundary = 0;  ///< see Around::Region
     bool inwards = false;
     bool on_rim = false;  ///< on an edge or corner of a mesh's triangle
   };
-  /// Nesting count for each medium around a point. A count may be negative while
+  /// Nesting count for each region around a point. A count may be negative while
   /// boundaries at equal distance are processed.
   class Around {
    public:
-    void add(MediumId medium, int shapes);
+    /// What counts as one: a medium, or one boundary of a medium that varies in space.
+    struct Region {
+      MediumId medium{};
+      std::uint32_t boundary = 0;  ///< as in Scene::to_medium(); 0 if the medium does not vary
+      friend bool operator==(const Region&, const Region&) = default;
+    };
+    void add(const Region& region, int shapes);
     /// Clamps negative counts to 0: a ray may enter a shape that is not closed more often than it
     /// leaves it.
     void forget_negative();
-    std::optional<MediumId> medium() const;
+    /// Returns the region that counts.
+    std::optional<Region> top() const;
 
    private:
-    int* count_of(MediumId medium);
+    int* count_of(const Region& region);
     struct Entry {
-      MediumId medium{};
+      Region region;
       int shapes = 0;
     };
     std::array<Entry, kMaxOverlappingMedia> entries_;
@@ -76,11 +94,13 @@ class MediumTraversal {
   static constexpr std::size_t kKept = 8;
 
   bool is_of_mesh(const Hit& hit) const;
+  bool varies(MediumId medium) const;
   /// Returns the next boundary crossing; std::nullopt at the end.
   std::optional<Crossing> find_next(Search& search);
   void find_around_origin();
   std::optional<Crossing> take_crossing();
-  const Medium* here() const;
+  /// Returns the segment's medium at the current place, without its begin and end.
+  MediumSegment here() const;
 
   const Scene& scene_;
   Ray ray_;
@@ -96,9 +116,10 @@ class MediumTraversal {
   bool all_kept_ = true;
 };
 
-/// Returns the transmittance of the media along the ray from its origin to `t_max`, by channel. The
-/// direction need not be a unit vector. The scene MUST have media. Adds the number of rays traced
-/// to `rays`.
-Rgb media_transmittance(const Scene& scene, const Ray& ray, std::uint64_t& rays);
+/// Returns the transmittance of the media along the ray from its origin to `t_max`, by channel; an
+/// estimate from `numbers` where a medium varies in space. The direction need not be a unit vector.
+/// The scene MUST have media. Adds the number of rays traced to `rays`.
+Rgb media_transmittance(const Scene& scene, const Ray& ray, NumberStream numbers,
+                        std::uint64_t& rays);
 
 }  // namespace bandsaw

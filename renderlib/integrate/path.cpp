@@ -77,10 +77,10 @@ bool is_also_sampled_by_bsdf(const LightSample& light, const CompetingBsdfSampli
 }
 
 /// Returns the light-sampling estimate of the radiance scattered at the point: samples one light,
-/// traces a shadow ray to it and applies the MIS weight.
+/// traces a shadow ray to it, through media with the numbers `media`, and applies the MIS weight.
 Rgb sample_light(const Scene& scene, const SurfacePoint& point, const Receiver& receiver,
                  const Bsdf& bsdf, const Sample4& numbers, const CompetingBsdfSampling& competing,
-                 std::uint64_t& rays) {
+                 NumberStream media, std::uint64_t& rays) {
   // The fourth number refines the selection among many lights.
   const double choice = numbers[0] + numbers[3] * 0x1p-32;
   const std::optional<LightSample> light =
@@ -94,7 +94,7 @@ Rgb sample_light(const Scene& scene, const SurfacePoint& point, const Receiver& 
   }
   const Ray shadow_ray =
       light->distant ? spawn_ray(point, light->direction) : spawn_ray_to(point, light->target, 0);
-  const Rgb passing = transmittance(scene, shadow_ray, rays);
+  const Rgb passing = transmittance(scene, shadow_ray, media, rays);
   if (is_black(passing)) {
     return {};
   }
@@ -106,8 +106,8 @@ Rgb sample_light(const Scene& scene, const SurfacePoint& point, const Receiver& 
 /// Returns the environment's radiance in a direction that local shading sampled from the BSDF, with
 /// its MIS weight and the transmittance of the ray.
 Rgb environment_along(const Scene& scene, const SurfacePoint& point, const PreviousVertex& previous,
-                      const Vec3& direction, std::uint64_t& rays) {
-  const Rgb passing = transmittance(scene, spawn_ray(point, direction), rays);
+                      const Vec3& direction, NumberStream media, std::uint64_t& rays) {
+  const Rgb passing = transmittance(scene, spawn_ray(point, direction), media, rays);
   return is_black(passing)
              ? Rgb{}
              : weighted_background(scene, previous, direction, Technique::kBoth) * passing;
@@ -141,7 +141,8 @@ std::uint32_t branches_for(const Scene& scene) {
   return scene.geometry().meshes.empty() ? 2 : 4;
 }
 
-void add_emission(const PathContext& context, const SurfacePoint& point, PathState& path) {
+void add_emission(const PathContext& context, const SurfacePoint& point, std::uint32_t depth,
+                  PathState& path) {
   const Scene& scene = context.scene;
   const Rgb light =
       emitted(scene.material(point.material), scene.textures(), point, -path.ray.direction);
@@ -152,7 +153,9 @@ void add_emission(const PathContext& context, const SurfacePoint& point, PathSta
   if (scene.features().media) {
     Ray up_to_light = path.ray;
     up_to_light.t_max = distance_along(up_to_light, point);
-    passing = media_transmittance(scene, up_to_light, context.rays);
+    passing = media_transmittance(scene, up_to_light,
+                                  context.stream(group_shadow(depth, ShadowUse::kEmission)),
+                                  context.rays);
   }
   path.radiance += path.throughput * light * passing *
                    emission_weight(scene, path.previous, point, context.options.technique);
@@ -200,13 +203,17 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
     const Sample4 numbers = context.numbers(group_light(depth));
     CompetingBsdfSampling competing = is_last ? CompetingBsdfSampling{Technique::kLightsOnly, true}
                                               : CompetingBsdfSampling{options.technique, false};
-    path.radiance += path.throughput *
-                     sample_light(scene, point, receiver, bsdf, numbers, competing, context.rays);
+    path.radiance +=
+        path.throughput * sample_light(scene, point, receiver, bsdf, numbers, competing,
+                                       context.stream(group_shadow(depth, ShadowUse::kLight)),
+                                       context.rays);
     if (has_pdf_behind(bsdf) && (is_last || scene.lights().any_delta())) {
       const Receiver behind{point.position, -*receiver.normal, point.time};
       competing.beyond_surface = true;
-      path.radiance += path.throughput *
-                       sample_light(scene, point, behind, bsdf, numbers, competing, context.rays);
+      path.radiance +=
+          path.throughput *
+          sample_light(scene, point, behind, bsdf, numbers, competing,
+                       context.stream(group_shadow(depth, ShadowUse::kLightBehind)), context.rays);
     }
   }
   if (is_last) {
@@ -228,7 +235,10 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
   if (is_last && !next->delta) {
     if (scene.background().environment) {
       path.radiance +=
-          path.throughput * environment_along(scene, point, path.previous, next->wi, context.rays);
+          path.throughput *
+          environment_along(scene, point, path.previous, next->wi,
+                            context.stream(group_shadow(depth, ShadowUse::kEnvironment)),
+                            context.rays);
     }
     return false;
   }
@@ -249,7 +259,7 @@ void trace_path(const PathContext& context, std::uint32_t depth, PathState& path
     const std::optional<SurfacePoint> hit = next_surface(context, depth, path);
     // Add its emission, weighted against light sampling at the previous vertex.
     if (hit) {
-      add_emission(context, *hit, path);
+      add_emission(context, *hit, depth, path);
     }
     // Sample light in the media before the surface. The path may scatter there and continue from a
     // point in a medium.

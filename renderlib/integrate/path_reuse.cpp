@@ -43,7 +43,7 @@ void trace_own_path(const PathContext& context, PathState& path,
     add_background(context, path);
     return;
   }
-  add_emission(context, *first, path);
+  add_emission(context, *first, 0, path);
   const std::optional<Bsdf> bsdf = make_bsdf(context, *first, 0, path);
   if (!bsdf) {
     return;

@@ -41,6 +41,7 @@ struct PathContext {
     return {scene, sampler, sample * branches + which, options, rays};
   }
   Sample4 numbers(std::uint32_t group) const { return sampler.group(sample, group); }
+  NumberStream stream(std::uint32_t group) const { return sampler.stream(sample, group); }
   bool samples_lights() const {
     return scene.features().lights && options.technique != Technique::kScatteringOnly;
   }

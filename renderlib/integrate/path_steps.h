@@ -24,11 +24,12 @@ inline std::optional<SurfacePoint> next_surface(const PathContext& context, std:
   return hit;
 }
 
-/// Adds the emission of the surface at `point`, which the path's ray hits, with its MIS weight and
-/// attenuated by all media on the ray. It is added deterministically, before the media decide
-/// whether the path passes them: a light is usually brighter than the light scattered in front of
-/// it, and the transmittance costs no extra path.
-void add_emission(const PathContext& context, const SurfacePoint& point, PathState& path);
+/// Adds the emission of the surface at `point`, which the path's ray hits towards scattering
+/// `depth`, with its MIS weight and attenuated by all media on the ray. It is added
+/// deterministically, before the media decide whether the path passes them: a light is usually
+/// brighter than the light scattered in front of it, and the transmittance costs no extra path.
+void add_emission(const PathContext& context, const SurfacePoint& point, std::uint32_t depth,
+                  PathState& path);
 
 /// Adds the background radiance with its MIS weight when the path leaves the scene.
 void add_background(const PathContext& context, PathState& path);
@@ -48,7 +49,7 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
 /// Runs `add_emission()`, `make_bsdf()` and `scatter()`. Returns false if the path ends.
 inline bool scatter_at(const PathContext& context, const SurfacePoint& point, std::uint32_t depth,
                        PathState& path) {
-  add_emission(context, point, path);
+  add_emission(context, point, depth, path);
   const std::optional<Bsdf> bsdf = make_bsdf(context, point, depth, path);
   return bsdf && scatter(context, point, *bsdf, depth, path);
 }

@@ -28,7 +28,8 @@ void sample_light_through_lens(const PathContext& context, const LensView& lens,
   }
   const Ray shadow_ray{
       .origin = *on_lens, .direction = light->target - *on_lens, .t_max = 1, .time = path.ray.time};
-  const Rgb passing = transmittance(context.scene, shadow_ray, context.rays);
+  const Rgb passing = transmittance(
+      context.scene, shadow_ray, context.stream(group_shadow(0, ShadowUse::kLens)), context.rays);
   const double pdf = lens.pdf(light->direction);
   const double weight = power_heuristic(light->pdf, pdf);
   path.radiance += light->radiance * passing * static_cast<float>(weight * pdf / light->pdf);

@@ -8,6 +8,7 @@
 #include "renderlib/integrate/medium_traversal.h"
 #include "renderlib/integrate/mis.h"
 #include "renderlib/integrate/russian_roulette.h"
+#include "renderlib/integrate/through_grid_medium.h"
 #include "renderlib/integrate/visibility.h"
 #include "renderlib/medium/attenuation.h"
 #include "renderlib/medium/phase.h"
@@ -15,7 +16,7 @@
 namespace bandsaw {
 namespace {
 
-/// One segment of medium before scattering number `depth`.
+/// One segment of homogeneous medium before scattering number `depth`.
 struct Segment {
   const PathContext& context;
   std::uint32_t depth;
@@ -82,8 +83,10 @@ Rgb sample_light(const Segment& segment, const LightDistanceSampler& distances, 
     return {};
   }
   const double phase_pdf = phase(segment.medium.g, dot(segment.direction, light->direction));
-  const Rgb passing =
-      transmittance(context.scene, shadow_ray(segment, position, *light), context.rays);
+  const std::uint32_t media =
+      group_shadow(segment.depth, ShadowUse::kMediumSegment, segment.number);
+  const Rgb passing = transmittance(context.scene, shadow_ray(segment, position, *light),
+                                    context.stream(media), context.rays);
   if (is_black(passing)) {
     return {};
   }
@@ -145,6 +148,20 @@ MediumEvent through_segment(const Segment& segment, double length, PathState& pa
   return scatter(segment, distance, distances.pdf(distance) / scattering_pdf, path);
 }
 
+MediumEvent through_homogeneous_medium(const PathContext& context, const Ray& ray,
+                                       const MediumSegment& part, std::uint32_t number,
+                                       std::uint32_t depth, PathState& path) {
+  const double length = part.end - part.begin;
+  const FreeFlight free_flight(*part.medium, path.throughput, length);
+  const bool may_scatter = depth < context.options.max_depth;
+  path.truncated = path.truncated || (!may_scatter && free_flight.scatter_probability() > 0);
+  const double scatter_probability = may_scatter ? free_flight.scatter_probability() : 0;
+  const Vec3 origin = ray.origin + ray.direction * part.begin;
+  const Segment segment{context,       depth,    number,      *part.medium,       origin,
+                        ray.direction, ray.time, free_flight, scatter_probability};
+  return through_segment(segment, length, path);
+}
+
 /// Recomputes the nested dielectrics of a path that scattered at the end of `ray`, before the
 /// surface that intersect_visible() found: only the boundaries of nested glass up to there are
 /// passed.
@@ -163,15 +180,10 @@ MediumEvent through_media(const PathContext& context, double length, std::uint32
   MediumTraversal traversal(context.scene, ray, length, context.rays);
   for (std::uint32_t number = 0; const std::optional<MediumSegment> next = traversal.next();
        ++number) {
-    const double part = next->end - next->begin;
-    const FreeFlight free_flight(*next->medium, path.throughput, part);
-    const bool may_scatter = depth < context.options.max_depth;
-    path.truncated = path.truncated || (!may_scatter && free_flight.scatter_probability() > 0);
-    const double scatter_probability = may_scatter ? free_flight.scatter_probability() : 0;
-    const Vec3 origin = ray.origin + ray.direction * next->begin;
-    const Segment segment{context,       depth,    number,      *next->medium,      origin,
-                          ray.direction, ray.time, free_flight, scatter_probability};
-    const MediumEvent event = through_segment(segment, part, path);
+    const MediumEvent event =
+        next->varying != nullptr
+            ? through_grid_medium(context, ray, *next, number, depth, path)
+            : through_homogeneous_medium(context, ray, *next, number, depth, path);
     if (event == MediumEvent::kScattered && path.nesting.skipped_hidden) {
       Ray passed = ray;
       passed.t_max = dot(path.ray.origin - ray.origin, ray.direction);

@@ -21,12 +21,12 @@ float visibility(const Scene& scene, const Ray& ray, std::uint64_t& rays) {
   return static_cast<float>(share);
 }
 
-Rgb transmittance(const Scene& scene, const Ray& ray, std::uint64_t& rays) {
+Rgb transmittance(const Scene& scene, const Ray& ray, NumberStream numbers, std::uint64_t& rays) {
   const float share = visibility(scene, ray, rays);
   if (share == 0 || !scene.features().media) {
     return gray(share);
   }
-  return media_transmittance(scene, ray, rays) * share;
+  return media_transmittance(scene, ray, numbers, rays) * share;
 }
 
 }  // namespace bandsaw

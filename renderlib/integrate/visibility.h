@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "renderlib/sampling/sampler.h"
 #include "renderlib/scene/scene.h"
 
 namespace bandsaw {
@@ -13,7 +14,8 @@ namespace bandsaw {
 float visibility(const Scene& scene, const Ray& ray, std::uint64_t& rays);
 
 /// Returns the transmittance along the ray: visibility between surfaces times the transmittance of
-/// media. Adds the number of rays traced to `rays`.
-Rgb transmittance(const Scene& scene, const Ray& ray, std::uint64_t& rays);
+/// media, which is an estimate from `numbers` where they vary in space. Adds the number of rays
+/// traced to `rays`.
+Rgb transmittance(const Scene& scene, const Ray& ray, NumberStream numbers, std::uint64_t& rays);
 
 }  // namespace bandsaw

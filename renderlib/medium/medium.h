@@ -1,18 +1,53 @@
 #pragma once
 
-// Homogeneous participating media: smoke, fog, milk.
+// Participating media: smoke, fog, milk, fire; homogeneous, or varying in space as grids say.
 
+#include <cstdint>
+#include <optional>
+
+#include "renderlib/base/ids.h"
 #include "renderlib/math/rgb.h"
+#include "renderlib/medium/blackbody.h"
 
 namespace bandsaw {
 
+enum class GridId : std::uint32_t {};
+
+/// A grid of the scene (medium/volume_grid.h) whose numbers are multiplied by `scale` (>= 0,
+/// finite).
+struct GridUse {
+  GridId grid{};
+  float scale = 1;
+  friend bool operator==(const GridUse&, const GridUse&) = default;
+};
+
+/// Grids by which a medium varies in space; outside of its box the value of a grid is 0. At a point
+///
+///   density     = that of the grid, by channel if it has three; 1 without one
+///   extinction  = density (absorption + scattering)
+///   scattering  = density scattering, or with an albedo grid extinction times its value, at most 1
+///   emission    = emission times the value of the emission grid, or without one times the density,
+///                 and with a temperature grid times blackbody(value + temperature_offset)
+struct MediumGrids {
+  std::optional<GridUse> density;
+  std::optional<GridUse> albedo;
+  std::optional<GridUse> emission;
+  std::optional<GridUse> temperature;  ///< kelvin
+  double temperature_offset = 0;       ///< kelvin, finite
+  BlackbodyScale blackbody = BlackbodyScale::kPower;
+
+  bool any() const { return density || albedo || emission || temperature; }
+  friend bool operator==(const MediumGrids&, const MediumGrids&) = default;
+};
+
 /// Coefficients per scene unit and channel, >= 0. With absorption and scattering 0 the medium is
-/// empty space.
+/// empty space. With grids, they are the coefficients where the density is 1.
 struct Medium {
   Rgb absorption = {};  ///< absorption coefficient
   Rgb scattering = {};  ///< scattering coefficient
   Rgb emission = {};    ///< emitted radiance per length
   double g = 0;         ///< mean cosine of the phase function (medium/phase.h), in [-kMaxG, kMaxG]
+  MediumGrids grids = {};
   friend bool operator==(const Medium&, const Medium&) = default;
 };
 

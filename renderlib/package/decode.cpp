@@ -325,6 +325,12 @@ absl::StatusOr<Geometry> decode_geometry(const package::Manifest& manifest, Deco
 
 absl::StatusOr<Media> media_with_boundaries(const package::Manifest& manifest, Decoder& decoder) {
   ASSIGN_OR_RETURN(Media media, decode_media(manifest));
+  for (int i = 0; i < manifest.grid_size(); ++i) {
+    VolumeGrid& grid = media.grids[static_cast<std::size_t>(i)];
+    const std::string field = absl::StrCat("grid[", i, "]");
+    ASSIGN_OR_RETURN(grid.index, decoder.bytes(manifest.grid(i).index(), field + ".index"));
+    ASSIGN_OR_RETURN(grid.values, decoder.bytes(manifest.grid(i).values(), field + ".values"));
+  }
   const package::Boundaries& from = manifest.boundaries();
   if (from.has_spheres()) {
     ASSIGN_OR_RETURN(media.boundaries.spheres,

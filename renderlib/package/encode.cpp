@@ -290,6 +290,11 @@ struct EncodeMaterial {
 
 void encode(const Media& media, Encoder& encoder, package::Manifest& manifest) {
   encode_media(media, manifest);
+  for (std::size_t i = 0; i < media.grids.size(); ++i) {
+    package::VolumeGrid& to = *manifest.mutable_grid(static_cast<int>(i));
+    encoder.put(media.grids[i].index, *to.mutable_index());
+    encoder.put(media.grids[i].values, *to.mutable_values());
+  }
   if (!media.boundaries.spheres.empty()) {
     encoder.put_spheres(media.boundaries.spheres,
                         *manifest.mutable_boundaries()->mutable_spheres());

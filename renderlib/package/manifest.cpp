@@ -207,6 +207,10 @@ absl::Status for_each_blob(const package::Manifest& m, Visit visit) {
     RETURN_IF_ERROR(for_each_sphere_blob(m.boundaries().spheres(), "boundaries.spheres", visit));
   }
   RETURN_IF_ERROR(for_each_mesh_blob(m.boundaries().mesh(), "boundaries.mesh", visit));
+  for (int i = 0; i < m.grid_size(); ++i) {
+    RETURN_IF_ERROR(visit(m.grid(i).index(), absl::StrCat("grid[", i, "].index")));
+    RETURN_IF_ERROR(visit(m.grid(i).values(), absl::StrCat("grid[", i, "].values")));
+  }
   return absl::OkStatus();
 }
 

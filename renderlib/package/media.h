@@ -1,7 +1,7 @@
 #pragma once
 
-// Conversion of media to and from a manifest. The shapes of their boundaries are blobs, which
-// encode.cpp and decode.cpp convert.
+// Conversion of media to and from a manifest. The shapes of their boundaries and the numbers of
+// their grids are blobs, which encode.cpp and decode.cpp convert.
 
 #include "absl/status/statusor.h"
 #include "proto/package.pb.h"
@@ -9,10 +9,11 @@
 
 namespace bandsaw {
 
-/// Encodes everything except the shapes of the boundaries.
+/// Encodes everything except the shapes of the boundaries and the blobs of grids.
 void encode_media(const Media& media, package::Manifest& manifest);
 
-/// Decodes the same. Checks only the form; returns INVALID_ARGUMENT for a list of a wrong length.
+/// Decodes the same. Checks only the form; returns INVALID_ARGUMENT for a list of a wrong length
+/// or an enum out of range.
 absl::StatusOr<Media> decode_media(const package::Manifest& manifest);
 
 }  // namespace bandsaw

@@ -5,6 +5,7 @@
 
 #include "renderlib/base/check.h"
 #include "renderlib/base/pool.h"
+#include "renderlib/medium/brick_builder.h"
 #include "renderlib/render/hash64.h"
 #include "renderlib/render/kernel.h"
 #include "renderlib/render/pixel_version.h"
@@ -145,6 +146,31 @@ SceneDescription in_smoke() {
   return scene;
 }
 
+/// The same scene with a cloud that varies in space and a fire in its midst, both turned by a
+/// frame.
+SceneDescription in_a_cloud() {
+  SceneDescription scene = every_feature();
+  Media& media = scene.media;
+  media.grids = {
+      dense_grid({11, 6, 9}, 1, [](std::size_t i) { return static_cast<float>(i * 7 % 23) / 8; }),
+      dense_grid({3, 2, 4}, 3, [](std::size_t i) { return static_cast<float>(i % 5) * 0.2f; })};
+  media.grids[0].to_medium = scaling({0.2, 0.4, 0.3});
+  media.grids[1].to_medium = rotation({1, 0, 1}, 30) * scaling({0.8, 1, 0.7});
+  media.grids[1].border = VolumeGrid::Border::kClamp;
+  Medium cloud{.scattering = gray(0.7f), .emission = {1, 2, 3}, .g = 0.4};
+  cloud.grids.density = GridUse{GridId{0}, 0.6f};
+  cloud.grids.albedo = GridUse{GridId{1}, 1.2f};
+  cloud.grids.temperature = GridUse{GridId{1}, 2500};
+  media.media = {cloud};
+  media.boundaries.meshes = {unit_cube()};
+  media.boundaries.frames = {{kNoFrame,
+                              translation({-1, 0.2, -0.8}) * rotation({0, 1, 0.2}, 25),
+                              {Key(0, {}), Key(2, translation({0.3, 0, 0}))}}};
+  media.boundaries.instances = {
+      {MeshId{0}, filled_with(MediumId{0}), scaling({2.2, 2.4, 2.7}), kNoGroup, FrameId{0}}};
+  return scene;
+}
+
 /// An area light, a ball and a wall on a floor, with a black background: pixels reuse paths.
 SceneDescription room() {
   SceneDescription scene;
@@ -204,6 +230,7 @@ std::uint64_t canary(const Kernel* kernel) {
   add_render(hash, lit_from_outside(), {.width = 6, .height = 4, .max_depth = 4, .seed = 4},
              chosen);
   add_render(hash, in_smoke(), {.width = 6, .height = 4, .max_depth = 5, .seed = 4}, chosen);
+  add_render(hash, in_a_cloud(), {.width = 6, .height = 4, .max_depth = 5, .seed = 4}, chosen);
   add_render(hash, room(), {.width = 20, .height = 4, .max_depth = 5, .seed = 5}, chosen);
   add_render(hash, outdoors(), {.width = 8, .height = 6, .max_depth = 5, .seed = 6}, chosen);
   for (const Integrator integrator : {Integrator::kDirect, Integrator::kNormals, Integrator::kDepth,

@@ -117,6 +117,11 @@ Sample4 PixelSampler::group(std::uint64_t sample, std::uint32_t group) const {
   return {numbers[0] * 0x1p-32, numbers[1] * 0x1p-32, numbers[2] * 0x1p-32, numbers[3] * 0x1p-32};
 }
 
+NumberStream PixelSampler::stream(std::uint64_t sample, std::uint32_t group) const {
+  const std::uint64_t of_group = split_mix(pixel_hash_ + group * kSplitMixIncrement);
+  return NumberStream(split_mix(split_mix(~of_group) ^ split_mix(sample + kSplitMixIncrement)));
+}
+
 Sample4 sample4(const SampleKey& key, std::uint32_t group) {
   return PixelSampler(key.seed, key.x, key.y).group(key.sample, group);
 }

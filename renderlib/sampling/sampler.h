@@ -10,6 +10,8 @@
 #include <array>
 #include <cstdint>
 
+#include "renderlib/base/split_mix.h"
+
 namespace bandsaw {
 
 /// Identifies one sample of one pixel. Pixel coordinates are relative to the whole image, not to a
@@ -26,11 +28,28 @@ struct SampleKey {
 /// dimensions.
 using Sample4 = std::array<double, 4>;
 
+/// An unbounded stream of independent numbers, for loops whose length is random (tracking in media
+/// that vary in space): SplitMix64, a pure function of its seed.
+class NumberStream {
+ public:
+  explicit constexpr NumberStream(std::uint64_t seed) : state_(seed) {}
+  /// Returns the next number in [0, 1), a multiple of 2^-53.
+  double next() {
+    state_ += kSplitMixIncrement;
+    return static_cast<double>(split_mix(state_) >> 11) * 0x1p-53;
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
 /// The sampler of one pixel, with the sample-independent part of the hash precomputed.
 class PixelSampler {
  public:
   PixelSampler(std::uint64_t seed, std::uint32_t x, std::uint32_t y);
   Sample4 group(std::uint64_t sample, std::uint32_t group) const;
+  /// Returns the stream of a sample and group; different from the numbers of `group()`.
+  NumberStream stream(std::uint64_t sample, std::uint32_t group) const;
 
  private:
   std::uint64_t pixel_hash_;
@@ -54,10 +73,27 @@ constexpr std::uint32_t group_alpha(std::uint32_t bounce, std::uint32_t passed) 
 /// Media segment number `segment` (below 2^17) on the ray towards scattering `bounce` (below 2^11).
 /// `which` selects one of three groups. 0: scatter or pass and channel, free-flight distance,
 /// strategy and distance of light sampling. 1: pivots of equiangular sampling (choice, u, v). 2:
-/// light sampling (choice, u, v, low bits of the choice).
+/// light sampling (choice, u, v, low bits of the choice). In media that vary in space: 0: first
+/// collision (choice, distance); 3: the stream of all further numbers.
 constexpr std::uint32_t group_medium(std::uint32_t bounce, std::uint32_t segment,
                                      std::uint32_t which) {
   return 0x40000000u | (bounce & 0x7ffu) << 19 | (segment & 0x1ffffu) << 2 | which;
+}
+/// Uses of the streams with which the transmittance along a shadow ray is estimated.
+enum class ShadowUse : std::uint32_t {
+  kLight,          ///< light sampling at a surface or, in a medium that varies, at a collision
+  kLightBehind,    ///< light sampling on the far side of a surface
+  kEmission,       ///< emission of the surface that the path hits
+  kEnvironment,    ///< local shading: the environment
+  kLens,           ///< light sampling through the lens
+  kMediumSegment,  ///< light sampling in media segment 0; segment n has kMediumSegment + n
+};
+/// Transmittance of media along a shadow ray of scattering `bounce` (below 2^11): a stream.
+/// `segment` (below 2^17) is the number of the media segment for kMediumSegment, otherwise 0.
+constexpr std::uint32_t group_shadow(std::uint32_t bounce, ShadowUse use,
+                                     std::uint32_t segment = 0) {
+  return 0x20000000u | (bounce & 0x7ffu) << 18 |
+         ((static_cast<std::uint32_t>(use) + (segment & 0x1ffffu)) & 0x3ffffu);
 }
 
 }  // namespace bandsaw

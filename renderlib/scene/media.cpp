@@ -1,5 +1,6 @@
 #include "renderlib/scene/media.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -20,7 +21,44 @@ absl::Status check_rates(const std::string& field, const Rgb& rates) {
   return absl::OkStatus();
 }
 
-absl::Status check_medium(const std::string& field, const Medium& medium) {
+/// Checks the use of a grid. `coefficient` is the largest that is multiplied by its numbers;
+/// `most_of` has the largest number of each grid.
+absl::Status check_use(const std::string& field, const std::optional<GridUse>& use,
+                       const std::vector<float>& most_of, float coefficient) {
+  if (!use) {
+    return absl::OkStatus();
+  }
+  RETURN_IF_ERROR(check_index(field + ".grid", use->grid, most_of.size()));
+  if (!(use->scale >= 0 && std::isfinite(use->scale))) {
+    return invalid(field + ".scale", absl::StrCat("must be finite and >= 0, is ", use->scale));
+  }
+  const double most = double{coefficient} * use->scale * most_of[index_of(use->grid)];
+  if (!(most <= kMaxPerUnit)) {
+    return invalid(field,
+                   absl::StrCat("must be at most ", kMaxPerUnit,
+                                " per scene unit with the medium's coefficients, is ", most));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status check_grids(const std::string& field, const Medium& medium,
+                         const std::vector<float>& most_of) {
+  const float emission = max_component(medium.emission);
+  const float coefficient =
+      std::max({max_component(medium.absorption), max_component(medium.scattering), emission});
+  const MediumGrids& grids = medium.grids;
+  RETURN_IF_ERROR(check_use(field + ".density_grid", grids.density, most_of, coefficient));
+  RETURN_IF_ERROR(check_use(field + ".albedo_grid", grids.albedo, most_of, 0));
+  RETURN_IF_ERROR(check_use(field + ".emission_grid", grids.emission, most_of, emission));
+  RETURN_IF_ERROR(check_use(field + ".temperature_grid", grids.temperature, most_of, 1));
+  if (!std::isfinite(grids.temperature_offset)) {
+    return invalid(field + ".temperature_offset", "must be finite");
+  }
+  return absl::OkStatus();
+}
+
+absl::Status check_medium(const std::string& field, const Medium& medium,
+                          const std::vector<float>& most_of) {
   RETURN_IF_ERROR(check_rates(field + ".absorption", medium.absorption));
   RETURN_IF_ERROR(check_rates(field + ".scattering", medium.scattering));
   RETURN_IF_ERROR(check_rates(field + ".emission", medium.emission));
@@ -28,13 +66,16 @@ absl::Status check_medium(const std::string& field, const Medium& medium) {
     return invalid(field + ".g",
                    absl::StrCat("must be in [", -kMaxG, ", ", kMaxG, "], is ", medium.g));
   }
-  return absl::OkStatus();
+  return check_grids(field, medium, most_of);
 }
 
 absl::Status check_fog(const Media& media) {
   if (index_of(*media.fog) >= media.media.size()) {
     return invalid(
         "fog", absl::StrCat("must be below ", media.media.size(), ", is ", index_of(*media.fog)));
+  }
+  if (media.media[index_of(*media.fog)].grids.any()) {
+    return invalid("fog", "must not have grids: it has no space of its own");
   }
   if (is_endless_glow(media.media[index_of(*media.fog)])) {
     return invalid("fog",
@@ -95,8 +136,16 @@ Shapes unit_ball() {
 }
 
 absl::Status validate(const Media& media) {
+  std::vector<float> most_of;
+  for (std::size_t i = 0; i < media.grids.size(); ++i) {
+    const absl::StatusOr<float> most = check_grid(media.grids[i]);
+    if (!most.ok()) {
+      return absl::InvalidArgumentError(absl::StrCat("grids[", i, "]", most.status().message()));
+    }
+    most_of.push_back(*most);
+  }
   for (std::size_t i = 0; i < media.media.size(); ++i) {
-    RETURN_IF_ERROR(check_medium(absl::StrCat("media[", i, "]"), media.media[i]));
+    RETURN_IF_ERROR(check_medium(absl::StrCat("media[", i, "]"), media.media[i], most_of));
   }
   if (media.fog) {
     RETURN_IF_ERROR(check_fog(media));

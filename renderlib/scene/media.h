@@ -5,6 +5,12 @@
 // The medium at a point depends on the point alone, not on the path of the light. Among the closed
 // shapes that contain the point, the medium with the highest number counts, i.e. the one that the
 // scene names last; outside all shapes the fog; without fog, none.
+//
+// A medium may vary in space as grids say (medium/medium.h). Their numbers are given in the space
+// of the medium, which moves with its boundary: the space of the boundary's frame
+// (geometry/frame.h), and the world's for a boundary without a frame. So several boundaries may
+// contain the same medium, each in a place of its own. Where boundaries of the same medium overlap,
+// the one with the highest number counts; loose spheres come before all instances.
 
 #include <optional>
 #include <vector>
@@ -13,17 +19,19 @@
 #include "renderlib/base/ids.h"
 #include "renderlib/geometry/shapes.h"
 #include "renderlib/medium/medium.h"
+#include "renderlib/medium/volume_grid.h"
 
 namespace bandsaw {
 
 struct Media {
   std::vector<Medium> media;
+  std::vector<VolumeGrid> grids;  ///< MediumGrids refers to them
   /// Spheres, and instances of closed meshes and of groups of one sphere; nothing else. Their
   /// `material` is not a material but the medium inside, an index into `media`. If a boundary is
   /// visible, the scene's own geometry contains it as well; otherwise it is invisible. Placements
   /// change the region of a medium, not its density: coefficients are per unit of world space.
   Geometry boundaries;
-  std::optional<MediumId> fog;  ///< unbounded; MUST NOT be is_endless_glow
+  std::optional<MediumId> fog;  ///< unbounded; MUST NOT be is_endless_glow, nor have grids
 
   bool has_boundaries() const {
     return !boundaries.spheres.empty() || !boundaries.instances.empty();

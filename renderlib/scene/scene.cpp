@@ -80,6 +80,22 @@ std::size_t clean(Geometry& geometry) {
   return dropped;
 }
 
+bool has_grids(const Media& media) {
+  return std::any_of(media.media.begin(), media.media.end(),
+                     [](const Medium& medium) { return medium.grids.any(); });
+}
+
+/// Returns the media that vary in space, prepared for tracking; one entry for each medium.
+std::vector<std::optional<GridMedium>> grid_media_of(const Media& media) {
+  std::vector<std::optional<GridMedium>> result(media.media.size());
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    if (media.media[i].grids.any()) {
+      result[i].emplace(media.media[i], media.grids);
+    }
+  }
+  return result;
+}
+
 SceneFeatures features_of(const SceneDescription& scene, const Lights& lights) {
   SceneFeatures features;
   features.lights = !lights.empty();
@@ -87,6 +103,7 @@ SceneFeatures features_of(const SceneDescription& scene, const Lights& lights) {
   features.motion = moves(scene.geometry) || moves(scene.media.boundaries);
   features.uv = std::any_of(scene.textures.begin(), scene.textures.end(), uses_uv);
   features.media = scene.media.fog || scene.media.has_boundaries();
+  features.grids = features.media && has_grids(scene.media);
   return features;
 }
 
@@ -142,6 +159,10 @@ absl::StatusOr<std::shared_ptr<const Scene>> Scene::build_with(const Kernel& ker
   const Shutter& shutter = shutter_of(own.camera);
   const Interval interval = {shutter.open, shutter.close};
   make_static(interval, own.geometry);
+  // The spaces of media are those of frames, which static boundaries lose.
+  if (has_grids(own.media)) {
+    scene->medium_spaces_ = MediumSpaces(own.media.boundaries);
+  }
   make_static(interval, own.media.boundaries);
   prepare_surfaces(own.geometry);
   scene->accel_ = std::make_unique<Accel>(Accel::build(own.geometry, pool, interval, traversal));
@@ -150,6 +171,10 @@ absl::StatusOr<std::shared_ptr<const Scene>> Scene::build_with(const Kernel& ker
   const SceneFeatures features = features_of(own, scene->lights_);
   scene->reuses_paths_ = can_reuse_paths(own, scene->lights_, features);
   scene->features_ = features | forced;
+  if (scene->features_.grids) {
+    scene->grid_media_ = grid_media_of(own.media);
+    scene->medium_spaces_.prepare(own.media.boundaries, interval.open);
+  }
   if (scene->features_.media) {
     scene->boundary_accel_ =
         std::make_unique<Accel>(Accel::build(own.media.boundaries, pool, interval, traversal));

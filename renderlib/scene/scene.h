@@ -4,6 +4,7 @@
 // share.
 
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -11,7 +12,9 @@
 #include "renderlib/accel/accel.h"
 #include "renderlib/base/pool.h"
 #include "renderlib/light/lights.h"
+#include "renderlib/medium/grid_medium.h"
 #include "renderlib/scene/description.h"
+#include "renderlib/scene/medium_spaces.h"
 #include "renderlib/scene/scene_features.h"
 
 namespace bandsaw {
@@ -42,6 +45,17 @@ class Scene {
   /// Returns the BVHs of the boundaries of media, which accel() does not contain. features().media
   /// MUST be set.
   const Accel& boundary_accel() const { return *boundary_accel_; }
+  /// Returns the medium prepared for tracking if it varies in space, otherwise nullptr.
+  /// features().grids MUST be set.
+  const GridMedium* grid_medium(MediumId id) const {
+    const std::optional<GridMedium>& medium = grid_media_[index_of(id)];
+    return medium ? &*medium : nullptr;
+  }
+  /// Returns the map from the world to the space of the medium in a boundary
+  /// (scene/medium_spaces.h). features().grids MUST be set.
+  Transform to_medium(std::uint32_t boundary, double time) const {
+    return medium_spaces_.to_medium(description_.media.boundaries, boundary, time);
+  }
   const Background& background() const { return description_.background; }
   const Camera& camera() const { return description_.camera; }
   const PixelFilter& filter() const { return description_.filter; }
@@ -73,6 +87,8 @@ class Scene {
   SceneDescription description_;
   std::unique_ptr<Accel> accel_;
   std::unique_ptr<Accel> boundary_accel_;
+  std::vector<std::optional<GridMedium>> grid_media_;
+  MediumSpaces medium_spaces_;
   Lights lights_;
   SceneFeatures features_;
   bool reuses_paths_ = false;

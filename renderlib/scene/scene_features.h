@@ -13,6 +13,7 @@ struct SceneFeatures {
   bool alpha = false;   ///< surfaces that are not fully opaque
   bool motion = false;  ///< instances that move during the shutter interval
   bool media = false;   ///< participating media
+  bool grids = false;   ///< media that vary in space
   bool uv = false;      ///< textures that use uv coordinates
   friend bool operator==(const SceneFeatures&, const SceneFeatures&) = default;
 };
@@ -22,11 +23,12 @@ struct NamedFeature {
   bool SceneFeatures::*feature;
 };
 
-inline constexpr std::array<NamedFeature, 5> kEachFeature = {{
+inline constexpr std::array<NamedFeature, 6> kEachFeature = {{
     {"lights", &SceneFeatures::lights},
     {"alpha", &SceneFeatures::alpha},
     {"motion", &SceneFeatures::motion},
     {"media", &SceneFeatures::media},
+    {"grids", &SceneFeatures::grids},
     {"uv", &SceneFeatures::uv},
 }};
 static_assert(sizeof(SceneFeatures) == kEachFeature.size(), "every feature is in the table");

@@ -152,6 +152,7 @@ std::string kind_of(const DeltaLight& light) {
 
 std::string kind_of(const Medium& medium) {
   return is_clear(medium)              ? "clear medium"
+         : medium.grids.any()          ? "medium that varies in space"
          : !is_black(medium.emission)  ? "glowing medium"
          : is_black(medium.scattering) ? "absorbing medium"
          : medium.g == 0               ? "scattering medium"
@@ -174,6 +175,7 @@ std::vector<Count> media_of(const Media& media) {
   for (const Medium& medium : media.media) {
     tally.add(kind_of(medium));
   }
+  tally.add("grid", media.grids.size());
   tally.add("boundary", media.boundaries.spheres.size() + media.boundaries.instances.size());
   tally.add("fog around everything", media.fog ? 1 : 0);
   return tally.take();

@@ -42,6 +42,8 @@ struct SceneDraft {
   std::map<std::string, TextureId> named_textures;  ///< the same
   std::map<std::string, Contents> groups;           ///< the same
   std::map<std::string, MediumId> media;            ///< the same
+  /// Grids of media, keyed by what a scene file says of them.
+  std::map<std::string, GridId> volumes;
   /// Meshes of the boundaries of media, keyed by the mesh of the scene that is the same.
   std::map<MeshId, MeshId> boundary_meshes;
   /// Models that have been read, keyed by file and by whether their materials were read.

@@ -9,6 +9,7 @@
 #include "renderlib/import/draft/boundaries.h"
 #include "renderlib/import/draft/color_limits.h"
 #include "renderlib/import/scene_file/numbers.h"
+#include "renderlib/import/scene_file/read_volumes.h"
 #include "renderlib/import/scene_file/suggest.h"
 
 namespace bandsaw {
@@ -28,7 +29,7 @@ absl::StatusOr<Rgb> read_rates(const Field& in, const std::string& name, bool gi
   return scaled;
 }
 
-absl::StatusOr<Medium> read_medium(const Field& in, const scene::Medium& from) {
+absl::StatusOr<Medium> read_medium(const Field& in, const scene::Medium& from, SceneDraft& draft) {
   if (from.has_albedo() && (from.has_absorption() || from.has_scattering())) {
     return in.error("albedo",
                     "stands instead of absorption and scattering: write one or the other");
@@ -44,6 +45,13 @@ absl::StatusOr<Medium> read_medium(const Field& in, const scene::Medium& from) {
                    read_rates(in, "scattering", from.has_scattering(), from.scattering(), density));
   ASSIGN_OR_RETURN(medium.emission,
                    read_rates(in, "emission", from.has_emission(), from.emission(), density));
+  ASSIGN_OR_RETURN(medium.grids, read_grids(in, from, draft));
+  if (!from.has_emission() && (medium.grids.emission || medium.grids.temperature)) {
+    medium.emission = gray(static_cast<float>(density));
+  }
+  if (medium.grids.albedo) {
+    medium.scattering = gray(static_cast<float>(density));
+  }
   if (from.has_albedo()) {
     ASSIGN_OR_RETURN(const Rgb albedo,
                      read_color(in.child("albedo"), from.albedo(), kMaxReflectance));
@@ -64,7 +72,7 @@ absl::Status read_media(const Field& root, const scene::Scene& from, SceneDraft&
     if (name.empty()) {
       return in.error("name", "is required, so that a shape can say what is inside of it");
     }
-    ASSIGN_OR_RETURN(const Medium medium, read_medium(in, from.medium(i)));
+    ASSIGN_OR_RETURN(const Medium medium, read_medium(in, from.medium(i), draft));
     const MediumId id{static_cast<std::uint32_t>(media.media.size())};
     if (!draft.media.emplace(name, id).second) {
       return in.error("name", absl::StrCat("\"", name, "\" is the name of another medium"));
@@ -73,6 +81,9 @@ absl::Status read_media(const Field& root, const scene::Scene& from, SceneDraft&
   }
   if (!from.fog().empty()) {
     ASSIGN_OR_RETURN(media.fog, find_medium(root, "fog", from.fog(), draft));
+    if (media.media[index_of(*media.fog)].grids.any()) {
+      return root.error("fog", "must not have grids: fill a shape with the medium");
+    }
     if (is_endless_glow(media.media[index_of(*media.fog)])) {
       return root.error("fog",
                         "must absorb or scatter where it emits: it has no end, and would be "
@@ -131,6 +142,23 @@ absl::StatusOr<Instance> boundary_of(const Field& in, const Instance& placed, Me
                                            " triangles has ", open_edges(mesh),
                                            " open edges: close its holes, or use a "
                                            "box or a sphere"));
+}
+
+void give_space(const Transform& placement, Instance& boundary, const SceneDraft& draft,
+                Placements& to) {
+  const MediumId inside = medium_in(boundary.material);
+  const bool varies = draft.out.scene.media.media[index_of(inside)].grids.any();
+  if (!varies && placement == Transform{}) {
+    return;
+  }
+  if (!varies) {
+    boundary.to_world = placement * boundary.to_world;
+    return;
+  }
+  Frame frame;
+  frame.placement = placement;
+  frame.keys.emplace_back(0, Transform{});
+  boundary.frame = add_frame(std::move(frame), to);
 }
 
 }  // namespace bandsaw

@@ -27,4 +27,10 @@ Instance boundary_of(const Vec3& low, const Vec3& high, MediumId inside, SceneDr
 absl::StatusOr<Instance> boundary_of(const Field& in, const Instance& mesh, MediumId inside,
                                      SceneDraft& draft);
 
+/// Places a boundary without a frame, one of boundary_of(), at `placement` in the space of `to`. If
+/// its medium varies in space, the placement becomes a frame of `to`, so that the medium's space is
+/// the one in which the boundary is given (scene/media.h).
+void give_space(const Transform& placement, Instance& boundary, const SceneDraft& draft,
+                Placements& to);
+
 }  // namespace bandsaw

@@ -83,7 +83,8 @@ absl::StatusOr<Placements> read_interior(const Field& in, const scene::Model& fr
   ASSIGN_OR_RETURN(const MediumId medium, find_medium(in, "interior", from.interior(), draft));
   Placements filled;
   for (const Instance& mesh : model.instances) {
-    ASSIGN_OR_RETURN(const Instance boundary, boundary_of(in, mesh, medium, draft));
+    ASSIGN_OR_RETURN(Instance boundary, boundary_of(in, mesh, medium, draft));
+    give_space({}, boundary, draft, filled);
     filled.instances.push_back(boundary);
   }
   return filled;

@@ -186,13 +186,14 @@ absl::Status read_interior(const Field& in, const scene::Shape& from, SceneDraft
   ASSIGN_OR_RETURN(Instance boundary, read_boundary(in, from, draft));
   Placements& to = draft.placed->filled;
   const Shutter& shutter = draft.shutter;
+  Vec3 velocity;
   if (!from.velocity().empty()) {
-    ASSIGN_OR_RETURN(const Vec3 velocity, read_vec3(in, "velocity", from.velocity()));
-    if (shutter.open == shutter.close) {
-      boundary.to_world = translation(velocity * shutter.open) * boundary.to_world;
-    } else {
-      boundary.frame = add_frame(sliding(velocity, shutter), to);
-    }
+    ASSIGN_OR_RETURN(velocity, read_vec3(in, "velocity", from.velocity()));
+  }
+  if (!from.velocity().empty() && shutter.open != shutter.close) {
+    boundary.frame = add_frame(sliding(velocity, shutter), to);
+  } else {
+    give_space(translation(velocity * shutter.open), boundary, draft, to);
   }
   to.instances.push_back(boundary);
   return absl::OkStatus();

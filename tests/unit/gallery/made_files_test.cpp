@@ -11,6 +11,7 @@
 #include "renderlib/gallery/pergola.h"
 #include "renderlib/gallery/sky.h"
 #include "renderlib/gallery/turned.h"
+#include "renderlib/gallery/volumes.h"
 #include "renderlib/image/hdr.h"
 #include "renderlib/math/vec.h"
 
@@ -35,6 +36,8 @@ TEST(MadeFiles, AreThoseOfTheRepository) {
   EXPECT_TRUE(kept("lamp_foot.obj") == lamp_foot());
   EXPECT_TRUE(kept("lamp_shade.obj") == lamp_shade());
   EXPECT_TRUE(kept("pergola.gltf") == pergola());
+  EXPECT_TRUE(kept("campfire_smoke.vol") == smoke_volume());
+  EXPECT_TRUE(kept("campfire_flames.vol") == flame_volume());
   EXPECT_TRUE(kept("evening.hdr") == text(encode_hdr(evening_sky_map(64))));
   EXPECT_TRUE(kept("dusk.hdr") == text(encode_hdr(dusk_sky_map(128))));
   constexpr const char* kSides[] = {"px", "nx", "py", "ny", "pz", "nz"};

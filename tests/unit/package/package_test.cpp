@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <limits>
 #include <random>
 
 #include "proto/package.pb.h"
@@ -53,6 +54,7 @@ TEST(Package, RoundTripsBitForBit) {
 
   EXPECT_EQ(decoded->media.media, scene.media.media);
   EXPECT_EQ(decoded->media.fog, scene.media.fog);
+  EXPECT_EQ(decoded->media.grids, scene.media.grids);
   EXPECT_EQ(decoded->media.boundaries.instances[0].to_world,
             scene.media.boundaries.instances[0].to_world);
 
@@ -247,6 +249,67 @@ const std::vector<Wrong> kWrong = {
     {"environment_axes",
      [](auto& m) { m.mutable_background()->mutable_environment()->set_axes(0, 0.5); },
      "axes: must be three unit vectors at right angles"},
+    {"grid_cells", [](auto& m) { m.mutable_grid(0)->mutable_cells()->RemoveLast(); },
+     "grid[0].cells: must have 3 numbers, has 2"},
+    {"grid_side", [](auto& m) { m.mutable_grid(0)->set_cells(0, 0); },
+     "grids[0].cells: must be in [1, 1048576], is 0"},
+    {"grid_size",
+     [](auto& m) {
+       for (int k = 0; k < 3; ++k) {
+         m.mutable_grid(1)->set_cells(k, 1 << 20);
+       }
+     },
+     "grids[1].cells: must be at most 67108864 bricks"},
+    {"grid_channels", [](auto& m) { m.mutable_grid(0)->set_channels(2); },
+     "grids[0].channels: must be 1 or 3, is 2"},
+    {"grid_format", [](auto& m) { m.mutable_grid(0)->clear_format(); },
+     "grid[0].format: must lie in [1, 2], is 0"},
+    {"grid_filter",
+     [](auto& m) { m.mutable_grid(0)->set_filter(static_cast<package::VolumeGrid::Filter>(9)); },
+     "grid[0].filter: must lie in [1, 2], is 9"},
+    {"grid_border", [](auto& m) { m.mutable_grid(0)->clear_border(); },
+     "grid[0].border: must lie in [1, 2], is 0"},
+    {"grid_place", [](auto& m) { m.mutable_grid(0)->mutable_to_medium()->RemoveLast(); },
+     "grid[0].to_medium: must have 12 numbers, has 11"},
+    {"grid_flat",
+     [](auto& m) {
+       for (int k = 0; k < 12; ++k) {
+         m.mutable_grid(0)->set_to_medium(k, 0);
+       }
+     },
+     "grids[0].to_medium: must not be singular"},
+    {"grid_index", [](auto& m) { *m.mutable_grid(0)->mutable_index() = m.grid(0).values(); },
+     "grids[0].index: must have 8 bytes for 2 bricks"},
+    {"grid_places",
+     // The numbers of a grid as its index.
+     [](auto& m) {
+       m.mutable_grid(1)->set_cells(0, 8 * 32);
+       m.mutable_grid(1)->set_cells(1, 8 * 4);
+       m.mutable_grid(1)->set_cells(2, 8 * 6);
+       *m.mutable_grid(1)->mutable_index() = m.grid(1).values();
+     },
+     "grids[1].index["},
+    {"grid_values", [](auto& m) { *m.mutable_grid(0)->mutable_values() = m.grid(0).index(); },
+     "grids[0].values: must be bricks of 2048 bytes, has 8 bytes"},
+    {"grid_blob", [](auto& m) { m.mutable_grid(0)->mutable_values()->set_size(5); },
+     "grid[0].values.size: is 5"},
+    {"grid_use", [](auto& m) { m.mutable_medium(2)->mutable_density_grid()->set_grid(2); },
+     "media[2].density_grid.grid: must be below 2, is 2"},
+    {"grid_scale", [](auto& m) { m.mutable_medium(2)->mutable_albedo_grid()->set_scale(-1); },
+     "media[2].albedo_grid.scale: must be finite and >= 0, is -1"},
+    {"grid_dense", [](auto& m) { m.mutable_medium(2)->mutable_density_grid()->set_scale(1e12f); },
+     "media[2].density_grid: must be at most 1e+12 per scene unit"},
+    {"grid_offset",
+     [](auto& m) {
+       m.mutable_medium(3)->set_temperature_offset(std::numeric_limits<double>::infinity());
+     },
+     "media[3].temperature_offset: must be finite"},
+    {"grid_blackbody",
+     [](auto& m) {
+       m.mutable_medium(3)->set_blackbody(static_cast<package::Medium::BlackbodyScale>(2));
+     },
+     "medium[3].blackbody: must lie in [0, 1], is 2"},
+    {"grid_fog", [](auto& m) { m.set_fog(2); }, "fog: must not have grids"},
     {"light_kind", [](auto& m) { m.mutable_light(1)->clear_kind(); }, "light[1]: is of no kind"},
     {"light_direction",
      [](auto& m) { m.mutable_light(0)->mutable_directional()->set_direction(0, 3); },

@@ -4,6 +4,7 @@
 
 #include <cstring>
 
+#include "renderlib/medium/brick_builder.h"
 #include "renderlib/package/package.h"
 
 namespace bandsaw::test {
@@ -42,6 +43,26 @@ inline void add_motion(SceneDescription& scene) {
   moving.material = kOwnMaterial;
   moving.frame = FrameId{1};
   geometry.instances.push_back(moving);
+}
+
+/// Adds media that vary in space; every kind of grid.
+inline void add_grids(Media& media) {
+  media.grids = {
+      dense_grid({9, 3, 2}, 1, [](std::size_t i) { return static_cast<float>(i) * 0.1f; }),
+      dense_grid({2, 2, 2}, 3, [](std::size_t i) { return static_cast<float>(i % 2); })};
+  media.grids[0].to_medium = translation({1.0 / 3, 0, 0}) * rotation({1, 2, 3}, 40);
+  media.grids[1].filter = VolumeGrid::Filter::kNearest;
+  media.grids[1].border = VolumeGrid::Border::kClamp;
+  Medium smoke{.absorption = {1, 2, 3}};
+  smoke.grids.density = GridUse{GridId{0}, 0.5f};
+  smoke.grids.albedo = GridUse{GridId{1}, 1};
+  Medium fire{.emission = {1, 2, 3}};
+  fire.grids.emission = GridUse{GridId{1}, 2};
+  fire.grids.temperature = GridUse{GridId{0}, 100};
+  fire.grids.temperature_offset = 1.0 / 7;
+  fire.grids.blackbody = BlackbodyScale::kPeak;
+  media.media.push_back(smoke);
+  media.media.push_back(fire);
 }
 
 inline SceneDescription sample_scene() {
@@ -128,6 +149,7 @@ inline SceneDescription sample_scene() {
   scene.media.boundaries.instances = {{MeshId{0}, MaterialId{0}, translation({1.0 / 3, 0, 0})},
                                       {{}, MaterialId{1}, {}, GroupId{0}, FrameId{0}}};
   scene.media.fog = MediumId{1};
+  add_grids(scene.media);
   return scene;
 }
 

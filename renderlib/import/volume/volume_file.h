@@ -1,0 +1,44 @@
+#pragma once
+
+// Files with grids of numbers over space: Mitsuba's *.vol and OpenVDB's *.vdb.
+
+#include <cstdint>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "absl/types/span.h"
+#include "renderlib/medium/volume_grid.h"
+
+namespace bandsaw {
+
+/// A grid that was read from a file.
+struct FileGrid {
+  /// `to_medium` is the map to the file's space: for *.vdb, that of the grid's transform; for
+  /// *.vol, that of the box in the file.
+  VolumeGrid grid;
+  /// From the same cells to the unit cube [0, 1]^3; for *.vol alone.
+  Transform to_unit_box;
+  std::uint64_t negative = 0;  ///< numbers below 0 that became 0
+};
+
+/// Returns true if the file is of a kind that read_volume() reads, by its name.
+bool is_volume_file(const std::string& name);
+
+/// Reads the grid called `grid` of a file, or if that is empty, the only one or the one called
+/// `otherwise`; a *.vol file has one grid without a name. Errors do not name the file:
+/// INVALID_ARGUMENT if it is damaged, of another kind, or if a number is not finite;
+/// RESOURCE_EXHAUSTED if it is too large.
+absl::StatusOr<FileGrid> read_volume(const std::string& path, const std::string& grid,
+                                     const std::string& otherwise);
+
+/// The same for the bytes of a *.vol file in memory.
+absl::StatusOr<FileGrid> read_made_volume(const std::string& bytes, const std::string& grid);
+
+/// Reads the bytes of a *.vol file (vol_file.cpp says how they are laid out).
+absl::StatusOr<FileGrid> read_vol(absl::Span<const std::byte> bytes);
+
+/// Reads a *.vdb file.
+absl::StatusOr<FileGrid> read_vdb(const std::string& path, const std::string& grid,
+                                  const std::string& otherwise);
+
+}  // namespace bandsaw

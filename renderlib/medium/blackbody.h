@@ -1,0 +1,38 @@
+#pragma once
+
+// Colour of a black body's light.
+
+#include <vector>
+
+#include "renderlib/math/rgb.h"
+
+namespace bandsaw {
+
+/// Scales of the light of black bodies of different temperature.
+enum class BlackbodyScale {
+  kPower,  ///< the luminance is (T / 1000 K)^4 / 1000: as Stefan and Boltzmann's law
+  kPeak,   ///< the spectrum's maximum is 1, as in pbrt-v4: hardly brighter with T
+};
+
+/// Below this temperature a black body counts as black.
+inline constexpr double kDarkKelvin = 100;
+
+/// Returns linear sRGB of a black body at `kelvin` (>= 0, finite): Planck's spectrum by the colour
+/// matching functions of CIE 1931. Colours outside of the gamut (below 1900 K) lose their negative
+/// channel and keep their luminance. Black below 100 K; the hue is that of 500 K below 500 K, where
+/// it is pure red, and that of 100,000 K above.
+Rgb blackbody(double kelvin, BlackbodyScale scale);
+
+/// The same, precomputed. Between its temperatures, 1/256 of a power of 2 apart, it is
+/// interpolated: the relative error is at most 0.2 % from 1000 K to 100,000 K.
+class BlackbodyTable {
+ public:
+  explicit BlackbodyTable(BlackbodyScale scale);
+  /// `kelvin` >= 0. Black below 100 K; above 131,072 K that of 131,072 K.
+  Rgb at(double kelvin) const;
+
+ private:
+  std::vector<Rgb> colors_;
+};
+
+}  // namespace bandsaw

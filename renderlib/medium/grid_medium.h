@@ -1,0 +1,97 @@
+#pragma once
+
+// A medium that varies in space, prepared for tracking: its grids, and the bounds of its density in
+// regions of space, most of them one brick of a grid.
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "renderlib/math/rgb.h"
+#include "renderlib/math/transform.h"
+#include "renderlib/math/vec.h"
+#include "renderlib/medium/blackbody.h"
+#include "renderlib/medium/medium.h"
+#include "renderlib/medium/volume_grid.h"
+
+namespace bandsaw {
+
+/// A box of space in which the density lies between two bounds, in every channel.
+struct Region {
+  float least = 0;
+  float most = 0;
+  bool emits = false;  ///< false: the medium emits nowhere in the region
+};
+
+/// The regions of a medium: a block of cubes, and everything around it.
+struct Regions {
+  Transform from_medium;  ///< from the medium's space to that of the regions
+  /// The block, in the space of the regions; its last cubes may reach out of it.
+  Vec3 low;
+  Vec3 high;
+  double side = kBrickSide;  ///< of a cube
+  std::array<std::uint32_t, 3> count = {};
+  std::vector<Region> regions;  ///< x fastest
+  Region around;                ///< outside of the block
+};
+
+/// Coefficients at a point, per scene unit and channel. Not Rgb: a product of a density and a
+/// coefficient may be larger than a float.
+struct Coefficients {
+  std::array<double, 3> extinction{};
+  std::array<double, 3> scattering{};
+};
+
+class GridMedium {
+ public:
+  /// `medium` has grids, which are entries of `grids`; all MUST be valid, and the grids MUST
+  /// outlive this object.
+  GridMedium(const Medium& medium, const std::vector<VolumeGrid>& grids);
+
+  const Regions& regions() const { return regions_; }
+  double g() const { return g_; }
+  /// Returns extinction where the density is 1.
+  const std::array<double, 3>& extinction() const { return extinction_; }
+  double max_extinction() const { return max_extinction_; }
+  bool scatters() const { return scatters_; }
+  bool emits() const { return emits_; }
+
+  /// Returns the density at a point of the medium's space, by channel; at most `most`.
+  std::array<double, 3> density(const Vec3& at, double most) const;
+  /// Returns the coefficients at a point with this density.
+  Coefficients coefficients(const Vec3& at, const std::array<double, 3>& density) const;
+  /// Returns the emitted radiance per scene unit at a point with this density.
+  std::array<double, 3> emission(const Vec3& at, const std::array<double, 3>& density) const;
+
+ private:
+  struct Lookup {
+    GridReader reader;
+    Transform from_medium;  ///< to the grid's cells
+    double scale;
+    double value(const Vec3& at) const { return scale * reader.value(from_medium.point(at)); }
+    std::array<double, 3> color(const Vec3& at) const;
+  };
+  using Channels = std::array<double, 3>;
+
+  static std::optional<Lookup> lookup(const std::optional<GridUse>& use,
+                                      const std::vector<VolumeGrid>& grids);
+  void find_regions(const MediumGrids& uses, const std::vector<VolumeGrid>& grids);
+
+  Channels extinction_{};
+  Channels scattering_{};
+  Channels emission_{};
+  double max_extinction_ = 0;
+  double g_ = 0;
+  bool scatters_ = false;
+  bool emits_ = false;
+  std::optional<Lookup> density_;
+  std::optional<Lookup> albedo_;
+  std::optional<Lookup> emitted_;
+  std::optional<Lookup> temperature_;
+  double temperature_offset_ = 0;
+  std::optional<BlackbodyTable> blackbody_;
+  Regions regions_;
+};
+
+}  // namespace bandsaw

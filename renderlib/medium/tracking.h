@@ -1,0 +1,71 @@
+#pragma once
+
+// Transport through media that vary in space, without bias: tentative collisions at the rate of a
+// local majorant of the extinction (delta tracking: Woodcock et al. 1965), of which a random part
+// are real ones.
+//
+// - A flight weighs its three channels as free-flight sampling does (free_flight.h): at a tentative
+//   collision, light is scattered with the probability of its share in the light that is scattered
+//   or passes, over all channels (Kutz, Habel, Li and Novak 2017, "Spectral and Decomposition
+//   Tracking for Rendering Heterogeneous Volumes", section 4.1, history-aware). Absorption is
+//   contained in the weights. So the sum of the channels is the same for either outcome and never
+//   grows.
+// - Transmittance is estimated by residual ratio tracking (Novak, Selle and Jarosz 2014, "Residual
+//   Ratio Tracking for Estimating Attenuation in Participating Media", section 4.2), whose control
+//   is the least density of each region: in regions of constant density it is exact.
+// - Emission is collected at tentative collisions. Where a medium emits, there are at least two of
+//   them on average along a region.
+//
+// Flights whose weight is low end by Russian roulette, and so do flights of very many collisions.
+
+#include "renderlib/math/rgb.h"
+#include "renderlib/medium/grid_medium.h"
+#include "renderlib/medium/region_walk.h"
+#include "renderlib/sampling/sampler.h"
+
+namespace bandsaw {
+
+/// Outcome of a flight through a segment.
+struct Flight {
+  bool scattered = false;
+  double distance = 0;  ///< where, if scattered
+  Rgb throughput;       ///< weight of the light that is scattered there, or that passes the segment
+  Rgb emitted;          ///< emission towards the start of the segment, times the weight before it
+};
+
+/// First numbers of a flight, each in [0, 1), so that flights of one pixel can be stratified; the
+/// others are from the stream.
+struct FirstCollision {
+  double choice = 0;
+  double distance = 0;
+};
+
+/// Sends light of weight `throughput` (>= 0, finite) through the first `length` (> 0, may be
+/// infinite) of the ray.
+Flight fly(const GridMedium& medium, const GridRay& ray, double length, const Rgb& throughput,
+           const FirstCollision& first, NumberStream& numbers);
+
+/// A point at which the medium scatters light.
+struct ScatteringPoint {
+  double distance = 0;
+  Rgb weight;  ///< black: there is none
+};
+
+/// Light that passes a segment, where no path is to be scattered.
+struct Passage {
+  Rgb throughput;  ///< estimate of the weight that passes
+  Rgb emitted;     ///< as Flight::emitted
+  /// One point whose weight is an estimate of all that is scattered in the segment, with the
+  /// distribution of what is scattered.
+  ScatteringPoint scattered;
+};
+
+/// Sends light of weight `throughput` through the segment as `fly` does, but lets it pass.
+Passage pass(const GridMedium& medium, const GridRay& ray, double length, const Rgb& throughput,
+             NumberStream& numbers);
+
+/// Returns an estimate of the transmittance of the first `length` of the ray, by channel.
+Rgb estimate_transmittance(const GridMedium& medium, const GridRay& ray, double length,
+                           NumberStream& numbers);
+
+}  // namespace bandsaw

@@ -1,0 +1,31 @@
+#pragma once
+
+// The spaces of media (scene/media.h): where in its medium's space a point of the world is.
+
+#include <cstdint>
+#include <vector>
+
+#include "renderlib/geometry/shapes.h"
+
+namespace bandsaw {
+
+class MediumSpaces {
+ public:
+  MediumSpaces() = default;
+  /// Notes the frames of all boundaries, before static ones lose them (static_instances.h).
+  explicit MediumSpaces(const Geometry& boundaries);
+
+  /// Computes the maps of boundaries that are static, as at `time`.
+  void prepare(const Geometry& boundaries, double time);
+
+  /// Returns the map from the world to the space of the medium in a boundary: Hit::id.instance, 0
+  /// for loose spheres. prepare() MUST have been called, with the same geometry.
+  Transform to_medium(const Geometry& boundaries, std::uint32_t boundary, double time) const;
+
+ private:
+  std::vector<FrameId> frames_;  ///< by instance
+  /// By instance; unused for those that move.
+  std::vector<Transform> still_;
+};
+
+}  // namespace bandsaw

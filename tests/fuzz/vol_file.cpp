@@ -1,0 +1,20 @@
+// A *.vol file.
+
+#include <span>
+
+#include "renderlib/base/check.h"
+#include "renderlib/import/volume/volume_file.h"
+#include "tests/fuzz/fuzz.h"
+
+void bandsaw::fuzz::run(absl::Span<const std::uint8_t> input) {
+  const auto bytes = std::as_bytes(std::span(input.data(), input.size()));
+  const auto read = read_vol({bytes.data(), bytes.size()});
+  if (!read.ok()) {
+    return;
+  }
+  const absl::StatusOr<float> checked = check_grid(read->grid);
+  // The box of the file may be too flat for the map to have an inverse; the scene file's reader
+  // checks that.
+  BANDSAW_CHECK(checked.ok() || !inverse(read->grid.to_medium),
+                checked.status().ToString().c_str());
+}
