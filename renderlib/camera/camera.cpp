@@ -136,72 +136,121 @@ absl::Status validate(const Camera& camera) {
   return std::visit([](const auto& c) { return validate_kind(c); }, camera);
 }
 
-RayGenerator::RayGenerator(const Camera& camera, int width, int height)
-    : shutter_(shutter_of(camera)) {
-  std::visit([&](const auto& c) { prepare(c, width, height); }, camera);
+absl::Status validate_motion(const Camera& at_open, const Camera& at_close) {
+  RETURN_IF_ERROR(validate(at_close));
+  if (at_open.index() != at_close.index() || shutter_of(at_open) != shutter_of(at_close)) {
+    return absl::InvalidArgumentError(
+        "camera: must be of one kind, with one shutter, while the shutter is open");
+  }
+  const auto* from = std::get_if<PerspectiveCamera>(&at_open);
+  const auto* to = std::get_if<PerspectiveCamera>(&at_close);
+  return from != nullptr && (from->aperture > 0) != (to->aperture > 0)
+             ? invalid("aperture", "must not become 0, or begin at 0, while the shutter is open")
+             : absl::OkStatus();
+}
+
+RayGenerator::RayGenerator(const Camera& camera, int width, int height,
+                           const std::optional<Camera>& at_close)
+    : kind_(std::holds_alternative<OrthographicCamera>(camera) ? Kind::kParallel
+            : std::get<PerspectiveCamera>(camera).aperture > 0 ? Kind::kLens
+                                                               : Kind::kPinhole),
+      now_(std::visit([&](const auto& c) { return project(c, width, height); }, camera)),
+      shutter_(shutter_of(camera)) {
+  if (at_close) {
+    at_close_ = std::visit([&](const auto& c) { return project(c, width, height); }, *at_close);
+  }
 }
 
 void RayGenerator::set_image(const Vec3& centre, const Vec3& right, const Vec3& up, double half,
-                             const std::optional<ImageWindow>& window, int width, int height) {
+                             const std::optional<ImageWindow>& window, int width, int height,
+                             Projection& to) {
   if (!window) {  // pixels are square
     const double pixel = 2 * half / height;
-    dx_ = right * pixel;
-    dy_ = up * -pixel;
-    corner_ = centre - dx_ * (width / 2.0) - dy_ * (height / 2.0);
+    to.dx = right * pixel;
+    to.dy = up * -pixel;
+    to.corner = centre - to.dx * (width / 2.0) - to.dy * (height / 2.0);
     return;
   }
-  dx_ = right * (half * (window->right - window->left) / width);
-  dy_ = up * (-half * (window->top - window->bottom) / height);
-  corner_ = centre + right * (half * window->left) + up * (half * window->top);
+  to.dx = right * (half * (window->right - window->left) / width);
+  to.dy = up * (-half * (window->top - window->bottom) / height);
+  to.corner = centre + right * (half * window->left) + up * (half * window->top);
 }
 
-void RayGenerator::prepare(const PerspectiveCamera& camera, int width, int height) {
+RayGenerator::Projection RayGenerator::project(const PerspectiveCamera& camera, int width,
+                                               int height) {
   const Axes axes(camera);
-  kind_ = camera.aperture > 0 ? Kind::kLens : Kind::kPinhole;
-  origin_ = camera.position;
+  Projection to;
+  to.origin = camera.position;
   // The image plane at distance 1 has height 2 tan(fov / 2).
   set_image(axes.forward, axes.right, axes.up, tan_degrees(camera.vertical_fov / 2), camera.window,
-            width, height);
-  lens_x_ = axes.right * (camera.aperture / 2);
-  lens_y_ = axes.up * (camera.aperture / 2);
-  forward_ = axes.forward;
-  lens_radius_ = camera.aperture / 2;
-  focus_distance_ = camera.focus_distance;
+            width, height, to);
+  to.lens_x = axes.right * (camera.aperture / 2);
+  to.lens_y = axes.up * (camera.aperture / 2);
+  to.forward = axes.forward;
+  to.lens_radius = camera.aperture / 2;
+  to.focus_distance = camera.focus_distance;
+  return to;
 }
 
-void RayGenerator::prepare(const OrthographicCamera& camera, int width, int height) {
+RayGenerator::Projection RayGenerator::project(const OrthographicCamera& camera, int width,
+                                               int height) {
   const Axes axes(camera);
-  kind_ = Kind::kParallel;
-  origin_ = axes.forward;
-  set_image(camera.position, axes.right, axes.up, camera.height / 2, camera.window, width, height);
+  Projection to;
+  to.origin = axes.forward;
+  set_image(camera.position, axes.right, axes.up, camera.height / 2, camera.window, width, height,
+            to);
+  return to;
+}
+
+RayGenerator::Projection RayGenerator::between(double share) const {
+  const auto at = [share](const auto& a, const auto& b) { return a + (b - a) * share; };
+  const Projection& a = now_;
+  const Projection& b = *at_close_;
+  Projection out{at(a.origin, b.origin),
+                 at(a.corner, b.corner),
+                 at(a.dx, b.dx),
+                 at(a.dy, b.dy),
+                 at(a.lens_x, b.lens_x),
+                 at(a.lens_y, b.lens_y),
+                 at(a.forward, b.forward),
+                 at(a.lens_radius, b.lens_radius),
+                 at(a.focus_distance, b.focus_distance)};
+  if (kind_ == Kind::kParallel) {
+    out.origin = normalize(out.origin);
+  } else {
+    out.forward = normalize(out.forward);
+  }
+  return out;
 }
 
 Ray RayGenerator::ray(double x, double y, double lens_u, double lens_v, double share) const {
-  Ray ray = ray_now(x, y, lens_u, lens_v);
+  Ray ray = ray_now(at_close_ ? between(share) : now_, x, y, lens_u, lens_v);
   ray.time = std::min(shutter_.open + share * (shutter_.close - shutter_.open), shutter_.close);
   return ray;
 }
 
-std::optional<LensView> RayGenerator::lens_view(double x, double y) const {
+std::optional<LensView> RayGenerator::lens_view(double x, double y, double share) const {
   if (kind_ != Kind::kLens) {
     return std::nullopt;
   }
-  return LensView::make(origin_, forward_, lens_radius_, focus_distance_,
-                        corner_ + dx_ * x + dy_ * y);
+  const Projection now = at_close_ ? between(share) : now_;
+  return LensView::make(now.origin, now.forward, now.lens_radius, now.focus_distance,
+                        now.corner + now.dx * x + now.dy * y);
 }
 
-Ray RayGenerator::ray_now(double x, double y, double lens_u, double lens_v) const {
-  const Vec3 at = corner_ + dx_ * x + dy_ * y;
+Ray RayGenerator::ray_now(const Projection& now, double x, double y, double lens_u,
+                          double lens_v) const {
+  const Vec3 at = now.corner + now.dx * x + now.dy * y;
   if (kind_ == Kind::kPinhole) {
-    return {.origin = origin_, .direction = normalize(at)};
+    return {.origin = now.origin, .direction = normalize(at)};
   }
   if (kind_ == Kind::kParallel) {
-    return {.origin = at, .direction = origin_};
+    return {.origin = at, .direction = now.origin};
   }
   const Vec2 on_lens = sample_disk(lens_u, lens_v);
-  const Vec3 from = lens_x_ * on_lens.x + lens_y_ * on_lens.y;
+  const Vec3 from = now.lens_x * on_lens.x + now.lens_y * on_lens.y;
   // Towards `at` times the focus distance, in units of that distance, so that any distance works.
-  return {.origin = origin_ + from, .direction = normalize(at - from / focus_distance_)};
+  return {.origin = now.origin + from, .direction = normalize(at - from / now.focus_distance)};
 }
 
 }  // namespace bandsaw

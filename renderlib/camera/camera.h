@@ -54,6 +54,10 @@ struct PerspectiveCamera {
   std::optional<ImageWindow> window = std::nullopt;
 };
 
+constexpr double middle_of(const Shutter& shutter) {
+  return shutter.open + (shutter.close - shutter.open) / 2;
+}
+
 inline constexpr double kMaxTime = 1e9;
 inline constexpr double kMinFocus = 1e-9;
 inline constexpr double kMaxLens = 1e30;
@@ -72,6 +76,12 @@ struct OrthographicCamera {
 
 using Camera = std::variant<PerspectiveCamera, OrthographicCamera>;
 
+/// A camera that may move while the shutter is open.
+struct MovingCamera {
+  Camera at_open;
+  std::optional<Camera> at_close = std::nullopt;  ///< of the same kind; absent: it does not move
+};
+
 View view_of(const Camera& camera);
 bool is_mirrored(const Camera& camera);
 const std::optional<ImageWindow>& window_of(const Camera& camera);
@@ -80,42 +90,55 @@ const Shutter& shutter_of(const Camera& camera);
 /// Returns INVALID_ARGUMENT with the reason if the camera cannot generate rays.
 absl::Status validate(const Camera& camera);
 
-/// A camera prepared for an image of a given size: a ray costs a few multiplications.
+/// Returns INVALID_ARGUMENT if the two cameras cannot be one that moves: they differ in kind or
+/// shutter, one has a lens and the other is a pinhole, or the second one is not valid.
+absl::Status validate_motion(const Camera& at_open, const Camera& at_close);
+
+/// A camera prepared for an image of a given size: a ray costs a few multiplications. If the camera
+/// moves, origin and direction of the ray through each point of image and lens change linearly from
+/// the opening of the shutter to its closing.
 class RayGenerator {
  public:
-  /// `camera` MUST be valid; sizes are in pixels, >= 1.
-  RayGenerator(const Camera& camera, int width, int height);
+  /// `camera` MUST be valid, and `at_close` too (validate_motion); sizes are in pixels, >= 1.
+  RayGenerator(const Camera& camera, int width, int height,
+               const std::optional<Camera>& at_close = std::nullopt);
   /// Returns the ray through image position (x, y), in pixels from the top left corner; (lens_u,
   /// lens_v) in [0, 1)^2 selects the point on the lens. The direction is a unit vector. `share` in
   /// [0, 1] is the position of the ray's time in the shutter interval.
   Ray ray(double x, double y, double lens_u, double lens_v, double share = 0) const;
-  /// Returns the view through the lens at this image position; std::nullopt without a lens or if it
-  /// is too wide.
-  std::optional<LensView> lens_view(double x, double y) const;
+  /// Returns the view through the lens at this image position and share of the shutter interval;
+  /// std::nullopt without a lens or if it is too wide.
+  std::optional<LensView> lens_view(double x, double y, double share = 0) const;
 
  private:
-  Ray ray_now(double x, double y, double lens_u, double lens_v) const;
-
   enum class Kind { kPinhole, kLens, kParallel };
 
+  /// The camera at one time.
+  struct Projection {
+    Vec3 origin;  ///< orthographic: the direction of all rays
+    /// Direction through image position (0, 0), not normalised; orthographic: the ray origin there.
+    Vec3 corner;
+    Vec3 dx;      ///< its change per pixel to the right
+    Vec3 dy;      ///< its change per pixel down
+    Vec3 lens_x;  ///< the lens' radius to the right
+    Vec3 lens_y;  ///< the lens' radius upwards
+    Vec3 forward;
+    double lens_radius = 0;
+    double focus_distance = 1;
+  };
+  static Projection project(const PerspectiveCamera& camera, int width, int height);
+  static Projection project(const OrthographicCamera& camera, int width, int height);
   /// Sets the axes of the image: `centre` is the point where the view direction passes through it,
   /// `half` is half its height.
-  void set_image(const Vec3& centre, const Vec3& right, const Vec3& up, double half,
-                 const std::optional<ImageWindow>& window, int width, int height);
-  void prepare(const PerspectiveCamera& camera, int width, int height);
-  void prepare(const OrthographicCamera& camera, int width, int height);
+  static void set_image(const Vec3& centre, const Vec3& right, const Vec3& up, double half,
+                        const std::optional<ImageWindow>& window, int width, int height,
+                        Projection& to);
+  Projection between(double share) const;
+  Ray ray_now(const Projection& now, double x, double y, double lens_u, double lens_v) const;
 
-  Kind kind_ = Kind::kPinhole;
-  Vec3 origin_;  ///< orthographic: the direction of all rays
-  /// Direction through image position (0, 0), not normalised; orthographic: the ray origin there.
-  Vec3 corner_;
-  Vec3 dx_;      ///< its change per pixel to the right
-  Vec3 dy_;      ///< its change per pixel down
-  Vec3 lens_x_;  ///< the lens' radius to the right
-  Vec3 lens_y_;  ///< the lens' radius upwards
-  Vec3 forward_;
-  double lens_radius_ = 0;
-  double focus_distance_ = 1;
+  Kind kind_;
+  Projection now_;  ///< when the shutter opens, if the camera moves
+  std::optional<Projection> at_close_;
   Shutter shutter_;
 };
 

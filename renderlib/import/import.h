@@ -20,6 +20,14 @@ struct GivenFile {
   std::string bytes;
 };
 
+/// One frame of a sequence.
+struct FrameChoice {
+  double number = 0;          ///< its time is number / fps
+  std::optional<double> fps;  ///< frames per second, [0.01, 10000]; absent: the scene's
+  /// Share of the frame's time in which the shutter is open, [0, 1]; absent: the scene's shutter.
+  std::optional<double> shutter;
+};
+
 /// Choices of the user in addition to the scene.
 struct ImportChoices {
   std::optional<GivenFile> environment =
@@ -27,6 +35,8 @@ struct ImportChoices {
   std::string camera = {};  ///< name of one of its models' cameras; empty for the scene's own
   std::map<std::string, std::string> parameters = {};  ///< of a Mitsuba scene
   bool strict = false;                                 ///< a warning is an error
+  std::optional<FrameChoice> frame = {};  ///< absent: the scene at time 0, models without animation
+  std::string animation = {};             ///< name of its models' animation
 };
 
 /// Reads a scene file (*.textproto, *.json), a scene of pbrt-v4 (*.pbrt, *.pbrt.gz) or Mitsuba

@@ -26,6 +26,7 @@
 #include "renderlib/import/scene_file/read_shapes.h"
 #include "renderlib/import/scene_file/read_textures.h"
 #include "renderlib/import/scene_file/read_view.h"
+#include "renderlib/import/scene_file/tracks.h"
 #include "renderlib/import/scene_file/use_camera.h"
 #include "renderlib/scene/validate.h"
 
@@ -50,29 +51,34 @@ Camera framed(const ImportedScene& out) {
 
 /// Returns the camera of a scene file that defines none: one of a model's, or one that frames the
 /// model.
-absl::StatusOr<Camera> camera_of_a_model(const Field& root, const scene::Scene& from,
-                                         const SceneDraft& draft) {
+absl::StatusOr<MovingCamera> camera_of_a_model(const Field& root, const scene::Scene& from,
+                                               const SceneDraft& draft) {
   if (from.has_camera()) {
     return use_camera(root, from, draft);
   }
   if (!draft.cameras.empty()) {
-    return draft.cameras.front().camera;
+    return with_shutter(draft.cameras.front(), draft.shutter);
   }
   if (from.model_size() != 1 || draft.out.scene.geometry.instances.empty()) {
     return root.error("camera",
                       "is required, for example camera { position: [0, 1, 5] look_at: [0, 0, 0] }");
   }
-  return framed(draft.out);
+  return MovingCamera{framed(draft.out)};
 }
 
+void set_camera(MovingCamera camera, SceneDescription& scene) {
+  scene.camera = std::move(camera.at_open);
+  scene.camera_at_close = std::move(camera.at_close);
+}
+
+/// Reads a scene at one time: all but its tracks.
 absl::Status read_scene(const Field& root, const scene::Scene& from, SceneDraft& draft) {
   SceneDescription& scene = draft.out.scene;
   RETURN_IF_ERROR(read_settings(root, from, draft.out.info));
   // Cheap checks come before slow ones.
-  ASSIGN_OR_RETURN(draft.shutter, read_shutter(root, from));
   const bool own_camera = from.has_camera() && from.camera().use().empty();
   if (own_camera) {
-    ASSIGN_OR_RETURN(scene.camera, read_camera(root, from));
+    ASSIGN_OR_RETURN(scene.camera, read_camera(root, from, draft.shutter));
   }
   ASSIGN_OR_RETURN(scene.filter, read_filter(root, from));
   ASSIGN_OR_RETURN(scene.local_shading, read_local_shading(root, from));
@@ -92,7 +98,8 @@ absl::Status read_scene(const Field& root, const scene::Scene& from, SceneDraft&
   scene.media.boundaries.frames = std::move(draft.world.filled.frames);
   scene.media.boundaries.instances = std::move(draft.world.filled.instances);
   if (!own_camera) {
-    ASSIGN_OR_RETURN(scene.camera, camera_of_a_model(root, from, draft));
+    ASSIGN_OR_RETURN(MovingCamera camera, camera_of_a_model(root, from, draft));
+    set_camera(std::move(camera), scene);
   }
   if (!from.has_background() && !has_light(scene)) {
     scene.background = default_sky();
@@ -100,14 +107,55 @@ absl::Status read_scene(const Field& root, const scene::Scene& from, SceneDraft&
   return absl::OkStatus();
 }
 
-absl::Status read_scene_file(const std::string& path, bool json, SceneDraft& draft) {
+/// Returns the shutter interval of the frame in the scene's time; at time 0 without a frame.
+absl::StatusOr<Shutter> shutter_of_frame(const Field& root, const scene::Scene& from,
+                                         const std::optional<FrameChoice>& frame) {
+  ASSIGN_OR_RETURN(const double own_fps, read_fps(root, from));
+  if (!frame) {
+    return read_shutter(root, from, 0);
+  }
+  const double fps = frame->fps.value_or(own_fps);
+  const double time = frame->number / fps;
+  return frame->shutter ? Shutter{time, time + *frame->shutter / fps}
+                        : read_shutter(root, from, time);
+}
+
+/// Reads a scene as written, at a frame: the values of its tracks are those in the middle of the
+/// exposure, and the camera moves during it. `locations` may be nullptr.
+absl::Status read_frame(const scene::Scene& written,
+                        const google::protobuf::TextFormat::ParseInfoTree* locations,
+                        const ImportChoices& choices, SceneDraft& draft) {
+  const Field root(draft.file, written, locations);
+  ASSIGN_OR_RETURN(draft.shutter, shutter_of_frame(root, written, choices.frame));
+  draft.animation = {choices.animation, choices.frame.has_value()};
+  if (written.track_size() == 0) {
+    return read_scene(root, written, draft);
+  }
+  ASSIGN_OR_RETURN(const scene::Scene now, scene_at(root, written, middle_of(draft.shutter)));
+  RETURN_IF_ERROR(read_scene(Field(draft.file, now, locations), now, draft));
+  if (!moves_camera(written) || !written.camera().use().empty() ||
+      draft.shutter.open == draft.shutter.close) {
+    return absl::OkStatus();
+  }
+  ASSIGN_OR_RETURN(const scene::Scene open, scene_at(root, written, draft.shutter.open));
+  ASSIGN_OR_RETURN(const scene::Scene close, scene_at(root, written, draft.shutter.close));
+  MovingCamera camera;
+  ASSIGN_OR_RETURN(camera.at_open,
+                   read_camera(Field(draft.file, open, locations), open, draft.shutter));
+  ASSIGN_OR_RETURN(camera.at_close,
+                   read_camera(Field(draft.file, close, locations), close, draft.shutter));
+  set_camera(std::move(camera), draft.out.scene);
+  return absl::OkStatus();
+}
+
+absl::Status read_scene_file(const std::string& path, bool json, const ImportChoices& choices,
+                             SceneDraft& draft) {
   ASSIGN_OR_RETURN(const std::string text, read_whole_file(path, kMaxSceneFileBytes));
   auto parsed = json ? parse_json(text, draft.file) : parse_textproto(text, draft.file);
   if (!parsed.ok()) {
     return parsed.status();
   }
-  const Field root(draft.file, parsed->scene, parsed->locations.get());
-  return read_scene(root, parsed->scene, draft);
+  return read_frame(parsed->scene, parsed->locations.get(), choices, draft);
 }
 
 scene::Background as_proto(const Background& sky) {
@@ -165,20 +213,48 @@ absl::StatusOr<ConvertedScene> convert(const std::string& path, const ImportChoi
 }
 
 /// Reads what a converter returned. Its warnings come before those of the reader.
-absl::Status read_converted(ConvertedScene converted, SceneDraft& draft) {
+absl::Status read_converted(ConvertedScene converted, const ImportChoices& choices,
+                            SceneDraft& draft) {
   draft.made_files = std::move(converted.made_files);
   draft.out.info.warnings = std::move(converted.warnings);
-  return read_scene(Field(draft.file, converted.scene, nullptr), converted.scene, draft);
+  return read_frame(converted.scene, nullptr, choices, draft);
 }
 
-absl::Status read_model_alone(const std::string& path, SceneDraft& draft) {
+/// Returns the model's first camera, or one that frames the model. The latter frames an animated
+/// model as it is at time 0, so that the camera rests in a sequence.
+absl::StatusOr<MovingCamera> camera_for_model(const std::string& real,
+                                              const AnimationChoice& animation,
+                                              const SceneDraft& draft) {
+  if (!draft.cameras.empty()) {
+    return with_shutter(draft.cameras.front(), draft.shutter);
+  }
+  if (draft.shutter == Shutter{}) {
+    return MovingCamera{framed(draft.out)};
+  }
+  SceneDraft at_zero(draft.folder, draft.file);
+  ASSIGN_OR_RETURN(const Model model, read_model(real, false, at_zero, animation));
+  at_zero.out.scene.geometry.instances = model.instances;
+  Camera camera = framed(at_zero.out);
+  std::visit([&](auto& c) { c.shutter = draft.shutter; }, camera);
+  return MovingCamera{camera};
+}
+
+absl::Status read_model_alone(const std::string& path, const ImportChoices& choices,
+                              SceneDraft& draft) {
   ASSIGN_OR_RETURN(const auto real, draft.folder.resolve(name_of(path), draft.folder.path()));
-  ASSIGN_OR_RETURN(const Model model, read_model(real, true, draft));
+  const scene::Scene defaults;
+  const Field root(draft.file, defaults, nullptr);
+  ASSIGN_OR_RETURN(draft.shutter, shutter_of_frame(root, defaults, choices.frame));
+  const AnimationChoice animation{choices.animation, choices.frame.has_value()};
+  ASSIGN_OR_RETURN(const Model model, read_model(real, true, draft, animation));
+  draft.out.scene.geometry.frames = model.frames;
   draft.out.scene.geometry.instances = model.instances;
+  draft.out.scene.media.boundaries.frames = model.frames;
   draft.out.scene.media.boundaries.instances = model.filled;
   draft.out.scene.lights = model.lights;
-  draft.out.scene.camera = model.cameras.empty() ? framed(draft.out) : model.cameras.front().camera;
   add_cameras(draft.file, model, Transform{}, draft);
+  ASSIGN_OR_RETURN(MovingCamera camera, camera_for_model(real, animation, draft));
+  set_camera(std::move(camera), draft.out.scene);
   if (!has_light(draft.out.scene)) {
     draft.out.scene.background = default_sky();
   }
@@ -188,14 +264,14 @@ absl::Status read_model_alone(const std::string& path, SceneDraft& draft) {
 absl::Status read_any(const std::string& path, const ImportChoices& choices, SceneDraft& draft) {
   if (is_foreign(path)) {
     ASSIGN_OR_RETURN(ConvertedScene converted, convert(path, choices, draft));
-    return read_converted(std::move(converted), draft);
+    return read_converted(std::move(converted), choices, draft);
   }
   const std::string lower = absl::AsciiStrToLower(path);
   if (absl::EndsWith(lower, ".textproto") || absl::EndsWith(lower, ".json")) {
-    return read_scene_file(path, absl::EndsWith(lower, ".json"), draft);
+    return read_scene_file(path, absl::EndsWith(lower, ".json"), choices, draft);
   }
   if (is_model_file(path)) {
-    return read_model_alone(path, draft);
+    return read_model_alone(path, choices, draft);
   }
   return absl::InvalidArgumentError(absl::StrCat(
       draft.file,
@@ -229,7 +305,8 @@ absl::StatusOr<ImportedScene> import_scene(const std::string& path, const Import
   RETURN_IF_ERROR(read_any(path, choices, draft));
   draft.out.info.model_cameras = names_of(draft.cameras);
   if (!choices.camera.empty()) {
-    ASSIGN_OR_RETURN(draft.out.scene.camera, chosen_camera(choices.camera, draft));
+    ASSIGN_OR_RETURN(MovingCamera camera, chosen_camera(choices.camera, draft));
+    set_camera(std::move(camera), draft.out.scene);
   }
   if (const auto& given = choices.environment) {
     ASSIGN_OR_RETURN(const TextureId image,
@@ -250,10 +327,10 @@ absl::StatusOr<SceneAsText> scene_as_text(const std::string& path, const ImportC
     ASSIGN_OR_RETURN(ConvertedScene converted, convert(path, choices, draft));
     scene = converted.scene;
     draft.folder.record_to(&out.found_files);
-    RETURN_IF_ERROR(read_converted(std::move(converted), draft));
+    RETURN_IF_ERROR(read_converted(std::move(converted), choices, draft));
   } else if (is_model_file(path)) {
     draft.folder.record_to(&out.found_files);
-    RETURN_IF_ERROR(read_model_alone(path, draft));
+    RETURN_IF_ERROR(read_model_alone(path, choices, draft));
     scene = scene_of_model(draft);
   } else {
     return absl::InvalidArgumentError(absl::StrCat(

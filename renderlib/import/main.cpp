@@ -2,12 +2,13 @@
 // or one error on standard output. Started by the client commands
 // (coordinator/cli/scene/import_process.h); can be run by hand.
 //
-//   bandsaw-import scene FILE FOLDER SECONDS BYTES [ENVIRONMENT [CAMERA [STRICT [NAME=VALUE ...]]]]
+//   bandsaw-import scene FILE FOLDER SECONDS BYTES [CHOICE ...]
 //
-// leaves FOLDER/manifest and FOLDER/<digest> for each blob; an empty ENVIRONMENT is none, STRICT is
-// "strict" or empty, NAME=VALUE is a parameter of a Mitsuba scene;
+// leaves FOLDER/manifest and FOLDER/<digest> for each blob. The choices (import.h, ImportChoices)
+// are environment=FILE, camera=NAME, strict, define:NAME=VALUE (a parameter of a Mitsuba scene),
+// frame=N, fps=F, shutter=SHARE (these two with a frame) and animation=NAME;
 //
-//   bandsaw-import text FILE FOLDER SECONDS BYTES [ENVIRONMENT [CAMERA [STRICT [NAME=VALUE ...]]]]
+//   bandsaw-import text FILE FOLDER SECONDS BYTES [CHOICE ...]
 //
 // leaves a foreign scene as one of ours: FOLDER/text, FOLDER/warnings (one a line), and FOLDER/list
 // with a line for each file that the scene names: "made NAME", whose bytes are in FOLDER/0,
@@ -28,6 +29,7 @@
 #include <sys/prctl.h>
 
 #include <cerrno>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -42,6 +44,8 @@
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
+#include "absl/strings/str_split.h"
+#include "absl/strings/strip.h"
 #include "proto/wire/limits.h"
 #include "renderlib/base/atomic_file.h"
 #include "renderlib/base/clean_text.h"
@@ -149,26 +153,56 @@ absl::Status unzip_to(const std::string& path, const std::string& folder) {
 
 constexpr char kUsage[] =
     "usage: bandsaw-import scene|text|image|unzip FILE FOLDER SECONDS BYTES "
-    "[ENVIRONMENT [CAMERA [STRICT [NAME=VALUE ...]]]]";
+    "[environment=FILE] [camera=NAME] [strict] [define:NAME=VALUE ...] [frame=N [fps=F] "
+    "[shutter=SHARE]] [animation=NAME]";
+
+// Reads a file that the user named, not another file, so it may be in any folder. Here it is only
+// copied.
+absl::StatusOr<GivenFile> read_given(const std::string& path) {
+  ASSIGN_OR_RETURN(std::string bytes, read_whole_file(path, kMaxImageFileBytes));
+  return GivenFile{name_of(path), std::move(bytes)};
+}
+
+// Sets a number of the chosen frame. Returns false if `value` is none, or if `key` is no such
+// choice.
+bool read_frame_choice(absl::string_view key, absl::string_view value, ImportChoices& choices) {
+  double number = 0;
+  if (!absl::SimpleAtod(value, &number) || !std::isfinite(number)) {
+    return false;
+  }
+  if (key == "frame") {
+    choices.frame = FrameChoice{number, std::nullopt, std::nullopt};
+  } else if (key == "fps" && choices.frame && number >= 0.01 && number <= 10'000) {
+    choices.frame->fps = number;
+  } else if (key == "shutter" && choices.frame && number >= 0 && number <= 1) {
+    choices.frame->shutter = number;
+  } else {
+    return false;
+  }
+  return true;
+}
 
 // Reads the arguments after the first six.
 absl::StatusOr<ImportChoices> read_choices(int argc, char** argv) {
   ImportChoices choices;
-  if (argc > 6 && argv[6][0] != '\0') {
-    // The user named this file, not another file, so it may be in any folder. Here it is only
-    // copied.
-    ASSIGN_OR_RETURN(std::string bytes, read_whole_file(argv[6], kMaxImageFileBytes));
-    choices.environment = GivenFile{name_of(argv[6]), std::move(bytes)};
-  }
-  choices.camera = argc > 7 ? argv[7] : "";
-  choices.strict = argc > 8 && argv[8] == std::string("strict");
-  for (int i = 9; i < argc; ++i) {
-    const std::string parameter = argv[i];
-    const std::size_t equals = parameter.find('=');
-    if (equals == std::string::npos) {
+  for (int i = 6; i < argc; ++i) {
+    const absl::string_view argument = argv[i];
+    const auto [key, value] =
+        std::pair<std::string, std::string>(absl::StrSplit(argument, absl::MaxSplits('=', 1)));
+    absl::string_view name = key;
+    if (argument == "strict") {
+      choices.strict = true;
+    } else if (key == "environment") {
+      ASSIGN_OR_RETURN(choices.environment, read_given(value));
+    } else if (key == "camera") {
+      choices.camera = value;
+    } else if (key == "animation") {
+      choices.animation = value;
+    } else if (absl::ConsumePrefix(&name, "define:")) {
+      choices.parameters[std::string(name)] = value;
+    } else if (!read_frame_choice(key, value, choices)) {
       return absl::InvalidArgumentError(kUsage);
     }
-    choices.parameters[parameter.substr(0, equals)] = parameter.substr(equals + 1);
   }
   return choices;
 }

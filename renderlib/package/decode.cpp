@@ -358,7 +358,14 @@ absl::StatusOr<SceneDescription> decode_package(const std::string& manifest_byte
   ASSIGN_OR_RETURN(const package::Manifest manifest, parse_manifest(manifest_bytes));
   Decoder decoder(blobs);
   SceneDescription scene;
-  ASSIGN_OR_RETURN(scene.camera, decode_camera(manifest));
+  if (!manifest.has_camera()) {
+    return manifest_error("camera", "is missing");
+  }
+  ASSIGN_OR_RETURN(scene.camera, decode_camera(manifest.camera(), "camera"));
+  if (manifest.has_camera_at_close()) {
+    ASSIGN_OR_RETURN(scene.camera_at_close,
+                     decode_camera(manifest.camera_at_close(), "camera_at_close"));
+  }
   ASSIGN_OR_RETURN(scene.filter, decode_filter(manifest));
   ASSIGN_OR_RETURN(scene.local_shading, decode_local_shading(manifest));
   ASSIGN_OR_RETURN(scene.background, decode_background(manifest));

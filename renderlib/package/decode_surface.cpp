@@ -51,15 +51,11 @@ absl::StatusOr<Rgb> decode_rgb(const google::protobuf::RepeatedField<float>& lis
   return Rgb{list[0], list[1], list[2]};
 }
 
-absl::StatusOr<Camera> decode_camera(const package::Manifest& manifest) {
-  if (!manifest.has_camera()) {
-    return manifest_error("camera", "is missing");
-  }
-  const package::Camera& from = manifest.camera();
+absl::StatusOr<Camera> decode_camera(const package::Camera& from, const std::string& field) {
   View view;
-  ASSIGN_OR_RETURN(view.position, decode_vec3(from.position(), "camera.position"));
-  ASSIGN_OR_RETURN(view.look_at, decode_vec3(from.look_at(), "camera.look_at"));
-  ASSIGN_OR_RETURN(view.up, decode_vec3(from.up(), "camera.up"));
+  ASSIGN_OR_RETURN(view.position, decode_vec3(from.position(), field + ".position"));
+  ASSIGN_OR_RETURN(view.look_at, decode_vec3(from.look_at(), field + ".look_at"));
+  ASSIGN_OR_RETURN(view.up, decode_vec3(from.up(), field + ".up"));
   const Shutter shutter = {from.shutter_open(), from.shutter_close()};
   std::optional<ImageWindow> window;
   if (from.window_size() != 0) {

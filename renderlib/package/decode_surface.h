@@ -9,8 +9,9 @@
 
 namespace bandsaw {
 
-/// Return INVALID_ARGUMENT if the part is missing or a list has a wrong length.
-absl::StatusOr<Camera> decode_camera(const package::Manifest& manifest);
+/// Return INVALID_ARGUMENT if the part is missing or a list has a wrong length. `field` names the
+/// camera in messages.
+absl::StatusOr<Camera> decode_camera(const package::Camera& from, const std::string& field);
 /// Returns the default filter if the manifest has none.
 absl::StatusOr<PixelFilter> decode_filter(const package::Manifest& manifest);
 absl::StatusOr<LocalShading> decode_local_shading(const package::Manifest& manifest);

@@ -335,6 +335,9 @@ std::string encode_package(const SceneDescription& scene, const PackageInfo& inf
   Encoder encoder(blobs);
   encode(info, manifest);
   encode(scene.camera, *manifest.mutable_camera());
+  if (scene.camera_at_close) {
+    encode(*scene.camera_at_close, *manifest.mutable_camera_at_close());
+  }
   encode(scene.filter, manifest);
   encode(scene.local_shading, manifest);
   encode(scene.background, *manifest.mutable_background());

@@ -26,7 +26,8 @@ PixelSums::PixelSums(const Scene& scene, const RenderSettings& settings, const B
                .technique = technique_of(settings.integrator),
                .local = settings.integrator == Integrator::kDirect,
                .branches = settings.integrator == Integrator::kDirect ? 1 : branches_for(scene)},
-      camera_(scene.camera(), static_cast<int>(settings.width), static_cast<int>(settings.height)),
+      camera_(scene.camera(), static_cast<int>(settings.width), static_cast<int>(settings.height),
+              scene.camera_at_close()),
       samples_through_lens_(!scene.lights().empty() && computes_radiance(settings.integrator)),
       reuses_paths_(scene.reuses_paths() && computes_radiance(settings.integrator) &&
                     !options_.local) {}
@@ -144,7 +145,7 @@ CameraRay PixelSums::camera_ray(const PixelSampler& sampler, std::uint32_t x, st
   const Vec2 place{x + 0.5 + offset.x, y + 0.5 + offset.y};
   CameraRay ray(camera_.ray(place.x, place.y, at[2], at[3], when));
   if (samples_through_lens_) {
-    ray.lens = camera_.lens_view(place.x, place.y);
+    ray.lens = camera_.lens_view(place.x, place.y, when);
   }
   return ray;
 }

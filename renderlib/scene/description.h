@@ -3,6 +3,7 @@
 // A scene as plain values: the result of decoding a package, or written by hand in tests.
 // Scene::build validates it and makes it renderable.
 
+#include <optional>
 #include <vector>
 
 #include "renderlib/camera/camera.h"
@@ -18,7 +19,8 @@
 namespace bandsaw {
 
 struct SceneDescription {
-  Camera camera;
+  Camera camera;  ///< when the shutter opens, if it moves
+  std::optional<Camera> camera_at_close;  ///< absent: it does not move (camera.h, validate_motion)
   Background background;
   std::vector<Texture> textures;
   std::vector<Material> materials;

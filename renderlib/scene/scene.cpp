@@ -100,7 +100,8 @@ SceneFeatures features_of(const SceneDescription& scene, const Lights& lights) {
   SceneFeatures features;
   features.lights = !lights.empty();
   features.alpha = std::any_of(scene.materials.begin(), scene.materials.end(), has_alpha);
-  features.motion = moves(scene.geometry) || moves(scene.media.boundaries);
+  features.motion = scene.camera_at_close.has_value() || moves(scene.geometry) ||
+                    moves(scene.media.boundaries);
   features.uv = std::any_of(scene.textures.begin(), scene.textures.end(), uses_uv);
   features.media = scene.media.fog || scene.media.has_boundaries();
   features.grids = features.media && has_grids(scene.media);

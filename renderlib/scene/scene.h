@@ -58,6 +58,8 @@ class Scene {
   }
   const Background& background() const { return description_.background; }
   const Camera& camera() const { return description_.camera; }
+  /// Returns the camera when the shutter closes; std::nullopt if it does not move.
+  const std::optional<Camera>& camera_at_close() const { return description_.camera_at_close; }
   const PixelFilter& filter() const { return description_.filter; }
   const LocalShading& local_shading() const { return description_.local_shading; }
   const Material& material(MaterialId id) const { return description_.materials[index_of(id)]; }

@@ -32,6 +32,10 @@ absl::Status check_local_shading(const LocalShading& local) {
 
 absl::Status validate(const SceneDescription& scene, MeshVertices vertices) {
   RETURN_IF_ERROR(check_camera(scene.camera));
+  if (scene.camera_at_close) {
+    RETURN_IF_ERROR(check_camera(*scene.camera_at_close));
+    RETURN_IF_ERROR(validate_motion(scene.camera, *scene.camera_at_close));
+  }
   RETURN_IF_ERROR(validate(scene.filter));
   RETURN_IF_ERROR(check_local_shading(scene.local_shading));
   const auto infinite = static_cast<float>(kInfinity);

@@ -65,6 +65,32 @@ absl::Status read_positive(const char* name, const std::optional<std::string>& t
   return absl::OkStatus();
 }
 
+absl::Status read_frame(const RawOptions& raw, SceneChoices& choices) {
+  if (raw.frame) {
+    constexpr std::int64_t kMaxFrame = 1'000'000'000;
+    std::int64_t frame = 0;
+    if (!absl::SimpleAtoi(*raw.frame, &frame) || std::abs(frame) > kMaxFrame) {
+      return wrong(absl::StrCat("--frame: must be a whole number, is '", *raw.frame, "'"));
+    }
+    choices.frame = frame;
+  }
+  const auto read = [&](const char* name, const std::optional<std::string>& text, double low,
+                        double high, std::optional<double>& to) -> absl::Status {
+    double value = 0;
+    if (text && !raw.frame) {
+      return wrong(absl::StrCat(name, " needs --frame"));
+    }
+    if (text && (!absl::SimpleAtod(*text, &value) || !(value >= low && value <= high))) {
+      return wrong(
+          absl::StrCat(name, ": must be a number in [", low, ", ", high, "], is '", *text, "'"));
+    }
+    to = text ? std::optional(value) : std::nullopt;
+    return absl::OkStatus();
+  };
+  RETURN_IF_ERROR(read("--fps", raw.fps, 0.01, 10'000, choices.fps));
+  return read("--shutter", raw.shutter, 0, 1, choices.shutter);
+}
+
 absl::StatusOr<SceneChoices> checked_choices(const RawOptions& raw) {
   for (const std::string& parameter : raw.parameters) {
     const std::size_t equals = parameter.find('=');
@@ -72,7 +98,17 @@ absl::StatusOr<SceneChoices> checked_choices(const RawOptions& raw) {
       return wrong(absl::StrCat("-D: must be NAME=VALUE, is '", parameter, "'"));
     }
   }
-  return SceneChoices{raw.environment, raw.camera, raw.parameters, raw.strict, raw.inside};
+  SceneChoices choices{raw.environment, raw.camera, raw.parameters, raw.strict, raw.inside};
+  choices.animation = raw.animation;
+  RETURN_IF_ERROR(read_frame(raw, choices));
+  return choices;
+}
+
+/// Writes the number of the frame into the names of the outputs.
+void number_outputs(const SceneChoices& choices, std::vector<std::string>& outputs) {
+  for (std::string& output : outputs) {
+    output = choices.frame ? name_of_frame(output, *choices.frame) : output;
+  }
 }
 
 absl::StatusOr<ImageOptions> checked_image(const RawOptions& raw) {
@@ -200,6 +236,7 @@ absl::StatusOr<Command> checked_submit(const RawOptions& raw) {
   options.detach = raw.detach;
   RETURN_IF_ERROR(check_scene(raw, "submit"));
   ASSIGN_OR_RETURN(options.image, checked_image(raw));
+  number_outputs(options.image.choices, options.outputs);
   ASSIGN_OR_RETURN(options.display, checked_display(raw));
   ASSIGN_OR_RETURN(options.report, checked_report(raw, !raw.detach));
   ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
@@ -250,6 +287,7 @@ absl::StatusOr<Command> checked_render(const RawOptions& raw) {
   options.outputs = raw.outputs;
   RETURN_IF_ERROR(check_scene(raw, "render"));
   ASSIGN_OR_RETURN(options.image, checked_image(raw));
+  number_outputs(options.image.choices, options.outputs);
   ASSIGN_OR_RETURN(options.display, checked_display(raw));
   ASSIGN_OR_RETURN(options.report, checked_report(raw));
   ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));

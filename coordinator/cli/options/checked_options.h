@@ -14,14 +14,14 @@ namespace bandsaw::coordinator {
 
 /// The union of all commands' options, unparsed.
 struct RawOptions {
-  std::string scene, environment, camera, image, reference, data, farm, join;
+  std::string scene, environment, camera, animation, image, reference, data, farm, join;
   std::optional<std::string> job, listen, priority, worker, action, role, keep_days, keep_size,
       keep_jobs;
   std::vector<std::string> outputs, parts, scenes, hosts;
   std::optional<std::string> samples, error, time, seed, width, height, depth, threads, kernel,
       rows;
   std::optional<std::string> integrator, exposure, tone, layers, report, seeds, reference_samples;
-  std::optional<std::string> tev;
+  std::optional<std::string> tev, frame, fps, shutter;
   std::vector<std::string> parameters;
   std::string inside;
   bool strict = false, force = false;

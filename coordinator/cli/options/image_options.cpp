@@ -56,6 +56,19 @@ void add_image(CLI::App& app, RawOptions& raw) {
                  "One of the cameras of the scene's models, see bandsaw info "
                  "[default: the scene's, or a model's first]")
       ->type_name("NAME");
+  app.add_option("--frame", raw.frame,
+                 "Frame of a scene that moves: the scene at time N / fps [default: time 0, models "
+                 "without their animations]")
+      ->type_name("N");
+  app.add_option("--fps", raw.fps, "Frames per second, with --frame [default: the scene's, or 24]")
+      ->type_name("F");
+  app.add_option("--shutter", raw.shutter,
+                 "Share of a frame's time in which the shutter is open, with --frame, as in 0.5 "
+                 "[default: the scene's shutter]")
+      ->type_name("S");
+  app.add_option("--animation", raw.animation,
+                 "One of the animations of the scene's models [default: with --frame the first]")
+      ->type_name("NAME");
   app.add_option("--samples", raw.samples, "Stop at N samples per pixel [default: 64]")
       ->type_name("N");
   app.add_option("--error", raw.error,

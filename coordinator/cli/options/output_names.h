@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 
@@ -17,6 +19,21 @@ inline bool is_part_name(const std::string& path) {
 /// "scenes/cornell.textproto", ".png" -> "cornell.png".
 inline std::string default_output(const std::string& scene, const std::string& suffix) {
   return std::filesystem::path(scene).stem().string() + suffix;
+}
+
+/// Replaces the last run of '#' in the name of the file by the number of a frame, with zeros in
+/// front: "walk.####.exr", 7 -> "walk.0007.exr". Unchanged without '#'.
+inline std::string name_of_frame(const std::string& path, std::int64_t frame) {
+  const std::size_t last = path.rfind('#');
+  const std::size_t folder = path.rfind('/');
+  if (last == std::string::npos || (folder != std::string::npos && folder > last)) {
+    return path;
+  }
+  const std::size_t before = path.find_last_not_of('#', last);
+  const std::size_t first = before == std::string::npos ? 0 : before + 1;
+  std::string number = std::to_string(std::abs(frame));
+  number.insert(0, last + 1 - first > number.size() ? last + 1 - first - number.size() : 0, '0');
+  return path.substr(0, first) + (frame < 0 ? "-" : "") + number + path.substr(last + 1);
 }
 
 }  // namespace bandsaw::coordinator

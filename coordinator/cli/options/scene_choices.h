@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +16,11 @@ struct SceneChoices {
   bool strict = false;  ///< a warning of the import is an error
   /// In a zip file, the name of the scene. Empty: the only one (scene/unpacked_scene.h).
   std::string inside = {};
+  std::optional<std::int64_t> frame = {};  ///< of a sequence; its time is frame / fps
+  std::optional<double> fps = {};          ///< frames per second, [0.01, 10000]
+  /// Share of a frame's time in which the shutter is open, [0, 1]; absent: the scene's shutter.
+  std::optional<double> shutter = {};
+  std::string animation = {};  ///< name of an animation of the scene's models
 };
 
 }  // namespace bandsaw::coordinator

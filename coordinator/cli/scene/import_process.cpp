@@ -111,6 +111,31 @@ absl::Status judge(const ChildOutcome& outcome, const std::string& file,
                                                          " while reading this file"));
 }
 
+// Returns the choices as the importer takes them (renderlib/import/main.cpp).
+std::vector<std::string> arguments_of(const SceneChoices& choices) {
+  std::vector<std::string> arguments;
+  const auto add = [&](const char* key, const std::string& value) {
+    if (!value.empty()) {
+      arguments.push_back(absl::StrCat(key, "=", value));
+    }
+  };
+  add("environment", choices.environment);
+  add("camera", choices.camera);
+  add("animation", choices.animation);
+  if (choices.strict) {
+    arguments.push_back("strict");
+  }
+  for (const std::string& parameter : choices.parameters) {
+    arguments.push_back(absl::StrCat("define:", parameter));
+  }
+  if (choices.frame) {
+    add("frame", absl::StrCat(*choices.frame));
+    add("fps", choices.fps ? absl::StrFormat("%.17g", *choices.fps) : "");
+    add("shutter", choices.shutter ? absl::StrFormat("%.17g", *choices.shutter) : "");
+  }
+  return arguments;
+}
+
 // Runs the importer on `file`. Returns the folder with its output.
 absl::StatusOr<std::unique_ptr<ScratchFolder>> run_importer(const char* what,
                                                             const std::string& file,
@@ -125,11 +150,8 @@ absl::StatusOr<std::unique_ptr<ScratchFolder>> run_importer(const char* what,
                                         folder->path(),
                                         absl::StrCat(cpu_seconds),
                                         absl::StrCat(limits.memory_bytes)};
-  if (!choices.environment.empty() || !choices.camera.empty() || choices.strict ||
-      !choices.parameters.empty()) {
-    arguments.insert(arguments.end(),
-                     {choices.environment, choices.camera, choices.strict ? "strict" : ""});
-    arguments.insert(arguments.end(), choices.parameters.begin(), choices.parameters.end());
+  for (std::string& argument : arguments_of(choices)) {
+    arguments.push_back(std::move(argument));
   }
   ASSIGN_OR_RETURN(const ChildOutcome outcome, run_child(arguments, limits.seconds, limits.stop));
   RETURN_IF_ERROR(judge(outcome, file, limits));

@@ -42,7 +42,7 @@ std::optional<Instance> mesh_boundary(const Instance& placed, MediumId inside, S
     known = draft.boundary_meshes.emplace(placed.mesh, id).first;
     boundaries.meshes.push_back(std::move(boundary));
   }
-  return Instance{known->second, filled_with(inside), placed.to_world};
+  return Instance{known->second, filled_with(inside), placed.to_world, kNoGroup, placed.frame};
 }
 
 }  // namespace bandsaw

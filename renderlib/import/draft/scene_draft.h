@@ -4,10 +4,13 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
+#include "renderlib/import/animation/animation.h"
 #include "renderlib/import/draft/imported_scene.h"
 #include "renderlib/import/draft/placements.h"
 #include "renderlib/import/files/scene_folder.h"
@@ -21,8 +24,9 @@ struct Model;
 struct FoundCamera {
   std::string model;  ///< file of the model
   std::string name;   ///< name of its node
-  std::string own_name;  ///< name of the camera itself; may be empty
-  Camera camera;
+  std::string own_name;                           ///< of the camera itself; may be empty
+  Camera camera;                                  ///< when the shutter opens
+  std::optional<Camera> at_close = std::nullopt;  ///< when it closes, if the camera moves
 };
 
 struct SceneDraft {
@@ -46,10 +50,12 @@ struct SceneDraft {
   std::map<std::string, GridId> volumes;
   /// Meshes of the boundaries of media, keyed by the mesh of the scene that is the same.
   std::map<MeshId, MeshId> boundary_meshes;
-  /// Models that have been read, keyed by file and by whether their materials were read.
-  std::map<std::pair<std::string, bool>, std::shared_ptr<const Model>> models;
+  /// Models that have been read, keyed by file, by whether the scene replaces their materials, and
+  /// by animation.
+  std::map<std::tuple<std::string, bool, AnimationChoice>, std::shared_ptr<const Model>> models;
   std::vector<FoundCamera> cameras;  ///< for a model with several placements, those of the first
-  Shutter shutter;
+  Shutter shutter;            ///< in the scene's time: at the frame that is imported
+  AnimationChoice animation;  ///< of models whose entry names none
 
   Contents world;
   /// Destination of shapes and placements that are read: the scene, or the group that is being read

@@ -10,6 +10,7 @@
 #include "absl/strings/string_view.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/import/gltf/gltf_accessor.h"
+#include "renderlib/import/gltf/gltf_animation.h"
 #include "renderlib/import/gltf/gltf_file.h"
 #include "renderlib/import/gltf/gltf_references.h"
 #include "renderlib/import/gltf/plain_meshes.h"
@@ -41,9 +42,13 @@ class Rewriter {
   Rewriter(const GltfFile& file, Buffers& buffers)
       : from_(file.root), buffers_(buffers), meshes_(file.root, buffers, out_) {}
 
-  absl::StatusOr<PlainGltf> run() {
+  absl::StatusOr<PlainGltf> run(const AnimationChoice& choice) {
     plain_.root = from_;
-    plain_.animations = items(from_, "animations").size();
+    plain_.animation_names = animation_names(from_);
+    ASSIGN_OR_RETURN(const auto chosen, choose(choice, plain_.animation_names));
+    if (chosen) {
+      ASSIGN_OR_RETURN(plain_.animation, read_animation(from_, *chosen, buffers_));
+    }
     for (const char* name :
          {"animations", "accessors", "bufferViews", "buffers", "extensionsRequired"}) {
       plain_.root.erase(name);
@@ -162,7 +167,8 @@ class Rewriter {
 
 }  // namespace
 
-absl::StatusOr<PlainGltf> read_plain_gltf(const std::string& path, const SceneFolder& scene) {
+absl::StatusOr<PlainGltf> read_plain_gltf(const std::string& path, const SceneFolder& scene,
+                                          const AnimationChoice& choice) {
   GltfFile file;
   ASSIGN_OR_RETURN(const bool is_second, read_gltf_file(path, file));
   if (!is_second) {
@@ -174,7 +180,7 @@ absl::StatusOr<PlainGltf> read_plain_gltf(const std::string& path, const SceneFo
   RETURN_IF_ERROR(check_required(file.root));
   RETURN_IF_ERROR(check_references(file.root));
   Buffers buffers(file, scene, folder_of(path));
-  return Rewriter(file, buffers).run();
+  return Rewriter(file, buffers).run(choice);
 }
 
 }  // namespace bandsaw::gltf

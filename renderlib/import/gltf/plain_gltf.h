@@ -4,9 +4,12 @@
 // 32-bit, nothing is sparse, compressed or outside of one buffer.
 
 #include <cstddef>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "absl/status/statusor.h"
+#include "renderlib/import/animation/animation.h"
 #include "renderlib/import/files/scene_folder.h"
 #include "renderlib/import/gltf/gltf_json.h"
 
@@ -16,18 +19,22 @@ struct PlainGltf {
   /// True for glTF 1, which is not rewritten: `root` is its JSON (empty for a binary file), the
   /// rest is empty.
   bool is_first_version = false;
-  Json root;                   ///< refers to one buffer, whose uri is kPlainBuffer
-  std::string buffer;          ///< bytes of that buffer
-  std::size_t animations = 0;  ///< number of animations in the file, which are omitted
+  Json root;           ///< refers to one buffer, whose uri is kPlainBuffer
+  std::string buffer;  ///< bytes of that buffer
+  std::vector<std::string> animation_names;
+  /// The chosen animation; its nodes are keyed by their index in the file.
+  std::optional<Animation> animation;
 };
 inline constexpr char kPlainBuffer[] = "plain.bin";
 
 /// Reads the model at `path` (real, below `scene`) and the buffers to which it refers. Images in
-/// files stay there; all others are moved to the buffer. Animations, tangents and attributes that
-/// glTF does not define are omitted. Everything else keeps its place and number. Returns
+/// files stay there; all others are moved to the buffer. Animations other than the chosen one,
+/// tangents and attributes that glTF does not define are omitted. Everything else keeps its place
+/// and number. Returns NOT_FOUND if there is no such animation,
 /// INVALID_ARGUMENT if the file is damaged or requires an extension that replaces vertices or
 /// images by unreadable bytes, NOT_FOUND or PERMISSION_DENIED for a buffer's file, and
 /// RESOURCE_EXHAUSTED for more than 8 GiB of vertices.
-absl::StatusOr<PlainGltf> read_plain_gltf(const std::string& path, const SceneFolder& scene);
+absl::StatusOr<PlainGltf> read_plain_gltf(const std::string& path, const SceneFolder& scene,
+                                          const AnimationChoice& choice = {});
 
 }  // namespace bandsaw::gltf

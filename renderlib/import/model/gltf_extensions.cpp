@@ -211,6 +211,7 @@ GltfExtensions read_gltf_extensions(const Json& root) {
   out.cameras = std::move(order.cameras);
   out.lights = std::move(order.lights);
   out.bones = std::move(order.bones);
+  out.nodes = std::move(order.nodes);
   out.scenes = std::max<std::size_t>(1, items(root, "scenes").size());
   const Json* punctual = extension(root, "KHR_lights_punctual");
   if (punctual != nullptr) {

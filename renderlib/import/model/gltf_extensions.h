@@ -60,7 +60,7 @@ struct GltfExtensions {
   std::vector<GltfAtNode> lights;   ///< the same for lights
   std::map<std::size_t, std::vector<std::size_t>> bones;  ///< as in GltfLoadOrder
   std::size_t scenes = 1;
-  std::size_t animations = 0;
+  std::map<std::size_t, std::size_t> nodes;  ///< as in GltfLoadOrder
   std::size_t lights_with_range = 0;  ///< lights with KHR_lights_punctual's range, which is ignored
 };
 

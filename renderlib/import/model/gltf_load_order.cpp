@@ -51,6 +51,12 @@ class Walk {
       }
     }
     add_bones();
+    const Json& nodes = items(root_, "nodes");
+    for (std::size_t i = 0; i < nodes.size(); ++i) {
+      if (const auto found = numbers_.find(&nodes[i]); found != numbers_.end()) {
+        order.nodes.emplace(i, found->second);
+      }
+    }
   }
 
   GltfLoadOrder order;

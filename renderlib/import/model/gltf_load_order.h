@@ -27,6 +27,8 @@ struct GltfLoadOrder {
   /// Nodes of the bones, as GltfAtNode::node, keyed by Assimp's mesh number; absent for a mesh
   /// without a skin or with a bone outside the scene.
   std::map<std::size_t, std::vector<std::size_t>> bones;
+  /// GltfAtNode::node of each node of the scene, keyed by its index in the file.
+  std::map<std::size_t, std::size_t> nodes;
 };
 
 /// Returns pointers into `root`.

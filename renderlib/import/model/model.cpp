@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -15,9 +16,11 @@
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
+#include "absl/strings/str_join.h"
 #include "absl/strings/strip.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/import/gltf/plain_gltf.h"
+#include "renderlib/import/model/assimp_animation.h"
 #include "renderlib/import/model/assimp_files.h"
 #include "renderlib/import/model/gltf_extensions.h"
 #include "renderlib/import/model/model_file.h"
@@ -53,13 +56,21 @@ void warn_of_missing(const std::string& name, RefusedFiles refused, SceneDraft& 
   }
 }
 
-void warn_of_unused(ModelFile& file) {
+void warn_of_unused(const std::vector<std::string>& animations, ModelFile& file) {
   const auto warn = [&](std::size_t count, absl::string_view what) {
     if (count > 0) {
       file.warn(absl::StrCat(count, " ", what, " left out"));
     }
   };
-  warn(file.scene.mNumAnimations + file.gltf.animations, "animations (the rest pose is shown) are");
+  const auto quoted = [](std::string* out, const std::string& each) {
+    absl::StrAppend(out, "\"", each, "\"");
+  };
+  if (!animations.empty() && (!file.animation || animations.size() > 1)) {
+    file.warn(absl::StrCat("has the animations ", absl::StrJoin(animations, ", ", quoted),
+                           file.animation
+                               ? absl::StrCat("; \"", file.animation->name, "\" is shown")
+                               : "; the rest pose is shown: --frame shows them"));
+  }
   warn(file.gltf.scenes > 1 ? file.gltf.scenes - 1 : 0, "scenes beside the default one are");
   warn(file.gltf.lights_with_range, "ranges of lights (light goes on for ever) are");
   for (const std::string& extension : file.gltf.ignored) {
@@ -101,17 +112,26 @@ Transform upright(const aiScene& scene) {
 }
 
 void turn(const Transform& by, Model& model) {
-  for (Instance& instance : model.instances) {
-    instance.to_world = by * instance.to_world;
+  for (Frame& frame : model.frames) {
+    if (frame.parent == kNoFrame) {
+      frame.placement = by * frame.placement;
+    }
   }
-  for (Instance& boundary : model.filled) {
-    boundary.to_world = by * boundary.to_world;
+  for (auto* instances : {&model.instances, &model.filled}) {
+    for (Instance& instance : *instances) {
+      if (instance.frame == kNoFrame) {
+        instance.to_world = by * instance.to_world;
+      }
+    }
   }
   for (DeltaLight& light : model.lights) {
     light = placed(light, by);
   }
   for (ModelCamera& camera : model.cameras) {
     camera.camera = placed(camera.camera, by);
+    if (camera.at_close) {
+      camera.at_close = placed(*camera.at_close, by);
+    }
   }
 }
 
@@ -129,6 +149,43 @@ absl::Status gltf_failure(const std::string& name, const absl::Status& why) {
   const bool is_broken = absl::IsInvalidArgument(why);
   return absl::Status(why.code(),
                       absl::StrCat(name, is_broken ? ": cannot be read: " : ": ", why.message()));
+}
+
+/// Returns the animation with its nodes keyed by their number in the loaded tree.
+std::optional<Animation> renumbered(std::optional<Animation> animation,
+                                    const std::map<std::size_t, std::size_t>& numbers) {
+  if (!animation) {
+    return animation;
+  }
+  Animation to{.name = std::move(animation->name)};
+  for (const auto& [in_file, loaded] : numbers) {
+    if (auto motion = animation->nodes.extract(in_file)) {
+      to.nodes.emplace(loaded, std::move(motion.mapped()));
+    }
+    if (auto weights = animation->weights.extract(in_file)) {
+      to.weights.emplace(loaded, std::move(weights.mapped()));
+    }
+  }
+  return to;
+}
+
+/// Sets the chosen animation of the file. Returns the names of all of its animations, or NOT_FOUND.
+absl::StatusOr<std::vector<std::string>> choose_animation(const AnimationChoice& choice,
+                                                          std::optional<gltf::PlainGltf>& plain,
+                                                          ModelFile& file) {
+  if (plain && !plain->is_first_version) {
+    file.animation = renumbered(std::move(plain->animation), file.gltf.nodes);
+    return plain->animation_names;
+  }
+  std::vector<std::string> names = animation_names(file.scene);
+  const auto chosen = choose(choice, names);
+  if (!chosen.ok()) {
+    return absl::NotFoundError(absl::StrCat(file.name(), ": ", chosen.status().message()));
+  }
+  if (*chosen) {
+    file.animation = read_animation(file.scene, **chosen);
+  }
+  return names;
 }
 
 /// Reads the file with Assimp; nullptr on failure. For glTF, Assimp reads only the plain document,
@@ -150,15 +207,15 @@ const aiScene* read_by_assimp(const ModelSource& source, const SceneFolder& fold
   return scene;
 }
 
-absl::StatusOr<Model> read_source(const ModelSource& source, bool with_materials,
-                                  SceneDraft& draft) {
+absl::StatusOr<Model> read_source(const ModelSource& source, const AnimationChoice& animation,
+                                  bool with_materials, SceneDraft& draft) {
   const std::string& path = source.path;
   const std::string name = name_of(path);
   const std::size_t warnings_before = draft.out.info.warnings.size();
   const ModelKind kind = kind_of(path);
   std::optional<gltf::PlainGltf> plain;
   if (kind == ModelKind::kGltf) {
-    auto read = gltf::read_plain_gltf(path, draft.folder);
+    auto read = gltf::read_plain_gltf(path, draft.folder, animation);
     if (!read.ok()) {
       return gltf_failure(name, read.status());
     }
@@ -175,10 +232,11 @@ absl::StatusOr<Model> read_source(const ModelSource& source, bool with_materials
   ModelFile file{*scene, path, kind, {}, draft};
   if (plain) {
     file.gltf = read_gltf_extensions(plain->root);
-    file.gltf.animations = plain->animations;
   }
+  ASSIGN_OR_RETURN(const std::vector<std::string> animations,
+                   choose_animation(animation, plain, file));
   warn_of_missing(name, refused, draft);
-  warn_of_unused(file);
+  warn_of_unused(animations, file);
 
   std::vector<ModelMaterial> materials(scene->mNumMaterials);
   if (with_materials) {
@@ -228,13 +286,15 @@ bool is_model_file(const std::string& path) {
   return Assimp::Importer().IsExtensionSupported(absl::AsciiStrToLower(path.substr(dot)));
 }
 
-absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, SceneDraft& draft) {
-  return read_source({path, std::nullopt}, with_materials, draft);
+absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, SceneDraft& draft,
+                                 const AnimationChoice& animation) {
+  return read_source({path, std::nullopt}, animation, with_materials, draft);
 }
 
 absl::StatusOr<Model> read_made_model(const std::string& name, absl::string_view bytes,
                                       bool with_materials, SceneDraft& draft) {
-  return read_source({absl::StrCat(draft.folder.path(), "/", name), bytes}, with_materials, draft);
+  return read_source({absl::StrCat(draft.folder.path(), "/", name), bytes}, {}, with_materials,
+                     draft);
 }
 
 }  // namespace bandsaw

@@ -3,6 +3,7 @@
 // Reads model files of every format that Assimp supports, as meshes, materials and placements of
 // the scene.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "absl/strings/string_view.h"
 #include "renderlib/camera/camera.h"
 #include "renderlib/geometry/shapes.h"
+#include "renderlib/import/animation/animation.h"
 #include "renderlib/import/draft/scene_draft.h"
 #include "renderlib/light/delta_light.h"
 
@@ -18,13 +20,15 @@ namespace bandsaw {
 struct ModelCamera {
   std::string name;      ///< name of its node
   std::string own_name;  ///< may be empty or shared with other nodes' cameras
-  Camera camera;         ///< in the model's own space
+  Camera camera;         ///< in the model's own space, when the shutter opens
+  std::optional<Camera> at_close = std::nullopt;  ///< when it closes, if the camera moves
 };
 
 /// A model whose meshes, materials and textures have been added to the draft; its placements have
 /// not.
 struct Model {
-  std::vector<Instance> instances = {};   ///< in the model's own space
+  std::vector<Frame> frames = {};         ///< of moving nodes, in the model's own space
+  std::vector<Instance> instances = {};   ///< in the model's own space, or in a frame above
   std::vector<Instance> filled = {};      ///< the same for Media::boundaries
   std::vector<ModelCamera> cameras = {};  ///< in the order of the nodes
   std::vector<DeltaLight> lights = {};
@@ -42,7 +46,10 @@ bool is_model_file(const std::string& path);
 /// are warnings of the draft. Messages begin with the file's name. Returns INVALID_ARGUMENT if the
 /// model is broken or has no triangles, and NOT_FOUND or PERMISSION_DENIED for a file that it
 /// needs.
-absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, SceneDraft& draft);
+/// `animation` chooses one of its animations, which is evaluated over the draft's shutter interval:
+/// nodes move during the interval, skins and morph targets have their pose in its middle.
+absl::StatusOr<Model> read_model(const std::string& path, bool with_materials, SceneDraft& draft,
+                                 const AnimationChoice& animation = {});
 
 /// Reads a model that a converter made, from its bytes; it may name files of the scene's folder.
 /// MUST NOT be glTF. Otherwise as read_model.

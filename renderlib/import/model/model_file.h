@@ -2,8 +2,10 @@
 
 // State that the parts of the model reader share.
 
+#include <optional>
 #include <string>
 
+#include "renderlib/import/animation/animation.h"
 #include "renderlib/import/draft/scene_draft.h"
 #include "renderlib/import/model/gltf_extensions.h"
 #include "renderlib/import/model/unsupported_features.h"
@@ -27,6 +29,7 @@ struct ModelFile {
   GltfExtensions gltf;  ///< set for kGltf
   SceneDraft& draft;
   UnsupportedFeatures unsupported = {};
+  std::optional<Animation> animation = std::nullopt;  ///< the chosen one; none: the rest pose
 
   std::string name() const { return name_of(path); }
   void warn(const std::string& what) {

@@ -104,7 +104,7 @@ class MeshReader {
   MeshReader(const aiMesh& from, std::string title, std::vector<std::string>& warnings)
       : from_(from), title_(std::move(title)), warnings_(warnings) {}
 
-  absl::StatusOr<Mesh> read(const ModelMaterial& material) {
+  absl::StatusOr<Mesh> read(const ModelMaterial& material, const std::vector<double>& weights) {
     Mesh mesh;
     mesh.positions = vectors(from_.mVertices, from_.HasPositions() ? from_.mNumVertices : 0);
     if (from_.HasNormals()) {
@@ -112,7 +112,7 @@ class MeshReader {
     }
     mesh.uvs = uvs(from_, material.uv_set);
     mesh.uvs2 = uvs(from_, material.second_uv_set);
-    add_morph_targets(from_, mesh);
+    add_morph_targets(from_, weights, mesh);
     Counts counts;
     RETURN_IF_ERROR(add_triangles(from_, title_, mesh, counts));
     tell(counts, mesh);
@@ -174,9 +174,20 @@ std::optional<std::vector<Transform>> bone_places(const ModelFile& file, unsigne
     if (named == places.by_name.end()) {
       return std::nullopt;
     }
-    bones.push_back(named->second);
+    bones.push_back(places.by_number[named->second]);
   }
   return bones;
+}
+
+/// Returns the weights of a mesh's morph targets at a time; empty: those of the file.
+std::vector<double> weights_of(const ModelFile& file, unsigned mesh, const NodePlaces& places,
+                               double time) {
+  const auto node = places.of_meshes.find(mesh);
+  if (!file.animation || node == places.of_meshes.end()) {
+    return {};
+  }
+  const auto curve = file.animation->weights.find(node->second);
+  return curve == file.animation->weights.end() ? std::vector<double>() : curve->second.at(time);
 }
 
 }  // namespace
@@ -184,7 +195,8 @@ std::optional<std::vector<Transform>> bone_places(const ModelFile& file, unsigne
 absl::StatusOr<ModelMeshes> add_meshes(ModelFile& file, const std::vector<ModelMaterial>& materials,
                                        bool with_colors) {
   const aiScene& scene = file.scene;
-  const NodePlaces places = node_places(scene);
+  const double time = middle_of(file.draft.shutter);
+  const NodePlaces places = node_places(scene, file.animation ? &*file.animation : nullptr, time);
   ModelMeshes meshes(scene.mNumMeshes);
   std::vector<Mesh>& out = file.draft.out.scene.geometry.meshes;
   for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
@@ -195,7 +207,7 @@ absl::StatusOr<ModelMeshes> add_meshes(ModelFile& file, const std::vector<ModelM
                       file.draft.out.info.warnings);
     const ModelMaterial material =
         from.mMaterialIndex < materials.size() ? materials[from.mMaterialIndex] : ModelMaterial{};
-    ASSIGN_OR_RETURN(Mesh mesh, reader.read(material));
+    ASSIGN_OR_RETURN(Mesh mesh, reader.read(material, weights_of(file, i, places, time)));
     if (with_colors) {
       mesh.colors = colors(from, file.kind);
       if (has_clear_colors(from)) {
@@ -206,7 +218,8 @@ absl::StatusOr<ModelMeshes> add_meshes(ModelFile& file, const std::vector<ModelM
     const bool skinned = from.HasBones() && bones;
     if (skinned) {
       const auto place = places.of_meshes.find(i);
-      add_skin(from, *bones, place == places.of_meshes.end() ? Transform{} : place->second, mesh);
+      const bool placed = place != places.of_meshes.end();
+      add_skin(from, *bones, placed ? places.by_number[place->second] : Transform{}, mesh);
     } else if (from.HasBones()) {
       reader.warn("its skin is left out: a bone has no node");
     }

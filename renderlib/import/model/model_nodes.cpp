@@ -2,9 +2,12 @@
 
 #include <assimp/scene.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
@@ -56,6 +59,33 @@ bool has_usable_cameras(const ModelFile& file) {
          absl::EndsWithIgnoreCase(file.path, ".fbx");
 }
 
+/// Returns the keys of a node's motion during the shutter interval; empty if the motion has a key
+/// that cannot be interpolated: it flattens the node, or mirrors it only for a time.
+std::vector<Key> keys_of(const NodeMotion& motion, const Shutter& shutter) {
+  std::vector<double> times = motion.times_between(shutter.open, shutter.close);
+  if (!motion.is_linear()) {
+    constexpr int kParts = 16;
+    for (int i = 1; i < kParts; ++i) {
+      times.push_back(shutter.open + (shutter.close - shutter.open) * i / kParts);
+    }
+    std::sort(times.begin(), times.end());
+  }
+  times.insert(times.begin(), shutter.open);
+  times.push_back(shutter.close);
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  std::vector<Key> keys;
+  bool mirrored = false;
+  for (const double time : times) {
+    const Transform at = motion.at(time);
+    if (!decompose(at) || (!keys.empty() && (determinant(at) < 0) != mirrored)) {
+      return {};
+    }
+    mirrored = determinant(at) < 0;
+    keys.emplace_back(time, at);
+  }
+  return keys;
+}
+
 // Traverses the tree with an explicit stack, because its depth is determined by the file.
 class Walk {
  public:
@@ -78,14 +108,14 @@ class Walk {
     for (unsigned i = 0; file.gltf.lights.empty() && i < scene.mNumLights; ++i) {
       lights_.emplace(scene.mLights[i]->mName.C_Str(), scene.mLights[i]);
     }
-    stack_.push_back({scene.mRootNode, Transform{}});
+    stack_.push_back({scene.mRootNode, {}});
   }
 
   void run() {
     while (!stack_.empty() && model.instances.size() <= kMaxInstances) {
-      const auto [node, parent] = stack_.back();
+      const Entry entry = stack_.back();
       stack_.pop_back();
-      visit(*node, parent * transform_of(node->mTransformation));
+      visit(*entry.node, place_of(*entry.node, entry.parent));
     }
   }
 
@@ -93,17 +123,46 @@ class Walk {
   std::size_t flattened = 0;
 
  private:
+  /// Place of a node, and where it is at three times, in the model's space.
+  struct NodePlace {
+    Transform in_frame;  ///< place in `frame`, or in the model's space
+    FrameId frame = kNoFrame;
+    Transform at_open;
+    Transform in_middle;
+    Transform at_close;
+  };
   struct Entry {
     const aiNode* node;
-    Transform parent;
+    NodePlace parent;
   };
   struct CameraAtNode {
     const aiCamera* camera = nullptr;
     std::string name = {};  ///< its own name
   };
 
-  void visit(const aiNode& node, const Transform& to_model) {
-    const bool regular = inverse(to_model).has_value();
+  NodePlace place_of(const aiNode& node, const NodePlace& parent) {
+    const NodeMotion* motion = motion_of(file_.animation ? &*file_.animation : nullptr, visited_);
+    const Shutter& shutter = file_.draft.shutter;
+    const auto local = [&](double time) {
+      return motion == nullptr ? transform_of(node.mTransformation) : motion->at(time);
+    };
+    NodePlace place{parent.in_frame * local(middle_of(shutter)), parent.frame,
+                    parent.at_open * local(shutter.open),
+                    parent.in_middle * local(middle_of(shutter)),
+                    parent.at_close * local(shutter.close)};
+    if (motion != nullptr && !motion->rests(shutter.open, shutter.close)) {
+      if (std::vector<Key> keys = keys_of(*motion, shutter); !keys.empty()) {
+        place.in_frame = Transform{};
+        place.frame = FrameId{static_cast<std::uint32_t>(model.frames.size())};
+        model.frames.push_back({parent.frame, parent.in_frame, std::move(keys)});
+      }
+    }
+    return place;
+  }
+
+  void visit(const aiNode& node, const NodePlace& place) {
+    const bool regular =
+        inverse(place.in_frame).has_value() && inverse(place.in_middle).has_value();
     for (unsigned i = 0; i < node.mNumMeshes; ++i) {
       const unsigned number = node.mMeshes[i];
       if (number >= meshes_.size() || !meshes_[number]) {
@@ -120,18 +179,19 @@ class Walk {
         ++flattened;
         continue;
       }
-      model.instances.push_back({meshes_[number]->mesh, meshes_[number]->material, to_model});
+      model.instances.push_back({meshes_[number]->mesh, meshes_[number]->material, place.in_frame});
+      model.instances.back().frame = place.frame;
     }
-    add_camera(node, to_model);
-    add_lights(node, to_model);
+    add_camera(node, place);
+    add_lights(node, place.in_middle);
     ++visited_;
     // In reverse order, so that children are visited in the order of the file.
     for (unsigned i = node.mNumChildren; i-- > 0;) {
-      stack_.push_back({node.mChildren[i], to_model});
+      stack_.push_back({node.mChildren[i], place});
     }
   }
 
-  void add_camera(const aiNode& node, const Transform& to_model) {
+  void add_camera(const aiNode& node, const NodePlace& place) {
     const auto standing = standing_.find(visited_);
     const auto named = cameras_.find(node.mName.C_Str());
     const CameraAtNode found = standing != standing_.end() ? standing->second
@@ -141,8 +201,13 @@ class Walk {
       return;
     }
     const bool gltf = file_.kind == ModelKind::kGltf;
-    if (const auto camera = camera_of(*found.camera, to_model, gltf)) {
-      model.cameras.push_back({node.mName.C_Str(), found.name, *camera});
+    const auto camera = camera_of(*found.camera, place.at_open, gltf);
+    if (!camera) {
+      return;
+    }
+    model.cameras.push_back({node.mName.C_Str(), found.name, *camera});
+    if (!(place.at_open == place.at_close)) {
+      model.cameras.back().at_close = camera_of(*found.camera, place.at_close, gltf);
     }
   }
 

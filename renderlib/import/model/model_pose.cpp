@@ -36,17 +36,20 @@ void add_scaled(const Transform& t, double by, Transform& sum) {
 
 }  // namespace
 
-NodePlaces node_places(const aiScene& scene) {
+NodePlaces node_places(const aiScene& scene, const Animation* animation, double time) {
   NodePlaces places;
   std::vector<std::pair<const aiNode*, Transform>> stack{{scene.mRootNode, Transform{}}};
   while (!stack.empty()) {
     const auto [node, parent] = stack.back();
     stack.pop_back();
-    const Transform place = parent * transform_of(node->mTransformation);
+    const std::size_t number = places.by_number.size();
+    const NodeMotion* motion = motion_of(animation, number);
+    const Transform place =
+        parent * (motion == nullptr ? transform_of(node->mTransformation) : motion->at(time));
     places.by_number.push_back(place);
-    places.by_name.emplace(node->mName.C_Str(), place);
+    places.by_name.emplace(node->mName.C_Str(), number);
     for (unsigned i = 0; i < node->mNumMeshes; ++i) {
-      places.of_meshes.emplace(node->mMeshes[i], place);
+      places.of_meshes.emplace(node->mMeshes[i], number);
     }
     for (unsigned i = node->mNumChildren; i-- > 0;) {
       stack.emplace_back(node->mChildren[i], place);
@@ -55,18 +58,18 @@ NodePlaces node_places(const aiScene& scene) {
   return places;
 }
 
-void add_morph_targets(const aiMesh& from, Mesh& mesh) {
+void add_morph_targets(const aiMesh& from, const std::vector<double>& weights, Mesh& mesh) {
   for (unsigned i = 0; i < from.mNumAnimMeshes; ++i) {
     const aiAnimMesh& target = *from.mAnimMeshes[i];
-    if (target.mWeight == 0 || !std::isfinite(target.mWeight) ||
-        target.mNumVertices != from.mNumVertices) {
+    const double weight = i < weights.size() ? weights[i] : weights.empty() ? target.mWeight : 0;
+    if (weight == 0 || !std::isfinite(weight) || target.mNumVertices != from.mNumVertices) {
       continue;
     }
     if (target.HasPositions()) {
-      add_target(target.mVertices, from.mVertices, target.mWeight, mesh.positions);
+      add_target(target.mVertices, from.mVertices, weight, mesh.positions);
     }
     if (target.HasNormals() && from.HasNormals()) {
-      add_target(target.mNormals, from.mNormals, target.mWeight, mesh.normals);
+      add_target(target.mNormals, from.mNormals, weight, mesh.normals);
     }
   }
 }

@@ -16,6 +16,10 @@
 namespace bandsaw {
 namespace {
 
+AnimationChoice animation_of(const scene::Model& from, const SceneDraft& draft) {
+  return from.animation().empty() ? draft.animation : AnimationChoice{from.animation()};
+}
+
 // Returns an error about a model's file at the field that names it.
 absl::StatusOr<std::shared_ptr<const Model>> read_file(const Field& in, const scene::Model& from,
                                                        SceneDraft& draft) {
@@ -34,7 +38,7 @@ absl::StatusOr<std::shared_ptr<const Model>> read_file(const Field& in, const sc
   const bool with_materials = from.material().empty();
   auto model = file->made != nullptr
                    ? read_made_model(from.file(), *file->made, with_materials, draft)
-                   : read_model(file->key, with_materials, draft);
+                   : read_model(file->key, with_materials, draft, animation_of(from, draft));
   if (!model.ok()) {
     return in.error("file", model.status().message());
   }
@@ -44,7 +48,8 @@ absl::StatusOr<std::shared_ptr<const Model>> read_file(const Field& in, const sc
 /// Reads each model once, even if it is named several times.
 absl::StatusOr<std::shared_ptr<const Model>> find_file(const Field& in, const scene::Model& from,
                                                        SceneDraft& draft) {
-  std::shared_ptr<const Model>& model = draft.models[{from.file(), !from.material().empty()}];
+  std::shared_ptr<const Model>& model =
+      draft.models[{from.file(), !from.material().empty(), animation_of(from, draft)}];
   if (model == nullptr) {
     ASSIGN_OR_RETURN(model, read_file(in, from, draft));
   }
@@ -81,7 +86,7 @@ absl::Status place_model(const Field& in, const Placements& what, const Transfor
 absl::StatusOr<Placements> read_interior(const Field& in, const scene::Model& from,
                                          const Model& model, SceneDraft& draft) {
   ASSIGN_OR_RETURN(const MediumId medium, find_medium(in, "interior", from.interior(), draft));
-  Placements filled;
+  Placements filled{model.frames, {}};
   for (const Instance& mesh : model.instances) {
     ASSIGN_OR_RETURN(Instance boundary, boundary_of(in, mesh, medium, draft));
     give_space({}, boundary, draft, filled);
@@ -108,11 +113,11 @@ absl::Status read_model_entry(const Field& in, const scene::Model& from, SceneDr
                : absl::OkStatus();
   }
   if (from.interior().empty() && !model->filled.empty()) {
-    RETURN_IF_ERROR(
-        place_model(in, {{}, model->filled}, placement, keys, std::nullopt, draft.placed->filled));
+    RETURN_IF_ERROR(place_model(in, {model->frames, model->filled}, placement, keys, std::nullopt,
+                                draft.placed->filled));
   }
-  RETURN_IF_ERROR(
-      place_model(in, {{}, model->instances}, placement, keys, material, draft.placed->seen));
+  RETURN_IF_ERROR(place_model(in, {model->frames, model->instances}, placement, keys, material,
+                              draft.placed->seen));
   const Transform to_camera =
       keys.empty() ? placement : motion_at({kNoFrame, {}, keys}, draft.shutter.open);
   add_lights(from.file(), *model, to_camera, draft);

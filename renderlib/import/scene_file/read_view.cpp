@@ -174,10 +174,18 @@ absl::StatusOr<std::optional<ImageWindow>> read_window(const Field& in, const Nu
 
 }  // namespace
 
-absl::StatusOr<Shutter> read_shutter(const Field& root, const scene::Scene& from) {
+absl::StatusOr<double> read_fps(const Field& root, const scene::Scene& from) {
+  constexpr double kDefault = 24;
+  const double fps = from.has_fps() ? from.fps() : kDefault;
+  RETURN_IF_ERROR(check_range(root, "fps", fps, 0.01, 10'000));
+  return fps;
+}
+
+absl::StatusOr<Shutter> read_shutter(const Field& root, const scene::Scene& from, double time) {
   const Shutter shutter = {from.camera().shutter_open(), from.camera().shutter_close()};
+  const Shutter at_frame = {time + shutter.open, time + shutter.close};
   if (!from.has_camera()) {
-    return shutter;
+    return at_frame;
   }
   const Field in = root.child("camera");
   RETURN_IF_ERROR(check_range(in, "shutter_open", shutter.open, -kMaxTime, kMaxTime));
@@ -186,16 +194,16 @@ absl::StatusOr<Shutter> read_shutter(const Field& root, const scene::Scene& from
     return in.error("shutter_close", absl::StrCat("must not be before shutter_open, ", shutter.open,
                                                   ", is ", shutter.close));
   }
-  return shutter;
+  return at_frame;
 }
 
-absl::StatusOr<Camera> read_camera(const Field& root, const scene::Scene& from) {
+absl::StatusOr<Camera> read_camera(const Field& root, const scene::Scene& from,
+                                   const Shutter& shutter) {
   const Field in = root.child("camera");
   ASSIGN_OR_RETURN(const View view, read_view(in, from.camera()));
   ASSIGN_OR_RETURN(Camera camera, from.camera().has_orthographic()
                                       ? read_orthographic(in, from.camera(), view)
                                       : read_perspective(in, from.camera(), view));
-  ASSIGN_OR_RETURN(const Shutter shutter, read_shutter(root, from));
   ASSIGN_OR_RETURN(const auto window, read_window(in, from.camera().window()));
   std::visit(
       [&](auto& c) {

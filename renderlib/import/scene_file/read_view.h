@@ -10,10 +10,13 @@
 
 namespace bandsaw {
 
-/// Reads the camera; the scene MUST have one.
-absl::StatusOr<Camera> read_camera(const Field& root, const scene::Scene& from);
-/// Reads the shutter, or returns the default.
-absl::StatusOr<Shutter> read_shutter(const Field& root, const scene::Scene& from);
+/// Reads the camera; the scene MUST have one. It gets the shutter.
+absl::StatusOr<Camera> read_camera(const Field& root, const scene::Scene& from,
+                                   const Shutter& shutter);
+/// Reads the shutter, or returns the default, at the frame at `time`, to which it is relative.
+absl::StatusOr<Shutter> read_shutter(const Field& root, const scene::Scene& from, double time);
+/// Reads the frames per second, or returns the default.
+absl::StatusOr<double> read_fps(const Field& root, const scene::Scene& from);
 /// Reads the pixel filter, or returns the default.
 absl::StatusOr<PixelFilter> read_filter(const Field& root, const scene::Scene& from);
 absl::StatusOr<LocalShading> read_local_shading(const Field& root, const scene::Scene& from);

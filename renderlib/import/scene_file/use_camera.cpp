@@ -44,12 +44,10 @@ std::string known(const std::vector<FoundCamera>& cameras) {
              : absl::StrCat("there are ", absl::StrJoin(names_of(cameras), ", ", quoted));
 }
 
-absl::StatusOr<Camera> find_camera(const std::string& name, const SceneDraft& draft) {
+absl::StatusOr<MovingCamera> find_camera(const std::string& name, const SceneDraft& draft) {
   const auto found = called(name, draft.cameras);
   if (found.size() == 1) {
-    Camera camera = found.front()->camera;
-    std::visit([&](auto& c) { c.shutter = draft.shutter; }, camera);
-    return camera;
+    return with_shutter(*found.front(), draft.shutter);
   }
   return absl::InvalidArgumentError(
       absl::StrCat(found.empty() ? "no model brings a camera" : "several cameras are", " called \"",
@@ -80,6 +78,9 @@ void add_cameras(const std::string& file, const Model& model, const Transform& t
   }
   for (const ModelCamera& camera : model.cameras) {
     draft.cameras.push_back({file, camera.name, camera.own_name, placed(camera.camera, to_world)});
+    if (camera.at_close) {
+      draft.cameras.back().at_close = placed(*camera.at_close, to_world);
+    }
   }
 }
 
@@ -100,15 +101,24 @@ std::vector<std::string> names_of(const std::vector<FoundCamera>& cameras) {
   return names;
 }
 
-absl::StatusOr<Camera> chosen_camera(const std::string& name, const SceneDraft& draft) {
+MovingCamera with_shutter(const FoundCamera& camera, const Shutter& shutter) {
+  MovingCamera out{camera.camera, camera.at_close};
+  std::visit([&](auto& c) { c.shutter = shutter; }, out.at_open);
+  if (out.at_close) {
+    std::visit([&](auto& c) { c.shutter = shutter; }, *out.at_close);
+  }
+  return out;
+}
+
+absl::StatusOr<MovingCamera> chosen_camera(const std::string& name, const SceneDraft& draft) {
   auto found = find_camera(name, draft);
   return found.ok()
              ? std::move(found)
              : absl::InvalidArgumentError(absl::StrCat(draft.file, ": ", found.status().message()));
 }
 
-absl::StatusOr<Camera> use_camera(const Field& root, const scene::Scene& from,
-                                  const SceneDraft& draft) {
+absl::StatusOr<MovingCamera> use_camera(const Field& root, const scene::Scene& from,
+                                        const SceneDraft& draft) {
   const Field in = root.child("camera");
   const scene::Camera& written = from.camera();
   if (!written.position().empty() || !written.look_at().empty() || !written.up().empty() ||
@@ -121,9 +131,12 @@ absl::StatusOr<Camera> use_camera(const Field& root, const scene::Scene& from,
   if (!found.ok()) {
     return in.error("use", found.status().message());
   }
-  Camera camera = *std::move(found);
-  if (auto* perspective = std::get_if<PerspectiveCamera>(&camera)) {
+  MovingCamera camera = *std::move(found);
+  if (auto* perspective = std::get_if<PerspectiveCamera>(&camera.at_open)) {
     RETURN_IF_ERROR(set_lens(in, written, *perspective));
+    if (camera.at_close) {
+      RETURN_IF_ERROR(set_lens(in, written, std::get<PerspectiveCamera>(*camera.at_close)));
+    }
   } else if (written.has_aperture() || written.has_focus_distance()) {
     return in.error("aperture", "is of a perspective camera; this one is orthographic");
   }

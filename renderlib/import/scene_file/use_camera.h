@@ -27,10 +27,13 @@ std::vector<std::string> names_of(const std::vector<FoundCamera>& cameras);
 /// Returns the camera that the scene file names, with the lens and shutter of the scene file. The
 /// models MUST have been read. Returns INVALID_ARGUMENT, with the names of all cameras, if no
 /// camera or several have this name.
-absl::StatusOr<Camera> use_camera(const Field& root, const scene::Scene& from,
-                                  const SceneDraft& draft);
+absl::StatusOr<MovingCamera> use_camera(const Field& root, const scene::Scene& from,
+                                        const SceneDraft& draft);
+
+/// Returns a camera of a model with the shutter of the scene.
+MovingCamera with_shutter(const FoundCamera& camera, const Shutter& shutter);
 
 /// Returns the camera that the user named, with the lens of its file. The same errors.
-absl::StatusOr<Camera> chosen_camera(const std::string& name, const SceneDraft& draft);
+absl::StatusOr<MovingCamera> chosen_camera(const std::string& name, const SceneDraft& draft);
 
 }  // namespace bandsaw

@@ -57,6 +57,24 @@ TEST(CommandLine, EnvironmentAndCameraOverrideTheScene) {
   EXPECT_EQ(parsed<RenderOptions>("render a.glb").image.choices.camera, "");
 }
 
+TEST(CommandLine, AFrameHasItsTimeAndItsName) {
+  const auto options = parsed<RenderOptions>(
+      "render a.glb --frame 7 --fps 30 --shutter 0.5 --animation walk -o out/w.####.exr -o w#.png "
+      "-o w.pfm");
+  EXPECT_EQ(options.image.choices.frame, 7);
+  EXPECT_EQ(options.image.choices.fps, 30);
+  EXPECT_EQ(options.image.choices.shutter, 0.5);
+  EXPECT_EQ(options.image.choices.animation, "walk");
+  EXPECT_THAT(options.outputs, ElementsAre("out/w.0007.exr", "w7.png", "w.pfm"));
+  EXPECT_THAT(parsed<SubmitOptions>("submit a.glb --frame -12 -o w.###.png").outputs,
+              ElementsAre("w.-012.png"));
+  EXPECT_THAT(parsed<SubmitOptions>("submit a.glb --frame 12345 -o #.png").outputs,
+              ElementsAre("12345.png"));
+  expect_wrong("render a.glb --frame 1.5", "--frame: must be a whole number");
+  expect_wrong("render a.glb --fps 25", "--fps needs --frame");
+  expect_wrong("render a.glb --frame 1 --shutter 2", "--shutter: must be a number in [0, 1]");
+}
+
 TEST(CommandLine, AdaptiveSamplingNeedsAnErrorRule) {
   const auto adaptive = [](const StopRule& stop) { return std::get<StopAtError>(stop).adaptive; };
   EXPECT_TRUE(adaptive(parsed<RenderOptions>("render a.glb --error 1% --adaptive").image.stop));

@@ -116,6 +116,24 @@ TEST(Package, RoundTripsEveryCameraAndFilter) {
       HasSubstr("scene package: filter.radius"));
 }
 
+TEST(Package, CarriesACameraThatMoves) {
+  SceneDescription scene = sample_scene();
+  PerspectiveCamera first;
+  first.shutter = {1, 2};
+  PerspectiveCamera last = first;
+  last.position = {3, 2, 1};
+  scene.camera = first;
+  scene.camera_at_close = last;
+  BlobMap blobs;
+  const auto decoded = decode_package(encode_package(scene, {}, blobs), blobs);
+  ASSERT_TRUE(decoded.ok()) << decoded.status();
+  ASSERT_TRUE(decoded->camera_at_close.has_value());
+  EXPECT_EQ(view_of(*decoded->camera_at_close).position, last.position);
+  EXPECT_EQ(shutter_of(*decoded->camera_at_close), last.shutter);
+  scene.camera_at_close = OrthographicCamera{.shutter = {1, 2}};
+  EXPECT_FALSE(decode_package(encode_package(scene, {}, blobs), blobs).ok());
+}
+
 TEST(Package, RoundTripsItsInfo) {
   BlobMap blobs;
   const auto info = package_info(encode_package(sample_scene(), sample_info(), blobs));

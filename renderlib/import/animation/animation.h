@@ -1,0 +1,60 @@
+#pragma once
+
+// An animation of a model's nodes.
+
+#include <compare>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "renderlib/import/animation/curve.h"
+#include "renderlib/math/transform.h"
+
+namespace bandsaw {
+
+/// Movement of one node. A property without a curve keeps its value of the rest pose.
+struct NodeMotion {
+  Vec3 translate;  ///< rest pose
+  Quaternion rotate;
+  Vec3 scale{1, 1, 1};
+  std::optional<Curve> translation = std::nullopt;  ///< width 3
+  std::optional<Curve> rotation = std::nullopt;     ///< width 4: x, y, z, w
+  std::optional<Curve> scaling = std::nullopt;      ///< width 3
+
+  /// Returns the node's transform in its parent.
+  Transform at(double time) const;
+  /// Returns true if the transform is the same at all times of [from, to].
+  bool rests(double from, double to) const;
+  /// Returns the times of keys inside (from, to), rising, each once.
+  std::vector<double> times_between(double from, double to) const;
+  /// Returns true if straight interpolation between keys is exact.
+  bool is_linear() const;
+};
+
+/// A request for one of a model's animations.
+struct AnimationChoice {
+  std::string name;  ///< empty: none, or the first one if `first` is set
+  bool first = false;
+  friend auto operator<=>(const AnimationChoice&, const AnimationChoice&) = default;
+};
+
+/// Returns the number of the chosen one of a model's animations; std::nullopt: none, the model is
+/// in its rest pose. Returns NOT_FOUND: "has no animation \"run\"; there are \"walk\", \"jump\"".
+absl::StatusOr<std::optional<std::size_t>> choose(const AnimationChoice& choice,
+                                                  const std::vector<std::string>& names);
+
+struct Animation {
+  std::string name;
+  /// Moving nodes, keyed by their number in the loaded tree, parents first.
+  std::map<std::size_t, NodeMotion> nodes = {};
+  /// Weights of morph targets, keyed by the same numbers; the width is the number of targets.
+  std::map<std::size_t, Curve> weights = {};
+};
+
+/// Returns the motion of a node; nullptr if it has none, or if there is no animation.
+const NodeMotion* motion_of(const Animation* animation, std::size_t node);
+
+}  // namespace bandsaw

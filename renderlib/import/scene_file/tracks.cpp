@@ -1,0 +1,230 @@
+#include "renderlib/import/scene_file/tracks.h"
+
+#include <google/protobuf/descriptor.h>
+#include <google/protobuf/message.h>
+
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/strip.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/camera/camera.h"
+#include "renderlib/import/animation/curve.h"
+#include "renderlib/import/scene_file/numbers.h"
+
+namespace bandsaw {
+namespace {
+
+using google::protobuf::FieldDescriptor;
+using google::protobuf::Message;
+using google::protobuf::Reflection;
+
+/// A number or a list of numbers in a message.
+struct Target {
+  Message* message = nullptr;
+  const FieldDescriptor* field = nullptr;
+};
+
+/// One step of a path: a name, and a number or a name in brackets.
+struct PathStep {
+  std::string name;
+  std::optional<std::string> entry;
+};
+
+/// Splits at dots outside of quotes.
+std::vector<std::string> split_path(const std::string& path) {
+  std::vector<std::string> steps(1);
+  bool quoted = false;
+  for (const char c : path) {
+    quoted = c == '"' ? !quoted : quoted;
+    if (c == '.' && !quoted) {
+      steps.emplace_back();
+    } else {
+      steps.back() += c;
+    }
+  }
+  return steps;
+}
+
+PathStep step_of(absl::string_view text) {
+  const std::size_t bracket = text.find('[');
+  if (bracket == absl::string_view::npos || text.back() != ']') {
+    return {std::string(text), std::nullopt};
+  }
+  return {std::string(text.substr(0, bracket)),
+          std::string(text.substr(bracket + 1, text.size() - bracket - 2))};
+}
+
+std::string name_of_entry(const Message& entry) {
+  const FieldDescriptor* name = entry.GetDescriptor()->FindFieldByName("name");
+  return name != nullptr && name->cpp_type() == FieldDescriptor::CPPTYPE_STRING
+             ? entry.GetReflection()->GetString(entry, name)
+             : "";
+}
+
+/// Returns the entry of a list that `entry` names: "3" or "\"lamp\"". nullptr: there is none.
+Message* entry_of(Message& in, const FieldDescriptor& list, const std::string& entry) {
+  const Reflection& reflection = *in.GetReflection();
+  const int size = reflection.FieldSize(in, &list);
+  int number = 0;
+  if (absl::SimpleAtoi(entry, &number)) {
+    return number >= 0 && number < size ? reflection.MutableRepeatedMessage(&in, &list, number)
+                                        : nullptr;
+  }
+  absl::string_view name = entry;
+  if (!absl::ConsumePrefix(&name, "\"") || !absl::ConsumeSuffix(&name, "\"")) {
+    return nullptr;
+  }
+  for (int i = 0; i < size; ++i) {
+    if (name_of_entry(reflection.GetRepeatedMessage(in, &list, i)) == name) {
+      return reflection.MutableRepeatedMessage(&in, &list, i);
+    }
+  }
+  return nullptr;
+}
+
+bool is_number(const FieldDescriptor& field) {
+  return field.cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE ||
+         field.cpp_type() == FieldDescriptor::CPPTYPE_FLOAT;
+}
+
+/// Returns the message that a step leads to; nullptr: the file has none.
+Message* follow(Message& in, const PathStep& step, const FieldDescriptor& field) {
+  if (field.cpp_type() != FieldDescriptor::CPPTYPE_MESSAGE) {
+    return nullptr;
+  }
+  if (field.is_repeated()) {
+    return step.entry ? entry_of(in, field, *step.entry) : nullptr;
+  }
+  const Reflection& reflection = *in.GetReflection();
+  return !step.entry && reflection.HasField(in, &field) ? reflection.MutableMessage(&in, &field)
+                                                        : nullptr;
+}
+
+absl::StatusOr<Target> find_target(const Field& track, const std::string& path,
+                                   scene::Scene& scene) {
+  Target at{&scene, nullptr};
+  const std::vector<std::string> steps = split_path(path);
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    const PathStep step = step_of(steps[i]);
+    at.field = at.message->GetDescriptor()->FindFieldByName(step.name);
+    if (at.field == nullptr || step.name == "track" || step.name == "fps") {
+      return track.error("field", absl::StrCat("\"", path, "\": there is no field \"", step.name,
+                                               "\" that a track could change"));
+    }
+    if (i + 1 == steps.size()) {
+      break;
+    }
+    Message* next = follow(*at.message, step, *at.field);
+    if (next == nullptr) {
+      return track.error("field", absl::StrCat("\"", path, "\": the scene has no ", steps[i],
+                                               "; an entry of a list is named by its number from "
+                                               "0, or by its name in quotes"));
+    }
+    at.message = next;
+  }
+  const bool is_time = at.field->name() == "shutter_open" || at.field->name() == "shutter_close";
+  if (!is_number(*at.field) || step_of(steps.back()).entry || is_time) {
+    return track.error("field", absl::StrCat("\"", path,
+                                             "\": must be a number or a list of numbers that may "
+                                             "change over time"));
+  }
+  return at;
+}
+
+absl::StatusOr<Interpolation> interpolation_of(const Field& in, const scene::Track& track) {
+  switch (track.interpolation()) {
+    case scene::Track::INTERPOLATION_LINEAR:
+      return Interpolation::kLinear;
+    case scene::Track::INTERPOLATION_STEP:
+      return Interpolation::kStep;
+    case scene::Track::INTERPOLATION_SMOOTH:
+      return Interpolation::kSmooth;
+    default:
+      return in.error("interpolation", absl::StrCat("is none: ", track.interpolation()));
+  }
+}
+
+absl::StatusOr<Curve> read_curve(const Field& in, const scene::Track& track) {
+  ASSIGN_OR_RETURN(const Interpolation interpolation, interpolation_of(in, track));
+  if (track.key_size() == 0) {
+    return in.error("key", "is required: a time and a value");
+  }
+  std::vector<double> times;
+  std::vector<double> values;
+  const int width = track.key(0).value_size();
+  for (int i = 0; i < track.key_size(); ++i) {
+    const scene::TrackKey& key = track.key(i);
+    const Field at = in.child("key", i);
+    RETURN_IF_ERROR(check_range(at, "time", key.time(), -kMaxTime, kMaxTime));
+    if (!times.empty() && !(key.time() > times.back())) {
+      return at.error("time", absl::StrCat("must be after that of the key before, ", times.back(),
+                                           ", is ", key.time()));
+    }
+    if (key.value_size() != width || width == 0) {
+      return at.error("value", absl::StrCat("must be as many numbers as in the first key, ", width,
+                                            ", and at least one; has ", key.value_size()));
+    }
+    for (const double value : key.value()) {
+      if (!std::isfinite(value)) {
+        return at.error("value", absl::StrCat("must be finite, is ", value));
+      }
+      values.push_back(value);
+    }
+    times.push_back(key.time());
+  }
+  return Curve(std::move(times), std::move(values), static_cast<std::size_t>(width), interpolation);
+}
+
+void set(const Target& to, const std::vector<double>& values) {
+  const Reflection& reflection = *to.message->GetReflection();
+  const bool wide = to.field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE;
+  if (!to.field->is_repeated()) {
+    wide ? reflection.SetDouble(to.message, to.field, values[0])
+         : reflection.SetFloat(to.message, to.field, static_cast<float>(values[0]));
+    return;
+  }
+  reflection.ClearField(to.message, to.field);
+  for (const double value : values) {
+    wide ? reflection.AddDouble(to.message, to.field, value)
+         : reflection.AddFloat(to.message, to.field, static_cast<float>(value));
+  }
+}
+
+}  // namespace
+
+absl::StatusOr<scene::Scene> scene_at(const Field& root, const scene::Scene& from, double time) {
+  scene::Scene scene = from;
+  for (int i = 0; i < from.track_size(); ++i) {
+    const Field in = root.child("track", i);
+    if (from.track(i).field().empty()) {
+      return in.error("field",
+                      "is required: the path of a number, for example \"camera.position\"");
+    }
+    ASSIGN_OR_RETURN(const Target target, find_target(in, from.track(i).field(), scene));
+    ASSIGN_OR_RETURN(const Curve curve, read_curve(in, from.track(i)));
+    if (!target.field->is_repeated() && curve.width() != 1) {
+      return in.child("key", 0).error(
+          "value", absl::StrCat("must be one number for \"", from.track(i).field(), "\", has ",
+                                curve.width()));
+    }
+    set(target, curve.at(time));
+  }
+  return scene;
+}
+
+bool moves_camera(const scene::Scene& from) {
+  for (const scene::Track& track : from.track()) {
+    if (split_path(track.field()).front() == "camera") {
+      return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,269 @@
+// Frames of scenes that move: tracks of scene files, animations of glTF, cameras and shutters.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "renderlib/geometry/placement.h"
+#include "renderlib/import/import.h"
+#include "tests/unit/import/gltf_writer.h"
+
+namespace bandsaw {
+namespace {
+
+using test::GltfWriter;
+using test::Json;
+using test::TempDir;
+using test::write_text;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+ImportChoices frame(double number, std::optional<double> fps = std::nullopt,
+                    std::optional<double> shutter = std::nullopt) {
+  ImportChoices choices;
+  choices.frame = FrameChoice{number, fps, shutter};
+  return choices;
+}
+
+void expect_near(const Vec3& a, const Vec3& b) {
+  EXPECT_NEAR(a.x, b.x, 1e-6);
+  EXPECT_NEAR(a.y, b.y, 1e-6);
+  EXPECT_NEAR(a.z, b.z, 1e-6);
+}
+
+class Sequence : public ::testing::Test {
+ protected:
+  ImportedScene read(const std::string& path, const ImportChoices& choices) {
+    auto imported = import_scene(path, choices);
+    EXPECT_TRUE(imported.ok()) << imported.status();
+    return imported.ok() ? *std::move(imported) : ImportedScene();
+  }
+  ImportedScene read_text(const std::string& text, const ImportChoices& choices) {
+    return read(write_text(folder_, "s.textproto", text), choices);
+  }
+  std::string error_of(const std::string& text, const ImportChoices& choices = {}) {
+    const auto imported = import_scene(write_text(folder_, "s.textproto", text), choices);
+    EXPECT_FALSE(imported.ok());
+    return std::string(imported.status().message());
+  }
+  TempDir folder_;
+};
+
+constexpr char kScene[] = R"(
+  camera { position: [0, 0, 5] look_at: [0, 0, 0] shutter_close: 0.5 }
+  fps: 10
+  material { name: "lamp" emissive { radiance { rgb: [1, 1, 1] } } }
+  light { point { position: [0, 1, 0] intensity { rgb: [1, 1, 1] } } }
+  shape { sphere { radius: 1 } material: "lamp" })";
+
+TEST_F(Sequence, TracksSetFieldsInTheMiddleOfTheExposure) {
+  const std::string text = std::string(kScene) + R"(
+    track { field: "light[0].point.position"
+            key { time: 0 value: [0, 1, 0] } key { time: 4 value: [8, 1, 0] } }
+    track { field: "material[\"lamp\"].emissive.radiance.rgb" interpolation: INTERPOLATION_STEP
+            key { time: 0 value: [1, 2, 3] } key { time: 2.1 value: [4, 5, 6] } })";
+  // Frame 20 is at time 2; the exposure is from 2 to 2.5.
+  const ImportedScene imported = read_text(text, frame(20));
+  const auto& light = std::get<PointLight>(imported.scene.lights.at(0));
+  expect_near(light.position, {4.5, 1, 0});
+  EXPECT_EQ(shutter_of(imported.scene.camera), (Shutter{2, 2.5}));
+  const ImportedScene first = read_text(text, {});
+  expect_near(std::get<PointLight>(first.scene.lights.at(0)).position, {0.5, 1, 0});
+}
+
+TEST_F(Sequence, TheCameraMovesDuringTheExposure) {
+  const std::string text = std::string(kScene) + R"(
+    track { field: "camera.position" key { time: 0 value: [0, 0, 5] }
+            key { time: 10 value: [10, 0, 5] } }
+    track { field: "camera.vertical_fov" key { time: 0 value: 30 } key { time: 10 value: 40 } })";
+  const ImportedScene imported = read_text(text, frame(20));
+  ASSERT_TRUE(imported.scene.camera_at_close.has_value());
+  expect_near(view_of(imported.scene.camera).position, {2, 0, 5});
+  expect_near(view_of(*imported.scene.camera_at_close).position, {2.5, 0, 5});
+  EXPECT_DOUBLE_EQ(std::get<PerspectiveCamera>(*imported.scene.camera_at_close).vertical_fov, 32.5);
+  EXPECT_TRUE(read_text(text, frame(20, 10, 0.0)).scene.camera_at_close == std::nullopt)
+      << "a shutter that does not open";
+}
+
+TEST_F(Sequence, FpsAndShutterOfTheUserReplaceThoseOfTheScene) {
+  const Shutter shutter = shutter_of(read_text(kScene, frame(30, 60, 0.25)).scene.camera);
+  EXPECT_DOUBLE_EQ(shutter.open, 0.5);
+  EXPECT_DOUBLE_EQ(shutter.close, 0.5 + 0.25 / 60);
+}
+
+TEST_F(Sequence, AWrongTrackIsAnErrorThatNamesItsPlace) {
+  const auto with = [&](const std::string& track) {
+    return error_of(std::string(kScene) + "\ntrack { " + track + " }");
+  };
+  const std::string key = "key { time: 0 value: 1 }";
+  EXPECT_THAT(with("field: \"camera.fov\" " + key), HasSubstr("there is no field \"fov\""));
+  EXPECT_THAT(with("field: \"light[7].point.position\" " + key), HasSubstr("has no light[7]"));
+  EXPECT_THAT(with("field: \"material[\\\"x\\\"].emissive.radiance.rgb\" " + key),
+              HasSubstr("has no material[\"x\"]"));
+  EXPECT_THAT(with("field: \"camera.shutter_open\" " + key), HasSubstr("must be a number"));
+  EXPECT_THAT(with("field: \"fps\" " + key), HasSubstr("there is no field \"fps\""));
+  EXPECT_THAT(with("field: \"track[0].key\" " + key), HasSubstr("there is no field \"track\""));
+  EXPECT_THAT(with("field: \"camera.vertical_fov\""), HasSubstr("key: is required"));
+  EXPECT_THAT(with("field: \"camera.vertical_fov\" key { time: 0 value: [1, 2] }"),
+              HasSubstr("must be one number"));
+  EXPECT_THAT(with("field: \"camera.position\" key { time: 1 value: 1 } key { time: 1 value: 1 }"),
+              HasSubstr("must be after that of the key before, 1"));
+  EXPECT_THAT(with(key), HasSubstr("field: is required"));
+}
+
+/// A triangle at node 1, below node 0.
+GltfWriter two_nodes() {
+  GltfWriter file;
+  file.attributes() = {{"POSITION", file.add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, 3)}};
+  file.root["nodes"] = Json::parse(R"([{"children": [1], "translation": [0, 0, 7]}, {"mesh": 0}])");
+  return file;
+}
+
+void add_channel(GltfWriter& file, Json& animation, int node, const char* path,
+                 const std::vector<float>& times, const std::vector<float>& values, int components,
+                 const char* interpolation = "LINEAR") {
+  animation["channels"].push_back(
+      {{"sampler", animation["samplers"].size()}, {"target", {{"node", node}, {"path", path}}}});
+  animation["samplers"].push_back({{"input", file.add(times, 1)},
+                                   {"output", file.add(values, components)},
+                                   {"interpolation", interpolation}});
+}
+
+Json empty_animation(const char* name) {
+  return {{"name", name}, {"channels", Json::array()}, {"samplers", Json::array()}};
+}
+
+TEST_F(Sequence, NodesOfGltfAreWhereTheirAnimationPutsThem) {
+  GltfWriter file = two_nodes();
+  Json walk = empty_animation("walk");
+  add_channel(file, walk, 0, "translation", {0, 1}, {0, 0, 0, 10, 0, 0}, 3);
+  const auto half = static_cast<float>(std::sqrt(0.5));
+  add_channel(file, walk, 1, "rotation", {0, 1}, {0, 0, 0, 1, 0, 0, half, half}, 4);
+  add_channel(file, walk, 1, "scale", {0, 2}, {1, 1, 1, 3, 3, 3}, 3);
+  file.root["animations"] = Json::array({walk});
+  const std::string path = file.write(folder_, "m.gltf");
+  // Frame 12 of 24 is at half a second: 5 along x, 45 degrees about z, scaled by 1.5.
+  const ImportedScene imported = read(path, frame(12));
+  EXPECT_THAT(imported.info.warnings, IsEmpty());
+  ASSERT_THAT(imported.scene.geometry.instances, SizeIs(1));
+  expect_near(imported.scene.geometry.instances[0].to_world.point({1, 0, 0}),
+              {5 + 1.5 * std::sqrt(0.5), 1.5 * std::sqrt(0.5), 0});
+  const ImportedScene rest = read(path, {});
+  expect_near(rest.scene.geometry.instances[0].to_world.point({1, 0, 0}), {1, 0, 7});
+  EXPECT_THAT(rest.info.warnings, Contains(HasSubstr("the rest pose is shown")));
+}
+
+// During the exposure a node moves by its own keys, in the frame of its moving parent.
+TEST_F(Sequence, MovingNodesAreFramesDuringTheExposure) {
+  GltfWriter file = two_nodes();
+  Json walk = empty_animation("walk");
+  add_channel(file, walk, 0, "translation", {0, 0.5, 1}, {0, 0, 0, 10, 0, 0, 10, 10, 0}, 3);
+  add_channel(file, walk, 1, "translation", {0, 1}, {0, 0, 0, 0, 0, 2}, 3);
+  file.root["animations"] = Json::array({walk});
+  const ImportedScene imported = read(file.write(folder_, "m.gltf"), frame(0, 1, 1.0));
+  const Geometry& geometry = imported.scene.geometry;
+  ASSERT_THAT(geometry.instances, SizeIs(1));
+  ASSERT_NE(geometry.instances[0].frame, kNoFrame);
+  const auto origin_at = [&](double time) {
+    return to_world_at(geometry, geometry.instances[0], time).point({0, 0, 0});
+  };
+  expect_near(origin_at(0), {0, 0, 0});
+  expect_near(origin_at(0.25), {5, 0, 0.5});
+  expect_near(origin_at(0.75), {10, 5, 1.5});
+  expect_near(origin_at(1), {10, 10, 2});
+}
+
+TEST_F(Sequence, SkinsAndMorphTargetsHaveThePoseOfTheFrame) {
+  GltfWriter file;
+  file.attributes() = {
+      {"POSITION", file.add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, 3)},
+      {"JOINTS_0", file.add<std::uint8_t>({0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}, 4)},
+      {"WEIGHTS_0", file.add<float>({1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0}, 4)}};
+  file.primitive()["targets"] =
+      Json::array({{{"POSITION", file.add<float>({0, 0, 0, 4, 0, 0, 0, 0, 0}, 3)}}});
+  file.root["nodes"] = Json::parse(R"([{"mesh": 0, "skin": 0}, {"translation": [0, 0, 0]}])");
+  file.root["scenes"][0]["nodes"] = {0, 1};
+  file.root["skins"] = Json::parse(R"([{"joints": [1]}])");
+  Json bend = empty_animation("bend");
+  add_channel(file, bend, 1, "translation", {0, 1}, {0, 0, 0, 0, 0, 8}, 3);
+  add_channel(file, bend, 0, "weights", {0, 1}, {0, 1}, 1);
+  file.root["animations"] = Json::array({bend});
+  const ImportedScene imported = read(file.write(folder_, "m.gltf"), frame(6, 24));
+  ASSERT_THAT(imported.scene.geometry.meshes, SizeIs(1));
+  EXPECT_THAT(imported.scene.geometry.meshes[0].positions,
+              ElementsAre(ElementsAre(0, 0, 2), ElementsAre(2, 0, 2), ElementsAre(0, 1, 2)));
+}
+
+TEST_F(Sequence, AnAnimationIsChosenByName) {
+  GltfWriter file = two_nodes();
+  Json walk = empty_animation("walk");
+  add_channel(file, walk, 0, "translation", {0}, {1, 0, 0}, 3);
+  Json jump = empty_animation("jump");
+  add_channel(file, jump, 0, "translation", {0}, {0, 1, 0}, 3);
+  file.root["animations"] = Json::array({walk, jump});
+  const std::string path = file.write(folder_, "m.gltf");
+  ImportChoices choices = frame(0);
+  const ImportedScene first = read(path, choices);
+  expect_near(first.scene.geometry.instances[0].to_world.point({0, 0, 0}), {1, 0, 0});
+  EXPECT_THAT(first.info.warnings, ElementsAre(HasSubstr("\"walk\", \"jump\"; \"walk\" is shown")));
+  choices.animation = "jump";
+  expect_near(read(path, choices).scene.geometry.instances[0].to_world.point({0, 0, 0}), {0, 1, 0});
+  choices.animation = "run";
+  EXPECT_THAT(std::string(import_scene(path, choices).status().message()),
+              HasSubstr("m.gltf: has no animation \"run\"; there are \"walk\", \"jump\""));
+  // In a scene file each model names its own.
+  const ImportedScene both = read_text(std::string(kScene) + R"(
+    model { file: "m.gltf" animation: "walk" } model { file: "m.gltf" animation: "jump" })",
+                                       {});
+  ASSERT_THAT(both.scene.geometry.instances, SizeIs(2));
+  expect_near(both.scene.geometry.instances[0].to_world.point({0, 0, 0}), {1, 0, 0});
+  expect_near(both.scene.geometry.instances[1].to_world.point({0, 0, 0}), {0, 1, 0});
+}
+
+TEST_F(Sequence, ACameraAtAMovingNodeMovesWithIt) {
+  GltfWriter file = two_nodes();
+  file.root["cameras"] =
+      Json::parse(R"([{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 1}}])");
+  file.root["nodes"][1]["camera"] = 0;
+  Json walk = empty_animation("walk");
+  add_channel(file, walk, 0, "translation", {0, 1}, {0, 0, 5, 4, 0, 5}, 3);
+  file.root["animations"] = Json::array({walk});
+  const ImportedScene imported = read(file.write(folder_, "m.gltf"), frame(1, 4, 0.5));
+  expect_near(view_of(imported.scene.camera).position, {1, 0, 5});
+  ASSERT_TRUE(imported.scene.camera_at_close.has_value());
+  expect_near(view_of(*imported.scene.camera_at_close).position, {1.5, 0, 5});
+}
+
+// The camera that frames a model does not follow its animation.
+TEST_F(Sequence, TheFramingCameraRests) {
+  GltfWriter file = two_nodes();
+  Json walk = empty_animation("walk");
+  add_channel(file, walk, 0, "translation", {0, 1}, {0, 0, 0, 9, 0, 0}, 3);
+  file.root["animations"] = Json::array({walk});
+  const std::string path = file.write(folder_, "m.gltf");
+  expect_near(view_of(read(path, frame(0)).scene.camera).position,
+              view_of(read(path, frame(20)).scene.camera).position);
+}
+
+TEST_F(Sequence, DamagedAnimationsAreErrors) {
+  const auto with = [&](const std::vector<float>& times, const std::vector<float>& values,
+                        const char* interpolation) {
+    GltfWriter file = two_nodes();
+    Json walk = empty_animation("walk");
+    add_channel(file, walk, 0, "translation", times, values, 3, interpolation);
+    file.root["animations"] = Json::array({walk});
+    return std::string(import_scene(file.write(folder_, "m.gltf"), frame(0)).status().message());
+  };
+  EXPECT_THAT(with({0, 0}, {0, 0, 0, 1, 1, 1}, "LINEAR"), HasSubstr("its times must increase"));
+  EXPECT_THAT(with({0, 1}, {0, 0, 0}, "LINEAR"), HasSubstr("does not fit to the 2 times"));
+  EXPECT_THAT(with({0, 1}, {0, 0, 0, 1, 1, 1}, "CUBICSPLINE"), HasSubstr("does not fit"));
+  EXPECT_THAT(with({0, 1}, {0, 0, 0, NAN, 1, 1}, "LINEAR"), HasSubstr("not finite"));
+  EXPECT_THAT(with({0, 1}, {0, 0, 0, 1, 1, 1}, "BEZIER"), HasSubstr("\"BEZIER\" is not LINEAR"));
+}
+
+}  // namespace
+}  // namespace bandsaw
