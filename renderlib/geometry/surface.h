@@ -58,6 +58,9 @@ SurfacePoint surface_at(const Geometry& geometry, const Ray& ray, const Hit& hit
 /// have no area.
 void add_uv_directions(const Geometry& geometry, bool second, SurfacePoint& point);
 
+/// Sets the same to dp/du and dp/dv in world space, with their lengths; of spheres too.
+void add_uv_derivatives(const Geometry& geometry, bool second, SurfacePoint& point);
+
 /// Returns the distance along `ray`, whose direction is a unit vector, to the surface that it hit.
 /// In squashed space a rounded position is on its primitive, but it may be further off the ray than
 /// the primitive is thick; therefore t is used there and not the position.

@@ -5,6 +5,7 @@
 #include "renderlib/geometry/placement.h"
 #include "renderlib/geometry/shape_surface.h"
 #include "renderlib/geometry/surface.h"
+#include "renderlib/math/constants.h"
 
 namespace bandsaw {
 namespace {
@@ -68,6 +69,24 @@ Directions along_shape(const Shapes& shapes, const Vec3& normal, const SurfacePo
   return {};
 }
 
+/// Returns the factors on the directions of along_shape() that make them derivatives.
+Vec2 lengths_of(const Shapes& shapes, const SurfacePoint& point, const Directions& along) {
+  const auto [kind, index] = shape_ref(shapes, point.id.primitive);
+  switch (kind) {
+    case ShapeKind::kSphere: {
+      const double radius = shapes.spheres[index].radius;
+      const double around = length(along.v);
+      return {2 * kPi * radius, around > 0 ? kPi * radius / around : 0};
+    }
+    case ShapeKind::kDisk:
+      return {2 * shapes.disks[index].radius, 2 * shapes.disks[index].radius};
+    case ShapeKind::kQuad:
+    case ShapeKind::kTriangle:
+      break;
+  }
+  return {1, 1};
+}
+
 Directions uv_directions(const Geometry& geometry, bool second, const SurfacePoint& point) {
   if (point.id.instance == 0) {
     return along_shape(geometry, point.geometric_normal, point);
@@ -89,6 +108,23 @@ void add_uv_directions(const Geometry& geometry, bool second, SurfacePoint& poin
   const Directions along = uv_directions(geometry, second, point);
   (second ? point.along_u2 : point.along_u) = along.u;
   (second ? point.along_v2 : point.along_v) = along.v;
+}
+
+void add_uv_derivatives(const Geometry& geometry, bool second, SurfacePoint& point) {
+  add_uv_directions(geometry, second, point);
+  const std::uint32_t placed = point.id.instance;
+  if (placed != 0 && geometry.instances[placed - 1].group == kNoGroup) {
+    return;  // the directions of a mesh have their lengths
+  }
+  const Shapes& shapes =
+      placed == 0 ? geometry : *group_of(geometry, geometry.instances[placed - 1]);
+  const Vec3 normal =
+      placed == 0 ? point.geometric_normal : unit_or(point.object_position, {0, 0, 1});
+  const Vec2 lengths = lengths_of(shapes, point, along_shape(shapes, normal, point));
+  Vec3& u = second ? point.along_u2 : point.along_u;
+  Vec3& v = second ? point.along_v2 : point.along_v;
+  u = u * lengths.x;
+  v = v * lengths.y;
 }
 
 }  // namespace bandsaw

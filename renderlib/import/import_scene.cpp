@@ -35,12 +35,16 @@ namespace {
 
 constexpr std::uint64_t kMaxSceneFileBytes = std::uint64_t{64} << 20;
 
+/// Returns true if the scene has a light source of its own. Parts of models that glow do not count:
+/// most need a sky as well.
 bool has_light(const SceneDescription& scene) {
   const std::vector<Medium>& media = scene.media.media;
   return !scene.lights.empty() || std::any_of(media.begin(), media.end(), [](const Medium& medium) {
     return !is_black(medium.emission);
   }) || std::any_of(scene.materials.begin(), scene.materials.end(), [](const Material& material) {
-    return std::holds_alternative<Emissive>(material);
+    return std::holds_alternative<Emissive>(material.kind) ||
+           (!is_black(material.emission.radiance.factor) &&
+            !std::holds_alternative<MetallicRoughness>(material.kind));
   });
 }
 

@@ -3,25 +3,32 @@
 #include <algorithm>
 #include <cmath>
 
+#include "renderlib/material/mixture.h"
 #include "renderlib/material/opacity.h"
 #include "renderlib/material/shading_normal.h"
 
 namespace bandsaw {
 namespace {
 
-/// Returns the surface at the hit, with the uv directions that its material needs.
+/// Returns the surface at the hit.
 SurfacePoint point_at(const Scene& scene, const Ray& ray, const Hit& hit) {
-  SurfacePoint point = surface_at(scene.geometry(), ray, hit, scene.features().uv);
-  if (const auto* principled = std::get_if<Principled>(&scene.material(point.material))) {
-    const NormalUvSets sets = normal_uv_sets(*principled, scene.textures());
-    if (sets.first) {
-      add_uv_directions(scene.geometry(), false, point);
+  return surface_at(scene.geometry(), ray, hit, scene.features().uv);
+}
+
+/// Adds the uv directions that the material needs.
+void add_directions(const Scene& scene, SurfacePoint& point) {
+  const Material& material = scene.material(point.material);
+  const UvSets sets = uv_sets_of(material, scene.textures());
+  for (const bool second : {false, true}) {
+    if (!(second ? sets.second : sets.first)) {
+      continue;
     }
-    if (sets.second) {
-      add_uv_directions(scene.geometry(), true, point);
+    if (material.relief.height) {
+      add_uv_derivatives(scene.geometry(), second, point);
+    } else {
+      add_uv_directions(scene.geometry(), second, point);
     }
   }
-  return point;
 }
 
 /// Returns the next boundary of a nested glass that touches the boundary of `hit`, and advances
@@ -89,7 +96,11 @@ std::optional<SurfacePoint> intersect_visible(const Scene& scene, const Ray& ray
   nesting.skipped_hidden = false;
   Hit hit = scene.accel().closest(ray);
   for (std::uint32_t passed = 0; hit; ++passed) {
-    const SurfacePoint point = point_at(scene, ray, hit);
+    SurfacePoint point = point_at(scene, ray, hit);
+    if (scene.features().mixtures) {
+      const double number = sampler.group(sample, group_alpha(bounce, passed))[1];
+      point.material = part_at(scene.materials(), scene.textures(), point.material, point, number);
+    }
     const double presence = scene.features().alpha
                                 ? opacity(scene.material(point.material), scene.textures(), point)
                                 : 1;
@@ -97,10 +108,12 @@ std::optional<SurfacePoint> intersect_visible(const Scene& scene, const Ray& ray
         presence >= 1 ||
         (presence > 0 && sampler.group(sample, group_alpha(bounce, passed))[0] < presence);
     if (is_present && nested_glass(scene.material(point.material)) == nullptr) {
+      add_directions(scene, point);
       return point;
     }
     if (is_present) {
       if (auto surface = nested_surface(scene, ray, point, hit, nesting, rays)) {
+        add_directions(scene, *surface);
         return surface;
       }
       if (!nesting.skipped_hidden) {

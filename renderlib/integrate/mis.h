@@ -18,7 +18,8 @@
 //
 // The weight is 1 where only one strategy can produce the light: delta lights (light sampling
 // alone), and emission hit by camera rays, after specular directions, beyond a surface that the
-// path passed, or behind a hidden boundary of nested glass (BSDF sampling alone).
+// path passed (unless lights are sampled on both of its sides: is_diffuse_behind), or behind a
+// hidden boundary of nested glass (BSDF sampling alone).
 
 #include "renderlib/light/receiver.h"
 

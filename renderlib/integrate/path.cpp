@@ -113,7 +113,10 @@ Rgb environment_along(const Scene& scene, const SurfacePoint& point, const Previ
              : weighted_background(scene, previous, direction, Technique::kBoth) * passing;
 }
 
-bool is_metal(const Material& material) { return std::holds_alternative<Metal>(material); }
+bool is_metal(const Material& material) {
+  return std::holds_alternative<Metal>(material.kind) ||
+         std::holds_alternative<Conductor>(material.kind);
+}
 
 /// Continues from a surface, as scattering `depth`, in all directions into which the path is split.
 void trace_branches(const PathContext& context, const SurfacePoint& point, const Bsdf& bsdf,
@@ -172,7 +175,7 @@ std::optional<Bsdf> make_bsdf(const PathContext& context, const SurfacePoint& po
   const Scene& scene = context.scene;
   const Material& material = scene.material(point.material);
   const Vec3 wo = -path.ray.direction;
-  if (std::holds_alternative<Emissive>(material)) {
+  if (std::holds_alternative<Emissive>(material.kind)) {
     return std::nullopt;
   }
   if (depth == context.options.max_depth) {
@@ -194,6 +197,9 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
   const PathOptions& options = context.options;
   const Material& material = scene.material(point.material);
   const Receiver receiver = receiver_of(point, -path.ray.direction);
+  const Receiver behind{point.position, -*receiver.normal, point.time};
+  // Where much light arrives from behind, lights are sampled on both sides alike.
+  const bool both_sides = is_diffuse_behind(bsdf);
   // Local shading ends here; the sampled direction only collects the environment.
   const bool is_last = options.local && has_pdf(bsdf) && !is_metal(material);
 
@@ -207,9 +213,8 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
         path.throughput * sample_light(scene, point, receiver, bsdf, numbers, competing,
                                        context.stream(group_shadow(depth, ShadowUse::kLight)),
                                        context.rays);
-    if (has_pdf_behind(bsdf) && (is_last || scene.lights().any_delta())) {
-      const Receiver behind{point.position, -*receiver.normal, point.time};
-      competing.beyond_surface = true;
+    if (has_pdf_behind(bsdf) && (both_sides || is_last || scene.lights().any_delta())) {
+      competing.beyond_surface = !both_sides;
       path.radiance +=
           path.throughput *
           sample_light(scene, point, behind, bsdf, numbers, competing,
@@ -227,10 +232,10 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
   if (!next) {
     return false;
   }
-  // Light sampling did not cover the transmission side, so transmitted directions keep MIS weight
-  // 1.
+  // Unless light sampling covered both sides, transmitted directions keep MIS weight 1.
   const bool passes = dot(next->wi, *receiver.normal) <= 0;
-  path.previous = {receiver, next->pdf, next->delta || passes};
+  path.previous = {passes && both_sides ? behind : receiver, next->pdf,
+                   next->delta || (passes && !both_sides)};
   path.throughput *= next->weight;
   if (is_last && !next->delta) {
     if (scene.background().environment) {

@@ -32,6 +32,13 @@ Vec3 facing(const SurfacePoint& point, const Ray& ray) {
                                                          : -point.geometric_normal;
 }
 
+/// Returns true if the radiance that leaves the material is the same in all directions of one side,
+/// and all of it is scattered light.
+bool is_only_diffuse(const Material& material) {
+  return std::holds_alternative<Diffuse>(material.kind) &&
+         is_black(material.emission.radiance.factor);
+}
+
 /// Traces a pixel's path and leaves in `path` the radiance that belongs to this pixel alone. Sets
 /// `primary` if the pixel can receive light from shared vertices, and `shared` if its second vertex
 /// is shared; the light of that vertex is not in `path`.
@@ -60,8 +67,10 @@ void trace_own_path(const PathContext& context, PathState& path,
     return;
   }
   const Rgb own = path.radiance;
+  // Light that passes the first surface stays with its own pixel.
   const bool is_shared = primary && !path.previous.delta &&
-                         std::holds_alternative<Diffuse>(context.scene.material(second->material));
+                         dot(path.ray.direction, primary->normal) > 0 &&
+                         is_only_diffuse(context.scene.material(second->material));
   if (is_shared) {
     shared = SharedVertex{*second, facing(*second, path.ray), {}};
     path.radiance = {};

@@ -17,15 +17,6 @@ Rgb as_color(const Vec3& n) {
   return {channel(n.x), channel(n.y), channel(n.z)};
 }
 
-/// Returns the shading normal, perturbed by the normal map if there is one.
-Vec3 outside_normal(const Material& material, absl::Span<const Texture> textures,
-                    const SurfacePoint& point) {
-  const auto* principled = std::get_if<Principled>(&material);
-  return principled == nullptr || !principled->normal
-             ? point.shading_normal
-             : mapped_normal(point, textures, *principled->normal, principled->normal_scale);
-}
-
 /// Returns 1 if a cosine-weighted direction on the viewer's side hits nothing within the occlusion
 /// distance, otherwise 0.
 float openness(const Scene& scene, const SurfacePoint& point, const Vec3& wo, double u, double v) {
@@ -51,7 +42,7 @@ Rgb value_at(const Scene& scene, Integrator integrator, const Ray& ray, const Pi
     return gray(static_cast<float>(length(point.position - ray.origin)));
   }
   if (integrator == Integrator::kNormals) {
-    return as_color(outside_normal(scene.material(point.material), scene.textures(), point));
+    return as_color(bent_normal(scene.material(point.material).relief, scene.textures(), point));
   }
   if (integrator == Integrator::kAlbedo) {
     return albedo_at(scene.material(point.material), scene.textures(), point);

@@ -15,7 +15,7 @@ float visibility(const Scene& scene, const Ray& ray, std::uint64_t& rays) {
   for (Hit hit = scene.accel().closest(ray); hit && share > 0;
        hit = scene.accel().closest_after(ray, hit)) {
     const SurfacePoint point = surface_at(scene.geometry(), ray, hit);
-    share *= 1 - opacity(scene.material(point.material), scene.textures(), point);
+    share *= 1 - opacity(scene.materials(), point.material, scene.textures(), point);
     ++rays;
   }
   return static_cast<float>(share);

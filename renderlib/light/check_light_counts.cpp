@@ -43,8 +43,9 @@ std::uint64_t numbered(const Geometry& geometry, const Emits& emits) {
 absl::Status check_light_counts(const Geometry& geometry, absl::Span<const Material> materials,
                                 absl::Span<const Texture> textures, std::uint64_t delta_lights) {
   Emits emits;
-  for (const Material& material : materials) {
-    emits.push_back(emission_of(material).has_value());
+  const auto id = [](std::size_t i) { return MaterialId{static_cast<std::uint32_t>(i)}; };
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    emits.push_back(bandsaw::emits(materials, id(i)));
   }
   if (numbered(geometry, emits) + delta_lights <= kMaxLights) {
     return absl::OkStatus();
@@ -52,10 +53,8 @@ absl::Status check_light_counts(const Geometry& geometry, absl::Span<const Mater
   // Completely black textures are detected only if that can change the result, because it takes
   // long.
   for (std::size_t i = 0; i < materials.size(); ++i) {
-    if (const auto emission = emission_of(materials[i])) {
-      const Tint& radiance = emission->radiance;
-      emits[i] = !is_black(mean(textures, radiance.texture) * radiance.factor);
-    }
+    const auto mean_of = [&](TextureId texture) { return mean(textures, texture); };
+    emits[i] = emits[i] && !is_black(mean_emission(materials, id(i), mean_of).radiance);
   }
   const std::uint64_t count = numbered(geometry, emits) + delta_lights;
   if (count <= kMaxLights) {

@@ -11,33 +11,57 @@
 #include "renderlib/material/fresnel.h"
 #include "renderlib/material/look_up.h"
 #include "renderlib/material/material.h"
+#include "renderlib/material/mixture.h"
+#include "renderlib/material/opacity.h"
 #include "renderlib/math/rgb.h"
 #include "renderlib/texture/texture.h"
 
 namespace bandsaw {
 
-/// The emission of a material.
-struct Emission {
-  Tint radiance;
-  bool one_sided = false;
-};
-
-/// Returns std::nullopt if the material emits nothing.
+/// Returns std::nullopt if the material emits nothing, or is a mixture.
 inline std::optional<Emission> emission_of(const Material& material) {
-  if (const auto* emissive = std::get_if<Emissive>(&material); emissive != nullptr) {
+  if (const auto* emissive = std::get_if<Emissive>(&material.kind); emissive != nullptr) {
     return Emission{{emissive->radiance, {1, 1, 1}}, emissive->one_sided};
   }
-  const auto* principled = std::get_if<Principled>(&material);
-  if (principled == nullptr || is_black(principled->emissive.factor)) {
-    return std::nullopt;
+  return is_black(material.emission.radiance.factor) ? std::nullopt
+                                                     : std::optional(material.emission);
+}
+
+/// The emission of a material as a whole, which may be a mixture.
+struct MeanEmission {
+  Rgb radiance;            ///< a mean over the surface; an estimate for most textures
+  bool one_sided = false;  ///< all that emits does so only to the side of the geometric normal
+};
+
+/// Returns true if material `id` or a part of it emits.
+inline bool emits(absl::Span<const Material> materials, MaterialId id) {
+  const auto* mix = std::get_if<Mix>(&materials[index_of(id)].kind);
+  return mix == nullptr ? emission_of(materials[index_of(id)]).has_value()
+                        : emits(materials, mix->a) || emits(materials, mix->b);
+}
+
+/// Returns the mean emission of material `id`; `mean_of` returns the mean of a texture.
+template <class MeanOf>
+MeanEmission mean_emission(absl::Span<const Material> materials, MaterialId id,
+                           const MeanOf& mean_of) {
+  if (const auto* mix = std::get_if<Mix>(&materials[index_of(id)].kind)) {
+    const MeanEmission a = mean_emission(materials, mix->a, mean_of);
+    const MeanEmission b = mean_emission(materials, mix->b, mean_of);
+    // The mean of the amount may be an estimate, so no part counts for nothing.
+    const float amount = std::clamp(luminance(mean_of(mix->amount)), 0.01f, 0.99f);
+    return {lerp(a.radiance, b.radiance, amount),
+            (a.one_sided || is_black(a.radiance)) && (b.one_sided || is_black(b.radiance))};
   }
-  return Emission{principled->emissive, !principled->double_sided};
+  const std::optional<Emission> emission = emission_of(materials[index_of(id)]);
+  return emission ? MeanEmission{mean_of(emission->radiance.texture) * emission->radiance.factor,
+                                 emission->one_sided}
+                  : MeanEmission{};
 }
 
 /// Returns the share of the emission that leaves through a clear coat along the unit vector
 /// `direction` (KHR_materials_clearcoat, "Emission"). The normal is the mesh's shading normal,
 /// without normal maps.
-inline double through_coat(const Principled& material, absl::Span<const Texture> textures,
+inline double through_coat(const MetallicRoughness& material, absl::Span<const Texture> textures,
                            const SurfacePoint& point, const Vec3& direction) {
   if (material.coat.factor == 0) {
     return 1;
@@ -48,7 +72,8 @@ inline double through_coat(const Principled& material, absl::Span<const Texture>
 }
 
 /// Returns the radiance emitted from `point` along `direction`, which points away from it; black
-/// unless the material is emissive. Opacity (material/opacity.h) is not included.
+/// unless the material emits. Opacity (material/opacity.h) is not included. The material is not a
+/// mixture.
 inline Rgb emitted(const Material& material, absl::Span<const Texture> textures,
                    const SurfacePoint& point, const Vec3& direction) {
   const std::optional<Emission> emission = emission_of(material);
@@ -57,10 +82,25 @@ inline Rgb emitted(const Material& material, absl::Span<const Texture> textures,
   }
   const Rgb radiance =
       look_up(textures, emission->radiance.texture, point) * emission->radiance.factor;
-  const auto* principled = std::get_if<Principled>(&material);
-  return principled == nullptr
+  const auto* coated = std::get_if<MetallicRoughness>(&material.kind);
+  return coated == nullptr
              ? radiance
-             : radiance * static_cast<float>(through_coat(*principled, textures, point, direction));
+             : radiance * static_cast<float>(through_coat(*coated, textures, point, direction));
+}
+
+/// Returns the expected value of the radiance emitted by material `id`, which may be a mixture and
+/// whose opacity is included.
+inline Rgb emitted_if_present(absl::Span<const Material> materials, MaterialId id,
+                              absl::Span<const Texture> textures, const SurfacePoint& point,
+                              const Vec3& direction) {
+  const Material& material = materials[index_of(id)];
+  if (const auto* mix = std::get_if<Mix>(&material.kind)) {
+    return lerp(emitted_if_present(materials, mix->a, textures, point, direction),
+                emitted_if_present(materials, mix->b, textures, point, direction),
+                static_cast<float>(amount_at(*mix, textures, point)));
+  }
+  return emitted(material, textures, point, direction) *
+         static_cast<float>(opacity(material, textures, point));
 }
 
 }  // namespace bandsaw

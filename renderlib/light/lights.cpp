@@ -50,15 +50,18 @@ Lights::Lights(const Geometry& geometry, const std::vector<Material>& materials,
 std::vector<LightBound> Lights::add_surfaces(const Interval& interval) {
   std::vector<double> radiance(materials_->size(), 0.0);
   std::map<TextureId, Rgb> means;  // many materials may share one large image
-  for (std::size_t i = 0; i < materials_->size(); ++i) {
-    if (const auto emission = emission_of((*materials_)[i])) {
-      const TextureId texture = emission->radiance.texture;
-      auto known = means.find(texture);
-      if (known == means.end()) {
-        known = means.emplace(texture, mean(*textures_, texture)).first;
-      }
-      radiance[i] = brightness(known->second * emission->radiance.factor);
+  const auto mean_of = [&](TextureId texture) {
+    auto known = means.find(texture);
+    if (known == means.end()) {
+      known = means.emplace(texture, mean(*textures_, texture)).first;
     }
+    return known->second;
+  };
+  for (std::size_t i = 0; i < materials_->size(); ++i) {
+    const MeanEmission emission =
+        mean_emission(*materials_, MaterialId{static_cast<std::uint32_t>(i)}, mean_of);
+    radiance[i] = brightness(emission.radiance);
+    one_sided_.push_back(emission.one_sided);
   }
   const Geometry& geometry = *geometry_;
   std::map<GroupId, bool> emitting_groups;
@@ -104,9 +107,8 @@ void Lights::add_surface(PrimitiveId id, const std::vector<double>& radiance,
   if (radiance[index_of(material)] == 0) {
     return;
   }
-  const Emission emission = *emission_of((*materials_)[index_of(material)]);
   LightBound bound = bound_of(shape_view(*geometry_, id, interval.open),
-                              radiance[index_of(material)], emission.one_sided);
+                              radiance[index_of(material)], one_sided_[index_of(material)]);
   if (id.instance != 0 && geometry_->instances[id.instance - 1].frame != kNoFrame) {
     // The bound of a moving light covers its whole path and all orientations.
     bound = {.ball = moving_ball(*geometry_, id, interval), .intensity = bound.intensity};
@@ -200,12 +202,11 @@ std::optional<LightSample> Lights::sample_surface(PrimitiveId id, const Receiver
   const Ray ray{.origin = receiver.position, .direction = to_light, .time = receiver.time};
   const Hit hit{.t = 1, .id = id, .u = on_light->on_shape.x, .v = on_light->on_shape.y};
   const SurfacePoint point = surface_at(*geometry_, ray, hit, uses_uv_);
-  const Material& material = (*materials_)[index_of(point.material)];
   LightSample sample;
   sample.direction = normalize(to_light);
   sample.target = on_light->position + (facing < 0 ? -point.away : point.away);
-  sample.radiance = emitted(material, *textures_, point, -sample.direction) *
-                    static_cast<float>(opacity(material, *textures_, point));
+  sample.radiance =
+      emitted_if_present(*materials_, point.material, *textures_, point, -sample.direction);
   sample.pdf = on_light->pdf;
   return sample;
 }

@@ -104,6 +104,7 @@ class Lights {
   const std::vector<Material>* materials_ = nullptr;
   const std::vector<Texture>* textures_ = nullptr;
   const Background* background_ = nullptr;
+  std::vector<bool> one_sided_;  ///< for each material
   bool uses_uv_ = true;  ///< true if some texture depends on the uv coordinates of light points
   /// Lights are numbered: surfaces first, then delta lights (those with a position before
   /// directional ones), then the environment.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "renderlib/material/conductor.h"
 #include "renderlib/material/look_up.h"
 
 namespace bandsaw {
@@ -12,17 +13,34 @@ Rgb albedo_at(const Material& material, absl::Span<const Texture> textures,
     const Rgb found = look_up(textures, id, point) * factor;
     return Rgb{std::min(found.r, 1.0f), std::min(found.g, 1.0f), std::min(found.b, 1.0f)};
   };
-  if (const auto* diffuse = std::get_if<Diffuse>(&material)) {
+  if (const auto* diffuse = std::get_if<Diffuse>(&material.kind)) {
     return value(diffuse->reflectance, point.color);
   }
-  if (const auto* metal = std::get_if<Metal>(&material)) {
+  if (const auto* metal = std::get_if<Metal>(&material.kind)) {
     return value(metal->reflectance, point.color);
   }
-  if (const auto* emissive = std::get_if<Emissive>(&material)) {
+  if (const auto* emissive = std::get_if<Emissive>(&material.kind)) {
     return value(emissive->radiance);
   }
-  if (const auto* principled = std::get_if<Principled>(&material)) {
-    const Tint& base = principled->base_color;
+  if (const auto* plastic = std::get_if<Plastic>(&material.kind)) {
+    return value(plastic->reflectance, point.color);
+  }
+  if (const auto* conductor = std::get_if<Conductor>(&material.kind)) {
+    return value(conductor->specular, conductor_reflectance(conductor->index, 1) * point.color);
+  }
+  if (const auto* sheet = std::get_if<DiffuseTransmission>(&material.kind)) {
+    const Rgb sum =
+        value(sheet->reflectance, point.color) + value(sheet->transmittance, point.color);
+    return {std::min(sum.r, 1.0f), std::min(sum.g, 1.0f), std::min(sum.b, 1.0f)};
+  }
+  if (const auto* principled = std::get_if<Principled>(&material.kind)) {
+    return value(principled->base_color, point.color);
+  }
+  if (const auto* thin = std::get_if<ThinPrincipled>(&material.kind)) {
+    return value(thin->base_color, point.color);
+  }
+  if (const auto* layered = std::get_if<MetallicRoughness>(&material.kind)) {
+    const Tint& base = layered->base_color;
     return value(base.texture, base.factor * point.color);
   }
   return gray(1);

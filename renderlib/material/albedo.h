@@ -10,8 +10,10 @@
 
 namespace bandsaw {
 
-/// Returns the reflectance of diffuse surfaces and metals, the base colour of glTF materials, white
-/// for dielectrics, and the radiance of emissive surfaces, clamped to 1. Each channel is in [0, 1].
+/// Returns the reflectance of diffuse surfaces and metals (at normal incidence), that of the
+/// surface below the coat of plastic, the sum of reflectance and transmittance of sheets, the base
+/// colour of glTF and principled materials, white for dielectrics, and the radiance of emissive
+/// surfaces, clamped to 1. Each channel is in [0, 1]. The material is not a mixture.
 Rgb albedo_at(const Material& material, absl::Span<const Texture> textures,
               const SurfacePoint& point);
 

@@ -111,17 +111,43 @@ Bsdf metal_at(const Rgb& reflectance, double fuzz, const SidedNormals& normal, c
   return FuzzyMetalBsdf{sided, reflectance, mirror, fuzz};
 }
 
-/// `index` and `roughness` are the values at the point.
-Bsdf glass_at(double index, double roughness, const SidedNormals& normal, bool outside,
-              const Vec3& wo, double outside_index) {
+/// Returns the facets of glass: by its surface, or by its roughness.
+std::optional<Facets> facets_of(const Dielectric& glass, absl::Span<const Texture> textures,
+                                const SurfacePoint& point) {
+  if (glass.surface) {
+    return facets_at(*glass.surface, textures, point);
+  }
+  const double roughness = mapped_number(textures, glass.roughness, glass.roughness_map, point);
+  const double alpha = roughness * roughness;
+  return alpha < kMinAlpha ? std::nullopt
+                           : std::optional(Facets{alpha, alpha, Microfacets::Distribution::kGgx,
+                                                  Microfacets::Masking::kCorrelated});
+}
+
+/// `index` is the value at the point.
+Bsdf glass_at(double index, const std::optional<Facets>& facets, const SurfacePoint& point,
+              const SidedNormals& normal, bool outside, const Vec3& wo, double outside_index) {
   const double relative = outside_index == 1 ? index : index / outside_index;
   const double eta = outside ? relative : 1 / relative;
-  const double alpha = roughness * roughness;
-  if (alpha < kMinAlpha || std::abs(eta - 1) < kMinRefraction) {
+  if (!facets || std::abs(eta - 1) < kMinRefraction) {
     return DielectricBsdf{for_glass(normal, wo, eta), wo, eta};
   }
   const Vec3 shading = visible_normal(normal.shading, normal.geometric, wo);
-  return RoughDielectricBsdf{{normal.geometric, shading}, wo, eta, alpha};
+  return RoughDielectricBsdf{normal.geometric, facet_frame(point, shading, facets->isotropic()), wo,
+                             eta, *facets};
+}
+
+Bsdf conductor_at(const Conductor& metal, const Rgb& specular, const std::optional<Facets>& facets,
+                  const SurfacePoint& point, const SidedNormals& normal, const Vec3& wo) {
+  if (!facets) {
+    const SidedNormals sided = for_mirror(normal, wo);
+    const Rgb reflected = conductor_reflectance(metal.index, std::min(1.0, dot(wo, sided.shading)));
+    return MirrorBsdf{reflected * specular, normalize(mirrored(wo, sided.shading))};
+  }
+  const Vec3 shading = facing_normal(normal.shading, normal.geometric, wo);
+  return RoughConductorBsdf{
+      normal.geometric, facet_frame(point, shading, facets->isotropic()), wo, *facets, metal.index,
+      specular};
 }
 
 }  // namespace
@@ -129,32 +155,57 @@ Bsdf glass_at(double index, double roughness, const SidedNormals& normal, bool o
 Bsdf bsdf_at(const Material& material, absl::Span<const Texture> textures,
              const SurfacePoint& point, const Vec3& wo, double outside_index) {
   const bool outside = dot(wo, point.geometric_normal) >= 0;
-  const SidedNormals normal = outside
-                                  ? SidedNormals{point.geometric_normal, point.shading_normal}
-                                  : SidedNormals{-point.geometric_normal, -point.shading_normal};
+  if (material.one_sided && !outside) {
+    return BlackBsdf{};
+  }
+  const auto sided = [&](const Vec3& shading) {
+    return outside ? SidedNormals{point.geometric_normal, shading}
+                   : SidedNormals{-point.geometric_normal, -shading};
+  };
+  if (const auto* layered = std::get_if<MetallicRoughness>(&material.kind)) {
+    return metallic_roughness_at(*layered, material.relief, textures, point,
+                                 sided(point.shading_normal), wo);
+  }
+  const SidedNormals normal = sided(bent_normal(material.relief, textures, point));
   const auto color = [&](TextureId id) {
     return tinted(look_up(textures, id, point), point.color);
   };
   return std::visit(
-      Overloaded{[&](const Diffuse& m) -> Bsdf {
-                   return DiffuseBsdf{normal, color(m.reflectance)};
-                 },
-                 [&](const Metal& m) {
-                   const double fuzz = mapped_number(textures, m.fuzz, m.fuzz_map, point);
-                   return metal_at(color(m.reflectance), fuzz, normal, wo);
-                 },
-                 [&](const Dielectric& m) {
-                   const double index =
-                       mapped_index(textures, m.index_of_refraction, m.index_map, point);
-                   const double roughness =
-                       mapped_number(textures, m.roughness, m.roughness_map, point);
-                   return glass_at(index, roughness, normal, outside, wo, outside_index);
-                 },
-                 [&](const Principled& m) -> Bsdf {
-                   return principled_at(m, textures, point, normal, wo);
-                 },
-                 [](const Emissive&) -> Bsdf { return BlackBsdf{}; }},
-      material);
+      Overloaded{
+          [&](const Diffuse& m) -> Bsdf {
+            return DiffuseBsdf{normal, color(m.reflectance)};
+          },
+          [&](const Metal& m) {
+            const double fuzz = mapped_number(textures, m.fuzz, m.fuzz_map, point);
+            return metal_at(color(m.reflectance), fuzz, normal, wo);
+          },
+          [&](const Dielectric& m) {
+            const double index = mapped_index(textures, m.index_of_refraction, m.index_map, point);
+            return glass_at(index, facets_of(m, textures, point), point, normal, outside, wo,
+                            outside_index);
+          },
+          [&](const Plastic& m) -> Bsdf { return plastic_at(m, textures, point, normal, wo); },
+          [&](const Conductor& m) {
+            return conductor_at(m, color(m.specular), facets_at(m.surface, textures, point), point,
+                                normal, wo);
+          },
+          [&](const ThinDielectric& m) -> Bsdf {
+            return thin_dielectric(for_mirror(normal, wo), wo, m.index_of_refraction, m.specular,
+                                   m.transmission);
+          },
+          [&](const DiffuseTransmission& m) -> Bsdf {
+            return diffuse_transmission(normal, color(m.reflectance), color(m.transmittance));
+          },
+          [&](const Principled& m) -> Bsdf {
+            return principled_at(m, textures, point, normal, outside, wo);
+          },
+          [&](const ThinPrincipled& m) -> Bsdf {
+            return thin_principled_at(m, textures, point, normal, wo);
+          },
+          [](const Mix&) -> Bsdf { return BlackBsdf{}; },  // resolved when the ray hits it
+          [](const MetallicRoughness&) -> Bsdf { return BlackBsdf{}; },  // see above
+          [](const Emissive&) -> Bsdf { return BlackBsdf{}; }},
+      material.kind);
 }
 
 std::optional<BsdfSample> sample(const Bsdf& bsdf, double u, double v, double lobe) {
@@ -167,8 +218,9 @@ std::optional<BsdfSample> sample(const Bsdf& bsdf, double u, double v, double lo
                                      .wi = b.mirror, .weight = b.reflectance, .delta = true};
                                },
                                [&](const DielectricBsdf& b) { return sample_dielectric(b, lobe); },
-                               [&](const RoughDielectricBsdf& b) { return sample(b, u, v, lobe); },
-                               [&](const PrincipledBsdf& b) { return sample(b, u, v, lobe); }},
+                               [&](const RoughConductorBsdf& b) { return sample(b, u, v); },
+                               [&](const ThinDielectricBsdf& b) { return sample(b, lobe); },
+                               [&](const auto& b) { return sample(b, u, v, lobe); }},
                     bsdf);
 }
 
@@ -187,24 +239,40 @@ BsdfValue evaluate(const Bsdf& bsdf, const Vec3& wi) {
     const double pdf = fuzz_pdf(metal->mirror, metal->fuzz, wi);
     return {metal->reflectance * static_cast<float>(pdf), pdf};
   }
-  if (const auto* glass = std::get_if<RoughDielectricBsdf>(&bsdf); glass != nullptr) {
-    return evaluate(*glass, wi);
-  }
-  if (const auto* principled = std::get_if<PrincipledBsdf>(&bsdf); principled != nullptr) {
-    return evaluate(*principled, wi);
-  }
-  return {};
+  return std::visit(Overloaded{[](const BlackBsdf&) { return BsdfValue{}; },
+                               [](const DiffuseBsdf&) { return BsdfValue{}; },  // see above
+                               [](const FuzzyMetalBsdf&) { return BsdfValue{}; },
+                               [](const MirrorBsdf&) { return BsdfValue{}; },
+                               [](const DielectricBsdf&) { return BsdfValue{}; },
+                               [](const ThinDielectricBsdf&) { return BsdfValue{}; },
+                               [&](const auto& b) { return evaluate(b, wi); }},
+                    bsdf);
 }
 
 bool has_pdf(const Bsdf& bsdf) {
   return !std::holds_alternative<BlackBsdf>(bsdf) && !std::holds_alternative<MirrorBsdf>(bsdf) &&
-         !std::holds_alternative<DielectricBsdf>(bsdf);
+         !std::holds_alternative<DielectricBsdf>(bsdf) &&
+         !std::holds_alternative<ThinDielectricBsdf>(bsdf);
 }
 
 bool has_pdf_behind(const Bsdf& bsdf) {
-  const auto* principled = std::get_if<PrincipledBsdf>(&bsdf);
-  return std::holds_alternative<RoughDielectricBsdf>(bsdf) ||
-         (principled != nullptr && principled->transmission > 0 && principled->metallic < 1);
+  return std::visit(
+      Overloaded{
+          [](const RoughDielectricBsdf&) { return true; },
+          [](const MetallicRoughnessBsdf& b) { return b.transmission > 0 && b.metallic < 1; },
+          [](const PrincipledBsdf& b) { return b.refracting > 0; },
+          [](const ThinPrincipledBsdf& b) { return b.spec_trans > 0 || b.diff_trans > 0; },
+          [](const DiffuseTransmissionBsdf& b) { return !is_black(b.transmittance); },
+          [](const auto&) { return false; }},
+      bsdf);
+}
+
+bool is_diffuse_behind(const Bsdf& bsdf) {
+  if (const auto* thin = std::get_if<ThinPrincipledBsdf>(&bsdf)) {
+    return thin->diff_trans > 0 && thin->spec_trans < 1;
+  }
+  const auto* sheet = std::get_if<DiffuseTransmissionBsdf>(&bsdf);
+  return sheet != nullptr && !is_black(sheet->transmittance);
 }
 
 }  // namespace bandsaw

@@ -13,9 +13,14 @@
 #include "absl/types/span.h"
 #include "renderlib/geometry/surface.h"
 #include "renderlib/material/bsdf_sample.h"
+#include "renderlib/material/conductor.h"
 #include "renderlib/material/material.h"
+#include "renderlib/material/metallic_roughness_bsdf.h"
+#include "renderlib/material/plastic.h"
 #include "renderlib/material/principled_bsdf.h"
 #include "renderlib/material/rough_dielectric.h"
+#include "renderlib/material/thin.h"
+#include "renderlib/material/thin_principled_bsdf.h"
 #include "renderlib/texture/texture.h"
 
 namespace bandsaw {
@@ -52,14 +57,17 @@ struct DielectricBsdf {
 /// Scatters nothing.
 struct BlackBsdf {};
 
-using Bsdf = std::variant<BlackBsdf, DiffuseBsdf, FuzzyMetalBsdf, MirrorBsdf, DielectricBsdf,
-                          RoughDielectricBsdf, PrincipledBsdf>;
+using Bsdf =
+    std::variant<BlackBsdf, DiffuseBsdf, FuzzyMetalBsdf, MirrorBsdf, DielectricBsdf,
+                 RoughDielectricBsdf, MetallicRoughnessBsdf, RoughConductorBsdf, PlasticBsdf,
+                 ThinDielectricBsdf, DiffuseTransmissionBsdf, PrincipledBsdf, ThinPrincipledBsdf>;
 
 /// Smaller fuzz is treated as a mirror: it would spread light by less than a thousandth of a pixel.
 inline constexpr double kMinFuzz = 1e-6;
 
-/// Returns the BSDF of `material` at `point`, seen along `wo`. `outside_index` is the index of
-/// refraction on the side of the normal (nested dielectrics; material/interiors.h).
+/// Returns the BSDF of `material`, which is not a mixture, at `point`, seen along `wo`.
+/// `outside_index` is the index of refraction on the side of the normal (nested dielectrics;
+/// material/interiors.h).
 Bsdf bsdf_at(const Material& material, absl::Span<const Texture> textures,
              const SurfacePoint& point, const Vec3& wo, double outside_index = 1);
 
@@ -74,5 +82,9 @@ bool has_pdf(const Bsdf& bsdf);
 
 /// Returns true if evaluate() can be non-zero for light from behind the surface.
 bool has_pdf_behind(const Bsdf& bsdf);
+
+/// Returns true if so much of the light from behind arrives diffusely that sampling lights there
+/// pays.
+bool is_diffuse_behind(const Bsdf& bsdf);
 
 }  // namespace bandsaw

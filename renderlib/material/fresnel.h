@@ -44,6 +44,28 @@ inline double fresnel(double cos_i, double eta) {
   return 0.5 * (parallel * parallel + perpendicular * perpendicular);
 }
 
+/// Returns the reflectance of a metal in air for unpolarised light (Born and Wolf, section 14.2):
+/// eta and k are the real and imaginary part of its index, cos_i is in [0, 1].
+inline double conductor_fresnel(double cos_i, double eta, double k) {
+  const double cos2 = cos_i * cos_i;
+  const double sin2 = 1 - cos2;
+  const double real = eta * eta - k * k - sin2;
+  const double size = std::sqrt(real * real + 4 * eta * eta * k * k);
+  const double twice_a = 2 * std::sqrt(std::max(0.0, 0.5 * (size + real))) * cos_i;
+  const double perpendicular = (size + cos2 - twice_a) / (size + cos2 + twice_a);
+  const double along = cos2 * size + sin2 * sin2;
+  const double parallel = perpendicular * (along - twice_a * sin2) / (along + twice_a * sin2);
+  return 0.5 * (perpendicular + parallel);
+}
+
+/// Returns the Jacobian of refraction (Walter et al. 2007, eq. 17) times dot(o, h): the pdf of wi
+/// by refraction at a facet, divided by its pdf over the cosine (facet_pdf_over_cos) and by 1 - F.
+/// i_h is negative.
+inline double refraction_jacobian(double o_h, double i_h, double eta) {
+  const double along_half = o_h + eta * i_h;
+  return eta * eta * std::abs(i_h) * o_h / (along_half * along_half);
+}
+
 /// Returns (1 - cos)^5. In Schlick 1994, "An Inexpensive BRDF Model for Physically-based
 /// Rendering", eq. 15, the reflectance is f0 + (1 - f0) times this.
 inline double schlick_rim(double cos_i) {

@@ -15,7 +15,7 @@ namespace bandsaw {
 
 /// Returns the dielectric if it takes part; null for other materials.
 inline const Dielectric* nested_glass(const Material& material) {
-  const auto* glass = std::get_if<Dielectric>(&material);
+  const auto* glass = std::get_if<Dielectric>(&material.kind);
   return glass != nullptr && glass->priority > 0 ? glass : nullptr;
 }
 

@@ -1,10 +1,14 @@
 #pragma once
 
-// Parameters of surface materials, as the scene stores them. A closed set; material/bsdf.h turns a
-// material at a point into a BSDF that can be sampled.
+// Parameters of surface materials, as the scene stores them: a kind of scattering, which is one of
+// a closed set, and properties that every kind can have. material/bsdf.h turns a material at a
+// point into a BSDF that can be sampled.
 
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <type_traits>
+#include <utility>
 #include <variant>
 
 #include "renderlib/base/ids.h"
@@ -25,6 +29,24 @@ struct Metal {
   std::optional<TextureId> fuzz_map = std::nullopt;  ///< its luminance multiplies `fuzz`
 };
 
+/// The distribution of the facets of a rough surface, at most one number of roughness along u and
+/// one along v. The numbers are alpha, not its square root.
+struct Microfacets {
+  enum class Distribution : std::uint8_t { kGgx, kBeckmann };
+  enum class Masking : std::uint8_t {
+    kSeparable,   ///< G1(wo) G1(wi), as in Walter et al. 2007
+    kCorrelated,  ///< by the height of a facet (Heitz 2014)
+  };
+  Distribution distribution = Distribution::kGgx;
+  Masking masking = Masking::kSeparable;
+  double alpha_u = 0;  ///< [0, 1]; smooth where both are below kMinAlpha (material/ggx.h)
+  double alpha_v = 0;
+  std::optional<TextureId> alpha_u_map = std::nullopt;  ///< its luminance multiplies alpha_u
+  std::optional<TextureId> alpha_v_map = std::nullopt;
+
+  bool isotropic() const { return alpha_u == alpha_v && alpha_u_map == alpha_v_map; }
+};
+
 /// Clear glass.
 struct Dielectric {
   double index_of_refraction = 1.5;  ///< inside over outside, [1, 5]
@@ -36,6 +58,7 @@ struct Dielectric {
   /// The index is 1 where the map's luminance is 0, index_of_refraction where it is 1, and linear
   /// in between. Not allowed with a priority: a glass that contains a path has one index.
   std::optional<TextureId> index_map = std::nullopt;
+  std::optional<Microfacets> surface = std::nullopt;  ///< replaces `roughness`
 };
 
 /// Emits light and scatters none.
@@ -56,37 +79,160 @@ struct Tint {
   Rgb factor{1, 1, 1};
 };
 
+/// The metallic-roughness material of glTF 2.0 (appendix B) with KHR_materials_ior, _clearcoat and
+/// _transmission (thin). GGX's alpha is the square of a roughness. Emission lies below the coat; a
+/// normal map is that of the layer below the coat.
+struct MetallicRoughness {
+  Tint base_color;                   ///< [0, 1]; vertex colours multiply it
+  Channel metallic;                  ///< channel b; [0, 1]
+  Channel roughness;                 ///< channel g; [0, 1]
+  double index_of_refraction = 1.5;  ///< of the dielectric part, [1, 5]
+  Channel coat;                      ///< channel r; [0, 1]: weight of a clear coat of index 1.5
+  Channel coat_roughness;            ///< channel g; [0, 1]
+  Channel transmission;  ///< channel r; [0, 1]: share transmitted instead of diffusely reflected
+  std::optional<TextureId> index_map = std::nullopt;  ///< as in Dielectric
+  /// Like Relief::normal, for the clear coat alone; without it the coat follows the mesh's shading
+  /// normal.
+  std::optional<TextureId> coat_normal = std::nullopt;
+  double coat_normal_scale = 1;  ///< finite
+};
+
+class PlasticCoat;
+
+/// A diffuse surface below a dielectric coat, with the light that is reflected to and fro between
+/// both: `plastic` and `roughplastic` of Mitsuba 3.
+struct Plastic {
+  TextureId reflectance{};           ///< of the diffuse surface; vertex colours multiply it
+  double index_of_refraction = 1.5;  ///< of the coat, (1, 5]
+  Microfacets surface = {};          ///< of the coat; isotropic
+  Rgb specular{1, 1, 1};             ///< factor of the coat's reflection, [0, 1]
+  /// Colours become more saturated with each reflection inside; false: only their brightness does.
+  bool nonlinear = false;
+  /// Set by prepare_materials(), without which the material has no BSDF.
+  std::shared_ptr<const PlasticCoat> coat = nullptr;
+};
+
+/// The complex index of refraction of a metal.
+struct ConductorIndex {
+  Rgb eta;  ///< real part, (0, 100]
+  Rgb k;    ///< imaginary part, [0, 100]
+};
+
+struct Conductor {
+  std::optional<ConductorIndex> index = std::nullopt;  ///< without it, everything is reflected
+  Microfacets surface = {};
+  TextureId specular{};  ///< factor of the reflection, [0, 1]; vertex colours multiply it
+};
+
+/// A thin pane of clear glass, with the reflections between its faces. Light passes straight on.
+struct ThinDielectric {
+  double index_of_refraction = 1.5;  ///< [1, 5]
+  Rgb specular{1, 1, 1};             ///< factor of the reflected light, [0, 1]
+  Rgb transmission{1, 1, 1};         ///< factor of the transmitted light, [0, 1]
+};
+
+/// Lambertian reflection and transmission. Where their sum exceeds 1, both are scaled. Vertex
+/// colours multiply both.
+struct DiffuseTransmission {
+  TextureId reflectance{};
+  TextureId transmittance{};
+};
+
+/// A number in [0, 1] that may vary over a surface.
+struct Number {
+  double value = 0;                             ///< [0, 1]
+  std::optional<TextureId> map = std::nullopt;  ///< its luminance multiplies `value`
+};
+
+/// The principled BSDF of Mitsuba 3 for solid bodies (Burley 2012, "Physically Based Shading at
+/// Disney"; 2015, "Extending the Disney BRDF to a BSDF"). If `spec_trans` is 0, both sides reflect;
+/// otherwise the side opposite to the normal is inside.
+struct Principled {
+  TextureId base_color{};            ///< [0, 1]; vertex colours multiply it
+  double index_of_refraction = 1.5;  ///< [1, 5]
+  Number roughness{0.5};             ///< alpha is its square
+  Number anisotropic = {};
+  Number metallic = {};
+  Number spec_trans = {};
+  Number spec_tint = {};
+  Number sheen = {};
+  Number sheen_tint = {};
+  Number flatness = {};
+  Number clearcoat = {};
+  Number clearcoat_gloss = {};
+};
+
+/// The principled BSDF of Mitsuba 3 for thin sheets.
+struct ThinPrincipled {
+  TextureId base_color{};            ///< [0, 1]; vertex colours multiply it
+  double index_of_refraction = 1.5;  ///< [1, 5]
+  Number roughness{0.5};
+  Number anisotropic = {};
+  Number spec_trans = {};
+  Number spec_tint = {};
+  Number sheen = {};
+  Number sheen_tint = {};
+  Number flatness = {};
+  Number diff_trans = {};  ///< share of the diffuse light that is transmitted: half of Mitsuba's
+};
+
+/// At each point one of two materials (material/mixture.h). They precede it in the scene's list and
+/// are no glass with a priority.
+struct Mix {
+  MaterialId a{};
+  MaterialId b{};
+  TextureId amount{};  ///< its luminance is the probability of b, [0, 1]
+};
+
+/// Unevenness that changes the shading normal only: a normal map or a height map, not both.
+struct Relief {
+  /// Normal map: tangent-space directions stored as 0.5 + 0.5 n; b points outwards.
+  std::optional<TextureId> normal = std::nullopt;
+  double normal_scale = 1;  ///< finite; scales the tangential part
+  /// Height map: the surface is shaded as if displaced along its normal by the texture's luminance
+  /// times height_scale. In uv or world space.
+  std::optional<TextureId> height = std::nullopt;
+  double height_scale = 1;  ///< scene units, finite
+};
+
 enum class AlphaMode : std::uint8_t {
   kOpaque,
   kMask,   ///< present where alpha >= cutoff
   kBlend,  ///< present with probability alpha
 };
 
-/// The metallic-roughness material of glTF 2.0 (appendix B) with KHR_materials_ior, _clearcoat,
-/// _transmission (thin) and _emissive_strength. GGX's alpha is the square of a roughness.
-struct Principled {
-  Tint base_color;                   ///< [0, 1]; vertex colours multiply it
-  Channel metallic;                  ///< channel b; [0, 1]
-  Channel roughness;                 ///< channel g; [0, 1]
-  double index_of_refraction = 1.5;  ///< of the dielectric part, [1, 5]
-  /// Normal map: tangent-space directions stored as 0.5 + 0.5 n; b points outwards.
-  std::optional<TextureId> normal;
-  double normal_scale = 1;       ///< finite; scales the tangential part
-  Tint emissive{{}, {0, 0, 0}};  ///< radiance, >= 0, below the coat
-  bool double_sided = false;     ///< emits to both sides; scattering always does
-  AlphaMode alpha_mode = AlphaMode::kOpaque;
-  Channel alpha{{}, 1};       ///< channel r; [0, 1]
-  double alpha_cutoff = 0.5;  ///< for kMask
-  Channel coat;               ///< channel r; [0, 1]: weight of a clear coat of index 1.5
-  Channel coat_roughness;     ///< channel g; [0, 1]
-  Channel transmission;  ///< channel r; [0, 1]: share transmitted instead of diffusely reflected
-  std::optional<TextureId> index_map = std::nullopt;  ///< as in Dielectric
-  /// Like `normal`, for the clear coat alone; without it the coat follows the mesh's shading
-  /// normal.
-  std::optional<TextureId> coat_normal = std::nullopt;
-  double coat_normal_scale = 1;  ///< finite
+/// Opacity of a surface.
+struct Alpha {
+  AlphaMode mode = AlphaMode::kOpaque;
+  Channel value{{}, 1};    ///< channel r, or the luminance; [0, 1]; unused if kOpaque
+  bool luminance = false;  ///< of the texture's luminance instead of its channel r
+  double cutoff = 0.5;     ///< >= 0; for kMask
 };
 
-using Material = std::variant<Diffuse, Metal, Dielectric, Emissive, Principled>;
+/// Radiance that a surface emits, in addition to what it scatters.
+struct Emission {
+  Tint radiance{{}, {0, 0, 0}};  ///< >= 0; the texture is unused if the factor is black
+  bool one_sided = false;        ///< only to the side of the geometric normal
+};
+
+/// A kind of scattering, and the properties that every kind can have.
+struct Material {
+  using Kind =
+      std::variant<Diffuse, Metal, Dielectric, Emissive, MetallicRoughness, Plastic, Conductor,
+                   ThinDielectric, DiffuseTransmission, Principled, ThinPrincipled, Mix>;
+
+  Material() = default;
+  /// Implicit, so that a material without further properties is written as its kind.
+  template <class K>
+  requires std::is_constructible_v<Kind, K> Material(K of_kind) : kind(std::move(of_kind)) {}
+
+  Kind kind;
+  Relief relief;      ///< without effect on Emissive; not with Mix, whose parts have their own
+  Alpha alpha;        ///< not with Emissive and Mix
+  Emission emission;  ///< not with Emissive and Mix
+  /// Scatters nothing on the side opposite to the geometric normal. Not with Mix and materials that
+  /// transmit light.
+  bool one_sided = false;
+};
 
 }  // namespace bandsaw

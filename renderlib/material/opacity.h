@@ -1,6 +1,6 @@
 #pragma once
 
-// Opacity of a surface at a point: glTF's alpha, and 0 for glass that does not refract.
+// Opacity of a surface at a point: its alpha, and 0 for glass that does not refract.
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +9,7 @@
 #include "renderlib/geometry/surface.h"
 #include "renderlib/material/look_up.h"
 #include "renderlib/material/material.h"
+#include "renderlib/material/mixture.h"
 #include "renderlib/texture/texture.h"
 
 namespace bandsaw {
@@ -16,24 +17,25 @@ namespace bandsaw {
 /// Boundaries whose relative index of refraction is closer to 1 do not refract.
 inline constexpr double kMinRefraction = 1e-6;
 
-/// Returns true for glass with the same index as its surroundings, through which light goes
-/// straight on. Glass with a priority excludes other glass and therefore counts as present.
+/// Returns true for glass with the same index as its surroundings and for panes that reflect
+/// nothing, through which light goes straight on. Glass with a priority excludes other glass and
+/// therefore counts as present.
 inline bool bends_nothing(const Material& material) {
-  const auto* glass = std::get_if<Dielectric>(&material);
+  if (const auto* pane = std::get_if<ThinDielectric>(&material.kind)) {
+    return pane->transmission == Rgb{1, 1, 1} &&
+           std::abs(pane->index_of_refraction - 1) < kMinRefraction;
+  }
+  const auto* glass = std::get_if<Dielectric>(&material.kind);
   return glass != nullptr && glass->priority == 0 && !glass->index_map &&
          std::abs(glass->index_of_refraction - 1) < kMinRefraction;
 }
 
-/// Returns true if opacity() can be other than 1.
+/// Returns true if opacity() can be other than 1; false for a mixture, whatever its parts are.
 inline bool has_alpha(const Material& material) {
-  if (bends_nothing(material)) {
-    return true;
-  }
-  const auto* principled = std::get_if<Principled>(&material);
-  return principled != nullptr && principled->alpha_mode != AlphaMode::kOpaque;
+  return material.alpha.mode != AlphaMode::kOpaque || bends_nothing(material);
 }
 
-/// Returns the probability that a ray is stopped here, in [0, 1].
+/// Returns the probability that a ray is stopped here, in [0, 1]. The material is not a mixture.
 inline double opacity(const Material& material, absl::Span<const Texture> textures,
                       const SurfacePoint& point) {
   if (!has_alpha(material)) {
@@ -42,14 +44,27 @@ inline double opacity(const Material& material, absl::Span<const Texture> textur
   if (bends_nothing(material)) {
     return 0;
   }
-  const auto& principled = std::get<Principled>(material);
-  const Channel& channel = principled.alpha;
-  const double texel = look_up(textures, channel.texture, point).r;
-  const double alpha = std::clamp(channel.factor * texel, 0.0, 1.0);
-  if (principled.alpha_mode == AlphaMode::kMask) {
-    return alpha >= principled.alpha_cutoff ? 1 : 0;
+  const Alpha& alpha = material.alpha;
+  const Rgb texel = look_up(textures, alpha.value.texture, point);
+  const double part = alpha.luminance ? luminance(texel) : texel.r;
+  const double value = std::clamp(alpha.value.factor * part, 0.0, 1.0);
+  if (alpha.mode == AlphaMode::kMask) {
+    return value >= alpha.cutoff ? 1 : 0;
   }
-  return alpha;
+  return value;
+}
+
+/// Returns the same for material `id`, which may be a mixture: the mean over its parts.
+inline double opacity(absl::Span<const Material> materials, MaterialId id,
+                      absl::Span<const Texture> textures, const SurfacePoint& point) {
+  const Material& material = materials[index_of(id)];
+  const auto* mix = std::get_if<Mix>(&material.kind);
+  if (mix == nullptr) {
+    return opacity(material, textures, point);
+  }
+  const double amount = amount_at(*mix, textures, point);
+  return (1 - amount) * opacity(materials, mix->a, textures, point) +
+         amount * opacity(materials, mix->b, textures, point);
 }
 
 }  // namespace bandsaw

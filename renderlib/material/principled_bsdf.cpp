@@ -3,215 +3,220 @@
 #include <algorithm>
 #include <cmath>
 
-#include "renderlib/material/fresnel.h"
-#include "renderlib/material/ggx.h"
-#include "renderlib/material/ggx_albedo.h"
-#include "renderlib/material/look_up.h"
 #include "renderlib/material/shading_normal.h"
-#include "renderlib/sampling/basis.h"
+#include "renderlib/math/elementary.h"
 #include "renderlib/sampling/warp.h"
 
 namespace bandsaw {
 namespace {
 
-enum Lobe : std::size_t { kCoat, kReflection, kDiffuse, kTransmission };
+enum Lobe : std::size_t { kSpecular, kDiffuse, kCoat };
 
-/// Both directions in the frame of one normal.
-struct Local {
-  Vec3 o;
-  Vec3 i;
-};
-
-Local local(const Vec3& normal, const Vec3& wo, const Vec3& wi) {
-  const Basis frame = orthonormal_basis(normal);
-  return {frame.to_local(wo), frame.to_local(wi)};
+/// The coat's distribution of normals: generalised Trowbridge and Reitz with exponent 1 (Burley
+/// 2012, appendix B.2), for alpha in (0, 1).
+double gtr1(double cos_theta, double alpha) {
+  const double a2 = alpha * alpha;
+  return (a2 - 1) / (kPi * log(a2) * (1 + (a2 - 1) * cos_theta * cos_theta));
 }
 
-/// A reflection without its Fresnel factor: pdf, value, and Schlick's (1 - cos)^5.
-struct Reflection {
-  double pdf = 0;
-  double value = 0;
-  double rim = 0;
-};
+Vec3 sample_gtr1(double alpha, double u, double v) {
+  const double a2 = alpha * alpha;
+  const double cos2 = (1 - exp((1 - v) * log(a2))) / (1 - a2);
+  const double r = std::sqrt(std::clamp(1 - cos2, 0.0, 1.0));
+  const SinCos phi = sincos_turns(u);
+  return {r * phi.cos, r * phi.sin, std::sqrt(std::clamp(cos2, 0.0, 1.0))};
+}
 
-Reflection reflection(const Vec3& o, const Vec3& i, double alpha) {
-  const Vec3 sum = o + i;
-  const double size = length(sum);
-  if (i.z <= 0 || o.z <= 0 || !(size > 0)) {
-    return {};
+/// Returns the probability with which the specular lobe reflects at a facet of dielectric
+/// reflectance `f`; otherwise it refracts.
+double reflecting(const PrincipledBsdf& bsdf, double f) {
+  return bsdf.inside ? f : 1 - bsdf.refracting * (1 - f);
+}
+
+Rgb specular_reflectance(const PrincipledBsdf& bsdf, double f, double o_h) {
+  if (bsdf.inside) {
+    return gray(static_cast<float>(bsdf.refracting * f));
   }
-  const Vec3 h = sum / size;
-  Reflection out;
-  out.pdf = ggx_visible_over_cos(o, h, alpha) / 4;
-  out.value = out.pdf * ggx_shadowing(o, i, alpha);
-  out.rim = schlick_rim(dot(o, h));
-  return out;
+  const double dielectric = 1 - bsdf.metallic;
+  const Rgb f0 = hue_of(bsdf.diffuse.base) * static_cast<float>(normal_reflectance(bsdf.eta));
+  return gray(static_cast<float>(dielectric * (1 - bsdf.spec_tint) * f)) +
+         schlick(bsdf.diffuse.base, o_h) * static_cast<float>(bsdf.metallic) +
+         schlick(f0, o_h) * static_cast<float>(dielectric * bsdf.spec_tint);
 }
 
-/// Returns the share of light that the coat transmits; symmetric in wo and wi.
-double below_coat(const PrincipledBsdf& bsdf, const Vec3& wi) {
-  if (bsdf.coat == 0) {
-    return 1;
+void add_specular(const PrincipledBsdf& bsdf, const Vec3& i, const Vec3& h, BsdfValue& sum) {
+  const double o_h = std::min(1.0, dot(bsdf.o, h));
+  const double f = fresnel(o_h, bsdf.eta);
+  const double pdf = facet_pdf_over_cos(bsdf.o, h, bsdf.facets) / 4;
+  const double seen = pdf * facet_shadowing(bsdf.o, i, bsdf.facets);
+  sum.value += specular_reflectance(bsdf, f, o_h) * static_cast<float>(seen);
+  sum.pdf += bsdf.chances[kSpecular] * reflecting(bsdf, f) * pdf;
+}
+
+void add_coat(const PrincipledBsdf& bsdf, const Vec3& i, const Vec3& h, BsdfValue& sum) {
+  const double o_h = std::min(1.0, dot(bsdf.o, h));
+  const double density = gtr1(h.z, bsdf.coat_alpha);
+  const double reflected = kCoatF0 + (1 - kCoatF0) * schlick_rim(o_h);
+  constexpr double kMaskingAlpha = 0.25;
+  const double masking = ggx_masking(bsdf.o, kMaskingAlpha) * ggx_masking(i, kMaskingAlpha);
+  sum.value +=
+      gray(static_cast<float>(0.25 * bsdf.clearcoat * reflected * density * masking * i.z));
+  sum.pdf += bsdf.chances[kCoat] * density * h.z / (4 * o_h);
+}
+
+void add_refraction(const PrincipledBsdf& bsdf, const Vec3& i, BsdfValue& sum) {
+  Vec3 h = -(bsdf.o + i * bsdf.eta);
+  const double size = length(h);
+  if (!(size > 0)) {
+    return;
   }
-  const double cos_i = std::abs(dot(wi, bsdf.coat_normal));
-  const double other = bsdf.coat * ggx_albedo_table().at(cos_i, bsdf.coating.roughness)(kCoatF0);
-  return 1 - std::max(bsdf.coat_albedo, other);
-}
-
-Rgb scaled(const Rgb& color, double by) { return color * static_cast<float>(by); }
-
-void add_coat(const PrincipledBsdf& bsdf, const Vec3& wi, BsdfValue& sum) {
-  const Local directions = local(bsdf.coat_normal, bsdf.wo, wi);
-  const Reflection coat = reflection(directions.o, directions.i, bsdf.coating.alpha);
-  const double fresnel = kCoatF0 + (1 - kCoatF0) * coat.rim;
-  sum.value += gray(static_cast<float>(bsdf.coat * coat.value * fresnel));
-  sum.pdf += bsdf.chances[kCoat] * coat.pdf;
-}
-
-void add_above(const PrincipledBsdf& bsdf, const Local& directions, double through,
-               BsdfValue& sum) {
-  const Reflection mirror = reflection(directions.o, directions.i, bsdf.surface.alpha);
-  const Rgb f0 =
-      lerp(gray(static_cast<float>(bsdf.f0)), bsdf.base, static_cast<float>(bsdf.metallic));
-  const auto rim = static_cast<float>(mirror.rim);
-  sum.value += scaled(f0 * (1 - rim) + gray(rim), mirror.value * through);
-  sum.pdf += bsdf.chances[kReflection] * mirror.pdf;
-  const double matte = (1 - bsdf.metallic) * (1 - bsdf.transmission);
-  const double pdf = cosine_hemisphere_pdf(directions.i.z);
-  if (matte > 0) {
-    const double left = 1 - ggx_albedo_table().at(directions.i.z, bsdf.surface.roughness)(bsdf.f0);
-    sum.value += scaled(bsdf.base, matte * pdf * bsdf.matte_share * left * through);
+  h = h / std::copysign(size, h.z);
+  const double o_h = std::min(1.0, dot(bsdf.o, h));
+  const double i_h = dot(i, h);
+  if (o_h <= 0 || i_h >= 0) {
+    return;
   }
-  sum.pdf += bsdf.chances[kDiffuse] * pdf;
+  const double f = fresnel(o_h, bsdf.eta);
+  const double pdf = (1 - f) * facet_pdf_over_cos(bsdf.o, h, bsdf.facets) *
+                     refraction_jacobian(o_h, i_h, bsdf.eta);
+  const double seen =
+      bsdf.refracting * pdf * facet_shadowing(bsdf.o, i, bsdf.facets) / (bsdf.eta * bsdf.eta);
+  const Rgb& base = bsdf.diffuse.base;
+  sum.value +=
+      Rgb{std::sqrt(base.r), std::sqrt(base.g), std::sqrt(base.b)} * static_cast<float>(seen);
+  // 1 - reflecting() is refracting (1 - f) outside and 1 - f inside.
+  sum.pdf += bsdf.chances[kSpecular] * (bsdf.inside ? 1 : bsdf.refracting) * pdf;
 }
 
-void add_below(const PrincipledBsdf& bsdf, const Local& directions, double through,
-               BsdfValue& sum) {
-  const Reflection straight = reflection(
-      directions.o, {directions.i.x, directions.i.y, -directions.i.z}, bsdf.surface.alpha);
-  const double passed = (1 - bsdf.f0) * (1 - straight.rim);
-  const double share = (1 - bsdf.metallic) * bsdf.transmission;
-  sum.value += scaled(bsdf.base, share * passed * straight.value * through);
-  sum.pdf += bsdf.chances[kTransmission] * straight.pdf;
-}
-
-/// Sets the lobes' selection probabilities to their maximum contributions towards wo, normalised.
-void choose_chances(PrincipledBsdf& bsdf, const GgxAlbedo& albedo) {
-  const double through = 1 - bsdf.coat_albedo;
-  const double base = max_component(bsdf.base);
-  const double f0 = bsdf.f0 + (base - bsdf.f0) * bsdf.metallic;
-  const double left = 1 - albedo(bsdf.f0);
-  bsdf.chances[kCoat] = bsdf.coat_albedo;
-  bsdf.chances[kReflection] = through * albedo(f0);
-  bsdf.chances[kDiffuse] = through * (1 - bsdf.metallic) * (1 - bsdf.transmission) * base * left;
-  bsdf.chances[kTransmission] = through * (1 - bsdf.metallic) * bsdf.transmission * base * left;
-  double sum = 0;
-  for (const double chance : bsdf.chances) {
-    sum += chance;
+/// Sets the selection probabilities to rough estimates of the lobes' albedos. No lobe that is
+/// present is rare.
+void choose_chances(PrincipledBsdf& bsdf) {
+  if (bsdf.inside) {
+    bsdf.chances = {bsdf.refracting > 0 ? 1.0 : 0.0, 0, 0};
+    return;
   }
+  constexpr double kLeast = 0.1;
+  const double f = fresnel(std::min(1.0, bsdf.o.z), bsdf.eta);
+  const double base = max_component(bsdf.diffuse.base);
+  const double dielectric = f * (1 - bsdf.metallic) + bsdf.refracting * (1 - f);
+  const double matte = bsdf.matte * base + 0.25 * double{max_component(bsdf.diffuse.sheen)};
+  bsdf.chances[kSpecular] = std::max(kLeast, dielectric + bsdf.metallic * base);
+  bsdf.chances[kDiffuse] = matte > 0 ? std::max(kLeast, matte) : 0;
+  bsdf.chances[kCoat] = 0.25 * bsdf.clearcoat;
+  const double sum = bsdf.chances[kSpecular] + bsdf.chances[kDiffuse] + bsdf.chances[kCoat];
   for (double& chance : bsdf.chances) {
-    chance = sum > 0 ? chance / sum : 0;
+    chance /= sum;
   }
 }
 
-GgxLobe lobe_of(double roughness) {
-  return {roughness, std::max(kMinAlpha, roughness * roughness)};
+/// Returns the direction of the specular lobe, in the frame; `choice` in [0, 1) selects reflection
+/// or refraction. Sets `compression` for a refraction.
+std::optional<Vec3> sample_specular(const PrincipledBsdf& bsdf, double u, double v, double choice,
+                                    double& compression) {
+  const Vec3 h = sample_facet(bsdf.o, bsdf.facets, u, v);
+  const double o_h = std::min(1.0, dot(bsdf.o, h));
+  if (o_h <= 0) {
+    return std::nullopt;
+  }
+  if (choice < reflecting(bsdf, fresnel(o_h, bsdf.eta))) {
+    const Vec3 i = mirrored(bsdf.o, h);
+    return i.z > 0 ? std::optional(i) : std::nullopt;
+  }
+  const std::optional<double> cos_t = refracted_cos(o_h, bsdf.eta);
+  if (!cos_t) {
+    return std::nullopt;
+  }
+  const Vec3 i = refracted(bsdf.o, h, *cos_t, bsdf.eta);
+  compression = 1 / (bsdf.eta * bsdf.eta);
+  return i.z < 0 ? std::optional(i) : std::nullopt;
 }
 
 }  // namespace
 
 PrincipledBsdf principled_at(const Principled& material, absl::Span<const Texture> textures,
-                             const SurfacePoint& point, const SidedNormals& normal,
+                             const SurfacePoint& point, const SidedNormals& normal, bool outside,
                              const Vec3& wo) {
-  const auto texel = [&](TextureId id) { return look_up(textures, id, point); };
-  const auto number = [&](const Channel& channel, float Rgb::*of) {
-    return channel.factor == 0
-               ? 0
-               : std::clamp(channel.factor * double{texel(channel.texture).*of}, 0.0, 1.0);
-  };
+  const auto number = [&](const Number& n) { return number_at(n, textures, point); };
   PrincipledBsdf bsdf;
-  bsdf.wo = wo;
-  bsdf.coat_normal = visible_normal(normal.shading, normal.geometric, wo);
-  bsdf.normal = {normal.geometric, bsdf.coat_normal};
-  const auto bent = [&](TextureId map, double scale) {
-    const Vec3 outside = mapped_normal(point, textures, map, scale);
-    const bool flipped = dot(point.geometric_normal, normal.geometric) < 0;
-    return visible_normal(flipped ? -outside : outside, normal.geometric, wo);
-  };
-  if (material.normal) {
-    bsdf.normal.shading = bent(*material.normal, material.normal_scale);
-  }
-  if (material.coat_normal && material.coat.factor > 0) {
-    bsdf.coat_normal = bent(*material.coat_normal, material.coat_normal_scale);
-  }
-  const Rgb color = texel(material.base_color.texture) * material.base_color.factor * point.color;
-  bsdf.base = {std::min(color.r, 1.0f), std::min(color.g, 1.0f), std::min(color.b, 1.0f)};
-  bsdf.metallic = number(material.metallic, &Rgb::b);
-  bsdf.transmission = number(material.transmission, &Rgb::r);
-  bsdf.f0 = normal_reflectance(
-      mapped_index(textures, material.index_of_refraction, material.index_map, point));
-  bsdf.surface = lobe_of(number(material.roughness, &Rgb::g));
-  bsdf.coat = number(material.coat, &Rgb::r);
-  const GgxAlbedoTable& table = ggx_albedo_table();
-  if (bsdf.coat > 0) {
-    bsdf.coating = lobe_of(number(material.coat_roughness, &Rgb::g));
-    bsdf.coat_albedo =
-        bsdf.coat * table.at(dot(wo, bsdf.coat_normal), bsdf.coating.roughness)(kCoatF0);
-  }
-  const GgxAlbedo albedo = table.at(dot(wo, bsdf.normal.shading), bsdf.surface.roughness);
-  bsdf.matte_share = (1 - albedo(bsdf.f0)) / (1 - table.mean(bsdf.surface.roughness)(bsdf.f0));
-  choose_chances(bsdf, albedo);
+  bsdf.geometric = normal.geometric;
+  const double anisotropic = number(material.anisotropic);
+  const double roughness = number(material.roughness);
+  bsdf.facets = principled_facets(roughness, anisotropic);
+  bsdf.frame = facet_frame(point, facing_normal(normal.shading, normal.geometric, wo),
+                           bsdf.facets.isotropic());
+  bsdf.o = bsdf.frame.to_local(wo);
+  const bool solid = material.spec_trans.value > 0;
+  // An index of 1 would not refract, so that rough facets would have no pdf.
+  const double index =
+      solid ? std::max(1.001, material.index_of_refraction) : material.index_of_refraction;
+  bsdf.inside = solid && !outside;
+  bsdf.eta = bsdf.inside ? 1 / index : index;
+  const Rgb base = tinted(look_up(textures, material.base_color, point), point.color);
+  bsdf.metallic = number(material.metallic);
+  const double spec_trans = number(material.spec_trans);
+  bsdf.refracting = (1 - bsdf.metallic) * spec_trans;
+  bsdf.matte = (1 - bsdf.metallic) * (1 - spec_trans);
+  bsdf.spec_tint = number(material.spec_tint);
+  const auto sheen = static_cast<float>(number(material.sheen) * (1 - bsdf.metallic));
+  const auto sheen_tint = static_cast<float>(number(material.sheen_tint));
+  bsdf.diffuse = {base, roughness, number(material.flatness),
+                  lerp(gray(1), hue_of(base), sheen_tint) * sheen};
+  bsdf.clearcoat = number(material.clearcoat);
+  bsdf.coat_alpha = 0.1 + (0.001 - 0.1) * number(material.clearcoat_gloss);
+  choose_chances(bsdf);
   return bsdf;
 }
 
 std::optional<BsdfSample> sample(const PrincipledBsdf& bsdf, double u, double v, double lobe) {
-  std::size_t chosen = 0;
-  for (double left = lobe; chosen < kTransmission && left >= bsdf.chances[chosen]; ++chosen) {
-    left -= bsdf.chances[chosen];
-  }
-  if (bsdf.chances[chosen] == 0) {
-    return std::nullopt;  // all lobes are black, or rounding went past the last one
-  }
-  const Basis frame = orthonormal_basis(chosen == kCoat ? bsdf.coat_normal : bsdf.normal.shading);
-  Vec3 i;
-  if (chosen == kDiffuse) {
-    i = sample_cosine_hemisphere(u, v);
-  } else {
-    const Vec3 o = frame.to_local(bsdf.wo);
-    const double alpha = chosen == kCoat ? bsdf.coating.alpha : bsdf.surface.alpha;
-    i = mirrored(o, sample_ggx_visible(o, alpha, u, v));
-    if (i.z <= 0) {
-      return std::nullopt;
-    }
-    i.z = chosen == kTransmission ? -i.z : i.z;
-  }
   BsdfSample sample;
-  sample.wi = normalize(frame.to_world(i));
-  if ((dot(sample.wi, bsdf.normal.geometric) < 0) != (chosen == kTransmission)) {
-    return std::nullopt;  // a perturbed normal moved the direction to the wrong side
+  std::optional<Vec3> i;
+  const double specular = bsdf.chances[kSpecular];
+  if (lobe < specular) {
+    i = sample_specular(bsdf, u, v, lobe / specular, sample.compression);
+  } else if (lobe < specular + bsdf.chances[kDiffuse]) {
+    i = sample_cosine_hemisphere(u, v);
+  } else if (bsdf.chances[kCoat] > 0) {
+    i = mirrored(bsdf.o, sample_gtr1(bsdf.coat_alpha, u, v));
+    i = i->z > 0 ? i : std::nullopt;
   }
+  if (!i) {
+    return std::nullopt;
+  }
+  sample.wi = normalize(bsdf.frame.to_world(*i));
   const BsdfValue value = evaluate(bsdf, sample.wi);
   if (!(value.pdf > 0) || !std::isfinite(value.pdf)) {
     return std::nullopt;
   }
   sample.pdf = value.pdf;
-  sample.weight = scaled(value.value, 1 / value.pdf);
+  sample.weight = value.value * static_cast<float>(1 / value.pdf);
   return sample;
 }
 
 BsdfValue evaluate(const PrincipledBsdf& bsdf, const Vec3& wi) {
-  const double side = dot(wi, bsdf.normal.geometric);
-  const Local directions = local(bsdf.normal.shading, bsdf.wo, wi);
+  const Vec3 i = bsdf.frame.to_local(wi);
   BsdfValue sum;
-  if (side > 0) {
-    if (bsdf.coat > 0) {
-      add_coat(bsdf, wi, sum);
+  if (!(dot(wi, bsdf.geometric) * i.z > 0)) {
+    return sum;
+  }
+  if (i.z < 0) {
+    if (bsdf.refracting > 0) {
+      add_refraction(bsdf, i, sum);
     }
-    if (directions.i.z > 0) {
-      add_above(bsdf, directions, below_coat(bsdf, wi), sum);
+    return sum;
+  }
+  const Vec3 half = bsdf.o + i;
+  const double size = length(half);
+  if (!(size > 0)) {
+    return sum;
+  }
+  const Vec3 h = half / size;
+  add_specular(bsdf, i, h, sum);
+  if (!bsdf.inside) {
+    sum.value += disney_diffuse(bsdf.diffuse, bsdf.matte, bsdf.o, i, h);
+    sum.pdf += bsdf.chances[kDiffuse] * cosine_hemisphere_pdf(i.z);
+    if (bsdf.clearcoat > 0) {
+      add_coat(bsdf, i, h, sum);
     }
-  } else if (side < 0 && directions.i.z < 0 && bsdf.transmission > 0) {
-    add_below(bsdf, directions, below_coat(bsdf, wi), sum);
   }
   return sum;
 }

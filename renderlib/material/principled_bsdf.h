@@ -1,14 +1,9 @@
 #pragma once
 
-// BSDF of glTF's metallic-roughness material: a diffuse or thin transmissive layer below a rough
-// dielectric reflection, mixed with a rough metal, below a clear coat. Each GGX lobe has single
-// scattering, as in glTF 2.0, appendix B.
-//
-// Where glTF's mixing would not conserve energy, less is reflected: the layer below gets what the
-// reflection leaves, according to the reflection's albedo in both directions (Kelemen and
-// Szirmay-Kalos 2001, "A Microfacet Based Coupled Specular-Matte BRDF Model", eq. 5). So no
-// direction sends out more than comes in, and the BSDF is reciprocal. Fresnel reflectance is
-// Schlick's.
+// The principled BSDF of Mitsuba 3 for solid bodies: a rough specular reflection that is mixed from
+// a dielectric and a metal, refraction, diffuse light with sheen, and a clear coat. As in its
+// definition, the layers are added up and not attenuated by each other, so bright base colours can
+// reflect more than they receive at grazing angles.
 
 #include <array>
 #include <optional>
@@ -16,40 +11,38 @@
 #include "absl/types/span.h"
 #include "renderlib/geometry/surface.h"
 #include "renderlib/material/bsdf_sample.h"
+#include "renderlib/material/disney.h"
 #include "renderlib/material/material.h"
+#include "renderlib/material/microfacets.h"
+#include "renderlib/sampling/basis.h"
 #include "renderlib/texture/texture.h"
 
 namespace bandsaw {
 
-/// Parameters of a GGX lobe.
-struct GgxLobe {
-  double roughness = 1;
-  double alpha = 1;
-};
-
 struct PrincipledBsdf {
-  SidedNormals normal;
-  /// Shading normal of the coat: with its own normal map, without that of the layer below.
-  Vec3 coat_normal;
-  Vec3 wo;
-  Rgb base;
+  Vec3 geometric;       ///< geometric normal on the side of wo
+  Basis frame;          ///< z is the shading normal, dot(wo, z) > 0; x lies along u
+  Vec3 o;               ///< wo in the frame
+  bool inside = false;  ///< only the specular reflection and the refraction are present
+  double eta = 1.5;     ///< index beyond the surface over index on this side
+  Facets facets;
+  DisneyDiffuse diffuse;
   double metallic = 0;
-  double transmission = 0;
-  double f0 = 0.04;  ///< reflectance of the dielectric part at normal incidence
-  GgxLobe surface;
-  double coat = 0;
-  GgxLobe coating;
-  double coat_albedo = 0;  ///< albedo of the coat seen along wo, times `coat`
-  /// Share that the reflection leaves along wo, divided by its mean over all directions.
-  double matte_share = 1;
-  /// Selection probabilities of the lobes: coat, reflection, diffuse, transmission. They sum to 1,
-  /// or to 0 if the BSDF is black.
-  std::array<double, 4> chances{};
+  double spec_tint = 0;
+  double refracting = 0;  ///< (1 - metallic) spec_trans
+  double matte = 0;       ///< (1 - metallic) (1 - spec_trans)
+  double clearcoat = 0;
+  double coat_alpha = 0.1;
+  /// Selection probabilities: the specular lobes together, diffuse, clear coat. They sum to 1, or
+  /// to 0 if the BSDF is black.
+  std::array<double, 3> chances{};
 };
 
-/// Returns the BSDF; `normal` is on the side of wo.
+/// Returns the BSDF. `normal` is on the side of wo; `outside` tells whether that is the side of the
+/// geometric normal.
 PrincipledBsdf principled_at(const Principled& material, absl::Span<const Texture> textures,
-                             const SurfacePoint& point, const SidedNormals& normal, const Vec3& wo);
+                             const SurfacePoint& point, const SidedNormals& normal, bool outside,
+                             const Vec3& wo);
 
 std::optional<BsdfSample> sample(const PrincipledBsdf& bsdf, double u, double v, double lobe);
 BsdfValue evaluate(const PrincipledBsdf& bsdf, const Vec3& wi);

@@ -4,36 +4,27 @@
 #include <cmath>
 
 #include "renderlib/material/fresnel.h"
-#include "renderlib/material/ggx.h"
-#include "renderlib/sampling/basis.h"
 
 namespace bandsaw {
 namespace {
 
-/// Returns the Jacobian of refraction (Walter et al. 2007, eq. 17) times dot(o, h): the pdf of wi
-/// by refraction at the microfacet h, divided by ggx_visible_over_cos() and by 1 - F.
-double refraction_jacobian(double o_h, double i_h, double eta) {
-  const double along_half = o_h + eta * i_h;  // i_h < 0
-  return eta * eta * std::abs(i_h) * o_h / (along_half * along_half);
-}
-
 /// Returns true if wi is on the side of the geometric normal that its z in the shading frame
 /// indicates.
 bool is_consistent(const RoughDielectricBsdf& bsdf, const Vec3& wi, double local_z) {
-  return dot(wi, bsdf.normal.geometric) * local_z > 0;
+  return dot(wi, bsdf.geometric) * local_z > 0;
 }
 
 }  // namespace
 
 std::optional<BsdfSample> sample(const RoughDielectricBsdf& bsdf, double u, double v, double lobe) {
-  const Basis frame = orthonormal_basis(bsdf.normal.shading);
+  const Basis& frame = bsdf.frame;
   const Vec3 o = frame.to_local(bsdf.wo);
-  const Vec3 h = sample_ggx_visible(o, bsdf.alpha, u, v);
+  const Vec3 h = sample_facet(o, bsdf.facets, u, v);
   const double o_h = std::min(1.0, dot(o, h));
   if (o_h <= 0) {
     return std::nullopt;
   }
-  const double visible = ggx_visible_over_cos(o, h, bsdf.alpha);
+  const double visible = facet_pdf_over_cos(o, h, bsdf.facets);
   const double reflected_share = fresnel(o_h, bsdf.eta);
   BsdfSample sample;
   Vec3 i;
@@ -57,7 +48,8 @@ std::optional<BsdfSample> sample(const RoughDielectricBsdf& bsdf, double u, doub
   }
   i = normalize(i);
   sample.wi = normalize(frame.to_world(i));
-  sample.weight = gray(static_cast<float>(ggx_shadowing(o, i, bsdf.alpha) * sample.compression));
+  const double seen = facet_shadowing(o, i, bsdf.facets) * facet_ratio(o, h, bsdf.facets);
+  sample.weight = gray(static_cast<float>(seen * sample.compression));
   if (!is_consistent(bsdf, sample.wi, i.z) || !(sample.pdf > 0) || !std::isfinite(sample.pdf)) {
     return std::nullopt;
   }
@@ -65,9 +57,8 @@ std::optional<BsdfSample> sample(const RoughDielectricBsdf& bsdf, double u, doub
 }
 
 BsdfValue evaluate(const RoughDielectricBsdf& bsdf, const Vec3& wi) {
-  const Basis frame = orthonormal_basis(bsdf.normal.shading);
-  const Vec3 o = frame.to_local(bsdf.wo);
-  const Vec3 i = frame.to_local(wi);
+  const Vec3 o = bsdf.frame.to_local(bsdf.wo);
+  const Vec3 i = bsdf.frame.to_local(wi);
   if (!is_consistent(bsdf, wi, i.z)) {
     return {};
   }
@@ -86,8 +77,8 @@ BsdfValue evaluate(const RoughDielectricBsdf& bsdf, const Vec3& wi) {
     return {};
   }
   const double reflected_share = fresnel(o_h, bsdf.eta);
-  const double visible = ggx_visible_over_cos(o, h, bsdf.alpha);
-  const double shadowing = ggx_shadowing(o, i, bsdf.alpha);
+  const double visible = facet_pdf_over_cos(o, h, bsdf.facets);
+  const double seen = facet_shadowing(o, i, bsdf.facets) * facet_ratio(o, h, bsdf.facets);
   BsdfValue value;
   double compression = 1;
   if (reflects) {
@@ -96,7 +87,7 @@ BsdfValue evaluate(const RoughDielectricBsdf& bsdf, const Vec3& wi) {
     value.pdf = (1 - reflected_share) * visible * refraction_jacobian(o_h, i_h, bsdf.eta);
     compression = 1 / (bsdf.eta * bsdf.eta);
   }
-  value.value = gray(static_cast<float>(value.pdf * shadowing * compression));
+  value.value = gray(static_cast<float>(value.pdf * seen * compression));
   return value;
 }
 

@@ -1,19 +1,22 @@
 #pragma once
 
-// Rough glass: GGX microfacets that reflect and refract by the exact Fresnel equations (Walter et
-// al. 2007, eqs. 20 and 21), with single scattering.
+// Rough glass: microfacets that reflect and refract by the exact Fresnel equations (Walter et al.
+// 2007, eqs. 20 and 21), with single scattering.
 
 #include <optional>
 
 #include "renderlib/material/bsdf_sample.h"
+#include "renderlib/material/microfacets.h"
+#include "renderlib/sampling/basis.h"
 
 namespace bandsaw {
 
 struct RoughDielectricBsdf {
-  SidedNormals normal;  ///< dot(wo, shading) > 0
+  Vec3 geometric;  ///< geometric normal on the side of wo
+  Basis frame;     ///< z is the shading normal, dot(wo, z) > 0; x lies along u
   Vec3 wo;
   double eta = 1;  ///< index beyond the surface over index on this side; not 1
-  double alpha = 1;
+  Facets facets;
 };
 
 /// u and v select the microfacet, `lobe` reflection or refraction. Returns std::nullopt if the

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "renderlib/base/overloaded.h"
 #include "renderlib/material/fresnel.h"
 #include "renderlib/material/look_up.h"
 #include "renderlib/sampling/basis.h"
@@ -26,6 +27,16 @@ Directions along_map(const Directions& uv, const UvTransform& placed) {
   const auto& [a, b, x, d, e, y] = placed.m;
   const double sign = a * e - b * d < 0 ? -1 : 1;
   return {(uv.u * e - uv.v * d) * sign, (uv.v * a - uv.u * b) * sign};
+}
+
+bool is_anisotropic(const Material& material) {
+  return std::visit(
+      Overloaded{[](const Conductor& m) { return !m.surface.isotropic(); },
+                 [](const Dielectric& m) { return m.surface && !m.surface->isotropic(); },
+                 [](const Principled& m) { return m.anisotropic.value > 0; },
+                 [](const ThinPrincipled& m) { return m.anisotropic.value > 0; },
+                 [](const auto&) { return false; }},
+      material.kind);
 }
 
 UvSet set_of(absl::Span<const Texture> textures, TextureId map) {
@@ -70,14 +81,65 @@ Vec3 mapped_normal(const SurfacePoint& point, absl::Span<const Texture> textures
                        set_of(textures, map));
 }
 
-NormalUvSets normal_uv_sets(const Principled& material, absl::Span<const Texture> textures) {
-  NormalUvSets sets;
-  for (const std::optional<TextureId>& map : {material.normal, material.coat_normal}) {
+Vec3 bent_normal(const Relief& relief, absl::Span<const Texture> textures,
+                 const SurfacePoint& point) {
+  if (relief.normal) {
+    return mapped_normal(point, textures, *relief.normal, relief.normal_scale);
+  }
+  return relief.height ? displaced_normal(point, textures, *relief.height, relief.height_scale)
+                       : point.shading_normal;
+}
+
+UvSets uv_sets_of(const Material& material, absl::Span<const Texture> textures) {
+  UvSets sets;
+  const auto add = [&](const std::optional<TextureId>& map) {
     if (map) {
       (set_of(textures, *map) == UvSet::kSecond ? sets.second : sets.first) = true;
     }
+  };
+  add(material.relief.normal);
+  add(material.relief.height);
+  if (const auto* layered = std::get_if<MetallicRoughness>(&material.kind)) {
+    add(layered->coat_normal);
   }
+  sets.first = sets.first || is_anisotropic(material);
   return sets;
+}
+
+Vec3 displaced_normal(const SurfacePoint& point, absl::Span<const Texture> textures, TextureId map,
+                      double scale) {
+  const bool second = set_of(textures, map) == UvSet::kSecond;
+  const Vec3& n = point.shading_normal;
+  // Central differences over a fraction of a texel of all but the largest images.
+  constexpr double kStep = 0x1p-16;
+  const auto slope = [&](const Vec2& toward, const Vec3& along) {
+    const auto height = [&](double step) {
+      TextureCoordinates at = texture_coordinates(point);
+      at.uv = {at.uv.x + step * toward.x, at.uv.y + step * toward.y};
+      at.uv2 = {at.uv2.x + step * toward.x, at.uv2.y + step * toward.y};
+      at.position = at.position + along * step;
+      return double{luminance(evaluate(textures, map, at))};
+    };
+    return (height(kStep) - height(-kStep)) / (2 * kStep);
+  };
+  const Vec3& u = second ? point.along_u2 : point.along_u;
+  const Vec3& v = second ? point.along_v2 : point.along_v;
+  const Vec3 raised_u = u + n * (scale * slope({1, 0}, u) - dot(n, u));
+  const Vec3 raised_v = v + n * (scale * slope({0, 1}, v) - dot(n, v));
+  const Vec3 bent = cross(raised_u, raised_v);
+  const double size = length(bent);
+  if (!(size > 0) || !std::isfinite(size)) {
+    return n;
+  }
+  return dot(bent, n) < 0 ? bent / -size : bent / size;
+}
+
+Basis facet_frame(const SurfacePoint& point, const Vec3& n, bool isotropic) {
+  return isotropic ? orthonormal_basis(n) : uv_basis(n, {point.along_u, point.along_v});
+}
+
+Vec3 facing_normal(const Vec3& n, const Vec3& geometric, const Vec3& wo) {
+  return dot(wo, n) > 0 ? n : visible_normal(n, geometric, wo);
 }
 
 Vec3 visible_normal(const Vec3& n, const Vec3& geometric, const Vec3& wo) {

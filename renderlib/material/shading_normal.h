@@ -6,6 +6,7 @@
 #include "renderlib/geometry/surface.h"
 #include "renderlib/material/material.h"
 #include "renderlib/math/rgb.h"
+#include "renderlib/sampling/basis.h"
 #include "renderlib/texture/texture.h"
 
 namespace bandsaw {
@@ -21,13 +22,33 @@ Vec3 mapped_normal(const SurfacePoint& point, const Rgb& texel, double scale,
 Vec3 mapped_normal(const SurfacePoint& point, absl::Span<const Texture> textures, TextureId map,
                    double scale);
 
-/// The sets of uvs of which mapped_normal needs the directions: those of the material's normal map
-/// and of its coat's.
-struct NormalUvSets {
+/// Returns the shading normal of the surface displaced along its normals by the luminance of a
+/// height map times `scale`, in scene units (Blinn 1978, "Simulation of Wrinkled Surfaces", without
+/// the derivative of the normal), on the outside. The point MUST have the derivatives of the map's
+/// uvs (add_uv_derivatives). The shading normal itself where the uvs give no directions. Unit.
+Vec3 displaced_normal(const SurfacePoint& point, absl::Span<const Texture> textures, TextureId map,
+                      double scale);
+
+/// Returns true if the relief changes the shading normal.
+inline bool bends(const Relief& relief) { return relief.normal || relief.height; }
+
+/// Returns the shading normal of the outside, bent by the relief if there is one. Unit.
+Vec3 bent_normal(const Relief& relief, absl::Span<const Texture> textures,
+                 const SurfacePoint& point);
+
+/// The sets of uvs of which a material needs the directions in SurfacePoint.
+struct UvSets {
   bool first = false;
   bool second = false;
 };
-NormalUvSets normal_uv_sets(const Principled& material, absl::Span<const Texture> textures);
+UvSets uv_sets_of(const Material& material, absl::Span<const Texture> textures);
+
+/// Returns the frame of the facets of a rough surface: z is the shading normal n; x lies along the
+/// point's u where that has a direction, unless the surface is isotropic.
+Basis facet_frame(const SurfacePoint& point, const Vec3& n, bool isotropic);
+
+/// Returns n, or visible_normal() where wo is behind n and would see no surface at all.
+Vec3 facing_normal(const Vec3& n, const Vec3& geometric, const Vec3& wo);
 
 /// `n`, bent just so far towards `geometric` that both wo and its mirror image lie above the
 /// surface: no black rims and no light from behind. All are unit vectors, dot(wo, geometric) >= 0.

@@ -14,6 +14,7 @@
 #include "renderlib/package/decode_surface.h"
 #include "renderlib/package/lights.h"
 #include "renderlib/package/manifest.h"
+#include "renderlib/package/materials.h"
 #include "renderlib/package/media.h"
 #include "renderlib/package/placements.h"
 #include "renderlib/scene/validate.h"

@@ -5,7 +5,6 @@
 #include "renderlib/package/decode_enum.h"
 #include "renderlib/package/lights.h"
 #include "renderlib/package/manifest.h"
-#include "renderlib/package/principled.h"
 
 namespace bandsaw {
 namespace {
@@ -16,25 +15,6 @@ absl::Status check_length(const List& list, int length, const std::string& field
     return absl::OkStatus();
   }
   return manifest_error(field, absl::StrCat("must have ", length, " numbers, has ", list.size()));
-}
-
-Metal decode_metal(const package::Metal& from) {
-  Metal to{TextureId{from.reflectance()}, from.fuzz()};
-  if (from.has_fuzz_texture()) {
-    to.fuzz_map = TextureId{from.fuzz_texture()};
-  }
-  return to;
-}
-
-Dielectric decode_dielectric(const package::Dielectric& from) {
-  Dielectric to{from.index_of_refraction(), from.roughness(), from.priority()};
-  if (from.has_roughness_texture()) {
-    to.roughness_map = TextureId{from.roughness_texture()};
-  }
-  if (from.has_index_texture()) {
-    to.index_map = TextureId{from.index_texture()};
-  }
-  return to;
 }
 
 }  // namespace
@@ -112,27 +92,6 @@ absl::StatusOr<Background> decode_background(const package::Manifest& manifest) 
                      decode_environment(manifest.background().environment()));
   }
   return background;
-}
-
-absl::StatusOr<Material> decode_material(const package::Material& material,
-                                         const std::string& field) {
-  switch (material.kind_case()) {
-    case package::Material::kDiffuse:
-      return Diffuse{TextureId{material.diffuse().reflectance()}};
-    case package::Material::kMetal:
-      return decode_metal(material.metal());
-    case package::Material::kDielectric:
-      return decode_dielectric(material.dielectric());
-    case package::Material::kEmissive:
-      return Emissive{TextureId{material.emissive().radiance()}, material.emissive().one_sided()};
-    case package::Material::kGltf: {
-      ASSIGN_OR_RETURN(Principled principled, decode_principled(material.gltf(), field + ".gltf"));
-      return Material(principled);
-    }
-    case package::Material::KIND_NOT_SET:
-      break;
-  }
-  return manifest_error(field, "is of no kind that this program knows");
 }
 
 }  // namespace bandsaw

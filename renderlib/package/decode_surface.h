@@ -21,8 +21,4 @@ absl::StatusOr<Vec3> decode_vec3(const google::protobuf::RepeatedField<double>& 
 absl::StatusOr<Rgb> decode_rgb(const google::protobuf::RepeatedField<float>& list,
                                const std::string& field);
 
-/// Returns INVALID_ARGUMENT for an unknown kind.
-absl::StatusOr<Material> decode_material(const package::Material& material,
-                                         const std::string& field);
-
 }  // namespace bandsaw

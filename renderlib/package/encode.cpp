@@ -12,9 +12,9 @@
 #include "renderlib/package/blob_source.h"
 #include "renderlib/package/lights.h"
 #include "renderlib/package/limits.h"
+#include "renderlib/package/materials.h"
 #include "renderlib/package/media.h"
 #include "renderlib/package/placements.h"
-#include "renderlib/package/principled.h"
 #include "renderlib/texture/texture.h"
 
 namespace bandsaw {
@@ -257,37 +257,6 @@ void encode(const LocalShading& local, package::Manifest& manifest) {
   }
 }
 
-struct EncodeMaterial {
-  package::Material& to;
-
-  void operator()(const Diffuse& m) const {
-    to.mutable_diffuse()->set_reflectance(static_cast<std::uint32_t>(m.reflectance));
-  }
-  void operator()(const Metal& m) const {
-    to.mutable_metal()->set_reflectance(static_cast<std::uint32_t>(m.reflectance));
-    to.mutable_metal()->set_fuzz(m.fuzz);
-    if (m.fuzz_map) {
-      to.mutable_metal()->set_fuzz_texture(static_cast<std::uint32_t>(*m.fuzz_map));
-    }
-  }
-  void operator()(const Dielectric& m) const {
-    to.mutable_dielectric()->set_index_of_refraction(m.index_of_refraction);
-    to.mutable_dielectric()->set_roughness(m.roughness);
-    to.mutable_dielectric()->set_priority(m.priority);
-    if (m.roughness_map) {
-      to.mutable_dielectric()->set_roughness_texture(static_cast<std::uint32_t>(*m.roughness_map));
-    }
-    if (m.index_map) {
-      to.mutable_dielectric()->set_index_texture(static_cast<std::uint32_t>(*m.index_map));
-    }
-  }
-  void operator()(const Emissive& m) const {
-    to.mutable_emissive()->set_radiance(static_cast<std::uint32_t>(m.radiance));
-    to.mutable_emissive()->set_one_sided(m.one_sided);
-  }
-  void operator()(const Principled& m) const { encode_principled(m, *to.mutable_gltf()); }
-};
-
 void encode(const Media& media, Encoder& encoder, package::Manifest& manifest) {
   encode_media(media, manifest);
   for (std::size_t i = 0; i < media.grids.size(); ++i) {
@@ -348,7 +317,7 @@ std::string encode_package(const SceneDescription& scene, const PackageInfo& inf
     encode_texture(texture, blobs, *manifest.add_texture());
   }
   for (const Material& material : scene.materials) {
-    std::visit(EncodeMaterial{*manifest.add_material()}, material);
+    encode_material(material, *manifest.add_material());
   }
   encoder.put_shapes(scene.geometry, manifest);
   for (const Mesh& mesh : scene.geometry.meshes) {

@@ -1,90 +1,80 @@
 #include "renderlib/package/principled.h"
 
-#include "absl/strings/str_cat.h"
-#include "renderlib/base/status_macros.h"
-#include "renderlib/package/decode_surface.h"
-#include "renderlib/package/manifest.h"
+#include "renderlib/package/material_parts.h"
 
 namespace bandsaw {
 namespace {
 
-void encode(const Channel& from, package::Channel& to) {
-  to.set_texture(static_cast<std::uint32_t>(from.texture));
-  to.set_factor(from.factor);
-}
-
-void encode(const Tint& from, package::Tint& to) {
-  to.set_texture(static_cast<std::uint32_t>(from.texture));
-  for (const float channel : {from.factor.r, from.factor.g, from.factor.b}) {
-    to.add_factor(channel);
+void encode(const Number& from, package::Number& to) {
+  to.set_value(from.value);
+  if (from.map) {
+    to.set_texture(number_of(*from.map));
   }
 }
 
-Channel decode(const package::Channel& from) { return {TextureId{from.texture()}, from.factor()}; }
-
-absl::StatusOr<Tint> decode(const package::Tint& from, const std::string& field) {
-  ASSIGN_OR_RETURN(const Rgb factor, decode_rgb(from.factor(), field + ".factor"));
-  return Tint{TextureId{from.texture()}, factor};
+Number decode(const package::Number& from) {
+  return {from.value(), texture_if(from.has_texture(), from.texture())};
 }
 
 }  // namespace
 
-void encode_principled(const Principled& from, package::Gltf& to) {
-  encode(from.base_color, *to.mutable_base_color());
-  encode(from.metallic, *to.mutable_metallic());
-  encode(from.roughness, *to.mutable_roughness());
+void encode_principled(const Principled& from, package::Principled& to) {
+  to.set_base_color(number_of(from.base_color));
   to.set_index_of_refraction(from.index_of_refraction);
-  if (from.normal) {
-    to.set_normal(static_cast<std::uint32_t>(*from.normal));
-  }
-  to.set_normal_scale(from.normal_scale);
-  encode(from.emissive, *to.mutable_emissive());
-  to.set_double_sided(from.double_sided);
-  // The enums are declared in the same order.
-  to.set_alpha_mode(static_cast<package::Gltf::AlphaMode>(from.alpha_mode));
-  encode(from.alpha, *to.mutable_alpha());
-  to.set_alpha_cutoff(from.alpha_cutoff);
-  encode(from.coat, *to.mutable_coat());
-  encode(from.coat_roughness, *to.mutable_coat_roughness());
-  encode(from.transmission, *to.mutable_transmission());
-  if (from.index_map) {
-    to.set_index_texture(static_cast<std::uint32_t>(*from.index_map));
-  }
-  if (from.coat_normal) {
-    to.set_coat_normal(static_cast<std::uint32_t>(*from.coat_normal));
-  }
-  to.set_coat_normal_scale(from.coat_normal_scale);
+  encode(from.roughness, *to.mutable_roughness());
+  encode(from.anisotropic, *to.mutable_anisotropic());
+  encode(from.metallic, *to.mutable_metallic());
+  encode(from.spec_trans, *to.mutable_spec_trans());
+  encode(from.spec_tint, *to.mutable_spec_tint());
+  encode(from.sheen, *to.mutable_sheen());
+  encode(from.sheen_tint, *to.mutable_sheen_tint());
+  encode(from.flatness, *to.mutable_flatness());
+  encode(from.clearcoat, *to.mutable_clearcoat());
+  encode(from.clearcoat_gloss, *to.mutable_clearcoat_gloss());
 }
 
-absl::StatusOr<Principled> decode_principled(const package::Gltf& from, const std::string& field) {
-  if (!package::Gltf::AlphaMode_IsValid(from.alpha_mode())) {
-    return manifest_error(field + ".alpha_mode",
-                          absl::StrCat("is ", from.alpha_mode(), ", which is not a mode"));
-  }
+Principled decode_principled(const package::Principled& from) {
   Principled to;
-  ASSIGN_OR_RETURN(to.base_color, decode(from.base_color(), field + ".base_color"));
-  to.metallic = decode(from.metallic());
-  to.roughness = decode(from.roughness());
+  to.base_color = TextureId{from.base_color()};
   to.index_of_refraction = from.index_of_refraction();
-  if (from.has_normal()) {
-    to.normal = TextureId{from.normal()};
-  }
-  to.normal_scale = from.normal_scale();
-  ASSIGN_OR_RETURN(to.emissive, decode(from.emissive(), field + ".emissive"));
-  to.double_sided = from.double_sided();
-  to.alpha_mode = static_cast<AlphaMode>(from.alpha_mode());
-  to.alpha = decode(from.alpha());
-  to.alpha_cutoff = from.alpha_cutoff();
-  to.coat = decode(from.coat());
-  to.coat_roughness = decode(from.coat_roughness());
-  to.transmission = decode(from.transmission());
-  if (from.has_index_texture()) {
-    to.index_map = TextureId{from.index_texture()};
-  }
-  if (from.has_coat_normal()) {
-    to.coat_normal = TextureId{from.coat_normal()};
-  }
-  to.coat_normal_scale = from.coat_normal_scale();
+  to.roughness = decode(from.roughness());
+  to.anisotropic = decode(from.anisotropic());
+  to.metallic = decode(from.metallic());
+  to.spec_trans = decode(from.spec_trans());
+  to.spec_tint = decode(from.spec_tint());
+  to.sheen = decode(from.sheen());
+  to.sheen_tint = decode(from.sheen_tint());
+  to.flatness = decode(from.flatness());
+  to.clearcoat = decode(from.clearcoat());
+  to.clearcoat_gloss = decode(from.clearcoat_gloss());
+  return to;
+}
+
+void encode_thin_principled(const ThinPrincipled& from, package::ThinPrincipled& to) {
+  to.set_base_color(number_of(from.base_color));
+  to.set_index_of_refraction(from.index_of_refraction);
+  encode(from.roughness, *to.mutable_roughness());
+  encode(from.anisotropic, *to.mutable_anisotropic());
+  encode(from.spec_trans, *to.mutable_spec_trans());
+  encode(from.spec_tint, *to.mutable_spec_tint());
+  encode(from.sheen, *to.mutable_sheen());
+  encode(from.sheen_tint, *to.mutable_sheen_tint());
+  encode(from.flatness, *to.mutable_flatness());
+  encode(from.diff_trans, *to.mutable_diff_trans());
+}
+
+ThinPrincipled decode_thin_principled(const package::ThinPrincipled& from) {
+  ThinPrincipled to;
+  to.base_color = TextureId{from.base_color()};
+  to.index_of_refraction = from.index_of_refraction();
+  to.roughness = decode(from.roughness());
+  to.anisotropic = decode(from.anisotropic());
+  to.spec_trans = decode(from.spec_trans());
+  to.spec_tint = decode(from.spec_tint());
+  to.sheen = decode(from.sheen());
+  to.sheen_tint = decode(from.sheen_tint());
+  to.flatness = decode(from.flatness());
+  to.diff_trans = decode(from.diff_trans());
   return to;
 }
 

@@ -1,19 +1,17 @@
 #pragma once
 
-// Conversion of glTF's material to and from proto/package.proto.
+// Conversion of the principled materials to and from proto/package.proto. Decoding checks nothing;
+// the values are checked by scene/validate.h.
 
-#include <string>
-
-#include "absl/status/statusor.h"
 #include "proto/package.pb.h"
 #include "renderlib/material/material.h"
 
 namespace bandsaw {
 
-void encode_principled(const Principled& from, package::Gltf& to);
+void encode_principled(const Principled& from, package::Principled& to);
+Principled decode_principled(const package::Principled& from);
 
-/// Checks only the form, not the values (scene/validate.h). Returns INVALID_ARGUMENT for a list of
-/// a wrong length.
-absl::StatusOr<Principled> decode_principled(const package::Gltf& from, const std::string& field);
+void encode_thin_principled(const ThinPrincipled& from, package::ThinPrincipled& to);
+ThinPrincipled decode_thin_principled(const package::ThinPrincipled& from);
 
 }  // namespace bandsaw

@@ -201,6 +201,36 @@ SceneDescription outdoors() {
   return scene;
 }
 
+/// The same scene with the materials of other renderers, and all properties that materials can have.
+SceneDescription of_other_materials() {
+  SceneDescription scene = every_feature();
+  const auto texture = [](std::uint32_t i) { return TextureId{i}; };
+  const Microfacets brushed{.distribution = Microfacets::Distribution::kBeckmann,
+                            .alpha_u = 0.3,
+                            .alpha_v = 0.1};
+  const Microfacets rough{.alpha_u = 0.6, .alpha_v = 0.6};
+  const ConductorIndex gold{{0.143f, 0.375f, 1.44f}, {3.98f, 2.39f, 1.6f}};
+  Principled layered{.base_color = texture(0), .spec_trans = {0.3}, .sheen = {0.5}};
+  layered.anisotropic = {0.8, texture(5)};
+  layered.clearcoat = {1};
+  layered.flatness = {0.5};
+  ThinPrincipled thin{.base_color = texture(0), .spec_trans = {0.5}, .diff_trans = {0.5}};
+  scene.materials[0] = Plastic{.reflectance = texture(0), .surface = rough};
+  scene.materials[1] = Plastic{.reflectance = texture(1), .nonlinear = true};
+  scene.materials[1].relief.height = texture(1);
+  scene.materials[2] = Conductor{gold, brushed, texture(3)};
+  scene.materials[3] = layered;
+  scene.materials[4] = Dielectric{.surface = brushed};
+  scene.materials[6] = thin;
+  scene.materials[6].emission.radiance = {texture(1), gray(0.5f)};
+  scene.materials[7] = DiffuseTransmission{texture(0), texture(8)};
+  scene.materials[7].alpha = {AlphaMode::kBlend, {texture(1), 0.8}, true};
+  scene.materials.push_back(ThinDielectric{});
+  scene.materials.push_back(Mix{MaterialId{2}, MaterialId{8}, texture(5)});
+  scene.geometry.spheres[2].material = MaterialId{9};
+  return scene;
+}
+
 void add_render(Hash64& hash, const SceneDescription& description, const RenderSettings& settings,
                 const Kernel& kernel) {
   Pool pool(1);
@@ -231,6 +261,8 @@ std::uint64_t canary(const Kernel* kernel) {
              chosen);
   add_render(hash, in_smoke(), {.width = 6, .height = 4, .max_depth = 5, .seed = 4}, chosen);
   add_render(hash, in_a_cloud(), {.width = 6, .height = 4, .max_depth = 5, .seed = 4}, chosen);
+  add_render(hash, of_other_materials(), {.width = 12, .height = 9, .max_depth = 6, .seed = 9},
+             chosen);
   add_render(hash, room(), {.width = 20, .height = 4, .max_depth = 5, .seed = 5}, chosen);
   add_render(hash, outdoors(), {.width = 8, .height = 6, .max_depth = 5, .seed = 6}, chosen);
   for (const Integrator integrator : {Integrator::kDirect, Integrator::kNormals, Integrator::kDepth,

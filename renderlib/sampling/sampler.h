@@ -66,7 +66,7 @@ constexpr std::uint32_t group_bsdf(std::uint32_t bounce) { return 2 + 2 * bounce
 /// Light sampling at scattering `bounce`: light choice, light u, v, low bits of the choice.
 constexpr std::uint32_t group_light(std::uint32_t bounce) { return 3 + 2 * bounce; }
 /// Alpha test of surface number `passed` (below 2^20) on the ray towards scattering `bounce` (below
-/// 2^11): opacity, unused, unused, unused.
+/// 2^11): opacity, part of a mixture, unused, unused.
 constexpr std::uint32_t group_alpha(std::uint32_t bounce, std::uint32_t passed) {
   return 0x80000000u | (bounce & 0x7ffu) << 20 | (passed & 0xfffffu);
 }

@@ -8,6 +8,7 @@
 #include "renderlib/geometry/shapes.h"
 #include "renderlib/material/interiors.h"
 #include "renderlib/material/opacity.h"
+#include "renderlib/material/plastic_coat.h"
 #include "renderlib/scene/static_instances.h"
 #include "renderlib/scene/validate.h"
 
@@ -103,6 +104,9 @@ SceneFeatures features_of(const SceneDescription& scene, const Lights& lights) {
   features.motion = scene.camera_at_close.has_value() || moves(scene.geometry) ||
                     moves(scene.media.boundaries);
   features.uv = std::any_of(scene.textures.begin(), scene.textures.end(), uses_uv);
+  features.mixtures = std::any_of(
+      scene.materials.begin(), scene.materials.end(),
+      [](const Material& material) { return std::holds_alternative<Mix>(material.kind); });
   features.media = scene.media.fog || scene.media.has_boundaries();
   features.grids = features.media && has_grids(scene.media);
   return features;
@@ -110,7 +114,11 @@ SceneFeatures features_of(const SceneDescription& scene, const Lights& lights) {
 
 /// Returns true if the material fully occludes what is behind it, for shadow rays and for paths
 /// alike.
-bool is_opaque(const Material& material) {
+bool is_opaque(const std::vector<Material>& materials, MaterialId id) {
+  const Material& material = materials[index_of(id)];
+  if (const auto* mix = std::get_if<Mix>(&material.kind)) {
+    return is_opaque(materials, mix->a) && is_opaque(materials, mix->b);
+  }
   return !has_alpha(material) && nested_glass(material) == nullptr;
 }
 
@@ -135,7 +143,7 @@ bool can_reuse_paths(const SceneDescription& scene, const Lights& lights,
   }
   const Geometry& geometry = scene.geometry;
   const auto opaque = [&](MaterialId id) {
-    return id == kOwnMaterial || is_opaque(scene.materials[index_of(id)]);
+    return id == kOwnMaterial || is_opaque(scene.materials, id);
   };
   return all_of_shapes(geometry, opaque) &&
          std::all_of(geometry.groups.begin(), geometry.groups.end(),
@@ -166,6 +174,7 @@ absl::StatusOr<std::shared_ptr<const Scene>> Scene::build_with(const Kernel& ker
   }
   make_static(interval, own.media.boundaries);
   prepare_surfaces(own.geometry);
+  prepare_materials(absl::MakeSpan(own.materials));
   scene->accel_ = std::make_unique<Accel>(Accel::build(own.geometry, pool, interval, traversal));
   scene->lights_ =
       Lights(own.geometry, own.materials, own.textures, own.lights, own.background, interval);

@@ -63,6 +63,7 @@ class Scene {
   const PixelFilter& filter() const { return description_.filter; }
   const LocalShading& local_shading() const { return description_.local_shading; }
   const Material& material(MaterialId id) const { return description_.materials[index_of(id)]; }
+  const std::vector<Material>& materials() const { return description_.materials; }
   const Texture& texture(TextureId id) const { return description_.textures[index_of(id)]; }
   const std::vector<Texture>& textures() const { return description_.textures; }
   /// Returns the features that the scene uses, and those that were forced.

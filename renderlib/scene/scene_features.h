@@ -9,12 +9,13 @@
 namespace bandsaw {
 
 struct SceneFeatures {
-  bool lights = false;  ///< lights that can be sampled (next-event estimation)
-  bool alpha = false;   ///< surfaces that are not fully opaque
-  bool motion = false;  ///< instances or a camera that move during the shutter interval
-  bool media = false;   ///< participating media
-  bool grids = false;   ///< media that vary in space
-  bool uv = false;      ///< textures that use uv coordinates
+  bool lights = false;    ///< lights that can be sampled (next-event estimation)
+  bool alpha = false;     ///< surfaces that are not fully opaque
+  bool motion = false;    ///< instances or a camera that move during the shutter interval
+  bool media = false;     ///< participating media
+  bool grids = false;     ///< media that vary in space
+  bool uv = false;        ///< textures that use uv coordinates
+  bool mixtures = false;  ///< materials that are mixtures
   friend bool operator==(const SceneFeatures&, const SceneFeatures&) = default;
 };
 
@@ -23,13 +24,14 @@ struct NamedFeature {
   bool SceneFeatures::*feature;
 };
 
-inline constexpr std::array<NamedFeature, 6> kEachFeature = {{
+inline constexpr std::array<NamedFeature, 7> kEachFeature = {{
     {"lights", &SceneFeatures::lights},
     {"alpha", &SceneFeatures::alpha},
     {"motion", &SceneFeatures::motion},
     {"media", &SceneFeatures::media},
     {"grids", &SceneFeatures::grids},
     {"uv", &SceneFeatures::uv},
+    {"mixtures", &SceneFeatures::mixtures},
 }};
 static_assert(sizeof(SceneFeatures) == kEachFeature.size(), "every feature is in the table");
 

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "absl/status/status.h"
 #include "absl/strings/str_cat.h"
@@ -53,6 +54,10 @@ inline absl::Status check_color(const std::string& field, const Rgb& color, floa
 
 /// Checks textures and materials (validate_surfaces.cpp).
 absl::Status check_surfaces(const SceneDescription& scene);
+
+/// Checks materials (validate_materials.cpp). The textures are valid.
+absl::Status check_materials(const std::vector<Material>& materials,
+                             const std::vector<Texture>& textures);
 
 /// Checks shapes, meshes, groups, frames and instances (validate_geometry.cpp). `prefix` is
 /// prepended to the names of fields in errors; `materials` is the number of materials.

@@ -73,6 +73,28 @@ struct Mean {
   Rgb operator()(const ProductTexture& t) const { return of(t.a) * of(t.b); }
 };
 
+struct UsesObjectSpace {
+  absl::Span<const Texture> textures;
+
+  bool of(TextureId id) const { return std::visit(*this, textures[index_of(id)]); }
+
+  bool operator()(const ConstantTexture&) const { return false; }
+  bool operator()(const ImageTexture&) const { return false; }
+  bool operator()(const CheckerTexture& t) const {
+    return (t.mapping == CheckerTexture::Mapping::kPosition && t.space == Space::kObject) ||
+           of(t.even) || of(t.odd);
+  }
+  bool operator()(const NoiseTexture& t) const { return t.space == Space::kObject; }
+  bool operator()(const RampTexture& t) const {
+    const bool in_space = t.over == RampTexture::Over::kX || t.over == RampTexture::Over::kY ||
+                          t.over == RampTexture::Over::kZ;
+    return t.over == RampTexture::Over::kTexture ? of(t.texture)
+                                                 : in_space && t.space == Space::kObject;
+  }
+  bool operator()(const MixTexture& t) const { return of(t.a) || of(t.b) || of(t.amount); }
+  bool operator()(const ProductTexture& t) const { return of(t.a) || of(t.b); }
+};
+
 }  // namespace
 
 Rgb evaluate(absl::Span<const Texture> textures, TextureId id, const TextureCoordinates& at) {
@@ -91,6 +113,10 @@ bool uses_uv(const Texture& texture) {
     return ramp->over == RampTexture::Over::kU || ramp->over == RampTexture::Over::kV;
   }
   return std::holds_alternative<ImageTexture>(texture);
+}
+
+bool uses_object_space(absl::Span<const Texture> textures, TextureId id) {
+  return UsesObjectSpace{textures}.of(id);
 }
 
 }  // namespace bandsaw

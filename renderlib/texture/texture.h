@@ -137,4 +137,7 @@ Rgb mean(absl::Span<const Texture> textures, TextureId id);
 /// Returns true if the texture itself, not one that it refers to, uses uv coordinates.
 bool uses_uv(const Texture& texture);
 
+/// Returns true if textures[id] or one that it refers to uses positions in object space.
+bool uses_object_space(absl::Span<const Texture> textures, TextureId id);
+
 }  // namespace bandsaw

@@ -30,8 +30,8 @@ SurfacePoint point() {
   return p;
 }
 
-Principled layered(double roughness) {
-  Principled m;
+MetallicRoughness layered(double roughness) {
+  MetallicRoughness m;
   m.metallic = m.transmission = m.coat_roughness = {TextureId{1}, 1};
   m.roughness = {TextureId{0}, roughness};
   m.coat = {TextureId{0}, 1};

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "renderlib/base/overloaded.h"
 #include "renderlib/geometry/box.h"
 #include "renderlib/geometry/disk.h"
 #include "renderlib/geometry/placement.h"
@@ -118,19 +119,19 @@ std::string filter_text(const PixelFilter& filter) {
 }
 
 std::string kind_of(const Material& material) {
-  if (std::holds_alternative<Diffuse>(material)) {
-    return "diffuse";
-  }
-  if (std::holds_alternative<Metal>(material)) {
-    return "metal";
-  }
-  if (std::holds_alternative<Dielectric>(material)) {
-    return "dielectric";
-  }
-  if (std::holds_alternative<Principled>(material)) {
-    return "glTF";
-  }
-  return std::holds_alternative<Emissive>(material) ? "emissive" : "other";
+  return std::visit(
+      Overloaded{[](const Diffuse&) { return "diffuse"; }, [](const Metal&) { return "metal"; },
+                 [](const Dielectric&) { return "dielectric"; },
+                 [](const Emissive&) { return "emissive"; },
+                 [](const MetallicRoughness&) { return "glTF"; },
+                 [](const Plastic&) { return "plastic"; },
+                 [](const Conductor&) { return "conductor"; },
+                 [](const ThinDielectric&) { return "thin dielectric"; },
+                 [](const DiffuseTransmission&) { return "diffuse transmission"; },
+                 [](const Principled&) { return "principled"; },
+                 [](const ThinPrincipled&) { return "thin principled"; },
+                 [](const Mix&) { return "mixture"; }},
+      material.kind);
 }
 
 std::string kind_of(const Texture& texture) {
@@ -209,9 +210,7 @@ std::uint64_t bytes_in(const Geometry& geometry) {
 }
 
 std::uint64_t lights_in(const SceneDescription& scene) {
-  const auto emits = [&](MaterialId id) {
-    return emission_of(scene.materials[index_of(id)]).has_value();
-  };
+  const auto emits = [&](MaterialId id) { return bandsaw::emits(scene.materials, id); };
   const Geometry& g = scene.geometry;
   std::uint64_t lights = 0;
   for (std::size_t i = 0; i < g.size(); ++i) {

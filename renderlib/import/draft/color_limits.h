@@ -7,5 +7,6 @@ namespace bandsaw {
 
 inline constexpr float kMaxReflectance = 1;
 inline constexpr float kMaxRadiance = 1e30f;
+inline constexpr float kMaxHeight = 1e30f;
 
 }  // namespace bandsaw

@@ -53,7 +53,8 @@ class MaterialReader {
   absl::StatusOr<TextureId> opacity_map(Slot slot);
   /// Returns the normal map of a height map.
   absl::StatusOr<TextureId> bump_map(Slot slot);
-  /// Returns an index_map that gives F0 of `index` (> 1) times the map (Principled::index_map).
+  /// Returns an index_map that gives F0 of `index` (> 1) times the map
+  /// (MetallicRoughness::index_map).
   absl::StatusOr<TextureId> index_map(Slot slot, double index);
   /// Returns true if a height map actually contains normals, which is common.
   bool holds_normals(Slot slot) const;

@@ -84,7 +84,7 @@ Classic read_numbers(MaterialReader& reader) {
 // section 5.1).
 double roughness_of(double exponent) { return std::sqrt(std::sqrt(2 / (exponent + 2))); }
 
-void set_gloss(const Classic& from, Principled& to) {
+void set_gloss(const Classic& from, MetallicRoughness& to) {
   to.metallic.factor = 0;
   to.roughness.factor = is_black(from.specular) ? 1 : roughness_of(from.exponent);
   if (!from.textured && is_black(from.base) && !is_black(from.specular)) {
@@ -101,7 +101,7 @@ void set_gloss(const Classic& from, Principled& to) {
 }
 
 // A specular map without a highlight is ignored.
-absl::Status read_specular_map(MaterialReader& reader, const Classic& from, Principled& to) {
+absl::Status read_specular_map(MaterialReader& reader, const Classic& from, MetallicRoughness& to) {
   const Slot slot{aiTextureType_SPECULAR};
   if (!reader.has(slot) || is_black(from.specular)) {
     return absl::OkStatus();
@@ -114,7 +114,7 @@ absl::Status read_specular_map(MaterialReader& reader, const Classic& from, Prin
   return absl::OkStatus();
 }
 
-absl::Status read_bump(MaterialReader& reader, Principled& to) {
+absl::Status read_bump(MaterialReader& reader, Relief& to) {
   Slot slot{aiTextureType_NORMALS};
   if (!reader.has(slot)) {
     slot = {aiTextureType_HEIGHT};
@@ -144,31 +144,33 @@ absl::StatusOr<ModelMaterial> read_classic(MaterialReader& reader) {
   }
   const Slot slot{reader.has({aiTextureType_DIFFUSE}) ? aiTextureType_DIFFUSE
                                                       : aiTextureType_BASE_COLOR};
-  Principled to;
-  RETURN_IF_ERROR(read_bump(reader, to));
+  Material to;
+  RETURN_IF_ERROR(read_bump(reader, to.relief));
   const bool see_through = from.opacity < 1 || from.opacity_map;
-  if (is_black(from.specular) && is_black(from.glow) && !see_through && !to.normal) {
+  if (is_black(from.specular) && is_black(from.glow) && !see_through && !to.relief.normal) {
     if (!reader.has(slot)) {
       return reader.add(Diffuse{reader.draft().textures.constant(from.base)});
     }
     ASSIGN_OR_RETURN(const TextureId texture, reader.map(slot, As::kColor, from.base));
     return reader.add(Diffuse{texture});
   }
-  ASSIGN_OR_RETURN(to.base_color.texture, reader.map(slot, As::kColor));
-  to.base_color.factor = from.base;
+  MetallicRoughness layers;
+  ASSIGN_OR_RETURN(layers.base_color.texture, reader.map(slot, As::kColor));
+  layers.base_color.factor = from.base;
   ASSIGN_OR_RETURN(const TextureId white, reader.white());
-  to.metallic.texture = to.roughness.texture = to.coat.texture = white;
-  to.coat_roughness.texture = to.transmission.texture = to.alpha.texture = white;
-  set_gloss(from, to);
-  RETURN_IF_ERROR(read_specular_map(reader, from, to));
-  ASSIGN_OR_RETURN(to.emissive.texture, reader.map({aiTextureType_EMISSIVE}, As::kColor));
-  to.emissive.factor = from.glow;
-  to.double_sided = true;
+  layers.metallic.texture = layers.roughness.texture = layers.coat.texture = white;
+  layers.coat_roughness.texture = layers.transmission.texture = white;
+  set_gloss(from, layers);
+  RETURN_IF_ERROR(read_specular_map(reader, from, layers));
+  to.kind = layers;
+  ASSIGN_OR_RETURN(to.emission.radiance.texture, reader.map({aiTextureType_EMISSIVE}, As::kColor));
+  to.emission.radiance.factor = from.glow;
+  to.alpha.value.texture = white;
   if (see_through) {
-    to.alpha_mode = AlphaMode::kBlend;
-    to.alpha.factor = from.opacity;
+    to.alpha.mode = AlphaMode::kBlend;
+    to.alpha.value.factor = from.opacity;
     if (from.opacity_map) {
-      ASSIGN_OR_RETURN(to.alpha.texture, reader.opacity_map({aiTextureType_OPACITY}));
+      ASSIGN_OR_RETURN(to.alpha.value.texture, reader.opacity_map({aiTextureType_OPACITY}));
     }
   }
   return reader.add(to);

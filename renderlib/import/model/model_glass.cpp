@@ -29,23 +29,25 @@ Rgb absorption_of(const GltfVolume& volume) {
 bool is_white(const Rgb& color) { return color == Rgb{1, 1, 1}; }
 
 /// Adds warnings for features of the material that glass does not have.
-bool has_more_than_glass(const MaterialReader& reader, const Principled& material) {
-  return !is_white(material.base_color.factor) || reader.has({aiTextureType_BASE_COLOR}) ||
-         reader.has({aiTextureType_UNKNOWN}) || material.normal || material.coat.factor > 0 ||
-         !is_black(material.emissive.factor);
+bool has_more_than_glass(const MaterialReader& reader, const Material& material) {
+  const auto& layers = std::get<MetallicRoughness>(material.kind);
+  return !is_white(layers.base_color.factor) || reader.has({aiTextureType_BASE_COLOR}) ||
+         reader.has({aiTextureType_UNKNOWN}) || material.relief.normal || layers.coat.factor > 0 ||
+         !is_black(material.emission.radiance.factor);
 }
 
 }  // namespace
 
-std::optional<ModelMaterial::Glass> glass_of(MaterialReader& reader, const Principled& material) {
+std::optional<ModelMaterial::Glass> glass_of(MaterialReader& reader, const Material& material) {
+  const auto& layers = std::get<MetallicRoughness>(material.kind);
   const GltfMaterial* gltf = reader.gltf();
   if (gltf == nullptr || !gltf->volume || !(gltf->volume->thickness > 0) ||
-      material.transmission.factor == 0) {
+      layers.transmission.factor == 0) {
     return std::nullopt;
   }
-  const bool is_metal = material.metallic.factor > 0 && !reader.has({aiTextureType_UNKNOWN});
-  if (material.transmission.factor < 1 || reader.has({aiTextureType_TRANSMISSION}) || is_metal ||
-      material.alpha_mode != AlphaMode::kOpaque) {
+  const bool is_metal = layers.metallic.factor > 0 && !reader.has({aiTextureType_UNKNOWN});
+  if (layers.transmission.factor < 1 || reader.has({aiTextureType_TRANSMISSION}) || is_metal ||
+      material.alpha.mode != AlphaMode::kOpaque) {
     reader.unsupported("its volume is left out: what it transmits passes as through a thin pane");
     return std::nullopt;
   }
@@ -54,8 +56,8 @@ std::optional<ModelMaterial::Glass> glass_of(MaterialReader& reader, const Princ
         "is solid glass: its base colour, its maps, its clear coat and its emission are left out");
   }
   Dielectric glass;
-  glass.index_of_refraction = material.index_of_refraction;
-  glass.roughness = material.roughness.factor;
+  glass.index_of_refraction = layers.index_of_refraction;
+  glass.roughness = layers.roughness.factor;
   return ModelMaterial::Glass{reader.add(glass).id, absorption_of(*gltf->volume)};
 }
 

@@ -12,10 +12,10 @@
 
 namespace bandsaw {
 
-/// Returns the glass of a material that bounds a volume: smooth or rough, with its absorption.
-/// Returns std::nullopt if the material has no volume or is not fully transmissive; the latter adds
-/// a warning.
-std::optional<ModelMaterial::Glass> glass_of(MaterialReader& reader, const Principled& material);
+/// Returns the glass of a material (MetallicRoughness) that bounds a volume: smooth or rough, with
+/// its absorption. Returns std::nullopt if the material has no volume or is not fully transmissive;
+/// the latter adds a warning.
+std::optional<ModelMaterial::Glass> glass_of(MaterialReader& reader, const Material& material);
 
 /// Converts the closed meshes of `model` with such a material to glass. Open ones stay thin panes,
 /// with a warning.

@@ -26,10 +26,10 @@ struct ModelMaterial {
   std::optional<Glass> glass = std::nullopt;
 };
 
-/// Reads a material. Metallic-roughness materials, including glTF's, become Principled; the older
-/// kinds become Diffuse, Emissive or Principled (model_classic.cpp). Returns NOT_FOUND,
-/// PERMISSION_DENIED or INVALID_ARGUMENT for a texture, with the names of the model and the
-/// material.
+/// Reads a material. Metallic-roughness materials, including glTF's, become MetallicRoughness; the
+/// older kinds become Diffuse, Emissive or MetallicRoughness (model_classic.cpp). Returns
+/// NOT_FOUND, PERMISSION_DENIED or INVALID_ARGUMENT for a texture, with the names of the model and
+/// the material.
 absl::StatusOr<ModelMaterial> read_model_material(ModelFile& file, unsigned index);
 
 /// Implement read_model_material() for the two kinds.

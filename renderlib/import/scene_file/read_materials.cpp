@@ -12,189 +12,18 @@
 #include "renderlib/import/draft/color_limits.h"
 #include "renderlib/import/draft/scene_draft.h"
 #include "renderlib/import/scene_file/field.h"
+#include "renderlib/import/scene_file/material_fields.h"
 #include "renderlib/import/scene_file/numbers.h"
+#include "renderlib/import/scene_file/read_gltf.h"
+#include "renderlib/import/scene_file/read_microfacets.h"
+#include "renderlib/import/scene_file/read_principled.h"
 #include "renderlib/import/scene_file/read_textures.h"
 #include "renderlib/import/scene_file/suggest.h"
+#include "renderlib/material/interiors.h"
+#include "renderlib/material/transmits.h"
 
 namespace bandsaw {
 namespace {
-
-absl::StatusOr<TextureId> texture_or_white(const Field& in, const std::string& name, bool given,
-                                           const scene::Texture& from, float most,
-                                           SceneDraft& draft) {
-  return given ? read_texture(in.child(name), from, most, draft)
-               : draft.textures.constant({1, 1, 1});
-}
-
-absl::Status read_colors(const Field& in, const scene::Gltf& from, SceneDraft& draft,
-                         Principled& to) {
-  ASSIGN_OR_RETURN(to.base_color.texture,
-                   texture_or_white(in, "base_color_texture", from.has_base_color_texture(),
-                                    from.base_color_texture(), kMaxReflectance, draft));
-  if (from.has_base_color()) {
-    ASSIGN_OR_RETURN(to.base_color.factor,
-                     read_color(in.child("base_color"), from.base_color(), kMaxReflectance));
-  }
-  ASSIGN_OR_RETURN(to.emissive.texture,
-                   texture_or_white(in, "emissive_texture", from.has_emissive_texture(),
-                                    from.emissive_texture(), kMaxRadiance, draft));
-  to.emissive.factor = gray(from.has_emissive_texture() ? 1 : 0);
-  if (from.has_emissive()) {
-    ASSIGN_OR_RETURN(to.emissive.factor,
-                     read_color(in.child("emissive"), from.emissive(), kMaxRadiance));
-  }
-  return absl::OkStatus();
-}
-
-// Sets the textures of metallic and roughness: one for both, or one for each.
-absl::Status read_metallic_roughness(const Field& in, const scene::Gltf& from, SceneDraft& draft,
-                                     Principled& to) {
-  const bool both = from.has_metallic_roughness_texture();
-  if (both && (from.has_metallic_texture() || from.has_roughness_texture())) {
-    return in.error("metallic_roughness_texture",
-                    "write it, or metallic_texture and roughness_texture, not both");
-  }
-  const bool metallic = both || from.has_metallic_texture();
-  const bool rough = both || from.has_roughness_texture();
-  if (both) {
-    ASSIGN_OR_RETURN(to.metallic.texture,
-                     read_texture(in.child("metallic_roughness_texture"),
-                                  from.metallic_roughness_texture(), kMaxReflectance, draft));
-    to.roughness.texture = to.metallic.texture;
-  } else {
-    ASSIGN_OR_RETURN(to.metallic.texture,
-                     texture_or_white(in, "metallic_texture", metallic, from.metallic_texture(),
-                                      kMaxReflectance, draft));
-    ASSIGN_OR_RETURN(to.roughness.texture,
-                     texture_or_white(in, "roughness_texture", rough, from.roughness_texture(),
-                                      kMaxReflectance, draft));
-  }
-  to.metallic.factor = from.has_metallic() ? from.metallic() : metallic ? 1 : 0;
-  to.roughness.factor = from.has_roughness() ? from.roughness() : rough ? 1 : 0.5;
-  RETURN_IF_ERROR(check_range(in, "metallic", to.metallic.factor, 0, 1));
-  return check_range(in, "roughness", to.roughness.factor, 0, 1);
-}
-
-// A number that is 0 unless it or its texture is present.
-struct OptionalNumber {
-  const char* name;
-  bool given;
-  double value;
-  bool textured;
-  const scene::Texture& texture;
-};
-
-absl::StatusOr<Channel> read_channel(const Field& in, const OptionalNumber& from,
-                                     SceneDraft& draft) {
-  Channel to;
-  ASSIGN_OR_RETURN(to.texture,
-                   texture_or_white(in, absl::StrCat(from.name, "_texture"), from.textured,
-                                    from.texture, kMaxReflectance, draft));
-  to.factor = from.given ? from.value : from.textured ? 1 : 0;
-  RETURN_IF_ERROR(check_range(in, from.name, to.factor, 0, 1));
-  return to;
-}
-
-absl::Status read_layers(const Field& in, const scene::Gltf& from, SceneDraft& draft,
-                         Principled& to) {
-  ASSIGN_OR_RETURN(to.coat, read_channel(in,
-                                         {"clearcoat", from.has_clearcoat(), from.clearcoat(),
-                                          from.has_clearcoat_texture(), from.clearcoat_texture()},
-                                         draft));
-  ASSIGN_OR_RETURN(to.coat_roughness,
-                   read_channel(in,
-                                {"clearcoat_roughness", from.has_clearcoat_roughness(),
-                                 from.clearcoat_roughness(), from.has_clearcoat_roughness_texture(),
-                                 from.clearcoat_roughness_texture()},
-                                draft));
-  ASSIGN_OR_RETURN(to.transmission,
-                   read_channel(in,
-                                {"transmission", from.has_transmission(), from.transmission(),
-                                 from.has_transmission_texture(), from.transmission_texture()},
-                                draft));
-  if (from.has_index_of_refraction()) {
-    to.index_of_refraction = from.index_of_refraction();
-  }
-  if (from.has_index_of_refraction_texture()) {
-    ASSIGN_OR_RETURN(to.index_map,
-                     read_texture(in.child("index_of_refraction_texture"),
-                                  from.index_of_refraction_texture(), kMaxReflectance, draft));
-  }
-  return check_range(in, "index_of_refraction", to.index_of_refraction, 1, 5);
-}
-
-absl::Status read_normals(const Field& in, const scene::Gltf& from, SceneDraft& draft,
-                          Principled& to) {
-  if (from.has_normal_texture()) {
-    ASSIGN_OR_RETURN(to.normal, read_texture(in.child("normal_texture"), from.normal_texture(),
-                                             kMaxReflectance, draft));
-  }
-  if (from.has_clearcoat_normal_texture()) {
-    ASSIGN_OR_RETURN(to.coat_normal,
-                     read_texture(in.child("clearcoat_normal_texture"),
-                                  from.clearcoat_normal_texture(), kMaxReflectance, draft));
-  }
-  to.normal_scale = from.has_normal_scale() ? from.normal_scale() : 1;
-  to.coat_normal_scale = from.has_clearcoat_normal_scale() ? from.clearcoat_normal_scale() : 1;
-  RETURN_IF_ERROR(check_range(in, "clearcoat_normal_scale", to.coat_normal_scale, -1e30, 1e30));
-  return check_range(in, "normal_scale", to.normal_scale, -1e30, 1e30);
-}
-
-absl::Status read_alpha(const Field& in, const scene::Gltf& from, SceneDraft& draft,
-                        Principled& to) {
-  if (!scene::Gltf::AlphaMode_IsValid(from.alpha_mode())) {
-    return in.error("alpha_mode", absl::StrCat("is no mode: ", from.alpha_mode()));
-  }
-  // The enums are declared in the same order.
-  to.alpha_mode = static_cast<AlphaMode>(from.alpha_mode());
-  ASSIGN_OR_RETURN(to.alpha.texture,
-                   texture_or_white(in, "alpha_texture", from.has_alpha_texture(),
-                                    from.alpha_texture(), kMaxReflectance, draft));
-  to.alpha.factor = from.has_alpha() ? from.alpha() : 1;
-  to.alpha_cutoff = from.has_alpha_cutoff() ? from.alpha_cutoff() : 0.5;
-  RETURN_IF_ERROR(check_range(in, "alpha", to.alpha.factor, 0, 1));
-  return check_range(in, "alpha_cutoff", to.alpha_cutoff, 0, 1e30);
-}
-
-/// Reads the material of kind `gltf` of `in`.
-absl::StatusOr<Material> read_gltf(const Field& in, const scene::Gltf& from, SceneDraft& draft) {
-  Principled to;
-  RETURN_IF_ERROR(read_colors(in, from, draft, to));
-  RETURN_IF_ERROR(read_metallic_roughness(in, from, draft, to));
-  RETURN_IF_ERROR(read_layers(in, from, draft, to));
-  RETURN_IF_ERROR(read_alpha(in, from, draft, to));
-  RETURN_IF_ERROR(read_normals(in, from, draft, to));
-  to.double_sided = from.double_sided();
-  return Material(to);
-}
-
-// Reads a material's colour: `texture`, or its short form `short_name`, or the default.
-template <class From>
-absl::StatusOr<TextureId> read_reflectance(const Field& in, const From& from, float otherwise,
-                                           SceneDraft& draft) {
-  if (from.has_texture() && from.has_color()) {
-    return in.error("color", "write texture or color, not both");
-  }
-  if (from.has_texture()) {
-    return read_texture(in.child("texture"), from.texture(), kMaxReflectance, draft);
-  }
-  if (from.has_color()) {
-    ASSIGN_OR_RETURN(const Rgb color, read_color(in.child("color"), from.color(), kMaxReflectance));
-    return draft.textures.constant(color);
-  }
-  return draft.textures.constant(gray(otherwise));
-}
-
-// Reads the texture of a number, if it is present.
-absl::StatusOr<std::optional<TextureId>> read_map(const Field& in, const std::string& name,
-                                                  bool given, const scene::Texture& from,
-                                                  SceneDraft& draft) {
-  if (!given) {
-    return std::optional<TextureId>();
-  }
-  ASSIGN_OR_RETURN(const TextureId id, read_texture(in.child(name), from, kMaxReflectance, draft));
-  return std::optional(id);
-}
 
 absl::StatusOr<Material> read_metal(const Field& in, const scene::Metal& from, SceneDraft& draft) {
   Metal metal;
@@ -216,6 +45,12 @@ absl::StatusOr<Material> read_dielectric(const Field& in, const scene::Dielectri
   ASSIGN_OR_RETURN(glass.roughness_map,
                    read_map(in, "roughness_texture", from.has_roughness_texture(),
                             from.roughness_texture(), draft));
+  if (from.has_surface()) {
+    if (from.has_roughness() || from.has_roughness_texture()) {
+      return in.error("surface", "write surface or roughness, not both");
+    }
+    ASSIGN_OR_RETURN(glass.surface, read_microfacets(in.child("surface"), from.surface(), draft));
+  }
   glass.roughness = from.has_roughness() ? from.roughness() : glass.roughness_map ? 1 : 0;
   RETURN_IF_ERROR(check_range(in, "roughness", glass.roughness, 0, 1));
   glass.priority = from.priority();
@@ -247,8 +82,81 @@ absl::StatusOr<Material> read_emissive(const Field& in, const scene::Emissive& f
   return Emissive{draft.textures.constant(radiance), from.one_sided()};
 }
 
-absl::StatusOr<Material> read_material(const Field& in, const scene::Material& from,
-                                       SceneDraft& draft) {
+absl::StatusOr<Material> read_thin_dielectric(const Field& in, const scene::ThinDielectric& from) {
+  ThinDielectric pane;
+  if (from.has_index_of_refraction()) {
+    pane.index_of_refraction = from.index_of_refraction();
+  }
+  RETURN_IF_ERROR(check_range(in, "index_of_refraction", pane.index_of_refraction, 1, 5));
+  if (from.has_specular()) {
+    ASSIGN_OR_RETURN(pane.specular,
+                     read_color(in.child("specular"), from.specular(), kMaxReflectance));
+  }
+  if (from.has_transmission()) {
+    ASSIGN_OR_RETURN(pane.transmission,
+                     read_color(in.child("transmission"), from.transmission(), kMaxReflectance));
+  }
+  return pane;
+}
+
+absl::StatusOr<Material> read_sheet(const Field& in, const scene::DiffuseTransmission& from,
+                                    SceneDraft& draft) {
+  DiffuseTransmission sheet;
+  ASSIGN_OR_RETURN(sheet.reflectance,
+                   read_reflectance(in,
+                                    {"reflectance_texture", from.has_reflectance_texture(),
+                                     from.reflectance_texture(), "reflectance",
+                                     from.has_reflectance(), from.reflectance(), 0.25f},
+                                    draft));
+  ASSIGN_OR_RETURN(sheet.transmittance,
+                   read_reflectance(in,
+                                    {"transmittance_texture", from.has_transmittance_texture(),
+                                     from.transmittance_texture(), "transmittance",
+                                     from.has_transmittance(), from.transmittance(), 0.25f},
+                                    draft));
+  if (from.has_reflectance_texture() || from.has_transmittance_texture()) {
+    return sheet;  // where the sum is above 1, it is scaled
+  }
+  const auto color_of = [&](TextureId id) {
+    return evaluate(draft.out.scene.textures, id, TextureCoordinates{});
+  };
+  // Decimal fractions that sum to 1 may be a little above it as floats.
+  return max_component(color_of(sheet.reflectance) + color_of(sheet.transmittance)) <= 1.00001f
+             ? absl::StatusOr<Material>(sheet)
+             : in.error("transmittance", "reflectance and transmittance must not exceed 1 in sum");
+}
+
+// Returns the material with this name, which is a part of a mixture.
+absl::StatusOr<MaterialId> find_part(const Field& in, const char* field, const std::string& name,
+                                     const SceneDraft& draft) {
+  if (name.empty()) {
+    return in.error(field, "is required: the name of a material that is written before this one");
+  }
+  const auto found = draft.materials.find(name);
+  if (found == draft.materials.end()) {
+    return in.error(field, absl::StrCat("no material before this one is called \"", name, "\""));
+  }
+  if (nested_glass(draft.out.scene.materials[index_of(found->second)]) != nullptr) {
+    return in.error(field, "a glass with a priority is not part of a mixture");
+  }
+  return found->second;
+}
+
+absl::StatusOr<Material> read_mix(const Field& in, const scene::MixMaterial& from,
+                                  SceneDraft& draft) {
+  Mix mix;
+  ASSIGN_OR_RETURN(mix.a, find_part(in, "a", from.a(), draft));
+  ASSIGN_OR_RETURN(mix.b, find_part(in, "b", from.b(), draft));
+  mix.amount = draft.textures.constant(gray(0.5f));
+  if (from.has_amount()) {
+    ASSIGN_OR_RETURN(mix.amount,
+                     read_texture(in.child("amount"), from.amount(), kMaxReflectance, draft));
+  }
+  return mix;
+}
+
+absl::StatusOr<Material> read_kind(const Field& in, const scene::Material& from,
+                                   SceneDraft& draft) {
   switch (from.kind_case()) {
     case scene::Material::kDiffuse: {
       ASSIGN_OR_RETURN(const TextureId id,
@@ -263,10 +171,124 @@ absl::StatusOr<Material> read_material(const Field& in, const scene::Material& f
       return read_gltf(in.child("gltf"), from.gltf(), draft);
     case scene::Material::kEmissive:
       return read_emissive(in.child("emissive"), from.emissive(), draft);
-    default:
+    case scene::Material::kPlastic:
+      return read_plastic(in.child("plastic"), from.plastic(), draft);
+    case scene::Material::kConductor:
+      return read_conductor(in.child("conductor"), from.conductor(), draft);
+    case scene::Material::kThinDielectric:
+      return read_thin_dielectric(in.child("thin_dielectric"), from.thin_dielectric());
+    case scene::Material::kDiffuseTransmission:
+      return read_sheet(in.child("diffuse_transmission"), from.diffuse_transmission(), draft);
+    case scene::Material::kPrincipled:
+      return read_principled(in.child("principled"), from.principled(), draft);
+    case scene::Material::kThinPrincipled:
+      return read_thin_principled(in.child("thin_principled"), from.thin_principled(), draft);
+    case scene::Material::kMix:
+      return read_mix(in.child("mix"), from.mix(), draft);
+    case scene::Material::KIND_NOT_SET:
       break;
   }
-  return in.error("is of no kind: write diffuse, metal, dielectric, emissive or gltf");
+  return in.error(
+      "is of no kind: write diffuse, metal, plastic, dielectric, emissive, gltf or another kind");
+}
+
+absl::Status read_relief(const Field& in, const scene::Material& from, SceneDraft& draft,
+                         Relief& to) {
+  if (from.has_normal_texture() && from.has_bump_texture()) {
+    return in.error("bump_texture", "write normal_texture or bump_texture, not both");
+  }
+  ASSIGN_OR_RETURN(to.normal, read_map(in, "normal_texture", from.has_normal_texture(),
+                                       from.normal_texture(), draft));
+  if (from.has_bump_texture()) {
+    ASSIGN_OR_RETURN(
+        to.height, read_texture(in.child("bump_texture"), from.bump_texture(), kMaxHeight, draft));
+    if (uses_object_space(draft.out.scene.textures, *to.height)) {
+      return in.error("bump_texture",
+                      "a height map lies in uv or in world space: write space: "
+                      "SPACE_WORLD or leave it out");
+    }
+  }
+  to.normal_scale = from.has_normal_scale() ? from.normal_scale() : 1;
+  to.height_scale = from.has_bump_scale() ? from.bump_scale() : 1;
+  RETURN_IF_ERROR(check_range(in, "bump_scale", to.height_scale, -1e30, 1e30));
+  return check_range(in, "normal_scale", to.normal_scale, -1e30, 1e30);
+}
+
+absl::Status read_opacity(const Field& in, const scene::Material& from, SceneDraft& draft,
+                          Alpha& to) {
+  if (!from.has_opacity() && !from.has_opacity_texture()) {
+    return absl::OkStatus();
+  }
+  to.mode = AlphaMode::kBlend;
+  to.luminance = true;
+  to.value.factor = from.has_opacity() ? from.opacity() : 1;
+  RETURN_IF_ERROR(check_range(in, "opacity", to.value.factor, 0, 1));
+  ASSIGN_OR_RETURN(to.value.texture,
+                   texture_or_white(in, "opacity_texture", from.has_opacity_texture(),
+                                    from.opacity_texture(), kMaxReflectance, draft));
+  return absl::OkStatus();
+}
+
+absl::Status read_emission(const Field& in, const scene::Material& from, SceneDraft& draft,
+                           Emission& to) {
+  if (!from.has_emission() && !from.has_emission_texture()) {
+    return absl::OkStatus();
+  }
+  to.radiance.factor = {1, 1, 1};
+  if (from.has_emission()) {
+    ASSIGN_OR_RETURN(to.radiance.factor,
+                     read_color(in.child("emission"), from.emission(), kMaxRadiance));
+  }
+  ASSIGN_OR_RETURN(to.radiance.texture,
+                   texture_or_white(in, "emission_texture", from.has_emission_texture(),
+                                    from.emission_texture(), kMaxRadiance, draft));
+  to.one_sided = from.emission_one_sided();
+  return absl::OkStatus();
+}
+
+// Returns an error if a property of the surface is present that the kind does not take.
+absl::Status check_properties(const Field& in, const scene::Material& from) {
+  constexpr const char* kOfSurface[] = {"normal_texture",   "normal_scale",    "bump_texture",
+                                        "bump_scale",       "opacity_texture", "opacity",
+                                        "emission_texture", "emission"};
+  const auto refuse = [&](const char* why) -> absl::Status {
+    for (const char* const name : kOfSurface) {
+      if (in.has(name)) {
+        return in.error(name, why);
+      }
+    }
+    if (from.emission_one_sided()) {
+      return in.error("emission_one_sided", why);
+    }
+    return from.one_sided() ? in.error("one_sided", why) : absl::OkStatus();
+  };
+  if (from.has_emissive()) {
+    return refuse("is not possible for an emissive material, which only emits");
+  }
+  if (from.has_mix()) {
+    return refuse("is not possible for a mix: write it for its parts");
+  }
+  return from.has_gltf() ? refuse("write the field of gltf instead") : absl::OkStatus();
+}
+
+absl::StatusOr<Material> read_material(const Field& in, const scene::Material& from,
+                                       SceneDraft& draft) {
+  RETURN_IF_ERROR(check_properties(in, from));
+  ASSIGN_OR_RETURN(Material to, read_kind(in, from, draft));
+  if (from.has_emissive() || from.has_gltf() || from.has_mix()) {
+    return to;
+  }
+  RETURN_IF_ERROR(read_relief(in, from, draft, to.relief));
+  RETURN_IF_ERROR(read_opacity(in, from, draft, to.alpha));
+  RETURN_IF_ERROR(read_emission(in, from, draft, to.emission));
+  if (nested_glass(to) != nullptr && to.alpha.mode != AlphaMode::kOpaque) {
+    return in.error("opacity", "a glass with a priority is opaque; leave one of them out");
+  }
+  to.one_sided = from.one_sided();
+  if (to.one_sided && transmits(to)) {
+    return in.error("one_sided", "a material that transmits light has two sides");
+  }
+  return to;
 }
 
 }  // namespace

@@ -67,7 +67,7 @@ TEST(GltfVolume, AClosedMeshIsGlassThatAbsorbs) {
   EXPECT_THAT(imported.info.warnings, IsEmpty());
   const Instance& instance = imported.scene.geometry.instances.at(0);
   const auto& glass =
-      std::get<Dielectric>(imported.scene.materials.at(index_of(instance.material)));
+      std::get<Dielectric>(imported.scene.materials.at(index_of(instance.material)).kind);
   EXPECT_EQ(glass.index_of_refraction, 1);
   EXPECT_EQ(glass.roughness, 0);
   ASSERT_EQ(imported.scene.media.media.size(), 1u);
@@ -102,7 +102,8 @@ TEST(GltfVolume, OpenOrPartlyOpaqueMeshesStayThinPanes) {
   EXPECT_THAT(open.info.warnings, ElementsAre(HasSubstr("the volume of 1 placements of meshes")));
   const auto is_thin = [](const ImportedScene& imported) {
     const MaterialId id = imported.scene.geometry.instances.at(0).material;
-    return std::holds_alternative<Principled>(imported.scene.materials.at(index_of(id))) &&
+    return std::holds_alternative<MetallicRoughness>(
+               imported.scene.materials.at(index_of(id)).kind) &&
            imported.scene.media.boundaries.instances.empty();
   };
   EXPECT_TRUE(is_thin(open));

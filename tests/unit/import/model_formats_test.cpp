@@ -31,26 +31,27 @@ class Obj : public ::testing::Test {
     EXPECT_TRUE(imported.ok()) << imported.status();
     return imported.ok() ? *std::move(imported) : ImportedScene();
   }
-  Principled principled(const std::string& material) {
-    const ImportedScene imported = read(material);
-    const auto* found = std::get_if<Principled>(&imported.scene.materials.at(0));
-    EXPECT_NE(found, nullptr) << material;
-    return found == nullptr ? Principled() : *found;
+  Material material(const std::string& text) { return read(text).scene.materials.at(0); }
+  MetallicRoughness layers(const std::string& text) {
+    const Material whole = material(text);
+    const auto* found = std::get_if<MetallicRoughness>(&whole.kind);
+    EXPECT_NE(found, nullptr) << text;
+    return found == nullptr ? MetallicRoughness() : *found;
   }
   TempDir folder_;
 };
 
 TEST_F(Obj, AHighlightBecomesRoughness) {
-  const Principled m = principled("Kd 0.5 0.5 0.5\nKs 0.9 0.9 0.9\nNs 98\nillum 2\n");
+  const MetallicRoughness m = layers("Kd 0.5 0.5 0.5\nKs 0.9 0.9 0.9\nNs 98\nillum 2\n");
   EXPECT_NEAR(m.roughness.factor, std::pow(0.02, 0.25), 1e-6);
   EXPECT_EQ(m.metallic.factor, 0);
   EXPECT_NEAR(m.index_of_refraction, 1.5, 1e-6) << "no more than glass reflects";
-  EXPECT_EQ(
-      principled("Kd 0.5 0.5 0.5\nKs 0.9 0.9 0.9\nNs 98\nNi 2\nillum 2\n").index_of_refraction, 2);
+  EXPECT_EQ(layers("Kd 0.5 0.5 0.5\nKs 0.9 0.9 0.9\nNs 98\nNi 2\nillum 2\n").index_of_refraction,
+            2);
 }
 
 TEST_F(Obj, BlackWithAHighlightIsMetal) {
-  const Principled m = principled("Kd 0 0 0\nKs 1 0.75 0.25\nNs 198\nillum 3\n");
+  const MetallicRoughness m = layers("Kd 0 0 0\nKs 1 0.75 0.25\nNs 198\nillum 3\n");
   EXPECT_EQ(m.metallic.factor, 1);
   EXPECT_EQ(m.base_color.factor, (Rgb{1, 0.75f, 0.25f}));
 }
@@ -59,16 +60,16 @@ TEST_F(Obj, ADisabledHighlightGivesDiffuse) {
   for (const char* off : {"Ks 1 1 1\nNs 0\nillum 2\n", "Ks 0 0 0\nNs 100\nillum 2\n",
                           "Ks 1 1 1\nNs 100\nillum 1\n"}) {
     const ImportedScene imported = read(std::string("Kd 0.5 0.5 0.5\n") + off);
-    EXPECT_TRUE(std::holds_alternative<Diffuse>(imported.scene.materials[0])) << off;
+    EXPECT_TRUE(std::holds_alternative<Diffuse>(imported.scene.materials[0].kind)) << off;
   }
 }
 
 TEST_F(Obj, OpacityIsAlphaAndZeroIsTakenAsAMistake) {
-  const Principled glass = principled("Kd 0.5 0.5 0.5\nd 0.25\n");
-  EXPECT_EQ(glass.alpha_mode, AlphaMode::kBlend);
-  EXPECT_EQ(glass.alpha.factor, 0.25);
+  const Material glass = material("Kd 0.5 0.5 0.5\nd 0.25\n");
+  EXPECT_EQ(glass.alpha.mode, AlphaMode::kBlend);
+  EXPECT_EQ(glass.alpha.value.factor, 0.25);
   const ImportedScene gone = read("Kd 0.5 0.5 0.5\nd 0\n");
-  EXPECT_TRUE(std::holds_alternative<Diffuse>(gone.scene.materials[0]));
+  EXPECT_TRUE(std::holds_alternative<Diffuse>(gone.scene.materials[0].kind));
   EXPECT_THAT(gone.info.warnings,
               Contains("m.obj: material \"a\": it is not there at all (opacity 0), which is taken "
                        "as a mistake"));
@@ -76,16 +77,16 @@ TEST_F(Obj, OpacityIsAlphaAndZeroIsTakenAsAMistake) {
 
 TEST_F(Obj, AnOpacityMapIsItsBrightness) {
   write_text(folder_, "mask.pgm", std::string("P5 2 1 255\n") + '\0' + "\xff");
-  const Principled m = principled("Kd 1 1 1\nmap_d mask.pgm\n");
-  EXPECT_EQ(m.alpha_mode, AlphaMode::kBlend);
-  EXPECT_EQ(m.alpha.factor, 1);
+  const Material m = material("Kd 1 1 1\nmap_d mask.pgm\n");
+  EXPECT_EQ(m.alpha.mode, AlphaMode::kBlend);
+  EXPECT_EQ(m.alpha.value.factor, 1);
 }
 
 TEST_F(Obj, AWeakEmissionIsAddedToTheReflection) {
-  const Principled m = principled("Kd 0.5 0.5 0.5\nKe 0.25 0.125 0\n");
-  EXPECT_EQ(m.emissive.factor, (Rgb{0.25f, 0.125f, 0}));
-  EXPECT_EQ(m.base_color.factor, gray(0.5f));
-  EXPECT_TRUE(m.double_sided);
+  const Material m = material("Kd 0.5 0.5 0.5\nKe 0.25 0.125 0\n");
+  EXPECT_EQ(m.emission.radiance.factor, (Rgb{0.25f, 0.125f, 0}));
+  EXPECT_EQ(std::get<MetallicRoughness>(m.kind).base_color.factor, gray(0.5f));
+  EXPECT_FALSE(m.emission.one_sided);
 }
 
 std::string ppm_of(int red, int green, int blue) {
@@ -99,9 +100,9 @@ std::string ppm_of(int red, int green, int blue) {
 TEST_F(Obj, ABumpMapThatHoldsNormalsIsANormalMap) {
   write_text(folder_, "n.ppm", ppm_of(128, 128, 255));
   write_text(folder_, "h.ppm", ppm_of(90, 90, 90));
-  EXPECT_TRUE(principled("Kd 1 1 1\nmap_Bump n.ppm\n").normal.has_value());
-  EXPECT_TRUE(principled("Kd 1 1 1\nnorm n.ppm\n").normal.has_value());
-  EXPECT_TRUE(principled("Kd 1 1 1\nmap_Bump h.ppm\n").normal.has_value());
+  EXPECT_TRUE(material("Kd 1 1 1\nmap_Bump n.ppm\n").relief.normal.has_value());
+  EXPECT_TRUE(material("Kd 1 1 1\nnorm n.ppm\n").relief.normal.has_value());
+  EXPECT_TRUE(material("Kd 1 1 1\nmap_Bump h.ppm\n").relief.normal.has_value());
   EXPECT_THAT(read("Kd 1 1 1\nmap_Bump h.ppm\n").info.warnings, IsEmpty());
 }
 
@@ -110,8 +111,8 @@ TEST_F(Obj, ABumpMapOfHeightsIsTheirSlope) {
   write_text(folder_, "h.pgm", std::string("P5 3 1 255\n") + '\x0a' + '\x3d' + '\x70');
   const auto middle = [&](const std::string& bump) {
     const ImportedScene imported = read("Kd 1 1 1\n" + bump);
-    const Principled& m = std::get<Principled>(imported.scene.materials[0]);
-    const Rgb texel = evaluate(imported.scene.textures, *m.normal, {{0.5, 0.5}, {}, {}, {}});
+    const Relief& relief = imported.scene.materials[0].relief;
+    const Rgb texel = evaluate(imported.scene.textures, *relief.normal, {{0.5, 0.5}, {}, {}, {}});
     return Vec3{2.0 * texel.r - 1, 2.0 * texel.g - 1, 2.0 * texel.b - 1};
   };
   EXPECT_LE(length(middle("map_Bump h.pgm\n") - normalize({-0.2, 0, 1})), 1e-6);
@@ -124,7 +125,7 @@ TEST_F(Obj, ASpecularMapScalesTheReflection) {
   write_text(folder_, "s.ppm", ppm_of(188, 188, 188));
   const ImportedScene imported = read("illum 2\nKd 0.5 0 0\nKs 1 1 1\nNs 100\nmap_Ks s.ppm\n");
   EXPECT_THAT(imported.info.warnings, IsEmpty());
-  const Principled& m = std::get<Principled>(imported.scene.materials[0]);
+  const MetallicRoughness& m = std::get<MetallicRoughness>(imported.scene.materials[0].kind);
   ASSERT_TRUE(m.index_map.has_value());
   const Rgb share = evaluate(imported.scene.textures, *m.index_map, {{0.5, 0.5}, {}, {}, {}});
   const double index = 1 + share.r * (m.index_of_refraction - 1);
@@ -134,8 +135,8 @@ TEST_F(Obj, ASpecularMapScalesTheReflection) {
 
 TEST_F(Obj, ReadsThePbrNumbersOfNewerFiles) {
   write_text(folder_, "r.pgm", std::string("P5 1 1 255\n") + "\x80");
-  const Principled m =
-      principled("Kd 0.5 0.25 0.125\nPm 0.75\nPr 0.5\nmap_Pr r.pgm\nPc 0.25\nPcr 0.125\n");
+  const MetallicRoughness m =
+      layers("Kd 0.5 0.25 0.125\nPm 0.75\nPr 0.5\nmap_Pr r.pgm\nPc 0.25\nPcr 0.125\n");
   EXPECT_EQ(m.metallic.factor, 0.75);
   EXPECT_EQ(m.roughness.factor, 0.5);
   EXPECT_EQ(m.base_color.factor, (Rgb{0.5f, 0.25f, 0.125f}));
@@ -150,7 +151,7 @@ TEST_F(Obj, FindsATextureBesideItByAnyOfItsNames) {
         "..\\..\\tex\\My Stone.PPM", "/home/me/My Stone.PPM", "textures/My Stone.PPM"}) {
     const ImportedScene imported = read(std::string("Kd 1 1 1\nmap_Kd ") + name + "\n");
     ASSERT_EQ(imported.scene.materials.size(), 1u);
-    const auto id = std::get<Diffuse>(imported.scene.materials[0]).reflectance;
+    const auto id = std::get<Diffuse>(imported.scene.materials[0].kind).reflectance;
     EXPECT_TRUE(std::holds_alternative<ImageTexture>(imported.scene.textures[index_of(id)]))
         << name;
     EXPECT_THAT(imported.info.warnings, IsEmpty()) << name;
@@ -187,7 +188,7 @@ TEST(Ply, IsGreyOrHasVertexColours) {
   const TempDir folder;
   const auto plain = import_scene(write_text(folder, "p.ply", ply("", "0 0 0\n1 0 0\n0 1 0\n")));
   ASSERT_TRUE(plain.ok()) << plain.status();
-  EXPECT_TRUE(std::holds_alternative<Diffuse>(plain->scene.materials[0]));
+  EXPECT_TRUE(std::holds_alternative<Diffuse>(plain->scene.materials[0].kind));
   const auto painted =
       import_scene(write_text(folder, "c.ply",
                               ply("property uchar red\nproperty uchar green\nproperty uchar blue\n",

@@ -19,8 +19,8 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-const Principled& principled(const ImportedScene& imported) {
-  return std::get<Principled>(imported.scene.materials.at(0));
+const MetallicRoughness& layers(const ImportedScene& imported) {
+  return std::get<MetallicRoughness>(imported.scene.materials.at(0).kind);
 }
 const ImageTexture& image(const ImportedScene& imported, TextureId id) {
   return std::get<ImageTexture>(imported.scene.textures.at(index_of(id)));
@@ -44,13 +44,13 @@ TEST_F(Gltf, SpecularIsTheIndexOfTheSameReflection) {
   file.materials = R"({"extensions": {"KHR_materials_specular": {"specularFactor": 0.25}}})";
   const ImportedScene plain = read(file);
   EXPECT_THAT(plain.info.warnings, IsEmpty());
-  EXPECT_NEAR(principled(plain).index_of_refraction, 1.1 / 0.9, 1e-9);
+  EXPECT_NEAR(layers(plain).index_of_refraction, 1.1 / 0.9, 1e-9);
   file.textures = R"({"source": 0})";
   file.images = R"({"uri": "a.ppm"})";
   file.materials = R"({"extensions": {"KHR_materials_specular": {"specularFactor": 0,
     "specularColorFactor": [1, 0.5, 1], "specularTexture": {"index": 0}}}})";
   const ImportedScene odd = read(file);
-  EXPECT_EQ(principled(odd).index_of_refraction, 1);
+  EXPECT_EQ(layers(odd).index_of_refraction, 1);
   EXPECT_THAT(odd.info.warnings, ElementsAre(HasSubstr("its specular colour is taken as grey"),
                                              HasSubstr("its specular map is left out")));
 }
@@ -74,7 +74,7 @@ TEST_F(Gltf, EveryParameterHasItsTextureAndItsNumber) {
       "KHR_materials_ior": {"ior": 1.25}, "KHR_materials_emissive_strength": {"emissiveStrength": 8}}})";
   const ImportedScene imported = read(file);
   EXPECT_THAT(imported.info.warnings, IsEmpty());
-  const Principled& m = principled(imported);
+  const MetallicRoughness& m = layers(imported);
   EXPECT_EQ(m.base_color.factor, (Rgb{0.5f, 0.25f, 1}));
   EXPECT_EQ(image(imported, m.base_color.texture).format, ImageTexture::Format::kSrgb8);
   EXPECT_EQ(m.metallic.factor, 0.25);
@@ -85,13 +85,14 @@ TEST_F(Gltf, EveryParameterHasItsTextureAndItsNumber) {
   EXPECT_EQ(rough.wrap, ImageTexture::Wrap::kClamp);
   EXPECT_EQ(rough.v_wrap(), ImageTexture::Wrap::kMirror);
   EXPECT_EQ(rough.filter, ImageTexture::Filter::kNearest);
-  ASSERT_TRUE(m.normal.has_value());
-  EXPECT_EQ(m.normal_scale, 0.5);
-  EXPECT_EQ(m.emissive.factor, (Rgb{8, 4, 2}));
-  EXPECT_TRUE(m.double_sided);
-  EXPECT_EQ(m.alpha_mode, AlphaMode::kMask);
-  EXPECT_EQ(m.alpha_cutoff, 0.25);
-  EXPECT_EQ(m.alpha.factor, 0.75);
+  const Material& whole = imported.scene.materials.at(0);
+  ASSERT_TRUE(whole.relief.normal.has_value());
+  EXPECT_EQ(whole.relief.normal_scale, 0.5);
+  EXPECT_EQ(whole.emission.radiance.factor, (Rgb{8, 4, 2}));
+  EXPECT_FALSE(whole.emission.one_sided);
+  EXPECT_EQ(whole.alpha.mode, AlphaMode::kMask);
+  EXPECT_EQ(whole.alpha.cutoff, 0.25);
+  EXPECT_EQ(whole.alpha.value.factor, 0.75);
   EXPECT_EQ(m.coat.factor, 0.5);
   EXPECT_EQ(m.coat_roughness.factor, 0.25);
   EXPECT_EQ(m.coat.texture, m.roughness.texture) << "the same image under the same use";
@@ -103,13 +104,15 @@ TEST_F(Gltf, EveryParameterHasItsTextureAndItsNumber) {
 
 TEST_F(Gltf, AnEmptyMaterialHasTheDefaults) {
   const ImportedScene imported = read({});
-  const Principled& m = principled(imported);
+  const MetallicRoughness& m = layers(imported);
   EXPECT_EQ(m.base_color.factor, (Rgb{1, 1, 1}));
   EXPECT_EQ(m.metallic.factor, 1);
   EXPECT_EQ(m.roughness.factor, 1);
   EXPECT_EQ(m.index_of_refraction, 1.5);
-  EXPECT_EQ(m.alpha_mode, AlphaMode::kOpaque);
-  EXPECT_FALSE(m.normal || m.coat_normal || m.index_map);
+  const Material& whole = imported.scene.materials.at(0);
+  EXPECT_EQ(whole.alpha.mode, AlphaMode::kOpaque);
+  EXPECT_TRUE(whole.emission.one_sided);
+  EXPECT_FALSE(whole.relief.normal || m.coat_normal || m.index_map);
 }
 
 TEST_F(Gltf, TexturesAreTurnedScaledAndMovedAboutTheTopLeftCorner) {
@@ -121,7 +124,7 @@ TEST_F(Gltf, TexturesAreTurnedScaledAndMovedAboutTheTopLeftCorner) {
   file.materials = R"({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "extensions":
     {"KHR_texture_transform": {"offset": [0, 1], "rotation": 1.5707963267948966, "scale": [0.5, 0.5]}}}}})";
   const ImportedScene imported = read(file);
-  const ImageTexture& texture = image(imported, principled(imported).base_color.texture);
+  const ImageTexture& texture = image(imported, layers(imported).base_color.texture);
   // (0, 0) of glTF, its top left corner, is (0, 1) here.
   const auto at = [&](double u, double v) {
     const Vec2 uv = texture.uv_transform({u, 1 - v});
@@ -151,7 +154,7 @@ TEST_F(Gltf, EachMaterialHasItsOwnExtensionsWhateverTheOrderOfUse) {
   ASSERT_TRUE(imported.ok()) << imported.status();
   std::vector<Rgb> glow;
   for (const Material& material : imported->scene.materials) {
-    glow.push_back(std::get<Principled>(material).emissive.factor);
+    glow.push_back(material.emission.radiance.factor);
   }
   EXPECT_THAT(glow, ::testing::UnorderedElementsAre(Rgb{2, 0, 0}, Rgb{0, 3, 0}, Rgb{0, 0, 4}));
 }
@@ -165,10 +168,11 @@ TEST_F(Gltf, EachTextureHasItsOwnSetOfUvs) {
     "normalTexture": {"index": 0},
     "emissiveTexture": {"index": 0, "extensions": {"KHR_texture_transform": {"texCoord": 1}}}})";
   const ImportedScene imported = read(file);
-  const Principled& m = principled(imported);
+  const MetallicRoughness& m = layers(imported);
   const UvSet base = image(imported, m.base_color.texture).uv_set;
-  EXPECT_NE(image(imported, *m.normal).uv_set, base);
-  EXPECT_EQ(image(imported, m.emissive.texture).uv_set, base);
+  const Material& whole = imported.scene.materials.at(0);
+  EXPECT_NE(image(imported, *whole.relief.normal).uv_set, base);
+  EXPECT_EQ(image(imported, whole.emission.radiance.texture).uv_set, base);
   const Mesh& mesh = imported.scene.geometry.meshes[0];
   const auto& uvs = base == UvSet::kFirst ? mesh.uvs : mesh.uvs2;
   EXPECT_EQ(uvs[1][0], 0.5f) << "the base colour's are the file's second set";
@@ -231,7 +235,7 @@ TEST_F(Gltf, AnUnlitMaterialIsDiffuseAndNamed) {
     "extensions": {"KHR_materials_unlit": {}}})";
   const ImportedScene imported = read(file);
   EXPECT_THAT(imported.info.warnings, ElementsAre(HasSubstr("is unlit")));
-  EXPECT_TRUE(std::holds_alternative<Diffuse>(imported.scene.materials.at(0)));
+  EXPECT_TRUE(std::holds_alternative<Diffuse>(imported.scene.materials.at(0).kind));
 }
 
 TEST_F(Gltf, APrimitiveWithoutAMaterialGetsTheDefault) {
@@ -243,9 +247,9 @@ TEST_F(Gltf, APrimitiveWithoutAMaterialGetsTheDefault) {
   const auto material = [&](std::size_t i) {
     return imported.scene.materials.at(index_of(imported.scene.geometry.instances[i].material));
   };
-  EXPECT_TRUE(std::holds_alternative<Diffuse>(material(0)));
-  ASSERT_TRUE(std::holds_alternative<Principled>(material(1)));
-  EXPECT_EQ(std::get<Principled>(material(1)).base_color.factor, (Rgb{1, 1, 1}));
+  EXPECT_TRUE(std::holds_alternative<Diffuse>(material(0).kind));
+  ASSERT_TRUE(std::holds_alternative<MetallicRoughness>(material(1).kind));
+  EXPECT_EQ(std::get<MetallicRoughness>(material(1).kind).base_color.factor, (Rgb{1, 1, 1}));
 }
 
 TEST_F(Gltf, ColoursOfThreeChannelsHaveNoAlphaToLeaveOut) {

@@ -155,10 +155,11 @@ TEST(Model, MakesDiffuseAndEmissiveOfObjMaterials) {
   const auto value = [&](TextureId id) {
     return std::get<ConstantTexture>(scene.textures[index_of(id)]).value;
   };
-  EXPECT_EQ(value(std::get<Diffuse>(scene.materials[0]).reflectance), (Rgb{0.25f, 0.5f, 0.75f}));
-  EXPECT_EQ(value(std::get<Emissive>(scene.materials[1]).radiance), (Rgb{17, 12, 4}));
+  EXPECT_EQ(value(std::get<Diffuse>(scene.materials[0].kind).reflectance),
+            (Rgb{0.25f, 0.5f, 0.75f}));
+  EXPECT_EQ(value(std::get<Emissive>(scene.materials[1].kind).radiance), (Rgb{17, 12, 4}));
   const auto& image = std::get<ImageTexture>(
-      scene.textures[index_of(std::get<Diffuse>(scene.materials[2]).reflectance)]);
+      scene.textures[index_of(std::get<Diffuse>(scene.materials[2].kind).reflectance)]);
   EXPECT_EQ(image.width, 2u);
   EXPECT_TRUE(is_black(scene.background.top)) << "it has a lamp";
 }

@@ -52,16 +52,17 @@ shape { triangle { a: [0, 0, 0] b: [1, 0, 0] c: [0, 1, 0] } material: "c" }
   ASSERT_EQ(scene.geometry.spheres.size(), 1u);
   EXPECT_EQ(scene.geometry.spheres[0].center, (Vec3{0, 0, 0}));
   const auto& metal =
-      std::get<Metal>(scene.materials[index_of(scene.geometry.spheres[0].material)]);
+      std::get<Metal>(scene.materials[index_of(scene.geometry.spheres[0].material)].kind);
   EXPECT_EQ(metal.fuzz, 0.25);
   const auto& lamp =
-      std::get<Emissive>(scene.materials[index_of(scene.geometry.quads[0].material)]);
+      std::get<Emissive>(scene.materials[index_of(scene.geometry.quads[0].material)].kind);
   EXPECT_TRUE(lamp.one_sided);
   EXPECT_EQ(std::get<ConstantTexture>(scene.textures[index_of(lamp.radiance)]).value,
             (Rgb{1, 2, 3}));
-  EXPECT_EQ(std::get<Dielectric>(scene.materials[index_of(scene.geometry.triangles[0].material)])
-                .index_of_refraction,
-            1.5);
+  EXPECT_EQ(
+      std::get<Dielectric>(scene.materials[index_of(scene.geometry.triangles[0].material)].kind)
+          .index_of_refraction,
+      1.5);
 }
 
 TEST(SceneFile, ReadsTheCamera) {

@@ -25,7 +25,7 @@ template <class Kind>
 Kind material(const std::string& text) {
   const auto imported = import_material(text);
   EXPECT_TRUE(imported.ok()) << imported.status();
-  return imported.ok() ? std::get<Kind>(imported->scene.materials[0]) : Kind();
+  return imported.ok() ? std::get<Kind>(imported->scene.materials[0].kind) : Kind();
 }
 
 const std::string kNoise = " { noise { scale: 3 } } ";
@@ -47,7 +47,7 @@ TEST(SceneMaterial, GlassHasTexturesOfRoughnessAndIndex) {
 }
 
 TEST(SceneMaterial, GltfHasATextureForEachNumber) {
-  const auto m = material<Principled>(
+  const auto m = material<MetallicRoughness>(
       "gltf { metallic_texture" + kNoise + "roughness_texture" + kNoise + "roughness: 0.5 " +
       "clearcoat_texture" + kNoise + "clearcoat_roughness_texture" + kNoise +
       "clearcoat_normal_texture { color { rgb: [0.5, 0.5, 1] } } clearcoat_normal_scale: 0.5 " +
@@ -60,6 +60,69 @@ TEST(SceneMaterial, GltfHasATextureForEachNumber) {
   EXPECT_EQ(m.transmission.factor, 1);
   EXPECT_TRUE(m.coat_normal && m.index_map);
   EXPECT_EQ(m.coat_normal_scale, 0.5);
+}
+
+Material whole(const std::string& text) {
+  const auto imported = import_material(text);
+  EXPECT_TRUE(imported.ok()) << imported.status();
+  return imported.ok() ? imported->scene.materials[0] : Material();
+}
+
+TEST(SceneMaterial, EveryKindHasThePropertiesOfTheSurface) {
+  const Material m =
+      whole("plastic {} normal_texture { color { rgb: [0.5, 0.5, 1] } } " +
+            std::string("normal_scale: 2 opacity: 0.5 emission { rgb: [1, 2, 3] } ") +
+            "emission_one_sided: true one_sided: true");
+  EXPECT_TRUE(m.relief.normal && !m.relief.height);
+  EXPECT_EQ(m.relief.normal_scale, 2);
+  EXPECT_EQ(m.alpha.mode, AlphaMode::kBlend);
+  EXPECT_EQ(m.alpha.value.factor, 0.5);
+  EXPECT_TRUE(m.alpha.luminance);
+  EXPECT_EQ(m.emission.radiance.factor, (Rgb{1, 2, 3}));
+  EXPECT_TRUE(m.emission.one_sided && m.one_sided);
+  const Material bumped = whole("diffuse {} bump_texture" + kNoise + "bump_scale: -0.5");
+  EXPECT_TRUE(bumped.relief.height);
+  EXPECT_EQ(bumped.relief.height_scale, -0.5);
+}
+
+TEST(SceneMaterial, ReadsWhatOtherRenderersHave) {
+  const auto plastic = material<Plastic>("plastic { surface { alpha_texture" + kNoise +
+                                         "} index_of_refraction: 1.9 nonlinear: true }");
+  EXPECT_EQ(plastic.surface.alpha_u, 1);
+  EXPECT_EQ(plastic.surface.alpha_v_map, plastic.surface.alpha_u_map);
+  EXPECT_TRUE(plastic.nonlinear);
+  const auto metal = material<Conductor>(
+      "conductor { eta { rgb: [1, 2, 3] } k { rgb: [4, 5, 6] } surface { alpha: 0.1 alpha_v: 0.2 "
+      "distribution: DISTRIBUTION_BECKMANN masking: MASKING_CORRELATED } }");
+  ASSERT_TRUE(metal.index);
+  EXPECT_EQ(metal.index->k, (Rgb{4, 5, 6}));
+  EXPECT_EQ(metal.surface.alpha_v, 0.2);
+  EXPECT_EQ(metal.surface.distribution, Microfacets::Distribution::kBeckmann);
+  EXPECT_EQ(metal.surface.masking, Microfacets::Masking::kCorrelated);
+  EXPECT_FALSE(material<Conductor>("conductor {}").index);
+  EXPECT_EQ(material<ThinDielectric>("thin_dielectric {}").index_of_refraction, 1.5);
+  material<DiffuseTransmission>("diffuse_transmission {}");
+  EXPECT_TRUE(material<Dielectric>("dielectric { surface { alpha: 0.2 } }").surface);
+  const auto principled = material<Principled>("principled { specular: 0.5 metallic { texture" +
+                                               kNoise + "} sheen { value: 0.25 } }");
+  EXPECT_NEAR(principled.index_of_refraction, 1.5, 1e-9);
+  EXPECT_EQ(principled.metallic.value, 1);
+  EXPECT_TRUE(principled.metallic.map);
+  EXPECT_EQ(principled.sheen.value, 0.25);
+  EXPECT_EQ(principled.roughness.value, 0.5);
+  EXPECT_EQ(
+      material<ThinPrincipled>("thin_principled { diff_trans { value: 1.5 } }").diff_trans.value,
+      0.75);
+}
+
+TEST(SceneMaterial, AMixtureIsOfMaterialsBeforeIt) {
+  const auto imported = import_material(
+      "diffuse {} } material { name: \"n\" plastic {} } material { name: \"x\" mix { a: \"m\" b: "
+      "\"n\" }");
+  ASSERT_TRUE(imported.ok()) << imported.status();
+  const auto& mix = std::get<Mix>(imported->scene.materials[2].kind);
+  EXPECT_EQ(mix.a, MaterialId{0});
+  EXPECT_EQ(mix.b, MaterialId{1});
 }
 
 struct Wrong {
@@ -76,6 +139,25 @@ TEST(SceneMaterial, ErrorsNamePlaceAndField) {
       {"gltf { metallic_roughness_texture" + kNoise + "roughness_texture" + kNoise + "}",
        "metallic_roughness_texture: write it, or metallic_texture and roughness_texture, not both"},
       {"gltf { clearcoat_texture { use: \"x\" } }", "material[0].gltf.clearcoat_texture"},
+      {"gltf {} opacity: 0.5", "material[0].opacity: write the field of gltf instead"},
+      {"emissive { radiance { rgb: [1, 1, 1] } } one_sided: true",
+       "material[0].one_sided: is not possible for an emissive material"},
+      {"dielectric {} one_sided: true", "a material that transmits light has two sides"},
+      {"diffuse {} normal_texture" + kNoise + "bump_texture" + kNoise,
+       "material[0].bump_texture: write normal_texture or bump_texture, not both"},
+      {"diffuse {} bump_texture { noise { space: SPACE_OBJECT } }", "in uv or in world space"},
+      {"diffuse {} opacity: 2", "material[0].opacity: must lie in [0, 1], is 2"},
+      {"conductor { eta { rgb: [1, 1, 1] } }", "material[0].conductor.eta: write eta and k"},
+      {"conductor { eta { rgb: [1, 0, 1] } k { rgb: [1, 1, 1] } }", "must be above 0"},
+      {"plastic { surface { alpha: 0.1 alpha_v: 0.2 } }",
+       "material[0].plastic.surface: the coat of plastic is isotropic"},
+      {"plastic { index_of_refraction: 1 }", "must be above 1"},
+      {"dielectric { roughness: 0.5 surface {} }", "write surface or roughness, not both"},
+      {"diffuse_transmission { reflectance { rgb: [0.8, 0, 0] } }", "must not exceed 1 in sum"},
+      {"principled { specular: 0.5 index_of_refraction: 1.5 }", "not both"},
+      {"principled { sheen {} }", "material[0].principled.sheen.value: is required"},
+      {"thin_principled { diff_trans { value: 3 } }", "must lie in [0, 2], is 3"},
+      {"mix { a: \"m\" b: \"m\" }", "material[0].mix.a: no material before this one is called"},
       {"gltf { clearcoat: 1.5 }", "material[0].gltf.clearcoat: must lie in [0, 1], is 1.5"}};
   for (const auto& [text, message] : kWrong) {
     EXPECT_THAT(std::string(import_material(text).status().message()), HasSubstr(message)) << text;

@@ -35,7 +35,7 @@ std::string message(const std::string& texture) {
 template <class Kind>
 Kind texture_of(const absl::StatusOr<ImportedScene>& imported) {
   const SceneDescription& scene = imported->scene;
-  const auto& material = std::get<Diffuse>(scene.materials.back());
+  const auto& material = std::get<Diffuse>(scene.materials.back().kind);
   return std::get<Kind>(scene.textures[index_of(material.reflectance)]);
 }
 

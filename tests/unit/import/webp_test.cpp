@@ -142,7 +142,7 @@ TEST(Webp, TexturesOfGltfFilesMayBeWebp) {
     const auto imported = file.import(folder);
     ASSERT_TRUE(imported.ok()) << imported.status();
     EXPECT_THAT(imported->info.warnings, IsEmpty());
-    const auto& material = std::get<Principled>(imported->scene.materials.at(0));
+    const auto& material = std::get<MetallicRoughness>(imported->scene.materials.at(0).kind);
     EXPECT_EQ(texels(std::get<ImageTexture>(
                   imported->scene.textures.at(index_of(material.base_color.texture)))),
               codes(3));

@@ -21,12 +21,17 @@ using test::SceneMaker;
 
 constexpr double kFar = 100;
 
-Principled blended(double alpha) {
-  Principled m;
+MetallicRoughness black() {
+  MetallicRoughness m;
   m.base_color.factor = {0, 0, 0};
   m.roughness.factor = 1;
-  m.alpha_mode = AlphaMode::kBlend;
-  m.alpha.factor = alpha;
+  return m;
+}
+
+Material blended(double alpha) {
+  Material m = black();
+  m.alpha.mode = AlphaMode::kBlend;
+  m.alpha.value.factor = alpha;
   return m;
 }
 
@@ -86,9 +91,9 @@ TEST(Alpha, BothSidesOfASphereAreHit) {
 TEST(Alpha, AMaskedSurfaceIsPresentOrAbsent) {
   for (const double cutoff : {0.4, 0.6}) {
     SceneMaker maker = white_sky();
-    Principled mask = blended(0.5);
-    mask.alpha_mode = AlphaMode::kMask;
-    mask.alpha_cutoff = cutoff;
+    Material mask = blended(0.5);
+    mask.alpha.mode = AlphaMode::kMask;
+    mask.alpha.cutoff = cutoff;
     maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, add(maker, mask));
     const Moments sum =
         light_along(maker, {.origin = {0.1, 0.2, 5}, .direction = {0, 0, -1}}, 2000);
@@ -114,7 +119,7 @@ TEST(Alpha, AttenuatesShadowRaysAndAllTechniquesAgree) {
   SceneMaker maker;
   maker.scene.textures.insert(maker.scene.textures.begin(), ConstantTexture{{1, 1, 1}});
   maker.background({0, 0, 0}, {0, 0, 0});
-  Principled floor;
+  MetallicRoughness floor;
   floor.roughness.factor = 0.6;
   floor.base_color.factor = {0.7f, 0.7f, 0.7f};
   maker.quad({-kFar, 0, -kFar}, {0, 0, 2 * kFar}, {2 * kFar, 0, 0}, add(maker, floor));
@@ -131,9 +136,8 @@ TEST(Alpha, ATransparentLightEmitsFromBothSides) {
   maker.scene.textures.insert(maker.scene.textures.begin(), ConstantTexture{{1, 1, 1}});
   maker.background({0, 0, 0}, {0, 0, 0});
   maker.quad({-kFar, 0, -kFar}, {0, 0, 2 * kFar}, {2 * kFar, 0, 0}, maker.diffuse(0.5f));
-  Principled lamp = blended(0.5);
-  lamp.emissive.factor = {4, 4, 4};
-  lamp.double_sided = true;
+  Material lamp = blended(0.5);
+  lamp.emission.radiance.factor = {4, 4, 4};
   maker.sphere({0, 2, 0}, 0.7, add(maker, lamp));
   expect_techniques_agree(maker, {.origin = {2, 3, 0}, .direction = normalize({-0.5, -1, 0})}, 0.1);
 }
@@ -161,10 +165,8 @@ TEST(SeeThrough, M6_GlassOfIndexOneCastsNoShadow) {
 
 TEST(Emission, OfAScatteringSurfaceIsAddedToItsReflection) {
   SceneMaker maker = white_sky();
-  Principled glow;
-  glow.roughness.factor = 1;
-  glow.base_color.factor = {0, 0, 0};
-  glow.emissive.factor = {3, 3, 3};
+  Material glow = black();
+  glow.emission = {{{}, {3, 3, 3}}, true};
   maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, add(maker, glow));
   const Ray front{.origin = {0.1, 0.2, 5}, .direction = {0, 0, -1}};
   EXPECT_NEAR(light_along(maker, front, 2000).mean(), 3.02, 0.03);
@@ -176,10 +178,11 @@ TEST(Emission, OfAScatteringSurfaceIsAddedToItsReflection) {
 TEST(Emission, IsAttenuatedByTheClearCoat) {
   SceneMaker maker = white_sky();
   maker.background({0, 0, 0}, {0, 0, 0});
-  Principled glow;
-  glow.base_color.factor = {0, 0, 0};
-  glow.emissive.factor = {3, 3, 3};
-  glow.coat.factor = 0.5;
+  MetallicRoughness coated;
+  coated.base_color.factor = {0, 0, 0};
+  coated.coat.factor = 0.5;
+  Material glow = coated;
+  glow.emission.radiance.factor = {3, 3, 3};
   maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, add(maker, glow));
   const Ray ahead{.origin = {0, 0, 5}, .direction = {0, 0, -1}};
   EXPECT_NEAR(light_along(maker, ahead, 10).mean(), 3 * (1 - 0.5 * 0.04), 1e-6);
@@ -191,7 +194,7 @@ TEST(Emission, IsAttenuatedByTheClearCoat) {
 // Behind a rough pane only light sampling reaches a delta light: the pane transmits according to
 // its BSDF value.
 TEST(SeeThrough, DeltaLightsAreVisibleThroughRoughTransmission) {
-  Principled paper;
+  MetallicRoughness paper;
   paper.roughness.factor = 0.7;
   paper.transmission.factor = 1;
   for (const Material& material : {Material(paper), Material(Dielectric{1.5, 0.5})}) {

@@ -63,13 +63,11 @@ TEST(SampleValue, AlbedoOfAnEmitterIsClampedAndOfGlassWhite) {
 TEST(SampleValue, AlbedoOfAGltfMaterialIsItsBaseColour) {
   SceneMaker maker;
   const TextureId gold = maker.texture(ConstantTexture{{0.8f, 0.6f, 0.4f}});
-  Principled material;
+  MetallicRoughness material;
   material.base_color = {gold, {0.5f, 1, 0.25f}};
   material.metallic = {gold, 1};
   material.roughness = {gold, 0.5};
-  material.alpha = {gold, 1};
   material.coat.texture = material.coat_roughness.texture = material.transmission.texture = gold;
-  material.emissive.texture = gold;
   maker.scene.materials.emplace_back(material);
   wall(maker, MaterialId{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)});
   EXPECT_EQ(value(maker, Integrator::kAlbedo, kAhead), (Rgb{0.4f, 0.6f, 0.1f}));
@@ -78,17 +76,17 @@ TEST(SampleValue, AlbedoOfAGltfMaterialIsItsBaseColour) {
 TEST(SampleValue, UsesNormalMapsAndSkipsHoles) {
   SceneMaker maker;
   wall(maker, maker.diffuse({0.2f, 0.4f, 0.6f}), -2);
-  Principled bent;
-  bent.normal = maker.texture(ConstantTexture{{0.75f, 0.5f, 0.75f}});
+  Material bent = MetallicRoughness{};
+  bent.relief.normal = maker.texture(ConstantTexture{{0.75f, 0.5f, 0.75f}});
   maker.scene.materials.emplace_back(bent);
   const MaterialId id{static_cast<std::uint32_t>(maker.scene.materials.size() - 1)};
   wall(maker, id);
   const Rgb normal = value(maker, Integrator::kNormals, kAhead);
   EXPECT_NEAR(normal.r, 0.5 + std::sqrt(0.125), 1e-6);
   EXPECT_NEAR(normal.b, 0.5 + std::sqrt(0.125), 1e-6);
-  auto& masked = std::get<Principled>(maker.scene.materials.back());
-  masked.alpha_mode = AlphaMode::kMask;
-  masked.alpha.factor = 0.25;
+  Alpha& alpha = maker.scene.materials.back().alpha;
+  alpha.mode = AlphaMode::kMask;
+  alpha.value.factor = 0.25;
   EXPECT_EQ(value(maker, Integrator::kDepth, kAhead), gray(7));
   EXPECT_EQ(value(maker, Integrator::kAlbedo, kAhead), (Rgb{0.2f, 0.4f, 0.6f}));
 }
@@ -101,8 +99,8 @@ TEST(SampleValue, ANormalMapTiltsAlongItsUvSet) {
   map.format = ImageTexture::Format::kLinear8;
   map.uv_set = UvSet::kSecond;
   map.texels = std::vector<std::byte>{std::byte{255}, std::byte{128}, std::byte{128}};
-  Principled bent;
-  bent.normal = maker.texture(map);
+  Material bent = MetallicRoughness{};
+  bent.relief.normal = maker.texture(map);
   maker.scene.materials.emplace_back(bent);
   Mesh mesh;
   mesh.positions = {{-9, -9, 0}, {9, -9, 0}, {-9, 9, 0}};

@@ -58,13 +58,14 @@ TEST(Maps, TheNormalMapOfTheCoatUsesItsOwnUvs) {
   SurfacePoint p = point(0.5);
   p.along_u2 = {0, 3, 0};
   p.along_v2 = {-3, 0, 0};
-  Principled m;
-  m.normal = TextureId{1};
-  m.coat.factor = 1;
-  m.coat_normal = TextureId{2};
-  const NormalUvSets sets = normal_uv_sets(m, textures);
+  MetallicRoughness layers;
+  layers.coat.factor = 1;
+  layers.coat_normal = TextureId{2};
+  Material m = layers;
+  m.relief.normal = TextureId{1};
+  const UvSets sets = uv_sets_of(m, textures);
   EXPECT_TRUE(sets.first && sets.second);
-  const auto bsdf = std::get<PrincipledBsdf>(bsdf_at(m, textures, p, {0, 0, 1}));
+  const auto bsdf = std::get<MetallicRoughnessBsdf>(bsdf_at(m, textures, p, {0, 0, 1}));
   const Vec3 leaning = normalize({0.5, 0, 1});
   EXPECT_NEAR(length(bsdf.normal.shading - leaning), 0, 1e-6);
   EXPECT_NEAR(length(bsdf.coat_normal - Vec3{0, leaning.x, leaning.z}), 0, 1e-6);
@@ -104,7 +105,7 @@ TEST(Maps, RoughnessAndIndexOfGlassVary) {
 
 TEST(Maps, EveryNumberOfGltfVaries) {
   const auto with = [](double value, TextureId texture) {
-    Principled m;
+    MetallicRoughness m;
     m.metallic = m.roughness = m.coat = m.coat_roughness = m.transmission = {texture, value};
     return m;
   };
@@ -113,7 +114,7 @@ TEST(Maps, EveryNumberOfGltfVaries) {
 
 TEST(Maps, TheIndexOfGltfVaries) {
   const auto with = [](double index, std::optional<TextureId> map) {
-    Principled m;
+    MetallicRoughness m;
     m.index_of_refraction = index;
     m.index_map = map;
     return m;
@@ -124,23 +125,23 @@ TEST(Maps, TheIndexOfGltfVaries) {
 TEST(Maps, TheCoatBendsWithItsOwnNormals) {
   std::vector<Texture> textures = kTextures;
   textures.emplace_back(ConstantTexture{{0.75f, 0.5f, 1}});
-  Principled m;
+  MetallicRoughness m;
   m.coat.factor = 1;
   m.coat_normal = TextureId{4};
   const Bsdf bent = bsdf_at(m, textures, point(0.5), {0, 0, 1});
-  const auto& principled = std::get<PrincipledBsdf>(bent);
-  EXPECT_EQ(principled.normal.shading, (Vec3{0, 0, 1}));
-  EXPECT_GT(principled.coat_normal.x, 0.3);
+  const auto& layers = std::get<MetallicRoughnessBsdf>(bent);
+  EXPECT_EQ(layers.normal.shading, (Vec3{0, 0, 1}));
+  EXPECT_GT(layers.coat_normal.x, 0.3);
   m.coat_normal_scale = 0;
-  const auto flat = std::get<PrincipledBsdf>(bsdf_at(m, textures, point(0.5), {0, 0, 1}));
+  const auto flat = std::get<MetallicRoughnessBsdf>(bsdf_at(m, textures, point(0.5), {0, 0, 1}));
   EXPECT_NEAR(length(flat.coat_normal - Vec3{0, 0, 1}), 0, 1e-7);
 }
 
 TEST(Maps, ColoursOfVerticesTintWhatIsDiffuseMetalOrGltf) {
   SurfacePoint tinted = point(0.5);
   tinted.color = {0.5f, 0.25f, 2};
-  for (const Material& material :
-       {Material(Diffuse{TextureId{0}}), Material(Metal{TextureId{0}}), Material(Principled{})}) {
+  for (const Material& material : {Material(Diffuse{TextureId{0}}), Material(Metal{TextureId{0}}),
+                                   Material(MetallicRoughness{})}) {
     EXPECT_EQ(albedo_at(material, kTextures, tinted), (Rgb{0.5f, 0.25f, 1}));
   }
   const Bsdf diffuse = bsdf_at(Diffuse{TextureId{0}}, kTextures, tinted, {0, 0, 1});

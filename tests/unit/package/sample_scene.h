@@ -65,6 +65,36 @@ inline void add_grids(Media& media) {
   media.media.push_back(fire);
 }
 
+/// Adds materials 7 to 15: every kind that is not in sample_scene(), and every property of a
+/// surface.
+inline void add_surfaces(SceneDescription& scene) {
+  const Microfacets brushed{Microfacets::Distribution::kBeckmann,
+                            Microfacets::Masking::kCorrelated,
+                            0.25,
+                            0.5,
+                            TextureId{3},
+                            TextureId{4}};
+  const Number mapped{0.75, TextureId{4}};
+  scene.materials.emplace_back(Plastic{TextureId{0}, 1.9, {}, {1, 0.5f, 0}, true});
+  scene.materials.emplace_back(Conductor{ConductorIndex{{1, 2, 0.5f}, {3, 0, 1}}, brushed});
+  scene.materials.emplace_back(ThinDielectric{1.25, {1, 0.5f, 0}, {0, 1, 0.25f}});
+  scene.materials.emplace_back(DiffuseTransmission{TextureId{0}, TextureId{1}});
+  scene.materials.emplace_back(Principled{
+      TextureId{1}, 1.25, {0.1}, {0.2}, mapped, {0.3}, {0.4}, {0.5}, {0.6}, mapped, {0.7}, {0.8}});
+  scene.materials.emplace_back(
+      ThinPrincipled{TextureId{1}, 1.25, {0.1}, {0.2}, mapped, {0.3}, {0.4}, {0.5}, mapped, {0.6}});
+  scene.materials.emplace_back(Mix{MaterialId{0}, MaterialId{8}, TextureId{4}});
+  Material glowing = Dielectric{.index_of_refraction = 1.5, .surface = brushed};
+  glowing.relief = {TextureId{3}, 0.5, std::nullopt, 2};
+  glowing.alpha = {AlphaMode::kMask, {TextureId{4}, 0.25}, true, 0.125};
+  glowing.emission = {{TextureId{1}, {1, 2, 3}}, true};
+  scene.materials.push_back(glowing);
+  Material bumped = Diffuse{TextureId{0}};
+  bumped.relief = {std::nullopt, 1, TextureId{4}, -0.5};
+  bumped.one_sided = true;
+  scene.materials.push_back(bumped);
+}
+
 inline SceneDescription sample_scene() {
   SceneDescription scene;
   PerspectiveCamera camera;
@@ -119,12 +149,13 @@ inline SceneDescription sample_scene() {
                      Emissive{TextureId{2}, true}};
   scene.materials.emplace_back(Metal{TextureId{1}, 0.5, TextureId{4}});
   scene.materials.emplace_back(Dielectric{1.7, 0.25, 0, TextureId{4}, TextureId{3}});
-  Principled layered;
+  MetallicRoughness layered;
   layered.coat = {TextureId{4}, 0.5};
   layered.coat_normal = TextureId{3};
   layered.coat_normal_scale = -0.5;
   layered.index_map = TextureId{4};
   scene.materials.emplace_back(layered);
+  add_surfaces(scene);
   scene.geometry.spheres = {{{1, 2, 3}, 0.1, MaterialId{0}}, {{4, 5, 6}, 1e-5, MaterialId{1}}};
   scene.geometry.quads = {{{0, 0, 0}, {1, 0, 0}, {0, 1.0 / 7, 0}, MaterialId{3}}};
   scene.geometry.triangles = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, MaterialId{2}}};

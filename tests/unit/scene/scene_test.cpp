@@ -90,29 +90,57 @@ TEST(Scene, M13_MaterialsAndTexturesAreValidated) {
               s.textures[2] = ConstantTexture{{0, 0, INFINITY}};
             }),
             "textures[2]: must be finite and not negative, is inf");
-  EXPECT_EQ(message_after([](auto& s) { std::get<Metal>(s.materials[1]).fuzz = 2; }),
+  EXPECT_EQ(message_after([](auto& s) { std::get<Metal>(s.materials[1].kind).fuzz = 2; }),
             "materials[1].fuzz: must be in [0, 1], is 2");
   EXPECT_EQ(message_after([](auto& s) { s.materials[3] = Dielectric{0.9}; }),
             "materials[3].index_of_refraction: must be in [1, 5], is 0.9");
   EXPECT_EQ(message_after([](auto& s) { s.materials[0] = Diffuse{TextureId{3}}; }),
             "materials[0].reflectance: must be below 3, is 3");
-  const auto with_principled = [](double normal_scale, double coat_normal_scale,
-                                  double alpha_cutoff) {
-    return message_after([&](auto& s) {
-      Principled material;
-      material.base_color.texture = material.emissive.texture = TextureId{0};
-      material.normal_scale = normal_scale;
-      material.coat_normal_scale = coat_normal_scale;
-      material.alpha_cutoff = alpha_cutoff;
-      s.materials[0] = material;
-    });
+  EXPECT_EQ(message_after([](auto& s) {
+              MetallicRoughness layers;
+              layers.coat_normal_scale = std::nan("");
+              s.materials[0] = layers;
+            }),
+            "materials[0].coat_normal_scale: must be in [-1e+30, 1e+30], is nan");
+  const auto with = [](const Material& material) {
+    return message_after([&](auto& s) { s.materials[1] = material; });
   };
-  EXPECT_EQ(with_principled(1, 1, 0.5), "");
-  EXPECT_THAT(with_principled(kInfinity, 1, 0), StartsWith("materials[0].normal_scale: must be"));
-  EXPECT_THAT(with_principled(1, std::nan(""), 0),
-              StartsWith("materials[0].coat_normal_scale: must be in [-1e+30, 1e+30], is nan"));
-  EXPECT_EQ(with_principled(1, 1, kInfinity),
-            "materials[0].alpha_cutoff: must be in [0, 1e+30], is inf");
+  Material common = Diffuse{};
+  common.relief.normal_scale = kInfinity;
+  EXPECT_EQ(with(common), "materials[1].relief.normal_scale: must be in [-1e+30, 1e+30], is inf");
+  common.relief = {TextureId{0}, 1, TextureId{0}};
+  EXPECT_EQ(with(common),
+            "materials[1].relief.height: a surface has a normal map or a height map, not both");
+  common.relief = {};
+  common.alpha = {AlphaMode::kMask, {TextureId{0}, 1}, false, kInfinity};
+  EXPECT_EQ(with(common), "materials[1].alpha.cutoff: must be in [0, 1e+30], is inf");
+  common.alpha = {};
+  common.emission.radiance = {TextureId{9}, {1, 1, 1}};
+  EXPECT_EQ(with(common), "materials[1].emission.radiance: must be below 3, is 9");
+  Material glass = Dielectric{};
+  glass.one_sided = true;
+  EXPECT_EQ(with(glass), "materials[1].one_sided: a material that transmits light has two sides");
+  EXPECT_EQ(with(Plastic{TextureId{0}, 1}),
+            "materials[1].index_of_refraction: must be above 1: it is that of a coat");
+  EXPECT_EQ(with(Plastic{TextureId{0}, 1.5, {.alpha_u = 0.5}}),
+            "materials[1].surface: the coat of plastic is isotropic");
+  EXPECT_EQ(with(Conductor{ConductorIndex{{1, 0, 1}, {1, 1, 1}}}),
+            "materials[1].eta: must be above 0 in each channel");
+  EXPECT_EQ(with(Principled{.sheen = {2}}), "materials[1].sheen.value: must be in [0, 1], is 2");
+  EXPECT_EQ(with(Mix{MaterialId{0}, MaterialId{1}}), "materials[1].b: must be below 1, is 1");
+  EXPECT_EQ(message_after([](auto& s) {
+              s.materials[0] = Dielectric{1.5, 0, 1};
+              s.materials[1] = Mix{MaterialId{0}, MaterialId{0}};
+            }),
+            "materials[1].a: a glass with a priority is not part of a mixture");
+  EXPECT_EQ(message_after([](auto& s) {
+              s.materials[0] = Diffuse{};
+              for (std::uint32_t i = 0; i < 9; ++i) {
+                const MaterialId last{i};
+                s.materials.insert(s.materials.begin() + i + 1, Mix{last, last});
+              }
+            }),
+            "materials[8]: is made of 511 materials, at most 256");
   EXPECT_EQ(message_after([](auto& s) {
               s.geometry.meshes[0].colors.resize(9, {1, 1, 1});
               s.geometry.meshes[0].colors[2] = {0, -0.5f, 0};

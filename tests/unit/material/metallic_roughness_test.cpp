@@ -42,28 +42,29 @@ struct Named {
   Material material;
 };
 
-Principled principled(double metallic, double roughness) {
-  Principled m;
+MetallicRoughness layered(double metallic, double roughness) {
+  MetallicRoughness m;
   m.metallic.factor = metallic;
   m.roughness.factor = roughness;
   return m;
 }
 
 std::vector<Named> all_materials(double roughness) {
-  Principled tinted = principled(0.4, roughness);
+  MetallicRoughness tinted = layered(0.4, roughness);
   tinted.base_color = {TextureId{1}, {0.9f, 1, 0.5f}};
-  Principled coated = principled(0.2, roughness);
+  MetallicRoughness coated = layered(0.2, roughness);
   coated.coat.factor = 0.8;
   coated.coat_roughness.factor = 0.5;
-  Principled thin = principled(0, roughness);
+  MetallicRoughness thin = layered(0, roughness);
   thin.transmission.factor = 0.7;
-  Principled bumped = principled(0.3, roughness);
-  bumped.normal = TextureId{1};
-  bumped.coat.factor = 1;
-  bumped.coat_roughness.factor = 0.6;
-  bumped.transmission.factor = 0.5;
-  return {{"plastic", principled(0, roughness)},
-          {"metal", principled(1, roughness)},
+  MetallicRoughness coated_thin = layered(0.3, roughness);
+  coated_thin.coat.factor = 1;
+  coated_thin.coat_roughness.factor = 0.6;
+  coated_thin.transmission.factor = 0.5;
+  Material bumped = coated_thin;
+  bumped.relief.normal = TextureId{1};
+  return {{"plastic", layered(0, roughness)},
+          {"metal", layered(1, roughness)},
           {"tinted", tinted},
           {"coated", coated},
           {"thin", thin},
@@ -74,7 +75,7 @@ std::vector<Named> all_materials(double roughness) {
 
 const Vec3 kDirections[] = {{0, 0, 1}, {0.6, 0.3, 0.5}, {0.8, 0.3, 0.08}, {0.3, -0.5, -0.7}};
 
-TEST(Principled, SamplesFollowTheirDensity) {
+TEST(MetallicRoughness, SamplesFollowTheirDensity) {
   for (const double roughness : {0.8, 1.0}) {
     for (const auto& [name, material] : all_materials(roughness)) {
       for (const Vec3& wo : kDirections) {
@@ -92,7 +93,7 @@ TEST(Principled, SamplesFollowTheirDensity) {
   }
 }
 
-TEST(Principled, SamplesWeighValueOverPdf) {
+TEST(MetallicRoughness, SamplesWeighValueOverPdf) {
   Random random(12);
   for (const double roughness : {0.0, 0.02, 0.3, 1.0}) {
     for (const auto& [name, material] : all_materials(roughness)) {
@@ -116,7 +117,7 @@ TEST(Principled, SamplesWeighValueOverPdf) {
 
 // Under light of radiance 1 from all directions no more may be scattered on. Rough glass, with the
 // compression of radiance divided out, scatters nearly all of it.
-TEST(Principled, ReflectanceIsAtMostOne) {
+TEST(MetallicRoughness, ReflectanceIsAtMostOne) {
   constexpr int kSide = 48;
   for (const double roughness : {0.0, 0.1, 0.3, 0.6, 1.0}) {
     for (const auto& [name, material] : all_materials(roughness)) {
@@ -140,13 +141,13 @@ TEST(Principled, ReflectanceIsAtMostOne) {
   }
 }
 
-TEST(Principled, ReflectionIsReciprocal) {
+TEST(MetallicRoughness, ReflectionIsReciprocal) {
   Random random(6);
   for (const auto& [name, material] : all_materials(0.5)) {
     if (name == "bumped") {
       continue;  // the shading normal is bent towards wo
     }
-    const bool glass = std::holds_alternative<Dielectric>(material);
+    const bool glass = std::holds_alternative<Dielectric>(material.kind);
     for (int i = 0; i < 5000; ++i) {
       Vec3 a = random_direction(random);
       Vec3 b = random_direction(random);
@@ -156,18 +157,18 @@ TEST(Principled, ReflectionIsReciprocal) {
       const double ab = evaluate(bsdf(material, a), b).value.g / std::abs(b.z);
       const double ba = evaluate(bsdf(material, b), a).value.g / std::abs(a.z);
       // Radiance through a boundary is scaled by the square of the index.
-      const double eta = glass ? std::get<Dielectric>(material).index_of_refraction : 1;
+      const double eta = glass ? std::get<Dielectric>(material.kind).index_of_refraction : 1;
       const double scale = a.z * b.z > 0 ? 1 : a.z > 0 ? eta * eta : 1 / (eta * eta);
       ASSERT_NEAR(ab * scale, ba, 1e-5 * (1e-3 + ba)) << name;
     }
   }
 }
 
-TEST(Principled, M10OpaqueSurfacesPassNoLightForAnyNormals) {
+TEST(MetallicRoughness, M10OpaqueSurfacesPassNoLightForAnyNormals) {
   Random random(4);
   for (const double roughness : {0.05, 0.6}) {
     for (const auto& [name, material] : all_materials(roughness)) {
-      if (name == "thin" || name == "bumped" || std::holds_alternative<Dielectric>(material)) {
+      if (name == "thin" || name == "bumped" || std::holds_alternative<Dielectric>(material.kind)) {
         continue;
       }
       for (int i = 0; i < 5000; ++i) {
@@ -187,7 +188,7 @@ TEST(Principled, M10OpaqueSurfacesPassNoLightForAnyNormals) {
   }
 }
 
-TEST(Principled, M2M5EdgesOfTheirRangesGiveFiniteNumbers) {
+TEST(MetallicRoughness, M2M5EdgesOfTheirRangesGiveFiniteNumbers) {
   const double least = 0x1p-32;
   for (const double roughness : {0.0, 0.01, 1.0}) {
     for (const auto& [name, material] : all_materials(roughness)) {
@@ -211,8 +212,8 @@ TEST(Principled, M2M5EdgesOfTheirRangesGiveFiniteNumbers) {
   test::holds("M2", "0 NaN at the edges of every range (glTF)");
 }
 
-TEST(Principled, SmoothDielectricsReflectFresnelAtNormalIncidence) {
-  Principled black = principled(0, 0.2);
+TEST(MetallicRoughness, SmoothDielectricsReflectFresnelAtNormalIncidence) {
+  MetallicRoughness black = layered(0, 0.2);
   black.base_color.factor = {0, 0, 0};
   const Bsdf b = bsdf(black, {0, 0, 1});
   Random random(1);
@@ -226,11 +227,11 @@ TEST(Principled, SmoothDielectricsReflectFresnelAtNormalIncidence) {
   EXPECT_NEAR(sum / kSamples, 0.04, 4e-4);
 }
 
-TEST(Principled, ChannelsAreThoseOfGltf) {
-  Principled m = principled(1, 1);
+TEST(MetallicRoughness, ChannelsAreThoseOfGltf) {
+  MetallicRoughness m = layered(1, 1);
   m.metallic.texture = TextureId{1};
   m.roughness.texture = TextureId{1};
-  const auto b = std::get<PrincipledBsdf>(bsdf(m, {0, 0, 1}));
+  const auto b = std::get<MetallicRoughnessBsdf>(bsdf(m, {0, 0, 1}));
   EXPECT_NEAR(b.metallic, 0.9, 1e-7);
   EXPECT_NEAR(b.surface.roughness, 0.35, 1e-7);
   EXPECT_NEAR(b.surface.alpha, 0.35 * 0.35, 1e-7);

@@ -25,7 +25,7 @@ Slot either(const MaterialReader& reader, Slot first, Slot second) {
   return reader.has(first) ? first : second;
 }
 
-absl::Status read_base(MaterialReader& reader, Principled& to) {
+absl::Status read_base(MaterialReader& reader, MetallicRoughness& to) {
   const Slot slot = either(reader, {aiTextureType_BASE_COLOR}, {aiTextureType_DIFFUSE});
   ASSIGN_OR_RETURN(to.base_color.texture, reader.map(slot, As::kColor));
   const auto base = reader.color("$clr.base", 1);
@@ -44,9 +44,9 @@ absl::Status read_base(MaterialReader& reader, Principled& to) {
   return absl::OkStatus();
 }
 
-absl::Status read_emission(MaterialReader& reader, Principled& to) {
+absl::Status read_emission(MaterialReader& reader, Emission& to) {
   const Slot slot = either(reader, {aiTextureType_EMISSIVE}, {aiTextureType_EMISSION_COLOR});
-  ASSIGN_OR_RETURN(to.emissive.texture, reader.map(slot, As::kColor));
+  ASSIGN_OR_RETURN(to.radiance.texture, reader.map(slot, As::kColor));
   const double strength =
       reader.gltf() != nullptr && reader.gltf()->emissive_strength
           ? *reader.gltf()->emissive_strength
@@ -54,20 +54,20 @@ absl::Status read_emission(MaterialReader& reader, Principled& to) {
   const Rgb color = reader.color("$clr.emissive", kMaxRadiance).value_or(Rgb{}) *
                     static_cast<float>(std::clamp(strength, 0.0, 1e8));
   const auto least = [](float v) { return std::min(v, kMaxRadiance); };
-  to.emissive.factor = {least(color.r), least(color.g), least(color.b)};
+  to.radiance.factor = {least(color.r), least(color.g), least(color.b)};
   int both = reader.kind() == ModelKind::kGltf ? 0 : 1;
   reader.material().Get(AI_MATKEY_TWOSIDED, both);
-  to.double_sided = both != 0;
+  to.one_sided = both == 0;
   return absl::OkStatus();
 }
 
-absl::Status read_normals(MaterialReader& reader, Principled& to) {
+absl::Status read_normals(MaterialReader& reader, Relief& relief, MetallicRoughness& to) {
   const Slot slot = either(reader, {aiTextureType_NORMALS}, {aiTextureType_NORMAL_CAMERA});
   if (reader.has(slot)) {
-    ASSIGN_OR_RETURN(to.normal, reader.map(slot, As::kNumber));
+    ASSIGN_OR_RETURN(relief.normal, reader.map(slot, As::kNumber));
     float scale = 1;
     reader.material().Get(AI_MATKEY_GLTF_TEXTURE_SCALE(slot.type, slot.index), scale);
-    to.normal_scale = std::isfinite(scale) ? scale : 1;
+    relief.normal_scale = std::isfinite(scale) ? scale : 1;
   }
   const Slot coat{aiTextureType_CLEARCOAT, 2};
   if (reader.has(coat)) {
@@ -78,16 +78,16 @@ absl::Status read_normals(MaterialReader& reader, Principled& to) {
   return absl::OkStatus();
 }
 
-absl::Status read_alpha(MaterialReader& reader, Principled& to) {
-  ASSIGN_OR_RETURN(to.alpha.texture, reader.white());
+absl::Status read_alpha(MaterialReader& reader, Alpha& to) {
+  ASSIGN_OR_RETURN(to.value.texture, reader.white());
   const Slot opacity{aiTextureType_OPACITY};
   if (reader.kind() != ModelKind::kGltf) {
-    to.alpha.factor = reader.number("$mat.opacity", 0, 1).value_or(1);
+    to.value.factor = reader.number("$mat.opacity", 0, 1).value_or(1);
     if (reader.has(opacity)) {
-      ASSIGN_OR_RETURN(to.alpha.texture, reader.opacity_map(opacity));
+      ASSIGN_OR_RETURN(to.value.texture, reader.opacity_map(opacity));
     }
-    const bool whole = to.alpha.factor == 1 && !reader.has(opacity);
-    to.alpha_mode = whole ? AlphaMode::kOpaque : AlphaMode::kBlend;
+    const bool whole = to.value.factor == 1 && !reader.has(opacity);
+    to.mode = whole ? AlphaMode::kOpaque : AlphaMode::kBlend;
     return absl::OkStatus();
   }
   aiString mode;
@@ -96,17 +96,17 @@ absl::Status read_alpha(MaterialReader& reader, Principled& to) {
   if (name != "MASK" && name != "BLEND") {
     return absl::OkStatus();
   }
-  to.alpha_mode = name == "MASK" ? AlphaMode::kMask : AlphaMode::kBlend;
-  to.alpha_cutoff = reader.number("$mat.gltf.alphaCutoff", 0, 1e30).value_or(0.5);
-  to.alpha.factor = reader.alpha_of("$clr.base");
+  to.mode = name == "MASK" ? AlphaMode::kMask : AlphaMode::kBlend;
+  to.cutoff = reader.number("$mat.gltf.alphaCutoff", 0, 1e30).value_or(0.5);
+  to.value.factor = reader.alpha_of("$clr.base");
   const Slot base = either(reader, {aiTextureType_BASE_COLOR}, {aiTextureType_DIFFUSE});
-  ASSIGN_OR_RETURN(to.alpha.texture, reader.map(base, As::kAlpha));
+  ASSIGN_OR_RETURN(to.value.texture, reader.map(base, As::kAlpha));
   return absl::OkStatus();
 }
 
 // Sets the index whose F0 is the material's F0 times its factor and the luminance of its colour. At
 // grazing angles all light is still reflected, unless F0 is 0.
-void read_specular(const GltfSpecular& from, MaterialReader& reader, Principled& to) {
+void read_specular(const GltfSpecular& from, MaterialReader& reader, MetallicRoughness& to) {
   const auto [r, g, b] = from.color;
   if (r != g || g != b) {
     reader.unsupported("its specular colour is taken as grey");
@@ -122,7 +122,7 @@ void read_specular(const GltfSpecular& from, MaterialReader& reader, Principled&
   to.index_of_refraction = std::clamp((1 + f) / (1 - f), 1.0, 5.0);
 }
 
-absl::Status read_layers(MaterialReader& reader, Principled& to) {
+absl::Status read_layers(MaterialReader& reader, MetallicRoughness& to) {
   to.index_of_refraction = reader.number("$mat.refracti", 1, 5).value_or(1.5);
   if (const GltfMaterial* gltf = reader.gltf(); gltf != nullptr && gltf->index_of_refraction) {
     const double index = *gltf->index_of_refraction;
@@ -144,7 +144,7 @@ absl::Status read_layers(MaterialReader& reader, Principled& to) {
 
 // Converts KHR_materials_pbrSpecularGlossiness without images as in its appendix: the metallic
 // share for which the mixture of 0.04 and the base colour is as bright as the specular colour.
-void from_glossiness(MaterialReader& reader, double glossiness, Principled& to) {
+void from_glossiness(MaterialReader& reader, double glossiness, MetallicRoughness& to) {
   to.roughness.factor = 1 - glossiness;
   to.metallic.factor = 0;
   const Rgb diffuse = reader.color("$clr.diffuse", 1).value_or(Rgb{1, 1, 1});
@@ -166,16 +166,18 @@ void from_glossiness(MaterialReader& reader, double glossiness, Principled& to) 
 }  // namespace
 
 absl::StatusOr<ModelMaterial> read_metallic_roughness(MaterialReader& reader) {
-  Principled to;
-  RETURN_IF_ERROR(read_base(reader, to));
-  RETURN_IF_ERROR(read_emission(reader, to));
-  RETURN_IF_ERROR(read_normals(reader, to));
-  RETURN_IF_ERROR(read_alpha(reader, to));
-  RETURN_IF_ERROR(read_layers(reader, to));
+  MetallicRoughness layers;
+  Material to;
+  RETURN_IF_ERROR(read_base(reader, layers));
+  RETURN_IF_ERROR(read_emission(reader, to.emission));
+  RETURN_IF_ERROR(read_normals(reader, to.relief, layers));
+  RETURN_IF_ERROR(read_alpha(reader, to.alpha));
+  RETURN_IF_ERROR(read_layers(reader, layers));
   if (const auto glossiness = reader.number("$mat.glossinessFactor", 0, 1);
       glossiness && reader.kind() == ModelKind::kGltf) {
-    from_glossiness(reader, *glossiness, to);
+    from_glossiness(reader, *glossiness, layers);
   }
+  to.kind = layers;
   ModelMaterial added = reader.add(to);
   added.glass = glass_of(reader, to);
   return added;

@@ -1,0 +1,17 @@
+#pragma once
+
+// The principled materials of a scene file.
+
+#include "absl/status/statusor.h"
+#include "proto/scene.pb.h"
+#include "renderlib/import/draft/scene_draft.h"
+#include "renderlib/import/scene_file/field.h"
+
+namespace bandsaw {
+
+absl::StatusOr<Material> read_principled(const Field& in, const scene::Principled& from,
+                                         SceneDraft& draft);
+absl::StatusOr<Material> read_thin_principled(const Field& in, const scene::ThinPrincipled& from,
+                                              SceneDraft& draft);
+
+}  // namespace bandsaw

@@ -1,0 +1,32 @@
+#pragma once
+
+// Rough metals: microfacets that reflect by the Fresnel equations of a conductor (Walter et al.
+// 2007, eq. 20), with single scattering.
+
+#include <optional>
+
+#include "renderlib/material/bsdf_sample.h"
+#include "renderlib/material/material.h"
+#include "renderlib/material/microfacets.h"
+#include "renderlib/math/rgb.h"
+#include "renderlib/sampling/basis.h"
+
+namespace bandsaw {
+
+struct RoughConductorBsdf {
+  Vec3 geometric;  ///< geometric normal on the side of wo
+  Basis frame;     ///< z is the shading normal, dot(wo, z) > 0; x lies along u
+  Vec3 wo;
+  Facets facets;
+  std::optional<ConductorIndex> index;
+  Rgb specular;
+};
+
+/// Returns the reflectance of a facet; white without an index.
+Rgb conductor_reflectance(const std::optional<ConductorIndex>& index, double cos_i);
+
+/// u and v select the facet. Returns std::nullopt if the light is lost between facets.
+std::optional<BsdfSample> sample(const RoughConductorBsdf& bsdf, double u, double v);
+BsdfValue evaluate(const RoughConductorBsdf& bsdf, const Vec3& wi);
+
+}  // namespace bandsaw

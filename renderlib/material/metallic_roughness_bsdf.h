@@ -1,0 +1,60 @@
+#pragma once
+
+// BSDF of glTF's metallic-roughness material: a diffuse or thin transmissive layer below a rough
+// dielectric reflection, mixed with a rough metal, below a clear coat. Each GGX lobe has single
+// scattering, as in glTF 2.0, appendix B.
+//
+// Where glTF's mixing would not conserve energy, less is reflected: the layer below gets what the
+// reflection leaves, according to the reflection's albedo in both directions (Kelemen and
+// Szirmay-Kalos 2001, "A Microfacet Based Coupled Specular-Matte BRDF Model", eq. 5). So no
+// direction sends out more than comes in, and the BSDF is reciprocal. Fresnel reflectance is
+// Schlick's.
+
+#include <array>
+#include <optional>
+
+#include "absl/types/span.h"
+#include "renderlib/geometry/surface.h"
+#include "renderlib/material/bsdf_sample.h"
+#include "renderlib/material/material.h"
+#include "renderlib/texture/texture.h"
+
+namespace bandsaw {
+
+/// Parameters of a GGX lobe.
+struct GgxLobe {
+  double roughness = 1;
+  double alpha = 1;
+};
+
+struct MetallicRoughnessBsdf {
+  SidedNormals normal;
+  /// Shading normal of the coat: with its own normal map, without that of the layer below.
+  Vec3 coat_normal;
+  Vec3 wo;
+  Rgb base;
+  double metallic = 0;
+  double transmission = 0;
+  double f0 = 0.04;  ///< reflectance of the dielectric part at normal incidence
+  GgxLobe surface;
+  double coat = 0;
+  GgxLobe coating;
+  double coat_albedo = 0;  ///< albedo of the coat seen along wo, times `coat`
+  /// Share that the reflection leaves along wo, divided by its mean over all directions.
+  double matte_share = 1;
+  /// Selection probabilities of the lobes: coat, reflection, diffuse, transmission. They sum to 1,
+  /// or to 0 if the BSDF is black.
+  std::array<double, 4> chances{};
+};
+
+/// Returns the BSDF; `normal` is on the side of wo, without the relief.
+MetallicRoughnessBsdf metallic_roughness_at(const MetallicRoughness& material, const Relief& relief,
+                                            absl::Span<const Texture> textures,
+                                            const SurfacePoint& point, const SidedNormals& normal,
+                                            const Vec3& wo);
+
+std::optional<BsdfSample> sample(const MetallicRoughnessBsdf& bsdf, double u, double v,
+                                 double lobe);
+BsdfValue evaluate(const MetallicRoughnessBsdf& bsdf, const Vec3& wi);
+
+}  // namespace bandsaw

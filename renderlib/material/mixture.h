@@ -1,0 +1,39 @@
+#pragma once
+
+// Mixtures (Mix): at each point one of two materials is present, at random.
+
+#include <algorithm>
+
+#include "absl/types/span.h"
+#include "renderlib/geometry/surface.h"
+#include "renderlib/material/look_up.h"
+#include "renderlib/material/material.h"
+#include "renderlib/math/rgb.h"
+#include "renderlib/texture/texture.h"
+
+namespace bandsaw {
+
+/// Maximum number of materials that a mixture is made of, itself included, each counted as often as
+/// it occurs.
+inline constexpr std::uint64_t kMaxMixtureParts = 256;
+
+/// Returns the probability of the second part at the point.
+inline double amount_at(const Mix& mix, absl::Span<const Texture> textures,
+                        const SurfacePoint& point) {
+  return std::clamp(double{luminance(look_up(textures, mix.amount, point))}, 0.0, 1.0);
+}
+
+/// Returns the material that is present at the point of a surface of material `id`, which is not a
+/// mixture. u in [0, 1) selects it, for nested mixtures as well.
+inline MaterialId part_at(absl::Span<const Material> materials, absl::Span<const Texture> textures,
+                          MaterialId id, const SurfacePoint& point, double u) {
+  while (const auto* mix = std::get_if<Mix>(&materials[index_of(id)].kind)) {
+    const double amount = amount_at(*mix, textures, point);
+    const bool second = u < amount;
+    u = second ? u / amount : (u - amount) / (1 - amount);
+    id = second ? mix->b : mix->a;
+  }
+  return id;
+}
+
+}  // namespace bandsaw

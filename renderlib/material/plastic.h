@@ -1,0 +1,41 @@
+#pragma once
+
+// A diffuse surface below a smooth or rough dielectric coat: `plastic` and `roughplastic` of
+// Mitsuba 3. The diffuse part is r / (1 - c r') T(wo) T(wi) / (eta^2 pi) with the reflectance r,
+// the transmittance T of the coat, its internal reflectance c, and r' = r if nonlinear, else 1
+// (Weidlich and Wilkie 2007, "Arbitrarily Layered Micro-Facet Surfaces"; light that is reflected to
+// and fro is a geometric series).
+
+#include <optional>
+
+#include "absl/types/span.h"
+#include "renderlib/geometry/surface.h"
+#include "renderlib/material/bsdf_sample.h"
+#include "renderlib/material/material.h"
+#include "renderlib/material/microfacets.h"
+#include "renderlib/material/plastic_coat.h"
+#include "renderlib/texture/texture.h"
+
+namespace bandsaw {
+
+struct PlasticBsdf {
+  SidedNormals normal;  ///< dot(wo, shading) > 0
+  Vec3 wo;
+  Rgb diffuse;  ///< r / (1 - c r') / eta^2
+  Rgb specular;
+  double eta = 1.5;
+  PlasticCoat::At coat{};
+  std::optional<Facets> facets;  ///< absent if the coat is smooth: a delta reflection
+  double passing = 0;            ///< T(wo)
+  double specular_chance = 0;    ///< probability with which the coat's reflection is sampled
+};
+
+/// Returns the BSDF; `normal` is on the side of wo. The material MUST be prepared.
+PlasticBsdf plastic_at(const Plastic& material, absl::Span<const Texture> textures,
+                       const SurfacePoint& point, const SidedNormals& normal, const Vec3& wo);
+
+std::optional<BsdfSample> sample(const PlasticBsdf& bsdf, double u, double v, double lobe);
+/// Without the delta reflection of a smooth coat.
+BsdfValue evaluate(const PlasticBsdf& bsdf, const Vec3& wi);
+
+}  // namespace bandsaw

@@ -1,0 +1,55 @@
+#pragma once
+
+// How much light passes the dielectric coat of Plastic: computed once for each material, when its
+// scene is built.
+
+#include <vector>
+
+#include "absl/types/span.h"
+#include "renderlib/material/material.h"
+
+namespace bandsaw {
+
+/// Transmittance of the coat's outside by the cosine, and reflectance of its inside, for facets
+/// whose alpha is Plastic::surface's, or any smaller one if that has a map. Nothing is scattered
+/// between facets more than once: light that meets the back of another facet is lost, as in the
+/// coat's reflection. As Mitsuba 3's roughplastic does, the transmittance of a rough coat is
+/// interpolated linearly between 64 cosines; that of a smooth coat is exact.
+class PlasticCoat {
+ public:
+  PlasticCoat(const Microfacets& surface, double index_of_refraction);
+
+  /// The coat where its alpha is `alpha`.
+  struct At {
+    const PlasticCoat* coat;
+    std::size_t row;  ///< of the next smaller alpha
+    double next = 0;  ///< weight of the row after it
+    bool smooth = false;
+
+    /// Returns the share of light that passes into the coat; the cosine is in [0, 1].
+    double passing(double cos_theta) const;
+    /// Returns the mean share of diffuse light from below that the coat reflects back.
+    double internal_reflectance() const;
+  };
+  At at(double alpha) const;
+
+ private:
+  static constexpr std::size_t kCosines = 64;
+  struct Row {
+    double internal = 0;
+    std::vector<double> passing;
+  };
+  Row row_of(const Microfacets& surface, double alpha) const;
+  double between(std::size_t row, double cos_theta) const;
+
+  double index_;
+  double most_;  ///< alpha of the last row
+  double internal_smooth_ = 0;
+  std::vector<Row>
+      rows_;  ///< alpha is most_ (i / (rows - 1))^2; one row without a map; none if smooth
+};
+
+/// Sets Plastic::coat of all materials of this kind. Materials with equal coats share one.
+void prepare_materials(absl::Span<Material> materials);
+
+}  // namespace bandsaw

@@ -1,0 +1,41 @@
+#pragma once
+
+// Thin sheets that light passes without being bent: clear panes, and sheets that scatter diffusely.
+
+#include <optional>
+
+#include "renderlib/material/bsdf_sample.h"
+#include "renderlib/math/rgb.h"
+
+namespace bandsaw {
+
+/// A clear pane: delta reflection and straight transmission. With the reflectance R of a face, the
+/// pane reflects R + (1 - R)^2 R / (1 - R^2) = 2 R / (1 + R) and transmits the rest.
+struct ThinDielectricBsdf {
+  SidedNormals normal;
+  Vec3 wo;
+  Rgb reflected;  ///< share of the pane times its colour
+  Rgb transmitted;
+  double reflection = 0;  ///< probability with which the reflection is sampled
+};
+
+ThinDielectricBsdf thin_dielectric(const SidedNormals& normal, const Vec3& wo, double eta,
+                                   const Rgb& specular, const Rgb& transmission);
+std::optional<BsdfSample> sample(const ThinDielectricBsdf& bsdf, double lobe);
+
+/// Lambertian reflection and transmission: reflectance / pi and transmittance / pi.
+struct DiffuseTransmissionBsdf {
+  SidedNormals normal;
+  Rgb reflectance;
+  Rgb transmittance;
+  double reflection = 0;  ///< probability with which the reflection is sampled
+};
+
+/// Scales both so that their sum is at most 1 in each channel.
+DiffuseTransmissionBsdf diffuse_transmission(const SidedNormals& normal, const Rgb& reflectance,
+                                             const Rgb& transmittance);
+std::optional<BsdfSample> sample(const DiffuseTransmissionBsdf& bsdf, double u, double v,
+                                 double lobe);
+BsdfValue evaluate(const DiffuseTransmissionBsdf& bsdf, const Vec3& wi);
+
+}  // namespace bandsaw

@@ -1,0 +1,44 @@
+#pragma once
+
+// The principled BSDF of Mitsuba 3 for thin sheets: rough reflection and transmission without
+// refraction, and diffuse reflection and transmission. Both sides are the same.
+
+#include <array>
+#include <optional>
+
+#include "absl/types/span.h"
+#include "renderlib/geometry/surface.h"
+#include "renderlib/material/bsdf_sample.h"
+#include "renderlib/material/disney.h"
+#include "renderlib/material/material.h"
+#include "renderlib/material/microfacets.h"
+#include "renderlib/sampling/basis.h"
+#include "renderlib/texture/texture.h"
+
+namespace bandsaw {
+
+struct ThinPrincipledBsdf {
+  Vec3 geometric;  ///< geometric normal on the side of wo
+  Basis frame;     ///< z is the shading normal, dot(wo, z) > 0; x lies along u
+  Vec3 o;          ///< wo in the frame
+  double eta = 1.5;
+  Facets facets;    ///< of the reflection
+  Facets straight;  ///< of the transmission
+  DisneyDiffuse diffuse;
+  double spec_trans = 0;
+  double spec_tint = 0;
+  double diff_trans = 0;  ///< share of the diffuse light, in [0, 1]
+  /// Selection probabilities: specular reflection, specular transmission, diffuse reflection,
+  /// diffuse transmission. They sum to 1, or to 0 if the BSDF is black.
+  std::array<double, 4> chances{};
+};
+
+/// Returns the BSDF; `normal` is on the side of wo.
+ThinPrincipledBsdf thin_principled_at(const ThinPrincipled& material,
+                                      absl::Span<const Texture> textures, const SurfacePoint& point,
+                                      const SidedNormals& normal, const Vec3& wo);
+
+std::optional<BsdfSample> sample(const ThinPrincipledBsdf& bsdf, double u, double v, double lobe);
+BsdfValue evaluate(const ThinPrincipledBsdf& bsdf, const Vec3& wi);
+
+}  // namespace bandsaw

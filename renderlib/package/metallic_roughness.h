@@ -1,0 +1,20 @@
+#pragma once
+
+// Conversion of glTF's material to and from proto/package.proto.
+
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "proto/package.pb.h"
+#include "renderlib/material/material.h"
+
+namespace bandsaw {
+
+void encode_metallic_roughness(const MetallicRoughness& from, package::Gltf& to);
+
+/// Checks only the form, not the values (scene/validate.h). Returns INVALID_ARGUMENT for a list of
+/// a wrong length.
+absl::StatusOr<MetallicRoughness> decode_metallic_roughness(const package::Gltf& from,
+                                                            const std::string& field);
+
+}  // namespace bandsaw
