@@ -5,6 +5,7 @@
 
 #include "renderlib/math/constants.h"
 #include "renderlib/math/elementary.h"
+#include "renderlib/render/pixel_groups.h"
 
 namespace bandsaw {
 namespace {
@@ -67,16 +68,16 @@ double as_normal(double t, std::uint64_t values) {
 
 // Sums over all pixels.
 struct Totals {
-  Moments half_rows;
+  Moments groups;
   double difference = 0;
   double light = 0;
 };
 
-// Adds the finite pixels x, x + 2, … below x1 of a row.
-void add_half_row(const Image& image, const Image& reference, std::uint32_t x, std::uint32_t x1,
-                  std::uint32_t y, Moments& block, Totals& totals) {
+// Adds the finite pixels of a group.
+void add_group(const Image& image, const Image& reference, absl::Span<const PixelPlace> group,
+               Moments& block, Totals& totals) {
   Moments difference;
-  for (; x < x1; x += 2) {
+  for (const auto& [x, y] : group) {
     if (is_finite(image.at(x, y)) && is_finite(reference.at(x, y))) {
       const double there = luminance(reference.at(x, y));
       const double off = double{luminance(image.at(x, y))} - there;
@@ -87,17 +88,17 @@ void add_half_row(const Image& image, const Image& reference, std::uint32_t x, s
   }
   if (difference.count > 0) {
     block.add(difference.mean);
-    totals.half_rows.add(difference.mean);
+    totals.groups.add(difference.mean);
   }
 }
 
-Moments block_of(const Image& image, const Image& reference, std::uint32_t x0, std::uint32_t y0,
+Moments block_of(const Image& image, const Image& reference, const TileGrid& grid, std::size_t tile,
                  Totals& totals) {
   Moments block;
-  const std::uint32_t x1 = std::min(x0 + kBiasBlock, image.width);
-  for (std::uint32_t y = y0; y < std::min(y0 + kBiasBlock, image.height); ++y) {
-    for (const std::uint32_t first : {x0, x0 + 1}) {
-      add_half_row(image, reference, first, x1, y, block, totals);
+  for (const std::size_t half : {0, 1}) {
+    const PixelGroups groups(grid, 2 * tile + half);
+    for (std::uint32_t i = 0; i < groups.count(); ++i) {
+      add_group(image, reference, groups.group(i), block, totals);
     }
   }
   return block;
@@ -107,26 +108,24 @@ Moments block_of(const Image& image, const Image& reference, std::uint32_t x0, s
 
 BiasTest test_bias(const Image& image, const Image& reference) {
   BiasTest test;
-  const auto along = [](std::uint32_t size) { return (size + kBiasBlock - 1) / kBiasBlock; };
-  const double bound = bound_of(along(image.width) * along(image.height));
+  const TileGrid grid{image.width, image.height};
+  const double bound = bound_of(grid.columns() * grid.rows());
   Totals totals;
-  for (std::uint32_t y = 0; y < image.height; y += kBiasBlock) {
-    for (std::uint32_t x = 0; x < image.width; x += kBiasBlock) {
-      const Moments block = block_of(image, reference, x, y, totals);
-      if (block.count < kMinValues) {
-        continue;
-      }
-      ++test.blocks;
-      const double t = block.t();
-      test.suspicious_blocks += as_normal(t, block.count) > bound ? 1 : 0;
-      if (std::abs(t) > std::abs(test.worst_t)) {
-        test.worst_t = t;
-        test.worst_x = x;
-        test.worst_y = y;
-      }
+  for (std::size_t tile = 0; tile < grid.half_tiles() / 2; ++tile) {
+    const Moments block = block_of(image, reference, grid, tile, totals);
+    if (block.count < kMinValues) {
+      continue;
+    }
+    ++test.blocks;
+    const double t = block.t();
+    test.suspicious_blocks += as_normal(t, block.count) > bound ? 1 : 0;
+    if (std::abs(t) > std::abs(test.worst_t)) {
+      test.worst_t = t;
+      test.worst_x = static_cast<std::uint32_t>(tile % grid.columns()) * kTileSide;
+      test.worst_y = static_cast<std::uint32_t>(tile / grid.columns()) * kTileSide;
     }
   }
-  test.t = totals.half_rows.t();
+  test.t = totals.groups.t();
   test.relative_bias = totals.light != 0 ? totals.difference / totals.light : 0;
   return test;
 }

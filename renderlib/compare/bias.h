@@ -8,11 +8,11 @@
 
 namespace bandsaw {
 
-/// Result of the test. Blocks are 16 x 16 pixels, smaller at the right and lower edge. The values
-/// tested are mean differences in luminance over half rows, i.e. every other pixel of a block's
-/// row: their noise is independent, while pixels of one half row may share paths
-/// (render/tile_samples.h). For each block, Student's t of the mean is computed from the values'
-/// spread, which includes the noise of the reference. Blocks of fewer than 8 values are left out.
+/// Result of the test. Blocks are the tiles of the image (render/tile_samples.h). The values tested
+/// are mean differences in luminance over the groups of pixels that may share paths
+/// (render/pixel_groups.h): the noise of different groups is independent. For each block, Student's
+/// t of the mean is computed from the values' spread, which includes the noise of the reference.
+/// Blocks of fewer than 8 values are left out.
 struct BiasTest {
   std::uint32_t blocks = 0;
   /// t of the whole image: the mean over all values divided by its standard error. |t| above 4 is
@@ -26,8 +26,6 @@ struct BiasTest {
   std::uint32_t worst_x = 0;  ///< first pixel of that block
   std::uint32_t worst_y = 0;
 };
-
-inline constexpr std::uint32_t kBiasBlock = 16;
 
 /// Tests the image against the reference. The images MUST have the same size.
 BiasTest test_bias(const Image& image, const Image& reference);

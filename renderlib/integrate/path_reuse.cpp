@@ -108,7 +108,7 @@ Connection connect(const PrimaryVertex& primary, const SharedVertex& shared) {
 /// Adds the light of the shared vertex of pixel `owner` to all pixels whose primary vertex sees it,
 /// with balance-heuristic weights.
 void distribute(const Scene& scene, const PrimaryVertices& primary, const SharedVertex& shared,
-                std::size_t owner, absl::Span<ReusePixel> pixels, std::uint64_t& rays) {
+                std::size_t owner, absl::Span<ReusePixel> pixels) {
   std::array<Connection, kMaxReusePixels> connections;
   double pdf_sum = 0;  // over all pixels, by area
   for (std::size_t j = 0; j < pixels.size(); ++j) {
@@ -117,7 +117,7 @@ void distribute(const Scene& scene, const PrimaryVertices& primary, const Shared
     }
     const Connection connection = connect(*primary[j], shared);
     if (j != owner && connection.scattered.pdf > 0) {
-      ++rays;
+      ++pixels[owner].counts.rays;
       if (scene.accel().occluded(spawn_ray_to(primary[j]->point, shared.point))) {
         continue;
       }
@@ -134,23 +134,24 @@ void distribute(const Scene& scene, const PrimaryVertices& primary, const Shared
 }  // namespace
 
 void radiance_with_reuse(const Scene& scene, absl::Span<ReusePixel> pixels, std::uint64_t sample,
-                         const PathOptions& options, PathCounts& counts) {
+                         const PathOptions& options) {
   BANDSAW_CHECK(pixels.size() <= kMaxReusePixels, "more pixels than can reuse paths together");
   PrimaryVertices primary;
   std::array<std::optional<SharedVertex>, kMaxReusePixels> shared;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
-    const PathContext context{scene, pixels[i].sampler, sample, options, counts.rays};
-    PathState path(pixels[i].camera_ray.ray);
-    if (pixels[i].camera_ray.lens) {
-      sample_light_through_lens(context, *pixels[i].camera_ray.lens, path);
+    ReusePixel& pixel = pixels[i];
+    const PathContext context{scene, pixel.sampler, sample, options, pixel.counts.rays};
+    PathState path(pixel.camera_ray.ray);
+    if (pixel.camera_ray.lens) {
+      sample_light_through_lens(context, *pixel.camera_ray.lens, path);
     }
     trace_own_path(context, path, primary[i], shared[i]);
-    pixels[i].radiance = path.radiance;
-    counts.truncated += path.truncated ? 1 : 0;
+    pixel.radiance = path.radiance;
+    pixel.counts.truncated += path.truncated ? 1 : 0;
   }
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     if (shared[i] && !is_black(shared[i]->radiance)) {
-      distribute(scene, primary, *shared[i], i, pixels, counts.rays);
+      distribute(scene, primary, *shared[i], i, pixels);
     }
   }
 }

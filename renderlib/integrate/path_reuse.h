@@ -27,14 +27,17 @@ inline constexpr std::size_t kMaxReusePixels = 8;
 struct ReusePixel {
   PixelSampler sampler;
   CameraRay camera_ray;  ///< camera ray of this sample
-  Rgb radiance =
-      {};  ///< result: radiance arriving along `camera_ray`; set by `radiance_with_reuse()`
+  /// Result: radiance arriving along `camera_ray`; set by `radiance_with_reuse()`.
+  Rgb radiance = {};
+  /// `radiance_with_reuse()` adds the rays of this pixel's path and of the connections to its
+  /// second vertex.
+  PathCounts counts = {};
 };
 
 /// Computes sample number `sample` of up to kMaxReusePixels pixels. The scene MUST be one that
-/// shares paths (`Scene::reuses_paths`), and `options.local` MUST be false. Adds to `counts`.
-/// Deterministic; allocates nothing.
+/// shares paths (`Scene::reuses_paths`), and `options.local` MUST be false. Deterministic;
+/// allocates nothing.
 void radiance_with_reuse(const Scene& scene, absl::Span<ReusePixel> pixels, std::uint64_t sample,
-                         const PathOptions& options, PathCounts& counts);
+                         const PathOptions& options);
 
 }  // namespace bandsaw

@@ -144,15 +144,16 @@ class Pilot {
 };
 
 /// Returns the factor by which the error falls below that of uniform sampling with as many samples;
-/// the smaller factor of the two errors. Each half of the rows is planned from the other.
-double gain(const std::array<Pilot, 2>& rows) {
+/// the smaller factor of the two errors. Each of the two parts of the pixels is planned from the
+/// other.
+double gain(const std::array<Pilot, 2>& parts) {
   double samples = 0;
   Mean evenly;
   Mean planned;
-  for (const std::size_t half : {0, 1}) {
-    const std::vector<int> levels = rows[1 - half].levels();
+  for (const std::size_t part : {0, 1}) {
+    const std::vector<int> levels = parts[1 - part].levels();
     for (std::size_t i = 0; i < levels.size(); ++i) {
-      const TileError& tile = rows[half].tiles()[i];
+      const TileError& tile = parts[part].tiles()[i];
       const double times = std::max(1.0, kJudgedAfter * share_of(levels[i]));
       evenly.add(tile);
       planned.add({tile.pixels, tile.variance / times, tile.relative / times});
@@ -171,17 +172,17 @@ double gain(const std::array<Pilot, 2>& rows) {
 std::vector<int> plan_by(const TileGrid& grid, absl::Span<const HalfTileErrors> tiles,
                          std::size_t half) {
   std::vector<TileError> all;
-  std::array<std::vector<TileError>, 2> rows;
+  std::array<std::vector<TileError>, 2> parts;
   for (std::size_t i = half; i < tiles.size(); i += 2) {
     Mean mean;
-    for (const std::size_t parity : {0, 1}) {
-      mean.add(tiles[i][parity]);
-      rows[parity].push_back(tiles[i][parity]);
+    for (const std::size_t part : {0, 1}) {
+      mean.add(tiles[i][part]);
+      parts[part].push_back(tiles[i][part]);
     }
     all.push_back(mean.value());
   }
   const bool pays =
-      gain({Pilot(grid, std::move(rows[0])), Pilot(grid, std::move(rows[1]))}) >= kMinGain;
+      gain({Pilot(grid, std::move(parts[0])), Pilot(grid, std::move(parts[1]))}) >= kMinGain;
   return pays ? Pilot(grid, std::move(all)).levels() : std::vector<int>(all.size(), level_of(1));
 }
 

@@ -35,7 +35,8 @@ struct TileError {
   double relative = 0;       ///< variance / (value^2 + 0.01)
 };
 
-/// Errors of a half tile: of its pixels in even rows of the image, and of those in odd rows.
+/// Errors of a half tile: of its pixels in even groups (render/pixel_groups.h), and of those in odd
+/// groups, which are independent of them.
 using HalfTileErrors = std::array<TileError, 2>;
 
 inline constexpr char kEvenLevel = '6';
@@ -55,9 +56,9 @@ struct TilePlan {
 /// Computes the plan from the pilot. `tiles` has one entry for each half tile; `samples` is the
 /// number of samples of the pilot. A pure function, with the same result on every machine.
 ///
-/// The pilot itself decides whether the plan pays: the plan from even rows is evaluated on the
-/// errors of odd rows, and vice versa. Unless both errors fall well below those of uniform sampling
-/// with as many samples, all levels of a half of the image are 6.
+/// The pilot itself decides whether the plan pays: the plan from even groups is evaluated on the
+/// errors of odd groups, and vice versa. Unless both errors fall well below those of uniform
+/// sampling with as many samples, all levels of a half of the image are 6.
 TilePlan plan_tiles(const TileGrid& grid, absl::Span<const HalfTileErrors> tiles,
                     std::uint64_t samples);
 

@@ -7,7 +7,6 @@
 #include <numeric>
 
 #include "renderlib/base/check.h"
-#include "renderlib/render/tile_samples.h"
 
 namespace bandsaw {
 namespace {
@@ -15,15 +14,15 @@ namespace {
 constexpr double kSmallest = 0.01;  // Prevents relative errors of dark pixels from dominating.
 
 // Let T be the squared error of one image and V its estimate from the nodes. Both are sums over
-// half rows of tiles, which are independent (sampling/sampler.h, integrate/path_reuse.h). Let the
-// errors within a half row be normal and, in the worst case, the same for all its pixels, with
+// groups of pixels, which are independent (sampling/sampler.h, render/pixel_groups.h). Let the
+// errors within a group be normal and, in the worst case, the same for all its pixels, with
 // variance s. Its contributions to T and V are independent; the first has variance 2 s^2, the
 // second r s^2, where r = 2 for two halves and about 1 with further nodes. So the variance of T - V
 // is (2 + r) s^2, while the expected square of its contribution to V is (1 + r) s^2: the ratio is
-// between 4/3 and 3/2. If the pixels of a half row are independent, the margin is too wide, by at
-// most sqrt(10 / 3): little in an image of many pixels, and if one of eight pixels is bright it
-// dominates its half row's square either way. Rare bright samples occur in both T and V, which
-// makes the difference smaller.
+// between 4/3 and 3/2. If the pixels of a group are independent, the margin is too wide, by at most
+// sqrt(10 / 3): little in an image of many pixels, and if one of eight pixels is bright it
+// dominates its group's square either way. Rare bright samples occur in both T and V, which makes
+// the difference smaller.
 constexpr double kOfSquares = 1.5;
 // A normal T - V is below 1.64 standard deviations 19 times of 20. The rest covers repeated
 // stopping decisions and small numbers of pixels, whose sums are skewed and whose squares are too
@@ -83,46 +82,30 @@ double known_error(const std::optional<ErrorEstimate>& estimate, std::uint64_t s
   return known ? estimate->at_most() : -1;
 }
 
-void ErrorSums::add_row(absl::Span<const NodeSums> nodes, std::size_t step) {
+void ErrorSums::add(absl::Span<const NodeSums> nodes) {
   BANDSAW_CHECK(nodes.size() >= 2 && nodes[0].samples == nodes[1].samples,
                 "the error is computed from halves");
-  const std::size_t pixels = nodes[0].sums.size() / 3;
-  const std::size_t together =
-      step * kTileSide / 2;  // This many adjacent pixels are `step` half rows.
-  for (std::size_t first = 0; first < pixels; first += together) {
-    for (std::size_t half = first; half < std::min(first + step, pixels); ++half) {
-      double of_half_row = 0;
-      for (std::size_t x = half; x < std::min(first + together, pixels); x += step) {
-        double variances[3];
-        double means[3];
-        for (std::size_t c = 0; c < 3; ++c) {
-          const Estimated channel = of_channel(nodes, 3 * x + c);
-          variances[c] = channel.variance;
-          means[c] = channel.mean;
-        }
-        of_half_row += add_pixel(variances, means);
-      }
-      squares_ += of_half_row;
-      squared_variances_ += of_half_row * of_half_row;
-    }
-  }
-}
-
-double ErrorSums::add_pixel(const double (&variances)[3], const double (&means)[3]) {
   double of_pixel = 0;
   double value = 0;
-  for (int c = 0; c < 3; ++c) {
-    relative_squares_ += variances[c] / (means[c] * means[c] + kSmallest);
-    of_pixel += variances[c];
-    value += means[c];
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Estimated channel = of_channel(nodes, c);
+    relative_squares_ += channel.variance / (channel.mean * channel.mean + kSmallest);
+    of_pixel += channel.variance;
+    value += channel.mean;
   }
   sum_ += value;
+  of_group_ += of_pixel;
   // The sum of one sample of 1e30 exceeds the range of float, and infinity would make the shares
   // NaN.
   constexpr double kMax = std::numeric_limits<float>::max();
   variances_.push_back(static_cast<float>(std::clamp(of_pixel / 3, 0.0, kMax)));
   means_.push_back(static_cast<float>(value / 3));
-  return of_pixel;
+}
+
+void ErrorSums::end_group() {
+  squares_ += of_group_;
+  squared_variances_ += of_group_ * of_group_;
+  of_group_ = 0;
 }
 
 ErrorEstimate ErrorSums::estimate() const {

@@ -56,33 +56,31 @@ inline constexpr std::uint64_t kBlackSamples = 1024;
 /// if the error is unknown.
 double known_error(const std::optional<ErrorEstimate>& estimate, std::uint64_t samples);
 
-/// Sums of one row of pixels over one node of its samples.
+/// Sums of a pixel over one node of its samples.
 struct NodeSums {
   std::uint64_t samples = 0;
-  absl::Span<const double> sums;  ///< width x 3
+  absl::Span<const double> sums;  ///< r, g, b
 };
 
 /// Accumulates the variances of pixels.
 class ErrorSums {
  public:
-  /// Adds a row whose first two nodes have equally many samples; all rows MUST have equally many
-  /// pixels. With the means a and b of the first two nodes, v = (a - b)^2 / 4 is the variance of
-  /// their common mean. The variance of a further node of mean e is estimated by (e - (a + b) /
-  /// 2)^2 - v, which is unbiased. The errors of pixels in one half row of a tile
-  /// (render/tile_samples.h) may be correlated by path reuse, those of other pixels are not; the
-  /// margin accounts for it. `step` is 2 for rows of an image, in which the pixels of two half rows
-  /// alternate, and 1 for a half row.
-  void add_row(absl::Span<const NodeSums> nodes, std::size_t step);
+  /// Adds a pixel whose first two nodes have equally many samples. With the means a and b of the
+  /// first two nodes, v = (a - b)^2 / 4 is the variance of their common mean. The variance of a
+  /// further node of mean e is estimated by (e - (a + b) / 2)^2 - v, which is unbiased.
+  void add(absl::Span<const NodeSums> nodes);
+  /// Ends a group of pixels: those added since the last call. The errors of pixels in one group
+  /// (render/pixel_groups.h) may be correlated by path reuse, those of other pixels are not; the
+  /// margin accounts for it.
+  void end_group();
 
-  /// Returns the estimate. At least one row MUST have been added.
+  /// Returns the estimate. At least one pixel MUST have been added, and its group ended.
   ErrorEstimate estimate() const;
 
  private:
-  /// Adds a pixel; returns its variance, summed over its channels.
-  double add_pixel(const double (&variances)[3], const double (&means)[3]);
-
   double squares_ = 0;            ///< sum of the pixels' variances
-  double squared_variances_ = 0;  ///< sum of the squared variances of half rows
+  double of_group_ = 0;           ///< sum of the variances of the pixels of the present group
+  double squared_variances_ = 0;  ///< sum of the squared variances of groups
   double relative_squares_ = 0;
   double sum_ = 0;
   std::vector<float> variances_;  ///< per pixel, mean over the channels, >= 0

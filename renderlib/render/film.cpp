@@ -11,6 +11,7 @@
 #include "renderlib/base/check.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/render/band.h"
+#include "renderlib/render/pixel_groups.h"
 #include "renderlib/render/row_store.h"
 #include "renderlib/render/strip_nodes.h"
 #include "renderlib/render/tile_samples.h"
@@ -61,11 +62,18 @@ std::uint64_t CoveredSamples::from_start() const {
   return ranges_.empty() || ranges_.front().first > 0 ? 0 : ranges_.front().last;
 }
 
-/// Pixels of one row that always have the same samples: first, first + step, …
+/// Pixels of one row that always have the same samples: the whole row, or a part of a half tile.
 struct Strip {
-  std::uint32_t first = 0;
-  std::uint32_t step = 1;
-  std::uint32_t count = 0;  ///< may be 0
+  std::uint32_t count = 0;                     ///< may be 0
+  std::optional<HalfRow> part = std::nullopt;  ///< of a half tile
+
+  /// Returns the x of pixel k of the strip.
+  std::uint32_t x(std::uint32_t k) const { return part ? (*part)[k] : k; }
+  /// Returns the k of the pixel at x, which is in the strip.
+  std::size_t at(std::uint32_t x) const {
+    return part ? static_cast<std::size_t>(std::find(part->begin(), part->end(), x) - part->begin())
+                : x;
+  }
 };
 
 /// Strips are whole rows, or each row's part of each half tile, in order.
@@ -78,14 +86,14 @@ class FilmStrips {
   std::uint32_t longest() const { return half_tiles_ ? kTileSide / 2 : grid_.width; }
   Strip strip(std::uint32_t y, std::uint32_t index) const {
     if (!half_tiles_) {
-      return {0, 1, grid_.width};
+      return {grid_.width};
     }
     const HalfRow row = half_row(grid_, index / 2, index % 2, y);
-    return {row.first, 2, row.count()};
+    return {row.count(), row};
   }
-  /// Returns the half tile that contains strip `index` of row y, in the order of TileGrid.
-  std::size_t half_tile(std::uint32_t y, std::uint32_t index) const {
-    return std::size_t{y / kTileSide} * per_row() + index;
+  /// Returns the index of the strip that contains a pixel.
+  std::uint32_t index_of(const PixelPlace& place) const {
+    return half_tiles_ ? 2 * (place.x / kTileSide) + half_of(place.x, place.y) : 0;
   }
   bool half_tiles() const { return half_tiles_; }
   const TileGrid& grid() const { return grid_; }
@@ -126,8 +134,14 @@ struct Film::Rows {
   /// Inserts the sums of a row; `row` holds the sums of its pixels.
   void insert(std::uint32_t y, const SampleRange& samples, absl::Span<const double> row,
               const TileSamples& tiles);
-  /// Collects in `out` the contiguous nodes from the first sample on, for the error estimate.
-  void node_sums(const Strip& strip, const StripNodes& from, std::vector<NodeSums>& out) const;
+  /// Returns true if all pixels have two halves of equal size.
+  bool all_have_halves() const;
+  /// Calls f(half tile, group number, pixels) for each group of pixels (render/pixel_groups.h). The
+  /// function adds the pixels of the group to the `ErrorSums` that f returns.
+  template <class F>
+  void add_errors(F f) const;
+  /// Collects in `out` a pixel's contiguous nodes from the first sample on.
+  void node_sums(const PixelPlace& place, std::vector<NodeSums>& out) const;
   /// Adds the contiguous nodes from left to right: 3 numbers for each pixel of the strip.
   void add_up(const StripNodes& from, std::vector<double>& total) const;
 };
@@ -162,24 +176,50 @@ void Film::Rows::insert(std::uint32_t y, const SampleRange& samples, absl::Span<
     if (strip.count == 0) {
       continue;
     }
-    Node node{.range = tiles.of_pixel(strip.first, y, samples)};
+    Node node{.range = tiles.of_pixel(strip.x(0), y, samples)};
     if (node.range.samples() > 0) {
       node.slot = store.take();
       const absl::Span<double> to = store.row(node.slot);
-      for (std::size_t k = 0; k < strip.count; ++k) {
-        std::copy_n(&row[(strip.first + k * strip.step) * 3], 3, &to[3 * k]);
+      for (std::uint32_t k = 0; k < strip.count; ++k) {
+        std::copy_n(&row[std::size_t{strip.x(k)} * 3], 3, &to[std::size_t{3} * k]);
       }
       insert_node(node, of(y, i), store);
     }
   }
 }
 
-void Film::Rows::node_sums(const Strip& strip, const StripNodes& from,
-                           std::vector<NodeSums>& out) const {
+bool Film::Rows::all_have_halves() const {
+  bool all = true;
+  each([&](std::uint32_t, std::uint32_t, const Strip&, const StripNodes& strip) {
+    all = all && has_halves(strip);
+  });
+  return all;
+}
+
+template <class F>
+void Film::Rows::add_errors(F f) const {
+  std::vector<NodeSums> of_pixel;
+  for (std::size_t half_tile = 0; half_tile < strips.grid().half_tiles(); ++half_tile) {
+    const PixelGroups groups(strips.grid(), half_tile);
+    for (std::uint32_t i = 0; i < groups.count(); ++i) {
+      ErrorSums& sums = f(half_tile, i, groups.group(i).size());
+      for (const PixelPlace& place : groups.group(i)) {
+        node_sums(place, of_pixel);
+        sums.add(of_pixel);
+      }
+      sums.end_group();
+    }
+  }
+}
+
+void Film::Rows::node_sums(const PixelPlace& place, std::vector<NodeSums>& out) const {
+  const std::uint32_t index = strips.index_of(place);
+  const Strip strip = strips.strip(place.y, index);
+  const StripNodes& from = of(place.y, index);
   out.clear();
   for (std::size_t i = 0; i < prefix(from); ++i) {
     out.push_back(
-        {from[i].range.samples(), store.row(from[i].slot).first(std::size_t{strip.count} * 3)});
+        {from[i].range.samples(), store.row(from[i].slot).subspan(3 * strip.at(place.x), 3)});
   }
 }
 
@@ -249,50 +289,39 @@ Film::Snapshot Film::snapshot(std::uint32_t row_step) const {
     rows_->add_up(nodes, total);
     Rgb* const row = &snapshot.image.pixels[std::size_t{y / row_step} * width()];
     for (std::uint32_t k = 0; k < strip.count; ++k) {
-      row[strip.first + k * strip.step] = {static_cast<float>(total[3 * k] / n),
-                                           static_cast<float>(total[3 * k + 1] / n),
-                                           static_cast<float>(total[3 * k + 2] / n)};
+      row[strip.x(k)] = {static_cast<float>(total[3 * k] / n),
+                         static_cast<float>(total[3 * k + 1] / n),
+                         static_cast<float>(total[3 * k + 2] / n)};
     }
   });
   return snapshot;
 }
 
 std::optional<ErrorEstimate> Film::error() const {
+  if (!rows_->all_have_halves()) {
+    return std::nullopt;
+  }
   ErrorSums sums;
-  std::vector<NodeSums> of_strip;
-  bool known = true;
-  rows_->each([&](std::uint32_t, std::uint32_t, const Strip& strip, const StripNodes& nodes) {
-    known = known && has_halves(nodes);
-    if (known) {
-      rows_->node_sums(strip, nodes, of_strip);
-      sums.add_row(of_strip, rows_->strips.half_tiles() ? 1 : 2);
-    }
-  });
-  return known ? std::optional(sums.estimate()) : std::nullopt;
+  rows_->add_errors([&](std::size_t, std::uint32_t, std::size_t) -> ErrorSums& { return sums; });
+  return sums.estimate();
 }
 
 std::vector<HalfTileErrors> Film::tile_errors() const {
+  if (!rows_->strips.half_tiles() || !rows_->all_have_halves()) {
+    return {};
+  }
   using Sums = std::array<ErrorSums, 2>;
   std::vector<Sums> sums(rows_->strips.grid().half_tiles());
   std::vector<HalfTileErrors> errors(sums.size());
-  std::vector<NodeSums> of_strip;
-  bool known = rows_->strips.half_tiles();
-  rows_->each([&](std::uint32_t y, std::uint32_t i, const Strip& strip, const StripNodes& nodes) {
-    known = known && has_halves(nodes);
-    if (known) {
-      const std::size_t tile = rows_->strips.half_tile(y, i);
-      rows_->node_sums(strip, nodes, of_strip);
-      sums[tile][y % 2].add_row(of_strip, 1);
-      errors[tile][y % 2].pixels += strip.count;
-    }
-  });
-  if (!known) {
-    return {};
-  }
+  rows_->add_errors(
+      [&](std::size_t half_tile, std::uint32_t group, std::size_t pixels) -> ErrorSums& {
+        errors[half_tile][group % 2].pixels += static_cast<std::uint32_t>(pixels);
+        return sums[half_tile][group % 2];
+      });
   for (std::size_t i = 0; i < sums.size(); ++i) {
-    for (const std::size_t rows : {0, 1}) {
-      if (TileError& error = errors[i][rows]; error.pixels > 0) {
-        const ErrorEstimate estimate = sums[i][rows].estimate();
+    for (const std::size_t part : {0, 1}) {
+      if (TileError& error = errors[i][part]; error.pixels > 0) {
+        const ErrorEstimate estimate = sums[i][part].estimate();
         error.variance = estimate.rmse * estimate.rmse;
         error.relative = estimate.relative_mse;
       }
@@ -307,7 +336,7 @@ Image Film::counts() const {
   rows_->each([&](std::uint32_t y, std::uint32_t, const Strip& strip, const StripNodes& nodes) {
     const Rgb count = gray(static_cast<float>(samples(nodes)));
     for (std::uint32_t k = 0; k < strip.count; ++k) {
-      image.pixels[std::size_t{y} * width() + strip.first + k * strip.step] = count;
+      image.pixels[std::size_t{y} * width() + strip.x(k)] = count;
     }
   });
   return image;

@@ -1,7 +1,7 @@
 #pragma once
 
 // Computes the sums of a band's pixels as defined in band.h: pixel by pixel or, if the scene shares
-// paths, half a row of a tile at a time.
+// paths, a group of pixels (pixel_groups.h) at a time.
 
 #include <array>
 #include <atomic>
@@ -12,6 +12,7 @@
 #include "renderlib/camera/camera.h"
 #include "renderlib/integrate/path_reuse.h"
 #include "renderlib/render/band.h"
+#include "renderlib/render/pixel_groups.h"
 #include "renderlib/render/settings.h"
 #include "renderlib/render/tile_samples.h"
 #include "renderlib/scene/scene.h"
@@ -27,15 +28,19 @@ class PixelSums {
 
   bool stopped() const { return stop_.load(std::memory_order_relaxed); }
 
-  /// Returns the alignment of runs: a run begins at a multiple of it and ends at one or at the end
-  /// of the row.
-  std::uint32_t run_step() const { return reuses_paths_ ? kTileSide : 1; }
+  /// Returns true if add_groups() computes the sums, otherwise add_run() does.
+  bool in_groups() const { return reuses_paths_; }
 
-  /// Writes three sums for each pixel of [first, last) in row y that takes samples; `row` holds the
-  /// sums of the whole row. Checks `stop` at least once per block; once it is set, the sums are
+  /// Writes three sums for each pixel of [first, last) in row y that takes samples; `sums` holds
+  /// the sums of the band. Checks `stop` at least once per block; once it is set, the sums are
   /// unspecified.
   void add_run(std::uint32_t y, std::uint32_t first, std::uint32_t last, const TileSamples& tiles,
-               absl::Span<double> row, Counters& counters) const;
+               absl::Span<double> sums, Counters& counters) const;
+
+  /// The same for the groups [first, last) of a half tile. A group of which only some pixels lie in
+  /// the band is traced as a whole; the other pixels are neither written nor counted.
+  void add_groups(const PixelGroups& groups, std::uint32_t first, std::uint32_t last,
+                  const TileSamples& tiles, absl::Span<double> sums, Counters& counters) const;
 
  private:
   struct Sum {
@@ -46,25 +51,28 @@ class PixelSums {
     friend Sum operator*(double s, const Sum& p) { return {s * p.r, s * p.g, s * p.b}; }
   };
   using Sums = std::array<Sum, kMaxReusePixels>;
-  /// Scratch memory of add_group(), allocated once per run.
+  /// Scratch memory of add_group(), allocated once per unit of work.
   struct Scratch {
     std::vector<ReusePixel> pixels;
     std::vector<Sums> stack;
   };
 
-  void add_group(std::uint32_t y, const HalfRow& group, const SampleRange& samples,
-                 absl::Span<double> row, Scratch& scratch, Counters& counters) const;
+  bool in_band(const PixelPlace& place) const {
+    return place.y >= band_.rows.first && place.y < band_.rows.last;
+  }
+  void add_group(absl::Span<const PixelPlace> places, const SampleRange& samples,
+                 absl::Span<double> sums, Scratch& scratch, Counters& counters) const;
   /// Returns the sums of one block, which may be truncated.
-  Sums leaf(std::uint32_t y, const HalfRow& group, const SampleRange& samples,
+  Sums leaf(absl::Span<const PixelPlace> places, const SampleRange& samples,
             absl::Span<ReusePixel> pixels, Counters& counters) const;
-  void sample(std::uint32_t y, const HalfRow& group, std::uint64_t sample,
-              absl::Span<ReusePixel> pixels, PathCounts& counts) const;
-  CameraRay camera_ray(const PixelSampler& sampler, std::uint32_t x, std::uint32_t y,
+  void sample(absl::Span<const PixelPlace> places, std::uint64_t sample,
+              absl::Span<ReusePixel> pixels) const;
+  CameraRay camera_ray(const PixelSampler& sampler, const PixelPlace& place,
                        std::uint64_t sample) const;
 
   const Scene& scene_;
   RenderSettings settings_;
-  SampleRange samples_;
+  Band band_;
   const std::atomic<bool>& stop_;
   PathOptions options_;
   RayGenerator camera_;

@@ -13,20 +13,65 @@ namespace {
 /// together.
 constexpr std::uint64_t kSamplesPerUnit = 1024;
 
-/// Partition of a band's pixels among threads: runs of neighbours in a row, whose rays use the same
-/// cached data.
-struct Units {
-  Units(const Band& band, std::uint32_t width, std::uint32_t step)
-      : run(static_cast<std::uint32_t>(
-            std::clamp<std::uint64_t>(kSamplesPerUnit / band.samples.samples() / step, 1,
-                                      (width + step - 1) / step) *
-            step)),
-        per_row((width + run - 1) / run),
-        count(std::int64_t{per_row} * band.rows.count()) {}
+/// Partition of a band's pixels among threads. A strip is a row, and a unit a run of neighbours in
+/// it, whose rays use the same cached data. If pixels share paths, a strip is the part of a row of
+/// tiles that lies in the band, and a unit some groups of a half tile.
+class Units {
+ public:
+  Units(const PixelSums& sums, const Band& band, const TileGrid& grid)
+      : sums_(sums),
+        rows_(band.rows),
+        grid_(grid),
+        strip_rows_(sums.in_groups() ? kTileSide : 1),
+        first_strip_(rows_.first / strip_rows_) {
+    const std::uint64_t pixels =
+        std::max<std::uint64_t>(1, kSamplesPerUnit / band.samples.samples());
+    if (sums.in_groups()) {
+      size_ = static_cast<std::uint32_t>(
+          std::clamp<std::uint64_t>(pixels / kMaxReusePixels, 1, kGroups));
+      per_half_tile_ = (kGroups + size_ - 1) / size_;
+      per_strip_ = 2 * grid.columns() * per_half_tile_;
+    } else {
+      size_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(pixels, grid.width));
+      per_strip_ = (grid.width + size_ - 1) / size_;
+    }
+  }
 
-  std::uint32_t run;      ///< pixels
-  std::uint32_t per_row;  ///< runs
-  std::int64_t count;
+  std::uint32_t strips() const { return (rows_.last - 1) / strip_rows_ - first_strip_ + 1; }
+  std::uint32_t per_strip() const { return per_strip_; }
+  std::int64_t count() const { return std::int64_t{strips()} * per_strip_; }
+  /// Returns the number of the band's rows in a strip.
+  std::uint32_t rows(std::uint32_t strip) const {
+    const std::uint32_t first = (first_strip_ + strip) * strip_rows_;
+    return std::min(first + strip_rows_, rows_.last) - std::max(first, rows_.first);
+  }
+
+  /// Renders unit `number` of a strip into the sums of the band.
+  void render(std::uint32_t strip, std::uint32_t number, const TileSamples& tiles,
+              absl::Span<double> sums, Counters& counters) const {
+    if (!sums_.in_groups()) {
+      const std::uint32_t first = number * size_;
+      sums_.add_run(first_strip_ + strip, first, std::min(first + size_, grid_.width), tiles, sums,
+                    counters);
+      return;
+    }
+    const std::size_t half_tile =
+        std::size_t{first_strip_ + strip} * 2 * grid_.columns() + number / per_half_tile_;
+    const std::uint32_t first = number % per_half_tile_ * size_;
+    sums_.add_groups(PixelGroups(grid_, half_tile), first, first + size_, tiles, sums, counters);
+  }
+
+ private:
+  static constexpr std::uint32_t kGroups = kTileSide * kTileSide / 2 / kMaxReusePixels;
+
+  const PixelSums& sums_;
+  RowRange rows_;
+  TileGrid grid_;
+  std::uint32_t strip_rows_;   ///< rows of a whole strip
+  std::uint32_t first_strip_;  ///< strips are counted from the top of the image
+  std::uint32_t size_ = 1;     ///< pixels, or groups, of a unit
+  std::uint32_t per_half_tile_ = 1;
+  std::uint32_t per_strip_ = 1;
 };
 
 }  // namespace
@@ -38,30 +83,29 @@ absl::StatusOr<BandPixels> render_band_with_kernel(const Scene& scene,
                                                    const TileSamples& tiles) {
   RETURN_IF_ERROR(validate(band, settings));
   const PixelSums pixel_sums(scene, settings, band, stop);
-  const Units units(band, settings.width, pixel_sums.run_step());
+  const Units units(pixel_sums, band, {settings.width, settings.height});
   BandPixels pixels{
       .band = band,
       .width = settings.width,
       .sums = std::vector<double>(std::size_t{band.rows.count()} * settings.width * 3),
       .counters = {.dropped_primitives = scene.dropped_primitives()}};
-  std::vector<Counters> counters(static_cast<std::size_t>(units.count));
-  std::vector<std::atomic<std::uint32_t>> runs_done(band.rows.count());
+  std::vector<Counters> counters(static_cast<std::size_t>(units.count()));
+  std::vector<std::atomic<std::uint32_t>> units_done(units.strips());
   std::atomic<std::uint32_t> rows_done = 0;
 
-  pool.parallel_for(units.count, [&](std::int64_t unit) {
-    const auto row = static_cast<std::uint32_t>(unit / units.per_row);
-    const auto first = static_cast<std::uint32_t>(unit % units.per_row) * units.run;
-    const std::uint32_t last = std::min(first + units.run, settings.width);
-    const std::size_t row_size = std::size_t{settings.width} * 3;
+  pool.parallel_for(units.count(), [&](std::int64_t unit) {
+    const auto strip = static_cast<std::uint32_t>(unit / units.per_strip());
     Counters of_unit;
-    pixel_sums.add_run(band.rows.first + row, first, last, tiles,
-                       absl::MakeSpan(pixels.sums).subspan(row * row_size, row_size), of_unit);
+    units.render(strip, static_cast<std::uint32_t>(unit % units.per_strip()), tiles,
+                 absl::MakeSpan(pixels.sums), of_unit);
     if (pixel_sums.stopped()) {
       return;
     }
     counters[static_cast<std::size_t>(unit)] = of_unit;
-    if (++runs_done[row] == units.per_row && progress) {
-      progress(++rows_done);
+    if (++units_done[strip] == units.per_strip() && progress) {
+      for (std::uint32_t row = 0; row < units.rows(strip); ++row) {
+        progress(++rows_done);
+      }
     }
   });
 

@@ -29,8 +29,14 @@ SampleRange part_of(const SampleRange& taken, const SampleRange& pass, const Sam
 }  // namespace
 
 HalfRow half_row(const TileGrid& grid, std::uint32_t column, std::uint32_t half, std::uint32_t y) {
+  HalfRow row;
   const std::uint32_t left = column * kTileSide;
-  return {left + ((left + y + half) & 1), std::min(left + kTileSide, grid.width)};
+  for (std::uint32_t x = left; x < std::min(left + kTileSide, grid.width); ++x) {
+    if (half_of(x, y) == half) {
+      row.add(x);
+    }
+  }
+  return row;
 }
 
 TileSamples::TileSamples(std::uint32_t width, const RowRange& rows)
@@ -72,7 +78,7 @@ std::uint64_t TileSamples::count(std::uint32_t width, const Band& band) const {
     for (std::uint32_t column = 0; column < columns_; ++column) {
       for (const std::uint32_t half : {0, 1}) {
         if (const HalfRow pixels = half_row(grid, column, half, y); pixels.count() > 0) {
-          sum += pixels.count() * of_pixel(pixels.first, y, band.samples).samples();
+          sum += pixels.count() * of_pixel(pixels[0], y, band.samples).samples();
         }
       }
     }

@@ -3,24 +3,26 @@
 // Tiles, and the samples that they take in a pass.
 //
 // A tile is a square of 16 x 16 pixels of the image, counted from its top left; tiles at the right
-// and lower edge may be smaller. Its pixels form two halves like the squares of a checkerboard:
-// those with x + y even, and the others. A half tile is the unit of adaptive sampling
-// (render/adaptive_plan.h): the samples of one half are decided from the errors of the other.
+// and lower edge may be smaller. Its pixels form 32 groups of eight (render/tile_pattern.h), and
+// the even and the odd groups two halves; each has eight pixels in every row of a whole tile. A
+// half tile is the unit of adaptive sampling (render/adaptive_plan.h): the samples of one half are
+// decided from the errors of the other.
 //
 // A pass determines when samples are rendered; the plan decides which samples of its own sequence a
 // half tile takes in it: a node (render/band.h) that follows those it has, or none. So a half tile
 // always has the first samples of its sequence.
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "absl/types/span.h"
 #include "renderlib/render/band.h"
+#include "renderlib/render/tile_pattern.h"
 
 namespace bandsaw {
-
-inline constexpr std::uint32_t kTileSide = 16;  ///< pixels
 
 /// The half tiles of an image, numbered row by row, the even half of each tile first.
 struct TileGrid {
@@ -33,11 +35,21 @@ struct TileGrid {
   friend bool operator==(const TileGrid&, const TileGrid&) = default;
 };
 
-/// The pixels of one row of a half tile: first, first + 2, … below last. May be empty at the edge.
-struct HalfRow {
-  std::uint32_t first = 0;
-  std::uint32_t last = 0;
-  std::uint32_t count() const { return first < last ? (last - first + 1) / 2 : 0; }
+/// Returns the half of its tile, 0 or 1, to which a pixel belongs.
+inline std::uint32_t half_of(std::uint32_t x, std::uint32_t y) { return group_in_tile(x, y) & 1; }
+
+/// The pixels of one row of a half tile, from left to right. May be empty at the edge.
+class HalfRow {
+ public:
+  void add(std::uint32_t x) { xs_[count_++] = x; }
+  std::uint32_t count() const { return count_; }
+  std::uint32_t operator[](std::size_t i) const { return xs_[i]; }
+  const std::uint32_t* begin() const { return xs_.data(); }
+  const std::uint32_t* end() const { return xs_.data() + count_; }
+
+ private:
+  std::array<std::uint32_t, kTileSide / 2> xs_ = {};
+  std::uint32_t count_ = 0;
 };
 /// Returns the part of row y in a half tile; `half` is 0 or 1.
 HalfRow half_row(const TileGrid& grid, std::uint32_t column, std::uint32_t half, std::uint32_t y);
@@ -93,7 +105,7 @@ class TileSamples {
   std::size_t index_of(std::uint32_t x, std::uint32_t y) const {
     return std::size_t{2} *
                (std::size_t{y / kTileSide - first_tile_row_} * columns_ + x / kTileSide) +
-           ((x + y) & 1);
+           half_of(x, y);
   }
 
   std::uint32_t columns_ = 0;

@@ -36,7 +36,7 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
      {"renderlib/accel", "renderlib/light", "renderlib/camera", "renderlib/medium"}},
     {"renderlib/integrate", {"renderlib/scene"}},
     {"renderlib/render", {"renderlib/integrate"}},
-    {"renderlib/compare", {"renderlib/image"}},
+    {"renderlib/compare", {"renderlib/render"}},
     {"renderlib/package", {"renderlib/render", "proto/wire"}},
     {"renderlib/import/files", {"renderlib/base"}},
     {"renderlib/import/image", {"renderlib/package"}},

@@ -177,8 +177,12 @@ TEST(Film, A1_LongSumsKeepTheirDigits) {
 ErrorEstimate estimate_of(const std::vector<double>& a, const std::vector<double>& b,
                           std::uint64_t samples) {
   ErrorSums sums;
-  const NodeSums nodes[] = {{samples, a}, {samples, b}};
-  sums.add_row(nodes, 2);
+  for (std::size_t i = 0; i < a.size(); i += 3) {
+    const NodeSums nodes[] = {{samples, absl::MakeConstSpan(a).subspan(i, 3)},
+                              {samples, absl::MakeConstSpan(b).subspan(i, 3)}};
+    sums.add(nodes);
+  }
+  sums.end_group();
   return sums.estimate();
 }
 

@@ -168,7 +168,6 @@ TEST(Lens, LightsAreSampledThroughTheLensWithPathReuse) {
       pixels.push_back({.sampler = PixelSampler(seed, x, 3), .camera_ray = Ray{}});
     }
     std::array<double, kMaxReusePixels> sums{};
-    PathCounts counts;
     for (std::uint64_t sample = 0; sample < 512; ++sample) {
       for (std::size_t i = 0; i < pixels.size(); ++i) {
         const Sample4 at = pixels[i].sampler.group(sample, kGroupCamera);
@@ -176,7 +175,7 @@ TEST(Lens, LightsAreSampledThroughTheLensWithPathReuse) {
         pixels[i].camera_ray = rays.ray(place, kRow, at[2], at[3]);
         pixels[i].camera_ray.lens = rays.lens_view(place, kRow);
       }
-      radiance_with_reuse(*scene, absl::MakeSpan(pixels), sample, {.max_depth = 3}, counts);
+      radiance_with_reuse(*scene, absl::MakeSpan(pixels), sample, {.max_depth = 3});
       for (std::size_t i = 0; i < pixels.size(); ++i) {
         sums[i] += pixels[i].radiance.g;
       }

@@ -23,9 +23,8 @@ inline std::array<Moments, kMaxReusePixels> radiance_with_reuse_along(
       pixels.push_back({.sampler = PixelSampler(seed, x, 7), .camera_ray = ray});
     }
     std::array<double, kMaxReusePixels> sums{};
-    PathCounts counts;
     for (std::uint64_t sample = 0; sample < samples; ++sample) {
-      radiance_with_reuse(scene, absl::MakeSpan(pixels), sample, options, counts);
+      radiance_with_reuse(scene, absl::MakeSpan(pixels), sample, options);
       for (std::size_t i = 0; i < pixels.size(); ++i) {
         sums[i] += pixels[i].radiance.g;
       }

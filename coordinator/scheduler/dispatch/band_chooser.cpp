@@ -7,6 +7,7 @@
 #include "coordinator/scheduler/dispatch/work_rate.h"
 #include "coordinator/scheduler/model/band_text.h"
 #include "proto/wire/limits.h"
+#include "renderlib/render/tile_samples.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -16,6 +17,22 @@ constexpr double kFirst = 0.2;
 constexpr double kMin = 0.125;
 
 constexpr std::uint64_t kBytesPerPixel = 3 * sizeof(double);
+
+/// Returns the row after the row of tiles that contains `row`.
+std::uint32_t end_of_tile_row(std::uint32_t row) { return (row / kTileSide + 1) * kTileSide; }
+
+/// Returns the end of a band of about these rows, at most `last`: where a row of tiles ends, if the
+/// band reaches one or if it becomes at most half as long again.
+std::uint32_t at_edge_of_tiles(const RowRange& rows, std::uint32_t last) {
+  if (rows.last == last) {
+    return last;
+  }
+  const std::uint32_t before = rows.last / kTileSide * kTileSide;
+  const std::uint32_t after = std::min(end_of_tile_row(rows.first), last);
+  return before > rows.first                            ? before
+         : 2 * (after - rows.first) <= 3 * rows.count() ? after
+                                                        : rows.last;
+}
 
 /// Returns the first rows of `free` that are in none of `avoid`.
 std::optional<Band> without(Band free, const std::vector<Band>& avoid) {
@@ -54,9 +71,6 @@ double work_left(const Job& job, const Band& free) {
 /// the rows before the next suspect band, or one piece of a suspect band. The piece stays the same
 /// at each attempt, so that crashes are counted against the same rows.
 Band separate_suspects(const Job& job, const Band& free, Band band) {
-  if (band.samples != free.samples) {
-    return band;  // a part of one row
-  }
   const std::uint32_t first = band.rows.first;
   std::uint32_t next = free.rows.last;  // where the next suspect band begins
   std::optional<std::uint32_t> piece;
@@ -71,7 +85,9 @@ Band separate_suspects(const Job& job, const Band& free, Band band) {
       piece = std::min({piece.value_or(free.rows.last), rows.last, first + one.piece_rows});
     }
   }
-  band.rows.last = std::min(piece.value_or(band.rows.last), next);
+  const std::uint32_t last = std::min(piece.value_or(band.rows.last), next);
+  // A band with a part of the samples is never longer than its size: its rows are costly.
+  band.rows.last = band.samples == free.samples ? last : std::min(band.rows.last, last);
   return band;
 }
 
@@ -85,15 +101,17 @@ std::uint32_t max_rows(std::uint32_t width) {
 Band size_band(const Sizing& sizing) {
   Band band = sizing.free;
   const double full = sizing.work_rate * sizing.target_s;
-  const double first_row =
-      sizing.cost->of({band.rows.first, band.rows.first + 1}, sizing.tile_row_shares) *
-      static_cast<double>(sizing.width);
-  while (static_cast<double>(band.samples.samples()) * first_row > 2 * full &&
+  const RowRange first_tiles{band.rows.first,
+                             std::min(end_of_tile_row(band.rows.first), band.rows.last)};
+  const double of_first_tiles =
+      sizing.cost->of(first_tiles, sizing.tile_row_shares) * static_cast<double>(sizing.width);
+  while (static_cast<double>(band.samples.samples()) * of_first_tiles > 2 * full &&
          band.samples.blocks() > 1) {
     band.samples = split(band.samples).left;
   }
-  if (band.samples != sizing.free.samples) {
-    band.rows.last = band.rows.first + 1;
+  if (band.samples != sizing.free.samples &&
+      static_cast<double>(band.samples.samples()) * of_first_tiles <= 2 * full) {
+    band.rows.last = band.rows.first + std::min(first_tiles.count(), max_rows(sizing.width));
     return band;
   }
   const double guided = sizing.work_left * sizing.farm_share / 2;
@@ -102,7 +120,9 @@ Band size_band(const Sizing& sizing) {
   const std::uint32_t fitting = sizing.cost->fitting(
       band.rows, want / (static_cast<double>(band.samples.samples()) * sizing.width),
       sizing.tile_row_shares);
-  band.rows.last = band.rows.first + std::min(fitting, max_rows(sizing.width));
+  band.rows.last = at_edge_of_tiles(
+      {band.rows.first, band.rows.first + std::min(fitting, max_rows(sizing.width))},
+      std::min(sizing.free.rows.last, band.rows.first + max_rows(sizing.width)));
   return band;
 }
 

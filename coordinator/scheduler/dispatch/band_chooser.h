@@ -27,8 +27,11 @@ struct Sizing {
   double target_s = 1;    ///< > 0
 };
 
-/// Returns a part of `free`: whole rows with all of its samples, or, if one row alone takes more
-/// than two target times, a part of the samples of one row.
+/// Returns a part of `free`. A band that reaches the end of a row of tiles (render/tile_samples.h),
+/// or almost does, ends at one: scenes that share paths between pixels trace a tile that is cut in
+/// both parts (render/pixel_groups.h). For the same reason, if the rows up to the first such end
+/// take more than two target times, the band has only a part of their samples; of a single block
+/// that is too much work it has a part of the rows.
 Band size_band(const Sizing& sizing);
 
 /// Returns the maximum number of rows of a band that fit into a message.

@@ -7,6 +7,7 @@
 
 #include "coordinator/cli/render/local_plan.h"
 #include "renderlib/render/film.h"
+#include "renderlib/render/pixel_groups.h"
 #include "tests/support/random.h"
 
 namespace bandsaw::coordinator {
@@ -26,11 +27,11 @@ double normal(Random& random) {
 }
 
 /// Correlation of the pixels' errors: kOwn: independent; kFew: independent, and some 40 pixels have
-/// most of the noise (rare bright paths); kShared: equal within each half row of a tile, whose
-/// pixels may share their paths.
+/// most of the noise (rare bright paths); kShared: equal within each group of pixels that may share
+/// their paths.
 enum class Errors { kOwn, kFew, kShared };
 
-/// An image that is 1 everywhere, with the noise in some 70 of its pixels or of its half rows.
+/// An image that is 1 everywhere, with the noise in some 70 of its pixels or of its groups.
 class NoisyImage {
  public:
   NoisyImage(Errors errors, Random& random) : errors_(errors), random_(random) {
@@ -67,16 +68,29 @@ class NoisyImage {
 
   /// Index of the random error of a pixel.
   std::size_t source(std::size_t pixel) const {
-    const std::size_t tile = pixel / kTileSide;  // Rows are whole tiles wide.
-    return errors_ != Errors::kShared ? pixel : 2 * tile + (pixel + pixel / kGrid.width) % 2;
+    return errors_ != Errors::kShared ? pixel : groups_[pixel];
+  }
+  /// Returns the number of each pixel's group, counted over the image.
+  static std::vector<std::size_t> groups() {
+    std::vector<std::size_t> groups(kPixels);
+    for (std::size_t half_tile = 0; half_tile < kGrid.half_tiles(); ++half_tile) {
+      const PixelGroups of_half_tile(kGrid, half_tile);
+      for (std::uint32_t i = 0; i < of_half_tile.count(); ++i) {
+        for (const auto& [x, y] : of_half_tile.group(i)) {
+          groups[std::size_t{y} * kGrid.width + x] = half_tile * of_half_tile.count() + i;
+        }
+      }
+    }
+    return groups;
   }
 
   Errors errors_;
   Random& random_;
+  std::vector<std::size_t> groups_ = groups();
   std::vector<double> deviations_;
   double variance_ = 0;
 };
-static_assert(kGrid.width % kTileSide == 0);
+static_assert(kGrid.width % kTileSide == 0 && kGrid.height % kTileSide == 0);
 
 struct Stopped {
   double error = 0;  ///< true error

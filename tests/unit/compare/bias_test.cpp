@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "renderlib/render/pixel_groups.h"
 #include "tests/unit/compare/pictures.h"
 
 namespace bandsaw::test {
@@ -62,18 +63,20 @@ TEST(Bias, FalseAlarmsAreAsRareAsStated) {
   EXPECT_LE(alarms, 12);  // 4 expected; more than 12 has a probability below 1e-3
 }
 
-// Every other pixel of sixteen in a row has the same noise, as if these pixels shared paths.
-TEST(Bias, HalfRowsThatShareTheirNoiseAreNotBias) {
+// The pixels of each group have the same noise, as if they shared paths.
+TEST(Bias, GroupsThatShareTheirNoiseAreNotBias) {
+  constexpr TileGrid kGrid{64, 64};
   int alarms = 0;
   for (std::uint64_t seed = 0; seed < 400; ++seed) {
-    const Image image = uniform(64, 64, 0.5F);
+    const Image image = uniform(kGrid.width, kGrid.height, 0.5F);
     Image shared = image;
     Random random(seed);
-    for (std::size_t row = 0; row < 64 * 4; ++row) {
-      for (const std::size_t half : {0, 1}) {
+    for (std::size_t half_tile = 0; half_tile < kGrid.half_tiles(); ++half_tile) {
+      const PixelGroups groups(kGrid, half_tile);
+      for (std::uint32_t i = 0; i < groups.count(); ++i) {
         const auto noise = static_cast<float>(random.uniform() - 0.5);
-        for (std::size_t x = half; x < 16; x += 2) {
-          shared.pixels[16 * row + x] += gray(0.1F * noise);
+        for (const auto& [x, y] : groups.group(i)) {
+          shared.pixels[std::size_t{y} * kGrid.width + x] += gray(0.1F * noise);
         }
       }
     }

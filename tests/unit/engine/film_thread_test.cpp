@@ -247,7 +247,7 @@ TEST_F(FilmThreadTest, AnAdaptiveJobHasTheNumberOfSamplesOfEachPixel) {
   ASSERT_EQ(store_.samples->pixels.size(), 48u);
   for (std::uint32_t y = 0; y < 8; ++y) {
     for (std::uint32_t x = 0; x < 6; ++x) {
-      EXPECT_EQ(store_.samples->pixels[y * 6 + x], gray((x + y) % 2 == 0 ? 32 : 16))
+      EXPECT_EQ(store_.samples->pixels[y * 6 + x], gray(half_of(x, y) == 0 ? 32 : 16))
           << x << " " << y;
     }
   }

@@ -59,9 +59,9 @@ TEST(AdaptivePlan, AHalfIsNotPlannedByItsOwnSamples) {
       errors(grid, [](std::uint32_t column) { return column < 8 ? 1 : 1.0 / 64; });
   const TilePlan before = plan_tiles(grid, tiles, 64);
   for (std::size_t i = 0; i < tiles.size(); i += 2) {
-    for (TileError& rows : tiles[i]) {
-      rows.variance *= random.uniform(0.001, 1000);
-      rows.relative *= random.uniform(0.001, 1000);
+    for (TileError& part : tiles[i]) {
+      part.variance *= random.uniform(0.001, 1000);
+      part.relative *= random.uniform(0.001, 1000);
     }
   }
   const TilePlan after = plan_tiles(grid, tiles, 64);
@@ -74,16 +74,16 @@ TEST(AdaptivePlan, AHalfIsNotPlannedByItsOwnSamples) {
 
 TEST(AdaptivePlan, NoiseOfOneTileIsPlannedIfBothHalvesShowIt) {
   const TileGrid grid{512, 128};
-  const auto plan_of_rows = [&](double even_rows, double odd_rows) {
+  const auto plan_of_groups = [&](double even, double odd) {
     std::vector<HalfTileErrors> tiles = errors(grid, [](auto) { return 1e-3; });
     const std::size_t tile = 2 * (std::size_t{4} * grid.columns() + 7);
     for (const std::size_t half : {0, 1}) {
-      tiles[tile + half] = {TileError{64, even_rows, even_rows}, TileError{64, odd_rows, odd_rows}};
+      tiles[tile + half] = {TileError{64, even, even}, TileError{64, odd, odd}};
     }
     return plan_tiles(grid, tiles, 64);
   };
-  EXPECT_FALSE(plan_of_rows(1, 1).even());
-  EXPECT_TRUE(plan_of_rows(1, 1e-3).even()) << "one bright sample is no reason";
+  EXPECT_FALSE(plan_of_groups(1, 1).even());
+  EXPECT_TRUE(plan_of_groups(1, 1e-3).even()) << "one bright sample is no reason";
 }
 
 TEST(AdaptivePlan, ImagesOfOneTileOrOnePixelHaveAPlan) {

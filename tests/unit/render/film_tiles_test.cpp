@@ -136,9 +136,9 @@ TEST(Film, TheErrorOfDifferentSampleCountsIsTheirStandardError) {
   double many = 0;
   double few = 0;
   for (std::size_t i = 0; i < tiles.size(); ++i) {
-    for (const TileError& rows : tiles[i]) {
-      EXPECT_EQ(rows.pixels, 64u);
-      (i / 2 % 2 == 0 ? many : few) += rows.variance / static_cast<double>(tiles.size());
+    for (const TileError& part : tiles[i]) {
+      EXPECT_EQ(part.pixels, 64u);
+      (i / 2 % 2 == 0 ? many : few) += part.variance / static_cast<double>(tiles.size());
     }
   }
   EXPECT_NEAR(many * 3 * 128, 1, 0.05);

@@ -62,7 +62,7 @@ TEST(RenderBand, SkippedHalfTilesAreZeroAndOthersHaveTheSameBits) {
   for (std::uint32_t y = 2; y < 11; ++y) {
     for (std::uint32_t x = 0; x < 13; ++x) {
       const std::size_t k = ((y - 2) * 13 + x) * 3;
-      ASSERT_EQ(some->sums[k], (x + y) % 2 == 1 ? all.sums[k] : 0);
+      ASSERT_EQ(some->sums[k], half_of(x, y) == 1 ? all.sums[k] : 0);
     }
   }
   EXPECT_LT(some->counters.rays, all.counters.rays * 6 / 10);
@@ -118,7 +118,8 @@ TEST(RenderBand, C5_PathReuseGivesTheSameBitsForAnyBandsAndThreads) {
     for (std::size_t k = 0; k < whole.size(); ++k) {
       const std::size_t x = k / 3 % 21;
       const std::size_t y = k / 3 / 21;
-      const bool takes_part = (x + y) % 2 == (x < 16 ? 1 : 0);
+      const bool takes_part =
+          half_of(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)) == (x < 16 ? 1 : 0);
       ASSERT_EQ(some[k], takes_part ? whole[k] : 0) << x << ", " << y;
     }
   }

@@ -41,7 +41,7 @@ Some some(std::uint32_t width, std::uint32_t height) {
   for (std::uint32_t y = 0; y < height; ++y) {
     for (std::uint32_t x = 0; x < width; ++x) {
       out.of_pixel.push_back(
-          halves[2 * (y / kTileSide * grid.columns() + x / kTileSide) + ((x + y) & 1)]);
+          halves[2 * (y / kTileSide * grid.columns() + x / kTileSide) + half_of(x, y)]);
     }
   }
   return out;

@@ -88,28 +88,60 @@ Sizing sizing() {
 }
 
 TEST(BandSizes, AreTheTargetWhileMuchWorkIsLeft) {
-  EXPECT_EQ(size_band(sizing()), (Band{{0, 16}, {10, 110}}));
+  Sizing s = sizing();
+  s.free.rows.first = 12;
+  EXPECT_EQ(size_band(s), (Band{{0, 16}, {12, 112}}));
+}
+
+TEST(BandSizes, EndWhereARowOfTilesEndsIfTheyReachOne) {
+  Sizing s = sizing();
+  EXPECT_EQ(size_band(s).rows, (RowRange{10, 96}));  // not 110
+  s.work_left = 160'000;
+  EXPECT_EQ(size_band(s).rows, (RowRange{10, 32}));  // not 35
+  s.free.rows.first = 16;
+  s.work_left = 1600;
+  EXPECT_EQ(size_band(s).rows, (RowRange{16, 32}));  // not 28, a little longer
+  s.free.rows = {16, 30};
+  EXPECT_EQ(size_band(s).rows, (RowRange{16, 30}));
+  s.free.rows = {16, 1010};
+  s.work_rate = 80'000;
+  EXPECT_EQ(size_band(s).rows, (RowRange{16, 22}));  // much shorter than a tile
 }
 
 TEST(BandSizes, ShrinkTowardTheEndDownToAMinimum) {
   Sizing s = sizing();
+  s.free.rows.first = 7;
   s.work_left = 160'000;
   EXPECT_EQ(size_band(s).rows.count(), 25u);
+  s.free.rows.first = 4;
   s.work_left = 1600;
   EXPECT_EQ(size_band(s).rows.count(), 12u);
 }
 
 TEST(BandSizes, AreSmallBeforeAnythingIsMeasured) {
   Sizing s = sizing();
+  s.free.rows.first = 12;
   s.measured = false;
   EXPECT_EQ(size_band(s).rows.count(), 20u);
 }
 
-TEST(BandSizes, ARowThatIsTooMuchWorkIsCutByItsSamples) {
+TEST(BandSizes, ARowOfTilesThatIsTooMuchWorkIsCutByItsSamples) {
   Sizing s = sizing();
   s.free.samples = {256, 512};
-  s.work_rate = 1600;  // a block of a row a second
-  EXPECT_EQ(size_band(s), (Band{{256, 288}, {10, 11}}));
+  s.work_rate = 16 * 1600;  // a block of a row of tiles a second
+  s.free.rows.first = 32;
+  EXPECT_EQ(size_band(s), (Band{{256, 288}, {32, 48}}));
+  s.free.rows.first = 40;
+  EXPECT_EQ(size_band(s), (Band{{256, 320}, {40, 48}}));
+}
+
+TEST(BandSizes, ABlockOfARowOfTilesThatIsTooMuchWorkIsCutByItsRows) {
+  Sizing s = sizing();
+  s.free.samples = {256, 512};
+  s.work_rate = 3 * 1600;
+  EXPECT_EQ(size_band(s), (Band{{256, 272}, {10, 16}}));
+  s.work_rate = 2 * 1600;
+  EXPECT_EQ(size_band(s), (Band{{256, 272}, {10, 12}}));
   s.work_rate = 1;
   EXPECT_EQ(size_band(s), (Band{{256, 272}, {10, 11}}));
 }

@@ -1,0 +1,47 @@
+#pragma once
+
+// Groups of pixels that share their paths (integrate/path_reuse.h), in the scenes that do so.
+//
+// They are the groups of the pattern of tiles (render/tile_pattern.h). In a tile that the edge of
+// the image cuts, the pixels of each half form as many groups as they fill, in the order of the
+// pattern. A group is a function of the size of the image and of the place of its half tile in it,
+// so bands of any rows agree about it.
+
+#include <array>
+#include <cstdint>
+
+#include "absl/types/span.h"
+#include "renderlib/integrate/path_reuse.h"
+#include "renderlib/render/tile_samples.h"
+
+namespace bandsaw {
+
+/// A pixel of the image, counted from its top left.
+struct PixelPlace {
+  std::uint32_t x = 0;
+  std::uint32_t y = 0;
+  friend bool operator==(const PixelPlace&, const PixelPlace&) = default;
+};
+
+/// The groups of one half tile.
+class PixelGroups {
+ public:
+  /// Half tile number `half_tile` of the grid.
+  PixelGroups(const TileGrid& grid, std::size_t half_tile);
+
+  /// Returns the number of groups: 16 in a whole half tile; 0 if it has no pixels.
+  std::uint32_t count() const {
+    return static_cast<std::uint32_t>((pixels_ + kMaxReusePixels - 1) / kMaxReusePixels);
+  }
+  /// Returns the pixels of group i. The sizes of a half tile's groups differ by at most one.
+  absl::Span<const PixelPlace> group(std::uint32_t i) const {
+    const std::uint32_t first = i * pixels_ / count();
+    return absl::MakeConstSpan(places_).subspan(first, (i + 1) * pixels_ / count() - first);
+  }
+
+ private:
+  std::array<PixelPlace, kTileSide * kTileSide / 2> places_;
+  std::uint32_t pixels_ = 0;
+};
+
+}  // namespace bandsaw

@@ -1,0 +1,21 @@
+#pragma once
+
+// The pattern by which the pixels of a tile form groups that share their paths
+// (render/pixel_groups.h), and the halves of adaptive sampling (render/tile_samples.h).
+
+#include <cstdint>
+
+namespace bandsaw {
+
+inline constexpr std::uint32_t kTileSide = 16;      ///< pixels
+inline constexpr std::uint32_t kGroupsOfTile = 32;  ///< of eight pixels each
+
+/// Returns the number of the group within its tile, below kGroupsOfTile, to which the pixel of the
+/// image belongs. One pattern is mirrored at random for every tile. It was made by simulated
+/// annealing: the pixels of a group are near each other, nearer from row to row than from column to
+/// column, because floors and ceilings are seen from the side. But of all pairs of pixels at any
+/// distance at most 5.1 % are in one group, so that the errors of neighbours are nearly
+/// uncorrelated. Each row of a tile has eight pixels in even groups and eight in odd ones.
+std::uint32_t group_in_tile(std::uint32_t x, std::uint32_t y);
+
+}  // namespace bandsaw
