@@ -10,7 +10,8 @@ set -euo pipefail
 
 build=(g++ cmake ninja-build pkg-config libgrpc++-dev protobuf-compiler protobuf-compiler-grpc libprotobuf-dev
   libabsl-dev libre2-dev libc-ares-dev zlib1g-dev libzstd-dev libssl-dev libassimp-dev libstb-dev libspdlog-dev libsqlite3-dev
-  libcli11-dev libtinyexr-dev libboost-dev libdraco-dev libmeshoptimizer-dev libwebp-dev nlohmann-json3-dev libopenvdb-dev)
+  libcli11-dev libtinyexr-dev libboost-dev libdraco-dev libmeshoptimizer-dev libwebp-dev nlohmann-json3-dev libopenvdb-dev
+  libpugixml-dev)
 demo=("${build[@]}" assimp-testmodels)
 packages=("${build[@]}" dpkg-dev file fakeroot)
 test=("${demo[@]}" libgtest-dev libgmock-dev git iproute2 curl)

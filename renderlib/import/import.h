@@ -10,6 +10,7 @@
 
 #include "absl/status/statusor.h"
 #include "renderlib/import/draft/imported_scene.h"
+#include "renderlib/import/files/scene_folder.h"
 
 namespace bandsaw {
 
@@ -37,7 +38,12 @@ struct ImportChoices {
   bool strict = false;                                 ///< a warning is an error
   std::optional<FrameChoice> frame = {};  ///< absent: the scene at time 0, models without animation
   std::string animation = {};             ///< name of its models' animation
+  /// Folder around that of a Mitsuba scene, below which files are read; empty: the scene's own.
+  std::string folder = {};
 };
+
+/// Returns the folder below which the import reads. Errors as SceneFolder::around.
+absl::StatusOr<SceneFolder> folder_to_read(const std::string& path, const ImportChoices& choices);
 
 /// Reads a scene file (*.textproto, *.json), a scene of pbrt-v4 (*.pbrt, *.pbrt.gz) or Mitsuba
 /// (*.xml), or a single model, which is framed under a default sky unless it has cameras and

@@ -211,7 +211,8 @@ bool is_foreign(const std::string& path) {
 
 absl::StatusOr<ConvertedScene> convert(const std::string& path, const ImportChoices& choices,
                                        const SceneDraft& draft) {
-  ASSIGN_OR_RETURN(std::string real, draft.folder.resolve(name_of(path), draft.folder.path()));
+  const std::string own_folder = std::filesystem::canonical(path).parent_path().string();
+  ASSIGN_OR_RETURN(std::string real, draft.folder.resolve(name_of(path), own_folder));
   const ForeignScene from{std::move(real), draft.file, draft.folder, choices.parameters};
   return is_pbrt(absl::AsciiStrToLower(path)) ? convert_pbrt(from) : convert_mitsuba(from);
 }
@@ -302,8 +303,21 @@ absl::Status check_whole(const ImportChoices& choices, const SceneDraft& draft) 
 
 }  // namespace
 
+absl::StatusOr<SceneFolder> folder_to_read(const std::string& path, const ImportChoices& choices) {
+  if (choices.folder.empty()) {
+    return SceneFolder::of(path);
+  }
+  if (!is_mitsuba(absl::AsciiStrToLower(path))) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(name_of(path),
+                     ": --folder is for scenes of Mitsuba; others name no files "
+                     "outside of their own folder"));
+  }
+  return SceneFolder::around(path, choices.folder);
+}
+
 absl::StatusOr<ImportedScene> import_scene(const std::string& path, const ImportChoices& choices) {
-  ASSIGN_OR_RETURN(SceneFolder folder, SceneFolder::of(path));
+  ASSIGN_OR_RETURN(SceneFolder folder, folder_to_read(path, choices));
   SceneDraft draft(std::move(folder), name_of(path));
   draft.out.info.name = std::filesystem::path(path).stem().string();
   RETURN_IF_ERROR(read_any(path, choices, draft));
@@ -323,7 +337,7 @@ absl::StatusOr<ImportedScene> import_scene(const std::string& path, const Import
 }
 
 absl::StatusOr<SceneAsText> scene_as_text(const std::string& path, const ImportChoices& choices) {
-  ASSIGN_OR_RETURN(SceneFolder folder, SceneFolder::of(path));
+  ASSIGN_OR_RETURN(SceneFolder folder, folder_to_read(path, choices));
   SceneDraft draft(std::move(folder), name_of(path));
   SceneAsText out;
   scene::Scene scene;

@@ -6,7 +6,8 @@
 //
 // leaves FOLDER/manifest and FOLDER/<digest> for each blob. The choices (import.h, ImportChoices)
 // are environment=FILE, camera=NAME, strict, define:NAME=VALUE (a parameter of a Mitsuba scene),
-// frame=N, fps=F, shutter=SHARE (these two with a frame) and animation=NAME;
+// folder=FOLDER (around that of a Mitsuba scene), frame=N, fps=F, shutter=SHARE (these two with a
+// frame) and animation=NAME;
 //
 //   bandsaw-import text FILE FOLDER SECONDS BYTES [CHOICE ...]
 //
@@ -153,7 +154,8 @@ absl::Status unzip_to(const std::string& path, const std::string& folder) {
 
 constexpr char kUsage[] =
     "usage: bandsaw-import scene|text|image|unzip FILE FOLDER SECONDS BYTES "
-    "[environment=FILE] [camera=NAME] [strict] [define:NAME=VALUE ...] [frame=N [fps=F] "
+    "[environment=FILE] [camera=NAME] [strict] [define:NAME=VALUE ...] [folder=FOLDER] "
+    "[frame=N [fps=F] "
     "[shutter=SHARE]] [animation=NAME]";
 
 // Reads a file that the user named, not another file, so it may be in any folder. Here it is only
@@ -198,6 +200,8 @@ absl::StatusOr<ImportChoices> read_choices(int argc, char** argv) {
       choices.camera = value;
     } else if (key == "animation") {
       choices.animation = value;
+    } else if (key == "folder") {
+      choices.folder = value;
     } else if (absl::ConsumePrefix(&name, "define:")) {
       choices.parameters[std::string(name)] = value;
     } else if (!read_frame_choice(key, value, choices)) {
@@ -217,11 +221,11 @@ absl::Status run(int argc, char** argv) {
     return absl::InvalidArgumentError(kUsage);
   }
   const std::string path = argv[2];
-  ASSIGN_OR_RETURN(const SceneFolder folder, SceneFolder::of(path));
+  ASSIGN_OR_RETURN(const ImportChoices choices, read_choices(argc, argv));
+  ASSIGN_OR_RETURN(const SceneFolder folder, folder_to_read(path, choices));
   limits.read_folder = folder.path();
   limits.write_folder = argv[3];
   limits.file_bytes = wire::kBlobBytes;
-  ASSIGN_OR_RETURN(const ImportChoices choices, read_choices(argc, argv));
   RETURN_IF_ERROR(confine_this_process(limits));
   return what == "scene"   ? import_to(path, argv[3], choices)
          : what == "text"  ? text_to(path, argv[3], choices)

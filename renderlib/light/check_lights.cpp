@@ -1,5 +1,6 @@
 #include "renderlib/light/check_lights.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -50,6 +51,33 @@ absl::Status check_position(const std::string& field, const Vec3& p) {
 }
 
 struct Check {
+  absl::Span<const Texture> textures;
+
+  absl::Status image(const std::string& field, const ProjectedImage& image, const Vec3& axis,
+                     const Rgb& intensity) const {
+    const std::size_t index = index_of(image.texture);
+    if (index >= textures.size()) {
+      return invalid(field + ".texture",
+                     absl::StrCat("must be below ", textures.size(), ", is ", index));
+    }
+    if (!is_orthonormal({image.right, image.up, axis})) {
+      return invalid(field + ".right, .up",
+                     "must be unit vectors at right angles to each other and to the axis");
+    }
+    for (const double half : {image.half_width, image.half_height}) {
+      if (!(half >= kMinHalfImage && half <= kMaxHalfImage)) {
+        return invalid(field + ".half_width, .half_height",
+                       absl::StrCat("must be in [1e-9, 1e9], one is ", half));
+      }
+    }
+    const float most =
+        max_value(textures, image.texture) * std::max({intensity.r, intensity.g, intensity.b});
+    if (!std::isfinite(most)) {
+      return invalid(field + ".texture", "must be finite, times the intensity");
+    }
+    return absl::OkStatus();
+  }
+
   absl::Status operator()(const DirectionalLight& light) const {
     RETURN_IF_ERROR(check_unit("directional.direction", light.direction));
     return check_color("directional.irradiance", light.irradiance);
@@ -67,7 +95,14 @@ struct Check {
                      absl::StrCat("must be in [0, cos_inner], at most 1; is ", light.cos_outer,
                                   ", cos_inner is ", light.cos_inner));
     }
-    return absl::OkStatus();
+    return light.image ? image("spot.image", *light.image, light.direction, light.intensity)
+                       : absl::OkStatus();
+  }
+  absl::Status operator()(const ProjectorLight& light) const {
+    RETURN_IF_ERROR(check_position("projector.position", light.position));
+    RETURN_IF_ERROR(check_unit("projector.direction", light.direction));
+    RETURN_IF_ERROR(check_color("projector.intensity", light.intensity));
+    return image("projector.image", light.image, light.direction, light.intensity);
   }
 };
 
@@ -122,7 +157,7 @@ absl::Status check_lights(const Background& background, absl::Span<const Texture
   }
   std::size_t directional = 0;
   for (std::size_t i = 0; i < lights.size(); ++i) {
-    if (const absl::Status good = std::visit(Check{}, lights[i]); !good.ok()) {
+    if (const absl::Status good = std::visit(Check{textures}, lights[i]); !good.ok()) {
       return invalid(absl::StrCat("light[", i, "]"), std::string(good.message()));
     }
     directional += std::holds_alternative<DirectionalLight>(lights[i]) ? 1 : 0;

@@ -3,13 +3,57 @@
 #include <algorithm>
 #include <cmath>
 
+#include "renderlib/math/elementary.h"
+
 namespace bandsaw {
 namespace {
 
-/// Returns 1 / length^2, at most 1e30; 0 at the light itself, which receives no light from it.
+/// Upper bound of an irradiance relative to the intensity, so that products stay finite.
+constexpr double kMaxShare = 1e30;
+
+/// Returns 1 / length^2, at most kMaxShare; 0 at the light itself, which receives no light from it.
 float over_distance2(const Vec3& to_light) {
   const double distance2 = length_squared(to_light);
-  return distance2 > 0 ? static_cast<float>(std::min(1 / distance2, 1e30)) : 0.0f;
+  return distance2 > 0 ? static_cast<float>(std::min(1 / distance2, kMaxShare)) : 0.0f;
+}
+
+/// Returns the coordinates of the direction `way` on the plane of the image, as multiples of its
+/// half sides. `depth` MUST be > 0.
+Vec2 on_image(const ProjectedImage& image, const Vec3& way, double depth) {
+  return {dot(way, image.right) / (depth * image.half_width),
+          dot(way, image.up) / (depth * image.half_height)};
+}
+
+Rgb value_at(const ProjectedImage& image, const std::vector<Texture>& textures, const Vec2& place) {
+  const Vec2 uv{0.5 + 0.5 * place.x, 0.5 + 0.5 * place.y};
+  return evaluate(textures, image.texture, {.uv = uv, .uv2 = uv});
+}
+
+/// Returns the share of the intensity that a spot light emits at this cosine of the angle to its
+/// axis.
+double falloff_at(const SpotLight& light, double cosine) {
+  if (cosine <= light.cos_outer) {
+    return 0;
+  }
+  if (cosine >= light.cos_inner) {
+    return 1;
+  }
+  if (light.falloff == SpotLight::Falloff::kLinearAngle) {
+    const double outer = acos(light.cos_outer);
+    return (outer - acos(cosine)) / (outer - acos(light.cos_inner));
+  }
+  const double ramp = (cosine - light.cos_outer) / (light.cos_inner - light.cos_outer);
+  return light.falloff == SpotLight::Falloff::kSmooth ? ramp * ramp * (3 - 2 * ramp) : ramp * ramp;
+}
+
+void place(const Transform& to, Vec3& axis, ProjectedImage& image) {
+  axis = normalize(to.direction(axis));
+  // Perpendicular again, whatever the transform does to angles; a mirrored light shows a mirrored
+  // image.
+  const Vec3 right = to.direction(image.right);
+  image.right = normalize(right - axis * dot(axis, right));
+  const Vec3 up = cross(axis, image.right);
+  image.up = dot(up, to.direction(image.up)) < 0 ? -up : up;
 }
 
 struct Placed {
@@ -25,7 +69,16 @@ struct Placed {
   }
   DeltaLight operator()(SpotLight light) const {
     light.position = to.point(light.position);
-    light.direction = normalize(to.direction(light.direction));
+    if (light.image) {
+      place(to, light.direction, *light.image);
+    } else {
+      light.direction = normalize(to.direction(light.direction));
+    }
+    return light;
+  }
+  DeltaLight operator()(ProjectorLight light) const {
+    light.position = to.point(light.position);
+    place(to, light.direction, light.image);
     return light;
   }
 };
@@ -36,26 +89,45 @@ DeltaLight placed(const DeltaLight& light, const Transform& to) {
   return std::visit(Placed{to}, light);
 }
 
-Arrival arrival(const DirectionalLight& light, const Vec3&) {
+Arrival arrival(const DirectionalLight& light, const std::vector<Texture>&, const Vec3&) {
   return {-light.direction, light.irradiance};
 }
 
-Arrival arrival(const PointLight& light, const Vec3& at) {
+Arrival arrival(const PointLight& light, const std::vector<Texture>&, const Vec3& at) {
   const Vec3 to_light = light.position - at;
   return {to_light, light.intensity * over_distance2(to_light)};
 }
 
-Arrival arrival(const SpotLight& light, const Vec3& at) {
+Arrival arrival(const SpotLight& light, const std::vector<Texture>& textures, const Vec3& at) {
   const Vec3 to_light = light.position - at;
   const double distance = length(to_light);
   const double cosine = distance > 0 ? -dot(to_light, light.direction) / distance : 0;
-  if (cosine <= light.cos_outer) {
+  const double share = falloff_at(light, cosine);
+  if (!(share > 0)) {
     return {to_light, {}};
   }
-  const double ramp = cosine >= light.cos_inner
-                          ? 1
-                          : (cosine - light.cos_outer) / (light.cos_inner - light.cos_outer);
-  return {to_light, light.intensity * (over_distance2(to_light) * static_cast<float>(ramp * ramp))};
+  const Rgb arrives = light.intensity * (over_distance2(to_light) * static_cast<float>(share));
+  if (!light.image) {
+    return {to_light, arrives};
+  }
+  const Vec2 place = on_image(*light.image, -to_light, cosine * distance);
+  return {to_light, arrives * value_at(*light.image, textures, place)};
+}
+
+Arrival arrival(const ProjectorLight& light, const std::vector<Texture>& textures, const Vec3& at) {
+  const Vec3 to_light = light.position - at;
+  const double depth = -dot(to_light, light.direction);
+  if (!(depth > 0)) {
+    return {to_light, {}};
+  }
+  const Vec2 place = on_image(light.image, -to_light, depth);
+  if (!(std::abs(place.x) <= 1 && std::abs(place.y) <= 1)) {
+    return {to_light, {}};
+  }
+  // 1 / (distance^2 cos^3) = distance / depth^3
+  const double share = std::min(length(to_light) / (depth * depth * depth), kMaxShare);
+  return {to_light,
+          light.intensity * value_at(light.image, textures, place) * static_cast<float>(share)};
 }
 
 }  // namespace bandsaw

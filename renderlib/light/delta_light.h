@@ -1,15 +1,20 @@
 #pragma once
 
-// Delta lights, as defined by glTF's KHR_lights_punctual: directional, point and spot lights. They
-// illuminate surfaces and cast hard shadows, but no sampled direction ever hits them, so they are
-// invisible to the camera and in mirrors. A closed set.
+// Delta lights: directional, point and spot lights, as defined by glTF's KHR_lights_punctual, and
+// projectors. They illuminate surfaces and cast hard shadows, but no sampled direction ever hits
+// them, so they are invisible to the camera and in mirrors. A closed set.
 
 #include <cstddef>
+#include <cstdint>
+#include <optional>
 #include <variant>
+#include <vector>
 
+#include "renderlib/base/ids.h"
 #include "renderlib/math/rgb.h"
 #include "renderlib/math/transform.h"
 #include "renderlib/math/vec.h"
+#include "renderlib/texture/texture.h"
 
 namespace bandsaw {
 
@@ -25,20 +30,51 @@ struct PointLight {
   Rgb intensity{1, 1, 1};  ///< radiant intensity: the irradiance at distance 1; >= 0, finite
 };
 
+/// An image on the plane at distance 1 in front of a light, perpendicular to the light's axis. It
+/// covers the rectangle of +-half_width along `right` and +-half_height along `up` around the axis;
+/// u increases along `right`, v along `up`, both from 0 to 1.
+struct ProjectedImage {
+  TextureId texture{};
+  Vec3 right{1, 0, 0};     ///< unit, perpendicular to the axis
+  Vec3 up{0, 1, 0};        ///< unit, perpendicular to the axis and to `right`
+  double half_width = 1;   ///< in [kMinHalfImage, kMaxHalfImage]
+  double half_height = 1;  ///< the same
+};
+inline constexpr double kMinHalfImage = 1e-9;
+inline constexpr double kMaxHalfImage = 1e9;
+
 /// A point light restricted to a cone: full intensity within the inner angle, none beyond the outer
-/// angle, and between them the square of a ramp that is linear in the cosine.
+/// angle, and a fall-off between them.
 struct SpotLight {
+  enum class Falloff : std::uint8_t {
+    kSquare,       ///< t^2, where t is the ramp that is linear in the cosine (glTF)
+    kSmooth,       ///< 3 t^2 - 2 t^3 of the same t
+    kLinearAngle,  ///< linear in the angle
+  };
   Vec3 position;
   Vec3 direction{0, 0, -1};  ///< unit, the cone's axis, the direction in which the light travels
   Rgb intensity{1, 1, 1};    ///< radiant intensity on the axis; >= 0, finite
   double cos_inner = 1;      ///< cosines of the angles to the axis; cos_inner >= cos_outer >= 0
   double cos_outer = 0.70710678118654752440;
+  Falloff falloff = Falloff::kSquare;
+  /// An image that multiplies the intensity. Beyond its edges it is what its texture is there.
+  std::optional<ProjectedImage> image = std::nullopt;
 };
 
-using DeltaLight = std::variant<DirectionalLight, PointLight, SpotLight>;
+/// Projects an image from a point. Where its axis and a direction enclose the angle t, the radiant
+/// intensity is image * intensity / cos(t)^3: on a plane perpendicular to the axis at distance 1
+/// the irradiance is image * intensity. None beyond the image's edges and behind the light.
+struct ProjectorLight {
+  Vec3 position;
+  Vec3 direction{0, 0, -1};  ///< unit, the axis, through the centre of the image
+  Rgb intensity{1, 1, 1};    ///< >= 0, finite
+  ProjectedImage image;
+};
 
-/// Returns the light transformed by `to`, which MUST be regular. Only position and direction
-/// change; intensity and irradiance are not scaled.
+using DeltaLight = std::variant<DirectionalLight, PointLight, SpotLight, ProjectorLight>;
+
+/// Returns the light transformed by `to`, which MUST be regular. Only position and directions
+/// change; intensity, irradiance and angles are not scaled.
 DeltaLight placed(const DeltaLight& light, const Transform& to);
 
 /// Maximum number of directional lights in a scene: all of them are evaluated at every point that
@@ -50,8 +86,11 @@ struct Arrival {
   Vec3 to_light;   ///< vector to the light; a unit vector if the light is infinitely far away
   Rgb irradiance;  ///< of a surface that faces the light
 };
-Arrival arrival(const DirectionalLight& light, const Vec3& at);
-Arrival arrival(const PointLight& light, const Vec3& at);
-Arrival arrival(const SpotLight& light, const Vec3& at);
+/// Returns the illumination at the point `at`. `textures` are those of the scene.
+Arrival arrival(const DirectionalLight& light, const std::vector<Texture>& textures,
+                const Vec3& at);
+Arrival arrival(const PointLight& light, const std::vector<Texture>& textures, const Vec3& at);
+Arrival arrival(const SpotLight& light, const std::vector<Texture>& textures, const Vec3& at);
+Arrival arrival(const ProjectorLight& light, const std::vector<Texture>& textures, const Vec3& at);
 
 }  // namespace bandsaw

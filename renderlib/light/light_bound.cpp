@@ -60,13 +60,31 @@ LightBound bound_of(const PointLight& light) {
   return {.ball = {light.position, 0}, .intensity = brightness(light.intensity)};
 }
 
-LightBound bound_of(const SpotLight& light) {
+LightBound bound_of(const SpotLight& light, const std::vector<Texture>& textures) {
+  const Rgb image = light.image ? mean(textures, light.image->texture) : gray(1);
   // Treated as if its normals covered all directions up to the outer angle: a spot light's
   // intensity is not a cosine.
   return {.ball = {light.position, 0},
-          .intensity = brightness(light.intensity),
+          .intensity = brightness(light.intensity * image),
           .axis = light.direction,
           .cos_spread = light.cos_outer,
+          .cos_reach = kJustFacing};
+}
+
+LightBound bound_of(const ProjectorLight& light, const std::vector<Texture>& textures) {
+  const double width2 = light.image.half_width * light.image.half_width;
+  const double height2 = light.image.half_height * light.image.half_height;
+  // The power is intensity times the area of the image at distance 1, because the intensity over
+  // cos^3 cancels the cos^3 of its solid angle.
+  const double area = 4 * light.image.half_width * light.image.half_height;
+  const double sine =
+      light.image.half_width * light.image.half_height / std::sqrt((1 + width2) * (1 + height2));
+  const double solid_angle = 4 * asin(sine);
+  const Rgb value = light.intensity * mean(textures, light.image.texture);
+  return {.ball = {light.position, 0},
+          .intensity = brightness(value) * area / solid_angle,
+          .axis = light.direction,
+          .cos_spread = 1 / std::sqrt(1 + width2 + height2),
           .cos_reach = kJustFacing};
 }
 

@@ -7,6 +7,8 @@
 // sections 4.1 and 4.2, with the bounds of Pharr, Jakob and Humphreys, "Physically Based
 // Rendering", 4th ed., 12.6.3: a sphere around the lights and a cone around their emission normals.
 
+#include <vector>
+
 #include "renderlib/light/delta_light.h"
 #include "renderlib/light/receiver.h"
 #include "renderlib/light/shape_light.h"
@@ -29,7 +31,9 @@ struct LightBound {
 /// Returns the bound of a shape whose mean radiance is `radiance`.
 LightBound bound_of(const ShapeView& shape, double radiance, bool one_sided);
 LightBound bound_of(const PointLight& light);
-LightBound bound_of(const SpotLight& light);
+/// `textures` are those of the scene.
+LightBound bound_of(const SpotLight& light, const std::vector<Texture>& textures);
+LightBound bound_of(const ProjectorLight& light, const std::vector<Texture>& textures);
 
 /// Returns intensity * cosines / distance^2 with each factor at its maximum over the bound; zero
 /// only if no light can arrive.

@@ -134,8 +134,11 @@ std::vector<DistantBound> Lights::add_delta_lights(const std::vector<DeltaLight>
       continue;
     }
     const auto* point = std::get_if<PointLight>(&light);
-    const LightBound bound =
-        point != nullptr ? bound_of(*point) : bound_of(std::get<SpotLight>(light));
+    const auto* spot = std::get_if<SpotLight>(&light);
+    const LightBound bound = point != nullptr ? bound_of(*point)
+                             : spot != nullptr
+                                 ? bound_of(*spot, *textures_)
+                                 : bound_of(std::get<ProjectorLight>(light), *textures_);
     if (bound.intensity > 0) {
       local.push_back(bound);
       delta_.push_back(light);
@@ -213,8 +216,8 @@ std::optional<LightSample> Lights::sample_surface(PrimitiveId id, const Receiver
 
 std::optional<LightSample> Lights::sample_delta(const DeltaLight& light,
                                                 const Receiver& receiver) const {
-  const Arrival arrives =
-      std::visit([&](const auto& kind) { return arrival(kind, receiver.position); }, light);
+  const Arrival arrives = std::visit(
+      [&](const auto& kind) { return arrival(kind, *textures_, receiver.position); }, light);
   if (!receiver.faces(arrives.to_light)) {
     return std::nullopt;
   }

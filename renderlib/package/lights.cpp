@@ -21,6 +21,14 @@ void encode(const Rgb& from, package::Rgb& to) {
   }
 }
 
+void encode(const ProjectedImage& from, package::ProjectedImage& to) {
+  to.set_texture(static_cast<std::uint32_t>(from.texture));
+  encode(from.right, *to.mutable_right());
+  encode(from.up, *to.mutable_up());
+  to.set_half_width(from.half_width);
+  to.set_half_height(from.half_height);
+}
+
 struct EncodeLight {
   package::Light& to;
 
@@ -39,8 +47,58 @@ struct EncodeLight {
     encode(light.intensity, *spot.mutable_intensity());
     spot.set_cos_inner(light.cos_inner);
     spot.set_cos_outer(light.cos_outer);
+    // The enums are declared in the same order, from 0.
+    spot.set_falloff(static_cast<package::SpotLight::Falloff>(light.falloff));
+    if (light.image) {
+      encode(*light.image, *spot.mutable_image());
+    }
+  }
+  void operator()(const ProjectorLight& light) const {
+    package::ProjectorLight& projector = *to.mutable_projector();
+    encode(light.position, *projector.mutable_position());
+    encode(light.direction, *projector.mutable_direction());
+    encode(light.intensity, *projector.mutable_intensity());
+    encode(light.image, *projector.mutable_image());
   }
 };
+
+absl::StatusOr<ProjectedImage> decode_image(const package::ProjectedImage& from,
+                                            const std::string& field) {
+  ProjectedImage to;
+  to.texture = TextureId{from.texture()};
+  ASSIGN_OR_RETURN(to.right, decode_vec3(from.right(), field + ".right"));
+  ASSIGN_OR_RETURN(to.up, decode_vec3(from.up(), field + ".up"));
+  to.half_width = from.half_width();
+  to.half_height = from.half_height();
+  return to;
+}
+
+absl::StatusOr<DeltaLight> decode_spot(const package::SpotLight& from, const std::string& field) {
+  SpotLight light;
+  ASSIGN_OR_RETURN(light.position, decode_vec3(from.position(), field + ".position"));
+  ASSIGN_OR_RETURN(light.direction, decode_vec3(from.direction(), field + ".direction"));
+  ASSIGN_OR_RETURN(light.intensity, decode_rgb(from.intensity().rgb(), field + ".intensity"));
+  light.cos_inner = from.cos_inner();
+  light.cos_outer = from.cos_outer();
+  if (!package::SpotLight::Falloff_IsValid(from.falloff())) {
+    return manifest_error(field + ".falloff", "is of no kind that this program knows");
+  }
+  light.falloff = static_cast<SpotLight::Falloff>(from.falloff());
+  if (from.has_image()) {
+    ASSIGN_OR_RETURN(light.image, decode_image(from.image(), field + ".image"));
+  }
+  return DeltaLight(light);
+}
+
+absl::StatusOr<DeltaLight> decode_projector(const package::ProjectorLight& from,
+                                            const std::string& field) {
+  ProjectorLight light;
+  ASSIGN_OR_RETURN(light.position, decode_vec3(from.position(), field + ".position"));
+  ASSIGN_OR_RETURN(light.direction, decode_vec3(from.direction(), field + ".direction"));
+  ASSIGN_OR_RETURN(light.intensity, decode_rgb(from.intensity().rgb(), field + ".intensity"));
+  ASSIGN_OR_RETURN(light.image, decode_image(from.image(), field + ".image"));
+  return DeltaLight(light);
+}
 
 absl::StatusOr<DeltaLight> decode(const package::Light& from, const std::string& field) {
   if (from.has_directional()) {
@@ -60,15 +118,10 @@ absl::StatusOr<DeltaLight> decode(const package::Light& from, const std::string&
     return DeltaLight(light);
   }
   if (from.has_spot()) {
-    SpotLight light;
-    ASSIGN_OR_RETURN(light.position, decode_vec3(from.spot().position(), field + ".spot.position"));
-    ASSIGN_OR_RETURN(light.direction,
-                     decode_vec3(from.spot().direction(), field + ".spot.direction"));
-    ASSIGN_OR_RETURN(light.intensity,
-                     decode_rgb(from.spot().intensity().rgb(), field + ".spot.intensity"));
-    light.cos_inner = from.spot().cos_inner();
-    light.cos_outer = from.spot().cos_outer();
-    return DeltaLight(light);
+    return decode_spot(from.spot(), field + ".spot");
+  }
+  if (from.has_projector()) {
+    return decode_projector(from.projector(), field + ".projector");
   }
   return manifest_error(field, "is of no kind that this program knows");
 }

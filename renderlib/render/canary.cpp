@@ -123,8 +123,22 @@ SceneDescription lit_from_outside() {
   environment.images = {TextureId{1}};
   environment.strength = 3;
   scene.background.environment = environment;
-  scene.lights = {DirectionalLight{normalize(Vec3{1, -2, -1}), {0.5f, 0.6f, 0.7f}},
-                  SpotLight{{0, 3.5, 2}, {0, -1, 0}, {4, 3, 2}, 0.9, 0.6}};
+  scene.lights = {
+      DirectionalLight{normalize(Vec3{1, -2, -1}), {0.5f, 0.6f, 0.7f}},
+      SpotLight{{0, 3.5, 2}, {0, -1, 0}, {4, 3, 2}, 0.9, 0.6},
+      SpotLight{.position = {-2, 3, 1},
+                .direction = {0, -1, 0},
+                .intensity = {2, 3, 4},
+                .cos_inner = 0.9,
+                .cos_outer = 0.5,
+                .falloff = SpotLight::Falloff::kLinearAngle,
+                .image = ProjectedImage{TextureId{8}, {1, 0, 0}, {0, 0, 1}, 2, 2}},
+      SpotLight{
+          .position = {2, 3, 1}, .direction = {0, -1, 0}, .falloff = SpotLight::Falloff::kSmooth},
+      ProjectorLight{.position = {0.5, 3.5, 1},
+                     .direction = {0, -1, 0},
+                     .intensity = {3, 2, 1},
+                     .image = {TextureId{1}, {0, 0, 1}, {1, 0, 0}, 0.7, 0.4}}};
   for (int i = 0; i < 20; ++i) {
     scene.lights.push_back(PointLight{{0.3 * i - 3, 2.5, 0.1 * i}, gray(0.02f * (i + 1))});
   }

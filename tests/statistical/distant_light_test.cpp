@@ -209,6 +209,126 @@ TEST(DeltaLight, EachKindGivesTheClosedForm) {
   expect_radiance(lit_by(spot), ray, 50 * cosine / 49 / kPi, options, 4);
 }
 
+TEST(DeltaLight, ASpotFallsOffAsItsKindSays) {
+  SceneMaker maker;
+  add_patch(maker, 0, maker.diffuse(1));
+  // The patch is 40 degrees off the axis of a cone of 30 to 50.
+  SpotLight spot{.position = {0, 7, 0},
+                 .direction = rotation({1, 0, 0}, 40).direction({0, -1, 0}),
+                 .intensity = gray(50),
+                 .cos_inner = sincos_degrees(30).cos,
+                 .cos_outer = sincos_degrees(50).cos};
+  const double ramp = (sincos_degrees(40).cos - spot.cos_outer) / (spot.cos_inner - spot.cos_outer);
+  using Falloff = SpotLight::Falloff;
+  for (const auto& [falloff, share] : {std::pair(Falloff::kSquare, ramp * ramp),
+                                       std::pair(Falloff::kSmooth, ramp * ramp * (3 - 2 * ramp)),
+                                       std::pair(Falloff::kLinearAngle, 0.5)}) {
+    spot.falloff = falloff;
+    maker.scene.lights = {spot};
+    expect_radiance(maker, onto_patch(0), 50 * share / 49 / kPi, {.max_depth = 1}, 4);
+  }
+}
+
+/// A floor in y = 0, and a ray down to it.
+void add_floor(SceneMaker& maker) {
+  maker.quad({-20, 0, -20}, {0, 0, 40}, {40, 0, 0}, maker.diffuse(1));
+}
+Ray onto_floor(double x, double z) { return {.origin = {x, 0.1, z}, .direction = {0, -1, 0}}; }
+
+/// Four texels of different values, without interpolation. In uv: (0, 0) is 1, (1, 0) is 2, (0, 1)
+/// is 3, (1, 1) is 4.
+ImageTexture four_values() {
+  ImageTexture image =
+      float_image(2, 2, [](auto x, auto y) { return static_cast<float>(y == 1 ? 1 + x : 3 + x); });
+  image.filter = ImageTexture::Filter::kNearest;
+  return image;
+}
+
+/// Its image is the same on the whole of a plane perpendicular to the axis, and nothing beyond.
+TEST(DeltaLight, AProjectorShowsItsImageOnAPlane) {
+  SceneMaker maker;
+  add_floor(maker);
+  // At a height of 3 the image covers [-1.5, 1.5] x [-4.5, 4.5] around (1, 2).
+  const ProjectorLight light{
+      .position = {1, 3, 2},
+      .direction = {0, -1, 0},
+      .intensity = gray(9),
+      .image = {maker.texture(four_values()), {1, 0, 0}, {0, 0, -1}, 0.5, 1.5}};
+  maker.scene.lights = {light};
+  const auto expect = [&](double x, double z, double value) {
+    expect_radiance(maker, onto_floor(1 + x, 2 + z), value / kPi, {.max_depth = 1}, 4);
+  };
+  expect(-0.1, 0.1, 1);
+  expect(-1.49, 4.49, 1);
+  expect(0.1, 0.1, 2);
+  expect(1.49, 4.49, 2);
+  expect(-1.49, -4.49, 3);
+  expect(1.49, -4.49, 4);
+  expect(1.51, 0, 0);
+  expect(0, -4.51, 0);
+  // A placement keeps the image's sides; a mirrored one mirrors it.
+  maker.scene.lights = {placed(light, translation({2, 0, 0}) * scaling({-1, 1, 1}))};
+  expect(0.1, 0.1, 1);
+  expect(-1.49, -4.49, 4);
+}
+
+TEST(DeltaLight, AProjectorShinesForwardsOnly) {
+  SceneMaker maker;
+  add_floor(maker);
+  maker.scene.lights = {
+      ProjectorLight{.position = {0, 3, 0},
+                     .direction = {0, 1, 0},
+                     .image = {maker.texture(four_values()), {1, 0, 0}, {0, 0, 1}, 9, 9}}};
+  expect_radiance(maker, onto_floor(0.1, 0.1), 0, {.max_depth = 1}, 4);
+}
+
+TEST(DeltaLight, ASpotsImageCoversTheSquareAroundItsCone) {
+  SceneMaker maker;
+  add_floor(maker);
+  SpotLight spot{.position = {0, 2, 0},
+                 .direction = {0, -1, 0},
+                 .intensity = gray(8),
+                 .cos_inner = sincos_degrees(45).cos,
+                 .cos_outer = sincos_degrees(45).cos};
+  spot.image = ProjectedImage{maker.texture(four_values()), {1, 0, 0}, {0, 0, -1}, 1, 1};
+  maker.scene.lights = {spot};
+  // Intensity 8 times the image at the distance sqrt(4 + r^2), from an angle of cosine 2 /
+  // distance.
+  for (const auto& [x, z, value] :
+       {std::array<double, 3>{-1, 1, 1}, std::array<double, 3>{1, 1, 2},
+        std::array<double, 3>{-1, -1, 3}, std::array<double, 3>{1, -1, 4}}) {
+    const double distance = std::sqrt(6);
+    const double expected = 8 * value * 2 / (distance * distance * distance) / kPi;
+    expect_radiance(maker, onto_floor(x, z), expected, {.max_depth = 1}, 4);
+  }
+  expect_radiance(maker, onto_floor(1.5, 1.5), 0, {.max_depth = 1}, 4);
+}
+
+/// Light selection loses no projector, individually or in the tree: their images add up.
+TEST(DeltaLight, ManyProjectorsAddUp) {
+  for (const int count : {3, 60}) {
+    SceneMaker maker;
+    add_floor(maker);
+    const TextureId image = maker.texture(four_values());
+    double expected = 0;
+    for (int i = 0; i < count; ++i) {
+      const double height = 2 + 0.1 * i;
+      const double x = 0.2 * i - 3;
+      const double half = 0.4 + 0.05 * i;
+      maker.scene.lights.push_back(
+          ProjectorLight{.position = {x, height, 0},
+                         .direction = {0, -1, 0},
+                         .image = {image, {1, 0, 0}, {0, 0, -1}, half, 1}});
+      // The point (0, 0.3) is in the lower half of the image.
+      if (std::abs(x) < half * height) {
+        expected += (x > 0 ? 1 : 2) / (height * height) / kPi;
+      }
+    }
+    ASSERT_GT(expected, 0);
+    expect_radiance(maker, onto_floor(0, 0.3), expected, {.max_depth = 1}, 1 << 18);
+  }
+}
+
 TEST(DeltaLight, IsZeroBelowTheHorizonOrBehindAnOccluder) {
   const std::vector<DeltaLight> above = {DirectionalLight{{0, -1, 0}, {1, 1, 1}},
                                          PointLight{{0, 5, 0}, {1, 1, 1}},

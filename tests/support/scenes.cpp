@@ -69,7 +69,7 @@ void SceneMaker::background(const Rgb& bottom, const Rgb& top) { scene.backgroun
 std::shared_ptr<const Scene> SceneMaker::build() const {
   Pool pool(1);
   auto built = Scene::build(scene, pool);
-  BANDSAW_CHECK(built.ok(), "a test's scene is valid");
+  BANDSAW_CHECK(built.ok(), built.status().ToString().c_str());
   return *std::move(built);
 }
 

@@ -98,7 +98,8 @@ absl::StatusOr<SceneChoices> checked_choices(const RawOptions& raw) {
       return wrong(absl::StrCat("-D: must be NAME=VALUE, is '", parameter, "'"));
     }
   }
-  SceneChoices choices{raw.environment, raw.camera, raw.parameters, raw.strict, raw.inside};
+  SceneChoices choices{raw.environment, raw.camera, raw.parameters,
+                       raw.strict,      raw.folder, raw.inside};
   choices.animation = raw.animation;
   RETURN_IF_ERROR(read_frame(raw, choices));
   return choices;

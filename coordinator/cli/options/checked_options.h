@@ -23,7 +23,7 @@ struct RawOptions {
   std::optional<std::string> integrator, exposure, tone, layers, report, seeds, reference_samples;
   std::optional<std::string> tev, frame, fps, shutter;
   std::vector<std::string> parameters;
-  std::string inside;
+  std::string inside, folder;
   bool strict = false, force = false;
   std::optional<std::string> web, shell, audit;
   bool lift = false, adaptive = false, half = false, insecure = false, detach = false,

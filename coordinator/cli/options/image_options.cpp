@@ -42,6 +42,10 @@ void add_scene(CLI::App& app, RawOptions& raw) {
       ->allow_extra_args(false)
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_option("--folder", raw.folder,
+                 "Folder around that of a Mitsuba scene: files below it are read [default: the "
+                 "scene's own]")
+      ->type_name("FOLDER");
   app.add_option("--inside", raw.inside, "Which scene of a .zip [default: the only one]")
       ->type_name("NAME");
 }

@@ -14,6 +14,8 @@ struct SceneChoices {
   /// Parameters of a Mitsuba scene, each "name=value".
   std::vector<std::string> parameters = {};
   bool strict = false;  ///< a warning of the import is an error
+  /// Folder around that of a Mitsuba scene, below which its files lie. Empty: the scene's own.
+  std::string folder = {};
   /// In a zip file, the name of the scene. Empty: the only one (scene/unpacked_scene.h).
   std::string inside = {};
   std::optional<std::int64_t> frame = {};  ///< of a sequence; its time is frame / fps

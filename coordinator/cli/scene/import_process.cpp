@@ -121,6 +121,7 @@ std::vector<std::string> arguments_of(const SceneChoices& choices) {
   };
   add("environment", choices.environment);
   add("camera", choices.camera);
+  add("folder", choices.folder);
   add("animation", choices.animation);
   if (choices.strict) {
     arguments.push_back("strict");

@@ -147,7 +147,7 @@ std::string kind_of(const Texture& texture) {
 }
 
 std::string kind_of(const DeltaLight& light) {
-  constexpr const char* kNames[] = {"directional", "point", "spot"};
+  constexpr const char* kNames[] = {"directional", "point", "spot", "projector"};
   return kNames[light.index()];
 }
 

@@ -28,6 +28,22 @@ absl::StatusOr<SceneFolder> SceneFolder::of(const std::string& scene_path) {
   return SceneFolder(real.parent_path().string());
 }
 
+absl::StatusOr<SceneFolder> SceneFolder::around(const std::string& scene_path,
+                                                const std::string& folder) {
+  ASSIGN_OR_RETURN(const SceneFolder own, of(scene_path));
+  std::error_code error;
+  const fs::path real = fs::canonical(folder, error);
+  if (error) {
+    return errno_status(error.value(), folder);
+  }
+  SceneFolder wide(real.string());
+  if (own.path() != wide.path() && !wide.holds(own.path())) {
+    return absl::PermissionDeniedError(
+        absl::StrCat(scene_path, " does not lie in the folder ", folder));
+  }
+  return wide;
+}
+
 bool SceneFolder::holds(const std::string& real_path) const {
   return path_ == "/" || absl::StartsWith(real_path, path_ + "/");
 }

@@ -16,6 +16,11 @@ class SceneFolder {
   /// PERMISSION_DENIED with the file's name.
   static absl::StatusOr<SceneFolder> of(const std::string& scene_path);
 
+  /// Returns the folder `folder`, below which `scene_path` must be. Errors as `of`;
+  /// PERMISSION_DENIED if the scene is elsewhere.
+  static absl::StatusOr<SceneFolder> around(const std::string& scene_path,
+                                            const std::string& folder);
+
   /// Returns the real path of the regular file to which `name` refers in a file of `folder`
   /// (absolute, below this one). Messages contain `name` and a remedy, but not the referring file.
   /// Returns PERMISSION_DENIED if the path is absolute or outside the scene's folder, also by a

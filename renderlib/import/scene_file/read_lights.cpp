@@ -1,9 +1,12 @@
 #include "renderlib/import/scene_file/read_lights.h"
 
+#include <variant>
+
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/import/draft/color_limits.h"
 #include "renderlib/import/scene_file/numbers.h"
+#include "renderlib/import/scene_file/read_textures.h"
 #include "renderlib/math/elementary.h"
 
 namespace bandsaw {
@@ -50,7 +53,84 @@ absl::StatusOr<Vec3> read_axis(const Field& in, const scene::SpotLight& from,
   return normalize(target - position);
 }
 
-absl::StatusOr<DeltaLight> read_spot(const Field& in, const scene::SpotLight& from) {
+/// Reads `up` and sets the sides of an image that is projected along the unit vector `axis`.
+absl::Status read_sides(const Field& in, const Numbers& from, bool mirrored, const Vec3& axis,
+                        ProjectedImage& image) {
+  ASSIGN_OR_RETURN(const Vec3 up, read_vec3(in, "up", from, Vec3{0, 1, 0}));
+  const Vec3 right = length_squared(up) > 0 ? cross(axis, normalize(up)) : Vec3{};
+  if (!(length_squared(right) > 1e-24)) {
+    return in.error("up", from.empty()
+                              ? "is [0, 1, 0] unless written, and the light shines along it; write "
+                                "another, for example [0, 0, 1]"
+                              : "must not be zero or parallel to the light's axis");
+  }
+  image.right = normalize(right);
+  image.up = cross(image.right, axis);
+  image.right = mirrored ? -image.right : image.right;
+  return absl::OkStatus();
+}
+
+/// Returns width / height of an image texture; 1 for others.
+double aspect_of(const Texture& texture) {
+  const auto* image = std::get_if<ImageTexture>(&texture);
+  return image != nullptr ? static_cast<double>(image->width) / image->height : 1;
+}
+
+absl::StatusOr<DeltaLight> read_projector(const Field& in, const scene::ProjectorLight& from,
+                                          SceneDraft& draft) {
+  ProjectorLight light;
+  ASSIGN_OR_RETURN(light.position, read_vec3(in, "position", from.position()));
+  ASSIGN_OR_RETURN(const Vec3 target, read_vec3(in, "look_at", from.look_at()));
+  if (target == light.position) {
+    return in.error("look_at", "must differ from position");
+  }
+  light.direction = normalize(target - light.position);
+  RETURN_IF_ERROR(read_sides(in, from.up(), from.mirrored(), light.direction, light.image));
+  if (from.has_intensity()) {
+    ASSIGN_OR_RETURN(light.intensity,
+                     read_color(in.child("intensity"), from.intensity(), kMaxRadiance));
+  }
+  const double fov = from.has_vertical_fov() ? from.vertical_fov() : 40;
+  if (!(fov > 0 && fov < 180)) {
+    return in.error("vertical_fov", absl::StrCat("must lie in (0, 180) degrees, is ", fov));
+  }
+  if (!from.has_image()) {
+    return in.error("image", "is required: the texture that is projected");
+  }
+  ASSIGN_OR_RETURN(light.image.texture,
+                   read_texture(in.child("image"), from.image(), kMaxRadiance, draft));
+  const double aspect =
+      from.has_aspect() ? from.aspect() : aspect_of(draft.textures[light.image.texture]);
+  if (from.has_aspect()) {
+    RETURN_IF_ERROR(check_range(in, "aspect", aspect, 1e-3, 1e3));
+  }
+  light.image.half_height = tan_degrees(fov / 2);
+  light.image.half_width = light.image.half_height * aspect;
+  return DeltaLight(light);
+}
+
+absl::Status read_spot_image(const Field& in, const scene::SpotLight& from, double outer,
+                             SceneDraft& draft, SpotLight& light) {
+  if (!from.has_image()) {
+    if (!from.up().empty() || from.mirrored()) {
+      return in.error(from.mirrored() ? "mirrored" : "up", "places an image, but there is none");
+    }
+    return absl::OkStatus();
+  }
+  if (!(outer < 90)) {
+    return in.error("image", "needs an outer_angle below 90 degrees");
+  }
+  ProjectedImage image;
+  RETURN_IF_ERROR(read_sides(in, from.up(), from.mirrored(), light.direction, image));
+  ASSIGN_OR_RETURN(image.texture,
+                   read_texture(in.child("image"), from.image(), kMaxRadiance, draft));
+  image.half_width = image.half_height = tan_degrees(outer);
+  light.image = image;
+  return absl::OkStatus();
+}
+
+absl::StatusOr<DeltaLight> read_spot(const Field& in, const scene::SpotLight& from,
+                                     SceneDraft& draft) {
   SpotLight light;
   ASSIGN_OR_RETURN(light.position, read_vec3(in, "position", from.position()));
   ASSIGN_OR_RETURN(light.direction, read_axis(in, from, light.position));
@@ -64,21 +144,30 @@ absl::StatusOr<DeltaLight> read_spot(const Field& in, const scene::SpotLight& fr
   RETURN_IF_ERROR(check_range(in, "inner_angle", from.inner_angle(), 0, outer));
   light.cos_inner = sincos_degrees(from.inner_angle()).cos;
   light.cos_outer = sincos_degrees(outer).cos;
+  if (!scene::SpotLight::Falloff_IsValid(from.falloff())) {
+    return in.error("falloff", "is none of the values that it can have");
+  }
+  // The enums are declared in the same order, from 0.
+  light.falloff = static_cast<SpotLight::Falloff>(from.falloff());
+  RETURN_IF_ERROR(read_spot_image(in, from, outer, draft, light));
   return DeltaLight(light);
 }
 
-absl::StatusOr<DeltaLight> read_light(const Field& in, const scene::Light& from) {
+absl::StatusOr<DeltaLight> read_light(const Field& in, const scene::Light& from,
+                                      SceneDraft& draft) {
   switch (from.kind_case()) {
     case scene::Light::kDirectional:
       return read_directional(in.child("directional"), from.directional());
     case scene::Light::kPoint:
       return read_point(in.child("point"), from.point());
     case scene::Light::kSpot:
-      return read_spot(in.child("spot"), from.spot());
-    default:
+      return read_spot(in.child("spot"), from.spot(), draft);
+    case scene::Light::kProjector:
+      return read_projector(in.child("projector"), from.projector(), draft);
+    case scene::Light::KIND_NOT_SET:
       break;
   }
-  return in.error("is empty: write directional, point or spot");
+  return in.error("is empty: write directional, point, spot or projector");
 }
 
 }  // namespace
@@ -87,7 +176,7 @@ absl::Status read_lights(const Field& root, const scene::Scene& from, SceneDraft
   std::size_t directional = 0;
   for (int i = 0; i < from.light_size(); ++i) {
     const Field in = root.child("light", i);
-    ASSIGN_OR_RETURN(const DeltaLight light, read_light(in, from.light(i)));
+    ASSIGN_OR_RETURN(const DeltaLight light, read_light(in, from.light(i), draft));
     directional += std::holds_alternative<DirectionalLight>(light) ? 1 : 0;
     if (directional > kMaxDirectionalLights) {
       return in.error("directional", absl::StrCat("is one more than the ", kMaxDirectionalLights,

@@ -77,6 +77,53 @@ light { spot { position: [0, 5, 0] direction: [3, 0, 0] intensity { rgb: [1, 1, 
   EXPECT_TRUE(is_black(imported->scene.background.top)) << "no default sky beside lights";
 }
 
+TEST_F(SceneLights, ProjectImages) {
+  const auto imported = read(R"(
+light { projector { position: [0, 5, 0] look_at: [0, 1, 0] up: [0, 0, -1] vertical_fov: 90
+        image { image { file: "sky.hdr" } } intensity { rgb: [1, 2, 3] } } }
+light { projector { position: [0, 0, 5] look_at: [0, 0, 0] mirrored: true aspect: 3
+        image { color { rgb: [1, 1, 1] } } } }
+light { spot { position: [0, 0, 5] look_at: [0, 0, 0] intensity { rgb: [1, 1, 1] } outer_angle: 45
+        falloff: FALLOFF_LINEAR_ANGLE image { image { file: "wide.hdr" } } } }
+)");
+  ASSERT_TRUE(imported.ok()) << imported.status();
+  const auto& lights = imported->scene.lights;
+  ASSERT_EQ(lights.size(), 3u);
+  const auto& down = std::get<ProjectorLight>(lights[0]);
+  EXPECT_EQ(down.direction, (Vec3{0, -1, 0}));
+  EXPECT_EQ(down.image.right, (Vec3{1, 0, 0}));
+  EXPECT_EQ(down.image.up, (Vec3{0, 0, -1}));
+  EXPECT_EQ(down.intensity, (Rgb{1, 2, 3}));
+  EXPECT_NEAR(down.image.half_height, 1, 1e-15);
+  EXPECT_NEAR(down.image.half_width, 2, 1e-15) << "of the image, 8 x 4";
+  const auto& mirrored = std::get<ProjectorLight>(lights[1]);
+  EXPECT_EQ(mirrored.image.right, (Vec3{-1, 0, 0}));
+  EXPECT_NEAR(mirrored.image.half_width / mirrored.image.half_height, 3, 1e-15);
+  const auto& spot = std::get<SpotLight>(lights[2]);
+  EXPECT_EQ(spot.falloff, SpotLight::Falloff::kLinearAngle);
+  ASSERT_TRUE(spot.image.has_value());
+  EXPECT_NEAR(spot.image->half_width, 1, 1e-15);
+}
+
+TEST_F(SceneLights, ErrorsOfProjectedImagesNameTheField) {
+  const std::string projector = "light { projector { position: [0, 0, 0] ";
+  const std::string image = "image { color { rgb: [1, 1, 1] } } ";
+  EXPECT_THAT(error(projector + image + "} }"), HasSubstr("projector.look_at: is required"));
+  EXPECT_THAT(error(projector + "look_at: [1, 0, 0] } }"),
+              HasSubstr("projector.image: is required"));
+  EXPECT_THAT(error(projector + image + "look_at: [0, 1, 0] } }"),
+              HasSubstr("projector.up: is [0, 1, 0] unless written"));
+  EXPECT_THAT(error(projector + image + "look_at: [1, 0, 0] vertical_fov: 180 } }"),
+              HasSubstr("vertical_fov: must lie in (0, 180) degrees, is 180"));
+  EXPECT_THAT(error(projector + image + "look_at: [1, 0, 0] aspect: 0 } }"),
+              HasSubstr("aspect: must lie in [0.001, 1000], is 0"));
+  const std::string spot =
+      "light { spot { position: [0, 0, 0] direction: [1, 0, 0] intensity { rgb: [1, 1, 1] } ";
+  EXPECT_THAT(error(spot + "mirrored: true } }"), HasSubstr("mirrored: places an image"));
+  EXPECT_THAT(error(spot + image + "outer_angle: 90 } }"),
+              HasSubstr("image: needs an outer_angle below 90"));
+}
+
 TEST_F(SceneLights, ErrorsNameTheField) {
   EXPECT_THAT(error("light { }"),
               StartsWith("s.textproto:4:1: light[0]: is empty: write directional, point or spot"));

@@ -109,7 +109,14 @@ inline SceneDescription sample_scene() {
   environment.axes = {{0, 0, -1}, {0, 1, 0}, {-1, 0, 0}};
   scene.background.environment = environment;
   scene.lights = {DirectionalLight{{0, 0.6, -0.8}, {1, 2, 3}}, PointLight{{1, 2, 3}, {4, 5, 6}},
-                  SpotLight{{7, 8, 9}, {1, 0, 0}, {0, 1, 0.5f}, 0.9, 0.25}};
+                  SpotLight{{7, 8, 9}, {1, 0, 0}, {0, 1, 0.5f}, 0.9, 0.25},
+                  SpotLight{.position = {1, 1, 1},
+                            .falloff = SpotLight::Falloff::kLinearAngle,
+                            .image = ProjectedImage{TextureId{1}, {0, 1, 0}, {1, 0, 0}, 1, 1}},
+                  ProjectorLight{.position = {3, 2, 1},
+                                 .direction = {0, 1, 0},
+                                 .intensity = {1, 0, 2},
+                                 .image = {TextureId{2}, {0, 0, 1}, {1, 0, 0}, 0.5, 1.0 / 3}}};
   scene.textures.emplace_back(ConstantTexture{{0.1f, 0.5f, 1}});
   scene.textures.emplace_back(sample_image(ImageTexture::Format::kSrgb8));
   scene.textures.emplace_back(sample_image(ImageTexture::Format::kFloat32));

@@ -1,0 +1,59 @@
+#pragma once
+
+// Materials of Mitsuba scenes.
+
+#include <map>
+#include <set>
+#include <string>
+#include <tuple>
+
+#include "absl/status/statusor.h"
+#include "proto/scene.pb.h"
+#include "renderlib/import/mitsuba/conversion.h"
+#include "renderlib/import/mitsuba/textures.h"
+
+namespace bandsaw::mitsuba {
+
+/// What a surface of Mitsuba becomes.
+struct SurfaceMaterial {
+  std::string name;     ///< of a material of ours; empty: there is no surface (null)
+  bool turned = false;  ///< the geometry must be turned over: its inside is denser than its outside
+};
+
+class Materials {
+ public:
+  /// Materials are added to `scene`. Both MUST outlive this object.
+  Materials(scene::Scene& scene, Conversion& to) : scene_(scene), to_(to) {}
+
+  /// Returns the material of a surface, made if it is new. `bsdf` nullptr: Mitsuba's default, grey.
+  /// `emitter` nullptr: it does not emit; otherwise an emitter of type area.
+  absl::StatusOr<SurfaceMaterial> material_of(const Object* bsdf, const Object* emitter,
+                                              const TexturedSurface& surface);
+  /// Returns `turned` of the material, without making it.
+  absl::StatusOr<SurfaceMaterial> sides_of(const Object* bsdf) const;
+
+ private:
+  using Key = std::tuple<const Object*, const Object*, UvFrame, std::map<std::string, std::string>>;
+  absl::StatusOr<SurfaceMaterial> make(const Object* bsdf, const Object* emitter,
+                                       const TexturedSurface& surface);
+  absl::StatusOr<SurfaceMaterial> add(scene::Material material, bool turned, const Object* bsdf,
+                                      const Object* emitter, const TexturedSurface& surface);
+  absl::StatusOr<SurfaceMaterial> blend(const Object& bsdf, const Object* emitter,
+                                        const TexturedSurface& surface);
+  std::string unique_name(const Object* bsdf);
+
+  scene::Scene& scene_;
+  Conversion& to_;
+  std::map<Key, SurfaceMaterial> known_;
+  std::set<std::string> names_;
+  std::map<std::string, int> counts_;  ///< of names with numbers
+};
+
+/// Returns true if the picture depends on the uv coordinates of the surface.
+bool needs_uv(const Object* bsdf, const Object* emitter);
+/// Returns true if the sign of the surface's second tangent matters: it has a normal map.
+bool needs_handedness(const Object* bsdf);
+/// Returns true if the bsdf is "null": light passes as if there were no surface.
+bool is_null(const Object* bsdf);
+
+}  // namespace bandsaw::mitsuba

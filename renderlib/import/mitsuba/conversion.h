@@ -1,0 +1,26 @@
+#pragma once
+
+// State of one conversion: where files come from, and what has been made and said so far.
+
+#include <string>
+#include <vector>
+
+#include "renderlib/import/convert/made_files.h"
+#include "renderlib/import/mitsuba/files.h"
+#include "renderlib/import/mitsuba/parameters.h"
+#include "renderlib/import/mitsuba/scene_tree.h"
+
+namespace bandsaw::mitsuba {
+
+struct Conversion {
+  const Files& files;
+  MadeFiles& made;
+  std::vector<std::string>& warnings;
+
+  /// Adds "scene.xml:12: <what>", unless it is there already.
+  void warn(const Place& place, const std::string& what);
+  /// Warns of each parameter that nobody asked for.
+  void warn_of_unused(const Parameters& parameters);
+};
+
+}  // namespace bandsaw::mitsuba

@@ -1,0 +1,38 @@
+#pragma once
+
+// Files that a Mitsuba scene names. They are searched in the folders of its <path> elements, the
+// latest first, and then in the folder of the scene; all of them below the folder of the import.
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "renderlib/import/convert/foreign_scene.h"
+
+namespace bandsaw::mitsuba {
+
+struct FoundFile {
+  std::string name;  ///< below the folder of the import, for a scene file of ours
+  std::string path;  ///< real path
+};
+
+class Files {
+ public:
+  /// `scene` MUST outlive this object.
+  explicit Files(const ForeignScene& scene) : scene_(scene) {}
+
+  /// Adds a folder to search. `name` is relative to the folder of the real path `referring`.
+  /// PERMISSION_DENIED: it is outside of the import's folder; NOT_FOUND: there is no such folder.
+  absl::Status add_folder(const std::string& name, const std::string& referring);
+
+  /// Finds a file. Errors as SceneFolder::resolve.
+  absl::StatusOr<FoundFile> find(const std::string& name) const;
+  /// Returns the bytes of a file. RESOURCE_EXHAUSTED or INVALID_ARGUMENT: more than `max_bytes`.
+  static absl::StatusOr<std::string> read(const FoundFile& file, std::uint64_t max_bytes);
+
+ private:
+  const ForeignScene& scene_;
+  std::vector<std::string> folders_;
+};
+
+}  // namespace bandsaw::mitsuba

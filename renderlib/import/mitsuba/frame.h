@@ -1,0 +1,22 @@
+#pragma once
+
+// The frame of sensors and projectors: they look along z, with y up and x to the left.
+
+#include "renderlib/math/transform.h"
+#include "renderlib/math/vec.h"
+
+namespace bandsaw::mitsuba {
+
+struct Frame {
+  Vec3 position;
+  Vec3 ahead;             ///< unit
+  Vec3 up;                ///< unit
+  bool mirrored = false;  ///< x is to the right
+  Vec3 scale{1, 1, 1};    ///< of x, y and z
+  bool skewed = false;    ///< the axes are not at right angles
+};
+
+/// Returns the frame of a regular transform.
+Frame frame_of(const Transform& to_world);
+
+}  // namespace bandsaw::mitsuba

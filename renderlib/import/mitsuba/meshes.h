@@ -1,0 +1,60 @@
+#pragma once
+
+// Mesh files of Mitsuba scenes: named as they are if our importer reads them as Mitsuba does,
+// otherwise made anew.
+
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <tuple>
+
+#include "absl/status/statusor.h"
+#include "renderlib/import/mitsuba/conversion.h"
+#include "renderlib/import/mitsuba/source_mesh.h"
+#include "renderlib/import/mitsuba/textures.h"
+
+namespace bandsaw::mitsuba {
+
+/// A mesh as a shape needs it.
+struct MeshRequest {
+  FoundFile file;
+  std::string type;  ///< "obj", "ply" or "serialized"
+  std::int64_t index = 0;
+  bool flip_v = false;
+  bool face_normals = false;
+  bool turned = false;                    ///< its other side is the outside
+  bool mirrored = false;                  ///< its placement mirrors it
+  bool handed = false;                    ///< u, v and the normal must be right-handed
+  bool closed = false;                    ///< it must be one mesh, because a medium is inside
+  std::set<std::string> attributes = {};  ///< those that textures use
+};
+
+struct MeshFile {
+  std::string name;         ///< of a file of the folder or of a made one
+  TexturedSurface surface;  ///< for its material
+};
+
+class Meshes {
+ public:
+  explicit Meshes(Conversion& to) : to_(to) {}
+
+  /// Returns a file with the mesh. INVALID_ARGUMENT with the file's name: it is damaged.
+  absl::StatusOr<MeshFile> file_of(const MeshRequest& request);
+  /// Returns a made file with a mesh that a converter computed.
+  absl::StatusOr<MeshFile> made_of(SourceMesh mesh, const MeshRequest& request);
+
+ private:
+  using Key = std::tuple<std::string, std::int64_t, bool>;
+  using MadeKey = std::tuple<std::string, std::int64_t, bool, bool, bool, bool, bool, bool,
+                             std::set<std::string>>;
+  absl::StatusOr<std::shared_ptr<const SourceMesh>> read(const MeshRequest& request);
+
+  Conversion& to_;
+  /// The mesh that was read last: shapes with the same file often follow each other.
+  Key last_key_;
+  std::shared_ptr<const SourceMesh> last_;
+  std::map<MadeKey, MeshFile> known_;
+};
+
+}  // namespace bandsaw::mitsuba

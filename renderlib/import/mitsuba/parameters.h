@@ -1,0 +1,49 @@
+#pragma once
+
+// Parameters of one object, by name and type.
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "renderlib/import/mitsuba/scene_tree.h"
+
+namespace bandsaw::mitsuba {
+
+/// Reads the parameters of `object`, which MUST outlive it, and knows which were asked for.
+class Parameters {
+ public:
+  explicit Parameters(const Object& object) : object_(object) {}
+
+  const Object& object() const { return object_; }
+  const Place& place() const { return object_.place; }
+
+  /// Returns the parameter, or nullptr. Of several with one name the last counts.
+  const Property* find(const std::string& name) const;
+  bool has(const std::string& name) const { return find(name) != nullptr; }
+
+  /// Return the value, or `otherwise` if there is none. INVALID_ARGUMENT with the place if it is of
+  /// another type.
+  absl::StatusOr<double> number(const std::string& name, double otherwise) const;
+  absl::StatusOr<std::int64_t> integer(const std::string& name, std::int64_t otherwise) const;
+  absl::StatusOr<bool> boolean(const std::string& name, bool otherwise) const;
+  absl::StatusOr<std::string> text(const std::string& name, const std::string& otherwise) const;
+  absl::StatusOr<Vec3> vector(const std::string& name, const Vec3& otherwise) const;
+  /// The identity if there is none.
+  absl::StatusOr<Transform> transform(const std::string& name) const;
+
+  /// Returns the parameters that are objects of this tag, whatever their names, in their order.
+  std::vector<const Property*> objects(const std::string& tag) const;
+
+  /// Marks parameters that do not change the picture here.
+  void ignore(std::initializer_list<const char*> names) const;
+  /// Returns the parameters that nobody asked for.
+  std::vector<const Property*> unused() const;
+
+ private:
+  const Object& object_;
+  mutable std::set<const Property*> used_;
+};
+
+}  // namespace bandsaw::mitsuba

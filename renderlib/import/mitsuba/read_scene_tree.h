@@ -1,0 +1,19 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "renderlib/import/convert/foreign_scene.h"
+#include "renderlib/import/mitsuba/files.h"
+#include "renderlib/import/mitsuba/scene_tree.h"
+
+namespace bandsaw::mitsuba {
+
+/// Reads the XML file and those that it includes. <path> elements add folders to `files`. Names of
+/// version 0.x ("toWorld") are written as those of later versions ("to_world"). INVALID_ARGUMENT
+/// with file and line: the XML is broken, a parameter or reference is undefined, a number is not
+/// finite, an object refers to itself, or a bound is exceeded (size, nesting, includes).
+absl::StatusOr<SceneTree> read_scene_tree(const ForeignScene& from, Files& files);
+
+}  // namespace bandsaw::mitsuba

@@ -1,0 +1,34 @@
+#pragma once
+
+// Values of Mitsuba's XML elements as text: numbers, vectors, colours, spectra.
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "renderlib/import/mitsuba/scene_tree.h"
+
+namespace bandsaw::mitsuba {
+
+/// Returns the parts of a list, which are separated by commas and white space.
+std::vector<std::string> parts_of(absl::string_view text);
+/// Reads a number, finite and at most 1e30 in absolute value.
+absl::StatusOr<double> read_number(absl::string_view text);
+absl::StatusOr<std::int64_t> read_integer(absl::string_view text);
+absl::StatusOr<bool> read_boolean(absl::string_view text);
+/// Reads exactly three numbers.
+absl::StatusOr<Vec3> read_three(absl::string_view text);
+/// Reads one or three numbers of linear RGB, or "#rrggbb" in sRGB.
+absl::StatusOr<Rgb> read_rgb(absl::string_view text);
+/// Reads a colour in sRGB: three numbers in [0, 1] or "#rrggbb".
+absl::StatusOr<Rgb> read_srgb(absl::string_view text);
+/// Reads a number, or "wavelength:value" pairs with increasing wavelengths.
+absl::StatusOr<Spectrum> read_spectrum(absl::string_view text);
+/// Reads the lines of a spectrum file: wavelength and value; # begins a comment.
+absl::StatusOr<Spectrum> read_spectrum_file(absl::string_view text);
+/// Reads the 16 numbers of a 4 x 4 matrix whose last row is 0 0 0 1, rows first, or the 9 of its
+/// linear part.
+absl::StatusOr<Transform> read_matrix(absl::string_view text);
+
+}  // namespace bandsaw::mitsuba

@@ -1,0 +1,75 @@
+#pragma once
+
+// Shapes of Mitsuba scenes.
+
+#include <map>
+#include <set>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "proto/scene.pb.h"
+#include "renderlib/import/mitsuba/bsdfs.h"
+#include "renderlib/import/mitsuba/conversion.h"
+#include "renderlib/import/mitsuba/media.h"
+#include "renderlib/import/mitsuba/meshes.h"
+
+namespace bandsaw::mitsuba {
+
+class ShapeReader {
+ public:
+  /// Shapes, groups and materials are added to `scene`. All arguments MUST outlive this object.
+  ShapeReader(scene::Scene& scene, Conversion& to)
+      : scene_(scene), to_(to), materials_(scene, to), media_(scene, to), meshes_(to) {}
+
+  /// Adds a shape of the scene. A shapegroup is added when an instance places it.
+  absl::Status add(const Object& shape);
+
+ private:
+  /// Where shapes go: the scene, or a group.
+  struct Target {
+    google::protobuf::RepeatedPtrField<scene::Shape>* shapes;
+    google::protobuf::RepeatedPtrField<scene::Model>* models;
+    google::protobuf::RepeatedPtrField<scene::Instance>* instances;
+  };
+  /// What all kinds of shapes have.
+  struct Surface {
+    const Object* bsdf = nullptr;
+    const Object* emitter = nullptr;
+    const Object* interior = nullptr;
+    Transform to_world;
+    bool flip_normals = false;
+  };
+
+  absl::Status add_to(const Object& shape, const Target& target);
+  absl::Status add_kind(const Parameters& from, const Surface& surface, const Target& target);
+  absl::StatusOr<Surface> surface_of(const Parameters& from);
+  absl::Status add_mesh(const Parameters& from, const Surface& surface, const Target& target);
+  absl::Status add_made_mesh(const Parameters& from, const Surface& surface, SourceMesh mesh,
+                             const Target& target);
+  absl::Status add_rectangle(const Parameters& from, const Surface& surface, const Target& target);
+  absl::Status add_disk(const Parameters& from, const Surface& surface, const Target& target);
+  absl::Status add_sphere(const Parameters& from, const Surface& surface, const Target& target);
+  absl::Status add_cylinder(const Parameters& from, const Surface& surface, const Target& target);
+  absl::Status add_instance(const Parameters& from, const Target& target);
+  absl::Status add_placed(const scene::Shape& shape, const Transform& to_world,
+                          const Target& target);
+  /// Adds a model file, unless nothing of it would be seen.
+  absl::Status add_model(const Parameters& from, const Surface& surface, const std::string& file,
+                         const std::string& material, const Target& target);
+  absl::StatusOr<std::string> group_of(const Object& group);
+  /// Warns of a medium in a shape that is not closed.
+  void warn_of_interior(const Surface& surface, const Parameters& from);
+
+  scene::Scene& scene_;
+  Conversion& to_;
+  Materials materials_;
+  Media media_;
+  Meshes meshes_;
+  std::map<const Object*, std::string> groups_;
+  std::set<std::string> group_names_;
+};
+
+/// Appends the 12 numbers of a placement, rows first.
+void set_matrix(const Transform& t, google::protobuf::RepeatedField<double>* to);
+
+}  // namespace bandsaw::mitsuba

@@ -1,0 +1,54 @@
+#pragma once
+
+// Triangle meshes of Mitsuba's formats, as Mitsuba sees them.
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "renderlib/import/convert/ply_mesh.h"
+
+namespace bandsaw::mitsuba {
+
+/// Numbers that belong to each vertex or to each triangle, for mesh_attribute textures.
+struct MeshAttribute {
+  std::string name;  ///< "vertex_color", "face_weight"
+  bool per_face = false;
+  std::size_t channels = 1;   ///< 1 or 3
+  std::vector<float> values;  ///< channels for each vertex or triangle
+};
+
+struct SourceMesh {
+  /// With Mitsuba's uv coordinates: v = 0 is the top row of an image. No normals if the file has
+  /// none.
+  PlyMesh mesh;
+  std::vector<MeshAttribute> attributes;
+  bool faceted = false;  ///< the file itself asks for normals of faces
+};
+
+/// Largest size of a mesh file, and of one in memory.
+inline constexpr std::uint64_t kMaxMeshBytes = std::uint64_t{4} << 30;
+
+/// Reads a Wavefront OBJ: vertices, normals, uvs and polygons; materials and groups are ignored.
+/// `flip_v`: v = 0 is the bottom row in the file, as usual. INVALID_ARGUMENT with the line.
+absl::StatusOr<SourceMesh> read_obj(absl::string_view bytes, bool flip_v);
+/// Reads a PLY, text or binary: positions, normals, uvs, further numbers as attributes. Polygons
+/// are split into triangles. INVALID_ARGUMENT: it is damaged.
+absl::StatusOr<SourceMesh> read_ply(absl::string_view bytes, bool flip_v);
+/// Reads one mesh of Mitsuba's *.serialized. INVALID_ARGUMENT: it is damaged or has no such mesh.
+absl::StatusOr<SourceMesh> read_serialized(absl::string_view bytes, std::int64_t index,
+                                           bool flip_v);
+
+/// Sets normals of vertices: the mean of the triangles' normals, weighted by their angles there
+/// (Thürmer and Wüthrich 1998).
+void add_smooth_normals(PlyMesh& mesh);
+/// Turns each triangle whose normal is opposite to those of its vertices.
+void orient_by_normals(PlyMesh& mesh);
+/// Turns all triangles and normals to the other side.
+void turn_over(PlyMesh& mesh);
+/// Returns true if u, v and the normals are a left-handed system on more of the surface than not.
+bool has_left_handed_uvs(const PlyMesh& mesh);
+
+}  // namespace bandsaw::mitsuba

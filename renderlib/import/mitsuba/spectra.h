@@ -1,0 +1,31 @@
+#pragma once
+
+// Spectra of Mitsuba scenes as linear RGB, as Mitsuba's RGB variants convert them.
+
+#include "absl/status/statusor.h"
+#include "renderlib/import/mitsuba/parameters.h"
+#include "renderlib/import/mitsuba/textures.h"
+#include "renderlib/math/rgb.h"
+
+namespace bandsaw::mitsuba {
+
+/// Returns the colour of a spectrum: of a light as it is, of a surface under D65. Channels below 0
+/// become 0.
+Rgb rgb_of(const Spectrum& spectrum, ColorOf of);
+Rgb rgb_of(const BlackBody& body);
+/// Reads the parameters of a spectrum of type "regular" or "irregular".
+absl::StatusOr<Spectrum> sampled_spectrum(const Parameters& from);
+
+/// Returns the index of refraction of a named material ("bk7"), or that of a number.
+absl::StatusOr<double> index_of_refraction(const Parameters& from, const std::string& name,
+                                           const std::string& otherwise);
+
+/// Complex index of refraction, for each channel.
+struct MetalIndex {
+  Rgb eta;
+  Rgb k;
+};
+/// Returns the metal of a name ("Cu"); NOT_FOUND if it is not known.
+absl::StatusOr<MetalIndex> metal_of(const std::string& name);
+
+}  // namespace bandsaw::mitsuba

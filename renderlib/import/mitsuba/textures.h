@@ -1,0 +1,63 @@
+#pragma once
+
+// Colours and textures of Mitsuba scenes, as those of our scene files.
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "proto/scene.pb.h"
+#include "renderlib/import/mitsuba/conversion.h"
+#include "renderlib/import/mitsuba/parameters.h"
+
+namespace bandsaw::mitsuba {
+
+/// How the uv coordinates of a surface of ours follow from Mitsuba's, where v = 0 is the top row of
+/// an image.
+enum class UvFrame {
+  kSame,
+  kFlipped,  ///< v of ours is 1 - v of Mitsuba's
+};
+
+/// What textures need to know about the surface that they are on.
+struct TexturedSurface {
+  UvFrame frame = UvFrame::kSame;
+  /// Images of the mesh's attributes: name -> file. They are looked up by the surface's uvs.
+  std::map<std::string, std::string> attributes = {};
+};
+
+/// Whether a colour is that of a light or of a surface: they are converted to RGB under different
+/// spectra.
+enum class ColorOf { kSurface, kLight };
+
+/// A number that may vary over a surface: the texture's luminance, if there is one.
+struct Varying {
+  double value = 0;
+  std::optional<scene::Texture> texture = std::nullopt;
+};
+
+/// Sets the three channels of `to`.
+void set_color(const Rgb& color, scene::Color* to);
+/// Returns a texture of one colour.
+scene::Texture constant_texture(const Rgb& color);
+
+/// Returns the constant colour of a value; std::nullopt if it is a texture that varies.
+absl::StatusOr<std::optional<Rgb>> constant_color(const Property& property, ColorOf of);
+
+/// Converts a value to a texture. INVALID_ARGUMENT with the place: it is no colour.
+absl::StatusOr<scene::Texture> texture_of(const Property& property, ColorOf of,
+                                          const TexturedSurface& surface, Conversion& to);
+
+/// Returns a parameter that is a number or a texture; `otherwise` if there is none.
+absl::StatusOr<Varying> varying_of(const Parameters& from, const std::string& name,
+                                   double otherwise, const TexturedSurface& surface,
+                                   Conversion& to);
+
+/// Returns true if the texture of the value depends on uv coordinates.
+bool uses_uv(const Value& value);
+/// Adds the names of the mesh attributes that textures in the object use.
+void find_attributes(const Object& object, std::set<std::string>& names);
+
+}  // namespace bandsaw::mitsuba

@@ -1,0 +1,80 @@
+// A scene of Mitsuba through the importer, without any other files; or, if the input does not begin
+// with '<', one of its mesh files.
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "absl/strings/match.h"
+#include "renderlib/base/check.h"
+#include "renderlib/import/import.h"
+#include "renderlib/import/mitsuba/source_mesh.h"
+#include "renderlib/package/package.h"
+#include "tests/fuzz/fuzz.h"
+
+namespace bandsaw {
+namespace {
+
+/// A folder that contains only the scene, for this process.
+class Folder {
+ public:
+  Folder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "fuzz-mitsuba-XXXXXX").string();
+    BANDSAW_CHECK(mkdtemp(pattern.data()) != nullptr, "a temporary folder can be made");
+    path_ = pattern;
+  }
+  ~Folder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  std::string file(const char* name) const { return path_ + "/" + name; }
+
+ private:
+  std::string path_;
+};
+
+void read_mesh(absl::string_view bytes) {
+  const auto mesh = absl::StartsWith(bytes, "ply")    ? mitsuba::read_ply(bytes, false)
+                    : absl::StartsWith(bytes, "\x1c") ? mitsuba::read_serialized(bytes, 0, true)
+                                                      : mitsuba::read_obj(bytes, true);
+  if (!mesh.ok()) {
+    return;
+  }
+  PlyMesh whole = mesh->mesh;
+  for (const auto& triangle : whole.triangles) {
+    for (const std::uint32_t index : triangle) {
+      BANDSAW_CHECK(index < whole.positions.size(), "indices are those of vertices");
+    }
+  }
+  BANDSAW_CHECK(whole.normals.empty() || whole.normals.size() == whole.positions.size(),
+                "each vertex has a normal, or none");
+  mitsuba::orient_by_normals(whole);
+  mitsuba::add_smooth_normals(whole);
+  mitsuba::has_left_handed_uvs(whole);
+}
+
+}  // namespace
+}  // namespace bandsaw
+
+void bandsaw::fuzz::run(absl::Span<const std::uint8_t> input) {
+  static const Folder folder;
+  const std::string bytes = text(input);
+  if (!absl::StartsWith(bytes, "<")) {
+    read_mesh(bytes);
+    return;
+  }
+  const std::string path = folder.file("scene.xml");
+  std::ofstream(path, std::ios::binary) << bytes;
+  const absl::StatusOr<ImportedScene> imported = import_scene(path);
+  if (!imported.ok()) {
+    return;
+  }
+  BlobMap blobs;
+  const std::string manifest = encode_package(imported->scene, imported->info, blobs);
+  const auto decoded = decode_package(manifest, blobs);
+  BANDSAW_CHECK(decoded.ok(), decoded.status().ToString().c_str());
+}

@@ -1,0 +1,301 @@
+// Renders the scenes of Mitsuba's own tests and compares them with Mitsuba's references.
+//
+//   mitsuba_refs FOLDER [--only NAME] [--samples N] [--budget N] [--seeds N] [--out FOLDER]
+//
+// FOLDER is a copy of Mitsuba's test data: tests/scenes/*/*.xml, and beside them
+// refs/NAME_ref_rgb.exr and refs/NAME_ref_rgb_var.exr, the variance of one sample. Each scene is
+// rendered with --seeds seeds (default 16), which together take --budget samples of all pixels
+// (default 2 million, as Mitsuba's tests) or --samples per pixel. --out gets the images, for scenes
+// that fail.
+//
+// A channel of a pixel fails if the p-value of its difference is below Sidak's level for the image
+// at 0.01. As in Mitsuba's tests, up to 0.25 % of the channels may fail. The variance of the
+// difference is that of the reference for as many samples, at least 1e-4 for a sample, or ours from
+// the seeds if it is larger, and that of the reference image itself (32,000 samples).
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "renderlib/base/atomic_file.h"
+#include "renderlib/base/file.h"
+#include "renderlib/base/pool.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/image/png.h"
+#include "renderlib/image/srgb.h"
+#include "renderlib/import/image/decode_image.h"
+#include "renderlib/import/import.h"
+#include "renderlib/package/settings_of.h"
+#include "renderlib/render/render_band.h"
+#include "renderlib/scene/scene.h"
+
+namespace bandsaw {
+namespace {
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string folder;
+  std::string only;
+  std::string out;
+  std::uint64_t samples = 0;
+  std::uint64_t budget = 2'000'000;
+  int seeds = 16;
+};
+
+/// Sums over seeds of each channel's mean.
+struct Rendered {
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::uint64_t samples = 0;  ///< a pixel, of all seeds
+  std::vector<double> mean;
+  std::vector<double> variance;  ///< of the mean
+  std::vector<double> whole;     ///< mean of the image, of each seed
+  std::vector<std::string> warnings;
+};
+
+absl::StatusOr<Rendered> render(const std::string& path, const Options& options, Pool& pool) {
+  ImportChoices choices;
+  choices.folder = options.folder;
+  ASSIGN_OR_RETURN(ImportedScene imported, import_scene(path, choices));
+  RenderSettings settings = settings_of(imported.info, std::nullopt, std::nullopt);
+  Rendered out;
+  out.width = settings.width;
+  out.height = settings.height;
+  out.warnings = imported.info.warnings;
+  const std::uint64_t pixels = std::uint64_t{settings.width} * settings.height;
+  const std::uint64_t all = options.samples > 0 ? options.samples : options.budget / pixels;
+  const std::uint64_t each =
+      std::max<std::uint64_t>(1, all / static_cast<std::uint64_t>(options.seeds));
+  out.samples = each * static_cast<std::uint64_t>(options.seeds);
+  ASSIGN_OR_RETURN(const auto scene, Scene::build(std::move(imported.scene), pool));
+  const std::atomic<bool> stop = false;
+  std::vector<double> sum(3 * pixels);
+  std::vector<double> squares(3 * pixels);
+  for (int seed = 0; seed < options.seeds; ++seed) {
+    settings.seed = static_cast<std::uint64_t>(seed);
+    std::vector<double> sums(3 * pixels);
+    for (const SampleRange& node : maximal_nodes(each)) {
+      ASSIGN_OR_RETURN(const BandPixels band,
+                       render_band(*scene, settings, {node, {0, settings.height}}, pool, stop,
+                                   [](std::uint32_t) {}));
+      for (std::size_t i = 0; i < sums.size(); ++i) {
+        sums[i] += band.sums[i];
+      }
+    }
+    double whole = 0;
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      const double value = sums[i] / static_cast<double>(each);
+      sum[i] += value;
+      squares[i] += value * value;
+      whole += value;
+    }
+    out.whole.push_back(whole / static_cast<double>(sums.size()));
+  }
+  const double n = options.seeds;
+  for (std::size_t i = 0; i < sum.size(); ++i) {
+    const double mean = sum[i] / n;
+    out.mean.push_back(mean);
+    out.variance.push_back(std::max(0.0, squares[i] / n - mean * mean) / std::max(1.0, n - 1));
+  }
+  return out;
+}
+
+absl::StatusOr<Image> read_image(const std::string& path) {
+  ASSIGN_OR_RETURN(const std::string bytes, read_whole_file(path, kMaxImageFileBytes));
+  return decode_picture(bytes);
+}
+
+float channel_of(const Image& image, std::size_t i) {
+  const Rgb& c = image.pixels[i / 3];
+  return i % 3 == 0 ? c.r : i % 3 == 1 ? c.g : c.b;
+}
+
+struct Comparison {
+  double failing = 0;  ///< share of the channels
+  double strictly =
+      0;  ///< the same with the variance of the reference alone, as in Mitsuba's tests
+  double relative = 0;  ///< difference of the means of both images, over that of the reference
+  double error = 0;     ///< standard error of `relative`
+  std::vector<double> z;
+};
+
+Comparison compare(const Rendered& ours, const Image& reference, const Image& variance) {
+  constexpr double kReferenceSamples = 32000;
+  const std::size_t channels = ours.mean.size();
+  const double pixels = static_cast<double>(channels) / 3;
+  const double level = 1 - std::pow(1 - 0.01, 1 / pixels);
+  Comparison out;
+  double mean = 0;
+  double theirs = 0;
+  double reference_variance = 0;
+  for (std::size_t i = 0; i < channels; ++i) {
+    const double of_one = std::max(1e-4, double{channel_of(variance, i)});
+    const double difference = ours.mean[i] - channel_of(reference, i);
+    const double alone = of_one / static_cast<double>(ours.samples);
+    const double both = std::max(alone, ours.variance[i]) + of_one / kReferenceSamples;
+    const auto p_value = [&](double v) {
+      return std::erfc(std::abs(difference) / std::sqrt(2 * v));
+    };
+    out.failing += p_value(both) < level ? 1 : 0;
+    out.strictly += p_value(alone) < level ? 1 : 0;
+    out.z.push_back(difference / std::sqrt(both));
+    mean += ours.mean[i];
+    theirs += channel_of(reference, i);
+    reference_variance += of_one / kReferenceSamples;
+  }
+  out.failing /= static_cast<double>(channels);
+  out.strictly /= static_cast<double>(channels);
+  out.relative = theirs > 0 ? mean / theirs - 1 : 0;
+  double spread = 0;
+  for (const double whole : ours.whole) {
+    const double off = whole - mean / static_cast<double>(channels);
+    spread += off * off;
+  }
+  const double n = static_cast<double>(ours.whole.size());
+  const double of_mean = spread / (n * std::max(1.0, n - 1));
+  const double of_reference = reference_variance / (static_cast<double>(channels) * channels);
+  out.error = std::sqrt(of_mean + of_reference) * static_cast<double>(channels) / theirs;
+  return out;
+}
+
+/// Writes ours, the reference and z side by side: red where ours is brighter, blue where it is
+/// darker, full at 5 standard deviations.
+void write_images(const std::string& path, const Rendered& ours, const Image& reference,
+                  const Comparison& found) {
+  Image all{3 * ours.width, ours.height, {}};
+  all.pixels.resize(std::size_t{all.width} * all.height);
+  for (std::size_t i = 0; i < reference.pixels.size(); ++i) {
+    const std::size_t row = i / ours.width;
+    const std::size_t at = row * all.width + i % ours.width;
+    const auto color = [&](const std::vector<double>& v) {
+      return Rgb{static_cast<float>(v[3 * i]), static_cast<float>(v[3 * i + 1]),
+                 static_cast<float>(v[3 * i + 2])};
+    };
+    all.pixels[at] = color(ours.mean);
+    all.pixels[at + ours.width] = reference.pixels[i];
+    const Rgb z = color(found.z);
+    const float sum = (z.r + z.g + z.b) / 15;
+    all.pixels[at + 2 * ours.width] = sum > 0 ? Rgb{sum, 0, 0} : Rgb{0, 0, -sum};
+  }
+  std::vector<std::uint8_t> codes;
+  for (const Rgb& c : all.pixels) {
+    for (const float channel : {c.r, c.g, c.b}) {
+      codes.push_back(srgb_encode(channel));
+    }
+  }
+  const auto png = encode_png(all.width, all.height, codes);
+  if (png.ok()) {
+    write_file_atomically(path, *png).IgnoreError();
+  }
+}
+
+/// Returns "test_spot" for "test_spot_direct".
+std::string reference_name(const std::string& stem) { return stem.substr(0, stem.rfind('_')); }
+
+bool run_one(const fs::path& scene, const Options& options, Pool& pool) {
+  const std::string stem = scene.stem().string();
+  const std::string name = (scene.parent_path().filename() / stem).string();
+  const auto ours = render(scene.string(), options, pool);
+  if (!ours.ok()) {
+    std::printf("| %s | | error | %s |\n", name.c_str(),
+                std::string(ours.status().message()).c_str());
+    return false;
+  }
+  for (const std::string& warning : ours->warnings) {
+    std::fprintf(stderr, "  %s\n", warning.c_str());
+  }
+  const std::string base =
+      (scene.parent_path() / "refs" / (reference_name(stem) + "_ref_rgb")).string();
+  const auto reference = read_image(base + ".exr");
+  const auto variance = read_image(base + "_var.exr");
+  if (!reference.ok() || !variance.ok()) {
+    double mean = 0;
+    for (const double whole : ours->whole) {
+      mean += whole / static_cast<double>(ours->whole.size());
+    }
+    std::printf("| %s | %llu | no reference | mean %.4g |\n", name.c_str(),
+                static_cast<unsigned long long>(ours->samples), mean);
+    return true;
+  }
+  if (reference->width != ours->width || reference->height != ours->height) {
+    std::printf("| %s | | other size | |\n", name.c_str());
+    return false;
+  }
+  const Comparison found = compare(*ours, *reference, *variance);
+  const bool passes = found.failing <= 0.0025;
+  std::printf("| %s | %llu | %s | %+.3f %% ± %.3f %% | %.2f %% | %.2f %% |\n", name.c_str(),
+              static_cast<unsigned long long>(ours->samples), passes ? "pass" : "fail",
+              100 * found.relative, 100 * found.error, 100 * found.failing, 100 * found.strictly);
+  if (!options.out.empty()) {
+    write_images(options.out + "/" + stem + ".png", *ours, *reference, found);
+  }
+  std::fflush(stdout);
+  return passes;
+}
+
+int run(const Options& options) {
+  std::vector<fs::path> scenes;
+  for (const auto& entry : fs::recursive_directory_iterator(options.folder + "/tests/scenes")) {
+    const bool in_scene_folder =
+        fs::exists(entry.path().parent_path().parent_path().parent_path() / "scenes") &&
+        entry.path().parent_path().parent_path().filename() == "scenes";
+    if (entry.path().extension() == ".xml" && in_scene_folder &&
+        entry.path().string().find(options.only) != std::string::npos) {
+      scenes.push_back(entry.path());
+    }
+  }
+  std::sort(scenes.begin(), scenes.end());
+  std::printf(
+      "| scene | samples a pixel | result | difference of the means | failing channels | "
+      "with the reference's variance alone |\n|---|---|---|---|---|---|\n");
+  Pool pool(2);
+  int failed = 0;
+  for (const fs::path& scene : scenes) {
+    failed += run_one(scene, options, pool) ? 0 : 1;
+  }
+  std::printf("\n%d of %zu scenes failed\n", failed, scenes.size());
+  return failed == 0 ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace bandsaw
+
+int main(int argc, char** argv) {
+  bandsaw::Options options;
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    if (argument.rfind("--", 0) != 0) {
+      options.folder = std::filesystem::absolute(argument).string();
+      continue;
+    }
+    if (++i == argc) {
+      options.folder.clear();
+      break;
+    }
+    const std::string value = argv[i];
+    if (argument == "--only") {
+      options.only = value;
+    } else if (argument == "--out") {
+      options.out = value;
+    } else if (argument == "--samples") {
+      options.samples = std::strtoull(value.c_str(), nullptr, 10);
+    } else if (argument == "--budget") {
+      options.budget = std::strtoull(value.c_str(), nullptr, 10);
+    } else if (argument == "--seeds") {
+      options.seeds = std::max(2, std::atoi(value.c_str()));
+    }
+  }
+  if (options.folder.empty()) {
+    std::fprintf(stderr,
+                 "usage: mitsuba_refs FOLDER [--only NAME] [--samples N] [--budget N] "
+                 "[--seeds N] [--out FOLDER]\n");
+    return 2;
+  }
+  return bandsaw::run(options);
+}

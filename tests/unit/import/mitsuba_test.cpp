@@ -1,0 +1,407 @@
+// Scenes of Mitsuba: what becomes of them, and what is refused.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "renderlib/import/import.h"
+#include "renderlib/import/mitsuba/convert_mitsuba.h"
+#include "tests/unit/import/files.h"
+
+namespace bandsaw {
+namespace {
+
+using test::TempDir;
+using test::write_text;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::StartsWith;
+
+const std::string kSensor = R"(<sensor type="perspective"/>
+)";
+
+class MitsubaScene : public ::testing::Test {
+ protected:
+  /// Converts a scene with the given content. The sensor is in line 2 of the file.
+  absl::StatusOr<ConvertedScene> convert(const std::string& content,
+                                         std::map<std::string, std::string> parameters = {}) {
+    return convert_file("<scene version=\"3.0.0\">\n" + kSensor + content + "\n</scene>\n",
+                        std::move(parameters));
+  }
+  absl::StatusOr<ConvertedScene> convert_file(const std::string& text,
+                                              std::map<std::string, std::string> parameters = {}) {
+    const std::string path = write_text(folder_, "s.xml", text);
+    const auto folder = SceneFolder::of(path);
+    return convert_mitsuba({folder->path() + "/s.xml", "s.xml", *folder, std::move(parameters)});
+  }
+  scene::Scene scene(const std::string& content) {
+    const auto converted = convert(content);
+    EXPECT_TRUE(converted.ok()) << converted.status();
+    return converted.ok() ? converted->scene : scene::Scene();
+  }
+  std::string error(const std::string& content) {
+    return std::string(convert(content).status().message());
+  }
+  std::vector<std::string> warnings(const std::string& content) {
+    const auto converted = convert(content);
+    EXPECT_TRUE(converted.ok()) << converted.status();
+    return converted.ok() ? converted->warnings : std::vector<std::string>();
+  }
+  TempDir folder_;
+};
+
+std::string rectangle(const std::string& bsdf) {
+  return "<shape type=\"rectangle\">" + bsdf + "</shape>";
+}
+
+TEST_F(MitsubaScene, TheDefaultLensIsThatOf50mm) {
+  EXPECT_NEAR(
+      scene("").camera().vertical_fov(),
+      2 * std::atan(std::sqrt(36.0 * 36 + 24 * 24) / 100 / std::sqrt(1 + 16.0 / 9)) * 180 / M_PI,
+      1e-9)
+      << "on the diagonal of 768 x 576";
+}
+
+TEST_F(MitsubaScene, CropsBecomeWindows) {
+  const auto converted = convert_file(R"(<scene version="3.0.0"><sensor type="perspective">
+    <float name="fov" value="90"/>
+    <transform name="to_world"><lookat origin="1,2,3" target="1,2,0" up="0,1,0"/></transform>
+    <film type="hdrfilm">
+      <integer name="width" value="200"/> <integer name="height" value="100"/>
+      <integer name="crop_offset_x" value="100"/> <integer name="crop_width" value="100"/>
+      <rfilter type="box"/>
+    </film></sensor></scene>)");
+  ASSERT_TRUE(converted.ok()) << converted.status();
+  const scene::Camera& camera = converted->scene.camera();
+  EXPECT_THAT(camera.position(), ElementsAre(1, 2, 3));
+  EXPECT_THAT(camera.look_at(), ElementsAre(1, 2, 0));
+  EXPECT_FALSE(camera.mirrored());
+  EXPECT_NEAR(camera.vertical_fov(), 2 * std::atan(0.5) * 180 / M_PI, 1e-12);
+  EXPECT_THAT(camera.window(), ElementsAre(0, 2, -1, 1)) << "the right half";
+  EXPECT_EQ(converted->scene.image().width(), 100u);
+  EXPECT_EQ(converted->scene.image().filter().box().radius(), 0.5);
+}
+
+TEST_F(MitsubaScene, AMirroredSensorIsMirrored) {
+  const auto converted = convert_file(R"(<scene version="3.0.0"><sensor type="perspective">
+    <transform name="to_world"><scale x="-1"/></transform></sensor></scene>)");
+  ASSERT_TRUE(converted.ok()) << converted.status();
+  EXPECT_TRUE(converted->scene.camera().mirrored());
+}
+
+TEST_F(MitsubaScene, DepthCountsVertices) {
+  const auto depth = [&](const std::string& value) {
+    return scene("<integrator type=\"path\"><integer name=\"max_depth\" value=\"" + value +
+                 "\"/></integrator>")
+        .integrator()
+        .max_depth();
+  };
+  EXPECT_EQ(depth("2"), 1u);
+  EXPECT_EQ(depth("9"), 8u);
+  EXPECT_EQ(depth("-1"), 1024u);
+  EXPECT_EQ(scene("<integrator type=\"moment\"><integrator type=\"direct\"/></integrator>")
+                .integrator()
+                .max_depth(),
+            1u);
+}
+
+TEST_F(MitsubaScene, ParametersHaveDefaultsAndValues) {
+  const std::string text =
+      "<default name=\"r\" value=\"2\"/><shape type=\"sphere\">"
+      "<float name=\"radius\" value=\"$r\"/></shape>";
+  EXPECT_EQ(scene(text).shape(0).sphere().radius(), 2);
+  const auto other = convert(text, {{"r", "5"}});
+  ASSERT_TRUE(other.ok()) << other.status();
+  EXPECT_EQ(other->scene.shape(0).sphere().radius(), 5);
+  EXPECT_THAT(std::string(convert(text, {{"radius", "5"}}).status().message()),
+              HasSubstr("has no parameter \"radius\""));
+  EXPECT_THAT(error("<shape type=\"sphere\"><float name=\"radius\" value=\"$r\"/></shape>"),
+              StartsWith("s.xml:3: parameter in \"$r\" is not defined"));
+}
+
+TEST_F(MitsubaScene, ParametersCannotGrowWithoutBound) {
+  std::string text = "<default name=\"p0\" value=\"0123456789\"/>\n";
+  for (int i = 1; i < 40; ++i) {
+    const std::string last = "$p" + std::to_string(i - 1);
+    text += "<default name=\"p" + std::to_string(i) + "\" value=\"" + last + "x" + last + "\"/>\n";
+  }
+  EXPECT_THAT(error(text), HasSubstr("is longer than 1 MB"));
+}
+
+TEST_F(MitsubaScene, IncludesAreRead) {
+  write_text(folder_, "ball.xml", "<scene version=\"2.0.0\"><shape type=\"sphere\"/></scene>");
+  EXPECT_EQ(scene("<include filename=\"ball.xml\"/>").shape_size(), 1);
+}
+
+TEST_F(MitsubaScene, BadIncludesAreRefused) {
+  EXPECT_THAT(error("<include filename=\"s.xml\"/>"), HasSubstr("includes itself"));
+  write_text(folder_, "a.xml", "<scene version=\"3.0.0\"><include filename=\"b.xml\"/></scene>");
+  write_text(folder_, "b.xml", "<scene version=\"3.0.0\">\n<include filename=\"a.xml\"/></scene>");
+  EXPECT_THAT(error("<include filename=\"a.xml\"/>"),
+              StartsWith("b.xml:2: \"a.xml\" includes itself"));
+  EXPECT_THAT(error("\n<include filename=\"../outside.xml\"/>"),
+              StartsWith("s.xml:4: \"../outside.xml\" lies outside"));
+  EXPECT_THAT(error("<include filename=\"missing.xml\"/>"), HasSubstr("is missing"));
+  EXPECT_THAT(error("<path value=\"..\"/>"), HasSubstr("lies outside of the scene's folder"));
+}
+
+TEST_F(MitsubaScene, ManyIncludesOfIncludesAreRefused) {
+  for (int i = 0; i < 10; ++i) {
+    std::string text = "<scene version=\"3.0.0\">";
+    for (int k = 0; k < 10; ++k) {
+      text += "<include filename=\"i" + std::to_string(i + 1) + ".xml\"/>";
+    }
+    write_text(folder_, "i" + std::to_string(i) + ".xml", text + "</scene>");
+  }
+  write_text(folder_, "i10.xml", "<scene version=\"3.0.0\"/>");
+  EXPECT_THAT(error("<include filename=\"i0.xml\"/>"), HasSubstr("or more than 1000 are included"));
+}
+
+TEST_F(MitsubaScene, DamagedXmlIsRefusedWithItsLine) {
+  EXPECT_THAT(std::string(convert_file("<scene version=\"3.0.0\">\n<shape").status().message()),
+              HasSubstr("s.xml:2: is not XML"));
+  EXPECT_THAT(std::string(convert_file("<shape/>").status().message()),
+              HasSubstr("the root element must be <scene>"));
+  EXPECT_THAT(std::string(convert_file("").status().message()), HasSubstr("is not XML"));
+  std::string deep;
+  for (int i = 0; i < 1'000'000; ++i) {
+    deep += "<a>";
+  }
+  for (int i = 0; i < 1'000'000; ++i) {
+    deep += "</a>";
+  }
+  EXPECT_THAT(error(deep), HasSubstr("elements are nested more than 50 deep"));
+}
+
+TEST_F(MitsubaScene, NumbersMustBeFinite) {
+  const auto placed = [&](const std::string& step) {
+    return error("<shape type=\"sphere\"><transform name=\"to_world\">\n" + step +
+                 "</transform></shape>");
+  };
+  EXPECT_THAT(placed("<scale value=\"nan\"/>"), StartsWith("s.xml:4: \"nan\" is not a finite"));
+  EXPECT_THAT(placed("<translate x=\"inf\"/>"), HasSubstr("is not a finite number"));
+  EXPECT_THAT(placed("<matrix value=\"1 0 0 0 0 1 0 0 0 0 1 0 0 0 1 1\"/>"),
+              HasSubstr("the last row of a matrix must be 0 0 0 1"));
+  EXPECT_THAT(placed("<scale value=\"0\"/>"), HasSubstr("to_world is singular"));
+  EXPECT_THAT(placed("<rotate angle=\"3\"/>"), HasSubstr("needs an axis"));
+  EXPECT_THAT(placed("<lookat origin=\"1 1 1\" target=\"1 1 1\"/>"), HasSubstr("must differ"));
+}
+
+TEST_F(MitsubaScene, ReferencesAreResolved) {
+  const std::string paper =
+      "<bsdf type=\"diffuse\" id=\"paper\"><rgb name=\"reflectance\" value=\"0.1 0.2 "
+      "0.3\"/></bsdf>";
+  const scene::Scene from =
+      scene(rectangle("<ref id=\"sheet\"/>") + paper + "<alias id=\"paper\" as=\"sheet\"/>");
+  ASSERT_EQ(from.material_size(), 1);
+  EXPECT_EQ(from.material(0).name(), "paper");
+  EXPECT_NEAR(from.material(0).diffuse().color().rgb(2), 0.3, 1e-7);
+  EXPECT_TRUE(from.material(0).one_sided());
+  EXPECT_EQ(from.shape(0).material(), "paper");
+  EXPECT_THAT(error(rectangle("\n<ref id=\"nothing\"/>")),
+              StartsWith("s.xml:4: no object has the id \"nothing\""));
+  EXPECT_THAT(error(paper + paper), HasSubstr("id \"paper\" is also at s.xml:3"));
+}
+
+TEST_F(MitsubaScene, CyclesAndExplosionsOfReferencesAreRefused) {
+  EXPECT_THAT(error("<bsdf type=\"twosided\" id=\"a\"><ref id=\"a\"/></bsdf>"),
+              HasSubstr("refers to itself"));
+  std::string text = "<bsdf type=\"diffuse\" id=\"b0\"/>";
+  for (int i = 1; i < 40; ++i) {
+    const std::string last = "<ref id=\"b" + std::to_string(i - 1) + "\"/>";
+    text += "<bsdf type=\"blendbsdf\" id=\"b" + std::to_string(i) + "\">" + last + last + "</bsdf>";
+  }
+  EXPECT_THAT(error(text), HasSubstr("has more than 10000 parts"));
+}
+
+TEST_F(MitsubaScene, MaterialsHaveTheirFields) {
+  const auto material = [&](const std::string& bsdf) {
+    const scene::Scene from = scene(rectangle(bsdf));
+    return from.material_size() > 0 ? from.material(from.material_size() - 1) : scene::Material();
+  };
+  const auto glass = material("<bsdf type=\"dielectric\"/>");
+  EXPECT_NEAR(glass.dielectric().index_of_refraction(), 1.5046 / 1.000277, 1e-12);
+  EXPECT_FALSE(glass.one_sided());
+  const auto plastic = material(
+      "<bsdf type=\"roughplastic\"><float name=\"alpha\" value=\"0.2\"/>"
+      "<boolean name=\"nonlinear\" value=\"true\"/><string name=\"distribution\" value=\"ggx\"/>"
+      "<string name=\"int_ior\" value=\"water\"/></bsdf>");
+  EXPECT_EQ(plastic.plastic().surface().alpha(), 0.2);
+  EXPECT_TRUE(plastic.plastic().nonlinear());
+  EXPECT_NEAR(plastic.plastic().index_of_refraction(), 1.333 / 1.000277, 1e-12);
+  const auto metal = material(
+      "<bsdf type=\"twosided\"><bsdf type=\"roughconductor\"><float name=\"alpha_u\" "
+      "value=\"0.1\"/>"
+      "<float name=\"alpha_v\" value=\"0.3\"/><spectrum name=\"eta\" value=\"0.2\"/>"
+      "<rgb name=\"k\" value=\"1 2 3\"/></bsdf></bsdf>");
+  EXPECT_FALSE(metal.one_sided());
+  EXPECT_EQ(metal.conductor().surface().distribution(), scene::Microfacets::DISTRIBUTION_BECKMANN);
+  EXPECT_EQ(metal.conductor().surface().alpha_v(), 0.3);
+  EXPECT_THAT(metal.conductor().k().rgb(), ElementsAre(1, 2, 3));
+  const auto masked = material(
+      "<bsdf type=\"mask\"><float name=\"opacity\" value=\"0.25\"/><bsdf "
+      "type=\"diffuse\"/></bsdf>");
+  EXPECT_EQ(masked.opacity(), 0.25);
+  const auto blend = material(
+      "<bsdf type=\"blendbsdf\"><float name=\"weight\" value=\"0.75\"/><bsdf type=\"diffuse\"/>"
+      "<bsdf type=\"plastic\"/></bsdf>");
+  EXPECT_EQ(blend.mix().a(), "diffuse 1");
+  EXPECT_EQ(blend.mix().b(), "plastic 1");
+  EXPECT_THAT(blend.mix().amount().color().rgb(), ElementsAre(0.75, 0.75, 0.75));
+}
+
+TEST_F(MitsubaScene, OldSpellingsAreRead) {
+  const auto converted = convert_file(R"(<scene version="0.6.0">
+  <sensor type="perspective"><transform name="toWorld"><lookAt origin="0 0 5" target="0 0 0"
+    up="0 1 0"/></transform></sensor>
+  <shape type="sphere"><bsdf type="dielectric"><float name="intIOR" value="1.5"/>
+    <float name="extIOR" value="1"/></bsdf></shape>
+  <shape type="rectangle"><bsdf type="diffuse"><srgb name="reflectance" value="#ff0000"/></bsdf>
+  </shape></scene>)");
+  ASSERT_TRUE(converted.ok()) << converted.status();
+  EXPECT_THAT(converted->scene.camera().position(), ElementsAre(0, 0, 5));
+  EXPECT_EQ(converted->scene.material(0).dielectric().index_of_refraction(), 1.5);
+  EXPECT_THAT(converted->scene.material(1).diffuse().color().rgb(), ElementsAre(1, 0, 0));
+  EXPECT_THAT(converted->warnings, IsEmpty());
+}
+
+TEST_F(MitsubaScene, WhatHasNoCounterpartIsNamedOnce) {
+  EXPECT_THAT(warnings("<shape type=\"sdfgrid\"/>"),
+              ElementsAre("s.xml:3: shape \"sdfgrid\" is not known; the shape is left out"));
+  EXPECT_THAT(warnings("<shape type=\"sphere\"><float name=\"wobble\" value=\"1\"/></shape>"),
+              ElementsAre("s.xml:3: parameter \"wobble\" of shape \"sphere\" has no counterpart "
+                          "and is left out"));
+  EXPECT_THAT(warnings("<emitter type=\"sunsky\"/>").size(), 1u);
+  EXPECT_THAT(warnings("<shape type=\"obj\"><string name=\"filename\" value=\"no.obj\"/></shape>"),
+              ElementsAre(HasSubstr("s.xml:3: \"no.obj\" is missing")));
+}
+
+TEST_F(MitsubaScene, ACheckerboardBeginsAtTheTop) {
+  const std::string checker =
+      "<bsdf type=\"diffuse\"><texture type=\"checkerboard\" name=\"reflectance\">"
+      "<transform name=\"to_uv\"><scale value=\"5\"/></transform></texture></bsdf>";
+  const scene::Scene from =
+      scene(rectangle(checker) + "<shape type=\"sphere\">" + checker + "</shape>");
+  const scene::CheckerTexture& flat = from.material(0).diffuse().texture().checker();
+  EXPECT_THAT(flat.size(), ElementsAre(0.1, 0.1));
+  EXPECT_NEAR(flat.even().color().rgb(0), 0.4, 1e-7);
+  // On the sphere v is counted from the other end: ten rows later the other colour begins.
+  EXPECT_NEAR(from.material(1).diffuse().texture().checker().even().color().rgb(0), 0.2, 1e-7);
+}
+
+TEST_F(MitsubaScene, TexturesKeepTheirPlacement) {
+  write_text(folder_, "t.pgm", "P2 1 1 255 255\n");
+  const scene::Scene from =
+      scene(rectangle("<bsdf type=\"diffuse\"><texture type=\"bitmap\" name=\"reflectance\">"
+                      "<string name=\"filename\" value=\"t.pgm\"/><transform name=\"to_uv\"><scale "
+                      "x=\"2\" y=\"3\"/>"
+                      "<translate x=\"0.5\" y=\"0.25\"/></transform></texture></bsdf>"));
+  const scene::ImageTexture& image = from.material(0).diffuse().texture().image();
+  // Row from the top 3 v + 0.25, so from the bottom 1 - 0.25 - 3 v.
+  EXPECT_THAT(image.uv_scale(), ElementsAre(2, -3));
+  EXPECT_THAT(image.uv_offset(), ElementsAre(0.5, 0.75));
+}
+
+TEST_F(MitsubaScene, LightsHaveTheirFields) {
+  const scene::Scene from = scene(R"(
+<emitter type="point"><point name="position" x="1" y="2" z="3"/>
+  <rgb name="intensity" value="4"/></emitter>
+<emitter type="directional"><vector name="direction" value="0,0,-1"/></emitter>
+<emitter type="spot"><float name="cutoff_angle" value="40"/></emitter>
+<emitter type="projector"><float name="fov" value="90"/><rgb name="irradiance" value="2"/></emitter>
+<emitter type="constant"><rgb name="radiance" value="0.5"/></emitter>)");
+  ASSERT_EQ(from.light_size(), 4);
+  EXPECT_THAT(from.light(0).point().intensity().rgb(), ElementsAre(4, 4, 4));
+  EXPECT_THAT(from.light(1).directional().direction(), ElementsAre(0, 0, -1));
+  EXPECT_EQ(from.light(2).spot().inner_angle(), 30);
+  EXPECT_EQ(from.light(2).spot().falloff(), scene::SpotLight::FALLOFF_LINEAR_ANGLE);
+  EXPECT_NEAR(from.light(3).projector().vertical_fov(), 90, 1e-12);
+  EXPECT_NEAR(from.light(3).projector().intensity().rgb(0), M_PI, 1e-6);
+  EXPECT_THAT(from.background().constant().rgb(), ElementsAre(0.5, 0.5, 0.5));
+}
+
+TEST_F(MitsubaScene, AreaLightsEmitToOneSide) {
+  const scene::Scene from = scene(rectangle(
+      "<bsdf type=\"diffuse\"/><emitter type=\"area\"><rgb name=\"radiance\" value=\"1 2 3\"/>"
+      "</emitter>"));
+  EXPECT_THAT(from.material(0).emission().rgb(), ElementsAre(1, 2, 3));
+  EXPECT_TRUE(from.material(0).emission_one_sided());
+}
+
+TEST_F(MitsubaScene, RectanglesKeepTheirNormal) {
+  const auto normal = [&](const std::string& inside) {
+    const scene::Quad quad = scene(rectangle(inside)).shape(0).quad();
+    return quad.u(0) * quad.v(1) - quad.u(1) * quad.v(0);
+  };
+  EXPECT_EQ(normal(""), 4);
+  EXPECT_EQ(normal("<boolean name=\"flip_normals\" value=\"true\"/>"), -4);
+  EXPECT_EQ(normal("<transform name=\"to_world\"><scale x=\"-1\"/></transform>"), 4)
+      << "normals stay on their side when a placement mirrors";
+}
+
+TEST_F(MitsubaScene, GroupsAreSharedByTheirInstances) {
+  const scene::Scene from = scene(R"(
+<shape type="shapegroup" id="pile"><shape type="sphere"/><shape type="rectangle"/></shape>
+<shape type="instance"><ref id="pile"/></shape>
+<shape type="instance"><ref id="pile"/><transform name="to_world"><translate x="3"/></transform>
+</shape>)");
+  ASSERT_EQ(from.group_size(), 1);
+  EXPECT_EQ(from.group(0).shape_size(), 2);
+  ASSERT_EQ(from.instance_size(), 2);
+  EXPECT_THAT(from.instance(1).matrix(), ElementsAre(1, 0, 0, 3, 0, 1, 0, 0, 0, 0, 1, 0));
+  EXPECT_THAT(error("<shape type=\"instance\"/>"), HasSubstr("must refer to a shapegroup"));
+}
+
+TEST_F(MitsubaScene, MediaHaveTheirCoefficients) {
+  const scene::Scene from = scene(R"(
+<medium type="homogeneous" id="fog"><rgb name="sigma_t" value="2"/>
+  <rgb name="albedo" value="0.25"/><float name="scale" value="3"/>
+  <phase type="hg"><float name="g" value="0.5"/></phase></medium>
+<shape type="sphere"><bsdf type="null"/><ref name="interior" id="fog"/></shape>)");
+  ASSERT_EQ(from.medium_size(), 1);
+  EXPECT_THAT(from.medium(0).scattering().rgb(), ElementsAre(0.5, 0.5, 0.5));
+  EXPECT_THAT(from.medium(0).absorption().rgb(), ElementsAre(1.5, 1.5, 1.5));
+  EXPECT_EQ(from.medium(0).density(), 3);
+  EXPECT_EQ(from.medium(0).anisotropy(), 0.5);
+  EXPECT_EQ(from.shape(0).interior(), "fog");
+  EXPECT_EQ(from.shape(0).material(), "");
+}
+
+/// The images that are seen are those of a scene file of ours that says the same.
+TEST_F(MitsubaScene, IsImportedAsASceneFile) {
+  write_text(folder_, "s.xml",
+             "<scene version=\"3.0.0\">\n" + kSensor +
+                 "<shape type=\"sphere\"/><emitter type=\"constant\"/></scene>");
+  const auto imported = import_scene(folder_ / "s.xml");
+  ASSERT_TRUE(imported.ok()) << imported.status();
+  EXPECT_EQ(imported->scene.geometry.spheres.size(), 1u);
+  ImportChoices strict;
+  strict.strict = true;
+  EXPECT_TRUE(import_scene(folder_ / "s.xml", strict).ok());
+}
+
+TEST_F(MitsubaScene, FilesAroundTheSceneNeedTheirFolder) {
+  std::filesystem::create_directory(folder_ / "scenes");
+  std::filesystem::create_directory(folder_ / "common");
+  write_text(folder_, "common/ball.xml",
+             "<scene version=\"3.0.0\"><shape type=\"sphere\"/></scene>");
+  write_text(folder_, "scenes/s.xml",
+             "<scene version=\"3.0.0\"><path value=\"../common\"/>" + kSensor +
+                 "<include filename=\"ball.xml\"/></scene>");
+  const std::string path = folder_ / "scenes/s.xml";
+  EXPECT_THAT(std::string(import_scene(path).status().message()),
+              HasSubstr("name a wider one with --folder"));
+  ImportChoices around;
+  around.folder = folder_ / ".";
+  EXPECT_TRUE(import_scene(path, around).ok()) << import_scene(path, around).status();
+  around.folder = folder_ / "common";
+  EXPECT_THAT(std::string(import_scene(path, around).status().message()),
+              HasSubstr("does not lie in the folder"));
+}
+
+}  // namespace
+}  // namespace bandsaw
