@@ -91,7 +91,7 @@ figure_tone() {
 }
 
 figure_strip() {
-  local scenes=(books/one_weekend orthographic smoke_in_motion cube_map motion instances)
+  local scenes=(books/one_weekend orthographic motion spheres)
   mkdir -p "$folder"
   for scene in "${scenes[@]}"; do
     render "$gallery/$scene.textproto" strip --height $((width * 5 / 8)) --samples 256
@@ -101,7 +101,7 @@ figure_strip() {
 }
 
 figure_sheet() { # [SCENE...]
-  local scenes=("$@") high=$((width * 9 / 16)) gap=4 columns=8 number=0 row=-1 rows wide x y
+  local scenes=(books/one_weekend orthographic motion spheres)
   if [ ${#scenes[@]} = 0 ]; then
     cp -r "$gallery" "$work/gallery"
     bandsaw-gallery "$work/gallery" >/dev/null # makes the globes, which are not in the repository

@@ -11,7 +11,7 @@ set -euo pipefail
 build=(g++ cmake ninja-build pkg-config libgrpc++-dev protobuf-compiler protobuf-compiler-grpc libprotobuf-dev
   libabsl-dev libre2-dev libc-ares-dev zlib1g-dev libzstd-dev libssl-dev libassimp-dev libstb-dev libspdlog-dev libsqlite3-dev
   libcli11-dev libtinyexr-dev libboost-dev libdraco-dev libmeshoptimizer-dev libwebp-dev nlohmann-json3-dev libopenvdb-dev
-  libpugixml-dev)
+  libimath-dev libtbb-dev libpugixml-dev)
 demo=("${build[@]}" assimp-testmodels)
 packages=("${build[@]}" dpkg-dev file fakeroot)
 test=("${demo[@]}" libgtest-dev libgmock-dev git iproute2 curl)
@@ -21,7 +21,8 @@ old_cpu=("${test[@]}" qemu-user-static)
 arm64=("${test[@]}" g++-aarch64-linux-gnu qemu-user-static)
 for package in "${test[@]}"; do
   case $package in
-    libcli11-dev) ;;  # headers alone, for all architectures
+    libcli11-dev) ;;    # headers alone, for all architectures
+    libopenvdb-dev) ;;  # for one architecture at a time: renderlib/CMakeLists.txt
     lib*-dev) arm64+=("$package:arm64") ;;
   esac
 done

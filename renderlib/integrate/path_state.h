@@ -41,7 +41,11 @@ struct PathContext {
     return {scene, sampler, sample * branches + which, options, rays};
   }
   Sample4 numbers(std::uint32_t group) const { return sampler.group(sample, group); }
-  NumberStream stream(std::uint32_t group) const { return sampler.stream(sample, group); }
+  /// Returns the numbers with which media that vary in space are tracked; without such media,
+  /// numbers that are never used.
+  NumberStream stream(std::uint32_t group) const {
+    return scene.features().grids ? sampler.stream(sample, group) : NumberStream(0);
+  }
   bool samples_lights() const {
     return scene.features().lights && options.technique != Technique::kScatteringOnly;
   }

@@ -111,7 +111,7 @@ Vec3 displaced_normal(const SurfacePoint& point, absl::Span<const Texture> textu
   const bool second = set_of(textures, map) == UvSet::kSecond;
   const Vec3& n = point.shading_normal;
   // Central differences over a fraction of a texel of all but the largest images.
-  constexpr double kStep = 0x1p-16;
+  constexpr double kStep = 0x1p-14;
   const auto slope = [&](const Vec2& toward, const Vec3& along) {
     const auto height = [&](double step) {
       TextureCoordinates at = texture_coordinates(point);

@@ -192,6 +192,43 @@ float GridReader::cell(std::uint32_t x, std::uint32_t y, std::uint32_t z,
   return stored(at, in_brick * channels_ + channel);
 }
 
+namespace {
+
+float number_of(float stored) { return stored; }
+/// The number of a half that is >= 0 and finite. Exact: the exponent's bias is a factor of 2^112.
+float number_of(std::uint16_t half) {
+  return std::bit_cast<float>(std::uint32_t{half} << 13) * 0x1p112f;
+}
+
+/// Loads the cells at the corners of a cube whose first is cell `first` of the brick at `stored`.
+template <class Stored, std::size_t kChannels>
+void load_corners(const std::byte* stored, std::uint32_t channels, std::uint32_t first,
+                  std::array<std::array<float, kChannels>, 8>& corner) {
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    const std::uint32_t cell =
+        first + (i & 1) + (i >> 1 & 1) * kBrickSide + (i >> 2) * kBrickSide * kBrickSide;
+    for (std::uint32_t c = 0; c < kChannels; ++c) {
+      corner[i][c] = number_of(load<Stored>(stored, cell * channels + c));
+    }
+  }
+}
+
+/// Interpolates between the corners of a cube, x fastest; `share` is the place in it, each in [0,
+/// 1].
+template <std::size_t kChannels>
+std::array<float, kChannels> mix_corners(const std::array<std::array<float, kChannels>, 8>& corner,
+                                         const std::array<float, 3>& share) {
+  std::array<float, kChannels> result{};
+  for (std::size_t c = 0; c < kChannels; ++c) {
+    const auto mix = [](float a, float b, float t) { return a + (b - a) * t; };
+    const auto row = [&](std::size_t i) { return mix(corner[i][c], corner[i + 1][c], share[0]); };
+    result[c] = mix(mix(row(0), row(2), share[1]), mix(row(4), row(6), share[1]), share[2]);
+  }
+  return result;
+}
+
+}  // namespace
+
 template <std::uint32_t kChannels>
 std::array<float, kChannels> GridReader::cell_or_zero(const std::array<std::int32_t, 3>& at) const {
   std::array<float, kChannels> result{};
@@ -244,26 +281,17 @@ std::array<float, kChannels> GridReader::interpolate(const Vec3& at) const {
     }
     const std::uint32_t first =
         (l[2] % kBrickSide * kBrickSide + l[1] % kBrickSide) * kBrickSide + l[0] % kBrickSide;
-    for (std::uint32_t i = 0; i < 8; ++i) {
-      const std::uint32_t in_brick =
-          first + (i & 1) + (i >> 1 & 1) * kBrickSide + (i >> 2) * kBrickSide * kBrickSide;
-      for (std::uint32_t c = 0; c < kChannels; ++c) {
-        corner[i][c] = stored(place, in_brick * channels_ + c);
-      }
-    }
+    const std::byte* const stored =
+        values_ + std::size_t{place} * kBrickCells * channels_ * (half_ ? 2 : 4);
+    half_ ? load_corners<std::uint16_t>(stored, channels_, first, corner)
+          : load_corners<float>(stored, channels_, first, corner);
   } else {
     for (std::int32_t i = 0; i < 8; ++i) {
       corner[static_cast<std::size_t>(i)] =
           cell_or_zero<kChannels>({low[0] + (i & 1), low[1] + (i >> 1 & 1), low[2] + (i >> 2)});
     }
   }
-  Values result{};
-  for (std::uint32_t c = 0; c < kChannels; ++c) {
-    const auto mix = [](float a, float b, float t) { return a + (b - a) * t; };
-    const auto row = [&](std::size_t i) { return mix(corner[i][c], corner[i + 1][c], share[0]); };
-    result[c] = mix(mix(row(0), row(2), share[1]), mix(row(4), row(6), share[1]), share[2]);
-  }
-  return result;
+  return mix_corners(corner, share);
 }
 
 template std::array<float, 1> GridReader::interpolate<1>(const Vec3&) const;

@@ -1,6 +1,8 @@
 // OpenVDB's *.vdb, by the library: fog volumes of floats, halves or doubles, and vectors of three
 // floats. Everything happens on this thread; the library starts none for reading.
 
+#ifndef BANDSAW_NO_OPENVDB
+
 #include <openvdb/openvdb.h>
 
 #include <algorithm>
@@ -260,3 +262,21 @@ absl::StatusOr<FileGrid> read_vdb(const std::string& path, const std::string& gr
 }
 
 }  // namespace bandsaw
+
+#else
+
+#include "absl/status/status.h"
+#include "renderlib/import/volume/volume_file.h"
+
+namespace bandsaw {
+
+absl::StatusOr<FileGrid> read_vdb(const std::string& /*path*/, const std::string& /*grid*/,
+                                  const std::string& /*otherwise*/) {
+  return absl::InvalidArgumentError(
+      "is an OpenVDB file, which this cross-compiled program does not read: import the scene on a "
+      "machine whose programs were built there");
+}
+
+}  // namespace bandsaw
+
+#endif
