@@ -101,7 +101,7 @@ figure_strip() {
 }
 
 figure_sheet() { # [SCENE...]
-  local scenes=(books/one_weekend orthographic motion spheres)
+  local scenes=("$@") high=$((width * 9 / 16)) gap=4 columns=8 number=0 row=-1 rows wide x y
   if [ ${#scenes[@]} = 0 ]; then
     cp -r "$gallery" "$work/gallery"
     bandsaw-gallery "$work/gallery" >/dev/null # makes the globes, which are not in the repository

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Installs the packages of Debian 12 or 13 that building, testing, packing or the demo need, if any is missing.
-# Usage: deploy/install.sh build|demo|packages|test|browser|clang|old_cpu|arm64
+# Usage: deploy/install.sh build|demo|packages|test|browser|blender|clang|old_cpu|arm64
 #   browser  what the tests of that label need besides `test`, 400 MB
+#   blender  what the tests of that label need besides `test`, 700 MB
 #   clang    what the presets clang and fuzz need besides `test`
 #   old_cpu  the emulator of that label's test
 #   arm64    the cross compiler, Debian's libraries for ARM64 and an emulator, 800 MB; it adds the architecture to this system,
@@ -14,8 +15,9 @@ build=(g++ cmake ninja-build pkg-config libgrpc++-dev protobuf-compiler protobuf
   libimath-dev libtbb-dev libpugixml-dev)
 demo=("${build[@]}" assimp-testmodels)
 packages=("${build[@]}" dpkg-dev file fakeroot)
-test=("${demo[@]}" libgtest-dev libgmock-dev git iproute2 curl)
+test=("${demo[@]}" libgtest-dev libgmock-dev git iproute2 curl python3 python3-numpy)
 browser=("${test[@]}" chromium chromium-driver)
+blender=("${test[@]}" blender xvfb xdotool imagemagick)
 clang=("${test[@]}" clang libclang-rt-dev)
 old_cpu=("${test[@]}" qemu-user-static)
 arm64=("${test[@]}" g++-aarch64-linux-gnu qemu-user-static)
@@ -33,10 +35,11 @@ case "${1:-}" in
   packages) wanted=("${packages[@]}") ;;
   test) wanted=("${test[@]}") ;;
   browser) wanted=("${browser[@]}") ;;
+  blender) wanted=("${blender[@]}") ;;
   clang) wanted=("${clang[@]}") ;;
   old_cpu) wanted=("${old_cpu[@]}") ;;
   arm64) wanted=("${arm64[@]}") ;;
-  *) echo "usage: deploy/install.sh build|demo|packages|test|browser|clang|old_cpu|arm64" >&2; exit 2 ;;
+  *) echo "usage: deploy/install.sh build|demo|packages|test|browser|blender|clang|old_cpu|arm64" >&2; exit 2 ;;
 esac
 
 # installed PACKAGE: a package may be installed for several architectures at once; without a suffix this machine's counts.

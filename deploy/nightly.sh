@@ -6,7 +6,7 @@
 #      run that have no such row. So several runs add up to one table of one commit.
 #   N: minutes for each fuzz target (default 1), and for the calibration, which continues from there in the next run (default 60)
 #   FOLDER: table.md and a log for each part (default: out/nightly)
-#   PART: parts to run: default labels browser asan-ubsan tsan clang fuzz debian12 debian13 compilers arm64 machines calibration
+#   PART: parts to run: default labels browser blender asan-ubsan tsan clang fuzz debian12 debian13 compilers arm64 machines calibration
 #         (default: all, in this order; about seven hours on two cores)
 # A part whose requirements this machine lacks (root, debootstrap) is skipped, and the table states the reason. A compiler and a browser
 # are installed if they are missing.
@@ -14,7 +14,7 @@ set -uo pipefail
 cd "$(dirname "$0")/.."
 . deploy/bare.sh
 
-every_part=(default labels browser asan-ubsan tsan clang fuzz debian12 debian13 compilers arm64 machines calibration)
+every_part=(default labels browser blender asan-ubsan tsan clang fuzz debian12 debian13 compilers arm64 machines calibration)
 fuzz_minutes=1
 calibration_minutes=60
 out=out/nightly
@@ -56,6 +56,10 @@ part_labels() {
 }
 
 part_browser() { deploy/install.sh browser && preset release browser && tests build/release --label-regex '^browser$'; }
+
+part_blender() {
+  deploy/install.sh blender && preset release bandsaw bandsaw-worker bandsaw-import && tests build/release --label-regex '^blender$'
+}
 
 part_asan-ubsan() { preset asan-ubsan all && tests build/asan-ubsan --label-regex '^default$'; }
 

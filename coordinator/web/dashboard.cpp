@@ -50,6 +50,7 @@ class Dashboard::Impl {
     add_jobs(router_, engine);
     add_pictures(router_, pictures_, report_);
     add_scenes(router_, scenes_);
+    add_scene_files(router_, engine, scenes_);
     add_gallery(router_, engine, scenes_, gallery_);
   }
 

@@ -1,10 +1,13 @@
-# cmake -DOUT=page_files.cpp -DFOLDER=page -P embed.cmake: writes the table of coordinator/web/page_files.h.
+# cmake -DOUT=page_files.cpp -DFOLDER=page -DMADE=FOLDER -P embed.cmake: writes the table of coordinator/web/page_files.h, of the files
+# in both folders.
 set(types_html "text/html; charset=utf-8")
 set(types_css "text/css; charset=utf-8")
 set(types_js "text/javascript; charset=utf-8")
 set(types_svg "image/svg+xml")
+set(types_zip "application/zip")
+set(types_py "text/x-python; charset=utf-8")
 
-file(GLOB files ${FOLDER}/*)
+file(GLOB files ${FOLDER}/* ${MADE}/*)
 list(SORT files)
 set(arrays "")
 set(table "")

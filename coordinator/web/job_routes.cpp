@@ -6,6 +6,7 @@
 #include "coordinator/rpc/picture.h"
 #include "coordinator/web/reply.h"
 #include "coordinator/web/routes.h"
+#include "proto/link/random.h"
 #include "proto/web.pb.h"
 #include "renderlib/base/status_macros.h"
 
@@ -61,6 +62,42 @@ absl::StatusOr<web::JobPage> job_page(Engine& engine, const HttpRequest& request
   return page;
 }
 
+/// Submits a job for another picture of a job's scene, with the same settings: by an integrator
+/// without light transport.
+absl::StatusOr<web::Submitted> submit_layer(Engine& engine, const HttpRequest& request) {
+  constexpr std::uint64_t kMostSamples = 64;  // more do not visibly improve a layer
+  ASSIGN_OR_RETURN(const JobId id, job_of(request));
+  ASSIGN_OR_RETURN(const JobView view, look_at(engine, id));
+  const std::string kind = request.parameter("kind");
+  JobSpec spec = view.spec;
+  if (kind == "albedo") {
+    spec.settings.integrator = Integrator::kAlbedo;
+  } else if (kind == "normals") {
+    spec.settings.integrator = Integrator::kNormals;
+  } else if (kind == "depth") {
+    spec.settings.integrator = Integrator::kDepth;
+  } else {
+    return absl::InvalidArgumentError("kind: must be albedo, normals or depth");
+  }
+  StopAtSamples stop{16};
+  const std::string samples = request.parameter("samples");
+  if (!samples.empty() && (!absl::SimpleAtoi(samples, &stop.samples) || stop.samples < 1 ||
+                           stop.samples > kMostSamples)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("samples: must be a number from 1 to ", kMostSamples));
+  }
+  spec.stop = stop;
+  spec.request_id = "layer-" + link::random_hex(8);
+  spec.name = absl::StrCat(spec.name, " (", kind, ")");
+  using Answer = absl::StatusOr<JobId>;
+  ASSIGN_OR_RETURN(const JobId job, blocking_call<Answer>([&](auto answer) {
+                     engine.submit(spec, answer, view.priority);
+                   }));
+  web::Submitted submitted;
+  submitted.set_job(job);
+  return submitted;
+}
+
 }  // namespace
 
 absl::StatusOr<JobId> job_of(const HttpRequest& request) {
@@ -77,6 +114,9 @@ void add_jobs(Router& router, Engine& engine) {
   add_command(router, engine, "cancel", &Engine::cancel);
   add_command(router, engine, "pause", &Engine::pause);
   add_command(router, engine, "resume", &Engine::resume);
+  router.post("/api/jobs/*/layer", [&engine](const HttpRequest& request, const HttpBody&) {
+    return answer(submit_layer(engine, request));
+  });
   router.post("/api/jobs/*/priority", [&engine](const HttpRequest& request, const HttpBody& body) {
     return answer_with(set_priority(engine, request, body));
   });

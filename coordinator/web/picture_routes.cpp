@@ -1,6 +1,7 @@
 // Previews, images and reports.
 
 #include <functional>
+#include <tuple>
 #include <utility>
 
 #include "absl/strings/numbers.h"
@@ -56,15 +57,22 @@ void add_file(Router& router, const std::string& what, const std::string& suffix
 }  // namespace
 
 void add_pictures(Router& router, Pictures& pictures, const MakeReport& report) {
-  router.get("/api/jobs/*/preview.png", [&pictures](const HttpRequest& request) {
-    const auto job = job_of(request);
-    return job.ok() ? send(pictures.preview(*job, side_of(request)), "image/png")
-                    : refuse(job.status());
-  });
+  for (const auto& [suffix, format, type] :
+       {std::tuple{"png", ImageFormat::kPng, "image/png"},
+        std::tuple{"pfm", ImageFormat::kPfm, "image/x-portable-floatmap"}}) {
+    router.get(absl::StrCat("/api/jobs/*/preview.", suffix),
+               [&pictures, format = format, type = type](const HttpRequest& request) {
+                 const auto job = job_of(request);
+                 return job.ok() ? send(pictures.preview(*job, side_of(request), format), type)
+                                 : refuse(job.status());
+               });
+  }
   add_file(router, "image", "png", "image/png",
            [&pictures](JobId job) { return pictures.image(job, ImageFormat::kPng); });
   add_file(router, "image", "exr", "image/x-exr",
            [&pictures](JobId job) { return pictures.image(job, ImageFormat::kExr); });
+  add_file(router, "image", "pfm", "image/x-portable-floatmap",
+           [&pictures](JobId job) { return pictures.image(job, ImageFormat::kPfm); });
   add_file(router, "report", "json", "application/json",
            [&pictures, &report](JobId job) { return pictures.report(job, report); });
 }

@@ -35,36 +35,37 @@ absl::StatusOr<Pictures::Bytes> encoded(HeldImage image, ImageFormat format) {
 
 }  // namespace
 
-absl::StatusOr<Pictures::Bytes> Pictures::preview(JobId id, std::uint32_t most_side) {
+absl::StatusOr<Pictures::Bytes> Pictures::preview(JobId id, std::uint32_t most_side,
+                                                  ImageFormat format) {
   ASSIGN_OR_RETURN(const JobView job, look_at(engine_, id));
   MutexLock lock(making_);
-  const Key key{id, most_side};
+  const Key key{id, most_side, format};
   const auto found = made_.find(key);
   if (found != made_.end()) {
     Made& old = found->second;
     old.used = ++calls_;
     const bool unchanged = old.samples == job.samples_done && job.state != JobState::kDone;
     if (old.whole || unchanged || steady_seconds() - old.at < kFresh_s) {
-      return old.png;
+      return old.file;
     }
   }
   absl::StatusOr<HeldImage> picture = picture_of(engine_, job, most_side);
-  const absl::StatusOr<Bytes> png =
-      picture.ok() ? encoded(*std::move(picture), ImageFormat::kPng) : picture.status();
-  if (!png.ok()) {
+  const absl::StatusOr<Bytes> file =
+      picture.ok() ? encoded(*std::move(picture), format) : picture.status();
+  if (!file.ok()) {
     // Between the last band and the result on disk there is no newer image than the last one.
-    return found != made_.end() ? absl::StatusOr<Bytes>(found->second.png) : png;
+    return found != made_.end() ? absl::StatusOr<Bytes>(found->second.file) : file;
   }
-  keep(key, {.png = *png,
+  keep(key, {.file = *file,
              .samples = job.samples_done,
              .whole = job.state == JobState::kDone,
              .at = steady_seconds(),
              .used = ++calls_});
-  return png;
+  return file;
 }
 
 void Pictures::keep(const Key& key, Made made) {
-  const auto size_of = [](const Made& one) { return one.png == nullptr ? 0 : one.png->size(); };
+  const auto size_of = [](const Made& one) { return one.file == nullptr ? 0 : one.file->size(); };
   bytes_ += size_of(made) - size_of(made_[key]);
   made_[key] = std::move(made);
   while (bytes_ > kMaxBytes && made_.size() > 1) {

@@ -7,7 +7,7 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <utility>
+#include <tuple>
 
 #include "absl/status/statusor.h"
 #include "coordinator/engine/engine.h"
@@ -27,19 +27,20 @@ class Pictures {
 
   explicit Pictures(Engine& engine) : engine_(engine) {}
 
-  /// Returns a PNG of the job's present image, at most a second old, or of its finished image, with
-  /// at most about `most_side` pixels per side. NOT_FOUND: no such job, or none of its bands is
-  /// there. Here and below, RESOURCE_EXHAUSTED as picture_of (coordinator/rpc/picture.h).
-  absl::StatusOr<Bytes> preview(JobId job, std::uint32_t most_side) EXCLUDES(making_);
+  /// Returns a file of the job's present image, at most a second old, or of its finished image,
+  /// with at most about `most_side` pixels per side. NOT_FOUND: no such job, or none of its bands
+  /// is there. Here and below, RESOURCE_EXHAUSTED as picture_of (coordinator/rpc/picture.h).
+  absl::StatusOr<Bytes> preview(JobId job, std::uint32_t most_side, ImageFormat format)
+      EXCLUDES(making_);
   /// Returns the finished image. Errors as Engine::result.
   absl::StatusOr<Bytes> image(JobId job, ImageFormat format) EXCLUDES(making_);
   /// Returns the report of the finished image. Errors as Engine::result.
   absl::StatusOr<Bytes> report(JobId job, const MakeReport& make) EXCLUDES(making_);
 
  private:
-  using Key = std::pair<JobId, std::uint32_t>;  ///< job, most_side
+  using Key = std::tuple<JobId, std::uint32_t, ImageFormat>;  ///< job, most_side, format
   struct Made {
-    Bytes png;
+    Bytes file;
     std::uint64_t samples = 0;  ///< samples of the job when it was made
     bool whole = false;         ///< true: the finished image
     double at = 0;              ///< time when it was made, in seconds of a steady clock

@@ -59,16 +59,16 @@ HttpReply refuse(const absl::Status& status) {
   return refusal;
 }
 
-absl::Status read_json(const HttpBody& body, google::protobuf::Message& message) {
+absl::Status read_json(const HttpBody& body, google::protobuf::Message& message, std::size_t most) {
   std::string json;
   while (true) {
     ASSIGN_OR_RETURN(const absl::string_view bytes, body());
     if (bytes.empty()) {
       break;
     }
-    if (bytes.size() > kMaxJsonBytes - json.size()) {
+    if (bytes.size() > most - json.size()) {
       return absl::InvalidArgumentError(
-          absl::StrCat("the body must have at most ", kMaxJsonBytes, " bytes"));
+          absl::StrCat("the body must have at most ", most, " bytes"));
     }
     json.append(bytes.data(), bytes.size());
   }

@@ -11,7 +11,7 @@
 
 namespace bandsaw::coordinator {
 
-/// Maximum size of a request's body, except for scenes.
+/// Maximum size of a request's body, except for scenes and their files.
 inline constexpr std::size_t kMaxJsonBytes = 64 << 10;
 
 /// Returns a response with the message as JSON.
@@ -25,8 +25,9 @@ HttpReply answer(const absl::StatusOr<Message>& message) {
   return message.ok() ? reply(*message) : refuse(message.status());
 }
 
-/// Parses the body as a message. INVALID_ARGUMENT: it is longer than kMaxJsonBytes, incomplete, or
+/// Parses the body as a message. INVALID_ARGUMENT: it is longer than `most` bytes, incomplete, or
 /// not JSON of this message.
-absl::Status read_json(const HttpBody& body, google::protobuf::Message& message);
+absl::Status read_json(const HttpBody& body, google::protobuf::Message& message,
+                       std::size_t most = kMaxJsonBytes);
 
 }  // namespace bandsaw::coordinator

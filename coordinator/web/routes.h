@@ -23,6 +23,8 @@ void add_farm(Router& router, Engine& engine);
 void add_jobs(Router& router, Engine& engine);
 void add_pictures(Router& router, Pictures& pictures, const MakeReport& report);
 void add_scenes(Router& router, Scenes& scenes);
+/// Scenes whose files are sent apart, each once.
+void add_scene_files(Router& router, Engine& engine, Scenes& scenes);
 void add_gallery(Router& router, Engine& engine, Scenes& scenes, const Gallery& gallery);
 
 /// Returns the job id at the place of "*" in the path. NOT_FOUND: not a job id.

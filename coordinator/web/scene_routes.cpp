@@ -8,10 +8,10 @@
 
 #include "absl/strings/ascii.h"
 #include "absl/strings/match.h"
-#include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "coordinator/web/reply.h"
 #include "coordinator/web/routes.h"
+#include "coordinator/web/scene_wish.h"
 #include "proto/web.pb.h"
 #include "renderlib/base/atomic_file.h"
 #include "renderlib/base/status_macros.h"
@@ -105,34 +105,10 @@ absl::StatusOr<std::string> file_name(const std::string& given) {
       "that needs no other file; for all else there is: bandsaw submit");
 }
 
-absl::StatusOr<SceneWish> wanted_of(const HttpRequest& request) {
-  SceneWish wanted;
-  wanted.inside = request.parameter("scene");
-  const std::string width = request.parameter("width");
-  if (!width.empty() && (!absl::SimpleAtoi(width, &wanted.width) || wanted.width > kMaxSide)) {
-    return absl::InvalidArgumentError("width: must be a number of pixels");
-  }
-  if (const std::string error = request.parameter("error"); !error.empty()) {
-    StopAtError stop;
-    if (!absl::SimpleAtod(error, &stop.relative_rmse) || !(stop.relative_rmse > 0) ||
-        stop.relative_rmse > 1) {
-      return absl::InvalidArgumentError("error: must be in (0, 1]");
-    }
-    wanted.stop = stop;
-  } else if (const std::string text = request.parameter("samples"); !text.empty()) {
-    StopAtSamples stop;
-    if (!absl::SimpleAtoi(text, &stop.samples) || stop.samples < 1 || stop.samples > kMaxSamples) {
-      return absl::InvalidArgumentError("samples: must be a number of samples a pixel");
-    }
-    wanted.stop = stop;
-  }
-  return wanted;
-}
-
 absl::StatusOr<web::Submitted> take_scene(Scenes& scenes, const HttpRequest& request,
                                           const HttpBody& body) {
   ASSIGN_OR_RETURN(const std::string name, file_name(request.parameter("name")));
-  ASSIGN_OR_RETURN(const SceneWish wanted, wanted_of(request));
+  ASSIGN_OR_RETURN(const SceneWish wanted, scene_wish(request));
   Upload upload;
   RETURN_IF_ERROR(upload.open(name));
   RETURN_IF_ERROR(upload.receive(body));

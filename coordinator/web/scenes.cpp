@@ -18,7 +18,7 @@ absl::StatusOr<web::Submitted> Scenes::submit(const std::string& path, const Sce
   const JobSpec spec{
       .request_id =
           wanted.request_id.empty() ? "dashboard-" + link::random_hex(8) : wanted.request_id,
-      .name = scene.info.name,
+      .name = wanted.title.empty() ? scene.info.name : wanted.title,
       .manifest = scene.manifest,
       .settings = settings_of(
           scene.info, wanted.width == 0 ? std::nullopt : std::optional(wanted.width), std::nullopt),

@@ -31,6 +31,7 @@ using ImportScene = std::function<absl::StatusOr<SceneOnFarm>(
 /// Parameters of a job that renders a scene.
 struct SceneWish {
   std::string request_id;   ///< as in farm.SubmitRequest; empty: a random one
+  std::string title = {};   ///< the job's name; empty: the scene's
   std::uint32_t width = 0;  ///< pixels; 0: the scene's own; the height keeps the aspect ratio
   StopRule stop = StopAtSamples{64};
   std::string inside = {};  ///< name of the scene in a zip file; empty: the only one

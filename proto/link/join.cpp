@@ -80,13 +80,13 @@ bool take_tail(absl::string_view& rest, std::size_t length, absl::string_view& t
   return true;
 }
 
-/// True if `rest` ends in "-plain" after a port. A digest contains no colon, so nothing else ends
-/// in ":PORT-plain".
+/// True if `rest` ends in "-plain" after a port. A digest contains neither colon nor plus, so
+/// nothing else ends in ":PORT-plain" or "+PORT-plain".
 bool is_plain(absl::string_view rest) {
   if (!absl::ConsumeSuffix(&rest, absl::StrCat("-", kPlain))) {
     return false;
   }
-  const std::size_t colon = rest.rfind(':');
+  const std::size_t colon = rest.find_last_of(":+");
   return colon != absl::string_view::npos && colon + 1 < rest.size() &&
          std::all_of(rest.begin() + static_cast<std::ptrdiff_t>(colon) + 1, rest.end(),
                      absl::ascii_isdigit);
@@ -108,7 +108,7 @@ std::string JoinString::text() const {
   const std::string digest =
       certificate ? absl::WebSafeBase64Escape(certificate->raw()) : std::string(kPlain);
   return absl::StrCat(kForm, role == Role::kWorker ? "w-" : "f-", absl::StrJoin(addresses, ","),
-                      "-", digest, "-", secret);
+                      web.empty() ? "" : "+", web, "-", digest, "-", secret);
 }
 
 absl::StatusOr<JoinString> parse_join_string(const std::string& text) {
@@ -143,6 +143,15 @@ absl::StatusOr<JoinString> parse_join_string(const std::string& text) {
       return wrong("the digest of the certificate is not 32 bytes");
     }
     join.certificate = *parsed;
+  }
+  if (const std::size_t plus = rest.find('+'); plus != absl::string_view::npos) {
+    join.web = std::string(rest.substr(plus + 1));
+    rest = rest.substr(0, plus);
+    const bool is_port = !absl::StrContains(join.web, ':');
+    if (absl::Status status = check_address(is_port ? "host:" + join.web : join.web);
+        !status.ok()) {
+      return status;
+    }
   }
   absl::StatusOr<std::vector<std::string>> addresses = parse_addresses(rest);
   if (!addresses.ok()) {

@@ -7,7 +7,9 @@
 //   base64url of the certificate's SHA-256, base64url of the secret (128 bits)
 //
 // An IPv6 address is written in brackets. A coordinator without TLS (--insecure) writes "plain"
-// instead of the digest.
+// instead of the digest. The users' string also has the dashboard's place after the addresses, for
+// programs that speak HTTP (deploy/python/bandsaw.py): "+8787" is a port of the same hosts,
+// "+127.0.0.1:8787" another address.
 
 #include <optional>
 #include <string>
@@ -24,6 +26,7 @@ enum class Role { kWorker, kFarm };
 struct JoinString {
   Role role = Role::kWorker;
   std::vector<std::string> addresses;       ///< host:port, tried in order; 1 to 8
+  std::string web = {};                     ///< port or host:port of the dashboard; empty: none
   std::optional<wire::Digest> certificate;  ///< digest of the DER form; std::nullopt: plaintext
   std::string secret;                       ///< base64url, 22 characters
 

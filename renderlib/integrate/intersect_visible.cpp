@@ -86,6 +86,19 @@ std::optional<SurfacePoint> nested_surface(const Scene& scene, const Ray& ray,
   return after == before ? std::nullopt : entered && entered->material == after ? entered : left;
 }
 
+/// Returns the probability that the ray stops at a surface, in [0, 1]. A hidden lamp is there for
+/// scattered rays (bounce > 0) that meet a side to which it emits.
+double presence_for(const Scene& scene, const Ray& ray, const SurfacePoint& point,
+                    std::uint32_t bounce) {
+  const Material& material = scene.material(point.material);
+  if (!is_hidden_lamp(material)) {
+    return opacity(material, scene.textures(), point);
+  }
+  const bool emits = !std::get<Emissive>(material.kind).one_sided ||
+                     dot(ray.direction, point.geometric_normal) < 0;
+  return bounce > 0 && emits ? 1 : 0;
+}
+
 }  // namespace
 
 std::optional<SurfacePoint> intersect_visible(const Scene& scene, const Ray& ray,
@@ -101,9 +114,7 @@ std::optional<SurfacePoint> intersect_visible(const Scene& scene, const Ray& ray
       const double number = sampler.group(sample, group_alpha(bounce, passed))[1];
       point.material = part_at(scene.materials(), scene.textures(), point.material, point, number);
     }
-    const double presence = scene.features().alpha
-                                ? opacity(scene.material(point.material), scene.textures(), point)
-                                : 1;
+    const double presence = scene.features().alpha ? presence_for(scene, ray, point, bounce) : 1;
     const bool is_present =
         presence >= 1 ||
         (presence > 0 && sampler.group(sample, group_alpha(bounce, passed))[0] < presence);

@@ -14,6 +14,7 @@
 #include "renderlib/light/emission.h"
 #include "renderlib/material/albedo.h"
 #include "renderlib/material/bsdf.h"
+#include "renderlib/material/opacity.h"
 
 namespace bandsaw {
 namespace {
@@ -178,7 +179,7 @@ std::optional<Bsdf> make_bsdf(const PathContext& context, const SurfacePoint& po
   if (std::holds_alternative<Emissive>(material.kind)) {
     return std::nullopt;
   }
-  if (depth == context.options.max_depth) {
+  if (depth >= context.options.max_depth) {
     path.truncated = true;
     return std::nullopt;
   }
@@ -282,6 +283,12 @@ void trace_path(const PathContext& context, std::uint32_t depth, PathState& path
     if (!hit) {
       add_background(context, path);
       return;
+    }
+    // Light goes on through a hidden lamp, as it is not there for light sampling either. The path
+    // may then scatter once less, and collects what it meets beyond the maximum depth.
+    if (context.scene.features().alpha && is_hidden_lamp(context.scene.material(hit->material))) {
+      path.ray = spawn_ray(*hit, path.ray.direction);
+      continue;
     }
     // Evaluate the material. Emitters do not scatter, and paths end at the maximum depth.
     const std::optional<Bsdf> bsdf = make_bsdf(context, *hit, depth, path);

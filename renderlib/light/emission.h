@@ -99,8 +99,8 @@ inline Rgb emitted_if_present(absl::Span<const Material> materials, MaterialId i
                 emitted_if_present(materials, mix->b, textures, point, direction),
                 static_cast<float>(amount_at(*mix, textures, point)));
   }
-  return emitted(material, textures, point, direction) *
-         static_cast<float>(opacity(material, textures, point));
+  const double shown = is_hidden_lamp(material) ? 1 : opacity(material, textures, point);
+  return emitted(material, textures, point, direction) * static_cast<float>(shown);
 }
 
 }  // namespace bandsaw

@@ -65,6 +65,9 @@ struct Dielectric {
 struct Emissive {
   TextureId radiance{};
   bool one_sided = false;  ///< only to the side of the geometric normal
+  /// A lamp: the camera does not see it, and it stops no light. Scattered rays that meet it from a
+  /// side to which it emits receive its radiance and go on.
+  bool hidden = false;
 };
 
 /// A number that may vary over a surface: one channel of the texture times `factor`.

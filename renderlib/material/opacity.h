@@ -30,9 +30,16 @@ inline bool bends_nothing(const Material& material) {
          std::abs(glass->index_of_refraction - 1) < kMinRefraction;
 }
 
+/// Returns true for an emitter that stops no light and is not visible from the camera.
+inline bool is_hidden_lamp(const Material& material) {
+  const auto* emissive = std::get_if<Emissive>(&material.kind);
+  return emissive != nullptr && emissive->hidden;
+}
+
 /// Returns true if opacity() can be other than 1; false for a mixture, whatever its parts are.
 inline bool has_alpha(const Material& material) {
-  return material.alpha.mode != AlphaMode::kOpaque || bends_nothing(material);
+  return material.alpha.mode != AlphaMode::kOpaque || bends_nothing(material) ||
+         is_hidden_lamp(material);
 }
 
 /// Returns the probability that a ray is stopped here, in [0, 1]. The material is not a mixture.
@@ -41,7 +48,7 @@ inline double opacity(const Material& material, absl::Span<const Texture> textur
   if (!has_alpha(material)) {
     return 1;
   }
-  if (bends_nothing(material)) {
+  if (bends_nothing(material) || is_hidden_lamp(material)) {
     return 0;
   }
   const Alpha& alpha = material.alpha;

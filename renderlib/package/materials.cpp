@@ -63,6 +63,7 @@ struct EncodeKind {
   void operator()(const Emissive& m) const {
     to.mutable_emissive()->set_radiance(number_of(m.radiance));
     to.mutable_emissive()->set_one_sided(m.one_sided);
+    to.mutable_emissive()->set_hidden(m.hidden);
   }
   void operator()(const MetallicRoughness& m) const {
     encode_metallic_roughness(m, *to.mutable_gltf());
@@ -205,7 +206,8 @@ absl::StatusOr<Material> decode_kind(const package::Material& from, const std::s
     case package::Material::kDielectric:
       return decode(from.dielectric(), field + ".dielectric");
     case package::Material::kEmissive:
-      return Emissive{TextureId{from.emissive().radiance()}, from.emissive().one_sided()};
+      return Emissive{TextureId{from.emissive().radiance()}, from.emissive().one_sided(),
+                      from.emissive().hidden()};
     case package::Material::kGltf:
       return decode_metallic_roughness(from.gltf(), field + ".gltf");
     case package::Material::kPlastic:

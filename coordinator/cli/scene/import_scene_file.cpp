@@ -4,16 +4,24 @@
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/base/json.h"
+#include "coordinator/cli/scene/blend_file.h"
+#include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
-
 absl::StatusOr<ImportedPackage> import_scene_file(const std::string& scene, Verbosity verbosity,
                                                   Process& process, const SceneChoices& choices) {
   std::atomic<bool> stop{false};
   const Interrupts::Listener listener(process.interrupts, [&] { stop = true; });
   ImportLimits limits;
   limits.stop = &stop;
-  auto package = import_in_process(scene, limits, choices);
+  std::string file = scene;
+  std::unique_ptr<BlendScene> blend;
+  if (is_blend_file(scene)) {
+    ASSIGN_OR_RETURN(blend, scene_of_blend_file(scene, stop));
+    file = blend->scene;
+    print_warnings(blend->warnings, verbosity, process);
+  }
+  auto package = import_in_process(file, limits, choices);
   if (!package.ok()) {
     return package;
   }

@@ -11,8 +11,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Imports in the confined process; a signal cancels it. Prints the importer's warnings unless
-/// quiet. Errors as import_in_process.
+/// Imports in the confined process; a signal cancels it. Of a .blend file Blender makes the scene
+/// first. Prints the warnings unless quiet. Errors as import_in_process and scene_of_blend_file.
 absl::StatusOr<ImportedPackage> import_scene_file(const std::string& scene, Verbosity verbosity,
                                                   Process& process,
                                                   const SceneChoices& choices = {});

@@ -95,7 +95,8 @@ absl::StatusOr<Serving> start(const ServeOptions& options) {
   ASSIGN_OR_RETURN(const std::vector<LocalAddress> local, local_addresses());
   const std::vector<std::string> addresses = join_addresses(host, serving.server->port(), local);
   for (const link::Role role : {link::Role::kFarm, link::Role::kWorker}) {
-    const link::JoinString join = join_string(role, identity, addresses, options.insecure);
+    link::JoinString join = join_string(role, identity, addresses, options.insecure);
+    join.web = role == link::Role::kFarm ? serving.web->place(options) : "";
     RETURN_IF_ERROR(unless_full(write_join_file(folder, join)));
     serving.join = join.text();  // after the loop: the workers' join string
   }

@@ -137,6 +137,16 @@ absl::Status ServedDashboard::write_link(const std::string& data_folder,
   return write_file_atomically(file, std::as_bytes(std::span(link)));
 }
 
+std::string ServedDashboard::place(const ServeOptions& options) const {
+  if (dashboard == nullptr) {
+    return "";
+  }
+  const std::string host =
+      options.web.empty() ? "127.0.0.1" : options.web.substr(0, options.web.rfind(':'));
+  const bool everywhere = host == "0.0.0.0" || host == "[::]";
+  return absl::StrCat(everywhere ? "" : host + ":", dashboard->port());
+}
+
 absl::StatusOr<std::string> ServedDashboard::worker_line(const ServeOptions& options,
                                                          const link::Identity& identity,
                                                          const std::string& join) const {

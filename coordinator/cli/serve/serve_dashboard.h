@@ -24,6 +24,10 @@ struct ServedDashboard {
   /// dashboard, removes the file.
   absl::Status write_link(const std::string& data_folder, const link::Identity& identity) const;
 
+  /// Returns the dashboard's place as in the users' join string (proto/link/join.h); empty: there is
+  /// none.
+  std::string place(const ServeOptions& options) const;
+
   /// Returns the line to paste on a machine without a worker; empty: no program is handed out, or
   /// machines that reach the coordinator do not reach the dashboard.
   absl::StatusOr<std::string> worker_line(const ServeOptions& options,

@@ -1,7 +1,8 @@
 #pragma once
 
 // A scene of another renderer, as a scene file of ours: what the converters of pbrt and Mitsuba
-// scenes return. The importer reads it as it reads a scene file; `bandsaw import` writes it to disk.
+// scenes return. The importer reads it as it reads a scene file; `bandsaw import` writes it to
+// disk.
 
 #include <map>
 #include <string>

@@ -72,14 +72,14 @@ absl::StatusOr<Material> read_emissive(const Field& in, const scene::Emissive& f
   if (from.has_texture()) {
     ASSIGN_OR_RETURN(const TextureId id,
                      read_texture(in.child("texture"), from.texture(), kMaxRadiance, draft));
-    return Emissive{id, from.one_sided()};
+    return Emissive{id, from.one_sided(), from.hidden()};
   }
   if (!from.has_radiance()) {
     return in.error("radiance", "is required, for example radiance { rgb: [15, 15, 15] }");
   }
   ASSIGN_OR_RETURN(const Rgb radiance,
                    read_color(in.child("radiance"), from.radiance(), kMaxRadiance));
-  return Emissive{draft.textures.constant(radiance), from.one_sided()};
+  return Emissive{draft.textures.constant(radiance), from.one_sided(), from.hidden()};
 }
 
 absl::StatusOr<Material> read_thin_dielectric(const Field& in, const scene::ThinDielectric& from) {

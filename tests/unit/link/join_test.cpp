@@ -33,6 +33,7 @@ JoinString example() {
 void expect_equal(const JoinString& a, const JoinString& b) {
   EXPECT_EQ(a.role, b.role);
   EXPECT_EQ(a.addresses, b.addresses);
+  EXPECT_EQ(a.web, b.web);
   EXPECT_EQ(a.certificate, b.certificate);
   EXPECT_EQ(a.secret, b.secret);
 }
@@ -64,6 +65,21 @@ TEST(JoinString, RoundTripsWithoutACertificate) {
   expect_equal(*parsed, join);
 }
 
+TEST(JoinString, RoundTripsThePlaceOfTheDashboard) {
+  for (const std::string web : {"8787", "127.0.0.1:8787", "[::1]:1"}) {
+    for (const bool plain : {false, true}) {
+      JoinString join = example();
+      join.web = web;
+      if (plain) {
+        join.certificate.reset();
+      }
+      const absl::StatusOr<JoinString> parsed = parse_join_string(join.text());
+      ASSERT_TRUE(parsed.ok()) << parsed.status();
+      expect_equal(*parsed, join);
+    }
+  }
+}
+
 TEST(JoinString, ReportsErrorsWithoutTheSecret) {
   const std::string tail = absl::StrCat("-", kDigest43, "-", kSecret);
   const std::vector<std::pair<std::string, std::string>> cases = {
@@ -86,6 +102,9 @@ TEST(JoinString, ReportsErrorsWithoutTheSecret) {
       {"bsw1-w-a b:1" + tail, "host"},
       {"bsw1-w-[]:1" + tail, "host"},
       {"bsw1-w-h:1," + tail, "HOST:PORT"},
+      {"bsw1-f-h:1+0" + tail, "port"},
+      {"bsw1-f-h:1+" + tail, "port"},
+      {"bsw1-f-h:1+a b:1" + tail, "host"},
       {"bsw1-w-h:1,h:1,h:1,h:1,h:1,h:1,h:1,h:1,h:1" + tail, "more than 8"},
   };
   for (const auto& [text, what] : cases) {

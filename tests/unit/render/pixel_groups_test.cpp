@@ -74,7 +74,7 @@ TEST(PixelGroups, HalvesHaveEightPixelsInEachRowOfATile) {
 // The errors of two pixels in one group have a correlation of up to 0.95, so those of pixels at any
 // distance have at most 5.1 % of that on average.
 TEST(PixelGroups, PixelsAtEveryDistanceRarelyShare) {
-  constexpr int kSide = 512;
+  constexpr int kSide = 256;
   const std::vector<int> groups = groups_of({kSide, kSide});
   for (int dy = 0; dy <= 16; ++dy) {
     for (int dx = -16; dx <= 16; ++dx) {

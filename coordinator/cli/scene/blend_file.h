@@ -1,0 +1,42 @@
+#pragma once
+
+// Makes a scene of a .blend file: Blender, where it is installed, runs without a window and writes
+// what it would render as a scene file with its files (deploy/blender).
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "absl/status/statusor.h"
+
+namespace bandsaw::coordinator {
+
+/// Returns true for names that end in .blend.
+bool is_blend_file(const std::string& path);
+
+/// A scene that Blender has written, in a temporary folder that is removed with this object.
+class BlendScene {
+ public:
+  BlendScene(std::string folder, std::string scene_path)
+      : scene(std::move(scene_path)), folder_(std::move(folder)) {}
+  ~BlendScene();
+  BlendScene(const BlendScene&) = delete;
+  BlendScene& operator=(const BlendScene&) = delete;
+
+  std::string scene;                  ///< the path of the scene file
+  std::vector<std::string> warnings;  ///< what is not shown as it is in Blender, in sentences
+
+ private:
+  std::string folder_;
+};
+
+/// Runs Blender on the file; scripts in the file are not run. Unlike the importer, Blender runs
+/// with the user's rights. NOT_FOUND: no such file. INVALID_ARGUMENT: Blender cannot read or render
+/// it. FAILED_PRECONDITION: Blender is not installed. CANCELLED: `stop`. DEADLINE_EXCEEDED: it took
+/// more than ten minutes.
+absl::StatusOr<std::unique_ptr<BlendScene>> scene_of_blend_file(const std::string& path,
+                                                                const std::atomic<bool>& stop);
+
+}  // namespace bandsaw::coordinator

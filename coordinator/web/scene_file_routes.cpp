@@ -1,0 +1,242 @@
+// Scenes of many files, from programs (deploy/python/bandsaw.py): each file is sent once, as a blob
+// that stays in the store, and a scene names its files by their digests.
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <utility>
+
+#include "absl/cleanup/cleanup.h"
+#include "absl/strings/ascii.h"
+#include "absl/strings/numbers.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+#include "coordinator/web/reply.h"
+#include "coordinator/web/routes.h"
+#include "coordinator/web/scene_wish.h"
+#include "proto/web.pb.h"
+#include "renderlib/base/atomic_file.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMaxListBytes = 16 << 20;
+constexpr int kMaxFiles = 100'000;
+constexpr std::uint64_t kMaxFileBytes = 2ull << 30;
+constexpr std::uint64_t kMaxSceneBytes = 4ull << 30;
+
+absl::Status too_large(const std::string& what, std::uint64_t most) {
+  return absl::InvalidArgumentError(absl::StrCat(what, " has at most ", most >> 20,
+                                                 " MiB here; bandsaw submit takes larger scenes"));
+}
+
+absl::StatusOr<web::FileDigests> missing_files(Engine& engine, const HttpBody& body) {
+  web::FileDigests asked;
+  RETURN_IF_ERROR(read_json(body, asked, kMaxListBytes));
+  if (asked.sha256_size() > kMaxFiles) {
+    return absl::InvalidArgumentError(absl::StrCat("at most ", kMaxFiles, " files"));
+  }
+  web::FileDigests missing;
+  for (const std::string& hex : asked.sha256()) {
+    ASSIGN_OR_RETURN(const wire::Digest digest, wire::digest_from_hex(hex));
+    if (!engine.has_blob(digest)) {
+      missing.add_sha256(hex);
+    }
+  }
+  return missing;
+}
+
+/// The bytes of a body, in the pieces that the caller asks for.
+class BodyReader {
+ public:
+  explicit BodyReader(const HttpBody& body) : body_(body) {}
+
+  /// Returns the line up to the next newline, without it; empty at the end of the body.
+  /// INVALID_ARGUMENT: longer than `most` bytes.
+  absl::StatusOr<std::string> line(std::size_t most) {
+    std::string text;
+    while (true) {
+      RETURN_IF_ERROR(fill());
+      if (rest_.empty()) {
+        return text;
+      }
+      const char c = rest_.front();
+      rest_.remove_prefix(1);
+      if (c == '\n') {
+        return text;
+      }
+      if (text.size() == most) {
+        return absl::InvalidArgumentError("a file must begin with the line SHA256 SIZE");
+      }
+      text.push_back(c);
+    }
+  }
+  /// Returns 1 to `most` bytes, valid until the next call. INVALID_ARGUMENT: the body has ended.
+  absl::StatusOr<absl::string_view> bytes(std::uint64_t most) {
+    RETURN_IF_ERROR(fill());
+    if (rest_.empty()) {
+      return absl::InvalidArgumentError("the body ends within a file");
+    }
+    const absl::string_view piece = rest_.substr(0, std::min<std::uint64_t>(most, rest_.size()));
+    rest_.remove_prefix(piece.size());
+    return piece;
+  }
+
+ private:
+  absl::Status fill() {
+    if (rest_.empty() && !ended_) {
+      ASSIGN_OR_RETURN(rest_, body_());
+      ended_ = rest_.empty();
+    }
+    return absl::OkStatus();
+  }
+
+  const HttpBody& body_;
+  absl::string_view rest_;
+  bool ended_ = false;
+};
+
+absl::Status take_file(Engine& engine, const std::string& head, BodyReader& reader) {
+  const std::vector<std::string> words = absl::StrSplit(head, ' ');
+  std::uint64_t size = 0;
+  if (words.size() != 2 || !absl::SimpleAtoi(words[1], &size)) {
+    return absl::InvalidArgumentError("a file must begin with the line SHA256 SIZE");
+  }
+  ASSIGN_OR_RETURN(const wire::Digest digest, wire::digest_from_hex(words[0]));
+  if (size > kMaxFileBytes) {
+    return too_large("a file of a scene", kMaxFileBytes);
+  }
+  std::unique_ptr<Engine::BlobWriter> writer;  // nullptr: the file is there already
+  if (!engine.has_blob(digest)) {
+    ASSIGN_OR_RETURN(writer, engine.write_blob(digest, size));
+  }
+  while (size > 0) {
+    ASSIGN_OR_RETURN(const absl::string_view bytes, reader.bytes(size));
+    size -= bytes.size();
+    if (writer != nullptr) {
+      RETURN_IF_ERROR(writer->append(
+          absl::MakeConstSpan(reinterpret_cast<const std::byte*>(bytes.data()), bytes.size())));
+    }
+  }
+  return writer != nullptr ? writer->commit() : absl::OkStatus();
+}
+
+absl::StatusOr<web::FileDigests> take_files(Engine& engine, const HttpBody& body) {
+  constexpr std::size_t kMaxHead = 64 + 1 + 20;
+  web::FileDigests taken;
+  BodyReader reader(body);
+  while (true) {
+    ASSIGN_OR_RETURN(const std::string head, reader.line(kMaxHead));
+    if (head.empty()) {
+      return taken;
+    }
+    RETURN_IF_ERROR(take_file(engine, head, reader));
+    taken.add_sha256(head.substr(0, head.find(' ')));
+  }
+}
+
+/// Returns true for a relative path whose parts have only safe characters and do not begin with a
+/// dot.
+bool is_safe(const std::string& name) {
+  constexpr std::size_t kMaxName = 500;
+  const auto safe = [](char c) {
+    return absl::ascii_isalnum(c) || c == '.' || c == '-' || c == '_' || c == ' ' || c == '+' ||
+           c == '(' || c == ')' || c == ',' || c == '@' || c == '#' || c == '~' ||
+           (static_cast<unsigned char>(c) >= 0x80);
+  };
+  if (name.empty() || name.size() > kMaxName) {
+    return false;
+  }
+  const std::vector<std::string> parts = absl::StrSplit(name, '/');
+  return std::all_of(parts.begin(), parts.end(), [&](const std::string& part) {
+    return !part.empty() && part.front() != '.' && std::all_of(part.begin(), part.end(), safe);
+  });
+}
+
+absl::Status write_copy(const fs::path& path, absl::Span<const std::byte> bytes) {
+  std::FILE* const file = std::fopen(path.c_str(), "wb");
+  if (file == nullptr) {
+    return errno_status(errno, "cannot keep the scene");
+  }
+  const bool written = std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size();
+  const int error = errno;
+  if (std::fclose(file) != 0 || !written) {
+    return errno_status(written ? errno : error, "cannot keep the scene");
+  }
+  return absl::OkStatus();
+}
+
+/// Lays the files of a scene into a folder, which the importer can read.
+absl::Status lay_out(Engine& engine, const web::SceneFiles& files, const fs::path& folder) {
+  std::uint64_t left = kMaxSceneBytes;
+  for (const web::SceneFiles::File& file : files.file()) {
+    if (!is_safe(file.name())) {
+      return absl::InvalidArgumentError(absl::StrCat("'", file.name(), "' is not a file name"));
+    }
+    ASSIGN_OR_RETURN(const wire::Digest digest, wire::digest_from_hex(file.sha256()));
+    if (!engine.has_blob(digest)) {
+      return absl::FailedPreconditionError(
+          absl::StrCat("the file ", file.name(), " is not here; send it again"));
+    }
+    ASSIGN_OR_RETURN(const std::unique_ptr<BlobBytes> bytes, engine.blobs().get(digest));
+    if (bytes->bytes().size() > left) {
+      return too_large("a scene", kMaxSceneBytes);
+    }
+    left -= bytes->bytes().size();
+    const fs::path path = folder / file.name();
+    std::error_code error;
+    fs::create_directories(path.parent_path(), error);
+    if (error) {
+      return errno_status(error.value(), "cannot keep the scene");
+    }
+    RETURN_IF_ERROR(write_copy(path, bytes->bytes()));
+  }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<web::Submitted> submit_files(Engine& engine, Scenes& scenes,
+                                            const HttpRequest& request, const HttpBody& body) {
+  ASSIGN_OR_RETURN(const SceneWish wanted, scene_wish(request));
+  web::SceneFiles files;
+  RETURN_IF_ERROR(read_json(body, files, kMaxListBytes));
+  const auto is_scene = [&](const auto& file) { return file.name() == files.scene(); };
+  if (files.file_size() > kMaxFiles ||
+      std::none_of(files.file().begin(), files.file().end(), is_scene)) {
+    return absl::InvalidArgumentError(
+        absl::StrCat("scene: must be one of the files, at most ", kMaxFiles));
+  }
+  std::error_code error;
+  std::string folder = (fs::temp_directory_path(error) / "bandsaw-files-XXXXXX").string();
+  if (error || mkdtemp(folder.data()) == nullptr) {
+    return errno_status(error ? error.value() : errno, "cannot make a temporary folder");
+  }
+  const absl::Cleanup remove = [&folder] {
+    std::error_code ignored;
+    fs::remove_all(folder, ignored);
+  };
+  RETURN_IF_ERROR(lay_out(engine, files, folder));
+  return scenes.submit((fs::path(folder) / files.scene()).string(), wanted);
+}
+
+}  // namespace
+
+void add_scene_files(Router& router, Engine& engine, Scenes& scenes) {
+  router.post("/api/files/missing", [&engine](const HttpRequest&, const HttpBody& body) {
+    return answer(missing_files(engine, body));
+  });
+  router.post("/api/files", [&engine](const HttpRequest&, const HttpBody& body) {
+    return answer(take_files(engine, body));
+  });
+  router.post("/api/scenes/files",
+              [&engine, &scenes](const HttpRequest& request, const HttpBody& body) {
+                return answer(submit_files(engine, scenes, request, body));
+              });
+}
+
+}  // namespace bandsaw::coordinator

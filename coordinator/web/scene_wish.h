@@ -1,0 +1,15 @@
+#pragma once
+
+// The parameters of a request that submits a scene.
+
+#include "absl/status/statusor.h"
+#include "coordinator/web/http.h"
+#include "coordinator/web/scenes.h"
+
+namespace bandsaw::coordinator {
+
+/// Reads `width` (pixels), `title` (the job's name), `scene` (the scene file in a zip), and one of `samples` (a pixel), `error`
+/// (0.02: two percent), `time` (seconds). INVALID_ARGUMENT naming the parameter.
+absl::StatusOr<SceneWish> scene_wish(const HttpRequest& request);
+
+}  // namespace bandsaw::coordinator

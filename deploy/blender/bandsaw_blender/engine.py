@@ -1,0 +1,187 @@
+"""The render engine "Bandsaw": renders Blender's scene on a farm, and shows the picture while it sharpens."""
+
+import os
+import time
+
+import bpy
+import numpy as np
+
+from . import bandsaw, scene as scenes
+
+# Blender's pass, its type for Blender, and the farm's kind of layer.
+PASSES = (("use_pass_z", "Depth", 1, "Z", "VALUE", "depth"), ("use_pass_normal", "Normal", 3, "XYZ", "VECTOR", "normals"),
+          ("use_pass_diffuse_color", "DiffCol", 3, "RGB", "COLOR", "albedo"))
+PATIENCE = 60.0  # seconds for which a lost coordinator is waited for
+
+last_warnings = []  # of the last render, for the panel
+
+
+def preferences():
+    """The add-on's preferences; None: it runs without being installed (headless)."""
+    addon = bpy.context.preferences.addons.get(__package__)
+    return addon.preferences if addon is not None else None
+
+
+def farm_string():
+    """The farm's string: of the preferences, else of the environment's BANDSAW_FARM, as the program `bandsaw` does."""
+    kept = preferences()
+    text = kept.farm.strip() if kept is not None else ""
+    return text or os.environ.get("BANDSAW_FARM", "").strip()
+
+
+def region_of(render, size):
+    """The region to render in pixels from the lower left, or None."""
+    if not render.use_border:
+        return None
+    width, height = size
+    x0, x1 = int(render.border_min_x * width), int(render.border_max_x * width)
+    y0, y1 = int(render.border_min_y * height), int(render.border_max_y * height)
+    return (x0, y0, max(x1, x0 + 1), max(y1, y0 + 1))
+
+
+class Stopped(Exception):
+    """The user pressed Esc."""
+
+
+class BandsawEngine(bpy.types.RenderEngine):
+    bl_idname = "BANDSAW"
+    bl_label = "Bandsaw"
+    bl_use_preview = False
+    bl_use_postprocess = True
+    bl_use_shading_nodes_custom = False
+    bl_use_eevee_viewport = True  # the viewport's "Material Preview" and "Rendered" are drawn by EEVEE
+
+    def update_render_passes(self, scene=None, renderlayer=None):
+        self.register_pass(scene, renderlayer, "Combined", 4, "RGBA", "COLOR")
+        for setting, name, channels, letters, kind, _ in PASSES:
+            if getattr(renderlayer, setting, False):
+                self.register_pass(scene, renderlayer, name, channels, letters, kind)
+
+    def render(self, depsgraph):
+        try:
+            self.render_on_farm(depsgraph)
+        except Stopped:
+            pass
+        except (bandsaw.BandsawError, RuntimeError) as error:
+            self.report({"ERROR"}, f"Bandsaw: {error}")
+            self.error_set(f"Bandsaw: {error}")
+
+    def render_on_farm(self, depsgraph):
+        scene = depsgraph.scene
+        size = (self.resolution_x, self.resolution_y)
+        string = farm_string()
+        if not string:
+            raise bandsaw.WrongString("there is no farm yet: paste its string into Edit > Preferences > Add-ons > Bandsaw")
+        kept = preferences()
+        farm = bandsaw.Farm(string, web=(kept.web.strip() or None) if kept is not None else None)
+        farm.check()
+        self.update_stats("", "Reading the scene")
+        last_warnings.clear()
+        made = scenes.build(depsgraph, scene, size, region_of(scene.render, size), self.camera_override, self.frame_set)
+        self.tell_warnings(made.warnings)
+        self.stop_if_asked()
+        job = self.submit(farm, scene, made)
+        try:
+            self.follow(depsgraph, job, made)
+        except Stopped:
+            job.cancel()
+            raise
+
+    def tell_warnings(self, warnings):
+        for warning in warnings:
+            if warning not in last_warnings:
+                last_warnings.append(warning)
+                self.report({"WARNING"}, f"Bandsaw: {warning}")
+
+    def stop_if_asked(self):
+        if self.test_break():
+            raise Stopped()
+
+    def submit(self, farm, scene, made):
+        def told(sent, total):
+            self.stop_if_asked()
+            self.update_stats("", f"Sending the scene: {sent >> 20} of {(total >> 20) + 1} MiB")
+
+        wanted = {"error": scene.bandsaw.error / 100} if scene.bandsaw.stop == "ERROR" else {"samples": scene.bandsaw.samples}
+        name = os.path.splitext(os.path.basename(bpy.data.filepath))[0] or "untitled"
+        self.update_stats("", "Sending the scene")
+        files = dict(made.files)
+        job = farm.submit(made.text(), name=scenes.Scene.MAIN, files=files, told=told, title=f"{name} {scene.frame_current}", **wanted)
+        self.tell_warnings(job.warnings)
+        return job
+
+    def follow(self, depsgraph, job, made):
+        width, height = made.scene["image"]["width"], made.scene["image"]["height"]
+        result = self.begin_result(0, 0, width, height, layer=depsgraph.view_layer.name)
+        done = False
+        try:
+            shown, wait = -1, 0.0
+            for progress in job.progress(interval=0.3, patience=PATIENCE, stop=self.test_break):
+                self.show_progress(progress)
+                now = time.monotonic()
+                if progress.state == "running" and progress.samples_done > max(shown, 0) and now >= wait:
+                    began = time.monotonic()
+                    if self.show_preview(job, result, width, height):
+                        shown = progress.samples_done
+                    wait = time.monotonic() + max(0.4, 4 * (time.monotonic() - began))
+            self.stop_if_asked()
+            self.set_pixels(result, "Combined", with_alpha(job.image().array()))
+            self.add_passes(depsgraph, job, result)
+            self.update_result(result)
+            done = True
+        finally:
+            self.end_result(result, cancel=not done and self.test_break(), do_merge_results=done)
+
+    def show_progress(self, progress):
+        self.update_progress(progress.fraction)
+        omitted = f" | {len(last_warnings)} things are not shown as they are: see Render Properties" if last_warnings else ""
+        self.update_stats("", str(progress) + omitted)
+
+    def show_preview(self, job, result, width, height):
+        """Shows the present picture; False: there is none yet."""
+        try:
+            picture = job.preview(max(width, height) if width * height <= 4_000_000 else 1024)
+        except bandsaw.NoFarm:
+            return False  # the next question to the farm tells it
+        if picture is None:
+            return False
+        pixels = picture.array()
+        if pixels.shape[:2] != (height, width):
+            pixels = pixels[np.arange(height) * pixels.shape[0] // height][:, np.arange(width) * pixels.shape[1] // width]
+        self.set_pixels(result, "Combined", with_alpha(pixels))
+        self.update_result(result)
+        return True
+
+    def set_pixels(self, result, name, pixels):
+        """`pixels`: (height, width, channels), rows from the top."""
+        layer = result.layers[0]
+        found = layer.passes.find_by_name(name, layer.name) if hasattr(layer.passes, "find_by_name") else layer.passes.get(name)
+        if found is not None:
+            flat = np.ascontiguousarray(pixels[::-1], dtype=np.float32)
+            found.rect.foreach_set(flat.reshape(flat.shape[0] * flat.shape[1], flat.shape[2]))
+
+    def add_passes(self, depsgraph, job, result):
+        wanted = [entry for entry in PASSES if getattr(depsgraph.view_layer, entry[0], False)]
+        jobs = [(entry, job.layer(entry[5])) for entry in wanted]
+        for (_, name, channels, _, _, kind), layer in jobs:
+            for progress in layer.progress(interval=0.2, patience=PATIENCE, stop=self.test_break):
+                self.update_stats("", f"{name}: {progress}")
+            if self.test_break():
+                layer.cancel()
+                raise Stopped()
+            self.set_pixels(result, name, pass_pixels(kind, layer.image().array(), depsgraph, self.camera_override))
+
+
+def with_alpha(pixels):
+    return np.concatenate([pixels, np.ones(pixels.shape[:2] + (1,), dtype=np.float32)], axis=2)
+
+
+def pass_pixels(kind, pixels, depsgraph, camera):
+    """A layer of the farm as Blender's pass."""
+    if kind == "normals":
+        hit = pixels.any(axis=2, keepdims=True)
+        n = np.where(hit, 2 * pixels - 1, 0)
+        return np.stack([n[:, :, 0], -n[:, :, 2], n[:, :, 1]], axis=2)  # from y up to z up
+    if kind == "depth":
+        return np.where(pixels[:, :, :1] > 0, pixels[:, :, :1], 1e10)  # Blender's mark of a ray that hits nothing
+    return pixels

@@ -1,0 +1,206 @@
+"""Meshes of Blender as numpy arrays, and as the bytes of GLB files."""
+
+import json
+import struct
+
+import numpy as np
+
+
+class Triangles:
+    """The triangles of a mesh with one material slot. `positions` (v, 3), `normals` (v, 3) or None (flat everywhere), `uvs`: a list of at
+    most two (v, 2), v = 0 at the bottom; `indices` (t, 3)."""
+
+    def __init__(self, positions, normals, uvs, indices):
+        self.positions, self.normals, self.uvs, self.indices = positions, normals, uvs, indices
+
+    def corners(self):
+        """The same with three vertices of its own for each triangle."""
+        flat = self.indices.reshape(-1)
+        normals = None if self.normals is None else self.normals[flat]
+        return Triangles(self.positions[flat], normals, [uv[flat] for uv in self.uvs], np.arange(len(flat), dtype=np.uint32).reshape(-1, 3))
+
+    def corner_normals(self):
+        """(3 t, 3): the shading normals of the corners, in the order of `indices`."""
+        if self.normals is not None:
+            return self.normals[self.indices.reshape(-1)]
+        a, b, c = (self.positions[self.indices[:, k]].astype(np.float64) for k in range(3))
+        n = np.cross(b - a, c - a)
+        n /= np.maximum(np.linalg.norm(n, axis=1, keepdims=True), 1e-30)
+        return np.repeat(n, 3, axis=0)
+
+
+def _get(collection, name, count, width, dtype):
+    array = np.empty(count * width, dtype=dtype)
+    collection.foreach_get(name, array)
+    return array.reshape(count, width) if width > 1 else array
+
+
+def _corner_normals(mesh, loops):
+    """The normals of the corners (loops, 3); they hold flat and smooth faces and the user's own normals."""
+    if hasattr(mesh, "corner_normals"):  # Blender 4.1
+        return _get(mesh.corner_normals, "vector", loops, 3, np.float32)
+    mesh.calc_normals_split()
+    found = _get(mesh.loops, "normal", loops, 3, np.float32)
+    mesh.free_normals_split()
+    return found
+
+
+def triangles_of(mesh, uv_names):
+    """A dictionary from the indices of the material slots that the mesh uses to their Triangles. `uv_names`: the names of the uv maps to
+    keep, at most two; "" is the active one."""
+    mesh.calc_loop_triangles()
+    count, vertices, loops = len(mesh.loop_triangles), len(mesh.vertices), len(mesh.loops)
+    if count == 0:
+        return {}
+    corners = _get(mesh.loop_triangles, "loops", count, 3, np.int32)
+    of_corner = _get(mesh.loop_triangles, "vertices", count, 3, np.int32)
+    slots = _get(mesh.loop_triangles, "material_index", count, 1, np.int32)
+    smooth = _get(mesh.polygons, "use_smooth", len(mesh.polygons), 1, bool)
+    positions = _get(mesh.vertices, "co", vertices, 3, np.float32)
+    vertex_of_loop = _get(mesh.loops, "vertex_index", loops, 1, np.int32)
+    uvs = [_get(layer.data, "uv", loops, 2, np.float32) for layer in _uv_layers(mesh, uv_names)]
+    custom = mesh.has_custom_normals
+    split = custom or getattr(mesh, "use_auto_smooth", False) or _has_sharp(mesh)
+    normals = None
+    if smooth.all() and not split:
+        normals = _get(mesh.vertices, "normal", vertices, 3, np.float32)[vertex_of_loop]
+    elif smooth.any() or custom:
+        normals = _corner_normals(mesh, loops)
+    used = np.unique(slots)
+    if len(used) == 1:
+        return {int(used[0]): _indexed(positions, normals, uvs, corners, of_corner, vertex_of_loop)}
+    return {int(slot): _compact(_indexed(positions, normals, uvs, corners[slots == slot], of_corner[slots == slot], vertex_of_loop)) for slot in used}
+
+
+def _has_sharp(mesh):
+    attribute = mesh.attributes.get("sharp_edge") if hasattr(mesh, "attributes") else None
+    return attribute is not None
+
+
+def _uv_layers(mesh, names):
+    if not len(mesh.uv_layers):
+        return []
+    active = next((layer for layer in mesh.uv_layers if layer.active_render), mesh.uv_layers[0])
+    found = []
+    for name in names:
+        layer = mesh.uv_layers.get(name, active) if name else active
+        if all(layer.name != other.name for other in found):
+            found.append(layer)
+    return found[:2]
+
+
+def _indexed(positions, normals, uvs, corners, of_corner, vertex_of_loop):
+    """Triangles whose vertices are shared where the corners' normals and uvs are the same. Vertices are added for the other corners only,
+    so that a mesh without seams is as fast as one without uvs."""
+    flat, vertex = corners.reshape(-1), of_corner.reshape(-1)
+    per_corner = [a for a in [normals] + uvs if a is not None]
+    if not per_corner:
+        return Triangles(positions, None, [], of_corner.astype(np.uint32))
+    values = [a[flat] for a in per_corner]
+    representative = np.zeros(len(positions), dtype=np.int64)
+    representative[vertex] = np.arange(len(flat))  # the last corner of each vertex
+    other = np.zeros(len(flat), dtype=bool)
+    for a in values:
+        other |= (a != a[representative[vertex]]).any(axis=1)
+    index = vertex.astype(np.uint32)
+    extra = np.flatnonzero(other)
+    if len(extra):
+        rows = np.concatenate([np.ascontiguousarray(a[extra]).view(np.uint8).reshape(len(extra), -1) for a in values] +
+                              [vertex[extra].astype(np.int32).reshape(-1, 1).view(np.uint8)], axis=1)
+        keys = np.ascontiguousarray(rows).view(np.dtype((np.void, rows.shape[1]))).reshape(-1)
+        _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
+        index[extra] = len(positions) + inverse.astype(np.uint32)
+        added = extra[first]
+    else:
+        added = extra
+    all_corners = np.concatenate([representative, added])
+    result = [a[all_corners] for a in values]
+    return Triangles(np.concatenate([positions, positions[vertex[added]]]), result.pop(0) if normals is not None else None, result,
+                     index.reshape(-1, 3))
+
+
+def _compact(triangles):
+    """The same without vertices that no triangle uses."""
+    used, indices = np.unique(triangles.indices.reshape(-1), return_inverse=True)
+    normals = None if triangles.normals is None else triangles.normals[used]
+    return Triangles(triangles.positions[used], normals, [uv[used] for uv in triangles.uvs], indices.astype(np.uint32).reshape(-1, 3))
+
+
+def box(low, high):
+    """The Triangles of an axis-aligned box, outwards."""
+    p = np.array([[(low, high)[k >> a & 1][a] for a in range(3)] for k in range(8)], dtype=np.float32)
+    quads = [(0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6)]
+    return Triangles(p, None, [], np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))], dtype=np.uint32))
+
+
+def glb(triangles):
+    """The bytes of a GLB file with this one mesh."""
+    parts, views, accessors, attributes = [], [], [], {}
+
+    def add(array, kind, component, target, **more):
+        data = array.tobytes()
+        views.append({"buffer": 0, "byteOffset": sum(map(len, parts)), "byteLength": len(data), "target": target})
+        accessors.append({"bufferView": len(views) - 1, "componentType": component, "count": len(array), "type": kind, **more})
+        parts.append(data)
+        return len(accessors) - 1
+
+    positions = np.ascontiguousarray(triangles.positions, dtype="<f4")
+    attributes["POSITION"] = add(positions, "VEC3", 5126, 34962, min=positions.min(axis=0).tolist(), max=positions.max(axis=0).tolist())
+    if triangles.normals is not None:
+        attributes["NORMAL"] = add(np.ascontiguousarray(triangles.normals, dtype="<f4"), "VEC3", 5126, 34962)
+    for number, uv in enumerate(triangles.uvs):
+        flipped = np.stack([uv[:, 0], 1 - uv[:, 1]], axis=1)
+        attributes[f"TEXCOORD_{number}"] = add(np.ascontiguousarray(flipped, dtype="<f4"), "VEC2", 5126, 34962)
+    indices = np.ascontiguousarray(triangles.indices.reshape(-1), dtype="<u4")
+    number = add(indices, "SCALAR", 5125, 34963)
+    data = b"".join(parts)
+    text = json.dumps({
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": attributes, "indices": number}]}],
+        "buffers": [{"byteLength": len(data)}], "bufferViews": views, "accessors": accessors}).encode()
+    text += b" " * (-len(text) % 4)
+    data += b"\0" * (-len(data) % 4)
+    return (struct.pack("<III", 0x46546C67, 2, 28 + len(text) + len(data)) + struct.pack("<II", len(text), 0x4E4F534A) + text +
+            struct.pack("<II", len(data), 0x004E4942) + data)
+
+
+# ---- an atlas: an image with a place of its own for each triangle ----
+
+
+class Atlas:
+    """Each pair of triangles has a square cell of `cell` texels of an image of `side` texels. `uvs` (3 t, 2): the corners' places;
+    `triangle` and `weights` (side * side), (side * side, 3): the triangle at each texel's centre, rows from the bottom, and its barycentric
+    coordinates there, which continue beyond the triangle's edges for the texels around it; texels without a triangle have -1."""
+
+    def __init__(self, triangles, most_side=1024):
+        pairs = (triangles + 1) // 2
+        columns = int(np.ceil(np.sqrt(pairs)))
+        self.cell = max(most_side // columns, 6)
+        self.side = columns * self.cell
+        if self.side > 2048:
+            raise ValueError(f"{triangles:,} triangles are too many")
+        number = np.arange(triangles)
+        corner = np.stack([(number // 2) % columns, (number // 2) // columns], axis=1) * self.cell
+        # The first triangle of a pair lies at the lower left, the second one at the upper right; both keep away from the diagonal and from
+        # the cell's edges, so that bilinear look-ups see only texels of their own triangle.
+        near, far = 1.0, self.cell - 2.0
+        first = np.array([[near, near], [far - 1, near], [near, far - 1]])
+        second = self.cell - first
+        local = np.where((number % 2 == 0)[:, None, None], first[None], second[None])
+        places = corner[:, None, :] + local
+        self.uvs = (places.reshape(-1, 2) / self.side).astype(np.float32)
+        y, x = np.divmod(np.arange(self.side * self.side), self.side)
+        cx, cy = x // self.cell, y // self.cell
+        lx, ly = x % self.cell + 0.5, y % self.cell + 0.5
+        upper = lx + ly > self.cell
+        pair = cy * columns + cx
+        self.triangle = np.where(pair < pairs, 2 * pair + upper, -1)
+        self.triangle = np.where(self.triangle < triangles, self.triangle, -1)
+        px, py = np.where(upper, self.cell - lx, lx), np.where(upper, self.cell - ly, ly)
+        b, c = (px - near) / (far - 1 - near), (py - near) / (far - 1 - near)
+        self.weights = np.stack([1 - b - c, b, c], axis=1)
+
+    def spread(self, per_corner):
+        """Values at the texels of values at the corners (3 t, k)."""
+        by_triangle = per_corner.reshape(-1, 3, per_corner.shape[1])[np.maximum(self.triangle, 0)]
+        return np.einsum("nk,nkd->nd", self.weights, by_triangle)

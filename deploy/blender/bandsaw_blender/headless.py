@@ -1,0 +1,59 @@
+"""Makes a scene folder of a .blend file, for `bandsaw submit FILE.blend`:
+
+    blender -b -Y FILE.blend --python-expr "import sys; sys.path.insert(0, ZIP); from bandsaw_blender import headless; headless.main(FOLDER, NAME)"
+
+Writes FOLDER/NAME.json, the files that it refers to, and FOLDER/warnings with a line for each thing that is not shown as it is; or
+FOLDER/error with one line."""
+
+import os
+import sys
+import traceback
+
+import bpy
+
+from . import engine, scene as scenes
+
+_folder, _name = [""], ["scene"]
+
+
+class ExportEngine(bpy.types.RenderEngine):
+    """Renders nothing: it is the way to a dependency graph in render mode."""
+
+    bl_idname = "BANDSAW_EXPORT"
+    bl_label = "Bandsaw (scene files)"
+
+    def render(self, depsgraph):
+        try:
+            size = (self.resolution_x, self.resolution_y)
+            made = scenes.build(depsgraph, depsgraph.scene, size, engine.region_of(depsgraph.scene.render, size), None, self.frame_set)
+            write(_folder[0], made)
+        except Exception as error:
+            traceback.print_exc()
+            fail(_folder[0], str(error) or type(error).__name__)
+
+
+def write(folder, made):
+    for name, content in {**made.files, _name[0] + ".json": made.text().encode()}.items():
+        with open(os.path.join(folder, name), "wb") as file:
+            file.write(content)
+    with open(os.path.join(folder, "warnings"), "w", encoding="utf-8") as file:
+        file.writelines(warning.replace("\n", " ") + "\n" for warning in made.warnings)
+
+
+def fail(folder, message):
+    with open(os.path.join(folder, "error"), "w", encoding="utf-8") as file:
+        file.write(message.replace("\n", " ") + "\n")
+
+
+def main(folder, name="scene"):
+    _folder[0], _name[0] = folder, name
+    if not ExportEngine.is_registered:
+        bpy.utils.register_class(ExportEngine)
+    scene = bpy.context.scene
+    scene.render.engine = ExportEngine.bl_idname
+    scene.render.use_compositing = scene.render.use_sequencer = False
+    if scene.camera is None:
+        fail(folder, "the scene has no camera")
+    else:
+        bpy.ops.render.render(write_still=False)
+    sys.stdout.flush()

@@ -1,0 +1,277 @@
+"""Converts Blender's lights and world. Powers become radiances, intensities and irradiances; docs of the units: Blender's manual, "Light
+Objects", and deploy/blender/README.md."""
+
+import math
+
+import numpy as np
+from mathutils import Matrix, Vector
+
+from . import evaluate, files, shading
+from .evaluate import Unsupported, from_node, input_of
+from .shading import rgb
+
+# From Blender's axes (z up) to those of scene files (y up).
+TO_SCENE = Matrix(((1, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1)))
+
+
+def vector(v):
+    return [float(x) for x in v]
+
+
+def add_light(out, thing, matrix):
+    """Adds a light object. `matrix`: its placement in Blender's axes."""
+    light = thing.data
+    tint = np.array(light.color) * light.energy * node_factor(out, light)
+    if not tint.any():
+        return
+    placed = TO_SCENE @ matrix
+    place, toward = vector(placed.translation), vector(-(placed.to_3x3() @ Vector((0, 0, 1))))
+    {"SUN": add_sun, "POINT": add_point, "SPOT": add_spot, "AREA": add_area}[light.type](out, thing, placed, place, toward, tint)
+    if not getattr(getattr(light, "cycles", light), "cast_shadow", True) or not getattr(light, "use_shadow", True):
+        out.warn(f'the light "{thing.name}" casts shadows, although its setting says that it does not')
+
+
+def node_factor(out, light):
+    """The colour that the light's nodes multiply its power with."""
+    if not light.use_nodes or light.node_tree is None:
+        return np.ones(3)
+    end = shading.output_node(light.node_tree)
+    output = from_node(end.inputs["Surface"]) if end is not None else None
+    if output is None:
+        return np.zeros(3)
+    try:
+        if output.node.type != "EMISSION":
+            raise Unsupported(f'the node "{output.node.name}"')
+        values = evaluate.Evaluator(evaluate.Points(1), out.images.pixels)
+        return evaluate.color(values.of(output.node, "Color"))[0] * evaluate.number(values.of(output.node, "Strength"))[0]
+    except Unsupported as error:
+        out.warn(f'the light "{light.name}": {error} cannot be shown; the light has its plain colour')
+        return np.ones(3)
+
+
+def add_sun(out, thing, placed, place, toward, tint):
+    angle = min(thing.data.angle, math.pi)
+    if angle < math.radians(0.01):
+        out.scene.setdefault("light", []).append({"directional": {"direction": toward, "irradiance": rgb(tint)}})
+        return
+    out.suns.append((Vector(toward).normalized(), angle, tint))
+
+
+def finish_suns(out, center, radius):
+    """Adds suns with a size as disks far behind everything. `center`, `radius`: of a sphere around the scene."""
+    for toward, angle, tint in out.suns:
+        # A point of the scene that is `radius` off the axis sees the disk's direction changed by 1 / 4,096.
+        distance = 4096 * max(radius, 1e-3)
+        half = angle / 2
+        radiance = tint / (math.pi * math.sin(half) ** 2)
+        out.lamp({"disk": {"center": vector(center - toward * distance), "normal": vector(toward), "radius": distance * math.tan(half)}}, radiance, True)
+
+
+def add_point(out, thing, placed, place, toward, tint):
+    radius = thing.data.shadow_soft_size
+    if radius > 1e-6:
+        out.lamp({"sphere": {"center": place, "radius": radius}}, tint / (4 * math.pi ** 2 * radius ** 2), not thing.visible_camera)
+    else:
+        out.scene.setdefault("light", []).append({"point": {"position": place, "intensity": rgb(tint / (4 * math.pi))}})
+
+
+def add_spot(out, thing, placed, place, toward, tint):
+    light = thing.data
+    outer = light.spot_size / 2
+    if outer > math.pi / 2:
+        out.warn(f'the light "{thing.name}" has a cone of more than 180 degrees; 180 is shown')
+        outer = math.pi / 2
+    if light.shadow_soft_size > 1e-6:
+        out.warn(f'the shadows of the spot light "{thing.name}" are hard; its radius is not shown')
+    if getattr(light, "use_square", False):
+        out.warn(f'the cone of the spot light "{thing.name}" is round, not square')
+    # Blender's cone is full where the cosine is at least this.
+    inner = math.acos(min(math.cos(outer) + (1 - math.cos(outer)) * light.spot_blend, 1.0))
+    spot = {"position": place, "direction": toward, "intensity": rgb(tint / (4 * math.pi)), "inner_angle": math.degrees(inner),
+            "outer_angle": math.degrees(outer), "falloff": "FALLOFF_SMOOTH"}
+    out.scene.setdefault("light", []).append({"spot": spot})
+
+
+def add_area(out, thing, placed, place, toward, tint):
+    light = thing.data
+    across, along = placed.to_3x3().col[0] * light.size, placed.to_3x3().col[1] * (light.size_y if light.shape in ("RECTANGLE", "ELLIPSE") else light.size)
+    round_one = light.shape in ("DISK", "ELLIPSE")
+    area = across.length * along.length * (math.pi / 4 if round_one else 1)
+    if area < 1e-12:
+        return
+    if getattr(light, "spread", math.pi) < math.pi - 1e-3:
+        out.warn(f'the spread of the area light "{thing.name}" is not shown')
+    radiance = tint / (4 * area)  # Blender divides by 4 where a Lambertian emitter of this power would have pi
+    if not round_one:
+        # Its normal u x v looks along the light's -z.
+        out.lamp({"quad": {"corner": vector(Vector(place) - across / 2 - along / 2), "u": vector(along), "v": vector(across)}}, radiance, not thing.visible_camera)
+    elif abs(across.length - along.length) < 1e-6 * across.length:
+        out.lamp({"disk": {"center": place, "normal": toward, "radius": across.length / 2}}, radiance, not thing.visible_camera)
+    else:
+        name = out.lamp_material(radiance, not thing.visible_camera)
+        unit = {"name": f"ellipse {len(out.scene['group'])}", "shape": [{"disk": {"normal": [0, 0, -1], "radius": 1}, "material": name}]}
+        out.scene["group"].append(unit)
+        shape = Matrix((across / 2, along / 2, -Vector(toward))).transposed().to_4x4()
+        shape.translation = Vector(place)
+        out.scene["instance"].append({"of": unit["name"], "matrix": out.rows(shape)})
+
+
+# ---- the world ----
+
+
+def add_world(out, world):
+    background = None
+    try:
+        background = world_background(out, world) if world is not None else {"constant": rgb((0, 0, 0))}
+    except Unsupported as error:
+        out.warn(f"the world: {error} cannot be shown; the background is black")
+    out.scene["background"] = background or {"constant": rgb((0, 0, 0))}
+    if world is None or not world.use_nodes or world.node_tree is None:
+        return
+    end = shading.output_node(world.node_tree)
+    volume = from_node(end.inputs["Volume"]) if end is not None else None
+    if volume is not None:
+        medium = medium_of(out, volume, "the world")
+        if medium is not None:
+            medium["name"] = "fog"
+            out.scene["medium"].append(medium)
+            out.scene["fog"] = "fog"
+
+
+def world_background(out, world):
+    if not world.use_nodes or world.node_tree is None:
+        return {"constant": rgb(world.color)}
+    end = shading.output_node(world.node_tree)
+    output = from_node(end.inputs["Surface"]) if end is not None else None
+    if output is None:
+        return {"constant": rgb((0, 0, 0))}
+    try:
+        return {"constant": rgb(radiance_of(out, output, evaluate.Points(1))[0])}
+    except evaluate.NeedsCoordinates:
+        pass
+    return plain_environment(out, output) or baked_environment(out, output)
+
+
+def radiance_of(out, output, points, values=None):
+    """The radiance of the world's shader at points, whose generated coordinates are directions."""
+    node = output.node
+    values = values or evaluate.Evaluator(points, out.images.pixels)
+    if node.type in ("BACKGROUND", "EMISSION"):
+        return evaluate.color(values.of(node, "Color")) * evaluate.number(values.of(node, "Strength"))[:, None]
+    if node.type in ("MIX_SHADER", "ADD_SHADER"):
+        sources = [from_node(socket) for socket in list(node.inputs)[-2:]]
+        a, b = (np.zeros((1, 3)) if s is None else radiance_of(out, s, points, values) for s in sources)
+        if node.type == "ADD_SHADER":
+            return a + b
+        share = np.clip(evaluate.number(values.socket(node.inputs[0])), 0, 1)[:, None]
+        return a * (1 - share) + b * share
+    raise Unsupported(f'the node "{node.name}" ({node.bl_label})')
+
+
+def plain_environment(out, output):
+    """An environment image that is only turned and scaled; None: it is more than that."""
+    node = output.node
+    if node.type not in ("BACKGROUND", "EMISSION") or from_node(input_of(node, "Strength")) is not None:
+        return None
+    source = from_node(input_of(node, "Color"))
+    if source is None or source.node.type != "TEX_ENVIRONMENT" or source.node.image is None or source.node.projection != "EQUIRECTANGULAR":
+        return None
+    image, turned = source.node.image, Matrix.Identity(3)
+    if image.colorspace_settings.name == "Non-Color" and not image.is_float:
+        return None
+    vector_from = from_node(input_of(source.node, "Vector"))
+    if vector_from is not None and vector_from.node.type == "MAPPING":
+        from mathutils import Euler
+        mapping = vector_from.node
+        if any(from_node(input_of(mapping, name)) is not None for name in ("Location", "Rotation", "Scale")):
+            return None
+        place, turn, scale = (tuple(input_of(mapping, name).default_value) for name in ("Location", "Rotation", "Scale"))
+        if any(abs(x) > 1e-6 for x in place) or any(abs(x - 1) > 1e-6 for x in scale):
+            return None
+        turned = Euler(turn).to_matrix()
+        if mapping.vector_type == "TEXTURE":
+            turned = turned.transposed()
+        vector_from = from_node(input_of(mapping, "Vector"))
+        if vector_from is None:
+            return None
+    if vector_from is not None and not (vector_from.node.type == "TEX_COORD" and vector_from.name == "Generated"):
+        return None
+    swap = TO_SCENE.to_3x3()
+    axis, angle = (swap @ turned.transposed() @ swap.transposed()).to_quaternion().to_axis_angle()
+    made = {"file": out.images.file(image), "strength": float(input_of(node, "Strength").default_value)}
+    if abs(angle) > 1e-9:
+        made["rotate"] = [{"axis": vector(axis), "degrees": math.degrees(angle)}]
+    return {"environment": made}
+
+
+def baked_environment(out, output, width=1024):
+    """The world's nodes, evaluated in all directions."""
+    height = width // 2
+    y, x = np.divmod(np.arange(width * height), width)
+    longitude = (0.5 - (x + 0.5) / width) * 2 * np.pi
+    latitude = (0.5 - (y + 0.5) / height) * np.pi
+    d = np.stack([np.cos(latitude) * np.cos(longitude), np.cos(latitude) * np.sin(longitude), np.sin(latitude)], axis=1)
+    points = evaluate.Points(len(d), generated=d, local=d, normal=d, position=d)
+    values = np.broadcast_to(radiance_of(out, output, points), (len(d), 3))
+    picture = np.maximum(np.nan_to_num(values), 0).reshape(height, width, 3)
+    return {"environment": {"file": out.images.store("world.exr", files.exr(picture))}}
+
+
+# ---- media ----
+
+
+def medium_of(out, output, where, density_grid=None):
+    """The Medium of a volume shader, without a name; None: there is none."""
+    node = output.node
+    values = evaluate.Evaluator(evaluate.Points(1), out.images.pixels)
+    try:
+        if node.type == "ADD_SHADER":
+            parts = [medium_of(out, s, where) for s in map(from_node, node.inputs) if s is not None]
+            return sum_of_media([part for part in parts if part is not None])
+
+        def color(*names, default=(1, 1, 1)):
+            socket = input_of(node, *names)
+            return evaluate.color(values.socket(socket))[0] if socket is not None else np.array(default, dtype=float)
+
+        density = float(evaluate.number(values.of(node, "Density", default=1.0))[0])
+        if node.type == "VOLUME_SCATTER":
+            if getattr(node, "phase", "HENYEY_GREENSTEIN") != "HENYEY_GREENSTEIN":
+                out.warn(f"{where}: the phase function {node.phase} is shown as Henyey and Greenstein's")
+            return {"scattering": rgb(color("Color") * density), "anisotropy": anisotropy(values, node)}
+        if node.type == "VOLUME_ABSORPTION":
+            return {"absorption": rgb((1 - np.clip(color("Color"), 0, 1)) * density)}
+        if node.type == "EMISSION":
+            return {"emission": rgb(color("Color") * evaluate.number(values.of(node, "Strength"))[0])}
+        if node.type == "PRINCIPLED_VOLUME":
+            scatter = np.clip(color("Color"), 0, 1)
+            absorb = np.maximum(1 - scatter, 0) * np.maximum(1 - np.sqrt(np.maximum(color("Absorption Color"), 0)), 0)
+            made = {"scattering": rgb(scatter * density), "absorption": rgb(absorb * density), "anisotropy": anisotropy(values, node)}
+            glow = color("Emission Color") * evaluate.number(values.of(node, "Emission Strength"))[0]
+            if glow.any():
+                made["emission"] = rgb(glow)
+            if density_grid is None and float(evaluate.number(values.of(node, "Blackbody Intensity"))[0]) > 0:
+                out.warn(f"{where}: the black body of a volume without a temperature is not shown")
+            return made
+        raise Unsupported(f'the node "{node.name}" ({node.bl_label})')
+    except Unsupported as error:
+        out.warn(f"{where}: {error} cannot be shown in a volume; the volume is left out")
+        return None
+
+
+def anisotropy(values, node):
+    return min(max(float(evaluate.number(values.of(node, "Anisotropy"))[0]), -0.999), 0.999)
+
+
+def sum_of_media(parts):
+    if not parts:
+        return None
+    made = {}
+    for field in ("absorption", "scattering", "emission"):
+        found = [np.array(part[field]["rgb"]) for part in parts if field in part]
+        if found:
+            made[field] = rgb(sum(found))
+    weights = [(sum(part["scattering"]["rgb"]), part.get("anisotropy", 0.0)) for part in parts if "scattering" in part]
+    total = sum(weight for weight, _ in weights)
+    if total > 0:
+        made["anisotropy"] = sum(weight * g for weight, g in weights) / total
+    return made

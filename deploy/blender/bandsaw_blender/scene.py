@@ -1,0 +1,388 @@
+"""Walks over Blender's evaluated scene and makes a scene of Bandsaw of it: a scene file and its files, in memory.
+
+Vertices stay in the space of their mesh; the change from Blender's axes (z up) to those of scene files (y up) is part of the placements. What
+cannot be shown is named in `warnings`."""
+
+import hashlib
+import json
+import math
+import os
+
+import bpy
+import numpy as np
+from mathutils import Matrix, Vector
+
+from . import evaluate, geometry, lights, shading
+from .lights import TO_SCENE, vector
+
+GEOMETRY = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
+
+
+class Scene:
+    """A scene in the making. `scene`: the message Scene as a dictionary; `files`: from names to bytes or paths; `warnings`: sentences."""
+
+    MAIN = "scene.json"
+
+    def __init__(self):
+        self.scene = {"texture": [], "material": [], "group": [], "instance": [], "model": [], "shape": [], "light": [], "medium": []}
+        self.files, self.warnings, self.suns = {}, [], []
+        self.version = bpy.app.version
+        self.images = shading.Images(self.store, self.warn)
+        self._materials, self._media = {}, {}
+        self.low, self.high = np.full(3, np.inf), np.full(3, -np.inf)
+
+    def warn(self, text):
+        if text not in self.warnings:
+            self.warnings.append(text)
+
+    def store(self, name, data):
+        """Adds a file; files of the same bytes are one. Returns its name."""
+        stored = hashlib.sha256(data).hexdigest()[:24] + os.path.splitext(name)[1]
+        self.files[stored] = data
+        return stored
+
+    def material(self, message):
+        """Adds a material; equal ones are one. Returns its name."""
+        key = json.dumps(message, sort_keys=True)
+        if key not in self._materials:
+            self._materials[key] = f"m{len(self._materials)}"
+            self.scene["material"].append({"name": self._materials[key], **message})
+        return self._materials[key]
+
+    def medium(self, message):
+        key = json.dumps(message, sort_keys=True)
+        if key not in self._media:
+            self._media[key] = f"v{len(self._media)}"
+            self.scene["medium"].append({"name": self._media[key], **message})
+        return self._media[key]
+
+    def lamp_material(self, radiance, hidden):
+        emissive = {"radiance": shading.rgb(radiance), "one_sided": True}
+        if hidden:
+            emissive["hidden"] = True
+        return self.material({"emissive": emissive})
+
+    def lamp(self, shape, radiance, hidden):
+        """Adds a shape that emits to the side of its normal. `hidden`: the camera does not see it."""
+        self.scene["shape"].append({**shape, "material": self.lamp_material(radiance, hidden)})
+
+    @staticmethod
+    def rows(matrix):
+        return [float(matrix[row][column]) for row in range(3) for column in range(4)]
+
+    def text(self):
+        return json.dumps({field: value for field, value in self.scene.items() if value not in ([], "", {})})
+
+    def all_files(self):
+        return {**self.files, self.MAIN: self.text().encode()}
+
+    def grow(self, triangles, matrices):
+        """Extends the box around the scene, in Blender's axes, by placements of a mesh."""
+        low, high = triangles.positions.min(axis=0), triangles.positions.max(axis=0)
+        corners = np.array([[(low, high)[k >> a & 1][a] for a in range(3)] + [1] for k in range(8)])
+        placed = np.einsum("kj,nij->nki", corners, np.array([[list(row) for row in matrix] for matrix in matrices]))[:, :, :3].reshape(-1, 3)
+        self.low, self.high = np.minimum(self.low, placed.min(axis=0)), np.maximum(self.high, placed.max(axis=0))
+
+
+class Shape:
+    """What all placements of one mesh with the same materials share. `parts`: fields of Model for each material slot."""
+
+    def __init__(self, parts):
+        self.parts, self.placements = parts, []
+
+
+def build(depsgraph, scene, size, region=None, camera=None, frame_set=None):
+    """Returns the Scene of an evaluated dependency graph in render mode. `size`: (width, height) of the whole image; `region`: (x0, y0, x1, y1) in
+    pixels from the lower left, or None; `frame_set`: a function of (frame, subframe) that moves the graph in time, for motion blur."""
+    out = Scene()
+    moved = Moved(depsgraph, scene, frame_set)
+    camera = camera or scene.camera
+    if camera is None:
+        raise RuntimeError("the scene has no camera")
+    add_camera(out, camera.evaluated_get(depsgraph), depsgraph, scene, size, region, moved)
+    shapes = {}
+    for instance in depsgraph.object_instances:
+        if not instance.show_self:
+            continue
+        thing = instance.object
+        matrix = instance.matrix_world.copy()
+        if thing.type == "LIGHT":
+            lights.add_light(out, thing, matrix)
+        elif thing.type in GEOMETRY:
+            add_geometry(out, shapes, thing, matrix, moved.of(instance))
+        elif thing.type == "VOLUME":
+            add_grid(out, thing, matrix)
+        elif thing.type in ("CURVES", "HAIR"):
+            out.warn(f'the hair "{thing.name}" is not shown')
+        elif thing.type == "POINTCLOUD":
+            out.warn(f'the point cloud "{thing.name}" is not shown')
+        if any(system.settings.type == "HAIR" and system.settings.render_type == "PATH" for system in getattr(thing, "particle_systems", ())):
+            out.warn(f'the hair of "{thing.name}" is not shown')
+    place(out, shapes)
+    lights.add_world(out, scene.world)
+    center, radius = Vector((0, 0, 0)), 1.0
+    if np.isfinite(out.low).all():
+        center = TO_SCENE @ Vector((out.low + out.high) / 2)
+        radius = float(np.linalg.norm(out.high - out.low)) / 2
+    lights.finish_suns(out, center, radius)
+    if scene.render.film_transparent:
+        out.warn("a transparent background is not rendered: the film is opaque")
+    return out
+
+
+# ---- motion ----
+
+
+class Moved:
+    """The placements at the times when the shutter opens and closes; none without motion blur."""
+
+    def __init__(self, depsgraph, scene, frame_set):
+        self.times, self.before, self.after = None, {}, {}
+        if not scene.render.use_motion_blur or frame_set is None:
+            return
+        length = scene.render.motion_blur_shutter
+        position = getattr(scene.render, "motion_blur_position", None) or getattr(getattr(scene, "cycles", None), "motion_blur_position", "CENTER")
+        start = {"START": 0.0, "CENTER": -length / 2, "END": -length}[position]
+        frame = scene.frame_current + scene.frame_subframe
+        self.times = (0.0, 1.0)
+        for found, time in ((self.before, frame + start), (self.after, frame + start + length)):
+            frame_set(math.floor(time), time - math.floor(time))
+            for instance in depsgraph.object_instances:
+                found[self.key(instance)] = instance.matrix_world.copy()
+            camera = scene.camera.evaluated_get(depsgraph)
+            found["camera"] = camera.matrix_world.copy()
+        frame_set(math.floor(frame), frame - math.floor(frame))
+
+    @staticmethod
+    def key(instance):
+        parent = instance.parent.name_full if instance.parent is not None else ""
+        return instance.object.name_full, parent, tuple(instance.persistent_id)
+
+    def of(self, instance):
+        """The two placements of an instance that moves; None: it does not."""
+        if self.times is None:
+            return None
+        key = self.key(instance)
+        first, last = self.before.get(key), self.after.get(key)
+        if first is None or last is None or max(abs(a - b) for x, y in zip(first, last) for a, b in zip(x, y)) < 1e-7:
+            return None
+        return first, last
+
+
+def key_of(time, matrix, previous=None):
+    """A message Key of a placement, in the axes of scene files. Returns it and the rotation, for the next one."""
+    location, rotation, scale = (TO_SCENE @ matrix).decompose()
+    if previous is not None and rotation.dot(previous) < 0:
+        rotation.negate()
+    axis, angle = rotation.to_axis_angle()
+    made = {"time": time, "translate": vector(location), "scale": vector(scale)}
+    if abs(angle) > 1e-9:
+        made["rotate"] = [{"axis": vector(axis), "degrees": math.degrees(angle)}]
+    return made, rotation
+
+
+def sheared(matrix):
+    location, rotation, scale = matrix.decompose()
+    again = Matrix.LocRotScale(location, rotation, scale)
+    largest = max(abs(x) for row in matrix for x in row)
+    return max(abs(a - b) for x, y in zip(matrix, again) for a, b in zip(x, y)) > 1e-4 * largest
+
+
+# ---- the camera ----
+
+
+def add_camera(out, camera, depsgraph, scene, size, region, moved):
+    data = camera.data
+    width, height = size
+    if data.type == "PANO":
+        out.warn("a panoramic camera is not rendered; it is shown as a perspective one")
+    render = scene.render
+    projection = camera.calc_matrix_camera(depsgraph, x=width, y=height, scale_x=render.pixel_aspect_x, scale_y=render.pixel_aspect_y)
+    x0, y0, x1, y1 = region or (0, 0, width, height)
+    corners = [2 * x0 / width - 1, 2 * x1 / width - 1, 2 * y0 / height - 1, 2 * y1 / height - 1]
+    flat = data.type == "ORTHO"
+    matrix = TO_SCENE @ camera.matrix_world.normalized()
+    turned = matrix.to_3x3()
+    place, ahead, up = matrix.translation, -turned.col[2], turned.col[1]
+    message = {"position": vector(place), "look_at": vector(place + ahead), "up": vector(up)}
+    # Where the edges of the image lie: at distance 1 for a perspective camera.
+    axes = (0, 0, 1, 1)
+    offset = 3 if flat else 2
+    sign = -1 if flat else 1
+    message["window"] = [(corner + sign * projection[axis][offset]) / projection[axis][axis] for corner, axis in zip(corners, axes)]
+    if flat:
+        message["orthographic"] = {"height": 2.0}
+    else:
+        message["vertical_fov"] = 90.0
+    if data.dof.use_dof and flat:
+        out.warn("the depth of field of an orthographic camera is not shown")
+    elif data.dof.use_dof:
+        message["aperture"] = 1e-3 * data.lens / max(data.dof.aperture_fstop, 1e-5)
+        focus = data.dof.focus_distance
+        if data.dof.focus_object is not None:
+            focused = data.dof.focus_object.evaluated_get(depsgraph).matrix_world.translation
+            focus = abs((camera.matrix_world.normalized().inverted() @ focused).z)
+        message["focus_distance"] = max(focus, 1e-5)
+        if data.dof.aperture_blades >= 3 or abs(data.dof.aperture_ratio - 1) > 1e-3:
+            out.warn("the lens is round; the blades and the ratio of the aperture are not shown")
+    if moved.times is not None:
+        message["shutter_open"], message["shutter_close"] = moved.times
+        a, b = moved.before["camera"], moved.after["camera"]
+        if max(abs(p - q) for x, y in zip(a, b) for p, q in zip(x, y)) > 1e-6:
+            out.warn("the camera's own motion is not blurred")
+    out.scene["camera"] = message
+    out.scene["image"] = {"width": x1 - x0, "height": y1 - y0, "filter": {"gaussian": {"radius": 1.5}}}
+
+
+# ---- geometry ----
+
+
+def materials_of(thing, mesh):
+    slots = [slot.material for slot in thing.material_slots]
+    return slots or [material for material in mesh.materials]
+
+
+def add_geometry(out, shapes, thing, matrix, motion):
+    data = thing.data
+    key = (data.as_pointer() if thing.type == "MESH" else (thing.name_full, data.as_pointer()),
+           tuple(slot.material.name_full if slot.material else "" for slot in thing.material_slots))
+    shape = shapes.get(key)
+    if shape is None:
+        mesh = data if thing.type == "MESH" else thing.to_mesh()
+        try:
+            shape = shapes[key] = Shape(parts_of(out, thing, mesh, matrix) if mesh is not None else [])
+        finally:
+            if thing.type != "MESH":
+                thing.to_mesh_clear()
+    if not thing.visible_camera:
+        out.warn(f'"{thing.name}" is seen by the camera, although its setting says that it is not')
+    if motion is not None and (sheared(motion[0]) or sheared(motion[1])):
+        out.warn(f'the motion of "{thing.name}", which is sheared, is not blurred')
+        motion = None
+    shape.placements.append((matrix, motion))
+
+
+def parts_of(out, thing, mesh, matrix):
+    materials = materials_of(thing, mesh)
+    names = [""] + [name for name in uv_names(materials) if name]
+    parts = []
+    pieces = geometry.triangles_of(mesh, names)
+    real = [next((layer.name for layer in mesh.uv_layers if layer.active_render), "")] + names[1:] if len(mesh.uv_layers) else [""]
+    size = np.array(mesh.texspace_size, dtype=float) * 2
+    low = np.array(mesh.texspace_location, dtype=float) - size / 2
+    size = np.where(size == 0, 1, size)
+    for slot, triangles in sorted(pieces.items()):
+        material = materials[min(slot, len(materials) - 1)] if materials else None
+        piece = shading.Piece(triangles, low, size, matrix, real)
+        part = material_part(out, material, piece, thing)
+        if part is not None:
+            part["triangles"] = triangles
+            part["file"] = out.store("mesh.glb", geometry.glb(piece.finished()))
+            parts.append(part)
+    return parts
+
+
+def uv_names(materials):
+    found = []
+    for material in materials:
+        if material is not None and material.use_nodes and material.node_tree is not None:
+            waiting = [material.node_tree]
+            while waiting:
+                for node in waiting.pop().nodes:
+                    if node.type in ("UVMAP", "NORMAL_MAP") and node.uv_map and node.uv_map not in found:
+                        found.append(node.uv_map)
+                    if node.type == "GROUP" and node.node_tree is not None:
+                        waiting.append(node.node_tree)
+    return found[:1]
+
+
+def material_part(out, material, piece, thing):
+    """Fields of Model for a piece of geometry; None: nothing of it is visible."""
+    if material is None:
+        return {"material": out.material({"diffuse": {"color": shading.rgb((0.8, 0.8, 0.8))}})}
+    medium = interior_of(out, material, thing)
+    shader = shading.Shader(out, material, piece)
+    try:
+        surface = shader.surface()
+    except evaluate.Unsupported as error:
+        shader.warn(f"{error} cannot be shown; the surface is grey")
+        surface = shading.Surface("diffuse", texture=shading.Value(list(material.diffuse_color)[:3]).message())
+    except ValueError as error:
+        shader.warn(f"its textures cannot be baked ({error}); the surface is grey")
+        surface = shading.Surface("diffuse", texture=shading.Value(list(material.diffuse_color)[:3]).message())
+    if surface is None and medium is None:
+        return None
+    part = {}
+    if surface is not None:
+        part["material"] = out.material(shading.message(surface, out))
+    if medium is not None:
+        part["interior"] = out.medium(medium)
+        if surface is None:
+            part["boundary_only"] = True
+    return part
+
+
+def interior_of(out, material, thing):
+    if not material.use_nodes or material.node_tree is None:
+        return None
+    end = shading.output_node(material.node_tree)
+    volume = evaluate.from_node(end.inputs["Volume"]) if end is not None else None
+    return lights.medium_of(out, volume, f'the volume of "{thing.name}"') if volume is not None else None
+
+
+def add_grid(out, thing, matrix):
+    """An OpenVDB object: its box, filled with the grid's medium."""
+    path = bpy.path.abspath(thing.data.filepath) if thing.data.filepath else ""
+    if thing.data.is_sequence:
+        path = thing.data.grids.frame_filepath if hasattr(thing.data.grids, "frame_filepath") else path
+    if not path or not os.path.isfile(path):
+        out.warn(f'the volume "{thing.name}" has no file ({path or "made by modifiers"}) and is not shown')
+        return
+    material = next((slot.material for slot in thing.material_slots if slot.material is not None), None)
+    medium = {"scattering": shading.rgb((0.5, 0.5, 0.5))}
+    if material is not None and material.use_nodes:
+        end = shading.output_node(material.node_tree)
+        volume = evaluate.from_node(end.inputs["Volume"]) if end is not None else None
+        if volume is None:
+            return
+        medium = lights.medium_of(out, volume, f'the volume "{thing.name}"', "density")
+        if medium is None:
+            return
+    with open(path, "rb") as file:
+        name = out.store("grid.vdb", file.read())
+    medium["density_grid"] = {"file": name, "grid": "density"}
+    corners = np.array([tuple(corner) for corner in thing.bound_box])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    if not (high > low).all():
+        out.warn(f'the volume "{thing.name}" is empty')
+        return
+    box = geometry.box(low, high)
+    out.grow(box, [matrix])
+    out.scene["model"].append({"file": out.store("mesh.glb", geometry.glb(box)), "matrix": out.rows(TO_SCENE @ matrix),
+                               "interior": out.medium(medium), "boundary_only": True})
+
+
+def place(out, shapes):
+    """Writes the placements: as models where there is one, otherwise as instances of a group."""
+    for shape in shapes.values():
+        models = [{field: value for field, value in part.items() if field != "triangles"} for part in shape.parts]
+        if not models:
+            continue
+        for part in shape.parts:
+            out.grow(part["triangles"], [matrix for matrix, _ in shape.placements])
+        if len(shape.placements) == 1:
+            for model in models:
+                out.scene["model"].append({**model, **placed(out, *shape.placements[0])})
+            continue
+        name = f"g{len(out.scene['group'])}"
+        out.scene["group"].append({"name": name, "model": models})
+        for placement in shape.placements:
+            out.scene["instance"].append({"of": name, **placed(out, *placement)})
+
+
+def placed(out, matrix, motion):
+    if motion is None:
+        return {"matrix": out.rows(TO_SCENE @ matrix)}
+    first, rotation = key_of(0.0, motion[0])
+    last, _ = key_of(1.0, motion[1], rotation)
+    return {"key": [first, last]}

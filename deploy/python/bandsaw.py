@@ -1,0 +1,617 @@
+"""Bandsaw in Python: renders scenes on a farm, from scripts and notebooks.
+
+    import bandsaw
+    farm = bandsaw.Farm("bsw1-f-…")                      # the users' join string, or a file with it
+    image = farm.render("scene.gltf", samples=64)        # blocks; image.save("picture.png")
+
+    job = farm.submit("scene.textproto", error=0.02)     # returns at once
+    for progress in job.progress():                      # about twice a second until the job is over
+        print(progress)
+    image = job.image()
+
+This one file needs Python 3.8 or later and its standard library. With numpy, `Image.array()` is an
+array, and images are converted faster. The farm's coordinator must have its dashboard on
+(`bandsaw serve --web 0.0.0.0:8787`), because this module speaks its HTTP requests.
+"""
+
+import array
+import base64
+import binascii
+import hashlib
+import http.client
+import json
+import math
+import os
+import re
+import socket
+import ssl
+import struct
+import sys
+import time
+import urllib.parse
+import zlib
+
+try:
+    import numpy
+except ImportError:
+    numpy = None
+
+__all__ = ["BandsawError", "Farm", "Image", "Job", "NoFarm", "Progress", "WrongString", "compare", "image_from_pfm"]
+
+DEFAULT_WEB_PORT = 8787
+OVER = ("done", "failed", "cancelled")
+
+
+class BandsawError(Exception):
+    """An error whose message is one sentence for the user."""
+
+
+class WrongString(BandsawError):
+    """The farm's string is not one, or the farm refuses it."""
+
+
+class NoFarm(BandsawError):
+    """No coordinator answers, or another program does."""
+
+
+class Refused(BandsawError):
+    """The coordinator answered with an error. `status`: the HTTP status."""
+
+    def __init__(self, status, message):
+        super().__init__(message)
+        self.status = status
+
+
+class JoinString:
+    """The parts of a users' join string: `addresses` ((host, port), the farm's gRPC port), `web`
+    ((host or None, port) of the dashboard, or None: not named), `certificate` (SHA-256, 32 bytes; None: the farm
+    runs with --insecure) and `secret`. proto/link/join.h describes the form."""
+
+    def __init__(self, text):
+        rest = text.strip()
+        if rest.startswith("bsw1-w-"):
+            raise WrongString("this is the workers' join string; the users' one is in the file `farm` of the coordinator's data folder")
+        if not rest.startswith("bsw1-f-"):
+            raise WrongString("the farm's string must begin with bsw1-f-; it is in the file `farm` of the coordinator's data folder")
+        match = re.fullmatch(r"bsw1-f-(.+?)-(plain|[A-Za-z0-9_-]{43})-([A-Za-z0-9_-]{22})", rest)
+        if match is None:
+            raise WrongString("the farm's string is incomplete; was it cut off?")
+        places, digest, self.secret = match.groups()
+        self.certificate = None if digest == "plain" else base64.urlsafe_b64decode(digest + "=")
+        places, _, web = places.partition("+")
+        self.addresses = [_host_and_port(place) for place in places.split(",")]
+        self.web = None
+        if web:
+            self.web = (None, _port(web)) if ":" not in web else _host_and_port(web)
+
+
+def _port(text):
+    if not text.isdigit() or not 1 <= int(text) <= 65535:
+        raise WrongString("a port in the farm's string is not a number from 1 to 65535")
+    return int(text)
+
+
+def _host_and_port(text):
+    host, colon, port = text.rpartition(":")
+    if not colon or not host:
+        raise WrongString("an address in the farm's string is not HOST:PORT")
+    return host.strip("[]"), _port(port)
+
+
+def _is_loopback(host):
+    return host in ("localhost", "::1") or host.startswith("127.")
+
+
+class _PinnedConnection(http.client.HTTPSConnection):
+    """HTTPS to the holder of one certificate: its digest is compared before anything is sent."""
+
+    def __init__(self, host, port, timeout, digest):
+        context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+        context.check_hostname = False
+        context.verify_mode = ssl.CERT_NONE  # the digest of the certificate is checked instead
+        super().__init__(host, port, timeout=timeout, context=context)
+        self._digest = digest
+
+    def connect(self):
+        super().connect()
+        found = hashlib.sha256(self.sock.getpeercert(binary_form=True)).digest()
+        if found != self._digest:
+            self.close()
+            raise NoFarm(f"{self.host}:{self.port} is another farm: its certificate is not the one that the farm's string names")
+
+
+class Farm:
+    """A farm of Bandsaw. `join`: the users' join string, or the name of a file that contains it.
+    `web`: "HOST:PORT" of the dashboard where the string does not name it. No connection is made
+    before the first request."""
+
+    def __init__(self, join, web=None, timeout=20.0):
+        if not join.lstrip().startswith("bsw1-") and os.path.isfile(join):
+            with open(join, encoding="utf-8") as file:
+                join = file.read()
+        self._join = JoinString(join)
+        self._timeout = timeout
+        if web is not None:
+            self._doors = [_host_and_port(web)]
+        elif self._join.web is not None and self._join.web[0] is not None:
+            self._doors = [self._join.web]
+        else:
+            port = self._join.web[1] if self._join.web else DEFAULT_WEB_PORT
+            self._doors = [(host, port) for host, _ in self._join.addresses]
+
+    def __repr__(self):
+        host, port = self._doors[0]
+        return f"<bandsaw.Farm {host}:{port}>"
+
+    # ---- requests ----
+
+    def _connect(self, door):
+        host, port = door
+        if self._join.certificate is None or _is_loopback(host):
+            return http.client.HTTPConnection(host, port, timeout=self._timeout)
+        return _PinnedConnection(host, port, self._timeout, self._join.certificate)
+
+    def _send(self, door, method, path, body, headers, timeout):
+        connection = self._connect(door)
+        if timeout is not None:
+            connection.timeout = timeout
+        try:
+            connection.request(method, path, body=body() if callable(body) else body, headers=headers)
+            reply = connection.getresponse()
+            return reply.status, reply.read()
+        finally:
+            connection.close()
+
+    def request(self, method, path, body=None, length=None, timeout=None):
+        """Returns the body of the answer. `body`: bytes, or a function that returns an iterable of
+        bytes of `length` bytes in all. Raises NoFarm, WrongString or Refused."""
+        headers = {"Authorization": "Bearer " + self._join.secret, "X-Bandsaw": "1"}
+        if length is not None:
+            headers["Content-Length"] = str(length)
+        troubles = []
+        for door in list(self._doors):
+            try:
+                status, answer = self._send(door, method, path, body, headers, timeout)
+            except (OSError, http.client.HTTPException) as error:
+                troubles.append(f"{door[0]}:{door[1]}: {_reason(error)}")
+                continue
+            self._doors.remove(door)
+            self._doors.insert(0, door)  # the one that answers is asked first from now on
+            if status >= 400:
+                raise _refusal(status, answer)
+            return answer
+        raise NoFarm(
+            "no coordinator answers (" + "; ".join(troubles) + "). Is `bandsaw serve` running there, with "
+            f"--web 0.0.0.0:{self._doors[0][1]} if it is another machine?")
+
+    def ask(self, method, path, message=None):
+        """The same for JSON: returns the answer as a dictionary."""
+        body = None if message is None else json.dumps(message).encode()
+        if body is None and method == "POST":
+            body = b"{}"
+        return json.loads(self.request(method, path, body) or b"{}")
+
+    # ---- the farm ----
+
+    def check(self):
+        """Raises what is wrong with the string or the farm; returns its version."""
+        return self.ask("GET", "/api/farm").get("version", "")
+
+    def workers(self):
+        """A dictionary for each worker: name, state, threads, …"""
+        return self.ask("GET", "/api/farm").get("worker", [])
+
+    def jobs(self):
+        """The farm's jobs, newest first."""
+        return [Job(self, int(job["status"]["job"])) for job in self.ask("GET", "/api/farm").get("job", [])]
+
+    def job(self, number):
+        return Job(self, int(number))
+
+    def submit(self, scene, samples=None, error=None, seconds=None, width=None, name=None, files=None, title=None, told=None):
+        """Submits a scene and returns its Job. `scene`: the name of a scene or model file; files that it
+        refers to are sent too. Or its text, with `name`: the name of its file (default scene.textproto), and `files`: a
+        dictionary from the names that the text uses to bytes or paths. `title`: the job's name. One of `samples` (a pixel), `error` (0.02: two percent), `seconds`; default 64
+        samples. `width`: pixels, default the scene's own. `told`: a function of (bytes sent, bytes in all).
+        Files that the farm has are not sent again."""
+        if files is None:
+            main, files = _files_of(scene)
+        else:
+            main = name or "scene.textproto"
+            files = dict(files)
+            files[main] = scene.encode() if isinstance(scene, str) else scene
+        digests = {file: _digest(content) for file, content in files.items()}
+        wanted = {"width": width, "samples": samples, "error": error, "time": seconds, "title": title}
+        path = "/api/scenes/files?" + urllib.parse.urlencode({key: value for key, value in wanted.items() if value is not None})
+        message = {"scene": main, "file": [{"name": file, "sha256": digest} for file, digest in sorted(digests.items())]}
+        for again in range(60, -1, -1):
+            self._send_missing(files, digests, told)
+            try:
+                answer = json.loads(self.request("POST", path, json.dumps(message).encode(), timeout=600))
+                return Job(self, int(answer["job"]), answer.get("warning", []))
+            except Refused as refused:
+                # 409: the coordinator has just removed an unused file; 429: it is reading other scenes.
+                if refused.status not in (409, 429) or again == 0:
+                    raise
+                time.sleep(0.5)
+        raise AssertionError
+
+    def render(self, scene, told=None, **wanted):
+        """Renders a scene and returns its Image. Arguments as those of submit; `told`: a function of Progress."""
+        job = self.submit(scene, **wanted)
+        try:
+            for progress in job.progress():
+                if told is not None:
+                    told(progress)
+        except KeyboardInterrupt:
+            job.cancel()
+            raise
+        return job.image()
+
+    def _send_missing(self, files, digests, told):
+        by_digest = {digest: files[file] for file, digest in digests.items()}
+        missing = self.ask("POST", "/api/files/missing", {"sha256": sorted(by_digest)}).get("sha256", [])
+        if not missing:
+            return
+        sizes = {digest: _size(by_digest[digest]) for digest in missing}
+        heads = {digest: f"{digest} {sizes[digest]}\n".encode() for digest in missing}
+        total = sum(sizes.values()) + sum(map(len, heads.values()))
+
+        def parts():
+            sent = 0
+            for digest in missing:
+                yield heads[digest]
+                for piece in _pieces(by_digest[digest]):
+                    yield piece
+                    sent += len(piece)
+                    if told is not None:
+                        told(sent, total)
+
+        self.request("POST", "/api/files", parts, total, timeout=max(60.0, total / 32768))
+
+
+def _reason(error):
+    if isinstance(error, socket.timeout):
+        return "no answer in time"
+    if isinstance(error, ConnectionRefusedError):
+        return "nothing listens there"
+    if isinstance(error, ssl.SSLError):
+        return "no TLS there"
+    return getattr(error, "strerror", None) or str(error) or type(error).__name__
+
+
+def _refusal(status, answer):
+    try:
+        message = json.loads(answer)["error"]
+    except (ValueError, KeyError, TypeError):
+        return NoFarm(f"what answers there is not a Bandsaw coordinator of this version (HTTP status {status})")
+    if status == 401:
+        return WrongString("the farm refuses this string: its secret is wrong or was rotated (" + message + ")")
+    return Refused(status, message)
+
+
+# ---- files of a scene ----
+
+_REFERENCES = {
+    # Tokens that may name a file, by the suffix of the file that contains them.
+    ".obj": rb"^\s*mtllib\s+(.+?)\s*$",
+    ".mtl": rb"^\s*(?:map_\w+|bump|norm|disp|refl|decal)\s+(.+?)\s*$",  # options, then the name
+    ".dae": rb"<init_from>\s*([^<]+?)\s*</init_from>",
+    ".textproto": rb'"([^"\n]+)"', ".json": rb'"([^"\n]+)"', ".gltf": rb'"uri"\s*:\s*"([^"\n]+)"',
+    ".pbrt": rb'"([^"\n]+)"', ".xml": rb'"([^"\n]+)"',
+}
+_ALSO_QUOTED = {".textproto": rb"'([^'\n]+)'"}
+
+
+def _files_of(scene):
+    """The name of the scene file, and a dictionary from the names of it and of the files that it
+    refers to, directly or not, to their paths. Names are relative to the scene's folder."""
+    if not os.path.isfile(scene):
+        raise BandsawError(f"there is no scene {scene}")
+    folder, main = os.path.split(os.path.abspath(scene))
+    files, waiting = {}, [main]
+    while waiting:
+        name = waiting.pop()
+        if name in files:
+            continue
+        path = os.path.join(folder, *name.split("/"))
+        files[name] = path
+        suffix = os.path.splitext(name)[1].lower()
+        for pattern in filter(None, (_REFERENCES.get(suffix), _ALSO_QUOTED.get(suffix))):
+            with open(path, "rb") as file:
+                text = file.read()
+            for found in re.findall(pattern, text, re.MULTILINE):
+                waiting.extend(_below(folder, os.path.dirname(name), found))
+    return main, files
+
+
+def _below(folder, beside, found):
+    """The name, relative to `folder`, of the file that `found` names in a file in the folder `beside`, in a list;
+    nothing if there is no such file below the folder."""
+    try:
+        text = found.decode("utf-8")
+    except UnicodeDecodeError:
+        return []
+    words = text.split(" ")
+    rests = [" ".join(words[at:]) for at in range(len(words))]  # what precedes a name may be options
+    for spelled in [text, urllib.parse.unquote(text)] + rests:
+        name = os.path.normpath(os.path.join(beside, spelled.replace("\\", "/"))).replace(os.sep, "/")
+        if not name.startswith(("../", "/")) and "\0" not in name and os.path.isfile(os.path.join(folder, name)):
+            return [name]
+    return []
+
+
+def _size(content):
+    return len(content) if isinstance(content, (bytes, bytearray, memoryview)) else os.path.getsize(content)
+
+
+def _pieces(content, size=1 << 20):
+    if isinstance(content, (bytes, bytearray, memoryview)):
+        view = memoryview(content)
+        for at in range(0, len(view), size):
+            yield view[at:at + size]
+        return
+    with open(content, "rb") as file:
+        for piece in iter(lambda: file.read(size), b""):
+            yield piece
+
+
+def _digest(content):
+    digest = hashlib.sha256()
+    for piece in _pieces(content):
+        digest.update(piece)
+    return digest.hexdigest()
+
+
+# ---- jobs ----
+
+
+class Progress:
+    """The state of a job: `state` ("running", "paused", "finishing", "done", "failed", "cancelled"), `reason`,
+    `fraction` (0 to 1), `elapsed`, `remaining` (seconds; None: not known), `samples` (a pixel), `error` (a
+    fraction; None: not known), `workers` (names), `width`, `height`, `warnings` of the import."""
+
+    def __init__(self, status, warnings):
+        self.state = status.get("state", "").replace("JOB_STATE_", "").lower()
+        self.reason = status.get("reason", "")
+        self.fraction = float(status.get("fraction", 0))
+        self.elapsed = float(status.get("elapsed_s", 0))
+        self.remaining = _known(status.get("remaining_s", 0))
+        self.samples = int(status.get("samples_per_pixel", 0))
+        self.samples_done = int(status.get("samples_done", 0))
+        self.error = _known(status.get("error", 0))
+        self.workers = [worker["name"] for worker in status.get("worker", [])]
+        settings = status.get("settings", {})
+        self.width, self.height = int(settings.get("width", 0)), int(settings.get("height", 0))
+        self.warnings = warnings
+
+    @property
+    def over(self):
+        return self.state in OVER
+
+    def __str__(self):
+        parts = [self.state, f"{100 * self.fraction:.0f} %"]
+        if self.samples:
+            parts.append(f"{self.samples} samples")
+        if self.error is not None and self.error > 0:
+            parts.append(f"error {100 * self.error:.2g} %")
+        if not self.over and self.remaining is not None and self.fraction > 0:
+            parts.append(f"{_duration(self.remaining)} left")
+        if not self.over:
+            count = len(self.workers)
+            parts.append(f"{count} worker" + ("" if count == 1 else "s"))
+        return " · ".join(parts) + (f" ({self.reason})" if self.reason else "")
+
+
+def _known(number):
+    number = float(number)
+    return None if number < 0 or not math.isfinite(number) else number
+
+
+def _duration(seconds):
+    seconds = int(seconds + 0.5)
+    if seconds < 60:
+        return f"{seconds} s"
+    if seconds < 3600:
+        return f"{seconds // 60}:{seconds % 60:02d} min"
+    return f"{seconds // 3600}:{seconds // 60 % 60:02d} h"
+
+
+class Job:
+    """A job of a farm. `number`: its number there; `warnings`: what the import left out."""
+
+    def __init__(self, farm, number, warnings=()):
+        self.farm, self.number, self.warnings = farm, number, list(warnings)
+
+    def __repr__(self):
+        return f"<bandsaw.Job {self.number}>"
+
+    def _path(self, rest=""):
+        return f"/api/jobs/{self.number}{rest}"
+
+    def status(self):
+        """The job's Progress now."""
+        return Progress(self.farm.ask("GET", self._path())["job"]["status"], self.warnings)
+
+    def why(self):
+        """The reasons why the job is not done, in sentences."""
+        return self.farm.ask("GET", self._path()).get("why", [])
+
+    def progress(self, interval=0.5, patience=60.0, stop=None):
+        """Yields a Progress about every `interval` seconds until the job is over. While the coordinator cannot be
+        reached, it yields Progress with state "lost" and tries again for `patience` seconds, then raises NoFarm. Raises
+        BandsawError if the job failed or was cancelled. `stop`: a function; True ends the iteration."""
+        lost_since, last = None, None
+        while stop is None or not stop():
+            try:
+                last, lost_since = self.status(), None
+            except NoFarm as error:
+                now = time.monotonic()
+                lost_since = lost_since or now
+                if last is None or now - lost_since > patience:
+                    raise
+                last.state, last.reason = "lost", str(error)
+            yield last
+            if last.state in ("failed", "cancelled"):
+                raise BandsawError(f"job {self.number} {'has failed' if last.state == 'failed' else 'was cancelled'}"
+                                   + (": " + last.reason if last.reason else ""))
+            if last.state == "done":
+                return
+            _wait(interval, stop)
+
+    def preview(self, side=2048):
+        """The present state as an Image of at most about `side` pixels a side; None: no pixels yet."""
+        try:
+            return image_from_pfm(self.farm.request("GET", self._path(f"/preview.pfm?side={side}")))
+        except Refused as error:
+            if error.status == 404:
+                return None
+            raise
+
+    def image(self):
+        """The finished image, exactly: linear light, 32-bit floats."""
+        return image_from_pfm(self.farm.request("GET", self._path("/image.pfm"), timeout=120))
+
+    def report(self):
+        """The report that `bandsaw submit` writes, as a dictionary."""
+        return json.loads(self.farm.request("GET", self._path("/report.json")))
+
+    def layer(self, kind, samples=16):
+        """Submits a job for another picture of the same scene: "albedo", "normals" or "depth". Returns its Job."""
+        query = urllib.parse.urlencode({"kind": kind, "samples": samples})
+        return Job(self.farm, int(self.farm.ask("POST", self._path("/layer?" + query))["job"]))
+
+    def cancel(self):
+        self.farm.ask("POST", self._path("/cancel"))
+
+    def _repr_png_(self):
+        picture = self.preview()
+        return picture.png() if picture is not None else None
+
+    def show(self, interval=1.0):
+        """In a notebook: shows the picture and the progress while it forms, until the job is over; returns the Image."""
+        from IPython.display import display  # only notebooks have it
+        place = display(self, display_id=True)
+        for progress in self.progress(interval):
+            place.update(self if progress.state != "lost" else str(progress))
+        picture = self.image()
+        place.update(picture)
+        return picture
+
+
+def _wait(seconds, stop):
+    end = time.monotonic() + seconds
+    while time.monotonic() < end and (stop is None or not stop()):
+        time.sleep(min(0.1, seconds))
+
+
+# ---- images ----
+
+
+class Image:
+    """Linear light with sRGB primaries. `pixels`: 3 * width * height 32-bit floats, rows from the top: an array.array, or a
+    numpy array if numpy is there."""
+
+    def __init__(self, width, height, pixels):
+        self.width, self.height, self.pixels = width, height, pixels
+
+    def __repr__(self):
+        return f"<bandsaw.Image {self.width} x {self.height}>"
+
+    def array(self):
+        """A numpy array of shape (height, width, 3)."""
+        if numpy is None:
+            raise BandsawError("numpy is not installed here")
+        return numpy.asarray(self.pixels, dtype=numpy.float32).reshape(self.height, self.width, 3)
+
+    def mean(self):
+        """The mean of each channel."""
+        count = self.width * self.height
+        if numpy is not None:
+            return tuple(float(x) for x in self.array().reshape(-1, 3).mean(axis=0, dtype=numpy.float64))
+        return tuple(math.fsum(self.pixels[channel::3]) / count for channel in range(3))
+
+    def bytes8(self):
+        """8-bit sRGB, rows from the top."""
+        if numpy is not None:
+            x = numpy.clip(numpy.nan_to_num(self.array()), 0, 1)
+            y = numpy.where(x <= 0.0031308, 12.92 * x, 1.055 * numpy.power(x, 1 / 2.4) - 0.055)
+            return (255 * y + 0.5).astype(numpy.uint8).tobytes()
+        return bytes(_srgb8(x) for x in self.pixels)
+
+    def png(self):
+        """The bytes of a PNG file."""
+        def chunk(kind, data):
+            return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", binascii.crc32(kind + data))
+        rows, line = self.bytes8(), 3 * self.width
+        raw = b"".join(b"\0" + rows[at:at + line] for at in range(0, len(rows), line))
+        head = struct.pack(">IIBBBBB", self.width, self.height, 8, 2, 0, 0, 0)
+        return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(raw, 6)) + chunk(b"IEND", b"")
+
+    _repr_png_ = png
+
+    def pfm(self):
+        """The bytes of a PFM file: exact."""
+        head = f"PF\n{self.width} {self.height}\n-1.0\n".encode()
+        if numpy is not None:
+            return head + self.array()[::-1].astype("<f4").tobytes()
+        line = 3 * self.width
+        rows = [self.pixels[row * line:(row + 1) * line] for row in range(self.height)]
+        if sys.byteorder == "big":
+            for row in rows:
+                row.byteswap()
+        return head + b"".join(row.tobytes() for row in reversed(rows))
+
+    def save(self, path):
+        """Writes a .png (8-bit sRGB) or a .pfm (exact) file, whole or not at all."""
+        suffix = os.path.splitext(path)[1].lower()
+        if suffix not in (".png", ".pfm"):
+            raise BandsawError(f"{path}: the name must end in .png or .pfm")
+        data = self.png() if suffix == ".png" else self.pfm()
+        part = path + ".part"
+        with open(part, "wb") as file:
+            file.write(data)
+        os.replace(part, path)
+
+
+def _srgb8(x):
+    x = 0.0 if not x > 0 else min(x, 1.0)
+    return int(255 * (12.92 * x if x <= 0.0031308 else 1.055 * x ** (1 / 2.4) - 0.055) + 0.5)
+
+
+def image_from_pfm(data):
+    """The Image in the bytes of a PFM file with three channels."""
+    match = re.match(rb"PF\s(\d+)\s(\d+)\s(\S+)\s", data)
+    if match is None:
+        raise BandsawError("not a PFM file with three channels")
+    width, height, little = int(match[1]), int(match[2]), float(match[3]) < 0
+    if len(data) - match.end() != 12 * width * height:
+        raise BandsawError("the PFM file is incomplete")
+    if numpy is not None:
+        flat = numpy.frombuffer(data, "<f4" if little else ">f4", offset=match.end())
+        return Image(width, height, flat.reshape(height, width, 3)[::-1].astype(numpy.float32))
+    flat = array.array("f", data[match.end():])
+    if little != (sys.byteorder == "little"):
+        flat.byteswap()
+    line, pixels = 3 * width, array.array("f")
+    for row in reversed(range(height)):
+        pixels.extend(flat[row * line:(row + 1) * line])
+    return Image(width, height, pixels)
+
+
+def compare(a, b):
+    """How two images of one size differ: a dictionary of `mean_a`, `mean_b` (of all channels), `rmse`, `relative_rmse` (over the
+    mean of b), `largest` difference and `equal` (the same bits)."""
+    if (a.width, a.height) != (b.width, b.height):
+        raise BandsawError(f"the images have different sizes: {a.width} x {a.height} and {b.width} x {b.height}")
+    if numpy is not None:
+        x, y = a.array().astype(numpy.float64), b.array().astype(numpy.float64)
+        rmse, largest = float(numpy.sqrt(((x - y) ** 2).mean())), float(abs(x - y).max())
+        equal = bool((a.array() == b.array()).all())
+    else:
+        differences = [x - y for x, y in zip(a.pixels, b.pixels)]
+        rmse = math.sqrt(math.fsum(d * d for d in differences) / len(differences))
+        largest, equal = max(map(abs, differences)), a.pixels == b.pixels
+    mean_a, mean_b = sum(a.mean()) / 3, sum(b.mean()) / 3
+    return {"mean_a": mean_a, "mean_b": mean_b, "rmse": rmse, "relative_rmse": rmse / mean_b if mean_b else math.inf,
+            "largest": largest, "equal": equal}

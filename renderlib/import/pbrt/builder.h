@@ -1,0 +1,150 @@
+#pragma once
+
+// The scene under construction, and what all parts of the conversion share.
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "proto/scene.pb.h"
+#include "renderlib/import/convert/foreign_scene.h"
+#include "renderlib/import/convert/made_files.h"
+#include "renderlib/import/pbrt/parameters.h"
+#include "renderlib/import/pbrt/state.h"
+#include "renderlib/import/spectrum/spectrum.h"
+
+namespace bandsaw::pbrt {
+
+using spectrum::Rgb3;
+
+/// Name of the empty medium inside of clear glass that lies in a medium.
+inline constexpr char kVacuum[] = "vacuum";
+
+/// A medium as it was defined.
+struct MediumSource {
+  std::string type;
+  Parameters parameters;
+  std::string color_space;
+  Transform to_world;
+};
+
+/// The box around all shapes so far, in world space.
+struct Extent {
+  Vec3 low{1e300, 1e300, 1e300};
+  Vec3 high{-1e300, -1e300, -1e300};
+  void add(const Vec3& p);
+};
+
+struct Builder {
+  explicit Builder(const ForeignScene& scene) : from(scene), made(scene.name) {}
+
+  const ForeignScene& from;
+  scene::Scene out;
+  MadeFiles made;
+  std::vector<std::string> warnings;
+
+  /// Factor of all light: exposure time x ISO / 100 of the film.
+  double light_factor = 1;
+  double start_time = 0;  ///< of the motion
+  double end_time = 1;
+  bool has_motion = false;
+  Extent extent;
+
+  /// Textures by name: those of colours and those of numbers.
+  std::map<std::string, scene::Texture> color_textures;
+  std::map<std::string, scene::Texture> float_textures;
+  std::map<std::string, std::shared_ptr<const Surface>> materials;
+  std::map<std::string, MediumSource> media;
+  std::map<std::string, std::string> made_media;  ///< serialised medium -> name in our scene
+  /// Media that some shape bounds from one side only, without being closed, with the first place.
+  std::map<std::string, Place> open_media;
+  std::set<std::string> taken_media;
+  bool needs_vacuum = false;
+  std::map<std::string, std::string> material_names;  ///< serialised material -> name
+  std::set<std::string> taken_names;                  ///< of materials
+  std::map<std::string, int> name_counts;             ///< names made from a label
+  std::set<std::string> taken_textures;
+  std::map<std::string, int> texture_counts;
+  scene::Group* group = nullptr;  ///< between ObjectBegin and ObjectEnd
+  int helper_groups = 0;
+
+  void warn(const Place& place, absl::string_view what);
+  /// Warns once of a kind of thing.
+  void warn_once(const Place& place, absl::string_view what);
+  /// Warns of each parameter that was not used.
+  void warn_of_unused(const Parameters& parameters);
+  std::set<std::string> warned;
+};
+
+void set_rgb(const Rgb3& rgb, scene::Color* to);
+scene::Texture constant_texture(const Rgb3& rgb);
+void set_matrix(const Transform& t, google::protobuf::RepeatedField<double>* to);
+void set_vec3(const Vec3& v, google::protobuf::RepeatedField<double>* to);
+
+/// Meaning of a colour.
+enum class ColorUse {
+  kReflectance,  ///< in [0, 1]
+  kLight,        ///< spectra that are not RGB have luminance 1
+  kUnbounded,    ///< >= 0
+};
+
+/// Returns the colour of a parameter of type rgb, spectrum, blackbody or float.
+absl::StatusOr<Rgb3> color_of(const Parameter& parameter, ColorUse use,
+                              const std::string& color_space, Builder& builder);
+/// Returns the colour of a parameter by its name; `otherwise` if there is none.
+absl::StatusOr<Rgb3> color(const Parameters& parameters, const std::string& name, ColorUse use,
+                           const Rgb3& otherwise, const State& state, Builder& builder);
+/// Returns the spectrum of a parameter of type spectrum; std::nullopt for another type.
+absl::StatusOr<std::optional<spectrum::Sampled>> spectrum_of(const Parameter& parameter,
+                                                             Builder& builder);
+
+/// Returns the bytes of a file of the scene's folder; std::nullopt after a warning that it is
+/// missing, with `instead` saying what stands in its place. PERMISSION_DENIED: it lies outside.
+absl::StatusOr<std::optional<std::string>> read_or_warn(const std::string& name, const Place& place,
+                                                        absl::string_view instead,
+                                                        Builder& builder);
+
+// Each of these converts a directive (textures.cpp, materials.cpp …).
+absl::Status add_texture(const std::string& name, const std::string& type, const std::string& kind,
+                         Parameters parameters, const State& state, Builder& builder);
+absl::StatusOr<std::shared_ptr<const Surface>> make_surface(const std::string& type,
+                                                            const std::string& label,
+                                                            const Parameters& parameters,
+                                                            const State& state, Builder& builder);
+absl::Status add_shape(const std::string& type, const Parameters& parameters, const State& state,
+                       Builder& builder);
+absl::Status add_light(const std::string& type, const Parameters& parameters, const State& state,
+                       Builder& builder);
+absl::Status set_camera(const std::string& type, const Parameters& parameters,
+                        const Transforms& to_camera, Builder& builder);
+
+/// Returns a texture of colours by a parameter that is a colour or names a texture.
+absl::StatusOr<scene::Texture> color_texture(const Parameters& parameters, const std::string& name,
+                                             ColorUse use, const Rgb3& otherwise,
+                                             const State& state, Builder& builder);
+/// Returns a texture of numbers, or std::nullopt if the parameter is absent.
+absl::StatusOr<std::optional<scene::Texture>> float_texture(const Parameters& parameters,
+                                                            const std::string& name,
+                                                            Builder& builder);
+/// Returns the number of a constant texture; std::nullopt for another.
+std::optional<double> constant_of(const scene::Texture& texture);
+
+/// Returns the name of the material in our scene, with emission and opacity of a shape.
+struct ShapeLook {
+  std::optional<Rgb3> emission = std::nullopt;
+  std::optional<scene::Texture> emission_texture = std::nullopt;
+  bool emits_on_both_sides = false;
+  std::optional<scene::Texture> opacity = std::nullopt;
+};
+std::string material_name(const Surface& surface, const ShapeLook& look, const Place& place,
+                          Builder& builder);
+
+/// Returns the name of the medium in our scene; `to_shape` maps world space to that of the shape
+/// whose interior it is. Empty after a warning: it has no counterpart.
+absl::StatusOr<std::string> medium_name(const std::string& name, const Place& place,
+                                        const Transform& to_shape, Builder& builder);
+
+}  // namespace bandsaw::pbrt

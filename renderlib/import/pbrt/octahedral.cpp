@@ -1,0 +1,124 @@
+#include "renderlib/import/pbrt/octahedral.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace bandsaw::pbrt {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+constexpr std::uint32_t kMaxWidth = 8192;
+
+Vec2 longitude_latitude(const Vec3& d) {
+  const double phi = std::atan2(d.y, d.x);
+  return {(phi < 0 ? phi + 2 * kPi : phi) / (2 * kPi), std::acos(std::clamp(d.z, -1.0, 1.0)) / kPi};
+}
+
+/// Returns the pixel at integer coordinates; beyond the edge of the octahedral square it continues
+/// at the mirrored place of the same edge.
+const Rgb& pixel(const Sky& sky, std::int64_t x, std::int64_t y) {
+  const auto w = static_cast<std::int64_t>(sky.image.width);
+  const auto h = static_cast<std::int64_t>(sky.image.height);
+  if (sky.is_octahedral) {
+    if (x < 0 || x >= w) {
+      x = std::clamp<std::int64_t>(x, 0, w - 1);
+      y = h - 1 - y;
+    }
+    if (y < 0 || y >= h) {
+      y = std::clamp<std::int64_t>(y, 0, h - 1);
+      x = w - 1 - x;
+    }
+  }
+  x = (x % w + w) % w;
+  y = std::clamp<std::int64_t>(y, 0, h - 1);
+  return sky.image.pixels[static_cast<std::size_t>(y * w + x)];
+}
+
+void add(const Rgb& rgb, double weight, double sum[3]) {
+  sum[0] += weight * rgb.r;
+  sum[1] += weight * rgb.g;
+  sum[2] += weight * rgb.b;
+}
+
+void add_lookup(const Sky& sky, const Vec3& direction, double sum[3]) {
+  const Vec2 at = sky.is_octahedral ? octahedral_of(direction) : longitude_latitude(direction);
+  const double x = at.x * sky.image.width - 0.5;
+  const double y = at.y * sky.image.height - 0.5;
+  const auto ix = static_cast<std::int64_t>(std::floor(x));
+  const auto iy = static_cast<std::int64_t>(std::floor(y));
+  const double fx = x - static_cast<double>(ix);
+  const double fy = y - static_cast<double>(iy);
+  add(pixel(sky, ix, iy), (1 - fx) * (1 - fy), sum);
+  add(pixel(sky, ix + 1, iy), fx * (1 - fy), sum);
+  add(pixel(sky, ix, iy + 1), (1 - fx) * fy, sum);
+  add(pixel(sky, ix + 1, iy + 1), fx * fy, sum);
+}
+
+}  // namespace
+
+Vec2 octahedral_of(const Vec3& d) {
+  const double x = std::abs(d.x);
+  const double y = std::abs(d.y);
+  const double r = std::sqrt(std::max(0.0, 1 - std::abs(d.z)));
+  const double high = std::max(x, y);
+  const double share = high == 0 ? 0 : std::atan(std::min(x, y) / high) * 2 / kPi;
+  const double phi = x < y ? 1 - share : share;
+  double v = phi * r;
+  double u = r - v;
+  if (d.z < 0) {
+    const double old_u = u;
+    u = 1 - v;
+    v = 1 - old_u;
+  }
+  return {(std::copysign(u, d.x) + 1) / 2, (std::copysign(v, d.y) + 1) / 2};
+}
+
+Image equirectangular(const Sky& sky, const Transform& to_light) {
+  // As many pixels around the equator as the square has along its four edges there.
+  const std::uint32_t width = std::clamp<std::uint32_t>(
+      sky.is_octahedral ? 2 * sky.image.width : sky.image.width, 8, kMaxWidth);
+  Image out;
+  out.width = width;
+  out.height = width / 2;
+  out.pixels.resize(std::size_t{out.width} * out.height);
+  for (std::uint32_t y = 0; y < out.height; ++y) {
+    for (std::uint32_t x = 0; x < out.width; ++x) {
+      double sum[3] = {};
+      for (const double dy : {0.25, 0.75}) {
+        for (const double dx : {0.25, 0.75}) {
+          // The centre of the image is +x, that of its right half +z, its top +y.
+          const double theta = kPi * (y + dy) / out.height;
+          const double phi = 2 * kPi * ((x + dx) / out.width - 0.5);
+          const Vec3 world{std::sin(theta) * std::cos(phi), std::cos(theta),
+                           std::sin(theta) * std::sin(phi)};
+          add_lookup(sky, normalize(to_light.direction(world)), sum);
+        }
+      }
+      out.pixels[std::size_t{y} * out.width + x] = {static_cast<float>(sum[0] / 4),
+                                                    static_cast<float>(sum[1] / 4),
+                                                    static_cast<float>(sum[2] / 4)};
+    }
+  }
+  return out;
+}
+
+double illuminance_of(const Sky& sky) {
+  constexpr int kRings = 256;
+  constexpr int kAround = 512;
+  double total = 0;
+  for (int i = 0; i < kRings; ++i) {
+    // Directions distributed as the cosine: each stands for pi / count.
+    const double cosine = std::sqrt((i + 0.5) / kRings);
+    const double sine = std::sqrt(1 - cosine * cosine);
+    for (int k = 0; k < kAround; ++k) {
+      const double phi = 2 * kPi * (k + 0.5) / kAround;
+      double sum[3] = {};
+      add_lookup(sky, {sine * std::cos(phi), sine * std::sin(phi), cosine}, sum);
+      total += 0.2126729 * sum[0] + 0.7151522 * sum[1] + 0.0721750 * sum[2];
+    }
+  }
+  return std::max(total * kPi / (kRings * kAround), 1e-12);
+}
+
+}  // namespace bandsaw::pbrt

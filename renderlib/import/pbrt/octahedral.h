@@ -1,0 +1,28 @@
+#pragma once
+
+// Images of the sphere of directions as pbrt has them, and as our environment maps.
+
+#include "renderlib/image/image.h"
+#include "renderlib/math/transform.h"
+
+namespace bandsaw::pbrt {
+
+/// An image of all directions, in the space of its light.
+struct Sky {
+  const Image& image;
+  /// True: the square of Clarberg's equal-area map of the octahedron (2008), as in pbrt-v4. False:
+  /// longitude and latitude around z, as in pbrt-v3.
+  bool is_octahedral = true;
+};
+
+/// Returns the image position in [0, 1]^2 of a direction (a unit vector), rows from the top.
+Vec2 octahedral_of(const Vec3& direction);
+
+/// Returns the image as an environment map of ours, resampled with 2 x 2 samples a pixel (4 x 4 of
+/// the old pixels at most); `to_light` maps directions of the world to those of the light.
+Image equirectangular(const Sky& sky, const Transform& to_light);
+
+/// Returns the illuminance of a surface that faces +z, for luminances as in the image.
+double illuminance_of(const Sky& sky);
+
+}  // namespace bandsaw::pbrt

@@ -1,0 +1,62 @@
+#pragma once
+
+// The parameters of a directive: "float radius" [ 2 ].
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "renderlib/import/pbrt/tokens.h"
+#include "renderlib/math/vec.h"
+
+namespace bandsaw::pbrt {
+
+/// Maximum number of parameters of a directive, and of values of one parameter.
+inline constexpr std::size_t kMaxParameters = 1000;
+inline constexpr std::size_t kMaxValues = 400'000'000;
+
+struct Parameter {
+  std::string type;  ///< "float", "rgb", "texture" …
+  std::string name;
+  Place place;
+  std::vector<double> numbers = {};     ///< of number types; bools are 0 and 1
+  std::vector<std::string> texts = {};  ///< of "string", "texture", and of "spectrum" by name
+  mutable bool is_used = false;
+};
+
+/// Parameters by name. Values of a wrong type or number are INVALID_ARGUMENT with file and line.
+class Parameters {
+ public:
+  std::vector<Parameter> list;
+  Place place;  ///< of the directive
+
+  /// Adds `defaults` that are not in the list. They count as used.
+  void add_defaults(const std::vector<Parameter>& defaults);
+
+  /// Returns a parameter of any type, marked as used; nullptr: there is none.
+  const Parameter* find(const std::string& name) const;
+
+  absl::StatusOr<double> number(const std::string& name, double otherwise) const;
+  absl::StatusOr<std::optional<double>> number(const std::string& name) const;
+  absl::StatusOr<int> integer(const std::string& name, int otherwise) const;
+  absl::StatusOr<bool> boolean(const std::string& name, bool otherwise) const;
+  absl::StatusOr<std::string> text(const std::string& name, const std::string& otherwise) const;
+  absl::StatusOr<Vec3> point(const std::string& name, const Vec3& otherwise) const;
+  /// Returns a list of numbers of one of the types in `types`, a multiple of `group` long; empty if
+  /// there is none.
+  absl::StatusOr<std::vector<double>> numbers(const std::string& name,
+                                              std::initializer_list<const char*> types,
+                                              std::size_t group = 1) const;
+  absl::StatusOr<std::vector<std::string>> texts(const std::string& name) const;
+  /// Marks parameters as used that change nothing in our image.
+  void ignore(std::initializer_list<const char*> names) const;
+};
+
+/// Reads the parameters that follow a directive at `place`.
+absl::StatusOr<Parameters> read_parameters(Tokens& tokens, const Place& place);
+
+/// Reads a number. INVALID_ARGUMENT: it is none, or not finite.
+absl::StatusOr<double> number_of(const Token& token);
+
+}  // namespace bandsaw::pbrt

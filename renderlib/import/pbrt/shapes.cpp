@@ -1,0 +1,380 @@
+// Shapes and their placements.
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/import/pbrt/builder.h"
+#include "renderlib/import/pbrt/mesh_shapes.h"
+#include "renderlib/import/pbrt/motion.h"
+
+namespace bandsaw::pbrt {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// Returns the factor of a map that keeps angles; std::nullopt for another.
+std::optional<double> uniform_scale(const Transform& t) {
+  const Vec3 x = t.direction({1, 0, 0});
+  const Vec3 y = t.direction({0, 1, 0});
+  const Vec3 z = t.direction({0, 0, 1});
+  const double s = length(x);
+  const double limit = 1e-6 * s * s;
+  const bool keeps = std::abs(length(y) - s) <= 1e-6 * s && std::abs(length(z) - s) <= 1e-6 * s &&
+                     std::abs(dot(x, y)) <= limit && std::abs(dot(y, z)) <= limit &&
+                     std::abs(dot(z, x)) <= limit;
+  return keeps && s > 0 ? std::optional(s) : std::nullopt;
+}
+
+bool is_moving(const State& state) { return !(state.transforms[0] == state.transforms[1]); }
+
+bool has_uv_texture(const Surface& surface) {
+  // Textures of a sphere or disk are placed by pbrt's own uvs, which only our meshes can have.
+  return surface.material.ShortDebugString().find("use:") != std::string::npos ||
+         surface.material.has_mix();
+}
+
+/// A shape on its way into the scene.
+struct Shape {
+  const std::string& type;
+  const Parameters& parameters;
+  const State& state;
+  Builder& builder;
+  ShapeLook look = {};
+  const Place& place() const { return parameters.place; }
+};
+
+/// The media on both sides.
+struct Sides {
+  std::string inside;
+  std::string outside;
+  bool differ() const { return inside != outside; }
+};
+
+/// Returns the name of the medium inside a closed shape; empty: none of its own. `to_shape` maps
+/// the world to the space in which the shape is written.
+absl::StatusOr<std::string> interior_of(const Shape& shape, const Sides& sides,
+                                        const Transform& to_shape) {
+  if (!sides.differ() || !shape.state.surface->transmits) {
+    return std::string();
+  }
+  if (sides.inside.empty()) {
+    shape.builder.needs_vacuum = true;
+    return std::string(kVacuum);
+  }
+  return medium_name(sides.inside, shape.place(), to_shape, shape.builder);
+}
+
+scene::Group* group_or_new(Builder& builder, std::string& name) {
+  name = absl::StrCat("part_", ++builder.helper_groups);
+  auto* group = builder.out.add_group();
+  group->set_name(name);
+  return group;
+}
+
+template <class Placed>
+void place(const Shape& shape, const Transforms& transforms, Placed& to) {
+  if (is_moving(shape.state)) {
+    add_keys(transforms, shape.place(), to, shape.builder);
+  } else if (!(transforms[0] == Transform{})) {
+    set_matrix(transforms[0], to.mutable_matrix());
+  }
+}
+
+/// Adds a sphere or disk that is written in the shape's own space.
+void add_local(const Shape& shape, const scene::Shape& local) {
+  Builder& builder = shape.builder;
+  std::string name;
+  // A group within the one that ObjectBegin opened must come before it.
+  scene::Group* group = nullptr;
+  if (builder.group != nullptr) {
+    builder.out.mutable_group()->Add();
+    auto* groups = builder.out.mutable_group();
+    groups->SwapElements(groups->size() - 1, groups->size() - 2);
+    group = groups->Mutable(groups->size() - 2);
+    builder.group = groups->Mutable(groups->size() - 1);
+    name = absl::StrCat("part_", ++builder.helper_groups);
+    group->set_name(name);
+  } else {
+    group = group_or_new(builder, name);
+  }
+  *group->add_shape() = local;
+  scene::Instance& instance =
+      builder.group != nullptr ? *builder.group->add_instance() : *builder.out.add_instance();
+  instance.set_of(name);
+  place(shape, shape.state.transforms, instance);
+}
+
+void add_world(const Shape& shape, scene::Shape world) {
+  Builder& builder = shape.builder;
+  *(builder.group != nullptr ? builder.group->add_shape() : builder.out.add_shape()) =
+      std::move(world);
+}
+
+/// Returns the shape's material and interior. False: nothing is left of it.
+bool finish(const Shape& shape, const std::string& interior, std::string* material,
+            std::string* to_interior) {
+  const Surface& surface = *shape.state.surface;
+  if (surface.is_null && interior.empty() && !shape.look.emission && !shape.look.emission_texture) {
+    return false;
+  }
+  if (!surface.is_null || shape.look.emission || shape.look.emission_texture) {
+    Surface shown = surface;
+    if (surface.is_null) {
+      shown.is_black = true;
+      shown.label = "light";
+    }
+    *material = material_name(shown, shape.look, shape.place(), shape.builder);
+  }
+  *to_interior = interior;
+  return true;
+}
+
+void extend(const Shape& shape, const Vec3& low, const Vec3& high) {
+  for (int corner = 0; corner < 8; ++corner) {
+    const Vec3 p{(corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y,
+                 (corner & 4) != 0 ? high.z : low.z};
+    shape.builder.extent.add(shape.state.transforms[0].point(p));
+  }
+}
+
+/// Adds a whole sphere.
+absl::Status add_sphere(const Shape& shape, double radius, const Sides& sides) {
+  extend(shape, {-radius, -radius, -radius}, {radius, radius, radius});
+  const Transform& to_world = shape.state.transforms[0];
+  const auto scale = uniform_scale(to_world);
+  const bool is_local = !scale || is_moving(shape.state);
+  const Transform to_shape = is_local ? inverse(to_world).value_or(Transform{}) : Transform{};
+  ASSIGN_OR_RETURN(const std::string interior, interior_of(shape, sides, to_shape));
+  scene::Shape out;
+  if (!finish(shape, interior, out.mutable_material(), out.mutable_interior())) {
+    return absl::OkStatus();
+  }
+  scene::Sphere& sphere = *out.mutable_sphere();
+  sphere.set_radius(is_local ? radius : radius * *scale);
+  if (is_local) {
+    add_local(shape, out);
+  } else {
+    set_vec3(to_world.point({0, 0, 0}), sphere.mutable_center());
+    add_world(shape, std::move(out));
+  }
+  return absl::OkStatus();
+}
+
+void add_disk(const Shape& shape, double radius, double height) {
+  extend(shape, {-radius, -radius, height}, {radius, radius, height});
+  const Transform& to_world = shape.state.transforms[0];
+  const auto scale = uniform_scale(to_world);
+  const bool is_local = !scale || is_moving(shape.state);
+  scene::Shape out;
+  std::string unused;
+  if (!finish(shape, "", out.mutable_material(), &unused)) {
+    return;
+  }
+  const double side = shape.state.reverse_orientation ? -1 : 1;
+  scene::Disk& disk = *out.mutable_disk();
+  if (is_local) {
+    set_vec3({0, 0, height}, disk.mutable_center());
+    set_vec3({0, 0, side}, disk.mutable_normal());
+    disk.set_radius(radius);
+    add_local(shape, out);
+    return;
+  }
+  set_vec3(to_world.point({0, 0, height}), disk.mutable_center());
+  set_vec3(to_world.direction({0, 0, side}), disk.mutable_normal());
+  disk.set_radius(radius * *scale);
+  add_world(shape, std::move(out));
+}
+
+void note_open_medium(const Shape& shape, const Sides& sides) {
+  if (sides.differ() && shape.state.surface->transmits) {
+    for (const std::string& medium : {sides.inside, sides.outside}) {
+      if (!medium.empty()) {
+        shape.builder.open_media.emplace(medium, shape.place());
+      }
+    }
+  }
+}
+
+absl::Status add_model(const Shape& shape, const std::string& file, bool closed,
+                       const Sides& sides) {
+  const Transform& to_world = shape.state.transforms[0];
+  std::string interior;
+  if (closed) {
+    ASSIGN_OR_RETURN(interior, interior_of(shape, sides, inverse(to_world).value_or(Transform{})));
+  } else {
+    note_open_medium(shape, sides);
+  }
+  scene::Model model;
+  if (!finish(shape, interior, model.mutable_material(), model.mutable_interior())) {
+    return absl::OkStatus();
+  }
+  if (model.material().empty()) {
+    model.set_boundary_only(true);
+  }
+  model.set_file(file);
+  place(shape, shape.state.transforms, model);
+  Builder& builder = shape.builder;
+  *(builder.group != nullptr ? builder.group->add_model() : builder.out.add_model()) =
+      std::move(model);
+  return absl::OkStatus();
+}
+
+double area_of(const PlyMesh& mesh, const Transform& to_world) {
+  double area = 0;
+  const auto at = [&](std::uint32_t v) {
+    const auto& p = mesh.positions[v];
+    return to_world.point({p[0], p[1], p[2]});
+  };
+  for (const auto& t : mesh.triangles) {
+    area += length(cross(at(t[1]) - at(t[0]), at(t[2]) - at(t[0]))) / 2;
+  }
+  return area;
+}
+
+/// Reads the AreaLightSource. `area` is that of the shape in world space.
+absl::Status read_emission(Shape& shape, double area) {
+  Builder& builder = shape.builder;
+  const Parameters& in = shape.state.area_light->parameters;
+  ASSIGN_OR_RETURN(Rgb3 radiance,
+                   color(in, "L", ColorUse::kLight, {1, 1, 1}, shape.state, builder));
+  ASSIGN_OR_RETURN(double scale, in.number("scale", 1));
+  ASSIGN_OR_RETURN(const double power, in.number("power", -1));
+  ASSIGN_OR_RETURN(shape.look.emits_on_both_sides, in.boolean("twosided", false));
+  ASSIGN_OR_RETURN(std::string file, in.text("filename", ""));
+  ASSIGN_OR_RETURN(const std::string own, shape.parameters.text("emissionfilename", ""));
+  file = own.empty() ? file : own;
+  if (power > 0 && area > 0) {
+    const double y = std::max(spectrum::luminance(radiance), 1e-12);
+    scale *= power / (y * area * kPi * (shape.look.emits_on_both_sides ? 2 : 1));
+  }
+  for (double& channel : radiance) {
+    channel = std::max(0.0, channel * scale * builder.light_factor);
+  }
+  if (!file.empty()) {
+    ASSIGN_OR_RETURN(const auto bytes,
+                     read_or_warn(file, shape.place(), "the light is uniform", builder));
+    if (bytes) {
+      scene::Texture texture;
+      auto* product = texture.mutable_product();
+      product->mutable_a()->mutable_image()->set_file(file);
+      *product->mutable_b() = constant_texture(radiance);
+      shape.look.emission_texture = std::move(texture);
+      return absl::OkStatus();
+    }
+  }
+  shape.look.emission = radiance;
+  return absl::OkStatus();
+}
+
+/// Returns true if a PLY file can be used as it is.
+bool is_plain_file(const Shape& shape, const std::string& file, const Sides& sides) {
+  return absl::EndsWithIgnoreCase(file, ".ply") && !shape.state.reverse_orientation &&
+         shape.state.area_light == nullptr && !shape.state.surface->transmits && !sides.differ();
+}
+
+absl::Status add_mesh(Shape& shape, Sides sides) {
+  ASSIGN_OR_RETURN(const std::string file, shape.parameters.text("filename", ""));
+  if (shape.type == "plymesh") {
+    shape.parameters.ignore({"edgelength"});
+    if (is_plain_file(shape, file, sides)) {
+      ASSIGN_OR_RETURN(const auto bytes,
+                       read_or_warn(file, shape.place(), "the shape is left out", shape.builder));
+      return bytes ? add_model(shape, file, false, sides) : absl::OkStatus();
+    }
+  }
+  ASSIGN_OR_RETURN(auto mesh, mesh_of(shape.type, shape.parameters, shape.builder));
+  if (!mesh) {
+    return absl::OkStatus();
+  }
+  if (shape.state.reverse_orientation) {
+    reverse(*mesh);
+  }
+  for (const auto& p : mesh->positions) {
+    shape.builder.extent.add(shape.state.transforms[0].point({p[0], p[1], p[2]}));
+  }
+  if (shape.state.area_light != nullptr) {
+    RETURN_IF_ERROR(read_emission(shape, area_of(*mesh, shape.state.transforms[0])));
+  }
+  const bool needs_volume = sides.differ() && shape.state.surface->transmits;
+  const bool closed = needs_volume && is_closed(*mesh);
+  if (closed && signed_volume(*mesh) < 0) {
+    std::swap(sides.inside, sides.outside);
+  }
+  return add_model(shape, shape.builder.made.add("mesh", ".ply", write_ply(*mesh)), closed, sides);
+}
+
+/// Adds a quadric as a shape of ours if it is whole; false: it must be a mesh.
+absl::StatusOr<bool> add_whole_quadric(Shape& shape, Sides sides) {
+  const Parameters& in = shape.parameters;
+  if (shape.type != "sphere" && shape.type != "disk") {
+    return false;
+  }
+  ASSIGN_OR_RETURN(const double r, in.number("radius", 1));
+  ASSIGN_OR_RETURN(const double phi, in.number("phimax", 360));
+  if (!(r > 0 && r < 1e30)) {
+    return error_at(in.place, absl::StrCat("\"radius\" must be > 0, is ", r));
+  }
+  const double scale = std::cbrt(std::abs(determinant(shape.state.transforms[0])));
+  const bool is_sphere = shape.type == "sphere";
+  ASSIGN_OR_RETURN(const double zmin, in.number("zmin", -r));
+  ASSIGN_OR_RETURN(const double zmax, in.number("zmax", r));
+  ASSIGN_OR_RETURN(const double inner, in.number("innerradius", 0));
+  ASSIGN_OR_RETURN(const double height, in.number("height", 0));
+  const bool is_whole =
+      phi >= 360 &&
+      (is_sphere ? std::min(zmin, zmax) <= -r && std::max(zmin, zmax) >= r : inner <= 0);
+  const bool emits = shape.state.area_light != nullptr;
+  if (!is_whole || has_uv_texture(*shape.state.surface) ||
+      (is_sphere && emits && shape.state.reverse_orientation)) {
+    return false;
+  }
+  if (emits) {
+    RETURN_IF_ERROR(read_emission(shape, kPi * r * r * scale * scale * (is_sphere ? 4 : 1)));
+  }
+  if (is_sphere) {
+    if (shape.state.reverse_orientation) {
+      std::swap(sides.inside, sides.outside);
+    }
+    RETURN_IF_ERROR(add_sphere(shape, r, sides));
+  } else {
+    note_open_medium(shape, sides);
+    add_disk(shape, r, height);
+  }
+  return true;
+}
+
+}  // namespace
+
+absl::Status add_shape(const std::string& type, const Parameters& parameters, const State& state,
+                       Builder& builder) {
+  Shape shape{type, parameters, state, builder};
+  if (!inverse(state.transforms[0]) || !inverse(state.transforms[1])) {
+    return error_at(parameters.place, "the transformation of the shape is singular");
+  }
+  builder.has_motion = builder.has_motion || is_moving(state);
+  if (type == "curve") {
+    builder.warn_once(parameters.place, "curves have no counterpart and are left out");
+    return absl::OkStatus();
+  }
+  ASSIGN_OR_RETURN(auto alpha, float_texture(parameters, "alpha", builder));
+  if (alpha && constant_of(*alpha) != 1.0) {
+    shape.look.opacity = std::move(alpha);
+  }
+  if (shape.look.opacity && constant_of(*shape.look.opacity) == 0.0) {
+    builder.warn(parameters.place, "a shape with an alpha of 0 is left out; it does not emit");
+    return absl::OkStatus();
+  }
+  const Sides sides{state.inside, state.outside};
+  ASSIGN_OR_RETURN(const bool is_done, add_whole_quadric(shape, sides));
+  if (!is_done) {
+    RETURN_IF_ERROR(add_mesh(shape, sides));
+  }
+  builder.warn_of_unused(parameters);
+  return absl::OkStatus();
+}
+
+}  // namespace bandsaw::pbrt

@@ -1,0 +1,359 @@
+// Textures.
+
+#include <algorithm>
+#include <cmath>
+
+#include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/import/pbrt/builder.h"
+
+namespace bandsaw::pbrt {
+namespace {
+
+scene::Texture gray(double value) { return constant_texture({value, value, value}); }
+
+scene::Texture product(scene::Texture a, scene::Texture b) {
+  scene::Texture out;
+  *out.mutable_product()->mutable_a() = std::move(a);
+  *out.mutable_product()->mutable_b() = std::move(b);
+  return out;
+}
+
+/// What the functions below share.
+struct Source {
+  const Parameters& parameters;
+  const State& state;
+  bool is_color;
+  Builder& builder;
+
+  const Place& place() const { return parameters.place; }
+
+  absl::StatusOr<scene::Texture> part(const std::string& name, double otherwise) const {
+    if (is_color) {
+      return color_texture(parameters, name, ColorUse::kUnbounded,
+                           {otherwise, otherwise, otherwise}, state, builder);
+    }
+    ASSIGN_OR_RETURN(auto texture, float_texture(parameters, name, builder));
+    return texture ? *std::move(texture) : gray(otherwise);
+  }
+};
+
+struct Mapping {
+  double scale[2] = {1, 1};
+  double offset[2] = {0, 0};
+};
+
+absl::StatusOr<Mapping> read_mapping(const Source& from) {
+  const Parameters& in = from.parameters;
+  Mapping mapping;
+  ASSIGN_OR_RETURN(const std::string kind, in.text("mapping", "uv"));
+  if (kind != "uv") {
+    from.builder.warn(from.place(), absl::StrCat("the mapping \"", kind,
+                                                 "\" has no counterpart; the uvs are used"));
+    in.ignore({"v1", "v2"});
+  }
+  ASSIGN_OR_RETURN(mapping.scale[0], in.number("uscale", 1));
+  ASSIGN_OR_RETURN(mapping.scale[1], in.number("vscale", 1));
+  ASSIGN_OR_RETURN(mapping.offset[0], in.number("udelta", 0));
+  ASSIGN_OR_RETURN(mapping.offset[1], in.number("vdelta", 0));
+  return mapping;
+}
+
+scene::ImageTexture::Wrap wrap_of(const std::string& wrap) {
+  return wrap == "clamp" || wrap == "black" ? scene::ImageTexture::WRAP_CLAMP
+         : wrap == "octahedralsphere"       ? scene::ImageTexture::WRAP_CLAMP
+                                            : scene::ImageTexture::WRAP_REPEAT;
+}
+
+absl::StatusOr<bool> is_linear(const Source& from, const std::string& file) {
+  ASSIGN_OR_RETURN(const std::string encoding, from.parameters.text("encoding", ""));
+  if (absl::StartsWith(encoding, "gamma")) {
+    from.builder.warn(from.place(), absl::StrCat("the encoding \"", encoding, "\" of \"", file,
+                                                 "\" has no counterpart; sRGB is taken"));
+  }
+  return encoding == "linear";
+}
+
+absl::StatusOr<scene::Texture> image_map(const Source& from) {
+  const Parameters& in = from.parameters;
+  ASSIGN_OR_RETURN(const std::string file, in.text("filename", ""));
+  ASSIGN_OR_RETURN(const Mapping mapping, read_mapping(from));
+  ASSIGN_OR_RETURN(const std::string wrap, in.text("wrap", "repeat"));
+  ASSIGN_OR_RETURN(const std::string filter, in.text("filter", "bilinear"));
+  ASSIGN_OR_RETURN(const double scale, in.number("scale", 1));
+  ASSIGN_OR_RETURN(const bool invert, in.boolean("invert", false));
+  ASSIGN_OR_RETURN(const bool linear, is_linear(from, file));
+  in.ignore({"maxanisotropy"});
+  if (wrap == "black") {
+    from.builder.warn(from.place(), "outside of the image its edge is shown instead of black");
+  }
+  ASSIGN_OR_RETURN(const auto bytes,
+                   read_or_warn(file, from.place(), "a grey of 0.5 stands for it", from.builder));
+  if (!bytes) {
+    return gray(0.5);
+  }
+  scene::Texture out;
+  scene::ImageTexture& image = *out.mutable_image();
+  image.set_file(file);
+  image.set_wrap(wrap_of(wrap));
+  image.set_filter(filter == "point" ? scene::ImageTexture::FILTER_NEAREST
+                                     : scene::ImageTexture::FILTER_BILINEAR);
+  image.set_encoding(linear ? scene::ImageTexture::ENCODING_LINEAR
+                            : scene::ImageTexture::ENCODING_SRGB);
+  for (int k = 0; k < 2; ++k) {
+    image.add_uv_scale(mapping.scale[k]);
+    image.add_uv_offset(mapping.offset[k]);
+  }
+  if (scale != 1) {
+    out = product(std::move(out), gray(std::clamp(scale, 0.0, 1e12)));
+  }
+  if (invert) {
+    if (from.is_color) {
+      from.builder.warn(from.place(), "the inverted image is shown in grey");
+    }
+    scene::Texture inverted;
+    *inverted.mutable_ramp()->mutable_texture() = std::move(out);
+    for (const double at : {0, 1}) {
+      auto* stop = inverted.mutable_ramp()->add_stop();
+      stop->set_at(at);
+      for (int k = 0; k < 3; ++k) {
+        stop->add_color(1 - at);
+      }
+    }
+    return inverted;
+  }
+  return out;
+}
+
+absl::StatusOr<scene::Texture> checkerboard(const Source& from) {
+  ASSIGN_OR_RETURN(const int dimension, from.parameters.integer("dimension", 2));
+  scene::Texture out;
+  scene::CheckerTexture& checker = *out.mutable_checker();
+  ASSIGN_OR_RETURN(*checker.mutable_even(), from.part("tex1", 1));
+  ASSIGN_OR_RETURN(*checker.mutable_odd(), from.part("tex2", 0));
+  if (dimension == 3) {
+    checker.set_mapping(scene::CheckerTexture::MAPPING_POSITION);
+    checker.set_space(scene::SPACE_WORLD);
+    if (!(from.state.transforms[0] == Transform{})) {
+      from.builder.warn(from.place(), "the cells lie along the world's axes, of size 1");
+    }
+    return out;
+  }
+  ASSIGN_OR_RETURN(const Mapping mapping, read_mapping(from));
+  double shift = 0;
+  for (int k = 0; k < 2; ++k) {
+    const double scale = std::abs(mapping.scale[k]);
+    checker.add_size(scale > 0 ? std::clamp(1 / scale, 1e-9, 1e9) : 1e9);
+    shift += mapping.offset[k];
+    if (mapping.offset[k] != std::floor(mapping.offset[k]) || mapping.scale[k] <= 0) {
+      from.builder.warn(from.place(), "the checkerboard is not shifted, and not mirrored");
+    }
+  }
+  if (std::abs(std::fmod(shift, 2)) == 1) {
+    checker.mutable_even()->Swap(checker.mutable_odd());
+  }
+  return out;
+}
+
+absl::StatusOr<scene::Texture> mix(const Source& from) {
+  scene::Texture out;
+  ASSIGN_OR_RETURN(*out.mutable_mix()->mutable_a(), from.part("tex1", 0));
+  ASSIGN_OR_RETURN(*out.mutable_mix()->mutable_b(), from.part("tex2", 1));
+  ASSIGN_OR_RETURN(auto amount, float_texture(from.parameters, "amount", from.builder));
+  if (amount) {
+    *out.mutable_mix()->mutable_amount() = *std::move(amount);
+  }
+  return out;
+}
+
+absl::StatusOr<scene::Texture> scaled(const Source& from) {
+  ASSIGN_OR_RETURN(scene::Texture texture, from.part("tex", 1));
+  ASSIGN_OR_RETURN(auto scale, float_texture(from.parameters, "scale", from.builder));
+  return scale ? product(std::move(texture), *std::move(scale)) : texture;
+}
+
+/// Returns the noise that comes nearest to pbrt's fbm, wrinkled, windy and marble.
+absl::StatusOr<scene::Texture> noise(const Source& from, const std::string& type) {
+  const Parameters& in = from.parameters;
+  ASSIGN_OR_RETURN(const int octaves, in.integer("octaves", 8));
+  in.ignore({"roughness", "variation"});
+  ASSIGN_OR_RETURN(const double scale, in.number("scale", 1));
+  scene::Texture out;
+  scene::NoiseTexture& to = *out.mutable_noise();
+  to.set_kind(type == "marble" ? scene::NoiseTexture::KIND_MARBLE
+              : type == "fbm"  ? scene::NoiseTexture::KIND_NOISE
+                               : scene::NoiseTexture::KIND_TURBULENCE);
+  to.set_octaves(static_cast<std::uint32_t>(std::clamp(octaves, 1, 16)));
+  to.set_scale(std::clamp(scale, 1e-9, 1e9));
+  from.builder.warn(from.place(), absl::StrCat("the texture \"", type,
+                                               "\" is shown by noise of another pattern"));
+  return out;
+}
+
+absl::StatusOr<scene::Texture> bilinear(const Source& from) {
+  scene::Texture rows[2];
+  for (int v = 0; v < 2; ++v) {
+    scene::Texture& row = rows[v];
+    ASSIGN_OR_RETURN(*row.mutable_mix()->mutable_a(), from.part(absl::StrCat("v0", v), v));
+    ASSIGN_OR_RETURN(*row.mutable_mix()->mutable_b(), from.part(absl::StrCat("v1", v), v));
+  }
+  ASSIGN_OR_RETURN(const Mapping mapping, read_mapping(from));
+  const auto ramp = [&](scene::RampTexture::Coordinate coordinate, int k) {
+    scene::Texture texture;
+    texture.mutable_ramp()->set_coordinate(coordinate);
+    const double scale = mapping.scale[k] == 0 ? 1e-9 : mapping.scale[k];
+    const double at[2] = {-mapping.offset[k] / scale, (1 - mapping.offset[k]) / scale};
+    const int first = at[0] <= at[1] ? 0 : 1;
+    for (const int end : {first, 1 - first}) {
+      auto* stop = texture.mutable_ramp()->add_stop();
+      stop->set_at(at[end]);
+      for (int c = 0; c < 3; ++c) {
+        stop->add_color(end);
+      }
+    }
+    return texture;
+  };
+  scene::Texture out;
+  for (scene::Texture& row : rows) {
+    *row.mutable_mix()->mutable_amount() = ramp(scene::RampTexture::COORDINATE_U, 0);
+  }
+  *out.mutable_mix()->mutable_a() = std::move(rows[0]);
+  *out.mutable_mix()->mutable_b() = std::move(rows[1]);
+  *out.mutable_mix()->mutable_amount() = ramp(scene::RampTexture::COORDINATE_V, 1);
+  return out;
+}
+
+absl::StatusOr<scene::Texture> read_kind(const Source& from, const std::string& type) {
+  if (type == "constant") {
+    return from.part("value", 1);
+  }
+  if (type == "imagemap") {
+    return image_map(from);
+  }
+  if (type == "checkerboard") {
+    return checkerboard(from);
+  }
+  if (type == "mix") {
+    return mix(from);
+  }
+  if (type == "scale") {
+    return scaled(from);
+  }
+  if (type == "bilerp") {
+    return bilinear(from);
+  }
+  if (type == "fbm" || type == "wrinkled" || type == "windy" || type == "marble") {
+    return noise(from, type);
+  }
+  if (type == "dots") {
+    from.builder.warn(from.place(), "dots have no counterpart; only what is outside is shown");
+    from.parameters.ignore({"inside"});
+    RETURN_IF_ERROR(read_mapping(from).status());
+    return from.part("outside", 0);
+  }
+  if (type == "directionmix") {
+    from.builder.warn(from.place(), "a mix by direction has no counterpart; half of both is shown");
+    from.parameters.ignore({"dir"});
+    return mix(from);
+  }
+  from.builder.warn(from.place(),
+                    absl::StrCat("a texture of kind \"", type,
+                                 "\" has no counterpart; a grey of 0.5 stands for it"));
+  for (const Parameter& parameter : from.parameters.list) {
+    parameter.is_used = true;
+  }
+  return gray(0.5);
+}
+
+/// Returns a name for a texture that no other has.
+std::string unique_name(const std::string& name, Builder& builder) {
+  std::string candidate = name;
+  while (!builder.taken_textures.insert(candidate).second) {
+    candidate = absl::StrCat(name, "_", ++builder.texture_counts[name] + 1);
+  }
+  return candidate;
+}
+
+/// Returns true if the texture is long enough to be named instead of repeated.
+bool is_worth_a_name(const scene::Texture& texture) { return !texture.has_color(); }
+
+}  // namespace
+
+std::optional<double> constant_of(const scene::Texture& texture) {
+  if (!texture.has_color()) {
+    return std::nullopt;
+  }
+  const auto& rgb = texture.color().rgb();
+  return spectrum::luminance({rgb[0], rgb[1], rgb[2]});
+}
+
+absl::StatusOr<scene::Texture> color_texture(const Parameters& parameters, const std::string& name,
+                                             ColorUse use, const Rgb3& otherwise,
+                                             const State& state, Builder& builder) {
+  const Parameter* found = parameters.find(name);
+  if (found == nullptr) {
+    return constant_texture(otherwise);
+  }
+  if (found->type != "texture") {
+    ASSIGN_OR_RETURN(const Rgb3 rgb, color_of(*found, use, state.color_space, builder));
+    return constant_texture(rgb);
+  }
+  if (found->texts.size() != 1) {
+    return error_at(found->place, absl::StrCat("\"", name, "\" must name one texture"));
+  }
+  const auto texture = builder.color_textures.find(found->texts[0]);
+  if (texture == builder.color_textures.end()) {
+    return error_at(found->place,
+                    absl::StrCat("no spectrum texture is called \"", found->texts[0], "\""));
+  }
+  return texture->second;
+}
+
+absl::StatusOr<std::optional<scene::Texture>> float_texture(const Parameters& parameters,
+                                                            const std::string& name,
+                                                            Builder& builder) {
+  const Parameter* found = parameters.find(name);
+  if (found == nullptr) {
+    return std::nullopt;
+  }
+  if (found->type != "texture") {
+    ASSIGN_OR_RETURN(const double value, parameters.number(name, 0));
+    return gray(std::clamp(value, 0.0, 1e12));
+  }
+  const auto texture = found->texts.size() == 1 ? builder.float_textures.find(found->texts[0])
+                                                : builder.float_textures.end();
+  if (texture == builder.float_textures.end()) {
+    return error_at(found->place, absl::StrCat("\"", name, "\": no float texture is called \"",
+                                               found->texts.empty() ? "" : found->texts[0], "\""));
+  }
+  return texture->second;
+}
+
+absl::Status add_texture(const std::string& name, const std::string& type, const std::string& kind,
+                         Parameters parameters, const State& state, Builder& builder) {
+  if (type != "spectrum" && type != "float") {
+    return error_at(parameters.place,
+                    absl::StrCat("a texture is of type spectrum or float, not \"", type, "\""));
+  }
+  const bool is_color = type == "spectrum";
+  auto& textures = is_color ? builder.color_textures : builder.float_textures;
+  if (textures.count(name) > 0) {
+    return error_at(parameters.place,
+                    absl::StrCat("a ", type, " texture called \"", name, "\" exists"));
+  }
+  ASSIGN_OR_RETURN(scene::Texture texture, read_kind({parameters, state, is_color, builder}, kind));
+  builder.warn_of_unused(parameters);
+  if (is_worth_a_name(texture)) {
+    const std::string unique = unique_name(name.empty() ? "texture" : name, builder);
+    texture.set_name(unique);
+    *builder.out.add_texture() = std::move(texture);
+    texture.Clear();
+    texture.set_use(unique);
+  }
+  textures.emplace(name, std::move(texture));
+  return absl::OkStatus();
+}
+
+}  // namespace bandsaw::pbrt

@@ -1,0 +1,60 @@
+#pragma once
+
+// The words of a pbrt scene file and of the files that it includes.
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "renderlib/import/files/scene_folder.h"
+#include "renderlib/import/pbrt/place.h"
+
+namespace bandsaw::pbrt {
+
+/// Bounds, so that a hostile scene ends with an error.
+inline constexpr std::size_t kMaxIncludes = 32;  ///< files within each other
+inline constexpr std::uint64_t kMaxFileBytes = std::uint64_t{2} << 30;
+inline constexpr std::uint64_t kMaxSceneBytes = std::uint64_t{4} << 30;  ///< of all files together
+
+struct Token {
+  enum class Kind { kWord, kString, kOpen, kClose };
+  Kind kind = Kind::kWord;
+  std::string text;  ///< without quotes
+  Place place;
+};
+
+/// Reads files that are plain or compressed by gzip, one within the other.
+class Tokens {
+ public:
+  /// `folder` MUST outlive the object.
+  explicit Tokens(const SceneFolder& folder) : folder_(folder) {}
+
+  /// Continues with the first word of the file `name`, relative to the scene's folder. `asked` is
+  /// where it is included. NOT_FOUND, PERMISSION_DENIED: the file; INVALID_ARGUMENT: it includes
+  /// itself; RESOURCE_EXHAUSTED: a bound.
+  absl::Status include(const std::string& name, const Place& asked);
+
+  /// Returns the next word; std::nullopt after the last. INVALID_ARGUMENT: a string without end.
+  absl::StatusOr<std::optional<Token>> next();
+  /// Makes next() return this token again.
+  void put_back(Token token) { back_ = std::move(token); }
+
+ private:
+  struct Source {
+    std::string path;
+    std::string name;
+    std::string text;
+    std::size_t at = 0;
+    int line = 1;
+  };
+  absl::StatusOr<Token> read_string(Source& from);
+  static void skip_space(Source& from);
+
+  const SceneFolder& folder_;
+  std::vector<Source> open_;
+  std::optional<Token> back_;
+  std::uint64_t total_bytes_ = 0;
+};
+
+}  // namespace bandsaw::pbrt

@@ -1,0 +1,244 @@
+#include "renderlib/import/pbrt/view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "absl/strings/str_cat.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::pbrt {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// The image in pixels, and the part of it that is rendered.
+struct Film {
+  double width = 1280;
+  double height = 720;
+  double crop[4] = {0, 1, 0, 1};  ///< x0, x1, y0, y1, shares of the whole, y from the top
+};
+
+absl::StatusOr<Film> read_film(const ViewSource& view, double exposure_time, Builder& builder) {
+  Film film;
+  Parameters none;
+  const Parameters& in = view.film ? view.film->second : none;
+  ASSIGN_OR_RETURN(const int width, in.integer("xresolution", 1280));
+  ASSIGN_OR_RETURN(const int height, in.integer("yresolution", 720));
+  if (width < 1 || height < 1 || width > 65536 || height > 65536) {
+    return error_at(
+        in.place, absl::StrCat("the resolution must be in [1, 65536], is ", width, " x ", height));
+  }
+  film.width = width;
+  film.height = height;
+  ASSIGN_OR_RETURN(const auto crop, in.numbers("cropwindow", {"float"}, 4));
+  ASSIGN_OR_RETURN(const auto pixels, in.numbers("pixelbounds", {"integer", "float"}, 4));
+  const double sizes[2] = {film.width, film.height};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double size = sizes[k / 2];
+    const double share = !pixels.empty() ? pixels[k] / size
+                         : !crop.empty() ? crop[k]
+                                         : film.crop[k];
+    film.crop[k] = std::clamp(std::ceil(share * size), 0.0, size) / size;
+  }
+  if (!(film.crop[0] < film.crop[1] && film.crop[2] < film.crop[3])) {
+    return error_at(in.place, "the crop window is empty");
+  }
+  ASSIGN_OR_RETURN(const double iso, in.number("iso", 100));
+  ASSIGN_OR_RETURN(const std::string sensor, in.text("sensor", "cie1931"));
+  ASSIGN_OR_RETURN(const double white, in.number("whitebalance", 0));
+  builder.light_factor = std::clamp(exposure_time * iso / 100, 0.0, 1e12);
+  if (sensor != "cie1931") {
+    builder.warn(in.place, absl::StrCat("the sensor \"", sensor,
+                                        "\" is not known here; that of CIE 1931 is taken"));
+  }
+  if (white != 0 && white != 6500 && white != 6504) {
+    builder.warn(in.place, "the white balance is left out: white is D65");
+  }
+  in.ignore({"filename", "savefp16", "maxcomponentvalue", "diagonal", "coordinatesystem",
+             "lambdamin", "lambdamax", "nbuckets"});
+  return film;
+}
+
+absl::Status read_filter(const ViewSource& view, Builder& builder) {
+  Parameters none;
+  const Parameters& in = view.filter ? view.filter->second : none;
+  const std::string type = view.filter ? view.filter->first : "gaussian";
+  const double standard = type == "box" ? 0.5 : type == "gaussian" ? 1.5 : type == "sinc" ? 4 : 2;
+  ASSIGN_OR_RETURN(const double x, in.number("xradius", standard));
+  ASSIGN_OR_RETURN(const double y, in.number("yradius", standard));
+  double radius = std::clamp((x + y) / 2, 0.0, 16.0);
+  if (x != y) {
+    builder.warn(in.place, "the filter has the mean of both radii");
+  }
+  auto* filter = builder.out.mutable_image()->mutable_filter();
+  if (type == "box") {
+    filter->mutable_box()->set_radius(radius);
+  } else if (type == "triangle") {
+    filter->mutable_tent()->set_radius(radius);
+  } else {
+    if (type == "gaussian") {
+      ASSIGN_OR_RETURN(const double sigma, in.number("sigma", 0.5));
+      radius = std::clamp(3 * sigma, 0.0, 16.0);
+    } else {
+      builder.warn(in.place, absl::StrCat("the filter \"", type,
+                                          "\" has no counterpart; a Gaussian stands for it"));
+      radius = type == "mitchell" ? radius * 0.75 : 1.5;
+      in.ignore({"B", "C", "tau"});
+    }
+    filter->mutable_gaussian()->set_radius(radius);
+  }
+  return absl::OkStatus();
+}
+
+absl::Status read_integrator(const ViewSource& view, Builder& builder) {
+  Parameters none;
+  const Parameters& in = view.integrator ? view.integrator->second : none;
+  const std::string type = view.integrator ? view.integrator->first : "volpath";
+  scene::Integrator& out = *builder.out.mutable_integrator();
+  ASSIGN_OR_RETURN(const int depth, in.integer("maxdepth", 5));
+  out.set_max_depth(static_cast<std::uint32_t>(std::clamp(depth, 1, 1024)));
+  if (type == "ambientocclusion") {
+    out.set_kind(scene::Integrator::KIND_AMBIENT_OCCLUSION);
+    ASSIGN_OR_RETURN(const auto distance, in.number("maxdistance"));
+    if (distance && *distance > 0) {
+      out.set_occlusion_distance(*distance);
+    }
+  }
+  // All other integrators compute the same image in other ways.
+  for (const Parameter& parameter : in.list) {
+    parameter.is_used = true;
+  }
+  return absl::OkStatus();
+}
+
+/// Sets position and direction by the camera's axes in the world. Returns the camera's unit of
+/// length in the world.
+absl::StatusOr<double> set_place(const ViewSource& view, Builder& builder) {
+  const Place& place = view.camera ? view.camera->second.place : view.medium_place;
+  const auto to_world = inverse(view.to_camera[0]);
+  if (!to_world) {
+    return error_at(place, "the camera's transformation is singular");
+  }
+  if (!(view.to_camera[0] == view.to_camera[1])) {
+    builder.warn(place, "the camera does not move: it stands where it is at the start");
+  }
+  const Vec3 right = to_world->direction({1, 0, 0});
+  const Vec3 up = to_world->direction({0, 1, 0});
+  const Vec3 forward = to_world->direction({0, 0, 1});
+  const double unit = length(forward);
+  if (std::abs(length(up) - unit) > 1e-3 * unit || std::abs(length(right) - unit) > 1e-3 * unit ||
+      std::abs(dot(up, forward)) > 1e-3 * unit * unit ||
+      std::abs(dot(right, up)) > 1e-3 * unit * unit) {
+    builder.warn(place, "the camera's transformation stretches or shears; its direction is kept");
+  }
+  scene::Camera& camera = *builder.out.mutable_camera();
+  const Vec3 position = to_world->point({0, 0, 0});
+  // The point is so far ahead that the sum keeps the precision of the direction.
+  const double ahead = std::max(1.0, max_abs(position));
+  set_vec3(position, camera.mutable_position());
+  set_vec3(position + forward / unit * ahead, camera.mutable_look_at());
+  set_vec3(up / length(up), camera.mutable_up());
+  // x, y and z of pbrt's camera are left-handed: right is y x z.
+  camera.set_mirrored(dot(cross(forward, up), right) < 0);
+  return unit;
+}
+
+absl::StatusOr<std::vector<double>> read_screen(const Parameters& in, double aspect) {
+  ASSIGN_OR_RETURN(std::vector<double> screen, in.numbers("screenwindow", {"float"}, 4));
+  ASSIGN_OR_RETURN(const double frame, in.number("frameaspectratio", aspect));
+  if (screen.empty()) {
+    screen = frame > 1 ? std::vector<double>{-frame, frame, -1, 1}
+                       : std::vector<double>{-1, 1, -1 / frame, 1 / frame};
+  }
+  if (screen.size() != 4 || !(screen[0] < screen[1] && screen[2] < screen[3])) {
+    return error_at(in.place, "\"screenwindow\" must be 4 numbers, x0 < x1 and y0 < y1");
+  }
+  return screen;
+}
+
+absl::Status read_camera(const ViewSource& view, const Film& film, Builder& builder) {
+  Parameters none;
+  const Parameters& in = view.camera ? view.camera->second : none;
+  const std::string type = view.camera ? view.camera->first : "perspective";
+  ASSIGN_OR_RETURN(const double unit, set_place(view, builder));
+  scene::Camera& camera = *builder.out.mutable_camera();
+  ASSIGN_OR_RETURN(const std::vector<double> screen, read_screen(in, film.width / film.height));
+  const bool is_whole =
+      film.crop[0] == 0 && film.crop[1] == 1 && film.crop[2] == 0 && film.crop[3] == 1;
+  ASSIGN_OR_RETURN(double fov, in.number("fov", 90));
+  ASSIGN_OR_RETURN(const double lens, in.number("lensradius", 0));
+  ASSIGN_OR_RETURN(const double focus, in.number("focaldistance", 1e6));
+  if (type != "perspective" && type != "orthographic") {
+    builder.warn(in.place, absl::StrCat("the camera \"", type,
+                                        "\" has no counterpart; a perspective one of 60 degrees "
+                                        "stands for it"));
+    fov = 60;
+    for (const Parameter& parameter : in.list) {
+      parameter.is_used = true;
+    }
+  }
+  if (!(fov > 0 && fov < 180)) {
+    return error_at(in.place, absl::StrCat("\"fov\" must be in (0, 180), is ", fov));
+  }
+  const bool is_flat = type == "orthographic";
+  // Without a window, ours shows the whole height with square pixels.
+  const double aspect = film.width / film.height;
+  const bool is_square =
+      std::abs((screen[1] - screen[0]) / (screen[3] - screen[2]) - aspect) < 1e-9 * aspect &&
+      screen[0] == -screen[1] && screen[2] == -screen[3];
+  const double half = is_square && is_whole ? screen[3] : 1;
+  if (is_flat) {
+    camera.mutable_orthographic()->set_height(2 * half * unit);
+    in.ignore({"lensradius", "focaldistance"});
+    if (lens > 0) {
+      builder.warn(in.place, "an orthographic camera has no lens");
+    }
+  } else {
+    camera.set_vertical_fov(2 * std::atan(std::tan(fov * kPi / 360) * half) * 180 / kPi);
+    if (lens > 0) {
+      camera.set_aperture(std::min(2 * lens * unit, 1e30));
+      camera.set_focus_distance(std::clamp(focus * unit, 1e-9, 1e30));
+    }
+  }
+  if (!(is_square && is_whole)) {
+    const double w = screen[1] - screen[0];
+    const double h = screen[3] - screen[2];
+    camera.add_window(screen[0] + film.crop[0] * w);
+    camera.add_window(screen[0] + film.crop[1] * w);
+    camera.add_window(screen[3] - film.crop[3] * h);
+    camera.add_window(screen[3] - film.crop[2] * h);
+  }
+  auto* image = builder.out.mutable_image();
+  const auto pixels = [](double size, double share) {
+    return static_cast<std::uint32_t>(std::max(1.0, std::round(size * share)));
+  };
+  image->set_width(pixels(film.width, film.crop[1] - film.crop[0]));
+  image->set_height(pixels(film.height, film.crop[3] - film.crop[2]));
+  builder.warn_of_unused(in);
+  return absl::OkStatus();
+}
+
+}  // namespace
+
+absl::Status set_view(const ViewSource& view, Builder& builder) {
+  Parameters none;
+  const Parameters& camera = view.camera ? view.camera->second : none;
+  ASSIGN_OR_RETURN(const double open, camera.number("shutteropen", 0));
+  ASSIGN_OR_RETURN(const double close, camera.number("shutterclose", 1));
+  if (!(open <= close && std::abs(open) <= 1e9 && std::abs(close) <= 1e9)) {
+    return error_at(camera.place, "the shutter must close after it opens");
+  }
+  ASSIGN_OR_RETURN(const Film film, read_film(view, close > open ? close - open : 1, builder));
+  if (view.film) {
+    builder.warn_of_unused(view.film->second);
+  }
+  RETURN_IF_ERROR(read_filter(view, builder));
+  RETURN_IF_ERROR(read_integrator(view, builder));
+  RETURN_IF_ERROR(read_camera(view, film, builder));
+  builder.out.mutable_camera()->set_shutter_open(open);
+  builder.out.mutable_camera()->set_shutter_close(close);
+  return absl::OkStatus();
+}
+
+}  // namespace bandsaw::pbrt

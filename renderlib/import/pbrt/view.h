@@ -1,0 +1,24 @@
+#pragma once
+
+// Camera, film, filter and integrator.
+
+#include "renderlib/import/pbrt/builder.h"
+
+namespace bandsaw::pbrt {
+
+/// The directives before WorldBegin that describe the image, as they were written.
+struct ViewSource {
+  std::optional<std::pair<std::string, Parameters>> camera;
+  std::optional<std::pair<std::string, Parameters>> film;
+  std::optional<std::pair<std::string, Parameters>> filter;
+  std::optional<std::pair<std::string, Parameters>> integrator;
+  Transforms to_camera;  ///< the current transformation at Camera
+  std::string medium;    ///< in which the camera is; empty: none
+  Place medium_place;
+};
+
+/// Sets camera, image and integrator of the scene, the times of its shutter and
+/// Builder::light_factor.
+absl::Status set_view(const ViewSource& view, Builder& builder);
+
+}  // namespace bandsaw::pbrt

@@ -1,0 +1,230 @@
+"""The installed add-on in Blender without a window, at a coordinator that renders nothing:
+
+    BLENDER_USER_SCRIPTS=EMPTY-FOLDER blender -b --factory-startup --python addon_test.py -- ADDON.zip"""
+
+import json
+import os
+import sys
+import tempfile
+import time
+import unittest
+
+import bpy
+import numpy as np
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.dont_write_bytecode = True
+sys.path[:0] = [HERE, os.path.join(HERE, "..", "python")]
+import fake_farm  # noqa: E402
+import scenes  # noqa: E402
+
+ADDON = sys.argv[sys.argv.index("--") + 1]
+
+
+def preferences():
+    return bpy.context.preferences.addons["bandsaw_blender"].preferences
+
+
+class AddOn(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        bpy.ops.preferences.addon_install(filepath=ADDON)
+
+    def setUp(self):
+        scenes.build("gradient")  # loads factory settings, which disables the add-on
+        bpy.ops.preferences.addon_enable(module="bandsaw_blender")
+        self.fake = fake_farm.FakeFarm()
+        self.addCleanup(self.fake.stop)
+        preferences().farm = self.fake.string
+        self.scene = bpy.context.scene
+        self.scene.render.engine = "BANDSAW"
+        self.scene.bandsaw.samples = 7
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.scene.render.image_settings.file_format = "OPEN_EXR"
+        self.scene.render.image_settings.color_depth = "32"
+        self.scene.render.filepath = os.path.join(self.folder.name, "out.exr")
+
+    def render(self):
+        bpy.ops.render.render(write_still=True)
+
+    def pixels(self):
+        image = bpy.data.images.load(self.scene.render.filepath)
+        width, height = image.size
+        return np.array(image.pixels[:]).reshape(height, width, 4)
+
+    def fails_with(self, *words):
+        """A render must end with one error that has these words, and Blender must go on."""
+        with self.assertRaises(RuntimeError) as caught:
+            self.render()
+        for word in words:
+            self.assertIn(word, str(caught.exception))
+        self.assertEqual(str(caught.exception).count("Error: Bandsaw:"), 1, str(caught.exception))
+        self.assertFalse(os.path.exists(self.scene.render.filepath) and os.path.getsize(self.scene.render.filepath) == 0)
+        return str(caught.exception)
+
+    def sent(self):
+        """The scene file that was sent last, and its files."""
+        scene = self.fake.scenes[-1]
+        return json.loads(scene["files"][scene["main"]]), scene["files"]
+
+    def test_a_still_has_the_farms_pixels(self):
+        self.render()
+        got = self.pixels()
+        self.assertEqual(got.shape, (64, 96, 4))
+        y, x = np.mgrid[0:64, 0:96]
+        self.assertLess(abs(got[:, :, 0] - x / 96).max(), 1e-6)
+        self.assertLess(abs(got[:, :, 1] - y / 64).max(), 1e-6)
+        self.assertEqual(got[:, :, 3].min(), 1)
+        self.assertEqual(self.fake.scenes[-1]["samples"], "7")
+
+    def test_an_error_may_be_the_target(self):
+        self.scene.bandsaw.stop, self.scene.bandsaw.error = "ERROR", 5
+        self.render()
+        self.assertAlmostEqual(float(self.fake.scenes[-1]["error"]), 0.05)
+
+    def test_unchanged_files_are_not_sent_again(self):
+        self.render()
+        self.fake.requests.clear()
+        bpy.context.scene.camera.location.x += 1
+        self.render()
+        digests = [len(scene["files"]) for scene in self.fake.scenes]
+        self.assertEqual(digests[0], digests[1])
+        sent_again = len([1 for method, path in self.fake.requests if path == "/api/files"])
+        self.assertEqual(sent_again, 1)  # the scene file alone, whose camera has moved
+
+    def test_an_animation_is_a_job_for_each_frame(self):
+        self.scene.frame_start, self.scene.frame_end = 3, 5
+        self.scene.render.filepath = os.path.join(self.folder.name, "f")
+        bpy.ops.render.render(animation=True)
+        self.assertEqual(sorted(os.listdir(self.folder.name)), ["f0003.exr", "f0004.exr", "f0005.exr"])
+        self.assertEqual([scene["title"] for scene in self.fake.scenes], ["untitled 3", "untitled 4", "untitled 5"])
+
+    def test_percentage_and_region(self):
+        self.scene.render.resolution_percentage = 50
+        self.render()
+        self.assertEqual(self.sent()[0]["image"]["width"], 48)
+        whole = self.sent()[0]["camera"]["window"]
+        self.scene.render.use_border, self.scene.render.use_crop_to_border = True, True
+        self.scene.render.border_min_x, self.scene.render.border_max_x = 0.25, 0.75
+        self.scene.render.border_min_y, self.scene.render.border_max_y = 0.0, 0.5
+        self.render()
+        scene, _ = self.sent()
+        self.assertEqual((scene["image"]["width"], scene["image"]["height"]), (24, 16))
+        left, right, bottom, top = scene["camera"]["window"]
+        self.assertAlmostEqual(left, whole[0] / 2)
+        self.assertAlmostEqual(right, whole[1] / 2)
+        self.assertAlmostEqual(bottom, whole[2])
+        self.assertAlmostEqual(top, 0)
+        self.assertEqual(self.pixels().shape, (16, 24, 4))
+
+    def test_passes(self):
+        layer = bpy.context.view_layer
+        layer.use_pass_z = layer.use_pass_normal = layer.use_pass_diffuse_color = True
+        self.scene.render.image_settings.file_format = "OPEN_EXR_MULTILAYER"
+        self.render()
+        self.assertEqual([job["kind"] for job in self.fake.jobs.values()], ["path", "depth", "normals", "albedo"])
+        engine = sys.modules["bandsaw_blender.engine"]
+        up = engine.pass_pixels("normals", np.full((1, 1, 3), 0.5) + [[[0, 0.5, 0]]], None, None)
+        self.assertEqual(up.tolist(), [[[0, 0, 1]]])
+        self.assertEqual(engine.pass_pixels("depth", np.zeros((1, 1, 3)), None, None).tolist(), [[[1e10]]])
+
+    def test_no_string(self):
+        preferences().farm = ""
+        os.environ.pop("BANDSAW_FARM", None)
+        self.fails_with("paste its string")
+
+    def test_a_wrong_string(self):
+        preferences().farm = self.fake.string[:-1] + "x"
+        self.fails_with("refuses this string")
+        preferences().farm = "hello"
+        self.fails_with("must begin with bsw1-f-")
+
+    def test_no_farm(self):
+        other = fake_farm.FakeFarm()
+        string = other.string
+        other.stop()
+        preferences().farm = string
+        self.fails_with("no coordinator answers", "bandsaw serve")
+
+    def test_a_coordinator_that_goes(self):
+        engine = sys.modules["bandsaw_blender.engine"]
+        self.addCleanup(setattr, engine, "PATIENCE", engine.PATIENCE)
+        engine.PATIENCE = 0.5
+        self.fake.seconds = 1000
+
+        answer = self.fake.answer
+
+        def once_then_close(request, body):
+            answer(request, body)
+            if request.path.startswith("/api/jobs/"):
+                self.fake.server.socket.close()
+        self.fake.answer = once_then_close
+        self.fails_with("no coordinator answers")
+
+    def test_a_refused_scene(self):
+        self.fake.refusals = [400]
+        self.fails_with("not now")
+
+    def test_no_camera(self):
+        self.scene.camera = None
+        self.assertRaises(RuntimeError, self.render)  # Blender's own message
+
+    def test_a_missing_texture_is_named_and_the_rest_is_rendered(self):
+        image = bpy.data.images.new("wood", 4, 4)
+        image.source, image.filepath = "FILE", "/nowhere/wood.png"
+
+        def nodes(tree, shader):
+            node = tree.nodes.new("ShaderNodeTexImage")
+            node.image = image
+            tree.links.new(node.outputs["Color"], shader.inputs["Base Color"])
+        scenes.plane(1, scenes.material("table", nodes))
+        self.render()
+        engine = sys.modules["bandsaw_blender.engine"]
+        named = [warning for warning in engine.last_warnings if "wood" in warning]
+        self.assertEqual(len(named), 1, engine.last_warnings)
+        self.assertIn('material "table"', named[0])
+        self.assertIn("missing", named[0])
+
+    def test_what_is_not_shown_is_named(self):
+        def nodes(tree, shader):
+            tree.links.new(tree.nodes.new("ShaderNodeBsdfToon" if hasattr(bpy.types, "ShaderNodeBsdfToon") else "ShaderNodeBsdfSheen").outputs[0],
+                           tree.nodes["Material Output"].inputs["Surface"])
+        scenes.plane(1, scenes.material("cartoon", nodes))
+        self.scene.render.film_transparent = True
+        self.fake.warnings = ["the importer says this"]
+        self.render()
+        told = "\n".join(sys.modules["bandsaw_blender.engine"].last_warnings)
+        for word in ('material "cartoon"', "transparent background", "the importer says this"):
+            self.assertIn(word, told)
+
+    def test_two_million_triangles(self):
+        geometry = sys.modules["bandsaw_blender.geometry"]
+        mesh = bpy.data.meshes.new("big")
+        n = 1001
+        y, x = np.divmod(np.arange(n * n), n)
+        mesh.vertices.add(n * n)
+        mesh.vertices.foreach_set("co", np.stack([x, y, np.sin(x * 0.1)], axis=1).astype(np.float32).reshape(-1))
+        k = np.arange((n - 1) ** 2)
+        corner = k // (n - 1) * n + k % (n - 1)
+        quads = np.stack([corner, corner + 1, corner + n + 1, corner + n], axis=1)
+        mesh.loops.add(quads.size)
+        mesh.loops.foreach_set("vertex_index", quads.astype(np.int32).reshape(-1))
+        mesh.polygons.add(len(quads))
+        mesh.polygons.foreach_set("loop_start", np.arange(0, quads.size, 4, dtype=np.int32))
+        if bpy.app.version < (3, 6, 0):
+            mesh.polygons.foreach_set("loop_total", np.full(len(quads), 4, dtype=np.int32))
+        mesh.polygons.foreach_set("use_smooth", np.ones(len(quads), dtype=bool))
+        mesh.update(calc_edges=True)
+        mesh.uv_layers.new().data.foreach_set("uv", np.stack([x, y], axis=1).astype(np.float32)[quads.reshape(-1)].reshape(-1))
+        before = time.process_time()
+        found = geometry.triangles_of(mesh, [""])
+        data = geometry.glb(found[0])
+        print(f"2,000,000 triangles in {time.process_time() - before:.2f} s of CPU, {len(data) >> 20} MiB")
+        self.assertEqual(len(found[0].indices), 2_000_000)
+        self.assertEqual(len(found[0].positions), n * n)  # no seam: no vertex was added
+
+
+result = unittest.main(argv=["addon_test", "-v"] + sys.argv[sys.argv.index("--") + 2:], exit=False).result
+sys.stdout.flush()
+os._exit(0 if result.wasSuccessful() else 1)

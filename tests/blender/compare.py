@@ -1,0 +1,56 @@
+"""Renders the scenes of scenes.py by Cycles and by the add-on, and tells how their means differ:
+
+    blender -b --factory-startup --python compare.py -- ADDON.zip FOLDER cycles|bandsaw|export SCENE…
+
+`cycles` and `bandsaw` (on the farm of BANDSAW_FARM) write FOLDER/SCENE.ENGINE.exr; `export` writes the scene's files to FOLDER/SCENE/."""
+
+import os
+import sys
+
+import bpy
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import scenes  # noqa: E402
+
+CYCLES_SAMPLES = 512
+BANDSAW_SAMPLES = 256
+
+
+def set_cycles(made):
+    made.render.engine = "CYCLES"
+    cycles = made.cycles
+    cycles.device, cycles.samples = "CPU", CYCLES_SAMPLES
+    cycles.use_adaptive_sampling = cycles.use_denoising = False
+    cycles.light_sampling_threshold = cycles.blur_glossy = 0
+    cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
+    cycles.caustics_reflective = cycles.caustics_refractive = True
+    for kind in ("max", "diffuse", "glossy", "transmission", "volume", "transparent_max"):
+        setattr(cycles, kind + "_bounces", 32)
+
+
+def main():
+    addon, folder, engine, *names = sys.argv[sys.argv.index("--") + 1:]
+    sys.path.insert(0, addon)
+    for name in names or scenes.SCENES:
+        scenes.build(name)
+        made = bpy.context.scene
+        made.render.image_settings.file_format = "OPEN_EXR"
+        made.render.image_settings.color_depth = "32"
+        made.render.filepath = os.path.join(folder, f"{name}.{engine}.exr")
+        if engine == "export":
+            from bandsaw_blender import headless
+            os.makedirs(os.path.join(folder, name), exist_ok=True)
+            headless.main(os.path.join(folder, name))
+            continue
+        if engine == "cycles":
+            set_cycles(made)
+        else:
+            import bandsaw_blender
+            if not hasattr(bpy.types.Scene, "bandsaw"):
+                bandsaw_blender.register()
+            made.render.engine = "BANDSAW"
+            made.bandsaw.samples = BANDSAW_SAMPLES
+        bpy.ops.render.render(write_still=True)
+
+
+main()

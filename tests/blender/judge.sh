@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# Compares the images that compare.py has written. Usage: judge.sh BANDSAW FOLDER. Scenes whose models are the same in both renderers must have
+# the same mean within 2 %; the others within the difference that deploy/blender/README.md explains.
+set -euo pipefail
+bandsaw=$1 folder=$2 failed=0
+# The largest difference of the means in percent.
+allowed() {
+  case $1 in
+    principled) echo 3 ;;  # Principled of Blender 3.4 adds its reflection to the diffuse part
+    normals) echo 4 ;;     # shadows at the terminator
+    *) echo 2 ;;
+  esac
+}
+for cycles in "$folder"/*.cycles.exr; do
+  name=$(basename "$cycles" .cycles.exr)
+  bias=$("$bandsaw" compare "$folder/$name.bandsaw.exr" "$cycles" | sed -n 's/^bias \([-+0-9.e]*\) %.*/\1/p')
+  verdict=$(awk -v b="$bias" -v most="$(allowed "$name")" 'BEGIN { if (b < 0) b = -b; print b <= most ? "same" : "DIFFERENT" }')
+  printf '%-14s %8s %% (at most %s %%) %s\n' "$name" "$bias" "$(allowed "$name")" "$verdict"
+  [ "$verdict" = same ] || failed=1
+done
+exit $failed

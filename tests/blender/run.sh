@@ -1,0 +1,73 @@
+#!/usr/bin/env bash
+# Tests of the add-on in a real Blender. Usage: run.sh addon|compare|window|command BUILD-FOLDER. Exit 77: Blender or another program is not installed.
+#   addon    the installed add-on at a coordinator that renders nothing: messages, regions, passes, animations
+#   compare  fourteen scenes by Cycles and by the add-on on a farm on loopback
+#   command  bandsaw render FILE.blend
+#   window   in a window under Xvfb: F12, the picture growing, Esc; screenshots in BUILD-FOLDER/screenshots
+set -euo pipefail
+part=$1
+build=$(cd "$2" && pwd)
+here=$(cd "$(dirname "$0")" && pwd)
+needs() {
+  for program in "$@"; do
+    command -v "$program" >/dev/null || { echo "skipped: there is no program $program (deploy/install.sh blender)"; exit 77; }
+  done
+}
+needs blender
+/usr/bin/python3 -c 'import numpy' 2>/dev/null || { echo "skipped: numpy is not installed (deploy/install.sh blender)"; exit 77; }
+work=$(mktemp -d)
+finish() {
+  [ -f "$work/pids" ] && xargs kill <"$work/pids" 2>/dev/null || true
+  wait
+  rm -rf "$work"
+}
+trap finish EXIT
+export BLENDER_USER_SCRIPTS=$work/scripts PYTHONDONTWRITEBYTECODE=1 HOME=$work
+mkdir -p "$work/scripts" "$work/out"
+"$here/../../deploy/blender/make.sh" "$work/addon.zip"
+
+# Runs Blender on a Python file; its output is shown if it fails.
+in_blender() {
+  local script=$1
+  shift
+  blender -b --factory-startup --python-exit-code 1 --python "$script" -- "$@" >"$work/log" 2>&1 || { cat "$work/log"; return 1; }
+}
+
+start_farm() {
+  "$build/bin/bandsaw" serve --data "$work/farm" --listen 127.0.0.1:0 --web 127.0.0.1:0 >"$work/serve.log" 2>&1 &
+  echo $! >>"$work/pids"
+  until grep -q "^join with" "$work/serve.log"; do
+    kill -0 $! || { cat "$work/serve.log"; return 1; }
+    sleep 0.1
+  done
+  "$build/bin/bandsaw-worker" --join "$work/farm/join" --name desk >"$work/worker.log" 2>&1 &
+  echo $! >>"$work/pids"
+  BANDSAW_FARM=$(cat "$work/farm/farm")
+  export BANDSAW_FARM
+}
+
+case $part in
+  addon)
+    in_blender "$here/addon_test.py" "$work/addon.zip"
+    grep -E "^(test_|Ran|OK)|triangles in" "$work/log" ;;
+  compare)
+    start_farm
+    in_blender "$here/compare.py" "$work/addon.zip" "$work/out" cycles
+    in_blender "$here/compare.py" "$work/addon.zip" "$work/out" bandsaw
+    "$here/judge.sh" "$build/bin/bandsaw" "$work/out" ;;
+  command)
+    in_blender "$here/save.py" "$work/out/lens.blend" lens
+    "$build/bin/bandsaw" render "$work/out/lens.blend" --samples 4 --report none -o "$work/out/lens.pfm"
+    head -c 12 "$work/out/lens.pfm" | grep -q "96 64"
+    echo "not a blend file" >"$work/out/bad.blend"
+    ! "$build/bin/bandsaw" render "$work/out/bad.blend" --samples 1 -o "$work/out/bad.pfm" 2>"$work/error"
+    grep -q "bad.blend: Blender made no scene of it" "$work/error" || { cat "$work/error"; exit 1; }
+    [ ! -e "$work/out/bad.pfm" ]
+    ! PATH=$work "$build/bin/bandsaw" render "$work/out/lens.blend" --samples 1 -o "$work/out/none.pfm" 2>"$work/error"
+    grep -q "Blender is not installed" "$work/error" || { cat "$work/error"; exit 1; } ;;
+  window)
+    needs Xvfb xdotool import
+    "$here/window.sh" "$work" "$build/screenshots" ;;
+  *) echo "usage: run.sh addon|compare|command|window BUILD-FOLDER" >&2; exit 2 ;;
+esac
+echo "$part holds"

@@ -1,0 +1,166 @@
+"""The Python module on a farm of one worker on loopback: farm_test.py BIN-FOLDER."""
+
+import base64
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
+sys.path.insert(0, os.path.join(SOURCE, "deploy", "python"))
+sys.dont_write_bytecode = True
+import bandsaw  # noqa: E402
+
+BIN = sys.argv.pop(1)
+CORNELL = os.path.join(SOURCE, "renderlib", "gallery", "cornell.textproto")
+
+
+class LoopbackFarm:
+    """A coordinator and a worker. `web`: the address of --web."""
+
+    def __init__(self, folder, web="127.0.0.1:0", listen="127.0.0.1:0"):
+        self.folder, self.data, self.listen, self.web = folder, os.path.join(folder, "farm"), listen, web
+        self.processes, self.coordinator = [], None
+        self.serve()
+        self.worker()
+
+    def serve(self):
+        self.coordinator = self.start(["bandsaw", "serve", "--data", self.data, "--listen", self.listen, "--web", self.web])
+        for line in self.coordinator.stdout:  # it prints this line when it is ready
+            if line.startswith(b"join with"):
+                return
+        raise AssertionError("the coordinator has not started")
+
+    def worker(self):
+        return self.start(["bandsaw-worker", "--join", os.path.join(self.data, "join"), "--name", "desk", "--threads", "2"])
+
+    def start(self, command):
+        log = open(os.path.join(self.folder, "log"), "ab")
+        process = subprocess.Popen([os.path.join(BIN, command[0])] + command[1:], stdout=subprocess.PIPE, stderr=log, stdin=subprocess.DEVNULL)
+        log.close()
+        self.processes.append(process)
+        return process
+
+    @property
+    def string(self):
+        with open(os.path.join(self.data, "farm")) as file:
+            return file.read().strip()
+
+    def stop(self):
+        for process in self.processes:
+            process.kill()
+            process.wait()
+            process.stdout.close()
+
+
+class OnAFarm(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.loopback = LoopbackFarm(cls.folder.name)
+        cls.farm = bandsaw.Farm(cls.loopback.string)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.loopback.stop()
+        cls.folder.cleanup()
+
+    def test_a_rendered_image_has_the_bytes_of_bandsaw_render(self):
+        told = []
+        image = self.farm.render(CORNELL, samples=16, width=48, told=told.append)
+        whole = os.path.join(self.folder.name, "whole.pfm")
+        subprocess.run([os.path.join(BIN, "bandsaw"), "render", CORNELL, "--samples", "16", "--width", "48", "--report", "none", "--quiet", "-o", whole],
+                       check=True, stdout=subprocess.DEVNULL)
+        with open(whole, "rb") as file:
+            self.assertTrue(bandsaw.compare(image, bandsaw.image_from_pfm(file.read()))["equal"])
+        self.assertEqual(told[-1].state, "done")
+        self.assertEqual((told[-1].fraction, told[-1].samples), (1, 16))
+        self.assertTrue(image.png().startswith(b"\x89PNG"))
+
+    def test_a_model_is_sent_with_its_files_once(self):
+        pergola = os.path.join(SOURCE, "renderlib", "gallery", "pergola.gltf")
+        sent = []
+        first = self.farm.submit(pergola, samples=1, width=16, told=lambda done, total: sent.append(done))
+        self.assertGreater(len(sent), 0)
+        del sent[:]
+        again = self.farm.submit(pergola, samples=2, width=16, told=lambda done, total: sent.append(done))
+        self.assertEqual(sent, [])
+        self.assertEqual(len(list(first.progress(0.05))[-1:] + list(again.progress(0.05))[-1:]), 2)
+        self.assertEqual((again.image().width, again.status().samples), (16, 2))
+
+    def test_a_scene_may_be_a_text(self):
+        text = 'background { constant { rgb: [0.25, 0.5, 1] } } camera { look_at: [0, 0, 1] } shape { sphere { center: [9, 9, 9] radius: 1 } material: "m" }' \
+               'material { name: "m" diffuse {} }'
+        mean = self.farm.render(text, files={}, samples=1, width=8).mean()
+        self.assertEqual(mean, (0.25, 0.5, 1))
+
+    def test_layers_are_jobs(self):
+        job = self.farm.submit(CORNELL, samples=1, width=16)
+        layers = [job.layer(kind, 1) for kind in ("albedo", "normals", "depth")]
+        for layer in layers:
+            list(layer.progress(0.05))
+            self.assertEqual(layer.image().width, 16)
+
+    def test_a_job_is_cancelled_with_a_preview_before(self):
+        job = self.farm.submit(CORNELL, samples=1 << 20, width=64)
+        seen = None
+        with self.assertRaises(bandsaw.BandsawError) as caught:
+            for progress in job.progress(0.05):
+                seen = seen or job.preview(64)
+                if seen is not None and not progress.over:
+                    job.cancel()
+        self.assertIn("was cancelled", str(caught.exception))
+        self.assertEqual((seen.width, seen.height), (64, 64))
+        self.assertGreater(sum(seen.mean()), 0)
+
+    def test_a_broken_scene_is_told_with_its_place(self):
+        with self.assertRaises(bandsaw.Refused) as caught:
+            self.farm.submit("shape { sfere {} }", files={})
+        self.assertIn("1:9", str(caught.exception))
+
+    def test_a_wrong_secret_is_told(self):
+        wrong = self.loopback.string[:-4] + "AAAA"
+        with self.assertRaises(bandsaw.WrongString) as caught:
+            bandsaw.Farm(wrong).check()
+        self.assertIn("secret", str(caught.exception))
+
+
+class Restarted(unittest.TestCase):
+    """The coordinator beyond loopback, so with TLS; it is killed while a job runs."""
+
+    def test_a_killed_coordinator_costs_no_job(self):
+        with tempfile.TemporaryDirectory() as folder:
+            loopback = LoopbackFarm(folder, web="0.0.0.0:0", listen="0.0.0.0:0")
+            try:
+                string = loopback.string
+                farm = bandsaw.Farm(string)
+                if not farm._doors or bandsaw._is_loopback(farm._doors[0][0]):
+                    self.skipTest("this machine has no address but loopback")
+                ports = (farm._join.addresses[0][1], farm._join.web[1])
+                job = farm.submit(CORNELL, samples=512, width=64)
+                states = []
+                for progress in job.progress(0.05):
+                    states.append(progress.state)
+                    if progress.state == "running" and "lost" not in states and progress.samples_done > 0:
+                        loopback.coordinator.send_signal(signal.SIGKILL)
+                        loopback.coordinator.wait()
+                    if progress.state == "lost" and states.count("lost") == 1:
+                        loopback.listen, loopback.web = f"0.0.0.0:{ports[0]}", f"0.0.0.0:{ports[1]}"
+                        loopback.serve()
+                self.assertIn("lost", states)
+                self.assertEqual(states[-1], "done")
+                self.assertEqual(job.image().width, 64)
+                # Another certificate is refused before the secret is sent.
+                digest = base64.urlsafe_b64encode(farm._join.certificate).decode().rstrip("=")
+                with self.assertRaises(bandsaw.NoFarm) as caught:
+                    bandsaw.Farm(string.replace(digest, "A" * 43)).check()
+                self.assertIn("another farm", str(caught.exception))
+            finally:
+                loopback.stop()
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,362 @@
+"""The Python module without a farm: the farm's string, files of scenes, images; and what of the add-on does not need Blender."""
+
+import array
+import os
+import socket
+import struct
+import sys
+import tempfile
+import threading
+import unittest
+import zlib
+
+SOURCE = os.path.abspath(os.path.join(os.path.dirname(__file__), "..", ".."))
+sys.path.insert(0, os.path.join(SOURCE, "deploy", "python"))
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import bandsaw  # noqa: E402
+import fake_farm  # noqa: E402
+
+DIGEST, SECRET = "A" * 42 + "-", "abcdefghijklmnopqrst-_"
+
+
+def string(places="10.0.0.1:7878", digest=DIGEST):
+    return f"bsw1-f-{places}-{digest}-{SECRET}"
+
+
+class JoinStrings(unittest.TestCase):
+    def test_parts(self):
+        join = bandsaw.JoinString(string("my-host.lan:1,[fe80::1]:65535+8787") + "\n")
+        self.assertEqual(join.addresses, [("my-host.lan", 1), ("fe80::1", 65535)])
+        self.assertEqual((join.web, join.secret, len(join.certificate)), ((None, 8787), SECRET, 32))
+        self.assertEqual(bandsaw.JoinString(string("h:1+127.0.0.1:99")).web, ("127.0.0.1", 99))
+        self.assertIsNone(bandsaw.JoinString(string("h:1")).web)
+        self.assertIsNone(bandsaw.JoinString(string("h:1+8787", "plain")).certificate)
+
+    def test_wrong_ones_are_named_without_the_secret(self):
+        for text, word in (("", "begin"), (string().replace("-f-", "-w-", 1), "workers'"), (string()[:-1], "cut off"), (string("h"), "HOST:PORT"),
+                           (string("h:0"), "port"), (string("h:1+x"), "port"), (string("h:1").replace(DIGEST, "AAA"), "cut off")):
+            with self.assertRaises(bandsaw.WrongString) as caught:
+                bandsaw.Farm(text)
+            self.assertIn(word, str(caught.exception), text)
+            self.assertNotIn(SECRET, str(caught.exception))
+
+    def test_a_file_is_read(self):
+        with tempfile.NamedTemporaryFile("w", suffix=".farm") as file:
+            file.write(string("127.0.0.1:1+5") + "\n")
+            file.flush()
+            self.assertIn(":5", repr(bandsaw.Farm(file.name)))
+
+
+class NoFarms(unittest.TestCase):
+    def test_nothing_listens(self):
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            port = free.getsockname()[1]
+        with self.assertRaises(bandsaw.NoFarm) as caught:
+            bandsaw.Farm(string(f"127.0.0.1:1+127.0.0.1:{port}")).check()
+        self.assertIn("nothing listens there", str(caught.exception))
+        self.assertIn("bandsaw serve", str(caught.exception))
+
+    def answer_with(self, reply):
+        """The port of a server that answers one connection with these bytes."""
+        server = socket.create_server(("127.0.0.1", 0))
+        self.addCleanup(server.close)
+
+        def serve():
+            connection, _ = server.accept()
+            connection.recv(4096)
+            connection.sendall(reply)
+            connection.close()
+
+        thread = threading.Thread(target=serve, daemon=True)
+        thread.start()
+        self.addCleanup(thread.join)
+        return server.getsockname()[1]
+
+    def test_another_program_listens(self):
+        port = self.answer_with(b"HTTP/1.1 404 Not Found\r\nContent-Length: 5\r\n\r\nhello")
+        with self.assertRaises(bandsaw.NoFarm) as caught:
+            bandsaw.Farm(string(f"127.0.0.1:1+127.0.0.1:{port}")).check()
+        self.assertIn("not a Bandsaw coordinator", str(caught.exception))
+
+    def test_what_is_not_http_is_no_farm(self):
+        port = self.answer_with(b"SSH-2.0-x\r\n")
+        with self.assertRaises(bandsaw.NoFarm):
+            bandsaw.Farm(string(f"127.0.0.1:1+127.0.0.1:{port}")).check()
+
+
+class Files(unittest.TestCase):
+    def make(self, **files):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        for name, text in files.items():
+            path = os.path.join(folder.name, *name.replace("__", ".").split("/"))
+            os.makedirs(os.path.dirname(path), exist_ok=True)
+            with open(path, "w") as file:
+                file.write(text)
+        return folder.name
+
+    def test_files_of_files_are_found(self):
+        folder = self.make(**{"scene__textproto": 'model { file: "things/a.obj" } texture { image { file: "no.png" } }',
+                              "things/a__obj": "mtllib a.mtl\nv 0 0 0\n", "things/a__mtl": "newmtl x\nmap_Kd -s 1 1 1 wood 1.png\n",
+                              "things/wood 1__png": "p", "other__png": "o"})
+        main, files = bandsaw._files_of(os.path.join(folder, "scene.textproto"))
+        self.assertEqual(main, "scene.textproto")
+        self.assertEqual(sorted(files), ["scene.textproto", "things/a.mtl", "things/a.obj", "things/wood 1.png"])
+
+    def test_gltf_names_are_decoded_and_stay_below_the_folder(self):
+        folder = self.make(**{"in/a__gltf": '{"buffers": [{"uri": "my%20mesh.bin"}, {"uri": "../secret.bin"}]}', "in/my mesh__bin": "b",
+                              "secret__bin": "s"})
+        _, files = bandsaw._files_of(os.path.join(folder, "in", "a.gltf"))
+        self.assertEqual(sorted(files), ["a.gltf", "my mesh.bin"])
+
+    def test_a_missing_scene_is_named(self):
+        with self.assertRaises(bandsaw.BandsawError) as caught:
+            bandsaw._files_of("nothing.glb")
+        self.assertIn("nothing.glb", str(caught.exception))
+
+
+class Jobs(unittest.TestCase):
+    """The requests of a client, at a coordinator that renders nothing."""
+
+    def setUp(self):
+        self.fake = fake_farm.FakeFarm()
+        self.addCleanup(self.fake.stop)
+        self.farm = bandsaw.Farm(self.fake.string)
+
+    def posts(self):
+        return [path for method, path in self.fake.requests if method == "POST"]
+
+    def test_files_are_sent_once(self):
+        files = {"a.glb": b"mesh", "b.png": b"image"}
+        self.farm.submit("one", files=files, samples=3, title="first one")
+        self.assertEqual(self.posts(), ["/api/files/missing", "/api/files", "/api/scenes/files"])
+        self.fake.requests.clear()
+        self.farm.submit("one", files=files, error=0.5)
+        self.assertEqual(self.posts(), ["/api/files/missing", "/api/scenes/files"])
+        first, second = self.fake.scenes
+        self.assertEqual(first["files"], {"scene.textproto": b"one", **files})
+        self.assertEqual((first["main"], first["samples"], first["title"]), ("scene.textproto", "3", "first one"))
+        self.assertEqual((second["error"], "samples" in second), ("0.5", False))
+
+    def test_a_file_that_was_removed_is_sent_again(self):
+        self.farm.submit("one", files={})
+        self.fake.refusals = [409]
+        self.farm.submit("one", files={})
+        self.assertEqual(len(self.fake.scenes), 2)
+
+    def test_a_busy_coordinator_is_asked_again(self):
+        self.fake.refusals = [429]
+        self.assertEqual(self.farm.submit("one", files={}).number, 1)
+
+    def test_an_error_of_the_scene_is_told(self):
+        self.fake.refusals = [400]
+        with self.assertRaises(bandsaw.Refused) as caught:
+            self.farm.submit("one", files={})
+        self.assertEqual((caught.exception.status, str(caught.exception)), (400, "not now"))
+
+    def test_progress_ends_with_the_job(self):
+        job = self.farm.submit("one", files={})
+        self.assertIsNone(job.preview())
+        seen = [(progress.state, progress.fraction) for progress in job.progress(0)]
+        self.assertEqual(seen, [("running", 0.25), ("running", 0.5), ("running", 0.75), ("done", 1.0)])
+        self.assertEqual((job.image().width, job.image().height), (64, 48))
+
+    def test_a_preview_has_the_rows_that_are_there(self):
+        job = self.farm.submit("one", files={})
+        next(iter(job.progress(0)))
+        whole, part = fake_farm.FakeFarm.picture(None, self.fake.jobs[1], 1), job.preview()
+        again = bandsaw.image_from_pfm(whole)
+        line = 3 * 64
+        flat = [list(bandsaw.numpy.asarray(p.pixels).reshape(-1)) if bandsaw.numpy is not None else list(p.pixels) for p in (part, again)]
+        self.assertEqual(flat[0][:12 * line], flat[1][:12 * line])
+        self.assertEqual(set(flat[0][12 * line:]), {0.0})
+        self.assertTrue(job._repr_png_().startswith(b"\x89PNG"))
+
+    def test_a_cancelled_job_is_an_error(self):
+        job = self.farm.submit("one", files={})
+        job.cancel()
+        with self.assertRaises(bandsaw.BandsawError) as caught:
+            list(job.progress(0))
+        self.assertIn("was cancelled", str(caught.exception))
+
+    def test_stop_ends_the_progress(self):
+        job = self.farm.submit("one", files={})
+        self.assertEqual(len(list(job.progress(0, stop=lambda: len(self.fake.requests) > 4))), 2)
+
+    def test_a_lost_coordinator_is_told_and_then_an_error(self):
+        job = self.farm.submit("one", files={})
+        seen = []
+        with self.assertRaises(bandsaw.NoFarm):
+            for progress in job.progress(0, patience=0.3):
+                if not seen:
+                    self.fake.server.server_close()
+                    self.fake.server.shutdown()
+                seen.append(progress.state)
+        self.assertEqual(seen[0], "running")
+        self.assertEqual(set(seen[1:]), {"lost"})
+
+    def test_a_wrong_secret_is_no_lost_farm(self):
+        with self.assertRaises(bandsaw.WrongString):
+            bandsaw.Farm(self.fake.string[:-1] + "x").check()
+
+    def test_layers_are_jobs(self):
+        layer = self.farm.submit("one", files={}).layer("depth", 4)
+        list(layer.progress(0))
+        self.assertEqual(layer.image().mean(), (7, 7, 7))
+
+    def test_an_interrupted_render_cancels_its_job(self):
+        def stop(progress):
+            raise KeyboardInterrupt
+        with self.assertRaises(KeyboardInterrupt):
+            self.farm.render("one", files={}, told=stop)
+        self.assertEqual(self.fake.jobs[1]["state"], "cancelled")
+
+
+def image(width, height, values):
+    floats = array.array("f", values)
+    if bandsaw.numpy is not None:
+        floats = bandsaw.numpy.array(floats, dtype="float32")
+    return bandsaw.Image(width, height, floats)
+
+
+class Images(unittest.TestCase):
+    def pixels(self, picture):
+        return list(bandsaw.numpy.asarray(picture.pixels).reshape(-1)) if bandsaw.numpy is not None else list(picture.pixels)
+
+    def test_pfm_round_trips_exactly(self):
+        values = [i / 7 for i in range(3 * 4 * 3)]
+        picture = image(4, 3, values)
+        again = bandsaw.image_from_pfm(picture.pfm())
+        self.assertEqual((again.width, again.height), (4, 3))
+        self.assertEqual(self.pixels(again), self.pixels(picture))
+
+    def test_pfm_rows_begin_at_the_bottom(self):
+        data = b"PF\n1 2\n-1.0\n" + struct.pack("<6f", 1, 1, 1, 2, 2, 2)
+        self.assertEqual(self.pixels(bandsaw.image_from_pfm(data)), [2, 2, 2, 1, 1, 1])
+        big = b"PF\n1 1\n1.0\n" + struct.pack(">3f", 1, 2, 3)
+        self.assertEqual(self.pixels(bandsaw.image_from_pfm(big)), [1, 2, 3])
+
+    def test_damaged_pfm_is_an_error(self):
+        for data in (b"", b"P6 1 1 255 xxx", b"PF\n2 2\n-1.0\n1234"):
+            with self.assertRaises(bandsaw.BandsawError):
+                bandsaw.image_from_pfm(data)
+
+    def test_png_holds_srgb(self):
+        data = image(2, 1, [0, 0.5, 1, 2, -1, 0.0031308]).png()
+        self.assertTrue(data.startswith(b"\x89PNG\r\n\x1a\n"))
+        at, raw = 8, b""
+        while at < len(data):
+            size, kind = struct.unpack(">I4s", data[at:at + 8])
+            body = data[at + 8:at + 8 + size]
+            self.assertEqual(struct.unpack(">I", data[at + 8 + size:at + 12 + size])[0], zlib.crc32(kind + body))
+            raw += body if kind == b"IDAT" else b""
+            at += 12 + size
+        self.assertEqual(list(zlib.decompress(raw)), [0, 0, 188, 255, 255, 0, 10])
+
+    def test_compare(self):
+        a, b = image(1, 1, [1, 2, 3]), image(1, 1, [1, 2, 6])
+        found = bandsaw.compare(a, b)
+        self.assertAlmostEqual(found["rmse"], 3 ** 0.5)
+        self.assertAlmostEqual(found["relative_rmse"], 3 ** 0.5 / 3)
+        self.assertEqual((found["largest"], found["equal"]), (3, False))
+        self.assertTrue(bandsaw.compare(a, a)["equal"])
+        with self.assertRaises(bandsaw.BandsawError):
+            bandsaw.compare(a, image(1, 2, [0] * 6))
+
+    def test_files_are_whole_or_absent(self):
+        with tempfile.TemporaryDirectory() as folder:
+            image(1, 1, [0, 0, 0]).save(os.path.join(folder, "a.png"))
+            self.assertEqual(os.listdir(folder), ["a.png"])
+            with self.assertRaises(bandsaw.BandsawError):
+                image(1, 1, [0, 0, 0]).save(os.path.join(folder, "a.jpg"))
+
+
+class Texts(unittest.TestCase):
+    def test_progress_is_a_line(self):
+        status = {"state": "JOB_STATE_RUNNING", "fraction": 0.25, "remaining_s": 75, "samples_per_pixel": "16", "error": 0.031,
+                  "worker": [{"name": "desk"}]}
+        self.assertEqual(str(bandsaw.Progress(status, [])), "running · 25 % · 16 samples · error 3.1 % · 1:15 min left · 1 worker")
+        self.assertIsNone(bandsaw.Progress({"remaining_s": -1, "error": "NaN"}, []).remaining)
+
+
+@unittest.skipIf(bandsaw.numpy is None, "numpy is not installed")
+class AddOn(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        # The package's own __init__ needs Blender; these modules do not.
+        import importlib
+        import types
+        package = types.ModuleType("bandsaw_blender")
+        package.__path__ = [os.path.join(SOURCE, "deploy", "blender", "bandsaw_blender")]
+        sys.modules["bandsaw_blender"] = package
+        cls.files, cls.geometry, cls.noise, cls.evaluate = (importlib.import_module("bandsaw_blender." + name)
+                                                            for name in ("files", "geometry", "noise", "evaluate"))
+
+    def test_exr_has_its_lines(self):
+        np = bandsaw.numpy
+        pixels = np.arange(2 * 3 * 3, dtype=np.float32).reshape(2, 3, 3)
+        data = self.files.exr(pixels)
+        self.assertEqual(struct.unpack("<i", data[:4])[0], 20000630)
+        offsets = struct.unpack("<2Q", data[-2 * (8 + 36) - 16:-2 * (8 + 36)])
+        self.assertEqual(offsets, (len(data) - 88, len(data) - 44))
+        y, size = struct.unpack("<ii", data[offsets[1]:offsets[1] + 8])
+        self.assertEqual((y, size), (1, 36))
+        blue = struct.unpack("<3f", data[offsets[1] + 8:offsets[1] + 20])
+        self.assertEqual(blue, (11, 14, 17))
+
+    def test_each_texel_of_an_atlas_belongs_to_its_triangle(self):
+        np = bandsaw.numpy
+        atlas = self.geometry.Atlas(7, 64)
+        places = atlas.uvs.reshape(7, 3, 2) * atlas.side
+        y, x = np.divmod(np.arange(atlas.side ** 2), atlas.side)
+        centres = np.stack([x + 0.5, y + 0.5], axis=1)
+        shown = atlas.triangle >= 0
+        spread = atlas.spread(places.reshape(-1, 2))
+        self.assertLess(np.abs(spread - centres)[shown].max(), 1e-4)  # the weights give back the place
+        # All four texels of a bilinear look-up inside a triangle are its own.
+        for number in range(7):
+            corners = places[number]
+            for weights in ((1, 0, 0), (0, 1, 0), (0, 0, 1), (0.5, 0.5, 0), (0, 0.5, 0.5), (0.5, 0, 0.5), (1 / 3, 1 / 3, 1 / 3)):
+                low = np.floor(np.array(weights) @ corners - 0.5 + 1e-4).astype(int)
+                for dx in (0, 1):
+                    for dy in (0, 1):
+                        weight = np.prod(np.where(np.array([dx, dy]) == 1, np.array(weights) @ corners - 0.5 - low, 1 - (np.array(weights) @ corners - 0.5 - low)))
+                        if weight > 1e-3:
+                            self.assertEqual(atlas.triangle[(low[1] + dy) * atlas.side + low[0] + dx], number)
+
+    def test_noise_is_in_its_range_and_zero_on_the_lattice(self):
+        np = bandsaw.numpy
+        points = np.random.default_rng(1).uniform(-100, 100, (20000, 3))
+        value, colors = self.noise.texture(points, 2, 0.5, 0)
+        self.assertTrue((value > 0).all() and (value < 1).all() and (colors > 0).all() and (colors < 1).all())
+        self.assertAlmostEqual(value.mean(), 0.5, delta=0.01)  # 1e-7 false alarms at this deviation of the mean
+        self.assertEqual(abs(self.noise.signed(np.array([[1.0, -2.0, 3.0]]))).max(), 0)
+
+    def test_a_mesh_without_seams_keeps_its_vertices(self):
+        np = bandsaw.numpy
+        positions = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=np.float32)
+        corners = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)
+        loops = np.array([0, 1, 2, 3], dtype=np.int32)
+        uv = positions[:, :2].copy()
+        kept = self.geometry._indexed(positions, None, [uv], corners, corners, loops)
+        self.assertEqual(len(kept.positions), 4)
+        # Now each triangle has loops of its own, and one uv differs at a shared vertex.
+        corners6, of_corner = np.array([[0, 1, 2], [3, 4, 5]], dtype=np.int32), np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)
+        uv6 = uv[[0, 1, 2, 0, 2, 3]].copy()
+        uv6[3] = (5, 5)
+        split = self.geometry._indexed(positions, None, [uv6], corners6, of_corner, np.array([0, 1, 2, 0, 2, 3], dtype=np.int32))
+        self.assertEqual(len(split.positions), 5)
+        found = split.uvs[0][split.indices.reshape(-1)]
+        self.assertTrue((found == uv6).all())
+        self.assertTrue((split.positions[split.indices.reshape(-1)] == positions[of_corner.reshape(-1)]).all())
+
+    def test_hsv_and_back(self):
+        np = bandsaw.numpy
+        colors = np.random.default_rng(2).uniform(0, 1, (1000, 3))
+        self.assertLess(abs(self.evaluate.from_hsv(self.evaluate.to_hsv(colors)) - colors).max(), 1e-12)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,187 @@
+// Scenes of pbrt-v4.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "renderlib/import/pbrt/convert_pbrt.h"
+#include "tests/unit/import/files.h"
+
+namespace bandsaw {
+namespace {
+
+using test::TempDir;
+using test::write_text;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+absl::StatusOr<ConvertedScene> convert(const TempDir& dir, const std::string& text) {
+  const std::string path = write_text(dir, "s.pbrt", text);
+  const auto folder = SceneFolder::of(path);
+  if (!folder.ok()) {
+    return folder.status();
+  }
+  return convert_pbrt({path, "s.pbrt", *folder});
+}
+
+scene::Scene scene_of(const std::string& text) {
+  const TempDir dir;
+  const auto converted = convert(dir, text);
+  EXPECT_TRUE(converted.ok()) << converted.status();
+  return converted.ok() ? converted->scene : scene::Scene();
+}
+
+std::string error_of(const std::string& text) {
+  const TempDir dir;
+  return std::string(convert(dir, text).status().message());
+}
+
+std::vector<std::string> warnings_of(const std::string& text) {
+  const TempDir dir;
+  const auto converted = convert(dir, text);
+  EXPECT_TRUE(converted.ok()) << converted.status();
+  return converted.ok() ? converted->warnings : std::vector<std::string>();
+}
+
+TEST(Pbrt, ACameraIsAMirroredOneOfOurs) {
+  const auto scene = scene_of(
+      "LookAt 1 2 -5  1 2 0  0 1 0\nCamera \"perspective\" \"float fov\" 40\n"
+      "Film \"rgb\" \"integer xresolution\" 200 \"integer yresolution\" 100\n"
+      "WorldBegin");
+  EXPECT_THAT(scene.camera().position(), ElementsAre(1, 2, -5));
+  EXPECT_NEAR(scene.camera().vertical_fov(), 40, 1e-9);
+  EXPECT_TRUE(scene.camera().mirrored());
+  EXPECT_EQ(scene.image().width(), 200u);
+  const auto flipped = scene_of(
+      "Scale -1 1 1\nLookAt 1 2 -5  1 2 0  0 1 0\nCamera \"perspective\"\n"
+      "WorldBegin");
+  EXPECT_FALSE(flipped.camera().mirrored());
+}
+
+TEST(Pbrt, TheAngleIsThatOfTheShorterSide) {
+  const auto scene = scene_of(
+      "Camera \"perspective\" \"float fov\" 90\n"
+      "Film \"rgb\" \"integer xresolution\" 100 \"integer yresolution\" 200\n"
+      "WorldBegin");
+  EXPECT_NEAR(scene.camera().vertical_fov(), 2 * 63.43494882292201, 1e-9);
+}
+
+TEST(Pbrt, ACropWindowIsAWindow) {
+  const auto scene = scene_of(
+      "Camera \"perspective\" \"float fov\" 90\nFilm \"rgb\" \"integer xresolution\" 100 "
+      "\"integer yresolution\" 100 \"float cropwindow\" [0.5 1 0 0.25]\nWorldBegin");
+  EXPECT_EQ(scene.image().width(), 50u);
+  EXPECT_EQ(scene.image().height(), 25u);
+  EXPECT_THAT(scene.camera().window(), ElementsAre(0, 1, 0.5, 1));
+}
+
+TEST(Pbrt, TransformsAreSavedAndRestored) {
+  const auto scene = scene_of(
+      "WorldBegin\nTranslate 1 0 0\nAttributeBegin Translate 0 2 0 Scale 3 3 3 Shape \"sphere\" "
+      "AttributeEnd\nShape \"sphere\"");
+  ASSERT_EQ(scene.shape_size(), 2);
+  EXPECT_THAT(scene.shape(0).sphere().center(), ElementsAre(1, 2, 0));
+  EXPECT_NEAR(scene.shape(0).sphere().radius(), 3, 1e-12);
+  EXPECT_THAT(scene.shape(1).sphere().center(), ElementsAre(1, 0, 0));
+}
+
+TEST(Pbrt, IsoScalesAllLight) {
+  const auto scene = scene_of(
+      "Film \"rgb\" \"float iso\" 200\nWorldBegin\nLightSource \"point\" \"rgb I\" [1 2 3]\n"
+      "Material \"diffuse\" \"rgb reflectance\" [0 0 0]\nAreaLightSource \"diffuse\" \"rgb L\" [1 "
+      "1 1]"
+      " \"float scale\" 5\nShape \"sphere\"");
+  EXPECT_THAT(scene.light(0).point().intensity().rgb(), ElementsAre(2, 4, 6));
+  ASSERT_EQ(scene.material_size(), 1);
+  EXPECT_THAT(scene.material(0).emissive().radiance().rgb(), ElementsAre(10, 10, 10));
+  EXPECT_TRUE(scene.material(0).emissive().one_sided());
+}
+
+TEST(Pbrt, ABlackBodyHasLuminanceOne) {
+  const auto scene = scene_of("WorldBegin\nLightSource \"point\" \"blackbody I\" 3000");
+  const auto& rgb = scene.light(0).point().intensity().rgb();
+  EXPECT_NEAR(0.2126729 * rgb[0] + 0.7151522 * rgb[1] + 0.072175 * rgb[2], 1, 1e-9);
+  EXPECT_GT(rgb[0], 2 * rgb[2]);
+}
+
+TEST(Pbrt, RoughnessIsRemappedToAlpha) {
+  const auto alpha = [](const std::string& parameters) {
+    return scene_of("WorldBegin\nMaterial \"conductor\" " + parameters + "\nShape \"sphere\"")
+        .material(0)
+        .conductor()
+        .surface()
+        .alpha();
+  };
+  EXPECT_NEAR(alpha("\"float roughness\" 0.09"), 0.3, 1e-12);
+  EXPECT_NEAR(alpha("\"float roughness\" 0.09 \"bool remaproughness\" false"), 0.09, 1e-12);
+}
+
+TEST(Pbrt, ObjectsAreGroups) {
+  const auto scene = scene_of(
+      "WorldBegin\nObjectBegin \"o\"\nShape \"sphere\"\nObjectEnd\nTranslate 1 2 3\n"
+      "ObjectInstance \"o\"");
+  ASSERT_EQ(scene.group_size(), 1);
+  ASSERT_EQ(scene.instance_size(), 1);
+  EXPECT_EQ(scene.shape_size(), 0);
+  EXPECT_THAT(scene.instance(0).matrix(), ElementsAre(1, 0, 0, 1, 0, 1, 0, 2, 0, 0, 1, 3));
+}
+
+TEST(Pbrt, MotionBecomesKeys) {
+  const auto scene = scene_of(
+      "WorldBegin\nActiveTransform EndTime\nTranslate 1 0 0\nActiveTransform All\nShape "
+      "\"sphere\"");
+  ASSERT_EQ(scene.instance_size(), 1);
+  ASSERT_EQ(scene.instance(0).key_size(), 2);
+  EXPECT_THAT(scene.instance(0).key(0).translate(), ElementsAre(0, 0, 0));
+  EXPECT_THAT(scene.instance(0).key(1).translate(), ElementsAre(1, 0, 0));
+  EXPECT_EQ(scene.camera().shutter_close(), 1);
+}
+
+TEST(Pbrt, UnknownThingsAreWarningsWithTheirLines) {
+  EXPECT_THAT(warnings_of("WorldBegin\n\nShape \"sphere\" \"float radios\" 2"),
+              ElementsAre(HasSubstr("s.pbrt:3: the parameter \"float radios\"")));
+  EXPECT_THAT(warnings_of("WorldBegin\nMaterial \"hair\"\nShape \"sphere\""),
+              ElementsAre(HasSubstr("s.pbrt:2: the material \"hair\" has no counterpart")));
+  EXPECT_THAT(warnings_of("WorldBegin\nShape \"plymesh\" \"string filename\" \"no.ply\""),
+              ElementsAre(HasSubstr("s.pbrt:2: the file \"no.ply\" is missing")));
+}
+
+TEST(Pbrt, ErrorsNameTheLine) {
+  EXPECT_THAT(error_of("WorldBegin\nShape \"sphere\" \"string radius\" \"x\""),
+              HasSubstr("s.pbrt:2: \"string radius\" must be one float"));
+  EXPECT_THAT(error_of("WorldBegin\nShape \"torus\""), HasSubstr("s.pbrt:2: "));
+  EXPECT_THAT(error_of("WorldBegin\nShpae \"sphere\""),
+              HasSubstr("s.pbrt:2: \"Shpae\" is no directive"));
+  EXPECT_THAT(error_of("WorldBegin\nTranslate 1 nan 0"),
+              HasSubstr("s.pbrt:2: numbers must be finite"));
+  EXPECT_THAT(error_of("Shape \"sphere\""), HasSubstr("must come after WorldBegin"));
+  EXPECT_THAT(
+      error_of("WorldBegin\nShape \"trianglemesh\" \"integer indices\" [0 1 9] \"point3 P\" "
+               "[0 0 0 1 0 0 0 1 0]"),
+      HasSubstr("the index 9 is that of no point"));
+}
+
+TEST(Pbrt, BoundsEndHostileScenes) {
+  std::string nested = "WorldBegin\n";
+  for (int i = 0; i < 1'000'000; ++i) {
+    nested += "AttributeBegin\n";
+  }
+  EXPECT_THAT(error_of(nested), HasSubstr("attributes within each other"));
+  EXPECT_THAT(error_of("Include \"s.pbrt\""), HasSubstr("s.pbrt:1: \"s.pbrt\" includes itself"));
+  EXPECT_THAT(error_of("Include \"../x.pbrt\""), HasSubstr("outside of the scene's folder"));
+  EXPECT_THAT(error_of("WorldBegin\nShape \"loopsubdiv\" \"integer levels\" 100"),
+              HasSubstr("\"point3 P\" is missing"));
+}
+
+TEST(Pbrt, MediaFillClosedShapes) {
+  const auto scene = scene_of(
+      "WorldBegin\nMakeNamedMedium \"fog\" \"string type\" \"homogeneous\" \"rgb sigma_a\" [0 0 0] "
+      "\"rgb sigma_s\" [1 2 3] \"float scale\" 2\nMediumInterface \"fog\" \"\"\n"
+      "Material \"interface\"\nShape \"sphere\"");
+  ASSERT_EQ(scene.medium_size(), 1);
+  EXPECT_THAT(scene.medium(0).scattering().rgb(), ElementsAre(2, 4, 6));
+  EXPECT_EQ(scene.shape(0).interior(), "fog");
+  EXPECT_EQ(scene.shape(0).material(), "");
+}
+
+}  // namespace
+}  // namespace bandsaw
