@@ -44,6 +44,7 @@ class Float8 {
   friend Float8 operator+(Float8 a, Float8 b) { return Float8(_mm256_add_ps(a.v_, b.v_)); }
   friend Float8 operator-(Float8 a, Float8 b) { return Float8(_mm256_sub_ps(a.v_, b.v_)); }
   friend Float8 operator*(Float8 a, Float8 b) { return Float8(_mm256_mul_ps(a.v_, b.v_)); }
+  friend Float8 operator/(Float8 a, Float8 b) { return Float8(_mm256_div_ps(a.v_, b.v_)); }
   friend Float8 fused(Float8 a, Float8 b, Float8 c) {
     return Float8(_mm256_fmadd_ps(a.v_, b.v_, c.v_));
   }

@@ -66,6 +66,9 @@ class Float8 {
   friend Float8 operator*(Float8 a, Float8 b) {
     return {vmulq_f32(a.low_, b.low_), vmulq_f32(a.high_, b.high_)};
   }
+  friend Float8 operator/(Float8 a, Float8 b) {
+    return {vdivq_f32(a.low_, b.low_), vdivq_f32(a.high_, b.high_)};
+  }
   friend Float8 fused(Float8 a, Float8 b, Float8 c) {
     return {vfmaq_f32(c.low_, a.low_, b.low_), vfmaq_f32(c.high_, a.high_, b.high_)};
   }

@@ -78,6 +78,9 @@ class Float8 {
   friend Float8 operator*(const Float8& a, const Float8& b) {
     return lanes([&](std::size_t i) { return a.v_[i] * b.v_[i]; });
   }
+  friend Float8 operator/(const Float8& a, const Float8& b) {
+    return lanes([&](std::size_t i) { return a.v_[i] / b.v_[i]; });
+  }
   /// Return a b + c and a b - c, rounded once.
   friend Float8 fused(const Float8& a, const Float8& b, const Float8& c) {
     return lanes([&](std::size_t i) { return simd_plain::fused(a.v_[i], b.v_[i], c.v_[i]); });

@@ -1,6 +1,7 @@
 #include "renderlib/integrate/sample_value.h"
 
 #include "renderlib/geometry/surface.h"
+#include "renderlib/integrate/guide.h"
 #include "renderlib/integrate/intersect_visible.h"
 #include "renderlib/material/albedo.h"
 #include "renderlib/material/look_up.h"
@@ -59,6 +60,9 @@ Rgb sample_value(const Scene& scene, Integrator integrator, const CameraRay& cam
                  PathCounts& counts) {
   if (computes_radiance(integrator)) {
     return path_radiance(scene, camera_ray, sampler, sample, options, counts);
+  }
+  if (is_guide(integrator)) {
+    return guide_value(scene, integrator, camera_ray.ray, sampler, sample, counts.rays);
   }
   return value_at(scene, integrator, camera_ray.ray, sampler, sample, counts.rays);
 }

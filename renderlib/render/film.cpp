@@ -144,6 +144,9 @@ struct Film::Rows {
   void node_sums(const PixelPlace& place, std::vector<NodeSums>& out) const;
   /// Adds the contiguous nodes from left to right: 3 numbers for each pixel of the strip.
   void add_up(const StripNodes& from, std::vector<double>& total) const;
+  /// Adds the first node and those later ones that make two parts of about equal size. Returns the
+  /// number of samples of this part.
+  std::uint64_t add_first_part(const StripNodes& from, std::vector<double>& total) const;
 };
 
 absl::Status Film::Rows::check(const BandPixels& pixels, const TileSamples& tiles) const {
@@ -233,6 +236,24 @@ void Film::Rows::add_up(const StripNodes& from, std::vector<double>& total) cons
   }
 }
 
+std::uint64_t Film::Rows::add_first_part(const StripNodes& from, std::vector<double>& total) const {
+  std::uint64_t first = 0;
+  std::uint64_t second = 0;
+  for (std::size_t i = 0; i < prefix(from); ++i) {
+    const std::uint64_t count = from[i].range.samples();
+    if (first > second) {
+      second += count;
+      continue;
+    }
+    first += count;
+    const absl::Span<const double> sums = store.row(from[i].slot);
+    for (std::size_t k = 0; k < total.size(); ++k) {
+      total[k] += sums[k];
+    }
+  }
+  return first;
+}
+
 Film::Film(std::unique_ptr<Rows> rows) : rows_(std::move(rows)) {}
 Film::Film(Film&&) noexcept = default;
 Film& Film::operator=(Film&&) noexcept = default;
@@ -304,6 +325,31 @@ std::optional<ErrorEstimate> Film::error() const {
   ErrorSums sums;
   rows_->add_errors([&](std::size_t, std::uint32_t, std::size_t) -> ErrorSums& { return sums; });
   return sums.estimate();
+}
+
+std::optional<Film::FirstPart> Film::first_part() const {
+  FirstPart out{{width(), height(), {}}, {}};
+  out.mean.pixels.resize(std::size_t{width()} * height());
+  out.share.resize(out.mean.pixels.size());
+  bool known = true;
+  std::vector<double> total;
+  rows_->each([&](std::uint32_t y, std::uint32_t, const Strip& strip, const StripNodes& nodes) {
+    known = known && prefix(nodes) > 1;
+    if (!known) {
+      return;
+    }
+    total.assign(std::size_t{strip.count} * 3, 0.0);
+    const auto taken = static_cast<double>(rows_->add_first_part(nodes, total));
+    const auto share = static_cast<float>(taken / static_cast<double>(samples(nodes)));
+    for (std::uint32_t k = 0; k < strip.count; ++k) {
+      const std::size_t at = std::size_t{y} * width() + strip.first + k * strip.step;
+      out.mean.pixels[at] = {static_cast<float>(total[3 * k] / taken),
+                             static_cast<float>(total[3 * k + 1] / taken),
+                             static_cast<float>(total[3 * k + 2] / taken)};
+      out.share[at] = share;
+    }
+  });
+  return known ? std::optional(std::move(out)) : std::nullopt;
 }
 
 std::vector<HalfTileErrors> Film::tile_errors() const {

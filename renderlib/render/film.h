@@ -62,6 +62,15 @@ class Film {
   /// halves of equal size.
   std::optional<ErrorEstimate> error() const;
 
+  /// One of two independent parts of the samples that a snapshot shows: the first nodes of the
+  /// tree, about half of the samples.
+  struct FirstPart {
+    Image mean;
+    std::vector<float> share;  ///< of the pixel's samples, (0, 1)
+  };
+  /// Returns std::nullopt until every row has two nodes, that is, more than one block.
+  std::optional<FirstPart> first_part() const;
+
   /// Returns the errors of each half tile, for a film of half tiles: the input of plan_tiles. Empty
   /// if error() is std::nullopt.
   std::vector<HalfTileErrors> tile_errors() const;

@@ -9,13 +9,14 @@
 
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
+#include "renderlib/denoise/fit.h"
 #include "renderlib/render/hash64.h"
 #include "renderlib/render/render_band.h"
 #include "renderlib/scene/scene.h"
 
 namespace bandsaw {
 
-/// Implementations of Scene::build, render_band and canary, which have the same parameters.
+/// Implementations of Scene::build, render_band and others, which have the same parameters.
 struct Kernel {
   /// "avx2", "neon" or "plain".
   const char* name;
@@ -27,6 +28,8 @@ struct Kernel {
                                             const Band& band, Pool& pool,
                                             const std::atomic<bool>& stop, const RowsDone& progress,
                                             const TileSamples& tiles);
+  /// fit() of the denoiser.
+  FitFunction fit;
   /// Adds values of all functions of renderlib/math/elementary.h to the hash.
   void (*add_elementary_functions)(Hash64& hash);
 

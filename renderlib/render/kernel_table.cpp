@@ -14,6 +14,7 @@ constinit const Kernel Kernel::kBase = {
     .name = kSimdName,
     .build = &Scene::build_with,
     .render_band = &render_band_with_kernel,
+    .fit = &bandsaw::fit,
     .add_elementary_functions = &bandsaw::add_elementary_functions,
 };
 

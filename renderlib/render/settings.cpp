@@ -1,6 +1,7 @@
 #include "renderlib/render/settings.h"
 
 #include "absl/strings/str_cat.h"
+#include "renderlib/scene/guide_integrators.h"
 
 namespace bandsaw {
 namespace {
@@ -27,7 +28,7 @@ absl::Status validate(const RenderSettings& settings) {
     return out_of_range("max_depth", kMaxDepth, settings.max_depth);
   }
   const auto integrator = static_cast<int>(settings.integrator);
-  if (integrator < 0 || integrator > kLastIntegrator) {
+  if (integrator < 0 || (integrator > kLastIntegrator && !is_guide(settings.integrator))) {
     return absl::InvalidArgumentError(
         absl::StrCat("integrator: must be in [0, ", kLastIntegrator, "], is ", integrator));
   }

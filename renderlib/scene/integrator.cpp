@@ -2,12 +2,14 @@
 
 #include <array>
 
+#include "renderlib/scene/guide_integrators.h"
+
 namespace bandsaw {
 namespace {
 
-constexpr std::array<absl::string_view, kLastIntegrator + 1> kNames = {
-    "path",        "direct",         "normals", "depth", "albedo", "ambient_occlusion",
-    "path_lights", "path_scattering"};
+constexpr std::array<absl::string_view, kLastGuideIntegrator + 1> kNames = {
+    "path",        "direct",          "normals",      "depth",      "albedo", "ambient_occlusion",
+    "path_lights", "path_scattering", "guide_albedo", "guide_shape"};
 
 }  // namespace
 
@@ -16,7 +18,7 @@ absl::string_view integrator_name(Integrator integrator) {
 }
 
 std::optional<Integrator> integrator_named(absl::string_view name) {
-  for (std::size_t i = 0; i < kNames.size(); ++i) {
+  for (std::size_t i = 0; i <= kLastIntegrator; ++i) {
     if (kNames[i] == name) {
       return static_cast<Integrator>(i);
     }

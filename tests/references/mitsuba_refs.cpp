@@ -14,6 +14,7 @@
 // the seeds if it is larger, and that of the reference image itself (32,000 samples).
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstdio>
@@ -122,6 +123,7 @@ struct Comparison {
       0;  ///< the same with the variance of the reference alone, as in Mitsuba's tests
   double relative = 0;  ///< difference of the means of both images, over that of the reference
   double error = 0;     ///< standard error of `relative`
+  std::array<double, 3> channels = {};  ///< `relative` of each channel
   std::vector<double> z;
 };
 
@@ -134,6 +136,8 @@ Comparison compare(const Rendered& ours, const Image& reference, const Image& va
   double mean = 0;
   double theirs = 0;
   double reference_variance = 0;
+  std::array<double, 3> mean_of = {};
+  std::array<double, 3> theirs_of = {};
   for (std::size_t i = 0; i < channels; ++i) {
     const double of_one = std::max(1e-4, double{channel_of(variance, i)});
     const double difference = ours.mean[i] - channel_of(reference, i);
@@ -147,11 +151,16 @@ Comparison compare(const Rendered& ours, const Image& reference, const Image& va
     out.z.push_back(difference / std::sqrt(both));
     mean += ours.mean[i];
     theirs += channel_of(reference, i);
+    mean_of[i % 3] += ours.mean[i];
+    theirs_of[i % 3] += channel_of(reference, i);
     reference_variance += of_one / kReferenceSamples;
   }
   out.failing /= static_cast<double>(channels);
   out.strictly /= static_cast<double>(channels);
   out.relative = theirs > 0 ? mean / theirs - 1 : 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    out.channels[c] = theirs_of[c] > 0 ? mean_of[c] / theirs_of[c] - 1 : 0;
+  }
   double spread = 0;
   for (const double whole : ours.whole) {
     const double off = whole - mean / static_cast<double>(channels);
@@ -229,9 +238,11 @@ bool run_one(const fs::path& scene, const Options& options, Pool& pool) {
   }
   const Comparison found = compare(*ours, *reference, *variance);
   const bool passes = found.failing <= 0.0025;
-  std::printf("| %s | %llu | %s | %+.3f %% ± %.3f %% | %.2f %% | %.2f %% |\n", name.c_str(),
-              static_cast<unsigned long long>(ours->samples), passes ? "pass" : "fail",
-              100 * found.relative, 100 * found.error, 100 * found.failing, 100 * found.strictly);
+  std::printf(
+      "| %s | %llu | %s | %+.2f %% ± %.2f %% | %+.1f, %+.1f, %+.1f %% | %.2f %% | %.2f %% |\n",
+      name.c_str(), static_cast<unsigned long long>(ours->samples), passes ? "pass" : "fail",
+      100 * found.relative, 100 * found.error, 100 * found.channels[0], 100 * found.channels[1],
+      100 * found.channels[2], 100 * found.failing, 100 * found.strictly);
   if (!options.out.empty()) {
     write_images(options.out + "/" + stem + ".png", *ours, *reference, found);
   }

@@ -104,6 +104,18 @@ JsonObject hashes_json(const Report& report) {
                                       : out.text("pixels_sha256", report.pixels_sha256);
 }
 
+JsonObject clean_json(const Report::Clean& clean) {
+  return JsonObject()
+      .text("method", "regression")
+      .number("relative_rmse_raw", clean.error.relative_raw())
+      .number("relative_rmse_clean", clean.error.relative_clean())
+      .number("rmse_raw", clean.error.rmse_raw)
+      .number("rmse_clean", clean.error.rmse_clean)
+      .number("bias_share", clean.error.bias_share)
+      .text("pixels_sha256", clean.pixels_sha256)
+      .texts("raw_outputs", clean.raw_outputs);
+}
+
 JsonObject program_json() {
   return JsonObject().text("version", BANDSAW_VERSION).whole("pixel_version", kPixelVersion);
 }
@@ -123,6 +135,7 @@ std::string report_text(const Report& report) {
   out.object("settings", settings_json(job.spec));
   job.curve.empty() ? out.unknown("error")
                     : out.object("error", error_json(job.curve.back().estimate));
+  report.clean ? out.object("denoise", clean_json(*report.clean)) : out.unknown("denoise");
   return out.objects("curve", curve_json(job.curve))
       .object("time", time_json(job))
       .object("work", work_json(job))

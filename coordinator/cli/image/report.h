@@ -4,10 +4,12 @@
 // documented in coordinator/README.md.
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "coordinator/cli/progress/progress.h"
+#include "renderlib/denoise/denoise.h"
 #include "renderlib/image/image.h"
 
 namespace bandsaw::coordinator {
@@ -17,6 +19,13 @@ struct Report {
   std::string pixels_sha256;         ///< empty: the image is incomplete
   std::vector<std::string> outputs;  ///< files of the image
   std::uint64_t cut_off_values = 0;  ///< values clipped in these files (output.h)
+  /// Of the clean image; absent if the image was not cleaned.
+  struct Clean {
+    CleanError error;
+    std::string pixels_sha256;
+    std::vector<std::string> raw_outputs;  ///< files of the image as rendered
+  };
+  std::optional<Clean> clean = std::nullopt;
 };
 
 /// Returns the SHA-256 of the pixels in the form in which the farm sends them: linear RGB, float32,

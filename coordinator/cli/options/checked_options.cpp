@@ -282,6 +282,31 @@ absl::StatusOr<Command> checked_workers(const RawOptions& raw) {
   return options;
 }
 
+/// Refuses images that cannot be cleaned.
+absl::Status check_denoise(const RawOptions& raw, const RenderOptions& options) {
+  if (!raw.denoise) {
+    return absl::OkStatus();
+  }
+  if (raw.rows) {
+    return wrong("--denoise: only whole images are cleaned; omit --rows");
+  }
+  const auto* samples = std::get_if<StopAtSamples>(&options.image.stop);
+  if (samples != nullptr && samples->samples < 2) {
+    return wrong(
+        "--denoise: the error of one sample per pixel cannot be estimated; give --samples 2 or "
+        "more");
+  }
+  if (std::holds_alternative<StopAtError>(options.image.stop)) {
+    return wrong(
+        "--denoise: --error is a target for the image as rendered, not for the clean one; give "
+        "--samples or --time");
+  }
+  if (options.image.integrator && !computes_radiance(*options.image.integrator)) {
+    return wrong("--denoise: images of this integrator are not cleaned; omit --integrator");
+  }
+  return absl::OkStatus();
+}
+
 absl::StatusOr<Command> checked_render(const RawOptions& raw) {
   RenderOptions options;
   options.scene = raw.scene;
@@ -304,6 +329,8 @@ absl::StatusOr<Command> checked_render(const RawOptions& raw) {
     }
   }
   ASSIGN_OR_RETURN(options.layers, checked_layers(raw));
+  options.denoise = raw.denoise;
+  RETURN_IF_ERROR(check_denoise(raw, options));
   return options;
 }
 

@@ -27,7 +27,8 @@ struct RawOptions {
   bool strict = false, force = false;
   std::optional<std::string> web, shell, audit;
   bool lift = false, adaptive = false, half = false, insecure = false, detach = false,
-       quiet = false, json = false, preview = false, every_object = false, reflection = false;
+       quiet = false, json = false, preview = false, every_object = false, reflection = false,
+       denoise = false;
 };
 
 absl::StatusOr<Command> checked_serve(const RawOptions& raw);

@@ -111,6 +111,12 @@ void add_display(CLI::App& app, RawOptions& raw, const char* standard) {
   add_report(app, raw);
 }
 
+void add_denoise(CLI::App& app, RawOptions& raw) {
+  app.add_flag("--denoise", raw.denoise,
+               "Remove the noise; FILE.raw.png and the layer raw of EXR files hold the image as "
+               "rendered, the report tells the error of both");
+}
+
 void add_layers(CLI::App& app, RawOptions& raw) {
   app.add_option("--layers", raw.layers,
                  "Additional layers of EXR files, as in albedo,normal,depth,samples")
@@ -172,6 +178,7 @@ void add_render(CLI::App& app, RawOptions& raw) {
              " [default: the scene's name as .png]");
   add_display(app, raw, "the scene's");
   add_layers(app, raw);
+  add_denoise(app, raw);
   app.add_option("--threads", raw.threads, "Threads [default: one for each CPU]")->type_name("N");
   app.add_option("--kernel", raw.kernel,
                  "The renderer's code, for comparison; the image is the same: " +

@@ -196,6 +196,7 @@ struct RenderOptions {
   const Kernel* kernel = nullptr;  ///< nullptr: the fastest that this machine can run
   std::optional<RowRange> rows;    ///< only these rows
   std::vector<LayerKind> layers;   ///< layers of EXR files
+  bool denoise = false;            ///< write a clean image and the one as rendered
 };
 
 struct InfoOptions {

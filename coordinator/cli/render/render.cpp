@@ -6,6 +6,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/base/ticker.h"
+#include "coordinator/cli/image/clean.h"
 #include "coordinator/cli/image/layers.h"
 #include "coordinator/cli/image/output.h"
 #include "coordinator/cli/image/part_file.h"
@@ -143,6 +144,11 @@ class LocalRun {
       }
       ASSIGN_OR_RETURN(layers_,
                        make_layers(options_.layers, spec_.settings, samples, render_layer, counts));
+      if (options_.denoise) {
+        ASSIGN_OR_RETURN(clean_, make_clean({image_, film.first_part(), spec_.settings, samples},
+                                            render_layer, scene->kernel(), pool_));
+        views_.show(clean_->image, picture_);
+      }
     }
     return absl::OkStatus();
   }
@@ -159,9 +165,13 @@ class LocalRun {
   absl::Status write(const Progress& progress, const std::vector<std::string>& outputs,
                      const std::vector<std::string>& reports) const {
     RETURN_IF_ERROR(options_.rows ? write_part_outputs(bands_, spec_, rows_, outputs, picture_)
+                    : clean_      ? write_clean_outputs(*clean_, image_, outputs, picture_, layers_)
                                   : write_outputs(image_, outputs, picture_, layers_));
-    const Report report{progress, options_.rows ? "" : pixels_sha256(image_), outputs,
-                        cut_off_values(image_, outputs, picture_)};
+    Report report{progress, options_.rows ? "" : pixels_sha256(image_), outputs,
+                  cut_off_values(image_, outputs, picture_)};
+    if (clean_) {
+      report.clean = {clean_->total, pixels_sha256(clean_->image), raw_outputs(outputs)};
+    }
     return write_reports(report_text(report), reports);
   }
 
@@ -178,6 +188,7 @@ class LocalRun {
   std::atomic<bool> stop_{false};
   Image image_;
   Layers layers_;
+  std::optional<Denoised> clean_;
   std::vector<BandPixels> bands_;
 };
 
@@ -189,6 +200,11 @@ ExitCode run(const RenderOptions& options, Process& process) {
   const std::vector<std::string> outputs = outputs_of(options);
   if (const auto status = check_outputs(options.scene, options.outputs, outputs); !status.ok()) {
     return console.fail(ExitCode::kWrong, std::string(status.message()));
+  }
+  if (options.denoise) {
+    if (const auto status = check_outputs_writable(raw_outputs(outputs)); !status.ok()) {
+      return console.fail(ExitCode::kWrong, std::string(status.message()));
+    }
   }
   const auto reports = report_files(options.report, outputs);
   if (!reports.ok()) {

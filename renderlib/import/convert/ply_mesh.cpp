@@ -35,9 +35,39 @@ std::string header_of(const PlyMesh& mesh) {
   return header;
 }
 
+/// Assimp skips white space after the header, although a number may begin with such a byte.
+bool begins_with_space(const PlyMesh& mesh) {
+  unsigned char first = 0;
+  std::memcpy(&first, mesh.positions[0].data(), 1);
+  return first <= ' ' && first != 0;
+}
+
+/// Returns the mesh with a vertex in front that no triangle has, beside the first one.
+PlyMesh with_plain_front(PlyMesh mesh) {
+  const auto repeat_first = [](auto& list) {
+    if (!list.empty()) {
+      list.insert(list.begin(), list.front());
+    }
+  };
+  repeat_first(mesh.positions);
+  repeat_first(mesh.normals);
+  repeat_first(mesh.uvs);
+  repeat_first(mesh.colors);
+  constexpr std::uint32_t kLowByte = 0xff;
+  float& x = mesh.positions[0][0];
+  x = std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) & ~kLowByte);
+  for (auto& triangle : mesh.triangles) {
+    triangle = {triangle[0] + 1, triangle[1] + 1, triangle[2] + 1};
+  }
+  return mesh;
+}
+
 }  // namespace
 
 std::string write_ply(const PlyMesh& mesh) {
+  if (begins_with_space(mesh)) {
+    return write_ply(with_plain_front(mesh));
+  }
   std::string out = header_of(mesh);
   const std::size_t per_vertex = (3 + 3 + 2 + 3) * sizeof(float);
   out.reserve(out.size() + mesh.positions.size() * per_vertex + mesh.triangles.size() * 13);

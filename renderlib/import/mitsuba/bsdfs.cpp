@@ -156,20 +156,7 @@ class BsdfReader {
     ASSIGN_OR_RETURN(const double index, relative_index(from, "bk7", draft));
     to.set_index_of_refraction(std::clamp(index, 1.0, 5.0));
     if (from.object().type == "roughdielectric") {
-      ASSIGN_OR_RETURN(const scene::Microfacets surface, microfacets(from, 0.1));
-      if (surface.distribution() == scene::Microfacets::DISTRIBUTION_BECKMANN) {
-        to_.warn(from.place(),
-                 "rough glass with the distribution \"beckmann\" is shown with "
-                 "\"ggx\" of the same alpha");
-      }
-      if (surface.has_alpha_v()) {
-        to_.warn(from.place(), "rough glass is shown with alpha_u in both directions");
-      }
-      to.set_roughness(std::sqrt(surface.alpha()));
-      if (surface.has_alpha_texture()) {
-        to_.warn(from.place(), "the texture of alpha is used as that of its square root");
-        *to.mutable_roughness_texture() = surface.alpha_texture();
-      }
+      ASSIGN_OR_RETURN(*to.mutable_surface(), microfacets(from, 0.1));
     }
     return warn_of_tints(from);
   }
@@ -281,7 +268,13 @@ class BsdfReader {
     }
     ASSIGN_OR_RETURN(Varying varying, varying_of(from, name, 0, surface_, to_));
     scene::Parameter& to = *field();
-    if (varying.texture) {
+    if (varying.texture && most > 1) {
+      // Textures of a number are at most 1.
+      *to.mutable_texture()->mutable_product()->mutable_a() = *std::move(varying.texture);
+      *to.mutable_texture()->mutable_product()->mutable_b() =
+          constant_texture(gray(static_cast<float>(1 / most)));
+      to.set_value(most);
+    } else if (varying.texture) {
       *to.mutable_texture() = *std::move(varying.texture);
     } else {
       to.set_value(std::clamp(varying.value, 0.0, most));

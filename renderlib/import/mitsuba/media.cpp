@@ -64,7 +64,6 @@ class MediumReader {
     }
     if (albedo.grid) {
       *medium.mutable_albedo_grid() = *albedo.grid;
-      set_color(gray(1), medium.mutable_albedo());
     } else {
       set_color(albedo.color, medium.mutable_albedo());
     }

@@ -75,8 +75,18 @@ Rgb value_of(const MeshAttribute& attribute, std::size_t index) {
   return attribute.channels == 1 ? gray(at[0]) : Rgb{at[0], at[1], at[2]};
 }
 
+/// Bounds the channels of a texel that nothing shows by itself: a reflectance must stay one.
+Rgb bounded(const Rgb& c, const std::array<Rgb, 3>& corner) {
+  float most = 1;
+  for (const Rgb& value : corner) {
+    most = std::max({most, value.r, value.g, value.b});
+  }
+  const auto channel = [&](float value) { return std::clamp(value, 0.0f, most); };
+  return {channel(c.r), channel(c.g), channel(c.b)};
+}
+
 /// Returns the image of an attribute. The fourth texel is b + c - a, which makes the interpolation
-/// linear.
+/// linear; only where that leaves [0, 1], its bound bends the colours near the longest edge.
 Image image_of(const MeshAttribute& attribute, const PlyMesh& mesh, const Atlas& atlas) {
   Image image{2 * atlas.columns, 2 * atlas.rows, {}};
   image.pixels.resize(std::size_t{image.width} * image.height);
@@ -89,7 +99,7 @@ Image image_of(const MeshAttribute& attribute, const PlyMesh& mesh, const Atlas&
     image.pixels[at] = corner[0];
     image.pixels[at + 1] = corner[1];
     image.pixels[at + image.width] = corner[2];
-    image.pixels[at + image.width + 1] = corner[1] + corner[2] + corner[0] * -1.0f;
+    image.pixels[at + image.width + 1] = bounded(corner[1] + corner[2] + corner[0] * -1.0f, corner);
   }
   return image;
 }

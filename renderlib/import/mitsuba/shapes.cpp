@@ -463,7 +463,11 @@ absl::StatusOr<std::string> ShapeReader::group_of(const Object& group) {
                            {out.mutable_shape(), out.mutable_model(), out.mutable_instance()}));
   }
   to_.warn_of_unused(from);
-  *scene_.add_group() = std::move(out);
+  if (out.shape().empty() && out.model().empty() && out.instance().empty()) {
+    name.clear();  // nothing of it is known
+  } else {
+    *scene_.add_group() = std::move(out);
+  }
   groups_.emplace(&group, name);
   return name;
 }
@@ -478,6 +482,9 @@ absl::Status ShapeReader::add_instance(const Parameters& from, const Target& tar
     return error_at(from.place(), "to_world is singular: it flattens the instance");
   }
   ASSIGN_OR_RETURN(const std::string name, group_of(*object_in(*groups.front())));
+  if (name.empty()) {
+    return absl::OkStatus();
+  }
   scene::Instance& instance = *target.instances->Add();
   instance.set_of(name);
   if (!(to_world == Transform{})) {

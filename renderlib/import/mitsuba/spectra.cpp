@@ -193,8 +193,9 @@ absl::StatusOr<MetalIndex> metal_of(const std::string& name) {
   if (found == metals().end()) {
     return absl::NotFoundError(name);
   }
+  // Under equal energy, not D65: Mitsuba's reference images of metals show it.
   const auto color = [](const std::array<double, 14>& values) {
-    return rounded(spectrum::factor_rgb({metal_wavelengths(), {values.begin(), values.end()}}));
+    return rounded(spectrum::light_rgb({metal_wavelengths(), {values.begin(), values.end()}}));
   };
   return MetalIndex{color(found->second.eta), color(found->second.k)};
 }

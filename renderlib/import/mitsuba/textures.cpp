@@ -134,8 +134,13 @@ std::string checker_image() { return std::string("P5 2 2 255\n") + "\xff" + '\0'
 /// Mitsuba's cell of (0, 0) is that of color0, and a cell is half a unit.
 absl::StatusOr<scene::Texture> checkerboard(const Parameters& from, ColorOf of,
                                             const TexturedSurface& surface, Conversion& to) {
-  ASSIGN_OR_RETURN(const scene::Texture color0, part_of(from, "color0", 0.4f, of, surface, to));
-  ASSIGN_OR_RETURN(const scene::Texture color1, part_of(from, "color1", 0.2f, of, surface, to));
+  const bool number = of == ColorOf::kNumber;
+  ASSIGN_OR_RETURN(const scene::Texture color0,
+                   number ? part_of(from, "color1", 0.2f, of, surface, to)
+                          : part_of(from, "color0", 0.4f, of, surface, to));
+  ASSIGN_OR_RETURN(const scene::Texture color1,
+                   number ? part_of(from, "color0", 0.4f, of, surface, to)
+                          : part_of(from, "color1", 0.2f, of, surface, to));
   ASSIGN_OR_RETURN(const Affine m, to_uv_of(from));
   const bool upright =
       m[0][1] == 0 && m[1][0] == 0 && m[0][2] == 0 && m[1][2] == 0 && m[0][0] > 0 && m[1][1] > 0;
@@ -301,7 +306,7 @@ absl::StatusOr<Varying> varying_of(const Parameters& from, const std::string& na
   if (property == nullptr) {
     return Varying{otherwise};
   }
-  ASSIGN_OR_RETURN(const std::optional<Rgb> constant, constant_color(*property, ColorOf::kSurface));
+  ASSIGN_OR_RETURN(const std::optional<Rgb> constant, constant_color(*property, ColorOf::kNumber));
   if (constant) {
     const bool even = constant->r == constant->g && constant->g == constant->b;
     if (const auto* number = std::get_if<double>(&property->value)) {
@@ -309,7 +314,7 @@ absl::StatusOr<Varying> varying_of(const Parameters& from, const std::string& na
     }
     return Varying{even ? constant->r : luminance(*constant)};
   }
-  ASSIGN_OR_RETURN(scene::Texture texture, texture_of(*property, ColorOf::kSurface, surface, to));
+  ASSIGN_OR_RETURN(scene::Texture texture, texture_of(*property, ColorOf::kNumber, surface, to));
   return Varying{1, std::move(texture)};
 }
 

@@ -28,9 +28,9 @@ struct TexturedSurface {
   std::map<std::string, std::string> attributes = {};
 };
 
-/// Whether a colour is that of a light or of a surface: they are converted to RGB under different
-/// spectra.
-enum class ColorOf { kSurface, kLight };
+/// What a colour is for. Lights and surfaces are converted to RGB under different spectra. As a
+/// number, Mitsuba's checkerboard has its two values exchanged.
+enum class ColorOf { kSurface, kLight, kNumber };
 
 /// A number that may vary over a surface: the texture's luminance, if there is one.
 struct Varying {

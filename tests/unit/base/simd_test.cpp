@@ -101,6 +101,7 @@ TEST(Simd, EveryOperationIsEqualToPlain) {
     expect_same(stored(fast(a) + fast(b)), stored(plain(a) + plain(b)));
     expect_same(stored(fast(a) - fast(b)), stored(plain(a) - plain(b)));
     expect_same(stored(fast(a) * fast(b)), stored(plain(a) * plain(b)));
+    expect_same(stored(fast(a) / fast(b)), stored(plain(a) / plain(b)));
     expect_same(stored(fused(fast(a), fast(b), fast(c))),
                 stored(fused(plain(a), plain(b), plain(c))));
     expect_same(stored(fused_minus(fast(a), fast(b), fast(c))),

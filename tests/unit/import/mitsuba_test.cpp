@@ -293,6 +293,16 @@ TEST_F(MitsubaScene, ACheckerboardBeginsAtTheTop) {
   EXPECT_NEAR(from.material(1).diffuse().texture().checker().even().color().rgb(0), 0.2, 1e-7);
 }
 
+TEST_F(MitsubaScene, ACheckerboardOfNumbersIsExchanged) {
+  const scene::Scene from = scene(rectangle(
+      "<bsdf type=\"principled\"><texture type=\"checkerboard\" name=\"metallic\">"
+      "<float name=\"color0\" value=\"0.75\"/><float name=\"color1\" value=\"0.5\"/></texture>"
+      "</bsdf>"));
+  const scene::CheckerTexture& board = from.material(0).principled().metallic().texture().checker();
+  EXPECT_EQ(board.even().color().rgb(0), 0.5);
+  EXPECT_EQ(board.odd().color().rgb(0), 0.75);
+}
+
 TEST_F(MitsubaScene, TexturesKeepTheirPlacement) {
   write_text(folder_, "t.pgm", "P2 1 1 255 255\n");
   const scene::Scene from =

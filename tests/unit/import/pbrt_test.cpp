@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "renderlib/import/import.h"
 #include "renderlib/import/pbrt/convert_pbrt.h"
 #include "tests/unit/import/files.h"
 
@@ -181,6 +182,19 @@ TEST(Pbrt, MediaFillClosedShapes) {
   EXPECT_THAT(scene.medium(0).scattering().rgb(), ElementsAre(2, 4, 6));
   EXPECT_EQ(scene.shape(0).interior(), "fog");
   EXPECT_EQ(scene.shape(0).material(), "");
+}
+
+// The first byte of -0.0025 is a line break, which Assimp took for a part of the header.
+TEST(Pbrt, ANumberMayBeginWithALineBreak) {
+  const TempDir dir;
+  const std::string path = write_text(
+      dir, "s.pbrt",
+      "WorldBegin\nLightSource \"point\"\nShape \"trianglemesh\" \"integer indices\" [0 1 2]"
+      " \"point3 P\" [-0.0025 0 0 1 0 0 0 1 0]");
+  const auto imported = import_scene(path);
+  ASSERT_TRUE(imported.ok()) << imported.status();
+  ASSERT_EQ(imported->scene.geometry.meshes.size(), 1u);
+  EXPECT_EQ(imported->scene.geometry.meshes[0].triangles.size(), 1u);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "renderlib/scene/guide_integrators.h"
 #include "tests/support/scenes.h"
 #include "tests/support/statistics.h"
 
@@ -49,6 +50,19 @@ TEST(SampleValue, NormalsDepthAndAlbedoAreThoseOfTheFirstSurface) {
   maker.sphere({0.1, 0.2, 0}, 1, maker.metal(0.75f, 0.3));
   EXPECT_EQ(value(maker, Integrator::kDepth, kAhead), gray(4));
   EXPECT_EQ(value(maker, Integrator::kAlbedo, kAhead), gray(0.75f));
+}
+
+TEST(SampleValue, GuidesAreThoseOfTheFirstSurfaceThatIsNoMirror) {
+  SceneMaker maker;
+  wall(maker, maker.diffuse({0.2f, 0.4f, 0.6f}), -2);
+  EXPECT_EQ(value(maker, kGuideAlbedo, kAhead), (Rgb{0.2f, 0.4f, 0.6f}));
+  EXPECT_EQ(value(maker, kGuideShape, kAhead).b, 7);
+  // A mirror that faces the camera shows the wall behind it.
+  SceneMaker mirror;
+  wall(mirror, mirror.metal(0.5f, 0), 0);
+  wall(mirror, mirror.diffuse({0.2f, 0.4f, 0.6f}), 8);
+  EXPECT_EQ(value(mirror, kGuideAlbedo, kAhead), (Rgb{0.1f, 0.2f, 0.3f}));
+  EXPECT_NEAR(value(mirror, kGuideShape, kAhead).b, 5 + 8, 1e-4);
 }
 
 TEST(SampleValue, AlbedoOfAnEmitterIsClampedAndOfGlassWhite) {

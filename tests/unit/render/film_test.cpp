@@ -141,6 +141,22 @@ TEST(Film, TheErrorIsKnownWhenEachRowHasTwoEqualHalves) {
   EXPECT_FALSE(whole.error()) << "one node has no halves";
 }
 
+TEST(Film, TheFirstPartIsAboutHalfOfTheSamples) {
+  const std::vector<SampleRange> nodes = {{0, 32}, {32, 64}, {64, 96}, {96, 112}};
+  Film film = make_film(2, 1);
+  for (const SampleRange& node : nodes) {
+    ASSERT_TRUE(film.add(band_pixels({node, {0, 1}}, 2)).ok());
+    EXPECT_EQ(film.first_part().has_value(), node.first > 0);
+  }
+  // The third node makes the first part larger, so the fourth is in the second part.
+  const auto part = film.first_part();
+  ASSERT_TRUE(part);
+  ASSERT_EQ(part->share.size(), 2u);
+  EXPECT_EQ(part->share[1], static_cast<float>(64.0 / 112));
+  const double sum = node_sum(0, 3, nodes[0]) + node_sum(0, 3, nodes[2]);
+  EXPECT_EQ(part->mean.at(1, 0).r, static_cast<float>(sum / 64));
+}
+
 // Whole halves, further nodes after them, and a truncated last block.
 TEST(Film, TheErrorOfIndependentSamplesIsTheirStandardError) {
   // Samples uniform in [0, 2): mean 1, variance 1/3. The estimate is a root of a mean of 128 x 96 x

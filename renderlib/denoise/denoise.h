@@ -1,0 +1,49 @@
+#pragma once
+
+// Removes noise from a rendered image and estimates the error of the result, bias included, without
+// a reference (README.md).
+
+#include <vector>
+
+#include "renderlib/base/pool.h"
+#include "renderlib/denoise/fit.h"
+#include "renderlib/image/image.h"
+
+namespace bandsaw {
+
+/// All images have the same size and are not empty.
+struct DenoiseInput {
+  Image mean;   ///< of all samples of each pixel, linear radiance
+  Image first;  ///< mean of the first of two independent parts of the samples
+  /// Share of that part in each pixel's samples, (0, 1).
+  std::vector<float> first_share;
+  Image albedo;  ///< by the integrator kGuideAlbedo
+  Image shape;   ///< by the integrator kGuideShape
+};
+
+/// Estimated errors over all channels of all pixels.
+struct CleanError {
+  double mean = 0;        ///< mean value of the image
+  double rmse_raw = 0;    ///< of the image as rendered
+  double rmse_clean = 0;  ///< of the clean image, bias included
+  double bias_share = 0;  ///< share of the squared bias in rmse_clean^2, [0, 1]
+
+  double relative_raw() const { return mean > 0 ? rmse_raw / mean : 0; }
+  double relative_clean() const { return mean > 0 ? rmse_clean / mean : 0; }
+  friend bool operator==(const CleanError&, const CleanError&) = default;
+};
+
+struct Denoised {
+  Image image;
+  /// Estimated error of each pixel: the root of the mean square over its channels and over the
+  /// pixels around it, in all channels.
+  Image error;
+  CleanError total;
+};
+
+/// `fit` is a kernel's. The result has the same bits for any number of threads and any kernel.
+/// Where the estimated error of the filtered value is not below that of the rendered one, and where
+/// a value is not finite, the pixel stays as it was rendered.
+Denoised denoise(const DenoiseInput& input, FitFunction fit, Pool& pool);
+
+}  // namespace bandsaw

@@ -1,0 +1,57 @@
+#pragma once
+
+// First-order regression of an image's two halves on its guides, with weights from the opposite
+// half (Bitterli et al. 2016, "Nonlinearly Weighted First-order Regression for Denoising Monte
+// Carlo Renderings", section 4).
+//
+// For every second pixel of every second row (a centre) and each half, a linear function of the
+// position and the guides is fitted to the pixels of a window, by weighted least squares. The
+// weight of a pixel falls with the distance between its patch and that of the centre in the other
+// half (Rousselle et al. 2012, "Adaptive Rendering with Non-Local Means Filtering", section 4), and
+// with the difference of their guides. A pixel's value is the weighted mean of the functions of the
+// centres around it.
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+#include "renderlib/base/pool.h"
+#include "renderlib/denoise/split_plane.h"
+
+namespace bandsaw {
+
+inline constexpr std::size_t kGuides = 6;  ///< albedo r, g, b; normal x, y; depth
+inline constexpr std::size_t kFirstNormal = 3;
+inline constexpr std::size_t kDepthGuide = 5;
+
+/// The input of fit(). In the margin around the image, all planes but `valid` hold mirrored pixels.
+struct FitInput {
+  int width = 0;
+  int height = 0;
+  std::array<std::array<SplitPlane, 3>, 2> halves;  ///< radiance of the two halves, in [0, 1e15]
+  std::array<SplitPlane, 2> variance;               ///< of each half, summed over the channels, > 0
+  std::array<SplitPlane, kGuides> guides;           ///< each in [0, 1]
+  SplitPlane valid;  ///< 1 for pixels whose values may be used, otherwise 0; 0 in the margin
+};
+
+struct FitSettings {
+  /// Patches that differ by more than this many standard deviations count little.
+  float color_reach = 1;
+  float albedo_reach = 2;  ///< guides that differ by more than this count little
+  float normal_reach = 0.3f;
+  float depth_reach = 0.1f;  ///< relative to the centre's depth
+};
+
+/// The two halves of a filtered image: width x height values for each channel.
+struct FitOutput {
+  std::array<std::array<std::vector<float>, 3>, 2> halves;
+};
+
+/// Returns the filtered halves. Half h depends linearly on half h and, through the weights, on the
+/// other. Values are >= 0. The result has the same bits for any number of threads and all kernels.
+FitOutput fit(const FitInput& input, const FitSettings& settings, Pool& pool);
+
+/// A kernel's fit() (renderlib/README.md, "Kernels").
+using FitFunction = FitOutput (*)(const FitInput& input, const FitSettings& settings, Pool& pool);
+
+}  // namespace bandsaw

@@ -1,0 +1,75 @@
+#pragma once
+
+// Internal to fit(): the sizes of windows and tiles, distances between patches, and least squares.
+
+#include <cstddef>
+#include <vector>
+
+#include "renderlib/base/simd.h"
+#include "renderlib/denoise/fit.h"
+
+namespace bandsaw {
+
+inline constexpr int kFitLanes = 8;   ///< centres that are processed together
+inline constexpr int kFitRadius = 7;  ///< of a window, pixels
+inline constexpr int kFitSide = 2 * kFitRadius + 1;
+inline constexpr int kFitPatch = 3;      ///< radius of a patch, pixels
+inline constexpr int kTileColumns = 32;  ///< centres in a row of a tile
+inline constexpr int kTileRows = 8;      ///< rows of centres in a tile
+
+/// Returns about exp(-x) for x in [0, 4]: (1 - x / 4)^4, and 0 from there on; 1 for negative x.
+inline Float8 falling(const Float8& x) {
+  const Float8 one(1.0f);
+  const Float8 y = max(min(one - x * Float8(0.25f), one), Float8(0.0f));
+  const Float8 square = y * y;
+  return square * square;
+}
+
+/// Distances in one half between the patches of a tile's centres and those of the pixels of their
+/// windows.
+class PatchDistances {
+ public:
+  /// `input` MUST outlive this object. `half` is 0 or 1.
+  PatchDistances(const FitInput& input, std::size_t half);
+
+  /// Computes the distances of the tile whose first centre is pixel (x, y); both are even.
+  void compute(int x, int y);
+  /// Returns the distances of eight centres, from `column` of `row` in the tile on, to the pixels
+  /// at (dx, dy) from them: the mean over the patch of (difference^2 - variance) / variance, where
+  /// the variance is that of the difference. It is 0 on average for patches of the same radiance.
+  const float* to(int dx, int dy, int row, int column) const {
+    const int offset = (dy + kFitRadius) * kFitSide + dx + kFitRadius;
+    return &all_[static_cast<std::size_t>((offset * kTileRows + row) * kTileColumns + column)];
+  }
+
+ private:
+  static constexpr int kRows = 2 * kTileRows + 2 * kFitPatch;  ///< rows of pixels
+  static constexpr int kBefore = 2;  ///< columns of each parity before the tile's first
+  static constexpr int kColumns = kTileColumns + kFitLanes;  ///< of each parity
+
+  void compare(int x, int y, int dx, int dy);
+  void sum_patches(float* to) const;
+
+  const FitInput& input_;
+  std::size_t half_;
+  std::vector<float> all_;
+  float differences_[2][kRows][kColumns];  ///< of single pixels, by parity of their column
+};
+
+inline constexpr std::size_t kTerms = 3 + kGuides;  ///< 1, x, y, guides
+
+/// Normal equations of eight centres in one half.
+struct NormalEquations {
+  NormalEquations();
+  /// Adds a pixel.
+  void add(const Float8& weight, const Float8 (&terms)[kTerms], const Float8 (&value)[3]);
+  /// Adds a small multiple of the sum of the weights to the diagonal, but not for the first term.
+  void add_ridge();
+  /// Replaces `values` by the coefficients, for each term and channel.
+  void solve();
+
+  Float8 products[kTerms * (kTerms + 1) / 2];  ///< upper triangle, row by row
+  Float8 values[kTerms][3];
+};
+
+}  // namespace bandsaw

@@ -1,0 +1,170 @@
+#include "renderlib/denoise/prepare.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace bandsaw {
+namespace {
+
+constexpr float kMost = 1e15f;  ///< the squares of larger values exceed float
+constexpr int kAround = 2;      ///< radius in which bright pixels are looked for
+/// Differences below this share of the brightness are no differences, whatever the noise.
+constexpr float kSmallestNoise = 3e-3f;
+
+using Channels = std::array<float, 3>;
+
+Channels channels(const Rgb& color) { return {color.r, color.g, color.b}; }
+
+bool usable(float value) { return value >= 0 && value <= kMost; }
+
+/// Fills a plane from f(x, y), and mirrors it into the margin.
+template <class F>
+SplitPlane plane_of(const MapSize& size, Pool& pool, F f) {
+  SplitPlane plane(size.width, size.height);
+  const auto mirrored = [](int x, int n) {
+    const int period = 2 * n;
+    const int at = ((x % period) + period) % period;
+    return at < n ? at : period - 1 - at;
+  };
+  constexpr int kMargin = SplitPlane::kMargin;
+  pool.parallel_for(size.height + 2 * kMargin, [&](std::int64_t row) {
+    const int y = static_cast<int>(row) - kMargin;
+    for (int x = -kMargin; x < size.width + kMargin; ++x) {
+      plane.at(x, y) = f(mirrored(x, size.width), mirrored(y, size.height));
+    }
+  });
+  return plane;
+}
+
+/// The two halves; 0 where `valid` is 0.
+struct Parts {
+  std::array<std::vector<Channels>, 2> values;
+  Map valid;
+};
+
+Parts parts_of(const DenoiseInput& input, const MapSize& size) {
+  Parts parts;
+  for (auto& half : parts.values) {
+    half.resize(size.pixels());
+  }
+  parts.valid.resize(size.pixels());
+  for (std::size_t i = 0; i < size.pixels(); ++i) {
+    const Channels mean = channels(input.mean.pixels[i]);
+    const Channels first = channels(input.first.pixels[i]);
+    const float share = input.first_share[i];
+    Channels second{};
+    bool valid = share > 0 && share < 1;
+    for (std::size_t c = 0; c < 3 && valid; ++c) {
+      second[c] = std::max(0.0f, second_value(mean[c], first[c], share));
+      valid = usable(mean[c]) && usable(first[c]) && usable(second[c]);
+    }
+    parts.valid[i] = valid ? 1.0f : 0.0f;
+    parts.values[0][i] = valid ? first : Channels{};
+    parts.values[1][i] = valid ? second : Channels{};
+  }
+  return parts;
+}
+
+float brightness(const Channels& color) { return (color[0] + color[1]) + color[2]; }
+
+/// Returns a half with its single bright pixels scaled down.
+std::vector<Channels> limited(const std::vector<Channels>& half, const std::vector<Channels>& other,
+                              const MapSize& size, Pool& pool) {
+  std::vector<Channels> out = half;
+  pool.parallel_for(size.height, [&](std::int64_t row) {
+    const int y = static_cast<int>(row);
+    for (int x = 0; x < size.width; ++x) {
+      Channels& pixel = out[size.index(x, y)];
+      const float value = brightness(pixel);
+      float most = 0;
+      for (int v = std::max(0, y - kAround); v <= std::min(size.height - 1, y + kAround); ++v) {
+        for (int u = std::max(0, x - kAround); u <= std::min(size.width - 1, x + kAround); ++u) {
+          most = std::max(most, brightness(other[size.index(u, v)]));
+        }
+      }
+      if (value > most) {
+        for (float& channel : pixel) {
+          channel *= most / value;
+        }
+      }
+    }
+  });
+  return out;
+}
+
+/// Returns the guides of a pixel, each in [0, 1]. A depth of `typical` becomes 1/2.
+std::array<float, kGuides> guides_of(const Rgb& albedo, const Rgb& shape, float typical) {
+  const auto bounded = [](float v) { return v > 0 ? std::min(v, 1.0f) : 0.0f; };  // NaN: 0
+  const float depth = shape.b > 0 ? (shape.b < kMost ? shape.b / (shape.b + typical) : 1.0f) : 0.0f;
+  return {bounded(albedo.r), bounded(albedo.g), bounded(albedo.b),
+          bounded(shape.r),  bounded(shape.g),  bounded(depth)};
+}
+
+float typical_depth(const Image& shape) {
+  double sum = 0;
+  double count = 0;
+  for (const Rgb& pixel : shape.pixels) {
+    if (pixel.b > 0 && pixel.b < kMost) {
+      sum += pixel.b;
+      count += 1;
+    }
+  }
+  return count > 0 ? static_cast<float>(sum / count) : 1.0f;
+}
+
+}  // namespace
+
+FitInput prepare_fit(const DenoiseInput& input, Pool& pool) {
+  const MapSize size{static_cast<int>(input.mean.width), static_cast<int>(input.mean.height)};
+  FitInput out;
+  out.width = size.width;
+  out.height = size.height;
+  Map noise(size.pixels());
+  Map around(size.pixels());
+  {
+    Parts parts = parts_of(input, size);
+    const std::array halves{limited(parts.values[0], parts.values[1], size, pool),
+                            limited(parts.values[1], parts.values[0], size, pool)};
+    for (std::size_t i = 0; i < size.pixels(); ++i) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const float difference = halves[0][i][c] - halves[1][i][c];
+        noise[i] += difference * difference;
+      }
+      around[i] = (brightness(halves[0][i]) + brightness(halves[1][i])) / 6;
+    }
+    for (std::size_t h = 0; h < 2; ++h) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        out.halves[h][c] =
+            plane_of(size, pool, [&](int x, int y) { return halves[h][size.index(x, y)][c]; });
+      }
+    }
+    out.valid = SplitPlane(size.width, size.height);
+    for (int y = 0; y < size.height; ++y) {
+      for (int x = 0; x < size.width; ++x) {
+        out.valid.at(x, y) = parts.valid[size.index(x, y)];
+      }
+    }
+  }
+  smooth(noise, size, 1, pool);
+  smooth(around, size, 3, pool);
+  for (std::size_t h = 0; h < 2; ++h) {
+    // The variance of a part is inverse to its number of samples.
+    out.variance[h] = plane_of(size, pool, [&](int x, int y) {
+      const std::size_t i = size.index(x, y);
+      const float share = std::clamp(input.first_share[i], 0.0f, 1.0f);
+      const float least = kSmallestNoise * around[i];
+      return noise[i] * (h == 0 ? 1 - share : share) + least * least + 1e-20f;
+    });
+  }
+  const float typical = typical_depth(input.shape);
+  for (std::size_t g = 0; g < kGuides; ++g) {
+    out.guides[g] = plane_of(size, pool, [&](int x, int y) {
+      const std::size_t i = size.index(x, y);
+      return guides_of(input.albedo.pixels[i], input.shape.pixels[i], typical)[g];
+    });
+  }
+  return out;
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,86 @@
+#include "renderlib/integrate/guide.h"
+
+#include <algorithm>
+#include <variant>
+
+#include "renderlib/integrate/path_state.h"
+#include "renderlib/integrate/path_steps.h"
+#include "renderlib/light/background.h"
+#include "renderlib/material/albedo.h"
+#include "renderlib/material/bsdf.h"
+#include "renderlib/material/shading_normal.h"
+
+namespace bandsaw {
+namespace {
+
+/// Maps radiance of any size to [0, 1).
+Rgb compressed(const Rgb& light) {
+  const auto channel = [](float v) { return v < 1e30f ? v / (1 + v) : 1.0f; };
+  return {channel(light.r), channel(light.g), channel(light.b)};
+}
+
+/// Returns the coordinates of the normal to the right and upwards in the camera's view, as
+/// (n + 1) / 2.
+Vec2 seen_from_camera(const Camera& camera, const Vec3& normal) {
+  const View view = view_of(camera);
+  const Vec3 right = normalize(cross(view.look_at - view.position, view.up));
+  const Vec3 up = normalize(cross(right, view.look_at - view.position));
+  return {(dot(normal, right) + 1) / 2, (dot(normal, up) + 1) / 2};
+}
+
+Rgb shape(const Scene& scene, const SurfacePoint& point, const Vec3& direction, double distance) {
+  Vec3 normal = bent_normal(scene.material(point.material).relief, scene.textures(), point);
+  if (dot(point.geometric_normal, direction) > 0) {
+    normal = -normal;
+  }
+  const Vec2 seen = seen_from_camera(scene.camera(), normal);
+  return {static_cast<float>(std::max(0.0, seen.x)), static_cast<float>(std::max(0.0, seen.y)),
+          static_cast<float>(distance)};
+}
+
+bool is_followed(const Bsdf& bsdf) {
+  if (const auto* metal = std::get_if<FuzzyMetalBsdf>(&bsdf)) {
+    return metal->fuzz <= kMaxGuideFuzz;
+  }
+  return std::holds_alternative<MirrorBsdf>(bsdf) || std::holds_alternative<DielectricBsdf>(bsdf);
+}
+
+}  // namespace
+
+Rgb guide_value(const Scene& scene, Integrator integrator, const Ray& ray,
+                const PixelSampler& sampler, std::uint64_t sample_number, std::uint64_t& rays) {
+  const PathOptions options{.max_depth = kMaxGuideBounces + 1};
+  const PathContext context{scene, sampler, sample_number, options, rays};
+  PathState path(ray);
+  const bool albedo = integrator == kGuideAlbedo;
+  double distance = 0;
+  for (std::uint32_t depth = 0;; ++depth) {
+    const std::optional<SurfacePoint> hit = next_surface(context, depth, path);
+    if (!hit) {
+      return albedo ? compressed(path.throughput *
+                                 radiance(scene.background(), scene.textures(), path.ray.direction))
+                    : Rgb{0.5f, 0.5f, 0};
+    }
+    distance += length(hit->position - path.ray.origin);
+    const std::optional<Bsdf> bsdf = make_bsdf(context, *hit, depth, path);
+    const Sample4 numbers = context.numbers(group_bsdf(depth));
+    const std::optional<BsdfSample> next =
+        bsdf && depth < kMaxGuideBounces && is_followed(*bsdf)
+            ? bandsaw::sample(*bsdf, numbers[0], numbers[1], numbers[2])
+            : std::nullopt;
+    if (!next) {
+      return albedo ? path.throughput *
+                          albedo_at(scene.material(hit->material), scene.textures(), *hit)
+                    : shape(scene, *hit, path.ray.direction, distance);
+    }
+    path.throughput *= next->weight * static_cast<float>(1 / next->compression);
+    if (dot(next->wi, hit->geometric_normal) * dot(path.ray.direction, hit->geometric_normal) > 0 &&
+        nested_glass(scene.material(hit->material)) != nullptr) {
+      path.nesting.here = path.nesting.beyond;
+    }
+    path.previous.delta = true;
+    path.ray = spawn_ray(*hit, next->wi);
+  }
+}
+
+}  // namespace bandsaw

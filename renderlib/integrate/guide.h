@@ -1,0 +1,22 @@
+#pragma once
+
+// Guides of the denoiser: what is seen first that is no mirror and no glass.
+
+#include <cstdint>
+
+#include "renderlib/integrate/path.h"
+#include "renderlib/scene/guide_integrators.h"
+
+namespace bandsaw {
+
+/// Returns the sample's value of kGuideAlbedo or kGuideShape. Follows the path of
+/// path_radiance() through mirrors, smooth glass and nearly smooth metal, at most kMaxGuideBounces
+/// times. All values are >= 0. Adds the number of rays to `rays`.
+Rgb guide_value(const Scene& scene, Integrator integrator, const Ray& ray,
+                const PixelSampler& sampler, std::uint64_t sample, std::uint64_t& rays);
+
+inline constexpr std::uint32_t kMaxGuideBounces = 8;
+/// Metal of at most this fuzz is followed.
+inline constexpr double kMaxGuideFuzz = 0.1;
+
+}  // namespace bandsaw

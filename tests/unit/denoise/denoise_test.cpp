@@ -1,0 +1,236 @@
+#include "renderlib/denoise/denoise.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "tests/support/random.h"
+
+namespace bandsaw {
+namespace {
+
+constexpr std::uint32_t kWidth = 96;
+constexpr std::uint32_t kHeight = 64;
+
+using Picture = std::function<Rgb(std::uint32_t x, std::uint32_t y)>;
+
+Image image_of(const Picture& picture) {
+  Image image{kWidth, kHeight, {}};
+  for (std::uint32_t y = 0; y < kHeight; ++y) {
+    for (std::uint32_t x = 0; x < kWidth; ++x) {
+      image.pixels.push_back(picture(x, y));
+    }
+  }
+  return image;
+}
+
+/// Approximately normal: the sum of twelve uniform numbers.
+float normal(test::Random& random) {
+  double sum = -6;
+  for (int i = 0; i < 12; ++i) {
+    sum += random.uniform(0, 1);
+  }
+  return static_cast<float>(sum);
+}
+
+/// A picture with independent noise in two halves; `noise` is the standard deviation of the mean.
+/// The guides are those of a plane that faces the camera.
+DenoiseInput noisy(const Picture& picture, float noise, std::uint64_t seed) {
+  test::Random random(seed);
+  const Image truth = image_of(picture);
+  DenoiseInput input{truth, truth, std::vector<float>(truth.pixels.size(), 0.5f),
+                     image_of([](auto, auto) { return gray(0.5f); }), image_of([](auto, auto) {
+                       return Rgb{0.5f, 0.5f, 3};
+                     })};
+  const float of_half = noise * std::sqrt(2.0f);
+  for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
+    Rgb first = truth.pixels[i];
+    Rgb second = truth.pixels[i];
+    for (float* const channel : {&first.r, &first.g, &first.b, &second.r, &second.g, &second.b}) {
+      *channel = std::max(0.0f, *channel + of_half * normal(random));
+    }
+    input.first.pixels[i] = first;
+    input.mean.pixels[i] = (first + second) * 0.5f;
+  }
+  return input;
+}
+
+Denoised denoised(const DenoiseInput& input, int threads = 2) {
+  Pool pool(threads);
+  return denoise(input, &fit, pool);
+}
+
+double rmse(const Image& a, const Image& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+    const Rgb d = a.pixels[i] + b.pixels[i] * -1.0f;
+    sum += double{d.r} * d.r + double{d.g} * d.g + double{d.b} * d.b;
+  }
+  return std::sqrt(sum / (3 * static_cast<double>(a.pixels.size())));
+}
+
+void expect_same_bits(const Image& a, const Image& b) {
+  ASSERT_EQ(a.pixels.size(), b.pixels.size());
+  const auto same = [](float x, float y) {
+    return std::bit_cast<std::uint32_t>(x) == std::bit_cast<std::uint32_t>(y);
+  };
+  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+    const Rgb& p = a.pixels[i];
+    const Rgb& q = b.pixels[i];
+    ASSERT_TRUE(same(p.r, q.r) && same(p.g, q.g) && same(p.b, q.b)) << "pixel " << i;
+  }
+}
+
+Rgb flat(std::uint32_t, std::uint32_t) { return {0.4f, 0.5f, 0.6f}; }
+Rgb ramp(std::uint32_t x, std::uint32_t y) {
+  const auto u = static_cast<float>(x);
+  const auto v = static_cast<float>(y);
+  return {0.5f + 0.004f * u, 0.9f - 0.003f * v, 0.5f + 0.002f * u + 0.003f * v};
+}
+
+TEST(Denoise, ImageWithoutNoiseStaysToTheBit) {
+  const DenoiseInput input = noisy(ramp, 0, 1);
+  const Denoised clean = denoised(input);
+  expect_same_bits(clean.image, input.mean);
+  EXPECT_EQ(clean.total.rmse_clean, 0);
+  EXPECT_EQ(clean.total.rmse_raw, 0);
+}
+
+TEST(Denoise, FlatImageLosesItsNoise) {
+  const DenoiseInput input = noisy(flat, 0.05f, 2);
+  const Denoised clean = denoised(input);
+  const Image truth = image_of(flat);
+  // A window has 225 pixels and the regression nine terms; what the weights take is less than the
+  // rest up to a factor of six.
+  EXPECT_LT(rmse(clean.image, truth), rmse(input.mean, truth) / 6);
+}
+
+TEST(Denoise, LinearRampIsNotBent) {
+  // A ramp in two directions: the mean over many seeds is the ramp, up to the noise that is left.
+  Image mean = image_of([](auto, auto) { return Rgb{}; });
+  constexpr int kSeeds = 6;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    const Denoised clean = denoised(noisy(ramp, 0.02f, 100 + static_cast<std::uint64_t>(seed)));
+    for (std::size_t i = 0; i < mean.pixels.size(); ++i) {
+      mean.pixels[i] = mean.pixels[i] + clean.image.pixels[i] * (1.0f / kSeeds);
+    }
+  }
+  EXPECT_LT(rmse(mean, image_of(ramp)), 0.02 / 6);
+}
+
+TEST(Denoise, TellsItsErrorWithoutAReference) {
+  for (const std::uint64_t seed : {3u, 4u, 5u}) {
+    const DenoiseInput input = noisy(ramp, 0.05f, seed);
+    const Denoised clean = denoised(input);
+    const Image truth = image_of(ramp);
+    EXPECT_NEAR(clean.total.rmse_raw / rmse(input.mean, truth), 1, 0.05) << seed;
+    // The estimate is a difference of two numbers that are much larger.
+    const double told = clean.total.rmse_clean;
+    EXPECT_LT(told, rmse(input.mean, truth) / 2) << seed;
+    EXPECT_LT(std::abs(told * told - std::pow(rmse(clean.image, truth), 2)), 0.05 * 0.05 * 0.05)
+        << seed;
+  }
+}
+
+TEST(Denoise, TextureOfTheGuidesIsKept) {
+  const Picture checks = [](std::uint32_t x, std::uint32_t y) {
+    return gray((x / 4 + y / 4) % 2 == 0 ? 0.8f : 0.2f);
+  };
+  DenoiseInput input = noisy(checks, 0.1f, 6);
+  input.albedo = image_of(checks);
+  const Denoised clean = denoised(input);
+  const Image truth = image_of(checks);
+  EXPECT_LT(rmse(clean.image, truth), rmse(input.mean, truth) / 4);
+}
+
+TEST(Denoise, DetailThatNoGuideShowsIsKeptWhereItExceedsTheNoise) {
+  const Picture stripes = [](std::uint32_t x, std::uint32_t) {
+    return gray(x % 2 == 0 ? 0.9f : 0.1f);
+  };
+  const DenoiseInput input = noisy(stripes, 0.01f, 7);
+  const Denoised clean = denoised(input);
+  const Image truth = image_of(stripes);
+  EXPECT_LT(rmse(clean.image, truth), 1.05 * rmse(input.mean, truth));
+}
+
+TEST(Denoise, OneBrightPathIsNotSpread) {
+  DenoiseInput input = noisy(flat, 0.05f, 8);
+  const std::size_t at = 30 * kWidth + 41;
+  input.first.pixels[at] = gray(2e4f);
+  input.mean.pixels[at] = gray(1e4f);
+  const Denoised clean = denoised(input);
+  const Image truth = image_of(flat);
+  for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
+    ASSERT_LT(std::abs(clean.image.pixels[i].g - truth.pixels[i].g), 0.2f) << "pixel " << i;
+  }
+  // The report does not hide it.
+  EXPECT_GT(clean.total.rmse_raw, 1);
+}
+
+TEST(Denoise, ValuesThatAreNotFiniteStayAndHarmNoOthers) {
+  DenoiseInput input = noisy(flat, 0.05f, 9);
+  const float inf = std::numeric_limits<float>::infinity();
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  input.mean.pixels[10 * kWidth + 10] = {nan, 1, 1};
+  input.mean.pixels[20 * kWidth + 20] = {inf, inf, inf};
+  input.first.pixels[30 * kWidth + 30] = {-inf, 0, 0};
+  input.albedo.pixels[40 * kWidth + 40] = {nan, nan, nan};
+  input.shape.pixels[41 * kWidth + 41] = {nan, inf, inf};
+  const Denoised clean = denoised(input);
+  EXPECT_TRUE(std::isnan(clean.image.pixels[10 * kWidth + 10].r));
+  EXPECT_EQ(clean.image.pixels[20 * kWidth + 20].r, inf);
+  for (std::size_t i = 0; i < clean.image.pixels.size(); ++i) {
+    if (i != 10 * kWidth + 10 && i != 20 * kWidth + 20) {
+      ASSERT_TRUE(is_finite(clean.image.pixels[i])) << "pixel " << i;
+      ASSERT_NEAR(clean.image.pixels[i].g, 0.5f, 0.3f) << "pixel " << i;
+    }
+  }
+  EXPECT_TRUE(std::isfinite(clean.total.rmse_clean));
+}
+
+TEST(Denoise, PartsMayDifferInSize) {
+  // The second part has three times as many samples as the first.
+  DenoiseInput input = noisy(flat, 0.05f, 10);
+  test::Random random(11);
+  for (std::size_t i = 0; i < input.mean.pixels.size(); ++i) {
+    const float first = 0.5f + 0.1f * normal(random);
+    const float second = 0.5f + 0.1f / std::sqrt(3.0f) * normal(random);
+    input.first.pixels[i] = gray(first);
+    input.mean.pixels[i] = gray(0.25f * first + 0.75f * second);
+    input.first_share[i] = 0.25f;
+  }
+  const Denoised clean = denoised(input);
+  const Image truth = image_of([](auto, auto) { return gray(0.5f); });
+  EXPECT_NEAR(clean.total.rmse_raw / rmse(input.mean, truth), 1, 0.1);
+  // Less than elsewhere: grey noise is the same in all channels, so patches are compared less well.
+  EXPECT_LT(rmse(clean.image, truth), rmse(input.mean, truth) / 3);
+}
+
+TEST(Denoise, SameBitsForAnyNumberOfThreads) {
+  const DenoiseInput input = noisy(ramp, 0.05f, 12);
+  const Denoised one = denoised(input, 1);
+  for (const int threads : {2, 3}) {
+    const Denoised more = denoised(input, threads);
+    expect_same_bits(one.image, more.image);
+    expect_same_bits(one.error, more.error);
+    EXPECT_EQ(one.total, more.total);
+  }
+}
+
+TEST(Denoise, SmallestImages) {
+  for (const std::uint32_t width : {1u, 2u, 3u, 17u}) {
+    Image one{width, 1, std::vector<Rgb>(width, gray(0.5f))};
+    Image first = one;
+    first.pixels[0] = gray(0.4f);
+    const DenoiseInput input{one, first, std::vector<float>(width, 0.5f), one, one};
+    const Denoised clean = denoised(input);
+    ASSERT_EQ(clean.image.pixels.size(), width);
+    EXPECT_NEAR(clean.image.pixels[0].r, 0.5f, 0.1f);
+  }
+}
+
+}  // namespace
+}  // namespace bandsaw
