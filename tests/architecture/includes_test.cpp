@@ -75,7 +75,8 @@ const std::map<std::string, std::set<std::string>> kMayInclude = {
     {"coordinator/cli/base", {"coordinator/scheduler/model"}},
     {"coordinator/cli/options", {"coordinator/cli/base", "proto/link"}},
     {"coordinator/cli/progress", {"coordinator/cli/options", "coordinator/convert"}},
-    {"coordinator/cli/scene", {"coordinator/cli/options", "renderlib/package"}},
+    // `web` for the add-on for Blender, which is among the files that the dashboard offers.
+    {"coordinator/cli/scene", {"coordinator/cli/options", "coordinator/web", "renderlib/package"}},
     {"coordinator/cli/image",
      {"coordinator/cli/progress", "coordinator/cli/scene", "renderlib/compare"}},
     {"coordinator/cli/render", {"coordinator/cli/image", "coordinator/engine"}},

@@ -154,11 +154,9 @@ class BandsawEngine(bpy.types.RenderEngine):
 
     def set_pixels(self, result, name, pixels):
         """`pixels`: (height, width, channels), rows from the top."""
-        layer = result.layers[0]
-        found = layer.passes.find_by_name(name, layer.name) if hasattr(layer.passes, "find_by_name") else layer.passes.get(name)
+        found = result.layers[0].passes.get(name)
         if found is not None:
-            flat = np.ascontiguousarray(pixels[::-1], dtype=np.float32)
-            found.rect.foreach_set(flat.reshape(flat.shape[0] * flat.shape[1], flat.shape[2]))
+            found.rect.foreach_set(np.ascontiguousarray(pixels[::-1], dtype=np.float32).reshape(-1))
 
     def add_passes(self, depsgraph, job, result):
         wanted = [entry for entry in PASSES if getattr(depsgraph.view_layer, entry[0], False)]
