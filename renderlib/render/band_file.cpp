@@ -145,8 +145,7 @@ absl::Status read_sums(const std::byte* at, std::uint64_t offset, std::vector<do
   std::memcpy(sums.data(), at, sums.size() * sizeof(double));
   for (std::size_t i = 0; i < sums.size(); ++i) {
     if (!std::isfinite(sums[i]) || sums[i] < 0) {
-      return damaged(offset + kHeaderSize + i * sizeof(double),
-                     "a sum is negative or not finite");
+      return damaged(offset + kHeaderSize + i * sizeof(double), "a sum is negative or not finite");
     }
   }
   return absl::OkStatus();

@@ -215,13 +215,13 @@ SceneDescription outdoors() {
   return scene;
 }
 
-/// The same scene with the materials of other renderers, and all properties that materials can have.
+/// The same scene with the materials of other renderers, and all properties that materials can
+/// have.
 SceneDescription of_other_materials() {
   SceneDescription scene = every_feature();
   const auto texture = [](std::uint32_t i) { return TextureId{i}; };
-  const Microfacets brushed{.distribution = Microfacets::Distribution::kBeckmann,
-                            .alpha_u = 0.3,
-                            .alpha_v = 0.1};
+  const Microfacets brushed{
+      .distribution = Microfacets::Distribution::kBeckmann, .alpha_u = 0.3, .alpha_v = 0.1};
   const Microfacets rough{.alpha_u = 0.6, .alpha_v = 0.6};
   const ConductorIndex gold{{0.143f, 0.375f, 1.44f}, {3.98f, 2.39f, 1.6f}};
   Principled layered{.base_color = texture(0), .spec_trans = {0.3}, .sheen = {0.5}};

@@ -19,7 +19,7 @@
 namespace bandsaw {
 
 struct SceneDescription {
-  Camera camera;  ///< when the shutter opens, if it moves
+  Camera camera;                          ///< when the shutter opens, if it moves
   std::optional<Camera> camera_at_close;  ///< absent: it does not move (camera.h, validate_motion)
   Background background;
   std::vector<Texture> textures;

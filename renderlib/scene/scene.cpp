@@ -101,8 +101,8 @@ SceneFeatures features_of(const SceneDescription& scene, const Lights& lights) {
   SceneFeatures features;
   features.lights = !lights.empty();
   features.alpha = std::any_of(scene.materials.begin(), scene.materials.end(), has_alpha);
-  features.motion = scene.camera_at_close.has_value() || moves(scene.geometry) ||
-                    moves(scene.media.boundaries);
+  features.motion =
+      scene.camera_at_close.has_value() || moves(scene.geometry) || moves(scene.media.boundaries);
   features.uv = std::any_of(scene.textures.begin(), scene.textures.end(), uses_uv);
   features.mixtures = std::any_of(
       scene.materials.begin(), scene.materials.end(),

@@ -173,7 +173,11 @@ TEST(Media, ScatterDeltaLights) {
 double scattered_once(const Medium& fog, const DeltaLight& light) {
   const double sigma = double{fog.absorption.g} + fog.scattering.g;
   return integral([&](double s) {
-    const Arrival arrives = std::visit([&](const auto& l) { return arrival(l, {}, {s, 0, 0}); }, light);
+    const Arrival arrives = std::visit(
+        [&](const auto& l) {
+          return arrival(l, {}, {s, 0, 0});
+        },
+        light);
     return fog.scattering.g / (4 * kPi) * std::exp(-sigma * (s + length(arrives.to_light))) *
            arrives.irradiance.g;
   });

@@ -22,8 +22,8 @@ struct Model;
 
 /// A camera of one of the scene's models, in world space.
 struct FoundCamera {
-  std::string model;  ///< file of the model
-  std::string name;   ///< name of its node
+  std::string model;                              ///< file of the model
+  std::string name;                               ///< name of its node
   std::string own_name;                           ///< of the camera itself; may be empty
   Camera camera;                                  ///< when the shutter opens
   std::optional<Camera> at_close = std::nullopt;  ///< when it closes, if the camera moves
@@ -54,8 +54,8 @@ struct SceneDraft {
   /// by animation.
   std::map<std::tuple<std::string, bool, AnimationChoice>, std::shared_ptr<const Model>> models;
   std::vector<FoundCamera> cameras;  ///< for a model with several placements, those of the first
-  Shutter shutter;            ///< in the scene's time: at the frame that is imported
-  AnimationChoice animation;  ///< of models whose entry names none
+  Shutter shutter;                   ///< in the scene's time: at the frame that is imported
+  AnimationChoice animation;         ///< of models whose entry names none
 
   Contents world;
   /// Destination of shapes and placements that are read: the scene, or the group that is being read

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/import/draft/named_file.h"
@@ -64,7 +65,7 @@ absl::StatusOr<FileGrid> read_file(const Field& in, const scene::VolumeGrid& fro
 absl::StatusOr<VolumeGrid> read_grid(const Field& in, const scene::VolumeGrid& from,
                                      const std::string& otherwise, SceneDraft& draft) {
   ASSIGN_OR_RETURN(FileGrid read, read_file(in, from, otherwise, draft));
-  const bool has_box = determinant(read.to_unit_box) != 1;
+  const bool has_box = !absl::EndsWithIgnoreCase(from.file(), ".vdb");
   if (from.unit_box() && !has_box) {
     return in.error("unit_box", "is for *.vol files: an OpenVDB file has no box");
   }

@@ -94,7 +94,10 @@ class Copy {
     auto tile = tree.cbeginValueOn();
     tile.setMaxDepth(static_cast<openvdb::Index>(Tree::DEPTH) - 2);
     for (; tile; ++tile) {
-      RETURN_IF_ERROR(add_tile(tile.getBoundingBox(), *tile));
+      // The iterator is made before it knows its depth, so it may begin at a voxel of a leaf.
+      if (tile.isTileValue()) {
+        RETURN_IF_ERROR(add_tile(tile.getBoundingBox(), *tile));
+      }
     }
     return absl::OkStatus();
   }
