@@ -342,7 +342,7 @@ std::optional<Film::FirstPart> Film::first_part() const {
     const auto taken = static_cast<double>(rows_->add_first_part(nodes, total));
     const auto share = static_cast<float>(taken / static_cast<double>(samples(nodes)));
     for (std::uint32_t k = 0; k < strip.count; ++k) {
-      const std::size_t at = std::size_t{y} * width() + strip.first + k * strip.step;
+      const std::size_t at = std::size_t{y} * width() + strip.x(k);
       out.mean.pixels[at] = {static_cast<float>(total[3 * k] / taken),
                              static_cast<float>(total[3 * k + 1] / taken),
                              static_cast<float>(total[3 * k + 2] / taken)};
