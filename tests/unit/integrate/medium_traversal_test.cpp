@@ -152,7 +152,7 @@ TEST(MediumTraversal, AClearMediumDisplacesOthers) {
   const auto scene = maker.build();
   std::uint64_t rays = 0;
   const Ray ray{.origin = {-3, 0, 0}, .direction = {2, 0, 0}, .t_max = 3};
-  EXPECT_FLOAT_EQ(media_transmittance(*scene, ray, rays).g, std::exp(-4.0f));
+  EXPECT_FLOAT_EQ(media_transmittance(*scene, ray, NumberStream(0), rays).g, std::exp(-4.0f));
 }
 
 /// More crossings than the traversal stores in its first pass along the ray.
@@ -165,9 +165,11 @@ TEST(MediumTraversal, FindsEachOfManyBallsInARow) {
   const auto scene = maker.build();
   std::uint64_t rays = 0;
   const Ray ray{.origin = {-3, 0, 0}, .direction = {1, 0, 0}};
-  EXPECT_NEAR(std::log(media_transmittance(*scene, ray, rays).g), -100 * 2 * 0.125, 1e-4);
+  EXPECT_NEAR(std::log(media_transmittance(*scene, ray, NumberStream(0), rays).g), -100 * 2 * 0.125,
+              1e-4);
   const Ray inside{.origin = {150, 0, 0}, .direction = {-1, 0, 0}, .t_max = 10};
-  EXPECT_FLOAT_EQ(media_transmittance(*scene, inside, rays).g, std::exp(-7 * 0.125f));
+  EXPECT_FLOAT_EQ(media_transmittance(*scene, inside, NumberStream(0), rays).g,
+                  std::exp(-7 * 0.125f));
 }
 
 /// Many shapes of one medium around one point.
@@ -231,7 +233,8 @@ TEST(MediumTraversal, SharedEdgesAreCrossedOnce) {
     for (const Vec2& at : {Vec2{i / 64.0, i / 64.0}, Vec2{i / 64.0, 1 - i / 64.0}}) {
       std::uint64_t rays = 0;
       const Ray down{.origin = {at.x, at.y, 3}, .direction = {0, 0, -1}};
-      EXPECT_FLOAT_EQ(media_transmittance(*scene, down, rays).g, std::exp(-1.0f)) << i;
+      EXPECT_FLOAT_EQ(media_transmittance(*scene, down, NumberStream(0), rays).g, std::exp(-1.0f))
+          << i;
     }
   }
 }
@@ -247,7 +250,8 @@ TEST(MediumTraversal, FindsEachOfManyMediaInARow) {
   const auto scene = maker.build();
   std::uint64_t rays = 0;
   const Ray ray{.origin = {-2, 0, 0}, .direction = {1, 0, 0}, .t_max = 3.0 * 40};
-  EXPECT_NEAR(std::log(media_transmittance(*scene, ray, rays).g), -40 * (2 * 0.25 + 0.125), 1e-4);
+  EXPECT_NEAR(std::log(media_transmittance(*scene, ray, NumberStream(0), rays).g),
+              -40 * (2 * 0.25 + 0.125), 1e-4);
 }
 
 /// A ray that touches an edge, in the plane of the diagonal, crosses nothing.
@@ -260,7 +264,7 @@ TEST(MediumTraversal, ATouchedEdgeIsNotCrossed) {
   for (const Vec3& origin : {Vec3{0, -1, 0.53}, Vec3{-1, 0, 0.53}}) {
     std::uint64_t rays = 0;
     const Ray ray{.origin = origin, .direction = {s, s, 0}};
-    EXPECT_FLOAT_EQ(media_transmittance(*scene, ray, rays).g, 1) << origin.x;
+    EXPECT_FLOAT_EQ(media_transmittance(*scene, ray, NumberStream(0), rays).g, 1) << origin.x;
   }
 }
 
@@ -274,7 +278,7 @@ TEST(MediumTraversal, OverlapsOfOneMediumAreNotDenser) {
   const auto scene = maker.build();
   std::uint64_t rays = 0;
   const Ray ray{.origin = {-9, 0, 0}, .direction = {1, 0, 0}};
-  EXPECT_FLOAT_EQ(media_transmittance(*scene, ray, rays).g, std::exp(-3.0f));
+  EXPECT_FLOAT_EQ(media_transmittance(*scene, ray, NumberStream(0), rays).g, std::exp(-3.0f));
 }
 
 }  // namespace
