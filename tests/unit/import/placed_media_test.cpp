@@ -48,7 +48,7 @@ std::shared_ptr<const Scene> scene_of(const std::string& text) {
 double smoke_along(const Scene& scene, const Vec3& origin, const Vec3& direction, double time = 0) {
   std::uint64_t rays = 0;
   const Ray ray{.origin = origin, .direction = direction, .time = time};
-  return -std::log(double{media_transmittance(scene, ray, rays).g}) / kDensity;
+  return -std::log(double{media_transmittance(scene, ray, NumberStream(0), rays).g}) / kDensity;
 }
 
 constexpr double kError = 4e-6;  // of a transmittance in float
