@@ -206,20 +206,30 @@ RayGenerator::Projection RayGenerator::between(double share) const {
   const auto at = [share](const auto& a, const auto& b) { return a + (b - a) * share; };
   const Projection& a = now_;
   const Projection& b = *at_close_;
-  Projection out{at(a.origin, b.origin),
-                 at(a.corner, b.corner),
-                 at(a.dx, b.dx),
-                 at(a.dy, b.dy),
-                 at(a.lens_x, b.lens_x),
-                 at(a.lens_y, b.lens_y),
-                 at(a.forward, b.forward),
-                 at(a.lens_radius, b.lens_radius),
-                 at(a.focus_distance, b.focus_distance)};
+  Projection out;
+  out.origin = at(a.origin, b.origin);
   if (kind_ == Kind::kParallel) {
     out.origin = normalize(out.origin);
-  } else {
-    out.forward = normalize(out.forward);
+    out.corner = at(a.corner, b.corner);
+    out.dx = at(a.dx, b.dx);
+    out.dy = at(a.dy, b.dy);
+    return out;
   }
+  // The axes turn and stay perpendicular, so that image and lens belong to one view direction.
+  out.forward = normalize(at(a.forward, b.forward));
+  const Vec3 aside = at(normalize(a.dx), normalize(b.dx));
+  const Vec3 right = normalize(aside - out.forward * dot(aside, out.forward));
+  const Vec3 across = cross(out.forward, right);
+  const Vec3 down = dot(cross(a.forward, a.dx), a.dy) > 0 ? across : -across;
+  out.dx = right * at(length(a.dx), length(b.dx));
+  out.dy = down * at(length(a.dy), length(b.dy));
+  const auto column = [](const Projection& p) { return dot(p.corner, p.dx) / dot(p.dx, p.dx); };
+  const auto row = [](const Projection& p) { return dot(p.corner, p.dy) / dot(p.dy, p.dy); };
+  out.corner = out.forward + out.dx * at(column(a), column(b)) + out.dy * at(row(a), row(b));
+  out.lens_radius = at(a.lens_radius, b.lens_radius);
+  out.lens_x = right * (dot(a.lens_x, a.dx) < 0 ? -out.lens_radius : out.lens_radius);
+  out.lens_y = down * (dot(a.lens_y, a.dy) > 0 ? out.lens_radius : -out.lens_radius);
+  out.focus_distance = at(a.focus_distance, b.focus_distance);
   return out;
 }
 

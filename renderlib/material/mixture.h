@@ -27,7 +27,12 @@ inline double amount_at(const Mix& mix, absl::Span<const Texture> textures,
 /// mixture. u in [0, 1) selects it, for nested mixtures as well.
 inline MaterialId part_at(absl::Span<const Material> materials, absl::Span<const Texture> textures,
                           MaterialId id, const SurfacePoint& point, double u) {
-  while (const auto* mix = std::get_if<Mix>(&materials[index_of(id)].kind)) {
+  // The parts of a mixture precede it, so there are fewer steps than materials.
+  for (std::size_t step = 0; step < materials.size(); ++step) {
+    const auto* mix = std::get_if<Mix>(&materials[index_of(id)].kind);
+    if (mix == nullptr) {
+      break;
+    }
     const double amount = amount_at(*mix, textures, point);
     const bool second = u < amount;
     u = second ? u / amount : (u - amount) / (1 - amount);

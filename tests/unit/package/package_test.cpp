@@ -49,7 +49,7 @@ TEST(Package, RoundTripsBitForBit) {
   EXPECT_EQ(std::get<Dielectric>(decoded->materials[5].kind).index_map, TextureId{3});
   EXPECT_EQ(std::get<MetallicRoughness>(decoded->materials[6].kind).coat_normal_scale, -0.5);
   EXPECT_EQ(std::get<Conductor>(decoded->materials[8].kind).surface.alpha_v_map, TextureId{4});
-  EXPECT_EQ(std::get<Principled>(decoded->materials[11].kind).flatness.value, 0.6);
+  EXPECT_EQ(std::get<Principled>(decoded->materials[11].kind).flatness.value, 0.75);
   EXPECT_EQ(std::get<Mix>(decoded->materials[13].kind).b, MaterialId{8});
   EXPECT_EQ(decoded->materials[14].alpha.cutoff, 0.125);
   EXPECT_EQ(decoded->materials[15].relief.height, TextureId{4});
@@ -251,7 +251,7 @@ TEST_P(SpoiltManifest, IsRefusedNamingTheField) {
 }
 
 const std::vector<Wrong> kWrong = {
-    {"format", [](auto& m) { m.set_format(2); }, "format: is 2"},
+    {"format", [](auto& m) { m.set_format(3); }, "format: is 3"},
     {"width", [](auto& m) { m.set_width(0); }, "width: must lie in [1, 65536], is 0"},
     {"pixels", [](auto& m) { m.set_width(65536), m.set_height(65536); }, "width x height"},
     {"depth", [](auto& m) { m.set_max_depth(5000); }, "max_depth: must lie in [1, 1024]"},
@@ -436,11 +436,11 @@ const std::vector<Wrong> kWrong = {
      "medium[1].scattering.rgb: must have 3 numbers, has 2"},
     {"medium_rate", [](auto& m) { m.mutable_medium(1)->mutable_absorption()->set_rgb(2, -1); },
      "media[1].absorption: must be in [0, 1e+12], is -1"},
-    {"fog", [](auto& m) { m.set_fog(2); }, "fog: must be below 2, is 2"},
+    {"fog", [](auto& m) { m.set_fog(4); }, "fog: must be below 4, is 4"},
     {"glow", [](auto& m) { m.mutable_medium(1)->mutable_emission()->set_rgb(0, 1); },
      "fog: must absorb or scatter where it emits"},
-    {"filling", [](auto& m) { m.mutable_boundaries()->mutable_instance(0)->set_material(2); },
-     "boundaries.instances[0].material: must be below 2, is 2"},
+    {"filling", [](auto& m) { m.mutable_boundaries()->mutable_instance(0)->set_material(4); },
+     "boundaries.instances[0].material: must be below 4, is 4"},
     {"boundary_mesh", [](auto& m) { m.mutable_boundaries()->mutable_instance(0)->set_mesh(1); },
      "boundaries.instances[0].mesh: must be below 1, is 1"},
     {"open_boundary",
