@@ -286,6 +286,9 @@ std::optional<double> constant_of(const scene::Texture& texture) {
     return std::nullopt;
   }
   const auto& rgb = texture.color().rgb();
+  if (rgb[0] == rgb[1] && rgb[1] == rgb[2]) {
+    return rgb[0];  // the weights of the channels do not add up to 1 in all digits
+  }
   return spectrum::luminance({rgb[0], rgb[1], rgb[2]});
 }
 

@@ -125,8 +125,10 @@ TEST_F(SceneLights, ErrorsOfProjectedImagesNameTheField) {
 }
 
 TEST_F(SceneLights, ErrorsNameTheField) {
-  EXPECT_THAT(error("light { }"),
-              StartsWith("s.textproto:4:1: light[0]: is empty: write directional, point or spot"));
+  EXPECT_THAT(
+      error("light { }"),
+      StartsWith(
+          "s.textproto:4:1: light[0]: is empty: write directional, point, spot or projector"));
   EXPECT_THAT(error("light { directional { irradiance { rgb: [1, 1, 1] } } }"),
               HasSubstr("light[0].directional.direction: is required"));
   EXPECT_THAT(error("light { point { position: [0, 0, 0] } }"),
