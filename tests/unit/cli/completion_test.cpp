@@ -46,7 +46,7 @@ TEST_F(CompletionTest, OffersCommands) {
 }
 
 TEST_F(CompletionTest, OffersTheOptionsOfTheCommand) {
-  EXPECT_THAT(offered("render --in"), ElementsAre("--integrator"));
+  EXPECT_THAT(offered("render --in"), ElementsAre("--inside", "--integrator"));
   EXPECT_THAT(offered("jobs --"), Not(Contains("--samples")));
   EXPECT_THAT(offered("submit a.glb --prio"), ElementsAre("--priority"));
 }

@@ -170,7 +170,7 @@ TEST(Pbrt, BoundsEndHostileScenes) {
   EXPECT_THAT(error_of("Include \"s.pbrt\""), HasSubstr("s.pbrt:1: \"s.pbrt\" includes itself"));
   EXPECT_THAT(error_of("Include \"../x.pbrt\""), HasSubstr("outside of the scene's folder"));
   EXPECT_THAT(error_of("WorldBegin\nShape \"loopsubdiv\" \"integer levels\" 100"),
-              HasSubstr("\"point3 P\" is missing"));
+              HasSubstr("s.pbrt:2: \"integer indices\" are missing"));
 }
 
 TEST(Pbrt, MediaFillClosedShapes) {

@@ -190,8 +190,8 @@ const std::vector<Wrong> kWrong = {
     {"nameless_material", R"(material { metal { } })",
      "s.textproto:3:1: material[1].name: is required"},
     {"kindless_material", R"(material { name: "x" })",
-     "s.textproto:3:1: material[1]: is of no kind: write diffuse, metal, dielectric, emissive or "
-     "gltf"},
+     "s.textproto:3:1: material[1]: is of no kind: write diffuse, metal, plastic, "
+     "dielectric, emissive, gltf or another kind"},
     {"reflectance", R"(material { name: "x" diffuse { color { rgb: [0.5, 1.7, 0] } } })",
      "s.textproto:3:40: material[1].diffuse.color.rgb[1]: must lie in [0, 1], is 1.7"},
     {"two_colors", R"(material { name: "x" diffuse { color { rgb: [0, 0, 0] } texture { } } })",
