@@ -9,6 +9,7 @@
 #include "renderlib/integrate/path_reuse.h"
 #include "renderlib/render/canary.h"
 #include "renderlib/render/render_image.h"
+#include "renderlib/scene/guide_integrators.h"
 #include "tests/support/hard_case.h"
 #include "tests/support/random.h"
 #include "tests/support/scenes.h"
@@ -85,7 +86,7 @@ TEST(RenderBand, EveryIntegratorGivesTheSameBitsForAnyBandsAndThreads) {
     EXPECT_GT(*std::max_element(whole.begin(), whole.end()), 0);
   }
   RenderSettings settings = kSettings;
-  settings.integrator = static_cast<Integrator>(kLastIntegrator + 1);
+  settings.integrator = static_cast<Integrator>(kLastGuideIntegrator + 1);
   EXPECT_FALSE(validate(settings).ok());
 }
 

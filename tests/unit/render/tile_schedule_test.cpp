@@ -25,8 +25,9 @@ TilePlan half_noisy(std::uint64_t pilot) {
 
 SampleRange of_half_tile(const TileSamples& tiles, std::size_t i) {
   const auto tile = static_cast<std::uint32_t>(i / 2);
-  return tiles.of_pixel(tile % kGrid.columns() * kTileSide + (i & 1),
-                        tile / kGrid.columns() * kTileSide, {});
+  const std::uint32_t y = tile / kGrid.columns() * kTileSide;
+  const auto half = static_cast<std::uint32_t>(i & 1);
+  return tiles.of_pixel(half_row(kGrid, tile % kGrid.columns(), half, y)[0], y, {});
 }
 
 TEST(TileSchedule, HalfTilesTakeTheirShareInConsecutiveNodes) {
