@@ -22,7 +22,7 @@ constexpr std::uint64_t kBytesPerPixel = 3 * sizeof(double);
 std::uint32_t end_of_tile_row(std::uint32_t row) { return (row / kTileSide + 1) * kTileSide; }
 
 /// Returns the end of a band of about these rows, at most `last`: where a row of tiles ends, if the
-/// band reaches one or if it becomes at most half as long again.
+/// band reaches one or if it becomes at most a quarter longer.
 std::uint32_t at_edge_of_tiles(const RowRange& rows, std::uint32_t last) {
   if (rows.last == last) {
     return last;
@@ -30,7 +30,7 @@ std::uint32_t at_edge_of_tiles(const RowRange& rows, std::uint32_t last) {
   const std::uint32_t before = rows.last / kTileSide * kTileSide;
   const std::uint32_t after = std::min(end_of_tile_row(rows.first), last);
   return before > rows.first                            ? before
-         : 2 * (after - rows.first) <= 3 * rows.count() ? after
+         : 4 * (after - rows.first) <= 5 * rows.count() ? after
                                                         : rows.last;
 }
 
