@@ -306,7 +306,7 @@ TEST(DeltaLight, ASpotsImageCoversTheSquareAroundItsCone) {
 
 /// Light selection loses no projector, individually or in the tree: their images add up.
 TEST(DeltaLight, ManyProjectorsAddUp) {
-  for (const int count : {3, 60}) {
+  for (const int count : {12, 60}) {
     SceneMaker maker;
     add_floor(maker);
     const TextureId image = maker.texture(four_values());

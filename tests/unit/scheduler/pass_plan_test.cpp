@@ -100,7 +100,7 @@ TEST(BandSizes, EndWhereARowOfTilesEndsIfTheyReachOne) {
   EXPECT_EQ(size_band(s).rows, (RowRange{10, 32}));  // not 35
   s.free.rows.first = 16;
   s.work_left = 1600;
-  EXPECT_EQ(size_band(s).rows, (RowRange{16, 32}));  // not 28, a little longer
+  EXPECT_EQ(size_band(s).rows, (RowRange{16, 28}));  // 32 would be a third longer
   s.free.rows = {16, 30};
   EXPECT_EQ(size_band(s).rows, (RowRange{16, 30}));
   s.free.rows = {16, 1010};
