@@ -284,7 +284,7 @@ absl::Status read_any(const std::string& path, const ImportChoices& choices, Sce
       "model .gltf, .glb, .obj, .fbx, .dae, .3ds, .ply, .stl or another format of Assimp"));
 }
 
-/// What is left to check when everything has been read.
+/// Runs the checks that need the whole scene.
 absl::Status check_whole(const ImportChoices& choices, const SceneDraft& draft) {
   const std::vector<std::string>& warnings = draft.out.info.warnings;
   if (choices.strict && !warnings.empty()) {

@@ -61,7 +61,7 @@ class MediumTraversal {
   /// boundaries at equal distance are processed.
   class Around {
    public:
-    /// What counts as one: a medium, or one boundary of a medium that varies in space.
+    /// The unit of counting: a medium, or one boundary of a medium that varies in space.
     struct Region {
       MediumId medium{};
       std::uint32_t boundary = 0;  ///< as in Scene::to_medium(); 0 if the medium does not vary

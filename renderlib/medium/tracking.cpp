@@ -112,7 +112,7 @@ struct FlightRate {
   }
 };
 
-/// What is at a tentative collision.
+/// The coefficients at a tentative collision.
 struct Collision {
   Vec3 at;
   Channels density;

@@ -50,7 +50,7 @@ TEST(HiddenLamp, LightsAsAVisibleOne) {
 TEST(HiddenLamp, StopsNoLightOfTheSkyOrOfOtherLamps) {
   SceneMaker maker;
   add_square(maker, hidden_lamp(maker, 1));
-  // Of twice the size at twice the distance, so of the same irradiance.
+  // Twice the size at twice the distance gives the same irradiance.
   maker.quad({-2, 2, -2}, {4, 0, 0}, {0, 0, 4}, hidden_lamp(maker, 2));
   maker.background({0.5F, 0.5F, 0.5F}, {0.5F, 0.5F, 0.5F});
   expect_irradiance(maker, 3 * kOfSquare + 0.5 * kPi);

@@ -18,7 +18,7 @@ namespace bandsaw::coordinator {
 /// The guides are rendered with at most this many samples; more do not improve the result.
 inline constexpr std::uint64_t kMaxGuideSamples = 32;
 
-/// What cleaning an image of `samples` samples per pixel needs.
+/// The parts of an image of `samples` samples per pixel that the denoiser needs.
 struct ToClean {
   const Image& mean;                     ///< as rendered
   std::optional<Film::FirstPart> first;  ///< std::nullopt: it is rendered, from half of the samples

@@ -19,7 +19,7 @@ struct Report {
   std::string pixels_sha256;         ///< empty: the image is incomplete
   std::vector<std::string> outputs;  ///< files of the image
   std::uint64_t cut_off_values = 0;  ///< values clipped in these files (output.h)
-  /// Of the clean image; absent if the image was not cleaned.
+  /// The error of the clean image; absent if the image was not cleaned.
   struct Clean {
     CleanError error;
     std::string pixels_sha256;

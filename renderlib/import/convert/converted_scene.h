@@ -17,7 +17,7 @@ struct ConvertedScene {
   /// Files that the scene names and that the converter made (meshes, images): name -> bytes. Other
   /// names are those of files below the folder of the foreign scene.
   std::map<std::string, std::string> made_files;
-  /// What has no counterpart and what stands in its place, each with its place in the source:
+  /// Features without a counterpart and their substitutes, each with its place in the source:
   /// "kitchen.pbrt:17: texture \"windy\" is shown as its mean colour".
   std::vector<std::string> warnings;
 };

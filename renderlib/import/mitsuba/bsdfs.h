@@ -14,7 +14,7 @@
 
 namespace bandsaw::mitsuba {
 
-/// What a surface of Mitsuba becomes.
+/// The result of converting a surface of Mitsuba.
 struct SurfaceMaterial {
   std::string name;     ///< of a material of ours; empty: there is no surface (null)
   bool turned = false;  ///< the geometry must be turned over: its inside is denser than its outside

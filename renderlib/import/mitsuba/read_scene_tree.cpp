@@ -186,7 +186,7 @@ class Reader {
     std::string value = node.attribute(name).value();
     std::size_t at = value.find('$');
     while (at != std::string::npos) {
-      // Of several parameters that match, the longest name counts.
+      // If several parameters match, the longest name counts.
       const std::pair<const std::string, std::string>* best = nullptr;
       for (const auto& parameter : parameters_) {
         const bool fits = value.compare(at + 1, parameter.first.size(), parameter.first) == 0;

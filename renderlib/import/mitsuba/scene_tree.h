@@ -1,7 +1,7 @@
 #pragma once
 
 // The objects of a Mitsuba scene file: includes are read, parameters replaced, references resolved.
-// What the objects mean is not known here.
+// The meaning of the objects is not known here.
 
 #include <cstdint>
 #include <deque>

@@ -31,7 +31,7 @@ class ShapeReader {
     google::protobuf::RepeatedPtrField<scene::Model>* models;
     google::protobuf::RepeatedPtrField<scene::Instance>* instances;
   };
-  /// What all kinds of shapes have.
+  /// The properties that all kinds of shapes have.
   struct Surface {
     const Object* bsdf = nullptr;
     const Object* emitter = nullptr;

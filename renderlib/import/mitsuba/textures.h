@@ -21,14 +21,14 @@ enum class UvFrame {
   kFlipped,  ///< v of ours is 1 - v of Mitsuba's
 };
 
-/// What textures need to know about the surface that they are on.
+/// The properties of a surface that its textures depend on.
 struct TexturedSurface {
   UvFrame frame = UvFrame::kSame;
   /// Images of the mesh's attributes: name -> file. They are looked up by the surface's uvs.
   std::map<std::string, std::string> attributes = {};
 };
 
-/// What a colour is for. Lights and surfaces are converted to RGB under different spectra. As a
+/// The use of a colour. Lights and surfaces are converted to RGB under different spectra. As a
 /// number, Mitsuba's checkerboard has its two values exchanged.
 enum class ColorOf { kSurface, kLight, kNumber };
 

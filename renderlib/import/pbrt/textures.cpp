@@ -21,7 +21,7 @@ scene::Texture product(scene::Texture a, scene::Texture b) {
   return out;
 }
 
-/// What the functions below share.
+/// State that the functions below share.
 struct Source {
   const Parameters& parameters;
   const State& state;
