@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "renderlib/import/spectrum/spectrum.h"
+
 namespace bandsaw::pbrt {
 namespace {
 
@@ -115,7 +117,7 @@ double illuminance_of(const Sky& sky) {
       const double phi = 2 * kPi * (k + 0.5) / kAround;
       double sum[3] = {};
       add_lookup(sky, {sine * std::cos(phi), sine * std::sin(phi), cosine}, sum);
-      total += 0.2126729 * sum[0] + 0.7151522 * sum[1] + 0.0721750 * sum[2];
+      total += spectrum::luminance({sum[0], sum[1], sum[2]});
     }
   }
   return std::max(total * kPi / (kRings * kAround), 1e-12);
