@@ -18,41 +18,57 @@ struct Index {
   double k;
 };
 
-// Johnson and Christy, Physical Review B 6 (1972).
+// Palik (ed.), "Handbook of Optical Constants of Solids" (1985): copper, silver and gold by Lynch
+// and Hunter, aluminium by Smith, Shiles and Inokuti. pbrt's spectra of these names are the same
+// data.
 constexpr std::array kCopper = {
-    Index{397.4, 1.32, 2.116}, Index{413.3, 1.28, 2.207}, Index{430.5, 1.25, 2.305},
-    Index{450.9, 1.24, 2.397}, Index{471.4, 1.25, 2.483}, Index{495.9, 1.22, 2.564},
-    Index{520.9, 1.18, 2.608}, Index{548.6, 1.02, 2.577}, Index{579.4, 0.70, 2.704},
-    Index{616.8, 0.30, 3.205}, Index{659.5, 0.22, 3.747}, Index{704.5, 0.21, 4.205},
-    Index{756.0, 0.24, 4.665}};
+    Index{387.5, 1.180, 2.210}, Index{400.0, 1.175, 2.130}, Index{413.3, 1.180, 2.210},
+    Index{427.5, 1.175, 2.289}, Index{442.8, 1.170, 2.362}, Index{459.2, 1.160, 2.433},
+    Index{476.9, 1.150, 2.504}, Index{495.9, 1.135, 2.564}, Index{516.6, 1.120, 2.605},
+    Index{539.1, 1.040, 2.583}, Index{563.6, 0.826, 2.599}, Index{590.4, 0.468, 2.809},
+    Index{619.9, 0.272, 3.240}, Index{652.6, 0.214, 3.670}, Index{688.8, 0.213, 4.050},
+    Index{729.3, 0.223, 4.430}, Index{774.9, 0.250, 4.817}};
 constexpr std::array kGold = {
-    Index{397.4, 1.47, 1.952}, Index{413.3, 1.46, 1.958}, Index{430.5, 1.45, 1.948},
-    Index{450.9, 1.38, 1.914}, Index{471.4, 1.31, 1.849}, Index{495.9, 1.04, 1.833},
-    Index{520.9, 0.62, 2.081}, Index{548.6, 0.43, 2.455}, Index{579.4, 0.29, 2.863},
-    Index{616.8, 0.21, 3.272}, Index{659.5, 0.14, 3.697}, Index{704.5, 0.13, 4.103},
-    Index{756.0, 0.14, 4.542}};
-// Lynch and Hunter in Palik, Handbook of Optical Constants of Solids (1985).
+    Index{387.5, 1.674, 1.936}, Index{400.0, 1.658, 1.956}, Index{413.3, 1.636, 1.958},
+    Index{427.5, 1.616, 1.940}, Index{442.8, 1.562, 1.904}, Index{459.2, 1.426, 1.846},
+    Index{476.9, 1.242, 1.796}, Index{495.9, 0.916, 1.840}, Index{516.6, 0.608, 2.120},
+    Index{539.1, 0.402, 2.540}, Index{563.6, 0.306, 2.880}, Index{590.4, 0.236, 2.970},
+    Index{619.9, 0.194, 3.060}, Index{652.6, 0.166, 3.150}, Index{688.8, 0.160, 3.800},
+    Index{729.3, 0.164, 4.357}, Index{774.9, 0.176, 4.860}};
 constexpr std::array kSilver = {
-    Index{400, 0.173, 1.95}, Index{450, 0.151, 2.47}, Index{496, 0.130, 2.88},
-    Index{540, 0.129, 3.25}, Index{564, 0.120, 3.45}, Index{620, 0.131, 3.88},
-    Index{653, 0.140, 4.15}, Index{689, 0.140, 4.44}, Index{729, 0.148, 4.74}};
-// Smith, Shiles and Inokuti in the same book.
-constexpr std::array kAluminium = {Index{400, 0.490, 4.86}, Index{450, 0.618, 5.47},
-                                   Index{500, 0.769, 6.08}, Index{550, 0.958, 6.69},
-                                   Index{600, 1.200, 7.26}, Index{650, 1.470, 7.79},
-                                   Index{700, 1.830, 8.31}};
-// Brass of 70 % copper: Querry, report CRDC-CR-85034 (1985).
-constexpr std::array kBrass = {Index{400, 1.445, 1.805}, Index{450, 1.430, 1.830},
-                               Index{500, 1.140, 2.030}, Index{550, 0.770, 2.360},
-                               Index{600, 0.527, 2.830}, Index{650, 0.445, 3.270},
-                               Index{700, 0.446, 3.780}};
+    Index{381.5, 0.198, 1.735}, Index{400.0, 0.173, 1.950}, Index{427.5, 0.160, 2.260},
+    Index{459.2, 0.144, 2.560}, Index{495.9, 0.130, 2.880}, Index{539.1, 0.129, 3.250},
+    Index{563.6, 0.120, 3.450}, Index{590.4, 0.121, 3.660}, Index{619.9, 0.131, 3.880},
+    Index{652.6, 0.140, 4.150}, Index{688.8, 0.140, 4.440}, Index{729.3, 0.148, 4.740},
+    Index{774.9, 0.143, 5.090}};
+constexpr std::array kAluminium = {
+    Index{387.5, 0.460, 4.710}, Index{427.5, 0.558, 5.200}, Index{459.2, 0.644, 5.580},
+    Index{495.9, 0.755, 6.030}, Index{539.1, 0.912, 6.550}, Index{590.4, 1.150, 7.150},
+    Index{619.9, 1.300, 7.480}, Index{652.6, 1.490, 7.820}, Index{688.8, 1.740, 8.210},
+    Index{729.3, 2.140, 8.570}, Index{751.4, 2.410, 8.620}, Index{774.9, 2.630, 8.600}};
+// Brass of 70 % copper: Querry, report CRDC-CR-85034 (1985), by way of refractiveindex.info.
+constexpr std::array kBrass = {
+    Index{380, 1.487, 1.818}, Index{400, 1.445, 1.805}, Index{410, 1.405, 1.794},
+    Index{420, 1.350, 1.786}, Index{430, 1.278, 1.784}, Index{440, 1.191, 1.797},
+    Index{450, 1.094, 1.829}, Index{460, 0.994, 1.883}, Index{470, 0.900, 1.957},
+    Index{480, 0.816, 2.046}, Index{490, 0.745, 2.145}, Index{500, 0.686, 2.250},
+    Index{520, 0.602, 2.464}, Index{540, 0.549, 2.668}, Index{560, 0.505, 2.860},
+    Index{580, 0.468, 3.059}, Index{600, 0.450, 3.253}, Index{620, 0.449, 3.434},
+    Index{640, 0.444, 3.609}, Index{660, 0.445, 3.778}, Index{700, 0.446, 4.106},
+    Index{740, 0.455, 4.424}, Index{780, 0.464, 4.737}};
 // Stephens and Malitson, Journal of Research of the NBS 49 (1952).
-constexpr std::array kMagnesia = {Index{400, 1.761, 0}, Index{486, 1.746, 0}, Index{589, 1.737, 0},
-                                  Index{656, 1.733, 0}, Index{700, 1.731, 0}};
-// Rutile, ordinary ray: DeVore, Journal of the Optical Society of America 41 (1951).
-constexpr std::array kTitania = {Index{430, 2.871, 0}, Index{460, 2.785, 0}, Index{500, 2.710, 0},
-                                 Index{550, 2.648, 0}, Index{600, 2.605, 0}, Index{656, 2.576, 0},
-                                 Index{700, 2.555, 0}};
+constexpr std::array kMagnesia = {
+    Index{382, 1.7668, 0},   Index{404.6, 1.7610, 0}, Index{435.8, 1.7547, 0},
+    Index{486.0, 1.7471, 0}, Index{546.2, 1.7408, 0}, Index{589.3, 1.7374, 0},
+    Index{656.3, 1.7334, 0}, Index{706.4, 1.7310, 0}, Index{767.7, 1.7287, 0}};
+// Rutile, extraordinary ray, as pbrt has it: n^2 = 7.197 + 0.3322 / (L^2 - 0.0843), L in
+// micrometres (DeVore, Journal of the Optical Society of America 41 (1951)).
+constexpr std::array kTitania = {Index{400, 3.404, 0}, Index{410, 3.341, 0}, Index{420, 3.287, 0},
+                                 Index{430, 3.240, 0}, Index{440, 3.199, 0}, Index{460, 3.132, 0},
+                                 Index{480, 3.077, 0}, Index{500, 3.033, 0}, Index{520, 2.997, 0},
+                                 Index{540, 2.966, 0}, Index{560, 2.940, 0}, Index{580, 2.918, 0},
+                                 Index{600, 2.899, 0}, Index{640, 2.867, 0}, Index{680, 2.842, 0},
+                                 Index{720, 2.822, 0}, Index{780, 2.798, 0}};
 
 template <class Table>
 Sampled column(const Table& table, bool is_eta) {

@@ -123,6 +123,12 @@ TEST(Spectrum, MetalsHaveTheirColours) {
     }
     return out;
   };
+  // Brass at 500 nm and silver at 550 nm in the tables of Querry and of Palik; rutile at 589 nm.
+  EXPECT_NEAR(spectrum::named("metal-CuZn-eta")->at(500), 0.686, 1e-3);
+  EXPECT_NEAR(spectrum::named("metal-CuZn-k")->at(500), 2.250, 1e-3);
+  EXPECT_NEAR(spectrum::named("metal-Ag-eta")->at(551), 0.125, 2e-3);
+  EXPECT_NEAR(spectrum::named("metal-TiO2-eta")->at(589.3), 2.909, 2e-3);
+  EXPECT_NEAR(spectrum::named("glass-F11")->at(604), 1.78228, 1e-4);
   EXPECT_GT(reflectance("Au")[0], 0.9);
   EXPECT_LT(reflectance("Au")[2], 0.5);
   EXPECT_GT(reflectance("Cu")[0], reflectance("Cu")[2] + 0.3);
