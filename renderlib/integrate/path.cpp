@@ -119,6 +119,22 @@ bool is_metal(const Material& material) {
          std::holds_alternative<Conductor>(material.kind);
 }
 
+/// Returns true for a pane that light passes even after the last scattering that counts.
+bool has_free_passage(const Material& material) {
+  const auto* pane = std::get_if<ThinDielectric>(&material.kind);
+  return pane != nullptr && pane->free_passage;
+}
+
+/// Counts a sampled scattering. Returns false, and marks the path as truncated, if it may not
+/// happen.
+bool count(const PathContext& context, const BsdfSample& next, std::uint32_t depth,
+           PathState& path) {
+  const bool ends = next.counts ? context.is_at_end(path, depth) : path.uncounted == kMaxUncounted;
+  path.uncounted += next.counts || ends ? 0 : 1;
+  path.truncated = path.truncated || ends;
+  return !ends;
+}
+
 /// Continues from a surface, as scattering `depth`, in all directions into which the path is split.
 void trace_branches(const PathContext& context, const SurfacePoint& point, const Bsdf& bsdf,
                     std::uint32_t depth, PathState& path) {
@@ -179,7 +195,7 @@ std::optional<Bsdf> make_bsdf(const PathContext& context, const SurfacePoint& po
   if (std::holds_alternative<Emissive>(material.kind)) {
     return std::nullopt;
   }
-  if (depth >= context.options.max_depth) {
+  if (context.is_at_end(path, depth) && !has_free_passage(material)) {
     path.truncated = true;
     return std::nullopt;
   }
@@ -230,7 +246,7 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
   // BSDF sampling.
   const Sample4 numbers = context.numbers(group_bsdf(depth));
   const std::optional<BsdfSample> next = sample(bsdf, numbers[0], numbers[1], numbers[2]);
-  if (!next) {
+  if (!next || !count(context, *next, depth, path)) {
     return false;
   }
   // Unless light sampling covered both sides, transmitted directions keep MIS weight 1.

@@ -10,6 +10,10 @@
 
 namespace bandsaw {
 
+/// Maximum value of PathState::uncounted: with it, a path of 1024 scatterings that count stays below
+/// the 2^11 scatterings for which there are random numbers (sampling/sampler.h).
+inline constexpr std::uint32_t kMaxUncounted = 1000;
+
 struct PathState {
   /// Starts a path with this ray. (As an aggregate, all of it would be zeroed first, including the
   /// large `NestedDielectrics`.)
@@ -22,6 +26,8 @@ struct PathState {
   /// out, because it is no loss of energy.
   double compression = 1;
   PreviousVertex previous = {};
+  /// Number of scatterings that do not count towards `max_depth` (BsdfSample::counts).
+  std::uint32_t uncounted = 0;
   bool truncated = false;          ///< see PathCounts::truncated
   NestedDielectrics nesting = {};  ///< glasses that contain the path
 };
@@ -45,6 +51,10 @@ struct PathContext {
   /// numbers that are never used.
   NumberStream stream(std::uint32_t group) const {
     return scene.features().grids ? sampler.stream(sample, group) : NumberStream(0);
+  }
+  /// Returns true if the path may not be scattered as number `depth`.
+  bool is_at_end(const PathState& path, std::uint32_t depth) const {
+    return depth - path.uncounted >= options.max_depth;
   }
   bool samples_lights() const {
     return scene.features().lights && options.technique != Technique::kScatteringOnly;

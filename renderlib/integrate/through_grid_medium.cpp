@@ -121,7 +121,7 @@ MediumEvent through_grid_medium(const PathContext& context, const Ray& ray,
   const GridRay in_space = in_medium_space(context.scene, ray, part);
   const PathOptions& options = context.options;
   const bool scatters = segment.medium().scatters();
-  const bool is_last = depth >= options.max_depth;
+  const bool is_last = context.is_at_end(path, depth);
   if (scatters && !is_last && !options.local) {
     return fly_through(segment, in_space, path);
   }

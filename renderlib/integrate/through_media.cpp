@@ -153,7 +153,7 @@ MediumEvent through_homogeneous_medium(const PathContext& context, const Ray& ra
                                        std::uint32_t depth, PathState& path) {
   const double length = part.end - part.begin;
   const FreeFlight free_flight(*part.medium, path.throughput, length);
-  const bool may_scatter = depth < context.options.max_depth;
+  const bool may_scatter = !context.is_at_end(path, depth);
   path.truncated = path.truncated || (!may_scatter && free_flight.scatter_probability() > 0);
   const double scatter_probability = may_scatter ? free_flight.scatter_probability() : 0;
   const Vec3 origin = ray.origin + ray.direction * part.begin;

@@ -190,8 +190,7 @@ Bsdf bsdf_at(const Material& material, absl::Span<const Texture> textures,
                                 normal, wo);
           },
           [&](const ThinDielectric& m) -> Bsdf {
-            return thin_dielectric(for_mirror(normal, wo), wo, m.index_of_refraction, m.specular,
-                                   m.transmission);
+            return thin_dielectric(m, for_mirror(normal, wo), wo);
           },
           [&](const DiffuseTransmission& m) -> Bsdf {
             return diffuse_transmission(normal, color(m.reflectance), color(m.transmittance));

@@ -23,6 +23,7 @@ struct BsdfSample {
   /// `weight`; otherwise 1. Refraction compresses radiance in the denser medium: L / index^2 is
   /// invariant along a ray.
   double compression = 1;
+  bool counts = true;  ///< whether it counts towards max_depth (ThinDielectric::free_passage)
 };
 
 struct BsdfValue {

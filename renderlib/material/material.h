@@ -132,6 +132,7 @@ struct ThinDielectric {
   double index_of_refraction = 1.5;  ///< [1, 5]
   Rgb specular{1, 1, 1};             ///< factor of the reflected light, [0, 1]
   Rgb transmission{1, 1, 1};         ///< factor of the transmitted light, [0, 1]
+  bool free_passage = false;         ///< light that passes does not count towards max_depth
 };
 
 /// Lambertian reflection and transmission. Where their sum exceeds 1, both are scaled. Vertex

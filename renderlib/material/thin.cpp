@@ -19,13 +19,14 @@ double chance_of(const Rgb& first, const Rgb& second) {
 
 }  // namespace
 
-ThinDielectricBsdf thin_dielectric(const SidedNormals& normal, const Vec3& wo, double eta,
-                                   const Rgb& specular, const Rgb& transmission) {
-  const double face = fresnel(std::min(1.0, dot(wo, normal.shading)), eta);
-  const double pane = 2 * face / (1 + face);
-  ThinDielectricBsdf bsdf{normal, wo, specular * static_cast<float>(pane),
-                          transmission * static_cast<float>(1 - pane)};
+ThinDielectricBsdf thin_dielectric(const ThinDielectric& pane, const SidedNormals& normal,
+                                   const Vec3& wo) {
+  const double face = fresnel(std::min(1.0, dot(wo, normal.shading)), pane.index_of_refraction);
+  const double both = 2 * face / (1 + face);
+  ThinDielectricBsdf bsdf{normal, wo, pane.specular * static_cast<float>(both),
+                          pane.transmission * static_cast<float>(1 - both)};
   bsdf.reflection = chance_of(bsdf.reflected, bsdf.transmitted);
+  bsdf.free_passage = pane.free_passage;
   return bsdf;
 }
 
@@ -41,6 +42,7 @@ std::optional<BsdfSample> sample(const ThinDielectricBsdf& bsdf, double lobe) {
     return std::nullopt;
   }
   sample.wi = -bsdf.wo;
+  sample.counts = !bsdf.free_passage;
   sample.weight = bsdf.transmitted * static_cast<float>(1 / (1 - bsdf.reflection));
   return sample;
 }

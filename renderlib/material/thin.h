@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "renderlib/material/bsdf_sample.h"
+#include "renderlib/material/material.h"
 #include "renderlib/math/rgb.h"
 
 namespace bandsaw {
@@ -17,10 +18,11 @@ struct ThinDielectricBsdf {
   Rgb reflected;  ///< share of the pane times its colour
   Rgb transmitted;
   double reflection = 0;  ///< probability with which the reflection is sampled
+  bool free_passage = false;
 };
 
-ThinDielectricBsdf thin_dielectric(const SidedNormals& normal, const Vec3& wo, double eta,
-                                   const Rgb& specular, const Rgb& transmission);
+ThinDielectricBsdf thin_dielectric(const ThinDielectric& pane, const SidedNormals& normal,
+                                   const Vec3& wo);
 std::optional<BsdfSample> sample(const ThinDielectricBsdf& bsdf, double lobe);
 
 /// Lambertian reflection and transmission: reflectance / pi and transmittance / pi.

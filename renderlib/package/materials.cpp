@@ -90,6 +90,7 @@ struct EncodeKind {
     pane.set_index_of_refraction(m.index_of_refraction);
     encode(m.specular, *pane.mutable_specular());
     encode(m.transmission, *pane.mutable_transmission());
+    pane.set_free_passage(m.free_passage);
   }
   void operator()(const DiffuseTransmission& m) const {
     to.mutable_diffuse_transmission()->set_reflectance(number_of(m.reflectance));
@@ -194,6 +195,7 @@ absl::StatusOr<ThinDielectric> decode(const package::ThinDielectric& from,
   ThinDielectric to{from.index_of_refraction()};
   ASSIGN_OR_RETURN(to.specular, decode_rgb(from.specular(), field + ".specular"));
   ASSIGN_OR_RETURN(to.transmission, decode_rgb(from.transmission(), field + ".transmission"));
+  to.free_passage = from.free_passage();
   return to;
 }
 

@@ -182,6 +182,7 @@ class BsdfReader {
     ASSIGN_OR_RETURN(const double index, relative_index(from, "bk7", draft));
     draft.turned = false;  // it is the same on both sides
     to.set_index_of_refraction(std::clamp(index, 1.0, 5.0));
+    to.set_free_passage(to_.passages_are_free);
     RETURN_IF_ERROR(
         color_only(from, "specular_reflectance", [&] { return to.mutable_specular(); }));
     return color_only(from, "specular_transmittance", [&] { return to.mutable_transmission(); });

@@ -16,6 +16,9 @@ struct Conversion {
   const Files& files;
   MadeFiles& made;
   std::vector<std::string>& warnings;
+  /// The integrator is "volpath" or "volpathmis", which do not count the passage through a thin
+  /// pane towards max_depth. "path" does.
+  bool passages_are_free = false;
 
   /// Adds "scene.xml:12: <what>", unless it is there already.
   void warn(const Place& place, const std::string& what);

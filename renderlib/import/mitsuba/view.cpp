@@ -215,6 +215,7 @@ absl::Status set_integrator(const Object& integrator, scene::Scene& scene, Conve
                                          " shows light sources only; 2, "
                                          "direct light, stands in its place"));
     }
+    to.passages_are_free = type == "volpath" || type == "volpathmis";
     // Mitsuba counts the segments of a path, we the vertices between them.
     out.set_max_depth(static_cast<std::uint32_t>(
         depth < 0 ? kMaxDepth : std::clamp<std::int64_t>(depth - 1, 1, kMaxDepth)));

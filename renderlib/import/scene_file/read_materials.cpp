@@ -96,6 +96,7 @@ absl::StatusOr<Material> read_thin_dielectric(const Field& in, const scene::Thin
     ASSIGN_OR_RETURN(pane.transmission,
                      read_color(in.child("transmission"), from.transmission(), kMaxReflectance));
   }
+  pane.free_passage = from.free_passage();
   return pane;
 }
 

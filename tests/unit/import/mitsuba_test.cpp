@@ -109,6 +109,19 @@ TEST_F(MitsubaScene, DepthCountsVertices) {
             1u);
 }
 
+TEST_F(MitsubaScene, TheVolumetricPathTracerDoesNotCountThinPanes) {
+  const auto is_free = [&](const std::string& integrator) {
+    return scene("<integrator type=\"" + integrator + "\"/>" +
+                 rectangle("<bsdf type=\"thindielectric\"/>"))
+        .material(0)
+        .thin_dielectric()
+        .free_passage();
+  };
+  EXPECT_TRUE(is_free("volpath"));
+  EXPECT_TRUE(is_free("volpathmis"));
+  EXPECT_FALSE(is_free("path"));
+}
+
 TEST_F(MitsubaScene, ParametersHaveDefaultsAndValues) {
   const std::string text =
       "<default name=\"r\" value=\"2\"/><shape type=\"sphere\">"

@@ -74,6 +74,38 @@ TEST(Path, LosslessGlassAndMirrorsAreInvisibleInAUniformSky) {
   }
 }
 
+/// A lamp of radiance 8 behind panes that reflect nothing and pass half of the light, in a row.
+std::shared_ptr<const Scene> behind_panes(int count, const ThinDielectric& pane) {
+  SceneMaker maker;
+  const MaterialId material{static_cast<std::uint32_t>(maker.scene.materials.size())};
+  maker.scene.materials.emplace_back(pane);
+  for (int i = 0; i < count; ++i) {
+    maker.quad({-1, -1, 4 - i * 0.001}, {2, 0, 0}, {0, 2, 0}, material);
+  }
+  maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.lamp(8));
+  return maker.build();
+}
+
+TEST(Path, AFreePassageDoesNotCountTowardsTheDepth) {
+  constexpr double kIndex = 1.00001;  // of a pane that reflects nothing in float
+  const ThinDielectric counted{kIndex, {0, 0, 0}, gray(0.5f)};
+  const ThinDielectric free{kIndex, {0, 0, 0}, gray(0.5f), true};
+  expect_always(*behind_panes(2, counted), kAhead, 2, 1e-6, 2);
+  expect_always(*behind_panes(2, counted), kAhead, 0, 0, 1);
+  expect_always(*behind_panes(2, free), kAhead, 2, 1e-6, 1);
+  // After the last scattering that counts, a pane passes light, but reflects none.
+  SceneMaker mirrored;
+  mirrored.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, mirrored.metal(1, 0));
+  const MaterialId pane{static_cast<std::uint32_t>(mirrored.scene.materials.size())};
+  mirrored.scene.materials.emplace_back(free);
+  mirrored.quad({-1, -1, 3}, {2, 0, 0}, {0, 2, 0}, pane);
+  mirrored.quad({-1, -1, 6}, {2, 0, 0}, {0, 2, 0}, mirrored.lamp(8));
+  expect_always(*mirrored.build(), kAhead, 2, 1e-6, 1);
+  const ThinDielectric clear{kIndex, {0, 0, 0}, gray(1), true};
+  EXPECT_NEAR(trace(*behind_panes(900, clear), kAhead, 0, {.max_depth = 1}).g, 8, 1e-5);
+  EXPECT_EQ(trace(*behind_panes(1100, clear), kAhead, 0, {.max_depth = 1}).g, 0) << "it ends";
+}
+
 TEST(Path, ATinyGlassSphereAndAThinPaneAreEnteredAndLeft) {
   for (const double size : {1e-4, 1e-6}) {
     SceneMaker maker;

@@ -417,6 +417,13 @@ TEST(ThinDielectric, ReflectsWithTheReflectionsInside) {
   const double pane = 2 * face / (1 + face);
   EXPECT_NEAR(passed->weight.r * (1 - pane), 0.5 * (1 - pane), 1e-6);
   EXPECT_NEAR(passed->weight.g, 1, 1e-6);
+  EXPECT_TRUE(passed->counts);
+}
+
+TEST(ThinDielectric, AFreePassageAloneDoesNotCount) {
+  const Bsdf b = bsdf(ThinDielectric{.free_passage = true}, {0.3, 0, 1});
+  EXPECT_TRUE(sample(b, 0, 0, 0)->counts) << "the reflection";
+  EXPECT_FALSE(sample(b, 0, 0, 0.999)->counts);
 }
 
 }  // namespace

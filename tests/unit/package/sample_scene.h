@@ -77,7 +77,7 @@ inline void add_surfaces(SceneDescription& scene) {
   const Number mapped{0.75, TextureId{4}};
   scene.materials.emplace_back(Plastic{TextureId{0}, 1.9, {}, {1, 0.5f, 0}, true});
   scene.materials.emplace_back(Conductor{ConductorIndex{{1, 2, 0.5f}, {3, 0, 1}}, brushed});
-  scene.materials.emplace_back(ThinDielectric{1.25, {1, 0.5f, 0}, {0, 1, 0.25f}});
+  scene.materials.emplace_back(ThinDielectric{1.25, {1, 0.5f, 0}, {0, 1, 0.25f}, true});
   scene.materials.emplace_back(DiffuseTransmission{TextureId{0}, TextureId{1}});
   scene.materials.emplace_back(Principled{
       TextureId{1}, 1.25, {0.1}, {0.2}, mapped, {0.3}, {0.4}, {0.5}, {0.6}, mapped, {0.7}, {0.8}});
