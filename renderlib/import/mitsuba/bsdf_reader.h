@@ -1,0 +1,80 @@
+#pragma once
+
+// Reads one bsdf, with the wrappers around it, as a material.
+
+#include <functional>
+#include <string>
+
+#include "absl/status/statusor.h"
+#include "proto/scene.pb.h"
+#include "renderlib/import/mitsuba/conversion.h"
+#include "renderlib/import/mitsuba/textures.h"
+
+namespace bandsaw::mitsuba {
+
+/// Properties that wrappers around a bsdf give to it (twosided, mask, normalmap, bumpmap), and the
+/// result so far.
+struct Draft {
+  scene::Material material;
+  bool two_sided = false;
+  bool turned = false;
+  bool transmits = false;  ///< has no black side
+};
+
+class BsdfReader {
+ public:
+  /// Both MUST outlive this object.
+  BsdfReader(const TexturedSurface& surface, Conversion& to) : surface_(surface), to_(to) {}
+
+  /// Adds what the bsdf says to `draft`. Warns of what has no counterpart.
+  absl::Status read(const Object& bsdf, Draft& draft);
+
+ private:
+  absl::Status read_kind(const Parameters& from, Draft& draft);
+  /// Sets a colour, or a texture if it varies. Absent: the field stays unset.
+  absl::Status color_or_texture(const Parameters& from, const std::string& name,
+                                const std::function<scene::Color*()>& color,
+                                const std::function<scene::Texture*()>& texture);
+  /// Sets a colour; of a texture, a warning and no colour.
+  absl::Status color_only(const Parameters& from, const std::string& name,
+                          const std::function<scene::Color*()>& color);
+  absl::Status diffuse(const Parameters& from, Draft& draft);
+  /// Returns the index of the inside divided by that of the outside; above 1, turned over if
+  /// needed.
+  absl::StatusOr<double> relative_index(const Parameters& from, const char* inside, Draft& draft);
+  absl::StatusOr<scene::Microfacets> microfacets(const Parameters& from, double otherwise);
+  absl::Status dielectric(const Parameters& from, Draft& draft);
+  absl::Status warn_of_tints(const Parameters& from);
+  absl::Status thin_dielectric(const Parameters& from, Draft& draft);
+  absl::Status set_metal(const Parameters& from, scene::Conductor& to);
+  absl::Status conductor(const Parameters& from, Draft& draft);
+  absl::Status plastic(const Parameters& from, Draft& draft);
+  absl::Status diffuse_transmission(const Parameters& from, Draft& draft);
+  /// A highlight of version 0.x as a coat of plastic with the given alpha.
+  absl::Status highlight(const Parameters& from, double alpha, Draft& draft);
+  absl::Status phong(const Parameters& from, Draft& draft);
+  absl::Status ward(const Parameters& from, Draft& draft);
+
+  // principled_bsdfs.cpp
+  absl::Status parameter(const Parameters& from, const std::string& name, double most,
+                         const std::function<scene::Parameter*()>& field);
+  absl::Status principled(const Parameters& from, Draft& draft);
+  absl::Status thin_principled(const Parameters& from, Draft& draft);
+
+  // bsdf_wrappers.cpp
+  /// Returns the only bsdf inside a wrapper.
+  absl::StatusOr<const Object*> inner(const Parameters& from);
+  absl::Status two_sided(const Parameters& from, Draft& draft);
+  absl::Status mask(const Parameters& from, Draft& draft);
+  absl::Status normal_map(const Parameters& from, Draft& draft);
+  absl::Status bump_map(const Parameters& from, Draft& draft);
+  absl::Status coating(const Parameters& from, Draft& draft);
+
+  const TexturedSurface& surface_;
+  Conversion& to_;
+};
+
+/// Returns the object that a property holds; nullptr if it holds something else.
+const Object* object_in(const Property& property);
+
+}  // namespace bandsaw::mitsuba
