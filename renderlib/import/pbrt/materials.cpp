@@ -77,6 +77,7 @@ absl::StatusOr<Roughness> read_roughness(const Source& from, const std::string& 
 
 void set_microfacets(const Roughness& roughness, scene::Microfacets* to) {
   to->set_distribution(scene::Microfacets::DISTRIBUTION_GGX);
+  to->set_masking(scene::Microfacets::MASKING_CORRELATED);
   if (roughness.texture) {
     to->set_alpha(1);
     *to->mutable_alpha_texture() = *roughness.texture;
@@ -250,12 +251,7 @@ absl::Status dielectric(const Source& from, Surface& to) {
   scene::Dielectric& glass = *to.material.mutable_dielectric();
   glass.set_index_of_refraction(index);
   if (!roughness.is_smooth()) {
-    glass.set_roughness(std::sqrt(roughness.mean()));  // ours is the square root of alpha
-    if (roughness.texture || roughness.alpha[0] != roughness.alpha[1]) {
-      from.builder.warn(from.place(), roughness.texture
-                                          ? "the glass has a roughness of 1 instead of a texture"
-                                          : "the glass' roughness is the mean of u and v");
-    }
+    set_microfacets(roughness, glass.mutable_surface());
   }
   to.transmits = true;
   return absl::OkStatus();

@@ -3,6 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "renderlib/math/elementary.h"
 
 namespace bandsaw::pbrt {
 namespace {
@@ -31,7 +37,7 @@ void set_rotation(const Vec3 columns[3], Pose& pose) {
   const double sine = length(v);
   if (sine > 1e-12) {
     pose.axis = v / sine;
-    pose.degrees = 2 * std::atan2(sine, w) * 180 / std::numbers::pi;
+    pose.degrees = 2 * atan2(sine, w) * 180 / std::numbers::pi;
   }
 }
 
@@ -46,18 +52,88 @@ void add_key(double time, const Pose& pose, scene::Key& key) {
   }
 }
 
+/// Returns the list of the group that is open, or of the scene, to which things are added.
+auto& models(Builder& builder) {
+  return builder.group != nullptr ? *builder.group->mutable_model() : *builder.out.mutable_model();
+}
+auto& instances(Builder& builder) {
+  return builder.group != nullptr ? *builder.group->mutable_instance()
+                                  : *builder.out.mutable_instance();
+}
+void add(scene::Model placed, Builder& builder) { *models(builder).Add() = std::move(placed); }
+void add(scene::Instance placed, Builder& builder) {
+  *instances(builder).Add() = std::move(placed);
+}
+
 template <class Placed>
-void add_any_keys(const Transforms& transforms, const Place& place, Placed& to, Builder& builder) {
+void set_keys(const Pose& first, const Pose& second, const Builder& builder, Placed& to) {
+  add_key(builder.start_time, first, *to.add_key());
+  add_key(builder.end_time, second, *to.add_key());
+}
+
+template <class Placed>
+Placed& add_to(scene::Group& group, Placed placed) {
+  if constexpr (std::is_same_v<Placed, scene::Model>) {
+    return *group.add_model() = std::move(placed);
+  } else {
+    return *group.add_instance() = std::move(placed);
+  }
+}
+
+/// Adds what is sheared and moves without changing that shear: the second transformation is a pose
+/// after the first. Returns false if it is not.
+template <class Placed>
+bool add_sheared(const Transforms& transforms, Placed& placed, Builder& builder) {
+  const auto back = inverse(transforms[0]);
+  const auto moved = back ? pose_of(transforms[1] * *back) : std::nullopt;
+  if (!moved) {
+    return false;
+  }
+  // The pose turns about the origin of the shape.
+  const Vec3 origin = transforms[0].point({0, 0, 0});
+  Pose first;
+  first.translate = origin;
+  Pose second = *moved;
+  second.translate = transforms[1].point({0, 0, 0});
+  std::string name;
+  scene::Group& group = add_helper_group(builder, name);
+  set_matrix(translation(-origin) * transforms[0], placed.mutable_matrix());
+  add_to(group, std::move(placed));
+  scene::Instance instance;
+  instance.set_of(name);
+  set_keys(first, second, builder, instance);
+  add(std::move(instance), builder);
+  return true;
+}
+
+template <class Placed>
+void add_moving(const Place& place, const Transforms& transforms, Placed placed, Builder& builder) {
+  builder.has_motion = true;
+  const bool same_side = determinant(transforms[0]) * determinant(transforms[1]) > 0;
+  const bool has_times = builder.start_time < builder.end_time;
   const auto first = pose_of(transforms[0]);
   const auto second = pose_of(transforms[1]);
-  const bool same_side = determinant(transforms[0]) * determinant(transforms[1]) > 0;
-  if (!first || !second || !same_side || !(builder.start_time < builder.end_time)) {
+  if (same_side && has_times && first && second) {
+    set_keys(*first, *second, builder, placed);
+  } else if (same_side && has_times && add_sheared(transforms, placed, builder)) {
+    return;
+  } else {
     builder.warn(place, "the shape stands still: its motion shears or mirrors it");
-    set_matrix(transforms[0], to.mutable_matrix());
+    set_matrix(transforms[0], placed.mutable_matrix());
+  }
+  add(std::move(placed), builder);
+}
+
+template <class Placed>
+void add_any(const Place& place, const Transforms& transforms, Placed placed, Builder& builder) {
+  if (!(transforms[0] == transforms[1])) {
+    add_moving(place, transforms, std::move(placed), builder);
     return;
   }
-  add_key(builder.start_time, *first, *to.add_key());
-  add_key(builder.end_time, *second, *to.add_key());
+  if (!(transforms[0] == Transform{})) {
+    set_matrix(transforms[0], placed.mutable_matrix());
+  }
+  add(std::move(placed), builder);
 }
 
 }  // namespace
@@ -89,24 +165,29 @@ std::optional<Pose> pose_of(const Transform& t) {
   return pose;
 }
 
-void add_keys(const Transforms& transforms, const Place& place, scene::Model& to,
-              Builder& builder) {
-  add_any_keys(transforms, place, to, builder);
-}
-
-void add_keys(const Transforms& transforms, const Place& place, scene::Instance& to,
-              Builder& builder) {
-  add_any_keys(transforms, place, to, builder);
-}
-
-void place_instance(const Place& place, const Transforms& transforms, scene::Instance& to,
-                    Builder& builder) {
-  if (!(transforms[0] == transforms[1])) {
-    builder.has_motion = true;
-    add_keys(transforms, place, to, builder);
-  } else if (!(transforms[0] == Transform{})) {
-    set_matrix(transforms[0], to.mutable_matrix());
+scene::Group& add_helper_group(Builder& builder, std::string& name) {
+  name = absl::StrCat("part_", ++builder.helper_groups);
+  auto& groups = *builder.out.mutable_group();
+  scene::Group* group = groups.Add();
+  if (builder.group != nullptr) {
+    // A group must come before the one in which it is placed, which ObjectBegin has opened.
+    const int last = groups.size() - 1;
+    groups.SwapElements(last - 1, last);
+    builder.group = groups.Mutable(last);
+    group = groups.Mutable(last - 1);
   }
+  group->set_name(name);
+  return *group;
+}
+
+void add_placed(const Place& place, const Transforms& transforms, scene::Model model,
+                Builder& builder) {
+  add_any(place, transforms, std::move(model), builder);
+}
+
+void add_placed(const Place& place, const Transforms& transforms, scene::Instance instance,
+                Builder& builder) {
+  add_any(place, transforms, std::move(instance), builder);
 }
 
 }  // namespace bandsaw::pbrt

@@ -17,14 +17,16 @@ struct Pose {
 /// Returns the pose whose transformation is `t`; std::nullopt if `t` shears.
 std::optional<Pose> pose_of(const Transform& t);
 
-/// Sets the keys of a model or instance that moves from the first transformation to the second. If
-/// one of them shears, it stands at the first, with a warning.
-void add_keys(const Transforms& transforms, const Place& place, scene::Model& to, Builder& builder);
-void add_keys(const Transforms& transforms, const Place& place, scene::Instance& to,
-              Builder& builder);
+/// Adds a group that things are placed in, before the group that ObjectBegin has opened, and sets
+/// its name.
+scene::Group& add_helper_group(Builder& builder, std::string& name);
 
-/// Places an instance by its matrix, or by keys if it moves.
-void place_instance(const Place& place, const Transforms& transforms, scene::Instance& to,
-                    Builder& builder);
+/// Adds a model or an instance to the open group or to the scene, placed by its matrix, or by keys
+/// if it moves. What changes its shear or its side stands at the first transformation, with a
+/// warning.
+void add_placed(const Place& place, const Transforms& transforms, scene::Model model,
+                Builder& builder);
+void add_placed(const Place& place, const Transforms& transforms, scene::Instance instance,
+                Builder& builder);
 
 }  // namespace bandsaw::pbrt

@@ -10,6 +10,7 @@
 #include "renderlib/import/pbrt/builder.h"
 #include "renderlib/import/pbrt/mesh_shapes.h"
 #include "renderlib/import/pbrt/motion.h"
+#include "renderlib/math/elementary.h"
 
 namespace bandsaw::pbrt {
 namespace {
@@ -68,44 +69,13 @@ absl::StatusOr<std::string> interior_of(const Shape& shape, const Sides& sides,
   return medium_name(sides.inside, shape.place(), to_shape, shape.builder);
 }
 
-scene::Group* group_or_new(Builder& builder, std::string& name) {
-  name = absl::StrCat("part_", ++builder.helper_groups);
-  auto* group = builder.out.add_group();
-  group->set_name(name);
-  return group;
-}
-
-template <class Placed>
-void place(const Shape& shape, const Transforms& transforms, Placed& to) {
-  if (is_moving(shape.state)) {
-    add_keys(transforms, shape.place(), to, shape.builder);
-  } else if (!(transforms[0] == Transform{})) {
-    set_matrix(transforms[0], to.mutable_matrix());
-  }
-}
-
 /// Adds a sphere or disk that is written in the shape's own space.
 void add_local(const Shape& shape, const scene::Shape& local) {
-  Builder& builder = shape.builder;
   std::string name;
-  // A group within the one that ObjectBegin opened must come before it.
-  scene::Group* group = nullptr;
-  if (builder.group != nullptr) {
-    builder.out.mutable_group()->Add();
-    auto* groups = builder.out.mutable_group();
-    groups->SwapElements(groups->size() - 1, groups->size() - 2);
-    group = groups->Mutable(groups->size() - 2);
-    builder.group = groups->Mutable(groups->size() - 1);
-    name = absl::StrCat("part_", ++builder.helper_groups);
-    group->set_name(name);
-  } else {
-    group = group_or_new(builder, name);
-  }
-  *group->add_shape() = local;
-  scene::Instance& instance =
-      builder.group != nullptr ? *builder.group->add_instance() : *builder.out.add_instance();
+  *add_helper_group(shape.builder, name).add_shape() = local;
+  scene::Instance instance;
   instance.set_of(name);
-  place(shape, shape.state.transforms, instance);
+  add_placed(shape.place(), shape.state.transforms, std::move(instance), shape.builder);
 }
 
 void add_world(const Shape& shape, scene::Shape world) {
@@ -216,10 +186,7 @@ absl::Status add_model(const Shape& shape, const std::string& file, bool closed,
     model.set_boundary_only(true);
   }
   model.set_file(file);
-  place(shape, shape.state.transforms, model);
-  Builder& builder = shape.builder;
-  *(builder.group != nullptr ? builder.group->add_model() : builder.out.add_model()) =
-      std::move(model);
+  add_placed(shape.place(), shape.state.transforms, std::move(model), shape.builder);
   return absl::OkStatus();
 }
 
@@ -318,7 +285,8 @@ absl::StatusOr<bool> add_whole_quadric(Shape& shape, Sides sides) {
   if (!(r > 0 && r < 1e30)) {
     return error_at(in.place, absl::StrCat("\"radius\" must be > 0, is ", r));
   }
-  const double scale = std::cbrt(std::abs(determinant(shape.state.transforms[0])));
+  const double volume = std::abs(determinant(shape.state.transforms[0]));
+  const double scale = volume > 0 ? pow(volume, 1.0 / 3) : 0;
   const bool is_sphere = shape.type == "sphere";
   ASSIGN_OR_RETURN(const double zmin, in.number("zmin", -r));
   ASSIGN_OR_RETURN(const double zmax, in.number("zmax", r));

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/math/elementary.h"
 
 namespace bandsaw::pbrt {
 namespace {
@@ -112,36 +114,82 @@ absl::Status read_integrator(const ViewSource& view, Builder& builder) {
   return absl::OkStatus();
 }
 
-/// Sets position and direction by the camera's axes in the world. Returns the camera's unit of
-/// length in the world.
+/// Where the camera is at one time, in the world.
+struct CameraPlace {
+  Vec3 position;
+  Vec3 ahead;       ///< unit
+  Vec3 up;          ///< unit
+  double unit = 1;  ///< the camera's unit of length
+  bool is_mirrored = false;
+  bool is_stretched = false;
+};
+
+CameraPlace place_of(const Transform& to_world) {
+  const Vec3 right = to_world.direction({1, 0, 0});
+  const Vec3 up = to_world.direction({0, 1, 0});
+  const Vec3 forward = to_world.direction({0, 0, 1});
+  CameraPlace place;
+  place.unit = length(forward);
+  place.position = to_world.point({0, 0, 0});
+  place.ahead = forward / place.unit;
+  place.up = up / length(up);
+  // x, y and z of pbrt's camera are left-handed: right is y x z.
+  place.is_mirrored = dot(cross(forward, up), right) < 0;
+  const double limit = 1e-3 * place.unit;
+  place.is_stretched = std::abs(length(up) - place.unit) > limit ||
+                       std::abs(length(right) - place.unit) > limit ||
+                       std::abs(dot(up, forward)) > limit * place.unit ||
+                       std::abs(dot(right, up)) > limit * place.unit;
+  return place;
+}
+
+void add_track(const char* field, const Vec3& first, const Vec3& second, Builder& builder) {
+  scene::Track& track = *builder.out.add_track();
+  track.set_field(field);
+  const std::pair<double, Vec3> keys[] = {{builder.start_time, first}, {builder.end_time, second}};
+  for (const auto& [time, value] : keys) {
+    scene::TrackKey& key = *track.add_key();
+    key.set_time(time);
+    set_vec3(value, key.mutable_value());
+  }
+}
+
+/// Sets position and direction by the camera's axes in the world, at both times if it moves.
+/// Returns the camera's unit of length in the world.
 absl::StatusOr<double> set_place(const ViewSource& view, Builder& builder) {
-  const Place& place = view.camera ? view.camera->second.place : view.medium_place;
-  const auto to_world = inverse(view.to_camera[0]);
-  if (!to_world) {
-    return error_at(place, "the camera's transformation is singular");
+  const Place& written = view.camera ? view.camera->second.place : view.medium_place;
+  CameraPlace places[2];
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto to_world = inverse(view.to_camera[k]);
+    if (!to_world) {
+      return error_at(written, "the camera's transformation is singular");
+    }
+    places[k] = place_of(*to_world);
   }
-  if (!(view.to_camera[0] == view.to_camera[1])) {
-    builder.warn(place, "the camera does not move: it stands where it is at the start");
-  }
-  const Vec3 right = to_world->direction({1, 0, 0});
-  const Vec3 up = to_world->direction({0, 1, 0});
-  const Vec3 forward = to_world->direction({0, 0, 1});
-  const double unit = length(forward);
-  if (std::abs(length(up) - unit) > 1e-3 * unit || std::abs(length(right) - unit) > 1e-3 * unit ||
-      std::abs(dot(up, forward)) > 1e-3 * unit * unit ||
-      std::abs(dot(right, up)) > 1e-3 * unit * unit) {
-    builder.warn(place, "the camera's transformation stretches or shears; its direction is kept");
+  const auto& [first, second] = places;
+  if (first.is_stretched || second.is_stretched) {
+    builder.warn(written, "the camera's transformation stretches or shears; its direction is kept");
   }
   scene::Camera& camera = *builder.out.mutable_camera();
-  const Vec3 position = to_world->point({0, 0, 0});
   // The point is so far ahead that the sum keeps the precision of the direction.
-  const double ahead = std::max(1.0, max_abs(position));
-  set_vec3(position, camera.mutable_position());
-  set_vec3(position + forward / unit * ahead, camera.mutable_look_at());
-  set_vec3(up / length(up), camera.mutable_up());
-  // x, y and z of pbrt's camera are left-handed: right is y x z.
-  camera.set_mirrored(dot(cross(forward, up), right) < 0);
-  return unit;
+  const double ahead = std::max({1.0, max_abs(first.position), max_abs(second.position)});
+  set_vec3(first.position, camera.mutable_position());
+  set_vec3(first.position + first.ahead * ahead, camera.mutable_look_at());
+  set_vec3(first.up, camera.mutable_up());
+  camera.set_mirrored(first.is_mirrored);
+  if (view.to_camera[0] == view.to_camera[1]) {
+    return first.unit;
+  }
+  if (first.is_mirrored != second.is_mirrored || !(builder.start_time < builder.end_time)) {
+    builder.warn(written, "the camera does not move: its motion mirrors it");
+    return first.unit;
+  }
+  builder.has_motion = true;
+  add_track("camera.position", first.position, second.position, builder);
+  add_track("camera.look_at", first.position + first.ahead * ahead,
+            second.position + second.ahead * ahead, builder);
+  add_track("camera.up", first.up, second.up, builder);
+  return first.unit;
 }
 
 absl::StatusOr<std::vector<double>> read_screen(const Parameters& in, double aspect) {
@@ -195,7 +243,7 @@ absl::Status read_camera(const ViewSource& view, const Film& film, Builder& buil
       builder.warn(in.place, "an orthographic camera has no lens");
     }
   } else {
-    camera.set_vertical_fov(2 * std::atan(std::tan(fov * kPi / 360) * half) * 180 / kPi);
+    camera.set_vertical_fov(2 * atan2(tan_degrees(fov / 2) * half, 1) * 180 / kPi);
     if (lens > 0) {
       camera.set_aperture(std::min(2 * lens * unit, 1e30));
       camera.set_focus_distance(std::clamp(focus * unit, 1e-9, 1e30));

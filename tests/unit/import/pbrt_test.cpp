@@ -137,6 +137,74 @@ TEST(Pbrt, MotionBecomesKeys) {
   EXPECT_EQ(scene.camera().shutter_close(), 1);
 }
 
+TEST(Pbrt, WhatIsShearedMovesAboutItsOrigin) {
+  // Half a unit of shear, at (5, 0, 0); it turns by 90 degrees and moves up by 2.
+  const auto scene = scene_of(
+      "WorldBegin\nTranslate 5 0 0\nActiveTransform EndTime\nTranslate 0 2 0\nRotate 90 0 0 1\n"
+      "ActiveTransform All\nConcatTransform [1 0 0 0  0.5 1 0 0  0 0 1 0  0 0 0 1]\n"
+      "Shape \"trianglemesh\" \"integer indices\" [0 1 2] \"point3 P\" [0 0 0  1 0 0  0 1 0]");
+  ASSERT_EQ(scene.group_size(), 1);
+  ASSERT_EQ(scene.group(0).model_size(), 1);
+  EXPECT_THAT(scene.group(0).model(0).matrix(), ElementsAre(1, 0.5, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0));
+  ASSERT_EQ(scene.instance_size(), 1);
+  ASSERT_EQ(scene.instance(0).key_size(), 2);
+  EXPECT_THAT(scene.instance(0).key(0).translate(), ElementsAre(5, 0, 0));
+  EXPECT_THAT(scene.instance(0).key(1).translate(), ElementsAre(5, 2, 0));
+  EXPECT_NEAR(scene.instance(0).key(1).rotate(0).degrees(), 90, 1e-9);
+}
+
+TEST(Pbrt, AShearThatGrowsStandsStillWithAWarning) {
+  const std::string text =
+      "WorldBegin\nActiveTransform EndTime\n"
+      "ConcatTransform [1 0 0 0  0.5 1 0 0  0 0 1 0  0 0 0 1]\nActiveTransform All\n"
+      "Shape \"sphere\"";
+  EXPECT_THAT(warnings_of(text), ElementsAre(HasSubstr("s.pbrt:5: the shape stands still")));
+  EXPECT_EQ(scene_of(text).instance(0).key_size(), 0);
+}
+
+TEST(Pbrt, ACameraMoves) {
+  const std::string text =
+      "TransformTimes 2 4\nActiveTransform EndTime\nTranslate -3 0 0\nActiveTransform All\n"
+      "Camera \"perspective\" \"float shutteropen\" 2 \"float shutterclose\" 4\nWorldBegin\n"
+      "Shape \"sphere\"";
+  EXPECT_THAT(warnings_of(text), ElementsAre());
+  const auto scene = scene_of(text);
+  EXPECT_THAT(scene.camera().position(), ElementsAre(0, 0, 0));
+  EXPECT_EQ(scene.camera().shutter_close(), 4);
+  ASSERT_EQ(scene.track_size(), 3);
+  EXPECT_EQ(scene.track(0).field(), "camera.position");
+  EXPECT_EQ(scene.track(0).key(0).time(), 2);
+  EXPECT_THAT(scene.track(0).key(1).value(), ElementsAre(3, 0, 0));
+  EXPECT_EQ(scene.track(1).field(), "camera.look_at");
+  EXPECT_THAT(scene.track(1).key(0).value(), ElementsAre(0, 0, 3));
+  EXPECT_THAT(scene.track(1).key(1).value(), ElementsAre(3, 0, 3));
+  EXPECT_THAT(scene.track(2).key(1).value(), ElementsAre(0, 1, 0));
+}
+
+TEST(Pbrt, MicrofacetsHideEachOtherByTheirHeight) {
+  const auto scene = scene_of(
+      "WorldBegin\nMaterial \"dielectric\" \"float uroughness\" 0.04 \"float vroughness\" 0.09\n"
+      "Shape \"sphere\"");
+  const auto& surface = scene.material(0).dielectric().surface();
+  EXPECT_EQ(surface.masking(), scene::Microfacets::MASKING_CORRELATED);
+  EXPECT_NEAR(surface.alpha(), 0.2, 1e-12);
+  EXPECT_NEAR(surface.alpha_v(), 0.3, 1e-12);
+}
+
+TEST(Pbrt, WhatHasNoCounterpartIsNamed) {
+  for (const char* type : {"nanovdb", "cloud", "rgbgrid"}) {
+    const std::string text = "MakeNamedMedium \"m\" \"string type\" \"" + std::string(type) +
+                             "\"\nWorldBegin\nMediumInterface \"m\" \"\"\n"
+                             "Material \"interface\"\nShape \"sphere\"\nShape \"sphere\"";
+    EXPECT_THAT(warnings_of(text), ElementsAre(HasSubstr("s.pbrt:1: the medium \"m\" of kind \"" +
+                                                         std::string(type))));
+  }
+  EXPECT_THAT(warnings_of("Film \"rgb\" \"string sensor\" \"canon_eos_5d\"\nWorldBegin"),
+              ElementsAre(HasSubstr("s.pbrt:1: the sensor \"canon_eos_5d\"")));
+  EXPECT_THAT(warnings_of("Film \"rgb\" \"float whitebalance\" 5000\nWorldBegin"),
+              ElementsAre(HasSubstr("s.pbrt:1: the white balance")));
+}
+
 TEST(Pbrt, UnknownThingsAreWarningsWithTheirLines) {
   EXPECT_THAT(warnings_of("WorldBegin\n\nShape \"sphere\" \"float radios\" 2"),
               ElementsAre(HasSubstr("s.pbrt:3: the parameter \"float radios\"")));

@@ -1,0 +1,32 @@
+#pragma once
+
+// Arguments of directives that are not parameters: names, numbers and transformations. Errors name
+// `place`, that of the directive.
+
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/strings/string_view.h"
+#include "renderlib/import/pbrt/place.h"
+#include "renderlib/import/pbrt/tokens.h"
+#include "renderlib/math/transform.h"
+
+namespace bandsaw::pbrt {
+
+/// Reads a text in quotes; `what` is the word for it in an error.
+absl::StatusOr<std::string> read_quoted(Tokens& tokens, const Place& place, absl::string_view what);
+/// Reads `count` numbers, which may stand in brackets.
+absl::StatusOr<std::vector<double>> read_numbers(Tokens& tokens, const Place& place,
+                                                 std::size_t count);
+
+/// Reads a matrix of 16 numbers, column by column.
+absl::StatusOr<Transform> read_matrix(Tokens& tokens, const Place& place);
+absl::StatusOr<Transform> read_translation(Tokens& tokens, const Place& place);
+absl::StatusOr<Transform> read_scaling(Tokens& tokens, const Place& place);
+/// Reads an angle in degrees and an axis.
+absl::StatusOr<Transform> read_rotation(Tokens& tokens, const Place& place);
+/// Reads eye, target and up. Returns the transformation from the world to that camera.
+absl::StatusOr<Transform> read_look_at(Tokens& tokens, const Place& place);
+
+}  // namespace bandsaw::pbrt
