@@ -11,6 +11,7 @@
 #include "renderlib/import/image/decode_image.h"
 #include "renderlib/import/pbrt/builder.h"
 #include "renderlib/import/pbrt/octahedral.h"
+#include "renderlib/math/elementary.h"
 
 namespace bandsaw::pbrt {
 namespace {
@@ -113,8 +114,8 @@ absl::Status spot(const Source& from) {
     cone = std::clamp(cone, 1e-3, 90.0);
   }
   const double inner = std::clamp(cone - delta, 0.0, cone);
-  const double cos_inner = std::cos(inner * kPi / 180);
-  const double cos_outer = std::cos(cone * kPi / 180);
+  const double cos_inner = sincos_degrees(inner).cos;
+  const double cos_outer = sincos_degrees(cone).cos;
   const double own = 2 * kPi * ((1 - cos_inner) + (cos_inner - cos_outer) / 2);
   ASSIGN_OR_RETURN(const double factor, from.factor_for("power", own));
   ASSIGN_OR_RETURN(const Rgb3 intensity, from.light("I", factor));
@@ -166,13 +167,13 @@ absl::Status projection(const Source& from) {
     in.ignore({"I", "scale", "power"});
     return absl::OkStatus();
   }
-  const double half = std::tan(fov * kPi / 360);
+  const double half = tan_degrees(fov / 2);
   const double width = image->width;
   const double height = image->height;
   const double side = std::min(width, height);
   const double half_height = half * height / side;
   double power = 0;
-  const double cell = std::pow(2 * half / side, 2);
+  const double cell = 4 * half * half / (side * side);
   for (std::size_t y = 0; y < image->height; ++y) {
     for (std::size_t x = 0; x < image->width; ++x) {
       const double px = (2 * (static_cast<double>(x) + 0.5) - width) / side * half;
@@ -192,7 +193,7 @@ absl::Status projection(const Source& from) {
   set_vec3(to_world.point({0, 0, 1}), light->mutable_look_at());
   set_vec3(to_world.direction({0, -1, 0}), light->mutable_up());
   light->set_mirrored(determinant(to_world) < 0);
-  light->set_vertical_fov(2 * std::atan(half_height) * 180 / kPi);
+  light->set_vertical_fov(2 * atan2(half_height, 1) * 180 / kPi);
   set_rgb(intensity, light->mutable_intensity());
   auto* texture = light->mutable_image()->mutable_image();
   texture->set_file(from.builder.made.add("projection", ".exr", encoded(*image)));

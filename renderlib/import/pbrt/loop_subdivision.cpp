@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 
 #include "absl/strings/str_cat.h"
 #include "renderlib/import/pbrt/mesh_shapes.h"
+#include "renderlib/math/elementary.h"
 
 namespace bandsaw::pbrt {
 namespace {
@@ -149,13 +149,12 @@ Vec3 limit_normal(const std::vector<Vec3>& points, const Topology& topology, std
   const auto& ring = topology.rings[v];
   Vec3 s;
   Vec3 t;
-  const double pi = std::numbers::pi;
   const std::size_t n = ring.size();
   if (!topology.is_boundary[v]) {
     for (std::size_t i = 0; i < n; ++i) {
-      const double angle = 2 * pi * static_cast<double>(i) / static_cast<double>(n);
-      s = s + points[ring[i]] * std::cos(angle);
-      t = t + points[ring[i]] * std::sin(angle);
+      const SinCos at = sincos_turns(static_cast<double>(i) / static_cast<double>(n));
+      s = s + points[ring[i]] * at.cos;
+      t = t + points[ring[i]] * at.sin;
     }
     return cross(s, t);
   }
@@ -168,11 +167,12 @@ Vec3 limit_normal(const std::vector<Vec3>& points, const Topology& topology, std
     t = points[ring[0]] * -1 + points[ring[1]] * 2 + points[ring[2]] * 2 + points[ring[3]] * -1 -
         points[v] * 2;
   } else {
-    const double angle = pi / static_cast<double>(n - 1);
-    t = (points[ring.front()] + points[ring.back()]) * std::sin(angle);
+    const double turns = 0.5 / static_cast<double>(n - 1);
+    const SinCos one = sincos_turns(turns);
+    t = (points[ring.front()] + points[ring.back()]) * one.sin;
     for (std::size_t i = 1; i + 1 < n; ++i) {
-      t = t +
-          points[ring[i]] * ((2 * std::cos(angle) - 2) * std::sin(static_cast<double>(i) * angle));
+      const double sine = sincos_turns(static_cast<double>(i) * turns).sin;
+      t = t + points[ring[i]] * ((2 * one.cos - 2) * sine);
     }
     t = -t;
   }

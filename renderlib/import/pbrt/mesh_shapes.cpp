@@ -11,6 +11,7 @@
 #include "renderlib/base/status_macros.h"
 #include "renderlib/import/convert/read_ply.h"
 #include "renderlib/import/files/inflate.h"
+#include "renderlib/math/elementary.h"
 
 namespace bandsaw::pbrt {
 namespace {
@@ -205,15 +206,15 @@ absl::StatusOr<PlyMesh> bilinear_mesh(const Parameters& in) {
 
 /// Part of a turn around z.
 struct Sweep {
-  double phi = 2 * kPi;
+  double turns = 1;  ///< around the axis
   int columns = kAround;
 };
 
 absl::StatusOr<Sweep> read_sweep(const Parameters& in) {
   ASSIGN_OR_RETURN(const double degrees, in.number("phimax", 360));
   Sweep sweep;
-  sweep.phi = std::clamp(degrees, 0.01, 360.0) * kPi / 180;
-  sweep.columns = std::max(1, static_cast<int>(std::ceil(kAround * sweep.phi / (2 * kPi))));
+  sweep.turns = std::clamp(degrees, 0.01, 360.0) / 360;
+  sweep.columns = std::max(1, static_cast<int>(std::ceil(kAround * sweep.turns)));
   return sweep;
 }
 
@@ -230,17 +231,18 @@ absl::StatusOr<PlyMesh> sphere_mesh(const Parameters& in) {
   ASSIGN_OR_RETURN(const double zmin, in.number("zmin", -r));
   ASSIGN_OR_RETURN(const double zmax, in.number("zmax", r));
   ASSIGN_OR_RETURN(const Sweep sweep, read_sweep(in));
-  const double low = std::acos(std::clamp(std::min(zmin, zmax) / r, -1.0, 1.0));
-  const double high = std::acos(std::clamp(std::max(zmin, zmax) / r, -1.0, 1.0));
+  const double low = acos(std::min(zmin, zmax) / r);
+  const double high = acos(std::max(zmin, zmax) / r);
   PlyMesh mesh;
   add_grid(
       sweep.columns, kAround / 2,
       [&](double u, double v, PlyMesh& to) {
         const double theta = low + v * (high - low);
-        const double phi = u * sweep.phi;
-        const bool is_pole = std::sin(theta) < 1e-12;
-        const Vec3 n{is_pole ? 0 : std::sin(theta) * std::cos(phi),
-                     is_pole ? 0 : std::sin(theta) * std::sin(phi), std::cos(theta)};
+        const SinCos down = sincos_turns(theta / (2 * kPi));
+        const SinCos around = sincos_turns(u * sweep.turns);
+        const bool is_pole = down.sin < 1e-12;
+        const Vec3 n{is_pole ? 0 : down.sin * around.cos, is_pole ? 0 : down.sin * around.sin,
+                     down.cos};
         add_vertex(n * r, n, u, v, to);
       },
       mesh);
@@ -261,7 +263,8 @@ absl::StatusOr<PlyMesh> cylinder_mesh(const Parameters& in) {
   add_grid(
       sweep.columns, 1,
       [&](double u, double v, PlyMesh& to) {
-        const Vec3 n{std::cos(u * sweep.phi), std::sin(u * sweep.phi), 0};
+        const SinCos around = sincos_turns(u * sweep.turns);
+        const Vec3 n{around.cos, around.sin, 0};
         add_vertex({n.x * r, n.y * r, low + v * (high - low)}, n, u, v, to);
       },
       mesh);
@@ -280,8 +283,8 @@ absl::StatusOr<PlyMesh> disk_mesh(const Parameters& in) {
       [&](double u, double v, PlyMesh& to) {
         // v runs inwards, so that the normal is +z.
         const double at = r + v * (hole - r);
-        const double phi = u * sweep.phi;
-        add_vertex({at * std::cos(phi), at * std::sin(phi), height}, Vec3{0, 0, 1}, u, v, to);
+        const SinCos around = sincos_turns(u * sweep.turns);
+        add_vertex({at * around.cos, at * around.sin, height}, Vec3{0, 0, 1}, u, v, to);
       },
       mesh);
   return mesh;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "renderlib/import/spectrum/spectrum.h"
+#include "renderlib/math/elementary.h"
 
 namespace bandsaw::pbrt {
 namespace {
@@ -13,8 +14,8 @@ constexpr double kPi = std::numbers::pi;
 constexpr std::uint32_t kMaxWidth = 8192;
 
 Vec2 longitude_latitude(const Vec3& d) {
-  const double phi = std::atan2(d.y, d.x);
-  return {(phi < 0 ? phi + 2 * kPi : phi) / (2 * kPi), std::acos(std::clamp(d.z, -1.0, 1.0)) / kPi};
+  const double phi = atan2(d.y, d.x);
+  return {(phi < 0 ? phi + 2 * kPi : phi) / (2 * kPi), acos(d.z) / kPi};
 }
 
 /// Returns the pixel at integer coordinates; beyond the edge of the octahedral square it continues
@@ -64,7 +65,7 @@ Vec2 octahedral_of(const Vec3& d) {
   const double y = std::abs(d.y);
   const double r = std::sqrt(std::max(0.0, 1 - std::abs(d.z)));
   const double high = std::max(x, y);
-  const double share = high == 0 ? 0 : std::atan(std::min(x, y) / high) * 2 / kPi;
+  const double share = high == 0 ? 0 : atan2(std::min(x, y), high) * 2 / kPi;
   const double phi = x < y ? 1 - share : share;
   double v = phi * r;
   double u = r - v;
@@ -90,10 +91,9 @@ Image equirectangular(const Sky& sky, const Transform& to_light) {
       for (const double dy : {0.25, 0.75}) {
         for (const double dx : {0.25, 0.75}) {
           // The centre of the image is +x, that of its right half +z, its top +y.
-          const double theta = kPi * (y + dy) / out.height;
-          const double phi = 2 * kPi * ((x + dx) / out.width - 0.5);
-          const Vec3 world{std::sin(theta) * std::cos(phi), std::cos(theta),
-                           std::sin(theta) * std::sin(phi)};
+          const SinCos down = sincos_turns((y + dy) / out.height / 2);
+          const SinCos around = sincos_turns((x + dx) / out.width - 0.5);
+          const Vec3 world{down.sin * around.cos, down.cos, down.sin * around.sin};
           add_lookup(sky, normalize(to_light.direction(world)), sum);
         }
       }
@@ -114,9 +114,9 @@ double illuminance_of(const Sky& sky) {
     const double cosine = std::sqrt((i + 0.5) / kRings);
     const double sine = std::sqrt(1 - cosine * cosine);
     for (int k = 0; k < kAround; ++k) {
-      const double phi = 2 * kPi * (k + 0.5) / kAround;
+      const SinCos around = sincos_turns((k + 0.5) / kAround);
       double sum[3] = {};
-      add_lookup(sky, {sine * std::cos(phi), sine * std::sin(phi), cosine}, sum);
+      add_lookup(sky, {sine * around.cos, sine * around.sin, cosine}, sum);
       total += spectrum::luminance({sum[0], sum[1], sum[2]});
     }
   }

@@ -9,6 +9,7 @@
 #include "absl/strings/str_split.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/import/spectrum/observer.h"
+#include "renderlib/math/elementary.h"
 
 namespace bandsaw::spectrum {
 namespace {
@@ -104,7 +105,8 @@ Sampled blackbody(double kelvin) {
   constexpr double kSecond = 1.438776877e7;
   constexpr double kWien = 2.897771955e6;
   const auto planck = [kelvin](double nm) {
-    return std::pow(nm / 1000, -5) / std::expm1(kSecond / (nm * kelvin));
+    const double um = nm / 1000;
+    return 1 / (um * um * um * um * um * expm1(kSecond / (nm * kelvin)));
   };
   const double peak = planck(kWien / kelvin);
   Sampled out;
@@ -152,8 +154,9 @@ Metal metal_rgb(const Sampled& eta, const Sampled& k) {
     metal.eta[c] = std::clamp(n[c], 1e-3, 100.0);
     const double most = 0.9999;
     const double target = std::clamp(f[c], 0.0, most);
-    const double square =
-        (target * std::pow(metal.eta[c] + 1, 2) - std::pow(metal.eta[c] - 1, 2)) / (1 - target);
+    const double more = metal.eta[c] + 1;
+    const double less = metal.eta[c] - 1;
+    const double square = (target * more * more - less * less) / (1 - target);
     metal.k[c] = std::clamp(std::sqrt(std::max(square, 0.0)), 0.0, 100.0);
   }
   return metal;
