@@ -80,8 +80,8 @@ bool is_also_sampled_by_bsdf(const LightSample& light, const CompetingBsdfSampli
 /// Returns the light-sampling estimate of the radiance scattered at the point: samples one light,
 /// traces a shadow ray to it, through media with the numbers `media`, and applies the MIS weight.
 Rgb sample_light(const Scene& scene, const SurfacePoint& point, const Receiver& receiver,
-                 const Bsdf& bsdf, const Sample4& numbers, const CompetingBsdfSampling& competing,
-                 NumberStream media, std::uint64_t& rays) {
+                 const Bsdf& bsdf, const GuidingCones& cones, const Sample4& numbers,
+                 const CompetingBsdfSampling& competing, NumberStream media, std::uint64_t& rays) {
   // The fourth number refines the selection among many lights.
   const double choice = numbers[0] + numbers[3] * 0x1p-32;
   const std::optional<LightSample> light =
@@ -89,7 +89,7 @@ Rgb sample_light(const Scene& scene, const SurfacePoint& point, const Receiver& 
   if (!light || is_left_to_bsdf_sampling(*light, competing)) {
     return {};
   }
-  const BsdfValue scattered = evaluate(bsdf, light->direction);
+  const BsdfValue scattered = evaluate(bsdf, cones, light->direction);
   if (is_black(scattered.value)) {
     return {};
   }
@@ -137,13 +137,13 @@ bool count(const PathContext& context, const BsdfSample& next, std::uint32_t dep
 
 /// Continues from a surface, as scattering `depth`, in all directions into which the path is split.
 void trace_branches(const PathContext& context, const SurfacePoint& point, const Bsdf& bsdf,
-                    std::uint32_t depth, PathState& path) {
+                    const GuidingCones& cones, std::uint32_t depth, PathState& path) {
   Rgb sum;
   for (std::uint32_t i = 0; i < context.branches; ++i) {
     const PathContext of_branch = context.branch(i);
     PathState branch = path;
     branch.radiance = {};
-    if (scatter(of_branch, point, bsdf, depth, branch)) {
+    if (scatter(of_branch, point, bsdf, cones, depth, branch)) {
       trace_path(of_branch, depth + 1, branch);
     }
     sum += branch.radiance;
@@ -209,7 +209,7 @@ std::optional<Bsdf> make_bsdf(const PathContext& context, const SurfacePoint& po
 }
 
 bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& bsdf,
-             std::uint32_t depth, PathState& path) {
+             const GuidingCones& cones, std::uint32_t depth, PathState& path) {
   const Scene& scene = context.scene;
   const PathOptions& options = context.options;
   const Material& material = scene.material(point.material);
@@ -227,14 +227,14 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
     CompetingBsdfSampling competing = is_last ? CompetingBsdfSampling{Technique::kLightsOnly, true}
                                               : CompetingBsdfSampling{options.technique, false};
     path.radiance +=
-        path.throughput * sample_light(scene, point, receiver, bsdf, numbers, competing,
+        path.throughput * sample_light(scene, point, receiver, bsdf, cones, numbers, competing,
                                        context.stream(group_shadow(depth, ShadowUse::kLight)),
                                        context.rays);
     if (has_pdf_behind(bsdf) && (both_sides || is_last || scene.lights().any_delta())) {
       competing.beyond_surface = !both_sides;
       path.radiance +=
           path.throughput *
-          sample_light(scene, point, behind, bsdf, numbers, competing,
+          sample_light(scene, point, behind, bsdf, cones, numbers, competing,
                        context.stream(group_shadow(depth, ShadowUse::kLightBehind)), context.rays);
     }
   }
@@ -243,12 +243,14 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
     path.radiance += path.throughput * albedo * scene.local_shading().ambient;
   }
 
-  // BSDF sampling.
+  // BSDF sampling, guided where there is a field.
   const Sample4 numbers = context.numbers(group_bsdf(depth));
-  const std::optional<BsdfSample> next = sample(bsdf, numbers[0], numbers[1], numbers[2]);
-  if (!next || !count(context, *next, depth, path)) {
+  const std::optional<GuidedSample> guided =
+      sample(bsdf, cones, numbers[0], numbers[1], numbers[2]);
+  if (!guided || !count(context, guided->next, depth, path)) {
     return false;
   }
+  const BsdfSample* const next = &guided->next;
   // Unless light sampling covered both sides, transmitted directions keep MIS weight 1.
   const bool passes = dot(next->wi, *receiver.normal) <= 0;
   path.previous = {passes && both_sides ? behind : receiver, next->pdf,
@@ -264,7 +266,7 @@ bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& 
     }
     return false;
   }
-  path.compression *= next->compression;
+  path.compression *= next->compression * guided->scaling;
   if (!survives_roulette(context, depth, numbers[3], path)) {
     return false;
   }
@@ -311,13 +313,14 @@ void trace_path(const PathContext& context, std::uint32_t depth, PathState& path
     if (!bsdf) {
       return;
     }
+    const GuidingCones cones = cones_at(context, *hit, *bsdf, -path.ray.direction);
     // Split the path at the first surface with a pdf, if the options ask for it.
     if (context.branches > 1 && has_pdf(*bsdf)) {
-      trace_branches(context, *hit, *bsdf, depth, path);
+      trace_branches(context, *hit, *bsdf, cones, depth, path);
       return;
     }
     // Sample a light, then a direction from the BSDF; Russian roulette may end the path.
-    if (!scatter(context, *hit, *bsdf, depth, path)) {
+    if (!scatter(context, *hit, *bsdf, cones, depth, path)) {
       return;
     }
   }

@@ -16,6 +16,8 @@
 
 namespace bandsaw {
 
+class GuidingField;  // renderlib/guiding/guiding_field.h
+
 /// Strategies used to find light. All have the same expected value; the second and third exist only
 /// so that tests can compare them with the first.
 enum class Technique {
@@ -37,6 +39,9 @@ struct PathOptions {
   /// with an equal share (splitting: Arvo and Kirk 1990, "Particle Transport and Image Synthesis").
   /// A power of two. Direction i of sample n uses the random numbers of sample n * branches + i.
   std::uint32_t branches = 1;
+  /// Guides the directions at surfaces if it is not null (integrate/guided_bsdf.h); changes no
+  /// expected value. MUST outlive the paths.
+  const GuidingField* guiding = nullptr;
 };
 
 /// Returns the value of `PathOptions::branches` that is most efficient for the scene (README.md,

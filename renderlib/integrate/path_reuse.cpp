@@ -17,6 +17,7 @@ struct PrimaryVertex {
   SurfacePoint point;
   Vec3 normal;  ///< geometric normal on the viewer's side
   Bsdf bsdf;
+  GuidingCones cones;
 };
 
 /// The second vertex of a pixel's path, if all pixels may use it.
@@ -55,10 +56,11 @@ void trace_own_path(const PathContext& context, PathState& path,
   if (!bsdf) {
     return;
   }
+  const GuidingCones cones = cones_at(context, *first, *bsdf, -camera_ray.direction);
   if (has_pdf(*bsdf)) {
-    primary = PrimaryVertex{*first, facing(*first, camera_ray), *bsdf};
+    primary = PrimaryVertex{*first, facing(*first, camera_ray), *bsdf, cones};
   }
-  if (!scatter(context, *first, *bsdf, 0, path)) {
+  if (!scatter(context, *first, *bsdf, cones, 0, path)) {
     return;
   }
   const std::optional<SurfacePoint> second = next_surface(context, 1, path);
@@ -102,7 +104,8 @@ Connection connect(const PrimaryVertex& primary, const SharedVertex& shared) {
   }
   const double distance2 = length_squared(to_shared);
   const double distance = std::sqrt(distance2);
-  return {evaluate(primary.bsdf, to_shared / distance), cosine / (distance2 * distance)};
+  return {evaluate(primary.bsdf, primary.cones, to_shared / distance),
+          cosine / (distance2 * distance)};
 }
 
 /// Adds the light of the shared vertex of pixel `owner` to all pixels whose primary vertex sees it,

@@ -22,8 +22,8 @@ struct PathState {
   Ray ray;  ///< unit direction
   Rgb radiance = {};
   Rgb throughput = gray(1);
-  /// Product of the factors by which refraction scaled the throughput. Russian roulette divides it
-  /// out, because it is no loss of energy.
+  /// Product of the factors by which refraction and guiding scaled the throughput. Russian roulette
+  /// divides it out, because it is no loss of energy.
   double compression = 1;
   PreviousVertex previous = {};
   /// Number of scatterings that do not count towards `max_depth` (BsdfSample::counts).

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "renderlib/geometry/surface.h"
+#include "renderlib/integrate/guided_bsdf.h"
 #include "renderlib/integrate/path_state.h"
 #include "renderlib/material/bsdf.h"
 
@@ -40,18 +41,19 @@ void add_background(const PathContext& context, PathState& path);
 std::optional<Bsdf> make_bsdf(const PathContext& context, const SurfacePoint& point,
                               std::uint32_t depth, PathState& path);
 
-/// Adds the light-sampling estimate at the surface, samples the BSDF, applies Russian roulette, and
-/// continues the path in the sampled direction. Returns false if the path ends. `bsdf` is the
-/// result of `make_bsdf()`.
+/// Adds the light-sampling estimate at the surface, samples a direction, applies Russian roulette,
+/// and continues the path in the sampled direction. Returns false if the path ends. `bsdf` is the
+/// result of `make_bsdf()`, and `cones` that of `cones_at()`.
 bool scatter(const PathContext& context, const SurfacePoint& point, const Bsdf& bsdf,
-             std::uint32_t depth, PathState& path);
+             const GuidingCones& cones, std::uint32_t depth, PathState& path);
 
 /// Runs `add_emission()`, `make_bsdf()` and `scatter()`. Returns false if the path ends.
 inline bool scatter_at(const PathContext& context, const SurfacePoint& point, std::uint32_t depth,
                        PathState& path) {
   add_emission(context, point, depth, path);
   const std::optional<Bsdf> bsdf = make_bsdf(context, point, depth, path);
-  return bsdf && scatter(context, point, *bsdf, depth, path);
+  return bsdf && scatter(context, point, *bsdf,
+                         cones_at(context, point, *bsdf, -path.ray.direction), depth, path);
 }
 
 /// Traces the path along its ray, from scattering `depth` until it ends.

@@ -1,0 +1,353 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "renderlib/guiding/guiding_cell.h"
+#include "renderlib/math/constants.h"
+#include "renderlib/math/elementary.h"
+
+namespace bandsaw {
+namespace {
+
+/// Fewest records with light of a cell, and of one ball of several.
+constexpr std::size_t kFewestRecords = 8;
+constexpr std::size_t kFewestOfBall = 6;
+
+/// Shares of guided directions to choose from.
+constexpr std::array<double, 4> kShares = {0.125, 0.25, 0.375, 0.5};
+
+/// Wider cones, as 1 - cos of the half-angle, are left to the BSDF: much of them would lie below
+/// the surface.
+constexpr double kWidest = 0.5;
+
+/// A single record has at most this share of a cell's light: a path that found a small lamp by
+/// chance does not decide alone.
+constexpr double kMostOfOne = 0.1;
+
+/// A ball is split only if that raises the mean logarithm of the pdf by this much, times the
+/// effective number of records: fewer records would be followed too closely.
+constexpr double kSmallestGain = 3;
+
+/// Share of its weight that a ball keeps when it is split.
+constexpr double kKept = 0.25;
+
+/// Light as seen from the middle of the cell.
+struct Seen {
+  Vec3 direction;      ///< unit
+  double inverse = 0;  ///< of the distance
+  double weight = 0;
+};
+
+/// A cone around directions, which are a range of the list of all.
+struct Cluster {
+  std::size_t first = 0;
+  std::size_t last = 0;
+  double weight = 0;
+  Vec3 axis;                 ///< unit
+  double inverse = 0;        ///< mean of the inverse distances
+  double one_minus_cos = 2;  ///< of the cone's half-angle
+};
+
+struct Split {
+  double gain = 0;  ///< 0: none
+  int axis = 0;
+  double at = 0;
+};
+
+/// The place of a cell: the middle of its records, their extent, and the irradiance that a record
+/// of weight 1 adds.
+struct Place {
+  Vec3 middle;
+  Vec3 normal;         ///< mean, unit
+  double extent2 = 0;  ///< mean squared distance from the middle
+  double irradiance_of_one = 0;
+};
+
+/// Returns the area on which the records lie, as if it were a plane: the product of their extents
+/// in the two directions across the main direction of the normal.
+double area_of(absl::Span<const GuidingRecord> records, const Vec3& normal) {
+  const std::uint32_t across = side_of(normal) / 2;
+  double area = 1 / std::abs(normal[static_cast<int>(across)]);
+  const auto n = static_cast<double>(records.size());
+  for (std::uint32_t axis = 0; axis < 3; ++axis) {
+    if (axis == across) {
+      continue;
+    }
+    float low = std::numeric_limits<float>::max();
+    float high = std::numeric_limits<float>::lowest();
+    for (const GuidingRecord& record : records) {
+      low = std::min(low, record.position[axis]);
+      high = std::max(high, record.position[axis]);
+    }
+    area *= (double{high} - low) * (n + 1) / std::max(1.0, n - 1);
+  }
+  return area;
+}
+
+Place place_of(absl::Span<const GuidingRecord> records) {
+  Place place;
+  for (const GuidingRecord& record : records) {
+    place.middle = place.middle + vec3(record.position);
+    place.normal = place.normal + vec3(record.normal);
+  }
+  place.middle = place.middle / static_cast<double>(records.size());
+  const double sum = length(place.normal);
+  place.normal = sum > 0 ? place.normal / sum : vec3(records[0].normal);
+  for (const GuidingRecord& record : records) {
+    place.extent2 += length_squared(vec3(record.position) - place.middle);
+  }
+  place.extent2 /= static_cast<double>(records.size());
+  // Photons add up over an area; the irradiances that paths found are averaged.
+  const double over = records[0].kind == GuidingRecord::Kind::kPhoton
+                          ? area_of(records, place.normal)
+                          : static_cast<double>(records.size());
+  place.irradiance_of_one = over > 0 ? 1 / over : 0;
+  return place;
+}
+
+/// Scales the weights to a sum of 1.
+void normalize_weights(absl::Span<Seen> seen) {
+  double sum = 0;
+  for (const Seen& one : seen) {
+    sum += one.weight;
+  }
+  for (Seen& one : seen) {
+    one.weight /= sum;
+  }
+}
+
+/// The light that the records tell of.
+struct Light {
+  std::vector<Seen> seen;  ///< their weights sum to 1
+  double irradiance = 0;
+  double effective = 0;  ///< how many equal records would tell as much
+};
+
+Light light_of(const Place& place, absl::Span<const GuidingRecord> records) {
+  Light light;
+  for (const GuidingRecord& record : records) {
+    const double weight = record.weight * place.irradiance_of_one;
+    const Vec3 to = vec3(record.source) - place.middle;
+    const double distance = length(to);
+    if (weight > 0 && std::isfinite(weight) && distance > 0) {
+      light.seen.push_back({to / distance, 1 / distance, weight});
+      light.irradiance += weight;
+    }
+  }
+  double squares = 0;
+  for (Seen& one : light.seen) {
+    squares += one.weight * one.weight;
+    one.weight = std::min(one.weight, kMostOfOne * light.irradiance);
+  }
+  light.effective = squares > 0 ? light.irradiance * light.irradiance / squares : 0;
+  normalize_weights(absl::MakeSpan(light.seen));
+  return light;
+}
+
+Cluster cluster_of(const Place& place, absl::Span<const Seen> seen, std::size_t first,
+                   std::size_t last) {
+  Cluster cluster;
+  cluster.first = first;
+  cluster.last = last;
+  Vec3 sum;
+  for (std::size_t i = first; i < last; ++i) {
+    cluster.weight += seen[i].weight;
+    sum = sum + seen[i].direction * seen[i].weight;
+    cluster.inverse += seen[i].inverse * seen[i].weight;
+  }
+  cluster.inverse /= cluster.weight;
+  const double size = length(sum);
+  cluster.axis = size > 0 ? sum / size : place.normal;
+  double farthest = 0;
+  double mean = 0;
+  double spread = 0;  // of the inverse distances
+  for (std::size_t i = first; i < last; ++i) {
+    const double h = 1 - dot(seen[i].direction, cluster.axis);
+    farthest = std::max(farthest, h);
+    mean += h * seen[i].weight;
+    const double off = seen[i].inverse - cluster.inverse;
+    spread += off * off * seen[i].weight;
+  }
+  mean /= cluster.weight;
+  spread /= cluster.weight;
+  // Uniform directions in a cone have half of its 1 - cos on average. Where the light comes from
+  // several distances, it moves against the axis when the point moves within the cell.
+  const auto n = static_cast<double>(last - first);
+  const double cone = std::min(farthest * (1 + 3 / n), 4 * mean) + place.extent2 * spread / 2;
+  cluster.one_minus_cos = std::clamp(cone, 4e-6, 2.0);
+  return cluster;
+}
+
+double score(const Cluster& cluster) {
+  return cluster.weight * log(cluster.weight / cluster.one_minus_cos);
+}
+
+/// Moves the directions below `at` to the front and returns where the others begin. Stable.
+std::size_t partition(absl::Span<Seen> seen, const Cluster& cluster, int axis, double at) {
+  const auto begin = seen.begin();
+  const auto middle =
+      std::stable_partition(begin + static_cast<std::ptrdiff_t>(cluster.first),
+                            begin + static_cast<std::ptrdiff_t>(cluster.last),
+                            [&](const Seen& one) { return one.direction[axis] < at; });
+  return static_cast<std::size_t>(middle - begin);
+}
+
+/// Returns the best split of the cluster: at the weighted mean of one coordinate of its directions.
+/// Reorders the cluster's directions.
+Split best_split(const Place& place, absl::Span<Seen> seen, const Cluster& cluster) {
+  Split best;
+  if (cluster.last - cluster.first < 2 * kFewestOfBall) {
+    return best;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    double mean = 0;
+    for (std::size_t i = cluster.first; i < cluster.last; ++i) {
+      mean += seen[i].direction[axis] * seen[i].weight;
+    }
+    mean /= cluster.weight;
+    const std::size_t middle = partition(seen, cluster, axis, mean);
+    if (middle - cluster.first < kFewestOfBall || cluster.last - middle < kFewestOfBall) {
+      continue;
+    }
+    const double gain = score(cluster_of(place, seen, cluster.first, middle)) +
+                        score(cluster_of(place, seen, middle, cluster.last)) - score(cluster);
+    if (gain > best.gain) {
+      best = {gain, axis, mean};
+    }
+  }
+  return best;
+}
+
+/// Splits the cluster whose split gains most until none gains or there are enough. A cluster that
+/// is split keeps a part of its weight: between its parts, light is as likely as around them.
+std::vector<Cluster> clusters_of(const Place& place, absl::Span<Seen> seen) {
+  double squares = 0;  // the weights sum to 1
+  for (const Seen& one : seen) {
+    squares += one.weight * one.weight;
+  }
+  std::vector<Cluster> whole;
+  std::vector<Cluster> parts = {cluster_of(place, seen, 0, seen.size())};
+  std::vector<Split> splits = {best_split(place, seen, parts[0])};
+  std::vector<double> scales = {1};
+  while (whole.size() + parts.size() + 2 <= kMaxBalls) {
+    const auto best =
+        std::max_element(splits.begin(), splits.end(),
+                         [](const Split& a, const Split& b) { return a.gain < b.gain; });
+    if (best->gain <= kSmallestGain * squares) {
+      break;
+    }
+    const auto which = static_cast<std::size_t>(best - splits.begin());
+    Cluster split = parts[which];
+    const double scale = scales[which];
+    const std::size_t middle = partition(seen, split, best->axis, best->at);
+    parts[which] = cluster_of(place, seen, split.first, middle);
+    parts.push_back(cluster_of(place, seen, middle, split.last));
+    splits[which] = best_split(place, seen, parts[which]);
+    splits.push_back(best_split(place, seen, parts.back()));
+    scales[which] = scale * (1 - kKept);
+    scales.push_back(scale * (1 - kKept));
+    split.weight *= scale * kKept;
+    whole.push_back(split);
+  }
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    parts[i].weight *= scales[i];
+    whole.push_back(parts[i]);
+  }
+  return whole;
+}
+
+/// How a direction that carries light would be sampled.
+struct Densities {
+  double weight = 0;
+  double cosine = 0;    ///< pdf by the cosine
+  double clusters = 0;  ///< pdf by the clusters
+};
+
+/// Fits clusters to each half of the directions and returns the densities of the other half, which
+/// the clusters have not seen (cross-validation).
+std::vector<Densities> crossed_densities(const Place& place, absl::Span<const Seen> seen) {
+  std::vector<Densities> out;
+  for (std::size_t half = 0; half < 2; ++half) {
+    std::vector<Seen> fitted;
+    for (std::size_t i = half; i < seen.size(); i += 2) {
+      fitted.push_back(seen[i]);
+    }
+    normalize_weights(absl::MakeSpan(fitted));
+    const std::vector<Cluster> clusters = clusters_of(place, absl::MakeSpan(fitted));
+    for (std::size_t i = 1 - half; i < seen.size(); i += 2) {
+      Densities at{seen[i].weight, std::max(dot(seen[i].direction, place.normal), 0.02) * kInvPi,
+                   0};
+      for (const Cluster& cluster : clusters) {
+        if (cluster.one_minus_cos > kWidest) {
+          at.clusters += cluster.weight * at.cosine;
+        } else if (1 - dot(seen[i].direction, cluster.axis) <= cluster.one_minus_cos) {
+          at.clusters += cluster.weight / (2 * kPi * cluster.one_minus_cos);
+        }
+      }
+      out.push_back(at);
+    }
+  }
+  return out;
+}
+
+/// Returns the expected second moment of light over pdf, in units of the squared mean, where the
+/// clusters are sampled with probability `share`, otherwise the cosine. The light is taken to be as
+/// dense as the clusters say, but not less dense than the cosine: where the clusters have a hole,
+/// sampling them only takes samples away.
+double second_moment(absl::Span<const Densities> densities, double share) {
+  double sum = 0;
+  for (const Densities& at : densities) {
+    sum += at.weight * std::max(at.clusters, at.cosine) /
+           ((1 - share) * at.cosine + share * at.clusters);
+  }
+  return sum;
+}
+
+/// Returns the share with the least second moment, which may be 0.
+double best_share(absl::Span<const Densities> densities) {
+  double best = 0;
+  double least = second_moment(densities, 0);
+  for (const double share : kShares) {
+    const double moment = second_moment(densities, share);
+    if (moment < least) {
+      least = moment;
+      best = share;
+    }
+  }
+  return best;
+}
+
+GuidingBall ball_of(const Place& place, const Cluster& cluster) {
+  const double h = cluster.one_minus_cos;
+  const double distance = 1 / cluster.inverse;
+  const double sin = std::sqrt(h * (2 - h));
+  return {float3(place.middle + cluster.axis * distance), static_cast<float>(distance * sin),
+          static_cast<float>(cluster.weight)};
+}
+
+}  // namespace
+
+GuidingCell fit_cell(absl::Span<const GuidingRecord> records) {
+  GuidingCell cell;
+  if (records.empty()) {
+    return cell;
+  }
+  const Place place = place_of(records);
+  Light light = light_of(place, records);
+  cell.irradiance = static_cast<float>(light.irradiance);
+  if (light.seen.size() < kFewestRecords || light.effective < kFewestRecords) {
+    return cell;
+  }
+  const std::vector<Densities> densities = crossed_densities(place, light.seen);
+  for (const Cluster& cluster : clusters_of(place, absl::MakeSpan(light.seen))) {
+    if (cluster.one_minus_cos <= kWidest) {
+      cell.balls[cell.count++] = ball_of(place, cluster);
+    }
+  }
+  cell.share = static_cast<float>(best_share(densities));
+  cell.moment = static_cast<float>(second_moment(densities, 0));
+  cell.guided_moment = static_cast<float>(second_moment(densities, cell.share));
+  return cell;
+}
+
+}  // namespace bandsaw

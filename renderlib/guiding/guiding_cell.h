@@ -1,0 +1,97 @@
+#pragma once
+
+// The directions from which light arrives at one place: a few balls, each with the share of the
+// light that comes from it. Seen from a point near the place, a ball is a cone of directions, which
+// is sampled uniformly. As balls have positions, the cones follow the point (the parallax of
+// Ruppert, Herholz and Lensch 2020, "Robust Fitting of Parallax-Aware Mixtures for Path Guiding",
+// section 4, with cones in place of von Mises-Fisher lobes).
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "absl/types/span.h"
+#include "renderlib/guiding/guiding_record.h"
+#include "renderlib/math/vec.h"
+
+namespace bandsaw {
+
+/// Maximum number of balls of a cell.
+inline constexpr std::uint32_t kMaxBalls = 8;
+
+struct GuidingBall {
+  Float3 center;
+  float radius = 0;  ///< > 0
+  float weight = 0;  ///< share of the light, > 0; the weights of a cell sum to 1 at most
+};
+
+struct GuidingCell {
+  std::uint32_t count = 0;  ///< of balls
+  float irradiance = 0;     ///< by the light of the cell's records
+  /// Share of the directions that are best sampled towards the balls if there is no other light, in
+  /// [0, 1/2].
+  float share = 0;
+  /// Expected second moment of a sampled direction's contribution at a diffuse surface, in units of
+  /// the squared mean, without guiding and with `share`; estimated from light that was left out of
+  /// the fit.
+  float moment = 1;
+  float guided_moment = 1;
+  std::array<GuidingBall, kMaxBalls> balls;
+};
+
+/// Returns the cell that fits the records, which are of one kind and whose normals are similar; one
+/// without balls if they are too few or too unequal. The result depends on nothing but the records
+/// and their order.
+GuidingCell fit_cell(absl::Span<const GuidingRecord> records);
+
+/// What guides the directions at a point: a cell fitted to paths and one fitted to photons, each of
+/// which may be null.
+struct GuidingCells {
+  const GuidingCell* paths = nullptr;
+  const GuidingCell* photons = nullptr;
+};
+
+/// Shares of the directions that are sampled towards the balls of each.
+struct GuidingShares {
+  double paths = 0;
+  double photons = 0;
+};
+
+/// Returns the shares. Photons get the share of their light, at least an eighth and at most a half,
+/// unless they are hardly noticed.
+GuidingShares shares_of(const GuidingCells& cells);
+
+/// A cell as seen from a point: cones of directions.
+class GuidingCones {
+ public:
+  /// Guides nothing. (The arrays are left uninitialised: they are large.)
+  GuidingCones() : count_(0), share_(0) {}
+  /// `normal`: unit, on the side of the surface that receives light. Balls below the surface or
+  /// around the point are left out; the share falls by their weights.
+  GuidingCones(const GuidingCells& cells, const Vec3& position, const Vec3& normal);
+
+  /// Returns the probability with which a direction is to be sampled from the cones; 0: never.
+  double share() const { return share_; }
+
+  /// Returns a unit direction; choice, u, v in [0, 1). share() MUST be > 0.
+  Vec3 sample(double choice, double u, double v) const;
+  /// Returns the pdf of sample() by solid angle. 0 if share() is 0.
+  double pdf(const Vec3& direction) const;
+
+ private:
+  std::uint32_t count_;
+  double share_;
+  void add(const GuidingCell& cell, double share, const Vec3& position, const Vec3& normal);
+
+  static constexpr std::uint32_t kMaxCones = 2 * kMaxBalls;
+  // Axes, cosines of the half-angles, weights, and weights divided by the solid angles.
+  double x_[kMaxCones];
+  double y_[kMaxCones];
+  double z_[kMaxCones];
+  double one_minus_cos_[kMaxCones];
+  double weight_[kMaxCones];
+  double density_[kMaxCones];
+};
+
+}  // namespace bandsaw

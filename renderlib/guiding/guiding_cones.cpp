@@ -1,0 +1,93 @@
+#include <algorithm>
+#include <cmath>
+
+#include "renderlib/guiding/guiding_cell.h"
+#include "renderlib/sampling/basis.h"
+#include "renderlib/sampling/warp.h"
+
+namespace bandsaw {
+namespace {
+
+/// No cone is narrower: 1 - cos of the half-angle of a sixth of a degree. The rounding of a cosine
+/// is far below it.
+constexpr double kNarrowest = 4e-6;
+
+}  // namespace
+
+GuidingShares shares_of(const GuidingCells& cells) {
+  // Little light of a small source is found rarely, and then it is bright. Light that adds less
+  // than this to the second moment, in units of the squared mean of all light, is not noticed.
+  constexpr double kLeastMoment = 0.001;
+  constexpr double kLeastShare = 0.125;
+  constexpr double kMostShare = 0.5;
+  GuidingShares shares;
+  if (cells.photons != nullptr && cells.photons->count > 0) {
+    const double others = cells.paths != nullptr ? cells.paths->irradiance : 0;
+    const double part = cells.photons->irradiance / (cells.photons->irradiance + others);
+    if (part * part * cells.photons->moment > kLeastMoment) {
+      shares.photons = std::clamp(part, kLeastShare, kMostShare);
+    }
+  }
+  if (cells.paths != nullptr && cells.paths->count > 0) {
+    shares.paths = cells.paths->share * (1 - shares.photons);
+  }
+  return shares;
+}
+
+GuidingCones::GuidingCones(const GuidingCells& cells, const Vec3& position, const Vec3& normal)
+    : count_(0), share_(0) {
+  const GuidingShares shares = shares_of(cells);
+  if (shares.photons > 0) {
+    add(*cells.photons, shares.photons, position, normal);
+  }
+  if (shares.paths > 0) {
+    add(*cells.paths, shares.paths, position, normal);
+  }
+  for (std::uint32_t i = 0; i < count_; ++i) {
+    weight_[i] /= share_;
+    density_[i] = weight_[i] * cone_pdf(one_minus_cos_[i]);
+  }
+}
+
+void GuidingCones::add(const GuidingCell& cell, double share, const Vec3& position,
+                       const Vec3& normal) {
+  for (std::uint32_t i = 0; i < cell.count; ++i) {
+    const GuidingBall& ball = cell.balls[i];
+    const Vec3 to = vec3(ball.center) - position;
+    const double radius = ball.radius;
+    const double distance2 = length_squared(to);
+    const double sin2 = radius * radius / distance2;
+    if (!(sin2 < 1) || dot(to, normal) <= -radius) {
+      continue;
+    }
+    const Vec3 axis = to / std::sqrt(distance2);
+    x_[count_] = axis.x;
+    y_[count_] = axis.y;
+    z_[count_] = axis.z;
+    one_minus_cos_[count_] = std::max(one_minus_cos_from_sin2(sin2), kNarrowest);
+    weight_[count_] = share * ball.weight;
+    share_ += weight_[count_];
+    ++count_;
+  }
+}
+
+Vec3 GuidingCones::sample(double choice, double u, double v) const {
+  std::uint32_t chosen = 0;
+  for (double left = choice - weight_[0]; left >= 0 && chosen + 1 < count_;
+       left -= weight_[chosen]) {
+    ++chosen;
+  }
+  const Basis basis = orthonormal_basis({x_[chosen], y_[chosen], z_[chosen]});
+  return normalize(basis.to_world(sample_cone(u, v, one_minus_cos_[chosen])));
+}
+
+double GuidingCones::pdf(const Vec3& direction) const {
+  double sum = 0;
+  for (std::uint32_t i = 0; i < count_; ++i) {
+    const double cosine = x_[i] * direction.x + y_[i] * direction.y + z_[i] * direction.z;
+    sum += 1 - cosine <= one_minus_cos_[i] ? density_[i] : 0;
+  }
+  return share_ > 0 ? sum : 0;
+}
+
+}  // namespace bandsaw

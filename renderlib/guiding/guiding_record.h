@@ -1,0 +1,43 @@
+#pragma once
+
+// What the training of path guiding observes: light that arrived at a point of a surface.
+
+#include <array>
+#include <cstdint>
+
+#include "renderlib/math/vec.h"
+
+namespace bandsaw {
+
+/// A vector in single precision, which is enough for a record: fields only choose directions.
+using Float3 = std::array<float, 3>;
+
+inline Float3 float3(const Vec3& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+inline Vec3 vec3(const Float3& v) { return {v[0], v[1], v[2]}; }
+
+struct GuidingRecord {
+  enum class Kind : std::uint8_t {
+    /// A vertex of a path from the camera: `weight` estimates the irradiance of the vertex.
+    kPath,
+    /// A photon: `weight` is its power, so that the sum over an area is the power that arrives.
+    kPhoton,
+  };
+  Float3 position;   ///< of the surface that receives the light
+  Float3 normal;     ///< unit, on the side that receives it
+  Float3 source;     ///< where the light comes from; very far away for light of the background
+  float weight = 0;  ///< >= 0, finite; 0: the path found no light
+  Kind kind = Kind::kPath;
+};
+
+/// Returns the number in [0, 6) of the axis direction that is closest to `normal`: +x, -x, +y, …
+inline std::uint32_t side_of(const Vec3& normal) {
+  const double x = std::abs(normal.x);
+  const double y = std::abs(normal.y);
+  const double z = std::abs(normal.z);
+  const std::uint32_t axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+  return 2 * axis + (normal[static_cast<int>(axis)] < 0 ? 1 : 0);
+}
+
+}  // namespace bandsaw

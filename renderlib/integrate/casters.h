@@ -1,0 +1,49 @@
+#pragma once
+
+// Surfaces that cast caustics: mirrors, glass, and metals of little roughness. Mixtures are left
+// out.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "renderlib/geometry/surface.h"
+#include "renderlib/scene/scene.h"
+
+namespace bandsaw {
+
+/// A point on a caster.
+struct CasterSample {
+  SurfacePoint point;
+  double pdf = 0;  ///< by area, > 0
+};
+
+class Casters {
+ public:
+  /// Collects the casters of the scene, which MUST outlive this object. If there are very many,
+  /// takes only some, at equal distances in their list.
+  explicit Casters(const Scene& scene);
+
+  bool empty() const { return materials_.empty(); }
+
+  /// Returns a point at this time: first a material is chosen, each with the same probability, then
+  /// a primitive by its area, then a place on it. All numbers are in [0, 1). Returns std::nullopt
+  /// if the primitive has no area.
+  std::optional<CasterSample> sample(double material, double primitive, double u, double v,
+                                     double time) const;
+
+ private:
+  struct Primitive {
+    PrimitiveId id;
+    double area_up_to = 0;  ///< sum of the areas of the material's primitives up to this one
+  };
+  struct OfMaterial {
+    MaterialId material;
+    std::vector<Primitive> primitives;
+  };
+
+  const Scene& scene_;
+  std::vector<OfMaterial> materials_;
+};
+
+}  // namespace bandsaw

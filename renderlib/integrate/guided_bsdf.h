@@ -1,0 +1,52 @@
+#pragma once
+
+// A BSDF together with the directions from which the field of path guiding expects light. The
+// direction is sampled from one of both, chosen at random; the pdf is that of the mixture (Müller,
+// Gross and Novák 2017, "Practical Path Guiding for Efficient Light-Transport Simulation", section
+// 5.2), so that the expected value does not depend on the field.
+
+#include <optional>
+
+#include "renderlib/guiding/guiding_field.h"
+#include "renderlib/integrate/path_state.h"
+#include "renderlib/material/bsdf.h"
+
+namespace bandsaw {
+
+/// Returns true if directions at this BSDF can be guided: it scatters into a wide range of
+/// directions on one side.
+bool can_be_guided(const Bsdf& bsdf);
+
+/// Returns the directions that guide the BSDF at `point`, seen along `wo`; none without a field.
+inline GuidingCones cones_at(const PathContext& context, const SurfacePoint& point,
+                             const Bsdf& bsdf, const Vec3& wo) {
+  const GuidingField* field = context.options.guiding;
+  if (field == nullptr || !can_be_guided(bsdf)) {
+    return {};
+  }
+  const Vec3 normal =
+      dot(wo, point.geometric_normal) >= 0 ? point.geometric_normal : -point.geometric_normal;
+  return GuidingCones(field->find(point.position, normal), point.position, normal);
+}
+
+struct GuidedSample {
+  BsdfSample next;
+  /// The factor by which guiding changed the weight: pdf of the BSDF over that of the mixture.
+  /// Russian roulette divides it out, because paths that guiding samples often carry much light.
+  double scaling = 1;
+};
+
+/// Samples a direction from the mixture; the arguments are those of sample() in material/bsdf.h.
+std::optional<GuidedSample> sample(const Bsdf& bsdf, const GuidingCones& cones, double u, double v,
+                                   double lobe);
+
+/// Returns the value of the BSDF and the pdf of the mixture.
+inline BsdfValue evaluate(const Bsdf& bsdf, const GuidingCones& cones, const Vec3& wi) {
+  BsdfValue value = evaluate(bsdf, wi);
+  if (cones.share() > 0) {
+    value.pdf = (1 - cones.share()) * value.pdf + cones.share() * cones.pdf(wi);
+  }
+  return value;
+}
+
+}  // namespace bandsaw

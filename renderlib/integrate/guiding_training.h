@@ -1,0 +1,35 @@
+#pragma once
+
+// Training of path guiding: the field of a scene, made before the first sample is rendered. It is a
+// pure function of the scene and the key, so every process that renders the scene can make it
+// alike. Its paths and photons are divided among a fixed number of chunks, whose records are joined
+// in order, so that neither threads nor machines change a bit.
+//
+// Photons come first (training_photons.h); the field of their records guides the first round of
+// paths (training_paths.h), and the field of all records so far the second, larger round.
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+
+#include "renderlib/base/pool.h"
+#include "renderlib/guiding/guiding_field.h"
+#include "renderlib/integrate/training_paths.h"
+#include "renderlib/scene/scene.h"
+
+namespace bandsaw {
+
+struct TrainedGuiding {
+  GuidingField field;
+  std::uint64_t paths = 0;    ///< training paths from the camera
+  std::uint64_t photons = 0;  ///< 0 if nothing in the scene casts caustics
+  std::uint64_t rays = 0;     ///< of both
+};
+
+/// Trains the field of the scene with three quarters of a path and, if there are casters, two
+/// photons for each pixel; an image counts as one of 2^15 to 2^18 pixels. The records take at most
+/// 100 MB while the training runs. Returns nullptr if `stop` was set.
+std::shared_ptr<const TrainedGuiding> train_guiding(const Scene& scene, const GuidingKey& key,
+                                                    Pool& pool, const std::atomic<bool>& stop);
+
+}  // namespace bandsaw

@@ -1,0 +1,45 @@
+#pragma once
+
+// Training of path guiding by paths from the camera.
+
+#include <cstdint>
+#include <vector>
+
+#include "renderlib/guiding/guiding_field.h"
+#include "renderlib/guiding/guiding_record.h"
+#include "renderlib/sampling/sampler.h"
+#include "renderlib/scene/scene.h"
+
+namespace bandsaw {
+
+/// What a field depends on besides the scene: the shape of the image and the length of the paths.
+/// It does not depend on the seed, so that no image is luckier than another.
+struct GuidingKey {
+  std::uint32_t width = 0;   ///< pixels
+  std::uint32_t height = 0;  ///< pixels
+  std::uint32_t max_depth = 0;
+};
+
+/// Some of the training paths, or photons, of one round.
+struct TrainingChunk {
+  std::uint32_t round = 0;
+  std::uint32_t number = 0;
+  std::uint64_t count = 0;  ///< of paths or photons
+};
+
+/// Records of a chunk, in order.
+struct TrainingRecords {
+  std::vector<GuidingRecord> records;
+  std::uint64_t rays = 0;
+};
+
+/// Traces the paths of a chunk through random places of the image, guided by `field` if it is not
+/// null, and returns a record for each vertex whose direction can be guided: the light that the
+/// path found from there on, light sampling at the vertex excluded.
+TrainingRecords training_paths(const Scene& scene, const GuidingKey& key,
+                               const TrainingChunk& chunk, const GuidingField* field);
+
+/// The numbers of training are those of pixels beyond the largest image.
+PixelSampler training_sampler(const TrainingChunk& chunk);
+
+}  // namespace bandsaw

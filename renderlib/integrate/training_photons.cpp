@@ -1,0 +1,119 @@
+#include "renderlib/integrate/training_photons.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "renderlib/integrate/guided_bsdf.h"
+#include "renderlib/integrate/intersect_visible.h"
+#include "renderlib/integrate/visibility.h"
+#include "renderlib/material/bsdf.h"
+
+namespace bandsaw {
+namespace {
+
+/// Longer chains of mirrors and glass are not followed.
+constexpr std::uint32_t kLongestChain = 16;
+
+struct Photon {
+  Ray ray;
+  double power = 0;
+  SurfacePoint from;  ///< where the ray starts
+};
+
+/// Adds a scattering at the surface to the photon, which comes along -`wo`. Returns false if it is
+/// absorbed.
+bool scatter_photon(const Scene& scene, const SurfacePoint& point, const Vec3& wo,
+                    const Sample4& numbers, Photon& photon) {
+  const Bsdf bsdf = bsdf_at(scene.material(point.material), scene.textures(), point, wo);
+  const std::optional<BsdfSample> next = sample(bsdf, numbers[0], numbers[1], numbers[2]);
+  if (!next) {
+    return false;
+  }
+  // Power is not compressed by refraction, in contrast to radiance.
+  photon.power *= luminance(next->weight) / next->compression;
+  photon.ray = spawn_ray(point, next->wi);
+  photon.from = point;
+  return photon.power > 0 && std::isfinite(photon.power);
+}
+
+/// Returns the photon that leaves a random point of a caster, by its light and its BSDF.
+std::optional<Photon> start(const Scene& scene, const Casters& casters, const PixelSampler& sampler,
+                            std::uint64_t sample, TrainingRecords& out) {
+  const Sample4 place = sampler.group(sample, kGroupCamera);
+  const Sample4 choice = sampler.group(sample, kGroupTime);
+  const Sample4 toward = sampler.group(sample, group_light(0));
+  const Shutter& shutter = shutter_of(scene.camera());
+  const double time = shutter.open + choice[0] * (shutter.close - shutter.open);
+  const std::optional<CasterSample> caster =
+      casters.sample(choice[1], place[0] + choice[3] * 0x1p-32, place[1], place[2], time);
+  if (!caster) {
+    return std::nullopt;
+  }
+  SurfacePoint point = caster->point;
+  point.time = time;
+  // Light may come from either side.
+  const Vec3 normal = place[3] < 0.5 ? point.geometric_normal : -point.geometric_normal;
+  const Receiver receiver{point.position, normal, time};
+  const std::optional<LightSample> light =
+      scene.lights().sample(receiver, toward[0] + toward[3] * 0x1p-32, toward[1], toward[2]);
+  if (!light) {
+    return std::nullopt;
+  }
+  const Ray shadow_ray =
+      light->distant ? spawn_ray(point, light->direction) : spawn_ray_to(point, light->target, 0);
+  const double passing = visibility(scene, shadow_ray, out.rays);
+  Photon photon;
+  photon.power = 2 * passing * luminance(light->radiance) / light->pdf *
+                 std::abs(dot(light->direction, normal)) / caster->pdf;
+  if (!(photon.power > 0) || !scatter_photon(scene, point, light->direction,
+                                             sampler.group(sample, group_bsdf(0)), photon)) {
+    return std::nullopt;
+  }
+  return photon;
+}
+
+/// Follows the photon until it arrives at a surface that can be guided, and records that.
+void follow(const Scene& scene, const PixelSampler& sampler, std::uint64_t sample,
+            std::uint32_t longest, double photons, Photon photon, TrainingRecords& out) {
+  NestedDielectrics nesting;
+  for (std::uint32_t depth = 1; depth < longest; ++depth) {
+    const std::optional<SurfacePoint> hit =
+        intersect_visible(scene, photon.ray, sampler, sample, depth, nesting, out.rays);
+    if (!hit || std::holds_alternative<Emissive>(scene.material(hit->material).kind)) {
+      return;
+    }
+    const Vec3 wo = -photon.ray.direction;
+    const Bsdf bsdf = bsdf_at(scene.material(hit->material), scene.textures(), *hit, wo);
+    if (can_be_guided(bsdf)) {
+      const Vec3 normal =
+          dot(wo, hit->geometric_normal) >= 0 ? hit->geometric_normal : -hit->geometric_normal;
+      out.records.push_back({.position = float3(hit->position),
+                             .normal = float3(normal),
+                             .source = float3(photon.from.position),
+                             .weight = static_cast<float>(photon.power / photons),
+                             .kind = GuidingRecord::Kind::kPhoton});
+      return;
+    }
+    if (!scatter_photon(scene, *hit, wo, sampler.group(sample, group_bsdf(depth)), photon)) {
+      return;
+    }
+  }
+}
+
+}  // namespace
+
+TrainingRecords training_photons(const Scene& scene, const Casters& casters, const GuidingKey& key,
+                                 const TrainingChunk& chunk, std::uint64_t photons) {
+  const PixelSampler sampler = training_sampler(chunk);
+  const std::uint32_t longest = std::min(kLongestChain, key.max_depth);
+  TrainingRecords out;
+  for (std::uint64_t sample = 0; sample < chunk.count; ++sample) {
+    if (const std::optional<Photon> photon = start(scene, casters, sampler, sample, out)) {
+      follow(scene, sampler, sample, longest, static_cast<double>(photons), *photon, out);
+    }
+  }
+  return out;
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,179 @@
+#include "renderlib/guiding/guiding_cell.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "renderlib/math/constants.h"
+#include "renderlib/sampling/sampler.h"
+#include "renderlib/sampling/warp.h"
+#include "tests/support/statistics.h"
+
+namespace bandsaw {
+namespace {
+
+constexpr Vec3 kUp{0, 0, 1};
+
+/// A cell of three balls above a surface, of which two overlap as seen from the origin.
+GuidingCell three_balls() {
+  GuidingCell cell;
+  cell.count = 3;
+  cell.irradiance = 1;
+  cell.share = 0.5f;
+  cell.balls[0] = {{1, 0, 2}, 0.7f, 0.5f};
+  cell.balls[1] = {{2, 0.5f, 3}, 1.0f, 0.3f};
+  cell.balls[2] = {{-3, 1, 0.5f}, 0.2f, 0.2f};
+  return cell;
+}
+
+TEST(GuidingCones, PdfIntegratesToOne) {
+  const GuidingCell cell = three_balls();
+  const GuidingCones cones({.paths = &cell}, {0.1, -0.2, 0}, kUp);
+  // The midpoint rule over (z, turn); the edges of the cones limit its precision.
+  constexpr int kRows = 2000;
+  constexpr int kColumns = 4000;
+  double sum = 0;
+  for (int row = 0; row < kRows; ++row) {
+    for (int column = 0; column < kColumns; ++column) {
+      sum += cones.pdf(sample_sphere((row + 0.5) / kRows, (column + 0.5) / kColumns));
+    }
+  }
+  EXPECT_NEAR(sum * 4 * kPi / (kRows * kColumns), 1, 1e-3);
+}
+
+// Directions are counted by the set of balls that they hit: its probability is the integral of the
+// pdf over it, which uniform directions estimate.
+TEST(GuidingCones, SamplesHaveThePdf) {
+  const GuidingCell cell = three_balls();
+  const GuidingCones cones({.paths = &cell}, {}, kUp);
+  constexpr int kSamples = 100'000;
+  // E[f / pdf] over the samples is the integral of f over the cones: of 1 in each octant.
+  std::array<test::Moments, 8> sampled;
+  std::array<test::Moments, 8> uniform;
+  const PixelSampler sampler(1, 2, 3);
+  for (std::uint64_t i = 0; i < kSamples; ++i) {
+    const Sample4 numbers = sampler.group(i, 0);
+    const Vec3 direction = cones.sample(numbers[0], numbers[1], numbers[2]);
+    ASSERT_NEAR(length(direction), 1, 1e-12);
+    ASSERT_GT(cones.pdf(direction), 0);
+    const Vec3 other = sample_sphere(numbers[1], numbers[2]);
+    const auto octant = [](const Vec3& d) {
+      return (d.x > 0.4 ? 1u : 0u) + (d.y > 0.1 ? 2u : 0u) + (d.z > 0.6 ? 4u : 0u);
+    };
+    for (std::size_t cell_number = 0; cell_number < 8; ++cell_number) {
+      sampled[cell_number].add(octant(direction) == cell_number ? 1 / cones.pdf(direction) : 0);
+      uniform[cell_number].add(octant(other) == cell_number && cones.pdf(other) > 0 ? 4 * kPi : 0);
+    }
+  }
+  for (std::size_t i = 0; i < 8; ++i) {
+    const double deviation = std::hypot(sampled[i].standard_error(), uniform[i].standard_error());
+    EXPECT_LE(std::abs(sampled[i].mean() - uniform[i].mean()), 4 * deviation + 1e-12) << i;
+  }
+}
+
+TEST(GuidingCones, LeavesTheShareOfHiddenBallsToTheBsdf) {
+  GuidingCell cell = three_balls();
+  EXPECT_NEAR(GuidingCones({.paths = &cell}, {}, kUp).share(), 0.5, 1e-7);
+  // Seen from a surface that faces down, all balls lie below it.
+  EXPECT_EQ(GuidingCones({.paths = &cell}, {}, -kUp).share(), 0);
+  // Inside of a ball its light may come from anywhere.
+  EXPECT_NEAR(GuidingCones({.paths = &cell}, {1, 0, 2.1}, kUp).share(), 0.5 * 0.3, 1e-7);
+}
+
+TEST(GuidingCones, WithoutCellsGuidesNothing) {
+  EXPECT_EQ(GuidingCones().share(), 0);
+  EXPECT_EQ(GuidingCones({}, {}, kUp).share(), 0);
+  EXPECT_EQ(GuidingCones({}, {}, kUp).pdf(kUp), 0);
+}
+
+TEST(GuidingShares, PhotonsGetTheShareOfTheirLight) {
+  GuidingCell paths = three_balls();
+  GuidingCell photons = three_balls();
+  photons.moment = 100;
+  const auto share_of_photons = [&](float irradiance) {
+    photons.irradiance = irradiance;
+    return shares_of({&paths, &photons}).photons;
+  };
+  EXPECT_EQ(share_of_photons(0), 0);
+  EXPECT_EQ(share_of_photons(1e-4f), 0);  // adds 1e-6 to the second moment
+  EXPECT_EQ(share_of_photons(0.1f), 0.125);
+  EXPECT_NEAR(share_of_photons(1.0f / 3), 0.25, 1e-6);
+  EXPECT_EQ(share_of_photons(100), 0.5);
+  EXPECT_EQ(shares_of({&paths, &photons}).paths, 0.25);
+}
+
+/// Records of light from a disk around (0, 0, 5) on a surface around `middle`.
+std::vector<GuidingRecord> light_of_disk(GuidingRecord::Kind kind, double radius, int count) {
+  std::vector<GuidingRecord> records;
+  const PixelSampler sampler(4, 5, 6);
+  for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(count); ++i) {
+    const Sample4 at = sampler.group(i, 0);
+    const Vec2 from = sample_disk(at[2], at[3]) * radius;
+    records.push_back({.position = float3({at[0] - 0.5, at[1] - 0.5, 0}),
+                       .normal = float3(kUp),
+                       .source = float3({from.x, from.y, 5}),
+                       .weight = 1,
+                       .kind = kind});
+  }
+  return records;
+}
+
+TEST(FitCell, FindsASmallSource) {
+  for (const auto kind : {GuidingRecord::Kind::kPath, GuidingRecord::Kind::kPhoton}) {
+    const GuidingCell cell = fit_cell(light_of_disk(kind, 0.1, 200));
+    ASSERT_GT(cell.count, 0u);
+    EXPECT_EQ(cell.share, 0.5f);
+    EXPECT_GT(cell.moment, 100);       // the disk covers a thousandth of the hemisphere
+    EXPECT_LT(cell.guided_moment, 4);  // half of the directions hit it
+    // Also from the edge of the cell, most guided directions hit the disk.
+    const GuidingCones cones({.paths = &cell}, {0.5, 0.5, 0}, kUp);
+    int hits = 0;
+    const PixelSampler sampler(7, 8, 9);
+    for (std::uint64_t i = 0; i < 1000; ++i) {
+      const Sample4 numbers = sampler.group(i, 0);
+      const Vec3 d = cones.sample(numbers[0], numbers[1], numbers[2]);
+      const double x = 0.5 + d.x / d.z * 5;
+      const double y = 0.5 + d.y / d.z * 5;
+      hits += d.z > 0 && x * x + y * y < 0.1 * 0.1 ? 1 : 0;
+    }
+    EXPECT_GT(hits, 500);
+  }
+}
+
+TEST(FitCell, ScalesPhotonsByTheirAreaAndAveragesPaths) {
+  // 200 photons of power 1 on a unit square; 200 paths that found an irradiance of 1.
+  EXPECT_NEAR(fit_cell(light_of_disk(GuidingRecord::Kind::kPhoton, 0.1, 200)).irradiance, 200, 10);
+  EXPECT_NEAR(fit_cell(light_of_disk(GuidingRecord::Kind::kPath, 0.1, 200)).irradiance, 1, 1e-5);
+}
+
+TEST(FitCell, LeavesEvenLightToTheBsdf) {
+  std::vector<GuidingRecord> records = light_of_disk(GuidingRecord::Kind::kPath, 0.1, 500);
+  const PixelSampler sampler(1, 1, 1);
+  for (std::uint64_t i = 0; i < records.size(); ++i) {
+    const Sample4 at = sampler.group(i, 1);
+    records[i].source =
+        float3(vec3(records[i].position) + sample_cosine_hemisphere(at[0], at[1]) * 100);
+  }
+  const GuidingCell cell = fit_cell(records);
+  EXPECT_LT(cell.moment, 1.3);
+  EXPECT_LE(cell.share, 0.125f);
+}
+
+TEST(FitCell, NeedsSomeRecordsWithLight) {
+  EXPECT_EQ(fit_cell({}).count, 0u);
+  EXPECT_EQ(fit_cell(light_of_disk(GuidingRecord::Kind::kPath, 0.1, 7)).count, 0u);
+  std::vector<GuidingRecord> dark = light_of_disk(GuidingRecord::Kind::kPath, 0.1, 100);
+  for (GuidingRecord& record : dark) {
+    record.weight = 0;
+  }
+  EXPECT_EQ(fit_cell(dark).count, 0u);
+  // One record that outshines all others tells as little as one record.
+  dark[0].weight = 1;
+  for (std::size_t i = 1; i < dark.size(); ++i) {
+    dark[i].weight = 1e-4f;
+  }
+  EXPECT_EQ(fit_cell(dark).count, 0u);
+}
+
+}  // namespace
+}  // namespace bandsaw
