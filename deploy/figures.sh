@@ -105,7 +105,7 @@ figure_sheet() { # [SCENE...]
   if [ ${#scenes[@]} = 0 ]; then
     cp -r "$gallery" "$work/gallery"
     bandsaw-gallery "$work/gallery" >/dev/null # makes the globes, which are not in the repository
-    scenes=("$work"/gallery/*.textproto "$work"/gallery/{books,study}/*.textproto)
+    scenes=("$work"/gallery/*.textproto "$work"/gallery/{books,hard_light,study}/*.textproto)
   fi
   rows=$(((${#scenes[@]} + columns - 1) / columns))
   : >"$work/panel"

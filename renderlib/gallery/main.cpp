@@ -21,6 +21,7 @@
 #include "renderlib/base/status_macros.h"
 #include "renderlib/gallery/book_scenes.h"
 #include "renderlib/gallery/globe.h"
+#include "renderlib/gallery/hard_light.h"
 #include "renderlib/gallery/pergola.h"
 #include "renderlib/gallery/sky.h"
 #include "renderlib/gallery/turned.h"
@@ -49,13 +50,16 @@ absl::Status make_all(const std::string& folder) {
   Pool pool(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
   const std::string study = folder + "/study";
   const std::string books = folder + "/books";
-  for (const std::string& path : {folder, study, books}) {
+  const std::string hard_light = folder + "/hard_light";
+  for (const std::string& path : {folder, study, books, hard_light}) {
     RETURN_IF_ERROR(make_open_folder(path));
   }
   RETURN_IF_ERROR(write(folder + "/vase.obj", vase()));
   RETURN_IF_ERROR(write(folder + "/pawn.obj", pawn()));
   RETURN_IF_ERROR(write(folder + "/lamp_foot.obj", lamp_foot()));
   RETURN_IF_ERROR(write(folder + "/lamp_shade.obj", lamp_shade()));
+  RETURN_IF_ERROR(write(hard_light + "/ring.obj", ring()));
+  RETURN_IF_ERROR(write(hard_light + "/waves.obj", waves()));
   RETURN_IF_ERROR(write(folder + "/pergola.gltf", pergola()));
   RETURN_IF_ERROR(write(folder + "/campfire_smoke.vol", smoke_volume()));
   RETURN_IF_ERROR(write(folder + "/campfire_flames.vol", flame_volume()));

@@ -13,7 +13,7 @@ function screenWidth() {
 
 let width = screenWidth();
 let samples = "16";
-const groups = {"": "Scenes", books: "The books", study: "The phone study"};
+const groups = {"": "Scenes", books: "The books", hard_light: "Hard light", study: "The phone study"};
 const groupOf = (name) => (name.includes("/") ? name.split("/")[0] : "");
 
 function titleOf(name) {

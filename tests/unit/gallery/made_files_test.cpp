@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "renderlib/gallery/book_scenes.h"
+#include "renderlib/gallery/hard_light.h"
 #include "renderlib/gallery/lathe.h"
 #include "renderlib/gallery/pergola.h"
 #include "renderlib/gallery/sky.h"
@@ -35,6 +36,8 @@ TEST(MadeFiles, AreThoseOfTheRepository) {
   EXPECT_TRUE(kept("pawn.obj") == pawn());
   EXPECT_TRUE(kept("lamp_foot.obj") == lamp_foot());
   EXPECT_TRUE(kept("lamp_shade.obj") == lamp_shade());
+  EXPECT_TRUE(kept("hard_light/ring.obj") == ring());
+  EXPECT_TRUE(kept("hard_light/waves.obj") == waves());
   EXPECT_TRUE(kept("pergola.gltf") == pergola());
   EXPECT_TRUE(kept("campfire_smoke.vol") == smoke_volume());
   EXPECT_TRUE(kept("campfire_flames.vol") == flame_volume());

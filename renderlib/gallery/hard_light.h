@@ -1,0 +1,15 @@
+#pragma once
+
+// Meshes of the scenes in hard_light/, as OBJ files.
+
+#include <string>
+
+namespace bandsaw::gallery {
+
+/// A finger ring of radius 0.8 that lies on y = 0, 0.42 high, with a rounded profile.
+std::string ring();
+
+/// The surface of water over [-2, 2]^2 about y = 0: a sum of five waves, with smooth normals.
+std::string waves();
+
+}  // namespace bandsaw::gallery
