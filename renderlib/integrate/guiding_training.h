@@ -27,8 +27,8 @@ struct TrainedGuiding {
 };
 
 /// Trains the field of the scene with three quarters of a path and, if there are casters, two
-/// photons for each pixel; an image counts as one of 2^15 to 2^18 pixels. The records take at most
-/// 100 MB while the training runs. Returns nullptr if `stop` was set.
+/// photons for each pixel; an image counts as one of 2^15 to 2^18 pixels. Each vertex of a path is
+/// a record, as is each photon that arrives. Returns nullptr if `stop` was set.
 std::shared_ptr<const TrainedGuiding> train_guiding(const Scene& scene, const GuidingKey& key,
                                                     Pool& pool, const std::atomic<bool>& stop);
 
