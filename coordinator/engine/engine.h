@@ -96,7 +96,8 @@ class Engine {
   /// Returns the workers of the rows that are rendered, in the order of rows. After a restart, a
   /// worker's name is empty in a job that is not over until the worker sends another band.
   void rendered_by(JobId job, std::function<void(std::vector<RowsBy>)> done);
-  /// Returns the result of a job. NOT_FOUND: no such job, or kSamples of one that was not adaptive.
+  /// Returns the result of a job. NOT_FOUND: no such job, kSamples of one that was not adaptive, or
+  /// kFirst of one that has none (store/finished.h).
   /// FAILED_PRECONDITION: the job is not done. DATA_LOSS: the file is missing or damaged.
   void result(JobId job, FinishedPart part, std::function<void(absl::StatusOr<StoredResult>)> done);
 

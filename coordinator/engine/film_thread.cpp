@@ -189,7 +189,12 @@ absl::Status FilmThread::send_image(JobId id, OneJob& job) {
   job.image_of.reset();
   // Earlier reports may have included more samples than the image has.
   scheduler_.pass_merged({.job = id, .samples = samples, .error = job.film->error()});
-  Finished finished{job.film->snapshot().image, std::nullopt, attribution_.of(id)};
+  Finished finished{job.film->snapshot().image, std::nullopt, std::nullopt, attribution_.of(id)};
+  if (computes_radiance(job.settings.integrator)) {
+    if (std::optional<Film::FirstPart> first = job.film->first_part()) {
+      finished.first = std::move(first->mean);
+    }
+  }
   if (job.adaptive) {
     finished.samples = job.film->counts();
   }

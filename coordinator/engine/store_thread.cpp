@@ -128,7 +128,10 @@ void StoreThread::write_result(JobId id, const Finished& finished) {
                  status.ToString());
   }
   absl::Status written;
-  if (finished.samples) {
+  if (finished.first) {
+    written = coordinator::write_result(*finished.first, folder_.job(id), folder_.first(id));
+  }
+  if (written.ok() && finished.samples) {
     written = coordinator::write_result(*finished.samples, folder_.job(id), folder_.samples(id));
   }
   if (written.ok()) {
@@ -148,6 +151,14 @@ absl::StatusOr<StoredResult> StoreThread::read_result(JobId id, FinishedPart par
                      absl::StrCat("there are no samples of each pixel of job ", id,
                                   ": it was not adaptive, or was rendered by an earlier version"))
                : std::move(samples);
+  }
+  if (part == FinishedPart::kFirst) {
+    absl::StatusOr<StoredResult> first = coordinator::read_result(folder_.first(id));
+    return absl::IsNotFound(first.status())
+               ? absl::NotFoundError(absl::StrCat(
+                     "there is no first part of the samples of job ", id,
+                     ": it has too few of them, or was rendered by an earlier version"))
+               : std::move(first);
   }
   absl::StatusOr<StoredResult> result = coordinator::read_result(folder_.result(id));
   if (absl::IsNotFound(result.status())) {

@@ -45,7 +45,7 @@ class StoreThread {
 
   void write_result(JobId job, const Finished& finished);
   /// Reads a result. DATA_LOSS: missing or damaged. NOT_FOUND: kSamples of a job that was not
-  /// adaptive.
+  /// adaptive, or kFirst of one that has none.
   absl::StatusOr<StoredResult> read_result(JobId job, FinishedPart part) const;
   /// The log was found damaged: later bands are appended after its last sound record, or to a new
   /// log if it is missing.

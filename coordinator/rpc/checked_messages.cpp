@@ -8,7 +8,6 @@
 #include "proto/wire/limits.h"
 #include "renderlib/base/clean_text.h"
 #include "renderlib/base/status_macros.h"
-#include "renderlib/scene/guide_integrators.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -72,9 +71,6 @@ absl::StatusOr<JobSpec> job_spec(const farm::SubmitRequest& request) {
                    digest_field("manifest_sha256", request.manifest_sha256()));
   const RenderSettings settings = settings_of(request.settings());
   RETURN_IF_ERROR(validate(settings));
-  if (is_guide(settings.integrator)) {
-    return absl::InvalidArgumentError("integrator: the guides of the denoiser are no images");
-  }
   ASSIGN_OR_RETURN(StopRule stop, stop_rule_of(request.stop()));
   return JobSpec{.request_id = id,
                  .name = request.name(),

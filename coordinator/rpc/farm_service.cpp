@@ -78,7 +78,9 @@ grpc::ServerWriteReactor<farm::JobStatus>* FarmService::Watch(grpc::CallbackServ
 
 grpc::ServerWriteReactor<farm::ResultChunk>* FarmService::GetResult(
     grpc::CallbackServerContext* context, const farm::GetResultRequest* request) {
-  const FinishedPart part = request->samples() ? FinishedPart::kSamples : FinishedPart::kImage;
+  const FinishedPart part = request->samples()      ? FinishedPart::kSamples
+                            : request->first_part() ? FinishedPart::kFirst
+                                                    : FinishedPart::kImage;
   return admitted<ImageCall>(deps_, *context, link::Role::kFarm,
                              [&engine = deps_.engine, job = request->job(), part] {
                                return result_of(engine, job, part);

@@ -27,6 +27,7 @@ class DataFolder {
   std::string job(JobId id) const;
   std::string bands(JobId id) const { return job(id) + "/bands"; }
   std::string result(JobId id) const { return job(id) + "/result"; }
+  std::string first(JobId id) const { return job(id) + "/first"; }
   std::string samples(JobId id) const { return job(id) + "/samples"; }
   std::string attribution(JobId id) const { return job(id) + "/attribution"; }
   /// The name that older versions gave to the attribution.

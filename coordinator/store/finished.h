@@ -12,6 +12,10 @@ namespace bandsaw::coordinator {
 
 struct Finished {
   Image image;
+  /// Mean of the first part of each pixel's samples (Film::first_part), from which the noise of the
+  /// image is known. Absent if a pixel has a single block of samples, or the integrator computes no
+  /// radiance.
+  std::optional<Image> first;
   /// Number of samples of each pixel, the same in all channels. Only for an adaptive job; in other
   /// jobs all pixels have the same number.
   std::optional<Image> samples;

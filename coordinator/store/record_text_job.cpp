@@ -3,6 +3,7 @@
 #include <string>
 
 #include "absl/strings/str_cat.h"
+#include "renderlib/scene/guide_integrators.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -49,7 +50,7 @@ RenderSettings read_settings(FieldReader& in) {
           .seed = in.number("seed"),
           // Journals of versions with a single integrator lack this field.
           .integrator = in.next_is("integrator")
-                            ? static_cast<Integrator>(in.number("integrator", kLastIntegrator))
+                            ? static_cast<Integrator>(in.number("integrator", kLastGuideIntegrator))
                             : Integrator::kPath};
 }
 

@@ -1,7 +1,8 @@
 #pragma once
 
-// A finished image, or the number of samples of each pixel, on disk: a header, then linear RGB
-// float32, rows from the top. The format is specified in this folder's README.
+// A finished image, the mean of the first part of its samples, or the number of samples of each
+// pixel, on disk: a header, then linear RGB float32, rows from the top. The format is specified in
+// this folder's README.
 
 #include <string>
 
@@ -13,8 +14,9 @@
 
 namespace bandsaw::coordinator {
 
-/// Selects a job's image or the number of samples of each pixel.
-enum class FinishedPart { kImage, kSamples };
+/// Selects a job's image, the mean of the first part of each pixel's samples (Film::first_part), or
+/// the number of samples of each pixel.
+enum class FinishedPart { kImage, kFirst, kSamples };
 
 /// A finished image as it is kept: linear RGB float.
 struct StoredResult {

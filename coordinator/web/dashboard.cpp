@@ -34,6 +34,7 @@ class Dashboard::Impl {
       : secure_(tls != nullptr),
         access_(identity, secure_),
         pictures_(engine),
+        clean_pictures_(engine),
         report_(options.report),
         scenes_(engine, options.import_scene),
         gallery_(options.gallery),
@@ -49,6 +50,7 @@ class Dashboard::Impl {
     add_farm(router_, engine);
     add_jobs(router_, engine);
     add_pictures(router_, pictures_, report_);
+    add_clean_pictures(router_, clean_pictures_);
     add_scenes(router_, scenes_);
     add_scene_files(router_, engine, scenes_);
     add_gallery(router_, engine, scenes_, gallery_);
@@ -74,6 +76,7 @@ class Dashboard::Impl {
   const bool secure_;
   Access access_;
   Pictures pictures_;
+  CleanPictures clean_pictures_;
   const MakeReport report_;
   Scenes scenes_;
   const Gallery gallery_;

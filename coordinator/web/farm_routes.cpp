@@ -9,6 +9,7 @@
 #include "coordinator/web/routes.h"
 #include "proto/web.pb.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/scene/guide_integrators.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -28,6 +29,9 @@ web::Overview overview(Engine& engine) {
   web::Overview overview;
   overview.set_version(BANDSAW_VERSION);
   std::vector<JobView> jobs = all_jobs(engine);
+  // Guides of clean pictures (clean_pictures.h) are shown with their job; `bandsaw jobs` lists
+  // them.
+  std::erase_if(jobs, [](const JobView& job) { return is_guide(job.spec.settings.integrator); });
   std::sort(jobs.begin(), jobs.end(), [](const JobView& a, const JobView& b) {
     return is_final(a.state) != is_final(b.state) ? is_final(b.state) : a.id > b.id;
   });

@@ -4,6 +4,7 @@
 
 #include "coordinator/engine/engine.h"
 #include "coordinator/web/access.h"
+#include "coordinator/web/clean_pictures.h"
 #include "coordinator/web/gallery.h"
 #include "coordinator/web/pictures.h"
 #include "coordinator/web/router.h"
@@ -22,6 +23,7 @@ void add_login(Router& router, Access& access);
 void add_farm(Router& router, Engine& engine);
 void add_jobs(Router& router, Engine& engine);
 void add_pictures(Router& router, Pictures& pictures, const MakeReport& report);
+void add_clean_pictures(Router& router, CleanPictures& pictures);
 void add_scenes(Router& router, Scenes& scenes);
 /// Scenes whose files are sent apart, each once.
 void add_scene_files(Router& router, Engine& engine, Scenes& scenes);

@@ -6,50 +6,57 @@
 
 #include "renderlib/denoise/maps.h"
 #include "renderlib/denoise/prepare.h"
+#include "renderlib/denoise/squared_error.h"
 
 namespace bandsaw {
 namespace {
 
 /// The filters among which is chosen, pixel by pixel: a narrow and a wide one.
-constexpr FitSettings kFilters[] = {
-    {.color_reach = 0.7f, .albedo_reach = 2, .normal_reach = 0.3f, .depth_reach = 0.025f},
-    {.color_reach = 1.5f, .albedo_reach = 2, .normal_reach = 0.3f, .depth_reach = 0.05f}};
-constexpr std::size_t kCount = std::size(kFilters);
-
-using Fits = std::array<FitOutput, kCount>;
+constexpr FilterSettings kSettings = {
+    FitSettings{
+        .color_reach = 0.7f, .albedo_reach = 2, .normal_reach = 0.3f, .depth_reach = 0.025f},
+    FitSettings{
+        .color_reach = 1.5f, .albedo_reach = 2, .normal_reach = 0.3f, .depth_reach = 0.05f}};
 /// Shares of the rendered value and of each filter in a pixel's value.
-using Shares = std::array<Map, 1 + kCount>;
+using Shares = std::array<Map, 1 + kFilters>;
 
 float channel(const Rgb& color, std::size_t c) {
   return c == 0 ? color.r : c == 1 ? color.g : color.b;
 }
 
-/// Estimates the squared error of the mean of two values, each of which was computed from one part
-/// of the samples (`a` from the first). `first` and `second` are the parts' own values. With the
-/// variance v of a part's value, E (a - second)^2 = error^2(a) + v(second), because the parts are
-/// independent, and v(second) = share (first - second)^2 on average; and the same exchanged. The
-/// mean's error is less than that of its terms by share (1 - share) (a - b)^2.
-template <class T>
-T squared_error(T a, T b, T first, T second, T share) {
-  const T apart = (first - second) * (first - second);
-  const T of_a = (a - second) * (a - second) - share * apart;
-  const T of_b = (b - first) * (b - first) - (1 - share) * apart;
-  return share * of_a + (1 - share) * of_b - share * (1 - share) * ((a - b) * (a - b));
-}
+/// Sums over the pixels of a row whose values may be used.
+struct RowSums {
+  double value = 0;
+  double raw = 0;
+  double clean = 0;
+  double variance = 0;
+};
 
+/// A strip of the image.
+struct Strip {
+  const DenoiseInput& input;
+  const ImageMeans& means;
+  RowSpan rows;   ///< whose result is wanted
+  int first = 0;  ///< row of the image that is row 0 of the planes
+  FitInput planes;
+  FitOutputs fits;
+};
+
+/// Chooses between the filters and the rendered value in a strip. Coordinates and maps are those of
+/// the rows for which there are filtered values.
 class Selection {
  public:
-  Selection(const DenoiseInput& input, const FitInput& planes, const Fits& fits, Pool& pool)
-      : input_(input),
-        planes_(planes),
-        fits_(fits),
+  Selection(const Strip& strip, Pool& pool)
+      : strip_(strip),
+        planes_(strip.planes),
         pool_(pool),
-        size_{planes.width, planes.height},
-        smoothing_(planes, pool) {
+        size_{planes_.width, planes_.wanted.count()},
+        smoothing_(planes_, pool) {
     choose();
   }
 
-  Denoised result() const;
+  /// Writes the strip's rows of the image and of the errors, and their sums.
+  void write(Denoised& out, std::vector<RowSums>& sums) const;
 
  private:
   /// Calls f(x, y, index) for all pixels, on the threads of the pool.
@@ -62,17 +69,27 @@ class Selection {
       }
     });
   }
+  /// Returns the row of the planes, and the index of a pixel in the image.
+  int plane_row(int y) const { return y + planes_.wanted.first; }
+  std::size_t in_image(int x, int y) const { return size_.index(x, strip_.first + plane_row(y)); }
+  float half(std::size_t h, std::size_t c, int x, int y) const {
+    return planes_.halves[h][c].at(x, plane_row(y));
+  }
+  bool valid(int x, int y) const { return planes_.valid.at(x, plane_row(y)) > 0; }
   /// Returns 1 / (brightness^2 + a little), so that errors of all pixels count alike.
   Map scales() const;
   Map error_of(std::size_t candidate, const Map& scale) const;
   void choose();
+  bool is_rendered(int x, int y) const;
   /// Half `h` of the result.
   float mixed(int x, int y, std::size_t h, std::size_t c) const;
   Rgb value_of(int x, int y) const;
+  /// Returns the estimated squared error of a pixel, summed over its channels, and adds to the
+  /// sums.
+  double add_pixel(int x, int y, RowSums& sums) const;
 
-  const DenoiseInput& input_;
+  const Strip& strip_;
   const FitInput& planes_;
-  const Fits& fits_;
   Pool& pool_;
   MapSize size_;
   SurfaceSmoothing smoothing_;
@@ -80,35 +97,32 @@ class Selection {
 };
 
 Map Selection::scales() const {
-  Map bright(size_.pixels());
-  double sum = 0;
-  for (std::size_t i = 0; i < size_.pixels(); ++i) {
-    for (const auto& half : fits_.back().halves) {
-      bright[i] += ((half[0][i] + half[1][i]) + half[2][i]) / 6;
+  const float mean = strip_.means.brightness;
+  Map scales(size_.pixels());
+  each([&](int, int, std::size_t i) {
+    float bright = 0;
+    for (const auto& part : strip_.fits.back().halves) {
+      bright += ((part[0][i] + part[1][i]) + part[2][i]) / 6;
     }
-    sum += bright[i];
-  }
-  const auto mean = static_cast<float>(sum / static_cast<double>(size_.pixels()));
-  for (float& value : bright) {
-    value = 1 / (value * value + 0.03f * mean * mean + 1e-30f);
-  }
-  return bright;
+    scales[i] = 1 / (bright * bright + 0.03f * mean * mean + 1e-30f);
+  });
+  return scales;
 }
 
 /// Returns the estimated squared error of candidate 0 (the rendered value) or of a filter.
 Map Selection::error_of(std::size_t candidate, const Map& scale) const {
   Map error(size_.pixels());
   each([&](int x, int y, std::size_t i) {
-    const float share = input_.first_share[i];
+    const float share = strip_.input.first_share[in_image(x, y)];
     float sum = 0;
     for (std::size_t c = 0; c < 3; ++c) {
-      const float first = planes_.halves[0][c].at(x, y);
-      const float second = planes_.halves[1][c].at(x, y);
-      const float a = candidate == 0 ? first : fits_[candidate - 1].halves[0][c][i];
-      const float b = candidate == 0 ? second : fits_[candidate - 1].halves[1][c][i];
+      const float first = half(0, c, x, y);
+      const float second = half(1, c, x, y);
+      const float a = candidate == 0 ? first : strip_.fits[candidate - 1].halves[0][c][i];
+      const float b = candidate == 0 ? second : strip_.fits[candidate - 1].halves[1][c][i];
       sum += squared_error(a, b, first, second, share);
     }
-    error[i] = planes_.valid.at(x, y) > 0 ? sum * scale[i] : 0;
+    error[i] = valid(x, y) ? sum * scale[i] : 0;
   });
   smoothing_.apply(error, pool_);
   return error;
@@ -120,7 +134,7 @@ void Selection::choose() {
   for (Map& share : shares_) {
     share.assign(size_.pixels(), &share == shares_.data() ? 1.0f : 0.0f);
   }
-  for (std::size_t k = 1; k <= kCount; ++k) {
+  for (std::size_t k = 1; k <= kFilters; ++k) {
     const Map error = error_of(k, scale);
     each([&](int, int, std::size_t i) {
       if (error[i] < least[i]) {
@@ -140,69 +154,83 @@ void Selection::choose() {
 
 float Selection::mixed(int x, int y, std::size_t h, std::size_t c) const {
   const std::size_t i = size_.index(x, y);
-  float value = shares_[0][i] * planes_.halves[h][c].at(x, y);
-  for (std::size_t k = 0; k < kCount; ++k) {
-    value += shares_[k + 1][i] * fits_[k].halves[h][c][i];
+  float value = shares_[0][i] * half(h, c, x, y);
+  for (std::size_t k = 0; k < kFilters; ++k) {
+    value += shares_[k + 1][i] * strip_.fits[k].halves[h][c][i];
   }
   return value;
 }
 
-bool is_rendered(float valid, float share_1, float share_2) {
-  return !(valid > 0) || !(share_1 + share_2 > 0);
+bool Selection::is_rendered(int x, int y) const {
+  const std::size_t i = size_.index(x, y);
+  return !valid(x, y) || !(shares_[1][i] + shares_[2][i] > 0);
 }
 
 Rgb Selection::value_of(int x, int y) const {
-  const std::size_t i = size_.index(x, y);
-  if (is_rendered(planes_.valid.at(x, y), shares_[1][i], shares_[2][i])) {
-    return input_.mean.pixels[i];
+  const std::size_t at = in_image(x, y);
+  if (is_rendered(x, y)) {
+    return strip_.input.mean.pixels[at];
   }
-  const float share = input_.first_share[i];
+  const float share = strip_.input.first_share[at];
   const auto value = [&](std::size_t c) {
     return share * mixed(x, y, 0, c) + (1 - share) * mixed(x, y, 1, c);
   };
   return {value(0), value(1), value(2)};
 }
 
-Denoised Selection::result() const {
-  struct RowSums {
-    double value = 0;
-    double raw = 0;
-    double clean = 0;
-    double variance = 0;
-  };
-  std::vector<RowSums> rows(static_cast<std::size_t>(size_.height));
-  Denoised out;
-  out.image = input_.mean;
+double Selection::add_pixel(int x, int y, RowSums& sums) const {
+  if (!valid(x, y)) {
+    return 0;
+  }
+  const std::size_t at = in_image(x, y);
+  const bool rendered = is_rendered(x, y);
+  const float first_share = strip_.input.first_share[at];
+  const double share = first_share;
+  double of_pixel = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const float mean = channel(strip_.input.mean.pixels[at], c);
+    const float of_first = channel(strip_.input.first.pixels[at], c);
+    const double first = of_first;
+    const double second = second_value(mean, of_first, first_share);
+    const double a = rendered ? first : mixed(x, y, 0, c);
+    const double b = rendered ? second : mixed(x, y, 1, c);
+    of_pixel += squared_error(a, b, first, second, share);
+    sums.variance += share * (1 - share) * ((a - b) * (a - b));
+    sums.raw += share * (1 - share) * ((first - second) * (first - second));
+    sums.value += mean;
+  }
+  sums.clean += of_pixel;
+  return of_pixel;
+}
+
+void Selection::write(Denoised& out, std::vector<RowSums>& sums) const {
+  const int first = strip_.first + planes_.wanted.first;  // row of the image that is row 0 here
+  const RowSpan rows{strip_.rows.first - first, strip_.rows.last - first};
   Map errors(size_.pixels());
-  each([&](int x, int y, std::size_t i) {
-    RowSums& sums = rows[static_cast<std::size_t>(y)];
-    out.image.pixels[i] = value_of(x, y);
-    if (!(planes_.valid.at(x, y) > 0)) {
-      return;
+  pool_.parallel_for(size_.height, [&](std::int64_t row) {
+    const int y = static_cast<int>(row);
+    const bool inside = y >= rows.first && y < rows.last;
+    RowSums of_row;
+    for (int x = 0; x < size_.width; ++x) {
+      errors[size_.index(x, y)] =
+          static_cast<float>(std::clamp(add_pixel(x, y, of_row) / 3, -1e30, 1e30));
+      if (inside) {
+        out.image.pixels[in_image(x, y)] = value_of(x, y);
+      }
     }
-    const bool rendered = is_rendered(1, shares_[1][i], shares_[2][i]);
-    const double share = input_.first_share[i];
-    double of_pixel = 0;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const float mean = channel(input_.mean.pixels[i], c);
-      const double first = channel(input_.first.pixels[i], c);
-      const double second =
-          second_value(mean, channel(input_.first.pixels[i], c), input_.first_share[i]);
-      const double a = rendered ? first : mixed(x, y, 0, c);
-      const double b = rendered ? second : mixed(x, y, 1, c);
-      of_pixel += squared_error(a, b, first, second, share);
-      sums.variance += share * (1 - share) * ((a - b) * (a - b));
-      sums.raw += share * (1 - share) * ((first - second) * (first - second));
-      sums.value += mean;
+    if (inside) {
+      sums[static_cast<std::size_t>(first + y)] = of_row;
     }
-    sums.clean += of_pixel;
-    errors[i] = static_cast<float>(std::clamp(of_pixel / 3, -1e30, 1e30));
   });
   smoothing_.apply(errors, pool_);
-  out.error = {input_.mean.width, input_.mean.height, {}};
-  for (const float error : errors) {
-    out.error.pixels.push_back(gray(std::sqrt(std::max(0.0f, error))));
+  for (int y = rows.first; y < rows.last; ++y) {
+    for (int x = 0; x < size_.width; ++x) {
+      out.error.pixels[in_image(x, y)] = gray(std::sqrt(std::max(0.0f, errors[size_.index(x, y)])));
+    }
   }
+}
+
+CleanError total_of(const std::vector<RowSums>& rows, std::size_t pixels) {
   RowSums all;
   for (const RowSums& row : rows) {
     all.value += row.value;
@@ -210,24 +238,44 @@ Denoised Selection::result() const {
     all.clean += row.clean;
     all.variance += row.variance;
   }
-  const double count = 3 * static_cast<double>(size_.pixels());
-  out.total = {
-      .mean = all.value / count,
-      .rmse_raw = std::sqrt(all.raw / count),
-      .rmse_clean = std::sqrt(std::max(0.0, all.clean) / count),
-      .bias_share = all.clean > 0 ? std::clamp(1 - all.variance / all.clean, 0.0, 1.0) : 0};
-  return out;
+  const double count = 3 * static_cast<double>(pixels);
+  return {.mean = all.value / count,
+          .rmse_raw = std::sqrt(all.raw / count),
+          .rmse_clean = std::sqrt(std::max(0.0, all.clean) / count),
+          .bias_share = all.clean > 0 ? std::clamp(1 - all.variance / all.clean, 0.0, 1.0) : 0};
+}
+
+/// Returns the rows of a strip: about a quarter of a megapixel, an even number.
+int rows_of_strip(int width) {
+  constexpr int kPixels = 1 << 18;
+  constexpr int kLeast = 64;
+  return std::max(kLeast, (kPixels / width) & ~1);
 }
 
 }  // namespace
 
-Denoised denoise(const DenoiseInput& input, FitFunction fit, Pool& pool) {
-  const FitInput planes = prepare_fit(input, pool);
-  Fits fits;
-  for (std::size_t k = 0; k < kCount; ++k) {
-    fits[k] = fit(planes, kFilters[k], pool);
+Denoised denoise(const DenoiseInput& input, FitFunction fit, Pool& pool, int strip_rows) {
+  // Distances of the rows on which a result depends: shares and errors are smoothed three times.
+  constexpr int kFitted = 3 * SurfaceSmoothing::kRadius;
+  static_assert(kFitted + kFitReach + 5 <= kDenoiseReach && kDenoiseReach % 2 == 0);
+  const int height = static_cast<int>(input.mean.height);
+  const ImageMeans means = means_of(input);
+  Denoised out{input.mean, {input.mean.width, input.mean.height, {}}, {}};
+  out.error.pixels.resize(out.image.pixels.size());
+  std::vector<RowSums> sums(static_cast<std::size_t>(height));
+  const int step = strip_rows > 0 ? strip_rows : rows_of_strip(static_cast<int>(input.mean.width));
+  for (int y = 0; y < height; y += step) {
+    const RowSpan rows{y, std::min(height, y + step)};
+    const RowSpan around{std::max(0, rows.first - kDenoiseReach),
+                         std::min(height, rows.last + kDenoiseReach)};
+    Strip strip{input, means, rows, around.first, prepare_fit(input, means, around, pool), {}};
+    strip.planes.wanted = {std::max(0, rows.first - kFitted) - around.first,
+                           std::min(height, rows.last + kFitted) - around.first};
+    strip.fits = fit(strip.planes, kSettings, pool);
+    Selection(strip, pool).write(out, sums);
   }
-  return Selection(input, planes, fits, pool).result();
+  out.total = total_of(sums, out.image.pixels.size());
+  return out;
 }
 
 }  // namespace bandsaw

@@ -34,7 +34,7 @@ class CentrePlanes {
   HugeVector<float> data_;
 };
 
-/// The fitted functions of all centres.
+/// The fitted functions of one filter at the centres of some rows.
 struct Models {
   Models(int columns, int rows)
       : coefficients(2 * kCoefficients, columns, rows), weights(2 * kNearOffsets, columns, rows) {}
@@ -49,19 +49,23 @@ struct Models {
   CentrePlanes weights;  ///< of the pixels up to kNear away
 };
 
+using AllModels = std::array<Models, kFilters>;
+
 class TileFit {
  public:
-  TileFit(const FitInput& input, const FitSettings& settings, Models& models)
+  /// `first_row`: the row of centres that is row 0 of the models.
+  TileFit(const FitInput& input, const FilterSettings& settings, int first_row, AllModels& models)
       : input_(input),
         settings_(settings),
+        first_row_(first_row),
         models_(models),
         distances_{PatchDistances(input, 0), PatchDistances(input, 1)} {}
 
-  /// Fits the centres of the tile whose first centre is (column, row).
-  void run(int column, int row) {
+  /// Fits the centres of the tile whose first centre is (column, row), up to row `last_row`.
+  void run(int column, int row, int last_row) {
     distances_[0].compute(2 * column, 2 * row);
     distances_[1].compute(2 * column, 2 * row);
-    for (int j = 0; j < kTileRows && 2 * (row + j) < input_.height; ++j) {
+    for (int j = 0; j < kTileRows && row + j < last_row; ++j) {
       for (int i = 0; i < kTileColumns && 2 * (column + i) < input_.width; i += kFitLanes) {
         fit_centres(column + i, row + j, i, j);
       }
@@ -71,24 +75,34 @@ class TileFit {
  private:
   /// Fits eight centres: column i of row j in the tile.
   void fit_centres(int column, int row, int i, int j);
-  /// Returns the factor of a pixel's weight by its guides' differences from those of the centre.
-  Float8 similarity(const Float8* differences, const Float8& depth_scale) const;
+  void store(int column, int row, std::size_t filter, NormalEquations (&equations)[2]);
 
   const FitInput& input_;
-  const FitSettings& settings_;
-  Models& models_;
+  const FilterSettings& settings_;
+  const int first_row_;
+  AllModels& models_;
   PatchDistances distances_[2];
 };
 
-Float8 TileFit::similarity(const Float8* d, const Float8& depth_scale) const {
-  const auto per_square = [](float reach) { return Float8(1.0f / (reach * reach)); };
-  const Float8 albedo = (d[0] * d[0] + d[1] * d[1]) + d[2] * d[2];
-  const Float8 normal = d[3] * d[3] + d[4] * d[4];
-  const Float8 depth = d[kDepthGuide] * depth_scale;
-  return falling(
-      (albedo * per_square(settings_.albedo_reach) + normal * per_square(settings_.normal_reach)) +
-      depth * depth);
-}
+/// Squares of the differences of a pixel's guides from those of the centre.
+struct GuideDistances {
+  Float8 albedo;
+  Float8 normal;
+  Float8 depth;  ///< relative to the centre's depth
+
+  GuideDistances(const Float8* d, const Float8& per_depth)
+      : albedo((d[0] * d[0] + d[1] * d[1]) + d[2] * d[2]),
+        normal(d[3] * d[3] + d[4] * d[4]),
+        depth(d[kDepthGuide] * per_depth * (d[kDepthGuide] * per_depth)) {}
+
+  /// Returns the factor of the pixel's weight.
+  Float8 similarity(const FitSettings& settings) const {
+    const auto per_square = [](float reach) { return Float8(1.0f / (reach * reach)); };
+    return falling(
+        (albedo * per_square(settings.albedo_reach) + normal * per_square(settings.normal_reach)) +
+        depth * per_square(settings.depth_reach));
+  }
+};
 
 void TileFit::fit_centres(int column, int row, int i, int j) {
   const int y = 2 * row;
@@ -96,10 +110,12 @@ void TileFit::fit_centres(int column, int row, int i, int j) {
   for (std::size_t g = 0; g < kGuides; ++g) {
     centre[g] = Float8::load(input_.guides[g].row(0, y) + column);
   }
-  const Float8 depth_scale =
-      Float8(1.0f) / (max(centre[kDepthGuide], Float8(1e-6f)) * Float8(settings_.depth_reach));
-  const Float8 per_reach(1.0f / (settings_.color_reach * settings_.color_reach));
-  NormalEquations equations[2];
+  const Float8 per_depth = Float8(1.0f) / max(centre[kDepthGuide], Float8(1e-6f));
+  Float8 per_reach[kFilters];
+  for (std::size_t f = 0; f < kFilters; ++f) {
+    per_reach[f] = Float8(1.0f / (settings_[f].color_reach * settings_[f].color_reach));
+  }
+  NormalEquations equations[kFilters][2];
   for (int dy = -kFitRadius; dy <= kFitRadius; ++dy) {
     for (int dx = -kFitRadius; dx <= kFitRadius; ++dx) {
       const int parity = dx & 1;
@@ -109,29 +125,45 @@ void TileFit::fit_centres(int column, int row, int i, int j) {
       for (std::size_t g = 0; g < kGuides; ++g) {
         terms[3 + g] = Float8::load(input_.guides[g].row(parity, y + dy) + at) - centre[g];
       }
-      const Float8 similar =
-          similarity(terms + 3, depth_scale) * Float8::load(input_.valid.row(parity, y + dy) + at);
+      const GuideDistances guides(terms + 3, per_depth);
+      const Float8 valid = Float8::load(input_.valid.row(parity, y + dy) + at);
+      Float8 similar[kFilters];
+      for (std::size_t f = 0; f < kFilters; ++f) {
+        similar[f] = guides.similarity(settings_[f]) * valid;
+      }
+      const bool is_near = std::max(std::abs(dx), std::abs(dy)) <= kNear;
       for (std::size_t h = 0; h < 2; ++h) {
         const Float8 distance = Float8::load(distances_[1 - h].to(dx, dy, j, i));
-        const Float8 weight = similar * falling(distance * per_reach);
-        if (std::max(std::abs(dx), std::abs(dy)) <= kNear) {
-          weight.store(models_.weights.row(Models::weight(h, dx, dy), row) + column);
-        }
         Float8 value[3];
         for (std::size_t c = 0; c < 3; ++c) {
           value[c] = Float8::load(input_.halves[h][c].row(parity, y + dy) + at);
         }
-        equations[h].add(weight, terms, value);
+        for (std::size_t f = 0; f < kFilters; ++f) {
+          const Float8 weight = similar[f] * falling(distance * per_reach[f]);
+          if (is_near) {
+            weight.store(models_[f].weights.row(Models::weight(h, dx, dy), row - first_row_) +
+                         column);
+          }
+          if ((Float8(0.0f) < weight).bits() != 0) {
+            equations[f][h].add(weight, terms, value);
+          }
+        }
       }
     }
   }
+  for (std::size_t f = 0; f < kFilters; ++f) {
+    store(column, row - first_row_, f, equations[f]);
+  }
+}
+
+void TileFit::store(int column, int row, std::size_t filter, NormalEquations (&equations)[2]) {
   for (std::size_t h = 0; h < 2; ++h) {
     equations[h].add_ridge();
     equations[h].solve();
     for (std::size_t t = 0; t < kTerms; ++t) {
       for (std::size_t c = 0; c < 3; ++c) {
         equations[h].values[t][c].store(
-            models_.coefficients.row(Models::coefficient(h, t, c), row) + column);
+            models_[filter].coefficients.row(Models::coefficient(h, t, c), row) + column);
       }
     }
   }
@@ -140,8 +172,9 @@ void TileFit::fit_centres(int column, int row, int i, int j) {
 /// Evaluates the models at the pixels of rows.
 class Evaluation {
  public:
-  Evaluation(const FitInput& input, const Models& models, FitOutput& output)
-      : input_(input), models_(models), output_(output) {}
+  /// `first_row` as in TileFit.
+  Evaluation(const FitInput& input, int first_row, const Models& models, FitOutput& output)
+      : input_(input), first_row_(first_row), models_(models), output_(output) {}
 
   void run(int y) {
     for (int parity = 0; parity < 2; ++parity) {
@@ -162,6 +195,7 @@ class Evaluation {
   void evaluate(int i, int parity, int y);
 
   const FitInput& input_;
+  const int first_row_;
   const Models& models_;
   FitOutput& output_;
 };
@@ -175,14 +209,13 @@ void Evaluation::add_centres(int i, int parity, int y, int k, int cy, Sums& sums
     terms[3 + g] = Float8::load(input_.guides[g].row(parity, y) + i) -
                    Float8::load(input_.guides[g].row(0, cy) + i + k);
   }
+  const int row = cy / 2 - first_row_;
   for (std::size_t h = 0; h < 2; ++h) {
-    const Float8 weight =
-        Float8::load(models_.weights.row(Models::weight(h, dx, dy), cy / 2) + i + k);
+    const Float8 weight = Float8::load(models_.weights.row(Models::weight(h, dx, dy), row) + i + k);
     for (std::size_t c = 0; c < 3; ++c) {
       Float8 value(0.0f);
       for (std::size_t t = 0; t < kTerms; ++t) {
-        const float* const of =
-            models_.coefficients.row(Models::coefficient(h, t, c), cy / 2) + i + k;
+        const float* const of = models_.coefficients.row(Models::coefficient(h, t, c), row) + i + k;
         value = value + Float8::load(of) * terms[t];
       }
       sums.values[h][c] = sums.values[h][c] + weight * value;
@@ -207,7 +240,8 @@ void Evaluation::evaluate(int i, int parity, int y) {
       add_centres(i, parity, y, k, cy, sums);
     }
   }
-  const auto row = static_cast<std::size_t>(y) * static_cast<std::size_t>(input_.width);
+  const auto row =
+      static_cast<std::size_t>(y - input_.wanted.first) * static_cast<std::size_t>(input_.width);
   for (std::size_t h = 0; h < 2; ++h) {
     for (std::size_t c = 0; c < 3; ++c) {
       float lanes[kFitLanes];
@@ -221,28 +255,33 @@ void Evaluation::evaluate(int i, int parity, int y) {
 
 }  // namespace
 
-FitOutput fit(const FitInput& input, const FitSettings& settings, Pool& pool) {
+FitOutputs fit(const FitInput& input, const FilterSettings& settings, Pool& pool) {
+  const RowSpan wanted = input.wanted;
+  // Rows of centres, up to kNear from the wanted rows.
+  const int first = std::max(0, wanted.first - kNear + 1) / 2;
+  const int last = std::min(input.height + 1, wanted.last + kNear + 1) / 2;
   const int columns = (input.width + 1) / 2;
-  const int rows = (input.height + 1) / 2;
-  Models models(columns, rows);
+  AllModels models{Models(columns, last - first), Models(columns, last - first)};
   const int across = (columns + kTileColumns - 1) / kTileColumns;
-  const int down = (rows + kTileRows - 1) / kTileRows;
+  const int down = (last - first + kTileRows - 1) / kTileRows;
   pool.parallel_for(std::int64_t{across} * down, [&](std::int64_t tile) {
-    TileFit(input, settings, models)
+    TileFit(input, settings, first, models)
         .run(static_cast<int>(tile % across) * kTileColumns,
-             static_cast<int>(tile / across) * kTileRows);
+             first + static_cast<int>(tile / across) * kTileRows, last);
   });
-  FitOutput output;
-  for (auto& half : output.halves) {
-    for (auto& channel : half) {
-      channel.resize(static_cast<std::size_t>(input.width) *
-                     static_cast<std::size_t>(input.height));
+  FitOutputs outputs;
+  for (std::size_t f = 0; f < kFilters; ++f) {
+    for (auto& half : outputs[f].halves) {
+      for (auto& channel : half) {
+        channel.resize(static_cast<std::size_t>(input.width) *
+                       static_cast<std::size_t>(wanted.count()));
+      }
     }
+    pool.parallel_for(wanted.count(), [&](std::int64_t row) {
+      Evaluation(input, first, models[f], outputs[f]).run(wanted.first + static_cast<int>(row));
+    });
   }
-  pool.parallel_for(input.height, [&](std::int64_t y) {
-    Evaluation(input, models, output).run(static_cast<int>(y));
-  });
-  return output;
+  return outputs;
 }
 
 }  // namespace bandsaw

@@ -24,10 +24,20 @@ inline constexpr std::size_t kGuides = 6;  ///< albedo r, g, b; normal x, y; dep
 inline constexpr std::size_t kFirstNormal = 3;
 inline constexpr std::size_t kDepthGuide = 5;
 
-/// The input of fit(). In the margin around the image, all planes but `valid` hold mirrored pixels.
+/// Rows [first, last).
+struct RowSpan {
+  int first = 0;
+  int last = 0;
+  int count() const { return last - first; }
+};
+
+/// The input of fit(): rows of an image, of which the values of some are wanted. In the margin
+/// around them, all planes but `valid` hold mirrored pixels. Rows up to kFitReach from the wanted
+/// ones MUST be those of the image, or mirrored at its edges.
 struct FitInput {
   int width = 0;
   int height = 0;
+  RowSpan wanted;
   std::array<std::array<SplitPlane, 3>, 2> halves;  ///< radiance of the two halves, in [0, 1e15]
   std::array<SplitPlane, 2> variance;               ///< of each half, summed over the channels, > 0
   std::array<SplitPlane, kGuides> guides;           ///< each in [0, 1]
@@ -42,16 +52,27 @@ struct FitSettings {
   float depth_reach = 0.1f;  ///< relative to the centre's depth
 };
 
-/// The two halves of a filtered image: width x height values for each channel.
+/// The filters that are computed at the same time, because they compare the same patches.
+inline constexpr std::size_t kFilters = 2;
+using FilterSettings = std::array<FitSettings, kFilters>;
+
+/// Distance of the farthest row on which a filtered value depends: centres, windows, patches.
+inline constexpr int kFitReach = 2 + 7 + 3;
+
+/// The two halves of a filtered image: values of the wanted rows for each channel.
 struct FitOutput {
   std::array<std::array<std::vector<float>, 3>, 2> halves;
 };
+using FitOutputs = std::array<FitOutput, kFilters>;
 
-/// Returns the filtered halves. Half h depends linearly on half h and, through the weights, on the
-/// other. Values are >= 0. The result has the same bits for any number of threads and all kernels.
-FitOutput fit(const FitInput& input, const FitSettings& settings, Pool& pool);
+/// Returns the filtered halves of each filter. Half h depends linearly on half h and, through the
+/// weights, on the other. Values are >= 0. The result has the same bits for any number of threads,
+/// all kernels, and any other rows in the input. The first row of `input` MUST be an even one of
+/// the image.
+FitOutputs fit(const FitInput& input, const FilterSettings& settings, Pool& pool);
 
 /// A kernel's fit() (renderlib/README.md, "Kernels").
-using FitFunction = FitOutput (*)(const FitInput& input, const FitSettings& settings, Pool& pool);
+using FitFunction = FitOutputs (*)(const FitInput& input, const FilterSettings& settings,
+                                   Pool& pool);
 
 }  // namespace bandsaw

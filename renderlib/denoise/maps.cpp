@@ -63,18 +63,21 @@ void smooth(Map& map, const MapSize& size, int radius, Pool& pool) {
 }
 
 SurfaceSmoothing::SurfaceSmoothing(const FitInput& input, Pool& pool)
-    : size_{input.width, input.height}, weights_(size_.pixels() * kSide * kSide) {
+    : size_{input.width, input.wanted.count()}, weights_(size_.pixels() * kSide * kSide) {
   pool.parallel_for(size_.height, [&](std::int64_t row) {
-    const int y = static_cast<int>(row);
+    const int y = input.wanted.first + static_cast<int>(row);
     for (int x = 0; x < size_.width; ++x) {
       const Guide centre = guide_at(input, x, y);
-      float* const to = &weights_[size_.index(x, y) * kSide * kSide];
+      float* const to = &weights_[size_.index(x, static_cast<int>(row)) * kSide * kSide];
       float sum = 0;
       for (int i = 0; i < kSide * kSide; ++i) {
         const int dx = i % kSide - kRadius;
         const int dy = i / kSide - kRadius;
         // 1 for pixels inside the image whose values are valid.
-        const float inside = dx == 0 && dy == 0 ? 1.0f : input.valid.at(x + dx, y + dy);
+        const bool wanted = y + dy >= input.wanted.first && y + dy < input.wanted.last;
+        const float inside = dx == 0 && dy == 0 ? 1.0f
+                             : wanted           ? input.valid.at(x + dx, y + dy)
+                                                : 0.0f;
         const float near =
             1 - static_cast<float>(dx * dx + dy * dy) / (2 * (kRadius + 1) * (kRadius + 1));
         to[i] = inside * near * similarity(centre, guide_at(input, x + dx, y + dy));

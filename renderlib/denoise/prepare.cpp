@@ -43,16 +43,18 @@ struct Parts {
   Map valid;
 };
 
-Parts parts_of(const DenoiseInput& input, const MapSize& size) {
+/// `first_pixel`: the index of the first pixel in the image.
+Parts parts_of(const DenoiseInput& input, std::size_t first_pixel, const MapSize& size) {
   Parts parts;
   for (auto& half : parts.values) {
     half.resize(size.pixels());
   }
   parts.valid.resize(size.pixels());
   for (std::size_t i = 0; i < size.pixels(); ++i) {
-    const Channels mean = channels(input.mean.pixels[i]);
-    const Channels first = channels(input.first.pixels[i]);
-    const float share = input.first_share[i];
+    const std::size_t at = first_pixel + i;
+    const Channels mean = channels(input.mean.pixels[at]);
+    const Channels first = channels(input.first.pixels[at]);
+    const float share = input.first_share[at];
     Channels second{};
     bool valid = share > 0 && share < 1;
     for (std::size_t c = 0; c < 3 && valid; ++c) {
@@ -101,29 +103,39 @@ std::array<float, kGuides> guides_of(const Rgb& albedo, const Rgb& shape, float 
           bounded(shape.r),  bounded(shape.g),  bounded(depth)};
 }
 
-float typical_depth(const Image& shape) {
-  double sum = 0;
-  double count = 0;
-  for (const Rgb& pixel : shape.pixels) {
-    if (pixel.b > 0 && pixel.b < kMost) {
-      sum += pixel.b;
-      count += 1;
-    }
-  }
-  return count > 0 ? static_cast<float>(sum / count) : 1.0f;
-}
-
 }  // namespace
 
-FitInput prepare_fit(const DenoiseInput& input, Pool& pool) {
-  const MapSize size{static_cast<int>(input.mean.width), static_cast<int>(input.mean.height)};
+ImageMeans means_of(const DenoiseInput& input) {
+  double brightness_sum = 0;
+  double depth_sum = 0;
+  double bright = 0;
+  double deep = 0;
+  for (std::size_t i = 0; i < input.mean.pixels.size(); ++i) {
+    const Channels mean = channels(input.mean.pixels[i]);
+    if (usable(mean[0]) && usable(mean[1]) && usable(mean[2])) {
+      brightness_sum += brightness(mean);
+      bright += 3;
+    }
+    if (const float depth = input.shape.pixels[i].b; depth > 0 && depth < kMost) {
+      depth_sum += depth;
+      deep += 1;
+    }
+  }
+  return {.brightness = bright > 0 ? static_cast<float>(brightness_sum / bright) : 0.0f,
+          .depth = deep > 0 ? static_cast<float>(depth_sum / deep) : 1.0f};
+}
+
+FitInput prepare_fit(const DenoiseInput& input, const ImageMeans& means, const RowSpan& rows,
+                     Pool& pool) {
+  const MapSize size{static_cast<int>(input.mean.width), rows.count()};
+  const std::size_t first_pixel = size.index(0, rows.first);
   FitInput out;
   out.width = size.width;
   out.height = size.height;
   Map noise(size.pixels());
   Map around(size.pixels());
   {
-    Parts parts = parts_of(input, size);
+    Parts parts = parts_of(input, first_pixel, size);
     const std::array halves{limited(parts.values[0], parts.values[1], size, pool),
                             limited(parts.values[1], parts.values[0], size, pool)};
     for (std::size_t i = 0; i < size.pixels(); ++i) {
@@ -152,16 +164,15 @@ FitInput prepare_fit(const DenoiseInput& input, Pool& pool) {
     // The variance of a part is inverse to its number of samples.
     out.variance[h] = plane_of(size, pool, [&](int x, int y) {
       const std::size_t i = size.index(x, y);
-      const float share = std::clamp(input.first_share[i], 0.0f, 1.0f);
+      const float share = std::clamp(input.first_share[first_pixel + i], 0.0f, 1.0f);
       const float least = kSmallestNoise * around[i];
       return noise[i] * (h == 0 ? 1 - share : share) + least * least + 1e-20f;
     });
   }
-  const float typical = typical_depth(input.shape);
   for (std::size_t g = 0; g < kGuides; ++g) {
     out.guides[g] = plane_of(size, pool, [&](int x, int y) {
-      const std::size_t i = size.index(x, y);
-      return guides_of(input.albedo.pixels[i], input.shape.pixels[i], typical)[g];
+      const std::size_t i = first_pixel + size.index(x, y);
+      return guides_of(input.albedo.pixels[i], input.shape.pixels[i], means.depth)[g];
     });
   }
   return out;

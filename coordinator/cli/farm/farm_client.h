@@ -68,6 +68,9 @@ class FarmClient {
   absl::StatusOr<FarmImage> result(JobId job);
   /// Fetches the number of samples of each pixel of an adaptive job. DATA_LOSS as above.
   absl::StatusOr<Image> samples(JobId job);
+  /// Fetches the mean of the first part of each pixel's samples (render/first_part.h). NOT_FOUND:
+  /// there is none. DATA_LOSS as above.
+  absl::StatusOr<Image> first_part(JobId job);
   /// Fetches the current state of the image, at most about `most_side` pixels a side; 0: full
   /// resolution. NOT_FOUND: no pixel is stored. DATA_LOSS as above.
   absl::StatusOr<FarmImage> preview(JobId job, std::uint32_t most_side);

@@ -1,4 +1,4 @@
-// FarmClient::result, samples and preview: receives an image in chunks and verifies it.
+// FarmClient::result, samples, first_part and preview: receives an image in chunks and verifies it.
 
 #include <bit>
 #include <cmath>
@@ -59,6 +59,16 @@ absl::StatusOr<Image> FarmClient::samples(JobId job) {
   farm::GetResultRequest request;
   request.set_job(job);
   request.set_samples(true);
+  ASSIGN_OR_RETURN(FarmImage received, receive(job, [&](auto& context) {
+                     return bulk_->GetResult(&context, request);
+                   }));
+  return std::move(received.image);
+}
+
+absl::StatusOr<Image> FarmClient::first_part(JobId job) {
+  farm::GetResultRequest request;
+  request.set_job(job);
+  request.set_first_part(true);
   ASSIGN_OR_RETURN(FarmImage received, receive(job, [&](auto& context) {
                      return bulk_->GetResult(&context, request);
                    }));

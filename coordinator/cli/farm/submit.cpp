@@ -7,6 +7,7 @@
 #include "coordinator/cli/farm/farm_errors.h"
 #include "coordinator/cli/farm/upload.h"
 #include "coordinator/cli/farm/watch_job.h"
+#include "coordinator/cli/image/clean.h"
 #include "coordinator/cli/image/layers.h"
 #include "coordinator/cli/image/output.h"
 #include "coordinator/cli/image/report_file.h"
@@ -65,6 +66,11 @@ ExitCode run(const SubmitOptions& options, Process& process) {
   if (const auto status = check_outputs(options.scene, options.outputs, outputs); !status.ok()) {
     return console.fail(ExitCode::kWrong, std::string(status.message()));
   }
+  if (options.denoise != Denoiser::kNone) {
+    if (const auto status = check_outputs_writable(raw_outputs(outputs)); !status.ok()) {
+      return console.fail(ExitCode::kWrong, std::string(status.message()));
+    }
+  }
   const auto reports = report_files(options.report, outputs);
   if (!reports.ok()) {
     return console.fail(ExitCode::kWrong, std::string(reports.status().message()));
@@ -83,6 +89,10 @@ ExitCode run(const SubmitOptions& options, Process& process) {
   const auto settings = image_settings(options.image, package->info());
   if (!settings.ok()) {
     return console.fail(ExitCode::kWrong, std::string(settings.status().message()));
+  }
+  if (const auto status = check_denoise(options.denoise, *settings, options.image.stop);
+      !status.ok()) {
+    return console.fail(ExitCode::kWrong, std::string(status.message()));
   }
   farm::SubmitRequest request = request_for(*package, *settings, options.image.stop);
   request.set_priority(options.priority);
@@ -107,7 +117,8 @@ ExitCode run(const SubmitOptions& options, Process& process) {
     }
     return make_layers(options.layers, *settings, samples, render, counts);
   };
-  return watch_job(**client, *job, {outputs, *reports, options.display, options.tev},
+  return watch_job(**client, *job,
+                   {outputs, *reports, options.display, options.tev, options.denoise},
                    options.verbosity, process, layers);
 }
 

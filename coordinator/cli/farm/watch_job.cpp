@@ -4,12 +4,15 @@
 #include <chrono>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/base/text.h"
 #include "coordinator/cli/base/ticker.h"
+#include "coordinator/cli/farm/clean_job.h"
 #include "coordinator/cli/farm/farm_client.h"
 #include "coordinator/cli/farm/farm_errors.h"
+#include "coordinator/cli/image/clean.h"
 #include "coordinator/cli/image/output.h"
 #include "coordinator/cli/image/report.h"
 #include "coordinator/cli/image/report_file.h"
@@ -156,12 +159,43 @@ ExitCode not_fetched(const absl::Status& status, JobId job, const Console& conso
       absl::StrCat(status.message(), "; the farm keeps the image. ", come_back(job, {})));
 }
 
-absl::Status write_wanted(const Image& image, const Layers& layers, const Display& display,
-                          const Progress& progress, const Wanted& wanted) {
-  RETURN_IF_ERROR(write_outputs(image, wanted.outputs, display, layers));
-  const Report report{progress, pixels_sha256(image), wanted.outputs,
-                      cut_off_values(image, wanted.outputs, display)};
+/// Everything that is written of a job.
+struct Pictures {
+  FarmImage result;
+  Layers layers;
+  std::optional<Denoised> clean;
+};
+
+absl::Status write_wanted(const Pictures& pictures, const Progress& progress,
+                          const Wanted& wanted) {
+  const Image& image = pictures.result.image;
+  const Display display = wanted.display.over(pictures.result.display);
+  RETURN_IF_ERROR(pictures.clean ? write_clean_outputs(*pictures.clean, image, wanted.outputs,
+                                                       display, pictures.layers)
+                                 : write_outputs(image, wanted.outputs, display, pictures.layers));
+  Report report{progress, pixels_sha256(image), wanted.outputs,
+                cut_off_values(image, wanted.outputs, display)};
+  if (pictures.clean) {
+    report.clean = clean_report(*pictures.clean, wanted.denoise, wanted.outputs);
+  }
   return write_reports(report_text(report), wanted.reports);
+}
+
+/// Has the farm render the layers and, if wanted, what the clean image needs, and shows both
+/// images.
+absl::StatusOr<Pictures> with_layers(FarmClient& client, FarmImage result, const Progress& last,
+                                     const Wanted& wanted, ImageViews& views,
+                                     ProgressDisplay& display, const BesideImage& beside) {
+  Pictures out{std::move(result), {}, std::nullopt};
+  views.show(out.result.image, out.result.display);
+  if (beside) {
+    ASSIGN_OR_RETURN(out.layers, beside(last.job.samples_per_pixel, display));
+  }
+  if (wanted.denoise != Denoiser::kNone) {
+    ASSIGN_OR_RETURN(out.clean, clean_job(client, last, out.result.image, wanted.denoise, display));
+    views.show(out.clean->image, out.result.display);
+  }
+  return out;
 }
 
 }  // namespace
@@ -196,23 +230,20 @@ ExitCode watch_job(FarmClient& client, JobId job, const Wanted& wanted, Verbosit
         ExitCode::kFailed, absl::StrCat("job ", job, " ", state_name(last->job.state), reason));
   }
   if (!outputs.empty() || views.any()) {
-    const auto result = client.result(job);
+    auto result = client.result(job);
     if (!result.ok()) {
       display.clear();
       return left_early(result.status(), job, outputs, process.console);
     }
-    views.show(result->image, result->display);
-    const absl::StatusOr<Layers> layers =
-        beside ? beside(last->job.samples_per_pixel, display) : Layers{};
-    if (!layers.ok()) {
+    const auto pictures =
+        with_layers(client, *std::move(result), *last, wanted, views, display, beside);
+    if (!pictures.ok()) {
       display.clear();
-      return exit_code_of(layers.status()) == ExitCode::kFailed
-                 ? not_fetched(layers.status(), job, process.console)
-                 : left_early(layers.status(), job, outputs, process.console);
+      return exit_code_of(pictures.status()) == ExitCode::kFailed
+                 ? not_fetched(pictures.status(), job, process.console)
+                 : left_early(pictures.status(), job, outputs, process.console);
     }
-    if (const auto status = write_wanted(result->image, *layers,
-                                         wanted.display.over(result->display), *last, wanted);
-        !status.ok()) {
+    if (const auto status = write_wanted(*pictures, *last, wanted); !status.ok()) {
       display.clear();
       return not_fetched(status, job, process.console);
     }

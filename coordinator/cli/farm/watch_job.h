@@ -20,6 +20,7 @@ struct Wanted {
   std::vector<std::string> reports;  ///< already checked by report_files
   DisplayOptions display;            ///< for 8-bit files; unset values are taken from the scene
   std::string tev;                   ///< HOST:PORT of a tev viewer; empty: none
+  Denoiser denoise = Denoiser::kNone;
 };
 
 /// Displays the job's progress until its state is final, and returns the last status. If the farm

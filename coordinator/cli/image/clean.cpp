@@ -1,13 +1,17 @@
 #include "coordinator/cli/image/clean.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <utility>
 
 #include "absl/strings/match.h"
+#include "absl/strings/str_cat.h"
+#include "coordinator/cli/image/oidn.h"
 #include "coordinator/cli/image/output.h"
+#include "coordinator/scheduler/api/clean_jobs.h"
 #include "renderlib/base/status_macros.h"
-#include "renderlib/scene/guide_integrators.h"
+#include "renderlib/denoise/halves.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -20,40 +24,90 @@ std::string raw_name(const std::string& output) {
   return path.replace_extension(".raw" + suffix).string();
 }
 
-/// Renders the first half of the samples again: a block has no parts.
-absl::StatusOr<Film::FirstPart> render_first_part(const ToClean& input,
-                                                  const LayerRenderer& render) {
-  if (input.samples < 2) {
-    return absl::FailedPreconditionError(
-        "--denoise: the error of one sample per pixel cannot be estimated; take 2 or more");
+/// Returns the normals in the camera's view from the guide, unit vectors, or zeros where nothing
+/// was hit.
+Image normals_of(const Image& shape) {
+  Image normals{shape.width, shape.height, {}};
+  for (const Rgb& guide : shape.pixels) {
+    const float x = 2 * guide.r - 1;
+    const float y = 2 * guide.g - 1;
+    const float z = std::sqrt(std::max(0.0f, 1 - x * x - y * y));
+    normals.pixels.push_back(guide.b > 0 ? Rgb{x, y, z} : Rgb{});
   }
-  const std::uint64_t part = input.samples / 2;
-  ASSIGN_OR_RETURN(Image mean, render(input.settings, part));
-  const auto share =
-      static_cast<float>(static_cast<double>(part) / static_cast<double>(input.samples));
-  std::vector<float> shares(mean.pixels.size(), share);
-  return Film::FirstPart{std::move(mean), std::move(shares)};
+  return normals;
+}
+
+absl::StatusOr<Denoised> clean_by_oidn(const DenoiseInput& input, Pool& pool) {
+  ASSIGN_OR_RETURN(const Oidn oidn, Oidn::load());
+  const Image normals = normals_of(input.shape);
+  const auto filter = [&](const Image& color) { return oidn.filter(color, input.albedo, normals); };
+  ASSIGN_OR_RETURN(Image clean, filter(input.mean));
+  ASSIGN_OR_RETURN(const Image first, filter(input.first));
+  ASSIGN_OR_RETURN(const Image second, filter(second_part(input)));
+  return with_error_of_halves(input, std::move(clean), first, second, pool);
 }
 
 }  // namespace
 
-absl::StatusOr<Denoised> make_clean(ToClean input, const LayerRenderer& render,
+JobRenderer one_by_one(LayerRenderer render) {
+  return [render = std::move(render)](
+             const std::vector<JobSpec>& jobs) -> absl::StatusOr<std::vector<Image>> {
+    std::vector<Image> images;
+    for (const JobSpec& job : jobs) {
+      ASSIGN_OR_RETURN(Image image,
+                       render(job.settings, std::get<StopAtSamples>(job.stop).samples));
+      images.push_back(std::move(image));
+    }
+    return images;
+  };
+}
+
+absl::StatusOr<Denoised> make_clean(ToClean input, const JobRenderer& render, Denoiser denoiser,
                                     const Kernel& kernel, Pool& pool) {
+  RETURN_IF_ERROR(check_cleanable(input.spec.settings, input.samples));
+  CleanJobs jobs = clean_jobs(input.spec, input.samples);
+  std::vector<JobSpec> wanted = {std::move(jobs.albedo), std::move(jobs.shape)};
   if (!input.first) {
-    ASSIGN_OR_RETURN(input.first, render_first_part(input, render));
+    wanted.push_back(*std::move(jobs.half));
   }
-  RenderSettings settings = input.settings;
-  const std::uint64_t samples = std::min(input.samples, kMaxGuideSamples);
-  settings.integrator = kGuideAlbedo;
-  ASSIGN_OR_RETURN(Image albedo, render(settings, samples));
-  settings.integrator = kGuideShape;
-  ASSIGN_OR_RETURN(Image shape, render(settings, samples));
+  ASSIGN_OR_RETURN(std::vector<Image> images, render(wanted));
+  if (!input.first) {
+    const auto half = static_cast<double>(input.samples / 2);
+    const auto share = static_cast<float>(half / static_cast<double>(input.samples));
+    input.first =
+        Film::FirstPart{std::move(images[2]), std::vector<float>(input.mean.pixels.size(), share)};
+  }
   const DenoiseInput of_filter{.mean = input.mean,
                                .first = std::move(input.first->mean),
                                .first_share = std::move(input.first->share),
-                               .albedo = std::move(albedo),
-                               .shape = std::move(shape)};
-  return denoise(of_filter, kernel.fit, pool);
+                               .albedo = std::move(images[0]),
+                               .shape = std::move(images[1])};
+  return denoiser == Denoiser::kOidn ? clean_by_oidn(of_filter, pool)
+                                     : denoise(of_filter, kernel.fit, pool);
+}
+
+Report::Clean clean_report(const Denoised& clean, Denoiser denoiser,
+                           const std::vector<std::string>& outputs) {
+  const bool own = denoiser != Denoiser::kOidn;
+  return {.error = clean.total,
+          .method = own ? "regression" : "oidn",
+          .same_bits = own,
+          .pixels_sha256 = pixels_sha256(clean.image),
+          .raw_outputs = raw_outputs(outputs)};
+}
+
+absl::Status check_denoise(Denoiser denoiser, const RenderSettings& settings,
+                           const StopRule& stop) {
+  const auto* until = std::get_if<StopAtSamples>(&stop);
+  absl::Status status;
+  if (denoiser != Denoiser::kNone) {
+    status = check_cleanable(settings, until != nullptr ? until->samples : kBlockSamples);
+  }
+  if (denoiser == Denoiser::kOidn) {
+    status.Update(Oidn::load().status());
+  }
+  return status.ok() ? status
+                     : absl::Status(status.code(), absl::StrCat("--denoise: ", status.message()));
 }
 
 std::vector<std::string> raw_outputs(const std::vector<std::string>& outputs) {

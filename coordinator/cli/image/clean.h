@@ -3,33 +3,52 @@
 // The clean image beside the one as rendered (renderlib/denoise).
 
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "coordinator/cli/image/layers.h"
+#include "coordinator/cli/image/report.h"
+#include "coordinator/cli/options/options.h"
+#include "coordinator/scheduler/api/job_spec.h"
 #include "renderlib/denoise/denoise.h"
 #include "renderlib/image/display.h"
+#include "renderlib/image/layers.h"
 #include "renderlib/render/film.h"
 #include "renderlib/render/kernel.h"
 
 namespace bandsaw::coordinator {
 
-/// The guides are rendered with at most this many samples; more do not improve the result.
-inline constexpr std::uint64_t kMaxGuideSamples = 32;
-
-/// The parts of an image of `samples` samples per pixel that the denoiser needs.
+/// An image that is to be cleaned.
 struct ToClean {
   const Image& mean;                     ///< as rendered
   std::optional<Film::FirstPart> first;  ///< std::nullopt: it is rendered, from half of the samples
-  RenderSettings settings;
-  std::uint64_t samples = 0;
+  const JobSpec& spec;                   ///< of the image
+  std::uint64_t samples = 0;             ///< per pixel
 };
 
-/// Renders the guides, and the first part if it is missing, and removes the noise. Returns
-/// FAILED_PRECONDITION if the image has a single sample per pixel, and the errors of `render`.
-absl::StatusOr<Denoised> make_clean(ToClean input, const LayerRenderer& render,
+/// Renders the images of these jobs, here or on a farm, in the same order.
+using JobRenderer =
+    std::function<absl::StatusOr<std::vector<Image>>(const std::vector<JobSpec>& jobs)>;
+
+/// Renders jobs that stop at a number of samples, one after the other, by `render`.
+JobRenderer one_by_one(LayerRenderer render);
+
+/// Renders the guides, and the first part if it is missing, and removes the noise, by
+/// OpenImageDenoise for kOidn. FAILED_PRECONDITION: the image cannot be cleaned (check_cleanable);
+/// other errors: those of `render` and of Oidn.
+absl::StatusOr<Denoised> make_clean(ToClean input, const JobRenderer& render, Denoiser denoiser,
                                     const Kernel& kernel, Pool& pool);
+
+/// Returns the entry of the report for an image cleaned by `denoiser` and written to `outputs`.
+Report::Clean clean_report(const Denoised& clean, Denoiser denoiser,
+                           const std::vector<std::string>& outputs);
+
+/// Checks before an image is rendered if it can be cleaned; OK for kNone. FAILED_PRECONDITION as
+/// check_cleanable; UNAVAILABLE: OpenImageDenoise is not installed.
+absl::Status check_denoise(Denoiser denoiser, const RenderSettings& settings, const StopRule& stop);
 
 /// Returns the files that hold the image as rendered beside these outputs: picture.raw.png beside
 /// picture.png. EXR files hold both images and need none.

@@ -106,9 +106,11 @@ JsonObject hashes_json(const Report& report) {
 
 JsonObject clean_json(const Report::Clean& clean) {
   return JsonObject()
-      .text("method", "regression")
+      .text("method", clean.method)
+      .flag("same_bits_on_all_machines", clean.same_bits)
       .number("relative_rmse_raw", clean.error.relative_raw())
       .number("relative_rmse_clean", clean.error.relative_clean())
+      .number("relative_rmse_at_most", clean.error.at_most())
       .number("rmse_raw", clean.error.rmse_raw)
       .number("rmse_clean", clean.error.rmse_clean)
       .number("bias_share", clean.error.bias_share)

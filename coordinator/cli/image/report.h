@@ -22,6 +22,8 @@ struct Report {
   /// The error of the clean image; absent if the image was not cleaned.
   struct Clean {
     CleanError error;
+    std::string method;     ///< "regression" or "oidn"
+    bool same_bits = true;  ///< false: another machine may give other bits
     std::string pixels_sha256;
     std::vector<std::string> raw_outputs;  ///< files of the image as rendered
   };

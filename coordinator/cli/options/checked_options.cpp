@@ -229,6 +229,17 @@ absl::StatusOr<std::vector<LayerKind>> checked_layers(const RawOptions& raw) {
   return parse_layers(*raw.layers);
 }
 
+/// Returns how images are cleaned. INVALID_ARGUMENT: an unknown method.
+absl::StatusOr<Denoiser> checked_denoise(const RawOptions& raw) {
+  if (raw.denoise.empty()) {
+    return Denoiser::kNone;
+  }
+  if (raw.denoise != "regression" && raw.denoise != "oidn") {
+    return wrong_choice("--denoise", raw.denoise);
+  }
+  return raw.denoise == "oidn" ? Denoiser::kOidn : Denoiser::kRegression;
+}
+
 absl::StatusOr<Command> checked_submit(const RawOptions& raw) {
   SubmitOptions options;
   options.scene = raw.scene;
@@ -252,6 +263,18 @@ absl::StatusOr<Command> checked_submit(const RawOptions& raw) {
         "--detach does not wait for the image: omit -o and fetch it with bandsaw watch JOB "
         "-o FILE");
   }
+  ASSIGN_OR_RETURN(options.denoise, checked_denoise(raw));
+  if (options.denoise != Denoiser::kNone &&
+      std::holds_alternative<StopAtError>(options.image.stop)) {
+    return wrong(
+        "--denoise: on a farm --error is a target for the image as rendered, not for the clean "
+        "one; "
+        "give --samples or --time, or use bandsaw render");
+  }
+  if (options.detach && options.denoise != Denoiser::kNone) {
+    return wrong(
+        "--detach does not wait for the image: omit --denoise and give it to bandsaw watch JOB");
+  }
   return options;
 }
 
@@ -265,6 +288,10 @@ absl::StatusOr<Command> checked_watch(const RawOptions& raw) {
   ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
   ASSIGN_OR_RETURN(options.tev, checked_tev(raw));
   RETURN_IF_ERROR(check_outputs(options.outputs, false));
+  ASSIGN_OR_RETURN(options.denoise, checked_denoise(raw));
+  if (options.denoise != Denoiser::kNone && options.outputs.empty()) {
+    return wrong("--denoise: there is no file for the clean image; add -o FILE");
+  }
   return options;
 }
 
@@ -280,31 +307,6 @@ absl::StatusOr<Command> checked_workers(const RawOptions& raw) {
   options.farm.farm = raw.farm;
   ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
   return options;
-}
-
-/// Refuses images that cannot be cleaned.
-absl::Status check_denoise(const RawOptions& raw, const RenderOptions& options) {
-  if (!raw.denoise) {
-    return absl::OkStatus();
-  }
-  if (raw.rows) {
-    return wrong("--denoise: only whole images are cleaned; omit --rows");
-  }
-  const auto* samples = std::get_if<StopAtSamples>(&options.image.stop);
-  if (samples != nullptr && samples->samples < 2) {
-    return wrong(
-        "--denoise: the error of one sample per pixel cannot be estimated; give --samples 2 or "
-        "more");
-  }
-  if (std::holds_alternative<StopAtError>(options.image.stop)) {
-    return wrong(
-        "--denoise: --error is a target for the image as rendered, not for the clean one; give "
-        "--samples or --time");
-  }
-  if (options.image.integrator && !computes_radiance(*options.image.integrator)) {
-    return wrong("--denoise: images of this integrator are not cleaned; omit --integrator");
-  }
-  return absl::OkStatus();
 }
 
 absl::StatusOr<Command> checked_render(const RawOptions& raw) {
@@ -329,8 +331,10 @@ absl::StatusOr<Command> checked_render(const RawOptions& raw) {
     }
   }
   ASSIGN_OR_RETURN(options.layers, checked_layers(raw));
-  options.denoise = raw.denoise;
-  RETURN_IF_ERROR(check_denoise(raw, options));
+  ASSIGN_OR_RETURN(options.denoise, checked_denoise(raw));
+  if (options.denoise != Denoiser::kNone && raw.rows) {
+    return wrong("--denoise: only whole images are cleaned; omit --rows");
+  }
   return options;
 }
 

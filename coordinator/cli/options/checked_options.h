@@ -28,7 +28,8 @@ struct RawOptions {
   std::optional<std::string> web, shell, audit;
   bool lift = false, adaptive = false, half = false, insecure = false, detach = false,
        quiet = false, json = false, preview = false, every_object = false, reflection = false,
-       denoise = false;
+       compare_clean = false;
+  std::string denoise;  ///< "regression" or another method; empty: not given
 };
 
 absl::StatusOr<Command> checked_serve(const RawOptions& raw);

@@ -42,6 +42,9 @@ std::vector<std::string> choices_of(const std::string& name) {
     }
     return names;
   }
+  if (name == "--denoise") {
+    return {"regression", "oidn"};
+  }
   if (name == "action") {
     return {"rotate"};
   }

@@ -112,9 +112,10 @@ void add_display(CLI::App& app, RawOptions& raw, const char* standard) {
 }
 
 void add_denoise(CLI::App& app, RawOptions& raw) {
-  app.add_flag("--denoise", raw.denoise,
+  app.add_flag("--denoise{regression}", raw.denoise,
                "Remove the noise; FILE.raw.png and the layer raw of EXR files hold the image as "
-               "rendered, the report tells the error of both");
+               "rendered, the report tells the error of both. --denoise=oidn: by the library "
+               "OpenImageDenoise, if it is installed");
 }
 
 void add_layers(CLI::App& app, RawOptions& raw) {
@@ -153,6 +154,7 @@ void add_submit(CLI::App& app, RawOptions& raw) {
   add_output(app, raw, kPictures, " [default: the scene's name as .png]");
   add_display(app, raw, "the scene's");
   add_layers(app, raw);
+  add_denoise(app, raw);
   app.add_flag("--detach", raw.detach, "Do not watch; print the job's number and exit");
   app.add_option("--priority", raw.priority,
                  "Jobs of the highest priority are rendered first, -1000 to 1000 [default: 0]")
@@ -166,6 +168,7 @@ void add_watch(CLI::App& app, RawOptions& raw) {
   app.add_option("job", raw.job, "The job's number");
   add_output(app, raw, kPictures, "");
   add_display(app, raw, "the scene's");
+  add_denoise(app, raw);
   add_farm(app, raw);
   add_views(app, raw);
   add_verbosity(app, raw);

@@ -78,6 +78,13 @@ enum class LayerKind { kAlbedo, kNormal, kDepth, kSamples };
 /// Their names, in the order of LayerKind.
 inline constexpr const char* kLayerNames[] = {"albedo", "normal", "depth", "samples"};
 
+/// How the clean image is made that is written beside the one as rendered; kNone: there is none.
+enum class Denoiser {
+  kNone,
+  kRegression,  ///< renderlib/denoise
+  kOidn,        ///< the library OpenImageDenoise, if it is installed
+};
+
 struct SubmitOptions {
   std::string scene;
   std::vector<std::string> outputs;  ///< empty: the scene's name as PNG
@@ -90,6 +97,7 @@ struct SubmitOptions {
   bool detach = false;            ///< do not watch the job
   std::int32_t priority = 0;      ///< [-kMaxPriority, kMaxPriority]
   std::vector<LayerKind> layers;  ///< layers of EXR files
+  Denoiser denoise = Denoiser::kNone;
 };
 
 struct WatchOptions {
@@ -100,6 +108,7 @@ struct WatchOptions {
   ReportOption report;
   std::string tev;  ///< HOST:PORT of a viewer; empty: none
   Verbosity verbosity;
+  Denoiser denoise = Denoiser::kNone;
 };
 
 struct JobsOptions {
@@ -196,7 +205,7 @@ struct RenderOptions {
   const Kernel* kernel = nullptr;  ///< nullptr: the fastest that this machine can run
   std::optional<RowRange> rows;    ///< only these rows
   std::vector<LayerKind> layers;   ///< layers of EXR files
-  bool denoise = false;            ///< write a clean image and the one as rendered
+  Denoiser denoise = Denoiser::kNone;
 };
 
 struct InfoOptions {
@@ -238,6 +247,7 @@ struct StudyOptions {
   std::uint32_t width = 96;        ///< pixels; the height keeps the scene's aspect ratio
   int threads = 0;                 ///< 0: one for each CPU
   bool every_object = false;       ///< also measure without BVHs
+  bool denoise = false;            ///< also measure clean images
   Verbosity verbosity;
 };
 

@@ -28,12 +28,17 @@ void LocalMeter::passed(std::uint64_t samples, const std::optional<ErrorEstimate
   }
 }
 
+void LocalMeter::measured(std::uint64_t samples, double error) {
+  MutexLock lock(mutex_);
+  add_point(measured_, {.samples = samples, .estimate = {.relative_rmse = error}});
+}
+
 void LocalMeter::add(const Counters& counters) {
   MutexLock lock(mutex_);
   counters_.add(counters);
 }
 
-double LocalMeter::fraction_of(const JobView& job) const {
+double LocalMeter::fraction_of(const JobView& job, const ErrorCurve& curve) const {
   const double done = static_cast<double>(job.samples_done) / pixels_;  // samples per pixel
   if (const auto* rule = std::get_if<StopAtSamples>(&spec_.stop)) {
     return done / static_cast<double>(rule->samples);
@@ -42,9 +47,9 @@ double LocalMeter::fraction_of(const JobView& job) const {
     return job.elapsed_s / rule->seconds;
   }
   const auto& rule = std::get<StopAtError>(spec_.stop);
-  const auto end = expected_end(job.curve, rule.relative_rmse, planned_, rule.max_samples);
+  const auto end = expected_end(curve, rule.relative_rmse, planned_, rule.max_samples);
   // For an adaptive render, counts complete passes, because a pass does not contain all pixels.
-  const double so_far = rule.adaptive && end ? static_cast<double>(job.curve.back().samples) : done;
+  const double so_far = rule.adaptive && end ? static_cast<double>(curve.back().samples) : done;
   return end ? so_far / static_cast<double>(*end) : 0;
 }
 
@@ -56,8 +61,10 @@ Progress LocalMeter::progress(Clocks now) const {
   job.elapsed_s = seconds(now.steady_s);
   job.cpu_s = now.cpu_s - start_.cpu_s;
   job.samples_done = reached_.load(std::memory_order_relaxed);
+  ErrorCurve measured;
   {
     MutexLock lock(mutex_);
+    measured = measured_;
     job.samples_per_pixel =
         is_adaptive(spec_.stop) ? job.samples_done / static_cast<std::uint64_t>(pixels_) : passed_;
     job.curve = curve_;
@@ -68,7 +75,7 @@ Progress LocalMeter::progress(Clocks now) const {
     progress.bad_sample_at = bad_sample_text(job.counters);
   }
   // Only the caller decides that the render is done.
-  job.fraction = std::min(fraction_of(job), 0.999);
+  job.fraction = std::min(fraction_of(job, measured.empty() ? job.curve : measured), 0.999);
   if (job.elapsed_s > 0) {
     job.samples_per_s = static_cast<double>(job.samples_done) / job.elapsed_s;
   }

@@ -28,13 +28,16 @@ class LocalMeter {
   /// Reports that samples [0, samples) of all rows are done. `error`: std::nullopt if unknown.
   void passed(std::uint64_t samples, const std::optional<ErrorEstimate>& error, Clocks now)
       EXCLUDES(mutex_);
+  /// Reports the error that the stop rule compares with its target, if it is not that of passed().
+  void measured(std::uint64_t samples, double error) EXCLUDES(mutex_);
   void add(const Counters& counters) EXCLUDES(mutex_);
 
   double seconds(double steady_s) const { return steady_s - start_.steady_s; }
   Progress progress(Clocks now) const EXCLUDES(mutex_);
 
  private:
-  double fraction_of(const JobView& job) const;
+  /// `curve`: the errors that the stop rule compares with its target.
+  double fraction_of(const JobView& job, const ErrorCurve& curve) const;
 
   const JobSpec spec_;
   const double pixels_;
@@ -45,6 +48,7 @@ class LocalMeter {
   mutable Mutex mutex_;
   std::uint64_t passed_ GUARDED_BY(mutex_) = 0;
   ErrorCurve curve_ GUARDED_BY(mutex_);
+  ErrorCurve measured_ GUARDED_BY(mutex_);
   Counters counters_ GUARDED_BY(mutex_);
 };
 

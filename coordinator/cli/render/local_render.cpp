@@ -62,6 +62,10 @@ absl::StatusOr<Film> render_whole(const LocalJob& job, const StopRule& stop) {
     const auto estimate = film.error();
     error = known_error(estimate, samples);
     job.meter.passed(samples, estimate, clocks());
+    if (job.error_of && error >= 0 && plan.wants_error()) {
+      ASSIGN_OR_RETURN(error, job.error_of(film, samples));
+      job.meter.measured(samples, error);
+    }
     if (plan.wants_tiles(error)) {
       plan.plan(film.tile_errors(), samples);
     }

@@ -25,6 +25,9 @@ struct LocalJob {
   LocalMeter& meter;
   /// Called after each band added to a whole image; may be nullptr.
   std::function<void(const Film&)> grown = nullptr;
+  /// For a stop rule of an error: returns the error that is compared with its target, of an image
+  /// of that many samples per pixel. nullptr: the estimate of Film::error.
+  std::function<absl::StatusOr<double>(const Film&, std::uint64_t samples)> error_of = nullptr;
 };
 
 /// Renders the whole image, pass by pass until the stop rule is satisfied. CANCELLED;

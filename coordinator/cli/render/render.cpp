@@ -16,6 +16,7 @@
 #include "coordinator/cli/options/output_names.h"
 #include "coordinator/cli/progress/image_views.h"
 #include "coordinator/cli/progress/progress_display.h"
+#include "coordinator/cli/render/clean_preview.h"
 #include "coordinator/cli/render/local_render.h"
 #include "coordinator/cli/scene/image_settings.h"
 #include "coordinator/cli/scene/import_scene_file.h"
@@ -121,56 +122,108 @@ class LocalRun {
         const std::shared_ptr<const Scene> scene,
         Scene::build(std::move(description), pool_, {}, Traversal::kBvh, options_.kernel));
     LocalJob job{*scene, spec_.settings, pool_, stop_, meter_};
-    if (views_.any()) {
-      job.grown = [this](const Film& film) { show(film); };
-    }
     if (options_.rows) {
       ASSIGN_OR_RETURN(bands_,
                        render_part(job, rows_, std::get<StopAtSamples>(spec_.stop).samples));
-    } else {
-      ASSIGN_OR_RETURN(const Film film, render_whole(job, spec_.stop));
-      image_ = film.snapshot().image;
-      views_.show(image_, picture_);
-      const std::uint64_t samples = meter_.progress(clocks()).job.samples_per_pixel;
-      const auto render_layer = [&](const RenderSettings& settings,
-                                    std::uint64_t count) -> absl::StatusOr<Image> {
-        ASSIGN_OR_RETURN(const RenderedImage layer,
-                         render_image(*scene, settings, count, pool_, stop_, {}, ""));
-        return layer.film.snapshot().image;
+      return absl::OkStatus();
+    }
+    std::optional<CleanPreview> preview;
+    if (options_.denoise != Denoiser::kNone) {
+      job.error_of = [&](const Film& film, std::uint64_t samples) -> absl::StatusOr<double> {
+        RETURN_IF_ERROR(clean(*scene, film, samples));
+        return clean_->denoised.total.at_most();
       };
-      SampleCounts counts;
-      if (is_adaptive(spec_.stop)) {
-        counts = [&] { return film.counts(); };
+      if (options_.verbosity.preview) {
+        preview.emplace(*scene, spec_.settings, pool_, stop_);
+        display_.note(
+            "the preview is cleaned with coarse guides; the picture is cleaned at the end");
       }
-      ASSIGN_OR_RETURN(layers_,
-                       make_layers(options_.layers, spec_.settings, samples, render_layer, counts));
-      if (options_.denoise) {
-        ASSIGN_OR_RETURN(clean_, make_clean({image_, film.first_part(), spec_.settings, samples},
-                                            render_layer, scene->kernel(), pool_));
-        views_.show(clean_->image, picture_);
-      }
+    }
+    if (views_.any()) {
+      job.grown = [&](const Film& film) { show(film, preview ? &*preview : nullptr); };
+    }
+    ASSIGN_OR_RETURN(const Film film, render_whole(job, spec_.stop));
+    image_ = film.snapshot().image;
+    views_.show(image_, picture_);
+    const std::uint64_t samples = meter_.progress(clocks()).job.samples_per_pixel;
+    SampleCounts counts;
+    if (is_adaptive(spec_.stop)) {
+      counts = [&] { return film.counts(); };
+    }
+    ASSIGN_OR_RETURN(layers_, make_layers(options_.layers, spec_.settings, samples,
+                                          layer_renderer(*scene), counts));
+    if (options_.denoise != Denoiser::kNone) {
+      RETURN_IF_ERROR(clean(*scene, film, samples));
+      views_.show(clean_->denoised.image, picture_);
     }
     return absl::OkStatus();
   }
 
-  /// Shows the image at intervals, so that showing it takes little time compared with rendering.
-  void show(const Film& film) {
-    constexpr double kInterval_s = 0.3;
-    if (steady_seconds() >= shown_at_ + kInterval_s) {
-      views_.show(film.snapshot().image, picture_);
-      shown_at_ = steady_seconds();
+  LayerRenderer layer_renderer(const Scene& scene) {
+    return [this, &scene](const RenderSettings& settings,
+                          std::uint64_t count) -> absl::StatusOr<Image> {
+      ASSIGN_OR_RETURN(const RenderedImage layer,
+                       render_image(scene, settings, count, pool_, stop_, {}, ""));
+      return layer.film.snapshot().image;
+    };
+  }
+
+  /// Makes the clean image of `samples` samples per pixel, unless it is there.
+  absl::Status clean(const Scene& scene, const Film& film, std::uint64_t samples) {
+    if (clean_ && clean_->samples == samples) {
+      return absl::OkStatus();
     }
+    clean_.reset();
+    const Image mean = film.snapshot().image;
+    ASSIGN_OR_RETURN(Denoised made,
+                     make_clean({mean, film.first_part(), spec_, samples}, guides_of(scene),
+                                options_.denoise, scene.kernel(), pool_));
+    clean_ = Clean{std::move(made), samples};
+    return absl::OkStatus();
+  }
+
+  /// Renders jobs once: the guides of an image are those of its earlier passes, from
+  /// kMaxGuideSamples samples on.
+  JobRenderer guides_of(const Scene& scene) {
+    return [this, render = one_by_one(layer_renderer(scene))](
+               const std::vector<JobSpec>& jobs) -> absl::StatusOr<std::vector<Image>> {
+      if (!guides_ || guides_->jobs != jobs) {
+        ASSIGN_OR_RETURN(std::vector<Image> images, render(jobs));
+        guides_ = Guides{jobs, std::move(images)};
+      }
+      return guides_->images;
+    };
+  }
+
+  /// Shows the image at intervals, so that showing it takes little time compared with rendering.
+  /// `clean`: for a clean image, or nullptr.
+  void show(const Film& film, CleanPreview* clean) {
+    constexpr double kInterval_s = 0.3;
+    constexpr double kMaxShare = 0.05;  // of the time, for cleaning
+    const double begin = steady_seconds();
+    if (begin < show_at_) {
+      return;
+    }
+    absl::StatusOr<std::optional<Image>> picture = std::optional<Image>();
+    if (clean != nullptr && views_.most_side() > 0) {
+      picture = clean->of(film, views_.most_side());
+    }
+    const double cleaned_in = steady_seconds() - begin;
+    // An error is one of rendering, which the render reports itself.
+    views_.show(picture.ok() && *picture ? **picture : film.snapshot().image, picture_);
+    show_at_ = steady_seconds() + std::max(kInterval_s, cleaned_in / kMaxShare);
   }
 
   absl::Status write(const Progress& progress, const std::vector<std::string>& outputs,
                      const std::vector<std::string>& reports) const {
     RETURN_IF_ERROR(options_.rows ? write_part_outputs(bands_, spec_, rows_, outputs, picture_)
-                    : clean_      ? write_clean_outputs(*clean_, image_, outputs, picture_, layers_)
-                                  : write_outputs(image_, outputs, picture_, layers_));
+                    : clean_
+                        ? write_clean_outputs(clean_->denoised, image_, outputs, picture_, layers_)
+                        : write_outputs(image_, outputs, picture_, layers_));
     Report report{progress, options_.rows ? "" : pixels_sha256(image_), outputs,
                   cut_off_values(image_, outputs, picture_)};
     if (clean_) {
-      report.clean = {clean_->total, pixels_sha256(clean_->image), raw_outputs(outputs)};
+      report.clean = clean_report(clean_->denoised, options_.denoise, outputs);
     }
     return write_reports(report_text(report), reports);
   }
@@ -184,11 +237,20 @@ class LocalRun {
   ProgressDisplay display_;
   const Display picture_;
   ImageViews views_;
-  double shown_at_ = -1;  ///< seconds of a steady clock
+  double show_at_ = 0;  ///< time of the next picture, in seconds of a steady clock
   std::atomic<bool> stop_{false};
   Image image_;
   Layers layers_;
-  std::optional<Denoised> clean_;
+  struct Clean {
+    Denoised denoised;
+    std::uint64_t samples = 0;
+  };
+  std::optional<Clean> clean_;
+  struct Guides {
+    std::vector<JobSpec> jobs;
+    std::vector<Image> images;
+  };
+  std::optional<Guides> guides_;
   std::vector<BandPixels> bands_;
 };
 
@@ -201,7 +263,7 @@ ExitCode run(const RenderOptions& options, Process& process) {
   if (const auto status = check_outputs(options.scene, options.outputs, outputs); !status.ok()) {
     return console.fail(ExitCode::kWrong, std::string(status.message()));
   }
-  if (options.denoise) {
+  if (options.denoise != Denoiser::kNone) {
     if (const auto status = check_outputs_writable(raw_outputs(outputs)); !status.ok()) {
       return console.fail(ExitCode::kWrong, std::string(status.message()));
     }
@@ -218,6 +280,10 @@ ExitCode run(const RenderOptions& options, Process& process) {
   const auto settings = image_settings(options.image, prepared->info);
   if (!settings.ok()) {
     return console.fail(ExitCode::kWrong, std::string(settings.status().message()));
+  }
+  if (const auto status = check_denoise(options.denoise, *settings, options.image.stop);
+      !status.ok()) {
+    return console.fail(ExitCode::kWrong, std::string(status.message()));
   }
   if (options.rows && options.rows->last > settings->height) {
     return console.fail(ExitCode::kWrong,

@@ -53,7 +53,7 @@ absl::StatusOr<std::vector<StudyOfScene>> studied(const StudyOptions& options,
                                                   const std::atomic<bool>& stop) {
   const auto cpus = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   Pool pool(options.threads > 0 ? options.threads : cpus);
-  const StudyPlan plan{options.samples, options.seeds, options.reference};
+  const StudyPlan plan{options.samples, options.seeds, options.reference, options.denoise};
   std::vector<StudyOfScene> out;
   for (Prepared& prepared : scenes) {
     std::shared_ptr<const Scene> every_object;
@@ -100,6 +100,13 @@ ExitCode run(const StudyOptions& options, Process& process) {
     return console.fail(ExitCode::kFailed, std::string(written.message()));
   }
   console.write(absl::StrCat(options.verbosity.quiet ? "" : "\n", study_table(*studies)));
+  if (options.denoise) {
+    std::vector<CleanOfScene> clean;
+    for (const StudyOfScene& study : *studies) {
+      clean.push_back({study.scene, study.clean});
+    }
+    console.write(absl::StrCat("\n", clean_table(clean)));
+  }
   console.line(absl::StrCat("\n", printable_list(options.outputs)));
   return ExitCode::kDone;
 }

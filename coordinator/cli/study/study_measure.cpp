@@ -8,6 +8,8 @@
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/base/cpu_time.h"
+#include "coordinator/cli/image/clean.h"
+#include "coordinator/cli/image/comparison.h"
 #include "coordinator/cli/study/study_adaptive.h"
 #include "coordinator/cli/study/study_pixel_stops.h"
 #include "coordinator/scheduler/api/error_curve.h"
@@ -105,8 +107,39 @@ class Study {
                      render_image(scene_, settings, plan_.reference, pool_, stop_, {}, ""));
     reference_ = rendered.film.snapshot().image;
     mean_ = mean_of(reference_);
-    const auto error = rendered.film.error();
-    return error ? error->relative_rmse : 0;
+    reference_error_ = rendered.film.error().value_or(ErrorEstimate());
+    return reference_error_.relative_rmse;
+  }
+
+  /// Measures images as rendered and the same images clean.
+  absl::Status with_clean(StudyOfScene& out) {
+    StudyLine raw{Method::kFull, {}};
+    StudyLine clean{Method::kClean, {}};
+    for (const std::uint64_t samples : study_samples(plan_.samples)) {
+      if (samples < kLeastClean) {
+        continue;
+      }
+      Seeds of_raw(reference_, mean_);
+      Seeds of_clean(reference_, mean_);
+      CleanPoint point{.samples = static_cast<double>(samples)};
+      for (std::uint64_t seed = 0; seed < plan_.seeds; ++seed) {
+        RETURN_IF_ERROR(add_both(samples, settings_.seed + seed, of_raw, of_clean, point));
+      }
+      raw.points.push_back(of_raw.point());
+      clean.points.push_back(of_clean.point());
+      const auto without_reference = [&](double mse) {
+        return std::max(0.0, mse - reference_error_.relative_mse);
+      };
+      point.raw_mse = without_reference(raw.points.back().relative_mse);
+      point.clean_mse = without_reference(clean.points.back().relative_mse);
+      point.raw_cpu_s = raw.points.back().cpu_s;
+      point.clean_cpu_s = clean.points.back().cpu_s;
+      point.raw_flip /= static_cast<double>(plan_.seeds);
+      point.clean_flip /= static_cast<double>(plan_.seeds);
+      out.clean.push_back(std::move(point));
+    }
+    out.lines = {std::move(raw), std::move(clean)};
+    return absl::OkStatus();
   }
 
   absl::StatusOr<StudyLine> line(Method method, const Scene& scene) {
@@ -125,6 +158,45 @@ class Study {
   }
 
  private:
+  static constexpr std::uint64_t kLeastClean = 4;
+
+  absl::Status add_both(std::uint64_t samples, std::uint64_t seed, Seeds& of_raw, Seeds& of_clean,
+                        CleanPoint& point) {
+    JobSpec spec;
+    spec.settings = settings_;
+    spec.settings.seed = seed;
+    const double start = process_cpu_seconds();
+    ASSIGN_OR_RETURN(const RenderedImage rendered,
+                     render_image(scene_, spec.settings, samples, pool_, stop_, {}, ""));
+    const Image image = rendered.film.snapshot().image;
+    const double raw_s = process_cpu_seconds() - start;
+    auto rays = static_cast<double>(rendered.counters.rays);
+    of_raw.add(image, static_cast<double>(samples), raw_s, rays);
+    const double filter_start = process_cpu_seconds();
+    const auto render = [&](const RenderSettings& settings,
+                            std::uint64_t count) -> absl::StatusOr<Image> {
+      ASSIGN_OR_RETURN(const RenderedImage layer,
+                       render_image(scene_, settings, count, pool_, stop_, {}, ""));
+      rays += static_cast<double>(layer.counters.rays);
+      return layer.film.snapshot().image;
+    };
+    ASSIGN_OR_RETURN(const Denoised clean,
+                     make_clean({image, rendered.film.first_part(), spec, samples},
+                                one_by_one(render), Denoiser::kRegression, scene_.kernel(), pool_));
+    of_clean.add(clean.image, static_cast<double>(samples),
+                 raw_s + process_cpu_seconds() - filter_start, rays);
+    ASSIGN_OR_RETURN(const Comparison of_image, compare_images(image, reference_));
+    ASSIGN_OR_RETURN(const Comparison of_result, compare_images(clean.image, reference_));
+    point.raw_flip += mean(of_image.flip);
+    point.clean_flip += mean(of_result.flip);
+    const double squares = of_result.errors.rmse * of_result.errors.rmse -
+                           reference_error_.rmse * reference_error_.rmse;
+    if (squares > 0) {
+      point.told.push_back(clean.total.rmse_clean / std::sqrt(squares));
+    }
+    return absl::OkStatus();
+  }
+
   absl::Status add_image(Method method, const Scene& scene, std::uint64_t samples,
                          std::uint64_t seed, Seeds& seeds) {
     RenderSettings settings = settings_;
@@ -184,6 +256,7 @@ class Study {
   const std::atomic<bool>& stop_;
   Image reference_;
   double mean_ = 0;
+  ErrorEstimate reference_error_;
 };
 
 }  // namespace
@@ -204,6 +277,8 @@ const char* method_name(Method method) {
       return "stopping per pixel";
     case Method::kEveryObject:
       return "no BVH";
+    case Method::kClean:
+      return "clean";
   }
   return "";
 }
@@ -237,8 +312,13 @@ absl::StatusOr<StudyOfScene> study_scene(const std::string& name, const Scene& s
                                          const std::function<void(const std::string&)>& doing) {
   Study study(scene, settings, plan, pool, stop);
   doing(absl::StrCat(name, " · reference, ", plan.reference, " samples"));
-  StudyOfScene out{.scene = name, .reference_error = 0, .lines = {}};
+  StudyOfScene out{.scene = name, .reference_error = 0, .lines = {}, .clean = {}};
   ASSIGN_OR_RETURN(out.reference_error, study.make_reference());
+  if (plan.denoise) {
+    doing(absl::StrCat(name, " · as rendered and clean"));
+    RETURN_IF_ERROR(study.with_clean(out));
+    return out;
+  }
   for (const Method method : kMethods) {
     doing(absl::StrCat(name, " · ", method_name(method)));
     ASSIGN_OR_RETURN(StudyLine line, study.line(method, scene));
@@ -262,7 +342,7 @@ std::optional<double> slope_of(const StudyLine& line) {
 
 std::optional<double> cpu_s_to_1_percent(const StudyLine& line) {
   constexpr double kOnePercent = 0.01;
-  if (line.method == Method::kPixelStops) {
+  if (line.method == Method::kPixelStops || line.method == Method::kClean) {
     return std::nullopt;
   }
   ErrorCurve curve;

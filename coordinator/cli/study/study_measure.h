@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "coordinator/cli/study/study_clean.h"
 #include "renderlib/base/pool.h"
 #include "renderlib/render/settings.h"
 #include "renderlib/scene/scene.h"
@@ -32,6 +33,8 @@ enum class Method {
   kPixelStops,
   /// Same bits as kFull; each ray is tested against every object of the scene. Only if requested.
   kEveryObject,
+  /// kFull with its noise removed (renderlib/denoise). Biased. Only if requested.
+  kClean,
 };
 inline constexpr Method kMethods[] = {Method::kFull,     Method::kNoMis,       Method::kNoLights,
                                       Method::kAdaptive, Method::kIndependent, Method::kPixelStops};
@@ -58,12 +61,15 @@ struct StudyOfScene {
   std::string scene;
   double reference_error = 0;  ///< estimated relative RMSE of the reference
   std::vector<StudyLine> lines;
+  std::vector<CleanPoint> clean = {};  ///< of StudyPlan::denoise
 };
 
 struct StudyPlan {
   std::uint64_t samples = 64;  ///< maximum: 1, 4, 16, … up to this
   std::uint64_t seeds = 4;
   std::uint64_t reference = 1024;  ///< samples per pixel of the reference
+  /// Measure kFull and kClean, from 4 samples on, instead of kMethods.
+  bool denoise = false;
 };
 
 /// Maximum number of objects for kEveryObject; with more, a study takes too long.
@@ -89,8 +95,8 @@ absl::StatusOr<StudyOfScene> study_scene(const std::string& name, const Scene& s
 std::optional<double> slope_of(const StudyLine& line);
 
 /// Returns the CPU seconds until the error is 1 %, as predicted in a report
-/// (scheduler/api/error_curve.h). Returns std::nullopt for kPixelStops, whose error does not depend
-/// on the number of samples alone.
+/// (scheduler/api/error_curve.h). Returns std::nullopt for kPixelStops and kClean, whose errors do
+/// not depend on the number of samples alone.
 std::optional<double> cpu_s_to_1_percent(const StudyLine& line);
 
 }  // namespace bandsaw::coordinator

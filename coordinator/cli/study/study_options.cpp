@@ -37,6 +37,8 @@ void add_study(CLI::App& app, RawOptions& raw) {
   app.add_option("--threads", raw.threads, "Threads [default: one for each CPU]")->type_name("N");
   app.add_flag("--every-object", raw.every_object,
                "Also test each ray against every object; small scenes only");
+  app.add_flag("--denoise", raw.compare_clean,
+               "Compare clean images with those as rendered, instead of the techniques");
   app.add_flag("--quiet", raw.quiet, "Print only the table and errors");
 }
 
@@ -52,6 +54,10 @@ absl::StatusOr<Command> checked_study(const RawOptions& raw) {
   }
   RETURN_IF_ERROR(check_study_outputs(options.outputs));
   options.every_object = raw.every_object;
+  options.denoise = raw.compare_clean;
+  if (options.denoise && options.every_object) {
+    return absl::InvalidArgumentError("--denoise and --every-object exclude each other");
+  }
   options.verbosity.quiet = raw.quiet;
   RETURN_IF_ERROR(read_whole("--samples", raw.samples, 4, kMaxStudySamples, options.samples));
   RETURN_IF_ERROR(read_whole("--seeds", raw.seeds, 1, kMaxSeeds, options.seeds));

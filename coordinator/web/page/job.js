@@ -82,7 +82,7 @@ export function jobView(id) {
       log.hidden = status.log.length === 0;
       text(log, `${status.log_of}:\n${status.log.join("\n")}`);
       orders.update(status);
-      shown.update(page);
+      await shown.update(page);
       const points = (status.curve ?? []).map((point) => ({t: point.elapsed_s, error: point.relative_rmse + point.margin}));
       curve.update(points, status.stop.error, isOver(status));
     },

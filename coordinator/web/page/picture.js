@@ -1,5 +1,6 @@
 // A job's picture, updated as passes arrive; optionally with the worker of each row.
 
+import {cleaning} from "./clean.js";
 import {el, isOver, stateOf, text} from "./dom.js";
 
 /// Colours that are distinguishable with colour vision deficiencies (Okabe and Ito 2008).
@@ -30,6 +31,7 @@ export function picture() {
   const waiting = el("p.waiting", {}, "Nothing is rendered yet.");
   const owners = el("div.owners", {hidden: true, "aria-hidden": "true"});
   const frame = el("div.picture", {}, waiting, img, owners);
+  const cleaned = cleaning(frame);
   const legend = el("ul.legend.small", {hidden: true, "aria-label": "Who rendered which rows"});
   const toggle = el("button", {"aria-pressed": "false", onclick: () => {
     owners.hidden = legend.hidden = !owners.hidden;
@@ -40,12 +42,14 @@ export function picture() {
   const exr = el("a.button", {hidden: true}, "EXR");
   const report = el("a.button", {hidden: true, title: "What the image cost and how wrong it is, as JSON"}, "Report");
   return {
-    element: el("div.stack", {}, frame, el("div.row", {}, open, png, exr, report, toggle), legend),
+    element: el("div.stack", {}, cleaned.pictures, cleaned.element, el("div.row", {}, open, png, exr, report, toggle), legend),
     update(page) {
       const {status} = page.job;
       const {width, height} = status.settings;
-      frame.style.aspectRatio = `${width} / ${height}`;
-      frame.style.maxWidth = `calc(74vh * ${width / height})`;
+      for (const one of [frame, cleaned.frame]) {
+        one.style.aspectRatio = `${width} / ${height}`;
+        one.style.maxWidth = `calc(74vh * ${width / height})`;
+      }
       img.alt = `${status.name}, as far as it is rendered`;
       preview(img, status, Math.min(2048, Math.ceil(Math.max(frame.clientWidth, frame.clientHeight) * devicePixelRatio)));
       waiting.hidden = !img.hidden;
@@ -73,6 +77,7 @@ export function picture() {
       png.download = `${status.name}-${status.job}.png`;
       exr.download = `${status.name}-${status.job}.exr`;
       report.download = `${status.name}-${status.job}.json`;
+      return cleaned.update(status);
     },
   };
 }

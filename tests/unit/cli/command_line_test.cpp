@@ -261,6 +261,10 @@ TEST(CommandLine, OptionsThatExcludeEachOtherAreWrong) {
   expect_wrong("render a.textproto --samples 4 --samples 5", "samples");
   expect_wrong("submit a.textproto --time 5s --error 1%", "exclude");
   expect_wrong("submit a.textproto --quiet --json", "exclude");
+  expect_wrong("submit a.textproto --denoise --detach", "bandsaw watch JOB");
+  expect_wrong("watch 3 --denoise", "add -o FILE");
+  expect_wrong("render a.textproto --denoise --rows 0:4 -o a.band", "omit --rows");
+  expect_wrong("study a.textproto --denoise --every-object", "exclude");
   expect_wrong("submit a.textproto --detach -o a.png", "--detach");
   expect_wrong("render a.textproto --rows 0:4 --time 5s", "--samples");
 }

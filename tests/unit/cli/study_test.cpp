@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "coordinator/cli/study/study_clean.h"
 #include "coordinator/cli/study/study_measure.h"
 #include "coordinator/cli/study/study_pixel_stops.h"
 #include "coordinator/cli/study/study_text.h"
@@ -166,6 +167,43 @@ TEST(StudyText, ThePlotIsSvgOfAllLines) {
 
 TEST(StudyText, AnEmptyPlotIsOne) {
   EXPECT_THAT(svg_of({.x = "x", .y = "y", .panels = {{}}}), Not(HasSubstr("nan")));
+}
+
+// The two images of a point are the same image, so the clean one costs more.
+TEST(Study, CleanImagesAreComparedWithThoseAsRendered) {
+  const StudyOfScene study =
+      study_of(*test::cornell_box().build(),
+               {.samples = 64, .seeds = 2, .reference = 1024, .denoise = true});
+  ASSERT_EQ(study.lines.size(), 2u);
+  EXPECT_EQ(study.lines[0].method, Method::kFull);
+  EXPECT_EQ(study.lines[1].method, Method::kClean);
+  ASSERT_EQ(study.clean.size(), 3u);  // 4, 16, 64
+  for (const CleanPoint& point : study.clean) {
+    EXPECT_GT(point.clean_cpu_s, point.raw_cpu_s);
+    EXPECT_LT(point.gain_in_equal_time(), point.gain());
+    EXPECT_EQ(point.told.size(), 2u);
+  }
+  const std::string table = clean_table({{"a|b", study.clean}});
+  EXPECT_THAT(table, HasSubstr("| a/b | 16 |"));
+  EXPECT_THAT(table, HasSubstr("of 6 images"));
+}
+
+TEST(Study, TheCleanTableHasMeansAndTheWorstScene) {
+  const CleanPoint good{.samples = 16,
+                        .raw_mse = 0.8,
+                        .clean_mse = 0.1,
+                        .raw_cpu_s = 1,
+                        .clean_cpu_s = 2,
+                        .told = {1.0, 0.6}};
+  const CleanPoint bad{.samples = 16,
+                       .raw_mse = 0.2,
+                       .clean_mse = 0.1,
+                       .raw_cpu_s = 1,
+                       .clean_cpu_s = 2,
+                       .told = {1.4, 1.6}};
+  const std::string table = clean_table({{"good", {good}}, {"bad", {bad}}});
+  EXPECT_THAT(table, HasSubstr("| 16 | 4.00 × | 2.00 × | 2.00 × (bad) | 1.00 × |"));
+  EXPECT_THAT(table, HasSubstr("in 50 % of 4 images"));
 }
 
 }  // namespace

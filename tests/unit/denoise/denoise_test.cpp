@@ -220,6 +220,22 @@ TEST(Denoise, SameBitsForAnyNumberOfThreads) {
   }
 }
 
+// No seams: a pixel depends on no row farther away than the rows around its strip, and on nothing
+// that differs between strips.
+TEST(Denoise, SameBitsForAnyHeightOfTheStrips) {
+  const DenoiseInput input = noisy(
+      [](std::uint32_t x, std::uint32_t y) { return gray(x / 13 % 2 == y / 9 % 2 ? 0.2f : 0.8f); },
+      0.1f, 21);
+  Pool pool(2);
+  const Denoised whole = denoise(input, &fit, pool, kHeight);
+  for (const int rows : {2, 6, 16, 38}) {
+    const Denoised strips = denoise(input, &fit, pool, rows);
+    expect_same_bits(whole.image, strips.image);
+    expect_same_bits(whole.error, strips.error);
+    EXPECT_EQ(whole.total, strips.total) << rows;
+  }
+}
+
 TEST(Denoise, SmallestImages) {
   for (const std::uint32_t width : {1u, 2u, 3u, 17u}) {
     Image one{width, 1, std::vector<Rgb>(width, gray(0.5f))};

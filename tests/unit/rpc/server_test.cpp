@@ -62,7 +62,10 @@ TEST_F(ServerTest, ChecksEachFieldOfASubmission) {
          r.mutable_stop()->set_time_s(-1);
        }},
       {"integrator",
-       [](auto& r) { r.mutable_settings()->set_integrator(static_cast<farm::Integrator>(8)); }},
+       [](auto& r) {
+         r.mutable_settings()->set_integrator(
+             static_cast<farm::Integrator>(farm::Integrator_MAX + 1));
+       }},
       {"priority", [](auto& r) { r.set_priority(-1001); }},
       {"stop.max_samples", [](auto& r) { r.mutable_stop()->set_max_samples(kMaxSamples + 1); }},
   };

@@ -101,8 +101,9 @@ std::uint64_t WebTest::submit_box() {
   return message<web::Submitted>(post("/api/scenes?name=box.textproto&width=24", "a box")).job();
 }
 
-void WebTest::finish(std::uint64_t job, std::uint32_t width, std::uint32_t height) {
-  for (std::uint64_t sample = 0; sample < 64; sample += 16) {
+void WebTest::finish(std::uint64_t job, std::uint32_t width, std::uint32_t height,
+                     std::uint64_t samples) {
+  for (std::uint64_t sample = 0; sample < samples; sample += 16) {
     const BandPixels pixels{.band = {.samples = {sample, sample + 16}, .rows = {0, height}},
                             .width = width,
                             .sums = std::vector<double>(std::size_t{width} * height * 3, 8.0),

@@ -1,0 +1,135 @@
+#include "coordinator/cli/farm/clean_job.h"
+
+#include <algorithm>
+#include <chrono>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/cli/farm/watch_job.h"
+#include "coordinator/cli/image/clean.h"
+#include "coordinator/engine/clock.h"
+#include "coordinator/scheduler/api/clean_jobs.h"
+#include "proto/convert/render_values.h"
+#include "proto/link/random.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/render/first_part.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+farm::SubmitRequest request_of(const JobSpec& spec, const std::string& manifest,
+                               std::int32_t priority) {
+  farm::SubmitRequest request;
+  request.set_request_id(spec.request_id);
+  request.set_name(spec.name);
+  request.set_manifest_sha256(manifest);
+  *request.mutable_settings() = bandsaw::to_message(spec.settings);
+  *request.mutable_stop() = to_message(spec.stop);
+  request.set_priority(priority);
+  return request;
+}
+
+/// Repeats a call while the farm cannot be reached, for at most a minute.
+template <class Call>
+auto patiently(FarmClient& client, Call call) {
+  constexpr std::chrono::minutes kPatience{1};
+  constexpr std::chrono::milliseconds kPause{200};
+  const double until = steady_seconds() + std::chrono::duration<double>(kPatience).count();
+  auto result = call();
+  // A call alone does not make the connection try again.
+  while (absl::IsUnavailable(result.status()) && steady_seconds() < until &&
+         client.wait_for_farm(kPatience)) {
+    client.pause(kPause);
+    result = call();
+  }
+  return result;
+}
+
+/// Renders the images of jobs on a farm.
+class FarmRenderer {
+ public:
+  FarmRenderer(FarmClient& client, std::int32_t priority, ProgressDisplay& display)
+      : client_(client), priority_(priority), display_(display) {}
+
+  absl::StatusOr<std::vector<Image>> render(const std::vector<JobSpec>& specs) {
+    std::vector<JobId> jobs;
+    for (const JobSpec& spec : specs) {
+      ASSIGN_OR_RETURN(const JobId job, submit(spec));
+      jobs.push_back(job);
+    }
+    std::vector<Image> images;
+    for (std::size_t i = 0; i < jobs.size(); ++i) {
+      ASSIGN_OR_RETURN(Image image, image_of(jobs[i], specs[i]));
+      images.push_back(std::move(image));
+    }
+    return images;
+  }
+
+ private:
+  absl::StatusOr<JobId> submit(const JobSpec& spec) {
+    ASSIGN_OR_RETURN(const wire::Digest manifest, wire::digest_from_hex(spec.manifest));
+    const farm::SubmitRequest request = request_of(spec, manifest.raw(), priority_);
+    absl::StatusOr<JobId> job = patiently(client_, [&] { return client_.submit(request); });
+    return absl::IsFailedPrecondition(job.status())
+               ? absl::FailedPreconditionError(absl::StrCat(
+                     "the farm cannot render the guides of the clean image (",
+                     job.status().message(), "); submit the scene again with --denoise"))
+               : std::move(job);
+  }
+
+  /// `spec` is that of the job. The id of its request is shared by all who need this image, so the
+  /// job may have been cancelled, or have failed, before; then another one is submitted.
+  absl::StatusOr<Image> image_of(JobId job, JobSpec spec) {
+    ASSIGN_OR_RETURN(Progress last, follow_job(client_, job, display_));
+    if (last.job.state != JobState::kDone) {
+      spec.request_id = link::random_hex(16);
+      ASSIGN_OR_RETURN(job, submit(spec));
+      ASSIGN_OR_RETURN(last, follow_job(client_, job, display_));
+    }
+    if (last.job.state != JobState::kDone) {
+      return absl::AbortedError(absl::StrCat("job ", job, ", which the clean image needs, ",
+                                             state_name(last.job.state),
+                                             last.job.reason.empty() ? "" : ": ", last.job.reason));
+    }
+    ASSIGN_OR_RETURN(FarmImage result, patiently(client_, [&] { return client_.result(job); }));
+    return std::move(result.image);
+  }
+
+  FarmClient& client_;
+  const std::int32_t priority_;
+  ProgressDisplay& display_;
+};
+
+/// Returns std::nullopt if the image has a single block of samples.
+absl::StatusOr<std::optional<Film::FirstPart>> first_part_of(FarmClient& client,
+                                                             const JobView& job) {
+  if (first_part_samples(job.samples_per_pixel) == 0) {
+    return std::nullopt;
+  }
+  ASSIGN_OR_RETURN(Image mean, patiently(client, [&] { return client.first_part(job.id); }));
+  if (!is_adaptive(job.spec.stop)) {
+    std::vector<float> shares = first_part_shares(job.samples_per_pixel, mean.pixels.size());
+    return Film::FirstPart{std::move(mean), std::move(shares)};
+  }
+  ASSIGN_OR_RETURN(const Image counts, patiently(client, [&] { return client.samples(job.id); }));
+  return Film::FirstPart{std::move(mean), first_part_shares(counts)};
+}
+
+}  // namespace
+
+absl::StatusOr<Denoised> clean_job(FarmClient& client, const Progress& last, const Image& image,
+                                   Denoiser denoiser, ProgressDisplay& display) {
+  const JobView& job = last.job;
+  RETURN_IF_ERROR(check_cleanable(job.spec.settings, job.samples_per_pixel));
+  ASSIGN_OR_RETURN(std::optional<Film::FirstPart> first, first_part_of(client, job));
+  FarmRenderer renderer(client, job.priority, display);
+  Pool pool(static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
+  return make_clean(
+      {image, std::move(first), job.spec, job.samples_per_pixel},
+      [&](const std::vector<JobSpec>& jobs) { return renderer.render(jobs); }, denoiser,
+      *kernels().front(), pool);
+}
+
+}  // namespace bandsaw::coordinator

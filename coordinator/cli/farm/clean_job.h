@@ -1,0 +1,20 @@
+#pragma once
+
+// Removes the noise of a farm job's image.
+
+#include "absl/status/statusor.h"
+#include "coordinator/cli/farm/farm_client.h"
+#include "coordinator/cli/progress/progress_display.h"
+#include "renderlib/denoise/denoise.h"
+
+namespace bandsaw::coordinator {
+
+/// Has the farm render what the denoiser needs, as jobs of their own (scheduler/api/clean_jobs.h),
+/// and filters `image` on this machine, with the same bits as `bandsaw render --denoise`. `last` is
+/// the status of the finished job. FAILED_PRECONDITION: such an image is not cleaned
+/// (check_cleanable), or the farm no longer has the scene. Other errors: those of follow_job;
+/// ABORTED: one of these jobs failed.
+absl::StatusOr<Denoised> clean_job(FarmClient& client, const Progress& last, const Image& image,
+                                   Denoiser denoiser, ProgressDisplay& display);
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,84 @@
+#include "coordinator/cli/study/study_clean.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "absl/strings/str_replace.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+constexpr double kLeastTold = 0.7;
+constexpr double kMostTold = 1.5;
+
+struct Gains {
+  double logarithms = 0;
+  double of_time = 0;
+  double least = 1e300;
+  double least_of_time = 1e300;
+  std::string worst;
+  double count = 0;
+
+  void add(const std::string& scene, const CleanPoint& point) {
+    logarithms += std::log(std::max(1e-9, point.gain()));
+    of_time += std::log(std::max(1e-9, point.gain_in_equal_time()));
+    worst = point.gain() < least ? scene : worst;
+    least = std::min(least, point.gain());
+    least_of_time = std::min(least_of_time, point.gain_in_equal_time());
+    count += 1;
+  }
+};
+
+std::string told_text(const std::vector<double>& told) {
+  const auto [least, most] = std::minmax_element(told.begin(), told.end());
+  return told.empty() ? "–" : absl::StrFormat("%.2f–%.2f", *least, *most);
+}
+
+std::string row(const std::string& scene, const CleanPoint& point) {
+  return absl::StrFormat("| %s | %.4g | %.2g | %.2g | %.2f × | %.2f × | %.4f → %.4f | %s |\n",
+                         absl::StrReplaceAll(scene, {{"|", "/"}}), point.samples, point.raw_mse,
+                         point.clean_mse, point.gain(), point.gain_in_equal_time(), point.raw_flip,
+                         point.clean_flip, told_text(point.told));
+}
+
+}  // namespace
+
+std::string clean_table(const std::vector<CleanOfScene>& studies) {
+  std::string out =
+      "| scene | samples a pixel | relMSE as rendered | clean | ratio | ratio in equal time | FLIP "
+      "| told / true error |\n| --- | --- | --- | --- | --- | --- | --- | --- |\n";
+  std::map<double, Gains> gains;
+  double images = 0;
+  double right = 0;
+  for (const CleanOfScene& study : studies) {
+    for (const CleanPoint& point : study.points) {
+      absl::StrAppend(&out, row(study.scene, point));
+      gains[point.samples].add(study.scene, point);
+      for (const double told : point.told) {
+        images += 1;
+        right += told >= kLeastTold && told <= kMostTold ? 1 : 0;
+      }
+    }
+  }
+  absl::StrAppend(
+      &out,
+      "\n| samples a pixel | geometric mean of the ratios | in equal time | least ratio "
+      "| in equal time |\n| --- | --- | --- | --- | --- |\n");
+  for (const auto& [samples, of] : gains) {
+    absl::StrAppendFormat(&out, "| %.4g | %.2f × | %.2f × | %.2f × (%s) | %.2f × |\n", samples,
+                          std::exp(of.logarithms / of.count), std::exp(of.of_time / of.count),
+                          of.least, absl::StrReplaceAll(of.worst, {{"|", "/"}}), of.least_of_time);
+  }
+  if (images > 0) {
+    absl::StrAppendFormat(
+        &out,
+        "\nThe told error is within %.1f to %.1f of the true one in %.0f %% of %.0f images.\n",
+        kLeastTold, kMostTold, 100 * right / images, images);
+  }
+  return out;
+}
+
+}  // namespace bandsaw::coordinator

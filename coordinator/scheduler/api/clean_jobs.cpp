@@ -1,0 +1,65 @@
+#include "coordinator/scheduler/api/clean_jobs.h"
+
+#include <algorithm>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "proto/wire/limits.h"
+#include "renderlib/render/band.h"
+#include "renderlib/render/pixel_version.h"
+#include "renderlib/scene/guide_integrators.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+/// Returns `name` with a suffix, shortened between characters so that a job may have it.
+std::string with_suffix(std::string name, const std::string& suffix) {
+  if (name.size() + suffix.size() > wire::kJobNameBytes) {
+    std::size_t end = wire::kJobNameBytes - suffix.size();
+    while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xc0) == 0x80) {
+      --end;
+    }
+    name.resize(end);
+  }
+  return name + suffix;
+}
+
+JobSpec beside(const JobSpec& of, Integrator integrator, std::uint64_t samples,
+               const std::string& suffix) {
+  JobSpec spec = of;
+  spec.settings.integrator = integrator;
+  spec.stop = StopAtSamples{samples};
+  spec.name = with_suffix(of.name, suffix);
+  spec.request_id = absl::StrFormat("clean-%d-%016x-%d", kPixelVersion,
+                                    work_hash(spec.manifest, spec.settings), samples);
+  return spec;
+}
+
+}  // namespace
+
+absl::Status check_cleanable(const RenderSettings& settings, std::uint64_t samples) {
+  if (!computes_radiance(settings.integrator)) {
+    return absl::FailedPreconditionError(
+        absl::StrCat("images of the integrator ", integrator_name(settings.integrator),
+                     " are not cleaned: they have no noise of light"));
+  }
+  if (samples < 2) {
+    return absl::FailedPreconditionError(
+        "the error of one sample per pixel cannot be estimated, so the image is not cleaned; take "
+        "2 samples or more");
+  }
+  return absl::OkStatus();
+}
+
+CleanJobs clean_jobs(const JobSpec& of, std::uint64_t samples) {
+  const std::uint64_t of_guides = std::min(samples, kMaxGuideSamples);
+  CleanJobs jobs{.albedo = beside(of, kGuideAlbedo, of_guides, " (guide: albedo)"),
+                 .shape = beside(of, kGuideShape, of_guides, " (guide: shape)"),
+                 .half = std::nullopt};
+  if (samples <= kBlockSamples) {
+    jobs.half = beside(of, of.settings.integrator, samples / 2, " (half of the samples)");
+  }
+  return jobs;
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,33 @@
+#pragma once
+
+// The jobs whose images are needed to remove the noise of a job's image (renderlib/denoise).
+
+#include <cstdint>
+#include <optional>
+
+#include "absl/status/status.h"
+#include "coordinator/scheduler/api/job_spec.h"
+
+namespace bandsaw::coordinator {
+
+/// Guides are rendered with at most this many samples; more do not improve the clean image.
+inline constexpr std::uint64_t kMaxGuideSamples = 32;
+
+/// Checks if an image with this many samples per pixel can be cleaned. FAILED_PRECONDITION: the
+/// integrator computes no radiance, or the pixels have a single sample.
+absl::Status check_cleanable(const RenderSettings& settings, std::uint64_t samples);
+
+struct CleanJobs {
+  JobSpec albedo;
+  JobSpec shape;
+  /// The first half of the image's samples again: for an image of at most one block of samples,
+  /// whose sum has no parts.
+  std::optional<JobSpec> half;
+};
+
+/// Returns the jobs for the image of a job that has `samples` samples per pixel, at least 2. Their
+/// request ids depend on what they render only, so that one image of guides serves all users and
+/// all images of the same scene, size and seed.
+CleanJobs clean_jobs(const JobSpec& of, std::uint64_t samples);
+
+}  // namespace bandsaw::coordinator

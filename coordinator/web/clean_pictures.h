@@ -1,0 +1,89 @@
+#pragma once
+
+// Clean pictures of finished jobs (renderlib/denoise). The farm renders the guides as jobs of their
+// own; the filter runs here.
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "coordinator/engine/engine.h"
+#include "coordinator/rpc/executor.h"
+#include "renderlib/base/mutex.h"
+#include "renderlib/denoise/denoise.h"
+#include "renderlib/image/display.h"
+#include "renderlib/image/write_image.h"
+
+namespace bandsaw::coordinator {
+
+/// Thread-safe. One picture is filtered at a time, on one thread, so that browsers cannot take the
+/// machine's CPU from the farm.
+class CleanPictures {
+ public:
+  using Bytes = std::shared_ptr<const std::string>;
+  /// Larger pictures are refused: bandsaw watch JOB --denoise cleans them on the user's machine.
+  static constexpr std::uint64_t kMaxPixels = std::uint64_t{4} << 20;
+
+  enum class Stage {
+    kNone,       ///< not asked for, or no longer kept
+    kGuides,     ///< the farm renders the guides
+    kFiltering,  ///< the filter waits for its turn or runs
+    kReady,
+    kFailed,
+  };
+  struct State {
+    Stage stage = Stage::kNone;
+    double fraction = 0;    ///< of the guides' work that is done, [0, 1]
+    absl::Status why = {};  ///< in stage kFailed
+    CleanError error = {};  ///< in stage kReady
+  };
+
+  explicit CleanPictures(Engine& engine) : engine_(engine) {}
+
+  /// Submits the jobs that render the guides of a finished job, unless that was done before. They
+  /// have the priority of the job. FAILED_PRECONDITION: the job is not done, such an image is not
+  /// cleaned (scheduler/api/clean_jobs.h), or it is larger than kMaxPixels. NOT_FOUND: no such job.
+  absl::StatusOr<State> start(JobId job) EXCLUDES(mutex_);
+  /// Returns the state, and starts the filter when the guides are done. NOT_FOUND: no such job.
+  absl::StatusOr<State> state(JobId job) EXCLUDES(mutex_);
+  /// Returns a file of the clean picture with at most about `most_side` pixels a side, 0: all. An
+  /// EXR file has the layers `raw` and `error`, as `bandsaw render --denoise` writes it.
+  /// FAILED_PRECONDITION: the state is not kReady. Errors as picture_of
+  /// (coordinator/rpc/picture.h).
+  absl::StatusOr<Bytes> file(JobId job, std::uint32_t most_side, ImageFormat format)
+      EXCLUDES(mutex_);
+
+ private:
+  /// The picture and the memory that it takes from Engine::images.
+  struct Kept {
+    Denoised clean;
+    Display display;
+    MemoryBudget::Share share;
+  };
+  struct Entry {
+    Stage stage = Stage::kNone;
+    std::vector<JobId> jobs = {};  ///< guides: albedo, shape; half of the samples, if needed
+    absl::Status why = {};
+    std::shared_ptr<const Kept> kept = nullptr;
+    std::uint64_t used = 0;  ///< number of the last call that used it
+  };
+  absl::StatusOr<std::vector<JobId>> submit_jobs(const JobView& of);
+  absl::StatusOr<JobId> submit_job(JobSpec spec, std::int32_t priority);
+  /// Runs on the executor.
+  void filter(const JobView& job, const std::vector<JobId>& jobs) EXCLUDES(mutex_);
+  absl::StatusOr<Kept> filtered(const JobView& job, const std::vector<JobId>& jobs);
+  void forget_oldest() REQUIRES(mutex_);
+
+  Engine& engine_;
+  Mutex mutex_;
+  std::map<JobId, Entry> entries_ GUARDED_BY(mutex_);
+  std::uint64_t calls_ GUARDED_BY(mutex_) = 0;
+  Mutex encoding_;            ///< held while a file is made
+  FileExecutor executor_{1};  // last: its thread uses the others
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,75 @@
+// The switch of a finished job's picture: as rendered, clean, or both side by side.
+
+import {get, post} from "./api.js";
+import {el, percent, stateOf, text} from "./dom.js";
+import {attempt} from "./notice.js";
+
+const modes = {raw: "As rendered", clean: "Clean", both: "Side by side"};
+
+/// Of images whose integrator computes light; others have no noise to remove.
+const hasLight = (status) =>
+  [undefined, "INTEGRATOR_PATH", "INTEGRATOR_DIRECT", "INTEGRATOR_PATH_LIGHTS", "INTEGRATOR_PATH_SCATTERING"].includes(status.settings.integrator);
+
+function words(state) {
+  switch (state.state) {
+    case "guides": return `The farm renders the guides of the clean picture: ${percent(state.fraction)}`;
+    case "filtering": return "The noise is being removed …";
+    case "ready": return `Estimated error: ${percent(state.relative_rmse_raw)} as rendered, ${percent(state.relative_rmse_clean)} clean`;
+    case "failed": return `The picture was not cleaned: ${state.reason}`;
+    default: return "";
+  }
+}
+
+/// `raw`: the frame with the picture as rendered. Returns {pictures, frame, element, update}: both
+/// frames, that of the clean picture, and the switch.
+export function cleaning(raw) {
+  let mode = "raw";
+  let job = 0;
+  const img = el("img", {alt: "", hidden: true});
+  img.addEventListener("load", () => { img.hidden = false; });
+  img.addEventListener("error", () => { img.hidden = true; });
+  const frame = el("div.picture", {hidden: true}, el("p.waiting", {}, "The clean picture is being made …"), img);
+  const note = el("span.soft.small", {role: "status"});
+  const png = el("a.button", {hidden: true}, "Clean PNG");
+  const exr = el("a.button", {hidden: true, title: "The clean image, with the one as rendered and the map of the error as layers"}, "Clean EXR");
+  const buttons = Object.entries(modes).map(([name, title]) =>
+    el("button", {"data-mode": name, "aria-pressed": String(name === mode), onclick: () => choose(name)}, title));
+  const element = el("div.row", {hidden: true, role: "group", "aria-label": "Picture as rendered or clean"}, ...buttons, png, exr, note);
+  const pictures = el("div.pictures", {}, raw, frame);
+
+  function choose(name) {
+    mode = name;
+    for (const button of buttons) button.setAttribute("aria-pressed", String(button.dataset.mode === mode));
+    raw.hidden = mode === "clean";
+    frame.hidden = mode === "raw";
+    pictures.classList.toggle("both", mode === "both");
+    if (mode !== "raw") ask();
+  }
+
+  async function ask() {
+    if (await attempt(() => post(`/api/jobs/${job}/clean`)) === null) choose("raw");
+  }
+
+  return {
+    pictures, frame, element,
+    async update(status) {
+      job = status.job;
+      element.hidden = stateOf(status) !== "done" || status.samples_per_pixel < 2 || !hasLight(status);
+      if (element.hidden || mode === "raw") return;
+      const state = await get(`/api/jobs/${job}/clean`);
+      // It was asked for, but is no longer kept, or the coordinator was restarted.
+      if (state.state === "none") return ask();
+      text(note, words(state));
+      png.hidden = exr.hidden = state.state !== "ready";
+      if (state.state !== "ready") return;
+      const side = Math.min(2048, Math.ceil(Math.max(frame.clientWidth, frame.clientHeight) * devicePixelRatio));
+      const source = `/api/jobs/${job}/clean.png?side=${side}`;
+      if (img.getAttribute("src") !== source) img.src = source;
+      img.alt = `${status.name}, its noise removed`;
+      for (const [link, suffix] of [[png, "png"], [exr, "exr"]]) {
+        link.href = `/api/jobs/${job}/clean.${suffix}`;
+        link.download = `${status.name}-${job}-clean.${suffix}`;
+      }
+    },
+  };
+}

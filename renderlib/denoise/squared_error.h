@@ -1,0 +1,18 @@
+#pragma once
+
+namespace bandsaw {
+
+/// Estimates the squared error of the mean of two values, each of which was computed from one part
+/// of the samples (`a` from the first). `first` and `second` are the parts' own values. With the
+/// variance v of a part's value, E (a - second)^2 = error^2(a) + v(second), because the parts are
+/// independent, and v(second) = share (first - second)^2 on average; and the same exchanged. The
+/// mean's error is less than that of its terms by share (1 - share) (a - b)^2.
+template <class T>
+T squared_error(T a, T b, T first, T second, T share) {
+  const T apart = (first - second) * (first - second);
+  const T of_a = (a - second) * (a - second) - share * apart;
+  const T of_b = (b - first) * (b - first) - (1 - share) * apart;
+  return share * of_a + (1 - share) * of_b - share * (1 - share) * ((a - b) * (a - b));
+}
+
+}  // namespace bandsaw

@@ -1,0 +1,53 @@
+#include "renderlib/render/first_part.h"
+
+#include <algorithm>
+#include <bit>
+
+#include "renderlib/render/band.h"
+
+namespace bandsaw {
+namespace {
+
+float share_of(std::uint64_t samples) {
+  return static_cast<float>(static_cast<double>(first_part_samples(samples)) /
+                            static_cast<double>(samples));
+}
+
+}  // namespace
+
+std::uint64_t first_part_samples(std::uint64_t samples) {
+  if (samples <= kBlockSamples) {
+    return 0;
+  }
+  // The nodes of a complete film (strip_nodes.cpp): the halves of the largest whole node at 0, then
+  // the largest nodes that fit.
+  const std::uint64_t whole = std::bit_floor(samples / kBlockSamples) * kBlockSamples;
+  std::uint64_t first = whole;
+  std::uint64_t second = 0;
+  if (whole > kBlockSamples) {
+    first = second = whole / 2;
+  }
+  for (std::uint64_t at = whole; at < samples;) {
+    const std::uint64_t blocks = std::bit_floor(SampleRange{at, samples}.blocks());
+    const std::uint64_t last = std::min(at + blocks * kBlockSamples, samples);
+    // A further node goes to the smaller part.
+    (first > second ? second : first) += last - at;
+    at = last;
+  }
+  return first;
+}
+
+std::vector<float> first_part_shares(std::uint64_t samples, std::size_t pixels) {
+  return std::vector<float>(pixels, share_of(samples));
+}
+
+std::vector<float> first_part_shares(const Image& counts) {
+  std::vector<float> shares;
+  shares.reserve(counts.pixels.size());
+  for (const Rgb& count : counts.pixels) {
+    shares.push_back(share_of(static_cast<std::uint64_t>(count.r)));
+  }
+  return shares;
+}
+
+}  // namespace bandsaw

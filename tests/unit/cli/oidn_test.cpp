@@ -1,0 +1,55 @@
+// --denoise=oidn with a stand-in for the library (tests/support/oidn).
+
+#include "coordinator/cli/image/oidn.h"
+
+#include <gmock/gmock.h>
+
+#include "coordinator/cli/image/clean.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+using ::testing::HasSubstr;
+
+Image filled(std::uint32_t width, const Rgb& color) { return {width, 2, {2 * width, color}}; }
+
+TEST(Oidn, FiltersWithAlbedoAndNormals) {
+  const auto oidn = Oidn::load(BANDSAW_OIDN);
+  ASSERT_TRUE(oidn.ok()) << oidn.status();
+  const auto clean =
+      oidn->filter(filled(5, {4, 2, 1}), filled(5, {0.5f, 1, 0}), filled(5, {0, 0, 1}));
+  ASSERT_TRUE(clean.ok()) << clean.status();
+  ASSERT_EQ(clean->pixels.size(), 10u);
+  for (const Rgb& pixel : clean->pixels) {
+    EXPECT_EQ(pixel, (Rgb{2.25f, 1.5f, 0.75f}));
+  }
+}
+
+TEST(Oidn, ReportsTheLibrarysErrors) {
+  const auto oidn = Oidn::load(BANDSAW_OIDN);
+  ASSERT_TRUE(oidn.ok());
+  const Image image = filled(13, {1, 1, 1});
+  EXPECT_THAT(std::string(oidn->filter(image, image, image).status().message()),
+              HasSubstr("an unlucky width"));
+}
+
+TEST(Oidn, AMissingLibraryIsAnErrorWithACure) {
+  const absl::Status missing = Oidn::load("/nowhere/libOpenImageDenoise.so.2").status();
+  EXPECT_TRUE(absl::IsUnavailable(missing));
+  EXPECT_THAT(std::string(missing.message()), HasSubstr("install it, or use --denoise"));
+  // A library that is another one.
+  EXPECT_THAT(std::string(Oidn::load("libm.so.6").status().message()),
+              HasSubstr("lacks functions"));
+}
+
+TEST(Oidn, TheReportSaysThatBitsMayDiffer) {
+  const Denoised clean{filled(2, {1, 1, 1}), filled(2, {0, 0, 0}), {}};
+  EXPECT_FALSE(clean_report(clean, Denoiser::kOidn, {}).same_bits);
+  EXPECT_EQ(clean_report(clean, Denoiser::kOidn, {}).method, "oidn");
+  EXPECT_TRUE(clean_report(clean, Denoiser::kRegression, {"a.png", "b.exr"}).same_bits);
+  EXPECT_THAT(clean_report(clean, Denoiser::kRegression, {"a.png", "b.exr"}).raw_outputs,
+              testing::ElementsAre("a.raw.png"));
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,65 @@
+#include "renderlib/denoise/halves.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/random.h"
+
+namespace bandsaw {
+namespace {
+
+constexpr std::uint32_t kSide = 128;
+
+float normal(test::Random& random) {
+  double sum = -6;
+  for (int i = 0; i < 12; ++i) {
+    sum += random.uniform(0, 1);
+  }
+  return static_cast<float>(sum);
+}
+
+/// Adds a constant, the bias, to the mean of three pixels in a row.
+Image filtered(const Image& image, float bias) {
+  Image out = image;
+  for (std::uint32_t y = 0; y < kSide; ++y) {
+    for (std::uint32_t x = 1; x + 1 < kSide; ++x) {
+      out.pixels[y * kSide + x] =
+          (image.at(x - 1, y) + image.at(x, y) + image.at(x + 1, y)) * (1.0f / 3) + gray(bias);
+    }
+  }
+  return out;
+}
+
+// The noise of the mean has the deviation 0.1, that of three of them 0.1 / sqrt(3); 3 x 16,384
+// values, so the root of the mean square is known to 0.5 %; the tolerance is ten times that.
+TEST(Halves, TellErrorAndBiasOfALinearFilter) {
+  test::Random random(3);
+  const float share = 0.25f;
+  const Image truth{kSide, kSide, std::vector<Rgb>(kSide * kSide, gray(1))};
+  DenoiseInput input{truth, truth, std::vector<float>(kSide * kSide, share), truth, truth};
+  for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
+    const auto of_part = [&](float part) {
+      const float deviation = 0.1f / std::sqrt(part);
+      return Rgb{1 + deviation * normal(random), 1 + deviation * normal(random),
+                 1 + deviation * normal(random)};
+    };
+    const Rgb first = of_part(share);
+    const Rgb second = of_part(1 - share);
+    input.first.pixels[i] = first;
+    input.mean.pixels[i] = first * share + second * (1 - share);
+  }
+  Pool pool(1);
+  const float bias = 0.05f;
+  const Denoised clean =
+      with_error_of_halves(input, filtered(input.mean, bias), filtered(input.first, bias),
+                           filtered(second_part(input), bias), pool);
+  const double variance = 0.01 / 3;
+  EXPECT_NEAR(clean.total.rmse_raw, 0.1, 0.005);
+  EXPECT_NEAR(clean.total.rmse_clean, std::sqrt(variance + bias * bias), 0.005);
+  EXPECT_NEAR(clean.total.bias_share, bias * bias / (variance + bias * bias), 0.05);
+  EXPECT_NEAR(clean.total.mean, 1, 0.01);
+}
+
+}  // namespace
+}  // namespace bandsaw
