@@ -30,6 +30,13 @@ struct RowSums {
   double raw = 0;
   double clean = 0;
   double variance = 0;
+
+  void add(const RowSums& other) {
+    value += other.value;
+    raw += other.raw;
+    clean += other.clean;
+    variance += other.variance;
+  }
 };
 
 /// A strip of the image.
@@ -84,9 +91,8 @@ class Selection {
   /// Half `h` of the result.
   float mixed(int x, int y, std::size_t h, std::size_t c) const;
   Rgb value_of(int x, int y) const;
-  /// Returns the estimated squared error of a pixel, summed over its channels, and adds to the
-  /// sums.
-  double add_pixel(int x, int y, RowSums& sums) const;
+  /// Adds a pixel to the sums.
+  void add_pixel(int x, int y, RowSums& sums) const;
 
   const Strip& strip_;
   const FitInput& planes_;
@@ -178,15 +184,14 @@ Rgb Selection::value_of(int x, int y) const {
   return {value(0), value(1), value(2)};
 }
 
-double Selection::add_pixel(int x, int y, RowSums& sums) const {
+void Selection::add_pixel(int x, int y, RowSums& sums) const {
   if (!valid(x, y)) {
-    return 0;
+    return;
   }
   const std::size_t at = in_image(x, y);
   const bool rendered = is_rendered(x, y);
   const float first_share = strip_.input.first_share[at];
   const double share = first_share;
-  double of_pixel = 0;
   for (std::size_t c = 0; c < 3; ++c) {
     const float mean = channel(strip_.input.mean.pixels[at], c);
     const float of_first = channel(strip_.input.first.pixels[at], c);
@@ -194,26 +199,29 @@ double Selection::add_pixel(int x, int y, RowSums& sums) const {
     const double second = second_value(mean, of_first, first_share);
     const double a = rendered ? first : mixed(x, y, 0, c);
     const double b = rendered ? second : mixed(x, y, 1, c);
-    of_pixel += squared_error(a, b, first, second, share);
+    sums.clean += squared_error(a, b, first, second, share);
     sums.variance += share * (1 - share) * ((a - b) * (a - b));
     sums.raw += share * (1 - share) * ((first - second) * (first - second));
     sums.value += mean;
   }
-  sums.clean += of_pixel;
-  return of_pixel;
 }
 
 void Selection::write(Denoised& out, std::vector<RowSums>& sums) const {
   const int first = strip_.first + planes_.wanted.first;  // row of the image that is row 0 here
   const RowSpan rows{strip_.rows.first - first, strip_.rows.last - first};
   Map errors(size_.pixels());
+  Map variances(size_.pixels());
   pool_.parallel_for(size_.height, [&](std::int64_t row) {
     const int y = static_cast<int>(row);
     const bool inside = y >= rows.first && y < rows.last;
     RowSums of_row;
     for (int x = 0; x < size_.width; ++x) {
-      errors[size_.index(x, y)] =
-          static_cast<float>(std::clamp(add_pixel(x, y, of_row) / 3, -1e30, 1e30));
+      RowSums pixel;
+      add_pixel(x, y, pixel);
+      const std::size_t i = size_.index(x, y);
+      errors[i] = static_cast<float>(std::clamp(pixel.clean / 3, -1e30, 1e30));
+      variances[i] = static_cast<float>(std::min(pixel.variance / 3, 1e30));
+      of_row.add(pixel);
       if (inside) {
         out.image.pixels[in_image(x, y)] = value_of(x, y);
       }
@@ -223,9 +231,12 @@ void Selection::write(Denoised& out, std::vector<RowSums>& sums) const {
     }
   });
   smoothing_.apply(errors, pool_);
+  smoothing_.apply(variances, pool_);
   for (int y = rows.first; y < rows.last; ++y) {
     for (int x = 0; x < size_.width; ++x) {
-      out.error.pixels[in_image(x, y)] = gray(std::sqrt(std::max(0.0f, errors[size_.index(x, y)])));
+      const std::size_t i = size_.index(x, y);
+      out.error.pixels[in_image(x, y)] =
+          gray(std::sqrt(at_least_variance(errors[i], variances[i])));
     }
   }
 }
@@ -233,15 +244,13 @@ void Selection::write(Denoised& out, std::vector<RowSums>& sums) const {
 CleanError total_of(const std::vector<RowSums>& rows, std::size_t pixels) {
   RowSums all;
   for (const RowSums& row : rows) {
-    all.value += row.value;
-    all.raw += row.raw;
-    all.clean += row.clean;
-    all.variance += row.variance;
+    all.add(row);
   }
   const double count = 3 * static_cast<double>(pixels);
+  all.clean = at_least_variance(all.clean, all.variance);
   return {.mean = all.value / count,
           .rmse_raw = std::sqrt(all.raw / count),
-          .rmse_clean = std::sqrt(std::max(0.0, all.clean) / count),
+          .rmse_clean = std::sqrt(all.clean / count),
           .bias_share = all.clean > 0 ? std::clamp(1 - all.variance / all.clean, 0.0, 1.0) : 0};
 }
 

@@ -68,6 +68,7 @@ Denoised with_error_of_halves(const DenoiseInput& input, Image clean, const Imag
     errors[i] = static_cast<float>(std::clamp(of_pixel / 3, -1e30, 1e30));
   }
   smooth(errors, size, kSmoothing, pool);
+  squares = at_least_variance(squares, variance);
   const double count = 3 * static_cast<double>(size.pixels());
   Denoised out{std::move(clean), {input.mean.width, input.mean.height, {}}, {}};
   for (const float error : errors) {
@@ -75,7 +76,7 @@ Denoised with_error_of_halves(const DenoiseInput& input, Image clean, const Imag
   }
   out.total = {.mean = sum / count,
                .rmse_raw = std::sqrt(raw / count),
-               .rmse_clean = std::sqrt(std::max(0.0, squares) / count),
+               .rmse_clean = std::sqrt(squares / count),
                .bias_share = squares > 0 ? std::clamp(1 - variance / squares, 0.0, 1.0) : 0};
   return out;
 }
