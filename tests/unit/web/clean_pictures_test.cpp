@@ -33,14 +33,14 @@ TEST_F(CleanPicturesTest, AreMadeWhenTheFarmHasRenderedTheGuides) {
   const std::uint64_t job = submit_box();
   EXPECT_EQ(state(job).state(), "none");
   EXPECT_EQ(post(path(job))->status, 409);  // not finished
-  finish(job, 24, 24);
+  finish(job, 24, 16);
   EXPECT_EQ(get(path(job, ".png"))->status, 409);  // not asked for
   EXPECT_EQ(message<web::CleanPicture>(post(path(job))).state(), "guides");
   EXPECT_EQ(message<web::CleanPicture>(post(path(job))).state(), "guides");  // the same jobs
   EXPECT_EQ(state(job).state(), "guides");
-  finish(job + 1, 24, 24, 32);
+  finish(job + 1, 24, 16, 32);
   EXPECT_EQ(state(job).fraction(), 0.5);
-  finish(job + 2, 24, 24, 32);
+  finish(job + 2, 24, 16, 32);
   const web::CleanPicture ready = wait_until_filtered(job);
   EXPECT_EQ(ready.state(), "ready") << ready.reason();
   EXPECT_EQ(ready.relative_rmse_raw(), 0);  // all samples are equal
@@ -50,7 +50,7 @@ TEST_F(CleanPicturesTest, AreMadeWhenTheFarmHasRenderedTheGuides) {
   ASSERT_TRUE(exr);
   EXPECT_THAT(exr->body, HasSubstr("raw.R"));
   EXPECT_THAT(exr->body, HasSubstr("error.Z"));
-  EXPECT_THAT(get(path(job, ".pfm"))->body, StartsWith("PF\n24 24\n"));
+  EXPECT_THAT(get(path(job, ".pfm"))->body, StartsWith("PF\n24 16\n"));
   // The guides are no jobs of their own on the page.
   const auto overview = message<web::Overview>(get("/api/farm"));
   ASSERT_EQ(overview.job_size(), 1);
@@ -59,15 +59,15 @@ TEST_F(CleanPicturesTest, AreMadeWhenTheFarmHasRenderedTheGuides) {
 
 TEST_F(CleanPicturesTest, SayWhyTheyFailedAndAreTriedAgain) {
   const std::uint64_t job = submit_box();
-  finish(job, 24, 24);
+  finish(job, 24, 16);
   post(path(job));
   post("/api/jobs/" + std::to_string(job + 2) + "/cancel");
   const web::CleanPicture failed = state(job);
   EXPECT_EQ(failed.state(), "failed");
   EXPECT_THAT(failed.reason(), HasSubstr("cancelled"));
   EXPECT_EQ(message<web::CleanPicture>(post(path(job))).state(), "guides");
-  finish(job + 1, 24, 24, 32);
-  finish(job + 3, 24, 24, 32);  // instead of the cancelled one
+  finish(job + 1, 24, 16, 32);
+  finish(job + 3, 24, 16, 32);  // instead of the cancelled one
   EXPECT_EQ(wait_until_filtered(job).state(), "ready");
 }
 
