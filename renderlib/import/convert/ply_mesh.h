@@ -3,6 +3,7 @@
 // Triangle meshes as binary PLY, the form in which converters pass meshes on.
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -17,6 +18,14 @@ struct PlyMesh {
   std::vector<std::array<float, 2>> uvs;
   std::vector<std::array<float, 3>> colors;  ///< linear RGB
   std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// Numbers that belong to each vertex or to each triangle.
+struct MeshAttribute {
+  std::string name;  ///< "vertex_color", "face_weight"
+  bool per_face = false;
+  std::size_t channels = 1;   ///< 1 or 3
+  std::vector<float> values;  ///< channels for each vertex or triangle
 };
 
 /// Returns the mesh as binary little-endian PLY. `mesh` MUST have a triangle, and each index MUST

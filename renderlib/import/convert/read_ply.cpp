@@ -1,12 +1,16 @@
 #include "renderlib/import/convert/read_ply.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <limits>
+#include <map>
 #include <optional>
 
 #include "absl/strings/ascii.h"
+#include "absl/strings/match.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
@@ -15,300 +19,406 @@
 namespace bandsaw {
 namespace {
 
-enum class Form { kText, kLittle, kBig };
+static_assert(std::endian::native == std::endian::little);
 
-struct Type {
-  const char* names[2];
-  std::size_t size;
-  char kind;  ///< i: signed, u: unsigned, f: float
-};
-constexpr Type kTypes[] = {{{"char", "int8"}, 1, 'i'},     {{"uchar", "uint8"}, 1, 'u'},
-                           {{"short", "int16"}, 2, 'i'},   {{"ushort", "uint16"}, 2, 'u'},
-                           {{"int", "int32"}, 4, 'i'},     {{"uint", "uint32"}, 4, 'u'},
-                           {{"float", "float32"}, 4, 'f'}, {{"double", "float64"}, 8, 'f'}};
+enum class Type { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat, kDouble };
 
-struct Property {
+struct PlyProperty {
   std::string name;
-  const Type* type = nullptr;
-  const Type* count = nullptr;  ///< of a list
+  Type type = Type::kFloat;
+  std::optional<Type> count = std::nullopt;  ///< type of the length, of a list
 };
 
 struct Element {
   std::string name;
   std::uint64_t count = 0;
-  std::vector<Property> properties;
+  std::vector<PlyProperty> properties = {};
 };
 
-absl::Status broken(absl::string_view what) {
-  return absl::InvalidArgumentError(absl::StrCat("is not a PLY file that can be read: ", what));
+enum class Encoding { kText, kLittle, kBig };
+
+absl::Status damaged(absl::string_view why) {
+  return absl::InvalidArgumentError(absl::StrCat("is damaged: ", why));
 }
 
-const Type* type_named(absl::string_view name) {
-  for (const Type& type : kTypes) {
-    if (name == type.names[0] || name == type.names[1]) {
-      return &type;
-    }
+std::size_t size_of(Type type) {
+  constexpr std::array<std::size_t, 8> kSizes = {1, 1, 2, 2, 4, 4, 4, 8};
+  return kSizes[static_cast<std::size_t>(type)];
+}
+
+absl::StatusOr<Type> type_of(absl::string_view name) {
+  static const std::map<absl::string_view, Type> types = {
+      {"char", Type::kInt8},     {"int8", Type::kInt8},     {"uchar", Type::kUint8},
+      {"uint8", Type::kUint8},   {"short", Type::kInt16},   {"int16", Type::kInt16},
+      {"ushort", Type::kUint16}, {"uint16", Type::kUint16}, {"int", Type::kInt32},
+      {"int32", Type::kInt32},   {"uint", Type::kUint32},   {"uint32", Type::kUint32},
+      {"float", Type::kFloat},   {"float32", Type::kFloat}, {"double", Type::kDouble},
+      {"float64", Type::kDouble}};
+  const auto found = types.find(name);
+  if (found == types.end()) {
+    return damaged(absl::StrCat("type \"", name.substr(0, 40), "\" is not known"));
   }
-  return nullptr;
+  return found->second;
 }
 
-/// Reads values from the body.
-class Body {
+/// Takes the numbers after the header, one after the other.
+class Numbers {
  public:
-  Body(absl::string_view bytes, Form form) : bytes_(bytes), form_(form) {}
+  Numbers(absl::string_view bytes, Encoding encoding) : rest_(bytes), encoding_(encoding) {}
 
-  absl::StatusOr<double> next(const Type& type) {
-    if (form_ == Form::kText) {
-      return next_word();
-    }
-    if (bytes_.size() - at_ < type.size) {
-      return broken("it is truncated");
-    }
-    unsigned char raw[8] = {};
-    std::memcpy(raw, bytes_.data() + at_, type.size);
-    at_ += type.size;
-    if ((form_ == Form::kBig) == (std::endian::native == std::endian::little)) {
-      std::reverse(raw, raw + type.size);
-    }
-    return value_of(raw, type);
+  absl::StatusOr<double> take(Type type) {
+    return encoding_ == Encoding::kText ? take_text() : take_binary(type);
   }
-  std::size_t left() const { return bytes_.size() - at_; }
+  /// Returns true if there may be `count` more elements with `properties` numbers each.
+  bool may_hold(std::uint64_t count, std::uint64_t bytes_each) const {
+    return count <= rest_.size() / std::max<std::uint64_t>(bytes_each, 1);
+  }
+  bool is_text() const { return encoding_ == Encoding::kText; }
 
  private:
-  template <class T>
-  static double as(const unsigned char* raw) {
-    T value;
-    std::memcpy(&value, raw, sizeof(T));
-    return static_cast<double>(value);
-  }
-  static double value_of(const unsigned char* raw, const Type& type) {
-    switch (type.size) {
-      case 1:
-        return type.kind == 'i' ? as<std::int8_t>(raw) : as<std::uint8_t>(raw);
-      case 2:
-        return type.kind == 'i' ? as<std::int16_t>(raw) : as<std::uint16_t>(raw);
-      case 4:
-        return type.kind == 'f'   ? as<float>(raw)
-               : type.kind == 'i' ? as<std::int32_t>(raw)
-                                  : as<std::uint32_t>(raw);
-      default:
-        return as<double>(raw);
+  absl::StatusOr<double> take_text() {
+    std::size_t begin = 0;
+    while (begin < rest_.size() && absl::ascii_isspace(static_cast<unsigned char>(rest_[begin]))) {
+      ++begin;
     }
-  }
-  absl::StatusOr<double> next_word() {
-    while (at_ < bytes_.size() && absl::ascii_isspace(static_cast<unsigned char>(bytes_[at_]))) {
-      ++at_;
-    }
-    const std::size_t begin = at_;
-    while (at_ < bytes_.size() && !absl::ascii_isspace(static_cast<unsigned char>(bytes_[at_]))) {
-      ++at_;
+    std::size_t end = begin;
+    while (end < rest_.size() && !absl::ascii_isspace(static_cast<unsigned char>(rest_[end]))) {
+      ++end;
     }
     double value = 0;
-    if (!absl::SimpleAtod(bytes_.substr(begin, at_ - begin), &value)) {
-      return broken(begin == bytes_.size() ? "it is truncated" : "a number is expected");
+    if (begin == end) {
+      return damaged("it ends too early");
     }
+    if (!absl::SimpleAtod(rest_.substr(begin, end - begin), &value)) {
+      return damaged(absl::StrCat("\"", rest_.substr(begin, std::min<std::size_t>(end - begin, 40)),
+                                  "\" is not a number"));
+    }
+    rest_.remove_prefix(end);
     return value;
   }
 
-  absl::string_view bytes_;
-  Form form_;
-  std::size_t at_ = 0;
+  template <class T>
+  static double as(const std::array<char, 8>& bytes) {
+    T value;
+    std::memcpy(&value, bytes.data(), sizeof(T));
+    return static_cast<double>(value);
+  }
+
+  absl::StatusOr<double> take_binary(Type type) {
+    const std::size_t size = size_of(type);
+    if (rest_.size() < size) {
+      return damaged("it ends too early");
+    }
+    std::array<char, 8> bytes{};
+    std::copy_n(rest_.begin(), size, bytes.begin());
+    if (encoding_ == Encoding::kBig) {
+      std::reverse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
+    }
+    rest_.remove_prefix(size);
+    switch (type) {
+      case Type::kInt8:
+        return as<std::int8_t>(bytes);
+      case Type::kUint8:
+        return as<std::uint8_t>(bytes);
+      case Type::kInt16:
+        return as<std::int16_t>(bytes);
+      case Type::kUint16:
+        return as<std::uint16_t>(bytes);
+      case Type::kInt32:
+        return as<std::int32_t>(bytes);
+      case Type::kUint32:
+        return as<std::uint32_t>(bytes);
+      case Type::kFloat:
+        return as<float>(bytes);
+      case Type::kDouble:
+        return as<double>(bytes);
+    }
+    return damaged("a type is not known");
+  }
+
+  absl::string_view rest_;
+  Encoding encoding_;
 };
 
 struct Header {
-  Form form = Form::kText;
+  Encoding encoding = Encoding::kText;
   std::vector<Element> elements;
-  std::size_t body_at = 0;
+  absl::string_view body;
 };
+
+absl::Status add_property(const std::vector<absl::string_view>& words, Header& header) {
+  if (header.elements.empty()) {
+    return damaged("a property belongs to no element");
+  }
+  PlyProperty property;
+  if (words.size() == 5 && words[1] == "list") {
+    ASSIGN_OR_RETURN(property.count, type_of(words[2]));
+    ASSIGN_OR_RETURN(property.type, type_of(words[3]));
+  } else if (words.size() == 3) {
+    ASSIGN_OR_RETURN(property.type, type_of(words[1]));
+  } else {
+    return damaged("a property is not as the format says");
+  }
+  property.name = std::string(words.back());
+  header.elements.back().properties.push_back(property);
+  return absl::OkStatus();
+}
+
+absl::Status read_header_line(absl::string_view line, Header& header) {
+  const std::vector<absl::string_view> words =
+      absl::StrSplit(line, absl::ByAnyChar(" \t"), absl::SkipEmpty());
+  if (words.empty() || words[0] == "comment" || words[0] == "obj_info" || words[0] == "ply") {
+    return absl::OkStatus();
+  }
+  if (words[0] == "format" && words.size() == 3) {
+    header.encoding = words[1] == "binary_little_endian" ? Encoding::kLittle
+                      : words[1] == "binary_big_endian"  ? Encoding::kBig
+                                                         : Encoding::kText;
+    return header.encoding != Encoding::kText || words[1] == "ascii"
+               ? absl::OkStatus()
+               : damaged(absl::StrCat("its format is \"", words[1].substr(0, 40), "\""));
+  }
+  if (words[0] == "element" && words.size() == 3) {
+    Element element{std::string(words[1])};
+    if (!absl::SimpleAtoi(words[2], &element.count)) {
+      return damaged("the count of an element is no number");
+    }
+    header.elements.push_back(std::move(element));
+    return absl::OkStatus();
+  }
+  return words[0] == "property"
+             ? add_property(words, header)
+             : damaged(absl::StrCat("its header has \"", words[0].substr(0, 40), "\""));
+}
 
 absl::StatusOr<Header> read_header(absl::string_view bytes) {
-  constexpr std::size_t kMaxHeader = 100'000;
-  Header header;
-  std::size_t at = 0;
-  bool has_form = false;
-  for (int number = 0;; ++number) {
-    const std::size_t end = bytes.find('\n', at);
-    if (end == bytes.npos || end > kMaxHeader) {
-      return broken("its header has no end");
-    }
-    const std::vector<std::string> words =
-        absl::StrSplit(bytes.substr(at, end - at), absl::ByAnyChar(" \t\r"), absl::SkipEmpty());
-    at = end + 1;
-    if (number == 0) {
-      if (words.size() != 1 || words[0] != "ply") {
-        return broken("it does not begin with \"ply\"");
-      }
-      continue;
-    }
-    if (words.empty() || words[0] == "comment" || words[0] == "obj_info") {
-      continue;
-    }
-    if (words[0] == "end_header") {
-      header.body_at = at;
-      return has_form ? absl::StatusOr<Header>(header) : broken("its format is missing");
-    }
-    if (words[0] == "format" && words.size() == 3) {
-      has_form = true;
-      header.form = words[1] == "ascii"                  ? Form::kText
-                    : words[1] == "binary_little_endian" ? Form::kLittle
-                                                         : Form::kBig;
-      if (header.form == Form::kBig && words[1] != "binary_big_endian") {
-        return broken("its format is not known");
-      }
-    } else if (words[0] == "element" && words.size() == 3) {
-      Element element{words[1], 0, {}};
-      if (!absl::SimpleAtoi(words[2], &element.count)) {
-        return broken("the number of an element is wrong");
-      }
-      header.elements.push_back(std::move(element));
-    } else if (words[0] == "property" && !header.elements.empty()) {
-      Property property{words.back(), nullptr, nullptr};
-      const bool is_list = words.size() == 5 && words[1] == "list";
-      property.count = is_list ? type_named(words[2]) : nullptr;
-      property.type = is_list             ? type_named(words[3])
-                      : words.size() == 3 ? type_named(words[1])
-                                          : nullptr;
-      if (property.type == nullptr || (is_list && property.count == nullptr)) {
-        return broken("a property has a type that is not known");
-      }
-      header.elements.back().properties.push_back(std::move(property));
-    } else {
-      return broken("its header has a line that is not known");
-    }
+  if (!absl::StartsWith(bytes, "ply")) {
+    return absl::InvalidArgumentError("is not a PLY file");
   }
+  constexpr std::size_t kMaxLines = 1000;
+  Header header;
+  for (std::size_t lines = 0; lines < kMaxLines; ++lines) {
+    const std::size_t end = bytes.find('\n');
+    if (end == absl::string_view::npos) {
+      break;
+    }
+    const absl::string_view line = absl::StripTrailingAsciiWhitespace(bytes.substr(0, end));
+    bytes.remove_prefix(end + 1);
+    if (line == "end_header") {
+      header.body = bytes;
+      return header;
+    }
+    RETURN_IF_ERROR(read_header_line(line, header));
+  }
+  return damaged("its header has no end, or more than 1000 lines");
 }
 
-/// Where a property of a vertex goes.
-struct Target {
-  char list = ' ';  ///< p, n, t, or a space for none
-  std::size_t axis = 0;
+/// Groups the numbers of an element: "color_0", "color_1", "color_2" become one attribute "color".
+std::map<std::string, std::vector<std::size_t>> groups_of(const Element& element) {
+  std::map<std::string, std::vector<std::size_t>> groups;
+  for (std::size_t i = 0; i < element.properties.size(); ++i) {
+    const std::string& name = element.properties[i].name;
+    if (element.properties[i].count) {
+      continue;
+    }
+    const bool color = name == "r" || name == "g" || name == "b" || name == "red" ||
+                       name == "green" || name == "blue";
+    const std::size_t bar = name.rfind('_');
+    groups[color ? "color" : name.substr(0, bar)].push_back(i);
+  }
+  return groups;
+}
+
+template <std::size_t n>
+using Columns = std::optional<std::array<std::size_t, n>>;
+
+/// Returns where the numbers with these names are in a row; nothing if one is missing.
+template <std::size_t n>
+Columns<n> columns_of(const Element& element, const std::array<const char*, n>& names) {
+  std::array<std::size_t, n> columns{};
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto& all = element.properties;
+    const auto found = std::find_if(all.begin(), all.end(), [&](const PlyProperty& property) {
+      return property.name == names[k] && !property.count;
+    });
+    if (found == all.end()) {
+      return std::nullopt;
+    }
+    columns[k] = static_cast<std::size_t>(found - all.begin());
+  }
+  return columns;
+}
+
+struct VertexColumns {
+  Columns<3> position;
+  Columns<3> normal;
+  Columns<2> uv;
 };
 
-Target target_of(const std::string& name) {
-  constexpr std::pair<const char*, Target> kTargets[] = {
-      {"x", {'p', 0}},         {"y", {'p', 1}},         {"z", {'p', 2}},
-      {"nx", {'n', 0}},        {"ny", {'n', 1}},        {"nz", {'n', 2}},
-      {"u", {'t', 0}},         {"v", {'t', 1}},         {"s", {'t', 0}},
-      {"t", {'t', 1}},         {"texture_u", {'t', 0}}, {"texture_v", {'t', 1}},
-      {"texture_s", {'t', 0}}, {"texture_t", {'t', 1}}};
-  for (const auto& [known, target] : kTargets) {
-    if (name == known) {
-      return target;
-    }
+VertexColumns vertex_columns(const Element& element) {
+  VertexColumns columns{
+      columns_of<3>(element, {"x", "y", "z"}), columns_of<3>(element, {"nx", "ny", "nz"}), {}};
+  for (const auto& names : {std::array<const char*, 2>{"u", "v"},
+                            {"s", "t"},
+                            {"texture_u", "texture_v"},
+                            {"texture_s", "texture_t"}}) {
+    columns.uv = columns.uv ? columns.uv : columns_of<2>(element, names);
   }
-  return {};
+  return columns;
 }
 
-/// Reads the values of a property; a list's are appended to `list` (which may be nullptr).
-absl::StatusOr<double> read_property(const Property& property, Body& body,
-                                     std::vector<double>* list) {
-  if (property.count == nullptr) {
-    return body.next(*property.type);
+template <std::size_t n>
+absl::Status add_numbers(const Columns<n>& columns, const std::vector<double>& row,
+                         std::vector<std::array<float, n>>& to) {
+  if (!columns) {
+    return absl::OkStatus();
   }
-  ASSIGN_OR_RETURN(const double count, body.next(*property.count));
-  if (!(count >= 0 && count <= static_cast<double>(body.left()))) {
-    return broken("a list is longer than the file");
-  }
-  for (double i = 0; i < count; ++i) {
-    ASSIGN_OR_RETURN(const double value, body.next(*property.type));
-    if (list != nullptr) {
-      list->push_back(value);
+  std::array<float, n> values{};
+  for (std::size_t k = 0; k < n; ++k) {
+    values[k] = static_cast<float>(row[(*columns)[k]]);
+    if (!std::isfinite(values[k])) {
+      return damaged("it has a number that is not finite");
     }
   }
-  return count;
-}
-
-absl::Status read_vertices(const Element& element, Body& body, PlyMesh& mesh) {
-  std::vector<Target> targets;
-  bool has[3] = {};
-  for (const Property& property : element.properties) {
-    targets.push_back(property.count == nullptr ? target_of(property.name) : Target{});
-    has[0] = has[0] || targets.back().list == 'p';
-    has[1] = has[1] || targets.back().list == 'n';
-    has[2] = has[2] || targets.back().list == 't';
-  }
-  if (!has[0]) {
-    return broken("its vertices have no position");
-  }
-  for (std::uint64_t i = 0; i < element.count; ++i) {
-    std::array<float, 3> p = {};
-    std::array<float, 3> n = {};
-    std::array<float, 2> t = {};
-    for (std::size_t k = 0; k < targets.size(); ++k) {
-      ASSIGN_OR_RETURN(const double value, read_property(element.properties[k], body, nullptr));
-      const auto number = static_cast<float>(value);
-      if (targets[k].list != ' ' && !std::isfinite(number)) {
-        return broken("a vertex has a number that is not finite");
-      }
-      if (targets[k].list == 'p') {
-        p[targets[k].axis] = number;
-      } else if (targets[k].list == 'n') {
-        n[targets[k].axis] = number;
-      } else if (targets[k].list == 't') {
-        t[targets[k].axis] = number;
-      }
-    }
-    mesh.positions.push_back(p);
-    if (has[1]) {
-      mesh.normals.push_back(n);
-    }
-    if (has[2]) {
-      mesh.uvs.push_back(t);
-    }
-  }
+  to.push_back(values);
   return absl::OkStatus();
 }
 
-absl::Status read_faces(const Element& element, Body& body, PlyMesh& mesh) {
-  const auto count = static_cast<double>(mesh.positions.size());
-  std::vector<double> corners;
-  for (std::uint64_t i = 0; i < element.count; ++i) {
-    corners.clear();
-    for (const Property& property : element.properties) {
-      const bool is_face = property.name == "vertex_indices" || property.name == "vertex_index";
-      RETURN_IF_ERROR(read_property(property, body, is_face ? &corners : nullptr).status());
-    }
-    for (const double corner : corners) {
-      if (!(corner >= 0 && corner < count)) {
-        return broken("a face has a corner that is no vertex");
+class PlyReader {
+ public:
+  explicit PlyReader(const Header& header)
+      : header_(header), numbers_(header.body, header.encoding) {}
+
+  absl::StatusOr<PlyFile> read() {
+    for (const Element& element : header_.elements) {
+      std::uint64_t least = 0;  // bytes, or in text one digit and a space for each number
+      for (const PlyProperty& property : element.properties) {
+        least += numbers_.is_text() ? 2 : size_of(property.count.value_or(property.type));
       }
+      // The last number of a text needs no space behind it.
+      if (element.count > 0 && !numbers_.may_hold(element.count - 1, least)) {
+        return damaged(absl::StrCat("it says that it has ", element.count, " of \"", element.name,
+                                    "\", for which it is too short"));
+      }
+      RETURN_IF_ERROR(read_element(element));
     }
-    for (std::size_t k = 2; k < corners.size(); ++k) {
-      mesh.triangles.push_back({static_cast<std::uint32_t>(corners[0]),
-                                static_cast<std::uint32_t>(corners[k - 1]),
-                                static_cast<std::uint32_t>(corners[k])});
+    if (out_.mesh.triangles.empty()) {
+      return damaged("it has no triangles");
     }
-  }
-  return absl::OkStatus();
-}
-
-}  // namespace
-
-absl::StatusOr<PlyMesh> read_ply(absl::string_view bytes) {
-  ASSIGN_OR_RETURN(const Header header, read_header(bytes));
-  Body body(bytes.substr(header.body_at), header.form);
-  PlyMesh mesh;
-  for (const Element& element : header.elements) {
-    // A value takes a byte or more, so a larger claim is wrong; it would take hours to find out.
-    if (element.count > bytes.size() || element.properties.empty()) {
-      return broken("it claims more elements than it has bytes");
-    }
-    if (element.name == "vertex") {
-      RETURN_IF_ERROR(read_vertices(element, body, mesh));
-    } else if (element.name == "face") {
-      RETURN_IF_ERROR(read_faces(element, body, mesh));
-    } else {
-      for (std::uint64_t i = 0; i < element.count; ++i) {
-        for (const Property& property : element.properties) {
-          RETURN_IF_ERROR(read_property(property, body, nullptr).status());
+    for (const auto& triangle : out_.mesh.triangles) {
+      for (const std::uint32_t index : triangle) {
+        if (index >= out_.mesh.positions.size()) {
+          return damaged(
+              absl::StrCat("a triangle has vertex ", index, " of ", out_.mesh.positions.size()));
         }
       }
     }
+    return std::move(out_);
   }
-  if (mesh.triangles.empty()) {
-    return broken("it has no face");
+
+ private:
+  absl::Status read_element(const Element& element) {
+    const bool is_vertex = element.name == "vertex";
+    const bool is_face = element.name == "face";
+    std::vector<MeshAttribute> attributes;
+    std::vector<std::vector<std::size_t>> columns;
+    if (is_vertex || is_face) {
+      for (const auto& [name, members] : groups_of(element)) {
+        if ((members.size() == 1 || members.size() == 3) && !is_reserved(name, members, element)) {
+          attributes.push_back(
+              {absl::StrCat(is_vertex ? "vertex_" : "face_", name), is_face, members.size(), {}});
+          columns.push_back(members);
+        }
+      }
+    }
+    const VertexColumns vertex = is_vertex ? vertex_columns(element) : VertexColumns{};
+    if (is_vertex && !vertex.position) {
+      return damaged("its vertices have no x, y and z");
+    }
+    std::vector<double> row(element.properties.size());
+    for (std::uint64_t i = 0; i < element.count; ++i) {
+      std::vector<std::uint32_t> corners;
+      RETURN_IF_ERROR(read_row(element, row, corners));
+      std::size_t copies = 1;
+      if (is_vertex) {
+        RETURN_IF_ERROR(add_vertex(vertex, row));
+      } else if (is_face) {
+        copies = add_face(corners);
+      }
+      for (std::size_t a = 0; a < attributes.size(); ++a) {
+        for (std::size_t copy = 0; copy < copies; ++copy) {
+          for (const std::size_t column : columns[a]) {
+            const double scale = element.properties[column].type == Type::kUint8 ? 255 : 1;
+            attributes[a].values.push_back(static_cast<float>(row[column] / scale));
+          }
+        }
+      }
+    }
+    for (MeshAttribute& attribute : attributes) {
+      out_.attributes.push_back(std::move(attribute));
+    }
+    return absl::OkStatus();
   }
-  return mesh;
+
+  static bool is_reserved(const std::string& name, const std::vector<std::size_t>& members,
+                          const Element& element) {
+    static const std::vector<std::string> names = {"x", "y", "z", "nx", "ny",     "nz",
+                                                   "u", "v", "s", "t",  "texture"};
+    return element.name == "vertex" && members.size() <= 2 &&
+           std::find(names.begin(), names.end(), name) != names.end();
+  }
+
+  absl::Status read_row(const Element& element, std::vector<double>& row,
+                        std::vector<std::uint32_t>& corners) {
+    constexpr double kMaxCorners = 1e6;
+    for (std::size_t i = 0; i < element.properties.size(); ++i) {
+      const PlyProperty& property = element.properties[i];
+      if (!property.count) {
+        ASSIGN_OR_RETURN(row[i], numbers_.take(property.type));
+        continue;
+      }
+      ASSIGN_OR_RETURN(const double count, numbers_.take(*property.count));
+      if (!(count >= 0 && count <= kMaxCorners)) {
+        return damaged(absl::StrCat("a list has ", count, " entries"));
+      }
+      const bool indices = property.name == "vertex_indices" || property.name == "vertex_index";
+      for (double k = 0; k < count; ++k) {
+        ASSIGN_OR_RETURN(const double index, numbers_.take(property.type));
+        if (indices && !(index >= 0 && index < std::numeric_limits<std::uint32_t>::max())) {
+          return damaged(absl::StrCat("a face has vertex ", index));
+        }
+        if (indices) {
+          corners.push_back(static_cast<std::uint32_t>(index));
+        }
+      }
+    }
+    return absl::OkStatus();
+  }
+
+  absl::Status add_vertex(const VertexColumns& columns, const std::vector<double>& row) {
+    RETURN_IF_ERROR(add_numbers(columns.position, row, out_.mesh.positions));
+    RETURN_IF_ERROR(add_numbers(columns.normal, row, out_.mesh.normals));
+    return add_numbers(columns.uv, row, out_.mesh.uvs);
+  }
+
+  /// Returns the number of triangles of the polygon.
+  std::size_t add_face(const std::vector<std::uint32_t>& corners) {
+    for (std::size_t i = 2; i < corners.size(); ++i) {
+      out_.mesh.triangles.push_back({corners[0], corners[i - 1], corners[i]});
+    }
+    return corners.size() < 3 ? 0 : corners.size() - 2;
+  }
+
+  const Header& header_;
+  Numbers numbers_;
+  PlyFile out_;
+};
+
+}  // namespace
+
+absl::StatusOr<PlyFile> read_ply(absl::string_view bytes) {
+  ASSIGN_OR_RETURN(const Header header, read_header(bytes));
+  return PlyReader(header).read();
 }
 
 }  // namespace bandsaw

@@ -2,15 +2,24 @@
 
 // Reads PLY files: text, and binary of either byte order.
 
+#include <vector>
+
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "renderlib/import/convert/ply_mesh.h"
 
 namespace bandsaw {
 
-/// Reads positions, normals (nx, ny, nz), uvs (u, v or s, t) and faces, which are divided into fans
-/// of triangles. Other properties and elements are skipped. INVALID_ARGUMENT: it is broken, claims
-/// more than it holds, has an index of no vertex, a position that is not finite, or no face.
-absl::StatusOr<PlyMesh> read_ply(absl::string_view bytes);
+struct PlyFile {
+  PlyMesh mesh;  ///< without colours
+  std::vector<MeshAttribute> attributes;
+};
+
+/// Reads positions (x, y, z), normals (nx, ny, nz), uvs (u, v or s, t; as they are in the file) and
+/// faces, which are divided into fans of triangles. Other numbers of vertices and faces become
+/// attributes; "color_0", "color_1", "color_2" and "r", "g", "b" become one, bytes divided by 255.
+/// Other elements are skipped. INVALID_ARGUMENT: it is damaged, claims more than it has, has an
+/// index of no vertex, a number of a vertex that is not finite, or no face.
+absl::StatusOr<PlyFile> read_ply(absl::string_view bytes);
 
 }  // namespace bandsaw

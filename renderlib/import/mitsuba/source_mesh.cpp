@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "renderlib/base/status_macros.h"
+#include "renderlib/import/convert/read_ply.h"
 #include "renderlib/math/elementary.h"
 #include "renderlib/math/vec.h"
 
@@ -27,6 +29,16 @@ double angle_between(const Vec3& a, const Vec3& b) {
 }
 
 }  // namespace
+
+absl::StatusOr<SourceMesh> read_ply(absl::string_view bytes, bool flip_v) {
+  ASSIGN_OR_RETURN(PlyFile file, bandsaw::read_ply(bytes));
+  if (flip_v) {
+    for (std::array<float, 2>& uv : file.mesh.uvs) {
+      uv[1] = 1 - uv[1];
+    }
+  }
+  return SourceMesh{std::move(file.mesh), std::move(file.attributes)};
+}
 
 void add_smooth_normals(PlyMesh& mesh) {
   std::vector<Vec3> sums(mesh.positions.size());

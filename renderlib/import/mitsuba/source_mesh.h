@@ -12,19 +12,11 @@
 
 namespace bandsaw::mitsuba {
 
-/// Numbers that belong to each vertex or to each triangle, for mesh_attribute textures.
-struct MeshAttribute {
-  std::string name;  ///< "vertex_color", "face_weight"
-  bool per_face = false;
-  std::size_t channels = 1;   ///< 1 or 3
-  std::vector<float> values;  ///< channels for each vertex or triangle
-};
-
 struct SourceMesh {
   /// With Mitsuba's uv coordinates: v = 0 is the top row of an image. No normals if the file has
   /// none.
   PlyMesh mesh;
-  std::vector<MeshAttribute> attributes;
+  std::vector<MeshAttribute> attributes;  ///< for mesh_attribute textures
   bool faceted = false;  ///< the file itself asks for normals of faces
 };
 
@@ -34,8 +26,7 @@ inline constexpr std::uint64_t kMaxMeshBytes = std::uint64_t{4} << 30;
 /// Reads a Wavefront OBJ: vertices, normals, uvs and polygons; materials and groups are ignored.
 /// `flip_v`: v = 0 is the bottom row in the file, as usual. INVALID_ARGUMENT with the line.
 absl::StatusOr<SourceMesh> read_obj(absl::string_view bytes, bool flip_v);
-/// Reads a PLY, text or binary: positions, normals, uvs, further numbers as attributes. Polygons
-/// are split into triangles. INVALID_ARGUMENT: it is damaged.
+/// Reads a PLY (convert/read_ply.h). `flip_v` as above. INVALID_ARGUMENT: it is damaged.
 absl::StatusOr<SourceMesh> read_ply(absl::string_view bytes, bool flip_v);
 /// Reads one mesh of Mitsuba's *.serialized. INVALID_ARGUMENT: it is damaged or has no such mesh.
 absl::StatusOr<SourceMesh> read_serialized(absl::string_view bytes, std::int64_t index,

@@ -307,12 +307,12 @@ absl::StatusOr<std::optional<PlyMesh>> ply_mesh(const Parameters& in, Builder& b
     }
     *bytes = *std::move(plain);
   }
-  auto mesh = read_ply(*bytes);
-  if (!mesh.ok()) {
-    return failed(mesh.status());
+  auto read = read_ply(*bytes);
+  if (!read.ok()) {
+    return failed(read.status());
   }
-  face_normals(*mesh);
-  return *std::move(mesh);
+  face_normals(read->mesh);
+  return std::move(read->mesh);
 }
 
 /// Removes triangles without area, which quadrics have at their poles.
