@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <filesystem>
 
 #include "tests/farm/farm_processes.h"
+#include "tests/farm/survival.h"
 
 namespace bandsaw::test {
 namespace {
@@ -137,6 +139,17 @@ class ForeignScenes : public testing::Test {
     EXPECT_EQ(std::fwrite(text.data(), 1, text.size(), file), text.size());
     EXPECT_EQ(std::fclose(file), 0);
   }
+  void expect_the_same_bytes_of(const std::string& scene) {
+    Survival job(farm_, farm_.path(scene));
+    for (const char* name : {"victim", "second", "third"}) {
+      farm_.add_worker(name, 1);
+    }
+    Process client = job.submit();
+    job.wait_until_stored("victim", 2);
+    farm_.worker("victim").signal(SIGKILL);
+    job.expect_the_same_bytes(client);
+    job.expect_nothing_rendered_again();
+  }
   /// Returns the bytes of a small rendering of the scene.
   std::string rendered(const std::string& scene, const std::string& output) {
     const Finished finished = run({BANDSAW_BIN, "render", scene, "--width", "48", "--height", "48",
@@ -146,6 +159,14 @@ class ForeignScenes : public testing::Test {
   }
   FarmProcesses farm_;
 };
+
+TEST_F(ForeignScenes, OfPbrtHaveTheSameBytesAfterAWorkerDied) {
+  expect_the_same_bytes_of("kitchen.pbrt");
+}
+
+TEST_F(ForeignScenes, OfMitsubaHaveTheSameBytesAfterAWorkerDied) {
+  expect_the_same_bytes_of("kitchen.xml");
+}
 
 TEST_F(ForeignScenes, AnImportedSceneHasTheSameBytes) {
   for (const std::string scene : {"kitchen.pbrt", "kitchen.xml"}) {

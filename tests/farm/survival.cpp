@@ -3,13 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "tests/support/sanitized.h"
 
 namespace bandsaw::test {
 namespace {
 
-const std::string kScene = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
 const std::vector<std::string> kSettings = {"--width", "200",       "--height",
                                             "200",     "--samples", std::to_string(160 / kSlower)};
 
@@ -20,9 +20,14 @@ std::vector<std::string> with_settings(std::vector<std::string> arguments) {
 
 }  // namespace
 
+Survival::Survival(FarmProcesses& farm, std::string scene)
+    : farm_(farm),
+      scene_(scene.empty() ? std::string(BANDSAW_GALLERY) + "/cornell.textproto"
+                           : std::move(scene)) {}
+
 Process Survival::submit(const std::string& host) {
   return Process::start(farm_.on(
-      host, farm_.command(with_settings({"submit", kScene, "-o", farm_.path("farm.pfm")}))));
+      host, farm_.command(with_settings({"submit", scene_, "-o", farm_.path("farm.pfm")}))));
 }
 
 void Survival::wait_until_stored(const std::string& worker, std::size_t bands) {
@@ -47,7 +52,7 @@ void Survival::expect_the_same_bytes(Process& client) {
   const std::optional<int> code = client.wait();
   ASSERT_EQ(code, 0) << client.out() << client.err() << farm_.coordinator().err();
   const Finished finished =
-      run(with_settings({BANDSAW_BIN, "render", kScene, "-o", farm_.path("local.pfm")}));
+      run(with_settings({BANDSAW_BIN, "render", scene_, "-o", farm_.path("local.pfm")}));
   ASSERT_EQ(finished.code, 0) << finished.err;
   EXPECT_TRUE(file_bytes(farm_.path("farm.pfm")) == file_bytes(farm_.path("local.pfm")));
 }

@@ -12,8 +12,8 @@ namespace bandsaw::test {
 
 class Survival {
  public:
-  /// `farm` MUST outlive this object.
-  explicit Survival(FarmProcesses& farm) : farm_(farm) {}
+  /// `farm` MUST outlive this object. `scene`: the file to render; the default is a gallery scene.
+  explicit Survival(FarmProcesses& farm, std::string scene = "");
 
   /// Starts a job that takes several seconds, and the command that watches it on machine `host`.
   Process submit(const std::string& host = "coordinator");
@@ -39,6 +39,7 @@ class Survival {
  private:
   bool shared(const LoggedBand& one, const LoggedBand& other) const;
   FarmProcesses& farm_;
+  std::string scene_;
 };
 
 }  // namespace bandsaw::test
