@@ -19,16 +19,10 @@
 
 namespace bandsaw {
 
-struct TrainedGuiding {
-  GuidingField field;
-  std::uint64_t paths = 0;    ///< training paths from the camera
-  std::uint64_t photons = 0;  ///< 0 if nothing in the scene casts caustics
-  std::uint64_t rays = 0;     ///< of both
-};
-
 /// Trains the field of the scene with three quarters of a path and, if there are casters, two
-/// photons for each pixel; an image counts as one of 2^15 to 2^18 pixels. Each vertex of a path is
-/// a record, as is each photon that arrives. Returns nullptr if `stop` was set.
+/// photons for each pixel; an image counts as one of 2^15 to 2^18 pixels. Each of the first
+/// eight vertices of a path is a record, as is each photon that arrives: at most 93 MB, twice, while
+/// the training runs. Returns nullptr if `stop` was set.
 std::shared_ptr<const TrainedGuiding> train_guiding(const Scene& scene, const GuidingKey& key,
                                                     Pool& pool, const std::atomic<bool>& stop);
 

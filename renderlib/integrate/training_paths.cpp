@@ -15,6 +15,9 @@ namespace {
 /// Light of the background comes from this many lengths of the longest ray of its path.
 constexpr double kFar = 1e6;
 
+/// Most vertices of a path that are remembered, which bounds the memory of the training.
+constexpr std::size_t kMaxVertices = 8;
+
 /// A vertex of a training path.
 struct Vertex {
   Vec3 position;
@@ -51,7 +54,8 @@ bool scatter_and_remember(const PathContext& context, const SurfacePoint& point,
   const Vec3 wo = -state.ray.direction;
   const GuidingCones cones = cones_at(context, point, bsdf, wo);
   const bool goes_on = scatter(context, point, bsdf, cones, depth, state);
-  if (!can_be_guided(bsdf) || (goes_on && state.previous.delta)) {
+  if (!can_be_guided(bsdf) || (goes_on && state.previous.delta) ||
+      path.vertices.size() == kMaxVertices) {
     return goes_on;
   }
   Vertex vertex;

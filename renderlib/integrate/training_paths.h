@@ -5,20 +5,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "renderlib/guiding/guiding_field.h"
+#include "renderlib/guiding/guiding_cache.h"
 #include "renderlib/guiding/guiding_record.h"
 #include "renderlib/sampling/sampler.h"
 #include "renderlib/scene/scene.h"
 
 namespace bandsaw {
-
-/// What a field depends on besides the scene: the shape of the image and the length of the paths.
-/// It does not depend on the seed, so that no image is luckier than another.
-struct GuidingKey {
-  std::uint32_t width = 0;   ///< pixels
-  std::uint32_t height = 0;  ///< pixels
-  std::uint32_t max_depth = 0;
-};
 
 /// Some of the training paths, or photons, of one round.
 struct TrainingChunk {

@@ -22,9 +22,10 @@ namespace bandsaw {
 /// Immutable; shared by the threads that render the band.
 class PixelSums {
  public:
-  /// `scene` and `stop` MUST outlive this object. `settings` and `band` MUST be valid.
+  /// `scene`, `guiding` and `stop` MUST outlive this object. `settings` and `band` MUST be valid.
+  /// `guiding`: the field of path guiding, or nullptr.
   PixelSums(const Scene& scene, const RenderSettings& settings, const Band& band,
-            const std::atomic<bool>& stop);
+            const GuidingField* guiding, const std::atomic<bool>& stop);
 
   bool stopped() const { return stop_.load(std::memory_order_relaxed); }
 

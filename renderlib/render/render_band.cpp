@@ -3,6 +3,8 @@
 #include <vector>
 
 #include "renderlib/base/status_macros.h"
+#include "renderlib/guiding/guiding_cache.h"
+#include "renderlib/integrate/guiding_training.h"
 #include "renderlib/render/kernel_code.h"
 #include "renderlib/render/pixel_sums.h"
 
@@ -82,7 +84,16 @@ absl::StatusOr<BandPixels> render_band_with_kernel(const Scene& scene,
                                                    const RowsDone& progress,
                                                    const TileSamples& tiles) {
   RETURN_IF_ERROR(validate(band, settings));
-  const PixelSums pixel_sums(scene, settings, band, stop);
+  std::shared_ptr<const TrainedGuiding> guiding;
+  if (settings.integrator == Integrator::kPathGuided) {
+    const GuidingKey key{settings.width, settings.height, settings.max_depth};
+    guiding = scene.guiding().get(key, [&] { return train_guiding(scene, key, pool, stop); });
+    if (guiding == nullptr) {
+      return absl::CancelledError("the render was stopped");
+    }
+  }
+  const GuidingField* const field = guiding != nullptr ? &guiding->field : nullptr;
+  const PixelSums pixel_sums(scene, settings, band, field, stop);
   const Units units(pixel_sums, band, {settings.width, settings.height});
   BandPixels pixels{
       .band = band,

@@ -9,11 +9,11 @@ namespace bandsaw {
 
 /// The albedo of the first surface that is no mirror and no glass, times the tint of those before
 /// it; the background's radiance L as L / (1 + L).
-inline constexpr Integrator kGuideAlbedo{8};
+inline constexpr Integrator kGuideAlbedo{9};
 /// That surface's shading normal on the viewer's side, to the right and upwards in the camera's
 /// view, each as (n + 1) / 2, and the length of the path to it; (0.5, 0.5, 0) for a miss.
-inline constexpr Integrator kGuideShape{9};
-inline constexpr int kLastGuideIntegrator = 9;
+inline constexpr Integrator kGuideShape{10};
+inline constexpr int kLastGuideIntegrator = 10;
 
 constexpr bool is_guide(Integrator integrator) {
   return integrator == kGuideAlbedo || integrator == kGuideShape;

@@ -21,17 +21,19 @@ enum class Integrator {
   kAmbientOcclusion = 5,
   kPathLights = 6,      ///< kPath with light sampling alone, where a BSDF has a pdf
   kPathScattering = 7,  ///< kPath with BSDF sampling alone
+  kPathGuided = 8,      ///< kPath with path guiding (integrate/guiding_training.h)
 };
-inline constexpr int kLastIntegrator = 7;
+inline constexpr int kLastIntegrator = 8;
 
 /// Returns true for those that path_radiance (integrate/path.h) computes.
 constexpr bool computes_radiance(Integrator integrator) {
   return integrator == Integrator::kPath || integrator == Integrator::kDirect ||
-         integrator == Integrator::kPathLights || integrator == Integrator::kPathScattering;
+         integrator == Integrator::kPathLights || integrator == Integrator::kPathScattering ||
+         integrator == Integrator::kPathGuided;
 }
 
-/// Returns "path", "direct", "normals", "depth", "albedo", "ambient_occlusion", "path_lights" or
-/// "path_scattering".
+/// Returns "path", "direct", "normals", "depth", "albedo", "ambient_occlusion", "path_lights",
+/// "path_scattering" or "path_guided".
 absl::string_view integrator_name(Integrator integrator);
 std::optional<Integrator> integrator_named(absl::string_view name);
 

@@ -6,6 +6,7 @@
 
 #include "renderlib/base/status_macros.h"
 #include "renderlib/geometry/shapes.h"
+#include "renderlib/guiding/guiding_cache.h"
 #include "renderlib/material/interiors.h"
 #include "renderlib/material/opacity.h"
 #include "renderlib/material/plastic_coat.h"
@@ -153,6 +154,13 @@ bool can_reuse_paths(const SceneDescription& scene, const Lights& lights,
 }
 
 }  // namespace
+
+Scene::Scene(const Kernel& kernel, SceneDescription description)
+    : kernel_(&kernel),
+      description_(std::move(description)),
+      guiding_(std::make_unique<GuidingCache>()) {}
+
+Scene::~Scene() = default;
 
 absl::StatusOr<std::shared_ptr<const Scene>> Scene::build_with(const Kernel& kernel,
                                                                SceneDescription description,

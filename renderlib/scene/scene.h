@@ -19,7 +19,8 @@
 
 namespace bandsaw {
 
-struct Kernel;  // renderlib/render/kernel.h
+struct Kernel;       // renderlib/render/kernel.h
+class GuidingCache;  // renderlib/guiding/guiding_cache.h
 
 class Scene {
  public:
@@ -73,6 +74,11 @@ class Scene {
   bool reuses_paths() const { return reuses_paths_; }
   /// Returns the number of primitives that were removed because no ray can hit them.
   std::size_t dropped_primitives() const { return dropped_; }
+  /// Returns the place of the fields of path guiding, each of which is a pure function of the scene
+  /// and its key, and is made when it is first used. Synchronised.
+  GuidingCache& guiding() const { return *guiding_; }
+
+  ~Scene();
 
  private:
   friend struct Kernel;  // refers to `build_with`, which is compiled for each kernel
@@ -84,8 +90,7 @@ class Scene {
                                                                  const SceneFeatures& forced,
                                                                  Traversal traversal);
 
-  Scene(const Kernel& kernel, SceneDescription description)
-      : kernel_(&kernel), description_(std::move(description)) {}
+  Scene(const Kernel& kernel, SceneDescription description);
   const Kernel* kernel_;
   SceneDescription description_;
   std::unique_ptr<Accel> accel_;
@@ -96,6 +101,7 @@ class Scene {
   SceneFeatures features_;
   bool reuses_paths_ = false;
   std::size_t dropped_ = 0;
+  std::unique_ptr<GuidingCache> guiding_;
 };
 
 }  // namespace bandsaw

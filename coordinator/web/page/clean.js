@@ -8,7 +8,7 @@ const modes = {raw: "As rendered", clean: "Clean", both: "Side by side"};
 
 /// Of images whose integrator computes light; others have no noise to remove.
 const hasLight = (status) =>
-  [undefined, "INTEGRATOR_PATH", "INTEGRATOR_DIRECT", "INTEGRATOR_PATH_LIGHTS", "INTEGRATOR_PATH_SCATTERING"].includes(status.settings.integrator);
+  [undefined, "INTEGRATOR_PATH", "INTEGRATOR_DIRECT", "INTEGRATOR_PATH_LIGHTS", "INTEGRATOR_PATH_SCATTERING", "INTEGRATOR_PATH_GUIDED"].includes(status.settings.integrator);
 
 function words(state) {
   switch (state.state) {

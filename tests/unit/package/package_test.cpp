@@ -90,7 +90,7 @@ TEST(Package, RoundTripsImageSettings) {
   EXPECT_THAT(std::string(package_info(encode_package(scene, info, blobs)).status().message()),
               HasSubstr("scene package: exposure: must lie in"));
   info.display = {};
-  info.integrator = static_cast<Integrator>(8);
+  info.integrator = static_cast<Integrator>(kLastIntegrator + 1);
   EXPECT_THAT(std::string(package_info(encode_package(scene, info, blobs)).status().message()),
               HasSubstr("scene package: integrator: must lie in"));
 }

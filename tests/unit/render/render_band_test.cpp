@@ -127,8 +127,8 @@ TEST(RenderBand, C5_PathReuseGivesTheSameBitsForAnyBandsAndThreads) {
   test::holds("C5", "same bits in bands of 1, 3, 7 rows where pixels share paths");
 }
 
-// Light sampling, BSDF sampling and both have the same mean and different variances. Without light
-// sampling a path traces fewer rays.
+// Light sampling, BSDF sampling, both, and both with guided directions have the same mean and
+// different variances. Without light sampling a path traces fewer rays.
 TEST(RenderBand, AllTechniquesHaveTheSameMean) {
   const auto box = test::cornell_box().build();
   const auto pixels = [&](Integrator integrator) {
@@ -144,11 +144,14 @@ TEST(RenderBand, AllTechniquesHaveTheSameMean) {
   const BandPixels both = pixels(Integrator::kPath);
   const BandPixels lights = pixels(Integrator::kPathLights);
   const BandPixels scattering = pixels(Integrator::kPathScattering);
+  const BandPixels guided = pixels(Integrator::kPathGuided);
   EXPECT_NE(both.sums, lights.sums);
+  EXPECT_NE(both.sums, guided.sums);
   EXPECT_LT(scattering.counters.rays, both.counters.rays);
   // In the box, pixels reuse paths, and light sampling alone finds less.
   EXPECT_LE(lights.counters.rays, both.counters.rays);
   EXPECT_NEAR(total(lights) / total(both), 1, 0.02);
+  EXPECT_NEAR(total(guided) / total(both), 1, 0.02);
   EXPECT_NEAR(total(scattering) / total(both), 1, 0.04);
 }
 

@@ -1,0 +1,24 @@
+#include "renderlib/guiding/guiding_cache.h"
+
+#include <utility>
+
+namespace bandsaw {
+
+GuidingCache::Trained GuidingCache::get(const GuidingKey& key, absl::FunctionRef<Trained()> make) {
+  const MutexLock lock(mutex_);
+  for (const Entry& entry : entries_) {
+    if (entry.key == key) {
+      return entry.trained;
+    }
+  }
+  Trained trained = make();
+  if (trained != nullptr) {
+    if (entries_.size() == kMostFields) {
+      entries_.pop_front();
+    }
+    entries_.push_back({key, trained});
+  }
+  return trained;
+}
+
+}  // namespace bandsaw
