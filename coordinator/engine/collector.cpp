@@ -12,52 +12,72 @@
 
 namespace bandsaw::coordinator {
 
-std::optional<std::set<wire::Digest>> Collector::blobs_of(const DigestHex& manifest) {
-  if (const auto found = known_.find(manifest); found != known_.end()) {
-    return found->second;
-  }
+bool Collector::add_blobs_of(const DigestHex& manifest, Needs& needs) {
   const auto digest = wire::digest_from_hex(manifest);
   if (!digest.ok()) {
-    return std::set<wire::Digest>();
+    return true;
   }
   const auto bytes = blobs_.get(*digest);
   if (absl::IsNotFound(bytes.status()) || absl::IsDataLoss(bytes.status())) {
-    return std::set<wire::Digest>();  // not cached, because it may be sent again
+    return true;
   }
   if (!bytes.ok()) {
     spdlog::warn("cannot read the scene {} to find the blobs that it needs: {}", manifest,
                  bytes.status().ToString());
-    return std::nullopt;
+    return false;
   }
   const auto text = (*bytes)->bytes();
   const auto refs = package_blobs({reinterpret_cast<const char*>(text.data()), text.size()});
-  std::set<wire::Digest> blobs = {*digest};
+  needs.blobs.insert(*digest);
   for (const BlobRef& ref : refs.ok() ? *refs : std::vector<BlobRef>()) {
-    blobs.insert(ref.digest);
+    needs.blobs.insert(ref.digest);
   }
-  return known_.emplace(manifest, std::move(blobs)).first->second;
+  ++needs.packages;
+  return true;
 }
 
-std::set<wire::Digest> Collector::known_blobs_of(const DigestHex& manifest) {
-  return blobs_of(manifest).value_or(std::set<wire::Digest>());
+std::optional<std::set<wire::Digest>> Collector::blobs_of(const KeptJob& job) {
+  if (const auto found = known_.find(job.id);
+      found != known_.end() && found->second.packages == job.manifests.size()) {
+    return found->second.blobs;
+  }
+  // A missing package is read again the next time, because it may be sent again.
+  Needs needs;
+  for (const DigestHex& manifest : job.manifests) {
+    if (!add_blobs_of(manifest, needs)) {
+      return std::nullopt;
+    }
+  }
+  return (known_[job.id] = std::move(needs)).blobs;
+}
+
+std::set<wire::Digest> Collector::known_blobs_of(const KeptJob& job) {
+  return blobs_of(job).value_or(std::set<wire::Digest>());
+}
+
+Collector::Final Collector::final_job(const KeptJob& kept) const {
+  Final job{.id = kept.id};
+  add_files_of(kept.id, job);
+  for (const JobId frame : kept.frame_jobs) {
+    add_files_of(frame, job);
+  }
+  return job;
 }
 
 /// The last change of a job's folder is the removal of its bands when it becomes final.
-Collector::Final Collector::final_job(JobId id) const {
-  Final job{.id = id};
+void Collector::add_files_of(JobId id, Final& job) const {
   struct stat found {};
   if (::stat(folder_.job(id).c_str(), &found) == 0) {
-    job.at = static_cast<double>(found.st_mtim.tv_sec);
+    job.at = std::max(job.at, static_cast<double>(found.st_mtim.tv_sec));
   }
   for (const std::string& file : {folder_.result(id), folder_.samples(id)}) {
     if (::stat(file.c_str(), &found) == 0) {
       job.bytes += static_cast<std::uint64_t>(found.st_size);
     }
   }
-  return job;
 }
 
-std::vector<JobId> Collector::to_forget(const std::vector<Job>& jobs, double now) {
+std::vector<JobId> Collector::to_forget(const std::vector<KeptJob>& jobs, double now) {
   std::map<wire::Digest, std::uint64_t> sizes;
   std::uint64_t bytes = 0;
   for (const BlobStore::Stored& blob : blobs_.list()) {
@@ -65,15 +85,15 @@ std::vector<JobId> Collector::to_forget(const std::vector<Job>& jobs, double now
     bytes += blob.size;
   }
   std::map<wire::Digest, std::size_t> users;
-  std::map<JobId, DigestHex> manifests;
+  std::map<JobId, const KeptJob*> by_id;
   std::vector<Final> final_jobs;
-  for (const Job& job : jobs) {
-    manifests[job.id] = job.manifest;
-    for (const wire::Digest& digest : known_blobs_of(job.manifest)) {
+  for (const KeptJob& job : jobs) {
+    by_id[job.id] = &job;
+    for (const wire::Digest& digest : known_blobs_of(job)) {
       ++users[digest];
     }
     if (job.final) {
-      final_jobs.push_back(final_job(job.id));
+      final_jobs.push_back(final_job(job));
       bytes += final_jobs.back().bytes;
     }
   }
@@ -90,7 +110,7 @@ std::vector<JobId> Collector::to_forget(const std::vector<Job>& jobs, double now
     }
     forget.push_back(job.id);
     bytes -= std::min(bytes, job.bytes);
-    for (const wire::Digest& digest : known_blobs_of(manifests[job.id])) {
+    for (const wire::Digest& digest : known_blobs_of(*by_id.at(job.id))) {
       if (--users[digest] == 0) {
         bytes -= std::min(bytes, sizes[digest]);
       }
@@ -111,21 +131,20 @@ void Collector::remove_unneeded(const std::set<wire::Digest>& needed, double now
   }
 }
 
-void Collector::sweep(const std::vector<Job>& jobs, double now) {
+void Collector::sweep(const std::vector<KeptJob>& jobs, double now) {
   std::set<wire::Digest> needed;
   std::set<JobId> ids;
-  std::set<DigestHex> manifests;
   bool all_known = true;
-  for (const Job& job : jobs) {
+  for (const KeptJob& job : jobs) {
     ids.insert(job.id);
-    manifests.insert(job.manifest);
-    if (const auto blobs = blobs_of(job.manifest)) {
+    ids.insert(job.frame_jobs.begin(), job.frame_jobs.end());
+    if (const auto blobs = blobs_of(job)) {
       needed.insert(blobs->begin(), blobs->end());
     } else if (!job.final) {
       all_known = false;
     }
   }
-  std::erase_if(known_, [&](const auto& one) { return !manifests.contains(one.first); });
+  std::erase_if(known_, [&](const auto& one) { return !ids.contains(one.first); });
   if (all_known) {
     remove_unneeded(needed, now);
   }

@@ -10,7 +10,7 @@
 #include <set>
 #include <vector>
 
-#include "coordinator/scheduler/api/ids.h"
+#include "coordinator/scheduler/api/job_view.h"
 #include "coordinator/store/blob_store.h"
 #include "coordinator/store/data_folder.h"
 
@@ -22,7 +22,7 @@ struct Keep {
   std::uint64_t bytes =
       100'000'000'000;             ///< results and blobs in total; oldest jobs are removed first
   double min_seconds = 60.0 * 60;  ///< minimum age at which `bytes` removes a final job
-  std::size_t jobs = 10'000;       ///< final jobs; each takes some 4 kB of memory
+  std::size_t jobs = 10'000;       ///< final jobs; each takes some 4 kB of memory, or a frame
   /// Maximum age of a blob of no job, or of a part of one, since it was sent or requested.
   double unused_seconds = 24.0 * 60 * 60;
 };
@@ -30,20 +30,14 @@ struct Keep {
 /// Used by the store's thread.
 class Collector {
  public:
-  struct Job {
-    JobId id = 0;
-    DigestHex manifest;
-    bool final = false;
-  };
-
   Collector(const DataFolder& folder, BlobStore& blobs, const Keep& keep)
       : folder_(folder), blobs_(blobs), keep_(keep) {}
 
   /// Returns the final jobs that are to be forgotten, oldest first. `now`: seconds since 1970.
-  std::vector<JobId> to_forget(const std::vector<Job>& jobs, double now);
+  std::vector<JobId> to_forget(const std::vector<KeptJob>& jobs, double now);
 
   /// Removes blobs that none of the jobs needs, and folders of unknown jobs.
-  void sweep(const std::vector<Job>& jobs, double now);
+  void sweep(const std::vector<KeptJob>& jobs, double now);
 
  private:
   struct Final {
@@ -51,17 +45,26 @@ class Collector {
     double at = 0;  ///< seconds since 1970; 0: none of its files is left
     std::uint64_t bytes = 0;
   };
-  Final final_job(JobId id) const;
-  /// Returns the blobs of a package including its manifest; an empty set if the manifest is
-  /// missing, std::nullopt if it exists and cannot be read.
-  std::optional<std::set<wire::Digest>> blobs_of(const DigestHex& manifest);
-  std::set<wire::Digest> known_blobs_of(const DigestHex& manifest);
+  /// The blobs of the packages of one job, each once.
+  struct Needs {
+    std::size_t packages = 0;  ///< that were read
+    std::set<wire::Digest> blobs;
+  };
+  Final final_job(const KeptJob& job) const;
+  void add_files_of(JobId id, Final& job) const;
+  /// Adds the blobs of a package including its manifest; nothing if the manifest is missing. False:
+  /// it exists and cannot be read.
+  bool add_blobs_of(const DigestHex& manifest, Needs& needs);
+  /// Returns the blobs of a job's packages; std::nullopt: one of them exists and cannot be read.
+  std::optional<std::set<wire::Digest>> blobs_of(const KeptJob& job);
+  std::set<wire::Digest> known_blobs_of(const KeptJob& job);
   void remove_unneeded(const std::set<wire::Digest>& needed, double now);
 
   const DataFolder& folder_;
   BlobStore& blobs_;
   const Keep keep_;
-  std::map<DigestHex, std::set<wire::Digest>> known_;  ///< a package never changes
+  /// What was read; a package never changes, and a sequence gets more of them.
+  std::map<JobId, Needs> known_;
 };
 
 }  // namespace bandsaw::coordinator

@@ -135,9 +135,52 @@ void Engine::submit(JobSpec spec, std::function<void(absl::StatusOr<JobId>)> don
     if (const absl::Status fit = check_submit(spec, *blobs_); !fit.ok()) {
       answer(fit);
     } else {
-      to_scheduler_.call(&SchedulerThread::submit, std::move(spec), priority, std::move(answer));
+      to_scheduler_.call(&SchedulerThread::submit,
+                         Input(input::Submit{.spec = std::move(spec), .priority = priority}),
+                         std::move(answer));
     }
   });
+}
+
+void Engine::submit_sequence(SequenceSpec spec, std::function<void(absl::StatusOr<JobId>)> done,
+                             std::int32_t priority) {
+  Answer<JobId> answer(std::move(done));
+  if (const absl::Status fit = check_sequence(spec); !fit.ok()) {
+    answer(fit);
+    return;
+  }
+  to_scheduler_.call(&SchedulerThread::submit,
+                     Input(input::SubmitSequence{.spec = std::move(spec), .priority = priority}),
+                     std::move(answer));
+}
+
+void Engine::add_frames(JobId sequence, std::vector<FrameScene> scenes,
+                        std::function<void(absl::StatusOr<JobView>)> done) {
+  to_store_.post([this, sequence, scenes = std::move(scenes),
+                  answer = Answer<JobView>(std::move(done))](StoreThread&) mutable {
+    for (const FrameScene& scene : scenes) {
+      if (const absl::Status fit = check_package(scene.manifest, *blobs_); !fit.ok()) {
+        answer(absl::Status(fit.code(), absl::StrCat("frame ", scene.number, ": ", fit.message())));
+        return;
+      }
+    }
+    to_scheduler_.call(&SchedulerThread::command, sequence,
+                       Input(input::AddFrames{.job = sequence, .scenes = std::move(scenes)}),
+                       std::move(answer));
+  });
+}
+
+void Engine::retry_frames(JobId sequence, std::vector<FrameNumber> frames,
+                          std::function<void(absl::StatusOr<JobView>)> done) {
+  command(sequence, input::RetryFrames{.job = sequence, .frames = std::move(frames)},
+          std::move(done));
+}
+
+void Engine::frames(JobId sequence, std::uint64_t after,
+                    std::function<void(absl::StatusOr<std::vector<FrameView>>)> done) {
+  to_scheduler_.post(
+      [sequence, after, answer = Answer<std::vector<FrameView>>(std::move(done))](
+          SchedulerThread& scheduler) mutable { answer(scheduler.frames(sequence, after)); });
 }
 
 void Engine::command(JobId job, const Input& input,
@@ -218,6 +261,10 @@ void Engine::result(JobId job, FinishedPart part,
     const std::optional<JobView> view = scheduler.job(job);
     if (!view) {
       answer(absl::NotFoundError(absl::StrCat("there is no job ", job)));
+    } else if (view->has_frames()) {
+      answer(absl::FailedPreconditionError(
+          absl::StrCat("job ", job, " has frames, each with an image of its own: bandsaw watch ",
+                       job, " -o NAME.####.png fetches them")));
     } else if (view->state != JobState::kDone) {
       answer(absl::FailedPreconditionError(absl::StrCat("job ", job, " is not done")));
     } else {

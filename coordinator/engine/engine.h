@@ -69,6 +69,20 @@ class Engine {
   /// message names it. INVALID_ARGUMENT: the priority is beyond kMaxPriority.
   void submit(JobSpec spec, std::function<void(absl::StatusOr<JobId>)> done,
               std::int32_t priority = 0);
+  /// Submits a sequence; its scenes follow by add_frames. Errors as submit.
+  void submit_sequence(SequenceSpec spec, std::function<void(absl::StatusOr<JobId>)> done,
+                       std::int32_t priority = 0);
+  /// Gives frames of a sequence their scenes; returns the sequence after that. NOT_FOUND: no such
+  /// job. INVALID_ARGUMENT: it has no such frame, or a package is broken. FAILED_PRECONDITION: a
+  /// blob is missing, or the sequence was cancelled.
+  void add_frames(JobId sequence, std::vector<FrameScene> scenes,
+                  std::function<void(absl::StatusOr<JobView>)> done);
+  /// Renders failed frames again; none: all that failed. Returns the sequence after that.
+  void retry_frames(JobId sequence, std::vector<FrameNumber> frames,
+                    std::function<void(absl::StatusOr<JobView>)> done);
+  /// Returns the frames that changed after `after` (FrameView::changed); 0: all.
+  void frames(JobId sequence, std::uint64_t after,
+              std::function<void(absl::StatusOr<std::vector<FrameView>>)> done);
   /// These four return the job after the change, once that is in the journal. NOT_FOUND: no such
   /// job. FAILED_PRECONDITION, except from cancel: the job is over.
   void cancel(JobId job, std::function<void(absl::StatusOr<JobView>)> done);

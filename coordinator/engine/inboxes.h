@@ -47,7 +47,7 @@ class StoreInbox {
   virtual void reopen(JobId job) = 0;
   virtual void drop_bands(JobId job) = 0;
   virtual void drop_job(JobId job) = 0;
-  virtual void collect(std::vector<Collector::Job> jobs) = 0;
+  virtual void collect(std::vector<KeptJob> jobs) = 0;
   virtual void expect_trouble() = 0;
 };
 

@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "absl/strings/str_cat.h"
 #include "coordinator/scheduler/api/job_spec.h"
 
 namespace bandsaw::coordinator {
@@ -9,8 +10,11 @@ namespace {
 
 struct Line {
   void operator()(const record::JobAdded& r) const {
-    spdlog::info("job={} added name='{}' size={}x{} manifest={}", r.job, r.spec.name,
-                 r.spec.settings.width, r.spec.settings.height, r.spec.manifest);
+    spdlog::info("job={} added name='{}' size={}x{} manifest={}{}", r.job, r.spec.name,
+                 r.spec.settings.width, r.spec.settings.height, r.spec.manifest,
+                 r.spec.sequence == 0
+                     ? std::string()
+                     : absl::StrCat(" frame=", r.spec.frame, " of=", r.spec.sequence));
   }
   void operator()(const record::PassPlanned& r) const {
     spdlog::debug("job={} pass samples=[{},{})", r.job, r.samples.first, r.samples.last);
@@ -71,6 +75,17 @@ struct Line {
   }
   void operator()(const record::WorkerQuarantined& r) const {
     spdlog::error("quarantined worker={} {}", r.name, r.reason);
+  }
+  void operator()(const record::SequenceAdded& r) const {
+    spdlog::info("job={} added name='{}' size={}x{} frames={}", r.job, r.spec.name,
+                 r.spec.settings.width, r.spec.settings.height, r.spec.frames.size());
+  }
+  void operator()(const record::FrameWaits& r) const {
+    if (r.failures > 0) {
+      spdlog::warn("job={} frame={} is tried again: {}", r.job, r.frame, r.reason);
+    } else {
+      spdlog::debug("job={} frame={} waits manifest={}", r.job, r.frame, r.manifest);
+    }
   }
   void operator()(const record::QuarantineLifted& r) const {
     spdlog::info("quarantine lifted worker={}", r.name);

@@ -51,9 +51,7 @@ class PostedStoreInbox final : public StoreInbox, public Posting<StoreThread> {
   void reopen(JobId job) override { call(&StoreThread::reopen, job); }
   void drop_bands(JobId job) override { call(&StoreThread::drop_bands, job); }
   void drop_job(JobId job) override { call(&StoreThread::drop_job, job); }
-  void collect(std::vector<Collector::Job> jobs) override {
-    call(&StoreThread::collect, std::move(jobs));
-  }
+  void collect(std::vector<KeptJob> jobs) override { call(&StoreThread::collect, std::move(jobs)); }
   void expect_trouble() override { call(&StoreThread::expect_trouble); }
 };
 

@@ -101,7 +101,9 @@ void SchedulerThread::note(const Record& record) {
   } else if (const auto* pass = std::get_if<record::PassPlanned>(&record)) {
     known_[pass->job].pass_ends.push_back(pass->samples.last);
   } else if (const auto* changed = std::get_if<record::StateChanged>(&record)) {
-    known_[changed->job].state = changed->state;
+    if (const auto known = known_.find(changed->job); known != known_.end()) {  // else a sequence
+      known->second.state = changed->state;
+    }
   } else if (const auto* forgotten = std::get_if<record::JobForgotten>(&record)) {
     known_.erase(forgotten->job);
   }
@@ -145,11 +147,7 @@ void SchedulerThread::collect() {
   }
   collected_at_ = now;
   added_since_ = 0;
-  std::vector<Collector::Job> jobs;
-  for (const auto& [id, known] : known_) {
-    jobs.push_back({id, known.spec.manifest, is_final(known.state)});
-  }
-  store_.collect(std::move(jobs));
+  store_.collect(scheduler_.kept());
 }
 
 /// Only if nothing waits for the journal, because then the scheduler's state equals the journal's.

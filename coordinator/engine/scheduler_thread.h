@@ -41,13 +41,16 @@ class SchedulerThread {
   absl::Status restore(StoreThread& store, FilmThread& film, const absl::Status& room);
 
   // Users.
-  void submit(JobSpec spec, std::int32_t priority, Answer<JobId> answer);
-  /// Runs Cancel, Pause, Resume or SetPriority; the answer is the job after it.
+  /// Runs Submit or SubmitSequence.
+  void submit(const Input& input, Answer<JobId> answer);
+  /// Runs Cancel, Pause, Resume, SetPriority, AddFrames or RetryFrames; the answer is the job after
+  /// it.
   void command(JobId job, const Input& input, Answer<JobView> answer);
   /// Runs Quarantine or LiftQuarantine.
   void command_worker(const Input& input, Answer<bool> answer);
   void watch(JobId job, Watchers::Changed changed);
   std::optional<JobView> job(JobId id) const { return scheduler_.job(id, clock_.now()); }
+  absl::StatusOr<std::vector<FrameView>> frames(JobId id, std::uint64_t after) const;
   std::vector<std::string> why(JobId id) const { return scheduler_.why(id, clock_.now()); }
   std::vector<JobView> jobs() const { return scheduler_.jobs(clock_.now()); }
   std::vector<WorkerView> workers() const { return scheduler_.workers(clock_.now()); }

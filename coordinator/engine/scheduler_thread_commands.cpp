@@ -7,15 +7,17 @@
 
 namespace bandsaw::coordinator {
 
-void SchedulerThread::submit(JobSpec spec, std::int32_t priority, Answer<JobId> answer) {
+void SchedulerThread::submit(const Input& input, Answer<JobId> answer) {
   if (!journal_status_.ok() || !room_.ok()) {
     answer(journal_status_.ok() ? room_ : journal_status_);
     return;
   }
-  const Step step = run(input::Submit{.spec = std::move(spec), .priority = priority});
-  const bool added = std::any_of(
-      step.records.begin(), step.records.end(),
-      [](const Record& record) { return std::holds_alternative<record::JobAdded>(record); });
+  const Step step = run(input);
+  const bool added =
+      std::any_of(step.records.begin(), step.records.end(), [](const Record& record) {
+        return std::holds_alternative<record::JobAdded>(record) ||
+               std::holds_alternative<record::SequenceAdded>(record);
+      });
   commit_queue_.completion([this, job = step.job, added, decided = step.status,
                             answer = std::move(answer)](const absl::Status& journalled) mutable {
     if (!decided.ok()) {
@@ -67,6 +69,17 @@ void SchedulerThread::command_worker(const Input& input, Answer<bool> answer) {
           answer(true);
         }
       });
+}
+
+absl::StatusOr<std::vector<FrameView>> SchedulerThread::frames(JobId id,
+                                                               std::uint64_t after) const {
+  std::optional<std::vector<FrameView>> frames = scheduler_.frames(id, after);
+  if (frames) {
+    return *std::move(frames);
+  }
+  return job(id) ? absl::FailedPreconditionError(
+                       absl::StrCat("job ", id, " has no frames: it is a single image"))
+                 : absl::NotFoundError(absl::StrCat("there is no job ", id));
 }
 
 void SchedulerThread::watch(JobId id, Watchers::Changed changed) {

@@ -185,7 +185,7 @@ void StoreThread::drop_job(JobId id) {
   std::filesystem::remove_all(folder_.job(id), error);
 }
 
-void StoreThread::collect(const std::vector<Collector::Job>& jobs) {
+void StoreThread::collect(const std::vector<KeptJob>& jobs) {
   const double now = unix_seconds();
   // The files of a forgotten job are removed after the journal has the record (action::DropJob),
   // its blobs at the next sweep.

@@ -56,7 +56,7 @@ class StoreThread {
   void drop_job(JobId job);
   /// Removes blobs and folders that are no longer needed, and sends the scheduler the jobs that
   /// exceed a limit of engine/collector.h. `jobs`: all known jobs.
-  void collect(const std::vector<Collector::Job>& jobs);
+  void collect(const std::vector<KeptJob>& jobs);
   /// A write failed: sends disk_is_back once the disk takes data.
   void expect_trouble();
 

@@ -44,15 +44,15 @@ absl::Status check_stop(const StopRule& stop) {
   return check_samples("max_samples", time.max_samples);
 }
 
-absl::Status check_words(const JobSpec& spec) {
-  if (spec.request_id.size() < kMinRequestId || spec.request_id.size() > kMaxRequestId) {
+absl::Status check_words(const std::string& request_id, const std::string& name) {
+  if (request_id.size() < kMinRequestId || request_id.size() > kMaxRequestId) {
     return absl::InvalidArgumentError(absl::StrCat("request_id must have ", kMinRequestId, " to ",
                                                    kMaxRequestId, " characters, found ",
-                                                   spec.request_id.size()));
+                                                   request_id.size()));
   }
-  if (spec.name.size() > wire::kJobNameBytes) {
+  if (name.size() > wire::kJobNameBytes) {
     return absl::InvalidArgumentError(absl::StrCat("name must have at most ", wire::kJobNameBytes,
-                                                   " bytes, found ", spec.name.size()));
+                                                   " bytes, found ", name.size()));
   }
   return absl::OkStatus();
 }
@@ -76,14 +76,24 @@ absl::StatusOr<std::string> read_manifest(const DigestHex& hex, BlobSource& blob
 }  // namespace
 
 absl::Status check_submit(const JobSpec& spec, BlobStore& blobs) {
-  RETURN_IF_ERROR(check_words(spec));
+  RETURN_IF_ERROR(check_words(spec.request_id, spec.name));
   RETURN_IF_ERROR(validate(spec.settings));
   RETURN_IF_ERROR(check_stop(spec.stop));
-  ASSIGN_OR_RETURN(const std::string manifest, read_manifest(spec.manifest, blobs));
+  return check_package(spec.manifest, blobs);
+}
+
+absl::Status check_sequence(const SequenceSpec& spec) {
+  RETURN_IF_ERROR(check_words(spec.request_id, spec.name));
+  RETURN_IF_ERROR(validate(spec.settings));
+  return check_stop(spec.stop);
+}
+
+absl::Status check_package(const DigestHex& digest_hex, BlobStore& blobs) {
+  ASSIGN_OR_RETURN(const std::string manifest, read_manifest(digest_hex, blobs));
   RETURN_IF_ERROR(package_info(manifest).status());
   ASSIGN_OR_RETURN(const std::vector<BlobRef> refs, package_blobs(manifest));
   // The collector must not remove the blobs before the scheduler has the job.
-  ASSIGN_OR_RETURN(const wire::Digest manifest_digest, wire::digest_from_hex(spec.manifest));
+  ASSIGN_OR_RETURN(const wire::Digest manifest_digest, wire::digest_from_hex(digest_hex));
   blobs.touch(manifest_digest);
   for (const BlobRef& ref : refs) {
     blobs.touch(ref.digest);

@@ -4,6 +4,7 @@
 
 #include "absl/status/status.h"
 #include "coordinator/scheduler/api/job_spec.h"
+#include "coordinator/scheduler/api/sequence_spec.h"
 #include "coordinator/store/blob_store.h"
 #include "renderlib/image/display.h"
 
@@ -13,6 +14,12 @@ namespace bandsaw::coordinator {
 /// FAILED_PRECONDITION: a blob of the package is missing; names the first. DATA_LOSS: the
 /// manifest's file is damaged. Reads the disk, and marks the package's blobs as used.
 absl::Status check_submit(const JobSpec& spec, BlobStore& blobs);
+
+/// INVALID_ARGUMENT: a field is out of range.
+absl::Status check_sequence(const SequenceSpec& spec);
+
+/// Checks a package, as check_submit.
+absl::Status check_package(const DigestHex& manifest, BlobStore& blobs);
 
 /// Returns how the package wants its image displayed; the default if its manifest cannot be read.
 Display display_of(const DigestHex& manifest, BlobSource& blobs);

@@ -16,7 +16,7 @@ constexpr double kMaxInterval_s = 0.9;
 bool changed(const JobView& a, const JobView& b) {
   return a.state != b.state || a.reason != b.reason || a.samples_done != b.samples_done ||
          a.samples_per_pixel != b.samples_per_pixel || a.error != b.error ||
-         a.counters != b.counters || a.workers_used != b.workers_used ||
+         a.counters != b.counters || a.frames != b.frames || a.workers_used != b.workers_used ||
          !std::equal(a.workers.begin(), a.workers.end(), b.workers.begin(), b.workers.end(),
                      [](const JobWorkerView& v, const JobWorkerView& w) {
                        return v.name == w.name && v.rows == w.rows && v.state == w.state;

@@ -20,6 +20,7 @@ Scheduler::Scheduler(SchedulerOptions options)
       dispatcher_(context_, ledger_, eligibility_, chooser_, audits_, planner_),
       lifecycle_(context_, ledger_, planner_, audits_),
       requests_(context_, ledger_, planner_, lifecycle_),
+      sequences_(context_, requests_, lifecycle_),
       bands_(context_, ledger_),
       crashes_(context_, eligibility_, lifecycle_),
       failures_(context_, ledger_, eligibility_, audits_, barrier_, lifecycle_),
@@ -27,7 +28,7 @@ Scheduler::Scheduler(SchedulerOptions options)
       quarantine_(context_, ledger_, sessions_),
       comparison_(context_, ledger_, quarantine_),
       views_(context_, eligibility_, audits_, barrier_, sessions_),
-      restart_(context_, barrier_, planner_, lifecycle_, bands_, comparison_) {}
+      restart_(context_, barrier_, planner_, lifecycle_, bands_, comparison_, sequences_) {}
 
 Step Scheduler::step(const Input& input, Time now) {
   context_.clock.advance(now);
@@ -35,9 +36,10 @@ Step Scheduler::step(const Input& input, Time now) {
   return finish_step();
 }
 
-/// Revokes the leases that the input has ended, grants leases to the workers, and revokes the
-/// leases that this has ended.
+/// Continues the sequences, revokes the leases that the input has ended, grants leases to the
+/// workers, and revokes the leases that this has ended.
 Step Scheduler::finish_step() {
+  sequences_.advance();
   context_.flush_revocations();
   if (!barrier_.active()) {
     dispatcher_.assign();
@@ -59,6 +61,7 @@ void Scheduler::on(const input::Tick&) {
     lifecycle_.note_time(job);
     failures_.check_renderable(job);
   }
+  sequences_.note_times();
 }
 
 /// First compares the result with the stored digests of its rows, which may show that the sending
@@ -144,6 +147,9 @@ std::vector<Record> Scheduler::snapshot() const { return coordinator::snapshot(c
 std::optional<JobView> Scheduler::job(JobId id, Time now) const { return views_.job(id, now); }
 std::vector<std::string> Scheduler::why(JobId id, Time now) const { return views_.why(id, now); }
 std::vector<JobView> Scheduler::jobs(Time now) const { return views_.jobs(now); }
+std::optional<std::vector<FrameView>> Scheduler::frames(JobId id, std::uint64_t after) const {
+  return views_.frames(id, after);
+}
 std::vector<WorkerView> Scheduler::workers(Time now) const { return views_.workers(now); }
 
 std::optional<std::string> Scheduler::broken_invariant() const {

@@ -22,6 +22,7 @@
 #include "coordinator/scheduler/dispatch/pass_planner.h"
 #include "coordinator/scheduler/jobs/job_lifecycle.h"
 #include "coordinator/scheduler/jobs/job_requests.h"
+#include "coordinator/scheduler/jobs/sequences.h"
 #include "coordinator/scheduler/jobs/stored_bands.h"
 #include "coordinator/scheduler/liveness/band_failures.h"
 #include "coordinator/scheduler/liveness/crash_attribution.h"
@@ -64,7 +65,13 @@ class Scheduler {
   std::optional<JobView> job(JobId id, Time now) const;
   /// Returns why a job is not done yet, in sentences, the most important first; empty: no such job.
   std::vector<std::string> why(JobId id, Time now) const;
-  std::vector<JobView> jobs(Time now) const;        ///< by id
+  std::vector<JobView> jobs(Time now) const;  ///< by id; without frame jobs
+  /// Returns the frames of a sequence that changed after `after` (FrameView::changed), ascending.
+  /// std::nullopt: there is no such sequence.
+  std::optional<std::vector<FrameView>> frames(JobId id, std::uint64_t after) const;
+  /// Returns all jobs and sequences with what must be kept for them; frame jobs of a known sequence
+  /// belong to it.
+  std::vector<KeptJob> kept() const { return views_.kept(); }
   std::vector<WorkerView> workers(Time now) const;  ///< by name
 
   /// Returns a sentence about the first invariant that does not hold; std::nullopt: all hold. For
@@ -73,11 +80,25 @@ class Scheduler {
 
  private:
   void on(const input::Submit& in) { requests_.submit(in); }
-  void on(const input::Cancel& in) { requests_.cancel(in); }
-  void on(const input::Pause& in) { requests_.pause(in); }
-  void on(const input::Resume& in) { requests_.resume(in); }
-  void on(const input::SetPriority& in) { requests_.set_priority(in); }
-  void on(const input::Forget& in) { requests_.forget(in); }
+  void on(const input::SubmitSequence& in) { sequences_.submit(in); }
+  void on(const input::AddFrames& in) { sequences_.add_frames(in); }
+  void on(const input::RetryFrames& in) { sequences_.retry(in); }
+  void on(const input::Cancel& in) {
+    sequences_.owns(in.job) ? sequences_.cancel(in) : requests_.cancel(in);
+  }
+  void on(const input::Pause& in) {
+    sequences_.owns(in.job) ? sequences_.pause(in) : requests_.pause(in);
+  }
+  void on(const input::Resume& in) {
+    sequences_.owns(in.job) ? sequences_.resume(in) : requests_.resume(in);
+  }
+  void on(const input::SetPriority& in) {
+    sequences_.owns(in.job) ? sequences_.set_priority(in) : requests_.set_priority(in);
+  }
+  void on(const input::Forget& in) {
+    requests_.forget(in);
+    sequences_.forget(in);
+  }
   void on(const input::Hello& in) { sessions_.hello(in); }
   void on(const input::Heartbeat& in) { sessions_.heartbeat(in); }
   void on(const input::Draining& in) { sessions_.draining(in); }
@@ -105,6 +126,7 @@ class Scheduler {
   Dispatcher dispatcher_;
   JobLifecycle lifecycle_;
   JobRequests requests_;
+  Sequences sequences_;
   StoredBands bands_;
   CrashAttribution crashes_;
   BandFailures failures_;

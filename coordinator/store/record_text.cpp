@@ -141,6 +141,12 @@ Record read_record(absl::string_view kind, FieldReader& in) {
   if (kind == "job_forgotten") {
     return record::JobForgotten{.job = in.number("job")};
   }
+  if (kind == "sequence_added") {
+    return read_sequence(in);
+  }
+  if (kind == "frame_waits") {
+    return read_frame(in);
+  }
   if (kind == "worker_joined") {
     return record::WorkerJoined{.instance = in.text("instance")};
   }
@@ -221,6 +227,14 @@ RecordText to_text(const Record& record) {
                             [&](const record::JobForgotten& r) {
                               out.number("job", r.job);
                               return "job_forgotten";
+                            },
+                            [&](const record::SequenceAdded& r) {
+                              write_sequence(out, r);
+                              return "sequence_added";
+                            },
+                            [&](const record::FrameWaits& r) {
+                              write_frame(out, r);
+                              return "frame_waits";
                             },
                             [&](const record::WorkerJoined& r) {
                               out.text("instance", r.instance);

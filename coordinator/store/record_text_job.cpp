@@ -1,8 +1,11 @@
 #include "coordinator/store/record_text_job.h"
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "coordinator/scheduler/api/frame_numbers.h"
 #include "renderlib/scene/guide_integrators.h"
 
 namespace bandsaw::coordinator {
@@ -54,19 +57,38 @@ RenderSettings read_settings(FieldReader& in) {
                             : Integrator::kPath};
 }
 
+void write_settings(FieldWriter& out, const RenderSettings& settings) {
+  out.number("width", settings.width);
+  out.number("height", settings.height);
+  out.number("max_depth", settings.max_depth);
+  out.number("seed", settings.seed);
+  out.number("integrator", static_cast<std::uint64_t>(settings.integrator));
+}
+
+/// Frame numbers are stored with an offset, because fields hold no signed numbers.
+void write_number(FieldWriter& out, FrameNumber number) {
+  out.number("frame_plus_most", static_cast<std::uint64_t>(number + kMaxFrameNumber));
+}
+
+FrameNumber read_number(FieldReader& in) {
+  return static_cast<FrameNumber>(
+             in.number("frame_plus_most", static_cast<std::uint64_t>(2 * kMaxFrameNumber))) -
+         kMaxFrameNumber;
+}
+
 }  // namespace
 
 void write_job(FieldWriter& out, const record::JobAdded& added) {
   out.number("job", added.job);
   out.number("pixel_version", added.pixel_version);
+  if (added.spec.sequence != 0) {
+    out.number("sequence", added.spec.sequence);
+    write_number(out, added.spec.frame);
+  }
   out.text("request_id", added.spec.request_id);
   out.text("name", added.spec.name);
   out.text("manifest", added.spec.manifest);
-  out.number("width", added.spec.settings.width);
-  out.number("height", added.spec.settings.height);
-  out.number("max_depth", added.spec.settings.max_depth);
-  out.number("seed", added.spec.settings.seed);
-  out.number("integrator", static_cast<std::uint64_t>(added.spec.settings.integrator));
+  write_settings(out, added.spec.settings);
   write_stop(out, added.spec.stop);
 }
 
@@ -74,13 +96,18 @@ record::JobAdded read_job(FieldReader& in) {
   const JobId job = in.number("job");
   const std::uint64_t version =
       in.next_is("pixel_version") ? in.number("pixel_version", UINT32_MAX) : 0;
-  return {.job = job,
-          .spec = {.request_id = in.text("request_id"),
-                   .name = in.text("name"),
-                   .manifest = in.text("manifest"),
-                   .settings = read_settings(in),
-                   .stop = read_stop(in)},
-          .pixel_version = static_cast<std::uint32_t>(version)};
+  JobSpec spec;
+  if (in.next_is("sequence")) {
+    spec.sequence = in.number("sequence");
+    spec.frame = read_number(in);
+  }
+  spec.request_id = in.text("request_id");
+  spec.name = in.text("name");
+  spec.manifest = in.text("manifest");
+  spec.settings = read_settings(in);
+  spec.stop = read_stop(in);
+  return {
+      .job = job, .spec = std::move(spec), .pixel_version = static_cast<std::uint32_t>(version)};
 }
 
 void write_tiles(FieldWriter& out, const record::TilesPlanned& r) {
@@ -97,6 +124,52 @@ record::TilesPlanned read_tiles(FieldReader& in) {
     in.refuse("field 'levels': must be digits 0 to f");
   }
   return planned;
+}
+
+void write_sequence(FieldWriter& out, const record::SequenceAdded& added) {
+  out.number("job", added.job);
+  out.number("pixel_version", added.pixel_version);
+  out.text("request_id", added.spec.request_id);
+  out.text("name", added.spec.name);
+  write_settings(out, added.spec.settings);
+  write_stop(out, added.spec.stop);
+  out.number("fixed_seed", added.spec.fixed_seed ? 1 : 0);
+  out.text("frames", frames_text(added.spec.frames));
+}
+
+record::SequenceAdded read_sequence(FieldReader& in) {
+  record::SequenceAdded added{
+      .job = in.number("job"),
+      .spec = {},
+      .pixel_version = static_cast<std::uint32_t>(in.number("pixel_version", UINT32_MAX))};
+  added.spec.request_id = in.text("request_id");
+  added.spec.name = in.text("name");
+  added.spec.settings = read_settings(in);
+  added.spec.stop = read_stop(in);
+  added.spec.fixed_seed = in.number("fixed_seed", 1) == 1;
+  absl::StatusOr<std::vector<FrameNumber>> frames = parse_frames(in.text("frames"));
+  if (frames.ok()) {
+    added.spec.frames = *std::move(frames);
+  } else {
+    in.refuse(absl::StrCat("field 'frames': ", frames.status().message()));
+  }
+  return added;
+}
+
+void write_frame(FieldWriter& out, const record::FrameWaits& r) {
+  out.number("job", r.job);
+  write_number(out, r.frame);
+  out.text("manifest", r.manifest);
+  out.number("failures", r.failures);
+  out.text("reason", r.reason);
+}
+
+record::FrameWaits read_frame(FieldReader& in) {
+  return {.job = in.number("job"),
+          .frame = read_number(in),
+          .manifest = in.text("manifest"),
+          .failures = static_cast<std::uint32_t>(in.number("failures", UINT32_MAX)),
+          .reason = in.text("reason")};
 }
 
 }  // namespace bandsaw::coordinator

@@ -1,6 +1,7 @@
 #pragma once
 
-// A job's specification, and the plan of an adaptive job, as fields (record_text.h).
+// The specification of a job or sequence, the plan of an adaptive job, and the scene of a frame, as
+// fields (record_text.h).
 
 #include "coordinator/scheduler/api/messages.h"
 #include "coordinator/store/fields.h"
@@ -13,5 +14,12 @@ record::JobAdded read_job(FieldReader& in);
 void write_tiles(FieldWriter& out, const record::TilesPlanned& r);
 /// Reports an error in `in` if a level is not a digit.
 record::TilesPlanned read_tiles(FieldReader& in);
+
+void write_sequence(FieldWriter& out, const record::SequenceAdded& added);
+/// Reports an error in `in` if the frames are not what parse_frames reads.
+record::SequenceAdded read_sequence(FieldReader& in);
+
+void write_frame(FieldWriter& out, const record::FrameWaits& r);
+record::FrameWaits read_frame(FieldReader& in);
 
 }  // namespace bandsaw::coordinator

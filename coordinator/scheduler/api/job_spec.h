@@ -43,6 +43,8 @@ struct JobSpec {
   DigestHex manifest;
   RenderSettings settings;
   StopRule stop;
+  JobId sequence = 0;     ///< the sequence of a frame job (sequence_spec.h); 0: none
+  FrameNumber frame = 0;  ///< of the sequence
   /// Returns true if a band labelled with the hash `work` (render/work_hash.h) can belong to this
   /// job. The job id alone does not tell, because ids are reused after the data folder is reset.
   /// 0: the band is not labelled, and is accepted.

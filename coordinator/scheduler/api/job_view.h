@@ -9,6 +9,7 @@
 #include "coordinator/scheduler/api/error_curve.h"
 #include "coordinator/scheduler/api/ids.h"
 #include "coordinator/scheduler/api/job_spec.h"
+#include "coordinator/scheduler/api/sequence_spec.h"
 #include "renderlib/render/band.h"
 
 namespace bandsaw::coordinator {
@@ -56,6 +57,17 @@ struct JobView {
   std::vector<JobWorkerView> workers;
   ErrorCurve curve;                 ///< empty in lists of jobs
   std::vector<WorkerShare> shares;  ///< of a final job; empty in lists of jobs
+  FrameCounts frames;               ///< of a sequence; of other jobs all 0
+  /// Returns true if this is a sequence.
+  bool has_frames() const { return frames.all() > 0; }
+};
+
+/// What must be kept for a job.
+struct KeptJob {
+  JobId id = 0;
+  bool final = false;
+  std::vector<DigestHex> manifests;  ///< of its packages
+  std::vector<JobId> frame_jobs;     ///< of a sequence; their files belong to it
 };
 
 struct WorkerView {

@@ -55,6 +55,22 @@ struct Submit {
   JobSpec spec;
   std::int32_t priority = 0;  ///< [-kMaxPriority, kMaxPriority]; used only if the job is new
 };
+/// REQUIRES: the settings are in range, and the frames are what parse_frames returns.
+struct SubmitSequence {
+  SequenceSpec spec;
+  std::int32_t priority = 0;  ///< as in Submit
+};
+/// The scenes of frames. A frame whose scene is known already keeps it. REQUIRES: all blobs of the
+/// packages are stored.
+struct AddFrames {
+  JobId job = 0;
+  std::vector<FrameScene> scenes;
+};
+/// Renders failed frames again, whatever the state of the sequence, unless it was cancelled.
+struct RetryFrames {
+  JobId job = 0;
+  std::vector<FrameNumber> frames;  ///< empty: all that failed
+};
 /// Stops leasing the job, revokes leases that are not begun at once, and revokes those that are not
 /// rendered one second later.
 struct Pause {
@@ -155,11 +171,12 @@ struct Tick {};
 }  // namespace input
 
 using Input =
-    std::variant<input::Submit, input::Cancel, input::Pause, input::Resume, input::SetPriority,
-                 input::Hello, input::Heartbeat, input::Draining, input::SessionEnded,
-                 input::BandFailed, input::BandStored, input::PassMerged, input::ResultWritten,
-                 input::BandsDamaged, input::StorageFailed, input::StorageBack, input::Quarantine,
-                 input::LiftQuarantine, input::Forget, input::Tick>;
+    std::variant<input::Submit, input::SubmitSequence, input::AddFrames, input::RetryFrames,
+                 input::Cancel, input::Pause, input::Resume, input::SetPriority, input::Hello,
+                 input::Heartbeat, input::Draining, input::SessionEnded, input::BandFailed,
+                 input::BandStored, input::PassMerged, input::ResultWritten, input::BandsDamaged,
+                 input::StorageFailed, input::StorageBack, input::Quarantine, input::LiftQuarantine,
+                 input::Forget, input::Tick>;
 
 // ---- actions ----
 namespace action {

@@ -12,6 +12,7 @@
 #include "coordinator/scheduler/api/ids.h"
 #include "coordinator/scheduler/api/job_spec.h"
 #include "coordinator/scheduler/api/job_view.h"
+#include "coordinator/scheduler/api/sequence_spec.h"
 #include "renderlib/render/adaptive_plan.h"
 #include "renderlib/render/band.h"
 
@@ -39,6 +40,8 @@ struct SamplesFixed {
   JobId job = 0;
   std::uint64_t samples = 0;
 };
+/// Also of a sequence, as the four records of the same kind: PriorityChanged, HoldChanged,
+/// TimeSpent and JobForgotten.
 struct StateChanged {
   JobId job = 0;
   JobState state = JobState::kRunning;
@@ -125,6 +128,20 @@ struct WorkerQuarantined {
 struct QuarantineLifted {
   std::string name;
 };
+struct SequenceAdded {
+  JobId job = 0;
+  SequenceSpec spec;
+  std::uint32_t pixel_version = 0;  ///< of the coordinator at that time
+};
+/// The frame waits to be rendered: its scene has arrived, or it is to be tried again. Its earlier
+/// frame job, if any, no longer belongs to it.
+struct FrameWaits {
+  JobId job = 0;
+  FrameNumber frame = 0;
+  DigestHex manifest;
+  std::uint32_t failures = 0;  ///< of its jobs so far
+  std::string reason;          ///< of the last failure
+};
 }  // namespace record
 
 using Record =
@@ -133,6 +150,7 @@ using Record =
                  record::TimeSpent, record::JobSummary, record::ErrorMeasured, record::ShareCounted,
                  record::FailureLog, record::JobForgotten, record::WorkerJoined, record::WorkerLeft,
                  record::BandAudited, record::BandLost, record::ErrorForgotten,
-                 record::WorkerQuarantined, record::QuarantineLifted>;
+                 record::WorkerQuarantined, record::QuarantineLifted, record::SequenceAdded,
+                 record::FrameWaits>;
 
 }  // namespace bandsaw::coordinator

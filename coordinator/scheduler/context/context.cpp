@@ -46,7 +46,12 @@ void Context::apply(const Record& record) {
   std::visit([this](const auto& r) { apply(r); }, record);
 }
 
-void Context::apply(const record::JobAdded& r) { jobs.add(r.job, r.spec, r.pixel_version); }
+void Context::apply(const record::JobAdded& r) {
+  jobs.add(r.job, r.spec, r.pixel_version);
+  if (Sequence* sequence = sequences.find(r.spec.sequence)) {
+    sequence->start(r.spec.frame, r.job);
+  }
+}
 
 void Context::apply(const record::PassPlanned& r) {
   Job* job = jobs.find(r.job);
@@ -70,19 +75,43 @@ void Context::apply(const record::SamplesFixed& r) {
 }
 
 void Context::apply(const record::StateChanged& r) {
+  const auto forget_rates = [&] {
+    for (auto& [id, worker] : workers.all()) {
+      worker.on_job.erase(r.job);
+    }
+  };
+  if (Sequence* sequence = sequences.find(r.job)) {
+    if (is_final(sequence->state)) {  // failed frames are tried again
+      sequence->elapsed_before = sequence->elapsed_noted;
+      sequence->first_lease_at.reset();
+    }
+    sequence->state = r.state;
+    sequence->reason = r.reason;
+    sequences.set_active(r.job, !is_final(r.state));
+    if (is_final(r.state)) {
+      forget_rates();
+    }
+    return;
+  }
   Job* job = jobs.find(r.job);
   if (job == nullptr || is_final(job->state)) {
     return;
   }
+  Sequence* sequence = sequences.find(job->spec.sequence);
   if (is_final(r.state)) {
+    if (sequence != nullptr && r.state == JobState::kDone && job->work_rate.measured()) {
+      sequence->cost = job->cost;
+      sequence->work_rate = job->work_rate;
+    }
     job->drop_details();
     jobs.set_final(r.job);
-    for (auto& [id, worker] : workers.all()) {
-      worker.on_job.erase(r.job);
-    }
+    forget_rates();
   }
   job->state = r.state;
   job->reason = r.reason;
+  if (sequence != nullptr && is_final(r.state)) {
+    sequence->end(*job);
+  }
   if (r.state != JobState::kRunning) {
     jobs.unmark_leasable(*job);
   }
@@ -91,6 +120,8 @@ void Context::apply(const record::StateChanged& r) {
 void Context::apply(const record::PriorityChanged& r) {
   if (Job* job = jobs.find(r.job)) {
     jobs.set_priority(*job, r.priority);
+  } else if (Sequence* sequence = sequences.find(r.job)) {
+    sequence->priority = r.priority;
   }
 }
 
@@ -98,12 +129,16 @@ void Context::apply(const record::HoldChanged& r) {
   if (Job* job = jobs.find(r.job)) {
     job->held = r.held;
     job->held_at = clock.patience();
+  } else if (Sequence* sequence = sequences.find(r.job)) {
+    sequence->held = r.held;
   }
 }
 
 void Context::apply(const record::TimeSpent& r) {
   if (Job* job = jobs.find(r.job)) {
     job->elapsed_noted = r.elapsed_s;
+  } else if (Sequence* sequence = sequences.find(r.job)) {
+    sequence->elapsed_noted = r.elapsed_s;
   }
 }
 
@@ -133,7 +168,10 @@ void Context::apply(const record::FailureLog& r) {
   }
 }
 
-void Context::apply(const record::JobForgotten& r) { jobs.remove(r.job); }
+void Context::apply(const record::JobForgotten& r) {
+  sequences.remove(r.job);
+  jobs.remove(r.job);
+}
 void Context::apply(const record::WorkerJoined& r) { joined.insert(r.instance); }
 void Context::apply(const record::WorkerLeft& r) { joined.erase(r.instance); }
 
@@ -166,5 +204,16 @@ void Context::apply(const record::WorkerQuarantined& r) {
   quarantine.add(r.process, r.name, r.reason);
 }
 void Context::apply(const record::QuarantineLifted& r) { quarantine.lift(r.name); }
+
+void Context::apply(const record::SequenceAdded& r) {
+  sequences.add(r.job, r.spec, r.pixel_version);
+  jobs.use(r.job);
+}
+
+void Context::apply(const record::FrameWaits& r) {
+  if (Sequence* sequence = sequences.find(r.job)) {
+    sequence->wait(r.frame, r.manifest, r.failures, r.reason);
+  }
+}
 
 }  // namespace bandsaw::coordinator

@@ -15,6 +15,7 @@
 #include "coordinator/scheduler/context/leases.h"
 #include "coordinator/scheduler/context/quarantine_list.h"
 #include "coordinator/scheduler/context/scheduler_clock.h"
+#include "coordinator/scheduler/context/sequence_table.h"
 #include "coordinator/scheduler/context/workers.h"
 
 namespace bandsaw::coordinator {
@@ -62,6 +63,7 @@ class Context {
   const SchedulerOptions options;
   SchedulerClock clock;
   JobTable jobs;
+  SequenceTable sequences;
   Workers workers;
   AvailableWorkers available;
   Leases leases;
@@ -89,6 +91,8 @@ class Context {
   void apply(const record::ErrorForgotten& r);
   void apply(const record::WorkerQuarantined& r);
   void apply(const record::QuarantineLifted& r);
+  void apply(const record::SequenceAdded& r);
+  void apply(const record::FrameWaits& r);
 
   Step step_;
   std::map<SessionId, std::vector<LeaseId>> revoked_;

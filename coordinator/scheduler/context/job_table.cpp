@@ -1,7 +1,5 @@
 #include "coordinator/scheduler/context/job_table.h"
 
-#include <algorithm>
-
 namespace bandsaw::coordinator {
 
 Job* JobTable::find(JobId id) {
@@ -23,7 +21,7 @@ void JobTable::add(JobId id, const JobSpec& spec, std::uint32_t pixel_version) {
   all_.emplace(id, Job(id, spec, pixel_version));
   by_request_[spec.request_id] = id;
   active_.insert(id);
-  next_id_ = std::max(next_id_, id + 1);
+  use(id);
 }
 
 void JobTable::remove(JobId id) {
@@ -32,7 +30,7 @@ void JobTable::remove(JobId id) {
     active_.erase(id);
     all_.erase(id);
   }
-  next_id_ = std::max(next_id_, id + 1);
+  use(id);
 }
 
 void JobTable::set_priority(Job& job, std::int32_t priority) {

@@ -2,12 +2,12 @@
 
 // All known jobs, and which of them are active and leasable.
 
+#include <compare>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
-#include <utility>
 
 #include "coordinator/scheduler/model/job.h"
 
@@ -15,9 +15,17 @@ namespace bandsaw::coordinator {
 
 class JobTable {
  public:
-  /// Order in which jobs are leased: the highest priority, then the lowest id.
-  using Rank = std::pair<std::int32_t, JobId>;
-  static Rank rank(const Job& job) { return {-job.priority, job.id}; }
+  /// Order in which jobs are leased: the highest priority, then the lowest id. Frame jobs have the
+  /// place of their sequence, in the order of their ids.
+  struct Rank {
+    std::int32_t descending_priority = 0;
+    JobId place = 0;  ///< of the job, or of its sequence
+    JobId job = 0;
+    friend auto operator<=>(const Rank&, const Rank&) = default;
+  };
+  static Rank rank(const Job& job) {
+    return {-job.priority, job.spec.sequence == 0 ? job.id : job.spec.sequence, job.id};
+  }
 
   Job* find(JobId id);
   const Job* find(JobId id) const;
@@ -31,6 +39,8 @@ class JobTable {
   JobId next_id() const { return next_id_; }
 
   void add(JobId id, const JobSpec& spec, std::uint32_t pixel_version);
+  /// Marks an id as used by something else than a job.
+  void use(JobId id) { next_id_ = next_id_ > id ? next_id_ : id + 1; }
   /// Removes a job. If the job is unknown, only marks its id as used.
   void remove(JobId id);
   void set_priority(Job& job, std::int32_t priority);

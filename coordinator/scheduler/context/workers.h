@@ -41,7 +41,8 @@ struct Worker {
   std::set<LeaseId> revoked;
   MeanRate speed;  ///< pixel samples per second, for display
 
-  /// Statistics of one job that is not final.
+  /// Statistics of one job that is not final. Those of a sequence hold the work rate only, with
+  /// which its next frame job begins.
   struct OnJob {
     MeanRate speed;              ///< pixel samples per second, for display
     MeanRate work_rate;          ///< work per second (CostMap), by which bands are sized

@@ -127,7 +127,8 @@ Band size_band(const Sizing& sizing) {
 }
 
 std::optional<Band> BandChooser::choose(Job& job, const Worker& worker) const {
-  const auto probe = next_probe(job, worker);
+  // The time of a sequence is predicted from its frames, so that these need no probes.
+  const auto probe = job.spec.sequence == 0 ? next_probe(job, worker) : std::nullopt;
   return probe ? cut(job, worker, *probe) : choose_free(job, worker);
 }
 
@@ -168,18 +169,18 @@ std::optional<Band> BandChooser::next_probe(Job& job, const Worker& worker) cons
 }
 
 Band BandChooser::sized(const Job& job, const Worker& worker, const Band& free) const {
-  const auto own = worker.on_job.find(job.id);
   Sizing sizing;
   sizing.free = free;
   sizing.width = job.spec.settings.width;
   sizing.cost = &job.cost;
   sizing.tile_row_shares = job.pass_of(free)->tile_row_shares;
   sizing.work_rate = work_rate(worker, job);
-  sizing.measured = own != worker.on_job.end() && own->second.work_rate.measured();
+  sizing.measured = has_work_rate(worker, job);
   const double farm =
       std::max(sizing.work_rate,
                work_rate_per_thread(job) * static_cast<double>(context_.available.threads()));
-  sizing.farm_share = sizing.work_rate / farm;
+  // Twice the share of a job with a single worker: then nothing is left for others.
+  sizing.farm_share = job.alone ? 2 : sizing.work_rate / farm;
   sizing.work_left = std::max(work_left(job, free), job.cost_of(free));
   sizing.target_s = context_.options.band_target_s;
   return size_band(sizing);

@@ -22,7 +22,7 @@ struct Sizing {
   absl::Span<const float> tile_row_shares = {};  ///< as in CostMap::of
   double work_rate = 0;   ///< of the worker on this job, work per second, > 0
   bool measured = false;  ///< false: the rate is a guess; the band is small, to measure it
-  double farm_share = 1;  ///< the worker's share of the farm's work rate, (0, 1]
+  double farm_share = 1;  ///< the worker's share of the farm's work rate, (0, 1]; 2: all is its own
   double work_left = 0;   ///< of the job, not leased or stored
   double target_s = 1;    ///< > 0
 };

@@ -1,6 +1,7 @@
 #include "coordinator/scheduler/dispatch/dispatcher.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace bandsaw::coordinator {
 
@@ -21,35 +22,64 @@ void Dispatcher::lease_free() {
   }
 }
 
-/// Grants the worker one lease, if there is one for it. A suspect band is given only to a worker
-/// that holds nothing else: if that worker is lost as well, the crash is attributed to the band.
+/// Grants the worker one lease, if there is one for it.
 void Dispatcher::lease_to(Worker& worker) {
   if (holds_suspect(worker)) {
     return;
   }
   const auto& leasable = context_.jobs.leasable();
   for (auto it = leasable.begin(); it != leasable.end();) {
-    Job& job = context_.jobs.at(it->second);
-    ++it;
-    if (!job.any_free() && !planner_.plan_timed(job) && !job.audit_waits()) {
-      context_.jobs.unmark_leasable(job);
-      continue;
-    }
-    if (!eligibility_.may_render(worker, job)) {
-      continue;
-    }
-    if (Audit* audit = audits_.next_for(worker, job)) {
-      audits_.grant(worker, job, *audit, chooser_.sized(job, worker, audit->band()).rows.last);
+    const JobTable::Rank rank = *it;
+    Job& job = context_.jobs.at(rank.job);
+    const Sequence* sequence = context_.sequences.find(job.spec.sequence);
+    if (sequence == nullptr ? offer(worker, job) : offer_frames(worker, *sequence)) {
       return;
     }
-    if (const auto band = chooser_.choose(job, worker)) {
-      const bool holds_nothing = worker.leases.empty() && worker.revoked.empty();
-      if (holds_nothing || !job.is_suspect(*band)) {
-        ledger_.grant(worker, job, *job.pass_of(*band), *band, context_.leases.new_id());
+    it = sequence == nullptr ? leasable.upper_bound(rank)
+                             : leasable.upper_bound({rank.descending_priority, rank.place,
+                                                     std::numeric_limits<JobId>::max()});
+  }
+}
+
+/// Offers a worker the frames of a sequence, which are neighbours in the order of jobs. Returns as
+/// `offer`.
+bool Dispatcher::offer_frames(Worker& worker, const Sequence& sequence) {
+  for (Job* job : frames_.order_for(worker, sequence)) {
+    const std::size_t before = worker.leases.size();
+    if (offer(worker, *job)) {
+      if (worker.leases.size() > before) {
+        frames_.joined(worker, *job);
       }
-      return;
+      return true;
     }
   }
+  return false;
+}
+
+/// Returns false if the job has nothing for this worker. Otherwise grants it a lease, except of a
+/// suspect band that it cannot be given now: a suspect band is given only to a worker that holds
+/// nothing else, because if that worker is lost as well, the crash is attributed to the band.
+bool Dispatcher::offer(Worker& worker, Job& job) {
+  if (!job.any_free() && !planner_.plan_timed(job) && !job.audit_waits()) {
+    context_.jobs.unmark_leasable(job);
+    return false;
+  }
+  if (!eligibility_.may_render(worker, job)) {
+    return false;
+  }
+  if (Audit* audit = audits_.next_for(worker, job)) {
+    audits_.grant(worker, job, *audit, chooser_.sized(job, worker, audit->band()).rows.last);
+    return true;
+  }
+  const auto band = chooser_.choose(job, worker);
+  if (!band) {
+    return false;
+  }
+  const bool holds_nothing = worker.leases.empty() && worker.revoked.empty();
+  if (holds_nothing || !job.is_suspect(*band)) {
+    ledger_.grant(worker, job, *job.pass_of(*band), *band, context_.leases.new_id());
+  }
+  return true;
 }
 
 bool Dispatcher::holds_suspect(const Worker& worker) const {

@@ -8,6 +8,7 @@
 #include "coordinator/scheduler/dispatch/backup_tasks.h"
 #include "coordinator/scheduler/dispatch/band_chooser.h"
 #include "coordinator/scheduler/dispatch/eligibility.h"
+#include "coordinator/scheduler/dispatch/frame_chooser.h"
 #include "coordinator/scheduler/dispatch/lease_ledger.h"
 #include "coordinator/scheduler/dispatch/pass_planner.h"
 
@@ -23,7 +24,8 @@ class Dispatcher {
         chooser_(chooser),
         audits_(audits),
         planner_(planner),
-        backups_(context, ledger, eligibility, chooser, audits) {}
+        backups_(context, ledger, eligibility, chooser, audits),
+        frames_(context) {}
 
   /// Grants leases until no worker can be given more.
   void assign();
@@ -31,6 +33,8 @@ class Dispatcher {
  private:
   void lease_free();
   void lease_to(Worker& worker);
+  bool offer(Worker& worker, Job& job);
+  bool offer_frames(Worker& worker, const Sequence& sequence);
   bool holds_suspect(const Worker& worker) const;
 
   Context& context_;
@@ -40,6 +44,7 @@ class Dispatcher {
   AuditLeases& audits_;
   PassPlanner& planner_;
   BackupTasks backups_;
+  FrameChooser frames_;
 };
 
 }  // namespace bandsaw::coordinator

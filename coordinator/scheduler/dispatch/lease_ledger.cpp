@@ -25,6 +25,10 @@ void LeaseLedger::add(Worker& worker, Job& job, const Pass& pass, Lease lease) {
     job.first_lease_at = clock.wall();
     job.throughput.start(clock.wall());
   }
+  if (Sequence* sequence = context_.sequences.find(job.spec.sequence);
+      sequence != nullptr && !sequence->first_lease_at) {
+    sequence->first_lease_at = clock.wall();
+  }
   const auto returned = pass.returned.find({lease.band.samples.first, lease.band.rows.first});
   const std::uint32_t attempt = returned == pass.returned.end() ? 1 : 1 + returned->second;
   context_.act(action::Lease{*worker.session, lease.id, job.id, job.spec.manifest,

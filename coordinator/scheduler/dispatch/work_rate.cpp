@@ -27,6 +27,21 @@ void measure_work_rate(Worker& worker, Job& job, const input::BandStored& in) {
   }
   on_job.work_rate.measure(work / in.render_s, std::max(kMinWeight, 1.0 / (2 + on_job.bands++)));
   job.work_rate.measure(on_job.work_rate.mean() / worker.threads);
+  if (job.spec.sequence != 0) {
+    worker.on_job[job.spec.sequence].work_rate = on_job.work_rate;
+  }
+}
+
+/// Returns the measured rate of the worker on this job, or else on another frame of its sequence;
+/// nullptr: nothing was measured.
+const MeanRate* measured_rate(const Worker& worker, const Job& job) {
+  for (const JobId id : {job.id, job.spec.sequence}) {
+    const auto on_job = worker.on_job.find(id);
+    if (on_job != worker.on_job.end() && on_job->second.work_rate.measured()) {
+      return &on_job->second.work_rate;
+    }
+  }
+  return nullptr;
 }
 
 }  // namespace
@@ -36,10 +51,12 @@ double work_rate_per_thread(const Job& job) {
 }
 
 double work_rate(const Worker& worker, const Job& job) {
-  const auto on_job = worker.on_job.find(job.id);
-  return on_job != worker.on_job.end() && on_job->second.work_rate.measured()
-             ? on_job->second.work_rate.mean()
-             : work_rate_per_thread(job) * worker.threads;
+  const MeanRate* rate = measured_rate(worker, job);
+  return rate != nullptr ? rate->mean() : work_rate_per_thread(job) * worker.threads;
+}
+
+bool has_work_rate(const Worker& worker, const Job& job) {
+  return measured_rate(worker, job) != nullptr;
 }
 
 void measure(Worker& worker, Job& job, const input::BandStored& in) {

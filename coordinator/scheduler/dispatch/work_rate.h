@@ -12,6 +12,9 @@ namespace bandsaw::coordinator {
 double work_rate_per_thread(const Job& job);
 /// Returns the worker's own work rate on the job; if it has none yet, that of its thread count.
 double work_rate(const Worker& worker, const Job& job);
+/// Returns true if the worker's rate on this job, or on an earlier frame of its sequence, was
+/// measured.
+bool has_work_rate(const Worker& worker, const Job& job);
 /// Updates rates, costs and row times with the render time of a stored band.
 void measure(Worker& worker, Job& job, const input::BandStored& in);
 

@@ -26,14 +26,6 @@ bool in_range(const StopRule& stop) {
   return std::visit(InRange{}, stop);
 }
 
-absl::Status check_priority(std::int32_t priority) {
-  if (priority < -kMaxPriority || priority > kMaxPriority) {
-    return absl::InvalidArgumentError(absl::StrCat("a priority lies in [", -kMaxPriority, ", ",
-                                                   kMaxPriority, "], is ", priority));
-  }
-  return absl::OkStatus();
-}
-
 absl::Status no_such_job(JobId id) {
   return absl::NotFoundError(absl::StrCat("there is no job ", id));
 }
@@ -50,36 +42,53 @@ void JobRequests::submit(const input::Submit& in) {
     }
     return;
   }
-  if (absl::Status status = refusal(in); !status.ok()) {
+  if (absl::Status status = refusal(in.spec.stop, in.spec.settings, in.priority, 1); !status.ok()) {
     context_.answer(std::move(status));
     return;
   }
-  const JobId id = context_.jobs.next_id();
-  context_.answer_job(id);
-  context_.emit(record::JobAdded{id, in.spec, context_.options.compatibility.pixel_version});
-  if (in.priority != 0) {
-    context_.emit(record::PriorityChanged{id, in.priority});
-  }
-  planner_.plan_first(*context_.jobs.find(id));
+  context_.answer_job(add(in.spec, in.priority));
 }
 
-absl::Status JobRequests::refusal(const input::Submit& in) const {
-  if (absl::Status status = check_priority(in.priority); !status.ok()) {
+JobId JobRequests::add(const JobSpec& spec, std::int32_t priority) {
+  const JobId id = context_.jobs.next_id();
+  context_.emit(record::JobAdded{id, spec, context_.options.compatibility.pixel_version});
+  if (priority != 0) {
+    context_.emit(record::PriorityChanged{id, priority});
+  }
+  planner_.plan_first(context_.jobs.at(id));
+  return id;
+}
+
+absl::Status JobRequests::refusal(const StopRule& stop, const RenderSettings& settings,
+                                  std::int32_t priority, std::size_t more) const {
+  if (absl::Status status = check_priority(priority); !status.ok()) {
     return status;
   }
-  if (!in_range(in.spec.stop) || in.spec.settings.width == 0 || in.spec.settings.height == 0) {
+  if (!in_range(stop) || settings.width == 0 || settings.height == 0) {
     return absl::InvalidArgumentError(
         absl::StrCat("the stop rule or the image size is out of range: samples are [1, ",
                      kMaxSamples, "], error and time are above 0, width and height at least 1"));
   }
-  const std::size_t active = context_.jobs.active().size();
-  const std::size_t known = context_.jobs.all().size();
-  if (active >= wire::kActiveJobs || known >= kMaxJobs) {
+  const std::size_t active = context_.jobs.active().size() + context_.sequences.active().size();
+  std::size_t known = context_.jobs.all().size();
+  for (const JobId id : context_.sequences.active()) {
+    const FrameCounts& frames = context_.sequences.at(id).counts();
+    known += frames.of(FrameState::kExpected) + frames.of(FrameState::kWaiting);
+  }
+  if (active >= wire::kActiveJobs || known + more > kMaxJobs) {
     return absl::ResourceExhaustedError(
         absl::StrCat(active, " jobs are not done yet (at most ", wire::kActiveJobs, "), ", known,
                      " are known (at most ", kMaxJobs,
                      "); wait for a job, cancel one, or keep old ones for a shorter time (bandsaw "
                      "serve --keep-days)"));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status JobRequests::check_priority(std::int32_t priority) {
+  if (priority < -kMaxPriority || priority > kMaxPriority) {
+    return absl::InvalidArgumentError(absl::StrCat("a priority lies in [", -kMaxPriority, ", ",
+                                                   kMaxPriority, "], is ", priority));
   }
   return absl::OkStatus();
 }
@@ -108,7 +117,7 @@ Job* JobRequests::find_active(JobId id) {
 }
 
 void JobRequests::pause(const input::Pause& in) {
-  const Job* job = find_active(in.job);
+  Job* job = find_active(in.job);
   if (job == nullptr || job->held) {
     return;
   }
@@ -117,10 +126,14 @@ void JobRequests::pause(const input::Pause& in) {
         absl::StrCat("job ", in.job, " is finishing: all of it is rendered")));
     return;
   }
-  context_.emit(record::HoldChanged{job->id, true});
-  context_.emit(record::StateChanged{job->id, JobState::kPaused, kPausedByUser});
+  hold(*job);
+}
+
+void JobRequests::hold(Job& job) {
+  context_.emit(record::HoldChanged{job.id, true});
+  context_.emit(record::StateChanged{job.id, JobState::kPaused, kPausedByUser});
   std::vector<LeaseId> not_begun;
-  for (const LeaseId id : job->leases) {
+  for (const LeaseId id : job.leases) {
     const Worker& worker = *context_.workers.by_id(context_.leases.find(id)->worker);
     if (worker.leases.front() != id) {
       not_begun.push_back(id);
@@ -130,15 +143,17 @@ void JobRequests::pause(const input::Pause& in) {
 }
 
 void JobRequests::resume(const input::Resume& in) {
-  Job* job = find_active(in.job);
-  if (job == nullptr) {
-    return;
+  if (Job* job = find_active(in.job)) {
+    release(*job);
   }
-  if (job->held) {
-    context_.emit(record::HoldChanged{job->id, false});
+}
+
+void JobRequests::release(Job& job) {
+  if (job.held) {
+    context_.emit(record::HoldChanged{job.id, false});
   }
-  if (job->state == JobState::kPaused) {
-    lifecycle_.resume(*job);
+  if (job.state == JobState::kPaused) {
+    lifecycle_.resume(job);
   }
 }
 
@@ -156,7 +171,9 @@ void JobRequests::set_priority(const input::SetPriority& in) {
 
 void JobRequests::forget(const input::Forget& in) {
   for (const JobId id : in.jobs) {
-    if (const Job* job = context_.jobs.find(id); job != nullptr && is_final(job->state)) {
+    const Job* job = context_.jobs.find(id);
+    if (job != nullptr && is_final(job->state) &&
+        context_.sequences.find(job->spec.sequence) == nullptr) {
       context_.emit(record::JobForgotten{id});
       context_.act(action::DropJob{id});
     }

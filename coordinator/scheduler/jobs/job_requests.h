@@ -26,10 +26,22 @@ class JobRequests {
   void resume(const input::Resume& in);
   /// INVALID_ARGUMENT: out of range.
   void set_priority(const input::SetPriority& in);
+  /// Skips frame jobs of a known sequence, which are forgotten with it.
   void forget(const input::Forget& in);
 
+  // For sequences (sequences.h).
+  static absl::Status check_priority(std::int32_t priority);
+  /// Returns why no more jobs can be taken, `more` of them in all, or why the rule, size or
+  /// priority is refused.
+  absl::Status refusal(const StopRule& stop, const RenderSettings& settings, std::int32_t priority,
+                       std::size_t more) const;
+  /// Adds a job and plans its first passes. REQUIRES: it was not refused.
+  JobId add(const JobSpec& spec, std::int32_t priority);
+  /// Pauses a job for a user, and continues it. REQUIRES: the job is running or paused.
+  void hold(Job& job);
+  void release(Job& job);
+
  private:
-  absl::Status refusal(const input::Submit& in) const;
   Job* find_active(JobId id);
 
   Context& context_;

@@ -147,6 +147,7 @@ class Job {
   RecentRate throughput;               ///< of pixel samples
   CostMap cost;
   RowTimes row_times;
+  bool alone = false;  ///< a frame job that one worker is to render (dispatch/frame_chooser.h)
   std::uint32_t probes = 0;  ///< granted or skipped (dispatch/probes.h)
   MeanRate work_rate;        ///< mean over its workers, per thread (dispatch/work_rate.h)
 

@@ -135,6 +135,38 @@ std::optional<std::string> broken_job(const Context& context, const Job& job) {
   return std::nullopt;
 }
 
+std::optional<std::string> broken_sequence(const Context& context, const Sequence& sequence) {
+  if (is_final(sequence.state) == context.sequences.active().contains(sequence.id)) {
+    return "it is counted as active and final, or as neither";
+  }
+  if (is_final(sequence.state) && !sequence.open_jobs().empty()) {
+    return "it is final and a frame is rendered";
+  }
+  FrameCounts counts;
+  for (const Sequence::Frame& frame : sequence.frames()) {
+    ++counts.in[static_cast<std::size_t>(frame.state)];
+    const Job* job = context.jobs.find(frame.job);
+    const bool known =
+        job != nullptr && job->spec.sequence == sequence.id && job->spec.frame == frame.number;
+    const bool open = sequence.open_jobs().contains(frame.job);
+    const bool right =
+        frame.state == FrameState::kRendering ? known && open && !is_final(job->state)
+        : frame.state == FrameState::kDone    ? known && !open && job->state == JobState::kDone
+        : frame.state == FrameState::kFailed  ? known && !open && is_final(job->state)
+                                              : frame.job == 0;
+    if (!right) {
+      return absl::StrCat("frame ", frame.number, " is ", frame_state_name(frame.state),
+                          " and its job says otherwise");
+    }
+  }
+  const std::size_t over = counts.of(FrameState::kDone) + counts.of(FrameState::kFailed);
+  if (counts != sequence.counts() ||
+      (sequence.state == JobState::kRunning && over == counts.all())) {
+    return "the counts of its frames are wrong, or it runs and all of them are over";
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<std::string> broken_invariant(const Context& context) {
@@ -147,6 +179,11 @@ std::optional<std::string> broken_invariant(const Context& context) {
   for (const auto& [id, job] : context.jobs.all()) {
     if (auto broken = broken_job(context, job)) {
       return absl::StrCat("job ", id, ": ", *broken);
+    }
+  }
+  for (const auto& [id, sequence] : context.sequences.all()) {
+    if (auto broken = broken_sequence(context, sequence)) {
+      return absl::StrCat("sequence ", id, ": ", *broken);
     }
   }
   if (!context.step_is_empty()) {

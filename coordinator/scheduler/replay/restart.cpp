@@ -6,18 +6,6 @@
 #include "absl/strings/str_cat.h"
 
 namespace bandsaw::coordinator {
-namespace {
-
-/// Returns the reason for which a job fails that was begun with another pixel version; 0: the
-/// journal does not say with which.
-std::string other_pixel_version(std::uint32_t begun_with, std::uint32_t here) {
-  const std::string version =
-      begun_with == 0 ? "an earlier pixel version" : absl::StrCat("pixel version ", begun_with);
-  return absl::StrCat("begun with ", version, ", this coordinator has ", here,
-                      ": an image is of one version; submit it again");
-}
-
-}  // namespace
 
 void Restart::add_band(const input::BandStored& band) {
   Job* job = context_.jobs.find(band.job);
@@ -60,6 +48,7 @@ void Restart::compare_duplicates() {
 void Restart::finish() {
   barrier_.begin_after_restart();
   compare_duplicates();
+  sequences_.resume_after_restart();
   for (auto& [id, job] : context_.jobs.all()) {
     resume(job);
   }

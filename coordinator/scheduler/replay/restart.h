@@ -10,6 +10,7 @@
 #include "coordinator/scheduler/context/reconnect_barrier.h"
 #include "coordinator/scheduler/dispatch/pass_planner.h"
 #include "coordinator/scheduler/jobs/job_lifecycle.h"
+#include "coordinator/scheduler/jobs/sequences.h"
 #include "coordinator/scheduler/jobs/stored_bands.h"
 #include "coordinator/scheduler/trust/result_comparison.h"
 
@@ -18,13 +19,15 @@ namespace bandsaw::coordinator {
 class Restart {
  public:
   Restart(Context& context, ReconnectBarrier& barrier, PassPlanner& planner,
-          JobLifecycle& lifecycle, StoredBands& bands, ResultComparison& comparison)
+          JobLifecycle& lifecycle, StoredBands& bands, ResultComparison& comparison,
+          Sequences& sequences)
       : context_(context),
         barrier_(barrier),
         planner_(planner),
         lifecycle_(lifecycle),
         bands_(bands),
-        comparison_(comparison) {}
+        comparison_(comparison),
+        sequences_(sequences) {}
 
   /// Counts a band that was found on disk as stored, unless its worker process is quarantined.
   void add_band(const input::BandStored& band);
@@ -44,6 +47,7 @@ class Restart {
   JobLifecycle& lifecycle_;
   StoredBands& bands_;
   ResultComparison& comparison_;
+  Sequences& sequences_;
   /// Bands with rows that were stored already. They are compared once all bands are replayed,
   /// because the film adds all bands first and processes retractions afterwards.
   std::vector<input::BandStored> duplicates_;

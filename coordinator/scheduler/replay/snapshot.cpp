@@ -55,16 +55,43 @@ void add_job(const Job& job, std::vector<Record>& out) {
   }
 }
 
+/// Appends what MUST precede the sequence's frame jobs.
+void add_sequence(const Sequence& sequence, std::vector<Record>& out) {
+  out.push_back(record::SequenceAdded{sequence.id, sequence.spec, sequence.pixel_version});
+  if (sequence.priority != 0) {
+    out.push_back(record::PriorityChanged{sequence.id, sequence.priority});
+  }
+  if (sequence.held) {
+    out.push_back(record::HoldChanged{sequence.id, true});
+  }
+  for (const Sequence::Frame& frame : sequence.frames()) {
+    if (!frame.manifest.empty()) {
+      out.push_back(record::FrameWaits{sequence.id, frame.number, frame.manifest, frame.failures,
+                                       frame.state == FrameState::kWaiting ? frame.reason : ""});
+    }
+  }
+  if (sequence.elapsed_noted > 0) {
+    out.push_back(record::TimeSpent{sequence.id, sequence.elapsed_noted});
+  }
+  if (sequence.state != JobState::kRunning) {
+    out.push_back(record::StateChanged{sequence.id, sequence.state, sequence.reason});
+  }
+}
+
 }  // namespace
 
 std::vector<Record> snapshot(const Context& context) {
   std::vector<Record> records;
+  for (const auto& [id, sequence] : context.sequences.all()) {
+    add_sequence(sequence, records);
+  }
   for (const auto& [id, job] : context.jobs.all()) {
     add_job(job, records);
   }
   // The last id stays used though its job was forgotten.
-  if (const JobId next = context.jobs.next_id();
-      next > 1 && !context.jobs.all().contains(next - 1)) {
+  if (const JobId next = context.jobs.next_id(); next > 1 &&
+                                                 !context.jobs.all().contains(next - 1) &&
+                                                 context.sequences.find(next - 1) == nullptr) {
     records.push_back(record::JobForgotten{next - 1});
   }
   context.quarantine.add_records(records);

@@ -9,6 +9,7 @@
 #include "absl/strings/str_join.h"
 #include "coordinator/scheduler/model/band_text.h"
 #include "coordinator/scheduler/views/progress.h"
+#include "coordinator/scheduler/views/sequence_views.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -39,8 +40,38 @@ const char* state_of(const Worker& worker) {
 }  // namespace
 
 std::optional<JobView> Views::job(JobId id, Time now) const {
+  if (const Sequence* sequence = context_.sequences.find(id)) {
+    return sequence_view(context_, *sequence, now);
+  }
   const Job* job = context_.jobs.find(id);
   return job == nullptr ? std::nullopt : std::optional(view(*job, now));
+}
+
+std::optional<std::vector<FrameView>> Views::frames(JobId id, std::uint64_t after) const {
+  const Sequence* sequence = context_.sequences.find(id);
+  return sequence == nullptr ? std::nullopt : std::optional(frame_views(*sequence, after));
+}
+
+std::vector<KeptJob> Views::kept() const {
+  std::vector<KeptJob> out;
+  for (const auto& [id, job] : context_.jobs.all()) {
+    if (context_.sequences.find(job.spec.sequence) == nullptr) {
+      out.push_back({id, is_final(job.state), {job.spec.manifest}, {}});
+    }
+  }
+  for (const auto& [id, sequence] : context_.sequences.all()) {
+    KeptJob kept{id, is_final(sequence.state), {}, {}};
+    for (const Sequence::Frame& frame : sequence.frames()) {
+      if (!frame.manifest.empty()) {
+        kept.manifests.push_back(frame.manifest);
+      }
+      if (frame.job != 0) {
+        kept.frame_jobs.push_back(frame.job);
+      }
+    }
+    out.push_back(std::move(kept));
+  }
+  return out;
 }
 
 JobView Views::view(const Job& job, Time now) const {
@@ -82,11 +113,19 @@ JobView Views::view(const Job& job, Time now) const {
 std::vector<JobView> Views::jobs(Time now) const {
   std::vector<JobView> views;
   for (const auto& [id, job] : context_.jobs.all()) {
+    if (context_.sequences.find(job.spec.sequence) != nullptr) {
+      continue;
+    }
     views.push_back(view(job, now));
     views.back().curve.clear();
     views.back().log.clear();
     views.back().shares.clear();
   }
+  for (const auto& [id, sequence] : context_.sequences.all()) {
+    views.push_back(sequence_view(context_, sequence, now));
+  }
+  std::sort(views.begin(), views.end(),
+            [](const JobView& a, const JobView& b) { return a.id < b.id; });
   return views;
 }
 
@@ -191,20 +230,27 @@ std::string Views::busy_with_others(const Job& job) const {
       return "";
     }
     for (const LeaseId lease : worker.leases) {
-      jobs.insert(JobTable::rank(context_.jobs.at(context_.leases.find(lease)->job)));
+      JobTable::Rank rank = JobTable::rank(context_.jobs.at(context_.leases.find(lease)->job));
+      rank.job = rank.place;  // frames of a sequence are one job for its user
+      jobs.insert(rank);
     }
   }
-  jobs.erase(JobTable::rank(job));
+  JobTable::Rank own = JobTable::rank(job);
+  own.job = own.place;
+  jobs.erase(own);
   if (jobs.empty()) {
     return "";
   }
   const auto append_job = [](std::string* out, const JobTable::Rank& other) {
-    absl::StrAppend(out, "job ", other.second, priority_text(-other.first));
+    absl::StrAppend(out, "job ", other.job, priority_text(-other.descending_priority));
   };
   return absl::StrCat("all workers are busy with ", absl::StrJoin(jobs, ", ", append_job));
 }
 
 std::vector<std::string> Views::why(JobId id, Time now) const {
+  if (const Sequence* sequence = context_.sequences.find(id)) {
+    return why_of_sequence(*sequence, now);
+  }
   const Job* job = context_.jobs.find(id);
   if (job == nullptr) {
     return {};
@@ -212,6 +258,29 @@ std::vector<std::string> Views::why(JobId id, Time now) const {
   std::vector<std::string> lines = why_of_state(*job, now);
   if (!job->damage.empty()) {
     lines.push_back(job->damage);
+  }
+  return lines;
+}
+
+/// The sentences about its frames, and those about the first frame that is rendered.
+std::vector<std::string> Views::why_of_sequence(const Sequence& sequence, Time now) const {
+  if (sequence.state == JobState::kDone) {
+    return {"it is done"};
+  }
+  std::vector<std::string> lines;
+  if (sequence.state == JobState::kCancelled) {
+    lines.emplace_back("it was cancelled");
+  } else if (!sequence.reason.empty()) {
+    lines.push_back(sequence.reason);
+  }
+  for (std::string& line : frame_sentences(sequence)) {
+    lines.push_back(std::move(line));
+  }
+  if (!sequence.open_jobs().empty()) {
+    const Job& first = context_.jobs.at(*sequence.open_jobs().begin());
+    for (const std::string& line : why_of_state(first, now)) {
+      lines.push_back(absl::StrCat("frame ", first.spec.frame, ": ", line));
+    }
   }
   return lines;
 }

@@ -25,7 +25,10 @@ class Views {
         sessions_(sessions) {}
 
   std::optional<JobView> job(JobId id, Time now) const;
-  std::vector<JobView> jobs(Time now) const;        ///< by id
+  std::vector<JobView> jobs(Time now) const;  ///< by id; without frame jobs
+  /// Returns the frames of a sequence that changed after `after`; std::nullopt: no such sequence.
+  std::optional<std::vector<FrameView>> frames(JobId id, std::uint64_t after) const;
+  std::vector<KeptJob> kept() const;
   std::vector<WorkerView> workers(Time now) const;  ///< by name
   /// Returns why a job is not done yet, in sentences, the most important first; empty: there is no
   /// such job.
@@ -38,6 +41,7 @@ class Views {
   /// Returns the reason why a job without leases waits, or the notice of a job with leases; may be
   /// empty.
   std::string waiting_reason(const Job& job) const;
+  std::vector<std::string> why_of_sequence(const Sequence& sequence, Time now) const;
   std::vector<std::string> why_of_state(const Job& job, Time now) const;
   std::string audit_reason(const Job& job) const;
   std::string busy_with_others(const Job& job) const;

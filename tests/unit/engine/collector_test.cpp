@@ -72,15 +72,16 @@ TEST_F(CollectorTest, ForgetsFinalJobsByAge) {
   result(1, 10, kNow - 31 * kDay);
   result(2, 10, kNow - 29 * kDay);
   result(3, 10, kNow - 90 * kDay);
-  EXPECT_THAT(collector({}).to_forget({{1, "", true}, {2, "", true}, {3, "", false}}, kNow),
-              ElementsAre(1));
+  EXPECT_THAT(
+      collector({}).to_forget({{1, true, {}, {}}, {2, true, {}, {}}, {3, false, {}, {}}}, kNow),
+      ElementsAre(1));
 }
 
 TEST_F(CollectorTest, ForgetsTheOldestBeyondTheBytes) {
   for (const JobId job : {1, 2, 3}) {
     result(job, 1'000, kNow - static_cast<double>(10 - job) * kDay);
   }
-  const std::vector<Collector::Job> jobs = {{1, "", true}, {2, "", true}, {3, "", true}};
+  const std::vector<KeptJob> jobs = {{1, true, {}, {}}, {2, true, {}, {}}, {3, true, {}, {}}};
   EXPECT_THAT(collector({.bytes = 2'500}).to_forget(jobs, kNow), ElementsAre(1));
   EXPECT_THAT(collector({.bytes = 1'500}).to_forget(jobs, kNow), ElementsAre(1, 2));
   EXPECT_THAT(collector({}).to_forget(jobs, kNow), IsEmpty());
@@ -93,16 +94,16 @@ TEST_F(CollectorTest, AFreshResultIsNotForgottenForItsSize) {
   result(1, 1'000, kNow - kDay);
   result(2, 1'000, kNow - 60);
   put("a large scene of a job that is not final", kNow);
-  EXPECT_THAT(
-      collector({.bytes = 10}).to_forget({{1, "", true}, {2, "", true}, {3, "", false}}, kNow),
-      ElementsAre(1));
+  EXPECT_THAT(collector({.bytes = 10})
+                  .to_forget({{1, true, {}, {}}, {2, true, {}, {}}, {3, false, {}, {}}}, kNow),
+              ElementsAre(1));
 }
 
 TEST_F(CollectorTest, ForgetsTheOldestBeyondTheNumber) {
-  std::vector<Collector::Job> jobs;
+  std::vector<KeptJob> jobs;
   for (const JobId job : {1, 2, 3, 4}) {
     result(job, 1, kNow - kDay);
-    jobs.push_back({job, "", job != 2});
+    jobs.push_back({job, job != 2, {}, {}});
   }
   EXPECT_THAT(collector({.jobs = 2}).to_forget(jobs, kNow), ElementsAre(1));
   EXPECT_THAT(collector({.jobs = 1}).to_forget(jobs, kNow), ElementsAre(1, 3));
@@ -112,7 +113,7 @@ TEST_F(CollectorTest, ForgetsTheOldestBeyondTheNumber) {
 TEST_F(CollectorTest, NeverRemovesBlobsOfKnownJobs) {
   const DigestHex one = package("one");
   const DigestHex two = package("two");
-  collector({}).sweep({{1, one, false}}, kNow);
+  collector({}).sweep({{1, false, {one}, {}}}, kNow);
   EXPECT_TRUE(blobs_->has(*wire::digest_from_hex(one)));
   EXPECT_FALSE(blobs_->has(*wire::digest_from_hex(two)));
   const auto bytes = blobs_->get(*wire::digest_from_hex(one));
@@ -134,10 +135,10 @@ TEST_F(CollectorTest, RemovesNothingWhileAManifestCannotBeRead) {
   ASSERT_TRUE(std::filesystem::create_directory(path));
   const absl::Status unreadable = blobs_->get(*wire::digest_from_hex(one)).status();
   ASSERT_FALSE(unreadable.ok() || absl::IsNotFound(unreadable)) << unreadable;
-  collector({}).sweep({{1, one, false}}, kNow);
+  collector({}).sweep({{1, false, {one}, {}}}, kNow);
   EXPECT_TRUE(blobs_->has(other));
   ASSERT_TRUE(std::filesystem::remove(path));
-  collector({}).sweep({{1, one, false}}, kNow);
+  collector({}).sweep({{1, false, {one}, {}}}, kNow);
   EXPECT_FALSE(blobs_->has(other)) << "a scene that is gone needs nothing";
 }
 
@@ -161,7 +162,7 @@ TEST_F(CollectorTest, RemovesFoldersOfForgottenJobs) {
   result(1, 10, kNow);
   result(2, 10, kNow);
   result(3, 10, kNow);
-  collector({}).sweep({{2, "", true}}, kNow);
+  collector({}).sweep({{2, true, {}, {}}}, kNow);
   EXPECT_FALSE(std::filesystem::exists(folder_.job(1)));
   EXPECT_TRUE(std::filesystem::exists(folder_.job(2)));
   EXPECT_TRUE(std::filesystem::exists(folder_.job(3))) << "it may have been added meanwhile";

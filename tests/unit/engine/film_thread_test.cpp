@@ -52,7 +52,7 @@ class RecordedStore : public StoreInbox {
   void reopen(JobId) override { ++reopened; }
   void drop_bands(JobId) override {}
   void drop_job(JobId) override {}
-  void collect(std::vector<Collector::Job>) override {}
+  void collect(std::vector<KeptJob>) override {}
   void expect_trouble() override { ++troubles; }
 
   std::vector<Image> images;

@@ -33,7 +33,8 @@ class WatchersTest : public testing::Test {
                 .log = {},
                 .workers = {},
                 .curve = {},
-                .shares = {}};
+                .shares = {},
+                .frames = {}};
   Time now_ = 50;
   Watchers watchers_;
   std::vector<absl::StatusOr<JobView>> told_;

@@ -54,11 +54,15 @@ class Simulation {
     coordinator_.must_be_right = weather.liars.has_value();
   }
 
-  Outcome run(const std::vector<JobSpec>& jobs) {
+  Outcome run(const std::vector<JobSpec>& jobs, const std::vector<SequenceSpec>& sequences = {}) {
     coordinator_.start();
     for (const JobSpec& job : jobs) {
       agenda_.in(chance_.between(weather_.liars ? 1 : 0, 3), [this, job] { submit(job); });
     }
+    for (const SequenceSpec& sequence : sequences) {
+      agenda_.in(chance_.between(0, 3), [this, sequence] { submit(sequence); });
+    }
+    const std::size_t all = jobs.size() + sequences.size();
     const std::size_t count = weather_.liars ? 7 : chance_.pick(1, 6);
     for (std::size_t i = 0; i < count; ++i) {
       add_worker(weather_.liars && i + 2 >= count ? 0 : chance_.between(0, 5));
@@ -74,11 +78,11 @@ class Simulation {
     }
     agenda_.at(kStorm, [this] { calm_down(); });
     while (agenda_.now() < kEnd && !coordinator_.broken) {
-      if (!agenda_.run_next() || (agenda_.now() > kStorm + 1 && over(jobs.size()))) {
+      if (!agenda_.run_next() || (agenda_.now() > kStorm + 1 && over(all))) {
         break;
       }
     }
-    return outcome(jobs.size());
+    return outcome(all);
   }
 
  private:
@@ -97,6 +101,30 @@ class Simulation {
     agenda_.in(5, [this, job] {
       if (agenda_.now() < kStorm + 20) {
         submit(job);
+      }
+    });
+  }
+
+  /// Submits a sequence again until it is known, and sends the scenes of some of its frames, in the
+  /// end of all.
+  void submit(const SequenceSpec& spec) {
+    if (coordinator_.up()) {
+      coordinator_.input(input::SubmitSequence{spec});
+      for (const JobView& job : coordinator_.scheduler().jobs(agenda_.now())) {
+        if (job.has_frames() && job.spec.request_id == spec.request_id) {
+          std::vector<FrameScene> scenes;
+          for (const FrameNumber frame : spec.frames) {
+            if (agenda_.now() > kStorm || chance_.happens(0.5)) {
+              scenes.push_back({frame, std::string(64, 'a')});
+            }
+          }
+          coordinator_.input(input::AddFrames{job.id, scenes});
+        }
+      }
+    }
+    agenda_.in(5, [this, spec] {
+      if (agenda_.now() < kStorm + 20) {
+        submit(spec);
       }
     });
   }
@@ -218,8 +246,8 @@ class Simulation {
   }
 
   void calm_down() {
-    for (JobId job = 1; job <= 3; ++job) {
-      resume(job);  // a pause may have been journalled and its answer lost
+    for (JobId job = 1; job <= 3; ++job) {  // those that `one_thing_happens` may pause
+      resume(job);                          // a pause may have been journalled and its answer lost
     }
     if (!weather_.liars) {
       lift_quarantines();
@@ -242,6 +270,25 @@ class Simulation {
       }
     }
     agenda_.in(20, [this] { lift_quarantines(); });
+  }
+
+  /// Returns what is wrong with the frames of a sequence that is over; empty: nothing.
+  std::string hole_in(const JobView& job) {
+    if (!job.has_frames()) {
+      return "";
+    }
+    const std::vector<FrameView> frames = *coordinator_.scheduler().frames(job.id, 0);
+    for (const FrameView& frame : frames) {
+      const bool has_image = coordinator_.results.contains(frame.job);
+      const bool said = frame.state == FrameState::kFailed && !frame.reason.empty() &&
+                        job.state != JobState::kDone;
+      const bool ended = job.state == JobState::kCancelled;
+      if (frame.state == FrameState::kDone ? !has_image : !said && !ended) {
+        return absl::StrCat("frame ", frame.number, " of job ", job.id, " is skipped: it is ",
+                            frame_state_name(frame.state));
+      }
+    }
+    return "";
   }
 
   Outcome outcome(std::size_t jobs) {
@@ -269,6 +316,10 @@ class Simulation {
     }
     for (const JobView& job : coordinator_.scheduler().jobs(agenda_.now())) {
       out.done += job.state == JobState::kDone ? 1 : 0;
+      if (const std::string hole = hole_in(job); !hole.empty()) {
+        out.broken = hole;
+        return out;
+      }
       const bool explained =
           job.state == JobState::kDone || job.state == JobState::kCancelled ||
           ((weather_.failures || weather_.deadly_row) && job.state == JobState::kFailed);
@@ -342,6 +393,54 @@ TEST(Simulation, EveryJobEndsUnderRandomFailures) {
   RecordProperty("crashes", static_cast<int>(all.crashes));
   RecordProperty("done", static_cast<int>(all.done));
   RecordProperty("rendered", static_cast<int>(all.rendered));
+}
+
+std::vector<SequenceSpec> random_sequences(std::uint64_t seed) {
+  Chance chance(seed ^ 0xFEDCBA);
+  std::vector<SequenceSpec> sequences;
+  for (std::uint64_t i = 0; i < chance.pick(1, 2); ++i) {
+    const JobSpec job = test_job("", StopAtSamples{chance.pick(1, 60)},
+                                 static_cast<std::uint32_t>(chance.pick(1, 48)),
+                                 static_cast<std::uint32_t>(chance.pick(1, 90)));
+    SequenceSpec& sequence = sequences.emplace_back();
+    sequence.request_id = absl::StrCat("sequence ", i);
+    sequence.settings = job.settings;
+    sequence.stop = job.stop;
+    if (chance.happens(0.2)) {
+      sequence.stop = StopAtError{chance.between_log(0.02, 0.1), chance.pick(1, 500)};
+    }
+    const std::uint64_t count = chance.pick(1, 25);
+    for (std::uint64_t frame = 0; frame < count; ++frame) {
+      sequence.frames.push_back(static_cast<FrameNumber>(frame * 3) - 4);
+    }
+  }
+  return sequences;
+}
+
+TEST(Simulation, NoFrameOfASequenceIsSkippedUnderRandomFailures) {
+  for_seeds(70'001, 400, [&](std::uint64_t seed) {
+    Chance chance(seed);
+    const std::vector<JobSpec> jobs =
+        chance.happens(0.5) ? random_jobs(seed) : std::vector<JobSpec>();
+    const Outcome one = Simulation(seed, {.damage = seed % 3 == 0, .cancels = seed % 4 == 0})
+                            .run(jobs, random_sequences(seed));
+    EXPECT_EQ(one.broken, "") << "again with BANDSAW_SEED=" << seed;
+  });
+}
+
+TEST(Simulation, ACalmFarmRendersAllFrames) {
+  for_seeds(80'001, 50, [&](std::uint64_t seed) {
+    const std::vector<SequenceSpec> sequences = random_sequences(seed);
+    const Outcome one =
+        Simulation(seed, {.chaos = false, .failures = false, .cancels = false}).run({}, sequences);
+    EXPECT_EQ(one.broken, "") << "again with BANDSAW_SEED=" << seed;
+    EXPECT_EQ(one.done, sequences.size()) << one.failed << " BANDSAW_SEED=" << seed;
+    std::size_t frames = 0;
+    for (const SequenceSpec& sequence : sequences) {
+      frames += sequence.frames.size();
+    }
+    EXPECT_EQ(one.results.size(), frames) << "BANDSAW_SEED=" << seed;
+  });
 }
 
 TEST(Simulation, AWrongWorkerDoesNotAffectOthers) {

@@ -17,6 +17,23 @@ inline JobSpec sample_spec(StopRule stop) {
           .stop = stop};
 }
 
+inline SequenceSpec sample_sequence() {
+  const JobSpec job = sample_spec(StopAtError{.relative_rmse = 0.1, .max_samples = 9});
+  return {.request_id = job.request_id,
+          .name = job.name,
+          .settings = job.settings,
+          .stop = job.stop,
+          .fixed_seed = true,
+          .frames = {-1'000'000'000, -3, -2, 0, 7, 9, 11, 1'000'000'000}};
+}
+
+inline JobSpec sample_frame_job() {
+  JobSpec job = sample_spec(StopAtSamples{.samples = 1});
+  job.sequence = 4;
+  job.frame = -2;
+  return job;
+}
+
 inline std::vector<Record> sample_records() {
   return {record::JobAdded{.job = 1, .spec = sample_spec(StopAtSamples{.samples = 256})},
           record::JobAdded{
@@ -77,7 +94,14 @@ inline std::vector<Record> sample_records() {
           record::BandLost{.job = 1, .band = {{0, 16}, {0, UINT32_MAX}}, .process = UINT64_MAX},
           record::ErrorForgotten{.job = 1},
           record::WorkerQuarantined{.process = UINT64_MAX, .name = "a desk", .reason = "lied\n"},
-          record::QuarantineLifted{.name = "a desk"}};
+          record::QuarantineLifted{.name = "a desk"},
+          record::SequenceAdded{.job = 4, .spec = sample_sequence(), .pixel_version = UINT32_MAX},
+          record::FrameWaits{.job = 4,
+                             .frame = -1'000'000'000,
+                             .manifest = std::string(64, 'b'),
+                             .failures = 1,
+                             .reason = "the mesh\nis broken"},
+          record::JobAdded{.job = 5, .spec = sample_frame_job()}};
 }
 
 }  // namespace bandsaw::coordinator

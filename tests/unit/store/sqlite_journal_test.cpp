@@ -113,6 +113,18 @@ TEST_F(SqliteJournalTest, AnOldSchemaIsReadAndUpgraded) {
   }
 }
 
+// Up to version 8 there were no sequences: their journals are read, and a sequence that is added
+// raises the version.
+TEST_F(SqliteJournalTest, AJournalOfVersion8TakesSequences) {
+  std::vector<Record> records = sample_records();
+  std::vector<Record> old(records.begin(), records.end() - 3);
+  ASSERT_TRUE(open()->append(old).ok());
+  run_sql(path_, "PRAGMA user_version = 8");
+  EXPECT_EQ(replayed(*open()), texts(old));
+  ASSERT_TRUE(open()->append(absl::MakeConstSpan(records).last(3)).ok());
+  EXPECT_EQ(replayed(*open()), texts(records));
+}
+
 TEST_F(SqliteJournalTest, AnOldSchemaIsReadOnAFullDiskAndUpgradedLater) {
   const std::vector<Record> records = sample_records();
   ASSERT_TRUE(open()->append(records).ok());

@@ -1,0 +1,83 @@
+#pragma once
+
+// Sequences: jobs of many frames. Each frame is rendered by a job of its own, its frame job, which
+// the scheduler makes when workers are about to need it.
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "coordinator/scheduler/api/ids.h"
+#include "coordinator/scheduler/api/job_spec.h"
+
+namespace bandsaw::coordinator {
+
+/// The specification of a sequence by its submitter. The scenes of the frames follow one by one.
+struct SequenceSpec {
+  std::string request_id;  ///< as in JobSpec; sequences and jobs share the ids
+  std::string name;
+  RenderSettings settings;          ///< of all frames; the seed is the one of frame 0
+  StopRule stop;                    ///< of each frame
+  bool fixed_seed = false;          ///< all frames have the same seed
+  std::vector<FrameNumber> frames;  ///< ascending; 1 to kMaxFrames
+  friend bool operator==(const SequenceSpec&, const SequenceSpec&) = default;
+};
+
+enum class FrameState {
+  kExpected,   ///< its scene was not sent yet
+  kWaiting,    ///< its scene is there; it has no job yet
+  kRendering,  ///< its job is not final
+  kDone,       ///< its image can be fetched
+  kFailed,     ///< its job failed as often as it is tried
+};
+inline constexpr std::size_t kFrameStates = 5;
+
+/// Returns the word for a state in tables, JSON and messages.
+constexpr const char* frame_state_name(FrameState state) {
+  switch (state) {
+    case FrameState::kExpected:
+      return "expected";
+    case FrameState::kWaiting:
+      return "waiting";
+    case FrameState::kRendering:
+      return "rendering";
+    case FrameState::kDone:
+      return "done";
+    case FrameState::kFailed:
+      return "failed";
+  }
+  return "unknown";
+}
+
+/// The scene of a frame.
+struct FrameScene {
+  FrameNumber number = 0;
+  DigestHex manifest;
+};
+
+/// A frame as it is displayed.
+struct FrameView {
+  FrameNumber number = 0;
+  FrameState state = FrameState::kExpected;
+  JobId job = 0;              ///< its frame job; 0: none
+  std::string reason;         ///< why it failed, also of a failure after which it is tried again
+  std::uint64_t changed = 0;  ///< grows with each change of a frame of the sequence, in one epoch
+};
+
+/// How many frames are in which state.
+struct FrameCounts {
+  std::size_t in[kFrameStates] = {};
+
+  std::size_t of(FrameState state) const { return in[static_cast<std::size_t>(state)]; }
+  std::size_t all() const {
+    std::size_t sum = 0;
+    for (const std::size_t count : in) {
+      sum += count;
+    }
+    return sum;
+  }
+  friend bool operator==(const FrameCounts&, const FrameCounts&) = default;
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,73 @@
+#include "coordinator/scheduler/dispatch/frame_chooser.h"
+
+#include <algorithm>
+
+namespace bandsaw::coordinator {
+
+bool FrameChooser::has_crew(JobId job) const {
+  const auto crew = crew_of_.find(job);
+  return crew != crew_of_.end() &&
+         std::any_of(crew->second.begin(), crew->second.end(), [&](WorkerId id) {
+           const Worker* worker = context_.workers.by_id(id);
+           return worker != nullptr && worker->eligible();
+         });
+}
+
+std::vector<Job*> FrameChooser::order_for(const Worker& worker, const Sequence& sequence) {
+  std::vector<Job*> own;
+  std::vector<Job*> fresh;
+  std::vector<Job*> others;
+  const auto at = frame_of_.find(worker.id);
+  for (const JobId id : sequence.open_jobs()) {
+    Job& job = context_.jobs.at(id);
+    if (!job.work_rate.measured() && sequence.work_rate.measured()) {
+      job.work_rate = sequence.work_rate;
+      job.cost = sequence.cost;
+    }
+    if (job.state == JobState::kRunning) {
+      const bool is_own = at != frame_of_.end() && at->second == id;
+      (is_own ? own : has_crew(id) ? others : fresh).push_back(&job);
+    }
+  }
+  const auto free = static_cast<std::size_t>(
+      std::count_if(fresh.begin(), fresh.end(), [](const Job* job) { return job->any_free(); }));
+  const bool many =
+      free + sequence.counts().of(FrameState::kWaiting) >= context_.available.eligible();
+  for (std::vector<Job*>* jobs : {&fresh, &others}) {
+    own.insert(own.end(), jobs->begin(), jobs->end());
+  }
+  for (Job* job : own) {
+    job->alone = many;
+  }
+  return own;
+}
+
+void FrameChooser::joined(const Worker& worker, const Job& job) {
+  JobId& frame = frame_of_[worker.id];
+  if (frame == job.id) {
+    return;
+  }
+  if (const auto left = crew_of_.find(frame); left != crew_of_.end()) {
+    left->second.erase(worker.id);
+    if (left->second.empty()) {
+      crew_of_.erase(left);
+    }
+  }
+  frame = job.id;
+  crew_of_[job.id].insert(worker.id);
+  forget_final();
+}
+
+/// Forgets workers that have left and frame jobs that are over, once there are many.
+void FrameChooser::forget_final() {
+  if (frame_of_.size() > 2 * context_.workers.all().size() + 16) {
+    std::erase_if(frame_of_,
+                  [&](const auto& one) { return context_.workers.by_id(one.first) == nullptr; });
+  }
+  if (crew_of_.size() > 2 * context_.workers.all().size() + 16) {
+    std::erase_if(crew_of_,
+                  [&](const auto& one) { return !context_.jobs.active().contains(one.first); });
+  }
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,38 @@
+#pragma once
+
+// Chooses the frame of a sequence from which a worker gets its next band. While there are more
+// frames than workers, each worker renders frames of its own; then those that are free join the
+// others, in bands.
+
+#include <cstddef>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "coordinator/scheduler/context/context.h"
+
+namespace bandsaw::coordinator {
+
+class FrameChooser {
+ public:
+  explicit FrameChooser(Context& context) : context_(context) {}
+
+  /// Returns the running frame jobs of a sequence in the order in which they are offered to the
+  /// worker: the frame that it renders already, frames that no connected worker renders, frames of
+  /// others. Tells each of them whether one worker is to render it (Job::alone), and gives new ones
+  /// what earlier frames have shown about costs and rates.
+  std::vector<Job*> order_for(const Worker& worker, const Sequence& sequence);
+  /// MUST be called when a worker is granted a band of a frame job.
+  void joined(const Worker& worker, const Job& job);
+
+ private:
+  /// Returns true if a connected worker renders the frame.
+  bool has_crew(JobId job) const;
+  void forget_final();
+
+  Context& context_;
+  std::map<WorkerId, JobId> frame_of_;           ///< the frame job that a worker renders
+  std::map<JobId, std::set<WorkerId>> crew_of_;  ///< the same, by frame job
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,63 @@
+#pragma once
+
+// Sequences: makes the jobs of their frames when workers are about to need them, tries failed
+// frames again, ends the sequence; and requests of users about sequences. A request that cannot be
+// granted sets the status of the step.
+
+#include "coordinator/scheduler/context/context.h"
+#include "coordinator/scheduler/jobs/job_lifecycle.h"
+#include "coordinator/scheduler/jobs/job_requests.h"
+
+namespace bandsaw::coordinator {
+
+class Sequences {
+ public:
+  Sequences(Context& context, JobRequests& requests, JobLifecycle& lifecycle)
+      : context_(context), requests_(requests), lifecycle_(lifecycle) {}
+
+  /// Returns true if the id is that of a sequence.
+  bool owns(JobId id) const { return context_.sequences.find(id) != nullptr; }
+
+  /// Errors as JobRequests::submit.
+  void submit(const input::SubmitSequence& in);
+  /// The requests below: NOT_FOUND: no such sequence. INVALID_ARGUMENT: it has no such frame.
+  /// FAILED_PRECONDITION: it was cancelled.
+  void add_frames(const input::AddFrames& in);
+  /// FAILED_PRECONDITION also if a frame has not failed.
+  void retry(const input::RetryFrames& in);
+
+  // The requests below are as those in JobRequests, for a sequence. REQUIRE owns(in.job).
+  void cancel(const input::Cancel& in);
+  void pause(const input::Pause& in);
+  void resume(const input::Resume& in);
+  void set_priority(const input::SetPriority& in);
+  /// Forgets the final ones of these sequences with all their frames.
+  void forget(const input::Forget& in);
+
+  /// Tries failed frames again, makes the next frame jobs, and ends sequences of which no frame is
+  /// left. MUST be called in each step before work is given to workers.
+  void advance();
+  /// Journals the elapsed times at intervals, as JobLifecycle::note_time.
+  void note_times();
+  /// After a restart: begins the epoch of each sequence; fails those that were begun with another
+  /// pixel version.
+  void resume_after_restart();
+
+ private:
+  void advance(Sequence& sequence);
+  void end(Sequence& sequence, JobState state, const std::string& reason);
+  void try_again(Sequence& sequence, FrameNumber number, std::uint32_t failures,
+                 const std::string& reason);
+  void forget_job(JobId id);
+  Sequence* find_active(JobId id);
+
+  Context& context_;
+  JobRequests& requests_;
+  JobLifecycle& lifecycle_;
+};
+
+/// Returns the reason for which a job fails that was begun with another pixel version than `here`;
+/// `begun_with` 0: the journal does not say with which.
+std::string other_pixel_version(std::uint32_t begun_with, std::uint32_t here);
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,126 @@
+#include "coordinator/scheduler/model/sequence.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "renderlib/render/frame_seed.h"
+
+namespace bandsaw::coordinator {
+
+Sequence::Sequence(JobId sequence, SequenceSpec sequence_spec, std::uint32_t version)
+    : id(sequence), spec(std::move(sequence_spec)), pixel_version(version) {
+  for (const FrameNumber number : spec.frames) {
+    frames_.push_back({.number = number, .manifest = {}, .reason = {}});
+  }
+  counts_.in[static_cast<std::size_t>(FrameState::kExpected)] = frames_.size();
+}
+
+Sequence::Frame* Sequence::find(FrameNumber number) {
+  return const_cast<Frame*>(std::as_const(*this).frame(number));
+}
+
+const Sequence::Frame* Sequence::frame(FrameNumber number) const {
+  const auto found =
+      std::lower_bound(frames_.begin(), frames_.end(), number,
+                       [](const Frame& frame, FrameNumber n) { return frame.number < n; });
+  return found == frames_.end() || found->number != number ? nullptr : &*found;
+}
+
+std::vector<FrameNumber> Sequence::numbers(FrameState wanted) const {
+  std::vector<FrameNumber> out;
+  for (const Frame& frame : frames_) {
+    if (frame.state == wanted) {
+      out.push_back(frame.number);
+    }
+  }
+  return out;
+}
+
+const Sequence::Frame* Sequence::next_waiting() const {
+  return waiting_.empty() ? nullptr : frame(*waiting_.begin());
+}
+
+const Sequence::Frame* Sequence::next_to_retry() const {
+  return to_retry_.empty() ? nullptr : frame(*to_retry_.begin());
+}
+
+JobSpec Sequence::job_spec(const Frame& frame) const {
+  JobSpec job;
+  // Submitters cannot choose such an id, because they may not use '/'.
+  job.request_id = absl::StrCat("sequence/", id, "/", frame.number);
+  job.name = absl::StrCat(spec.name, " frame ", frame.number);
+  job.manifest = frame.manifest;
+  job.settings = spec.settings;
+  if (!spec.fixed_seed) {
+    job.settings.seed = seed_of_frame(spec.settings.seed, frame.number);
+  }
+  job.stop = spec.stop;
+  job.sequence = id;
+  job.frame = frame.number;
+  return job;
+}
+
+double Sequence::elapsed(Time now) const {
+  return is_final(state)
+             ? elapsed_noted
+             : elapsed_before + (first_lease_at ? std::max(0.0, now - *first_lease_at) : 0.0);
+}
+
+void Sequence::change(Frame& frame, FrameState to) {
+  --counts_.in[static_cast<std::size_t>(frame.state)];
+  ++counts_.in[static_cast<std::size_t>(to)];
+  waiting_.erase(frame.number);
+  to_retry_.erase(frame.number);
+  if (to == FrameState::kWaiting) {
+    waiting_.insert(frame.number);
+  }
+  frame.state = to;
+  frame.changed = ++changes_;
+}
+
+void Sequence::wait(FrameNumber number, const DigestHex& manifest, std::uint32_t failures,
+                    const std::string& why) {
+  if (Frame* frame = find(number)) {
+    open_jobs_.erase(frame->job);
+    frame->manifest = manifest;
+    frame->job = 0;
+    frame->failures = failures;
+    frame->reason = why;
+    change(*frame, FrameState::kWaiting);
+  }
+}
+
+void Sequence::start(FrameNumber number, JobId job) {
+  if (Frame* frame = find(number)) {
+    frame->job = job;
+    open_jobs_.insert(job);
+    change(*frame, FrameState::kRendering);
+  }
+}
+
+void Sequence::end(const Job& job) {
+  Frame* frame = find(job.spec.frame);
+  open_jobs_.erase(job.id);
+  if (frame == nullptr || frame->job != job.id) {
+    return;
+  }
+  if (job.state != JobState::kDone) {
+    const bool cancelled = job.state == JobState::kCancelled;
+    frame->reason = cancelled ? "a user cancelled this frame's job" : job.reason;
+    change(*frame, FrameState::kFailed);
+    if (!cancelled && frame->failures + 1 < kTries) {
+      to_retry_.insert(frame->number);
+    }
+    return;
+  }
+  frame->reason.clear();
+  done.add(job.totals());
+  if (job.summary) {
+    worst_error = std::max(worst_error, job.summary->error);
+    workers_used = std::max(workers_used, job.summary->workers_used);
+  }
+  change(*frame, FrameState::kDone);
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,92 @@
+#pragma once
+
+// One sequence: its frames and their states.
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "coordinator/scheduler/api/ids.h"
+#include "coordinator/scheduler/api/sequence_spec.h"
+#include "coordinator/scheduler/model/job.h"
+#include "coordinator/scheduler/model/rates.h"
+#include "coordinator/scheduler/model/row_costs.h"
+
+namespace bandsaw::coordinator {
+
+class Sequence {
+ public:
+  /// Number of jobs of a frame that fail before the frame has failed.
+  static constexpr std::uint32_t kTries = 2;
+
+  struct Frame {
+    FrameNumber number = 0;
+    DigestHex manifest;  ///< empty: not known yet
+    FrameState state = FrameState::kExpected;
+    JobId job = 0;               ///< its frame job; 0: none
+    std::uint32_t failures = 0;  ///< of its jobs, without the present one
+    std::string reason;          ///< of the last failure
+    std::uint64_t changed = 0;   ///< as in FrameView
+  };
+
+  Sequence(JobId id, SequenceSpec spec, std::uint32_t pixel_version);
+
+  /// Returns nullptr if it has no frame with this number.
+  const Frame* frame(FrameNumber number) const;
+  const std::vector<Frame>& frames() const { return frames_; }
+  /// Returns the frames in a state, ascending.
+  std::vector<FrameNumber> numbers(FrameState state) const;
+  const FrameCounts& counts() const { return counts_; }
+  /// Returns the frame that is rendered next; nullptr: none waits.
+  const Frame* next_waiting() const;
+  /// Returns the frame jobs that are not final, ascending.
+  const std::set<JobId>& open_jobs() const { return open_jobs_; }
+  /// Returns a frame whose job has failed and that is to be tried again; nullptr: none.
+  const Frame* next_to_retry() const;
+  std::uint64_t changes() const { return changes_; }
+  /// Returns the specification of the job of a frame that has a manifest.
+  JobSpec job_spec(const Frame& frame) const;
+  /// Returns the time in seconds that it has been worked on, in all epochs.
+  double elapsed(Time now) const;
+
+  // Only Context::apply calls these three. They do nothing if there is no such frame.
+  void wait(FrameNumber number, const DigestHex& manifest, std::uint32_t failures,
+            const std::string& reason);
+  void start(FrameNumber number, JobId job);
+  /// Ends the frame whose job this is. REQUIRES: is_final(job.state).
+  void end(const Job& job);
+
+  JobId id = 0;
+  SequenceSpec spec;
+  std::uint32_t pixel_version = 0;
+  JobState state = JobState::kRunning;  ///< never kFinishing
+  std::int32_t priority = 0;
+  bool held = false;                   ///< paused by a user
+  std::string reason;                  ///< of the state
+  double elapsed_noted = 0;            ///< seconds in all epochs, as journalled last
+  double elapsed_before = 0;           ///< seconds, in earlier epochs
+  std::optional<Time> first_lease_at;  ///< in this epoch
+  std::size_t done_before = 0;         ///< frames that were done when this epoch began
+  Totals done;                         ///< of the frames that are done
+  double worst_error = -1;             ///< of those; negative: unknown
+  std::uint32_t workers_used = 0;      ///< the most that one of those had
+  /// What the last frame that was done has shown about costs and rates; for the next ones.
+  CostMap cost;
+  MeanRate work_rate;
+
+ private:
+  Frame* find(FrameNumber number);
+  void change(Frame& frame, FrameState state);
+
+  std::vector<Frame> frames_;  ///< ascending by number
+  FrameCounts counts_;
+  std::set<FrameNumber> waiting_;
+  std::set<FrameNumber> to_retry_;
+  std::set<JobId> open_jobs_;
+  std::uint64_t changes_ = 0;
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,133 @@
+#include "coordinator/scheduler/views/sequence_views.h"
+
+#include <algorithm>
+#include <set>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/scheduler/api/frame_numbers.h"
+#include "coordinator/scheduler/views/progress.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+constexpr std::size_t kMaxNumbers = 200;  ///< bytes of the numbers in a sentence
+
+/// Returns the frames of which the open ones are as many parts as they are rendered.
+double rendered_parts(const Context& context, const Sequence& sequence, Time now) {
+  double parts = 0;
+  for (const JobId id : sequence.open_jobs()) {
+    parts += fraction_done(context.jobs.at(id), now);
+  }
+  return parts;
+}
+
+/// Returns the remaining time in seconds at the pace of this epoch; negative: unknown.
+double remaining_of(const Sequence& sequence, double parts, Time now) {
+  const FrameCounts& counts = sequence.counts();
+  const auto left = static_cast<double>(counts.all() - counts.of(FrameState::kDone) -
+                                        counts.of(FrameState::kFailed)) -
+                    parts;
+  const double finished =
+      static_cast<double>(counts.of(FrameState::kDone) - sequence.done_before) + parts;
+  if (is_final(sequence.state)) {
+    return 0;
+  }
+  const double passed = sequence.first_lease_at ? now - *sequence.first_lease_at : 0;
+  return finished > 0.5 && passed > 0 ? left * passed / finished : -1;
+}
+
+void add_workers(const Context& context, const Sequence& sequence, JobView& view) {
+  std::set<std::string> named;
+  for (const JobId id : sequence.open_jobs()) {
+    const Job& job = context.jobs.at(id);
+    for (JobWorkerView& worker : workers_on(context, job)) {
+      if (named.insert(worker.name).second) {
+        worker.state =
+            absl::StrCat("frame ", job.spec.frame, worker.state == "rendering" ? "" : ": ",
+                         worker.state == "rendering" ? "" : worker.state);
+        view.samples_per_s += worker.samples_per_s;
+        view.workers.push_back(std::move(worker));
+      }
+    }
+  }
+  std::sort(view.workers.begin(), view.workers.end(),
+            [](const JobWorkerView& a, const JobWorkerView& b) { return a.name < b.name; });
+}
+
+std::string shortened(std::string numbers) {
+  return numbers.size() <= kMaxNumbers
+             ? numbers
+             : absl::StrCat(numbers.substr(0, numbers.rfind(',', kMaxNumbers)), ",…");
+}
+
+}  // namespace
+
+JobView sequence_view(const Context& context, const Sequence& sequence, Time now) {
+  now = std::max(now, context.clock.wall());
+  JobView view;
+  view.id = sequence.id;
+  view.spec.request_id = sequence.spec.request_id;
+  view.spec.name = sequence.spec.name;
+  view.spec.settings = sequence.spec.settings;
+  view.spec.stop = sequence.spec.stop;
+  view.spec.manifest = sequence.frames().front().manifest;
+  view.state = sequence.state;
+  view.reason = sequence.reason;
+  view.priority = sequence.priority;
+  view.frames = sequence.counts();
+  const FrameCounts& counts = sequence.counts();
+  const double parts = rendered_parts(context, sequence, now);
+  const auto over =
+      static_cast<double>(counts.of(FrameState::kDone) + counts.of(FrameState::kFailed));
+  view.fraction = (over + parts) / static_cast<double>(counts.all());
+  view.elapsed_s = sequence.elapsed(now);
+  view.remaining_s = remaining_of(sequence, parts, now);
+  Totals totals = sequence.done;
+  view.workers_used = sequence.workers_used;
+  for (const JobId id : sequence.open_jobs()) {
+    const Job& job = context.jobs.at(id);
+    totals.add(job.totals());
+    view.workers_used = std::max(view.workers_used, static_cast<std::uint32_t>(job.shares.size()));
+  }
+  view.samples_done = totals.samples;
+  view.counters = totals.counters;
+  view.cpu_s = totals.cpu_s;
+  view.error = sequence.worst_error;
+  add_workers(context, sequence, view);
+  return view;
+}
+
+std::vector<FrameView> frame_views(const Sequence& sequence, std::uint64_t after) {
+  std::vector<FrameView> views;
+  for (const Sequence::Frame& frame : sequence.frames()) {
+    if (after == 0 || frame.changed > after) {
+      views.push_back({frame.number, frame.state, frame.job, frame.reason, frame.changed});
+    }
+  }
+  return views;
+}
+
+std::vector<std::string> frame_sentences(const Sequence& sequence) {
+  std::vector<std::string> lines;
+  const auto add = [&](FrameState state, const char* what) {
+    if (const std::vector<FrameNumber> numbers = sequence.numbers(state); !numbers.empty()) {
+      lines.push_back(absl::StrCat(numbers.size() == 1 ? "frame " : "frames ",
+                                   shortened(frames_text(numbers)), " ", what));
+    }
+  };
+  add(FrameState::kRendering, "being rendered, or about to be");
+  add(FrameState::kWaiting, "waiting to be rendered");
+  add(FrameState::kExpected,
+      "expected: their scenes have not arrived; if their submitter has ended, submit them again "
+      "with --continue");
+  for (const FrameNumber number : sequence.numbers(FrameState::kFailed)) {
+    lines.push_back(absl::StrCat("frame ", number, " failed: ", sequence.frame(number)->reason));
+    if (lines.size() == 13) {
+      lines.emplace_back("and more frames failed");
+      break;
+    }
+  }
+  return lines;
+}
+
+}  // namespace bandsaw::coordinator
