@@ -15,7 +15,7 @@ build=(g++ cmake ninja-build pkg-config libgrpc++-dev protobuf-compiler protobuf
   libimath-dev libtbb-dev libpugixml-dev)
 demo=("${build[@]}" assimp-testmodels)
 packages=("${build[@]}" dpkg-dev file fakeroot)
-test=("${demo[@]}" libgtest-dev libgmock-dev git iproute2 curl python3 python3-numpy)
+test=("${demo[@]}" libgtest-dev libgmock-dev git iproute2 curl python3 python3-numpy ffmpeg)
 browser=("${test[@]}" chromium chromium-driver)
 blender=("${test[@]}" blender xvfb xdotool imagemagick)
 clang=("${test[@]}" clang libclang-rt-dev)

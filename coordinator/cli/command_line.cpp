@@ -40,6 +40,15 @@ void add_completion(CLI::App& app, RawOptions& raw) {
   app.add_option("shell", raw.shell, "Name of the shell: " + one_of(choices_of("shell")));
 }
 
+void add_retry(CLI::App& app, RawOptions& raw) {
+  app.add_option("job", raw.job, "The job's number, as in: bandsaw jobs");
+  app.add_option("--frames", raw.frames,
+                 "Frames that failed, as in 12,47-50 [default: all of them]")
+      ->type_name("RANGES");
+  add_farm(app, raw);
+  add_verbosity(app, raw);
+}
+
 struct Entry {
   const char* name;
   const char* what;
@@ -65,6 +74,10 @@ constexpr Entry kCommands[] = {
     {"resume", "Resume a paused job", add_job, checked_resume, "bandsaw resume 7"},
     {"priority", "Set the priority of a job", add_priority, checked_priority,
      "bandsaw priority 7 10    # before all jobs that are below 10"},
+    {"missing", "List the frames of a job that are not done", add_job, checked_missing,
+     "bandsaw missing 7"},
+    {"retry", "Render failed frames of a job again", add_retry, checked_retry,
+     "bandsaw retry 7 --frames 12"},
     {"why", "Explain why a job is not done", add_job, checked_why, "bandsaw why 7"},
     {"logs", "Show the last lines of a worker's log", add_logs, checked_logs, "bandsaw logs desk"},
     {"quarantine", "Exclude a machine that renders wrong pixels, or admit it again", add_quarantine,

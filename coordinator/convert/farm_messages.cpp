@@ -5,10 +5,39 @@
 #include "absl/strings/str_cat.h"
 #include "proto/convert/render_values.h"
 #include "proto/wire/digest.h"
+#include "renderlib/base/clean_text.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
+
+static_assert(static_cast<int>(FrameState::kExpected) == farm::FRAME_STATE_EXPECTED &&
+              static_cast<int>(FrameState::kWaiting) == farm::FRAME_STATE_WAITING &&
+              static_cast<int>(FrameState::kRendering) == farm::FRAME_STATE_RENDERING &&
+              static_cast<int>(FrameState::kDone) == farm::FRAME_STATE_DONE &&
+              static_cast<int>(FrameState::kFailed) == farm::FRAME_STATE_FAILED);
+
 namespace {
+
+void add_frames(const JobView& job, farm::JobStatus& message) {
+  message.set_sequence(job.spec.sequence);
+  message.set_frame(job.spec.frame);
+  if (job.has_frames()) {
+    farm::FrameCounts& counts = *message.mutable_frames();
+    counts.set_expected(static_cast<std::uint32_t>(job.frames.of(FrameState::kExpected)));
+    counts.set_waiting(static_cast<std::uint32_t>(job.frames.of(FrameState::kWaiting)));
+    counts.set_rendering(static_cast<std::uint32_t>(job.frames.of(FrameState::kRendering)));
+    counts.set_done(static_cast<std::uint32_t>(job.frames.of(FrameState::kDone)));
+    counts.set_failed(static_cast<std::uint32_t>(job.frames.of(FrameState::kFailed)));
+  }
+}
+
+void read_frames(const farm::JobStatus& message, JobView& job) {
+  job.spec.sequence = message.sequence();
+  job.spec.frame = message.frame();
+  const farm::FrameCounts& counts = message.frames();
+  job.frames = {
+      {counts.expected(), counts.waiting(), counts.rendering(), counts.done(), counts.failed()}};
+}
 
 template <class... Parts>
 absl::Status invalid(const char* field, const Parts&... parts) {
@@ -188,6 +217,7 @@ farm::JobStatus to_message(const JobView& job) {
   for (const ErrorPoint& point : job.curve) {
     *message.add_curve() = to_message(point);
   }
+  add_frames(job, message);
   for (const WorkerShare& share : job.shares) {
     farm::WorkerShare* s = message.add_share();
     s->set_name(share.name);
@@ -195,6 +225,26 @@ farm::JobStatus to_message(const JobView& job) {
     s->set_cpu_s(share.cpu_s);
   }
   return message;
+}
+
+farm::Frame to_message(const FrameView& frame) {
+  constexpr std::size_t kMaxReason = 300;
+  farm::Frame message;
+  message.set_frame(frame.number);
+  message.set_state(static_cast<farm::FrameState>(frame.state));
+  message.set_job(frame.job);
+  message.set_reason(clean_text(frame.reason, kMaxReason));
+  message.set_changed(frame.changed);
+  return message;
+}
+
+FrameView frame_view_of(const farm::Frame& message) {
+  const bool known = message.state() >= 0 && message.state() < static_cast<int>(kFrameStates);
+  return {.number = message.frame(),
+          .state = known ? static_cast<FrameState>(message.state()) : FrameState::kExpected,
+          .job = message.job(),
+          .reason = message.reason(),
+          .changed = message.changed()};
 }
 
 farm::WorkerStatus to_message(const WorkerView& worker) {
@@ -240,6 +290,7 @@ JobView job_view_of(const farm::JobStatus& message) {
   job.log.assign(message.log().begin(), message.log().end());
   job.workers_used = message.workers_used();
   job.bands_audited = message.bands_audited();
+  read_frames(message, job);
   for (const farm::JobWorker& worker : message.worker()) {
     job.workers.push_back(worker_of(worker));
   }

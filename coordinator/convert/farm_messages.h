@@ -25,6 +25,9 @@ farm::JobStatus to_message(const JobView& job);
 JobView job_view_of(const farm::JobStatus& message);
 
 farm::WorkerStatus to_message(const WorkerView& worker);
+/// A long reason is shortened.
+farm::Frame to_message(const FrameView& frame);
+FrameView frame_view_of(const farm::Frame& message);
 
 /// "pixel (3, 4), sample 17": the place of the first bad sample.
 std::string bad_sample_text(const Counters& counters);

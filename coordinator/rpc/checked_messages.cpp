@@ -4,10 +4,12 @@
 #include "absl/strings/str_cat.h"
 #include "coordinator/convert/farm_messages.h"
 #include "coordinator/rpc/checked_messages.h"
+#include "coordinator/scheduler/api/frame_numbers.h"
 #include "proto/convert/render_values.h"
 #include "proto/wire/limits.h"
 #include "renderlib/base/clean_text.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/scene/guide_integrators.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -58,21 +60,75 @@ absl::StatusOr<wire::Digest> digest_field(const char* field, const std::string& 
   return digest;
 }
 
-absl::StatusOr<JobSpec> job_spec(const farm::SubmitRequest& request) {
-  const std::string& id = request.request_id();
+namespace {
+
+absl::Status check_request_id(const std::string& id) {
   const bool plain = std::all_of(id.begin(), id.end(), [](char c) {
     return absl::ascii_isalnum(c) || c == '-' || c == '_' || c == '.';
   });
   if (id.size() < 16 || id.size() > 64 || !plain) {
     return invalid("request_id", "must be 16 to 64 letters, digits, or any of - _ .");
   }
+  return absl::OkStatus();
+}
+
+absl::StatusOr<RenderSettings> image_settings(const farm::Settings& message) {
+  const RenderSettings settings = settings_of(message);
+  RETURN_IF_ERROR(validate(settings));
+  return settings;
+}
+
+}  // namespace
+
+absl::StatusOr<SequenceSpec> sequence_spec(const farm::SubmitSequenceRequest& request) {
+  RETURN_IF_ERROR(check_request_id(request.request_id()));
+  RETURN_IF_ERROR(check_text("name", request.name(), wire::kJobNameBytes));
+  SequenceSpec spec;
+  spec.request_id = request.request_id();
+  spec.name = request.name();
+  ASSIGN_OR_RETURN(spec.settings, image_settings(request.settings()));
+  if (is_guide(spec.settings.integrator)) {
+    return absl::InvalidArgumentError("integrator: the guides of the denoiser are no images");
+  }
+  ASSIGN_OR_RETURN(spec.stop, stop_rule_of(request.stop()));
+  spec.fixed_seed = request.fixed_seed();
+  auto frames = parse_frames(request.frames());
+  if (!frames.ok()) {
+    return invalid("frames", frames.status().message());
+  }
+  spec.frames = *std::move(frames);
+  return spec;
+}
+
+absl::StatusOr<std::vector<FrameScene>> frame_scenes(const farm::AddFramesRequest& request) {
+  RETURN_IF_ERROR(check_range("scene (count)", static_cast<std::uint64_t>(request.scene_size()), 1,
+                              wire::kFramesPerMessage));
+  std::vector<FrameScene> scenes;
+  for (const farm::FrameScene& scene : request.scene()) {
+    ASSIGN_OR_RETURN(const wire::Digest manifest,
+                     digest_field("scene.manifest_sha256", scene.manifest_sha256()));
+    scenes.push_back({scene.frame(), manifest.hex()});
+  }
+  return scenes;
+}
+
+absl::StatusOr<std::vector<FrameNumber>> frame_numbers(const farm::RetryFramesRequest& request) {
+  RETURN_IF_ERROR(check_range("frame (count)", static_cast<std::uint64_t>(request.frame_size()), 0,
+                              kMaxFrames));
+  std::vector<FrameNumber> frames(request.frame().begin(), request.frame().end());
+  std::sort(frames.begin(), frames.end());
+  frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+  return frames;
+}
+
+absl::StatusOr<JobSpec> job_spec(const farm::SubmitRequest& request) {
+  RETURN_IF_ERROR(check_request_id(request.request_id()));
   RETURN_IF_ERROR(check_text("name", request.name(), wire::kJobNameBytes));
   ASSIGN_OR_RETURN(const wire::Digest manifest,
                    digest_field("manifest_sha256", request.manifest_sha256()));
-  const RenderSettings settings = settings_of(request.settings());
-  RETURN_IF_ERROR(validate(settings));
+  ASSIGN_OR_RETURN(const RenderSettings settings, image_settings(request.settings()));
   ASSIGN_OR_RETURN(StopRule stop, stop_rule_of(request.stop()));
-  return JobSpec{.request_id = id,
+  return JobSpec{.request_id = request.request_id(),
                  .name = request.name(),
                  .manifest = manifest.hex(),
                  .settings = settings,

@@ -13,6 +13,9 @@ namespace bandsaw::coordinator {
 
 absl::StatusOr<wire::Digest> digest_field(const char* field, const std::string& raw);
 absl::StatusOr<JobSpec> job_spec(const farm::SubmitRequest& request);
+absl::StatusOr<SequenceSpec> sequence_spec(const farm::SubmitSequenceRequest& request);
+absl::StatusOr<std::vector<FrameScene>> frame_scenes(const farm::AddFramesRequest& request);
+absl::StatusOr<std::vector<FrameNumber>> frame_numbers(const farm::RetryFramesRequest& request);
 /// Checks the form only; the engine decides if it is a band of its job.
 absl::StatusOr<Band> band(const char* field, const farm::Band& message);
 /// `address`: the peer's address, for display.

@@ -42,6 +42,25 @@ void shrink(HeldImage& held, std::uint32_t across, std::uint32_t down) {
   }
 }
 
+/// Returns the job of the frame that was done last, or else of the first one that is rendered.
+absl::StatusOr<JobView> frame_to_show(Engine& engine, JobId sequence) {
+  using Frames = absl::StatusOr<std::vector<FrameView>>;
+  ASSIGN_OR_RETURN(const std::vector<FrameView> frames,
+                   blocking_call<Frames>([&](auto answer) { engine.frames(sequence, 0, answer); }));
+  const FrameView* best = nullptr;
+  for (const FrameView& frame : frames) {
+    const bool done = frame.state == FrameState::kDone;
+    const bool better = best == nullptr || (done && best->state != FrameState::kDone) ||
+                        (done && frame.changed > best->changed);
+    if ((done || frame.state == FrameState::kRendering) && better) {
+      best = &frame;
+    }
+  }
+  return best == nullptr
+             ? absl::NotFoundError(absl::StrCat("no frame of job ", sequence, " is rendered yet"))
+             : look_at(engine, best->job);
+}
+
 }  // namespace
 
 absl::StatusOr<JobView> look_at(Engine& engine, JobId job) {
@@ -60,6 +79,10 @@ absl::StatusOr<HeldImage> result_of(Engine& engine, JobId job, FinishedPart part
 }
 
 absl::StatusOr<HeldImage> picture_of(Engine& engine, const JobView& job, std::uint32_t most_side) {
+  if (job.has_frames()) {
+    ASSIGN_OR_RETURN(const JobView frame, frame_to_show(engine, job.id));
+    return picture_of(engine, frame, most_side);
+  }
   const RenderSettings& settings = job.spec.settings;
   const std::uint32_t side = std::max(settings.width, settings.height);
   const std::uint32_t step = side / most_side + (side % most_side == 0 ? 0 : 1);

@@ -26,7 +26,8 @@ absl::StatusOr<HeldImage> result_of(Engine& engine, JobId job,
                                     FinishedPart part = FinishedPart::kImage);
 
 /// Returns the present image of the job, or its finished image, with at most about `most_side`
-/// pixels per side, >= 1; without `digest`. NOT_FOUND: none of its bands is stored.
+/// pixels per side, >= 1; without `digest`. Of a sequence: of the frame that was done last, or else
+/// of the first that is rendered. NOT_FOUND: none of its bands is stored.
 absl::StatusOr<HeldImage> picture_of(Engine& engine, const JobView& job, std::uint32_t most_side);
 /// Returns the same for the job's present state, with `digest`.
 absl::StatusOr<HeldImage> preview_of(Engine& engine, JobId job, std::uint32_t most_side);

@@ -20,6 +20,18 @@ class FarmService final : public farm::Farm::CallbackService {
   grpc::ServerUnaryReactor* Submit(grpc::CallbackServerContext* context,
                                    const farm::SubmitRequest* request,
                                    farm::SubmitReply* reply) override;
+  grpc::ServerUnaryReactor* SubmitSequence(grpc::CallbackServerContext* context,
+                                           const farm::SubmitSequenceRequest* request,
+                                           farm::SubmitReply* reply) override;
+  grpc::ServerUnaryReactor* AddFrames(grpc::CallbackServerContext* context,
+                                      const farm::AddFramesRequest* request,
+                                      farm::JobStatus* reply) override;
+  grpc::ServerUnaryReactor* RetryFrames(grpc::CallbackServerContext* context,
+                                        const farm::RetryFramesRequest* request,
+                                        farm::JobStatus* reply) override;
+  grpc::ServerUnaryReactor* ListFrames(grpc::CallbackServerContext* context,
+                                       const farm::ListFramesRequest* request,
+                                       farm::ListFramesReply* reply) override;
   grpc::ServerWriteReactor<farm::JobStatus>* Watch(grpc::CallbackServerContext* context,
                                                    const farm::WatchRequest* request) override;
   grpc::ServerWriteReactor<farm::ResultChunk>* GetResult(

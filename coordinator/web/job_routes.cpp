@@ -62,6 +62,32 @@ absl::StatusOr<web::JobPage> job_page(Engine& engine, const HttpRequest& request
   return page;
 }
 
+absl::StatusOr<farm::ListFramesReply> frames(Engine& engine, const HttpRequest& request) {
+  ASSIGN_OR_RETURN(const JobId id, job_of(request));
+  std::uint64_t after = 0;
+  if (const std::string text = request.parameter("after");
+      !text.empty() && !absl::SimpleAtoi(text, &after)) {
+    return absl::InvalidArgumentError("after: must be a number");
+  }
+  using Frames = absl::StatusOr<std::vector<FrameView>>;
+  ASSIGN_OR_RETURN(const std::vector<FrameView> found,
+                   blocking_call<Frames>([&](auto answer) { engine.frames(id, after, answer); }));
+  farm::ListFramesReply reply;
+  reply.set_epoch(engine.epoch());
+  for (const FrameView& frame : found) {
+    *reply.add_frame() = to_message(frame);
+  }
+  return reply;
+}
+
+absl::StatusOr<farm::JobStatus> retry(Engine& engine, const HttpRequest& request) {
+  ASSIGN_OR_RETURN(const JobId id, job_of(request));
+  ASSIGN_OR_RETURN(const JobView view, blocking_call<Changed>([&](auto answer) {
+                     engine.retry_frames(id, {}, answer);
+                   }));
+  return to_message(view);
+}
+
 /// Submits a job for another picture of a job's scene, with the same settings: by an integrator
 /// without light transport.
 absl::StatusOr<web::Submitted> submit_layer(Engine& engine, const HttpRequest& request) {
@@ -111,6 +137,11 @@ absl::StatusOr<JobId> job_of(const HttpRequest& request) {
 void add_jobs(Router& router, Engine& engine) {
   router.get("/api/jobs/*",
              [&engine](const HttpRequest& request) { return answer(job_page(engine, request)); });
+  router.get("/api/jobs/*/frames",
+             [&engine](const HttpRequest& request) { return answer(frames(engine, request)); });
+  router.post("/api/jobs/*/retry", [&engine](const HttpRequest& request, const HttpBody&) {
+    return answer(retry(engine, request));
+  });
   add_command(router, engine, "cancel", &Engine::cancel);
   add_command(router, engine, "pause", &Engine::pause);
   add_command(router, engine, "resume", &Engine::resume);

@@ -459,6 +459,13 @@ class Job:
                 return
             _wait(interval, stop)
 
+    def frames(self):
+        """The frames of a job that was submitted with --frames: a list of (number, state, Job or None, reason); state is expected,
+        waiting, rendering, done or failed. The Job of a frame has its image."""
+        return [(int(frame["frame"]), frame["state"].replace("FRAME_STATE_", "").lower(),
+                 Job(self.farm, int(frame["job"])) if int(frame["job"]) else None, frame["reason"])
+                for frame in self.farm.ask("GET", self._path("/frames")).get("frame", [])]
+
     def preview(self, side=2048):
         """The present state as an Image of at most about `side` pixels a side; None: no pixels yet."""
         try:

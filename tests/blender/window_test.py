@@ -30,14 +30,20 @@ def tell(word):
         file.write(word + "\n")
 
 
+def wait_for(holds):
+    while not holds():
+        time.sleep(0.05)
+
+
 def watch():
     for share, word in ((0.25, "quarter"), (0.5, "half")):
-        while not any(fake.fraction(job) >= share and job["looks"] > 1 for job in list(fake.jobs.values())):
-            time.sleep(0.05)
-        time.sleep(1)  # the next preview reaches the window
+        wait_for(lambda: [job for job in list(fake.jobs.values()) if fake.fraction(job) >= share])
+        # The add-on asks for a preview after it has given the one before to Blender: at the second one from here, a picture of at
+        # least this share is in the window.
+        before = sum(job["looks"] for job in list(fake.jobs.values()))
+        wait_for(lambda: sum(job["looks"] for job in list(fake.jobs.values())) >= before + 2)
         tell(word)
-    while not any(job["state"] == "cancelled" for job in list(fake.jobs.values())):
-        time.sleep(0.05)
+    wait_for(lambda: any(job["state"] == "cancelled" for job in list(fake.jobs.values())))
     tell("cancelled")
 
 

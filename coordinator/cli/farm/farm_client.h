@@ -53,6 +53,19 @@ class FarmClient {
 
   absl::StatusOr<JobId> submit(const farm::SubmitRequest& request);
 
+  absl::StatusOr<JobId> submit_sequence(const farm::SubmitSequenceRequest& request);
+  /// Gives a frame its scene.
+  absl::Status add_frame(JobId sequence, FrameNumber frame, const wire::Digest& manifest);
+  /// Renders failed frames again; none: all that failed. Returns the sequence after that.
+  absl::StatusOr<Progress> retry_frames(JobId sequence, const std::vector<FrameNumber>& frames);
+  struct Frames {
+    std::string epoch;
+    std::vector<FrameView> frames;
+  };
+  /// Returns the frames that changed after `after` in the same epoch; 0: all.
+  /// FAILED_PRECONDITION: the job is a single image.
+  absl::StatusOr<Frames> frames(JobId sequence, std::uint64_t after = 0);
+
   /// Calls `changed` with each status. Returns OK after a final state. UNAVAILABLE: the connection
   /// was lost before.
   absl::Status watch(JobId job, const std::function<void(const Progress&)>& changed);
@@ -75,6 +88,8 @@ class FarmClient {
   /// resolution. NOT_FOUND: no pixel is stored. DATA_LOSS as above.
   absl::StatusOr<FarmImage> preview(JobId job, std::uint32_t most_side);
 
+  /// Returns the state of a job, with its error curve and shares.
+  absl::StatusOr<Progress> job(JobId job);
   absl::StatusOr<std::vector<Progress>> jobs();
   absl::StatusOr<farm::ListWorkersReply> workers();
   absl::StatusOr<Progress> cancel(JobId job);

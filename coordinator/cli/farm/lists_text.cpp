@@ -6,6 +6,7 @@
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/base/text.h"
 #include "coordinator/cli/progress/progress_json.h"
+#include "coordinator/cli/progress/progress_text.h"
 #include "coordinator/scheduler/api/job_spec.h"
 
 namespace bandsaw::coordinator {
@@ -46,6 +47,9 @@ std::vector<std::string> jobs_table(const std::vector<Progress>& jobs) {
         job.error >= 0 ? percent(job.error) : "",
         duration(job.elapsed_s),
     });
+    if (job.has_frames()) {
+      rows.back().push_back(frames_done_text(job.frames));
+    }
     if (!job.reason.empty()) {
       rows.back().push_back(printable(job.reason));
     }

@@ -4,7 +4,9 @@
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/base/json.h"
+#include "coordinator/cli/farm/after_job.h"
 #include "coordinator/cli/farm/farm_errors.h"
+#include "coordinator/cli/farm/submit_frames.h"
 #include "coordinator/cli/farm/upload.h"
 #include "coordinator/cli/farm/watch_job.h"
 #include "coordinator/cli/image/clean.h"
@@ -61,7 +63,13 @@ ExitCode run(const SubmitOptions& options, Process& process) {
   const Console& console = process.console;
   std::vector<std::string> outputs = options.outputs;
   if (outputs.empty() && !options.detach) {
-    outputs = {default_output(options.scene, ".png")};
+    outputs = {default_output(options.scene, options.frames.empty() ? ".png" : ".####.png")};
+  }
+  if (!options.frames.empty()) {
+    const auto client = connect_to_farm(options.farm);
+    return client.ok() ? submit_frames(**client, options, outputs, process)
+                       : console.fail(exit_code_of(client.status()),
+                                      std::string(client.status().message()));
   }
   if (const auto status = check_outputs(options.scene, options.outputs, outputs); !status.ok()) {
     return console.fail(ExitCode::kWrong, std::string(status.message()));
@@ -117,9 +125,12 @@ ExitCode run(const SubmitOptions& options, Process& process) {
     }
     return make_layers(options.layers, *settings, samples, render, counts);
   };
-  return watch_job(**client, *job,
-                   {outputs, *reports, options.display, options.tev, options.denoise},
-                   options.verbosity, process, layers);
+  const ExitCode code = watch_job(
+      **client, *job, {outputs, *reports, options.display, options.tev, options.denoise},
+      options.verbosity, process, layers);
+  std::vector<std::string> files = outputs;
+  files.insert(files.end(), reports->begin(), reports->end());
+  return run_after(options.after.command, **client, *job, outputs, files, code, console);
 }
 
 }  // namespace bandsaw::coordinator

@@ -1,6 +1,9 @@
 // bandsaw watch: follows an existing job.
 
+#include "absl/strings/str_cat.h"
+#include "coordinator/cli/farm/after_job.h"
 #include "coordinator/cli/farm/farm_errors.h"
+#include "coordinator/cli/farm/watch_frames.h"
 #include "coordinator/cli/farm/watch_job.h"
 #include "coordinator/cli/image/clean.h"
 #include "coordinator/cli/image/output.h"
@@ -8,10 +11,29 @@
 #include "coordinator/cli/options/commands.h"
 
 namespace bandsaw::coordinator {
+namespace {
 
-ExitCode run(const WatchOptions& options, Process& process) {
-  if (const auto status = check_outputs_writable(options.outputs); !status.ok()) {
-    return process.console.fail(ExitCode::kWrong, std::string(status.message()));
+ExitCode watch_sequence(const WatchOptions& options, FarmClient& client, Process& process) {
+  if (!options.tev.empty() || options.verbosity.preview || options.denoise != Denoiser::kNone) {
+    return process.console.fail(
+        ExitCode::kWrong,
+        absl::StrCat("--preview, --tev and --denoise are for one image: job ", options.job,
+                     " has frames; watch the job of one of them"));
+  }
+  const WantedFrames wanted{options.outputs, options.report, options.display, options.after};
+  if (const absl::Status status = check_wanted(wanted); !status.ok()) {
+    return process.console.fail(
+        absl::IsFailedPrecondition(status) ? ExitCode::kFailed : ExitCode::kWrong,
+        std::string(status.message()));
+  }
+  return watch_frames(client, options.job, wanted, options.verbosity, process);
+}
+
+ExitCode watch_image(const WatchOptions& options, FarmClient& client, Process& process) {
+  if (!options.after.video.empty() || !options.after.contact_sheet.empty()) {
+    return process.console.fail(ExitCode::kWrong,
+                                absl::StrCat("--video and --contact-sheet are made of frames: job ",
+                                             options.job, " is a single image"));
   }
   if (options.denoise != Denoiser::kNone) {
     if (const auto status = check_outputs_writable(raw_outputs(options.outputs)); !status.ok()) {
@@ -22,14 +44,34 @@ ExitCode run(const WatchOptions& options, Process& process) {
   if (!reports.ok()) {
     return process.console.fail(ExitCode::kWrong, std::string(reports.status().message()));
   }
+  const ExitCode code =
+      watch_job(client, options.job,
+                {options.outputs, *reports, options.display, options.tev, options.denoise},
+                options.verbosity, process);
+  std::vector<std::string> files = options.outputs;
+  files.insert(files.end(), reports->begin(), reports->end());
+  return run_after(options.after.command, client, options.job, options.outputs, files, code,
+                   process.console);
+}
+
+}  // namespace
+
+ExitCode run(const WatchOptions& options, Process& process) {
+  outlive_reader();
+  const Console& console = process.console;
+  if (const auto status = check_outputs_writable(options.outputs); !status.ok()) {
+    return console.fail(ExitCode::kWrong, std::string(status.message()));
+  }
   const auto client = connect_to_farm(options.farm);
   if (!client.ok()) {
-    return process.console.fail(exit_code_of(client.status()),
-                                std::string(client.status().message()));
+    return console.fail(exit_code_of(client.status()), std::string(client.status().message()));
   }
-  return watch_job(**client, options.job,
-                   {options.outputs, *reports, options.display, options.tev, options.denoise},
-                   options.verbosity, process);
+  const auto job = (*client)->job(options.job);
+  if (!job.ok()) {
+    return console.fail(exit_code_of(job.status()), std::string(job.status().message()));
+  }
+  return job->job.has_frames() ? watch_sequence(options, **client, process)
+                               : watch_image(options, **client, process);
 }
 
 }  // namespace bandsaw::coordinator

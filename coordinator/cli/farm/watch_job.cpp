@@ -83,8 +83,9 @@ std::string come_back(JobId job, const std::vector<std::string>& outputs) {
 
 class Watch {
  public:
-  Watch(FarmClient& client, JobId job, ProgressDisplay& display)
-      : client_(client), job_(job), display_(display) {}
+  Watch(FarmClient& client, JobId job, ProgressDisplay& display,
+        const std::function<void(const Progress&)>& also)
+      : client_(client), job_(job), display_(display), also_(also) {}
 
   // Returns the last status. UNAVAILABLE: the farm was unreachable too long. CANCELLED: stopped.
   absl::StatusOr<Progress> to_the_end() {
@@ -109,6 +110,9 @@ class Watch {
     }
     last_ = progress;
     display_.update(progress, steady_seconds());
+    if (also_) {
+      also_(progress);
+    }
   }
 
   absl::Status wait_for_farm(const absl::Status& why) {
@@ -132,6 +136,7 @@ class Watch {
   FarmClient& client_;
   JobId job_;
   ProgressDisplay& display_;
+  const std::function<void(const Progress&)>& also_;
   Progress last_;
   std::optional<double> gone_since_;
 };
@@ -200,8 +205,9 @@ absl::StatusOr<Pictures> with_layers(FarmClient& client, FarmImage result, const
 
 }  // namespace
 
-absl::StatusOr<Progress> follow_job(FarmClient& client, JobId job, ProgressDisplay& display) {
-  return Watch(client, job, display).to_the_end();
+absl::StatusOr<Progress> follow_job(FarmClient& client, JobId job, ProgressDisplay& display,
+                                    const std::function<void(const Progress&)>& heard) {
+  return Watch(client, job, display, heard).to_the_end();
 }
 
 ExitCode watch_job(FarmClient& client, JobId job, const Wanted& wanted, Verbosity verbosity,

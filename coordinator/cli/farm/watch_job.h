@@ -25,8 +25,9 @@ struct Wanted {
 
 /// Displays the job's progress until its state is final, and returns the last status. If the farm
 /// is unreachable, retries for one minute. UNAVAILABLE: it did not come back. CANCELLED: `client`
-/// was stopped.
-absl::StatusOr<Progress> follow_job(FarmClient& client, JobId job, ProgressDisplay& display);
+/// was stopped. `heard` is called with each state, also the last one.
+absl::StatusOr<Progress> follow_job(FarmClient& client, JobId job, ProgressDisplay& display,
+                                    const std::function<void(const Progress&)>& heard = {});
 
 /// Returns additional layers to be written with an image of that many samples per pixel.
 using BesideImage =

@@ -52,6 +52,16 @@ absl::StatusOr<Command> checked_priority(const RawOptions& raw) {
   return options;
 }
 
+absl::StatusOr<Command> checked_missing(const RawOptions& raw) {
+  return checked<MissingOptions>(raw, "missing");
+}
+
+absl::StatusOr<Command> checked_retry(const RawOptions& raw) {
+  ASSIGN_OR_RETURN(RetryOptions options, checked<RetryOptions>(raw, "retry"));
+  ASSIGN_OR_RETURN(options.frames, checked_frames(raw));
+  return options;
+}
+
 absl::StatusOr<Command> checked_why(const RawOptions& raw) {
   return checked<WhyOptions>(raw, "why");
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "absl/strings/match.h"
@@ -10,6 +11,7 @@
 #include "coordinator/cli/options/choices.h"
 #include "coordinator/cli/options/output_names.h"
 #include "coordinator/cli/options/quantities.h"
+#include "coordinator/scheduler/api/frame_numbers.h"
 #include "proto/wire/limits.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/image/write_image.h"
@@ -66,6 +68,12 @@ absl::Status read_positive(const char* name, const std::optional<std::string>& t
 }
 
 absl::Status read_frame(const RawOptions& raw, SceneChoices& choices) {
+  if (raw.frame && raw.frames) {
+    return wrong("--frame and --frames exclude each other");
+  }
+  if (raw.fixed_seed && !raw.frame && !raw.frames) {
+    return wrong("--fixed-seed needs --frame or --frames");
+  }
   if (raw.frame) {
     constexpr std::int64_t kMaxFrame = 1'000'000'000;
     std::int64_t frame = 0;
@@ -77,8 +85,8 @@ absl::Status read_frame(const RawOptions& raw, SceneChoices& choices) {
   const auto read = [&](const char* name, const std::optional<std::string>& text, double low,
                         double high, std::optional<double>& to) -> absl::Status {
     double value = 0;
-    if (text && !raw.frame) {
-      return wrong(absl::StrCat(name, " needs --frame"));
+    if (text && !raw.frame && !raw.frames && !raw.video) {
+      return wrong(absl::StrCat(name, " needs --frame or --frames"));
     }
     if (text && (!absl::SimpleAtod(*text, &value) || !(value >= low && value <= high))) {
       return wrong(
@@ -121,6 +129,7 @@ absl::StatusOr<ImageOptions> checked_image(const RawOptions& raw) {
   RETURN_IF_ERROR(read_whole("--width", raw.width, 1, kMaxSide, image.width));
   RETURN_IF_ERROR(read_whole("--height", raw.height, 1, kMaxSide, image.height));
   RETURN_IF_ERROR(read_whole("--depth", raw.depth, 1, kMaxDepth, image.depth));
+  image.fixed_seed = raw.fixed_seed;
   if (raw.integrator) {
     image.integrator = integrator_named(*raw.integrator);
     if (!image.integrator) {
@@ -192,6 +201,53 @@ absl::StatusOr<std::string> checked_tev(const RawOptions& raw) {
   return *raw.tev;
 }
 
+absl::StatusOr<std::vector<FrameNumber>> checked_frames(const RawOptions& raw) {
+  if (!raw.frames) {
+    return std::vector<FrameNumber>{};
+  }
+  auto frames = parse_frames(*raw.frames);
+  if (!frames.ok()) {
+    return wrong(absl::StrCat("--frames: ", frames.status().message()));
+  }
+  return frames;
+}
+
+absl::StatusOr<AfterOptions> checked_after(const RawOptions& raw) {
+  AfterOptions after;
+  after.video = raw.video.value_or("");
+  after.contact_sheet = raw.contact_sheet.value_or("");
+  after.command = raw.then.value_or("");
+  constexpr const char* kContainers[] = {".mp4", ".mov", ".mkv", ".webm"};
+  if (raw.video && std::none_of(std::begin(kContainers), std::end(kContainers), [&](auto suffix) {
+        return absl::EndsWithIgnoreCase(after.video, suffix);
+      })) {
+    return wrong(
+        absl::StrCat("--video: must end in .mp4, .mov, .mkv or .webm, is '", after.video, "'"));
+  }
+  if (raw.contact_sheet) {
+    RETURN_IF_ERROR(check_outputs({after.contact_sheet}, false));
+  }
+  if (raw.then && after.command.empty()) {
+    return wrong("--then: the command is missing, as in: --then './send.sh'");
+  }
+  if (raw.fps && (!absl::SimpleAtod(*raw.fps, &after.video_fps) ||
+                  !(after.video_fps >= 0.01 && after.video_fps <= 10'000))) {
+    return wrong(absl::StrCat("--fps: must be a number in [0.01, 10000], is '", *raw.fps, "'"));
+  }
+  return after;
+}
+
+absl::Status check_frame_places(const std::vector<std::string>& outputs) {
+  for (const std::string& output : outputs) {
+    if (!has_frame_place(output)) {
+      return wrong(absl::StrCat("-o ", output,
+                                ": each frame needs a file of its own; put #### where its number "
+                                "is to be, as in walk.####.exr"));
+    }
+  }
+  return absl::OkStatus();
+}
+
 absl::StatusOr<JobId> checked_job(const RawOptions& raw, const std::string& command) {
   if (!raw.job) {
     return wrong(absl::StrCat(command, ": the job's number is missing; bandsaw jobs lists them"));
@@ -240,6 +296,32 @@ absl::StatusOr<Denoiser> checked_denoise(const RawOptions& raw) {
   return raw.denoise == "oidn" ? Denoiser::kOidn : Denoiser::kRegression;
 }
 
+/// Reads what concerns the frames of a submit, and what is made when the job is over.
+absl::Status read_sequence(const RawOptions& raw, SubmitOptions& options) {
+  ASSIGN_OR_RETURN(options.frames, checked_frames(raw));
+  ASSIGN_OR_RETURN(options.after, checked_after(raw));
+  if (raw.continued) {
+    if (options.frames.empty()) {
+      return wrong("--continue needs --frames: those of the job that is continued");
+    }
+    ASSIGN_OR_RETURN(options.continued, parse_whole("--continue", *raw.continued, 1,
+                                                    std::numeric_limits<JobId>::max()));
+  }
+  if (options.frames.empty() && (raw.video || raw.contact_sheet)) {
+    return wrong("--video and --contact-sheet are made of frames: add --frames, as in 1:48");
+  }
+  if (!options.frames.empty() &&
+      (raw.layers || raw.tev || raw.preview || !raw.denoise.empty())) {
+    return wrong("--layers, --denoise, --tev and --preview are for a single image: omit --frames");
+  }
+  if (raw.detach && (raw.video || raw.contact_sheet || raw.then)) {
+    return wrong(
+        "--detach does not wait for the job's end: give --video, --contact-sheet and --then to "
+        "bandsaw watch JOB");
+  }
+  return options.frames.empty() ? absl::OkStatus() : check_frame_places(options.outputs);
+}
+
 absl::StatusOr<Command> checked_submit(const RawOptions& raw) {
   SubmitOptions options;
   options.scene = raw.scene;
@@ -258,6 +340,7 @@ absl::StatusOr<Command> checked_submit(const RawOptions& raw) {
     ASSIGN_OR_RETURN(options.priority, checked_priority_value("--priority", *raw.priority));
   }
   ASSIGN_OR_RETURN(options.layers, checked_layers(raw));
+  RETURN_IF_ERROR(read_sequence(raw, options));
   if (options.detach && !options.outputs.empty()) {
     return wrong(
         "--detach does not wait for the image: omit -o and fetch it with bandsaw watch JOB "
@@ -287,6 +370,7 @@ absl::StatusOr<Command> checked_watch(const RawOptions& raw) {
   ASSIGN_OR_RETURN(options.report, checked_report(raw, !raw.outputs.empty()));
   ASSIGN_OR_RETURN(options.verbosity, checked_verbosity(raw));
   ASSIGN_OR_RETURN(options.tev, checked_tev(raw));
+  ASSIGN_OR_RETURN(options.after, checked_after(raw));
   RETURN_IF_ERROR(check_outputs(options.outputs, false));
   ASSIGN_OR_RETURN(options.denoise, checked_denoise(raw));
   if (options.denoise != Denoiser::kNone && options.outputs.empty()) {

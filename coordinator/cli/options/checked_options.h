@@ -21,14 +21,15 @@ struct RawOptions {
   std::optional<std::string> samples, error, time, seed, width, height, depth, threads, kernel,
       rows;
   std::optional<std::string> integrator, exposure, tone, layers, report, seeds, reference_samples;
-  std::optional<std::string> tev, frame, fps, shutter;
+  std::optional<std::string> tev, frame, fps, shutter, frames, continued, video, contact_sheet,
+      then;
   std::vector<std::string> parameters;
   std::string inside, folder;
   bool strict = false, force = false;
   std::optional<std::string> web, shell, audit;
   bool lift = false, adaptive = false, half = false, insecure = false, detach = false,
        quiet = false, json = false, preview = false, every_object = false, reflection = false,
-       compare_clean = false;
+       compare_clean = false, fixed_seed = false;
   std::string denoise;  ///< "regression" or another method; empty: not given
 };
 
@@ -42,6 +43,8 @@ absl::StatusOr<Command> checked_pause(const RawOptions& raw);
 absl::StatusOr<Command> checked_resume(const RawOptions& raw);
 absl::StatusOr<Command> checked_priority(const RawOptions& raw);
 absl::StatusOr<Command> checked_why(const RawOptions& raw);
+absl::StatusOr<Command> checked_missing(const RawOptions& raw);
+absl::StatusOr<Command> checked_retry(const RawOptions& raw);
 absl::StatusOr<Command> checked_logs(const RawOptions& raw);
 absl::StatusOr<Command> checked_quarantine(const RawOptions& raw);
 absl::StatusOr<Command> checked_doctor(const RawOptions& raw);
@@ -58,6 +61,12 @@ absl::StatusOr<Verbosity> checked_verbosity(const RawOptions& raw);
 absl::StatusOr<ReportOption> checked_report(const RawOptions& raw, bool has_images = true);
 /// Returns HOST:PORT of a viewer; empty: not given.
 absl::StatusOr<std::string> checked_tev(const RawOptions& raw);
+/// Returns the frames of --frames; none: not given.
+absl::StatusOr<std::vector<FrameNumber>> checked_frames(const RawOptions& raw);
+/// Checks what is made when a job is over.
+absl::StatusOr<AfterOptions> checked_after(const RawOptions& raw);
+/// Checks that the names of outputs have a place for the number of a frame.
+absl::Status check_frame_places(const std::vector<std::string>& outputs);
 /// Checks for HOST:PORT. `option` and `example` are used in the error.
 absl::Status check_address(const std::string& option, const std::string& address,
                            const std::string& example);

@@ -25,6 +25,8 @@ ExitCode run(const PauseOptions& options, Process& process);
 ExitCode run(const ResumeOptions& options, Process& process);
 ExitCode run(const PriorityOptions& options, Process& process);
 ExitCode run(const WhyOptions& options, Process& process);
+ExitCode run(const MissingOptions& options, Process& process);
+ExitCode run(const RetryOptions& options, Process& process);
 ExitCode run(const LogsOptions& options, Process& process);
 ExitCode run(const QuarantineOptions& options, Process& process);
 ExitCode run(const DoctorOptions& options, Process& process);

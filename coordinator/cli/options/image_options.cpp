@@ -64,6 +64,8 @@ void add_image(CLI::App& app, RawOptions& raw) {
                  "Frame of a scene that moves: the scene at time N / fps [default: time 0, models "
                  "without their animations]")
       ->type_name("N");
+  app.add_flag("--fixed-seed", raw.fixed_seed,
+               "The same noise in all frames [default: frame N has seed + N]");
   app.add_option("--fps", raw.fps, "Frames per second, with --frame [default: the scene's, or 24]")
       ->type_name("F");
   app.add_option("--shutter", raw.shutter,
@@ -124,6 +126,20 @@ void add_layers(CLI::App& app, RawOptions& raw) {
       ->type_name("L,L,…");
 }
 
+void add_after(CLI::App& app, RawOptions& raw) {
+  app.add_option("--video", raw.video,
+                 "Video of the frames, made by ffmpeg: .mp4, .mov, .mkv or .webm; --fps sets its "
+                 "speed [default: 24]")
+      ->type_name("FILE");
+  app.add_option("--contact-sheet", raw.contact_sheet,
+                 "Picture with all frames, small, under their numbers: .png …")
+      ->type_name("FILE");
+  app.add_option("--then", raw.then,
+                 "Command for sh when the job is over; this program runs it, with BANDSAW_JOB, "
+                 "BANDSAW_STATE, BANDSAW_FILES and BANDSAW_FILE_LIST in its environment")
+      ->type_name("COMMAND");
+}
+
 void add_views(CLI::App& app, RawOptions& raw) {
   app.add_flag("--preview", raw.preview,
                "Draw the image on the terminal while it forms, in half blocks of 24-bit colours");
@@ -150,6 +166,14 @@ absl::StatusOr<ReportOption> checked_report(const RawOptions& raw, bool has_imag
 
 void add_submit(CLI::App& app, RawOptions& raw) {
   add_image(app, raw);
+  app.add_option(
+         "--frames", raw.frames,
+         "Many frames as one job, as in 1:240, 1-30, 1:240:2 or 47,60-72; the outputs' names "
+         "have #### for the number")
+      ->type_name("RANGES");
+  app.add_option("--continue", raw.continued,
+                 "Send the scenes that this job with frames lacks, instead of starting a new one")
+      ->type_name("JOB");
   add_integrator(app, raw);
   add_output(app, raw, kPictures, " [default: the scene's name as .png]");
   add_display(app, raw, "the scene's");
@@ -159,6 +183,7 @@ void add_submit(CLI::App& app, RawOptions& raw) {
   app.add_option("--priority", raw.priority,
                  "Jobs of the highest priority are rendered first, -1000 to 1000 [default: 0]")
       ->type_name("N");
+  add_after(app, raw);
   add_farm(app, raw);
   add_views(app, raw);
   add_verbosity(app, raw);
@@ -169,6 +194,8 @@ void add_watch(CLI::App& app, RawOptions& raw) {
   add_output(app, raw, kPictures, "");
   add_display(app, raw, "the scene's");
   add_denoise(app, raw);
+  add_after(app, raw);
+  app.add_option("--fps", raw.fps, "Frames per second of the video [default: 24]")->type_name("F");
   add_farm(app, raw);
   add_views(app, raw);
   add_verbosity(app, raw);

@@ -36,6 +36,15 @@ struct ImageOptions {
   std::optional<std::uint32_t> depth;
   std::optional<Integrator> integrator;
   SceneChoices choices;
+  bool fixed_seed = false;  ///< every frame has `seed`; otherwise frame N has seed + N
+};
+
+/// What is made when a job is over; empty: not given.
+struct AfterOptions {
+  std::string video;          ///< file for a video of the frames
+  double video_fps = 24;      ///< frames per second of the video
+  std::string contact_sheet;  ///< file for a picture with all frames, small
+  std::string command;        ///< for sh
 };
 
 /// How pictures are written; unset: not given.
@@ -94,9 +103,12 @@ struct SubmitOptions {
   ReportOption report;
   std::string tev;  ///< HOST:PORT of a viewer; empty: none
   Verbosity verbosity;
-  bool detach = false;            ///< do not watch the job
-  std::int32_t priority = 0;      ///< [-kMaxPriority, kMaxPriority]
-  std::vector<LayerKind> layers;  ///< layers of EXR files
+  bool detach = false;              ///< do not watch the job
+  std::int32_t priority = 0;        ///< [-kMaxPriority, kMaxPriority]
+  std::vector<LayerKind> layers;    ///< layers of EXR files
+  std::vector<FrameNumber> frames;  ///< ascending; empty: a single image
+  JobId continued = 0;  ///< sequence whose missing scenes are sent; 0: a new job is started
+  AfterOptions after;
   Denoiser denoise = Denoiser::kNone;
 };
 
@@ -109,6 +121,20 @@ struct WatchOptions {
   std::string tev;  ///< HOST:PORT of a viewer; empty: none
   Verbosity verbosity;
   Denoiser denoise = Denoiser::kNone;
+  AfterOptions after;
+};
+
+struct MissingOptions {
+  JobId job = 0;
+  FarmOption farm;
+  Verbosity verbosity;
+};
+
+struct RetryOptions {
+  JobId job = 0;
+  std::vector<FrameNumber> frames;  ///< ascending; empty: all that failed
+  FarmOption farm;
+  Verbosity verbosity;
 };
 
 struct JobsOptions {
@@ -259,8 +285,8 @@ struct ShowText {
 using Command =
     std::variant<ServeOptions, SubmitOptions, WatchOptions, JobsOptions, WorkersOptions,
                  CancelOptions, PauseOptions, ResumeOptions, PriorityOptions, WhyOptions,
-                 LogsOptions, QuarantineOptions, DoctorOptions, RotateOptions, InviteOptions,
-                 DismissOptions, RenderOptions, InfoOptions, ImportOptions, StitchOptions,
-                 CompareOptions, StudyOptions, ShowText>;
+                 MissingOptions, RetryOptions, LogsOptions, QuarantineOptions, DoctorOptions,
+                 RotateOptions, InviteOptions, DismissOptions, RenderOptions, InfoOptions,
+                 ImportOptions, StitchOptions, CompareOptions, StudyOptions, ShowText>;
 
 }  // namespace bandsaw::coordinator

@@ -36,4 +36,7 @@ inline std::string name_of_frame(const std::string& path, std::int64_t frame) {
   return path.substr(0, first) + (frame < 0 ? "-" : "") + number + path.substr(last + 1);
 }
 
+/// Returns true if the name of the file has a place for the number of a frame.
+inline bool has_frame_place(const std::string& path) { return name_of_frame(path, 0) != path; }
+
 }  // namespace bandsaw::coordinator

@@ -135,6 +135,21 @@ void ProgressDisplay::preparing(const std::string& what, std::uint64_t bytes_don
   }
 }
 
+void ProgressDisplay::frame_written(JobId sequence, FrameNumber frame,
+                                    const std::vector<std::string>& outputs,
+                                    const std::vector<std::string>& reports) {
+  MutexLock lock(mutex_);
+  if (verbosity_.json) {
+    console_.line(JsonObject()
+                      .text("event", "frame")
+                      .whole("job", sequence)
+                      .number("frame", static_cast<double>(frame))
+                      .texts("outputs", outputs)
+                      .texts("reports", reports)
+                      .str());
+  }
+}
+
 void ProgressDisplay::done(const Progress& progress, const std::vector<std::string>& outputs,
                            const std::vector<std::string>& reports) {
   MutexLock lock(mutex_);

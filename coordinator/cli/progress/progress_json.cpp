@@ -60,6 +60,11 @@ JsonObject progress_json(const Progress& progress, const std::string& event) {
   if (progress.threads > 0) {
     return out.whole("threads", static_cast<std::uint64_t>(progress.threads));
   }
+  if (job.has_frames()) {
+    out.whole("frames", job.frames.all())
+        .whole("frames_done", job.frames.of(FrameState::kDone))
+        .whole("frames_failed", job.frames.of(FrameState::kFailed));
+  }
   std::vector<JsonObject> workers;
   for (const JobWorkerView& worker : job.workers) {
     workers.push_back(worker_json(worker));

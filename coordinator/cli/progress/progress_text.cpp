@@ -30,9 +30,15 @@ std::string bar(double fraction, std::size_t width) {
 
 std::string rate(double per_second) { return si(per_second) + "/s"; }
 
+std::string count(std::size_t n, const std::string& what) {
+  return absl::StrCat(n, " ", what, n == 1 ? "" : "s");
+}
+
 std::vector<std::string> measures(const JobView& job) {
   std::vector<std::string> out;
-  if (job.error >= 0) {
+  if (job.has_frames()) {
+    out.push_back(frames_done_text(job.frames));
+  } else if (job.error >= 0) {
     out.push_back("error " + percent(job.error));
   }
   out.push_back(si_with(static_cast<double>(job.samples_done), "samples"));
@@ -45,10 +51,6 @@ std::vector<std::string> measures(const JobView& job) {
     out.push_back(clock_time(job.remaining_s) + " left");
   }
   return out;
-}
-
-std::string count(std::size_t n, const std::string& what) {
-  return absl::StrCat(n, " ", what, n == 1 ? "" : "s");
 }
 
 std::string worker_line(const JobWorkerView& worker, std::size_t name_columns) {
@@ -66,11 +68,20 @@ std::string worker_line(const JobWorkerView& worker, std::size_t name_columns) {
 
 }  // namespace
 
+std::string frames_done_text(const FrameCounts& frames) {
+  const std::size_t failed = frames.of(FrameState::kFailed);
+  return absl::StrCat(frames.of(FrameState::kDone), " of ", count(frames.all(), "frame"),
+                      failed == 0 ? "" : absl::StrCat(kDot, failed, " failed"));
+}
+
 std::string header_line(const Progress& progress) {
   const JobSpec& spec = progress.job.spec;
-  return absl::StrCat(progress.job.id > 0 ? absl::StrCat("job ", progress.job.id, kDot) : "",
-                      printable(spec.name), kDot, spec.settings.width, "×", spec.settings.height,
-                      kDot, "until ", stop_text(spec.stop));
+  return absl::StrCat(
+      progress.job.id > 0 ? absl::StrCat("job ", progress.job.id, kDot) : "", printable(spec.name),
+      kDot, spec.settings.width, "×", spec.settings.height, kDot,
+      progress.job.has_frames() ? absl::StrCat(count(progress.job.frames.all(), "frame"), kDot)
+                                : "",
+      "until ", stop_text(spec.stop));
 }
 
 std::string bar_line(const Progress& progress, std::size_t width) {
@@ -119,6 +130,9 @@ std::string final_line(const Progress& progress, const std::string& name,
                        const std::string& reports) {
   const JobView& job = progress.job;
   std::string line = name;
+  if (job.has_frames()) {
+    absl::StrAppend(&line, kDot, count(job.frames.all(), "frame"));
+  }
   if (job.error >= 0) {
     absl::StrAppend(&line, kDot, "error ", percent(job.error));
   }
@@ -132,8 +146,10 @@ std::string final_line(const Progress& progress, const std::string& name,
 std::string cost_line(const Progress& progress) {
   const JobView& job = progress.job;
   const auto rays = static_cast<double>(job.counters.rays);
-  std::string line =
-      absl::StrCat(count(job.samples_per_pixel, "sample"), " a pixel", kDot, si(rays), " rays");
+  std::string line = absl::StrCat(
+      job.has_frames() ? ""
+                       : absl::StrCat(count(job.samples_per_pixel, "sample"), " a pixel", kDot),
+      si(rays), " rays");
   if (job.cpu_s > 0) {
     absl::StrAppend(&line, ", ", si(rays / job.cpu_s), "/CPU s", kDot, duration(job.cpu_s),
                     " of CPU");

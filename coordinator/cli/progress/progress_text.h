@@ -9,7 +9,11 @@
 
 namespace bandsaw::coordinator {
 
-/// "job 7 · cornell · 600×600 · until error ≤ 1 %"; without the job for a local render.
+/// "12 of 48 frames · 2 failed".
+std::string frames_done_text(const FrameCounts& frames);
+
+/// "job 7 · cornell · 600×600 · until error ≤ 1 %"; without the job for a local render; with the
+/// number of frames of a sequence.
 std::string header_line(const Progress& progress);
 
 /// " 62 % ━━━━━━━━━━━━╸        error 1.6 % · 48 Msamples · 5.2 M/s · 0:09 left"; the bar is

@@ -26,7 +26,7 @@ constexpr char kAddon[] = "bandsaw_blender.zip";
 /// Python reads the add-on from its zip. The arguments follow "--".
 constexpr char kScript[] =
     "import sys; a = sys.argv[sys.argv.index('--') + 1:]; sys.path.insert(0, a[0]); "
-    "from bandsaw_blender import headless; headless.main(a[1], a[2])";
+    "from bandsaw_blender import headless; headless.main(*a[1:])";
 
 /// Returns the non-empty lines of a file; none if there is no such file.
 std::vector<std::string> lines_of(const fs::path& path) {
@@ -85,7 +85,8 @@ BlendScene::~BlendScene() {
 }
 
 absl::StatusOr<std::unique_ptr<BlendScene>> scene_of_blend_file(const std::string& path,
-                                                                const std::atomic<bool>& stop) {
+                                                                const std::atomic<bool>& stop,
+                                                                std::optional<std::int64_t> frame) {
   std::error_code error;
   if (!fs::is_regular_file(path, error)) {
     return absl::NotFoundError(absl::StrCat(path, ": there is no such file"));
@@ -100,10 +101,14 @@ absl::StatusOr<std::unique_ptr<BlendScene>> scene_of_blend_file(const std::strin
   const std::string addon = absl::StrCat(folder, "/", kAddon);
   RETURN_IF_ERROR(write_addon(addon));
   std::string output;
-  RETURN_IF_ERROR(run_blender(path,
-                              {"blender", "-b", "--factory-startup", "-Y", file.string(),
-                               "--python-expr", kScript, "--", addon, folder, stem},
-                              stop, output));
+  std::vector<std::string> arguments = {"blender", "-b",          "--factory-startup",
+                                        "-Y",      file.string(), "--python-expr",
+                                        kScript,   "--",          addon,
+                                        folder,    stem};
+  if (frame) {
+    arguments.push_back(absl::StrCat(*frame));
+  }
+  RETURN_IF_ERROR(run_blender(path, arguments, stop, output));
   for (const std::string& line : lines_of(fs::path(folder) / "error")) {
     return absl::InvalidArgumentError(absl::StrCat(file.filename().string(), ": ", line));
   }

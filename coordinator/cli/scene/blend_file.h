@@ -4,7 +4,9 @@
 // what it would render as a scene file with its files (deploy/blender).
 
 #include <atomic>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -32,11 +34,12 @@ class BlendScene {
   std::string folder_;
 };
 
-/// Runs Blender on the file; scripts in the file are not run. Unlike the importer, Blender runs
-/// with the user's rights. NOT_FOUND: no such file. INVALID_ARGUMENT: Blender cannot read or render
-/// it. FAILED_PRECONDITION: Blender is not installed. CANCELLED: `stop`. DEADLINE_EXCEEDED: it took
-/// more than ten minutes.
-absl::StatusOr<std::unique_ptr<BlendScene>> scene_of_blend_file(const std::string& path,
-                                                                const std::atomic<bool>& stop);
+/// Runs Blender on the file, at this frame or at the one that is saved in it; scripts in the file
+/// are not run. Unlike the importer, Blender runs with the user's rights. NOT_FOUND: no such file.
+/// INVALID_ARGUMENT: Blender cannot read or render it. FAILED_PRECONDITION: Blender is not
+/// installed. CANCELLED: `stop`. DEADLINE_EXCEEDED: it took more than ten minutes.
+absl::StatusOr<std::unique_ptr<BlendScene>> scene_of_blend_file(
+    const std::string& path, const std::atomic<bool>& stop,
+    std::optional<std::int64_t> frame = std::nullopt);
 
 }  // namespace bandsaw::coordinator

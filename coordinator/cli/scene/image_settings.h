@@ -10,7 +10,8 @@
 namespace bandsaw::coordinator {
 
 /// If only a width or a height is given, the scene's aspect ratio is kept, rounded to the nearest
-/// pixel. INVALID_ARGUMENT: too large.
+/// pixel. The seed of a frame is that of the options and its number, unless it is fixed.
+/// INVALID_ARGUMENT: too large.
 absl::StatusOr<RenderSettings> image_settings(const ImageOptions& options,
                                               const PackageInfo& scene);
 

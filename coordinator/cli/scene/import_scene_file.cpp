@@ -8,20 +8,36 @@
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
+
+absl::StatusOr<ImportedPackage> import_any_scene(const std::string& scene,
+                                                 const SceneChoices& choices,
+                                                 const std::atomic<bool>& stop,
+                                                 std::vector<std::string>& warnings) {
+  ImportLimits limits;
+  limits.stop = &stop;
+  if (!is_blend_file(scene)) {
+    return import_in_process(scene, limits, choices);
+  }
+  if (choices.shutter) {
+    return absl::InvalidArgumentError(
+        absl::StrCat(scene, ": the shutter is that of the file; omit --shutter"));
+  }
+  ASSIGN_OR_RETURN(const std::unique_ptr<BlendScene> blend,
+                   scene_of_blend_file(scene, stop, choices.frame));
+  warnings = blend->warnings;
+  SceneChoices still = choices;  // Blender has set the frame
+  still.frame.reset();
+  still.fps.reset();
+  return import_in_process(blend->scene, limits, still);
+}
+
 absl::StatusOr<ImportedPackage> import_scene_file(const std::string& scene, Verbosity verbosity,
                                                   Process& process, const SceneChoices& choices) {
   std::atomic<bool> stop{false};
   const Interrupts::Listener listener(process.interrupts, [&] { stop = true; });
-  ImportLimits limits;
-  limits.stop = &stop;
-  std::string file = scene;
-  std::unique_ptr<BlendScene> blend;
-  if (is_blend_file(scene)) {
-    ASSIGN_OR_RETURN(blend, scene_of_blend_file(scene, stop));
-    file = blend->scene;
-    print_warnings(blend->warnings, verbosity, process);
-  }
-  auto package = import_in_process(file, limits, choices);
+  std::vector<std::string> warnings;
+  auto package = import_any_scene(scene, choices, stop, warnings);
+  print_warnings(warnings, verbosity, process);
   if (!package.ok()) {
     return package;
   }

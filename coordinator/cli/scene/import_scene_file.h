@@ -2,6 +2,7 @@
 
 // Imports a scene file, for submit and render.
 
+#include <atomic>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,13 @@
 #include "coordinator/cli/scene/import_process.h"
 
 namespace bandsaw::coordinator {
+
+/// Imports a scene file, a model, a foreign scene, or a .blend file, whose own warnings are added.
+/// Errors as import_in_process and scene_of_blend_file.
+absl::StatusOr<ImportedPackage> import_any_scene(const std::string& scene,
+                                                 const SceneChoices& choices,
+                                                 const std::atomic<bool>& stop,
+                                                 std::vector<std::string>& warnings);
 
 /// Imports in the confined process; a signal cancels it. Of a .blend file Blender makes the scene
 /// first. Prints the warnings unless quiet. Errors as import_in_process and scene_of_blend_file.

@@ -2,17 +2,22 @@
 
 import {get, post} from "./api.js";
 import {count, duration, el, goal, isOver, percent, rate, stateOf, text} from "./dom.js";
+import {frames} from "./frames.js";
 import {attempt} from "./notice.js";
 import {picture} from "./picture.js";
 import {plot} from "./plot.js";
 
+const allFrames = (of) => of.expected + of.waiting + of.rendering + of.done + of.failed;
+
 function figuresOf(status) {
   const known = (value, words) => (value >= 0 ? words(value) : isOver(status) ? "not known" : "not known yet");
+  const {frames: count_of} = status;
   return {
+    "Frames": count_of ? `${count_of.done} of ${allFrames(count_of)}${count_of.failed > 0 ? `, ${count_of.failed} failed` : ""}` : "",
     "Size": `${status.settings.width} × ${status.settings.height}`,
     "Asked for": goal(status.stop),
-    "Error": known(status.error, percent),
-    "Samples a pixel": status.samples_per_pixel,
+    [count_of ? "Largest error" : "Error"]: known(status.error, percent),
+    "Samples a pixel": count_of ? "" : status.samples_per_pixel,
     "Speed": isOver(status) ? "" : rate(status.samples_per_s),
     "Time": duration(status.elapsed_s),
     "Time left": isOver(status) ? "" : known(status.remaining_s, duration),
@@ -57,18 +62,22 @@ export function jobView(id) {
   const figures = el("dl");
   const log = el("pre", {hidden: true});
   const orders = actions(id);
-  const shown = picture();
+  const single = picture();
+  const shown = el("div", {}, single.element);
+  let strip = null;  // of a job with frames
   const curve = plot();
   const side = el("div.stack", {},
     el("section.card", {}, el("div.big", {}, done, left), bar, why),
     orders.element, curve.element, el("section.card", {}, figures), log);
   return {
-    element: el("div", {}, el("div.title", {}, title, state), el("div.page", {}, shown.element, side)),
+    element: el("div", {}, el("div.title", {}, title, state), el("div.page", {}, shown, side)),
+    leave() { strip?.leave(); },
     async update() {
       const page = await get(`/api/jobs/${id}`);
       const {status} = page.job;
       const is = stateOf(status);
       text(title, `${status.name} · job ${id}`);
+
       text(state, is);
       state.className = `state ${is}`;
       text(done, percent(is === "done" ? 1 : status.fraction));
@@ -82,7 +91,16 @@ export function jobView(id) {
       log.hidden = status.log.length === 0;
       text(log, `${status.log_of}:\n${status.log.join("\n")}`);
       orders.update(status);
-      await shown.update(page);
+      if (status.frames && !strip) {
+        strip = frames(id);
+        shown.replaceChildren(strip.element);
+        curve.element.hidden = true;
+      }
+      if (strip) {
+        await strip.update(status);
+        return;
+      }
+      await single.update(page);
       const points = (status.curve ?? []).map((point) => ({t: point.elapsed_s, error: point.relative_rmse + point.margin}));
       curve.update(points, status.stop.error, isOver(status));
     },

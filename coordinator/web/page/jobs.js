@@ -6,8 +6,13 @@ import {count, duration, el, goal, isOver, keyed, percent, rate, stateOf, text} 
 
 function summary(status) {
   const words = [`${status.settings.width} × ${status.settings.height}`];
+  const {frames} = status;
+  if (frames) {
+    const all = frames.expected + frames.waiting + frames.rendering + frames.done + frames.failed;
+    words.push(`${frames.done} of ${all} frames`);
+  }
   if (isOver(status)) {
-    words.push(`${status.samples_per_pixel} samples a pixel`);
+    if (!frames) words.push(`${status.samples_per_pixel} samples a pixel`);
     if (status.error >= 0) words.push(`error ${percent(status.error)}`);
     words.push(duration(status.elapsed_s));
     return words.join(" · ");

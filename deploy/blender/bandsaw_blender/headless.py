@@ -1,8 +1,8 @@
 """Makes a scene folder of a .blend file, for `bandsaw submit FILE.blend`:
 
-    blender -b -Y FILE.blend --python-expr "import sys; sys.path.insert(0, ZIP); from bandsaw_blender import headless; headless.main(FOLDER, NAME)"
+    blender -b -Y FILE.blend --python-expr "import sys; sys.path.insert(0, ZIP); from bandsaw_blender import headless; headless.main(FOLDER, NAME, FRAME)"
 
-Writes FOLDER/NAME.json, the files that it refers to, and FOLDER/warnings with a line for each thing that is not shown as it is; or
+FRAME is optional: without it the scene is at the frame that is saved in the file. Writes FOLDER/NAME.json, the files that it refers to, and FOLDER/warnings with a line for each thing that is not shown as it is; or
 FOLDER/error with one line."""
 
 import os
@@ -45,12 +45,14 @@ def fail(folder, message):
         file.write(message.replace("\n", " ") + "\n")
 
 
-def main(folder, name="scene"):
+def main(folder, name="scene", frame=None):
     _folder[0], _name[0] = folder, name
     if not ExportEngine.is_registered:
         bpy.utils.register_class(ExportEngine)
     scene = bpy.context.scene
     scene.render.engine = ExportEngine.bl_idname
+    if frame is not None:
+        scene.frame_set(int(frame))
     scene.render.use_compositing = scene.render.use_sequencer = False
     if scene.camera is None:
         fail(folder, "the scene has no camera")

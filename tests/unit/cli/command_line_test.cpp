@@ -75,6 +75,35 @@ TEST(CommandLine, AFrameHasItsTimeAndItsName) {
   expect_wrong("render a.glb --frame 1 --shutter 2", "--shutter: must be a number in [0, 1]");
 }
 
+TEST(CommandLine, FramesAreOneJob) {
+  const auto options = parsed<SubmitOptions>(
+      "submit a.glb --frames 1:9:4,3-4 --fps 30 -o w.####.exr --fixed-seed --video w.mp4 "
+      "--contact-sheet s.png --then ./send.sh");
+  EXPECT_THAT(options.frames, ElementsAre(1, 3, 4, 5, 9));
+  EXPECT_THAT(options.outputs, ElementsAre("w.####.exr"));
+  EXPECT_TRUE(options.image.fixed_seed);
+  EXPECT_EQ(options.image.choices.fps, 30);
+  EXPECT_EQ(options.after.video, "w.mp4");
+  EXPECT_EQ(options.after.video_fps, 30);
+  EXPECT_EQ(options.after.contact_sheet, "s.png");
+  EXPECT_EQ(options.after.command, "./send.sh");
+  EXPECT_EQ(parsed<SubmitOptions>("submit a.glb --frames 1-3 --continue 7").continued, 7u);
+  EXPECT_THAT(parsed<SubmitOptions>("submit a.glb --frames -3:-2").frames, ElementsAre(-3, -2));
+  EXPECT_EQ(parsed<WatchOptions>("watch 7 --video w.webm --fps 12.5").after.video_fps, 12.5);
+  EXPECT_EQ(parsed<MissingOptions>("missing 7").job, 7u);
+  EXPECT_THAT(parsed<RetryOptions>("retry 7 --frames 12,14").frames, ElementsAre(12, 14));
+  EXPECT_THAT(parsed<RetryOptions>("retry 7").frames, testing::IsEmpty());
+  expect_wrong("submit a.glb --frames 1-9 -o w.exr", "put #### where its number");
+  expect_wrong("submit a.glb --frames 9-1", "--frames: '9-1' runs backwards");
+  expect_wrong("submit a.glb --frames 1-9 --frame 2", "exclude each other");
+  expect_wrong("submit a.glb --video w.mp4", "add --frames");
+  expect_wrong("submit a.glb --frames 1-9 --video w.avi", "--video: must end in .mp4");
+  expect_wrong("submit a.glb --frames 1-9 --detach --then x", "--detach does not wait");
+  expect_wrong("submit a.glb --continue 7", "--continue needs --frames");
+  expect_wrong("submit a.glb --frames 1-9 --layers depth -o w.#.exr", "--layers");
+  expect_wrong("render a.glb --fixed-seed", "--fixed-seed needs --frame");
+}
+
 TEST(CommandLine, AdaptiveSamplingNeedsAnErrorRule) {
   const auto adaptive = [](const StopRule& stop) { return std::get<StopAtError>(stop).adaptive; };
   EXPECT_TRUE(adaptive(parsed<RenderOptions>("render a.glb --error 1% --adaptive").image.stop));

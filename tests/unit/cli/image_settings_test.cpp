@@ -25,6 +25,19 @@ TEST(ImageSettings, AreTheScenesByDefault) {
             (RenderSettings{.width = 600, .height = 400, .max_depth = 9, .seed = 0}));
 }
 
+TEST(ImageSettings, EachFrameHasASeedOfItsOwnUnlessItIsFixed) {
+  const PackageInfo scene;
+  ImageOptions options;
+  options.seed = 5;
+  EXPECT_EQ(image_settings(options, scene)->seed, 5u);
+  options.choices.frame = 7;
+  EXPECT_EQ(image_settings(options, scene)->seed, 12u);
+  options.choices.frame = -6;
+  EXPECT_EQ(image_settings(options, scene)->seed, UINT64_MAX);
+  options.fixed_seed = true;
+  EXPECT_EQ(image_settings(options, scene)->seed, 5u);
+}
+
 TEST(ImageSettings, TheIntegratorIsTheScenesByDefault) {
   PackageInfo scene;
   scene.integrator = Integrator::kDirect;

@@ -78,6 +78,9 @@ JobView full_job() {
               .manifest = std::string(64, 'a'),
               .settings = kSettings,
               .stop = StopAtTime{.seconds = 2, .max_samples = 3}};
+  job.spec.sequence = 16;
+  job.spec.frame = -17;
+  job.frames = {{18, 19, 20, 21, 22}};
   job.state = JobState::kFailed;
   job.reason = "reason";
   job.fraction = 0.5;
@@ -113,6 +116,7 @@ TEST(Convert, JobsRoundTrip) {
   EXPECT_EQ(again.SerializeAsString(), message.SerializeAsString());
   EXPECT_EQ(back.spec, job.spec);
   EXPECT_EQ(back.bands_audited, 15u);
+  EXPECT_EQ(back.frames, job.frames);
   EXPECT_EQ(back.counters.truncated_paths, job.counters.truncated_paths);
   EXPECT_EQ(back.workers[0].rows, job.workers[0].rows);
   EXPECT_EQ(back.log, job.log);

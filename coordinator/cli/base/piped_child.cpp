@@ -1,0 +1,116 @@
+#include "coordinator/cli/base/piped_child.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_split.h"
+#include "renderlib/base/atomic_file.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+void close_if_open(int& descriptor) {
+  if (descriptor >= 0) {
+    close(descriptor);
+    descriptor = -1;
+  }
+}
+
+}  // namespace
+
+// Resets blocked and ignored signals in the child, so that Ctrl-C in a terminal ends it at once.
+absl::StatusOr<PipedChild> PipedChild::start(const std::vector<std::string>& arguments) {
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) {
+    return errno_status(errno, "cannot make a pipe");
+  }
+  PipedChild child(-1, ends[1], memfd_create("errors", MFD_CLOEXEC));
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_adddup2(&actions, child.errors_, STDERR_FILENO);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t signals;
+  sigemptyset(&signals);
+  posix_spawnattr_setsigmask(&attributes, &signals);
+  for (const int signal : {SIGINT, SIGTERM, SIGPIPE}) {
+    sigaddset(&signals, signal);
+  }
+  posix_spawnattr_setsigdefault(&attributes, &signals);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+  std::vector<char*> argv;
+  for (const std::string& argument : arguments) {
+    argv.push_back(const_cast<char*>(argument.c_str()));
+  }
+  argv.push_back(nullptr);
+  const int error = posix_spawnp(&child.pid_, argv[0], &actions, &attributes, argv.data(), environ);
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&actions);
+  close(ends[0]);
+  if (error != 0) {
+    child.pid_ = -1;
+    return errno_status(error, absl::StrCat("cannot start ", arguments[0]));
+  }
+  return child;
+}
+
+PipedChild::PipedChild(PipedChild&& other) noexcept
+    : pid_(std::exchange(other.pid_, -1)),
+      input_(std::exchange(other.input_, -1)),
+      errors_(std::exchange(other.errors_, -1)) {}
+
+PipedChild::~PipedChild() {
+  close_if_open(input_);
+  if (pid_ > 0) {
+    kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+  }
+  close_if_open(errors_);
+}
+
+absl::Status PipedChild::write(absl::Span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(input_, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) {
+      continue;
+    }
+    if (written < 0) {
+      return absl::AbortedError(last_error_line());
+    }
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return absl::OkStatus();
+}
+
+absl::Status PipedChild::finish() {
+  close_if_open(input_);
+  int status = 0;
+  waitpid(std::exchange(pid_, -1), &status, 0);
+  return WIFEXITED(status) && WEXITSTATUS(status) == 0 ? absl::OkStatus()
+                                                       : absl::AbortedError(last_error_line());
+}
+
+std::string PipedChild::last_error_line() const {
+  constexpr std::size_t kMost = 4096;
+  const off_t size = lseek(errors_, 0, SEEK_END);
+  std::string text(kMost, '\0');
+  const ssize_t got =
+      pread(errors_, text.data(), text.size(),
+            size > static_cast<off_t>(kMost) ? size - static_cast<off_t>(kMost) : 0);
+  text.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
+  const std::vector<std::string> lines = absl::StrSplit(text, '\n', absl::SkipWhitespace());
+  return lines.empty() ? "it ended without a message" : lines.back();
+}
+
+}  // namespace bandsaw::coordinator

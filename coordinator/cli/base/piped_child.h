@@ -1,0 +1,41 @@
+#pragma once
+
+// A child process that is fed through its standard input.
+
+#include <sys/types.h>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "absl/status/statusor.h"
+#include "absl/types/span.h"
+
+namespace bandsaw::coordinator {
+
+class PipedChild {
+ public:
+  /// Starts `arguments[0]` (a path, or a name on PATH) without a shell. Its standard output is
+  /// discarded. NOT_FOUND: there is no such program. REQUIRES: SIGPIPE is ignored (outlive_reader).
+  static absl::StatusOr<PipedChild> start(const std::vector<std::string>& arguments);
+  /// Kills a child that was not finished.
+  ~PipedChild();
+  PipedChild(PipedChild&& other) noexcept;
+  PipedChild& operator=(PipedChild&& other) = delete;
+
+  /// Blocks while the child does not read. ABORTED: it reads no more.
+  absl::Status write(absl::Span<const std::byte> bytes);
+  /// Closes the child's input and waits for its end. ABORTED: it did not exit with 0; the message
+  /// is the last line of its standard error.
+  absl::Status finish();
+
+ private:
+  PipedChild(pid_t pid, int input, int errors) : pid_(pid), input_(input), errors_(errors) {}
+  std::string last_error_line() const;
+
+  pid_t pid_ = -1;
+  int input_ = -1;   ///< write end of the pipe to its standard input
+  int errors_ = -1;  ///< file in memory with its standard error
+};
+
+}  // namespace bandsaw::coordinator

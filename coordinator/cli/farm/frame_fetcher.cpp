@@ -1,0 +1,173 @@
+#include "coordinator/cli/farm/frame_fetcher.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/cli/base/text.h"
+#include "coordinator/cli/image/output.h"
+#include "coordinator/cli/image/report.h"
+#include "coordinator/cli/image/report_file.h"
+#include "coordinator/cli/options/output_names.h"
+#include "coordinator/engine/clock.h"
+#include "renderlib/base/status_macros.h"
+#include "renderlib/image/write_image.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+constexpr double kPatience_s = 60;  ///< for which the farm may be unreachable
+constexpr std::chrono::milliseconds kPause{200};
+
+}  // namespace
+
+FrameFetcher::FrameFetcher(const FarmClient& client, JobId sequence, const WantedFrames& wanted,
+                           ProgressDisplay& display)
+    : client_(client.another()), sequence_(sequence), wanted_(wanted), display_(display) {
+  if (!wanted.after.video.empty()) {
+    video_.emplace(wanted.after.video, wanted.after.video_fps);
+  }
+}
+
+bool FrameFetcher::needs_images() const {
+  return !wanted_.outputs.empty() || video_ || !wanted_.after.contact_sheet.empty();
+}
+
+absl::Status FrameFetcher::update() {
+  RETURN_IF_ERROR(take_changes());
+  while (!not_fetched_.empty()) {
+    const auto [number, job] = *not_fetched_.begin();
+    RETURN_IF_ERROR(fetch(number, job));
+    not_fetched_.erase(number);
+  }
+  return absl::OkStatus();
+}
+
+absl::Status FrameFetcher::take_changes() {
+  ASSIGN_OR_RETURN(FarmClient::Frames changed, client_->frames(sequence_, after_));
+  if (changed.epoch != epoch_) {
+    if (after_ > 0) {
+      ASSIGN_OR_RETURN(changed, client_->frames(sequence_, 0));
+    }
+    epoch_ = changed.epoch;
+    after_ = 0;
+    numbers_.clear();
+    for (const FrameView& frame : changed.frames) {
+      numbers_.push_back(frame.number);
+    }
+  }
+  for (const FrameView& frame : changed.frames) {
+    after_ = std::max(after_, frame.changed);
+    if (frame.state == FrameState::kDone) {
+      JobId& job = done_[frame.number];
+      if (std::exchange(job, frame.job) != frame.job && needs_images()) {
+        not_fetched_[frame.number] = frame.job;
+      }
+    } else if (!frame.reason.empty()) {
+      tell_failure(frame);
+    }
+  }
+  return absl::OkStatus();
+}
+
+/// Tells of a failure once.
+void FrameFetcher::tell_failure(const FrameView& frame) {
+  const bool over = frame.state == FrameState::kFailed;
+  const std::string what = absl::StrCat(over ? " failed: " : " is tried again, because it failed: ",
+                                        printable(frame.reason));
+  if (told_.emplace(frame.number, what).second) {
+    display_.note(absl::StrCat("frame ", frame.number, what));
+  }
+}
+
+absl::Status FrameFetcher::fetch(FrameNumber number, JobId job) {
+  const auto image = client_->result(job);
+  if (!image.ok()) {
+    return absl::Status(image.status().code(),
+                        absl::StrCat("frame ", number, ": ", image.status().message()));
+  }
+  const Display display = wanted_.display.over(image->display);
+  if (!wanted_.outputs.empty()) {
+    RETURN_IF_ERROR(write(number, job, image->image, display));
+  }
+  return add_to_collections(number, image->image, display);
+}
+
+absl::Status FrameFetcher::write(FrameNumber number, JobId job, const Image& image,
+                                 const Display& display) {
+  std::vector<std::string> outputs;
+  for (const std::string& output : wanted_.outputs) {
+    outputs.push_back(name_of_frame(output, number));
+  }
+  RETURN_IF_ERROR(write_outputs(image, outputs, display));
+  const ReportOption named{name_of_frame(wanted_.report.file, number)};
+  ASSIGN_OR_RETURN(const std::vector<std::string> reports, report_files(named, outputs));
+  if (!reports.empty()) {
+    ASSIGN_OR_RETURN(const Progress progress, client_->job(job));
+    const Report report{progress, pixels_sha256(image), outputs,
+                        cut_off_values(image, outputs, display)};
+    RETURN_IF_ERROR(write_reports(report_text(report), reports));
+  }
+  display_.frame_written(sequence_, number, outputs, reports);
+  files_.insert(files_.end(), outputs.begin(), outputs.end());
+  files_.insert(files_.end(), reports.begin(), reports.end());
+  return absl::OkStatus();
+}
+
+absl::Status FrameFetcher::add_to_collections(FrameNumber number, const Image& image,
+                                              const Display& display) {
+  if (!wanted_.after.contact_sheet.empty()) {
+    if (!sheet_) {
+      sheet_.emplace(numbers_, image.width, image.height);
+    }
+    sheet_->add(number, image, display);
+  }
+  if (video_ && in_video_ < numbers_.size() && numbers_[in_video_] == number) {
+    RETURN_IF_ERROR(video_->add(image, display));
+    ++in_video_;
+  }
+  return absl::OkStatus();
+}
+
+absl::Status FrameFetcher::fetch_rest() {
+  const double until = steady_seconds() + kPatience_s;
+  for (;;) {
+    absl::Status status = update();
+    const double left = until - steady_seconds();
+    if (!absl::IsUnavailable(status) || left <= 0 ||
+        !client_->wait_for_farm(
+            std::chrono::milliseconds(static_cast<std::int64_t>(left * 1000)))) {
+      return client_->stopped() ? absl::CancelledError("interrupted") : status;
+    }
+    client_->pause(kPause);
+  }
+}
+
+/// Adds the frames that were done out of order: they are fetched once more.
+absl::Status FrameFetcher::feed_video() {
+  while (in_video_ < numbers_.size()) {
+    const auto image = client_->result(done_.at(numbers_[in_video_]));
+    RETURN_IF_ERROR(image.status());
+    RETURN_IF_ERROR(video_->add(image->image, wanted_.display.over(image->display)));
+    ++in_video_;
+  }
+  return video_->finish();
+}
+
+absl::Status FrameFetcher::make_collections() {
+  if (sheet_) {
+    const std::string& path = wanted_.after.contact_sheet;
+    RETURN_IF_ERROR(write_image(sheet_->picture(), path));
+    files_.push_back(path);
+  }
+  if (video_ && done_.size() < numbers_.size()) {
+    display_.note(absl::StrCat(wanted_.after.video, " is not made: ",
+                               numbers_.size() - done_.size(), " frames are missing"));
+  } else if (video_) {
+    RETURN_IF_ERROR(feed_video());
+    files_.push_back(wanted_.after.video);
+  }
+  return absl::OkStatus();
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,64 @@
+#pragma once
+
+// Fetches the images of the frames of a sequence as they are done, and writes their files.
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "coordinator/cli/farm/farm_client.h"
+#include "coordinator/cli/farm/watch_frames.h"
+#include "coordinator/cli/image/contact_sheet.h"
+#include "coordinator/cli/image/video.h"
+#include "coordinator/cli/progress/progress_display.h"
+
+namespace bandsaw::coordinator {
+
+class FrameFetcher {
+ public:
+  FrameFetcher(const FarmClient& client, JobId sequence, const WantedFrames& wanted,
+               ProgressDisplay& display);
+
+  /// Fetches the frames that were done since the last call and that some file needs, and tells of
+  /// frames that failed. UNAVAILABLE: call it again when the farm is back; what was not fetched is
+  /// fetched then. Other errors: a file could not be written, or an image is lost.
+  absl::Status update();
+  /// Waits for the farm, up to a minute, until all that is done is fetched. CANCELLED: stopped.
+  absl::Status fetch_rest();
+  /// Writes the contact sheet and, if all frames are done, the video.
+  absl::Status make_collections();
+  void stop() { client_->stop(); }
+
+  /// The names of all files that were written.
+  const std::vector<std::string>& files() const { return files_; }
+
+ private:
+  absl::Status take_changes();
+  void tell_failure(const FrameView& frame);
+  absl::Status fetch(FrameNumber number, JobId job);
+  absl::Status write(FrameNumber number, JobId job, const Image& image, const Display& display);
+  absl::Status add_to_collections(FrameNumber number, const Image& image, const Display& display);
+  absl::Status feed_video();
+  bool needs_images() const;
+
+  const std::unique_ptr<FarmClient> client_;
+  const JobId sequence_;
+  const WantedFrames& wanted_;
+  ProgressDisplay& display_;
+  std::string epoch_;
+  std::uint64_t after_ = 0;
+  std::vector<FrameNumber> numbers_;          ///< of all frames
+  std::map<FrameNumber, JobId> done_;         ///< the jobs of the frames that are done
+  std::map<FrameNumber, JobId> not_fetched_;  ///< those of them whose files are not written yet
+  std::set<std::pair<FrameNumber, std::string>> told_;  ///< failures
+  std::vector<std::string> files_;
+  std::optional<ContactSheet> sheet_;
+  std::optional<Video> video_;
+  std::size_t in_video_ = 0;  ///< number of frames, from the first one, that the video has
+};
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,103 @@
+#include "coordinator/cli/farm/frame_sender.h"
+
+#include <span>
+#include <utility>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/cli/farm/upload.h"
+#include "coordinator/engine/clock.h"
+#include "proto/wire/digest.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+constexpr double kPatience_s = 60;  ///< for which the farm may be unreachable
+constexpr std::chrono::milliseconds kPause{200};
+
+absl::Status try_to_send(FarmClient& client, JobId sequence, FrameNumber frame,
+                         ImportedPackage& package, ProgressDisplay& display) {
+  RETURN_IF_ERROR(upload(client, package, display));
+  const wire::Digest manifest = wire::sha256(package.manifest());
+  absl::Status status = client.add_frame(sequence, frame, manifest);
+  if (absl::IsFailedPrecondition(status)) {
+    // The farm may have removed an unused blob after it was sent.
+    RETURN_IF_ERROR(upload(client, package, display));
+    status = client.add_frame(sequence, frame, manifest);
+  }
+  return status;
+}
+
+}  // namespace
+
+absl::Status send_frame(FarmClient& client, JobId sequence, FrameNumber frame,
+                        ImportedPackage& package, ProgressDisplay& display) {
+  const double until = steady_seconds() + kPatience_s;
+  for (;;) {
+    absl::Status status = try_to_send(client, sequence, frame, package, display);
+    const double left = until - steady_seconds();
+    if (!absl::IsUnavailable(status) || left <= 0 ||
+        !client.wait_for_farm(std::chrono::milliseconds(static_cast<std::int64_t>(left * 1000)))) {
+      return client.stopped() ? absl::CancelledError("interrupted") : status;
+    }
+    client.pause(kPause);
+  }
+}
+
+FrameSender::FrameSender(const FarmClient& client, const Console& console, JobId sequence,
+                         std::vector<FrameNumber> frames, ImportFrame import,
+                         std::function<void()> failed)
+    : client_(client.another()),
+      sequence_(sequence),
+      frames_(std::move(frames)),
+      import_(std::move(import)),
+      failed_(std::move(failed)),
+      display_(console, {.quiet = true}),
+      thread_([this] { run(); }) {}
+
+FrameSender::~FrameSender() {
+  stop();
+  wait().IgnoreError();
+}
+
+void FrameSender::stop() {
+  stop_ = true;
+  client_->stop();
+}
+
+absl::Status FrameSender::wait() {
+  if (thread_.joinable()) {
+    thread_.join();
+  }
+  MutexLock lock(mutex_);
+  return status_;
+}
+
+std::vector<FrameNumber> FrameSender::unsent() const {
+  MutexLock lock(mutex_);
+  return {frames_.begin() + static_cast<std::ptrdiff_t>(sent_), frames_.end()};
+}
+
+void FrameSender::run() {
+  for (const FrameNumber frame : frames_) {
+    const absl::Status status = stop_ ? absl::CancelledError("interrupted") : send(frame);
+    if (!status.ok()) {
+      {
+        MutexLock lock(mutex_);
+        status_ =
+            absl::Status(status.code(), absl::StrCat("frame ", frame, ": ", status.message()));
+      }
+      failed_();
+      return;
+    }
+    MutexLock lock(mutex_);
+    ++sent_;
+  }
+}
+
+absl::Status FrameSender::send(FrameNumber frame) {
+  ASSIGN_OR_RETURN(ImportedPackage package, import_(frame, stop_));
+  return send_frame(*client_, sequence_, frame, package, display_);
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,152 @@
+#include "coordinator/cli/farm/submit_frames.h"
+
+#include <algorithm>
+#include <atomic>
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/cli/base/json.h"
+#include "coordinator/cli/farm/farm_errors.h"
+#include "coordinator/cli/farm/frame_sender.h"
+#include "coordinator/cli/farm/upload.h"
+#include "coordinator/cli/farm/watch_frames.h"
+#include "coordinator/cli/scene/image_settings.h"
+#include "coordinator/cli/scene/import_scene_file.h"
+#include "coordinator/scheduler/api/frame_numbers.h"
+#include "proto/convert/render_values.h"
+#include "proto/link/random.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+/// Imports the scene of one frame; warnings of other frames are not repeated.
+absl::StatusOr<ImportedPackage> import_frame(const SubmitOptions& options, FrameNumber frame,
+                                             const std::atomic<bool>& stop) {
+  SceneChoices choices = options.image.choices;
+  choices.frame = frame;
+  std::vector<std::string> warnings;
+  return import_any_scene(options.scene, choices, stop, warnings);
+}
+
+absl::StatusOr<JobId> start_sequence(FarmClient& client, const SubmitOptions& options,
+                                     const PackageInfo& scene, const RenderSettings& settings) {
+  farm::SubmitSequenceRequest request;
+  request.set_request_id(link::random_hex(16));
+  request.set_name(scene.name);
+  *request.mutable_settings() = bandsaw::to_message(settings);
+  *request.mutable_stop() = to_message(options.image.stop);
+  request.set_priority(options.priority);
+  request.set_fixed_seed(options.image.fixed_seed);
+  request.set_frames(frames_text(options.frames));
+  return client.submit_sequence(request);
+}
+
+/// Returns those of the frames whose scenes the job lacks. INVALID_ARGUMENT: the job has others.
+absl::StatusOr<std::vector<FrameNumber>> lacking(FarmClient& client, const SubmitOptions& options) {
+  ASSIGN_OR_RETURN(const FarmClient::Frames known, client.frames(options.continued));
+  std::vector<FrameNumber> all;
+  std::vector<FrameNumber> out;
+  for (const FrameView& frame : known.frames) {
+    all.push_back(frame.number);
+    if (frame.state == FrameState::kExpected) {
+      out.push_back(frame.number);
+    }
+  }
+  if (all != options.frames) {
+    return absl::InvalidArgumentError(absl::StrCat("--continue: the frames of job ",
+                                                   options.continued, " are ", frames_text(all),
+                                                   ", not ", frames_text(options.frames)));
+  }
+  return out;
+}
+
+struct Started {
+  JobId job = 0;
+  std::vector<FrameNumber> left;  ///< frames whose scenes are still to be sent
+};
+
+/// Starts or continues the sequence and sends its first scene. `code` is set for an error.
+absl::StatusOr<Started> start(FarmClient& client, const SubmitOptions& options, Process& process,
+                              ExitCode& code) {
+  Started started{options.continued, options.frames};
+  if (options.continued != 0) {
+    ASSIGN_OR_RETURN(started.left, lacking(client, options));
+    if (started.left.empty()) {
+      return started;
+    }
+  }
+  SceneChoices choices = options.image.choices;
+  choices.frame = started.left.front();
+  auto package = import_scene_file(options.scene, options.verbosity, process, choices);
+  if (!package.ok()) {
+    code = import_exit_code(package.status());
+    return package.status();
+  }
+  ASSIGN_OR_RETURN(const RenderSettings settings, image_settings(options.image, package->info()));
+  const Interrupts::Listener listener(process.interrupts, [&] { client.stop(); });
+  ProgressDisplay display(process.console, options.verbosity);
+  if (started.job == 0) {
+    ASSIGN_OR_RETURN(started.job, start_sequence(client, options, package->info(), settings));
+  }
+  RETURN_IF_ERROR(send_frame(client, started.job, started.left.front(), *package, display));
+  started.left.erase(started.left.begin());
+  return started;
+}
+
+void say_started(JobId job, Verbosity verbosity, const Console& console) {
+  if (verbosity.json) {
+    console.line(JsonObject().text("event", "submitted").whole("job", job).str());
+  } else {
+    console.line(absl::StrCat("job ", job));
+  }
+}
+
+ExitCode not_sent(const absl::Status& status, JobId job, const FrameSender& sender,
+                  const Console& console) {
+  const ExitCode code = import_exit_code(status) == ExitCode::kWrong ? exit_code_of(status)
+                                                                     : import_exit_code(status);
+  return console.fail(
+      code == ExitCode::kDone ? ExitCode::kFailed : code,
+      absl::StrCat(status.message(), "; the scenes of the frames ", frames_text(sender.unsent()),
+                   " were not sent; send them with the same command and --continue ", job));
+}
+
+}  // namespace
+
+ExitCode submit_frames(FarmClient& client, const SubmitOptions& options,
+                       const std::vector<std::string>& outputs, Process& process) {
+  const Console& console = process.console;
+  const WantedFrames wanted{outputs, options.report, options.display, options.after};
+  if (const absl::Status status = check_wanted(wanted); !status.ok()) {
+    return console.fail(absl::IsFailedPrecondition(status) ? ExitCode::kFailed : ExitCode::kWrong,
+                        std::string(status.message()));
+  }
+  ExitCode code = ExitCode::kDone;
+  const auto started = start(client, options, process, code);
+  if (!started.ok()) {
+    return console.fail(code == ExitCode::kDone ? exit_code_of(started.status()) : code,
+                        std::string(started.status().message()));
+  }
+  const auto import = [&](FrameNumber frame, const std::atomic<bool>& stop) {
+    return import_frame(options, frame, stop);
+  };
+  FrameSender sender(client, console, started->job, started->left, import, [&] {
+    if (!options.detach) {
+      client.stop();  // ends the watch
+    }
+  });
+  if (options.detach) {
+    const Interrupts::Listener listener(process.interrupts, [&] { sender.stop(); });
+    const absl::Status sent = sender.wait();
+    say_started(started->job, options.verbosity, console);
+    return sent.ok() ? ExitCode::kDone : not_sent(sent, started->job, sender, console);
+  }
+  code = watch_frames(client, started->job, wanted, options.verbosity, process);
+  sender.stop();
+  const absl::Status sent = sender.wait();
+  return sent.ok() || code == ExitCode::kDone || code == ExitCode::kFailed
+             ? code
+             : not_sent(sent, started->job, sender, console);
+}
+
+}  // namespace bandsaw::coordinator

@@ -1,0 +1,115 @@
+#include "coordinator/cli/farm/watch_frames.h"
+
+#include "absl/strings/str_cat.h"
+#include "coordinator/cli/farm/after_job.h"
+#include "coordinator/cli/farm/farm_errors.h"
+#include "coordinator/cli/farm/frame_fetcher.h"
+#include "coordinator/cli/farm/watch_job.h"
+#include "coordinator/cli/image/output.h"
+#include "coordinator/cli/image/report_file.h"
+#include "coordinator/cli/options/output_names.h"
+#include "coordinator/cli/progress/progress_display.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+ExitCode left_early(const absl::Status& status, JobId job, const Console& console) {
+  const ExitCode code = exit_code_of(status);
+  const std::string come_back =
+      absl::StrCat("Come back with: bandsaw watch ", job, " -o NAME.####.png");
+  if (code == ExitCode::kInterrupted) {
+    return console.fail(code, absl::StrCat("detached; job ", job, " continues. ", come_back));
+  }
+  if (code == ExitCode::kNoFarm) {
+    return console.fail(code, absl::StrCat(status.message(), "; job ", job,
+                                           " continues when it is started again. ", come_back));
+  }
+  return console.fail(code,
+                      absl::StrCat(status.message(), "; the farm keeps the images. ", come_back));
+}
+
+/// Follows the job, and fetches frames at each change. Returns the last status.
+absl::StatusOr<Progress> follow(FarmClient& client, JobId job, FrameFetcher& fetcher,
+                                ProgressDisplay& display) {
+  FrameCounts known;
+  absl::Status failed;
+  const auto heard = [&](const Progress& progress) {
+    if (progress.job.frames == known) {
+      return;
+    }
+    const absl::Status status = fetcher.update();
+    if (status.ok()) {
+      known = progress.job.frames;
+    } else if (!absl::IsUnavailable(status)) {
+      failed = status;
+      client.stop();
+    }
+  };
+  auto last = follow_job(client, job, display, heard);
+  RETURN_IF_ERROR(failed);
+  RETURN_IF_ERROR(last.status());
+  RETURN_IF_ERROR(fetcher.fetch_rest());
+  return last;
+}
+
+}  // namespace
+
+absl::Status check_wanted(const WantedFrames& wanted) {
+  std::vector<std::string> numbered = wanted.outputs;
+  if (!wanted.report.file.empty() && wanted.report.file != "none") {
+    numbered.push_back(wanted.report.file);
+  }
+  for (const std::string& name : numbered) {
+    if (!has_frame_place(name)) {
+      return absl::InvalidArgumentError(
+          absl::StrCat(name,
+                       ": each frame needs a file of its own; put #### where its number is "
+                       "to be, as in walk.####.exr"));
+    }
+  }
+  RETURN_IF_ERROR(check_outputs_writable(wanted.outputs));
+  if (!wanted.after.contact_sheet.empty()) {
+    RETURN_IF_ERROR(check_outputs_writable({wanted.after.contact_sheet}));
+  }
+  return wanted.after.video.empty() ? absl::OkStatus() : Video::check(wanted.after.video);
+}
+
+ExitCode watch_frames(FarmClient& client, JobId job, const WantedFrames& wanted,
+                      Verbosity verbosity, Process& process) {
+  const Console& console = process.console;
+  ProgressDisplay display(console, verbosity);
+  FrameFetcher fetcher(client, job, wanted, display);
+  const Interrupts::Listener listener(process.interrupts, [&] {
+    client.stop();
+    fetcher.stop();
+  });
+  const auto last = follow(client, job, fetcher, display);
+  if (!last.ok()) {
+    display.clear();
+    return left_early(last.status(), job, console);
+  }
+  absl::Status made = fetcher.make_collections();
+  std::vector<std::string> outputs = wanted.outputs;
+  for (const std::string& file : {wanted.after.contact_sheet, wanted.after.video}) {
+    if (!file.empty()) {
+      outputs.push_back(file);
+    }
+  }
+  ExitCode code = ExitCode::kDone;
+  if (last->job.state != JobState::kDone) {
+    display.ended(*last);
+    const std::string reason = last->job.reason.empty() ? "" : absl::StrCat(": ", last->job.reason);
+    code = console.fail(ExitCode::kFailed,
+                        absl::StrCat("job ", job, " ", state_name(last->job.state), reason));
+  }
+  if (!made.ok()) {
+    display.clear();
+    code = console.fail(ExitCode::kFailed, std::string(made.message()));
+  } else if (code == ExitCode::kDone) {
+    display.done(*last, outputs, {});
+  }
+  return run_after(wanted.after.command, client, job, outputs, fetcher.files(), code, console);
+}
+
+}  // namespace bandsaw::coordinator

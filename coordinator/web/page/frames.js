@@ -1,0 +1,141 @@
+// The frames of a job: one of them large, a strip with all of them that fills as they are done, and
+// play.
+
+import {get, post} from "./api.js";
+import {el, text} from "./dom.js";
+import {attempt} from "./notice.js";
+
+/// Maximum number of frames in the strip; of more, every second, third and so on is shown.
+const most = 600;
+const stripSide = 128;
+const stageSide = 1024;
+
+const stateOf = (frame) => frame.state.replace("FRAME_STATE_", "").toLowerCase();
+const source = (frame, side) => `/api/jobs/${frame.job}/preview.png?side=${side}&at=end`;
+
+function cell(frame, choose) {
+  const img = el("img", {alt: "", loading: "lazy", hidden: true});
+  const element = el("button.frame", {onclick: () => choose(frame.frame), "aria-label": `Frame ${frame.frame}`},
+    img, el("span", {}, String(frame.frame)));
+  return {
+    element,
+    update(now) {
+      const is = stateOf(now);
+      element.dataset.state = is;
+      element.title = `frame ${now.frame}: ${is}${now.reason ? `, ${now.reason}` : ""}`;
+      if (is === "done" && img.hidden) {
+        img.src = source(now, stripSide);
+        img.hidden = false;
+      }
+    },
+  };
+}
+
+export function frames(id) {
+  let epoch = "";
+  let after = "0";
+  let all = [];          // numbers, ascending
+  const known = new Map();  // number -> frame
+  const cells = new Map();
+  const loaded = new Map();  // number -> image, for play
+  let chosen = null;
+  let timer = 0;
+
+  const img = el("img", {alt: "", hidden: true});
+  const waiting = el("p.waiting", {}, "No frame is done yet.");
+  const stage = el("div.picture", {}, waiting, img);
+  const strip = el("div.strip", {role: "group", "aria-label": "Frames"});
+  const number = el("span.soft");
+  const play = el("button.main", {"aria-pressed": "false", onclick: () => (timer ? stop() : start())}, "Play");
+  const fps = el("input", {type: "number", min: "1", max: "60", step: "1", value: "24", id: "fps"});
+  const retry = el("button", {hidden: true, onclick: () => attempt(() => post(`/api/jobs/${id}/retry`))}, "Retry what failed");
+  const open = el("a.button", {hidden: true}, "This frame");
+
+  const shown = () => all.filter((one, i) => i % Math.ceil(all.length / most) === 0);
+  const done = () => shown().filter((one) => stateOf(known.get(one)) === "done");
+
+  function show(one) {
+    const frame = known.get(one);
+    if (!frame || stateOf(frame) !== "done") return;
+    if (chosen !== null) cells.get(chosen)?.element.removeAttribute("aria-current");
+    chosen = one;
+    cells.get(one)?.element.setAttribute("aria-current", "true");
+    const ready = loaded.get(one);
+    img.src = ready?.complete ? ready.src : source(frame, stageSide);
+    img.hidden = false;
+    waiting.hidden = true;
+    text(number, `frame ${one}`);
+    open.href = `#/jobs/${frame.job}`;
+    open.hidden = false;
+  }
+
+  function choose(one) {
+    stop();
+    show(one);
+  }
+
+  // A frame is shown once it is loaded, so that play waits rather than flickers.
+  function tick() {
+    const numbers = done();
+    const at = numbers.findIndex((one) => one > (chosen ?? -Infinity));
+    const next = numbers[at === -1 ? 0 : at];
+    for (const one of numbers.slice(Math.max(at, 0), Math.max(at, 0) + 12)) {
+      if (!loaded.has(one)) {
+        const image = new Image();
+        image.src = source(known.get(one), stageSide);
+        loaded.set(one, image);
+        if (loaded.size > 300) loaded.delete(loaded.keys().next().value);
+      }
+    }
+    if (next !== undefined && loaded.get(next)?.complete) show(next);
+    timer = setTimeout(tick, 1000 / Math.min(60, Math.max(1, Number(fps.value) || 24)));
+  }
+
+  function start() {
+    play.setAttribute("aria-pressed", "true");
+    text(play, "Pause");
+    tick();
+  }
+
+  function stop() {
+    clearTimeout(timer);
+    timer = 0;
+    play.setAttribute("aria-pressed", "false");
+    text(play, "Play");
+  }
+
+  return {
+    element: el("div.stack", {}, stage,
+      el("div.row", {}, play, el("label.row.soft", {for: "fps"}, "Frames a second", fps), number, open, retry), strip),
+    async update(status) {
+      const {width, height} = status.settings;
+      stage.style.aspectRatio = `${width} / ${height}`;
+      stage.style.maxWidth = `calc(60vh * ${width / height})`;
+      strip.style.setProperty("--aspect", `${width} / ${height}`);
+      let reply = await get(`/api/jobs/${id}/frames?after=${after}`);
+      if (reply.epoch !== epoch) {
+        if (after !== "0") reply = await get(`/api/jobs/${id}/frames?after=0`);
+        epoch = reply.epoch;
+        after = "0";
+        all = reply.frame.map((frame) => Number(frame.frame));
+      }
+      for (const frame of reply.frame) {
+        frame.frame = Number(frame.frame);
+        known.set(frame.frame, frame);
+        if (BigInt(frame.changed) > BigInt(after)) after = frame.changed;
+      }
+      const show_cells = shown();
+      if (cells.size === 0) {
+        for (const one of show_cells) {
+          cells.set(one, cell(known.get(one), choose));
+          strip.append(cells.get(one).element);
+        }
+      }
+      for (const one of show_cells) cells.get(one)?.update(known.get(one));
+      if (chosen === null && done().length > 0) show(done()[0]);
+      play.disabled = done().length < 2;
+      retry.hidden = (status.frames?.failed ?? 0) === 0;
+    },
+    leave: stop,
+  };
+}

@@ -1,0 +1,179 @@
+// A job of many frames on real farms: each frame has the bytes of `render --frame`, none is
+// rendered twice or lost, whatever is killed.
+
+#include <gmock/gmock.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+
+#include "absl/strings/escaping.h"
+#include "absl/strings/str_cat.h"
+#include "absl/strings/str_format.h"
+#include "tests/farm/farm_processes.h"
+
+namespace bandsaw::test {
+namespace {
+
+using testing::HasSubstr;
+
+/// A glTF file with a triangle that moves to the right for two seconds, before a camera.
+std::string moving_triangle() {
+  const std::vector<float> values = {-1, 0, 0, 1, 0, 0, 0, 1.5f, 0,  // positions
+                                     0,  2,                          // times
+                                     0,  0, 0, 2, 0, 0};             // translations
+  const std::string bytes(reinterpret_cast<const char*>(values.data()),
+                          values.size() * sizeof(float));
+  return absl::StrCat(R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1]}],
+"nodes":[{"mesh":0,"name":"it"},{"camera":0,"translation":[0,0.5,5]}],
+"cameras":[{"type":"perspective","perspective":{"yfov":0.8,"znear":0.1}}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+"animations":[{"name":"walk","channels":[{"sampler":0,"target":{"node":0,"path":"translation"}}],
+"samplers":[{"input":1,"output":2}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[-1,0,0],"max":[1,1.5,0]},
+{"bufferView":1,"componentType":5126,"count":2,"type":"SCALAR","min":[0],"max":[2]},
+{"bufferView":2,"componentType":5126,"count":2,"type":"VEC3"}],
+"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":8},
+{"buffer":0,"byteOffset":44,"byteLength":24}],
+"buffers":[{"byteLength":68,"uri":"data:application/octet-stream;base64,)",
+                      absl::Base64Escape(bytes), "\"}]}");
+}
+
+class Frames : public testing::Test {
+ protected:
+  void SetUp() override { std::ofstream(scene_) << moving_triangle(); }
+
+  std::vector<std::string> submit(const std::string& frames, std::vector<std::string> more = {}) {
+    std::vector<std::string> arguments = {"submit", scene_, "--frames", frames, "--json"};
+    arguments.insert(arguments.end(), settings_.begin(), settings_.end());
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return farm_.command(arguments);
+  }
+  std::string file_of(int frame) const { return farm_.path(absl::StrFormat("w.%04d.pfm", frame)); }
+
+  void expect_bytes_of_render(int frame, std::vector<std::string> more = {}) {
+    const std::string file = farm_.path("alone.pfm");
+    std::vector<std::string> argv = {BANDSAW_BIN,           "render", scene_, "--frame",
+                                     std::to_string(frame), "-o",     file,   "--quiet"};
+    argv.insert(argv.end(), settings_.begin(), settings_.end());
+    argv.insert(argv.end(), more.begin(), more.end());
+    const Finished finished = run(argv);
+    ASSERT_EQ(finished.code, 0) << finished.err;
+    EXPECT_TRUE(file_bytes(file_of(frame)) == file_bytes(file)) << "frame " << frame;
+  }
+
+  /// Waits until so many frames are written.
+  static bool wait_for_frames(Process& client, std::size_t count) {
+    return client.wait_until([&](const std::string& out, const std::string&) {
+      std::size_t found = 0;
+      for (std::size_t at = out.find("\"event\":\"frame\""); at != std::string::npos;
+           at = out.find("\"event\":\"frame\"", at + 1)) {
+        ++found;
+      }
+      return found >= count;
+    });
+  }
+
+  /// Returns how many jobs each frame had, from the coordinator's log.
+  std::map<std::string, int> jobs_of_frames() const {
+    std::map<std::string, int> jobs;
+    const std::string log = farm_.coordinator_log();
+    const std::regex line("added name=.* frame=(-?[0-9]+) of=");
+    for (std::sregex_iterator found(log.begin(), log.end(), line), end; found != end; ++found) {
+      ++jobs[(*found)[1]];
+    }
+    return jobs;
+  }
+
+  FarmProcesses farm_;
+  const std::string scene_ = farm_.path("walk.gltf");
+  const std::string outputs_ = farm_.path("w.####.pfm");
+  const std::vector<std::string> settings_ = {
+      "--width", "40", "--height", "40", "--samples", "1024", "--fps", "12", "--shutter", "0.5"};
+};
+
+TEST_F(Frames, HaveTheBytesOfRenderThoughAWorkerAndTheCoordinatorAreKilled) {
+  for (const char* name : {"one", "two", "three"}) {
+    farm_.add_worker(name, 1);
+  }
+  Process client = Process::start(submit("1:18", {"-o", outputs_}));
+  ASSERT_TRUE(wait_for_frames(client, 2)) << client.err();
+  farm_.worker("two").signal(SIGKILL);
+  ASSERT_TRUE(wait_for_frames(client, 5)) << client.err();
+  farm_.coordinator().signal(SIGKILL);
+  ASSERT_EQ(farm_.coordinator().wait(), 128 + SIGKILL);
+  farm_.restart_coordinator();
+  ASSERT_EQ(client.wait(), 0) << client.err() << farm_.coordinator_log();
+  for (int frame = 1; frame <= 18; ++frame) {
+    expect_bytes_of_render(frame);
+    EXPECT_TRUE(std::filesystem::exists(farm_.path(absl::StrFormat("w.%04d.json", frame))));
+  }
+  const std::map<std::string, int> jobs = jobs_of_frames();
+  EXPECT_EQ(jobs.size(), 18u);
+  for (const auto& [frame, times] : jobs) {
+    EXPECT_EQ(times, 1) << "frame " << frame;
+  }
+  const Finished listed = run(farm_.command({"jobs"}));
+  EXPECT_THAT(listed.out, HasSubstr("18 of 18 frames"));
+  EXPECT_EQ(std::count(listed.out.begin(), listed.out.end(), '\n'), 2) << listed.out;
+  EXPECT_THAT(run(farm_.command({"missing", "1"})).out, HasSubstr("no frame is missing"));
+}
+
+TEST_F(Frames, AreSentAgainAfterTheirSubmitterWasKilled) {
+  Process client = Process::start(submit("1,3,5-40", {"-o", outputs_, "--fixed-seed"}));
+  // Without workers the submitter is killed while it sends scenes, or after.
+  ASSERT_TRUE(client.wait_for("\"event\":\"job\"")) << client.err();
+  client.signal(SIGKILL);
+  client.wait();
+  farm_.add_worker("one", 2);
+  const Finished other = run(submit("1-40", {"-o", outputs_, "--fixed-seed", "--continue", "1"}));
+  EXPECT_EQ(other.code, 2) << other.err;
+  EXPECT_THAT(other.err, HasSubstr("the frames of job 1 are 1,3,5-40"));
+  const Finished again =
+      run(submit("1,3,5-40", {"-o", outputs_, "--fixed-seed", "--continue", "1", "--then",
+                              "cp \"$BANDSAW_FILE_LIST\" " + farm_.path("list") +
+                                  "; echo job $BANDSAW_JOB is $BANDSAW_STATE: $BANDSAW_FILES"}));
+  ASSERT_EQ(again.code, 0) << again.err;
+  EXPECT_THAT(again.out, HasSubstr("job 1 is done: " + outputs_));
+  EXPECT_THAT(file_bytes(farm_.path("list")), HasSubstr(file_of(40) + "\n"));
+  for (const int frame : {1, 3, 40}) {
+    expect_bytes_of_render(frame, {"--fixed-seed"});
+  }
+  EXPECT_EQ(jobs_of_frames().size(), 38u);
+}
+
+TEST_F(Frames, AContactSheetAndACommandAndAClearWordWithoutFfmpeg) {
+  farm_.add_worker("one", 2);
+  const std::string sheet = farm_.path("sheet.png");
+  const Finished done =
+      run(submit("1-9", {"-o", outputs_, "--contact-sheet", sheet, "--then", "exit 3"}));
+  EXPECT_EQ(done.code, 1);
+  EXPECT_THAT(done.err, HasSubstr("--then: the command failed with exit status 3"));
+  EXPECT_TRUE(std::filesystem::exists(sheet));
+  const Finished without =
+      run(submit("1-9", {"-o", outputs_, "--video", farm_.path("w.mp4")}), {"PATH=/nowhere"});
+  EXPECT_EQ(without.code, 1);
+  EXPECT_THAT(without.err, HasSubstr("ffmpeg, which is not on PATH"));
+}
+
+TEST_F(Frames, AreAVideo) {
+  ASSERT_TRUE(std::filesystem::exists("/usr/bin/ffprobe")) << "apt-get install ffmpeg";
+  farm_.add_worker("one", 1);
+  farm_.add_worker("two", 1);
+  const std::string video = farm_.path("walk.mp4");
+  const Finished done = run(submit("1-12", {"--video", video, "-o", outputs_}));
+  ASSERT_EQ(done.code, 0) << done.err;
+  const Finished probe =
+      run({"/usr/bin/ffprobe", "-v", "error", "-count_frames", "-show_entries",
+           "stream=codec_name,width,height,nb_read_frames,r_frame_rate", "-of", "csv=p=0", video});
+  EXPECT_EQ(probe.out, "h264,40,40,12/1,12\n") << probe.err;
+  // Nothing half-written is left.
+  for (const auto& entry : std::filesystem::directory_iterator(farm_.path("."))) {
+    EXPECT_EQ(entry.path().filename().string().find(".part"), std::string::npos) << entry.path();
+  }
+}
+
+}  // namespace
+}  // namespace bandsaw::test

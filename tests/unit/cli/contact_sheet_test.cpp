@@ -1,0 +1,61 @@
+#include "coordinator/cli/image/contact_sheet.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace bandsaw::coordinator {
+namespace {
+
+Image flat(std::uint32_t width, std::uint32_t height, const Rgb& value) {
+  return {width, height, std::vector<Rgb>(std::size_t{width} * height, value)};
+}
+
+std::size_t count(const Image& image, const Rgb& value) {
+  return static_cast<std::size_t>(
+      std::count_if(image.pixels.begin(), image.pixels.end(), [&](const Rgb& pixel) {
+        return pixel.r == value.r && pixel.g == value.g && pixel.b == value.b;
+      }));
+}
+
+TEST(ContactSheet, ShowsEachFrameOnceAndCrossesOutMissingOnes) {
+  const Rgb red{0.75f, 0, 0};
+  const Rgb green{0, 0.5f, 0};
+  ContactSheet sheet({-1, 2, 10}, 40, 30);
+  sheet.add(-1, flat(40, 30, red), {});
+  sheet.add(10, flat(40, 30, green), {});
+  sheet.add(11, flat(40, 30, green), {});  // no frame of the sheet
+  const Image picture = sheet.picture();
+  EXPECT_EQ(picture.pixels.size(), std::size_t{picture.width} * picture.height);
+  EXPECT_EQ(count(picture, red), 40u * 30);
+  EXPECT_EQ(count(picture, green), 40u * 30);
+  // The digit 1 has eight dots, the minus three, each of 2 x 2 pixels; 2 has eleven, 0 twelve.
+  const Rgb ink{0.6f, 0.6f, 0.6f};
+  const std::size_t cross = 2 * 30;
+  EXPECT_NEAR(static_cast<double>(count(picture, ink)), 4 * (3 + 8 + 11 + 8 + 12) + cross, 4);
+}
+
+TEST(ContactSheet, ShowsBrightnessAsAnEightBitFileDoes) {
+  ContactSheet sheet({1}, 8, 8);
+  sheet.add(1, flat(8, 8, {0.125f, 0.125f, 0.125f}), {.exposure = 2});
+  EXPECT_EQ(count(sheet.picture(), {0.5f, 0.5f, 0.5f}), 64u);
+}
+
+TEST(ContactSheet, OfManyFramesShowsSomeAtEqualDistancesInABoundedPicture) {
+  std::vector<std::int64_t> numbers;
+  for (std::int64_t i = 0; i < 10'000; ++i) {
+    numbers.push_back(i);
+  }
+  ContactSheet sheet(numbers, 1'920, 1'080);
+  const auto shown = static_cast<std::size_t>(std::count_if(
+      numbers.begin(), numbers.end(), [&](std::int64_t number) { return sheet.shows(number); }));
+  EXPECT_EQ(shown, kMaxSheetFrames);
+  EXPECT_TRUE(sheet.shows(0));
+  EXPECT_TRUE(sheet.shows(9'999));
+  const Image picture = sheet.picture();
+  EXPECT_LE(picture.width, 2'000u);
+  EXPECT_LE(picture.height, 2'000u);
+}
+
+}  // namespace
+}  // namespace bandsaw::coordinator
