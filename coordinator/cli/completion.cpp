@@ -10,7 +10,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr char kBegin[] = R"(# Completion of bandsaw for bash, made by: bandsaw completion bash
+constexpr char kScriptStart[] = R"(# Completion of bandsaw for bash, made by: bandsaw completion bash
 _bandsaw() {
   local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD-1]} words=
   COMPREPLY=()
@@ -19,10 +19,10 @@ _bandsaw() {
   fi
   case $before in
 )";
-constexpr char kCommands[] = R"(    *)
+constexpr char kScriptCommands[] = R"(    *)
       case $COMP_CWORD:${COMP_WORDS[1]}:$word in
 )";
-constexpr char kEnd[] = R"(      esac ;;
+constexpr char kScriptEnd[] = R"(      esac ;;
   esac
   COMPREPLY=($(compgen -W "$words" -- "$word"))
 }
@@ -85,11 +85,11 @@ std::string when(const std::string& pattern, const std::vector<std::string>& wor
 }  // namespace
 
 std::string bash_completion(const CLI::App& app) {
-  std::string out = kBegin;
+  std::string out = kScriptStart;
   for (const auto& [name, reply] : after_options(app)) {
     absl::StrAppend(&out, "    ", name, ") ", reply, " ;;\n");
   }
-  absl::StrAppend(&out, kCommands);
+  absl::StrAppend(&out, kScriptCommands);
   std::vector<std::string> commands;
   std::string of_commands;
   for (const CLI::App* command : app.get_subcommands({})) {
@@ -105,7 +105,7 @@ std::string bash_completion(const CLI::App& app) {
     }
   }
   commands.insert(commands.end(), {"--help", "--version"});
-  absl::StrAppend(&out, when("1:*", commands), of_commands, kEnd);
+  absl::StrAppend(&out, when("1:*", commands), of_commands, kScriptEnd);
   return out;
 }
 

@@ -43,6 +43,8 @@ void set_reflection(grpc::ServerBuilder& builder, bool wanted) {
   builder.SetOption(std::make_unique<ReflectionOption>(wanted));
 }
 
+}  // namespace
+
 // Health check for probes: proto/health.proto.
 
 /// Answers without a secret: the reply reveals only that the port is served, as the open port does.
@@ -68,6 +70,8 @@ grpc::ServerUnaryReactor* HealthService::Check(grpc::CallbackServerContext* cont
   reactor->Finish(grpc::Status::OK);
   return reactor;
 }
+
+namespace {
 
 constexpr int kFileThreads = 4;   // they wait for the disk more than they work
 constexpr int kImageThreads = 2;  // they wait for the film, or hold an image of up to 768 MB each

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uint64_t kMaxSceneBytes = 2048ull << 20;
+constexpr std::uint64_t kMaxPackageBytes = 2048ull << 20;
 
 /// A temporary folder for one file: the importer can read below this folder only.
 class Upload {
@@ -62,7 +62,7 @@ class Upload {
 
  private:
   absl::Status copy(const HttpBody& body) const {
-    std::uint64_t left = kMaxSceneBytes;
+    std::uint64_t left = kMaxPackageBytes;
     while (true) {
       ASSIGN_OR_RETURN(const absl::string_view bytes, body());
       if (bytes.empty()) {
@@ -70,7 +70,7 @@ class Upload {
       }
       if (bytes.size() > left) {
         return absl::InvalidArgumentError(
-            absl::StrCat("a scene has at most ", kMaxSceneBytes >> 20,
+            absl::StrCat("a scene has at most ", kMaxPackageBytes >> 20,
                          " MiB here; bandsaw submit takes larger ones"));
       }
       left -= bytes.size();

@@ -21,7 +21,6 @@ constexpr char kWorkerLine[] = "worker-secret ";
 constexpr char kFarmLine[] = "farm-secret ";
 constexpr char kCertificateBegin[] = "-----BEGIN CERTIFICATE-----";
 constexpr char kCertificateEnd[] = "-----END CERTIFICATE-----\n";
-constexpr std::size_t kSecretLength = 22;
 
 /// Key, certificate and secrets are written to one file, so that they always belong together.
 std::string to_text(const Identity& identity) {

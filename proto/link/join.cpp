@@ -19,7 +19,6 @@ namespace {
 constexpr char kForm[] = "bsw1-";
 constexpr char kPlain[] = "plain";
 constexpr std::size_t kDigestLength = 43;  // 32 bytes, base64url without padding
-constexpr std::size_t kSecretLength = 22;  // 16 bytes
 constexpr std::size_t kMaxAddresses = 8;
 constexpr std::size_t kMaxFile = 64 << 10;
 

@@ -21,7 +21,7 @@ constexpr Sensitivity kRedGreen = {1, 0.0053, 0, 1e-5};
 constexpr Sensitivity kBlueYellow = {34.1, 0.04, 13.5, 0.025};
 constexpr double kWidest = 0.04;
 
-constexpr double kExponent = 0.7;     // q_c
+constexpr double kColorExponent = 0.7;     // q_c
 constexpr double kKneeError = 0.4;    // p_c
 constexpr double kKneeResult = 0.95;  // p_t
 
@@ -89,7 +89,7 @@ Vec3 adjusted(const Opponents& planes, std::size_t i) {
 double distance(const Vec3& a, const Vec3& b) {
   const double hyab =
       std::abs(a.x - b.x) + std::sqrt((a.y - b.y) * (a.y - b.y) + (a.z - b.z) * (a.z - b.z));
-  return pow(hyab, kExponent);
+  return pow(hyab, kColorExponent);
 }
 
 // Equation 9: maps errors to [0, 1], with most of the range for small ones.

@@ -12,7 +12,7 @@ namespace bandsaw {
 namespace {
 
 constexpr double kFeatureWidth = 0.082;  // w, in degrees
-constexpr double kExponent = 0.5;        // q_f
+constexpr double kFeatureExponent = 0.5;        // q_f
 
 struct Features {
   Plane edges;
@@ -76,7 +76,7 @@ Plane flip_features(const Image& image, const Image& reference, double pixels_pe
   for (std::size_t i = 0; i < out.values.size(); ++i) {
     const double edges = std::abs(a.edges.values[i] - b.edges.values[i]);
     const double points = std::abs(a.points.values[i] - b.points.values[i]);
-    out.values[i] = pow(std::min(std::max(edges, points) / std::sqrt(2.0), 1.0), kExponent);
+    out.values[i] = pow(std::min(std::max(edges, points) / std::sqrt(2.0), 1.0), kFeatureExponent);
   }
   return out;
 }

@@ -49,11 +49,11 @@ std::string cube_bytes() {
   return bytes;
 }
 
-std::string list(const Vec3& v) { return absl::StrFormat("[%.6g, %.6g, %.6g]", v.x, v.y, v.z); }
+std::string triple(const Vec3& v) { return absl::StrFormat("[%.6g, %.6g, %.6g]", v.x, v.y, v.z); }
 
 std::string block(Mesh mesh, const Vec3& centre, const Vec3& size) {
-  return absl::StrFormat(R"({"mesh": %d, "translation": %s, "scale": %s})", mesh, list(centre),
-                         list(size));
+  return absl::StrFormat(R"({"mesh": %d, "translation": %s, "scale": %s})", mesh, triple(centre),
+                         triple(size));
 }
 
 /// Returns a node at `from` whose -z axis, the direction of glTF's cameras (glTF 2.0, 5.12), points

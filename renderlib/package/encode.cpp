@@ -12,6 +12,7 @@
 #include "renderlib/package/blob_source.h"
 #include "renderlib/package/lights.h"
 #include "renderlib/package/limits.h"
+#include "renderlib/package/material_parts.h"
 #include "renderlib/package/materials.h"
 #include "renderlib/package/media.h"
 #include "renderlib/package/placements.h"
@@ -21,12 +22,6 @@ namespace bandsaw {
 namespace {
 
 std::uint32_t number(TextureId id) { return static_cast<std::uint32_t>(id); }
-
-void encode(const Rgb& color, package::Rgb& to) {
-  for (const float channel : {color.r, color.g, color.b}) {
-    to.add_rgb(channel);
-  }
-}
 
 /// Enums are declared in the same order; some of the protocol's have an additional 0 for
 /// "unspecified".

@@ -5,6 +5,7 @@
 #include "renderlib/package/decode_enum.h"
 #include "renderlib/package/decode_surface.h"
 #include "renderlib/package/manifest.h"
+#include "renderlib/package/material_parts.h"
 
 namespace bandsaw {
 namespace {
@@ -13,12 +14,6 @@ void encode(const Vec3& from, google::protobuf::RepeatedField<double>& to) {
   to.Add(from.x);
   to.Add(from.y);
   to.Add(from.z);
-}
-
-void encode(const Rgb& from, package::Rgb& to) {
-  for (const float channel : {from.r, from.g, from.b}) {
-    to.add_rgb(channel);
-  }
 }
 
 void encode(const ProjectedImage& from, package::ProjectedImage& to) {

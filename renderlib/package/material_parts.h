@@ -1,6 +1,6 @@
 #pragma once
 
-// Conversion of the numbers and colours of materials to and from proto/package.proto. Decoding
+// Conversion of colours, and of the numbers of materials, to and from proto/package.proto. Decoding
 // checks only the form, not the values (scene/validate.h).
 
 #include <cstdint>
@@ -16,6 +16,12 @@
 namespace bandsaw {
 
 inline std::uint32_t number_of(TextureId id) { return static_cast<std::uint32_t>(id); }
+
+inline void encode(const Rgb& from, package::Rgb& to) {
+  for (const float channel : {from.r, from.g, from.b}) {
+    to.add_rgb(channel);
+  }
+}
 
 inline void encode(const Channel& from, package::Channel& to) {
   to.set_texture(number_of(from.texture));

@@ -8,16 +8,11 @@
 #include "renderlib/package/decode_enum.h"
 #include "renderlib/package/decode_surface.h"
 #include "renderlib/package/manifest.h"
+#include "renderlib/package/material_parts.h"
 #include "renderlib/package/placements.h"
 
 namespace bandsaw {
 namespace {
-
-void encode(const Rgb& color, package::Rgb& to) {
-  for (const float channel : {color.r, color.g, color.b}) {
-    to.add_rgb(channel);
-  }
-}
 
 void encode(const GridUse& use, package::GridUse& to) {
   to.set_grid(static_cast<std::uint32_t>(use.grid));

@@ -12,8 +12,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr double kPatience_s = 60;  ///< for which the farm may be unreachable
-constexpr std::chrono::milliseconds kPause{200};
+constexpr double kSendPatience_s = 60;  ///< for which the farm may be unreachable
+constexpr std::chrono::milliseconds kSendPause{200};
 
 absl::Status try_to_send(FarmClient& client, JobId sequence, FrameNumber frame,
                          ImportedPackage& package, ProgressDisplay& display) {
@@ -32,7 +32,7 @@ absl::Status try_to_send(FarmClient& client, JobId sequence, FrameNumber frame,
 
 absl::Status send_frame(FarmClient& client, JobId sequence, FrameNumber frame,
                         ImportedPackage& package, ProgressDisplay& display) {
-  const double until = steady_seconds() + kPatience_s;
+  const double until = steady_seconds() + kSendPatience_s;
   for (;;) {
     absl::Status status = try_to_send(client, sequence, frame, package, display);
     const double left = until - steady_seconds();
@@ -40,7 +40,7 @@ absl::Status send_frame(FarmClient& client, JobId sequence, FrameNumber frame,
         !client.wait_for_farm(std::chrono::milliseconds(static_cast<std::int64_t>(left * 1000)))) {
       return client.stopped() ? absl::CancelledError("interrupted") : status;
     }
-    client.pause(kPause);
+    client.pause(kSendPause);
   }
 }
 

@@ -9,15 +9,18 @@
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
+
+// Of the C API. Objects are only referred to.
+struct OidnDevice;
+struct OidnFilter;
+
 namespace {
 
 /// The names of versions 2 and 1, and that of a development package.
 constexpr const char* kFiles[] = {"libOpenImageDenoise.so.2", "libOpenImageDenoise.so.1",
                                   "libOpenImageDenoise.so"};
 
-// Of the C API. Objects are only referred to.
-struct OidnDevice;
-struct OidnFilter;
+// Of the C API.
 constexpr int kDeviceCpu = 1;     // OIDN_DEVICE_TYPE_CPU: it reads images where they are
 constexpr int kFormatFloat3 = 3;  // OIDN_FORMAT_FLOAT3
 

@@ -22,7 +22,7 @@ std::vector<JsonObject> objects(const std::vector<Count>& counts) {
   return out;
 }
 
-std::string text(const Vec3& v) { return absl::StrCat("[", v.x, ", ", v.y, ", ", v.z, "]"); }
+std::string triple(const Vec3& v) { return absl::StrCat("[", v.x, ", ", v.y, ", ", v.z, "]"); }
 
 std::string bytes(std::uint64_t count) { return si(static_cast<double>(count)) + "B"; }
 
@@ -47,8 +47,8 @@ std::vector<std::string> summary_text(const SceneSummary& summary) {
            absl::StrCat(text(summary.shapes), "; ", summary.triangles, " triangles as placed")),
       line("bounds", summary.bounds.empty()
                          ? "none"
-                         : absl::StrCat(text(summary.bounds.lo), " to ", text(summary.bounds.hi),
-                                        ", size ", text(summary.bounds.hi - summary.bounds.lo))),
+                         : absl::StrCat(triple(summary.bounds.lo), " to ", triple(summary.bounds.hi),
+                                        ", size ", triple(summary.bounds.hi - summary.bounds.lo))),
       line("materials", text(summary.materials)),
       line("textures",
            absl::StrCat(text(summary.textures), "; ", bytes(summary.texture_bytes), " of texels")),

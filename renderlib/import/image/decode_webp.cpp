@@ -7,7 +7,7 @@
 namespace bandsaw {
 namespace {
 
-const std::uint8_t* data_of(absl::string_view bytes) {
+const std::uint8_t* webp_data(absl::string_view bytes) {
   return reinterpret_cast<const std::uint8_t*>(bytes.data());
 }
 
@@ -24,7 +24,7 @@ bool is_webp(absl::string_view bytes) {
 
 absl::StatusOr<WebpHeader> webp_header(absl::string_view bytes) {
   WebPBitstreamFeatures features;
-  if (WebPGetFeatures(data_of(bytes), bytes.size(), &features) != VP8_STATUS_OK) {
+  if (WebPGetFeatures(webp_data(bytes), bytes.size(), &features) != VP8_STATUS_OK) {
     return damaged();
   }
   if (features.has_animation != 0) {
@@ -38,8 +38,8 @@ absl::StatusOr<std::shared_ptr<std::uint8_t>> decode_webp(absl::string_view byte
   int width = 0;
   int height = 0;
   std::uint8_t* pixels = channels == 4
-                             ? WebPDecodeRGBA(data_of(bytes), bytes.size(), &width, &height)
-                             : WebPDecodeRGB(data_of(bytes), bytes.size(), &width, &height);
+                             ? WebPDecodeRGBA(webp_data(bytes), bytes.size(), &width, &height)
+                             : WebPDecodeRGB(webp_data(bytes), bytes.size(), &width, &height);
   if (pixels == nullptr) {
     return damaged();
   }

@@ -11,11 +11,6 @@
 
 namespace bandsaw::mitsuba {
 
-const Object* object_in(const Property& property) {
-  const auto* const* object = std::get_if<const Object*>(&property.value);
-  return object != nullptr ? *object : nullptr;
-}
-
 absl::Status BsdfReader::read(const Object& bsdf, Draft& draft) {
   const Parameters from(bsdf);
   RETURN_IF_ERROR(read_kind(from, draft));

@@ -15,10 +15,6 @@ namespace bandsaw {
 namespace mitsuba {
 namespace {
 
-const Object* object_in(const Property& property) {
-  return *std::get_if<const Object*>(&property.value);
-}
-
 absl::Status convert(const Object& root, scene::Scene& scene, Conversion& to) {
   const Parameters from(root);
   const auto sensors = [&] {

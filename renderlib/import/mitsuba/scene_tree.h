@@ -58,6 +58,12 @@ struct Property {
   Place place;
 };
 
+/// Returns the property's object, or nullptr if its value is something else.
+inline const Object* object_in(const Property& property) {
+  const auto* const* object = std::get_if<const Object*>(&property.value);
+  return object != nullptr ? *object : nullptr;
+}
+
 /// A plugin with its parameters, in the order of the file. It may be part of several others.
 struct Object {
   std::string tag;   ///< "bsdf", "shape", …

@@ -11,11 +11,6 @@
 namespace bandsaw::mitsuba {
 namespace {
 
-const Object* object_in(const Property& property) {
-  const auto* const* object = std::get_if<const Object*>(&property.value);
-  return object != nullptr ? *object : nullptr;
-}
-
 void add_numbers(const Vec3& v, google::protobuf::RepeatedField<double>* to) {
   to->Add(v.x);
   to->Add(v.y);

@@ -12,7 +12,7 @@ namespace {
 
 Vec3 vec(const std::array<float, 3>& v) { return {v[0], v[1], v[2]}; }
 
-std::array<float, 3> floats(const Vec3& v) {
+std::array<float, 3> normal_of(const Vec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
@@ -56,7 +56,7 @@ void add_smooth_normals(PlyMesh& mesh) {
   }
   mesh.normals.clear();
   for (const Vec3& sum : sums) {
-    mesh.normals.push_back(length(sum) > 0 ? floats(normalize(sum))
+    mesh.normals.push_back(length(sum) > 0 ? normal_of(normalize(sum))
                                            : std::array<float, 3>{1, 0, 0});
   }
 }
@@ -79,7 +79,7 @@ void turn_over(PlyMesh& mesh) {
     std::swap(triangle[1], triangle[2]);
   }
   for (auto& normal : mesh.normals) {
-    normal = floats(-vec(normal));
+    normal = normal_of(-vec(normal));
   }
 }
 

@@ -20,10 +20,6 @@ void set(const Vec3& v, google::protobuf::RepeatedField<double>* to) {
   to->Add(v.z);
 }
 
-const Object* object_in(const Property& property) {
-  return *std::get_if<const Object*>(&property.value);
-}
-
 /// The part of the film that is rendered, in pixels from the top left corner.
 struct Film {
   std::int64_t width = 768;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <span>
 
 #include "absl/strings/str_cat.h"
@@ -11,14 +10,13 @@
 #include "renderlib/import/image/decode_image.h"
 #include "renderlib/import/pbrt/builder.h"
 #include "renderlib/import/pbrt/octahedral.h"
+#include "renderlib/math/constants.h"
 #include "renderlib/math/elementary.h"
 
 namespace bandsaw::pbrt {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
-struct Source {
+struct LightSource {
   const Parameters& parameters;
   const State& state;
   Builder& builder;
@@ -59,7 +57,7 @@ std::string encoded(const Image& image) {
                     : std::string();
 }
 
-absl::StatusOr<std::optional<Image>> read_picture(const std::string& file, const Source& from,
+absl::StatusOr<std::optional<Image>> read_picture(const std::string& file, const LightSource& from,
                                                   absl::string_view instead) {
   ASSIGN_OR_RETURN(const auto bytes, read_or_warn(file, from.place(), instead, from.builder));
   if (!bytes) {
@@ -72,12 +70,12 @@ absl::StatusOr<std::optional<Image>> read_picture(const std::string& file, const
   return *std::move(picture);
 }
 
-absl::StatusOr<Vec3> point(const Source& from, const std::string& name, const Vec3& otherwise) {
+absl::StatusOr<Vec3> point(const LightSource& from, const std::string& name, const Vec3& otherwise) {
   ASSIGN_OR_RETURN(const Vec3 p, from.parameters.point(name, otherwise));
   return from.to_world().point(p);
 }
 
-absl::Status distant(const Source& from) {
+absl::Status distant(const LightSource& from) {
   ASSIGN_OR_RETURN(const Vec3 start, point(from, "from", {0, 0, 0}));
   ASSIGN_OR_RETURN(const Vec3 end, point(from, "to", {0, 0, 1}));
   ASSIGN_OR_RETURN(const double factor, from.factor_for("illuminance", 1));
@@ -91,7 +89,7 @@ absl::Status distant(const Source& from) {
   return absl::OkStatus();
 }
 
-absl::Status point_light(const Source& from, double mean_of_image, double own_power) {
+absl::Status point_light(const LightSource& from, double mean_of_image, double own_power) {
   ASSIGN_OR_RETURN(const Vec3 position, point(from, "from", {0, 0, 0}));
   ASSIGN_OR_RETURN(const double factor, from.factor_for("power", own_power));
   ASSIGN_OR_RETURN(const Rgb3 intensity, from.light("I", factor * mean_of_image));
@@ -101,7 +99,7 @@ absl::Status point_light(const Source& from, double mean_of_image, double own_po
   return absl::OkStatus();
 }
 
-absl::Status spot(const Source& from) {
+absl::Status spot(const LightSource& from) {
   ASSIGN_OR_RETURN(const Vec3 position, point(from, "from", {0, 0, 0}));
   ASSIGN_OR_RETURN(const Vec3 target, point(from, "to", {0, 0, 1}));
   ASSIGN_OR_RETURN(double cone, from.parameters.number("coneangle", 30));
@@ -140,7 +138,7 @@ Rgb3 mean_of(const Image& image) {
   return {sum[0] / count, sum[1] / count, sum[2] / count};
 }
 
-absl::Status goniometric(const Source& from) {
+absl::Status goniometric(const LightSource& from) {
   ASSIGN_OR_RETURN(const std::string file, from.parameters.text("filename", ""));
   double mean = 1;
   if (!file.empty()) {
@@ -155,7 +153,7 @@ absl::Status goniometric(const Source& from) {
 
 /// A light that projects an image. pbrt's intensity is the image in each direction; that of our
 /// projector grows with 1 / cos^3 to the edge, so the image is divided by that.
-absl::Status projection(const Source& from) {
+absl::Status projection(const LightSource& from) {
   const Parameters& in = from.parameters;
   ASSIGN_OR_RETURN(const std::string file, in.text("filename", ""));
   ASSIGN_OR_RETURN(const double fov, in.number("fov", 90));
@@ -202,7 +200,7 @@ absl::Status projection(const Source& from) {
 }
 
 /// Adds light from everywhere to the background.
-void add_constant(const Rgb3& radiance, const Source& from) {
+void add_constant(const Rgb3& radiance, const LightSource& from) {
   scene::Background& background = *from.builder.out.mutable_background();
   if (background.has_environment()) {
     from.builder.warn(from.place(), "only one infinite light can have an image; this is left out");
@@ -215,7 +213,7 @@ void add_constant(const Rgb3& radiance, const Source& from) {
   set_rgb(sum, background.mutable_constant());
 }
 
-absl::Status infinite(const Source& from) {
+absl::Status infinite(const LightSource& from) {
   const Parameters& in = from.parameters;
   ASSIGN_OR_RETURN(const std::string file, in.text("filename", ""));
   if (in.find("portal") != nullptr) {
@@ -259,7 +257,7 @@ absl::Status infinite(const Source& from) {
 
 absl::Status add_light(const std::string& type, const Parameters& parameters, const State& state,
                        Builder& builder) {
-  const Source from{parameters, state, builder};
+  const LightSource from{parameters, state, builder};
   absl::Status status = absl::OkStatus();
   if (builder.group != nullptr) {
     builder.warn(parameters.place, "a light within an object is placed once, where it is written");

@@ -13,7 +13,7 @@ namespace {
 /// pbrt treats smaller values of alpha as smooth.
 constexpr double kSmooth = 1e-3;
 
-struct Source {
+struct MaterialSource {
   const Parameters& parameters;
   const State& state;
   Builder& builder;
@@ -51,7 +51,7 @@ struct Roughness {
 };
 
 /// Reads PREFIXroughness, uroughness and vroughness.
-absl::StatusOr<Roughness> read_roughness(const Source& from, const std::string& prefix,
+absl::StatusOr<Roughness> read_roughness(const MaterialSource& from, const std::string& prefix,
                                          double otherwise) {
   const Parameters& in = from.parameters;
   ASSIGN_OR_RETURN(const bool remap, in.boolean("remaproughness", true));
@@ -90,7 +90,7 @@ void set_microfacets(const Roughness& roughness, scene::Microfacets* to) {
 }
 
 /// Returns the index of refraction: a number, or a glass at the d line.
-absl::StatusOr<double> read_index(const Source& from, const std::string& name, double otherwise) {
+absl::StatusOr<double> read_index(const MaterialSource& from, const std::string& name, double otherwise) {
   const Parameter* found = from.parameters.find(name);
   if (found == nullptr || found->type == "float") {
     ASSIGN_OR_RETURN(const double index, from.parameters.number(name, otherwise));
@@ -111,7 +111,7 @@ absl::StatusOr<double> read_index(const Source& from, const std::string& name, d
 }
 
 /// Returns eta and k of a conductor by PREFIXeta and PREFIXk; copper by default.
-absl::StatusOr<spectrum::Metal> read_metal(const Source& from, const std::string& prefix) {
+absl::StatusOr<spectrum::Metal> read_metal(const MaterialSource& from, const std::string& prefix) {
   const Parameter* eta = from.parameters.find(prefix + "eta");
   const Parameter* k = from.parameters.find(prefix + "k");
   std::optional<spectrum::Sampled> spectra[2] = {spectrum::named("metal-Cu-eta"),
@@ -148,14 +148,14 @@ Rgb3 reflectance_of(const spectrum::Metal& metal, double outside) {
   return out;
 }
 
-absl::Status diffuse(const Source& from, Surface& to) {
+absl::Status diffuse(const MaterialSource& from, Surface& to) {
   ASSIGN_OR_RETURN(scene::Texture reflectance, from.reflectance("reflectance", 0.5));
   to.is_black = constant_of(reflectance) == 0.0;
   set_reflectance(std::move(reflectance), *to.material.mutable_diffuse());
   return absl::OkStatus();
 }
 
-absl::Status coated_diffuse(const Source& from, Surface& to) {
+absl::Status coated_diffuse(const MaterialSource& from, Surface& to) {
   scene::Plastic& plastic = *to.material.mutable_plastic();
   ASSIGN_OR_RETURN(scene::Texture reflectance, from.reflectance("reflectance", 0.5));
   set_reflectance(std::move(reflectance), plastic);
@@ -179,7 +179,7 @@ absl::Status coated_diffuse(const Source& from, Surface& to) {
   return absl::OkStatus();
 }
 
-absl::Status conductor(const Source& from, Surface& to) {
+absl::Status conductor(const MaterialSource& from, Surface& to) {
   ASSIGN_OR_RETURN(const Roughness roughness, read_roughness(from, "", 0));
   if (from.parameters.find("reflectance") != nullptr) {
     ASSIGN_OR_RETURN(scene::Texture reflectance, from.reflectance("reflectance", 0.5));
@@ -215,7 +215,7 @@ absl::Status conductor(const Source& from, Surface& to) {
 }
 
 /// A metal under a clear coat: glTF's metal with clear coat stands for it.
-absl::Status coated_conductor(const Source& from, Surface& to) {
+absl::Status coated_conductor(const MaterialSource& from, Surface& to) {
   ASSIGN_OR_RETURN(const Roughness coat, read_roughness(from, "interface.", 0));
   ASSIGN_OR_RETURN(const Roughness metal, read_roughness(from, "conductor.", 0));
   ASSIGN_OR_RETURN(const double index, read_index(from, "interface.eta", 1.5));
@@ -245,7 +245,7 @@ absl::Status coated_conductor(const Source& from, Surface& to) {
   return absl::OkStatus();
 }
 
-absl::Status dielectric(const Source& from, Surface& to) {
+absl::Status dielectric(const MaterialSource& from, Surface& to) {
   ASSIGN_OR_RETURN(const Roughness roughness, read_roughness(from, "", 0));
   ASSIGN_OR_RETURN(const double index, read_index(from, "eta", 1.5));
   scene::Dielectric& glass = *to.material.mutable_dielectric();
@@ -257,14 +257,14 @@ absl::Status dielectric(const Source& from, Surface& to) {
   return absl::OkStatus();
 }
 
-absl::Status thin_dielectric(const Source& from, Surface& to) {
+absl::Status thin_dielectric(const MaterialSource& from, Surface& to) {
   ASSIGN_OR_RETURN(const double index, read_index(from, "eta", 1.5));
   to.material.mutable_thin_dielectric()->set_index_of_refraction(index);
   to.transmits = true;
   return absl::OkStatus();
 }
 
-absl::Status diffuse_transmission(const Source& from, Surface& to) {
+absl::Status diffuse_transmission(const MaterialSource& from, Surface& to) {
   ASSIGN_OR_RETURN(scene::Texture reflectance, from.reflectance("reflectance", 0.25));
   ASSIGN_OR_RETURN(scene::Texture transmittance, from.reflectance("transmittance", 0.25));
   ASSIGN_OR_RETURN(const double scale, from.parameters.number("scale", 1));
@@ -317,7 +317,7 @@ absl::Status diffuse_transmission(const Source& from, Surface& to) {
   return absl::OkStatus();
 }
 
-absl::Status mix(const Source& from, Surface& to) {
+absl::Status mix(const MaterialSource& from, Surface& to) {
   ASSIGN_OR_RETURN(const std::vector<std::string> names, from.parameters.texts("materials"));
   if (names.size() != 2) {
     return error_at(from.place(), "a mix needs \"string materials\" with two names");
@@ -353,14 +353,14 @@ absl::Status mix(const Source& from, Surface& to) {
   return absl::OkStatus();
 }
 
-void use_all(const Source& from) {
+void use_all(const MaterialSource& from) {
   for (const Parameter& parameter : from.parameters.list) {
     parameter.is_used = true;
   }
 }
 
-absl::Status read_kind(const Source& from, const std::string& type, Surface& to) {
-  using Reader = absl::Status (*)(const Source&, Surface&);
+absl::Status read_kind(const MaterialSource& from, const std::string& type, Surface& to) {
+  using Reader = absl::Status (*)(const MaterialSource&, Surface&);
   constexpr std::pair<const char*, Reader> kReaders[] = {
       {"diffuse", diffuse},
       {"coateddiffuse", coated_diffuse},
@@ -389,7 +389,7 @@ absl::Status read_kind(const Source& from, const std::string& type, Surface& to)
 }
 
 /// Reads a normal map and a displacement.
-absl::Status read_bumps(const Source& from, Surface& to) {
+absl::Status read_bumps(const MaterialSource& from, Surface& to) {
   const bool has_fields = !to.material.has_mix() && !to.material.has_gltf() && !to.is_null;
   ASSIGN_OR_RETURN(const std::string normals, from.parameters.text("normalmap", ""));
   if (!normals.empty()) {
@@ -429,7 +429,7 @@ absl::StatusOr<std::shared_ptr<const Surface>> make_surface(const std::string& t
                                                             const State& state, Builder& builder) {
   auto surface = std::make_shared<Surface>();
   surface->label = label;
-  const Source from{parameters, state, builder};
+  const MaterialSource from{parameters, state, builder};
   RETURN_IF_ERROR(read_kind(from, type, *surface));
   RETURN_IF_ERROR(read_bumps(from, *surface));
   builder.warn_of_unused(parameters);

@@ -11,7 +11,7 @@
 namespace bandsaw::pbrt {
 namespace {
 
-struct Source {
+struct MediumParts {
   const MediumSource& medium;
   State state;
   Builder& builder;
@@ -26,7 +26,7 @@ Rgb3 times(const Rgb3& rgb, double factor) {
 }
 
 /// Sets absorption, scattering, phase function and emission, which all media have.
-absl::Status read_common(const Source& from, const Rgb3& absorption, const Rgb3& scattering,
+absl::Status read_common(const MediumParts& from, const Rgb3& absorption, const Rgb3& scattering,
                          scene::Medium& to) {
   const Parameters& in = from.parameters();
   ASSIGN_OR_RETURN(const double scale, in.number("scale", 1));
@@ -75,7 +75,7 @@ std::string volume_file(const std::vector<double>& values, const int size[3], in
 }
 
 /// Adds the grid `name` of nx x ny x nz numbers in the box from p0 to p1.
-absl::Status read_grid(const Source& from, const std::string& name, const Transform& to_shape,
+absl::Status read_grid(const MediumParts& from, const std::string& name, const Transform& to_shape,
                        scene::VolumeGrid* to) {
   const Parameters& in = from.parameters();
   int size[3] = {};
@@ -102,7 +102,7 @@ absl::Status read_grid(const Source& from, const std::string& name, const Transf
   return absl::OkStatus();
 }
 
-absl::Status read_uniform_grid(const Source& from, const Transform& to_shape, scene::Medium& to) {
+absl::Status read_uniform_grid(const MediumParts& from, const Transform& to_shape, scene::Medium& to) {
   RETURN_IF_ERROR(read_common(from, {1, 1, 1}, {1, 1, 1}, to));
   RETURN_IF_ERROR(read_grid(from, "density", to_shape, to.mutable_density_grid()));
   const Parameters& in = from.parameters();
@@ -131,7 +131,7 @@ absl::StatusOr<std::string> medium_name(const std::string& name, const Place& pl
   if (found == builder.media.end()) {
     return error_at(place, absl::StrCat("no medium is called \"", name, "\""));
   }
-  Source from{found->second, {}, builder};
+  MediumParts from{found->second, {}, builder};
   from.state.color_space = found->second.color_space;
   const Parameters& in = from.parameters();
   scene::Medium medium;

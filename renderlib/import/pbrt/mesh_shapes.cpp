@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <set>
 
 #include "absl/strings/match.h"
@@ -11,12 +10,12 @@
 #include "renderlib/base/status_macros.h"
 #include "renderlib/import/convert/read_ply.h"
 #include "renderlib/import/files/inflate.h"
+#include "renderlib/math/constants.h"
 #include "renderlib/math/elementary.h"
 
 namespace bandsaw::pbrt {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kMaxCoordinate = 1e30;
 constexpr int kAround = 128;  // segments of a whole turn of a quadric
 constexpr std::uint64_t kMaxPlyBytes = std::uint64_t{4} << 30;

@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "renderlib/import/spectrum/spectrum.h"
+#include "renderlib/math/constants.h"
 #include "renderlib/math/elementary.h"
 
 namespace bandsaw::pbrt {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr std::uint32_t kMaxWidth = 8192;
 
 Vec2 longitude_latitude(const Vec3& d) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
@@ -10,12 +9,11 @@
 #include "renderlib/import/pbrt/builder.h"
 #include "renderlib/import/pbrt/mesh_shapes.h"
 #include "renderlib/import/pbrt/motion.h"
+#include "renderlib/math/constants.h"
 #include "renderlib/math/elementary.h"
 
 namespace bandsaw::pbrt {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 /// Returns the factor of a map that keeps angles; std::nullopt for another.
 std::optional<double> uniform_scale(const Transform& t) {

@@ -22,7 +22,7 @@ scene::Texture product(scene::Texture a, scene::Texture b) {
 }
 
 /// State that the functions below share.
-struct Source {
+struct TextureSource {
   const Parameters& parameters;
   const State& state;
   bool is_color;
@@ -45,7 +45,7 @@ struct Mapping {
   double offset[2] = {0, 0};
 };
 
-absl::StatusOr<Mapping> read_mapping(const Source& from) {
+absl::StatusOr<Mapping> read_mapping(const TextureSource& from) {
   const Parameters& in = from.parameters;
   Mapping mapping;
   ASSIGN_OR_RETURN(const std::string kind, in.text("mapping", "uv"));
@@ -67,7 +67,7 @@ scene::ImageTexture::Wrap wrap_of(const std::string& wrap) {
                                             : scene::ImageTexture::WRAP_REPEAT;
 }
 
-absl::StatusOr<bool> is_linear(const Source& from, const std::string& file) {
+absl::StatusOr<bool> is_linear(const TextureSource& from, const std::string& file) {
   ASSIGN_OR_RETURN(const std::string encoding, from.parameters.text("encoding", ""));
   if (absl::StartsWith(encoding, "gamma")) {
     from.builder.warn(from.place(), absl::StrCat("the encoding \"", encoding, "\" of \"", file,
@@ -76,7 +76,7 @@ absl::StatusOr<bool> is_linear(const Source& from, const std::string& file) {
   return encoding == "linear";
 }
 
-absl::StatusOr<scene::Texture> image_map(const Source& from) {
+absl::StatusOr<scene::Texture> image_map(const TextureSource& from) {
   const Parameters& in = from.parameters;
   ASSIGN_OR_RETURN(const std::string file, in.text("filename", ""));
   ASSIGN_OR_RETURN(const Mapping mapping, read_mapping(from));
@@ -127,7 +127,7 @@ absl::StatusOr<scene::Texture> image_map(const Source& from) {
   return out;
 }
 
-absl::StatusOr<scene::Texture> checkerboard(const Source& from) {
+absl::StatusOr<scene::Texture> checkerboard(const TextureSource& from) {
   ASSIGN_OR_RETURN(const int dimension, from.parameters.integer("dimension", 2));
   scene::Texture out;
   scene::CheckerTexture& checker = *out.mutable_checker();
@@ -157,7 +157,7 @@ absl::StatusOr<scene::Texture> checkerboard(const Source& from) {
   return out;
 }
 
-absl::StatusOr<scene::Texture> mix(const Source& from) {
+absl::StatusOr<scene::Texture> mix(const TextureSource& from) {
   scene::Texture out;
   ASSIGN_OR_RETURN(*out.mutable_mix()->mutable_a(), from.part("tex1", 0));
   ASSIGN_OR_RETURN(*out.mutable_mix()->mutable_b(), from.part("tex2", 1));
@@ -168,14 +168,14 @@ absl::StatusOr<scene::Texture> mix(const Source& from) {
   return out;
 }
 
-absl::StatusOr<scene::Texture> scaled(const Source& from) {
+absl::StatusOr<scene::Texture> scaled(const TextureSource& from) {
   ASSIGN_OR_RETURN(scene::Texture texture, from.part("tex", 1));
   ASSIGN_OR_RETURN(auto scale, float_texture(from.parameters, "scale", from.builder));
   return scale ? product(std::move(texture), *std::move(scale)) : texture;
 }
 
 /// Returns the noise that comes nearest to pbrt's fbm, wrinkled, windy and marble.
-absl::StatusOr<scene::Texture> noise(const Source& from, const std::string& type) {
+absl::StatusOr<scene::Texture> noise(const TextureSource& from, const std::string& type) {
   const Parameters& in = from.parameters;
   ASSIGN_OR_RETURN(const int octaves, in.integer("octaves", 8));
   in.ignore({"roughness", "variation"});
@@ -192,7 +192,7 @@ absl::StatusOr<scene::Texture> noise(const Source& from, const std::string& type
   return out;
 }
 
-absl::StatusOr<scene::Texture> bilinear(const Source& from) {
+absl::StatusOr<scene::Texture> bilinear(const TextureSource& from) {
   scene::Texture rows[2];
   for (int v = 0; v < 2; ++v) {
     scene::Texture& row = rows[v];
@@ -225,7 +225,7 @@ absl::StatusOr<scene::Texture> bilinear(const Source& from) {
   return out;
 }
 
-absl::StatusOr<scene::Texture> read_kind(const Source& from, const std::string& type) {
+absl::StatusOr<scene::Texture> read_kind(const TextureSource& from, const std::string& type) {
   if (type == "constant") {
     return from.part("value", 1);
   }

@@ -2,17 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/math/constants.h"
 #include "renderlib/math/elementary.h"
 
 namespace bandsaw::pbrt {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 /// The image in pixels, and the part of it that is rendered.
 struct Film {

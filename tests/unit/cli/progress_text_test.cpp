@@ -10,7 +10,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-Progress sample() {
+Progress some_progress() {
   Progress progress;
   JobView& job = progress.job;
   job.id = 7;
@@ -31,18 +31,18 @@ Progress sample() {
 }
 
 TEST(ProgressText, HasTheSpecifiedFormat) {
-  EXPECT_EQ(header_line(sample()), "job 7 · cornell · 600×600 · until error ≤ 1 %");
-  EXPECT_EQ(bar_line(sample(), 80),
+  EXPECT_EQ(header_line(some_progress()), "job 7 · cornell · 600×600 · until error ≤ 1 %");
+  EXPECT_EQ(bar_line(some_progress(), 80),
             " 62 % ━━━━━━━━━━━━╸        error 1.6 % · 48 Msamples · 5.2 M/s · 0:09 left");
-  EXPECT_THAT(worker_lines(sample(), 9),
+  EXPECT_THAT(worker_lines(some_progress(), 9),
               ElementsAre("   desk     16 threads  3.1 M/s   rows 320–352",
                           "   laptop    8 threads  1.4 M/s   rows 352–368"));
-  EXPECT_EQ(plain_line(sample()),
+  EXPECT_EQ(plain_line(some_progress()),
             " 62 % · error 1.6 % · 48 Msamples · 5.2 M/s · 0:09 left · 2 workers");
 }
 
 TEST(ProgressText, HalfCellsOfTheBarAreShown) {
-  Progress progress = sample();
+  Progress progress = some_progress();
   progress.job.fraction = 0.63;
   EXPECT_THAT(bar_line(progress, 80), HasSubstr("━━━━━━━━━━━━╸        error"));
   progress.job.fraction = 0;
@@ -52,13 +52,13 @@ TEST(ProgressText, HalfCellsOfTheBarAreShown) {
 }
 
 TEST(ProgressText, ANarrowWindowHasAShorterBar) {
-  const std::string line = bar_line(sample(), 63);
+  const std::string line = bar_line(some_progress(), 63);
   EXPECT_EQ(line, " 62 % ━━━━━╸    error 1.6 % · 48 Msamples · 5.2 M/s · 0:09 left");
-  EXPECT_EQ(bar_line(sample(), 10), " 62 %  error 1.6 % · 48 Msamples · 5.2 M/s · 0:09 left");
+  EXPECT_EQ(bar_line(some_progress(), 10), " 62 %  error 1.6 % · 48 Msamples · 5.2 M/s · 0:09 left");
 }
 
 TEST(ProgressText, UnknownValuesAreNotShown) {
-  Progress progress = sample();
+  Progress progress = some_progress();
   progress.job.error = -1;
   progress.job.remaining_s = -1;
   progress.job.samples_per_s = 0;
@@ -67,13 +67,13 @@ TEST(ProgressText, UnknownValuesAreNotShown) {
 }
 
 TEST(ProgressText, NinetyNineAndAHalfPercentIsNotDone) {
-  Progress progress = sample();
+  Progress progress = some_progress();
   progress.job.fraction = 0.9999;
   EXPECT_THAT(plain_line(progress), HasSubstr(" 99 %"));
 }
 
 TEST(ProgressText, AWaitingJobShowsItsReason) {
-  Progress progress = sample();
+  Progress progress = some_progress();
   progress.job.workers.clear();
   progress.job.reason = "no worker is connected";
   EXPECT_THAT(worker_lines(progress, 5), ElementsAre("   no worker is connected"));
@@ -81,14 +81,14 @@ TEST(ProgressText, AWaitingJobShowsItsReason) {
 }
 
 TEST(ProgressText, AnIdleWorkerShowsItsState) {
-  Progress progress = sample();
+  Progress progress = some_progress();
   progress.job.workers = {{"b\x1bx", 1, 0, {0, 0}, "fetching scene"}};
   EXPECT_THAT(worker_lines(progress, 5),
               ElementsAre("   b?x       1 thread             fetching scene"));
 }
 
 TEST(ProgressText, ManyWorkersAreCounted) {
-  Progress progress = sample();
+  Progress progress = some_progress();
   progress.job.workers.resize(10, progress.job.workers.front());
   const auto lines = worker_lines(progress, 4);
   ASSERT_EQ(lines.size(), 4u);
@@ -97,7 +97,7 @@ TEST(ProgressText, ManyWorkersAreCounted) {
 }
 
 TEST(ProgressText, TheLastLineShowsTheCost) {
-  Progress progress = sample();
+  Progress progress = some_progress();
   progress.job.elapsed_s = 21.43;
   progress.job.error = 0.0099;
   EXPECT_EQ(final_line(progress, "cornell.png"), "cornell.png · error 0.99 % · 21.4 s · 4 workers");
@@ -107,11 +107,11 @@ TEST(ProgressText, TheLastLineShowsTheCost) {
 }
 
 TEST(ProgressText, TheLastLineNamesTheReports) {
-  EXPECT_THAT(final_line(sample(), "a.png", "a.json"), testing::EndsWith(" · report a.json"));
+  EXPECT_THAT(final_line(some_progress(), "a.png", "a.json"), testing::EndsWith(" · report a.json"));
 }
 
 TEST(ProgressText, TheCostIsShownWithThePartsOfTheError) {
-  Progress progress = sample();
+  Progress progress = some_progress();
   JobView& job = progress.job;
   job.samples_per_pixel = 256;
   job.counters.rays = 8'000'000;
@@ -130,7 +130,7 @@ TEST(ProgressText, TheCostIsShownWithThePartsOfTheError) {
 }
 
 TEST(ProgressText, DroppedPrimitivesAreReported) {
-  Progress progress = sample();
+  Progress progress = some_progress();
   EXPECT_THAT(left_out_line(progress), IsEmpty());
   progress.job.samples_done = 1000;
   progress.job.spec.settings.max_depth = 5;
@@ -142,7 +142,7 @@ TEST(ProgressText, DroppedPrimitivesAreReported) {
 }
 
 TEST(ProgressText, BadSamplesAreAWarning) {
-  Progress progress = sample();
+  Progress progress = some_progress();
   EXPECT_THAT(bad_samples_line(progress), IsEmpty());
   progress.job.counters = {.rays = 1, .bad_samples = 3, .bad_x = 5, .bad_y = 6, .bad_sample = 9};
   progress.bad_sample_at = bad_sample_text(progress.job.counters);

@@ -42,7 +42,7 @@ Progress finished() {
   return progress;
 }
 
-google::protobuf::Struct parsed(const std::string& text) {
+google::protobuf::Struct struct_of(const std::string& text) {
   google::protobuf::Struct out;
   const auto status = google::protobuf::util::JsonStringToMessage(text, &out);
   EXPECT_TRUE(status.ok()) << status.ToString() << text;
@@ -58,7 +58,7 @@ TEST(Report, IsJsonWithAllFields) {
   const Image image{1, 1, {gray(0.5F)}};
   const std::string text = report_text({finished(), pixels_sha256(image), {"a.png"}});
   EXPECT_EQ(text.rfind(kReportBegins, 0), 0u);
-  const auto json = parsed(text);
+  const auto json = struct_of(text);
   EXPECT_EQ(json.fields().at("schema").string_value(), "bandsaw.report/1");
   EXPECT_EQ(json.fields().at("scene").string_value(), "cor\"nell");
   EXPECT_EQ(at(json, "settings", "stop_error").number_value(), 0.05);
@@ -86,7 +86,7 @@ TEST(Report, UnknownValuesAreNull) {
   progress.job.curve.clear();
   progress.job.elapsed_s = -1;
   progress.job.cpu_s = 0;
-  const auto json = parsed(report_text({progress, "", {}}));
+  const auto json = struct_of(report_text({progress, "", {}}));
   EXPECT_TRUE(json.fields().at("error").has_null_value());
   for (const char* field : {"elapsed_s", "cpu_s", "cpu_s_to_1_percent"}) {
     EXPECT_TRUE(at(json, "time", field).has_null_value()) << field;

@@ -14,7 +14,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr std::uint64_t kSamples = 512;
+constexpr std::uint64_t kJobSamples = 512;
 
 bool overlap(const Band& a, const Band& b) {
   return a.samples.first < b.samples.last && b.samples.first < a.samples.last &&
@@ -61,7 +61,7 @@ void expect_local_image(TestFarm& farm, JobId job, std::uint64_t samples) {
 TEST(Restart, NothingAcknowledgedIsLeasedAgainAndTheImageIsTheSame) {
   TestFarm farm;
   ASSERT_TRUE(farm.start().ok());
-  const JobId job = farm.begin(StopAtSamples{.samples = kSamples});
+  const JobId job = farm.begin(StopAtSamples{.samples = kJobSamples});
   Acknowledged acknowledged;
   {
     FakeWorker one(farm.scene(), "one", acknowledged.hook());
@@ -74,7 +74,7 @@ TEST(Restart, NothingAcknowledgedIsLeasedAgainAndTheImageIsTheSame) {
   ASSERT_TRUE(farm.start().ok());
   FakeWorker three(farm.scene(), "three");
   three.join(farm.engine());
-  expect_local_image(farm, job, kSamples);
+  expect_local_image(farm, job, kJobSamples);
   EXPECT_FALSE(acknowledged.bands().empty());
   EXPECT_EQ(rendered_again(three.leased(), acknowledged.bands()), 0);
 }
@@ -104,7 +104,7 @@ TEST(Restart, AFinishedJobKeepsItsResult) {
 TEST(Restart, DamagedBandsAreRenderedAgain) {
   TestFarm farm;
   ASSERT_TRUE(farm.start().ok());
-  const JobId job = farm.begin(StopAtSamples{.samples = kSamples});
+  const JobId job = farm.begin(StopAtSamples{.samples = kJobSamples});
   {
     FakeWorker one(farm.scene(), "one");
     one.join(farm.engine());
@@ -120,7 +120,7 @@ TEST(Restart, DamagedBandsAreRenderedAgain) {
   ASSERT_TRUE(farm.start().ok());
   FakeWorker two(farm.scene(), "two");
   two.join(farm.engine());
-  expect_local_image(farm, job, kSamples);
+  expect_local_image(farm, job, kJobSamples);
 }
 
 /// A coordinator with its workers in a process of its own, which writes the bands it acknowledged
@@ -139,7 +139,7 @@ TEST(Restart, DamagedBandsAreRenderedAgain) {
   FakeWorker two(farm.scene(), "two", tell);
   one.join(farm.engine());
   two.join(farm.engine());
-  farm.wait_final(farm.begin(StopAtSamples{.samples = kSamples}));
+  farm.wait_final(farm.begin(StopAtSamples{.samples = kJobSamples}));
   ::_exit(0);
 }
 
@@ -169,7 +169,7 @@ TEST(Restart, AfterAKillNothingAcknowledgedIsLostOrLeasedAgain) {
   ASSERT_TRUE(farm.start().ok());
   FakeWorker three(farm.scene(), "three");
   three.join(farm.engine());
-  expect_local_image(farm, 1, kSamples);
+  expect_local_image(farm, 1, kJobSamples);
   EXPECT_EQ(rendered_again(three.leased(), acknowledged), 0);
 }
 

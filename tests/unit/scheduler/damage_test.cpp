@@ -6,7 +6,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-SchedulerOptions audited() {
+SchedulerOptions with_audits() {
   SchedulerOptions options = test_options();
   options.audit_share = 1;
   return options;
@@ -67,7 +67,7 @@ action::Lease store_and_audit(FarmDriver& farm) {
 }
 
 TEST(Damage, RowsThatAreRenderedAgainAreAuditedAgain) {
-  FarmDriver farm(audited());
+  FarmDriver farm(with_audits());
   const action::Lease lease = store_and_audit(farm);
   farm.actions.clear();
   lose(farm, lease.job, lease.band, "a");
@@ -80,9 +80,9 @@ TEST(Damage, RowsThatAreRenderedAgainAreAuditedAgain) {
 }
 
 TEST(Damage, ARestartNotesAuditedBandsMissingFromTheLog) {
-  FarmDriver farm(audited());
+  FarmDriver farm(with_audits());
   const action::Lease lease = store_and_audit(farm);
-  FarmDriver next(audited());
+  FarmDriver next(with_audits());
   for (const Record& record : farm.records) {
     next.scheduler.replay(record);
   }
@@ -95,7 +95,7 @@ TEST(Damage, ARestartNotesAuditedBandsMissingFromTheLog) {
 }
 
 TEST(Damage, TheAuditOfALostBandEnds) {
-  FarmDriver farm(audited());
+  FarmDriver farm(with_audits());
   const JobId job = farm.submit(test_job("r1", StopAtSamples{16}, 8, 1));
   farm.hello(1, "a");
   const action::Lease lease = farm.all<action::Lease>().at(0);
