@@ -17,7 +17,7 @@ struct PrimaryVertex {
   SurfacePoint point;
   Vec3 normal;  ///< geometric normal on the viewer's side
   Bsdf bsdf;
-  GuidingCones cones;
+  const GuidingCones* cones;
 };
 
 /// The second vertex of a pixel's path, if all pixels may use it.
@@ -42,8 +42,9 @@ bool is_only_diffuse(const Material& material) {
 
 /// Traces a pixel's path and leaves in `path` the radiance that belongs to this pixel alone. Sets
 /// `primary` if the pixel can receive light from shared vertices, and `shared` if its second vertex
-/// is shared; the light of that vertex is not in `path`.
-void trace_own_path(const PathContext& context, PathState& path,
+/// is shared; the light of that vertex is not in `path`. `cones`: memory for those of `primary`,
+/// which guide nothing yet.
+void trace_own_path(const PathContext& context, PathState& path, GuidingCones& cones,
                     std::optional<PrimaryVertex>& primary, std::optional<SharedVertex>& shared) {
   const Ray camera_ray = path.ray;
   const std::optional<SurfacePoint> first = next_surface(context, 0, path);
@@ -56,9 +57,11 @@ void trace_own_path(const PathContext& context, PathState& path,
   if (!bsdf) {
     return;
   }
-  const GuidingCones cones = cones_at(context, *first, *bsdf, -camera_ray.direction);
+  if (context.options.guiding != nullptr) {
+    cones = cones_at(context, *first, *bsdf, -camera_ray.direction);
+  }
   if (has_pdf(*bsdf)) {
-    primary = PrimaryVertex{*first, facing(*first, camera_ray), *bsdf, cones};
+    primary = PrimaryVertex{*first, facing(*first, camera_ray), *bsdf, &cones};
   }
   if (!scatter(context, *first, *bsdf, cones, 0, path)) {
     return;
@@ -104,7 +107,7 @@ Connection connect(const PrimaryVertex& primary, const SharedVertex& shared) {
   }
   const double distance2 = length_squared(to_shared);
   const double distance = std::sqrt(distance2);
-  return {evaluate(primary.bsdf, primary.cones, to_shared / distance),
+  return {evaluate(primary.bsdf, *primary.cones, to_shared / distance),
           cosine / (distance2 * distance)};
 }
 
@@ -140,6 +143,8 @@ void radiance_with_reuse(const Scene& scene, absl::Span<ReusePixel> pixels, std:
                          const PathOptions& options) {
   BANDSAW_CHECK(pixels.size() <= kMaxReusePixels, "more pixels than can reuse paths together");
   PrimaryVertices primary;
+  // Apart from `primary`, because std::optional zeroes its memory, which is large with them.
+  std::array<GuidingCones, kMaxReusePixels> cones;
   std::array<std::optional<SharedVertex>, kMaxReusePixels> shared;
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     ReusePixel& pixel = pixels[i];
@@ -148,7 +153,7 @@ void radiance_with_reuse(const Scene& scene, absl::Span<ReusePixel> pixels, std:
     if (pixel.camera_ray.lens) {
       sample_light_through_lens(context, *pixel.camera_ray.lens, path);
     }
-    trace_own_path(context, path, primary[i], shared[i]);
+    trace_own_path(context, path, cones[i], primary[i], shared[i]);
     pixel.radiance = path.radiance;
     pixel.counts.truncated += path.truncated ? 1 : 0;
   }
