@@ -13,7 +13,7 @@
 #include <chrono>
 
 #include "absl/cleanup/cleanup.h"
-#include "absl/strings/str_cat.h"
+#include "coordinator/cli/base/spawn.h"
 #include "renderlib/base/atomic_file.h"
 #include "renderlib/base/status_macros.h"
 
@@ -27,8 +27,7 @@ struct Child {
   int output = -1;  ///< read end of the pipe with its output
 };
 
-// Resets blocked and ignored signals in the child, so that Ctrl-C in a terminal ends it at once.
-absl::StatusOr<Child> spawn(const std::vector<std::string>& arguments,
+absl::StatusOr<Child> start(const std::vector<std::string>& arguments,
                             const ChildStreams& streams) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) {
@@ -43,32 +42,14 @@ absl::StatusOr<Child> spawn(const std::vector<std::string>& arguments,
   } else {
     posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
   }
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t signals;
-  sigemptyset(&signals);
-  posix_spawnattr_setsigmask(&attributes, &signals);
-  for (const int signal : {SIGINT, SIGTERM, SIGPIPE}) {
-    sigaddset(&signals, signal);
-  }
-  posix_spawnattr_setsigdefault(&attributes, &signals);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-
-  std::vector<char*> argv;
-  for (const std::string& argument : arguments) {
-    argv.push_back(const_cast<char*>(argument.c_str()));
-  }
-  argv.push_back(nullptr);
-  Child child{-1, ends[0]};
-  const int error = posix_spawnp(&child.pid, argv[0], &actions, &attributes, argv.data(), environ);
-  posix_spawnattr_destroy(&attributes);
+  const absl::StatusOr<pid_t> pid = spawn(arguments, actions);
   posix_spawn_file_actions_destroy(&actions);
   close(ends[1]);
-  if (error != 0) {
+  if (!pid.ok()) {
     close(ends[0]);
-    return errno_status(error, absl::StrCat("cannot start ", arguments[0]));
+    return pid.status();
   }
-  return child;
+  return Child{*pid, ends[0]};
 }
 
 // Reads the child's output until it ends, `seconds` have passed or `stop` is set. The child has
@@ -114,7 +95,7 @@ ChildOutcome wait_for(const Child& child, double seconds, const std::atomic<bool
 
 absl::StatusOr<ChildOutcome> run_child(const std::vector<std::string>& arguments, double seconds,
                                        const std::atomic<bool>* stop, const ChildStreams& streams) {
-  ASSIGN_OR_RETURN(const Child child, spawn(arguments, streams));
+  ASSIGN_OR_RETURN(const Child child, start(arguments, streams));
   const absl::Cleanup close_output = [&child] { close(child.output); };
   return wait_for(child, seconds, stop);
 }

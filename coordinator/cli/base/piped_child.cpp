@@ -11,9 +11,10 @@
 #include <cerrno>
 #include <utility>
 
-#include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "coordinator/cli/base/spawn.h"
 #include "renderlib/base/atomic_file.h"
+#include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -27,7 +28,6 @@ void close_if_open(int& descriptor) {
 
 }  // namespace
 
-// Resets blocked and ignored signals in the child, so that Ctrl-C in a terminal ends it at once.
 absl::StatusOr<PipedChild> PipedChild::start(const std::vector<std::string>& arguments) {
   std::array<int, 2> ends{};
   if (pipe2(ends.data(), O_CLOEXEC) != 0) {
@@ -39,29 +39,11 @@ absl::StatusOr<PipedChild> PipedChild::start(const std::vector<std::string>& arg
   posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, child.errors_, STDERR_FILENO);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t signals;
-  sigemptyset(&signals);
-  posix_spawnattr_setsigmask(&attributes, &signals);
-  for (const int signal : {SIGINT, SIGTERM, SIGPIPE}) {
-    sigaddset(&signals, signal);
-  }
-  posix_spawnattr_setsigdefault(&attributes, &signals);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
-  std::vector<char*> argv;
-  for (const std::string& argument : arguments) {
-    argv.push_back(const_cast<char*>(argument.c_str()));
-  }
-  argv.push_back(nullptr);
-  const int error = posix_spawnp(&child.pid_, argv[0], &actions, &attributes, argv.data(), environ);
-  posix_spawnattr_destroy(&attributes);
+  const absl::StatusOr<pid_t> pid = spawn(arguments, actions);
   posix_spawn_file_actions_destroy(&actions);
   close(ends[0]);
-  if (error != 0) {
-    child.pid_ = -1;
-    return errno_status(error, absl::StrCat("cannot start ", arguments[0]));
-  }
+  RETURN_IF_ERROR(pid.status());
+  child.pid_ = *pid;
   return child;
 }
 
