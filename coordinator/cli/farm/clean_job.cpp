@@ -1,15 +1,14 @@
 #include "coordinator/cli/farm/clean_job.h"
 
 #include <algorithm>
-#include <chrono>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "absl/strings/str_cat.h"
+#include "coordinator/cli/farm/patiently.h"
 #include "coordinator/cli/farm/watch_job.h"
 #include "coordinator/cli/image/clean.h"
-#include "coordinator/engine/clock.h"
 #include "coordinator/scheduler/api/clean_jobs.h"
 #include "proto/convert/render_values.h"
 #include "proto/link/random.h"
@@ -29,22 +28,6 @@ farm::SubmitRequest request_of(const JobSpec& spec, const std::string& manifest,
   *request.mutable_stop() = to_message(spec.stop);
   request.set_priority(priority);
   return request;
-}
-
-/// Repeats a call while the farm cannot be reached, for at most a minute.
-template <class Call>
-auto patiently(FarmClient& client, Call call) {
-  constexpr std::chrono::minutes kPatience{1};
-  constexpr std::chrono::milliseconds kPause{200};
-  const double until = steady_seconds() + std::chrono::duration<double>(kPatience).count();
-  auto result = call();
-  // A call alone does not make the connection try again.
-  while (absl::IsUnavailable(result.status()) && steady_seconds() < until &&
-         client.wait_for_farm(kPatience)) {
-    client.pause(kPause);
-    result = call();
-  }
-  return result;
 }
 
 /// Renders the images of jobs on a farm.

@@ -5,21 +5,15 @@
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/base/text.h"
+#include "coordinator/cli/farm/patiently.h"
 #include "coordinator/cli/image/output.h"
 #include "coordinator/cli/image/report.h"
 #include "coordinator/cli/image/report_file.h"
 #include "coordinator/cli/options/output_names.h"
-#include "coordinator/engine/clock.h"
 #include "renderlib/base/status_macros.h"
 #include "renderlib/image/write_image.h"
 
 namespace bandsaw::coordinator {
-namespace {
-
-constexpr double kPatience_s = 60;  ///< for which the farm may be unreachable
-constexpr std::chrono::milliseconds kPause{200};
-
-}  // namespace
 
 FrameFetcher::FrameFetcher(const FarmClient& client, JobId sequence, const WantedFrames& wanted,
                            ProgressDisplay& display)
@@ -130,17 +124,8 @@ absl::Status FrameFetcher::add_to_collections(FrameNumber number, const Image& i
 }
 
 absl::Status FrameFetcher::fetch_rest() {
-  const double until = steady_seconds() + kPatience_s;
-  for (;;) {
-    absl::Status status = update();
-    const double left = until - steady_seconds();
-    if (!absl::IsUnavailable(status) || left <= 0 ||
-        !client_->wait_for_farm(
-            std::chrono::milliseconds(static_cast<std::int64_t>(left * 1000)))) {
-      return client_->stopped() ? absl::CancelledError("interrupted") : status;
-    }
-    client_->pause(kPause);
-  }
+  const absl::Status status = patiently(*client_, [this] { return update(); });
+  return client_->stopped() ? absl::CancelledError("interrupted") : status;
 }
 
 /// Adds the frames that were done out of order: they are fetched once more.

@@ -4,16 +4,13 @@
 #include <utility>
 
 #include "absl/strings/str_cat.h"
+#include "coordinator/cli/farm/patiently.h"
 #include "coordinator/cli/farm/upload.h"
-#include "coordinator/engine/clock.h"
 #include "proto/wire/digest.h"
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
 namespace {
-
-constexpr double kSendPatience_s = 60;  ///< for which the farm may be unreachable
-constexpr std::chrono::milliseconds kSendPause{200};
 
 absl::Status try_to_send(FarmClient& client, JobId sequence, FrameNumber frame,
                          ImportedPackage& package, ProgressDisplay& display) {
@@ -32,16 +29,9 @@ absl::Status try_to_send(FarmClient& client, JobId sequence, FrameNumber frame,
 
 absl::Status send_frame(FarmClient& client, JobId sequence, FrameNumber frame,
                         ImportedPackage& package, ProgressDisplay& display) {
-  const double until = steady_seconds() + kSendPatience_s;
-  for (;;) {
-    absl::Status status = try_to_send(client, sequence, frame, package, display);
-    const double left = until - steady_seconds();
-    if (!absl::IsUnavailable(status) || left <= 0 ||
-        !client.wait_for_farm(std::chrono::milliseconds(static_cast<std::int64_t>(left * 1000)))) {
-      return client.stopped() ? absl::CancelledError("interrupted") : status;
-    }
-    client.pause(kSendPause);
-  }
+  const absl::Status status = patiently(
+      client, [&] { return try_to_send(client, sequence, frame, package, display); });
+  return client.stopped() ? absl::CancelledError("interrupted") : status;
 }
 
 FrameSender::FrameSender(const FarmClient& client, const Console& console, JobId sequence,

@@ -1,0 +1,41 @@
+#pragma once
+
+// Calls that outlast a restart of the coordinator.
+
+#include <chrono>
+#include <cstdint>
+
+#include "absl/status/status.h"
+#include "absl/status/statusor.h"
+#include "coordinator/cli/farm/farm_client.h"
+#include "coordinator/engine/clock.h"
+
+namespace bandsaw::coordinator {
+
+inline const absl::Status& status_of(const absl::Status& status) { return status; }
+template <class T>
+const absl::Status& status_of(const absl::StatusOr<T>& result) {
+  return result.status();
+}
+
+/// Repeats `call`, which returns a Status or a StatusOr, while the farm cannot be reached, for at
+/// most a minute. Returns the last result. (A call alone does not make the connection try again.)
+template <class Call>
+auto patiently(FarmClient& client, Call call) {
+  constexpr double kPatience_s = 60;
+  constexpr std::chrono::milliseconds kPause{200};
+  const double until = steady_seconds() + kPatience_s;
+  auto result = call();
+  while (absl::IsUnavailable(status_of(result))) {
+    const double left = until - steady_seconds();
+    if (left <= 0 ||
+        !client.wait_for_farm(std::chrono::milliseconds(static_cast<std::int64_t>(left * 1000)))) {
+      break;
+    }
+    client.pause(kPause);
+    result = call();
+  }
+  return result;
+}
+
+}  // namespace bandsaw::coordinator
