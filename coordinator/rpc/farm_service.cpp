@@ -3,6 +3,7 @@
 #include "coordinator/rpc/checked_messages.h"
 #include "coordinator/rpc/downloads.h"
 #include "coordinator/rpc/gate.h"
+#include "coordinator/rpc/job_replies.h"
 #include "coordinator/rpc/picture.h"
 #include "coordinator/rpc/services.h"
 #include "coordinator/rpc/uploads.h"
@@ -58,15 +59,7 @@ Unary* FarmService::Submit(grpc::CallbackServerContext* context, const farm::Sub
                            farm::SubmitReply* reply) {
   return unary(deps_, *context, link::Role::kFarm, [&](Unary* reactor) -> absl::Status {
     ASSIGN_OR_RETURN(JobSpec spec, job_spec(*request));
-    deps_.engine.submit(
-        std::move(spec),
-        [reactor, reply](const absl::StatusOr<JobId>& job) {
-          if (job.ok()) {
-            reply->set_job(*job);
-          }
-          reactor->Finish(link::to_grpc(job.status()));
-        },
-        request->priority());
+    deps_.engine.submit(std::move(spec), reply_with(reactor, reply), request->priority());
     return absl::OkStatus();
   });
 }

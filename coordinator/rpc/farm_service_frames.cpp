@@ -3,6 +3,7 @@
 #include "coordinator/convert/farm_messages.h"
 #include "coordinator/rpc/checked_messages.h"
 #include "coordinator/rpc/gate.h"
+#include "coordinator/rpc/job_replies.h"
 #include "coordinator/rpc/services.h"
 #include "renderlib/base/status_macros.h"
 
@@ -14,16 +15,6 @@ using Unary = grpc::ServerUnaryReactor;
 /// Maximum number of reasons in a reply, so that it fits into a message.
 constexpr std::size_t kMaxReasons = 5'000;
 
-/// Returns a callback that replies with the sequence's status.
-auto reply_with(Unary* reactor, farm::JobStatus* reply) {
-  return [reactor, reply](const absl::StatusOr<JobView>& job) {
-    if (job.ok()) {
-      *reply = to_message(*job);
-    }
-    reactor->Finish(link::to_grpc(job.status()));
-  };
-}
-
 }  // namespace
 
 Unary* FarmService::SubmitSequence(grpc::CallbackServerContext* context,
@@ -31,15 +22,8 @@ Unary* FarmService::SubmitSequence(grpc::CallbackServerContext* context,
                                    farm::SubmitReply* reply) {
   return unary(deps_, *context, link::Role::kFarm, [&](Unary* reactor) -> absl::Status {
     ASSIGN_OR_RETURN(SequenceSpec spec, sequence_spec(*request));
-    deps_.engine.submit_sequence(
-        std::move(spec),
-        [reactor, reply](const absl::StatusOr<JobId>& job) {
-          if (job.ok()) {
-            reply->set_job(*job);
-          }
-          reactor->Finish(link::to_grpc(job.status()));
-        },
-        request->priority());
+    deps_.engine.submit_sequence(std::move(spec), reply_with(reactor, reply),
+                                 request->priority());
     return absl::OkStatus();
   });
 }

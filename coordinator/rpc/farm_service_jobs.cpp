@@ -3,6 +3,7 @@
 #include "absl/strings/str_cat.h"
 #include "coordinator/convert/farm_messages.h"
 #include "coordinator/rpc/gate.h"
+#include "coordinator/rpc/job_replies.h"
 #include "coordinator/rpc/services.h"
 
 namespace bandsaw::coordinator {
@@ -16,12 +17,7 @@ template <class Start>
 Unary* job_command(const ServiceDependencies& deps, grpc::CallbackServerContext* context,
                    farm::JobStatus* reply, Start start) {
   return unary(deps, *context, link::Role::kFarm, [&](Unary* reactor) {
-    start([reactor, reply](const absl::StatusOr<JobView>& job) {
-      if (job.ok()) {
-        *reply = to_message(*job);
-      }
-      reactor->Finish(link::to_grpc(job.status()));
-    });
+    start(reply_with(reactor, reply));
     return absl::OkStatus();
   });
 }

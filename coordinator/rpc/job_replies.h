@@ -1,0 +1,34 @@
+#pragma once
+
+// Callbacks for the engine that finish a unary RPC with what it says of a job.
+
+#include <grpcpp/grpcpp.h>
+
+#include "absl/status/statusor.h"
+#include "coordinator/convert/farm_messages.h"
+#include "proto/farm.pb.h"
+#include "proto/link/channel.h"
+
+namespace bandsaw::coordinator {
+
+/// Returns a callback that replies with the job's status.
+inline auto reply_with(grpc::ServerUnaryReactor* reactor, farm::JobStatus* reply) {
+  return [reactor, reply](const absl::StatusOr<JobView>& job) {
+    if (job.ok()) {
+      *reply = to_message(*job);
+    }
+    reactor->Finish(link::to_grpc(job.status()));
+  };
+}
+
+/// Returns a callback that replies with the number of a job that was submitted.
+inline auto reply_with(grpc::ServerUnaryReactor* reactor, farm::SubmitReply* reply) {
+  return [reactor, reply](const absl::StatusOr<JobId>& job) {
+    if (job.ok()) {
+      reply->set_job(*job);
+    }
+    reactor->Finish(link::to_grpc(job.status()));
+  };
+}
+
+}  // namespace bandsaw::coordinator
