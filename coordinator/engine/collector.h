@@ -63,7 +63,7 @@ class Collector {
   const DataFolder& folder_;
   BlobStore& blobs_;
   const Keep keep_;
-  /// What was read; a package never changes, and a sequence gets more of them.
+  /// Needs that were read already: a package never changes, and a sequence gets more of them.
   std::map<JobId, Needs> known_;
 };
 

@@ -13,8 +13,8 @@
 
 namespace bandsaw {
 
-/// What the field of a scene depends on besides the scene: the shape of the image and the length of
-/// the paths. It does not depend on the seed, so that no image is luckier than another.
+/// The shape of the image and the length of the paths, on which the field of a scene depends. It
+/// does not depend on the seed, so that no image is luckier than another.
 struct GuidingKey {
   std::uint32_t width = 0;   ///< pixels
   std::uint32_t height = 0;  ///< pixels

@@ -45,8 +45,8 @@ struct GuidingCell {
 /// and their order.
 GuidingCell fit_cell(absl::Span<const GuidingRecord> records);
 
-/// What guides the directions at a point: a cell fitted to paths and one fitted to photons, each of
-/// which may be null.
+/// The cells that guide the directions at a point: one fitted to paths and one fitted to photons.
+/// Each may be null.
 struct GuidingCells {
   const GuidingCell* paths = nullptr;
   const GuidingCell* photons = nullptr;

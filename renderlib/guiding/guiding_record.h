@@ -1,6 +1,6 @@
 #pragma once
 
-// What the training of path guiding observes: light that arrived at a point of a surface.
+// A record of the training of path guiding: light that arrived at a point of a surface.
 
 #include <array>
 #include <cstdint>

@@ -10,7 +10,7 @@
 
 namespace bandsaw::coordinator {
 
-// Of the C API. Objects are only referred to.
+// Types of the C API. The program only passes pointers to them.
 struct OidnDevice;
 struct OidnFilter;
 
@@ -20,7 +20,7 @@ namespace {
 constexpr const char* kFiles[] = {"libOpenImageDenoise.so.2", "libOpenImageDenoise.so.1",
                                   "libOpenImageDenoise.so"};
 
-// Of the C API.
+// Constants and functions of the C API.
 constexpr int kDeviceCpu = 1;     // OIDN_DEVICE_TYPE_CPU: it reads images where they are
 constexpr int kFormatFloat3 = 3;  // OIDN_FORMAT_FLOAT3
 

@@ -39,7 +39,7 @@ struct ImageOptions {
   bool fixed_seed = false;  ///< every frame has `seed`; otherwise frame N has seed + N
 };
 
-/// What is made when a job is over; empty: not given.
+/// Files that are made, and the command that runs, when a job is over. Empty: not given.
 struct AfterOptions {
   std::string video;          ///< file for a video of the frames
   double video_fps = 24;      ///< frames per second of the video

@@ -62,7 +62,7 @@ struct JobView {
   bool has_frames() const { return frames.all() > 0; }
 };
 
-/// What must be kept for a job.
+/// The packages and files that must be kept for a job.
 struct KeptJob {
   JobId id = 0;
   bool final = false;

@@ -73,7 +73,7 @@ class Sequence {
   Totals done;                         ///< of the frames that are done
   double worst_error = -1;             ///< of those; negative: unknown
   std::uint32_t workers_used = 0;      ///< the most that one of those had
-  /// What the last frame that was done has shown about costs and rates; for the next ones.
+  /// Costs and rate of the frame that was done last; the next frames start with them.
   CostMap cost;
   MeanRate work_rate;
 

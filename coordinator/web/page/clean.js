@@ -6,7 +6,7 @@ import {attempt} from "./notice.js";
 
 const modes = {raw: "As rendered", clean: "Clean", both: "Side by side"};
 
-/// Of images whose integrator computes light; others have no noise to remove.
+/// Returns true if the integrator computes light; other images have no noise to remove.
 const hasLight = (status) =>
   [undefined, "INTEGRATOR_PATH", "INTEGRATOR_DIRECT", "INTEGRATOR_PATH_LIGHTS", "INTEGRATOR_PATH_SCATTERING", "INTEGRATOR_PATH_GUIDED"].includes(status.settings.integrator);
 
