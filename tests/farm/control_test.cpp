@@ -12,8 +12,8 @@ namespace bandsaw::test {
 namespace {
 
 const std::string kScene = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
-const std::vector<std::string> kSettings = {"--width", "200",       "--height",
-                                            "200",     "--samples", std::to_string(64 / kSlower)};
+const std::vector<std::string> kSettings = {"--width", "128",       "--height",
+                                            "128",     "--samples", std::to_string(32 / kSlower)};
 
 class Control : public testing::Test {
  protected:

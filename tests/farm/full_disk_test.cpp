@@ -25,7 +25,7 @@ using testing::HasSubstr;
 const std::string kScene = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
 
 std::vector<std::string> with_settings(std::vector<std::string> arguments, int samples) {
-  arguments.insert(arguments.end(), {"--width", "200", "--height", "200", "--samples",
+  arguments.insert(arguments.end(), {"--width", "128", "--height", "128", "--samples",
                                      std::to_string(samples / kSlower)});
   return arguments;
 }
@@ -66,9 +66,9 @@ class FullDiskFarm : public testing::Test {
   /// disk filled.
   void stop_with_jobs_and_fill() {
     start_worker();
-    ASSERT_EQ(say(with_settings({"submit", kScene, "-o", folder_ / "first.pfm"}, 16)).code, 0);
-    ASSERT_EQ(say(with_settings({"submit", kScene, "--detach"}, 160)).code, 0);
-    ASSERT_EQ(say(with_settings({"submit", kScene, "--detach"}, 160)).code, 0);
+    ASSERT_EQ(say(with_settings({"submit", kScene, "-o", folder_ / "first.pfm"}, 8)).code, 0);
+    ASSERT_EQ(say(with_settings({"submit", kScene, "--detach"}, 64)).code, 0);
+    ASSERT_EQ(say(with_settings({"submit", kScene, "--detach"}, 64)).code, 0);
     ASSERT_TRUE(worker_->wait_until([](const std::string&, const std::string& log) {
       const auto stored = logged_bands(log, "stored");
       return std::count_if(stored.begin(), stored.end(),
@@ -122,7 +122,7 @@ class FullDiskFarm : public testing::Test {
     ask_until({"why", "2"}, "no worker is connected");
     start_worker();
     ASSERT_EQ(say({"watch", "2", "-o", folder_ / "second.pfm"}).code, 0);
-    expect_local_bytes(folder_ / "second.pfm", 160);
+    expect_local_bytes(folder_ / "second.pfm", 64);
   }
   std::string data() const { return disk_ + "/data"; }
 

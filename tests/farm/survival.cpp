@@ -10,8 +10,8 @@
 namespace bandsaw::test {
 namespace {
 
-const std::vector<std::string> kSettings = {"--width", "200",       "--height",
-                                            "200",     "--samples", std::to_string(160 / kSlower)};
+const std::vector<std::string> kSettings = {"--width", "128",       "--height",
+                                            "128",     "--samples", std::to_string(64 / kSlower)};
 
 std::vector<std::string> with_settings(std::vector<std::string> arguments) {
   arguments.insert(arguments.end(), kSettings.begin(), kSettings.end());

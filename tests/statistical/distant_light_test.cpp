@@ -325,7 +325,7 @@ TEST(DeltaLight, ManyProjectorsAddUp) {
       }
     }
     ASSERT_GT(expected, 0);
-    expect_radiance(maker, onto_floor(0, 0.3), expected, {.max_depth = 1}, 1 << 18);
+    expect_radiance(maker, onto_floor(0, 0.3), expected, {.max_depth = 1}, 1 << 16);
   }
 }
 

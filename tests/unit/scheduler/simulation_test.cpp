@@ -382,7 +382,7 @@ void for_seeds(std::uint64_t first, std::uint64_t seeds, F f) {
 
 TEST(Simulation, EveryJobEndsUnderRandomFailures) {
   Outcome all;
-  for_seeds(1, 2000, [&](std::uint64_t seed) {
+  for_seeds(1, 1000, [&](std::uint64_t seed) {
     const Outcome one = Simulation(seed, {}).run(random_jobs(seed));
     EXPECT_EQ(one.broken, "") << "again with BANDSAW_SEED=" << seed;
     all.steps += one.steps;
@@ -419,7 +419,7 @@ std::vector<SequenceSpec> random_sequences(std::uint64_t seed) {
 }
 
 TEST(Simulation, NoFrameOfASequenceIsSkippedUnderRandomFailures) {
-  for_seeds(70'001, 200, [&](std::uint64_t seed) {
+  for_seeds(70'001, 100, [&](std::uint64_t seed) {
     Chance chance(seed);
     const std::vector<JobSpec> jobs =
         chance.happens(0.5) ? random_jobs(seed) : std::vector<JobSpec>();
