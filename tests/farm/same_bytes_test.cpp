@@ -28,7 +28,7 @@ std::vector<std::string> scenes() {
 }
 
 // 72 samples: four nodes of the summation tree, the last of them half a block.
-const std::vector<std::string> kSettings = {"--width", "40", "--samples", "72", "--quiet"};
+const std::vector<std::string> kSettings = {"--width", "24", "--samples", "72", "--quiet"};
 
 std::vector<std::string> with_settings(std::vector<std::string> arguments) {
   arguments.insert(arguments.end(), kSettings.begin(), kSettings.end());

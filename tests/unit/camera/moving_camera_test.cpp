@@ -13,7 +13,7 @@ PerspectiveCamera at(double x) {
   return {.position = {x, 0, 5}, .look_at = {x, 0, 0}, .shutter = kShutter};
 }
 
-void expect_near(const Vec3& a, const Vec3& b) {
+void expect_close(const Vec3& a, const Vec3& b) {
   EXPECT_NEAR(a.x, b.x, 1e-12);
   EXPECT_NEAR(a.y, b.y, 1e-12);
   EXPECT_NEAR(a.z, b.z, 1e-12);
@@ -24,8 +24,8 @@ TEST(MovingCamera, RaysStartWhereTheCameraIsAtTheirTime) {
   for (const double share : {0.0, 0.25, 1.0}) {
     const Ray ray = rays.ray(10, 5, 0, 0, share);
     EXPECT_DOUBLE_EQ(ray.time, 2 + 2 * share);
-    expect_near(ray.origin, {8 * share, 0, 5});
-    expect_near(ray.direction, {0, 0, -1});
+    expect_close(ray.origin, {8 * share, 0, 5});
+    expect_close(ray.direction, {0, 0, -1});
   }
 }
 
@@ -41,10 +41,10 @@ TEST(MovingCamera, AtBothEndsItIsTheCameraThatStandsThere) {
   const RayGenerator moving(first, 20, 10, Camera(last));
   const Ray opening = moving.ray(3.25, 8.5, 0.3, 0.8, 0);
   const Ray closing = moving.ray(3.25, 8.5, 0.3, 0.8, 1);
-  expect_near(opening.origin, RayGenerator(first, 20, 10).ray(3.25, 8.5, 0.3, 0.8).origin);
-  expect_near(opening.direction, RayGenerator(first, 20, 10).ray(3.25, 8.5, 0.3, 0.8).direction);
-  expect_near(closing.origin, RayGenerator(last, 20, 10).ray(3.25, 8.5, 0.3, 0.8).origin);
-  expect_near(closing.direction, RayGenerator(last, 20, 10).ray(3.25, 8.5, 0.3, 0.8).direction);
+  expect_close(opening.origin, RayGenerator(first, 20, 10).ray(3.25, 8.5, 0.3, 0.8).origin);
+  expect_close(opening.direction, RayGenerator(first, 20, 10).ray(3.25, 8.5, 0.3, 0.8).direction);
+  expect_close(closing.origin, RayGenerator(last, 20, 10).ray(3.25, 8.5, 0.3, 0.8).origin);
+  expect_close(closing.direction, RayGenerator(last, 20, 10).ray(3.25, 8.5, 0.3, 0.8).direction);
 }
 
 // The lens' view and the ray through the lens agree at each time.
@@ -62,7 +62,7 @@ TEST(MovingCamera, TheViewThroughTheLensIsThatOfTheRay) {
     const Ray ray = rays.ray(4, 3, u, 0.7, 0.5);
     const auto on_lens = view->on_lens(ray.direction);
     ASSERT_TRUE(on_lens.has_value());
-    expect_near(*on_lens, ray.origin);
+    expect_close(*on_lens, ray.origin);
   }
 }
 

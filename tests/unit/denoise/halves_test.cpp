@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t kSide = 128;
 
-float normal(test::Random& random) {
+float gaussian(test::Random& random) {
   double sum = -6;
   for (int i = 0; i < 12; ++i) {
     sum += random.uniform(0, 1);
@@ -41,8 +41,8 @@ TEST(Halves, TellErrorAndBiasOfALinearFilter) {
   for (std::size_t i = 0; i < truth.pixels.size(); ++i) {
     const auto of_part = [&](float part) {
       const float deviation = 0.1f / std::sqrt(part);
-      return Rgb{1 + deviation * normal(random), 1 + deviation * normal(random),
-                 1 + deviation * normal(random)};
+      return Rgb{1 + deviation * gaussian(random), 1 + deviation * gaussian(random),
+                 1 + deviation * gaussian(random)};
     };
     const Rgb first = of_part(share);
     const Rgb second = of_part(1 - share);

@@ -16,11 +16,11 @@ namespace {
 
 using test::Moments;
 
-constexpr std::size_t kSamples = 40000;
+constexpr std::size_t kWalks = 40000;
 /// A ray along x through the centres of the cells, from the first to the last.
-constexpr std::uint32_t kCells = 257;
+constexpr std::uint32_t kGridCells = 257;
 const GridRay kAlong{{0.5, 0.5, 0.5}, {1, 0, 0}};
-constexpr double kLength = kCells - 1;
+constexpr double kLength = kGridCells - 1;
 
 Medium of_density(const Rgb& absorption, const Rgb& scattering, const Rgb& emission = {}) {
   Medium medium{.absorption = absorption, .scattering = scattering, .emission = emission};
@@ -31,7 +31,7 @@ Medium of_density(const Rgb& absorption, const Rgb& scattering, const Rgb& emiss
 /// A row of cells with density f(x) at the distance x along kAlong, between centres linear.
 std::vector<VolumeGrid> row(const std::function<double(double)>& f) {
   VolumeGrid grid =
-      test::grid_of({kCells, 1, 1}, {}, {kCells, 1, 1},
+      test::grid_of({kGridCells, 1, 1}, {}, {kGridCells, 1, 1},
                     [&](std::uint32_t x, auto, auto) { return static_cast<float>(f(x)); });
   grid.border = VolumeGrid::Border::kClamp;
   return {grid};
@@ -63,7 +63,7 @@ TEST(Tracking, TransmittanceIsThatOfTheClosedForm) {
     const GridMedium medium(of_density({0.5f, 0, 0}, {0.5f, 2, 0.1f}), grids);
     for (const double length : {kLength, 100.0}) {
       std::array<Moments, 3> seen;
-      for (std::size_t i = 0; i < kSamples; ++i) {
+      for (std::size_t i = 0; i < kWalks; ++i) {
         NumberStream numbers(i);
         const Rgb t = estimate_transmittance(medium, kAlong, length, numbers);
         seen[0].add(t.r);
@@ -95,7 +95,7 @@ TEST(Tracking, FirstCollisionsFollowTheClosedForm) {
     const GridMedium medium(of_density({}, gray(1)), grids);
     constexpr std::size_t kBins = 64;
     std::vector<std::uint64_t> counts(kBins + 1);
-    for (std::size_t i = 0; i < kSamples; ++i) {
+    for (std::size_t i = 0; i < kWalks; ++i) {
       NumberStream numbers(i + 1000000);
       const FirstCollision first{numbers.next(), numbers.next()};
       const Flight flight = fly(medium, kAlong, kLength, gray(1), first, numbers);
@@ -109,9 +109,9 @@ TEST(Tracking, FirstCollisionsFollowTheClosedForm) {
       const auto passing = [&](std::size_t at) {
         return std::exp(-profile.depth(kLength * static_cast<double>(at) / kBins));
       };
-      expected.push_back(kSamples * (passing(i) - passing(i + 1)));
+      expected.push_back(kWalks * (passing(i) - passing(i + 1)));
     }
-    expected.push_back(kSamples * std::exp(-profile.depth(kLength)));
+    expected.push_back(kWalks * std::exp(-profile.depth(kLength)));
     const test::ChiSquared result = test::chi_squared(counts, expected);
     EXPECT_GT(result.p_value, test::sidak(0.01, 3)) << profile.name << " " << result.statistic;
   }
@@ -136,7 +136,7 @@ TEST(Tracking, EveryChannelKeepsItsMeanAndTheirSumDoesNotGrow) {
   std::array<Moments, 3> passed;
   std::array<Moments, 3> scattered;
   std::array<Moments, 3> one_point;
-  for (std::size_t i = 0; i < kSamples; ++i) {
+  for (std::size_t i = 0; i < kWalks; ++i) {
     NumberStream numbers(i);
     const FirstCollision first{numbers.next(), numbers.next()};
     const Flight flight = fly(medium, kAlong, kLength, entering, first, numbers);
@@ -172,7 +172,7 @@ TEST(Tracking, CollectsEmission) {
   const GridMedium medium(of_density({1, 0, 0}, {0.5f, 1, 0}, {1, 2, 3}), grids);
   std::array<Moments, 3> flown;
   std::array<Moments, 3> passed;
-  for (std::size_t i = 0; i < kSamples; ++i) {
+  for (std::size_t i = 0; i < kWalks; ++i) {
     NumberStream numbers(i);
     const FirstCollision first{numbers.next(), numbers.next()};
     const Rgb a = fly(medium, kAlong, kLength, gray(1), first, numbers).emitted;
@@ -204,7 +204,7 @@ TEST(Tracking, CollectsEmissionWhereNothingIsDense) {
   medium.grids.emission = GridUse{GridId{1}, 2};
   const GridMedium varying(medium, grids);
   Moments seen;
-  for (std::size_t i = 0; i < kSamples; ++i) {
+  for (std::size_t i = 0; i < kWalks; ++i) {
     NumberStream numbers(i);
     const FirstCollision first{numbers.next(), numbers.next()};
     const Flight flight = fly(varying, {{0.5, -10, 0.5}, {0, 1, 0}}, 1000, gray(1), first, numbers);
@@ -221,7 +221,7 @@ TEST(Tracking, TheAlbedoGridSharesTheExtinction) {
   std::vector<VolumeGrid> grids = row([](double) { return 0.01; });
   VolumeGrid albedo = dense_grid({2, 1, 1}, 3, [](std::size_t i) { return i < 3 ? 0.25f : 2.0f; });
   albedo.filter = VolumeGrid::Filter::kNearest;
-  albedo.to_medium = scaling({kCells / 2.0, 1, 1});
+  albedo.to_medium = scaling({kGridCells / 2.0, 1, 1});
   grids.push_back(albedo);
   Medium medium = of_density({}, gray(3));
   medium.grids.albedo = GridUse{GridId{1}, 1};
@@ -235,7 +235,7 @@ TEST(Tracking, TheAlbedoGridSharesTheExtinction) {
 }
 
 TEST(Tracking, ADensityMayHaveThreeChannels) {
-  VolumeGrid colored = dense_grid({kCells, 1, 1}, 3, [](std::size_t i) {
+  VolumeGrid colored = dense_grid({kGridCells, 1, 1}, 3, [](std::size_t i) {
     return static_cast<float>(kLinear.density(static_cast<double>(i / 3)) *
                               static_cast<double>(1 + i % 3));
   });
@@ -245,7 +245,7 @@ TEST(Tracking, ADensityMayHaveThreeChannels) {
   std::array<Moments, 3> passing;
   std::array<Moments, 3> passed;
   Moments emitted;
-  for (std::size_t i = 0; i < kSamples; ++i) {
+  for (std::size_t i = 0; i < kWalks; ++i) {
     NumberStream numbers(i);
     const FirstCollision first{numbers.next(), numbers.next()};
     const Flight flight = fly(medium, kAlong, kLength, gray(1), first, numbers);

@@ -108,7 +108,7 @@ struct Rendered {
 };
 
 /// `naive`: each half tile is planned by its own samples instead of those of its other half.
-Rendered render(const Pixel& pixel, std::uint64_t seed, bool naive) {
+Rendered render_pixel(const Pixel& pixel, std::uint64_t seed, bool naive) {
   Random random(seed);
   Film film = *Film::create(kThin.width, kThin.height, "", Film::Grain::kHalfTiles);
   const auto take = [&](const SampleRange& pass, const TileSamples& tiles) {
@@ -162,7 +162,7 @@ struct Result {
 Result renders(const Pixel& pixel, int runs, bool naive = false) {
   Result result;
   for (int i = 0; i < runs; ++i) {
-    const Rendered run = render(pixel, 1000 + static_cast<std::uint64_t>(i), naive);
+    const Rendered run = render_pixel(pixel, 1000 + static_cast<std::uint64_t>(i), naive);
     result.mean.add(run.mean);
     result.planned += run.planned ? 1 : 0;
   }
@@ -189,7 +189,7 @@ TEST(AdaptivePlan, A5_TheSameRuleOnOwnSamplesIsBiased) {
 }
 
 TEST(AdaptivePlan, A4_AConstantSceneIsExact) {
-  const Rendered rendered = render([](Random&) { return 1.0; }, 1, false);
+  const Rendered rendered = render_pixel([](Random&) { return 1.0; }, 1, false);
   test::at_most("A4", "error of the mean", std::abs(rendered.mean - 1), 1e-12);
   EXPECT_FALSE(rendered.planned);
 }

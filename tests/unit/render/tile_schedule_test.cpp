@@ -12,28 +12,28 @@ namespace {
 
 using test::Moments;
 
-constexpr TileGrid kGrid{512, 32};
+constexpr TileGrid kTwelveTiles{512, 32};
 
 /// The left half of the image has twice the uniform number of samples, the right half an eighth.
 TilePlan half_noisy(std::uint64_t pilot) {
   TilePlan plan{.pilot = pilot, .levels = {}};
-  for (std::size_t i = 0; i < kGrid.half_tiles(); ++i) {
-    plan.levels += i / 2 % kGrid.columns() < 16 ? '4' : 'c';
+  for (std::size_t i = 0; i < kTwelveTiles.half_tiles(); ++i) {
+    plan.levels += i / 2 % kTwelveTiles.columns() < 16 ? '4' : 'c';
   }
   return plan;
 }
 
 SampleRange of_half_tile(const TileSamples& tiles, std::size_t i) {
   const auto tile = static_cast<std::uint32_t>(i / 2);
-  const std::uint32_t y = tile / kGrid.columns() * kTileSide;
+  const std::uint32_t y = tile / kTwelveTiles.columns() * kTileSide;
   const auto half = static_cast<std::uint32_t>(i & 1);
-  return tiles.of_pixel(half_row(kGrid, tile % kGrid.columns(), half, y)[0], y, {});
+  return tiles.of_pixel(half_row(kTwelveTiles, tile % kTwelveTiles.columns(), half, y)[0], y, {});
 }
 
 TEST(TileSchedule, HalfTilesTakeTheirShareInConsecutiveNodes) {
   const TilePlan plan = half_noisy(64);
-  TileSchedule schedule(kGrid, plan);
-  std::vector<std::uint64_t> taken(kGrid.half_tiles(), 64);
+  TileSchedule schedule(kTwelveTiles, plan);
+  std::vector<std::uint64_t> taken(kTwelveTiles.half_tiles(), 64);
   for (std::uint64_t first = 64; first < 4096; first += 64) {
     const TileSamples tiles = schedule.next({first, first + 64});
     Moments noisy;
@@ -58,7 +58,7 @@ TEST(TileSchedule, HalfTilesTakeTheirShareInConsecutiveNodes) {
 // 48 samples are three blocks: the next node is one block, the following ones are as large as the
 // whole.
 TEST(TileSchedule, ArrearsAreTakenAtOnceWhereANodeBegins) {
-  TileSchedule schedule(kGrid, half_noisy(48));
+  TileSchedule schedule(kTwelveTiles, half_noisy(48));
   EXPECT_EQ(of_half_tile(schedule.next({48, 64}), 0), (SampleRange{48, 64}));
   EXPECT_EQ(of_half_tile(schedule.next({64, 128}), 0), (SampleRange{64, 128}));
   EXPECT_EQ(of_half_tile(schedule.next({128, 192}), 0), (SampleRange{128, 256}));
@@ -69,7 +69,7 @@ TEST(TileSchedule, AnUnplannedHalfTakesUniformPasses) {
   for (std::size_t i = 1; i < plan.levels.size(); i += 2) {
     plan.levels[i] = kEvenLevel;
   }
-  TileSchedule schedule(kGrid, plan);
+  TileSchedule schedule(kTwelveTiles, plan);
   for (const SampleRange& pass : {SampleRange{32, 64}, {64, 96}, {96, 100}}) {
     const TileSamples tiles = schedule.next(pass);
     EXPECT_FALSE(tiles.whole());
@@ -78,7 +78,7 @@ TEST(TileSchedule, AnUnplannedHalfTakesUniformPasses) {
     }
   }
   plan.levels.assign(plan.levels.size(), kEvenLevel);
-  EXPECT_TRUE(TileSchedule(kGrid, plan).next({32, 64}).whole());
+  EXPECT_TRUE(TileSchedule(kTwelveTiles, plan).next({32, 64}).whole());
 }
 
 }  // namespace

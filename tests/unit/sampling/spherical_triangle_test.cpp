@@ -12,14 +12,14 @@
 namespace bandsaw {
 namespace {
 
-struct View {
+struct Viewpoint {
   Vec3 point;
   Vec3 a;
   Vec3 u;
   Vec3 v;
 };
 
-const std::vector<View> kViews = {
+const std::vector<Viewpoint> kViews = {
     {{0, 0, 0}, {-1, -1, 1}, {3, 0, 0}, {0, 3, 0}},         // above
     {{0, 0, 0}, {-40, -40, 0.05}, {90, 0, 0}, {0, 90, 0}},  // nearly half of all directions
     {{0, 0, 0}, {-1, -1, -0.1}, {3, 0, 0}, {0, 3, 0}},      // close, from the other side
@@ -29,12 +29,12 @@ const std::vector<View> kViews = {
     {{0, 0, 0}, {-1, -0.25, 1}, {2, 0, 0}, {2, 0.5, 0}}     // thin
 };
 
-Vec3 at(const View& view, const Vec2& on) {
+Vec3 at(const Viewpoint& view, const Vec2& on) {
   return normalize(view.a + view.u * on.x + view.v * on.y - view.point);
 }
 
 /// Returns true if the direction is within the planes of all three edges, up to rounding.
-bool sees(const View& view, const Vec3& d) {
+bool sees(const Viewpoint& view, const Vec3& d) {
   const Vec3 a = view.a - view.point;
   const Vec3 b = a + view.u;
   const Vec3 c = a + view.v;
@@ -47,7 +47,7 @@ bool sees(const View& view, const Vec3& d) {
 
 TEST(SphericalTriangle, SamplesUniformlyInSolidAngle) {
   std::uint64_t seed = 50;
-  for (const View& view : kViews) {
+  for (const Viewpoint& view : kViews) {
     const auto triangle = SphericalTriangle::seen_from(view.point, view.a, view.u, view.v);
     ASSERT_TRUE(triangle);
     test::expect_samples_match_density(
@@ -83,9 +83,9 @@ TEST(SphericalTriangle, IsAbsentForEdgeOnOrSmallOnes) {
 
 TEST(SphericalTriangle, L6_CornersOfTheUnitSquareStayInside) {
   test::Random random(60);
-  std::vector<View> views = kViews;
+  std::vector<Viewpoint> views = kViews;
   for (int i = 0; i < 2000; ++i) {
-    View view;
+    Viewpoint view;
     for (Vec3* v : {&view.point, &view.a, &view.u, &view.v}) {
       v->x = random.uniform(-1, 1);
       v->y = random.uniform(-1, 1);
@@ -93,7 +93,7 @@ TEST(SphericalTriangle, L6_CornersOfTheUnitSquareStayInside) {
     }
     views.push_back(view);
   }
-  for (const View& view : views) {
+  for (const Viewpoint& view : views) {
     const auto triangle = SphericalTriangle::seen_from(view.point, view.a, view.u, view.v);
     if (!triangle) {
       continue;

@@ -17,17 +17,17 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-std::string message(const absl::Status& status) {
+std::string text_of(const absl::Status& status) {
   EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument);
   return std::string(status.message());
 }
 
 TEST(Counts, LimitMeshes) {
   EXPECT_TRUE(check_mesh_counts("mesh", kMaxTreeItems, kMaxMeshPositions).ok());
-  EXPECT_EQ(message(check_mesh_counts("meshes[3]", kMaxTreeItems + 1, 3)),
+  EXPECT_EQ(text_of(check_mesh_counts("meshes[3]", kMaxTreeItems + 1, 3)),
             "meshes[3]: has 536870912 triangles, a mesh holds at most 536870911: split it into "
             "several meshes");
-  EXPECT_EQ(message(check_mesh_counts("meshes[3]", 1, kMaxMeshPositions + 1)),
+  EXPECT_EQ(text_of(check_mesh_counts("meshes[3]", 1, kMaxMeshPositions + 1)),
             "meshes[3]: has 4294967297 positions, a mesh holds at most 4294967296: split it into "
             "several meshes");
 }
@@ -40,7 +40,7 @@ TEST(Counts, LimitLooseShapes) {
        {ShapeCounts{.quads = kHalf + 1}, ShapeCounts{.triangles = kMaxTreeItems + 1},
         ShapeCounts{.spheres = kHalf, .disks = kHalf + 2},
         ShapeCounts{.spheres = 1, .instances = kMaxTreeItems}}) {
-    EXPECT_THAT(message(check_shape_counts("groups[2]", counts)),
+    EXPECT_THAT(text_of(check_shape_counts("groups[2]", counts)),
                 AllOf(StartsWith("groups[2]: has "), HasSubstr("at most 536870911")));
   }
 }
@@ -56,7 +56,7 @@ TEST(Counts, LimitLightsBeforeTheyAreBuilt) {
   test::SceneMaker maker;
   const MaterialId lamp = maker.lamp(1);
   Pool pool(1);
-  EXPECT_THAT(message(Scene::build(placed_many_times(lamp, maker).scene, pool).status()),
+  EXPECT_THAT(text_of(Scene::build(placed_many_times(lamp, maker).scene, pool).status()),
               AllOf(StartsWith("lights: "), HasSubstr("2147483648 primitives"),
                     HasSubstr("at most 2147483647")));
 }
@@ -85,7 +85,7 @@ TEST(Counts, LimitLightsInGroups) {
   placed.material = kOwnMaterial;
   geometry.instances.resize(std::size_t{1} << 15, placed);
   const SceneDescription& s = maker.scene;
-  EXPECT_THAT(message(check_light_counts(geometry, s.materials, s.textures, 0)),
+  EXPECT_THAT(text_of(check_light_counts(geometry, s.materials, s.textures, 0)),
               HasSubstr("2147483648 primitives"));
   geometry.instances.pop_back();
   EXPECT_TRUE(check_light_counts(geometry, s.materials, s.textures, 0xffff).ok());

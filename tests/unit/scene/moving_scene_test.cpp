@@ -92,7 +92,7 @@ TEST(MovingScene, OnlyInstancesThatNeverMoveBecomeStatic) {
   EXPECT_TRUE(moves(g));
 }
 
-std::string message_after(void (*spoil)(SceneDescription&)) {
+std::string message_after_moving(void (*spoil)(SceneDescription&)) {
   SceneMaker maker = ball_in_frame(kMoving, {0, 1});
   maker.scene.geometry.disks.push_back({{0, 0, 0}, {0, 1, 0}, 1, MaterialId{0}});
   spoil(maker.scene);
@@ -102,35 +102,35 @@ std::string message_after(void (*spoil)(SceneDescription&)) {
 
 // Also covers placements without an inverse (X3).
 TEST(MovingScene, InvalidMotionIsRefusedWithTheField) {
-  EXPECT_EQ(message_after([](auto&) {}), "");
-  EXPECT_EQ(message_after([](auto& s) { s.geometry.disks[0].radius = 0; }),
+  EXPECT_EQ(message_after_moving([](auto&) {}), "");
+  EXPECT_EQ(message_after_moving([](auto& s) { s.geometry.disks[0].radius = 0; }),
             "disks[0].radius: must be > 0, is 0");
-  EXPECT_THAT(message_after([](auto& s) {
+  EXPECT_THAT(message_after_moving([](auto& s) {
                 s.geometry.disks[0].normal = {0, 2, 0};
               }),
               HasSubstr("disks[0].normal: must have length 1"));
-  EXPECT_THAT(message_after([](auto& s) { s.geometry.groups[0].spheres[0].radius = -1; }),
+  EXPECT_THAT(message_after_moving([](auto& s) { s.geometry.groups[0].spheres[0].radius = -1; }),
               HasSubstr("groups[0].spheres[0].radius"));
-  EXPECT_THAT(message_after([](auto& s) { s.geometry.instances[0].group = GroupId{1}; }),
+  EXPECT_THAT(message_after_moving([](auto& s) { s.geometry.instances[0].group = GroupId{1}; }),
               HasSubstr("instances[0].group: must be below 1"));
-  EXPECT_THAT(message_after([](auto& s) { s.geometry.instances[0].frame = FrameId{1}; }),
+  EXPECT_THAT(message_after_moving([](auto& s) { s.geometry.instances[0].frame = FrameId{1}; }),
               HasSubstr("instances[0].frame: must be below 1"));
-  EXPECT_THAT(message_after([](auto& s) { s.geometry.frames[0].parent = FrameId{0}; }),
+  EXPECT_THAT(message_after_moving([](auto& s) { s.geometry.frames[0].parent = FrameId{0}; }),
               HasSubstr("frames[0].parent: must be below 0"));
-  EXPECT_THAT(message_after([](auto& s) { s.geometry.frames[0].keys[1].time = 0; }),
+  EXPECT_THAT(message_after_moving([](auto& s) { s.geometry.frames[0].keys[1].time = 0; }),
               HasSubstr("frames[0].keys[1].time"));
-  EXPECT_THAT(message_after([](auto& s) { s.geometry.frames[0].keys.clear(); }),
+  EXPECT_THAT(message_after_moving([](auto& s) { s.geometry.frames[0].keys.clear(); }),
               HasSubstr("frames[0].keys: must be at least one"));
-  EXPECT_THAT(message_after([](auto& s) {
+  EXPECT_THAT(message_after_moving([](auto& s) {
                 s.geometry.frames[0].keys[1] =
                     Key(2, rotation({0, 0, 1}, 45) * scaling({1, 2, 1}) * rotation({0, 0, 1}, 9));
               }),
               HasSubstr("frames[0].keys[1].at: must be a scale, then a rotation"));
-  EXPECT_THAT(message_after([](auto& s) {
+  EXPECT_THAT(message_after_moving([](auto& s) {
                 s.geometry.frames[0].placement = scaling({1, 0, 1});
               }),
               HasSubstr("frames[0].placement: must have an inverse"));
-  EXPECT_THAT(message_after([](auto& s) {
+  EXPECT_THAT(message_after_moving([](auto& s) {
                 std::get<PerspectiveCamera>(s.camera).shutter = {1, 0};
               }),
               HasSubstr("camera.shutter_close: must not be before shutter_open"));
