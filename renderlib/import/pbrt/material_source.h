@@ -1,0 +1,44 @@
+#pragma once
+
+// The parameters that several kinds of material share.
+
+#include <optional>
+#include <string>
+
+#include "renderlib/import/pbrt/builder.h"
+
+namespace bandsaw::pbrt {
+
+/// A material as it is written, and what is needed to convert it.
+struct MaterialSource {
+  const Parameters& parameters;
+  const State& state;
+  Builder& builder;
+
+  const Place& place() const { return parameters.place; }
+  absl::StatusOr<scene::Texture> reflectance(const std::string& name, double otherwise) const {
+    return color_texture(parameters, name, ColorUse::kReflectance,
+                         {otherwise, otherwise, otherwise}, state, builder);
+  }
+};
+
+/// Roughness along u and v.
+struct Roughness {
+  double alpha[2] = {0, 0};
+  std::optional<scene::Texture> texture;  ///< of alpha, if it varies
+  bool is_smooth() const;
+  double mean() const { return texture ? 1 : (alpha[0] + alpha[1]) / 2; }
+};
+
+/// Reads PREFIXroughness, uroughness and vroughness; `otherwise` is the roughness if none is given.
+absl::StatusOr<Roughness> read_roughness(const MaterialSource& from, const std::string& prefix,
+                                         double otherwise);
+
+/// Sets the microfacets of a surface that is not smooth.
+void set_microfacets(const Roughness& roughness, scene::Microfacets* to);
+
+/// Returns the index of refraction in [1, 5]: a number, or that of a glass at the d line.
+absl::StatusOr<double> read_index(const MaterialSource& from, const std::string& name,
+                                  double otherwise);
+
+}  // namespace bandsaw::pbrt
