@@ -43,6 +43,11 @@ absl::Status read_failure(const std::string& name, const RefusedFiles& refused,
         absl::StrCat(name, ": its file \"", refused.missing.front(), "\" is missing"));
   }
   absl::ConsumePrefix(&reason, "Fatal Error: ");
+  if (absl::StrContains(reason, "bad_alloc")) {
+    return absl::ResourceExhaustedError(absl::StrCat(
+        name, ": needs more memory than reading a file may take: it is too large, or damaged, so ",
+        "that it claims more than it has"));
+  }
   return absl::InvalidArgumentError(absl::StrCat(
       name, ": cannot be read: ", reason.empty() ? "it is damaged or not supported" : reason));
 }

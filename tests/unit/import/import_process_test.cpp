@@ -151,6 +151,25 @@ TEST(ImportProcess, AFileThatNeedsTooMuchMemoryIsAnError) {
   EXPECT_THAT(std::string(picture.status().message()), StartsWith("sky.pgm: needs more memory"));
 }
 
+TEST(ImportProcess, AModelThatClaimsTooMuchIsOneClearError) {
+  if (test::kSanitized) {
+    GTEST_SKIP() << "a sanitizer wants more address space than the limit";
+  }
+  const TempDir folder;
+  ImportLimits in = limits();
+  in.memory_bytes = 1ull << 30;
+  // 900 million vertices of 12 bytes.
+  write_text(folder, "a.ply",
+             "ply\nformat binary_little_endian 1.0\nelement vertex 900000000\nproperty float x\n"
+             "property float y\nproperty float z\nelement face 1\n"
+             "property list uchar int vertex_indices\nend_header\n1234");
+  const std::string scene =
+      write_text(folder, "s.pbrt", "WorldBegin\nShape \"plymesh\" \"string filename\" \"a.ply\"");
+  const auto imported = import_in_process(scene, in);
+  EXPECT_THAT(std::string(imported.status().message()),
+              HasSubstr("a.ply: needs more memory than reading a file may take"));
+}
+
 TEST(ImportProcess, SurvivesEveryBrokenModelOfAssimp) {
   if (!test::have_test_models()) {
     GTEST_SKIP() << "needs the package assimp-testmodels";

@@ -9,6 +9,7 @@
 
 #include "renderlib/import/import.h"
 #include "renderlib/import/mitsuba/convert_mitsuba.h"
+#include "renderlib/import/mitsuba/spectra.h"
 #include "tests/unit/import/files.h"
 
 namespace bandsaw {
@@ -265,6 +266,39 @@ TEST_F(MitsubaScene, MaterialsHaveTheirFields) {
   EXPECT_EQ(blend.mix().a(), "diffuse");
   EXPECT_EQ(blend.mix().b(), "plastic");
   EXPECT_THAT(blend.mix().amount().color().rgb(), ElementsAre(0.75, 0.75, 0.75));
+}
+
+/// The linear RGB of the same tables under equal energy, as the renderer Tungsten lists it.
+TEST(MitsubaMetals, HaveTheirPublishedColours) {
+  struct Published {
+    const char* name;
+    Rgb eta;
+    Rgb k;
+  };
+  const Published all[] = {{"a-C", {2.944f, 2.227f, 1.968f}, {0.887f, 0.799f, 0.815f}},
+                           {"Ag", {0.155f, 0.117f, 0.138f}, {4.828f, 3.122f, 2.147f}},
+                           {"Al", {1.657f, 0.880f, 0.521f}, {9.224f, 6.270f, 4.837f}},
+                           {"Au", {0.143f, 0.375f, 1.442f}, {3.983f, 2.386f, 1.603f}},
+                           {"Cr", {4.370f, 2.917f, 1.655f}, {5.206f, 4.231f, 3.755f}},
+                           {"Cu", {0.200f, 0.924f, 1.102f}, {3.913f, 2.453f, 2.142f}},
+                           {"Hg", {2.399f, 1.440f, 0.910f}, {6.328f, 4.372f, 3.422f}},
+                           {"Ni_palik", {2.367f, 1.663f, 1.467f}, {4.499f, 3.050f, 2.345f}},
+                           {"TiN", {1.648f, 1.150f, 1.380f}, {3.368f, 1.943f, 1.102f}},
+                           {"W", {4.371f, 3.300f, 2.998f}, {3.501f, 2.605f, 2.273f}}};
+  for (const Published& published : all) {
+    const auto metal = mitsuba::metal_of(published.name);
+    ASSERT_TRUE(metal.ok()) << metal.status();
+    const auto expect_near = [&](float ours, float theirs) {
+      // Our tables have a value for every 30 nm: the edge of copper and gold is not sharper.
+      EXPECT_NEAR(ours, theirs, std::max(0.015f * theirs, 0.02f)) << published.name;
+    };
+    for (const auto& [ours, theirs] :
+         {std::pair(metal->eta, published.eta), std::pair(metal->k, published.k)}) {
+      expect_near(ours.r, theirs.r);
+      expect_near(ours.g, theirs.g);
+      expect_near(ours.b, theirs.b);
+    }
+  }
 }
 
 TEST_F(MitsubaScene, OldSpellingsAreRead) {

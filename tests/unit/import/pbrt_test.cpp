@@ -229,6 +229,47 @@ TEST(Pbrt, ErrorsNameTheLine) {
       HasSubstr("the index 9 is that of no point"));
 }
 
+TEST(Pbrt, TruncatedScenesAreOneError) {
+  EXPECT_EQ(error_of("WorldBegin\nShape \"sphere\" \"float radius\" [ 1"),
+            "s.pbrt:2: the values of \"float radius\" have no end ]");
+  EXPECT_EQ(error_of("WorldBegin\nShape \"sph"), "s.pbrt:2: the string has no end on its line");
+  EXPECT_THAT(error_of("WorldBegin\nTranslate 1 2"), HasSubstr("s.pbrt:2: "));
+  EXPECT_THAT(error_of("WorldBegin\nShape"), HasSubstr("s.pbrt:2: "));
+  EXPECT_THAT(warnings_of("WorldBegin\nAttributeBegin\nShape \"sphere\""),
+              ElementsAre(HasSubstr("1 AttributeEnd are missing at the end")));
+}
+
+TEST(Pbrt, TransformsMustBeFiniteAndRegular) {
+  EXPECT_THAT(error_of("WorldBegin\nTransform [1 0 0 0 0 nan 0 0 0 0 1 0 0 0 0 1]"),
+              HasSubstr("s.pbrt:2: numbers must be finite"));
+  EXPECT_THAT(error_of("WorldBegin\nConcatTransform [1 0 0 0 0 inf 0 0 0 0 1 0 0 0 0 1]"),
+              HasSubstr("s.pbrt:2: numbers must be finite"));
+  EXPECT_THAT(error_of("WorldBegin\nScale 0 1 1\nShape \"sphere\""),
+              HasSubstr("s.pbrt:3: the transformation of the shape is singular"));
+  EXPECT_THAT(error_of("LookAt 0 0 0 0 0 0 0 1 0\nWorldBegin"),
+              HasSubstr("LookAt needs a direction"));
+}
+
+TEST(Pbrt, ClaimsAreCheckedBeforeMemoryIsTaken) {
+  const std::string grid =
+      "MakeNamedMedium \"m\" \"string type\" \"uniformgrid\" \"integer nx\" 4096 \"integer ny\" "
+      "4096 \"integer nz\" 160 \"float density\" [1 2 3]\nWorldBegin\nMediumInterface \"m\" \"\"\n"
+      "Material \"interface\" Shape \"sphere\"";
+  EXPECT_THAT(error_of(grid), HasSubstr("must have nx x ny x nz = 2684354560 numbers, has 3"));
+  const TempDir dir;
+  write_text(dir, "a.ply",
+             "ply\nformat binary_little_endian 1.0\nelement vertex 900000000\nproperty float x\n"
+             "property float y\nproperty float z\nend_header\n1234");
+  // Read here, not by the importer, because the shape emits.
+  EXPECT_THAT(
+      std::string(convert(dir,
+                          "WorldBegin\nAreaLightSource \"diffuse\"\nShape \"plymesh\" "
+                          "\"string filename\" \"a.ply\"")
+                      .status()
+                      .message()),
+      HasSubstr("s.pbrt:3: \"a.ply\": is damaged: it says that it has 900000000 of \"vertex\""));
+}
+
 TEST(Pbrt, BoundsEndHostileScenes) {
   std::string nested = "WorldBegin\n";
   for (int i = 0; i < 1'000'000; ++i) {
@@ -236,6 +277,10 @@ TEST(Pbrt, BoundsEndHostileScenes) {
   }
   EXPECT_THAT(error_of(nested), HasSubstr("attributes within each other"));
   EXPECT_THAT(error_of("Include \"s.pbrt\""), HasSubstr("s.pbrt:1: \"s.pbrt\" includes itself"));
+  const TempDir dir;
+  write_text(dir, "b.pbrt", "WorldBegin\nInclude \"s.pbrt\"");
+  EXPECT_THAT(std::string(convert(dir, "Include \"b.pbrt\"").status().message()),
+              HasSubstr("b.pbrt:2: \"s.pbrt\" includes itself"));
   EXPECT_THAT(error_of("Include \"../x.pbrt\""), HasSubstr("outside of the scene's folder"));
   EXPECT_THAT(error_of("WorldBegin\nShape \"loopsubdiv\" \"integer levels\" 100"),
               HasSubstr("s.pbrt:2: \"integer indices\" are missing"));
