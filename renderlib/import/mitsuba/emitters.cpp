@@ -158,11 +158,20 @@ void add_rotation(const Transform& turn, google::protobuf::RepeatedPtrField<scen
   rotation.set_degrees(degrees);
 }
 
+/// Returns how many rows stand for one of an environment. The rows lie between those of Mitsuba, so
+/// each look-up interpolates twice, which blurs by 1 / factor of a row. Large images, whose rows
+/// are narrow, get fewer.
+std::uint32_t rows_for_one(const Image& image) {
+  constexpr std::size_t kTexels = std::size_t{1} << 22;
+  return static_cast<std::uint32_t>(
+      std::clamp<std::size_t>(kTexels / (std::size_t{image.width} * image.height), 2, 8));
+}
+
 /// Returns the image as Mitsuba looks it up: its first and last row are the poles themselves, so
-/// that the rows between them are further apart than the image's height says. Sampled with twice
-/// the rows. `mirrored` exchanges left and right.
+/// that the rows between them are further apart than the image's height says. `mirrored` exchanges
+/// left and right.
 Image with_rows_between_poles(const Image& from, bool mirrored) {
-  Image to{from.width, 2 * from.height, {}};
+  Image to{from.width, rows_for_one(from) * from.height, {}};
   to.pixels.resize(std::size_t{to.width} * to.height);
   for (std::uint32_t row = 0; row < to.height; ++row) {
     const double at = (row + 0.5) / to.height * (from.height - 1);

@@ -7,6 +7,8 @@
 #include <filesystem>
 #include <map>
 
+#include "renderlib/image/write_image.h"
+#include "renderlib/import/image/decode_image.h"
 #include "renderlib/import/import.h"
 #include "renderlib/import/mitsuba/convert_mitsuba.h"
 #include "renderlib/import/mitsuba/spectra.h"
@@ -387,6 +389,25 @@ TEST_F(MitsubaScene, AreaLightsEmitToOneSide) {
       "</emitter>"));
   EXPECT_THAT(from.material(0).emission().rgb(), ElementsAre(1, 2, 3));
   EXPECT_TRUE(from.material(0).emission_one_sided());
+}
+
+/// Mitsuba's rows are points of latitude, ours are bands: the image that is made must not be
+/// blurred by that.
+TEST_F(MitsubaScene, EnvironmentsStaySharp) {
+  const Image rows{1, 3, {gray(0), gray(1), gray(0)}};
+  const auto bytes = encode_image(rows, ImageFormat::kExr);
+  ASSERT_TRUE(bytes.ok()) << bytes.status();
+  write_text(folder_, "sky.exr", {reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+  const auto converted =
+      convert("<emitter type=\"envmap\"><string name=\"filename\" value=\"sky.exr\"/></emitter>");
+  ASSERT_TRUE(converted.ok()) << converted.status();
+  const auto made = converted->made_files.find(converted->scene.background().environment().file());
+  ASSERT_NE(made, converted->made_files.end());
+  const auto image = decode_picture(made->second);
+  ASSERT_TRUE(image.ok()) << image.status();
+  const std::size_t half = image->height / 2;
+  EXPECT_GT((image->pixels[half - 1].g + image->pixels[half].g) / 2, 0.95f) << "the equator";
+  EXPECT_LT(image->pixels.front().g, 0.05f) << "the pole";
 }
 
 TEST_F(MitsubaScene, RectanglesKeepTheirNormal) {
