@@ -45,9 +45,17 @@ class Frames : public testing::Test {
  protected:
   void SetUp() override { std::ofstream(scene_) << moving_triangle(); }
 
+  std::vector<std::string> settings() const {
+    return {"--width",   std::to_string(size_),
+            "--height",  std::to_string(size_),
+            "--samples", samples_,
+            "--fps",     "12",
+            "--shutter", "0.5"};
+  }
   std::vector<std::string> submit(const std::string& frames, std::vector<std::string> more = {}) {
     std::vector<std::string> arguments = {"submit", scene_, "--frames", frames, "--json"};
-    arguments.insert(arguments.end(), settings_.begin(), settings_.end());
+    const std::vector<std::string> chosen = settings();
+    arguments.insert(arguments.end(), chosen.begin(), chosen.end());
     arguments.insert(arguments.end(), more.begin(), more.end());
     return farm_.command(arguments);
   }
@@ -57,7 +65,8 @@ class Frames : public testing::Test {
     const std::string file = farm_.path("alone.pfm");
     std::vector<std::string> argv = {BANDSAW_BIN,           "render", scene_, "--frame",
                                      std::to_string(frame), "-o",     file,   "--quiet"};
-    argv.insert(argv.end(), settings_.begin(), settings_.end());
+    const std::vector<std::string> chosen = settings();
+    argv.insert(argv.end(), chosen.begin(), chosen.end());
     argv.insert(argv.end(), more.begin(), more.end());
     const Finished finished = run(argv);
     ASSERT_EQ(finished.code, 0) << finished.err;
@@ -90,70 +99,71 @@ class Frames : public testing::Test {
   FarmProcesses farm_;
   const std::string scene_ = farm_.path("walk.gltf");
   const std::string outputs_ = farm_.path("w.####.pfm");
-  const std::vector<std::string> settings_ = {
-      "--width", "40", "--height", "40", "--samples", "1024", "--fps", "12", "--shutter", "0.5"};
+  int size_ = 24;  ///< width and height, pixels
+  std::string samples_ = "16";
 };
 
 TEST_F(Frames, HaveTheBytesOfRenderThoughAWorkerAndTheCoordinatorAreKilled) {
+  samples_ = "1024";  // so that frames are left when the coordinator is killed
   for (const char* name : {"one", "two", "three"}) {
     farm_.add_worker(name, 1);
   }
-  Process client = Process::start(submit("1:18", {"-o", outputs_}));
+  Process client = Process::start(submit("1:12", {"-o", outputs_}));
   ASSERT_TRUE(wait_for_frames(client, 2)) << client.err();
   farm_.worker("two").signal(SIGKILL);
-  ASSERT_TRUE(wait_for_frames(client, 5)) << client.err();
+  ASSERT_TRUE(wait_for_frames(client, 4)) << client.err();
   farm_.coordinator().signal(SIGKILL);
   ASSERT_EQ(farm_.coordinator().wait(), 128 + SIGKILL);
   farm_.restart_coordinator();
   ASSERT_EQ(client.wait(), 0) << client.err() << farm_.coordinator_log();
-  for (int frame = 1; frame <= 18; ++frame) {
+  for (int frame = 1; frame <= 12; ++frame) {
     expect_bytes_of_render(frame);
     EXPECT_TRUE(std::filesystem::exists(farm_.path(absl::StrFormat("w.%04d.json", frame))));
   }
   const std::map<std::string, int> jobs = jobs_of_frames();
-  EXPECT_EQ(jobs.size(), 18u);
+  EXPECT_EQ(jobs.size(), 12u);
   for (const auto& [frame, times] : jobs) {
     EXPECT_EQ(times, 1) << "frame " << frame;
   }
   const Finished listed = run(farm_.command({"jobs"}));
-  EXPECT_THAT(listed.out, HasSubstr("18 of 18 frames"));
+  EXPECT_THAT(listed.out, HasSubstr("12 of 12 frames"));
   EXPECT_EQ(std::count(listed.out.begin(), listed.out.end(), '\n'), 2) << listed.out;
   EXPECT_THAT(run(farm_.command({"missing", "1"})).out, HasSubstr("no frame is missing"));
 }
 
 TEST_F(Frames, AreSentAgainAfterTheirSubmitterWasKilled) {
-  Process client = Process::start(submit("1,3,5-40", {"-o", outputs_, "--fixed-seed"}));
+  Process client = Process::start(submit("1,3,5-20", {"-o", outputs_, "--fixed-seed"}));
   // Without workers the submitter is killed while it sends scenes, or after.
   ASSERT_TRUE(client.wait_for("\"event\":\"job\"")) << client.err();
   client.signal(SIGKILL);
   client.wait();
   farm_.add_worker("one", 2);
-  const Finished other = run(submit("1-40", {"-o", outputs_, "--fixed-seed", "--continue", "1"}));
+  const Finished other = run(submit("1-20", {"-o", outputs_, "--fixed-seed", "--continue", "1"}));
   EXPECT_EQ(other.code, 2) << other.err;
-  EXPECT_THAT(other.err, HasSubstr("the frames of job 1 are 1,3,5-40"));
+  EXPECT_THAT(other.err, HasSubstr("the frames of job 1 are 1,3,5-20"));
   const Finished again =
-      run(submit("1,3,5-40", {"-o", outputs_, "--fixed-seed", "--continue", "1", "--then",
+      run(submit("1,3,5-20", {"-o", outputs_, "--fixed-seed", "--continue", "1", "--then",
                               "cp \"$BANDSAW_FILE_LIST\" " + farm_.path("list") +
                                   "; echo job $BANDSAW_JOB is $BANDSAW_STATE: $BANDSAW_FILES"}));
   ASSERT_EQ(again.code, 0) << again.err;
   EXPECT_THAT(again.out, HasSubstr("job 1 is done: " + outputs_));
-  EXPECT_THAT(file_bytes(farm_.path("list")), HasSubstr(file_of(40) + "\n"));
-  for (const int frame : {1, 3, 40}) {
+  EXPECT_THAT(file_bytes(farm_.path("list")), HasSubstr(file_of(20) + "\n"));
+  for (const int frame : {1, 3, 20}) {
     expect_bytes_of_render(frame, {"--fixed-seed"});
   }
-  EXPECT_EQ(jobs_of_frames().size(), 38u);
+  EXPECT_EQ(jobs_of_frames().size(), 18u);
 }
 
 TEST_F(Frames, AContactSheetAndACommandAndAClearWordWithoutFfmpeg) {
   farm_.add_worker("one", 2);
   const std::string sheet = farm_.path("sheet.png");
   const Finished done =
-      run(submit("1-9", {"-o", outputs_, "--contact-sheet", sheet, "--then", "exit 3"}));
+      run(submit("1-4", {"-o", outputs_, "--contact-sheet", sheet, "--then", "exit 3"}));
   EXPECT_EQ(done.code, 1);
   EXPECT_THAT(done.err, HasSubstr("--then: the command failed with exit status 3"));
   EXPECT_TRUE(std::filesystem::exists(sheet));
   const Finished without =
-      run(submit("1-9", {"-o", outputs_, "--video", farm_.path("w.mp4")}), {"PATH=/nowhere"});
+      run(submit("1-4", {"-o", outputs_, "--video", farm_.path("w.mp4")}), {"PATH=/nowhere"});
   EXPECT_EQ(without.code, 1);
   EXPECT_THAT(without.err, HasSubstr("ffmpeg, which is not on PATH"));
 }
@@ -163,12 +173,12 @@ TEST_F(Frames, AreAVideo) {
   farm_.add_worker("one", 1);
   farm_.add_worker("two", 1);
   const std::string video = farm_.path("walk.mp4");
-  const Finished done = run(submit("1-12", {"--video", video, "-o", outputs_}));
+  const Finished done = run(submit("1-6", {"--video", video, "-o", outputs_}));
   ASSERT_EQ(done.code, 0) << done.err;
   const Finished probe =
       run({"/usr/bin/ffprobe", "-v", "error", "-count_frames", "-show_entries",
            "stream=codec_name,width,height,nb_read_frames,r_frame_rate", "-of", "csv=p=0", video});
-  EXPECT_EQ(probe.out, "h264,40,40,12/1,12\n") << probe.err;
+  EXPECT_EQ(probe.out, "h264,24,24,12/1,6\n") << probe.err;
   // Nothing half-written is left.
   for (const auto& entry : std::filesystem::directory_iterator(farm_.path("."))) {
     EXPECT_EQ(entry.path().filename().string().find(".part"), std::string::npos) << entry.path();
