@@ -25,8 +25,8 @@ BandPipeline::BandPipeline(SharedSession& session, std::unique_ptr<BlobCache> ca
       cache_(std::move(cache)),
       calls_(calls),
       log_tail_(std::move(log_tail)),
-      kernel_(kernel),
       pool_(threads),
+      loader_(pool_, kernel),
       uploader_([this](const FinishedBand& band) { return put(band); },
                 [this](TaskId task, const auto& outcome) { settled(task, outcome); }, seed),
       executor_(
@@ -50,8 +50,7 @@ absl::StatusOr<std::shared_ptr<const Scene>> BandPipeline::load(const wire::Dige
     return calls_.get_blob(digest, offset, take);
   };
   FetchingSource blobs(*cache_, transfer, stop, prepared);
-  ASSIGN_OR_RETURN(std::shared_ptr<const Scene> scene,
-                   load_package(manifest, blobs, pool_, kernel_));
+  ASSIGN_OR_RETURN(std::shared_ptr<const Scene> scene, loader_.load(manifest, blobs));
   spdlog::info("scene {}: ready", name);
   return scene;
 }

@@ -46,8 +46,8 @@ class BandPipeline {
   const std::unique_ptr<BlobCache> cache_;
   CoordinatorApi& calls_;
   const LogTail log_tail_;
-  const Kernel* const kernel_;
   Pool pool_;
+  PackageLoader loader_;  ///< called by the executor, for one scene at a time
   Uploader uploader_;
   Executor executor_;  ///< last: its threads use all of the above
 };

@@ -1,5 +1,7 @@
 #include "renderlib/accel/accel.h"
 
+#include <map>
+#include <memory>
 #include <utility>
 #include <vector>
 
@@ -57,17 +59,35 @@ template <class Query>
 /// thread.
 constexpr std::size_t kLargeMesh = std::size_t{1} << 15;
 
-std::vector<MeshTree> build_meshes(const std::vector<Mesh>& meshes, Pool& pool) {
-  std::vector<MeshTree> trees(meshes.size());
+/// BVHs of meshes, found by the mesh.
+using KnownTrees = std::map<const Mesh*, std::shared_ptr<const MeshTree>>;
+
+MeshTree build_tree_of(const Mesh& mesh, bool culls, Pool* pool) {
+  MeshTree tree = build_mesh_tree(mesh, pool);
+  if (!culls) {
+    disable_culling(tree.tree);
+  }
+  return tree;
+}
+
+std::vector<std::shared_ptr<const MeshTree>> build_meshes(const MeshList& meshes,
+                                                          const KnownTrees& known, bool culls,
+                                                          Pool& pool) {
+  std::vector<std::shared_ptr<const MeshTree>> trees(meshes.size());
+  const auto build = [&](std::size_t mesh, Pool* threads) {
+    trees[mesh] = std::make_shared<const MeshTree>(build_tree_of(meshes[mesh], culls, threads));
+  };
   pool.parallel_for(static_cast<std::int64_t>(meshes.size()), [&](std::int64_t i) {
     const auto mesh = static_cast<std::size_t>(i);
-    if (meshes[mesh].triangles.size() < kLargeMesh) {
-      trees[mesh] = build_mesh_tree(meshes[mesh], nullptr);
+    if (const auto found = known.find(&meshes[mesh]); found != known.end()) {
+      trees[mesh] = found->second;
+    } else if (meshes[mesh].triangles.size() < kLargeMesh) {
+      build(mesh, nullptr);
     }
   });
   for (std::size_t mesh = 0; mesh < meshes.size(); ++mesh) {
-    if (meshes[mesh].triangles.size() >= kLargeMesh) {
-      trees[mesh] = build_mesh_tree(meshes[mesh], &pool);
+    if (trees[mesh] == nullptr) {
+      build(mesh, &pool);
     }
   }
   return trees;
@@ -97,10 +117,14 @@ struct Accel::Trees {
            (!moving.tree.empty && trace_moving(moving, *geometry, ray, query));
   }
 
-  void disable_culling() {
-    for (MeshTree& mesh : prototypes.meshes) {
-      bandsaw::disable_culling(mesh.tree);
+  void add_trees_to(KnownTrees& known) const {
+    for (std::size_t mesh = 0; mesh < prototypes.meshes.size(); ++mesh) {
+      known.emplace(&geometry->meshes[mesh], prototypes.meshes[mesh]);
     }
+  }
+
+  /// Those of the meshes are built without culling.
+  void disable_culling() {
     for (ShapesTree& group : prototypes.groups) {
       bandsaw::disable_culling(group.tree);
     }
@@ -115,15 +139,20 @@ Accel& Accel::operator=(Accel&&) noexcept = default;
 Accel::~Accel() = default;
 
 Accel Accel::build(const Geometry& geometry, Pool& pool, const Interval& interval,
-                   Traversal traversal) {
+                   Traversal traversal, absl::Span<const Accel* const> earlier) {
+  const bool culls = traversal == Traversal::kBvh;
+  KnownTrees known;
+  for (const Accel* accel : culls ? earlier : absl::Span<const Accel* const>()) {
+    accel->trees_->add_trees_to(known);
+  }
   auto trees = std::make_unique<Trees>();
   trees->geometry = &geometry;
   Prototypes& prototypes = trees->prototypes;
-  prototypes.meshes = build_meshes(geometry.meshes, pool);
+  prototypes.meshes = build_meshes(geometry.meshes, known, culls, pool);
   prototypes.groups = build_groups(geometry.groups, pool);
   trees->top = build_top_tree(geometry, prototypes, &pool);
   trees->moving = build_moving_tree(geometry, prototypes, interval, &pool);
-  if (traversal == Traversal::kBruteForce) {
+  if (!culls) {
     trees->disable_culling();
   }
   return Accel(std::move(trees));
@@ -148,8 +177,8 @@ bool Accel::occluded(const Ray& ray) const {
 
 std::size_t Accel::bytes() const {
   std::size_t sum = trees_->top.bytes() + trees_->moving.bytes();
-  for (const MeshTree& mesh : trees_->prototypes.meshes) {
-    sum += mesh.bytes();
+  for (const std::shared_ptr<const MeshTree>& mesh : trees_->prototypes.meshes) {
+    sum += mesh->bytes();
   }
   for (const ShapesTree& group : trees_->prototypes.groups) {
     sum += group.bytes();

@@ -31,7 +31,7 @@ std::optional<Prototype> Prototypes::of(const Geometry& geometry, const Instance
     prototype.group = &groups[index_of(instance.group)];
     prototype.shapes = &geometry.groups[index_of(instance.group)];
   } else if (instance.group == kNoGroup && index_of(instance.mesh) < meshes.size()) {
-    prototype.mesh = &meshes[index_of(instance.mesh)];
+    prototype.mesh = meshes[index_of(instance.mesh)].get();
   } else {
     return std::nullopt;
   }

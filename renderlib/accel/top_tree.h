@@ -3,6 +3,7 @@
 // Top-level BVH of the scene: loose shapes and instances.
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -25,7 +26,8 @@ struct Prototype {
 /// BVHs of all meshes and groups. They and the geometry MUST outlive everything built from them,
 /// and MUST NOT be moved in memory.
 struct Prototypes {
-  std::vector<MeshTree> meshes;    ///< one for each mesh of the geometry
+  /// One for each mesh of the geometry. Those of meshes that scenes share are shared as well.
+  std::vector<std::shared_ptr<const MeshTree>> meshes;
   std::vector<ShapesTree> groups;  ///< one for each group
 
   /// Returns the BVH of an instance; std::nullopt if the instance contains nothing that can be hit.

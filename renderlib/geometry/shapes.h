@@ -9,6 +9,7 @@
 
 #include "renderlib/base/ids.h"
 #include "renderlib/geometry/frame.h"
+#include "renderlib/geometry/mesh_list.h"
 #include "renderlib/math/transform.h"
 #include "renderlib/math/vec.h"
 
@@ -91,15 +92,6 @@ inline MaterialId material_of(const Shapes& shapes, std::size_t primitive) {
                                         : shapes.disks[index].material;
 }
 
-struct Mesh {
-  std::vector<std::array<float, 3>> positions;
-  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into positions
-  std::vector<std::array<float, 3>> normals;            ///< empty, or one per position
-  std::vector<std::array<float, 2>> uvs;                ///< empty, or one per position
-  std::vector<std::array<float, 2>> uvs2 = {};          ///< second set: empty, or one per position
-  std::vector<std::array<float, 3>> colors = {};  ///< linear RGB >= 0: empty, or one per position
-};
-
 inline constexpr GroupId kNoGroup{0xffffffffu};
 /// For an instance of a group: each shape keeps its own material.
 inline constexpr MaterialId kOwnMaterial{0xffffffffu};
@@ -117,7 +109,7 @@ struct Instance {
 /// `instance` i + 1 means instances[i], whose `primitive` is the triangle of its mesh or the shape
 /// of its group.
 struct Geometry : Shapes {
-  std::vector<Mesh> meshes;
+  MeshList meshes;
   std::vector<Instance> instances;
   std::vector<Shapes> groups;  ///< loose shapes in spaces of their own; hit only through instances
   std::vector<Frame> frames;   ///< animated frames

@@ -209,20 +209,31 @@ bool is_foreign(const std::string& path) {
   return is_pbrt(lower) || is_mitsuba(lower);
 }
 
-absl::StatusOr<ConvertedScene> convert(const std::string& path, const ImportChoices& choices,
-                                       const SceneDraft& draft) {
+absl::StatusOr<std::shared_ptr<const ConvertedScene>> convert(const std::string& path,
+                                                              const ImportChoices& choices,
+                                                              const SceneDraft& draft) {
+  if (draft.memory != nullptr && draft.memory->converted != nullptr) {
+    return draft.memory->converted;
+  }
   const std::string own_folder = std::filesystem::canonical(path).parent_path().string();
   ASSIGN_OR_RETURN(std::string real, draft.folder.resolve(name_of(path), own_folder));
   const ForeignScene from{std::move(real), draft.file, draft.folder, choices.parameters};
-  return is_pbrt(absl::AsciiStrToLower(path)) ? convert_pbrt(from) : convert_mitsuba(from);
+  auto converted =
+      is_pbrt(absl::AsciiStrToLower(path)) ? convert_pbrt(from) : convert_mitsuba(from);
+  RETURN_IF_ERROR(converted.status());
+  auto shared = std::make_shared<const ConvertedScene>(*std::move(converted));
+  if (draft.memory != nullptr) {
+    draft.memory->converted = shared;
+  }
+  return shared;
 }
 
 /// Reads what a converter returned. Its warnings come before those of the reader.
-absl::Status read_converted(ConvertedScene converted, const ImportChoices& choices,
-                            SceneDraft& draft) {
-  draft.made_files = std::move(converted.made_files);
-  draft.out.info.warnings = std::move(converted.warnings);
-  return read_frame(converted.scene, nullptr, choices, draft);
+absl::Status read_converted(const std::shared_ptr<const ConvertedScene>& converted,
+                            const ImportChoices& choices, SceneDraft& draft) {
+  draft.made_files = {converted, &converted->made_files};
+  draft.out.info.warnings = converted->warnings;
+  return read_frame(converted->scene, nullptr, choices, draft);
 }
 
 /// Returns the model's first camera, or one that frames the model. The latter frames an animated
@@ -236,7 +247,7 @@ absl::StatusOr<MovingCamera> camera_for_model(const std::string& real,
   if (draft.shutter == Shutter{}) {
     return MovingCamera{framed(draft.out)};
   }
-  SceneDraft at_zero(draft.folder, draft.file);
+  SceneDraft at_zero(draft.folder, draft.file, draft.memory);
   ASSIGN_OR_RETURN(const Model model, read_model(real, false, at_zero, animation));
   at_zero.out.scene.geometry.instances = model.instances;
   Camera camera = framed(at_zero.out);
@@ -268,8 +279,8 @@ absl::Status read_model_alone(const std::string& path, const ImportChoices& choi
 
 absl::Status read_any(const std::string& path, const ImportChoices& choices, SceneDraft& draft) {
   if (is_foreign(path)) {
-    ASSIGN_OR_RETURN(ConvertedScene converted, convert(path, choices, draft));
-    return read_converted(std::move(converted), choices, draft);
+    ASSIGN_OR_RETURN(const auto converted, convert(path, choices, draft));
+    return read_converted(converted, choices, draft);
   }
   const std::string lower = absl::AsciiStrToLower(path);
   if (absl::EndsWith(lower, ".textproto") || absl::EndsWith(lower, ".json")) {
@@ -295,7 +306,11 @@ absl::Status check_whole(const ImportChoices& choices, const SceneDraft& draft) 
     return absl::InvalidArgumentError(absl::StrCat(warnings.front(), others));
   }
   // A scene that a worker would refuse is refused here, before anybody waits for it.
-  if (const absl::Status valid = validate(draft.out.scene, MeshVertices::kFinite); !valid.ok()) {
+  const auto is_checked = [&](const Mesh& mesh) {
+    return draft.memory != nullptr && draft.memory->encoded.knows(mesh);
+  };
+  if (const absl::Status valid = validate(draft.out.scene, MeshVertices::kFinite, is_checked);
+      !valid.ok()) {
     return absl::InvalidArgumentError(absl::StrCat(draft.file, ": ", valid.message()));
   }
   return absl::OkStatus();
@@ -316,9 +331,10 @@ absl::StatusOr<SceneFolder> folder_to_read(const std::string& path, const Import
   return SceneFolder::around(path, choices.folder);
 }
 
-absl::StatusOr<ImportedScene> import_scene(const std::string& path, const ImportChoices& choices) {
+absl::StatusOr<ImportedScene> import_scene(const std::string& path, const ImportChoices& choices,
+                                           ImportMemory* memory) {
   ASSIGN_OR_RETURN(SceneFolder folder, folder_to_read(path, choices));
-  SceneDraft draft(std::move(folder), name_of(path));
+  SceneDraft draft(std::move(folder), name_of(path), memory);
   draft.out.info.name = std::filesystem::path(path).stem().string();
   RETURN_IF_ERROR(read_any(path, choices, draft));
   draft.out.info.model_cameras = names_of(draft.cameras);
@@ -333,6 +349,9 @@ absl::StatusOr<ImportedScene> import_scene(const std::string& path, const Import
     draft.out.scene.background.environment = Environment{.images = {image}};
   }
   RETURN_IF_ERROR(check_whole(choices, draft));
+  if (memory != nullptr) {
+    memory->images.end_import();
+  }
   return std::move(draft.out);
 }
 
@@ -342,10 +361,10 @@ absl::StatusOr<SceneAsText> scene_as_text(const std::string& path, const ImportC
   SceneAsText out;
   scene::Scene scene;
   if (is_foreign(path)) {
-    ASSIGN_OR_RETURN(ConvertedScene converted, convert(path, choices, draft));
-    scene = converted.scene;
+    ASSIGN_OR_RETURN(const auto converted, convert(path, choices, draft));
+    scene = converted->scene;
     draft.folder.record_to(&out.found_files);
-    RETURN_IF_ERROR(read_converted(std::move(converted), choices, draft));
+    RETURN_IF_ERROR(read_converted(converted, choices, draft));
   } else if (is_model_file(path)) {
     draft.folder.record_to(&out.found_files);
     RETURN_IF_ERROR(read_model_alone(path, choices, draft));
@@ -356,7 +375,7 @@ absl::StatusOr<SceneAsText> scene_as_text(const std::string& path, const ImportC
   }
   RETURN_IF_ERROR(check_whole(choices, draft));
   out.text = text_of(scene, draft.file, draft.out.info.warnings);
-  out.made_files = std::move(draft.made_files);
+  out.made_files = *draft.made_files;
   out.warnings = std::move(draft.out.info.warnings);
   return out;
 }

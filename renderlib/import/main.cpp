@@ -9,6 +9,12 @@
 // folder=FOLDER (around that of a Mitsuba scene), frame=N, fps=F, shutter=SHARE (these two with a
 // frame) and animation=NAME;
 //
+//   bandsaw-import frames FILE FOLDER SECONDS BYTES frame=N [CHOICE ...]
+//
+// does the same for one frame after the other: it reads their numbers from standard input, one a
+// line, and answers each with the line "done". FOLDER then has the package of that frame alone. The
+// files of the scene are read once. SECONDS are those of all frames. N is not used;
+//
 //   bandsaw-import text FILE FOLDER SECONDS BYTES [CHOICE ...]
 //
 // leaves a foreign scene as one of ours: FOLDER/text, FOLDER/warnings (one a line), and FOLDER/list
@@ -29,6 +35,7 @@
 
 #include <sys/prctl.h>
 
+#include <array>
 #include <cerrno>
 #include <cmath>
 #include <csignal>
@@ -38,10 +45,13 @@
 #include <initializer_list>
 #include <new>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
+#include "absl/strings/ascii.h"
 #include "absl/strings/numbers.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_replace.h"
@@ -90,6 +100,71 @@ absl::Status import_to(const std::string& path, const std::string& folder,
     RETURN_IF_ERROR(write_file(out.path_of(digest), {absl::MakeConstSpan(bytes)}));
   }
   return write_file(folder + "/manifest", {std::as_bytes(std::span(manifest))});
+}
+
+/// Imports the frames of one scene, one after the other, to a folder.
+class FrameImports {
+ public:
+  FrameImports(std::string path, std::string folder, ImportChoices choices)
+      : path_(std::move(path)), folder_(std::move(folder)), choices_(std::move(choices)) {}
+
+  /// Replaces the package in the folder.
+  absl::Status import(double number) {
+    choices_.frame->number = number;
+    ASSIGN_OR_RETURN(const ImportedScene imported, import_scene(path_, choices_, &memory_));
+    BlobMap blobs;
+    const std::string manifest =
+        encode_package(imported.scene, imported.info, blobs, &memory_.encoded);
+    ASSIGN_OR_RETURN(const std::vector<BlobRef> refs, package_blobs(manifest));
+    std::set<wire::Digest> used;
+    for (const BlobRef& ref : refs) {
+      used.insert(ref.digest);
+    }
+    RETURN_IF_ERROR(update_files(blobs, used));
+    return write_file(folder_ + "/manifest", {std::as_bytes(std::span(manifest))});
+  }
+
+ private:
+  /// Writes the blobs that are new, and removes the files that are not used any more.
+  absl::Status update_files(const BlobMap& blobs, const std::set<wire::Digest>& used) {
+    const BlobFolder out(folder_);
+    for (const wire::Digest& digest : written_) {
+      if (used.find(digest) == used.end()) {
+        std::remove(out.path_of(digest).c_str());
+      }
+    }
+    for (const auto& [digest, bytes] : blobs.all()) {
+      if (written_.find(digest) == written_.end()) {
+        RETURN_IF_ERROR(write_file(out.path_of(digest), {absl::MakeConstSpan(bytes)}));
+      }
+    }
+    written_ = used;
+    return absl::OkStatus();
+  }
+
+  const std::string path_;
+  const std::string folder_;
+  ImportChoices choices_;
+  ImportMemory memory_;
+  std::set<wire::Digest> written_;
+};
+
+/// Imports the frames whose numbers are on standard input, until that ends.
+absl::Status frames_to(const std::string& path, const std::string& folder,
+                       const ImportChoices& choices) {
+  FrameImports imports(path, folder, choices);
+  std::array<char, 64> line{};
+  while (std::fgets(line.data(), line.size(), stdin) != nullptr) {
+    double number = 0;
+    if (!absl::SimpleAtod(absl::StripTrailingAsciiWhitespace(line.data()), &number) ||
+        !std::isfinite(number)) {
+      return absl::InvalidArgumentError("standard input must have a frame's number on each line");
+    }
+    RETURN_IF_ERROR(imports.import(number));
+    std::puts("done");
+    std::fflush(stdout);
+  }
+  return absl::OkStatus();
 }
 
 absl::Status read_picture_to(const std::string& path, const std::string& folder) {
@@ -153,7 +228,7 @@ absl::Status unzip_to(const std::string& path, const std::string& folder) {
 }
 
 constexpr char kUsage[] =
-    "usage: bandsaw-import scene|text|image|unzip FILE FOLDER SECONDS BYTES "
+    "usage: bandsaw-import scene|frames|text|image|unzip FILE FOLDER SECONDS BYTES "
     "[environment=FILE] [camera=NAME] [strict] [define:NAME=VALUE ...] [folder=FOLDER] "
     "[frame=N [fps=F] "
     "[shutter=SHARE]] [animation=NAME]";
@@ -214,7 +289,7 @@ absl::StatusOr<ImportChoices> read_choices(int argc, char** argv) {
 absl::Status run(int argc, char** argv) {
   Confinement limits;
   const std::string what = argc >= 6 ? argv[1] : "";
-  const bool has_choices = what == "scene" || what == "text";
+  const bool has_choices = what == "scene" || what == "frames" || what == "text";
   const bool is_known = has_choices || ((what == "image" || what == "unzip") && argc == 6);
   if (!is_known || !absl::SimpleAtoi(argv[4], &limits.cpu_seconds) ||
       !absl::SimpleAtoi(argv[5], &limits.memory_bytes)) {
@@ -222,15 +297,19 @@ absl::Status run(int argc, char** argv) {
   }
   const std::string path = argv[2];
   ASSIGN_OR_RETURN(const ImportChoices choices, read_choices(argc, argv));
+  if (what == "frames" && !choices.frame) {
+    return absl::InvalidArgumentError(kUsage);
+  }
   ASSIGN_OR_RETURN(const SceneFolder folder, folder_to_read(path, choices));
   limits.read_folder = folder.path();
   limits.write_folder = argv[3];
   limits.file_bytes = wire::kBlobBytes;
   RETURN_IF_ERROR(confine_this_process(limits));
-  return what == "scene"   ? import_to(path, argv[3], choices)
-         : what == "text"  ? text_to(path, argv[3], choices)
-         : what == "unzip" ? unzip_to(path, argv[3])
-                           : read_picture_to(path, argv[3]);
+  return what == "scene"    ? import_to(path, argv[3], choices)
+         : what == "frames" ? frames_to(path, argv[3], choices)
+         : what == "text"   ? text_to(path, argv[3], choices)
+         : what == "unzip"  ? unzip_to(path, argv[3])
+                            : read_picture_to(path, argv[3]);
 }
 
 // Runs the import and converts exceptions of foreign code to errors.

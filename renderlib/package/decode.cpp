@@ -1,6 +1,8 @@
 #include "renderlib/package/package.h"
 
 #include <algorithm>
+#include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -161,13 +163,13 @@ absl::Status decode_texture(const package::Texture& from, const std::string& fie
 
 class Decoder {
  public:
-  explicit Decoder(BlobSource& blobs) : blobs_(blobs) {}
+  Decoder(BlobSource& blobs, DecodedParts* parts) : blobs_(blobs), parts_(parts) {}
 
   // Returns the whole blob without copying it: a mapped file stays mapped. Its size has been
   // compared with the manifest.
   absl::StatusOr<SharedBytes> bytes(const package::Blob& blob, const std::string& field) {
     ASSIGN_OR_RETURN(const BlobRef ref, blob_ref(blob, field));
-    ASSIGN_OR_RETURN(std::shared_ptr<const BlobBytes> held, blobs_.get(ref.digest));
+    ASSIGN_OR_RETURN(std::shared_ptr<const BlobBytes> held, blob_of(ref.digest));
     const absl::Span<const std::byte> bytes = held->bytes();
     if (bytes.size() != ref.size) {
       return manifest_error(field + ".size", absl::StrCat("is ", ref.size, ", the blob has ",
@@ -272,6 +274,28 @@ class Decoder {
     return absl::OkStatus();
   }
 
+  // Adds the mesh to the list.
+  absl::Status add_mesh(const package::Mesh& from, const std::string& field, MeshList& to) {
+    const std::string message = parts_ != nullptr ? from.SerializeAsString() : "";
+    if (std::shared_ptr<const Mesh> known = parts_ != nullptr ? parts_->mesh(message) : nullptr) {
+      if (own_.find(known.get()) == own_.end()) {
+        shared_.insert(known.get());
+      }
+      to.share(std::move(known));
+      return absl::OkStatus();
+    }
+    ASSIGN_OR_RETURN(Mesh decoded, mesh(from, field));
+    to.push_back(std::move(decoded));
+    own_.insert(&to.back());
+    if (parts_ != nullptr) {
+      parts_->add(message, to.shared(to.size() - 1));
+    }
+    return absl::OkStatus();
+  }
+
+  // Returns true for a mesh of another package, which was validated with that.
+  bool is_shared(const Mesh& mesh) const { return shared_.find(&mesh) != shared_.end(); }
+
   absl::StatusOr<Mesh> mesh(const package::Mesh& from, const std::string& field) {
     Mesh mesh;
     using F3 = std::array<float, 3>;
@@ -306,15 +330,31 @@ class Decoder {
   }
 
  private:
+  absl::StatusOr<std::shared_ptr<const BlobBytes>> blob_of(const wire::Digest& digest) {
+    if (parts_ != nullptr) {
+      if (std::shared_ptr<const BlobBytes> known = parts_->blob(digest)) {
+        return known;
+      }
+    }
+    ASSIGN_OR_RETURN(std::shared_ptr<const BlobBytes> blob, blobs_.get(digest));
+    if (parts_ != nullptr) {
+      parts_->add(digest, blob);
+    }
+    return blob;
+  }
+
   BlobSource& blobs_;
+  DecodedParts* const parts_;     ///< nullptr: none
+  std::set<const Mesh*> own_;     ///< meshes that were read for this package
+  std::set<const Mesh*> shared_;  ///< those of other packages
 };
 
 absl::StatusOr<Geometry> decode_geometry(const package::Manifest& manifest, Decoder& decoder) {
   Geometry geometry;
   RETURN_IF_ERROR(decoder.shapes(manifest, "", geometry));
   for (int i = 0; i < manifest.mesh_size(); ++i) {
-    ASSIGN_OR_RETURN(Mesh mesh, decoder.mesh(manifest.mesh(i), absl::StrCat("mesh[", i, "]")));
-    geometry.meshes.push_back(std::move(mesh));
+    RETURN_IF_ERROR(
+        decoder.add_mesh(manifest.mesh(i), absl::StrCat("mesh[", i, "]"), geometry.meshes));
   }
   for (int i = 0; i < manifest.group_size(); ++i) {
     Shapes& group = geometry.groups.emplace_back();
@@ -338,9 +378,8 @@ absl::StatusOr<Media> media_with_boundaries(const package::Manifest& manifest, D
                      decoder.spheres(from.spheres(), "boundaries.spheres"));
   }
   for (int i = 0; i < from.mesh_size(); ++i) {
-    ASSIGN_OR_RETURN(Mesh mesh,
-                     decoder.mesh(from.mesh(i), absl::StrCat("boundaries.mesh[", i, "]")));
-    media.boundaries.meshes.push_back(std::move(mesh));
+    RETURN_IF_ERROR(decoder.add_mesh(from.mesh(i), absl::StrCat("boundaries.mesh[", i, "]"),
+                                     media.boundaries.meshes));
   }
   for (int i = 0; i < from.group_size(); ++i) {
     Shapes& group = media.boundaries.groups.emplace_back();
@@ -353,11 +392,11 @@ absl::StatusOr<Media> media_with_boundaries(const package::Manifest& manifest, D
 }  // namespace
 
 absl::StatusOr<SceneDescription> decode_package(const std::string& manifest_bytes,
-                                                BlobSource& blobs) {
+                                                BlobSource& blobs, DecodedParts* parts) {
   // Checks the limits on all blobs together before any of them is read.
   RETURN_IF_ERROR(package_blobs(manifest_bytes).status());
   ASSIGN_OR_RETURN(const package::Manifest manifest, parse_manifest(manifest_bytes));
-  Decoder decoder(blobs);
+  Decoder decoder(blobs, parts);
   SceneDescription scene;
   if (!manifest.has_camera()) {
     return manifest_error("camera", "is missing");
@@ -382,7 +421,8 @@ absl::StatusOr<SceneDescription> decode_package(const std::string& manifest_byte
   ASSIGN_OR_RETURN(scene.geometry, decode_geometry(manifest, decoder));
   ASSIGN_OR_RETURN(scene.lights, decode_lights(manifest));
   ASSIGN_OR_RETURN(scene.media, media_with_boundaries(manifest, decoder));
-  if (const absl::Status valid = validate(scene, MeshVertices::kFinite); !valid.ok()) {
+  const auto is_checked = [&](const Mesh& mesh) { return decoder.is_shared(mesh); };
+  if (const absl::Status valid = validate(scene, MeshVertices::kFinite, is_checked); !valid.ok()) {
     return absl::InvalidArgumentError(absl::StrCat("scene package: ", valid.message()));
   }
   return scene;

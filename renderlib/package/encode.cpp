@@ -30,8 +30,23 @@ Theirs as(Ours ours, int first = 0) {
   return static_cast<Theirs>(static_cast<int>(ours) + first);
 }
 
+/// Adds bytes that several scenes may share, unless they are known, and refers to them.
+void put_shared(const SharedBytes& bytes, BlobMap& blobs, EncodedParts* parts, package::Blob& ref) {
+  ref.set_size(bytes.size());
+  if (const wire::Digest* known = parts != nullptr ? parts->digest_of(bytes) : nullptr) {
+    ref.set_sha256(known->raw());
+    return;
+  }
+  const wire::Digest digest = blobs.put(bytes);
+  ref.set_sha256(digest.raw());
+  if (parts != nullptr && !bytes.empty()) {
+    parts->add(bytes, digest);
+  }
+}
+
 struct EncodeTexture {
   BlobMap& blobs;
+  EncodedParts* parts;
   package::Texture& to;
 
   void operator()(const ConstantTexture& t) const { encode(t.value, *to.mutable_constant()); }
@@ -52,8 +67,7 @@ struct EncodeTexture {
     if (!(t.uv_transform == UvTransform{})) {
       image.mutable_uv_transform()->Add(t.uv_transform.m.begin(), t.uv_transform.m.end());
     }
-    image.mutable_texels()->set_size(t.texels.size());
-    image.mutable_texels()->set_sha256(blobs.put(t.texels).raw());
+    put_shared(t.texels, blobs, parts, *image.mutable_texels());
   }
 
   void operator()(const CheckerTexture& t) const {
@@ -111,17 +125,22 @@ struct EncodeTexture {
 };
 
 /// Encodes a texture. Its texels are added to `blobs` without being copied.
-void encode_texture(const Texture& texture, BlobMap& blobs, package::Texture& to) {
-  std::visit(EncodeTexture{blobs, to}, texture);
+void encode_texture(const Texture& texture, BlobMap& blobs, EncodedParts* parts,
+                    package::Texture& to) {
+  std::visit(EncodeTexture{blobs, parts, to}, texture);
 }
 
 class Encoder {
  public:
-  explicit Encoder(BlobMap& blobs) : blobs_(blobs) {}
+  Encoder(BlobMap& blobs, EncodedParts* parts) : blobs_(blobs), parts_(parts) {}
 
   void put(SharedBytes bytes, package::Blob& ref) {
     ref.set_size(bytes.size());
     ref.set_sha256(blobs_.put(std::move(bytes)).raw());
+  }
+
+  void put_shared(const SharedBytes& bytes, package::Blob& ref) {
+    bandsaw::put_shared(bytes, blobs_, parts_, ref);
   }
 
   // Makes one array from a list of shapes; `Value` is the type of the blob's entries.
@@ -169,7 +188,19 @@ class Encoder {
     }
   }
 
-  void put_mesh(const Mesh& mesh, package::Mesh& to) {
+  void put_mesh(const std::shared_ptr<const Mesh>& mesh, package::Mesh& to) {
+    if (const std::string* known = parts_ != nullptr ? parts_->message_of(*mesh) : nullptr) {
+      to.ParseFromString(*known);
+      return;
+    }
+    put_arrays(*mesh, to);
+    if (parts_ != nullptr) {
+      parts_->add(mesh, to.SerializeAsString());
+    }
+  }
+
+ private:
+  void put_arrays(const Mesh& mesh, package::Mesh& to) {
     put(to_bytes(mesh.positions), *to.mutable_positions());
     put(to_bytes(mesh.triangles), *to.mutable_indices());
     if (!mesh.normals.empty()) {
@@ -186,8 +217,8 @@ class Encoder {
     }
   }
 
- private:
   BlobMap& blobs_;
+  EncodedParts* const parts_;  ///< nullptr: none
 };
 
 template <class Field>
@@ -256,15 +287,15 @@ void encode(const Media& media, Encoder& encoder, package::Manifest& manifest) {
   encode_media(media, manifest);
   for (std::size_t i = 0; i < media.grids.size(); ++i) {
     package::VolumeGrid& to = *manifest.mutable_grid(static_cast<int>(i));
-    encoder.put(media.grids[i].index, *to.mutable_index());
-    encoder.put(media.grids[i].values, *to.mutable_values());
+    encoder.put_shared(media.grids[i].index, *to.mutable_index());
+    encoder.put_shared(media.grids[i].values, *to.mutable_values());
   }
   if (!media.boundaries.spheres.empty()) {
     encoder.put_spheres(media.boundaries.spheres,
                         *manifest.mutable_boundaries()->mutable_spheres());
   }
-  for (const Mesh& mesh : media.boundaries.meshes) {
-    encoder.put_mesh(mesh, *manifest.mutable_boundaries()->add_mesh());
+  for (std::size_t i = 0; i < media.boundaries.meshes.size(); ++i) {
+    encoder.put_mesh(media.boundaries.meshes.shared(i), *manifest.mutable_boundaries()->add_mesh());
   }
   for (const Shapes& group : media.boundaries.groups) {
     encoder.put_shapes(group, *manifest.mutable_boundaries()->add_group());
@@ -294,9 +325,10 @@ void encode(const PackageInfo& info, package::Manifest& manifest) {
 
 }  // namespace
 
-std::string encode_package(const SceneDescription& scene, const PackageInfo& info, BlobMap& blobs) {
+std::string encode_package(const SceneDescription& scene, const PackageInfo& info, BlobMap& blobs,
+                           EncodedParts* parts) {
   package::Manifest manifest;
-  Encoder encoder(blobs);
+  Encoder encoder(blobs, parts);
   encode(info, manifest);
   encode(scene.camera, *manifest.mutable_camera());
   if (scene.camera_at_close) {
@@ -309,20 +341,23 @@ std::string encode_package(const SceneDescription& scene, const PackageInfo& inf
     encode_light(light, *manifest.add_light());
   }
   for (const Texture& texture : scene.textures) {
-    encode_texture(texture, blobs, *manifest.add_texture());
+    encode_texture(texture, blobs, parts, *manifest.add_texture());
   }
   for (const Material& material : scene.materials) {
     encode_material(material, *manifest.add_material());
   }
   encoder.put_shapes(scene.geometry, manifest);
-  for (const Mesh& mesh : scene.geometry.meshes) {
-    encoder.put_mesh(mesh, *manifest.add_mesh());
+  for (std::size_t i = 0; i < scene.geometry.meshes.size(); ++i) {
+    encoder.put_mesh(scene.geometry.meshes.shared(i), *manifest.add_mesh());
   }
   for (const Shapes& group : scene.geometry.groups) {
     encoder.put_shapes(group, *manifest.add_group());
   }
   encode_placements(scene.geometry, *manifest.mutable_frame(), *manifest.mutable_instance());
   encode(scene.media, encoder, manifest);
+  if (parts != nullptr) {
+    parts->end_package();
+  }
   return manifest.SerializeAsString();
 }
 

@@ -10,6 +10,8 @@
 #include "proto/wire/digest.h"
 #include "renderlib/image/display.h"
 #include "renderlib/package/blob_source.h"
+#include "renderlib/package/decoded_parts.h"
+#include "renderlib/package/encoded_parts.h"
 #include "renderlib/scene/description.h"
 
 namespace bandsaw {
@@ -33,7 +35,10 @@ struct BlobRef {
 };
 
 /// Adds the scene's arrays to `blobs` and returns the bytes of the manifest, which are not added.
-std::string encode_package(const SceneDescription& scene, const PackageInfo& info, BlobMap& blobs);
+/// With `parts`, meshes, texels and grids that are the same objects as in the last package that was
+/// encoded with it are not added again.
+std::string encode_package(const SceneDescription& scene, const PackageInfo& info, BlobMap& blobs,
+                           EncodedParts* parts = nullptr);
 
 /// Returns the data of a manifest that needs no blobs; checks its form. Returns INVALID_ARGUMENT
 /// naming the field.
@@ -44,7 +49,10 @@ absl::StatusOr<PackageInfo> package_info(const std::string& manifest);
 absl::StatusOr<std::vector<BlobRef>> package_blobs(const std::string& manifest);
 
 /// Returns the scene, which is valid (scene/validate.h). Returns INVALID_ARGUMENT naming the field
-/// that is wrong, and NOT_FOUND or DATA_LOSS from `blobs`.
-absl::StatusOr<SceneDescription> decode_package(const std::string& manifest, BlobSource& blobs);
+/// that is wrong, and NOT_FOUND or DATA_LOSS from `blobs`. With `parts`, meshes, texels and grids
+/// of packages that were decoded with it and are still in use are shared, not read again; the
+/// others are added to it.
+absl::StatusOr<SceneDescription> decode_package(const std::string& manifest, BlobSource& blobs,
+                                                DecodedParts* parts = nullptr);
 
 }  // namespace bandsaw

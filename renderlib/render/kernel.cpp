@@ -32,10 +32,10 @@ absl::StatusOr<const Kernel*> find_kernel(absl::string_view name) {
 
 absl::StatusOr<std::shared_ptr<const Scene>> Scene::build(SceneDescription description, Pool& pool,
                                                           const SceneFeatures& forced,
-                                                          Traversal traversal,
-                                                          const Kernel* kernel) {
+                                                          Traversal traversal, const Kernel* kernel,
+                                                          const EarlierScenes& earlier) {
   const Kernel& chosen = kernel != nullptr ? *kernel : *kernels().front();
-  return chosen.build(chosen, std::move(description), pool, forced, traversal);
+  return chosen.build(chosen, std::move(description), pool, forced, traversal, earlier);
 }
 
 absl::StatusOr<BandPixels> render_band(const Scene& scene, const RenderSettings& settings,

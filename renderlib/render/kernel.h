@@ -23,7 +23,8 @@ struct Kernel {
   absl::StatusOr<std::shared_ptr<const Scene>> (*build)(const Kernel& kernel,
                                                         SceneDescription description, Pool& pool,
                                                         const SceneFeatures& forced,
-                                                        Traversal traversal);
+                                                        Traversal traversal,
+                                                        const EarlierScenes& earlier);
   absl::StatusOr<BandPixels> (*render_band)(const Scene& scene, const RenderSettings& settings,
                                             const Band& band, Pool& pool,
                                             const std::atomic<bool>& stop, const RowsDone& progress,

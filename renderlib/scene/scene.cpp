@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
 
 #include "renderlib/base/status_macros.h"
 #include "renderlib/geometry/shapes.h"
@@ -61,19 +62,24 @@ std::size_t clean_shapes(Shapes& shapes) {
                        [](const Triangle& t) { return !has_area(t.b - t.a, t.c - t.a); });
 }
 
+/// For meshes of earlier scenes, which are clean: the number of triangles that they lost.
+using CleanMeshes = std::map<const Mesh*, std::size_t>;
+
 /// Removes quads and triangles, including those of meshes, whose area is zero or not finite (e.g.
 /// because a vertex is not finite); the others keep their order. Normals, uvs and colours that are
 /// not finite become zero. Returns the number of removed primitives; those of a mesh or group count
-/// once per instance.
-std::size_t clean(Geometry& geometry) {
+/// once per instance. Sets the number for each mesh.
+std::size_t clean(Geometry& geometry, const CleanMeshes& known,
+                  std::vector<std::size_t>& dropped_of_mesh) {
   std::size_t dropped = clean_shapes(geometry);
   std::vector<std::size_t> dropped_of_group;
   for (Shapes& group : geometry.groups) {
     dropped_of_group.push_back(clean_shapes(group));
   }
-  std::vector<std::size_t> dropped_of_mesh;
-  for (Mesh& mesh : geometry.meshes) {
-    dropped_of_mesh.push_back(clean_mesh(mesh));
+  for (std::size_t mesh = 0; mesh < geometry.meshes.size(); ++mesh) {
+    const auto found = known.find(&geometry.meshes[mesh]);
+    dropped_of_mesh.push_back(found != known.end() ? found->second
+                                                   : clean_mesh(geometry.meshes.change(mesh)));
   }
   for (const Instance& instance : geometry.instances) {
     dropped += instance.group == kNoGroup ? dropped_of_mesh[index_of(instance.mesh)]
@@ -162,17 +168,37 @@ Scene::Scene(const Kernel& kernel, SceneDescription description)
 
 Scene::~Scene() = default;
 
-absl::StatusOr<std::shared_ptr<const Scene>> Scene::build_with(const Kernel& kernel,
-                                                               SceneDescription description,
-                                                               Pool& pool,
-                                                               const SceneFeatures& forced,
-                                                               Traversal traversal) {
-  RETURN_IF_ERROR(validate(description));
+/// Adds the meshes of this scene with what was made of them, if the kernel may use it.
+void Scene::add_meshes_to(const Kernel& kernel, std::map<const Mesh*, std::size_t>& clean,
+                          std::vector<const Accel*>& accels) const {
+  if (&kernel != kernel_ || traversal_ != Traversal::kBvh) {
+    return;
+  }
+  for (std::size_t mesh = 0; mesh < geometry().meshes.size(); ++mesh) {
+    clean.emplace(&geometry().meshes[mesh], dropped_of_mesh_[mesh]);
+  }
+  accels.push_back(accel_.get());
+  if (boundary_accel_ != nullptr) {
+    accels.push_back(boundary_accel_.get());
+  }
+}
+
+absl::StatusOr<std::shared_ptr<const Scene>> Scene::build_with(
+    const Kernel& kernel, SceneDescription description, Pool& pool, const SceneFeatures& forced,
+    Traversal traversal, const EarlierScenes& earlier) {
+  CleanMeshes known;
+  std::vector<const Accel*> accels;
+  for (const std::shared_ptr<const Scene>& other : earlier) {
+    other->add_meshes_to(kernel, known, accels);
+  }
+  RETURN_IF_ERROR(validate(description, MeshVertices::kAny,
+                           [&](const Mesh& mesh) { return known.find(&mesh) != known.end(); }));
   // BVHs and lights hold pointers into the scene, so the scene gets its final place in memory
   // first.
   std::shared_ptr<Scene> scene(new Scene(kernel, std::move(description)));
   SceneDescription& own = scene->description_;
-  scene->dropped_ = clean(own.geometry);
+  scene->dropped_ = clean(own.geometry, known, scene->dropped_of_mesh_);
+  scene->traversal_ = traversal;
   const Shutter& shutter = shutter_of(own.camera);
   const Interval interval = {shutter.open, shutter.close};
   make_static(interval, own.geometry);
@@ -183,7 +209,8 @@ absl::StatusOr<std::shared_ptr<const Scene>> Scene::build_with(const Kernel& ker
   make_static(interval, own.media.boundaries);
   prepare_surfaces(own.geometry);
   prepare_materials(absl::MakeSpan(own.materials));
-  scene->accel_ = std::make_unique<Accel>(Accel::build(own.geometry, pool, interval, traversal));
+  scene->accel_ =
+      std::make_unique<Accel>(Accel::build(own.geometry, pool, interval, traversal, accels));
   scene->lights_ =
       Lights(own.geometry, own.materials, own.textures, own.lights, own.background, interval);
   const SceneFeatures features = features_of(own, scene->lights_);
@@ -194,8 +221,8 @@ absl::StatusOr<std::shared_ptr<const Scene>> Scene::build_with(const Kernel& ker
     scene->medium_spaces_.prepare(own.media.boundaries, interval.open);
   }
   if (scene->features_.media) {
-    scene->boundary_accel_ =
-        std::make_unique<Accel>(Accel::build(own.media.boundaries, pool, interval, traversal));
+    scene->boundary_accel_ = std::make_unique<Accel>(
+        Accel::build(own.media.boundaries, pool, interval, traversal, accels));
   }
   return std::shared_ptr<const Scene>(std::move(scene));
 }

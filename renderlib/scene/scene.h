@@ -3,12 +3,14 @@
 // The immutable scene that is rendered. It is the only object of renderlib that rendering threads
 // share.
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"
+#include "absl/types/span.h"
 #include "renderlib/accel/accel.h"
 #include "renderlib/base/pool.h"
 #include "renderlib/light/lights.h"
@@ -22,6 +24,9 @@ namespace bandsaw {
 struct Kernel;       // renderlib/render/kernel.h
 class GuidingCache;  // renderlib/guiding/guiding_cache.h
 
+class Scene;
+using EarlierScenes = absl::Span<const std::shared_ptr<const Scene>>;
+
 class Scene {
  public:
   /// Validates the description (scene/validate.h), removes and counts primitives that no ray can
@@ -30,12 +35,14 @@ class Scene {
   /// that the scene uses; this costs time and changes no pixel; for tests. `traversal`: how rays
   /// find their primitives; changes no pixel. `kernel`: the code that builds the scene and renders
   /// its bands, one of kernels() (renderlib/render/kernel.h); changes no pixel. nullptr selects the
-  /// first of them.
+  /// first of them. `earlier`: other scenes, such as those of other frames; what was made of the
+  /// meshes that the description shares with them is shared as well. This changes no pixel.
   static absl::StatusOr<std::shared_ptr<const Scene>> build(SceneDescription description,
                                                             Pool& pool,
                                                             const SceneFeatures& forced = {},
                                                             Traversal traversal = Traversal::kBvh,
-                                                            const Kernel* kernel = nullptr);
+                                                            const Kernel* kernel = nullptr,
+                                                            const EarlierScenes& earlier = {});
 
   /// Returns the kernel that built the scene and renders it.
   const Kernel& kernel() const { return *kernel_; }
@@ -84,13 +91,13 @@ class Scene {
   friend struct Kernel;  // refers to `build_with`, which is compiled for each kernel
 
   /// The part of `build` that is compiled for each kernel; `kernel` is the chosen one.
-  static absl::StatusOr<std::shared_ptr<const Scene>> build_with(const Kernel& kernel,
-                                                                 SceneDescription description,
-                                                                 Pool& pool,
-                                                                 const SceneFeatures& forced,
-                                                                 Traversal traversal);
+  static absl::StatusOr<std::shared_ptr<const Scene>> build_with(
+      const Kernel& kernel, SceneDescription description, Pool& pool, const SceneFeatures& forced,
+      Traversal traversal, const EarlierScenes& earlier);
 
   Scene(const Kernel& kernel, SceneDescription description);
+  void add_meshes_to(const Kernel& kernel, std::map<const Mesh*, std::size_t>& clean,
+                     std::vector<const Accel*>& accels) const;
   const Kernel* kernel_;
   SceneDescription description_;
   std::unique_ptr<Accel> accel_;
@@ -101,6 +108,8 @@ class Scene {
   SceneFeatures features_;
   bool reuses_paths_ = false;
   std::size_t dropped_ = 0;
+  std::vector<std::size_t> dropped_of_mesh_;  ///< number of triangles that each mesh lost
+  Traversal traversal_ = Traversal::kBvh;
   std::unique_ptr<GuidingCache> guiding_;
 };
 

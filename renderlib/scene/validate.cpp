@@ -30,7 +30,8 @@ absl::Status check_local_shading(const LocalShading& local) {
 
 }  // namespace
 
-absl::Status validate(const SceneDescription& scene, MeshVertices vertices) {
+absl::Status validate(const SceneDescription& scene, MeshVertices vertices,
+                      const IsChecked& checked) {
   RETURN_IF_ERROR(check_camera(scene.camera));
   if (scene.camera_at_close) {
     RETURN_IF_ERROR(check_camera(*scene.camera_at_close));
@@ -43,7 +44,7 @@ absl::Status validate(const SceneDescription& scene, MeshVertices vertices) {
   RETURN_IF_ERROR(check_color("background.top", scene.background.top, infinite));
   RETURN_IF_ERROR(check_surfaces(scene));
   RETURN_IF_ERROR(check_lights(scene.background, scene.textures, scene.lights));
-  RETURN_IF_ERROR(check_geometry("", scene.geometry, scene.materials.size(), vertices));
+  RETURN_IF_ERROR(check_geometry("", scene.geometry, scene.materials.size(), vertices, checked));
   RETURN_IF_ERROR(
       check_light_counts(scene.geometry, scene.materials, scene.textures, scene.lights.size()));
   return validate(scene.media);

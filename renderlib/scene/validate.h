@@ -3,6 +3,8 @@
 // Validation of scene descriptions: every index, range and number. All descriptions are validated
 // here, whatever their source: Scene::build, the decoder of packages and the importer call this.
 
+#include <functional>
+
 #include "absl/status/status.h"
 #include "renderlib/scene/description.h"
 
@@ -18,8 +20,12 @@ enum class MeshVertices {
   kFinite,  ///< finite values only, as in scene packages
 };
 
+/// Returns true for a mesh that has been checked before and is not checked again.
+using IsChecked = std::function<bool(const Mesh&)>;
+
 /// Returns INVALID_ARGUMENT with the field's path, the allowed range and the value:
-/// "spheres[3].radius: must be > 0, is -1".
-absl::Status validate(const SceneDescription& scene, MeshVertices vertices = MeshVertices::kAny);
+/// "spheres[3].radius: must be > 0, is -1". `checked` may be empty: then all meshes are checked.
+absl::Status validate(const SceneDescription& scene, MeshVertices vertices = MeshVertices::kAny,
+                      const IsChecked& checked = {});
 
 }  // namespace bandsaw

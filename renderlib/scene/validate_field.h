@@ -60,8 +60,10 @@ absl::Status check_materials(const std::vector<Material>& materials,
                              const std::vector<Texture>& textures);
 
 /// Checks shapes, meshes, groups, frames and instances (validate_geometry.cpp). `prefix` is
-/// prepended to the names of fields in errors; `materials` is the number of materials.
+/// prepended to the names of fields in errors; `materials` is the number of materials. `checked` as
+/// in validate().
 absl::Status check_geometry(const std::string& prefix, const Geometry& geometry,
-                            std::size_t materials, MeshVertices vertices);
+                            std::size_t materials, MeshVertices vertices,
+                            const IsChecked& checked = {});
 
 }  // namespace bandsaw

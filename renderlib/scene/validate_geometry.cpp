@@ -181,14 +181,17 @@ absl::Status check_frame(const std::string& field, const Frame& frame, std::size
 }  // namespace
 
 absl::Status check_geometry(const std::string& prefix, const Geometry& geometry,
-                            std::size_t materials, MeshVertices vertices) {
+                            std::size_t materials, MeshVertices vertices,
+                            const IsChecked& checked) {
   RETURN_IF_ERROR(check_geometry_counts(prefix, geometry));
   RETURN_IF_ERROR(check_shapes(prefix, geometry, materials));
   for (std::size_t i = 0; i < geometry.groups.size(); ++i) {
     RETURN_IF_ERROR(check_shapes(item(prefix + "groups", i) + ".", geometry.groups[i], materials));
   }
   for (std::size_t i = 0; i < geometry.meshes.size(); ++i) {
-    RETURN_IF_ERROR(check_mesh(item(prefix + "meshes", i), geometry.meshes[i], vertices));
+    if (!checked || !checked(geometry.meshes[i])) {
+      RETURN_IF_ERROR(check_mesh(item(prefix + "meshes", i), geometry.meshes[i], vertices));
+    }
   }
   for (std::size_t i = 0; i < geometry.frames.size(); ++i) {
     RETURN_IF_ERROR(check_frame(item(prefix + "frames", i), geometry.frames[i], i));

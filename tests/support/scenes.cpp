@@ -56,7 +56,8 @@ void SceneMaker::triangle(const Vec3& a, const Vec3& b, const Vec3& c, MaterialI
   scene.geometry.triangles.push_back({a, b, c, material});
 }
 void SceneMaker::instance(Mesh mesh, const Transform& to_world, MaterialId material) {
-  const auto id = append<MeshId>(scene.geometry.meshes, std::move(mesh));
+  scene.geometry.meshes.push_back(std::move(mesh));
+  const MeshId id{static_cast<std::uint32_t>(scene.geometry.meshes.size() - 1)};
   scene.geometry.instances.push_back({id, material, to_world});
 }
 void SceneMaker::camera(const Vec3& position, const Vec3& look_at, double vertical_fov) {

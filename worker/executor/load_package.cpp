@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <thread>
+#include <utility>
 
 #include "absl/strings/str_cat.h"
 #include "proto/wire/limits.h"
@@ -96,9 +97,21 @@ absl::Status FetchingSource::download(const wire::Digest& digest, BlobCache::Dow
   return place.commit();
 }
 
-absl::StatusOr<std::shared_ptr<const Scene>> load_package(const wire::Digest& manifest,
-                                                          FetchingSource& blobs, Pool& pool,
-                                                          const Kernel* kernel) {
+std::vector<std::shared_ptr<const Scene>> PackageLoader::scenes_in_use() {
+  std::vector<std::shared_ptr<const Scene>> in_use;
+  std::erase_if(scenes_, [&](const std::weak_ptr<const Scene>& scene) {
+    std::shared_ptr<const Scene> held = scene.lock();
+    if (held == nullptr) {
+      return true;
+    }
+    in_use.push_back(std::move(held));
+    return false;
+  });
+  return in_use;
+}
+
+absl::StatusOr<std::shared_ptr<const Scene>> PackageLoader::load(const wire::Digest& manifest,
+                                                                 FetchingSource& blobs) {
   ASSIGN_OR_RETURN(const std::unique_ptr<BlobBytes> bytes, blobs.get(manifest));
   if (bytes->bytes().size() > wire::kManifestBytes) {
     return absl::InvalidArgumentError(
@@ -106,8 +119,14 @@ absl::StatusOr<std::shared_ptr<const Scene>> load_package(const wire::Digest& ma
   }
   const std::string text(reinterpret_cast<const char*>(bytes->bytes().data()),
                          bytes->bytes().size());
-  ASSIGN_OR_RETURN(SceneDescription description, decode_package(text, blobs));
-  return Scene::build(std::move(description), pool, {}, Traversal::kBvh, kernel);
+  parts_.forget_unused();
+  const std::vector<std::shared_ptr<const Scene>> earlier = scenes_in_use();
+  ASSIGN_OR_RETURN(SceneDescription description, decode_package(text, blobs, &parts_));
+  ASSIGN_OR_RETURN(
+      std::shared_ptr<const Scene> scene,
+      Scene::build(std::move(description), pool_, {}, Traversal::kBvh, kernel_, earlier));
+  scenes_.push_back(scene);
+  return scene;
 }
 
 }  // namespace bandsaw::worker

@@ -5,9 +5,12 @@
 
 #include <atomic>
 #include <functional>
+#include <memory>
+#include <vector>
 
 #include "absl/status/statusor.h"
 #include "renderlib/base/pool.h"
+#include "renderlib/package/decoded_parts.h"
 #include "worker/cache/blob_cache.h"
 #include "worker/executor/scene_cache.h"
 
@@ -45,10 +48,26 @@ class FetchingSource : public BlobSource {
   std::uint64_t progress_ = 0;
 };
 
-/// Builds the scene. Errors as above, and INVALID_ARGUMENT: this worker cannot render the package.
-/// `kernel`: as in Scene::build.
-absl::StatusOr<std::shared_ptr<const Scene>> load_package(const wire::Digest& manifest,
-                                                          FetchingSource& blobs, Pool& pool,
-                                                          const Kernel* kernel = nullptr);
+/// Builds scenes. What a scene shares with earlier ones that are still in use (meshes with their
+/// BVHs, texels, grids) is neither read nor built again, so a frame of a sequence costs what has
+/// changed in it.
+class PackageLoader {
+ public:
+  /// `kernel`: as in Scene::build. `pool` MUST outlive the loader.
+  explicit PackageLoader(Pool& pool, const Kernel* kernel = nullptr)
+      : pool_(pool), kernel_(kernel) {}
+  /// Builds the scene. Errors as above, and INVALID_ARGUMENT: this worker cannot render the
+  /// package. MUST NOT be called by two threads at a time.
+  absl::StatusOr<std::shared_ptr<const Scene>> load(const wire::Digest& manifest,
+                                                    FetchingSource& blobs);
+
+ private:
+  std::vector<std::shared_ptr<const Scene>> scenes_in_use();
+
+  Pool& pool_;
+  const Kernel* const kernel_;
+  DecodedParts parts_;
+  std::vector<std::weak_ptr<const Scene>> scenes_;
+};
 
 }  // namespace bandsaw::worker

@@ -19,15 +19,6 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Imports the scene of one frame; warnings of other frames are not repeated.
-absl::StatusOr<ImportedPackage> import_frame(const SubmitOptions& options, FrameNumber frame,
-                                             const std::atomic<bool>& stop) {
-  SceneChoices choices = options.image.choices;
-  choices.frame = frame;
-  std::vector<std::string> warnings;
-  return import_any_scene(options.scene, choices, stop, warnings);
-}
-
 absl::StatusOr<JobId> start_sequence(FarmClient& client, const SubmitOptions& options,
                                      const PackageInfo& scene, const RenderSettings& settings) {
   farm::SubmitSequenceRequest request;
@@ -66,8 +57,8 @@ struct Started {
 };
 
 /// Starts or continues the sequence and sends its first scene. `code` is set for an error.
-absl::StatusOr<Started> start(FarmClient& client, const SubmitOptions& options, Process& process,
-                              ExitCode& code) {
+absl::StatusOr<Started> start(FarmClient& client, const SubmitOptions& options,
+                              FrameImporter& importer, Process& process, ExitCode& code) {
   Started started{options.continued, options.frames};
   if (options.continued != 0) {
     ASSIGN_OR_RETURN(started.left, lacking(client, options));
@@ -75,9 +66,7 @@ absl::StatusOr<Started> start(FarmClient& client, const SubmitOptions& options, 
       return started;
     }
   }
-  SceneChoices choices = options.image.choices;
-  choices.frame = started.left.front();
-  auto package = import_scene_file(options.scene, options.verbosity, process, choices);
+  auto package = importer.import(started.left.front(), options.verbosity, process);
   if (!package.ok()) {
     code = import_exit_code(package.status());
     return package.status();
@@ -122,13 +111,15 @@ ExitCode submit_frames(FarmClient& client, const SubmitOptions& options,
                         std::string(status.message()));
   }
   ExitCode code = ExitCode::kDone;
-  const auto started = start(client, options, process, code);
+  FrameImporter importer(options.scene, options.image.choices);
+  const auto started = start(client, options, importer, process, code);
   if (!started.ok()) {
     return console.fail(code == ExitCode::kDone ? exit_code_of(started.status()) : code,
                         std::string(started.status().message()));
   }
   const auto import = [&](FrameNumber frame, const std::atomic<bool>& stop) {
-    return import_frame(options, frame, stop);
+    std::vector<std::string> warnings;  // those of the first frame have been printed
+    return importer.import(frame, stop, warnings);
   };
   FrameSender sender(client, console, started->job, started->left, import, [&] {
     if (!options.detach) {

@@ -6,10 +6,12 @@
 #include <filesystem>
 #include <span>
 #include <utility>
+#include <variant>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_split.h"
+#include "coordinator/cli/base/asked_child.h"
 #include "coordinator/cli/base/child_process.h"
 #include "coordinator/web/page_files.h"
 #include "renderlib/base/atomic_file.h"
@@ -23,6 +25,8 @@ namespace fs = std::filesystem;
 constexpr double kPatience_s = 600;
 constexpr std::uint64_t kMaxText = 1 << 20;
 constexpr char kAddon[] = "bandsaw_blender.zip";
+/// Begins the line with which the add-on answers that a frame is written.
+constexpr char kAnswer[] = "bandsaw: ";
 /// Python reads the add-on from its zip. The arguments follow "--".
 constexpr char kScript[] =
     "import sys; a = sys.argv[sys.argv.index('--') + 1:]; sys.path.insert(0, a[0]); "
@@ -52,26 +56,83 @@ std::string last_words(const std::string& output) {
   return lines.empty() ? "it printed nothing" : error != lines.rend() ? *error : lines.back();
 }
 
-absl::Status run_blender(const std::string& path, const std::vector<std::string>& arguments,
-                         const std::atomic<bool>& stop, std::string& output) {
-  const std::string name = fs::path(path).filename().string();
-  const absl::StatusOr<ChildOutcome> ran =
-      run_child(arguments, kPatience_s, &stop, {.errors_too = true});
-  if (absl::IsNotFound(ran.status())) {
-    return absl::FailedPreconditionError(
-        absl::StrCat(name,
-                     ": Blender is not installed on this machine (there is no program `blender` on "
-                     "PATH); install it, or render from Blender's window with the add-on"));
+/// Makes the folder to which Blender writes the scene, with the add-on in it.
+absl::StatusOr<std::unique_ptr<BlendScene>> empty_scene(const std::string& path) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) {
+    return absl::NotFoundError(absl::StrCat(path, ": there is no such file"));
   }
-  RETURN_IF_ERROR(ran.status());
-  if (ran->end == ChildOutcome::End::kStopped) {
-    return absl::CancelledError(absl::StrCat(name, ": Blender was interrupted"));
+  std::string folder = (fs::temp_directory_path(error) / "bandsaw-blend-XXXXXX").string();
+  if (error || mkdtemp(folder.data()) == nullptr) {
+    return errno_status(error ? error.value() : errno, "cannot make a temporary folder");
   }
-  if (ran->end == ChildOutcome::End::kTimedOut) {
-    return absl::DeadlineExceededError(
-        absl::StrCat(name, ": Blender took longer than ", kPatience_s, " s"));
+  auto made = std::make_unique<BlendScene>(
+      folder, absl::StrCat(folder, "/", fs::path(path).stem().string(), ".json"));
+  RETURN_IF_ERROR(write_addon(absl::StrCat(folder, "/", kAddon)));
+  return made;
+}
+
+/// Returns the command that runs the add-on on the file. `last`: a frame, "-" for frames that are
+/// asked for, or empty.
+std::vector<std::string> blender_command(const std::string& path, const BlendScene& to,
+                                         const std::string& last) {
+  std::error_code error;
+  const fs::path file = fs::absolute(path, error);
+  std::vector<std::string> arguments = {"blender",
+                                        "-b",
+                                        "--factory-startup",
+                                        "-Y",
+                                        file.string(),
+                                        "--python-expr",
+                                        kScript,
+                                        "--",
+                                        absl::StrCat(to.folder(), "/", kAddon),
+                                        to.folder(),
+                                        file.stem().string()};
+  if (!last.empty()) {
+    arguments.push_back(last);
   }
-  output = ran->output;
+  return arguments;
+}
+
+std::string name_of(const std::string& path) { return fs::path(path).filename().string(); }
+
+/// Returns the error of a Blender that could not be started.
+absl::Status not_started(const std::string& path, const absl::Status& status) {
+  return absl::IsNotFound(status)
+             ? absl::FailedPreconditionError(absl::StrCat(
+                   name_of(path),
+                   ": Blender is not installed on this machine (there is no program `blender` on "
+                   "PATH); install it, or render from Blender's window with the add-on"))
+             : status;
+}
+
+/// Returns the error of a Blender that was killed.
+absl::Status killed(const std::string& path, const ChildOutcome& outcome) {
+  if (outcome.end == ChildOutcome::End::kStopped) {
+    return absl::CancelledError(absl::StrCat(name_of(path), ": Blender was interrupted"));
+  }
+  return outcome.end == ChildOutcome::End::kTimedOut
+             ? absl::DeadlineExceededError(
+                   absl::StrCat(name_of(path), ": Blender took longer than ", kPatience_s, " s"))
+             : absl::OkStatus();
+}
+
+absl::Status no_scene(const std::string& path, const std::string& output) {
+  return absl::InvalidArgumentError(
+      absl::StrCat(name_of(path), ": Blender made no scene of it: ", last_words(output)));
+}
+
+/// Reads what Blender has left beside the scene: an error, or warnings. `output`: what it printed.
+absl::Status read_result(const std::string& path, const std::string& output, BlendScene& made) {
+  for (const std::string& line : lines_of(fs::path(made.folder()) / "error")) {
+    return absl::InvalidArgumentError(absl::StrCat(name_of(path), ": ", line));
+  }
+  std::error_code error;
+  if (!fs::exists(made.scene, error)) {
+    return no_scene(path, output);
+  }
+  made.warnings = lines_of(fs::path(made.folder()) / "warnings");
   return absl::OkStatus();
 }
 
@@ -87,37 +148,42 @@ BlendScene::~BlendScene() {
 absl::StatusOr<std::unique_ptr<BlendScene>> scene_of_blend_file(const std::string& path,
                                                                 const std::atomic<bool>& stop,
                                                                 std::optional<std::int64_t> frame) {
-  std::error_code error;
-  if (!fs::is_regular_file(path, error)) {
-    return absl::NotFoundError(absl::StrCat(path, ": there is no such file"));
+  ASSIGN_OR_RETURN(std::unique_ptr<BlendScene> made, empty_scene(path));
+  const auto ran = run_child(blender_command(path, *made, frame ? absl::StrCat(*frame) : ""),
+                             kPatience_s, &stop, {.errors_too = true});
+  if (!ran.ok()) {
+    return not_started(path, ran.status());
   }
-  const fs::path file = fs::absolute(path, error);
-  std::string folder = (fs::temp_directory_path(error) / "bandsaw-blend-XXXXXX").string();
-  if (error || mkdtemp(folder.data()) == nullptr) {
-    return errno_status(error ? error.value() : errno, "cannot make a temporary folder");
-  }
-  const std::string stem = file.stem().string();
-  auto made = std::make_unique<BlendScene>(folder, absl::StrCat(folder, "/", stem, ".json"));
-  const std::string addon = absl::StrCat(folder, "/", kAddon);
-  RETURN_IF_ERROR(write_addon(addon));
-  std::string output;
-  std::vector<std::string> arguments = {"blender", "-b",          "--factory-startup",
-                                        "-Y",      file.string(), "--python-expr",
-                                        kScript,   "--",          addon,
-                                        folder,    stem};
-  if (frame) {
-    arguments.push_back(absl::StrCat(*frame));
-  }
-  RETURN_IF_ERROR(run_blender(path, arguments, stop, output));
-  for (const std::string& line : lines_of(fs::path(folder) / "error")) {
-    return absl::InvalidArgumentError(absl::StrCat(file.filename().string(), ": ", line));
-  }
-  if (!fs::exists(made->scene, error)) {
-    return absl::InvalidArgumentError(absl::StrCat(
-        file.filename().string(), ": Blender made no scene of it: ", last_words(output)));
-  }
-  made->warnings = lines_of(fs::path(folder) / "warnings");
+  RETURN_IF_ERROR(killed(path, *ran));
+  RETURN_IF_ERROR(read_result(path, ran->output, *made));
   return made;
+}
+
+absl::StatusOr<std::unique_ptr<BlendSession>> BlendSession::start(const std::string& path) {
+  ASSIGN_OR_RETURN(std::unique_ptr<BlendScene> scene, empty_scene(path));
+  auto blender = AskedChild::start(blender_command(path, *scene, "-"), kAnswer, true);
+  if (!blender.ok()) {
+    return not_started(path, blender.status());
+  }
+  return std::unique_ptr<BlendSession>(
+      new BlendSession(path, std::move(scene), *std::move(blender)));
+}
+
+BlendSession::BlendSession(std::string path, std::unique_ptr<BlendScene> scene,
+                           std::unique_ptr<AskedChild> blender)
+    : path_(std::move(path)), scene_(std::move(scene)), blender_(std::move(blender)) {}
+
+BlendSession::~BlendSession() = default;
+
+absl::StatusOr<const BlendScene*> BlendSession::at(std::int64_t frame,
+                                                   const std::atomic<bool>& stop) {
+  const auto answer = blender_->ask(absl::StrCat(frame), kPatience_s, &stop);
+  if (const auto* outcome = std::get_if<ChildOutcome>(&answer)) {
+    RETURN_IF_ERROR(killed(path_, *outcome));
+    return no_scene(path_, outcome->output);
+  }
+  RETURN_IF_ERROR(read_result(path_, "", *scene_));
+  return scene_.get();
 }
 
 }  // namespace bandsaw::coordinator

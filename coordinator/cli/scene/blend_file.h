@@ -15,6 +15,8 @@
 
 namespace bandsaw::coordinator {
 
+class AskedChild;
+
 /// Returns true for names that end in .blend.
 bool is_blend_file(const std::string& path);
 
@@ -30,6 +32,8 @@ class BlendScene {
   std::string scene;                  ///< the path of the scene file
   std::vector<std::string> warnings;  ///< what is not shown as it is in Blender, in sentences
 
+  const std::string& folder() const { return folder_; }
+
  private:
   std::string folder_;
 };
@@ -41,5 +45,27 @@ class BlendScene {
 absl::StatusOr<std::unique_ptr<BlendScene>> scene_of_blend_file(
     const std::string& path, const std::atomic<bool>& stop,
     std::optional<std::int64_t> frame = std::nullopt);
+
+/// One Blender that writes a .blend file at many frames: it reads the file once.
+class BlendSession {
+ public:
+  /// Starts Blender. Errors as scene_of_blend_file.
+  static absl::StatusOr<std::unique_ptr<BlendSession>> start(const std::string& path);
+  ~BlendSession();
+  BlendSession(const BlendSession&) = delete;
+  BlendSession& operator=(const BlendSession&) = delete;
+
+  /// Writes the scene at a frame, in place of the one before. Errors as scene_of_blend_file; the
+  /// session is over then.
+  absl::StatusOr<const BlendScene*> at(std::int64_t frame, const std::atomic<bool>& stop);
+
+ private:
+  BlendSession(std::string path, std::unique_ptr<BlendScene> scene,
+               std::unique_ptr<AskedChild> blender);
+
+  const std::string path_;
+  const std::unique_ptr<BlendScene> scene_;
+  const std::unique_ptr<AskedChild> blender_;
+};
 
 }  // namespace bandsaw::coordinator

@@ -12,12 +12,14 @@
 #include <fstream>
 #include <limits>
 #include <utility>
+#include <variant>
 
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "absl/strings/str_format.h"
 #include "absl/strings/str_split.h"
 #include "absl/strings/strip.h"
+#include "coordinator/cli/base/asked_child.h"
 #include "coordinator/cli/base/child_process.h"
 #include "coordinator/cli/base/program_folder.h"
 #include "proto/wire/limits.h"
@@ -80,8 +82,7 @@ absl::Status reported(const std::string& output) {
   return absl::OkStatus();
 }
 
-absl::Status judge(const ChildOutcome& outcome, const std::string& file,
-                   const ImportLimits& limits) {
+absl::Status judge(const ChildOutcome& outcome, const std::string& file, double seconds) {
   const std::string name = fs::path(file).filename().string();
   const bool signalled = WIFSIGNALED(outcome.wait_status);
   const int signal = signalled ? WTERMSIG(outcome.wait_status) : 0;
@@ -90,7 +91,7 @@ absl::Status judge(const ChildOutcome& outcome, const std::string& file,
   }
   if (outcome.end == ChildOutcome::End::kTimedOut || signal == SIGXCPU) {
     return absl::DeadlineExceededError(absl::StrFormat(
-        "%s: reading it took longer than %g s; it is damaged or too large", name, limits.seconds));
+        "%s: reading it took longer than %g s; it is damaged or too large", name, seconds));
   }
   if (signal == SIGXFSZ) {
     return absl::ResourceExhaustedError(absl::StrCat(name, ": becomes larger than a blob may be"));
@@ -137,6 +138,18 @@ std::vector<std::string> arguments_of(const SceneChoices& choices) {
   return arguments;
 }
 
+std::vector<std::string> importer_arguments(const std::string& program, const char* what,
+                                            const std::string& file, const std::string& folder,
+                                            std::uint64_t cpu_seconds, const ImportLimits& limits,
+                                            const SceneChoices& choices) {
+  std::vector<std::string> arguments = {
+      program, what, file, folder, absl::StrCat(cpu_seconds), absl::StrCat(limits.memory_bytes)};
+  for (std::string& argument : arguments_of(choices)) {
+    arguments.push_back(std::move(argument));
+  }
+  return arguments;
+}
+
 // Runs the importer on `file`. Returns the folder with its output.
 absl::StatusOr<std::unique_ptr<ScratchFolder>> run_importer(const char* what,
                                                             const std::string& file,
@@ -145,17 +158,11 @@ absl::StatusOr<std::unique_ptr<ScratchFolder>> run_importer(const char* what,
   ASSIGN_OR_RETURN(const std::string program, import_program(limits));
   ASSIGN_OR_RETURN(std::unique_ptr<ScratchFolder> folder, make_scratch(limits.scratch));
   const auto cpu_seconds = static_cast<std::uint64_t>(std::ceil(std::max(limits.seconds, 1.0)));
-  std::vector<std::string> arguments = {program,
-                                        what,
-                                        file,
-                                        folder->path(),
-                                        absl::StrCat(cpu_seconds),
-                                        absl::StrCat(limits.memory_bytes)};
-  for (std::string& argument : arguments_of(choices)) {
-    arguments.push_back(std::move(argument));
-  }
-  ASSIGN_OR_RETURN(const ChildOutcome outcome, run_child(arguments, limits.seconds, limits.stop));
-  RETURN_IF_ERROR(judge(outcome, file, limits));
+  ASSIGN_OR_RETURN(const ChildOutcome outcome,
+                   run_child(importer_arguments(program, what, file, folder->path(), cpu_seconds,
+                                                limits, choices),
+                             limits.seconds, limits.stop));
+  RETURN_IF_ERROR(judge(outcome, file, limits.seconds));
   return folder;
 }
 
@@ -201,6 +208,14 @@ absl::StatusOr<std::string> read_output(const std::string& path, std::uint64_t m
   return bytes.ok() ? std::move(bytes)
                     : absl::DataLossError(absl::StrCat("the importer did not leave ", path, " (",
                                                        bytes.status().message(), ")"));
+}
+
+// Returns the package that the importer has written to the folder.
+absl::StatusOr<ImportedPackage> package_in(std::shared_ptr<const ScratchFolder> folder) {
+  ASSIGN_OR_RETURN(std::string manifest,
+                   read_output(folder->path() + "/manifest", wire::kManifestBytes));
+  ASSIGN_OR_RETURN(PackageInfo info, package_info(manifest));
+  return ImportedPackage(std::move(folder), std::move(manifest), std::move(info));
 }
 
 bool is_zip(const std::string& path) { return absl::EndsWithIgnoreCase(path, ".zip"); }
@@ -270,7 +285,7 @@ absl::StatusOr<std::string> unpack_scene(const std::string& zip, const std::stri
 
 }  // namespace
 
-ImportedPackage::ImportedPackage(std::unique_ptr<ScratchFolder> folder, std::string manifest,
+ImportedPackage::ImportedPackage(std::shared_ptr<const ScratchFolder> folder, std::string manifest,
                                  PackageInfo info)
     : folder_(std::move(folder)),
       manifest_(std::move(manifest)),
@@ -291,10 +306,55 @@ absl::StatusOr<ImportedPackage> import_in_process(const std::string& scene_path,
     return import_in_process(inside, limits, choices);
   }
   ASSIGN_OR_RETURN(auto folder, run_importer("scene", scene_path, limits, choices));
-  ASSIGN_OR_RETURN(std::string manifest,
-                   read_output(folder->path() + "/manifest", wire::kManifestBytes));
-  ASSIGN_OR_RETURN(PackageInfo info, package_info(manifest));
-  return ImportedPackage(std::move(folder), std::move(manifest), std::move(info));
+  return package_in(std::move(folder));
+}
+
+absl::StatusOr<std::unique_ptr<ImportSession>> ImportSession::start(const std::string& scene_path,
+                                                                    const ImportLimits& limits,
+                                                                    SceneChoices choices) {
+  std::string scene = scene_path;
+  std::shared_ptr<const ScratchFolder> unpacked;
+  if (is_zip(scene_path)) {
+    ASSIGN_OR_RETURN(unpacked, make_scratch(limits.scratch));
+    ASSIGN_OR_RETURN(scene, unpack_scene(scene_path, choices.inside, unpacked->path(), limits));
+  }
+  ASSIGN_OR_RETURN(const std::string program, import_program(limits));
+  ASSIGN_OR_RETURN(std::shared_ptr<const ScratchFolder> folder, make_scratch(limits.scratch));
+  choices.frame = 0;
+  // This process limits the time of each frame; the importer cannot know how many there will be.
+  constexpr std::uint64_t kCpuSeconds = 100'000'000;
+  ASSIGN_OR_RETURN(auto importer,
+                   AskedChild::start(importer_arguments(program, "frames", scene, folder->path(),
+                                                        kCpuSeconds, limits, choices)));
+  return std::unique_ptr<ImportSession>(new ImportSession(std::move(scene), limits.seconds,
+                                                          std::move(unpacked), std::move(folder),
+                                                          std::move(importer)));
+}
+
+ImportSession::ImportSession(std::string scene, double seconds,
+                             std::shared_ptr<const ScratchFolder> unpacked,
+                             std::shared_ptr<const ScratchFolder> folder,
+                             std::unique_ptr<AskedChild> importer)
+    : scene_(std::move(scene)),
+      seconds_(seconds),
+      unpacked_(std::move(unpacked)),
+      folder_(std::move(folder)),
+      importer_(std::move(importer)) {}
+
+ImportSession::~ImportSession() = default;
+
+absl::StatusOr<ImportedPackage> ImportSession::import(std::int64_t frame,
+                                                      const std::atomic<bool>* stop) {
+  const auto answer = importer_->ask(absl::StrCat(frame), seconds_, stop);
+  if (const auto* outcome = std::get_if<ChildOutcome>(&answer)) {
+    const absl::Status status = judge(*outcome, scene_, seconds_);
+    return !status.ok() ? status : absl::InternalError("the importer ended before its last frame");
+  }
+  if (const std::string& line = std::get<std::string>(answer); line != "done") {
+    const absl::Status status = reported(line);
+    return !status.ok() ? status : absl::DataLossError("the importer gave a broken answer");
+  }
+  return package_in(folder_);
 }
 
 absl::StatusOr<SceneFiles> scene_files_in_process(const std::string& scene_path,

@@ -28,6 +28,8 @@ struct ImportLimits {
   const std::atomic<bool>* stop = nullptr;
 };
 
+class AskedChild;
+
 /// A temporary folder that is removed with its contents by the destructor.
 class ScratchFolder;
 
@@ -35,7 +37,8 @@ class ScratchFolder;
 /// temporary folder that is removed with this object.
 class ImportedPackage {
  public:
-  ImportedPackage(std::unique_ptr<ScratchFolder> folder, std::string manifest, PackageInfo info);
+  ImportedPackage(std::shared_ptr<const ScratchFolder> folder, std::string manifest,
+                  PackageInfo info);
   ~ImportedPackage();
   ImportedPackage(ImportedPackage&&) noexcept;
   ImportedPackage& operator=(ImportedPackage&&) noexcept;
@@ -45,7 +48,7 @@ class ImportedPackage {
   BlobFolder& blobs() { return blobs_; }
 
  private:
-  std::unique_ptr<ScratchFolder> folder_;
+  std::shared_ptr<const ScratchFolder> folder_;
   std::string manifest_;
   PackageInfo info_;
   BlobFolder blobs_;
@@ -79,6 +82,33 @@ struct SceneFiles {
 absl::StatusOr<ImportedPackage> import_in_process(const std::string& scene_path,
                                                   const ImportLimits& limits = {},
                                                   const SceneChoices& choices = {});
+
+/// Imports a scene at many frames, by one process that reads its files once.
+class ImportSession {
+ public:
+  /// `choices.frame` is ignored. Starts the process. Errors as import_in_process.
+  static absl::StatusOr<std::unique_ptr<ImportSession>> start(const std::string& scene_path,
+                                                              const ImportLimits& limits,
+                                                              SceneChoices choices);
+  ~ImportSession();
+  ImportSession(const ImportSession&) = delete;
+  ImportSession& operator=(const ImportSession&) = delete;
+
+  /// Imports the scene at a frame. The package before is not valid any more. The seconds of the
+  /// limits are for each frame. Setting `stop` ends the process. Errors as import_in_process; the
+  /// session is over then.
+  absl::StatusOr<ImportedPackage> import(std::int64_t frame, const std::atomic<bool>* stop);
+
+ private:
+  ImportSession(std::string scene, double seconds, std::shared_ptr<const ScratchFolder> unpacked,
+                std::shared_ptr<const ScratchFolder> folder, std::unique_ptr<AskedChild> importer);
+
+  const std::string scene_;
+  const double seconds_;
+  const std::shared_ptr<const ScratchFolder> unpacked_;  ///< of a zip file, else nullptr
+  const std::shared_ptr<const ScratchFolder> folder_;    ///< the package
+  const std::unique_ptr<AskedChild> importer_;
+};
 
 /// Converts a scene of pbrt or Mitsuba, or a model, to a scene file of ours. Same errors.
 absl::StatusOr<SceneFiles> scene_files_in_process(const std::string& scene_path,

@@ -1,6 +1,7 @@
 #include "coordinator/cli/scene/import_scene_file.h"
 
 #include <atomic>
+#include <functional>
 
 #include "absl/strings/str_cat.h"
 #include "coordinator/cli/base/json.h"
@@ -8,6 +9,48 @@
 #include "renderlib/base/status_macros.h"
 
 namespace bandsaw::coordinator {
+namespace {
+
+using Import = std::function<absl::StatusOr<ImportedPackage>(const std::atomic<bool>& stop,
+                                                             std::vector<std::string>& warnings)>;
+
+/// Imports a scene; a signal stops it, and its warnings are printed.
+absl::StatusOr<ImportedPackage> import_and_tell(const Import& import, Verbosity verbosity,
+                                                Process& process) {
+  std::atomic<bool> stop{false};
+  const Interrupts::Listener listener(process.interrupts, [&] { stop = true; });
+  std::vector<std::string> warnings;
+  auto package = import(stop, warnings);
+  print_warnings(warnings, verbosity, process);
+  if (!package.ok()) {
+    return package;
+  }
+  if (stop) {
+    return absl::CancelledError("interrupted");
+  }
+  print_warnings(package->info().warnings, verbosity, process);
+  return package;
+}
+
+absl::Status check_choices_for_blender(const std::string& scene, const SceneChoices& choices) {
+  return choices.shutter ? absl::InvalidArgumentError(absl::StrCat(
+                               scene, ": the shutter is that of the file; omit --shutter"))
+                         : absl::OkStatus();
+}
+
+/// Imports a scene that Blender has written.
+absl::StatusOr<ImportedPackage> import_from_blender(const BlendScene& blend,
+                                                    const SceneChoices& choices,
+                                                    const ImportLimits& limits,
+                                                    std::vector<std::string>& warnings) {
+  warnings = blend.warnings;
+  SceneChoices still = choices;  // Blender has set the frame
+  still.frame.reset();
+  still.fps.reset();
+  return import_in_process(blend.scene, limits, still);
+}
+
+}  // namespace
 
 absl::StatusOr<ImportedPackage> import_any_scene(const std::string& scene,
                                                  const SceneChoices& choices,
@@ -18,34 +61,47 @@ absl::StatusOr<ImportedPackage> import_any_scene(const std::string& scene,
   if (!is_blend_file(scene)) {
     return import_in_process(scene, limits, choices);
   }
-  if (choices.shutter) {
-    return absl::InvalidArgumentError(
-        absl::StrCat(scene, ": the shutter is that of the file; omit --shutter"));
-  }
+  RETURN_IF_ERROR(check_choices_for_blender(scene, choices));
   ASSIGN_OR_RETURN(const std::unique_ptr<BlendScene> blend,
                    scene_of_blend_file(scene, stop, choices.frame));
-  warnings = blend->warnings;
-  SceneChoices still = choices;  // Blender has set the frame
-  still.frame.reset();
-  still.fps.reset();
-  return import_in_process(blend->scene, limits, still);
+  return import_from_blender(*blend, choices, limits, warnings);
 }
 
 absl::StatusOr<ImportedPackage> import_scene_file(const std::string& scene, Verbosity verbosity,
                                                   Process& process, const SceneChoices& choices) {
-  std::atomic<bool> stop{false};
-  const Interrupts::Listener listener(process.interrupts, [&] { stop = true; });
-  std::vector<std::string> warnings;
-  auto package = import_any_scene(scene, choices, stop, warnings);
-  print_warnings(warnings, verbosity, process);
-  if (!package.ok()) {
-    return package;
+  return import_and_tell(
+      [&](const std::atomic<bool>& stop, std::vector<std::string>& warnings) {
+        return import_any_scene(scene, choices, stop, warnings);
+      },
+      verbosity, process);
+}
+
+absl::StatusOr<ImportedPackage> FrameImporter::import(std::int64_t frame,
+                                                      const std::atomic<bool>& stop,
+                                                      std::vector<std::string>& warnings) {
+  if (is_blend_file(scene_)) {
+    RETURN_IF_ERROR(check_choices_for_blender(scene_, choices_));
+    if (blender_ == nullptr) {
+      ASSIGN_OR_RETURN(blender_, BlendSession::start(scene_));
+    }
+    ASSIGN_OR_RETURN(const BlendScene* blend, blender_->at(frame, stop));
+    ImportLimits limits;
+    limits.stop = &stop;
+    return import_from_blender(*blend, choices_, limits, warnings);
   }
-  if (stop) {
-    return absl::CancelledError("interrupted");
+  if (session_ == nullptr) {
+    ASSIGN_OR_RETURN(session_, ImportSession::start(scene_, {}, choices_));
   }
-  print_warnings(package->info().warnings, verbosity, process);
-  return package;
+  return session_->import(frame, &stop);
+}
+
+absl::StatusOr<ImportedPackage> FrameImporter::import(std::int64_t frame, Verbosity verbosity,
+                                                      Process& process) {
+  return import_and_tell(
+      [&](const std::atomic<bool>& stop, std::vector<std::string>& warnings) {
+        return import(frame, stop, warnings);
+      },
+      verbosity, process);
 }
 
 void print_warnings(const std::vector<std::string>& warnings, Verbosity verbosity,

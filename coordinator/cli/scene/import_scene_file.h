@@ -3,11 +3,15 @@
 // Imports a scene file, for submit and render.
 
 #include <atomic>
+#include <cstdint>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "absl/status/statusor.h"
 #include "coordinator/cli/options/commands.h"
+#include "coordinator/cli/scene/blend_file.h"
 #include "coordinator/cli/scene/import_process.h"
 
 namespace bandsaw::coordinator {
@@ -24,6 +28,28 @@ absl::StatusOr<ImportedPackage> import_any_scene(const std::string& scene,
 absl::StatusOr<ImportedPackage> import_scene_file(const std::string& scene, Verbosity verbosity,
                                                   Process& process,
                                                   const SceneChoices& choices = {});
+
+/// Imports the frames of one scene, one after the other. The files of a scene are read once; so is
+/// a .blend file, of which one Blender makes a scene for each frame.
+class FrameImporter {
+ public:
+  /// Reads nothing yet. `choices.frame` is ignored.
+  FrameImporter(std::string scene, SceneChoices choices)
+      : scene_(std::move(scene)), choices_(std::move(choices)) {}
+
+  /// Imports a frame; the package before is not valid any more. Errors as import_any_scene; no
+  /// other frame can be imported then.
+  absl::StatusOr<ImportedPackage> import(std::int64_t frame, const std::atomic<bool>& stop,
+                                         std::vector<std::string>& warnings);
+  /// The same for a frame of which the user is told, as import_scene_file does it.
+  absl::StatusOr<ImportedPackage> import(std::int64_t frame, Verbosity verbosity, Process& process);
+
+ private:
+  const std::string scene_;
+  const SceneChoices choices_;
+  std::unique_ptr<ImportSession> session_;
+  std::unique_ptr<BlendSession> blender_;  ///< of a .blend file
+};
 
 /// Prints the importer's warnings unless quiet.
 void print_warnings(const std::vector<std::string>& warnings, Verbosity verbosity,

@@ -51,10 +51,10 @@ Box box_of(const Mesh& mesh) {
   return box;
 }
 
-template <class T>
-std::vector<Box> boxes_of(const std::vector<T>& list) {
+template <class List>
+std::vector<Box> boxes_of(const List& list) {
   std::vector<Box> boxes;
-  for (const T& entry : list) {
+  for (const auto& entry : list) {
     boxes.push_back(box_of(entry));
   }
   return boxes;

@@ -18,7 +18,7 @@ absl::StatusOr<std::string> NamedFile::read(std::uint64_t max_bytes) const {
 }
 
 absl::StatusOr<NamedFile> find_named_file(const std::string& name, const SceneDraft& draft) {
-  if (const auto made = draft.made_files.find(name); made != draft.made_files.end()) {
+  if (const auto made = draft.made_files->find(name); made != draft.made_files->end()) {
     return NamedFile{absl::StrCat("made:", name), &made->second};
   }
   ASSIGN_OR_RETURN(std::string path, draft.folder.resolve(name, draft.folder.path()));

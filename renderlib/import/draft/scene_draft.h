@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "renderlib/import/animation/animation.h"
+#include "renderlib/import/draft/import_memory.h"
 #include "renderlib/import/draft/imported_scene.h"
 #include "renderlib/import/draft/placements.h"
 #include "renderlib/import/files/scene_folder.h"
@@ -30,8 +31,9 @@ struct FoundCamera {
 };
 
 struct SceneDraft {
-  SceneDraft(SceneFolder in, std::string scene_file)
-      : folder(std::move(in)), file(std::move(scene_file)) {}
+  /// `memory_of_frames`: of the other frames of the scene; nullptr: there are none.
+  SceneDraft(SceneFolder in, std::string scene_file, ImportMemory* memory_of_frames = nullptr)
+      : folder(std::move(in)), file(std::move(scene_file)), memory(memory_of_frames) {}
   SceneDraft(const SceneDraft&) = delete;
   SceneDraft& operator=(const SceneDraft&) = delete;
 
@@ -39,9 +41,12 @@ struct SceneDraft {
   std::string file;  ///< name of the scene file in errors
   /// Files that the converter of a foreign scene made, keyed by name. They are found before files
   /// of the folder (named_file.h).
-  std::map<std::string, std::string> made_files;
+  std::shared_ptr<const std::map<std::string, std::string>> made_files =
+      std::make_shared<const std::map<std::string, std::string>>();
+  ImportMemory* const memory;
   ImportedScene out;
-  TextureStore textures{out.scene.textures, out.info.warnings};
+  TextureStore textures{out.scene.textures, out.info.warnings,
+                        memory == nullptr ? nullptr : &memory->images};
   std::map<std::string, MaterialId> materials;      ///< keyed by name in the scene file
   std::map<std::string, TextureId> named_textures;  ///< the same
   std::map<std::string, Contents> groups;           ///< the same

@@ -141,6 +141,33 @@ void scale(ImageTexture& image, const Rgb& factor) {
   image.texels = std::move(texels);
 }
 
+absl::StatusOr<ImageTexture> converted_image(const std::string& bytes, const TextureStore::Use& use,
+                                             std::vector<std::string>& warnings) {
+  using Use = TextureStore::Use;
+  // A grey image stays grey unless it is tinted.
+  const bool tints = use.factor.r != use.factor.g || use.factor.g != use.factor.b;
+  auto image = use.alpha ? decode_alpha(bytes)
+                         : decode_image(bytes, warnings, tints ? Gray::kExpanded : Gray::kKept);
+  if (!image.ok()) {
+    return image.status();
+  }
+  image->wrap = use.wrap;
+  image->filter = use.filter;
+  image->uv_set = use.uv_set;
+  image->uv_transform = use.uv_transform;
+  image->wrap_v = use.wrap_v;
+  scale(*image, use.factor);
+  if (use.linear && image->format == ImageTexture::Format::kSrgb8) {
+    image->format = ImageTexture::Format::kLinear8;
+  }
+  if (use.become == Use::Become::kNormals) {
+    *image = normals_of_heights(*image, use.by);
+  } else if (use.become == Use::Become::kIndexMap) {
+    *image = index_map_of_reflectance(*image, use.by);
+  }
+  return image;
+}
+
 }  // namespace
 
 TextureId TextureStore::add(Texture texture) {
@@ -154,6 +181,35 @@ TextureId TextureStore::constant(const Rgb& value) {
     known->second = add(ConstantTexture{value});
   }
   return known->second;
+}
+
+absl::StatusOr<TextureStore::Decoded> TextureStore::decoded(
+    const Key& whole, const std::string& name, const Use& use,
+    absl::FunctionRef<absl::StatusOr<std::string>()> read) {
+  if (memory_ != nullptr) {
+    if (const auto kept = memory_->images_.find(whole); kept != memory_->images_.end()) {
+      kept->second.used = true;
+      return kept->second.decoded;
+    }
+  }
+  ASSIGN_OR_RETURN(const std::string bytes, read());
+  Decoded out;
+  auto image = converted_image(bytes, use, out.warnings);
+  if (!image.ok()) {
+    return absl::Status(image.status().code(), absl::StrCat(name, ": ", image.status().message()));
+  }
+  out.image = *std::move(image);
+  if (memory_ != nullptr) {
+    memory_->images_[whole] = {out};
+  }
+  return out;
+}
+
+void TextureStore::Memory::end_import() {
+  std::erase_if(images_, [](const auto& kept) { return !kept.second.used; });
+  for (auto& [key, kept] : images_) {
+    kept.used = false;
+  }
 }
 
 absl::StatusOr<TextureId> TextureStore::image(
@@ -171,36 +227,14 @@ absl::StatusOr<TextureId> TextureStore::image(
   if (const auto known = images_.find(whole); known != images_.end()) {
     return known->second;
   }
-  ASSIGN_OR_RETURN(const std::string bytes, read());
-  std::vector<std::string> warnings;
-  // A grey image stays grey unless it is tinted.
-  const bool tints = use.factor.r != use.factor.g || use.factor.g != use.factor.b;
-  auto image = use.alpha ? decode_alpha(bytes)
-                         : decode_image(bytes, warnings, tints ? Gray::kExpanded : Gray::kKept);
-  if (!image.ok()) {
-    return absl::Status(image.status().code(), absl::StrCat(name, ": ", image.status().message()));
-  }
-  for (const std::string& warning : warnings) {
+  ASSIGN_OR_RETURN(Decoded image, decoded(whole, name, use, read));
+  for (const std::string& warning : image.warnings) {
     if (use.alpha_is_known && warning == kAlphaWarning) {
       continue;
     }
     warnings_.push_back(absl::StrCat(name, ": ", warning));
   }
-  image->wrap = use.wrap;
-  image->filter = use.filter;
-  image->uv_set = use.uv_set;
-  image->uv_transform = use.uv_transform;
-  image->wrap_v = use.wrap_v;
-  scale(*image, use.factor);
-  if (use.linear && image->format == ImageTexture::Format::kSrgb8) {
-    image->format = ImageTexture::Format::kLinear8;
-  }
-  if (use.become == Use::Become::kNormals) {
-    *image = normals_of_heights(*image, use.by);
-  } else if (use.become == Use::Become::kIndexMap) {
-    *image = index_map_of_reflectance(*image, use.by);
-  }
-  const TextureId id = add(*std::move(image));
+  const TextureId id = add(std::move(image.image));
   images_[whole] = id;
   return id;
 }

@@ -19,9 +19,12 @@ namespace bandsaw {
 
 class TextureStore {
  public:
-  /// Both arguments MUST outlive this object.
-  TextureStore(std::vector<Texture>& textures, std::vector<std::string>& warnings)
-      : textures_(textures), warnings_(warnings) {}
+  class Memory;
+  /// All arguments MUST outlive this object. `memory`: where images are kept for other stores;
+  /// nullptr: nowhere.
+  TextureStore(std::vector<Texture>& textures, std::vector<std::string>& warnings,
+               Memory* memory = nullptr)
+      : textures_(textures), warnings_(warnings), memory_(memory) {}
 
   TextureId constant(const Rgb& value);
   TextureId add(Texture texture);
@@ -53,10 +56,36 @@ class TextureStore {
   float max_value(TextureId id) const { return bandsaw::max_value(textures_, id); }
 
  private:
+  /// An image with its use.
   using Key = std::tuple<std::string, int, int, std::array<float, 3>, int, UvSet,
                          std::array<double, 6>, std::optional<ImageTexture::Wrap>, double>;
+  struct Decoded {
+    ImageTexture image;
+    std::vector<std::string> warnings;  ///< of the decoder
+  };
+  absl::StatusOr<Decoded> decoded(const Key& whole, const std::string& name, const Use& use,
+                                  absl::FunctionRef<absl::StatusOr<std::string>()> read);
+
+ public:
+  /// Images of an earlier import of the same files.
+  class Memory {
+   public:
+    /// Forgets the images that were not used since the last call.
+    void end_import();
+
+   private:
+    friend class TextureStore;
+    struct Kept {
+      Decoded decoded;
+      bool used = true;
+    };
+    std::map<Key, Kept> images_;
+  };
+
+ private:
   std::vector<Texture>& textures_;
   std::vector<std::string>& warnings_;
+  Memory* memory_;
   std::map<Key, TextureId> images_;
   std::map<std::tuple<float, float, float>, TextureId> constants_;
 };

@@ -23,6 +23,7 @@
 #include "renderlib/import/model/assimp_animation.h"
 #include "renderlib/import/model/assimp_files.h"
 #include "renderlib/import/model/gltf_extensions.h"
+#include "renderlib/import/model/loaded_model.h"
 #include "renderlib/import/model/model_file.h"
 #include "renderlib/import/model/model_glass.h"
 #include "renderlib/import/model/model_material.h"
@@ -174,23 +175,23 @@ std::optional<Animation> renumbered(std::optional<Animation> animation,
   return to;
 }
 
-/// Sets the chosen animation of the file. Returns the names of all of its animations, or NOT_FOUND.
-absl::StatusOr<std::vector<std::string>> choose_animation(const AnimationChoice& choice,
-                                                          std::optional<gltf::PlainGltf>& plain,
-                                                          ModelFile& file) {
+/// Sets the chosen animation and the names of all of them. NOT_FOUND: there is no such animation.
+absl::Status choose_animation(const AnimationChoice& choice, const std::string& name,
+                              std::optional<gltf::PlainGltf>& plain, LoadedModel& model) {
   if (plain && !plain->is_first_version) {
-    file.animation = renumbered(std::move(plain->animation), file.gltf.nodes);
-    return plain->animation_names;
+    model.animation = renumbered(std::move(plain->animation), model.gltf.nodes);
+    model.animation_names = std::move(plain->animation_names);
+    return absl::OkStatus();
   }
-  std::vector<std::string> names = animation_names(file.scene);
-  const auto chosen = choose(choice, names);
+  model.animation_names = animation_names(*model.scene);
+  const auto chosen = choose(choice, model.animation_names);
   if (!chosen.ok()) {
-    return absl::NotFoundError(absl::StrCat(file.name(), ": ", chosen.status().message()));
+    return absl::NotFoundError(absl::StrCat(name, ": ", chosen.status().message()));
   }
   if (*chosen) {
-    file.animation = read_animation(file.scene, **chosen);
+    model.animation = read_animation(*model.scene, **chosen);
   }
-  return names;
+  return absl::OkStatus();
 }
 
 /// Reads the file with Assimp; nullptr on failure. For glTF, Assimp reads only the plain document,
@@ -202,7 +203,9 @@ const aiScene* read_by_assimp(const ModelSource& source, const SceneFolder& fold
   constexpr unsigned kFlags = aiProcess_Triangulate;
   if (!plain || plain->is_first_version) {
     importer.SetIOHandler(std::make_unique<AssimpFiles>(folder, source, refused).release());
-    return importer.ReadFile(source.path, kFlags);
+    const aiScene* scene = importer.ReadFile(source.path, kFlags);
+    importer.SetIOHandler(nullptr);
+    return scene;
   }
   const std::string json = plain->root.dump();
   importer.SetIOHandler(std::make_unique<PlainGltfFiles>(json, plain->buffer).release());
@@ -212,36 +215,65 @@ const aiScene* read_by_assimp(const ModelSource& source, const SceneFolder& fold
   return scene;
 }
 
-absl::StatusOr<Model> read_source(const ModelSource& source, const AnimationChoice& animation,
-                                  bool with_materials, SceneDraft& draft) {
-  const std::string& path = source.path;
-  const std::string name = name_of(path);
-  const std::size_t warnings_before = draft.out.info.warnings.size();
-  const ModelKind kind = kind_of(path);
+/// Reads the file, without evaluating it at a time.
+absl::StatusOr<std::shared_ptr<LoadedModel>> load_model(const ModelSource& source,
+                                                        const AnimationChoice& animation,
+                                                        const SceneFolder& folder) {
+  const std::string name = name_of(source.path);
   std::optional<gltf::PlainGltf> plain;
-  if (kind == ModelKind::kGltf) {
-    auto read = gltf::read_plain_gltf(path, draft.folder, animation);
+  if (kind_of(source.path) == ModelKind::kGltf) {
+    auto read = gltf::read_plain_gltf(source.path, folder, animation);
     if (!read.ok()) {
       return gltf_failure(name, read.status());
     }
     plain = *std::move(read);
   }
-  RefusedFiles refused;
-  Assimp::Importer importer;
+  auto model = std::make_shared<LoadedModel>();
   // No placeholder meshes for the bones of files without meshes.
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
-  const aiScene* scene = read_by_assimp(source, draft.folder, plain, refused, importer);
-  if (scene == nullptr || scene->mRootNode == nullptr || !refused.outside.empty()) {
-    return read_failure(name, refused, importer.GetErrorString());
+  model->importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
+  model->scene = read_by_assimp(source, folder, plain, model->refused, model->importer);
+  if (model->scene == nullptr || model->scene->mRootNode == nullptr ||
+      !model->refused.outside.empty()) {
+    return read_failure(name, model->refused, model->importer.GetErrorString());
   }
-  ModelFile file{*scene, path, kind, {}, draft};
   if (plain) {
-    file.gltf = read_gltf_extensions(plain->root);
+    model->gltf = read_gltf_extensions(plain->root);
   }
-  ASSIGN_OR_RETURN(const std::vector<std::string> animations,
-                   choose_animation(animation, plain, file));
-  warn_of_missing(name, refused, draft);
-  warn_of_unused(animations, file);
+  RETURN_IF_ERROR(choose_animation(animation, name, plain, *model));
+  return model;
+}
+
+/// Returns the loaded file, that of another frame if there is one.
+absl::StatusOr<std::shared_ptr<LoadedModel>> loaded_model(const ModelSource& source,
+                                                          const AnimationChoice& animation,
+                                                          SceneDraft& draft) {
+  if (draft.memory == nullptr) {
+    return load_model(source, animation, draft.folder);
+  }
+  std::shared_ptr<LoadedModel>& known = draft.memory->models[{source.path, animation}];
+  if (known == nullptr) {
+    ASSIGN_OR_RETURN(known, load_model(source, animation, draft.folder));
+  }
+  return known;
+}
+
+absl::StatusOr<Model> read_source(const ModelSource& source, const AnimationChoice& animation,
+                                  bool with_materials, SceneDraft& draft) {
+  const std::string& path = source.path;
+  const std::string name = name_of(path);
+  const std::size_t warnings_before = draft.out.info.warnings.size();
+  ASSIGN_OR_RETURN(const std::shared_ptr<LoadedModel> model_file,
+                   loaded_model(source, animation, draft));
+  const aiScene* scene = model_file->scene;
+  ModelFile file{*scene,
+                 path,
+                 kind_of(path),
+                 model_file->gltf,
+                 model_file->animation,
+                 model_file->still_meshes,
+                 draft};
+  warn_of_missing(name, model_file->refused, draft);
+  warn_of_unused(model_file->animation_names, file);
 
   std::vector<ModelMaterial> materials(scene->mNumMaterials);
   if (with_materials) {

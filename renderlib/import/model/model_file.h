@@ -8,6 +8,7 @@
 #include "renderlib/import/animation/animation.h"
 #include "renderlib/import/draft/scene_draft.h"
 #include "renderlib/import/model/gltf_extensions.h"
+#include "renderlib/import/model/loaded_model.h"
 #include "renderlib/import/model/unsupported_features.h"
 
 struct aiScene;
@@ -22,14 +23,16 @@ enum class ModelKind {
   kOther,
 };
 
+/// The parts are those of a LoadedModel (model/loaded_model.h).
 struct ModelFile {
   const aiScene& scene;
   const std::string& path;  ///< real path
   ModelKind kind = ModelKind::kOther;
-  GltfExtensions gltf;  ///< set for kGltf
+  const GltfExtensions& gltf;                 ///< set for kGltf
+  const std::optional<Animation>& animation;  ///< the chosen one; none: the rest pose
+  StillMeshes& still_meshes;
   SceneDraft& draft;
   UnsupportedFeatures unsupported = {};
-  std::optional<Animation> animation = std::nullopt;  ///< the chosen one; none: the rest pose
 
   std::string name() const { return name_of(path); }
   void warn(const std::string& what) {

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <memory>
+#include <optional>
 #include <utility>
 
 #include "absl/strings/str_cat.h"
@@ -190,6 +192,53 @@ std::vector<double> weights_of(const ModelFile& file, unsigned mesh, const NodeP
   return curve == file.animation->weights.end() ? std::vector<double>() : curve->second.at(time);
 }
 
+/// Reads one mesh. `bones`: the places of its bones; std::nullopt: without a skin.
+absl::StatusOr<Mesh> read_mesh(ModelFile& file, unsigned number, const ModelMaterial& material,
+                               bool with_colors, const NodePlaces& places,
+                               const std::optional<std::vector<Transform>>& bones,
+                               const std::vector<double>& weights) {
+  const aiMesh& from = *file.scene.mMeshes[number];
+  const std::string called =
+      from.mName.length == 0 ? absl::StrCat(number) : absl::StrCat("\"", from.mName.C_Str(), "\"");
+  MeshReader reader(from, absl::StrCat(file.name(), ": mesh ", called),
+                    file.draft.out.info.warnings);
+  ASSIGN_OR_RETURN(Mesh mesh, reader.read(material, weights));
+  if (with_colors) {
+    mesh.colors = colors(from, file.kind);
+    if (has_clear_colors(from)) {
+      reader.warn("the alpha of its vertex colours is left out");
+    }
+  }
+  if (bones) {
+    const auto place = places.of_meshes.find(number);
+    const bool placed = place != places.of_meshes.end();
+    add_skin(from, *bones, placed ? places.by_number[place->second] : Transform{}, mesh);
+  } else if (from.HasBones()) {
+    reader.warn("its skin is left out: a bone has no node");
+  }
+  reader.repair(mesh);
+  return mesh;
+}
+
+/// Returns a mesh that no animation changes, that of another frame if there is one.
+absl::StatusOr<std::shared_ptr<const Mesh>> still_mesh(ModelFile& file, unsigned number,
+                                                       const ModelMaterial& material,
+                                                       bool with_colors, const NodePlaces& places) {
+  std::vector<std::string>& warnings = file.draft.out.info.warnings;
+  StillMesh& known =
+      file.still_meshes[{number, with_colors, material.uv_set, material.second_uv_set}];
+  if (known.mesh == nullptr) {
+    const std::size_t before = warnings.size();
+    ASSIGN_OR_RETURN(Mesh mesh,
+                     read_mesh(file, number, material, with_colors, places, std::nullopt, {}));
+    known.mesh = std::make_shared<Mesh>(std::move(mesh));
+    known.warnings.assign(warnings.begin() + static_cast<std::ptrdiff_t>(before), warnings.end());
+  } else {
+    warnings.insert(warnings.end(), known.warnings.begin(), known.warnings.end());
+  }
+  return known.mesh;
+}
+
 }  // namespace
 
 absl::StatusOr<ModelMeshes> add_meshes(ModelFile& file, const std::vector<ModelMaterial>& materials,
@@ -198,37 +247,27 @@ absl::StatusOr<ModelMeshes> add_meshes(ModelFile& file, const std::vector<ModelM
   const double time = middle_of(file.draft.shutter);
   const NodePlaces places = node_places(scene, file.animation ? &*file.animation : nullptr, time);
   ModelMeshes meshes(scene.mNumMeshes);
-  std::vector<Mesh>& out = file.draft.out.scene.geometry.meshes;
+  MeshList& out = file.draft.out.scene.geometry.meshes;
   for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
     const aiMesh& from = *scene.mMeshes[i];
-    const std::string called =
-        from.mName.length == 0 ? absl::StrCat(i) : absl::StrCat("\"", from.mName.C_Str(), "\"");
-    MeshReader reader(from, absl::StrCat(file.name(), ": mesh ", called),
-                      file.draft.out.info.warnings);
     const ModelMaterial material =
         from.mMaterialIndex < materials.size() ? materials[from.mMaterialIndex] : ModelMaterial{};
-    ASSIGN_OR_RETURN(Mesh mesh, reader.read(material, weights_of(file, i, places, time)));
-    if (with_colors) {
-      mesh.colors = colors(from, file.kind);
-      if (has_clear_colors(from)) {
-        reader.warn("the alpha of its vertex colours is left out");
-      }
+    const std::vector<double> weights = weights_of(file, i, places, time);
+    const auto bones = from.HasBones() ? bone_places(file, i, places) : std::nullopt;
+    std::shared_ptr<const Mesh> mesh;
+    if (bones || !weights.empty()) {
+      ASSIGN_OR_RETURN(Mesh posed,
+                       read_mesh(file, i, material, with_colors, places, bones, weights));
+      mesh = std::make_shared<Mesh>(std::move(posed));
+    } else {
+      ASSIGN_OR_RETURN(mesh, still_mesh(file, i, material, with_colors, places));
     }
-    const auto bones = bone_places(file, i, places);
-    const bool skinned = from.HasBones() && bones;
-    if (skinned) {
-      const auto place = places.of_meshes.find(i);
-      const bool placed = place != places.of_meshes.end();
-      add_skin(from, *bones, placed ? places.by_number[place->second] : Transform{}, mesh);
-    } else if (from.HasBones()) {
-      reader.warn("its skin is left out: a bone has no node");
-    }
-    reader.repair(mesh);
-    if (mesh.triangles.empty()) {
+    if (mesh->triangles.empty()) {
       continue;
     }
-    meshes[i] = ModelMesh{MeshId{static_cast<std::uint32_t>(out.size())}, material.id, skinned};
-    out.push_back(std::move(mesh));
+    meshes[i] =
+        ModelMesh{MeshId{static_cast<std::uint32_t>(out.size())}, material.id, bones.has_value()};
+    out.share(std::move(mesh));
   }
   return meshes;
 }

@@ -6,12 +6,14 @@
 #include <sys/stat.h>
 #include <sys/wait.h>
 
+#include <atomic>
 #include <filesystem>
 
 #include "coordinator/cli/base/child_process.h"
 #include "renderlib/import/import.h"
 #include "tests/support/sanitized.h"
 #include "tests/unit/import/files.h"
+#include "tests/unit/import/gltf_writer.h"
 
 namespace bandsaw::coordinator {
 namespace {
@@ -62,6 +64,74 @@ TEST(ImportProcess, LeavesNothingBehind) {
   EXPECT_EQ(entries(scratch.path()), 0u);
   EXPECT_FALSE(import_in_process("/no/such.glb", in).ok());
   EXPECT_EQ(entries(scratch.path()), 0u);
+}
+
+/// Returns a glTF file with a triangle at a moving node and one whose morph target moves it.
+std::string moving_model(const TempDir& folder) {
+  test::GltfWriter file;
+  file.attributes() = {{"POSITION", file.add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, 3)}};
+  file.root["meshes"].push_back(file.root["meshes"][0]);
+  file.root["meshes"][1]["primitives"][0]["targets"] =
+      test::Json::array({{{"POSITION", file.add<float>({0, 0, 0, 4, 0, 0, 0, 0, 0}, 3)}}});
+  file.root["nodes"] = test::Json::parse(R"([{"mesh": 0}, {"mesh": 1}])");
+  file.root["scenes"][0]["nodes"] = {0, 1};
+  const std::size_t times = file.add<float>({0, 1}, 1);
+  file.root["animations"] = test::Json::array();
+  file.root["animations"].push_back(
+      {{"name", "walk"},
+       {"channels",
+        {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}},
+         {{"sampler", 1}, {"target", {{"node", 1}, {"path", "weights"}}}}}},
+       {"samplers",
+        {{{"input", times}, {"output", file.add<float>({0, 0, 0, 9, 0, 0}, 3)}},
+         {{"input", times}, {"output", file.add<float>({0, 1}, 1)}}}}});
+  return file.write(folder, "walk.gltf");
+}
+
+TEST(ImportSession, GivesEachFrameTheBytesOfAProcessOfItsOwn) {
+  const TempDir folder;
+  const TempDir scratch;
+  ImportLimits in = limits();
+  in.scratch = scratch.path();
+  const std::string path = moving_model(folder);
+  {
+    const auto session = ImportSession::start(path, in, {});
+    ASSERT_TRUE(session.ok()) << session.status();
+    for (const std::int64_t frame : {3, 7, 7, 20}) {
+      auto package = (*session)->import(frame, nullptr);
+      ASSERT_TRUE(package.ok()) << package.status();
+      const auto alone = import_in_process(path, limits(), {.frame = frame});
+      ASSERT_TRUE(alone.ok()) << alone.status();
+      EXPECT_EQ(package->manifest(), alone->manifest());
+      EXPECT_TRUE(decode_package(package->manifest(), package->blobs()).ok());
+      // Of the frames before nothing is left: the manifest, and its blobs.
+      const auto kept = std::filesystem::directory_iterator(scratch.path())->path().string();
+      EXPECT_EQ(entries(kept), 1 + package_blobs(package->manifest())->size());
+    }
+    EXPECT_EQ(entries(scratch.path()), 1u);
+  }
+  EXPECT_EQ(entries(scratch.path()), 0u);
+}
+
+TEST(ImportSession, TellsWhyAFrameCannotBeImported) {
+  const TempDir folder;
+  const std::string path = moving_model(folder);
+  const auto session = *ImportSession::start(path, limits(), {.animation = "run"});
+  EXPECT_THAT(std::string(session->import(1, nullptr).status().message()),
+              HasSubstr("walk.gltf: has no animation \"run\""));
+  const auto stopped = *ImportSession::start(path, limits(), {});
+  const std::atomic<bool> stop{true};
+  EXPECT_EQ(stopped->import(1, &stop).status().code(), absl::StatusCode::kCancelled);
+  ImportLimits hurried = limits();
+  hurried.seconds = 0;
+  EXPECT_EQ((*ImportSession::start(path, hurried, {}))->import(1, nullptr).status().code(),
+            absl::StatusCode::kDeadlineExceeded);
+  ImportLimits broken = limits();
+  broken.program = "/bin/true";  // ends without an answer
+  EXPECT_EQ((*ImportSession::start(path, broken, {}))->import(1, nullptr).status().code(),
+            absl::StatusCode::kInternal);
+  EXPECT_EQ(ImportSession::start("no.zip", limits(), {}).status().code(),
+            absl::StatusCode::kNotFound);
 }
 
 TEST(ImportProcess, ReadsAnEnvironmentFromAnywhere) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 
 #include "renderlib/geometry/placement.h"
 #include "renderlib/import/import.h"
@@ -40,7 +41,30 @@ class Sequence : public ::testing::Test {
   ImportedScene read(const std::string& path, const ImportChoices& choices) {
     auto imported = import_scene(path, choices);
     EXPECT_TRUE(imported.ok()) << imported.status();
+    if (imported.ok()) {
+      expect_the_same_after_other_frames(path, choices, *imported);
+    }
     return imported.ok() ? *std::move(imported) : ImportedScene();
+  }
+  /// The package has the same bytes if other frames were imported with the same memory before.
+  static void expect_the_same_after_other_frames(const std::string& path,
+                                                 const ImportChoices& choices,
+                                                 const ImportedScene& fresh) {
+    BlobMap blobs;
+    ImportMemory memory;
+    ImportChoices other = choices;
+    for (int i = 0; i < 2; ++i) {
+      if (other.frame) {
+        other.frame->number += 3;
+      }
+      const auto before = import_scene(path, other, &memory);
+      ASSERT_TRUE(before.ok()) << before.status();
+      encode_package(before->scene, before->info, blobs, &memory.encoded);
+    }
+    const auto after = import_scene(path, choices, &memory);
+    ASSERT_TRUE(after.ok()) << after.status();
+    EXPECT_EQ(encode_package(after->scene, after->info, blobs, &memory.encoded),
+              encode_package(fresh.scene, fresh.info, blobs));
   }
   ImportedScene read_text(const std::string& text, const ImportChoices& choices) {
     return read(write_text(folder_, "s.textproto", text), choices);
@@ -196,6 +220,29 @@ TEST_F(Sequence, SkinsAndMorphTargetsHaveThePoseOfTheFrame) {
   ASSERT_THAT(imported.scene.geometry.meshes, SizeIs(1));
   EXPECT_THAT(imported.scene.geometry.meshes[0].positions,
               ElementsAre(ElementsAre(0, 0, 2), ElementsAre(2, 0, 2), ElementsAre(0, 1, 2)));
+}
+
+TEST_F(Sequence, MeshesAndImagesThatDoNotChangeAreShared) {
+  GltfWriter file = two_nodes();
+  Json walk = empty_animation("walk");
+  add_channel(file, walk, 0, "translation", {0, 1}, {0, 0, 0, 9, 0, 0}, 3);
+  file.root["animations"] = Json::array({walk});
+  const std::string path = file.write(folder_, "m.gltf");
+  ImportMemory memory;
+  const auto first = import_scene(path, frame(0), &memory);
+  ASSERT_TRUE(first.ok()) << first.status();
+  std::filesystem::remove(path);  // it is not read again
+  write_text(folder_, "m.gltf", "");
+  const auto second = import_scene(path, frame(5), &memory);
+  ASSERT_TRUE(second.ok()) << second.status();
+  EXPECT_EQ(first->scene.geometry.meshes.shared(0), second->scene.geometry.meshes.shared(0));
+  // Neither are they hashed again.
+  BlobMap of_first;
+  encode_package(first->scene, first->info, of_first, &memory.encoded);
+  EXPECT_THAT(of_first.all(), SizeIs(2));  // positions and indices
+  BlobMap of_second;
+  encode_package(second->scene, second->info, of_second, &memory.encoded);
+  EXPECT_THAT(of_second.all(), IsEmpty());
 }
 
 TEST_F(Sequence, AnAnimationIsChosenByName) {

@@ -17,6 +17,59 @@ using test::sample_info;
 using test::sample_scene;
 using ::testing::HasSubstr;
 
+/// Counts the blobs that are read.
+class CountingBlobs : public BlobSource {
+ public:
+  absl::StatusOr<std::unique_ptr<BlobBytes>> get(const wire::Digest& digest) override {
+    ++reads;
+    return blobs.get(digest);
+  }
+  BlobMap blobs;
+  int reads = 0;
+};
+
+TEST(Package, SharesThePartsThatAreInUse) {
+  CountingBlobs source;
+  SceneDescription scene = sample_scene();
+  const std::string first = encode_package(scene, sample_info(), source.blobs);
+  std::get<PerspectiveCamera>(scene.camera).position.x += 1;
+  scene.geometry.meshes.change(1).positions[0][0] += 1;
+  const std::string second = encode_package(scene, sample_info(), source.blobs);
+  ASSERT_NE(first, second);
+
+  DecodedParts parts;
+  auto kept = decode_package(first, source, &parts);
+  ASSERT_TRUE(kept.ok()) << kept.status();
+  const int all = source.reads;
+  const auto other = decode_package(second, source, &parts);
+  ASSERT_TRUE(other.ok()) << other.status();
+  EXPECT_LT(source.reads, 2 * all - 3);
+  EXPECT_EQ(other->geometry.meshes.shared(0), kept->geometry.meshes.shared(0));
+  EXPECT_EQ(other->geometry.meshes[1].positions, scene.geometry.meshes[1].positions);
+  EXPECT_EQ(std::get<ImageTexture>(other->textures[2]).texels.data(),
+            std::get<ImageTexture>(kept->textures[2]).texels.data());
+  // Everything that is decoded has the same values as without sharing.
+  BlobMap again;
+  EXPECT_EQ(encode_package(*other, sample_info(), again), second);
+
+  kept = absl::CancelledError("not in use any more");
+  const std::size_t in_use = parts.size();
+  parts.forget_unused();
+  EXPECT_LT(parts.size(), in_use);
+  EXPECT_NE(parts.size(), 0u);
+}
+
+TEST(Package, ChecksAMeshThatAPackageHasTwice) {
+  BlobMap blobs;
+  SceneDescription scene = sample_scene();
+  scene.geometry.meshes.change(0).positions[2][1] = std::numeric_limits<float>::infinity();
+  scene.geometry.meshes.share(scene.geometry.meshes.shared(0));
+  const std::string manifest = encode_package(scene, sample_info(), blobs);
+  DecodedParts parts;
+  EXPECT_THAT(decode_package(manifest, blobs, &parts).status().message(),
+              HasSubstr("meshes[0].positions[2]: must be finite"));
+}
+
 TEST(Package, RoundTripsBitForBit) {
   BlobMap blobs;
   const SceneDescription scene = sample_scene();
@@ -481,7 +534,7 @@ TEST(Package, RefusesArraysThatAreNotFinite) {
     return std::string(decode_package(manifest, blobs).status().message());
   };
   SceneDescription scene = sample_scene();
-  scene.geometry.meshes[0].positions[2][1] = nan;
+  scene.geometry.meshes.change(0).positions[2][1] = nan;
   EXPECT_THAT(decoded(scene), HasSubstr("meshes[0].positions[2]: must be finite"));
   scene = sample_scene();
   scene.geometry.spheres[1].radius = -1;

@@ -55,11 +55,11 @@ TEST(Scene, S9_ErrorsNameFieldRangeAndValue) {
             "quads[0].material: must be below 4, is 7");
   EXPECT_THAT(message_after([](auto& s) { s.geometry.triangles[0].b.x = kInfinity; }),
               StartsWith("triangles[0].b: must be within"));
-  EXPECT_EQ(message_after([](auto& s) { s.geometry.meshes[0].triangles[3][1] = 9; }),
+  EXPECT_EQ(message_after([](auto& s) { s.geometry.meshes.change(0).triangles[3][1] = 9; }),
             "meshes[0].triangles[3]: must be indices below 9, one is 9");
-  EXPECT_EQ(message_after([](auto& s) { s.geometry.meshes[0].uvs.pop_back(); }),
+  EXPECT_EQ(message_after([](auto& s) { s.geometry.meshes.change(0).uvs.pop_back(); }),
             "meshes[0].uvs: must be none or one a position (9), are 8");
-  EXPECT_EQ(message_after([](auto& s) { s.geometry.meshes[0].normals.resize(2); }),
+  EXPECT_EQ(message_after([](auto& s) { s.geometry.meshes.change(0).normals.resize(2); }),
             "meshes[0].normals: must be none or one a position (9), are 2");
   EXPECT_EQ(message_after([](auto& s) { s.geometry.instances[0].mesh = MeshId{1}; }),
             "instances[0].mesh: must be below 1, is 1");
@@ -142,8 +142,8 @@ TEST(Scene, M13_MaterialsAndTexturesAreValidated) {
             }),
             "materials[8]: is made of 511 materials, at most 256");
   EXPECT_EQ(message_after([](auto& s) {
-              s.geometry.meshes[0].colors.resize(9, {1, 1, 1});
-              s.geometry.meshes[0].colors[2] = {0, -0.5f, 0};
+              s.geometry.meshes.change(0).colors.resize(9, {1, 1, 1});
+              s.geometry.meshes.change(0).colors[2] = {0, -0.5f, 0};
             }),
             "meshes[0].colors[2]: must be >= 0, has -0.5");
   ImageTexture image;
@@ -169,7 +169,7 @@ TEST(Scene, T10_PrimitivesWithoutAreaAreDroppedAndCounted) {
   maker.quad({5, 0, 0}, {1, 1, 0}, {2, 2, 0}, white);
   maker.quad({6, 0, 0}, {1e-20, 0, 0}, {0, 1e-20, 0}, white);
   maker.triangle({0, 0, 0}, {0, 0, 0}, {0, 1, 0}, white);
-  Mesh& mesh = maker.scene.geometry.meshes[0];
+  Mesh& mesh = maker.scene.geometry.meshes.change(0);
   mesh.triangles.push_back({0, 0, 1});
   mesh.positions.push_back({std::nanf(""), 0, 0});
   mesh.uvs.push_back({INFINITY, 0});
@@ -185,6 +185,30 @@ TEST(Scene, T10_PrimitivesWithoutAreaAreDroppedAndCounted) {
   EXPECT_TRUE(hit);
   EXPECT_EQ(hit.id.instance, 1u);
   test::holds("T10", "dropped and counted");
+}
+
+TEST(Scene, SharesMeshesWithEarlierScenes) {
+  SceneMaker maker = valid();
+  Mesh& mesh = maker.scene.geometry.meshes.change(0);
+  mesh.triangles.insert(mesh.triangles.begin(), {0, 0, 1});  // dropped
+  Pool pool(1);
+  const auto first = *Scene::build(maker.scene, pool);
+  EXPECT_EQ(maker.scene.geometry.meshes[0].triangles.size(), mesh.triangles.size())
+      << "the description that was copied has its mesh still";
+  SceneDescription moved = maker.scene;
+  moved.geometry.meshes = first->geometry().meshes;
+  moved.geometry.instances[0].to_world = translation({0, 0, 1});
+  const std::vector<std::shared_ptr<const Scene>> earlier = {first};
+  const auto second = *Scene::build(moved, pool, {}, Traversal::kBvh, nullptr, earlier);
+  EXPECT_EQ(second->geometry().meshes.shared(0), first->geometry().meshes.shared(0));
+  EXPECT_EQ(second->dropped_primitives(), first->dropped_primitives());
+  const auto alone = *Scene::build(moved, pool);
+  EXPECT_NE(alone->geometry().meshes.shared(0), first->geometry().meshes.shared(0));
+  const Ray ray{.origin = {0.4, 0.3, 9}, .direction = {0, 0, -1}};
+  const Hit hit = second->accel().closest(ray);
+  ASSERT_TRUE(hit);
+  EXPECT_EQ(hit.t, alone->accel().closest(ray).t);
+  EXPECT_EQ(hit.t, 8) << "it is where its own scene has it";
 }
 
 TEST(Scene, FeaturesAreThoseThatItUses) {

@@ -50,7 +50,7 @@ class LoadPackageTest : public ::testing::Test {
       prepared_ = now;
     };
     FetchingSource source(cache, transfer_blob, stop_, prepared);
-    return load_package(manifest, source, pool_);
+    return loader_.load(manifest, source);
   }
   std::unique_ptr<BlobCache> open(std::uint64_t max_bytes = 1 << 30) {
     return *BlobCache::open(folder_ / "cache", max_bytes);
@@ -65,6 +65,7 @@ class LoadPackageTest : public ::testing::Test {
   std::uint64_t prepared_ = 0;
   std::atomic<bool> stop_{false};
   Pool pool_{1};
+  PackageLoader loader_{pool_};
 };
 
 TEST_F(LoadPackageTest, FetchesEachByteOnce) {
@@ -108,6 +109,37 @@ TEST_F(LoadPackageTest, ReportsABlobThatTheFarmLacks) {
 TEST_F(LoadPackageTest, RefusesAnInvalidManifest) {
   const wire::Digest nonsense = farm_.put(std::vector<std::byte>(100, std::byte{0xff}));
   EXPECT_EQ(load(*open(), nonsense).status().code(), absl::StatusCode::kInvalidArgument);
+}
+
+TEST_F(LoadPackageTest, ReadsAndBuildsOnceWhatAScenesFramesShare) {
+  const auto add = [&](const SceneDescription& scene) {
+    const std::string text = encode_package(scene, {}, farm_);
+    const auto* data = reinterpret_cast<const std::byte*>(text.data());
+    return farm_.put(std::vector<std::byte>(data, data + text.size()));
+  };
+  test::SceneMaker maker;
+  maker.camera({0, 0, 9}, {0, 0, 0}, 40);
+  maker.background({1, 1, 1}, {1, 1, 1});
+  maker.instance(test::grid(40), Transform{}, maker.diffuse(0.5f));
+  const wire::Digest first = add(maker.scene);
+  maker.camera({1, 0, 9}, {0, 0, 0}, 40);
+  const wire::Digest second = add(maker.scene);
+
+  const auto cache = open();
+  auto scene = load(*cache, first);
+  ASSERT_TRUE(scene.ok()) << scene.status();
+  prepared_ = 0;
+  const auto next = load(*cache, second);
+  ASSERT_TRUE(next.ok()) << next.status();
+  EXPECT_EQ((*next)->geometry().meshes.shared(0), (*scene)->geometry().meshes.shared(0));
+  const std::uint64_t of_one_blob = prepared_;
+  // The mesh lives as long as one of its scenes.
+  scene = absl::CancelledError("dropped");
+  prepared_ = 0;
+  const auto again = load(*cache, first);
+  ASSERT_TRUE(again.ok()) << again.status();
+  EXPECT_EQ((*again)->geometry().meshes.shared(0), (*next)->geometry().meshes.shared(0));
+  EXPECT_LT(prepared_, of_one_blob) << "the manifest was in the cache";
 }
 
 TEST_F(LoadPackageTest, StopsOnRequest) {

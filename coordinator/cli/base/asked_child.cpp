@@ -1,0 +1,124 @@
+#include "coordinator/cli/base/asked_child.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <utility>
+
+#include "coordinator/cli/base/spawn.h"
+#include "renderlib/base/atomic_file.h"
+#include "renderlib/base/status_macros.h"
+
+namespace bandsaw::coordinator {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// A socket gives no SIGPIPE if the reader is gone.
+void send_all(int stream, const std::string& bytes) {
+  std::size_t sent = 0;
+  while (sent < bytes.size()) {
+    const ssize_t now = send(stream, bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
+    if (now < 0 && errno != EINTR) {
+      return;  // the child has ended, which the reader notices
+    }
+    sent += static_cast<std::size_t>(now < 0 ? 0 : now);
+  }
+}
+
+}  // namespace
+
+absl::StatusOr<std::unique_ptr<AskedChild>> AskedChild::start(
+    const std::vector<std::string>& arguments, const std::string& prefix, bool errors_too) {
+  std::array<int, 2> ends{};
+  if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
+    return errno_status(errno, "cannot make a pair of sockets");
+  }
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
+  if (errors_too) {
+    posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
+  } else {
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+  }
+  const absl::StatusOr<pid_t> pid = spawn(arguments, actions);
+  posix_spawn_file_actions_destroy(&actions);
+  close(ends[1]);
+  if (!pid.ok()) {
+    close(ends[0]);
+    return pid.status();
+  }
+  return std::unique_ptr<AskedChild>(new AskedChild(*pid, ends[0], prefix));
+}
+
+AskedChild::~AskedChild() {
+  close(stream_);
+  if (pid_ > 0) {
+    kill(pid_, SIGKILL);
+    waitpid(pid_, nullptr, 0);
+  }
+}
+
+ChildOutcome AskedChild::ended(ChildOutcome::End how) {
+  ChildOutcome outcome{.end = how, .output = skipped_ + received_};
+  if (how != ChildOutcome::End::kExited) {
+    kill(pid_, SIGKILL);
+  }
+  waitpid(std::exchange(pid_, -1), &outcome.wait_status, 0);
+  return outcome;
+}
+
+/// Takes the next answer out of what was received; std::nullopt: it is not there yet.
+std::optional<std::string> AskedChild::next_answer() {
+  constexpr std::size_t kMaxSkipped = 64 << 10;
+  for (std::size_t end; (end = received_.find('\n')) != std::string::npos;) {
+    std::string line = received_.substr(0, end);
+    received_.erase(0, end + 1);
+    if (line.compare(0, prefix_.size(), prefix_) == 0) {
+      return line;
+    }
+    skipped_ += line + "\n";
+    skipped_.erase(0, skipped_.size() - std::min(skipped_.size(), kMaxSkipped));
+  }
+  return std::nullopt;
+}
+
+std::variant<std::string, ChildOutcome> AskedChild::ask(const std::string& line, double seconds,
+                                                        const std::atomic<bool>* stop) {
+  constexpr int kLookEveryMs = 20;
+  send_all(stream_, line + "\n");
+  const auto deadline = Clock::now() + std::chrono::duration<double>(seconds);
+  while (true) {
+    if (std::optional<std::string> answer = next_answer()) {
+      return *std::move(answer);
+    }
+    if (stop != nullptr && stop->load()) {
+      return ended(ChildOutcome::End::kStopped);
+    }
+    if (Clock::now() >= deadline) {
+      return ended(ChildOutcome::End::kTimedOut);
+    }
+    pollfd ready{stream_, POLLIN, 0};
+    if (poll(&ready, 1, kLookEveryMs) > 0) {
+      std::array<char, 4096> buffer{};
+      const ssize_t got = read(stream_, buffer.data(), buffer.size());
+      if (got <= 0) {
+        return ended(ChildOutcome::End::kExited);
+      }
+      received_.append(buffer.data(), static_cast<std::size_t>(got));
+    }
+  }
+}
+
+}  // namespace bandsaw::coordinator

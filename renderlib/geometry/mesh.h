@@ -1,0 +1,20 @@
+#pragma once
+
+// Triangle meshes: float32 positions in a space of their own.
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace bandsaw {
+
+struct Mesh {
+  std::vector<std::array<float, 3>> positions;
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into positions
+  std::vector<std::array<float, 3>> normals;            ///< empty, or one per position
+  std::vector<std::array<float, 2>> uvs;                ///< empty, or one per position
+  std::vector<std::array<float, 2>> uvs2 = {};          ///< second set: empty, or one per position
+  std::vector<std::array<float, 3>> colors = {};  ///< linear RGB >= 0: empty, or one per position
+};
+
+}  // namespace bandsaw

@@ -1,0 +1,28 @@
+#pragma once
+
+// What imports of one scene at several frames use again: its files are read once.
+
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "renderlib/import/animation/animation.h"
+#include "renderlib/import/image/texture_store.h"
+#include "renderlib/package/encoded_parts.h"
+
+namespace bandsaw {
+
+struct ConvertedScene;  // import/convert/converted_scene.h
+struct LoadedModel;     // import/model/loaded_model.h
+
+/// Is for one scene with the same choices, except for the frame. The files MUST NOT change.
+struct ImportMemory {
+  /// Models, keyed by their real path and by the animation that was asked for.
+  std::map<std::pair<std::string, AnimationChoice>, std::shared_ptr<LoadedModel>> models = {};
+  TextureStore::Memory images = {};
+  std::shared_ptr<const ConvertedScene> converted = {};  ///< the scene, if it is a foreign one
+  EncodedParts encoded = {};
+};
+
+}  // namespace bandsaw

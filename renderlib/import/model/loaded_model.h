@@ -1,0 +1,43 @@
+#pragma once
+
+// A model file as Assimp has read it, before anything is evaluated at a time.
+
+#include <assimp/Importer.hpp>
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "renderlib/geometry/mesh.h"
+#include "renderlib/import/animation/animation.h"
+#include "renderlib/import/model/assimp_files.h"
+#include "renderlib/import/model/gltf_extensions.h"
+
+struct aiScene;
+
+namespace bandsaw {
+
+/// A mesh that no animation changes, as it was added to a scene.
+struct StillMesh {
+  std::shared_ptr<const Mesh> mesh;
+  std::vector<std::string> warnings;
+};
+
+/// Still meshes of one model, keyed by Assimp's number, by whether they have colours, and by the
+/// two uv sets.
+using StillMeshes = std::map<std::tuple<unsigned, bool, unsigned, unsigned>, StillMesh>;
+
+struct LoadedModel {
+  RefusedFiles refused;
+  Assimp::Importer importer;  ///< owns the scene
+  const aiScene* scene = nullptr;
+  GltfExtensions gltf;  ///< of a glTF file
+  std::vector<std::string> animation_names;
+  std::optional<Animation> animation;  ///< the chosen one
+  StillMeshes still_meshes;            ///< those that were converted
+};
+
+}  // namespace bandsaw

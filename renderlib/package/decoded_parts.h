@@ -1,0 +1,37 @@
+#pragma once
+
+// The large parts of packages that are in use. A package that is decoded later shares those that it
+// has as well, so that of the frames of a sequence only what changes is read.
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "proto/wire/digest.h"
+#include "renderlib/geometry/mesh.h"
+#include "renderlib/package/blob_source.h"
+
+namespace bandsaw {
+
+/// Not synchronised. It keeps no part alive.
+class DecodedParts {
+ public:
+  /// Returns the mesh whose message in a manifest (package::Mesh) has these bytes; nullptr: none is
+  /// in use.
+  std::shared_ptr<const Mesh> mesh(const std::string& message) const;
+  /// Returns the same for a blob.
+  std::shared_ptr<const BlobBytes> blob(const wire::Digest& digest) const;
+
+  void add(const std::string& message, const std::shared_ptr<const Mesh>& mesh);
+  void add(const wire::Digest& digest, const std::shared_ptr<const BlobBytes>& blob);
+  /// Forgets parts that nobody uses any more.
+  void forget_unused();
+  std::size_t size() const { return meshes_.size() + blobs_.size(); }
+
+ private:
+  std::map<std::string, std::weak_ptr<const Mesh>> meshes_;
+  std::map<wire::Digest, std::weak_ptr<const BlobBytes>> blobs_;
+};
+
+}  // namespace bandsaw

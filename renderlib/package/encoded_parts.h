@@ -1,0 +1,48 @@
+#pragma once
+
+// Large parts of the package that was encoded last, so that the package of the next frame of a
+// sequence does not hash them again.
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "proto/wire/digest.h"
+#include "renderlib/base/shared_bytes.h"
+#include "renderlib/geometry/mesh.h"
+
+namespace bandsaw {
+
+/// Keeps its parts alive until a package without them is encoded.
+class EncodedParts {
+ public:
+  /// Returns true for a mesh of the last package.
+  bool knows(const Mesh& mesh) const { return meshes_.find(&mesh) != meshes_.end(); }
+  /// Returns the message of a mesh of the last package (package::Mesh), which becomes part of this
+  /// one; nullptr: it was not in it.
+  const std::string* message_of(const Mesh& mesh);
+  /// Returns the same for bytes with the same address.
+  const wire::Digest* digest_of(const SharedBytes& bytes);
+
+  void add(std::shared_ptr<const Mesh> mesh, std::string message);
+  void add(SharedBytes bytes, const wire::Digest& digest);
+  /// Ends the present package: forgets what was not part of it.
+  void end_package();
+
+ private:
+  struct KnownMesh {
+    std::shared_ptr<const Mesh> mesh;
+    std::string message;
+    bool used = true;
+  };
+  struct KnownBytes {
+    SharedBytes bytes;
+    wire::Digest digest;
+    bool used = true;
+  };
+  std::map<const Mesh*, KnownMesh> meshes_;
+  std::map<const std::byte*, KnownBytes> bytes_;
+};
+
+}  // namespace bandsaw
