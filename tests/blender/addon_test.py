@@ -33,6 +33,7 @@ class AddOn(unittest.TestCase):
     def setUp(self):
         scenes.build("gradient")  # loads factory settings, which disables the add-on
         bpy.ops.preferences.addon_enable(module="bandsaw_blender")
+        self.no_exception_in_render()
         self.fake = fake_farm.FakeFarm()
         self.addCleanup(self.fake.stop)
         preferences().farm = self.fake.string
@@ -44,6 +45,22 @@ class AddOn(unittest.TestCase):
         self.scene.render.image_settings.file_format = "OPEN_EXR"
         self.scene.render.image_settings.color_depth = "32"
         self.scene.render.filepath = os.path.join(self.folder.name, "out.exr")
+
+    def no_exception_in_render(self):
+        """The test fails at its end if the engine raised an exception: Blender prints it and goes on."""
+        engine = sys.modules["bandsaw_blender.engine"].BandsawEngine
+        whole, raised = engine.render, []
+
+        def noting(this, depsgraph):
+            try:
+                whole(this, depsgraph)
+            except Exception as error:
+                raised.append(repr(error))
+                raise
+
+        engine.render = noting
+        self.addCleanup(setattr, engine, "render", whole)
+        self.addCleanup(lambda: self.assertEqual(raised, []))
 
     def render(self):
         bpy.ops.render.render(write_still=True)

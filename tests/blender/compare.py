@@ -2,7 +2,7 @@
 
     blender -b --factory-startup --python compare.py -- ADDON.zip FOLDER cycles|bandsaw|export SCENE…
 
-`cycles` and `bandsaw` (on the farm of BANDSAW_FARM) write FOLDER/SCENE.ENGINE.exr; `export` writes the scene's files to FOLDER/SCENE/."""
+`cycles` and `bandsaw` (on the farm of BANDSAW_FARM) write FOLDER/SCENE.ENGINE.exr and .png; `export` writes the scene's files to FOLDER/SCENE/."""
 
 import os
 import sys
@@ -51,6 +51,9 @@ def main():
             made.render.engine = "BANDSAW"
             made.bandsaw.samples = BANDSAW_SAMPLES
         bpy.ops.render.render(write_still=True)
+        made.render.image_settings.file_format = "PNG"
+        made.render.image_settings.color_depth = "8"
+        bpy.data.images["Render Result"].save_render(made.render.filepath[:-3] + "png", scene=made)
 
 
 main()

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# Tests of the add-on in a real Blender. Usage: run.sh addon|compare|window|command BUILD-FOLDER. Exit 77: Blender or another program is not installed.
+# Tests of the add-on in a real Blender. Usage: run.sh addon|compare|window|command|frames BUILD-FOLDER. Exit 77: Blender or another program is not installed.
 #   addon    the installed add-on at a coordinator that renders nothing: messages, regions, passes, animations
-#   compare  fourteen scenes by Cycles and by the add-on on a farm on loopback
+#   compare  fourteen scenes by Cycles and by the add-on on a farm on loopback; the images stay in BUILD-FOLDER/compare
 #   command  bandsaw render FILE.blend
+#   frames   48 frames of a skinned model on a farm whose processes are killed; Blender tells where the vertices are
 #   window   in a window under Xvfb: F12, the picture growing, Esc; screenshots in BUILD-FOLDER/screenshots
 set -euo pipefail
 part=$1
@@ -52,9 +53,12 @@ case $part in
     grep -E "^(test_|Ran|OK)|triangles in" "$work/log" ;;
   compare)
     start_farm
-    in_blender "$here/compare.py" "$work/addon.zip" "$work/out" cycles
-    in_blender "$here/compare.py" "$work/addon.zip" "$work/out" bandsaw
-    "$here/judge.sh" "$build/bin/bandsaw" "$work/out" ;;
+    images=$build/compare
+    rm -rf "$images"
+    mkdir -p "$images"
+    in_blender "$here/compare.py" "$work/addon.zip" "$images" cycles
+    in_blender "$here/compare.py" "$work/addon.zip" "$images" bandsaw
+    "$here/judge.sh" "$build/bin/bandsaw" "$images" ;;
   command)
     in_blender "$here/save.py" "$work/out/lens.blend" lens
     "$build/bin/bandsaw" render "$work/out/lens.blend" --samples 4 --report none -o "$work/out/lens.pfm"
@@ -65,9 +69,15 @@ case $part in
     [ ! -e "$work/out/bad.pfm" ]
     ! PATH=$work "$build/bin/bandsaw" render "$work/out/lens.blend" --samples 1 -o "$work/out/none.pfm" 2>"$work/error"
     grep -q "Blender is not installed" "$work/error" || { cat "$work/error"; exit 1; } ;;
+  frames)
+    needs ffprobe
+    "$here/frames.sh" "$build" "$work"
+    in_blender "$here/vertices.py" "$work/walk.glb" "$work/walk.npy" 1 48
+    mkdir "$work/packages"
+    /usr/bin/python3 "$here/vertices_check.py" "$build/bin/bandsaw-import" "$work/walk.glb" "$work/walk.npy" 1 "$work/packages" ;;
   window)
     needs Xvfb xdotool import
     "$here/window.sh" "$work" "$build/screenshots" ;;
-  *) echo "usage: run.sh addon|compare|command|window BUILD-FOLDER" >&2; exit 2 ;;
+  *) echo "usage: run.sh addon|compare|command|frames|window BUILD-FOLDER" >&2; exit 2 ;;
 esac
 echo "$part holds"

@@ -155,8 +155,13 @@ class BandsawEngine(bpy.types.RenderEngine):
     def set_pixels(self, result, name, pixels):
         """`pixels`: (height, width, channels), rows from the top."""
         found = result.layers[0].passes.get(name)
-        if found is not None:
-            found.rect.foreach_set(np.ascontiguousarray(pixels[::-1], dtype=np.float32).reshape(-1))
+        if found is None:
+            return
+        rows = np.ascontiguousarray(pixels[::-1], dtype=np.float32).reshape(-1, pixels.shape[2])
+        try:
+            found.rect.foreach_set(rows)  # Blender 3.4 compares the number of pixels
+        except TypeError:
+            found.rect.foreach_set(rows.reshape(-1))  # later versions the number of values
 
     def add_passes(self, depsgraph, job, result):
         wanted = [entry for entry in PASSES if getattr(depsgraph.view_layer, entry[0], False)]

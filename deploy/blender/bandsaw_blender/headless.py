@@ -2,7 +2,8 @@
 
     blender -b -Y FILE.blend --python-expr "import sys; sys.path.insert(0, ZIP); from bandsaw_blender import headless; headless.main(FOLDER, NAME, FRAME)"
 
-FRAME is optional: without it the scene is at the frame that is saved in the file. Writes FOLDER/NAME.json, the files that it refers to, and FOLDER/warnings with a line for each thing that is not shown as it is; or
+FRAME is optional: without it the scene is at the frame that is saved in the file. If it is "-", frames are read from standard input, one a line, and
+each is answered with the line "bandsaw: done" on standard output; the files are those of that frame alone then. Writes FOLDER/NAME.json, the files that it refers to, and FOLDER/warnings with a line for each thing that is not shown as it is; or
 FOLDER/error with one line."""
 
 import os
@@ -45,7 +46,26 @@ def fail(folder, message):
         file.write(message.replace("\n", " ") + "\n")
 
 
+def remove_results(folder, addon="bandsaw_blender.zip"):
+    for name in os.listdir(folder):
+        if name != addon:
+            os.remove(os.path.join(folder, name))
+
+
 def main(folder, name="scene", frame=None):
+    if frame != "-":
+        export(folder, name, frame)
+        return
+    while True:
+        line = sys.stdin.readline()
+        if not line:
+            return
+        remove_results(folder)
+        export(folder, name, line)
+        os.write(1, b"\nbandsaw: done\n")
+
+
+def export(folder, name, frame):
     _folder[0], _name[0] = folder, name
     if not ExportEngine.is_registered:
         bpy.utils.register_class(ExportEngine)

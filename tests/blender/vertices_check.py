@@ -1,0 +1,24 @@
+"""Compares the vertices of frames in scene packages with Blender's:
+
+    vertices_check.py BANDSAW-IMPORT FILE.glb BLENDER.npy FIRST FOLDER"""
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+
+importer, path, oracle, first, folder = sys.argv[1:]
+wanted = np.load(oracle)
+worst = moved = 0
+for number, positions in enumerate(wanted, int(first)):
+    package = os.path.join(folder, str(number))
+    os.makedirs(package)
+    subprocess.run([importer, "scene", path, package, "100", "8000000000", f"frame={number}", "fps=24", "shutter=0"], check=True)
+    (blob,) = [name for name in os.listdir(package) if os.path.getsize(os.path.join(package, name)) == positions.nbytes]
+    got = np.fromfile(os.path.join(package, blob), "<f4").reshape(positions.shape)
+    worst = max(worst, np.abs(got - positions).max())
+    moved = max(moved, np.abs(positions - wanted[0]).max())
+print(f"{len(wanted)} frames of {len(wanted[0])} vertices, which move by up to {moved:.3g}: the largest difference to Blender is {worst:.2g}")
+assert moved > 0.5
+assert worst < 1e-5
