@@ -29,7 +29,7 @@ wait_for_frames() {
 mkdir -p "$work/frames"
 : >"$work/serve.log"
 serve 127.0.0.1:0 1
-address=$(sed -n 's/.*bsw1-w-.*@\([0-9.:]*\).*/\1/p' "$work/walk/join" | head -1)
+address=$(sed -n 's/.*bsw1-w-\([0-9.:]*\)-.*/\1/p' "$work/walk/join" | head -1)
 for name in one two three; do
   "$build/bin/bandsaw-worker" --join "$work/walk/join" --name $name --threads 1 --cache "$work/cache-$name" >"$work/$name.log" 2>&1 &
   worker=$!
@@ -51,7 +51,8 @@ wait $submitter || { cat "$work/submit.log"; exit 1; }
 
 [ "$(frames_written)" = 48 ]
 for number in $(seq -w 1 48); do
-  "$bandsaw" render "$work/walk.glb" --frame $((10#$number)) "${settings[@]}" --report none --quiet -o "$work/alone.pfm" >/dev/null
+  "$bandsaw" render "$work/walk.glb" --frame $((10#$number)) "${settings[@]}" --report none --quiet -o "$work/alone.pfm" >"$work/render.log" 2>&1 ||
+    { cat "$work/render.log"; exit 1; }
   cmp "$work/frames/w.00$number.pfm" "$work/alone.pfm"
 done
 for number in $(seq 1 48); do
