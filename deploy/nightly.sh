@@ -2,8 +2,8 @@
 # The tests that are too long for CI: every label, sanitizers, the other compiler, the other Debian, ARM64, fuzzing. It continues
 # after a part that fails, and writes one table of the parts that passed, failed or were skipped. Exit 1: a part in the table failed.
 # Usage: deploy/nightly.sh [--continue] [--fuzz-minutes N] [--calibration-minutes N] [--out FOLDER] [PART...]
-#   --continue: keeps the rows that the table in FOLDER has of this commit. Parts that are named run again; without PART only those
-#      run that have no such row. So several runs add up to one table of one commit.
+#   --continue: keeps the rows that the table in FOLDER has; each states its commit. Parts that are named run again; without PART
+#      those run that have no row of this commit. So several runs, in several nights, add up to one table.
 #   N: minutes for each fuzz target (default 1), and for the calibration, which continues from there in the next run (default 60)
 #   FOLDER: table.md and a log for each part (default: out/nightly)
 #   PART: parts to run: default labels browser blender asan-ubsan tsan clang fuzz debian12 debian13 compilers arm64 machines calibration
@@ -124,26 +124,27 @@ row() {
   total=$(count 's/.*tests failed out of \([0-9]*\)$/\1/p' "$log")
   failed=$(count 's/.*, \([0-9]*\) tests failed out of .*/\1/p' "$log")
   skipped=$(grep -c '(Skipped)$' "$log")
-  printf '| %s | %s | %d | %d | %d | %d:%02d | `%s` |\n' "$1" "$state" $((total - failed - skipped)) "$failed" "$skipped" \
-    $(($3 / 3600)) $(($3 / 60 % 60)) "$(basename "$log")"
+  printf '| %s | %s | %d | %d | %d | %d:%02d | %s, %s | `%s` |\n' "$1" "$state" $((total - failed - skipped)) "$failed" "$skipped" \
+    $(($3 / 3600)) $(($3 / 60 % 60)) "$commit" "$(date --utc +%Y-%m-%d)" "$(basename "$log")"
 }
 
-# The kept rows of an earlier run of this commit: one file for each, in the folder `rows`. A dirty checkout is no commit.
+# The rows, one file for each part. A dirty checkout is no commit, so its rows are made again.
 rows=$out/rows
-[ -n "$continues" ] && [ "$(cat "$rows/commit" 2>/dev/null)" = "$commit" ] && [[ $commit != *-dirty ]] || rm -rf "$rows"
+[ -n "$continues" ] || rm -rf "$rows"
 mkdir -p "$rows"
-echo "$commit" >"$rows/commit"
 if [ $# -eq 0 ]; then
-  for part in "${every_part[@]}"; do [ -e "$rows/$part" ] || set -- "$@" "$part"; done
+  for part in "${every_part[@]}"; do
+    [[ $commit != *-dirty ]] && grep -qs "| $commit, " "$rows/$part" || set -- "$@" "$part"
+  done
 fi
 
 # write_table: writes the table of all rows, in the order of the parts.
 write_table() {
   {
-    echo "# $commit, $(nproc) cores, $(date --utc +%Y-%m-%d)"
+    echo "# $(nproc) cores"
     echo
-    echo "| part | result | tests passed | failed | skipped | hours | log |"
-    echo "| --- | --- | --- | --- | --- | --- | --- |"
+    echo "| part | result | tests passed | failed | skipped | hours | commit, day | log |"
+    echo "| --- | --- | --- | --- | --- | --- | --- | --- |"
     for part in "${every_part[@]}"; do [ ! -e "$rows/$part" ] || cat "$rows/$part"; done
   } >"$table"
 }

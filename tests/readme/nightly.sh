@@ -39,8 +39,13 @@ rows 3
 [ "$(sed -n 's/^| \(default\|debian13\|arm64\) .*/\1/p' out/nightly/table.md | tr '\n' ' ')" = "default debian13 arm64 " ] ||
   fail "the rows are not in the order of the parts"
 
+first=$(git describe --always)
 commit second
-deploy/nightly.sh --continue arm64 > out/log || fail "passed parts fail the run"
+! deploy/nightly.sh --continue arm64 > out/log || fail "the kept failed part of an older commit did not fail the run"
+rows 3
+grep -qF "| $(git describe --always), " <(grep '^| arm64 ' out/nightly/table.md) || fail "the row does not name its commit"
+[ "$(grep -cF "| $first, " out/nightly/table.md)" -eq 2 ] || fail "the kept rows do not name their commit"
+
+deploy/nightly.sh arm64 > out/log || fail "passed parts fail the run"
 rows 1
-[ "$(head -n 1 out/nightly/table.md | cut -d, -f1)" = "# $(git describe --always)" ] || fail "the table does not name its commit"
 echo "the table holds"
