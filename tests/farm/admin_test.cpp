@@ -9,8 +9,6 @@
 namespace bandsaw::test {
 namespace {
 
-const std::string kScene = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
-
 class Administration : public testing::Test {
  protected:
   Finished say(std::vector<std::string> arguments) { return run(farm_.command(arguments)); }
@@ -36,7 +34,7 @@ TEST_F(Administration, AWorkersLogIsReadOverTheNetwork) {
   farm_.add_worker("desk", 1);
   ask_until({"logs", "desk"}, "joined");
   EXPECT_EQ(
-      say({"submit", kScene, "--width", "32", "--samples", "16", "-o", farm_.path("a.png")}).code,
+      say({"submit", kCornell, "--width", "32", "--samples", "16", "-o", farm_.path("a.png")}).code,
       0);
   const std::string log = ask_until({"logs", "desk"}, "stored job=1");
   EXPECT_NE(log.find("rendered job=1"), std::string::npos) << log;
@@ -102,7 +100,7 @@ TEST_F(Administration, TheUsersSecretIsRenewedWithAndWithoutACoordinator) {
 // before (coordinator/scheduler/liveness/crash_attribution.h).
 TEST_F(Administration, ABandThatCrashesEveryWorkerFailsItsJob) {
   EXPECT_EQ(
-      say({"submit", kScene, "--width", "65536", "--height", "1", "--samples", "16", "--detach"})
+      say({"submit", kCornell, "--width", "65536", "--height", "1", "--samples", "16", "--detach"})
           .code,
       0);
   for (const char* name : {"one", "two", "three", "four", "five", "six"}) {

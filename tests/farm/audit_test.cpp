@@ -9,8 +9,6 @@
 namespace bandsaw::test {
 namespace {
 
-const std::string kScene = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
-
 class AuditedFarm : public testing::Test {
  protected:
   Finished say(std::vector<std::string> arguments) {
@@ -20,8 +18,8 @@ class AuditedFarm : public testing::Test {
   void expect_the_image_is_right() {
     const std::vector<std::string> settings = {"--width",   "64", "--height", "64",
                                                "--samples", "64", "-o"};
-    std::vector<std::string> submit = {"submit", kScene};
-    std::vector<std::string> local = {BANDSAW_BIN, "render", kScene};
+    std::vector<std::string> submit = {"submit", kCornell};
+    std::vector<std::string> local = {BANDSAW_BIN, "render", kCornell};
     submit.insert(submit.end(), settings.begin(), settings.end());
     local.insert(local.end(), settings.begin(), settings.end());
     submit.push_back(farm_.path("farm.pfm"));

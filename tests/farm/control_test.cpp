@@ -11,9 +11,8 @@
 namespace bandsaw::test {
 namespace {
 
-const std::string kScene = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
-const std::vector<std::string> kSettings = {"--width", "128",       "--height",
-                                            "128",     "--samples", std::to_string(32 / kSlower)};
+const std::vector<std::string> kControlSettings = {
+    "--width", "128", "--height", "128", "--samples", std::to_string(32 / kSlower)};
 
 class Control : public testing::Test {
  protected:
@@ -38,8 +37,9 @@ class Control : public testing::Test {
   }
 
   void expect_the_same_bytes(const std::string& file) {
-    std::vector<std::string> local = {BANDSAW_BIN, "render", kScene, "-o", farm_.path("local.pfm")};
-    local.insert(local.end(), kSettings.begin(), kSettings.end());
+    std::vector<std::string> local = {BANDSAW_BIN, "render", kCornell, "-o",
+                                      farm_.path("local.pfm")};
+    local.insert(local.end(), kControlSettings.begin(), kControlSettings.end());
     const Finished finished = run(local);
     ASSERT_EQ(finished.code, 0) << finished.err;
     EXPECT_TRUE(file_bytes(file) == file_bytes(farm_.path("local.pfm")));
@@ -51,8 +51,8 @@ class Control : public testing::Test {
 TEST_F(Control, APausedJobIsNotLeasedAndContinuesToTheSameBytes) {
   farm_.add_worker("one", 1);
   farm_.add_worker("two", 1);
-  std::vector<std::string> submit = {"submit", kScene, "-o", farm_.path("farm.pfm")};
-  submit.insert(submit.end(), kSettings.begin(), kSettings.end());
+  std::vector<std::string> submit = {"submit", kCornell, "-o", farm_.path("farm.pfm")};
+  submit.insert(submit.end(), kControlSettings.begin(), kControlSettings.end());
   Process client = Process::start(farm_.command(submit));
   ASSERT_TRUE(farm_.worker("one").wait_until([&](const std::string&, const std::string& log) {
     return logged_bands(log, "stored").size() >= 2;
@@ -70,7 +70,7 @@ TEST_F(Control, APausedJobIsNotLeasedAndContinuesToTheSameBytes) {
 }
 
 TEST_F(Control, PrioritiesAreShownAndKeptOverARestart) {
-  say({"submit", kScene, "--samples", "16", "--detach", "--priority", "5"});
+  say({"submit", kCornell, "--samples", "16", "--detach", "--priority", "5"});
   EXPECT_NE(say({"jobs", "--json"}).find(R"("priority":5)"), std::string::npos);
   say({"priority", "1", "-20"});
   farm_.coordinator().signal(SIGKILL);

@@ -3,6 +3,8 @@
 // A farm of real processes for one test: a coordinator on a free port, workers, and the command;
 // all on loopback, or each on a machine of its own.
 
+#include <gtest/gtest.h>
+
 #include <map>
 #include <string>
 #include <vector>
@@ -12,6 +14,14 @@
 #include "tests/support/temp_dir.h"
 
 namespace bandsaw::test {
+
+/// The scene that most tests of the farm render.
+inline const std::string kCornell = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
+
+/// The test fails unless the command succeeded.
+inline void expect_success(const Finished& finished) {
+  ASSERT_EQ(finished.code, 0) << finished.err;
+}
 
 class FarmProcesses {
  public:

@@ -22,9 +22,7 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::string kScene = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
-
-std::vector<std::string> with_settings(std::vector<std::string> arguments, int samples) {
+std::vector<std::string> with_samples(std::vector<std::string> arguments, int samples) {
   arguments.insert(arguments.end(), {"--width", "128", "--height", "128", "--samples",
                                      std::to_string(samples / kSlower)});
   return arguments;
@@ -66,9 +64,9 @@ class FullDiskFarm : public testing::Test {
   /// disk filled.
   void stop_with_jobs_and_fill() {
     start_worker();
-    ASSERT_EQ(say(with_settings({"submit", kScene, "-o", folder_ / "first.pfm"}, 8)).code, 0);
-    ASSERT_EQ(say(with_settings({"submit", kScene, "--detach"}, 64)).code, 0);
-    ASSERT_EQ(say(with_settings({"submit", kScene, "--detach"}, 64)).code, 0);
+    ASSERT_EQ(say(with_samples({"submit", kCornell, "-o", folder_ / "first.pfm"}, 8)).code, 0);
+    ASSERT_EQ(say(with_samples({"submit", kCornell, "--detach"}, 64)).code, 0);
+    ASSERT_EQ(say(with_samples({"submit", kCornell, "--detach"}, 64)).code, 0);
     ASSERT_TRUE(worker_->wait_until([](const std::string&, const std::string& log) {
       const auto stored = logged_bands(log, "stored");
       return std::count_if(stored.begin(), stored.end(),
@@ -104,7 +102,7 @@ class FullDiskFarm : public testing::Test {
   }
   void expect_local_bytes(const std::string& file, int samples) {
     const std::string local = folder_ / "local.pfm";
-    ASSERT_EQ(run(with_settings({BANDSAW_BIN, "render", kScene, "-o", local}, samples)).code, 0);
+    ASSERT_EQ(run(with_samples({BANDSAW_BIN, "render", kCornell, "-o", local}, samples)).code, 0);
     EXPECT_TRUE(file_bytes(file) == file_bytes(local));
   }
   void expect_what_is_there_is_served() {
@@ -113,7 +111,7 @@ class FullDiskFarm : public testing::Test {
     EXPECT_THAT(say({"why", "2"}).out, HasSubstr("disk is full"));
     EXPECT_EQ(say({"watch", "1", "-o", folder_ / "again.pfm"}).code, 0);
     EXPECT_TRUE(file_bytes(folder_ / "again.pfm") == file_bytes(folder_ / "first.pfm"));
-    const Finished refused = say(with_settings({"submit", kScene, "--detach"}, 32));
+    const Finished refused = say(with_samples({"submit", kCornell, "--detach"}, 32));
     EXPECT_NE(refused.code, 0);
     EXPECT_THAT(refused.out + refused.err, HasSubstr("disk is full"));
   }

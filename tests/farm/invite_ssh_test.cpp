@@ -18,7 +18,7 @@ using ::testing::HasSubstr;
 
 constexpr char kSshd[] = "/usr/sbin/sshd";
 
-void write(const std::string& path, const std::string& text) { std::ofstream(path) << text; }
+void write_text(const std::string& path, const std::string& text) { std::ofstream(path) << text; }
 
 // An `ssh` on PATH with its own configuration; the account behind it has the test's HOME.
 std::string make_account(const TempDir& folder) {
@@ -27,22 +27,22 @@ std::string make_account(const TempDir& folder) {
   }
   fs::create_directories(folder / "bin");
   fs::create_directories(folder / "home");
-  write(folder / "sshd_config",
-        "HostKey " + folder / "host" + "\nAuthorizedKeysFile " + folder / "key.pub" +
-            "\nStrictModes no\nUsePAM no\nPidFile none\n"
-            "PermitRootLogin yes\nSetEnv XDG_RUNTIME_DIR=/nowhere PATH=" +
-            folder / "there" + ":/usr/bin:/bin HOME=" + folder / "home" + "\n");
-  write(folder / "ssh_config", std::string("ProxyCommand ") + kSshd + " -i -f " +
-                                   folder / "sshd_config" + "\nIdentityFile " + folder / "key" +
-                                   "\nIdentitiesOnly yes\nUserKnownHostsFile " + folder / "known" +
-                                   "\nLogLevel ERROR\n");
-  write(folder / "bin/ssh",
-        "#!/bin/sh\nexec /usr/bin/ssh -F " + folder / "ssh_config" + " \"$@\"\n");
+  write_text(folder / "sshd_config",
+             "HostKey " + folder / "host" + "\nAuthorizedKeysFile " + folder / "key.pub" +
+                 "\nStrictModes no\nUsePAM no\nPidFile none\n"
+                 "PermitRootLogin yes\nSetEnv XDG_RUNTIME_DIR=/nowhere PATH=" +
+                 folder / "there" + ":/usr/bin:/bin HOME=" + folder / "home" + "\n");
+  write_text(folder / "ssh_config",
+             std::string("ProxyCommand ") + kSshd + " -i -f " + folder / "sshd_config" +
+                 "\nIdentityFile " + folder / "key" + "\nIdentitiesOnly yes\nUserKnownHostsFile " +
+                 folder / "known" + "\nLogLevel ERROR\n");
+  write_text(folder / "bin/ssh",
+             "#!/bin/sh\nexec /usr/bin/ssh -F " + folder / "ssh_config" + " \"$@\"\n");
   fs::permissions(folder / "bin/ssh", fs::perms::owner_all);
   // Makes `nice` run the command at normal priority: at low priority the worker would get no CPU
   // time beside other tests.
   fs::create_directories(folder / "there");
-  write(folder / "there/nice", "#!/bin/sh\nshift 2; exec \"$@\"\n");
+  write_text(folder / "there/nice", "#!/bin/sh\nshift 2; exec \"$@\"\n");
   fs::permissions(folder / "there/nice", fs::perms::owner_all);
   return "PATH=" + folder / "bin" + ":/usr/bin:/bin";
 }
@@ -65,7 +65,7 @@ TEST(InviteSsh, ThroughARealServer) {
   EXPECT_THAT(stranger.err, HasSubstr("connect once by hand: ssh desk"));
 
   const std::string key = file_bytes(folder / "host.pub");
-  write(folder / "known", "desk " + key);
+  write_text(folder / "known", "desk " + key);
   const Finished invited = run(invite, {path});
   EXPECT_EQ(invited.code, 0) << invited.err;
   EXPECT_THAT(invited.out, HasSubstr("desk: bandsaw-worker ")) << invited.out;

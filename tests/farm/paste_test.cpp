@@ -11,8 +11,6 @@
 namespace bandsaw::test {
 namespace {
 
-const std::string kScene = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
-
 // The printed line, in which the shell that the test starts becomes the worker, so that signals
 // reach the worker.
 std::string pasted_line(Process& coordinator) {
@@ -41,8 +39,8 @@ TEST(Paste, TheLineInstallsAndStartsAWorker) {
   Process worker = paste(farm, "desk", farm.path("desk"), line);
   ASSERT_TRUE(worker.wait_for(" joined ")) << worker.err();
   const Finished submitted =
-      run(farm.on("desk", farm.command({"submit", kScene, "--width", "32", "--samples", "16", "-o",
-                                        farm.path("a.pfm")})));
+      run(farm.on("desk", farm.command({"submit", kCornell, "--width", "32", "--samples", "16",
+                                        "-o", farm.path("a.pfm")})));
   EXPECT_EQ(submitted.code, 0) << submitted.err;
   EXPECT_NE(worker.err().find("rendered job=1"), std::string::npos) << worker.err();
   worker.signal(SIGTERM);

@@ -14,10 +14,6 @@ namespace {
 
 using google::protobuf::Struct;
 
-constexpr char kScene[] = BANDSAW_GALLERY "/cornell.textproto";
-
-void expect_success(const Finished& finished) { ASSERT_EQ(finished.code, 0) << finished.err; }
-
 Struct report(const std::string& path) {
   Struct out;
   const auto status = google::protobuf::util::JsonStringToMessage(file_bytes(path), &out);
@@ -45,12 +41,12 @@ Struct comparable(Struct json) {
 class ReportOfAFarm : public testing::Test {
  protected:
   void submit(std::vector<std::string> with, const std::string& name) {
-    std::vector<std::string> command = {"submit", kScene, "--quiet", "-o", farm_.path(name)};
+    std::vector<std::string> command = {"submit", kCornell, "--quiet", "-o", farm_.path(name)};
     command.insert(command.end(), with.begin(), with.end());
     expect_success(run(farm_.command(command)));
   }
   void render(std::vector<std::string> with, const std::string& name) {
-    std::vector<std::string> command = {BANDSAW_BIN, "render", kScene,
+    std::vector<std::string> command = {BANDSAW_BIN, "render", kCornell,
                                         "--quiet",   "-o",     farm_.path(name)};
     command.insert(command.end(), with.begin(), with.end());
     expect_success(run(command));
@@ -62,7 +58,7 @@ class ReportOfAFarm : public testing::Test {
 TEST(Render, OutlivesTheReaderOfItsProgress) {
   const TempDir folder;
   const std::string image = folder / "a.pfm";
-  const std::string command = std::string(BANDSAW_BIN) + " render " + kScene +
+  const std::string command = std::string(BANDSAW_BIN) + " render " + kCornell +
                               " --width 32 --samples 64 --json -o " + image + " | true";
   expect_success(run({"/bin/bash", "-o", "pipefail", "-c", command}));
   EXPECT_TRUE(std::filesystem::exists(image));
@@ -133,7 +129,7 @@ TEST(ReportOfParts, EqualsThatOfTheWholeExceptForUnknownFields) {
   const auto path = [&](const char* name) { return folder / name; };
   const std::vector<std::string> with = {"--width", "32", "--samples", "72", "--quiet"};
   const auto render = [&](std::vector<std::string> command) {
-    command.insert(command.begin(), {BANDSAW_BIN, "render", kScene});
+    command.insert(command.begin(), {BANDSAW_BIN, "render", kCornell});
     command.insert(command.end(), with.begin(), with.end());
     expect_success(run(command));
   };
@@ -154,16 +150,16 @@ TEST(ReportOfParts, EqualsThatOfTheWholeExceptForUnknownFields) {
 
 TEST(ReportFile, OfASceneFileIsNotTouched) {
   const TempDir folder;
-  std::filesystem::copy(kScene, folder / "a.textproto");
+  std::filesystem::copy(kCornell, folder / "a.textproto");
   expect_success(run({BANDSAW_BIN, "render", folder / "a.textproto", "--width", "8", "--samples",
                       "1", "--quiet", "--report", "none", "-o", folder / "a.png"}));
   EXPECT_FALSE(std::filesystem::exists(folder / "a.json"));
-  std::filesystem::copy(kScene, folder / "a.json");
+  std::filesystem::copy(kCornell, folder / "a.json");
   const Finished refused =
-      run({BANDSAW_BIN, "render", kScene, "--report", folder / "a.json", "-o", folder / "b.png"});
+      run({BANDSAW_BIN, "render", kCornell, "--report", folder / "a.json", "-o", folder / "b.png"});
   EXPECT_EQ(refused.code, 2);
   EXPECT_FALSE(std::filesystem::exists(folder / "b.png"));
-  EXPECT_EQ(file_bytes(folder / "a.json"), file_bytes(kScene));
+  EXPECT_EQ(file_bytes(folder / "a.json"), file_bytes(kCornell));
 }
 
 }  // namespace

@@ -35,8 +35,6 @@ std::vector<std::string> with_settings(std::vector<std::string> arguments) {
   return arguments;
 }
 
-void expect_success(const Finished& finished) { ASSERT_EQ(finished.code, 0) << finished.err; }
-
 class SameBytes : public testing::Test {
  protected:
   // The image that all other methods must equal.

@@ -30,8 +30,6 @@ std::vector<std::string> with_job(std::vector<std::string> arguments) {
   return arguments;
 }
 
-const std::string kScene = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
-
 class Schedule {
  public:
   /// Cables are pulled if `hosts` is given, which MUST outlive this object.
@@ -45,7 +43,7 @@ class Schedule {
     }
     const std::string image = farm_.path("farm.pfm");
     Process client = Process::start(
-        farm_.on("person", farm_.command(with_job({"submit", kScene, "-o", image}))));
+        farm_.on("person", farm_.command(with_job({"submit", kCornell, "-o", image}))));
     const std::uint32_t events = 2 + random_.below(4);
     for (std::uint32_t i = 0; i < events && wait_for_a_band(client); ++i) {
       one_thing_happens();
@@ -166,7 +164,7 @@ TEST(Schedules, RandomFailuresDoNotChangeTheBytes) {
   const Hosts* hosts = made.ok() ? made->get() : nullptr;
   const TempDir folder;
   const std::string local = folder / "local.pfm";
-  ASSERT_EQ(run(with_job({BANDSAW_BIN, "render", kScene, "-o", local})).code, 0);
+  ASSERT_EQ(run(with_job({BANDSAW_BIN, "render", kCornell, "-o", local})).code, 0);
   const std::string expected = file_bytes(local);
   const bool alone = std::getenv("BANDSAW_SEED") != nullptr;
   const std::uint64_t first = number_from("BANDSAW_SEED", 1);

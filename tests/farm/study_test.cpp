@@ -11,7 +11,6 @@
 namespace bandsaw::test {
 namespace {
 
-constexpr char kCornell[] = BANDSAW_GALLERY "/cornell.textproto";
 constexpr char kSpheres[] = BANDSAW_GALLERY "/spheres.textproto";
 
 class StudyCommand : public testing::Test {

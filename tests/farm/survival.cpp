@@ -10,24 +10,22 @@
 namespace bandsaw::test {
 namespace {
 
-const std::vector<std::string> kSettings = {"--width", "128",       "--height",
-                                            "128",     "--samples", std::to_string(64 / kSlower)};
+const std::vector<std::string> kSurvivalSettings = {
+    "--width", "128", "--height", "128", "--samples", std::to_string(64 / kSlower)};
 
-std::vector<std::string> with_settings(std::vector<std::string> arguments) {
-  arguments.insert(arguments.end(), kSettings.begin(), kSettings.end());
+std::vector<std::string> with_survival_settings(std::vector<std::string> arguments) {
+  arguments.insert(arguments.end(), kSurvivalSettings.begin(), kSurvivalSettings.end());
   return arguments;
 }
 
 }  // namespace
 
 Survival::Survival(FarmProcesses& farm, std::string scene)
-    : farm_(farm),
-      scene_(scene.empty() ? std::string(BANDSAW_GALLERY) + "/cornell.textproto"
-                           : std::move(scene)) {}
+    : farm_(farm), scene_(scene.empty() ? kCornell : std::move(scene)) {}
 
 Process Survival::submit(const std::string& host) {
-  return Process::start(farm_.on(
-      host, farm_.command(with_settings({"submit", scene_, "-o", farm_.path("farm.pfm")}))));
+  return Process::start(farm_.on(host, farm_.command(with_survival_settings(
+                                           {"submit", scene_, "-o", farm_.path("farm.pfm")}))));
 }
 
 void Survival::wait_until_stored(const std::string& worker, std::size_t bands) {
@@ -52,7 +50,7 @@ void Survival::expect_the_same_bytes(Process& client) {
   const std::optional<int> code = client.wait();
   ASSERT_EQ(code, 0) << client.out() << client.err() << farm_.coordinator().err();
   const Finished finished =
-      run(with_settings({BANDSAW_BIN, "render", scene_, "-o", farm_.path("local.pfm")}));
+      run(with_survival_settings({BANDSAW_BIN, "render", scene_, "-o", farm_.path("local.pfm")}));
   ASSERT_EQ(finished.code, 0) << finished.err;
   EXPECT_TRUE(file_bytes(farm_.path("farm.pfm")) == file_bytes(farm_.path("local.pfm")));
 }

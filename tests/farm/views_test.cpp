@@ -21,8 +21,6 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-const std::string kScene = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
-
 /// A fake viewer that accepts one connection and stores all bytes received.
 class FakeViewer {
  public:
@@ -110,7 +108,7 @@ TEST(Views, AViewerGetsTheImageOfAJobWhileItIsRendered) {
   FarmProcesses farm;
   farm.add_worker("one", 1);
   FakeViewer viewer;
-  const Finished done = run(farm.command({"submit", kScene, "--width", "16", "--samples", "16",
+  const Finished done = run(farm.command({"submit", kCornell, "--width", "16", "--samples", "16",
                                           "--tev", viewer.address(), "-o", farm.path("a.pfm")}));
   ASSERT_EQ(done.code, 0) << done.err;
   EXPECT_EQ(done.err, "");
@@ -120,7 +118,7 @@ TEST(Views, AViewerGetsTheImageOfAJobWhileItIsRendered) {
 TEST(Views, AViewerGetsTheImageOfALocalRender) {
   TempDir folder;
   FakeViewer viewer;
-  const Finished done = run({BANDSAW_BIN, "render", kScene, "--width", "16", "--samples", "16",
+  const Finished done = run({BANDSAW_BIN, "render", kCornell, "--width", "16", "--samples", "16",
                              "--tev", viewer.address(), "-o", folder / "a.pfm"});
   ASSERT_EQ(done.code, 0) << done.err;
   const std::size_t name = std::string("cornell").size() + 1;
@@ -134,7 +132,7 @@ TEST(Views, AMissingViewerIsReportedOnceAndTheImageIsRendered) {
     address = gone.address();
   }
   TempDir folder;
-  const Finished done = run({BANDSAW_BIN, "render", kScene, "--width", "16", "--samples", "16",
+  const Finished done = run({BANDSAW_BIN, "render", kCornell, "--width", "16", "--samples", "16",
                              "--tev", address, "-o", folder / "a.pfm"});
   EXPECT_EQ(done.code, 0);
   EXPECT_THAT(done.err, StartsWith("bandsaw: warning: no viewer at " + address));
@@ -154,7 +152,7 @@ Finished on_terminal(const std::vector<std::string>& command, const std::string&
 TEST(Views, TheTerminalShowsTheImage) {
   FarmProcesses farm;
   farm.add_worker("one", 1);
-  const auto submit = farm.command({"submit", kScene, "--width", "16", "--samples", "16",
+  const auto submit = farm.command({"submit", kCornell, "--width", "16", "--samples", "16",
                                     "--preview", "-o", farm.path("a.png")});
   const Finished shown = on_terminal(submit, "COLUMNS=80");
   EXPECT_EQ(shown.code, 0) << shown.out;
@@ -178,7 +176,7 @@ TEST(Views, APreviewShowsTheRowsThatAreStored) {
   ASSERT_TRUE(client.ok()) << client.status();
   EXPECT_TRUE(absl::IsNotFound((*client)->preview(1, 0).status()));
   const Finished submitted =
-      run(farm.command({"submit", kScene, "--width", "64", "--samples", "1048576", "--detach"}));
+      run(farm.command({"submit", kCornell, "--width", "64", "--samples", "1048576", "--detach"}));
   ASSERT_EQ(submitted.code, 0) << submitted.err;
   absl::StatusOr<FarmImage> early = (*client)->preview(1, 20);
   while (absl::IsNotFound(early.status())) {
@@ -191,7 +189,7 @@ TEST(Views, APreviewShowsTheRowsThatAreStored) {
   EXPECT_TRUE(absl::IsInvalidArgument((*client)->preview(1, 65'537).status()));
   EXPECT_TRUE((*client)->cancel(1).ok());
   const Finished done = run(farm.command(
-      {"submit", kScene, "--width", "16", "--samples", "16", "-o", farm.path("a.pfm")}));
+      {"submit", kCornell, "--width", "16", "--samples", "16", "-o", farm.path("a.pfm")}));
   ASSERT_EQ(done.code, 0) << done.err;
   EXPECT_EQ((*client)->preview(2, 0)->image.pixels, (*client)->result(2)->image.pixels);
 }

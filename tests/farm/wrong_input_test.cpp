@@ -19,9 +19,7 @@ constexpr int kFailed = 1;
 constexpr int kWrongUse = 2;
 constexpr int kNoFarm = 3;
 
-const std::string kScene = std::string(BANDSAW_GALLERY) + "/cornell.textproto";
-
-void write(const std::string& path, const std::string& text) {
+void write_input(const std::string& path, const std::string& text) {
   std::ofstream(path, std::ios::binary) << text;
 }
 
@@ -45,7 +43,7 @@ class WrongInput : public testing::Test {
  protected:
   std::string scene_with(const std::string& more) {
     const std::string path = folder_ / "scene.textproto";
-    write(path, "camera { look_at: [0, 0, -1] }\n" + more);
+    write_input(path, "camera { look_at: [0, 0, -1] }\n" + more);
     return path;
   }
   std::string output() const { return folder_ / "out.png"; }
@@ -91,14 +89,14 @@ TEST_F(WrongInput, AFileOutsideTheScenesFolder) {
 TEST_F(WrongInput, TruncatedModel) {
   const std::string whole =
       file_bytes("/usr/share/assimp/models/glTF2/BoxTextured-glTF-Binary/BoxTextured.glb");
-  write(folder_ / "cut.glb", whole.substr(0, whole.size() / 2));
+  write_input(folder_ / "cut.glb", whole.substr(0, whole.size() / 2));
   expect_error(render({folder_ / "cut.glb", "-o", output()}), kWrongUse, {"cut.glb"});
   EXPECT_TRUE(nothing_written());
 }
 
 TEST_F(WrongInput, UnwritableOutputIsReportedBeforeRendering) {
-  expect_error(render({kScene, "-o", "/nonexistent/out.png"}), kWrongUse, {"/nonexistent"});
-  expect_error(render({kScene, "-o", folder_ / "out.jpeg"}), kWrongUse, {"jpeg", "pfm"});
+  expect_error(render({kCornell, "-o", "/nonexistent/out.png"}), kWrongUse, {"/nonexistent"});
+  expect_error(render({kCornell, "-o", folder_ / "out.jpeg"}), kWrongUse, {"jpeg", "pfm"});
 }
 
 TEST_F(WrongInput, FullDisk) {
@@ -107,8 +105,8 @@ TEST_F(WrongInput, FullDisk) {
   if (mount("tmpfs", disk.c_str(), "tmpfs", 0, "size=16k") != 0) {
     GTEST_SKIP() << "needs the right to mount a small tmpfs (run as root)";
   }
-  const Finished finished = run({BANDSAW_BIN, "render", kScene, "--width", "200", "--samples", "1",
-                                 "--quiet", "-o", disk + "/out.pfm"});
+  const Finished finished = run({BANDSAW_BIN, "render", kCornell, "--width", "200", "--samples",
+                                 "1", "--quiet", "-o", disk + "/out.pfm"});
   const bool empty = std::filesystem::is_empty(disk);
   umount(disk.c_str());
   expect_error(finished, kFailed, {"out.pfm", "space"});
@@ -116,11 +114,11 @@ TEST_F(WrongInput, FullDisk) {
 }
 
 TEST_F(WrongInput, OptionsThatExcludeEachOther) {
-  expect_error(run({BANDSAW_BIN, "render", kScene, "--samples", "4", "--error", "1%"}), kWrongUse,
+  expect_error(run({BANDSAW_BIN, "render", kCornell, "--samples", "4", "--error", "1%"}), kWrongUse,
                {});
-  expect_error(run({BANDSAW_BIN, "render", kScene, "--samples", "0"}), kWrongUse, {"samples"});
-  expect_error(run({BANDSAW_BIN, "render", kScene, "--rows", "9:2"}), kWrongUse, {"rows"});
-  expect_error(run({BANDSAW_BIN, "rendr", kScene}), kWrongUse, {"rendr"});
+  expect_error(run({BANDSAW_BIN, "render", kCornell, "--samples", "0"}), kWrongUse, {"samples"});
+  expect_error(run({BANDSAW_BIN, "render", kCornell, "--rows", "9:2"}), kWrongUse, {"rows"});
+  expect_error(run({BANDSAW_BIN, "rendr", kCornell}), kWrongUse, {"rendr"});
 }
 
 TEST_F(WrongInput, WrongJoinString) {
@@ -141,7 +139,7 @@ TEST_F(WrongInput, NoCoordinatorAtThePort) {
 TEST_F(WrongInput, AWorkersSecretCannotSubmit) {
   FarmProcesses farm;
   const Finished finished =
-      run({BANDSAW_BIN, "submit", kScene, "--farm", farm.join_file(), "-o", output()});
+      run({BANDSAW_BIN, "submit", kCornell, "--farm", farm.join_file(), "-o", output()});
   EXPECT_NE(finished.code, 0);
   EXPECT_NE(finished.err.find("worker"), std::string::npos) << finished.err;
   EXPECT_TRUE(nothing_written());

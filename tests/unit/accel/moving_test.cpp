@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
 #include "renderlib/accel/accel.h"
 #include "renderlib/accel/moving_tree.h"
@@ -178,7 +179,8 @@ TEST(Moving, B10_BoxesContainTheirShapesAtEveryTime) {
     const Geometry g = moving_scene(size, at);
     Prototypes prototypes;
     for (const Mesh& mesh : g.meshes) {
-      prototypes.meshes.push_back(build_mesh_tree(mesh, nullptr));
+      prototypes.meshes.push_back(
+          std::make_shared<const MeshTree>(build_mesh_tree(mesh, nullptr)));
     }
     for (const Shapes& group : g.groups) {
       prototypes.groups.push_back(build_shapes_tree(group, nullptr));
