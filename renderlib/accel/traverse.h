@@ -74,8 +74,8 @@ class TraversalStack {
 };
 
 /// Returns the nearest of the children in `hits` (not 0) and pushes the others, nearest on top.
-inline ChildRef nearest_child(const WideNode& node, unsigned hits, const Float8& enter,
-                              TraversalStack& stack) {
+[[gnu::always_inline]] inline ChildRef nearest_child(const WideNode& node, unsigned hits,
+                                                     const Float8& enter, TraversalStack& stack) {
   auto i = static_cast<std::size_t>(std::countr_zero(hits));
   hits &= hits - 1;
   if (hits == 0) {
