@@ -140,7 +140,12 @@ class MediumReader {
     if (filter == "nearest") {
       to.set_filter(scene::VolumeGrid::FILTER_NEAREST);
     }
-    from.ignore({"raw", "wrap_mode", "accel"});
+    ASSIGN_OR_RETURN(const std::string wrap, from.text("wrap_mode", "clamp"));
+    if (wrap != "clamp") {
+      to_.warn(from.place(), absl::StrCat("wrap_mode \"", wrap, "\" of a grid is shown as clamp"));
+    }
+    to.set_clamp(true);
+    from.ignore({"raw", "accel"});
     ASSIGN_OR_RETURN(const Transform placed, from.transform("to_world"));
     const auto to_shape = inverse(to_world_);
     if (!to_shape) {

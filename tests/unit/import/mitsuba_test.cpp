@@ -449,6 +449,24 @@ TEST_F(MitsubaScene, MediaHaveTheirCoefficients) {
   EXPECT_EQ(from.shape(0).material(), "");
 }
 
+/// Mitsuba continues the outermost numbers to the faces of the grid.
+TEST_F(MitsubaScene, GridsReachTheirFaces) {
+  write_text(folder_, "smoke.vol", "VOL");  // Only its name is read here.
+  const auto text = [](const std::string& wrap) {
+    return "<medium type=\"heterogeneous\" id=\"smoke\"><volume name=\"sigma_t\" "
+           "type=\"gridvolume\">"
+           "<string name=\"filename\" value=\"smoke.vol\"/>" +
+           wrap +
+           "</volume></medium><shape type=\"sphere\"><bsdf type=\"null\"/>"
+           "<ref name=\"interior\" id=\"smoke\"/></shape>";
+  };
+  const scene::Scene from = scene(text(""));
+  ASSERT_EQ(from.medium_size(), 1);
+  EXPECT_TRUE(from.medium(0).density_grid().clamp());
+  EXPECT_THAT(warnings(text("<string name=\"wrap_mode\" value=\"repeat\"/>")),
+              ElementsAre(HasSubstr("wrap_mode \"repeat\" of a grid is shown as clamp")));
+}
+
 /// The images that are seen are those of a scene file of ours that says the same.
 TEST_F(MitsubaScene, IsImportedAsASceneFile) {
   write_text(folder_, "s.xml",
