@@ -103,7 +103,7 @@ double aspect_of(const scene::Texture& texture, const Files& files) {
   if (!texture.has_image()) {
     return 1;
   }
-  const auto file = files.find(texture.image().file());
+  const auto file = files.known(texture.image().file());
   std::vector<std::string> ignored;
   const auto bytes = file.ok() ? Files::read(*file, kMaxImageFileBytes) : file.status();
   const auto image = bytes.ok() ? decode_image(*bytes, ignored) : bytes.status();

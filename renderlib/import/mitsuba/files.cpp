@@ -5,6 +5,7 @@
 #include "absl/strings/match.h"
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/file.h"
+#include "renderlib/base/status_macros.h"
 
 namespace bandsaw::mitsuba {
 namespace fs = std::filesystem;
@@ -42,6 +43,11 @@ absl::StatusOr<FoundFile> Files::find(const std::string& name) const {
     }
   }
   return path.status();
+}
+
+absl::StatusOr<FoundFile> Files::known(const std::string& name) const {
+  ASSIGN_OR_RETURN(std::string path, scene_.folder.resolve(name, scene_.folder.path()));
+  return FoundFile{name, std::move(path)};
 }
 
 absl::StatusOr<std::string> Files::read(const FoundFile& file, std::uint64_t max_bytes) {

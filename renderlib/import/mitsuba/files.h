@@ -27,6 +27,8 @@ class Files {
 
   /// Finds a file. Errors as SceneFolder::resolve.
   absl::StatusOr<FoundFile> find(const std::string& name) const;
+  /// Finds a file by the name that find() gave it. Errors as SceneFolder::resolve.
+  absl::StatusOr<FoundFile> known(const std::string& name) const;
   /// Returns the bytes of a file. RESOURCE_EXHAUSTED or INVALID_ARGUMENT: more than `max_bytes`.
   static absl::StatusOr<std::string> read(const FoundFile& file, std::uint64_t max_bytes);
 

@@ -499,5 +499,24 @@ TEST_F(MitsubaScene, FilesAroundTheSceneNeedTheirFolder) {
               HasSubstr("does not lie in the folder"));
 }
 
+/// The image lies in another folder than the scene.
+TEST_F(MitsubaScene, AProjectorHasTheShapeOfItsImage) {
+  std::filesystem::create_directory(folder_ / "scenes");
+  std::filesystem::create_directory(folder_ / "common");
+  const auto bytes = encode_image(Image{3, 1, {gray(1), gray(1), gray(1)}}, ImageFormat::kPng);
+  ASSERT_TRUE(bytes.ok()) << bytes.status();
+  write_text(folder_, "common/wide.png",
+             {reinterpret_cast<const char*>(bytes->data()), bytes->size()});
+  write_text(folder_, "scenes/s.xml",
+             "<scene version=\"3.0.0\"><path value=\"../common\"/>" + kSensor +
+                 "<emitter type=\"projector\"><texture type=\"bitmap\" name=\"irradiance\">"
+                 "<string name=\"filename\" value=\"wide.png\"/></texture></emitter></scene>");
+  const auto around = SceneFolder::of(write_text(folder_, "any.xml", ""));
+  ASSERT_TRUE(around.ok()) << around.status();
+  const auto converted = convert_mitsuba({around->path() + "/scenes/s.xml", "s.xml", *around, {}});
+  ASSERT_TRUE(converted.ok()) << converted.status();
+  EXPECT_EQ(converted->scene.light(0).projector().aspect(), 3);
+}
+
 }  // namespace
 }  // namespace bandsaw
