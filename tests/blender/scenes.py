@@ -86,7 +86,7 @@ def diffuse(*rgb):
 
 def ball(place, made, radius=1.0, name="ball"):
     bpy.ops.mesh.primitive_uv_sphere_add(segments=32, ring_count=16, radius=radius, location=place)
-    thing = bpy.context.object
+    thing = bpy.context.view_layer.objects.active
     thing.name = name
     bpy.ops.object.shade_smooth()
     thing.data.materials.append(made)
@@ -95,14 +95,14 @@ def ball(place, made, radius=1.0, name="ball"):
 
 def plane(size, made, place=(0, 0, 0), turn=(0, 0, 0)):
     bpy.ops.mesh.primitive_plane_add(size=size, location=place, rotation=turn)
-    bpy.context.object.data.materials.append(made)
-    return bpy.context.object
+    bpy.context.view_layer.objects.active.data.materials.append(made)
+    return bpy.context.view_layer.objects.active
 
 
 def cube(place, size, made):
     bpy.ops.mesh.primitive_cube_add(size=size, location=place)
-    bpy.context.object.data.materials.append(made)
-    return bpy.context.object
+    bpy.context.view_layer.objects.active.data.materials.append(made)
+    return bpy.context.view_layer.objects.active
 
 
 def light(kind, place, energy, target=(0, 0, 0), **fields):

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Blender in a window under Xvfb: F12 begins a render at a coordinator that takes 12 seconds for it, the picture grows in the window, and
+# Blender in a window under Xvfb: F12 begins a render at a coordinator that takes two minutes for it, the picture grows in the window, and
 # Esc cancels the job. Usage: window.sh WORK-FOLDER SCREENSHOTS-FOLDER
 set -euo pipefail
 work=$1 shots=$2
@@ -11,7 +11,7 @@ echo $! >>"$work/pids"
 export DISPLAY=:$display LIBGL_ALWAYS_SOFTWARE=1
 until xdotool getdisplaygeometry >/dev/null 2>&1; do sleep 0.1; done
 rm -f "$work/state"
-blender --factory-startup --window-geometry 0 0 1280 800 --no-window-focus --python "$here/window_test.py" -- "$work/addon.zip" "$work/state" >"$work/log" 2>&1 &
+blender --factory-startup --window-geometry 0 0 1280 800 --no-window-focus --python-exit-code 1 --python "$here/window_test.py" -- "$work/addon.zip" "$work/state" >"$work/log" 2>&1 &
 blender=$!
 echo $blender >>"$work/pids"
 
@@ -22,14 +22,29 @@ state() {
     sleep 0.1
   done
 }
+# Writes what is in the middle of the window, where Blender shows the picture.
+middle() { convert "$1" -crop 500x300+390+266 +repage "$2"; }
+# The picture of that coordinator is coloured; Blender's background is grey.
+is_coloured() { awk "BEGIN { exit !($(convert "$1" -colorspace HSL -channel G -separate -format '%[fx:mean]' info:) > 0.2) }"; }
+
 state ready
 xdotool mousemove 640 400
 xdotool key F12
-state quarter
-import -window root "$shots/blender_quarter.png"
-state half
-import -window root "$shots/blender_half.png"
-cmp -s "$shots/blender_quarter.png" "$shots/blender_half.png" && { echo "the window has not changed"; exit 1; }
+state looked
+for ((i = 0; ; ++i)); do
+  import -window root "$shots/blender_growing.png"
+  middle "$shots/blender_growing.png" "$work/first.png"
+  is_coloured "$work/first.png" && break
+  ((i < 100)) || { echo "the picture does not come"; exit 1; }
+  sleep 0.2
+done
+for ((i = 0; ; ++i)); do
+  import -window root "$shots/blender_grown.png"
+  middle "$shots/blender_grown.png" "$work/second.png"
+  is_coloured "$work/second.png" && ! cmp -s "$work/first.png" "$work/second.png" && break
+  ((i < 100)) || { echo "the picture does not grow"; exit 1; }
+  sleep 0.2
+done
 xdotool key Escape
 state cancelled
 import -window root "$shots/blender_cancelled.png"
