@@ -2,7 +2,7 @@
 # Tests of the add-on in a real Blender. Usage: run.sh addon|compare|window|command|frames BUILD-FOLDER. Exit 77: Blender or another program is not installed.
 #   addon    the installed add-on at a coordinator that renders nothing: messages, regions, passes, animations
 #   compare  fourteen scenes by Cycles and by the add-on on a farm on loopback; the images stay in BUILD-FOLDER/compare
-#   command  bandsaw render FILE.blend
+#   command  bandsaw render FILE.blend, and its frames on a farm
 #   frames   48 frames of a skinned model on a farm whose processes are killed; Blender tells where the vertices are
 #   window   in a window under Xvfb: F12, the picture growing, Esc; screenshots in BUILD-FOLDER/screenshots
 set -euo pipefail
@@ -67,6 +67,15 @@ case $part in
     ! "$build/bin/bandsaw" render "$work/out/bad.blend" --samples 1 -o "$work/out/bad.pfm" 2>"$work/error"
     grep -q "bad.blend: Blender made no scene of it" "$work/error" || { cat "$work/error"; exit 1; }
     [ ! -e "$work/out/bad.pfm" ]
+    # One Blender writes the frames of a sequence: each is as that of a Blender of its own.
+    start_farm
+    in_blender "$here/save.py" "$work/out/motion.blend" motion
+    "$build/bin/bandsaw" submit "$work/out/motion.blend" --frames 1-3 --samples 4 --report none -o "$work/out/m.#.pfm"
+    for frame in 1 2 3; do
+      "$build/bin/bandsaw" render "$work/out/motion.blend" --frame $frame --samples 4 --report none -o "$work/out/alone.pfm"
+      cmp "$work/out/m.$frame.pfm" "$work/out/alone.pfm"
+    done
+    cmp -s "$work/out/m.1.pfm" "$work/out/m.3.pfm" && { echo "the frames are equal"; exit 1; }
     ! PATH=$work "$build/bin/bandsaw" render "$work/out/lens.blend" --samples 1 -o "$work/out/none.pfm" 2>"$work/error"
     grep -q "Blender is not installed" "$work/error" || { cat "$work/error"; exit 1; } ;;
   frames)

@@ -140,6 +140,39 @@ TEST_F(DashboardTest, ADroppedSceneIsRenderedAndItsImageDownloaded) {
   EXPECT_THAT(browser.console_errors(), IsEmpty());
 }
 
+TEST_F(DashboardTest, AStripOfFramesFillsAndPlays) {
+  const std::string scene = folder_ / "fly.textproto";
+  std::ofstream(scene) << cornell() << R"(track { field: "camera.position"
+      key { time: 0 value: [278, 278, -800] } key { time: 1 value: [478, 378, -700] } })";
+  const Finished sent = run({BANDSAW_BIN, "submit", scene, "--farm", folder_ / "data/farm",
+                             "--frames", "1-24", "--samples", "32", "--detach"});
+  ASSERT_EQ(sent.code, 0) << sent.err;
+  Browser browser;
+  enter(browser);
+  browser.run("location.hash = '#/jobs/1'");
+  ASSERT_TRUE(browser.wait("document.querySelectorAll('.strip .frame').length === 24"));
+  ASSERT_TRUE(
+      browser.wait("[...document.querySelectorAll('.frame[data-state=done] img')]"
+                   ".filter((one) => one.naturalWidth > 0).length >= 8"));
+  browser.screenshot(shot("frames-running"));
+  ASSERT_TRUE(browser.wait("document.querySelectorAll('.frame[data-state=done]').length === 24"));
+  ASSERT_TRUE(browser.wait(kPictured));
+  const std::string first = browser.text(kPreview);
+  browser.run(
+      "[...document.querySelectorAll('button')]"
+      ".find((one) => one.textContent === 'Play').click()");
+  EXPECT_TRUE(browser.wait(std::string(kPreview) + " !== '" + first + "'"));
+  EXPECT_TRUE(browser.wait("document.querySelector('.frame[aria-current] span').textContent > 6"));
+  browser.run("document.querySelectorAll('.strip .frame')[16].click()");
+  EXPECT_EQ(browser.text("document.querySelector('.frame[aria-current] span').textContent"), "17");
+  EXPECT_TRUE(browser.wait(kPictured));
+  browser.screenshot(shot("frames-done"));
+  browser.run("location.hash = '#/'");
+  EXPECT_TRUE(browser.wait("document.body.textContent.includes('24 of 24 frames')"));
+  browser.screenshot(shot("frames-jobs"));
+  EXPECT_THAT(browser.console_errors(), IsEmpty());
+}
+
 TEST_F(DashboardTest, ABrokenSceneGivesOneErrorSentence) {
   Browser browser;
   enter(browser);
