@@ -7,7 +7,7 @@ bandsaw=$1 folder=$2 failed=0
 allowed() {
   case $1 in
     principled) echo 3 ;;  # Principled of Blender 3.4 adds its reflection to the diffuse part
-    normals) echo 4 ;;     # shadows at the terminator
+    normals) echo 5 ;;     # a normal map at grazing angles
     *) echo 2 ;;
   esac
 }

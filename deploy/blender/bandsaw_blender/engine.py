@@ -64,7 +64,8 @@ class BandsawEngine(bpy.types.RenderEngine):
             pass
         except (bandsaw.BandsawError, RuntimeError) as error:
             self.report({"ERROR"}, f"Bandsaw: {error}")
-            self.error_set(f"Bandsaw: {error}")
+            if bpy.app.version < (4, 3):
+                self.error_set(f"Bandsaw: {error}")  # 4.3 would report it again
 
     def render_on_farm(self, depsgraph):
         scene = depsgraph.scene

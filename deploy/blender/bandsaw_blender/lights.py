@@ -3,6 +3,7 @@ Objects", and deploy/blender/README.md."""
 
 import math
 
+import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
@@ -101,7 +102,7 @@ def add_area(out, thing, placed, place, toward, tint):
         return
     if getattr(light, "spread", math.pi) < math.pi - 1e-3:
         out.warn(f'the spread of the area light "{thing.name}" is not shown')
-    radiance = tint / (4 * area)  # Blender divides by 4 where a Lambertian emitter of this power would have pi
+    radiance = tint / (area * (math.pi if bpy.app.version >= (4, 0) else 4))  # before Blender 4.0 the power was not that of a Lambertian emitter
     if not round_one:
         # Its normal u x v looks along the light's -z.
         out.lamp({"quad": {"corner": vector(Vector(place) - across / 2 - along / 2), "u": vector(along), "v": vector(across)}}, radiance, not thing.visible_camera)
