@@ -30,8 +30,8 @@ bool can_be_guided(const Bsdf& bsdf) {
          !has_pdf_behind(bsdf);
 }
 
-std::optional<GuidedSample> sample(const Bsdf& bsdf, const GuidingCones& cones, double u, double v,
-                                   double lobe) {
+std::optional<GuidedSample> sample_mixture(const Bsdf& bsdf, const GuidingCones& cones, double u,
+                                           double v, double lobe) {
   const double share = cones.share();
   if (lobe < share) {
     return sample_cones(bsdf, cones, lobe / share, u, v);
@@ -39,9 +39,6 @@ std::optional<GuidedSample> sample(const Bsdf& bsdf, const GuidingCones& cones, 
   std::optional<BsdfSample> next = sample(bsdf, u, v, (lobe - share) / (1 - share));
   if (!next) {
     return std::nullopt;
-  }
-  if (share == 0) {
-    return GuidedSample{*next};
   }
   const double scaling = next->delta
                              ? 1 / (1 - share)

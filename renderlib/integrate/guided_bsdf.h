@@ -36,9 +36,19 @@ struct GuidedSample {
   double scaling = 1;
 };
 
+/// sample(), where the share of `cones` is not 0.
+std::optional<GuidedSample> sample_mixture(const Bsdf& bsdf, const GuidingCones& cones, double u,
+                                           double v, double lobe);
+
 /// Samples a direction from the mixture; the arguments are those of sample() in material/bsdf.h.
-std::optional<GuidedSample> sample(const Bsdf& bsdf, const GuidingCones& cones, double u, double v,
-                                   double lobe);
+inline std::optional<GuidedSample> sample(const Bsdf& bsdf, const GuidingCones& cones, double u,
+                                          double v, double lobe) {
+  if (cones.share() > 0) {
+    return sample_mixture(bsdf, cones, u, v, lobe);
+  }
+  const std::optional<BsdfSample> next = sample(bsdf, u, v, lobe);
+  return next ? std::optional(GuidedSample{*next}) : std::nullopt;
+}
 
 /// Returns the value of the BSDF and the pdf of the mixture.
 inline BsdfValue evaluate(const Bsdf& bsdf, const GuidingCones& cones, const Vec3& wi) {
