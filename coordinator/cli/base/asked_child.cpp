@@ -1,9 +1,7 @@
 #include "coordinator/cli/base/asked_child.h"
 
-#include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -43,17 +41,8 @@ absl::StatusOr<std::unique_ptr<AskedChild>> AskedChild::start(
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
     return errno_status(errno, "cannot make a pair of sockets");
   }
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], STDIN_FILENO);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-  if (errors_too) {
-    posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
-  } else {
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-  }
-  const absl::StatusOr<pid_t> pid = spawn(arguments, actions);
-  posix_spawn_file_actions_destroy(&actions);
+  const absl::StatusOr<pid_t> pid =
+      spawn(arguments, {.input = ends[1], .output = ends[1], .errors = errors_too ? ends[1] : -1});
   close(ends[1]);
   if (!pid.ok()) {
     close(ends[0]);

@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -33,17 +32,9 @@ absl::StatusOr<Child> start(const std::vector<std::string>& arguments,
   if (pipe2(ends.data(), O_CLOEXEC) != 0) {
     return errno_status(errno, "cannot make a pipe");
   }
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, streams.input.c_str(), O_RDONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-  if (streams.errors_too) {
-    posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
-  } else {
-    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-  }
-  const absl::StatusOr<pid_t> pid = spawn(arguments, actions);
-  posix_spawn_file_actions_destroy(&actions);
+  const absl::StatusOr<pid_t> pid = spawn(arguments, {.input_file = streams.input,
+                                                      .output = ends[1],
+                                                      .errors = streams.errors_too ? ends[1] : -1});
   close(ends[1]);
   if (!pid.ok()) {
     close(ends[0]);

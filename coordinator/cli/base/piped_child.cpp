@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -34,13 +33,7 @@ absl::StatusOr<PipedChild> PipedChild::start(const std::vector<std::string>& arg
     return errno_status(errno, "cannot make a pipe");
   }
   PipedChild child(-1, ends[1], memfd_create("errors", MFD_CLOEXEC));
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, ends[0], STDIN_FILENO);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_adddup2(&actions, child.errors_, STDERR_FILENO);
-  const absl::StatusOr<pid_t> pid = spawn(arguments, actions);
-  posix_spawn_file_actions_destroy(&actions);
+  const absl::StatusOr<pid_t> pid = spawn(arguments, {.input = ends[0], .errors = child.errors_});
   close(ends[0]);
   RETURN_IF_ERROR(pid.status());
   child.pid_ = *pid;

@@ -2,7 +2,6 @@
 
 // Starts a child process.
 
-#include <spawn.h>
 #include <sys/types.h>
 
 #include <string>
@@ -12,11 +11,18 @@
 
 namespace bandsaw::coordinator {
 
+/// The standard streams of a child. A file descriptor stays the caller's; -1: none.
+struct SpawnStreams {
+  int input = -1;                        ///< if there is none, `input_file` is opened
+  std::string input_file = "/dev/null";  ///< a path
+  int output = -1;                       ///< if there is none, the output is discarded
+  int errors = -1;                       ///< the same for standard error
+};
+
 /// Starts `arguments[0]` (a path, or a name on PATH) with posix_spawn, without a shell, and returns
 /// its process id. The child has no blocked signals and the default dispositions of SIGINT, SIGTERM
 /// and SIGPIPE, whatever this process does with them, so Ctrl-C in a terminal ends it at once.
 /// Returns the system's error if it could not be started.
-absl::StatusOr<pid_t> spawn(const std::vector<std::string>& arguments,
-                            const posix_spawn_file_actions_t& actions);
+absl::StatusOr<pid_t> spawn(const std::vector<std::string>& arguments, const SpawnStreams& streams);
 
 }  // namespace bandsaw::coordinator
