@@ -59,12 +59,19 @@ AskedChild::~AskedChild() {
   }
 }
 
-ChildOutcome AskedChild::ended(ChildOutcome::End how) {
-  ChildOutcome outcome{.end = how, .output = skipped_ + received_};
-  if (how != ChildOutcome::End::kExited) {
-    kill(pid_, SIGKILL);
-  }
+ChildOutcome AskedChild::killed(ChildOutcome::End why) {
+  ChildOutcome outcome{.end = why, .output = skipped_ + received_};
+  kill(pid_, SIGKILL);
   waitpid(std::exchange(pid_, -1), &outcome.wait_status, 0);
+  return outcome;
+}
+
+std::optional<ChildOutcome> AskedChild::exited() {
+  ChildOutcome outcome{.output = skipped_ + received_};
+  if (waitpid(pid_, &outcome.wait_status, WNOHANG) == 0) {
+    return std::nullopt;
+  }
+  pid_ = -1;
   return outcome;
 }
 
@@ -92,20 +99,24 @@ std::variant<std::string, ChildOutcome> AskedChild::ask(const std::string& line,
     if (std::optional<std::string> answer = next_answer()) {
       return *std::move(answer);
     }
+    if (!open_) {
+      if (std::optional<ChildOutcome> outcome = exited()) {
+        return *std::move(outcome);
+      }
+    }
     if (stop != nullptr && stop->load()) {
-      return ended(ChildOutcome::End::kStopped);
+      return killed(ChildOutcome::End::kStopped);
     }
     if (Clock::now() >= deadline) {
-      return ended(ChildOutcome::End::kTimedOut);
+      return killed(ChildOutcome::End::kTimedOut);
     }
-    pollfd ready{stream_, POLLIN, 0};
-    if (poll(&ready, 1, kLookEveryMs) > 0) {
+    pollfd ready{open_ ? stream_ : -1, POLLIN, 0};
+    // A child that closed its end normally exits within moments.
+    if (poll(&ready, 1, open_ ? kLookEveryMs : 1) > 0) {
       std::array<char, 4096> buffer{};
       const ssize_t got = read(stream_, buffer.data(), buffer.size());
-      if (got <= 0) {
-        return ended(ChildOutcome::End::kExited);
-      }
-      received_.append(buffer.data(), static_cast<std::size_t>(got));
+      open_ = got > 0;
+      received_.append(buffer.data(), static_cast<std::size_t>(std::max<ssize_t>(got, 0)));
     }
   }
 }

@@ -40,11 +40,14 @@ class AskedChild {
  private:
   AskedChild(pid_t pid, int stream, std::string prefix)
       : pid_(pid), stream_(stream), prefix_(std::move(prefix)) {}
-  ChildOutcome ended(ChildOutcome::End how);
+  ChildOutcome killed(ChildOutcome::End why);
+  /// Returns how the child exited; std::nullopt: it runs.
+  std::optional<ChildOutcome> exited();
   std::optional<std::string> next_answer();
 
   pid_t pid_;
   const int stream_;  ///< both ways
+  bool open_ = true;  ///< the child has not closed its end of the stream
   const std::string prefix_;
   std::string received_;  ///< beyond the last line
   std::string skipped_;   ///< lines that are no answers, at most 64 KiB
