@@ -350,7 +350,7 @@ absl::StatusOr<ImportedScene> import_scene(const std::string& path, const Import
   }
   RETURN_IF_ERROR(check_whole(choices, draft));
   if (memory != nullptr) {
-    memory->images.end_import();
+    memory->images.end_round();
   }
   return std::move(draft.out);
 }

@@ -4,11 +4,12 @@
 // sequence does not hash them again.
 
 #include <cstddef>
-#include <map>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "proto/wire/digest.h"
+#include "renderlib/base/kept_values.h"
 #include "renderlib/base/shared_bytes.h"
 #include "renderlib/geometry/mesh.h"
 
@@ -18,7 +19,7 @@ namespace bandsaw {
 class EncodedParts {
  public:
   /// Returns true for a mesh of the last package.
-  bool knows(const Mesh& mesh) const { return meshes_.find(&mesh) != meshes_.end(); }
+  bool knows(const Mesh& mesh) const { return meshes_.contains(&mesh); }
   /// Returns the message of a mesh of the last package (package::Mesh), which becomes part of this
   /// one; nullptr: it was not in it.
   const std::string* message_of(const Mesh& mesh);
@@ -27,22 +28,21 @@ class EncodedParts {
 
   void add(std::shared_ptr<const Mesh> mesh, std::string message);
   void add(SharedBytes bytes, const wire::Digest& digest);
-  /// Ends the present package: forgets what was not part of it.
+  /// Ends the present package: forgets the parts that were not in it.
   void end_package();
 
  private:
   struct KnownMesh {
     std::shared_ptr<const Mesh> mesh;
     std::string message;
-    bool used = true;
   };
   struct KnownBytes {
     SharedBytes bytes;
     wire::Digest digest;
-    bool used = true;
   };
-  std::map<const Mesh*, KnownMesh> meshes_;
-  std::map<const std::byte*, KnownBytes> bytes_;
+  KeptValues<const Mesh*, KnownMesh> meshes_;
+  /// Keyed by address and number of bytes.
+  KeptValues<std::pair<const std::byte*, std::size_t>, KnownBytes> bytes_;
 };
 
 }  // namespace bandsaw

@@ -187,9 +187,8 @@ absl::StatusOr<TextureStore::Decoded> TextureStore::decoded(
     const Key& whole, const std::string& name, const Use& use,
     absl::FunctionRef<absl::StatusOr<std::string>()> read) {
   if (memory_ != nullptr) {
-    if (const auto kept = memory_->images_.find(whole); kept != memory_->images_.end()) {
-      kept->second.used = true;
-      return kept->second.decoded;
+    if (const Decoded* kept = memory_->find(whole)) {
+      return *kept;
     }
   }
   ASSIGN_OR_RETURN(const std::string bytes, read());
@@ -200,16 +199,9 @@ absl::StatusOr<TextureStore::Decoded> TextureStore::decoded(
   }
   out.image = *std::move(image);
   if (memory_ != nullptr) {
-    memory_->images_[whole] = {out};
+    memory_->set(whole, out);
   }
   return out;
-}
-
-void TextureStore::Memory::end_import() {
-  std::erase_if(images_, [](const auto& kept) { return !kept.second.used; });
-  for (auto& [key, kept] : images_) {
-    kept.used = false;
-  }
 }
 
 absl::StatusOr<TextureId> TextureStore::image(

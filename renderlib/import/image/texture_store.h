@@ -13,13 +13,23 @@
 #include "absl/status/statusor.h"
 #include "absl/strings/string_view.h"
 #include "renderlib/base/ids.h"
+#include "renderlib/base/kept_values.h"
 #include "renderlib/texture/texture.h"
 
 namespace bandsaw {
 
 class TextureStore {
+  /// An image with its use.
+  using Key = std::tuple<std::string, int, int, std::array<float, 3>, int, UvSet,
+                         std::array<double, 6>, std::optional<ImageTexture::Wrap>, double>;
+  struct Decoded {
+    ImageTexture image;
+    std::vector<std::string> warnings;  ///< of the decoder
+  };
+
  public:
-  class Memory;
+  /// Images of earlier imports of the same files.
+  using Memory = KeptValues<Key, Decoded>;
   /// All arguments MUST outlive this object. `memory`: where images are kept for other stores;
   /// nullptr: nowhere.
   TextureStore(std::vector<Texture>& textures, std::vector<std::string>& warnings,
@@ -56,33 +66,9 @@ class TextureStore {
   float max_value(TextureId id) const { return bandsaw::max_value(textures_, id); }
 
  private:
-  /// An image with its use.
-  using Key = std::tuple<std::string, int, int, std::array<float, 3>, int, UvSet,
-                         std::array<double, 6>, std::optional<ImageTexture::Wrap>, double>;
-  struct Decoded {
-    ImageTexture image;
-    std::vector<std::string> warnings;  ///< of the decoder
-  };
   absl::StatusOr<Decoded> decoded(const Key& whole, const std::string& name, const Use& use,
                                   absl::FunctionRef<absl::StatusOr<std::string>()> read);
 
- public:
-  /// Images of an earlier import of the same files.
-  class Memory {
-   public:
-    /// Forgets the images that were not used since the last call.
-    void end_import();
-
-   private:
-    friend class TextureStore;
-    struct Kept {
-      Decoded decoded;
-      bool used = true;
-    };
-    std::map<Key, Kept> images_;
-  };
-
- private:
   std::vector<Texture>& textures_;
   std::vector<std::string>& warnings_;
   Memory* memory_;

@@ -1,0 +1,29 @@
+#include "renderlib/base/kept_values.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace bandsaw {
+namespace {
+
+TEST(KeptValues, ForgetsValuesThatARoundDidNotUse) {
+  KeptValues<int, std::string> values;
+  values.set(1, "one");
+  values.set(2, "two");
+  values.end_round();
+  ASSERT_NE(values.find(1), nullptr);
+  EXPECT_EQ(*values.find(1), "one");
+  values.set(3, "three");
+  values.end_round();
+  EXPECT_TRUE(values.contains(1));
+  EXPECT_FALSE(values.contains(2));
+  EXPECT_EQ(values.find(2), nullptr);
+  EXPECT_TRUE(values.contains(3));
+  values.end_round();
+  EXPECT_FALSE(values.contains(1));
+  EXPECT_FALSE(values.contains(3));
+}
+
+}  // namespace
+}  // namespace bandsaw
