@@ -123,7 +123,7 @@ struct Accel::Trees {
     }
   }
 
-  /// Those of the meshes are built without culling.
+  /// For the BVHs of groups and of the top level; those of meshes are built without culling.
   void disable_culling() {
     for (ShapesTree& group : prototypes.groups) {
       bandsaw::disable_culling(group.tree);

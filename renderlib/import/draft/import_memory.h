@@ -1,6 +1,6 @@
 #pragma once
 
-// What imports of one scene at several frames use again: its files are read once.
+// Memory that the imports of one scene at several frames share, so that its files are read once.
 
 #include <map>
 #include <memory>

@@ -104,7 +104,7 @@ TEST(ImportSession, GivesEachFrameTheBytesOfAProcessOfItsOwn) {
       ASSERT_TRUE(alone.ok()) << alone.status();
       EXPECT_EQ(package->manifest(), alone->manifest());
       EXPECT_TRUE(decode_package(package->manifest(), package->blobs()).ok());
-      // Of the frames before nothing is left: the manifest, and its blobs.
+      // The folder has nothing of earlier frames: only the manifest and its blobs.
       const auto kept = std::filesystem::directory_iterator(scratch.path())->path().string();
       EXPECT_EQ(entries(kept), 1 + package_blobs(package->manifest())->size());
     }
