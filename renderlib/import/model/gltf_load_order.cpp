@@ -15,6 +15,7 @@ using gltf::Json;
 using gltf::list;
 using gltf::name_in;
 using gltf::number;
+using gltf::object;
 
 constexpr char kLights[] = "KHR_lights_punctual";
 
@@ -103,7 +104,9 @@ class Walk {
   using Loaded = std::map<const Json*, std::size_t>;
   static void add(const Json* what, std::size_t node, Loaded& loaded, std::vector<GltfAtNode>& to) {
     if (what != nullptr) {
-      to.push_back({node, loaded.emplace(what, loaded.size()).first->second, name_in(*what)});
+      const Json* perspective = object(*what, "perspective");
+      to.push_back({node, loaded.emplace(what, loaded.size()).first->second, name_in(*what),
+                    perspective == nullptr ? std::nullopt : number(*perspective, "yfov")});
     }
   }
 

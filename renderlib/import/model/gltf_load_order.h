@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,9 @@ struct GltfAtNode {
   std::size_t node = 0;    ///< index of the node in Assimp's tree, parents first
   std::size_t loaded = 0;  ///< index among the objects of its kind, in Assimp's order
   std::string name;        ///< its own name, not its node's; may be empty
+  /// The vertical field of view in radians, of a perspective camera. Assimp passes on a horizontal
+  /// one, which its versions compute in different ways.
+  std::optional<double> vertical_fov;
 };
 
 /// Load order of the default scene: nodes depth first, each after its children.

@@ -93,8 +93,9 @@ ModelKind kind_of(const std::string& path) {
                                                   : ModelKind::kOther;
 }
 
-// Returns the rotation of an FBX file to +y up, +z front and +x right: the file names its axes, but
-// Assimp 5.2 does not rotate the scene.
+// Returns the rotation of an FBX file to +y up, +z front and +x right: the file names its axes.
+// Assimp 5.2 does not rotate the scene; Assimp 5.4 does it in the root, with a scale by the file's
+// unit, which is undone here, so that every version gives the same scene.
 Transform upright(const aiScene& scene) {
   struct Axis {
     const char* name;
@@ -114,7 +115,9 @@ Transform upright(const aiScene& scene) {
     scene.mMetaData->Get(kAxes[row].sign, sign);
     turned.m[row][static_cast<std::size_t>(axis)] = sign < 0 ? -1 : 1;
   }
-  return determinant(turned) == 1 ? turned : Transform{};
+  const std::optional<Transform> unturned =
+      inverse(bandsaw::transform_of(scene.mRootNode->mTransformation));
+  return determinant(turned) == 1 && unturned ? turned * *unturned : Transform{};
 }
 
 void turn(const Transform& by, Model& model) {

@@ -22,10 +22,20 @@ constexpr std::size_t kMaxInstances = 1'000'000;
 
 Vec3 vector_of(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
-// Returns the vertical field of view. Assimp's glTF reader stores the vertical angle times the
+struct CameraAtNode {
+  const aiCamera* camera = nullptr;
+  std::string name = {};                              ///< its own name
+  std::optional<double> vertical_fov = std::nullopt;  ///< as GltfAtNode::vertical_fov
+};
+
+// Returns the vertical field of view. Assimp's reader of glTF 1 stores the vertical angle times the
 // aspect ratio, or the vertical angle itself if the file has no ratio; other readers store the
 // horizontal angle.
-double vertical_fov_degrees(const aiCamera& camera, bool gltf) {
+double vertical_fov_degrees(const CameraAtNode& found, bool gltf) {
+  if (found.vertical_fov) {
+    return *found.vertical_fov * 180 / kPi;
+  }
+  const aiCamera& camera = *found.camera;
   const double aspect = camera.mAspect > 0 ? camera.mAspect : 1;
   if (gltf) {
     return camera.mHorizontalFOV / aspect * 180 / kPi;
@@ -35,7 +45,8 @@ double vertical_fov_degrees(const aiCamera& camera, bool gltf) {
 }
 
 // Returns std::nullopt if the camera is invalid.
-std::optional<Camera> camera_of(const aiCamera& camera, const Transform& node, bool gltf) {
+std::optional<Camera> camera_of(const CameraAtNode& found, const Transform& node, bool gltf) {
+  const aiCamera& camera = *found.camera;
   View view;
   // Assimp 5.2 copies the node's translation into the camera of some files; cameras are at the
   // node's origin.
@@ -43,7 +54,7 @@ std::optional<Camera> camera_of(const aiCamera& camera, const Transform& node, b
   view.look_at = view.position + node.direction(vector_of(camera.mLookAt));
   view.up = node.direction(vector_of(camera.mUp));
   Camera out =
-      PerspectiveCamera{view.position, view.look_at, view.up, vertical_fov_degrees(camera, gltf)};
+      PerspectiveCamera{view.position, view.look_at, view.up, vertical_fov_degrees(found, gltf)};
   if (camera.mOrthographicWidth > 0) {
     // glTF's xmag is half of the width; the aspect ratio is xmag over ymag.
     const double aspect = camera.mAspect > 0 ? camera.mAspect : 1;
@@ -93,7 +104,7 @@ class Walk {
     const aiScene& scene = file.scene;
     for (const GltfAtNode& camera : file.gltf.cameras) {
       if (camera.loaded < scene.mNumCameras) {
-        standing_[camera.node] = {scene.mCameras[camera.loaded], camera.name};
+        standing_[camera.node] = {scene.mCameras[camera.loaded], camera.name, camera.vertical_fov};
       }
     }
     for (const GltfAtNode& light : file.gltf.lights) {
@@ -135,11 +146,6 @@ class Walk {
     const aiNode* node;
     NodePlace parent;
   };
-  struct CameraAtNode {
-    const aiCamera* camera = nullptr;
-    std::string name = {};  ///< its own name
-  };
-
   NodePlace place_of(const aiNode& node, const NodePlace& parent) {
     const NodeMotion* motion = motion_of(file_.animation ? &*file_.animation : nullptr, visited_);
     const Shutter& shutter = file_.draft.shutter;
@@ -201,13 +207,13 @@ class Walk {
       return;
     }
     const bool gltf = file_.kind == ModelKind::kGltf;
-    const auto camera = camera_of(*found.camera, place.at_open, gltf);
+    const auto camera = camera_of(found, place.at_open, gltf);
     if (!camera) {
       return;
     }
     model.cameras.push_back({node.mName.C_Str(), found.name, *camera});
     if (!(place.at_open == place.at_close)) {
-      model.cameras.back().at_close = camera_of(*found.camera, place.at_close, gltf);
+      model.cameras.back().at_close = camera_of(found, place.at_close, gltf);
     }
   }
 
