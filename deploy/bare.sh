@@ -21,10 +21,13 @@ bare_make() {
   fi
   cp /etc/resolv.conf "$root/etc/resolv.conf"
   mountpoint -q "$root/proc" || mount -t proc proc "$root/proc"
+  # Terminals of its own, for tests that need one.
+  mountpoint -q "$root/dev/pts" || mount -t devpts -o newinstance,ptmxmode=0666,mode=620 devpts "$root/dev/pts"
 }
 
 # bare_close ROOT: unmounts everything that bare_make mounted. MUST be called before the folder is removed.
 bare_close() {
+  ! mountpoint -q "$1/dev/pts" || umount "$1/dev/pts"
   ! mountpoint -q "$1/proc" || umount "$1/proc"
 }
 
