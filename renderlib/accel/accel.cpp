@@ -27,10 +27,11 @@ bool trace_moving_instance(const MovingInstance& moving, const Geometry& geometr
     to_object.m[0][3] = back.x;
     to_object.m[1][3] = back.y;
     to_object.m[2][3] = back.z;
-    return trace_placed(moving.prototype, to_object, ray, moving.instance, query);
+    return trace_placed(moving.prototype, to_object, geometry.shutter, ray, moving.instance, query);
   }
   const std::optional<Transform> to_object = inverse(to_world);
-  return to_object && trace_placed(moving.prototype, *to_object, ray, moving.instance, query);
+  return to_object &&
+         trace_placed(moving.prototype, *to_object, geometry.shutter, ray, moving.instance, query);
 }
 
 /// Traces the ray through the moving instances at the ray's time. Returns true if the query is
@@ -44,9 +45,9 @@ template <class Query>
   }
   const FloatRay floats(trace_setup(ray.origin, ray.direction, ray.t_max), tree.tree.reach);
   float bound = floats.above(query.bound());
-  const float share = tree.share(ray.time);
+  const float share = ShutterTime(geometry.shutter, ray.time).share;
   const auto enter = [&](std::uint32_t node, Float8& at) {
-    return enter_moving_children(tree, node, share, floats, bound, at);
+    return enter_moving_children(tree.tree, tree.changes, node, share, floats, bound, at);
   };
   return traverse<!Query::kAny>(tree.tree, bound, enter, [&](ChildRef leaf) {
     const bool stop = trace_moving_instance(tree.moving[leaf.leaf_index()], geometry, ray, query);
@@ -65,7 +66,7 @@ using KnownTrees = std::map<const Mesh*, std::shared_ptr<const MeshTree>>;
 MeshTree build_tree_of(const Mesh& mesh, bool culls, Pool* pool) {
   MeshTree tree = build_mesh_tree(mesh, pool);
   if (!culls) {
-    disable_culling(tree.tree);
+    disable_culling(tree.tree, tree.changes);
   }
   return tree;
 }
@@ -129,7 +130,7 @@ struct Accel::Trees {
       bandsaw::disable_culling(group.tree);
     }
     bandsaw::disable_culling(top.tree);
-    bandsaw::disable_culling(moving);
+    bandsaw::disable_culling(moving.tree, moving.changes);
   }
 };
 
@@ -138,8 +139,8 @@ Accel::Accel(Accel&&) noexcept = default;
 Accel& Accel::operator=(Accel&&) noexcept = default;
 Accel::~Accel() = default;
 
-Accel Accel::build(const Geometry& geometry, Pool& pool, const Interval& interval,
-                   Traversal traversal, absl::Span<const Accel* const> earlier) {
+Accel Accel::build(const Geometry& geometry, Pool& pool, Traversal traversal,
+                   absl::Span<const Accel* const> earlier) {
   const bool culls = traversal == Traversal::kBvh;
   KnownTrees known;
   for (const Accel* accel : culls ? earlier : absl::Span<const Accel* const>()) {
@@ -151,7 +152,7 @@ Accel Accel::build(const Geometry& geometry, Pool& pool, const Interval& interva
   prototypes.meshes = build_meshes(geometry.meshes, known, culls, pool);
   prototypes.groups = build_groups(geometry.groups, pool);
   trees->top = build_top_tree(geometry, prototypes, &pool);
-  trees->moving = build_moving_tree(geometry, prototypes, interval, &pool);
+  trees->moving = build_moving_tree(geometry, prototypes, &pool);
   if (!culls) {
     trees->disable_culling();
   }

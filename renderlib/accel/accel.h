@@ -9,7 +9,6 @@
 
 #include "absl/types/span.h"
 #include "renderlib/base/pool.h"
-#include "renderlib/geometry/moving_bounds.h"
 #include "renderlib/geometry/ray.h"
 #include "renderlib/geometry/shapes.h"
 
@@ -24,11 +23,10 @@ enum class Traversal {
 class Accel {
  public:
   /// Builds the BVHs. `geometry` MUST outlive the result and not change. Moving instances are only
-  /// found by rays whose time is within `interval`. `earlier`: the BVHs of other geometries, which
-  /// MUST NOT be of kBruteForce; BVHs of meshes that `geometry` shares with one of them are shared
-  /// as well. kBruteForce shares none.
-  static Accel build(const Geometry& geometry, Pool& pool, const Interval& interval = {},
-                     Traversal traversal = Traversal::kBvh,
+  /// found by rays whose time is within Geometry::shutter. `earlier`: the BVHs of other geometries,
+  /// which MUST NOT be of kBruteForce; BVHs of meshes that `geometry` shares with one of them are
+  /// shared as well. kBruteForce shares none.
+  static Accel build(const Geometry& geometry, Pool& pool, Traversal traversal = Traversal::kBvh,
                      absl::Span<const Accel* const> earlier = {});
 
   Accel(Accel&&) noexcept;

@@ -1,5 +1,6 @@
 #include "renderlib/accel/disable_culling.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 
@@ -33,11 +34,9 @@ void disable_culling(WideTree& tree) {
   }
 }
 
-void disable_culling(MovingTree& tree) {
-  disable_culling(tree.tree);
-  for (MovingTree::Change& change : tree.change) {
-    change = {};
-  }
+void disable_culling(WideTree& tree, NodeChanges& changes) {
+  disable_culling(tree);
+  std::fill(changes.begin(), changes.end(), NodeChanges::value_type{});
 }
 
 }  // namespace bandsaw

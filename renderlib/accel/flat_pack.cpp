@@ -18,15 +18,30 @@ float longest(const FlatPacker::Corners& corners) {
   return most;
 }
 
+/// Returns the largest absolute coordinate.
+float reach_of(const FlatPacker::Corners& corners) {
+  float reach = 0;
+  for (const std::array<float, 3>& corner : corners) {
+    for (const float x : corner) {
+      reach = std::max(reach, std::abs(x));
+    }
+  }
+  return reach;
+}
+
+void store(const FlatPacker::Corners& corners, std::size_t lane, FlatPack::Corners& to) {
+  for (std::size_t which = 0; which < 3; ++which) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      to[3 * which + k][lane] = corners[which][k];
+    }
+  }
+}
+
 }  // namespace
 
 void FlatPacker::add(const Corners& corners, std::uint32_t primitive) {
   const std::size_t lane = count_++;
-  for (std::size_t which = 0; which < 3; ++which) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      pack_.corner[3 * which + k][lane] = corners[which][k];
-    }
-  }
+  store(corners, lane, pack_.corner);
   pack_.primitive[lane] = primitive;
   pack_.lanes |= 1u << lane;
   // The factor covers twice the rounding of the difference.
@@ -35,13 +50,18 @@ void FlatPacker::add(const Corners& corners, std::uint32_t primitive) {
 
 void FlatPacker::add_rounded(const Corners& corners, std::uint32_t primitive) {
   add(corners, primitive);
-  float reach = 0;
-  for (const std::array<float, 3>& corner : corners) {
-    for (const float x : corner) {
-      reach = std::max(reach, std::abs(x));
-    }
-  }
-  pack_.size = std::max(pack_.size, (longest(corners) + 4 * reach) * (1 + 0x1p-20f));
+  pack_.size = std::max(pack_.size, (longest(corners) + 4 * reach_of(corners)) * (1 + 0x1p-20f));
+}
+
+void FlatPacker::add_moving(const Corners& at_open, const Corners& at_close,
+                            std::uint32_t primitive, FlatPack::Corners& to) {
+  store(at_close, count_, to);
+  add(at_open, primitive);
+  // An edge is at no time longer than at both ends, but for the rounding of its corners, at most 2u
+  // of their largest component each.
+  pack_.size = std::max(pack_.size, (std::max(longest(at_open), longest(at_close)) +
+                                     std::max(reach_of(at_open), reach_of(at_close)) * 0x1p-21f) *
+                                        (1 + 0x1p-20f));
 }
 
 }  // namespace bandsaw

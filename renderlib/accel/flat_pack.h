@@ -16,10 +16,12 @@ struct FlatPack {
   static_assert(kPackSize == kCornerStride, "hits refer to corners");
 
   /// [3 * corner + axis][lane]; unused lanes are zero.
-  std::array<std::array<float, kPackSize>, 9> corner;
+  using Corners = std::array<std::array<float, kPackSize>, 9>;
+  Corners corner;
   std::array<std::uint32_t, kPackSize> primitive;
   /// At least the absolute value of every component of every edge. If corners were rounded, four
-  /// times their largest component is added (README.md, "Triangles").
+  /// times their largest component is added (README.md, "Triangles"). If they move, it holds for
+  /// all times.
   float size;
   std::uint32_t lanes;  ///< bit i: lane i is used
 
@@ -37,6 +39,9 @@ class FlatPacker {
   void add(const Corners& corners, std::uint32_t primitive);
   /// Adds a triangle whose corners were rounded from double.
   void add_rounded(const Corners& corners, std::uint32_t primitive);
+  /// Adds a triangle that moves; its corners at the end of the interval are stored in `to`.
+  void add_moving(const Corners& at_open, const Corners& at_close, std::uint32_t primitive,
+                  FlatPack::Corners& to);
 
  private:
   FlatPack& pack_;

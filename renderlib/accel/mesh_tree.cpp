@@ -27,9 +27,45 @@ void in_pieces(std::size_t count, Pool* pool,
   });
 }
 
-FlatPacker::Corners corners_of(const Mesh& mesh, std::size_t triangle) {
+using Positions = std::vector<std::array<float, 3>>;
+
+FlatPacker::Corners corners_of(const Mesh& mesh, const Positions& positions, std::size_t triangle) {
   const auto& [a, b, c] = mesh.triangles[triangle];
-  return {mesh.positions[a], mesh.positions[b], mesh.positions[c]};
+  return {positions[a], positions[b], positions[c]};
+}
+
+FloatBox box_of(const FlatPacker::Corners& corners) {
+  FloatBox box;
+  for (const std::array<float, 3>& corner : corners) {
+    box.add({corner, corner});
+  }
+  return box;
+}
+
+bool all_finite(const FlatPacker::Corners& corners) {
+  return std::all_of(corners.begin(), corners.end(), [](const std::array<float, 3>& corner) {
+    return std::isfinite(corner[0]) && std::isfinite(corner[1]) && std::isfinite(corner[2]);
+  });
+}
+
+/// Returns the box of a triangle that moves, at the middle of the interval; an empty box if it is
+/// omitted.
+FloatBox middle_bounds(const FlatPacker::Corners& open, const FlatPacker::Corners& close) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t next = (i + 1) % 3;
+    if (open[i] == open[next] && close[i] == close[next]) {
+      return {};
+    }
+  }
+  FlatPacker::Corners change{};
+  FlatPacker::Corners half{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      change[i][k] = close[i][k] - open[i][k];  // might overflow, and is used by ShutterTime
+      half[i][k] = 0.5f * open[i][k] + 0.5f * close[i][k];
+    }
+  }
+  return all_finite(open) && all_finite(close) && all_finite(change) ? box_of(half) : FloatBox{};
 }
 
 /// Returns an empty box if the triangle is omitted.
@@ -38,18 +74,14 @@ FloatBox bounds(const Mesh& mesh, std::size_t triangle) {
   if (*std::max_element(indices.begin(), indices.end()) >= mesh.positions.size()) {
     return {};
   }
-  const FlatPacker::Corners corners = corners_of(mesh, triangle);
+  const FlatPacker::Corners corners = corners_of(mesh, mesh.positions, triangle);
+  if (deforms(mesh)) {
+    return middle_bounds(corners, corners_of(mesh, mesh.positions_at_close, triangle));
+  }
   if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) {
     return {};
   }
-  FloatBox box;
-  bool finite = true;
-  for (const std::array<float, 3>& corner : corners) {
-    box.add({corner, corner});
-    finite =
-        finite && std::isfinite(corner[0]) && std::isfinite(corner[1]) && std::isfinite(corner[2]);
-  }
-  return finite ? box : FloatBox{};
+  return all_finite(corners) ? box_of(corners) : FloatBox{};
 }
 
 TreeItems items_of(const Mesh& mesh, Pool* pool) {
@@ -69,7 +101,60 @@ TreeItems items_of(const Mesh& mesh, Pool* pool) {
   return items;
 }
 
+/// A leaf: a range of BinaryTree::items.
+struct Leaf {
+  std::uint32_t first;
+  std::uint32_t count;
+};
+
+void fill_packs(const Mesh& mesh, const BinaryTree& binary, const std::vector<Leaf>& leaves,
+                Pool* pool, MeshTree& tree) {
+  tree.packs.resize(leaves.size());
+  if (deforms(mesh)) {
+    tree.corners_at_close.resize(leaves.size(), {});
+  }
+  in_pieces(leaves.size(), pool, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i) {
+      FlatPacker packer(tree.packs[i]);
+      for (std::uint32_t k = 0; k < leaves[i].count; ++k) {
+        const std::uint32_t triangle = binary.items[leaves[i].first + k].index;
+        const FlatPacker::Corners corners = corners_of(mesh, mesh.positions, triangle);
+        if (deforms(mesh)) {
+          packer.add_moving(corners, corners_of(mesh, mesh.positions_at_close, triangle), triangle,
+                            tree.corners_at_close[i]);
+        } else {
+          packer.add(corners, triangle);
+        }
+      }
+    }
+  });
+}
+
+/// Returns the bounds of the used lanes of a pack.
+Box box_of(const FlatPack::Corners& corners, std::uint32_t lanes) {
+  Box box;
+  for (std::size_t lane = 0; lane < kPackSize; ++lane) {
+    for (std::size_t which = 0; which < 3 && (lanes >> lane & 1u) != 0; ++which) {
+      box.add(
+          {corners[3 * which][lane], corners[3 * which + 1][lane], corners[3 * which + 2][lane]});
+    }
+  }
+  return box;
+}
+
 }  // namespace
+
+FlatPack pack_at(const MeshTree& mesh, std::uint32_t index, const ShutterTime& now) {
+  FlatPack pack = mesh.packs[index];
+  const FlatPack::Corners& at_close = mesh.corners_at_close[index];
+  const Float8 factor(now.factor);
+  for (std::size_t row = 0; row < pack.corner.size(); ++row) {
+    const Float8 open = Float8::load(pack.corner[row].data());
+    const Float8 close = Float8::load(at_close[row].data());
+    fused(close - open, factor, now.from_close ? close : open).store(pack.corner[row].data());
+  }
+  return pack;
+}
 
 MeshTree build_mesh_tree(const Mesh& mesh, Pool* pool) {
   BANDSAW_CHECK(mesh.triangles.size() <= kMaxTreeItems, "scene/check_counts.h refuses more");
@@ -78,28 +163,26 @@ MeshTree build_mesh_tree(const Mesh& mesh, Pool* pool) {
   if (binary.nodes.empty()) {
     return result;
   }
-  const FloatBox& box = binary.nodes[0].box;
-  result.box.add({box.lo[0], box.lo[1], box.lo[2]});
-  result.box.add({box.hi[0], box.hi[1], box.hi[2]});
-  struct Leaf {
-    std::uint32_t first;
-    std::uint32_t count;
-  };
   std::vector<Leaf> leaves;
   result.tree = collapse(binary, [&leaves](const BinaryNode& leaf) {
     leaves.push_back({leaf.first, leaf.count});
     return ChildRef::leaf(LeafKind::kFlats, static_cast<std::uint32_t>(leaves.size() - 1));
   });
-  result.packs.resize(leaves.size());
-  in_pieces(leaves.size(), pool, [&](std::size_t first, std::size_t end) {
-    for (std::size_t i = first; i < end; ++i) {
-      FlatPacker packer(result.packs[i]);
-      for (std::uint32_t k = 0; k < leaves[i].count; ++k) {
-        const std::uint32_t triangle = binary.items[leaves[i].first + k].index;
-        packer.add(corners_of(mesh, triangle), triangle);
-      }
-    }
-  });
+  fill_packs(mesh, binary, leaves, pool, result);
+  if (deforms(mesh)) {
+    const auto box_of_leaf = [&](ChildRef leaf) {
+      const FlatPack& pack = result.packs[leaf.leaf_index()];
+      const MovingBox box = {box_of(pack.corner, pack.lanes),
+                             box_of(result.corners_at_close[leaf.leaf_index()], pack.lanes)};
+      result.box = both(result.box, both(box.at_open, box.at_close));
+      return box;
+    };
+    result.changes = set_moving_bounds(box_of_leaf, result.tree);
+    return result;
+  }
+  const FloatBox& box = binary.nodes[0].box;
+  result.box.add({box.lo[0], box.lo[1], box.lo[2]});
+  result.box.add({box.hi[0], box.hi[1], box.hi[2]});
   return result;
 }
 

@@ -100,6 +100,7 @@ ChildRef ShapeItems::make_leaf(const BinaryTree& tree, const BinaryNode& leaf) {
 
 ShapesTree build_shapes_tree(const Shapes& shapes, Pool* pool) {
   ShapesTree result;
+  result.shapes = &shapes;
   ShapeItems shape_items(shapes, result);
   TreeItems items;
   shape_items.add_all(items);

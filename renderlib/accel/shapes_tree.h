@@ -19,6 +19,7 @@ struct ShapesTree {
   std::vector<SpherePack> spheres;
   std::vector<SpherePack> disks;  ///< bounding spheres of the disks
   Box box;                        ///< bounds of all shapes
+  const Shapes* shapes = nullptr;
 
   std::size_t bytes() const {
     return tree.bytes() + flats.capacity() * sizeof(FlatPack) +
@@ -49,6 +50,7 @@ class ShapeItems {
 /// Appends an item. Returns false if its box cannot be hit and the item is left out.
 bool add_item(const Box& box, std::uint32_t index, LeafKind kind, TreeItems& items);
 
+/// Builds the tree of a group. `shapes` MUST outlive the result and not be moved in memory.
 ShapesTree build_shapes_tree(const Shapes& shapes, Pool* pool);
 
 }  // namespace bandsaw

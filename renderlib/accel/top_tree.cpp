@@ -13,7 +13,7 @@ void add_instances(const Geometry& geometry, const Prototypes& prototypes, TopTr
   for (std::size_t i = 0; i < geometry.instances.size(); ++i) {
     const Instance& instance = geometry.instances[i];
     const std::optional<Transform> to_object = inverse(instance.to_world);
-    const std::optional<Prototype> prototype = prototypes.of(geometry, instance);
+    const std::optional<Prototype> prototype = prototypes.of(instance);
     if (instance.frame == kNoFrame && to_object && prototype &&
         add_item(placed_bounds(prototype->box(), instance.to_world, *to_object),
                  static_cast<std::uint32_t>(top.placed.size()), LeafKind::kInstance, items)) {
@@ -25,13 +25,13 @@ void add_instances(const Geometry& geometry, const Prototypes& prototypes, TopTr
 
 }  // namespace
 
-std::optional<Prototype> Prototypes::of(const Geometry& geometry, const Instance& instance) const {
+std::optional<Prototype> Prototypes::of(const Instance& instance) const {
   Prototype prototype;
   if (instance.group != kNoGroup && index_of(instance.group) < groups.size()) {
     prototype.group = &groups[index_of(instance.group)];
-    prototype.shapes = &geometry.groups[index_of(instance.group)];
   } else if (instance.group == kNoGroup && index_of(instance.mesh) < meshes.size()) {
-    prototype.mesh = meshes[index_of(instance.mesh)].get();
+    const MeshTree& mesh = *meshes[index_of(instance.mesh)];
+    (mesh.deforms() ? prototype.deforming : prototype.mesh) = &mesh;
   } else {
     return std::nullopt;
   }

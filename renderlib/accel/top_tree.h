@@ -13,14 +13,17 @@
 
 namespace bandsaw {
 
-/// BVH of a mesh or of a group.
+/// BVH of a mesh or of a group; one of the pointers is not null.
 struct Prototype {
-  const MeshTree* mesh = nullptr;  ///< null for a group
+  const MeshTree* mesh = nullptr;  ///< a mesh that does not deform
+  const MeshTree* deforming = nullptr;
   const ShapesTree* group = nullptr;
-  const Shapes* shapes = nullptr;  ///< those of the group
 
-  const Box& box() const { return mesh != nullptr ? mesh->box : group->box; }
-  bool empty() const { return mesh != nullptr ? mesh->tree.empty : group->tree.empty; }
+  const Box& box() const { return group != nullptr ? group->box : any_mesh().box; }
+  bool empty() const { return group != nullptr ? group->tree.empty : any_mesh().tree.empty; }
+
+ private:
+  const MeshTree& any_mesh() const { return mesh != nullptr ? *mesh : *deforming; }
 };
 
 /// BVHs of all meshes and groups. They and the geometry MUST outlive everything built from them,
@@ -31,7 +34,7 @@ struct Prototypes {
   std::vector<ShapesTree> groups;  ///< one for each group
 
   /// Returns the BVH of an instance; std::nullopt if the instance contains nothing that can be hit.
-  std::optional<Prototype> of(const Geometry& geometry, const Instance& instance) const;
+  std::optional<Prototype> of(const Instance& instance) const;
 };
 
 /// An instance that can be hit.

@@ -144,42 +144,72 @@ inline bool trace_leaf(ChildRef leaf, const ShapesTree& tree, const Shapes& shap
 }
 
 template <class Query>
-[[gnu::noinline]] bool trace_group(const Prototype& group, const TracedRay& ray,
+[[gnu::noinline]] bool trace_group(const ShapesTree& group, const TracedRay& ray,
                                    std::uint32_t instance, const PrimitiveId& from, Query& query) {
-  const FloatRay floats(ray, group.group->tree.reach);
+  const FloatRay floats(ray, group.tree.reach);
   float bound = floats.above(query.bound());
   const Started started(instance, from);
-  return traverse<!Query::kAny>(group.group->tree, floats, bound, [&](ChildRef leaf) {
-    return trace_leaf(leaf, *group.group, *group.shapes, ray, floats, started, bound, query);
+  return traverse<!Query::kAny>(group.tree, floats, bound, [&](ChildRef leaf) {
+    return trace_leaf(leaf, group, *group.shapes, ray, floats, started, bound, query);
   });
 }
 
+/// Traces a mesh that deforms, as it is at the time of `world`. Not inlined, for the others' speed.
 template <class Query>
-inline bool trace_prototype(const Prototype& prototype, const TracedRay& ray,
-                            std::uint32_t instance, const PrimitiveId& from, Query& query) {
-  return prototype.mesh != nullptr ? trace_mesh(*prototype.mesh, ray, instance, from, query)
-                                   : trace_group(prototype, ray, instance, from, query);
+[[gnu::noinline]] bool trace_deforming(const MeshTree& mesh, const Interval& shutter,
+                                       const TracedRay& ray, std::uint32_t instance,
+                                       const Ray& world, Query& query) {
+  const ShutterTime now(shutter, world.time);
+  const FloatRay floats(ray, mesh.tree.reach);
+  float bound = floats.above(query.bound());
+  const Started started(instance, world.from);
+  const auto enter = [&](std::uint32_t node, Float8& at) {
+    return enter_moving_children(mesh.tree, mesh.changes, node, now.share, floats, bound, at);
+  };
+  return traverse<!Query::kAny>(mesh.tree, bound, enter, [&](ChildRef leaf) {
+    const FlatPack pack = pack_at(mesh, leaf.leaf_index(), now);
+    return test_flats(pack, floats, instance, started.on, bound, query,
+                      [&](std::size_t lane, Crossing& crossing) {
+                        return intersect_triangle(ray, pack.vertex(lane, 0), pack.vertex(lane, 1),
+                                                  pack.vertex(lane, 2), crossing);
+                      });
+  });
+}
+
+/// `ray` is `world` in the prototype's own space.
+template <class Query>
+inline bool trace_prototype(const Prototype& prototype, const Interval& shutter,
+                            const TracedRay& ray, std::uint32_t instance, const Ray& world,
+                            Query& query) {
+  if (prototype.mesh != nullptr) {
+    return trace_mesh(*prototype.mesh, ray, instance, world.from, query);
+  }
+  return prototype.group != nullptr
+             ? trace_group(*prototype.group, ray, instance, world.from, query)
+             : trace_deforming(*prototype.deforming, shutter, ray, instance, world, query);
 }
 
 /// Traces a prototype in its own space; `to_object` maps the world to it.
 template <class Query>
-inline bool trace_placed(const Prototype& prototype, const Transform& to_object, const Ray& ray,
-                         std::uint32_t instance, Query& query) {
+inline bool trace_placed(const Prototype& prototype, const Transform& to_object,
+                         const Interval& shutter, const Ray& ray, std::uint32_t instance,
+                         Query& query) {
   const Vec3 origin = to_object.point(ray.origin);
   const Vec3 direction = to_object.direction(ray.direction);
   if (!is_traceable({origin, direction, ray.t_max})) {
     return false;
   }
-  return trace_prototype(prototype, trace_setup(origin, direction, ray.t_max), instance, ray.from,
-                         query);
+  return trace_prototype(prototype, shutter, trace_setup(origin, direction, ray.t_max), instance,
+                         ray, query);
 }
 
 template <class Query>
-inline bool trace_instance(const Placed& placed, const TracedRay& world, const Ray& ray,
-                           Query& query) {
+inline bool trace_instance(const Placed& placed, const Interval& shutter, const TracedRay& world,
+                           const Ray& ray, Query& query) {
   return placed.identity
-             ? trace_prototype(placed.prototype, world, placed.instance, ray.from, query)
-             : trace_placed(placed.prototype, placed.to_object, ray, placed.instance, query);
+             ? trace_prototype(placed.prototype, shutter, world, placed.instance, ray, query)
+             : trace_placed(placed.prototype, placed.to_object, shutter, ray, placed.instance,
+                            query);
 }
 
 /// Traces all geometry that does not move. Returns true if the query is finished.
@@ -190,7 +220,8 @@ inline bool trace(const TopTree& top, const Geometry& geometry, const Ray& ray, 
   }
   const TracedRay traced = trace_setup(ray.origin, ray.direction, ray.t_max);
   if (top.tree.root.is_leaf() && top.tree.root.kind() == LeafKind::kInstance) {
-    return trace_instance(top.placed[top.tree.root.leaf_index()], traced, ray, query);
+    return trace_instance(top.placed[top.tree.root.leaf_index()], geometry.shutter, traced, ray,
+                          query);
   }
   const FloatRay floats(traced, top.tree.reach);
   float bound = floats.above(query.bound());
@@ -199,7 +230,8 @@ inline bool trace(const TopTree& top, const Geometry& geometry, const Ray& ray, 
     if (leaf.kind() != LeafKind::kInstance) {
       return trace_leaf(leaf, top, geometry, traced, floats, started, bound, query);
     }
-    const bool stop = trace_instance(top.placed[leaf.leaf_index()], traced, ray, query);
+    const bool stop =
+        trace_instance(top.placed[leaf.leaf_index()], geometry.shutter, traced, ray, query);
     bound = floats.above(query.bound());
     return stop;
   });

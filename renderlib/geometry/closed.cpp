@@ -3,21 +3,28 @@
 #include <algorithm>
 #include <cstdint>
 #include <numeric>
+#include <utility>
 #include <vector>
+
+#include "renderlib/geometry/deforming_mesh.h"
 
 namespace bandsaw {
 namespace {
 
-/// Returns, for each vertex, the lowest index of those at its position.
-std::vector<std::uint32_t> welded(const std::vector<std::array<float, 3>>& positions) {
-  std::vector<std::uint32_t> order(positions.size());
+/// Returns, for each vertex, the lowest index of those at its position, at all times.
+std::vector<std::uint32_t> welded(const Mesh& mesh) {
+  const auto place = [&](std::uint32_t vertex) {
+    return std::pair(mesh.positions[vertex],
+                     deforms(mesh) ? mesh.positions_at_close[vertex] : std::array<float, 3>{});
+  };
+  std::vector<std::uint32_t> order(mesh.positions.size());
   std::iota(order.begin(), order.end(), 0u);
   std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return positions[a] != positions[b] ? positions[a] < positions[b] : a < b;
+    return std::pair(place(a), a) < std::pair(place(b), b);
   });
-  std::vector<std::uint32_t> name(positions.size());
+  std::vector<std::uint32_t> name(order.size());
   for (std::size_t i = 0; i < order.size(); ++i) {
-    const bool same = i > 0 && positions[order[i]] == positions[order[i - 1]];
+    const bool same = i > 0 && place(order[i]) == place(order[i - 1]);
     name[order[i]] = same ? name[order[i - 1]] : order[i];
   }
   return name;
@@ -34,7 +41,7 @@ bool same_place(const Edge& a, const Edge& b) { return a.low == b.low && a.high 
 }  // namespace
 
 std::size_t open_edges(const Mesh& mesh) {
-  const std::vector<std::uint32_t> name = welded(mesh.positions);
+  const std::vector<std::uint32_t> name = welded(mesh);
   std::vector<Edge> edges;
   edges.reserve(mesh.triangles.size() * 3);
   for (const std::array<std::uint32_t, 3>& triangle : mesh.triangles) {

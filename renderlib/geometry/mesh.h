@@ -15,6 +15,11 @@ struct Mesh {
   std::vector<std::array<float, 2>> uvs;                ///< empty, or one per position
   std::vector<std::array<float, 2>> uvs2 = {};          ///< second set: empty, or one per position
   std::vector<std::array<float, 3>> colors = {};  ///< linear RGB >= 0: empty, or one per position
+  /// For a mesh that deforms during the shutter interval (geometry/deforming_mesh.h): the positions
+  /// at its end, one per position; `positions` are those at its beginning. Otherwise empty.
+  std::vector<std::array<float, 3>> positions_at_close = {};
+  /// The same for the normals. If empty, the normals do not change.
+  std::vector<std::array<float, 3>> normals_at_close = {};
 };
 
 }  // namespace bandsaw

@@ -174,7 +174,8 @@ Box placed_bounds(const Box& box, const Transform& to_world, const Transform& to
 }
 
 std::optional<MovingBox> moving_bounds(const Geometry& geometry, const Instance& instance,
-                                       const Box& box, const Interval& interval) {
+                                       const Box& box) {
+  const Interval& interval = geometry.shutter;
   const std::vector<double> times = turning_points(geometry, instance, interval);
   const double size = length(box.hi - box.lo);
   Stops stops(geometry, instance, box);

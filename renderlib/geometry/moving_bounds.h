@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "renderlib/geometry/box.h"
+#include "renderlib/geometry/interval.h"
 #include "renderlib/geometry/shapes.h"
 
 namespace bandsaw {
@@ -15,13 +16,6 @@ namespace bandsaw {
 Box placed_bounds(const Box& box, const Transform& to_world, const Transform& to_object,
                   double trips = 1);
 
-/// Closed interval of time.
-struct Interval {
-  double open = 0;
-  double close = 0;
-  friend bool operator==(const Interval&, const Interval&) = default;
-};
-
 /// At a share u of the interval, everything lies within (1 - u) at_open + u at_close.
 struct MovingBox {
   Box at_open;
@@ -29,9 +23,9 @@ struct MovingBox {
 };
 
 /// Returns the bounds of `box`, given in the instance's own space, enlarged for the rounding error
-/// of rays that are transformed to the instance and back. The instance MUST have a frame. Returns
-/// std::nullopt if a placement during the interval is singular.
+/// of rays that are transformed to the instance and back, during Geometry::shutter. The instance
+/// MUST have a frame. Returns std::nullopt if a placement during the interval is singular.
 std::optional<MovingBox> moving_bounds(const Geometry& geometry, const Instance& instance,
-                                       const Box& box, const Interval& interval);
+                                       const Box& box);
 
 }  // namespace bandsaw

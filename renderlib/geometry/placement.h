@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "renderlib/geometry/deforming_mesh.h"
 #include "renderlib/geometry/shapes.h"
 
 namespace bandsaw {
@@ -18,6 +19,16 @@ inline Transform to_world_at(const Geometry& geometry, const Instance& instance,
 /// Returns the group of an instance; null if it places a mesh.
 inline const Shapes* group_of(const Geometry& geometry, const Instance& instance) {
   return instance.group == kNoGroup ? nullptr : &geometry.groups[index_of(instance.group)];
+}
+
+/// Returns true if the instance's mesh deforms during Geometry::shutter.
+inline bool deforms(const Geometry& geometry, const Instance& instance) {
+  return instance.group == kNoGroup && deforms(geometry.meshes[index_of(instance.mesh)]);
+}
+
+/// Returns true if the instance's primitives may be elsewhere at another time of Geometry::shutter.
+inline bool moves(const Geometry& geometry, const Instance& instance) {
+  return instance.frame != kNoFrame || deforms(geometry, instance);
 }
 
 /// Returns the number of primitives of an instance.

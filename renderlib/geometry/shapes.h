@@ -9,6 +9,7 @@
 
 #include "renderlib/base/ids.h"
 #include "renderlib/geometry/frame.h"
+#include "renderlib/geometry/interval.h"
 #include "renderlib/geometry/mesh_list.h"
 #include "renderlib/math/transform.h"
 #include "renderlib/math/vec.h"
@@ -113,6 +114,9 @@ struct Geometry : Shapes {
   std::vector<Instance> instances;
   std::vector<Shapes> groups;  ///< loose shapes in spaces of their own; hit only through instances
   std::vector<Frame> frames;   ///< animated frames
+  /// The times at which it is looked at: moving instances are bounded within it, and meshes deform
+  /// from its beginning to its end. Set by Scene::build from the camera's shutter.
+  Interval shutter;
 };
 
 }  // namespace bandsaw

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "renderlib/geometry/deforming_mesh.h"
 #include "renderlib/geometry/placement.h"
 #include "renderlib/geometry/shape_surface.h"
 
@@ -19,7 +20,7 @@ struct Corners {
   Vec3 e2;
 };
 
-Corners corners(const Mesh& mesh, const Hit& hit) {
+Corners corners(const Mesh& mesh, const Interval& shutter, double time, const Hit& hit) {
   std::array<Vec3, 3> at;
   if (hit.corners != nullptr) {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -27,16 +28,14 @@ Corners corners(const Mesh& mesh, const Hit& hit) {
       at[c] = {corner[0], corner[kCornerStride], corner[2 * kCornerStride]};
     }
   } else {
-    for (std::size_t c = 0; c < 3; ++c) {
-      at[c] = vec(mesh.positions[mesh.triangles[hit.id.primitive][c]]);
-    }
+    const auto now = corners_at(mesh, hit.id.primitive, shutter, time);
+    at = {vec(now[0]), vec(now[1]), vec(now[2])};
   }
   return {at[0], at[1] - at[0], at[2] - at[0]};
 }
 
-Vec3 interpolate(const std::array<float, 3>& a, const std::array<float, 3>& b,
-                 const std::array<float, 3>& c, const Hit& hit) {
-  return vec(a) * (1 - hit.u - hit.v) + vec(b) * hit.u + vec(c) * hit.v;
+Vec3 interpolate(const std::array<std::array<float, 3>, 3>& at, const Hit& hit) {
+  return vec(at[0]) * (1 - hit.u - hit.v) + vec(at[1]) * hit.u + vec(at[2]) * hit.v;
 }
 
 /// Returns the interpolated uv, or `otherwise` if the mesh has no such uvs.
@@ -62,8 +61,9 @@ Rgb mesh_color(const Mesh& mesh, const std::array<std::uint32_t, 3>& index, cons
 }
 
 /// Returns the surface in the mesh's space.
-SurfacePoint on_triangle(const Mesh& mesh, const Ray& ray, const Hit& hit) {
-  const Corners local = corners(mesh, hit);
+SurfacePoint on_triangle(const Mesh& mesh, const Interval& shutter, const Ray& ray,
+                         const Hit& hit) {
+  const Corners local = corners(mesh, shutter, ray.time, hit);
   const std::array<std::uint32_t, 3>& index = mesh.triangles[hit.id.primitive];
   SurfacePoint p;
   p.position = local.a + hit.u * local.e1 + hit.v * local.e2;
@@ -72,7 +72,7 @@ SurfacePoint on_triangle(const Mesh& mesh, const Ray& ray, const Hit& hit) {
   p.shading_normal = p.geometric_normal;
   if (!mesh.normals.empty()) {
     const Vec3 n =
-        interpolate(mesh.normals[index[0]], mesh.normals[index[1]], mesh.normals[index[2]], hit);
+        interpolate(corners_at(mesh.normals, mesh.normals_at_close, index, shutter, ray.time), hit);
     p.shading_normal = same_side(unit_or(n, p.geometric_normal), p.geometric_normal);
   }
   p.uv = mesh_uv(mesh.uvs, index, hit, {hit.u, hit.v});
@@ -87,7 +87,8 @@ SurfacePoint on_triangle(const Mesh& mesh, const Ray& ray, const Hit& hit) {
 
 SurfacePoint on_mesh(const Geometry& geometry, const Ray& ray, const Hit& hit) {
   const Instance& instance = geometry.instances[hit.id.instance - 1];
-  SurfacePoint p = on_triangle(geometry.meshes[index_of(instance.mesh)], ray, hit);
+  SurfacePoint p =
+      on_triangle(geometry.meshes[index_of(instance.mesh)], geometry.shutter, ray, hit);
   const bool in_place = instance.frame == kNoFrame && instance.to_world == Transform{};
   if (!in_place) {
     p = placed(p, to_world_at(geometry, instance, ray.time), ray);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "renderlib/geometry/deforming_mesh.h"
 #include "renderlib/geometry/disk.h"
 #include "renderlib/geometry/placement.h"
 #include "renderlib/geometry/shape_surface.h"
@@ -23,9 +24,9 @@ Directions along_mesh(const Geometry& geometry, const Transform& to_world, bool 
   const Instance& instance = geometry.instances[point.id.instance - 1];
   const Mesh& mesh = geometry.meshes[index_of(instance.mesh)];
   const auto& corner = mesh.triangles[point.id.primitive];
-  const Vec3 a = vec(mesh.positions[corner[0]]);
-  const Vec3 e1 = to_world.direction(vec(mesh.positions[corner[1]]) - a);
-  const Vec3 e2 = to_world.direction(vec(mesh.positions[corner[2]]) - a);
+  const auto at = corners_at(mesh, point.id.primitive, geometry.shutter, point.time);
+  const Vec3 e1 = to_world.direction(vec(at[1]) - vec(at[0]));
+  const Vec3 e2 = to_world.direction(vec(at[2]) - vec(at[0]));
   const auto& uvs = second && !mesh.uvs2.empty() ? mesh.uvs2 : mesh.uvs;
   if (uvs.empty()) {
     return {e1, e2};

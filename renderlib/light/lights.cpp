@@ -30,13 +30,13 @@ LightPivot pivot_of(const DeltaLight& light) {
 
 Lights::Lights(const Geometry& geometry, const std::vector<Material>& materials,
                const std::vector<Texture>& textures, const std::vector<DeltaLight>& delta_lights,
-               const Background& background, const Interval& interval)
+               const Background& background)
     : geometry_(&geometry),
       materials_(&materials),
       textures_(&textures),
       background_(&background),
       uses_uv_(std::any_of(textures.begin(), textures.end(), uses_uv)) {
-  std::vector<LightBound> local = add_surfaces(interval);
+  std::vector<LightBound> local = add_surfaces();
   std::vector<DistantBound> distant = add_delta_lights(delta_lights, local);
   if (background.environment) {
     environment_ = EnvironmentLight(*background.environment, textures);
@@ -47,7 +47,7 @@ Lights::Lights(const Geometry& geometry, const std::vector<Material>& materials,
   choice_ = LightChoice(std::move(local), std::move(distant));
 }
 
-std::vector<LightBound> Lights::add_surfaces(const Interval& interval) {
+std::vector<LightBound> Lights::add_surfaces() {
   std::vector<double> radiance(materials_->size(), 0.0);
   std::map<TextureId, Rgb> means;  // many materials may share one large image
   const auto mean_of = [&](TextureId texture) {
@@ -78,7 +78,7 @@ std::vector<LightBound> Lights::add_surfaces(const Interval& interval) {
     first_of_instance_.push_back(primitives == 0 ? kNoLight
                                                  : static_cast<std::uint32_t>(light_of_.size()));
     for (std::uint32_t primitive = 0; primitive < primitives; ++primitive) {
-      add_surface({instance, primitive}, radiance, interval, bounds);
+      add_surface({instance, primitive}, radiance, bounds);
     }
   }
   return bounds;
@@ -101,17 +101,29 @@ bool Lights::group_emits(std::uint32_t instance, const std::vector<double>& radi
 }
 
 void Lights::add_surface(PrimitiveId id, const std::vector<double>& radiance,
-                         const Interval& interval, std::vector<LightBound>& to) {
+                         std::vector<LightBound>& to) {
   light_of_.push_back(kNoLight);
   const MaterialId material = material_of(*geometry_, id);
   if (radiance[index_of(material)] == 0) {
     return;
   }
-  LightBound bound = bound_of(shape_view(*geometry_, id, interval.open),
-                              radiance[index_of(material)], one_sided_[index_of(material)]);
-  if (id.instance != 0 && geometry_->instances[id.instance - 1].frame != kNoFrame) {
-    // The bound of a moving light covers its whole path and all orientations.
-    bound = {.ball = moving_ball(*geometry_, id, interval), .intensity = bound.intensity};
+  const auto bound_at = [&](double time) {
+    return bound_of(shape_view(*geometry_, id, time), radiance[index_of(material)],
+                    one_sided_[index_of(material)]);
+  };
+  const Interval& shutter = geometry_->shutter;
+  LightBound bound = bound_at(shutter.open);
+  if (id.instance != 0) {
+    const Instance& instance = geometry_->instances[id.instance - 1];
+    if (deforms(*geometry_, instance)) {
+      const double middle = shutter.open + (shutter.close - shutter.open) / 2;
+      bound.intensity = std::max(
+          {bound.intensity, bound_at(middle).intensity, bound_at(shutter.close).intensity});
+    }
+    if (moves(*geometry_, instance)) {
+      // The bound of a moving light covers its whole path and all orientations.
+      bound = {.ball = moving_ball(*geometry_, id), .intensity = bound.intensity};
+    }
   }
   if (!(bound.intensity > 0) || !std::isfinite(bound.intensity)) {
     return;

@@ -49,10 +49,10 @@ class Lights {
   Lights() = default;
   /// Collects every emissive primitive with area and power, every delta light that is not black,
   /// and the environment unless it is uniform. The arguments MUST be valid (scene/validate.h),
-  /// outlive this object and not change. The times of receivers lie within `interval`.
+  /// outlive this object and not change. The times of receivers lie within Geometry::shutter.
   Lights(const Geometry& geometry, const std::vector<Material>& materials,
          const std::vector<Texture>& textures, const std::vector<DeltaLight>& delta_lights,
-         const Background& background, const Interval& interval = {});
+         const Background& background);
 
   std::size_t size() const { return ids_.size() + delta_.size() + (environment_.empty() ? 0 : 1); }
   bool empty() const { return size() == 0; }
@@ -86,10 +86,10 @@ class Lights {
  private:
   static constexpr std::uint32_t kNoLight = 0xffffffffu;
 
-  std::vector<LightBound> add_surfaces(const Interval& interval);
+  std::vector<LightBound> add_surfaces();
   bool group_emits(std::uint32_t instance, const std::vector<double>& radiance,
                    std::map<GroupId, bool>& known) const;
-  void add_surface(PrimitiveId id, const std::vector<double>& radiance, const Interval& interval,
+  void add_surface(PrimitiveId id, const std::vector<double>& radiance,
                    std::vector<LightBound>& to);
   std::vector<DistantBound> add_delta_lights(const std::vector<DeltaLight>& delta_lights,
                                              std::vector<LightBound>& local);

@@ -46,8 +46,9 @@ struct Ball {
   double radius = 0;
 };
 Ball bounds(const ShapeView& shape);
-/// Returns a sphere that bounds a primitive of a moving instance over the whole interval.
-Ball moving_ball(const Geometry& geometry, PrimitiveId id, const Interval& interval);
+/// Returns a sphere that bounds a primitive of an instance that moves (geometry/placement.h) during
+/// the whole of Geometry::shutter.
+Ball moving_ball(const Geometry& geometry, PrimitiveId id);
 
 struct ShapeSample {
   Vec3 position;

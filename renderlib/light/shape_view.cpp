@@ -1,6 +1,7 @@
 #include <array>
 #include <cmath>
 
+#include "renderlib/geometry/deforming_mesh.h"
 #include "renderlib/geometry/disk.h"
 #include "renderlib/geometry/placement.h"
 #include "renderlib/light/shape_light.h"
@@ -14,19 +15,18 @@ using Kind = ShapeView::Kind;
 /// a sphere.
 constexpr double kRound = 0x1p-46;
 
-Vec3 vertex(const Mesh& mesh, std::uint32_t index) {
-  const std::array<float, 3>& p = mesh.positions[index];
-  return {p[0], p[1], p[2]};
-}
+Vec3 vec(const std::array<float, 3>& p) { return {p[0], p[1], p[2]}; }
 
 ShapeView triangle_view(const Vec3& a, const Vec3& b, const Vec3& c, bool mirrored) {
   return {.kind = Kind::kTriangle, .a = a, .u = b - a, .v = c - a, .mirrored = mirrored};
 }
 
-ShapeView mesh_view(const Mesh& mesh, std::uint32_t primitive, const Transform& to_world) {
-  const std::array<std::uint32_t, 3>& t = mesh.triangles[primitive];
-  return triangle_view(to_world.point(vertex(mesh, t[0])), to_world.point(vertex(mesh, t[1])),
-                       to_world.point(vertex(mesh, t[2])), determinant(to_world) < 0);
+ShapeView mesh_view(const Geometry& geometry, const Instance& instance, std::uint32_t primitive,
+                    const Transform& to_world, double time) {
+  const auto at =
+      corners_at(geometry.meshes[index_of(instance.mesh)], primitive, geometry.shutter, time);
+  return triangle_view(to_world.point(vec(at[0])), to_world.point(vec(at[1])),
+                       to_world.point(vec(at[2])), determinant(to_world) < 0);
 }
 
 /// Returns the shape in the space of `shapes`.
@@ -82,28 +82,51 @@ ShapeView placed(const ShapeView& shape, const Transform& to_world) {
   return result;
 }
 
-/// Returns the bounding sphere of a primitive in the space of its instance, before placement.
-Ball local_ball(const Geometry& geometry, const Instance& instance, std::uint32_t primitive) {
+/// Returns bounds of a primitive in the space of its instance, before placement, at all times.
+Box local_box(const Geometry& geometry, const Instance& instance, std::uint32_t primitive) {
+  const Interval& shutter = geometry.shutter;
+  if (deforms(geometry, instance)) {
+    Box box;
+    for (const double time : {shutter.open, shutter.close}) {
+      for (const auto& p :
+           corners_at(geometry.meshes[index_of(instance.mesh)], primitive, shutter, time)) {
+        box.add(vec(p));
+      }
+    }
+    return box;
+  }
   const Shapes* group = group_of(geometry, instance);
-  return bounds(group != nullptr
-                    ? view_of(*group, primitive)
-                    : mesh_view(geometry.meshes[index_of(instance.mesh)], primitive, {}));
+  const Ball ball =
+      bounds(group != nullptr ? view_of(*group, primitive)
+                              : mesh_view(geometry, instance, primitive, {}, shutter.open));
+  const Vec3 half = {ball.radius, ball.radius, ball.radius};
+  return {ball.center - half, ball.center + half};
+}
+
+/// Returns bounds of a box that moves with its instance; std::nullopt if they cannot be computed.
+std::optional<Box> swept(const Geometry& geometry, const Instance& instance, const Box& box) {
+  if (instance.frame == kNoFrame) {
+    const std::optional<Transform> to_object = inverse(instance.to_world);
+    return to_object ? std::optional(placed_bounds(box, instance.to_world, *to_object))
+                     : std::nullopt;
+  }
+  const std::optional<MovingBox> moving = moving_bounds(geometry, instance, box);
+  if (!moving) {
+    return std::nullopt;
+  }
+  Box all = moving->at_open;
+  all.add(moving->at_close.lo);
+  all.add(moving->at_close.hi);
+  return all;
 }
 
 }  // namespace
 
-Ball moving_ball(const Geometry& geometry, PrimitiveId id, const Interval& interval) {
+Ball moving_ball(const Geometry& geometry, PrimitiveId id) {
   const Instance& instance = geometry.instances[id.instance - 1];
-  const Ball ball = local_ball(geometry, instance, id.primitive);
-  const Vec3 half = {ball.radius, ball.radius, ball.radius};
-  const auto moving =
-      moving_bounds(geometry, instance, {ball.center - half, ball.center + half}, interval);
-  if (!moving) {
-    return ball;  // The bounds cannot be computed, so the primitive cannot be hit.
-  }
-  Box box = moving->at_open;
-  box.add(moving->at_close.lo);
-  box.add(moving->at_close.hi);
+  const Box local = local_box(geometry, instance, id.primitive);
+  // A primitive whose bounds cannot be computed cannot be hit.
+  const Box box = swept(geometry, instance, local).value_or(local);
   return {0.5 * (box.lo + box.hi), length(box.hi - box.lo) / 2};
 }
 
@@ -114,9 +137,8 @@ ShapeView shape_view(const Geometry& geometry, PrimitiveId id, double time) {
   const Instance& instance = geometry.instances[id.instance - 1];
   const Transform to_world = to_world_at(geometry, instance, time);
   const Shapes* group = group_of(geometry, instance);
-  return group != nullptr
-             ? placed(view_of(*group, id.primitive), to_world)
-             : mesh_view(geometry.meshes[index_of(instance.mesh)], id.primitive, to_world);
+  return group != nullptr ? placed(view_of(*group, id.primitive), to_world)
+                          : mesh_view(geometry, instance, id.primitive, to_world, time);
 }
 
 MaterialId material_of(const Geometry& geometry, PrimitiveId id) {

@@ -315,6 +315,14 @@ class Decoder {
     if (from.has_colors()) {
       ASSIGN_OR_RETURN(mesh.colors, array<F3>(from.colors(), field + ".colors"));
     }
+    if (from.has_positions_at_close()) {
+      ASSIGN_OR_RETURN(mesh.positions_at_close,
+                       array<F3>(from.positions_at_close(), field + ".positions_at_close"));
+    }
+    if (from.has_normals_at_close()) {
+      ASSIGN_OR_RETURN(mesh.normals_at_close,
+                       array<F3>(from.normals_at_close(), field + ".normals_at_close"));
+    }
     return mesh;
   }
 

@@ -215,6 +215,12 @@ class Encoder {
     if (!mesh.colors.empty()) {
       put(to_bytes(mesh.colors), *to.mutable_colors());
     }
+    if (!mesh.positions_at_close.empty()) {
+      put(to_bytes(mesh.positions_at_close), *to.mutable_positions_at_close());
+    }
+    if (!mesh.normals_at_close.empty()) {
+      put(to_bytes(mesh.normals_at_close), *to.mutable_normals_at_close());
+    }
   }
 
   BlobMap& blobs_;

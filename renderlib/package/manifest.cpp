@@ -156,6 +156,12 @@ absl::Status for_each_mesh_blob(const Meshes& meshes, const std::string& name, V
     if (mesh.has_colors()) {
       RETURN_IF_ERROR(visit(mesh.colors(), path + "colors"));
     }
+    if (mesh.has_positions_at_close()) {
+      RETURN_IF_ERROR(visit(mesh.positions_at_close(), path + "positions_at_close"));
+    }
+    if (mesh.has_normals_at_close()) {
+      RETURN_IF_ERROR(visit(mesh.normals_at_close(), path + "normals_at_close"));
+    }
   }
   return absl::OkStatus();
 }

@@ -86,9 +86,11 @@ absl::Status check_fog(const Media& media) {
 }
 
 absl::Status check_closed(const std::string& field, const Mesh& mesh) {
-  for (const std::array<float, 3>& p : mesh.positions) {
-    if (!is_finite(Vec3{p[0], p[1], p[2]})) {
-      return invalid(field + ".positions", "must be finite");
+  for (const auto* positions : {&mesh.positions, &mesh.positions_at_close}) {
+    for (const std::array<float, 3>& p : *positions) {
+      if (!is_finite(Vec3{p[0], p[1], p[2]})) {
+        return invalid(field + ".positions", "must be finite");
+      }
     }
   }
   if (const std::size_t open = open_edges(mesh); open > 0) {

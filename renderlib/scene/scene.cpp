@@ -6,6 +6,7 @@
 #include <map>
 
 #include "renderlib/base/status_macros.h"
+#include "renderlib/geometry/deforming_mesh.h"
 #include "renderlib/geometry/shapes.h"
 #include "renderlib/guiding/guiding_cache.h"
 #include "renderlib/material/interiors.h"
@@ -41,11 +42,36 @@ void zero_if_not_finite(std::vector<std::array<float, N>>& list) {
   }
 }
 
+/// Returns true if a triangle of a mesh that deforms may be hit at some time: its corners are
+/// finite, as are their changes, and no two of them are equal at both ends.
+bool may_be_hit(const Mesh& mesh, const std::array<std::uint32_t, 3>& triangle) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::array<float, 3>& open = mesh.positions[triangle[i]];
+    const std::array<float, 3>& close = mesh.positions_at_close[triangle[i]];
+    const std::uint32_t next = triangle[(i + 1) % 3];
+    if (open == mesh.positions[next] && close == mesh.positions_at_close[next]) {
+      return false;
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (!std::isfinite(open[k]) || !std::isfinite(close[k]) ||
+          !std::isfinite(close[k] - open[k])) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
 std::size_t clean_mesh(Mesh& mesh) {
   zero_if_not_finite(mesh.normals);
+  zero_if_not_finite(mesh.normals_at_close);
   zero_if_not_finite(mesh.uvs);
   zero_if_not_finite(mesh.uvs2);
   zero_if_not_finite(mesh.colors);
+  if (deforms(mesh)) {
+    return std::erase_if(mesh.triangles,
+                         [&](const auto& triangle) { return !may_be_hit(mesh, triangle); });
+  }
   return std::erase_if(mesh.triangles, [&](const std::array<std::uint32_t, 3>& triangle) {
     std::array<Vec3, 3> corners;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -200,29 +226,28 @@ absl::StatusOr<std::shared_ptr<const Scene>> Scene::build_with(
   scene->dropped_ = clean(own.geometry, known, scene->dropped_of_mesh_);
   scene->traversal_ = traversal;
   const Shutter& shutter = shutter_of(own.camera);
-  const Interval interval = {shutter.open, shutter.close};
-  make_static(interval, own.geometry);
+  own.geometry.shutter = {shutter.open, shutter.close};
+  own.media.boundaries.shutter = own.geometry.shutter;
+  make_static(own.geometry);
   // The spaces of media are those of frames, which static boundaries lose.
   if (has_grids(own.media)) {
     scene->medium_spaces_ = MediumSpaces(own.media.boundaries);
   }
-  make_static(interval, own.media.boundaries);
+  make_static(own.media.boundaries);
   prepare_surfaces(own.geometry);
   prepare_materials(absl::MakeSpan(own.materials));
-  scene->accel_ =
-      std::make_unique<Accel>(Accel::build(own.geometry, pool, interval, traversal, accels));
-  scene->lights_ =
-      Lights(own.geometry, own.materials, own.textures, own.lights, own.background, interval);
+  scene->accel_ = std::make_unique<Accel>(Accel::build(own.geometry, pool, traversal, accels));
+  scene->lights_ = Lights(own.geometry, own.materials, own.textures, own.lights, own.background);
   const SceneFeatures features = features_of(own, scene->lights_);
   scene->reuses_paths_ = can_reuse_paths(own, scene->lights_, features);
   scene->features_ = features | forced;
   if (scene->features_.grids) {
     scene->grid_media_ = grid_media_of(own.media);
-    scene->medium_spaces_.prepare(own.media.boundaries, interval.open);
+    scene->medium_spaces_.prepare(own.media.boundaries, shutter.open);
   }
   if (scene->features_.media) {
-    scene->boundary_accel_ = std::make_unique<Accel>(
-        Accel::build(own.media.boundaries, pool, interval, traversal, accels));
+    scene->boundary_accel_ =
+        std::make_unique<Accel>(Accel::build(own.media.boundaries, pool, traversal, accels));
   }
   return std::shared_ptr<const Scene>(std::move(scene));
 }

@@ -11,7 +11,7 @@ namespace bandsaw {
 struct SceneFeatures {
   bool lights = false;    ///< lights that can be sampled (next-event estimation)
   bool alpha = false;     ///< surfaces that are not fully opaque
-  bool motion = false;    ///< instances or a camera that move during the shutter interval
+  bool motion = false;    ///< instances, meshes or a camera that move during the shutter interval
   bool media = false;     ///< participating media
   bool grids = false;     ///< media that vary in space
   bool uv = false;        ///< textures that use uv coordinates

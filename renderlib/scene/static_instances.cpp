@@ -20,7 +20,8 @@ bool stands(const Frame& frame, const Interval& interval) {
 
 }  // namespace
 
-void make_static(const Interval& interval, Geometry& geometry) {
+void make_static(Geometry& geometry) {
+  const Interval& interval = geometry.shutter;
   std::vector<bool> still;
   for (const Frame& frame : geometry.frames) {
     const bool parent = frame.parent == kNoFrame || still[index_of(frame.parent)];
@@ -35,8 +36,9 @@ void make_static(const Interval& interval, Geometry& geometry) {
 }
 
 bool moves(const Geometry& geometry) {
-  return std::any_of(geometry.instances.begin(), geometry.instances.end(),
-                     [](const Instance& instance) { return instance.frame != kNoFrame; });
+  return geometry.shutter.open != geometry.shutter.close &&
+         std::any_of(geometry.instances.begin(), geometry.instances.end(),
+                     [&](const Instance& instance) { return moves(geometry, instance); });
 }
 
 }  // namespace bandsaw

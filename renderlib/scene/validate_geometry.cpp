@@ -94,6 +94,8 @@ absl::Status check_finite_vertices(const std::string& field, const Mesh& mesh) {
   RETURN_IF_ERROR(check_finite(field + ".normals", mesh.normals));
   RETURN_IF_ERROR(check_finite(field + ".uvs", mesh.uvs));
   RETURN_IF_ERROR(check_finite(field + ".uvs2", mesh.uvs2));
+  RETURN_IF_ERROR(check_finite(field + ".positions_at_close", mesh.positions_at_close));
+  RETURN_IF_ERROR(check_finite(field + ".normals_at_close", mesh.normals_at_close));
   return check_finite(field + ".colors", mesh.colors);
 }
 
@@ -106,6 +108,14 @@ absl::Status check_mesh(const std::string& field, const Mesh& mesh, MeshVertices
   RETURN_IF_ERROR(check_one_a_position(field + ".uvs", mesh.uvs.size(), vertices));
   RETURN_IF_ERROR(check_one_a_position(field + ".uvs2", mesh.uvs2.size(), vertices));
   RETURN_IF_ERROR(check_one_a_position(field + ".colors", mesh.colors.size(), vertices));
+  RETURN_IF_ERROR(check_one_a_position(field + ".positions_at_close",
+                                       mesh.positions_at_close.size(), vertices));
+  RETURN_IF_ERROR(
+      check_one_a_position(field + ".normals_at_close", mesh.normals_at_close.size(), vertices));
+  if (!mesh.normals_at_close.empty() && (mesh.normals.empty() || mesh.positions_at_close.empty())) {
+    return invalid(field + ".normals_at_close",
+                   "must be none without normals or positions_at_close");
+  }
   for (std::size_t i = 0; i < mesh.colors.size(); ++i) {
     for (const float channel : mesh.colors[i]) {
       if (channel < 0) {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "renderlib/geometry/deforming_mesh.h"
 #include "renderlib/geometry/disk.h"
 #include "renderlib/geometry/intersect.h"
 #include "renderlib/geometry/placement.h"
@@ -43,13 +44,11 @@ class Search {
     flats(shapes.disks);
   }
 
-  void mesh(const Mesh& mesh, const TracedRay& ray, std::uint32_t instance) {
+  void mesh(const Mesh& mesh, const Interval& shutter, const TracedRay& ray,
+            std::uint32_t instance) {
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
       const PrimitiveId id = {instance, i};
-      const auto& corner = mesh.triangles[i];
-      const auto& a = mesh.positions[corner[0]];
-      const auto& b = mesh.positions[corner[1]];
-      const auto& d = mesh.positions[corner[2]];
+      const auto [a, b, d] = corners_at(mesh, i, shutter, ray_.time);
       Crossing c;
       if (ray_.from != id && a != b && b != d && d != a && intersect_triangle(ray, a, b, d, c)) {
         consider(id, c);
@@ -68,7 +67,7 @@ class Search {
     if (const Shapes* group = group_of(g, instance)) {
       shapes(*group, local, index + 1);
     } else {
-      mesh(g.meshes[index_of(instance.mesh)], local, index + 1);
+      mesh(g.meshes[index_of(instance.mesh)], g.shutter, local, index + 1);
     }
   }
 

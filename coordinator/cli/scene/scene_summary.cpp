@@ -45,8 +45,10 @@ Box box_of(const Shapes& shapes) {
 
 Box box_of(const Mesh& mesh) {
   Box box;
-  for (const auto& p : mesh.positions) {
-    box.add({p[0], p[1], p[2]});
+  for (const auto* positions : {&mesh.positions, &mesh.positions_at_close}) {
+    for (const auto& p : *positions) {
+      box.add({p[0], p[1], p[2]});
+    }
   }
   return box;
 }
@@ -204,7 +206,8 @@ std::uint64_t bytes_in(const Geometry& geometry) {
   }
   for (const Mesh& mesh : geometry.meshes) {
     sum += bytes_in(mesh.positions) + bytes_in(mesh.triangles) + bytes_in(mesh.normals) +
-           bytes_in(mesh.uvs) + bytes_in(mesh.uvs2) + bytes_in(mesh.colors);
+           bytes_in(mesh.uvs) + bytes_in(mesh.uvs2) + bytes_in(mesh.colors) +
+           bytes_in(mesh.positions_at_close) + bytes_in(mesh.normals_at_close);
   }
   return sum;
 }

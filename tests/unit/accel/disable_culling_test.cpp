@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "renderlib/accel/accel.h"
+#include "renderlib/accel/traverse.h"
 #include "tests/support/brute_force.h"
 #include "tests/support/meshes.h"
 #include "tests/support/random.h"
@@ -30,12 +31,15 @@ Geometry scene() {
   add_some(g);
   g.groups.resize(1);
   add_some(g.groups[0]);
+  g.shutter = {0, 1};
   g.meshes.push_back(test::rough_sphere(12, 6, 2, 3));
+  g.meshes.push_back(test::rough_sphere(12, 6, 2, 4));
+  g.meshes.change(1).positions_at_close = test::rough_sphere(12, 6, 3, 5).positions;
   const Key at_open{0, {}};
   const Key at_close{1, translation({2, 1, 0})};
   g.frames.push_back({kNoFrame, {}, {at_open, at_close}});
   for (int i = 0; i < 9; ++i) {
-    Instance instance{.to_world = translation(point())};
+    Instance instance{.mesh = MeshId{i % 4 == 1 ? 1u : 0u}, .to_world = translation(point())};
     instance.group = i % 2 == 0 ? GroupId{0} : kNoGroup;
     instance.frame = i % 3 == 0 ? FrameId{0} : kNoFrame;
     g.instances.push_back(instance);
@@ -46,8 +50,8 @@ Geometry scene() {
 TEST(DisableCulling, HitsAreTheSameToTheBit) {
   const Geometry geometry = scene();
   Pool pool(1);
-  const Accel tree = Accel::build(geometry, pool, {0, 1});
-  const Accel everything = Accel::build(geometry, pool, {0, 1}, Traversal::kBruteForce);
+  const Accel tree = Accel::build(geometry, pool);
+  const Accel everything = Accel::build(geometry, pool, Traversal::kBruteForce);
   Random random(6);
   int hits = 0;
   for (int i = 0; i < 3'000; ++i) {

@@ -37,6 +37,7 @@ Transform pose(Random& random, double size) {
 Geometry moving_scene(double size, const Vec3& at) {
   Random random(31);
   Geometry g;
+  g.shutter = kInterval;
   g.spheres.push_back({at, 0.2 * size, {}});
   g.quads.push_back({at - Vec3{size, size, size}, {2 * size, 0, 0}, {0, 0, 2 * size}, {}});
   g.groups.resize(2);
@@ -98,7 +99,7 @@ TEST(Moving, EqualsBruteForceAtTheRaysTime) {
       SCOPED_TRACE(offset);
       const Vec3 at = offset * Vec3{1, -0.5, 0.3};
       const Geometry g = moving_scene(size, at);
-      const Accel accel = Accel::build(g, pool, kInterval);
+      const Accel accel = Accel::build(g, pool);
       Random random(7);
       int hits = 0;
       constexpr int kRays = 2'000;
@@ -132,6 +133,7 @@ TEST(Moving, S11_ABallIsHitAtItsPlaceAtTheRaysTime) {
   Random random(8);
   for (const double speed : {1.0, 1e3, 1e-3}) {
     Geometry g;
+    g.shutter = {0, 1};
     const Vec3 center = {3, -2, 1};
     const Vec3 way = speed * Vec3{1, 0.3, -0.2};
     g.groups.resize(1);
@@ -143,7 +145,7 @@ TEST(Moving, S11_ABallIsHitAtItsPlaceAtTheRaysTime) {
       moving.frame = add_frame(g, {Key(0, {}), Key(1, translation(v))});
       g.instances.push_back(moving);
     }
-    const Accel accel = Accel::build(g, pool, {0, 1});
+    const Accel accel = Accel::build(g, pool);
     int misses = 0;
     int hits = 0;
     for (int i = 0; i < 350'000; ++i) {
@@ -179,17 +181,16 @@ TEST(Moving, B10_BoxesContainTheirShapesAtEveryTime) {
     const Geometry g = moving_scene(size, at);
     Prototypes prototypes;
     for (const Mesh& mesh : g.meshes) {
-      prototypes.meshes.push_back(
-          std::make_shared<const MeshTree>(build_mesh_tree(mesh, nullptr)));
+      prototypes.meshes.push_back(std::make_shared<const MeshTree>(build_mesh_tree(mesh, nullptr)));
     }
     for (const Shapes& group : g.groups) {
       prototypes.groups.push_back(build_shapes_tree(group, nullptr));
     }
-    const MovingTree tree = build_moving_tree(g, prototypes, kInterval, nullptr);
+    const MovingTree tree = build_moving_tree(g, prototypes, nullptr);
     ASSERT_EQ(tree.moving.size(), 60u);
     for (int i = 0; i < 80; ++i) {
       const double time = time_of(i, random);
-      const float share = tree.share(time);
+      const float share = ShutterTime(kInterval, time).share;
       for (std::size_t n = 0; n < tree.tree.nodes.size(); ++n) {
         const WideNode& node = tree.tree.nodes[n];
         for (std::size_t child = 0; child < WideNode::kChildren; ++child) {
@@ -200,7 +201,7 @@ TEST(Moving, B10_BoxesContainTheirShapesAtEveryTime) {
           const Transform to_world = to_world_at(g, g.instances[moving.instance - 1], time);
           const Box& box = moving.prototype.box();
           const auto side = [&](std::size_t row) {
-            return std::fma(tree.change[n][row][child], share, node.bounds[row][child]);
+            return std::fma(tree.changes[n][row][child], share, node.bounds[row][child]);
           };
           for (int corner = 0; corner < 8; ++corner) {
             const Vec3 p = to_world.point({(corner & 1) != 0 ? box.hi.x : box.lo.x,
@@ -225,6 +226,7 @@ TEST(Moving, B10_BoxesContainTheirShapesAtEveryTime) {
 TEST(Moving, X8_AtAKeyEqualsTheStaticInstance) {
   Random random(10);
   Geometry moving;
+  moving.shutter = {0, 1};
   moving.meshes.push_back(test::rough_sphere(16, 8, 2, 3));
   const std::vector<Key> keys = {Key(0, pose(random, 1)), Key(0.4, pose(random, 1)),
                                  Key(1, pose(random, 1))};
@@ -234,7 +236,7 @@ TEST(Moving, X8_AtAKeyEqualsTheStaticInstance) {
   instance.frame = add_frame(moving, keys);
   moving.instances.push_back(instance);
   Pool pool(1);
-  const Accel accel = Accel::build(moving, pool, {0, 1});
+  const Accel accel = Accel::build(moving, pool);
   for (const Key& key : keys) {
     Geometry still;
     still.meshes = moving.meshes;
@@ -253,13 +255,14 @@ TEST(Moving, X8_AtAKeyEqualsTheStaticInstance) {
 
 TEST(Moving, NothingMovesBeforeTheFirstKeyAndAfterTheLast) {
   Geometry g;
+  g.shutter = {0, 1};
   g.meshes.push_back(test::icosphere(1));
   Instance instance;
   instance.frame =
       add_frame(g, {Key(0.5, translation({0, 0, 0})), Key(0.6, translation({10, 0, 0}))});
   g.instances.push_back(instance);
   Pool pool(1);
-  const Accel accel = Accel::build(g, pool, {0, 1});
+  const Accel accel = Accel::build(g, pool);
   const auto hit_at = [&](double x, double time) {
     return static_cast<bool>(
         accel.closest({.origin = {x, 0, 5}, .direction = {0, 0, -1}, .time = time}));

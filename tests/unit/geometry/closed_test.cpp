@@ -25,6 +25,21 @@ TEST(Closed, ACubeIsClosedAlsoWithSplitCorners) {
   EXPECT_EQ(open_edges(split), 0u);
 }
 
+// Corners of one place that part until the shutter closes leave a hole.
+TEST(Closed, AMeshThatDeformsIsClosedIfItIsAtBothEnds) {
+  Mesh cube = unit_cube();
+  cube.positions_at_close = cube.positions;
+  cube.positions_at_close[3] = {2, 3, 0.5f};
+  EXPECT_EQ(open_edges(cube), 0u);
+  const std::uint32_t split = cube.triangles[0][0];
+  cube.positions.push_back(cube.positions[split]);
+  cube.positions_at_close.push_back(cube.positions_at_close[split]);
+  cube.triangles[0][0] = 8;
+  EXPECT_EQ(open_edges(cube), 0u);
+  cube.positions_at_close[8][0] += 0.25f;
+  EXPECT_EQ(open_edges(cube), 4u);
+}
+
 TEST(Closed, CountsTheEdgesOfAHole) {
   Mesh cube = unit_cube();
   cube.triangles.pop_back();

@@ -89,6 +89,11 @@ TEST(Package, RoundTripsBitForBit) {
   EXPECT_EQ(decoded->geometry.meshes[0].normals, scene.geometry.meshes[0].normals);
   EXPECT_EQ(decoded->geometry.meshes[0].uvs, scene.geometry.meshes[0].uvs);
   EXPECT_EQ(decoded->geometry.meshes[0].uvs2, scene.geometry.meshes[0].uvs2);
+  EXPECT_EQ(decoded->geometry.meshes[0].positions_at_close,
+            scene.geometry.meshes[0].positions_at_close);
+  EXPECT_EQ(decoded->geometry.meshes[0].normals_at_close,
+            scene.geometry.meshes[0].normals_at_close);
+  EXPECT_TRUE(decoded->geometry.meshes[1].positions_at_close.empty());
   EXPECT_TRUE(decoded->geometry.meshes[1].uvs.empty());
   EXPECT_EQ(decoded->geometry.spheres[1].radius, 1e-5);
   EXPECT_EQ(decoded->geometry.quads[0].v, scene.geometry.quads[0].v);
@@ -437,6 +442,9 @@ const std::vector<Wrong> kWrong = {
      "spheres.radii: has 3 entries for 2 shapes"},
     {"mesh_counts", [](auto& m) { *m.mutable_mesh(0)->mutable_normals() = m.quads().corners(); },
      "meshes[0].normals: must be none or one a position (4), are 2"},
+    {"at_close",
+     [](auto& m) { *m.mutable_mesh(0)->mutable_positions_at_close() = m.quads().corners(); },
+     "meshes[0].positions_at_close: must be none or one a position (4), are 2"},
     {"index", [](auto& m) { *m.mutable_mesh(0)->mutable_indices() = m.mesh(0).positions(); },
      "meshes[0].triangles[1]: must be indices below 4, one is 1065353216"},
     {"odd_size",

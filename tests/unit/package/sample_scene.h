@@ -172,6 +172,8 @@ inline SceneDescription sample_scene() {
   mesh.normals.assign(4, {0, 0, 1});
   mesh.uvs = {{0, 0}, {1, 0}, {0, 1}, {-3.5f, 7}};
   mesh.uvs2 = {{5, 0}, {1, 6}, {0, 0.1f}, {2, 2}};
+  mesh.positions_at_close = {{0, 0, 0.1f}, {1, 2, 0}, {0, 1, 0}, {0, 0, 1.0f / 3}};
+  mesh.normals_at_close.assign(4, {0, 1, 0});
   scene.geometry.meshes = {mesh, Mesh{mesh.positions, mesh.triangles, {}, {}}};
   scene.geometry.instances = {
       {MeshId{0}, MaterialId{0}, translation({1e9, 0, 1.0 / 3})},

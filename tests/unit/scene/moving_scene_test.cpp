@@ -84,7 +84,8 @@ TEST(MovingScene, OnlyInstancesThatNeverMoveBecomeStatic) {
     g.instances.push_back(of_group(0, {}));
     g.instances[i].frame = FrameId{i};
   }
-  make_static({0, 2}, g);
+  g.shutter = {0, 2};
+  make_static(g);
   EXPECT_EQ(g.instances[0].frame, FrameId{0}) << "it ends at its start, but moves in between";
   EXPECT_EQ(g.instances[1].frame, kNoFrame) << "it moves later";
   EXPECT_EQ(g.instances[2].frame, FrameId{2}) << "its parent frame moves";

@@ -1,0 +1,56 @@
+#pragma once
+
+// Boxes whose sides move linearly during the shutter interval, for the nodes of a tree.
+
+#include <array>
+#include <cstdint>
+
+#include "absl/functional/function_ref.h"
+#include "renderlib/accel/float_ray.h"
+#include "renderlib/accel/wide_tree.h"
+#include "renderlib/base/huge_vector.h"
+#include "renderlib/base/simd.h"
+#include "renderlib/geometry/moving_bounds.h"
+
+namespace bandsaw {
+
+/// For each node of a tree, the difference of its bounds between the end and the beginning of the
+/// interval. Its tree has the bounds at the beginning, and a `reach` that covers all times.
+using NodeChanges = HugeVector<std::array<std::array<float, WideNode::kChildren>, 6>>;
+
+/// Returns a box that contains both.
+Box both(const Box& a, const Box& b);
+/// Returns the box at the middle of the interval, by which trees are built.
+Box middle(const MovingBox& box);
+
+/// Replaces the bounds of all nodes by those at the beginning of the interval, and returns their
+/// changes. leaf_box(leaf) returns the bounds of a leaf. Interpolated in float, a node's bounds
+/// contain those of its leaves at all times (README.md, "Moving boxes").
+NodeChanges set_moving_bounds(absl::FunctionRef<MovingBox(ChildRef leaf)> leaf_box, WideTree& tree);
+
+/// The same as enter_children() (accel/traverse.h) for node `index` at `share` of the interval, in
+/// [0, 1].
+template <class Float = Float8>
+inline unsigned enter_moving_children(const WideTree& tree, const NodeChanges& changes,
+                                      std::uint32_t index, float share, const FloatRay& ray,
+                                      float bound, Float& enter) {
+  const WideNode& node = tree.nodes[index];
+  const char* const change = reinterpret_cast<const char*>(&changes[index]);
+  const auto plane = [&](std::size_t bytes) {
+    return fused(Float::load(reinterpret_cast<const float*>(change + bytes)), Float(share),
+                 Float::load(node.plane(bytes)));
+  };
+  Float first(0.0f);
+  Float last(bound);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Float in =
+        fused(plane(ray.near[k]), Float(ray.near_factor[k]), Float(ray.near_offset[k]));
+    const Float out = fused(plane(ray.far[k]), Float(ray.far_factor[k]), Float(ray.far_offset[k]));
+    first = max(in, first);
+    last = min(out, last);
+  }
+  enter = first;
+  return (first <= last).bits();
+}
+
+}  // namespace bandsaw

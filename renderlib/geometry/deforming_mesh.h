@@ -1,0 +1,71 @@
+#pragma once
+
+// The vertices of a mesh at a time of the shutter interval. A mesh that deforms is at each time an
+// ordinary mesh with float positions, and whatever traces, shades or samples it computes the same
+// bits.
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "renderlib/geometry/interval.h"
+#include "renderlib/geometry/mesh.h"
+
+namespace bandsaw {
+
+/// A time within the shutter interval, prepared for the interpolation of numbers between its ends.
+struct ShutterTime {
+  /// Times outside the interval count as its nearest end. If the interval is one instant, that is
+  /// its beginning.
+  ShutterTime(const Interval& shutter, double time) {
+    const double u = (time - shutter.open) / (shutter.close - shutter.open);
+    share = u > 0 ? u < 1 ? static_cast<float>(u) : 1.0f : 0.0f;
+    from_close = share > 0.5f;
+    factor = from_close ? share - 1 : share;
+  }
+
+  /// Returns a number that changes linearly. It is exactly the given one at both ends, never
+  /// outside of them, and constant if they are equal: the change is added to the nearer end, and
+  /// the result is rounded once.
+  float between(float at_open, float at_close) const {
+    return std::fma(at_close - at_open, factor, from_close ? at_close : at_open);
+  }
+  std::array<float, 3> between(const std::array<float, 3>& at_open,
+                               const std::array<float, 3>& at_close) const {
+    return {between(at_open[0], at_close[0]), between(at_open[1], at_close[1]),
+            between(at_open[2], at_close[2])};
+  }
+
+  float share = 0;          ///< [0, 1]: 0 at the beginning, 1 at the end
+  bool from_close = false;  ///< true in the second half
+  float factor = 0;         ///< of the change, in [-1/2, 1/2]; exact
+};
+
+inline bool deforms(const Mesh& mesh) { return !mesh.positions_at_close.empty(); }
+
+/// Returns the values of a triangle's corners at a time; `at_close` may be empty, then they do not
+/// change.
+inline std::array<std::array<float, 3>, 3> corners_at(
+    const std::vector<std::array<float, 3>>& at_open,
+    const std::vector<std::array<float, 3>>& at_close, const std::array<std::uint32_t, 3>& corner,
+    const Interval& shutter, double time) {
+  if (at_close.empty()) {
+    return {at_open[corner[0]], at_open[corner[1]], at_open[corner[2]]};
+  }
+  const ShutterTime now(shutter, time);
+  const auto vertex = [&](std::size_t i) {
+    return now.between(at_open[corner[i]], at_close[corner[i]]);
+  };
+  return {vertex(0), vertex(1), vertex(2)};
+}
+
+/// Returns the positions of a triangle's corners at a time.
+inline std::array<std::array<float, 3>, 3> corners_at(const Mesh& mesh, std::size_t triangle,
+                                                      const Interval& shutter, double time) {
+  return corners_at(mesh.positions, mesh.positions_at_close, mesh.triangles[triangle], shutter,
+                    time);
+}
+
+}  // namespace bandsaw
