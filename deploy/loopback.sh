@@ -24,6 +24,7 @@ serve_here() {
 # join_here NAME LOG COMMAND...: starts a worker by a command and waits until it has joined.
 join_here() {
   local name=$1 log=$2
+  : >"$log"
   BANDSAW_JOIN=$(cat "$data/join") "${@:3}" --name "$name" --cache "$scratch/cache-$name" >"$log" 2>&1 &
   pids+=($!)
   until grep -q joined "$log"; do
