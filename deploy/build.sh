@@ -1,5 +1,5 @@
-# To be sourced from the checkout: sets `build` to the build of the programs. Unless BANDSAW_BUILD names one, installs the
-# packages of install.sh's LIST and builds.
+# To be sourced in the root folder of the checkout: sets `build` to the build folder of the programs. Unless BANDSAW_BUILD
+# names one, installs the packages of install.sh's LIST and builds.
 # Usage: . deploy/build.sh LIST
 build=${BANDSAW_BUILD:-}
 if [ -z "$build" ]; then

@@ -176,7 +176,7 @@ absl::StatusOr<Command> parse_with(CLI::App& app, const std::vector<CLI::App*>& 
   return absl::InvalidArgumentError("no command; see: bandsaw --help");
 }
 
-// "help" becomes "--help", "help submit" becomes "submit --help".
+/// Replaces the command `help` by its option: "help submit" becomes "submit --help".
 std::vector<std::string> without_help_word(std::vector<std::string> arguments) {
   if (!arguments.empty() && arguments.front() == "help") {
     arguments.erase(arguments.begin());

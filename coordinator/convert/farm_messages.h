@@ -29,7 +29,7 @@ farm::WorkerStatus to_message(const WorkerView& worker);
 farm::Frame to_message(const FrameView& frame);
 FrameView frame_view_of(const farm::Frame& message);
 
-/// "pixel (3, 4), sample 17": the place of the first bad sample.
+/// Returns the place of the first bad sample: "pixel (3, 4), sample 17".
 std::string bad_sample_text(const Counters& counters);
 
 }  // namespace bandsaw::coordinator

@@ -22,7 +22,7 @@ struct Keep {
   std::uint64_t bytes =
       100'000'000'000;             ///< results and blobs in total; oldest jobs are removed first
   double min_seconds = 60.0 * 60;  ///< minimum age at which `bytes` removes a final job
-  std::size_t jobs = 10'000;       ///< final jobs; each takes some 4 kB of memory, or a frame
+  std::size_t jobs = 10'000;       ///< number of final jobs; each takes about 4 kB of memory
   /// Maximum age of a blob of no job, or of a part of one, since it was sent or requested.
   double unused_seconds = 24.0 * 60 * 60;
 };
@@ -63,7 +63,7 @@ class Collector {
   const DataFolder& folder_;
   BlobStore& blobs_;
   const Keep keep_;
-  /// Needs that were read already: a package never changes, and a sequence gets more of them.
+  /// Needs that are known already. A package never changes, but a sequence may get more packages.
   std::map<JobId, Needs> known_;
 };
 

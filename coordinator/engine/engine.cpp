@@ -291,7 +291,7 @@ std::uint64_t Engine::partial_blob(const wire::Digest& digest) const {
 absl::StatusOr<std::unique_ptr<Engine::BlobWriter>> Engine::write_blob(const wire::Digest& digest,
                                                                        std::uint64_t size,
                                                                        std::uint64_t offset) {
-  if (!scheduler_.has_room()) {
+  if (!scheduler_.has_disk_space()) {
     return absl::ResourceExhaustedError(
         "the coordinator's disk is full: it takes no scene now; cancel jobs, or free some room");
   }

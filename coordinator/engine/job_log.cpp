@@ -96,17 +96,18 @@ struct Line {
 
 void log_record(const Record& record) { std::visit(Line{}, record); }
 
-void log_fault(const action::LogFailure& fault) {
-  spdlog::warn("failed job={} rows={}:{} samples={}:{} worker={}: {}", fault.job,
-               fault.band.rows.first, fault.band.rows.last, fault.band.samples.first,
-               fault.band.samples.last, fault.worker, fault.reason);
+void log_failure(const action::LogFailure& failure) {
+  spdlog::warn("failed job={} rows={}:{} samples={}:{} worker={}: {}", failure.job,
+               failure.band.rows.first, failure.band.rows.last, failure.band.samples.first,
+               failure.band.samples.last, failure.worker, failure.reason);
 }
 
-void log_shared(const action::LogReassignment& shared) {
+void log_reassignment(const action::LogReassignment& reassignment) {
+  const Band& band = reassignment.band;
   spdlog::info("{} job={} rows={}:{} samples={}:{} from={} to={}",
-               shared.begun ? "copied" : "moved", shared.job, shared.band.rows.first,
-               shared.band.rows.last, shared.band.samples.first, shared.band.samples.last,
-               shared.from, shared.to);
+               reassignment.begun ? "copied" : "moved", reassignment.job, band.rows.first,
+               band.rows.last, band.samples.first, band.samples.last, reassignment.from,
+               reassignment.to);
 }
 
 }  // namespace bandsaw::coordinator

@@ -6,8 +6,10 @@ namespace bandsaw::coordinator {
 
 /// Logs a change of a job or a worker.
 void log_record(const Record& record);
-/// "copied job=7 rows=0:12 samples=0:16 from=desk to=laptop"; tests count these.
-void log_shared(const action::LogReassignment& shared);
-void log_fault(const action::LogFailure& fault);
+/// Logs a backup task or stolen rows: "copied job=7 rows=0:12 samples=0:16 from=desk to=laptop", or
+/// "moved …". Tests count these lines.
+void log_reassignment(const action::LogReassignment& reassignment);
+/// Logs that a worker could not render a band.
+void log_failure(const action::LogFailure& failure);
 
 }  // namespace bandsaw::coordinator

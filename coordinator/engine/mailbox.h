@@ -27,7 +27,7 @@ class Mailbox {
   Mailbox(const Mailbox&) = delete;
   Mailbox& operator=(const Mailbox&) = delete;
 
-  /// Starts the thread. Tasks that were posted before wait for this. Call once.
+  /// Starts the thread, which also does the tasks that were posted before. Call once.
   void start();
   /// Adds a task; any thread. After stop, the task is dropped. The queue has no bound of its own,
   /// because the senders are bounded: bands by their bytes, workers and jobs by their number.

@@ -80,9 +80,9 @@ void SchedulerThread::perform(const Action& action) {
   } else if (const auto* forgotten = std::get_if<action::DropJob>(&action)) {
     store_.drop_job(forgotten->job);
   } else if (const auto* shared = std::get_if<action::LogReassignment>(&action)) {
-    log_shared(*shared);
+    log_reassignment(*shared);
   } else if (const auto* fault = std::get_if<action::LogFailure>(&action)) {
-    log_fault(*fault);
+    log_failure(*fault);
   } else {
     std::visit(
         [this](const auto& one) {
@@ -170,7 +170,7 @@ void SchedulerThread::compact() {
 bool SchedulerThread::flush() {
   if (const absl::Status written = commit_queue_.write();
       absl::IsResourceExhausted(written) && reserve_.release()) {
-    no_room(written);
+    disk_is_full(written);
   }
   const absl::Status flushed = commit_queue_.flush();
   if (flushed.ok()) {
@@ -192,17 +192,17 @@ void SchedulerThread::journal_failed(const absl::Status& status) {
   pause_all(journal_status_);
 }
 
-void SchedulerThread::no_room(const absl::Status& status) {
+void SchedulerThread::disk_is_full(const absl::Status& status) {
   store_.expect_trouble();
-  if (!room_.ok()) {
+  if (!disk_status_.ok()) {
     return;
   }
-  room_ = absl::ResourceExhaustedError(absl::StrCat(
+  disk_status_ = absl::ResourceExhaustedError(absl::StrCat(
       "the coordinator's disk is full: ", status.message(),
       "; jobs are paused and nothing new is taken until there is room: cancel jobs, or free some"));
-  spdlog::error("{}", room_.ToString());
-  has_room_ = false;
-  pause_all(room_);
+  spdlog::error("{}", disk_status_.ToString());
+  has_disk_space_ = false;
+  pause_all(disk_status_);
 }
 
 void SchedulerThread::pause_all(const absl::Status& status) {
@@ -223,11 +223,11 @@ void SchedulerThread::disk_is_back() {
     return;
   }
   if (const absl::Status held = reserve_.hold(); !held.ok()) {
-    no_room(held);
+    disk_is_full(held);
     return;
   }
-  room_ = absl::OkStatus();
-  has_room_ = true;
+  disk_status_ = absl::OkStatus();
+  has_disk_space_ = true;
   spdlog::info("the disk takes data again");
   run(input::StorageBack{});
   film_.retry();

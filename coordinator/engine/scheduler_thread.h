@@ -37,8 +37,8 @@ class SchedulerThread {
                   StoreInbox& store, FilmInbox& film);
 
   /// Restores the state from the journal and the band logs. Call before any other method, while the
-  /// other threads do not run yet. `room`: OK, or the reason why the disk is full (no_room).
-  absl::Status restore(StoreThread& store, FilmThread& film, const absl::Status& room);
+  /// other threads do not run yet. `disk`: OK, or the reason why the disk is full (disk_is_full).
+  absl::Status restore(StoreThread& store, FilmThread& film, const absl::Status& disk);
 
   // Users.
   /// Runs Submit or SubmitSequence.
@@ -80,7 +80,7 @@ class SchedulerThread {
   void settle();
 
   /// True if the disk has room for new data. Any thread.
-  bool has_room() const { return has_room_; }
+  bool has_disk_space() const { return has_disk_space_; }
 
  private:
   /// Facts about a job that are needed without the scheduler.
@@ -99,7 +99,7 @@ class SchedulerThread {
   void announce(const Record& record);
   bool flush();
   /// The disk is full: pauses all jobs and refuses submits and bands until disk_is_back.
-  void no_room(const absl::Status& status);
+  void disk_is_full(const absl::Status& status);
   void pause_all(const absl::Status& status);
   void journal_failed(const absl::Status& status);
   absl::Status restore_job(JobId id, const Known& known, StoreThread& store, FilmThread& film);
@@ -120,8 +120,8 @@ class SchedulerThread {
   std::map<JobId, Known> known_;
   std::set<JobId> results_on_the_way_;  ///< requested by the scheduler, not written yet
   absl::Status journal_status_;         ///< an error: nothing is acknowledged
-  absl::Status room_;  ///< an error: the reserve is released, no new data is accepted
-  std::atomic<bool> has_room_{true};  ///< room_.ok(), for other threads
+  absl::Status disk_status_;  ///< an error: the reserve is released, no new data is accepted
+  std::atomic<bool> has_disk_space_{true};  ///< disk_status_.ok(), for other threads
   Time ticked_at_ = 0;
   std::optional<Time> collected_at_;
   std::size_t added_since_ = 0;                           ///< jobs added since collected_at_

@@ -8,8 +8,8 @@
 namespace bandsaw::coordinator {
 
 void SchedulerThread::submit(const Input& input, Answer<JobId> answer) {
-  if (!journal_status_.ok() || !room_.ok()) {
-    answer(journal_status_.ok() ? room_ : journal_status_);
+  if (!journal_status_.ok() || !disk_status_.ok()) {
+    answer(journal_status_.ok() ? disk_status_ : journal_status_);
     return;
   }
   const Step step = run(input);

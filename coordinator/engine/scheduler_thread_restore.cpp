@@ -12,7 +12,7 @@
 namespace bandsaw::coordinator {
 
 absl::Status SchedulerThread::restore(StoreThread& store, FilmThread& film,
-                                      const absl::Status& room) {
+                                      const absl::Status& disk) {
   RETURN_IF_ERROR(journal_.replay([this](const Record& record) {
     scheduler_.replay(record);
     note(record);
@@ -29,8 +29,8 @@ absl::Status SchedulerThread::restore(StoreThread& store, FilmThread& film,
     }
   }
   absorb(scheduler_.replayed(clock_.now()), nullptr);
-  if (!room.ok()) {
-    no_room(room);
+  if (!disk.ok()) {
+    disk_is_full(disk);
   }
   for (const auto& [id, status] : failed) {
     store_.expect_trouble();
@@ -39,7 +39,8 @@ absl::Status SchedulerThread::restore(StoreThread& store, FilmThread& film,
   return absl::OkStatus();
 }
 
-/// RESOURCE_EXHAUSTED: the job is restored, but its film is not; that happens when there is room.
+/// RESOURCE_EXHAUSTED: the job is restored, but its film is not; that is done when the disk has
+/// space again.
 absl::Status SchedulerThread::restore_job(JobId id, const Known& known, StoreThread& store,
                                           FilmThread& film) {
   film.add_job(id, known.spec.settings, is_adaptive(known.spec.stop));

@@ -69,8 +69,8 @@ void SchedulerThread::put_band(IncomingBand incoming) {
     incoming.answer(BandOutcome::kUnwanted);
   } else if (wanted->empty()) {
     store_.compare(std::move(incoming));
-  } else if (!room_.ok()) {
-    incoming.answer(room_);
+  } else if (!disk_status_.ok()) {
+    incoming.answer(disk_status_);
   } else {
     store_.append(std::move(incoming));
   }

@@ -25,11 +25,12 @@ struct HeldImage {
 absl::StatusOr<HeldImage> result_of(Engine& engine, JobId job,
                                     FinishedPart part = FinishedPart::kImage);
 
-/// Returns the present image of the job, or its finished image, with at most about `most_side`
-/// pixels per side, >= 1; without `digest`. Of a sequence: of the frame that was done last, or else
-/// of the first that is rendered. NOT_FOUND: none of its bands is stored.
+/// Returns the finished image of the job, or the present image of a job that is not done, with at
+/// most about `most_side` (>= 1) pixels per side. `digest` of the result is not set. For a sequence,
+/// this is the image of the last frame that was done; if none is done, of the first frame that is
+/// being rendered. NOT_FOUND: no band of the job is stored.
 absl::StatusOr<HeldImage> picture_of(Engine& engine, const JobView& job, std::uint32_t most_side);
-/// Returns the same for the job's present state, with `digest`.
+/// The same for the job with this id; sets `digest`.
 absl::StatusOr<HeldImage> preview_of(Engine& engine, JobId job, std::uint32_t most_side);
 
 }  // namespace bandsaw::coordinator

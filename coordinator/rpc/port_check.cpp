@@ -58,7 +58,7 @@ absl::Status check_can_listen(const std::string& listen) {
     return absl::FailedPreconditionError(
         absl::StrCat("cannot listen on ", listen, ": port ", port,
                      " is taken, perhaps by another coordinator (`ss -ltnp sport = :", port,
-                     "` tells); --listen HOST:PORT chooses another"));
+                     "` shows it); --listen HOST:PORT chooses another"));
   }
   if (error != 0) {
     return absl::FailedPreconditionError(

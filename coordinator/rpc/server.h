@@ -25,7 +25,7 @@ class Server {
   static absl::StatusOr<std::unique_ptr<Server>> start(Engine& engine,
                                                        const link::Identity& identity,
                                                        const ServerOptions& options);
-  /// Ends every stream with UNAVAILABLE, which tells workers that they may keep their bands; takes
+  /// Ends every stream with UNAVAILABLE, after which workers keep their bands and reconnect. Takes
   /// at most 5 s.
   ~Server();
   int port() const;

@@ -17,7 +17,7 @@
 namespace bandsaw::coordinator {
 namespace {
 
-/// Number of pictures that are kept. Others are filtered again when they are asked for.
+/// Number of pictures that are kept. Others are filtered again when they are requested.
 constexpr std::size_t kMaxKept = 4;
 /// Memory of the filter, for each pixel (renderlib/denoise/README.md).
 constexpr std::uint64_t kFilterBytes = 400;
@@ -91,7 +91,7 @@ absl::StatusOr<CleanPictures::State> CleanPictures::start(JobId id) {
       return State{.stage = stage};
     }
   }
-  // The same jobs for everybody who asks at the same time: their request ids are equal.
+  // Requests at the same time get the same jobs, because their request ids are equal.
   ASSIGN_OR_RETURN(std::vector<JobId> jobs, submit_jobs(job));
   MutexLock lock(mutex_);
   Entry& entry = entries_[id];

@@ -29,7 +29,7 @@ class CleanPictures {
   static constexpr std::uint64_t kMaxPixels = std::uint64_t{4} << 20;
 
   enum class Stage {
-    kNone,       ///< not asked for, or no longer kept
+    kNone,       ///< not requested, or no longer kept
     kGuides,     ///< the farm renders the guides
     kFiltering,  ///< the filter waits for its turn or runs
     kReady,
@@ -45,7 +45,7 @@ class CleanPictures {
   explicit CleanPictures(Engine& engine) : engine_(engine) {}
 
   /// Submits the jobs that render the guides of a finished job, unless that was done before. They
-  /// have the priority of the job. FAILED_PRECONDITION: the job is not done, such an image is not
+  /// have the priority of the job. FAILED_PRECONDITION: the job is not done, its image cannot be
   /// cleaned (scheduler/api/clean_jobs.h), or it is larger than kMaxPixels. NOT_FOUND: no such job.
   absl::StatusOr<State> start(JobId job) EXCLUDES(mutex_);
   /// Returns the state, and starts the filter when the guides are done. NOT_FOUND: no such job.

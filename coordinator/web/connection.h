@@ -29,7 +29,7 @@ class Connection {
   /// `tls` may be nullptr: plaintext.
   Connection(int socket, SSL_CTX* tls, std::chrono::milliseconds patience = kPatience);
 
-  /// False: the peer does not speak TLS, or not in time.
+  /// Returns false if the TLS handshake failed or was not finished in time.
   bool shake_hands();
   /// Call after the head was read: starts the time of the body.
   void begin_body();

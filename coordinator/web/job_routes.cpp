@@ -91,7 +91,7 @@ absl::StatusOr<farm::JobStatus> retry(Engine& engine, const HttpRequest& request
 /// Submits a job for another picture of a job's scene, with the same settings: by an integrator
 /// without light transport.
 absl::StatusOr<web::Submitted> submit_layer(Engine& engine, const HttpRequest& request) {
-  constexpr std::uint64_t kMostSamples = 64;  // more do not visibly improve a layer
+  constexpr std::uint64_t kMaxLayerSamples = 64;  // more do not visibly improve a layer
   ASSIGN_OR_RETURN(const JobId id, job_of(request));
   ASSIGN_OR_RETURN(const JobView view, look_at(engine, id));
   const std::string kind = request.parameter("kind");
@@ -108,9 +108,9 @@ absl::StatusOr<web::Submitted> submit_layer(Engine& engine, const HttpRequest& r
   StopAtSamples stop{16};
   const std::string samples = request.parameter("samples");
   if (!samples.empty() && (!absl::SimpleAtoi(samples, &stop.samples) || stop.samples < 1 ||
-                           stop.samples > kMostSamples)) {
+                           stop.samples > kMaxLayerSamples)) {
     return absl::InvalidArgumentError(
-        absl::StrCat("samples: must be a number from 1 to ", kMostSamples));
+        absl::StrCat("samples: must be a number from 1 to ", kMaxLayerSamples));
   }
   spec.stop = stop;
   spec.request_id = "layer-" + link::random_hex(8);

@@ -12,8 +12,8 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr std::uint32_t kSmallestSide = 64;
-constexpr std::uint32_t kLargestSide = 2048;
+constexpr std::uint32_t kMinPictureSide = 64;
+constexpr std::uint32_t kMaxPictureSide = 2048;
 
 /// Rounds to one of few sizes, so that few pictures are made.
 std::uint32_t side_of(const HttpRequest& request) {
@@ -21,8 +21,8 @@ std::uint32_t side_of(const HttpRequest& request) {
   if (!absl::SimpleAtoi(request.parameter("side"), &wanted)) {
     wanted = 1024;
   }
-  std::uint32_t side = kSmallestSide;
-  while (side < wanted && side < kLargestSide) {
+  std::uint32_t side = kMinPictureSide;
+  while (side < wanted && side < kMaxPictureSide) {
     side *= 2;
   }
   return side;

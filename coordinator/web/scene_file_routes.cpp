@@ -37,13 +37,13 @@ absl::Status too_large(const std::string& what, std::uint64_t most) {
 }
 
 absl::StatusOr<web::FileDigests> missing_files(Engine& engine, const HttpBody& body) {
-  web::FileDigests asked;
-  RETURN_IF_ERROR(read_json(body, asked, kMaxListBytes));
-  if (asked.sha256_size() > kMaxFiles) {
+  web::FileDigests list;
+  RETURN_IF_ERROR(read_json(body, list, kMaxListBytes));
+  if (list.sha256_size() > kMaxFiles) {
     return absl::InvalidArgumentError(absl::StrCat("at most ", kMaxFiles, " files"));
   }
   web::FileDigests missing;
-  for (const std::string& hex : asked.sha256()) {
+  for (const std::string& hex : list.sha256()) {
     ASSIGN_OR_RETURN(const wire::Digest digest, wire::digest_from_hex(hex));
     if (!engine.has_blob(digest)) {
       missing.add_sha256(hex);

@@ -132,27 +132,27 @@ class Farm:
         self._join = JoinString(join)
         self._timeout = timeout
         if web is not None:
-            self._doors = [_host_and_port(web)]
+            self._addresses = [_host_and_port(web)]
         elif self._join.web is not None and self._join.web[0] is not None:
-            self._doors = [self._join.web]
+            self._addresses = [self._join.web]
         else:
             port = self._join.web[1] if self._join.web else DEFAULT_WEB_PORT
-            self._doors = [(host, port) for host, _ in self._join.addresses]
+            self._addresses = [(host, port) for host, _ in self._join.addresses]
 
     def __repr__(self):
-        host, port = self._doors[0]
+        host, port = self._addresses[0]
         return f"<bandsaw.Farm {host}:{port}>"
 
     # ---- requests ----
 
-    def _connect(self, door):
-        host, port = door
+    def _connect(self, address):
+        host, port = address
         if self._join.certificate is None or _is_loopback(host):
             return http.client.HTTPConnection(host, port, timeout=self._timeout)
         return _PinnedConnection(host, port, self._timeout, self._join.certificate)
 
-    def _send(self, door, method, path, body, headers, timeout):
-        connection = self._connect(door)
+    def _send(self, address, method, path, body, headers, timeout):
+        connection = self._connect(address)
         if timeout is not None:
             connection.timeout = timeout
         try:
@@ -169,22 +169,22 @@ class Farm:
         if length is not None:
             headers["Content-Length"] = str(length)
         troubles = []
-        for door in list(self._doors):
+        for address in list(self._addresses):
             try:
-                status, answer = self._send(door, method, path, body, headers, timeout)
+                status, answer = self._send(address, method, path, body, headers, timeout)
             except (OSError, http.client.HTTPException) as error:
-                troubles.append(f"{door[0]}:{door[1]}: {_reason(error)}")
+                troubles.append(f"{address[0]}:{address[1]}: {_reason(error)}")
                 continue
-            self._doors.remove(door)
-            self._doors.insert(0, door)  # the one that answers is asked first from now on
+            self._addresses.remove(address)
+            self._addresses.insert(0, address)  # the next request is sent first to the one that answered
             if status >= 400:
                 raise _refusal(status, answer)
             return answer
         raise NoFarm(
             "no coordinator answers (" + "; ".join(troubles) + "). Is `bandsaw serve` running there, with "
-            f"--web 0.0.0.0:{self._doors[0][1]} if it is another machine?")
+            f"--web 0.0.0.0:{self._addresses[0][1]} if it is another machine?")
 
-    def ask(self, method, path, message=None):
+    def request_json(self, method, path, message=None):
         """The same for JSON: returns the answer as a dictionary."""
         body = None if message is None else json.dumps(message).encode()
         if body is None and method == "POST":
@@ -195,24 +195,24 @@ class Farm:
 
     def check(self):
         """Raises what is wrong with the string or the farm; returns its version."""
-        return self.ask("GET", "/api/farm").get("version", "")
+        return self.request_json("GET", "/api/farm").get("version", "")
 
     def workers(self):
         """A dictionary for each worker: name, state, threads, …"""
-        return self.ask("GET", "/api/farm").get("worker", [])
+        return self.request_json("GET", "/api/farm").get("worker", [])
 
     def jobs(self):
         """The farm's jobs, newest first."""
-        return [Job(self, int(job["status"]["job"])) for job in self.ask("GET", "/api/farm").get("job", [])]
+        return [Job(self, int(job["status"]["job"])) for job in self.request_json("GET", "/api/farm").get("job", [])]
 
     def job(self, number):
         return Job(self, int(number))
 
-    def submit(self, scene, samples=None, error=None, seconds=None, width=None, name=None, files=None, title=None, told=None):
+    def submit(self, scene, samples=None, error=None, seconds=None, width=None, name=None, files=None, title=None, on_progress=None):
         """Submits a scene and returns its Job. `scene`: the name of a scene or model file; files that it
         refers to are sent too. Or its text, with `name`: the name of its file (default scene.textproto), and `files`: a
         dictionary from the names that the text uses to bytes or paths. `title`: the job's name. One of `samples` (a pixel), `error` (0.02: two percent), `seconds`; default 64
-        samples. `width`: pixels, default the scene's own. `told`: a function of (bytes sent, bytes in all).
+        samples. `width`: pixels, default the scene's own. `on_progress`: a function of (bytes sent, bytes in all).
         Files that the farm has are not sent again."""
         if files is None:
             main, files = _files_of(scene)
@@ -225,7 +225,7 @@ class Farm:
         path = "/api/scenes/files?" + urllib.parse.urlencode({key: value for key, value in wanted.items() if value is not None})
         message = {"scene": main, "file": [{"name": file, "sha256": digest} for file, digest in sorted(digests.items())]}
         for again in range(60, -1, -1):
-            self._send_missing(files, digests, told)
+            self._send_missing(files, digests, on_progress)
             try:
                 answer = json.loads(self.request("POST", path, json.dumps(message).encode(), timeout=600))
                 return Job(self, int(answer["job"]), answer.get("warning", []))
@@ -236,21 +236,21 @@ class Farm:
                 time.sleep(0.5)
         raise AssertionError
 
-    def render(self, scene, told=None, **wanted):
-        """Renders a scene and returns its Image. Arguments as those of submit; `told`: a function of Progress."""
+    def render(self, scene, on_progress=None, **wanted):
+        """Renders a scene and returns its Image. Arguments as those of submit; `on_progress`: a function of Progress."""
         job = self.submit(scene, **wanted)
         try:
             for progress in job.progress():
-                if told is not None:
-                    told(progress)
+                if on_progress is not None:
+                    on_progress(progress)
         except KeyboardInterrupt:
             job.cancel()
             raise
         return job.image()
 
-    def _send_missing(self, files, digests, told):
+    def _send_missing(self, files, digests, on_progress):
         by_digest = {digest: files[file] for file, digest in digests.items()}
-        missing = self.ask("POST", "/api/files/missing", {"sha256": sorted(by_digest)}).get("sha256", [])
+        missing = self.request_json("POST", "/api/files/missing", {"sha256": sorted(by_digest)}).get("sha256", [])
         if not missing:
             return
         sizes = {digest: _size(by_digest[digest]) for digest in missing}
@@ -264,8 +264,8 @@ class Farm:
                 for piece in _pieces(by_digest[digest]):
                     yield piece
                     sent += len(piece)
-                    if told is not None:
-                        told(sent, total)
+                    if on_progress is not None:
+                        on_progress(sent, total)
 
         self.request("POST", "/api/files", parts, total, timeout=max(60.0, total / 32768))
 
@@ -431,11 +431,11 @@ class Job:
 
     def status(self):
         """The job's Progress now."""
-        return Progress(self.farm.ask("GET", self._path())["job"]["status"], self.warnings)
+        return Progress(self.farm.request_json("GET", self._path())["job"]["status"], self.warnings)
 
     def why(self):
         """The reasons why the job is not done, in sentences."""
-        return self.farm.ask("GET", self._path()).get("why", [])
+        return self.farm.request_json("GET", self._path()).get("why", [])
 
     def progress(self, interval=0.5, patience=60.0, stop=None):
         """Yields a Progress about every `interval` seconds until the job is over. While the coordinator cannot be
@@ -464,7 +464,7 @@ class Job:
         waiting, rendering, done or failed. The Job of a frame has its image."""
         return [(int(frame["frame"]), frame["state"].replace("FRAME_STATE_", "").lower(),
                  Job(self.farm, int(frame["job"])) if int(frame["job"]) else None, frame["reason"])
-                for frame in self.farm.ask("GET", self._path("/frames")).get("frame", [])]
+                for frame in self.farm.request_json("GET", self._path("/frames")).get("frame", [])]
 
     def preview(self, side=2048):
         """The present state as an Image of at most about `side` pixels a side; None: no pixels yet."""
@@ -486,10 +486,10 @@ class Job:
     def layer(self, kind, samples=16):
         """Submits a job for another picture of the same scene: "albedo", "normals" or "depth". Returns its Job."""
         query = urllib.parse.urlencode({"kind": kind, "samples": samples})
-        return Job(self.farm, int(self.farm.ask("POST", self._path("/layer?" + query))["job"]))
+        return Job(self.farm, int(self.farm.request_json("POST", self._path("/layer?" + query))["job"]))
 
     def cancel(self):
-        self.farm.ask("POST", self._path("/cancel"))
+        self.farm.request_json("POST", self._path("/cancel"))
 
     def _repr_png_(self):
         picture = self.preview()

@@ -102,7 +102,7 @@ absl::Status File::truncate(std::uint64_t size) {
 absl::StatusOr<std::uint64_t> File::size() const {
   struct stat info {};
   if (::fstat(fd_, &info) != 0) {
-    return errno_status(errno, absl::StrCat("cannot tell the size of ", path_));
+    return errno_status(errno, absl::StrCat("cannot read the size of ", path_));
   }
   return static_cast<std::uint64_t>(info.st_size);
 }

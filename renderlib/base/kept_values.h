@@ -1,6 +1,7 @@
 #pragma once
 
-// Values that are kept from one round of work to the next, as far as the next one uses them.
+// A map whose values are kept for the next round of work. A value that a round does not use is
+// lost.
 
 #include <map>
 #include <utility>

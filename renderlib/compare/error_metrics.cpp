@@ -15,7 +15,7 @@
 namespace bandsaw {
 namespace {
 
-constexpr double kSmallest = 0.01;  // Prevents ratios for dark pixels from dominating.
+constexpr double kMinReference = 0.01;  // Prevents ratios for dark pixels from dominating.
 
 struct Sums {
   double squares = 0;
@@ -34,11 +34,11 @@ double add_channel(float image, float reference, Sums& sums) {
   const double difference = a - b;
   const double on_screen = shown(image) - shown(reference);
   sums.squares += difference * difference;
-  sums.relative += std::abs(difference) / (std::abs(b) + kSmallest);
+  sums.relative += std::abs(difference) / (std::abs(b) + kMinReference);
   sums.coded_squares += on_screen * on_screen;
   sums.reference += b;
   ++sums.count;
-  return difference * difference / (b * b + kSmallest);
+  return difference * difference / (b * b + kMinReference);
 }
 
 struct PixelError {

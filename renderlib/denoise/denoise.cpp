@@ -257,8 +257,8 @@ CleanError total_of(const std::vector<RowSums>& rows, std::size_t pixels) {
 /// Returns the rows of a strip: about a quarter of a megapixel, an even number.
 int rows_of_strip(int width) {
   constexpr int kPixels = 1 << 18;
-  constexpr int kLeast = 64;
-  return std::max(kLeast, (kPixels / width) & ~1);
+  constexpr int kMinRows = 64;
+  return std::max(kMinRows, (kPixels / width) & ~1);
 }
 
 }  // namespace

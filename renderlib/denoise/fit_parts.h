@@ -25,8 +25,8 @@ inline Float8 falling(const Float8& x) {
   return square * square;
 }
 
-/// Distances in one half between the patches of a tile's centres and those of the pixels of their
-/// windows.
+/// Distances, in one half of the samples, between the patches of a tile's centres and the patches
+/// of the pixels of their windows.
 class PatchDistances {
  public:
   /// `input` MUST outlive this object. `half` is 0 or 1.
@@ -58,12 +58,12 @@ class PatchDistances {
 
 inline constexpr std::size_t kTerms = 3 + kGuides;  ///< 1, x, y, guides
 
-/// Normal equations of eight centres in one half.
+/// Normal equations of eight centres, in one half of the samples.
 struct NormalEquations {
   NormalEquations();
   /// Adds a pixel.
   void add(const Float8& weight, const Float8 (&terms)[kTerms], const Float8 (&value)[3]);
-  /// Adds a small multiple of the sum of the weights to the diagonal, but not for the first term.
+  /// Adds a small multiple of the sum of the weights to the diagonal, except for the first term.
   void add_ridge();
   /// Replaces `values` by the coefficients, for each term and channel.
   void solve();

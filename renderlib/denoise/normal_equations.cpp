@@ -6,14 +6,14 @@ namespace {
 /// Relative to the guides' range. Without it, a guide that is constant in the window would make the
 /// equations singular.
 constexpr float kRidge = 1e-5f;
-constexpr float kSmallestPivot = 1e-6f;  ///< relative to the diagonal's element
+constexpr float kMinPivot = 1e-6f;  ///< relative to the diagonal's element
 
 /// A symmetric matrix as L D L^T: D on the diagonal, L below it.
 using Factors = Float8[kTerms][kTerms];
 
 void factorize(Factors& a, Float8 (&inverse)[kTerms]) {
   for (std::size_t j = 0; j < kTerms; ++j) {
-    const Float8 least = a[j][j] * Float8(kSmallestPivot) + Float8(1e-30f);
+    const Float8 least = a[j][j] * Float8(kMinPivot) + Float8(1e-30f);
     Float8 scaled[kTerms];
     for (std::size_t k = 0; k < j; ++k) {
       scaled[k] = a[j][k] * a[k][k];

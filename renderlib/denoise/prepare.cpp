@@ -7,16 +7,16 @@
 namespace bandsaw {
 namespace {
 
-constexpr float kMost = 1e15f;  ///< the squares of larger values exceed float
+constexpr float kMaxDepthValue = 1e15f;  ///< the squares of larger values exceed float
 constexpr int kAround = 2;      ///< radius in which bright pixels are looked for
 /// Differences below this share of the brightness are no differences, whatever the noise.
-constexpr float kSmallestNoise = 3e-3f;
+constexpr float kMinNoise = 3e-3f;
 
 using Channels = std::array<float, 3>;
 
 Channels channels(const Rgb& color) { return {color.r, color.g, color.b}; }
 
-bool usable(float value) { return value >= 0 && value <= kMost; }
+bool usable(float value) { return value >= 0 && value <= kMaxDepthValue; }
 
 /// Fills a plane from f(x, y), and mirrors it into the margin.
 template <class F>
@@ -98,7 +98,8 @@ std::vector<Channels> limited(const std::vector<Channels>& half, const std::vect
 /// Returns the guides of a pixel, each in [0, 1]. A depth of `typical` becomes 1/2.
 std::array<float, kGuides> guides_of(const Rgb& albedo, const Rgb& shape, float typical) {
   const auto bounded = [](float v) { return v > 0 ? std::min(v, 1.0f) : 0.0f; };  // NaN: 0
-  const float depth = shape.b > 0 ? (shape.b < kMost ? shape.b / (shape.b + typical) : 1.0f) : 0.0f;
+  const float depth =
+      shape.b > 0 ? (shape.b < kMaxDepthValue ? shape.b / (shape.b + typical) : 1.0f) : 0.0f;
   return {bounded(albedo.r), bounded(albedo.g), bounded(albedo.b),
           bounded(shape.r),  bounded(shape.g),  bounded(depth)};
 }
@@ -116,7 +117,7 @@ ImageMeans means_of(const DenoiseInput& input) {
       brightness_sum += brightness(mean);
       bright += 3;
     }
-    if (const float depth = input.shape.pixels[i].b; depth > 0 && depth < kMost) {
+    if (const float depth = input.shape.pixels[i].b; depth > 0 && depth < kMaxDepthValue) {
       depth_sum += depth;
       deep += 1;
     }
@@ -165,7 +166,7 @@ FitInput prepare_fit(const DenoiseInput& input, const ImageMeans& means, const R
     out.variance[h] = plane_of(size, pool, [&](int x, int y) {
       const std::size_t i = size.index(x, y);
       const float share = std::clamp(input.first_share[first_pixel + i], 0.0f, 1.0f);
-      const float least = kSmallestNoise * around[i];
+      const float least = kMinNoise * around[i];
       return noise[i] * (h == 0 ? 1 - share : share) + least * least + 1e-20f;
     });
   }

@@ -9,9 +9,9 @@
 namespace bandsaw {
 namespace {
 
-/// Fewest records with light of a cell, and of one ball of several.
-constexpr std::size_t kFewestRecords = 8;
-constexpr std::size_t kFewestOfBall = 6;
+/// Minimum number of records with light in a cell, and in each ball if a cell has several.
+constexpr std::size_t kMinRecordsOfCell = 8;
+constexpr std::size_t kMinRecordsOfBall = 6;
 
 /// Shares of guided directions to choose from.
 constexpr std::array<double, 4> kShares = {0.125, 0.25, 0.375, 0.5};
@@ -22,11 +22,11 @@ constexpr double kWidest = 0.5;
 
 /// A single record has at most this share of a cell's light: a path that found a small lamp by
 /// chance does not decide alone.
-constexpr double kMostOfOne = 0.1;
+constexpr double kMaxShareOfRecord = 0.1;
 
 /// A ball is split only if that raises the mean logarithm of the pdf by this much, times the
 /// effective number of records: fewer records would be followed too closely.
-constexpr double kSmallestGain = 3;
+constexpr double kMinSplitGain = 3;
 
 /// Share of its weight that a ball keeps when it is split.
 constexpr double kKept = 0.25;
@@ -116,11 +116,11 @@ void normalize_weights(absl::Span<Seen> seen) {
   }
 }
 
-/// The light that the records tell of.
+/// The light that the records describe.
 struct Light {
   std::vector<Seen> seen;  ///< their weights sum to 1
   double irradiance = 0;
-  double effective = 0;  ///< how many equal records would tell as much
+  double effective = 0;  ///< number of equal records with as much information
 };
 
 Light light_of(const Place& place, absl::Span<const GuidingRecord> records) {
@@ -137,7 +137,7 @@ Light light_of(const Place& place, absl::Span<const GuidingRecord> records) {
   double squares = 0;
   for (Seen& one : light.seen) {
     squares += one.weight * one.weight;
-    one.weight = std::min(one.weight, kMostOfOne * light.irradiance);
+    one.weight = std::min(one.weight, kMaxShareOfRecord * light.irradiance);
   }
   light.effective = squares > 0 ? light.irradiance * light.irradiance / squares : 0;
   normalize_weights(absl::MakeSpan(light.seen));
@@ -196,7 +196,7 @@ std::size_t partition(absl::Span<Seen> seen, const Cluster& cluster, int axis, d
 /// Reorders the cluster's directions.
 Split best_split(const Place& place, absl::Span<Seen> seen, const Cluster& cluster) {
   Split best;
-  if (cluster.last - cluster.first < 2 * kFewestOfBall) {
+  if (cluster.last - cluster.first < 2 * kMinRecordsOfBall) {
     return best;
   }
   for (int axis = 0; axis < 3; ++axis) {
@@ -206,7 +206,7 @@ Split best_split(const Place& place, absl::Span<Seen> seen, const Cluster& clust
     }
     mean /= cluster.weight;
     const std::size_t middle = partition(seen, cluster, axis, mean);
-    if (middle - cluster.first < kFewestOfBall || cluster.last - middle < kFewestOfBall) {
+    if (middle - cluster.first < kMinRecordsOfBall || cluster.last - middle < kMinRecordsOfBall) {
       continue;
     }
     const double gain = score(cluster_of(place, seen, cluster.first, middle)) +
@@ -233,7 +233,7 @@ std::vector<Cluster> clusters_of(const Place& place, absl::Span<Seen> seen) {
     const auto best =
         std::max_element(splits.begin(), splits.end(),
                          [](const Split& a, const Split& b) { return a.gain < b.gain; });
-    if (best->gain <= kSmallestGain * squares) {
+    if (best->gain <= kMinSplitGain * squares) {
       break;
     }
     const auto which = static_cast<std::size_t>(best - splits.begin());
@@ -335,7 +335,7 @@ GuidingCell fit_cell(absl::Span<const GuidingRecord> records) {
   const Place place = place_of(records);
   Light light = light_of(place, records);
   cell.irradiance = static_cast<float>(light.irradiance);
-  if (light.seen.size() < kFewestRecords || light.effective < kFewestRecords) {
+  if (light.seen.size() < kMinRecordsOfCell || light.effective < kMinRecordsOfCell) {
     return cell;
   }
   const std::vector<Densities> densities = crossed_densities(place, light.seen);

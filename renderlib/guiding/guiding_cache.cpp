@@ -13,7 +13,7 @@ GuidingCache::Trained GuidingCache::get(const GuidingKey& key, absl::FunctionRef
   }
   Trained trained = make();
   if (trained != nullptr) {
-    if (entries_.size() == kMostFields) {
+    if (entries_.size() == kMaxFields) {
       entries_.pop_front();
     }
     entries_.push_back({key, trained});

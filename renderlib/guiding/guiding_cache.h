@@ -1,6 +1,6 @@
 #pragma once
 
-// The fields of path guiding of a scene, each made when it is first used.
+// The guiding fields of a scene (guiding_field.h), each trained when it is first used.
 
 #include <cstdint>
 #include <deque>
@@ -13,8 +13,8 @@
 
 namespace bandsaw {
 
-/// The shape of the image and the length of the paths, on which the field of a scene depends. It
-/// does not depend on the seed, so that no image is luckier than another.
+/// The field of a scene depends on the shape of the image and the length of the paths. It does not
+/// depend on the seed: images of all seeds use the same field.
 struct GuidingKey {
   std::uint32_t width = 0;   ///< pixels
   std::uint32_t height = 0;  ///< pixels
@@ -33,13 +33,13 @@ class GuidingCache {
  public:
   using Trained = std::shared_ptr<const TrainedGuiding>;
 
-  /// Returns the field of `key`, which `make` makes if it is not there. Others that ask meanwhile
-  /// wait. `make` returns nullptr if it was stopped; nothing is kept then.
+  /// Returns the field of `key`. If it is not kept yet, calls `make`; other threads that call get()
+  /// wait meanwhile. If `make` returns nullptr (it was stopped), returns that and keeps nothing.
   Trained get(const GuidingKey& key, absl::FunctionRef<Trained()> make) EXCLUDES(mutex_);
 
  private:
-  /// Fields that are kept; the oldest one is dropped.
-  static constexpr std::size_t kMostFields = 4;
+  /// Number of fields that are kept. When there are more, the oldest one is dropped.
+  static constexpr std::size_t kMaxFields = 4;
   struct Entry {
     GuidingKey key;
     Trained trained;

@@ -17,15 +17,15 @@ constexpr double kNarrowest = 4e-6;
 GuidingShares shares_of(const GuidingCells& cells) {
   // Little light of a small source is found rarely, and then it is bright. Light that adds less
   // than this to the second moment, in units of the squared mean of all light, is not noticed.
-  constexpr double kLeastMoment = 0.001;
-  constexpr double kLeastShare = 0.125;
-  constexpr double kMostShare = 0.5;
+  constexpr double kMinMoment = 0.001;
+  constexpr double kMinShare = 0.125;
+  constexpr double kMaxShare = 0.5;
   GuidingShares shares;
   if (cells.photons != nullptr && cells.photons->count > 0) {
     const double others = cells.paths != nullptr ? cells.paths->irradiance : 0;
     const double part = cells.photons->irradiance / (cells.photons->irradiance + others);
-    if (part * part * cells.photons->moment > kLeastMoment) {
-      shares.photons = std::clamp(part, kLeastShare, kMostShare);
+    if (part * part * cells.photons->moment > kMinMoment) {
+      shares.photons = std::clamp(part, kMinShare, kMaxShare);
     }
   }
   if (cells.paths != nullptr && cells.paths->count > 0) {

@@ -33,8 +33,8 @@ Extent longest_extent(absl::Span<const GuidingRecord> records) {
   return longest;
 }
 
-/// Returns how many equal records would tell as much as these: (sum of the weights)^2 / sum of the
-/// squared weights.
+/// Returns the effective number of the records, (sum of the weights)^2 / sum of the squared
+/// weights: their number if all weights are equal, otherwise fewer.
 double effective_count(absl::Span<const GuidingRecord> records) {
   double sum = 0;
   double squares = 0;

@@ -17,7 +17,7 @@ namespace bandsaw {
 /// The cells of one kind of records, in a binary tree over space.
 class GuidingTree {
  public:
-  /// A place is divided further if its records tell as much as this many equal ones.
+  /// A place is divided further while its effective number of records is above this.
   static constexpr double kRecordsOfLeaf = 48;
 
   GuidingTree() = default;

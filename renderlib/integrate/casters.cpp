@@ -11,7 +11,7 @@ namespace bandsaw {
 namespace {
 
 /// Most primitives that are listed.
-constexpr std::size_t kMostPrimitives = std::size_t{1} << 18;
+constexpr std::size_t kMaxPrimitives = std::size_t{1} << 18;
 
 /// Rougher metals cast no sharp light.
 constexpr double kRoughest = 0.5;
@@ -83,7 +83,7 @@ Casters::Casters(const Scene& scene) : scene_(scene) {
       }
     }
   }
-  const std::size_t step = (ids.size() + kMostPrimitives - 1) / kMostPrimitives;
+  const std::size_t step = (ids.size() + kMaxPrimitives - 1) / kMaxPrimitives;
   std::vector<OfMaterial> all(materials);
   for (std::size_t i = 0; i < ids.size(); i += step) {
     OfMaterial& to = all[index_of(material_of(geometry, ids[i]))];

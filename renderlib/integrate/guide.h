@@ -1,6 +1,6 @@
 #pragma once
 
-// Guides of the denoiser: what is seen first that is no mirror and no glass.
+// Guides of the denoiser: features of the first surface that is neither a mirror nor glass.
 
 #include <cstdint>
 

@@ -14,8 +14,8 @@ namespace {
 constexpr std::uint32_t kChunks = 64;
 
 /// Smaller and larger images are trained like images of this many pixels.
-constexpr std::uint64_t kFewestPixels = 1 << 15;
-constexpr std::uint64_t kMostPixels = 1 << 18;
+constexpr std::uint64_t kMinTrainingPixels = 1 << 15;
+constexpr std::uint64_t kMaxTrainingPixels = 1 << 18;
 
 /// Runs the chunks of a round and appends their records in order. Returns false if stopped.
 template <class OfChunk>
@@ -42,7 +42,7 @@ bool add_round(std::uint32_t round, std::uint64_t count, Pool& pool, const std::
 std::shared_ptr<const TrainedGuiding> train_guiding(const Scene& scene, const GuidingKey& key,
                                                     Pool& pool, const std::atomic<bool>& stop) {
   const std::uint64_t pixels =
-      std::clamp(std::uint64_t{key.width} * key.height, kFewestPixels, kMostPixels);
+      std::clamp(std::uint64_t{key.width} * key.height, kMinTrainingPixels, kMaxTrainingPixels);
   TrainedGuiding trained;
   std::vector<GuidingRecord> records;
   const Casters casters(scene);

@@ -314,7 +314,7 @@ void trace_path(const PathContext& context, std::uint32_t depth, PathState& path
       return;
     }
     const GuidingCones cones = cones_at(context, *hit, *bsdf, -path.ray.direction);
-    // Split the path at the first surface with a pdf, if the options ask for it.
+    // Split the path at the first surface with a pdf, if the options require it.
     if (context.branches > 1 && has_pdf(*bsdf)) {
       trace_branches(context, *hit, *bsdf, cones, depth, path);
       return;

@@ -13,7 +13,7 @@ namespace bandsaw {
 namespace {
 
 /// Longer chains of mirrors and glass are not followed.
-constexpr std::uint32_t kLongestChain = 16;
+constexpr std::uint32_t kMaxChain = 16;
 
 struct Photon {
   Ray ray;
@@ -106,7 +106,7 @@ void follow(const Scene& scene, const PixelSampler& sampler, std::uint64_t sampl
 TrainingRecords training_photons(const Scene& scene, const Casters& casters, const GuidingKey& key,
                                  const TrainingChunk& chunk, std::uint64_t photons) {
   const PixelSampler sampler = training_sampler(chunk);
-  const std::uint32_t longest = std::min(kLongestChain, key.max_depth);
+  const std::uint32_t longest = std::min(kMaxChain, key.max_depth);
   TrainingRecords out;
   for (std::uint64_t sample = 0; sample < chunk.count; ++sample) {
     if (const std::optional<Photon> photon = start(scene, casters, sampler, sample, out)) {

@@ -95,13 +95,13 @@ void choose_chances(PrincipledBsdf& bsdf) {
     bsdf.chances = {bsdf.refracting > 0 ? 1.0 : 0.0, 0, 0};
     return;
   }
-  constexpr double kLeast = 0.1;
+  constexpr double kMinAlbedo = 0.1;
   const double f = fresnel(std::min(1.0, bsdf.o.z), bsdf.eta);
   const double base = max_component(bsdf.diffuse.base);
   const double dielectric = f * (1 - bsdf.metallic) + bsdf.refracting * (1 - f);
   const double matte = bsdf.matte * base + 0.25 * double{max_component(bsdf.diffuse.sheen)};
-  bsdf.chances[kSpecular] = std::max(kLeast, dielectric + bsdf.metallic * base);
-  bsdf.chances[kDiffuse] = matte > 0 ? std::max(kLeast, matte) : 0;
+  bsdf.chances[kSpecular] = std::max(kMinAlbedo, dielectric + bsdf.metallic * base);
+  bsdf.chances[kDiffuse] = matte > 0 ? std::max(kMinAlbedo, matte) : 0;
   bsdf.chances[kCoat] = 0.25 * bsdf.clearcoat;
   const double sum = bsdf.chances[kSpecular] + bsdf.chances[kDiffuse] + bsdf.chances[kCoat];
   for (double& chance : bsdf.chances) {

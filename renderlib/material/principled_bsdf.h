@@ -38,7 +38,7 @@ struct PrincipledBsdf {
   std::array<double, 3> chances{};
 };
 
-/// Returns the BSDF. `normal` is on the side of wo; `outside` tells whether that is the side of the
+/// Returns the BSDF. `normal` is on the side of wo; `outside`: whether that is the side of the
 /// geometric normal.
 PrincipledBsdf principled_at(const Principled& material, absl::Span<const Texture> textures,
                              const SurfacePoint& point, const SidedNormals& normal, bool outside,

@@ -12,7 +12,7 @@ namespace {
 enum Lobe : std::size_t { kReflection, kTransmission, kDiffuse, kDiffuseTransmission };
 
 /// Albedo that the selection of lobes assumes at least.
-constexpr double kLeast = 0.1;
+constexpr double kMinThinAlbedo = 0.1;
 
 void add_reflection(const ThinPrincipledBsdf& bsdf, const Vec3& i, const Vec3& h, BsdfValue& sum) {
   const double o_h = std::min(1.0, dot(bsdf.o, h));
@@ -50,7 +50,9 @@ void choose_chances(ThinPrincipledBsdf& bsdf) {
   const double f = fresnel(std::min(1.0, bsdf.o.z), bsdf.eta);
   const double rough = 1 - bsdf.spec_trans;
   const double sheen = 0.25 * double{max_component(bsdf.diffuse.sheen)};
-  const auto weight = [](double share, double albedo) { return share * std::max(kLeast, albedo); };
+  const auto weight = [](double share, double albedo) {
+    return share * std::max(kMinThinAlbedo, albedo);
+  };
   bsdf.chances[kReflection] = weight(bsdf.spec_trans, f);
   bsdf.chances[kTransmission] = weight(bsdf.spec_trans, base * (1 - f));
   bsdf.chances[kDiffuse] = weight(rough * (1 - bsdf.diff_trans), base + sheen);

@@ -33,8 +33,8 @@ constexpr double kFirstNm = 380;
 constexpr double kStepNm = 10;
 /// The second radiation constant, nm K (CODATA 2018).
 constexpr double kSecond = 1.438776877e7;
-constexpr double kLowestHue = 500;
-constexpr double kHighestHue = 1e5;
+constexpr double kMinHue_K = 500;
+constexpr double kMaxHue_K = 1e5;
 
 /// Linear sRGB before rounding to float.
 using Color = std::array<double, 3>;
@@ -94,7 +94,7 @@ Rgb blackbody(double kelvin, BlackbodyScale scale) {
   if (!(kelvin >= kDarkKelvin)) {
     return {};
   }
-  const Color color = peak_color(std::clamp(kelvin, kLowestHue, kHighestHue));
+  const Color color = peak_color(std::clamp(kelvin, kMinHue_K, kMaxHue_K));
   if (scale == BlackbodyScale::kPeak) {
     return scaled(color, 1);
   }

@@ -68,9 +68,9 @@ constexpr std::uint64_t brick_bytes(std::uint32_t channels, VolumeGrid::Format f
   return std::uint64_t{kBrickCells} * channels * (format == VolumeGrid::Format::kFloat16 ? 2 : 4);
 }
 
-/// Returns the largest number. Returns INVALID_ARGUMENT if the sizes are out of range or do not fit
-/// each other, if an index or number is out of range, or if a cell outside of the box is not 0:
-/// ".index: …".
+/// Returns the largest number of the grid. INVALID_ARGUMENT: the sizes are out of range or do not
+/// fit each other, an index or number is out of range, or a cell outside of the box is not 0. The
+/// message begins with the field: ".index: …".
 absl::StatusOr<float> check_grid(const VolumeGrid& grid);
 
 /// Returns the number that a half of 16 bits has; exact.

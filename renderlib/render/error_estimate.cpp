@@ -11,7 +11,7 @@
 namespace bandsaw {
 namespace {
 
-constexpr double kSmallest = 0.01;  // Prevents relative errors of dark pixels from dominating.
+constexpr double kMinMean = 0.01;  // Prevents relative errors of dark pixels from dominating.
 
 // Let T be the squared error of one image and V its estimate from the nodes. Both are sums over
 // groups of pixels, which are independent (sampling/sampler.h, render/pixel_groups.h). Let the
@@ -89,7 +89,7 @@ void ErrorSums::add(absl::Span<const NodeSums> nodes) {
   double value = 0;
   for (std::size_t c = 0; c < 3; ++c) {
     const Estimated channel = of_channel(nodes, c);
-    relative_squares_ += channel.variance / (channel.mean * channel.mean + kSmallest);
+    relative_squares_ += channel.variance / (channel.mean * channel.mean + kMinMean);
     of_pixel += channel.variance;
     value += channel.mean;
   }
@@ -122,7 +122,7 @@ ErrorEstimate ErrorSums::estimate() const {
     std::vector<float> relative(variances_.size());
     for (std::size_t i = 0; i < relative.size(); ++i) {
       relative[i] =
-          static_cast<float>(std::sqrt(double{variances_[i]}) / (means_[i] + kSmallest * out.mean));
+          static_cast<float>(std::sqrt(double{variances_[i]}) / (means_[i] + kMinMean * out.mean));
     }
     out.median = quantile(relative, 0.5);
     out.percentile_95 = quantile(relative, 0.95);

@@ -5,8 +5,8 @@
 namespace bandsaw {
 namespace {
 
-/// Returns the map from the world to a frame. Validation has checked that frames are regular; one
-/// that is not where it moves maps as if it stood at the origin.
+/// Returns the map from the world to a frame. Validation has checked that keys are regular. If the
+/// frame is singular at a time between two keys, returns the identity.
 Transform to_frame(const Geometry& boundaries, FrameId frame, double time) {
   return inverse(frame_at(boundaries.frames, frame, time)).value_or(Transform{});
 }

@@ -164,9 +164,9 @@ absl::Status check_number(const std::string& field, const Number& number,
 }
 
 absl::Status check_conductor(const std::string& field, const ConductorIndex& index) {
-  constexpr float kMost = 100;
-  RETURN_IF_ERROR(check_color(field + ".eta", index.eta, kMost));
-  RETURN_IF_ERROR(check_color(field + ".k", index.k, kMost));
+  constexpr float kMaxIndex = 100;
+  RETURN_IF_ERROR(check_color(field + ".eta", index.eta, kMaxIndex));
+  RETURN_IF_ERROR(check_color(field + ".k", index.k, kMaxIndex));
   const Rgb& eta = index.eta;
   return eta.r > 0 && eta.g > 0 && eta.b > 0
              ? absl::OkStatus()

@@ -33,7 +33,7 @@ measure() {  # ERROR OPTION...
     "$(number relative_rmse <<<"$compared") $(number error <<<"$done")"
 }
 
-echo "| scene | samples even | adaptive | error even | adaptive | told adaptive | CPU time even over adaptive | gain in relMSE | gain in MSE |"
+echo "| scene | samples even | adaptive | error even | adaptive | estimated adaptive | CPU time even over adaptive | gain in relMSE | gain in MSE |"
 echo "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"
 for wanted in "${scenes[@]}"; do
   IFS=: read -r scene error <<<"$wanted"

@@ -155,7 +155,7 @@ Figure time_left_figure() {
         ++within;
       } else {
         figure.remark += job.scene + " " + job.options.back() +
-                         (std::isnan(error) ? " was not told; " : " was not; ");
+                         (std::isnan(error) ? " was not printed; " : " was not; ");
       }
       if (!std::isnan(error)) {
         figure.measured.push_back(100 * error);

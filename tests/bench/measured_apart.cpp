@@ -24,10 +24,10 @@ Figures measured_apart(const std::function<Figures()>& work) {
   Figures figures;
   int status = 0;
   rusage used{};
-  const bool told = child > 0 && read(ends[0], &figures, sizeof figures) == sizeof figures;
+  const bool received = child > 0 && read(ends[0], &figures, sizeof figures) == sizeof figures;
   close(ends[0]);
   close(ends[1]);
-  if (!told || wait4(child, &status, 0, &used) != child || status != 0) {
+  if (!received || wait4(child, &status, 0, &used) != child || status != 0) {
     std::fprintf(stderr, "a measurement failed: no memory?\n");
     std::exit(1);
   }

@@ -1,4 +1,4 @@
-"""Renders the scenes of scenes.py by Cycles and by the add-on, and tells how their means differ:
+"""Renders the scenes of scenes.py by Cycles and by the add-on, and prints how their means differ:
 
     blender -b --factory-startup --python compare.py -- ADDON.zip FOLDER cycles|bandsaw|export SCENE…
 

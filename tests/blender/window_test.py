@@ -1,4 +1,4 @@
-"""In Blender's window: prepares a scene, and tells in a file what has happened at the coordinator: ready, looked, cancelled."""
+"""In Blender's window: prepares a scene, and writes to a file what has happened at the coordinator: ready, looked, cancelled."""
 
 import os
 import sys

@@ -1,5 +1,5 @@
-"""A coordinator for tests of the clients: it speaks the HTTP requests of proto/web.proto and renders nothing. Each look at a job completes some
-more of its rows. `python3 fake_farm.py SECONDS` serves one until its standard input ends, and prints the farm's string."""
+"""A coordinator for tests of the clients: it speaks the HTTP requests of proto/web.proto and renders nothing. Each request for the state of a
+job completes some more of its rows. `python3 fake_farm.py SECONDS` serves one until its standard input ends, and prints the farm's string."""
 
 import array
 import hashlib

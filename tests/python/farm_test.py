@@ -69,24 +69,24 @@ class OnAFarm(unittest.TestCase):
         cls.folder.cleanup()
 
     def test_a_rendered_image_has_the_bytes_of_bandsaw_render(self):
-        told = []
-        image = self.farm.render(CORNELL, samples=16, width=48, told=told.append)
+        seen = []
+        image = self.farm.render(CORNELL, samples=16, width=48, on_progress=seen.append)
         whole = os.path.join(self.folder.name, "whole.pfm")
         subprocess.run([os.path.join(BIN, "bandsaw"), "render", CORNELL, "--samples", "16", "--width", "48", "--report", "none", "--quiet", "-o", whole],
                        check=True, stdout=subprocess.DEVNULL)
         with open(whole, "rb") as file:
             self.assertTrue(bandsaw.compare(image, bandsaw.image_from_pfm(file.read()))["equal"])
-        self.assertEqual(told[-1].state, "done")
-        self.assertEqual((told[-1].fraction, told[-1].samples), (1, 16))
+        self.assertEqual(seen[-1].state, "done")
+        self.assertEqual((seen[-1].fraction, seen[-1].samples), (1, 16))
         self.assertTrue(image.png().startswith(b"\x89PNG"))
 
     def test_a_model_is_sent_with_its_files_once(self):
         pergola = os.path.join(SOURCE, "renderlib", "gallery", "pergola.gltf")
         sent = []
-        first = self.farm.submit(pergola, samples=1, width=16, told=lambda done, total: sent.append(done))
+        first = self.farm.submit(pergola, samples=1, width=16, on_progress=lambda done, total: sent.append(done))
         self.assertGreater(len(sent), 0)
         del sent[:]
-        again = self.farm.submit(pergola, samples=2, width=16, told=lambda done, total: sent.append(done))
+        again = self.farm.submit(pergola, samples=2, width=16, on_progress=lambda done, total: sent.append(done))
         self.assertEqual(sent, [])
         self.assertEqual(len(list(first.progress(0.05))[-1:] + list(again.progress(0.05))[-1:]), 2)
         self.assertEqual((again.image().width, again.status().samples), (16, 2))
@@ -137,7 +137,7 @@ class Restarted(unittest.TestCase):
             try:
                 string = loopback.string
                 farm = bandsaw.Farm(string)
-                if not farm._doors or bandsaw._is_loopback(farm._doors[0][0]):
+                if not farm._addresses or bandsaw._is_loopback(farm._addresses[0][0]):
                     self.skipTest("this machine has no address but loopback")
                 ports = (farm._join.addresses[0][1], farm._join.web[1])
                 job = farm.submit(CORNELL, samples=512, width=64)

@@ -210,7 +210,7 @@ class Jobs(unittest.TestCase):
         def stop(progress):
             raise KeyboardInterrupt
         with self.assertRaises(KeyboardInterrupt):
-            self.farm.render("one", files={}, told=stop)
+            self.farm.render("one", files={}, on_progress=stop)
         self.assertEqual(self.fake.jobs[1]["state"], "cancelled")
 
 

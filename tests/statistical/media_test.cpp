@@ -384,10 +384,10 @@ TEST(MediaTechniques, V8AgreeOnARayThroughTheMiddleOfALight) {
     return test::radiance_along(*scene, ray, {.max_depth = 1, .technique = technique}, 4096);
   };
   const Moments both = mean(Technique::kBoth);
-  const Moments asked = mean(Technique::kLightsOnly);
+  const Moments lights = mean(Technique::kLightsOnly);
   EXPECT_LE(both.standard_error(), 1e-3 * both.mean());
-  EXPECT_LE(std::abs(both.mean() - asked.mean()),
-            4 * std::hypot(both.standard_error(), asked.standard_error()));
+  EXPECT_LE(std::abs(both.mean() - lights.mean()),
+            4 * std::hypot(both.standard_error(), lights.standard_error()));
   test::holds("V8", "techniques agree");
 }
 

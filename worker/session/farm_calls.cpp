@@ -12,7 +12,8 @@
 namespace bandsaw::worker {
 namespace {
 
-// Every band has at least the second of the two minutes; an interrupted one is sent again.
+// Deadline of a stream of bands, and the age up to which it takes a further band: so each band has
+// at least a minute. A band whose transfer is interrupted is sent again.
 constexpr std::chrono::milliseconds kDeadline{120'000};
 constexpr std::chrono::milliseconds kServes{60'000};
 

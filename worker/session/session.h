@@ -70,8 +70,8 @@ class Session {
   void rendering(TaskId task, std::uint32_t rows_done);
   /// Marks a band as finished. False: its lease was revoked, discard the pixels.
   bool finished(TaskId task);
-  /// Removes a failed band. Returns the message to send, or std::nullopt if not connected; the next
-  /// Hello then does not list the band, which reports the same.
+  /// Removes a failed band. Returns the message to send, or std::nullopt if not connected. Then the
+  /// next Hello does not list the band, and the coordinator leases it again.
   std::optional<farm::FromWorker> failed(TaskId task, const std::string& reason,
                                          const std::vector<std::string>& log);
   /// Removes a band whose pixels are acknowledged.

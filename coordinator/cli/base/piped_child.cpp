@@ -77,12 +77,12 @@ absl::Status PipedChild::finish() {
 }
 
 std::string PipedChild::last_error_line() const {
-  constexpr std::size_t kMost = 4096;
+  constexpr std::size_t kMaxBytes = 4096;
   const off_t size = lseek(errors_, 0, SEEK_END);
-  std::string text(kMost, '\0');
+  std::string text(kMaxBytes, '\0');
   const ssize_t got =
       pread(errors_, text.data(), text.size(),
-            size > static_cast<off_t>(kMost) ? size - static_cast<off_t>(kMost) : 0);
+            size > static_cast<off_t>(kMaxBytes) ? size - static_cast<off_t>(kMaxBytes) : 0);
   text.resize(got > 0 ? static_cast<std::size_t>(got) : 0);
   const std::vector<std::string> lines = absl::StrSplit(text, '\n', absl::SkipWhitespace());
   return lines.empty() ? "it ended without a message" : lines.back();

@@ -18,14 +18,14 @@ std::string si(double value);
 /// The same with a unit: "48 Msamples", "950 samples".
 std::string si_with(double value, absl::string_view unit);
 
-/// "1:05", "1:02:03": minutes and seconds, with hours if there are any. Rounded up, so that 0:00
-/// means finished.
+/// Formats a time as minutes and seconds, with hours if there are any: "1:05", "1:02:03". Rounded
+/// up, so that 0:00 means finished.
 std::string clock_time(double seconds);
 
-/// "0.42 s", "21.4 s", "3 min 20 s", "2 h 5 min".
+/// Formats a time with its units: "0.42 s", "21.4 s", "3 min 20 s", "2 h 5 min".
 std::string duration(double seconds);
 
-/// "1.6 %", "0.99 %", "12 %": a fraction as a percentage with two significant digits.
+/// Formats a fraction as a percentage with two significant digits: "1.6 %", "0.99 %", "12 %".
 std::string percent(double fraction);
 
 /// Describes the stop rule of a job: "64 samples", "error ≤ 1 %", "2 min".

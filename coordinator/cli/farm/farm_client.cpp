@@ -172,7 +172,7 @@ absl::StatusOr<farm::ListWorkersReply> FarmClient::workers() {
   return reply;
 }
 
-absl::StatusOr<Progress> FarmClient::tell(TellJob body) {
+absl::StatusOr<Progress> FarmClient::change(ChangeJob body) {
   farm::JobStatus reply;
   RETURN_IF_ERROR(call(kCallTimeout, [&](grpc::ClientContext& c) { return body(c, reply); }));
   return progress_of(reply);
@@ -181,21 +181,21 @@ absl::StatusOr<Progress> FarmClient::tell(TellJob body) {
 absl::StatusOr<Progress> FarmClient::cancel(JobId job) {
   farm::CancelRequest request;
   request.set_job(job);
-  return tell(
+  return change(
       [&](auto& context, auto& reply) { return control_->Cancel(&context, request, &reply); });
 }
 
 absl::StatusOr<Progress> FarmClient::pause_job(JobId job) {
   farm::PauseRequest request;
   request.set_job(job);
-  return tell(
+  return change(
       [&](auto& context, auto& reply) { return control_->Pause(&context, request, &reply); });
 }
 
 absl::StatusOr<Progress> FarmClient::resume_job(JobId job) {
   farm::ResumeRequest request;
   request.set_job(job);
-  return tell(
+  return change(
       [&](auto& context, auto& reply) { return control_->Resume(&context, request, &reply); });
 }
 
@@ -203,7 +203,7 @@ absl::StatusOr<Progress> FarmClient::set_priority(JobId job, std::int32_t priori
   farm::SetPriorityRequest request;
   request.set_job(job);
   request.set_priority(priority);
-  return tell(
+  return change(
       [&](auto& context, auto& reply) { return control_->SetPriority(&context, request, &reply); });
 }
 

@@ -115,8 +115,9 @@ class FarmClient {
  private:
   FarmClient(link::JoinString join, link::Connected connected);
 
-  using TellJob = absl::FunctionRef<grpc::Status(grpc::ClientContext&, farm::JobStatus&)>;
-  absl::StatusOr<Progress> tell(TellJob body);
+  using ChangeJob = absl::FunctionRef<grpc::Status(grpc::ClientContext&, farm::JobStatus&)>;
+  /// Makes a call that changes a job, and returns the job's state after it.
+  absl::StatusOr<Progress> change(ChangeJob body);
 
   using OpenImage =
       std::function<std::unique_ptr<grpc::ClientReader<farm::ResultChunk>>(grpc::ClientContext&)>;

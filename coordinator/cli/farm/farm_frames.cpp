@@ -39,7 +39,7 @@ absl::StatusOr<Progress> FarmClient::retry_frames(JobId sequence,
   farm::RetryFramesRequest request;
   request.set_job(sequence);
   request.mutable_frame()->Add(frames.begin(), frames.end());
-  return tell(
+  return change(
       [&](auto& context, auto& reply) { return control_->RetryFrames(&context, request, &reply); });
 }
 

@@ -58,18 +58,18 @@ absl::Status FrameFetcher::take_changes() {
         not_fetched_[frame.number] = frame.job;
       }
     } else if (!frame.reason.empty()) {
-      tell_failure(frame);
+      report_failure(frame);
     }
   }
   return absl::OkStatus();
 }
 
-/// Tells of a failure once.
-void FrameFetcher::tell_failure(const FrameView& frame) {
+/// Reports each failure of a frame once.
+void FrameFetcher::report_failure(const FrameView& frame) {
   const bool over = frame.state == FrameState::kFailed;
   const std::string what = absl::StrCat(over ? " failed: " : " is tried again, because it failed: ",
                                         printable(frame.reason));
-  if (told_.emplace(frame.number, what).second) {
+  if (reported_.emplace(frame.number, what).second) {
     display_.note(absl::StrCat("frame ", frame.number, what));
   }
 }

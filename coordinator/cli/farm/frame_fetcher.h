@@ -23,7 +23,7 @@ class FrameFetcher {
   FrameFetcher(const FarmClient& client, JobId sequence, const WantedFrames& wanted,
                ProgressDisplay& display);
 
-  /// Fetches the frames that were done since the last call and that some file needs, and tells of
+  /// Fetches the frames that were done since the last call and that some file needs, and reports
   /// frames that failed. UNAVAILABLE: call it again when the farm is back; what was not fetched is
   /// fetched then. Other errors: a file could not be written, or an image is lost.
   absl::Status update();
@@ -38,7 +38,7 @@ class FrameFetcher {
 
  private:
   absl::Status take_changes();
-  void tell_failure(const FrameView& frame);
+  void report_failure(const FrameView& frame);
   absl::Status fetch(FrameNumber number, JobId job);
   absl::Status write(FrameNumber number, JobId job, const Image& image, const Display& display);
   absl::Status add_to_collections(FrameNumber number, const Image& image, const Display& display);
@@ -54,7 +54,7 @@ class FrameFetcher {
   std::vector<FrameNumber> numbers_;          ///< of all frames
   std::map<FrameNumber, JobId> done_;         ///< the jobs of the frames that are done
   std::map<FrameNumber, JobId> not_fetched_;  ///< those of them whose files are not written yet
-  std::set<std::pair<FrameNumber, std::string>> told_;  ///< failures
+  std::set<std::pair<FrameNumber, std::string>> reported_;  ///< failures
   std::vector<std::string> files_;
   std::optional<ContactSheet> sheet_;
   std::optional<Video> video_;

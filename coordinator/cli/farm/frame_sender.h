@@ -20,7 +20,7 @@
 namespace bandsaw::coordinator {
 
 /// Sends the blobs that the farm lacks, then gives the frame its scene. Waits up to a minute for a
-/// farm that cannot be reached. Errors of the farm and of the package.
+/// farm that cannot be reached. Returns errors of the farm and of the package.
 absl::Status send_frame(FarmClient& client, JobId sequence, FrameNumber frame,
                         ImportedPackage& package, ProgressDisplay& display);
 

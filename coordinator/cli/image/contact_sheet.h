@@ -12,7 +12,8 @@
 
 namespace bandsaw::coordinator {
 
-/// Maximum number of frames on a contact sheet; of more, as many are taken at equal distances.
+/// Maximum number of frames on a contact sheet. If a sequence has more, this many are shown, at
+/// equal distances.
 inline constexpr std::size_t kMaxSheetFrames = 400;
 
 class ContactSheet {

@@ -25,7 +25,7 @@ Check check_memory();
 Check check_import_program();
 /// Checks the workers' programs that a coordinator on this machine hands out. A missing program is
 /// not a problem. A program that cannot be handed out (damaged, or of another version or
-/// architecture) is one.
+/// architecture) is a problem.
 Check check_worker_programs();
 /// Checks that the port is free, or taken by the farm that answers at one of `own`.
 Check check_port(const std::string& listen, const std::vector<std::string>& own);

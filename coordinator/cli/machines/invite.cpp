@@ -141,7 +141,7 @@ ExitCode on_hosts(const std::vector<std::string>& hosts, const char* event, cons
   std::atomic<bool> stop = false;
   const Interrupts::Listener listener(process.interrupts, [&stop] { stop = true; });
   std::size_t good = 0;
-  const auto tell = [&](const RemoteOutcome& outcome) {
+  const auto report = [&](const RemoteOutcome& outcome) {
     good += outcome.ok ? 1 : 0;
     if (verbosity.json) {
       process.console.line(JsonObject()
@@ -157,7 +157,7 @@ ExitCode on_hosts(const std::vector<std::string>& hosts, const char* event, cons
     }
   };
   for_each_host(
-      hosts, [&](const std::string& host) { return work(host, stop); }, tell);
+      hosts, [&](const std::string& host) { return work(host, stop); }, report);
   if (!verbosity.json) {
     process.console.line(absl::StrCat(event, ": ", good, " of ", hosts.size(),
                                       hosts.size() == 1 ? " host" : " hosts"));

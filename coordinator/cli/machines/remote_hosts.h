@@ -37,10 +37,10 @@ class RemoteScript {
   std::size_t script_size_;
 };
 
-/// Calls `work` for each host, for up to 32 hosts at the same time from several threads, and `tell`
-/// with each result, one call at a time. Returns when all hosts are done.
+/// Calls `work` for each host, for up to 32 hosts at the same time from several threads, and
+/// `report` with each result, one call at a time. Returns when all hosts are done.
 void for_each_host(const std::vector<std::string>& hosts,
                    const std::function<RemoteOutcome(const std::string& host)>& work,
-                   const std::function<void(const RemoteOutcome&)>& tell);
+                   const std::function<void(const RemoteOutcome&)>& report);
 
 }  // namespace bandsaw::coordinator

@@ -116,7 +116,7 @@ void add_display(CLI::App& app, RawOptions& raw, const char* standard) {
 void add_denoise(CLI::App& app, RawOptions& raw) {
   app.add_flag("--denoise{regression}", raw.denoise,
                "Remove the noise; FILE.raw.png and the layer raw of EXR files hold the image as "
-               "rendered, the report tells the error of both. --denoise=oidn: by the library "
+               "rendered, the report states the error of both. --denoise=oidn: by the library "
                "OpenImageDenoise, if it is installed");
 }
 

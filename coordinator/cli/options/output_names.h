@@ -15,8 +15,8 @@ inline bool is_part_name(const std::string& path) {
   return absl::EndsWithIgnoreCase(path, ".band");
 }
 
-/// Returns the default file name: the scene's stem in the current folder.
-/// "scenes/cornell.textproto", ".png" -> "cornell.png".
+/// Returns the default file name: the scene's stem in the current folder. From
+/// "scenes/cornell.textproto" and ".png" follows "cornell.png".
 inline std::string default_output(const std::string& scene, const std::string& suffix) {
   return std::filesystem::path(scene).stem().string() + suffix;
 }

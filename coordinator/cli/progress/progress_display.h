@@ -44,7 +44,7 @@ class ProgressDisplay {
   void preparing(const std::string& what, std::uint64_t bytes_done, std::uint64_t bytes_in_all,
                  double now) EXCLUDES(mutex_);
 
-  /// Tells that the files of a frame are written. JSON only: a "frame" event.
+  /// Reports that the files of a frame are written. JSON only: a "frame" event.
   void frame_written(JobId sequence, FrameNumber frame, const std::vector<std::string>& outputs,
                      const std::vector<std::string>& reports) EXCLUDES(mutex_);
 

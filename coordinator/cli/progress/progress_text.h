@@ -9,32 +9,32 @@
 
 namespace bandsaw::coordinator {
 
-/// "12 of 48 frames · 2 failed".
+/// Returns the number of frames that are done: "12 of 48 frames · 2 failed".
 std::string frames_done_text(const FrameCounts& frames);
 
-/// "job 7 · cornell · 600×600 · until error ≤ 1 %"; without the job for a local render; with the
-/// number of frames of a sequence.
+/// Describes a job: "job 7 · cornell · 600×600 · until error ≤ 1 %". The job is omitted for a local
+/// render, the number of frames is added for a sequence.
 std::string header_line(const Progress& progress);
 
-/// " 62 % ━━━━━━━━━━━━╸        error 1.6 % · 48 Msamples · 5.2 M/s · 0:09 left"; the bar is
-/// shortened to fit `width` columns.
+/// Returns a progress bar, shortened to fit `width` columns, and figures:
+/// " 62 % ━━━━━━━━━━━━╸        error 1.6 % · 48 Msamples · 5.2 M/s · 0:09 left".
 std::string bar_line(const Progress& progress, std::size_t width);
 
 /// The same without the bar, with the number of workers and the reason for waiting: a complete
 /// status in one line, for a pipe.
 std::string plain_line(const Progress& progress);
 
-/// "   desk     16 threads  3.1 M/s   rows 320–352": at most `most` lines; the last one states how
-/// many workers are omitted. If the job is waiting, the reason comes first.
+/// Returns a line for each worker, "   desk     16 threads  3.1 M/s   rows 320–352", at most `most`
+/// of them; the last one states how many workers are omitted. A reason for waiting comes first.
 std::vector<std::string> worker_lines(const Progress& progress, std::size_t most);
 
-/// "cornell.png · error 0.99 % · 21.4 s · 4 workers · report cornell.json". `name`: of the image,
-/// or of the job; `reports`: file names, or empty.
+/// Returns the result: "cornell.png · error 0.99 % · 21.4 s · 4 workers · report cornell.json".
+/// `name`: of the image, or of the job; `reports`: file names, or empty.
 std::string final_line(const Progress& progress, const std::string& name,
                        const std::string& reports = {});
 
-/// "256 samples a pixel · 8 M rays, 2 M/CPU s · 4.0 s of CPU · 1 % after 11.6 s of CPU · half of
-/// the pixels within 1.2 %, 95 % within 5 %": cost and error distribution of the image.
+/// Returns cost and error distribution of the image: "256 samples a pixel · 8 M rays, 2 M/CPU s ·
+/// 4.0 s of CPU · 1 % after 11.6 s of CPU · half of the pixels within 1.2 %, 95 % within 5 %".
 std::string cost_line(const Progress& progress);
 
 /// Returns a warning if the error estimate may be too low; empty if it can be trusted.
@@ -46,8 +46,8 @@ std::string bad_samples_line(const Progress& progress);
 /// Returns the non-empty ones of these two warnings.
 std::vector<std::string> warning_lines(const Progress& progress);
 
-/// "0.2 % of the paths were cut off at depth 32 · 3 primitives without area left out"; empty if
-/// both counts are 0.
+/// Returns what is missing in the image: "0.2 % of the paths were cut off at depth 32 · 3
+/// primitives without area left out"; empty if both counts are 0.
 std::string left_out_line(const Progress& progress);
 
 }  // namespace bandsaw::coordinator

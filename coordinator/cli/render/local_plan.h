@@ -28,6 +28,7 @@ class LocalPlan {
   bool wants_error() const { return passes_.empty() && std::holds_alternative<StopAtError>(stop_); }
   /// True if the tiles are to be planned now, before the call of next() with the same error.
   bool wants_tiles(double error) const;
+  /// Plans the samples of the half tiles from their errors after samples [0, samples).
   void plan(absl::Span<const HalfTileErrors> tiles, std::uint64_t samples);
   /// Returns the samples of half tiles in the pass returned by next(). Must be called once per
   /// pass.

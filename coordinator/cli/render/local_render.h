@@ -25,8 +25,8 @@ struct LocalJob {
   LocalMeter& meter;
   /// Called after each band added to a whole image; may be nullptr.
   std::function<void(const Film&)> grown = nullptr;
-  /// For a stop rule of an error: returns the error that is compared with its target, of an image
-  /// of that many samples per pixel. nullptr: the estimate of Film::error.
+  /// Returns the error of the image of the first `samples` samples per pixel, which a stop rule of
+  /// an error compares with its target. nullptr: the estimate of Film::error is used.
   std::function<absl::StatusOr<double>(const Film&, std::uint64_t samples)> error_of = nullptr;
 };
 
@@ -34,8 +34,9 @@ struct LocalJob {
 /// RESOURCE_EXHAUSTED: out of memory.
 absl::StatusOr<Film> render_whole(const LocalJob& job, const StopRule& stop);
 
-/// Renders samples [0, samples) of some rows. Returns one band for each maximal node of the samples
-/// (two for the first, one per half), each with as many rows as a band may contain.
+/// Renders samples [0, samples) of some rows. Returns bands of as many rows as a band may contain,
+/// one for each power of two that the number of samples is the sum of; the first of them is split
+/// into its two halves.
 absl::StatusOr<std::vector<BandPixels>> render_part(const LocalJob& job, const RowRange& rows,
                                                     std::uint64_t samples);
 

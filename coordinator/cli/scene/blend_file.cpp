@@ -47,7 +47,7 @@ absl::Status write_addon(const std::string& path) {
   return absl::InternalError("this program does not contain the add-on for Blender");
 }
 
-/// Returns the last line of Blender's output that tells of an error, else its last line.
+/// Returns the last line of Blender's output that reports an error, else its last line.
 std::string last_words(const std::string& output) {
   const std::vector<std::string> lines = absl::StrSplit(output, '\n', absl::SkipWhitespace());
   const auto error = std::find_if(lines.rbegin(), lines.rend(), [](const std::string& line) {

@@ -41,7 +41,7 @@ class FrameImporter {
   /// other frame can be imported then.
   absl::StatusOr<ImportedPackage> import(std::int64_t frame, const std::atomic<bool>& stop,
                                          std::vector<std::string>& warnings);
-  /// The same for a frame of which the user is told, as import_scene_file does it.
+  /// The same, and reports progress and warnings to the user as import_scene_file does.
   absl::StatusOr<ImportedPackage> import(std::int64_t frame, Verbosity verbosity, Process& process);
 
  private:

@@ -11,8 +11,9 @@
 namespace bandsaw::coordinator {
 namespace {
 
-constexpr double kLeastTold = 0.7;
-constexpr double kMostTold = 1.5;
+/// An estimated error is counted as right if it is within these multiples of the true one.
+constexpr double kMinRatio = 0.7;
+constexpr double kMaxRatio = 1.5;
 
 struct Gains {
   double logarithms = 0;
@@ -32,16 +33,16 @@ struct Gains {
   }
 };
 
-std::string told_text(const std::vector<double>& told) {
-  const auto [least, most] = std::minmax_element(told.begin(), told.end());
-  return told.empty() ? "–" : absl::StrFormat("%.2f–%.2f", *least, *most);
+std::string range_text(const std::vector<double>& ratios) {
+  const auto [least, most] = std::minmax_element(ratios.begin(), ratios.end());
+  return ratios.empty() ? "–" : absl::StrFormat("%.2f–%.2f", *least, *most);
 }
 
 std::string row(const std::string& scene, const CleanPoint& point) {
   return absl::StrFormat("| %s | %.4g | %.2g | %.2g | %.2f × | %.2f × | %.4f → %.4f | %s |\n",
                          absl::StrReplaceAll(scene, {{"|", "/"}}), point.samples, point.raw_mse,
                          point.clean_mse, point.gain(), point.gain_in_equal_time(), point.raw_flip,
-                         point.clean_flip, told_text(point.told));
+                         point.clean_flip, range_text(point.error_ratios));
 }
 
 }  // namespace
@@ -49,7 +50,7 @@ std::string row(const std::string& scene, const CleanPoint& point) {
 std::string clean_table(const std::vector<CleanOfScene>& studies) {
   std::string out =
       "| scene | samples a pixel | relMSE as rendered | clean | ratio | ratio in equal time | FLIP "
-      "| told / true error |\n| --- | --- | --- | --- | --- | --- | --- | --- |\n";
+      "| estimated / true error |\n| --- | --- | --- | --- | --- | --- | --- | --- |\n";
   std::map<double, Gains> gains;
   double images = 0;
   double right = 0;
@@ -57,9 +58,9 @@ std::string clean_table(const std::vector<CleanOfScene>& studies) {
     for (const CleanPoint& point : study.points) {
       absl::StrAppend(&out, row(study.scene, point));
       gains[point.samples].add(study.scene, point);
-      for (const double told : point.told) {
+      for (const double ratio : point.error_ratios) {
         images += 1;
-        right += told >= kLeastTold && told <= kMostTold ? 1 : 0;
+        right += ratio >= kMinRatio && ratio <= kMaxRatio ? 1 : 0;
       }
     }
   }
@@ -75,8 +76,8 @@ std::string clean_table(const std::vector<CleanOfScene>& studies) {
   if (images > 0) {
     absl::StrAppendFormat(
         &out,
-        "\nThe told error is within %.1f to %.1f of the true one in %.0f %% of %.0f images.\n",
-        kLeastTold, kMostTold, 100 * right / images, images);
+        "\nThe estimated error is %.1f to %.1f times the true one in %.0f %% of %.0f images.\n",
+        kMinRatio, kMaxRatio, 100 * right / images, images);
   }
   return out;
 }

@@ -18,7 +18,7 @@ struct CleanPoint {
   double raw_flip = 0;     ///< mean FLIP, or HDR-FLIP if the reference exceeds a screen
   double clean_flip = 0;
   /// For each seed, the estimated RMSE of the clean image divided by the true one.
-  std::vector<double> told = {};
+  std::vector<double> error_ratios = {};
 
   double gain() const { return clean_mse > 0 ? raw_mse / clean_mse : 0; }
   /// The same for an image as rendered in the time of the clean one: its squared error falls as 1 /

@@ -116,7 +116,7 @@ class Study {
     StudyLine raw{Method::kFull, {}};
     StudyLine clean{Method::kClean, {}};
     for (const std::uint64_t samples : study_samples(plan_.samples)) {
-      if (samples < kLeastClean) {
+      if (samples < kMinCleanSamples) {
         continue;
       }
       Seeds of_raw(reference_, mean_);
@@ -158,7 +158,7 @@ class Study {
   }
 
  private:
-  static constexpr std::uint64_t kLeastClean = 4;
+  static constexpr std::uint64_t kMinCleanSamples = 4;
 
   absl::Status add_both(std::uint64_t samples, std::uint64_t seed, Seeds& of_raw, Seeds& of_clean,
                         CleanPoint& point) {
@@ -192,7 +192,7 @@ class Study {
     const double squares = of_result.errors.rmse * of_result.errors.rmse -
                            reference_error_.rmse * reference_error_.rmse;
     if (squares > 0) {
-      point.told.push_back(clean.total.rmse_clean / std::sqrt(squares));
+      point.error_ratios.push_back(clean.total.rmse_clean / std::sqrt(squares));
     }
     return absl::OkStatus();
   }

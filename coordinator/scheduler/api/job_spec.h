@@ -46,7 +46,7 @@ struct JobSpec {
   JobId sequence = 0;     ///< the sequence of a frame job (sequence_spec.h); 0: none
   FrameNumber frame = 0;  ///< of the sequence
   /// Returns true if a band labelled with the hash `work` (render/work_hash.h) can belong to this
-  /// job. The job id alone does not tell, because ids are reused after the data folder is reset.
+  /// job. The job id alone is not enough, because ids are reused after a reset of the data folder.
   /// 0: the band is not labelled, and is accepted.
   bool may_be(std::uint64_t work) const {
     return work == 0 || work == work_hash(manifest, settings);

@@ -71,8 +71,8 @@ struct RetryFrames {
   JobId job = 0;
   std::vector<FrameNumber> frames;  ///< empty: all that failed
 };
-/// Stops leasing the job, revokes leases that are not begun at once, and revokes those that are not
-/// rendered one second later.
+/// Stops leasing the job. Leases that are not begun are revoked at once; the others are revoked one
+/// second later, unless they are rendered by then.
 struct Pause {
   JobId job = 0;
 };
@@ -112,8 +112,8 @@ struct BandFailed {
   std::string reason;
   std::vector<std::string> log;
 };
-/// A band's pixels are on disk. Send this for duplicates that were not written as well, so that
-/// their digests are compared.
+/// A band's pixels are on disk. MUST also be sent for a duplicate, which is not written, so that
+/// its digests are compared.
 struct BandStored {
   JobId job = 0;
   Band band;

@@ -29,7 +29,7 @@ enum class FrameState {
   kWaiting,    ///< its scene is there; it has no job yet
   kRendering,  ///< its job is not final
   kDone,       ///< its image can be fetched
-  kFailed,     ///< its job failed as often as it is tried
+  kFailed,     ///< it was tried as often as is allowed, and failed each time
 };
 inline constexpr std::size_t kFrameStates = 5;
 

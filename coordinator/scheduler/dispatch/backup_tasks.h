@@ -36,7 +36,7 @@ class BackupTasks {
     LeaseId lease = 0;
     double begins_in_s = 0;
     double done_in_s = 0;
-    bool has_no_backup = true;  ///< and is none
+    bool has_no_backup = true;  ///< it has no backup task, and is not one
   };
 
   std::vector<Worker*> idle_workers();

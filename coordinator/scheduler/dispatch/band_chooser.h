@@ -22,16 +22,16 @@ struct Sizing {
   absl::Span<const float> tile_row_shares = {};  ///< as in CostMap::of
   double work_rate = 0;   ///< of the worker on this job, work per second, > 0
   bool measured = false;  ///< false: the rate is a guess; the band is small, to measure it
-  double farm_share = 1;  ///< the worker's share of the farm's work rate, (0, 1]; 2: all is its own
+  double farm_share = 1;  ///< the worker's share of the farm's work rate, (0, 1]; 2: it works alone
   double work_left = 0;   ///< of the job, not leased or stored
   double target_s = 1;    ///< > 0
 };
 
-/// Returns a part of `free`. A band that reaches the end of a row of tiles (render/tile_samples.h),
-/// or almost does, ends at one: scenes that share paths between pixels trace a tile that is cut in
-/// both parts (render/pixel_groups.h). For the same reason, if the rows up to the first such end
-/// take more than two target times, the band has only a part of their samples; of a single block
-/// that is too much work it has a part of the rows.
+/// Returns a part of `free`. A band that is long enough ends at the end of a row of tiles
+/// (render/tile_samples.h), because a scene that shares paths between pixels
+/// (render/pixel_groups.h) traces a tile that is cut by two bands in both. For the same reason, if
+/// the rows of the first tiles take more than two target times, the band gets all of them with
+/// fewer samples; only if a single block of samples is too much work, it gets fewer rows.
 Band size_band(const Sizing& sizing);
 
 /// Returns the maximum number of rows of a band that fit into a message.

@@ -1,7 +1,7 @@
 #pragma once
 
-// Gives work to the workers: the job of the highest priority, then the oldest, that has something
-// free, to the worker that holds the fewest leases. When nothing is free: backup tasks.
+// Gives work to the workers: the job of the highest priority, then the oldest, that has free
+// rows, to the worker that holds the fewest leases. When nothing is free: backup tasks.
 
 #include "coordinator/scheduler/context/context.h"
 #include "coordinator/scheduler/dispatch/audit_leases.h"

@@ -31,8 +31,8 @@ class JobRequests {
 
   // For sequences (sequences.h).
   static absl::Status check_priority(std::int32_t priority);
-  /// Returns why no more jobs can be taken, `more` of them in all, or why the rule, size or
-  /// priority is refused.
+  /// Returns OK if `more` further jobs with this stop rule, image size and priority can be taken,
+  /// otherwise the reason. RESOURCE_EXHAUSTED: too many jobs. INVALID_ARGUMENT: out of range.
   absl::Status refusal(const StopRule& stop, const RenderSettings& settings, std::int32_t priority,
                        std::size_t more) const;
   /// Adds a job and plans its first passes. REQUIRES: it was not refused.

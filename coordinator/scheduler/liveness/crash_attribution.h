@@ -1,6 +1,6 @@
 #pragma once
 
-// Crash attribution: tells a band that crashes its workers from workers that are lost by chance.
+// Crash attribution: distinguishes a band that crashes its workers from workers lost by chance.
 //
 // A lost worker proves nothing about its band: nobody sees whether its process, its machine or its
 // cable ended. So the bands that it held become suspect and are retried in pieces, each by a worker

@@ -20,8 +20,9 @@ function words(state) {
   }
 }
 
-/// `raw`: the frame with the picture as rendered. Returns {pictures, frame, element, update}: both
-/// frames, that of the clean picture, and the switch.
+/// Adds the clean picture to a job's page. `raw`: the frame with the picture as rendered. Returns
+/// {pictures, frame, element, update}: an element with both frames, the frame of the clean picture,
+/// the switch between them, and a function that shows the state of a job.
 export function cleaning(raw) {
   let mode = "raw";
   let job = 0;
@@ -43,10 +44,10 @@ export function cleaning(raw) {
     raw.hidden = mode === "clean";
     frame.hidden = mode === "raw";
     pictures.classList.toggle("both", mode === "both");
-    if (mode !== "raw") ask();
+    if (mode !== "raw") request();
   }
 
-  async function ask() {
+  async function request() {
     if (await attempt(() => post(`/api/jobs/${job}/clean`)) === null) choose("raw");
   }
 
@@ -57,8 +58,8 @@ export function cleaning(raw) {
       element.hidden = stateOf(status) !== "done" || status.samples_per_pixel < 2 || !hasLight(status);
       if (element.hidden || mode === "raw") return;
       const state = await get(`/api/jobs/${job}/clean`);
-      // It was asked for, but is no longer kept, or the coordinator was restarted.
-      if (state.state === "none") return ask();
+      // The picture was requested, but it is no longer kept, or the coordinator was restarted.
+      if (state.state === "none") return request();
       text(note, words(state));
       png.hidden = exr.hidden = state.state !== "ready";
       if (state.state !== "ready") return;

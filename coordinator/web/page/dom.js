@@ -59,11 +59,11 @@ export function duration(seconds) {
   return h > 0 ? `${h}:${two(m)}:${two(s)} h` : `${m}:${two(s)} min`;
 }
 
-/// "running", "paused", "finishing", "done", "failed", "cancelled".
+/// Returns the state of a job: "running", "paused", "finishing", "done", "failed" or "cancelled".
 export const stateOf = (status) => status.state.replace("JOB_STATE_", "").toLowerCase();
 export const isOver = (status) => ["done", "failed", "cancelled"].includes(stateOf(status));
 
-/// "until error ≤ 1 %"
+/// Returns a stop rule as text: "until error ≤ 1 %".
 export function goal(stop) {
   if (stop.error > 0) return `until error ≤ ${percent(stop.error)}`;
   if (stop.time_s > 0) return `for ${duration(stop.time_s)}`;

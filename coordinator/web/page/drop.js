@@ -4,7 +4,7 @@ import {post} from "./api.js";
 import {el} from "./dom.js";
 import {attempt, say} from "./notice.js";
 
-let quality = "samples=64";
+let quality = "samples=64";  // the part of the request that sets when the render stops
 
 async function render(file) {
   say(`Reading ${file.name}…`, {stays: true});
@@ -30,6 +30,7 @@ export function chooser() {
     el("button.main", {type: "button", onclick: () => input.click()}, "Render a scene…"));
 }
 
+/// Renders files that are dropped on the window, and shows a hint while one is dragged over it.
 export function takeDrops() {
   const veil = el("div", {id: "drop", hidden: true}, el("p", {}, "Drop a scene to render it: a .zip with its files, .glb, .textproto, .pbrt or .xml"));
   document.body.append(veil);

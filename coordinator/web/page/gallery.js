@@ -31,14 +31,14 @@ function sceneCard(first) {
   const open = el("a", {hidden: true}, "Open");
   const again = el("button", {type: "button", hidden: true, title: "Render again"}, "Again");
   let job = null;
-  let asked = false;
+  let requested = false;
   const render = async () => {
-    if (asked) return;
-    asked = true;
+    if (requested) return;
+    requested = true;
     foot.hidden = false;
     text(took, "reading the scene…");
     await attempt(() => post("/api/gallery/render", {scene: first.name, width, samples}));
-    asked = false;
+    requested = false;
   };
   face.addEventListener("click", () => {
     if (job === null || ["failed", "cancelled"].includes(stateOf(job))) render();
@@ -56,13 +56,13 @@ function sceneCard(first) {
       face.setAttribute("aria-label", is === "" || is === "failed" ? `Render ${title}` : `Open ${title}`);
       again.hidden = open.hidden = job === null || !isOver(job);
       bar.hidden = job === null || isOver(job);
-      foot.hidden = job === null && !asked;
+      foot.hidden = job === null && !requested;
       if (job === null) return;
       open.href = is === "done" ? `/api/jobs/${job.job}/image.png` : `#/jobs/${job.job}`;
       open.target = is === "done" ? "_blank" : "";
       bar.firstChild.style.width = `${100 * job.fraction}%`;
       preview(img, job, 512);
-      if (!asked) text(took, is === "done" ? `${Math.round(1000 * job.elapsed_s).toLocaleString("en")} ms` :
+      if (!requested) text(took, is === "done" ? `${Math.round(1000 * job.elapsed_s).toLocaleString("en")} ms` :
         is === "running" ? percent(job.fraction) : is);
       took.title = is === "done" ? `${job.settings.width} × ${job.settings.height}, ${job.samples_per_pixel} samples a pixel, ${job.workers_used} workers` : "";
     },

@@ -99,7 +99,7 @@ class BandsawEngine(bpy.types.RenderEngine):
             raise Stopped()
 
     def submit(self, farm, scene, made):
-        def told(sent, total):
+        def on_progress(sent, total):
             self.stop_if_asked()
             self.update_stats("", f"Sending the scene: {sent >> 20} of {(total >> 20) + 1} MiB")
 
@@ -107,7 +107,7 @@ class BandsawEngine(bpy.types.RenderEngine):
         name = os.path.splitext(os.path.basename(bpy.data.filepath))[0] or "untitled"
         self.update_stats("", "Sending the scene")
         files = dict(made.files)
-        job = farm.submit(made.text(), name=scenes.Scene.MAIN, files=files, told=told, title=f"{name} {scene.frame_current}", **wanted)
+        job = farm.submit(made.text(), name=scenes.Scene.MAIN, files=files, on_progress=on_progress, title=f"{name} {scene.frame_current}", **wanted)
         self.tell_warnings(job.warnings)
         return job
 
@@ -143,7 +143,7 @@ class BandsawEngine(bpy.types.RenderEngine):
         try:
             picture = job.preview(max(width, height) if width * height <= 4_000_000 else 1024)
         except bandsaw.NoFarm:
-            return False  # the next question to the farm tells it
+            return False  # the next request to the farm reports it
         if picture is None:
             return False
         pixels = picture.array()

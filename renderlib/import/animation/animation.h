@@ -24,7 +24,7 @@ struct NodeMotion {
   std::optional<Curve> rotation = std::nullopt;     ///< width 4: x, y, z, w
   std::optional<Curve> scaling = std::nullopt;      ///< width 3
 
-  /// Returns the node's transform in its parent.
+  /// Returns the node's transform relative to its parent.
   Transform at(double time) const;
   /// Returns true if the transform is the same at all times of [from, to].
   bool rests(double from, double to) const;

@@ -69,7 +69,7 @@ class Numbers {
   absl::StatusOr<double> take(Type type) {
     return encoding_ == Encoding::kText ? take_text() : take_binary(type);
   }
-  /// Returns true if there may be `count` more elements with `properties` numbers each.
+  /// Returns false if the rest is too short for `count` elements of at least `bytes_each` bytes.
   bool may_hold(std::uint64_t count, std::uint64_t bytes_each) const {
     return count <= rest_.size() / std::max<std::uint64_t>(bytes_each, 1);
   }
@@ -232,7 +232,7 @@ std::map<std::string, std::vector<std::size_t>> groups_of(const Element& element
 template <std::size_t n>
 using Columns = std::optional<std::array<std::size_t, n>>;
 
-/// Returns where the numbers with these names are in a row; nothing if one is missing.
+/// Returns the columns with these names in a row of the element; std::nullopt if one is missing.
 template <std::size_t n>
 Columns<n> columns_of(const Element& element, const std::array<const char*, n>& names) {
   std::array<std::size_t, n> columns{};

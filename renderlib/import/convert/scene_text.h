@@ -9,9 +9,9 @@
 
 namespace bandsaw {
 
-/// Returns the scene in protobuf text format: a field a line, messages that fit on one line of 100
-/// characters on one. The first lines are comments: `source`, the name of the file that was
-/// converted, and the warnings.
+/// Returns the scene in protobuf text format: a line for each field, or for
+/// a whole message that fits into 100 characters. The first lines are comments: `source`, the name
+/// of the file that was converted, and the warnings.
 std::string text_of(const scene::Scene& scene, const std::string& source,
                     const std::vector<std::string>& warnings);
 

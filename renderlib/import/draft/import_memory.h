@@ -16,9 +16,10 @@ namespace bandsaw {
 struct ConvertedScene;  // import/convert/converted_scene.h
 struct LoadedModel;     // import/model/loaded_model.h
 
-/// Is for one scene with the same choices, except for the frame. The files MUST NOT change.
+/// MUST be used for one scene only, with the same choices except for the frame. The files MUST NOT
+/// change.
 struct ImportMemory {
-  /// Models, keyed by their real path and by the animation that was asked for.
+  /// Models, keyed by their real path and by the chosen animation.
   std::map<std::pair<std::string, AnimationChoice>, std::shared_ptr<LoadedModel>> models = {};
   TextureStore::Memory images = {};
   std::shared_ptr<const ConvertedScene> converted = {};  ///< the scene, if it is a foreign one

@@ -1,6 +1,6 @@
 #pragma once
 
-// The single buffer of a plain glTF document under construction.
+// The single buffer of a plain glTF document (plain_gltf.h) under construction.
 
 #include <cstdint>
 #include <string>

@@ -1,6 +1,6 @@
 #pragma once
 
-// Rewrites the meshes of a glTF file for a plain document.
+// Rewrites the meshes of a glTF file for a plain document (plain_gltf.h).
 
 #include <cstdint>
 #include <map>

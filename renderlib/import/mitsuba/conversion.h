@@ -22,7 +22,7 @@ struct Conversion {
 
   /// Adds "scene.xml:12: <what>", unless it is there already.
   void warn(const Place& place, const std::string& what);
-  /// Warns of each parameter that nobody asked for.
+  /// Warns of each parameter that was not read.
   void warn_of_unused(const Parameters& parameters);
 };
 

@@ -40,7 +40,7 @@ absl::Status convert(const Object& root, scene::Scene& scene, Conversion& to) {
       RETURN_IF_ERROR(add_emitter(*object_in(*emitter), scene, to));
     }
   }
-  // They are converted where they are used.
+  // Objects with these tags are converted where they are used; this marks them as used.
   for (const char* tag :
        {"bsdf", "texture", "medium", "phase", "volume", "spectrum", "film", "sampler", "rfilter"}) {
     from.objects(tag);

@@ -11,7 +11,7 @@
 
 namespace bandsaw::mitsuba {
 
-/// Reads the parameters of `object`, which MUST outlive it, and knows which were asked for.
+/// Reads the parameters of `object`, which MUST outlive it, and records which of them are read.
 class Parameters {
  public:
   explicit Parameters(const Object& object) : object_(object) {}
@@ -38,7 +38,7 @@ class Parameters {
 
   /// Marks parameters that do not change the picture here.
   void ignore(std::initializer_list<const char*> names) const;
-  /// Returns the parameters that nobody asked for.
+  /// Returns the parameters that were not read.
   std::vector<const Property*> unused() const;
 
  private:

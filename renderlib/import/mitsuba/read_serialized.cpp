@@ -77,12 +77,12 @@ class Inflater {
 
  private:
   std::uint64_t fill(char* to, std::uint64_t size) {
-    constexpr std::size_t kMost = std::size_t{1} << 30;
+    constexpr std::size_t kMaxPiece = std::size_t{1} << 30;
     stream_.next_out = reinterpret_cast<Bytef*>(to);
     stream_.avail_out = static_cast<uInt>(size);
     while (good_ && stream_.avail_out > 0) {
       if (stream_.avail_in == 0 && !rest_.empty()) {
-        const std::size_t piece = std::min(kMost, rest_.size());
+        const std::size_t piece = std::min(kMaxPiece, rest_.size());
         stream_.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(rest_.data()));
         stream_.avail_in = static_cast<uInt>(piece);
         rest_.remove_prefix(piece);

@@ -37,7 +37,7 @@ absl::StatusOr<Affine> to_uv_of(const Parameters& from) {
 }
 
 /// Returns the same map for coordinates of ours on both sides: v = 0 is the bottom row of the
-/// texture, and `frame` tells the surface's v.
+/// texture. `frame` states the direction of the surface's v.
 Affine in_our_frame(const Affine& m, UvFrame frame) {
   Affine to = {{m[0], {-m[1][0], -m[1][1], 1 - m[1][2]}}};
   if (frame == UvFrame::kFlipped) {

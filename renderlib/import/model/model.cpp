@@ -246,7 +246,7 @@ absl::StatusOr<std::shared_ptr<LoadedModel>> load_model(const ModelSource& sourc
   return model;
 }
 
-/// Returns the loaded file, that of another frame if there is one.
+/// Returns the loaded file. It is kept in `draft.memory`, so that further frames do not read it.
 absl::StatusOr<std::shared_ptr<LoadedModel>> loaded_model(const ModelSource& source,
                                                           const AnimationChoice& animation,
                                                           SceneDraft& draft) {

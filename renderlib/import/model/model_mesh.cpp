@@ -117,7 +117,7 @@ class MeshReader {
     add_morph_targets(from_, weights, mesh);
     Counts counts;
     RETURN_IF_ERROR(add_triangles(from_, title_, mesh, counts));
-    tell(counts, mesh);
+    warn_of_dropped(counts, mesh);
     return mesh;
   }
 
@@ -134,7 +134,7 @@ class MeshReader {
   void warn(const std::string& what) { warnings_.push_back(absl::StrCat(title_, ": ", what)); }
 
  private:
-  void tell(const Counts& counts, const Mesh& mesh) {
+  void warn_of_dropped(const Counts& counts, const Mesh& mesh) {
     if (counts.other_faces > 0) {
       warn(absl::StrCat(counts.other_faces, " points and lines are left out"));
     }
@@ -220,7 +220,7 @@ absl::StatusOr<Mesh> read_mesh(ModelFile& file, unsigned number, const ModelMate
   return mesh;
 }
 
-/// Returns a mesh that no animation changes, that of another frame if there is one.
+/// Returns a mesh that no animation changes. It is kept, and shared by further frames.
 absl::StatusOr<std::shared_ptr<const Mesh>> still_mesh(ModelFile& file, unsigned number,
                                                        const ModelMaterial& material,
                                                        bool with_colors, const NodePlaces& places) {

@@ -72,7 +72,7 @@ struct Builder {
   int helper_groups = 0;
 
   void warn(const Place& place, absl::string_view what);
-  /// Warns once of a kind of thing.
+  /// Adds the warning unless the same text was a warning before.
   void warn_once(const Place& place, absl::string_view what);
   /// Warns of each parameter that was not used.
   void warn_of_unused(const Parameters& parameters);
@@ -132,13 +132,14 @@ absl::StatusOr<std::optional<scene::Texture>> float_texture(const Parameters& pa
 /// Returns the number of a constant texture; std::nullopt for another.
 std::optional<double> constant_of(const scene::Texture& texture);
 
-/// Returns the name of the material in our scene, with emission and opacity of a shape.
+/// Emission and opacity that a shape adds to its material.
 struct ShapeLook {
   std::optional<Rgb3> emission = std::nullopt;
   std::optional<scene::Texture> emission_texture = std::nullopt;
   bool emits_on_both_sides = false;
   std::optional<scene::Texture> opacity = std::nullopt;
 };
+/// Returns the name, in our scene, of the surface's material with this look; adds it if it is new.
 std::string material_name(const Surface& surface, const ShapeLook& look, const Place& place,
                           Builder& builder);
 

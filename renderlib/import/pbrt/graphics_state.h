@@ -33,9 +33,9 @@ class GraphicsState {
   /// Returns the number of states that are saved.
   std::size_t depth() const { return saved_.size(); }
 
-  /// Adds parameters that Attribute gives to all that follows of a kind ("shape").
+  /// Adds parameters that Attribute sets for all following directives of a kind ("shape").
   absl::Status add_defaults(const Place& place, const std::string& target, Parameters parameters);
-  /// Adds them to the parameters of one such thing.
+  /// Adds those parameters to the parameters of a directive of this kind.
   void apply_defaults(const std::string& target, Parameters& parameters) const;
 
  private:

@@ -22,8 +22,8 @@ std::optional<Pose> pose_of(const Transform& t);
 scene::Group& add_helper_group(Builder& builder, std::string& name);
 
 /// Adds a model or an instance to the open group or to the scene, placed by its matrix, or by keys
-/// if it moves. What changes its shear or its side stands at the first transformation, with a
-/// warning.
+/// if it moves. If the motion changes the shear or mirrors the model, the model stays at the
+/// first transformation, with a warning.
 void add_placed(const Place& place, const Transforms& transforms, scene::Model model,
                 Builder& builder);
 void add_placed(const Place& place, const Transforms& transforms, scene::Instance instance,

@@ -77,7 +77,7 @@ Vec2 octahedral_of(const Vec3& d) {
 }
 
 Image equirectangular(const Sky& sky, const Transform& to_light) {
-  // As many pixels around the equator as the square has along its four edges there.
+  // The equator gets as many pixels as the octahedral square has on it: two per column.
   const std::uint32_t width = std::clamp<std::uint32_t>(
       sky.is_octahedral ? 2 * sky.image.width : sky.image.width, 8, kMaxWidth);
   Image out;

@@ -1,7 +1,7 @@
 #pragma once
 
 // Arguments of directives that are not parameters: names, numbers and transformations. Errors name
-// `place`, that of the directive.
+// `place`, the place of the directive.
 
 #include <string>
 #include <vector>

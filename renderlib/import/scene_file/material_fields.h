@@ -25,7 +25,7 @@ inline absl::StatusOr<TextureId> texture_or_white(const Field& in, const std::st
                : draft.textures.constant({1, 1, 1});
 }
 
-/// Reads the texture of a number, if it is `given`.
+/// Reads the texture `name` that gives a number, or returns std::nullopt if it is not `given`.
 inline absl::StatusOr<std::optional<TextureId>> read_map(const Field& in, const std::string& name,
                                                          bool given, const scene::Texture& from,
                                                          SceneDraft& draft) {

@@ -10,10 +10,11 @@
 
 namespace bandsaw {
 
-/// Reads the camera; the scene MUST have one. It gets the shutter.
+/// Reads the camera; the scene MUST have one. The camera gets `shutter`.
 absl::StatusOr<Camera> read_camera(const Field& root, const scene::Scene& from,
                                    const Shutter& shutter);
-/// Reads the shutter, or returns the default, at the frame at `time`, to which it is relative.
+/// Returns the shutter of the frame at `time`. The scene file, or the default, gives it relative to
+/// that time.
 absl::StatusOr<Shutter> read_shutter(const Field& root, const scene::Scene& from, double time);
 /// Reads the frames per second, or returns the default.
 absl::StatusOr<double> read_fps(const Field& root, const scene::Scene& from);

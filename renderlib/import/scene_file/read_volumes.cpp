@@ -87,10 +87,10 @@ absl::StatusOr<VolumeGrid> read_grid(const Field& in, const scene::VolumeGrid& f
 /// Returns the grid's index among those of the scene, and its factor.
 absl::StatusOr<GridUse> read_use(const Field& in, const scene::VolumeGrid& from,
                                  const std::string& otherwise, SceneDraft& draft) {
-  constexpr double kMost = std::numeric_limits<float>::max();
+  constexpr double kMaxScale = std::numeric_limits<float>::max();
   GridUse use;
   if (from.has_scale()) {
-    RETURN_IF_ERROR(check_range(in, "scale", from.scale(), 0, kMost));
+    RETURN_IF_ERROR(check_range(in, "scale", from.scale(), 0, kMaxScale));
     use.scale = static_cast<float>(from.scale());
   }
   scene::VolumeGrid unscaled = from;

@@ -28,14 +28,14 @@ std::size_t distance(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::string did_you_mean(const std::string& name, const std::vector<std::string>& known) {
-  constexpr std::size_t kLongest = 100;  // longer names are not searched
-  if (name.size() > kLongest) {
+  constexpr std::size_t kMaxLength = 100;  // longer names are not searched
+  if (name.size() > kMaxLength) {
     return "";
   }
   std::size_t best = std::max<std::size_t>(1, name.size() / 3) + 1;
   const std::string* nearest = nullptr;
   for (const std::string& candidate : known) {
-    if (candidate.size() > kLongest) {
+    if (candidate.size() > kMaxLength) {
       continue;
     }
     const std::size_t far = distance(absl::AsciiStrToLower(name), absl::AsciiStrToLower(candidate));

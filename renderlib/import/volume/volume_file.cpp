@@ -8,7 +8,7 @@
 namespace bandsaw {
 namespace {
 
-/// `grid` is the name that was asked for in a *.vol file.
+/// `grid` is the requested name, used for a *.vol file.
 absl::Status check_no_name(const std::string& grid) {
   return grid.empty() ? absl::OkStatus()
                       : absl::InvalidArgumentError(

@@ -29,7 +29,8 @@ struct Agreement {
   int different = 0;  ///< hits with another t, id, u or v, or another result of the any-hit query
 };
 
-/// Traces `count` rays from next(), each also with an end near the hit and from the hit on.
+/// Traces `count` rays of next(). Each ray that hits is traced twice more: with an end at or near
+/// the hit, and starting at the hit.
 template <class Next>
 Agreement compare(const Accel& accel, const ReferenceAccel& reference, int count, Next&& next) {
   Agreement result;

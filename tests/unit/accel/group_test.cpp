@@ -51,7 +51,7 @@ void expect_exact(const Geometry& g, int rays, double size, std::uint64_t seed) 
       continue;
     }
     ++hits;
-    // From the hit on, and the hit after it.
+    // A ray that starts at the hit, and the next hit of the same ray.
     const Ray on{ray.origin + expected.t * ray.direction, ray.direction, kInfinity, expected.id};
     ASSERT_TRUE(test::same_hit(test::closest_by_brute_force(g, on), accel.closest(on)));
     const Hit next = accel.closest_after(ray, expected);

@@ -124,8 +124,8 @@ TEST(Study, AStopEndsIt) {
             absl::StatusCode::kCancelled);
 }
 
-/// The full renderer has 10 % at 16 samples and 1 s, halved by each factor of four; the variant
-/// does not fall.
+/// Two lines of a study. The full renderer has an error of 10 % at 16 samples and 1 s, and half of
+/// it at four times as many samples. The error of the other method stays the same.
 std::vector<StudyOfScene> known() {
   StudyOfScene study{.scene = "a|\"b\" & <c>", .reference_error = 0.001, .lines = {}};
   study.lines.push_back(
@@ -169,7 +169,7 @@ TEST(StudyText, AnEmptyPlotIsOne) {
   EXPECT_THAT(svg_of({.x = "x", .y = "y", .panels = {{}}}), Not(HasSubstr("nan")));
 }
 
-// The two images of a point are the same image, so the clean one costs more.
+// A clean image is the image as rendered, plus the guides and the filter: so it costs more.
 TEST(Study, CleanImagesAreComparedWithThoseAsRendered) {
   const StudyOfScene study =
       study_of(*test::cornell_box().build(),
@@ -181,7 +181,7 @@ TEST(Study, CleanImagesAreComparedWithThoseAsRendered) {
   for (const CleanPoint& point : study.clean) {
     EXPECT_GT(point.clean_cpu_s, point.raw_cpu_s);
     EXPECT_LT(point.gain_in_equal_time(), point.gain());
-    EXPECT_EQ(point.told.size(), 2u);
+    EXPECT_EQ(point.error_ratios.size(), 2u);
   }
   const std::string table = clean_table({{"a|b", study.clean}});
   EXPECT_THAT(table, HasSubstr("| a/b | 16 |"));
@@ -194,13 +194,13 @@ TEST(Study, TheCleanTableHasMeansAndTheWorstScene) {
                         .clean_mse = 0.1,
                         .raw_cpu_s = 1,
                         .clean_cpu_s = 2,
-                        .told = {1.0, 0.6}};
+                        .error_ratios = {1.0, 0.6}};
   const CleanPoint bad{.samples = 16,
                        .raw_mse = 0.2,
                        .clean_mse = 0.1,
                        .raw_cpu_s = 1,
                        .clean_cpu_s = 2,
-                       .told = {1.4, 1.6}};
+                       .error_ratios = {1.4, 1.6}};
   const std::string table = clean_table({{"good", {good}}, {"bad", {bad}}});
   EXPECT_THAT(table, HasSubstr("| 16 | 4.00 × | 2.00 × | 2.00 × (bad) | 1.00 × |"));
   EXPECT_THAT(table, HasSubstr("in 50 % of 4 images"));

@@ -36,7 +36,7 @@ class WorkerLine : public ::testing::Test {
       digests_[machine] = wire::sha256(program(machine));
     }
     // Copies the file that the last part of the URL names: curl -fsS URL -o FILE.
-    write("bin/curl", "#!/bin/sh\necho \"$2\" >>" + folder_.path() + "/asked\ncp \"" +
+    write("bin/curl", "#!/bin/sh\necho \"$2\" >>" + folder_.path() + "/downloaded\ncp \"" +
                           folder_.path() + "/program-${2##*/}\" \"$4\"\n");
   }
   void write(const std::string& name, const std::string& text) {
@@ -52,7 +52,7 @@ class WorkerLine : public ::testing::Test {
                                    worker_line("http://desk:1", std::nullopt, digests_, "JOIN"))},
                      {"PATH=" + folder_ / "bin" + ":/usr/bin:/bin"});
   }
-  bool asked() const { return std::filesystem::exists(folder_ / "asked"); }
+  bool downloaded() const { return std::filesystem::exists(folder_ / "downloaded"); }
   bool home_is_empty() const { return std::filesystem::is_empty(folder_ / "home"); }
 
   test::TempDir folder_;
@@ -83,19 +83,19 @@ TEST_F(WorkerLine, WithoutAProgramForItNothingIsDownloaded) {
   const Finished pasted = paste("aarch64\n");
   EXPECT_EQ(pasted.code, 1);
   EXPECT_EQ(pasted.err, "bandsaw-worker: the coordinator has none for aarch64, only for x86_64\n");
-  EXPECT_FALSE(asked());
+  EXPECT_FALSE(downloaded());
   EXPECT_TRUE(home_is_empty());
 }
 
 TEST_F(WorkerLine, TheOutputOfUnameIsNeverExecuted) {
-  for (const char* said : {"riscv64\n", "", "*\n", "-n\n", "x86_64 aarch64\n", "x86_64\naarch64\n",
-                           "x86_64;touch run\n", "$(touch run)\n", "`touch run`\n",
-                           "\"; touch run; \"\n", "../../x86_64\n"}) {
-    const Finished pasted = paste(said);
-    EXPECT_EQ(pasted.code, 1) << said;
-    EXPECT_THAT(pasted.err, HasSubstr("the coordinator has none for")) << said;
-    EXPECT_FALSE(asked()) << said;
-    EXPECT_TRUE(home_is_empty()) << said;
+  for (const char* output : {"riscv64\n", "", "*\n", "-n\n", "x86_64 aarch64\n",
+                             "x86_64\naarch64\n", "x86_64;touch run\n", "$(touch run)\n",
+                             "`touch run`\n", "\"; touch run; \"\n", "../../x86_64\n"}) {
+    const Finished pasted = paste(output);
+    EXPECT_EQ(pasted.code, 1) << output;
+    EXPECT_THAT(pasted.err, HasSubstr("the coordinator has none for")) << output;
+    EXPECT_FALSE(downloaded()) << output;
+    EXPECT_TRUE(home_is_empty()) << output;
   }
 }
 

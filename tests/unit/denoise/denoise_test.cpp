@@ -128,17 +128,18 @@ TEST(Denoise, TellsItsErrorWithoutAReference) {
     const Image truth = image_of(ramp);
     EXPECT_NEAR(clean.total.rmse_raw / rmse(input.mean, truth), 1, 0.05) << seed;
     // The estimate is a difference of two numbers that are much larger.
-    const double told = clean.total.rmse_clean;
-    EXPECT_LT(told, rmse(input.mean, truth) / 2) << seed;
-    EXPECT_LT(std::abs(told * told - std::pow(rmse(clean.image, truth), 2)), 0.05 * 0.05 * 0.05)
+    const double estimate = clean.total.rmse_clean;
+    EXPECT_LT(estimate, rmse(input.mean, truth) / 2) << seed;
+    EXPECT_LT(std::abs(estimate * estimate - std::pow(rmse(clean.image, truth), 2)),
+              0.05 * 0.05 * 0.05)
         << seed;
   }
 }
 
 // The halves of a Sobol' sequence complement each other: their errors have opposite signs, and
-// their difference tells more noise than there is. The told error is then at least the noise that
-// is left, not 0.
-TEST(Denoise, NeverTellsLessThanTheNoiseThatIsLeft) {
+// their difference is larger than the noise of the image. The estimated error is then at least the
+// noise that is left, not 0.
+TEST(Denoise, NeverEstimatesLessThanTheNoiseThatIsLeft) {
   DenoiseInput input = noisy(flat, 0.2f, 31);
   for (std::size_t i = 0; i < input.mean.pixels.size(); ++i) {
     const Rgb truth = flat(0, 0);

@@ -167,7 +167,7 @@ TEST(FitCell, NeedsSomeRecordsWithLight) {
     record.weight = 0;
   }
   EXPECT_EQ(fit_cell(dark).count, 0u);
-  // One record that outshines all others tells as little as one record.
+  // One record that outshines all others counts as one record.
   dark[0].weight = 1;
   for (std::size_t i = 1; i < dark.size(); ++i) {
     dark[i].weight = 1e-4f;

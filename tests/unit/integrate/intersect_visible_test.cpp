@@ -105,13 +105,13 @@ TEST(Alpha, AMaskedSurfaceIsPresentOrAbsent) {
 /// the ray.
 void expect_techniques_agree(const SceneMaker& maker, const Ray& ray, double at_least) {
   const Moments both = light_along(maker, ray, 20000);
-  const Moments asked = light_along(maker, ray, 20000, Technique::kLightsOnly);
+  const Moments lights = light_along(maker, ray, 20000, Technique::kLightsOnly);
   const Moments found = light_along(maker, ray, 60000, Technique::kScatteringOnly);
   const auto agree = [](const Moments& a, const Moments& b) {
     return std::abs(a.mean() - b.mean()) <= 4 * std::hypot(a.standard_error(), b.standard_error());
   };
   EXPECT_GT(both.mean(), at_least);
-  EXPECT_TRUE(agree(both, asked)) << both.mean() << " " << asked.mean();
+  EXPECT_TRUE(agree(both, lights)) << both.mean() << " " << lights.mean();
   EXPECT_TRUE(agree(both, found)) << both.mean() << " " << found.mean();
 }
 

@@ -40,14 +40,14 @@ Moments light_along(const SceneMaker& maker, const Ray& ray, int samples,
 /// the ray, at 4 standard errors each.
 void expect_techniques_agree(const SceneMaker& maker, const Ray& ray, double at_least) {
   const Moments both = light_along(maker, ray, 15000);
-  const Moments asked = light_along(maker, ray, 15000, Technique::kLightsOnly);
-  const Moments found = light_along(maker, ray, 40000, Technique::kScatteringOnly);
+  const Moments lights = light_along(maker, ray, 15000, Technique::kLightsOnly);
+  const Moments scattering = light_along(maker, ray, 40000, Technique::kScatteringOnly);
   const auto agree = [](const Moments& a, const Moments& b) {
     return std::abs(a.mean() - b.mean()) <= 4 * std::hypot(a.standard_error(), b.standard_error());
   };
   EXPECT_GT(both.mean(), at_least);
-  EXPECT_TRUE(agree(both, asked)) << both.mean() << " " << asked.mean();
-  EXPECT_TRUE(agree(both, found)) << both.mean() << " " << found.mean();
+  EXPECT_TRUE(agree(both, lights)) << both.mean() << " " << lights.mean();
+  EXPECT_TRUE(agree(both, scattering)) << both.mean() << " " << scattering.mean();
 }
 
 SceneMaker with_sky(float radiance) {
@@ -91,7 +91,7 @@ TEST(Mixture, WithHolesLetsLightThroughAndAllTechniquesAgree) {
       maker, {.origin = {0.3, 0.9, 0.4}, .direction = normalize({0.1, -1, 0.05})}, 0.1);
 }
 
-// One part emits, and is partly transparent: what light sampling and what paths find is the same.
+// One part emits and is partly transparent. Light sampling and BSDF sampling agree.
 TEST(Mixture, OfALightIsALight) {
   SceneMaker maker = with_sky(0);
   Material glow = Diffuse{TextureId{0}};

@@ -44,7 +44,8 @@ std::string error_after(const std::function<void(package::Manifest&)>& change) {
   const absl::Status status = decode_package(bytes, blobs).status();
   EXPECT_EQ(status.code(), absl::StatusCode::kInvalidArgument) << status;
   EXPECT_EQ(blobs.asked, 0) << "a blob is read before counts are judged";
-  EXPECT_EQ(package_info(bytes).status(), status) << "whoever reads the manifest alone is told";
+  EXPECT_EQ(package_info(bytes).status(), status)
+      << "the error is the same when only the manifest is read";
   return std::string(status.message());
 }
 

@@ -162,7 +162,7 @@ TEST_F(ExecutorTest, StopsABandWhoseSceneIsLoading) {
   }
   wait_for_ended(1);
   EXPECT_EQ(order_, std::vector<TaskId>{2});
-  EXPECT_TRUE(failed_.empty()) << "nothing is told of what was stopped";
+  EXPECT_TRUE(failed_.empty()) << "a band that was stopped is not reported as failed";
 }
 
 TEST_F(ExecutorTest, ReportsLoadingUnderTheEarliestTask) {
