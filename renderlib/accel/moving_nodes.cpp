@@ -58,8 +58,13 @@ class Bounds {
       return outwards < 0 ? round_down(x) : round_up(x);
     };
     const float from = rounded(open + outwards * room);
+    const float change = rounded(close + outwards * room) - from;
+    if (!std::isfinite(change)) {  // No ray may miss a box whose movement no float holds.
+      tree_.nodes[node].bounds[row][i] = outwards < 0 ? -FloatBox::kInf : FloatBox::kInf;
+      return;
+    }
     tree_.nodes[node].bounds[row][i] = from;
-    changes[node][row][i] = rounded(close + outwards * room) - from;
+    changes[node][row][i] = change;
   }
 
   const absl::FunctionRef<MovingBox(ChildRef)> leaf_box_;

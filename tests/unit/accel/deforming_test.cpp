@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "renderlib/accel/accel.h"
 #include "renderlib/accel/mesh_tree.h"
@@ -224,6 +225,38 @@ TEST(Deforming, TwoMeshesWithOneBorderDoNotLeak) {
   }
 }
 
+/// Checks the boxes of all leaves and the sizes of their packs; returns the number of coordinates.
+std::int64_t check_boxes(const MeshTree& tree, const ShutterTime& now) {
+  std::int64_t checked = 0;
+  for (std::size_t n = 0; n < tree.tree.nodes.size(); ++n) {
+    const WideNode& node = tree.tree.nodes[n];
+    for (std::size_t child = 0; child < WideNode::kChildren; ++child) {
+      if (node.bounds[0][child] == FloatBox::kInf || !node.child[child].is_leaf()) {
+        continue;
+      }
+      const FlatPack pack = pack_at(tree, node.child[child].leaf_index(), now);
+      const auto side = [&](std::size_t row) {
+        return std::fma(tree.changes[n][row][child], now.share, node.bounds[row][child]);
+      };
+      for (std::size_t lane = 0; lane < kPackSize && (pack.lanes >> lane & 1u) != 0; ++lane) {
+        for (std::size_t which = 0; which < 3; ++which) {
+          for (std::size_t k = 0; k < 3; ++k) {
+            const float x = pack.vertex(lane, which)[k];
+            const bool holds = side(k) <= x && x <= side(k + 3) &&
+                               std::abs(double{x} - pack.vertex(lane, 0)[k]) <= pack.size;
+            EXPECT_TRUE(holds) << side(k) << " " << x << " " << side(k + 3);
+            if (!holds) {
+              return 0;
+            }
+            ++checked;
+          }
+        }
+      }
+    }
+  }
+  return checked;
+}
+
 TEST(Deforming, BoxesAndSizesHoldAtEveryTime) {
   Random random(6);
   std::int64_t checked = 0;
@@ -233,33 +266,33 @@ TEST(Deforming, BoxesAndSizesHoldAtEveryTime) {
     const MeshTree tree = build_mesh_tree(breathing(size, at), nullptr);
     ASSERT_TRUE(tree.deforms());
     for (int i = 0; i < 20; ++i) {
-      const ShutterTime now(kShutter, time_of(i, random));
-      for (std::size_t n = 0; n < tree.tree.nodes.size(); ++n) {
-        const WideNode& node = tree.tree.nodes[n];
-        for (std::size_t child = 0; child < WideNode::kChildren; ++child) {
-          if (node.bounds[0][child] == FloatBox::kInf || !node.child[child].is_leaf()) {
-            continue;
-          }
-          const FlatPack pack = pack_at(tree, node.child[child].leaf_index(), now);
-          const auto side = [&](std::size_t row) {
-            return std::fma(tree.changes[n][row][child], now.share, node.bounds[row][child]);
-          };
-          for (std::size_t lane = 0; lane < kPackSize && (pack.lanes >> lane & 1u) != 0; ++lane) {
-            for (std::size_t which = 0; which < 3; ++which) {
-              for (std::size_t k = 0; k < 3; ++k) {
-                const float x = pack.vertex(lane, which)[k];
-                ++checked;
-                ASSERT_LE(side(k), x);
-                ASSERT_GE(side(k + 3), x);
-                ASSERT_LE(std::abs(double{x} - pack.vertex(lane, 0)[k]), pack.size);
-              }
-            }
-          }
-        }
-      }
+      checked += check_boxes(tree, ShutterTime(kShutter, time_of(i, random)));
     }
   }
   EXPECT_GT(checked, 1'000'000);
+}
+
+// The vertices' change is the largest float; that of a box with its margin is more.
+TEST(Deforming, BoxesHoldIfTheirChangeOverflows) {
+  for (const auto& [open, close] :
+       {std::pair(-0x1.8459fep127f, 0x1.ee98p125f), std::pair(-0x1.cd5030p126f, 0x1.1957e6p127f)}) {
+    Mesh mesh;
+    for (std::uint32_t i = 0; i < 60; ++i) {
+      const auto y = static_cast<float>(i / 3);
+      mesh.positions.push_back({open, y, static_cast<float>(i % 3)});
+      mesh.positions_at_close.push_back({close, y, static_cast<float>(i % 3)});
+      if (i % 3 == 0) {
+        mesh.triangles.push_back({i, i + 1, i + 2});
+        mesh.positions.back()[1] += 0.5f;
+        mesh.positions_at_close.back()[1] += 0.5f;
+      }
+    }
+    ASSERT_TRUE(std::isfinite(close - open));
+    const MeshTree tree = build_mesh_tree(mesh, nullptr);
+    for (const double time : {0.25, 0.3, 0.875, 1.5}) {
+      EXPECT_EQ(check_boxes(tree, ShutterTime(kShutter, time)), 180);
+    }
+  }
 }
 
 // Triangles with a broken vertex at either end, or whose corners coincide at both, are left out and
