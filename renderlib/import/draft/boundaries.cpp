@@ -33,6 +33,7 @@ std::optional<Instance> mesh_boundary(const Instance& placed, MediumId inside, S
       return std::nullopt;
     }
     Mesh boundary{mesh.positions, mesh.triangles, {}, {}};
+    boundary.positions_at_close = mesh.positions_at_close;
     if (signed_volume(boundary) < 0) {
       for (auto& [a, b, c] : boundary.triangles) {
         std::swap(b, c);

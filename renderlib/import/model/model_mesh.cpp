@@ -13,6 +13,7 @@
 
 #include "absl/strings/str_cat.h"
 #include "renderlib/base/status_macros.h"
+#include "renderlib/geometry/deforming_mesh.h"
 #include "renderlib/image/srgb.h"
 #include "renderlib/import/model/model_pose.h"
 #include "renderlib/import/model/repair_mesh.h"
@@ -25,19 +26,33 @@ struct Counts {
   std::size_t not_finite = 0;   ///< triangles with a vertex that is not finite
 };
 
-std::vector<std::array<float, 3>> vectors(const aiVector3D* from, std::size_t count) {
-  std::vector<std::array<float, 3>> to(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    to[i] = {from[i].x, from[i].y, from[i].z};
+/// The poses of a mesh when the shutter opens and when it closes.
+struct Poses {
+  MeshPose at_open;
+  MeshPose at_close;
+};
+
+/// Sets positions and normals, those at the shutter's close only where they differ.
+void add_vertices(const aiMesh& from, const Poses& poses, Mesh& mesh) {
+  Vertices open = posed_vertices(from, poses.at_open);
+  if (!(poses.at_close == poses.at_open)) {
+    if (Vertices close = posed_vertices(from, poses.at_close); !(close == open)) {
+      mesh.positions_at_close = std::move(close.positions);
+      mesh.normals_at_close = std::move(close.normals);
+    }
   }
-  return to;
+  mesh.positions = std::move(open.positions);
+  mesh.normals = std::move(open.normals);
 }
 
 absl::Status add_triangles(const aiMesh& from, const std::string& title, Mesh& mesh,
                            Counts& counts) {
   const auto finite = [&](std::uint32_t index) {
-    const auto& p = mesh.positions[index];
-    return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+    const auto is_finite = [&](const std::array<float, 3>& p) {
+      return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+    };
+    return is_finite(mesh.positions[index]) &&
+           (!deforms(mesh) || is_finite(mesh.positions_at_close[index]));
   };
   for (unsigned i = 0; i < from.mNumFaces; ++i) {
     const aiFace& face = from.mFaces[i];
@@ -106,15 +121,11 @@ class MeshReader {
   MeshReader(const aiMesh& from, std::string title, std::vector<std::string>& warnings)
       : from_(from), title_(std::move(title)), warnings_(warnings) {}
 
-  absl::StatusOr<Mesh> read(const ModelMaterial& material, const std::vector<double>& weights) {
+  absl::StatusOr<Mesh> read(const ModelMaterial& material, const Poses& poses) {
     Mesh mesh;
-    mesh.positions = vectors(from_.mVertices, from_.HasPositions() ? from_.mNumVertices : 0);
-    if (from_.HasNormals()) {
-      mesh.normals = vectors(from_.mNormals, from_.mNumVertices);
-    }
+    add_vertices(from_, poses, mesh);
     mesh.uvs = uvs(from_, material.uv_set);
     mesh.uvs2 = uvs(from_, material.second_uv_set);
-    add_morph_targets(from_, weights, mesh);
     Counts counts;
     RETURN_IF_ERROR(add_triangles(from_, title_, mesh, counts));
     warn_of_dropped(counts, mesh);
@@ -192,28 +203,34 @@ std::vector<double> weights_of(const ModelFile& file, unsigned mesh, const NodeP
   return curve == file.animation->weights.end() ? std::vector<double>() : curve->second.at(time);
 }
 
-/// Reads one mesh. `bones`: the places of its bones; std::nullopt: without a skin.
+/// Returns the pose of a mesh at a time; `places` are those of the nodes then.
+MeshPose pose_of(const ModelFile& file, unsigned number, const NodePlaces& places, double time) {
+  MeshPose pose{.weights = weights_of(file, number, places, time)};
+  if (file.scene.mMeshes[number]->HasBones()) {
+    pose.bones = bone_places(file, number, places);
+  }
+  const auto node = places.of_meshes.find(number);
+  if (pose.bones && node != places.of_meshes.end()) {
+    pose.place = places.by_number[node->second];
+  }
+  return pose;
+}
+
 absl::StatusOr<Mesh> read_mesh(ModelFile& file, unsigned number, const ModelMaterial& material,
-                               bool with_colors, const NodePlaces& places,
-                               const std::optional<std::vector<Transform>>& bones,
-                               const std::vector<double>& weights) {
+                               bool with_colors, const Poses& poses) {
   const aiMesh& from = *file.scene.mMeshes[number];
   const std::string called =
       from.mName.length == 0 ? absl::StrCat(number) : absl::StrCat("\"", from.mName.C_Str(), "\"");
   MeshReader reader(from, absl::StrCat(file.name(), ": mesh ", called),
                     file.draft.out.info.warnings);
-  ASSIGN_OR_RETURN(Mesh mesh, reader.read(material, weights));
+  ASSIGN_OR_RETURN(Mesh mesh, reader.read(material, poses));
   if (with_colors) {
     mesh.colors = colors(from, file.kind);
     if (has_clear_colors(from)) {
       reader.warn("the alpha of its vertex colours is left out");
     }
   }
-  if (bones) {
-    const auto place = places.of_meshes.find(number);
-    const bool placed = place != places.of_meshes.end();
-    add_skin(from, *bones, placed ? places.by_number[place->second] : Transform{}, mesh);
-  } else if (from.HasBones()) {
+  if (from.HasBones() && !poses.at_open.bones) {
     reader.warn("its skin is left out: a bone has no node");
   }
   reader.repair(mesh);
@@ -223,14 +240,13 @@ absl::StatusOr<Mesh> read_mesh(ModelFile& file, unsigned number, const ModelMate
 /// Returns a mesh that no animation changes. It is kept, and shared by further frames.
 absl::StatusOr<std::shared_ptr<const Mesh>> still_mesh(ModelFile& file, unsigned number,
                                                        const ModelMaterial& material,
-                                                       bool with_colors, const NodePlaces& places) {
+                                                       bool with_colors) {
   std::vector<std::string>& warnings = file.draft.out.info.warnings;
   StillMesh& known =
       file.still_meshes[{number, with_colors, material.uv_set, material.second_uv_set}];
   if (known.mesh == nullptr) {
     const std::size_t before = warnings.size();
-    ASSIGN_OR_RETURN(Mesh mesh,
-                     read_mesh(file, number, material, with_colors, places, std::nullopt, {}));
+    ASSIGN_OR_RETURN(Mesh mesh, read_mesh(file, number, material, with_colors, {}));
     known.mesh = std::make_shared<Mesh>(std::move(mesh));
     known.warnings.assign(warnings.begin() + static_cast<std::ptrdiff_t>(before), warnings.end());
   } else {
@@ -244,29 +260,30 @@ absl::StatusOr<std::shared_ptr<const Mesh>> still_mesh(ModelFile& file, unsigned
 absl::StatusOr<ModelMeshes> add_meshes(ModelFile& file, const std::vector<ModelMaterial>& materials,
                                        bool with_colors) {
   const aiScene& scene = file.scene;
-  const double time = middle_of(file.draft.shutter);
-  const NodePlaces places = node_places(scene, file.animation ? &*file.animation : nullptr, time);
+  const Animation* animation = file.animation ? &*file.animation : nullptr;
+  const Shutter& shutter = file.draft.shutter;
+  const NodePlaces at_open = node_places(scene, animation, shutter.open);
+  const NodePlaces at_close = node_places(scene, animation, shutter.close);
   ModelMeshes meshes(scene.mNumMeshes);
   MeshList& out = file.draft.out.scene.geometry.meshes;
   for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
     const aiMesh& from = *scene.mMeshes[i];
     const ModelMaterial material =
         from.mMaterialIndex < materials.size() ? materials[from.mMaterialIndex] : ModelMaterial{};
-    const std::vector<double> weights = weights_of(file, i, places, time);
-    const auto bones = from.HasBones() ? bone_places(file, i, places) : std::nullopt;
+    const Poses poses = {pose_of(file, i, at_open, shutter.open),
+                         pose_of(file, i, at_close, shutter.close)};
+    const bool skinned = poses.at_open.bones.has_value();
     std::shared_ptr<const Mesh> mesh;
-    if (bones || !weights.empty()) {
-      ASSIGN_OR_RETURN(Mesh posed,
-                       read_mesh(file, i, material, with_colors, places, bones, weights));
+    if (skinned || !poses.at_open.weights.empty()) {
+      ASSIGN_OR_RETURN(Mesh posed, read_mesh(file, i, material, with_colors, poses));
       mesh = std::make_shared<Mesh>(std::move(posed));
     } else {
-      ASSIGN_OR_RETURN(mesh, still_mesh(file, i, material, with_colors, places));
+      ASSIGN_OR_RETURN(mesh, still_mesh(file, i, material, with_colors));
     }
     if (mesh->triangles.empty()) {
       continue;
     }
-    meshes[i] =
-        ModelMesh{MeshId{static_cast<std::uint32_t>(out.size())}, material.id, bones.has_value()};
+    meshes[i] = ModelMesh{MeshId{static_cast<std::uint32_t>(out.size())}, material.id, skinned};
     out.share(std::move(mesh));
   }
   return meshes;

@@ -19,6 +19,14 @@ Float3 floats(const Vec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
+std::vector<Float3> vectors(const aiVector3D* from, std::size_t count) {
+  std::vector<Float3> to(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    to[i] = {from[i].x, from[i].y, from[i].z};
+  }
+  return to;
+}
+
 void add_target(const aiVector3D* target, const aiVector3D* base, double weight,
                 std::vector<Float3>& to) {
   for (std::size_t i = 0; i < to.size(); ++i) {
@@ -30,6 +38,56 @@ void add_scaled(const Transform& t, double by, Transform& sum) {
   for (std::size_t row = 0; row < 3; ++row) {
     for (std::size_t column = 0; column < 4; ++column) {
       sum.m[row][column] += by * t.m[row][column];
+    }
+  }
+}
+
+/// Adds the targets whose weight is not 0.
+void add_morph_targets(const aiMesh& from, const std::vector<double>& weights, Vertices& to) {
+  for (unsigned i = 0; i < from.mNumAnimMeshes; ++i) {
+    const aiAnimMesh& target = *from.mAnimMeshes[i];
+    const double weight = i < weights.size() ? weights[i] : weights.empty() ? target.mWeight : 0;
+    if (weight == 0 || !std::isfinite(weight) || target.mNumVertices != from.mNumVertices) {
+      continue;
+    }
+    if (target.HasPositions()) {
+      add_target(target.mVertices, from.mVertices, weight, to.positions);
+    }
+    if (target.HasNormals() && from.HasNormals()) {
+      add_target(target.mNormals, from.mNormals, weight, to.normals);
+    }
+  }
+}
+
+/// Transforms vertices and normals to the model's space.
+void add_skin(const aiMesh& from, const std::vector<Transform>& bones, const Transform& place,
+              Vertices& to) {
+  Transform nothing;
+  nothing.m = {};
+  std::vector<Transform> blended(to.positions.size(), nothing);
+  std::vector<double> weights(to.positions.size(), 0);
+  for (unsigned i = 0; i < from.mNumBones; ++i) {
+    const aiBone& bone = *from.mBones[i];
+    const Transform moves = bones[i] * transform_of(bone.mOffsetMatrix);
+    for (unsigned w = 0; w < bone.mNumWeights; ++w) {
+      const aiVertexWeight& weight = bone.mWeights[w];
+      if (weight.mVertexId < blended.size() && std::isfinite(weight.mWeight)) {
+        add_scaled(moves, weight.mWeight, blended[weight.mVertexId]);
+        weights[weight.mVertexId] += weight.mWeight;
+      }
+    }
+  }
+  for (std::size_t i = 0; i < blended.size(); ++i) {
+    Transform moves = place;
+    if (weights[i] > 0) {
+      moves = nothing;
+      add_scaled(blended[i], 1 / weights[i], moves);
+    }
+    to.positions[i] = floats(moves.point(vec(to.positions[i])));
+    if (const auto back = inverse(moves); back && !to.normals.empty()) {
+      const Vec3 normal = normal_to_world(*back, vec(to.normals[i]));
+      const double size = length(normal);
+      to.normals[i] = floats(size > 0 ? normal / size : normal);
     }
   }
 }
@@ -58,52 +116,19 @@ NodePlaces node_places(const aiScene& scene, const Animation* animation, double 
   return places;
 }
 
-void add_morph_targets(const aiMesh& from, const std::vector<double>& weights, Mesh& mesh) {
-  for (unsigned i = 0; i < from.mNumAnimMeshes; ++i) {
-    const aiAnimMesh& target = *from.mAnimMeshes[i];
-    const double weight = i < weights.size() ? weights[i] : weights.empty() ? target.mWeight : 0;
-    if (weight == 0 || !std::isfinite(weight) || target.mNumVertices != from.mNumVertices) {
-      continue;
-    }
-    if (target.HasPositions()) {
-      add_target(target.mVertices, from.mVertices, weight, mesh.positions);
-    }
-    if (target.HasNormals() && from.HasNormals()) {
-      add_target(target.mNormals, from.mNormals, weight, mesh.normals);
-    }
+Vertices posed_vertices(const aiMesh& from, const MeshPose& pose) {
+  Vertices to;
+  if (from.HasPositions()) {
+    to.positions = vectors(from.mVertices, from.mNumVertices);
   }
-}
-
-void add_skin(const aiMesh& from, const std::vector<Transform>& bones, const Transform& place,
-              Mesh& mesh) {
-  Transform nothing;
-  nothing.m = {};
-  std::vector<Transform> blended(mesh.positions.size(), nothing);
-  std::vector<double> weights(mesh.positions.size(), 0);
-  for (unsigned i = 0; i < from.mNumBones; ++i) {
-    const aiBone& bone = *from.mBones[i];
-    const Transform moves = bones[i] * transform_of(bone.mOffsetMatrix);
-    for (unsigned w = 0; w < bone.mNumWeights; ++w) {
-      const aiVertexWeight& weight = bone.mWeights[w];
-      if (weight.mVertexId < blended.size() && std::isfinite(weight.mWeight)) {
-        add_scaled(moves, weight.mWeight, blended[weight.mVertexId]);
-        weights[weight.mVertexId] += weight.mWeight;
-      }
-    }
+  if (from.HasNormals()) {
+    to.normals = vectors(from.mNormals, from.mNumVertices);
   }
-  for (std::size_t i = 0; i < blended.size(); ++i) {
-    Transform moves = place;
-    if (weights[i] > 0) {
-      moves = nothing;
-      add_scaled(blended[i], 1 / weights[i], moves);
-    }
-    mesh.positions[i] = floats(moves.point(vec(mesh.positions[i])));
-    if (const auto back = inverse(moves); back && !mesh.normals.empty()) {
-      const Vec3 normal = normal_to_world(*back, vec(mesh.normals[i]));
-      const double size = length(normal);
-      mesh.normals[i] = floats(size > 0 ? normal / size : normal);
-    }
+  add_morph_targets(from, pose.weights, to);
+  if (pose.bones) {
+    add_skin(from, *pose.bones, pose.place, to);
   }
+  return to;
 }
 
 }  // namespace bandsaw

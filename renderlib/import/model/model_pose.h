@@ -3,12 +3,13 @@
 // Poses of a model at a time: its nodes, morph targets and skins. Without an animation this is the
 // rest pose: initial weights, and every bone at its node.
 
+#include <array>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "renderlib/geometry/shapes.h"
 #include "renderlib/import/animation/animation.h"
 #include "renderlib/math/transform.h"
 
@@ -26,14 +27,25 @@ struct NodePlaces {
 /// `animation` may be nullptr.
 NodePlaces node_places(const aiScene& scene, const Animation* animation, double time);
 
-/// Applies the morph targets whose weight is not 0 to vertices and normals (empty, or one a
-/// vertex). `weights`: of the targets, or empty for those of the file.
-void add_morph_targets(const aiMesh& from, const std::vector<double>& weights, Mesh& mesh);
+/// The values that a mesh's vertices depend on.
+struct MeshPose {
+  std::vector<double> weights = {};  ///< of the morph targets; empty: those of the file
+  /// Transforms of the mesh's bones to the model's space, in their order; std::nullopt: no skin.
+  std::optional<std::vector<Transform>> bones = std::nullopt;
+  Transform place = {};  ///< of the skin's vertices without a bone
+  friend bool operator==(const MeshPose&, const MeshPose&) = default;
+};
 
-/// Transforms vertices and normals into the model's space, each by the weighted mean of its bones'
-/// transforms (linear blend skinning; glTF 2.0, 3.7.3.3); vertices without a bone by `place`.
-/// `bones` are the transforms of the mesh's bones, in their order.
-void add_skin(const aiMesh& from, const std::vector<Transform>& bones, const Transform& place,
-              Mesh& mesh);
+struct Vertices {
+  std::vector<std::array<float, 3>> positions;
+  std::vector<std::array<float, 3>> normals;  ///< empty, or one per position
+  friend bool operator==(const Vertices&, const Vertices&) = default;
+};
+
+/// Returns a mesh's vertices in a pose. Morph targets are added by their weights; a target whose
+/// number of vertices differs is omitted. A skin transforms vertices and normals to the model's
+/// space, each by the weighted mean of its bones' transforms (linear blend skinning; glTF 2.0,
+/// 3.7.3.3).
+Vertices posed_vertices(const aiMesh& from, const MeshPose& pose);
 
 }  // namespace bandsaw

@@ -25,11 +25,44 @@ void keep(std::vector<T>& values, const std::vector<std::uint32_t>& kept) {
   values.resize(kept.size());
 }
 
+/// Repairs the normals that belong to `positions`.
+std::size_t repair(const std::vector<std::array<std::uint32_t, 3>>& triangles,
+                   const std::vector<std::array<float, 3>>& positions,
+                   std::vector<std::array<float, 3>>& normals) {
+  std::map<std::uint32_t, Vec3> repaired;
+  for (std::uint32_t i = 0; i < normals.size(); ++i) {
+    if (!is_good_normal(normals[i])) {
+      repaired[i] = {};
+    }
+  }
+  if (repaired.empty()) {
+    return 0;
+  }
+  for (const auto& [a, b, c] : triangles) {
+    const Vec3 p = wide(positions[a]);
+    const Vec3 normal = cross(wide(positions[b]) - p, wide(positions[c]) - p);
+    for (const std::uint32_t corner : {a, b, c}) {
+      if (const auto found = repaired.find(corner); found != repaired.end()) {
+        found->second = found->second + normal;
+      }
+    }
+  }
+  for (const auto& [vertex, sum] : repaired) {
+    const Vec3 unit = length_squared(sum) > 0 ? normalize(sum) : Vec3{0, 1, 0};
+    normals[vertex] = {static_cast<float>(unit.x), static_cast<float>(unit.y),
+                       static_cast<float>(unit.z)};
+  }
+  return repaired.size();
+}
+
 }  // namespace
 
 void drop_unused_vertices(Mesh& mesh) {
   const auto finite = [](const std::array<float, 3>& p) { return is_finite(wide(p)); };
-  if (std::all_of(mesh.positions.begin(), mesh.positions.end(), finite)) {
+  const auto all_finite = [&](const std::vector<std::array<float, 3>>& positions) {
+    return std::all_of(positions.begin(), positions.end(), finite);
+  };
+  if (all_finite(mesh.positions) && all_finite(mesh.positions_at_close)) {
     return;
   }
   std::vector<bool> used(mesh.positions.size());
@@ -51,6 +84,8 @@ void drop_unused_vertices(Mesh& mesh) {
   keep(mesh.uvs, kept);
   keep(mesh.uvs2, kept);
   keep(mesh.colors, kept);
+  keep(mesh.positions_at_close, kept);
+  keep(mesh.normals_at_close, kept);
   for (auto& triangle : mesh.triangles) {
     for (std::uint32_t& corner : triangle) {
       corner = renamed[corner];
@@ -59,30 +94,8 @@ void drop_unused_vertices(Mesh& mesh) {
 }
 
 std::size_t repair_normals(Mesh& mesh) {
-  std::map<std::uint32_t, Vec3> repaired;
-  for (std::uint32_t i = 0; i < mesh.normals.size(); ++i) {
-    if (!is_good_normal(mesh.normals[i])) {
-      repaired[i] = {};
-    }
-  }
-  if (repaired.empty()) {
-    return 0;
-  }
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const Vec3 p = wide(mesh.positions[a]);
-    const Vec3 normal = cross(wide(mesh.positions[b]) - p, wide(mesh.positions[c]) - p);
-    for (const std::uint32_t corner : {a, b, c}) {
-      if (const auto found = repaired.find(corner); found != repaired.end()) {
-        found->second = found->second + normal;
-      }
-    }
-  }
-  for (const auto& [vertex, sum] : repaired) {
-    const Vec3 unit = length_squared(sum) > 0 ? normalize(sum) : Vec3{0, 1, 0};
-    mesh.normals[vertex] = {static_cast<float>(unit.x), static_cast<float>(unit.y),
-                            static_cast<float>(unit.z)};
-  }
-  return repaired.size();
+  return repair(mesh.triangles, mesh.positions, mesh.normals) +
+         repair(mesh.triangles, mesh.positions_at_close, mesh.normals_at_close);
 }
 
 std::size_t repair_uvs(Mesh& mesh) {
