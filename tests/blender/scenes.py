@@ -383,6 +383,49 @@ def motion():
     made.render.use_motion_blur, made.render.motion_blur_shutter = True, 1.0
 
 
+@scene()
+def deforming():
+    """A bar that a bone swings, a ball whose shape key grows, and a camera that moves."""
+    world(1, 1, 1)
+    plane(20, diffuse(0.5, 0.5, 0.5))
+    made = bpy.context.scene
+    bar = cube((-0.6, 0, 1), 0.4, diffuse(0.2, 0.4, 0.9))
+    for vertex in bar.data.vertices:
+        vertex.co.x *= 5
+    rig = link(bpy.data.objects.new("rig", bpy.data.armatures.new("rig")))
+    rig.location = (-1.6, 0, 1)
+    bpy.context.view_layer.objects.active = rig
+    bpy.ops.object.mode_set(mode="EDIT")
+    bone = rig.data.edit_bones.new("bone")
+    bone.head, bone.tail = (0, 0, 0), (0, 0, 1)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    bar.vertex_groups.new(name="bone").add(list(range(len(bar.data.vertices))), 1, "REPLACE")
+    bar.modifiers.new("bones", "ARMATURE").object = rig
+    joint = rig.pose.bones["bone"]
+    joint.rotation_mode = "XYZ"
+    joint.keyframe_insert("rotation_euler", frame=1)
+    joint.rotation_euler = (0, 0, math.radians(60))
+    joint.keyframe_insert("rotation_euler", frame=3)
+    growing = ball((1.6, 0, 1), diffuse(0.9, 0.2, 0.2), 0.5)
+    growing.shape_key_add(name="small")
+    wide = growing.shape_key_add(name="wide")
+    for point in wide.data:
+        point.co.x *= 2
+    wide.keyframe_insert("value", frame=1)
+    wide.value = 1
+    wide.keyframe_insert("value", frame=3)
+    eye = made.camera
+    eye.keyframe_insert("location", frame=1)
+    eye.location.z += 0.6
+    eye.keyframe_insert("location", frame=3)
+    for curves in (curves_of(rig), growing.data.shape_keys.animation_data.action.fcurves, curves_of(eye)):
+        for curve in curves:
+            for point in curve.keyframe_points:
+                point.interpolation = "LINEAR"
+    made.frame_set(2)
+    made.render.use_motion_blur, made.render.motion_blur_shutter = True, 1.0
+
+
 def curves_of(thing):
     return thing.animation_data.action.fcurves
 

@@ -6,18 +6,38 @@ import struct
 import numpy as np
 
 
+class Vertices:
+    """`positions` (v, 3); `normals` (v, 3), or None: flat everywhere."""
+
+    def __init__(self, positions, normals):
+        self.positions, self.normals = positions, normals
+
+    def __getitem__(self, which):
+        return Vertices(self.positions[which], None if self.normals is None else self.normals[which])
+
+
 class Triangles:
     """The triangles of a mesh with one material slot. `positions` (v, 3), `normals` (v, 3) or None (flat everywhere), `uvs`: a list of at
-    most two (v, 2), v = 0 at the bottom; `indices` (t, 3)."""
+    most two (v, 2), v = 0 at the bottom; `indices` (t, 3). `ends`: None, or the Vertices when the shutter opens and when it closes; all else
+    is that of the frame."""
 
-    def __init__(self, positions, normals, uvs, indices):
-        self.positions, self.normals, self.uvs, self.indices = positions, normals, uvs, indices
+    def __init__(self, positions, normals, uvs, indices, ends=None):
+        self.positions, self.normals, self.uvs, self.indices, self.ends = positions, normals, uvs, indices, ends
+
+    def _selected(self, which, indices):
+        """Triangles of the vertices `which`."""
+        normals = None if self.normals is None else self.normals[which]
+        ends = None if self.ends is None else tuple(end[which] for end in self.ends)
+        return Triangles(self.positions[which], normals, [uv[which] for uv in self.uvs], indices.astype(np.uint32).reshape(-1, 3), ends)
 
     def corners(self):
         """The same with three vertices of its own for each triangle."""
         flat = self.indices.reshape(-1)
-        normals = None if self.normals is None else self.normals[flat]
-        return Triangles(self.positions[flat], normals, [uv[flat] for uv in self.uvs], np.arange(len(flat), dtype=np.uint32).reshape(-1, 3))
+        return self._selected(flat, np.arange(len(flat)))
+
+    def compact(self):
+        """The same without vertices that no triangle uses."""
+        return self._selected(*np.unique(self.indices.reshape(-1), return_inverse=True))
 
     def corner_normals(self):
         """(3 t, 3): the shading normals of the corners, in the order of `indices`."""
@@ -45,31 +65,49 @@ def _corner_normals(mesh, loops):
     return found
 
 
-def triangles_of(mesh, uv_names):
+class Pose:
+    """A mesh of Blender at a time: `positions` (vertices, 3), `vertex_of_loop` (loops), and `normals` (loops, 3), or None: flat everywhere."""
+
+    def __init__(self, mesh):
+        vertices, loops = len(mesh.vertices), len(mesh.loops)
+        self.positions = _get(mesh.vertices, "co", vertices, 3, np.float32)
+        self.vertex_of_loop = _get(mesh.loops, "vertex_index", loops, 1, np.int32)
+        smooth = _get(mesh.polygons, "use_smooth", len(mesh.polygons), 1, bool)
+        custom = mesh.has_custom_normals
+        split = custom or getattr(mesh, "use_auto_smooth", False) or _has_sharp(mesh)
+        self.normals = None
+        if smooth.all() and not split:
+            self.normals = _get(mesh.vertices, "normal", vertices, 3, np.float32)[self.vertex_of_loop]
+        elif smooth.any() or custom:
+            self.normals = _corner_normals(mesh, loops)
+
+    def fits(self, other):
+        """True if both are the same mesh with its vertices at other places."""
+        return (len(self.positions) == len(other.positions) and np.array_equal(self.vertex_of_loop, other.vertex_of_loop) and
+                (self.normals is None) == (other.normals is None))
+
+    def equals(self, other):
+        return (self.fits(other) and np.array_equal(self.positions, other.positions) and
+                (self.normals is None or np.array_equal(self.normals, other.normals)))
+
+
+def triangles_of(mesh, uv_names, ends=None):
     """A dictionary from the indices of the material slots that the mesh uses to their Triangles. `uv_names`: the names of the uv maps to
-    keep, at most two; "" is the active one."""
+    keep, at most two; "" is the active one. `ends`: the Poses of the mesh when the shutter opens and when it closes, which fit to it; None: it
+    does not deform."""
     mesh.calc_loop_triangles()
-    count, vertices, loops = len(mesh.loop_triangles), len(mesh.vertices), len(mesh.loops)
+    count, loops = len(mesh.loop_triangles), len(mesh.loops)
     if count == 0:
         return {}
     corners = _get(mesh.loop_triangles, "loops", count, 3, np.int32)
     of_corner = _get(mesh.loop_triangles, "vertices", count, 3, np.int32)
     slots = _get(mesh.loop_triangles, "material_index", count, 1, np.int32)
-    smooth = _get(mesh.polygons, "use_smooth", len(mesh.polygons), 1, bool)
-    positions = _get(mesh.vertices, "co", vertices, 3, np.float32)
-    vertex_of_loop = _get(mesh.loops, "vertex_index", loops, 1, np.int32)
     uvs = [_get(layer.data, "uv", loops, 2, np.float32) for layer in _uv_layers(mesh, uv_names)]
-    custom = mesh.has_custom_normals
-    split = custom or getattr(mesh, "use_auto_smooth", False) or _has_sharp(mesh)
-    normals = None
-    if smooth.all() and not split:
-        normals = _get(mesh.vertices, "normal", vertices, 3, np.float32)[vertex_of_loop]
-    elif smooth.any() or custom:
-        normals = _corner_normals(mesh, loops)
+    pose = Pose(mesh)
     used = np.unique(slots)
     if len(used) == 1:
-        return {int(used[0]): _indexed(positions, normals, uvs, corners, of_corner, vertex_of_loop)}
-    return {int(slot): _compact(_indexed(positions, normals, uvs, corners[slots == slot], of_corner[slots == slot], vertex_of_loop)) for slot in used}
+        return {int(used[0]): _indexed(pose, uvs, corners, of_corner, ends)}
+    return {int(slot): _indexed(pose, uvs, corners[slots == slot], of_corner[slots == slot], ends).compact() for slot in used}
 
 
 def _has_sharp(mesh):
@@ -89,15 +127,17 @@ def _uv_layers(mesh, names):
     return found[:2]
 
 
-def _indexed(positions, normals, uvs, corners, of_corner, vertex_of_loop):
+def _indexed(pose, uvs, corners, of_corner, ends):
     """Triangles whose vertices are shared where the corners' normals and uvs are the same. Vertices are added for the other corners only,
     so that a mesh without seams is as fast as one without uvs."""
     flat, vertex = corners.reshape(-1), of_corner.reshape(-1)
-    per_corner = [a for a in [normals] + uvs if a is not None]
+    poses = [pose, *(ends or ())]
+    per_corner = [each.normals for each in poses if each.normals is not None] + uvs
     if not per_corner:
-        return Triangles(positions, None, [], of_corner.astype(np.uint32))
+        flat_ends = None if ends is None else tuple(Vertices(end.positions, None) for end in ends)
+        return Triangles(pose.positions, None, [], of_corner.astype(np.uint32), flat_ends)
     values = [a[flat] for a in per_corner]
-    representative = np.zeros(len(positions), dtype=np.int64)
+    representative = np.zeros(len(pose.positions), dtype=np.int64)
     representative[vertex] = np.arange(len(flat))  # the last corner of each vertex
     other = np.zeros(len(flat), dtype=bool)
     for a in values:
@@ -109,21 +149,15 @@ def _indexed(positions, normals, uvs, corners, of_corner, vertex_of_loop):
                               [vertex[extra].astype(np.int32).reshape(-1, 1).view(np.uint8)], axis=1)
         keys = np.ascontiguousarray(rows).view(np.dtype((np.void, rows.shape[1]))).reshape(-1)
         _, first, inverse = np.unique(keys, return_index=True, return_inverse=True)
-        index[extra] = len(positions) + inverse.astype(np.uint32)
+        index[extra] = len(pose.positions) + inverse.reshape(-1).astype(np.uint32)
         added = extra[first]
     else:
         added = extra
     all_corners = np.concatenate([representative, added])
     result = [a[all_corners] for a in values]
-    return Triangles(np.concatenate([positions, positions[vertex[added]]]), result.pop(0) if normals is not None else None, result,
-                     index.reshape(-1, 3))
-
-
-def _compact(triangles):
-    """The same without vertices that no triangle uses."""
-    used, indices = np.unique(triangles.indices.reshape(-1), return_inverse=True)
-    normals = None if triangles.normals is None else triangles.normals[used]
-    return Triangles(triangles.positions[used], normals, [uv[used] for uv in triangles.uvs], indices.astype(np.uint32).reshape(-1, 3))
+    placed = [Vertices(np.concatenate([each.positions, each.positions[vertex[added]]]), result.pop(0) if each.normals is not None else None)
+              for each in poses]
+    return Triangles(placed[0].positions, placed[0].normals, result, index.reshape(-1, 3), tuple(placed[1:]) or None)
 
 
 def box(low, high):
@@ -133,30 +167,48 @@ def box(low, high):
     return Triangles(p, None, [], np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))], dtype=np.uint32))
 
 
+DEFORMS = "deforms"  # the name of the animation of a mesh that deforms
+
+
 def glb(triangles):
-    """The bytes of a GLB file with this one mesh."""
+    """The bytes of a GLB file with this one mesh. If it deforms, its vertices are those when the shutter opens, and a morph target, which the
+    animation DEFORMS shows from the time 0 to 1, has those when it closes."""
     parts, views, accessors, attributes = [], [], [], {}
 
     def add(array, kind, component, target, **more):
         data = array.tobytes()
-        views.append({"buffer": 0, "byteOffset": sum(map(len, parts)), "byteLength": len(data), "target": target})
+        views.append({"buffer": 0, "byteOffset": sum(map(len, parts)), "byteLength": len(data), **({"target": target} if target else {})})
         accessors.append({"bufferView": len(views) - 1, "componentType": component, "count": len(array), "type": kind, **more})
         parts.append(data)
         return len(accessors) - 1
 
-    positions = np.ascontiguousarray(triangles.positions, dtype="<f4")
-    attributes["POSITION"] = add(positions, "VEC3", 5126, 34962, min=positions.min(axis=0).tolist(), max=positions.max(axis=0).tolist())
-    if triangles.normals is not None:
-        attributes["NORMAL"] = add(np.ascontiguousarray(triangles.normals, dtype="<f4"), "VEC3", 5126, 34962)
+    def add_vectors(attributes, vertices):
+        positions = np.ascontiguousarray(vertices.positions, dtype="<f4")
+        attributes["POSITION"] = add(positions, "VEC3", 5126, 34962, min=positions.min(axis=0).tolist(), max=positions.max(axis=0).tolist())
+        if vertices.normals is not None:
+            attributes["NORMAL"] = add(np.ascontiguousarray(vertices.normals, dtype="<f4"), "VEC3", 5126, 34962)
+
+    first, last = triangles.ends or (Vertices(triangles.positions, triangles.normals), None)
+    add_vectors(attributes, first)
     for number, uv in enumerate(triangles.uvs):
         flipped = np.stack([uv[:, 0], 1 - uv[:, 1]], axis=1)
         attributes[f"TEXCOORD_{number}"] = add(np.ascontiguousarray(flipped, dtype="<f4"), "VEC2", 5126, 34962)
     indices = np.ascontiguousarray(triangles.indices.reshape(-1), dtype="<u4")
-    number = add(indices, "SCALAR", 5125, 34963)
+    primitive = {"attributes": attributes, "indices": add(indices, "SCALAR", 5125, 34963)}
+    more = {}
+    if last is not None:
+        normals = None if first.normals is None else last.normals - first.normals
+        target = {}
+        add_vectors(target, Vertices(last.positions - first.positions, normals))
+        primitive["targets"] = [target]
+        ends = np.array([0, 1], dtype="<f4")
+        more["animations"] = [{"name": DEFORMS, "channels": [{"sampler": 0, "target": {"node": 0, "path": "weights"}}],
+                               "samplers": [{"input": add(ends, "SCALAR", 5126, None, min=[0], max=[1]),
+                                             "output": add(ends, "SCALAR", 5126, None)}]}]
     data = b"".join(parts)
     text = json.dumps({
         "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
-        "meshes": [{"primitives": [{"attributes": attributes, "indices": number}]}],
+        "meshes": [{"primitives": [primitive]}], **more,
         "buffers": [{"byteLength": len(data)}], "bufferViews": views, "accessors": accessors}).encode()
     text += b" " * (-len(text) % 4)
     data += b"\0" * (-len(data) % 4)

@@ -3,6 +3,7 @@
 Vertices stay in the space of their mesh; the change from Blender's axes (z up) to those of scene files (y up) is part of the placements. What
 cannot be shown is named in `warnings`."""
 
+import contextlib
 import hashlib
 import json
 import math
@@ -109,7 +110,7 @@ def build(depsgraph, scene, size, region=None, camera=None, frame_set=None):
         if thing.type == "LIGHT":
             lights.add_light(out, thing, matrix)
         elif thing.type in GEOMETRY:
-            add_geometry(out, shapes, thing, matrix, moved.of(instance))
+            add_geometry(out, shapes, thing, matrix, moved, moved.of(instance))
         elif thing.type == "VOLUME":
             add_grid(out, thing, matrix)
         elif thing.type in ("CURVES", "HAIR"):
@@ -134,10 +135,11 @@ def build(depsgraph, scene, size, region=None, camera=None, frame_set=None):
 
 
 class Moved:
-    """The placements at the times when the shutter opens and closes; none without motion blur."""
+    """The placements at the times when the shutter opens and closes, and the poses of meshes that may deform; none without motion blur."""
 
     def __init__(self, depsgraph, scene, frame_set):
         self.times, self.before, self.after = None, {}, {}
+        self.poses_before, self.poses_after = {}, {}
         if not scene.render.use_motion_blur or frame_set is None:
             return
         length = scene.render.motion_blur_shutter
@@ -145,10 +147,11 @@ class Moved:
         start = {"START": 0.0, "CENTER": -length / 2, "END": -length}[position]
         frame = scene.frame_current + scene.frame_subframe
         self.times = (0.0, 1.0)
-        for found, time in ((self.before, frame + start), (self.after, frame + start + length)):
+        for found, poses, time in ((self.before, self.poses_before, frame + start), (self.after, self.poses_after, frame + start + length)):
             frame_set(math.floor(time), time - math.floor(time))
             for instance in depsgraph.object_instances:
                 found[self.key(instance)] = instance.matrix_world.copy()
+                self._add_pose(instance, poses)
             camera = scene.camera.evaluated_get(depsgraph)
             found["camera"] = camera.matrix_world.copy()
         frame_set(math.floor(frame), frame - math.floor(frame))
@@ -158,15 +161,68 @@ class Moved:
         parent = instance.parent.name_full if instance.parent is not None else ""
         return instance.object.name_full, parent, tuple(instance.persistent_id)
 
+    @staticmethod
+    def _add_pose(instance, poses):
+        thing = instance.object
+        if not instance.show_self or not may_deform(thing):
+            return
+        data = thing.data.as_pointer()
+        if thing.name_full in poses:
+            # Geometry nodes place other meshes under the name of their object.
+            if poses[thing.name_full][0] != data:
+                poses[thing.name_full] = data, None
+            return
+        with mesh_of(thing) as mesh:
+            poses[thing.name_full] = data, geometry.Pose(mesh) if mesh is not None else None
+
+    def ends_of(self, out, thing, mesh):
+        """The Poses of a mesh when the shutter opens and when it closes; None: it does not deform."""
+        if self.times is None or not may_deform(thing):
+            return None
+        first, last = (poses.get(thing.name_full, (None, None))[1] for poses in (self.poses_before, self.poses_after))
+        if first is None or last is None or first.equals(last):
+            return None
+        now = geometry.Pose(mesh)
+        if not now.fits(first) or not now.fits(last):
+            out.warn(f'the motion of "{thing.name}", whose number of vertices changes, is not blurred')
+            return None
+        return first, last
+
     def of(self, instance):
         """The two placements of an instance that moves; None: it does not."""
-        if self.times is None:
+        if self.times is None or not blurred(instance.object, "use_motion_blur"):
             return None
         key = self.key(instance)
         first, last = self.before.get(key), self.after.get(key)
         if first is None or last is None or max(abs(a - b) for x, y in zip(first, last) for a, b in zip(x, y)) < 1e-7:
             return None
         return first, last
+
+
+def blurred(thing, setting):
+    """True unless the object's settings for Cycles say that its motion is not blurred."""
+    return getattr(getattr(thing.original, "cycles", None), setting, True)
+
+
+def may_deform(thing):
+    """True if an object has something that can move its vertices."""
+    if thing.type not in GEOMETRY or not blurred(thing, "use_motion_blur") or not blurred(thing, "use_deform_motion"):
+        return False
+    data = thing.original.data
+    return (len(thing.modifiers) > 0 or thing.original.parent_type in ("ARMATURE", "LATTICE") or
+            getattr(data, "shape_keys", None) is not None or getattr(data, "animation_data", None) is not None)
+
+
+@contextlib.contextmanager
+def mesh_of(thing):
+    """The mesh of an evaluated object; None: it has none."""
+    if thing.type == "MESH":
+        yield thing.data
+        return
+    try:
+        yield thing.to_mesh()
+    finally:
+        thing.to_mesh_clear()
 
 
 def key_of(time, matrix, previous=None):
@@ -191,6 +247,14 @@ def sheared(matrix):
 # ---- the camera ----
 
 
+def view(matrix_world):
+    """The fields of a message Camera that say where it is."""
+    matrix = TO_SCENE @ matrix_world.normalized()
+    turned = matrix.to_3x3()
+    place, ahead, up = matrix.translation, -turned.col[2], turned.col[1]
+    return {"position": vector(place), "look_at": vector(place + ahead), "up": vector(up)}
+
+
 def add_camera(out, camera, depsgraph, scene, size, region, moved):
     data = camera.data
     width, height = size
@@ -201,10 +265,7 @@ def add_camera(out, camera, depsgraph, scene, size, region, moved):
     x0, y0, x1, y1 = region or (0, 0, width, height)
     corners = [2 * x0 / width - 1, 2 * x1 / width - 1, 2 * y0 / height - 1, 2 * y1 / height - 1]
     flat = data.type == "ORTHO"
-    matrix = TO_SCENE @ camera.matrix_world.normalized()
-    turned = matrix.to_3x3()
-    place, ahead, up = matrix.translation, -turned.col[2], turned.col[1]
-    message = {"position": vector(place), "look_at": vector(place + ahead), "up": vector(up)}
+    message = view(camera.matrix_world)
     # Where the edges of the image lie: at distance 1 for a perspective camera.
     axes = (0, 0, 1, 1)
     offset = 3 if flat else 2
@@ -229,7 +290,8 @@ def add_camera(out, camera, depsgraph, scene, size, region, moved):
         message["shutter_open"], message["shutter_close"] = moved.times
         a, b = moved.before["camera"], moved.after["camera"]
         if max(abs(p - q) for x, y in zip(a, b) for p, q in zip(x, y)) > 1e-6:
-            out.warn("the camera's own motion is not blurred")
+            out.scene["track"] = [{"field": f"camera.{field}", "key": [{"time": time, "value": view(at)[field]} for time, at in zip(moved.times, (a, b))]}
+                                  for field in ("position", "look_at", "up")]
     out.scene["camera"] = message
     out.scene["image"] = {"width": x1 - x0, "height": y1 - y0, "filter": {"gaussian": {"radius": 1.5}}}
 
@@ -242,18 +304,14 @@ def materials_of(thing, mesh):
     return slots or [material for material in mesh.materials]
 
 
-def add_geometry(out, shapes, thing, matrix, motion):
+def add_geometry(out, shapes, thing, matrix, moved, motion):
     data = thing.data
     key = (data.as_pointer() if thing.type == "MESH" else (thing.name_full, data.as_pointer()),
            tuple(slot.material.name_full if slot.material else "" for slot in thing.material_slots))
     shape = shapes.get(key)
     if shape is None:
-        mesh = data if thing.type == "MESH" else thing.to_mesh()
-        try:
-            shape = shapes[key] = Shape(parts_of(out, thing, mesh, matrix) if mesh is not None else [])
-        finally:
-            if thing.type != "MESH":
-                thing.to_mesh_clear()
+        with mesh_of(thing) as mesh:
+            shape = shapes[key] = Shape(parts_of(out, thing, mesh, matrix, moved.ends_of(out, thing, mesh)) if mesh is not None else [])
     if not thing.visible_camera:
         out.warn(f'"{thing.name}" is seen by the camera, although its setting says that it is not')
     if motion is not None and (sheared(motion[0]) or sheared(motion[1])):
@@ -262,11 +320,11 @@ def add_geometry(out, shapes, thing, matrix, motion):
     shape.placements.append((matrix, motion))
 
 
-def parts_of(out, thing, mesh, matrix):
+def parts_of(out, thing, mesh, matrix, ends):
     materials = materials_of(thing, mesh)
     names = [""] + [name for name in uv_names(materials) if name]
     parts = []
-    pieces = geometry.triangles_of(mesh, names)
+    pieces = geometry.triangles_of(mesh, names, ends)
     real = [next((layer.name for layer in mesh.uv_layers if layer.active_render), "")] + names[1:] if len(mesh.uv_layers) else [""]
     size = np.array(mesh.texspace_size, dtype=float) * 2
     low = np.array(mesh.texspace_location, dtype=float) - size / 2
@@ -278,6 +336,8 @@ def parts_of(out, thing, mesh, matrix):
         if part is not None:
             part["triangles"] = triangles
             part["file"] = out.store("mesh.glb", geometry.glb(piece.finished()))
+            if ends is not None:
+                part["animation"] = geometry.DEFORMS
             parts.append(part)
     return parts
 

@@ -700,7 +700,10 @@ def message(surface, out):
         color = fields.get("texture", {"color": rgb((0, 0, 0))})
         if plain and surface.kind != "transparent":
             return {"diffuse": {"texture": color}}
-        # glTF's material without reflection is a diffuse surface, with fields for alpha, emission and normals.
+        if surface.kind == "diffuse" and surface.normal is not None:
+            # As Cycles, this keeps a normal that faces away from the viewer; glTF's material turns it towards the viewer.
+            return with_properties("diffuse", {"texture": color}, surface, emission, opacity)
+        # glTF's material without reflection is a diffuse surface, with fields for alpha and emission.
         fields = {"base_color_texture": color, "metallic": 0.0, "roughness": 1.0, "index_of_refraction": 1.0}
         opacity = Value(0) if surface.kind == "transparent" else opacity
     if surface.kind in ("", "diffuse", "transparent", "gltf"):
@@ -719,7 +722,12 @@ def message(surface, out):
         if surface.normal is not None:
             fields["normal_texture"], fields["normal_scale"] = surface.normal.message(), surface.normal_scale
         return {"gltf": fields}
-    made = {surface.kind: fields}
+    return with_properties(surface.kind, fields, surface, emission, opacity)
+
+
+def with_properties(kind, fields, surface, emission, opacity):
+    """A message Material of a kind that has no fields of its own for emission, opacity and normals."""
+    made = {kind: fields}
     if emission is not None:
         if emission.constant is not None:
             made["emission"] = rgb(emission.constant)
