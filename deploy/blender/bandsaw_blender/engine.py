@@ -63,9 +63,16 @@ class BandsawEngine(bpy.types.RenderEngine):
         except Stopped:
             pass
         except (bandsaw.BandsawError, RuntimeError) as error:
-            self.report({"ERROR"}, f"Bandsaw: {error}")
-            if bpy.app.version < (4, 3):
-                self.error_set(f"Bandsaw: {error}")  # 4.3 would report it again
+            self.fail(error)
+        except MemoryError:
+            self.fail("the memory of this machine does not suffice to send the scene; close other programs, or hide or simplify large meshes")
+        except OSError as error:
+            self.fail(f"the scene's files cannot be written: {error}")
+
+    def fail(self, message):
+        self.report({"ERROR"}, f"Bandsaw: {message}")
+        if bpy.app.version < (4, 3):
+            self.error_set(f"Bandsaw: {message}")  # 4.3 would report it again
 
     def render_on_farm(self, depsgraph):
         scene = depsgraph.scene

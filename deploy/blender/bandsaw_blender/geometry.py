@@ -30,6 +30,10 @@ class Triangles:
         ends = None if self.ends is None else tuple(end[which] for end in self.ends)
         return Triangles(self.positions[which], normals, [uv[which] for uv in self.uvs], indices.astype(np.uint32).reshape(-1, 3), ends)
 
+    def box(self):
+        """The lowest and the highest coordinates."""
+        return self.positions.min(axis=0), self.positions.max(axis=0)
+
     def corners(self):
         """The same with three vertices of its own for each triangle."""
         flat = self.indices.reshape(-1)
@@ -176,7 +180,7 @@ def glb(triangles):
     parts, views, accessors, attributes = [], [], [], {}
 
     def add(array, kind, component, target, **more):
-        data = array.tobytes()
+        data = memoryview(array).cast("B")  # not copied: meshes may be large
         views.append({"buffer": 0, "byteOffset": sum(map(len, parts)), "byteLength": len(data), **({"target": target} if target else {})})
         accessors.append({"bufferView": len(views) - 1, "componentType": component, "count": len(array), "type": kind, **more})
         parts.append(data)
@@ -205,15 +209,16 @@ def glb(triangles):
         more["animations"] = [{"name": DEFORMS, "channels": [{"sampler": 0, "target": {"node": 0, "path": "weights"}}],
                                "samplers": [{"input": add(ends, "SCALAR", 5126, None, min=[0], max=[1]),
                                              "output": add(ends, "SCALAR", 5126, None)}]}]
-    data = b"".join(parts)
+    size = sum(map(len, parts))
     text = json.dumps({
         "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
         "meshes": [{"primitives": [primitive]}], **more,
-        "buffers": [{"byteLength": len(data)}], "bufferViews": views, "accessors": accessors}).encode()
+        "buffers": [{"byteLength": size}], "bufferViews": views, "accessors": accessors}).encode()
     text += b" " * (-len(text) % 4)
-    data += b"\0" * (-len(data) % 4)
-    return (struct.pack("<III", 0x46546C67, 2, 28 + len(text) + len(data)) + struct.pack("<II", len(text), 0x4E4F534A) + text +
-            struct.pack("<II", len(data), 0x004E4942) + data)
+    parts.append(b"\0" * (-size % 4))
+    size += -size % 4
+    return b"".join([struct.pack("<III", 0x46546C67, 2, 28 + len(text) + size), struct.pack("<II", len(text), 0x4E4F534A), text,
+                     struct.pack("<II", size, 0x004E4942), *parts])
 
 
 # ---- an atlas: an image with a place of its own for each triangle ----

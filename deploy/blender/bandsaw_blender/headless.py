@@ -7,6 +7,7 @@ each is answered with the line "bandsaw: done" on standard output; the files are
 FOLDER/error with one line."""
 
 import os
+import shutil
 import sys
 import traceback
 
@@ -35,6 +36,9 @@ class ExportEngine(bpy.types.RenderEngine):
 
 def write(folder, made):
     for name, content in {**made.files, _name[0] + ".json": made.text().encode()}.items():
+        if isinstance(content, str):
+            shutil.copyfile(content, os.path.join(folder, name))
+            continue
         with open(os.path.join(folder, name), "wb") as file:
             file.write(content)
     with open(os.path.join(folder, "warnings"), "w", encoding="utf-8") as file:

@@ -8,6 +8,7 @@ import hashlib
 import json
 import math
 import os
+import tempfile
 
 import bpy
 import numpy as np
@@ -20,13 +21,16 @@ GEOMETRY = {"MESH", "CURVE", "SURFACE", "FONT", "META"}
 
 
 class Scene:
-    """A scene in the making. `scene`: the message Scene as a dictionary; `files`: from names to bytes or paths; `warnings`: sentences."""
+    """A scene in the making. `scene`: the message Scene as a dictionary; `files`: from names to bytes or paths; `warnings`: sentences. Large files
+    are kept in a temporary folder, which is removed with the scene: Blender needs the memory."""
 
     MAIN = "scene.json"
+    LARGE = 16 << 20  # bytes
 
     def __init__(self):
         self.scene = {"texture": [], "material": [], "group": [], "instance": [], "model": [], "shape": [], "light": [], "medium": []}
         self.files, self.warnings, self.suns = {}, [], []
+        self._folder = None
         self.version = bpy.app.version
         self.images = shading.Images(self.store, self.warn)
         self._materials, self._media = {}, {}
@@ -39,8 +43,17 @@ class Scene:
     def store(self, name, data):
         """Adds a file; files of the same bytes are one. Returns its name."""
         stored = hashlib.sha256(data).hexdigest()[:24] + os.path.splitext(name)[1]
-        self.files[stored] = data
+        if stored not in self.files:
+            self.files[stored] = data if len(data) < self.LARGE else self._written(stored, data)
         return stored
+
+    def _written(self, name, data):
+        if self._folder is None:
+            self._folder = tempfile.TemporaryDirectory(prefix="bandsaw-scene-")
+        path = os.path.join(self._folder.name, name)
+        with open(path, "wb") as file:
+            file.write(data)
+        return path
 
     def material(self, message):
         """Adds a material; equal ones are one. Returns its name."""
@@ -74,12 +87,9 @@ class Scene:
     def text(self):
         return json.dumps({field: value for field, value in self.scene.items() if value not in ([], "", {})})
 
-    def all_files(self):
-        return {**self.files, self.MAIN: self.text().encode()}
-
-    def grow(self, triangles, matrices):
-        """Extends the box around the scene, in Blender's axes, by placements of a mesh."""
-        low, high = triangles.positions.min(axis=0), triangles.positions.max(axis=0)
+    def grow(self, box, matrices):
+        """Extends the box around the scene, in Blender's axes, by placements of a mesh; `box`: two corners, in the space of the mesh."""
+        low, high = box
         corners = np.array([[(low, high)[k >> a & 1][a] for a in range(3)] + [1] for k in range(8)])
         placed = np.einsum("kj,nij->nki", corners, np.array([[list(row) for row in matrix] for matrix in matrices]))[:, :, :3].reshape(-1, 3)
         self.low, self.high = np.minimum(self.low, placed.min(axis=0)), np.maximum(self.high, placed.max(axis=0))
@@ -334,7 +344,7 @@ def parts_of(out, thing, mesh, matrix, ends):
         piece = shading.Piece(triangles, low, size, matrix, real)
         part = material_part(out, material, piece, thing)
         if part is not None:
-            part["triangles"] = triangles
+            part["box"] = triangles.box()
             part["file"] = out.store("mesh.glb", geometry.glb(piece.finished()))
             if ends is not None:
                 part["animation"] = geometry.DEFORMS
@@ -417,7 +427,7 @@ def add_grid(out, thing, matrix):
         out.warn(f'the volume "{thing.name}" is empty')
         return
     box = geometry.box(low, high)
-    out.grow(box, [matrix])
+    out.grow((low, high), [matrix])
     out.scene["model"].append({"file": out.store("mesh.glb", geometry.glb(box)), "matrix": out.rows(TO_SCENE @ matrix),
                                "interior": out.medium(medium), "boundary_only": True})
 
@@ -425,11 +435,11 @@ def add_grid(out, thing, matrix):
 def place(out, shapes):
     """Writes the placements: as models where there is one, otherwise as instances of a group."""
     for shape in shapes.values():
-        models = [{field: value for field, value in part.items() if field != "triangles"} for part in shape.parts]
+        models = [{field: value for field, value in part.items() if field != "box"} for part in shape.parts]
         if not models:
             continue
         for part in shape.parts:
-            out.grow(part["triangles"], [matrix for matrix, _ in shape.placements])
+            out.grow(part["box"], [matrix for matrix, _ in shape.placements])
         if len(shape.placements) == 1:
             for model in models:
                 out.scene["model"].append({**model, **placed(out, *shape.placements[0])})
