@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# A walk of 48 frames on three workers: one of them is killed, and the coordinator is killed once. Each frame must have the bytes of
+# A walk of 48 frames, blurred by its motion, on three workers: one of them is killed, and the coordinator is killed once. Each frame must have the bytes of
 # `bandsaw render --frame N`, none is rendered twice, the video has 48 frames, and the vertices are where Blender has them.
 # Usage: frames.sh BUILD-FOLDER WORK-FOLDER. WORK-FOLDER/pids gets the processes that must be ended.
 set -euo pipefail
 build=$1 work=$2
 here=$(cd "$(dirname "$0")" && pwd)
 bandsaw=$build/bin/bandsaw
-settings=(--fps 24 --shutter 0 --width 64 --height 48 --samples 256)
+settings=(--fps 24 --shutter 0.5 --width 64 --height 48 --samples 256)
 /usr/bin/python3 "$here/walk.py" "$work/walk.glb"
 
 serve() {
