@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Tests of the add-on in a real Blender. Usage: run.sh addon|compare|window|command|frames BUILD-FOLDER. Exit 77: Blender or another program is not installed.
 #   addon    the installed add-on at a coordinator that renders nothing: messages, regions, passes, animations
-#   compare  fourteen scenes by Cycles and by the add-on on a farm on loopback; the images stay in BUILD-FOLDER/compare
+#   compare  fifteen scenes by Cycles and by the add-on on a farm on loopback; the images stay in BUILD-FOLDER/compare
 #   command  bandsaw render FILE.blend, and its frames on a farm
 #   frames   48 frames of a skinned model on a farm whose processes are killed; Blender tells where the vertices are
 #   window   in a window under Xvfb: F12, the picture growing, Esc; screenshots in BUILD-FOLDER/screenshots

@@ -700,10 +700,10 @@ def message(surface, out):
         color = fields.get("texture", {"color": rgb((0, 0, 0))})
         if plain and surface.kind != "transparent":
             return {"diffuse": {"texture": color}}
-        if surface.kind == "diffuse" and surface.normal is not None:
-            # As Cycles, this keeps a normal that faces away from the viewer; glTF's material turns it towards the viewer.
+        if surface.kind == "diffuse" and surface.normal is not None and out.version >= (4, 0, 0):
+            # Cycles of Blender 4 keeps a normal that faces away from the viewer; before, and in glTF's material, it is turned towards the viewer.
             return with_properties("diffuse", {"texture": color}, surface, emission, opacity)
-        # glTF's material without reflection is a diffuse surface, with fields for alpha and emission.
+        # glTF's material without reflection is a diffuse surface, with fields for alpha, emission and normals.
         fields = {"base_color_texture": color, "metallic": 0.0, "roughness": 1.0, "index_of_refraction": 1.0}
         opacity = Value(0) if surface.kind == "transparent" else opacity
     if surface.kind in ("", "diffuse", "transparent", "gltf"):
