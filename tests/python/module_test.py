@@ -338,15 +338,15 @@ class AddOn(unittest.TestCase):
         np = bandsaw.numpy
         positions = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=np.float32)
         corners = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)
-        loops = np.array([0, 1, 2, 3], dtype=np.int32)
         uv = positions[:, :2].copy()
-        kept = self.geometry._indexed(positions, None, [uv], corners, corners, loops)
+        pose = self.geometry.Vertices(positions, None)
+        kept = self.geometry._indexed(pose, [uv], corners, corners, None)
         self.assertEqual(len(kept.positions), 4)
         # Now each triangle has loops of its own, and one uv differs at a shared vertex.
         corners6, of_corner = np.array([[0, 1, 2], [3, 4, 5]], dtype=np.int32), np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)
         uv6 = uv[[0, 1, 2, 0, 2, 3]].copy()
         uv6[3] = (5, 5)
-        split = self.geometry._indexed(positions, None, [uv6], corners6, of_corner, np.array([0, 1, 2, 0, 2, 3], dtype=np.int32))
+        split = self.geometry._indexed(pose, [uv6], corners6, of_corner, None)
         self.assertEqual(len(split.positions), 5)
         found = split.uvs[0][split.indices.reshape(-1)]
         self.assertTrue((found == uv6).all())
